@@ -1,0 +1,29 @@
+# lampyr_room(NAME SOURCES… LINK …): a folder of the house as a static library `lampyr_NAME`, with the project's warnings.
+# What it links is what it may include: arrows run down only.
+add_library(lampyr_settings INTERFACE)
+target_include_directories(lampyr_settings INTERFACE
+  $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src> $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+  $<INSTALL_INTERFACE:include/lampyr>)
+target_compile_features(lampyr_settings INTERFACE cxx_std_20)
+target_link_libraries(lampyr_settings INTERFACE glm::glm)
+
+# Not exported: how we build our own code. -fno-math-errno and -fno-trapping-math change no result.
+add_library(lampyr_warnings INTERFACE)
+target_compile_options(lampyr_warnings INTERFACE
+  -Wall -Wextra -Wdouble-promotion -Werror -fno-math-errno -fno-trapping-math)
+if(LAMPYR_NATIVE)
+  target_compile_options(lampyr_warnings INTERFACE -march=native)
+endif()
+if(LAMPYR_SANITIZE)
+  target_compile_options(lampyr_warnings INTERFACE -fsanitize=${LAMPYR_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(lampyr_warnings INTERFACE -fsanitize=${LAMPYR_SANITIZE})
+endif()
+
+function(lampyr_room name)
+  cmake_parse_arguments(ROOM "" "" "SOURCES;LINK;PRIVATE_LINK" ${ARGN})
+  add_library(lampyr_${name} STATIC ${ROOM_SOURCES})
+  target_link_libraries(lampyr_${name}
+    PUBLIC lampyr_settings ${ROOM_LINK}
+    PRIVATE $<BUILD_INTERFACE:lampyr_warnings> ${ROOM_PRIVATE_LINK})
+  set_property(GLOBAL APPEND PROPERTY LAMPYR_ROOMS lampyr_${name})
+endfunction()

@@ -1,0 +1,83 @@
+#include "base/error.h"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace lampyr {
+
+std::string FileLocation::ToString() const {
+  if (!file) return "";
+  if (line == 0) return *file;
+  return *file + ":" + std::to_string(line) + ":" + std::to_string(column);
+}
+
+namespace {
+
+std::string Format(const FileLocation& where, const char* severity, const std::string& text) {
+  const std::string place = where.ToString();
+  return (place.empty() ? "" : place + ": ") + severity + ": " + text;
+}
+
+char LowerCase(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+
+// Edit distance with transpositions of neighbours (optimal string alignment), case ignored.
+int EditDistance(std::string_view a, std::string_view b) {
+  const size_t columns = b.size() + 1;
+  std::vector<int> beforeLast(columns), last(columns), row(columns);
+  for (size_t j = 0; j < columns; ++j) last[j] = static_cast<int>(j);
+  for (size_t i = 1; i <= a.size(); ++i) {
+    row[0] = static_cast<int>(i);
+    for (size_t j = 1; j < columns; ++j) {
+      const bool same = LowerCase(a[i - 1]) == LowerCase(b[j - 1]);
+      row[j] = std::min({last[j] + 1, row[j - 1] + 1, last[j - 1] + (same ? 0 : 1)});
+      const bool swapped = i > 1 && j > 1 && LowerCase(a[i - 1]) == LowerCase(b[j - 2]) &&
+                           LowerCase(a[i - 2]) == LowerCase(b[j - 1]);
+      if (swapped) row[j] = std::min(row[j], beforeLast[j - 2] + 1);
+    }
+    std::swap(beforeLast, last);
+    std::swap(last, row);
+  }
+  return last[b.size()];
+}
+
+}  // namespace
+
+Error::Error(const std::string& text) : std::runtime_error(Format({}, "error", text)), text_(text) {}
+
+Error::Error(const FileLocation& where, const std::string& text)
+    : std::runtime_error(Format(where, "error", text)), where_(where), text_(text) {}
+
+void Diagnostics::Warn(const FileLocation& where, const std::string& text) {
+  if (mode_ == Mode::Strict) throw Error(where, text + " (--strict makes this warning an error)");
+  const std::lock_guard lock(mutex_);
+  const std::string message = Format(where, "warning", text);
+  if (!seen_.insert(message).second) return;
+  warnings_.push_back(message);
+  if (mode_ == Mode::Print) std::fprintf(stderr, "%s\n", message.c_str());
+}
+
+std::vector<std::string> Diagnostics::Warnings() const {
+  const std::lock_guard lock(mutex_);
+  return warnings_;
+}
+
+std::string NearestName(std::string_view given, const std::vector<std::string>& known) {
+  const int limit = std::max(1, static_cast<int>(given.size()) / 3);
+  int best = limit + 1;
+  std::string nearest;
+  for (const std::string& name : known) {
+    const int distance = EditDistance(given, name);
+    if (distance < best) {
+      best = distance;
+      nearest = name;
+    }
+  }
+  return nearest;
+}
+
+std::string DidYouMean(std::string_view given, const std::vector<std::string>& known) {
+  const std::string nearest = NearestName(given, known);
+  return nearest.empty() ? "" : " (did you mean \"" + nearest + "\"?)";
+}
+
+}  // namespace lampyr

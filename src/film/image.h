@@ -1,0 +1,50 @@
+// Images in memory, and reading and writing them. OpenEXR is used directly; every other format goes through
+// OpenImageIO, which is loaded only when such a file is met (src/film/image_module.cpp).
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "math/vec.h"
+
+namespace lampyr {
+
+// Interleaved float channels, row by row from the top.
+struct Image {
+  int width = 0, height = 0;
+  std::vector<std::string> channels;  // "R", "G", "B", "variance.R", …
+  std::vector<float> data;            // width · height · channels.size()
+  std::map<std::string, std::string> metadata;
+  int offsetX = 0, offsetY = 0;       // of the data window (a crop) within the full image
+  int fullWidth = 0, fullHeight = 0;  // display window; 0: the same as width and height
+
+  Image() = default;
+  Image(int w, int h, std::vector<std::string> channelNames);
+
+  float& At(int x, int y, size_t channel) { return data[(static_cast<size_t>(y) * width + x) * channels.size() + channel]; }
+  float At(int x, int y, size_t channel) const { return data[(static_cast<size_t>(y) * width + x) * channels.size() + channel]; }
+  // Index of a channel by name, -1 when absent.
+  int ChannelIndex(const std::string& name) const;
+  // R, G and B at a pixel; a single-channel image is gray.
+  Color RgbAt(int x, int y) const;
+  bool HasRgb() const;
+};
+
+enum class ExrPrecision { Half, Float };
+
+// Written to a temporary name in the same folder, then renamed: the file is whole or it is not there.
+// Throws Error (unwritable folder, full disk).
+void WriteExr(const std::filesystem::path& path, const Image& image, ExrPrecision precision);
+
+// 8-bit sRGB with tone mapping for pictures to look at: exposure in stops, then a filmic shoulder (none: plain clipping).
+enum class ToneMap { Clip, Filmic };
+void WritePng(const std::filesystem::path& path, const Image& image, float exposureStops, ToneMap toneMap);
+
+enum class ImageEncoding { Automatic, Linear, Srgb };  // Automatic: sRGB for 8-bit files, linear otherwise
+
+// Any image, as linear floats. EXR by OpenEXR, the rest by OpenImageIO. Throws Error naming the file and what is wrong.
+Image ReadImage(const std::filesystem::path& path, ImageEncoding encoding = ImageEncoding::Automatic);
+
+}  // namespace lampyr

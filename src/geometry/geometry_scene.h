@@ -1,0 +1,88 @@
+// The traceable scene: shapes and instances in, nearest hits and occlusion out. Embree behind a door:
+// only geometry_scene.cpp (and its private parts) includes Embree's headers.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "geometry/ray.h"
+#include "geometry/shapes.h"
+
+namespace lampyr {
+
+// Opacity of a surface, for cut-outs. Implemented by textures.
+class AlphaSource {
+ public:
+  virtual ~AlphaSource() = default;
+  // In [0,1]; 0 lets a ray through. `position` in render space.
+  virtual float Alpha(const Point2& uv, const Point3& position) const = 0;
+};
+
+// What a shape carries along. The indices mean nothing to the geometry.
+struct GeometryAttributes {
+  int32_t material = -1;
+  int32_t light = -1;  // index of the area light that this shape is, -1 for none
+  uint32_t visibility = visibility::kAll;
+  std::shared_ptr<const AlphaSource> alpha;  // null: opaque
+};
+
+struct GeometryEntry {
+  Shape shape;
+  GeometryAttributes attributes;
+};
+
+// Objects to be instanced are groups of entries in the object's own space.
+struct GeometryObject {
+  std::vector<GeometryEntry> entries;
+};
+
+struct GeometryInstance {
+  uint32_t object = 0;
+  Affine toRender;
+  Affine toObject;
+  // Index of the first light of this instance: entry light indices of the object are relative to it.
+  int32_t firstLight = 0;
+};
+
+struct GeometryDescription {
+  std::vector<GeometryEntry> entries;
+  std::vector<GeometryObject> objects;
+  std::vector<GeometryInstance> instances;
+  bool robust = true;  // Embree's robust mode: no leaks along shared edges, 20-25 % slower
+};
+
+// Immutable after construction; all methods may be called from any thread.
+//
+// A ray that Embree would not survive (NaN, infinite or huge origin or direction, negative or NaN tMax) is counted and
+// hits nothing.
+class GeometryScene {
+ public:
+  explicit GeometryScene(GeometryDescription description);
+  ~GeometryScene();
+  GeometryScene(const GeometryScene&) = delete;
+  GeometryScene& operator=(const GeometryScene&) = delete;
+
+  // Nearest hit with t in (0, ray.tMax] on a primitive visible to one of `kinds`. False: nothing, `hit` untouched.
+  bool Intersect(const Ray& ray, uint32_t kinds, RayHit& hit) const;
+
+  // Whether anything lies in (0, ray.tMax).
+  bool Occluded(const Ray& ray, uint32_t kinds) const;
+
+  // Position with error bound, normals, uv and tangents of a hit that `ray` made.
+  SurfacePoint GetSurfacePoint(const Ray& ray, const RayHit& hit) const;
+
+  const GeometryAttributes& Attributes(uint32_t primitive) const;
+  // Index of the light at a hit, instances resolved; -1 for none.
+  int32_t LightAt(uint32_t primitive, uint32_t instance) const;
+
+  size_t PrimitiveCount() const;  // shapes, instanced ones once
+  const Bounds3& GetBounds() const;             // empty for an empty scene
+  BoundingSphere GetBoundingSphere() const;     // radius 1 around 0 for an empty scene
+  uint64_t RejectedRays() const;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace lampyr

@@ -1,0 +1,49 @@
+// A ray, what it hit (as small as the intersector gives it), and the full description of the point it hit.
+#pragma once
+
+#include <cstdint>
+
+#include "math/vec.h"
+
+namespace lampyr {
+
+// Kinds of rays, as bits: a primitive can be invisible to some (GeometryAttributes::visibility).
+namespace visibility {
+inline constexpr uint32_t kCamera = 1;    // from the camera, or after only passing through
+inline constexpr uint32_t kIndirect = 2;  // scattered by a surface, or emitted by a light
+inline constexpr uint32_t kShadow = 4;    // between a surface point and a light
+inline constexpr uint32_t kAll = 7;
+}  // namespace visibility
+
+struct Ray {
+  Point3 origin;
+  Vector3 direction;  // unit length, unless a docstring says otherwise
+  float tMax = kInfinity;
+  float time = 0;  // in [0,1] over the shutter
+};
+
+inline constexpr uint32_t kNoIndex = 0xffffffffu;
+
+// The nearest hit along a ray: indices and parametric coordinates.
+struct RayHit {
+  float t = kInfinity;             // ray parameter
+  uint32_t primitive = kNoIndex;   // index of the shape, over all shapes of the scene
+  uint32_t patch = 0;              // triangle, bilinear patch or curve within the shape
+  uint32_t instance = kNoIndex;    // index of the instance, kNoIndex for shapes outside of instances
+  float u = 0, v = 0;              // barycentric (triangles), parametric otherwise
+};
+
+// A point on a surface. Everything is in render space.
+struct SurfacePoint {
+  Point3 position{0.0f};
+  Vector3 positionError{0.0f};  // bound on the absolute error of each component of `position`
+  Normal3 Ng{0, 0, 1};          // geometric, unit, pointing to the shape's outside (emission leaves there)
+  Normal3 Ns{0, 0, 1};          // shading, unit, dot(Ng, Ns) >= 0
+  Point2 uv{0.0f};
+  Vector3 dpdu{0.0f}, dpdv{0.0f};  // not unit; 0 when degenerate
+  uint32_t primitive = kNoIndex;
+  uint32_t patch = 0;
+  uint32_t instance = kNoIndex;
+};
+
+}  // namespace lampyr

@@ -1,0 +1,69 @@
+// The scattering of light at a surface point: value, densities in both directions and the diffuse/specular split, in
+// one call. Which models there are is behind this door: a Bsdf is a small value on the stack, no allocation, no virtual call.
+//
+// Conventions ([Veach97 §5.3], light-transport conventions of this project)
+// - wo and wi are unit vectors in render space, both pointing away from the surface.
+// - wo is where the path came from, wi where it goes on; for TransportMode::Radiance wo points towards the camera.
+// - f is the BSDF value (1/sr) without the cosine. Refraction scales radiance by 1/η² (Radiance), not importance.
+// - Densities are in solid angle; pdfReverse is the density of sampling wo when coming from wi.
+// - Delta lobes have value and density 0 in Evaluate; Sample says so with isDelta.
+#pragma once
+
+#include <optional>
+#include <variant>
+
+#include "materials/bsdf_models.h"
+#include "math/density.h"
+#include "math/frame.h"
+
+namespace lampyr {
+
+struct BsdfEvaluation {
+  Color diffuse, specular;  // f, split by lobe: lights may send different radiance to either
+  PdfSolidAngle pdfForward, pdfReverse;
+
+  Color Sum() const { return diffuse + specular; }
+};
+
+struct BsdfSample {
+  Vector3 wi{0.0f};
+  Color weightDiffuse, weightSpecular;  // f · |cosθi| / pdf, split by lobe; computed without the division where it cancels
+  PdfSolidAngle pdfForward, pdfReverse; // for a delta: discrete probabilities of the lobe
+  bool isDelta = false;
+  bool isTransmission = false;
+  float eta = 1;  // η on wi's side over η on wo's side for transmission; 1 otherwise
+
+  Color Weight() const { return weightDiffuse + weightSpecular; }
+};
+
+class Bsdf {
+ public:
+  Bsdf() = default;  // absorbs everything
+  Bsdf(const Frame& shadingFrame, const Normal3& Ng, const BsdfModel& model)
+      : frame_(shadingFrame), Ng_(Ng), model_(model) {}
+
+  // f and both densities. Zero for deltas.
+  BsdfEvaluation Evaluate(const Vector3& wo, const Vector3& wi, TransportMode mode) const;
+
+  // uLobe chooses a lobe, u a direction; both in [0,1). nullopt: absorbed.
+  std::optional<BsdfSample> Sample(const Vector3& wo, float uLobe, const Point2& u, TransportMode mode) const;
+
+  // Only delta lobes (or none at all): light sampling cannot find anything.
+  bool IsDelta() const;
+  // Light may come from the other side: light selection looks at both.
+  bool IsTransmissive() const;
+  // pdfForward is exactly the density of Sample (not so for stochastically layered models).
+  bool HasExactPdf() const;
+  // Directional-hemispherical albedo estimate for AOVs and roulette; cheap, not exact.
+  Color ApproximateAlbedo() const;
+
+  const Frame& ShadingFrame() const { return frame_; }
+  const Normal3& Ng() const { return Ng_; }
+
+ private:
+  Frame frame_{};
+  Normal3 Ng_{0, 0, 1};
+  BsdfModel model_;
+};
+
+}  // namespace lampyr

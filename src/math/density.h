@@ -1,0 +1,55 @@
+// Probability densities whose measure is part of their type, and the only conversions between measures.
+//
+// A density in solid angle (1/sr) and one in area (1/m²) are different numbers for the same sample;
+// adding or comparing the two does not compile. A density of 0 means exactly that: the technique cannot
+// make the sample. Deltas are flags elsewhere and never a density ([Veach97 §8.3.2]).
+#pragma once
+
+#include "math/vec.h"
+
+namespace lampyr {
+
+namespace measure {
+struct SolidAngle {};  // 1/sr
+struct Area {};        // 1/m²
+struct Discrete {};    // a probability
+}  // namespace measure
+
+template <class Measure>
+struct Pdf {
+  float value = 0;
+
+  Pdf() = default;
+  constexpr explicit Pdf(float v) : value(v) {}
+
+  bool IsZero() const { return value == 0; }
+  friend Pdf operator+(Pdf a, Pdf b) { return Pdf(a.value + b.value); }
+  friend Pdf operator*(Pdf a, float s) { return Pdf(a.value * s); }
+  friend Pdf operator*(float s, Pdf a) { return Pdf(a.value * s); }
+  friend auto operator<=>(const Pdf&, const Pdf&) = default;
+};
+
+using PdfSolidAngle = Pdf<measure::SolidAngle>;
+using PdfArea = Pdf<measure::Area>;
+using PdfDiscrete = Pdf<measure::Discrete>;
+
+// Selecting with a probability and then sampling: the measure stays that of the sample.
+template <class Measure>
+Pdf<Measure> operator*(PdfDiscrete selection, Pdf<Measure> pdf) {
+  return Pdf<Measure>(selection.value * pdf.value);
+}
+inline PdfDiscrete operator*(PdfDiscrete a, PdfDiscrete b) { return PdfDiscrete(a.value * b.value); }
+
+// Area at a surface point seen at `distance` with |cos| `cosTheta` between its normal and the connecting line
+// -> solid angle at the viewer: p_ω = p_A · d² / cosθ. 0 where the surface is seen edge-on: it has no solid angle.
+inline PdfSolidAngle ToSolidAngle(PdfArea pdf, float distanceSquared, float cosTheta) {
+  return PdfSolidAngle(cosTheta > 0 ? pdf.value * distanceSquared / cosTheta : 0.0f);
+}
+
+// The factor dω/dA = cosθ / d² (1/m² per sr): p_A = p_ω · factor. ([Veach97 §8.2.2.2])
+inline float SolidAngleToArea(float distanceSquared, float cosTheta) {
+  return distanceSquared > 0 ? cosTheta / distanceSquared : 0.0f;
+}
+inline PdfArea ToArea(PdfSolidAngle pdf, float solidAngleToArea) { return PdfArea(pdf.value * solidAngleToArea); }
+
+}  // namespace lampyr

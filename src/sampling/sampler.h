@@ -1,0 +1,38 @@
+// Random numbers for one sample of one pixel. A pure function of (pixel, sample index, dimension, seed): the order in
+// which threads work does not matter. Owen-scrambled Sobol points, padded by 2-D pairs ([Burley20]), or independent.
+#pragma once
+
+#include <cstdint>
+
+#include "math/vec.h"
+
+namespace lampyr {
+
+enum class SamplerKind { Sobol, Independent };
+
+class Sampler {
+ public:
+  Sampler(SamplerKind kind, uint64_t seed) : kind_(kind), seed_(seed) {}
+
+  // Begins sample `index` of a pixel at dimension 0.
+  void StartPixelSample(int x, int y, uint32_t index);
+  // Jumps to a dimension: path vertices start at fixed dimensions, so that they stay stratified among paths of different shape.
+  void SetDimension(uint32_t dimension) { dimension_ = dimension; }
+
+  // In [0, 1). Each call takes the next dimension (a pair counts as one).
+  float Get1D();
+  Point2 Get2D();
+
+  SamplerKind Kind() const { return kind_; }
+
+ private:
+  SamplerKind kind_;
+  uint64_t seed_;
+  uint32_t index_ = 0;
+  uint32_t dimension_ = 0;
+  uint64_t pixelHash_ = 0;
+};
+
+}  // namespace lampyr
+
+#include "sampling/sampler_inline.h"

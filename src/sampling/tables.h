@@ -1,0 +1,92 @@
+// Tabulated distributions: piecewise constant in one and two dimensions, and alias tables over discrete items.
+// Negative, NaN and infinite entries count as 0 (and are reported by the caller, who knows where they came from);
+// a table of zeros cannot be sampled and says so.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "math/density.h"
+#include "math/vec.h"
+
+namespace lampyr {
+
+// Discrete items in proportion to their weights, in O(1) ([Walker77], built by [Vose91]).
+class AliasTable {
+ public:
+  AliasTable() = default;
+  explicit AliasTable(std::span<const float> weights);
+
+  struct Result {
+    uint32_t index;
+    PdfDiscrete probability;
+    float u;  // the random number, stretched again over [0,1): fit for another decision
+  };
+  // Requires !IsZero().
+  Result Sample(float u) const;
+  PdfDiscrete Probability(uint32_t index) const { return PdfDiscrete(probabilities_[index]); }
+  size_t Size() const { return probabilities_.size(); }
+  bool IsZero() const { return total_ <= 0; }
+  double Total() const { return total_; }  // sum of the weights
+
+ private:
+  struct Bin {
+    float threshold;
+    uint32_t alias;
+  };
+  std::vector<Bin> bins_;
+  std::vector<float> probabilities_;
+  double total_ = 0;
+};
+
+// A density over [0,1], constant in each of n equal intervals.
+class Distribution1D {
+ public:
+  Distribution1D() = default;
+  explicit Distribution1D(std::span<const float> values);
+
+  struct Result {
+    float x;         // in [0,1)
+    float pdf;       // density over [0,1]
+    uint32_t index;  // interval
+  };
+  Result Sample(float u) const;  // requires !IsZero()
+  float Density(float x) const;
+  float Invert(float x) const;   // the u that Sample turns into x
+  float Integral() const { return static_cast<float>(integral_); }
+  bool IsZero() const { return integral_ <= 0; }
+  size_t Size() const { return values_.size(); }
+
+ private:
+  friend class Distribution2D;
+  std::vector<float> values_;  // normalised densities
+  std::vector<float> cdf_;     // n + 1 entries
+  double integral_ = 0;
+};
+
+// A density over [0,1]², constant in each cell of a width × height grid, rows in y.
+class Distribution2D {
+ public:
+  Distribution2D() = default;
+  Distribution2D(std::span<const float> values, int width, int height);
+
+  struct Result {
+    Point2 uv;
+    float pdf;  // density over [0,1]²
+  };
+  Result Sample(const Point2& u) const;  // requires !IsZero()
+  float Density(const Point2& uv) const;
+  Point2 Invert(const Point2& uv) const;
+  double Integral() const { return integral_; }  // mean of the values
+  bool IsZero() const { return integral_ <= 0; }
+
+ private:
+  int width_ = 0, height_ = 0;
+  std::vector<float> densities_;       // width × height
+  std::vector<float> conditionalCdf_;  // (width + 1) × height
+  std::vector<float> marginalCdf_;     // height + 1
+  double integral_ = 0;
+};
+
+}  // namespace lampyr

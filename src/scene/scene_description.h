@@ -1,0 +1,103 @@
+// A scene as its file describes it: plain data, double precision, nothing built and no file but the scene's own
+// (and its includes) opened. Every part knows the place it was written at.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "math/transform.h"
+#include "scene/parameters.h"
+
+namespace lampyr {
+
+// A placed thing: transforms at shutter open and close (equal when nothing moves). Local space to world space.
+struct Placement {
+  Transform start, end;
+  bool IsAnimated() const { return !(start == end); }
+};
+
+// A statement such as `Camera "perspective" …`: its type and parameters. An empty type: the statement was not given.
+struct StatementDescription {
+  std::string type;
+  ParameterList parameters;
+  FileLocation where;
+};
+
+struct NamedMaterialDescription {
+  std::string name;
+  StatementDescription material;  // type from "string type"
+};
+
+struct TextureDescription {
+  std::string name;
+  bool isSpectrum = false;  // a colour, not a float
+  StatementDescription texture;  // type: "imagemap", "scale", …
+  Placement placement;
+};
+
+struct LightDescription {
+  StatementDescription light;
+  Placement placement;
+  std::string mediumName;  // outside medium
+};
+
+// A material by reference: index into `materials`, or a name among `namedMaterials`.
+struct MaterialReference {
+  int index = -1;
+  std::string name;
+  FileLocation where;
+};
+
+struct ShapeDescription {
+  StatementDescription shape;
+  Placement placement;
+  bool reverseOrientation = false;
+  MaterialReference material;
+  int areaLight = -1;  // index into areaLights, -1 none
+  std::string insideMedium, outsideMedium;
+  // Attributes by target ("shape", "lightfilter", "lighting", …) that are in force and not parameters of the shape itself.
+  std::map<std::string, ParameterList> attributes;
+};
+
+struct ObjectDescription {
+  std::string name;
+  FileLocation where;
+  std::vector<ShapeDescription> shapes;
+  std::vector<struct InstanceDescription> instances;  // of other objects, within this one
+};
+
+struct InstanceDescription {
+  std::string object;
+  FileLocation where;
+  Placement placement;
+};
+
+struct SceneDescription {
+  std::filesystem::path file;
+  std::string contentHash;  // of all the text that was read, hexadecimal
+
+  StatementDescription camera, film, pixelFilter, sampler, integrator, accelerator;
+  Placement cameraToWorld;
+  double shutterOpen = 0, shutterClose = 1;  // TransformTimes
+  std::map<std::string, Parameter> options;
+
+  std::vector<StatementDescription> materials;
+  std::vector<NamedMaterialDescription> namedMaterials;
+  std::vector<TextureDescription> textures;
+  std::vector<StatementDescription> areaLights;
+  std::vector<LightDescription> lights;
+  std::vector<ShapeDescription> shapes;
+  std::vector<ObjectDescription> objects;
+  std::vector<InstanceDescription> instances;
+};
+
+// Reads a scene file (plain or gzipped) and its includes. Throws Error with file, line and column; warns through `diagnostics`.
+SceneDescription ReadScene(const std::filesystem::path& file, Diagnostics& diagnostics);
+
+// The same for text in memory; `name` stands for the file in messages, relative files are looked for beside it.
+SceneDescription ParseScene(const std::string& text, const std::filesystem::path& name, Diagnostics& diagnostics);
+
+}  // namespace lampyr

@@ -1,0 +1,43 @@
+// Textures: values that vary over a surface. A material's parameter is either a constant or a texture; constants cost
+// nothing (FloatParameter, ColorParameter).
+#pragma once
+
+#include <memory>
+
+#include "math/vec.h"
+
+namespace lampyr {
+
+// Where a texture is evaluated. `position` is in render space; textures with a 3-D mapping hold their own transform.
+struct TextureContext {
+  Point2 uv{0.0f};
+  Point3 position{0.0f};
+};
+
+template <class Value>
+class Texture {
+ public:
+  virtual ~Texture() = default;
+  virtual Value Evaluate(const TextureContext& where) const = 0;
+};
+using FloatTexture = Texture<float>;
+using ColorTexture = Texture<Color>;
+
+// A constant or a texture.
+template <class Value>
+class ParameterOf {
+ public:
+  ParameterOf(Value constant = Value{}) : constant_(constant) {}
+  explicit ParameterOf(std::shared_ptr<const Texture<Value>> texture) : texture_(std::move(texture)) {}
+
+  bool IsConstant() const { return !texture_; }
+  Value Evaluate(const TextureContext& where) const { return texture_ ? texture_->Evaluate(where) : constant_; }
+
+ private:
+  Value constant_{};
+  std::shared_ptr<const Texture<Value>> texture_;
+};
+using FloatParameter = ParameterOf<float>;
+using ColorParameter = ParameterOf<Color>;
+
+}  // namespace lampyr
