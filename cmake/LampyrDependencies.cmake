@@ -2,10 +2,6 @@
 find_package(embree 3 REQUIRED)
 find_package(OpenEXR REQUIRED)
 find_package(Imath REQUIRED)
-find_package(OpenImageIO REQUIRED)
-# Debian's target names an OpenCV folder that none of its dependencies brings; configuring would fail on it.
-set_target_properties(OpenImageIO::OpenImageIO PROPERTIES
-  INTERFACE_INCLUDE_DIRECTORIES "${OpenImageIO_INCLUDE_DIR}" INTERFACE_SYSTEM_INCLUDE_DIRECTORIES "")
 find_package(flann REQUIRED)
 find_package(glm REQUIRED)
 find_package(TBB REQUIRED)
@@ -13,3 +9,12 @@ find_package(fmt REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(ZLIB REQUIRED)
+
+# Debian's OpenImageIO package file demands the command-line tools and an OpenCV folder that its library does not need:
+# the library and its headers are looked for directly.
+find_path(OPENIMAGEIO_INCLUDE_DIR OpenImageIO/imageio.h REQUIRED)
+find_library(OPENIMAGEIO_LIBRARY OpenImageIO REQUIRED)
+find_library(OPENIMAGEIO_UTIL_LIBRARY OpenImageIO_Util REQUIRED)
+add_library(lampyr_openimageio INTERFACE)
+target_include_directories(lampyr_openimageio SYSTEM INTERFACE ${OPENIMAGEIO_INCLUDE_DIR})
+target_link_libraries(lampyr_openimageio INTERFACE ${OPENIMAGEIO_LIBRARY} ${OPENIMAGEIO_UTIL_LIBRARY} Imath::Imath)
