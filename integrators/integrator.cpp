@@ -1,0 +1,13 @@
+#include "integrators/integrator.h"
+
+namespace lampyr {
+
+RenderCounts& RenderCounts::operator+=(const RenderCounts& other) {
+  cameraRays += other.cameraRays;
+  indirectRays += other.indirectRays;
+  shadowRays += other.shadowRays;
+  droppedSamples += other.droppedSamples;
+  return *this;
+}
+
+}  // namespace lampyr

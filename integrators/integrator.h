@@ -1,0 +1,60 @@
+// What all integrators share: the scene as they see it, their settings, and the counts they keep.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "camera/camera.h"
+#include "geometry/geometry_scene.h"
+#include "lights/services/lighting_services.h"
+#include "materials/material.h"
+#include "sampling/sampler.h"
+
+namespace lampyr {
+
+// The scene, built and immutable. Lights are reached through `lighting` only.
+struct RenderScene {
+  std::unique_ptr<GeometryScene> geometry;
+  std::vector<std::shared_ptr<const Material>> materials;  // by GeometryAttributes::material
+  std::unique_ptr<LightingServices> lighting;
+  std::unique_ptr<Camera> camera;
+  float shutterOpen = 0, shutterClose = 1;
+};
+
+// Kept per tile of work and summed afterwards: no thread shares one.
+struct RenderCounts {
+  uint64_t cameraRays = 0;
+  uint64_t indirectRays = 0;
+  uint64_t shadowRays = 0;
+  uint64_t droppedSamples = 0;  // NaN, infinite or negative: a defect, counted and reported
+
+  RenderCounts& operator+=(const RenderCounts& other);
+  uint64_t Rays() const { return cameraRays + indirectRays + shadowRays; }
+};
+
+// Sampler dimensions: the film and lens come first, then a fixed block per path vertex, so that the same decision of two
+// paths of a pixel is always made by the same dimension and stays stratified.
+namespace dimensions {
+inline constexpr uint32_t kFilm = 0;
+inline constexpr uint32_t kLens = 1;
+inline constexpr uint32_t kTime = 2;
+inline constexpr uint32_t kFirstVertex = 3;
+// Within a vertex's block:
+inline constexpr uint32_t kLightSelection = 0;
+inline constexpr uint32_t kLight = 1;
+inline constexpr uint32_t kLobe = 2;
+inline constexpr uint32_t kDirection = 3;
+inline constexpr uint32_t kRoulette = 4;
+inline constexpr uint32_t kPerVertex = 5;
+}  // namespace dimensions
+
+// An integrator that estimates the radiance along one camera ray at a time. Stateless: any thread may call it.
+class CameraIntegrator {
+ public:
+  virtual ~CameraIntegrator() = default;
+  // One sample of the radiance that arrives along `ray`. `sampler` has been started for the pixel sample.
+  virtual Color Radiance(const Ray& ray, Sampler& sampler, RenderCounts& counts) const = 0;
+};
+
+}  // namespace lampyr

@@ -1,0 +1,81 @@
+// Selection that does not look at the receiver: uniform and by power. See the header.
+#include "lights/selection/light_selector.h"
+
+#include <vector>
+
+#include "sampling/tables.h"
+
+namespace lampyr {
+
+namespace {
+
+class TableSelector final : public LightSelector {
+ public:
+  explicit TableSelector(std::span<const float> weights) : table_(weights) {}
+
+  std::optional<SelectedLight> Select(const Receiver&, float u) const override {
+    if (table_.IsZero()) return std::nullopt;
+    if (table_.Size() == 1) return SelectedLight{0, kAnyPatch, PdfDiscrete(1), u};
+    const AliasTable::Result choice = table_.Sample(u);
+    return SelectedLight{choice.index, kAnyPatch, choice.probability, choice.u};
+  }
+
+  PdfDiscrete Probability(const Receiver&, uint32_t light, int) const override {
+    if (table_.IsZero()) return PdfDiscrete(0);
+    return table_.Size() == 1 ? PdfDiscrete(1) : table_.Probability(light);
+  }
+
+ private:
+  AliasTable table_;
+};
+
+std::vector<float> PowerWeights(std::span<const PlacedLight> lights, const BoundingSphere& scene) {
+  std::vector<float> weights;
+  for (const PlacedLight& placed : lights) {
+    LightContext context;
+    context.transform = &placed.transform;
+    context.scene = scene;
+    const float power = placed.light->GetPowerEstimate(context).Average() * placed.light->Settings().importanceMultiplier;
+    weights.push_back(std::isfinite(power) ? std::max(power, 0.0f) : 0.0f);
+  }
+  return weights;
+}
+
+// Power is an estimate: a light whose estimate is far too low must not become impossible. Every light gets at least this
+// part of an equal share; a light that truly emits nothing costs next to nothing.
+constexpr float kFloorOfEqualShare = 1e-3f;
+
+}  // namespace
+
+std::optional<LightSelection> ParseLightSelection(const std::string& name) {
+  if (name == "uniform") return LightSelection::Uniform;
+  if (name == "power") return LightSelection::Power;
+  return std::nullopt;
+}
+
+std::unique_ptr<LightSelector> MakeTableSelector(std::span<const float> weights) {
+  return std::make_unique<TableSelector>(weights);
+}
+
+std::unique_ptr<LightSelector> MakeLightSelector(LightSelection selection, std::span<const PlacedLight> lights,
+                                                 const BoundingSphere& scene) {
+  std::vector<float> weights(lights.size(), 1.0f);
+  if (selection == LightSelection::Power) {
+    weights = PowerWeights(lights, scene);
+    double total = 0;
+    for (const float weight : weights) total += static_cast<double>(weight);
+    const float mean = lights.empty() ? 0.0f : static_cast<float>(total / static_cast<double>(lights.size()));
+    for (float& weight : weights) weight = mean > 0 ? std::max(weight, kFloorOfEqualShare * mean) : 1.0f;
+  }
+  return MakeTableSelector(weights);
+}
+
+std::unique_ptr<LightSelector> MakeEmissionSelector(std::span<const PlacedLight> lights, const BoundingSphere& scene) {
+  std::vector<float> weights = PowerWeights(lights, scene);
+  for (size_t i = 0; i < lights.size(); ++i) {
+    if (!lights[i].light->Settings().traceLightPaths) weights[i] = 0;
+  }
+  return MakeTableSelector(weights);
+}
+
+}  // namespace lampyr

@@ -1,0 +1,62 @@
+// Choosing one light among many: for next-event estimation at a receiver, and for emission.
+//
+// The probability of a choice is never part of a light's own densities. It is asked for again when another technique
+// finds the same light, with the very receiver that the choice was made for: both must be the same bits.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "lights/light.h"
+
+namespace lampyr {
+
+// The point that is being lit. It travels with a path's vertex.
+struct Receiver {
+  Point3 position{0.0f};
+  Normal3 normal{0.0f};       // shading normal, on the side of the path's previous vertex; 0 in a volume
+  bool isTransmissive = false;  // light from behind counts too
+};
+
+struct SelectedLight {
+  uint32_t light = 0;
+  int patch = kAnyPatch;      // kAnyPatch: the light chooses its patch itself
+  PdfDiscrete probability;
+  float u = 0;                // the random number, stretched over [0,1) again
+};
+
+class LightSelector {
+ public:
+  virtual ~LightSelector() = default;
+  // nullopt: no light can contribute.
+  virtual std::optional<SelectedLight> Select(const Receiver& receiver, float u) const = 0;
+  // The probability that Select chooses this (light, patch) at this receiver.
+  virtual PdfDiscrete Probability(const Receiver& receiver, uint32_t light, int patch) const = 0;
+  // Whether lights are selected patch by patch: patchIndex then belongs to what is asked for.
+  virtual bool SelectsPatches() const { return false; }
+};
+
+enum class LightSelection { Uniform, Power };
+
+// The name as on the command line; nullopt for an unknown one.
+std::optional<LightSelection> ParseLightSelection(const std::string& name);
+
+// A light as the services hold it.
+struct PlacedLight {
+  std::shared_ptr<const Light> light;
+  LightTransform transform;
+};
+
+// Selects in proportion to `weights` (not negative), whatever the receiver. With all weights 0, selects nothing.
+std::unique_ptr<LightSelector> MakeTableSelector(std::span<const float> weights);
+
+// Every light alike; or by estimated power × importanceMultiplier, with a floor so that no light is impossible.
+std::unique_ptr<LightSelector> MakeLightSelector(LightSelection selection, std::span<const PlacedLight> lights,
+                                                 const BoundingSphere& scene);
+
+// For emission: by power; lights with traceLightPaths off have probability 0.
+std::unique_ptr<LightSelector> MakeEmissionSelector(std::span<const PlacedLight> lights, const BoundingSphere& scene);
+
+}  // namespace lampyr

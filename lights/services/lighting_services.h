@@ -1,0 +1,91 @@
+// The one door between integrators and lights: selection, sampling, shadows and emission. An integrator never calls a
+// light itself, so whatever happens on the edge between a light and the first surface happens here, once, and alike for
+// every technique.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "geometry/geometry_scene.h"
+#include "geometry/robust.h"
+#include "lights/light.h"
+#include "lights/selection/light_selector.h"
+
+namespace lampyr {
+
+// Next-event estimation: a light's sample with the probability of having chosen that light.
+struct DirectSample {
+  uint32_t light = 0;
+  bool isDelta = false;         // the light has no surface or directions that a BSDF ray could find
+  bool isInfinite = false;      // no end of the shadow ray
+  PdfDiscrete selection;        // at the receiver
+  LightSample sample;           // densities without the selection
+};
+
+// A light that a ray found.
+struct FoundLight {
+  uint32_t light = 0;
+  PdfDiscrete selection;        // next-event selection at the receiver that the ray left
+  LightEvaluation evaluation;
+};
+
+// A photon, traced to its first surface.
+struct EmittedPhoton {
+  uint32_t light = 0;
+  PdfDiscrete emissionSelection;
+  EmissionSample emission;
+  std::optional<RayHit> landing;   // nullopt: it left the scene
+  Ray ray;
+};
+
+class LightingServices {
+ public:
+  // `geometry` must outlive the services.
+  LightingServices(const GeometryScene& geometry, std::vector<PlacedLight> lights, LightSelection selection);
+
+  // Chooses a light for the receiver and a sample on it. nullopt: nothing comes from there.
+  std::optional<DirectSample> GenerateSamples(const Receiver& receiver, float uSelect, const Point2& u, float time,
+                                              bool bidirectional) const;
+
+  // What of a sample's light arrives: 0 behind something opaque, 1 otherwise. Traces a shadow ray.
+  Color Transmission(const SurfacePoint& from, const DirectSample& direct, float time) const;
+
+  // The area light at a surface point that a ray from `receiver` along the unit `direction` hit; nullopt when that surface
+  // emits nothing that way.
+  std::optional<FoundLight> EvaluateSamples(const Receiver& receiver, const Vector3& direction, float distance,
+                                            const SurfacePoint& point, float time, bool bidirectional) const;
+
+  // The lights at infinity, each as seen by a ray from `receiver` that escapes along `direction`: i in [0, InfiniteCount()).
+  size_t InfiniteCount() const { return infinite_.size(); }
+  std::optional<FoundLight> EvaluateEscaped(size_t i, const Receiver& receiver, const Vector3& direction, float time,
+                                            bool bidirectional) const;
+
+  // What a camera ray sees of a light it hit, or of all lights at infinity when it escapes.
+  Color EmissionForCamera(const Vector3& direction, float distance, const SurfacePoint& point, float time) const;
+  Color EscapedEmissionForCamera(const Vector3& direction, float time) const;
+
+  // Chooses a light for emission, emits and traces to the landing point.
+  std::optional<EmittedPhoton> GenerateEmission(float uSelect, const Point2& u, const Point2& uDirection, float time) const;
+  // The density of next-event estimation for the light vertex of a photon that landed at `receiver`, selection apart.
+  std::optional<FoundLight> EvaluateLanding(const EmittedPhoton& photon, const Receiver& receiver) const;
+
+  PdfDiscrete SelectionProbability(const Receiver& receiver, uint32_t light, int patch) const;
+  PdfDiscrete EmissionSelectionProbability(uint32_t light) const;
+
+  bool HasLights() const { return !lights_.empty(); }
+  const std::vector<PlacedLight>& Lights() const { return lights_; }
+  const BoundingSphere& SceneSphere() const { return sphere_; }
+
+ private:
+  LightContext Context(uint32_t light, float time, bool bidirectional) const;
+
+  const GeometryScene& geometry_;
+  std::vector<PlacedLight> lights_;
+  std::vector<LightKind> kinds_;
+  std::vector<uint32_t> infinite_;
+  BoundingSphere sphere_;
+  std::unique_ptr<LightSelector> selector_, emissionSelector_;
+};
+
+}  // namespace lampyr

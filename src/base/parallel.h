@@ -1,0 +1,18 @@
+// A parallel loop over independent items. What each item computes must not depend on which thread runs it, or when.
+#pragma once
+
+#include <functional>
+
+namespace lampyr {
+
+// Hardware threads of this machine, at least 1.
+int HardwareThreads();
+
+// Denormal floats are flushed to zero: rays with denormal components are several times slower otherwise. To be called once
+// at the start of main, before anything parallel: worker threads inherit the setting when they start, and never later.
+void FlushDenormalsToZero();
+
+// Calls body(0) … body(count - 1) on at most `threads` threads. An exception of a body is thrown here.
+void ParallelFor(int count, int threads, const std::function<void(int)>& body);
+
+}  // namespace lampyr

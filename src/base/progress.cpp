@@ -1,0 +1,57 @@
+#include "base/progress.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace lampyr {
+
+std::string FormatDuration(double seconds) {
+  char text[64];
+  if (!(seconds < 1e9)) return "?";
+  const long whole = std::lround(seconds);
+  if (whole >= 3600) {
+    std::snprintf(text, sizeof text, "%ld h %02ld min", whole / 3600, whole / 60 % 60);
+  } else if (whole >= 60) {
+    std::snprintf(text, sizeof text, "%ld min %02ld s", whole / 60, whole % 60);
+  } else {
+    std::snprintf(text, sizeof text, "%.1f s", seconds);
+  }
+  return text;
+}
+
+Progress::Progress(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0), start_(Clock::now()) {}
+
+Progress::~Progress() { Clear(); }
+
+double Progress::Seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+
+void Progress::Update(double fraction, const std::string& note) {
+  if (quiet_) return;
+  const double now = Seconds();
+  if (now - lastPrinted_ < (terminal_ ? 0.1 : 5.0)) return;
+  if (!terminal_ && lastPrinted_ < 0 && now < 2.0) return;  // short work needs no lines
+  lastPrinted_ = now;
+  fraction = std::clamp(fraction, 0.0, 1.0);
+  const std::string left = fraction > 0 ? FormatDuration(now * (1 - fraction) / fraction) : "?";
+  if (terminal_) {
+    constexpr int width = 30;
+    const int filled = static_cast<int>(fraction * width);
+    std::fprintf(stderr, "\r\033[K[%s%s] %3.0f %%  %s left  %s", std::string(filled, '#').c_str(),
+                 std::string(width - filled, '.').c_str(), fraction * 100, left.c_str(), note.c_str());
+    barShown_ = true;
+  } else {
+    std::fprintf(stderr, "%3.0f %%, %s left, %s\n", fraction * 100, left.c_str(), note.c_str());
+  }
+  std::fflush(stderr);
+}
+
+void Progress::Clear() {
+  if (!barShown_) return;
+  std::fprintf(stderr, "\r\033[K");
+  barShown_ = false;
+}
+
+}  // namespace lampyr
