@@ -1,0 +1,61 @@
+// Random numbers that are pure functions of integers: a mixing hash, and a small generator for what is not a pixel
+// sample (building tables, tests, photon emission).
+#pragma once
+
+#include <cstdint>
+
+#include "math/vec.h"
+
+namespace lampyr {
+
+// A bijection of 64-bit numbers in which every input bit flips every output bit with probability near 1/2
+// (the finaliser of SplitMix64 with the constants of [Stafford11], variant 13).
+constexpr uint64_t MixBits(uint64_t v) {
+  v = (v ^ (v >> 30)) * 0xbf58476d1ce4e5b9ull;
+  v = (v ^ (v >> 27)) * 0x94d049bb133111ebull;
+  return v ^ (v >> 31);
+}
+
+// Hash of a few integers; their order matters.
+template <class... Integers>
+constexpr uint64_t Hash(Integers... values) {
+  uint64_t hash = 0x9e3779b97f4a7c15ull * (sizeof...(values) + 1);
+  ((hash = MixBits(hash + 0x9e3779b97f4a7c15ull + static_cast<uint64_t>(values)) * 0xd6e8feb86659fd93ull), ...);
+  return MixBits(hash);
+}
+
+// The upper 24 bits as a float in [0,1): every value is exact, so that 1 never appears by rounding.
+constexpr float UnitFloat(uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24f; }
+
+// PCG32: a 64-bit congruential generator whose output is permuted ([ONeill14], XSH-RR). Streams are independent sequences.
+class Rng {
+ public:
+  explicit Rng(uint64_t seed = 0, uint64_t stream = 0) : increment_(2 * MixBits(stream) + 1) {
+    state_ = MixBits(seed) + increment_;
+    NextUint32();
+  }
+
+  uint32_t NextUint32() {
+    const uint64_t old = state_;
+    state_ = old * 6364136223846793005ull + increment_;
+    const uint32_t folded = static_cast<uint32_t>(((old >> 18) ^ old) >> 27);
+    const uint32_t rotation = static_cast<uint32_t>(old >> 59);
+    return (folded >> rotation) | (folded << ((32 - rotation) & 31));
+  }
+  uint64_t NextUint64() {
+    const uint64_t high = NextUint32();
+    return (high << 32) | NextUint32();
+  }
+  // In [0,1).
+  float NextFloat() { return UnitFloat(NextUint32()); }
+  Point2 NextPoint2() {
+    const float x = NextFloat();
+    return {x, NextFloat()};
+  }
+
+ private:
+  uint64_t state_ = 0;
+  uint64_t increment_;
+};
+
+}  // namespace lampyr
