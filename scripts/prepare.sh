@@ -1,0 +1,41 @@
+# Sourced by lampyr.sh and tests/run: installs the Debian packages that are missing.
+
+# What the renderer is built from.
+LAMPYR_BUILD_PACKAGES="g++ cmake ninja-build ccache libembree-dev libopenimageio-dev libopenexr-dev libflann-dev
+  liblz4-dev libglm-dev libtbb-dev libcli11-dev libfmt-dev nlohmann-json3-dev zlib1g-dev"
+# What its tests and benchmarks need besides.
+LAMPYR_TEST_PACKAGES="libgtest-dev libgmock-dev libbenchmark-dev"
+
+# install_missing PACKAGE…: quiet when there is nothing to do.
+install_missing() {
+  local missing="" package as_root=""
+  for package in "$@"; do
+    [ "$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null)" = installed ] || missing="$missing $package"
+  done
+  [ -z "$missing" ] && return 0
+  if [ "$(id -u)" != 0 ]; then
+    command -v sudo >/dev/null || { echo "error: these packages are missing and there is no sudo:$missing" >&2; return 1; }
+    as_root=sudo
+  fi
+  echo "Installing:$missing" >&2
+  local log
+  log=$(mktemp)
+  if ! { $as_root apt-get update -q && $as_root env DEBIAN_FRONTEND=noninteractive \
+         apt-get install -q -y --no-install-recommends $missing; } >"$log" 2>&1; then
+    cat "$log" >&2
+    echo "error: could not install:$missing" >&2
+    return 1
+  fi
+  rm -f "$log"
+}
+
+# quietly COMMAND…: prints its output only when it fails.
+quietly() {
+  local log status
+  log=$(mktemp)
+  "$@" >"$log" 2>&1
+  status=$?
+  [ $status = 0 ] || cat "$log" >&2
+  rm -f "$log"
+  return $status
+}

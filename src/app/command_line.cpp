@@ -1,0 +1,120 @@
+// The only file that includes CLI11.
+#include "app/command_line.h"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <cstdlib>
+
+#include "app/commands.h"
+#include "base/version.h"
+
+namespace lampyr {
+
+namespace {
+
+// "90", "90s", "1.5m", "2h" -> seconds.
+double ParseDuration(const std::string& text) {
+  char* end = nullptr;
+  const double number = std::strtod(text.c_str(), &end);
+  const std::string unit(end);
+  double factor = 0;
+  if (unit.empty() || unit == "s") factor = 1;
+  if (unit == "m" || unit == "min") factor = 60;
+  if (unit == "h") factor = 3600;
+  if (end == text.c_str() || factor == 0 || !(number > 0) || !(number < 1e9)) {
+    throw UsageError("--time: \"" + text + "\" is not a duration; write 90s, 5m or 2h");
+  }
+  return number * factor;
+}
+
+void ParseResolution(const std::string& text, RenderOverrides& overrides) {
+  int width = 0, height = 0;
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%dx%d%c", &width, &height, &rest) != 2 || width < 1 || height < 1 || width > 65536 ||
+      height > 65536) {
+    throw UsageError("--resolution: \"" + text + "\" is not a size; write 640x360");
+  }
+  overrides.width = width;
+  overrides.height = height;
+}
+
+struct RenderCommand {
+  RenderOptions options;
+  std::string time, resolution;
+  bool fast = false;
+
+  void Define(CLI::App& app) {
+    RenderOverrides& overrides = options.overrides;
+    app.add_option("scene", options.scene, "The scene: a pbrt-v4 file (.pbrt, .pbrt.gz)")->required();
+    app.add_option("-o,--output", options.output, "The image to write (.exr); default: the name in the scene");
+    app.add_flag("--png", options.png, "Also write a tone-mapped PNG beside it");
+    app.add_option("--exposure", options.exposure, "Exposure of the PNG in stops (0)");
+    app.add_flag("--filmic", options.filmic, "A filmic shoulder in the PNG instead of clipping");
+    app.add_option("--integrator", overrides.integrator, "path");
+    app.add_option("--spp", overrides.samplesPerPixel, "Stop after this many samples per pixel")->check(CLI::Range(1, 1 << 30));
+    app.add_option("--time", time, "Stop after this time: 90s, 5m, 2h");
+    app.add_option("--target-error", options.targetError,
+                   "Stop when the estimated relative error (95 % confidence) is below this, e.g. 0.02")
+        ->check(CLI::PositiveNumber);
+    app.add_option("--seed", overrides.seed, "Seed of the random numbers (0)");
+    app.add_option("--threads", options.threads, "Threads (all)")->check(CLI::Range(1, 4096));
+    app.add_option("--resolution", resolution, "Size of the image, e.g. 640x360");
+    app.add_option("--crop", overrides.crop, "x0,x1,y0,y1: the part to render, in fractions of the image or in pixels");
+    app.add_option("--max-depth", overrides.maxDepth, "Scattering events of a path at most")->check(CLI::Range(0, 1 << 20));
+    app.add_option("--sampler", overrides.sampler, "sobol | independent");
+    app.add_option("--light-sampler", overrides.lightSampler, "uniform | power");
+    app.add_option("--stats", options.stats, "Write statistics to this JSON file");
+    app.add_flag("--quiet", options.quiet, "No progress and no summary");
+    app.add_flag("--strict", options.strict, "Warnings about the scene are errors");
+    app.add_flag("--fast-intersection", fast,
+                 "Trade watertight intersection for speed: rays may slip through shared edges");
+  }
+
+  int Run() {
+    if (!time.empty()) options.seconds = ParseDuration(time);
+    if (!resolution.empty()) ParseResolution(resolution, options.overrides);
+    options.robust = !fast;
+    return RunRender(options);
+  }
+};
+
+}  // namespace
+
+int RunCommandLine(int argc, char** argv) {
+  CLI::App app("lampyr: a renderer whose subject is the light", "lampyr");
+  app.set_version_flag("--version", std::string("lampyr ") + kVersion);
+  app.require_subcommand(1);
+
+  RenderCommand render;
+  render.Define(*app.add_subcommand("render", "Render a scene to an EXR image"));
+
+  DiffOptions diff;
+  CLI::App* diffCommand = app.add_subcommand("diff", "Compare two images: MSE, relMSE, FLIP, bias, z-test by blocks");
+  diffCommand->add_option("a", diff.a, "The image that is judged")->required();
+  diffCommand->add_option("b", diff.b, "The reference")->required();
+  diffCommand->add_option("--block", diff.blockSize, "Side of the z-test's blocks in pixels (8)")->check(CLI::Range(1, 4096));
+  diffCommand->add_flag("--json", diff.json, "Print JSON");
+
+  std::string lightType;
+  CLI::App* lightsCommand = app.add_subcommand("lights", "The types of light and their parameters");
+  lightsCommand->add_option("type", lightType, "Only this type");
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kExitDone : kExitUsage;
+  }
+  try {
+    if (app.got_subcommand("render")) return render.Run();
+    if (app.got_subcommand(diffCommand)) return RunDiff(diff);
+    return RunLights(lightType);
+  } catch (const UsageError& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return kExitUsage;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return kExitFailed;
+  }
+}
+
+}  // namespace lampyr

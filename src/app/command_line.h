@@ -1,0 +1,14 @@
+// The command line: lampyr render | diff | lights.
+#pragma once
+
+namespace lampyr {
+
+// Exit codes: 0 done; 1 failed while running; 2 wrong usage or a bad scene; 130 interrupted.
+inline constexpr int kExitDone = 0;
+inline constexpr int kExitFailed = 1;
+inline constexpr int kExitUsage = 2;
+inline constexpr int kExitInterrupted = 130;
+
+int RunCommandLine(int argc, char** argv);
+
+}  // namespace lampyr

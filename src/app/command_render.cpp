@@ -1,0 +1,157 @@
+#include <csignal>
+#include <cstdio>
+#include <fstream>
+
+#include "app/command_line.h"
+#include "app/commands.h"
+#include "app/json_report.h"
+#include "app/render_run.h"
+#include "app/scene_builder.h"
+#include "base/parallel.h"
+#include "base/progress.h"
+#include "base/version.h"
+#include "integrators/path/path_integrator.h"
+
+namespace lampyr {
+
+namespace {
+
+// A signal handler has no argument to be handed this through.
+std::atomic<bool> interruptRequested{false};
+
+void OnInterrupt(int) {
+  interruptRequested.store(true);
+  std::signal(SIGINT, SIG_DFL);  // a second one ends the process
+}
+
+std::filesystem::path OutputPath(const RenderOptions& options, const RenderSettings& settings) {
+  std::filesystem::path path;
+  if (options.output) {
+    path = *options.output;
+  } else {
+    path = settings.outputFile.empty() ? options.scene.stem() : std::filesystem::path(settings.outputFile).filename();
+    path.replace_extension(".exr");
+  }
+  if (path.extension() != ".exr") {
+    throw UsageError("--output: \"" + path.string() + "\" must end in .exr (--png writes a PNG beside it)");
+  }
+  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  if (!std::filesystem::is_directory(folder)) throw UsageError("--output: there is no folder \"" + folder.string() + "\"");
+  return path;
+}
+
+std::string Percent(double fraction) {
+  if (!std::isfinite(fraction)) return "unknown";
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2g %%", 100 * fraction);
+  return text;
+}
+
+Image DevelopWithMetadata(const Film& film, const RenderReport& report) {
+  Image image = film.Develop();
+  image.metadata = {{"lampyr.version", kVersion},
+                    {"lampyr.sceneHash", report.sceneHash},
+                    {"lampyr.integrator", report.integrator},
+                    {"lampyr.samplesPerPixel", std::to_string(report.outcome.samplesPerPixel)},
+                    {"lampyr.seed", std::to_string(report.seed)}};
+  return image;
+}
+
+void WriteText(const std::filesystem::path& path, const std::string& text) {
+  const std::filesystem::path aside = path.string() + ".tmp";
+  {
+    std::ofstream stream(aside);
+    stream << text;
+    stream.close();
+    if (!stream) throw Error("cannot write \"" + path.string() + "\"");
+  }
+  std::filesystem::rename(aside, path);
+}
+
+void PrintSummary(const RenderReport& report, const std::filesystem::path& path) {
+  const RenderOutcome& outcome = report.outcome;
+  std::fprintf(stderr, "%s: %d×%d, %d spp, %s, %.2f Mray/s, relative error %s (95 %%)\n", path.c_str(), report.width,
+               report.height, outcome.samplesPerPixel, FormatDuration(outcome.seconds).c_str(),
+               static_cast<double>(outcome.counts.Rays()) / (1e6 * std::max(outcome.seconds, 1e-9)),
+               Percent(outcome.relativeError).c_str());
+  if (outcome.counts.droppedSamples > 0 || report.rejectedRays > 0) {
+    std::fprintf(stderr, "warning: %llu samples were dropped (not finite or negative) and %llu rays rejected\n",
+                 static_cast<unsigned long long>(outcome.counts.droppedSamples),
+                 static_cast<unsigned long long>(report.rejectedRays));
+  }
+}
+
+StopConditions MakeStopConditions(const RenderOptions& options, const RenderSettings& settings) {
+  StopConditions stop;
+  stop.samplesPerPixel = settings.samplesPerPixel;
+  // Asked to stop by time or error only: the scene's own sample count does not matter.
+  if ((options.seconds || options.targetError) && !options.overrides.samplesPerPixel) stop.samplesPerPixel = 1 << 30;
+  stop.seconds = options.seconds;
+  stop.relativeError = options.targetError;
+  stop.interrupted = &interruptRequested;
+  return stop;
+}
+
+// Reads and builds. All that goes wrong here is the scene's fault.
+BuiltScene LoadScene(const RenderOptions& options, RenderReport& report) {
+  Diagnostics diagnostics(options.strict ? Diagnostics::Mode::Strict : Diagnostics::Mode::Print);
+  try {
+    const Progress clock(true);
+    const SceneDescription description = ReadScene(options.scene, diagnostics);
+    report.parseSeconds = clock.Seconds();
+    report.sceneHash = description.contentHash;
+    BuiltScene built = BuildScene(description, options.overrides, options.robust, diagnostics);
+    report.buildSeconds = clock.Seconds() - report.parseSeconds;
+    return built;
+  } catch (const UsageError&) {
+    throw;
+  } catch (const Error& error) {
+    throw UsageError(error.Where(), error.Text());
+  }
+}
+
+}  // namespace
+
+int RunRender(const RenderOptions& options) {
+  RenderReport report;
+  const BuiltScene built = LoadScene(options, report);
+  const RenderSettings& settings = built.settings;
+  const std::filesystem::path path = OutputPath(options, settings);
+
+  report.scene = options.scene.string();
+  report.integrator = settings.integrator;
+  report.seed = settings.seed;
+  report.threads = options.threads > 0 ? options.threads : HardwareThreads();
+  report.width = settings.width;
+  report.height = settings.height;
+  report.pixels = static_cast<int64_t>(settings.crop.Width()) * settings.crop.Height();
+  report.primitives = built.scene.geometry->PrimitiveCount();
+  report.lights = built.scene.lighting->Lights().size();
+
+  const auto integrator = MakePathIntegrator(built.scene, {settings.maxDepth});
+  Film film(settings.width, settings.height, settings.crop);
+  std::signal(SIGINT, OnInterrupt);
+  {
+    Progress progress(options.quiet);
+    const auto afterPass = [&](const RenderOutcome& soFar, double fraction) {
+      progress.Update(fraction, std::to_string(soFar.samplesPerPixel) + " spp, error " + Percent(soFar.relativeError));
+    };
+    report.outcome = Render(built.scene, *integrator, settings, MakeStopConditions(options, settings), report.threads,
+                            film, afterPass);
+  }
+  report.rejectedRays = built.scene.geometry->RejectedRays();
+
+  const Progress clock(true);
+  const Image image = DevelopWithMetadata(film, report);
+  WriteExr(path, image, settings.halfPrecision ? ExrPrecision::Half : ExrPrecision::Float);
+  if (options.png) {
+    std::filesystem::path png = path;
+    WritePng(png.replace_extension(".png"), image, options.exposure, options.filmic ? ToneMap::Filmic : ToneMap::Clip);
+  }
+  report.writeSeconds = clock.Seconds();
+  if (options.stats) WriteText(*options.stats, ToJson(report));
+  if (!options.quiet) PrintSummary(report, path);
+  return report.outcome.interrupted ? kExitInterrupted : kExitDone;
+}
+
+}  // namespace lampyr

@@ -1,0 +1,39 @@
+// What each command does, with its options as plain data: no command line here.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "app/render_settings.h"
+
+namespace lampyr {
+
+struct RenderOptions {
+  std::filesystem::path scene;
+  std::optional<std::filesystem::path> output;  // default: the scene's own file name, else the scene's stem, in this folder
+  bool png = false;
+  float exposure = 0;                 // stops, of the PNG
+  bool filmic = false;                // the PNG's tone curve; plain clipping otherwise
+  RenderOverrides overrides;
+  std::optional<double> seconds;      // --time
+  std::optional<double> targetError;  // --target-error
+  int threads = 0;                    // 0: all
+  std::optional<std::filesystem::path> stats;
+  bool quiet = false;
+  bool strict = false;
+  bool robust = true;
+};
+
+struct DiffOptions {
+  std::filesystem::path a, b;
+  bool json = false;
+  int blockSize = 8;
+};
+
+// Each returns an exit code. Errors are thrown.
+int RunRender(const RenderOptions& options);
+int RunDiff(const DiffOptions& options);
+int RunLights(const std::string& type);  // "" lists all
+
+}  // namespace lampyr

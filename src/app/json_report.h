@@ -1,0 +1,31 @@
+// Machine-readable reports.
+#pragma once
+
+#include <string>
+
+#include "app/render_run.h"
+#include "film/metrics.h"
+
+namespace lampyr {
+
+// Everything `--stats` holds. Times in seconds, memory in MiB.
+struct RenderReport {
+  std::string scene, sceneHash, integrator;
+  uint64_t seed = 0;
+  int threads = 1, width = 0, height = 0;
+  int64_t pixels = 0;
+  size_t primitives = 0, lights = 0;
+  double parseSeconds = 0, buildSeconds = 0, writeSeconds = 0;
+  uint64_t rejectedRays = 0;
+  RenderOutcome outcome;
+};
+
+std::string ToJson(const RenderReport& report);
+std::string ToJson(const ImageDifference& difference);
+
+// Largest resident set of this process so far, MiB.
+double PeakMemoryMiB();
+// CPU time of this process so far, user and system, seconds.
+double CpuSeconds();
+
+}  // namespace lampyr

@@ -1,0 +1,122 @@
+#include "app/render_run.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <vector>
+
+#include "base/parallel.h"
+
+namespace lampyr {
+
+namespace {
+
+constexpr int kTileSize = 16;
+
+// One sample of one pixel, added to `sums`.
+void RenderSample(const RenderScene& scene, const CameraIntegrator& integrator, const PixelFilter& filter,
+                  float imagingRatio, bool pinhole, int x, int y, Sampler& sampler, PixelSums& sums,
+                  RenderCounts& counts) {
+  sampler.SetDimension(dimensions::kFilm);
+  const PixelFilter::Offset offset = filter.Sample(sampler.Get2D());
+  const Point2 film(static_cast<float>(x) + 0.5f + offset.offset.x, static_cast<float>(y) + 0.5f + offset.offset.y);
+  Point2 lens(0.5f);
+  if (!pinhole) {
+    sampler.SetDimension(dimensions::kLens);
+    lens = sampler.Get2D();
+  }
+  const CameraRay cameraRay = scene.camera->GenerateRay(film, lens, 0.0f);
+  Color value = integrator.Radiance(cameraRay.ray, sampler, counts) * (cameraRay.weight * imagingRatio);
+  if (!value.IsValid()) {
+    ++counts.droppedSamples;
+    value = Color(0.0f);
+  }
+  sums.Add(value, offset.weight);
+}
+
+struct Clock {
+  std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
+  double Seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); }
+};
+
+// The next pass: as many samples as there are so far, at most about 2^22 in the whole image, so that progress shows,
+// interrupts are answered and an error target is not overshot by much. Depends on the sample count alone.
+int NextPassSamples(int done, int64_t pixels, const StopConditions& stop) {
+  const int64_t largest = std::max<int64_t>(1, (int64_t{1} << 22) / std::max<int64_t>(1, pixels));
+  const int64_t wanted = std::min<int64_t>(std::max(1, done), largest);
+  return static_cast<int>(std::min<int64_t>(wanted, stop.samplesPerPixel - done));
+}
+
+double FractionDone(const RenderOutcome& outcome, const StopConditions& stop) {
+  double fraction = static_cast<double>(outcome.samplesPerPixel) / stop.samplesPerPixel;
+  if (stop.seconds) fraction = std::max(fraction, outcome.seconds / *stop.seconds);
+  // The error falls with the square root of the samples.
+  if (stop.relativeError && outcome.relativeError > 0) {
+    fraction = std::max(fraction, std::pow(*stop.relativeError / outcome.relativeError, 2.0));
+  }
+  return std::min(fraction, 1.0);
+}
+
+}  // namespace
+
+RenderCounts RenderPass(const RenderScene& scene, const CameraIntegrator& integrator, const RenderSettings& settings,
+                        const PixelFilter& filter, uint32_t first, uint32_t count, int threads, Film& film) {
+  const PixelRect& crop = film.Crop();
+  const int tilesX = (crop.Width() + kTileSize - 1) / kTileSize;
+  const int tilesY = (crop.Height() + kTileSize - 1) / kTileSize;
+  const bool pinhole = scene.camera->HasPinhole();
+  std::vector<RenderCounts> tileCounts(static_cast<size_t>(tilesX) * tilesY);
+  ParallelFor(tilesX * tilesY, threads, [&](int tile) {
+    const int x0 = crop.x0 + tile % tilesX * kTileSize, x1 = std::min(x0 + kTileSize, crop.x1);
+    const int y0 = crop.y0 + tile / tilesX * kTileSize, y1 = std::min(y0 + kTileSize, crop.y1);
+    Sampler sampler(settings.sampler, settings.seed);
+    RenderCounts counts;
+    for (int y = y0; y < y1; ++y) {
+      for (int x = x0; x < x1; ++x) {
+        PixelSums sums = film.Pixel(x, y);
+        for (uint32_t i = 0; i < count; ++i) {
+          sampler.StartPixelSample(x, y, first + i);
+          RenderSample(scene, integrator, filter, settings.imagingRatio, pinhole, x, y, sampler, sums, counts);
+        }
+        film.Pixel(x, y) = sums;
+      }
+    }
+    tileCounts[tile] = counts;
+  });
+  RenderCounts total;
+  for (const RenderCounts& counts : tileCounts) total += counts;
+  return total;
+}
+
+RenderOutcome Render(const RenderScene& scene, const CameraIntegrator& integrator, const RenderSettings& settings,
+                     const StopConditions& stop, int threads, Film& film, const PassCallback& afterPass) {
+  const PixelFilter filter(settings.filter);
+  const int64_t pixels = static_cast<int64_t>(film.Crop().Width()) * film.Crop().Height();
+  const Clock clock;
+  RenderOutcome outcome;
+  while (outcome.samplesPerPixel < stop.samplesPerPixel) {
+    int count = NextPassSamples(outcome.samplesPerPixel, pixels, stop);
+    if (stop.seconds && outcome.samplesPerPixel > 0) {
+      const double perSample = outcome.seconds / outcome.samplesPerPixel;
+      const double left = *stop.seconds - outcome.seconds;
+      count = std::clamp(static_cast<int>(left / perSample), 1, count);
+    }
+    outcome.counts += RenderPass(scene, integrator, settings, filter, static_cast<uint32_t>(outcome.samplesPerPixel),
+                                 static_cast<uint32_t>(count), threads, film);
+    outcome.samplesPerPixel += count;
+    outcome.seconds = clock.Seconds();
+    outcome.relativeError = film.RelativeError();
+    afterPass(outcome, FractionDone(outcome, stop));
+    if (stop.interrupted && stop.interrupted->load()) {
+      outcome.interrupted = true;
+      break;
+    }
+    if (stop.seconds && outcome.seconds >= *stop.seconds * 0.999) break;
+    // Too few samples may all have missed what makes the error.
+    constexpr int fewest = 16;
+    if (stop.relativeError && outcome.samplesPerPixel >= fewest && outcome.relativeError <= *stop.relativeError) break;
+  }
+  return outcome;
+}
+
+}  // namespace lampyr

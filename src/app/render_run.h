@@ -1,0 +1,44 @@
+// Rendering in passes until a stop condition holds: samples, time, error or an interrupt.
+//
+// The picture after n samples per pixel is a pure function of scene, settings and seed: neither the number of threads nor
+// the division into passes shows in it.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "app/render_settings.h"
+#include "film/film.h"
+#include "integrators/integrator.h"
+
+namespace lampyr {
+
+struct StopConditions {
+  int samplesPerPixel = 16;                    // never more than that
+  std::optional<double> seconds;               // of rendering
+  std::optional<double> relativeError;         // at 95 % confidence (Film::RelativeError)
+  const std::atomic<bool>* interrupted = nullptr;  // set by a signal handler: finish the pass
+};
+
+struct RenderOutcome {
+  int samplesPerPixel = 0;
+  double seconds = 0;
+  double relativeError = 0;
+  bool interrupted = false;
+  RenderCounts counts;
+};
+
+// Called after each pass.
+using PassCallback = std::function<void(const RenderOutcome& soFar, double fractionDone)>;
+
+// Renders into `film` (empty, of the settings' crop).
+RenderOutcome Render(const RenderScene& scene, const CameraIntegrator& integrator, const RenderSettings& settings,
+                     const StopConditions& stop, int threads, Film& film, const PassCallback& afterPass);
+
+// Samples [first, first + count) of every pixel. Exposed for tests and benchmarks.
+RenderCounts RenderPass(const RenderScene& scene, const CameraIntegrator& integrator, const RenderSettings& settings,
+                        const PixelFilter& filter, uint32_t first, uint32_t count, int threads, Film& film);
+
+}  // namespace lampyr

@@ -1,0 +1,283 @@
+#include "app/render_settings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace lampyr {
+
+namespace {
+
+using Names = std::vector<std::string>;
+
+int PositiveInteger(const ParameterList& parameters, const std::string& name, int defaultValue, int maximum) {
+  const int value = parameters.GetInteger(name, defaultValue);
+  if (value < 1 || value > maximum) {
+    throw Error(parameters.WhereOf(name), "\"" + name + "\" is " + std::to_string(value) + "; it must be from 1 to " +
+                                              std::to_string(maximum));
+  }
+  return value;
+}
+
+constexpr int kMaxResolution = 1 << 16;
+constexpr int kMaxSamples = 1 << 30;
+
+PixelRect CropFromFractions(double x0, double x1, double y0, double y1, int width, int height) {
+  const auto pixel = [](double fraction, int size) {
+    return static_cast<int>(std::ceil(std::clamp(fraction, 0.0, 1.0) * size));
+  };
+  return {pixel(x0, width), pixel(y0, height), pixel(x1, width), pixel(y1, height)};
+}
+
+PixelRect ParseCrop(const std::string& text, int width, int height) {
+  std::vector<double> numbers;
+  std::stringstream stream(text);
+  for (std::string item; std::getline(stream, item, ',');) {
+    size_t used = 0;
+    double value = 0;
+    try {
+      value = std::stod(item, &used);
+    } catch (const std::exception&) {
+      used = 0;
+    }
+    if (used == 0 || used != item.size()) throw UsageError("--crop: \"" + item + "\" is not a number");
+    numbers.push_back(value);
+  }
+  if (numbers.size() != 4) throw UsageError("--crop takes four numbers x0,x1,y0,y1, not \"" + text + "\"");
+  const bool pixels = std::any_of(numbers.begin(), numbers.end(), [](double n) { return n > 1; });
+  if (!pixels) return CropFromFractions(numbers[0], numbers[1], numbers[2], numbers[3], width, height);
+  const auto clampPixel = [](double n, int size) { return static_cast<int>(std::clamp(n, 0.0, double(size))); };
+  return {clampPixel(numbers[0], width), clampPixel(numbers[2], height), clampPixel(numbers[1], width),
+          clampPixel(numbers[3], height)};
+}
+
+void ReadFilm(const SceneDescription& scene, const RenderOverrides& overrides, RenderSettings& settings,
+              Diagnostics& diagnostics) {
+  const ParameterList& film = scene.film.parameters;
+  const std::string& type = scene.film.type;
+  if (type == "gbuffer" || type == "spectral") {
+    diagnostics.Warn(scene.film.where, "Film \"" + type + "\" is not supported yet; \"rgb\" is used");
+  } else if (!type.empty() && type != "rgb") {
+    throw Error(scene.film.where, "there is no Film \"" + type + "\"" + DidYouMean(type, {"rgb", "gbuffer", "spectral"}));
+  }
+  settings.width = PositiveInteger(film, "xresolution", settings.width, kMaxResolution);
+  settings.height = PositiveInteger(film, "yresolution", settings.height, kMaxResolution);
+  if (overrides.width) settings.width = *overrides.width;
+  if (overrides.height) settings.height = *overrides.height;
+  settings.outputFile = film.GetString("filename", "");
+  settings.halfPrecision = film.GetBool("savefp16", true);
+  const std::string sensor = film.GetString("sensor", "cie1931");
+  if (sensor != "cie1931") {
+    diagnostics.Warn(film.WhereOf("sensor"), "sensor \"" + sensor + "\" is not modelled; \"cie1931\" is used");
+  }
+  const ParameterList& camera = scene.camera.parameters;
+  const double exposureTime = camera.GetFloat("shutterclose", 1) - camera.GetFloat("shutteropen", 0);
+  settings.imagingRatio = static_cast<float>(exposureTime * film.GetFloat("iso", 100) / 100);
+  if (!(settings.imagingRatio > 0)) {
+    throw Error(film.Where(), "the exposure is not positive: \"shutterclose\" must be after \"shutteropen\" and \"iso\" above 0");
+  }
+
+  settings.crop = {0, 0, settings.width, settings.height};
+  const std::vector<double> window = film.GetFloats("cropwindow");
+  const std::vector<int64_t> bounds = film.GetIntegers("pixelbounds");
+  if (overrides.crop) {
+    settings.crop = ParseCrop(*overrides.crop, settings.width, settings.height);
+  } else if (!window.empty()) {
+    if (window.size() != 4) throw Error(film.WhereOf("cropwindow"), "\"cropwindow\" needs 4 values, has " + std::to_string(window.size()));
+    settings.crop = CropFromFractions(window[0], window[1], window[2], window[3], settings.width, settings.height);
+  } else if (!bounds.empty()) {
+    if (bounds.size() != 4) throw Error(film.WhereOf("pixelbounds"), "\"pixelbounds\" needs 4 values, has " + std::to_string(bounds.size()));
+    const auto limit = [](int64_t n, int size) { return static_cast<int>(std::clamp<int64_t>(n, 0, size)); };
+    settings.crop = {limit(bounds[0], settings.width), limit(bounds[2], settings.height),
+                     limit(bounds[1], settings.width), limit(bounds[3], settings.height)};
+  }
+  if (settings.crop.Width() <= 0 || settings.crop.Height() <= 0) {
+    if (overrides.crop) throw UsageError("--crop leaves no pixel of the " + std::to_string(settings.width) + "×" + std::to_string(settings.height) + " image");
+    throw Error(film.Where(), "the crop leaves no pixel of the image");
+  }
+  film.CheckAllUsed({"diagonal", "whitebalance", "maxcomponentvalue", "coordinatesystem", "nbuckets", "lambdamin", "lambdamax"},
+                    {"xresolution", "yresolution", "filename", "savefp16", "sensor", "iso", "cropwindow", "pixelbounds"},
+                    diagnostics);
+}
+
+void ReadPixelFilter(const SceneDescription& scene, RenderSettings& settings, Diagnostics& diagnostics) {
+  using Kind = PixelFilterSettings::Kind;
+  const ParameterList& parameters = scene.pixelFilter.parameters;
+  const std::string type = scene.pixelFilter.type.empty() ? "gaussian" : scene.pixelFilter.type;
+  PixelFilterSettings& filter = settings.filter;
+  struct Entry {
+    const char* name;
+    Kind kind;
+    double radius;
+  };
+  // pbrt-v4's names and default radii.
+  constexpr Entry entries[] = {{"box", Kind::Box, 0.5}, {"triangle", Kind::Triangle, 2}, {"gaussian", Kind::Gaussian, 1.5},
+                               {"mitchell", Kind::Mitchell, 2}, {"sinc", Kind::Sinc, 4}};
+  const Entry* found = nullptr;
+  Names names;
+  for (const Entry& entry : entries) {
+    names.push_back(entry.name);
+    if (type == entry.name) found = &entry;
+  }
+  if (!found) throw Error(scene.pixelFilter.where, "there is no PixelFilter \"" + type + "\"" + DidYouMean(type, names));
+  filter.kind = found->kind;
+  filter.radiusX = static_cast<float>(parameters.GetFloat("xradius", found->radius));
+  filter.radiusY = static_cast<float>(parameters.GetFloat("yradius", found->radius));
+  for (const auto& [name, radius] : {std::pair{"xradius", filter.radiusX}, std::pair{"yradius", filter.radiusY}}) {
+    if (!(radius > 0)) throw Error(parameters.WhereOf(name), std::string("\"") + name + "\" must be above 0");
+  }
+  Names known = {"xradius", "yradius"};
+  if (filter.kind == Kind::Gaussian) {
+    filter.sigma = static_cast<float>(parameters.GetFloat("sigma", 0.5));
+    if (!(filter.sigma > 0)) throw Error(parameters.WhereOf("sigma"), "\"sigma\" must be above 0");
+    known.push_back("sigma");
+  } else if (filter.kind == Kind::Mitchell) {
+    filter.b = static_cast<float>(parameters.GetFloat("B", 1.0 / 3));
+    filter.c = static_cast<float>(parameters.GetFloat("C", 1.0 / 3));
+    known.insert(known.end(), {"B", "C"});
+  } else if (filter.kind == Kind::Sinc) {
+    filter.tau = static_cast<float>(parameters.GetFloat("tau", 3));
+    if (!(filter.tau > 0)) throw Error(parameters.WhereOf("tau"), "\"tau\" must be above 0");
+    known.push_back("tau");
+  }
+  parameters.CheckAllUsed({}, known, diagnostics);
+}
+
+SamplerKind SamplerByName(const std::string& name, bool* known) {
+  *known = true;
+  if (name == "independent") return SamplerKind::Independent;
+  // pbrt-v4's low-discrepancy samplers all become our Owen-scrambled Sobol points.
+  const Names sobol = {"sobol", "zsobol", "paddedsobol", "halton", "pmj02bn", "stratified"};
+  *known = std::find(sobol.begin(), sobol.end(), name) != sobol.end();
+  return SamplerKind::Sobol;
+}
+
+void ReadSampler(const SceneDescription& scene, const RenderOverrides& overrides, RenderSettings& settings,
+                 Diagnostics& diagnostics) {
+  const Names names = {"independent", "sobol", "zsobol", "paddedsobol", "halton", "pmj02bn", "stratified"};
+  const ParameterList& parameters = scene.sampler.parameters;
+  const std::string& type = scene.sampler.type;
+  bool known = true;
+  if (!type.empty()) settings.sampler = SamplerByName(type, &known);
+  if (!known) throw Error(scene.sampler.where, "there is no Sampler \"" + type + "\"" + DidYouMean(type, names));
+  if (type == "stratified") {
+    settings.samplesPerPixel = PositiveInteger(parameters, "xsamples", 4, 1 << 15) * PositiveInteger(parameters, "ysamples", 4, 1 << 15);
+  } else {
+    settings.samplesPerPixel = PositiveInteger(parameters, "pixelsamples", settings.samplesPerPixel, kMaxSamples);
+  }
+  settings.seed = static_cast<uint64_t>(parameters.GetInteger("seed", 0)) + overrides.seed;
+  parameters.CheckAllUsed({"randomization", "jitter", "xsamples", "ysamples", "pixelsamples"}, {"pixelsamples", "seed"}, diagnostics);
+  if (overrides.sampler) {
+    settings.sampler = SamplerByName(*overrides.sampler, &known);
+    if (!known) throw UsageError("--sampler: there is no sampler \"" + *overrides.sampler + "\"" + DidYouMean(*overrides.sampler, names));
+  }
+  if (overrides.samplesPerPixel) settings.samplesPerPixel = *overrides.samplesPerPixel;
+}
+
+void ReadIntegrator(const SceneDescription& scene, const RenderOverrides& overrides, RenderSettings& settings,
+                    Diagnostics& diagnostics) {
+  const Names pbrtNames = {"ambientocclusion", "bdpt", "function", "lightpath", "mlt", "path", "randomwalk", "simplepath",
+                           "simplevolpath", "sppm", "volpath", "light", "vcm"};
+  const ParameterList& parameters = scene.integrator.parameters;
+  const std::string& type = scene.integrator.type;
+  if (!type.empty() && std::find(pbrtNames.begin(), pbrtNames.end(), type) == pbrtNames.end()) {
+    throw Error(scene.integrator.where, "there is no Integrator \"" + type + "\"" + DidYouMean(type, pbrtNames));
+  }
+  if (overrides.integrator && *overrides.integrator != "path") {
+    throw UsageError("--integrator: there is no integrator \"" + *overrides.integrator + "\"; there is: path");
+  }
+  if (!type.empty() && type != "path" && type != "volpath" && !overrides.integrator) {
+    diagnostics.Warn(scene.integrator.where, "Integrator \"" + type + "\" is not supported yet; \"path\" is used");
+  }
+  settings.maxDepth = parameters.GetInteger("maxdepth", settings.maxDepth);
+  if (settings.maxDepth < 0) throw Error(parameters.WhereOf("maxdepth"), "\"maxdepth\" must be 0 or more");
+  if (overrides.maxDepth) settings.maxDepth = *overrides.maxDepth;
+
+  const std::string lightSampler = parameters.GetString("lightsampler", "power");
+  const Names samplerNames = {"uniform", "power", "bvh", "tree", "exhaustive"};
+  if (const auto selection = ParseLightSelection(lightSampler)) {
+    settings.lightSelection = *selection;
+  } else if (std::find(samplerNames.begin(), samplerNames.end(), lightSampler) != samplerNames.end()) {
+    diagnostics.Warn(parameters.WhereOf("lightsampler"), "light sampler \"" + lightSampler + "\" is not supported yet; \"power\" is used");
+  } else {
+    throw Error(parameters.WhereOf("lightsampler"), "there is no light sampler \"" + lightSampler + "\"" + DidYouMean(lightSampler, samplerNames));
+  }
+  if (overrides.lightSampler) {
+    const auto selection = ParseLightSelection(*overrides.lightSampler);
+    if (!selection) throw UsageError("--light-sampler: \"" + *overrides.lightSampler + "\" is not one of: uniform, power");
+    settings.lightSelection = *selection;
+  }
+  // Parameters of integrators that stand back for "path" are not looked at.
+  if (type.empty() || type == "path" || type == "volpath") {
+    parameters.CheckAllUsed({"regularize", "options"}, {"maxdepth", "lightsampler"}, diagnostics);
+  }
+}
+
+}  // namespace
+
+RenderSettings ReadRenderSettings(const SceneDescription& description, const RenderOverrides& overrides,
+                                  Diagnostics& diagnostics) {
+  RenderSettings settings;
+  ReadFilm(description, overrides, settings, diagnostics);
+  ReadPixelFilter(description, settings, diagnostics);
+  ReadSampler(description, overrides, settings, diagnostics);
+  ReadIntegrator(description, overrides, settings, diagnostics);
+  return settings;
+}
+
+std::unique_ptr<Camera> BuildCamera(const SceneDescription& description, const RenderSettings& settings,
+                                    const Transform& worldToRender, Diagnostics& diagnostics) {
+  const StatementDescription& statement = description.camera;
+  const ParameterList& parameters = statement.parameters;
+  if (description.cameraToWorld.IsAnimated()) {
+    diagnostics.Warn(statement.where, "a moving camera is not supported yet; its place at shutter open is used");
+  }
+  CameraFrame frame;
+  frame.cameraToRender = worldToRender * description.cameraToWorld.start;
+  frame.width = settings.width;
+  frame.height = settings.height;
+  const double aspect = parameters.GetFloat("frameaspectratio", double(frame.width) / frame.height);
+  if (!(aspect > 0)) throw Error(parameters.WhereOf("frameaspectratio"), "\"frameaspectratio\" must be above 0");
+  SetDefaultScreenWindow(frame, static_cast<float>(aspect));
+  const std::vector<double> window = parameters.GetFloats("screenwindow");
+  if (!window.empty()) {
+    if (window.size() != 4 || !(window[0] < window[1]) || !(window[2] < window[3])) {
+      throw Error(parameters.WhereOf("screenwindow"), "\"screenwindow\" needs 4 values: left < right, bottom < top");
+    }
+    frame.screenMin = {float(window[0]), float(window[2])};
+    frame.screenMax = {float(window[1]), float(window[3])};
+  }
+  const auto lensRadius = static_cast<float>(parameters.GetFloat("lensradius", 0));
+  const auto focalDistance = static_cast<float>(parameters.GetFloat("focaldistance", 1e6));
+  if (lensRadius < 0) throw Error(parameters.WhereOf("lensradius"), "\"lensradius\" must be 0 or more");
+  if (!(focalDistance > 0)) throw Error(parameters.WhereOf("focaldistance"), "\"focaldistance\" must be above 0");
+  Names known = {"frameaspectratio", "screenwindow", "shutteropen", "shutterclose", "lensradius", "focaldistance"};
+
+  std::string type = statement.type.empty() ? "perspective" : statement.type;
+  if (type == "realistic") {
+    diagnostics.Warn(statement.where, "Camera \"realistic\" is not supported; \"perspective\" is used");
+    return MakePerspectiveCamera(frame, PerspectiveSettings{Degrees(90), 0, 1e6f});
+  }
+  std::unique_ptr<Camera> camera;
+  if (type == "perspective") {
+    const double fov = parameters.GetFloat("fov", 90);
+    if (!(fov > 0 && fov < 180)) throw Error(parameters.WhereOf("fov"), "\"fov\" must be between 0 and 180 degrees");
+    known.push_back("fov");
+    camera = MakePerspectiveCamera(frame, {Degrees(static_cast<float>(fov)), lensRadius, focalDistance});
+  } else if (type == "orthographic") {
+    camera = MakeOrthographicCamera(frame, {lensRadius, focalDistance});
+  } else if (type == "spherical") {
+    const std::string mapping = parameters.GetString("mapping", "equalarea");
+    if (mapping != "equalarea" && mapping != "equirectangular") {
+      throw Error(parameters.WhereOf("mapping"), "there is no mapping \"" + mapping + "\"" + DidYouMean(mapping, {"equalarea", "equirectangular"}));
+    }
+    known.push_back("mapping");
+    camera = MakeSphericalCamera(frame, mapping == "equalarea" ? SphericalMapping::EqualArea : SphericalMapping::EquiRectangular);
+  } else {
+    throw Error(statement.where, "there is no Camera \"" + type + "\"" + DidYouMean(type, {"perspective", "orthographic", "spherical", "realistic"}));
+  }
+  parameters.CheckAllUsed({}, known, diagnostics);
+  return camera;
+}
+
+}  // namespace lampyr

@@ -1,0 +1,137 @@
+// The arrows of the house run down: a file includes only rooms that its own room may know, no include runs in a circle,
+// and each heavy third-party library is included where it belongs and nowhere else.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kRoot = LAMPYR_SOURCE_DIR;
+
+struct SourceFile {
+  std::string path;  // as it is included: "math/vec.h", "lights/light.h"
+  std::vector<std::string> quoted, angled;
+};
+
+std::vector<SourceFile> SourceFiles() {
+  std::vector<SourceFile> files;
+  const std::regex include("^\\s*#\\s*include\\s*([\"<])([^\">]+)[\">]");
+  for (const char* top : {"src", "lights", "integrators"}) {
+    for (const auto& entry : fs::recursive_directory_iterator(kRoot / top)) {
+      if (entry.path().extension() != ".h" && entry.path().extension() != ".cpp") continue;
+      SourceFile file;
+      file.path = fs::relative(entry.path(), top == std::string("src") ? kRoot / "src" : kRoot).string();
+      std::ifstream stream(entry.path());
+      for (std::string line; std::getline(stream, line);) {
+        std::smatch match;
+        if (!std::regex_search(line, match, include)) continue;
+        (match[1] == "\"" ? file.quoted : file.angled).push_back(match[2]);
+      }
+      files.push_back(file);
+    }
+  }
+  return files;
+}
+
+std::string RoomOf(const std::string& path) { return path.substr(0, path.find('/')); }
+
+// What each room may include besides itself.
+const std::map<std::string, std::set<std::string>> kMayKnow = {
+    {"base", {}},
+    {"math", {"base"}},
+    {"sampling", {"base", "math"}},
+    {"scene", {"base", "math"}},
+    {"geometry", {"base", "math"}},
+    {"film", {"base", "math"}},
+    {"textures", {"base", "math", "sampling", "scene", "geometry", "film"}},
+    {"materials", {"base", "math", "sampling", "scene", "geometry", "film", "textures"}},
+    {"camera", {"base", "math", "sampling", "geometry"}},
+    {"lights", {"base", "math", "sampling", "scene", "geometry", "film", "textures", "materials"}},
+    {"integrators", {"base", "math", "sampling", "scene", "geometry", "film", "textures", "materials", "camera", "lights"}},
+    {"app", {"base", "math", "sampling", "scene", "geometry", "film", "textures", "materials", "camera", "lights", "integrators"}},
+};
+
+TEST(Layers, IncludesRunDown) {
+  const auto files = SourceFiles();
+  ASSERT_GT(files.size(), 40u);
+  for (const SourceFile& file : files) {
+    const std::string room = RoomOf(file.path);
+    ASSERT_TRUE(kMayKnow.count(room)) << file.path << " is in a room that this test does not know";
+    for (const std::string& included : file.quoted) {
+      const std::string other = RoomOf(included);
+      EXPECT_TRUE(other == room || kMayKnow.at(room).count(other)) << file.path << " includes \"" << included << "\"";
+    }
+  }
+}
+
+// Depth-first search; reports the first circle through each file.
+void Visit(const std::string& path, const std::map<std::string, std::vector<std::string>>& graph,
+           std::map<std::string, int>& state) {
+  state[path] = 1;
+  const auto found = graph.find(path);
+  if (found != graph.end()) {
+    for (const std::string& next : found->second) {
+      EXPECT_NE(state[next], 1) << "circle of includes: " << path << " -> " << next;
+      if (state[next] == 0) Visit(next, graph, state);
+    }
+  }
+  state[path] = 2;
+}
+
+TEST(Layers, NoCircles) {
+  std::map<std::string, std::vector<std::string>> graph;
+  for (const SourceFile& file : SourceFiles()) {
+    // A header may end by including its own inline part, which includes nothing back but for that header.
+    for (const std::string& included : file.quoted) {
+      if (file.path.find("_inline.h") == std::string::npos) graph[file.path].push_back(included);
+    }
+  }
+  std::map<std::string, int> state;
+  for (const auto& [path, ignored] : graph) {
+    if (state[path] == 0) Visit(path, graph, state);
+  }
+}
+
+TEST(Layers, HeavyLibrariesInOnePlace) {
+  const std::map<std::string, std::set<std::string>> homes = {
+      {"embree3/", {"geometry"}}, {"OpenImageIO/", {"film"}}, {"OpenEXR/", {"film"}}, {"Imf", {"film"}},
+      {"flann/", {"integrators"}}, {"CLI/", {"app"}},          {"nlohmann/", {"app"}}, {"tbb/", {"base"}}};
+  for (const auto& [library, rooms] : homes) {
+    std::vector<std::string> users;
+    for (const SourceFile& file : SourceFiles()) {
+      for (const std::string& included : file.angled) {
+        if (included.rfind(library, 0) != 0) continue;
+        EXPECT_TRUE(rooms.count(RoomOf(file.path))) << file.path << " includes <" << included << ">";
+        EXPECT_NE(fs::path(file.path).extension(), ".h") << file.path << " spreads <" << included << ">";
+        if (users.empty() || users.back() != file.path) users.push_back(file.path);
+      }
+    }
+    const size_t allowed = library == "embree3/" ? 4 : 1;  // the scene and its callbacks by kind of shape
+    EXPECT_LE(users.size(), allowed) << "<" << library << "> is included by several files";
+  }
+}
+
+TEST(Layers, NothingNamesAConcreteLightOutsideItsFile) {
+  // Adding a light touches its own file and the registry: no other file may include a light's own header.
+  const std::set<std::string> shared = {"lights/light.h", "lights/light_type.h"};
+  for (const SourceFile& file : SourceFiles()) {
+    if (RoomOf(file.path) == "lights") continue;
+    for (const std::string& included : file.quoted) {
+      if (RoomOf(included) != "lights" || included.rfind("lights/services/", 0) == 0 ||
+          included.rfind("lights/selection/", 0) == 0 || included.rfind("lights/suite/", 0) == 0) {
+        continue;
+      }
+      EXPECT_TRUE(shared.count(included)) << file.path << " includes \"" << included << "\"";
+    }
+  }
+}
+
+}  // namespace
