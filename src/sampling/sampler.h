@@ -26,11 +26,20 @@ class Sampler {
   SamplerKind Kind() const { return kind_; }
 
  private:
+  static constexpr uint32_t kBlockSize = 8;
+  static constexpr uint32_t kNoBlock = 0xffffffffu;
+
+  // Makes the Sobol points of dimensions [block, block + 1) · kBlockSize.
+  void FillBlock(uint32_t block);
+
   SamplerKind kind_;
   uint64_t seed_;
-  uint32_t index_ = 0;
+  uint32_t reversedIndex_ = 0;  // the sample's index, bits reversed
   uint32_t dimension_ = 0;
-  uint64_t pixelHash_ = 0;
+  uint64_t pixelHash_ = 0;      // of (pixel, seed), and of the index for independent samples
+  uint32_t block_ = kNoBlock;   // the dimensions that are in blockX_ and blockY_
+  float blockX_[kBlockSize] = {};
+  float blockY_[kBlockSize] = {};
 };
 
 }  // namespace lampyr

@@ -1,1 +1,20 @@
+// The sampler's hot functions.
 #pragma once
+
+#include "sampling/rng.h"
+
+namespace lampyr {
+
+inline Point2 Sampler::Get2D() {
+  const uint32_t dimension = dimension_++;
+  if (kind_ == SamplerKind::Independent) {
+    const uint64_t hash = MixBits(pixelHash_ + 0x9e3779b97f4a7c15ull * (dimension + 1ull));
+    return {UnitFloat(static_cast<uint32_t>(hash)), UnitFloat(static_cast<uint32_t>(hash >> 32))};
+  }
+  if (dimension / kBlockSize != block_) FillBlock(dimension / kBlockSize);
+  return {blockX_[dimension % kBlockSize], blockY_[dimension % kBlockSize]};
+}
+
+inline float Sampler::Get1D() { return Get2D().x; }
+
+}  // namespace lampyr

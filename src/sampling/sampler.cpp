@@ -1,0 +1,33 @@
+// The Sobol sampler's block of points. Written as one loop without branches over the block's dimensions, which the
+// compiler turns into vector instructions: eight points cost little more than two made one by one.
+#include "sampling/sampler.h"
+
+#include "sampling/sobol.h"
+
+namespace lampyr {
+
+void Sampler::StartPixelSample(int x, int y, uint32_t index) {
+  dimension_ = 0;
+  block_ = kNoBlock;
+  reversedIndex_ = sobol::ReverseBits(index);
+  pixelHash_ = Hash(seed_, x, y, kind_ == SamplerKind::Sobol ? 0u : index);
+}
+
+void Sampler::FillBlock(uint32_t block) {
+  block_ = block;
+  const uint32_t low = static_cast<uint32_t>(pixelHash_), high = static_cast<uint32_t>(pixelHash_ >> 32);
+  const uint32_t reversedIndex = reversedIndex_;
+  for (uint32_t i = 0; i < kBlockSize; ++i) {
+    const uint32_t seed = sobol::MixBits32(low + 0x9e3779b9u * (block * kBlockSize + i));
+    const uint32_t seedX = sobol::MixBits32(seed ^ high);
+    const uint32_t seedY = sobol::MixBits32(seedX + 0x85ebca6bu);
+    // The order of the points is shuffled anew for every pair, or pairs would be correlated with each other.
+    const uint32_t shuffled = sobol::ReverseBits(sobol::ScrambleUpwards(reversedIndex, seed));
+    const uint32_t x = sobol::ReverseBits(sobol::ScrambleUpwards(shuffled, seedX));
+    const uint32_t y = sobol::ReverseBits(sobol::ScrambleUpwards(sobol::PascalTimes(shuffled), seedY));
+    blockX_[i] = UnitFloat(x);
+    blockY_[i] = UnitFloat(y);
+  }
+}
+
+}  // namespace lampyr
