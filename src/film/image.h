@@ -27,9 +27,9 @@ struct Image {
   float At(int x, int y, size_t channel) const { return data[(static_cast<size_t>(y) * width + x) * channels.size() + channel]; }
   // Index of a channel by name, -1 when absent.
   int ChannelIndex(const std::string& name) const;
-  // R, G and B at a pixel; a single-channel image is gray.
+  // R, G and B at a pixel; a single-channel image, or one with a Y channel, is gray.
   Color RgbAt(int x, int y) const;
-  bool HasRgb() const;
+  bool HasRgb() const;  // or gray: RgbAt has an answer
 };
 
 enum class ExrPrecision { Half, Float };
@@ -38,13 +38,18 @@ enum class ExrPrecision { Half, Float };
 // Throws Error (unwritable folder, full disk).
 void WriteExr(const std::filesystem::path& path, const Image& image, ExrPrecision precision);
 
-// 8-bit sRGB with tone mapping for pictures to look at: exposure in stops, then a filmic shoulder (none: plain clipping).
+// 8-bit sRGB with tone mapping for pictures to look at: exposure in stops, then clipping at 1, or a filmic shoulder:
+// x up to 0.6, then 0.6 + 0.4·(1 - exp(-(x - 0.6)/0.4)) per channel.
 enum class ToneMap { Clip, Filmic };
 void WritePng(const std::filesystem::path& path, const Image& image, float exposureStops, ToneMap toneMap);
 
 enum class ImageEncoding { Automatic, Linear, Srgb };  // Automatic: sRGB for 8-bit files, linear otherwise
 
 // Any image, as linear floats. EXR by OpenEXR, the rest by OpenImageIO. Throws Error naming the file and what is wrong.
+// The encoding concerns integer formats only (floating point files are linear) and never alpha, which is channel "A" and
+// not multiplied into the colour. Channels come as R, G, B, A, then the layers in alphabetical order.
 Image ReadImage(const std::filesystem::path& path, ImageEncoding encoding = ImageEncoding::Automatic);
+// The same with a power law for integer formats: linear = encoded^gamma.
+Image ReadImageWithGamma(const std::filesystem::path& path, float gamma);
 
 }  // namespace lampyr

@@ -20,8 +20,8 @@ struct BlockTest {
 
 struct ImageDifference {
   double mse = 0;       // mean over pixels and RGB of (a-b)²
-  double relMse = 0;    // (a-b)² / (b² + 1 % of the mean of b²)
-  double flip = 0;      // mean of the FLIP map, [0,1] (LDR-FLIP on tone-mapped images; [Andersson20])
+  double relMse = 0;    // (a-b)² / (b² + 1 % of the mean of b²); infinite against a black image
+  double flip = 0;      // mean of the FLIP map, [0,1] (LDR-FLIP at 67 pixels per degree, images clipped to [0,1]; [Andersson20])
   double meanA = 0, meanB = 0;
   double bias = 0;      // mean (a-b) over pixels and channels, relative to meanB
   double biasInterval = 0;  // half width of its 95 % confidence interval, relative to meanB; from variance layers, else from the pixels
@@ -29,7 +29,10 @@ struct ImageDifference {
   BlockTest blockTest;
 };
 
-// Throws Error when the images have different sizes or no R, G, B. `familyWiseRate` is for the block test.
+// Throws Error when the images have different sizes, crops, no R, G, B (nor gray), or values that are not finite.
+// `familyWiseRate` is for the block test as a whole: it tests each of R, G and B in each block (largestZ is over all of
+// them) and the sum of squares of each channel (blocks and chiSquared are those of the worst channel). The variance layers
+// are "variance.R" … (of the pixel's mean) or "stderr.R" … (its standard error).
 ImageDifference CompareImages(const Image& a, const Image& b, int blockSize = 8, double familyWiseRate = 1e-3);
 
 // Two-sided normal quantile: |z| that is exceeded with probability `p`.

@@ -1,0 +1,36 @@
+// A file that is written whole or not at all: bytes go to a temporary name in the same folder, which takes the final
+// name when all are written. Every failure is an Error with the system's reason; the old file stays as it was.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+
+namespace lampyr {
+
+class AtomicFile {
+ public:
+  explicit AtomicFile(const std::filesystem::path& path);
+  ~AtomicFile();  // removes the temporary file unless committed
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  void Write(const void* bytes, size_t count);
+  uint64_t Position();
+  void Seek(uint64_t position);
+
+  // Throws when an earlier Write failed and its Error was lost on the way here (in a destructor, say).
+  void ThrowIfFailed();
+  // Gives the file its name. Throws as ThrowIfFailed does, too.
+  void Commit();
+
+ private:
+  [[noreturn]] void Fail(int errorNumber);
+
+  std::filesystem::path path_, temporary_;
+  std::FILE* file_ = nullptr;
+  int firstError_ = 0;
+};
+
+}  // namespace lampyr

@@ -1,0 +1,174 @@
+// Images in memory, the choice of reader by file name, and pictures to look at.
+#include "film/image.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <system_error>
+
+#include "base/error.h"
+#include "film/atomic_file.h"
+#include "film/image_formats.h"
+#include "film/srgb.h"
+
+namespace lampyr {
+
+namespace {
+
+bool HasExtension(const std::filesystem::path& path, const char* extension) {
+  std::string own = path.extension().string();
+  for (char& c : own) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return own == extension;
+}
+
+// Applies `decode` to all channels but alpha. 8-bit values go through a table: a texture has millions of them.
+template <class Decode>
+void DecodeChannels(EncodedImage& encoded, Decode decode) {
+  Image& image = encoded.image;
+  std::array<float, 256> table;
+  for (size_t i = 0; i < table.size(); ++i) table[i] = decode(static_cast<float>(i) / 255.0f);
+  const size_t stride = image.channels.size();
+  for (size_t c = 0; c < stride; ++c) {
+    if (image.channels[c] == "A") continue;
+    for (size_t i = c; i < image.data.size(); i += stride) {
+      float& value = image.data[i];
+      if (encoded.integerBits == 8) {
+        value = table[static_cast<size_t>(std::lround(std::clamp(value, 0.0f, 1.0f) * 255.0f))];
+      } else {
+        value = decode(value);
+      }
+    }
+  }
+}
+
+void CheckReadable(const std::filesystem::path& path) {
+  std::error_code code;
+  const auto status = std::filesystem::status(path, code);
+  if (!std::filesystem::exists(status)) throw Error("cannot read image \"" + path.string() + "\": no such file");
+  if (std::filesystem::is_directory(status)) throw Error("cannot read image \"" + path.string() + "\": it is a folder");
+}
+
+// Identity up to kShoulderStart, then an exponential that meets it with the same slope and nears 1:
+// s + (1-s)·(1 - exp(-(x-s)/(1-s))). Per channel, so that very bright colours fade to white. No toe.
+float FilmicShoulder(float x) {
+  constexpr float kShoulderStart = 0.6f;
+  if (x <= kShoulderStart) return x;
+  constexpr float room = 1.0f - kShoulderStart;
+  return kShoulderStart + room * (1.0f - std::exp(-(x - kShoulderStart) / room));
+}
+
+unsigned char ToDisplay(float linear, float exposure, ToneMap toneMap) {
+  float x = linear * exposure;
+  if (!(x > 0)) return 0;  // NaN, too
+  if (toneMap == ToneMap::Filmic) x = FilmicShoulder(x);
+  return static_cast<unsigned char>(std::lround(255.0f * LinearToSrgb(std::min(x, 1.0f))));
+}
+
+}  // namespace
+
+Image::Image(int w, int h, std::vector<std::string> channelNames)
+    : width(w), height(h), channels(std::move(channelNames)),
+      data(static_cast<size_t>(w) * static_cast<size_t>(h) * channels.size(), 0.0f) {}
+
+int Image::ChannelIndex(const std::string& name) const {
+  const auto found = std::find(channels.begin(), channels.end(), name);
+  return found == channels.end() ? -1 : static_cast<int>(found - channels.begin());
+}
+
+Color Image::RgbAt(int x, int y) const {
+  const float* pixel = &data[(static_cast<size_t>(y) * width + x) * channels.size()];
+  if (channels.size() >= 3 && channels[0] == "R" && channels[1] == "G" && channels[2] == "B") {
+    return {pixel[0], pixel[1], pixel[2]};
+  }
+  const int r = ChannelIndex("R"), g = ChannelIndex("G"), b = ChannelIndex("B");
+  if (r >= 0 && g >= 0 && b >= 0) return {pixel[r], pixel[g], pixel[b]};
+  return Color(pixel[std::max(0, ChannelIndex("Y"))]);
+}
+
+bool Image::HasRgb() const {
+  if (ChannelIndex("R") >= 0 && ChannelIndex("G") >= 0 && ChannelIndex("B") >= 0) return true;
+  return channels.size() == 1 || ChannelIndex("Y") >= 0;
+}
+
+std::vector<size_t> ChannelOrder(const std::vector<std::string>& names) {
+  const auto layerOf = [&](size_t i) {
+    const size_t dot = names[i].rfind('.');
+    return dot == std::string::npos ? std::string() : names[i].substr(0, dot);
+  };
+  const auto rankOf = [&](size_t i) {
+    const std::string suffix = names[i].substr(names[i].rfind('.') + 1);  // npos + 1 is 0: the whole name
+    const size_t rank = suffix.size() == 1 ? std::string("RGBA").find(suffix) : std::string::npos;
+    return std::min<size_t>(rank, 4);
+  };
+  std::vector<size_t> order(names.size());
+  std::iota(order.begin(), order.end(), size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) {
+    const std::string layerA = layerOf(a), layerB = layerOf(b);
+    if (layerA != layerB) return layerA < layerB;
+    return rankOf(a) < rankOf(b);
+  });
+  return order;
+}
+
+void CheckImageSize(const std::filesystem::path& path, int64_t width, int64_t height, int64_t channels,
+                    int64_t bytesPerPixel) {
+  constexpr int64_t maxSide = int64_t{1} << 24, maxValues = int64_t{1} << 30;
+  constexpr int64_t alwaysFine = int64_t{1} << 28, largestCompression = 2000;
+  const std::string claim = std::to_string(width) + " x " + std::to_string(height) + " pixels with " +
+                            std::to_string(channels) + " channels";
+  if (width <= 0 || height <= 0 || channels <= 0) {
+    throw Error("cannot read image \"" + path.string() + "\": it has no pixels (" + claim + ")");
+  }
+  if (width > maxSide || height > maxSide || channels > 4096 || width * height > maxValues / channels) {
+    throw Error("cannot read image \"" + path.string() + "\": too large (" + claim + ")");
+  }
+  std::error_code code;
+  const auto fileBytes = std::filesystem::file_size(path, code);
+  const int64_t bytes = width * height * bytesPerPixel;
+  if (!code && bytes > alwaysFine && bytes / largestCompression > static_cast<int64_t>(fileBytes)) {
+    throw Error("cannot read image \"" + path.string() + "\": it claims " + claim + ", more than " +
+                std::to_string(fileBytes) + " bytes can hold");
+  }
+}
+
+Image ReadImage(const std::filesystem::path& path, ImageEncoding encoding) {
+  CheckReadable(path);
+  if (HasExtension(path, ".exr")) return ReadExr(path);
+  EncodedImage encoded = ReadThroughModule(path);
+  const bool automatic = encoded.integerBits == 8 || (encoded.integerBits > 0 && encoded.saysSrgb);
+  const bool decode = encoding == ImageEncoding::Automatic ? automatic : encoding == ImageEncoding::Srgb;
+  if (decode && encoded.integerBits > 0) DecodeChannels(encoded, SrgbToLinear);
+  return std::move(encoded.image);
+}
+
+Image ReadImageWithGamma(const std::filesystem::path& path, float gamma) {
+  CheckReadable(path);
+  if (HasExtension(path, ".exr")) return ReadExr(path);
+  EncodedImage encoded = ReadThroughModule(path);
+  if (encoded.integerBits > 0) {
+    DecodeChannels(encoded, [gamma](float value) { return std::pow(std::max(value, 0.0f), gamma); });
+  }
+  return std::move(encoded.image);
+}
+
+void WritePng(const std::filesystem::path& path, const Image& image, float exposureStops, ToneMap toneMap) {
+  if (!image.HasRgb() || image.width <= 0 || image.height <= 0) {
+    throw Error("cannot write \"" + path.string() + "\": the image has no R, G and B channels");
+  }
+  const float exposure = std::exp2(exposureStops);
+  std::vector<unsigned char> rgb;
+  rgb.reserve(static_cast<size_t>(image.width) * static_cast<size_t>(image.height) * 3);
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const Color color = image.RgbAt(x, y);
+      for (const float value : {color.r, color.g, color.b}) rgb.push_back(ToDisplay(value, exposure, toneMap));
+    }
+  }
+  const std::vector<unsigned char> bytes = EncodePng(image.width, image.height, rgb);
+  AtomicFile file(path);
+  file.Write(bytes.data(), bytes.size());
+  file.Commit();
+}
+
+}  // namespace lampyr

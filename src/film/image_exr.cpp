@@ -1,0 +1,158 @@
+// OpenEXR files: every channel of a flat scan-line or tiled image as float (of the first part when there are several),
+// data and display window, string attributes as metadata. The only file that includes OpenEXR.
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfIO.h>
+#include <ImfInputFile.h>
+#include <ImfOutputFile.h>
+#include <ImfStringAttribute.h>
+#include <half.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+
+#include "base/error.h"
+#include "film/atomic_file.h"
+#include "film/image.h"
+#include "film/image_formats.h"
+
+namespace lampyr {
+
+namespace {
+
+// Lets OpenEXR write through AtomicFile. A failure in OpenEXR's destructor (which swallows exceptions) is found by
+// AtomicFile::Commit.
+class AtomicStream : public Imf::OStream {
+ public:
+  AtomicStream(AtomicFile& file, const std::string& name) : Imf::OStream(name.c_str()), file_(file) {}
+  void write(const char bytes[], int count) override { file_.Write(bytes, static_cast<size_t>(count)); }
+  uint64_t tellp() override { return file_.Position(); }
+  void seekp(uint64_t position) override { file_.Seek(position); }
+
+ private:
+  AtomicFile& file_;
+};
+
+int BytesOf(Imf::PixelType type) { return type == Imf::HALF ? 2 : 4; }
+
+// Names of all channels in our order. Throws on channels that are not stored at every pixel.
+std::vector<std::string> ListChannels(const std::filesystem::path& path, const Imf::Header& header, int& bytesPerPixel) {
+  std::vector<std::string> names;
+  bytesPerPixel = 0;
+  for (auto i = header.channels().begin(); i != header.channels().end(); ++i) {
+    if (i.channel().xSampling != 1 || i.channel().ySampling != 1) {
+      throw Error("cannot read image \"" + path.string() + "\": channel \"" + i.name() +
+                  "\" is stored at a lower resolution, which is not supported");
+    }
+    names.emplace_back(i.name());
+    bytesPerPixel += BytesOf(i.channel().type);
+  }
+  std::vector<std::string> ordered;
+  for (const size_t i : ChannelOrder(names)) ordered.push_back(names[i]);
+  return ordered;
+}
+
+Image ReadOpenExr(const std::filesystem::path& path) {
+  Imf::InputFile file(path.c_str(), 1);
+  const Imf::Header& header = file.header();
+  const Imath::Box2i window = header.dataWindow(), display = header.displayWindow();
+  const int64_t width = int64_t{window.max.x} - window.min.x + 1, height = int64_t{window.max.y} - window.min.y + 1;
+  int bytesPerPixel = 0;
+  std::vector<std::string> channels = ListChannels(path, header, bytesPerPixel);
+  CheckImageSize(path, width, height, static_cast<int64_t>(channels.size()), bytesPerPixel);
+
+  Image image(static_cast<int>(width), static_cast<int>(height), std::move(channels));
+  image.offsetX = static_cast<int>(int64_t{window.min.x} - display.min.x);
+  image.offsetY = static_cast<int>(int64_t{window.min.y} - display.min.y);
+  image.fullWidth = static_cast<int>(int64_t{display.max.x} - display.min.x + 1);
+  image.fullHeight = static_cast<int>(int64_t{display.max.y} - display.min.y + 1);
+  for (auto i = header.begin(); i != header.end(); ++i) {
+    const auto* text = dynamic_cast<const Imf::StringAttribute*>(&i.attribute());
+    if (text) image.metadata[i.name()] = text->value();
+  }
+
+  Imf::FrameBuffer frame;
+  const size_t xStride = image.channels.size() * sizeof(float);
+  for (size_t c = 0; c < image.channels.size(); ++c) {
+    frame.insert(image.channels[c], Imf::Slice::Make(Imf::FLOAT, image.data.data() + c, window, xStride,
+                                                     xStride * static_cast<size_t>(image.width)));
+  }
+  file.setFrameBuffer(frame);
+  file.readPixels(window.min.y, window.max.y);
+  return image;
+}
+
+Imf::Header MakeHeader(const Image& image, Imf::PixelType type) {
+  const int fullWidth = image.fullWidth > 0 ? image.fullWidth : image.offsetX + image.width;
+  const int fullHeight = image.fullHeight > 0 ? image.fullHeight : image.offsetY + image.height;
+  const Imath::Box2i display({0, 0}, {fullWidth - 1, fullHeight - 1});
+  const Imath::Box2i window({image.offsetX, image.offsetY},
+                            {image.offsetX + image.width - 1, image.offsetY + image.height - 1});
+  Imf::Header header(display, window);
+  header.compression() = Imf::ZIP_COMPRESSION;
+  for (const std::string& name : image.channels) header.channels().insert(name, Imf::Channel(type));
+  for (const auto& [key, value] : image.metadata) {
+    if (header.find(key) == header.end()) header.insert(key, Imf::StringAttribute(value));
+  }
+  return header;
+}
+
+// The image in half, values beyond its range at its ends: an image of large radiance has no infinities in it.
+std::vector<half> ToHalf(const std::vector<float>& values) {
+  constexpr float largest = 65504.0f;
+  std::vector<half> result(values.size());
+  std::transform(values.begin(), values.end(), result.begin(), [](float value) {
+    return half(std::isfinite(value) ? std::clamp(value, -largest, largest) : value);
+  });
+  return result;
+}
+
+void WriteOpenExr(Imf::OStream& stream, const Image& image, ExrPrecision precision) {
+  const bool asHalf = precision == ExrPrecision::Half;
+  const Imf::PixelType type = asHalf ? Imf::HALF : Imf::FLOAT;
+  const std::vector<half> halves = asHalf ? ToHalf(image.data) : std::vector<half>();
+  const char* first = asHalf ? reinterpret_cast<const char*>(halves.data())
+                             : reinterpret_cast<const char*>(image.data.data());
+  const size_t valueBytes = static_cast<size_t>(BytesOf(type));
+  const size_t xStride = valueBytes * image.channels.size(), yStride = xStride * static_cast<size_t>(image.width);
+  const Imf::Header header = MakeHeader(image, type);
+  Imf::FrameBuffer frame;
+  for (size_t c = 0; c < image.channels.size(); ++c) {
+    frame.insert(image.channels[c],
+                 Imf::Slice::Make(type, first + c * valueBytes, header.dataWindow(), xStride, yStride));
+  }
+  Imf::OutputFile file(stream, header, 1);
+  file.setFrameBuffer(frame);
+  file.writePixels(image.height);
+}
+
+}  // namespace
+
+Image ReadExr(const std::filesystem::path& path) {
+  try {
+    return ReadOpenExr(path);
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& e) {
+    throw Error("cannot read image \"" + path.string() + "\": " + e.what());
+  }
+}
+
+void WriteExr(const std::filesystem::path& path, const Image& image, ExrPrecision precision) {
+  if (image.width <= 0 || image.height <= 0 || image.channels.empty()) {
+    throw Error("cannot write \"" + path.string() + "\": the image has no pixels");
+  }
+  AtomicFile file(path);
+  try {
+    AtomicStream stream(file, path.string());
+    WriteOpenExr(stream, image, precision);
+  } catch (const std::exception& e) {
+    file.ThrowIfFailed();  // the system's reason is better than OpenEXR's
+    throw Error("cannot write \"" + path.string() + "\": " + e.what());
+  }
+  file.Commit();
+}
+
+}  // namespace lampyr

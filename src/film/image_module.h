@@ -1,0 +1,31 @@
+// The C interface of the image module, a shared library that is loaded when an image needs OpenImageIO
+// (image_module.cpp is the module, image_module_loader.cpp loads it). Private to the film room.
+#pragma once
+
+#include <cstddef>
+
+namespace lampyr {
+
+inline constexpr int kImageModuleVersion = 1;
+
+// What the module tells about an image before it reads the pixels.
+struct ImageModuleInfo {
+  int width, height, channels;
+  const char* const* channelNames;
+  int integerBits;  // 0: floating point
+  int saysSrgb;
+  long long bytesPerPixel;  // uncompressed, in the file
+};
+
+// Gives the place for width·height·channels floats, or null to stop.
+using ImageModuleAllocate = float* (*)(void* context, const ImageModuleInfo* info);
+using ImageModuleSink = void (*)(void* context, const void* bytes, size_t count);
+
+// Both return 0, or 1 with a text in `error` (of `errorSize` characters, 0 at the end).
+using ImageModuleRead = int (*)(const char* path, ImageModuleAllocate allocate, void* context, char* error,
+                                size_t errorSize);
+using ImageModuleEncodePng = int (*)(int width, int height, const unsigned char* rgb, ImageModuleSink sink,
+                                     void* context, char* error, size_t errorSize);
+using ImageModuleVersion = int (*)();
+
+}  // namespace lampyr

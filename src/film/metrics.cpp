@@ -1,0 +1,224 @@
+// Differences of two images: sums in double over pixels and the channels R, G, B.
+#include "film/metrics.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "base/error.h"
+#include "film/flip.h"
+
+namespace lampyr {
+
+namespace {
+
+using Planes = std::array<std::vector<float>, 3>;  // R, G, B
+
+// An image as the metrics see it.
+struct Measured {
+  std::vector<Color> colors;
+  std::optional<Planes> variance;  // of the pixels' means
+  float relativeRounding = 0;      // of what is stored: half or float
+};
+
+std::vector<Color> ReadColors(const Image& image, const char* which) {
+  if (!image.HasRgb()) throw Error(std::string("the ") + which + " image has no channels R, G and B");
+  std::vector<Color> colors;
+  colors.reserve(static_cast<size_t>(image.width) * static_cast<size_t>(image.height));
+  size_t broken = 0;
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      colors.push_back(image.RgbAt(x, y));
+      const Color& c = colors.back();
+      if (!std::isfinite(c.r) || !std::isfinite(c.g) || !std::isfinite(c.b)) ++broken;
+    }
+  }
+  if (broken > 0) {
+    throw Error("the " + std::string(which) + " image has " + std::to_string(broken) +
+                " pixels that are infinite or not numbers");
+  }
+  return colors;
+}
+
+// "variance.R" … (variance of the pixel's mean) or "stderr.R" … (its square root).
+std::optional<Planes> ReadVariance(const Image& image, const char* which) {
+  Planes planes;
+  for (const bool isVariance : {true, false}) {
+    const std::string layer = isVariance ? "variance." : "stderr.";
+    const int index[3] = {image.ChannelIndex(layer + "R"), image.ChannelIndex(layer + "G"),
+                          image.ChannelIndex(layer + "B")};
+    if (index[0] < 0 || index[1] < 0 || index[2] < 0) continue;
+    for (int c = 0; c < 3; ++c) {
+      for (size_t i = static_cast<size_t>(index[c]); i < image.data.size(); i += image.channels.size()) {
+        const float value = image.data[i];
+        if (!(value >= 0) || std::isinf(value)) {
+          throw Error("the layer \"" + layer + "\" of the " + which + " image has values that are no " +
+                      (isVariance ? "variance" : "standard error"));
+        }
+        planes[c].push_back(value);
+        if (!isVariance) planes[c].back() = std::min(value * value, std::numeric_limits<float>::max());
+      }
+    }
+    return planes;
+  }
+  return std::nullopt;
+}
+
+// Images stored in half have values whose last 13 bits are 0. Their rounding does not average out where a region is
+// constant, so the block test allows for it.
+float RelativeRounding(const std::vector<Color>& colors) {
+  const auto isHalf = [](float v) { return (std::bit_cast<uint32_t>(v) & 0x1fffu) == 0; };
+  const bool allHalf = std::all_of(colors.begin(), colors.end(),
+                                   [&](const Color& c) { return isHalf(c.r) && isHalf(c.g) && isHalf(c.b); });
+  return allHalf ? 0x1p-11f : 0x1p-22f;
+}
+
+Measured Measure(const Image& image, const char* which) {
+  Measured measured;
+  measured.colors = ReadColors(image, which);
+  measured.variance = ReadVariance(image, which);
+  measured.relativeRounding = RelativeRounding(measured.colors);
+  return measured;
+}
+
+std::array<double, 3> Channels(const Color& c) {
+  return {static_cast<double>(c.r), static_cast<double>(c.g), static_cast<double>(c.b)};
+}
+
+// 0/0 is 0: nothing relative to nothing. Infinite when only the divisor is 0.
+double Ratio(double value, double divisor) {
+  if (value == 0) return 0;
+  return divisor == 0 ? std::copysign(std::numeric_limits<double>::infinity(), value) : value / divisor;
+}
+
+void MeasureErrors(const Measured& a, const Measured& b, ImageDifference& difference) {
+  const size_t pixels = a.colors.size();
+  const double n = 3.0 * static_cast<double>(pixels);
+  double squares = 0, referenceSquares = 0;
+  for (size_t i = 0; i < pixels; ++i) {
+    const auto va = Channels(a.colors[i]), vb = Channels(b.colors[i]);
+    for (int c = 0; c < 3; ++c) {
+      squares += (va[c] - vb[c]) * (va[c] - vb[c]);
+      referenceSquares += vb[c] * vb[c];
+      difference.meanA += va[c] / n;
+      difference.meanB += vb[c] / n;
+    }
+  }
+  difference.mse = squares / n;
+  const double floor = 0.01 * referenceSquares / n;
+  double relative = 0;
+  for (size_t i = 0; i < pixels; ++i) {
+    const auto va = Channels(a.colors[i]), vb = Channels(b.colors[i]);
+    for (int c = 0; c < 3; ++c) relative += Ratio((va[c] - vb[c]) * (va[c] - vb[c]), vb[c] * vb[c] + floor);
+  }
+  difference.relMse = relative / n;
+}
+
+// Variance of the difference of the means of a pixel, averaged over its channels. The channels share the paths of the
+// pixel, so they are taken as fully correlated, which is exact for gray and an upper bound else.
+double VarianceOfGray(const Measured& a, const Measured& b, size_t i) {
+  double deviation = 0;
+  for (int c = 0; c < 3; ++c) {
+    deviation += std::sqrt(static_cast<double>((*a.variance)[c][i]) + static_cast<double>((*b.variance)[c][i]));
+  }
+  return deviation * deviation / 9;
+}
+
+void MeasureBias(const Measured& a, const Measured& b, ImageDifference& difference) {
+  const size_t pixels = a.colors.size();
+  const double n = static_cast<double>(pixels), bias = difference.meanA - difference.meanB;
+  double varianceOfMean = 0;
+  for (size_t i = 0; i < pixels; ++i) {
+    if (a.variance && b.variance) {
+      varianceOfMean += VarianceOfGray(a, b, i) / (n * n);
+    } else {
+      const auto va = Channels(a.colors[i]), vb = Channels(b.colors[i]);
+      const double gray = (va[0] - vb[0] + va[1] - vb[1] + va[2] - vb[2]) / 3;
+      varianceOfMean += (gray - bias) * (gray - bias) / (n * std::max(1.0, n - 1));
+    }
+  }
+  difference.bias = Ratio(bias, std::abs(difference.meanB));
+  difference.biasInterval = Ratio(1.959963984540054 * std::sqrt(varianceOfMean), std::abs(difference.meanB));
+}
+
+// z of one block and channel: difference of the block's means over its standard error. Empty when there is neither a
+// difference nor a variance.
+std::optional<double> BlockZ(const Measured& a, const Measured& b, int channel, int width, const int (&block)[4]) {
+  double sumA = 0, sumB = 0, variance = 0;
+  for (int y = block[1]; y < block[3]; ++y) {
+    for (int x = block[0]; x < block[2]; ++x) {
+      const size_t i = static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x);
+      sumA += Channels(a.colors[i])[channel];
+      sumB += Channels(b.colors[i])[channel];
+      variance += static_cast<double>((*a.variance)[channel][i]) + static_cast<double>((*b.variance)[channel][i]);
+    }
+  }
+  if (variance == 0 && sumA == sumB) return std::nullopt;
+  // The rounding of a constant region is the same at all its pixels: it adds up like the values.
+  const double rounding = std::abs(sumA) * static_cast<double>(a.relativeRounding) +
+                          std::abs(sumB) * static_cast<double>(b.relativeRounding);
+  return (sumA - sumB) / std::sqrt(variance + rounding * rounding / 3);
+}
+
+// Half of the family-wise rate goes to the largest z, half to the sum of squares; each is divided among the channels.
+// chiSquared is that of the worst channel: one channel that is off must not drown in two that are not.
+BlockTest TestBlocks(const Measured& a, const Measured& b, int width, int height, int blockSize, double rate) {
+  BlockTest test;
+  test.blockSize = blockSize;
+  int blocksOf[3] = {0, 0, 0};
+  double chiSquaredOf[3] = {0, 0, 0};
+  for (int y = 0; y < height; y += blockSize) {
+    for (int x = 0; x < width; x += blockSize) {
+      const int block[4] = {x, y, std::min(x + blockSize, width), std::min(y + blockSize, height)};
+      for (int c = 0; c < 3; ++c) {
+        const auto z = BlockZ(a, b, c, width, block);
+        if (!z) continue;
+        ++blocksOf[c];
+        chiSquaredOf[c] += *z * *z;
+        test.largestZ = std::max(test.largestZ, std::abs(*z));
+      }
+    }
+  }
+  const double rateOfEach = SidakRate(rate, 2);
+  test.threshold = NormalQuantileTwoSided(SidakRate(rateOfEach, blocksOf[0] + blocksOf[1] + blocksOf[2]));
+  double worst = -1;
+  for (int c = 0; c < 3; ++c) {
+    const double threshold = ChiSquaredQuantile(SidakRate(rateOfEach, 3), blocksOf[c]);
+    const double excess = threshold > 0 ? chiSquaredOf[c] / threshold : 0;
+    if (excess <= worst) continue;
+    worst = excess;
+    test.blocks = blocksOf[c];
+    test.chiSquared = chiSquaredOf[c];
+    test.chiSquaredThreshold = threshold;
+  }
+  return test;
+}
+
+}  // namespace
+
+ImageDifference CompareImages(const Image& a, const Image& b, int blockSize, double familyWiseRate) {
+  if (a.width != b.width || a.height != b.height || a.width <= 0 || a.height <= 0) {
+    throw Error("the images have different sizes: " + std::to_string(a.width) + " x " + std::to_string(a.height) +
+                " and " + std::to_string(b.width) + " x " + std::to_string(b.height));
+  }
+  if (a.offsetX != b.offsetX || a.offsetY != b.offsetY) throw Error("the images are different crops");
+  if (blockSize < 1) throw Error("the block size must be at least 1");
+  const Measured first = Measure(a, "first"), second = Measure(b, "second");
+  ImageDifference difference;
+  MeasureErrors(first, second, difference);
+  MeasureBias(first, second, difference);
+  const std::vector<float> map = FlipMap(first.colors, second.colors, a.width, a.height);
+  double sum = 0;
+  for (const float value : map) sum += static_cast<double>(value);
+  difference.flip = sum / static_cast<double>(map.size());
+  difference.hasBlockTest = first.variance && second.variance;
+  if (difference.hasBlockTest) {
+    difference.blockTest = TestBlocks(first, second, a.width, a.height, blockSize, familyWiseRate);
+  }
+  return difference;
+}
+
+}  // namespace lampyr
