@@ -1,0 +1,159 @@
+// See curves.h.
+#include "geometry/curves.h"
+
+#include "geometry/rounding.h"
+#include "math/frame.h"
+
+namespace lampyr {
+
+namespace {
+
+using Segment = std::array<Point3d, 4>;
+
+// Degree elevation of a quadratic Bézier segment.
+Segment Elevate(const Point3d& a, const Point3d& b, const Point3d& c) {
+  return {a, (a + b * 2.0) / 3.0, (b * 2.0 + c) / 3.0, c};
+}
+
+Segment BezierSegment(const std::vector<Point3d>& p, size_t i, int degree) {
+  if (degree == 2) return Elevate(p[2 * i], p[2 * i + 1], p[2 * i + 2]);
+  return {p[3 * i], p[3 * i + 1], p[3 * i + 2], p[3 * i + 3]};
+}
+
+// Uniform B-spline to Bézier, by blossoming.
+Segment BSplineSegment(const std::vector<Point3d>& p, size_t i, int degree) {
+  if (degree == 2) return Elevate((p[i] + p[i + 1]) * 0.5, p[i + 1], (p[i + 1] + p[i + 2]) * 0.5);
+  const Point3d &a = p[i], &b = p[i + 1], &c = p[i + 2], &d = p[i + 3];
+  return {(a + b * 4.0 + c) / 6.0, (b * 2.0 + c) / 3.0, (b + c * 2.0) / 3.0, (b + c * 4.0 + d) / 6.0};
+}
+
+size_t CountSegments(const CurveParameters& p) {
+  const size_t degree = static_cast<size_t>(p.degree), count = p.points.size();
+  if (p.basis == CurveParameters::Basis::BSpline) {
+    if (count >= degree + 1) return count - degree;
+  } else if (count >= degree + 1 && (count - 1) % degree == 0) {
+    return (count - 1) / degree;
+  }
+  throw Error(p.where, "curve: " + std::to_string(count) + " control points do not make " +
+                           (p.basis == CurveParameters::Basis::BSpline ? "a B-spline" : "Bézier segments") +
+                           " of degree " + std::to_string(p.degree));
+}
+
+void Check(const CurveParameters& p) {
+  if (p.degree != 2 && p.degree != 3) throw Error(p.where, "curve: the degree must be 2 or 3");
+  for (const Point3& point : p.points) {
+    if (!IsFinite(point)) throw Error(p.where, "curve: a control point is not finite");
+  }
+  for (const float width : {p.width0, p.width1}) {
+    if (!(width >= 0) || !std::isfinite(width)) throw Error(p.where, "curve: a width is negative or not finite");
+  }
+}
+
+void AddNormals(const CurveParameters& p, size_t segments, CurveSet& curves) {
+  if (p.normals.size() != segments + 1) {
+    throw Error(p.where, "curve: a ribbon of " + std::to_string(segments) + " segments needs " +
+                             std::to_string(segments + 1) + " normals, not " + std::to_string(p.normals.size()));
+  }
+  std::vector<Normal3> normals;
+  for (const Normal3& n : p.normals) {
+    const Vector3d transformed = p.toRender.Normal(Vector3d(n));
+    const double length = glm::length(transformed);
+    if (!(length > 0) || !std::isfinite(length)) throw Error(p.where, "curve: a normal is zero or not finite");
+    normals.push_back(Vector3(transformed / length));
+  }
+  for (size_t i = 0; i < segments; ++i) curves.segmentNormals.push_back({normals[i], normals[i + 1]});
+}
+
+}  // namespace
+
+CurveSet MakeCurves(const CurveParameters& p) {
+  Check(p);
+  const size_t count = CountSegments(p);
+  std::vector<Point3d> points;
+  for (const Point3& point : p.points) points.push_back(p.toRender.Point(Point3d(point)));
+  const double scale = std::cbrt(std::abs(glm::determinant(glm::dmat3(p.toRender.Matrix()))));
+
+  CurveSet curves;
+  curves.kind = p.kind;
+  for (size_t i = 0; i < count; ++i) {
+    const bool bezier = p.basis == CurveParameters::Basis::Bezier;
+    const Segment segment = bezier ? BezierSegment(points, i, p.degree) : BSplineSegment(points, i, p.degree);
+    std::array<Point3, 4> controls;
+    std::array<float, 4> radii;
+    for (size_t k = 0; k < 4; ++k) {
+      controls[k] = Point3(segment[k]);
+      // Control values in equal steps interpolate linearly.
+      const double along = (static_cast<double>(i) + static_cast<double>(k) / 3) / static_cast<double>(count);
+      const double width = static_cast<double>(p.width0) * (1 - along) + static_cast<double>(p.width1) * along;
+      radii[k] = static_cast<float>(0.5 * scale * width);
+    }
+    curves.segments.push_back(controls);
+    curves.radii.push_back(radii);
+    curves.vRange.push_back({0, 1});
+  }
+  if (p.kind == CurveSet::Kind::Ribbon) AddNormals(p, count, curves);
+  return curves;
+}
+
+Point3 CurveAxis(const CurveSet& curves, uint32_t segment, float u) {
+  const auto& c = curves.segments[segment];
+  const float w = 1 - u;
+  return c[0] * (w * w * w) + c[1] * (3 * u * w * w) + c[2] * (3 * u * u * w) + c[3] * (u * u * u);
+}
+
+Vector3 CurveTangent(const CurveSet& curves, uint32_t segment, float u) {
+  const auto& c = curves.segments[segment];
+  const float w = 1 - u;
+  const Vector3 tangent = (c[1] - c[0]) * (3 * w * w) + (c[2] - c[1]) * (6 * u * w) + (c[3] - c[2]) * (3 * u * u);
+  return LengthSquared(tangent) > 0 ? tangent : c[3] - c[0];
+}
+
+float CurveRadius(const CurveSet& curves, uint32_t segment, float u) {
+  const auto& r = curves.radii[segment];
+  const float w = 1 - u;
+  return r[0] * (w * w * w) + r[1] * (3 * u * w * w) + r[2] * (3 * u * u * w) + r[3] * (u * u * u);
+}
+
+namespace {
+
+Vector3 Perpendicular(const Vector3& v, const Vector3& axis) { return v - axis * glm::dot(v, axis); }
+
+// The unit normal at a point `offset` from the axis that runs along the unit `along`.
+Normal3 CurveNormal(const CurveSet& curves, uint32_t segment, float u, const Vector3& along, const Vector3& offset,
+                    const Vector3& direction) {
+  const Normal3 fallback = Frame::FromNormal(along).x;
+  switch (curves.kind) {
+    case CurveSet::Kind::Flat: return SafeNormalize(Perpendicular(-direction, along), fallback);
+    case CurveSet::Kind::Cylinder: return SafeNormalize(Perpendicular(offset, along), fallback);
+    case CurveSet::Kind::Ribbon: break;
+  }
+  const auto& n = curves.segmentNormals[segment];
+  return SafeNormalize(Perpendicular(n[0] * (1 - u) + n[1] * u, along), fallback);
+}
+
+}  // namespace
+
+void EvaluateCurve(const CurveSet& curves, uint32_t segment, float u, const Point3& origin, const Vector3& direction,
+                   float t, SurfacePoint& point) {
+  const Point3 axis = CurveAxis(curves, segment, u);
+  const Vector3 tangent = CurveTangent(curves, segment, u);
+  const Vector3 along = SafeNormalize(tangent, Vector3(0, 0, 1));
+  const float radius = CurveRadius(curves, segment, u);
+
+  const Vector3 travelled = direction * t;
+  point.position = origin + travelled;
+  // Embree finds curve hits by iteration, to some thousandths of the radius.
+  point.positionError = (glm::abs(origin) + glm::abs(travelled)) * Gamma(4) + Vector3(4e-3f * radius);
+  const Vector3 offset = point.position - axis;
+  point.Ng = point.Ns = CurveNormal(curves, segment, u, along, offset, direction);
+
+  const Vector3 seenFrom = curves.kind == CurveSet::Kind::Ribbon ? -point.Ng : direction;
+  const Vector3 across = SafeNormalize(glm::cross(seenFrom, along), Frame::FromNormal(along).x);
+  const auto& range = curves.vRange[segment];
+  const float side = radius > 0 ? glm::dot(offset, across) / radius : 0.0f;
+  point.uv = {range[0] + (range[1] - range[0]) * u, std::clamp(0.5f + 0.5f * side, 0.0f, 1.0f)};
+  point.dpdu = tangent / std::max(range[1] - range[0], 1e-6f);
+  point.dpdv = across * (2 * radius);
+}
+
+}  // namespace lampyr

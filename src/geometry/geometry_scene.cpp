@@ -1,0 +1,442 @@
+// See geometry_scene.h. Building the Embree scenes, the gate in front of every Embree call, and looking up hits.
+#include "geometry/geometry_scene.h"
+
+#include <embree3/rtcore.h>
+
+#include <atomic>
+#include <deque>
+#include <string>
+
+#include "base/error.h"
+#include "geometry/embree_callbacks.h"
+#include "geometry/rounding.h"
+#include "geometry/scene_tables.h"
+
+namespace lampyr {
+
+namespace {
+
+// Embree aborts the process on rays beyond this, and skips primitives.
+constexpr float kLargest = 1e18f;
+
+struct DeviceDeleter {
+  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+};
+struct SceneDeleter {
+  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+};
+using DeviceHandle = std::unique_ptr<RTCDeviceTy, DeviceDeleter>;
+using SceneHandle = std::unique_ptr<RTCSceneTy, SceneDeleter>;
+
+const char* ErrorName(RTCError error) {
+  switch (error) {
+    case RTC_ERROR_OUT_OF_MEMORY: return "out of memory";
+    case RTC_ERROR_INVALID_ARGUMENT: return "invalid argument";
+    case RTC_ERROR_INVALID_OPERATION: return "invalid operation";
+    case RTC_ERROR_UNSUPPORTED_CPU: return "unsupported CPU";
+    case RTC_ERROR_CANCELLED: return "cancelled";
+    default: return "unknown error";
+  }
+}
+
+void ThrowOnError(RTCDevice device, const char* doing) {
+  const RTCError error = rtcGetDeviceError(device);
+  if (error != RTC_ERROR_NONE) throw Error(std::string("Embree, ") + doing + ": " + ErrorName(error));
+}
+
+bool IsUsable(const Point3& p) { return MaxAbsComponent(p) <= kLargest && IsFinite(p); }
+
+template <size_t N>
+void CheckMesh(const char* what, const std::vector<Point3>& positions, const std::vector<std::array<uint32_t, N>>& faces,
+               size_t normals, size_t uvs) {
+  const std::string name = what;
+  for (size_t i = 0; i < positions.size(); ++i) {
+    if (!IsUsable(positions[i])) {
+      throw Error(name + ": vertex " + std::to_string(i) + " is not finite, or farther out than 1e18");
+    }
+  }
+  for (size_t i = 0; i < faces.size(); ++i) {
+    for (const uint32_t index : faces[i]) {
+      if (index >= positions.size()) {
+        throw Error(name + ": face " + std::to_string(i) + " has index " + std::to_string(index) + " of only " +
+                    std::to_string(positions.size()) + " vertices");
+      }
+    }
+  }
+  if (normals != 0 && normals != positions.size()) throw Error(name + ": there must be as many normals as vertices");
+  if (uvs != 0 && uvs != positions.size()) throw Error(name + ": there must be as many uv as vertices");
+}
+
+void CheckShape(const TriangleMesh& m) {
+  CheckMesh("triangle mesh", m.positions, m.triangles, m.normals.size(), m.uvs.size());
+}
+void CheckShape(const BilinearMesh& m) {
+  CheckMesh("bilinear mesh", m.positions, m.patches, m.normals.size(), m.uvs.size());
+}
+void CheckShape(const PreparedQuadric& q) {
+  const Bounds3 bounds = GetBounds(q.Shape());
+  const Affine& inverse = q.Shape().toObject;
+  if (!(q.Shape().radius > 0) || !IsUsable(bounds.min) || !IsUsable(bounds.max) || !IsUsable(inverse.linear[0]) ||
+      !IsUsable(inverse.linear[1]) || !IsUsable(inverse.linear[2])) {
+    throw Error("quadric: the radius is not positive, or the transform is singular or not finite");
+  }
+}
+void CheckShape(const CurveSet& c) {
+  if (c.radii.size() != c.segments.size() || c.vRange.size() != c.segments.size() ||
+      (c.kind == CurveSet::Kind::Ribbon && c.segmentNormals.size() != c.segments.size())) {
+    throw Error("curves: there must be as many radii, ranges and normals as segments");
+  }
+  for (size_t i = 0; i < c.segments.size(); ++i) {
+    for (size_t k = 0; k < 4; ++k) {
+      if (!IsUsable(c.segments[i][k]) || !(c.radii[i][k] >= 0) || !(c.radii[i][k] <= kLargest)) {
+        throw Error("curves: segment " + std::to_string(i) + " is not finite");
+      }
+    }
+  }
+}
+
+// The largest origin or direction that an instance's object space still takes.
+float LargestThrough(const Affine& toObject) {
+  float stretch = 1;
+  for (int row = 0; row < 3; ++row) {
+    const float sum = std::abs(toObject.linear[0][row]) + std::abs(toObject.linear[1][row]) +
+                      std::abs(toObject.linear[2][row]);
+    stretch = std::max({stretch, 2 * sum, 2 * std::abs(toObject.translation[row])});
+    if (!(stretch <= 1e15f)) throw Error("instance: the transform is singular, or scales by more than 1e15");
+  }
+  return kLargest / stretch;
+}
+
+}  // namespace
+
+struct GeometryScene::Implementation {
+  GeometryDescription description;
+  SceneTables tables;
+  std::deque<PreparedQuadric> quadrics;  // a deque: records point into it
+  DeviceHandle device;
+  std::vector<SceneHandle> objectScenes;
+  SceneHandle scene;
+  Bounds3 bounds;
+  float largest = kLargest;
+  mutable std::atomic<uint64_t> rejected{0};
+
+  explicit Implementation(GeometryDescription given) : description(std::move(given)) {
+    device.reset(rtcNewDevice("frequency_level=simd256"));
+    if (!device) throw Error(std::string("Embree cannot start: ") + ErrorName(rtcGetDeviceError(nullptr)));
+    FillTables();
+    ComputeBounds();
+    BuildScenes();
+  }
+
+  void AddEntries(const std::vector<GeometryEntry>& entries);
+  void FillTables();
+  void ComputeBounds();
+  SceneHandle NewScene() const;
+  void AttachEntries(RTCScene target, size_t first, size_t count);
+  void BuildScenes();
+
+  // Whether Embree survives the ray. A NaN anywhere makes a comparison false.
+  bool Accept(const Ray& ray) const {
+    const float direction = std::abs(ray.direction.x) + std::abs(ray.direction.y) + std::abs(ray.direction.z);
+    const float origin = std::abs(ray.origin.x) + std::abs(ray.origin.y) + std::abs(ray.origin.z);
+    if (direction > 0 && origin + direction < largest && ray.tMax >= 0) [[likely]] return true;
+    rejected.fetch_add(1, std::memory_order_relaxed);
+    return false;
+  }
+};
+
+void GeometryScene::Implementation::AddEntries(const std::vector<GeometryEntry>& entries) {
+  for (const GeometryEntry& entry : entries) {
+    PrimitiveRecord record;
+    switch (entry.shape.index()) {
+      case 0: record.shape = std::get<0>(entry.shape).get(); break;
+      case 1: record.shape = std::get<1>(entry.shape).get(); break;
+      case 2: record.shape = &quadrics.emplace_back(std::get<2>(entry.shape)); break;
+      default: record.shape = std::get<3>(entry.shape).get(); break;
+    }
+    std::visit([](const auto* shape) { CheckShape(*shape); }, record.shape);
+    record.alpha = entry.attributes.alpha.get();
+    record.tables = &tables;
+    tables.primitives.push_back(record);
+    tables.attributes.push_back(entry.attributes);
+  }
+}
+
+void GeometryScene::Implementation::FillTables() {
+  AddEntries(description.entries);
+  tables.firstInstanceId = static_cast<uint32_t>(description.entries.size());
+  std::vector<uint32_t> firstPrimitives;
+  for (const GeometryObject& object : description.objects) {
+    firstPrimitives.push_back(static_cast<uint32_t>(tables.primitives.size()));
+    AddEntries(object.entries);
+  }
+  for (const GeometryInstance& instance : description.instances) {
+    if (instance.object >= description.objects.size()) throw Error("instance of an object that does not exist");
+    const Affine& m = instance.toRender;
+    if (!IsUsable(m.translation) || !IsUsable(m.linear[0]) || !IsUsable(m.linear[1]) || !IsUsable(m.linear[2])) {
+      throw Error("instance: the transform is not finite, or reaches farther than 1e18");
+    }
+    largest = std::min(largest, LargestThrough(instance.toObject));
+    tables.instances.push_back(
+        {instance.toRender, instance.toObject, firstPrimitives[instance.object], instance.firstLight});
+  }
+}
+
+void GeometryScene::Implementation::ComputeBounds() {
+  for (const GeometryEntry& entry : description.entries) bounds.Add(lampyr::GetBounds(entry.shape));
+  std::vector<std::vector<Bounds3>> boxes(description.objects.size());
+  for (const GeometryInstance& instance : description.instances) {
+    std::vector<Bounds3>& object = boxes[instance.object];
+    if (object.empty()) {
+      for (const GeometryEntry& entry : description.objects[instance.object].entries) {
+        object.push_back(lampyr::GetBounds(entry.shape));
+      }
+    }
+    for (const Bounds3& box : object) {
+      if (box.IsEmpty()) continue;
+      for (int i = 0; i < 8; ++i) {
+        const Point3 corner = instance.toRender.Point(box.Corner(i));
+        const Vector3 error = instance.toRender.PointError(box.Corner(i), Vector3(0.0f));
+        bounds.Add(corner - error);
+        bounds.Add(corner + error);
+      }
+    }
+  }
+}
+
+SceneHandle GeometryScene::Implementation::NewScene() const {
+  SceneHandle created(rtcNewScene(device.get()));
+  rtcSetSceneFlags(created.get(), description.robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
+  rtcSetSceneBuildQuality(created.get(), RTC_BUILD_QUALITY_MEDIUM);
+  return created;
+}
+
+namespace {
+
+// Embree loads vertices 16 bytes at a time: shared where the vector owns memory past its end, copied otherwise.
+void SetVertices(RTCGeometry geometry, const std::vector<Point3>& positions) {
+  if (positions.capacity() > positions.size()) {
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, positions.data(), 0,
+                               sizeof(Point3), positions.size());
+    return;
+  }
+  void* buffer = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Point3),
+                                         positions.size());
+  if (buffer) std::copy(positions.begin(), positions.end(), static_cast<Point3*>(buffer));
+}
+
+RTCGeometry NewGeometry(RTCDevice device, const TriangleMesh& mesh) {
+  if (mesh.triangles.empty()) return nullptr;
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  SetVertices(geometry, mesh.positions);
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.triangles.data(), 0,
+                             sizeof(mesh.triangles[0]), mesh.triangles.size());
+  return geometry;
+}
+
+RTCGeometry NewUserGeometry(RTCDevice device, size_t count, RTCBoundsFunction bounds, RTCIntersectFunctionN intersect,
+                            RTCOccludedFunctionN occluded) {
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+  rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(count));
+  rtcSetGeometryBoundsFunction(geometry, bounds, nullptr);
+  rtcSetGeometryIntersectFunction(geometry, intersect);
+  rtcSetGeometryOccludedFunction(geometry, occluded);
+  return geometry;
+}
+
+RTCGeometry NewGeometry(RTCDevice device, const BilinearMesh& mesh) {
+  if (mesh.patches.empty()) return nullptr;
+  return NewUserGeometry(device, mesh.patches.size(), PatchBounds, PatchIntersect, PatchOccluded);
+}
+
+RTCGeometry NewGeometry(RTCDevice device, const PreparedQuadric&) {
+  return NewUserGeometry(device, 1, QuadricBounds, QuadricIntersect, QuadricOccluded);
+}
+
+RTCGeometryType CurveType(CurveSet::Kind kind) {
+  switch (kind) {
+    case CurveSet::Kind::Flat: return RTC_GEOMETRY_TYPE_FLAT_BEZIER_CURVE;
+    case CurveSet::Kind::Cylinder: return RTC_GEOMETRY_TYPE_ROUND_BEZIER_CURVE;
+    case CurveSet::Kind::Ribbon: break;
+  }
+  return RTC_GEOMETRY_TYPE_NORMAL_ORIENTED_BEZIER_CURVE;
+}
+
+RTCGeometry NewGeometry(RTCDevice device, const CurveSet& curves) {
+  const size_t count = curves.segments.size();
+  if (count == 0) return nullptr;
+  RTCGeometry geometry = rtcNewGeometry(device, CurveType(curves.kind));
+  auto* vertices = static_cast<glm::vec4*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, sizeof(glm::vec4), 4 * count));
+  auto* indices = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT,
+                                                                 sizeof(uint32_t), count));
+  const bool ribbon = curves.kind == CurveSet::Kind::Ribbon;
+  auto* normals = ribbon ? static_cast<Normal3*>(rtcSetNewGeometryBuffer(
+                               geometry, RTC_BUFFER_TYPE_NORMAL, 0, RTC_FORMAT_FLOAT3, sizeof(Normal3), 4 * count))
+                         : nullptr;
+  if (!vertices || !indices || (ribbon && !normals)) return geometry;  // the device's error says it
+  for (size_t i = 0; i < count; ++i) {
+    indices[i] = static_cast<uint32_t>(4 * i);
+    for (size_t k = 0; k < 4; ++k) {
+      vertices[4 * i + k] = glm::vec4(curves.segments[i][k], curves.radii[i][k]);
+      const float along = static_cast<float>(k) / 3.0f;
+      if (ribbon) normals[4 * i + k] = glm::mix(curves.segmentNormals[i][0], curves.segmentNormals[i][1], along);
+    }
+  }
+  return geometry;
+}
+
+void Attach(RTCScene scene, RTCGeometry geometry, uint32_t id) {
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometryByID(scene, geometry, id);
+  rtcReleaseGeometry(geometry);
+}
+
+}  // namespace
+
+void GeometryScene::Implementation::AttachEntries(RTCScene target, size_t first, size_t count) {
+  for (size_t i = 0; i < count; ++i) {
+    const PrimitiveRecord& record = tables.primitives[first + i];
+    RTCGeometry geometry =
+        std::visit([&](const auto* shape) { return NewGeometry(device.get(), *shape); }, record.shape);
+    if (!geometry) continue;
+    rtcSetGeometryMask(geometry, tables.attributes[first + i].visibility);
+    rtcSetGeometryUserData(geometry, const_cast<PrimitiveRecord*>(&record));
+    // User geometry looks at the cut-out by itself.
+    if (record.alpha && (record.shape.index() == 0 || record.shape.index() == 3)) {
+      rtcSetGeometryIntersectFilterFunction(geometry, AlphaFilter);
+      rtcSetGeometryOccludedFilterFunction(geometry, AlphaFilter);
+    }
+    Attach(target, geometry, static_cast<uint32_t>(i));
+  }
+}
+
+void GeometryScene::Implementation::BuildScenes() {
+  objectScenes.resize(description.objects.size());
+  scene = NewScene();
+  AttachEntries(scene.get(), 0, description.entries.size());
+  for (size_t i = 0; i < tables.instances.size(); ++i) {
+    const uint32_t object = description.instances[i].object;
+    const InstanceRecord& instance = tables.instances[i];
+    if (!objectScenes[object]) {
+      objectScenes[object] = NewScene();
+      AttachEntries(objectScenes[object].get(), instance.firstPrimitive, description.objects[object].entries.size());
+      rtcCommitScene(objectScenes[object].get());
+    }
+    RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_INSTANCE);
+    rtcSetGeometryInstancedScene(geometry, objectScenes[object].get());
+    const Affine& m = instance.toRender;
+    const Vector3 columns[4] = {m.linear[0], m.linear[1], m.linear[2], m.translation};
+    rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns);
+    rtcSetGeometryMask(geometry, 0xffffffffu);
+    Attach(scene.get(), geometry, tables.firstInstanceId + static_cast<uint32_t>(i));
+  }
+  rtcCommitScene(scene.get());
+  ThrowOnError(device.get(), "building the scene");
+}
+
+GeometryScene::GeometryScene(GeometryDescription description)
+    : implementation_(std::make_unique<Implementation>(std::move(description))) {}
+
+GeometryScene::~GeometryScene() = default;
+
+namespace {
+
+void FillRay(const Ray& ray, uint32_t kinds, float tMax, RTCRay& out) {
+  out.org_x = ray.origin.x;
+  out.org_y = ray.origin.y;
+  out.org_z = ray.origin.z;
+  out.tnear = 0;
+  out.dir_x = ray.direction.x;
+  out.dir_y = ray.direction.y;
+  out.dir_z = ray.direction.z;
+  out.time = 0;
+  out.tfar = tMax;
+  out.mask = kinds;
+  out.id = 0;
+  out.flags = 0;
+}
+
+}  // namespace
+
+bool GeometryScene::Intersect(const Ray& ray, uint32_t kinds, RayHit& hit) const {
+  const Implementation& scene = *implementation_;
+  if (!scene.Accept(ray)) return false;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  RTCRayHit rayHit;
+  FillRay(ray, kinds, ray.tMax, rayHit.ray);
+  rayHit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  rayHit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(scene.scene.get(), &context, &rayHit);
+  if (rayHit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+  hit.t = rayHit.ray.tfar;
+  hit.patch = rayHit.hit.primID;
+  hit.u = rayHit.hit.u;
+  hit.v = rayHit.hit.v;
+  if (rayHit.hit.instID[0] == RTC_INVALID_GEOMETRY_ID) {
+    hit.primitive = rayHit.hit.geomID;
+    hit.instance = kNoIndex;
+  } else {
+    hit.instance = rayHit.hit.instID[0] - scene.tables.firstInstanceId;
+    hit.primitive = scene.tables.instances[hit.instance].firstPrimitive + rayHit.hit.geomID;
+  }
+  return true;
+}
+
+bool GeometryScene::Occluded(const Ray& ray, uint32_t kinds) const {
+  const Implementation& scene = *implementation_;
+  if (!scene.Accept(ray)) return false;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  RTCRay shadowRay;
+  // Embree's interval is closed above; ours is open.
+  FillRay(ray, kinds, ray.tMax * kOneMinusEpsilon, shadowRay);
+  rtcOccluded1(scene.scene.get(), &context, &shadowRay);
+  return shadowRay.tfar < 0;
+}
+
+SurfacePoint GeometryScene::GetSurfacePoint(const Ray& ray, const RayHit& hit) const {
+  const SceneTables& tables = implementation_->tables;
+  const PrimitiveRecord& record = tables.primitives[hit.primitive];
+  SurfacePoint point;
+  if (hit.instance == kNoIndex) [[likely]] {
+    point = EvaluatePrimitive(record, ray.origin, ray.direction, hit);
+  } else {
+    const InstanceRecord& instance = tables.instances[hit.instance];
+    point = EvaluatePrimitive(record, instance.toObject.Point(ray.origin), instance.toObject.Vector(ray.direction), hit);
+    ApplyInstance(instance, point);
+  }
+  point.primitive = hit.primitive;
+  point.patch = hit.patch;
+  point.instance = hit.instance;
+  return point;
+}
+
+const GeometryAttributes& GeometryScene::Attributes(uint32_t primitive) const {
+  return implementation_->tables.attributes[primitive];
+}
+
+int32_t GeometryScene::LightAt(uint32_t primitive, uint32_t instance) const {
+  const SceneTables& tables = implementation_->tables;
+  const int32_t light = tables.attributes[primitive].light;
+  return light < 0 || instance == kNoIndex ? light : light + tables.instances[instance].firstLight;
+}
+
+size_t GeometryScene::PrimitiveCount() const { return implementation_->tables.primitives.size(); }
+
+const Bounds3& GeometryScene::GetBounds() const { return implementation_->bounds; }
+
+BoundingSphere GeometryScene::GetBoundingSphere() const {
+  const Bounds3& bounds = implementation_->bounds;
+  if (bounds.IsEmpty()) return {};
+  const double radius = 0.5 * glm::length(Vector3d(bounds.max) - Vector3d(bounds.min));
+  // Wider by the rounding of centre and radius; never 0, even for a scene that is one point.
+  const float rounding = 4 * 0x1p-23f * std::max(MaxAbsComponent(bounds.min), MaxAbsComponent(bounds.max));
+  const float padded = static_cast<float>(radius * (1 + 1e-6)) + rounding;
+  return {bounds.Center(), padded > 0 ? padded : 1.0f};
+}
+
+uint64_t GeometryScene::RejectedRays() const { return implementation_->rejected.load(std::memory_order_relaxed); }
+
+}  // namespace lampyr

@@ -1,0 +1,62 @@
+// Spheres, disks and cylinders, whole or partial: intersection and surface parametrisation in the conventions of
+// pbrt-v4 (u along φ from 0 to phiMax; v from the lower to the upper end of sphere and cylinder, and from the rim to the
+// inner radius of the disk).
+#pragma once
+
+#include <optional>
+
+#include <glm/mat3x3.hpp>
+
+#include "geometry/ray.h"
+#include "geometry/shapes.h"
+
+namespace lampyr {
+
+// A ray in double precision, in any space; the direction need not be unit length.
+struct RayDouble {
+  Point3d origin;
+  Vector3d direction;
+  double tMin = 0, tMax = 0;  // open below, closed above
+};
+
+// Where a ray meets a quadric. `coordinates` are precise to an ulp of the radius and cheap to make, no angles:
+// sphere: its unit normal, octahedrally mapped; disk: (x, y) / radius; cylinder: diamond angle of φ in [0,4) and v.
+struct QuadricHit {
+  double t = 0;
+  Point2 coordinates{0.0f};
+};
+
+// A quadric as traced. The inverse transform is made here, in double, from the very matrix that places hit points.
+class PreparedQuadric {
+ public:
+  explicit PreparedQuadric(const Quadric& quadric);
+
+  // The hits with t in (tMin, tMax], nearest first; returns how many. The ray is in the space that `toRender` leads to.
+  int Intersect(const RayDouble& ray, QuadricHit hits[2]) const;
+
+  // Position, error, normals, uv and tangents in the space that `toRender` leads to. The indices are left alone.
+  void Evaluate(const Point2& coordinates, SurfacePoint& point) const;
+
+  const Quadric& Shape() const { return quadric_; }
+
+ private:
+  int IntersectSphere(const Point3d& o, const Vector3d& d, double roots[2]) const;
+  int IntersectCylinder(const Point3d& o, const Vector3d& d, double roots[2]) const;
+  bool Accept(const Point3d& p) const;
+  Point2 Encode(const Point3d& p) const;
+  Point3 Decode(const Point2& coordinates) const;
+
+  Quadric quadric_;
+  glm::dmat3 toObject_{1.0};
+  Vector3d toObjectTranslation_{0.0};
+  float thetaZMin_ = 0, thetaZMax_ = 0;
+  float normalSign_ = 1;  // of the outer side against the object-space normal
+};
+
+// +1 where the outer side of the quadric is the image of the object-space cross product dpdu × dpdv, -1 where it is the
+// other side: only ReverseOrientation turns it, mirroring does not.
+inline float OutsideSign(const Quadric& quadric) {
+  return quadric.flipNormals != quadric.toRender.SwapsHandedness() ? -1.0f : 1.0f;
+}
+
+}  // namespace lampyr

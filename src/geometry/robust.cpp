@@ -1,0 +1,43 @@
+// Ray origins and shadow-ray ends that clear their surfaces ([Pharr23 §6.8.6]); see robust.h.
+#include "geometry/robust.h"
+
+namespace lampyr {
+
+namespace {
+
+// The next representable value away from `value` in the direction of `offset`.
+float RoundAway(float value, float offset) {
+  if (offset > 0) return std::nextafter(value, kInfinity);
+  if (offset < 0) return std::nextafter(value, -kInfinity);
+  return value;
+}
+
+}  // namespace
+
+Point3 OffsetRayOrigin(const Point3& position, const Vector3& positionError, const Normal3& Ng,
+                       const Vector3& direction) {
+  const float distance = glm::dot(glm::abs(Ng), positionError);
+  const Vector3 offset = Ng * (glm::dot(direction, Ng) < 0 ? -distance : distance);
+  const Point3 moved = position + offset;
+  return {RoundAway(moved.x, offset.x), RoundAway(moved.y, offset.y), RoundAway(moved.z, offset.z)};
+}
+
+Ray SpawnRayTo(const SurfacePoint& from, const Point3& target, const Vector3& targetError, const Normal3& targetNg,
+               float time) {
+  const Vector3 straight = target - from.position;
+  const Point3 origin = OffsetRayOrigin(from.position, from.positionError, from.Ng, straight);
+  // A unit direction is rounded, so the ray passes the target at up to 1.5e-7 of the distance to its side: at a grazing
+  // angle that alone would make it end behind the target's surface.
+  constexpr float kDirectionError = 0x1p-22f;
+  const Vector3 endError = targetError + Vector3(kDirectionError * MaxAbsComponent(straight));
+  const Point3 end = OffsetRayOrigin(target, endError, targetNg, -straight);
+  // In double: between tiny or huge scenes the squared length leaves the range of float.
+  const Vector3d between = Vector3d(end) - Vector3d(origin);
+  const double distance = glm::length(between);
+  if (!(distance > 0)) return {origin, from.Ng, 0, time};
+  // A few units in the last place: t is compared after rounding of its own.
+  constexpr double kShorten = 1 - 4 * 0x1p-23;
+  return {origin, Vector3(between / distance), static_cast<float>(distance * kShorten), time};
+}
+
+}  // namespace lampyr
