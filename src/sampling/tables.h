@@ -1,6 +1,10 @@
 // Tabulated distributions: piecewise constant in one and two dimensions, and alias tables over discrete items.
 // Negative, NaN and infinite entries count as 0 (and are reported by the caller, who knows where they came from);
 // a table of zeros cannot be sampled and says so.
+//
+// Cumulative tables count in units of 2^-24, the step of a random float: an interval is chosen exactly as often as its
+// density says, and every interval that is not 0 can be chosen, however dark beside the others. So densities are those
+// of the values up to 2^-24 in probability, and a table has at most 2^24 intervals a side that are not 0.
 #pragma once
 
 #include <cstdint>
@@ -32,7 +36,7 @@ class AliasTable {
 
  private:
   struct Bin {
-    float threshold;
+    float threshold;  // below it the bin's own index, above it the alias
     uint32_t alias;
   };
   std::vector<Bin> bins_;
@@ -52,16 +56,15 @@ class Distribution1D {
     uint32_t index;  // interval
   };
   Result Sample(float u) const;  // requires !IsZero()
-  float Density(float x) const;
+  float Density(float x) const;  // x outside of [0,1] counts as the nearest end
   float Invert(float x) const;   // the u that Sample turns into x
   float Integral() const { return static_cast<float>(integral_); }
   bool IsZero() const { return integral_ <= 0; }
-  size_t Size() const { return values_.size(); }
+  size_t Size() const { return cdf_.empty() ? 0 : cdf_.size() - 1; }
 
  private:
-  friend class Distribution2D;
-  std::vector<float> values_;  // normalised densities
-  std::vector<float> cdf_;     // n + 1 entries
+  std::vector<float> cdf_;       // n + 1 entries
+  std::vector<uint32_t> guide_;  // where to look for u in cdf_
   double integral_ = 0;
 };
 
@@ -82,10 +85,13 @@ class Distribution2D {
   bool IsZero() const { return integral_ <= 0; }
 
  private:
+  float CellDensity(int column, int row) const;
+
   int width_ = 0, height_ = 0;
-  std::vector<float> densities_;       // width × height
-  std::vector<float> conditionalCdf_;  // (width + 1) × height
-  std::vector<float> marginalCdf_;     // height + 1
+  std::vector<float> conditionalCdf_;       // (width + 1) × height
+  std::vector<uint32_t> conditionalGuide_;  // height guides
+  std::vector<float> marginalCdf_;          // height + 1
+  std::vector<uint32_t> marginalGuide_;
   double integral_ = 0;
 };
 
