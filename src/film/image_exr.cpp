@@ -103,7 +103,7 @@ Imf::Header MakeHeader(const Image& image, Imf::PixelType type) {
 std::vector<half> ToHalf(const std::vector<float>& values) {
   constexpr float largest = 65504.0f;
   std::vector<half> result(values.size());
-  std::transform(values.begin(), values.end(), result.begin(), [](float value) {
+  std::transform(values.begin(), values.end(), result.begin(), [largest](float value) {
     return half(std::isfinite(value) ? std::clamp(value, -largest, largest) : value);
   });
   return result;
