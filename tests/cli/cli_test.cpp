@@ -1,0 +1,232 @@
+// The binary as a user runs it: exit codes, messages, files.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <thread>
+
+#include "film/image.h"
+
+namespace lampyr {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Outcome {
+  int exitCode = -1;
+  std::string output;  // standard output and error together
+};
+
+class Cli : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("lampyr-cli-" + std::to_string(getpid()));
+    fs::create_directories(folder_);
+    Write("scene.pbrt", kScene);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  void Write(const std::string& name, const std::string& text) { std::ofstream(folder_ / name) << text; }
+  std::string Read(const std::string& name) {
+    std::ifstream stream(folder_ / name, std::ios::binary);
+    std::stringstream text;
+    text << stream.rdbuf();
+    return text.str();
+  }
+
+  // Runs lampyr in the test's folder.
+  Outcome Run(const std::string& arguments) {
+    Outcome outcome;
+    const std::string command = "cd '" + folder_.string() + "' && '" LAMPYR_BINARY "' " + arguments + " 2>&1";
+    FILE* pipe = popen(command.c_str(), "r");
+    char buffer[4096];
+    for (size_t n; (n = fread(buffer, 1, sizeof buffer, pipe)) > 0;) outcome.output.append(buffer, n);
+    const int status = pclose(pipe);
+    outcome.exitCode = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    return outcome;
+  }
+
+  static constexpr const char* kScene = R"(Film "rgb" "integer xresolution" 32 "integer yresolution" 20
+LookAt 0 1 3  0 0 0  0 1 0
+Camera "perspective" "float fov" 40
+Sampler "sobol" "integer pixelsamples" 4
+WorldBegin
+LightSource "point" "rgb I" [4 4 4] "point3 from" [0 2 1]
+Shape "trianglemesh" "point3 P" [-5 0 -5 -5 0 5 5 0 5 5 0 -5] "integer indices" [0 1 2 0 2 3]
+)";
+  fs::path folder_;
+};
+
+TEST_F(Cli, RendersAnImageWithMetadataAndStatistics) {
+  const Outcome outcome = Run("render scene.pbrt -o out.exr --png --stats stats.json");
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.output;
+  EXPECT_NE(outcome.output.find("4 spp"), std::string::npos) << outcome.output;
+  const Image image = ReadImage(folder_ / "out.exr");
+  EXPECT_EQ(image.width, 32);
+  EXPECT_EQ(image.height, 20);
+  EXPECT_GE(image.ChannelIndex("variance.G"), 0);
+  EXPECT_EQ(image.metadata.at("lampyr.samplesPerPixel"), "4");
+  EXPECT_EQ(image.metadata.at("lampyr.integrator"), "path");
+  EXPECT_TRUE(fs::exists(folder_ / "out.png"));
+  const std::string stats = Read("stats.json");
+  for (const char* key : {"\"rays\"", "\"samplesPerSecond\"", "\"droppedSamples\": 0", "\"peakMemoryMiB\"", "\"build\""}) {
+    EXPECT_NE(stats.find(key), std::string::npos) << key << " in " << stats;
+  }
+}
+
+TEST_F(Cli, SameFileForAnyNumberOfThreads) {
+  ASSERT_EQ(Run("render scene.pbrt -o a.exr --threads 1 --quiet").exitCode, 0);
+  ASSERT_EQ(Run("render scene.pbrt -o b.exr --threads 4 --quiet").exitCode, 0);
+  EXPECT_EQ(Read("a.exr"), Read("b.exr"));
+  ASSERT_EQ(Run("render scene.pbrt -o c.exr --seed 3 --quiet").exitCode, 0);
+  EXPECT_NE(Read("a.exr"), Read("c.exr"));
+}
+
+TEST_F(Cli, QuietIsQuiet) { EXPECT_EQ(Run("render scene.pbrt -o a.exr --quiet").output, ""); }
+
+TEST_F(Cli, OptionsOverrideTheScene) {
+  ASSERT_EQ(Run("render scene.pbrt -o a.exr --resolution 10x6 --spp 2 --max-depth 1 --sampler independent "
+                "--light-sampler uniform --crop 0,0.5,0,1").exitCode, 0);
+  const Image image = ReadImage(folder_ / "a.exr");
+  EXPECT_EQ(image.width, 5);
+  EXPECT_EQ(image.height, 6);
+  EXPECT_EQ(image.fullWidth, 10);
+  EXPECT_EQ(image.metadata.at("lampyr.samplesPerPixel"), "2");
+}
+
+TEST_F(Cli, StopsByTimeAndByError) {
+  const auto start = std::chrono::steady_clock::now();
+  ASSERT_EQ(Run("render scene.pbrt -o a.exr --time 1s").exitCode, 0);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  EXPECT_GT(seconds, 0.9);
+  EXPECT_LT(seconds, 5);
+  Outcome outcome = Run("render scene.pbrt -o a.exr --target-error 0.01");
+  EXPECT_EQ(outcome.exitCode, 0) << outcome.output;
+  EXPECT_GE(std::stoi(ReadImage(folder_ / "a.exr").metadata.at("lampyr.samplesPerPixel")), 16);
+}
+
+TEST_F(Cli, WrongUsageExitsWithTwo) {
+  for (const char* arguments : {"", "rendr scene.pbrt", "render", "render scene.pbrt --spp 0", "render scene.pbrt --spp x",
+                                "render scene.pbrt --time soon", "render scene.pbrt --resolution 0x5",
+                                "render scene.pbrt --crop 1,2", "render scene.pbrt --crop 0,0,0,0", "render scene.pbrt --integrator magic",
+                                "render scene.pbrt --light-sampler best", "render scene.pbrt --sampler best",
+                                "render scene.pbrt -o out.jpg", "render scene.pbrt -o nowhere/out.exr",
+                                "render absent.pbrt", "diff absent.exr absent.exr", "lights pont"}) {
+    const Outcome outcome = Run(arguments);
+    EXPECT_EQ(outcome.exitCode, 2) << arguments << "\n" << outcome.output;
+    EXPECT_NE(outcome.output, "") << arguments;
+  }
+}
+
+TEST_F(Cli, BadScenesAreNamedByPlace) {
+  const struct {
+    const char *text, *place, *hint;
+  } cases[] = {
+      {"WorldBegin\nShape \"spehre\"\n", "bad.pbrt:2:1: error:", "did you mean \"sphere\""},
+      {"WorldBegin\nShape \"sphere\" \"float raduis\" 2\n", "bad.pbrt:2:16: error:", "did you mean \"radius\""},
+      {"WorldBegin\nLightSource \"pont\"\n", "bad.pbrt:2:1: error:", "did you mean \"point\""},
+      {"WorldBegin\nMaterial \"difuse\"\n", "bad.pbrt:2:1: error:", "did you mean \"diffuse\""},
+      {"WorldBegin\nNamedMaterial \"gold\"\nShape \"sphere\"\n", "bad.pbrt:2:1: error:", "gold"},
+      {"WorldBegin\nShape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [0 1 3]\n", "bad.pbrt:2:", "out of range"},
+      {"WorldBegin\nShape \"plymesh\" \"string filename\" \"absent.ply\"\n", "bad.pbrt:2:", "absent.ply"},
+      {"WorldBegin\nMaterial \"diffuse\" \"texture reflectance\" \"wood\"\nShape \"sphere\"\n", "bad.pbrt:2:", "wood"},
+      {"Camera \"perspectiv\"\nWorldBegin\n", "bad.pbrt:1:1: error:", "did you mean \"perspective\""},
+      {"Camera \"perspective\" \"float fov\" 190\nWorldBegin\n", "bad.pbrt:1:", "fov"},
+      {"Film \"rgb\" \"integer xresolution\" -3\nWorldBegin\n", "bad.pbrt:1:", "xresolution"},
+      {"Sampler \"sobl\"\nWorldBegin\n", "bad.pbrt:1:1: error:", "did you mean \"sobol\""},
+      {"Integrator \"paht\"\nWorldBegin\n", "bad.pbrt:1:1: error:", "did you mean \"path\""},
+      {"PixelFilter \"gausian\"\nWorldBegin\n", "bad.pbrt:1:1: error:", "did you mean \"gaussian\""},
+      {"WorldBegin\nScale 0 1 1\nShape \"sphere\"\n", "bad.pbrt:2:", "singular"},
+      {"WorldBegin\nMakeNamedMaterial \"a\" \"string type\" \"mix\" \"string materials\" [\"a\" \"a\"]\nNamedMaterial \"a\"\nShape \"sphere\"\n", "bad.pbrt:2:", "itself"},
+  };
+  for (const auto& test : cases) {
+    Write("bad.pbrt", test.text);
+    const Outcome outcome = Run("render bad.pbrt -o out.exr");
+    EXPECT_EQ(outcome.exitCode, 2) << test.text << outcome.output;
+    EXPECT_NE(outcome.output.find(test.place), std::string::npos) << test.text << outcome.output;
+    EXPECT_NE(outcome.output.find(test.hint), std::string::npos) << test.text << outcome.output;
+    EXPECT_FALSE(fs::exists(folder_ / "out.exr")) << test.text;
+  }
+}
+
+TEST_F(Cli, WarnsOnceAndStrictIsStrict) {
+  Write("odd.pbrt", std::string(kScene) + "LightSource \"goniometric\"\nLightSource \"point\"\n");
+  const Outcome lenient = Run("render odd.pbrt -o out.exr");
+  EXPECT_EQ(lenient.exitCode, 0);
+  const size_t first = lenient.output.find("odd.pbrt:8:1: warning:");
+  EXPECT_NE(first, std::string::npos) << lenient.output;
+  EXPECT_EQ(lenient.output.find("odd.pbrt:8:1: warning:", first + 1), std::string::npos);
+  const Outcome strict = Run("render odd.pbrt -o out2.exr --strict");
+  EXPECT_EQ(strict.exitCode, 2);
+  EXPECT_NE(strict.output.find("odd.pbrt:8:1: error:"), std::string::npos) << strict.output;
+}
+
+TEST_F(Cli, EmptySceneIsBlackAndSaysSo) {
+  Write("empty.pbrt", "Film \"rgb\" \"integer xresolution\" 4 \"integer yresolution\" 4\nWorldBegin\n");
+  const Outcome outcome = Run("render empty.pbrt -o out.exr");
+  EXPECT_EQ(outcome.exitCode, 0) << outcome.output;
+  EXPECT_NE(outcome.output.find("no light"), std::string::npos) << outcome.output;
+  const Image image = ReadImage(folder_ / "out.exr");
+  for (const float value : image.data) EXPECT_EQ(value, 0.0f);
+}
+
+TEST_F(Cli, InterruptWritesTheImageAndExitsWith130) {
+  const pid_t child = fork();
+  if (child == 0) {
+    if (chdir(folder_.c_str()) != 0) _exit(99);
+    execl(LAMPYR_BINARY, LAMPYR_BINARY, "render", "scene.pbrt", "-o", "stopped.exr", "--spp", "100000000", "--quiet", nullptr);
+    _exit(99);
+  }
+  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+  kill(child, SIGINT);
+  int status = 0;
+  waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 130);
+  EXPECT_GT(std::stoi(ReadImage(folder_ / "stopped.exr").metadata.at("lampyr.samplesPerPixel")), 1);
+}
+
+TEST_F(Cli, AFailedWriteExitsWithOneAndKeepsTheOldImage) {
+  fs::create_directories(folder_ / "busy.exr");  // a folder where the image should go
+  std::ofstream(folder_ / "busy.exr" / "kept") << "x";
+  const Outcome outcome = Run("render scene.pbrt -o busy.exr --quiet");
+  EXPECT_EQ(outcome.exitCode, 1) << outcome.output;
+  EXPECT_TRUE(fs::exists(folder_ / "busy.exr" / "kept"));
+  int files = 0;
+  for (const auto& entry : fs::directory_iterator(folder_)) files += entry.path().filename().string().rfind("busy", 0) == 0;
+  EXPECT_EQ(files, 1) << "a part of an image was left behind";
+}
+
+TEST_F(Cli, DiffTellsEqualFromDifferent) {
+  ASSERT_EQ(Run("render scene.pbrt -o a.exr --spp 64 --sampler independent --quiet").exitCode, 0);
+  ASSERT_EQ(Run("render scene.pbrt -o b.exr --spp 64 --sampler independent --seed 5 --quiet").exitCode, 0);
+  Outcome outcome = Run("diff a.exr b.exr");
+  EXPECT_EQ(outcome.exitCode, 0);
+  EXPECT_NE(outcome.output.find("agree"), std::string::npos) << outcome.output;
+  Write("brighter.pbrt", std::string(kScene) + "LightSource \"point\" \"rgb I\" [0.4 0.4 0.4] \"point3 from\" [0 2 1]\n");
+  ASSERT_EQ(Run("render brighter.pbrt -o c.exr --spp 64 --sampler independent --quiet").exitCode, 0);
+  outcome = Run("diff c.exr a.exr");
+  EXPECT_NE(outcome.output.find("DIFFER"), std::string::npos) << outcome.output;
+  outcome = Run("diff a.exr a.exr --json");
+  EXPECT_NE(outcome.output.find("\"mse\": 0.0"), std::string::npos) << outcome.output;
+}
+
+TEST_F(Cli, ListsLights) {
+  const Outcome all = Run("lights");
+  EXPECT_EQ(all.exitCode, 0);
+  for (const char* name : {"LightSource \"point\"", "LightSource \"spot\"", "LightSource \"distant\"", "LightSource \"infinite\"", "AreaLightSource \"diffuse\""}) {
+    EXPECT_NE(all.output.find(name), std::string::npos) << name;
+  }
+  const Outcome one = Run("lights spot");
+  EXPECT_NE(one.output.find("coneangle"), std::string::npos) << one.output;
+  EXPECT_EQ(one.output.find("\"distant\""), std::string::npos);
+}
+
+}  // namespace
+}  // namespace lampyr

@@ -1,0 +1,63 @@
+#include "base/error.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "base/parallel.h"
+#include "base/progress.h"
+
+namespace lampyr {
+namespace {
+
+FileLocation At(int line, int column) { return {std::make_shared<const std::string>("a.pbrt"), line, column}; }
+
+TEST(Error, NamesThePlace) {
+  EXPECT_STREQ(Error(At(3, 7), "no such shape").what(), "a.pbrt:3:7: error: no such shape");
+  EXPECT_STREQ(Error("no file").what(), "error: no file");
+  EXPECT_EQ(Error(At(3, 7), "x").Text(), "x");
+}
+
+TEST(Diagnostics, ReportsEachWarningOnce) {
+  Diagnostics diagnostics(Diagnostics::Mode::Collect);
+  diagnostics.Warn(At(1, 2), "first");
+  diagnostics.Warn(At(1, 2), "first");
+  diagnostics.Warn(At(2, 2), "first");
+  EXPECT_EQ(diagnostics.Warnings(), (std::vector<std::string>{"a.pbrt:1:2: warning: first", "a.pbrt:2:2: warning: first"}));
+}
+
+TEST(Diagnostics, StrictThrows) {
+  Diagnostics diagnostics(Diagnostics::Mode::Strict);
+  EXPECT_THROW(diagnostics.Warn(At(1, 2), "odd"), Error);
+}
+
+TEST(NearestName, FindsTyposOnly) {
+  const std::vector<std::string> known = {"trianglemesh", "plymesh", "sphere", "disk"};
+  EXPECT_EQ(NearestName("spehre", known), "sphere");   // a transposition is one mistake
+  EXPECT_EQ(NearestName("Sphere", known), "sphere");
+  EXPECT_EQ(NearestName("trianglmesh", known), "trianglemesh");
+  EXPECT_EQ(NearestName("dsik", known), "disk");
+  EXPECT_EQ(NearestName("teapot", known), "");
+  EXPECT_EQ(DidYouMean("plymehs", known), " (did you mean \"plymesh\"?)");
+  EXPECT_EQ(DidYouMean("nurbs", known), "");
+}
+
+TEST(ParallelFor, CallsEachItemOnceAndPassesOnExceptions) {
+  for (const int threads : {1, 2, 4}) {
+    std::vector<int> calls(1000, 0);
+    ParallelFor(1000, threads, [&](int i) { ++calls[i]; });
+    EXPECT_EQ(calls, std::vector<int>(1000, 1));
+    EXPECT_THROW(ParallelFor(100, threads, [](int i) { if (i == 57) throw Error("stop"); }), Error);
+  }
+  ParallelFor(0, 2, [](int) { FAIL(); });
+}
+
+TEST(FormatDuration, ChoosesUnits) {
+  EXPECT_EQ(FormatDuration(4.23), "4.2 s");
+  EXPECT_EQ(FormatDuration(200), "3 min 20 s");
+  EXPECT_EQ(FormatDuration(3720), "1 h 02 min");
+  EXPECT_EQ(FormatDuration(std::numeric_limits<double>::infinity()), "?");
+}
+
+}  // namespace
+}  // namespace lampyr
