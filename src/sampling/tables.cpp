@@ -69,13 +69,12 @@ uint32_t FindInterval(const float* cdf, const uint32_t* guide, size_t n, float u
   // The step was found with a rounded product: widen in the rare case that u is just outside of it.
   if (cdf[low] > u) low = 0;
   if (cdf[high + 1] <= u) high = static_cast<uint32_t>(n) - 1;
-  while (low < high) {
-    const uint32_t middle = (low + high) / 2;
-    if (cdf[middle + 1] <= u) {
-      low = middle + 1;
-    } else {
-      high = middle;
-    }
+  // The last interval that starts at or below u; without a branch on the data, which would be mispredicted.
+  uint32_t count = high - low + 1;
+  while (count > 1) {
+    const uint32_t half = count / 2;
+    low += static_cast<uint32_t>(cdf[low + half] <= u) * half;
+    count -= half;
   }
   return low;
 }
