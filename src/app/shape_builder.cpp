@@ -88,7 +88,7 @@ LocalMesh ReadSubdivision(const ParameterList& parameters, Diagnostics& diagnost
 
   std::vector<Point3> positions;
   for (const Point3d& p : controlPoints) positions.push_back(Point3(p));
-  const SubdividedMesh subdivided = SubdivideLoop(positions, triangles, levels, parameters.Where());
+  const SubdividedMesh subdivided = Subdivide(positions, triangles, levels, parameters.Where());
   LocalMesh mesh;
   for (const Point3& p : subdivided.positions) mesh.positions.push_back(Point3d(p));
   for (const Normal3& n : subdivided.normals) mesh.normals.push_back(Vector3d(n));
