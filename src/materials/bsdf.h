@@ -7,34 +7,18 @@
 // - f is the BSDF value (1/sr) without the cosine. Refraction scales radiance by 1/η² (Radiance), not importance.
 // - Densities are in solid angle; pdfReverse is the density of sampling wo when coming from wi.
 // - Delta lobes have value and density 0 in Evaluate; Sample says so with isDelta.
+// - Everything happens in the shading frame: a direction's side is its side of Ns, as in pbrt-v4. Ng is kept for the
+//   adjoint correction, which is the integrator's.
 #pragma once
 
 #include <optional>
 #include <variant>
 
 #include "materials/bsdf_models.h"
-#include "math/density.h"
+#include "materials/scattering.h"
 #include "math/frame.h"
 
 namespace lampyr {
-
-struct BsdfEvaluation {
-  Color diffuse, specular;  // f, split by lobe: lights may send different radiance to either
-  PdfSolidAngle pdfForward, pdfReverse;
-
-  Color Sum() const { return diffuse + specular; }
-};
-
-struct BsdfSample {
-  Vector3 wi{0.0f};
-  Color weightDiffuse, weightSpecular;  // f · |cosθi| / pdf, split by lobe; computed without the division where it cancels
-  PdfSolidAngle pdfForward, pdfReverse; // for a delta: discrete probabilities of the lobe
-  bool isDelta = false;
-  bool isTransmission = false;
-  float eta = 1;  // η on wi's side over η on wo's side for transmission; 1 otherwise
-
-  Color Weight() const { return weightDiffuse + weightSpecular; }
-};
 
 class Bsdf {
  public:

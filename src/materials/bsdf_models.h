@@ -1,0 +1,33 @@
+// The scattering models that a Bsdf may hold: small, trivially copyable values. Each works in its local frame (z is the
+// shading normal, unit directions away from the surface, nothing exactly in the plane z = 0) and has
+//   Evaluate(wo, wi, mode), Sample(wo, uLobe, u, mode), IsDelta(), IsTransmissive(), ApproximateAlbedo()
+// with the meaning of the same methods of Bsdf.
+#pragma once
+
+#include <optional>
+#include <type_traits>
+#include <variant>
+
+#include "materials/coated_conductor.h"
+#include "materials/coated_diffuse.h"
+#include "materials/conductor.h"
+#include "materials/dielectric.h"
+#include "materials/diffuse.h"
+#include "materials/scattering.h"
+
+namespace lampyr {
+
+// Absorbs everything.
+struct AbsorbingBsdf {
+  BsdfEvaluation Evaluate(const Vector3&, const Vector3&, TransportMode) const { return {}; }
+  std::optional<BsdfSample> Sample(const Vector3&, float, const Point2&, TransportMode) const { return std::nullopt; }
+  bool IsDelta() const { return true; }
+  bool IsTransmissive() const { return false; }
+  Color ApproximateAlbedo() const { return Color(0.0f); }
+};
+
+using BsdfModel = std::variant<AbsorbingBsdf, DiffuseBsdf, DiffuseTransmissionBsdf, ConductorBsdf, DielectricBsdf,
+                               ThinDielectricBsdf, CoatedDiffuseBsdf, CoatedConductorBsdf>;
+static_assert(std::is_trivially_copyable_v<BsdfModel> && sizeof(BsdfModel) <= 96);
+
+}  // namespace lampyr

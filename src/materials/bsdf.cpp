@@ -1,0 +1,43 @@
+#include "materials/bsdf.h"
+
+namespace lampyr {
+
+namespace {
+
+// A length off by ε becomes one off by ε²: the frame and the models keep it unit but for rounding, which a long path would add up.
+Vector3 Renormalize(const Vector3& v) { return v * (1.5f - 0.5f * LengthSquared(v)); }
+
+}  // namespace
+
+BsdfEvaluation Bsdf::Evaluate(const Vector3& wo, const Vector3& wi, TransportMode mode) const {
+  if (const auto* diffuse = std::get_if<DiffuseBsdf>(&model_)) {  // needs no tangents
+    return diffuse->Evaluate({0, 0, glm::dot(wo, frame_.z)}, {0, 0, glm::dot(wi, frame_.z)}, mode);
+  }
+  const Vector3 o = frame_.ToLocal(wo), i = frame_.ToLocal(wi);
+  if (o.z == 0 || i.z == 0) return {};
+  return std::visit([&](const auto& model) { return model.Evaluate(o, i, mode); }, model_);
+}
+
+std::optional<BsdfSample> Bsdf::Sample(const Vector3& wo, float uLobe, const Point2& u, TransportMode mode) const {
+  const Vector3 o = frame_.ToLocal(wo);
+  if (o.z == 0) return std::nullopt;
+  auto sample = std::visit([&](const auto& model) { return model.Sample(o, uLobe, u, mode); }, model_);
+  if (sample) sample->wi = Renormalize(frame_.ToWorld(sample->wi));
+  return sample;
+}
+
+bool Bsdf::IsDelta() const {
+  return std::visit([](const auto& model) { return model.IsDelta(); }, model_);
+}
+
+bool Bsdf::IsTransmissive() const {
+  return std::visit([](const auto& model) { return model.IsTransmissive(); }, model_);
+}
+
+bool Bsdf::HasExactPdf() const { return true; }  // no model here is stochastic
+
+Color Bsdf::ApproximateAlbedo() const {
+  return std::visit([](const auto& model) { return model.ApproximateAlbedo(); }, model_);
+}
+
+}  // namespace lampyr

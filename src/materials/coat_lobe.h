@@ -1,0 +1,37 @@
+// The reflection of a coat's own boundary, seen from outside: shared by the coated models. wo.z > 0.
+#pragma once
+
+#include <optional>
+
+#include "materials/fresnel.h"
+#include "materials/microfacet.h"
+#include "materials/scattering.h"
+
+namespace lampyr {
+
+// A value with both densities.
+struct LobeValue {
+  float f = 0, pdfForward = 0, pdfReverse = 0;
+};
+
+// Rough boundaries only. Densities are those of sampling a visible microfacet and mirroring at it, whatever Fresnel says.
+inline LobeValue EvaluateCoatLobe(const TrowbridgeReitz& microfacets, float eta, const Vector3& wo, const Vector3& wi) {
+  const Vector3 m = glm::normalize(wo + wi);
+  const float quarterD = 0.25f * microfacets.D(m);
+  const float stretchO = microfacets.Stretch(wo), stretchI = microfacets.Stretch(wi);
+  const float F = FresnelDielectric(std::min(glm::dot(wo, m), 1.0f), eta);
+  return {F * quarterD * TrowbridgeReitz::ShadowingFactor(wo.z, stretchO, wi.z, stretchI),
+          quarterD * TrowbridgeReitz::VisibleFactor(wo.z, stretchO),
+          quarterD * TrowbridgeReitz::VisibleFactor(wi.z, stretchI)};
+}
+
+// The mirror direction at a visible microfacet, or nothing when it points into the surface.
+inline std::optional<Vector3> SampleMicrofacetMirror(const TrowbridgeReitz& microfacets, const Vector3& wo,
+                                                     const Point2& u) {
+  const Vector3 m = microfacets.SampleVisibleNormal(wo, u);
+  const Vector3 wi = Reflect(wo, m, glm::dot(wo, m));
+  if (!(wi.z > 0)) return std::nullopt;
+  return wi;
+}
+
+}  // namespace lampyr

@@ -1,0 +1,143 @@
+#include "materials/coated_conductor.h"
+
+#include "materials/fresnel.h"
+
+namespace lampyr {
+
+namespace {
+
+// A direction above the coat as it is inside of it, refracted at the mean surface; z = 0 if it does not get in (η < 1).
+Vector3 IntoCoat(const Vector3& w, float eta) { return {w.x / eta, w.y / eta, RefractedCosine(w.z, eta)}; }
+
+// The base's lobe together with what refraction at a rough coat adds to its width, there and back.
+TrowbridgeReitz Widen(const TrowbridgeReitz& base, const TrowbridgeReitz& coat, float eta) {
+  if (coat.IsSmooth() || eta == 1) return base;
+  const float share = 0.5f * Sqr(1 - 1 / eta);
+  const float x = std::sqrt(Sqr(base.alphaX) + share * Sqr(coat.alphaX));
+  const float y = std::sqrt(Sqr(base.alphaY) + share * Sqr(coat.alphaY));
+  return {std::max(x, 1e-3f), std::max(y, 1e-3f)};
+}
+
+Color Series(const Color& x, int terms) {
+  return {TruncatedSeries(x.r, terms), TruncatedSeries(x.g, terms), TruncatedSeries(x.b, terms)};
+}
+
+}  // namespace
+
+CoatedConductorBsdf::CoatedConductorBsdf(const TrowbridgeReitz& coat, const TrowbridgeReitz& base, const Color& eta,
+                                         const Color& k, const CoatedConductorSettings& settings)
+    : coat_(coat),
+      base_(Widen(base, coat, settings.eta)),
+      eta_(eta),
+      k_(k),
+      coatSlice_(settings.coat->FindSlice(std::sqrt(coat.alphaX * coat.alphaY))),
+      baseSlice_(settings.returned->FindSlice(std::sqrt(base.alphaX * base.alphaY))),
+      settings_(&settings) {}
+
+// In proportion to what either lobe reflects from wo, roughly.
+float CoatedConductorBsdf::CoatProbability(float cosO) const {
+  const float coat = settings_->coat->Reflectance(cosO, coatSlice_);
+  const float cosInside = RefractedCosine(cosO, settings_->eta);
+  const float base = settings_->coat->Transmittance(cosO, coatSlice_) * FresnelConductor(cosInside, eta_, k_).Average();
+  return coat + base > 0 ? coat / (coat + base) : 1.0f;
+}
+
+CoatedConductorBsdf::Base CoatedConductorBsdf::EvaluateBase(const Vector3& wo, const Vector3& wi) const {
+  const float eta = settings_->eta;
+  const Vector3 o = IntoCoat(wo, eta), i = IntoCoat(wi, eta);
+  if (!(o.z > 0) || !(i.z > 0)) return {};
+  const Vector3 m = glm::normalize(o + i);
+  const float quarterD = 0.25f * base_.D(m) / (eta * eta);
+  const float stretchO = base_.Stretch(o), stretchI = base_.Stretch(i);
+  const Color F = FresnelConductor(glm::dot(o, m), eta_, k_);
+  const float Q = std::sqrt(settings_->returned->Returned(o.z, baseSlice_) *
+                            settings_->returned->Returned(i.z, baseSlice_));
+  const float T = settings_->coat->Transmittance(wo.z, coatSlice_) * settings_->coat->Transmittance(wi.z, coatSlice_);
+  // dω'/dω = cosθ / (η² cosθ')
+  return {F * Series(F * Q, settings_->bounces) *
+              (T * quarterD * TrowbridgeReitz::ShadowingFactor(o.z, stretchO, i.z, stretchI)),
+          quarterD * TrowbridgeReitz::VisibleFactor(o.z, stretchO) * wi.z / i.z,
+          quarterD * TrowbridgeReitz::VisibleFactor(i.z, stretchI) * wo.z / o.z};
+}
+
+// Refracted in, mirrored at a microfacet of the base, refracted out; nothing where that is totally reflected.
+std::optional<Vector3> CoatedConductorBsdf::SampleBase(const Vector3& wo, const Point2& u) const {
+  const float eta = settings_->eta;
+  const Vector3 o = IntoCoat(wo, eta);
+  if (!(o.z > 0)) return std::nullopt;
+  const auto i = SampleMicrofacetMirror(base_, o, u);
+  if (!i) return std::nullopt;
+  const Vector3 wi(i->x * eta, i->y * eta, RefractedCosine(std::min(i->z, 1.0f), 1 / eta));
+  if (!(wi.z > 0)) return std::nullopt;
+  return wi;
+}
+
+BsdfEvaluation CoatedConductorBsdf::EvaluateUpper(const Vector3& wo, const Vector3& wi) const {
+  const float coatO = CoatProbability(wo.z), coatI = CoatProbability(wi.z);
+  BsdfEvaluation result;
+  if (!base_.IsSmooth()) {
+    const Base base = EvaluateBase(wo, wi);
+    result.specular = base.f;
+    result.pdfForward = PdfSolidAngle((1 - coatO) * base.pdfForward);
+    result.pdfReverse = PdfSolidAngle((1 - coatI) * base.pdfReverse);
+  }
+  if (!CoatIsDelta()) {
+    const LobeValue coat = EvaluateCoatLobe(coat_, settings_->eta, wo, wi);
+    result.specular += Color(coat.f);
+    result.pdfForward.value += coatO * coat.pdfForward;
+    result.pdfReverse.value += coatI * coat.pdfReverse;
+  }
+  return result;
+}
+
+BsdfEvaluation CoatedConductorBsdf::Evaluate(const Vector3& wo, const Vector3& wi, TransportMode) const {
+  if (!(wo.z * wi.z > 0)) return {};
+  return wo.z < 0 ? EvaluateUpper(-wo, -wi) : EvaluateUpper(wo, wi);
+}
+
+// The mirror direction when it is a delta: the coat's reflection, and with a smooth base all orders between the two.
+BsdfSample CoatedConductorBsdf::SampleMirror(const Vector3& wo) const {
+  BsdfSample sample;
+  const float cosO = std::abs(wo.z), cosT = RefractedCosine(cosO, settings_->eta);
+  const float R = FresnelDielectric(cosO, cosT, settings_->eta);
+  sample.wi = {-wo.x, -wo.y, wo.z};
+  sample.isDelta = true;
+  sample.pdfForward = sample.pdfReverse = PdfSolidAngle(1);
+  sample.weightSpecular = Color(R);
+  if (base_.IsSmooth() && cosT > 0) {
+    const Color base = FresnelConductor(cosT, eta_, k_) * std::exp(-2 * settings_->thickness / cosT);
+    sample.weightSpecular += base * Series(base * R, settings_->bounces) * Sqr(1 - R);
+  }
+  return sample;
+}
+
+std::optional<BsdfSample> CoatedConductorBsdf::Sample(const Vector3& wo, float uLobe, const Point2& u,
+                                                      TransportMode) const {
+  if (IsDelta()) return SampleMirror(wo);
+  const Vector3 o = wo.z < 0 ? -wo : wo;
+  const float coatO = CoatProbability(o.z);
+  const bool takeCoat = uLobe < coatO;
+  if (takeCoat && CoatIsDelta()) {
+    BsdfSample sample = SampleMirror(wo);
+    sample.weightSpecular = sample.weightSpecular / coatO;
+    sample.pdfForward = sample.pdfReverse = PdfSolidAngle(coatO);
+    return sample;
+  }
+  const auto wi = takeCoat ? SampleMicrofacetMirror(coat_, o, u) : SampleBase(o, u);
+  if (!wi) return std::nullopt;
+  const BsdfEvaluation value = EvaluateUpper(o, *wi);
+  if (!(value.pdfForward.value > 0)) return std::nullopt;
+  BsdfSample sample;
+  sample.wi = wo.z < 0 ? -*wi : *wi;
+  sample.weightSpecular = value.specular * (wi->z / value.pdfForward.value);
+  sample.pdfForward = value.pdfForward;
+  sample.pdfReverse = value.pdfReverse;
+  return sample;
+}
+
+Color CoatedConductorBsdf::ApproximateAlbedo() const {
+  const float T = settings_->coat->Transmittance(1, coatSlice_);
+  return FresnelConductor(1, eta_, k_) * (T * T) + Color(settings_->coat->Reflectance(1, coatSlice_));
+}
+
+}  // namespace lampyr

@@ -1,0 +1,40 @@
+// A Lambertian base under a dielectric coat, after pbrt-v4's "coateddiffuse". Where that walks at random between the two
+// boundaries, this evaluates the sum of all walks, which is exact because a diffuse base forgets directions:
+//   f(wo,wi) = f_coat(wo,wi) + T(wo) T(wi) ρ (1 + ρF + (ρF)² + …) / (π η²)        (T, F: materials/coat_table.h)
+// Deterministic, reciprocal, with exact densities. The base counts as diffuse, the coat as specular. Both sides alike.
+// An anisotropic coat has an exact f_coat, but T and F of the isotropic coat with α = sqrt(αx·αy).
+#pragma once
+
+#include <optional>
+
+#include "materials/coat_table.h"
+#include "materials/microfacet.h"
+#include "materials/scattering.h"
+
+namespace lampyr {
+
+class CoatedDiffuseBsdf {
+ public:
+  // `table` must outlive the BSDF; `bounces` is the number of terms of the sum.
+  CoatedDiffuseBsdf(const TrowbridgeReitz& microfacets, float eta, const Color& reflectance, int bounces,
+                    const CoatTable& table);
+
+  BsdfEvaluation Evaluate(const Vector3& wo, const Vector3& wi, TransportMode mode) const;
+  std::optional<BsdfSample> Sample(const Vector3& wo, float uLobe, const Point2& u, TransportMode mode) const;
+  bool IsDelta() const { return CoatIsDelta() && base_.IsBlack(); }
+  bool IsTransmissive() const { return false; }
+  Color ApproximateAlbedo() const;
+
+ private:
+  bool CoatIsDelta() const { return eta_ == 1 || microfacets_.IsSmooth(); }
+  float CoatProbability(float cosO, float transmittance) const;
+
+  TrowbridgeReitz microfacets_;
+  float eta_;
+  Color base_;         // ρ (1 + ρF + …) / η²
+  float baseAlbedo_;   // its largest component, times the mean of T
+  CoatTable::Slice slice_;
+  const CoatTable* table_;
+};
+
+}  // namespace lampyr

@@ -1,0 +1,143 @@
+// In all of this file directions are turned so that wo is in the upper hemisphere, and η is relative to wo's side.
+// w -> -w leaves the microfacets as they are: their distribution is symmetric.
+#include "materials/dielectric.h"
+
+#include "materials/fresnel.h"
+
+namespace lampyr {
+
+namespace {
+
+// A refraction at microfacet m, by its cosines (both positive).
+struct Refraction {
+  float cosO, cosI;  // |dot(wo,m)|, |dot(wi,m)|
+  float eta;
+
+  // |dω_m/dω_i|·|dot(wo,m)| = |dot(wo,m) dot(wi,m)| / (dot(wi,m) + dot(wo,m)/η)², symmetric but for η² ([Walter07 eq. 17]).
+  float Jacobian() const { return cosO * cosI / Sqr(RefractionShift(cosO, cosI, eta)); }
+};
+
+BsdfEvaluation EvaluateReflection(const TrowbridgeReitz& microfacets, float eta, const Vector3& wo, const Vector3& wi) {
+  const Vector3 m = glm::normalize(wo + wi);
+  const float F = FresnelDielectric(std::min(glm::dot(wo, m), 1.0f), eta);
+  const float FD = 0.25f * F * microfacets.D(m);
+  const float stretchO = microfacets.Stretch(wo), stretchI = microfacets.Stretch(wi);
+  BsdfEvaluation result;
+  result.specular = Color(FD * TrowbridgeReitz::ShadowingFactor(wo.z, stretchO, wi.z, stretchI));
+  result.pdfForward = PdfSolidAngle(FD * TrowbridgeReitz::VisibleFactor(wo.z, stretchO));
+  result.pdfReverse = PdfSolidAngle(FD * TrowbridgeReitz::VisibleFactor(wi.z, stretchI));
+  return result;
+}
+
+BsdfEvaluation EvaluateTransmission(const TrowbridgeReitz& microfacets, float eta, const Vector3& wo, const Vector3& wi,
+                                    TransportMode mode) {
+  const Vector3 h = eta * wi + wo;
+  const float lengthSquared = LengthSquared(h);
+  if (!(lengthSquared > 0)) return {};
+  Vector3 m = h / std::sqrt(lengthSquared);
+  if (m.z < 0) m = -m;
+  const float cosO = std::min(glm::dot(wo, m), 1.0f), cosI = std::min(-glm::dot(wi, m), 1.0f);
+  if (!(cosO > 0) || !(cosI > 0)) return {};  // a microfacet seen from behind
+  const float transmittance = 1 - FresnelDielectric(cosO, cosI, eta);
+  const float value = transmittance * microfacets.D(m) * Refraction{cosO, cosI, eta}.Jacobian();
+  const float stretchO = microfacets.Stretch(wo), stretchI = microfacets.Stretch(wi);
+  const float invEtaSquared = 1 / (eta * eta);
+  BsdfEvaluation result;
+  const float f = value * TrowbridgeReitz::ShadowingFactor(wo.z, stretchO, -wi.z, stretchI);
+  result.specular = Color(mode == TransportMode::Radiance ? f * invEtaSquared : f);
+  result.pdfForward = PdfSolidAngle(value * TrowbridgeReitz::VisibleFactor(wo.z, stretchO));
+  result.pdfReverse = PdfSolidAngle(value * invEtaSquared * TrowbridgeReitz::VisibleFactor(-wi.z, stretchI));
+  return result;
+}
+
+std::optional<BsdfSample> SampleSmooth(float eta, const Vector3& wo, float uLobe, TransportMode mode) {
+  const float cosT = RefractedCosine(wo.z, eta);
+  const float F = FresnelDielectric(wo.z, cosT, eta);
+  BsdfSample sample;
+  sample.isDelta = true;
+  if (uLobe < F) {
+    sample.wi = {-wo.x, -wo.y, wo.z};
+    sample.weightSpecular = Color(1.0f);
+    sample.pdfForward = sample.pdfReverse = PdfSolidAngle(F);
+    return sample;
+  }
+  sample.wi = {-wo.x / eta, -wo.y / eta, eta == 1 ? -wo.z : -cosT};
+  if (!(sample.wi.z < 0)) return std::nullopt;
+  sample.weightSpecular = Color(mode == TransportMode::Radiance ? 1 / (eta * eta) : 1.0f);
+  sample.pdfForward = sample.pdfReverse = PdfSolidAngle(1 - F);
+  sample.isTransmission = true;
+  sample.eta = eta;
+  return sample;
+}
+
+std::optional<BsdfSample> SampleRough(const TrowbridgeReitz& microfacets, float eta, const Vector3& wo, float uLobe,
+                                      const Point2& u, TransportMode mode) {
+  const Vector3 m = microfacets.SampleVisibleNormal(wo, u);
+  const float cosO = std::min(glm::dot(wo, m), 1.0f);
+  if (!(cosO > 0)) return std::nullopt;
+  const float cosT = RefractedCosine(cosO, eta);
+  const float F = FresnelDielectric(cosO, cosT, eta);
+  const float stretchO = microfacets.Stretch(wo);
+  const float D = microfacets.D(m);
+  BsdfSample sample;
+  if (uLobe < F) {
+    sample.wi = Reflect(wo, m, cosO);
+    if (!(sample.wi.z > 0)) return std::nullopt;
+    const float stretchI = microfacets.Stretch(sample.wi);
+    sample.weightSpecular = Color(TrowbridgeReitz::ShadowingRatio(wo.z, stretchO, sample.wi.z, stretchI));
+    sample.pdfForward = PdfSolidAngle(0.25f * F * D * TrowbridgeReitz::VisibleFactor(wo.z, stretchO));
+    sample.pdfReverse = PdfSolidAngle(0.25f * F * D * TrowbridgeReitz::VisibleFactor(sample.wi.z, stretchI));
+    return sample;
+  }
+  if (!(cosT > 0)) return std::nullopt;
+  sample.wi = wo * (-1 / eta) + RefractionShift(cosO, cosT, eta) * m;
+  if (!(sample.wi.z < 0)) return std::nullopt;
+  const float stretchI = microfacets.Stretch(sample.wi);
+  const float invEtaSquared = 1 / (eta * eta);
+  const float ratio = TrowbridgeReitz::ShadowingRatio(wo.z, stretchO, -sample.wi.z, stretchI);
+  const float value = (1 - F) * D * Refraction{cosO, cosT, eta}.Jacobian();
+  sample.weightSpecular = Color(mode == TransportMode::Radiance ? ratio * invEtaSquared : ratio);
+  sample.pdfForward = PdfSolidAngle(value * TrowbridgeReitz::VisibleFactor(wo.z, stretchO));
+  sample.pdfReverse = PdfSolidAngle(value * invEtaSquared * TrowbridgeReitz::VisibleFactor(-sample.wi.z, stretchI));
+  sample.isTransmission = true;
+  sample.eta = eta;
+  return sample;
+}
+
+}  // namespace
+
+BsdfEvaluation DielectricBsdf::Evaluate(const Vector3& wo, const Vector3& wi, TransportMode mode) const {
+  if (IsDelta()) return {};
+  const bool inside = wo.z < 0;
+  const Vector3 o = inside ? -wo : wo, i = inside ? -wi : wi;
+  const float relative = inside ? 1 / eta : eta;
+  return i.z > 0 ? EvaluateReflection(microfacets, relative, o, i)
+                 : EvaluateTransmission(microfacets, relative, o, i, mode);
+}
+
+std::optional<BsdfSample> DielectricBsdf::Sample(const Vector3& wo, float uLobe, const Point2& u,
+                                                 TransportMode mode) const {
+  const bool inside = wo.z < 0;
+  const Vector3 o = inside ? -wo : wo;
+  const float relative = inside ? 1 / eta : eta;
+  auto sample = IsDelta() ? SampleSmooth(relative, o, uLobe, mode)
+                          : SampleRough(microfacets, relative, o, uLobe, u, mode);
+  if (sample && inside) sample->wi = -sample->wi;
+  return sample;
+}
+
+std::optional<BsdfSample> ThinDielectricBsdf::Sample(const Vector3& wo, float uLobe, const Point2&,
+                                                     TransportMode) const {
+  float R = FresnelDielectric(std::abs(wo.z), eta);
+  if (R < 1) R += Sqr(1 - R) * R / (1 - R * R);  // all orders of reflection between the two sides
+  const bool reflects = uLobe < R;
+  BsdfSample sample;
+  sample.wi = reflects ? Vector3(-wo.x, -wo.y, wo.z) : -wo;
+  sample.weightSpecular = Color(1.0f);
+  sample.pdfForward = sample.pdfReverse = PdfSolidAngle(reflects ? R : 1 - R);
+  sample.isDelta = true;
+  sample.isTransmission = !reflects;
+  return sample;
+}
+
+}  // namespace lampyr

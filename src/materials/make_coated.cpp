@@ -1,0 +1,107 @@
+// "coateddiffuse": reflectance (0.5), roughness (0), uroughness, vroughness, remaproughness, eta (1.5), thickness (0.01),
+// maxdepth (10). "coatedconductor": the same for the coat with the prefix "interface.", the metal's with "conductor.".
+// The medium between the layers ("albedo", "g") does not scatter here: a warning. "nsamples" has no meaning: nothing is
+// sampled inside. "maxdepth" counts crossings of the gap, so that its half is the number of bounces at the base.
+#include "materials/material_makers.h"
+#include "materials/recipe_material.h"
+
+namespace lampyr {
+
+namespace {
+
+float GetThickness(const MaterialInput& input) {
+  const FloatParameter thickness = input.textures.GetFloat(input.parameters, "thickness", 0.01f);
+  if (!thickness.IsConstant()) {
+    input.diagnostics.Warn(input.parameters.WhereOf("thickness"),
+                           "a textured \"thickness\" is not supported: its value at uv (0.5, 0.5) is used everywhere");
+  }
+  const float value = thickness.Evaluate({{0.5f, 0.5f}, Point3(0.0f)});
+  if (!(value >= 0)) throw Error(input.parameters.WhereOf("thickness"), "\"thickness\" must not be negative");
+  return value;
+}
+
+int GetBounces(const MaterialInput& input) {
+  const int depth = input.parameters.GetInteger("maxdepth", 10);
+  if (depth < 1) throw Error(input.parameters.WhereOf("maxdepth"), "\"maxdepth\" must be at least 1");
+  return depth / 2 + depth % 2;
+}
+
+void CheckMedium(const MaterialInput& input) {
+  const auto albedo = input.textures.FindColor(input.parameters, "albedo", SpectrumRole::Albedo);
+  input.textures.FindFloat(input.parameters, "g");
+  input.parameters.GetInteger("nsamples", 1);
+  if (albedo && !(albedo->IsConstant() && albedo->Evaluate({}).IsBlack())) {
+    input.diagnostics.Warn(input.parameters.WhereOf("albedo"),
+                           "scattering between the layers is not supported: the medium only absorbs");
+  }
+}
+
+struct CoatedDiffuseRecipe {
+  RoughnessParameters roughness;
+  ColorParameter reflectance;
+  float eta;
+  int bounces;
+  std::shared_ptr<const CoatTable> table;
+
+  BsdfModel Make(const TextureContext& where) const {
+    return CoatedDiffuseBsdf(roughness.Evaluate(where), eta, ClampToUnit(reflectance.Evaluate(where)), bounces, *table);
+  }
+  bool IsConstant() const { return roughness.IsConstant() && reflectance.IsConstant(); }
+  bool IsAnisotropic() const { return roughness.IsAnisotropic(); }
+  bool MayTransmit() const { return false; }
+  bool HasDelta() const { return roughness.MayBeSmooth(); }
+};
+
+struct CoatedConductorRecipe {
+  RoughnessParameters coat, base;
+  MetalParameters metal;
+  std::shared_ptr<const CoatTable> table;
+  std::shared_ptr<const CoatReturnTable> returned;
+  std::shared_ptr<const CoatedConductorSettings> settings;
+
+  BsdfModel Make(const TextureContext& where) const {
+    const auto index = metal.Evaluate(where);
+    return CoatedConductorBsdf(coat.Evaluate(where), base.Evaluate(where), index.eta / settings->eta,
+                               index.k / settings->eta, *settings);
+  }
+  bool IsConstant() const { return coat.IsConstant() && base.IsConstant() && metal.IsConstant(); }
+  bool IsAnisotropic() const { return coat.IsAnisotropic() || base.IsAnisotropic(); }
+  bool MayTransmit() const { return false; }
+  bool HasDelta() const { return coat.MayBeSmooth() || base.MayBeSmooth(); }
+};
+
+}  // namespace
+
+std::shared_ptr<const Material> MakeCoatedDiffuse(const MaterialInput& input) {
+  const RoughnessParameters roughness(input, "");
+  const float eta = GetEta(input, "eta", 1.5f);
+  const auto table = std::make_shared<CoatTable>(CoatDescription{eta, GetThickness(input), roughness.TableAlphas()});
+  CoatedDiffuseRecipe recipe{
+      roughness, input.textures.GetColor(input.parameters, "reflectance", Color(0.5f), SpectrumRole::Albedo), eta,
+      GetBounces(input), table};
+  ShadingNormal shadingNormal(input.parameters, input.textures, input.diagnostics);
+  CheckMedium(input);
+  CheckMaterialParameters(input, {"reflectance", "roughness", "uroughness", "vroughness", "remaproughness", "eta",
+                                  "thickness", "maxdepth", "nsamples", "albedo", "g"});
+  return std::make_shared<RecipeMaterial<CoatedDiffuseRecipe>>(std::move(recipe), std::move(shadingNormal));
+}
+
+std::shared_ptr<const Material> MakeCoatedConductor(const MaterialInput& input) {
+  const RoughnessParameters coat(input, "interface."), base(input, "conductor.");
+  const MetalParameters metal(input, "conductor.");
+  const float eta = GetEta(input, "interface.eta", 1.5f), thickness = GetThickness(input);
+  const auto table = std::make_shared<CoatTable>(CoatDescription{eta, thickness, coat.TableAlphas()});
+  const auto returned = std::make_shared<CoatReturnTable>(CoatDescription{eta, thickness, base.TableAlphas()});
+  const auto settings = std::make_shared<CoatedConductorSettings>(
+      CoatedConductorSettings{eta, thickness, GetBounces(input), table.get(), returned.get()});
+  CoatedConductorRecipe recipe{coat, base, metal, table, returned, settings};
+  ShadingNormal shadingNormal(input.parameters, input.textures, input.diagnostics);
+  CheckMedium(input);
+  CheckMaterialParameters(
+      input, {"interface.roughness", "interface.uroughness", "interface.vroughness", "interface.eta", "thickness",
+              "conductor.eta", "conductor.k", "conductor.roughness", "conductor.uroughness", "conductor.vroughness",
+              "reflectance", "remaproughness", "maxdepth", "nsamples", "albedo", "g"});
+  return std::make_shared<RecipeMaterial<CoatedConductorRecipe>>(std::move(recipe), std::move(shadingNormal));
+}
+
+}  // namespace lampyr

@@ -1,0 +1,47 @@
+// Material types by name: one row each.
+#include "materials/material_makers.h"
+
+namespace lampyr {
+
+namespace {
+
+struct MaterialType {
+  const char* name;
+  std::shared_ptr<const Material> (*make)(const MaterialInput&);  // null: known to pbrt-v4 and not supported here
+};
+
+constexpr MaterialType kTypes[] = {
+    {"diffuse", MakeDiffuse},
+    {"diffusetransmission", MakeDiffuseTransmission},
+    {"conductor", MakeConductor},
+    {"dielectric", MakeDielectric},
+    {"thindielectric", MakeThinDielectric},
+    {"coateddiffuse", MakeCoatedDiffuse},
+    {"coatedconductor", MakeCoatedConductor},
+    {"mix", MakeMix},
+    {"interface", MakeInterface},
+    {"none", MakeInterface},
+    {"", MakeInterface},
+    {"hair", nullptr},
+    {"measured", nullptr},
+    {"subsurface", nullptr},
+};
+
+}  // namespace
+
+std::shared_ptr<const Material> MakeMaterial(const std::string& type, const ParameterList& parameters,
+                                             const TextureLibrary& textures, const MaterialLookup& namedMaterials,
+                                             Diagnostics& diagnostics) {
+  std::vector<std::string> names;
+  for (const MaterialType& known : kTypes) {
+    if (type == known.name) {
+      if (known.make) return known.make({parameters, textures, namedMaterials, diagnostics});
+      diagnostics.Warn(parameters.Where(), "material \"" + type + "\" is not supported: a gray diffuse one replaces it");
+      return MakeGray();
+    }
+    if (*known.name) names.emplace_back(known.name);
+  }
+  throw Error(parameters.Where(), "unknown material \"" + type + "\"" + DidYouMean(type, names));
+}
+
+}  // namespace lampyr

@@ -1,0 +1,85 @@
+// "mix": materials (two names), amount (0.5; of the second). At each point one of the two is chosen by a hash of position and
+// direction, so that the picture does not depend on the order of work. "interface": no scattering at all.
+#include <array>
+#include <bit>
+#include <cstdint>
+
+#include "materials/material_makers.h"
+
+namespace lampyr {
+
+namespace {
+
+// A mixer of 64 bits ([Steele14]).
+uint64_t MixBits(uint64_t v) {
+  v = (v ^ (v >> 30)) * 0xbf58476d1ce4e5b9ull;
+  v = (v ^ (v >> 27)) * 0x94d049bb133111ebull;
+  return v ^ (v >> 31);
+}
+
+uint64_t HashVector(uint64_t seed, const Vector3& v) {
+  for (int i = 0; i < 3; ++i) seed = MixBits(seed + 0x9e3779b97f4a7c15ull + std::bit_cast<uint32_t>(v[i]));
+  return seed;
+}
+
+class MixMaterial final : public Material {
+ public:
+  MixMaterial(std::array<std::shared_ptr<const Material>, 2> materials, FloatParameter amount, uint64_t salt)
+      : materials_(std::move(materials)), amount_(std::move(amount)), salt_(salt) {}
+
+  Bsdf GetBsdf(const SurfacePoint& point, const Vector3& wo) const override {
+    return Choose(point, wo).GetBsdf(point, wo);
+  }
+  bool IsInterface() const override { return materials_[0]->IsInterface() && materials_[1]->IsInterface(); }
+  bool MayTransmit() const override { return materials_[0]->MayTransmit() || materials_[1]->MayTransmit(); }
+  bool HasDelta() const override { return materials_[0]->HasDelta() || materials_[1]->HasDelta(); }
+
+ private:
+  const Material& Choose(const SurfacePoint& point, const Vector3& wo) const {
+    const float amount = amount_.Evaluate({point.uv, point.position});
+    if (!(amount > 0)) return *materials_[0];
+    if (amount >= 1) return *materials_[1];
+    const uint64_t hash = HashVector(HashVector(salt_, point.position), wo);
+    return static_cast<float>(hash >> 40) * 0x1p-24f < amount ? *materials_[1] : *materials_[0];
+  }
+
+  std::array<std::shared_ptr<const Material>, 2> materials_;
+  FloatParameter amount_;
+  uint64_t salt_;  // of the names: mixes of mixes choose independently
+};
+
+class InterfaceMaterial final : public Material {
+ public:
+  // For whoever does not ask IsInterface: straight through.
+  Bsdf GetBsdf(const SurfacePoint& point, const Vector3&) const override {
+    return Bsdf(Frame::FromNormal(point.Ns), point.Ng, DielectricBsdf{});
+  }
+  bool IsInterface() const override { return true; }
+  bool MayTransmit() const override { return true; }
+  bool HasDelta() const override { return true; }
+};
+
+}  // namespace
+
+std::shared_ptr<const Material> MakeMix(const MaterialInput& input) {
+  const std::vector<std::string> names = input.parameters.GetStrings("materials");
+  if (names.size() != 2) {
+    throw Error(input.parameters.WhereOf("materials"), "a \"mix\" needs the names of two materials in \"materials\"");
+  }
+  const FloatParameter amount = input.textures.GetFloat(input.parameters, "amount", 0.5f);
+  CheckMaterialParameters(input, {"materials", "amount"});
+  uint64_t salt = 0;
+  for (const std::string& name : names) {
+    for (const char c : name + "\n") salt = MixBits(salt * 31 + static_cast<unsigned char>(c) + 1);
+  }
+  return std::make_shared<MixMaterial>(
+      std::array<std::shared_ptr<const Material>, 2>{input.namedMaterials(names[0]), input.namedMaterials(names[1])},
+      amount, salt);
+}
+
+std::shared_ptr<const Material> MakeInterface(const MaterialInput& input) {
+  CheckMaterialParameters(input, {});
+  return std::make_shared<InterfaceMaterial>();
+}
+
+}  // namespace lampyr

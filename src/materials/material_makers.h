@@ -1,0 +1,79 @@
+// The makers behind MakeMaterial, one per family of materials, and what they share.
+#pragma once
+
+#include <vector>
+
+#include "base/error.h"
+#include "materials/material.h"
+#include "materials/microfacet.h"
+#include "materials/shading_normal.h"
+#include "scene/parameters.h"
+#include "textures/texture_library.h"
+
+namespace lampyr {
+
+// What a maker reads from.
+struct MaterialInput {
+  const ParameterList& parameters;
+  const TextureLibrary& textures;
+  const MaterialLookup& namedMaterials;
+  Diagnostics& diagnostics;
+};
+
+std::shared_ptr<const Material> MakeDiffuse(const MaterialInput& input);
+std::shared_ptr<const Material> MakeDiffuseTransmission(const MaterialInput& input);
+std::shared_ptr<const Material> MakeGray();  // diffuse 0.5, for what is not supported
+std::shared_ptr<const Material> MakeConductor(const MaterialInput& input);
+std::shared_ptr<const Material> MakeDielectric(const MaterialInput& input);
+std::shared_ptr<const Material> MakeThinDielectric(const MaterialInput& input);
+std::shared_ptr<const Material> MakeCoatedDiffuse(const MaterialInput& input);
+std::shared_ptr<const Material> MakeCoatedConductor(const MaterialInput& input);
+std::shared_ptr<const Material> MakeMix(const MaterialInput& input);
+std::shared_ptr<const Material> MakeInterface(const MaterialInput& input);
+
+// CheckAllUsed with the names that every material has.
+void CheckMaterialParameters(const MaterialInput& input, std::vector<std::string> known,
+                             const std::vector<std::string>& alsoInPbrt = {});
+
+// "PREFIXroughness", "PREFIXuroughness", "PREFIXvroughness" and "remaproughness" (default true: α = sqrt(roughness), as in
+// pbrt-v4; false: α = roughness). Default roughness 0.
+class RoughnessParameters {
+ public:
+  RoughnessParameters(const MaterialInput& input, const std::string& prefix);
+
+  TrowbridgeReitz Evaluate(const TextureContext& where) const;
+  bool IsConstant() const { return u_.IsConstant() && v_.IsConstant(); }
+  bool IsAnisotropic() const { return isAnisotropic_; }
+  bool MayBeSmooth() const { return !IsConstant() || Evaluate({}).IsSmooth(); }
+  // α values for a table: the constant one, or a range.
+  std::vector<float> TableAlphas() const;
+
+ private:
+  FloatParameter u_, v_;
+  bool isAnisotropic_ = false;
+  bool remap_ = true;
+};
+
+// "PREFIXeta", "PREFIXk" and "reflectance" of a metal; copper when nothing is given.
+class MetalParameters {
+ public:
+  MetalParameters(const MaterialInput& input, const std::string& prefix);
+
+  struct Index {
+    Color eta, k;
+  };
+  Index Evaluate(const TextureContext& where) const;
+  bool IsConstant() const;
+
+ private:
+  std::optional<ColorParameter> reflectance_;
+  ColorParameter eta_, k_;
+};
+
+// Index of refraction `name`: a number, or a spectrum, of which the mean over the channels is taken.
+float GetEta(const MaterialInput& input, const std::string& name, float defaultValue);
+
+// Reflectances and transmittances are held within [0,1]; NaN counts as 0.
+Color ClampToUnit(const Color& c);
+
+}  // namespace lampyr

@@ -1,0 +1,107 @@
+#include "materials/coat_table.h"
+#include "materials/material_makers.h"
+
+namespace lampyr {
+
+namespace {
+
+float Clamp(float x, float low, float high) { return std::min(std::max(low, x), high); }  // NaN: low
+
+FloatParameter GetRoughness(const MaterialInput& input, const std::string& name, const FloatParameter& defaultValue) {
+  const auto given = input.textures.FindFloat(input.parameters, name);
+  if (!given) return defaultValue;
+  if (given->IsConstant() && !(given->Evaluate({}) >= 0)) {
+    throw Error(input.parameters.WhereOf(name), "\"" + name + "\" must not be negative");
+  }
+  return *given;
+}
+
+// A colour from a spectrum that is known by name.
+Color NamedSpectrum(const std::string& name) {
+  Parameter parameter;
+  parameter.type = ParameterType::Spectrum;
+  parameter.name = "value";
+  parameter.strings = {name};
+  return ParameterList({}, "Material", {parameter}).GetColor("value", Color(1.0f), SpectrumRole::Unbounded);
+}
+
+}  // namespace
+
+Color ClampToUnit(const Color& c) { return {Clamp(c.r, 0, 1), Clamp(c.g, 0, 1), Clamp(c.b, 0, 1)}; }
+
+void CheckMaterialParameters(const MaterialInput& input, std::vector<std::string> known,
+                             const std::vector<std::string>& alsoInPbrt) {
+  input.parameters.Find("type");  // of named materials; whoever dispatched has read it
+  known.insert(known.end(), {"displacement", "normalmap", "type"});
+  input.parameters.CheckAllUsed(alsoInPbrt, known, input.diagnostics);
+}
+
+RoughnessParameters::RoughnessParameters(const MaterialInput& input, const std::string& prefix) {
+  const FloatParameter both = GetRoughness(input, prefix + "roughness", 0.0f);
+  u_ = GetRoughness(input, prefix + "uroughness", both);
+  v_ = GetRoughness(input, prefix + "vroughness", both);
+  remap_ = input.parameters.GetBool("remaproughness", true);
+  const bool split = input.parameters.Find(prefix + "uroughness") || input.parameters.Find(prefix + "vroughness");
+  isAnisotropic_ = split && !(IsConstant() && u_.Evaluate({}) == v_.Evaluate({}));
+}
+
+TrowbridgeReitz RoughnessParameters::Evaluate(const TextureContext& where) const {
+  constexpr float kMax = 1e3f;
+  const float u = Clamp(u_.Evaluate(where), 0, kMax);
+  const float v = isAnisotropic_ ? Clamp(v_.Evaluate(where), 0, kMax) : u;
+  return remap_ ? TrowbridgeReitz(std::sqrt(u), std::sqrt(v)) : TrowbridgeReitz(u, v);
+}
+
+std::vector<float> RoughnessParameters::TableAlphas() const {
+  if (!IsConstant()) return TexturedAlphas();
+  const TrowbridgeReitz microfacets = Evaluate({});
+  return {std::sqrt(microfacets.alphaX * microfacets.alphaY)};
+}
+
+MetalParameters::MetalParameters(const MaterialInput& input, const std::string& prefix) {
+  reflectance_ = input.textures.FindColor(input.parameters, "reflectance", SpectrumRole::Albedo);
+  const auto eta = input.textures.FindColor(input.parameters, prefix + "eta", SpectrumRole::Unbounded);
+  const auto k = input.textures.FindColor(input.parameters, prefix + "k", SpectrumRole::Unbounded);
+  if (reflectance_ && (eta || k)) {
+    throw Error(input.parameters.WhereOf("reflectance"),
+                "a metal takes either \"reflectance\" or \"" + prefix + "eta\" and \"" + prefix + "k\", not both");
+  }
+  if (reflectance_) return;
+  eta_ = eta ? *eta : ColorParameter(NamedSpectrum("metal-Cu-eta"));
+  k_ = k ? *k : ColorParameter(NamedSpectrum("metal-Cu-k"));
+}
+
+MetalParameters::Index MetalParameters::Evaluate(const TextureContext& where) const {
+  constexpr float kMax = 1e6f;
+  const auto bound = [](const Color& c) { return Color(Clamp(c.r, 0, kMax), Clamp(c.g, 0, kMax), Clamp(c.b, 0, kMax)); };
+  if (!reflectance_) return {bound(eta_.Evaluate(where)), bound(k_.Evaluate(where))};
+  // With η = 1 the reflectance at normal incidence is k²/(4 + k²) ([Pharr23 §9.4]).
+  const Color r = reflectance_->Evaluate(where);
+  const auto absorption = [](float x) {
+    const float bounded = Clamp(x, 0, 0.9999f);
+    return 2 * std::sqrt(bounded / (1 - bounded));
+  };
+  return {Color(1.0f), {absorption(r.r), absorption(r.g), absorption(r.b)}};
+}
+
+bool MetalParameters::IsConstant() const {
+  return reflectance_ ? reflectance_->IsConstant() : eta_.IsConstant() && k_.IsConstant();
+}
+
+float GetEta(const MaterialInput& input, const std::string& name, float defaultValue) {
+  const Parameter* given = input.parameters.Find(name);
+  if (!given) return defaultValue;
+  const float eta = given->type == ParameterType::Float
+                        ? static_cast<float>(input.parameters.GetFloat(name, static_cast<double>(defaultValue)))
+                        : input.parameters.GetColor(name, Color(defaultValue), SpectrumRole::Unbounded).Average();
+  if (eta == 0) {  // pbrt-v4's way of writing "no boundary"
+    input.diagnostics.Warn(input.parameters.WhereOf(name), "\"" + name + "\" 0 is taken as 1");
+    return 1;
+  }
+  if (!(eta >= 1e-2f && eta <= 1e2f)) {
+    throw Error(input.parameters.WhereOf(name), "\"" + name + "\" must be an index of refraction between 0.01 and 100");
+  }
+  return eta;
+}
+
+}  // namespace lampyr

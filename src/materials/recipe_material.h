@@ -1,0 +1,45 @@
+// A material that is a recipe: parameters that may be textures, turned into a model at a point. A recipe without textures is
+// cooked once. A recipe has
+//   BsdfModel Make(const TextureContext&) const;   bool IsConstant() const;   bool IsAnisotropic() const;
+//   bool MayTransmit() const;   bool HasDelta() const;
+#pragma once
+
+#include "materials/material.h"
+#include "materials/shading_normal.h"
+
+namespace lampyr {
+
+template <class Recipe>
+class RecipeMaterial final : public Material {
+ public:
+  RecipeMaterial(Recipe recipe, ShadingNormal shadingNormal)
+      : recipe_(std::move(recipe)),
+        shadingNormal_(std::move(shadingNormal)),
+        isConstant_(recipe_.IsConstant()),
+        needsTangent_(recipe_.IsAnisotropic()) {
+    if (isConstant_) model_ = recipe_.Make({});
+  }
+  RecipeMaterial(const RecipeMaterial&) = delete;  // the model may point into the recipe
+  RecipeMaterial& operator=(const RecipeMaterial&) = delete;
+
+  Bsdf GetBsdf(const SurfacePoint& point, const Vector3&) const override {
+    const Frame frame = GetFrame(point);
+    if (isConstant_) return Bsdf(frame, point.Ng, model_);
+    return Bsdf(frame, point.Ng, recipe_.Make({point.uv, point.position}));
+  }
+  bool MayTransmit() const override { return recipe_.MayTransmit(); }
+  bool HasDelta() const override { return recipe_.HasDelta(); }
+
+ private:
+  Frame GetFrame(const SurfacePoint& point) const {
+    if (!shadingNormal_.IsPlain()) return shadingNormal_.GetFrame(point);
+    return needsTangent_ ? Frame::FromNormalAndTangent(point.Ns, point.dpdu) : Frame::FromNormal(point.Ns);
+  }
+
+  Recipe recipe_;
+  ShadingNormal shadingNormal_;
+  bool isConstant_, needsTangent_;
+  BsdfModel model_;
+};
+
+}  // namespace lampyr

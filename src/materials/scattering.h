@@ -1,0 +1,30 @@
+// What a BSDF answers: a value with its densities, and a sampled direction. Conventions: materials/bsdf.h.
+#pragma once
+
+#include "math/density.h"
+#include "math/vec.h"
+
+namespace lampyr {
+
+// What travels along the path: radiance (paths from the camera) or importance (paths from the lights).
+enum class TransportMode { Radiance, Importance };
+
+struct BsdfEvaluation {
+  Color diffuse, specular;  // f, split by lobe: lights may send different radiance to either
+  PdfSolidAngle pdfForward, pdfReverse;
+
+  Color Sum() const { return diffuse + specular; }
+};
+
+struct BsdfSample {
+  Vector3 wi{0.0f};
+  Color weightDiffuse, weightSpecular;  // f · |cosθi| / pdf, split by lobe; computed without the division where it cancels
+  PdfSolidAngle pdfForward, pdfReverse;  // for a delta: discrete probabilities of the lobe
+  bool isDelta = false;
+  bool isTransmission = false;
+  float eta = 1;  // η on wi's side over η on wo's side for transmission; 1 otherwise
+
+  Color Weight() const { return weightDiffuse + weightSpecular; }
+};
+
+}  // namespace lampyr

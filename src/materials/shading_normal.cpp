@@ -1,0 +1,77 @@
+#include "materials/shading_normal.h"
+
+#include "scene/parameters.h"
+#include "textures/texture_library.h"
+
+namespace lampyr {
+
+namespace {
+
+constexpr float kBumpStep = 5e-4f;  // in uv, for finite differences
+
+int Wrap(int i, int n) {
+  const int r = i % n;
+  return r < 0 ? r + n : r;
+}
+
+// Bilinear, repeating.
+Color LookUp(const Image& image, const Point2& uv) {
+  const float u = uv.x - std::floor(uv.x), v = uv.y - std::floor(uv.y);
+  const float x = u * static_cast<float>(image.width) - 0.5f;
+  const float y = v * static_cast<float>(image.height) - 0.5f;
+  const float x0 = std::floor(x), y0 = std::floor(y);
+  const int ix = Wrap(static_cast<int>(x0), image.width), iy = Wrap(static_cast<int>(y0), image.height);
+  const int jx = Wrap(ix + 1, image.width), jy = Wrap(iy + 1, image.height);
+  return Lerp(Lerp(image.RgbAt(ix, iy), image.RgbAt(jx, iy), x - x0),
+              Lerp(image.RgbAt(ix, jy), image.RgbAt(jx, jy), x - x0), y - y0);
+}
+
+// The frame around n (any length, NaN or 0 allowed), turned to Ng's side; the surface's own when n is unusable.
+Frame FrameAround(const Vector3& n, const SurfacePoint& point, const Vector3& tangent) {
+  const float lengthSquared = LengthSquared(n);
+  if (!(lengthSquared > 0) || !(lengthSquared < kInfinity)) return Frame::FromNormalAndTangent(point.Ns, point.dpdu);
+  const Vector3 unit = n / std::sqrt(lengthSquared);
+  return Frame::FromNormalAndTangent(glm::dot(unit, point.Ng) < 0 ? -unit : unit, tangent);
+}
+
+}  // namespace
+
+ShadingNormal::ShadingNormal(const ParameterList& parameters, const TextureLibrary& textures,
+                             Diagnostics& diagnostics) {
+  displacement_ = textures.FindFloat(parameters, "displacement");
+  const std::string file = parameters.GetFile("normalmap");
+  if (file.empty()) return;
+  if (displacement_) {
+    diagnostics.Warn(parameters.WhereOf("displacement"), "\"displacement\" is ignored: the material has a \"normalmap\"");
+  }
+  normalMap_ = textures.GetImage(file, ImageEncoding::Linear, parameters.WhereOf("normalmap"));
+  if (!normalMap_->HasRgb() || normalMap_->width < 1 || normalMap_->height < 1) {
+    throw Error(parameters.WhereOf("normalmap"), "normal map " + file + " has no R, G and B channels");
+  }
+}
+
+Frame ShadingNormal::GetFrame(const SurfacePoint& point) const {
+  return normalMap_ ? FromNormalMap(point) : FromDisplacement(point);
+}
+
+Frame ShadingNormal::FromNormalMap(const SurfacePoint& point) const {
+  const Color texel = LookUp(*normalMap_, {point.uv.x, 1 - point.uv.y});
+  const Frame frame = Frame::FromNormalAndTangent(point.Ns, point.dpdu);
+  return FrameAround(frame.ToWorld({2 * texel.r - 1, 2 * texel.g - 1, 2 * texel.b - 1}), point, point.dpdu);
+}
+
+Frame ShadingNormal::FromDisplacement(const SurfacePoint& point) const {
+  // Tangents of the smooth surface that Ns describes.
+  const Vector3 dpdu = point.dpdu - point.Ns * glm::dot(point.Ns, point.dpdu);
+  const Vector3 dpdv = point.dpdv - point.Ns * glm::dot(point.Ns, point.dpdv);
+  const float here = displacement_->Evaluate({point.uv, point.position});
+  const float alongU =
+      displacement_->Evaluate({point.uv + Point2(kBumpStep, 0), point.position + kBumpStep * point.dpdu});
+  const float alongV =
+      displacement_->Evaluate({point.uv + Point2(0, kBumpStep), point.position + kBumpStep * point.dpdv});
+  const Vector3 bumpedU = dpdu + ((alongU - here) / kBumpStep) * point.Ns;
+  const Vector3 bumpedV = dpdv + ((alongV - here) / kBumpStep) * point.Ns;
+  return FrameAround(glm::cross(bumpedU, bumpedV), point, bumpedU);
+}
+
+}  // namespace lampyr
