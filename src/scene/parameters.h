@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <initializer_list>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -10,6 +12,7 @@
 
 #include "base/error.h"
 #include "math/vec.h"
+#include "scene/color_space.h"
 
 namespace lampyr {
 
@@ -26,6 +29,8 @@ struct Parameter {
   std::vector<int64_t> integers;
   std::vector<std::string> strings;  // string, texture name, spectrum name or file (made relative to the scene file)
   std::vector<bool> bools;
+  RgbColorSpace colorSpace = RgbColorSpace::Srgb;  // of `numbers` when the type is Rgb; ParameterList's getters convert
+  bool mayBeUnused = false;                        // a default that an Attribute statement gave
   mutable bool used = false;  // asked for by whoever reads the list; single-threaded, while the scene is built
 };
 
@@ -39,8 +44,13 @@ enum class SpectrumRole {
 class ParameterList {
  public:
   ParameterList() = default;
-  ParameterList(FileLocation statement, std::string statementName, std::vector<Parameter> parameters)
-      : where_(std::move(statement)), owner_(std::move(statementName)), parameters_(std::move(parameters)) {}
+  // `sceneFile`: the file that the scene was read from, when the statement may be in an included one (GetFile).
+  ParameterList(FileLocation statement, std::string statementName, std::vector<Parameter> parameters,
+                std::shared_ptr<const std::string> sceneFile = nullptr)
+      : where_(std::move(statement)),
+        owner_(std::move(statementName)),
+        parameters_(std::move(parameters)),
+        sceneFile_(std::move(sceneFile)) {}
 
   // Each getter gives the default when there is no such parameter, and throws a located Error when it has another type,
   // the wrong number of values, or a number that is not finite.
@@ -62,7 +72,8 @@ class ParameterList {
   std::vector<Point3d> GetPoint3s(const std::string& name) const;  // also accepts vector3 and normal
   std::vector<Color> GetColors(const std::string& name, SpectrumRole role) const;
 
-  // A file name, made absolute against the folder of the scene file that wrote it; "" when absent.
+  // A file name made absolute: against the folder of the scene (as pbrt-v4 does) when it is there, else against the folder
+  // of the file that wrote it (an included one may lie elsewhere). "" when absent.
   std::string GetFile(const std::string& name) const;
 
   // The texture's name when the parameter `name` is of type "texture".
@@ -84,6 +95,15 @@ class ParameterList {
   FileLocation where_;
   std::string owner_;
   std::vector<Parameter> parameters_;
+  std::shared_ptr<const std::string> sceneFile_;
+
+  const Parameter* FindTyped(const std::string& name, std::initializer_list<ParameterType> types) const;
+  // The values of a parameter of one of `types`, `perItem` numbers each, or null; exactly one item when `single`.
+  const Parameter* FindNumbers(const std::string& name, std::initializer_list<ParameterType> types, size_t perItem,
+                               bool single) const;
+  std::vector<Color> ColorsOf(const Parameter& parameter, SpectrumRole role) const;
+  [[noreturn]] void WrongCount(const Parameter& parameter, size_t needed, size_t found) const;
+  std::string ResolveFile(const std::string& name, const FileLocation& writtenAt) const;
 };
 
 }  // namespace lampyr

@@ -1,0 +1,101 @@
+// Statements that come before WorldBegin, and ColorSpace and Option, which may come anywhere.
+#include <algorithm>
+
+#include "scene/scene_parser.h"
+
+namespace lampyr {
+
+namespace {
+
+// pbrt-v4's options, spelt as they are compared: lower case, without "-" and "_".
+const std::vector<std::string>& OptionNames() {
+  static const std::vector<std::string> names = {
+      "disablepixeljitter", "disabletexturefiltering", "disablewavelengthjitter", "displacementedgescale", "forcediffuse",
+      "msereferenceimage",  "msereferenceout",         "pixelstats",              "rendercoordsys",        "seed",
+      "wavefront"};
+  return names;
+}
+
+std::string Normalized(const std::string& name) {
+  std::string result;
+  for (const char c : name) {
+    if (c != '-' && c != '_') result += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  }
+  return result;
+}
+
+}  // namespace
+
+void SceneParser::Camera(const Token& statement) {
+  scene_.camera = ReadTyped(statement);
+  const TransformPair cameraToWorld = {state_.ctm[0].Inverse(), state_.ctm[1].Inverse()};
+  coordinateSystems_["camera"] = cameraToWorld;
+  scene_.cameraToWorld = {cameraToWorld[0], cameraToWorld[1]};
+}
+
+void SceneParser::Film(const Token& statement) {
+  scene_.film = ReadTyped(statement);
+  if (state_.colorSpace != RgbColorSpace::Srgb) {
+    diagnostics_.Warn(statement.where, "images in another colour space than \"srgb\" are not supported yet: the image is linear sRGB");
+  }
+}
+
+void SceneParser::PixelFilter(const Token& statement) { scene_.pixelFilter = ReadTyped(statement); }
+void SceneParser::Sampler(const Token& statement) { scene_.sampler = ReadTyped(statement); }
+void SceneParser::Integrator(const Token& statement) { scene_.integrator = ReadTyped(statement); }
+void SceneParser::Accelerator(const Token& statement) { scene_.accelerator = ReadTyped(statement); }
+
+// Option "name" value. The value tells its type: true, false, a number or a string.
+void SceneParser::Option(const Token& statement) {
+  Token name = tokens_.Next();
+  if (name.kind != TokenKind::String) {
+    throw Error(name.where, "Option needs a name in quotes, found " + Describe(name));
+  }
+  const size_t lastBlank = name.text.find_last_of(" \t");  // "bool wavefront" is taken as "wavefront"
+  Parameter option;
+  option.name = Normalized(lastBlank == std::string::npos ? name.text : name.text.substr(lastBlank + 1));
+  option.where = name.where;
+  const std::vector<std::string>& known = OptionNames();
+  if (std::find(known.begin(), known.end(), option.name) == known.end()) {
+    throw Error(name.where, "there is no option \"" + name.text + "\"" + DidYouMean(option.name, known));
+  }
+  Token value = tokens_.Next();
+  if (value.kind == TokenKind::String) {
+    option.type = ParameterType::String;
+    option.strings.push_back(std::move(value.text));
+  } else if (value.kind != TokenKind::Word) {
+    throw Error(value.where, "the option \"" + option.name + "\" needs a value, found " + Describe(value));
+  } else if (value.text == "true" || value.text == "false") {
+    option.type = ParameterType::Bool;
+    option.bools.push_back(value.text == "true");
+  } else if (value.text.find_first_not_of("+-0123456789") == std::string::npos) {
+    option.type = ParameterType::Integer;
+    option.integers.push_back(ParseInteger(value.text, value.where));
+  } else {
+    option.type = ParameterType::Float;
+    option.numbers.push_back(ParseNumber(value.text, value.where));
+  }
+  if (option.name != "seed") {
+    diagnostics_.Warn(statement.where, "the option \"" + option.name + "\" is not supported yet: it is ignored");
+  }
+  scene_.options[option.name] = std::move(option);
+}
+
+void SceneParser::ColorSpaceStatement(const Token& statement) {
+  const Token name = tokens_.Next();
+  if (name.kind != TokenKind::String) {
+    throw Error(name.where, statement.text + " needs a name in quotes, found " + Describe(name));
+  }
+  const auto space = FindColorSpace(name.text);
+  if (!space) throw Error(name.where, "there is no colour space \"" + name.text + "\"" + DidYouMean(name.text, ColorSpaceNames()));
+  state_.colorSpace = *space;
+}
+
+void SceneParser::WorldBegin(const Token&) {
+  inWorld_ = true;
+  state_.ctm = {};
+  state_.active = {true, true};
+  coordinateSystems_["world"] = state_.ctm;
+}
+
+}  // namespace lampyr

@@ -1,0 +1,70 @@
+// What can only be checked when the whole scene is read: names that are used are defined somewhere, and no object
+// contains itself.
+#include "scene/scene_parser.h"
+
+namespace lampyr {
+
+namespace {
+
+template <class Map>
+std::vector<std::string> Names(const Map& map) {
+  std::vector<std::string> names;
+  for (const auto& entry : map) names.push_back(entry.first);
+  return names;
+}
+
+template <class Map>
+void CheckName(const Map& defined, const char* what, const std::string& name, const FileLocation& where) {
+  if (defined.count(name) != 0) return;
+  throw Error(where, std::string("there is no ") + what + " \"" + name + "\"" + DidYouMean(name, Names(defined)));
+}
+
+}  // namespace
+
+void SceneParser::CheckReferences() const {
+  for (const NameUse& use : materialUses_) CheckName(namedMaterials_, "material", use.name, use.where);
+  for (const NameUse& use : mediumUses_) CheckName(media_, "medium", use.name, use.where);
+  for (const InstanceDescription& instance : scene_.instances) CheckName(objects_, "object", instance.object, instance.where);
+  for (const ObjectDescription& object : scene_.objects) {
+    for (const InstanceDescription& instance : object.instances) CheckName(objects_, "object", instance.object, instance.where);
+  }
+}
+
+// Depth first without recursion: objects may be nested as deep as a file is long.
+void SceneParser::CheckInstances() const {
+  enum class Mark { New, Open, Done };
+  std::vector<Mark> marks(scene_.objects.size(), Mark::New);
+  struct Visit {
+    int object;
+    size_t next = 0;
+  };
+  for (size_t root = 0; root < scene_.objects.size(); ++root) {
+    if (marks[root] != Mark::New) continue;
+    std::vector<Visit> path = {{static_cast<int>(root)}};
+    marks[root] = Mark::Open;
+    while (!path.empty()) {
+      const ObjectDescription& object = scene_.objects[path.back().object];
+      if (path.back().next == object.instances.size()) {
+        marks[path.back().object] = Mark::Done;
+        path.pop_back();
+        continue;
+      }
+      const InstanceDescription& instance = object.instances[path.back().next++];
+      const int inner = objects_.at(instance.object);
+      if (marks[inner] == Mark::Open) {
+        std::string chain;
+        bool within = false;
+        for (const Visit& visit : path) {
+          within |= visit.object == inner;
+          if (within) chain += "\"" + scene_.objects[visit.object].name + "\" -> ";
+        }
+        throw Error(instance.where, "an object that contains itself: " + chain + "\"" + instance.object + "\"");
+      }
+      if (marks[inner] == Mark::Done) continue;
+      marks[inner] = Mark::Open;
+      path.push_back({inner});
+    }
+  }
+}
+
+}  // namespace lampyr

@@ -1,0 +1,161 @@
+// The parser of scene files: statements change a graphics state, or add to the scene with the state that is in force.
+// Internal to scene/; the semantics are pbrt-v4's (file format documentation, [Pharr23 appendix C]).
+//
+// statements.cpp has the table of all statements; transform_statements.cpp, option_statements.cpp and
+// world_statements.cpp carry them out; scene_checks.cpp looks at references when all is read.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scene/parameter_reader.h"
+#include "scene/scene_description.h"
+#include "scene/token_stream.h"
+
+namespace lampyr {
+
+// Transforms at shutter open and close.
+using TransformPair = std::array<Transform, 2>;
+
+// What AttributeBegin saves and AttributeEnd brings back.
+struct GraphicsState {
+  TransformPair ctm;  // current transformation matrix: local to world
+  std::array<bool, 2> active = {true, true};
+  bool reverseOrientation = false;
+  RgbColorSpace colorSpace = RgbColorSpace::Srgb;
+  MaterialReference material;
+  int areaLight = -1;
+  std::string insideMedium, outsideMedium;
+  std::map<std::string, std::vector<Parameter>> attributes;  // by target
+};
+
+// A reference by name, to be checked at the end.
+struct NameUse {
+  std::string name;
+  FileLocation where;
+};
+
+class SceneParser {
+ public:
+  SceneParser(const std::filesystem::path& file, Diagnostics& diagnostics);
+
+  // Parses the whole text of the scene's file.
+  SceneDescription Parse(std::string text);
+
+ private:
+  using Handler = void (SceneParser::*)(const Token& statement);
+  enum class Block { Anywhere, Options, World };
+  struct Statement {
+    const char* name;
+    Block block;
+    Handler run;
+  };
+  struct Scope {
+    GraphicsState saved;
+    bool isObject = false;
+    std::string statement;
+    FileLocation where;
+  };
+
+  std::filesystem::path file_;
+  Diagnostics& diagnostics_;
+  TokenStream tokens_;
+  SceneDescription scene_;
+  GraphicsState state_;
+  std::vector<Scope> scopes_;
+  size_t lowestScope_ = 0;  // scopes below this were opened by the file that imports the current one
+  bool inWorld_ = false;
+  int currentObject_ = -1;
+  std::map<std::string, TransformPair> coordinateSystems_;
+  std::set<std::pair<std::string, bool>> textureNames_;
+  std::map<std::string, FileLocation> namedMaterials_, media_;
+  std::map<std::string, int> objects_;
+  std::vector<NameUse> mediumUses_, materialUses_;
+  Token previous_;  // the statement before, for messages
+
+  // statements.cpp
+  static const std::vector<Statement>& Statements();
+  void ParseStatements();
+  void Run(const Token& word);
+  [[noreturn]] void UnknownStatement(const Token& word) const;
+  void CheckScopesClosed(size_t lowest) const;
+
+  // Reading what a statement takes.
+  std::string ReadString(const Token& statement, const char* what);
+  template <size_t N>
+  std::array<double, N> ReadNumbers(const Token& statement);
+  void ReadNumbersInto(const Token& statement, double* numbers, size_t count);
+  std::array<double, 16> ReadMatrix(const Token& statement);
+  StatementDescription ReadTyped(const Token& statement, const char* attributeTarget = nullptr);
+  ParameterList ReadList(const Token& statement, const std::string& owner, const char* attributeTarget);
+  Placement CurrentPlacement() const { return {state_.ctm[0], state_.ctm[1]}; }
+
+  // transform_statements.cpp
+  void Concat(const Token& statement, const Transform& transform);
+  void CheckInvertible(const Token& statement, const Transform& transform) const;
+  void Identity(const Token&);
+  void Translate(const Token&);
+  void Scale(const Token&);
+  void Rotate(const Token&);
+  void LookAt(const Token&);
+  void TransformStatement(const Token&);
+  void ConcatTransform(const Token&);
+  void CoordinateSystem(const Token&);
+  void CoordSysTransform(const Token&);
+  void ActiveTransform(const Token&);
+  void TransformTimes(const Token&);
+
+  // option_statements.cpp
+  void Camera(const Token&);
+  void Film(const Token&);
+  void PixelFilter(const Token&);
+  void Sampler(const Token&);
+  void Integrator(const Token&);
+  void Accelerator(const Token&);
+  void Option(const Token&);
+  void ColorSpaceStatement(const Token&);
+  void WorldBegin(const Token&);
+
+  // world_statements.cpp
+  void WorldEnd(const Token&);
+  void AttributeBegin(const Token&);
+  void AttributeEnd(const Token&);
+  void TransformBegin(const Token&);
+  void TransformEnd(const Token&);
+  void Attribute(const Token&);
+  void ObjectBegin(const Token&);
+  void ObjectEnd(const Token&);
+  void ObjectInstance(const Token&);
+  void Shape(const Token&);
+  void Material(const Token&);
+  void MakeNamedMaterial(const Token&);
+  void NamedMaterial(const Token&);
+  void Texture(const Token&);
+  void AreaLightSource(const Token&);
+  void LightSource(const Token&);
+  void LightFilter(const Token&);
+  void MakeNamedMedium(const Token&);
+  void MediumInterface(const Token&);
+  void ReverseOrientation(const Token&);
+  void Include(const Token&);
+  void Import(const Token&);
+  void CloseScope(const Token& statement, bool isObject);
+
+  // scene_checks.cpp
+  void CheckReferences() const;
+  void CheckInstances() const;
+};
+
+template <size_t N>
+std::array<double, N> SceneParser::ReadNumbers(const Token& statement) {
+  std::array<double, N> numbers;
+  ReadNumbersInto(statement, numbers.data(), N);
+  return numbers;
+}
+
+}  // namespace lampyr

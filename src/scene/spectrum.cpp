@@ -1,0 +1,142 @@
+#include "scene/spectrum.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "scene/cie.h"
+#include "scene/lexer.h"
+#include "scene/text_file.h"
+
+namespace lampyr {
+
+namespace {
+
+constexpr double kGrid = 1;  // nm
+
+// A piecewise linear spectrum at `lambda`; `outside` continues the ends.
+double Evaluate(const std::vector<SpectrumSample>& spectrum, double lambda, bool continueEnds) {
+  const auto above = std::lower_bound(spectrum.begin(), spectrum.end(), lambda,
+                                      [](const SpectrumSample& s, double l) { return s.wavelength < l; });
+  if (above == spectrum.end()) return continueEnds ? spectrum.back().value : 0;
+  if (above->wavelength == lambda) return above->value;
+  if (above == spectrum.begin()) return continueEnds ? above->value : 0;
+  const SpectrumSample &a = *(above - 1), &b = *above;
+  return std::lerp(a.value, b.value, (lambda - a.wavelength) / (b.wavelength - a.wavelength));
+}
+
+// Wavelengths to integrate over: every nanometre of the visible, and around each of the spectrum's own samples, so that
+// a narrow line is not stepped over and a jump at its end is one.
+std::vector<double> Wavelengths(const std::vector<SpectrumSample>& spectrum) {
+  std::vector<double> list;
+  for (double lambda = kLambdaMin; lambda <= kLambdaMax; lambda += kGrid) list.push_back(lambda);
+  for (const SpectrumSample& sample : spectrum) {
+    for (const double lambda : {sample.wavelength - 1e-6, sample.wavelength, sample.wavelength + 1e-6}) {
+      if (lambda > kLambdaMin && lambda < kLambdaMax) list.push_back(lambda);
+    }
+  }
+  std::sort(list.begin(), list.end());
+  return list;
+}
+
+// ∫ f(λ) dλ by the trapezoid rule.
+Vector3d Integrate(const std::vector<double>& wavelengths, const std::function<Vector3d(double)>& f) {
+  Vector3d sum(0.0), last = f(wavelengths.front());
+  for (size_t i = 1; i < wavelengths.size(); ++i) {
+    const Vector3d value = f(wavelengths[i]);
+    sum += (last + value) * (0.5 * (wavelengths[i] - wavelengths[i - 1]));
+    last = value;
+  }
+  return sum;
+}
+
+// Integrals over D65: they calibrate the fitted matching functions, so that D65 is exactly white.
+const Vector3d& WhiteIntegral() {
+  static const Vector3d white =
+      Integrate(Wavelengths({}), [](double lambda) { return ColorMatching(lambda) * DaylightD65(lambda); });
+  return white;
+}
+
+// XYZ with the white's Y = 1, from integrals over the matching functions.
+Vector3d CalibratedXyz(const Vector3d& integrals) {
+  return integrals / WhiteIntegral() * XyzOfChromaticity(0.3127, 0.3290);
+}
+
+Vector3d ChannelWeights(double lambda) {
+  const Vector3d rgb = XyzToRec709(CalibratedXyz(ColorMatching(lambda) * DaylightD65(lambda)));
+  return glm::max(rgb, Vector3d(0.0));
+}
+
+Color ToColor(const Vector3d& c) { return {static_cast<float>(c.x), static_cast<float>(c.y), static_cast<float>(c.z)}; }
+
+Color FunctionToColor(const std::function<double(double)>& f, const std::vector<double>& wavelengths, SpectrumRole role) {
+  if (role == SpectrumRole::Unbounded) {
+    const Vector3d sum = Integrate(wavelengths, [&](double l) { return ChannelWeights(l) * f(l); });
+    return ToColor(sum / Integrate(wavelengths, ChannelWeights));
+  }
+  if (role == SpectrumRole::Albedo) {
+    const auto reflected = [&](double l) { return ColorMatching(l) * (DaylightD65(l) * f(l)); };
+    const auto white = [](double l) { return ColorMatching(l) * DaylightD65(l); };
+    // Both on the same grid: a reflectance of 1 is white to the last bit.
+    const Vector3d xyz = Integrate(wavelengths, reflected) / Integrate(wavelengths, white) *
+                         XyzOfChromaticity(0.3127, 0.3290);
+    const Color color = ClampToGamut(XyzToRec709(xyz));
+    return {std::min(color.r, 1.0f), std::min(color.g, 1.0f), std::min(color.b, 1.0f)};
+  }
+  const Vector3d xyz = CalibratedXyz(Integrate(wavelengths, [&](double l) { return ColorMatching(l) * f(l); }));
+  if (!(xyz.y > 0)) return Color(0.0f);
+  return ClampToGamut(XyzToRec709(xyz / xyz.y));
+}
+
+}  // namespace
+
+Color SpectrumToColor(const std::vector<SpectrumSample>& spectrum, SpectrumRole role) {
+  const bool continueEnds = role == SpectrumRole::Unbounded;
+  double largest = 0;
+  for (const SpectrumSample& sample : spectrum) largest = std::max(largest, sample.value);
+  if (largest == 0) return Color(0.0f);
+  // Scaled to 1 while it is integrated: no over- or underflow, whatever the unit.
+  const auto f = [&](double lambda) { return Evaluate(spectrum, lambda, continueEnds) / largest; };
+  const std::vector<double> wavelengths = Wavelengths(spectrum);
+  if (role == SpectrumRole::Illuminant) return FunctionToColor(f, wavelengths, role);
+  if (role == SpectrumRole::Unbounded) return FunctionToColor(f, wavelengths, role) * static_cast<float>(largest);
+  const auto unscaled = [&](double lambda) { return std::min(1.0, Evaluate(spectrum, lambda, false)); };
+  return FunctionToColor(unscaled, wavelengths, role);
+}
+
+Color BlackbodyToColor(double kelvin, SpectrumRole role) {
+  const std::vector<double> wavelengths = Wavelengths({});
+  double largest = 0;
+  for (const double lambda : wavelengths) largest = std::max(largest, Blackbody(lambda, kelvin));
+  return FunctionToColor([&](double lambda) { return Blackbody(lambda, kelvin) / largest; }, wavelengths, role);
+}
+
+std::vector<SpectrumSample> SpectrumFromPairs(const std::vector<double>& numbers, const FileLocation& where) {
+  if (numbers.size() % 2 != 0) {
+    throw Error(where, "a spectrum is pairs of wavelength and value: " + std::to_string(numbers.size()) +
+                           " numbers are not a multiple of 2");
+  }
+  if (numbers.size() < 4) throw Error(where, "a spectrum needs at least 2 pairs of wavelength and value");
+  std::vector<SpectrumSample> spectrum(numbers.size() / 2);
+  for (size_t i = 0; i < spectrum.size(); ++i) {
+    spectrum[i] = {numbers[2 * i], numbers[2 * i + 1]};
+    const std::string which = "pair " + std::to_string(i + 1) + " of the spectrum";
+    if (!(spectrum[i].wavelength > 0)) throw Error(where, which + " has a wavelength that is not above 0 nm");
+    if (i > 0 && !(spectrum[i].wavelength > spectrum[i - 1].wavelength)) {
+      throw Error(where, which + " does not have a longer wavelength than the pair before");
+    }
+    if (spectrum[i].value < 0) throw Error(where, which + " has a negative value");
+  }
+  return spectrum;
+}
+
+std::vector<SpectrumSample> ReadSpectrumFile(const std::filesystem::path& file, const FileLocation& where) {
+  Lexer lexer(std::make_shared<const std::string>(file.string()), ReadTextFile(file, where));
+  std::vector<double> numbers;
+  for (double number = 0; lexer.TryNumber(number);) numbers.push_back(number);
+  const Token rest = lexer.Next();
+  if (rest.kind != TokenKind::End) throw Error(rest.where, Describe(rest) + " is not a number");
+  return SpectrumFromPairs(numbers, FileLocation{std::make_shared<const std::string>(file.string())});
+}
+
+}  // namespace lampyr

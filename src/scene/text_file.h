@@ -1,0 +1,26 @@
+// Reading a whole text file, plain or gzipped. Internal to scene/.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "base/error.h"
+
+namespace lampyr {
+
+// The file's bytes, decompressed when they are gzip (by content, whatever the name). Throws an Error at `where` when the
+// file is missing, unreadable, not a file, or cut off; without a `where`, the Error is about the file itself.
+std::string ReadTextFile(const std::filesystem::path& file, const FileLocation& where);
+
+// A 128-bit fingerprint of texts, in hexadecimal: not cryptographic, independent of the platform.
+class ContentHash {
+ public:
+  void Add(std::string_view text);
+  std::string Hex() const;
+
+ private:
+  uint64_t low_ = 0xcbf29ce484222325u;
+  uint64_t high_ = 0x9ae16a3b2f90404fu;
+};
+
+}  // namespace lampyr

@@ -1,0 +1,160 @@
+// Statements about the current transformation matrix (CTM). Each multiplies from the right: the last one written is the
+// first applied to a point.
+#include <cmath>
+
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+
+#include "scene/scene_parser.h"
+
+namespace lampyr {
+
+namespace {
+
+// A matrix whose determinant is lost in rounding: far below the product of its columns' lengths [Hadamard93].
+bool IsNearlySingular(const glm::dmat4& m) {
+  const glm::dmat3 linear(m);
+  const double volume = glm::length(linear[0]) * glm::length(linear[1]) * glm::length(linear[2]);
+  return !(std::abs(glm::determinant(linear)) > 1e-14 * volume);
+}
+
+}  // namespace
+
+void SceneParser::CheckInvertible(const Token& statement, const Transform& transform) const {
+  if (transform.IsSingular()) throw Error(statement.where, statement.text + " makes the transform singular: it cannot be inverted");
+}
+
+void SceneParser::Concat(const Token& statement, const Transform& transform) {
+  CheckInvertible(statement, transform);
+  for (int i = 0; i < 2; ++i) {
+    if (!state_.active[i]) continue;
+    const Transform product = state_.ctm[i] * transform;
+    CheckInvertible(statement, product);
+    state_.ctm[i] = product;
+  }
+}
+
+void SceneParser::Identity(const Token&) {
+  for (int i = 0; i < 2; ++i) {
+    if (state_.active[i]) state_.ctm[i] = Transform();
+  }
+}
+
+void SceneParser::Translate(const Token& statement) {
+  const auto n = ReadNumbers<3>(statement);
+  Concat(statement, Transform::Translate({n[0], n[1], n[2]}));
+}
+
+void SceneParser::Scale(const Token& statement) {
+  const auto n = ReadNumbers<3>(statement);
+  for (const double factor : n) {
+    if (factor == 0) throw Error(statement.where, "Scale by 0 makes the transform singular: it cannot be inverted");
+  }
+  Concat(statement, Transform::Scale({n[0], n[1], n[2]}));
+}
+
+void SceneParser::Rotate(const Token& statement) {
+  const auto n = ReadNumbers<4>(statement);
+  const Vector3d axis(n[1], n[2], n[3]);
+  const double size = std::max({std::abs(axis.x), std::abs(axis.y), std::abs(axis.z)});
+  if (size == 0) throw Error(statement.where, "the axis of Rotate is (0, 0, 0)");
+  Concat(statement, Transform::Rotate(n[0], axis / size));
+}
+
+void SceneParser::LookAt(const Token& statement) {
+  const auto n = ReadNumbers<9>(statement);
+  const Point3d eye(n[0], n[1], n[2]), target(n[3], n[4], n[5]);
+  const Vector3d up(n[6], n[7], n[8]), direction = target - eye;
+  const auto size = [](const Vector3d& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); };
+  if (size(direction) == 0) throw Error(statement.where, "LookAt looks at the point it stands at");
+  if (size(up) == 0) throw Error(statement.where, "the up vector of LookAt is (0, 0, 0)");
+  const Vector3d unitUp = glm::normalize(up / size(up)), unitDirection = glm::normalize(direction / size(direction));
+  if (glm::length(glm::cross(unitUp, unitDirection)) < 1e-9) {
+    throw Error(statement.where, "the up vector of LookAt is parallel to the direction of view");
+  }
+  Concat(statement, Transform::LookAt(eye, target, unitUp));
+}
+
+std::array<double, 16> SceneParser::ReadMatrix(const Token& statement) {
+  const Token open = tokens_.Next();
+  if (open.kind != TokenKind::Open) {
+    throw Error(open.where, statement.text + " needs 16 numbers in brackets, found " + Describe(open));
+  }
+  const auto matrix = ReadNumbers<16>(statement);
+  const Token close = tokens_.Next();
+  if (close.kind != TokenKind::Close) {
+    throw Error(close.where, statement.text + " needs \"]\" after 16 numbers, found " + Describe(close));
+  }
+  return matrix;
+}
+
+namespace {
+
+// Numbers come column by column, as GLM has them: 12, 13, 14 are the translation.
+Transform MatrixTransform(const std::array<double, 16>& n, const Token& statement) {
+  if (n[3] != 0 || n[7] != 0 || n[11] != 0 || n[15] == 0) {
+    throw Error(statement.where, "the matrix of " + statement.text +
+                                     " is not affine: its 4th, 8th and 12th numbers must be 0 and its 16th must not");
+  }
+  glm::dmat4 m(1.0);
+  for (int column = 0; column < 4; ++column) {
+    for (int row = 0; row < 3; ++row) m[column][row] = n[4 * column + row] / n[15];
+  }
+  if (IsNearlySingular(m)) throw Error(statement.where, "the matrix of " + statement.text + " is singular: it cannot be inverted");
+  return Transform(m);
+}
+
+}  // namespace
+
+void SceneParser::TransformStatement(const Token& statement) {
+  const Transform transform = MatrixTransform(ReadMatrix(statement), statement);
+  CheckInvertible(statement, transform);
+  for (int i = 0; i < 2; ++i) {
+    if (state_.active[i]) state_.ctm[i] = transform;
+  }
+}
+
+void SceneParser::ConcatTransform(const Token& statement) {
+  Concat(statement, MatrixTransform(ReadMatrix(statement), statement));
+}
+
+void SceneParser::CoordinateSystem(const Token& statement) {
+  coordinateSystems_[ReadString(statement, "a name")] = state_.ctm;
+}
+
+void SceneParser::CoordSysTransform(const Token& statement) {
+  const std::string name = ReadString(statement, "a name");
+  const auto found = coordinateSystems_.find(name);
+  if (found != coordinateSystems_.end()) {
+    state_.ctm = found->second;
+    return;
+  }
+  // As in pbrt-v4 the transform stays as it is; it is likely not what was meant.
+  std::vector<std::string> names;
+  for (const auto& entry : coordinateSystems_) names.push_back(entry.first);
+  diagnostics_.Warn(statement.where, "there is no coordinate system \"" + name + "\"" + DidYouMean(name, names) +
+                                         ": the transform stays as it is");
+}
+
+void SceneParser::ActiveTransform(const Token& statement) {
+  const Token which = tokens_.Next();
+  if (which.kind == TokenKind::Word && which.text == "All") {
+    state_.active = {true, true};
+  } else if (which.kind == TokenKind::Word && which.text == "StartTime") {
+    state_.active = {true, false};
+  } else if (which.kind == TokenKind::Word && which.text == "EndTime") {
+    state_.active = {false, true};
+  } else {
+    throw Error(which.where, statement.text + " is All, StartTime or EndTime, not " + Describe(which) +
+                                 DidYouMean(which.text, {"All", "StartTime", "EndTime"}));
+  }
+}
+
+void SceneParser::TransformTimes(const Token& statement) {
+  const auto n = ReadNumbers<2>(statement);
+  if (n[1] < n[0]) throw Error(statement.where, "TransformTimes ends before it starts");
+  scene_.shutterOpen = n[0];
+  scene_.shutterClose = n[1];
+}
+
+}  // namespace lampyr

@@ -1,0 +1,215 @@
+// Statements that describe the world: scopes, objects, shapes, materials, textures, lights, media, other files.
+#include <algorithm>
+#include <utility>
+
+#include "scene/scene_parser.h"
+
+namespace lampyr {
+
+void SceneParser::WorldEnd(const Token& statement) {
+  diagnostics_.Warn(statement.where, "WorldEnd is of pbrt-v3: it is ignored");
+}
+
+void SceneParser::AttributeBegin(const Token& statement) {
+  scopes_.push_back({state_, false, statement.text, statement.where});
+}
+
+void SceneParser::AttributeEnd(const Token& statement) { CloseScope(statement, false); }
+
+void SceneParser::TransformBegin(const Token& statement) {
+  diagnostics_.Warn(statement.where, "TransformBegin is deprecated: it is taken as AttributeBegin, as pbrt-v4 does");
+  AttributeBegin(statement);
+}
+
+void SceneParser::TransformEnd(const Token& statement) {
+  diagnostics_.Warn(statement.where, "TransformEnd is deprecated: it is taken as AttributeEnd, as pbrt-v4 does");
+  CloseScope(statement, false);
+}
+
+void SceneParser::CloseScope(const Token& statement, bool isObject) {
+  const std::string begin = statement.text.substr(0, statement.text.size() - std::string_view("End").size()) + "Begin";
+  if (scopes_.size() <= lowestScope_) throw Error(statement.where, statement.text + " without " + begin);
+  Scope& scope = scopes_.back();
+  if (scope.isObject != isObject) {
+    throw Error(statement.where, statement.text + " ends the " + scope.statement + " at " + scope.where.ToString());
+  }
+  state_ = std::move(scope.saved);
+  scopes_.pop_back();
+}
+
+void SceneParser::Attribute(const Token& statement) {
+  const Token target = tokens_.Next();
+  if (target.kind != TokenKind::String) {
+    throw Error(target.where, "Attribute needs a target in quotes, found " + Describe(target));
+  }
+  const std::vector<std::string> targets = {"shape", "light", "material", "medium", "texture", "lighting", "lightfilter"};
+  const auto found = std::find(targets.begin(), targets.end(), target.text);
+  if (found == targets.end()) {
+    throw Error(target.where, "there is no Attribute target \"" + target.text + "\"" + DidYouMean(target.text, targets));
+  }
+  if (target.text == "lighting" || target.text == "lightfilter") {
+    diagnostics_.Warn(statement.where, "Attribute \"" + target.text + "\" is not supported yet: it is ignored");
+  }
+  std::vector<Parameter>& defaults = state_.attributes[target.text];
+  for (Parameter& parameter : ReadParameters(tokens_, state_.colorSpace)) {
+    parameter.mayBeUnused = true;
+    const auto sameName = [&](const Parameter& other) { return other.name == parameter.name; };
+    std::erase_if(defaults, sameName);
+    defaults.push_back(std::move(parameter));
+  }
+}
+
+void SceneParser::ObjectBegin(const Token& statement) {
+  const std::string name = ReadString(statement, "a name");
+  if (currentObject_ >= 0) {
+    throw Error(statement.where, "ObjectBegin within the ObjectBegin at " + scene_.objects[currentObject_].where.ToString());
+  }
+  const auto [entry, isNew] = objects_.emplace(name, static_cast<int>(scene_.objects.size()));
+  if (!isNew) {
+    throw Error(statement.where, "the object \"" + name + "\" is defined twice; the first is at " +
+                                     scene_.objects[entry->second].where.ToString());
+  }
+  scopes_.push_back({state_, true, statement.text, statement.where});
+  currentObject_ = entry->second;
+  scene_.objects.push_back({name, statement.where, {}, {}});
+}
+
+void SceneParser::ObjectEnd(const Token& statement) {
+  CloseScope(statement, true);
+  currentObject_ = -1;
+}
+
+void SceneParser::ObjectInstance(const Token& statement) {
+  InstanceDescription instance{ReadString(statement, "an object's name"), statement.where, CurrentPlacement()};
+  auto& list = currentObject_ >= 0 ? scene_.objects[currentObject_].instances : scene_.instances;
+  list.push_back(std::move(instance));
+}
+
+void SceneParser::Shape(const Token& statement) {
+  ShapeDescription shape;
+  shape.shape = ReadTyped(statement, "shape");
+  shape.placement = CurrentPlacement();
+  shape.reverseOrientation = state_.reverseOrientation;
+  shape.material = state_.material;
+  shape.areaLight = state_.areaLight;
+  shape.insideMedium = state_.insideMedium;
+  shape.outsideMedium = state_.outsideMedium;
+  for (const char* target : {"lighting", "lightfilter"}) {
+    const auto found = state_.attributes.find(target);
+    if (found == state_.attributes.end() || found->second.empty()) continue;
+    const std::string owner = std::string("Attribute \"") + target + "\"";
+    shape.attributes[target] = ParameterList(found->second.front().where, owner, found->second, tokens_.SceneFile());
+  }
+  auto& list = currentObject_ >= 0 ? scene_.objects[currentObject_].shapes : scene_.shapes;
+  list.push_back(std::move(shape));
+}
+
+void SceneParser::Material(const Token& statement) {
+  scene_.materials.push_back(ReadTyped(statement, "material"));
+  state_.material = {static_cast<int>(scene_.materials.size()) - 1, "", statement.where};
+}
+
+void SceneParser::MakeNamedMaterial(const Token& statement) {
+  const std::string name = ReadString(statement, "a name");
+  const auto [entry, isNew] = namedMaterials_.emplace(name, statement.where);
+  if (!isNew) {
+    throw Error(statement.where, "the material \"" + name + "\" is defined twice; the first is at " + entry->second.ToString());
+  }
+  ParameterList parameters = ReadList(statement, "MakeNamedMaterial \"" + name + "\"", "material");
+  std::string type = parameters.GetString("type", "");
+  if (type.empty()) throw Error(statement.where, "MakeNamedMaterial \"" + name + "\" needs a \"string type\"");
+  scene_.namedMaterials.push_back({name, {std::move(type), std::move(parameters), statement.where}});
+}
+
+void SceneParser::NamedMaterial(const Token& statement) {
+  const std::string name = ReadString(statement, "a material's name");
+  state_.material = {-1, name, statement.where};
+  materialUses_.push_back({name, statement.where});
+}
+
+void SceneParser::Texture(const Token& statement) {
+  TextureDescription texture;
+  texture.name = ReadString(statement, "a name");
+  const Token value = tokens_.Next();
+  if (value.kind != TokenKind::String) {
+    throw Error(value.where, "Texture needs \"float\" or \"spectrum\" after its name, found " + Describe(value));
+  }
+  if (value.text != "float" && value.text != "spectrum") {
+    const std::string hint = value.text == "color" || value.text == "rgb" ? " (did you mean \"spectrum\"?)"
+                                                                           : DidYouMean(value.text, {"float", "spectrum"});
+    throw Error(value.where, "a Texture is of \"float\" or \"spectrum\", not \"" + value.text + "\"" + hint);
+  }
+  texture.isSpectrum = value.text == "spectrum";
+  texture.texture = ReadTyped(statement, "texture");
+  texture.placement = CurrentPlacement();
+  if (!textureNames_.emplace(texture.name, texture.isSpectrum).second) {
+    throw Error(statement.where, "the " + value.text + " texture \"" + texture.name + "\" is defined twice");
+  }
+  scene_.textures.push_back(std::move(texture));
+}
+
+void SceneParser::AreaLightSource(const Token& statement) {
+  scene_.areaLights.push_back(ReadTyped(statement, "light"));
+  state_.areaLight = static_cast<int>(scene_.areaLights.size()) - 1;
+}
+
+void SceneParser::LightSource(const Token& statement) {
+  scene_.lights.push_back({ReadTyped(statement, "light"), CurrentPlacement(), state_.outsideMedium});
+}
+
+void SceneParser::LightFilter(const Token& statement) {
+  const StatementDescription filter = ReadTyped(statement);
+  diagnostics_.Warn(statement.where, "LightFilter \"" + filter.type + "\" is not supported yet: it is ignored");
+}
+
+void SceneParser::MakeNamedMedium(const Token& statement) {
+  const std::string name = ReadString(statement, "a name");
+  const auto [entry, isNew] = media_.emplace(name, statement.where);
+  if (!isNew) {
+    throw Error(statement.where, "the medium \"" + name + "\" is defined twice; the first is at " + entry->second.ToString());
+  }
+  ReadList(statement, "MakeNamedMedium \"" + name + "\"", "medium");
+  diagnostics_.Warn(statement.where, "participating media are not supported yet: the medium \"" + name + "\" is left out");
+}
+
+void SceneParser::MediumInterface(const Token& statement) {
+  state_.insideMedium = ReadString(statement, "a medium's name");
+  Token second = tokens_.Next();
+  if (second.kind == TokenKind::String) {
+    state_.outsideMedium = std::move(second.text);
+  } else {
+    tokens_.PutBack(std::move(second));
+    state_.outsideMedium = state_.insideMedium;
+  }
+  for (const std::string& name : {state_.insideMedium, state_.outsideMedium}) {
+    if (!name.empty()) mediumUses_.push_back({name, statement.where});
+  }
+}
+
+void SceneParser::ReverseOrientation(const Token&) { state_.reverseOrientation = !state_.reverseOrientation; }
+
+void SceneParser::Include(const Token& statement) {
+  const Token name = tokens_.Next();
+  if (name.kind != TokenKind::String) throw Error(name.where, statement.text + " needs a file's name in quotes, found " + Describe(name));
+  tokens_.OpenFile(name);
+}
+
+// Like Include, but the graphics state and the coordinate systems are afterwards what they were before.
+void SceneParser::Import(const Token& statement) {
+  const Token name = tokens_.Next();
+  if (name.kind != TokenKind::String) throw Error(name.where, statement.text + " needs a file's name in quotes, found " + Describe(name));
+  const GraphicsState state = state_;
+  const auto coordinateSystems = coordinateSystems_;
+  tokens_.OpenFile(name);
+  const size_t bottom = tokens_.SetBottom();
+  const size_t lowestScope = std::exchange(lowestScope_, scopes_.size());
+  ParseStatements();
+  tokens_.Next();  // the end of the imported file
+  CheckScopesClosed(lowestScope_);
+  lowestScope_ = lowestScope;
+  tokens_.RestoreBottom(bottom);
+  state_ = state;
+  coordinateSystems_ = coordinateSystems;
+}
+
+}  // namespace lampyr
