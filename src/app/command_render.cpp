@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <fstream>
@@ -55,6 +57,13 @@ Image DevelopWithMetadata(const Film& film, const RenderReport& report) {
                     {"lampyr.samplesPerPixel", std::to_string(report.outcome.samplesPerPixel)},
                     {"lampyr.seed", std::to_string(report.seed)}};
   return image;
+}
+
+// Halves end at 65504: an image that is brighter is kept in floats.
+ExrPrecision PrecisionFor(const Image& image, const RenderSettings& settings) {
+  constexpr float largestHalf = 65504;
+  const bool fits = std::all_of(image.data.begin(), image.data.end(), [](float v) { return std::abs(v) <= largestHalf; });
+  return settings.halfPrecision && fits ? ExrPrecision::Half : ExrPrecision::Float;
 }
 
 void WriteText(const std::filesystem::path& path, const std::string& text) {
@@ -143,7 +152,7 @@ int RunRender(const RenderOptions& options) {
 
   const Progress clock(true);
   const Image image = DevelopWithMetadata(film, report);
-  WriteExr(path, image, settings.halfPrecision ? ExrPrecision::Half : ExrPrecision::Float);
+  WriteExr(path, image, PrecisionFor(image, settings));
   if (options.png) {
     std::filesystem::path png = path;
     WritePng(png.replace_extension(".png"), image, options.exposure, options.filmic ? ToneMap::Filmic : ToneMap::Clip);

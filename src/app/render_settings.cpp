@@ -65,7 +65,8 @@ void ReadFilm(const SceneDescription& scene, const RenderOverrides& overrides, R
   if (overrides.width) settings.width = *overrides.width;
   if (overrides.height) settings.height = *overrides.height;
   settings.outputFile = film.GetString("filename", "");
-  settings.halfPrecision = film.GetBool("savefp16", true);
+  // pbrt-v4 writes halves unless told otherwise. Variances need floats: halves only where the scene asks for them.
+  settings.halfPrecision = film.GetBool("savefp16", false);
   const std::string sensor = film.GetString("sensor", "cie1931");
   if (sensor != "cie1931") {
     diagnostics.Warn(film.WhereOf("sensor"), "sensor \"" + sensor + "\" is not modelled; \"cie1931\" is used");

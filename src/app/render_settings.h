@@ -35,7 +35,7 @@ struct RenderSettings {
   int samplesPerPixel = 16;
   uint64_t seed = 0;
   LightSelection lightSelection = LightSelection::Power;
-  bool halfPrecision = true;
+  bool halfPrecision = false;
   float imagingRatio = 1;  // exposure time · ISO / 100: film value of radiance 1
   std::string outputFile;  // as the scene names it
 };
