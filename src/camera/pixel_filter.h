@@ -3,7 +3,7 @@
 #pragma once
 
 #include <memory>
-#include <string>
+#include <vector>
 
 #include "math/vec.h"
 #include "sampling/tables.h"
@@ -19,24 +19,37 @@ struct PixelFilterSettings {
   float tau = 3;                         // sinc
 };
 
+// All kinds are products of a function of x and one of y; each is sampled on its own axis.
 class PixelFilter {
  public:
+  // Throws an Error when a radius is not positive or the filter has no positive integral.
   explicit PixelFilter(const PixelFilterSettings& settings);
 
   struct Offset {
     Vector2 offset;    // from the pixel's centre, pixels
-    float weight = 1;  // sign and magnitude of f/p, normalised to mean 1
+    float weight = 1;  // of mean 1: exactly 1 for filters that are nowhere negative, else ±∫|f|/∫f
   };
   // u in [0,1)².
   Offset Sample(const Point2& u) const;
-  // The filter's value at an offset, normalised to ∫ = 1 (for splats).
+  // The filter's value at an offset, normalised to ∫ = 1 (for splats); 0 outside of the radius.
   float Evaluate(const Vector2& offset) const;
+  // Half the extent of the filter, pixels.
+  Vector2 Radius() const { return {settings_.radiusX, settings_.radiusY}; }
 
  private:
-  float Raw(const Vector2& offset) const;  // not normalised
+  // The filter along one axis. `table` holds |f| over [-radius, radius] for kinds that have no closed inversion.
+  struct Axis {
+    float radius = 0;
+    float integral = 1;          // of f
+    float absoluteRatio = 1;     // ∫|f| / ∫f
+    Distribution1D table;
+    std::vector<signed char> signs;  // of f, per interval of the table
+  };
+  static Axis MakeAxis(const PixelFilterSettings& settings, float radius);
+  float SampleAxis(const Axis& axis, float u, float* weight) const;
+
   PixelFilterSettings settings_;
-  float integral_ = 1;
-  std::shared_ptr<const Distribution2D> table_;  // of |f|, for filters that have no closed inversion
+  std::shared_ptr<const Axis> x_, y_;
 };
 
 }  // namespace lampyr
