@@ -1,10 +1,11 @@
 // The textures and images of a scene, by name, and the parameters of materials and lights that may use them.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <map>
 #include <memory>
-#include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@
 
 namespace lampyr {
 
+// Made and asked while the scene is built, by one thread. What it hands out may be used by any.
 class TextureLibrary {
  public:
   // Makes all textures of the scene. `worldToRender` places those with 3-D mappings. Throws located Errors.
@@ -33,10 +35,21 @@ class TextureLibrary {
   // An image file, read once and shared. Throws an Error at `where` when it cannot be read.
   std::shared_ptr<const Image> GetImage(const std::filesystem::path& file, ImageEncoding encoding,
                                         const FileLocation& where) const;
+  // The same with a power law for integer formats: linear = encoded^gamma.
+  std::shared_ptr<const Image> GetImageWithGamma(const std::filesystem::path& file, float gamma,
+                                                 const FileLocation& where) const;
 
  private:
-  std::map<std::string, std::shared_ptr<const FloatTexture>> floatTextures_;
-  std::map<std::string, std::shared_ptr<const ColorTexture>> colorTextures_;
+  // A colour texture as albedo, unbounded and illuminant: what it is used for decides how its spectra become RGB.
+  using ColorVariants = std::array<ColorParameter, 3>;
+
+  void Add(const TextureDescription& description, const Transform& worldToRender, Diagnostics& diagnostics);
+  [[noreturn]] void ThrowUnknownTexture(const ParameterList& parameters, const std::string& parameter,
+                                        const std::string& texture, bool isSpectrum) const;
+
+  std::map<std::string, FloatParameter> floatTextures_;  // textures that do not vary are constants
+  std::map<std::string, ColorVariants> colorTextures_;
+  std::vector<std::string> allNames_;  // of textures that come later, too: for messages
   mutable std::map<std::string, std::shared_ptr<const Image>> images_;
 };
 

@@ -1,0 +1,89 @@
+// Textures made of others: scale, mix, directionmix.
+#include "textures/texture_families.h"
+
+namespace lampyr {
+
+namespace {
+
+// (1-t)·a + t·b, without evaluating what has no weight.
+template <class Value>
+Value Blend(const ParameterOf<Value>& a, const ParameterOf<Value>& b, float t, const TextureContext& where) {
+  if (t == 0) return a.Evaluate(where);
+  if (t == 1) return b.Evaluate(where);
+  return a.Evaluate(where) * (1 - t) + b.Evaluate(where) * t;
+}
+
+template <class Value>
+class ScaleTexture : public Texture<Value> {
+ public:
+  ScaleTexture(ParameterOf<Value> texture, FloatParameter scale) : texture_(std::move(texture)), scale_(std::move(scale)) {}
+  Value Evaluate(const TextureContext& where) const override {
+    return texture_.Evaluate(where) * scale_.Evaluate(where);
+  }
+
+ private:
+  ParameterOf<Value> texture_;
+  FloatParameter scale_;
+};
+
+template <class Value>
+class MixTexture : public Texture<Value> {
+ public:
+  MixTexture(ParameterOf<Value> first, ParameterOf<Value> second, FloatParameter amount)
+      : first_(std::move(first)), second_(std::move(second)), amount_(std::move(amount)) {}
+  Value Evaluate(const TextureContext& where) const override {
+    return Blend(first_, second_, amount_.Evaluate(where), where);
+  }
+
+ private:
+  ParameterOf<Value> first_, second_;
+  FloatParameter amount_;
+};
+
+template <class Value>
+ParameterOf<Value> Mixed(ParameterOf<Value> first, ParameterOf<Value> second, FloatParameter amount) {
+  if (amount.IsConstant()) {
+    const float t = amount.Evaluate({});
+    if (t == 0) return first;
+    if (t == 1) return second;
+    if (first.IsConstant() && second.IsConstant()) return Blend(first, second, t, {});
+  }
+  return ParameterOf<Value>(std::make_shared<MixTexture<Value>>(std::move(first), std::move(second), std::move(amount)));
+}
+
+}  // namespace
+
+template <class Value>
+ParameterOf<Value> MakeScale(const TextureRequest& request) {
+  ParameterOf<Value> texture = GetValue<Value>(request, "tex", 1);
+  FloatParameter scale = request.library.GetFloat(request.Parameters(), "scale", 1);
+  if (scale.IsConstant()) {
+    const float factor = scale.Evaluate({});
+    if (factor == 1) return texture;
+    if (texture.IsConstant()) return texture.Evaluate({}) * factor;
+  }
+  return ParameterOf<Value>(std::make_shared<ScaleTexture<Value>>(std::move(texture), std::move(scale)));
+}
+
+template <class Value>
+ParameterOf<Value> MakeMix(const TextureRequest& request) {
+  return Mixed<Value>(GetValue<Value>(request, "tex1", 0), GetValue<Value>(request, "tex2", 1),
+                      request.library.GetFloat(request.Parameters(), "amount", 0.5f));
+}
+
+template <class Value>
+ParameterOf<Value> MakeDirectionMix(const TextureRequest& request) {
+  request.diagnostics.Warn(request.description.texture.where,
+                           "texture type \"directionmix\" is not supported yet: an even mix of tex1 and tex2 stands for it");
+  request.Parameters().Find("dir");
+  return Mixed<Value>(GetValue<Value>(request, "tex1", 0), GetValue<Value>(request, "tex2", 1), FloatParameter(0.5f));
+}
+
+template FloatParameter MakeScale<float>(const TextureRequest&);
+template ColorParameter MakeScale<Color>(const TextureRequest&);
+template FloatParameter MakeMix<float>(const TextureRequest&);
+template ColorParameter MakeMix<Color>(const TextureRequest&);
+template FloatParameter MakeDirectionMix<float>(const TextureRequest&);
+template ColorParameter MakeDirectionMix<Color>(const TextureRequest&);
+
+}  // namespace lampyr

@@ -1,0 +1,112 @@
+// The imagemap texture: an image file, looked up by a 2-D mapping. value = scale · texel, then 1 - value when inverted.
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+
+#include "textures/texel_lookup.h"
+#include "textures/texture_families.h"
+
+namespace lampyr {
+
+namespace {
+
+class FloatImageTexture : public FloatTexture {
+ public:
+  FloatImageTexture(const TextureMapping2D& mapping, TexelLookup texels, float scale, bool invert)
+      : mapping_(mapping), texels_(std::move(texels)), scale_(scale), invert_(invert) {}
+  float Evaluate(const TextureContext& where) const override {
+    const float value = scale_ * texels_.LookupFloat(mapping_.Map(where));
+    return invert_ ? std::max(0.0f, 1 - value) : value;
+  }
+
+ private:
+  TextureMapping2D mapping_;
+  TexelLookup texels_;
+  float scale_;
+  bool invert_;
+};
+
+// Never negative, and an albedo never above 1: images may hold anything, a surface must not create light.
+class ColorImageTexture : public ColorTexture {
+ public:
+  ColorImageTexture(const TextureMapping2D& mapping, TexelLookup texels, float scale, bool invert, bool isAlbedo)
+      : mapping_(mapping), texels_(std::move(texels)), scale_(scale), invert_(invert),
+        largest_(isAlbedo ? 1.0f : std::numeric_limits<float>::max()) {}
+  Color Evaluate(const TextureContext& where) const override {
+    Color value = scale_ * texels_.LookupColor(mapping_.Map(where));
+    if (invert_) value = Color(1.0f) - value;
+    return {Bounded(value.r), Bounded(value.g), Bounded(value.b)};
+  }
+
+ private:
+  float Bounded(float x) const { return std::clamp(x, 0.0f, largest_); }
+
+  TextureMapping2D mapping_;
+  TexelLookup texels_;
+  float scale_;
+  bool invert_;
+  float largest_;
+};
+
+// The entry of `names` that the string parameter names; throws with the nearest when there is none.
+size_t ReadChoice(const ParameterList& parameters, const std::string& name, const std::vector<std::string>& names) {
+  const std::string value = parameters.GetString(name, names[0]);
+  const auto found = std::find(names.begin(), names.end(), value);
+  if (found == names.end()) {
+    throw Error(parameters.WhereOf(name), "\"" + value + "\" is no " + name + DidYouMean(value, names));
+  }
+  return static_cast<size_t>(found - names.begin());
+}
+
+// "gamma 2.2": its exponent; 0 for anything else.
+float ReadGamma(const std::string& encoding) {
+  const std::string prefix = "gamma ";
+  if (encoding.rfind(prefix, 0) != 0) return 0;
+  const std::string number = encoding.substr(prefix.size());
+  char* end = nullptr;
+  const float gamma = std::strtof(number.c_str(), &end);
+  return *end == '\0' && gamma > 0 && std::isfinite(gamma) ? gamma : 0;
+}
+
+std::shared_ptr<const Image> ReadTextureImage(const TextureRequest& request) {
+  const ParameterList& parameters = request.Parameters();
+  const std::string file = parameters.GetFile("filename");
+  if (file.empty()) throw Error(parameters.Where(), "an imagemap needs a \"string filename\"");
+  const std::string encoding = parameters.GetString("encoding", "");
+  const FileLocation where = parameters.WhereOf("filename");
+  if (encoding.empty()) return request.library.GetImage(file, ImageEncoding::Automatic, where);
+  if (encoding == "sRGB") return request.library.GetImage(file, ImageEncoding::Srgb, where);
+  if (encoding == "linear") return request.library.GetImage(file, ImageEncoding::Linear, where);
+  const float gamma = ReadGamma(encoding);
+  if (gamma == 0) {
+    throw Error(parameters.WhereOf("encoding"),
+                "\"" + encoding + "\" is no encoding: \"sRGB\", \"linear\" and \"gamma 2.2\" are");
+  }
+  return request.library.GetImageWithGamma(file, gamma, where);
+}
+
+}  // namespace
+
+template <class Value>
+ParameterOf<Value> MakeImageMap(const TextureRequest& request) {
+  const ParameterList& parameters = request.Parameters();
+  const size_t wrap = ReadChoice(parameters, "wrap", {"repeat", "black", "clamp", "octahedralsphere"});
+  const size_t filter = ReadChoice(parameters, "filter", {"bilinear", "point", "trilinear", "EWA", "ewa"});
+  const float scale = static_cast<float>(parameters.GetFloat("scale", 1));
+  const bool invert = parameters.GetBool("invert", false);
+  const TextureMapping2D mapping = ReadMapping2D(request);
+  const std::shared_ptr<const Image> image = ReadTextureImage(request);
+  TexelLookup texels(image, static_cast<WrapMode>(wrap), filter != 1);
+  if constexpr (std::is_same_v<Value, float>) {
+    return FloatParameter(std::make_shared<FloatImageTexture>(mapping, std::move(texels), scale, invert));
+  } else {
+    return ColorParameter(std::make_shared<ColorImageTexture>(mapping, std::move(texels), scale, invert,
+                                                              request.role == SpectrumRole::Albedo));
+  }
+}
+
+template FloatParameter MakeImageMap<float>(const TextureRequest&);
+template ColorParameter MakeImageMap<Color>(const TextureRequest&);
+
+}  // namespace lampyr

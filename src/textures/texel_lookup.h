@@ -1,0 +1,72 @@
+// Lookups in an image by texture coordinates: (0,0) is the lower left corner, texel centres lie at half texels.
+// No MIP maps: many samples per pixel do the filtering.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <type_traits>
+
+#include "film/image.h"
+#include "math/vec.h"
+
+namespace lampyr {
+
+enum class WrapMode { Repeat, Black, Clamp, OctahedralSphere };
+
+class TexelLookup {
+ public:
+  TexelLookup(std::shared_ptr<const Image> image, WrapMode wrap, bool bilinear);
+
+  // Gray is the mean of R, G and B. Coordinates that are not finite give the texel at 0.
+  Color LookupColor(const Point2& st) const { return Lookup<Color>(st); }
+  float LookupFloat(const Point2& st) const { return Lookup<float>(st); }
+
+ private:
+  // Whole texel and fraction along one axis; coordinates beyond any use are clamped, so that the cast is defined.
+  struct Texel {
+    int index;
+    float fraction;
+  };
+  static Texel Split(float x) {
+    const float bounded = x > -0x1p30f ? std::min(x, 0x1p30f) : -0x1p30f;  // -2^30 for NaN
+    const float whole = std::floor(bounded);
+    return {static_cast<int>(whole), bounded - whole};
+  }
+
+  template <class Value>
+  Value Lookup(const Point2& st) const {
+    const float x = st.x * static_cast<float>(width_), y = (1 - st.y) * static_cast<float>(height_);
+    if (!bilinear_) return At<Value>(Split(x).index, Split(y).index);
+    const Texel u = Split(x - 0.5f), v = Split(y - 0.5f);
+    const auto row = [&](int j) {
+      return At<Value>(u.index, j) * (1 - u.fraction) + At<Value>(u.index + 1, j) * u.fraction;
+    };
+    return row(v.index) * (1 - v.fraction) + row(v.index + 1) * v.fraction;
+  }
+
+  template <class Value>
+  Value At(int x, int y) const {
+    const bool inside = static_cast<unsigned>(x) < static_cast<unsigned>(width_) &&
+                        static_cast<unsigned>(y) < static_cast<unsigned>(height_);
+    if (!inside && !WrapInside(x, y)) return Value{};
+    const float* texel = data_ + (static_cast<size_t>(y) * static_cast<size_t>(width_) + static_cast<size_t>(x)) * stride_;
+    if constexpr (std::is_same_v<Value, float>) {
+      return red_ == green_ ? texel[red_] : (texel[red_] + texel[green_] + texel[blue_]) * (1.0f / 3);
+    } else {
+      return Value(texel[red_], texel[green_], texel[blue_]);
+    }
+  }
+
+  // Moves a texel into the image by the wrap mode; false: it is black.
+  bool WrapInside(int& x, int& y) const;
+
+  std::shared_ptr<const Image> image_;  // owns what data_ points to
+  const float* data_;
+  int width_, height_;
+  size_t stride_, red_, green_, blue_;
+  WrapMode wrap_;
+  bool bilinear_;
+};
+
+}  // namespace lampyr

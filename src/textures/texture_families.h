@@ -1,0 +1,68 @@
+// Private to the textures room: the families of textures, one file each, and what their makers are given.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <type_traits>
+
+#include "scene/scene_description.h"
+#include "textures/mapping.h"
+#include "textures/texture.h"
+#include "textures/texture_library.h"
+
+namespace lampyr {
+
+// Everything a maker needs of one Texture statement. `role` decides how spectra among the parameters become RGB.
+struct TextureRequest {
+  const TextureDescription& description;
+  const TextureLibrary& library;  // holds the textures before this one
+  Affine renderToTexture;
+  SpectrumRole role = SpectrumRole::Albedo;
+  Diagnostics& diagnostics;
+
+  const ParameterList& Parameters() const { return description.texture.parameters; }
+};
+
+// A parameter of the texture's own kind, itself perhaps a texture.
+template <class Value>
+ParameterOf<Value> GetValue(const TextureRequest& request, const std::string& name, float defaultGray) {
+  if constexpr (std::is_same_v<Value, float>) {
+    return request.library.GetFloat(request.Parameters(), name, defaultGray);
+  } else {
+    return request.library.GetColor(request.Parameters(), name, Color(defaultGray), request.role);
+  }
+}
+
+// The same where pbrt takes no texture.
+template <class Value>
+Value GetConstant(const TextureRequest& request, const std::string& name, float defaultGray) {
+  if constexpr (std::is_same_v<Value, float>) {
+    return static_cast<float>(request.Parameters().GetFloat(name, static_cast<double>(defaultGray)));
+  } else {
+    return request.Parameters().GetColor(name, Color(defaultGray), request.role);
+  }
+}
+
+TextureMapping2D ReadMapping2D(const TextureRequest& request);
+
+// Each throws located Errors. A result that does not vary is a constant.
+template <class Value>
+ParameterOf<Value> MakeScale(const TextureRequest& request);
+template <class Value>
+ParameterOf<Value> MakeMix(const TextureRequest& request);
+template <class Value>
+ParameterOf<Value> MakeDirectionMix(const TextureRequest& request);
+template <class Value>
+ParameterOf<Value> MakeBilerp(const TextureRequest& request);
+template <class Value>
+ParameterOf<Value> MakeCheckerboard(const TextureRequest& request);
+template <class Value>
+ParameterOf<Value> MakeDots(const TextureRequest& request);
+template <class Value>
+ParameterOf<Value> MakeImageMap(const TextureRequest& request);
+FloatParameter MakeFbm(const TextureRequest& request);
+FloatParameter MakeWrinkled(const TextureRequest& request);
+FloatParameter MakeWindy(const TextureRequest& request);
+ColorParameter MakeMarble(const TextureRequest& request);
+
+}  // namespace lampyr
