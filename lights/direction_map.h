@@ -1,0 +1,38 @@
+// Directions between a light's local space and render space, and what that does to densities.
+//
+// A linear map M carries local directions to render space: ω = M l / |M l|. With A = M⁻¹ the solid angles are related by
+// dω_local / dω = |det A| / |A ω|³, which is 1 for rotations, mirrors and uniform scales. A light whose distribution is
+// defined in local directions (a cone, an image) multiplies its local density by that factor.
+#pragma once
+
+#include <glm/matrix.hpp>
+
+#include "lights/light.h"
+#include "math/vec.h"
+
+namespace lampyr {
+
+inline Vector3 ToLocalDirection(const LightTransform& transform, const Vector3& direction) {
+  return glm::normalize(transform.toLocal.Vector(direction));
+}
+
+inline Vector3 ToRenderDirection(const LightTransform& transform, const Vector3& local) {
+  return glm::normalize(transform.toRender.Vector(local));
+}
+
+// dω_local / dω at the unit render-space `direction`. Scaled first, so that no size of transform overflows.
+inline float LocalSolidAngleFactor(const LightTransform& transform, const Vector3& direction) {
+  const float length = glm::length(transform.toLocal.Vector(direction));
+  return std::abs(glm::determinant(transform.toLocal.linear * (1.0f / length)));
+}
+
+// Whether the linear map is a rotation or mirror times one scale, to float precision.
+inline bool IsSimilarity(const glm::mat3& m) {
+  const float xx = glm::dot(m[0], m[0]), yy = glm::dot(m[1], m[1]), zz = glm::dot(m[2], m[2]);
+  const float tolerance = 4e-6f * xx;
+  return std::abs(yy - xx) <= tolerance && std::abs(zz - xx) <= tolerance &&
+         std::abs(glm::dot(m[0], m[1])) <= tolerance && std::abs(glm::dot(m[0], m[2])) <= tolerance &&
+         std::abs(glm::dot(m[1], m[2])) <= tolerance;
+}
+
+}  // namespace lampyr

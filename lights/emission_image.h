@@ -1,0 +1,51 @@
+// An image as a light uses it: radiance per texel, with NaN, infinite and negative texels read as 0 (warned about once).
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "film/image.h"
+#include "lights/light_type.h"
+
+namespace lampyr {
+
+class EmissionImage {
+ public:
+  EmissionImage() = default;
+  // The file that the parameter "filename" names; an empty image when there is none. Throws located Errors.
+  EmissionImage(const ParameterList& parameters, const LightBuildContext& build);
+  // `name` is for messages.
+  EmissionImage(std::shared_ptr<const Image> image, const std::string& name, const FileLocation& where,
+                Diagnostics* diagnostics);
+
+  bool IsEmpty() const { return !image_; }
+  int Width() const { return image_->width; }
+  int Height() const { return image_->height; }
+
+  Color Texel(int x, int y) const {
+    const float* texel = data_ + (static_cast<size_t>(y) * width_ + x) * stride_;
+    return {Clean(texel[r_]), Clean(texel[g_]), Clean(texel[b_])};
+  }
+  // Of the texel that holds uv in [0,1)²; v counts down from the image's top row.
+  Color Nearest(const Point2& uv) const {
+    const int x = std::min(static_cast<int>(uv.x * static_cast<float>(width_)), width_ - 1);
+    const int y = std::min(static_cast<int>(uv.y * static_cast<float>(image_->height)), image_->height - 1);
+    return Texel(std::max(x, 0), std::max(y, 0));
+  }
+  // Bilinear between texel middles, clamped at the edges; v counts up from the image's lowest row, as on surfaces.
+  Color OnSurface(const Point2& uv) const;
+
+  Color Mean() const { return mean_; }
+
+ private:
+  // Finite, and small enough that scales and sums of a few texels stay finite.
+  static float Clean(float value) { return value > 0 && value < 1e37f ? value : 0.0f; }
+
+  std::shared_ptr<const Image> image_;
+  const float* data_ = nullptr;
+  int width_ = 0;
+  size_t stride_ = 0, r_ = 0, g_ = 0, b_ = 0;
+  Color mean_;
+};
+
+}  // namespace lampyr

@@ -1,0 +1,25 @@
+// Cheap estimates of what an emitter sends to a point or along a ray segment, from its emission bounds alone. They are
+// never 0 where the light can contribute: angles are widened by what the box subtends ([Conty18 §4.2]).
+#pragma once
+
+#include <optional>
+
+#include "lights/light.h"
+
+namespace lampyr {
+
+// Irradiance at P on a surface facing the emitter; `power` is its power, mean of the channels. For surfaces that emit by
+// the cosine law.
+float SurfaceIrradianceEstimate(const EmissionBounds& bounds, float power, const Point3& P);
+
+// The same for a segment, evaluated at its point nearest to the box's middle. The segment is clipped where the emitter is
+// flat, one-sided and seen from behind.
+std::optional<SegmentEstimate> SurfaceSegmentEstimate(const EmissionBounds& bounds, float power, const Point3& origin,
+                                                      const Vector3& direction, float length);
+
+// The parameter in [minT, maxT] at which the segment comes nearest to `point`.
+inline float NearestOnSegment(const Point3& origin, const Vector3& direction, float minT, float maxT, const Point3& point) {
+  return std::min(std::max(glm::dot(point - origin, direction), minT), maxT);
+}
+
+}  // namespace lampyr

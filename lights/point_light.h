@@ -1,0 +1,126 @@
+// Lights that are a point with an intensity over directions: position, falloff with distance and the discrete densities are
+// here, once; what differs is the profile, the relative intensity over directions and the sampling of it. A template, so
+// that the profile is inlined.
+//
+// A Profile has (directions are unit and in render space, `transform` is the light's placement):
+//   float Shape(transform, direction)           intensity relative to its maximum, in [0,1]
+//   Vector3 Sample(transform, u)                a direction of emission
+//   PdfSolidAngle Density(transform, direction) its density: never 0 where Shape is not
+//   double SolidAngle(transform)                ∫ Shape dω
+//   void SetCones(transform, bounds)            axis and angles of the emission bounds
+//   bool Clip(transform, from, origin, direction, minT, maxT)
+//                                               cuts a ray's [minT, maxT] to what is reached; false when that is nothing
+#pragma once
+
+#include "lights/estimates.h"
+#include "lights/light_base.h"
+
+namespace lampyr {
+
+template <class Profile>
+class PointLightWith final : public LightBase {
+ public:
+  // Reads I, scale, power and from.
+  PointLightWith(LightTypeFunction type, const ParameterList& parameters, Profile profile)
+      : LightBase(type, parameters), profile_(std::move(profile)), from_(parameters.GetPoint3("from", Point3d(0.0))) {
+    double scale = parameters.GetFloat("scale", 1);
+    const double power = parameters.GetFloat("power", -1);
+    if (power > 0) scale *= power / profile_.SolidAngle(LightTransform{});
+    intensity_ = ReadEmissionColor(parameters, "I") * static_cast<float>(scale);
+    if (!intensity_.IsValid()) throw Error(parameters.Where(), parameters.Owner() + ": the intensity is not finite");
+  }
+
+  LightKind Kind() const override { return LightKind::DeltaPosition; }
+
+  float GetIncidentRadianceEstimate(const LightContext& context, const Point3& P) const override {
+    const Vector3 way = P - Position(context);
+    const float squared = std::max(LengthSquared(way), kSmallest);
+    const float shape = profile_.Shape(*context.transform, way / std::sqrt(squared));
+    if (!(shape > 0) || intensity_.IsBlack()) return 0;
+    return std::clamp(intensity_.Average() * shape / squared, kSmallest, kLargest);
+  }
+
+  std::optional<SegmentEstimate> GetIncidentRadianceEstimate(const LightContext& context, const Point3& origin,
+                                                             const Vector3& direction, float length) const override {
+    SegmentEstimate estimate{0, 0, length};
+    if (intensity_.IsBlack() ||
+        !profile_.Clip(*context.transform, from_, origin, direction, estimate.minT, estimate.maxT)) {
+      return std::nullopt;
+    }
+    // The intensity where the segment comes nearest may be 0 while it is not elsewhere: the largest one is taken.
+    const Point3 position = Position(context);
+    const float t = NearestOnSegment(origin, direction, estimate.minT, estimate.maxT, position);
+    const float squared = std::max(LengthSquared(origin + t * direction - position), kSmallest);
+    estimate.radiance = std::clamp(intensity_.Average() / squared, kSmallest, kLargest);
+    return estimate;
+  }
+
+  Color GetPowerEstimate(const LightContext& context) const override {
+    return intensity_ * static_cast<float>(profile_.SolidAngle(*context.transform));
+  }
+
+  std::optional<EmissionBounds> GetEmissionBounds(const LightContext& context) const override {
+    EmissionBounds bounds;
+    bounds.box.Add(Position(context));
+    bounds.energy = GetPowerEstimate(context).Average() * Settings().importanceMultiplier;
+    profile_.SetCones(*context.transform, bounds);
+    return bounds;
+  }
+
+  std::optional<LightSample> GenerateSamples(const LightContext& context, const Point3& P) const override {
+    const Point3 position = Position(context);
+    const Vector3 toLight = position - P;
+    const float squared = LengthSquared(toLight);
+    if (!(squared > 0)) return std::nullopt;
+    std::optional<LightSample> sample(std::in_place);
+    sample->distance = std::sqrt(squared);
+    sample->direction = toLight / sample->distance;
+    sample->diffuse = intensity_ * (profile_.Shape(*context.transform, -sample->direction) / squared);
+    if (sample->diffuse.IsBlack() || !sample->diffuse.IsValid()) return std::nullopt;
+    sample->specular = sample->diffuse;
+    sample->position = position;
+    sample->positionError = PositionError(context);
+    sample->pdfDirect = PdfSolidAngle(1);
+    if (context.bidirectional) {
+      sample->pdfEmit = PdfArea(1);
+      sample->pdfEmitDirection = profile_.Density(*context.transform, -sample->direction);
+      sample->solidAngleToArea = 1;
+    }
+    return sample;
+  }
+
+  std::optional<LightEvaluation> EvaluateSamples(const LightContext&, const LightHit&, const Point3&) const override {
+    return std::nullopt;
+  }
+
+  std::optional<EmissionSample> GenerateEmission(const LightContext& context) const override {
+    EmissionSample sample;
+    sample.direction = profile_.Sample(*context.transform, context.u);
+    sample.pdfEmitDirection = profile_.Density(*context.transform, sample.direction);
+    sample.diffuse = intensity_ * profile_.Shape(*context.transform, sample.direction);
+    if (sample.pdfEmitDirection.IsZero() || sample.diffuse.IsBlack()) return std::nullopt;
+    sample.specular = sample.diffuse;
+    sample.position = Position(context);
+    sample.positionError = PositionError(context);
+    sample.normal = sample.direction;
+    sample.pdfEmit = PdfArea(1);
+    return sample;
+  }
+
+  Color EvaluateEmissionForCamera(const LightContext&, const LightHit&) const override { return Color(0.0f); }
+
+ private:
+  static constexpr float kSmallest = std::numeric_limits<float>::min();
+  static constexpr float kLargest = std::numeric_limits<float>::max();
+
+  Point3 Position(const LightContext& context) const { return context.transform->toRender.Point(from_); }
+  Vector3 PositionError(const LightContext& context) const {
+    return context.transform->toRender.PointError(from_, Vector3(0.0f));
+  }
+
+  Profile profile_;
+  Color intensity_;  // W/sr where the profile's shape is 1
+  Point3 from_;      // local space
+};
+
+}  // namespace lampyr

@@ -1,0 +1,34 @@
+// All built-in lights. A light is its own file, which defines `LightType …LightType()`, and one row here.
+#include "lights/light_type.h"
+#include "lights/parameter_check.h"
+
+namespace lampyr {
+
+const std::vector<LightType>& LightRegistry() {
+  static const std::vector<LightType> registry = [] {
+    std::vector<LightType> types;
+    // clang-format off
+    extern LightType DiffuseAreaLightType();  types.push_back(DiffuseAreaLightType());
+    extern LightType PointLightType();        types.push_back(PointLightType());
+    extern LightType SpotLightType();         types.push_back(SpotLightType());
+    extern LightType DistantLightType();      types.push_back(DistantLightType());
+    extern LightType InfiniteLightType();     types.push_back(InfiniteLightType());
+    // clang-format on
+    return types;
+  }();
+  return registry;
+}
+
+const LightType* FindLightType(const std::string& name, bool isAreaLight) {
+  for (const LightType& type : LightRegistry()) {
+    if (type.name == name && type.isAreaLight == isAreaLight) return &type;
+  }
+  return nullptr;
+}
+
+std::unique_ptr<Light> MakeLight(const LightType& type, const ParameterList& parameters, const LightBuildContext& build) {
+  CheckParameters(type, parameters);
+  return type.create(parameters, build);
+}
+
+}  // namespace lampyr
