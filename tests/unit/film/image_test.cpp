@@ -1,0 +1,203 @@
+// Writing and reading images: nothing lost on the way, whole files or none.
+#include "film/image.h"
+
+#include <gtest/gtest.h>
+
+#include <sys/resource.h>
+
+#include <cmath>
+#include <csignal>
+#include <random>
+
+#include "base/error.h"
+#include "film/srgb.h"
+#include "temporary_folder.h"
+
+namespace lampyr {
+namespace {
+
+Image NoiseImage(int width, int height, std::vector<std::string> channels, float scale = 1.0f) {
+  Image image(width, height, std::move(channels));
+  std::mt19937 generator(11);
+  std::uniform_real_distribution<float> uniform(0.0f, scale);
+  for (float& value : image.data) value = uniform(generator);
+  return image;
+}
+
+TEST(Exr, FloatLayersMetadataAndCropComeBackExactly) {
+  const TemporaryFolder folder;
+  Image image = NoiseImage(37, 21, {"R", "G", "B", "A", "albedo.R", "albedo.G", "albedo.B", "variance.R", "variance.G",
+                                    "variance.B", "depth.Z"}, 100.0f);
+  image.offsetX = 5;
+  image.offsetY = 9;
+  image.fullWidth = 100;
+  image.fullHeight = 50;
+  image.metadata = {{"lampyr.integrator", "path"}, {"lampyr.seed", "42"}, {"empty", ""}};
+  WriteExr(folder / "a.exr", image, ExrPrecision::Float);
+  const Image read = ReadImage(folder / "a.exr");
+  EXPECT_EQ(read.width, image.width);
+  EXPECT_EQ(read.height, image.height);
+  EXPECT_EQ(read.offsetX, 5);
+  EXPECT_EQ(read.offsetY, 9);
+  EXPECT_EQ(read.fullWidth, 100);
+  EXPECT_EQ(read.fullHeight, 50);
+  EXPECT_EQ(read.metadata, image.metadata);
+  const std::vector<std::string> order = {"R", "G", "B", "A", "albedo.R", "albedo.G", "albedo.B", "depth.Z",
+                                          "variance.R", "variance.G", "variance.B"};
+  ASSERT_EQ(read.channels, order);
+  for (const std::string& channel : order) {
+    const auto from = static_cast<size_t>(image.ChannelIndex(channel)), to = static_cast<size_t>(read.ChannelIndex(channel));
+    for (int y = 0; y < image.height; ++y) {
+      for (int x = 0; x < image.width; ++x) ASSERT_EQ(image.At(x, y, from), read.At(x, y, to)) << channel;
+    }
+  }
+  EXPECT_EQ(folder.FileCount(), 1u);
+}
+
+TEST(Exr, HalfKeepsElevenBitsAndStaysFinite) {
+  const TemporaryFolder folder;
+  Image image = NoiseImage(16, 16, {"R", "G", "B"});
+  image.At(3, 4, 1) = 1e30f;
+  image.At(3, 5, 1) = -1e30f;
+  WriteExr(folder / "a.exr", image, ExrPrecision::Half);
+  const Image read = ReadImage(folder / "a.exr");
+  EXPECT_EQ(read.At(3, 4, 1), 65504.0f);
+  EXPECT_EQ(read.At(3, 5, 1), -65504.0f);
+  for (size_t i = 0; i < image.data.size(); ++i) {
+    if (std::abs(image.data[i]) < 2) {
+      ASSERT_NEAR(read.data[i], image.data[i], std::ldexp(std::max(image.data[i], 1e-4f), -11));
+    }
+  }
+}
+
+TEST(Exr, WritesOverTheOldFile) {
+  const TemporaryFolder folder;
+  WriteExr(folder / "a.exr", NoiseImage(64, 64, {"R", "G", "B"}), ExrPrecision::Float);
+  WriteExr(folder / "a.exr", NoiseImage(2, 2, {"R", "G", "B"}), ExrPrecision::Float);
+  EXPECT_EQ(ReadImage(folder / "a.exr").width, 2);
+}
+
+std::string FailureOf(const std::filesystem::path& path, bool png = false) {
+  try {
+    const Image image = NoiseImage(128, 128, {"R", "G", "B"});
+    if (png) {
+      WritePng(path, image, 0, ToneMap::Clip);
+    } else {
+      WriteExr(path, image, ExrPrecision::Float);
+    }
+  } catch (const Error& e) {
+    return e.Text();
+  }
+  return "";
+}
+
+TEST(AtomicWrite, FailuresNameFileAndReason) {
+  const TemporaryFolder folder;
+  WriteBytes(folder / "file", "old");
+  EXPECT_NE(FailureOf(folder / "file/a.exr").find("Not a directory"), std::string::npos);
+  EXPECT_NE(FailureOf(folder / "missing/a.exr").find("No such file or directory"), std::string::npos);
+  EXPECT_NE(FailureOf(folder.Path()).find("Is a directory"), std::string::npos);
+  EXPECT_NE(FailureOf(folder / "file/a.png", true).find("Not a directory"), std::string::npos);
+  EXPECT_EQ(ReadBytes(folder / "file"), "old");
+}
+
+TEST(AtomicWrite, AFullDiskLeavesTheOldFileAndNoRest) {
+  const TemporaryFolder folder;
+  WriteExr(folder / "a.exr", NoiseImage(8, 8, {"R", "G", "B"}), ExrPrecision::Float);
+  const std::string before = ReadBytes(folder / "a.exr");
+  // A limit on the size of files stands for the full disk: writing stops short in the middle of the pixels.
+  rlimit old{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &old), 0);
+  const auto oldHandler = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit small{30000, old.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+  const std::string exr = FailureOf(folder / "a.exr"), png = FailureOf(folder / "a.png", true);
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &old), 0);
+  std::signal(SIGXFSZ, oldHandler);
+  EXPECT_NE(exr.find("File too large"), std::string::npos) << exr;
+  EXPECT_NE(png.find("File too large"), std::string::npos) << png;
+  EXPECT_EQ(ReadBytes(folder / "a.exr"), before);
+  EXPECT_EQ(folder.FileCount(), 1u);
+}
+
+TEST(AtomicWrite, BadMetadataIsAnErrorAndLeavesNoRest) {
+  const TemporaryFolder folder;
+  Image image(2, 2, {"R", "G", "B"});
+  image.metadata[""] = "no name";
+  EXPECT_THROW(WriteExr(folder / "a.exr", image, ExrPrecision::Half), Error);
+  EXPECT_EQ(folder.FileCount(), 0u);
+}
+
+TEST(Png, RoundTripIsExactToEightBits) {
+  const TemporaryFolder folder;
+  const Image image = NoiseImage(31, 17, {"R", "G", "B"});
+  WritePng(folder / "a.png", image, 0, ToneMap::Clip);
+  const Image srgb = ReadImage(folder / "a.png");
+  const Image encoded = ReadImage(folder / "a.png", ImageEncoding::Linear);
+  ASSERT_EQ(srgb.channels, (std::vector<std::string>{"R", "G", "B"}));
+  ASSERT_EQ(srgb.width, 31);
+  ASSERT_EQ(srgb.height, 17);
+  for (size_t i = 0; i < image.data.size(); ++i) {
+    ASSERT_NEAR(encoded.data[i], LinearToSrgb(image.data[i]), 0.5f / 255 + 1e-6f);
+    ASSERT_NEAR(srgb.data[i], SrgbToLinear(encoded.data[i]), 1e-6f);
+  }
+  const Image gamma = ReadImageWithGamma(folder / "a.png", 2.0f);
+  for (size_t i = 0; i < gamma.data.size(); ++i) ASSERT_NEAR(gamma.data[i], Sqr(encoded.data[i]), 1e-6f);
+}
+
+TEST(Png, ToneMapping) {
+  const TemporaryFolder folder;
+  Image image(4, 1, {"Y"});
+  image.data = {-1.0f, 0.25f, 4.0f, std::numeric_limits<float>::quiet_NaN()};
+  WritePng(folder / "clip.png", image, 1, ToneMap::Clip);
+  WritePng(folder / "filmic.png", image, 1, ToneMap::Filmic);
+  const Image clip = ReadImage(folder / "clip.png"), filmic = ReadImage(folder / "filmic.png");
+  for (const Image* read : {&clip, &filmic}) {
+    EXPECT_EQ(read->RgbAt(0, 0).r, 0);
+    EXPECT_NEAR(read->RgbAt(1, 0).g, 0.5f, 0.004f);  // below the shoulder both are the identity
+    EXPECT_EQ(read->RgbAt(3, 0).b, 0);
+  }
+  EXPECT_EQ(clip.RgbAt(2, 0).r, 1);
+  EXPECT_NEAR(filmic.RgbAt(2, 0).r, 1.0f, 0.01f);
+}
+
+TEST(Hdr, ReadsTheSkyOfTheReferenceScenes) {
+  const std::filesystem::path path = std::filesystem::path(LAMPYR_SHARED_DATA) / "peer/sky.hdr";
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << "no " << path;
+  const Image sky = ReadImage(path);
+  EXPECT_EQ(sky.width, 128);
+  EXPECT_EQ(sky.height, 128);
+  ASSERT_TRUE(sky.HasRgb());
+  float largest = 0;
+  for (int y = 0; y < sky.height; ++y) {
+    for (int x = 0; x < sky.width; ++x) {
+      ASSERT_TRUE(sky.RgbAt(x, y).IsValid());
+      largest = std::max(largest, sky.RgbAt(x, y).Max());
+    }
+  }
+  EXPECT_GT(largest, 1.0f);  // linear: the sun is brighter than white
+}
+
+TEST(Srgb, CurveIsContinuousAndInvertible) {
+  EXPECT_NEAR(SrgbToLinear(0.5f), 0.21404114f, 1e-6f);
+  EXPECT_NEAR(LinearToSrgb(0.18f), 0.46135613f, 1e-6f);
+  for (int i = 0; i <= 1000; ++i) EXPECT_NEAR(LinearToSrgb(SrgbToLinear(i / 1000.0f)), i / 1000.0f, 2e-6f);
+}
+
+TEST(ImageClass, RgbAtGrayAndLayers) {
+  Image gray(1, 1, {"Z"});
+  gray.data = {0.25f};
+  EXPECT_TRUE(gray.HasRgb());
+  EXPECT_EQ(gray.RgbAt(0, 0), Color(0.25f));
+  Image grayAlpha(1, 1, {"A", "Y"});
+  grayAlpha.data = {1.0f, 0.25f};
+  EXPECT_EQ(grayAlpha.RgbAt(0, 0), Color(0.25f));
+  Image reversed(1, 1, {"B", "G", "R"});
+  reversed.data = {3.0f, 2.0f, 1.0f};
+  EXPECT_EQ(reversed.RgbAt(0, 0), Color(1, 2, 3));
+  EXPECT_FALSE(Image(1, 1, {"variance.R", "variance.G"}).HasRgb());
+  EXPECT_EQ(gray.ChannelIndex("R"), -1);
+}
+
+}  // namespace
+}  // namespace lampyr
