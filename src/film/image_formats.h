@@ -20,6 +20,9 @@ struct EncodedImage {
 };
 EncodedImage ReadThroughModule(const std::filesystem::path& path);
 
+// Throws Error when a JPEG file ends before its end marker. Other files pass.
+void CheckJpegIsWhole(const std::filesystem::path& path);
+
 // PNG bytes of 8-bit RGB pixels.
 std::vector<unsigned char> EncodePng(int width, int height, const std::vector<unsigned char>& rgb);
 

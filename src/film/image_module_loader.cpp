@@ -92,6 +92,7 @@ void AppendBytes(void* opaque, const void* bytes, size_t count) {
 }  // namespace
 
 EncodedImage ReadThroughModule(const std::filesystem::path& path) {
+  CheckJpegIsWhole(path);
   std::array<char, 512> error{};
   ReadContext context{path, {}, nullptr};
   if (GetImageModule().read(path.c_str(), AllocateImage, &context, error.data(), error.size()) != 0) {

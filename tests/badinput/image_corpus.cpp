@@ -36,6 +36,16 @@ bool Reads(const std::filesystem::path& path) {
   }
 }
 
+// A gray baseline JPEG of 16 x 8 pixels: quantisation of ones, Huffman tables of one symbol each, two empty blocks.
+std::string GrayJpeg() {
+  std::string bytes = "\xff\xd8\xff\xdb" + std::string("\0\x43\0", 3) + std::string(64, '\1');
+  bytes += std::string("\xff\xc0\0\x0b\x08\0\x08\0\x10\1\1\x11\0", 13);
+  for (const char table : {'\0', '\x10'}) {
+    bytes += std::string("\xff\xc4\0\x14", 4) + table + '\1' + std::string(15, '\0') + '\0';
+  }
+  return bytes + std::string("\xff\xda\0\x08\1\1\0\0\x3f\0\x0f\xff\xd9", 13);
+}
+
 // Files of the formats that can be made without tools, each with its name.
 std::vector<std::pair<std::string, std::string>> Corpus(const TemporaryFolder& folder) {
   WriteExr(folder / "float.exr", Sample(40, 30), ExrPrecision::Float);
@@ -49,7 +59,8 @@ std::vector<std::pair<std::string, std::string>> Corpus(const TemporaryFolder& f
     tga += static_cast<char>(2 * i);
     pfm.append("\0\0\x80\x3f", 4);
   }
-  std::vector<std::pair<std::string, std::string>> corpus = {{"a.hdr", hdr}, {"a.ppm", ppm}, {"a.pfm", pfm}, {"a.tga", tga}};
+  std::vector<std::pair<std::string, std::string>> corpus = {{"a.hdr", hdr}, {"a.ppm", ppm}, {"a.pfm", pfm}, {"a.tga", tga},
+                                                             {"a.jpg", GrayJpeg()}};
   for (const char* name : {"float.exr", "half.exr", "a.png"}) corpus.emplace_back(name, ReadBytes(folder / name));
   return corpus;
 }
@@ -85,6 +96,17 @@ TEST(ImageCorpus, TruncatedFilesAreErrors) {
       WriteBytes(folder / cut, bytes.substr(0, static_cast<size_t>(part * static_cast<double>(bytes.size()))));
       EXPECT_FALSE(Reads(folder / cut)) << name << " cut at " << part;
     }
+  }
+}
+
+TEST(ImageCorpus, AJpegWithoutItsEndIsAnError) {
+  const TemporaryFolder folder;
+  const std::string bytes = GrayJpeg();
+  WriteBytes(folder / "a.jpg", bytes + "whatever follows");
+  EXPECT_NEAR(ReadImage(folder / "a.jpg", ImageEncoding::Linear).RgbAt(15, 7).g, 128 / 255.0f, 1e-6f);
+  for (const size_t cut : {1, 2, 3, 4, 9}) {
+    WriteBytes(folder / "cut.jpg", bytes.substr(0, bytes.size() - cut));
+    EXPECT_FALSE(Reads(folder / "cut.jpg")) << cut;
   }
 }
 
