@@ -4,7 +4,7 @@
 //
 // Cumulative tables count in units of 2^-24, the step of a random float: an interval is chosen exactly as often as its
 // density says, and every interval that is not 0 can be chosen, however dark beside the others. So densities are those
-// of the values up to 2^-24 in probability, and a table has at most 2^24 intervals a side that are not 0.
+// of the values up to a few 2^-24 in probability, and a table has at most 2^24 intervals a side that are not 0.
 #pragma once
 
 #include <cstdint>
