@@ -1,0 +1,142 @@
+// Image textures against values by hand: filters, wrap modes, encodings, roles.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "film/srgb.h"
+#include "texture_scene.h"
+#include "textures/texel_lookup.h"
+#include "unit/film/temporary_folder.h"
+
+namespace lampyr {
+namespace {
+
+// 4 x 2 texels, texel (x, y) = 10 y + x in red, 100 more in green, 0 in blue; y from the top.
+std::shared_ptr<const Image> Grid() {
+  auto image = std::make_shared<Image>(4, 2, std::vector<std::string>{"R", "G", "B"});
+  for (int y = 0; y < 2; ++y) {
+    for (int x = 0; x < 4; ++x) {
+      image->At(x, y, 0) = static_cast<float>(10 * y + x);
+      image->At(x, y, 1) = static_cast<float>(10 * y + x + 100);
+    }
+  }
+  return image;
+}
+
+// Texture coordinates of a texel's centre.
+Point2 Centre(int x, int y) { return {(static_cast<float>(x) + 0.5f) / 4, 1 - (static_cast<float>(y) + 0.5f) / 2}; }
+
+TEST(TexelLookup, CentresGiveTexelsInBothFilters) {
+  for (const bool bilinear : {false, true}) {
+    const TexelLookup texels(Grid(), WrapMode::Repeat, bilinear);
+    for (int y = 0; y < 2; ++y) {
+      for (int x = 0; x < 4; ++x) {
+        EXPECT_NEAR(texels.LookupColor(Centre(x, y)).r, 10 * y + x, 1e-4f);
+        EXPECT_NEAR(texels.LookupFloat(Centre(x, y)), (20 * y + 2 * x + 100) / 3.0f, 1e-4f);
+      }
+    }
+  }
+}
+
+TEST(TexelLookup, BilinearBetweenTexels) {
+  const TexelLookup texels(Grid(), WrapMode::Clamp, true);
+  EXPECT_NEAR(texels.LookupColor({0.5f, 0.5f}).r, (1 + 2 + 11 + 12) / 4.0f, 1e-4f);
+  EXPECT_NEAR(texels.LookupColor(Centre(1, 0) + Vector2(0.25f / 4, 0)).r, 1.25f, 1e-4f);
+  EXPECT_NEAR(texels.LookupColor({0.0f, 1.0f}).r, 0.0f, 1e-4f);
+  EXPECT_NEAR(texels.LookupColor({1.0f, 0.0f}).r, 13.0f, 1e-4f);
+}
+
+TEST(TexelLookup, WrapModes) {
+  const auto texel = [](WrapMode mode, int x, int y) {
+    return TexelLookup(Grid(), mode, false).LookupColor(Centre(x, y)).r;
+  };
+  EXPECT_EQ(texel(WrapMode::Repeat, -1, 0), 3);
+  EXPECT_EQ(texel(WrapMode::Repeat, 9, 5), 11);
+  EXPECT_EQ(texel(WrapMode::Repeat, -6, -1), 12);
+  EXPECT_EQ(texel(WrapMode::Clamp, -7, 0), 0);
+  EXPECT_EQ(texel(WrapMode::Clamp, 9, 5), 13);
+  EXPECT_EQ(texel(WrapMode::Black, -1, 0), 0);
+  EXPECT_EQ(texel(WrapMode::Black, 3, 2), 0);
+  EXPECT_EQ(texel(WrapMode::Black, 3, 1), 13);
+  // Over an edge of the octahedral map: the same edge, mirrored about its middle.
+  EXPECT_EQ(texel(WrapMode::OctahedralSphere, -1, 0), 10);
+  EXPECT_EQ(texel(WrapMode::OctahedralSphere, 4, 1), 3);
+  EXPECT_EQ(texel(WrapMode::OctahedralSphere, 1, -1), 2);
+  EXPECT_EQ(texel(WrapMode::OctahedralSphere, 0, 2), 13);
+  // At the border, black weighs half.
+  EXPECT_NEAR(TexelLookup(Grid(), WrapMode::Black, true).LookupColor({1.0f, 0.25f}).r, 6.5f, 1e-4f);
+  EXPECT_NEAR(TexelLookup(Grid(), WrapMode::Repeat, true).LookupColor({1.0f, 0.25f}).r, 11.5f, 1e-4f);
+}
+
+TEST(TexelLookup, AnyCoordinateIsLegal) {
+  for (const WrapMode mode : {WrapMode::Repeat, WrapMode::Black, WrapMode::Clamp, WrapMode::OctahedralSphere}) {
+    for (const bool bilinear : {false, true}) {
+      const TexelLookup texels(Grid(), mode, bilinear);
+      for (const float x : {0.0f, -1e-30f, 1e6f, -1e9f, 1e20f, 3e38f, kInfinity, -kInfinity,
+                            std::numeric_limits<float>::quiet_NaN()}) {
+        for (const Point2 st : {Point2(x, 0.5f), Point2(0.5f, x), Point2(x, -x)}) {
+          EXPECT_TRUE(texels.LookupColor(st).IsValid());
+        }
+      }
+    }
+  }
+}
+
+TEST(ImageMap, ScaleInvertAndRoles) {
+  const TemporaryFolder folder;
+  WriteExr(folder / "grid.exr", *Grid(), ExrPrecision::Float);
+  const auto file = StringValue("filename", (folder / "grid.exr").string());
+  const Point2 at = Centre(2, 1);
+  const TextureScene scaled("imagemap", true, {file, FloatValue("scale", 0.01)});
+  EXPECT_NEAR(scaled.ColorAt(at.x, at.y).r, 0.12f, 1e-5f);
+  EXPECT_NEAR(scaled.ColorAt(at.x, at.y).g, 1.12f, 1e-5f);
+  // A reflectance is never above 1.
+  EXPECT_EQ(scaled.Spectrum(SpectrumRole::Albedo).Evaluate({at, {}}).g, 1.0f);
+  const TextureScene inverted("imagemap", true, {file, FloatValue("scale", 0.01), BoolValue("invert", true)});
+  EXPECT_NEAR(inverted.ColorAt(at.x, at.y).r, 0.88f, 1e-5f);
+  EXPECT_EQ(inverted.ColorAt(at.x, at.y).g, 0.0f);
+  const TextureScene gray("imagemap", false, {file, StringValue("filter", "point"), StringValue("wrap", "clamp")});
+  EXPECT_NEAR(gray.FloatAt(at.x, at.y), (12 + 112) / 3.0f, 1e-4f);
+}
+
+TEST(ImageMap, Encodings) {
+  const TemporaryFolder folder;
+  Image image(2, 2, {"R", "G", "B"});
+  std::fill(image.data.begin(), image.data.end(), SrgbToLinear(100 / 255.0f));
+  WritePng(folder / "a.png", image, 0, ToneMap::Clip);
+  const auto value = [&](const char* encoding) {
+    std::vector<Parameter> parameters = {StringValue("filename", (folder / "a.png").string())};
+    if (encoding) parameters.push_back(StringValue("encoding", encoding));
+    return TextureScene("imagemap", true, parameters).ColorAt(0.5f, 0.5f).g;
+  };
+  const float encoded = 100 / 255.0f;
+  EXPECT_NEAR(value(nullptr), SrgbToLinear(encoded), 1e-6f);
+  EXPECT_NEAR(value("sRGB"), SrgbToLinear(encoded), 1e-6f);
+  EXPECT_NEAR(value("linear"), encoded, 1e-6f);
+  EXPECT_NEAR(value("gamma 2.2"), std::pow(encoded, 2.2f), 1e-6f);
+  for (const char* wrong : {"srgb", "gamma", "gamma -1", "gamma 2.2x", "gamma nan"}) EXPECT_THROW(value(wrong), Error) << wrong;
+}
+
+TEST(ImageMap, BadChoices) {
+  const auto file = StringValue("filename", "a.png");
+  EXPECT_THAT(ErrorOf({MakeTexture("a", true, "imagemap", {file, StringValue("wrap", "repaet")}, 2)}),
+              ::testing::StartsWith("test.pbrt:2:20: error: \"repaet\" is no wrap (did you mean \"repeat\"?)"));
+  EXPECT_THAT(ErrorOf({MakeTexture("a", true, "imagemap", {file, StringValue("filter", "bilinaer")})}),
+              ::testing::HasSubstr("bilinear"));
+}
+
+TEST(ImageMap, ImagesAreReadOnceAndShared) {
+  const TemporaryFolder folder;
+  WriteExr(folder / "grid.exr", *Grid(), ExrPrecision::Float);
+  const TextureScene scene(std::vector<TextureDescription>{});
+  const auto first = scene.library.GetImage(folder / "grid.exr", ImageEncoding::Automatic, {});
+  EXPECT_EQ(first, scene.library.GetImage(folder / "grid.exr", ImageEncoding::Automatic, {}));
+  EXPECT_NE(first, scene.library.GetImage(folder / "grid.exr", ImageEncoding::Linear, {}));
+  EXPECT_THROW(scene.library.GetImage(folder / "missing.exr", ImageEncoding::Automatic, {}), Error);
+  EXPECT_THROW(scene.library.GetImage(folder / "missing.exr", ImageEncoding::Automatic, {}), Error);
+}
+
+}  // namespace
+}  // namespace lampyr
