@@ -35,11 +35,14 @@ inline float FresnelConductor(float cosThetaI, float eta, float k) {
   const float t0 = (eta - k) * (eta + k) - sin2;
   const float twice = 2 * eta * k;
   const float a2b2 = std::sqrt(t0 * t0 + twice * twice);
-  const float a = SafeSqrt(0.5f * (a2b2 + t0));
+  // a² = (a2b2 + t0)/2, without cancellation where t0 < 0: (a2b2 + t0)(a2b2 - t0) = (2ηk)².
+  const float sum = a2b2 + std::abs(t0);
+  const float a = std::sqrt(0.5f * (t0 < 0 ? (sum > 0 ? twice * (twice / sum) : 0.0f) : sum));
   const float t1 = a2b2 + cos2, t2 = 2 * cosThetaI * a;
   const float perpendicular = (t1 - t2) / (t1 + t2);
   const float t3 = cos2 * a2b2 + sin2 * sin2, t4 = t2 * sin2;
-  return std::min(std::max(0.5f * perpendicular * (1 + (t3 - t4) / (t3 + t4)), 0.0f), 1.0f);
+  const float ratio = t3 + t4 > 0 ? (t3 - t4) / (t3 + t4) : 1.0f;
+  return std::min(std::max(0.5f * perpendicular * (1 + ratio), 0.0f), 1.0f);
 }
 inline Color FresnelConductor(float cosThetaI, const Color& eta, const Color& k) {
   const float c = std::min(std::max(cosThetaI, 1e-6f), 1.0f);

@@ -5,21 +5,14 @@
 #include <cstdint>
 
 #include "materials/material_makers.h"
+#include "sampling/rng.h"
 
 namespace lampyr {
 
 namespace {
 
-// A mixer of 64 bits ([Steele14]).
-uint64_t MixBits(uint64_t v) {
-  v = (v ^ (v >> 30)) * 0xbf58476d1ce4e5b9ull;
-  v = (v ^ (v >> 27)) * 0x94d049bb133111ebull;
-  return v ^ (v >> 31);
-}
-
 uint64_t HashVector(uint64_t seed, const Vector3& v) {
-  for (int i = 0; i < 3; ++i) seed = MixBits(seed + 0x9e3779b97f4a7c15ull + std::bit_cast<uint32_t>(v[i]));
-  return seed;
+  return Hash(seed, std::bit_cast<uint32_t>(v.x), std::bit_cast<uint32_t>(v.y), std::bit_cast<uint32_t>(v.z));
 }
 
 class MixMaterial final : public Material {
@@ -40,7 +33,7 @@ class MixMaterial final : public Material {
     if (!(amount > 0)) return *materials_[0];
     if (amount >= 1) return *materials_[1];
     const uint64_t hash = HashVector(HashVector(salt_, point.position), wo);
-    return static_cast<float>(hash >> 40) * 0x1p-24f < amount ? *materials_[1] : *materials_[0];
+    return UnitFloat(static_cast<uint32_t>(hash >> 32)) < amount ? *materials_[1] : *materials_[0];
   }
 
   std::array<std::shared_ptr<const Material>, 2> materials_;
@@ -70,7 +63,7 @@ std::shared_ptr<const Material> MakeMix(const MaterialInput& input) {
   CheckMaterialParameters(input, {"materials", "amount"});
   uint64_t salt = 0;
   for (const std::string& name : names) {
-    for (const char c : name + "\n") salt = MixBits(salt * 31 + static_cast<unsigned char>(c) + 1);
+    for (const char c : name + "\n") salt = Hash(salt, static_cast<unsigned char>(c));
   }
   return std::make_shared<MixMaterial>(
       std::array<std::shared_ptr<const Material>, 2>{input.namedMaterials(names[0]), input.namedMaterials(names[1])},
