@@ -29,11 +29,8 @@ constexpr std::array<std::array<double, 3>, 54> kDaylight = {{
     {61.0, -9.7, 6.4},    {53.3, -8.3, 5.5},    {58.9, -9.3, 6.1},    {61.9, -9.8, 6.5},
 }};
 
-// Weights of S1 and S2 for the chromaticity of D65 [CIE15 eq. 4.6].
-constexpr double kD65x = 0.31272, kD65y = 0.32903;
-constexpr double kDenominator = 0.0241 + 0.2562 * kD65x - 0.7341 * kD65y;
-constexpr double kM1 = (-1.3515 - 1.7703 * kD65x + 5.9114 * kD65y) / kDenominator;
-constexpr double kM2 = (0.0300 - 31.4424 * kD65x + 30.0717 * kD65y) / kDenominator;
+// Weights of S1 and S2 for D65, rounded as [CIE15 §4.1] prescribes.
+constexpr double kM1 = -0.296, kM2 = -0.688;
 
 double DaylightEntry(size_t i) { return kDaylight[i][0] + kM1 * kDaylight[i][1] + kM2 * kDaylight[i][2]; }
 

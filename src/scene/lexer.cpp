@@ -1,5 +1,6 @@
 #include "scene/lexer.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
@@ -37,14 +38,14 @@ std::string Quoted(std::string_view text) {
   return "\"" + std::string(text.substr(0, kLongest)) + "…\"";
 }
 
-bool IsNonFiniteName(std::string_view word) {
+}  // namespace
+
+bool IsNonFinite(std::string_view word) {
   if (!word.empty() && (word[0] == '-' || word[0] == '+')) word.remove_prefix(1);
   std::string lower;
   for (const char c : word.substr(0, 8)) lower += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
   return lower == "nan" || lower == "inf" || lower == "infinity";
 }
-
-}  // namespace
 
 std::string Describe(const Token& token) {
   switch (token.kind) {
@@ -63,7 +64,7 @@ bool LooksLikeNumber(std::string_view word) {
 }
 
 double ParseNumber(std::string_view word, const FileLocation& where) {
-  if (IsNonFiniteName(word)) throw Error(where, Quoted(word) + " is not a finite number");
+  if (IsNonFinite(word)) throw Error(where, Quoted(word) + " is not a finite number");
   std::string_view digits = word;
   if (!digits.empty() && digits[0] == '+') digits.remove_prefix(1);
   const bool signTwice = digits.size() < word.size() && !digits.empty() && digits[0] == '-';
@@ -81,7 +82,7 @@ double ParseNumber(std::string_view word, const FileLocation& where) {
 }
 
 int64_t ParseInteger(std::string_view word, const FileLocation& where) {
-  if (IsNonFiniteName(word)) throw Error(where, Quoted(word) + " is not a finite number");
+  if (IsNonFinite(word)) throw Error(where, Quoted(word) + " is not a finite number");
   std::string_view digits = word;
   if (!digits.empty() && digits[0] == '+') digits.remove_prefix(1);
   const bool signTwice = digits.size() < word.size() && !digits.empty() && digits[0] == '-';

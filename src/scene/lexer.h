@@ -29,6 +29,8 @@ double ParseNumber(std::string_view word, const FileLocation& where);
 // The same for a whole number that fits 32 bits.
 int64_t ParseInteger(std::string_view word, const FileLocation& where);
 bool LooksLikeNumber(std::string_view word);
+// "nan", "-inf" and the like.
+bool IsNonFinite(std::string_view word);
 
 class Lexer {
  public:

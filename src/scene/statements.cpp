@@ -130,10 +130,8 @@ void SceneParser::ReadNumbersInto(const Token& statement, double* numbers, size_
   for (size_t i = 0; i < count; ++i) {
     const Token token = tokens_.Next();
     if (token.kind == TokenKind::Open) throw Error(token.where, statement.text + " takes its numbers without brackets");
-    const bool statementFollows = token.kind == TokenKind::Word && !token.text.empty() && token.text[0] >= 'A' &&
-                                  token.text[0] <= 'Z' && token.text != "NaN" && token.text != "Infinity" &&
-                                  token.text != "NAN" && token.text != "INF" && token.text != "Inf";
-    if (token.kind != TokenKind::Word || statementFollows) {
+    const bool isNumber = token.kind == TokenKind::Word && (LooksLikeNumber(token.text) || IsNonFinite(token.text));
+    if (!isNumber) {
       throw Error(token.where, statement.text + " needs " + std::to_string(count) + " numbers, has " + std::to_string(i) +
                                    " before " + Describe(token));
     }
