@@ -100,7 +100,7 @@ TEST(Distribution1D, FrequenciesDensityAndInverse) {
       integral += static_cast<double>(density) / static_cast<double>(n);
       expected[i] = kCount * static_cast<double>(values[i]) / sum;
     }
-    EXPECT_NEAR(integral, 1, 1e-9);
+    EXPECT_NEAR(integral, 1, 1e-6);
     EXPECT_FLOAT_EQ(table.Integral(), static_cast<float>(sum / static_cast<double>(n)));
     EXPECT_GT(test::HistogramPValue(counts, expected), test::kSignificance) << n;
   }
