@@ -148,7 +148,7 @@ void EvaluateCurve(const CurveSet& curves, uint32_t segment, float u, const Poin
   point.Ng = point.Ns = CurveNormal(curves, segment, u, along, offset, direction);
 
   const Vector3 seenFrom = curves.kind == CurveSet::Kind::Ribbon ? -point.Ng : direction;
-  const Vector3 across = SafeNormalize(glm::cross(seenFrom, along), Frame::FromNormal(along).x);
+  const Vector3 across = SafeNormalize(glm::cross(along, seenFrom), Frame::FromNormal(along).x);
   const auto& range = curves.vRange[segment];
   const float side = radius > 0 ? glm::dot(offset, across) / radius : 0.0f;
   point.uv = {range[0] + (range[1] - range[0]) * u, std::clamp(0.5f + 0.5f * side, 0.0f, 1.0f)};

@@ -18,6 +18,8 @@ namespace {
 
 // Embree aborts the process on rays beyond this, and skips primitives.
 constexpr float kLargest = 1e18f;
+// Embree's interval is closed below: a hit at the very origin is none.
+constexpr float kNearest = 1e-25f;
 
 struct DeviceDeleter {
   void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
@@ -346,7 +348,7 @@ void FillRay(const Ray& ray, uint32_t kinds, float tMax, RTCRay& out) {
   out.org_x = ray.origin.x;
   out.org_y = ray.origin.y;
   out.org_z = ray.origin.z;
-  out.tnear = 0;
+  out.tnear = kNearest;
   out.dir_x = ray.direction.x;
   out.dir_y = ray.direction.y;
   out.dir_z = ray.direction.z;

@@ -18,6 +18,9 @@ SurfacePoint EvaluatePrimitive(const PrimitiveRecord& record, const Point3& orig
     case 2: (*std::get_if<2>(&record.shape))->Evaluate(uv, point); break;
     default: EvaluateCurve(**std::get_if<3>(&record.shape), hit.patch, hit.u, origin, direction, hit.t, point);
   }
+  // A surface in a coordinate plane has no error across it, and a ray that starts on it exactly would find it again: a
+  // floor of a millionth of the largest component.
+  point.positionError += Vector3(1e-6f * MaxComponent(point.positionError));
   return point;
 }
 

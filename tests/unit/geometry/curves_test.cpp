@@ -1,0 +1,123 @@
+// Curves: conversion to Bézier segments, hits on straight ones where the answer is known, and wrong parameters.
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "geometry/curves.h"
+#include "helpers.h"
+
+namespace lampyr {
+namespace {
+
+using testing::Random;
+using testing::SceneOf;
+
+CurveParameters Straight(CurveSet::Kind kind) {
+  CurveParameters p;
+  p.points = {{0, 0, 0}, {0, 0, 1}, {0, 0, 2}, {0, 0, 3}};
+  p.width0 = p.width1 = 0.4f;
+  p.kind = kind;
+  if (kind == CurveSet::Kind::Ribbon) p.normals.assign(2, Normal3(1, 0, 0));
+  return p;
+}
+
+Shape ToShape(CurveSet curves) { return std::make_shared<const CurveSet>(std::move(curves)); }
+
+TEST(Curves, SegmentsOfEveryBasisAndDegree) {
+  CurveParameters p;
+  p.degree = 2;
+  p.points = {{0, 0, 0}, {1, 2, 0}, {2, 0, 0}, {3, -2, 0}, {4, 0, 0}};
+  EXPECT_EQ(MakeCurves(p).segments.size(), 2u);
+  // The quadratic's value in the middle of the first segment: 1/4, 1/2, 1/4.
+  EXPECT_NEAR(glm::length(CurveAxis(MakeCurves(p), 0, 0.5f) - Point3(1, 1, 0)), 0, 1e-6);
+  p.basis = CurveParameters::Basis::BSpline;
+  EXPECT_EQ(MakeCurves(p).segments.size(), 3u);
+  EXPECT_NEAR(glm::length(CurveAxis(MakeCurves(p), 1, 0) - Point3(1.5f, 1, 0)), 0, 1e-6);
+  p.degree = 3;
+  const CurveSet cubic = MakeCurves(p);
+  ASSERT_EQ(cubic.segments.size(), 2u);
+  // Knots of a uniform cubic B-spline: 1/6, 4/6, 1/6; and the pieces join.
+  EXPECT_NEAR(glm::length(CurveAxis(cubic, 0, 0) - (p.points[0] + p.points[1] * 4.0f + p.points[2]) / 6.0f), 0, 1e-6);
+  EXPECT_NEAR(glm::length(CurveAxis(cubic, 0, 1) - CurveAxis(cubic, 1, 0)), 0, 1e-6);
+  EXPECT_NEAR(glm::length(CurveTangent(cubic, 0, 1) - CurveTangent(cubic, 1, 0)), 0, 1e-5);
+}
+
+TEST(Curves, WidthsInterpolateAndScale) {
+  CurveParameters p = Straight(CurveSet::Kind::Flat);
+  p.width1 = 0.8f;
+  p.toRender = Transform::Scale({10, 10, 10});
+  const CurveSet curves = MakeCurves(p);
+  EXPECT_NEAR(CurveRadius(curves, 0, 0), 2, 1e-5);
+  EXPECT_NEAR(CurveRadius(curves, 0, 0.5f), 3, 1e-5);
+  EXPECT_NEAR(CurveRadius(curves, 0, 1), 4, 1e-5);
+  EXPECT_NEAR(GetArea(ToShape(MakeCurves(Straight(CurveSet::Kind::Flat)))), 3 * 0.4, 1e-5);
+}
+
+TEST(Curves, StraightOnesAreHitWhereTheyAre) {
+  for (const auto kind : {CurveSet::Kind::Flat, CurveSet::Kind::Cylinder, CurveSet::Kind::Ribbon}) {
+    const GeometryScene scene(SceneOf(ToShape(MakeCurves(Straight(kind)))));
+    Random random(61);
+    for (int i = 0; i < 5000; ++i) {
+      const float y = random.Uniform(-0.5f, 0.5f), z = random.Uniform(0.1f, 2.9f);
+      if (std::abs(std::abs(y) - 0.2f) < 0.005f) continue;
+      const Ray ray{{5, y, z}, {-1, 0, 0}};
+      RayHit hit;
+      ASSERT_EQ(scene.Intersect(ray, visibility::kAll, hit), std::abs(y) < 0.2f) << y << " " << static_cast<int>(kind);
+      if (std::abs(y) > 0.2f) continue;
+      const SurfacePoint p = scene.GetSurfacePoint(ray, hit);
+      const float x = kind == CurveSet::Kind::Cylinder ? std::sqrt(0.04f - y * y) : 0.0f;
+      ASSERT_NEAR(p.position.x, x, 2e-3f);
+      ASSERT_NEAR(p.uv.x, z / 3, 2e-3f);
+      ASSERT_GT(p.Ng.x, 0);
+      ASSERT_NEAR(p.Ng.z, 0, 1e-3f);
+      ASSERT_GT(glm::dot(glm::normalize(glm::cross(p.dpdu, p.dpdv)), p.Ng), x < 0.05f && x != 0 ? -1 : 0.05f);
+      ASSERT_NEAR(std::abs(p.uv.y - 0.5f), std::abs(y) / 0.4f, 1e-2f);
+      ASSERT_TRUE(kind == CurveSet::Kind::Cylinder ? std::abs(p.Ng.y - y / 0.2f) < 2e-2f : p.Ng.x > 0.999f);
+    }
+  }
+}
+
+// Rays that leave a tube outwards do not find it again; the same for flat curves towards where they were seen from.
+TEST(Curves, NoSelfIntersection) {
+  for (const float scale : {1e-3f, 1.0f, 1e3f}) {
+    for (const auto kind : {CurveSet::Kind::Flat, CurveSet::Kind::Cylinder, CurveSet::Kind::Ribbon}) {
+      CurveParameters parameters = Straight(kind);
+      parameters.toRender = Transform::Scale(Vector3d(static_cast<double>(scale)));
+      const GeometryScene scene(SceneOf(ToShape(MakeCurves(parameters))));
+      Random random(62);
+      int hits = 0, again = 0;
+      for (int i = 0; i < 5000; ++i) {
+        const Point3 target = Point3(0, 0, random.Uniform(0.5f, 2.5f)) * scale;
+        const Vector3 side = glm::normalize(Vector3(random.Uniform(0.3f, 1), random.Uniform(-1, 1), random.Uniform(-0.5f, 0.5f)));
+        const Ray ray{target + side * scale, -side};
+        RayHit hit;
+        if (!scene.Intersect(ray, visibility::kAll, hit)) continue;
+        ++hits;
+        const SurfacePoint p = scene.GetSurfacePoint(ray, hit);
+        again += scene.Occluded(SpawnRay(p, glm::normalize(side + p.Ng), 0), visibility::kAll);
+      }
+      EXPECT_GT(hits, 4500);
+      EXPECT_EQ(again, 0) << static_cast<int>(kind) << " " << scale;
+    }
+  }
+}
+
+TEST(Curves, BadParametersAreErrors) {
+  CurveParameters p = Straight(CurveSet::Kind::Flat);
+  p.points.pop_back();
+  EXPECT_THROW(MakeCurves(p), Error);
+  p = Straight(CurveSet::Kind::Flat);
+  p.degree = 4;
+  EXPECT_THROW(MakeCurves(p), Error);
+  p = Straight(CurveSet::Kind::Flat);
+  p.width0 = -1;
+  EXPECT_THROW(MakeCurves(p), Error);
+  p = Straight(CurveSet::Kind::Ribbon);
+  p.normals.pop_back();
+  EXPECT_THROW(MakeCurves(p), Error);
+  p = Straight(CurveSet::Kind::Flat);
+  p.points[1].x = kInfinity;
+  EXPECT_THROW(MakeCurves(p), Error);
+}
+
+}  // namespace
+}  // namespace lampyr
