@@ -28,8 +28,9 @@ class EmissionImage {
   }
   // Of the texel that holds uv in [0,1)²; v counts down from the image's top row.
   Color Nearest(const Point2& uv) const {
-    const int x = std::min(static_cast<int>(uv.x * static_cast<float>(width_)), width_ - 1);
-    const int y = std::min(static_cast<int>(uv.y * static_cast<float>(image_->height)), image_->height - 1);
+    // In double, as the sampling table finds its cell: both must be the same texel.
+    const int x = std::min(static_cast<int>(static_cast<double>(uv.x) * width_), width_ - 1);
+    const int y = std::min(static_cast<int>(static_cast<double>(uv.y) * image_->height), image_->height - 1);
     return Texel(std::max(x, 0), std::max(y, 0));
   }
   // Bilinear between texel middles, clamped at the edges; v counts up from the image's lowest row, as on surfaces.

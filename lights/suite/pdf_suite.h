@@ -1,0 +1,72 @@
+// The pdf consistency suite: proof by statistics that the three techniques of a light agree. It runs over the registry,
+// over a plugin's type or over a single light, and prints nothing itself.
+//
+// Properties (names as in the results)
+//   integral              pdfDirect integrates to the probability that a sample exists, 1 where the light is all visible
+//   directions            χ² of sampled points (or directions, at infinity) against pdfDirect
+//   consistency           EvaluateSamples on a generated sample gives back radiance, normal and all densities
+//   surface               a sample's normal, position and density agree with the shape, evaluated apart from the light
+//   one-sided             nothing leaves a one-sided surface at its back
+//   irradiance            by light sampling = by quadrature over the surface
+//   emission-integral     the densities of emission integrate to 1
+//   emission-positions, emission-directions   χ² of photons against pdfEmit and pdfEmitDirection
+//   emission-edge         a photon's densities are those that EvaluateSamples gives for that edge
+//   power                 by emission = by direct sampling on an enclosing sphere
+//   power-estimate        GetPowerEstimate: exact where it is a closed form, near otherwise
+//   bounds                photons leave within GetEmissionBounds
+//   estimate              no estimate is 0 where a sample arrives
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "lights/light_type.h"
+#include "lights/suite/emitter_model.h"
+
+namespace lampyr {
+
+struct SuiteResult {
+  std::string light, property, caseName;
+  bool isProbability = false;  // statistic is a p-value that must exceed the threshold; else an error that must not
+  double statistic = 0, threshold = 0;
+  bool passed = false;
+};
+
+class SuiteReport {
+ public:
+  void AddProbability(const std::string& light, const std::string& property, const std::string& caseName, double pValue);
+  void AddError(const std::string& light, const std::string& property, const std::string& caseName, double error,
+                double tolerance);
+  // Judges the p-values at a family-wise level over all that were added.
+  std::vector<SuiteResult> Finish(double familyWise);
+
+ private:
+  std::vector<SuiteResult> results_;
+};
+
+struct SuiteOptions {
+  int samples = 3000;       // per receiver
+  int photons = 8000;       // per light and transform
+  double familyWise = 1e-3;
+  uint64_t seed = 1;
+};
+
+// A light under test, as it is placed.
+struct SuiteSubject {
+  const Light* light = nullptr;
+  LightContext context;                  // transform and scene; bidirectional
+  const EmitterModel* model = nullptr;   // area lights
+  bool isPowerExact = true;              // GetPowerEstimate is a closed form here
+  std::string name, caseName;
+};
+
+// All properties of one placed light.
+void CheckLight(const SuiteSubject& subject, const SuiteOptions& options, SuiteReport& report);
+
+// All sample blocks of the types × shapes × transforms × receivers. `scratch` is an existing folder for images.
+std::vector<SuiteResult> RunPdfSuite(const std::vector<LightType>& types, const std::filesystem::path& scratch,
+                                     const SuiteOptions& options);
+
+}  // namespace lampyr
