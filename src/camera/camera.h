@@ -3,7 +3,8 @@
 // Film coordinates are pixels, (0,0) the upper left corner of the full image. The importance We is normalised so that
 // ∫∫ We cosθ dω dA over lens and full image equals the image's area in pixels: a measured pixel value is the mean
 // radiance over that pixel with the reconstruction filter, whichever technique estimates it. In particular
-//   - a ray through a uniformly chosen film point has the density We cosθ / (width · height) = pdfPosition · pdfDirection;
+//   - a ray through a uniformly chosen film point has the density We cosθ / (width · height) = pdfPosition ·
+//   pdfDirection;
 //   - a connection from a surface point to the camera adds β · f · |cosθ at the point| · importance / pdfLensSolidAngle
 //     per pixel² at its film point, β being the throughput of the light subpath.
 // Deltas: with a pinhole the position is discrete (an integral over the lens is a sum of one term), with parallel rays
@@ -27,19 +28,21 @@ struct CameraRay {
 
 // What a light subpath needs to connect to the camera, and a camera path to weigh that connection.
 struct CameraConnection {
-  Point3 position;           // on the lens
-  Normal3 normal;            // of the lens; for the spherical camera, the direction of viewing
-  Point2 film;               // pixel coordinates where the connection lands
-  float importance = 0;      // We(position, direction), per pixel² (see above)
+  Point3 position;       // on the lens
+  Normal3 normal;        // of the lens; for the spherical camera, the direction of viewing
+  Point2 film;           // pixel coordinates where the connection lands
+  float importance = 0;  // We(position, direction), per pixel² (see above)
   // Density of having chosen `position`, as a solid angle seen from the point: 1/sr. For a pinhole the discrete 1 times
-  // distance² / cosθ at the lens, so that importance / pdfLensSolidAngle is right for all cameras; 1 with parallel rays.
+  // distance² / cosθ at the lens, so that importance / pdfLensSolidAngle is right for all cameras; 1 with parallel
+  // rays.
   float pdfLensSolidAngle = 1;
-  bool isDelta = true;       // no BSDF ray from the point can hit the camera: a pinhole, or parallel rays
+  bool isDelta = true;  // no BSDF ray from the point can hit the camera: a pinhole, or parallel rays
 };
 
 struct CameraDensities {
   PdfArea pdfPosition;         // on the lens; 1 (discrete) for a pinhole
-  PdfSolidAngle pdfDirection;  // of the ray given its position, for a uniformly chosen film point of the full image; 1 (discrete) if parallel
+  PdfSolidAngle pdfDirection;  // of the ray given its position, for a uniformly chosen film point of the full image; 1
+                               // (discrete) if parallel
   float importance = 0;        // We
 };
 
@@ -52,7 +55,7 @@ class Camera {
   virtual std::optional<CameraDensities> EvaluateRay(const Ray& ray, Point2* film) const = 0;
   // Connects `point` to a point of the lens; nullopt when it is not seen by the film.
   virtual std::optional<CameraConnection> Connect(const Point3& point, const Point2& lens) const = 0;
-  virtual bool HasPinhole() const = 0;            // the lens is a point: a delta position
+  virtual bool HasPinhole() const = 0;                    // the lens is a point: a delta position
   virtual bool HasParallelRays() const { return false; }  // orthographic without a lens: a delta direction
 };
 
@@ -61,8 +64,8 @@ struct PerspectiveSettings {
   float lensRadius = 0;        // camera-space units
   float focalDistance = 1e6f;  // camera-space units
 };
-// With a lens every film point has a lens of its own around it, so that the view stays orthographic; pbrt-v4 puts all of
-// them around the camera's origin.
+// With a lens every film point has a lens of its own around it, so that the view stays orthographic; pbrt-v4 puts all
+// of them around the camera's origin.
 struct OrthographicSettings {
   float lensRadius = 0;
   float focalDistance = 1e6f;
@@ -70,14 +73,15 @@ struct OrthographicSettings {
 enum class SphericalMapping { EqualArea, EquiRectangular };
 
 struct CameraFrame {
-  Transform cameraToRender;      // camera space: x right, y up, z forward (left-handed, as pbrt)
-  int width = 1, height = 1;     // of the full image, pixels
+  Transform cameraToRender;                   // camera space: x right, y up, z forward (left-handed, as pbrt)
+  int width = 1, height = 1;                  // of the full image, pixels
   Point2 screenMin{-1, -1}, screenMax{1, 1};  // screen window
-  Vector2 filmMargin{0, 0};      // pixels by which the film sees beyond the image: the radius of a filter that splats are weighed with
+  Vector2 filmMargin{
+      0, 0};  // pixels by which the film sees beyond the image: the radius of a filter that splats are weighed with
 };
 
-// The factories throw an Error for settings that make no camera: an empty image or screen window, a singular transform, a
-// field of view outside of (0°, 180°), a negative lens radius, or a lens whose focal distance is not positive.
+// The factories throw an Error for settings that make no camera: an empty image or screen window, a singular transform,
+// a field of view outside of (0°, 180°), a negative lens radius, or a lens whose focal distance is not positive.
 
 // pbrt's default screen window for an aspect ratio (width / height): the shorter side spans [-1,1].
 void SetDefaultScreenWindow(CameraFrame& frame, float frameAspectRatio);

@@ -1,3 +1,4 @@
+// Checks of camera settings, and the film plane from a camera's frame.
 #include "camera/film_map.h"
 
 #include "base/error.h"

@@ -23,7 +23,7 @@ void CheckLens(float lensRadius, float focalDistance);
 struct FilmPlane {
   Vector3d center, dx, dy;
   Point2d centerFilm;
-  Vector3d normal;     // dx × dy, turned to point away from the camera; its length is the area of a pixel
+  Vector3d normal;        // dx × dy, turned to point away from the camera; its length is the area of a pixel
   Vector3d dualX, dualY;  // dot(p, dualX) is the coordinate along dx of a point p of the plane through 0
 
   // `screenScale` turns screen coordinates into camera-space units.

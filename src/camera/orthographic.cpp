@@ -1,10 +1,10 @@
 // Orthographic camera, with parallel rays or a thin lens around every film point (an object-space telecentric lens).
 //
-// Film points lie on the plane z = 0 of camera space, a render-space area `a` per pixel. Without a lens the direction ω is
-// a delta whose coefficient in We is 1/(a cosθ). With one, a ray starts at film point + l, l uniform over the lens of area
-// A, and goes through film point + focalDistance·z. At a given position dω = cos³θ/h² dl, h being the height of the plane
-// of focus, hence We = h²/(a A cos⁴θ). The density of positions is that of film points: at the image's border, where
-// lenses overlap fewer film points, only the product with pdfDirection is exact.
+// Film points lie on the plane z = 0 of camera space, a render-space area `a` per pixel. Without a lens the direction ω
+// is a delta whose coefficient in We is 1/(a cosθ). With one, a ray starts at film point + l, l uniform over the lens
+// of area A, and goes through film point + focalDistance·z. At a given position dω = cos³θ/h² dl, h being the height of
+// the plane of focus, hence We = h²/(a A cos⁴θ). The density of positions is that of film points: at the image's
+// border, where lenses overlap fewer film points, only the product with pdfDirection is exact.
 #include "base/error.h"
 #include "camera/film_map.h"
 #include "sampling/warp.h"
@@ -30,7 +30,8 @@ class OrthographicCamera final : public Camera {
     focalHeight_ = glm::dot(unitNormal_, toFocus_);
     inverseLensArea_ = hasLens_ ? 1 / (static_cast<double>(kPi) * radius * radius * axes.LensStretch()) : 1;
     inverseLensRadii_ = hasLens_ ? Point2d(1 / glm::dot(lensX_, lensX_), 1 / glm::dot(lensY_, lensY_)) : Point2d(0.0);
-    if (hasLens_) lensLimit_ = 1.001 + 1e-13 * glm::dot(toFocus_, toFocus_) * (inverseLensRadii_.x + inverseLensRadii_.y);
+    if (hasLens_)
+      lensLimit_ = 1.001 + 1e-13 * glm::dot(toFocus_, toFocus_) * (inverseLensRadii_.x + inverseLensRadii_.y);
     direction_ = glm::normalize(toFocus_);
     center_ = plane_.center + Vector3d(origin_);
     dx_ = plane_.dx;
@@ -108,7 +109,8 @@ class OrthographicCamera final : public Camera {
     return disk.x * lensXFloat_ + disk.y * lensYFloat_;
   }
 
-  // 1/sr at a given position, 1 with parallel rays. It equals the density with which a connection chooses its direction.
+  // 1/sr at a given position, 1 with parallel rays. It equals the density with which a connection chooses its
+  // direction.
   double PdfDirection(double cosTheta) const {
     return hasLens_ ? inverseLensArea_ * focalHeight_ * focalHeight_ / (cosTheta * cosTheta * cosTheta) : 1;
   }

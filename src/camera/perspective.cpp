@@ -1,9 +1,9 @@
 // Perspective camera, pinhole or thin lens ([Pharr23 §5.2.3]; We as in [Veach97 §8.3.2.2]).
 //
-// Everything is written in render space for an arbitrary affine cameraToRender. With D(x,y) the point of the plane z = 1
-// that film point (x,y) looks through, relative to the camera's origin, N = ∂D/∂x × ∂D/∂y and det = N·D (a constant),
-// a ray of unit direction ω covers dx dy / dω = det² / (N·ω)³ pixels per steradian. The same holds for a ray that starts
-// at a lens point l and goes through focalDistance·D, because l is perpendicular to N.
+// Everything is written in render space for an arbitrary affine cameraToRender. With D(x,y) the point of the plane z =
+// 1 that film point (x,y) looks through, relative to the camera's origin, N = ∂D/∂x × ∂D/∂y and det = N·D (a constant),
+// a ray of unit direction ω covers dx dy / dω = det² / (N·ω)³ pixels per steradian. The same holds for a ray that
+// starts at a lens point l and goes through focalDistance·D, because l is perpendicular to N.
 #include "base/error.h"
 #include "camera/film_map.h"
 #include "sampling/warp.h"
@@ -79,8 +79,7 @@ class PerspectiveCamera final : public Camera {
     const double cosTheta = glm::dot(unitNormal_, toPoint) / distance;
     result.normal = Normal3(unitNormal_);
     result.film = Point2(film);
-    result.importance =
-        static_cast<float>(pdfLensArea_ * PixelsPerSolidAngle(normalDotVector / distance) / cosTheta);
+    result.importance = static_cast<float>(pdfLensArea_ * PixelsPerSolidAngle(normalDotVector / distance) / cosTheta);
     result.pdfLensSolidAngle = static_cast<float>(pdfLensArea_ * distanceSquared / cosTheta);
     result.isDelta = !hasLens_;
     return result;

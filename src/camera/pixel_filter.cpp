@@ -12,7 +12,7 @@ namespace {
 
 using Kind = PixelFilterSettings::Kind;
 
-constexpr int kTableSize = 2048;         // intervals of a table, an even number: 0 lies between two
+constexpr int kTableSize = 2048;       // intervals of a table, an even number: 0 lies between two
 constexpr int kPointsPerInterval = 4;  // midpoint rule
 
 double Sinc(double x) {
@@ -49,7 +49,9 @@ double AxisValue(const PixelFilterSettings& settings, double radius, double x) {
   return 0;
 }
 
-bool IsClosed(Kind kind) { return kind == Kind::Box || kind == Kind::Triangle; }
+bool IsClosed(Kind kind) {
+  return kind == Kind::Box || kind == Kind::Triangle;
+}
 
 }  // namespace
 

@@ -40,8 +40,8 @@ class PixelFilter {
   // The filter along one axis. `table` holds |f| over [-radius, radius] for kinds that have no closed inversion.
   struct Axis {
     float radius = 0;
-    float integral = 1;          // of f
-    float absoluteRatio = 1;     // ∫|f| / ∫f
+    float integral = 1;       // of f
+    float absoluteRatio = 1;  // ∫|f| / ∫f
     Distribution1D table;
     std::vector<signed char> signs;  // of f, per interval of the table
   };

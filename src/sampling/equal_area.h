@@ -1,7 +1,7 @@
 // Square to sphere and back, for environment images and the spherical camera.
 //
-// Equal-area octahedral map ([Clarberg08]), oriented as in pbrt-v4: the centre of the square is +z, its corners -z, and the
-// right edge's midpoint +x, the lower edge's (v = 1) +y. Latitude-longitude: u = φ/2π from +x, v = θ/π from +z.
+// Equal-area octahedral map ([Clarberg08]), oriented as in pbrt-v4: the centre of the square is +z, its corners -z, and
+// the right edge's midpoint +x, the lower edge's (v = 1) +y. Latitude-longitude: u = φ/2π from +x, v = θ/π from +z.
 #pragma once
 
 #include "math/vec.h"
@@ -59,7 +59,9 @@ inline Point2 LatLongSphereToSquare(const Vector3& direction) {
 
 // |dω/dA| of the latitude-longitude map: a density over the square divided by this is one over solid angle.
 // 0 at the poles: no density is finite there.
-inline float LatLongJacobian(float sinTheta) { return 2 * kPi * kPi * sinTheta; }
+inline float LatLongJacobian(float sinTheta) {
+  return 2 * kPi * kPi * sinTheta;
+}
 // The same for the equal-area map.
 inline constexpr float kEqualAreaJacobian = 4 * kPi;
 

@@ -25,9 +25,12 @@ constexpr uint64_t Hash(Integers... values) {
 }
 
 // The upper 24 bits as a float in [0,1): every value is exact, so that 1 never appears by rounding.
-constexpr float UnitFloat(uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24f; }
+constexpr float UnitFloat(uint32_t bits) {
+  return static_cast<float>(bits >> 8) * 0x1p-24f;
+}
 
-// PCG32: a 64-bit congruential generator whose output is permuted ([ONeill14], XSH-RR). Streams are independent sequences.
+// PCG32: a 64-bit congruential generator whose output is permuted ([ONeill14], XSH-RR). Streams are independent
+// sequences.
 class Rng {
  public:
   explicit Rng(uint64_t seed = 0, uint64_t stream = 0) : increment_(2 * MixBits(stream) + 1) {

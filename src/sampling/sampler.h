@@ -16,7 +16,8 @@ class Sampler {
 
   // Begins sample `index` of a pixel at dimension 0.
   void StartPixelSample(int x, int y, uint32_t index);
-  // Jumps to a dimension: path vertices start at fixed dimensions, so that they stay stratified among paths of different shape.
+  // Jumps to a dimension: path vertices start at fixed dimensions, so that they stay stratified among paths of
+  // different shape.
   void SetDimension(uint32_t dimension) { dimension_ = dimension; }
 
   // In [0, 1). Each call takes the next dimension (a pair counts as one).
@@ -36,8 +37,8 @@ class Sampler {
   uint64_t seed_;
   uint32_t reversedIndex_ = 0;  // the sample's index, bits reversed
   uint32_t dimension_ = 0;
-  uint64_t pixelHash_ = 0;      // of (pixel, seed), and of the index for independent samples
-  uint32_t block_ = kNoBlock;   // the dimensions that are in blockX_ and blockY_
+  uint64_t pixelHash_ = 0;     // of (pixel, seed), and of the index for independent samples
+  uint32_t block_ = kNoBlock;  // the dimensions that are in blockX_ and blockY_
   float blockX_[kBlockSize] = {};
   float blockY_[kBlockSize] = {};
 };

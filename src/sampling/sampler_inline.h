@@ -15,6 +15,8 @@ inline Point2 Sampler::Get2D() {
   return {blockX_[dimension % kBlockSize], blockY_[dimension % kBlockSize]};
 }
 
-inline float Sampler::Get1D() { return Get2D().x; }
+inline float Sampler::Get1D() {
+  return Get2D().x;
+}
 
 }  // namespace lampyr

@@ -1,5 +1,6 @@
 // Owen-scrambled Sobol points of two dimensions, in bit-reversed order throughout: digit 1 of a coordinate (the half of
-// the unit interval it is in) is bit 0. A nested uniform ("Owen") scramble then is a hash in which bits act upwards only
+// the unit interval it is in) is bit 0. A nested uniform ("Owen") scramble then is a hash in which bits act upwards
+// only
 // ([Burley20 §3], after [Laine11]), and the first two Sobol matrices are the identity and Pascal's triangle mod 2.
 #pragma once
 

@@ -11,9 +11,13 @@ namespace {
 constexpr int64_t kUnits = int64_t{1} << 24;  // a cdf counts in 1/kUnits
 constexpr uint32_t kIntervalsPerGuideStep = 8;
 
-double Cleaned(float value) { return value > 0 && value < kInfinity ? static_cast<double>(value) : 0.0; }
+double Cleaned(float value) {
+  return value > 0 && value < kInfinity ? static_cast<double>(value) : 0.0;
+}
 
-float ClampedUnit(float u) { return u > 0 ? std::min(u, kOneMinusEpsilon) : 0.0f; }
+float ClampedUnit(float u) {
+  return u > 0 ? std::min(u, kOneMinusEpsilon) : 0.0f;
+}
 
 // The interval of [0,1] in n equal ones that x is in.
 int IntervalAt(float x, int n) {
@@ -28,7 +32,9 @@ float PointInInterval(int interval, float t, int n) {
   return std::nextafter(x, found < interval ? 1.0f : 0.0f);
 }
 
-size_t GuideSteps(size_t n) { return std::max<size_t>(1, n / kIntervalsPerGuideStep); }
+size_t GuideSteps(size_t n) {
+  return std::max<size_t>(1, n / kIntervalsPerGuideStep);
+}
 
 // Writes n + 1 entries of the cumulative distribution of `values`, whose sum (as Cleaned) is `sum` > 0.
 void WriteCdf(std::span<const float> values, double sum, float* cdf) {
@@ -89,7 +95,9 @@ Found SampleCdf(const float* cdf, const uint32_t* guide, size_t n, float u) {
   return {i, std::min((u - cdf[i]) / (cdf[i + 1] - cdf[i]), kOneMinusEpsilon)};
 }
 
-float IntervalDensity(const float* cdf, size_t i, size_t n) { return (cdf[i + 1] - cdf[i]) * static_cast<float>(n); }
+float IntervalDensity(const float* cdf, size_t i, size_t n) {
+  return (cdf[i + 1] - cdf[i]) * static_cast<float>(n);
+}
 
 float InvertCdf(const float* cdf, int n, float x) {
   const int i = IntervalAt(x, n);
@@ -169,12 +177,13 @@ float Distribution1D::Density(float x) const {
   return IntervalDensity(cdf_.data(), static_cast<size_t>(IntervalAt(x, static_cast<int>(Size()))), Size());
 }
 
-float Distribution1D::Invert(float x) const { return InvertCdf(cdf_.data(), static_cast<int>(Size()), x); }
+float Distribution1D::Invert(float x) const {
+  return InvertCdf(cdf_.data(), static_cast<int>(Size()), x);
+}
 
 // --- Distribution2D
 
-Distribution2D::Distribution2D(std::span<const float> values, int width, int height)
-    : width_(width), height_(height) {
+Distribution2D::Distribution2D(std::span<const float> values, int width, int height) : width_(width), height_(height) {
   const size_t columns = static_cast<size_t>(width), rows = static_cast<size_t>(height);
   std::vector<double> rowSums(rows, 0.0);
   double sum = 0, largest = 0;
@@ -215,9 +224,9 @@ float Distribution2D::CellDensity(int column, int row) const {
 Distribution2D::Result Distribution2D::Sample(const Point2& u) const {
   const size_t columns = static_cast<size_t>(width_), rows = static_cast<size_t>(height_);
   const Found row = SampleCdf(marginalCdf_.data(), marginalGuide_.data(), rows, ClampedUnit(u.y));
-  const Found column = SampleCdf(&conditionalCdf_[row.interval * (columns + 1)],
-                                 &conditionalGuide_[row.interval * (GuideSteps(columns) + 1)], columns,
-                                 ClampedUnit(u.x));
+  const Found column =
+      SampleCdf(&conditionalCdf_[row.interval * (columns + 1)],
+                &conditionalGuide_[row.interval * (GuideSteps(columns) + 1)], columns, ClampedUnit(u.x));
   const int i = static_cast<int>(column.interval), j = static_cast<int>(row.interval);
   return {{PointInInterval(i, column.t, width_), PointInInterval(j, row.t, height_)}, CellDensity(i, j)};
 }

@@ -12,12 +12,15 @@ namespace warp_internal {
 // sin and cos of an angle in [-π/4, π/4] by their series, to float precision.
 inline Vector2 CosSinOctant(float angle) {
   const float s = angle * angle;
-  const float cosine = 1 + s * (-0.5f + s * (1.0f / 24 + s * (-1.0f / 720 + s * (1.0f / 40320 - s * (1.0f / 3628800)))));
+  const float cosine =
+      1 + s * (-0.5f + s * (1.0f / 24 + s * (-1.0f / 720 + s * (1.0f / 40320 - s * (1.0f / 3628800)))));
   const float sine = angle * (1 + s * (-1.0f / 6 + s * (1.0f / 120 + s * (-1.0f / 5040 + s * (1.0f / 362880)))));
   return {cosine, sine};
 }
 
-inline float ClampUnit(float u) { return std::min(std::max(u, 0.0f), kOneMinusEpsilon); }
+inline float ClampUnit(float u) {
+  return std::min(std::max(u, 0.0f), kOneMinusEpsilon);
+}
 
 // The angle of (x, y) in turns, in [0,1).
 inline float Turns(float x, float y) {
@@ -43,7 +46,9 @@ inline Vector2 CosSinTurns(float turns) {
 }
 
 // 1 - cosθ from sin²θ, θ in [0, π/2], exact also for angles far below float's resolution of cosθ.
-inline float OneMinusCosFromSinSquared(float sinSquared) { return sinSquared / (1 + SafeSqrt(1 - sinSquared)); }
+inline float OneMinusCosFromSinSquared(float sinSquared) {
+  return sinSquared / (1 + SafeSqrt(1 - sinSquared));
+}
 
 // --- Unit disk, uniform; squares map to squares of rings, neighbours stay neighbours ([Shirley97]).
 inline Point2 SampleConcentricDisk(const Point2& u) {
@@ -54,7 +59,9 @@ inline Point2 SampleConcentricDisk(const Point2& u) {
   const Vector2 direction = warp_internal::CosSinOctant(r != 0 ? (0.25f * kPi) * (other / r) : 0.0f);
   return horizontal ? Point2(r * direction.x, r * direction.y) : Point2(r * direction.y, r * direction.x);
 }
-inline PdfArea ConcentricDiskPdf() { return PdfArea(kInvPi); }
+inline PdfArea ConcentricDiskPdf() {
+  return PdfArea(kInvPi);
+}
 inline Point2 InvertConcentricDisk(const Point2& p) {
   const bool horizontal = std::abs(p.x) > std::abs(p.y);
   const float along = horizontal ? p.x : p.y;
@@ -72,8 +79,12 @@ inline Vector3 SampleCosineHemisphere(const Point2& u) {
   const float r = std::max(std::abs(2 * u.x - 1), std::abs(2 * u.y - 1));
   return {disk.x, disk.y, std::sqrt(std::max((1 - r) * (1 + r), 0x1p-26f))};
 }
-inline PdfSolidAngle CosineHemispherePdf(float cosTheta) { return PdfSolidAngle(std::max(cosTheta, 0.0f) * kInvPi); }
-inline Point2 InvertCosineHemisphere(const Vector3& v) { return InvertConcentricDisk({v.x, v.y}); }
+inline PdfSolidAngle CosineHemispherePdf(float cosTheta) {
+  return PdfSolidAngle(std::max(cosTheta, 0.0f) * kInvPi);
+}
+inline Point2 InvertCosineHemisphere(const Vector3& v) {
+  return InvertConcentricDisk({v.x, v.y});
+}
 
 // --- Sphere, uniform: u.x goes from the north pole to the south pole.
 inline Vector3 SampleUniformSphere(const Point2& u) {
@@ -81,7 +92,9 @@ inline Vector3 SampleUniformSphere(const Point2& u) {
   const float r = 2 * SafeSqrt(u.x * (1 - u.x));
   return {r * phi.x, r * phi.y, 1 - 2 * u.x};
 }
-inline PdfSolidAngle UniformSpherePdf() { return PdfSolidAngle(0.25f * kInvPi); }
+inline PdfSolidAngle UniformSpherePdf() {
+  return PdfSolidAngle(0.25f * kInvPi);
+}
 inline Point2 InvertUniformSphere(const Vector3& v) {
   return {warp_internal::ClampUnit(0.5f * warp_internal::OneMinusCosTheta(v)), warp_internal::Turns(v.x, v.y)};
 }
@@ -102,9 +115,15 @@ inline Point2 InvertUniformCone(const Vector3& v, float oneMinusCosThetaMax) {
 }
 
 // --- Hemisphere, uniform: the cone of 90°. u.x goes from the pole to the rim, which is never reached.
-inline Vector3 SampleUniformHemisphere(const Point2& u) { return SampleUniformCone(u, 1); }
-inline PdfSolidAngle UniformHemispherePdf() { return PdfSolidAngle(0.5f * kInvPi); }
-inline Point2 InvertUniformHemisphere(const Vector3& v) { return InvertUniformCone(v, 1); }
+inline Vector3 SampleUniformHemisphere(const Point2& u) {
+  return SampleUniformCone(u, 1);
+}
+inline PdfSolidAngle UniformHemispherePdf() {
+  return PdfSolidAngle(0.5f * kInvPi);
+}
+inline Point2 InvertUniformHemisphere(const Vector3& v) {
+  return InvertUniformCone(v, 1);
+}
 
 // --- Triangle, uniform: barycentric coordinates, none negative, with little distortion ([Heitz19]).
 inline Vector3 SampleUniformTriangle(const Point2& u) {
@@ -112,13 +131,14 @@ inline Vector3 SampleUniformTriangle(const Point2& u) {
   const Point2 b = u.y > u.x ? Point2(half, u.y - half) : Point2(u.x - half, half);
   return {b.x, b.y, 1 - std::max(u.x, u.y)};
 }
-inline PdfArea UniformTrianglePdf(float area) { return PdfArea(area > 0 ? 1 / area : 0.0f); }
+inline PdfArea UniformTrianglePdf(float area) {
+  return PdfArea(area > 0 ? 1 / area : 0.0f);
+}
 inline Point2 InvertUniformTriangle(const Vector3& barycentric) {
   const float sum = barycentric.x + barycentric.y;
   const float twice = 2 * std::min(barycentric.x, barycentric.y);
-  return barycentric.y > barycentric.x
-             ? Point2(warp_internal::ClampUnit(twice), warp_internal::ClampUnit(sum))
-             : Point2(warp_internal::ClampUnit(sum), warp_internal::ClampUnit(twice));
+  return barycentric.y > barycentric.x ? Point2(warp_internal::ClampUnit(twice), warp_internal::ClampUnit(sum))
+                                       : Point2(warp_internal::ClampUnit(sum), warp_internal::ClampUnit(twice));
 }
 
 }  // namespace lampyr

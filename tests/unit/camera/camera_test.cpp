@@ -12,20 +12,23 @@
 namespace lampyr {
 namespace {
 
-double Double(float v) { return static_cast<double>(v); }
+double Double(float v) {
+  return static_cast<double>(v);
+}
 
 struct NamedCamera {
   std::string name;
   CameraFrame frame;
   std::unique_ptr<Camera> camera;
-  double scale = 1;         // of the transform
+  double scale = 1;  // of the transform
   bool isSpherical = false;
   float filmError = 1e-3f;  // pixels
 };
 
 std::vector<std::pair<std::string, Transform>> Transforms() {
   const Transform place = Transform::Translate({3, -2, 5}) * Transform::Rotate(50, {1, 2, 0.5});
-  const glm::dmat4 shear(glm::dvec4(1, 0, 0, 0), glm::dvec4(0.3, 1, 0, 0), glm::dvec4(0.2, -0.1, 1, 0), glm::dvec4(0, 0, 0, 1));
+  const glm::dmat4 shear(glm::dvec4(1, 0, 0, 0), glm::dvec4(0.3, 1, 0, 0), glm::dvec4(0.2, -0.1, 1, 0),
+                         glm::dvec4(0, 0, 0, 1));
   return {{"identity", Transform()},
           {"placed", place},
           {"small", place * Transform::Scale(Vector3d(1e-3))},
@@ -48,10 +51,11 @@ std::vector<NamedCamera> Cameras() {
     shifted.screenMin = {-0.2f, 0.1f};
     shifted.screenMax = {0.9f, 1.4f};
     const double scale = name == "small" ? 1e-3 : name == "large" ? 1e3 : 1;
-    // The film point of a ray from a lens is made of its position: one 10⁴ away is rounded to 5e-4, and one of a camera of
-    // 1e-3 that stands 5 away to 3e-4 of the camera.
+    // The film point of a ray from a lens is made of its position: one 10⁴ away is rounded to 5e-4, and one of a camera
+    // of 1e-3 that stands 5 away to 3e-4 of the camera.
     const float lensError = name == "far" ? 1.0f : name == "small" ? 0.2f : 2e-3f;
-    const auto add = [&](const std::string& kind, const CameraFrame& f, std::unique_ptr<Camera> camera, float filmError) {
+    const auto add = [&](const std::string& kind, const CameraFrame& f, std::unique_ptr<Camera> camera,
+                         float filmError) {
       cameras.push_back({kind + " " + name, f, std::move(camera), scale, kind.starts_with("spherical"), filmError});
     };
     add("pinhole", frame, MakePerspectiveCamera(frame, {Degrees(70)}), 1e-3f);
@@ -84,7 +88,8 @@ TEST(Camera, RayAndConnectionComeBackToTheFilmPoint) {
       const auto densities = c.camera->EvaluateRay(ray, &back);
       ASSERT_TRUE(densities) << c.name << " " << film.x << " " << film.y;
       // Near the poles of latitude and longitude a pixel is narrower than a float direction can tell.
-      const float poleError = c.name.starts_with("spherical") ? 10 / std::max(1.0f, std::min(film.y, 400 - film.y)) : 0.0f;
+      const float poleError =
+          c.name.starts_with("spherical") ? 10 / std::max(1.0f, std::min(film.y, 400 - film.y)) : 0.0f;
       const float filmError = c.filmError * (1 + poleError);
       ASSERT_LT(glm::length(back - film), filmError) << c.name;
       EXPECT_GT(densities->pdfPosition.value, 0.0f);
@@ -109,8 +114,8 @@ TEST(Camera, RayAndConnectionComeBackToTheFilmPoint) {
   }
 }
 
-// ∫ of what a connection adds over all points of a plane in front of the camera, per pixel² = the image's area: the light
-// tracer's normalisation. Points are sampled by film point and lens, and weighed by their density on the plane.
+// ∫ of what a connection adds over all points of a plane in front of the camera, per pixel² = the image's area: the
+// light tracer's normalisation. Points are sampled by film point and lens, and weighed by their density on the plane.
 TEST(Camera, ConnectionsFromAPlaneMeasureThePixelCount) {
   for (const NamedCamera& c : Cameras()) {
     if (c.isSpherical) continue;
@@ -123,7 +128,7 @@ TEST(Camera, ConnectionsFromAPlaneMeasureThePixelCount) {
     const float extent = c.name.starts_with("orthographic") ? 2.5f : 12.0f;
     const float half = extent * distance / 7 * (c.name.find("stretched") != std::string::npos ? 2.0f : 1.0f);
     Sampler sampler(SamplerKind::Sobol, 3);
-    constexpr uint32_t kCount = 1u << 18;
+    constexpr uint32_t kCount = 1u << 17;
     double sum = 0;
     for (uint32_t i = 0; i < kCount; ++i) {
       sampler.StartPixelSample(0, 0, i);
@@ -146,7 +151,7 @@ TEST(Camera, ConnectionsSpreadEvenlyOverTheFilm) {
   for (const NamedCamera& c : Cameras()) {
     if (!c.isSpherical) continue;
     Sampler sampler(SamplerKind::Sobol, 5);
-    constexpr uint32_t kCount = 1u << 18;
+    constexpr uint32_t kCount = 1u << 17;
     std::vector<double> blocks(8 * 5);
     const Point3 eye = c.camera->GenerateRay({1, 1}, {0, 0}, 0).ray.origin;
     const float radius = 3;
@@ -156,10 +161,12 @@ TEST(Camera, ConnectionsSpreadEvenlyOverTheFilm) {
       ASSERT_TRUE(connection);
       const size_t x = static_cast<size_t>(connection->film.x / 80), y = static_cast<size_t>(connection->film.y / 80);
       ASSERT_TRUE(x < 8 && y < 5) << c.name;
-      blocks[y * 8 + x] += Double(connection->importance) / Double(connection->pdfLensSolidAngle) * 4 * Double(kPi) * 9 / kCount;
+      blocks[y * 8 + x] +=
+          Double(connection->importance) / Double(connection->pdfLensSolidAngle) * 4 * Double(kPi) * 9 / kCount;
     }
     for (size_t i = 0; i < blocks.size(); ++i) {
-      // Latitude and longitude: the importance grows as 1/sinθ towards the poles, and with it the noise of this estimate.
+      // Latitude and longitude: the importance grows as 1/sinθ towards the poles, and with it the noise of this
+      // estimate.
       const bool isAtPole = c.name.starts_with("spherical lat") && (i < 8 || i >= 32);
       EXPECT_NEAR(blocks[i] / (80 * 80), 1, isAtPole ? 0.2 : 0.03) << c.name;
     }
@@ -173,7 +180,7 @@ TEST(Camera, DirectionDensityIntegratesToOne) {
     if (c.name.starts_with("orthographic")) continue;  // a product density: tested with We above
     const Ray start = c.camera->GenerateRay({320, 200}, {0.9f, 0.4f}, 0).ray;
     Sampler sampler(SamplerKind::Sobol, 9);
-    constexpr uint32_t kCount = 1u << 18;
+    constexpr uint32_t kCount = 1u << 17;
     double sum = 0;
     for (uint32_t i = 0; i < kCount; ++i) {
       sampler.StartPixelSample(0, 0, i);
@@ -190,10 +197,15 @@ TEST(Camera, RasterConventionsAreThoseOfPbrt) {
   frame.height = 100;
   SetDefaultScreenWindow(frame, 2);
   const auto perspective = MakePerspectiveCamera(frame, {Degrees(90)});
-  const auto direction = [](const Camera& camera, Point2 film) { return camera.GenerateRay(film, {0.5f, 0.5f}, 0).ray.direction; };
-  const auto expectNear = [](const Vector3& a, const Vector3& b) { EXPECT_LT(glm::length(a - b), 1e-6f) << a.x << " " << a.y << " " << a.z; };
+  const auto direction = [](const Camera& camera, Point2 film) {
+    return camera.GenerateRay(film, {0.5f, 0.5f}, 0).ray.direction;
+  };
+  const auto expectNear = [](const Vector3& a, const Vector3& b) {
+    EXPECT_LT(glm::length(a - b), 1e-6f) << a.x << " " << a.y << " " << a.z;
+  };
   expectNear(direction(*perspective, {100, 50}), {0, 0, 1});
-  expectNear(direction(*perspective, {0, 0}), glm::normalize(Vector3(-2, 1, 1)));  // upper left; fov over the shorter side
+  expectNear(direction(*perspective, {0, 0}),
+             glm::normalize(Vector3(-2, 1, 1)));  // upper left; fov over the shorter side
   expectNear(direction(*perspective, {200, 100}), glm::normalize(Vector3(2, -1, 1)));
   const auto orthographic = MakeOrthographicCamera(frame, {});
   expectNear(direction(*orthographic, {0, 0}), {0, 0, 1});
@@ -252,7 +264,9 @@ TEST(Camera, TheMarginSeesBeyondTheImage) {
   frame.width = frame.height = 100;
   frame.filmMargin = {2, 3};
   const auto camera = MakePerspectiveCamera(frame, {Degrees(60)});
-  const auto isSeen = [&](Point2 film) { return camera->EvaluateRay(camera->GenerateRay(film, {0, 0}, 0).ray, nullptr).has_value(); };
+  const auto isSeen = [&](Point2 film) {
+    return camera->EvaluateRay(camera->GenerateRay(film, {0, 0}, 0).ray, nullptr).has_value();
+  };
   EXPECT_TRUE(isSeen({-1.9f, 102.9f}));
   EXPECT_FALSE(isSeen({-2.1f, 50}));
   EXPECT_FALSE(isSeen({50, 103.1f}));

@@ -11,7 +11,9 @@ namespace {
 
 using Kind = PixelFilterSettings::Kind;
 
-double Double(float v) { return static_cast<double>(v); }
+double Double(float v) {
+  return static_cast<double>(v);
+}
 
 PixelFilterSettings Settings(Kind kind, float radiusX, float radiusY) {
   PixelFilterSettings settings;
@@ -22,9 +24,9 @@ PixelFilterSettings Settings(Kind kind, float radiusX, float radiusY) {
 }
 
 std::vector<PixelFilterSettings> AllSettings() {
-  return {Settings(Kind::Box, 0.5f, 0.5f),     Settings(Kind::Box, 1.2f, 0.3f),      Settings(Kind::Triangle, 2, 2),
-          Settings(Kind::Triangle, 1, 3),      Settings(Kind::Gaussian, 1.5f, 1.5f), Settings(Kind::Gaussian, 2, 0.7f),
-          Settings(Kind::Mitchell, 2, 2),      Settings(Kind::Mitchell, 1.5f, 3),    Settings(Kind::Sinc, 4, 4),
+  return {Settings(Kind::Box, 0.5f, 0.5f), Settings(Kind::Box, 1.2f, 0.3f),      Settings(Kind::Triangle, 2, 2),
+          Settings(Kind::Triangle, 1, 3),  Settings(Kind::Gaussian, 1.5f, 1.5f), Settings(Kind::Gaussian, 2, 0.7f),
+          Settings(Kind::Mitchell, 2, 2),  Settings(Kind::Mitchell, 1.5f, 3),    Settings(Kind::Sinc, 4, 4),
           Settings(Kind::Sinc, 2.5f, 3)};
 }
 
@@ -76,7 +78,8 @@ TEST(PixelFilter, SamplesFollowTheFilter) {
       const int column = i % kSteps, row = i / kSteps;
       const double x = 2 * (column + 0.5) / kSteps - 1, y = 2 * (row + 0.5) / kSteps - 1;
       const Vector2 offset(settings.radiusX * static_cast<float>(x), settings.radiusY * static_cast<float>(y));
-      const double w = Double(filter.Evaluate(offset)) * 4 * Double(settings.radiusX * settings.radiusY) / (kSteps * kSteps);
+      const double w =
+          Double(filter.Evaluate(offset)) * 4 * Double(settings.radiusX * settings.radiusY) / (kSteps * kSteps);
       expected[static_cast<size_t>(row / kSub * kBlocks + column / kSub)] += w;
       expectedX += w * x * x;
       expectedY += w * y * y;
@@ -85,7 +88,8 @@ TEST(PixelFilter, SamplesFollowTheFilter) {
     EXPECT_NEAR(meanX, 0, 1e-3);
     EXPECT_NEAR(squareX, expectedX, 1e-3);
     EXPECT_NEAR(squareY, expectedY, 1e-3);
-    for (size_t i = 0; i < sampled.size(); ++i) EXPECT_NEAR(sampled[i], expected[i], 5e-4) << static_cast<int>(settings.kind);
+    for (size_t i = 0; i < sampled.size(); ++i)
+      EXPECT_NEAR(sampled[i], expected[i], 5e-4) << static_cast<int>(settings.kind);
   }
 }
 
@@ -100,7 +104,8 @@ TEST(PixelFilter, ShapesAreThoseOfPbrt) {
   // Mitchell with B = C = 1/3 and radius 2: 8/9 at 0 and 1/18 at 1.
   EXPECT_NEAR(ratio(Settings(Kind::Mitchell, 2, 2), 1.0f), (1.0 / 18) / (8.0 / 9), 1e-6);
   const double pi = 3.14159265358979323846;
-  EXPECT_NEAR(ratio(Settings(Kind::Sinc, 4, 4), 1.5f), std::sin(1.5 * pi) / (1.5 * pi) * std::sin(0.5 * pi) / (0.5 * pi), 1e-6);
+  EXPECT_NEAR(ratio(Settings(Kind::Sinc, 4, 4), 1.5f),
+              std::sin(1.5 * pi) / (1.5 * pi) * std::sin(0.5 * pi) / (0.5 * pi), 1e-6);
 }
 
 TEST(PixelFilter, SettingsThatMakeNoFilterAreErrors) {

@@ -10,7 +10,9 @@
 namespace lampyr {
 namespace {
 
-double Double(float v) { return static_cast<double>(v); }
+double Double(float v) {
+  return static_cast<double>(v);
+}
 
 // Every elementary interval of area 2^-k holds exactly one of 2^k points.
 void ExpectStratified(const std::vector<Point2>& points, int k) {
@@ -29,7 +31,8 @@ TEST(Sampler, AlignedBlocksAreStratifiedInAllElementaryIntervals) {
   Sampler sampler(SamplerKind::Sobol, 5);
   for (const uint32_t dimension : {0u, 1u, 7u, 8u, 100u, 1000000u}) {
     for (int k = 0; k <= 10; ++k) {
-      for (const uint32_t block : {0u, 1u, 6u, (1u << (31 - k)) + 3, static_cast<uint32_t>((uint64_t{1} << (32 - k)) - 1)}) {
+      for (const uint32_t block :
+           {0u, 1u, 6u, (1u << (31 - k)) + 3, static_cast<uint32_t>((uint64_t{1} << (32 - k)) - 1)}) {
         std::vector<Point2> points;
         for (uint32_t i = 0; i < (1u << k); ++i) {
           sampler.StartPixelSample(3, 70, (block << k) + i);
@@ -106,7 +109,9 @@ TEST(Sampler, IsUniformOverPixelsAndOverSamples) {
 TEST(Sampler, DimensionsAndPixelsAreIndependent) {
   constexpr int kSide = 200;
   const std::vector<double> expected(64, kSide * kSide / 64.0);
-  const auto cell = [](float a, float b) { return static_cast<size_t>(static_cast<int>(a * 8) * 8 + static_cast<int>(b * 8)); };
+  const auto cell = [](float a, float b) {
+    return static_cast<size_t>(static_cast<int>(a * 8) * 8 + static_cast<int>(b * 8));
+  };
   for (const SamplerKind kind : {SamplerKind::Sobol, SamplerKind::Independent}) {
     Sampler sampler(kind, 77), other(kind, 77);
     for (const uint32_t dimension : {1u, 2u, 8u, 31u}) {
@@ -135,8 +140,9 @@ TEST(Sampler, DimensionsAndPixelsAreIndependent) {
   }
 }
 
-// Pairs are shuffled against each other. In any coordinate two consecutive samples (2m, 2m + 1) are in opposite halves, so
-// among four samples two pairs of coordinates agree everywhere or nowhere with probability 1/2; without the shuffle always.
+// Pairs are shuffled against each other. In any coordinate two consecutive samples (2m, 2m + 1) are in opposite halves,
+// so among four samples two pairs of coordinates agree everywhere or nowhere with probability 1/2; without the shuffle
+// always.
 TEST(Sampler, LeadingDigitsOfDifferentPairsAreUncorrelated) {
   Sampler sampler(SamplerKind::Sobol, 3);
   int agreeing = 0, total = 0;
@@ -176,10 +182,13 @@ double MeanSquaredError(SamplerKind kind, uint32_t samples, uint32_t dimension) 
 
 TEST(Sampler, ErrorOnASmoothIntegrandIsFarBelowIndependent) {
   for (const uint32_t dimension : {0u, 5u}) {
-    EXPECT_GT(MeanSquaredError(SamplerKind::Independent, 16, dimension), 5 * MeanSquaredError(SamplerKind::Sobol, 16, dimension));
-    EXPECT_GT(MeanSquaredError(SamplerKind::Independent, 64, dimension), 50 * MeanSquaredError(SamplerKind::Sobol, 64, dimension));
+    EXPECT_GT(MeanSquaredError(SamplerKind::Independent, 16, dimension),
+              5 * MeanSquaredError(SamplerKind::Sobol, 16, dimension));
+    EXPECT_GT(MeanSquaredError(SamplerKind::Independent, 64, dimension),
+              50 * MeanSquaredError(SamplerKind::Sobol, 64, dimension));
     // Between powers of two, too.
-    EXPECT_GT(MeanSquaredError(SamplerKind::Independent, 24, dimension), 5 * MeanSquaredError(SamplerKind::Sobol, 24, dimension));
+    EXPECT_GT(MeanSquaredError(SamplerKind::Independent, 24, dimension),
+              5 * MeanSquaredError(SamplerKind::Sobol, 24, dimension));
   }
 }
 

@@ -39,7 +39,8 @@ TEST(AliasTable, FrequenciesAndProbabilities) {
     }
     for (size_t i = 0; i < n; ++i) {
       expected[i] = kCount * static_cast<double>(weights[i]) / sum;
-      EXPECT_FLOAT_EQ(table.Probability(static_cast<uint32_t>(i)).value, static_cast<float>(static_cast<double>(weights[i]) / sum));
+      EXPECT_FLOAT_EQ(table.Probability(static_cast<uint32_t>(i)).value,
+                      static_cast<float>(static_cast<double>(weights[i]) / sum));
     }
     EXPECT_GT(test::HistogramPValue(counts, expected), test::kSignificance) << n;
     EXPECT_GT(test::HistogramPValue(leftover, std::vector<double>(16, kCount / 16.0)), test::kSignificance) << n;
@@ -117,7 +118,8 @@ TEST(Distribution1D, DarkIntervalBesideABrightOneCanBeReached) {
 }
 
 TEST(Distribution2D, SampleDensityAndInverse) {
-  for (const auto& [width, height] : {std::pair(1, 1), std::pair(5, 3), std::pair(37, 64), std::pair(300, 7), std::pair(1, 100)}) {
+  for (const auto& [width, height] :
+       {std::pair(1, 1), std::pair(5, 3), std::pair(37, 64), std::pair(300, 7), std::pair(1, 100)}) {
     const size_t n = static_cast<size_t>(width) * static_cast<size_t>(height);
     std::vector<float> values = RandomValues(n, n);
     values[n / 2] = 2;

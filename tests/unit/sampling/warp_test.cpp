@@ -15,7 +15,9 @@ namespace {
 constexpr int kSamples = 200000;
 constexpr int kBins = 16;
 
-double Double(float v) { return static_cast<double>(v); }
+double Double(float v) {
+  return static_cast<double>(v);
+}
 
 // Histogram over (1 - cosθ)/range and φ, against a density in solid angle that depends on cosθ alone.
 double DirectionPValue(const std::function<Vector3(Point2)>& sample, const std::function<double(double)>& density,
@@ -45,13 +47,16 @@ double DirectionPValue(const std::function<Vector3(Point2)>& sample, const std::
 }
 
 TEST(Warp, SphereAndHemispheresFollowTheirDensities) {
-  EXPECT_GT(DirectionPValue(SampleUniformSphere, [](double) { return Double(UniformSpherePdf().value); }, 2),
+  EXPECT_GT(DirectionPValue(
+                SampleUniformSphere, [](double) { return Double(UniformSpherePdf().value); }, 2),
             test::kSignificance);
-  EXPECT_GT(DirectionPValue(SampleUniformHemisphere, [](double) { return Double(UniformHemispherePdf().value); }, 1),
+  EXPECT_GT(DirectionPValue(
+                SampleUniformHemisphere, [](double) { return Double(UniformHemispherePdf().value); }, 1),
             test::kSignificance);
-  EXPECT_GT(DirectionPValue(SampleCosineHemisphere,
-                            [](double c) { return Double(CosineHemispherePdf(static_cast<float>(c)).value); }, 1),
-            test::kSignificance);
+  EXPECT_GT(
+      DirectionPValue(
+          SampleCosineHemisphere, [](double c) { return Double(CosineHemispherePdf(static_cast<float>(c)).value); }, 1),
+      test::kSignificance);
 }
 
 TEST(Warp, ConesOfAllSizesFollowTheirDensity) {
@@ -65,7 +70,9 @@ TEST(Warp, ConesOfAllSizesFollowTheirDensity) {
 
 TEST(Warp, WrongDensityIsFound) {
   // The histogram test has power: a hemisphere sampled uniformly is not cosine distributed.
-  EXPECT_LT(DirectionPValue(SampleUniformHemisphere, [](double c) { return c / Double(kPi); }, 1), test::kSignificance);
+  EXPECT_LT(DirectionPValue(
+                SampleUniformHemisphere, [](double c) { return c / Double(kPi); }, 1),
+            test::kSignificance);
 }
 
 TEST(Warp, DiskAndTriangleAreUniform) {
@@ -75,7 +82,8 @@ TEST(Warp, DiskAndTriangleAreUniform) {
     const Point2 p = SampleConcentricDisk(rng.NextPoint2());
     const double r2 = std::min(Double(glm::dot(p, p)), 0.999999);
     const double turns = std::atan2(Double(p.y), Double(p.x)) / (2 * Double(kPi)) + 0.5;
-    disk[static_cast<size_t>(static_cast<int>(r2 * kBins) * kBins + std::min(static_cast<int>(turns * kBins), kBins - 1))] += 1;
+    disk[static_cast<size_t>(static_cast<int>(r2 * kBins) * kBins +
+                             std::min(static_cast<int>(turns * kBins), kBins - 1))] += 1;
     // Rows of equal area: 1 - b0 is distributed as the square root, and b1/(1 - b0) uniformly.
     const Vector3 b = SampleUniformTriangle(rng.NextPoint2());
     EXPECT_GE(std::min(b.x, std::min(b.y, b.z)), 0.0f);
@@ -107,7 +115,8 @@ TEST(Warp, InvertGivesBackTheSample) {
     expectNear(InvertCosineHemisphere(SampleCosineHemisphere(u)), "cosine");
     expectNear(InvertUniformSphere(SampleUniformSphere(u)), "sphere");
     expectNear(InvertUniformHemisphere(SampleUniformHemisphere(u)), "hemisphere");
-    for (const float range : {1.9f, 1e-3f, 1e-9f}) expectNear(InvertUniformCone(SampleUniformCone(u, range), range), "cone");
+    for (const float range : {1.9f, 1e-3f, 1e-9f})
+      expectNear(InvertUniformCone(SampleUniformCone(u, range), range), "cone");
     expectNear(InvertUniformTriangle(SampleUniformTriangle(u)), "triangle");
     expectNear(EqualAreaSphereToSquare(EqualAreaSquareToSphere(u)), "equal area", 2e-6f);
     expectNear(LatLongSphereToSquare(LatLongSquareToSphere(u)), "lat-long");
@@ -120,9 +129,9 @@ TEST(Warp, UnitLengthEverywhereOnTheSquare) {
       const Point2 u(x, y);
       EXPECT_GT(SampleCosineHemisphere(u).z, 0.0f);
       EXPECT_GT(SampleUniformHemisphere(u).z, 0.0f);
-      for (const Vector3& v : {SampleCosineHemisphere(u), SampleUniformSphere(u), SampleUniformHemisphere(u),
-                               SampleUniformCone(u, 1e-30f), SampleUniformCone(u, 2.0f), EqualAreaSquareToSphere(u),
-                               LatLongSquareToSphere(u)}) {
+      for (const Vector3& v :
+           {SampleCosineHemisphere(u), SampleUniformSphere(u), SampleUniformHemisphere(u), SampleUniformCone(u, 1e-30f),
+            SampleUniformCone(u, 2.0f), EqualAreaSquareToSphere(u), LatLongSquareToSphere(u)}) {
         EXPECT_NEAR(glm::length(v), 1.0f, 3e-7f) << x << " " << y;
       }
     }
@@ -141,7 +150,8 @@ TEST(EqualArea, OrientationIsThatOfPbrt) {
     EXPECT_LT(glm::length(EqualAreaSquareToSphere(p) - v), 1e-6f) << p.x << " " << p.y;
   };
   expectDirection({0.5f, 0.5f}, {0, 0, 1});
-  for (const Point2 corner : {Point2(0, 0), Point2(1, 0), Point2(0, 1), Point2(1, 1)}) expectDirection(corner, {0, 0, -1});
+  for (const Point2 corner : {Point2(0, 0), Point2(1, 0), Point2(0, 1), Point2(1, 1)})
+    expectDirection(corner, {0, 0, -1});
   expectDirection({1, 0.5f}, {1, 0, 0});
   expectDirection({0, 0.5f}, {-1, 0, 0});
   expectDirection({0.5f, 1}, {0, 1, 0});
@@ -150,15 +160,18 @@ TEST(EqualArea, OrientationIsThatOfPbrt) {
 }
 
 TEST(EqualArea, AreasAreEqual) {
-  EXPECT_GT(DirectionPValue(EqualAreaSquareToSphere, [](double) { return 0.25 / Double(kPi); }, 2), test::kSignificance);
+  EXPECT_GT(DirectionPValue(
+                EqualAreaSquareToSphere, [](double) { return 0.25 / Double(kPi); }, 2),
+            test::kSignificance);
 }
 
 TEST(EqualArea, WrappingContinuesTheMapAcrossEveryEdge) {
   Rng rng(9);
   for (int i = 0; i < 1000; ++i) {
     const float t = rng.NextFloat(), e = 1e-4f;
-    for (const auto& [inside, outside] : {std::pair(Point2(e, t), Point2(-e, t)), std::pair(Point2(1 - e, t), Point2(1 + e, t)),
-                                          std::pair(Point2(t, e), Point2(t, -e)), std::pair(Point2(t, 1 - e), Point2(t, 1 + e))}) {
+    for (const auto& [inside, outside] :
+         {std::pair(Point2(e, t), Point2(-e, t)), std::pair(Point2(1 - e, t), Point2(1 + e, t)),
+          std::pair(Point2(t, e), Point2(t, -e)), std::pair(Point2(t, 1 - e), Point2(t, 1 + e))}) {
       const Vector3 a = EqualAreaSquareToSphere(inside), b = EqualAreaSquareToSphere(WrapEqualAreaSquare(outside));
       EXPECT_LT(glm::length(a - b), 5e-3f) << outside.x << " " << outside.y;
     }
