@@ -4,7 +4,8 @@ namespace lampyr {
 
 namespace {
 
-// A length off by ε becomes one off by ε²: the frame and the models keep it unit but for rounding, which a long path would add up.
+// A length off by ε becomes one off by ε²: the frame and the models keep it unit but for rounding, which a long path
+// would add up.
 Vector3 Renormalize(const Vector3& v) { return v * (1.5f - 0.5f * LengthSquared(v)); }
 
 }  // namespace
@@ -19,6 +20,13 @@ BsdfEvaluation Bsdf::Evaluate(const Vector3& wo, const Vector3& wi, TransportMod
 }
 
 std::optional<BsdfSample> Bsdf::Sample(const Vector3& wo, float uLobe, const Point2& u, TransportMode mode) const {
+  if (const auto* diffuse = std::get_if<DiffuseBsdf>(&model_)) {
+    const float cosO = glm::dot(wo, frame_.z);
+    if (cosO == 0) return std::nullopt;
+    auto sample = diffuse->Sample({0, 0, cosO}, uLobe, u, mode);
+    sample->wi = Renormalize(frame_.ToWorld(sample->wi));
+    return sample;
+  }
   const Vector3 o = frame_.ToLocal(wo);
   if (o.z == 0) return std::nullopt;
   auto sample = std::visit([&](const auto& model) { return model.Sample(o, uLobe, u, mode); }, model_);

@@ -9,6 +9,14 @@
 
 namespace lampyr {
 
+// Probability of sampling the coat's lobe from what the coat and the base reflect, roughly. Within [0.1, 0.95] for a rough
+// coat: its Fresnel factor varies over the lobe, and where either estimate is far too low a sample would weigh 1/probability.
+inline float CoatLobeProbability(float coat, float base, bool coatIsDelta) {
+  if (!(base > 0)) return 1;
+  const float probability = coat / (coat + base);
+  return coatIsDelta ? probability : std::min(std::max(probability, 0.1f), 0.95f);
+}
+
 // A value with both densities.
 struct LobeValue {
   float f = 0, pdfForward = 0, pdfReverse = 0;

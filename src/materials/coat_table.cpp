@@ -17,7 +17,8 @@ struct Split {
   double reflected = 0, transmitted = 0;
 };
 
-// How the gap enters: behind the boundary for light from outside, before it (reflected part) for light from inside.
+// How the gap enters: behind the boundary for light from outside; before and, for what is reflected, behind it for light
+// from inside, of which the caller does the part before.
 enum class Side { Outside, Inside };
 
 Split ScatterAtMicrofacet(const Vector3& wo, const Vector3& m, float stretchO, const TrowbridgeReitz& microfacets,
@@ -97,6 +98,10 @@ CoatTable::Curves CoatTable::MakeCurves(const CoatDescription& description, floa
     const Split split = ScatterAtBoundary(cosTheta, alpha, description.eta, description.thickness, Side::Outside);
     curves.transmittance[i] = static_cast<float>(split.transmitted);
     curves.reflectance[i] = static_cast<float>(split.reflected);
+    const float cosInside = std::max(RefractedCosine(cosTheta, description.eta), 1e-4f);
+    const Split out = ScatterAtBoundary(cosInside, alpha, 1 / description.eta, description.thickness, Side::Inside);
+    curves.pairTransmittance[i] = static_cast<float>(std::sqrt(
+        split.transmitted * out.transmitted * static_cast<double>(GapTransmittance(description.thickness, cosInside))));
   }
   // Cosine-weighted means: the midpoint rule in sin²θ.
   constexpr int kAngles = 512;
@@ -136,6 +141,11 @@ float CoatTable::Reflectance(float cosTheta, Slice slice) const {
   return Blend(slice, [&](int i) { return Interpolate(slices_[i].reflectance.data(), kNodes, x); });
 }
 
+float CoatTable::PairTransmittance(float cosTheta, Slice slice) const {
+  const float x = std::sqrt(std::abs(cosTheta));
+  return Blend(slice, [&](int i) { return Interpolate(slices_[i].pairTransmittance.data(), kNodes, x); });
+}
+
 float CoatTable::MeanTransmittance(Slice slice) const {
   return Blend(slice, [&](int i) { return slices_[i].meanTransmittance; });
 }
@@ -144,11 +154,27 @@ float CoatTable::InternalReflectance(Slice slice) const {
   return Blend(slice, [&](int i) { return slices_[i].internalReflectance; });
 }
 
-CoatReturnTable::CoatReturnTable(const CoatDescription& description) : alphas_(description.alphas) {
+CoatBounceTable::CoatBounceTable(const CoatDescription& coat, const std::vector<float>& baseAlphas)
+    : alphas_(baseAlphas) {
+  // Of light that leaves the base at an angle: what gets out, and what comes back to the base.
+  Nodes leaving{}, returning{};
+  const float coatAlpha = coat.alphas[coat.alphas.size() / 2];
+  for (int i = 0; i < kNodes; ++i) {
+    const float cosInside = std::max(static_cast<float>(i) / (kNodes - 1), 1e-4f);
+    const float gap = GapTransmittance(coat.thickness, cosInside);
+    const Split split = ScatterAtBoundary(cosInside, coatAlpha, 1 / coat.eta, coat.thickness, Side::Inside);
+    leaving[i] = gap * static_cast<float>(split.transmitted);
+    returning[i] = gap * static_cast<float>(split.reflected);
+  }
+  for (const float alpha : alphas_) slices_.push_back(MakeCurves(leaving, returning, alpha));
+}
+
+// g_1(θ) = ∫ base(θ → θ') leaving(θ'),  g_k+1(θ) = ∫ base(θ → θ') returning(θ') g_k(θ').
+CoatBounceTable::Curves CoatBounceTable::MakeCurves(const Nodes& leaving, const Nodes& returning, float alpha) {
   constexpr int kCaps = 32, kAzimuths = 12;
-  for (const float alpha : alphas_) {
-    const TrowbridgeReitz microfacets(std::max(alpha, 1e-3f), std::max(alpha, 1e-3f));
-    auto& slice = slices_.emplace_back();
+  const TrowbridgeReitz microfacets(std::max(alpha, 1e-3f), std::max(alpha, 1e-3f));
+  const auto scatter = [&](const Nodes& after) {
+    Nodes before{};
     for (int node = 0; node < kNodes; ++node) {
       const float cosTheta = std::max(static_cast<float>(node) / (kNodes - 1), 1e-4f);
       const Vector3 wo(SafeSqrt(1 - cosTheta * cosTheta), 0, cosTheta);
@@ -161,19 +187,32 @@ CoatReturnTable::CoatReturnTable(const CoatDescription& description) : alphas_(d
         const Vector3 wi = Reflect(wo, m, glm::dot(wo, m));
         if (!(wi.z > 0)) continue;
         const float ratio = TrowbridgeReitz::ShadowingRatio(wo.z, stretchO, wi.z, microfacets.Stretch(wi));
-        const float F = FresnelDielectric(std::min(wi.z, 1.0f), 1 / description.eta);
-        sum += static_cast<double>(ratio * F * Sqr(GapTransmittance(description.thickness, wi.z)));
+        sum += static_cast<double>(ratio * Interpolate(after.data(), kNodes, wi.z));
       }
-      slice[node] = static_cast<float>(sum / (kCaps * kAzimuths));
+      before[node] = static_cast<float>(sum / (kCaps * kAzimuths));
     }
+    return before;
+  };
+  const auto times = [](Nodes a, const Nodes& b) {
+    for (int i = 0; i < kNodes; ++i) a[i] *= b[i];
+    return a;
+  };
+  const Nodes first = scatter(leaving), second = scatter(times(first, returning)), third = scatter(times(second, returning));
+  // Where nothing leaves after one bounce there is nothing to scale: directions beyond total reflection, which nobody asks for.
+  Curves curves;
+  for (int i = 0; i < kNodes; ++i) {
+    curves.second[i] = first[i] > 1e-3f ? second[i] / first[i] : 0.0f;
+    curves.later[i] = second[i] > 1e-6f ? std::min(third[i] / second[i], 1.0f) : 0.0f;
   }
+  return curves;
 }
 
-float CoatReturnTable::Returned(float cosInside, CoatTable::Slice slice) const {
-  return Blend(slice, [&](int i) { return Interpolate(slices_[i].data(), kNodes, cosInside); });
+CoatBounceTable::Ratios CoatBounceTable::FindRatios(float cosInside, CoatTable::Slice slice) const {
+  return {Blend(slice, [&](int i) { return Interpolate(slices_[i].second.data(), kNodes, cosInside); }),
+          Blend(slice, [&](int i) { return Interpolate(slices_[i].later.data(), kNodes, cosInside); })};
 }
 
-CoatTable::Slice CoatReturnTable::FindSlice(float alpha) const {
+CoatTable::Slice CoatBounceTable::FindSlice(float alpha) const {
   return FindSliceAmong(static_cast<int>(alphas_.size()), alpha, [&](int i) { return alphas_[static_cast<size_t>(i)]; });
 }
 

@@ -6,6 +6,7 @@
 //         lobe (not 1 - R: what single scattering loses is lost). By reciprocity T(θ)/η² is also the radiance that leaves
 //         along θ when the base glows with radiance 1 in all directions.
 //   R(θ)  directional albedo of the boundary from outside, for sampling only.
+//   P(θ)  geometric mean of T(θ) and its like for the refracted direction on its way out: for bases that keep directions.
 //   F     the fraction of a diffuse base's light that returns to it from the boundary, both crossings of the gap included.
 // All are tabulated over sqrt(cosθ) and, for textured roughness, over sqrt(α); anisotropic coats use sqrt(αx·αy).
 #pragma once
@@ -34,6 +35,7 @@ class CoatTable {
   Slice FindSlice(float alpha) const;
   float Transmittance(float cosTheta, Slice slice) const;
   float Reflectance(float cosTheta, Slice slice) const;
+  float PairTransmittance(float cosTheta, Slice slice) const;  // P
   float MeanTransmittance(Slice slice) const;    // cosine-weighted mean of T over the hemisphere
   float InternalReflectance(Slice slice) const;  // F
 
@@ -42,7 +44,7 @@ class CoatTable {
   using Nodes = std::array<float, kNodes>;
   struct Curves {
     float alpha = 0;
-    Nodes transmittance{}, reflectance{};
+    Nodes transmittance{}, reflectance{}, pairTransmittance{};
     float meanTransmittance = 0, internalReflectance = 0;
   };
   static Curves MakeCurves(const CoatDescription& description, float alpha);
@@ -50,19 +52,31 @@ class CoatTable {
   std::vector<Curves> slices_;
 };
 
-// How much of the light that a rough metal base reflects returns to it from a smooth boundary above (total internal
-// reflection at oblique angles included), from light arriving at `cosInside` in the gap. Both crossings are included, the
-// metal's own Fresnel reflectance is not. Tabulated like CoatTable, over cosInside and the base's roughness.
-class CoatReturnTable {
+// Light between a rough metal base and the boundary above, summed over the bounces at the base, with the metal's own
+// reflectance F left out: of light that arrives in the gap along θ' (inside), the part that leaves after k bounces is
+// F^k g_k(θ'). Here are g_2/g_1 and g_3/g_2, which stands for all later ratios. Total reflection at the boundary, what
+// shadowing loses and the gap are included; at a rough boundary the light is mirrored, with the rough one's reflectance.
+class CoatBounceTable {
  public:
-  explicit CoatReturnTable(const CoatDescription& description);  // alphas: of the base
-  float Returned(float cosInside, CoatTable::Slice slice) const;
+  struct Ratios {
+    float second = 0, later = 0;
+  };
+
+  // `coat`: of the boundary, of which the middle roughness counts; `baseAlphas` ascending.
+  CoatBounceTable(const CoatDescription& coat, const std::vector<float>& baseAlphas);
+  Ratios FindRatios(float cosInside, CoatTable::Slice slice) const;
   CoatTable::Slice FindSlice(float alpha) const;
 
  private:
   static constexpr int kNodes = 64;
+  using Nodes = std::array<float, kNodes>;
+  struct Curves {
+    Nodes second{}, later{};
+  };
+  static Curves MakeCurves(const Nodes& leaving, const Nodes& returning, float alpha);
+
   std::vector<float> alphas_;
-  std::vector<std::array<float, kNodes>> slices_;
+  std::vector<Curves> slices_;
 };
 
 // Roughnesses for a table of a textured roughness: 0 to 1, denser towards 0.

@@ -18,8 +18,10 @@ TrowbridgeReitz Widen(const TrowbridgeReitz& base, const TrowbridgeReitz& coat, 
   return {std::max(x, 1e-3f), std::max(y, 1e-3f)};
 }
 
-Color Series(const Color& x, int terms) {
-  return {TruncatedSeries(x.r, terms), TruncatedSeries(x.g, terms), TruncatedSeries(x.b, terms)};
+// 1 + F·second·(1 + F·later + (F·later)² + …).
+Color SumBounces(const Color& F, float second, float later, int bounces) {
+  const auto sum = [&](float f) { return 1 + f * second * TruncatedSeries(f * later, bounces - 1); };
+  return {sum(F.r), sum(F.g), sum(F.b)};
 }
 
 }  // namespace
@@ -31,15 +33,22 @@ CoatedConductorBsdf::CoatedConductorBsdf(const TrowbridgeReitz& coat, const Trow
       eta_(eta),
       k_(k),
       coatSlice_(settings.coat->FindSlice(std::sqrt(coat.alphaX * coat.alphaY))),
-      baseSlice_(settings.returned->FindSlice(std::sqrt(base.alphaX * base.alphaY))),
-      settings_(&settings) {}
+      baseSlice_(settings.bounceRatios->FindSlice(std::sqrt(base.alphaX * base.alphaY))),
+      settings_(&settings) {
+  if (!CoatIsDelta()) pairShare_ = 1 - 0.5f * std::min(1.0f, (base.alphaX + base.alphaY) / (coat.alphaX + coat.alphaY));
+}
 
-// In proportion to what either lobe reflects from wo, roughly.
+float CoatedConductorBsdf::PairTransmittance(float cosTheta) const {
+  const float T = settings_->coat->Transmittance(cosTheta, coatSlice_);
+  if (CoatIsDelta()) return T;
+  return T + (settings_->coat->PairTransmittance(cosTheta, coatSlice_) - T) * pairShare_;
+}
+
 float CoatedConductorBsdf::CoatProbability(float cosO) const {
   const float coat = settings_->coat->Reflectance(cosO, coatSlice_);
   const float cosInside = RefractedCosine(cosO, settings_->eta);
-  const float base = settings_->coat->Transmittance(cosO, coatSlice_) * FresnelConductor(cosInside, eta_, k_).Average();
-  return coat + base > 0 ? coat / (coat + base) : 1.0f;
+  const float base = PairTransmittance(cosO) * PairTransmittance(1) * FresnelConductor(cosInside, eta_, k_).Average();
+  return CoatLobeProbability(coat, base, CoatIsDelta());
 }
 
 CoatedConductorBsdf::Base CoatedConductorBsdf::EvaluateBase(const Vector3& wo, const Vector3& wi) const {
@@ -50,12 +59,13 @@ CoatedConductorBsdf::Base CoatedConductorBsdf::EvaluateBase(const Vector3& wo, c
   const float quarterD = 0.25f * base_.D(m) / (eta * eta);
   const float stretchO = base_.Stretch(o), stretchI = base_.Stretch(i);
   const Color F = FresnelConductor(glm::dot(o, m), eta_, k_);
-  const float Q = std::sqrt(settings_->returned->Returned(o.z, baseSlice_) *
-                            settings_->returned->Returned(i.z, baseSlice_));
-  const float T = settings_->coat->Transmittance(wo.z, coatSlice_) * settings_->coat->Transmittance(wi.z, coatSlice_);
+  const auto ratiosO = settings_->bounceRatios->FindRatios(o.z, baseSlice_);
+  const auto ratiosI = settings_->bounceRatios->FindRatios(i.z, baseSlice_);
+  const Color S = SumBounces(F, std::sqrt(ratiosO.second * ratiosI.second), std::sqrt(ratiosO.later * ratiosI.later),
+                             settings_->bounces);
+  const float P = PairTransmittance(wo.z) * PairTransmittance(wi.z);
   // dω'/dω = cosθ / (η² cosθ')
-  return {F * Series(F * Q, settings_->bounces) *
-              (T * quarterD * TrowbridgeReitz::ShadowingFactor(o.z, stretchO, i.z, stretchI)),
+  return {F * S * (P * quarterD * TrowbridgeReitz::ShadowingFactor(o.z, stretchO, i.z, stretchI)),
           quarterD * TrowbridgeReitz::VisibleFactor(o.z, stretchO) * wi.z / i.z,
           quarterD * TrowbridgeReitz::VisibleFactor(i.z, stretchI) * wo.z / o.z};
 }
@@ -106,7 +116,7 @@ BsdfSample CoatedConductorBsdf::SampleMirror(const Vector3& wo) const {
   sample.weightSpecular = Color(R);
   if (base_.IsSmooth() && cosT > 0) {
     const Color base = FresnelConductor(cosT, eta_, k_) * std::exp(-2 * settings_->thickness / cosT);
-    sample.weightSpecular += base * Series(base * R, settings_->bounces) * Sqr(1 - R);
+    sample.weightSpecular += base * SumBounces(base, R, R, settings_->bounces) * Sqr(1 - R);
   }
   return sample;
 }
@@ -136,8 +146,7 @@ std::optional<BsdfSample> CoatedConductorBsdf::Sample(const Vector3& wo, float u
 }
 
 Color CoatedConductorBsdf::ApproximateAlbedo() const {
-  const float T = settings_->coat->Transmittance(1, coatSlice_);
-  return FresnelConductor(1, eta_, k_) * (T * T) + Color(settings_->coat->Reflectance(1, coatSlice_));
+  return FresnelConductor(1, eta_, k_) * Sqr(PairTransmittance(1)) + Color(settings_->coat->Reflectance(1, coatSlice_));
 }
 
 }  // namespace lampyr

@@ -1,12 +1,14 @@
 // A metal under a dielectric coat, after pbrt-v4's "coatedconductor", which walks at random between the two. Here:
-//   f(wo,wi) = f_coat(wo,wi) + T(wo) T(wi) f_base(wo',wi') S / η²
-// with wo', wi' refracted into the coat (the mean surface), T from materials/coat_table.h and S the sum over bounces at the
-// base ([Weidlich07] with energy-preserving transmittances instead of their absorbing ones).
+//   f(wo,wi) = f_coat(wo,wi) + P(wo) P(wi) f_base(wo',wi') S / η²
+// with wo', wi' refracted into the coat (the mean surface), P a transmittance and S the sum over
+// bounces at the base ([Weidlich07], with transmittances that account for all that is not reflected).
 // - Both smooth: one delta whose weight is the exact sum.
-// - Smooth coat, rough base: the first bounce is exact. Later ones keep the shape of the first: S = 1 + FQ + (FQ)² + …, with
-//   F the metal's reflectance and Q the part that returns from the boundary.
+// - Smooth coat, rough base: the first bounce is exact. Later ones have their energy and the shape of the first.
 // - Rough coat: the base's lobe is widened by what the two refractions scatter: α² = α_base² + 2 (α_coat (1 - 1/η)/2)².
-// Approximate in the last two; directional albedo against the random walk: the tests hold the table of differences.
+//   P goes from coat_table.h's P (a base that keeps directions) half-way to T (one that forgets them) as the base's roughness
+//   reaches the coat's: an empirical choice.
+// Directional albedo against the random walk, copper, η 1.5: both smooth 0.5 %, smooth coat 3 %, coat with α up to 0.3 over any
+// base 8 %, both with α = 0.5 14 %.
 // Deterministic, reciprocal, exact densities. All of it counts as specular.
 #pragma once
 
@@ -23,9 +25,9 @@ namespace lampyr {
 struct CoatedConductorSettings {
   float eta = 1.5f;
   float thickness = 0.01f;
-  int bounces = 5;
+  int bounces = 5;  // at the base, at most
   const CoatTable* coat = nullptr;          // must outlive the BSDF
-  const CoatReturnTable* returned = nullptr;
+  const CoatBounceTable* bounceRatios = nullptr;
 };
 
 class CoatedConductorBsdf {
@@ -46,6 +48,7 @@ class CoatedConductorBsdf {
     float pdfForward = 0, pdfReverse = 0;
   };
   bool CoatIsDelta() const { return settings_->eta == 1 || coat_.IsSmooth(); }
+  float PairTransmittance(float cosTheta) const;
   float CoatProbability(float cosO) const;
   Base EvaluateBase(const Vector3& wo, const Vector3& wi) const;
   std::optional<Vector3> SampleBase(const Vector3& wo, const Point2& u) const;
@@ -54,6 +57,7 @@ class CoatedConductorBsdf {
 
   TrowbridgeReitz coat_, base_;  // base_ is widened
   Color eta_, k_;
+  float pairShare_ = 1;
   CoatTable::Slice coatSlice_, baseSlice_;
   const CoatedConductorSettings* settings_;
 };

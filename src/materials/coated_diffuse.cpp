@@ -24,10 +24,8 @@ CoatedDiffuseBsdf::CoatedDiffuseBsdf(const TrowbridgeReitz& microfacets, float e
   baseAlbedo_ = base_.Max() * table.MeanTransmittance(slice_);
 }
 
-// In proportion to what either lobe reflects from wo.
 float CoatedDiffuseBsdf::CoatProbability(float cosO, float transmittance) const {
-  const float coat = table_->Reflectance(cosO, slice_), base = transmittance * baseAlbedo_;
-  return coat + base > 0 ? coat / (coat + base) : 1.0f;
+  return CoatLobeProbability(table_->Reflectance(cosO, slice_), transmittance * baseAlbedo_, CoatIsDelta());
 }
 
 BsdfEvaluation CoatedDiffuseBsdf::Evaluate(const Vector3& wo, const Vector3& wi, TransportMode) const {

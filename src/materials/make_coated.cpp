@@ -56,7 +56,7 @@ struct CoatedConductorRecipe {
   RoughnessParameters coat, base;
   MetalParameters metal;
   std::shared_ptr<const CoatTable> table;
-  std::shared_ptr<const CoatReturnTable> returned;
+  std::shared_ptr<const CoatBounceTable> bounceRatios;
   std::shared_ptr<const CoatedConductorSettings> settings;
 
   BsdfModel Make(const TextureContext& where) const {
@@ -90,11 +90,12 @@ std::shared_ptr<const Material> MakeCoatedConductor(const MaterialInput& input) 
   const RoughnessParameters coat(input, "interface."), base(input, "conductor.");
   const MetalParameters metal(input, "conductor.");
   const float eta = GetEta(input, "interface.eta", 1.5f), thickness = GetThickness(input);
-  const auto table = std::make_shared<CoatTable>(CoatDescription{eta, thickness, coat.TableAlphas()});
-  const auto returned = std::make_shared<CoatReturnTable>(CoatDescription{eta, thickness, base.TableAlphas()});
+  const CoatDescription description{eta, thickness, coat.TableAlphas()};
+  const auto table = std::make_shared<CoatTable>(description);
+  const auto bounceRatios = std::make_shared<CoatBounceTable>(description, base.TableAlphas());
   const auto settings = std::make_shared<CoatedConductorSettings>(
-      CoatedConductorSettings{eta, thickness, GetBounces(input), table.get(), returned.get()});
-  CoatedConductorRecipe recipe{coat, base, metal, table, returned, settings};
+      CoatedConductorSettings{eta, thickness, GetBounces(input), table.get(), bounceRatios.get()});
+  CoatedConductorRecipe recipe{coat, base, metal, table, bounceRatios, settings};
   ShadingNormal shadingNormal(input.parameters, input.textures, input.diagnostics);
   CheckMedium(input);
   CheckMaterialParameters(

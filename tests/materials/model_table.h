@@ -20,7 +20,7 @@ struct TestModel {
 // Tables that models point into.
 struct ModelTables {
   std::vector<std::shared_ptr<const CoatTable>> coats;
-  std::vector<std::shared_ptr<const CoatReturnTable>> returns;
+  std::vector<std::shared_ptr<const CoatBounceTable>> bounces;
   std::vector<std::shared_ptr<const CoatedConductorSettings>> settings;
 };
 
@@ -34,12 +34,12 @@ inline CoatedDiffuseBsdf MakeCoated(ModelTables& tables, TrowbridgeReitz coat, f
 inline CoatedConductorBsdf MakeCoatedMetal(ModelTables& tables, TrowbridgeReitz coat, TrowbridgeReitz base, float eta,
                                            const Color& metalEta, const Color& metalK, float thickness = 0.01f,
                                            int bounces = 5) {
-  tables.coats.push_back(std::make_shared<CoatTable>(
-      CoatDescription{eta, thickness, {std::sqrt(coat.alphaX * coat.alphaY)}}));
-  tables.returns.push_back(std::make_shared<CoatReturnTable>(
-      CoatDescription{eta, thickness, {std::sqrt(base.alphaX * base.alphaY)}}));
+  const CoatDescription description{eta, thickness, {std::sqrt(coat.alphaX * coat.alphaY)}};
+  tables.coats.push_back(std::make_shared<CoatTable>(description));
+  tables.bounces.push_back(
+      std::make_shared<CoatBounceTable>(description, std::vector<float>{std::sqrt(base.alphaX * base.alphaY)}));
   tables.settings.push_back(std::make_shared<CoatedConductorSettings>(CoatedConductorSettings{
-      eta, thickness, bounces, tables.coats.back().get(), tables.returns.back().get()}));
+      eta, thickness, bounces, tables.coats.back().get(), tables.bounces.back().get()}));
   return {coat, base, metalEta / eta, metalK / eta, *tables.settings.back()};
 }
 

@@ -1,0 +1,196 @@
+// Materials from their parameters: defaults, what is constant, mixes, normal and bump maps, and what is refused.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "base/error.h"
+#include "materials/material.h"
+#include "scene/parameters.h"
+#include "scene/scene_description.h"
+#include "textures/texture_library.h"
+
+namespace lampyr::testing {
+namespace {
+
+using ::testing::HasSubstr;
+
+Parameter Make(ParameterType type, const std::string& name) {
+  Parameter parameter;
+  parameter.type = type;
+  parameter.name = name;
+  return parameter;
+}
+Parameter Float(const std::string& name, double value) {
+  Parameter parameter = Make(ParameterType::Float, name);
+  parameter.numbers = {value};
+  return parameter;
+}
+Parameter Rgb(const std::string& name, double r, double g, double b) {
+  Parameter parameter = Make(ParameterType::Rgb, name);
+  parameter.numbers = {r, g, b};
+  return parameter;
+}
+Parameter Spectrum(const std::string& name, const std::string& value) {
+  Parameter parameter = Make(ParameterType::Spectrum, name);
+  parameter.strings = {value};
+  return parameter;
+}
+Parameter Strings(const std::string& name, std::vector<std::string> values) {
+  Parameter parameter = Make(ParameterType::String, name);
+  parameter.strings = std::move(values);
+  return parameter;
+}
+Parameter Bool(const std::string& name, bool value) {
+  Parameter parameter = Make(ParameterType::Bool, name);
+  parameter.bools = {value};
+  return parameter;
+}
+
+// The float texture "slope": u/2.
+TextureDescription Slope() {
+  TextureDescription slope;
+  slope.name = "slope";
+  slope.texture.type = "bilerp";
+  slope.texture.parameters = ParameterList(
+      {}, "Texture \"slope\"", {Float("v00", 0), Float("v01", 0), Float("v10", 0.5), Float("v11", 0.5)});
+  return slope;
+}
+
+class MakeMaterialTest : public ::testing::Test {
+ protected:
+  std::shared_ptr<const Material> Create(const std::string& type, std::vector<Parameter> parameters) {
+    const MaterialLookup lookup = [this](const std::string& name) {
+      const auto found = named_.find(name);
+      if (found == named_.end()) throw Error("no material \"" + name + "\"");
+      return found->second;
+    };
+    return MakeMaterial(type, ParameterList({}, "Material \"" + type + "\"", std::move(parameters)), textures_, lookup,
+                        diagnostics_);
+  }
+  Bsdf At(const Material& material, const Vector3& wo = {0, 0, 1}) { return material.GetBsdf(point_, wo); }
+
+  Diagnostics diagnostics_{Diagnostics::Mode::Collect};
+  TextureLibrary textures_{{Slope()}, Transform(), diagnostics_};
+  std::map<std::string, std::shared_ptr<const Material>> named_;
+  SurfacePoint point_ = [] {
+    SurfacePoint point;
+    point.dpdu = {2, 0, 0};
+    point.dpdv = {0, 3, 0};
+    return point;
+  }();
+};
+
+const Vector3 kUp(0, 0, 1), kTilted(0.6f, 0, 0.8f);
+
+TEST_F(MakeMaterialTest, EveryTypeHasDefaults) {
+  named_["a"] = Create("diffuse", {});
+  named_["b"] = Create("dielectric", {});
+  for (const char* type : {"diffuse", "diffusetransmission", "conductor", "dielectric", "thindielectric", "coateddiffuse",
+                           "coatedconductor"}) {
+    const auto material = Create(type, {});
+    const Bsdf bsdf = At(*material);
+    EXPECT_FALSE(bsdf.ApproximateAlbedo().IsBlack()) << type;
+    EXPECT_FALSE(material->IsInterface()) << type;
+    EXPECT_EQ(bsdf.IsTransmissive(), material->MayTransmit()) << type;
+    EXPECT_TRUE(material->HasDelta() || !bsdf.IsDelta()) << type;
+  }
+  EXPECT_TRUE(diagnostics_.Warnings().empty());
+  EXPECT_NEAR(At(*named_["a"]).Evaluate(kUp, kTilted, TransportMode::Radiance).diffuse.g, 0.5f * kInvPi, 1e-6f);
+  for (const char* type : {"", "interface", "none"}) EXPECT_TRUE(Create(type, {})->IsInterface()) << type;
+}
+
+TEST_F(MakeMaterialTest, GlassHasTheIndexGiven) {
+  for (const auto& parameters : {std::vector<Parameter>{Float("eta", 1.5)}, {}, {Spectrum("eta", "glass-BK7")}}) {
+    const auto glass = Create("dielectric", parameters);
+    const auto sample = At(*glass).Sample(kTilted, kOneMinusEpsilon, {0.5f, 0.5f}, TransportMode::Radiance);
+    ASSERT_TRUE(sample && sample->isTransmission);
+    EXPECT_NEAR(sample->eta, 1.51f, 0.02f);
+    EXPECT_NEAR(-sample->wi.x, 0.6f / sample->eta, 1e-5f);
+  }
+  EXPECT_THROW(Create("dielectric", {Float("eta", -1)}), Error);
+}
+
+TEST_F(MakeMaterialTest, CopperIsRedAndReflectanceIsMet) {
+  const Color copper = At(*Create("conductor", {})).ApproximateAlbedo();
+  EXPECT_GT(copper.r, 0.85f);
+  EXPECT_LT(copper.b, 0.7f);
+  const Color given = At(*Create("conductor", {Rgb("reflectance", 0.9, 0.5, 0)})).ApproximateAlbedo();
+  EXPECT_NEAR(given.r, 0.9f, 1e-4f);
+  EXPECT_NEAR(given.g, 0.5f, 1e-4f);
+  EXPECT_NEAR(given.b, 0, 1e-4f);
+  EXPECT_THROW(Create("conductor", {Rgb("reflectance", 1, 1, 1), Spectrum("eta", "metal-Cu-eta")}), Error);
+}
+
+TEST_F(MakeMaterialTest, RoughnessIsRemappedUnlessForbidden) {
+  const auto density = [&](std::vector<Parameter> parameters) {
+    return At(*Create("conductor", std::move(parameters))).Evaluate(kUp, kUp, TransportMode::Radiance).pdfForward.value;
+  };
+  // At normal incidence the density is D/4 = 1/(4π α²).
+  EXPECT_NEAR(density({Float("roughness", 0.25)}), 1 / (4 * kPi * 0.25f), 1e-3f);
+  EXPECT_NEAR(density({Float("roughness", 0.25), Bool("remaproughness", false)}), 1 / (4 * kPi * 0.0625f), 1e-3f);
+  EXPECT_NEAR(density({Float("uroughness", 0.25), Float("vroughness", 0.04)}), 1 / (4 * kPi * 0.5f * 0.2f), 1e-3f);
+  EXPECT_EQ(density({Float("roughness", 1e-7)}), 0);
+  EXPECT_THROW(density({Float("roughness", -0.1)}), Error);
+}
+
+TEST_F(MakeMaterialTest, MixChoosesByAmount) {
+  named_["black"] = Create("diffuse", {Rgb("reflectance", 0, 0, 0)});
+  named_["white"] = Create("diffuse", {Rgb("reflectance", 1, 1, 1)});
+  for (const double amount : {0.0, 0.3, 1.0}) {
+    const auto mix = Create("mix", {Strings("materials", {"black", "white"}), Float("amount", amount)});
+    int white = 0;
+    constexpr int kPoints = 20000;
+    for (int i = 0; i < kPoints; ++i) {
+      point_.position = {0.001f * static_cast<float>(i), 1, 2};
+      white += At(*mix).ApproximateAlbedo().g > 0.5f;
+      EXPECT_EQ(At(*mix).ApproximateAlbedo(), At(*mix).ApproximateAlbedo());
+    }
+    EXPECT_NEAR(white / static_cast<double>(kPoints), amount, 3.5 * std::sqrt(amount * (1 - amount) / kPoints) + 1e-12);
+  }
+  EXPECT_THROW(Create("mix", {Strings("materials", {"black"})}), Error);
+  EXPECT_THROW(Create("mix", {Strings("materials", {"black", "nobody"})}), Error);
+}
+
+TEST_F(MakeMaterialTest, DisplacementTiltsTheNormal) {
+  Parameter displacement = Make(ParameterType::Texture, "displacement");
+  displacement.strings = {"slope"};
+  const auto material = Create("diffuse", {displacement});
+  point_.uv = {0.3f, 0.4f};
+  // dp/du = (2, 0, 1/2): the normal is (-1/2, 0, 2), normalised.
+  EXPECT_LT(glm::length(At(*material).ShadingFrame().z - glm::normalize(Vector3(-0.5f, 0, 2))), 1e-3f);
+  EXPECT_EQ(At(*material).Ng(), Vector3(0, 0, 1));
+  point_.dpdu = point_.dpdv = Vector3(0.0f);  // degenerate: the surface's own normal
+  EXPECT_EQ(At(*material).ShadingFrame().z, Vector3(0, 0, 1));
+}
+
+TEST_F(MakeMaterialTest, TexturedRoughnessInterpolatesTables) {
+  Parameter roughness = Make(ParameterType::Texture, "roughness");
+  roughness.strings = {"slope"};
+  const auto textured = Create("coateddiffuse", {roughness});
+  point_.uv = {0.32f, 0};
+  const Color varying = At(*textured).Evaluate(kUp, kTilted, TransportMode::Radiance).diffuse;
+  const Color constant =
+      At(*Create("coateddiffuse", {Float("roughness", 0.16)})).Evaluate(kUp, kTilted, TransportMode::Radiance).diffuse;
+  EXPECT_NEAR(varying.g, constant.g, 0.01f * constant.g);
+}
+
+TEST_F(MakeMaterialTest, WrongInputIsNamed) {
+  try {
+    Create("difuse", {});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("did you mean \"diffuse\""));
+  }
+  EXPECT_THROW(Create("diffuse", {Rgb("reflectence", 1, 1, 1)}), Error);
+  EXPECT_THROW(Create("coateddiffuse", {Float("thickness", -1)}), Error);
+  EXPECT_TRUE(diagnostics_.Warnings().empty());
+  EXPECT_NEAR(At(*Create("hair", {Float("beta_m", 0.3)})).ApproximateAlbedo().g, 0.5f, 1e-6f);
+  ASSERT_EQ(diagnostics_.Warnings().size(), 1u);
+  EXPECT_THAT(diagnostics_.Warnings()[0], HasSubstr("hair"));
+  Create("coateddiffuse", {Rgb("albedo", 0.5, 0.5, 0.5)});
+  EXPECT_EQ(diagnostics_.Warnings().size(), 2u);
+}
+
+}  // namespace
+}  // namespace lampyr::testing
