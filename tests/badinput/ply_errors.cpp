@@ -132,7 +132,7 @@ TEST(PlyErrors, MutationsNeverCrash) {
   int errors = 0, sound = 0;
   for (int i = 0; i < 30000; ++i) {
     std::string content = originals[i % 3];
-    const int changes = 1 + static_cast<int>(random() % 4);
+    const int changes = 1 + static_cast<int>(random() % 2);
     for (int k = 0; k < changes && !content.empty(); ++k) {
       const size_t at = random() % content.size();
       switch (random() % 5) {
@@ -159,7 +159,7 @@ TEST(PlyErrors, MutationsNeverCrash) {
     }
   }
   EXPECT_GT(errors, 10000);
-  EXPECT_GT(sound, 1000);
+  EXPECT_GT(sound, 500);
 }
 
 }  // namespace
