@@ -24,7 +24,9 @@ constexpr Primaries kSpaces[] = {
     {"aces2065-1", {0.7347, 0.2653}, {0.0, 1.0}, {0.0001, -0.0770}, {0.32168, 0.33767}},
 };
 
-Vector3d ToXyz(const Chromaticity& c) { return XyzOfChromaticity(c.x, c.y); }
+Vector3d ToXyz(const Chromaticity& c) {
+  return XyzOfChromaticity(c.x, c.y);
+}
 
 // Columns are the primaries, scaled so that their sum is the white. A primary is scaled without dividing by its y
 // (ACES's blue has a negative one): the white fixes the scale.
@@ -37,8 +39,8 @@ glm::dmat3 RgbToXyz(const Primaries& space) {
 
 // The linear Bradford transform between two whites [Lam85].
 glm::dmat3 Adaptation(const Chromaticity& from, const Chromaticity& to) {
-  const glm::dmat3 cone = glm::transpose(
-      glm::dmat3(0.8951, 0.2664, -0.1614, -0.7502, 1.7135, 0.0367, 0.0389, -0.0685, 1.0296));
+  const glm::dmat3 cone =
+      glm::transpose(glm::dmat3(0.8951, 0.2664, -0.1614, -0.7502, 1.7135, 0.0367, 0.0389, -0.0685, 1.0296));
   const Vector3d ratio = (cone * ToXyz(to)) / (cone * ToXyz(from));
   glm::dmat3 scale(0.0);
   for (int i = 0; i < 3; ++i) scale[i][i] = ratio[i];
@@ -70,7 +72,9 @@ std::optional<RgbColorSpace> FindColorSpace(const std::string& name) {
   return static_cast<RgbColorSpace>(found - names.begin());
 }
 
-Vector3d XyzOfChromaticity(double x, double y) { return {x / y, 1.0, (1 - x - y) / y}; }
+Vector3d XyzOfChromaticity(double x, double y) {
+  return {x / y, 1.0, (1 - x - y) / y};
+}
 
 Vector3d XyzToRec709(const Vector3d& xyz) {
   static const glm::dmat3 matrix = glm::inverse(RgbToXyz(kSpaces[0]));

@@ -10,9 +10,15 @@ namespace lampyr {
 
 namespace {
 
-bool IsSpace(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\v' || c == '\f'; }
-bool EndsWord(char c) { return IsSpace(c) || c == '"' || c == '[' || c == ']' || c == '#'; }
-bool StartsNumber(char c) { return (c >= '0' && c <= '9') || c == '-' || c == '+' || c == '.'; }
+bool IsSpace(char c) {
+  return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\v' || c == '\f';
+}
+bool EndsWord(char c) {
+  return IsSpace(c) || c == '"' || c == '[' || c == ']' || c == '#';
+}
+bool StartsNumber(char c) {
+  return (c >= '0' && c <= '9') || c == '-' || c == '+' || c == '.';
+}
 
 // Length of the UTF-8 sequence at the start of `s`, 0 when it is none (overlong forms and surrogates included).
 size_t Utf8Length(std::string_view s) {
@@ -49,11 +55,16 @@ bool IsNonFinite(std::string_view word) {
 
 std::string Describe(const Token& token) {
   switch (token.kind) {
-    case TokenKind::End: return "the end of the file";
-    case TokenKind::String: return "the string " + Quoted(token.text);
-    case TokenKind::Open: return "\"[\"";
-    case TokenKind::Close: return "\"]\"";
-    case TokenKind::Word: break;
+    case TokenKind::End:
+      return "the end of the file";
+    case TokenKind::String:
+      return "the string " + Quoted(token.text);
+    case TokenKind::Open:
+      return "\"[\"";
+    case TokenKind::Close:
+      return "\"]\"";
+    case TokenKind::Word:
+      break;
   }
   return (LooksLikeNumber(token.text) ? "the number " : "") + Quoted(token.text);
 }
@@ -98,7 +109,8 @@ int64_t ParseInteger(std::string_view word, const FileLocation& where) {
   return value;
 }
 
-Lexer::Lexer(std::shared_ptr<const std::string> name, std::string text) : name_(std::move(name)), text_(std::move(text)) {
+Lexer::Lexer(std::shared_ptr<const std::string> name, std::string text)
+    : name_(std::move(name)), text_(std::move(text)) {
   const std::string_view view = text_;
   if (view.starts_with("\xff\xfe") || view.starts_with("\xfe\xff")) {
     throw Error(At(0), "the file is UTF-16; it has to be saved as UTF-8");
@@ -181,15 +193,22 @@ Token Lexer::ReadString() {
 char Lexer::ReadEscape(const FileLocation& where) {
   const char escaped = position_ < text_.size() ? text_[position_++] : '\0';
   switch (escaped) {
-    case 'n': return '\n';
-    case 't': return '\t';
-    case 'r': return '\r';
-    case 'b': return '\b';
-    case 'f': return '\f';
+    case 'n':
+      return '\n';
+    case 't':
+      return '\t';
+    case 'r':
+      return '\r';
+    case 'b':
+      return '\b';
+    case 'f':
+      return '\f';
     case '\\':
     case '\'':
-    case '"': return escaped;
-    default: throw Error(where, "a backslash that starts no escape; write \\\\ for a backslash itself");
+    case '"':
+      return escaped;
+    default:
+      throw Error(where, "a backslash that starts no escape; write \\\\ for a backslash itself");
   }
 }
 

@@ -9,10 +9,17 @@ namespace {
 
 // pbrt-v4's options, spelt as they are compared: lower case, without "-" and "_".
 const std::vector<std::string>& OptionNames() {
-  static const std::vector<std::string> names = {
-      "disablepixeljitter", "disabletexturefiltering", "disablewavelengthjitter", "displacementedgescale", "forcediffuse",
-      "msereferenceimage",  "msereferenceout",         "pixelstats",              "rendercoordsys",        "seed",
-      "wavefront"};
+  static const std::vector<std::string> names = {"disablepixeljitter",
+                                                 "disabletexturefiltering",
+                                                 "disablewavelengthjitter",
+                                                 "displacementedgescale",
+                                                 "forcediffuse",
+                                                 "msereferenceimage",
+                                                 "msereferenceout",
+                                                 "pixelstats",
+                                                 "rendercoordsys",
+                                                 "seed",
+                                                 "wavefront"};
   return names;
 }
 
@@ -36,14 +43,23 @@ void SceneParser::Camera(const Token& statement) {
 void SceneParser::Film(const Token& statement) {
   scene_.film = ReadTyped(statement);
   if (state_.colorSpace != RgbColorSpace::Srgb) {
-    diagnostics_.Warn(statement.where, "images in another colour space than \"srgb\" are not supported yet: the image is linear sRGB");
+    diagnostics_.Warn(statement.where,
+                      "images in another colour space than \"srgb\" are not supported yet: the image is linear sRGB");
   }
 }
 
-void SceneParser::PixelFilter(const Token& statement) { scene_.pixelFilter = ReadTyped(statement); }
-void SceneParser::Sampler(const Token& statement) { scene_.sampler = ReadTyped(statement); }
-void SceneParser::Integrator(const Token& statement) { scene_.integrator = ReadTyped(statement); }
-void SceneParser::Accelerator(const Token& statement) { scene_.accelerator = ReadTyped(statement); }
+void SceneParser::PixelFilter(const Token& statement) {
+  scene_.pixelFilter = ReadTyped(statement);
+}
+void SceneParser::Sampler(const Token& statement) {
+  scene_.sampler = ReadTyped(statement);
+}
+void SceneParser::Integrator(const Token& statement) {
+  scene_.integrator = ReadTyped(statement);
+}
+void SceneParser::Accelerator(const Token& statement) {
+  scene_.accelerator = ReadTyped(statement);
+}
 
 // Option "name" value. The value tells its type: true, false, a number or a string.
 void SceneParser::Option(const Token& statement) {
@@ -87,7 +103,9 @@ void SceneParser::ColorSpaceStatement(const Token& statement) {
     throw Error(name.where, statement.text + " needs a name in quotes, found " + Describe(name));
   }
   const auto space = FindColorSpace(name.text);
-  if (!space) throw Error(name.where, "there is no colour space \"" + name.text + "\"" + DidYouMean(name.text, ColorSpaceNames()));
+  if (!space)
+    throw Error(name.where,
+                "there is no colour space \"" + name.text + "\"" + DidYouMean(name.text, ColorSpaceNames()));
   state_.colorSpace = *space;
 }
 

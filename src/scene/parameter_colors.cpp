@@ -37,7 +37,8 @@ std::vector<Color> ParameterList::ColorsOf(const Parameter& parameter, SpectrumR
     for (size_t i = 0; i < parameter.numbers.size(); i += 3) colors.push_back(RgbToColor(parameter, i, owner_, role));
   } else if (parameter.type == ParameterType::Blackbody) {
     for (const double kelvin : parameter.numbers) {
-      if (!(kelvin > 0)) throw Error(parameter.where, "\"" + parameter.name + "\" of " + owner_ + ": a temperature is above 0 K");
+      if (!(kelvin > 0))
+        throw Error(parameter.where, "\"" + parameter.name + "\" of " + owner_ + ": a temperature is above 0 K");
       colors.push_back(BlackbodyToColor(kelvin, role));
     }
   } else if (!parameter.numbers.empty()) {
@@ -52,7 +53,8 @@ std::vector<Color> ParameterList::ColorsOf(const Parameter& parameter, SpectrumR
     const std::string file = ResolveFile(name, parameter.where);
     std::error_code ignored;
     if (!std::filesystem::exists(file, ignored)) {
-      throw Error(parameter.where, "\"" + name + "\" is neither a spectrum's name nor a file" + DidYouMean(name, SpectrumNames()));
+      throw Error(parameter.where,
+                  "\"" + name + "\" is neither a spectrum's name nor a file" + DidYouMean(name, SpectrumNames()));
     }
     colors.push_back(SpectrumToColor(ReadSpectrumFile(file, parameter.where), role));
   }
@@ -67,7 +69,8 @@ std::vector<Color> ParameterList::GetColors(const std::string& name, SpectrumRol
 std::optional<Color> ParameterList::FindColor(const std::string& name, SpectrumRole role) const {
   const Parameter* parameter = FindTyped(name, {ParameterType::Rgb, ParameterType::Spectrum, ParameterType::Blackbody});
   if (!parameter) return std::nullopt;
-  if (parameter->type == ParameterType::Rgb && parameter->numbers.size() != 3) WrongCount(*parameter, 3, parameter->numbers.size());
+  if (parameter->type == ParameterType::Rgb && parameter->numbers.size() != 3)
+    WrongCount(*parameter, 3, parameter->numbers.size());
   const std::vector<Color> colors = ColorsOf(*parameter, role);
   if (colors.size() != 1) WrongCount(*parameter, 1, colors.size());
   return colors[0];

@@ -9,7 +9,8 @@ namespace {
 const std::vector<std::string>& TypeNames() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> list;
-    for (int i = 0; i <= static_cast<int>(ParameterType::Texture); ++i) list.push_back(ToString(static_cast<ParameterType>(i)));
+    for (int i = 0; i <= static_cast<int>(ParameterType::Texture); ++i)
+      list.push_back(ToString(static_cast<ParameterType>(i)));
     return list;
   }();
   return names;
@@ -17,9 +18,9 @@ const std::vector<std::string>& TypeNames() {
 
 // What pbrt-v3 and others say for a type of pbrt-v4.
 const char* ModernName(const std::string& type) {
-  constexpr const char* kOld[][2] = {{"color", "rgb"},      {"point", "point3"},   {"vector", "vector3"}, {"normal3", "normal"},
-                                     {"int", "integer"},    {"boolean", "bool"},   {"xyz", "rgb"},        {"double", "float"},
-                                     {"point4", "point3"},  {"str", "string"}};
+  constexpr const char* kOld[][2] = {
+      {"color", "rgb"},    {"point", "point3"}, {"vector", "vector3"}, {"normal3", "normal"}, {"int", "integer"},
+      {"boolean", "bool"}, {"xyz", "rgb"},      {"double", "float"},   {"point4", "point3"},  {"str", "string"}};
   for (const auto& [old, modern] : kOld) {
     if (type == old) return modern;
   }
@@ -61,20 +62,28 @@ enum class ValueKind { Number, Integer, Bool, String };
 
 ValueKind KindOf(ParameterType type) {
   switch (type) {
-    case ParameterType::Integer: return ValueKind::Integer;
-    case ParameterType::Bool: return ValueKind::Bool;
+    case ParameterType::Integer:
+      return ValueKind::Integer;
+    case ParameterType::Bool:
+      return ValueKind::Bool;
     case ParameterType::String:
-    case ParameterType::Texture: return ValueKind::String;
-    default: return ValueKind::Number;
+    case ParameterType::Texture:
+      return ValueKind::String;
+    default:
+      return ValueKind::Number;
   }
 }
 
 const char* KindName(ValueKind kind) {
   switch (kind) {
-    case ValueKind::Number: return "a number";
-    case ValueKind::Integer: return "integer";
-    case ValueKind::Bool: return "true or false";
-    case ValueKind::String: return "a string";
+    case ValueKind::Number:
+      return "a number";
+    case ValueKind::Integer:
+      return "integer";
+    case ValueKind::Bool:
+      return "true or false";
+    case ValueKind::String:
+      return "a string";
   }
   return "";
 }
@@ -142,7 +151,8 @@ std::vector<Parameter> ReadParameters(TokenStream& tokens, RgbColorSpace colorSp
     parameter.colorSpace = colorSpace;
     for (const Parameter& other : parameters) {
       if (other.name != parameter.name) continue;
-      throw Error(parameter.where, "\"" + parameter.name + "\" is given twice; the first is at " + other.where.ToString());
+      throw Error(parameter.where,
+                  "\"" + parameter.name + "\" is given twice; the first is at " + other.where.ToString());
     }
     Token value = tokens.Next();
     if (value.kind == TokenKind::Open) {

@@ -9,14 +9,16 @@ namespace lampyr {
 
 namespace {
 
-constexpr const char* kTypeNames[] = {"float",  "integer", "bool",   "string", "point2",   "vector2",  "point3",
-                                      "vector3", "normal", "rgb",    "spectrum", "blackbody", "texture"};
+constexpr const char* kTypeNames[] = {"float",   "integer", "bool", "string",   "point2",    "vector2", "point3",
+                                      "vector3", "normal",  "rgb",  "spectrum", "blackbody", "texture"};
 
 size_t ValueCount(const Parameter& p) {
   return p.numbers.size() + p.integers.size() + p.strings.size() + p.bools.size();
 }
 
-std::string CountOf(size_t count) { return std::to_string(count) + (count == 1 ? " value" : " values"); }
+std::string CountOf(size_t count) {
+  return std::to_string(count) + (count == 1 ? " value" : " values");
+}
 
 std::string TypeList(std::initializer_list<ParameterType> types) {
   std::string text;
@@ -30,7 +32,9 @@ std::string TypeList(std::initializer_list<ParameterType> types) {
 
 }  // namespace
 
-const char* ToString(ParameterType type) { return kTypeNames[static_cast<int>(type)]; }
+const char* ToString(ParameterType type) {
+  return kTypeNames[static_cast<int>(type)];
+}
 
 const Parameter* ParameterList::Find(const std::string& name) const {
   for (const Parameter& parameter : parameters_) {
@@ -60,8 +64,8 @@ const Parameter* ParameterList::FindTyped(const std::string& name, std::initiali
 }
 
 void ParameterList::WrongCount(const Parameter& parameter, size_t needed, size_t found) const {
-  throw Error(parameter.where,
-              "\"" + parameter.name + "\" of " + owner_ + " needs " + CountOf(needed) + ", has " + std::to_string(found));
+  throw Error(parameter.where, "\"" + parameter.name + "\" of " + owner_ + " needs " + CountOf(needed) + ", has " +
+                                   std::to_string(found));
 }
 
 const Parameter* ParameterList::FindNumbers(const std::string& name, std::initializer_list<ParameterType> types,
@@ -74,7 +78,8 @@ const Parameter* ParameterList::FindNumbers(const std::string& name, std::initia
     throw Error(parameter->where, "\"" + name + "\" of " + owner_ + " needs a multiple of " + CountOf(perItem) +
                                       ", has " + std::to_string(count));
   }
-  const auto bad = std::find_if(parameter->numbers.begin(), parameter->numbers.end(), [](double n) { return !std::isfinite(n); });
+  const auto bad =
+      std::find_if(parameter->numbers.begin(), parameter->numbers.end(), [](double n) { return !std::isfinite(n); });
   if (bad != parameter->numbers.end()) {
     throw Error(parameter->where, "\"" + name + "\" of " + owner_ + " has a value that is not a finite number");
   }
@@ -166,7 +171,9 @@ std::vector<Point3d> ParameterList::GetPoint3s(const std::string& name) const {
 std::string ParameterList::ResolveFile(const std::string& name, const FileLocation& writtenAt) const {
   if (name.empty()) return name;
   const std::string writer = writtenAt.file ? *writtenAt.file : "";
-  return std::filesystem::absolute(FindSceneFile(name, writer, sceneFile_ ? *sceneFile_ : writer)).lexically_normal().string();
+  return std::filesystem::absolute(FindSceneFile(name, writer, sceneFile_ ? *sceneFile_ : writer))
+      .lexically_normal()
+      .string();
 }
 
 std::string ParameterList::GetFile(const std::string& name) const {

@@ -16,7 +16,21 @@
 
 namespace lampyr {
 
-enum class ParameterType { Float, Integer, Bool, String, Point2, Vector2, Point3, Vector3, Normal, Rgb, Spectrum, Blackbody, Texture };
+enum class ParameterType {
+  Float,
+  Integer,
+  Bool,
+  String,
+  Point2,
+  Vector2,
+  Point3,
+  Vector3,
+  Normal,
+  Rgb,
+  Spectrum,
+  Blackbody,
+  Texture
+};
 
 // "float", "integer", "point3", …, as scene files write them.
 const char* ToString(ParameterType type);
@@ -38,7 +52,7 @@ struct Parameter {
 enum class SpectrumRole {
   Albedo,      // a reflectance: seen under the white of the colour space
   Unbounded,   // η, k, σ: averaged per channel
-  Illuminant,  // light: colour of the spectrum at luminance 1 for spectra and blackbodies (pbrt-v4's unit rule); rgb as given
+  Illuminant,  // light: the colour at luminance 1 of spectra and blackbodies (pbrt-v4's unit rule); rgb as given
 };
 
 class ParameterList {
@@ -72,8 +86,8 @@ class ParameterList {
   std::vector<Point3d> GetPoint3s(const std::string& name) const;  // also accepts vector3 and normal
   std::vector<Color> GetColors(const std::string& name, SpectrumRole role) const;
 
-  // A file name made absolute: against the folder of the scene (as pbrt-v4 does) when it is there, else against the folder
-  // of the file that wrote it (an included one may lie elsewhere). "" when absent.
+  // A file name made absolute: against the folder of the scene (as pbrt-v4 does) when it is there, else against the
+  // folder of the file that wrote it (an included one may lie elsewhere). "" when absent.
   std::string GetFile(const std::string& name) const;
 
   // The texture's name when the parameter `name` is of type "texture".
@@ -81,9 +95,9 @@ class ParameterList {
   // The parameter whatever its type, or null. Marks it as used.
   const Parameter* Find(const std::string& name) const;
 
-  const FileLocation& Where() const { return where_; }       // of the statement
-  FileLocation WhereOf(const std::string& name) const;       // of the parameter, or of the statement when it is absent
-  const std::string& Owner() const { return owner_; }        // "Shape \"sphere\"", for messages
+  const FileLocation& Where() const { return where_; }  // of the statement
+  FileLocation WhereOf(const std::string& name) const;  // of the parameter, or of the statement when it is absent
+  const std::string& Owner() const { return owner_; }   // "Shape \"sphere\"", for messages
   const std::vector<Parameter>& All() const { return parameters_; }
 
   // Warns about (`alsoInPbrt`) or throws for each parameter that nobody asked for, with the nearest of `known`.

@@ -24,9 +24,11 @@ void CheckName(const Map& defined, const char* what, const std::string& name, co
 void SceneParser::CheckReferences() const {
   for (const NameUse& use : materialUses_) CheckName(namedMaterials_, "material", use.name, use.where);
   for (const NameUse& use : mediumUses_) CheckName(media_, "medium", use.name, use.where);
-  for (const InstanceDescription& instance : scene_.instances) CheckName(objects_, "object", instance.object, instance.where);
+  for (const InstanceDescription& instance : scene_.instances)
+    CheckName(objects_, "object", instance.object, instance.where);
   for (const ObjectDescription& object : scene_.objects) {
-    for (const InstanceDescription& instance : object.instances) CheckName(objects_, "object", instance.object, instance.where);
+    for (const InstanceDescription& instance : object.instances)
+      CheckName(objects_, "object", instance.object, instance.where);
   }
 }
 

@@ -10,7 +10,8 @@ std::filesystem::path FindSceneFile(const std::string& name, const std::string& 
   const std::filesystem::path besideScene = std::filesystem::path(sceneFile).parent_path() / file;
   const std::filesystem::path besideWriter = std::filesystem::path(writer).parent_path() / file;
   std::error_code ignored;
-  const bool useWriter = !std::filesystem::exists(besideScene, ignored) && std::filesystem::exists(besideWriter, ignored);
+  const bool useWriter =
+      !std::filesystem::exists(besideScene, ignored) && std::filesystem::exists(besideWriter, ignored);
   return useWriter ? besideWriter : besideScene;
 }
 

@@ -67,9 +67,12 @@ Vector3d ChannelWeights(double lambda) {
   return glm::max(rgb, Vector3d(0.0));
 }
 
-Color ToColor(const Vector3d& c) { return {static_cast<float>(c.x), static_cast<float>(c.y), static_cast<float>(c.z)}; }
+Color ToColor(const Vector3d& c) {
+  return {static_cast<float>(c.x), static_cast<float>(c.y), static_cast<float>(c.z)};
+}
 
-Color FunctionToColor(const std::function<double(double)>& f, const std::vector<double>& wavelengths, SpectrumRole role) {
+Color FunctionToColor(const std::function<double(double)>& f, const std::vector<double>& wavelengths,
+                      SpectrumRole role) {
   if (role == SpectrumRole::Unbounded) {
     const Vector3d sum = Integrate(wavelengths, [&](double l) { return ChannelWeights(l) * f(l); });
     return ToColor(sum / Integrate(wavelengths, ChannelWeights));
@@ -78,8 +81,8 @@ Color FunctionToColor(const std::function<double(double)>& f, const std::vector<
     const auto reflected = [&](double l) { return ColorMatching(l) * (DaylightD65(l) * f(l)); };
     const auto white = [](double l) { return ColorMatching(l) * DaylightD65(l); };
     // Both on the same grid: a reflectance of 1 is white to the last bit.
-    const Vector3d xyz = Integrate(wavelengths, reflected) / Integrate(wavelengths, white) *
-                         XyzOfChromaticity(0.3127, 0.3290);
+    const Vector3d xyz =
+        Integrate(wavelengths, reflected) / Integrate(wavelengths, white) * XyzOfChromaticity(0.3127, 0.3290);
     const Color color = ClampToGamut(XyzToRec709(xyz));
     return {std::min(color.r, 1.0f), std::min(color.g, 1.0f), std::min(color.b, 1.0f)};
   }

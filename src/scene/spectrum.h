@@ -30,7 +30,8 @@ Color SpectrumToColor(const std::vector<SpectrumSample>& spectrum, SpectrumRole 
 // A blackbody of `kelvin` > 0; roles other than Illuminant see it scaled to a maximum of 1.
 Color BlackbodyToColor(double kelvin, SpectrumRole role);
 
-// Checks a list λ0 v0 λ1 v1 …: at least two pairs, increasing wavelengths, nothing negative. Throws an Error at `where`.
+// Checks a list λ0 v0 λ1 v1 …: at least two pairs, increasing wavelengths, nothing negative. Throws an Error at
+// `where`.
 std::vector<SpectrumSample> SpectrumFromPairs(const std::vector<double>& numbers, const FileLocation& where);
 
 // A text file of such pairs, `#` starting a comment. Throws Errors that name the file.

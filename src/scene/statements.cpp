@@ -106,7 +106,8 @@ void SceneParser::UnknownStatement(const Token& word) const {
                                         {"VolumeIntegrator", "Integrator"}, {"Renderer", "Integrator"},
                                         {"Volume", "MakeNamedMedium"},      {"Surface", "Material"}};
   for (const auto& [former, now] : kFormer) {
-    if (word.text == former) throw Error(word.where, "there is no statement \"" + word.text + "\" (did you mean \"" + now + "\"?)");
+    if (word.text == former)
+      throw Error(word.where, "there is no statement \"" + word.text + "\" (did you mean \"" + now + "\"?)");
   }
   std::vector<std::string> names;
   for (const Statement& statement : Statements()) names.push_back(statement.name);
@@ -132,8 +133,8 @@ void SceneParser::ReadNumbersInto(const Token& statement, double* numbers, size_
     if (token.kind == TokenKind::Open) throw Error(token.where, statement.text + " takes its numbers without brackets");
     const bool isNumber = token.kind == TokenKind::Word && (LooksLikeNumber(token.text) || IsNonFinite(token.text));
     if (!isNumber) {
-      throw Error(token.where, statement.text + " needs " + std::to_string(count) + " numbers, has " + std::to_string(i) +
-                                   " before " + Describe(token));
+      throw Error(token.where, statement.text + " needs " + std::to_string(count) + " numbers, has " +
+                                   std::to_string(i) + " before " + Describe(token));
     }
     numbers[i] = ParseNumber(token.text, token.where);
   }

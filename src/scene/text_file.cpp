@@ -22,7 +22,8 @@ std::string ReadBytes(const std::filesystem::path& file, const FileLocation& whe
   std::error_code ignored;
   const std::filesystem::file_status status = std::filesystem::status(file, ignored);
   if (std::filesystem::is_directory(status)) Fail(file, where, "is a folder, not a scene file");
-  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) && !std::filesystem::is_fifo(status)) {
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) &&
+      !std::filesystem::is_fifo(status)) {
     Fail(file, where, "is not a regular file");
   }
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"), &std::fclose);
@@ -31,7 +32,8 @@ std::string ReadBytes(const std::filesystem::path& file, const FileLocation& whe
   const std::uintmax_t size = std::filesystem::file_size(file, ignored);
   if (!ignored) bytes.reserve(static_cast<size_t>(size) + 1);
   std::array<char, 1 << 16> buffer;
-  while (const size_t count = std::fread(buffer.data(), 1, buffer.size(), stream.get())) bytes.append(buffer.data(), count);
+  while (const size_t count = std::fread(buffer.data(), 1, buffer.size(), stream.get()))
+    bytes.append(buffer.data(), count);
   if (std::ferror(stream.get())) Fail(file, where, std::string("cannot be read: ") + std::strerror(errno));
   return bytes;
 }

@@ -8,8 +8,8 @@
 
 namespace lampyr {
 
-// The file's bytes, decompressed when they are gzip (by content, whatever the name). Throws an Error at `where` when the
-// file is missing, unreadable, not a file, or cut off; without a `where`, the Error is about the file itself.
+// The file's bytes, decompressed when they are gzip (by content, whatever the name). Throws an Error at `where` when
+// the file is missing, unreadable, not a file, or cut off; without a `where`, the Error is about the file itself.
 std::string ReadTextFile(const std::filesystem::path& file, const FileLocation& where);
 
 // A 128-bit fingerprint of texts, in hexadecimal: not cryptographic, independent of the platform.

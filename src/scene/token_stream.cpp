@@ -55,7 +55,9 @@ Token TokenStream::Next() {
   }
 }
 
-size_t TokenStream::SetBottom() { return std::exchange(bottom_, files_.size() - 1); }
+size_t TokenStream::SetBottom() {
+  return std::exchange(bottom_, files_.size() - 1);
+}
 
 void TokenStream::RestoreBottom(size_t bottom) {
   files_.pop_back();

@@ -16,8 +16,8 @@ class TokenStream {
 
   // Opens a text; its tokens come before what is left of the file that is read now.
   void OpenText(const std::filesystem::path& file, std::string text);
-  // The same for a file that the string `name` asks for: looked for beside the scene's file, then beside the one that asks.
-  // Throws when it cannot be read or is being read already.
+  // The same for a file that the string `name` asks for: looked for beside the scene's file, then beside the one that
+  // asks. Throws when it cannot be read or is being read already.
   void OpenFile(const Token& name);
 
   // End: the bottom of the stack is reached; an included file's end is passed over.

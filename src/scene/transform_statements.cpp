@@ -1,6 +1,8 @@
 // Statements about the current transformation matrix (CTM). Each multiplies from the right: the last one written is the
 // first applied to a point.
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
@@ -18,10 +20,24 @@ bool IsNearlySingular(const glm::dmat4& m) {
   return !(std::abs(glm::determinant(linear)) > 1e-14 * volume);
 }
 
+// Rendering keeps matrices and their inverses as floats.
+bool FitsFloat(const glm::dmat4& m) {
+  for (int column = 0; column < 4; ++column) {
+    for (int row = 0; row < 4; ++row) {
+      if (std::abs(m[column][row]) > static_cast<double>(std::numeric_limits<float>::max())) return false;
+    }
+  }
+  return true;
+}
+
 }  // namespace
 
 void SceneParser::CheckInvertible(const Token& statement, const Transform& transform) const {
-  if (transform.IsSingular()) throw Error(statement.where, statement.text + " makes the transform singular: it cannot be inverted");
+  if (!FitsFloat(transform.Matrix()) || !FitsFloat(transform.InverseMatrix())) {
+    throw Error(statement.where, statement.text + " makes the transform too large or too small (beyond 3.4e38)");
+  }
+  if (transform.IsSingular())
+    throw Error(statement.where, statement.text + " makes the transform singular: it cannot be inverted");
 }
 
 void SceneParser::Concat(const Token& statement, const Transform& transform) {
@@ -100,7 +116,8 @@ Transform MatrixTransform(const std::array<double, 16>& n, const Token& statemen
   for (int column = 0; column < 4; ++column) {
     for (int row = 0; row < 3; ++row) m[column][row] = n[4 * column + row] / n[15];
   }
-  if (IsNearlySingular(m)) throw Error(statement.where, "the matrix of " + statement.text + " is singular: it cannot be inverted");
+  if (IsNearlySingular(m))
+    throw Error(statement.where, "the matrix of " + statement.text + " is singular: it cannot be inverted");
   return Transform(m);
 }
 

@@ -14,7 +14,9 @@ void SceneParser::AttributeBegin(const Token& statement) {
   scopes_.push_back({state_, false, statement.text, statement.where});
 }
 
-void SceneParser::AttributeEnd(const Token& statement) { CloseScope(statement, false); }
+void SceneParser::AttributeEnd(const Token& statement) {
+  CloseScope(statement, false);
+}
 
 void SceneParser::TransformBegin(const Token& statement) {
   diagnostics_.Warn(statement.where, "TransformBegin is deprecated: it is taken as AttributeBegin, as pbrt-v4 does");
@@ -42,10 +44,12 @@ void SceneParser::Attribute(const Token& statement) {
   if (target.kind != TokenKind::String) {
     throw Error(target.where, "Attribute needs a target in quotes, found " + Describe(target));
   }
-  const std::vector<std::string> targets = {"shape", "light", "material", "medium", "texture", "lighting", "lightfilter"};
+  const std::vector<std::string> targets = {"shape",   "light",    "material",   "medium",
+                                            "texture", "lighting", "lightfilter"};
   const auto found = std::find(targets.begin(), targets.end(), target.text);
   if (found == targets.end()) {
-    throw Error(target.where, "there is no Attribute target \"" + target.text + "\"" + DidYouMean(target.text, targets));
+    throw Error(target.where,
+                "there is no Attribute target \"" + target.text + "\"" + DidYouMean(target.text, targets));
   }
   if (target.text == "lighting" || target.text == "lightfilter") {
     diagnostics_.Warn(statement.where, "Attribute \"" + target.text + "\" is not supported yet: it is ignored");
@@ -62,7 +66,8 @@ void SceneParser::Attribute(const Token& statement) {
 void SceneParser::ObjectBegin(const Token& statement) {
   const std::string name = ReadString(statement, "a name");
   if (currentObject_ >= 0) {
-    throw Error(statement.where, "ObjectBegin within the ObjectBegin at " + scene_.objects[currentObject_].where.ToString());
+    throw Error(statement.where,
+                "ObjectBegin within the ObjectBegin at " + scene_.objects[currentObject_].where.ToString());
   }
   const auto [entry, isNew] = objects_.emplace(name, static_cast<int>(scene_.objects.size()));
   if (!isNew) {
@@ -113,7 +118,8 @@ void SceneParser::MakeNamedMaterial(const Token& statement) {
   const std::string name = ReadString(statement, "a name");
   const auto [entry, isNew] = namedMaterials_.emplace(name, statement.where);
   if (!isNew) {
-    throw Error(statement.where, "the material \"" + name + "\" is defined twice; the first is at " + entry->second.ToString());
+    throw Error(statement.where,
+                "the material \"" + name + "\" is defined twice; the first is at " + entry->second.ToString());
   }
   ParameterList parameters = ReadList(statement, "MakeNamedMaterial \"" + name + "\"", "material");
   std::string type = parameters.GetString("type", "");
@@ -135,8 +141,9 @@ void SceneParser::Texture(const Token& statement) {
     throw Error(value.where, "Texture needs \"float\" or \"spectrum\" after its name, found " + Describe(value));
   }
   if (value.text != "float" && value.text != "spectrum") {
-    const std::string hint = value.text == "color" || value.text == "rgb" ? " (did you mean \"spectrum\"?)"
-                                                                           : DidYouMean(value.text, {"float", "spectrum"});
+    const std::string hint = value.text == "color" || value.text == "rgb"
+                                 ? " (did you mean \"spectrum\"?)"
+                                 : DidYouMean(value.text, {"float", "spectrum"});
     throw Error(value.where, "a Texture is of \"float\" or \"spectrum\", not \"" + value.text + "\"" + hint);
   }
   texture.isSpectrum = value.text == "spectrum";
@@ -166,10 +173,12 @@ void SceneParser::MakeNamedMedium(const Token& statement) {
   const std::string name = ReadString(statement, "a name");
   const auto [entry, isNew] = media_.emplace(name, statement.where);
   if (!isNew) {
-    throw Error(statement.where, "the medium \"" + name + "\" is defined twice; the first is at " + entry->second.ToString());
+    throw Error(statement.where,
+                "the medium \"" + name + "\" is defined twice; the first is at " + entry->second.ToString());
   }
   ReadList(statement, "MakeNamedMedium \"" + name + "\"", "medium");
-  diagnostics_.Warn(statement.where, "participating media are not supported yet: the medium \"" + name + "\" is left out");
+  diagnostics_.Warn(statement.where,
+                    "participating media are not supported yet: the medium \"" + name + "\" is left out");
 }
 
 void SceneParser::MediumInterface(const Token& statement) {
@@ -186,18 +195,22 @@ void SceneParser::MediumInterface(const Token& statement) {
   }
 }
 
-void SceneParser::ReverseOrientation(const Token&) { state_.reverseOrientation = !state_.reverseOrientation; }
+void SceneParser::ReverseOrientation(const Token&) {
+  state_.reverseOrientation = !state_.reverseOrientation;
+}
 
 void SceneParser::Include(const Token& statement) {
   const Token name = tokens_.Next();
-  if (name.kind != TokenKind::String) throw Error(name.where, statement.text + " needs a file's name in quotes, found " + Describe(name));
+  if (name.kind != TokenKind::String)
+    throw Error(name.where, statement.text + " needs a file's name in quotes, found " + Describe(name));
   tokens_.OpenFile(name);
 }
 
 // Like Include, but the graphics state and the coordinate systems are afterwards what they were before.
 void SceneParser::Import(const Token& statement) {
   const Token name = tokens_.Next();
-  if (name.kind != TokenKind::String) throw Error(name.where, statement.text + " needs a file's name in quotes, found " + Describe(name));
+  if (name.kind != TokenKind::String)
+    throw Error(name.where, statement.text + " needs a file's name in quotes, found " + Describe(name));
   const GraphicsState state = state_;
   const auto coordinateSystems = coordinateSystems_;
   tokens_.OpenFile(name);

@@ -36,8 +36,8 @@ TEST(SceneFileErrors, UnreadableScene) {
 TEST(SceneFileErrors, MissingInclude) {
   const TemporaryFolder folder;
   const std::string file = folder.Write("s.pbrt", "WorldBegin\n  Include \"none.pbrt\"");
-  EXPECT_EQ(ReadError(file),
-            file + ":2:11: error: \"" + (folder / "none.pbrt").string() + "\" cannot be read: No such file or directory");
+  EXPECT_EQ(ReadError(file), file + ":2:11: error: \"" + (folder / "none.pbrt").string() +
+                                 "\" cannot be read: No such file or directory");
   folder.Write("s.pbrt", "WorldBegin\nInclude \"\"");
   EXPECT_EQ(ReadError(file), file + ":2:9: error: the file's name is empty");
   folder.Write("s.pbrt", "WorldBegin\nInclude geometry.pbrt");

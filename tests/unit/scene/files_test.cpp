@@ -15,7 +15,8 @@ TEST(SceneFiles, IncludeIsAsIfWrittenThere) {
   const TemporaryFolder folder;
   folder.Write("parts/lens.pbrt", "Translate 1 0 0\nShape \"sphere\"\nAttributeBegin Include \"more.pbrt\"");
   folder.Write("parts/more.pbrt", "Shape \"disk\" AttributeEnd Scale 2 2 2");
-  const auto scene = folder.Write("scene.pbrt", "Film \"rgb\" WorldBegin Include \"parts/lens.pbrt\" Shape \"cylinder\"");
+  const auto scene =
+      folder.Write("scene.pbrt", "Film \"rgb\" WorldBegin Include \"parts/lens.pbrt\" Shape \"cylinder\"");
   const SceneDescription description = ReadStrict(scene);
   ASSERT_EQ(description.shapes.size(), 3u);
   EXPECT_EQ(description.shapes[2].placement.start.Point({1, 0, 0}), Point3d(3, 0, 0));
@@ -36,14 +37,17 @@ TEST(SceneFiles, ImportKeepsItsStateToItself) {
   const TemporaryFolder folder;
   folder.Write("part.pbrt",
                "Shape \"disk\" Translate 0 0 9 ReverseOrientation CoordinateSystem \"x\" Material \"conductor\"\n"
-               "MakeNamedMaterial \"m\" \"string type\" \"diffuse\" Texture \"t\" \"float\" \"constant\" ObjectBegin \"o\" Shape \"curve\" "
+               "MakeNamedMaterial \"m\" \"string type\" \"diffuse\" Texture \"t\" \"float\" \"constant\" ObjectBegin "
+               "\"o\" Shape \"curve\" "
                "ObjectEnd\nLightSource \"point\" Attribute \"shape\" \"float alpha\" 0");
-  const auto scene = folder.Write("scene.pbrt",
-                                  "WorldBegin Translate 1 0 0 Material \"diffuse\"\n"
-                                  "Import \"part.pbrt\" Shape \"sphere\" ObjectInstance \"o\" NamedMaterial \"m\" Shape \"cylinder\"");
+  const auto scene =
+      folder.Write("scene.pbrt",
+                   "WorldBegin Translate 1 0 0 Material \"diffuse\"\n"
+                   "Import \"part.pbrt\" Shape \"sphere\" ObjectInstance \"o\" NamedMaterial \"m\" Shape \"cylinder\"");
   const SceneDescription description = ReadStrict(scene);
   ASSERT_EQ(description.shapes.size(), 3u);
-  EXPECT_EQ(description.shapes[0].placement.start.Point({0, 0, 0}), Point3d(1, 0, 0)) << "starts from the importer's state";
+  EXPECT_EQ(description.shapes[0].placement.start.Point({0, 0, 0}), Point3d(1, 0, 0))
+      << "starts from the importer's state";
   EXPECT_EQ(description.shapes[0].material.index, 0);
   EXPECT_EQ(description.shapes[1].placement.start.Point({0, 0, 0}), Point3d(1, 0, 0));
   EXPECT_EQ(description.shapes[1].material.index, 0);
@@ -103,7 +107,8 @@ TEST(SceneFiles, PublishedScenes) {
   for (const auto& entry : std::filesystem::directory_iterator(data / "peer", absent)) {
     if (entry.path().extension() == ".pbrt") files.push_back(entry.path());
   }
-  if (std::filesystem::exists(data / "killeroo/killeroo-simple.pbrt", absent)) files.push_back(data / "killeroo/killeroo-simple.pbrt");
+  if (std::filesystem::exists(data / "killeroo/killeroo-simple.pbrt", absent))
+    files.push_back(data / "killeroo/killeroo-simple.pbrt");
   if (files.empty()) GTEST_SKIP() << "no scenes at " << data;
   for (const std::filesystem::path& file : files) {
     const SceneDescription scene = ReadStrict(file);

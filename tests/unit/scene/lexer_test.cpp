@@ -6,7 +6,9 @@
 namespace lampyr {
 namespace {
 
-Lexer MakeLexer(const std::string& text) { return {std::make_shared<const std::string>("f"), text}; }
+Lexer MakeLexer(const std::string& text) {
+  return {std::make_shared<const std::string>("f"), text};
+}
 
 TEST(Lexer, TokensAndPlaces) {
   Lexer lexer = MakeLexer("Shape \"a b\"[1 true]# comment [ \"\r\n\t2e3\n");
@@ -42,8 +44,8 @@ TEST(Lexer, EscapesAndByteOrderMark) {
 
 TEST(Lexer, NumbersAsPbrtWritesThem) {
   const std::vector<std::pair<std::string, double>> numbers = {
-      {"0", 0},       {"-0.5", -0.5},   {"+3", 3},        {".25", 0.25},   {"7.", 7},
-      {"1e-3", 1e-3}, {"-2.5E+2", -250}, {"1e-400", 0},   {"3.4e38", 3.4e38}, {"0.1", 0.1}};
+      {"0", 0},       {"-0.5", -0.5},    {"+3", 3},     {".25", 0.25},      {"7.", 7},
+      {"1e-3", 1e-3}, {"-2.5E+2", -250}, {"1e-400", 0}, {"3.4e38", 3.4e38}, {"0.1", 0.1}};
   std::string text;
   for (const auto& [word, value] : numbers) {
     EXPECT_EQ(ParseNumber(word, {}), value) << word;
@@ -60,11 +62,14 @@ TEST(Lexer, NumbersAsPbrtWritesThem) {
 }
 
 TEST(Lexer, RejectsWhatIsNoNumber) {
-  for (const char* word : {"nan", "NaN", "inf", "-inf", "Infinity", "1e999", "1e39", "1.2.3", "--1", "+-1", "1x", "-", ".", "0x10"}) {
+  for (const char* word :
+       {"nan", "NaN", "inf", "-inf", "Infinity", "1e999", "1e39", "1.2.3", "--1", "+-1", "1x", "-", ".", "0x10"}) {
     EXPECT_NE(ErrorOf([&] { ParseNumber(word, {}); }), "no error") << word;
     Lexer lexer = MakeLexer(word);
     double value = 0;
-    const std::string viaList = ErrorOf([&] { if (!lexer.TryNumber(value)) throw Error("not taken"); });
+    const std::string viaList = ErrorOf([&] {
+      if (!lexer.TryNumber(value)) throw Error("not taken");
+    });
     EXPECT_NE(viaList, "no error") << word;
   }
   for (const char* word : {"3.5", "3.0", "1e3", "2147483648", "-2147483649", "99999999999999999999", "x", "+-1"}) {

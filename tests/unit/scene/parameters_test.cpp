@@ -18,7 +18,8 @@ ParameterList Read(const std::string& parameters) {
 }
 
 TEST(Parameters, EveryType) {
-  const ParameterList list = Read(R"("float f" 1.5 "integer i" -3 "bool b" true "bool q" [ "false" ] "string s" "x" "point2 p2" [ 1 2 ]
+  const ParameterList list =
+      Read(R"("float f" 1.5 "integer i" -3 "bool b" true "bool q" [ "false" ] "string s" "x" "point2 p2" [ 1 2 ]
     "vector2 v2" [ 3 4 ] "point3 p3" [ 1 2 3 ] "vector3 v3" [ 4 5 6 ] "normal n" [ 0 0 1 0 1 0 ] "rgb c" [ .1 .2 .3 ]
     "spectrum e" "metal-Au-eta" "blackbody k" 6500 "texture t" "wood")");
   EXPECT_EQ(list.GetFloat("f", 0), 1.5);
@@ -75,13 +76,16 @@ TEST(Parameters, WrongTypeAndCountNameThePlace) {
             "scene.pbrt:2:11: error: \"c\" of Shape \"s\" has a negative component");
   EXPECT_THAT(ErrorOf([] { Read("\"rgb c\" [ 1 1.5 1 ]").GetColor("c", {}, SpectrumRole::Albedo); }),
               StartsWith("scene.pbrt:2:11: error: \"c\" of Shape \"s\" has a component above 1"));
-  EXPECT_THAT(ErrorOf([] { Read("\"blackbody c\" 0").GetColor("c", {}, SpectrumRole::Illuminant); }), HasSubstr("above 0 K"));
+  EXPECT_THAT(ErrorOf([] { Read("\"blackbody c\" 0").GetColor("c", {}, SpectrumRole::Illuminant); }),
+              HasSubstr("above 0 K"));
 }
 
 TEST(Parameters, UnusedOnesAreFound) {
   const ParameterList list = Read("\"float radious\" 2");
   Diagnostics diagnostics(Diagnostics::Mode::Collect);
-  EXPECT_EQ(ErrorOf([&] { list.CheckAllUsed({}, {"radius", "zmin"}, diagnostics); }),
+  EXPECT_EQ(ErrorOf([&] {
+              list.CheckAllUsed({}, {"radius", "zmin"}, diagnostics);
+            }),
             "scene.pbrt:2:11: error: Shape \"s\" has no parameter \"radious\" (did you mean \"radius\"?)");
   list.CheckAllUsed({"radious"}, {"radius"}, diagnostics);
   list.CheckAllUsed({}, {"radious"}, diagnostics);
@@ -92,8 +96,10 @@ TEST(Parameters, UnusedOnesAreFound) {
 
 TEST(Parameters, FilesAreFoundBesideTheSceneThenBesideTheWriter) {
   const TemporaryFolder folder;
-  folder.Write("sub/inner.pbrt", "Shape \"a\" \"string filename\" \"mesh.ply\"\nShape \"b\" \"string filename\" \"sub/mesh.ply\"\n"
-                                 "Shape \"c\" \"string filename\" \"nowhere.ply\" Shape \"d\" \"string filename\" \"/abs/m.ply\" Shape \"e\"");
+  folder.Write(
+      "sub/inner.pbrt",
+      "Shape \"a\" \"string filename\" \"mesh.ply\"\nShape \"b\" \"string filename\" \"sub/mesh.ply\"\n"
+      "Shape \"c\" \"string filename\" \"nowhere.ply\" Shape \"d\" \"string filename\" \"/abs/m.ply\" Shape \"e\"");
   folder.Write("sub/mesh.ply", "");
   const auto scene = folder.Write("scene.pbrt", "WorldBegin Include \"sub/inner.pbrt\"");
   Diagnostics strict(Diagnostics::Mode::Strict);

@@ -55,7 +55,8 @@ TEST(Parser, AttributeScopesSaveEverything) {
     AttributeEnd
     Shape "sphere")"));
   ASSERT_EQ(scene.shapes.size(), 4u);
-  const ShapeDescription &inner = scene.shapes[0], &innermost = scene.shapes[1], &again = scene.shapes[2], &outer = scene.shapes[3];
+  const ShapeDescription &inner = scene.shapes[0], &innermost = scene.shapes[1], &again = scene.shapes[2],
+                         &outer = scene.shapes[3];
   EXPECT_EQ(inner.material.index, 1);
   EXPECT_EQ(inner.areaLight, 0);
   EXPECT_TRUE(inner.reverseOrientation);
@@ -121,8 +122,9 @@ TEST(Parser, AttributeGivesDefaultsToItsTarget) {
 
 TEST(Parser, LinkingAttributesGoToTheShape) {
   Diagnostics diagnostics(Diagnostics::Mode::Collect);
-  const SceneDescription scene = ParseScene(
-      InWorld("Attribute \"lighting\" \"string subset\" [ \"keys\" \"rims\" ] Shape \"sphere\"\n"), "scene.pbrt", diagnostics);
+  const SceneDescription scene =
+      ParseScene(InWorld("Attribute \"lighting\" \"string subset\" [ \"keys\" \"rims\" ] Shape \"sphere\"\n"),
+                 "scene.pbrt", diagnostics);
   EXPECT_THAT(scene.shapes.at(0).attributes.at("lighting").GetStrings("subset"), ElementsAre("keys", "rims"));
   EXPECT_THAT(diagnostics.Warnings(),
               ElementsAre("scene.pbrt:2:1: warning: Attribute \"lighting\" is not supported yet: it is ignored"));
@@ -170,21 +172,30 @@ TEST(Parser, TexturesAndLights) {
 TEST(Parser, WarnsOnceOfWhatIsNotSupported) {
   EXPECT_THAT(WarningsOf("Option \"wavefront\" true\nWorldBegin\n"),
               ElementsAre("scene.pbrt:1:1: warning: the option \"wavefront\" is not supported yet: it is ignored"));
-  EXPECT_THAT(WarningsOf(InWorld("MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [ 1 1 1 ]\n"
-                                 "MediumInterface \"\" \"fog\" Shape \"sphere\"")),
-              ElementsAre("scene.pbrt:2:1: warning: participating media are not supported yet: the medium \"fog\" is left out"));
-  EXPECT_THAT(WarningsOf(InWorld(" LightFilter \"gobo\" \"string name\" \"leaves\" \"float width\" 3\nShape \"sphere\"")),
-              ElementsAre("scene.pbrt:2:2: warning: LightFilter \"gobo\" is not supported yet: it is ignored"));
-  EXPECT_THAT(WarningsOf(InWorld("TransformBegin\nTransformEnd\nWorldEnd")),
-              ElementsAre("scene.pbrt:2:1: warning: TransformBegin is deprecated: it is taken as AttributeBegin, as pbrt-v4 does",
-                          "scene.pbrt:3:1: warning: TransformEnd is deprecated: it is taken as AttributeEnd, as pbrt-v4 does",
-                          "scene.pbrt:4:1: warning: WorldEnd is of pbrt-v3: it is ignored"));
-  EXPECT_THAT(WarningsOf(InWorld("CoordinateSystem \"lamp\" CoordSysTransform \"lmap\"")),
-              ElementsAre("scene.pbrt:2:25: warning: there is no coordinate system \"lmap\" (did you mean \"lamp\"?): the transform "
-                          "stays as it is"));
-  EXPECT_THAT(WarningsOf("ColorSpace \"rec2020\"\nFilm \"rgb\" WorldBegin"),
-              ElementsAre("scene.pbrt:2:1: warning: images in another colour space than \"srgb\" are not supported yet: the image "
-                          "is linear sRGB"));
+  EXPECT_THAT(
+      WarningsOf(InWorld("MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [ 1 1 1 ]\n"
+                         "MediumInterface \"\" \"fog\" Shape \"sphere\"")),
+      ElementsAre(
+          "scene.pbrt:2:1: warning: participating media are not supported yet: the medium \"fog\" is left out"));
+  EXPECT_THAT(
+      WarningsOf(InWorld(" LightFilter \"gobo\" \"string name\" \"leaves\" \"float width\" 3\nShape \"sphere\"")),
+      ElementsAre("scene.pbrt:2:2: warning: LightFilter \"gobo\" is not supported yet: it is ignored"));
+  EXPECT_THAT(
+      WarningsOf(InWorld("TransformBegin\nTransformEnd\nWorldEnd")),
+      ElementsAre(
+          "scene.pbrt:2:1: warning: TransformBegin is deprecated: it is taken as AttributeBegin, as pbrt-v4 does",
+          "scene.pbrt:3:1: warning: TransformEnd is deprecated: it is taken as AttributeEnd, as pbrt-v4 does",
+          "scene.pbrt:4:1: warning: WorldEnd is of pbrt-v3: it is ignored"));
+  EXPECT_THAT(
+      WarningsOf(InWorld("CoordinateSystem \"lamp\" CoordSysTransform \"lmap\"")),
+      ElementsAre(
+          "scene.pbrt:2:25: warning: there is no coordinate system \"lmap\" (did you mean \"lamp\"?): the transform "
+          "stays as it is"));
+  EXPECT_THAT(
+      WarningsOf("ColorSpace \"rec2020\"\nFilm \"rgb\" WorldBegin"),
+      ElementsAre(
+          "scene.pbrt:2:1: warning: images in another colour space than \"srgb\" are not supported yet: the image "
+          "is linear sRGB"));
   EXPECT_THAT(WarningsOf(InWorld("Shape \"sphere\"")), IsEmpty());
 }
 
@@ -195,10 +206,10 @@ TEST(Parser, StrictMakesWarningsErrors) {
 
 TEST(Parser, MediaReachShapesAndLights) {
   Diagnostics diagnostics(Diagnostics::Mode::Collect);
-  const SceneDescription scene = ParseScene(
-      InWorld("MakeNamedMedium \"a\" MakeNamedMedium \"b\" MediumInterface \"a\" \"b\" Shape \"sphere\" LightSource \"point\"\n"
-              "MediumInterface \"b\" Shape \"sphere\""),
-      "scene.pbrt", diagnostics);
+  const SceneDescription scene = ParseScene(InWorld("MakeNamedMedium \"a\" MakeNamedMedium \"b\" MediumInterface \"a\" "
+                                                    "\"b\" Shape \"sphere\" LightSource \"point\"\n"
+                                                    "MediumInterface \"b\" Shape \"sphere\""),
+                                            "scene.pbrt", diagnostics);
   EXPECT_EQ(scene.shapes.at(0).insideMedium, "a");
   EXPECT_EQ(scene.shapes.at(0).outsideMedium, "b");
   EXPECT_EQ(scene.lights.at(0).mediumName, "b");
@@ -213,7 +224,8 @@ TEST(Parser, DeepNestingIsNoProblem) {
   EXPECT_TRUE(Parse(text).shapes.empty());
   std::string objects = "WorldBegin\n";
   for (int i = 0; i < 5000; ++i) {
-    objects += "ObjectBegin \"o" + std::to_string(i) + "\" ObjectInstance \"o" + std::to_string(i + 1) + "\" ObjectEnd\n";
+    objects +=
+        "ObjectBegin \"o" + std::to_string(i) + "\" ObjectInstance \"o" + std::to_string(i + 1) + "\" ObjectEnd\n";
   }
   EXPECT_EQ(Parse(objects + "ObjectBegin \"o5000\" ObjectEnd").objects.size(), 5001u);
 }

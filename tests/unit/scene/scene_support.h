@@ -14,7 +14,9 @@
 namespace lampyr {
 
 // A scene whose world is `world`; the world's first character is at line 2, column 1.
-inline std::string InWorld(const std::string& world) { return "WorldBegin\n" + world; }
+inline std::string InWorld(const std::string& world) {
+  return "WorldBegin\n" + world;
+}
 
 inline SceneDescription Parse(const std::string& text) {
   Diagnostics strict(Diagnostics::Mode::Strict);

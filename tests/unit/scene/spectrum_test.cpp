@@ -51,7 +51,8 @@ TEST(Spectrum, ConstantReflectanceIsGrey) {
   for (const double value : {0.0, 0.2, 0.5, 1.0}) {
     const std::vector<SpectrumSample> spectrum = {{300, value}, {900, value}};
     ExpectColor(SpectrumToColor(spectrum, SpectrumRole::Albedo), Color(static_cast<float>(value)), 1e-6f);
-    ExpectColor(SpectrumToColor({{500, value}, {600, value}}, SpectrumRole::Unbounded), Color(static_cast<float>(value)), 1e-6f);
+    ExpectColor(SpectrumToColor({{500, value}, {600, value}}, SpectrumRole::Unbounded),
+                Color(static_cast<float>(value)), 1e-6f);
   }
   ExpectColor(SpectrumToColor({{400, 3}, {700, 3}}, SpectrumRole::Unbounded), Color(3), 1e-5f);
 }
@@ -81,8 +82,8 @@ TEST(Spectrum, BlackbodyColours) {
   // Planckian locus: 2856 K is illuminant A (0.4476, 0.4075), 6500 K is (0.3135, 0.3237).
   ExpectColor(BlackbodyToColor(2856, SpectrumRole::Illuminant),
               ClampToGamut(XyzToRec709(XyzOfChromaticity(0.44757, 0.40745))), 0.03f);
-  ExpectColor(BlackbodyToColor(6500, SpectrumRole::Illuminant), ClampToGamut(XyzToRec709(XyzOfChromaticity(0.3135, 0.3237))),
-              0.02f);
+  ExpectColor(BlackbodyToColor(6500, SpectrumRole::Illuminant),
+              ClampToGamut(XyzToRec709(XyzOfChromaticity(0.3135, 0.3237))), 0.02f);
   EXPECT_GT(BlackbodyToColor(3000, SpectrumRole::Illuminant).r, 1.5f);
   EXPECT_GT(BlackbodyToColor(15000, SpectrumRole::Illuminant).b, 1.3f);
 }
@@ -113,7 +114,9 @@ TEST(Spectrum, NamedOnes) {
 }
 
 TEST(Spectrum, PairsAreChecked) {
-  const auto error = [](const std::vector<double>& numbers) { return ErrorOf([&] { SpectrumFromPairs(numbers, {}); }); };
+  const auto error = [](const std::vector<double>& numbers) {
+    return ErrorOf([&] { SpectrumFromPairs(numbers, {}); });
+  };
   EXPECT_THAT(error({400, 1, 500}), HasSubstr("3 numbers are not a multiple of 2"));
   EXPECT_THAT(error({400, 1}), HasSubstr("at least 2 pairs"));
   EXPECT_THAT(error({400, 1, 400, 2}), HasSubstr("pair 2 of the spectrum does not have a longer wavelength"));
@@ -125,16 +128,19 @@ TEST(Spectrum, FilesAndNamesThroughParameters) {
   const TemporaryFolder folder;
   folder.Write("flat.spd", "# flat\n300 0.25\n900 0.25\n");
   folder.Write("bad.spd", "300 0.25\n400 x\n");
-  const auto scene = folder.Write("s.pbrt", "WorldBegin\nShape \"s\" \"spectrum a\" \"flat.spd\" \"spectrum b\" \"bad.spd\"\n"
-                                            "\"spectrum c\" \"metal-au-eta\" \"spectrum d\" [ 300 .5 900 .5 ]");
+  const auto scene = folder.Write("s.pbrt",
+                                  "WorldBegin\nShape \"s\" \"spectrum a\" \"flat.spd\" \"spectrum b\" \"bad.spd\"\n"
+                                  "\"spectrum c\" \"metal-au-eta\" \"spectrum d\" [ 300 .5 900 .5 ]");
   Diagnostics strict(Diagnostics::Mode::Strict);
   const SceneDescription description = ReadScene(scene, strict);
   const ParameterList& list = description.shapes.at(0).shape.parameters;
   ExpectColor(list.GetColor("a", {}, SpectrumRole::Albedo), Color(0.25f), 1e-6f);
   EXPECT_EQ(ErrorOf([&] { list.FindColor("b", SpectrumRole::Albedo); }),
             (folder / "bad.spd").string() + ":2:5: error: \"x\" is not a number");
-  EXPECT_EQ(ErrorOf([&] { list.FindColor("c", SpectrumRole::Unbounded); }),
-            scene.string() + ":3:1: error: \"metal-au-eta\" is neither a spectrum's name nor a file (did you mean \"metal-Au-eta\"?)");
+  EXPECT_EQ(
+      ErrorOf([&] { list.FindColor("c", SpectrumRole::Unbounded); }),
+      scene.string() +
+          ":3:1: error: \"metal-au-eta\" is neither a spectrum's name nor a file (did you mean \"metal-Au-eta\"?)");
   ExpectColor(list.GetColor("d", {}, SpectrumRole::Albedo), Color(0.5f), 1e-6f);
 }
 
@@ -155,7 +161,8 @@ TEST(ColorSpace, PublishedMatrices) {
 }
 
 TEST(ColorSpace, WhiteStaysForReflectanceAndIsWarmForAcesLight) {
-  for (const RgbColorSpace space : {RgbColorSpace::Srgb, RgbColorSpace::DciP3, RgbColorSpace::Rec2020, RgbColorSpace::Aces2065}) {
+  for (const RgbColorSpace space :
+       {RgbColorSpace::Srgb, RgbColorSpace::DciP3, RgbColorSpace::Rec2020, RgbColorSpace::Aces2065}) {
     const Vector3d white = ToRec709({1, 1, 1}, space, WhiteHandling::Adapt);
     for (int i = 0; i < 3; ++i) EXPECT_NEAR(white[i], 1, 1e-9);
   }
@@ -167,9 +174,10 @@ TEST(ColorSpace, WhiteStaysForReflectanceAndIsWarmForAcesLight) {
 }
 
 TEST(ColorSpace, ConvertsWhatIsWrittenUnderIt) {
-  const SceneDescription scene = Parse(InWorld(
-      "AttributeBegin ColorSpace \"rec2020\" LightSource \"point\" \"rgb I\" [ 0 1 0 ] Material \"m\" \"rgb r\" [ 0 1 0 ] AttributeEnd\n"
-      "LightSource \"point\" \"rgb I\" [ 0 1 0 ]"));
+  const SceneDescription scene =
+      Parse(InWorld("AttributeBegin ColorSpace \"rec2020\" LightSource \"point\" \"rgb I\" [ 0 1 0 ] Material \"m\" "
+                    "\"rgb r\" [ 0 1 0 ] AttributeEnd\n"
+                    "LightSource \"point\" \"rgb I\" [ 0 1 0 ]"));
   EXPECT_EQ(scene.lights.at(1).light.parameters.GetColor("I", {}, SpectrumRole::Illuminant), Color(0, 1, 0));
   const Color wide = scene.lights.at(0).light.parameters.GetColor("I", {}, SpectrumRole::Illuminant);
   EXPECT_EQ(wide.r, 0);

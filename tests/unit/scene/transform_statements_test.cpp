@@ -26,13 +26,16 @@ Placement PlacementAfter(const std::string& statements) {
 }
 
 TEST(TransformStatements, LastWrittenIsFirstApplied) {
-  ExpectMatrix(PlacementAfter("Translate 1 2 3 Scale 2 3 4").start, {{{2, 0, 0, 1}, {0, 3, 0, 2}, {0, 0, 4, 3}, {0, 0, 0, 1}}});
-  ExpectMatrix(PlacementAfter("Scale 2 3 4 Translate 1 2 3").start, {{{2, 0, 0, 2}, {0, 3, 0, 6}, {0, 0, 4, 12}, {0, 0, 0, 1}}});
+  ExpectMatrix(PlacementAfter("Translate 1 2 3 Scale 2 3 4").start,
+               {{{2, 0, 0, 1}, {0, 3, 0, 2}, {0, 0, 4, 3}, {0, 0, 0, 1}}});
+  ExpectMatrix(PlacementAfter("Scale 2 3 4 Translate 1 2 3").start,
+               {{{2, 0, 0, 2}, {0, 3, 0, 6}, {0, 0, 4, 12}, {0, 0, 0, 1}}});
 }
 
 TEST(TransformStatements, Rotate) {
   ExpectMatrix(PlacementAfter("Rotate 90 0 0 5").start, {{{0, -1, 0, 0}, {1, 0, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}});
-  ExpectMatrix(PlacementAfter("Rotate -90 1e-30 0 0").start, {{{1, 0, 0, 0}, {0, 0, 1, 0}, {0, -1, 0, 0}, {0, 0, 0, 1}}});
+  ExpectMatrix(PlacementAfter("Rotate -90 1e-30 0 0").start,
+               {{{1, 0, 0, 0}, {0, 0, 1, 0}, {0, -1, 0, 0}, {0, 0, 0, 1}}});
   ExpectMatrix(PlacementAfter("Rotate 120 1 1 1").start, {{{0, 0, 1, 0}, {1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 0, 1}}});
 }
 
@@ -68,7 +71,8 @@ TEST(TransformStatements, WorldBeginResetsAndNamesCoordinateSystems) {
 }
 
 TEST(TransformStatements, ActiveTransformMovesOneEnd) {
-  const Placement moving = PlacementAfter("Translate 1 0 0 ActiveTransform EndTime Translate 0 2 0 ActiveTransform All Scale 2 2 2");
+  const Placement moving =
+      PlacementAfter("Translate 1 0 0 ActiveTransform EndTime Translate 0 2 0 ActiveTransform All Scale 2 2 2");
   EXPECT_TRUE(moving.IsAnimated());
   EXPECT_EQ(moving.start.Point({1, 1, 1}), Point3d(3, 2, 2));
   EXPECT_EQ(moving.end.Point({1, 1, 1}), Point3d(3, 4, 2));
