@@ -110,7 +110,7 @@ void CheckDirections(const SuiteSubject& subject, const std::string& suffix, con
   const double statistical = 5.5 * std::sqrt(share * (1 - share) / test.samples);
   report.AddError(subject.name, test.integralProperty, caseName, std::abs(integral - share), 3e-3 + 2 * difference + statistical);
   for (size_t i = 0; i < cells; ++i) {
-    errors[i] = test.samples * (2 * std::abs(expected[i] - coarse[i]) + 1e-3 * expected[i]);
+    errors[i] = test.samples * (2 * std::abs(expected[i] - coarse[i]) + test.expectationError * expected[i]);
     expected[i] *= test.samples;
   }
   expected[cells] = test.samples * std::max(1 - integral, 0.0);
