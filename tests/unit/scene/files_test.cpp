@@ -100,6 +100,16 @@ TEST(SceneFiles, HashTellsContents) {
   EXPECT_EQ(hashOfA, ReadStrict(b / "scene.pbrt").contentHash) << "where a scene lies does not matter";
 }
 
+TEST(SceneFiles, OurOwnScenesHaveNoWarnings) {
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(LAMPYR_SOURCE_DIR) / "scenes")) {
+    if (entry.path().extension() != ".pbrt") continue;
+    EXPECT_FALSE(ReadStrict(entry.path()).shapes.empty()) << entry.path();
+    ++count;
+  }
+  EXPECT_GE(count, 8);
+}
+
 TEST(SceneFiles, PublishedScenes) {
   const std::filesystem::path data = LAMPYR_SHARED_DATA;
   std::vector<std::filesystem::path> files;
