@@ -2,6 +2,8 @@
 // roots without cancellation ([Haines19], [Hearn04]), so that a radius of 1e-6 seen from 1e6 away is still round.
 #include "geometry/quadric.h"
 
+#include <limits>
+
 #include <glm/matrix.hpp>
 
 #include "geometry/rounding.h"
@@ -77,9 +79,18 @@ PreparedQuadric::PreparedQuadric(const Quadric& quadric) : quadric_(quadric), no
   thetaZMax_ = std::acos(std::clamp(quadric.zMax / quadric.radius, -1.0f, 1.0f));
 }
 
-int PreparedQuadric::IntersectSphere(const Point3d& o, const Vector3d& d, double roots[2]) const {
+int PreparedQuadric::IntersectSphere(const Point3d& o, const Vector3d& d, double tMax, double roots[2]) const {
   const double r = static_cast<double>(quadric_.radius);
   const double a = glm::dot(d, d), b = -glm::dot(o, d);
+  // Most rays that meet the sphere's box miss it, or are shadow rays that end in front of it. Both are told without a root or
+  // a division, where it is beyond all rounding.
+  constexpr double kBeyondRounding = 1e-12;
+  const double outside = glm::dot(o, o) - r * r;
+  if (b * b * (1 + kBeyondRounding) < a * outside) return 0;
+  if (outside > 0 && b > a * tMax) {
+    const Point3d end = o + d * tMax;
+    if (glm::dot(end, end) > r * r * (1 + kBeyondRounding) && tMax < std::numeric_limits<double>::max()) return 0;
+  }
   const Vector3d nearest = o + d * (b / a);
   const double distance = glm::length(o);
   const double nearestDistance = glm::length(nearest);
@@ -135,7 +146,7 @@ int PreparedQuadric::Intersect(const RayDouble& ray, QuadricHit hits[2]) const {
   double roots[2];
   int count = 0;
   switch (quadric_.kind) {
-    case Quadric::Kind::Sphere: count = IntersectSphere(o, d, roots); break;
+    case Quadric::Kind::Sphere: count = IntersectSphere(o, d, ray.tMax, roots); break;
     case Quadric::Kind::Cylinder: count = IntersectCylinder(o, d, roots); break;
     case Quadric::Kind::Disk:
       if (d.z == 0) return 0;

@@ -40,7 +40,7 @@ class PreparedQuadric {
   const Quadric& Shape() const { return quadric_; }
 
  private:
-  int IntersectSphere(const Point3d& o, const Vector3d& d, double roots[2]) const;
+  int IntersectSphere(const Point3d& o, const Vector3d& d, double tMax, double roots[2]) const;
   int IntersectCylinder(const Point3d& o, const Vector3d& d, double roots[2]) const;
   bool Accept(const Point3d& p) const;
   Point2 Encode(const Point3d& p) const;
