@@ -35,7 +35,9 @@ class TexelLookup {
   }
 
   template <class Value>
-  Value Lookup(const Point2& st) const {
+  Value Lookup(Point2 st) const {
+    // Repetitions are taken off first: only the border then needs the slower WrapInside.
+    if (wrap_ == WrapMode::Repeat) st -= Point2(std::floor(st.x), std::floor(st.y));
     const float x = st.x * static_cast<float>(width_), y = (1 - st.y) * static_cast<float>(height_);
     if (!bilinear_) return At<Value>(Split(x).index, Split(y).index);
     const Texel u = Split(x - 0.5f), v = Split(y - 0.5f);
