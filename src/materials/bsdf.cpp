@@ -6,7 +6,9 @@ namespace {
 
 // A length off by ε becomes one off by ε²: the frame and the models keep it unit but for rounding, which a long path
 // would add up.
-Vector3 Renormalize(const Vector3& v) { return v * (1.5f - 0.5f * LengthSquared(v)); }
+Vector3 Renormalize(const Vector3& v) {
+  return v * (1.5f - 0.5f * LengthSquared(v));
+}
 
 }  // namespace
 
@@ -42,7 +44,9 @@ bool Bsdf::IsTransmissive() const {
   return std::visit([](const auto& model) { return model.IsTransmissive(); }, model_);
 }
 
-bool Bsdf::HasExactPdf() const { return true; }  // no model here is stochastic
+bool Bsdf::HasExactPdf() const {
+  return true;
+}  // no model here is stochastic
 
 Color Bsdf::ApproximateAlbedo() const {
   return std::visit([](const auto& model) { return model.ApproximateAlbedo(); }, model_);

@@ -1,5 +1,6 @@
 // The scattering of light at a surface point: value, densities in both directions and the diffuse/specular split, in
-// one call. Which models there are is behind this door: a Bsdf is a small value on the stack, no allocation, no virtual call.
+// one call. Which models there are is behind this door: a Bsdf is a small value on the stack, no allocation, no virtual
+// call.
 //
 // Conventions ([Veach97 §5.3], light-transport conventions of this project)
 // - wo and wi are unit vectors in render space, both pointing away from the surface.

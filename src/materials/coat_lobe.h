@@ -9,8 +9,9 @@
 
 namespace lampyr {
 
-// Probability of sampling the coat's lobe from what the coat and the base reflect, roughly. Within [0.1, 0.95] for a rough
-// coat: its Fresnel factor varies over the lobe, and where either estimate is far too low a sample would weigh 1/probability.
+// Probability of sampling the coat's lobe from what the coat and the base reflect, roughly. Within [0.1, 0.95] for a
+// rough coat: its Fresnel factor varies over the lobe, and where either estimate is far too low a sample would weigh
+// 1/probability.
 inline float CoatLobeProbability(float coat, float base, bool coatIsDelta) {
   if (!(base > 0)) return 1;
   const float probability = coat / (coat + base);
@@ -22,12 +23,14 @@ struct LobeValue {
   float f = 0, pdfForward = 0, pdfReverse = 0;
 };
 
-// Rough boundaries only. Densities are those of sampling a visible microfacet and mirroring at it, whatever Fresnel says.
+// Rough boundaries only. Densities are those of sampling a visible microfacet and mirroring at it, whatever Fresnel
+// says.
 inline LobeValue EvaluateCoatLobe(const TrowbridgeReitz& microfacets, float eta, const Vector3& wo, const Vector3& wi) {
-  const Vector3 m = glm::normalize(wo + wi);
-  const float quarterD = 0.25f * microfacets.D(m);
+  const HalfVector half = HalfVectorOf(wo, wi);
+  if (!(half.cosine > 0)) return {};
+  const float quarterD = 0.25f * microfacets.D(half.m);
   const float stretchO = microfacets.Stretch(wo), stretchI = microfacets.Stretch(wi);
-  const float F = FresnelDielectric(std::min(glm::dot(wo, m), 1.0f), eta);
+  const float F = FresnelDielectric(half.cosine, eta);
   return {F * quarterD * TrowbridgeReitz::ShadowingFactor(wo.z, stretchO, wi.z, stretchI),
           quarterD * TrowbridgeReitz::VisibleFactor(wo.z, stretchO),
           quarterD * TrowbridgeReitz::VisibleFactor(wi.z, stretchI)};

@@ -11,14 +11,14 @@ float GapTransmittance(float thickness, float cosine) {
   return thickness > 0 ? std::exp(-thickness / std::max(cosine, 1e-6f)) : 1.0f;
 }
 
-// Fractions of light from direction θ that are reflected and that cross, by microfacets; the gap's factor included where
-// the ray ends inside the coat. `eta` is relative to the side the light comes from.
+// Fractions of light from direction θ that are reflected and that cross, by microfacets; the gap's factor included
+// where the ray ends inside the coat. `eta` is relative to the side the light comes from.
 struct Split {
   double reflected = 0, transmitted = 0;
 };
 
-// How the gap enters: behind the boundary for light from outside; before and, for what is reflected, behind it for light
-// from inside, of which the caller does the part before.
+// How the gap enters: behind the boundary for light from outside; before and, for what is reflected, behind it for
+// light from inside, of which the caller does the part before.
 enum class Side { Outside, Inside };
 
 Split ScatterAtMicrofacet(const Vector3& wo, const Vector3& m, float stretchO, const TrowbridgeReitz& microfacets,
@@ -31,8 +31,8 @@ Split ScatterAtMicrofacet(const Vector3& wo, const Vector3& m, float stretchO, c
   const Vector3 reflected = Reflect(wo, m, cosO);
   if (reflected.z > 0) {
     const float gap = side == Side::Inside ? GapTransmittance(thickness, reflected.z) : 1.0f;
-    split.reflected = static_cast<double>(F * gap * TrowbridgeReitz::ShadowingRatio(wo.z, stretchO, reflected.z,
-                                                                                    microfacets.Stretch(reflected)));
+    split.reflected = static_cast<double>(
+        F * gap * TrowbridgeReitz::ShadowingRatio(wo.z, stretchO, reflected.z, microfacets.Stretch(reflected)));
   }
   const Vector3 refracted = wo * (-1 / eta) + RefractionShift(cosO, cosT, eta) * m;
   if (F < 1 && refracted.z < 0) {
@@ -197,8 +197,10 @@ CoatBounceTable::Curves CoatBounceTable::MakeCurves(const Nodes& leaving, const 
     for (int i = 0; i < kNodes; ++i) a[i] *= b[i];
     return a;
   };
-  const Nodes first = scatter(leaving), second = scatter(times(first, returning)), third = scatter(times(second, returning));
-  // Where nothing leaves after one bounce there is nothing to scale: directions beyond total reflection, which nobody asks for.
+  const Nodes first = scatter(leaving), second = scatter(times(first, returning)),
+              third = scatter(times(second, returning));
+  // Where nothing leaves after one bounce there is nothing to scale: directions beyond total reflection, which nobody
+  // asks for.
   Curves curves;
   for (int i = 0; i < kNodes; ++i) {
     curves.second[i] = first[i] > 1e-3f ? second[i] / first[i] : 0.0f;
@@ -213,7 +215,8 @@ CoatBounceTable::Ratios CoatBounceTable::FindRatios(float cosInside, CoatTable::
 }
 
 CoatTable::Slice CoatBounceTable::FindSlice(float alpha) const {
-  return FindSliceAmong(static_cast<int>(alphas_.size()), alpha, [&](int i) { return alphas_[static_cast<size_t>(i)]; });
+  return FindSliceAmong(static_cast<int>(alphas_.size()), alpha,
+                        [&](int i) { return alphas_[static_cast<size_t>(i)]; });
 }
 
 std::vector<float> TexturedAlphas() {

@@ -7,7 +7,9 @@ namespace lampyr {
 namespace {
 
 // A direction above the coat as it is inside of it, refracted at the mean surface; z = 0 if it does not get in (η < 1).
-Vector3 IntoCoat(const Vector3& w, float eta) { return {w.x / eta, w.y / eta, RefractedCosine(w.z, eta)}; }
+Vector3 IntoCoat(const Vector3& w, float eta) {
+  return {w.x / eta, w.y / eta, RefractedCosine(w.z, eta)};
+}
 
 // The base's lobe together with what refraction at a rough coat adds to its width, there and back.
 TrowbridgeReitz Widen(const TrowbridgeReitz& base, const TrowbridgeReitz& coat, float eta) {
@@ -55,10 +57,11 @@ CoatedConductorBsdf::Base CoatedConductorBsdf::EvaluateBase(const Vector3& wo, c
   const float eta = settings_->eta;
   const Vector3 o = IntoCoat(wo, eta), i = IntoCoat(wi, eta);
   if (!(o.z > 0) || !(i.z > 0)) return {};
-  const Vector3 m = glm::normalize(o + i);
-  const float quarterD = 0.25f * base_.D(m) / (eta * eta);
+  const HalfVector half = HalfVectorOf(o, i);
+  if (!(half.cosine > 0)) return {};
+  const float quarterD = 0.25f * base_.D(half.m) / (eta * eta);
   const float stretchO = base_.Stretch(o), stretchI = base_.Stretch(i);
-  const Color F = FresnelConductor(glm::dot(o, m), eta_, k_);
+  const Color F = FresnelConductor(half.cosine, eta_, k_);
   const auto ratiosO = settings_->bounceRatios->FindRatios(o.z, baseSlice_);
   const auto ratiosI = settings_->bounceRatios->FindRatios(i.z, baseSlice_);
   const Color S = SumBounces(F, std::sqrt(ratiosO.second * ratiosI.second), std::sqrt(ratiosO.later * ratiosI.later),

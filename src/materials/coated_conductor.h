@@ -5,11 +5,10 @@
 // - Both smooth: one delta whose weight is the exact sum.
 // - Smooth coat, rough base: the first bounce is exact. Later ones have their energy and the shape of the first.
 // - Rough coat: the base's lobe is widened by what the two refractions scatter: α² = α_base² + 2 (α_coat (1 - 1/η)/2)².
-//   P goes from coat_table.h's P (a base that keeps directions) half-way to T (one that forgets them) as the base's roughness
-//   reaches the coat's: an empirical choice.
-// Directional albedo against the random walk, copper, η 1.5: both smooth 0.5 %, smooth coat 3 %, coat with α up to 0.3 over any
-// base 8 %, both with α = 0.5 14 %.
-// Deterministic, reciprocal, exact densities. All of it counts as specular.
+//   P goes from coat_table.h's P (a base that keeps directions) half-way to T (one that forgets them) as the base's
+//   roughness reaches the coat's: an empirical choice.
+// Directional albedo against the random walk, copper, η 1.5: both smooth 0.5 %, smooth coat 3 %, coat with α up to 0.3
+// over any base 8 %, both with α = 0.5 14 %. Deterministic, reciprocal, exact densities. All of it counts as specular.
 #pragma once
 
 #include <optional>
@@ -25,8 +24,8 @@ namespace lampyr {
 struct CoatedConductorSettings {
   float eta = 1.5f;
   float thickness = 0.01f;
-  int bounces = 5;  // at the base, at most
-  const CoatTable* coat = nullptr;          // must outlive the BSDF
+  int bounces = 5;                  // at the base, at most
+  const CoatTable* coat = nullptr;  // must outlive the BSDF
   const CoatBounceTable* bounceRatios = nullptr;
 };
 

@@ -1,5 +1,5 @@
-// A Lambertian base under a dielectric coat, after pbrt-v4's "coateddiffuse". Where that walks at random between the two
-// boundaries, this evaluates the sum of all walks, which is exact because a diffuse base forgets directions:
+// A Lambertian base under a dielectric coat, after pbrt-v4's "coateddiffuse". Where that walks at random between the
+// two boundaries, this evaluates the sum of all walks, which is exact because a diffuse base forgets directions:
 //   f(wo,wi) = f_coat(wo,wi) + T(wo) T(wi) ρ (1 + ρF + (ρF)² + …) / (π η²)        (T, F: materials/coat_table.h)
 // Deterministic, reciprocal, with exact densities. The base counts as diffuse, the coat as specular. Both sides alike.
 // An anisotropic coat has an exact f_coat, but T and F of the isotropic coat with α = sqrt(αx·αy).
@@ -31,8 +31,8 @@ class CoatedDiffuseBsdf {
 
   TrowbridgeReitz microfacets_;
   float eta_;
-  Color base_;         // ρ (1 + ρF + …) / η²
-  float baseAlbedo_;   // its largest component, times the mean of T
+  Color base_;        // ρ (1 + ρF + …) / η²
+  float baseAlbedo_;  // its largest component, times the mean of T
   CoatTable::Slice slice_;
   const CoatTable* table_;
 };

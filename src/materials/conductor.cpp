@@ -6,19 +6,16 @@ namespace lampyr {
 
 BsdfEvaluation ConductorBsdf::Evaluate(const Vector3& wo, const Vector3& wi, TransportMode) const {
   if (!(wo.z * wi.z > 0) || microfacets.IsSmooth()) return {};
-  const float cosO = std::abs(wo.z), cosI = std::abs(wi.z);
-  const Vector3 h = wo + wi;
-  const float lengthSquared = LengthSquared(h);
-  if (!(lengthSquared > 1e-20f)) return {};
-  Vector3 m = h / std::sqrt(lengthSquared);
-  const Color F = FresnelConductor(glm::dot(wo, m), eta, k);
-  if (m.z < 0) m = -m;
-  const float D = microfacets.D(m);
-  const float stretchO = microfacets.Stretch(wo), stretchI = microfacets.Stretch(wi);
+  const Vector3 o = wo.z < 0 ? -wo : wo, i = wo.z < 0 ? -wi : wi;
+  const HalfVector half = HalfVectorOf(o, i);
+  if (!(half.cosine > 0)) return {};
+  const Color F = FresnelConductor(half.cosine, eta, k);
+  const float D = microfacets.D(half.m);
+  const float stretchO = microfacets.Stretch(o), stretchI = microfacets.Stretch(i);
   BsdfEvaluation result;
-  result.specular = F * (0.25f * D * TrowbridgeReitz::ShadowingFactor(cosO, stretchO, cosI, stretchI));
-  result.pdfForward = PdfSolidAngle(0.25f * D * TrowbridgeReitz::VisibleFactor(cosO, stretchO));
-  result.pdfReverse = PdfSolidAngle(0.25f * D * TrowbridgeReitz::VisibleFactor(cosI, stretchI));
+  result.specular = F * (0.25f * D * TrowbridgeReitz::ShadowingFactor(o.z, stretchO, i.z, stretchI));
+  result.pdfForward = PdfSolidAngle(0.25f * D * TrowbridgeReitz::VisibleFactor(o.z, stretchO));
+  result.pdfReverse = PdfSolidAngle(0.25f * D * TrowbridgeReitz::VisibleFactor(i.z, stretchI));
   return result;
 }
 
@@ -46,6 +43,8 @@ std::optional<BsdfSample> ConductorBsdf::Sample(const Vector3& wo, float, const 
   return sample;
 }
 
-Color ConductorBsdf::ApproximateAlbedo() const { return FresnelConductor(1, eta, k); }
+Color ConductorBsdf::ApproximateAlbedo() const {
+  return FresnelConductor(1, eta, k);
+}
 
 }  // namespace lampyr

@@ -13,14 +13,15 @@ struct Refraction {
   float cosO, cosI;  // |dot(wo,m)|, |dot(wi,m)|
   float eta;
 
-  // |dω_m/dω_i|·|dot(wo,m)| = |dot(wo,m) dot(wi,m)| / (dot(wi,m) + dot(wo,m)/η)², symmetric but for η² ([Walter07 eq. 17]).
+  // |dω_m/dω_i|·|dot(wo,m)| = |dot(wo,m) dot(wi,m)| / (dot(wi,m) + dot(wo,m)/η)², symmetric but for η² ([Walter07 eq.
+  // 17]).
   float Jacobian() const { return cosO * cosI / Sqr(RefractionShift(cosO, cosI, eta)); }
 };
 
 BsdfEvaluation EvaluateReflection(const TrowbridgeReitz& microfacets, float eta, const Vector3& wo, const Vector3& wi) {
-  const Vector3 m = glm::normalize(wo + wi);
-  const float F = FresnelDielectric(std::min(glm::dot(wo, m), 1.0f), eta);
-  const float FD = 0.25f * F * microfacets.D(m);
+  const HalfVector half = HalfVectorOf(wo, wi);
+  if (!(half.cosine > 0)) return {};
+  const float FD = 0.25f * FresnelDielectric(half.cosine, eta) * microfacets.D(half.m);
   const float stretchO = microfacets.Stretch(wo), stretchI = microfacets.Stretch(wi);
   BsdfEvaluation result;
   result.specular = Color(FD * TrowbridgeReitz::ShadowingFactor(wo.z, stretchO, wi.z, stretchI));
@@ -120,8 +121,8 @@ std::optional<BsdfSample> DielectricBsdf::Sample(const Vector3& wo, float uLobe,
   const bool inside = wo.z < 0;
   const Vector3 o = inside ? -wo : wo;
   const float relative = inside ? 1 / eta : eta;
-  auto sample = IsDelta() ? SampleSmooth(relative, o, uLobe, mode)
-                          : SampleRough(microfacets, relative, o, uLobe, u, mode);
+  auto sample =
+      IsDelta() ? SampleSmooth(relative, o, uLobe, mode) : SampleRough(microfacets, relative, o, uLobe, u, mode);
   if (sample && inside) sample->wi = -sample->wi;
   return sample;
 }

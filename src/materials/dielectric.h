@@ -9,7 +9,8 @@
 
 namespace lampyr {
 
-// Outside (z > 0) has index 1, inside η. η = 1 lets everything through without a deflection: a delta, whatever the roughness.
+// Outside (z > 0) has index 1, inside η. η = 1 lets everything through without a deflection: a delta, whatever the
+// roughness.
 struct DielectricBsdf {
   TrowbridgeReitz microfacets;
   float eta = 1;

@@ -25,8 +25,8 @@ struct ConductorRecipe {
 std::shared_ptr<const Material> MakeConductor(const MaterialInput& input) {
   ConductorRecipe recipe{RoughnessParameters(input, ""), MetalParameters(input, "")};
   ShadingNormal shadingNormal(input.parameters, input.textures, input.diagnostics);
-  CheckMaterialParameters(
-      input, {"eta", "k", "reflectance", "roughness", "uroughness", "vroughness", "remaproughness"});
+  CheckMaterialParameters(input,
+                          {"eta", "k", "reflectance", "roughness", "uroughness", "vroughness", "remaproughness"});
   return std::make_shared<RecipeMaterial<ConductorRecipe>>(std::move(recipe), std::move(shadingNormal));
 }
 

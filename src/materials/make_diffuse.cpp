@@ -33,8 +33,7 @@ struct DiffuseTransmissionRecipe {
 }  // namespace
 
 std::shared_ptr<const Material> MakeDiffuse(const MaterialInput& input) {
-  DiffuseRecipe recipe{
-      input.textures.GetColor(input.parameters, "reflectance", Color(0.5f), SpectrumRole::Albedo)};
+  DiffuseRecipe recipe{input.textures.GetColor(input.parameters, "reflectance", Color(0.5f), SpectrumRole::Albedo)};
   ShadingNormal shadingNormal(input.parameters, input.textures, input.diagnostics);
   CheckMaterialParameters(input, {"reflectance"});
   return std::make_shared<RecipeMaterial<DiffuseRecipe>>(std::move(recipe), std::move(shadingNormal));

@@ -36,7 +36,8 @@ std::shared_ptr<const Material> MakeMaterial(const std::string& type, const Para
   for (const MaterialType& known : kTypes) {
     if (type == known.name) {
       if (known.make) return known.make({parameters, textures, namedMaterials, diagnostics});
-      diagnostics.Warn(parameters.Where(), "material \"" + type + "\" is not supported: a gray diffuse one replaces it");
+      diagnostics.Warn(parameters.Where(),
+                       "material \"" + type + "\" is not supported: a gray diffuse one replaces it");
       return MakeGray();
     }
     if (*known.name) names.emplace_back(known.name);

@@ -1,5 +1,5 @@
-// "mix": materials (two names), amount (0.5; of the second). At each point one of the two is chosen by a hash of position and
-// direction, so that the picture does not depend on the order of work. "interface": no scattering at all.
+// "mix": materials (two names), amount (0.5; of the second). At each point one of the two is chosen by a hash of
+// position and direction, so that the picture does not depend on the order of work. "interface": no scattering at all.
 #include <array>
 #include <bit>
 #include <cstdint>

@@ -31,8 +31,8 @@ class Material {
 // Finds materials by name while a "mix" is being made; throws an Error when there is none.
 using MaterialLookup = std::function<std::shared_ptr<const Material>(const std::string& name)>;
 
-// Makes the material `type` ("diffuse", "conductor", …) from its parameters. Throws an Error that names the parameter at
-// fault and warns about the ones it does not know. `textures` resolves "texture" parameters and images.
+// Makes the material `type` ("diffuse", "conductor", …) from its parameters. Throws an Error that names the parameter
+// at fault and warns about the ones it does not know. `textures` resolves "texture" parameters and images.
 std::shared_ptr<const Material> MakeMaterial(const std::string& type, const ParameterList& parameters,
                                              const TextureLibrary& textures, const MaterialLookup& namedMaterials,
                                              Diagnostics& diagnostics);

@@ -35,8 +35,8 @@ std::shared_ptr<const Material> MakeInterface(const MaterialInput& input);
 void CheckMaterialParameters(const MaterialInput& input, std::vector<std::string> known,
                              const std::vector<std::string>& alsoInPbrt = {});
 
-// "PREFIXroughness", "PREFIXuroughness", "PREFIXvroughness" and "remaproughness" (default true: α = sqrt(roughness), as in
-// pbrt-v4; false: α = roughness). Default roughness 0.
+// "PREFIXroughness", "PREFIXuroughness", "PREFIXvroughness" and "remaproughness" (default true: α = sqrt(roughness), as
+// in pbrt-v4; false: α = roughness). Default roughness 0.
 class RoughnessParameters {
  public:
   RoughnessParameters(const MaterialInput& input, const std::string& prefix);

@@ -5,7 +5,9 @@ namespace lampyr {
 
 namespace {
 
-float Clamp(float x, float low, float high) { return std::min(std::max(low, x), high); }  // NaN: low
+float Clamp(float x, float low, float high) {
+  return std::min(std::max(low, x), high);
+}  // NaN: low
 
 FloatParameter GetRoughness(const MaterialInput& input, const std::string& name, const FloatParameter& defaultValue) {
   const auto given = input.textures.FindFloat(input.parameters, name);
@@ -27,7 +29,9 @@ Color NamedSpectrum(const std::string& name) {
 
 }  // namespace
 
-Color ClampToUnit(const Color& c) { return {Clamp(c.r, 0, 1), Clamp(c.g, 0, 1), Clamp(c.b, 0, 1)}; }
+Color ClampToUnit(const Color& c) {
+  return {Clamp(c.r, 0, 1), Clamp(c.g, 0, 1), Clamp(c.b, 0, 1)};
+}
 
 void CheckMaterialParameters(const MaterialInput& input, std::vector<std::string> known,
                              const std::vector<std::string>& alsoInPbrt) {
@@ -73,7 +77,9 @@ MetalParameters::MetalParameters(const MaterialInput& input, const std::string& 
 
 MetalParameters::Index MetalParameters::Evaluate(const TextureContext& where) const {
   constexpr float kMax = 1e6f;
-  const auto bound = [](const Color& c) { return Color(Clamp(c.r, 0, kMax), Clamp(c.g, 0, kMax), Clamp(c.b, 0, kMax)); };
+  const auto bound = [](const Color& c) {
+    return Color(Clamp(c.r, 0, kMax), Clamp(c.g, 0, kMax), Clamp(c.b, 0, kMax));
+  };
   if (!reflectance_) return {bound(eta_.Evaluate(where)), bound(k_.Evaluate(where))};
   // With η = 1 the reflectance at normal incidence is k²/(4 + k²) ([Pharr23 §9.4]).
   const Color r = reflectance_->Evaluate(where);

@@ -1,7 +1,8 @@
-// The Trowbridge-Reitz (GGX) distribution of microfacets with height-correlated Smith shadowing ([Walter07], [Heitz14]).
+// The Trowbridge-Reitz (GGX) distribution of microfacets with height-correlated Smith shadowing ([Walter07],
+// [Heitz14]).
 //
-// All directions here are in the upper hemisphere (z ≥ 0). Shadowing is never computed alone but as the ratios in which it
-// is needed: with s(w) = sqrt(z² + (αx·x)² + (αy·y)²), Λ = (s/z - 1)/2, and no cosine is ever a divisor:
+// All directions here are in the upper hemisphere (z ≥ 0). Shadowing is never computed alone but as the ratios in which
+// it is needed: with s(w) = sqrt(z² + (αx·x)² + (αy·y)²), Λ = (s/z - 1)/2, and no cosine is ever a divisor:
 //   G1(wo)/cosθo = 2 / (cosθo + so),   G2/(cosθo·cosθi) = 2 / (so·cosθi + si·cosθo).
 #pragma once
 
@@ -57,6 +58,21 @@ struct TrowbridgeReitz {
   }
 };
 
-inline Vector3 Reflect(const Vector3& wo, const Vector3& m, float cosine) { return 2 * cosine * m - wo; }
+// The microfacet that mirrors wo into wi (both with z > 0), and the cosine at it: |wo + wi|/2, which rounding near
+// grazing angles cannot make negative. A cosine of 0: there is none.
+struct HalfVector {
+  Vector3 m;
+  float cosine;
+};
+inline HalfVector HalfVectorOf(const Vector3& wo, const Vector3& wi) {
+  const Vector3 h = wo + wi;
+  const float length = std::sqrt(LengthSquared(h));
+  if (!(length > 1e-10f)) return {{0, 0, 1}, 0};
+  return {h / length, std::min(0.5f * length, 1.0f)};
+}
+
+inline Vector3 Reflect(const Vector3& wo, const Vector3& m, float cosine) {
+  return 2 * cosine * m - wo;
+}
 
 }  // namespace lampyr

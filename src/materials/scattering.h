@@ -18,7 +18,8 @@ struct BsdfEvaluation {
 
 struct BsdfSample {
   Vector3 wi{0.0f};
-  Color weightDiffuse, weightSpecular;  // f · |cosθi| / pdf, split by lobe; computed without the division where it cancels
+  Color weightDiffuse,
+      weightSpecular;  // f · |cosθi| / pdf, split by lobe; computed without the division where it cancels
   PdfSolidAngle pdfForward, pdfReverse;  // for a delta: discrete probabilities of the lobe
   bool isDelta = false;
   bool isTransmission = false;

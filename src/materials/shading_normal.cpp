@@ -42,7 +42,8 @@ ShadingNormal::ShadingNormal(const ParameterList& parameters, const TextureLibra
   const std::string file = parameters.GetFile("normalmap");
   if (file.empty()) return;
   if (displacement_) {
-    diagnostics.Warn(parameters.WhereOf("displacement"), "\"displacement\" is ignored: the material has a \"normalmap\"");
+    diagnostics.Warn(parameters.WhereOf("displacement"),
+                     "\"displacement\" is ignored: the material has a \"normalmap\"");
   }
   normalMap_ = textures.GetImage(file, ImageEncoding::Linear, parameters.WhereOf("normalmap"));
   if (!normalMap_->HasRgb() || normalMap_->width < 1 || normalMap_->height < 1) {

@@ -1,8 +1,8 @@
 // Normal and bump maps: a shading normal other than the surface's own.
 //
-// Normal map: RGB in tangent space, linear encoding, n = 2·rgb - 1, x along dpdu, z along Ns; v = 0 at the bottom row, the image
-// repeats, bilinear ([Pharr23 §10.5.3]).
-// Displacement: a height d over the surface, in scene units, by finite differences of the texture along dpdu and dpdv
+// Normal map: RGB in tangent space, linear encoding, n = 2·rgb - 1, x along dpdu, z along Ns; v = 0 at the bottom row,
+// the image repeats, bilinear ([Pharr23 §10.5.3]). Displacement: a height d over the surface, in scene units, by finite
+// differences of the texture along dpdu and dpdv
 // ([Blinn78]; the derivatives of Ns are left out).
 // The result is on Ng's side, as Ns is.
 #pragma once

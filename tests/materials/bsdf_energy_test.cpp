@@ -98,12 +98,14 @@ TEST(BsdfEnergy, LosslessCoatOverWhite) {
       const Vector3 wo = diffuse.ShadingFrame().ToWorld(local);
       const Mean albedo = Albedo(diffuse, wo, 20000, 13);
       EXPECT_NEAR(albedo.Value(), 1, 3e-3 + 4 * albedo.Error()) << "eta " << eta << ", z = " << local.z;
-      EXPECT_NEAR(metal.Sample(wo, 0.5f, {0.5f, 0.5f}, TransportMode::Importance)->Weight().g, 1, 2e-3) << "eta " << eta;
+      EXPECT_NEAR(metal.Sample(wo, 0.5f, {0.5f, 0.5f}, TransportMode::Importance)->Weight().g, 1, 2e-3)
+          << "eta " << eta;
     }
   }
 }
 
-// Roughness from 0 to 1, η from under 1 to diamond, directions down to the horizon: everything is finite and not negative.
+// Roughness from 0 to 1, η from under 1 to diamond, directions down to the horizon: everything is finite and not
+// negative.
 TEST(BsdfExtremes, EverythingIsFinite) {
   ModelTables tables;
   Rng rng(17);
@@ -113,7 +115,8 @@ TEST(BsdfExtremes, EverythingIsFinite) {
     const auto finite = [](float x) { return x >= 0 && x < kInfinity; };
     for (int i = 0; i < 3000; ++i) {
       Vector3 local = SampleUniformSphere(rng.NextPoint2());
-      if (i % 3 == 0) local = glm::normalize(Vector3(local.x, local.y, local.z * std::pow(10.0f, -8 * rng.NextFloat())));
+      if (i % 3 == 0)
+        local = glm::normalize(Vector3(local.x, local.y, local.z * std::pow(10.0f, -8 * rng.NextFloat())));
       if (i % 7 == 0) local = {0, 0, i % 2 ? 1 : -1};
       if (i % 11 == 0) local = {1, 0, 0};
       const Vector3 wo = bsdf.ShadingFrame().ToWorld(local);
@@ -125,12 +128,16 @@ TEST(BsdfExtremes, EverythingIsFinite) {
       const Vector3 wi = sample && i % 2 ? sample->wi : i % 3 ? SampleUniformSphere(rng.NextPoint2()) : -wo;
       const BsdfEvaluation value = bsdf.Evaluate(wo, wi, mode);
       ASSERT_TRUE(value.diffuse.IsValid() && value.specular.IsValid() && finite(value.pdfForward.value) &&
-                  finite(value.pdfReverse.value)) << name << ", wo z " << local.z;
+                  finite(value.pdfReverse.value))
+          << name << ", wo z " << local.z << ", f " << value.specular.g << ", pdf " << value.pdfForward.value
+          << ", reverse " << value.pdfReverse.value;
       ASSERT_TRUE(bsdf.ApproximateAlbedo().IsValid()) << name;
       if (!sample) continue;
       ASSERT_TRUE(IsFinite(sample->wi) && sample->Weight().IsValid() && finite(sample->pdfForward.value) &&
-                  finite(sample->pdfReverse.value)) << name << ", wo z " << local.z << ", weight " << sample->Weight().g;
-      ASSERT_LT(sample->Weight().Max() * std::min(1.0f, sample->eta * sample->eta), 1000) << name << ", wo z " << local.z;
+                  finite(sample->pdfReverse.value))
+          << name << ", wo z " << local.z << ", weight " << sample->Weight().g;
+      ASSERT_LT(sample->Weight().Max() * std::min(1.0f, sample->eta * sample->eta), 1000)
+          << name << ", wo z " << local.z;
       ++samples;
     }
   };
@@ -152,6 +159,21 @@ TEST(BsdfExtremes, EverythingIsFinite) {
   check(AbsorbingBsdf{}, "absorbing");
   check(DiffuseTransmissionBsdf{}, "diffuse transmission 0");
   EXPECT_GT(samples, 300000);
+}
+
+// Directions that rounding has made longer than opposite, both just above the horizon: no half vector to speak of.
+TEST(BsdfExtremes, NearlyOppositeAtTheHorizon) {
+  ModelTables tables;
+  const Vector3 wo(0x1.b85c26p-1f, -0x1.0534p-1f, 0x1.8p-25f), wi(-0x1.b85c28p-1f, 0x1.053402p-1f, 0x1.8p-25f);
+  for (const TestModel& model : AllModels(tables)) {
+    const Bsdf bsdf(Frame{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {0, 0, 1}, model.model);
+    for (const float side : {1.0f, -1.0f}) {
+      const BsdfEvaluation value = bsdf.Evaluate(side * wo, side * wi, TransportMode::Radiance);
+      EXPECT_TRUE(value.Sum().IsValid()) << model.name;
+      EXPECT_TRUE(value.pdfForward.value >= 0 && value.pdfForward.value < kInfinity) << model.name;
+      EXPECT_TRUE(value.pdfReverse.value >= 0 && value.pdfReverse.value < kInfinity) << model.name;
+    }
+  }
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Sampling against densities: for every model and direction, the histogram of samples, the value and the densities that Sample
-// reports, and the reverse densities.
+// Sampling against densities: for every model and direction, the histogram of samples, the value and the densities that
+// Sample reports, and the reverse densities.
 #include <gtest/gtest.h>
 
 #include "materials/model_table.h"
@@ -8,7 +8,9 @@
 namespace lampyr::testing {
 namespace {
 
-bool Near(float a, float b, float tolerance) { return std::abs(a - b) <= tolerance * std::max(std::abs(a), std::abs(b)); }
+bool Near(float a, float b, float tolerance) {
+  return std::abs(a - b) <= tolerance * std::max(std::abs(a), std::abs(b));
+}
 bool Near(const Color& a, const Color& b, float tolerance) {
   return Near(a.r, b.r, tolerance) && Near(a.g, b.g, tolerance) && Near(a.b, b.b, tolerance);
 }
@@ -23,7 +25,9 @@ TEST(ChiSquared, FindsAWrongDensity) {
   Rng rng(1);
   const auto draw = [&]() -> std::optional<Vector3> { return SampleCosineHemisphere(rng.NextPoint2()); };
   const auto right = [](const Vector3& v) { return std::max(0.0, static_cast<double>(v.z)) / 3.14159265358979; };
-  const auto wrong = [](const Vector3& v) { return v.z > 0 ? (0.9 * static_cast<double>(v.z) + 0.05) / 3.14159265358979 : 0.0; };
+  const auto wrong = [](const Vector3& v) {
+    return v.z > 0 ? (0.9 * static_cast<double>(v.z) + 0.05) / 3.14159265358979 : 0.0;
+  };
   EXPECT_GT(ChiSquaredTestDirections(draw, right).pValue, 1e-3);
   EXPECT_LT(ChiSquaredTestDirections(draw, wrong).pValue, 1e-6);
 }
@@ -49,8 +53,7 @@ TEST(BsdfPdf, SampledDirectionsFollowTheDensity) {
             return frame.ToLocal(sample->wi);
           },
           [&](const Vector3& wi) {
-            return static_cast<double>(
-                bsdf.Evaluate(wo, frame.ToWorld(wi), TransportMode::Radiance).pdfForward.value);
+            return static_cast<double>(bsdf.Evaluate(wo, frame.ToWorld(wi), TransportMode::Radiance).pdfForward.value);
           });
       EXPECT_GT(result.pValue, level) << model.name << " from z = " << local.z << ": integral " << result.integral
                                       << ", sampled " << result.sampledFraction;
@@ -77,8 +80,7 @@ TEST(BsdfPdf, SampleReportsWhatEvaluateSays) {
         const auto sample = bsdf.Sample(wo, uLobe, rng.NextPoint2(), mode);
         if (!sample) continue;
         EXPECT_NEAR(glm::length(sample->wi), 1, 1e-6f) << model.name;
-        EXPECT_EQ(sample->isTransmission,
-                  glm::dot(sample->wi, bsdf.ShadingFrame().z) * local.z < 0) << model.name;
+        EXPECT_EQ(sample->isTransmission, glm::dot(sample->wi, bsdf.ShadingFrame().z) * local.z < 0) << model.name;
         const BsdfEvaluation value = bsdf.Evaluate(wo, sample->wi, mode);
         if (sample->isDelta) {
           EXPECT_GT(sample->pdfForward.value, 0) << model.name;

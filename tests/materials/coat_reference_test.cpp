@@ -1,5 +1,5 @@
-// The coated models against what they stand for: light that walks at random between the coat's boundary and the base, as in
-// pbrt-v4's layered materials (gap extinction 1 per unit of thickness, up to five bounces at the base).
+// The coated models against what they stand for: light that walks at random between the coat's boundary and the base,
+// as in pbrt-v4's layered materials (gap extinction 1 per unit of thickness, up to five bounces at the base).
 #include <gtest/gtest.h>
 
 #include <array>
@@ -93,9 +93,9 @@ TEST(CoatReference, CoatedDiffuseIsTheSumOfAllWalks) {
   struct Case {
     float alpha, eta, reflectance, thickness;
   };
-  const Case cases[] = {{0, 1.5f, 0.4f, 0.01f},     {0.158f, 1.5f, 0.2f, 0.01f}, {0.387f, 1.5f, 0.5f, 0.01f},
-                        {0.387f, 1.5f, 1, 0.01f},   {0.8f, 1.5f, 0.8f, 0.01f},   {0.1f, 2, 0.8f, 0.2f},
-                        {0.3f, 1.2f, 0.9f, 0},      {0.2f, 1, 0.7f, 0.05f}};
+  const Case cases[] = {{0, 1.5f, 0.4f, 0.01f},   {0.158f, 1.5f, 0.2f, 0.01f}, {0.387f, 1.5f, 0.5f, 0.01f},
+                        {0.387f, 1.5f, 1, 0.01f}, {0.8f, 1.5f, 0.8f, 0.01f},   {0.1f, 2, 0.8f, 0.2f},
+                        {0.3f, 1.2f, 0.9f, 0},    {0.2f, 1, 0.7f, 0.05f}};
   const double level = SidakLevel(static_cast<int>(std::size(cases) * kDirections.size() * (kBins + 1)));
   double worst = 0;
   for (const Case& c : cases) {
@@ -110,8 +110,9 @@ TEST(CoatReference, CoatedDiffuseIsTheSumOfAllWalks) {
         const double excess = std::max(std::abs(actual.Mean(i) - expected.Mean(i)) - tableError, 0.0);
         const double variance = expected.Variance(i) + actual.Variance(i);
         const double p = variance > 0 ? ChiSquaredTail(excess * excess / variance, 1) : (excess > 0 ? 0.0 : 1.0);
-        EXPECT_GT(p, level) << "alpha " << c.alpha << " eta " << c.eta << " rho " << c.reflectance << " from z = " << wo.z
-                            << " bin " << i << ": " << actual.Mean(i) << " for " << expected.Mean(i);
+        EXPECT_GT(p, level) << "alpha " << c.alpha << " eta " << c.eta << " rho " << c.reflectance
+                            << " from z = " << wo.z << " bin " << i << ": " << actual.Mean(i) << " for "
+                            << expected.Mean(i);
       }
       worst = std::max(worst, std::abs(actual.Mean(kBins) / expected.Mean(kBins) - 1));
     }
@@ -119,12 +120,13 @@ TEST(CoatReference, CoatedDiffuseIsTheSumOfAllWalks) {
   std::printf("           largest difference of directional albedo: %.2f %%\n", 100 * worst);
 }
 
-// Approximate where something is rough: the table of differences is printed, and held to the bounds that the header names.
+// Approximate where something is rough: the table of differences is printed, and held to the bounds that the header
+// names.
 TEST(CoatReference, CoatedConductorIsNearTheSumOfAllWalks) {
   struct Case {
     float coat, base, bound;  // roughness α; relative bound of the directional albedo
   };
-  const Case cases[] = {{0, 0, 0.005f},   {0, 0.1f, 0.03f}, {0, 0.3f, 0.03f},   {0, 0.6f, 0.03f},
+  const Case cases[] = {{0, 0, 0.005f},   {0, 0.1f, 0.03f}, {0, 0.3f, 0.03f},    {0, 0.6f, 0.03f},
                         {0.1f, 0, 0.08f}, {0.3f, 0, 0.08f}, {0.2f, 0.3f, 0.08f}, {0.5f, 0.5f, 0.14f}};
   const Color eta(0.21f, 0.83f, 1.24f), k(3.8f, 2.6f, 2.3f);
   for (const Case& c : cases) {

@@ -52,8 +52,8 @@ TextureDescription Slope() {
   TextureDescription slope;
   slope.name = "slope";
   slope.texture.type = "bilerp";
-  slope.texture.parameters = ParameterList(
-      {}, "Texture \"slope\"", {Float("v00", 0), Float("v01", 0), Float("v10", 0.5), Float("v11", 0.5)});
+  slope.texture.parameters =
+      ParameterList({}, "Texture \"slope\"", {Float("v00", 0), Float("v01", 0), Float("v10", 0.5), Float("v11", 0.5)});
   return slope;
 }
 
@@ -86,8 +86,8 @@ const Vector3 kUp(0, 0, 1), kTilted(0.6f, 0, 0.8f);
 TEST_F(MakeMaterialTest, EveryTypeHasDefaults) {
   named_["a"] = Create("diffuse", {});
   named_["b"] = Create("dielectric", {});
-  for (const char* type : {"diffuse", "diffusetransmission", "conductor", "dielectric", "thindielectric", "coateddiffuse",
-                           "coatedconductor"}) {
+  for (const char* type : {"diffuse", "diffusetransmission", "conductor", "dielectric", "thindielectric",
+                           "coateddiffuse", "coatedconductor"}) {
     const auto material = Create(type, {});
     const Bsdf bsdf = At(*material);
     EXPECT_FALSE(bsdf.ApproximateAlbedo().IsBlack()) << type;

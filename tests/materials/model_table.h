@@ -26,8 +26,8 @@ struct ModelTables {
 
 inline CoatedDiffuseBsdf MakeCoated(ModelTables& tables, TrowbridgeReitz coat, float eta, const Color& reflectance,
                                     float thickness = 0.01f, int bounces = 5) {
-  tables.coats.push_back(std::make_shared<CoatTable>(
-      CoatDescription{eta, thickness, {std::sqrt(coat.alphaX * coat.alphaY)}}));
+  tables.coats.push_back(
+      std::make_shared<CoatTable>(CoatDescription{eta, thickness, {std::sqrt(coat.alphaX * coat.alphaY)}}));
   return {coat, eta, reflectance, bounces, *tables.coats.back()};
 }
 
@@ -38,8 +38,8 @@ inline CoatedConductorBsdf MakeCoatedMetal(ModelTables& tables, TrowbridgeReitz 
   tables.coats.push_back(std::make_shared<CoatTable>(description));
   tables.bounces.push_back(
       std::make_shared<CoatBounceTable>(description, std::vector<float>{std::sqrt(base.alphaX * base.alphaY)}));
-  tables.settings.push_back(std::make_shared<CoatedConductorSettings>(CoatedConductorSettings{
-      eta, thickness, bounces, tables.coats.back().get(), tables.bounces.back().get()}));
+  tables.settings.push_back(std::make_shared<CoatedConductorSettings>(
+      CoatedConductorSettings{eta, thickness, bounces, tables.coats.back().get(), tables.bounces.back().get()}));
   return {coat, base, metalEta / eta, metalK / eta, *tables.settings.back()};
 }
 
@@ -78,8 +78,8 @@ inline std::vector<TestModel> AllModels(ModelTables& tables) {
       {"coated metal 0, 0.2", MakeCoatedMetal(tables, ggx(0, 0), ggx(0.2f, 0.2f), 1.5f, copperEta, copperK)},
       {"coated metal 0.2, 0", MakeCoatedMetal(tables, ggx(0.2f, 0.2f), ggx(0, 0), 1.5f, copperEta, copperK)},
       {"coated metal 0.1, 0.3", MakeCoatedMetal(tables, ggx(0.1f, 0.1f), ggx(0.3f, 0.3f), 1.5f, copperEta, copperK)},
-      {"coated metal lossless", MakeCoatedMetal(tables, ggx(0, 0), ggx(0.3f, 0.3f), 1.5f, Color(1.0f), mirrorK, 0, 1000),
-       1e-3f, true},
+      {"coated metal lossless",
+       MakeCoatedMetal(tables, ggx(0, 0), ggx(0.3f, 0.3f), 1.5f, Color(1.0f), mirrorK, 0, 1000), 1e-3f, true},
   };
 }
 
@@ -91,7 +91,9 @@ inline std::vector<Vector3> LocalDirections() {
 }
 
 // A frame that is nobody's axes, and a BSDF in it.
-inline Frame TestFrame() { return Frame::FromNormalAndTangent(glm::normalize(Vector3(0.3f, -0.5f, 0.8f)), {1, 2, 3}); }
+inline Frame TestFrame() {
+  return Frame::FromNormalAndTangent(glm::normalize(Vector3(0.3f, -0.5f, 0.8f)), {1, 2, 3});
+}
 inline Bsdf MakeBsdf(const BsdfModel& model) {
   const Frame frame = TestFrame();
   return Bsdf(frame, frame.z, model);

@@ -1,9 +1,10 @@
 // χ² tests of sampled directions against a density, and of counts against expectations.
 //
 // The horizon z = 0 of the frame in which directions are given is always a border of bins. Apart from that,
-// bins follow the samples: a first set of samples splits the sphere into cells of about equal count, so that a needle of a lobe
-// is resolved and no cell is nearly empty. The expected counts are integrals of the density over the cells, the observed ones
-// those of a second, independent set. Whatever is no direction (absorbed, delta) is one more bin, expected 1 - ∫pdf.
+// bins follow the samples: a first set of samples splits the sphere into cells of about equal count, so that a needle
+// of a lobe is resolved and no cell is nearly empty. The expected counts are integrals of the density over the cells,
+// the observed ones those of a second, independent set. Whatever is no direction (absorbed, delta) is one more bin,
+// expected 1 - ∫pdf.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +19,8 @@
 
 namespace lampyr::testing {
 
-// Upper tail Q(a, x) = Γ(a, x)/Γ(a) of the incomplete gamma function: series below a + 1, continued fraction above ([Press07 §6.2]).
+// Upper tail Q(a, x) = Γ(a, x)/Γ(a) of the incomplete gamma function: series below a + 1, continued fraction above
+// ([Press07 §6.2]).
 inline double UpperIncompleteGamma(double a, double x) {
   if (!(x > 0)) return 1;
   const double scale = std::exp(-x + a * std::log(x) - std::lgamma(a));
@@ -48,10 +50,12 @@ inline double ChiSquaredTail(double chiSquared, int degreesOfFreedom) {
 }
 
 // Level of one of `tests` so that the family of all has the given rate of false alarms ([Šidák67]).
-inline double SidakLevel(int tests, double family = 1e-3) { return -std::expm1(std::log1p(-family) / std::max(tests, 1)); }
+inline double SidakLevel(int tests, double family = 1e-3) {
+  return -std::expm1(std::log1p(-family) / std::max(tests, 1));
+}
 
-// p-value of counts against expected counts. Bins that expect fewer than 5 are pooled; a count where (almost) nothing is
-// expected gives 0.
+// p-value of counts against expected counts. Bins that expect fewer than 5 are pooled; a count where (almost) nothing
+// is expected gives 0.
 inline double ChiSquaredPValue(const std::vector<double>& observed, const std::vector<double>& expected) {
   double chiSquared = 0, pooledObserved = 0, pooledExpected = 0;
   int bins = 0;
