@@ -95,6 +95,33 @@ class AreaChecker {
     element.normal = Vector3d(sample.normal);
     return !IsHidden(element, P, inside);
   }
+  // Mean of function(context, v) over all random numbers, from randomly shifted lattices: far less noise than independent
+  // numbers, and the spread of the lattices' means is the error.
+  template <class Function>
+  RunningMean StratifiedMean(const Function& function) {
+    constexpr int kLattices = 64;
+    // Powers of the inverse of the root of x⁵ = x + 1 ([Roberts18]).
+    constexpr double steps[4] = {0.8566748838545029, 0.7338918566271260, 0.6287067210378087, 0.5385972572236101};
+    RunningMean means;
+    for (int lattice = 0; lattice < kLattices; ++lattice) {
+      double shift[4], sum = 0;
+      for (double& s : shift) s = static_cast<double>(rng_.NextFloat());
+      const int points = std::max(1, options_.photons / kLattices);
+      for (int i = 0; i < points; ++i) {
+        float x[4];
+        for (int k = 0; k < 4; ++k) {
+          const double value = shift[k] + i * steps[k];
+          x[k] = std::min(static_cast<float>(value - std::floor(value)), kOneMinusEpsilon);
+        }
+        LightContext context = subject_.context;
+        context.u = {x[0], x[1]};
+        context.uDirection = {x[2], x[3]};
+        sum += function(context, context.uDirection);
+      }
+      means.Add(sum / points);
+    }
+    return means;
+  }
   LightContext RandomContext() {
     LightContext context = subject_.context;
     context.u = rng_.NextPoint2();
@@ -358,21 +385,19 @@ void AreaChecker::CheckEmissionDirections() {
 }
 
 void AreaChecker::CheckPower() {
-  RunningMean emitted, direct;
-  for (int i = 0; i < options_.photons; ++i) {
-    const auto photon = light_.GenerateEmission(RandomContext());
-    emitted.Add(photon ? Flux(*photon) : 0.0);
-  }
+  const RunningMean emitted = StratifiedMean([&](const LightContext& context, const Point2&) {
+    const auto photon = light_.GenerateEmission(context);
+    return photon ? Flux(*photon) : 0.0;
+  });
   // What arrives at a sphere around it; a closed surface that emits inwards keeps that part to itself.
   const double radius = 2.5 * extent_.radius, area = 4 * 3.14159265358979323846 * radius * radius;
-  for (int i = 0; i < options_.photons; ++i) {
-    const Vector3d outward(Cap{}.Direction(2 * static_cast<double>(rng_.NextFloat()), static_cast<double>(rng_.NextFloat())));
-    const Point3 P(extent_.middle + outward * radius);
-    const auto sample = light_.GenerateSamples(RandomContext(), P);
-    direct.Add(sample ? -glm::dot(outward, Vector3d(sample->direction)) * area *
-                            static_cast<double>(sample->diffuse.Average()) / static_cast<double>(sample->pdfDirect.value)
-                      : 0.0);
-  }
+  const RunningMean direct = StratifiedMean([&](const LightContext& context, const Point2& v) {
+    const Vector3d outward(Cap{}.Direction(2 * static_cast<double>(v.x), static_cast<double>(v.y)));
+    const auto sample = light_.GenerateSamples(context, Point3(extent_.middle + outward * radius));
+    return sample ? -glm::dot(outward, Vector3d(sample->direction)) * area *
+                        static_cast<double>(sample->diffuse.Average()) / static_cast<double>(sample->pdfDirect.value)
+                  : 0.0;
+  });
   const auto estimate = static_cast<double>(light_.GetPowerEstimate(subject_.context).Average());
   if (!model_.IsClosedConvex() || oneSided_) {
     const bool emitsInwards = model_.IsClosedConvex() && direct.Mean() == 0;
