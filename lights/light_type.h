@@ -52,6 +52,10 @@ const std::vector<LightType>& LightRegistry();
 // The type, or null.
 const LightType* FindLightType(const std::string& name, bool isAreaLight);
 
+// Throws a located Error for a parameter whose name (with the nearest known one), type or range is not in the type's table.
+// Marks all parameters as used.
+void CheckParameters(const LightType& type, const ParameterList& parameters);
+
 // Checks `parameters` against the type's table (unknown names, wrong types, values out of range: a located Error with the
 // nearest known name) and makes the light.
 std::unique_ptr<Light> MakeLight(const LightType& type, const ParameterList& parameters, const LightBuildContext& build);

@@ -67,18 +67,18 @@ class MeshLight final : public LightBase {
   std::optional<EmissionBounds> GetEmissionBounds(const LightContext& context) const override { return BoundsFor(context); }
 
   std::optional<LightSample> GenerateSamples(const LightContext& context, const Point3& P) const override {
-    const std::optional<EmittingPoint> point = SamplePoint(context);
-    if (!point) return std::nullopt;
-    return emission_.Sample(context, P, *point);
+    EmittingPoint point;
+    if (!SamplePoint(context, point)) return std::nullopt;
+    return emission_.Sample(context, P, point);
   }
   std::optional<LightEvaluation> EvaluateSamples(const LightContext& context, const LightHit& hit,
                                                  const Point3&) const override {
     return emission_.Evaluate(context, hit, AreaDensity(context, static_cast<uint32_t>(hit.patchIndex), hit.normal));
   }
   std::optional<EmissionSample> GenerateEmission(const LightContext& context) const override {
-    const std::optional<EmittingPoint> point = SamplePoint(context);
-    if (!point) return std::nullopt;
-    return emission_.Emit(context, *point);
+    EmittingPoint point;
+    if (!SamplePoint(context, point)) return std::nullopt;
+    return emission_.Emit(context, point);
   }
   Color EvaluateEmissionForCamera(const LightContext&, const LightHit& hit) const override {
     return emission_.ForCamera(hit, Settings().cameraVisible);
@@ -94,7 +94,8 @@ class MeshLight final : public LightBase {
     return isPlaced_ ? PdfArea(density.value / AreaStretch(context.transform->toRender, normal)) : density;
   }
 
-  std::optional<EmittingPoint> SamplePoint(const LightContext& context) const;
+  // False when there is nothing to sample.
+  bool SamplePoint(const LightContext& context, EmittingPoint& point) const;
   void BuildTable();
   double TriangleArea(uint32_t triangle, const LightTransform& transform) const;
   double TotalArea(const LightTransform& transform) const;
@@ -115,8 +116,8 @@ class MeshLight final : public LightBase {
   EmissionBounds wholeBounds_;
 };
 
-std::optional<EmittingPoint> MeshLight::SamplePoint(const LightContext& context) const {
-  if (table_.IsZero()) return std::nullopt;
+bool MeshLight::SamplePoint(const LightContext& context, EmittingPoint& point) const {
+  if (table_.IsZero()) return false;
   Point2 u = context.u;
   auto triangle = static_cast<uint32_t>(context.patch);
   if (context.patch == kAnyPatch) {
@@ -124,24 +125,24 @@ std::optional<EmittingPoint> MeshLight::SamplePoint(const LightContext& context)
     triangle = choice.index;
     u.x = choice.u;
   }
-  if (triangle >= inverseArea_.size() || inverseArea_[triangle] == 0) return std::nullopt;
+  if (triangle >= inverseArea_.size() || inverseArea_[triangle] == 0) return false;
   const Vector3 b = SampleUniformTriangle(u);
   const auto& t = mesh_->triangles[triangle];
   const Vector3 q0 = b.x * mesh_->positions[t[0]], q1 = b.y * mesh_->positions[t[1]], q2 = b.z * mesh_->positions[t[2]];
-  std::optional<EmittingPoint> point(std::in_place);
-  point->position = q0 + q1 + q2;
-  point->positionError = Gamma(6) * (glm::abs(q0) + glm::abs(q1) + glm::abs(q2));
-  point->normal = OutwardNormal(*mesh_, triangle, b);
-  point->uv = TriangleUv(*mesh_, triangle, Point2(b.y, b.z));
-  point->patch = static_cast<int>(triangle);
+  point.position = q0 + q1 + q2;
+  point.positionError = Gamma(6) * (glm::abs(q0) + glm::abs(q1) + glm::abs(q2));
+  point.normal = OutwardNormal(*mesh_, triangle, b);
+  // Nobody looks at the coordinates of an even light.
+  if (emission_.NeedsUv()) point.uv = TriangleUv(*mesh_, triangle, Point2(b.y, b.z));
+  point.patch = static_cast<int>(triangle);
   if (isPlaced_) {
     const LightTransform& transform = *context.transform;
-    point->positionError = transform.toRender.PointError(point->position, point->positionError);
-    point->position = transform.toRender.Point(point->position);
-    point->normal = SafeNormalize(transform.toLocal.NormalByInverse(point->normal), Normal3(0.0f));
+    point.positionError = transform.toRender.PointError(point.position, point.positionError);
+    point.position = transform.toRender.Point(point.position);
+    point.normal = SafeNormalize(transform.toLocal.NormalByInverse(point.normal), Normal3(0.0f));
   }
-  point->density = AreaDensity(context, triangle, point->normal);
-  return point;
+  point.density = AreaDensity(context, triangle, point.normal);
+  return true;
 }
 
 double MeshLight::TriangleArea(uint32_t triangle, const LightTransform& transform) const {

@@ -1,4 +1,4 @@
-#include "lights/parameter_check.h"
+#include "lights/light_type.h"
 
 #include <algorithm>
 #include <cstdlib>

@@ -1,6 +1,5 @@
 // All built-in lights. A light is its own file, which defines `LightType …LightType()`, and one row here.
 #include "lights/light_type.h"
-#include "lights/parameter_check.h"
 
 namespace lampyr {
 

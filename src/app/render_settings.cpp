@@ -166,7 +166,9 @@ void ReadSampler(const SceneDescription& scene, const RenderOverrides& overrides
   } else {
     settings.samplesPerPixel = PositiveInteger(parameters, "pixelsamples", settings.samplesPerPixel, kMaxSamples);
   }
-  settings.seed = static_cast<uint64_t>(parameters.GetInteger("seed", 0)) + overrides.seed;
+  const auto option = scene.options.find("seed");
+  const int64_t optionSeed = option != scene.options.end() && !option->second.integers.empty() ? option->second.integers[0] : 0;
+  settings.seed = static_cast<uint64_t>(parameters.GetInteger("seed", 0) + optionSeed) + overrides.seed;
   parameters.CheckAllUsed({"randomization", "jitter", "xsamples", "ysamples", "pixelsamples"}, {"pixelsamples", "seed"}, diagnostics);
   if (overrides.sampler) {
     settings.sampler = SamplerByName(*overrides.sampler, &known);

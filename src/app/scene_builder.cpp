@@ -1,5 +1,6 @@
 #include "app/scene_builder.h"
 
+#include <algorithm>
 #include <set>
 
 #include "app/shape_builder.h"
@@ -27,9 +28,10 @@ class MaterialTable {
     return index;
   }
 
-  // All named materials, so that a mistake in one that is not used is found too.
-  void MakeAllNamed() {
+  // All materials, so that a mistake in one that is not used is found too.
+  void MakeAll() {
     for (const NamedMaterialDescription& named : description_.namedMaterials) Named(named.name, named.material.where);
+    for (size_t i = 0; i < description_.materials.size(); ++i) IndexOf({static_cast<int>(i), "", {}});
   }
 
   const std::vector<std::shared_ptr<const Material>>& Materials() const { return materials_; }
@@ -118,6 +120,7 @@ class Builder {
                   std::vector<const ReadEntry*>* lightEntries);
   void AddAreaLight(const StatementDescription& statement, const Shape& shape, const Transform& instanceToRender,
                     const std::shared_ptr<const AlphaSource>& alpha);
+  void CheckAreaLights();
   void AddLights();
   LightBuildContext LightContextFor(const Transform& localToRender) const;
 
@@ -194,16 +197,32 @@ LightBuildContext Builder::LightContextFor(const Transform& localToRender) const
   return build;
 }
 
+// The type of a light statement. nullptr, with a warning: pbrt-v4 has it and lampyr does not yet.
+const LightType* FindType(const StatementDescription& statement, bool isAreaLight, Diagnostics& diagnostics) {
+  if (const LightType* type = FindLightType(statement.type, isAreaLight)) return type;
+  const std::string owner = std::string(isAreaLight ? "AreaLightSource" : "LightSource") + " \"" + statement.type + "\"";
+  std::vector<std::string> names;
+  if (!isAreaLight) names = {"goniometric", "projection"};
+  if (std::find(names.begin(), names.end(), statement.type) != names.end()) {
+    diagnostics.Warn(statement.where, owner + " is not supported yet; it is left out");
+    return nullptr;
+  }
+  for (const LightType& known : LightRegistry()) {
+    if (known.isAreaLight == isAreaLight) names.push_back(known.name);
+  }
+  throw Error(statement.where, "there is no " + owner + DidYouMean(statement.type, names));
+}
+
+// Area lights are made shape by shape: what is wrong with one that no shape uses is found here.
+void Builder::CheckAreaLights() {
+  for (const StatementDescription& statement : description_.areaLights) {
+    CheckParameters(*FindType(statement, true, diagnostics_), statement.parameters);
+  }
+}
+
 void Builder::AddAreaLight(const StatementDescription& statement, const Shape& shape, const Transform& instanceToRender,
                            const std::shared_ptr<const AlphaSource>& alpha) {
-  const LightType* type = FindLightType(statement.type, true);
-  if (!type) {
-    std::vector<std::string> names;
-    for (const LightType& known : LightRegistry()) {
-      if (known.isAreaLight) names.push_back(known.name);
-    }
-    throw Error(statement.where, "there is no AreaLightSource \"" + statement.type + "\"" + DidYouMean(statement.type, names));
-  }
+  const LightType* type = FindType(statement, true, diagnostics_);
   LightBuildContext build = LightContextFor(instanceToRender);
   build.shape = &shape;
   build.alpha = alpha;
@@ -277,18 +296,8 @@ void Builder::AddLights() {
   for (const LightDescription& light : description_.lights) {
     const StatementDescription& statement = light.light;
     WarnIfAnimated(light.placement, statement.where, "light", diagnostics_);
-    const LightType* type = FindLightType(statement.type, false);
-    if (!type) {
-      if (statement.type == "goniometric" || statement.type == "projection") {
-        diagnostics_.Warn(statement.where, "LightSource \"" + statement.type + "\" is not supported yet; it is left out");
-        continue;
-      }
-      std::vector<std::string> names = {"goniometric", "projection"};
-      for (const LightType& known : LightRegistry()) {
-        if (!known.isAreaLight) names.push_back(known.name);
-      }
-      throw Error(statement.where, "there is no LightSource \"" + statement.type + "\"" + DidYouMean(statement.type, names));
-    }
+    const LightType* type = FindType(statement, false, diagnostics_);
+    if (!type) continue;
     const Transform toRender = worldToRender_ * light.placement.start;
     if (!toRender.IsAffine()) throw Error(statement.where, "a light cannot have a perspective transform");
     const LightBuildContext build = LightContextFor(toRender);
@@ -304,13 +313,14 @@ BuiltScene Builder::Build() {
 
   textures_ = std::make_unique<TextureLibrary>(description_.textures, worldToRender_, diagnostics_);
   materials_ = std::make_unique<MaterialTable>(description_, *textures_, diagnostics_);
-  materials_->MakeAllNamed();
+  materials_->MakeAll();
   const auto resolve = [&](std::vector<ReadEntry>& entries) {
     for (ReadEntry& entry : entries) entry.material = materials_->IndexOf(entry.local.description->material);
   };
   resolve(entries_);
   for (auto& object : objects_) resolve(object);
 
+  CheckAreaLights();
   AddLights();
   PlaceEntries();
 

@@ -32,7 +32,7 @@ void Progress::Update(double fraction, const std::string& note) {
   if (quiet_) return;
   const double now = Seconds();
   if (now - lastPrinted_ < (terminal_ ? 0.1 : 5.0)) return;
-  if (!terminal_ && lastPrinted_ < 0 && now < 2.0) return;  // short work needs no lines
+  if (!terminal_ && (fraction >= 1 || (lastPrinted_ < 0 && now < 2.0))) return;  // short or finished work needs no lines
   lastPrinted_ = now;
   fraction = std::clamp(fraction, 0.0, 1.0);
   const std::string left = fraction > 0 ? FormatDuration(now * (1 - fraction) / fraction) : "?";
