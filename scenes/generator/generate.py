@@ -49,7 +49,7 @@ def write_sky(name, size, sun, sun_degrees, sun_radiance, zenith, horizon, glow,
         colour = mix(horizon, zenith, 1 - (1 - max(d[2], 0.0)) ** 3)
         cosine = sum(a * b for a, b in zip(d, sun))
         colour = tuple(c + g * (0.6 * max(cosine, 0.0) ** 12 + 2.0 * max(cosine, 0.0) ** 160) for c, g in zip(colour, glow))
-        colour = mix(colour, ground, smoothstep(0.02, -0.03, d[2]))
+        colour = mix(colour, ground, smoothstep(0.08, -0.25, d[2]))
         if cosine > math.cos(math.radians(sun_degrees + 8)):
             part = disk(x, y)
             colour = tuple(c + part * s for c, s in zip(colour, sun_radiance))
@@ -59,10 +59,10 @@ def write_sky(name, size, sun, sun_degrees, sun_radiance, zenith, horizon, glow,
 
 
 def skies():
-    write_sky("sky-noon.hdr", 128, (-0.62, 0.16, 0.80), 5.0, (150, 140, 122), (0.10, 0.24, 0.56), (0.46, 0.60, 0.80),
+    write_sky("sky-noon.hdr", 128, (-0.62, 0.16, 0.80), 10.0, (34, 31.5, 27.5), (0.14, 0.30, 0.66), (0.60, 0.74, 0.92),
               (0.30, 0.26, 0.20), (0.22, 0.24, 0.16))
-    write_sky("sky-evening.hdr", 256, (-0.70, -0.10, 0.42), 1.6, (1500, 1080, 640), (0.10, 0.19, 0.42),
-              (0.62, 0.55, 0.50), (0.80, 0.45, 0.18), (0.16, 0.14, 0.12))
+    write_sky("sky-evening.hdr", 256, (-0.70, -0.10, 0.42), 2.0, (1100, 800, 480), (0.09, 0.18, 0.42),
+              (0.52, 0.55, 0.62), (0.85, 0.46, 0.17), (0.30, 0.27, 0.25))
 
 
 # Textures ------------------------------------------------------------------------------------------------------------
@@ -163,7 +163,7 @@ def water_surface():
     for i in range(9):
         k = 2 * math.pi / (0.40 * 3.2 ** (i / 8.0))
         angle = 2 * math.pi * images.hash_unit(i, 901)
-        waves.append((k * math.cos(angle), k * math.sin(angle), 0.27 / k ** 1.6, 2 * math.pi * images.hash_unit(i, 902)))
+        waves.append((k * math.cos(angle), k * math.sin(angle), 0.32 / k ** 1.6, 2 * math.pi * images.hash_unit(i, 902)))
 
     def point(u, v):
         x, y = -2.02 + 4.04 * u, -1.52 + 3.04 * v
@@ -330,7 +330,7 @@ def courtyard():
 def hue(h):
     """A saturated colour around the wheel, h in [0,1)."""
     channel = lambda shift: min(1.0, max(0.0, abs((h + shift) % 1 * 6 - 3) - 1))
-    return tuple(0.025 + 0.975 * channel(shift) ** 1.5 for shift in (0.0, 2 / 3, 1 / 3))
+    return tuple(0.012 + 0.988 * channel(shift) ** 1.5 for shift in (0.0, 2 / 3, 1 / 3))
 
 
 def strings_of_bulbs():
@@ -358,8 +358,8 @@ def strings_of_bulbs():
         base = hue(i / strings)
         for j in range(bulbs):
             p = hang((j + 1.2) / (bulbs + 1.2))
-            strength = 9.0 * (0.6 + 0.8 * images.hash_unit(i, j, 7))
-            colour = mix(base, hue(images.hash_unit(i, j, 8)), 0.25 if j % 5 else 0.9)
+            strength = 30.0 * (0.6 + 0.8 * images.hash_unit(i, j, 7))
+            colour = mix(base, hue(images.hash_unit(i, j, 8)), 0.0 if j % 5 else 0.9)
             lines.append('AttributeBegin AreaLightSource "diffuse" "rgb L" [ %s ] Translate %.4f %.4f %.4f Shape "sphere" '
                          '"float radius" 0.05 AttributeEnd'
                          % (" ".join("%.3g" % (strength * x) for x in colour), p[0], p[1], p[2] - 0.06))
