@@ -7,8 +7,8 @@
 
 namespace lampyr {
 
-std::unique_ptr<Light> MakeMeshLight(LightTypeFunction type, const ParameterList& parameters, const LightBuildContext& build,
-                                     std::shared_ptr<const TriangleMesh> mesh);
+std::unique_ptr<Light> MakeMeshLight(LightTypeFunction type, const ParameterList& parameters,
+                                     const LightBuildContext& build, std::shared_ptr<const TriangleMesh> mesh);
 std::unique_ptr<Light> MakeBilinearLight(LightTypeFunction type, const ParameterList& parameters,
                                          const LightBuildContext& build, std::shared_ptr<const BilinearMesh> mesh);
 std::unique_ptr<Light> MakeQuadricLight(LightTypeFunction type, const ParameterList& parameters,

@@ -1,5 +1,6 @@
-// Bilinear patches that emit. A patch is chosen in proportion to its area; its parameters (u,v) are drawn from a bilinear
-// density that follows the area element at the four corners, and the exact density is that over |∂p/∂u × ∂p/∂v|
+// Bilinear patches that emit. A patch is chosen in proportion to its area; its parameters (u,v) are drawn from a
+// bilinear density that follows the area element at the four corners, and the exact density is that over |∂p/∂u ×
+// ∂p/∂v|
 // ([Pharr23 §6.6.3] has the surface, the choice of density is ours).
 #include "geometry/bilinear.h"
 #include "geometry/rounding.h"
@@ -69,7 +70,9 @@ class BilinearLight final : public LightBase {
     return SurfaceSegmentEstimate(BoundsFor(context), PowerFor(context).Average(), origin, direction, length);
   }
   Color GetPowerEstimate(const LightContext& context) const override { return PowerFor(context); }
-  std::optional<EmissionBounds> GetEmissionBounds(const LightContext& context) const override { return BoundsFor(context); }
+  std::optional<EmissionBounds> GetEmissionBounds(const LightContext& context) const override {
+    return BoundsFor(context);
+  }
 
   std::optional<LightSample> GenerateSamples(const LightContext& context, const Point3& P) const override {
     const std::optional<EmittingPoint> point = SamplePoint(context);
@@ -96,7 +99,8 @@ class BilinearLight final : public LightBase {
 
   // 1/m² in render space at parameters p, where the normal is `normal`: the one place where it is written.
   PdfArea AreaDensity(const LightContext& context, uint32_t patch, const Point2& p, const Normal3& normal) const {
-    if (table_.IsZero() || (context.patch != kAnyPatch && static_cast<uint32_t>(context.patch) != patch)) return PdfArea(0);
+    if (table_.IsZero() || (context.patch != kAnyPatch && static_cast<uint32_t>(context.patch) != patch))
+      return PdfArea(0);
     const CornerWeights& w = weights_[patch];
     const float mean = 0.25f * (w[0] + w[1] + w[2] + w[3]);
     const float element = glm::length(PatchGeometry(*mesh_, patch).Cross(p)) *
@@ -192,7 +196,8 @@ void BilinearLight::BuildTables() {
                             ? static_cast<double>(patchPower.Average() + emission_.Power(Color(floor), area).Average())
                             : area;
     choice[i] = largest > 0 ? static_cast<float>(mean) : 0.0f;
-    power += Vector3d(static_cast<double>(patchPower.r), static_cast<double>(patchPower.g), static_cast<double>(patchPower.b));
+    power += Vector3d(static_cast<double>(patchPower.r), static_cast<double>(patchPower.g),
+                      static_cast<double>(patchPower.b));
   }
   table_ = AliasTable(choice);
   power_ = {static_cast<float>(power.x), static_cast<float>(power.y), static_cast<float>(power.z)};
@@ -230,8 +235,8 @@ std::optional<EmittingPoint> BilinearLight::SamplePoint(const LightContext& cont
   return point;
 }
 
-// The parameters of a hit. Without texture coordinates of its own the patch's uv are the parameters; otherwise they follow
-// from the position, by Gauss-Newton steps on |p(u,v) - position|².
+// The parameters of a hit. Without texture coordinates of its own the patch's uv are the parameters; otherwise they
+// follow from the position, by Gauss-Newton steps on |p(u,v) - position|².
 Point2 BilinearLight::ParametersOf(const LightContext& context, const LightHit& hit) const {
   if (mesh_->uvs.empty()) return glm::clamp(hit.uv, Point2(0.0f), Point2(1.0f));
   const PatchGeometry geometry(*mesh_, static_cast<uint32_t>(hit.patchIndex));
@@ -300,7 +305,8 @@ EmissionBounds BilinearLight::BoundsOfAll(const LightTransform& transform) const
     float widest = 0;
     for (uint32_t i = 0; i < mesh_->patches.size(); ++i) {
       const EmissionBounds one = BoundsOfOne(i, transform);
-      widest = std::max(widest, std::acos(std::clamp(glm::dot(whole.axis, one.axis), -1.0f, 1.0f)) + std::acos(one.cosThetaO));
+      widest = std::max(widest,
+                        std::acos(std::clamp(glm::dot(whole.axis, one.axis), -1.0f, 1.0f)) + std::acos(one.cosThetaO));
     }
     whole.cosThetaO = widest < kPi ? std::cos(widest) : -1.0f;
   }

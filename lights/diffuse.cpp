@@ -33,7 +33,8 @@ LightType DiffuseAreaLightType() {
   type.parameters = WithCommonParameters({
       {"L", ParameterType::Spectrum, "W/(m² sr)", "1", "", "emitted radiance"},
       {"scale", ParameterType::Float, "", "1", ">= 0", "multiplies the radiance"},
-      {"power", ParameterType::Float, "W", "-1", "", "if positive: total power that a radiance of 1 (or the image) is scaled to"},
+      {"power", ParameterType::Float, "W", "-1", "",
+       "if positive: total power that a radiance of 1 (or the image) is scaled to"},
       {"twosided", ParameterType::Bool, "", "false", "", "emit on both sides"},
       {"filename", ParameterType::String, "", "\"\"", "", "image over the surface's uv, instead of L"},
   });

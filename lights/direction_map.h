@@ -1,8 +1,8 @@
 // Directions between a light's local space and render space, and what that does to densities.
 //
-// A linear map M carries local directions to render space: ω = M l / |M l|. With A = M⁻¹ the solid angles are related by
-// dω_local / dω = |det A| / |A ω|³, which is 1 for rotations, mirrors and uniform scales. A light whose distribution is
-// defined in local directions (a cone, an image) multiplies its local density by that factor.
+// A linear map M carries local directions to render space: ω = M l / |M l|. With A = M⁻¹ the solid angles are related
+// by dω_local / dω = |det A| / |A ω|³, which is 1 for rotations, mirrors and uniform scales. A light whose distribution
+// is defined in local directions (a cone, an image) multiplies its local density by that factor.
 #pragma once
 
 #include <glm/matrix.hpp>

@@ -21,7 +21,8 @@ class DistantLight final : public LightBase {
     const double illuminance = parameters.GetFloat("illuminance", -1);
     if (illuminance > 0) scale *= illuminance;
     irradiance_ = ReadEmissionColor(parameters, "L") * static_cast<float>(scale);
-    if (!irradiance_.IsValid()) throw Error(parameters.Where(), "LightSource \"distant\": the irradiance is not finite");
+    if (!irradiance_.IsValid())
+      throw Error(parameters.Where(), "LightSource \"distant\": the irradiance is not finite");
   }
 
   LightKind Kind() const override { return LightKind::DeltaDirection; }

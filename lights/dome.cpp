@@ -1,4 +1,5 @@
-// Light from all around (pbrt-v4's "infinite"): the same radiance L in W/(m² sr) everywhere, or an image (dome_image.cpp).
+// Light from all around (pbrt-v4's "infinite"): the same radiance L in W/(m² sr) everywhere, or an image
+// (dome_image.cpp).
 #include "lights/infinite_light.h"
 #include "sampling/warp.h"
 
@@ -39,9 +40,11 @@ LightType InfiniteLightType() {
   type.help = "light from all around, even or from an image";
   type.parameters = WithCommonParameters({
       {"L", ParameterType::Spectrum, "W/(m² sr)", "1", "", "radiance from everywhere"},
-      {"filename", ParameterType::String, "", "\"\"", "", "image instead of L: equal-area square, or 2:1 latitude-longitude"},
+      {"filename", ParameterType::String, "", "\"\"", "",
+       "image instead of L: equal-area square, or 2:1 latitude-longitude"},
       {"scale", ParameterType::Float, "", "1", ">= 0", "multiplies the radiance"},
-      {"illuminance", ParameterType::Float, "W/m²", "-1", "", "if positive: irradiance from the upper hemisphere to scale to"},
+      {"illuminance", ParameterType::Float, "W/m²", "-1", "",
+       "if positive: irradiance from the upper hemisphere to scale to"},
       {"portal", ParameterType::Point3, "", "", "", "four corners of a window; not supported yet"},
   });
   type.create = CreateInfinite;

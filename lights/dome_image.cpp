@@ -1,6 +1,6 @@
 // Light from all around, from an image: square and equal-area as in pbrt-v4 ([Clarberg08]), or latitude-longitude with
-// twice the width. The radiance of a direction is its texel's, without interpolation (pbrt-v4's rule), so a table that is
-// constant over each texel is proportional to it: no texel that shines has a density of 0.
+// twice the width. The radiance of a direction is its texel's, without interpolation (pbrt-v4's rule), so a table that
+// is constant over each texel is proportional to it: no texel that shines has a density of 0.
 #include "lights/emission_image.h"
 #include "lights/infinite_light.h"
 #include "sampling/equal_area.h"
@@ -34,7 +34,8 @@ class ImageSky {
         total += static_cast<double>(texel.Average() * solidAngle);
       }
     }
-    mean_ = {static_cast<float>(sum[0] / kSphere), static_cast<float>(sum[1] / kSphere), static_cast<float>(sum[2] / kSphere)};
+    mean_ = {static_cast<float>(sum[0] / kSphere), static_cast<float>(sum[1] / kSphere),
+             static_cast<float>(sum[2] / kSphere)};
     // A dim texel beside one of 1e9 keeps a density that a float can hold.
     const auto floor = static_cast<float>(1e-6 * total / static_cast<double>(weights.size()));
     for (float& weight : weights) weight = weight > 0 ? std::max(weight, floor) : 0.0f;
@@ -103,12 +104,14 @@ std::unique_ptr<Light> MakeImageInfiniteLight(LightTypeFunction type, const Para
                                               const LightBuildContext& build) {
   const FileLocation where = parameters.WhereOf("filename");
   if (parameters.Find("L")) {
-    throw Error(parameters.WhereOf("L"), "LightSource \"infinite\": both \"L\" and \"filename\" are given, one is enough");
+    throw Error(parameters.WhereOf("L"),
+                "LightSource \"infinite\": both \"L\" and \"filename\" are given, one is enough");
   }
   EmissionImage image(parameters, build);
   const int width = image.Width(), height = image.Height();
   if (width != height && width != 2 * height) {
-    throw Error(where, "LightSource \"infinite\": the image is " + std::to_string(width) + "×" + std::to_string(height) +
+    throw Error(where, "LightSource \"infinite\": the image is " + std::to_string(width) + "×" +
+                           std::to_string(height) +
                            "; a square (equal-area) or one twice as wide as high (latitude-longitude) is needed");
   }
   ImageSky sky(std::move(image), width == height ? SkyMap::EqualArea : SkyMap::LatLong);

@@ -9,14 +9,16 @@ EmissionImage::EmissionImage(const ParameterList& parameters, const LightBuildCo
   if (file.empty()) return;
   const FileLocation where = parameters.WhereOf("filename");
   if (!build.textures) throw Error(where, "no images can be read here: \"" + file + "\"");
-  *this = EmissionImage(build.textures->GetImage(file, ImageEncoding::Automatic, where), file, where, build.diagnostics);
+  *this =
+      EmissionImage(build.textures->GetImage(file, ImageEncoding::Automatic, where), file, where, build.diagnostics);
 }
 
 EmissionImage::EmissionImage(std::shared_ptr<const Image> image, const std::string& name, const FileLocation& where,
                              Diagnostics* diagnostics)
     : image_(std::move(image)) {
   const size_t channels = image_->channels.size();
-  if (image_->width <= 0 || image_->height <= 0 || channels == 0) throw Error(where, "\"" + name + "\" is an empty image");
+  if (image_->width <= 0 || image_->height <= 0 || channels == 0)
+    throw Error(where, "\"" + name + "\" is an empty image");
   data_ = image_->data.data();
   width_ = image_->width;
   stride_ = channels;

@@ -1,4 +1,5 @@
-// An image as a light uses it: radiance per texel, with NaN, infinite and negative texels read as 0 (warned about once).
+// An image as a light uses it: radiance per texel, with NaN, infinite and negative texels read as 0 (warned about
+// once).
 #pragma once
 
 #include <memory>

@@ -17,7 +17,8 @@ float BoundCosine(const EmissionBounds& bounds, const Vector3& toPoint, float di
                        std::asin(std::sqrt(std::min(radiusSquared / distanceSquared, 1.0f)));
   // A little slack for the rounding of the three angles.
   const float least = std::max(0.0f, angle - spread - 1e-3f);
-  return least < std::acos(std::clamp(bounds.cosThetaE, -1.0f, 1.0f)) ? std::max(std::cos(least), kSmallestCosine) : 0.0f;
+  return least < std::acos(std::clamp(bounds.cosThetaE, -1.0f, 1.0f)) ? std::max(std::cos(least), kSmallestCosine)
+                                                                      : 0.0f;
 }
 
 // Cuts [minT, maxT] to the side of the plane (point, normal) that the normal points to. False when nothing is left.
@@ -57,12 +58,13 @@ std::optional<SegmentEstimate> SurfaceSegmentEstimate(const EmissionBounds& boun
     // Flat: the plane through the box's lowest corner, lowered by what normals within θo may tilt it and by rounding.
     float height = kInfinity;
     for (int i = 0; i < 8; ++i) height = std::min(height, glm::dot(bounds.axis, bounds.box.Corner(i)));
-    height -= 2e-3f * glm::length(bounds.box.Diagonal()) + 1e-5f * (std::abs(height) + MaxAbsComponent(origin) + length);
+    height -=
+        2e-3f * glm::length(bounds.box.Diagonal()) + 1e-5f * (std::abs(height) + MaxAbsComponent(origin) + length);
     if (!ClipToFront(origin, direction, height, bounds.axis, estimate.minT, estimate.maxT)) return std::nullopt;
   }
   const float t = NearestOnSegment(origin, direction, estimate.minT, estimate.maxT, bounds.box.Center());
-  estimate.radiance = std::max(SurfaceIrradianceEstimate(bounds, power, origin + t * direction),
-                               std::numeric_limits<float>::min());
+  estimate.radiance =
+      std::max(SurfaceIrradianceEstimate(bounds, power, origin + t * direction), std::numeric_limits<float>::min());
   return estimate;
 }
 

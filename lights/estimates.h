@@ -8,17 +8,18 @@
 
 namespace lampyr {
 
-// Irradiance at P on a surface facing the emitter; `power` is its power, mean of the channels. For surfaces that emit by
-// the cosine law.
+// Irradiance at P on a surface facing the emitter; `power` is its power, mean of the channels. For surfaces that emit
+// by the cosine law.
 float SurfaceIrradianceEstimate(const EmissionBounds& bounds, float power, const Point3& P);
 
-// The same for a segment, evaluated at its point nearest to the box's middle. The segment is clipped where the emitter is
-// flat, one-sided and seen from behind.
+// The same for a segment, evaluated at its point nearest to the box's middle. The segment is clipped where the emitter
+// is flat, one-sided and seen from behind.
 std::optional<SegmentEstimate> SurfaceSegmentEstimate(const EmissionBounds& bounds, float power, const Point3& origin,
                                                       const Vector3& direction, float length);
 
 // The parameter in [minT, maxT] at which the segment comes nearest to `point`.
-inline float NearestOnSegment(const Point3& origin, const Vector3& direction, float minT, float maxT, const Point3& point) {
+inline float NearestOnSegment(const Point3& origin, const Vector3& direction, float minT, float maxT,
+                              const Point3& point) {
   return std::min(std::max(glm::dot(point - origin, direction), minT), maxT);
 }
 

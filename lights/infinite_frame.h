@@ -1,5 +1,6 @@
 // Everything that is special about infinity, once: photons of lights at infinity start on a disk of the radius of the
-// scene's bounding sphere, perpendicular to their direction and touching the sphere on the light's side ([Veach97 §8.3.2]).
+// scene's bounding sphere, perpendicular to their direction and touching the sphere on the light's side ([Veach97
+// §8.3.2]).
 #pragma once
 
 #include "lights/light.h"
@@ -13,9 +14,12 @@ inline PdfArea EmissionDiskDensity(const BoundingSphere& scene) {
   return PdfArea(1 / (kPi * Sqr(scene.radius)));
 }
 
-inline float EmissionDiskArea(const BoundingSphere& scene) { return kPi * Sqr(scene.radius); }
+inline float EmissionDiskArea(const BoundingSphere& scene) {
+  return kPi * Sqr(scene.radius);
+}
 
-// A point of the disk that faces the light in the unit direction `toLight`. The frame is built from that very direction.
+// A point of the disk that faces the light in the unit direction `toLight`. The frame is built from that very
+// direction.
 inline Point3 SampleEmissionDisk(const BoundingSphere& scene, const Vector3& toLight, const Point2& u) {
   const Point2 disk = SampleConcentricDisk(u);
   const Frame frame = Frame::FromNormal(toLight);
@@ -27,7 +31,8 @@ inline Vector3 EmissionDiskError(const BoundingSphere& scene) {
   return kRelativeError * (glm::abs(scene.center) + Vector3(2 * scene.radius));
 }
 
-// A photon that travels away from the light in direction -toLight; colours and the direction's density are the caller's.
+// A photon that travels away from the light in direction -toLight; colours and the direction's density are the
+// caller's.
 inline EmissionSample EmitFromInfinity(const BoundingSphere& scene, const Vector3& toLight, const Point2& u) {
   EmissionSample sample;
   sample.position = SampleEmissionDisk(scene, toLight, u);

@@ -1,5 +1,5 @@
-// Light from all around: radiance over directions, the same for every receiver. Photons, estimates and transforms are here,
-// once; what differs is the sky. A template, so that the sky is inlined.
+// Light from all around: radiance over directions, the same for every receiver. Photons, estimates and transforms are
+// here, once; what differs is the sky. A template, so that the sky is inlined.
 //
 // A Sky has (directions are unit, in the light's local space, towards the light):
 //   Color Radiance(local)

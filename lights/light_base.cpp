@@ -18,7 +18,8 @@ std::vector<ParameterInfo> WithCommonParameters(std::vector<ParameterInfo> param
       {"cameraVisible", ParameterType::Bool, "", "true", "", "whether the camera sees the light itself"},
       {"traceLightPaths", ParameterType::Bool, "", "true", "", "whether the light may emit photons"},
       {"importanceMultiplier", ParameterType::Float, "", "1", "> 0", "scales the light's chance of being selected"},
-      {"fixedSampleCount", ParameterType::Integer, "", "0", ">= 0", "samples per shading point; 0: as the integrator does"},
+      {"fixedSampleCount", ParameterType::Integer, "", "0", ">= 0",
+       "samples per shading point; 0: as the integrator does"},
   };
   parameters.insert(parameters.end(), std::begin(common), std::end(common));
   return parameters;
@@ -38,7 +39,8 @@ LightSettings ReadLightSettings(const ParameterList& parameters) {
 ParameterList MergeParameters(const ParameterList& base, const ParameterList& changes) {
   std::vector<Parameter> merged = base.All();
   for (const Parameter& change : changes.All()) {
-    const auto same = std::find_if(merged.begin(), merged.end(), [&](const Parameter& p) { return p.name == change.name; });
+    const auto same =
+        std::find_if(merged.begin(), merged.end(), [&](const Parameter& p) { return p.name == change.name; });
     if (same != merged.end()) {
       *same = change;
     } else {

@@ -1,5 +1,5 @@
-// What all lights share besides their physics: the settings every light has, and editing. A light keeps the parameters it
-// was made from; an edited light is made anew from those and the changes, so no table can be stale.
+// What all lights share besides their physics: the settings every light has, and editing. A light keeps the parameters
+// it was made from; an edited light is made anew from those and the changes, so no table can be stale.
 #pragma once
 
 #include <memory>

@@ -1,8 +1,8 @@
 // A triangle mesh that emits (pbrt-v4's "diffuse" on triangles). Each triangle is a patch: chosen in proportion to its
 // area, times the mean of the image over it where there is one; uniform over its area given the patch.
 //
-// The mesh lies in render space, or in an object's space when it is instanced: then the placement is applied on the fly,
-// and a density of 1/m² is that of the object's space over the area's stretch at that point.
+// The mesh lies in render space, or in an object's space when it is instanced: then the placement is applied on the
+// fly, and a density of 1/m² is that of the object's space over the area's stretch at that point.
 #include "geometry/rounding.h"
 #include "geometry/triangle_surface.h"
 #include "lights/area_lights.h"
@@ -14,8 +14,8 @@ namespace lampyr {
 
 namespace {
 
-// The outer normal of a triangle at barycentrics b, in the mesh's space: the winding's, turned by flipNormals, or the side
-// that the vertex normals decide. 0 for a triangle without area. The same rule as SurfacePoint::Ng.
+// The outer normal of a triangle at barycentrics b, in the mesh's space: the winding's, turned by flipNormals, or the
+// side that the vertex normals decide. 0 for a triangle without area. The same rule as SurfacePoint::Ng.
 Normal3 OutwardNormal(const TriangleMesh& mesh, uint32_t triangle, const Vector3& b) {
   const auto& t = mesh.triangles[triangle];
   const Point3 &p0 = mesh.positions[t[0]], &p1 = mesh.positions[t[1]], &p2 = mesh.positions[t[2]];
@@ -64,7 +64,9 @@ class MeshLight final : public LightBase {
     return SurfaceSegmentEstimate(BoundsFor(context), PowerFor(context).Average(), origin, direction, length);
   }
   Color GetPowerEstimate(const LightContext& context) const override { return PowerFor(context); }
-  std::optional<EmissionBounds> GetEmissionBounds(const LightContext& context) const override { return BoundsFor(context); }
+  std::optional<EmissionBounds> GetEmissionBounds(const LightContext& context) const override {
+    return BoundsFor(context);
+  }
 
   std::optional<LightSample> GenerateSamples(const LightContext& context, const Point3& P) const override {
     EmittingPoint point;
@@ -164,8 +166,8 @@ Color MeshLight::MeanRadiance(uint32_t triangle) const {
   const EmissionImage& image = emission_.EmittedImage();
   const Point2 uv0 = TriangleUv(*mesh_, triangle, {0, 0});
   const Vector2 a = TriangleUv(*mesh_, triangle, {1, 0}) - uv0, b = TriangleUv(*mesh_, triangle, {0, 1}) - uv0;
-  const float texels = 0.5f * std::abs(a.x * b.y - a.y * b.x) * static_cast<float>(image.Width()) *
-                       static_cast<float>(image.Height());
+  const float texels =
+      0.5f * std::abs(a.x * b.y - a.y * b.x) * static_cast<float>(image.Width()) * static_cast<float>(image.Height());
   const int n = static_cast<int>(std::clamp(2 * std::sqrt(texels), 4.0f, 64.0f));
   Color sum;
   for (int i = 0; i < n * n; ++i) {
@@ -273,8 +275,8 @@ EmissionBounds MeshLight::BoundsFor(const LightContext& context) const {
 
 }  // namespace
 
-std::unique_ptr<Light> MakeMeshLight(LightTypeFunction type, const ParameterList& parameters, const LightBuildContext& build,
-                                     std::shared_ptr<const TriangleMesh> mesh) {
+std::unique_ptr<Light> MakeMeshLight(LightTypeFunction type, const ParameterList& parameters,
+                                     const LightBuildContext& build, std::shared_ptr<const TriangleMesh> mesh) {
   return std::make_unique<MeshLight>(type, parameters, build, std::move(mesh));
 }
 

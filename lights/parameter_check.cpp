@@ -36,7 +36,8 @@ bool InRange(double value, const std::string& range) {
 void CheckOne(const ParameterInfo& row, const Parameter& parameter, const std::string& owner) {
   const std::string what = owner + ": parameter \"" + parameter.name + "\"";
   if (!TypeFits(row.type, parameter.type)) {
-    throw Error(parameter.where, what + " is of type \"" + ToString(parameter.type) + "\", expected " + Expected(row.type));
+    throw Error(parameter.where,
+                what + " is of type \"" + ToString(parameter.type) + "\", expected " + Expected(row.type));
   }
   bool inside = true;
   for (const double number : parameter.numbers) inside = inside && InRange(number, row.range);
@@ -54,7 +55,8 @@ void CheckParameters(const LightType& type, const ParameterList& parameters) {
     const auto row = std::find_if(type.parameters.begin(), type.parameters.end(),
                                   [&](const ParameterInfo& info) { return info.name == parameter.name; });
     if (row == type.parameters.end()) {
-      throw Error(parameter.where, owner + " has no parameter \"" + parameter.name + "\"" + DidYouMean(parameter.name, names));
+      throw Error(parameter.where,
+                  owner + " has no parameter \"" + parameter.name + "\"" + DidYouMean(parameter.name, names));
     }
     parameters.Find(parameter.name);
     CheckOne(*row, parameter, owner);

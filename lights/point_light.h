@@ -1,6 +1,6 @@
-// Lights that are a point with an intensity over directions: position, falloff with distance and the discrete densities are
-// here, once; what differs is the profile, the relative intensity over directions and the sampling of it. A template, so
-// that the profile is inlined.
+// Lights that are a point with an intensity over directions: position, falloff with distance and the discrete densities
+// are here, once; what differs is the profile, the relative intensity over directions and the sampling of it. A
+// template, so that the profile is inlined.
 //
 // A Profile has (directions are unit and in render space, `transform` is the light's placement):
 //   float Shape(transform, direction)           intensity relative to its maximum, in [0,1]
@@ -9,7 +9,8 @@
 //   double SolidAngle(transform)                ∫ Shape dω
 //   void SetCones(transform, bounds)            axis and angles of the emission bounds
 //   bool Clip(transform, from, origin, direction, minT, maxT)
-//                                               cuts a ray's [minT, maxT] to what is reached; false when that is nothing
+//                                               cuts a ray's [minT, maxT] to what is reached; false when that is
+//                                               nothing
 #pragma once
 
 #include "lights/estimates.h"

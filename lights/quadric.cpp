@@ -1,6 +1,6 @@
-// Spheres, disks and cylinders that emit, partial ones included. A whole sphere that is still a sphere in render space is
-// sampled by the solid angle it fills, from outside; everything else by area: uniform in the quadric's own space, with the
-// density per position divided by the area's stretch there, whatever the transform.
+// Spheres, disks and cylinders that emit, partial ones included. A whole sphere that is still a sphere in render space
+// is sampled by the solid angle it fills, from outside; everything else by area: uniform in the quadric's own space,
+// with the density per position divided by the area's stretch there, whatever the transform.
 #include "geometry/quadric.h"
 #include "geometry/rounding.h"
 #include "lights/area_lights.h"
@@ -25,7 +25,8 @@ PlacedQuadric Place(const Quadric& quadric, const LightTransform& transform, boo
   if (isPlaced) {
     placed.toRender = {transform.toRender.linear * quadric.toRender.linear,
                        transform.toRender.Point(quadric.toRender.translation)};
-    placed.toLocal = {quadric.toObject.linear * transform.toLocal.linear, quadric.toObject.Point(transform.toLocal.translation)};
+    placed.toLocal = {quadric.toObject.linear * transform.toLocal.linear,
+                      quadric.toObject.Point(transform.toLocal.translation)};
   }
   placed.isSphere = quadric.IsFullSphere() && IsSimilarity(placed.toRender.linear);
   placed.radius = quadric.radius * glm::length(placed.toRender.linear[0]);
@@ -68,7 +69,9 @@ class QuadricLight final : public LightBase {
   Color GetPowerEstimate(const LightContext& context) const override {
     return IsAsBuilt(context) ? power_ : PowerOf(Place(quadric_, *context.transform, true));
   }
-  std::optional<EmissionBounds> GetEmissionBounds(const LightContext& context) const override { return BoundsFor(context); }
+  std::optional<EmissionBounds> GetEmissionBounds(const LightContext& context) const override {
+    return BoundsFor(context);
+  }
 
   std::optional<LightSample> GenerateSamples(const LightContext& context, const Point3& P) const override {
     PlacedQuadric scratch;
@@ -106,9 +109,7 @@ class QuadricLight final : public LightBase {
   }
 
  private:
-  bool IsAsBuilt(const LightContext& context) const {
-    return !isPlaced_ || SamePlacement(*context.transform, built_);
-  }
+  bool IsAsBuilt(const LightContext& context) const { return !isPlaced_ || SamePlacement(*context.transform, built_); }
   const PlacedQuadric& PlacedFor(const LightContext& context, PlacedQuadric& scratch) const {
     if (IsAsBuilt(context)) return placed_;
     scratch = Place(quadric_, *context.transform, true);
@@ -170,8 +171,10 @@ Point3 QuadricLight::SampleLocal(const Point2& u) const {
       const float rho = std::sqrt(glm::mix(Sqr(q.innerRadius), Sqr(r), u.x));
       return {rho * around.x, rho * around.y, q.zMin};
     }
-    case Quadric::Kind::Cylinder: return {r * around.x, r * around.y, glm::mix(q.zMin, q.zMax, u.x)};
-    case Quadric::Kind::Sphere: break;
+    case Quadric::Kind::Cylinder:
+      return {r * around.x, r * around.y, glm::mix(q.zMin, q.zMax, u.x)};
+    case Quadric::Kind::Sphere:
+      break;
   }
   const float z = glm::mix(std::max(q.zMin, -r), std::min(q.zMax, r), u.x);
   const float rho = SafeSqrt((r - z) * (r + z));
@@ -180,9 +183,12 @@ Point3 QuadricLight::SampleLocal(const Point2& u) const {
 
 Normal3 QuadricLight::LocalNormal(const Point3& p) const {
   switch (quadric_.kind) {
-    case Quadric::Kind::Disk: return {0, 0, 1};
-    case Quadric::Kind::Cylinder: return {p.x / quadric_.radius, p.y / quadric_.radius, 0};
-    case Quadric::Kind::Sphere: break;
+    case Quadric::Kind::Disk:
+      return {0, 0, 1};
+    case Quadric::Kind::Cylinder:
+      return {p.x / quadric_.radius, p.y / quadric_.radius, 0};
+    case Quadric::Kind::Sphere:
+      break;
   }
   return p / quadric_.radius;
 }
@@ -194,9 +200,12 @@ Point2 QuadricLight::UvOf(const Point3& p) const {
   if (phi < 0) phi += 2 * kPi;
   const float u = std::min(phi / q.phiMax, 1.0f);
   switch (q.kind) {
-    case Quadric::Kind::Disk: return {u, (q.radius - std::hypot(p.x, p.y)) / (q.radius - q.innerRadius)};
-    case Quadric::Kind::Cylinder: return {u, (p.z - q.zMin) / (q.zMax - q.zMin)};
-    case Quadric::Kind::Sphere: break;
+    case Quadric::Kind::Disk:
+      return {u, (q.radius - std::hypot(p.x, p.y)) / (q.radius - q.innerRadius)};
+    case Quadric::Kind::Cylinder:
+      return {u, (p.z - q.zMin) / (q.zMax - q.zMin)};
+    case Quadric::Kind::Sphere:
+      break;
   }
   const float low = std::acos(std::clamp(q.zMin / q.radius, -1.0f, 1.0f));
   const float high = std::acos(std::clamp(q.zMax / q.radius, -1.0f, 1.0f));
@@ -247,7 +256,8 @@ Color QuadricLight::PowerOf(const PlacedQuadric& placed) const {
     const Normal3 normal = SafeNormalize(placed.toLocal.NormalByInverse(LocalNormal(p)), Normal3(0, 0, 1));
     const auto stretch = static_cast<double>(AreaStretch(placed.toRender, normal));
     const Color radiance = emission_.Radiance(UvOf(p));
-    sum += stretch * Vector3d(static_cast<double>(radiance.r), static_cast<double>(radiance.g), static_cast<double>(radiance.b));
+    sum += stretch *
+           Vector3d(static_cast<double>(radiance.r), static_cast<double>(radiance.g), static_cast<double>(radiance.b));
     stretches += stretch;
   }
   sum /= stretches;

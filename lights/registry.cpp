@@ -25,7 +25,8 @@ const LightType* FindLightType(const std::string& name, bool isAreaLight) {
   return nullptr;
 }
 
-std::unique_ptr<Light> MakeLight(const LightType& type, const ParameterList& parameters, const LightBuildContext& build) {
+std::unique_ptr<Light> MakeLight(const LightType& type, const ParameterList& parameters,
+                                 const LightBuildContext& build) {
   CheckParameters(type, parameters);
   return type.create(parameters, build);
 }

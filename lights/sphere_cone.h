@@ -1,5 +1,5 @@
-// The cone of directions that a sphere fills, seen from outside: uniform solid-angle sampling that stays exact for spheres
-// tiny, far away or almost touched ([Shirley96], arranged so that nothing cancels).
+// The cone of directions that a sphere fills, seen from outside: uniform solid-angle sampling that stays exact for
+// spheres tiny, far away or almost touched ([Shirley96], arranged so that nothing cancels).
 #pragma once
 
 #include <optional>
@@ -10,11 +10,11 @@
 namespace lampyr {
 
 struct SphereCone {
-  Vector3 axis;                // unit, from P to the middle
-  float distance = 0;          // to the middle
-  float tangentSquared = 0;    // distance² - radius²
+  Vector3 axis;              // unit, from P to the middle
+  float distance = 0;        // to the middle
+  float tangentSquared = 0;  // distance² - radius²
   float radius = 0;
-  float sinSquared = 0;        // of the half angle
+  float sinSquared = 0;  // of the half angle
   float oneMinusCosMax = 0;
 
   // nullopt inside of the sphere, or so near to it that it fills a hemisphere but for rounding.
@@ -37,7 +37,7 @@ struct SphereCone {
   struct Hit {
     Vector3 direction;  // unit, from P
     float distance;
-    Normal3 normal;     // unit, away from the middle
+    Normal3 normal;  // unit, away from the middle
   };
   Hit Sample(const Point2& u) const {
     const Vector3 local = SampleUniformCone(u, oneMinusCosMax);

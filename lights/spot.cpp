@@ -3,7 +3,8 @@
 //
 // Angles enter as w = 1 - cosθ, half the squared chord between direction and axis: cosθ itself has no digits left for a
 // cone of 0.01°. In w the profile is 1 up to wStart and smoothstep(t) with t = (wEnd - w) / (wEnd - wStart) up to wEnd;
-// its integral over solid angle is 2π (wStart + (wEnd - wStart) / 2), and emission is sampled exactly in proportion to it.
+// its integral over solid angle is 2π (wStart + (wEnd - wStart) / 2), and emission is sampled exactly in proportion to
+// it.
 #include <array>
 
 #include "lights/direction_map.h"
@@ -66,8 +67,8 @@ class ConeProfile {
 
   double SolidAngle(const LightTransform& transform) const;
   void SetCones(const LightTransform& transform, EmissionBounds& bounds) const;
-  bool Clip(const LightTransform& transform, const Point3& from, const Point3& origin, const Vector3& direction, float& minT,
-            float& maxT) const;
+  bool Clip(const LightTransform& transform, const Point3& from, const Point3& origin, const Vector3& direction,
+            float& minT, float& maxT) const;
 
  private:
   static float OneMinusCos(double degrees) {
@@ -103,7 +104,8 @@ double ConeProfile::SolidAngle(const LightTransform& transform) const {
   for (int i = 0; i < n * n; ++i) {
     const float w = wEnd_ * (static_cast<float>(i / n) + 0.5f) / n;
     const Vector3 local = LocalDirection(w, (static_cast<float>(i % n) + 0.5f) / n);
-    sum += static_cast<double>(LocalShape(local) / LocalSolidAngleFactor(transform, ToRenderDirection(transform, local)));
+    sum +=
+        static_cast<double>(LocalShape(local) / LocalSolidAngleFactor(transform, ToRenderDirection(transform, local)));
   }
   return sum * static_cast<double>(2 * kPi * wEnd_) / (n * n);
 }
@@ -128,8 +130,8 @@ void ConeProfile::SetCones(const LightTransform& transform, EmissionBounds& boun
 
 // In local space, where the ray is x(t) = o + t d with the light's point as origin: inside while (x·a)² ≥ cos² |x|² and
 // x·a ≥ 0. The cone is widened a little against rounding.
-bool ConeProfile::Clip(const LightTransform& transform, const Point3& from, const Point3& origin, const Vector3& direction,
-                       float& minT, float& maxT) const {
+bool ConeProfile::Clip(const LightTransform& transform, const Point3& from, const Point3& origin,
+                       const Vector3& direction, float& minT, float& maxT) const {
   const double cosine = static_cast<double>(1 - wEnd_) - 1e-4;
   if (cosine <= 0) return true;
   const Vector3d o(transform.toLocal.Point(origin) - from), d(transform.toLocal.Vector(direction)), a(axis_);
@@ -159,14 +161,16 @@ bool ConeProfile::Clip(const LightTransform& transform, const Point3& from, cons
 
 std::unique_ptr<Light> CreateSpot(const ParameterList& parameters, const LightBuildContext& build) {
   const Vector3d axis = parameters.GetPoint3("to", {0, 0, 1}) - parameters.GetPoint3("from", {0, 0, 0});
-  if (!(glm::length(axis) > 0)) throw Error(parameters.Where(), "LightSource \"spot\": \"from\" and \"to\" are the same point");
+  if (!(glm::length(axis) > 0))
+    throw Error(parameters.Where(), "LightSource \"spot\": \"from\" and \"to\" are the same point");
   const double cone = parameters.GetFloat("coneangle", 30);
   double delta = parameters.GetFloat("conedeltaangle", 5);
   if (delta > cone) {
     delta = cone;
     if (build.diagnostics) {
-      build.diagnostics->Warn(parameters.WhereOf("conedeltaangle"),
-                              "LightSource \"spot\": \"conedeltaangle\" is larger than \"coneangle\"; the cone angle is used");
+      build.diagnostics->Warn(
+          parameters.WhereOf("conedeltaangle"),
+          "LightSource \"spot\": \"conedeltaangle\" is larger than \"coneangle\"; the cone angle is used");
     }
   }
   const ConeProfile profile(Vector3(glm::normalize(axis)), cone, cone - delta);
@@ -191,7 +195,8 @@ LightType SpotLightType() {
   type.create = CreateSpot;
   type.samples = {
       "\"rgb I\" [ 3 2 1 ]",
-      "\"point3 from\" [ 1 2 0.5 ] \"point3 to\" [ 0 0 0 ] \"float coneangle\" 60 \"float conedeltaangle\" 60 \"float power\" 20",
+      "\"point3 from\" [ 1 2 0.5 ] \"point3 to\" [ 0 0 0 ] \"float coneangle\" 60 \"float conedeltaangle\" 60 \"float "
+      "power\" 20",
       "\"float coneangle\" 150 \"float conedeltaangle\" 0",
       "\"float coneangle\" 0.01 \"float conedeltaangle\" 0.002",
       "\"float coneangle\" 179.9 \"float conedeltaangle\" 90",

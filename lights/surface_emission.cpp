@@ -18,7 +18,8 @@ SurfaceEmission::SurfaceEmission(const ParameterList& parameters, const LightBui
     scale = emitted > 0 ? scale * power / emitted : 0.0;
   }
   radiance_ = (HasImage() ? Color(1.0f) : ReadEmissionColor(parameters, "L")) * static_cast<float>(scale);
-  if (!radiance_.IsValid()) throw Error(parameters.Where(), parameters.Owner() + ": the emitted radiance is not finite");
+  if (!radiance_.IsValid())
+    throw Error(parameters.Where(), parameters.Owner() + ": the emitted radiance is not finite");
 }
 
 std::optional<LightSample> SurfaceEmission::Sample(const LightContext& context, const Point3& P,
@@ -61,8 +62,8 @@ Color SurfaceEmission::FoundRadiance(const LightHit& hit) const {
   return Radiance(hit.uv);
 }
 
-std::optional<LightEvaluation> SurfaceEmission::Evaluate(const LightContext& context, const LightHit& hit, PdfArea density,
-                                                         PdfSolidAngle pdfDirect) const {
+std::optional<LightEvaluation> SurfaceEmission::Evaluate(const LightContext& context, const LightHit& hit,
+                                                         PdfArea density, PdfSolidAngle pdfDirect) const {
   const float cosine = EmittedCosine(-glm::dot(hit.normal, hit.direction));
   if (!(cosine > 0)) return std::nullopt;
   std::optional<LightEvaluation> evaluation(std::in_place);

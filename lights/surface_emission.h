@@ -2,9 +2,9 @@
 // surface becomes a sample, an evaluation or a photon. The shape gives the point and its density; the densities of
 // direction are written here, once.
 //
-// The surface emits on the side that its normal points to, or on both. Radiance is L · scale, or scale times an image over
-// the surface's uv. A ray that finds the light has passed the cut-outs of the geometry; a sample and a photon have not, so
-// these two carry the opacity as a factor.
+// The surface emits on the side that its normal points to, or on both. Radiance is L · scale, or scale times an image
+// over the surface's uv. A ray that finds the light has passed the cut-outs of the geometry; a sample and a photon have
+// not, so these two carry the opacity as a factor.
 #pragma once
 
 #include <memory>
@@ -25,7 +25,7 @@ struct EmittingPoint {
   Normal3 normal{0.0f};  // unit, on the outer side
   Point2 uv{0.0f};
   int patch = 0;
-  PdfArea density;       // world-space surface
+  PdfArea density;  // world-space surface
 };
 
 class SurfaceEmission {

@@ -43,7 +43,7 @@ struct Cells {
 struct Quadrature {
   std::vector<double> cells;  // ∫ pdfDirect dω, where light arrives
   double integral = 0, fluence = 0;
-  double leak = 0;            // radiance or density behind a one-sided surface
+  double leak = 0;  // radiance or density behind a one-sided surface
 };
 
 // Seen from nearer to its plane than this, a surface's cosine is rounding: such points count as not sampled.
@@ -95,8 +95,8 @@ class AreaChecker {
     element.normal = Vector3d(sample.normal);
     return !IsHidden(element, P, inside);
   }
-  // Mean of function(context, v) over all random numbers, from randomly shifted lattices: far less noise than independent
-  // numbers, and the spread of the lattices' means is the error.
+  // Mean of function(context, v) over all random numbers, from randomly shifted lattices: far less noise than
+  // independent numbers, and the spread of the lattices' means is the error.
   template <class Function>
   RunningMean StratifiedMean(const Function& function) {
     constexpr int kLattices = 64;
@@ -195,8 +195,8 @@ Quadrature AreaChecker::Integrate(const Point3& P, int subdivisions) const {
   return result;
 }
 
-// Largest relative differences of a sample against EvaluateSamples for the very same point, and for the same point as the
-// shape itself has it.
+// Largest relative differences of a sample against EvaluateSamples for the very same point, and for the same point as
+// the shape itself has it.
 void AreaChecker::CheckSample(const LightSample& sample, const Point3& P, double& consistency, double& surface) const {
   LightHit hit;
   hit.direction = sample.direction;
@@ -282,7 +282,8 @@ void AreaChecker::CheckEstimates(const Receiver& receiver, bool arrives) {
   for (int i = 0; i < 8; ++i) {
     const float length = static_cast<float>(extent_.radius) * (0.2f + 4 * rng_.NextFloat());
     const float t = length * (0.1f + 0.8f * rng_.NextFloat());
-    const Vector3 direction = Cap{}.Direction(2 * static_cast<double>(rng_.NextFloat()), static_cast<double>(rng_.NextFloat()));
+    const Vector3 direction =
+        Cap{}.Direction(2 * static_cast<double>(rng_.NextFloat()), static_cast<double>(rng_.NextFloat()));
     const auto segment =
         light_.GetIncidentRadianceEstimate(subject_.context, receiver.position - t * direction, direction, length);
     if (!segment || !(segment->radiance > 0) || !(segment->minT <= t && t <= segment->maxT)) missed = 1;
@@ -321,7 +322,9 @@ void AreaChecker::CheckEmission() {
     hit.uv = Point2(photon->uvw.x, photon->uvw.y);
     hit.patchIndex = photon->patchIndex;
     const auto e = light_.EvaluateSamples(subject_.context, hit, photon->position + hit.distance * photon->direction);
-    edge = std::max(edge, e ? RelativeDifference(static_cast<double>(photon->pdfEmit.value), static_cast<double>(e->pdfEmit.value)) : 1.0);
+    edge = std::max(
+        edge, e ? RelativeDifference(static_cast<double>(photon->pdfEmit.value), static_cast<double>(e->pdfEmit.value))
+                : 1.0);
     if (e) {
       edge = std::max(edge, RelativeDifference(static_cast<double>(photon->pdfEmitDirection.value),
                                                static_cast<double>(e->pdfEmitDirection.value)));
@@ -344,7 +347,8 @@ void AreaChecker::CheckEmission() {
   expected[count] = options_.photons * std::max(1 - integral, 0.0);
   errors[count] = 2e-3 * options_.photons;
   const double statistical = 5.5 * std::sqrt(share * (1 - share) / options_.photons);
-  report_.AddError(subject_.name, "emission-integral", Case(" positions"), std::abs(integral - share), 3e-3 + statistical);
+  report_.AddError(subject_.name, "emission-integral", Case(" positions"), std::abs(integral - share),
+                   3e-3 + statistical);
   report_.AddProbability(subject_.name, "emission-positions", Case(""), ChiSquaredTest(observed, expected, errors));
   report_.AddError(subject_.name, "emission-edge", Case(""), edge, 1e-4);
   report_.AddError(subject_.name, "bounds", Case(""), bounds ? outside : 1.0, 0.5);
@@ -402,8 +406,9 @@ void AreaChecker::CheckPower() {
   if (!model_.IsClosedConvex() || oneSided_) {
     const bool emitsInwards = model_.IsClosedConvex() && direct.Mean() == 0;
     if (!emitsInwards) {
-      report_.AddProbability(subject_.name, "power", Case(""),
-                             EqualMeans(emitted.Mean(), emitted.StandardError(), direct.Mean(), direct.StandardError(), 1e-3));
+      report_.AddProbability(
+          subject_.name, "power", Case(""),
+          EqualMeans(emitted.Mean(), emitted.StandardError(), direct.Mean(), direct.StandardError(), 1e-3));
     }
   }
   if (subject_.isPowerExact) {

@@ -24,11 +24,11 @@ Cap CapAround(const std::vector<Vector3>& directions);
 
 struct DirectionTest {
   std::string integralProperty, chiSquaredProperty;
-  std::function<double(const Vector3&)> density;                // 1/sr
+  std::function<double(const Vector3&)> density;  // 1/sr
   std::function<std::optional<Vector3>(Rng&)> sample;
   int samples = 0;
-  int subdivisions = 24;                                        // of a cell, for quadrature
-  double expectationError = 1e-3;                               // relative, besides what two quadratures differ by
+  int subdivisions = 24;           // of a cell, for quadrature
+  double expectationError = 1e-3;  // relative, besides what two quadratures differ by
 };
 // Integral and χ² of a distribution of directions.
 void CheckDirections(const SuiteSubject& subject, const std::string& suffix, const Cap& cap, const DirectionTest& test,

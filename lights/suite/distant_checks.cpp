@@ -36,8 +36,8 @@ void CheckPowerEstimate(const SuiteSubject& subject, const RunningMean& emitted,
 
 namespace {
 
-// The largest difference of two quantities that should be the same, relative to the largest value that occurs: in a narrow
-// cone the rounding of a direction is a visible part of its soft edge.
+// The largest difference of two quantities that should be the same, relative to the largest value that occurs: in a
+// narrow cone the rounding of a direction is a visible part of its soft edge.
 struct LargestDifference {
   double difference = 0, largest = 0;
   void Note(double a, double b) {
@@ -70,18 +70,24 @@ void CheckPointLight(const SuiteSubject& subject, const SuiteOptions& options, S
     // On the rim of a cone the two roundings of the direction may fall on either side.
     if (!sample) continue;
     const auto d2 = static_cast<double>(sample->distance) * static_cast<double>(sample->distance);
-    density.Note(static_cast<double>(photon->pdfEmitDirection.value), static_cast<double>(sample->pdfEmitDirection.value));
+    density.Note(static_cast<double>(photon->pdfEmitDirection.value),
+                 static_cast<double>(sample->pdfEmitDirection.value));
     intensity.Note(static_cast<double>(photon->diffuse.Average()), d2 * static_cast<double>(sample->diffuse.Average()));
-    edge = std::max(edge, RelativeDifference(static_cast<double>(photon->pdfEmit.value), static_cast<double>(sample->pdfEmit.value)));
+    edge = std::max(edge, RelativeDifference(static_cast<double>(photon->pdfEmit.value),
+                                             static_cast<double>(sample->pdfEmit.value)));
     edge = std::max(edge, static_cast<double>(glm::length(sample->direction + photon->direction)) > 1e-3 ? 1.0 : 0.0);
     if (sample->pdfDirect.value != 1 || light.EvaluateSamples(subject.context, {}, P)) edge = 1;
     if (!(light.GetIncidentRadianceEstimate(subject.context, P) > 0)) missed = 1;
-    const Vector3 along = Cap{}.Direction(2 * static_cast<double>(rng.NextFloat()), static_cast<double>(rng.NextFloat()));
+    const Vector3 along =
+        Cap{}.Direction(2 * static_cast<double>(rng.NextFloat()), static_cast<double>(rng.NextFloat()));
     const float before = distance * rng.NextFloat();
     const auto segment = light.GetIncidentRadianceEstimate(subject.context, P - before * along, along, 2 * distance);
-    if (!segment || !(segment->radiance > 0) || !(segment->minT <= before * 1.001f && before * 0.999f <= segment->maxT)) missed = 1;
-    if (bounds && bounds->cosThetaO > -1 && glm::dot(bounds->axis, photon->direction) < bounds->cosThetaE - 1e-4f) outside = 1;
-    if (bounds && glm::length(position - bounds->box.Center()) > 1e-5f * (distance + glm::length(position))) outside = 1;
+    if (!segment || !(segment->radiance > 0) || !(segment->minT <= before * 1.001f && before * 0.999f <= segment->maxT))
+      missed = 1;
+    if (bounds && bounds->cosThetaO > -1 && glm::dot(bounds->axis, photon->direction) < bounds->cosThetaE - 1e-4f)
+      outside = 1;
+    if (bounds && glm::length(position - bounds->box.Center()) > 1e-5f * (distance + glm::length(position)))
+      outside = 1;
   }
   if (directions.empty()) return;
   const Cap cap = CapAround(directions);
@@ -101,13 +107,15 @@ void CheckPointLight(const SuiteSubject& subject, const SuiteOptions& options, S
   };
   CheckDirections(subject, "", cap, test, rng, report);
   for (int i = 0; i < 4 * options.photons; ++i) {
-    const Vector3 outward = cap.Direction(cap.wMax * static_cast<double>(rng.NextFloat()), static_cast<double>(rng.NextFloat()));
+    const Vector3 outward =
+        cap.Direction(cap.wMax * static_cast<double>(rng.NextFloat()), static_cast<double>(rng.NextFloat()));
     const auto sample = light.GenerateSamples(subject.context, position + distance * outward);
     const auto d2 = sample ? static_cast<double>(sample->distance) * static_cast<double>(sample->distance) : 0.0;
     direct.Add(sample ? static_cast<double>(sample->diffuse.Average()) * d2 * cap.SolidAngle() : 0.0);
   }
-  report.AddProbability(subject.name, "power", subject.caseName,
-                        EqualMeans(emitted.Mean(), emitted.StandardError(), direct.Mean(), direct.StandardError(), 3e-3));
+  report.AddProbability(
+      subject.name, "power", subject.caseName,
+      EqualMeans(emitted.Mean(), emitted.StandardError(), direct.Mean(), direct.StandardError(), 3e-3));
   CheckPowerEstimate(subject, emitted, report);
   report.AddError(subject.name, "emission-edge", subject.caseName,
                   std::max(edge, std::max(density.Relative(), intensity.Relative())), 2e-2);
@@ -123,7 +131,8 @@ void CheckEmissionDisk(const SuiteSubject& subject, const SuiteOptions& options,
   constexpr int kRings = 4, kSectors = 8;
   const Light& light = *subject.light;
   const BoundingSphere& scene = subject.context.scene;
-  std::vector<double> observed(kRings * kSectors, 0.0), expected(kRings * kSectors, 0.0), errors(kRings * kSectors, 0.0);
+  std::vector<double> observed(kRings * kSectors, 0.0), expected(kRings * kSectors, 0.0),
+      errors(kRings * kSectors, 0.0);
   double edge = 0, integral = 0, found = 0;
   for (int i = 0; i < options.photons; ++i) {
     const auto photon = light.GenerateEmission(RandomContext(subject, rng));
@@ -146,12 +155,18 @@ void CheckEmissionDisk(const SuiteSubject& subject, const SuiteOptions& options,
     hit.direction = Vector3(toLight);
     if (light.Kind() == LightKind::Infinite) {
       const auto e = light.EvaluateSamples(context, hit, scene.center);
-      edge = std::max(edge, e ? RelativeDifference(static_cast<double>(e->pdfEmit.value), static_cast<double>(photon->pdfEmit.value)) : 1.0);
-      edge = std::max(edge, e ? RelativeDifference(static_cast<double>(e->pdfEmitDirection.value), static_cast<double>(photon->pdfEmitDirection.value)) : 1.0);
+      edge = std::max(edge, e ? RelativeDifference(static_cast<double>(e->pdfEmit.value),
+                                                   static_cast<double>(photon->pdfEmit.value))
+                              : 1.0);
+      edge = std::max(edge, e ? RelativeDifference(static_cast<double>(e->pdfEmitDirection.value),
+                                                   static_cast<double>(photon->pdfEmitDirection.value))
+                              : 1.0);
       edge = std::max(edge, e ? RelativeDifference(e->diffuse, photon->diffuse) : 1.0);
     } else {
       const auto e = light.GenerateSamples(context, scene.center);
-      edge = std::max(edge, e ? RelativeDifference(static_cast<double>(e->pdfEmit.value), static_cast<double>(photon->pdfEmit.value)) : 1.0);
+      edge = std::max(edge, e ? RelativeDifference(static_cast<double>(e->pdfEmit.value),
+                                                   static_cast<double>(photon->pdfEmit.value))
+                              : 1.0);
       if (e && glm::length(e->direction + photon->direction) > 1e-5f) edge = 1;
       if (photon->pdfEmitDirection.value != 1 || light.EvaluateSamples(context, hit, scene.center)) edge = 1;
     }
@@ -159,14 +174,16 @@ void CheckEmissionDisk(const SuiteSubject& subject, const SuiteOptions& options,
   }
   if (found == 0) return;
   for (double& e : expected) e = found / (kRings * kSectors);
-  report.AddProbability(subject.name, "emission-positions", subject.caseName, ChiSquaredTest(observed, expected, errors));
+  report.AddProbability(subject.name, "emission-positions", subject.caseName,
+                        ChiSquaredTest(observed, expected, errors));
   report.AddError(subject.name, "emission-integral", subject.caseName + " disk", std::abs(integral - 1), 1e-4);
   report.AddError(subject.name, "emission-edge", subject.caseName, edge, 1e-4);
 }
 
 double SampleAndCompare(const Light& light, const LightContext& context, const Point3& P, RunningMean& fluence) {
   const auto sample = light.GenerateSamples(context, P);
-  fluence.Add(sample ? static_cast<double>(sample->diffuse.Average()) / static_cast<double>(sample->pdfDirect.value) : 0.0);
+  fluence.Add(sample ? static_cast<double>(sample->diffuse.Average()) / static_cast<double>(sample->pdfDirect.value)
+                     : 0.0);
   if (!sample) return 0;
   if (light.Kind() == LightKind::DeltaDirection) return sample->pdfDirect.value == 1 ? 0 : 1;
   LightHit hit;
@@ -174,10 +191,14 @@ double SampleAndCompare(const Light& light, const LightContext& context, const P
   const auto e = light.EvaluateSamples(context, hit, P);
   if (!e) return 1;
   double worst = RelativeDifference(sample->diffuse, e->diffuse);
-  worst = std::max(worst, RelativeDifference(static_cast<double>(sample->pdfDirect.value), static_cast<double>(e->pdfDirect.value)));
-  worst = std::max(worst, RelativeDifference(static_cast<double>(sample->pdfEmit.value), static_cast<double>(e->pdfEmit.value)));
-  worst = std::max(worst, RelativeDifference(static_cast<double>(sample->pdfEmitDirection.value), static_cast<double>(e->pdfEmitDirection.value)));
-  worst = std::max(worst, RelativeDifference(static_cast<double>(sample->solidAngleToArea), static_cast<double>(e->solidAngleToArea)));
+  worst = std::max(
+      worst, RelativeDifference(static_cast<double>(sample->pdfDirect.value), static_cast<double>(e->pdfDirect.value)));
+  worst = std::max(
+      worst, RelativeDifference(static_cast<double>(sample->pdfEmit.value), static_cast<double>(e->pdfEmit.value)));
+  worst = std::max(worst, RelativeDifference(static_cast<double>(sample->pdfEmitDirection.value),
+                                             static_cast<double>(e->pdfEmitDirection.value)));
+  worst = std::max(worst, RelativeDifference(static_cast<double>(sample->solidAngleToArea),
+                                             static_cast<double>(e->solidAngleToArea)));
   return worst;
 }
 
@@ -231,13 +252,15 @@ void CheckInfiniteLight(const SuiteSubject& subject, const SuiteOptions& options
   const auto radius = static_cast<double>(subject.context.scene.radius);
   const double disk = kPiDouble * radius * radius;
   report.AddError(subject.name, "consistency", subject.caseName, consistency, 1e-4);
-  report.AddProbability(subject.name, "power", subject.caseName,
-                        EqualMeans(emitted.Mean(), emitted.StandardError(), disk * fluence.Mean(), disk * fluence.StandardError(), 1e-3));
+  report.AddProbability(
+      subject.name, "power", subject.caseName,
+      EqualMeans(emitted.Mean(), emitted.StandardError(), disk * fluence.Mean(), disk * fluence.StandardError(), 1e-3));
   const bool shines = emitted.Mean() > 0;
   if (shines) CheckPowerEstimate(subject, emitted, report);
-  const auto segment = light.GetIncidentRadianceEstimate(subject.context, subject.context.scene.center, Vector3(0, 0, 1), 1.0f);
-  const bool estimated = light.GetIncidentRadianceEstimate(subject.context, subject.context.scene.center) > 0 && segment &&
-                         segment->radiance > 0 && segment->minT <= 0 && segment->maxT >= 1;
+  const auto segment =
+      light.GetIncidentRadianceEstimate(subject.context, subject.context.scene.center, Vector3(0, 0, 1), 1.0f);
+  const bool estimated = light.GetIncidentRadianceEstimate(subject.context, subject.context.scene.center) > 0 &&
+                         segment && segment->radiance > 0 && segment->minT <= 0 && segment->maxT >= 1;
   report.AddError(subject.name, "estimate", subject.caseName, shines && !estimated ? 1.0 : 0.0, 0.5);
   if (light.Kind() != LightKind::Infinite) return;
   CheckInfiniteDirections(subject, options, rng, report);
@@ -245,13 +268,15 @@ void CheckInfiniteLight(const SuiteSubject& subject, const SuiteOptions& options
   RunningMean uniform;
   for (int i = 0; i < 8 * options.photons; ++i) {
     LightHit hit;
-    hit.direction = glm::normalize(Cap{}.Direction(2 * static_cast<double>(rng.NextFloat()), static_cast<double>(rng.NextFloat())));
+    hit.direction =
+        glm::normalize(Cap{}.Direction(2 * static_cast<double>(rng.NextFloat()), static_cast<double>(rng.NextFloat())));
     const auto e = light.EvaluateSamples(subject.context, hit, subject.context.scene.center);
     uniform.Add(e ? static_cast<double>(e->diffuse.Average()) * 4 * kPiDouble : 0.0);
   }
   if (uniform.StandardError() > 0.02 * uniform.Mean()) return;
-  report.AddProbability(subject.name, "irradiance", subject.caseName,
-                        EqualMeans(fluence.Mean(), fluence.StandardError(), uniform.Mean(), uniform.StandardError(), 1e-3));
+  report.AddProbability(
+      subject.name, "irradiance", subject.caseName,
+      EqualMeans(fluence.Mean(), fluence.StandardError(), uniform.Mean(), uniform.StandardError(), 1e-3));
 }
 
 }  // namespace lampyr::suite

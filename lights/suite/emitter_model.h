@@ -1,5 +1,5 @@
-// A shape's surface, written a second time: parametrised, in double, sharing no code with the lights. The suite integrates
-// the lights' densities over it and puts their samples into its cells.
+// A shape's surface, written a second time: parametrised, in double, sharing no code with the lights. The suite
+// integrates the lights' densities over it and puts their samples into its cells.
 #pragma once
 
 #include <memory>
@@ -15,7 +15,7 @@ class EmitterModel {
     Point3d position{0.0};
     Vector3d normal{0.0};  // unit, outer side
     Point2 uv{0.0f};
-    double area = 0;       // dA / (du dv), u and v the model's parameters
+    double area = 0;  // dA / (du dv), u and v the model's parameters
   };
 
   virtual ~EmitterModel() = default;

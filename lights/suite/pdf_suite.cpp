@@ -10,8 +10,8 @@ void SuiteReport::AddProbability(const std::string& light, const std::string& pr
   results_.push_back({light, property, caseName, true, pValue, 0, false});
 }
 
-void SuiteReport::AddError(const std::string& light, const std::string& property, const std::string& caseName, double error,
-                           double tolerance) {
+void SuiteReport::AddError(const std::string& light, const std::string& property, const std::string& caseName,
+                           double error, double tolerance) {
   results_.push_back({light, property, caseName, false, error, tolerance, error <= tolerance});
 }
 
@@ -29,10 +29,16 @@ std::vector<SuiteResult> SuiteReport::Finish(double familyWise) {
 
 void CheckLight(const SuiteSubject& subject, const SuiteOptions& options, SuiteReport& report) {
   switch (subject.light->Kind()) {
-    case LightKind::Area: suite::CheckAreaLight(subject, options, report); break;
-    case LightKind::DeltaPosition: suite::CheckPointLight(subject, options, report); break;
+    case LightKind::Area:
+      suite::CheckAreaLight(subject, options, report);
+      break;
+    case LightKind::DeltaPosition:
+      suite::CheckPointLight(subject, options, report);
+      break;
     case LightKind::DeltaDirection:
-    case LightKind::Infinite: suite::CheckInfiniteLight(subject, options, report); break;
+    case LightKind::Infinite:
+      suite::CheckInfiniteLight(subject, options, report);
+      break;
   }
 }
 
@@ -42,7 +48,9 @@ namespace {
 constexpr int kRings = 8, kSectors = 6;
 }
 
-double Cap::SolidAngle() const { return 2 * 3.14159265358979323846 * wMax; }
+double Cap::SolidAngle() const {
+  return 2 * 3.14159265358979323846 * wMax;
+}
 
 Vector3 Cap::Direction(double w, double turns) const {
   const Vector3d helper = std::abs(axis.x) < 0.7 ? Vector3d(1, 0, 0) : Vector3d(0, 1, 0);
@@ -77,7 +85,8 @@ Cap CapAround(const std::vector<Vector3>& directions) {
 void CheckDirections(const SuiteSubject& subject, const std::string& suffix, const Cap& cap, const DirectionTest& test,
                      Rng& rng, SuiteReport& report) {
   constexpr size_t cells = kRings * kSectors;
-  std::vector<double> expected(cells + 1, 0.0), coarse(cells + 1, 0.0), observed(cells + 1, 0.0), errors(cells + 1, 0.0);
+  std::vector<double> expected(cells + 1, 0.0), coarse(cells + 1, 0.0), observed(cells + 1, 0.0),
+      errors(cells + 1, 0.0);
   // Two quadratures, the second with half as many points a side: their difference bounds the error.
   const auto integrate = [&](int n, std::vector<double>& into) {
     const double element = cap.SolidAngle() / (static_cast<double>(cells) * n * n);
@@ -108,7 +117,8 @@ void CheckDirections(const SuiteSubject& subject, const std::string& suffix, con
   const double share = found / test.samples, difference = std::abs(integral - coarseIntegral);
   const std::string caseName = subject.caseName + suffix;
   const double statistical = 5.5 * std::sqrt(share * (1 - share) / test.samples);
-  report.AddError(subject.name, test.integralProperty, caseName, std::abs(integral - share), 3e-3 + 2 * difference + statistical);
+  report.AddError(subject.name, test.integralProperty, caseName, std::abs(integral - share),
+                  3e-3 + 2 * difference + statistical);
   for (size_t i = 0; i < cells; ++i) {
     errors[i] = test.samples * (2 * std::abs(expected[i] - coarse[i]) + test.expectationError * expected[i]);
     expected[i] *= test.samples;

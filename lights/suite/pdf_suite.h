@@ -2,12 +2,11 @@
 // over a plugin's type or over a single light, and prints nothing itself.
 //
 // Properties (names as in the results)
-//   integral              pdfDirect integrates to the probability that a sample exists, 1 where the light is all visible
-//   directions            χ² of sampled points (or directions, at infinity) against pdfDirect
-//   consistency           EvaluateSamples on a generated sample gives back radiance, normal and all densities
-//   surface               a sample's normal, position and density agree with the shape, evaluated apart from the light
-//   one-sided             nothing leaves a one-sided surface at its back
-//   irradiance            by light sampling = by quadrature over the surface
+//   integral              pdfDirect integrates to the probability that a sample exists, 1 where the light is all
+//   visible directions            χ² of sampled points (or directions, at infinity) against pdfDirect consistency
+//   EvaluateSamples on a generated sample gives back radiance, normal and all densities surface               a
+//   sample's normal, position and density agree with the shape, evaluated apart from the light one-sided nothing leaves
+//   a one-sided surface at its back irradiance            by light sampling = by quadrature over the surface
 //   emission-integral     the densities of emission integrate to 1
 //   emission-positions, emission-directions   χ² of photons against pdfEmit and pdfEmitDirection
 //   emission-edge         a photon's densities are those that EvaluateSamples gives for that edge
@@ -36,7 +35,8 @@ struct SuiteResult {
 
 class SuiteReport {
  public:
-  void AddProbability(const std::string& light, const std::string& property, const std::string& caseName, double pValue);
+  void AddProbability(const std::string& light, const std::string& property, const std::string& caseName,
+                      double pValue);
   void AddError(const std::string& light, const std::string& property, const std::string& caseName, double error,
                 double tolerance);
   // Judges the p-values at a family-wise level over all that were added.
@@ -47,8 +47,8 @@ class SuiteReport {
 };
 
 struct SuiteOptions {
-  int samples = 3000;       // per receiver
-  int photons = 8000;       // per light and transform
+  int samples = 3000;  // per receiver
+  int photons = 8000;  // per light and transform
   double familyWise = 1e-3;
   uint64_t seed = 1;
 };
@@ -56,9 +56,9 @@ struct SuiteOptions {
 // A light under test, as it is placed.
 struct SuiteSubject {
   const Light* light = nullptr;
-  LightContext context;                  // transform and scene; bidirectional
-  const EmitterModel* model = nullptr;   // area lights
-  bool isPowerExact = true;              // GetPowerEstimate is a closed form here
+  LightContext context;                 // transform and scene; bidirectional
+  const EmitterModel* model = nullptr;  // area lights
+  bool isPowerExact = true;             // GetPowerEstimate is a closed form here
   std::string name, caseName;
 };
 

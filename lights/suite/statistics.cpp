@@ -35,11 +35,16 @@ double UpperGamma(double a, double x) {
 
 }  // namespace
 
-double ChiSquaredTail(double statistic, int degrees) { return UpperGamma(0.5 * degrees, 0.5 * statistic); }
+double ChiSquaredTail(double statistic, int degrees) {
+  return UpperGamma(0.5 * degrees, 0.5 * statistic);
+}
 
-double NormalTail(double z) { return std::erfc(std::abs(z) * 0.70710678118654752); }
+double NormalTail(double z) {
+  return std::erfc(std::abs(z) * 0.70710678118654752);
+}
 
-double ChiSquaredTest(std::span<const double> observed, std::span<const double> expected, std::span<const double> errors) {
+double ChiSquaredTest(std::span<const double> observed, std::span<const double> expected,
+                      std::span<const double> errors) {
   double statistic = 0, pooledObserved = 0, pooledExpected = 0, pooledError = 0;
   int cells = 0;
   const auto add = [&](double o, double e, double error) {
@@ -70,6 +75,8 @@ double SidakLevel(double familyWise, int count) {
   return count > 0 ? -std::expm1(std::log1p(-familyWise) / count) : familyWise;
 }
 
-double RunningMean::StandardError() const { return count_ > 1 ? std::sqrt(squares_ / (count_ - 1) / count_) : 0; }
+double RunningMean::StandardError() const {
+  return count_ > 1 ? std::sqrt(squares_ / (count_ - 1) / count_) : 0;
+}
 
 }  // namespace lampyr

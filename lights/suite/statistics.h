@@ -1,4 +1,5 @@
-// The few statistics that the suite needs: tail probabilities and a χ² test that allows for the error of its expectations.
+// The few statistics that the suite needs: tail probabilities and a χ² test that allows for the error of its
+// expectations.
 #pragma once
 
 #include <span>
@@ -11,9 +12,11 @@ double ChiSquaredTail(double statistic, int degrees);
 // Two-sided tail of the standard normal distribution.
 double NormalTail(double z);
 
-// p-value of the observed counts against the expected ones. `errors` are bounds on the errors of the expectations, which
-// widen what is allowed; cells of less than 5 expected counts are pooled. Counts where nothing is expected give 0.
-double ChiSquaredTest(std::span<const double> observed, std::span<const double> expected, std::span<const double> errors);
+// p-value of the observed counts against the expected ones. `errors` are bounds on the errors of the expectations,
+// which widen what is allowed; cells of less than 5 expected counts are pooled. Counts where nothing is expected give
+// 0.
+double ChiSquaredTest(std::span<const double> observed, std::span<const double> expected,
+                      std::span<const double> errors);
 
 // The level of each of `count` tests for a family-wise level ([Sidak67]).
 double SidakLevel(double familyWise, int count);

@@ -49,7 +49,8 @@ std::shared_ptr<const TriangleMesh> SuiteMesh(bool withNormals) {
 
 std::shared_ptr<const BilinearMesh> SuitePatches(bool withUvs) {
   auto mesh = std::make_shared<BilinearMesh>();
-  mesh->positions = {{-1, -1, 0}, {1, -0.8f, 0.2f}, {-0.7f, 1, 0.5f}, {1.2f, 1.1f, -0.3f}, {2.5f, -1, 0.4f}, {2.2f, 0.9f, 0}};
+  mesh->positions = {{-1, -1, 0},         {1, -0.8f, 0.2f}, {-0.7f, 1, 0.5f},
+                     {1.2f, 1.1f, -0.3f}, {2.5f, -1, 0.4f}, {2.2f, 0.9f, 0}};
   mesh->patches = {{0, 1, 2, 3}, {1, 4, 3, 5}};
   if (withUvs) mesh->uvs = {{0, 0}, {0.5f, 0.1f}, {0.1f, 1}, {0.6f, 0.9f}, {1, 0}, {1, 1}};
   return mesh;
@@ -115,7 +116,8 @@ void WriteSuiteImages(const std::filesystem::path& folder) {
     Image image(width, height, {"R", "G", "B"});
     for (int i = 0; i < width * height; ++i) {
       const float v = value(i);
-      for (size_t c = 0; c < 3; ++c) image.data[static_cast<size_t>(i) * 3 + c] = v * (0.4f + 0.3f * static_cast<float>(c));
+      for (size_t c = 0; c < 3; ++c)
+        image.data[static_cast<size_t>(i) * 3 + c] = v * (0.4f + 0.3f * static_cast<float>(c));
     }
     WriteExr(folder / name, image, ExrPrecision::Float);
   };
@@ -131,7 +133,8 @@ void WriteSuiteImages(const std::filesystem::path& folder) {
 
 ParameterList ParseSample(const LightType& type, const std::string& sample, const std::filesystem::path& folder,
                           Diagnostics& diagnostics) {
-  const std::string statement = (type.isAreaLight ? "AreaLightSource \"" : "LightSource \"") + type.name + "\" " + sample;
+  const std::string statement =
+      (type.isAreaLight ? "AreaLightSource \"" : "LightSource \"") + type.name + "\" " + sample;
   const std::string text = "WorldBegin\n" + statement + "\n" + (type.isAreaLight ? "Shape \"sphere\"\n" : "");
   const SceneDescription scene = ParseScene(text, folder / "suite.pbrt", diagnostics);
   return type.isAreaLight ? scene.areaLights.at(0).parameters : scene.lights.at(0).light.parameters;
@@ -151,7 +154,8 @@ class SuiteRun {
       for (const NamedTransform& transform : Transforms()) {
         // In turn: the shape where it belongs, and an instance of it.
         if (type.isAreaLight) {
-          for (const NamedShape& shape : Shapes()) CheckArea(type, parameters, name, shape, transform, which++ % 2 == 1);
+          for (const NamedShape& shape : Shapes())
+            CheckArea(type, parameters, name, shape, transform, which++ % 2 == 1);
         } else {
           CheckOther(type, parameters, name, transform);
         }
@@ -171,16 +175,16 @@ class SuiteRun {
     return build;
   }
 
-  void CheckArea(const LightType& type, const ParameterList& parameters, const std::string& name, const NamedShape& shape,
-                 const NamedTransform& transform, bool isInstance) {
+  void CheckArea(const LightType& type, const ParameterList& parameters, const std::string& name,
+                 const NamedShape& shape, const NamedTransform& transform, bool isInstance) {
     const Shape placed = isInstance ? shape.shape : Bake(shape.shape, transform.transform);
     const Transform placement = isInstance ? transform.transform : Transform();
     LightBuildContext build = Build(placement);
     build.shape = &placed;
     const std::unique_ptr<EmitterModel> model = MakeEmitterModel(placed, placement);
     const bool hasImage = !parameters.GetFile("filename").empty();
-    Check(type, parameters, build, name, shape.name + " " + transform.name + (isInstance ? " instance" : ""), model.get(),
-          !hasImage);
+    Check(type, parameters, build, name, shape.name + " " + transform.name + (isInstance ? " instance" : ""),
+          model.get(), !hasImage);
   }
 
   void CheckOther(const LightType& type, const ParameterList& parameters, const std::string& name,
@@ -190,14 +194,15 @@ class SuiteRun {
     Check(type, parameters, Build(transform.transform), name, transform.name, nullptr, keepsAngles);
   }
 
-  void Check(const LightType& type, const ParameterList& parameters, const LightBuildContext& build, const std::string& name,
-             const std::string& caseName, const EmitterModel* model, bool isPowerExact) {
+  void Check(const LightType& type, const ParameterList& parameters, const LightBuildContext& build,
+             const std::string& name, const std::string& caseName, const EmitterModel* model, bool isPowerExact) {
     const std::unique_ptr<Light> light = MakeLight(type, parameters, build);
     SuiteSubject subject;
     subject.light = light.get();
     subject.model = model;
     subject.context.transform = &build.transform;
-    subject.context.scene = {build.transform.toRender.translation, 3 * MaxAbsComponent(build.transform.toRender.linear[0])};
+    subject.context.scene = {build.transform.toRender.translation,
+                             3 * MaxAbsComponent(build.transform.toRender.linear[0])};
     subject.context.bidirectional = true;
     subject.isPowerExact = isPowerExact;
     subject.name = name;

@@ -20,7 +20,8 @@ struct BuiltLight {
 
 inline ParameterList Parse(const std::string& type, const std::string& parameters, bool isArea) {
   Diagnostics diagnostics(Diagnostics::Mode::Collect);
-  const std::string statement = std::string(isArea ? "AreaLightSource" : "LightSource") + " \"" + type + "\" " + parameters;
+  const std::string statement =
+      std::string(isArea ? "AreaLightSource" : "LightSource") + " \"" + type + "\" " + parameters;
   const SceneDescription scene =
       ParseScene("WorldBegin\n" + statement + (isArea ? "\nShape \"sphere\"\n" : "\n"), "test.pbrt", diagnostics);
   return isArea ? scene.areaLights.at(0).parameters : scene.lights.at(0).light.parameters;
@@ -37,7 +38,8 @@ inline std::unique_ptr<BuiltLight> Build(const std::string& type, const std::str
     built->shape = std::make_unique<Shape>(*shape);
     built->build.shape = built->shape.get();
   }
-  built->light = MakeLight(*FindLightType(type, shape != nullptr), Parse(type, parameters, shape != nullptr), built->build);
+  built->light =
+      MakeLight(*FindLightType(type, shape != nullptr), Parse(type, parameters, shape != nullptr), built->build);
   built->context.transform = &built->build.transform;
   built->context.scene = {Point3(0.0f), 10};
   built->context.bidirectional = true;
@@ -64,6 +66,8 @@ inline std::shared_ptr<TriangleMesh> Square(float side) {
   mesh->uvs = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
   return mesh;
 }
-inline Shape AsShape(std::shared_ptr<TriangleMesh> mesh) { return std::shared_ptr<const TriangleMesh>(std::move(mesh)); }
+inline Shape AsShape(std::shared_ptr<TriangleMesh> mesh) {
+  return std::shared_ptr<const TriangleMesh>(std::move(mesh));
+}
 
 }  // namespace lampyr::test

@@ -54,7 +54,8 @@ void ExpectFinite(const test::BuiltLight& built, const Point3& P, const std::str
     context.uDirection = i == 0 ? Point2(0.0f) : i == 1 ? Point2(kOneMinusEpsilon) : rng.NextPoint2();
     if (const auto s = built.light->GenerateSamples(context, P)) {
       EXPECT_TRUE(s->diffuse.IsValid() && valid(s->pdfDirect.value) && valid(s->pdfEmit.value) && IsFinite(s->normal) &&
-                  valid(s->pdfEmitDirection.value) && valid(s->solidAngleToArea) && IsFinite(s->direction) && IsFinite(s->position))
+                  valid(s->pdfEmitDirection.value) && valid(s->solidAngleToArea) && IsFinite(s->direction) &&
+                  IsFinite(s->position))
           << what;
       EXPECT_NEAR(glm::length(s->direction), 1, 1e-5f) << what;
       EXPECT_GT(s->pdfDirect.value, 0) << what;
@@ -108,7 +109,8 @@ TEST(LightExtremes, TinyFarSphereKeepsItsSolidAngle) {
 TEST(LightExtremes, SphereAlmostTouched) {
   const Shape sphere = test::Sphere(1);
   const auto built = Build("diffuse", "", Transform(), &sphere);
-  for (const float height : {1e-6f, 1e-5f, 3e-5f, 1e-4f, 1e-2f}) ExpectFinite(*built, Point3(0, 0, 1 + height), "touching");
+  for (const float height : {1e-6f, 1e-5f, 3e-5f, 1e-4f, 1e-2f})
+    ExpectFinite(*built, Point3(0, 0, 1 + height), "touching");
 }
 
 TEST(LightExtremes, MeshesThatAreNone) {

@@ -17,7 +17,9 @@ double Irradiance(const test::BuiltLight& built, const Point3& P, const Normal3&
     LightContext context = built.context;
     context.u = rng.NextPoint2();
     const auto sample = built.light->GenerateSamples(context, P);
-    if (sample) sum += static_cast<double>(sample->diffuse.g * std::max(glm::dot(n, sample->direction), 0.0f) / sample->pdfDirect.value);
+    if (sample)
+      sum += static_cast<double>(sample->diffuse.g * std::max(glm::dot(n, sample->direction), 0.0f) /
+                                 sample->pdfDirect.value);
   }
   return sum / samples;
 }
@@ -59,7 +61,8 @@ TEST(LightValues, SpotIsASmoothstepInTheCosine) {
 }
 
 TEST(LightValues, DistantIsIrradiance) {
-  const auto sun = Build("distant", "\"rgb L\" [ 1 2 3 ] \"float illuminance\" 10 \"point3 from\" [ 0 5 0 ] \"point3 to\" [ 0 0 0 ]");
+  const auto sun = Build(
+      "distant", "\"rgb L\" [ 1 2 3 ] \"float illuminance\" 10 \"point3 from\" [ 0 5 0 ] \"point3 to\" [ 0 0 0 ]");
   EXPECT_NEAR(Irradiance(*sun, Point3(0.0f), Normal3(0, 1, 0), 4), 20, 1e-5);
   EXPECT_EQ(Irradiance(*sun, Point3(0.0f), Normal3(0, -1, 0), 4), 0);
   EXPECT_NEAR(sun->light->GetPowerEstimate(sun->context).g, 20 * kPi * 100, 1e-2f);
@@ -157,14 +160,17 @@ TEST(LightValues, EditMakesAllAnew) {
 
   const Shape square = test::AsShape(test::Square(2));
   const auto area = Build("diffuse", "\"rgb L\" [ 1 1 1 ]", Transform(), &square);
-  const auto brighter = area->light->Edit(test::Parse("diffuse", "\"float scale\" 2 \"bool twosided\" true", true), area->build);
+  const auto brighter =
+      area->light->Edit(test::Parse("diffuse", "\"float scale\" 2 \"bool twosided\" true", true), area->build);
   EXPECT_NEAR(brighter->GetPowerEstimate(area->context).g, 16 * kPi, 1e-3f);
   EXPECT_TRUE(brighter->GetEmissionBounds(area->context)->twoSided);
 }
 
 TEST(LightValues, SettingsOfEveryLight) {
-  const auto light = Build("point", "\"string name\" \"a\" \"string lightGroup\" \"g\" \"bool cameraVisible\" false "
-                                    "\"bool traceLightPaths\" false \"float importanceMultiplier\" 2 \"integer fixedSampleCount\" 4");
+  const auto light =
+      Build("point",
+            "\"string name\" \"a\" \"string lightGroup\" \"g\" \"bool cameraVisible\" false "
+            "\"bool traceLightPaths\" false \"float importanceMultiplier\" 2 \"integer fixedSampleCount\" 4");
   const LightSettings& settings = light->light->Settings();
   EXPECT_EQ(settings.name, "a");
   EXPECT_EQ(settings.lightGroup, "g");

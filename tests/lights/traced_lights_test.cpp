@@ -1,5 +1,5 @@
-// Area lights as the ray tracer finds them: what uniform rays from a point collect, by the traced surface's own position,
-// normal and uv, equals what light sampling estimates; for mirrored and instanced shapes too.
+// Area lights as the ray tracer finds them: what uniform rays from a point collect, by the traced surface's own
+// position, normal and uv, equals what light sampling estimates; for mirrored and instanced shapes too.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -59,7 +59,8 @@ Traced Trace(const test::BuiltLight& built, const GeometryScene& scene, const Po
 
 void ExpectAgreement(const Shape& shape, const Transform& placement, bool isInstance, bool twoSided, const Point3& P,
                      bool shines, const std::string& what) {
-  const auto built = test::Build("diffuse", twoSided ? "\"bool twosided\" true" : "", isInstance ? placement : Transform(), &shape);
+  const auto built =
+      test::Build("diffuse", twoSided ? "\"bool twosided\" true" : "", isInstance ? placement : Transform(), &shape);
   const GeometryScene scene(Describe(shape, placement, isInstance));
   const Traced traced = Trace(*built, scene, P);
   Rng rng(2);
@@ -112,7 +113,8 @@ TEST(TracedLights, MeshesWithNormalsAndTwoSides) {
         const float height = isInstance ? 1.0f : 0.0f;
         ExpectAgreement(shape, placement, isInstance, false, Point3(0.2f, 0.1f, height + 0.8f), up, what + " above");
         ExpectAgreement(shape, placement, isInstance, false, Point3(0.2f, 0.1f, height - 0.8f), !up, what + " below");
-        ExpectAgreement(shape, placement, isInstance, true, Point3(0.2f, 0.1f, height - 0.8f), true, what + " two-sided");
+        ExpectAgreement(shape, placement, isInstance, true, Point3(0.2f, 0.1f, height - 0.8f), true,
+                        what + " two-sided");
       }
     }
   }
@@ -126,7 +128,8 @@ TEST(TracedLights, BilinearPatchesWithTheirOwnUv) {
     if (withUvs) mesh->uvs = {{0.2f, 0}, {2, 0.1f}, {0.1f, 1}, {1.6f, 0.9f}};
     const Shape shape = std::shared_ptr<const BilinearMesh>(std::make_shared<BilinearMesh>(*mesh));
     ExpectAgreement(shape, Transform(), false, false, Point3(0.3f, 0.1f, 1.2f), true, "bilinear");
-    ExpectAgreement(shape, Transform::Scale({1, 2, -1}), true, true, Point3(0.3f, 0.1f, 1.2f), true, "bilinear instance");
+    ExpectAgreement(shape, Transform::Scale({1, 2, -1}), true, true, Point3(0.3f, 0.1f, 1.2f), true,
+                    "bilinear instance");
   }
 }
 

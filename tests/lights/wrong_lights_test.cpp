@@ -10,8 +10,17 @@ namespace lampyr {
 namespace {
 
 enum class Fault {
-  None, PdfOffByOnePercent, CosineForgotten, LeaksBehind, EmissionNotCosine, PowerOffByTwo, DiskNotRotated,
-  ZeroWhereItEmits, OtherRadiance, EmitDensityOff, EstimateIsZero,
+  None,
+  PdfOffByOnePercent,
+  CosineForgotten,
+  LeaksBehind,
+  EmissionNotCosine,
+  PowerOffByTwo,
+  DiskNotRotated,
+  ZeroWhereItEmits,
+  OtherRadiance,
+  EmitDensityOff,
+  EstimateIsZero,
 };
 
 // A sound light with one fault.
@@ -50,7 +59,8 @@ class WrongLight final : public Light {
     auto evaluation = light_.EvaluateSamples(context, hit, P);
     if (!evaluation) return evaluation;
     evaluation->pdfDirect = Changed(evaluation->pdfDirect, glm::dot(hit.normal, hit.direction));
-    if (fault_ == Fault::ZeroWhereItEmits && IsNeglected(hit.position, hit.direction)) evaluation->pdfDirect = PdfSolidAngle(0);
+    if (fault_ == Fault::ZeroWhereItEmits && IsNeglected(hit.position, hit.direction))
+      evaluation->pdfDirect = PdfSolidAngle(0);
     if (fault_ == Fault::OtherRadiance) evaluation->diffuse *= 1.01f;
     if (fault_ == Fault::EmitDensityOff) evaluation->pdfEmit = evaluation->pdfEmit * 1.05f;
     if (fault_ == Fault::EmissionNotCosine) evaluation->pdfEmitDirection = PdfSolidAngle(0.5f * kInvPi);
@@ -91,7 +101,8 @@ class WrongLight final : public Light {
 // The properties that a light with this fault fails.
 std::set<std::string> Failures(const std::string& type, const Shape* shape, Fault fault) {
   const Transform turn = Transform::Rotate(40, {1, 0.5, 0});
-  const auto built = test::Build(type, type == "spot" ? "\"float coneangle\" 50" : "", shape ? Transform() : turn, shape);
+  const auto built =
+      test::Build(type, type == "spot" ? "\"float coneangle\" 50" : "", shape ? Transform() : turn, shape);
   const WrongLight wrong(*built->light, fault);
   std::unique_ptr<EmitterModel> model;
   if (shape) model = MakeEmitterModel(*shape, Transform());
@@ -115,7 +126,8 @@ TEST(WrongLights, SoundOnesPass) {
   const Shape square = test::AsShape(test::Square(2)), sphere = test::Sphere(1);
   EXPECT_TRUE(Failures("diffuse", &square, Fault::None).empty());
   EXPECT_TRUE(Failures("diffuse", &sphere, Fault::None).empty());
-  for (const char* type : {"point", "spot", "distant", "infinite"}) EXPECT_TRUE(Failures(type, nullptr, Fault::None).empty());
+  for (const char* type : {"point", "spot", "distant", "infinite"})
+    EXPECT_TRUE(Failures(type, nullptr, Fault::None).empty());
 }
 
 TEST(WrongLights, EveryFaultOfAnAreaLightIsFound) {
