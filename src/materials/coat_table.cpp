@@ -50,7 +50,7 @@ Split ScatterAtBoundary(float cosTheta, float alpha, float eta, float thickness,
   if (microfacets.IsSmooth() || eta == 1) {
     return ScatterAtMicrofacet(wo, {0, 0, 1}, wo.z, TrowbridgeReitz(), eta, thickness, side);
   }
-  constexpr int kCaps = 32, kAzimuths = 12;
+  constexpr int kCaps = 64, kAzimuths = 8;
   const float stretchO = microfacets.Stretch(wo);
   Split sum;
   for (int i = 0; i < kCaps; ++i) {

@@ -29,8 +29,8 @@ constexpr std::array<std::array<double, 3>, 54> kDaylight = {{
     {61.0, -9.7, 6.4},   {53.3, -8.3, 5.5},   {58.9, -9.3, 6.1},   {61.9, -9.8, 6.5},
 }};
 
-// Weights of S1 and S2 for D65, rounded as [CIE15 §4.1] prescribes.
-constexpr double kM1 = -0.296, kM2 = -0.688;
+// Weights of S1 and S2 for D65 (6503.6 K), rounded to three decimals as for the tables of [CIE15].
+constexpr double kM1 = -0.295, kM2 = -0.689;
 
 double DaylightEntry(size_t i) {
   return kDaylight[i][0] + kM1 * kDaylight[i][1] + kM2 * kDaylight[i][2];

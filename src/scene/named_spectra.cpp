@@ -1,9 +1,10 @@
 // The spectra that pbrt-v4 knows by name, as RGB: η and k of metals and oxides, indices of glasses, and CIE
 // illuminants.
 //
-// Metals and oxides: values near 630, 532 and 465 nm, interpolated in published measurements: Ag [Palik85], Al
-// [Smith85], Au and Cu [Johnson72], CuZn (brass, 70 % Cu) [Querry85], MgO [Stephens52], TiO2 (rutile, ordinary ray)
-// [Devore51]. Glasses: n_d of the maker's data sheet, without dispersion. Illuminants: their chromaticities [CIE15].
+// Metals and oxides: values at 630, 532 and 465 nm, from the measurements that pbrt-v4 uses: Ag, Al, Au and Cu
+// interpolated in [Palik85], CuZn (brass, 70 % Cu) [Querry85], MgO by the formula of [Stephens52], TiO2 by that of
+// [Devore51] for the extraordinary ray of rutile. Glasses: n_d of the maker's data sheet, without dispersion.
+// Illuminants: their chromaticities for the observer of 1931 [CIE15].
 #include <algorithm>
 #include <array>
 
@@ -21,18 +22,18 @@ struct NamedColor {
 
 constexpr NamedColor kCoefficients[] = {
     {"metal-Ag-eta", {0.134, 0.130, 0.140}},
-    {"metal-Ag-k", {3.96, 3.20, 2.62}},
-    {"metal-Al-eta", {1.36, 0.890, 0.663}},
-    {"metal-Al-k", {7.58, 6.47, 5.65}},
-    {"metal-Au-eta", {0.188, 0.543, 1.28}},
-    {"metal-Au-k", {3.40, 2.23, 1.83}},
-    {"metal-Cu-eta", {0.275, 1.07, 1.155}},
-    {"metal-Cu-k", {3.37, 2.59, 2.47}},
-    {"metal-CuZn-eta", {0.444, 0.527, 1.094}},
-    {"metal-CuZn-k", {3.695, 2.765, 1.829}},
-    {"metal-MgO-eta", {1.735, 1.740, 1.746}},
+    {"metal-Ag-k", {3.96, 3.20, 2.61}},
+    {"metal-Al-eta", {1.36, 0.885, 0.660}},
+    {"metal-Al-k", {7.59, 6.47, 5.65}},
+    {"metal-Au-eta", {0.184, 0.457, 1.37}},
+    {"metal-Au-k", {3.07, 2.41, 1.82}},
+    {"metal-Cu-eta", {0.246, 1.07, 1.16}},
+    {"metal-Cu-k", {3.38, 2.59, 2.46}},
+    {"metal-CuZn-eta", {0.445, 0.568, 0.947}},
+    {"metal-CuZn-k", {3.52, 2.59, 1.92}},
+    {"metal-MgO-eta", {1.735, 1.742, 1.750}},
     {"metal-MgO-k", {0, 0, 0}},
-    {"metal-TiO2-eta", {2.585, 2.668, 2.777}},
+    {"metal-TiO2-eta", {2.874, 2.978, 3.117}},
     {"metal-TiO2-k", {0, 0, 0}},
     {"glass-BK7", {1.5168, 1.5168, 1.5168}},
     {"glass-BAF10", {1.6700, 1.6700, 1.6700}},
@@ -49,7 +50,7 @@ struct NamedIlluminant {
 };
 
 constexpr NamedIlluminant kIlluminants[] = {
-    {"stdillum-A", 0.44757, 0.40745},    {"stdillum-D50", 0.34567, 0.35850}, {"stdillum-D65", 0.3127, 0.3290},
+    {"stdillum-A", 0.44758, 0.40745},    {"stdillum-D50", 0.34567, 0.35850}, {"stdillum-D65", 0.3127, 0.3290},
     {"stdillum-F1", 0.3131, 0.3371},     {"stdillum-F2", 0.3721, 0.3751},    {"stdillum-F3", 0.4091, 0.3941},
     {"stdillum-F4", 0.4402, 0.4031},     {"stdillum-F5", 0.3138, 0.3452},    {"stdillum-F6", 0.3779, 0.3882},
     {"stdillum-F7", 0.3129, 0.3292},     {"stdillum-F8", 0.3458, 0.3586},    {"stdillum-F9", 0.3741, 0.3727},

@@ -43,8 +43,11 @@ TEST(Spectrum, DaylightHasTheChromaticityOfD65) {
   EXPECT_NEAR(xyz.x / sum, 0.3127, 2e-3);
   EXPECT_NEAR(xyz.y / sum, 0.3290, 2e-3);
   EXPECT_DOUBLE_EQ(DaylightD65(560), 100);
-  EXPECT_NEAR(DaylightD65(460), 117.8, 0.1);
-  EXPECT_NEAR(DaylightD65(700), 71.6, 0.1);
+  // The values tabulated for D65 [CIE15].
+  EXPECT_NEAR(DaylightD65(380), 49.9755, 1e-4);
+  EXPECT_NEAR(DaylightD65(400), 82.7549, 1e-4);
+  EXPECT_NEAR(DaylightD65(460), 117.812, 1e-3);
+  EXPECT_NEAR(DaylightD65(700), 71.6091, 1e-4);
 }
 
 TEST(Spectrum, ConstantReflectanceIsGrey) {
@@ -107,9 +110,10 @@ TEST(Spectrum, NamedOnes) {
     const auto one = [](float n, float x) { return (Sqr(n - 1) + x * x) / (Sqr(n + 1) + x * x); };
     return Color(one(eta.r, k.r), one(eta.g, k.g), one(eta.b, k.b));
   };
-  ExpectColor(reflectance("Au"), Color(0.94f, 0.72f, 0.40f), 0.06f);
+  ExpectColor(reflectance("Au"), Color(0.93f, 0.77f, 0.39f), 0.02f);
+  ExpectColor(reflectance("CuZn"), Color(0.88f, 0.76f, 0.49f), 0.02f);
   ExpectColor(reflectance("Ag"), Color(0.97f, 0.95f, 0.93f), 0.03f);
-  ExpectColor(reflectance("Cu"), Color(0.92f, 0.61f, 0.57f), 0.06f);
+  ExpectColor(reflectance("Cu"), Color(0.92f, 0.61f, 0.57f), 0.02f);
   ExpectColor(reflectance("Al"), Color(0.91f, 0.92f, 0.92f), 0.02f);
 }
 
