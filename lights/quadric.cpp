@@ -232,13 +232,14 @@ std::optional<LightSample> QuadricLight::SampleCone(const LightContext& context,
   sample->direction = hit.direction;
   sample->distance = hit.distance;
   sample->position = placed.toRender.translation + placed.radius * hit.normal;
-  sample->positionError = Gamma(8) * (glm::abs(placed.toRender.translation) + Vector3(placed.radius));
+  sample->positionError = Gamma(16) * (glm::abs(placed.toRender.translation) + Vector3(placed.radius));
   sample->normal = hit.normal * normalSign_;
   // One-sided and turned inside out: nothing leaves it.
   if (!(emission_.EmittedCosine(-glm::dot(sample->normal, hit.direction)) > 0)) return std::nullopt;
   if (emission_.NeedsUv()) sample->uvw = Point3(UvOf(placed.toLocal.Point(sample->position)), 0.0f);
   sample->pdfDirect = cone.Density();
-  if (!emission_.Complete(context, AreaDensity(placed, sample->normal), *sample)) sample.reset();
+  const PdfArea density = context.bidirectional ? AreaDensity(placed, sample->normal) : PdfArea(0);  // not wanted else
+  if (!emission_.Complete(context, density, *sample)) sample.reset();
   return sample;
 }
 

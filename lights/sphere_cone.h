@@ -51,7 +51,7 @@ struct SphereCone {
     const Frame frame = Frame::FromNormal(axis);
     const float sideways = near / radius;
     const Normal3 normal = frame.x * (local.x * sideways) + frame.y * (local.y * sideways) - axis * cosAlpha;
-    return {frame.ToWorld(local), near, glm::normalize(normal)};
+    return {frame.ToWorld(local), near, normal};
   }
 };
 

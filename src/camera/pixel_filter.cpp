@@ -1,8 +1,9 @@
 // Reconstruction filters with pbrt-v4's parameters and shapes. Box and triangle are sampled in closed form; Gaussian,
-// Mitchell–Netravali ([Mitchell88]) and windowed sinc from a fine table of |f|, whose intervals hold the exact integral
-// of f up to quadrature, so that the weights' mean is 1.
+// Mitchell–Netravali ([Mitchell88]) and windowed sinc from quantiles of |f|, whose parts are weighted with the integral of
+// f over them, so that the weights' mean is 1.
 #include "camera/pixel_filter.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/error.h"
@@ -12,8 +13,8 @@ namespace {
 
 using Kind = PixelFilterSettings::Kind;
 
-constexpr int kTableSize = 2048;       // intervals of a table, an even number: 0 lies between two
-constexpr int kPointsPerInterval = 4;  // midpoint rule
+constexpr int kParts = 2048;          // of equal |f|, an even number: 0 lies between two
+constexpr int kSteps = 16 * kParts;   // of the quadrature (midpoint rule)
 
 double Sinc(double x) {
   const double t = x * 3.14159265358979323846;
@@ -64,25 +65,28 @@ PixelFilter::Axis PixelFilter::MakeAxis(const PixelFilterSettings& settings, flo
     axis.integral = settings.kind == Kind::Box ? 2 * radius : radius * radius;
     return axis;
   }
-  const double step = 2 * r / kTableSize;
-  double sum = 0, absoluteSum = 0;
-  std::vector<float> magnitudes(kTableSize);
-  axis.signs.resize(kTableSize);
-  for (int i = 0; i < kTableSize; ++i) {
-    double mean = 0;
-    for (int k = 0; k < kPointsPerInterval; ++k) {
-      mean += AxisValue(settings, r, -r + (i + (k + 0.5) / kPointsPerInterval) * step) / kPointsPerInterval;
-    }
-    magnitudes[static_cast<size_t>(i)] = static_cast<float>(std::abs(mean));
-    axis.signs[static_cast<size_t>(i)] = mean < 0 ? -1 : 1;
-    sum += mean;
-    absoluteSum += std::abs(mean);
+  const double step = 2 * r / kSteps;
+  std::vector<double> sums(kSteps + 1, 0.0), absoluteSums(kSteps + 1, 0.0);  // of f and |f| up to each step
+  for (size_t i = 0; i < kSteps; ++i) {
+    const double value = AxisValue(settings, r, -r + (static_cast<double>(i) + 0.5) * step);
+    sums[i + 1] = sums[i] + value;
+    absoluteSums[i + 1] = absoluteSums[i] + std::abs(value);
   }
-  axis.table = Distribution1D(magnitudes);
+  const double sum = sums.back(), absoluteSum = absoluteSums.back();
   axis.integral = static_cast<float>(sum * step);
-  axis.absoluteRatio = static_cast<float>(absoluteSum / sum);
-  if (!(axis.integral > 0) || !(axis.absoluteRatio < 1e3f) || axis.table.IsZero()) {
+  if (!(axis.integral > 0) || !(absoluteSum < 1e3 * sum)) {
     throw Error("the pixel filter has no positive integral over its radius");
+  }
+  double sumBefore = 0;
+  for (size_t part = 0, i = 0; part <= kParts; ++part) {
+    const double share = absoluteSum * static_cast<double>(part) / kParts;
+    while (i + 1 < kSteps && absoluteSums[i + 1] < share) ++i;
+    const double within = absoluteSums[i + 1] - absoluteSums[i];
+    const double t = within > 0 ? std::clamp((share - absoluteSums[i]) / within, 0.0, 1.0) : 0.0;
+    const double sumHere = sums[i] + t * (sums[i + 1] - sums[i]);
+    axis.edges.push_back(std::clamp(static_cast<float>(-r + (static_cast<double>(i) + t) * step), -radius, radius));
+    if (part > 0 && absoluteSum > sum) axis.weights.push_back(static_cast<float>((sumHere - sumBefore) * kParts / sum));
+    sumBefore = sumHere;
   }
   return axis;
 }
@@ -99,9 +103,10 @@ float PixelFilter::SampleAxis(const Axis& axis, float u, float* weight) const {
     case Kind::Triangle:
       return u < 0.5f ? axis.radius * (std::sqrt(2 * u) - 1) : axis.radius * (1 - std::sqrt(2 * (1 - u)));
     default: {
-      const Distribution1D::Result sample = axis.table.Sample(u);
-      *weight *= axis.absoluteRatio * static_cast<float>(axis.signs[sample.index]);
-      return axis.radius * (2 * sample.x - 1);
+      const float place = u * kParts;
+      const size_t part = std::min(static_cast<size_t>(place), size_t{kParts - 1});
+      if (!axis.weights.empty()) *weight *= axis.weights[part];
+      return axis.edges[part] + (place - static_cast<float>(part)) * (axis.edges[part + 1] - axis.edges[part]);
     }
   }
 }

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "math/vec.h"
-#include "sampling/tables.h"
 
 namespace lampyr {
 
@@ -37,13 +36,13 @@ class PixelFilter {
   Vector2 Radius() const { return {settings_.radiusX, settings_.radiusY}; }
 
  private:
-  // The filter along one axis. `table` holds |f| over [-radius, radius] for kinds that have no closed inversion.
+  // The filter along one axis. For kinds that have no closed inversion, [-radius, radius] is cut at `edges` into parts with
+  // equal shares of ∫|f|: one look-up turns a random number into a place.
   struct Axis {
     float radius = 0;
-    float integral = 1;       // of f
-    float absoluteRatio = 1;  // ∫|f| / ∫f
-    Distribution1D table;
-    std::vector<signed char> signs;  // of f, per interval of the table
+    float integral = 1;          // of f
+    std::vector<float> edges;
+    std::vector<float> weights;  // per part: its share of ∫f over its share of ∫|f|; empty where f is nowhere negative
   };
   static Axis MakeAxis(const PixelFilterSettings& settings, float radius);
   float SampleAxis(const Axis& axis, float u, float* weight) const;
