@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "app/json_report.h"
 #include "base/parallel.h"
 #include "sampling/rng.h"
 #include "sampling/warp.h"
@@ -63,6 +64,28 @@ void IntersectRays(benchmark::State& state, const fs::path& file, bool occlusion
   state.counters["rays"] = benchmark::Counter(double(rays.size()) * double(state.iterations()), benchmark::Counter::kIsRate);
 }
 
+// Seconds of CPU time that bare intersection takes for as many rays of each kind as `counts` holds.
+double SecondsOfBareRays(const BuiltScene& built, const RenderCounts& counts) {
+  const std::vector<Ray> rays = IncoherentRays(built, 1 << 18);
+  const GeometryScene& geometry = *built.scene.geometry;
+  const auto secondsPerRay = [&](bool occlusion) {
+    size_t hits = 0;
+    double best = 1e9;
+    for (int repeat = 0; repeat < 5; ++repeat) {
+      const double start = CpuSeconds();
+      for (const Ray& ray : rays) {
+        RayHit hit;
+        hits += occlusion ? geometry.Occluded(ray, visibility::kShadow) : geometry.Intersect(ray, visibility::kIndirect, hit);
+      }
+      best = std::min(best, CpuSeconds() - start);
+    }
+    benchmark::DoNotOptimize(hits);
+    return best / static_cast<double>(rays.size());
+  };
+  return static_cast<double>(counts.cameraRays + counts.indirectRays) * secondsPerRay(false) +
+         static_cast<double>(counts.shadowRays) * secondsPerRay(true);
+}
+
 void RenderScenePath(benchmark::State& state, const fs::path& file, int size) {
   if (!fs::exists(file)) return state.SkipWithError("the scene is not here");
   const BuiltScene built = Load(file, size, size);
@@ -72,10 +95,14 @@ void RenderScenePath(benchmark::State& state, const fs::path& file, int size) {
   constexpr uint32_t samples = 16;
   uint32_t first = 0;
   RenderCounts counts;
+  const double start = CpuSeconds();
   for (auto _ : state) {
     counts += RenderPass(built.scene, *integrator, built.settings, filter, first, samples, 1, film);
     first += samples;
   }
+  const double seconds = CpuSeconds() - start;
+  // Rays per second, as a part of what the intersector alone reaches with as many incoherent rays of both kinds.
+  state.counters["ofBareRays"] = SecondsOfBareRays(built, counts) / seconds;
   state.counters["samples"] = benchmark::Counter(double(size) * size * first, benchmark::Counter::kIsRate);
   state.counters["rays"] = benchmark::Counter(double(counts.Rays()), benchmark::Counter::kIsRate);
   state.counters["raysPerSample"] = double(counts.Rays()) / (double(size) * size * first);
