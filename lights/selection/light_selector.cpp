@@ -1,6 +1,7 @@
 // Selection that does not look at the receiver: uniform and by power. See the header.
 #include "lights/selection/light_selector.h"
 
+#include <limits>
 #include <vector>
 
 #include "sampling/tables.h"
@@ -35,14 +36,16 @@ std::vector<float> PowerWeights(std::span<const PlacedLight> lights, const Bound
     LightContext context;
     context.transform = &placed.transform;
     context.scene = scene;
-    const float power = placed.light->GetPowerEstimate(context).Average() * placed.light->Settings().importanceMultiplier;
-    weights.push_back(std::isfinite(power) ? std::max(power, 0.0f) : 0.0f);
+    const float power =
+        placed.light->GetPowerEstimate(context).Average() * placed.light->Settings().importanceMultiplier;
+    // A power beyond float is the largest one; NaN compares false.
+    weights.push_back(power > 0 ? std::min(power, std::numeric_limits<float>::max()) : 0.0f);
   }
   return weights;
 }
 
-// Power is an estimate: a light whose estimate is far too low must not become impossible. Every light gets at least this
-// part of an equal share; a light that truly emits nothing costs next to nothing.
+// Power is an estimate: a light whose estimate is far too low must not become impossible. Every light gets at least
+// this part of an equal share; a light that truly emits nothing costs next to nothing.
 constexpr float kFloorOfEqualShare = 1e-3f;
 
 }  // namespace

@@ -16,15 +16,15 @@ namespace lampyr {
 // The point that is being lit. It travels with a path's vertex.
 struct Receiver {
   Point3 position{0.0f};
-  Normal3 normal{0.0f};       // shading normal, on the side of the path's previous vertex; 0 in a volume
+  Normal3 normal{0.0f};         // shading normal, on the side of the path's previous vertex; 0 in a volume
   bool isTransmissive = false;  // light from behind counts too
 };
 
 struct SelectedLight {
   uint32_t light = 0;
-  int patch = kAnyPatch;      // kAnyPatch: the light chooses its patch itself
+  int patch = kAnyPatch;  // kAnyPatch: the light chooses its patch itself
   PdfDiscrete probability;
-  float u = 0;                // the random number, stretched over [0,1) again
+  float u = 0;  // the random number, stretched over [0,1) again
 };
 
 class LightSelector {
@@ -47,6 +47,7 @@ std::optional<LightSelection> ParseLightSelection(const std::string& name);
 struct PlacedLight {
   std::shared_ptr<const Light> light;
   LightTransform transform;
+  bool canBeHit = true;  // false: an area light whose surface lets every ray through; only light sampling finds it
 };
 
 // Selects in proportion to `weights` (not negative), whatever the receiver. With all weights 0, selects nothing.

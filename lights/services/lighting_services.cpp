@@ -4,8 +4,12 @@ namespace lampyr {
 
 namespace {
 
-bool IsDeltaKind(LightKind kind) { return kind == LightKind::DeltaPosition || kind == LightKind::DeltaDirection; }
-bool IsInfiniteKind(LightKind kind) { return kind == LightKind::Infinite || kind == LightKind::DeltaDirection; }
+bool IsDeltaKind(LightKind kind) {
+  return kind == LightKind::DeltaPosition || kind == LightKind::DeltaDirection;
+}
+bool IsInfiniteKind(LightKind kind) {
+  return kind == LightKind::Infinite || kind == LightKind::DeltaDirection;
+}
 
 LightHit SurfaceLightHit(const Vector3& direction, float distance, const SurfacePoint& point) {
   LightHit hit;
@@ -47,19 +51,17 @@ std::optional<DirectSample> LightingServices::GenerateSamples(const Receiver& re
   LightContext context = Context(selected->light, time, bidirectional);
   context.u = u;
   context.patch = selected->patch;
-  const std::optional<LightSample> sample =
-      lights_[selected->light].light->GenerateSamples(context, receiver.position);
+  const std::optional<LightSample> sample = lights_[selected->light].light->GenerateSamples(context, receiver.position);
   if (!sample || sample->pdfDirect.IsZero()) return std::nullopt;
   const LightKind kind = kinds_[selected->light];
-  return DirectSample{selected->light, IsDeltaKind(kind), IsInfiniteKind(kind), selected->probability, *sample};
+  const bool cannotBeFound = IsDeltaKind(kind) || !lights_[selected->light].canBeHit;
+  return DirectSample{selected->light, cannotBeFound, IsInfiniteKind(kind), selected->probability, *sample};
 }
 
 Color LightingServices::Transmission(const SurfacePoint& from, const DirectSample& direct, float time) const {
   const LightSample& sample = direct.sample;
-  const Ray ray = direct.isInfinite
-                      ? SpawnRay(from, sample.direction, time)
-                      : SpawnRayTo(from, sample.position, sample.positionError,
-                                   direct.isDelta ? Normal3(0.0f) : sample.normal, time);
+  const Ray ray = direct.isInfinite ? SpawnRay(from, sample.direction, time)
+                                    : SpawnRayTo(from, sample.position, sample.positionError, sample.normal, time);
   return geometry_.Occluded(ray, visibility::kShadow) ? Color(0.0f) : Color(1.0f);
 }
 
@@ -77,8 +79,9 @@ std::optional<FoundLight> LightingServices::EvaluateSamples(const Receiver& rece
   return FoundLight{light, selector_->Probability(receiver, light, context.patch), *evaluation};
 }
 
-std::optional<FoundLight> LightingServices::EvaluateEscaped(size_t i, const Receiver& receiver, const Vector3& direction,
-                                                            float time, bool bidirectional) const {
+std::optional<FoundLight> LightingServices::EvaluateEscaped(size_t i, const Receiver& receiver,
+                                                            const Vector3& direction, float time,
+                                                            bool bidirectional) const {
   const uint32_t light = infinite_[i];
   LightHit hit;
   hit.direction = direction;
@@ -108,8 +111,8 @@ Color LightingServices::EscapedEmissionForCamera(const Vector3& direction, float
   return sum;
 }
 
-std::optional<EmittedPhoton> LightingServices::GenerateEmission(float uSelect, const Point2& u, const Point2& uDirection,
-                                                                float time) const {
+std::optional<EmittedPhoton> LightingServices::GenerateEmission(float uSelect, const Point2& u,
+                                                                const Point2& uDirection, float time) const {
   const std::optional<SelectedLight> selected = emissionSelector_->Select({}, uSelect);
   if (!selected) return std::nullopt;
   LightContext context = Context(selected->light, time, true);
@@ -119,9 +122,9 @@ std::optional<EmittedPhoton> LightingServices::GenerateEmission(float uSelect, c
   if (!emission) return std::nullopt;
   EmittedPhoton photon{selected->light, selected->probability, *emission, std::nullopt, {}};
   const bool fromSurface = kinds_[selected->light] == LightKind::Area;
-  photon.ray.origin = fromSurface ? OffsetRayOrigin(emission->position, emission->positionError, emission->normal,
-                                                    emission->direction)
-                                  : emission->position;
+  photon.ray.origin =
+      fromSurface ? OffsetRayOrigin(emission->position, emission->positionError, emission->normal, emission->direction)
+                  : emission->position;
   photon.ray.direction = emission->direction;
   photon.ray.time = time;
   RayHit hit;
@@ -129,7 +132,8 @@ std::optional<EmittedPhoton> LightingServices::GenerateEmission(float uSelect, c
   return photon;
 }
 
-std::optional<FoundLight> LightingServices::EvaluateLanding(const EmittedPhoton& photon, const Receiver& receiver) const {
+std::optional<FoundLight> LightingServices::EvaluateLanding(const EmittedPhoton& photon,
+                                                            const Receiver& receiver) const {
   LightHit hit;
   hit.direction = -photon.emission.direction;
   hit.position = photon.emission.position;

@@ -16,7 +16,9 @@ namespace {
 class MaterialTable {
  public:
   MaterialTable(const SceneDescription& description, const TextureLibrary& textures, Diagnostics& diagnostics)
-      : description_(description), textures_(textures), diagnostics_(diagnostics),
+      : description_(description),
+        textures_(textures),
+        diagnostics_(diagnostics),
         unnamed_(description.materials.size(), -1) {}
 
   // Index into Materials() for a shape's material.
@@ -118,7 +120,7 @@ class Builder {
   void PlaceEntries();
   void PlaceEntry(const ReadEntry& entry, const Transform& toRender, std::vector<GeometryEntry>& entries,
                   std::vector<const ReadEntry*>* lightEntries);
-  void AddAreaLight(const StatementDescription& statement, const Shape& shape, const Transform& instanceToRender,
+  void AddAreaLight(const ShapeDescription& description, const Shape& shape, const Transform& instanceToRender,
                     const std::shared_ptr<const AlphaSource>& alpha);
   void CheckAreaLights();
   void AddLights();
@@ -169,7 +171,8 @@ void Builder::FlattenInstances() {
   for (const InstanceDescription& instance : description_.instances) Flatten(instance, Transform());
 }
 
-// Where the middle of the scene is far from the origin compared with its size, floats around it are sparse: it is moved.
+// Where the middle of the scene is far from the origin compared with its size, floats around it are sparse: it is
+// moved.
 Transform Builder::ChooseRenderSpace() const {
   Bounds3d bounds;
   for (const ReadEntry& entry : entries_) {
@@ -200,7 +203,8 @@ LightBuildContext Builder::LightContextFor(const Transform& localToRender) const
 // The type of a light statement. nullptr, with a warning: pbrt-v4 has it and lampyr does not yet.
 const LightType* FindType(const StatementDescription& statement, bool isAreaLight, Diagnostics& diagnostics) {
   if (const LightType* type = FindLightType(statement.type, isAreaLight)) return type;
-  const std::string owner = std::string(isAreaLight ? "AreaLightSource" : "LightSource") + " \"" + statement.type + "\"";
+  const std::string owner =
+      std::string(isAreaLight ? "AreaLightSource" : "LightSource") + " \"" + statement.type + "\"";
   std::vector<std::string> names;
   if (!isAreaLight) names = {"goniometric", "projection"};
   if (std::find(names.begin(), names.end(), statement.type) != names.end()) {
@@ -220,13 +224,17 @@ void Builder::CheckAreaLights() {
   }
 }
 
-void Builder::AddAreaLight(const StatementDescription& statement, const Shape& shape, const Transform& instanceToRender,
+// A constant opacity of 0 makes a light that shines and is not there, as in pbrt-v4; any other cuts out a part of it.
+void Builder::AddAreaLight(const ShapeDescription& description, const Shape& shape, const Transform& instanceToRender,
                            const std::shared_ptr<const AlphaSource>& alpha) {
+  const StatementDescription& statement = description_.areaLights[description.areaLight];
+  const auto opacity = textures_->FindFloat(description.shape.parameters, "alpha");
+  const bool canBeHit = !opacity || !opacity->IsConstant() || opacity->Evaluate({}) > 0;
   const LightType* type = FindType(statement, true, diagnostics_);
   LightBuildContext build = LightContextFor(instanceToRender);
   build.shape = &shape;
-  build.alpha = alpha;
-  lights_.push_back({MakeLight(*type, statement.parameters, build), build.transform});
+  if (canBeHit) build.alpha = alpha;
+  lights_.push_back({MakeLight(*type, statement.parameters, build), build.transform, canBeHit});
 }
 
 void Builder::PlaceEntry(const ReadEntry& entry, const Transform& toRender, std::vector<GeometryEntry>& entries,
@@ -252,10 +260,10 @@ void Builder::PlaceEntry(const ReadEntry& entry, const Transform& toRender, std:
         lightEntries->push_back(&entry);
       } else {
         result.attributes.light = static_cast<int32_t>(lights_.size());
-        AddAreaLight(description_.areaLights[shape.areaLight], result.shape, Transform(), alpha);
-        const bool cameraVisible = lights_.back().light->Settings().cameraVisible;
-        if (!cameraVisible) result.attributes.visibility &= ~visibility::kCamera;
+        AddAreaLight(shape, result.shape, Transform(), alpha);
       }
+      const bool cameraVisible = description_.areaLights[shape.areaLight].parameters.GetBool("cameraVisible", true);
+      if (!cameraVisible) result.attributes.visibility &= ~visibility::kCamera;
     }
     entries.push_back(std::move(result));
   }
@@ -275,7 +283,8 @@ void Builder::PlaceEntries() {
   }
   for (const FlatInstance& instance : instances_) {
     const Transform toRender = worldToRender_ * instance.toWorld;
-    if (!toRender.IsAffine()) throw Error(instance.description->where, "an instance cannot have a perspective transform");
+    if (!toRender.IsAffine())
+      throw Error(instance.description->where, "an instance cannot have a perspective transform");
     if (geometry_.objects[instance.object].entries.empty()) continue;
     GeometryInstance placed;
     placed.object = static_cast<uint32_t>(instance.object);
@@ -285,8 +294,7 @@ void Builder::PlaceEntries() {
     for (const GeometryEntry& entry : geometry_.objects[instance.object].entries) {
       if (entry.attributes.light < 0) continue;
       const ReadEntry& source = *objectLights[instance.object][entry.attributes.light];
-      AddAreaLight(description_.areaLights[source.local.description->areaLight], entry.shape, toRender,
-                   entry.attributes.alpha);
+      AddAreaLight(*source.local.description, entry.shape, toRender, entry.attributes.alpha);
     }
     geometry_.instances.push_back(placed);
   }
