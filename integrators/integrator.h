@@ -33,8 +33,8 @@ struct RenderCounts {
   uint64_t Rays() const { return cameraRays + indirectRays + shadowRays; }
 };
 
-// Sampler dimensions: the film and lens come first, then a fixed block per path vertex, so that the same decision of two
-// paths of a pixel is always made by the same dimension and stays stratified.
+// Sampler dimensions: the film and lens come first, then a fixed block per path vertex, so that the same decision of
+// two paths of a pixel is always made by the same dimension and stays stratified.
 namespace dimensions {
 inline constexpr uint32_t kFilm = 0;
 inline constexpr uint32_t kLens = 1;

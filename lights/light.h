@@ -15,8 +15,9 @@
 //   DeltaDirection  1/m² on the scene's disk         1 (discrete)           1 (discrete)     1
 //   Infinite        1/m² on the scene's disk         1/sr                   1/sr             1
 //
-// "The scene's disk" is the disk of the scene's bounding sphere, at its rim and perpendicular to the direction. RenderMan
-// reports FLT_MAX and 1 for lights at infinity; here they are the true densities, which can be integrated and checked.
+// "The scene's disk" is the disk of the scene's bounding sphere, at its rim and perpendicular to the direction.
+// RenderMan reports FLT_MAX and 1 for lights at infinity; here they are the true densities, which can be integrated and
+// checked.
 //
 // - The probability of having selected this light is never part of these densities: the caller multiplies.
 // - A density of 0 means that the technique cannot make that sample. Deltas are told by Kind(), not by a value.
@@ -60,10 +61,10 @@ inline constexpr int kAnyPatch = -1;
 // What a light is given with each call. Cheap to make on the stack.
 struct LightContext {
   const LightTransform* transform = nullptr;
-  BoundingSphere scene;         // of everything that can be hit
-  float time = 0;               // in [0,1]
-  Point2 u{0.0f};               // position on the light (or direction, for lights without a surface), [0,1)²
-  Point2 uDirection{0.0f};      // GenerateEmission: direction (or position on the scene's disk)
+  BoundingSphere scene;     // of everything that can be hit
+  float time = 0;           // in [0,1]
+  Point2 u{0.0f};           // position on the light (or direction, for lights without a surface), [0,1)²
+  Point2 uDirection{0.0f};  // GenerateEmission: direction (or position on the scene's disk)
   // Which patch to sample, where the caller has selected it; densities are then given the patch. kAnyPatch: the light
   // chooses, and densities include its choice.
   int patch = kAnyPatch;
@@ -73,14 +74,14 @@ struct LightContext {
 
 // A sample of the light seen from P.
 struct LightSample {
-  Vector3 direction{0.0f};        // unit, from P towards the light
-  float distance = kInfinity;     // to `position`; infinite for lights at infinity
-  Point3 position{0.0f};          // on the light; unset for lights at infinity
-  Vector3 positionError{0.0f};    // bound on its rounding error
-  Normal3 normal{0.0f};           // unit, of the light at `position`; 0 for points; -direction at infinity
+  Vector3 direction{0.0f};      // unit, from P towards the light
+  float distance = kInfinity;   // to `position`; infinite for lights at infinity
+  Point3 position{0.0f};        // on the light; unset for lights at infinity
+  Vector3 positionError{0.0f};  // bound on its rounding error
+  Normal3 normal{0.0f};         // unit, of the light at `position`; 0 for points; -direction at infinity
   Point3 uvw{0.0f};
   int patchIndex = 0;
-  Color diffuse, specular;        // incident radiance for diffuse and specular lobes; deltas: intensity/d² or irradiance
+  Color diffuse, specular;  // incident radiance for diffuse and specular lobes; deltas: intensity/d² or irradiance
   PdfSolidAngle pdfDirect;
   PdfArea pdfEmit;
   PdfSolidAngle pdfEmitDirection;
@@ -92,7 +93,7 @@ struct LightHit {
   Vector3 direction{0.0f};  // unit, from P towards the light
   float distance = kInfinity;
   Point3 position{0.0f};
-  Normal3 normal{0.0f};     // geometric, unit, on the light's outer side
+  Normal3 normal{0.0f};  // geometric, unit, on the light's outer side
   Point2 uv{0.0f};
   int patchIndex = 0;
 };
@@ -110,25 +111,25 @@ struct LightEvaluation {
 // A photon. Its flux is radiance · |cosθ| / (pdfEmit · pdfEmitDirection) for area lights, and radiance over the same
 // densities without the cosine for all other kinds: `emissionCosine` is 1 there.
 struct EmissionSample {
-  Point3 position{0.0f};        // where it starts: on the light, or on the scene's disk
+  Point3 position{0.0f};  // where it starts: on the light, or on the scene's disk
   Vector3 positionError{0.0f};
-  Normal3 normal{0.0f};         // of the light; the direction itself for the other kinds
-  Vector3 direction{0.0f};      // unit, away from the light
-  float emissionCosine = 1;     // |cosθ| between normal and direction for area lights, 1 otherwise
+  Normal3 normal{0.0f};      // of the light; the direction itself for the other kinds
+  Vector3 direction{0.0f};   // unit, away from the light
+  float emissionCosine = 1;  // |cosθ| between normal and direction for area lights, 1 otherwise
   Point3 uvw{0.0f};
   int patchIndex = 0;
-  Color diffuse, specular;      // radiance (area, infinite), intensity (points), irradiance (delta directions)
+  Color diffuse, specular;  // radiance (area, infinite), intensity (points), irradiance (delta directions)
   PdfArea pdfEmit;
   PdfSolidAngle pdfEmitDirection;
 };
 
 // What a light selector needs to know of an emitter ([Conty18 §4.1]). Render space.
 struct EmissionBounds {
-  Bounds3 box;                  // of the emitting points
-  Vector3 axis{0, 0, 1};        // mean direction of emission (the normal, for surfaces)
-  float cosThetaO = -1;         // normals lie within this angle of the axis
-  float cosThetaE = 0;          // and emit within that angle of the normal
-  float energy = 0;             // W, mean of the channels, including importanceMultiplier
+  Bounds3 box;            // of the emitting points
+  Vector3 axis{0, 0, 1};  // mean direction of emission (the normal, for surfaces)
+  float cosThetaO = -1;   // normals lie within this angle of the axis
+  float cosThetaE = 0;    // and emit within that angle of the normal
+  float energy = 0;       // W, mean of the channels, including importanceMultiplier
   bool twoSided = false;
 };
 
@@ -151,8 +152,8 @@ struct LocalHit {
   Point2 uv{0.0f};
 };
 
-// A light that is itself the surface a ray hits. Absent for mesh lights (the geometry knows the triangles) and for lights
-// without a surface.
+// A light that is itself the surface a ray hits. Absent for mesh lights (the geometry knows the triangles) and for
+// lights without a surface.
 class IntersectableLight {
  public:
   virtual ~IntersectableLight() = default;
@@ -185,11 +186,12 @@ class Light {
   // The light's own surface, or null.
   virtual const IntersectableLight* Surface() const { return nullptr; }
 
-  // Irradiance at P on a surface that faces the light, mean of the channels: cheap, never 0 where the light can contribute.
+  // Irradiance at P on a surface that faces the light, mean of the channels: cheap, never 0 where the light can
+  // contribute.
   virtual float GetIncidentRadianceEstimate(const LightContext& context, const Point3& P) const = 0;
 
-  // The same for the ray segment from `origin` along the unit `direction`, and the part of [0, length] that the light can
-  // reach. nullopt: it reaches none of it.
+  // The same for the ray segment from `origin` along the unit `direction`, and the part of [0, length] that the light
+  // can reach. nullopt: it reaches none of it.
   virtual std::optional<SegmentEstimate> GetIncidentRadianceEstimate(const LightContext& context, const Point3& origin,
                                                                      const Vector3& direction, float length) const = 0;
 
@@ -213,8 +215,8 @@ class Light {
   // What a camera ray sees that hit the light (or escaped to it).
   virtual Color EvaluateEmissionForCamera(const LightContext& context, const LightHit& hit) const = 0;
 
-  // This light with `changes` laid over the parameters it was made from; all tables are made anew. Throws Error like the
-  // factory does.
+  // This light with `changes` laid over the parameters it was made from; all tables are made anew. Throws Error like
+  // the factory does.
   virtual std::unique_ptr<Light> Edit(const ParameterList& changes, const LightBuildContext& build) const = 0;
 };
 

@@ -13,12 +13,12 @@ struct PathState {
   Ray ray;
   Color throughputDiffuse{0.0f};
   Color throughputSpecular{1.0f};
-  Receiver receiver;             // the last vertex: where the other technique would have sampled the light
-  PdfSolidAngle pdfDirection;    // of `ray`, by the BSDF
+  Receiver receiver;           // the last vertex: where the other technique would have sampled the light
+  PdfSolidAngle pdfDirection;  // of `ray`, by the BSDF
   float etaScale = 1;
-  int depth = 0;                 // scattering events so far
-  bool fromCamera = true;        // nothing has scattered yet
-  bool fromDelta = false;        // the last event was a delta: light sampling could not have found this
+  int depth = 0;           // scattering events so far
+  bool fromCamera = true;  // nothing has scattered yet
+  bool fromDelta = false;  // the last event was a delta: light sampling could not have found this
 
   Color Throughput() const { return throughputDiffuse + throughputSpecular; }
 };
@@ -51,8 +51,8 @@ uint32_t VertexDimension(int depth, uint32_t which) {
 
 // Radiance of a light that the BSDF's direction found, weighted against next-event estimation.
 Color PathIntegrator::WeightedEmission(const PathState& path, const FoundLight& found) const {
-  const Color radiance = path.throughputDiffuse * found.evaluation.diffuse +
-                         path.throughputSpecular * found.evaluation.specular;
+  const Color radiance =
+      path.throughputDiffuse * found.evaluation.diffuse + path.throughputSpecular * found.evaluation.specular;
   if (path.fromDelta) return radiance;
   return radiance * PowerHeuristic(path.pdfDirection, found.selection * found.evaluation.pdfDirect);
 }

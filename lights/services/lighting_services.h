@@ -17,16 +17,16 @@ namespace lampyr {
 // Next-event estimation: a light's sample with the probability of having chosen that light.
 struct DirectSample {
   uint32_t light = 0;
-  bool isDelta = false;         // the light has no surface or directions that a BSDF ray could find
-  bool isInfinite = false;      // no end of the shadow ray
-  PdfDiscrete selection;        // at the receiver
-  LightSample sample;           // densities without the selection
+  bool isDelta = false;     // the light has no surface or directions that a BSDF ray could find
+  bool isInfinite = false;  // no end of the shadow ray
+  PdfDiscrete selection;    // at the receiver
+  LightSample sample;       // densities without the selection
 };
 
 // A light that a ray found.
 struct FoundLight {
   uint32_t light = 0;
-  PdfDiscrete selection;        // next-event selection at the receiver that the ray left
+  PdfDiscrete selection;  // next-event selection at the receiver that the ray left
   LightEvaluation evaluation;
 };
 
@@ -35,7 +35,7 @@ struct EmittedPhoton {
   uint32_t light = 0;
   PdfDiscrete emissionSelection;
   EmissionSample emission;
-  std::optional<RayHit> landing;   // nullopt: it left the scene
+  std::optional<RayHit> landing;  // nullopt: it left the scene
   Ray ray;
 };
 
@@ -51,12 +51,13 @@ class LightingServices {
   // What of a sample's light arrives: 0 behind something opaque, 1 otherwise. Traces a shadow ray.
   Color Transmission(const SurfacePoint& from, const DirectSample& direct, float time) const;
 
-  // The area light at a surface point that a ray from `receiver` along the unit `direction` hit; nullopt when that surface
-  // emits nothing that way.
+  // The area light at a surface point that a ray from `receiver` along the unit `direction` hit; nullopt when that
+  // surface emits nothing that way.
   std::optional<FoundLight> EvaluateSamples(const Receiver& receiver, const Vector3& direction, float distance,
                                             const SurfacePoint& point, float time, bool bidirectional) const;
 
-  // The lights at infinity, each as seen by a ray from `receiver` that escapes along `direction`: i in [0, InfiniteCount()).
+  // The lights at infinity, each as seen by a ray from `receiver` that escapes along `direction`: i in [0,
+  // InfiniteCount()).
   size_t InfiniteCount() const { return infinite_.size(); }
   std::optional<FoundLight> EvaluateEscaped(size_t i, const Receiver& receiver, const Vector3& direction, float time,
                                             bool bidirectional) const;
@@ -66,7 +67,8 @@ class LightingServices {
   Color EscapedEmissionForCamera(const Vector3& direction, float time) const;
 
   // Chooses a light for emission, emits and traces to the landing point.
-  std::optional<EmittedPhoton> GenerateEmission(float uSelect, const Point2& u, const Point2& uDirection, float time) const;
+  std::optional<EmittedPhoton> GenerateEmission(float uSelect, const Point2& u, const Point2& uDirection,
+                                                float time) const;
   // The density of next-event estimation for the light vertex of a photon that landed at `receiver`, selection apart.
   std::optional<FoundLight> EvaluateLanding(const EmittedPhoton& photon, const Receiver& receiver) const;
 

@@ -17,7 +17,8 @@ void PrintType(const LightType& type) {
   for (const ParameterInfo& parameter : type.parameters) {
     const std::string name = std::string(ToString(parameter.type)) + " " + parameter.name;
     const std::string value = parameter.defaultValue + (parameter.unit.empty() ? "" : " " + parameter.unit);
-    std::printf("    %-32s %-14s %-10s %s\n", name.c_str(), value.c_str(), parameter.range.c_str(), parameter.help.c_str());
+    std::printf("    %-32s %-14s %-10s %s\n", name.c_str(), value.c_str(), parameter.range.c_str(),
+                parameter.help.c_str());
   }
   std::printf("\n");
 }

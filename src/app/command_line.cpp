@@ -51,7 +51,8 @@ struct RenderCommand {
     app.add_option("--exposure", options.exposure, "Exposure of the PNG in stops (0)");
     app.add_flag("--filmic", options.filmic, "A filmic shoulder in the PNG instead of clipping");
     app.add_option("--integrator", overrides.integrator, "path");
-    app.add_option("--spp", overrides.samplesPerPixel, "Stop after this many samples per pixel")->check(CLI::Range(1, 1 << 30));
+    app.add_option("--spp", overrides.samplesPerPixel, "Stop after this many samples per pixel")
+        ->check(CLI::Range(1, 1 << 30));
     app.add_option("--time", time, "Stop after this time: 90s, 5m, 2h");
     app.add_option("--target-error", options.targetError,
                    "Stop when the estimated relative error (95 % confidence) is below this, e.g. 0.02")
@@ -60,7 +61,8 @@ struct RenderCommand {
     app.add_option("--threads", options.threads, "Threads (all)")->check(CLI::Range(1, 4096));
     app.add_option("--resolution", resolution, "Size of the image, e.g. 640x360");
     app.add_option("--crop", overrides.crop, "x0,x1,y0,y1: the part to render, in fractions of the image or in pixels");
-    app.add_option("--max-depth", overrides.maxDepth, "Scattering events of a path at most")->check(CLI::Range(0, 1 << 20));
+    app.add_option("--max-depth", overrides.maxDepth, "Scattering events of a path at most")
+        ->check(CLI::Range(0, 1 << 20));
     app.add_option("--sampler", overrides.sampler, "sobol | independent");
     app.add_option("--light-sampler", overrides.lightSampler, "uniform | power");
     app.add_option("--stats", options.stats, "Write statistics to this JSON file");
@@ -92,7 +94,8 @@ int RunCommandLine(int argc, char** argv) {
   CLI::App* diffCommand = app.add_subcommand("diff", "Compare two images: MSE, relMSE, FLIP, bias, z-test by blocks");
   diffCommand->add_option("a", diff.a, "The image that is judged")->required();
   diffCommand->add_option("b", diff.b, "The reference")->required();
-  diffCommand->add_option("--block", diff.blockSize, "Side of the z-test's blocks in pixels (8)")->check(CLI::Range(1, 4096));
+  diffCommand->add_option("--block", diff.blockSize, "Side of the z-test's blocks in pixels (8)")
+      ->check(CLI::Range(1, 4096));
   diffCommand->add_flag("--json", diff.json, "Print JSON");
 
   std::string lightType;

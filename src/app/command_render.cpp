@@ -38,7 +38,8 @@ std::filesystem::path OutputPath(const RenderOptions& options, const RenderSetti
     throw UsageError("--output: \"" + path.string() + "\" must end in .exr (--png writes a PNG beside it)");
   }
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
-  if (!std::filesystem::is_directory(folder)) throw UsageError("--output: there is no folder \"" + folder.string() + "\"");
+  if (!std::filesystem::is_directory(folder))
+    throw UsageError("--output: there is no folder \"" + folder.string() + "\"");
   return path;
 }
 
@@ -62,7 +63,8 @@ Image DevelopWithMetadata(const Film& film, const RenderReport& report) {
 // Halves end at 65504: an image that is brighter is kept in floats.
 ExrPrecision PrecisionFor(const Image& image, const RenderSettings& settings) {
   constexpr float largestHalf = 65504;
-  const bool fits = std::all_of(image.data.begin(), image.data.end(), [](float v) { return std::abs(v) <= largestHalf; });
+  const bool fits =
+      std::all_of(image.data.begin(), image.data.end(), [](float v) { return std::abs(v) <= largestHalf; });
   return settings.halfPrecision && fits ? ExrPrecision::Half : ExrPrecision::Float;
 }
 

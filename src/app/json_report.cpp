@@ -18,7 +18,9 @@ double PeakMemoryMiB() {
 double CpuSeconds() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
-  const auto seconds = [](const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); };
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
@@ -62,15 +64,19 @@ std::string ToJson(const RenderReport& report) {
 
 std::string ToJson(const ImageDifference& difference) {
   Json json = {
-      {"mse", difference.mse},         {"relMse", difference.relMse},       {"flip", difference.flip},
-      {"meanA", difference.meanA},     {"meanB", difference.meanB},         {"bias", difference.bias},
+      {"mse", difference.mse},
+      {"relMse", difference.relMse},
+      {"flip", difference.flip},
+      {"meanA", difference.meanA},
+      {"meanB", difference.meanB},
+      {"bias", difference.bias},
       {"biasInterval95", difference.biasInterval},
   };
   if (difference.hasBlockTest) {
     const BlockTest& test = difference.blockTest;
-    json["blockTest"] = {{"blockSize", test.blockSize},     {"blocks", test.blocks},
-                         {"largestZ", test.largestZ},       {"threshold", test.threshold},
-                         {"chiSquared", test.chiSquared},   {"chiSquaredThreshold", test.chiSquaredThreshold},
+    json["blockTest"] = {{"blockSize", test.blockSize},   {"blocks", test.blocks},
+                         {"largestZ", test.largestZ},     {"threshold", test.threshold},
+                         {"chiSquared", test.chiSquared}, {"chiSquaredThreshold", test.chiSquaredThreshold},
                          {"agrees", test.Agrees()}};
   }
   return json.dump(2) + "\n";

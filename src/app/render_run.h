@@ -1,7 +1,7 @@
 // Rendering in passes until a stop condition holds: samples, time, error or an interrupt.
 //
-// The picture after n samples per pixel is a pure function of scene, settings and seed: neither the number of threads nor
-// the division into passes shows in it.
+// The picture after n samples per pixel is a pure function of scene, settings and seed: neither the number of threads
+// nor the division into passes shows in it.
 #pragma once
 
 #include <atomic>
@@ -16,9 +16,9 @@
 namespace lampyr {
 
 struct StopConditions {
-  int samplesPerPixel = 16;                    // never more than that
-  std::optional<double> seconds;               // of rendering
-  std::optional<double> relativeError;         // at 95 % confidence (Film::RelativeError)
+  int samplesPerPixel = 16;                        // never more than that
+  std::optional<double> seconds;                   // of rendering
+  std::optional<double> relativeError;             // at 95 % confidence (Film::RelativeError)
   const std::atomic<bool>* interrupted = nullptr;  // set by a signal handler: finish the pass
 };
 

@@ -13,8 +13,8 @@ using Names = std::vector<std::string>;
 int PositiveInteger(const ParameterList& parameters, const std::string& name, int defaultValue, int maximum) {
   const int value = parameters.GetInteger(name, defaultValue);
   if (value < 1 || value > maximum) {
-    throw Error(parameters.WhereOf(name), "\"" + name + "\" is " + std::to_string(value) + "; it must be from 1 to " +
-                                              std::to_string(maximum));
+    throw Error(parameters.WhereOf(name),
+                "\"" + name + "\" is " + std::to_string(value) + "; it must be from 1 to " + std::to_string(maximum));
   }
   return value;
 }
@@ -58,7 +58,8 @@ void ReadFilm(const SceneDescription& scene, const RenderOverrides& overrides, R
   if (type == "gbuffer" || type == "spectral") {
     diagnostics.Warn(scene.film.where, "Film \"" + type + "\" is not supported yet; \"rgb\" is used");
   } else if (!type.empty() && type != "rgb") {
-    throw Error(scene.film.where, "there is no Film \"" + type + "\"" + DidYouMean(type, {"rgb", "gbuffer", "spectral"}));
+    throw Error(scene.film.where,
+                "there is no Film \"" + type + "\"" + DidYouMean(type, {"rgb", "gbuffer", "spectral"}));
   }
   settings.width = PositiveInteger(film, "xresolution", settings.width, kMaxResolution);
   settings.height = PositiveInteger(film, "yresolution", settings.height, kMaxResolution);
@@ -75,7 +76,8 @@ void ReadFilm(const SceneDescription& scene, const RenderOverrides& overrides, R
   const double exposureTime = camera.GetFloat("shutterclose", 1) - camera.GetFloat("shutteropen", 0);
   settings.imagingRatio = static_cast<float>(exposureTime * film.GetFloat("iso", 100) / 100);
   if (!(settings.imagingRatio > 0)) {
-    throw Error(film.Where(), "the exposure is not positive: \"shutterclose\" must be after \"shutteropen\" and \"iso\" above 0");
+    throw Error(film.Where(),
+                "the exposure is not positive: \"shutterclose\" must be after \"shutteropen\" and \"iso\" above 0");
   }
 
   settings.crop = {0, 0, settings.width, settings.height};
@@ -84,21 +86,26 @@ void ReadFilm(const SceneDescription& scene, const RenderOverrides& overrides, R
   if (overrides.crop) {
     settings.crop = ParseCrop(*overrides.crop, settings.width, settings.height);
   } else if (!window.empty()) {
-    if (window.size() != 4) throw Error(film.WhereOf("cropwindow"), "\"cropwindow\" needs 4 values, has " + std::to_string(window.size()));
+    if (window.size() != 4)
+      throw Error(film.WhereOf("cropwindow"), "\"cropwindow\" needs 4 values, has " + std::to_string(window.size()));
     settings.crop = CropFromFractions(window[0], window[1], window[2], window[3], settings.width, settings.height);
   } else if (!bounds.empty()) {
-    if (bounds.size() != 4) throw Error(film.WhereOf("pixelbounds"), "\"pixelbounds\" needs 4 values, has " + std::to_string(bounds.size()));
+    if (bounds.size() != 4)
+      throw Error(film.WhereOf("pixelbounds"), "\"pixelbounds\" needs 4 values, has " + std::to_string(bounds.size()));
     const auto limit = [](int64_t n, int size) { return static_cast<int>(std::clamp<int64_t>(n, 0, size)); };
     settings.crop = {limit(bounds[0], settings.width), limit(bounds[2], settings.height),
                      limit(bounds[1], settings.width), limit(bounds[3], settings.height)};
   }
   if (settings.crop.Width() <= 0 || settings.crop.Height() <= 0) {
-    if (overrides.crop) throw UsageError("--crop leaves no pixel of the " + std::to_string(settings.width) + "×" + std::to_string(settings.height) + " image");
+    if (overrides.crop)
+      throw UsageError("--crop leaves no pixel of the " + std::to_string(settings.width) + "×" +
+                       std::to_string(settings.height) + " image");
     throw Error(film.Where(), "the crop leaves no pixel of the image");
   }
-  film.CheckAllUsed({"diagonal", "whitebalance", "maxcomponentvalue", "coordinatesystem", "nbuckets", "lambdamin", "lambdamax"},
-                    {"xresolution", "yresolution", "filename", "savefp16", "sensor", "iso", "cropwindow", "pixelbounds"},
-                    diagnostics);
+  film.CheckAllUsed(
+      {"diagonal", "whitebalance", "maxcomponentvalue", "coordinatesystem", "nbuckets", "lambdamin", "lambdamax"},
+      {"xresolution", "yresolution", "filename", "savefp16", "sensor", "iso", "cropwindow", "pixelbounds"},
+      diagnostics);
 }
 
 void ReadPixelFilter(const SceneDescription& scene, RenderSettings& settings, Diagnostics& diagnostics) {
@@ -112,15 +119,19 @@ void ReadPixelFilter(const SceneDescription& scene, RenderSettings& settings, Di
     double radius;
   };
   // pbrt-v4's names and default radii.
-  constexpr Entry entries[] = {{"box", Kind::Box, 0.5}, {"triangle", Kind::Triangle, 2}, {"gaussian", Kind::Gaussian, 1.5},
-                               {"mitchell", Kind::Mitchell, 2}, {"sinc", Kind::Sinc, 4}};
+  constexpr Entry entries[] = {{"box", Kind::Box, 0.5},
+                               {"triangle", Kind::Triangle, 2},
+                               {"gaussian", Kind::Gaussian, 1.5},
+                               {"mitchell", Kind::Mitchell, 2},
+                               {"sinc", Kind::Sinc, 4}};
   const Entry* found = nullptr;
   Names names;
   for (const Entry& entry : entries) {
     names.push_back(entry.name);
     if (type == entry.name) found = &entry;
   }
-  if (!found) throw Error(scene.pixelFilter.where, "there is no PixelFilter \"" + type + "\"" + DidYouMean(type, names));
+  if (!found)
+    throw Error(scene.pixelFilter.where, "there is no PixelFilter \"" + type + "\"" + DidYouMean(type, names));
   filter.kind = found->kind;
   filter.radiusX = static_cast<float>(parameters.GetFloat("xradius", found->radius));
   filter.radiusY = static_cast<float>(parameters.GetFloat("yradius", found->radius));
@@ -162,25 +173,30 @@ void ReadSampler(const SceneDescription& scene, const RenderOverrides& overrides
   if (!type.empty()) settings.sampler = SamplerByName(type, &known);
   if (!known) throw Error(scene.sampler.where, "there is no Sampler \"" + type + "\"" + DidYouMean(type, names));
   if (type == "stratified") {
-    settings.samplesPerPixel = PositiveInteger(parameters, "xsamples", 4, 1 << 15) * PositiveInteger(parameters, "ysamples", 4, 1 << 15);
+    settings.samplesPerPixel =
+        PositiveInteger(parameters, "xsamples", 4, 1 << 15) * PositiveInteger(parameters, "ysamples", 4, 1 << 15);
   } else {
     settings.samplesPerPixel = PositiveInteger(parameters, "pixelsamples", settings.samplesPerPixel, kMaxSamples);
   }
   const auto option = scene.options.find("seed");
-  const int64_t optionSeed = option != scene.options.end() && !option->second.integers.empty() ? option->second.integers[0] : 0;
+  const int64_t optionSeed =
+      option != scene.options.end() && !option->second.integers.empty() ? option->second.integers[0] : 0;
   settings.seed = static_cast<uint64_t>(parameters.GetInteger("seed", 0) + optionSeed) + overrides.seed;
-  parameters.CheckAllUsed({"randomization", "jitter", "xsamples", "ysamples", "pixelsamples"}, {"pixelsamples", "seed"}, diagnostics);
+  parameters.CheckAllUsed({"randomization", "jitter", "xsamples", "ysamples", "pixelsamples"}, {"pixelsamples", "seed"},
+                          diagnostics);
   if (overrides.sampler) {
     settings.sampler = SamplerByName(*overrides.sampler, &known);
-    if (!known) throw UsageError("--sampler: there is no sampler \"" + *overrides.sampler + "\"" + DidYouMean(*overrides.sampler, names));
+    if (!known)
+      throw UsageError("--sampler: there is no sampler \"" + *overrides.sampler + "\"" +
+                       DidYouMean(*overrides.sampler, names));
   }
   if (overrides.samplesPerPixel) settings.samplesPerPixel = *overrides.samplesPerPixel;
 }
 
 void ReadIntegrator(const SceneDescription& scene, const RenderOverrides& overrides, RenderSettings& settings,
                     Diagnostics& diagnostics) {
-  const Names pbrtNames = {"ambientocclusion", "bdpt", "function", "lightpath", "mlt", "path", "randomwalk", "simplepath",
-                           "simplevolpath", "sppm", "volpath", "light", "vcm"};
+  const Names pbrtNames = {"ambientocclusion", "bdpt",          "function", "lightpath", "mlt",   "path", "randomwalk",
+                           "simplepath",       "simplevolpath", "sppm",     "volpath",   "light", "vcm"};
   const ParameterList& parameters = scene.integrator.parameters;
   const std::string& type = scene.integrator.type;
   if (!type.empty() && std::find(pbrtNames.begin(), pbrtNames.end(), type) == pbrtNames.end()) {
@@ -201,13 +217,16 @@ void ReadIntegrator(const SceneDescription& scene, const RenderOverrides& overri
   if (const auto selection = ParseLightSelection(lightSampler)) {
     settings.lightSelection = *selection;
   } else if (std::find(samplerNames.begin(), samplerNames.end(), lightSampler) != samplerNames.end()) {
-    diagnostics.Warn(parameters.WhereOf("lightsampler"), "light sampler \"" + lightSampler + "\" is not supported yet; \"power\" is used");
+    diagnostics.Warn(parameters.WhereOf("lightsampler"),
+                     "light sampler \"" + lightSampler + "\" is not supported yet; \"power\" is used");
   } else {
-    throw Error(parameters.WhereOf("lightsampler"), "there is no light sampler \"" + lightSampler + "\"" + DidYouMean(lightSampler, samplerNames));
+    throw Error(parameters.WhereOf("lightsampler"),
+                "there is no light sampler \"" + lightSampler + "\"" + DidYouMean(lightSampler, samplerNames));
   }
   if (overrides.lightSampler) {
     const auto selection = ParseLightSelection(*overrides.lightSampler);
-    if (!selection) throw UsageError("--light-sampler: \"" + *overrides.lightSampler + "\" is not one of: uniform, power");
+    if (!selection)
+      throw UsageError("--light-sampler: \"" + *overrides.lightSampler + "\" is not one of: uniform, power");
     settings.lightSelection = *selection;
   }
   // Parameters of integrators that stand back for "path" are not looked at.
@@ -272,12 +291,15 @@ std::unique_ptr<Camera> BuildCamera(const SceneDescription& description, const R
   } else if (type == "spherical") {
     const std::string mapping = parameters.GetString("mapping", "equalarea");
     if (mapping != "equalarea" && mapping != "equirectangular") {
-      throw Error(parameters.WhereOf("mapping"), "there is no mapping \"" + mapping + "\"" + DidYouMean(mapping, {"equalarea", "equirectangular"}));
+      throw Error(parameters.WhereOf("mapping"),
+                  "there is no mapping \"" + mapping + "\"" + DidYouMean(mapping, {"equalarea", "equirectangular"}));
     }
     known.push_back("mapping");
-    camera = MakeSphericalCamera(frame, mapping == "equalarea" ? SphericalMapping::EqualArea : SphericalMapping::EquiRectangular);
+    camera = MakeSphericalCamera(
+        frame, mapping == "equalarea" ? SphericalMapping::EqualArea : SphericalMapping::EquiRectangular);
   } else {
-    throw Error(statement.where, "there is no Camera \"" + type + "\"" + DidYouMean(type, {"perspective", "orthographic", "spherical", "realistic"}));
+    throw Error(statement.where, "there is no Camera \"" + type + "\"" +
+                                     DidYouMean(type, {"perspective", "orthographic", "spherical", "realistic"}));
   }
   parameters.CheckAllUsed({}, known, diagnostics);
   return camera;

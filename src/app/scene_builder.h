@@ -13,8 +13,8 @@ struct BuiltScene {
 
 // Throws located Errors for what cannot be rendered. `robust`: watertight intersection.
 //
-// Render space is world space moved so that the scene's middle lies near the origin, where floats are dense; a scene that
-// is there already is not moved.
+// Render space is world space moved so that the scene's middle lies near the origin, where floats are dense; a scene
+// that is there already is not moved.
 BuiltScene BuildScene(const SceneDescription& description, const RenderOverrides& overrides, bool robust,
                       Diagnostics& diagnostics);
 

@@ -14,19 +14,24 @@ using Names = std::vector<std::string>;
 
 constexpr double kDegreesToRadians = 3.14159265358979323846 / 180;
 
-std::string Count(size_t n) { return std::to_string(n); }
+std::string Count(size_t n) {
+  return std::to_string(n);
+}
 
 // Corner indices in groups of N, each checked against the number of vertices.
 template <size_t N>
 std::vector<std::array<uint32_t, N>> GroupIndices(const ParameterList& parameters, const std::vector<int64_t>& indices,
                                                   size_t vertexCount) {
   if (indices.size() % N != 0) {
-    throw Error(parameters.WhereOf("indices"), "the number of \"indices\" must be a multiple of " + Count(N) + ", and there are " + Count(indices.size()));
+    throw Error(parameters.WhereOf("indices"), "the number of \"indices\" must be a multiple of " + Count(N) +
+                                                   ", and there are " + Count(indices.size()));
   }
   std::vector<std::array<uint32_t, N>> groups(indices.size() / N);
   for (size_t i = 0; i < indices.size(); ++i) {
     if (indices[i] < 0 || static_cast<size_t>(indices[i]) >= vertexCount) {
-      throw Error(parameters.WhereOf("indices"), "index " + std::to_string(indices[i]) + " is out of range: there are " + Count(vertexCount) + " vertices in \"P\"");
+      throw Error(parameters.WhereOf("indices"), "index " + std::to_string(indices[i]) +
+                                                     " is out of range: there are " + Count(vertexCount) +
+                                                     " vertices in \"P\"");
     }
     groups[i / N][i % N] = static_cast<uint32_t>(indices[i]);
   }
@@ -55,7 +60,9 @@ LocalMesh ReadTriangleMesh(const ParameterList& parameters, Diagnostics& diagnos
   LocalMesh mesh = ReadVertices(parameters, diagnostics);
   std::vector<int64_t> indices = parameters.GetIntegers("indices");
   if (indices.empty()) {
-    if (mesh.positions.size() != 3) throw Error(parameters.Where(), parameters.Owner() + " needs \"integer indices\" (they may be left out for a single triangle)");
+    if (mesh.positions.size() != 3)
+      throw Error(parameters.Where(),
+                  parameters.Owner() + " needs \"integer indices\" (they may be left out for a single triangle)");
     indices = {0, 1, 2};
   }
   mesh.triangles = GroupIndices<3>(parameters, indices, mesh.positions.size());
@@ -67,7 +74,9 @@ LocalMesh ReadBilinearMesh(const ParameterList& parameters, Diagnostics& diagnos
   LocalMesh mesh = ReadVertices(parameters, diagnostics);
   std::vector<int64_t> indices = parameters.GetIntegers("indices");
   if (indices.empty()) {
-    if (mesh.positions.size() != 4) throw Error(parameters.Where(), parameters.Owner() + " needs \"integer indices\" (they may be left out for a single patch)");
+    if (mesh.positions.size() != 4)
+      throw Error(parameters.Where(),
+                  parameters.Owner() + " needs \"integer indices\" (they may be left out for a single patch)");
     indices = {0, 1, 2, 3};
   }
   mesh.patches = GroupIndices<4>(parameters, indices, mesh.positions.size());
@@ -83,7 +92,8 @@ LocalMesh ReadSubdivision(const ParameterList& parameters, Diagnostics& diagnost
   const auto triangles = GroupIndices<3>(parameters, indices, controlPoints.size());
   const int levels = parameters.GetInteger("levels", 3);
   constexpr int maxLevels = 10;
-  if (levels < 0 || levels > maxLevels) throw Error(parameters.WhereOf("levels"), "\"levels\" must be from 0 to " + std::to_string(maxLevels));
+  if (levels < 0 || levels > maxLevels)
+    throw Error(parameters.WhereOf("levels"), "\"levels\" must be from 0 to " + std::to_string(maxLevels));
   parameters.CheckAllUsed({"scheme"}, {"P", "indices", "levels", "alpha"}, diagnostics);
 
   std::vector<Point3> positions;
@@ -101,7 +111,8 @@ LocalMesh ReadPlyMesh(const ParameterList& parameters, Diagnostics& diagnostics)
   if (file.empty()) throw Error(parameters.Where(), parameters.Owner() + " needs \"string filename\"");
   PlyMesh ply = ReadPly(file, parameters.WhereOf("filename"));
   if (parameters.GetTextureName("displacement")) {
-    diagnostics.Warn(parameters.WhereOf("displacement"), "displacement of meshes is not supported; the mesh is rendered without");
+    diagnostics.Warn(parameters.WhereOf("displacement"),
+                     "displacement of meshes is not supported; the mesh is rendered without");
   }
   parameters.CheckAllUsed({"displacement", "edgelength"}, {"filename", "alpha"}, diagnostics);
   LocalMesh mesh;
@@ -147,7 +158,8 @@ Quadric ReadQuadric(Quadric::Kind kind, const ParameterList& parameters, Diagnos
       quadric.zMin = std::clamp(quadric.zMin, -quadric.radius, quadric.radius);
       quadric.zMax = std::clamp(quadric.zMax, -quadric.radius, quadric.radius);
     }
-    if (!(quadric.zMin < quadric.zMax)) throw Error(parameters.Where(), parameters.Owner() + " is empty: \"zmin\" must be below \"zmax\"");
+    if (!(quadric.zMin < quadric.zMax))
+      throw Error(parameters.Where(), parameters.Owner() + " is empty: \"zmin\" must be below \"zmax\"");
     known.insert(known.end(), {"zmin", "zmax"});
   }
   parameters.CheckAllUsed({}, known, diagnostics);
@@ -158,21 +170,26 @@ CurveParameters ReadCurve(const ParameterList& parameters, Diagnostics& diagnost
   CurveParameters curve;
   curve.where = parameters.Where();
   const std::string basis = parameters.GetString("basis", "bezier");
-  if (basis != "bezier" && basis != "bspline") throw Error(parameters.WhereOf("basis"), "there is no curve basis \"" + basis + "\"" + DidYouMean(basis, {"bezier", "bspline"}));
+  if (basis != "bezier" && basis != "bspline")
+    throw Error(parameters.WhereOf("basis"),
+                "there is no curve basis \"" + basis + "\"" + DidYouMean(basis, {"bezier", "bspline"}));
   curve.basis = basis == "bezier" ? CurveParameters::Basis::Bezier : CurveParameters::Basis::BSpline;
   curve.degree = parameters.GetInteger("degree", 3);
-  if (curve.degree != 2 && curve.degree != 3) throw Error(parameters.WhereOf("degree"), "the \"degree\" of a curve must be 2 or 3");
+  if (curve.degree != 2 && curve.degree != 3)
+    throw Error(parameters.WhereOf("degree"), "the \"degree\" of a curve must be 2 or 3");
   const std::string type = parameters.GetString("type", "flat");
   const Names types = {"flat", "cylinder", "ribbon"};
   const auto found = std::find(types.begin(), types.end(), type);
-  if (found == types.end()) throw Error(parameters.WhereOf("type"), "there is no curve type \"" + type + "\"" + DidYouMean(type, types));
+  if (found == types.end())
+    throw Error(parameters.WhereOf("type"), "there is no curve type \"" + type + "\"" + DidYouMean(type, types));
   curve.kind = static_cast<CurveSet::Kind>(found - types.begin());
   for (const Point3d& p : parameters.GetPoint3s("P")) curve.points.push_back(Point3(p));
   for (const Point3d& n : parameters.GetPoint3s("N")) curve.normals.push_back(Normal3(n));
   const double width = parameters.GetFloat("width", 1);
   curve.width0 = static_cast<float>(parameters.GetFloat("width0", width));
   curve.width1 = static_cast<float>(parameters.GetFloat("width1", width));
-  parameters.CheckAllUsed({"splitdepth"}, {"P", "N", "basis", "degree", "type", "width", "width0", "width1", "alpha"}, diagnostics);
+  parameters.CheckAllUsed({"splitdepth"}, {"P", "N", "basis", "degree", "type", "width", "width0", "width1", "alpha"},
+                          diagnostics);
   return curve;
 }
 
@@ -186,7 +203,9 @@ Bounds3d LocalBounds(const Quadric& quadric) {
 
 void CheckPlaced(const Point3& p, const ShapeDescription& description) {
   if (IsFinite(p)) return;
-  throw Error(description.shape.where, description.shape.parameters.Owner() + " has a vertex that is not finite once it is placed: its coordinates are too large");
+  throw Error(description.shape.where,
+              description.shape.parameters.Owner() +
+                  " has a vertex that is not finite once it is placed: its coordinates are too large");
 }
 
 std::vector<Shape> PlaceMesh(const LocalMesh& local, const ShapeDescription& description, const Transform& toRender) {
@@ -249,7 +268,8 @@ std::optional<LocalShape> ReadShape(const ShapeDescription& description, Diagnos
   } else if (type == "curve") {
     local.shape = ReadCurve(parameters, diagnostics);
   } else {
-    const Names known = {"trianglemesh", "plymesh", "loopsubdiv", "bilinearmesh", "sphere", "disk", "cylinder", "curve"};
+    const Names known = {"trianglemesh", "plymesh", "loopsubdiv", "bilinearmesh",
+                         "sphere",       "disk",    "cylinder",   "curve"};
     throw Error(description.shape.where, "there is no Shape \"" + type + "\"" + DidYouMean(type, known));
   }
   if (const LocalMesh* mesh = std::get_if<LocalMesh>(&local.shape)) {
@@ -274,7 +294,8 @@ Bounds3d GetBounds(const LocalShape& shape, const Transform& toWorld) {
 std::vector<Shape> PlaceShape(const LocalShape& shape, const Transform& toRender) {
   const ShapeDescription& description = *shape.description;
   if (const LocalMesh* mesh = std::get_if<LocalMesh>(&shape.shape)) return PlaceMesh(*mesh, description, toRender);
-  if (!toRender.IsAffine()) throw Error(description.shape.where, description.shape.parameters.Owner() + " cannot have a perspective transform");
+  if (!toRender.IsAffine())
+    throw Error(description.shape.where, description.shape.parameters.Owner() + " cannot have a perspective transform");
   if (const Quadric* local = std::get_if<Quadric>(&shape.shape)) {
     Quadric quadric = *local;
     quadric.toRender = toRender.ToAffine();

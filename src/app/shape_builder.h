@@ -28,8 +28,8 @@ struct LocalShape {
   const ShapeDescription* description = nullptr;
 };
 
-// Reads the parameters and files of a shape. Throws located Errors; nullopt (with a warning) when it is empty or of a kind
-// that is not supported.
+// Reads the parameters and files of a shape. Throws located Errors; nullopt (with a warning) when it is empty or of a
+// kind that is not supported.
 std::optional<LocalShape> ReadShape(const ShapeDescription& description, Diagnostics& diagnostics);
 
 // Bounds under `toWorld`.

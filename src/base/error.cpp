@@ -18,7 +18,9 @@ std::string Format(const FileLocation& where, const char* severity, const std::s
   return (place.empty() ? "" : place + ": ") + severity + ": " + text;
 }
 
-char LowerCase(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+char LowerCase(char c) {
+  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
 
 // Edit distance with transpositions of neighbours (optimal string alignment), case ignored.
 int EditDistance(std::string_view a, std::string_view b) {
@@ -30,8 +32,8 @@ int EditDistance(std::string_view a, std::string_view b) {
     for (size_t j = 1; j < columns; ++j) {
       const bool same = LowerCase(a[i - 1]) == LowerCase(b[j - 1]);
       row[j] = std::min({last[j] + 1, row[j - 1] + 1, last[j - 1] + (same ? 0 : 1)});
-      const bool swapped = i > 1 && j > 1 && LowerCase(a[i - 1]) == LowerCase(b[j - 2]) &&
-                           LowerCase(a[i - 2]) == LowerCase(b[j - 1]);
+      const bool swapped =
+          i > 1 && j > 1 && LowerCase(a[i - 1]) == LowerCase(b[j - 2]) && LowerCase(a[i - 2]) == LowerCase(b[j - 1]);
       if (swapped) row[j] = std::min(row[j], beforeLast[j - 2] + 1);
     }
     std::swap(beforeLast, last);

@@ -4,8 +4,8 @@
 // (nothing here is global). Both print as `file:line:col: error: what, and what would be right`.
 #pragma once
 
-#include <mutex>
 #include <memory>
+#include <mutex>
 #include <set>
 #include <stdexcept>
 #include <string>

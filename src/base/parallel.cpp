@@ -12,7 +12,9 @@
 
 namespace lampyr {
 
-int HardwareThreads() { return std::max(1u, std::thread::hardware_concurrency()); }
+int HardwareThreads() {
+  return std::max(1u, std::thread::hardware_concurrency());
+}
 
 void FlushDenormalsToZero() {
 #if defined(__x86_64__)
@@ -29,10 +31,13 @@ void ParallelFor(int count, int threads, const std::function<void(int)>& body) {
   tbb::task_arena arena(threads);
   arena.execute([&] {
     // One item at a time: items (tiles) are large and of uneven cost.
-    tbb::parallel_for(tbb::blocked_range<int>(0, count, 1), [&](const tbb::blocked_range<int>& range) {
-      FlushDenormalsToZero();  // TBB resets the calling thread's setting
-      for (int i = range.begin(); i < range.end(); ++i) body(i);
-    }, tbb::simple_partitioner());
+    tbb::parallel_for(
+        tbb::blocked_range<int>(0, count, 1),
+        [&](const tbb::blocked_range<int>& range) {
+          FlushDenormalsToZero();  // TBB resets the calling thread's setting
+          for (int i = range.begin(); i < range.end(); ++i) body(i);
+        },
+        tbb::simple_partitioner());
   });
 }
 

@@ -8,8 +8,9 @@ namespace lampyr {
 // Hardware threads of this machine, at least 1.
 int HardwareThreads();
 
-// Denormal floats are flushed to zero: rays with denormal components are several times slower otherwise. To be called once
-// at the start of main, before anything parallel: worker threads inherit the setting when they start, and never later.
+// Denormal floats are flushed to zero: rays with denormal components are several times slower otherwise. To be called
+// once at the start of main, before anything parallel: worker threads inherit the setting when they start, and never
+// later.
 void FlushDenormalsToZero();
 
 // Calls body(0) … body(count - 1) on at most `threads` threads. An exception of a body is thrown here.

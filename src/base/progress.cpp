@@ -24,15 +24,20 @@ std::string FormatDuration(double seconds) {
 
 Progress::Progress(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0), start_(Clock::now()) {}
 
-Progress::~Progress() { Clear(); }
+Progress::~Progress() {
+  Clear();
+}
 
-double Progress::Seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+double Progress::Seconds() const {
+  return std::chrono::duration<double>(Clock::now() - start_).count();
+}
 
 void Progress::Update(double fraction, const std::string& note) {
   if (quiet_) return;
   const double now = Seconds();
   if (now - lastPrinted_ < (terminal_ ? 0.1 : 5.0)) return;
-  if (!terminal_ && (fraction >= 1 || (lastPrinted_ < 0 && now < 2.0))) return;  // short or finished work needs no lines
+  if (!terminal_ && (fraction >= 1 || (lastPrinted_ < 0 && now < 2.0)))
+    return;  // short or finished work needs no lines
   lastPrinted_ = now;
   fraction = std::clamp(fraction, 0.0, 1.0);
   const std::string left = fraction > 0 ? FormatDuration(now * (1 - fraction) / fraction) : "?";

@@ -16,8 +16,14 @@ struct Degrees {
   constexpr operator Radians() const { return Radians(value * (kPi / 180.0f)); }
 };
 
-inline float Cos(Radians a) { return std::cos(a.value); }
-inline float Sin(Radians a) { return std::sin(a.value); }
-inline float Tan(Radians a) { return std::tan(a.value); }
+inline float Cos(Radians a) {
+  return std::cos(a.value);
+}
+inline float Sin(Radians a) {
+  return std::sin(a.value);
+}
+inline float Tan(Radians a) {
+  return std::tan(a.value);
+}
 
 }  // namespace lampyr

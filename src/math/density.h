@@ -38,7 +38,9 @@ template <class Measure>
 Pdf<Measure> operator*(PdfDiscrete selection, Pdf<Measure> pdf) {
   return Pdf<Measure>(selection.value * pdf.value);
 }
-inline PdfDiscrete operator*(PdfDiscrete a, PdfDiscrete b) { return PdfDiscrete(a.value * b.value); }
+inline PdfDiscrete operator*(PdfDiscrete a, PdfDiscrete b) {
+  return PdfDiscrete(a.value * b.value);
+}
 
 // Area at a surface point seen at `distance` with |cos| `cosTheta` between its normal and the connecting line
 // -> solid angle at the viewer: p_ω = p_A · d² / cosθ. 0 where the surface is seen edge-on: it has no solid angle.
@@ -50,6 +52,8 @@ inline PdfSolidAngle ToSolidAngle(PdfArea pdf, float distanceSquared, float cosT
 inline float SolidAngleToArea(float distanceSquared, float cosTheta) {
   return distanceSquared > 0 ? cosTheta / distanceSquared : 0.0f;
 }
-inline PdfArea ToArea(PdfSolidAngle pdf, float solidAngleToArea) { return PdfArea(pdf.value * solidAngleToArea); }
+inline PdfArea ToArea(PdfSolidAngle pdf, float solidAngleToArea) {
+  return PdfArea(pdf.value * solidAngleToArea);
+}
 
 }  // namespace lampyr

@@ -79,17 +79,25 @@ bool Transform::IsSingular() const {
   return !AllFinite(m_) || !AllFinite(inverse_) || glm::determinant(m_) == 0.0;
 }
 
-bool Transform::SwapsHandedness() const { return glm::determinant(glm::dmat3(m_)) < 0.0; }
+bool Transform::SwapsHandedness() const {
+  return glm::determinant(glm::dmat3(m_)) < 0.0;
+}
 
 Point3d Transform::Point(const Point3d& p) const {
   const glm::dvec4 q = m_ * glm::dvec4(p, 1.0);
   return q.w == 1.0 ? Point3d(q) : Point3d(q) / q.w;
 }
 
-Vector3d Transform::Vector(const Vector3d& v) const { return glm::dmat3(m_) * v; }
+Vector3d Transform::Vector(const Vector3d& v) const {
+  return glm::dmat3(m_) * v;
+}
 
-Vector3d Transform::Normal(const Vector3d& n) const { return n * glm::dmat3(inverse_); }
+Vector3d Transform::Normal(const Vector3d& n) const {
+  return n * glm::dmat3(inverse_);
+}
 
-Affine Transform::ToAffine() const { return {glm::mat3(glm::dmat3(m_)), Vector3(Vector3d(m_[3]))}; }
+Affine Transform::ToAffine() const {
+  return {glm::mat3(glm::dmat3(m_)), Vector3(Vector3d(m_[3]))};
+}
 
 }  // namespace lampyr

@@ -33,7 +33,8 @@ class Transform {
   static Transform Translate(const Vector3d& offset);
   static Transform Scale(const Vector3d& factors);
   static Transform Rotate(double degrees, const Vector3d& axis);  // right-handed; the axis need not be unit
-  static Transform LookAt(const Point3d& eye, const Point3d& target, const Vector3d& up);  // world to camera, as in pbrt
+  static Transform LookAt(const Point3d& eye, const Point3d& target,
+                          const Vector3d& up);  // world to camera, as in pbrt
 
   const glm::dmat4& Matrix() const { return m_; }
   const glm::dmat4& InverseMatrix() const { return inverse_; }
@@ -49,9 +50,7 @@ class Transform {
 
   Affine ToAffine() const;  // requires IsAffine()
 
-  friend Transform operator*(const Transform& a, const Transform& b) {
-    return {a.m_ * b.m_, b.inverse_ * a.inverse_};
-  }
+  friend Transform operator*(const Transform& a, const Transform& b) { return {a.m_ * b.m_, b.inverse_ * a.inverse_}; }
   friend bool operator==(const Transform& a, const Transform& b) { return a.m_ == b.m_; }
 
  private:

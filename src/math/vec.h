@@ -32,11 +32,21 @@ inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
 // The largest float below 1: random numbers are in [0, kOneMinusEpsilon].
 inline constexpr float kOneMinusEpsilon = 0x1.fffffep-1f;
 
-inline float Sqr(float x) { return x * x; }
-inline float SafeSqrt(float x) { return std::sqrt(std::max(0.0f, x)); }
-inline float AbsDot(const Vector3& a, const Vector3& b) { return std::abs(glm::dot(a, b)); }
-inline float LengthSquared(const Vector3& v) { return glm::dot(v, v); }
-inline float MaxComponent(const Vector3& v) { return std::max(v.x, std::max(v.y, v.z)); }
+inline float Sqr(float x) {
+  return x * x;
+}
+inline float SafeSqrt(float x) {
+  return std::sqrt(std::max(0.0f, x));
+}
+inline float AbsDot(const Vector3& a, const Vector3& b) {
+  return std::abs(glm::dot(a, b));
+}
+inline float LengthSquared(const Vector3& v) {
+  return glm::dot(v, v);
+}
+inline float MaxComponent(const Vector3& v) {
+  return std::max(v.x, std::max(v.y, v.z));
+}
 inline float MaxAbsComponent(const Vector3& v) {
   return std::max(std::abs(v.x), std::max(std::abs(v.y), std::abs(v.z)));
 }
@@ -52,9 +62,24 @@ struct Color {
   constexpr explicit Color(float gray) : r(gray), g(gray), b(gray) {}
   constexpr Color(float red, float green, float blue) : r(red), g(green), b(blue) {}
 
-  Color& operator+=(const Color& c) { r += c.r; g += c.g; b += c.b; return *this; }
-  Color& operator*=(const Color& c) { r *= c.r; g *= c.g; b *= c.b; return *this; }
-  Color& operator*=(float s) { r *= s; g *= s; b *= s; return *this; }
+  Color& operator+=(const Color& c) {
+    r += c.r;
+    g += c.g;
+    b += c.b;
+    return *this;
+  }
+  Color& operator*=(const Color& c) {
+    r *= c.r;
+    g *= c.g;
+    b *= c.b;
+    return *this;
+  }
+  Color& operator*=(float s) {
+    r *= s;
+    g *= s;
+    b *= s;
+    return *this;
+  }
   Color& operator/=(float s) { return *this *= 1.0f / s; }
 
   bool IsBlack() const { return r == 0 && g == 0 && b == 0; }
@@ -67,13 +92,29 @@ struct Color {
   friend bool operator==(const Color&, const Color&) = default;
 };
 
-inline Color operator+(const Color& a, const Color& b) { return {a.r + b.r, a.g + b.g, a.b + b.b}; }
-inline Color operator-(const Color& a, const Color& b) { return {a.r - b.r, a.g - b.g, a.b - b.b}; }
-inline Color operator*(const Color& a, const Color& b) { return {a.r * b.r, a.g * b.g, a.b * b.b}; }
-inline Color operator*(const Color& a, float s) { return {a.r * s, a.g * s, a.b * s}; }
-inline Color operator*(float s, const Color& a) { return a * s; }
-inline Color operator/(const Color& a, float s) { return {a.r / s, a.g / s, a.b / s}; }
-inline Color Lerp(const Color& a, const Color& b, float t) { return a * (1.0f - t) + b * t; }
-inline Color Sqrt(const Color& c) { return {std::sqrt(c.r), std::sqrt(c.g), std::sqrt(c.b)}; }
+inline Color operator+(const Color& a, const Color& b) {
+  return {a.r + b.r, a.g + b.g, a.b + b.b};
+}
+inline Color operator-(const Color& a, const Color& b) {
+  return {a.r - b.r, a.g - b.g, a.b - b.b};
+}
+inline Color operator*(const Color& a, const Color& b) {
+  return {a.r * b.r, a.g * b.g, a.b * b.b};
+}
+inline Color operator*(const Color& a, float s) {
+  return {a.r * s, a.g * s, a.b * s};
+}
+inline Color operator*(float s, const Color& a) {
+  return a * s;
+}
+inline Color operator/(const Color& a, float s) {
+  return {a.r / s, a.g / s, a.b / s};
+}
+inline Color Lerp(const Color& a, const Color& b, float t) {
+  return a * (1.0f - t) + b * t;
+}
+inline Color Sqrt(const Color& c) {
+  return {std::sqrt(c.r), std::sqrt(c.g), std::sqrt(c.b)};
+}
 
 }  // namespace lampyr

@@ -24,7 +24,9 @@ class Peer : public testing::TestWithParam<PeerScene> {};
 struct Bias {
   double relative, standardError;
 };
-Bias BiasOf(const ImageDifference& difference) { return {difference.bias, difference.biasInterval / 1.96}; }
+Bias BiasOf(const ImageDifference& difference) {
+  return {difference.bias, difference.biasInterval / 1.96};
+}
 
 void SkipWithoutData(const fs::path& file) {
   if (!fs::exists(file)) GTEST_SKIP() << "the reference data is not here: " << file;
@@ -39,9 +41,10 @@ TEST_P(Peer, BlockMeansAgree) {
   const ImageDifference difference = CompareImages(rendered.image, reference, GetParam().blockSize);
   ASSERT_TRUE(difference.hasBlockTest);
   const BlockTest& test = difference.blockTest;
-  std::printf("%s: %d blocks, largest |z| %.2f (threshold %.2f), chi2 %.1f (threshold %.1f), bias %+.3f %% +- %.3f %%\n",
-              GetParam().name, test.blocks, test.largestZ, test.threshold, test.chiSquared, test.chiSquaredThreshold,
-              100 * difference.bias, 100 * difference.biasInterval);
+  std::printf(
+      "%s: %d blocks, largest |z| %.2f (threshold %.2f), chi2 %.1f (threshold %.1f), bias %+.3f %% +- %.3f %%\n",
+      GetParam().name, test.blocks, test.largestZ, test.threshold, test.chiSquared, test.chiSquaredThreshold,
+      100 * difference.bias, 100 * difference.biasInterval);
   const int blocksPerSide = 64 / GetParam().blockSize;
   EXPECT_GE(test.blocks, blocksPerSide * blocksPerSide * 9 / 10);
   EXPECT_LE(test.largestZ, test.threshold);
@@ -53,17 +56,17 @@ TEST_P(Peer, BlockMeansAgree) {
   EXPECT_EQ(rendered.rejectedRays, 0u);
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, Peer,
-                         // The caustic of the last is found by chance, here and (through glass) in the reference, whose error is
-                         // estimated from four renders: only the means of large blocks are normally distributed.
-                         testing::Values(PeerScene{"area-box", 512}, PeerScene{"mixed-lights", 512},
-                                         PeerScene{"sky-spheres", 2048}, PeerScene{"lights600", 2048},
-                                         PeerScene{"glass-caustic", 1536, 32}),
-                         [](const auto& info) {
-                           std::string name = info.param.name;
-                           std::replace(name.begin(), name.end(), '-', '_');
-                           return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    Scenes, Peer,
+    // The caustic of the last is found by chance, here and (through glass) in the reference, whose error is
+    // estimated from four renders: only the means of large blocks are normally distributed.
+    testing::Values(PeerScene{"area-box", 512}, PeerScene{"mixed-lights", 512}, PeerScene{"sky-spheres", 2048},
+                    PeerScene{"lights600", 2048}, PeerScene{"glass-caustic", 1536, 32}),
+    [](const auto& info) {
+      std::string name = info.param.name;
+      std::replace(name.begin(), name.end(), '-', '_');
+      return name;
+    });
 
 // No camera path can find a delta light through glass: what `path` renders is a part of the reference and never more.
 class PeerLowerBound : public testing::TestWithParam<const char*> {};
@@ -80,9 +83,8 @@ TEST_P(PeerLowerBound, PathIsPartOfTheReference) {
   EXPECT_GT(difference.bias, -0.9) << "nearly everything is missing";
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, PeerLowerBound, testing::Values("spot-lens", "pool"), [](const auto& info) {
-  return std::string(info.param) == "pool" ? "pool" : "spot_lens";
-});
+INSTANTIATE_TEST_SUITE_P(Scenes, PeerLowerBound, testing::Values("spot-lens", "pool"),
+                         [](const auto& info) { return std::string(info.param) == "pool" ? "pool" : "spot_lens"; });
 
 // The reference adds up the light between the layers of a coat by chance. Light that leaves through a rough boundary is
 // found in two ways, and the weight of one of them uses the density of leaving along wi, where the other's samples have
@@ -120,8 +122,9 @@ TEST(Killeroo, BlockMeansAgree) {
     }
   }
   EXPECT_NEAR(meanA / meanB, 1, 0.01);
-  std::printf("killeroo: block means differ by %.2f %% at most, %.2f %% where coats are seen; all together by %+.2f %%\n",
-              100 * largest, 100 * largestCoated, 100 * (meanA / meanB - 1));
+  std::printf(
+      "killeroo: block means differ by %.2f %% at most, %.2f %% where coats are seen; all together by %+.2f %%\n",
+      100 * largest, 100 * largestCoated, 100 * (meanA / meanB - 1));
 }
 
 }  // namespace

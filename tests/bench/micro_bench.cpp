@@ -59,8 +59,9 @@ BENCHMARK(Table2D)->Name("table/sample2D")->Arg(128)->Arg(4096);
 // A scene of one sphere of a material, and lights; the pieces are taken from there.
 BuiltScene SmallScene(const std::string& material, const std::string& light) {
   Diagnostics diagnostics(Diagnostics::Mode::Collect);
-  return BuildScene(ParseScene("Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 8\nWorldBegin\n" + light +
-                                   "\nMaterial " + material + "\nShape \"sphere\"\n", "bench.pbrt", diagnostics),
+  return BuildScene(ParseScene("Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 8\nWorldBegin\n" +
+                                   light + "\nMaterial " + material + "\nShape \"sphere\"\n",
+                               "bench.pbrt", diagnostics),
                     {}, true, diagnostics);
 }
 
@@ -102,7 +103,8 @@ const bool kRegistered = [] {
       {"coatedDiffuse", "\"coateddiffuse\" \"float roughness\" 0.1"},
       {"coatedConductor", "\"coatedconductor\""}};
   for (const auto& [name, material] : materials) {
-    benchmark::RegisterBenchmark((std::string("bsdf/") + name).c_str(), [m = std::string(material)](benchmark::State& s) { BsdfSampleAndEvaluate(s, m); });
+    benchmark::RegisterBenchmark((std::string("bsdf/") + name).c_str(),
+                                 [m = std::string(material)](benchmark::State& s) { BsdfSampleAndEvaluate(s, m); });
   }
   const std::string area = "AttributeBegin Translate 0 4 0 AreaLightSource \"diffuse\" ";
   const std::pair<const char*, std::string> lights[] = {
@@ -112,11 +114,13 @@ const bool kRegistered = [] {
       {"constantInfinite", "LightSource \"infinite\""},
       {"sphere", area + "Shape \"sphere\" AttributeEnd"},
       {"disk", area + "Rotate 90 1 0 0 Shape \"disk\" AttributeEnd"},
-      {"mesh", area + "Shape \"trianglemesh\" \"point3 P\" [-1 0 -1 1 0 -1 1 0 1 -1 0 1] \"integer indices\" [0 1 2 0 2 3] AttributeEnd"}};
+      {"mesh", area + "Shape \"trianglemesh\" \"point3 P\" [-1 0 -1 1 0 -1 1 0 1 -1 0 1] \"integer indices\" [0 1 2 0 "
+                      "2 3] AttributeEnd"}};
   for (const auto& [name, light] : lights) {
     for (const bool bidirectional : {false, true}) {
-      benchmark::RegisterBenchmark((std::string("light/") + name + (bidirectional ? "/bidirectional" : "")).c_str(),
-                                   [l = light, bidirectional](benchmark::State& s) { LightSamples(s, l, bidirectional); });
+      benchmark::RegisterBenchmark(
+          (std::string("light/") + name + (bidirectional ? "/bidirectional" : "")).c_str(),
+          [l = light, bidirectional](benchmark::State& s) { LightSamples(s, l, bidirectional); });
     }
   }
   return true;

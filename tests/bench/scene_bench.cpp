@@ -1,5 +1,5 @@
-// Whole scenes on one thread: samples and rays per second of CPU time, beside what bare Embree does with rays of the same
-// kind in the same scene and process.
+// Whole scenes on one thread: samples and rays per second of CPU time, beside what bare Embree does with rays of the
+// same kind in the same scene and process.
 #include <benchmark/benchmark.h>
 
 #include <filesystem>
@@ -57,11 +57,13 @@ void IntersectRays(benchmark::State& state, const fs::path& file, bool occlusion
   for (auto _ : state) {
     for (const Ray& ray : rays) {
       RayHit hit;
-      hits += occlusion ? geometry.Occluded(ray, visibility::kShadow) : geometry.Intersect(ray, visibility::kIndirect, hit);
+      hits +=
+          occlusion ? geometry.Occluded(ray, visibility::kShadow) : geometry.Intersect(ray, visibility::kIndirect, hit);
     }
   }
   benchmark::DoNotOptimize(hits);
-  state.counters["rays"] = benchmark::Counter(double(rays.size()) * double(state.iterations()), benchmark::Counter::kIsRate);
+  state.counters["rays"] =
+      benchmark::Counter(double(rays.size()) * double(state.iterations()), benchmark::Counter::kIsRate);
 }
 
 // Seconds of CPU time that bare intersection takes for as many rays of each kind as `counts` holds.
@@ -75,7 +77,8 @@ double SecondsOfBareRays(const BuiltScene& built, const RenderCounts& counts) {
       const double start = CpuSeconds();
       for (const Ray& ray : rays) {
         RayHit hit;
-        hits += occlusion ? geometry.Occluded(ray, visibility::kShadow) : geometry.Intersect(ray, visibility::kIndirect, hit);
+        hits += occlusion ? geometry.Occluded(ray, visibility::kShadow)
+                          : geometry.Intersect(ray, visibility::kIndirect, hit);
       }
       best = std::min(best, CpuSeconds() - start);
     }
@@ -110,12 +113,21 @@ void RenderScenePath(benchmark::State& state, const fs::path& file, int size) {
 
 const bool kRegistered = [] {
   const fs::path killeroo = kShared / "killeroo" / "killeroo-simple.pbrt";
-  benchmark::RegisterBenchmark("intersect/killeroo/closest", [=](benchmark::State& s) { IntersectRays(s, killeroo, false); })->Unit(benchmark::kMillisecond);
-  benchmark::RegisterBenchmark("intersect/killeroo/occlusion", [=](benchmark::State& s) { IntersectRays(s, killeroo, true); })->Unit(benchmark::kMillisecond);
-  benchmark::RegisterBenchmark("path/killeroo", [=](benchmark::State& s) { RenderScenePath(s, killeroo, 256); })->Unit(benchmark::kMillisecond);
-  for (const char* name : {"area-box", "mixed-lights", "glass-caustic", "spot-lens", "sky-spheres", "lights600", "pool"}) {
+  benchmark::RegisterBenchmark("intersect/killeroo/closest", [=](benchmark::State& s) {
+    IntersectRays(s, killeroo, false);
+  })->Unit(benchmark::kMillisecond);
+  benchmark::RegisterBenchmark("intersect/killeroo/occlusion", [=](benchmark::State& s) {
+    IntersectRays(s, killeroo, true);
+  })->Unit(benchmark::kMillisecond);
+  benchmark::RegisterBenchmark("path/killeroo", [=](benchmark::State& s) {
+    RenderScenePath(s, killeroo, 256);
+  })->Unit(benchmark::kMillisecond);
+  for (const char* name :
+       {"area-box", "mixed-lights", "glass-caustic", "spot-lens", "sky-spheres", "lights600", "pool"}) {
     const fs::path file = kShared / "peer" / (std::string(name) + ".pbrt");
-    benchmark::RegisterBenchmark((std::string("path/") + name).c_str(), [=](benchmark::State& s) { RenderScenePath(s, file, 64); })->Unit(benchmark::kMillisecond);
+    benchmark::RegisterBenchmark((std::string("path/") + name).c_str(), [=](benchmark::State& s) {
+      RenderScenePath(s, file, 64);
+    })->Unit(benchmark::kMillisecond);
   }
   return true;
 }();

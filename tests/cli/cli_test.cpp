@@ -75,7 +75,8 @@ TEST_F(Cli, RendersAnImageWithMetadataAndStatistics) {
   EXPECT_EQ(image.metadata.at("lampyr.integrator"), "path");
   EXPECT_TRUE(fs::exists(folder_ / "out.png"));
   const std::string stats = Read("stats.json");
-  for (const char* key : {"\"rays\"", "\"samplesPerSecond\"", "\"droppedSamples\": 0", "\"peakMemoryMiB\"", "\"build\""}) {
+  for (const char* key :
+       {"\"rays\"", "\"samplesPerSecond\"", "\"droppedSamples\": 0", "\"peakMemoryMiB\"", "\"build\""}) {
     EXPECT_NE(stats.find(key), std::string::npos) << key << " in " << stats;
   }
 }
@@ -88,11 +89,15 @@ TEST_F(Cli, SameFileForAnyNumberOfThreads) {
   EXPECT_NE(Read("a.exr"), Read("c.exr"));
 }
 
-TEST_F(Cli, QuietIsQuiet) { EXPECT_EQ(Run("render scene.pbrt -o a.exr --quiet").output, ""); }
+TEST_F(Cli, QuietIsQuiet) {
+  EXPECT_EQ(Run("render scene.pbrt -o a.exr --quiet").output, "");
+}
 
 TEST_F(Cli, OptionsOverrideTheScene) {
   ASSERT_EQ(Run("render scene.pbrt -o a.exr --resolution 10x6 --spp 2 --max-depth 1 --sampler independent "
-                "--light-sampler uniform --crop 0,0.5,0,1").exitCode, 0);
+                "--light-sampler uniform --crop 0,0.5,0,1")
+                .exitCode,
+            0);
   const Image image = ReadImage(folder_ / "a.exr");
   EXPECT_EQ(image.width, 5);
   EXPECT_EQ(image.height, 6);
@@ -112,12 +117,12 @@ TEST_F(Cli, StopsByTimeAndByError) {
 }
 
 TEST_F(Cli, WrongUsageExitsWithTwo) {
-  for (const char* arguments : {"", "rendr scene.pbrt", "render", "render scene.pbrt --spp 0", "render scene.pbrt --spp x",
-                                "render scene.pbrt --time soon", "render scene.pbrt --resolution 0x5",
-                                "render scene.pbrt --crop 1,2", "render scene.pbrt --crop 0,0,0,0", "render scene.pbrt --integrator magic",
-                                "render scene.pbrt --light-sampler best", "render scene.pbrt --sampler best",
-                                "render scene.pbrt -o out.jpg", "render scene.pbrt -o nowhere/out.exr",
-                                "render absent.pbrt", "diff absent.exr absent.exr", "lights pont"}) {
+  for (const char* arguments :
+       {"", "rendr scene.pbrt", "render", "render scene.pbrt --spp 0", "render scene.pbrt --spp x",
+        "render scene.pbrt --time soon", "render scene.pbrt --resolution 0x5", "render scene.pbrt --crop 1,2",
+        "render scene.pbrt --crop 0,0,0,0", "render scene.pbrt --integrator magic",
+        "render scene.pbrt --light-sampler best", "render scene.pbrt --sampler best", "render scene.pbrt -o out.jpg",
+        "render scene.pbrt -o nowhere/out.exr", "render absent.pbrt", "diff absent.exr absent.exr", "lights pont"}) {
     const Outcome outcome = Run(arguments);
     EXPECT_EQ(outcome.exitCode, 2) << arguments << "\n" << outcome.output;
     EXPECT_NE(outcome.output, "") << arguments;
@@ -133,7 +138,8 @@ TEST_F(Cli, BadScenesAreNamedByPlace) {
       {"WorldBegin\nLightSource \"pont\"\n", "bad.pbrt:2:1: error:", "did you mean \"point\""},
       {"WorldBegin\nMaterial \"difuse\"\n", "bad.pbrt:2:1: error:", "did you mean \"diffuse\""},
       {"WorldBegin\nNamedMaterial \"gold\"\nShape \"sphere\"\n", "bad.pbrt:2:1: error:", "gold"},
-      {"WorldBegin\nShape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [0 1 3]\n", "bad.pbrt:2:", "out of range"},
+      {"WorldBegin\nShape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [0 1 3]\n",
+       "bad.pbrt:2:", "out of range"},
       {"WorldBegin\nShape \"plymesh\" \"string filename\" \"absent.ply\"\n", "bad.pbrt:2:", "absent.ply"},
       {"WorldBegin\nMaterial \"diffuse\" \"texture reflectance\" \"wood\"\nShape \"sphere\"\n", "bad.pbrt:2:", "wood"},
       {"Camera \"perspectiv\"\nWorldBegin\n", "bad.pbrt:1:1: error:", "did you mean \"perspective\""},
@@ -143,7 +149,9 @@ TEST_F(Cli, BadScenesAreNamedByPlace) {
       {"Integrator \"paht\"\nWorldBegin\n", "bad.pbrt:1:1: error:", "did you mean \"path\""},
       {"PixelFilter \"gausian\"\nWorldBegin\n", "bad.pbrt:1:1: error:", "did you mean \"gaussian\""},
       {"WorldBegin\nScale 0 1 1\nShape \"sphere\"\n", "bad.pbrt:2:", "singular"},
-      {"WorldBegin\nMakeNamedMaterial \"a\" \"string type\" \"mix\" \"string materials\" [\"a\" \"a\"]\nNamedMaterial \"a\"\nShape \"sphere\"\n", "bad.pbrt:2:", "itself"},
+      {"WorldBegin\nMakeNamedMaterial \"a\" \"string type\" \"mix\" \"string materials\" [\"a\" \"a\"]\nNamedMaterial "
+       "\"a\"\nShape \"sphere\"\n",
+       "bad.pbrt:2:", "itself"},
   };
   for (const auto& test : cases) {
     Write("bad.pbrt", test.text);
@@ -180,7 +188,8 @@ TEST_F(Cli, InterruptWritesTheImageAndExitsWith130) {
   const pid_t child = fork();
   if (child == 0) {
     if (chdir(folder_.c_str()) != 0) _exit(99);
-    execl(LAMPYR_BINARY, LAMPYR_BINARY, "render", "scene.pbrt", "-o", "stopped.exr", "--spp", "100000000", "--quiet", nullptr);
+    execl(LAMPYR_BINARY, LAMPYR_BINARY, "render", "scene.pbrt", "-o", "stopped.exr", "--spp", "100000000", "--quiet",
+          nullptr);
     _exit(99);
   }
   std::this_thread::sleep_for(std::chrono::milliseconds(1500));
@@ -199,7 +208,8 @@ TEST_F(Cli, AFailedWriteExitsWithOneAndKeepsTheOldImage) {
   EXPECT_EQ(outcome.exitCode, 1) << outcome.output;
   EXPECT_TRUE(fs::exists(folder_ / "busy.exr" / "kept"));
   int files = 0;
-  for (const auto& entry : fs::directory_iterator(folder_)) files += entry.path().filename().string().rfind("busy", 0) == 0;
+  for (const auto& entry : fs::directory_iterator(folder_))
+    files += entry.path().filename().string().rfind("busy", 0) == 0;
   EXPECT_EQ(files, 1) << "a part of an image was left behind";
 }
 
@@ -209,7 +219,8 @@ TEST_F(Cli, DiffTellsEqualFromDifferent) {
   Outcome outcome = Run("diff a.exr b.exr");
   EXPECT_EQ(outcome.exitCode, 0);
   EXPECT_NE(outcome.output.find("agree"), std::string::npos) << outcome.output;
-  Write("brighter.pbrt", std::string(kScene) + "LightSource \"point\" \"rgb I\" [0.4 0.4 0.4] \"point3 from\" [0 2 1]\n");
+  Write("brighter.pbrt",
+        std::string(kScene) + "LightSource \"point\" \"rgb I\" [0.4 0.4 0.4] \"point3 from\" [0 2 1]\n");
   ASSERT_EQ(Run("render brighter.pbrt -o c.exr --spp 64 --sampler independent --quiet").exitCode, 0);
   outcome = Run("diff c.exr a.exr");
   EXPECT_NE(outcome.output.find("DIFFER"), std::string::npos) << outcome.output;
@@ -220,7 +231,8 @@ TEST_F(Cli, DiffTellsEqualFromDifferent) {
 TEST_F(Cli, ListsLights) {
   const Outcome all = Run("lights");
   EXPECT_EQ(all.exitCode, 0);
-  for (const char* name : {"LightSource \"point\"", "LightSource \"spot\"", "LightSource \"distant\"", "LightSource \"infinite\"", "AreaLightSource \"diffuse\""}) {
+  for (const char* name : {"LightSource \"point\"", "LightSource \"spot\"", "LightSource \"distant\"",
+                           "LightSource \"infinite\"", "AreaLightSource \"diffuse\""}) {
     EXPECT_NE(all.output.find(name), std::string::npos) << name;
   }
   const Outcome one = Run("lights spot");

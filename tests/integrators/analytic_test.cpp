@@ -19,7 +19,9 @@ void ExpectMean(const Image& image, double expected, double largestRelativeError
   EXPECT_NEAR(value.mean, expected, 4 * value.standardError + 2e-6 * expected);
 }
 
-double FresnelNormal(double eta) { return std::pow((eta - 1) / (eta + 1), 2); }
+double FresnelNormal(double eta) {
+  return std::pow((eta - 1) / (eta + 1), 2);
+}
 
 TEST(Analytic, ClosedFurnace) {
   // L = E / (1 - ρ) everywhere inside a closed surface that emits E and reflects ρ.
@@ -28,11 +30,13 @@ TEST(Analytic, ClosedFurnace) {
 Integrator "path" "integer maxdepth" 400
 WorldBegin
 AreaLightSource "diffuse" "rgb L" [1 1 1]
-Material "diffuse" "rgb reflectance" [)" + std::to_string(reflectance) + " " + std::to_string(reflectance) + " " +
+Material "diffuse" "rgb reflectance" [)" +
+                                         std::to_string(reflectance) + " " + std::to_string(reflectance) + " " +
                                          std::to_string(reflectance) + R"(]
 ReverseOrientation
 Shape "sphere" "float radius" 3
-)", 256);
+)",
+                                     256);
     ExpectMean(rendered.image, 1 / (1 - reflectance), 0.01);
     EXPECT_EQ(rendered.outcome.counts.droppedSamples, 0u);
   }
@@ -46,7 +50,8 @@ AreaLightSource "diffuse" "rgb L" [1 1 1]
 Material "diffuse" "rgb reflectance" [0.5 0.5 0.5]
 Shape "trianglemesh" "point3 P" [-1 -1 -1  1 -1 -1  1 1 -1  -1 1 -1  -1 -1 1  1 -1 1  1 1 1  -1 1 1]
   "integer indices" [0 1 2 0 2 3  4 6 5 4 7 6  0 5 1 0 4 5  3 2 6 3 6 7  0 3 7 0 7 4  1 5 6 1 6 2]
-)", 256);
+)",
+                                   256);
   ExpectMean(rendered.image, 2.0, 0.01);
 }
 
@@ -58,7 +63,8 @@ WorldBegin
 LightSource "point" "rgb I" [10 10 10]
 Material "diffuse" "rgb reflectance" [0.5 0.5 0.5]
 Shape "sphere" "float radius" 2
-)", 4);
+)",
+                                   4);
   EXPECT_NEAR(MeanOf(rendered.image).mean, 0.5 / M_PI * 10 / 4, 1e-4);
 }
 
@@ -76,7 +82,8 @@ Material "diffuse" "rgb reflectance" [0.5 0.5 0.5]
 Shape "trianglemesh" "point3 P" [-5 0 -5 -5 0 5 5 0 5 5 0 -5] "integer indices" [0 1 2 0 2 3]
 AreaLightSource "diffuse" "rgb L" [1 1 1]
 Shape "trianglemesh" "point3 P" [-0.5 1 -0.5 0.5 1 -0.5 0.5 1 0.5 -0.5 1 0.5] "integer indices" [0 1 2 0 2 3]
-)", 1024);
+)",
+                                   1024);
   ExpectMean(rendered.image, 0.5 * formFactor, 0.002);
 }
 
@@ -93,7 +100,8 @@ AreaLightSource "diffuse" "rgb L" [7 7 7]
 Translate 0 2 0
 Shape "sphere" "float radius" 0.5
 AttributeEnd
-)", 256);
+)",
+                                   256);
   ExpectMean(rendered.image, 0.5 * 7 * std::pow(0.5 / 2, 2), 0.002);
 }
 
@@ -105,7 +113,8 @@ WorldBegin
 LightSource "distant" "rgb L" [3 3 3] "point3 from" [0 1 1] "point3 to" [0 0 0]
 Material "diffuse" "rgb reflectance" [0.5 0.5 0.5]
 Shape "trianglemesh" "point3 P" [-5 0 -5 -5 0 5 5 0 5 5 0 -5] "integer indices" [0 1 2 0 2 3]
-)", 1);
+)",
+                                   1);
   EXPECT_NEAR(MeanOf(rendered.image).mean, 0.5 / M_PI * 3 * std::sqrt(0.5), 1e-5);
 }
 
@@ -113,7 +122,8 @@ TEST(Analytic, EnvironmentAlone) {
   const auto rendered = RenderText(kSmallFilm + R"(Camera "perspective" "float fov" 60
 WorldBegin
 LightSource "infinite" "rgb L" [0.3 0.3 0.3]
-)", 2);
+)",
+                                   2);
   EXPECT_NEAR(MeanOf(rendered.image).mean, 0.3, 1e-6);
 }
 
@@ -126,7 +136,8 @@ Camera "perspective" "float fov" 30
 Integrator "path" "integer maxdepth" 1000
 WorldBegin
 LightSource "infinite" "rgb L" [1 1 1]
-Material )" + material + "\nShape \"sphere\"\n", 64);
+Material )" + material + "\nShape \"sphere\"\n",
+                                     64);
     const MeanValue value = MeanOf(rendered.image);
     EXPECT_NEAR(value.mean, 1, 4 * value.standardError + 1e-4) << material;
     EXPECT_LT(value.standardError, 0.01) << material;
@@ -140,7 +151,8 @@ WorldBegin
 LightSource "infinite" "rgb L" [1 1 1]
 Material "dielectric" "float eta" 1.5
 Shape "sphere" "float radius" 2
-)", 256);
+)",
+                                   256);
   ExpectMean(rendered.image, 2.25, 0.01);
 }
 
@@ -157,7 +169,8 @@ Shape "trianglemesh" "point3 P" [-9 -9 -0.5 -9 9 -0.5 9 9 -0.5 9 -9 -0.5] "integ
 Material "diffuse" "rgb reflectance" [0 0 0]
 AreaLightSource "diffuse" "rgb L" [1 1 1]
 Shape "trianglemesh" "point3 P" [-1 -1 -2 1 -1 -2 1 1 -2 -1 1 -2] "integer indices" [0 1 2 0 2 3]
-)", 1024);
+)",
+                                   1024);
   ExpectMean(rendered.image, (1 - R) / (1 + R), 0.002);
 }
 
@@ -168,7 +181,8 @@ WorldBegin
 Material "conductor" "rgb reflectance" [0.7 0.7 0.7] "float roughness" 0
 Shape "trianglemesh" "point3 P" [-1 -1 0 1 -1 0 1 1 0 -1 1 0] "integer indices" [0 1 2 0 2 3]
 LightSource "infinite" "rgb L" [2 2 2]
-)", 4);
+)",
+                                   4);
   EXPECT_NEAR(MeanOf(rendered.image).mean, 1.4, 0.005);
 }
 
@@ -179,11 +193,11 @@ Camera "perspective" "float fov" 40
 Integrator "path" "integer maxdepth" 3
 WorldBegin
 )";
-  const std::string lights[] = {
-      "LightSource \"point\" \"rgb I\" [1 1 1] \"point3 from\" [1 2 0]\n",
-      "LightSource \"infinite\" \"rgb L\" [0.2 0.2 0.2]\n",
-      "LightSource \"distant\" \"rgb L\" [0.5 0.5 0.5] \"point3 from\" [0 3 1]\n",
-      "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [6 6 6] Translate -1 1.5 0 Shape \"sphere\" \"float radius\" 0.2 AttributeEnd\n"};
+  const std::string lights[] = {"LightSource \"point\" \"rgb I\" [1 1 1] \"point3 from\" [1 2 0]\n",
+                                "LightSource \"infinite\" \"rgb L\" [0.2 0.2 0.2]\n",
+                                "LightSource \"distant\" \"rgb L\" [0.5 0.5 0.5] \"point3 from\" [0 3 1]\n",
+                                "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [6 6 6] Translate -1 1.5 0 Shape "
+                                "\"sphere\" \"float radius\" 0.2 AttributeEnd\n"};
   const std::string ground = R"(Material "diffuse" "rgb reflectance" [0.5 0.5 0.5]
 Shape "trianglemesh" "point3 P" [-5 0 -5 -5 0 5 5 0 5 5 0 -5] "integer indices" [0 1 2 0 2 3]
 AttributeBegin
@@ -192,7 +206,9 @@ Translate 0 0.4 0 Shape "sphere" "float radius" 0.4
 AttributeEnd
 )";
   // The lamp is a thing to be seen, too: it stands in every render, dark in the others.
-  const std::string darkLamp = "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [0 0 0] Translate -1 1.5 0 Shape \"sphere\" \"float radius\" 0.2 AttributeEnd\n";
+  const std::string darkLamp =
+      "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [0 0 0] Translate -1 1.5 0 Shape \"sphere\" \"float "
+      "radius\" 0.2 AttributeEnd\n";
   double sum = 0, variance = 0;
   std::string all;
   for (const std::string& light : lights) {
@@ -220,7 +236,9 @@ WorldBegin
 Shape "trianglemesh" "point3 P" [-5 0 -5 -5 0 5 5 0 5 5 0 -5] "integer indices" [0 1 2 0 2 3]
 AreaLightSource "diffuse" "rgb L" [5 5 5]
 )";
-  const std::string whole = head + "Shape \"trianglemesh\" \"point3 P\" [-1 1.5 -0.5 1 1.5 -0.5 1 1.5 0.5 -1 1.5 0.5] \"integer indices\" [0 1 2 0 2 3]\n";
+  const std::string whole = head +
+                            "Shape \"trianglemesh\" \"point3 P\" [-1 1.5 -0.5 1 1.5 -0.5 1 1.5 0.5 -1 1.5 0.5] "
+                            "\"integer indices\" [0 1 2 0 2 3]\n";
   std::string parts = head;
   for (int i = 0; i < 8; ++i) {
     const std::string x0 = std::to_string(-1 + i * 0.25), x1 = std::to_string(-1 + (i + 1) * 0.25);

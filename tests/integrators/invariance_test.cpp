@@ -14,18 +14,23 @@ std::string Scene(double scale, const std::string& offset = "0 0 0") {
 PixelFilter "gaussian"
 Scale 1 1 1
 LookAt 0 1 3.2  0 0.5 0  0 1 0
-Scale )" + std::to_string(1 / scale) + " " + std::to_string(1 / scale) + " " + std::to_string(1 / scale) + R"(
-Translate )" + [&] {
-    std::string negative;
-    std::istringstream stream(offset);
-    for (double v; stream >> v;) negative += std::to_string(-v) + " ";
-    return negative;
-  }() + R"(
+Scale )" +
+         std::to_string(1 / scale) + " " + std::to_string(1 / scale) + " " + std::to_string(1 / scale) + R"(
+Translate )" +
+         [&] {
+           std::string negative;
+           std::istringstream stream(offset);
+           for (double v; stream >> v;) negative += std::to_string(-v) + " ";
+           return negative;
+         }() +
+         R"(
 Camera "perspective" "float fov" 40 "float lensradius" 0.02 "float focaldistance" 3
 Integrator "path" "integer maxdepth" 6
 WorldBegin
-Translate )" + offset + "\nScale " + s + " " + s + " " + s + R"(
-LightSource "point" "rgb I" [)" + lightScale + " " + lightScale + " " + lightScale + R"(] "point3 from" [1 2 1]
+Translate )" +
+         offset + "\nScale " + s + " " + s + " " + s + R"(
+LightSource "point" "rgb I" [)" +
+         lightScale + " " + lightScale + " " + lightScale + R"(] "point3 from" [1 2 1]
 LightSource "infinite" "rgb L" [0.2 0.3 0.4]
 AttributeBegin
 AreaLightSource "diffuse" "rgb L" [6 5 4]

@@ -41,7 +41,9 @@ std::vector<SourceFile> SourceFiles() {
   return files;
 }
 
-std::string RoomOf(const std::string& path) { return path.substr(0, path.find('/')); }
+std::string RoomOf(const std::string& path) {
+  return path.substr(0, path.find('/'));
+}
 
 // What each room may include besides itself.
 const std::map<std::string, std::set<std::string>> kMayKnow = {
@@ -55,8 +57,11 @@ const std::map<std::string, std::set<std::string>> kMayKnow = {
     {"materials", {"base", "math", "sampling", "scene", "geometry", "film", "textures"}},
     {"camera", {"base", "math", "sampling", "geometry"}},
     {"lights", {"base", "math", "sampling", "scene", "geometry", "film", "textures", "materials"}},
-    {"integrators", {"base", "math", "sampling", "scene", "geometry", "film", "textures", "materials", "camera", "lights"}},
-    {"app", {"base", "math", "sampling", "scene", "geometry", "film", "textures", "materials", "camera", "lights", "integrators"}},
+    {"integrators",
+     {"base", "math", "sampling", "scene", "geometry", "film", "textures", "materials", "camera", "lights"}},
+    {"app",
+     {"base", "math", "sampling", "scene", "geometry", "film", "textures", "materials", "camera", "lights",
+      "integrators"}},
 };
 
 TEST(Layers, IncludesRunDown) {
@@ -113,7 +118,7 @@ void ExpectPrivate(const std::string& header) {
 
 TEST(Layers, HeavyLibrariesInOnePlace) {
   const std::map<std::string, std::set<std::string>> homes = {
-      {"embree3/", {"geometry"}}, {"OpenImageIO/", {"film"}}, {"OpenEXR/", {"film"}}, {"Imf", {"film"}},
+      {"embree3/", {"geometry"}},  {"OpenImageIO/", {"film"}}, {"OpenEXR/", {"film"}}, {"Imf", {"film"}},
       {"flann/", {"integrators"}}, {"CLI/", {"app"}},          {"nlohmann/", {"app"}}, {"tbb/", {"base"}}};
   for (const auto& [library, rooms] : homes) {
     std::vector<std::string> users;

@@ -23,7 +23,8 @@ inline Rendered RenderBuilt(const BuiltScene& built, int samplesPerPixel, int th
   StopConditions stop;
   stop.samplesPerPixel = samplesPerPixel;
   Rendered rendered;
-  rendered.outcome = Render(built.scene, *integrator, built.settings, stop, threads, film, [](const RenderOutcome&, double) {});
+  rendered.outcome =
+      Render(built.scene, *integrator, built.settings, stop, threads, film, [](const RenderOutcome&, double) {});
   rendered.image = film.Develop();
   rendered.rejectedRays = built.scene.geometry->RejectedRays();
   return rendered;
@@ -35,17 +36,20 @@ inline Rendered RenderDescription(const SceneDescription& description, RenderOve
   return RenderBuilt(BuildScene(description, overrides, true, diagnostics), samplesPerPixel, threads);
 }
 
-inline Rendered RenderText(const std::string& text, int samplesPerPixel, const RenderOverrides& overrides = {}, int threads = 2) {
+inline Rendered RenderText(const std::string& text, int samplesPerPixel, const RenderOverrides& overrides = {},
+                           int threads = 2) {
   Diagnostics diagnostics(Diagnostics::Mode::Collect);
   return RenderDescription(ParseScene(text, "test.pbrt", diagnostics), overrides, samplesPerPixel, threads);
 }
 
-inline Rendered RenderFile(const std::filesystem::path& file, int samplesPerPixel, const RenderOverrides& overrides = {}, int threads = 2) {
+inline Rendered RenderFile(const std::filesystem::path& file, int samplesPerPixel,
+                           const RenderOverrides& overrides = {}, int threads = 2) {
   Diagnostics diagnostics(Diagnostics::Mode::Collect);
   return RenderDescription(ReadScene(file, diagnostics), overrides, samplesPerPixel, threads);
 }
 
-// Mean and standard error of the whole image's green channel, from the variance layer (an upper bound for stratified samples).
+// Mean and standard error of the whole image's green channel, from the variance layer (an upper bound for stratified
+// samples).
 struct MeanValue {
   double mean = 0, standardError = 0;
 };

@@ -10,7 +10,9 @@
 namespace lampyr {
 namespace {
 
-FileLocation At(int line, int column) { return {std::make_shared<const std::string>("a.pbrt"), line, column}; }
+FileLocation At(int line, int column) {
+  return {std::make_shared<const std::string>("a.pbrt"), line, column};
+}
 
 TEST(Error, NamesThePlace) {
   EXPECT_STREQ(Error(At(3, 7), "no such shape").what(), "a.pbrt:3:7: error: no such shape");
@@ -23,7 +25,8 @@ TEST(Diagnostics, ReportsEachWarningOnce) {
   diagnostics.Warn(At(1, 2), "first");
   diagnostics.Warn(At(1, 2), "first");
   diagnostics.Warn(At(2, 2), "first");
-  EXPECT_EQ(diagnostics.Warnings(), (std::vector<std::string>{"a.pbrt:1:2: warning: first", "a.pbrt:2:2: warning: first"}));
+  EXPECT_EQ(diagnostics.Warnings(),
+            (std::vector<std::string>{"a.pbrt:1:2: warning: first", "a.pbrt:2:2: warning: first"}));
 }
 
 TEST(Diagnostics, StrictThrows) {
@@ -33,7 +36,7 @@ TEST(Diagnostics, StrictThrows) {
 
 TEST(NearestName, FindsTyposOnly) {
   const std::vector<std::string> known = {"trianglemesh", "plymesh", "sphere", "disk"};
-  EXPECT_EQ(NearestName("spehre", known), "sphere");   // a transposition is one mistake
+  EXPECT_EQ(NearestName("spehre", known), "sphere");  // a transposition is one mistake
   EXPECT_EQ(NearestName("Sphere", known), "sphere");
   EXPECT_EQ(NearestName("trianglmesh", known), "trianglemesh");
   EXPECT_EQ(NearestName("dsik", known), "disk");
@@ -47,7 +50,11 @@ TEST(ParallelFor, CallsEachItemOnceAndPassesOnExceptions) {
     std::vector<int> calls(1000, 0);
     ParallelFor(1000, threads, [&](int i) { ++calls[i]; });
     EXPECT_EQ(calls, std::vector<int>(1000, 1));
-    EXPECT_THROW(ParallelFor(100, threads, [](int i) { if (i == 57) throw Error("stop"); }), Error);
+    EXPECT_THROW(ParallelFor(100, threads,
+                             [](int i) {
+                               if (i == 57) throw Error("stop");
+                             }),
+                 Error);
   }
   ParallelFor(0, 2, [](int) { FAIL(); });
 }

@@ -34,7 +34,8 @@ TEST(Frame, IsOrthonormalAndRightHanded) {
 }
 
 TEST(Transform, InverseUndoes) {
-  const Transform t = Transform::Translate({1, 2, 3}) * Transform::Rotate(40, {1, 2, -1}) * Transform::Scale({2, -3, 0.5});
+  const Transform t =
+      Transform::Translate({1, 2, 3}) * Transform::Rotate(40, {1, 2, -1}) * Transform::Scale({2, -3, 0.5});
   const Point3d p(0.3, -4, 7);
   EXPECT_NEAR(glm::distance(t.Inverse().Point(t.Point(p)), p), 0, 1e-12);
   EXPECT_TRUE(t.SwapsHandedness());
@@ -65,7 +66,8 @@ TEST(Transform, LookAtLooksAlongPositiveZ) {
 TEST(Affine, PointErrorBoundsTheError) {
   std::mt19937 generator(2);
   std::uniform_real_distribution<double> coordinate(-100, 100);
-  const Transform t = Transform::Translate({50, -20, 3}) * Transform::Rotate(33, {3, 1, 2}) * Transform::Scale({5, 1, 0.1});
+  const Transform t =
+      Transform::Translate({50, -20, 3}) * Transform::Rotate(33, {3, 1, 2}) * Transform::Scale({5, 1, 0.1});
   const Affine affine = t.ToAffine();
   for (int i = 0; i < 10000; ++i) {
     const Point3 p(coordinate(generator), coordinate(generator), coordinate(generator));
@@ -94,7 +96,9 @@ TEST(Bounds, EmptyUntilSomethingIsAdded) {
   EXPECT_EQ(bounds.Center(), Point3(0, 3, 3));
 }
 
-TEST(Angle, DegreesConvertToRadians) { EXPECT_FLOAT_EQ(Cos(Degrees(60)), 0.5f); }
+TEST(Angle, DegreesConvertToRadians) {
+  EXPECT_FLOAT_EQ(Cos(Degrees(60)), 0.5f);
+}
 
 }  // namespace
 }  // namespace lampyr
