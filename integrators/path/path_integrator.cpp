@@ -119,8 +119,7 @@ bool PathIntegrator::Scatter(PathState& path, const SurfacePoint& point, const B
   path.ray = SpawnRay(point, sample->wi, path.ray.time);
   ++path.depth;
 
-  constexpr int firstVertices = 2;
-  const float survival = SurvivalProbability(path.Throughput(), path.etaScale, path.depth, firstVertices);
+  const float survival = SurvivalProbability(path.Throughput(), path.etaScale);
   if (survival < 1) {
     sampler.SetDimension(VertexDimension(path.depth - 1, dimensions::kRoulette));
     if (sampler.Get1D() >= survival) return false;
