@@ -17,9 +17,9 @@ RayDouble ToDouble(const RTCRay& ray) {
           static_cast<double>(ray.tnear), static_cast<double>(ray.tfar)};
 }
 
-// A number in [0,1) that is a function of the ray and the primitive alone, so that a ray sees the same cut-out whichever
-// way the tree is walked, and on every thread.
-float HashToUnit(const RTCRay& ray, uint32_t instance, uint32_t geometry, uint32_t patch) {
+// A number in [0,1) that is a function of the ray and the hit alone, so that a ray sees the same cut-out whichever way the
+// tree is walked, and on every thread. `crossing` tells a primitive's hits apart: each is another chance to be stopped.
+float HashToUnit(const RTCRay& ray, uint32_t instance, uint32_t geometry, uint32_t patch, uint32_t crossing) {
   uint64_t hash = 0x9e3779b97f4a7c15u;
   const auto mix = [&hash](uint32_t value) {
     hash = (hash ^ value) * 0xbf58476d1ce4e5b9u;
@@ -31,12 +31,14 @@ float HashToUnit(const RTCRay& ray, uint32_t instance, uint32_t geometry, uint32
   mix(instance);
   mix(geometry);
   mix(patch);
+  mix(crossing);
   hash = (hash ^ (hash >> 31)) * 0x94d049bb133111ebu;
   return static_cast<float>(hash >> 40) * 0x1p-24f;
 }
 
 // Whether the cut-out lets the ray through at this hit.
-bool PassesThrough(const PrimitiveRecord& record, const RTCRay& ray, const RayHit& hit, uint32_t geometryId) {
+bool PassesThrough(const PrimitiveRecord& record, const RTCRay& ray, const RayHit& hit, uint32_t geometryId,
+                   uint32_t crossing) {
   const Point3 origin(ray.org_x, ray.org_y, ray.org_z);
   const Vector3 direction(ray.dir_x, ray.dir_y, ray.dir_z);
   const SurfacePoint point = EvaluatePrimitive(record, origin, direction, hit);
@@ -48,7 +50,7 @@ bool PassesThrough(const PrimitiveRecord& record, const RTCRay& ray, const RayHi
   const float alpha = record.alpha->Alpha(point.uv, position);
   if (alpha >= 1) return false;
   if (!(alpha > 0)) return true;
-  return HashToUnit(ray, hit.instance, geometryId, hit.patch) >= alpha;
+  return HashToUnit(ray, hit.instance, geometryId, hit.patch, crossing) >= alpha;
 }
 
 struct Candidate {
@@ -63,7 +65,7 @@ int FirstOpaque(const PrimitiveRecord& record, const RTCRay& ray, const Candidat
     if (!record.alpha) return i;
     const Candidate& c = candidates[i];
     const RayHit hit{static_cast<float>(c.t), geometryId, patch, instance, c.u, c.v};
-    if (!PassesThrough(record, ray, hit, geometryId)) return i;
+    if (!PassesThrough(record, ray, hit, geometryId, static_cast<uint32_t>(i))) return i;
   }
   return -1;
 }
@@ -148,7 +150,11 @@ void AlphaFilter(const RTCFilterFunctionNArguments* arguments) {
   const auto& ray = *reinterpret_cast<const RTCRay*>(arguments->ray);
   const auto& hit = *reinterpret_cast<const RTCHit*>(arguments->hit);
   const RayHit rayHit{ray.tfar, hit.geomID, hit.primID, hit.instID[0], hit.u, hit.v};
-  if (PassesThrough(Record(arguments->geometryUserPtr), ray, rayHit, hit.geomID)) arguments->valid[0] = 0;
+  // A round curve is entered and left: the normal tells which.
+  const bool leaves = hit.Ng_x * ray.dir_x + hit.Ng_y * ray.dir_y + hit.Ng_z * ray.dir_z > 0;
+  if (PassesThrough(Record(arguments->geometryUserPtr), ray, rayHit, hit.geomID, leaves ? 1 : 0)) {
+    arguments->valid[0] = 0;
+  }
 }
 
 }  // namespace lampyr

@@ -351,6 +351,43 @@ TEST(CutOut, FrequencyIsTheOpacity) {
   }
 }
 
+// Entering and leaving the same shape are two chances to be stopped: 1 - (1 - α)².
+TEST(CutOut, BothSidesOfAShapeAreIndependent) {
+  Quadric tube;
+  tube.kind = Quadric::Kind::Cylinder;
+  tube.radius = 2;
+  tube.zMin = -2;
+  tube.zMax = 2;
+  const glm::mat3 zToX(Vector3(0, 0, 1), Vector3(0, 1, 0), Vector3(-1, 0, 0));
+  tube.toRender.linear = zToX;
+  tube.toObject.linear = glm::transpose(zToX);
+  CurveSet curve;
+  curve.kind = CurveSet::Kind::Cylinder;
+  curve.segments = {{Point3(-3, 0, 0), Point3(-1, 0, 0), Point3(1, 0, 0), Point3(3, 0, 0)}};
+  curve.radii = {{2, 2, 2, 2}};
+  curve.vRange = {{0, 1}};
+  for (const Shape& shape : {Shape(Sphere(2)), Shape(tube), Shape(std::make_shared<const CurveSet>(curve))}) {
+    for (const float alpha : {0.1f, 0.5f, 0.8f}) {
+      GeometryDescription description;
+      description.entries.push_back(Entry(shape, std::make_shared<ConstantAlpha>(alpha)));
+      const GeometryScene scene(std::move(description));
+      Random random(43);
+      constexpr int kCount = 20000;
+      int stopped = 0;
+      for (int i = 0; i < kCount; ++i) {
+        const Ray ray{{random.Uniform(-0.9f, 0.9f), random.Uniform(-0.9f, 0.9f), 5}, {0, 0, -1}};
+        RayHit hit;
+        const bool found = scene.Intersect(ray, visibility::kAll, hit);
+        ASSERT_EQ(found, scene.Occluded(ray, visibility::kAll));
+        stopped += found;
+      }
+      const double expected = 1 - std::pow(1 - static_cast<double>(alpha), 2);
+      const double sigma = std::sqrt(expected * (1 - expected) / kCount);
+      EXPECT_NEAR(static_cast<double>(stopped) / kCount, expected, 5 * sigma) << shape.index() << " " << alpha;
+    }
+  }
+}
+
 TEST(CutOut, LayersAreIndependent) {
   GeometryDescription description;
   const auto half = std::make_shared<ConstantAlpha>(0.5f);
