@@ -2,6 +2,7 @@
 #include "app/command_line.h"
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 
@@ -38,6 +39,21 @@ void ParseResolution(const std::string& text, RenderOverrides& overrides) {
   overrides.height = height;
 }
 
+// CLI::PositiveNumber lets NaN through.
+std::string CheckPositive(const std::string& text) {
+  char* end = nullptr;
+  const double number = std::strtod(text.c_str(), &end);
+  if (end != text.c_str() && *end == '\0' && number > 0 && std::isfinite(number)) return "";
+  return "\"" + text + "\" is not a number above 0";
+}
+
+std::string CheckFinite(const std::string& text) {
+  char* end = nullptr;
+  const double number = std::strtod(text.c_str(), &end);
+  if (end != text.c_str() && *end == '\0' && std::isfinite(number)) return "";
+  return "\"" + text + "\" is not a finite number";
+}
+
 struct RenderCommand {
   RenderOptions options;
   std::string time, resolution;
@@ -48,7 +64,7 @@ struct RenderCommand {
     app.add_option("scene", options.scene, "The scene: a pbrt-v4 file (.pbrt, .pbrt.gz)")->required();
     app.add_option("-o,--output", options.output, "The image to write (.exr); default: the name in the scene");
     app.add_flag("--png", options.png, "Also write a tone-mapped PNG beside it");
-    app.add_option("--exposure", options.exposure, "Exposure of the PNG in stops (0)");
+    app.add_option("--exposure", options.exposure, "Exposure of the PNG in stops (0)")->check(CheckFinite, "");
     app.add_flag("--filmic", options.filmic, "A filmic shoulder in the PNG instead of clipping");
     app.add_option("--integrator", overrides.integrator, "path");
     app.add_option("--spp", overrides.samplesPerPixel, "Stop after this many samples per pixel")
@@ -56,7 +72,7 @@ struct RenderCommand {
     app.add_option("--time", time, "Stop after this time: 90s, 5m, 2h");
     app.add_option("--target-error", options.targetError,
                    "Stop when the estimated relative error (95 % confidence) is below this, e.g. 0.02")
-        ->check(CLI::PositiveNumber);
+        ->check(CheckPositive, "POSITIVE");
     app.add_option("--seed", overrides.seed, "Seed of the random numbers (0)");
     app.add_option("--threads", options.threads, "Threads (all)")->check(CLI::Range(1, 4096));
     app.add_option("--resolution", resolution, "Size of the image, e.g. 640x360");

@@ -1,3 +1,5 @@
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
 #include <csignal>
@@ -26,6 +28,21 @@ void OnInterrupt(int) {
   std::signal(SIGINT, SIG_DFL);  // a second one ends the process
 }
 
+// A file that cannot be written is told before the work, not after it.
+void CheckWritable(const std::filesystem::path& path, const std::string& option) {
+  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  std::error_code ignored;
+  if (!std::filesystem::is_directory(folder, ignored)) {
+    throw UsageError(option + ": there is no folder \"" + folder.string() + "\"");
+  }
+  if (access(folder.c_str(), W_OK) != 0) {
+    throw UsageError(option + ": the folder \"" + folder.string() + "\" is not writable");
+  }
+  if (std::filesystem::is_directory(path, ignored)) {
+    throw UsageError(option + ": \"" + path.string() + "\" is a folder");
+  }
+}
+
 std::filesystem::path OutputPath(const RenderOptions& options, const RenderSettings& settings) {
   std::filesystem::path path;
   if (options.output) {
@@ -37,10 +54,22 @@ std::filesystem::path OutputPath(const RenderOptions& options, const RenderSetti
   if (path.extension() != ".exr") {
     throw UsageError("--output: \"" + path.string() + "\" must end in .exr (--png writes a PNG beside it)");
   }
-  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
-  if (!std::filesystem::is_directory(folder))
-    throw UsageError("--output: there is no folder \"" + folder.string() + "\"");
+  CheckWritable(path, "--output");
+  if (options.png) CheckWritable(std::filesystem::path(path).replace_extension(".png"), "--png");
   return path;
+}
+
+// An image too large for the machine is told before the system ends the process for it.
+void CheckMemory(const RenderSettings& settings) {
+  constexpr uint64_t channels = 6;  // of the developed image: colour and variance
+  constexpr uint64_t perPixel = sizeof(PixelSums) + 2 * channels * sizeof(float);
+  const uint64_t needed = perPixel * settings.crop.Width() * settings.crop.Height();
+  const auto installed = static_cast<uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<uint64_t>(sysconf(_SC_PAGESIZE));
+  if (needed <= installed) return;
+  const auto gibibytes = [](uint64_t bytes) { return std::to_string((bytes >> 30) + 1) + " GiB"; };
+  throw UsageError("an image of " + std::to_string(settings.crop.Width()) + "×" +
+                   std::to_string(settings.crop.Height()) + " pixels takes " + gibibytes(needed) +
+                   " of memory and there are " + gibibytes(installed) + ": render it in parts with --crop");
 }
 
 std::string Percent(double fraction) {
@@ -128,6 +157,8 @@ int RunRender(const RenderOptions& options) {
   const BuiltScene built = LoadScene(options, report);
   const RenderSettings& settings = built.settings;
   const std::filesystem::path path = OutputPath(options, settings);
+  if (options.stats) CheckWritable(*options.stats, "--stats");
+  CheckMemory(settings);
 
   report.scene = options.scene.string();
   report.integrator = settings.integrator;

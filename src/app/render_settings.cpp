@@ -40,7 +40,8 @@ PixelRect ParseCrop(const std::string& text, int width, int height) {
     } catch (const std::exception&) {
       used = 0;
     }
-    if (used == 0 || used != item.size()) throw UsageError("--crop: \"" + item + "\" is not a number");
+    if (used == 0 || used != item.size() || !std::isfinite(value))
+      throw UsageError("--crop: \"" + item + "\" is not a number");
     numbers.push_back(value);
   }
   if (numbers.size() != 4) throw UsageError("--crop takes four numbers x0,x1,y0,y1, not \"" + text + "\"");
@@ -49,6 +50,17 @@ PixelRect ParseCrop(const std::string& text, int width, int height) {
   const auto clampPixel = [](double n, int size) { return static_cast<int>(std::clamp(n, 0.0, double(size))); };
   return {clampPixel(numbers[0], width), clampPixel(numbers[2], height), clampPixel(numbers[1], width),
           clampPixel(numbers[3], height)};
+}
+
+// The cameras whose sensors pbrt-v4 knows.
+void CheckSensorName(const ParameterList& film, const std::string& sensor) {
+  const Names known = {
+      "cie1931",       "canon_eos_100d",     "canon_eos_1dx_mkii", "canon_eos_200d",    "canon_eos_200d_mkii",
+      "canon_eos_5d",  "canon_eos_5d_mkii",  "canon_eos_5d_mkiii", "canon_eos_5d_mkiv", "canon_eos_5ds",
+      "canon_eos_m",   "hasselblad_l1d_20c", "nikon_d810",         "nikon_d850",        "sony_ilce_6400",
+      "sony_ilce_7m3", "sony_ilce_7rm3",     "sony_ilce_9"};
+  if (std::find(known.begin(), known.end(), sensor) != known.end()) return;
+  throw Error(film.WhereOf("sensor"), "there is no sensor \"" + sensor + "\"" + DidYouMean(sensor, known));
 }
 
 void ReadFilm(const SceneDescription& scene, const RenderOverrides& overrides, RenderSettings& settings,
@@ -70,6 +82,7 @@ void ReadFilm(const SceneDescription& scene, const RenderOverrides& overrides, R
   settings.halfPrecision = film.GetBool("savefp16", false);
   const std::string sensor = film.GetString("sensor", "cie1931");
   if (sensor != "cie1931") {
+    CheckSensorName(film, sensor);
     diagnostics.Warn(film.WhereOf("sensor"), "sensor \"" + sensor + "\" is not modelled; \"cie1931\" is used");
   }
   const ParameterList& camera = scene.camera.parameters;
@@ -102,6 +115,7 @@ void ReadFilm(const SceneDescription& scene, const RenderOverrides& overrides, R
                        std::to_string(settings.height) + " image");
     throw Error(film.Where(), "the crop leaves no pixel of the image");
   }
+  film.Find("diagonal");  // the film's size in mm: of use to "realistic" cameras only
   film.CheckAllUsed(
       {"diagonal", "whitebalance", "maxcomponentvalue", "coordinatesystem", "nbuckets", "lambdamin", "lambdamax"},
       {"xresolution", "yresolution", "filename", "savefp16", "sensor", "iso", "cropwindow", "pixelbounds"},

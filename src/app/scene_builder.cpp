@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <set>
+#include <string_view>
+#include <unordered_map>
 
 #include "app/shape_builder.h"
 #include "lights/light_type.h"
@@ -64,6 +66,8 @@ class MaterialTable {
     const auto made = named_.find(name);
     if (made != named_.end()) return made->second;
     if (!inProgress_.insert(name).second) throw Error(where, "the material \"" + name + "\" is mixed from itself");
+    constexpr size_t deepest = 256;  // each level takes some of the stack
+    if (inProgress_.size() > deepest) throw Error(where, "materials are mixed more than 256 deep");
     std::vector<std::string> names;
     for (const NamedMaterialDescription& named : description_.namedMaterials) {
       names.push_back(named.name);
@@ -115,7 +119,6 @@ class Builder {
  private:
   std::vector<ReadEntry> ReadShapes(const std::vector<ShapeDescription>& shapes);
   void FlattenInstances();
-  void Flatten(const InstanceDescription& instance, const Transform& parent);
   Transform ChooseRenderSpace() const;
   void PlaceEntries();
   void PlaceEntry(const ReadEntry& entry, const Transform& toRender, std::vector<GeometryEntry>& entries,
@@ -155,20 +158,29 @@ std::vector<ReadEntry> Builder::ReadShapes(const std::vector<ShapeDescription>& 
   return entries;
 }
 
-void Builder::Flatten(const InstanceDescription& instance, const Transform& parent) {
-  WarnIfAnimated(instance.placement, instance.where, "instance", diagnostics_);
-  const Transform toWorld = parent * instance.placement.start;
-  for (size_t i = 0; i < description_.objects.size(); ++i) {
-    const ObjectDescription& object = description_.objects[i];
-    if (object.name != instance.object) continue;
-    if (!objects_[i].empty()) instances_.push_back({i, toWorld, &instance});
-    for (const InstanceDescription& nested : object.instances) Flatten(nested, toWorld);
-    return;
-  }
-}
-
+// Without recursion: objects may be nested as deep as a file is long.
 void Builder::FlattenInstances() {
-  for (const InstanceDescription& instance : description_.instances) Flatten(instance, Transform());
+  std::unordered_map<std::string_view, size_t> objects;
+  for (size_t i = 0; i < description_.objects.size(); ++i) objects.emplace(description_.objects[i].name, i);
+  struct Visit {
+    const InstanceDescription* instance;
+    Transform parent;
+  };
+  std::vector<Visit> open;
+  const auto add = [&open](const std::vector<InstanceDescription>& list, const Transform& parent) {
+    for (size_t i = list.size(); i-- > 0;) open.push_back({&list[i], parent});
+  };
+  add(description_.instances, Transform());
+  while (!open.empty()) {
+    const Visit visit = open.back();
+    open.pop_back();
+    const InstanceDescription& instance = *visit.instance;
+    WarnIfAnimated(instance.placement, instance.where, "instance", diagnostics_);
+    const Transform toWorld = visit.parent * instance.placement.start;
+    const size_t object = objects.at(instance.object);
+    if (!objects_[object].empty()) instances_.push_back({object, toWorld, &instance});
+    add(description_.objects[object].instances, toWorld);
+  }
 }
 
 // Where the middle of the scene is far from the origin compared with its size, floats around it are sparse: it is
@@ -240,8 +252,12 @@ void Builder::AddAreaLight(const ShapeDescription& description, const Shape& sha
 void Builder::PlaceEntry(const ReadEntry& entry, const Transform& toRender, std::vector<GeometryEntry>& entries,
                          std::vector<const ReadEntry*>* lightEntries) {
   const ShapeDescription& shape = *entry.local.description;
-  const bool isInterface = materials_->Materials()[entry.material]->IsInterface();
-  if (isInterface && shape.areaLight < 0) return;  // nothing to see: rays would only pass
+  if (materials_->Materials()[entry.material]->IsInterface()) {  // nothing to see: rays would only pass
+    if (shape.areaLight >= 0) {
+      diagnostics_.Warn(shape.shape.where, "a shape of material \"interface\" emits no light, as in pbrt-v4");
+    }
+    return;
+  }
   std::shared_ptr<const AlphaSource> alpha;
   if (const auto parameter = textures_->FindFloat(shape.shape.parameters, "alpha")) alpha = MakeAlphaSource(*parameter);
 
@@ -249,7 +265,6 @@ void Builder::PlaceEntry(const ReadEntry& entry, const Transform& toRender, std:
     GeometryEntry result;
     result.attributes.material = entry.material;
     result.attributes.alpha = alpha;
-    if (isInterface) result.attributes.visibility = visibility::kCamera | visibility::kIndirect;
     result.shape = std::move(placed);
     const bool isCurve = std::holds_alternative<std::shared_ptr<const CurveSet>>(result.shape);
     if (shape.areaLight >= 0 && isCurve) {

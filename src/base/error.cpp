@@ -68,6 +68,9 @@ std::string NearestName(std::string_view given, const std::vector<std::string>& 
   int best = limit + 1;
   std::string nearest;
   for (const std::string& name : known) {
+    // The distance is at least what the lengths differ by: a word of megabytes is near none.
+    const size_t longer = std::max(given.size(), name.size()), shorter = std::min(given.size(), name.size());
+    if (longer - shorter > static_cast<size_t>(limit)) continue;
     const int distance = EditDistance(given, name);
     if (distance < best) {
       best = distance;

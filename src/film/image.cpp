@@ -47,6 +47,9 @@ void CheckReadable(const std::filesystem::path& path) {
   const auto status = std::filesystem::status(path, code);
   if (!std::filesystem::exists(status)) throw Error("cannot read image \"" + path.string() + "\": no such file");
   if (std::filesystem::is_directory(status)) throw Error("cannot read image \"" + path.string() + "\": it is a folder");
+  if (!std::filesystem::is_regular_file(status)) {
+    throw Error("cannot read image \"" + path.string() + "\": it is not a regular file");
+  }
 }
 
 // Identity up to kShoulderStart, then an exponential that meets it with the same slope and nears 1:

@@ -343,7 +343,10 @@ void ReadFaces(const Element& element, ValueReader& reader, uint64_t vertexCount
 }
 
 std::string ReadWhole(const std::filesystem::path& path, const Failure& fail) {
-  if (std::filesystem::is_directory(path)) fail("is a folder");
+  std::error_code ignored;
+  const std::filesystem::file_status status = std::filesystem::status(path, ignored);
+  if (std::filesystem::is_directory(status)) fail("is a folder");
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) fail("is not a regular file");
   const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), gzclose);
   if (!file) fail("cannot be opened");
   gzbuffer(file.get(), 1 << 18);
@@ -354,10 +357,10 @@ std::string ReadWhole(const std::filesystem::path& path, const Failure& fail) {
     if (content.capacity() < size + kChunk) content.reserve(2 * size + kChunk);
     content.resize(size + kChunk);
     const int got = gzread(file.get(), content.data() + size, kChunk);
-    int status = Z_OK;
-    const char* message = gzerror(file.get(), &status);
-    if (got < 0 || (status != Z_OK && status != Z_STREAM_END)) {
-      fail(status == Z_BUF_ERROR ? "the gzipped file ends too early" : std::string("cannot be read: ") + message);
+    int code = Z_OK;
+    const char* message = gzerror(file.get(), &code);
+    if (got < 0 || (code != Z_OK && code != Z_STREAM_END)) {
+      fail(code == Z_BUF_ERROR ? "the gzipped file ends too early" : std::string("cannot be read: ") + message);
     }
     content.resize(size + static_cast<size_t>(got));
     if (got == 0) return content;

@@ -32,10 +32,22 @@ void SceneParser::CheckReferences() const {
   }
 }
 
-// Depth first without recursion: objects may be nested as deep as a file is long.
+// Depth first without recursion: objects may be nested as deep as a file is long. And as they multiply, a few lines can
+// ask for more than any memory holds.
 void SceneParser::CheckInstances() const {
   enum class Mark { New, Open, Done };
   std::vector<Mark> marks(scene_.objects.size(), Mark::New);
+  std::vector<double> within(scene_.objects.size(), 0);  // instances that one of the object brings along
+  const auto count = [&](const std::vector<InstanceDescription>& list) {
+    constexpr double most = 1e7;
+    double sum = 0;
+    for (const InstanceDescription& instance : list) {
+      const double nested = within[objects_.at(instance.object)];
+      sum += 1 + nested;
+      if (nested > 0 && sum > most) throw Error(instance.where, "nested instances multiply to more than 10 million");
+    }
+    return sum;
+  };
   struct Visit {
     int object;
     size_t next = 0;
@@ -48,6 +60,7 @@ void SceneParser::CheckInstances() const {
       const ObjectDescription& object = scene_.objects[path.back().object];
       if (path.back().next == object.instances.size()) {
         marks[path.back().object] = Mark::Done;
+        within[path.back().object] = count(object.instances);
         path.pop_back();
         continue;
       }
@@ -55,10 +68,10 @@ void SceneParser::CheckInstances() const {
       const int inner = objects_.at(instance.object);
       if (marks[inner] == Mark::Open) {
         std::string chain;
-        bool within = false;
+        bool inCircle = false;
         for (const Visit& visit : path) {
-          within |= visit.object == inner;
-          if (within) chain += "\"" + scene_.objects[visit.object].name + "\" -> ";
+          inCircle |= visit.object == inner;
+          if (inCircle) chain += "\"" + scene_.objects[visit.object].name + "\" -> ";
         }
         throw Error(instance.where, "an object that contains itself: " + chain + "\"" + instance.object + "\"");
       }
@@ -67,6 +80,7 @@ void SceneParser::CheckInstances() const {
       path.push_back({inner});
     }
   }
+  count(scene_.instances);
 }
 
 }  // namespace lampyr
