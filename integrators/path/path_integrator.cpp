@@ -119,7 +119,7 @@ bool PathIntegrator::Scatter(PathState& path, const SurfacePoint& point, const B
   path.ray = SpawnRay(point, sample->wi, path.ray.time);
   ++path.depth;
 
-  const float survival = SurvivalProbability(path.Throughput(), path.etaScale);
+  const float survival = SurvivalProbability(path.Throughput(), path.etaScale, path.depth);
   if (survival < 1) {
     sampler.SetDimension(VertexDimension(path.depth - 1, dimensions::kRoulette));
     if (sampler.Get1D() >= survival) return false;
