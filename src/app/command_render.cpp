@@ -23,9 +23,15 @@ namespace {
 // A signal handler has no argument to be handed this through.
 std::atomic<bool> interruptRequested{false};
 
-void OnInterrupt(int) {
+void OnInterrupt(int signal) {
   interruptRequested.store(true);
-  std::signal(SIGINT, SIG_DFL);  // a second one ends the process
+  std::signal(signal, SIG_DFL);  // a second one ends the process
+}
+
+// Batch systems ask to end with SIGTERM: the work so far is kept then, too.
+void FinishOnInterrupt() {
+  std::signal(SIGINT, OnInterrupt);
+  std::signal(SIGTERM, OnInterrupt);
 }
 
 // A file that cannot be written is told before the work, not after it.
@@ -153,6 +159,7 @@ BuiltScene LoadScene(const RenderOptions& options, RenderReport& report) {
 }  // namespace
 
 int RunRender(const RenderOptions& options) {
+  std::signal(SIGPIPE, SIG_IGN);  // a reader of the messages who has gone away is no reason to end
   RenderReport report;
   const BuiltScene built = LoadScene(options, report);
   const RenderSettings& settings = built.settings;
@@ -172,7 +179,7 @@ int RunRender(const RenderOptions& options) {
 
   const auto integrator = MakePathIntegrator(built.scene, {settings.maxDepth});
   Film film(settings.width, settings.height, settings.crop);
-  std::signal(SIGINT, OnInterrupt);
+  FinishOnInterrupt();
   {
     Progress progress(options.quiet);
     const auto afterPass = [&](const RenderOutcome& soFar, double fraction) {

@@ -223,20 +223,29 @@ TEST_F(Cli, EmptySceneIsBlackAndSaysSo) {
 }
 
 TEST_F(Cli, InterruptWritesTheImageAndExitsWith130) {
-  const pid_t child = fork();
-  if (child == 0) {
-    if (chdir(folder_.c_str()) != 0) _exit(99);
-    execl(LAMPYR_BINARY, LAMPYR_BINARY, "render", "scene.pbrt", "-o", "stopped.exr", "--spp", "100000000", "--quiet",
-          nullptr);
-    _exit(99);
+  for (const int signal : {SIGINT, SIGTERM}) {
+    const pid_t child = fork();
+    if (child == 0) {
+      if (chdir(folder_.c_str()) != 0) _exit(99);
+      execl(LAMPYR_BINARY, LAMPYR_BINARY, "render", "scene.pbrt", "-o", "stopped.exr", "--spp", "100000000", "--quiet",
+            nullptr);
+      _exit(99);
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+    kill(child, signal);
+    int status = 0;
+    waitpid(child, &status, 0);
+    ASSERT_TRUE(WIFEXITED(status));
+    EXPECT_EQ(WEXITSTATUS(status), 130);
+    EXPECT_GT(std::stoi(ReadImage(folder_ / "stopped.exr").metadata.at("lampyr.samplesPerPixel")), 1);
+    fs::remove(folder_ / "stopped.exr");
   }
-  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
-  kill(child, SIGINT);
-  int status = 0;
-  waitpid(child, &status, 0);
-  ASSERT_TRUE(WIFEXITED(status));
-  EXPECT_EQ(WEXITSTATUS(status), 130);
-  EXPECT_GT(std::stoi(ReadImage(folder_ / "stopped.exr").metadata.at("lampyr.samplesPerPixel")), 1);
+}
+
+TEST_F(Cli, RendersWhenNobodyReadsTheMessages) {
+  Write("odd.pbrt", std::string(kScene) + "LightSource \"goniometric\"\n");
+  Run("render odd.pbrt -o unread.exr 2>&1 | true");
+  EXPECT_TRUE(fs::exists(folder_ / "unread.exr"));
 }
 
 TEST_F(Cli, AFailedWriteExitsWithOneAndLeavesNothing) {
@@ -282,6 +291,10 @@ TEST_F(Cli, DiffTellsEqualFromDifferent) {
   EXPECT_NE(outcome.output.find("DIFFER"), std::string::npos) << outcome.output;
   outcome = Run("diff a.exr a.exr --json");
   EXPECT_NE(outcome.output.find("\"mse\": 0.0"), std::string::npos) << outcome.output;
+}
+
+TEST_F(Cli, AnswersThatCannotBeWrittenAreAFailure) {
+  EXPECT_EQ(Run("lights > /dev/full").exitCode, 1);
 }
 
 TEST_F(Cli, ListsLights) {
