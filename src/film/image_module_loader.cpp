@@ -2,6 +2,7 @@
 // it was built. It stays loaded until the process ends.
 #include <dlfcn.h>
 
+#include <algorithm>
 #include <array>
 #include <exception>
 #include <system_error>
@@ -96,7 +97,11 @@ EncodedImage ReadThroughModule(const std::filesystem::path& path) {
   std::array<char, 512> error{};
   ReadContext context{path, {}, nullptr};
   if (GetImageModule().read(path.c_str(), AllocateImage, &context, error.data(), error.size()) != 0) {
-    if (!context.failure) throw Error("cannot read image \"" + path.string() + "\": " + error.data());
+    if (!context.failure) {
+      std::string text = error.data();  // of several lines when several things went wrong
+      std::replace(text.begin(), text.end(), '\n', ' ');
+      throw Error("cannot read image \"" + path.string() + "\": " + text);
+    }
     try {
       std::rethrow_exception(context.failure);
     } catch (const Error&) {

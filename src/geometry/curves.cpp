@@ -147,8 +147,10 @@ void EvaluateCurve(const CurveSet& curves, uint32_t segment, float u, const Poin
   const Vector3 offset = point.position - axis;
   point.Ng = point.Ns = CurveNormal(curves, segment, u, along, offset, direction);
 
-  const Vector3 seenFrom = curves.kind == CurveSet::Kind::Ribbon ? -point.Ng : direction;
-  const Vector3 across = SafeNormalize(glm::cross(along, seenFrom), Frame::FromNormal(along).x);
+  // v runs as pbrt-v4's does: to the side that direction × tangent points to, also on the back of a ribbon.
+  const bool isRibbon = curves.kind == CurveSet::Kind::Ribbon;
+  const Vector3 view = !isRibbon ? direction : glm::dot(point.Ng, direction) > 0 ? point.Ng : -point.Ng;
+  const Vector3 across = SafeNormalize(glm::cross(view, along), Frame::FromNormal(along).x);
   const auto& range = curves.vRange[segment];
   const float side = radius > 0 ? glm::dot(offset, across) / radius : 0.0f;
   point.uv = {range[0] + (range[1] - range[0]) * u, std::clamp(0.5f + 0.5f * side, 0.0f, 1.0f)};
