@@ -1,5 +1,5 @@
-// What the path integrator decides by itself: interfaces, several lights at infinity, the cosine
-// of the shading normal, roulette in glass.
+// What the path integrator decides by itself: interfaces, several lights at infinity, the cosine of the shading normal,
+// roulette in glass, rays that leave their surface.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -80,6 +80,43 @@ Material )") + glass + "\nShape \"sphere\"\n",
     const MeanValue value = MeanOf(rendered.image);
     EXPECT_NEAR(value.mean, 1, 1e-4) << glass;
     EXPECT_LT(value.standardError, 1e-5) << glass;
+  }
+}
+
+// A white convex object under an even sky, one bounce: a ray that met its own surface again would find no light.
+TEST(Path, ConvexObjectsDoNotShadeThemselves) {
+  const std::string shapes[] = {
+      "Shape \"sphere\"",
+      "Rotate 60 1 1 0 Shape \"disk\"",
+      "Rotate 60 1 1 0 Shape \"bilinearmesh\" \"point3 P\" [-1 -1 0 1 -1 0 -1 1 0 1 1 0]",
+      "Shape \"loopsubdiv\" \"integer levels\" 3 \"point3 P\" [1 0 0 -1 0 0 0 1 0 0 -1 0 0 0 1 0 0 -1] \"integer "
+      "indices\" [0 2 4 2 1 4 1 3 4 3 0 4 2 0 5 1 2 5 3 1 5 0 3 5]",
+      "Shape \"curve\" \"string type\" \"cylinder\" \"float width\" 0.6 \"point3 P\" [0 -1 0 0 -0.3 0 0 0.3 0 0 1 0]",
+      "Shape \"curve\" \"string type\" \"flat\" \"float width\" 0.6 \"point3 P\" [0 -1 0 0 -0.3 0 0 0.3 0 0 1 0]"};
+  for (const std::string& shape : shapes) {
+    // Another object on the other side keeps the origin where it is: floats are sparse at the one that is seen.
+    for (const std::string place : {"0", "10000"}) {
+      for (const bool instanced : {false, true}) {
+        const std::string whole = instanced
+                                      ? "ObjectBegin \"o\" Scale 1000 1000 1000 " + shape + " ObjectEnd Translate " +
+                                            place + " 0 0 Scale 0.001 0.001 0.001 ObjectInstance \"o\""
+                                      : "Translate " + place + " 0 0 " + shape;
+        const auto rendered = RenderText(R"(Film "rgb" "integer xresolution" 32 "integer yresolution" 32
+LookAt )" + place + " 0 4  " + place + R"( 0 0  0 1 0
+Camera "perspective" "float fov" 30
+Integrator "path" "integer maxdepth" 1
+WorldBegin
+LightSource "infinite"
+Material "diffuse" "rgb reflectance" [1 1 1]
+AttributeBegin Translate -)" + place + " 0 500 Shape \"sphere\" AttributeEnd\n" +
+                                             whole,
+                                         16);
+        const MeanValue value = MeanOf(rendered.image);
+        EXPECT_LT(value.standardError, 0.01) << whole;
+        EXPECT_NEAR(value.mean, 1, 4.5 * value.standardError + 1e-4) << whole;
+        EXPECT_EQ(rendered.outcome.counts.droppedSamples + rendered.rejectedRays, 0u) << whole;
+      }
+    }
   }
 }
 
