@@ -249,6 +249,19 @@ void ReadIntegrator(const SceneDescription& scene, const RenderOverrides& overri
   }
 }
 
+// Embree stands for all of pbrt-v4's: they change no image, so there is nothing to warn of.
+void CheckAccelerator(const SceneDescription& scene, Diagnostics& diagnostics) {
+  const std::string& type = scene.accelerator.type;
+  const Names types = {"bvh", "kdtree"};
+  if (!type.empty() && std::find(types.begin(), types.end(), type) == types.end()) {
+    throw Error(scene.accelerator.where, "there is no Accelerator \"" + type + "\"" + DidYouMean(type, types));
+  }
+  const Names known = {"maxnodeprims", "splitmethod", "intersectcost", "traversalcost",
+                       "emptybonus",   "maxprims",    "maxdepth"};
+  for (const std::string& name : known) scene.accelerator.parameters.Find(name);
+  scene.accelerator.parameters.CheckAllUsed({}, known, diagnostics);
+}
+
 }  // namespace
 
 RenderSettings ReadRenderSettings(const SceneDescription& description, const RenderOverrides& overrides,
@@ -258,6 +271,7 @@ RenderSettings ReadRenderSettings(const SceneDescription& description, const Ren
   ReadPixelFilter(description, settings, diagnostics);
   ReadSampler(description, overrides, settings, diagnostics);
   ReadIntegrator(description, overrides, settings, diagnostics);
+  CheckAccelerator(description, diagnostics);
   return settings;
 }
 

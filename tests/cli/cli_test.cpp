@@ -178,6 +178,8 @@ TEST_F(Cli, BadScenesAreNamedByPlace) {
       {"Camera \"perspectiv\"\nWorldBegin\n", "bad.pbrt:1:1: error:", "did you mean \"perspective\""},
       {"Camera \"perspective\" \"float fov\" 190\nWorldBegin\n", "bad.pbrt:1:", "fov"},
       {"Film \"rgb\" \"integer xresolution\" -3\nWorldBegin\n", "bad.pbrt:1:", "xresolution"},
+      {"Accelerator \"bhv\"\nWorldBegin\n", "bad.pbrt:1:1: error:", "did you mean \"bvh\""},
+      {"Accelerator \"bvh\" \"integer maxnodeprim\" 4\nWorldBegin\n", "bad.pbrt:1:19: error:", "\"maxnodeprims\""},
       {"Sampler \"sobl\"\nWorldBegin\n", "bad.pbrt:1:1: error:", "did you mean \"sobol\""},
       {"Integrator \"paht\"\nWorldBegin\n", "bad.pbrt:1:1: error:", "did you mean \"path\""},
       {"PixelFilter \"gausian\"\nWorldBegin\n", "bad.pbrt:1:1: error:", "did you mean \"gaussian\""},
