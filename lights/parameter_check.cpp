@@ -55,6 +55,7 @@ void CheckParameters(const LightType& type, const ParameterList& parameters) {
     const auto row = std::find_if(type.parameters.begin(), type.parameters.end(),
                                   [&](const ParameterInfo& info) { return info.name == parameter.name; });
     if (row == type.parameters.end()) {
+      if (parameter.mayBeUnused) continue;  // of an Attribute, for lights of other types
       throw Error(parameter.where,
                   owner + " has no parameter \"" + parameter.name + "\"" + DidYouMean(parameter.name, names));
     }

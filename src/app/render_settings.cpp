@@ -193,6 +193,9 @@ void ReadSampler(const SceneDescription& scene, const RenderOverrides& overrides
     settings.samplesPerPixel = PositiveInteger(parameters, "pixelsamples", settings.samplesPerPixel, kMaxSamples);
   }
   const auto option = scene.options.find("seed");
+  if (option != scene.options.end() && option->second.integers.empty()) {
+    throw Error(option->second.where, "the option \"seed\" needs an integer");
+  }
   const int64_t optionSeed =
       option != scene.options.end() && !option->second.integers.empty() ? option->second.integers[0] : 0;
   settings.seed = static_cast<uint64_t>(parameters.GetInteger("seed", 0) + optionSeed) + overrides.seed;

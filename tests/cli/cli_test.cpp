@@ -180,6 +180,7 @@ TEST_F(Cli, BadScenesAreNamedByPlace) {
       {"Film \"rgb\" \"integer xresolution\" -3\nWorldBegin\n", "bad.pbrt:1:", "xresolution"},
       {"Accelerator \"bhv\"\nWorldBegin\n", "bad.pbrt:1:1: error:", "did you mean \"bvh\""},
       {"Accelerator \"bvh\" \"integer maxnodeprim\" 4\nWorldBegin\n", "bad.pbrt:1:19: error:", "\"maxnodeprims\""},
+      {"Option \"seed\" 1.5\nWorldBegin\n", "bad.pbrt:1:8: error:", "integer"},
       {"Sampler \"sobl\"\nWorldBegin\n", "bad.pbrt:1:1: error:", "did you mean \"sobol\""},
       {"Integrator \"paht\"\nWorldBegin\n", "bad.pbrt:1:1: error:", "did you mean \"path\""},
       {"PixelFilter \"gausian\"\nWorldBegin\n", "bad.pbrt:1:1: error:", "did you mean \"gaussian\""},
@@ -271,6 +272,15 @@ TEST_F(Cli, InterfacesEmitNothing) {
   EXPECT_NE(outcome.output.find("interface.pbrt:5:1: warning:"), std::string::npos) << outcome.output;
   EXPECT_NE(outcome.output.find("interface.pbrt:7:1: warning:"), std::string::npos) << outcome.output;
   for (const float value : ReadImage(folder_ / "out.exr").data) EXPECT_EQ(value, 0.0f);
+}
+
+// As in pbrt-v4: an Attribute is for all that follow, and some of them have no such parameter.
+TEST_F(Cli, AttributesOfLightsMayBeForOthers) {
+  Write("lights.pbrt", std::string(kScene) +
+                           "Attribute \"light\" \"float illuminance\" 2 \"float power\" 3\n"
+                           "LightSource \"point\"\nLightSource \"distant\"\n"
+                           "AreaLightSource \"diffuse\"\nShape \"sphere\"\n");
+  EXPECT_EQ(Run("render lights.pbrt -o out.exr --quiet --strict").output, "");
 }
 
 TEST_F(Cli, TheFilmsDiagonalIsNothingToWarnOf) {
