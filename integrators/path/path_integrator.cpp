@@ -145,10 +145,6 @@ Color PathIntegrator::Radiance(const Ray& cameraRay, Sampler& sampler, RenderCou
 
     const Material* material = attributes.material >= 0 ? materials_[attributes.material].get() : nullptr;
     if (!material) return radiance;  // a black surface, such as an analytic light
-    if (material->IsInterface()) {
-      path.ray = SpawnRay(point, path.ray.direction, path.ray.time);
-      continue;
-    }
     if (path.depth >= settings_.maxDepth) return radiance;
 
     const Vector3 wo = -path.ray.direction;

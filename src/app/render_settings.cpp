@@ -116,8 +116,11 @@ void ReadFilm(const SceneDescription& scene, const RenderOverrides& overrides, R
     throw Error(film.Where(), "the crop leaves no pixel of the image");
   }
   film.Find("diagonal");  // the film's size in mm: of use to "realistic" cameras only
+  if (film.GetFloat("whitebalance", 0) != 0) {
+    diagnostics.Warn(film.WhereOf("whitebalance"), "\"whitebalance\" is not supported yet; the image is not balanced");
+  }
   film.CheckAllUsed(
-      {"diagonal", "whitebalance", "maxcomponentvalue", "coordinatesystem", "nbuckets", "lambdamin", "lambdamax"},
+      {"diagonal", "maxcomponentvalue", "coordinatesystem", "nbuckets", "lambdamin", "lambdamax"},
       {"xresolution", "yresolution", "filename", "savefp16", "sensor", "iso", "cropwindow", "pixelbounds"},
       diagnostics);
 }
@@ -189,6 +192,9 @@ void ReadSampler(const SceneDescription& scene, const RenderOverrides& overrides
   if (type == "stratified") {
     settings.samplesPerPixel =
         PositiveInteger(parameters, "xsamples", 4, 1 << 15) * PositiveInteger(parameters, "ysamples", 4, 1 << 15);
+    if (!parameters.GetBool("jitter", true)) {
+      diagnostics.Warn(parameters.WhereOf("jitter"), "samples without jitter are not supported; they are jittered");
+    }
   } else {
     settings.samplesPerPixel = PositiveInteger(parameters, "pixelsamples", settings.samplesPerPixel, kMaxSamples);
   }

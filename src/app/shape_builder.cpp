@@ -94,7 +94,10 @@ LocalMesh ReadSubdivision(const ParameterList& parameters, Diagnostics& diagnost
   constexpr int maxLevels = 10;
   if (levels < 0 || levels > maxLevels)
     throw Error(parameters.WhereOf("levels"), "\"levels\" must be from 0 to " + std::to_string(maxLevels));
-  parameters.CheckAllUsed({"scheme"}, {"P", "indices", "levels", "alpha"}, diagnostics);
+  const std::string scheme = parameters.GetString("scheme", "loop");
+  if (scheme != "loop")
+    throw Error(parameters.WhereOf("scheme"), "there is no subdivision scheme \"" + scheme + "\"; there is: loop");
+  parameters.CheckAllUsed({}, {"P", "indices", "levels", "scheme", "alpha"}, diagnostics);
 
   std::vector<Point3> positions;
   for (const Point3d& p : controlPoints) positions.push_back(Point3(p));
