@@ -8,14 +8,12 @@
 namespace lampyr {
 
 int RunDiff(const DiffOptions& options) {
-  Image a, b;
+  ImageDifference difference;
   try {
-    a = ReadImage(options.a);
-    b = ReadImage(options.b);
-  } catch (const Error& error) {
+    difference = CompareImages(ReadImage(options.a), ReadImage(options.b), options.blockSize);
+  } catch (const Error& error) {  // what cannot be read or compared is wrong usage
     throw UsageError(error.Where(), error.Text());
   }
-  const ImageDifference difference = CompareImages(a, b, options.blockSize);
   if (options.json) {
     std::printf("%s", ToJson(difference).c_str());
     return kExitDone;

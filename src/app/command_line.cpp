@@ -65,7 +65,7 @@ struct RenderCommand {
     app.add_option("-o,--output", options.output, "The image to write (.exr); default: the name in the scene");
     app.add_flag("--png", options.png, "Also write a tone-mapped PNG beside it");
     app.add_option("--exposure", options.exposure, "Exposure of the PNG in stops (0)")->check(CheckFinite, "");
-    app.add_flag("--filmic", options.filmic, "A filmic shoulder in the PNG instead of clipping");
+    app.add_flag("--clip", options.clipPng, "Clip the PNG at white instead of rolling highlights off");
     app.add_option("--integrator", overrides.integrator, "path");
     app.add_option("--spp", overrides.samplesPerPixel, "Stop after this many samples per pixel")
         ->check(CLI::Range(1, 1 << 30));

@@ -195,7 +195,7 @@ int RunRender(const RenderOptions& options) {
   WriteExr(path, image, PrecisionFor(image, settings));
   if (options.png) {
     std::filesystem::path png = path;
-    WritePng(png.replace_extension(".png"), image, options.exposure, options.filmic ? ToneMap::Filmic : ToneMap::Clip);
+    WritePng(png.replace_extension(".png"), image, options.exposure, options.clipPng ? ToneMap::Clip : ToneMap::Filmic);
   }
   report.writeSeconds = clock.Seconds();
   if (options.stats) WriteText(*options.stats, ToJson(report));

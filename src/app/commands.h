@@ -14,8 +14,8 @@ struct RenderOptions {
   std::optional<std::filesystem::path>
       output;  // default: the scene's own file name, else the scene's stem, in this folder
   bool png = false;
-  float exposure = 0;   // stops, of the PNG
-  bool filmic = false;  // the PNG's tone curve; plain clipping otherwise
+  float exposure = 0;    // stops, of the PNG
+  bool clipPng = false;  // the PNG ends at 1 instead of rolling highlights off
   RenderOverrides overrides;
   std::optional<double> seconds;      // --time
   std::optional<double> targetError;  // --target-error
