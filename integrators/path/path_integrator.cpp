@@ -84,21 +84,21 @@ Color PathIntegrator::DirectLight(const PathState& path, const SurfacePoint& poi
   sampler.SetDimension(VertexDimension(path.depth, dimensions::kLightSelection));
   const float uSelect = sampler.Get1D();
   const Point2 u = sampler.Get2D();
-  const auto direct = lighting_.GenerateSamples(receiver, uSelect, u, path.ray.time, false);
+  const DirectSample direct = lighting_.GenerateSamples(receiver, uSelect, u, path.ray.time, false);
   if (!direct) return Color(0.0f);
-  const LightSample& sample = direct->sample;
+  const LightSample& sample = *direct.sample;
 
   const BsdfEvaluation f = bsdf.Evaluate(wo, sample.direction, TransportMode::Radiance);
   const Color scattered = f.diffuse * sample.diffuse + f.specular * sample.specular;
   if (scattered.IsBlack()) return Color(0.0f);
 
-  const PdfSolidAngle pdf = direct->selection * sample.pdfDirect;
-  const float weight = direct->isDelta ? 1.0f : PowerHeuristic(pdf, f.pdfForward);
+  const PdfSolidAngle pdf = direct.selection * sample.pdfDirect;
+  const float weight = direct.isDelta ? 1.0f : PowerHeuristic(pdf, f.pdfForward);
   const float cosTheta = AbsDot(sample.direction, bsdf.ShadingFrame().z);
   const Color contribution = path.Throughput() * scattered * (cosTheta * weight / pdf.value);
   if (contribution.IsBlack()) return Color(0.0f);
   ++counts.shadowRays;
-  return contribution * lighting_.Transmission(point, *direct, path.ray.time);
+  return contribution * lighting_.Transmission(point, direct, path.ray.time);
 }
 
 // Continues the path by the BSDF and Russian roulette. False: it ends here.

@@ -44,22 +44,21 @@ LightContext LightingServices::Context(uint32_t light, float time, bool bidirect
   return context;
 }
 
-std::optional<DirectSample> LightingServices::GenerateSamples(const Receiver& receiver, float uSelect, const Point2& u,
-                                                              float time, bool bidirectional) const {
+DirectSample LightingServices::GenerateSamples(const Receiver& receiver, float uSelect, const Point2& u, float time,
+                                               bool bidirectional) const {
   const std::optional<SelectedLight> selected = selector_->Select(receiver, uSelect);
-  if (!selected) return std::nullopt;
+  if (!selected) return {};
+  const PlacedLight& placed = lights_[selected->light];
+  const LightKind kind = kinds_[selected->light];
   LightContext context = Context(selected->light, time, bidirectional);
   context.u = u;
   context.patch = selected->patch;
-  const std::optional<LightSample> sample = lights_[selected->light].light->GenerateSamples(context, receiver.position);
-  if (!sample || sample->pdfDirect.IsZero()) return std::nullopt;
-  const LightKind kind = kinds_[selected->light];
-  const bool cannotBeFound = IsDeltaKind(kind) || !lights_[selected->light].canBeHit;
-  return DirectSample{selected->light, cannotBeFound, IsInfiniteKind(kind), selected->probability, *sample};
+  return {selected->light, IsDeltaKind(kind) || !placed.canBeHit, IsInfiniteKind(kind), selected->probability,
+          placed.light->GenerateSamples(context, receiver.position)};
 }
 
 Color LightingServices::Transmission(const SurfacePoint& from, const DirectSample& direct, float time) const {
-  const LightSample& sample = direct.sample;
+  const LightSample& sample = *direct.sample;
   const Ray ray = direct.isInfinite ? SpawnRay(from, sample.direction, time)
                                     : SpawnRayTo(from, sample.position, sample.positionError, sample.normal, time);
   return geometry_.Occluded(ray, visibility::kShadow) ? Color(0.0f) : Color(1.0f);

@@ -14,13 +14,17 @@
 
 namespace lampyr {
 
-// Next-event estimation: a light's sample with the probability of having chosen that light.
+// Next-event estimation: a light's sample with the probability of having chosen that light. False: nothing comes from
+// there. The light's result is a member as it was returned, never copied: copies of a struct that was written just
+// before, field by field, cost more than the sampling.
 struct DirectSample {
   uint32_t light = 0;
-  bool isDelta = false;     // the light has no surface or directions that a BSDF ray could find
-  bool isInfinite = false;  // no end of the shadow ray
-  PdfDiscrete selection;    // at the receiver
-  LightSample sample;       // densities without the selection
+  bool isDelta = false;               // the light has no surface or directions that a BSDF ray could find
+  bool isInfinite = false;            // no end of the shadow ray
+  PdfDiscrete selection;              // at the receiver
+  std::optional<LightSample> sample;  // densities without the selection
+
+  explicit operator bool() const { return sample && !sample->pdfDirect.IsZero(); }
 };
 
 // A light that a ray found.
@@ -44,9 +48,9 @@ class LightingServices {
   // `geometry` must outlive the services.
   LightingServices(const GeometryScene& geometry, std::vector<PlacedLight> lights, LightSelection selection);
 
-  // Chooses a light for the receiver and a sample on it. nullopt: nothing comes from there.
-  std::optional<DirectSample> GenerateSamples(const Receiver& receiver, float uSelect, const Point2& u, float time,
-                                              bool bidirectional) const;
+  // Chooses a light for the receiver and a sample on it.
+  DirectSample GenerateSamples(const Receiver& receiver, float uSelect, const Point2& u, float time,
+                               bool bidirectional) const;
 
   // What of a sample's light arrives: 0 behind something opaque, 1 otherwise. Traces a shadow ray.
   Color Transmission(const SurfacePoint& from, const DirectSample& direct, float time) const;

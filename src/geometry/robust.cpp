@@ -37,13 +37,21 @@ Ray SpawnRayTo(const SurfacePoint& from, const Point3& target, const Vector3& ta
   constexpr float kDirectionError = 0x1p-22f;
   const Vector3 endError = targetError + Vector3(kDirectionError * MaxAbsComponent(straight));
   const Point3 end = OffsetRayOrigin(target, endError, targetNg, -straight);
-  // In double: between tiny or huge scenes the squared length leaves the range of float.
-  const Vector3d between = Vector3d(end) - Vector3d(origin);
-  const double distance = glm::length(between);
-  if (!(distance > 0)) return {origin, from.Ng, 0, time};
+  Vector3 between = end - origin;
+  float distance = glm::length(between);
+  constexpr float kSmallest = 1e-15f, kLargest = 1e15f;
+  if (distance > kSmallest && distance < kLargest) {
+    between /= distance;
+  } else {  // the squared length leaves the range of float
+    const Vector3d precise = Vector3d(end) - Vector3d(origin);
+    const double length = glm::length(precise);
+    if (!(length > 0)) return {origin, from.Ng, 0, time};
+    between = Vector3(precise / length);
+    distance = static_cast<float>(length);
+  }
   // A few units in the last place: t is compared after rounding of its own.
-  constexpr double kShorten = 1 - 4 * 0x1p-23;
-  return {origin, Vector3(between / distance), static_cast<float>(distance * kShorten), time};
+  constexpr float kShorten = 1 - 6 * 0x1p-23f;
+  return {origin, between, distance * kShorten, time};
 }
 
 }  // namespace lampyr
