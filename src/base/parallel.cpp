@@ -1,5 +1,6 @@
 #include "base/parallel.h"
 
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -28,6 +29,9 @@ void ParallelFor(int count, int threads, const std::function<void(int)>& body) {
     for (int i = 0; i < count; ++i) body(i);
     return;
   }
+  // As many as asked for, also beyond the machine's own number.
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                  static_cast<size_t>(std::max(threads, HardwareThreads())));
   tbb::task_arena arena(threads);
   arena.execute([&] {
     // One item at a time: items (tiles) are large and of uneven cost.

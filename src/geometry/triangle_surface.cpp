@@ -7,8 +7,9 @@ namespace lampyr {
 
 namespace {
 
+// References, here and below: a copy on the stack is written in other pieces than it is read in, and the processor waits.
 struct UvCorners {
-  Point2 uv0, uv1, uv2;
+  const Point2 &uv0, &uv1, &uv2;
 };
 
 UvCorners GetUvs(const TriangleMesh& mesh, const std::array<uint32_t, 3>& t) {
@@ -43,7 +44,7 @@ Point2 TriangleUv(const TriangleMesh& mesh, uint32_t triangle, const Point2& b) 
 void EvaluateTriangle(const TriangleMesh& mesh, uint32_t triangle, const Point2& b, const Vector3& towards,
                       SurfacePoint& point) {
   const auto& t = mesh.triangles[triangle];
-  const Point3 p0 = mesh.positions[t[0]], p1 = mesh.positions[t[1]], p2 = mesh.positions[t[2]];
+  const Point3 &p0 = mesh.positions[t[0]], &p1 = mesh.positions[t[1]], &p2 = mesh.positions[t[2]];
   const float b0 = 1.0f - b.x - b.y;
   const Vector3 q0 = p0 * b0, q1 = p1 * b.x, q2 = p2 * b.y;
   point.position = q0 + q1 + q2;
