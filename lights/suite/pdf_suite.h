@@ -1,19 +1,21 @@
 // The pdf consistency suite: proof by statistics that the three techniques of a light agree. It runs over the registry,
 // over a plugin's type or over a single light, and prints nothing itself.
 //
-// Properties (names as in the results)
-//   integral              pdfDirect integrates to the probability that a sample exists, 1 where the light is all
-//   visible directions            χ² of sampled points (or directions, at infinity) against pdfDirect consistency
-//   EvaluateSamples on a generated sample gives back radiance, normal and all densities surface               a
-//   sample's normal, position and density agree with the shape, evaluated apart from the light one-sided nothing leaves
-//   a one-sided surface at its back irradiance            by light sampling = by quadrature over the surface
-//   emission-integral     the densities of emission integrate to 1
-//   emission-positions, emission-directions   χ² of photons against pdfEmit and pdfEmitDirection
-//   emission-edge         a photon's densities are those that EvaluateSamples gives for that edge
-//   power                 by emission = by direct sampling on an enclosing sphere
-//   power-estimate        GetPowerEstimate: exact where it is a closed form, near otherwise
-//   bounds                photons leave within GetEmissionBounds
-//   estimate              no estimate is 0 where a sample arrives
+// Properties, by their names in the results:
+//
+//   integral             pdfDirect integrates to the probability that a sample exists, 1 where the light is all visible
+//   directions           χ² of sampled points (or directions, at infinity) against pdfDirect
+//   consistency          EvaluateSamples on a generated sample gives back radiance, normal and all densities
+//   surface              a sample's normal, position and density agree with the shape, evaluated apart from the light
+//   one-sided            nothing leaves a one-sided surface at its back
+//   irradiance           by light sampling = by quadrature over the surface
+//   emission-integral    the densities of emission integrate to 1
+//   emission-positions   χ² of photons against pdfEmit; emission-directions: against pdfEmitDirection
+//   emission-edge        a photon's densities are those that EvaluateSamples gives for that edge
+//   power                by emission = by direct sampling on an enclosing sphere
+//   power-estimate       GetPowerEstimate: exact where it is a closed form, near otherwise
+//   bounds               photons leave within GetEmissionBounds
+//   estimate             no estimate is 0 where a sample arrives
 #pragma once
 
 #include <filesystem>

@@ -114,6 +114,11 @@ int RunCommandLine(int argc, char** argv) {
       ->check(CLI::Range(1, 4096));
   diffCommand->add_flag("--json", diff.json, "Print JSON");
 
+  CheckLightsOptions check;
+  CLI::App* checkCommand = app.add_subcommand("check-lights", "Prove the densities of every type of light");
+  checkCommand->add_flag("--json", check.json, "Print JSON");
+  checkCommand->add_option("--seed", check.seed, "Seed of the samples (1)");
+
   std::string lightType;
   CLI::App* lightsCommand = app.add_subcommand("lights", "The types of light and their parameters");
   lightsCommand->add_option("type", lightType, "Only this type");
@@ -126,6 +131,7 @@ int RunCommandLine(int argc, char** argv) {
   try {
     if (app.got_subcommand("render")) return render.Run();
     if (app.got_subcommand(diffCommand)) return RunDiff(diff);
+    if (app.got_subcommand(checkCommand)) return RunCheckLights(check);
     return RunLights(lightType);
   } catch (const UsageError& error) {
     std::fprintf(stderr, "%s\n", error.what());

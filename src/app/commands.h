@@ -32,9 +32,15 @@ struct DiffOptions {
   int blockSize = 8;
 };
 
+struct CheckLightsOptions {
+  bool json = false;
+  uint64_t seed = 1;
+};
+
 // Each returns an exit code. Errors are thrown.
 int RunRender(const RenderOptions& options);
 int RunDiff(const DiffOptions& options);
-int RunLights(const std::string& type);  // "" lists all
+int RunLights(const std::string& type);                 // "" lists all
+int RunCheckLights(const CheckLightsOptions& options);  // fails when a property does not hold
 
 }  // namespace lampyr

@@ -82,4 +82,19 @@ std::string ToJson(const ImageDifference& difference) {
   return json.dump(2) + "\n";
 }
 
+std::string ToJson(const std::vector<LightVerdict>& verdicts) {
+  Json rows = Json::array();
+  for (const LightVerdict& verdict : verdicts) {
+    rows.push_back({{"light", verdict.light},
+                    {"property", verdict.property},
+                    {"cases", verdict.cases},
+                    {"passed", verdict.passed},
+                    {"statistic", verdict.worst.isProbability ? "p-value" : "error"},
+                    {"worst", verdict.worst.statistic},
+                    {"threshold", verdict.worst.threshold},
+                    {"worstCase", verdict.worst.caseName}});
+  }
+  return rows.dump(2) + "\n";
+}
+
 }  // namespace lampyr

@@ -5,6 +5,7 @@
 
 #include "app/render_run.h"
 #include "film/metrics.h"
+#include "lights/suite/verdict.h"
 
 namespace lampyr {
 
@@ -21,6 +22,7 @@ struct RenderReport {
 };
 
 std::string ToJson(const RenderReport& report);
+std::string ToJson(const std::vector<LightVerdict>& verdicts);
 std::string ToJson(const ImageDifference& difference);
 
 // Largest resident set of this process so far, MiB.

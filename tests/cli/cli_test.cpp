@@ -321,5 +321,15 @@ TEST_F(Cli, ListsLights) {
   EXPECT_EQ(one.output.find("\"distant\""), std::string::npos);
 }
 
+TEST_F(Cli, ChecksEveryLight) {
+  const Outcome outcome = Run("check-lights");
+  EXPECT_EQ(outcome.exitCode, 0) << outcome.output;
+  for (const char* word :
+       {"point", "spot", "distant", "infinite", "diffuse", "directions", "emission-edge", " cases, 0 of "}) {
+    EXPECT_NE(outcome.output.find(word), std::string::npos) << word;
+  }
+  EXPECT_EQ(outcome.output.find("FAILED"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace lampyr
