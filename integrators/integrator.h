@@ -19,7 +19,6 @@ struct RenderScene {
   std::vector<std::shared_ptr<const Material>> materials;  // by GeometryAttributes::material
   std::unique_ptr<LightingServices> lighting;
   std::unique_ptr<Camera> camera;
-  float shutterOpen = 0, shutterClose = 1;
 };
 
 // Kept per tile of work and summed afterwards: no thread shares one.
