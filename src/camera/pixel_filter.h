@@ -26,7 +26,7 @@ class PixelFilter {
 
   struct Offset {
     Vector2 offset;    // from the pixel's centre, pixels
-    float weight = 1;  // of mean 1: exactly 1 for filters that are nowhere negative, else ±∫|f|/∫f
+    float weight = 1;  // of mean 1: exactly 1 for filters that are nowhere negative, else ±∫|f|/∫f but where f changes sign
   };
   // u in [0,1)².
   Offset Sample(const Point2& u) const;
