@@ -1,4 +1,5 @@
-// What all integrators share: the scene as they see it, their settings, and the counts they keep.
+// What all integrators share: the scene as they see it, their settings, and the counts they keep; and what they are
+// asked for, a sample of a pixel or a path from a light.
 #pragma once
 
 #include <cstdint>
@@ -6,6 +7,7 @@
 #include <vector>
 
 #include "camera/camera.h"
+#include "film/splats.h"
 #include "geometry/geometry_scene.h"
 #include "lights/services/lighting_services.h"
 #include "materials/material.h"
@@ -19,6 +21,7 @@ struct RenderScene {
   std::vector<std::shared_ptr<const Material>> materials;  // by GeometryAttributes::material
   std::unique_ptr<LightingServices> lighting;
   std::unique_ptr<Camera> camera;
+  bool hasMotion = false;  // something moves during the shutter: rays have a time; otherwise it stays 0
 };
 
 // Kept per tile of work and summed afterwards: no thread shares one.
@@ -46,6 +49,13 @@ inline constexpr uint32_t kLobe = 2;
 inline constexpr uint32_t kDirection = 3;
 inline constexpr uint32_t kRoulette = 4;
 inline constexpr uint32_t kPerVertex = 5;
+
+// Of vertex `vertex` of a path: the first surface is 0 for paths from the camera. For paths from a light, 0 is the
+// light (kLightSelection, kLight: the position on it, kDirection) and the first surface is 1, where kLight chooses the
+// point of the lens to connect to. The light itself is connected to the lens by kLens.
+constexpr uint32_t OfVertex(int vertex, uint32_t which) {
+  return kFirstVertex + static_cast<uint32_t>(vertex) * kPerVertex + which;
+}
 }  // namespace dimensions
 
 // An integrator that estimates the radiance along one camera ray at a time. Stateless: any thread may call it.
@@ -54,6 +64,16 @@ class CameraIntegrator {
   virtual ~CameraIntegrator() = default;
   // One sample of the radiance that arrives along `ray`. `sampler` has been started for the pixel sample.
   virtual Color Radiance(const Ray& ray, Sampler& sampler, RenderCounts& counts) const = 0;
+};
+
+// An integrator that follows one path at a time from a light and splats it wherever the camera sees it. As many paths
+// as the full image has pixels are a sample per pixel. Stateless: any thread may call it.
+class LightPathIntegrator {
+ public:
+  virtual ~LightPathIntegrator() = default;
+  // `sampler` has been started for the path, `splats` too. Splats are what a single path would contribute: the film
+  // divides by the number of paths. `time` is that of the whole path.
+  virtual void TracePath(float time, Sampler& sampler, SplatList& splats, RenderCounts& counts) const = 0;
 };
 
 }  // namespace lampyr

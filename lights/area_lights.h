@@ -1,23 +1,27 @@
-// The shapes that AreaLightSource "diffuse" can be put on, one maker each. For diffuse.cpp.
+// The shapes that an AreaLightSource can be put on, one maker each, and the dispatch over them.
 #pragma once
 
 #include <memory>
 
 #include "lights/light_base.h"
+#include "lights/surface_emission.h"
 
 namespace lampyr {
 
-std::unique_ptr<Light> MakeMeshLight(LightTypeFunction type, const ParameterList& parameters,
-                                     const LightBuildContext& build, std::shared_ptr<const TriangleMesh> mesh);
-std::unique_ptr<Light> MakeBilinearLight(LightTypeFunction type, const ParameterList& parameters,
-                                         const LightBuildContext& build, std::shared_ptr<const BilinearMesh> mesh);
-std::unique_ptr<Light> MakeQuadricLight(LightTypeFunction type, const ParameterList& parameters,
-                                        const LightBuildContext& build, const Quadric& quadric);
+// The light on the shape of `build`. Throws a located Error where there is none, or one that cannot emit.
+std::unique_ptr<Light> MakeShapeLight(LightTypeFunction type, const ParameterList& parameters,
+                                      const LightBuildContext& build, const EmissionReader& readEmission);
 
-// Whether a light's placement is the one it was built with, so that what was computed then holds.
-inline bool SamePlacement(const LightTransform& a, const LightTransform& b) {
-  return a.toRender.linear == b.toRender.linear && a.toRender.translation == b.toRender.translation;
-}
+std::unique_ptr<Light> MakeMeshLight(LightTypeFunction type, const ParameterList& parameters,
+                                     const LightBuildContext& build, const EmissionReader& readEmission,
+                                     std::shared_ptr<const TriangleMesh> mesh);
+std::unique_ptr<Light> MakeBilinearLight(LightTypeFunction type, const ParameterList& parameters,
+                                         const LightBuildContext& build, const EmissionReader& readEmission,
+                                         std::shared_ptr<const BilinearMesh> mesh);
+std::unique_ptr<Light> MakeQuadricLight(LightTypeFunction type, const ParameterList& parameters,
+                                        const LightBuildContext& build, const EmissionReader& readEmission,
+                                        const Quadric& quadric);
+
 inline bool IsIdentity(const Affine& map) {
   return map.linear == glm::mat3(1.0f) && map.translation == Vector3(0.0f);
 }

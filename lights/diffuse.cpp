@@ -4,26 +4,22 @@
 
 namespace lampyr {
 
-LightType DiffuseAreaLightType();
-
-namespace {
-
-std::unique_ptr<Light> CreateDiffuse(const ParameterList& parameters, const LightBuildContext& build) {
-  if (!build.shape) throw Error(parameters.Where(), "AreaLightSource \"diffuse\" needs a shape");
+std::unique_ptr<Light> MakeShapeLight(LightTypeFunction type, const ParameterList& parameters,
+                                      const LightBuildContext& build, const EmissionReader& readEmission) {
+  const std::string owner = "AreaLightSource \"" + type().name + "\"";
+  if (!build.shape) throw Error(parameters.Where(), owner + " needs a shape");
   const auto& shape = *build.shape;
   if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&shape)) {
-    return MakeMeshLight(DiffuseAreaLightType, parameters, build, *mesh);
+    return MakeMeshLight(type, parameters, build, readEmission, *mesh);
   }
   if (const auto* patches = std::get_if<std::shared_ptr<const BilinearMesh>>(&shape)) {
-    return MakeBilinearLight(DiffuseAreaLightType, parameters, build, *patches);
+    return MakeBilinearLight(type, parameters, build, readEmission, *patches);
   }
   if (const auto* quadric = std::get_if<Quadric>(&shape)) {
-    return MakeQuadricLight(DiffuseAreaLightType, parameters, build, *quadric);
+    return MakeQuadricLight(type, parameters, build, readEmission, *quadric);
   }
-  throw Error(parameters.Where(), "AreaLightSource \"diffuse\": curves cannot emit light; use a mesh or a cylinder");
+  throw Error(parameters.Where(), owner + ": curves cannot emit light; use a mesh or a cylinder");
 }
-
-}  // namespace
 
 LightType DiffuseAreaLightType() {
   LightType type;
@@ -38,12 +34,15 @@ LightType DiffuseAreaLightType() {
       {"twosided", ParameterType::Bool, "", "false", "", "emit on both sides"},
       {"filename", ParameterType::String, "", "\"\"", "", "image over the surface's uv, instead of L"},
   });
-  type.create = CreateDiffuse;
+  type.create = [](const ParameterList& parameters, const LightBuildContext& build) {
+    return MakeShapeLight(DiffuseAreaLightType, parameters, build, SurfaceEmission::ReadDiffuse);
+  };
   type.samples = {
       "\"rgb L\" [ 3 2 1 ]",
       "\"rgb L\" [ 1 1 1 ] \"float scale\" 4 \"bool twosided\" true",
       "\"rgb L\" [ 1 2 1 ] \"float power\" 50",
       "\"string filename\" \"suite-texture.exr\" \"float scale\" 2",
+      "\"float intensity\" 2 \"rgb color\" [ 1 0.5 0.2 ] \"bool normalize\" true \"float specular\" 3",
   };
   return type;
 }

@@ -5,6 +5,9 @@
 // is defined in local directions (a cone, an image) multiplies its local density by that factor.
 #pragma once
 
+#include <cstring>
+#include <optional>
+
 #include <glm/matrix.hpp>
 
 #include "lights/light.h"
@@ -33,6 +36,21 @@ inline bool IsSimilarity(const glm::mat3& m) {
   return std::abs(yy - xx) <= tolerance && std::abs(zz - xx) <= tolerance &&
          std::abs(glm::dot(m[0], m[1])) <= tolerance && std::abs(glm::dot(m[0], m[2])) <= tolerance &&
          std::abs(glm::dot(m[1], m[2])) <= tolerance;
+}
+
+// Whether a light's placement is the one it was built with, so that what was computed then holds. Bit by bit, which is
+// quick; where that errs, it errs towards computing anew.
+inline bool SamePlacement(const LightTransform& a, const LightTransform& b) {
+  static_assert(sizeof(Affine) == 12 * sizeof(float), "no padding to compare");
+  return std::memcmp(&a.toRender, &b.toRender, sizeof(Affine)) == 0;
+}
+
+// The square of the scale when `now` is `built` followed by a rotation or mirror and one scale: then all angles between
+// what the light has are kept, and areas grow by this.
+inline std::optional<float> RelativeScaleSquared(const LightTransform& built, const LightTransform& now) {
+  const glm::mat3 change = now.toRender.linear * built.toLocal.linear;
+  if (!IsSimilarity(change)) return std::nullopt;
+  return glm::dot(change[0], change[0]);
 }
 
 }  // namespace lampyr

@@ -4,10 +4,10 @@
 
 namespace lampyr {
 
-EmissionImage::EmissionImage(const ParameterList& parameters, const LightBuildContext& build) {
-  const std::string file = parameters.GetFile("filename");
+EmissionImage::EmissionImage(const ParameterList& parameters, const std::string& name, const LightBuildContext& build) {
+  const std::string file = parameters.GetFile(name);
   if (file.empty()) return;
-  const FileLocation where = parameters.WhereOf("filename");
+  const FileLocation where = parameters.WhereOf(name);
   if (!build.textures) throw Error(where, "no images can be read here: \"" + file + "\"");
   *this =
       EmissionImage(build.textures->GetImage(file, ImageEncoding::Automatic, where), file, where, build.diagnostics);
@@ -21,12 +21,16 @@ EmissionImage::EmissionImage(std::shared_ptr<const Image> image, const std::stri
     throw Error(where, "\"" + name + "\" is an empty image");
   data_ = image_->data.data();
   width_ = image_->width;
+  height_ = image_->height;
   stride_ = channels;
-  if (image_->HasRgb()) {
-    r_ = static_cast<size_t>(image_->ChannelIndex("R"));
-    g_ = static_cast<size_t>(image_->ChannelIndex("G"));
-    b_ = static_cast<size_t>(image_->ChannelIndex("B"));
-  } else if (channels > 2) {
+  const int r = image_->ChannelIndex("R"), g = image_->ChannelIndex("G"), b = image_->ChannelIndex("B");
+  if (r >= 0 && g >= 0 && b >= 0) {
+    r_ = static_cast<size_t>(r);
+    g_ = static_cast<size_t>(g);
+    b_ = static_cast<size_t>(b);
+  } else if (image_->HasRgb() || channels <= 2) {  // gray
+    r_ = g_ = b_ = static_cast<size_t>(std::max(0, image_->ChannelIndex("Y")));
+  } else {
     throw Error(where, "\"" + name + "\" has neither R, G and B channels nor is it gray");
   }
   double sum[3] = {0, 0, 0};

@@ -13,8 +13,9 @@ namespace lampyr {
 class EmissionImage {
  public:
   EmissionImage() = default;
-  // The file that the parameter "filename" names; an empty image when there is none. Throws located Errors.
-  EmissionImage(const ParameterList& parameters, const LightBuildContext& build);
+  // The file that the parameter `name` ("filename", "texture:file") gives; an empty image when there is none. Throws
+  // located Errors.
+  EmissionImage(const ParameterList& parameters, const std::string& name, const LightBuildContext& build);
   // `name` is for messages.
   EmissionImage(std::shared_ptr<const Image> image, const std::string& name, const FileLocation& where,
                 Diagnostics* diagnostics);
@@ -23,29 +24,31 @@ class EmissionImage {
   int Width() const { return image_->width; }
   int Height() const { return image_->height; }
 
-  Color Texel(int x, int y) const {
-    const float* texel = data_ + (static_cast<size_t>(y) * width_ + x) * stride_;
-    return {Clean(texel[r_]), Clean(texel[g_]), Clean(texel[b_])};
-  }
+  Color Texel(int x, int y) const { return TexelAt(data_ + (static_cast<size_t>(y) * width_ + x) * stride_); }
   // Of the texel that holds uv in [0,1)²; v counts down from the image's top row.
-  Color Nearest(const Point2& uv) const {
-    // In double, as the sampling table finds its cell: both must be the same texel.
-    const int x = std::min(static_cast<int>(static_cast<double>(uv.x) * width_), width_ - 1);
-    const int y = std::min(static_cast<int>(static_cast<double>(uv.y) * image_->height), image_->height - 1);
-    return Texel(std::max(x, 0), std::max(y, 0));
-  }
+  Color Nearest(const Point2& uv) const { return TexelAt(NearestTexel(uv)); }
+  // Has it fetched from memory while other work goes on.
+  void PrefetchNearest(const Point2& uv) const { __builtin_prefetch(NearestTexel(uv)); }
   // Bilinear between texel middles, clamped at the edges; v counts up from the image's lowest row, as on surfaces.
   Color OnSurface(const Point2& uv) const;
 
   Color Mean() const { return mean_; }
 
  private:
+  const float* NearestTexel(const Point2& uv) const {
+    // In double, as the sampling table finds its cell: both must be the same texel.
+    const int x = std::clamp(static_cast<int>(static_cast<double>(uv.x) * width_), 0, width_ - 1);
+    const int y = std::clamp(static_cast<int>(static_cast<double>(uv.y) * height_), 0, height_ - 1);
+    return data_ + (static_cast<size_t>(y) * width_ + x) * stride_;
+  }
+  Color TexelAt(const float* texel) const { return {Clean(texel[r_]), Clean(texel[g_]), Clean(texel[b_])}; }
+
   // Finite, and small enough that scales and sums of a few texels stay finite.
   static float Clean(float value) { return value > 0 && value < 1e37f ? value : 0.0f; }
 
   std::shared_ptr<const Image> image_;
   const float* data_ = nullptr;
-  int width_ = 0;
+  int width_ = 0, height_ = 0;
   size_t stride_ = 0, r_ = 0, g_ = 0, b_ = 0;
   Color mean_;
 };

@@ -9,6 +9,12 @@
 
 namespace lampyr {
 
+// What a sky is in one direction: its radiance and the density of having sampled that direction.
+struct SkyPoint {
+  Color radiance;
+  PdfSolidAngle density;
+};
+
 // 1/m²: uniform on the disk.
 inline PdfArea EmissionDiskDensity(const BoundingSphere& scene) {
   return PdfArea(1 / (kPi * Sqr(scene.radius)));

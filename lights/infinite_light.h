@@ -4,8 +4,9 @@
 // A Sky has (directions are unit, in the light's local space, towards the light):
 //   Color Radiance(local)
 //   Vector3 Sample(u)               a direction
-//   PdfSolidAngle Density(local)    its density: never 0 where Radiance is not
+//   SkyPoint Look(local)            radiance and density together; the density is never 0 where the radiance is not
 //   Color Mean()                    of the radiance over the sphere
+//   float FacingIrradiance()        estimate for a surface that faces the light, mean of the channels
 #pragma once
 
 #include "lights/direction_map.h"
@@ -18,13 +19,15 @@ template <class Sky>
 class InfiniteLightWith final : public LightBase {
  public:
   InfiniteLightWith(LightTypeFunction type, const ParameterList& parameters, Sky sky)
-      : LightBase(type, parameters), sky_(std::move(sky)), isBlack_(sky_.Mean().IsBlack()) {}
+      : LightBase(type, parameters),
+        sky_(std::move(sky)),
+        tint_(ReadLightTint(parameters)),
+        isBlack_(sky_.Mean().IsBlack()) {}
 
   LightKind Kind() const override { return LightKind::Infinite; }
 
-  // A surface that faces a hemisphere of mean radiance.
   float GetIncidentRadianceEstimate(const LightContext&, const Point3&) const override {
-    return sky_.Mean().Average() * kPi;
+    return sky_.FacingIrradiance();
   }
   std::optional<SegmentEstimate> GetIncidentRadianceEstimate(const LightContext& context, const Point3& origin,
                                                              const Vector3&, float length) const override {
@@ -42,10 +45,9 @@ class InfiniteLightWith final : public LightBase {
     std::optional<LightSample> sample(std::in_place);
     sample->direction = ToRenderDirection(*context.transform, sky_.Sample(context.u));
     // What is reported belongs to the direction as rounded: the same as when another technique finds it.
-    const Vector3 local = ToLocalDirection(*context.transform, sample->direction);
-    sample->pdfDirect = Density(context, sample->direction, local);
-    sample->diffuse = sample->specular = sky_.Radiance(local);
-    if (sample->pdfDirect.IsZero() || sample->diffuse.IsBlack()) return std::nullopt;
+    const SkyPoint seen = Look(context, sample->direction);
+    sample->pdfDirect = seen.density;
+    if (sample->pdfDirect.IsZero() || !tint_.Split(seen.radiance, *sample)) return std::nullopt;
     sample->normal = -sample->direction;
     if (context.bidirectional) {
       sample->pdfEmit = EmissionDiskDensity(context.scene);
@@ -57,11 +59,11 @@ class InfiniteLightWith final : public LightBase {
 
   std::optional<LightEvaluation> EvaluateSamples(const LightContext& context, const LightHit& hit,
                                                  const Point3&) const override {
-    const Vector3 local = ToLocalDirection(*context.transform, hit.direction);
+    const SkyPoint seen = Look(context, hit.direction);
     std::optional<LightEvaluation> evaluation(std::in_place);
     evaluation->normal = -hit.direction;
-    evaluation->diffuse = evaluation->specular = sky_.Radiance(local);
-    evaluation->pdfDirect = Density(context, hit.direction, local);
+    tint_.Split(seen.radiance, *evaluation);
+    evaluation->pdfDirect = seen.density;
     if (context.bidirectional) {
       evaluation->pdfEmit = EmissionDiskDensity(context.scene);
       evaluation->pdfEmitDirection = evaluation->pdfDirect;
@@ -73,11 +75,10 @@ class InfiniteLightWith final : public LightBase {
   std::optional<EmissionSample> GenerateEmission(const LightContext& context) const override {
     if (isBlack_) return std::nullopt;
     const Vector3 toLight = ToRenderDirection(*context.transform, sky_.Sample(context.u));
-    const Vector3 local = ToLocalDirection(*context.transform, toLight);
+    const SkyPoint seen = Look(context, toLight);
     EmissionSample sample = EmitFromInfinity(context.scene, toLight, context.uDirection);
-    sample.pdfEmitDirection = Density(context, toLight, local);
-    sample.diffuse = sample.specular = sky_.Radiance(local);
-    if (sample.pdfEmitDirection.IsZero() || sample.diffuse.IsBlack()) return std::nullopt;
+    sample.pdfEmitDirection = seen.density;
+    if (sample.pdfEmitDirection.IsZero() || !tint_.Split(seen.radiance, sample)) return std::nullopt;
     return sample;
   }
 
@@ -86,19 +87,18 @@ class InfiniteLightWith final : public LightBase {
   }
 
  private:
-  // 1/sr in render space: the one place where it is written. `local` is the same direction in the light's space.
-  PdfSolidAngle Density(const LightContext& context, const Vector3& direction, const Vector3& local) const {
-    if (isBlack_) return PdfSolidAngle(0);
-    const PdfSolidAngle density = sky_.Density(local) * LocalSolidAngleFactor(*context.transform, direction);
-    return density.value < kInfinity ? density : PdfSolidAngle(0);
+  // Radiance, and the density in 1/sr of render space: the one place where it is written.
+  SkyPoint Look(const LightContext& context, const Vector3& direction) const {
+    if (isBlack_) return {Color(0.0f), PdfSolidAngle(0)};
+    SkyPoint seen = sky_.Look(ToLocalDirection(*context.transform, direction));
+    seen.density = seen.density * LocalSolidAngleFactor(*context.transform, direction);
+    if (!(seen.density.value < kInfinity)) seen.density = PdfSolidAngle(0);
+    return seen;
   }
 
-  Sky sky_;
+  Sky sky_;  // its radiance is what a camera sees: with the tint's colour, without its multipliers
+  LightTint tint_;
   bool isBlack_;
 };
-
-// The sky of an image file; `scale` multiplies it. Defined in dome_image.cpp.
-std::unique_ptr<Light> MakeImageInfiniteLight(LightTypeFunction type, const ParameterList& parameters,
-                                              const LightBuildContext& build);
 
 }  // namespace lampyr

@@ -88,12 +88,12 @@ struct LightSample {
   float solidAngleToArea = 0;
 };
 
-// A point of a light that a ray from P found. Lights at infinity only have `direction`.
+// A point of a light that a ray from P found. Lights at infinity only have `direction` and `position`.
 struct LightHit {
   Vector3 direction{0.0f};  // unit, from P towards the light
   float distance = kInfinity;
-  Point3 position{0.0f};
-  Normal3 normal{0.0f};  // geometric, unit, on the light's outer side
+  Point3 position{0.0f};  // on the light; at infinity, where the ray started
+  Normal3 normal{0.0f};   // geometric, unit, on the light's outer side
   Point2 uv{0.0f};
   int patchIndex = 0;
 };
@@ -116,6 +116,7 @@ struct EmissionSample {
   Normal3 normal{0.0f};      // of the light; the direction itself for the other kinds
   Vector3 direction{0.0f};   // unit, away from the light
   float emissionCosine = 1;  // |cosθ| between normal and direction for area lights, 1 otherwise
+  float shinesFrom = 0;      // what it hits before this distance stops it and is not lit: a portal's outer side
   Point3 uvw{0.0f};
   int patchIndex = 0;
   Color diffuse, specular;  // radiance (area, infinite), intensity (points), irradiance (delta directions)
@@ -139,16 +140,17 @@ struct SegmentEstimate {
   float minT = 0, maxT = 0;
 };
 
-// A ray in the light's local space; the direction is not unit length when the light's transform scales.
+// A ray in the light's local space; the direction is not unit length when the light's transform scales. In double: a
+// light of 1e-3 that is seen from 1e5 away is still met where it is.
 struct LocalRay {
-  Point3 origin;
-  Vector3 direction;
-  float tMax = kInfinity;
+  Point3d origin{0.0};
+  Vector3d direction{0.0};
+  double tMin = 0, tMax = 0;
 };
 struct LocalHit {
-  float t = 0;
-  Point3 position;
-  Normal3 normal;  // unit, local space, outer side
+  double t = 0;
+  Point3d position{0.0};
+  Vector3d normal{0.0};  // unit, local space, outer side
   Point2 uv{0.0f};
 };
 
@@ -159,7 +161,7 @@ class IntersectableLight {
   virtual ~IntersectableLight() = default;
   // Points that bound the light, local space.
   virtual std::vector<Point3> GetBounds() const = 0;
-  // Nearest hit with t in (0, ray.tMax), local space.
+  // Nearest hit with t in (ray.tMin, ray.tMax], local space.
   virtual std::optional<LocalHit> Intersect(const LocalRay& ray) const = 0;
 };
 
@@ -209,7 +211,11 @@ class Light {
   virtual std::optional<LightEvaluation> EvaluateSamples(const LightContext& context, const LightHit& hit,
                                                          const Point3& P) const = 0;
 
-  // A photon by context.u and context.uDirection; nullopt when this choice of numbers emits nothing.
+  // A photon by context.u and context.uDirection; nullopt when this choice of numbers emits nothing. An area light
+  // chooses the position by u alone, and then the direction by uDirection. It gives nullopt only where it has no
+  // position to give: light tracing joins the position to the camera, whatever direction was tried and whatever the
+  // diffuse and specular multipliers are. A direction that turns out dark gives a black sample, whose pdfEmitDirection
+  // is 0 where no photon is made that way, and whose emissionCosine may be 0.
   virtual std::optional<EmissionSample> GenerateEmission(const LightContext& context) const = 0;
 
   // What a camera ray sees that hit the light (or escaped to it).

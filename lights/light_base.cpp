@@ -1,6 +1,9 @@
 #include "lights/light_base.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include "scene/spectrum.h"
 
 namespace lampyr {
 
@@ -13,6 +16,17 @@ std::unique_ptr<Light> LightBase::Edit(const ParameterList& changes, const Light
 
 std::vector<ParameterInfo> WithCommonParameters(std::vector<ParameterInfo> parameters) {
   const ParameterInfo common[] = {
+      {"intensity", ParameterType::Float, "", "1", ">= 0", "multiplies the light"},
+      {"exposure", ParameterType::Float, "stops", "0", "", "multiplies the light by 2^exposure"},
+      {"color", ParameterType::Rgb, "", "1 1 1", "", "multiplies the light"},
+      {"enableColorTemperature", ParameterType::Bool, "", "false", "", "multiply by a black body's colour as well"},
+      {"colorTemperature", ParameterType::Float, "K", "6500", "[1000,40000]",
+       "of that black body, brought to luminance 1"},
+      {"normalize", ParameterType::Bool, "", "false", "",
+       "keep the power when the size changes: divide by the area, or by a distant light's projected solid angle "
+       "(points have no size)"},
+      {"diffuse", ParameterType::Float, "", "1", ">= 0", "multiplies what diffuse lobes receive"},
+      {"specular", ParameterType::Float, "", "1", ">= 0", "multiplies what specular lobes receive"},
       {"name", ParameterType::String, "", "\"\"", "", "what messages and statistics call this light"},
       {"lightGroup", ParameterType::String, "", "\"\"", "", "the light group this light is summed up in"},
       {"cameraVisible", ParameterType::Bool, "", "true", "", "whether the camera sees the light itself"},
@@ -34,6 +48,25 @@ LightSettings ReadLightSettings(const ParameterList& parameters) {
   settings.importanceMultiplier = static_cast<float>(parameters.GetFloat("importanceMultiplier", 1));
   settings.fixedSampleCount = parameters.GetInteger("fixedSampleCount", 0);
   return settings;
+}
+
+LightTint ReadLightTint(const ParameterList& parameters) {
+  LightTint tint;
+  const double strength = parameters.GetFloat("intensity", 1) * std::exp2(parameters.GetFloat("exposure", 0));
+  tint.color = ReadEmissionColor(parameters, "color") * static_cast<float>(strength);
+  if (parameters.GetBool("enableColorTemperature", false)) {
+    // At luminance 1; a deep red has a blue channel below 0 in Rec. 709.
+    const Color body = BlackbodyToColor(parameters.GetFloat("colorTemperature", 6500), SpectrumRole::Illuminant);
+    tint.color *= Color(std::max(body.r, 0.0f), std::max(body.g, 0.0f), std::max(body.b, 0.0f));
+  }
+  if (!tint.color.IsValid()) {
+    throw Error(parameters.WhereOf("intensity"),
+                parameters.Owner() + ": intensity and exposure leave the range of numbers");
+  }
+  tint.diffuse = static_cast<float>(parameters.GetFloat("diffuse", 1));
+  tint.specular = static_cast<float>(parameters.GetFloat("specular", 1));
+  tint.normalize = parameters.GetBool("normalize", false);
+  return tint;
 }
 
 ParameterList MergeParameters(const ParameterList& base, const ParameterList& changes) {

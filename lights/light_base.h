@@ -13,6 +13,25 @@ namespace lampyr {
 // The function that describes a type: name, parameter table, factory.
 using LightTypeFunction = LightType (*)();
 
+// What the parameters of UsdLux's LightAPI make of a light, whatever its type: they multiply its own radiance,
+// intensity or irradiance.
+struct LightTint {
+  Color color{1.0f};                // intensity · 2^exposure · color · blackbody(colorTemperature)
+  float diffuse = 1, specular = 1;  // of what diffuse and specular lobes receive; a camera sees the light without them
+  bool normalize = false;           // divide by the world-space area (areas) or by the projected solid angle (distant)
+
+  // Sets both parts of a sample, an evaluation or a photon from what the light emits; false when both are black.
+  template <class Sample>
+  bool Split(const Color& emitted, Sample& sample) const {
+    sample.diffuse = emitted * diffuse;
+    sample.specular = emitted * specular;
+    return !sample.diffuse.IsBlack() || !sample.specular.IsBlack();
+  }
+};
+
+// Reads intensity, exposure, color, enableColorTemperature, colorTemperature, diffuse, specular, normalize.
+LightTint ReadLightTint(const ParameterList& parameters);
+
 class LightBase : public Light {
  public:
   LightBase(LightTypeFunction type, const ParameterList& parameters);

@@ -3,10 +3,11 @@
 // template, so that the profile is inlined.
 //
 // A Profile has (directions are unit and in render space, `transform` is the light's placement):
-//   float Shape(transform, direction)           intensity relative to its maximum, in [0,1]
+//   float or Color Shape(transform, direction)  factor of the intensity
+//   float Largest()                             no channel's mean over directions can exceed it: a bound of Shape
 //   Vector3 Sample(transform, u)                a direction of emission
 //   PdfSolidAngle Density(transform, direction) its density: never 0 where Shape is not
-//   double SolidAngle(transform)                ∫ Shape dω
+//   double or Color SolidAngle(transform)       ∫ Shape dω, to float precision where the transform keeps angles
 //   void SetCones(transform, bounds)            axis and angles of the emission bounds
 //   bool Clip(transform, from, origin, direction, minT, maxT)
 //                                               cuts a ray's [minT, maxT] to what is reached; false when that is
@@ -18,27 +19,47 @@
 
 namespace lampyr {
 
+// What a point is before its profile: intensity and place.
+struct PointSource {
+  Color intensity{1.0f};  // W/sr where the profile is 1
+  Point3 from{0.0f};      // local space
+
+  // Reads I and from.
+  static PointSource Read(const ParameterList& parameters) {
+    return {ReadEmissionColor(parameters, "I"), Point3(parameters.GetPoint3("from", Point3d(0.0)))};
+  }
+};
+
 template <class Profile>
 class PointLightWith final : public LightBase {
  public:
-  // Reads I, scale, power and from.
-  PointLightWith(LightTypeFunction type, const ParameterList& parameters, Profile profile)
-      : LightBase(type, parameters), profile_(std::move(profile)), from_(parameters.GetPoint3("from", Point3d(0.0))) {
+  // Reads scale and power; the colour's own magnitude is kept, the profile's is what `power` makes up for.
+  PointLightWith(LightTypeFunction type, const ParameterList& parameters, Profile profile, const PointSource& source)
+      : LightBase(type, parameters),
+        profile_(std::move(profile)),
+        from_(source.from),
+        tint_(ReadLightTint(parameters)) {
     double scale = parameters.GetFloat("scale", 1);
     const double power = parameters.GetFloat("power", -1);
-    if (power > 0) scale *= power / profile_.SolidAngle(LightTransform{});
-    intensity_ = ReadEmissionColor(parameters, "I") * static_cast<float>(scale);
+    if (power > 0) {
+      const double solidAngle = Luminance(profile_.SolidAngle(LightTransform{}));
+      scale = solidAngle > 0 ? scale * power / solidAngle : 0.0;
+    }
+    intensity_ = source.intensity * static_cast<float>(scale) * tint_.color;
     if (!intensity_.IsValid()) throw Error(parameters.Where(), parameters.Owner() + ": the intensity is not finite");
   }
+  // Reads I and from as well.
+  PointLightWith(LightTypeFunction type, const ParameterList& parameters, Profile profile)
+      : PointLightWith(type, parameters, std::move(profile), PointSource::Read(parameters)) {}
 
   LightKind Kind() const override { return LightKind::DeltaPosition; }
 
   float GetIncidentRadianceEstimate(const LightContext& context, const Point3& P) const override {
     const Vector3 way = P - Position(context);
     const float squared = std::max(LengthSquared(way), kSmallest);
-    const float shape = profile_.Shape(*context.transform, way / std::sqrt(squared));
-    if (!(shape > 0) || intensity_.IsBlack()) return 0;
-    return std::clamp(intensity_.Average() * shape / squared, kSmallest, kLargest);
+    const Color intensity = intensity_ * profile_.Shape(*context.transform, way / std::sqrt(squared));
+    if (intensity.IsBlack()) return 0;
+    return std::clamp(intensity.Average() / squared, kSmallest, kLargest);
   }
 
   std::optional<SegmentEstimate> GetIncidentRadianceEstimate(const LightContext& context, const Point3& origin,
@@ -52,12 +73,12 @@ class PointLightWith final : public LightBase {
     const Point3 position = Position(context);
     const float t = NearestOnSegment(origin, direction, estimate.minT, estimate.maxT, position);
     const float squared = std::max(LengthSquared(origin + t * direction - position), kSmallest);
-    estimate.radiance = std::clamp(intensity_.Average() / squared, kSmallest, kLargest);
+    estimate.radiance = std::clamp(intensity_.Average() * profile_.Largest() / squared, kSmallest, kLargest);
     return estimate;
   }
 
   Color GetPowerEstimate(const LightContext& context) const override {
-    return intensity_ * static_cast<float>(profile_.SolidAngle(*context.transform));
+    return intensity_ * ToFactor(profile_.SolidAngle(*context.transform));
   }
 
   std::optional<EmissionBounds> GetEmissionBounds(const LightContext& context) const override {
@@ -76,9 +97,8 @@ class PointLightWith final : public LightBase {
     std::optional<LightSample> sample(std::in_place);
     sample->distance = std::sqrt(squared);
     sample->direction = toLight / sample->distance;
-    sample->diffuse = intensity_ * (profile_.Shape(*context.transform, -sample->direction) / squared);
-    if (sample->diffuse.IsBlack() || !sample->diffuse.IsValid()) return std::nullopt;
-    sample->specular = sample->diffuse;
+    const Color radiance = intensity_ * (profile_.Shape(*context.transform, -sample->direction) / squared);
+    if (!tint_.Split(radiance, *sample) || !radiance.IsValid()) return std::nullopt;
     sample->position = position;
     sample->positionError = PositionError(context);
     sample->pdfDirect = PdfSolidAngle(1);
@@ -98,9 +118,8 @@ class PointLightWith final : public LightBase {
     EmissionSample sample;
     sample.direction = profile_.Sample(*context.transform, context.u);
     sample.pdfEmitDirection = profile_.Density(*context.transform, sample.direction);
-    sample.diffuse = intensity_ * profile_.Shape(*context.transform, sample.direction);
-    if (sample.pdfEmitDirection.IsZero() || sample.diffuse.IsBlack()) return std::nullopt;
-    sample.specular = sample.diffuse;
+    const Color intensity = intensity_ * profile_.Shape(*context.transform, sample.direction);
+    if (sample.pdfEmitDirection.IsZero() || !tint_.Split(intensity, sample)) return std::nullopt;
     sample.position = Position(context);
     sample.positionError = PositionError(context);
     sample.normal = sample.direction;
@@ -119,9 +138,15 @@ class PointLightWith final : public LightBase {
     return context.transform->toRender.PointError(from_, Vector3(0.0f));
   }
 
+  static double Luminance(double value) { return value; }
+  static double Luminance(const Color& value) { return static_cast<double>(value.Luminance()); }
+  static float ToFactor(double value) { return static_cast<float>(value); }
+  static const Color& ToFactor(const Color& value) { return value; }
+
   Profile profile_;
-  Color intensity_;  // W/sr where the profile's shape is 1
+  Color intensity_;  // W/sr where the profile's shape is 1, with the tint's colour
   Point3 from_;      // local space
+  LightTint tint_;
 };
 
 }  // namespace lampyr

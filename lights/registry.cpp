@@ -8,10 +8,19 @@ const std::vector<LightType>& LightRegistry() {
     std::vector<LightType> types;
     // clang-format off
     extern LightType DiffuseAreaLightType();  types.push_back(DiffuseAreaLightType());
+    extern LightType MeshAreaLightType();     types.push_back(MeshAreaLightType());
+    extern LightType RectLightType();         types.push_back(RectLightType());
+    extern LightType DiskLightType();         types.push_back(DiskLightType());
+    extern LightType SphereLightType();       types.push_back(SphereLightType());
+    extern LightType CylinderLightType();     types.push_back(CylinderLightType());
     extern LightType PointLightType();        types.push_back(PointLightType());
     extern LightType SpotLightType();         types.push_back(SpotLightType());
+    extern LightType GoniometricLightType();  types.push_back(GoniometricLightType());
+    extern LightType ProjectionLightType();   types.push_back(ProjectionLightType());
     extern LightType DistantLightType();      types.push_back(DistantLightType());
     extern LightType InfiniteLightType();     types.push_back(InfiniteLightType());
+    extern LightType DomeLightType();         types.push_back(DomeLightType());
+    extern LightType PortalLightType();       types.push_back(PortalLightType());
     // clang-format on
     return types;
   }();

@@ -5,10 +5,7 @@
 // cone of 0.01°. In w the profile is 1 up to wStart and smoothstep(t) with t = (wEnd - w) / (wEnd - wStart) up to wEnd;
 // its integral over solid angle is 2π (wStart + (wEnd - wStart) / 2), and emission is sampled exactly in proportion to
 // it.
-#include <array>
-
-#include "lights/direction_map.h"
-#include "lights/point_light.h"
+#include "lights/shaped_point.h"
 #include "math/frame.h"
 #include "sampling/warp.h"
 
@@ -66,9 +63,14 @@ class ConeProfile {
   }
 
   double SolidAngle(const LightTransform& transform) const;
-  void SetCones(const LightTransform& transform, EmissionBounds& bounds) const;
+  float Largest() const { return 1; }
+  void SetCones(const LightTransform& transform, EmissionBounds& bounds) const {
+    SetConeBounds(transform, axis_, wEnd_, bounds);
+  }
   bool Clip(const LightTransform& transform, const Point3& from, const Point3& origin, const Vector3& direction,
-            float& minT, float& maxT) const;
+            float& minT, float& maxT) const {
+    return ClipToCone(transform, from, axis_, wEnd_, origin, direction, minT, maxT);
+  }
 
  private:
   static float OneMinusCos(double degrees) {
@@ -110,55 +112,6 @@ double ConeProfile::SolidAngle(const LightTransform& transform) const {
   return sum * static_cast<double>(2 * kPi * wEnd_) / (n * n);
 }
 
-void ConeProfile::SetCones(const LightTransform& transform, EmissionBounds& bounds) const {
-  bounds.axis = ToRenderDirection(transform, axis_);
-  bounds.cosThetaO = 1;
-  bounds.cosThetaE = 1 - wEnd_;
-  if (IsSimilarity(transform.toRender.linear)) return;
-  // A convex cone stays one: its widest direction lies on the rim. Beyond 90° nothing is promised.
-  if (wEnd_ >= 1) {
-    bounds.cosThetaE = -1;
-    return;
-  }
-  float widest = 0;
-  for (int i = 0; i < 256; ++i) {
-    const Vector3 rim = ToRenderDirection(transform, LocalDirection(wEnd_, static_cast<float>(i) / 256));
-    widest = std::max(widest, 2 * std::asin(std::min(0.5f * glm::length(rim - bounds.axis), 1.0f)));
-  }
-  bounds.cosThetaE = std::cos(std::min(1.01f * widest, kPi));
-}
-
-// In local space, where the ray is x(t) = o + t d with the light's point as origin: inside while (x·a)² ≥ cos² |x|² and
-// x·a ≥ 0. The cone is widened a little against rounding.
-bool ConeProfile::Clip(const LightTransform& transform, const Point3& from, const Point3& origin,
-                       const Vector3& direction, float& minT, float& maxT) const {
-  const double cosine = static_cast<double>(1 - wEnd_) - 1e-4;
-  if (cosine <= 0) return true;
-  const Vector3d o(transform.toLocal.Point(origin) - from), d(transform.toLocal.Vector(direction)), a(axis_);
-  const double da = glm::dot(d, a), oa = glm::dot(o, a), c2 = cosine * cosine;
-  const double A = da * da - c2 * glm::dot(d, d), B = da * oa - c2 * glm::dot(o, d), C = oa * oa - c2 * glm::dot(o, o);
-  const double low = static_cast<double>(minT), high = static_cast<double>(maxT);
-  std::array<double, 4> knots = {low, low, high, high};
-  const double discriminant = B * B - A * C;
-  if (discriminant > 0) {
-    const double q = -(B + std::copysign(std::sqrt(discriminant), B));
-    knots[1] = std::clamp(q != 0 ? C / q : low, low, high);
-    knots[2] = std::clamp(A != 0 ? q / A : high, low, high);
-    if (knots[1] > knots[2]) std::swap(knots[1], knots[2]);
-  }
-  double first = high, last = low;
-  for (size_t i = 0; i < 3; ++i) {
-    const double t = 0.5 * (knots[i] + knots[i + 1]);
-    if (A * t * t + 2 * B * t + C < 0 || oa + t * da < 0) continue;
-    first = std::min(first, knots[i]);
-    last = std::max(last, knots[i + 1]);
-  }
-  if (!(first < last)) return false;
-  minT = static_cast<float>(first);
-  maxT = static_cast<float>(last);
-  return true;
-}
-
 std::unique_ptr<Light> CreateSpot(const ParameterList& parameters, const LightBuildContext& build) {
   const Vector3d axis = parameters.GetPoint3("to", {0, 0, 1}) - parameters.GetPoint3("from", {0, 0, 0});
   if (!(glm::length(axis) > 0))
@@ -173,8 +126,9 @@ std::unique_ptr<Light> CreateSpot(const ParameterList& parameters, const LightBu
           "LightSource \"spot\": \"conedeltaangle\" is larger than \"coneangle\"; the cone angle is used");
     }
   }
-  const ConeProfile profile(Vector3(glm::normalize(axis)), cone, cone - delta);
-  return std::make_unique<PointLightWith<ConeProfile>>(SpotLightType, parameters, profile);
+  const Vector3 direction(glm::normalize(axis));
+  return MakePointLight(SpotLightType, parameters, build, ConeProfile(direction, cone, cone - delta),
+                        PointSource::Read(parameters), direction);
 }
 
 }  // namespace
@@ -182,8 +136,8 @@ std::unique_ptr<Light> CreateSpot(const ParameterList& parameters, const LightBu
 LightType SpotLightType() {
   LightType type;
   type.name = "spot";
-  type.help = "a point that shines into a cone with a soft edge";
-  type.parameters = WithCommonParameters({
+  type.help = "a point that shines into a cone with a soft edge; shaping is about its axis, not -z";
+  type.parameters = WithShapingParameters({
       {"I", ParameterType::Spectrum, "W/sr", "1", "", "intensity along the axis"},
       {"scale", ParameterType::Float, "", "1", ">= 0", "multiplies the intensity"},
       {"power", ParameterType::Float, "W", "-1", "", "if positive: total power that an intensity of 1 is scaled to"},
@@ -200,6 +154,9 @@ LightType SpotLightType() {
       "\"float coneangle\" 150 \"float conedeltaangle\" 0",
       "\"float coneangle\" 0.01 \"float conedeltaangle\" 0.002",
       "\"float coneangle\" 179.9 \"float conedeltaangle\" 90",
+      "\"string shaping:ies:file\" \"suite-profile.ies\" \"float coneangle\" 70 \"float conedeltaangle\" 20 \"float "
+      "power\" 20",
+      "\"string shaping:ies:file\" \"suite-profile.ies\" \"point3 to\" [ 1 2 0.5 ] \"float coneangle\" 8",
   };
   return type;
 }

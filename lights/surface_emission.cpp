@@ -1,25 +1,115 @@
 #include "lights/surface_emission.h"
 
-#include "lights/light_base.h"
+#include "lights/direction_map.h"
 
 namespace lampyr {
 
-SurfaceEmission::SurfaceEmission(const ParameterList& parameters, const LightBuildContext& build, double area)
-    : twoSided_(parameters.GetBool("twosided", false)), image_(parameters, build), alpha_(build.alpha) {
-  if (HasImage() && parameters.Find("L")) {
+SurfaceEmission::SurfaceEmission(const ParameterList& parameters, const LightBuildContext& build, AreaFunction area)
+    : tint_(ReadLightTint(parameters)),
+      normalize_(tint_.normalize),
+      alpha_(build.alpha),
+      built_(build.transform),
+      builtArea_(area(build.transform)),
+      area_(std::move(area)) {}
+
+// Tinted, and divided by the area where that is asked for. A surface without area emits nothing.
+void SurfaceEmission::SetRadiance(const ParameterList& parameters, const Color& radiance) {
+  const double divisor = normalize_ ? builtArea_ : 1.0;
+  const Color tinted = radiance * tint_.color;
+  const auto divide = [&](float channel) {
+    return divisor > 0 ? static_cast<float>(static_cast<double>(channel) / divisor) : 0.0f;
+  };
+  radiance_ = Color(divide(tinted.r), divide(tinted.g), divide(tinted.b));
+  if (!radiance_.IsValid())
+    throw Error(parameters.Where(), parameters.Owner() + ": the emitted radiance is not finite");
+}
+
+SurfaceEmission SurfaceEmission::ReadDiffuse(const ParameterList& parameters, const LightBuildContext& build,
+                                             AreaFunction area) {
+  SurfaceEmission emission(parameters, build, std::move(area));
+  emission.twoSided_ = parameters.GetBool("twosided", false);
+  emission.image_ = EmissionImage(parameters, "filename", build);
+  if (emission.HasImage() && parameters.Find("L")) {
     throw Error(parameters.WhereOf("L"), parameters.Owner() + ": both \"L\" and \"filename\" are given, one is enough");
   }
   double scale = parameters.GetFloat("scale", 1);
   const double power = parameters.GetFloat("power", -1);
   if (power > 0) {
     // The colour keeps its own magnitude: `power` is what a surface of radiance 1, or of the image, would emit.
-    const double mean = HasImage() ? static_cast<double>(image_.Mean().Luminance()) : 1.0;
-    const double emitted = mean * area * static_cast<double>(kPi) * (twoSided_ ? 2 : 1);
+    const double mean = emission.HasImage() ? static_cast<double>(emission.image_.Mean().Luminance()) : 1.0;
+    const double emitted = mean * emission.builtArea_ * static_cast<double>(kPi) * (emission.twoSided_ ? 2 : 1);
     scale = emitted > 0 ? scale * power / emitted : 0.0;
   }
-  radiance_ = (HasImage() ? Color(1.0f) : ReadEmissionColor(parameters, "L")) * static_cast<float>(scale);
-  if (!radiance_.IsValid())
-    throw Error(parameters.Where(), parameters.Owner() + ": the emitted radiance is not finite");
+  const Color L = emission.HasImage() ? Color(1.0f) : ReadEmissionColor(parameters, "L");
+  emission.SetRadiance(parameters, L * static_cast<float>(scale));
+  return emission;
+}
+
+SurfaceEmission SurfaceEmission::ReadUsdLux(const ParameterList& parameters, const LightBuildContext& build,
+                                            AreaFunction area, Shaping::Emitter emitter) {
+  SurfaceEmission emission(parameters, build, std::move(area));
+  emission.twoSided_ = parameters.GetBool("twoSided", false);
+  emission.image_ = EmissionImage(parameters, "texture:file", build);
+  emission.SetRadiance(parameters, Color(1.0f));
+  if (auto shaping = Shaping::Read(parameters, build, emitter)) {
+    if (!build.shapePlacement.IsAffine())
+      throw Error(parameters.Where(), parameters.Owner() + ": shaping cannot follow a perspective transform");
+    const LightTransform axes{build.shapePlacement.ToAffine(), build.shapePlacement.Inverse().ToAffine()};
+    const bool hasCone = parameters.Find("shaping:cone:angle") || parameters.Find("shaping:cone:softness");
+    const bool isBackDark = hasCone && parameters.GetFloat("shaping:cone:angle", 90) <= 90;
+    emission.shaped_ =
+        std::make_shared<const ShapedDirections>(std::move(shaping), emitter, emission.twoSided_, isBackDark, axes);
+  }
+  return emission;
+}
+
+float SurfaceEmission::NormalizedStrength(const LightTransform& transform) const {
+  if (SamePlacement(transform, built_)) return 1;
+  if (const auto scaleSquared = RelativeScaleSquared(built_, transform)) return 1 / *scaleSquared;
+  const double area = area_(transform);
+  return area > 0 ? static_cast<float>(builtArea_ / area) : 0.0f;
+}
+
+Color SurfaceEmission::Exitance(const LightTransform& transform, const Normal3& normal) const {
+  if (!shaped_) return Color(kPi * SideCount());
+  constexpr int n = 32;
+  Color sum;
+  for (int i = 0; i < n * n; ++i) {
+    const Point2 u((static_cast<float>(i % n) + 0.5f) / n, (static_cast<float>(i / n) + 0.5f) / n);
+    const Vector3 outgoing = SampleEmissionDirection(transform, normal, u);
+    const float cosine = EmittedCosine(glm::dot(normal, outgoing));
+    LightContext context;
+    context.transform = &transform;
+    const PdfSolidAngle density = EmissionDirectionDensity(context, normal, outgoing, cosine);
+    if (cosine > 0 && !density.IsZero()) {
+      sum += shaped_->Factor(transform, normal, outgoing) * (cosine / density.value);
+    }
+  }
+  return sum / static_cast<float>(n * n);
+}
+
+float SurfaceEmission::ApparentPower(const LightContext& context, const EmissionBounds& bounds, float unshaped,
+                                     const Point3& P) const {
+  if (!shaped_) return unshaped;
+  const float largest = shaped_->Largest();
+  const Vector3 toPoint = P - bounds.box.Center();
+  const float squared = LengthSquared(toPoint);
+  if (!(squared > 0.25f * LengthSquared(bounds.box.Diagonal()))) return unshaped * largest;
+  const Vector3 outgoing = toPoint / std::sqrt(squared);
+  const Normal3 normal = bounds.cosThetaO > 0 ? bounds.axis : outgoing;
+  // Other points than the middle may be brighter.
+  const float towards = shaped_->Factor(*context.transform, normal, outgoing).Average();
+  return unshaped * std::max(towards, 0.02f * largest);
+}
+
+void SurfaceEmission::NarrowFlat(const LightTransform& transform, EmissionBounds& bounds) const {
+  if (!shaped_) return;
+  if (shaped_->IsBackDark()) bounds.twoSided = false;
+  // A hair wider than the cone, for the rounding of directions; under shear the angles are not the cone's.
+  if (shaped_->KeepsAngles(transform)) {
+    const float widest = std::acos(std::clamp(shaped_->Parts().CosWidest(), -1.0f, 1.0f)) + 1e-3f;
+    bounds.cosThetaE = std::max(std::cos(std::min(widest, kPi)), 0.0f);
+  }
 }
 
 std::optional<LightSample> SurfaceEmission::Sample(const LightContext& context, const Point3& P,
@@ -44,22 +134,21 @@ std::optional<LightSample> SurfaceEmission::Sample(const LightContext& context, 
 bool SurfaceEmission::Complete(const LightContext& context, PdfArea density, LightSample& sample) const {
   if (sample.pdfDirect.IsZero()) return false;
   const Point2 uv(sample.uvw.x, sample.uvw.y);
-  sample.diffuse = Radiance(uv);
-  if (alpha_) sample.diffuse *= Opacity(uv, sample.position);
-  if (sample.diffuse.IsBlack()) return false;
-  sample.specular = sample.diffuse;
+  Color radiance = Emitted(context, uv, sample.normal, -sample.direction);
+  if (alpha_) radiance *= Opacity(uv, sample.position);
+  if (!tint_.Split(radiance, sample)) return false;
   if (context.bidirectional) {
     const float cosine = EmittedCosine(-glm::dot(sample.normal, sample.direction));
     sample.pdfEmit = density;
-    sample.pdfEmitDirection = EmissionDirectionDensity(cosine);
+    sample.pdfEmitDirection = EmissionDirectionDensity(context, sample.normal, -sample.direction, cosine);
     sample.solidAngleToArea = SolidAngleToArea(Sqr(sample.distance), cosine);
   }
   return true;
 }
 
-Color SurfaceEmission::FoundRadiance(const LightHit& hit) const {
+Color SurfaceEmission::FoundRadiance(const LightContext& context, const LightHit& hit) const {
   if (alpha_ && Opacity(hit.uv, hit.position) == 0) return Color(0.0f);
-  return Radiance(hit.uv);
+  return Emitted(context, hit.uv, hit.normal, -hit.direction);
 }
 
 std::optional<LightEvaluation> SurfaceEmission::Evaluate(const LightContext& context, const LightHit& hit,
@@ -68,11 +157,11 @@ std::optional<LightEvaluation> SurfaceEmission::Evaluate(const LightContext& con
   if (!(cosine > 0)) return std::nullopt;
   std::optional<LightEvaluation> evaluation(std::in_place);
   evaluation->normal = hit.normal;
-  evaluation->diffuse = evaluation->specular = FoundRadiance(hit);
+  tint_.Split(FoundRadiance(context, hit), *evaluation);
   evaluation->pdfDirect = pdfDirect;
   if (context.bidirectional) {
     evaluation->pdfEmit = density;
-    evaluation->pdfEmitDirection = EmissionDirectionDensity(cosine);
+    evaluation->pdfEmitDirection = EmissionDirectionDensity(context, hit.normal, -hit.direction, cosine);
     evaluation->solidAngleToArea = SolidAngleToArea(Sqr(hit.distance), cosine);
   }
   return evaluation;
@@ -84,35 +173,44 @@ std::optional<LightEvaluation> SurfaceEmission::Evaluate(const LightContext& con
   return Evaluate(context, hit, density, DirectDensity(density, Sqr(hit.distance), cosine));
 }
 
-std::optional<EmissionSample> SurfaceEmission::Emit(const LightContext& context, const EmittingPoint& point) const {
-  if (point.density.IsZero()) return std::nullopt;
-  // Two-sided: the first random number chooses the side, and is stretched again.
-  Point2 u = context.uDirection;
+Vector3 SurfaceEmission::SampleCosineLaw(const Normal3& normal, Point2 u) const {
   float side = 1;
   if (twoSided_) {
     side = u.x < 0.5f ? 1.0f : -1.0f;
     u.x = std::min(u.x < 0.5f ? 2 * u.x : 2 * u.x - 1, kOneMinusEpsilon);
   }
-  EmissionSample sample;
-  sample.direction = Frame::FromNormal(side * point.normal).ToWorld(SampleCosineHemisphere(u));
-  sample.emissionCosine = EmittedCosine(glm::dot(point.normal, sample.direction));
-  sample.diffuse = Radiance(point.uv);
-  if (alpha_) sample.diffuse *= Opacity(point.uv, point.position);
-  if (!(sample.emissionCosine > 0) || sample.diffuse.IsBlack()) return std::nullopt;
-  sample.specular = sample.diffuse;
-  sample.position = point.position;
-  sample.positionError = point.positionError;
-  sample.normal = point.normal;
-  sample.uvw = Point3(point.uv, 0.0f);
-  sample.patchIndex = point.patch;
-  sample.pdfEmit = point.density;
-  sample.pdfEmitDirection = EmissionDirectionDensity(sample.emissionCosine);
+  return Frame::FromNormal(side * normal).ToWorld(SampleCosineHemisphere(u));
+}
+
+Vector3 SurfaceEmission::SampleEmissionDirection(const LightTransform& transform, const Normal3& normal,
+                                                 const Point2& u) const {
+  return shaped_ && shaped_->GuidesEmission() ? shaped_->Sample(transform, normal, u) : SampleCosineLaw(normal, u);
+}
+
+std::optional<EmissionSample> SurfaceEmission::Emit(const LightContext& context, const EmittingPoint& point) const {
+  if (point.density.IsZero()) return std::nullopt;
+  std::optional<EmissionSample> sample(std::in_place);
+  sample->position = point.position;
+  sample->positionError = point.positionError;
+  sample->normal = point.normal;
+  sample->uvw = Point3(point.uv, 0.0f);
+  sample->patchIndex = point.patch;
+  sample->pdfEmit = point.density;
+  sample->direction = SampleEmissionDirection(*context.transform, point.normal, context.uDirection);
+  sample->emissionCosine = EmittedCosine(glm::dot(point.normal, sample->direction));
+  // Dark in this direction: black, but the place stands.
+  if (!(sample->emissionCosine > 0)) return sample;
+  sample->pdfEmitDirection = EmissionDirectionDensity(context, point.normal, sample->direction, sample->emissionCosine);
+  if (sample->pdfEmitDirection.IsZero()) return sample;
+  Color radiance = Emitted(context, point.uv, point.normal, sample->direction);
+  if (alpha_) radiance *= Opacity(point.uv, point.position);
+  tint_.Split(radiance, *sample);
   return sample;
 }
 
-Color SurfaceEmission::ForCamera(const LightHit& hit, bool cameraVisible) const {
+Color SurfaceEmission::ForCamera(const LightContext& context, const LightHit& hit, bool cameraVisible) const {
   const float cosine = EmittedCosine(-glm::dot(hit.normal, hit.direction));
-  return cameraVisible && cosine > 0 ? FoundRadiance(hit) : Color(0.0f);
+  return cameraVisible && cosine > 0 ? FoundRadiance(context, hit) : Color(0.0f);
 }
 
 }  // namespace lampyr

@@ -1,18 +1,20 @@
-// What all area lights share, whatever their shape: radiance over the surface, its sides, and how a chosen point of the
-// surface becomes a sample, an evaluation or a photon. The shape gives the point and its density; the densities of
-// direction are written here, once.
+// What all area lights share, whatever their shape: radiance over the surface, its sides, its shaping, and how a chosen
+// point of the surface becomes a sample, an evaluation or a photon. The shape gives the point and its density; the
+// densities of direction are written here, once.
 //
-// The surface emits on the side that its normal points to, or on both. Radiance is L · scale, or scale times an image
-// over the surface's uv. A ray that finds the light has passed the cut-outs of the geometry; a sample and a photon have
-// not, so these two carry the opacity as a factor.
+// The surface emits on the side that its normal points to, or on both. Radiance in W/(m² sr) is a constant or a factor
+// times an image over the surface's uv, tinted and shaped (light_base.h, shaping.h). A ray that finds the light has
+// passed the cut-outs of the geometry; a sample and a photon have not, so these two carry the opacity as a factor.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 
 #include "geometry/geometry_scene.h"
 #include "lights/emission_image.h"
-#include "lights/light.h"
+#include "lights/light_base.h"
+#include "lights/shaped_directions.h"
 #include "math/frame.h"
 #include "sampling/warp.h"
 
@@ -30,23 +32,42 @@ struct EmittingPoint {
 
 class SurfaceEmission {
  public:
-  // Reads L, scale, twosided, filename. `area` (world space) is what "power" is spread over.
-  SurfaceEmission(const ParameterList& parameters, const LightBuildContext& build, double area);
+  // World-space area of the whole surface under a placement: what "power" is spread over and "normalize" divides by.
+  using AreaFunction = std::function<double(const LightTransform&)>;
+
+  // pbrt-v4's names: L, scale, power, twosided, filename.
+  static SurfaceEmission ReadDiffuse(const ParameterList& parameters, const LightBuildContext& build,
+                                     AreaFunction area);
+  // UsdLux's names: twoSided (ours), texture:file, shaping:…
+  static SurfaceEmission ReadUsdLux(const ParameterList& parameters, const LightBuildContext& build, AreaFunction area,
+                                    Shaping::Emitter emitter);
 
   bool IsTwoSided() const { return twoSided_; }
   bool HasImage() const { return !image_.IsEmpty(); }
   bool NeedsUv() const { return HasImage() || alpha_ != nullptr; }
   const EmissionImage& EmittedImage() const { return image_; }
+  const ShapedDirections* Shaped() const { return shaped_.get(); }
 
-  // On an emitting side, cut-outs apart.
+  // On an emitting side under the placement that the light was built with, shaping and cut-outs apart.
   Color Radiance(const Point2& uv) const { return image_.IsEmpty() ? radiance_ : radiance_ * image_.OnSurface(uv); }
-  // Constant factor of the radiance: L · scale, or the scale of the image.
-  const Color& Factor() const { return radiance_; }
   Color MeanRadiance() const { return image_.IsEmpty() ? radiance_ : radiance_ * image_.Mean(); }
-  // Power of a surface of this area and mean radiance, all its sides counted.
-  Color Power(const Color& meanRadiance, double area) const {
-    return meanRadiance * static_cast<float>(area * static_cast<double>(kPi) * (twoSided_ ? 2 : 1));
-  }
+  // What Radiance is multiplied by under another placement: 1 unless it is normalised by the area.
+  float Strength(const LightTransform& transform) const { return normalize_ ? NormalizedStrength(transform) : 1.0f; }
+  // The factor of the power when the surface, with all that it emits, is carried to another place by a similarity whose
+  // square of the scale this is.
+  float PowerScale(float scaleSquared) const { return normalize_ ? 1.0f : scaleSquared; }
+  float SideCount() const { return twoSided_ ? 2.0f : 1.0f; }
+
+  // W/m² of a point with this normal and radiance 1, all its sides counted: ∫ factor · |cosθ| dω. Exact without
+  // shaping; by quadrature over the photons' directions with it.
+  Color Exitance(const LightTransform& transform, const Normal3& normal) const;
+
+  // The power, as SurfaceIrradianceEstimate takes it, that stands for what P receives: that of an unshaped light as
+  // bright as this one towards P. Never 0 for a light that shines.
+  float ApparentPower(const LightContext& context, const EmissionBounds& bounds, float unshaped, const Point3& P) const;
+  float LargestPower(float unshaped) const { return shaped_ ? unshaped * shaped_->Largest() : unshaped; }
+  // What a cone makes of the bounds of a flat light: its angle, and a far side that is dark.
+  void NarrowFlat(const LightTransform& transform, EmissionBounds& bounds) const;
 
   // The cosine towards the receiver if that side emits, 0 otherwise.
   float EmittedCosine(float cosine) const { return twoSided_ ? std::abs(cosine) : std::max(cosine, 0.0f); }
@@ -56,16 +77,23 @@ class SurfaceEmission {
     const PdfSolidAngle pdf = ToSolidAngle(density, distanceSquared, emittedCosine);
     return pdf.value < kInfinity ? pdf : PdfSolidAngle(0);
   }
-  // pdfEmitDirection: cosine law on each emitting side.
-  PdfSolidAngle EmissionDirectionDensity(float emittedCosine) const {
+  // pdfEmitDirection of a direction on an emitting side, whose cosine is `emittedCosine`: the shaping's own density, or
+  // the cosine law on each side.
+  PdfSolidAngle EmissionDirectionDensity(const LightContext& context, const Normal3& normal, const Vector3& outgoing,
+                                         float emittedCosine) const {
+    if (shaped_) {
+      // Where the shaping is dark no photon is made.
+      if (shaped_->Factor(*context.transform, normal, outgoing).IsBlack()) return PdfSolidAngle(0);
+      if (shaped_->GuidesEmission()) return shaped_->Density(*context.transform, normal, outgoing);
+    }
     return PdfSolidAngle(emittedCosine * (twoSided_ ? 0.5f * kInvPi : kInvPi));
   }
 
   // The point as a sample for P; nullopt when it sends nothing there.
   std::optional<LightSample> Sample(const LightContext& context, const Point3& P, const EmittingPoint& point) const;
 
-  // Fills colours and bidirectional densities of a sample whose direction, distance, position, normal and pdfDirect are
-  // there; false when it sends nothing.
+  // Fills colours and bidirectional densities of a sample whose direction, distance, position, normal, uvw and
+  // pdfDirect are there; false when it sends nothing. `density` is that of its position by GenerateEmission.
   bool Complete(const LightContext& context, PdfArea density, LightSample& sample) const;
 
   // For a hit whose density over the surface is `density` and over directions `pdfDirect`.
@@ -76,18 +104,43 @@ class SurfaceEmission {
 
   std::optional<EmissionSample> Emit(const LightContext& context, const EmittingPoint& point) const;
 
-  Color ForCamera(const LightHit& hit, bool cameraVisible) const;
+  // Without the diffuse and specular multipliers.
+  Color ForCamera(const LightContext& context, const LightHit& hit, bool cameraVisible) const;
 
  private:
+  SurfaceEmission(const ParameterList& parameters, const LightBuildContext& build, AreaFunction area);
+  void SetRadiance(const ParameterList& parameters, const Color& radiance);
+  float NormalizedStrength(const LightTransform& transform) const;
   float Opacity(const Point2& uv, const Point3& position) const {
     return alpha_ ? std::clamp(alpha_->Alpha(uv, position), 0.0f, 1.0f) : 1.0f;
   }
-  Color FoundRadiance(const LightHit& hit) const;
+  // Radiance with all its factors, cut-outs apart.
+  Color Emitted(const LightContext& context, const Point2& uv, const Normal3& normal, const Vector3& outgoing) const {
+    Color radiance = Radiance(uv);
+    if (normalize_) radiance *= NormalizedStrength(*context.transform);
+    if (shaped_) radiance *= shaped_->Factor(*context.transform, normal, outgoing);
+    return radiance;
+  }
+  Color FoundRadiance(const LightContext& context, const LightHit& hit) const;
+  // By the cosine law; two-sided: the first random number chooses the side, and is stretched again.
+  Vector3 SampleCosineLaw(const Normal3& normal, Point2 u) const;
+  Vector3 SampleEmissionDirection(const LightTransform& transform, const Normal3& normal, const Point2& u) const;
 
+  LightTint tint_;
   Color radiance_;
   bool twoSided_ = false;
+  bool normalize_ = false;
   EmissionImage image_;
   std::shared_ptr<const AlphaSource> alpha_;
+  std::shared_ptr<const ShapedDirections> shaped_;
+  // For `normalize` under other placements than the one the light was built with.
+  LightTransform built_;
+  double builtArea_ = 0;
+  AreaFunction area_;
 };
+
+// How a type of light reads its emission.
+using EmissionReader =
+    std::function<SurfaceEmission(const ParameterList&, const LightBuildContext&, SurfaceEmission::AreaFunction)>;
 
 }  // namespace lampyr

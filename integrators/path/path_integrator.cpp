@@ -45,10 +45,6 @@ class PathIntegrator final : public CameraIntegrator {
   PathSettings settings_;
 };
 
-uint32_t VertexDimension(int depth, uint32_t which) {
-  return dimensions::kFirstVertex + static_cast<uint32_t>(depth) * dimensions::kPerVertex + which;
-}
-
 // Radiance of a light that the BSDF's direction found, weighted against next-event estimation.
 Color PathIntegrator::WeightedEmission(const PathState& path, const FoundLight& found) const {
   const Color radiance =
@@ -69,7 +65,7 @@ Color PathIntegrator::EmissionAt(const PathState& path, const RayHit& hit, const
 
 Color PathIntegrator::EscapedEmission(const PathState& path) const {
   if (path.fromCamera) {
-    return path.throughputSpecular * lighting_.EscapedEmissionForCamera(path.ray.direction, path.ray.time);
+    return path.throughputSpecular * lighting_.EscapedEmissionForCamera(path.ray);
   }
   Color sum;
   for (size_t i = 0; i < lighting_.InfiniteCount(); ++i) {
@@ -81,7 +77,7 @@ Color PathIntegrator::EscapedEmission(const PathState& path) const {
 
 Color PathIntegrator::DirectLight(const PathState& path, const SurfacePoint& point, const Bsdf& bsdf, const Vector3& wo,
                                   const Receiver& receiver, Sampler& sampler, RenderCounts& counts) const {
-  sampler.SetDimension(VertexDimension(path.depth, dimensions::kLightSelection));
+  sampler.SetDimension(dimensions::OfVertex(path.depth, dimensions::kLightSelection));
   const float uSelect = sampler.Get1D();
   const Point2 u = sampler.Get2D();
   const DirectSample direct = lighting_.GenerateSamples(receiver, uSelect, u, path.ray.time, false);
@@ -104,7 +100,7 @@ Color PathIntegrator::DirectLight(const PathState& path, const SurfacePoint& poi
 // Continues the path by the BSDF and Russian roulette. False: it ends here.
 bool PathIntegrator::Scatter(PathState& path, const SurfacePoint& point, const Bsdf& bsdf, const Vector3& wo,
                              const Receiver& receiver, Sampler& sampler) const {
-  sampler.SetDimension(VertexDimension(path.depth, dimensions::kLobe));
+  sampler.SetDimension(dimensions::OfVertex(path.depth, dimensions::kLobe));
   const float uLobe = sampler.Get1D();
   const auto sample = bsdf.Sample(wo, uLobe, sampler.Get2D(), TransportMode::Radiance);
   if (!sample) return false;
@@ -121,7 +117,7 @@ bool PathIntegrator::Scatter(PathState& path, const SurfacePoint& point, const B
 
   const float survival = SurvivalProbability(path.Throughput(), path.etaScale, path.depth);
   if (survival < 1) {
-    sampler.SetDimension(VertexDimension(path.depth - 1, dimensions::kRoulette));
+    sampler.SetDimension(dimensions::OfVertex(path.depth - 1, dimensions::kRoulette));
     if (sampler.Get1D() >= survival) return false;
     path.throughputDiffuse /= survival;
     path.throughputSpecular /= survival;

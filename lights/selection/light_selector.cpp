@@ -30,14 +30,27 @@ class TableSelector final : public LightSelector {
   AliasTable table_;
 };
 
+// Over the shutter, where the light moves.
+float MeanPower(const PlacedLight& placed, const BoundingSphere& scene) {
+  LightContext context;
+  context.transform = &placed.transform;
+  context.scene = scene;
+  if (!placed.motion) return placed.light->GetPowerEstimate(context).Average();
+  constexpr int times = 5;
+  float sum = 0;
+  for (int i = 0; i < times; ++i) {
+    context.time = static_cast<float>(i) / (times - 1);
+    const LightTransform transform = placed.At(context.time);
+    context.transform = &transform;
+    sum += placed.light->GetPowerEstimate(context).Average() / times;
+  }
+  return sum;
+}
+
 std::vector<float> PowerWeights(std::span<const PlacedLight> lights, const BoundingSphere& scene) {
   std::vector<float> weights;
   for (const PlacedLight& placed : lights) {
-    LightContext context;
-    context.transform = &placed.transform;
-    context.scene = scene;
-    const float power =
-        placed.light->GetPowerEstimate(context).Average() * placed.light->Settings().importanceMultiplier;
+    const float power = MeanPower(placed, scene) * placed.light->Settings().importanceMultiplier;
     // A power beyond float is the largest one; NaN compares false.
     weights.push_back(power > 0 ? std::min(power, std::numeric_limits<float>::max()) : 0.0f);
   }
@@ -49,6 +62,11 @@ std::vector<float> PowerWeights(std::span<const PlacedLight> lights, const Bound
 constexpr float kFloorOfEqualShare = 1e-3f;
 
 }  // namespace
+
+LightTransform PlacedLight::At(float time) const {
+  const Affine toRender = motion->At(time);
+  return {toRender, toRender.Inverse()};
+}
 
 std::optional<LightSelection> ParseLightSelection(const std::string& name) {
   if (name == "uniform") return LightSelection::Uniform;

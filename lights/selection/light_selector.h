@@ -10,6 +10,7 @@
 #include <string>
 
 #include "lights/light.h"
+#include "math/motion.h"
 
 namespace lampyr {
 
@@ -48,12 +49,19 @@ struct PlacedLight {
   std::shared_ptr<const Light> light;
   LightTransform transform;
   bool canBeHit = true;  // false: an area light whose surface lets every ray through; only light sampling finds it
+  std::shared_ptr<const Motion> motion = nullptr;  // null: stays. Otherwise `transform` is the place at shutter open
+
+  bool isInstance = false;  // its shape is traced within an instance, placed as the light is
+
+  // Of a light that moves.
+  LightTransform At(float time) const;
 };
 
 // Selects in proportion to `weights` (not negative), whatever the receiver. With all weights 0, selects nothing.
 std::unique_ptr<LightSelector> MakeTableSelector(std::span<const float> weights);
 
-// Every light alike; or by estimated power × importanceMultiplier, with a floor so that no light is impossible.
+// Every light alike; or by estimated power × importanceMultiplier, with a floor so that no light is impossible. The
+// power of a light that moves is its mean over the shutter.
 std::unique_ptr<LightSelector> MakeLightSelector(LightSelection selection, std::span<const PlacedLight> lights,
                                                  const BoundingSphere& scene);
 

@@ -22,6 +22,28 @@ LightHit SurfaceLightHit(const Vector3& direction, float distance, const Surface
   return hit;
 }
 
+LightHit EscapedHit(const Point3& origin, const Vector3& direction) {
+  LightHit hit;
+  hit.direction = direction;
+  hit.position = origin;
+  return hit;
+}
+
+// What next-event estimation says of a delta light that a photon came from: the photon's own numbers, with the falloff
+// of the distance that the light's samples have.
+LightEvaluation DeltaLanding(const EmissionSample& emission, LightKind kind, float distanceSquared) {
+  LightEvaluation evaluation;
+  const float falloff = kind == LightKind::DeltaPosition ? 1 / distanceSquared : 1.0f;
+  evaluation.normal = kind == LightKind::DeltaPosition ? Normal3(0.0f) : emission.direction;
+  evaluation.diffuse = emission.diffuse * falloff;
+  evaluation.specular = emission.specular * falloff;
+  evaluation.pdfDirect = PdfSolidAngle(1);
+  evaluation.pdfEmit = emission.pdfEmit;
+  evaluation.pdfEmitDirection = emission.pdfEmitDirection;
+  evaluation.solidAngleToArea = 1;
+  return evaluation;
+}
+
 }  // namespace
 
 LightingServices::LightingServices(const GeometryScene& geometry, std::vector<PlacedLight> lights,
@@ -35,9 +57,13 @@ LightingServices::LightingServices(const GeometryScene& geometry, std::vector<Pl
   emissionSelector_ = MakeEmissionSelector(lights_, sphere_);
 }
 
-LightContext LightingServices::Context(uint32_t light, float time, bool bidirectional) const {
+LightContext LightingServices::Context(uint32_t light, float time, bool bidirectional,
+                                       std::optional<LightTransform>& moved) const {
+  const PlacedLight& placed = lights_[light];
   LightContext context;
-  context.transform = &lights_[light].transform;
+  context.transform = &placed.transform;
+  if (placed.motion) [[unlikely]]
+    context.transform = &moved.emplace(placed.At(time));
   context.scene = sphere_;
   context.time = time;
   context.bidirectional = bidirectional;
@@ -50,17 +76,30 @@ DirectSample LightingServices::GenerateSamples(const Receiver& receiver, float u
   if (!selected) return {};
   const PlacedLight& placed = lights_[selected->light];
   const LightKind kind = kinds_[selected->light];
-  LightContext context = Context(selected->light, time, bidirectional);
+  std::optional<LightTransform> moved;
+  LightContext context = Context(selected->light, time, bidirectional, moved);
   context.u = u;
   context.patch = selected->patch;
   return {selected->light, IsDeltaKind(kind) || !placed.canBeHit, IsInfiniteKind(kind), selected->probability,
           placed.light->GenerateSamples(context, receiver.position)};
 }
 
+// How far in front of a sample its own surface may be met by a ray from `from`.
+Vector3 LightingServices::ErrorOfEnd(const SurfacePoint& from, const DirectSample& direct, float time) const {
+  const LightSample& sample = *direct.sample;
+  const PlacedLight& placed = lights_[direct.light];
+  if (!placed.isInstance) [[likely]]
+    return sample.positionError;
+  const LightTransform transform = placed.motion ? placed.At(time) : placed.transform;
+  const Point3 reach = glm::max(glm::abs(from.position), glm::abs(sample.position));
+  return sample.positionError + InstanceRayError(transform.toRender, transform.toLocal, reach);
+}
+
 Color LightingServices::Transmission(const SurfacePoint& from, const DirectSample& direct, float time) const {
   const LightSample& sample = *direct.sample;
-  const Ray ray = direct.isInfinite ? SpawnRay(from, sample.direction, time)
-                                    : SpawnRayTo(from, sample.position, sample.positionError, sample.normal, time);
+  const Ray ray = direct.isInfinite
+                      ? SpawnRay(from, sample.direction, time)
+                      : SpawnRayTo(from, sample.position, ErrorOfEnd(from, direct, time), sample.normal, time);
   return geometry_.Occluded(ray, visibility::kShadow) ? Color(0.0f) : Color(1.0f);
 }
 
@@ -70,7 +109,8 @@ std::optional<FoundLight> LightingServices::EvaluateSamples(const Receiver& rece
   const int32_t index = geometry_.LightAt(point.primitive, point.instance);
   if (index < 0) return std::nullopt;
   const auto light = static_cast<uint32_t>(index);
-  LightContext context = Context(light, time, bidirectional);
+  std::optional<LightTransform> moved;
+  LightContext context = Context(light, time, bidirectional, moved);
   const LightHit hit = SurfaceLightHit(direction, distance, point);
   if (selector_->SelectsPatches()) context.patch = hit.patchIndex;
   const auto evaluation = lights_[light].light->EvaluateSamples(context, hit, receiver.position);
@@ -82,10 +122,10 @@ std::optional<FoundLight> LightingServices::EvaluateEscaped(size_t i, const Rece
                                                             const Vector3& direction, float time,
                                                             bool bidirectional) const {
   const uint32_t light = infinite_[i];
-  LightHit hit;
-  hit.direction = direction;
-  const auto evaluation =
-      lights_[light].light->EvaluateSamples(Context(light, time, bidirectional), hit, receiver.position);
+  const LightHit hit = EscapedHit(receiver.position, direction);
+  std::optional<LightTransform> moved;
+  const LightContext context = Context(light, time, bidirectional, moved);
+  const auto evaluation = lights_[light].light->EvaluateSamples(context, hit, receiver.position);
   if (!evaluation) return std::nullopt;
   return FoundLight{light, selector_->Probability(receiver, light, kAnyPatch), *evaluation};
 }
@@ -95,17 +135,18 @@ Color LightingServices::EmissionForCamera(const Vector3& direction, float distan
   const int32_t index = geometry_.LightAt(point.primitive, point.instance);
   if (index < 0) return Color(0.0f);
   const auto light = static_cast<uint32_t>(index);
-  return lights_[light].light->EvaluateEmissionForCamera(Context(light, time, false),
+  std::optional<LightTransform> moved;
+  return lights_[light].light->EvaluateEmissionForCamera(Context(light, time, false, moved),
                                                          SurfaceLightHit(direction, distance, point));
 }
 
-Color LightingServices::EscapedEmissionForCamera(const Vector3& direction, float time) const {
+Color LightingServices::EscapedEmissionForCamera(const Ray& ray) const {
   Color sum;
+  const LightHit hit = EscapedHit(ray.origin, ray.direction);
   for (const uint32_t light : infinite_) {
-    LightHit hit;
-    hit.direction = direction;
     if (!lights_[light].light->Settings().cameraVisible) continue;
-    sum += lights_[light].light->EvaluateEmissionForCamera(Context(light, time, false), hit);
+    std::optional<LightTransform> moved;
+    sum += lights_[light].light->EvaluateEmissionForCamera(Context(light, ray.time, false, moved), hit);
   }
   return sum;
 }
@@ -114,37 +155,63 @@ std::optional<EmittedPhoton> LightingServices::GenerateEmission(float uSelect, c
                                                                 const Point2& uDirection, float time) const {
   const std::optional<SelectedLight> selected = emissionSelector_->Select({}, uSelect);
   if (!selected) return std::nullopt;
-  LightContext context = Context(selected->light, time, true);
+  std::optional<LightTransform> moved;
+  LightContext context = Context(selected->light, time, true, moved);
   context.u = u;
   context.uDirection = uDirection;
   const std::optional<EmissionSample> emission = lights_[selected->light].light->GenerateEmission(context);
   if (!emission) return std::nullopt;
-  EmittedPhoton photon{selected->light, selected->probability, *emission, std::nullopt, {}};
+  EmittedPhoton photon{selected->light, selected->probability, *emission, std::nullopt, {}, false};
   const bool fromSurface = kinds_[selected->light] == LightKind::Area;
+  photon.fromSurface = fromSurface && lights_[selected->light].canBeHit;
   photon.ray.origin =
       fromSurface ? OffsetRayOrigin(emission->position, emission->positionError, emission->normal, emission->direction)
                   : emission->position;
   photon.ray.direction = emission->direction;
   photon.ray.time = time;
   RayHit hit;
-  if (geometry_.Intersect(photon.ray, visibility::kIndirect, hit)) photon.landing = hit;
+  if (!photon.IsDark() && geometry_.Intersect(photon.ray, visibility::kIndirect, hit) && hit.t >= emission->shinesFrom)
+    photon.landing = hit;
   return photon;
+}
+
+bool LightingServices::IsOrigin(const EmittedPhoton& photon, const SurfacePoint& point, const Vector3& toRay,
+                                float distance) const {
+  if (geometry_.LightAt(point.primitive, point.instance) != static_cast<int32_t>(photon.light)) return false;
+  const EmissionSample& emission = photon.emission;
+  // The same side of the surface, and as near as rounding allows: a unit direction is off by 2^-22, along a grazing
+  // surface by more.
+  const float cosine = glm::dot(point.Ng, toRay);
+  if (cosine * glm::dot(emission.normal, toRay) < 0) return false;
+  const float error =
+      MaxAbsComponent(point.positionError) + MaxAbsComponent(emission.positionError) + 0x1p-20f * distance;
+  return glm::distance(point.position, emission.position) * std::abs(cosine) <= 8 * error;
 }
 
 std::optional<FoundLight> LightingServices::EvaluateLanding(const EmittedPhoton& photon,
                                                             const Receiver& receiver) const {
-  LightHit hit;
-  hit.direction = -photon.emission.direction;
-  hit.position = photon.emission.position;
-  hit.distance = glm::distance(photon.emission.position, receiver.position);
-  hit.normal = photon.emission.normal;
-  hit.uv = Point2(photon.emission.uvw.x, photon.emission.uvw.y);
-  hit.patchIndex = photon.emission.patchIndex;
-  LightContext context = Context(photon.light, photon.ray.time, true);
-  if (selector_->SelectsPatches()) context.patch = hit.patchIndex;
+  const EmissionSample& emission = photon.emission;
+  const LightKind kind = kinds_[photon.light];
+  std::optional<LightTransform> moved;
+  LightContext context = Context(photon.light, photon.ray.time, true, moved);
+  if (selector_->SelectsPatches()) context.patch = emission.patchIndex;
+  const PdfDiscrete selection = selector_->Probability(receiver, photon.light, context.patch);
+  const Vector3 way = receiver.position - emission.position;
+  if (IsDeltaKind(kind)) {
+    if (!(LengthSquared(way) > 0)) return std::nullopt;
+    return FoundLight{photon.light, selection, DeltaLanding(emission, kind, LengthSquared(way))};
+  }
+  LightHit hit = EscapedHit(receiver.position, -emission.direction);
+  if (kind == LightKind::Area) {
+    hit.position = emission.position;
+    hit.distance = glm::length(way);
+    hit.normal = emission.normal;
+    hit.uv = Point2(emission.uvw.x, emission.uvw.y);
+    hit.patchIndex = emission.patchIndex;
+  }
   const auto evaluation = lights_[photon.light].light->EvaluateSamples(context, hit, receiver.position);
   if (!evaluation) return std::nullopt;
-  return FoundLight{photon.light, selector_->Probability(receiver, photon.light, context.patch), *evaluation};
+  return FoundLight{photon.light, selection, *evaluation};
 }
 
 PdfDiscrete LightingServices::SelectionProbability(const Receiver& receiver, uint32_t light, int patch) const {

@@ -39,8 +39,12 @@ struct EmittedPhoton {
   uint32_t light = 0;
   PdfDiscrete emissionSelection;
   EmissionSample emission;
-  std::optional<RayHit> landing;  // nullopt: it left the scene
+  std::optional<RayHit> landing;  // nullopt: it left the scene, or is dark
   Ray ray;
+  bool fromSurface = false;  // it started on a surface that camera rays can hit
+
+  // A place on a light whose direction carries nothing, and may have no density.
+  bool IsDark() const { return emission.diffuse.IsBlack() && emission.specular.IsBlack(); }
 };
 
 class LightingServices {
@@ -68,12 +72,16 @@ class LightingServices {
 
   // What a camera ray sees of a light it hit, or of all lights at infinity when it escapes.
   Color EmissionForCamera(const Vector3& direction, float distance, const SurfacePoint& point, float time) const;
-  Color EscapedEmissionForCamera(const Vector3& direction, float time) const;
+  Color EscapedEmissionForCamera(const Ray& ray) const;
+  // Whether a ray that hit `point` from the direction of the unit vector `toRay` met the very place that the photon
+  // left.
+  bool IsOrigin(const EmittedPhoton& photon, const SurfacePoint& point, const Vector3& toRay, float distance) const;
 
   // Chooses a light for emission, emits and traces to the landing point.
   std::optional<EmittedPhoton> GenerateEmission(float uSelect, const Point2& u, const Point2& uDirection,
                                                 float time) const;
-  // The density of next-event estimation for the light vertex of a photon that landed at `receiver`, selection apart.
+  // The light vertex of a photon that landed at `receiver`, as next-event estimation from there sees it: densities
+  // without the selection. Delta lights too, which it finds with the discrete density 1.
   std::optional<FoundLight> EvaluateLanding(const EmittedPhoton& photon, const Receiver& receiver) const;
 
   PdfDiscrete SelectionProbability(const Receiver& receiver, uint32_t light, int patch) const;
@@ -84,7 +92,10 @@ class LightingServices {
   const BoundingSphere& SceneSphere() const { return sphere_; }
 
  private:
-  LightContext Context(uint32_t light, float time, bool bidirectional) const;
+  // `moved` keeps the place of a light that moves, and must live as long as the context.
+  LightContext Context(uint32_t light, float time, bool bidirectional, std::optional<LightTransform>& moved) const;
+
+  Vector3 ErrorOfEnd(const SurfacePoint& from, const DirectSample& direct, float time) const;
 
   const GeometryScene& geometry_;
   std::vector<PlacedLight> lights_;

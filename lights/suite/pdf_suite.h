@@ -12,6 +12,7 @@
 //   emission-integral    the densities of emission integrate to 1
 //   emission-positions   χ² of photons against pdfEmit; emission-directions: against pdfEmitDirection
 //   emission-edge        a photon's densities are those that EvaluateSamples gives for that edge
+//   emission-origin      a photon's place does not depend on its direction, be that dark
 //   power                by emission = by direct sampling on an enclosing sphere
 //   power-estimate       GetPowerEstimate: exact where it is a closed form, near otherwise
 //   bounds               photons leave within GetEmissionBounds
@@ -41,6 +42,7 @@ class SuiteReport {
                       double pValue);
   void AddError(const std::string& light, const std::string& property, const std::string& caseName, double error,
                 double tolerance);
+  void Add(const SuiteReport& other);
   // Judges the p-values at a family-wise level over all that were added.
   std::vector<SuiteResult> Finish(double familyWise);
 
@@ -53,15 +55,27 @@ struct SuiteOptions {
   int photons = 8000;  // per light and transform
   double familyWise = 1e-3;
   uint64_t seed = 1;
+  int threads = 1;  // of RunPdfSuite; the results are the same with any number
 };
 
 // A light under test, as it is placed.
 struct SuiteSubject {
   const Light* light = nullptr;
   LightContext context;                 // transform and scene; bidirectional
-  const EmitterModel* model = nullptr;  // area lights
+  const EmitterModel* model = nullptr;  // area lights on a shape; those that are their own surface have none
   bool isPowerExact = true;             // GetPowerEstimate is a closed form here
+  // The light's parameters of these names: what samples, evaluations and photons carry is what is emitted times them.
+  double diffuseMultiplier = 1, specularMultiplier = 1;
+  double powerError = 6e-4;  // relative standard error that power is known to: five of it are below half a per cent
   std::string name, caseName;
+};
+
+// What a light was made from: editing it is compared with making it afresh.
+struct SuiteOrigin {
+  const LightType* type = nullptr;
+  const ParameterList* parameters = nullptr;
+  const LightBuildContext* build = nullptr;
+  std::vector<ParameterList> changes;  // each is laid over the parameters
 };
 
 // All properties of one placed light.

@@ -1,8 +1,12 @@
-// What the suite runs over: every sample block of every type, on every shape for area lights, under every transform.
-#include "film/image.h"
-#include "geometry/quadric.h"
-#include "lights/suite/pdf_suite.h"
-#include "sampling/rng.h"
+// What the suite runs over: every sample block of every type, on every shape for area lights, under every transform,
+// and moved away from where it was built.
+#include <mutex>
+
+#include "base/parallel.h"
+#include "lights/suite/checks.h"
+#include "lights/suite/scene_suite.h"
+#include "lights/suite/suite_inputs.h"
+#include "lights/suite/suite_shapes.h"
 #include "scene/scene_description.h"
 #include "textures/texture_library.h"
 
@@ -10,126 +14,8 @@ namespace lampyr {
 
 namespace {
 
-struct NamedTransform {
-  std::string name;
-  Transform transform;
-};
-
-std::vector<NamedTransform> Transforms() {
-  const Transform move = Transform::Translate({0.7, -1.3, 2.1}), turn = Transform::Rotate(50, {1, 2, -1});
-  glm::dmat4 shear(1.0);
-  shear[1][0] = 0.6;
-  shear[2][1] = -0.4;
-  return {
-      {"identity", Transform()},
-      {"rotated", move * turn},
-      {"1e-3", turn * Transform::Scale(Vector3d(1e-3)) * move},
-      {"1e3", turn * Transform::Scale(Vector3d(1e3)) * move},
-      {"non-uniform", turn * Transform::Scale({2, 0.5, 1.3}) * move},
-      {"mirrored", move * turn * Transform::Scale({-1, 1, 1})},
-      {"sheared", move * Transform(shear) * turn},
-  };
-}
-
-struct NamedShape {
-  std::string name;
-  Shape shape;
-};
-
-// Five triangles that are not flat, of different sizes, one without area.
-std::shared_ptr<const TriangleMesh> SuiteMesh(bool withNormals) {
-  auto mesh = std::make_shared<TriangleMesh>();
-  mesh->positions = {{-1, -1, 0}, {1, -1, 0.1f}, {1, 1, 0}, {-1, 1, 0.3f}, {2, 0, -0.4f}, {2.5f, 1.5f, -1}};
-  mesh->triangles = {{0, 1, 2}, {0, 2, 3}, {1, 4, 2}, {0, 0, 1}, {4, 5, 2}};
-  mesh->uvs = {{0, 0}, {0.6f, 0}, {0.6f, 0.8f}, {0, 0.8f}, {0.9f, 0.3f}, {1, 1}};
-  // The vertex normals decide: these turn all of the surface over.
-  if (withNormals) mesh->normals.assign(6, Normal3(0.1f, 0, -0.9949874f));
-  return mesh;
-}
-
-std::shared_ptr<const BilinearMesh> SuitePatches(bool withUvs) {
-  auto mesh = std::make_shared<BilinearMesh>();
-  mesh->positions = {{-1, -1, 0},         {1, -0.8f, 0.2f}, {-0.7f, 1, 0.5f},
-                     {1.2f, 1.1f, -0.3f}, {2.5f, -1, 0.4f}, {2.2f, 0.9f, 0}};
-  mesh->patches = {{0, 1, 2, 3}, {1, 4, 3, 5}};
-  if (withUvs) mesh->uvs = {{0, 0}, {0.5f, 0.1f}, {0.1f, 1}, {0.6f, 0.9f}, {1, 0}, {1, 1}};
-  return mesh;
-}
-
-Quadric MakeQuadric(Quadric::Kind kind, float radius, float zMin, float zMax, float inner, float phiMaxDegrees) {
-  Quadric q;
-  q.kind = kind;
-  q.radius = radius;
-  q.zMin = zMin;
-  q.zMax = zMax;
-  q.innerRadius = inner;
-  q.phiMax = phiMaxDegrees >= 360 ? 2 * kPi : phiMaxDegrees * (kPi / 180);
-  return q;
-}
-
-std::vector<NamedShape> Shapes() {
-  Quadric reversed = MakeQuadric(Quadric::Kind::Disk, 1, 0.3f, 0, 0, 360);
-  reversed.flipNormals = true;
-  return {
-      {"mesh", SuiteMesh(false)},
-      {"mesh-with-normals", SuiteMesh(true)},
-      {"bilinear", SuitePatches(false)},
-      {"bilinear-with-uv", SuitePatches(true)},
-      {"sphere", MakeQuadric(Quadric::Kind::Sphere, 1.3f, -1.3f, 1.3f, 0, 360)},
-      {"partial-sphere", MakeQuadric(Quadric::Kind::Sphere, 1, -0.4f, 0.8f, 0, 230)},
-      {"disk-reversed", reversed},
-      {"partial-disk", MakeQuadric(Quadric::Kind::Disk, 1.5f, 0, 0, 0.5f, 300)},
-      {"cylinder", MakeQuadric(Quadric::Kind::Cylinder, 0.7f, -1, 1.5f, 0, 360)},
-      {"partial-cylinder", MakeQuadric(Quadric::Kind::Cylinder, 1, 0, 1, 0, 150)},
-  };
-}
-
-// The shape as a scene without instances holds it: already where the transform leads.
-Shape Bake(const Shape& shape, const Transform& transform) {
-  const auto points = [&](std::vector<Point3>& positions, std::vector<Normal3>& normals) {
-    for (Point3& p : positions) p = Point3(transform.Point(Point3d(p)));
-    for (Normal3& n : normals) n = Normal3(glm::normalize(transform.Normal(Vector3d(n))));
-  };
-  if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&shape)) {
-    auto baked = std::make_shared<TriangleMesh>(**mesh);
-    points(baked->positions, baked->normals);
-    baked->flipNormals = baked->flipNormals != transform.SwapsHandedness();
-    return std::shared_ptr<const TriangleMesh>(baked);
-  }
-  if (const auto* patches = std::get_if<std::shared_ptr<const BilinearMesh>>(&shape)) {
-    auto baked = std::make_shared<BilinearMesh>(**patches);
-    points(baked->positions, baked->normals);
-    baked->flipNormals = baked->flipNormals != transform.SwapsHandedness();
-    return std::shared_ptr<const BilinearMesh>(baked);
-  }
-  Quadric quadric = std::get<Quadric>(shape);
-  quadric.toRender = transform.ToAffine();
-  quadric.toObject = transform.Inverse().ToAffine();
-  quadric.flipNormals = quadric.flipNormals != transform.SwapsHandedness();
-  return quadric;
-}
-
-// Images of noise: uneven, with black parts; one with a bright texel and some that are no light at all.
-void WriteSuiteImages(const std::filesystem::path& folder) {
-  Rng rng(7);
-  const auto write = [&](const char* name, int width, int height, const std::function<float(int)>& value) {
-    Image image(width, height, {"R", "G", "B"});
-    for (int i = 0; i < width * height; ++i) {
-      const float v = value(i);
-      for (size_t c = 0; c < 3; ++c)
-        image.data[static_cast<size_t>(i) * 3 + c] = v * (0.4f + 0.3f * static_cast<float>(c));
-    }
-    WriteExr(folder / name, image, ExrPrecision::Float);
-  };
-  const auto noise = [&](int) { return rng.NextFloat() < 0.2f ? 0.0f : 0.1f + 3 * Sqr(rng.NextFloat()); };
-  write("suite-texture.exr", 8, 8, [&](int i) { return (i % 8) < 2 ? 0.0f : 0.2f + noise(i); });
-  write("suite-square.exr", 8, 8, noise);
-  write("suite-latlong.exr", 16, 8, noise);
-  write("suite-bright.exr", 4, 4, [](int i) {
-    return i == 6 ? 1e9f : i == 3 ? std::numeric_limits<float>::quiet_NaN() : i == 9 ? -1.0f : 0.5f;
-  });
-  write("suite-black.exr", 4, 4, [](int) { return 0.0f; });
-}
+using suite::NamedShape;
+using suite::NamedTransform;
 
 ParameterList ParseSample(const LightType& type, const std::string& sample, const std::filesystem::path& folder,
                           Diagnostics& diagnostics) {
@@ -140,91 +26,208 @@ ParameterList ParseSample(const LightType& type, const std::string& sample, cons
   return type.isAreaLight ? scene.areaLights.at(0).parameters : scene.lights.at(0).light.parameters;
 }
 
+bool HasParameter(const LightType& type, const std::string& name) {
+  return std::any_of(type.parameters.begin(), type.parameters.end(),
+                     [&](const ParameterInfo& info) { return info.name == name; });
+}
+
+// The same parameters with each file of the suite's replaced by another of its kind.
+std::optional<ParameterList> WithOtherFiles(const ParameterList& parameters) {
+  std::vector<Parameter> changed;
+  for (Parameter parameter : parameters.All()) {
+    bool hasOther = false;
+    for (std::string& text : parameter.strings) {
+      const std::filesystem::path file(text);
+      const std::string other = suite::OtherSuiteInput(file.filename().string());
+      if (other.empty()) continue;
+      text = (file.parent_path() / other).string();
+      hasOther = true;
+    }
+    if (hasOther) changed.push_back(parameter);
+  }
+  if (changed.empty()) return std::nullopt;
+  return ParameterList(parameters.Where(), parameters.Owner(), changed);
+}
+
+// One light at one place. `parameters` and `type` belong to the run and are shared by cases.
+struct SuiteCase {
+  const LightType* type = nullptr;
+  const ParameterList* parameters = nullptr;
+  const std::vector<ParameterList>* changes = nullptr;  // to edit it by; null: not here
+  std::string name, caseName;
+  std::optional<Shape> shape;
+  Transform builtAt, placedAt;
+  bool keepsAngles = true;
+  bool isSharp = true;  // power to half a per cent; two per cent otherwise
+};
+
 class SuiteRun {
  public:
   SuiteRun(const std::filesystem::path& folder, const SuiteOptions& options)
       : folder_(folder), options_(options), textures_({}, Transform(), diagnostics_) {}
 
-  void Run(const LightType& type) {
-    int index = 0;
-    for (const std::string& sample : type.samples) {
-      const ParameterList parameters = ParseSample(type, sample, folder_, diagnostics_);
-      const std::string name = type.name + "[" + std::to_string(index) + "]";
-      int which = index++;
-      for (const NamedTransform& transform : Transforms()) {
-        // In turn: the shape where it belongs, and an instance of it.
-        if (type.isAreaLight) {
-          for (const NamedShape& shape : Shapes())
-            CheckArea(type, parameters, name, shape, transform, which++ % 2 == 1);
-        } else {
-          CheckOther(type, parameters, name, transform);
-        }
-      }
-    }
-  }
-
-  SuiteReport& Report() { return report_; }
+  void Add(const LightType& type);
+  std::vector<SuiteResult> Run();
 
  private:
-  LightBuildContext Build(const Transform& placement) {
-    LightBuildContext build;
-    build.placement = placement;
-    build.transform = {placement.ToAffine(), placement.Inverse().ToAffine()};
-    build.textures = &textures_;
-    build.diagnostics = &diagnostics_;
-    return build;
-  }
-
-  void CheckArea(const LightType& type, const ParameterList& parameters, const std::string& name,
-                 const NamedShape& shape, const NamedTransform& transform, bool isInstance) {
-    const Shape placed = isInstance ? shape.shape : Bake(shape.shape, transform.transform);
-    const Transform placement = isInstance ? transform.transform : Transform();
-    LightBuildContext build = Build(placement);
-    build.shape = &placed;
-    const std::unique_ptr<EmitterModel> model = MakeEmitterModel(placed, placement);
-    const bool hasImage = !parameters.GetFile("filename").empty();
-    Check(type, parameters, build, name, shape.name + " " + transform.name + (isInstance ? " instance" : ""),
-          model.get(), !hasImage);
-  }
-
-  void CheckOther(const LightType& type, const ParameterList& parameters, const std::string& name,
-                  const NamedTransform& transform) {
-    // Light that is defined over local directions has a closed form only where solid angles are kept.
-    const bool keepsAngles = transform.name != "non-uniform" && transform.name != "sheared";
-    Check(type, parameters, Build(transform.transform), name, transform.name, nullptr, keepsAngles);
-  }
-
-  void Check(const LightType& type, const ParameterList& parameters, const LightBuildContext& build,
-             const std::string& name, const std::string& caseName, const EmitterModel* model, bool isPowerExact) {
-    const std::unique_ptr<Light> light = MakeLight(type, parameters, build);
-    SuiteSubject subject;
-    subject.light = light.get();
-    subject.model = model;
-    subject.context.transform = &build.transform;
-    subject.context.scene = {build.transform.toRender.translation,
-                             3 * MaxAbsComponent(build.transform.toRender.linear[0])};
-    subject.context.bidirectional = true;
-    subject.isPowerExact = isPowerExact;
-    subject.name = name;
-    subject.caseName = caseName;
-    CheckLight(subject, options_, report_);
-  }
+  void AddCases(const SuiteCase& light, int which, size_t block);
+  SuiteReport Check(const SuiteCase& suiteCase);
+  std::vector<ParameterList> ChangesOf(const LightType& type, size_t index);
 
   std::filesystem::path folder_;
   SuiteOptions options_;
   Diagnostics diagnostics_{Diagnostics::Mode::Collect};
   TextureLibrary textures_;
-  SuiteReport report_;
+  std::mutex building_;  // parameter lists and textures note their use
+  std::vector<std::unique_ptr<ParameterList>> parameters_;
+  std::vector<std::unique_ptr<std::vector<ParameterList>>> changes_;
+  std::vector<SuiteCase> cases_;
 };
+
+// A colour, an intensity, other files, and whatever the next sample block says.
+std::vector<ParameterList> SuiteRun::ChangesOf(const LightType& type, size_t index) {
+  std::vector<std::string> texts;
+  if (HasParameter(type, "intensity")) texts.push_back("\"float intensity\" 2.5");
+  if (HasParameter(type, "color")) texts.push_back("\"rgb color\" [ 0.2 0.5 0.9 ]");
+  if (HasParameter(type, "scale")) texts.push_back("\"float scale\" 0.3");
+  if (type.samples.size() > 1) texts.push_back(type.samples[(index + 1) % type.samples.size()]);
+  std::vector<ParameterList> changes;
+  for (const std::string& text : texts) changes.push_back(ParseSample(type, text, folder_, diagnostics_));
+  if (auto other = WithOtherFiles(ParseSample(type, type.samples[index], folder_, diagnostics_))) {
+    changes.push_back(*other);
+  }
+  return changes;
+}
+
+void SuiteRun::Add(const LightType& type) {
+  int which = 0;
+  for (size_t index = 0; index < type.samples.size(); ++index) {
+    parameters_.push_back(
+        std::make_unique<ParameterList>(ParseSample(type, type.samples[index], folder_, diagnostics_)));
+    changes_.push_back(std::make_unique<std::vector<ParameterList>>(ChangesOf(type, index)));
+    SuiteCase light;
+    light.type = &type;
+    light.parameters = parameters_.back().get();
+    light.changes = changes_.back().get();
+    light.name = type.name + "[" + std::to_string(index) + "]";
+    if (!type.isAreaLight) {
+      AddCases(light, static_cast<int>(index), index);
+      continue;
+    }
+    // The first block on every shape, the others on every third, in turn: together they cover what can be combined.
+    const std::vector<NamedShape> shapes = suite::Shapes();
+    for (size_t i = 0; i < shapes.size(); ++i) {
+      const NamedShape& shape = shapes[i];
+      if (index > 0 && (i + index) % 3 != 0) continue;
+      light.shape = shape.shape;
+      light.caseName = shape.name + " ";
+      AddCases(light, which++, index);
+    }
+  }
+}
+
+// A type's first block under all placements; the others each under four of the ten, in turn.
+void SuiteRun::AddCases(const SuiteCase& light, int which, size_t block) {
+  const std::vector<NamedTransform> transforms = suite::Transforms();
+  int kept = 0;
+  const size_t turn = static_cast<size_t>(which) + block;
+  auto add = [&, k = size_t{0}](SuiteCase&& placed) mutable {
+    const bool isMoved = k >= transforms.size();
+    const size_t place = k++;
+    if (block > 0 && (place + turn) % 5 > 1) return;
+    placed.isSharp = block == 0 ? place == 0 || place == transforms.size() - 1 || isMoved : kept == 0;
+    ++kept;
+    cases_.push_back(std::move(placed));
+  };
+  for (const NamedTransform& transform : transforms) {
+    // In turn: the shape where it belongs, and an instance of it.
+    const bool isBaked = light.shape && which++ % 2 == 0;
+    SuiteCase placed = light;
+    placed.caseName += transform.name + (light.shape && !isBaked ? " instance" : "");
+    placed.keepsAngles = transform.keepsAngles;
+    if (isBaked) {
+      placed.shape = suite::Bake(*light.shape, transform.transform);
+    } else {
+      placed.builtAt = placed.placedAt = transform.transform;
+    }
+    if (transform.name != "rotated" && block == 0) placed.changes = nullptr;
+    add(std::move(placed));
+  }
+  // As at another time of the shutter: not where it was built.
+  for (const auto& [from, to] : {std::pair(0, 1), std::pair(1, 4), std::pair(5, 2)}) {
+    SuiteCase moved = light;
+    moved.caseName += "moved from " + transforms[from].name + " to " + transforms[to].name;
+    moved.builtAt = transforms[from].transform;
+    moved.placedAt = transforms[to].transform;
+    moved.keepsAngles = transforms[to].keepsAngles;
+    moved.changes = nullptr;
+    add(std::move(moved));
+  }
+}
+
+LightTransform ToLightTransform(const Transform& toRender) {
+  return {toRender.ToAffine(), toRender.Inverse().ToAffine()};
+}
+
+SuiteReport SuiteRun::Check(const SuiteCase& suiteCase) {
+  LightBuildContext build;
+  build.placement = suiteCase.builtAt;
+  build.transform = ToLightTransform(suiteCase.builtAt);
+  build.textures = &textures_;
+  build.diagnostics = &diagnostics_;
+  if (suiteCase.shape) build.shape = &*suiteCase.shape;
+  const LightTransform placed = ToLightTransform(suiteCase.placedAt);
+  std::unique_ptr<EmitterModel> model;
+  if (suiteCase.shape) model = MakeEmitterModel(*suiteCase.shape, suiteCase.placedAt);
+
+  SuiteReport report;
+  SuiteSubject subject;
+  std::unique_ptr<Light> light;
+  subject.name = suiteCase.name;
+  subject.caseName = suiteCase.caseName;
+  if (!suiteCase.isSharp) subject.powerError = 2.5e-3;
+  subject.model = model.get();
+  subject.context.transform = &placed;
+  subject.context.scene = {placed.toRender.translation, 3 * MaxAbsComponent(placed.toRender.linear[0])};
+  subject.context.bidirectional = true;
+  {
+    const std::scoped_lock lock(building_);
+    light = MakeLight(*suiteCase.type, *suiteCase.parameters, build);
+    subject.light = light.get();
+    const bool isUneven = IsUneven(*suiteCase.parameters);
+    subject.isPowerExact = light->Kind() == LightKind::Area ? !isUneven : suiteCase.keepsAngles;
+    if (HasParameter(*suiteCase.type, "diffuse")) {
+      subject.diffuseMultiplier = suiteCase.parameters->GetFloat("diffuse", 1);
+      subject.specularMultiplier = suiteCase.parameters->GetFloat("specular", 1);
+    }
+    if (suiteCase.changes) {
+      suite::CheckEdit(subject, {suiteCase.type, suiteCase.parameters, &build, *suiteCase.changes}, report);
+    }
+  }
+  CheckLight(subject, options_, report);
+  return report;
+}
+
+std::vector<SuiteResult> SuiteRun::Run() {
+  std::vector<SuiteReport> reports(cases_.size());
+  const int threads = options_.threads > 0 ? options_.threads : HardwareThreads();
+  ParallelFor(static_cast<int>(cases_.size()), threads, [&](int i) {
+    const auto index = static_cast<size_t>(i);
+    reports[index] = Check(cases_[index]);
+  });
+  SuiteReport all;
+  for (const SuiteReport& report : reports) all.Add(report);
+  return all.Finish(options_.familyWise);
+}
 
 }  // namespace
 
 std::vector<SuiteResult> RunPdfSuite(const std::vector<LightType>& types, const std::filesystem::path& scratch,
                                      const SuiteOptions& options) {
-  WriteSuiteImages(scratch);
+  suite::WriteSuiteInputs(scratch);
   SuiteRun run(scratch, options);
-  for (const LightType& type : types) run.Run(type);
-  return run.Report().Finish(options.familyWise);
+  for (const LightType& type : types) run.Add(type);
+  return run.Run();
 }
 
 }  // namespace lampyr

@@ -66,7 +66,7 @@ struct RenderCommand {
     app.add_flag("--png", options.png, "Also write a tone-mapped PNG beside it");
     app.add_option("--exposure", options.exposure, "Exposure of the PNG in stops (0)")->check(CheckFinite, "");
     app.add_flag("--clip", options.clipPng, "Clip the PNG at white instead of rolling highlights off");
-    app.add_option("--integrator", overrides.integrator, "path");
+    app.add_option("--integrator", overrides.integrator, "path | light");
     app.add_option("--spp", overrides.samplesPerPixel, "Stop after this many samples per pixel")
         ->check(CLI::Range(1, 1 << 30));
     app.add_option("--time", time, "Stop after this time: 90s, 5m, 2h");
@@ -115,9 +115,12 @@ int RunCommandLine(int argc, char** argv) {
   diffCommand->add_flag("--json", diff.json, "Print JSON");
 
   CheckLightsOptions check;
-  CLI::App* checkCommand = app.add_subcommand("check-lights", "Prove the densities of every type of light");
+  CLI::App* checkCommand = app.add_subcommand("check-lights", "Prove the densities of lights: of every type, or a scene's");
+  checkCommand->add_option("scene", check.scene, "A scene, whose lights are checked as they are placed");
+  checkCommand->add_option("--type", check.type, "Only this type of light");
   checkCommand->add_flag("--json", check.json, "Print JSON");
   checkCommand->add_option("--seed", check.seed, "Seed of the samples (1)");
+  checkCommand->add_option("--threads", check.threads, "Threads (all)")->check(CLI::Range(1, 4096));
 
   std::string lightType;
   CLI::App* lightsCommand = app.add_subcommand("lights", "The types of light and their parameters");

@@ -14,7 +14,6 @@
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "base/version.h"
-#include "integrators/path/path_integrator.h"
 
 namespace lampyr {
 
@@ -68,7 +67,8 @@ std::filesystem::path OutputPath(const RenderOptions& options, const RenderSetti
 // An image too large for the machine is told before the system ends the process for it.
 void CheckMemory(const RenderSettings& settings) {
   constexpr uint64_t channels = 6;  // of the developed image: colour and variance
-  constexpr uint64_t perPixel = sizeof(PixelSums) + 2 * channels * sizeof(float);
+  const uint64_t splats = settings.integrator == "light" ? sizeof(SplatSums) : 0;
+  const uint64_t perPixel = sizeof(PixelSums) + splats + 2 * channels * sizeof(float);
   const uint64_t needed = perPixel * settings.crop.Width() * settings.crop.Height();
   const auto installed = static_cast<uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<uint64_t>(sysconf(_SC_PAGESIZE));
   if (needed <= installed) return;
@@ -177,7 +177,7 @@ int RunRender(const RenderOptions& options) {
   report.primitives = built.scene.geometry->PrimitiveCount();
   report.lights = built.scene.lighting->Lights().size();
 
-  const auto integrator = MakePathIntegrator(built.scene, {settings.maxDepth});
+  const AnyIntegrator integrator = MakeIntegrator(built.scene, settings);
   Film film(settings.width, settings.height, settings.crop);
   FinishOnInterrupt();
   {
@@ -185,7 +185,7 @@ int RunRender(const RenderOptions& options) {
     const auto afterPass = [&](const RenderOutcome& soFar, double fraction) {
       progress.Update(fraction, std::to_string(soFar.samplesPerPixel) + " spp, error " + Percent(soFar.relativeError));
     };
-    report.outcome = Render(built.scene, *integrator, settings, MakeStopConditions(options, settings), report.threads,
+    report.outcome = Render(built.scene, integrator, settings, MakeStopConditions(options, settings), report.threads,
                             film, afterPass);
   }
   report.rejectedRays = built.scene.geometry->RejectedRays();

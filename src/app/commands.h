@@ -33,8 +33,11 @@ struct DiffOptions {
 };
 
 struct CheckLightsOptions {
+  std::optional<std::filesystem::path> scene;  // absent: every registered type
+  std::string type;                            // "" all
   bool json = false;
   uint64_t seed = 1;
+  int threads = 0;  // 0: all
 };
 
 // Each returns an exit code. Errors are thrown.

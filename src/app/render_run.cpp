@@ -12,6 +12,15 @@ namespace lampyr {
 namespace {
 
 constexpr int kTileSize = 16;
+constexpr uint64_t kChunkPaths = 4096;  // light paths that one thread traces before their splats are added
+constexpr int kLightPaths = -1;         // where camera samples have the row of their pixel
+
+// One time of the shutter for all of a path.
+float SampleTime(const RenderScene& scene, Sampler& sampler) {
+  if (!scene.hasMotion) return 0;
+  sampler.SetDimension(dimensions::kTime);
+  return sampler.Get1D();
+}
 
 // One sample of one pixel, added to `sums`.
 void RenderSample(const RenderScene& scene, const CameraIntegrator& integrator, const PixelFilter& filter,
@@ -25,7 +34,7 @@ void RenderSample(const RenderScene& scene, const CameraIntegrator& integrator, 
     sampler.SetDimension(dimensions::kLens);
     lens = sampler.Get2D();
   }
-  const CameraRay cameraRay = scene.camera->GenerateRay(film, lens, 0.0f);
+  const CameraRay cameraRay = scene.camera->GenerateRay(film, lens, SampleTime(scene, sampler));
   Color value = integrator.Radiance(cameraRay.ray, sampler, counts) * (cameraRay.weight * imagingRatio);
   if (!value.IsValid()) {
     ++counts.droppedSamples;
@@ -88,10 +97,41 @@ RenderCounts RenderPass(const RenderScene& scene, const CameraIntegrator& integr
   return total;
 }
 
-RenderOutcome Render(const RenderScene& scene, const CameraIntegrator& integrator, const RenderSettings& settings,
+RenderCounts RenderPass(const RenderScene& scene, const LightPathIntegrator& integrator, const RenderSettings& settings,
+                        const PixelFilter& filter, uint32_t first, uint32_t count, int threads, Film& film) {
+  const uint64_t perSample = static_cast<uint64_t>(settings.width) * static_cast<uint64_t>(settings.height);
+  const uint64_t end = (static_cast<uint64_t>(first) + count) * perSample;
+  // As many chunks at a time as keep all threads busy: memory stays bounded. The film adds paths in their order, so the
+  // division into chunks does not show.
+  const int chunks = 4 * std::max(threads, 1);
+  std::vector<SplatList> lists(static_cast<size_t>(chunks), film.MakeSplatList(filter, settings.imagingRatio));
+  std::vector<RenderCounts> counts(static_cast<size_t>(chunks));
+  for (uint64_t round = first * perSample; round < end; round += chunks * kChunkPaths) {
+    ParallelFor(chunks, threads, [&](int chunk) {
+      SplatList& splats = lists[static_cast<size_t>(chunk)];
+      splats.Clear();
+      Sampler sampler(settings.sampler, settings.seed);
+      const uint64_t begin = round + static_cast<uint64_t>(chunk) * kChunkPaths;
+      for (uint64_t i = begin; i < std::min(begin + kChunkPaths, end); ++i) {
+        sampler.StartPixelSample(static_cast<int>(i >> 32), kLightPaths, static_cast<uint32_t>(i));
+        splats.StartPath();
+        integrator.TracePath(SampleTime(scene, sampler), sampler, splats, counts[static_cast<size_t>(chunk)]);
+      }
+    });
+    film.AddSplats(filter, lists, threads);
+  }
+  RenderCounts total;
+  for (const RenderCounts& part : counts) total += part;
+  return total;
+}
+
+RenderOutcome Render(const RenderScene& scene, const AnyIntegrator& integrator, const RenderSettings& settings,
                      const StopConditions& stop, int threads, Film& film, const PassCallback& afterPass) {
   const PixelFilter filter(settings.filter);
-  const int64_t pixels = static_cast<int64_t>(film.Crop().Width()) * film.Crop().Height();
+  // Light paths are those of the full image.
+  const bool followsLight = std::holds_alternative<std::unique_ptr<LightPathIntegrator>>(integrator);
+  const int64_t pixels = followsLight ? static_cast<int64_t>(settings.width) * settings.height
+                                      : static_cast<int64_t>(film.Crop().Width()) * film.Crop().Height();
   const Clock clock;
   RenderOutcome outcome;
   while (outcome.samplesPerPixel < stop.samplesPerPixel) {
@@ -101,8 +141,12 @@ RenderOutcome Render(const RenderScene& scene, const CameraIntegrator& integrato
       const double left = *stop.seconds - outcome.seconds;
       count = std::clamp(static_cast<int>(left / perSample), 1, count);
     }
-    outcome.counts += RenderPass(scene, integrator, settings, filter, static_cast<uint32_t>(outcome.samplesPerPixel),
-                                 static_cast<uint32_t>(count), threads, film);
+    outcome.counts += std::visit(
+        [&](const auto& chosen) {
+          return RenderPass(scene, *chosen, settings, filter, static_cast<uint32_t>(outcome.samplesPerPixel),
+                            static_cast<uint32_t>(count), threads, film);
+        },
+        integrator);
     outcome.samplesPerPixel += count;
     outcome.seconds = clock.Seconds();
     outcome.relativeError = film.RelativeError();

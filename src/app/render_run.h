@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 
+#include "app/integrator_choice.h"
 #include "app/render_settings.h"
 #include "film/film.h"
 #include "integrators/integrator.h"
@@ -34,11 +35,15 @@ struct RenderOutcome {
 using PassCallback = std::function<void(const RenderOutcome& soFar, double fractionDone)>;
 
 // Renders into `film` (empty, of the settings' crop).
-RenderOutcome Render(const RenderScene& scene, const CameraIntegrator& integrator, const RenderSettings& settings,
+RenderOutcome Render(const RenderScene& scene, const AnyIntegrator& integrator, const RenderSettings& settings,
                      const StopConditions& stop, int threads, Film& film, const PassCallback& afterPass);
 
 // Samples [first, first + count) of every pixel. Exposed for tests and benchmarks.
 RenderCounts RenderPass(const RenderScene& scene, const CameraIntegrator& integrator, const RenderSettings& settings,
+                        const PixelFilter& filter, uint32_t first, uint32_t count, int threads, Film& film);
+// The same for light paths: width · height of them, of the full image, are a sample per pixel. They are numbered
+// through all of a render, whatever is cropped, and are points of one Sobol sequence.
+RenderCounts RenderPass(const RenderScene& scene, const LightPathIntegrator& integrator, const RenderSettings& settings,
                         const PixelFilter& filter, uint32_t first, uint32_t count, int threads, Film& film);
 
 }  // namespace lampyr

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <sstream>
+
+#include "app/integrator_choice.h"
 
 namespace lampyr {
 
@@ -218,18 +221,36 @@ void ReadSampler(const SceneDescription& scene, const RenderOverrides& overrides
 
 void ReadIntegrator(const SceneDescription& scene, const RenderOverrides& overrides, RenderSettings& settings,
                     Diagnostics& diagnostics) {
-  const Names pbrtNames = {"ambientocclusion", "bdpt",          "function", "lightpath", "mlt",   "path", "randomwalk",
-                           "simplepath",       "simplevolpath", "sppm",     "volpath",   "light", "vcm"};
   const ParameterList& parameters = scene.integrator.parameters;
   const std::string& type = scene.integrator.type;
-  if (!type.empty() && std::find(pbrtNames.begin(), pbrtNames.end(), type) == pbrtNames.end()) {
-    throw Error(scene.integrator.where, "there is no Integrator \"" + type + "\"" + DidYouMean(type, pbrtNames));
+  const auto isOneOf = [](const std::string& name, const Names& names) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  // pbrt-v4's names for what lampyr has.
+  const std::map<std::string, std::string> synonyms = {{"", "path"}, {"volpath", "path"}, {"lightpath", "light"}};
+  const auto synonym = synonyms.find(type);
+  settings.integrator = synonym != synonyms.end() ? synonym->second : type;
+  const bool isKnown = isOneOf(settings.integrator, IntegratorNames());
+  if (!isKnown) {
+    const Names notYet = {"ambientocclusion", "bdpt",          "function", "mlt", "randomwalk",
+                          "simplepath",       "simplevolpath", "sppm",     "vcm"};
+    if (!isOneOf(type, notYet)) {
+      Names all = notYet;
+      all.insert(all.end(), IntegratorNames().begin(), IntegratorNames().end());
+      all.insert(all.end(), {"volpath", "lightpath"});
+      throw Error(scene.integrator.where, "there is no Integrator \"" + type + "\"" + DidYouMean(type, all));
+    }
+    if (!overrides.integrator) {
+      diagnostics.Warn(scene.integrator.where, "Integrator \"" + type + "\" is not supported yet; \"path\" is used");
+    }
+    settings.integrator = "path";
   }
-  if (overrides.integrator && *overrides.integrator != "path") {
-    throw UsageError("--integrator: there is no integrator \"" + *overrides.integrator + "\"; there is: path");
-  }
-  if (!type.empty() && type != "path" && type != "volpath" && !overrides.integrator) {
-    diagnostics.Warn(scene.integrator.where, "Integrator \"" + type + "\" is not supported yet; \"path\" is used");
+  if (overrides.integrator) {
+    if (!isOneOf(*overrides.integrator, IntegratorNames())) {
+      throw UsageError("--integrator: there is no integrator \"" + *overrides.integrator +
+                       "\"; there are: path, light");
+    }
+    settings.integrator = *overrides.integrator;
   }
   settings.maxDepth = parameters.GetInteger("maxdepth", settings.maxDepth);
   if (settings.maxDepth < 0) throw Error(parameters.WhereOf("maxdepth"), "\"maxdepth\" must be 0 or more");
@@ -253,7 +274,7 @@ void ReadIntegrator(const SceneDescription& scene, const RenderOverrides& overri
     settings.lightSelection = *selection;
   }
   // Parameters of integrators that stand back for "path" are not looked at.
-  if (type.empty() || type == "path" || type == "volpath") {
+  if (isKnown) {
     parameters.CheckAllUsed({"regularize", "options"}, {"maxdepth", "lightsampler"}, diagnostics);
   }
 }
@@ -295,6 +316,7 @@ std::unique_ptr<Camera> BuildCamera(const SceneDescription& description, const R
   frame.cameraToRender = worldToRender * description.cameraToWorld.start;
   frame.width = settings.width;
   frame.height = settings.height;
+  frame.filmMargin = {settings.filter.radiusX, settings.filter.radiusY};
   const double aspect = parameters.GetFloat("frameaspectratio", double(frame.width) / frame.height);
   if (!(aspect > 0)) throw Error(parameters.WhereOf("frameaspectratio"), "\"frameaspectratio\" must be above 0");
   SetDefaultScreenWindow(frame, static_cast<float>(aspect));

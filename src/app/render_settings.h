@@ -5,7 +5,7 @@
 #include <string>
 
 #include "camera/camera.h"
-#include "camera/pixel_filter.h"
+#include "film/pixel_filter.h"
 #include "film/film.h"
 #include "lights/selection/light_selector.h"
 #include "sampling/sampler.h"

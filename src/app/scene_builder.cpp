@@ -1,93 +1,19 @@
 #include "app/scene_builder.h"
 
 #include <algorithm>
-#include <set>
 #include <string_view>
 #include <unordered_map>
 
+#include "app/material_table.h"
 #include "app/shape_builder.h"
 #include "lights/light_type.h"
+#include "lights/services/light_surface.h"
+#include "math/motion.h"
 #include "textures/alpha.h"
-#include "textures/texture_library.h"
 
 namespace lampyr {
 
 namespace {
-
-// Materials by index and by name, made when first asked for: "mix" refers to others in any order.
-class MaterialTable {
- public:
-  MaterialTable(const SceneDescription& description, const TextureLibrary& textures, Diagnostics& diagnostics)
-      : description_(description),
-        textures_(textures),
-        diagnostics_(diagnostics),
-        unnamed_(description.materials.size(), -1) {}
-
-  // Index into Materials() for a shape's material.
-  int32_t IndexOf(const MaterialReference& reference) {
-    if (!reference.name.empty()) return Named(reference.name, reference.where);
-    if (reference.index < 0) return Default();
-    int32_t& index = unnamed_[reference.index];
-    if (index < 0) index = Add(Make(description_.materials[reference.index]));
-    return index;
-  }
-
-  // All materials, so that a mistake in one that is not used is found too.
-  void MakeAll() {
-    for (const NamedMaterialDescription& named : description_.namedMaterials) Named(named.name, named.material.where);
-    for (size_t i = 0; i < description_.materials.size(); ++i) IndexOf({static_cast<int>(i), "", {}});
-  }
-
-  const std::vector<std::shared_ptr<const Material>>& Materials() const { return materials_; }
-
- private:
-  int32_t Add(std::shared_ptr<const Material> material) {
-    materials_.push_back(std::move(material));
-    return static_cast<int32_t>(materials_.size()) - 1;
-  }
-
-  int32_t Default() {
-    if (default_ < 0) {
-      const ParameterList none({}, "Material \"diffuse\"", {});
-      default_ = Add(MakeMaterial("diffuse", none, textures_, Lookup({}), diagnostics_));
-    }
-    return default_;
-  }
-
-  std::shared_ptr<const Material> Make(const StatementDescription& statement) {
-    return MakeMaterial(statement.type, statement.parameters, textures_, Lookup(statement.where), diagnostics_);
-  }
-
-  MaterialLookup Lookup(const FileLocation& where) {
-    return [this, where](const std::string& name) { return materials_[Named(name, where)]; };
-  }
-
-  int32_t Named(const std::string& name, const FileLocation& where) {
-    const auto made = named_.find(name);
-    if (made != named_.end()) return made->second;
-    if (!inProgress_.insert(name).second) throw Error(where, "the material \"" + name + "\" is mixed from itself");
-    constexpr size_t deepest = 256;  // each level takes some of the stack
-    if (inProgress_.size() > deepest) throw Error(where, "materials are mixed more than 256 deep");
-    std::vector<std::string> names;
-    for (const NamedMaterialDescription& named : description_.namedMaterials) {
-      names.push_back(named.name);
-      if (named.name != name) continue;
-      const int32_t index = Add(Make(named.material));
-      inProgress_.erase(name);
-      return named_[name] = index;
-    }
-    throw Error(where, "there is no material named \"" + name + "\"" + DidYouMean(name, names));
-  }
-
-  const SceneDescription& description_;
-  const TextureLibrary& textures_;
-  Diagnostics& diagnostics_;
-  std::vector<std::shared_ptr<const Material>> materials_;
-  std::vector<int32_t> unnamed_;
-  std::map<std::string, int32_t> named_;
-  std::set<std::string> inProgress_;
-  int32_t default_ = -1;
-};
 
 // A shape that was read, with what it is made of.
 struct ReadEntry {
@@ -98,12 +24,41 @@ struct ReadEntry {
 // An instance of an object with all nesting resolved. World space.
 struct FlatInstance {
   size_t object = 0;
-  Transform toWorld;
+  Transform toWorld;                          // at the start of its motion
+  std::shared_ptr<const MotionChain> motion;  // null: stays
   const InstanceDescription* description = nullptr;
+};
+
+// Shapes that keep their places to one another, as one object of the geometry.
+struct Part {
+  std::optional<AnimatedTransform> placement;  // of shapes that move, out of their own space
+  std::vector<const ReadEntry*> entries;
+  uint32_t object = 0;                         // of the geometry
+  Bounds3 bounds;                              // of the object, in its own space
+  std::vector<const ReadEntry*> lightEntries;  // by the light's index within the object
 };
 
 LightTransform ToLightTransform(const Transform& toRender) {
   return {toRender.ToAffine(), toRender.Inverse().ToAffine()};
+}
+
+AnimatedTransform ToAnimated(const Placement& placement, const char* what, const FileLocation& where) {
+  return AnimatedTransform(placement.start, placement.end, what, where);
+}
+
+// A place in render space: at shutter open, and how it moves from there.
+struct RenderPlacement {
+  Transform toRender;
+  std::shared_ptr<const Motion> motion;  // null: stays
+};
+
+// When the transform times lie in the time that the camera's shutter is open.
+MotionTimes ReadMotionTimes(const SceneDescription& description) {
+  const StatementDescription& camera = description.camera;
+  const double open = camera.parameters.GetFloat("shutteropen", 0),
+               close = camera.parameters.GetFloat("shutterclose", 1);
+  if (!(close > open)) throw Error(camera.where, "\"shutterclose\" must be after \"shutteropen\"");
+  return {(description.shutterOpen - open) / (close - open), (description.shutterClose - open) / (close - open)};
 }
 
 class Builder {
@@ -115,43 +70,53 @@ class Builder {
   }
 
   BuiltScene Build();
+  void DescribeLightsIn(std::vector<SceneLight>* lights) { described_ = lights; }
 
  private:
   std::vector<ReadEntry> ReadShapes(const std::vector<ShapeDescription>& shapes);
   void FlattenInstances();
   Transform ChooseRenderSpace() const;
+  bool Moves(const ReadEntry& entry) const {
+    return times_.MovesInShutter() && entry.local.description->placement.IsAnimated();
+  }
+  Transform StillPlacement(const ReadEntry& entry) const;
+  RenderPlacement PlaceMoving(const MotionChain& toRender, const Bounds3& moved, const char* what,
+                              const FileLocation& where);
   void PlaceEntries();
+  std::vector<Part> MovingParts(const std::vector<ReadEntry>& entries);
+  void BuildPart(Part& part);
+  void PlacePart(const Part& part, const RenderPlacement& placement);
+  void PlaceMovingPart(const Part& part, const MotionChain& parentToRender);
+  void PlaceInstance(const FlatInstance& instance, const std::vector<Part>& parts);
   void PlaceEntry(const ReadEntry& entry, const Transform& toRender, std::vector<GeometryEntry>& entries,
                   std::vector<const ReadEntry*>* lightEntries);
-  void AddAreaLight(const ShapeDescription& description, const Shape& shape, const Transform& instanceToRender,
-                    const std::shared_ptr<const AlphaSource>& alpha);
+  // `shapePlacement` leads from the shape's own axes to the space that `placement` starts from.
+  void AddAreaLight(const ShapeDescription& description, const Shape& shape, const RenderPlacement& placement,
+                    const Transform& shapePlacement, const std::shared_ptr<const AlphaSource>& alpha);
   void CheckAreaLights();
   void AddLights();
-  LightBuildContext LightContextFor(const Transform& localToRender) const;
+  SceneLight Describe(const StatementDescription& statement, const PlacedLight& placed) const;
+  void AddLightSurface(const PlacedLight& placed);
+  LightBuildContext LightContextFor(const RenderPlacement& placement) const;
 
   const SceneDescription& description_;
   Diagnostics& diagnostics_;
   BuiltScene built_;
+  std::vector<SceneLight>* described_ = nullptr;  // null: nobody asks
   GeometryDescription geometry_;
   std::vector<PlacedLight> lights_;
   std::unique_ptr<TextureLibrary> textures_;
   std::unique_ptr<MaterialTable> materials_;
+  MotionTimes times_;
   Transform worldToRender_;
   std::vector<ReadEntry> entries_;
   std::vector<std::vector<ReadEntry>> objects_;
   std::vector<FlatInstance> instances_;
 };
 
-// Motion is read and not rendered yet: said once for each place.
-void WarnIfAnimated(const Placement& placement, const FileLocation& where, const char* what, Diagnostics& diagnostics) {
-  if (!placement.IsAnimated()) return;
-  diagnostics.Warn(where, std::string("a moving ") + what + " is not supported yet; its place at shutter open is used");
-}
-
 std::vector<ReadEntry> Builder::ReadShapes(const std::vector<ShapeDescription>& shapes) {
   std::vector<ReadEntry> entries;
   for (const ShapeDescription& shape : shapes) {
-    WarnIfAnimated(shape.placement, shape.shape.where, "shape", diagnostics_);
     std::optional<LocalShape> local = ReadShape(shape, diagnostics_);
     if (local) entries.push_back({std::move(*local), -1});
   }
@@ -165,35 +130,46 @@ void Builder::FlattenInstances() {
   struct Visit {
     const InstanceDescription* instance;
     Transform parent;
+    std::shared_ptr<const MotionChain> parentMotion;
   };
   std::vector<Visit> open;
-  const auto add = [&open](const std::vector<InstanceDescription>& list, const Transform& parent) {
-    for (size_t i = list.size(); i-- > 0;) open.push_back({&list[i], parent});
+  const auto add = [&open](const std::vector<InstanceDescription>& list, const Transform& parent,
+                           const std::shared_ptr<const MotionChain>& parentMotion) {
+    for (size_t i = list.size(); i-- > 0;) open.push_back({&list[i], parent, parentMotion});
   };
-  add(description_.instances, Transform());
+  add(description_.instances, Transform(), nullptr);
   while (!open.empty()) {
     const Visit visit = open.back();
     open.pop_back();
     const InstanceDescription& instance = *visit.instance;
-    WarnIfAnimated(instance.placement, instance.where, "instance", diagnostics_);
     const Transform toWorld = visit.parent * instance.placement.start;
+    std::shared_ptr<const MotionChain> motion;
+    if (visit.parentMotion || instance.placement.IsAnimated()) {
+      const MotionChain parent = visit.parentMotion ? *visit.parentMotion : MotionChain(visit.parent);
+      const AnimatedTransform own = ToAnimated(instance.placement, "an instance", instance.where);
+      motion = std::make_shared<const MotionChain>(parent * own);
+    }
     const size_t object = objects.at(instance.object);
-    if (!objects_[object].empty()) instances_.push_back({object, toWorld, &instance});
-    add(description_.objects[object].instances, toWorld);
+    if (!objects_[object].empty()) instances_.push_back({object, toWorld, motion, &instance});
+    add(description_.objects[object].instances, toWorld, motion);
   }
 }
 
 // Where the middle of the scene is far from the origin compared with its size, floats around it are sparse: it is
-// moved.
+// moved. What moves is looked at where it starts and where it ends.
 Transform Builder::ChooseRenderSpace() const {
   Bounds3d bounds;
-  for (const ReadEntry& entry : entries_) {
-    bounds.Add(GetBounds(entry.local, entry.local.description->placement.start));
-  }
-  for (const FlatInstance& instance : instances_) {
-    for (const ReadEntry& entry : objects_[instance.object]) {
-      bounds.Add(GetBounds(entry.local, instance.toWorld * entry.local.description->placement.start));
+  const auto add = [&bounds](const ReadEntry& entry, const Transform& startToWorld, const Transform& endToWorld) {
+    const Placement& placement = entry.local.description->placement;
+    bounds.Add(GetBounds(entry.local, startToWorld * placement.start));
+    if (placement.IsAnimated() || !(startToWorld == endToWorld)) {
+      bounds.Add(GetBounds(entry.local, endToWorld * placement.end));
     }
+  };
+  for (const ReadEntry& entry : entries_) add(entry, Transform(), Transform());
+  for (const FlatInstance& instance : instances_) {
+    const Transform end = instance.motion ? instance.motion->At(1) : instance.toWorld;
+    for (const ReadEntry& entry : objects_[instance.object]) add(entry, instance.toWorld, end);
   }
   if (bounds.IsEmpty()) return Transform();
   constexpr double farInRadii = 8;
@@ -202,27 +178,38 @@ Transform Builder::ChooseRenderSpace() const {
   return Transform::Translate(-center);
 }
 
-LightBuildContext Builder::LightContextFor(const Transform& localToRender) const {
+// Of something that does not move while the shutter is open.
+Transform Builder::StillPlacement(const ReadEntry& entry) const {
+  const ShapeDescription& shape = *entry.local.description;
+  if (!shape.placement.IsAnimated()) return shape.placement.start;
+  return ToAnimated(shape.placement, "a shape", shape.shape.where).At(times_.FractionAt(0));
+}
+
+// `moved` bounds what moves, in its own space.
+RenderPlacement Builder::PlaceMoving(const MotionChain& toRender, const Bounds3& moved, const char* what,
+                                     const FileLocation& where) {
+  RenderPlacement placement{toRender.At(times_.FractionAt(0)), MakeMotion(toRender, times_, moved, what, where)};
+  if (!placement.toRender.IsAffine()) throw Error(where, std::string(what) + " cannot have a perspective transform");
+  if (placement.motion) built_.scene.hasMotion = true;
+  return placement;
+}
+
+LightBuildContext Builder::LightContextFor(const RenderPlacement& placement) const {
   LightBuildContext build;
-  build.transform = ToLightTransform(localToRender);
-  build.placement = localToRender;
+  build.transform = ToLightTransform(placement.toRender);
+  build.placement = placement.toRender;
   build.worldToRender = worldToRender_;
   build.textures = textures_.get();
   build.diagnostics = &diagnostics_;
   return build;
 }
 
-// The type of a light statement. nullptr, with a warning: pbrt-v4 has it and lampyr does not yet.
-const LightType* FindType(const StatementDescription& statement, bool isAreaLight, Diagnostics& diagnostics) {
+// The type of a light statement.
+const LightType* FindType(const StatementDescription& statement, bool isAreaLight) {
   if (const LightType* type = FindLightType(statement.type, isAreaLight)) return type;
   const std::string owner =
       std::string(isAreaLight ? "AreaLightSource" : "LightSource") + " \"" + statement.type + "\"";
   std::vector<std::string> names;
-  if (!isAreaLight) names = {"goniometric", "projection"};
-  if (std::find(names.begin(), names.end(), statement.type) != names.end()) {
-    diagnostics.Warn(statement.where, owner + " is not supported yet; it is left out");
-    return nullptr;
-  }
   for (const LightType& known : LightRegistry()) {
     if (known.isAreaLight == isAreaLight) names.push_back(known.name);
   }
@@ -232,21 +219,42 @@ const LightType* FindType(const StatementDescription& statement, bool isAreaLigh
 // Area lights are made shape by shape: what is wrong with one that no shape uses is found here.
 void Builder::CheckAreaLights() {
   for (const StatementDescription& statement : description_.areaLights) {
-    CheckParameters(*FindType(statement, true, diagnostics_), statement.parameters);
+    CheckParameters(*FindType(statement, true), statement.parameters);
   }
 }
 
 // A constant opacity of 0 makes a light that shines and is not there, as in pbrt-v4; any other cuts out a part of it.
-void Builder::AddAreaLight(const ShapeDescription& description, const Shape& shape, const Transform& instanceToRender,
-                           const std::shared_ptr<const AlphaSource>& alpha) {
+void Builder::AddAreaLight(const ShapeDescription& description, const Shape& shape, const RenderPlacement& placement,
+                           const Transform& shapePlacement, const std::shared_ptr<const AlphaSource>& alpha) {
   const StatementDescription& statement = description_.areaLights[description.areaLight];
   const auto opacity = textures_->FindFloat(description.shape.parameters, "alpha");
   const bool canBeHit = !opacity || !opacity->IsConstant() || opacity->Evaluate({}) > 0;
-  const LightType* type = FindType(statement, true, diagnostics_);
-  LightBuildContext build = LightContextFor(instanceToRender);
+  const LightType* type = FindType(statement, true);
+  LightBuildContext build = LightContextFor(placement);
   build.shape = &shape;
+  build.shapePlacement = shapePlacement;
   if (canBeHit) build.alpha = alpha;
-  lights_.push_back({MakeLight(*type, statement.parameters, build), build.transform, canBeHit});
+  lights_.push_back({MakeLight(*type, statement.parameters, build), build.transform, canBeHit, placement.motion});
+  if (!described_) return;
+  SceneLight light = Describe(statement, lights_.back());
+  light.shape = shape;
+  if (build.alpha) {
+    build.alpha = nullptr;
+    light.withoutCutOuts = MakeLight(*type, statement.parameters, build);
+  }
+  described_->push_back(std::move(light));
+}
+
+SceneLight Builder::Describe(const StatementDescription& statement, const PlacedLight& placed) const {
+  const std::string& name = placed.light->Settings().name;
+  SceneLight light;
+  light.name = (name.empty() ? statement.type : name) + " (" + statement.where.ToString() + ")";
+  // Several shapes share a statement.
+  size_t same = 1;
+  for (const SceneLight& other : *described_) same += other.name.starts_with(light.name) ? 1 : 0;
+  if (same > 1) light.name += " #" + std::to_string(same);
+  light.parameters = statement.parameters;
+  return light;
 }
 
 void Builder::PlaceEntry(const ReadEntry& entry, const Transform& toRender, std::vector<GeometryEntry>& entries,
@@ -275,7 +283,7 @@ void Builder::PlaceEntry(const ReadEntry& entry, const Transform& toRender, std:
         lightEntries->push_back(&entry);
       } else {
         result.attributes.light = static_cast<int32_t>(lights_.size());
-        AddAreaLight(shape, result.shape, Transform(), alpha);
+        AddAreaLight(shape, result.shape, {}, toRender, alpha);
       }
       const bool cameraVisible = description_.areaLights[shape.areaLight].parameters.GetBool("cameraVisible", true);
       if (!cameraVisible) result.attributes.visibility &= ~visibility::kCamera;
@@ -284,51 +292,128 @@ void Builder::PlaceEntry(const ReadEntry& entry, const Transform& toRender, std:
   }
 }
 
+// The shapes that move, together where their motion is the same.
+std::vector<Part> Builder::MovingParts(const std::vector<ReadEntry>& entries) {
+  std::vector<Part> parts;
+  const Placement* last = nullptr;
+  for (const ReadEntry& entry : entries) {
+    if (!Moves(entry)) continue;
+    const ShapeDescription& shape = *entry.local.description;
+    if (!last || !(last->start == shape.placement.start && last->end == shape.placement.end)) {
+      parts.emplace_back();
+      parts.back().placement = ToAnimated(shape.placement, "a shape", shape.shape.where);
+    }
+    last = &shape.placement;
+    parts.back().entries.push_back(&entry);
+  }
+  return parts;
+}
+
+void Builder::BuildPart(Part& part) {
+  GeometryObject object;
+  for (const ReadEntry* entry : part.entries) {
+    const Transform toObject = part.placement ? Transform() : StillPlacement(*entry);
+    PlaceEntry(*entry, toObject, object.entries, &part.lightEntries);
+  }
+  for (const GeometryEntry& entry : object.entries) part.bounds.Add(GetBounds(entry.shape));
+  part.object = static_cast<uint32_t>(geometry_.objects.size());
+  geometry_.objects.push_back(std::move(object));
+}
+
+void Builder::PlacePart(const Part& part, const RenderPlacement& placement) {
+  const std::vector<GeometryEntry>& entries = geometry_.objects[part.object].entries;
+  if (entries.empty()) return;
+  GeometryInstance placed;
+  placed.object = part.object;
+  placed.toRender = placement.toRender.ToAffine();
+  placed.toObject = placement.toRender.Inverse().ToAffine();
+  placed.motion = placement.motion;
+  placed.firstLight = static_cast<int32_t>(lights_.size());
+  for (const GeometryEntry& entry : entries) {
+    if (entry.attributes.light < 0) continue;
+    const ReadEntry& source = *part.lightEntries[entry.attributes.light];
+    AddAreaLight(*source.local.description, entry.shape, placement,
+                 part.placement ? Transform() : StillPlacement(source), entry.attributes.alpha);
+    lights_.back().isInstance = true;
+  }
+  geometry_.instances.push_back(placed);
+}
+
+void Builder::PlaceMovingPart(const Part& part, const MotionChain& parentToRender) {
+  const FileLocation& where = part.entries.front()->local.description->shape.where;
+  PlacePart(part, PlaceMoving(parentToRender * *part.placement, part.bounds, "a shape", where));
+}
+
+// The first part are the object's shapes that stay in it.
+void Builder::PlaceInstance(const FlatInstance& instance, const std::vector<Part>& parts) {
+  const FileLocation& where = instance.description->where;
+  if (!instance.motion) {
+    const Transform toRender = worldToRender_ * instance.toWorld;
+    if (!toRender.IsAffine()) throw Error(where, "an instance cannot have a perspective transform");
+    PlacePart(parts.front(), {toRender, nullptr});
+    for (size_t i = 1; i < parts.size(); ++i) PlaceMovingPart(parts[i], MotionChain(toRender));
+    return;
+  }
+  const MotionChain toRender = MotionChain(worldToRender_) * *instance.motion;
+  PlacePart(parts.front(), PlaceMoving(toRender, parts.front().bounds, "an instance", where));
+  for (size_t i = 1; i < parts.size(); ++i) PlaceMovingPart(parts[i], toRender);
+}
+
 void Builder::PlaceEntries() {
   for (const ReadEntry& entry : entries_) {
-    PlaceEntry(entry, worldToRender_ * entry.local.description->placement.start, geometry_.entries, nullptr);
+    if (!Moves(entry)) PlaceEntry(entry, worldToRender_ * StillPlacement(entry), geometry_.entries, nullptr);
   }
-  std::vector<std::vector<const ReadEntry*>> objectLights(objects_.size());
-  for (size_t i = 0; i < objects_.size(); ++i) {
-    GeometryObject object;
-    for (const ReadEntry& entry : objects_[i]) {
-      PlaceEntry(entry, entry.local.description->placement.start, object.entries, &objectLights[i]);
+  for (Part& part : MovingParts(entries_)) {
+    BuildPart(part);
+    PlaceMovingPart(part, MotionChain(worldToRender_));
+  }
+  std::vector<std::vector<Part>> parts;
+  for (const std::vector<ReadEntry>& object : objects_) {
+    Part still;
+    for (const ReadEntry& entry : object) {
+      if (!Moves(entry)) still.entries.push_back(&entry);
     }
-    geometry_.objects.push_back(std::move(object));
+    std::vector<Part> all = MovingParts(object);
+    all.insert(all.begin(), std::move(still));
+    for (Part& part : all) BuildPart(part);
+    parts.push_back(std::move(all));
   }
-  for (const FlatInstance& instance : instances_) {
-    const Transform toRender = worldToRender_ * instance.toWorld;
-    if (!toRender.IsAffine())
-      throw Error(instance.description->where, "an instance cannot have a perspective transform");
-    if (geometry_.objects[instance.object].entries.empty()) continue;
-    GeometryInstance placed;
-    placed.object = static_cast<uint32_t>(instance.object);
-    placed.toRender = toRender.ToAffine();
-    placed.toObject = toRender.Inverse().ToAffine();
-    placed.firstLight = static_cast<int32_t>(lights_.size());
-    for (const GeometryEntry& entry : geometry_.objects[instance.object].entries) {
-      if (entry.attributes.light < 0) continue;
-      const ReadEntry& source = *objectLights[instance.object][entry.attributes.light];
-      AddAreaLight(*source.local.description, entry.shape, toRender, entry.attributes.alpha);
-    }
-    geometry_.instances.push_back(placed);
-  }
+  for (const FlatInstance& instance : instances_) PlaceInstance(instance, parts[instance.object]);
+}
+
+// A light that is its own surface can be hit: black, and where its settings say so not seen by the camera.
+void Builder::AddLightSurface(const PlacedLight& placed) {
+  GeometryEntry entry;
+  entry.shape = MakeLightSurface(placed);
+  entry.attributes.light = static_cast<int32_t>(lights_.size());
+  if (!placed.light->Settings().cameraVisible) entry.attributes.visibility &= ~visibility::kCamera;
+  geometry_.entries.push_back(std::move(entry));
 }
 
 void Builder::AddLights() {
   for (const LightDescription& light : description_.lights) {
     const StatementDescription& statement = light.light;
-    WarnIfAnimated(light.placement, statement.where, "light", diagnostics_);
-    const LightType* type = FindType(statement, false, diagnostics_);
-    if (!type) continue;
-    const Transform toRender = worldToRender_ * light.placement.start;
-    if (!toRender.IsAffine()) throw Error(statement.where, "a light cannot have a perspective transform");
-    const LightBuildContext build = LightContextFor(toRender);
-    lights_.push_back({MakeLight(*type, statement.parameters, build), build.transform});
+    const LightType* type = FindType(statement, false);
+    RenderPlacement placement{worldToRender_ * light.placement.start, nullptr};
+    if (light.placement.IsAnimated()) {
+      const AnimatedTransform toWorld = ToAnimated(light.placement, "a light", statement.where);
+      placement = PlaceMoving(MotionChain(worldToRender_) * toWorld, {}, "a light", statement.where);
+    }
+    if (!placement.toRender.IsAffine()) throw Error(statement.where, "a light cannot have a perspective transform");
+    const LightBuildContext build = LightContextFor(placement);
+    PlacedLight placed{MakeLight(*type, statement.parameters, build), build.transform, true, placement.motion};
+    if (placed.light->Surface()) {
+      AddLightSurface(placed);
+    } else {
+      placed.canBeHit = placed.light->Kind() != LightKind::Area;
+    }
+    if (described_) described_->push_back(Describe(statement, placed));
+    lights_.push_back(std::move(placed));
   }
 }
 
 BuiltScene Builder::Build() {
+  times_ = ReadMotionTimes(description_);
   entries_ = ReadShapes(description_.shapes);
   for (const ObjectDescription& object : description_.objects) objects_.push_back(ReadShapes(object.shapes));
   FlattenInstances();
@@ -362,6 +447,13 @@ BuiltScene Builder::Build() {
 BuiltScene BuildScene(const SceneDescription& description, const RenderOverrides& overrides, bool robust,
                       Diagnostics& diagnostics) {
   return Builder(description, overrides, robust, diagnostics).Build();
+}
+
+BuiltScene BuildScene(const SceneDescription& description, bool robust, Diagnostics& diagnostics,
+                      std::vector<SceneLight>& lights) {
+  Builder builder(description, {}, robust, diagnostics);
+  builder.DescribeLightsIn(&lights);
+  return builder.Build();
 }
 
 }  // namespace lampyr

@@ -3,6 +3,7 @@
 
 #include "app/render_settings.h"
 #include "integrators/integrator.h"
+#include "lights/suite/scene_suite.h"
 
 namespace lampyr {
 
@@ -17,5 +18,9 @@ struct BuiltScene {
 // that is there already is not moved.
 BuiltScene BuildScene(const SceneDescription& description, const RenderOverrides& overrides, bool robust,
                       Diagnostics& diagnostics);
+
+// The same, and of each light of the scene what checking it takes.
+BuiltScene BuildScene(const SceneDescription& description, bool robust, Diagnostics& diagnostics,
+                      std::vector<SceneLight>& lights);
 
 }  // namespace lampyr

@@ -11,6 +11,7 @@
 // the direction is; the densities then are 1 and importance holds the coefficient of the delta.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 
@@ -46,6 +47,13 @@ struct CameraDensities {
   float importance = 0;        // We
 };
 
+// Film points that see along the same ray as another one.
+struct FilmCopies {
+  static constexpr int kMost = 8;
+  std::array<Point2, kMost> points;
+  int count = 0;
+};
+
 class Camera {
  public:
   virtual ~Camera() = default;
@@ -55,6 +63,9 @@ class Camera {
   virtual std::optional<CameraDensities> EvaluateRay(const Ray& ray, Point2* film) const = 0;
   // Connects `point` to a point of the lens; nullopt when it is not seen by the film.
   virtual std::optional<CameraConnection> Connect(const Point3& point, const Point2& lens) const = 0;
+  // A spherical image goes on beyond its edges, with what lies at another edge: where else, within the film's margin, the
+  // direction that `film` sees is seen. A connection lands there, too, with the same weight.
+  virtual FilmCopies CopiesOf(const Point2& /*film*/) const { return {}; }
   virtual bool HasPinhole() const = 0;                    // the lens is a point: a delta position
   virtual bool HasParallelRays() const { return false; }  // orthographic without a lens: a delta direction
 };

@@ -54,6 +54,30 @@ class SphericalCamera final : public Camera {
     return result;
   }
 
+  FilmCopies CopiesOf(const Point2& film) const override {
+    const float w = static_cast<float>(frame_.width), h = static_cast<float>(frame_.height);
+    const Vector2 m = frame_.filmMargin;
+    FilmCopies copies;
+    if (film.x >= m.x && film.x < w - m.x && film.y >= m.y && film.y < h - m.y) return copies;
+    const auto add = [&](float x, float y) {
+      if (IsOnFilm(frame_, {x, y})) copies.points[static_cast<size_t>(copies.count++)] = {x, y};
+    };
+    if (mapping_ == SphericalMapping::EqualArea) {  // the points that WrapEqualAreaSquare takes here
+      for (const float x : {-film.x, 2 * w - film.x}) add(x, h - film.y);
+      for (const float y : {-film.y, 2 * h - film.y}) add(w - film.x, y);
+      for (const float x : {film.x - w, film.x + w}) {
+        for (const float y : {film.y - h, film.y + h}) add(x, y);
+      }
+    } else {  // around, and over the poles to the other side
+      for (const float x : {film.x - w, film.x + w}) add(x, film.y);
+      const float across = film.x < 0.5f * w ? film.x + 0.5f * w : film.x - 0.5f * w;
+      for (const float y : {-film.y, 2 * h - film.y}) {
+        for (const float x : {across - w, across, across + w}) add(x, y);
+      }
+    }
+    return copies;
+  }
+
   bool HasPinhole() const override { return true; }
 
  private:

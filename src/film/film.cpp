@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/error.h"
+#include "base/parallel.h"
 
 namespace lampyr {
 
@@ -18,14 +19,11 @@ double Divisor(const PixelSums& pixel) {
   return pixel.weight > 0.1 * n ? pixel.weight : n;
 }
 
-// Variance of the pixel's mean: sample variance of w·L over n, in units of the mean weight. 0 below 2 samples.
-double VarianceOfMean(const PixelSums& pixel, int channel) {
-  if (pixel.count < 2) return 0;
-  const double n = static_cast<double>(pixel.count);
-  const double mean = pixel.sum[channel] / n;
-  const double sampleVariance = std::max(0.0, pixel.sumOfSquares[channel] / n - mean * mean) * (n / (n - 1));
-  const double scale = n / Divisor(pixel);
-  return sampleVariance / n * scale * scale;
+// Variance of the mean of n samples from their sums. 0 below 2 samples.
+double MeanVariance(double sum, double sumOfSquares, double n) {
+  if (n < 2) return 0;
+  const double mean = sum / n;
+  return std::max(0.0, sumOfSquares / n - mean * mean) / (n - 1);
 }
 
 // Intensities of 1e30 have variances that leave float: the largest float stands for them.
@@ -58,6 +56,74 @@ Film::Film(int fullWidth, int fullHeight, const PixelRect& crop)
   pixels_.resize(static_cast<size_t>(crop.Width()) * static_cast<size_t>(crop.Height()));
 }
 
+double Film::Value(size_t pixel, int channel) const {
+  const PixelSums& samples = pixels_[pixel];
+  double value = samples.count > 0 ? samples.sum[channel] / Divisor(samples) : 0.0;
+  if (lightPaths_ > 0) value += splats_[pixel].Sum(channel) / static_cast<double>(lightPaths_);
+  return value;
+}
+
+double Film::VarianceOfMean(size_t pixel, int channel) const {
+  const PixelSums& samples = pixels_[pixel];
+  const double n = static_cast<double>(samples.count);
+  double variance = 0;
+  if (samples.count >= 2) {  // w·L in units of the mean weight
+    variance = MeanVariance(samples.sum[channel], samples.sumOfSquares[channel], n) * std::pow(n / Divisor(samples), 2);
+  }
+  if (lightPaths_ > 0) {
+    const SplatSums& splats = splats_[pixel];
+    variance += MeanVariance(splats.Sum(channel), splats.SumOfSquares(channel), static_cast<double>(lightPaths_));
+  }
+  return variance;
+}
+
+SplatList Film::MakeSplatList(const PixelFilter& filter, float scale) const {
+  const Vector2 radius = filter.Radius() - Vector2(0.5f);  // beyond the pixels' centres
+  return {Point2(crop_.x0, crop_.y0) + Vector2(0.5f) - filter.Radius(), Point2(crop_.x1, crop_.y1) + radius, scale};
+}
+
+void Film::AddSplats(const PixelFilter& filter, std::span<const SplatList> lists, int threads) {
+  if (splats_.empty()) splats_.resize(pixels_.size());
+  const int bands = std::max(threads, 1);
+  ParallelFor(bands, threads, [&](int band) { AddToRows(filter, lists, band, bands); });
+  for (const SplatList& list : lists) lightPaths_ += list.Paths();
+}
+
+// The rows of one band: groups of rows in turn, so that a bright spot is shared among the threads.
+void Film::AddToRows(const PixelFilter& filter, std::span<const SplatList> lists, int band, int bands) {
+  constexpr int kGroup = 4;
+  const Vector2 radius = filter.Radius();
+  const auto firstPixel = [](float p, float r) { return static_cast<int>(std::floor(p - 0.5f - r)); };
+  const auto lastPixel = [](float p, float r) { return static_cast<int>(std::ceil(p - 0.5f + r)); };
+  std::vector<float> weightsX(static_cast<size_t>(2 * radius.x) + 4);
+  uint64_t firstPath = lightPaths_ + 1;  // 0 is the path of pixels that have met none
+  for (const SplatList& list : lists) {
+    for (const Splat& splat : list.Splats()) {
+      const int y0 = std::max(firstPixel(splat.film.y, radius.y), crop_.y0);
+      const int y1 = std::min(lastPixel(splat.film.y, radius.y), crop_.y1 - 1);
+      const int x0 = std::max(firstPixel(splat.film.x, radius.x), crop_.x0);
+      const int x1 = std::min(lastPixel(splat.film.x, radius.x), crop_.x1 - 1);
+      bool hasWeights = false;
+      for (int y = y0; y <= y1; ++y) {
+        if (y / kGroup % bands != band) continue;
+        const float weightY = filter.EvaluateY(splat.film.y - (static_cast<float>(y) + 0.5f));
+        if (weightY == 0) continue;
+        if (!hasWeights) {
+          for (int x = x0; x <= x1; ++x) {
+            weightsX[static_cast<size_t>(x - x0)] = filter.EvaluateX(splat.film.x - (static_cast<float>(x) + 0.5f));
+          }
+          hasWeights = true;
+        }
+        for (int x = x0; x <= x1; ++x) {
+          const float weight = weightY * weightsX[static_cast<size_t>(x - x0)];
+          if (weight != 0) splats_[Index(x, y)].Add(firstPath + splat.path, static_cast<double>(weight), splat.value);
+        }
+      }
+    }
+    firstPath += list.Paths();
+  }
+}
+
 Image Film::Develop() const {
   Image image(crop_.Width(), crop_.Height(), {"R", "G", "B", "variance.R", "variance.G", "variance.B"});
   image.offsetX = crop_.x0;
@@ -65,10 +131,9 @@ Image Film::Develop() const {
   image.fullWidth = fullWidth_;
   image.fullHeight = fullHeight_;
   float* out = image.data.data();
-  for (const PixelSums& pixel : pixels_) {
-    const double inverse = pixel.count > 0 ? 1.0 / Divisor(pixel) : 0.0;
-    for (int c = 0; c < 3; ++c) *out++ = ToFiniteFloat(pixel.sum[c] * inverse);
-    for (int c = 0; c < 3; ++c) *out++ = ToFiniteFloat(VarianceOfMean(pixel, c));
+  for (size_t i = 0; i < pixels_.size(); ++i) {
+    for (int c = 0; c < 3; ++c) *out++ = ToFiniteFloat(Value(i, c));
+    for (int c = 0; c < 3; ++c) *out++ = ToFiniteFloat(VarianceOfMean(i, c));
   }
   return image;
 }
@@ -76,16 +141,17 @@ Image Film::Develop() const {
 double Film::RelativeError() const {
   constexpr double luminance[3] = {0.2126390, 0.7151687, 0.0721923};  // as Color::Luminance
   double varianceSum = 0, luminanceSum = 0;
-  for (const PixelSums& pixel : pixels_) {
-    if (pixel.count < 2) return std::numeric_limits<double>::infinity();
+  for (size_t i = 0; i < pixels_.size(); ++i) {
+    const bool tooFew = lightPaths_ > 0 ? lightPaths_ < 2 || pixels_[i].count == 1 : pixels_[i].count < 2;
+    if (tooFew) return std::numeric_limits<double>::infinity();
     // The channels of a sample share its path: taken as fully correlated, which bounds the variance from above.
     double deviation = 0, value = 0;
     for (int c = 0; c < 3; ++c) {
-      deviation += luminance[c] * std::sqrt(VarianceOfMean(pixel, c));
-      value += luminance[c] * pixel.sum[c];
+      deviation += luminance[c] * std::sqrt(VarianceOfMean(i, c));
+      value += luminance[c] * Value(i, c);
     }
     varianceSum += deviation * deviation;
-    luminanceSum += value / Divisor(pixel);
+    luminanceSum += value;
   }
   if (varianceSum == 0) return 0;  // black or constant: nothing left to improve
   const double n = static_cast<double>(pixels_.size());

@@ -1,10 +1,16 @@
 // The film: sums of samples per pixel in double, their variance, and the image made of them.
+//
+// A pixel is what its camera samples say plus what light paths have splatted on it. The two are different techniques of
+// one estimate, or one of them is absent: a pure path tracer makes no splats, and a pure light tracer no samples.
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "film/image.h"
+#include "film/pixel_filter.h"
+#include "film/splats.h"
 #include "math/vec.h"
 
 namespace lampyr {
@@ -32,21 +38,37 @@ class Film {
 
   const PixelRect& Crop() const { return crop_; }
   // Pixels are independent: two threads may work on two pixels at once.
-  PixelSums& Pixel(int x, int y) { return pixels_[static_cast<size_t>(y - crop_.y0) * crop_.Width() + (x - crop_.x0)]; }
-  const PixelSums& Pixel(int x, int y) const { return const_cast<Film*>(this)->Pixel(x, y); }
+  PixelSums& Pixel(int x, int y) { return pixels_[Index(x, y)]; }
+  const PixelSums& Pixel(int x, int y) const { return pixels_[Index(x, y)]; }
+
+  // An empty list for splats on this film.
+  SplatList MakeSplatList(const PixelFilter& filter, float scale) const;
+  // Adds the paths of the lists, in their order. What is made of a sequence of paths does not depend on how it is cut
+  // into lists and calls, nor on the number of threads.
+  void AddSplats(const PixelFilter& filter, std::span<const SplatList> lists, int threads);
+  // Light paths so far, those that were never seen included.
+  uint64_t LightPaths() const { return lightPaths_; }
 
   // R, G, B and variance.R, .G, .B: the variance of the pixel's mean (sample variance / n; an upper bound for
-  // stratified samplers).
+  // stratified samplers). Samples and splats count as independent: a sample that also splats does so on all pixels
+  // alike, and its share in its own is small.
   Image Develop() const;
 
   // Estimated relative error of the image at 95 % confidence: 1.96 · sqrt(mean variance of the pixels' means) over
-  // mean luminance. Infinite while there are fewer than 2 samples per pixel.
+  // mean luminance. Infinite while there are fewer than 2 samples per pixel, or 2 light paths.
   double RelativeError() const;
 
  private:
+  size_t Index(int x, int y) const { return static_cast<size_t>(y - crop_.y0) * crop_.Width() + (x - crop_.x0); }
+  void AddToRows(const PixelFilter& filter, std::span<const SplatList> lists, int band, int bands);
+  double Value(size_t pixel, int channel) const;
+  double VarianceOfMean(size_t pixel, int channel) const;
+
   int fullWidth_, fullHeight_;
   PixelRect crop_;
   std::vector<PixelSums> pixels_;
+  std::vector<SplatSums> splats_;  // empty while there are none
+  uint64_t lightPaths_ = 0;
 };
 
 }  // namespace lampyr

@@ -39,14 +39,14 @@ float HashToUnit(const RTCRay& ray, uint32_t instance, uint32_t geometry, uint32
 // Whether the cut-out lets the ray through at this hit.
 bool PassesThrough(const PrimitiveRecord& record, const RTCRay& ray, const RayHit& hit, uint32_t geometryId,
                    uint32_t crossing) {
-  const Point3 origin(ray.org_x, ray.org_y, ray.org_z);
-  const Vector3 direction(ray.dir_x, ray.dir_y, ray.dir_z);
-  const SurfacePoint point = EvaluatePrimitive(record, origin, direction, hit);
-  const bool instanced = hit.instance != RTC_INVALID_GEOMETRY_ID;
-  const SceneTables& tables = *record.tables;
-  const Point3 position =
-      instanced ? tables.instances[hit.instance - tables.firstInstanceId].toRender.Point(point.position)
-                : point.position;
+  const Ray inObject{{ray.org_x, ray.org_y, ray.org_z}, {ray.dir_x, ray.dir_y, ray.dir_z}, kInfinity, ray.time};
+  const SurfacePoint point = EvaluatePrimitive(record, inObject, hit);
+  Point3 position = point.position;
+  if (hit.instance != RTC_INVALID_GEOMETRY_ID) {
+    const InstanceRecord& instance = record.tables->instances[hit.instance - record.tables->firstInstanceId];
+    const Affine& still = instance.placement.toRender;
+    position = instance.motion ? instance.motion->At(ray.time).Point(position) : still.Point(position);
+  }
   const float alpha = record.alpha->Alpha(point.uv, position);
   if (alpha >= 1) return false;
   if (!(alpha > 0)) return true;
@@ -82,6 +82,13 @@ int FindPatch(const PrimitiveRecord& record, uint32_t patch, const RTCRay& ray, 
   const int count = IntersectPatch(**std::get_if<1>(&record.shape), patch, ToDouble(ray), hits);
   for (int i = 0; i < count; ++i) candidates[i] = {hits[i].t, hits[i].uv.x, hits[i].uv.y};
   return count;
+}
+
+int FindCustom(const PrimitiveRecord& record, uint32_t, const RTCRay& ray, Candidate candidates[2]) {
+  const auto t = (*std::get_if<4>(&record.shape))->Intersect(ToDouble(ray), ray.time, nullptr);
+  if (!t) return 0;
+  candidates[0] = {*t, 0, 0};
+  return 1;
 }
 
 using Finder = int (*)(const PrimitiveRecord&, uint32_t, const RTCRay&, Candidate*);
@@ -140,6 +147,21 @@ void PatchBounds(const RTCBoundsFunctionArguments* arguments) {
   SetBounds(bounds, arguments->bounds_o);
 }
 
+// Embree takes the surface to be within boxes that change evenly from one time step to the next: each holds it from the
+// step before to the step after.
+void CustomBounds(const RTCBoundsFunctionArguments* arguments) {
+  const CustomSurface& surface = **std::get_if<4>(&Record(arguments->geometryUserPtr).shape);
+  float begin = 0, end = 1;
+  if (surface.Moves()) {
+    constexpr float segments = kCustomTimeSteps - 1;
+    begin = std::max(static_cast<float>(arguments->timeStep) - 1, 0.0f) / segments;
+    end = std::min(static_cast<float>(arguments->timeStep) + 1, segments) / segments;
+  }
+  SetBounds(surface.GetBounds(begin, end), arguments->bounds_o);
+}
+
+void CustomIntersect(const RTCIntersectFunctionNArguments* arguments) { IntersectUserGeometry<FindCustom>(arguments); }
+void CustomOccluded(const RTCOccludedFunctionNArguments* arguments) { OccludeUserGeometry<FindCustom>(arguments); }
 void QuadricIntersect(const RTCIntersectFunctionNArguments* arguments) { IntersectUserGeometry<FindQuadric>(arguments); }
 void QuadricOccluded(const RTCOccludedFunctionNArguments* arguments) { OccludeUserGeometry<FindQuadric>(arguments); }
 void PatchIntersect(const RTCIntersectFunctionNArguments* arguments) { IntersectUserGeometry<FindPatch>(arguments); }

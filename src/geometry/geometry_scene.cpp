@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <deque>
+#include <optional>
 #include <string>
 
 #include "base/error.h"
@@ -18,8 +19,6 @@ namespace {
 
 // Embree aborts the process on rays beyond this, and skips primitives.
 constexpr float kLargest = 1e18f;
-// Embree's interval is closed below: a hit at the very origin is none.
-constexpr float kNearest = 1e-25f;
 
 struct DeviceDeleter {
   void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
@@ -32,12 +31,18 @@ using SceneHandle = std::unique_ptr<RTCSceneTy, SceneDeleter>;
 
 const char* ErrorName(RTCError error) {
   switch (error) {
-    case RTC_ERROR_OUT_OF_MEMORY: return "out of memory";
-    case RTC_ERROR_INVALID_ARGUMENT: return "invalid argument";
-    case RTC_ERROR_INVALID_OPERATION: return "invalid operation";
-    case RTC_ERROR_UNSUPPORTED_CPU: return "unsupported CPU";
-    case RTC_ERROR_CANCELLED: return "cancelled";
-    default: return "unknown error";
+    case RTC_ERROR_OUT_OF_MEMORY:
+      return "out of memory";
+    case RTC_ERROR_INVALID_ARGUMENT:
+      return "invalid argument";
+    case RTC_ERROR_INVALID_OPERATION:
+      return "invalid operation";
+    case RTC_ERROR_UNSUPPORTED_CPU:
+      return "unsupported CPU";
+    case RTC_ERROR_CANCELLED:
+      return "cancelled";
+    default:
+      return "unknown error";
   }
 }
 
@@ -46,11 +51,13 @@ void ThrowOnError(RTCDevice device, const char* doing) {
   if (error != RTC_ERROR_NONE) throw Error(std::string("Embree, ") + doing + ": " + ErrorName(error));
 }
 
-bool IsUsable(const Point3& p) { return MaxAbsComponent(p) <= kLargest && IsFinite(p); }
+bool IsUsable(const Point3& p) {
+  return MaxAbsComponent(p) <= kLargest && IsFinite(p);
+}
 
 template <size_t N>
-void CheckMesh(const char* what, const std::vector<Point3>& positions, const std::vector<std::array<uint32_t, N>>& faces,
-               size_t normals, size_t uvs) {
+void CheckMesh(const char* what, const std::vector<Point3>& positions,
+               const std::vector<std::array<uint32_t, N>>& faces, size_t normals, size_t uvs) {
   const std::string name = what;
   for (size_t i = 0; i < positions.size(); ++i) {
     if (!IsUsable(positions[i])) {
@@ -97,12 +104,24 @@ void CheckShape(const CurveSet& c) {
   }
 }
 
+void CheckShape(const CustomSurface& surface) {
+  const Bounds3 bounds = surface.GetBounds(0, 1);
+  if (!IsUsable(bounds.min) || !IsUsable(bounds.max)) {
+    throw Error("surface of a light: it is not finite, or reaches farther than 1e18");
+  }
+}
+
+void CheckPlacement(const Affine& m) {
+  if (IsUsable(m.translation) && IsUsable(m.linear[0]) && IsUsable(m.linear[1]) && IsUsable(m.linear[2])) return;
+  throw Error("instance: the transform is not finite, or reaches farther than 1e18");
+}
+
 // The largest origin or direction that an instance's object space still takes.
 float LargestThrough(const Affine& toObject) {
   float stretch = 1;
   for (int row = 0; row < 3; ++row) {
-    const float sum = std::abs(toObject.linear[0][row]) + std::abs(toObject.linear[1][row]) +
-                      std::abs(toObject.linear[2][row]);
+    const float sum =
+        std::abs(toObject.linear[0][row]) + std::abs(toObject.linear[1][row]) + std::abs(toObject.linear[2][row]);
     stretch = std::max({stretch, 2 * sum, 2 * std::abs(toObject.translation[row])});
     if (!(stretch <= 1e15f)) throw Error("instance: the transform is singular, or scales by more than 1e15");
   }
@@ -132,6 +151,7 @@ struct GeometryScene::Implementation {
 
   void AddEntries(const std::vector<GeometryEntry>& entries);
   void FillTables();
+  void AddInstance(const GeometryInstance& instance, uint32_t firstPrimitive);
   void ComputeBounds();
   SceneHandle NewScene() const;
   void AttachEntries(RTCScene target, size_t first, size_t count);
@@ -141,7 +161,8 @@ struct GeometryScene::Implementation {
   bool Accept(const Ray& ray) const {
     const float direction = std::abs(ray.direction.x) + std::abs(ray.direction.y) + std::abs(ray.direction.z);
     const float origin = std::abs(ray.origin.x) + std::abs(ray.origin.y) + std::abs(ray.origin.z);
-    if (direction > 0 && origin + direction < largest && ray.tMax >= 0) [[likely]] return true;
+    if (direction > 0 && origin + direction < largest && ray.tMax >= 0) [[likely]]
+      return true;
     rejected.fetch_add(1, std::memory_order_relaxed);
     return false;
   }
@@ -151,10 +172,21 @@ void GeometryScene::Implementation::AddEntries(const std::vector<GeometryEntry>&
   for (const GeometryEntry& entry : entries) {
     PrimitiveRecord record;
     switch (entry.shape.index()) {
-      case 0: record.shape = std::get<0>(entry.shape).get(); break;
-      case 1: record.shape = std::get<1>(entry.shape).get(); break;
-      case 2: record.shape = &quadrics.emplace_back(std::get<2>(entry.shape)); break;
-      default: record.shape = std::get<3>(entry.shape).get(); break;
+      case 0:
+        record.shape = std::get<0>(entry.shape).get();
+        break;
+      case 1:
+        record.shape = std::get<1>(entry.shape).get();
+        break;
+      case 2:
+        record.shape = &quadrics.emplace_back(std::get<2>(entry.shape));
+        break;
+      case 3:
+        record.shape = std::get<3>(entry.shape).get();
+        break;
+      default:
+        record.shape = std::get<4>(entry.shape).get();
+        break;
     }
     std::visit([](const auto* shape) { CheckShape(*shape); }, record.shape);
     record.alpha = entry.attributes.alpha.get();
@@ -170,19 +202,58 @@ void GeometryScene::Implementation::FillTables() {
   std::vector<uint32_t> firstPrimitives;
   for (const GeometryObject& object : description.objects) {
     firstPrimitives.push_back(static_cast<uint32_t>(tables.primitives.size()));
+    for (const GeometryEntry& entry : object.entries) {
+      if (entry.shape.index() == 4) throw Error("a custom surface cannot be part of an object");
+    }
     AddEntries(object.entries);
   }
   for (const GeometryInstance& instance : description.instances) {
     if (instance.object >= description.objects.size()) throw Error("instance of an object that does not exist");
-    const Affine& m = instance.toRender;
-    if (!IsUsable(m.translation) || !IsUsable(m.linear[0]) || !IsUsable(m.linear[1]) || !IsUsable(m.linear[2])) {
-      throw Error("instance: the transform is not finite, or reaches farther than 1e18");
-    }
-    largest = std::min(largest, LargestThrough(instance.toObject));
-    tables.instances.push_back(
-        {instance.toRender, instance.toObject, firstPrimitives[instance.object], instance.firstLight});
+    AddInstance(instance, firstPrimitives[instance.object]);
   }
 }
+
+void GeometryScene::Implementation::AddInstance(const GeometryInstance& instance, uint32_t firstPrimitive) {
+  InstanceRecord record;
+  record.object = instance.object;
+  record.firstPrimitive = firstPrimitive;
+  record.firstLight = instance.firstLight;
+  const auto add = [&](const Affine& toRender, const Affine& toObject, float begin, float end) {
+    CheckPlacement(toRender);
+    largest = std::min(largest, LargestThrough(toObject));
+    record.placement = {toRender, toObject};
+    record.begin = begin;
+    record.end = end;
+    tables.instances.push_back(record);
+  };
+  if (!instance.motion) return add(instance.toRender, instance.toObject, 0, 1);
+  // Embree spreads the keys of a geometry evenly over the time that it is there: before and after its motion something
+  // is another geometry.
+  const Motion& motion = *instance.motion;
+  for (const Affine& key : motion.Keys()) {
+    CheckPlacement(key);
+    largest = std::min(largest, LargestThrough(key.Inverse()));
+  }
+  const Affine &first = motion.Keys().front(), &last = motion.Keys().back();
+  if (motion.Begin() > 0) add(first, first.Inverse(), 0, motion.Begin());
+  if (motion.End() < 1) add(last, last.Inverse(), motion.End(), 1);
+  record.motion = &motion;
+  if (motion.Begin() < motion.End()) add(first, first.Inverse(), motion.Begin(), motion.End());
+}
+
+namespace {
+
+void AddPlacedBox(const Affine& toRender, const Bounds3& box, Bounds3& bounds) {
+  if (box.IsEmpty()) return;
+  for (int i = 0; i < 8; ++i) {
+    const Point3 corner = toRender.Point(box.Corner(i));
+    const Vector3 error = toRender.PointError(box.Corner(i), Vector3(0.0f));
+    bounds.Add(corner - error);
+    bounds.Add(corner + error);
+  }
+}
+
+}  // namespace
 
 void GeometryScene::Implementation::ComputeBounds() {
   for (const GeometryEntry& entry : description.entries) bounds.Add(lampyr::GetBounds(entry.shape));
@@ -195,13 +266,12 @@ void GeometryScene::Implementation::ComputeBounds() {
       }
     }
     for (const Bounds3& box : object) {
-      if (box.IsEmpty()) continue;
-      for (int i = 0; i < 8; ++i) {
-        const Point3 corner = instance.toRender.Point(box.Corner(i));
-        const Vector3 error = instance.toRender.PointError(box.Corner(i), Vector3(0.0f));
-        bounds.Add(corner - error);
-        bounds.Add(corner + error);
+      if (!instance.motion) {
+        AddPlacedBox(instance.toRender, box, bounds);
+        continue;
       }
+      // A point moves in straight lines from key to key: where it is at the keys bounds it.
+      for (const Affine& key : instance.motion->Keys()) AddPlacedBox(key, box, bounds);
     }
   }
 }
@@ -222,8 +292,8 @@ void SetVertices(RTCGeometry geometry, const std::vector<Point3>& positions) {
                                sizeof(Point3), positions.size());
     return;
   }
-  void* buffer = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Point3),
-                                         positions.size());
+  void* buffer =
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Point3), positions.size());
   if (buffer) std::copy(positions.begin(), positions.end(), static_cast<Point3*>(buffer));
 }
 
@@ -255,11 +325,20 @@ RTCGeometry NewGeometry(RTCDevice device, const PreparedQuadric&) {
   return NewUserGeometry(device, 1, QuadricBounds, QuadricIntersect, QuadricOccluded);
 }
 
+RTCGeometry NewGeometry(RTCDevice device, const CustomSurface& surface) {
+  RTCGeometry geometry = NewUserGeometry(device, 1, CustomBounds, CustomIntersect, CustomOccluded);
+  if (surface.Moves()) rtcSetGeometryTimeStepCount(geometry, kCustomTimeSteps);
+  return geometry;
+}
+
 RTCGeometryType CurveType(CurveSet::Kind kind) {
   switch (kind) {
-    case CurveSet::Kind::Flat: return RTC_GEOMETRY_TYPE_FLAT_BEZIER_CURVE;
-    case CurveSet::Kind::Cylinder: return RTC_GEOMETRY_TYPE_ROUND_BEZIER_CURVE;
-    case CurveSet::Kind::Ribbon: break;
+    case CurveSet::Kind::Flat:
+      return RTC_GEOMETRY_TYPE_FLAT_BEZIER_CURVE;
+    case CurveSet::Kind::Cylinder:
+      return RTC_GEOMETRY_TYPE_ROUND_BEZIER_CURVE;
+    case CurveSet::Kind::Ribbon:
+      break;
   }
   return RTC_GEOMETRY_TYPE_NORMAL_ORIENTED_BEZIER_CURVE;
 }
@@ -268,13 +347,13 @@ RTCGeometry NewGeometry(RTCDevice device, const CurveSet& curves) {
   const size_t count = curves.segments.size();
   if (count == 0) return nullptr;
   RTCGeometry geometry = rtcNewGeometry(device, CurveType(curves.kind));
-  auto* vertices = static_cast<glm::vec4*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, sizeof(glm::vec4), 4 * count));
-  auto* indices = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT,
-                                                                 sizeof(uint32_t), count));
+  auto* vertices = static_cast<glm::vec4*>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, sizeof(glm::vec4), 4 * count));
+  auto* indices = static_cast<uint32_t*>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, sizeof(uint32_t), count));
   const bool ribbon = curves.kind == CurveSet::Kind::Ribbon;
-  auto* normals = ribbon ? static_cast<Normal3*>(rtcSetNewGeometryBuffer(
-                               geometry, RTC_BUFFER_TYPE_NORMAL, 0, RTC_FORMAT_FLOAT3, sizeof(Normal3), 4 * count))
+  auto* normals = ribbon ? static_cast<Normal3*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_NORMAL, 0,
+                                                                         RTC_FORMAT_FLOAT3, sizeof(Normal3), 4 * count))
                          : nullptr;
   if (!vertices || !indices || (ribbon && !normals)) return geometry;  // the device's error says it
   for (size_t i = 0; i < count; ++i) {
@@ -292,6 +371,20 @@ void Attach(RTCScene scene, RTCGeometry geometry, uint32_t id) {
   rtcCommitGeometry(geometry);
   rtcAttachGeometryByID(scene, geometry, id);
   rtcReleaseGeometry(geometry);
+}
+
+void SetTransforms(RTCGeometry geometry, const InstanceRecord& instance) {
+  const auto set = [&](unsigned step, const Affine& m) {
+    const Vector3 columns[4] = {m.linear[0], m.linear[1], m.linear[2], m.translation};
+    rtcSetGeometryTransform(geometry, step, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns);
+  };
+  const bool comesOrGoes = instance.begin > 0 || instance.end < 1;
+  if (!instance.motion && !comesOrGoes) return set(0, instance.placement.toRender);
+  const std::vector<Affine> stays(2, instance.placement.toRender);
+  const std::vector<Affine>& keys = instance.motion ? instance.motion->Keys() : stays;
+  rtcSetGeometryTimeStepCount(geometry, static_cast<unsigned>(keys.size()));
+  rtcSetGeometryTimeRange(geometry, instance.begin, instance.end);
+  for (size_t i = 0; i < keys.size(); ++i) set(static_cast<unsigned>(i), keys[i]);
 }
 
 }  // namespace
@@ -318,8 +411,8 @@ void GeometryScene::Implementation::BuildScenes() {
   scene = NewScene();
   AttachEntries(scene.get(), 0, description.entries.size());
   for (size_t i = 0; i < tables.instances.size(); ++i) {
-    const uint32_t object = description.instances[i].object;
     const InstanceRecord& instance = tables.instances[i];
+    const uint32_t object = instance.object;
     if (!objectScenes[object]) {
       objectScenes[object] = NewScene();
       AttachEntries(objectScenes[object].get(), instance.firstPrimitive, description.objects[object].entries.size());
@@ -327,9 +420,7 @@ void GeometryScene::Implementation::BuildScenes() {
     }
     RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_INSTANCE);
     rtcSetGeometryInstancedScene(geometry, objectScenes[object].get());
-    const Affine& m = instance.toRender;
-    const Vector3 columns[4] = {m.linear[0], m.linear[1], m.linear[2], m.translation};
-    rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns);
+    SetTransforms(geometry, instance);
     rtcSetGeometryMask(geometry, 0xffffffffu);
     Attach(scene.get(), geometry, tables.firstInstanceId + static_cast<uint32_t>(i));
   }
@@ -348,11 +439,11 @@ void FillRay(const Ray& ray, uint32_t kinds, float tMax, RTCRay& out) {
   out.org_x = ray.origin.x;
   out.org_y = ray.origin.y;
   out.org_z = ray.origin.z;
-  out.tnear = kNearest;
+  out.tnear = kNearestHit;
   out.dir_x = ray.direction.x;
   out.dir_y = ray.direction.y;
   out.dir_z = ray.direction.z;
-  out.time = 0;
+  out.time = ray.time;
   out.tfar = tMax;
   out.mask = kinds;
   out.id = 0;
@@ -403,11 +494,17 @@ SurfacePoint GeometryScene::GetSurfacePoint(const Ray& ray, const RayHit& hit) c
   const PrimitiveRecord& record = tables.primitives[hit.primitive];
   SurfacePoint point;
   if (hit.instance == kNoIndex) [[likely]] {
-    point = EvaluatePrimitive(record, ray.origin, ray.direction, hit);
+    point = EvaluatePrimitive(record, ray, hit);
   } else {
     const InstanceRecord& instance = tables.instances[hit.instance];
-    point = EvaluatePrimitive(record, instance.toObject.Point(ray.origin), instance.toObject.Vector(ray.direction), hit);
-    ApplyInstance(instance, point);
+    std::optional<InstancePlacement> moved;
+    if (instance.motion) [[unlikely]]
+      moved = PlacementAt(*instance.motion, ray.time);
+    const InstancePlacement& placement = moved ? *moved : instance.placement;
+    const Affine& toObject = placement.toObject;
+    point =
+        EvaluatePrimitive(record, {toObject.Point(ray.origin), toObject.Vector(ray.direction), hit.t, ray.time}, hit);
+    ApplyInstance(placement, point);
   }
   point.primitive = hit.primitive;
   point.patch = hit.patch;
@@ -425,9 +522,13 @@ int32_t GeometryScene::LightAt(uint32_t primitive, uint32_t instance) const {
   return light < 0 || instance == kNoIndex ? light : light + tables.instances[instance].firstLight;
 }
 
-size_t GeometryScene::PrimitiveCount() const { return implementation_->tables.primitives.size(); }
+size_t GeometryScene::PrimitiveCount() const {
+  return implementation_->tables.primitives.size();
+}
 
-const Bounds3& GeometryScene::GetBounds() const { return implementation_->bounds; }
+const Bounds3& GeometryScene::GetBounds() const {
+  return implementation_->bounds;
+}
 
 BoundingSphere GeometryScene::GetBoundingSphere() const {
   const Bounds3& bounds = implementation_->bounds;
@@ -439,6 +540,8 @@ BoundingSphere GeometryScene::GetBoundingSphere() const {
   return {bounds.Center(), padded > 0 ? padded : 1.0f};
 }
 
-uint64_t GeometryScene::RejectedRays() const { return implementation_->rejected.load(std::memory_order_relaxed); }
+uint64_t GeometryScene::RejectedRays() const {
+  return implementation_->rejected.load(std::memory_order_relaxed);
+}
 
 }  // namespace lampyr

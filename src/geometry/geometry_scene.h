@@ -7,6 +7,7 @@
 
 #include "geometry/ray.h"
 #include "geometry/shapes.h"
+#include "math/motion.h"
 
 namespace lampyr {
 
@@ -31,7 +32,7 @@ struct GeometryEntry {
   GeometryAttributes attributes;
 };
 
-// Objects to be instanced are groups of entries in the object's own space.
+// Objects to be instanced are groups of entries in the object's own space. A CustomSurface cannot be one of them.
 struct GeometryObject {
   std::vector<GeometryEntry> entries;
 };
@@ -42,6 +43,7 @@ struct GeometryInstance {
   Affine toObject;
   // Index of the first light of this instance: entry light indices of the object are relative to it.
   int32_t firstLight = 0;
+  std::shared_ptr<const Motion> motion = nullptr;  // null: stays. Otherwise the transforms above are not looked at
 };
 
 struct GeometryDescription {

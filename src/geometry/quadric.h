@@ -12,13 +12,6 @@
 
 namespace lampyr {
 
-// A ray in double precision, in any space; the direction need not be unit length.
-struct RayDouble {
-  Point3d origin;
-  Vector3d direction;
-  double tMin = 0, tMax = 0;  // open below, closed above
-};
-
 // Where a ray meets a quadric. `coordinates` are precise to an ulp of the radius and cheap to make, no angles:
 // sphere: its unit normal, octahedrally mapped; disk: (x, y) / radius; cylinder: diamond angle of φ in [0,4) and v.
 struct QuadricHit {

@@ -22,6 +22,16 @@ struct Ray {
   float time = 0;  // in [0,1] over the shutter
 };
 
+// A ray in double precision, in any space; the direction need not be unit length.
+struct RayDouble {
+  Point3d origin;
+  Vector3d direction;
+  double tMin = 0, tMax = 0;  // open below, closed above
+};
+
+// Embree's interval is closed below: a hit at the very origin is none.
+inline constexpr float kNearestHit = 1e-25f;
+
 inline constexpr uint32_t kNoIndex = 0xffffffffu;
 
 // The nearest hit along a ray: indices and parametric coordinates.

@@ -5,12 +5,14 @@
 #include <cstdint>
 #include <limits>
 
+#include "geometry/rounding.h"
+
 namespace lampyr {
 
 namespace {
 
-// The next representable value away from `value` in the direction of `offset`. By the bits: a call of std::nextafter costs
-// more than all the rest of spawning a ray.
+// The next representable value away from `value` in the direction of `offset`. By the bits: a call of std::nextafter
+// costs more than all the rest of spawning a ray.
 float RoundAway(float value, float offset) {
   if (offset == 0 || !std::isfinite(value)) return value;
   if (value == 0) return std::copysign(std::numeric_limits<float>::min(), offset);  // denormals are flushed
@@ -26,6 +28,12 @@ Point3 OffsetRayOrigin(const Point3& position, const Vector3& positionError, con
   const Vector3 offset = Ng * (glm::dot(direction, Ng) < 0 ? -distance : distance);
   const Point3 moved = position + offset;
   return {RoundAway(moved.x, offset.x), RoundAway(moved.y, offset.y), RoundAway(moved.z, offset.z)};
+}
+
+Vector3 InstanceRayError(const Affine& toRender, const Affine& toObject, const Point3& origin) {
+  const auto absolute = [](const glm::mat3& m) { return glm::mat3(glm::abs(m[0]), glm::abs(m[1]), glm::abs(m[2])); };
+  const Vector3 inObject = Gamma(4) * (absolute(toObject.linear) * glm::abs(origin) + glm::abs(toObject.translation));
+  return absolute(toRender.linear) * inObject;
 }
 
 Ray SpawnRayTo(const SurfacePoint& from, const Point3& target, const Vector3& targetError, const Normal3& targetNg,

@@ -3,12 +3,17 @@
 #pragma once
 
 #include "geometry/ray.h"
+#include "math/transform.h"
 
 namespace lampyr {
 
 // `position` moved along ±Ng to the side that `direction` leaves to, beyond the error box, then rounded away.
 Point3 OffsetRayOrigin(const Point3& position, const Vector3& positionError, const Normal3& Ng,
                        const Vector3& direction);
+
+// A ray that starts at `origin` is carried into an instance's space in float: bound on what is rounded there, back in
+// render space. Far more than a point's own error where the instance is turned and lies far from render space's origin.
+Vector3 InstanceRayError(const Affine& toRender, const Affine& toObject, const Point3& origin);
 
 // A ray from a surface point along the unit `direction`.
 inline Ray SpawnRay(const SurfacePoint& from, const Vector3& direction, float time) {

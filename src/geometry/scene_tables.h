@@ -13,29 +13,40 @@ struct SceneTables;
 
 // What Embree's callbacks and GetSurfacePoint need of a primitive.
 struct PrimitiveRecord {
-  std::variant<const TriangleMesh*, const BilinearMesh*, const PreparedQuadric*, const CurveSet*> shape;
+  std::variant<const TriangleMesh*, const BilinearMesh*, const PreparedQuadric*, const CurveSet*, const CustomSurface*>
+      shape;
   const AlphaSource* alpha = nullptr;  // null: opaque
   const SceneTables* tables = nullptr;
 };
 
-struct InstanceRecord {
+struct InstancePlacement {
   Affine toRender, toObject;
+};
+
+// As Embree knows it: for some part of the shutter, as a whole or moving by keys that divide that part evenly.
+struct InstanceRecord {
+  InstancePlacement placement;  // unless it moves
+  uint32_t object = 0;
   uint32_t firstPrimitive = 0;  // of the object
   int32_t firstLight = 0;
+  const Motion* motion = nullptr;  // null: stays while it is there
+  float begin = 0, end = 1;        // shutter times
 };
+
+// Where a moving instance is.
+InstancePlacement PlacementAt(const Motion& motion, float time);
 
 struct SceneTables {
   std::vector<PrimitiveRecord> primitives;  // entries of the scene, then of object 0, 1, …
   std::vector<GeometryAttributes> attributes;
-  std::vector<InstanceRecord> instances;
+  std::vector<InstanceRecord> instances;  // what comes or goes while the shutter is open is several
   uint32_t firstInstanceId = 0;  // Embree's id of instance 0; the scene's own entries come before
 };
 
-// Texture coordinates and position of a hit, for cut-outs: in the space of the primitive. `hit` needs t, patch, u and v.
-SurfacePoint EvaluatePrimitive(const PrimitiveRecord& record, const Point3& origin, const Vector3& direction,
-                               const RayHit& hit);
+// Point of a hit in the space of the primitive, which `ray` is in too. `hit` needs t, patch, u and v.
+SurfacePoint EvaluatePrimitive(const PrimitiveRecord& record, const Ray& ray, const RayHit& hit);
 
 // Carries a point of an instanced object over to render space.
-void ApplyInstance(const InstanceRecord& instance, SurfacePoint& point);
+void ApplyInstance(const InstancePlacement& instance, SurfacePoint& point);
 
 }  // namespace lampyr

@@ -4,6 +4,7 @@
 #include <glm/matrix.hpp>
 
 #include "geometry/curves.h"
+#include "geometry/ellipsoid_area.h"
 
 namespace lampyr {
 
@@ -27,8 +28,8 @@ Bounds3 BoundsOf(const Quadric& q) {
   Bounds3 bounds;
   if (q.IsFullSphere()) {
     for (int i = 0; i < 3; ++i) {
-      const float extent = q.radius * glm::length(Vector3(q.toRender.linear[0][i], q.toRender.linear[1][i],
-                                                          q.toRender.linear[2][i]));
+      const float extent =
+          q.radius * glm::length(Vector3(q.toRender.linear[0][i], q.toRender.linear[1][i], q.toRender.linear[2][i]));
       bounds.min[i] = q.toRender.translation[i] - extent;
       bounds.max[i] = q.toRender.translation[i] + extent;
     }
@@ -83,8 +84,8 @@ struct AreaStretch {
   // The common stretch of all directions of a similarity, 0 for any other map.
   double Uniform() const {
     const double x = glm::length(cofactors[0]), y = glm::length(cofactors[1]), z = glm::length(cofactors[2]);
-    const double skew = std::abs(glm::dot(cofactors[0], cofactors[1])) + std::abs(glm::dot(cofactors[1], cofactors[2])) +
-                        std::abs(glm::dot(cofactors[2], cofactors[0]));
+    const double skew = std::abs(glm::dot(cofactors[0], cofactors[1])) +
+                        std::abs(glm::dot(cofactors[1], cofactors[2])) + std::abs(glm::dot(cofactors[2], cofactors[0]));
     const double tolerance = 1e-6;
     return std::abs(x - y) + std::abs(x - z) <= tolerance * x && skew <= tolerance * x * x ? x : 0;
   }
@@ -92,32 +93,48 @@ struct AreaStretch {
 
 double SphereArea(const Quadric& q, const AreaStretch& stretch) {
   const double r = static_cast<double>(q.radius), phiMax = static_cast<double>(q.phiMax);
-  const double low = std::max(static_cast<double>(q.zMin) / r, -1.0), high = std::min(static_cast<double>(q.zMax) / r, 1.0);
+  const double low = std::max(static_cast<double>(q.zMin) / r, -1.0),
+               high = std::min(static_cast<double>(q.zMax) / r, 1.0);
   if (const double uniform = stretch.Uniform(); uniform > 0) return r * r * (high - low) * phiMax * uniform;
+  if (q.IsFullSphere()) return 4 * static_cast<double>(kPi) * r * r * MeanStretchOverSphere(stretch.cofactors);
   // By θ rather than by z: smooth at the poles.
-  return r * r * Integrate(std::acos(high), std::acos(low), [&](double theta) {
-    const double sinTheta = std::sin(theta), z = std::cos(theta);
-    return sinTheta * Integrate(0.0, phiMax, [&](double phi) {
-      return stretch({sinTheta * std::cos(phi), sinTheta * std::sin(phi), z});
-    }, 1e-8);
-  }, 1e-7);
+  return r * r *
+         Integrate(
+             std::acos(high), std::acos(low),
+             [&](double theta) {
+               const double sinTheta = std::sin(theta), z = std::cos(theta);
+               return sinTheta * Integrate(
+                                     0.0, phiMax,
+                                     [&](double phi) {
+                                       return stretch({sinTheta * std::cos(phi), sinTheta * std::sin(phi), z});
+                                     },
+                                     1e-8);
+             },
+             1e-7);
 }
 
 double AreaOf(const Quadric& q) {
   const AreaStretch stretch(glm::dmat3(q.toRender.linear));
   const double r = static_cast<double>(q.radius), phiMax = static_cast<double>(q.phiMax);
   switch (q.kind) {
-    case Quadric::Kind::Sphere: return SphereArea(q, stretch);
+    case Quadric::Kind::Sphere:
+      return SphereArea(q, stretch);
     case Quadric::Kind::Disk: {
       const double inner = static_cast<double>(q.innerRadius);
       return 0.5 * phiMax * (r * r - inner * inner) * stretch({0, 0, 1});
     }
-    case Quadric::Kind::Cylinder: break;
+    case Quadric::Kind::Cylinder:
+      break;
   }
   const double height = static_cast<double>(q.zMax) - static_cast<double>(q.zMin);
-  return r * height * Integrate(0.0, phiMax, [&](double phi) {
-    return stretch({std::cos(phi), std::sin(phi), 0});
-  }, 1e-9);
+  if (q.phiMax >= 2 * kPi) return r * height * phiMax * MeanStretchOverCircle(stretch.cofactors);
+  return r * height *
+         Integrate(
+             0.0, phiMax,
+             [&](double phi) {
+               return stretch({std::cos(phi), std::sin(phi), 0});
+             },
+             1e-9);
 }
 
 double AreaOf(const TriangleMesh& mesh) {
@@ -134,11 +151,18 @@ double AreaOf(const BilinearMesh& mesh) {
   for (const auto& q : mesh.patches) {
     const Point3d p00(mesh.positions[q[0]]), p10(mesh.positions[q[1]]), p01(mesh.positions[q[2]]),
         p11(mesh.positions[q[3]]);
-    sum += Integrate(0.0, 1.0, [&](double u) {
-      return Integrate(0.0, 1.0, [&](double v) {
-        return glm::length(glm::cross((p10 - p00) * (1 - v) + (p11 - p01) * v, (p01 - p00) * (1 - u) + (p11 - p10) * u));
-      }, 1e-8);
-    }, 1e-7);
+    sum += Integrate(
+        0.0, 1.0,
+        [&](double u) {
+          return Integrate(
+              0.0, 1.0,
+              [&](double v) {
+                return glm::length(
+                    glm::cross((p10 - p00) * (1 - v) + (p11 - p01) * v, (p01 - p00) * (1 - u) + (p11 - p10) * u));
+              },
+              1e-8);
+        },
+        1e-7);
   }
   return sum;
 }
@@ -148,29 +172,44 @@ double AreaOf(const CurveSet& curves) {
   const double around = curves.kind == CurveSet::Kind::Cylinder ? 2 * static_cast<double>(kPi) : 2.0;
   double sum = 0;
   for (uint32_t i = 0; i < curves.segments.size(); ++i) {
-    sum += around * Integrate(0.0, 1.0, [&](double x) {
-      const float u = static_cast<float>(x);
-      return glm::length(Vector3d(CurveTangent(curves, i, u))) * static_cast<double>(CurveRadius(curves, i, u));
-    }, 1e-6);
+    sum += around * Integrate(
+                        0.0, 1.0,
+                        [&](double x) {
+                          const float u = static_cast<float>(x);
+                          return glm::length(Vector3d(CurveTangent(curves, i, u))) *
+                                 static_cast<double>(CurveRadius(curves, i, u));
+                        },
+                        1e-6);
   }
   return sum;
 }
 
+double AreaOf(const CustomSurface&) {
+  return 0;
+}
+
 // Looks through the pointer that all shapes but quadrics are held by.
-const Quadric& Plain(const Quadric& q) { return q; }
+const Quadric& Plain(const Quadric& q) {
+  return q;
+}
 template <class T>
-const T& Plain(const std::shared_ptr<const T>& p) { return *p; }
+const T& Plain(const std::shared_ptr<const T>& p) {
+  return *p;
+}
 
 struct ShapeBounds {
   Bounds3 operator()(const std::shared_ptr<const TriangleMesh>& m) const { return BoundsOf(m->positions); }
   Bounds3 operator()(const std::shared_ptr<const BilinearMesh>& m) const { return BoundsOf(m->positions); }
   Bounds3 operator()(const std::shared_ptr<const CurveSet>& c) const { return BoundsOf(*c); }
   Bounds3 operator()(const Quadric& q) const { return BoundsOf(q); }
+  Bounds3 operator()(const std::shared_ptr<const CustomSurface>& s) const { return s->GetBounds(0, 1); }
 };
 
 }  // namespace
 
-Bounds3 GetBounds(const Shape& shape) { return std::visit(ShapeBounds{}, shape); }
+Bounds3 GetBounds(const Shape& shape) {
+  return std::visit(ShapeBounds{}, shape);
+}
 
 double GetArea(const Shape& shape) {
   return std::visit([](const auto& s) { return AreaOf(Plain(s)); }, shape);

@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "geometry/custom_surface.h"
 #include "math/bounds.h"
 #include "math/transform.h"
 #include "math/vec.h"
@@ -64,13 +65,13 @@ struct CurveSet {
 };
 
 using Shape = std::variant<std::shared_ptr<const TriangleMesh>, std::shared_ptr<const BilinearMesh>, Quadric,
-                           std::shared_ptr<const CurveSet>>;
+                           std::shared_ptr<const CurveSet>, std::shared_ptr<const CustomSurface>>;
 
-// Bounds in render space.
+// Bounds in render space; of something that moves, over the whole shutter.
 Bounds3 GetBounds(const Shape& shape);
 
 // Surface area in render space, exact for triangle meshes, by quadrature (relative error < 1e-5) for the rest under
-// a transform that is not a similarity.
+// a transform that is not a similarity. 0 for a CustomSurface, which only says how rays meet it.
 double GetArea(const Shape& shape);
 
 }  // namespace lampyr

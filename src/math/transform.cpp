@@ -28,6 +28,11 @@ Vector3 Affine::PointError(const Point3& p, const Vector3& error) const {
   return bound;
 }
 
+Affine Affine::Inverse() const {
+  const glm::dmat3 inverse = glm::inverse(glm::dmat3(linear));
+  return {glm::mat3(inverse), Vector3(-(inverse * Vector3d(translation)))};
+}
+
 Transform::Transform(const glm::dmat4& m) : m_(m), inverse_(glm::inverse(m)) {}
 
 Transform Transform::Translate(const Vector3d& offset) {

@@ -21,6 +21,8 @@ struct Affine {
   // Bound on the absolute rounding error of Point(p) when p itself is off by at most `error` per component.
   Vector3 PointError(const Point3& p, const Vector3& error) const;
   bool SwapsHandedness() const { return glm::determinant(linear) < 0; }
+  // Made in double and rounded.
+  Affine Inverse() const;
 };
 
 // An invertible 4×4 matrix with its inverse, double. Applies to column vectors: (A*B)(p) = A(B(p)).

@@ -6,6 +6,7 @@
 
 #include "app/json_report.h"
 #include "base/parallel.h"
+#include "integrators/path/path_integrator.h"
 #include "sampling/rng.h"
 #include "sampling/warp.h"
 #include "support/render_scene.h"

@@ -89,6 +89,28 @@ TEST_F(Cli, SameFileForAnyNumberOfThreads) {
   EXPECT_NE(Read("a.exr"), Read("c.exr"));
 }
 
+TEST_F(Cli, TracesLightByOptionAndByScene) {
+  ASSERT_EQ(Run("render scene.pbrt --integrator light -o a.exr --threads 1 --stats stats.json --quiet").exitCode, 0);
+  EXPECT_EQ(ReadImage(folder_ / "a.exr").metadata.at("lampyr.integrator"), "light");
+  EXPECT_NE(Read("stats.json").find("\"integrator\": \"light\""), std::string::npos);
+  for (const char* name : {"light", "lightpath"}) {
+    Write("light.pbrt", std::string("Integrator \"") + name + "\"\n" + kScene);
+    ASSERT_EQ(Run("render light.pbrt --strict -o b.exr --threads 3 --quiet").exitCode, 0);
+    EXPECT_EQ(ReadImage(folder_ / "a.exr").data, ReadImage(folder_ / "b.exr").data);
+  }
+  ASSERT_EQ(Run("render light.pbrt --integrator path -o c.exr --quiet").exitCode, 0);
+  EXPECT_EQ(ReadImage(folder_ / "c.exr").metadata.at("lampyr.integrator"), "path");
+  EXPECT_EQ(Run("render light.pbrt --time 1s -o d.exr --quiet").exitCode, 0);
+  EXPECT_EQ(Run("render light.pbrt --target-error 0.2 -o d.exr --quiet").exitCode, 0);
+  EXPECT_NE(Run("render scene.pbrt --integrator magic").output.find("there are: path, light"), std::string::npos);
+  EXPECT_NE(Run("render --help").output.find("path | light"), std::string::npos);
+  Write("light.pbrt", std::string("Integrator \"lihgt\"\n") + kScene);
+  const Outcome wrong = Run("render light.pbrt");
+  EXPECT_EQ(wrong.exitCode, 2);
+  EXPECT_NE(wrong.output.find("light.pbrt:1"), std::string::npos) << wrong.output;
+  EXPECT_NE(wrong.output.find("did you mean \"light\""), std::string::npos) << wrong.output;
+}
+
 TEST_F(Cli, QuietIsQuiet) {
   EXPECT_EQ(Run("render scene.pbrt -o a.exr --quiet").output, "");
 }

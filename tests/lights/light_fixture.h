@@ -27,7 +27,7 @@ inline ParameterList Parse(const std::string& type, const std::string& parameter
   return isArea ? scene.areaLights.at(0).parameters : scene.lights.at(0).light.parameters;
 }
 
-inline std::unique_ptr<BuiltLight> Build(const std::string& type, const std::string& parameters,
+inline std::unique_ptr<BuiltLight> Build(const LightType& type, const std::string& parameters,
                                          const Transform& placement = Transform(), const Shape* shape = nullptr,
                                          std::shared_ptr<const AlphaSource> alpha = nullptr) {
   auto built = std::make_unique<BuiltLight>();
@@ -38,13 +38,18 @@ inline std::unique_ptr<BuiltLight> Build(const std::string& type, const std::str
     built->shape = std::make_unique<Shape>(*shape);
     built->build.shape = built->shape.get();
   }
-  built->light =
-      MakeLight(*FindLightType(type, shape != nullptr), Parse(type, parameters, shape != nullptr), built->build);
+  built->light = MakeLight(type, Parse(type.name, parameters, shape != nullptr), built->build);
   built->context.transform = &built->build.transform;
   built->context.scene = {Point3(0.0f), 10};
   built->context.bidirectional = true;
   built->context.u = built->context.uDirection = Point2(0.3f, 0.6f);
   return built;
+}
+
+inline std::unique_ptr<BuiltLight> Build(const std::string& type, const std::string& parameters,
+                                         const Transform& placement = Transform(), const Shape* shape = nullptr,
+                                         std::shared_ptr<const AlphaSource> alpha = nullptr) {
+  return Build(*FindLightType(type, shape != nullptr), parameters, placement, shape, std::move(alpha));
 }
 
 inline Shape Sphere(float radius, const Transform& transform = Transform()) {

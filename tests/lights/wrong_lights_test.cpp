@@ -21,6 +21,7 @@ enum class Fault {
   OtherRadiance,
   EmitDensityOff,
   EstimateIsZero,
+  DarkPhotonsAreNone,
 };
 
 // A sound light with one fault.
@@ -69,6 +70,7 @@ class WrongLight final : public Light {
   std::optional<EmissionSample> GenerateEmission(const LightContext& context) const override {
     auto photon = light_.GenerateEmission(context);
     if (!photon) return photon;
+    if (fault_ == Fault::DarkPhotonsAreNone && photon->emissionCosine < 0.3f) return std::nullopt;
     if (fault_ == Fault::EmissionNotCosine) photon->pdfEmitDirection = PdfSolidAngle(0.5f * kInvPi);
     if (fault_ == Fault::EmitDensityOff) photon->pdfEmit = photon->pdfEmit * 1.05f;
     if (fault_ == Fault::DiskNotRotated) {
@@ -143,6 +145,7 @@ TEST(WrongLights, EveryFaultOfAnAreaLightIsFound) {
     EXPECT_TRUE(Failures("diffuse", shape, Fault::EmitDensityOff).count("emission-integral"));
     EXPECT_TRUE(Failures("diffuse", shape, Fault::EmitDensityOff).count("power"));
     EXPECT_TRUE(Failures("diffuse", shape, Fault::EstimateIsZero).count("estimate"));
+    EXPECT_TRUE(Failures("diffuse", shape, Fault::DarkPhotonsAreNone).count("emission-origin"));
   }
 }
 

@@ -6,7 +6,6 @@
 
 #include "app/render_run.h"
 #include "app/scene_builder.h"
-#include "integrators/path/path_integrator.h"
 #include "scene/scene_description.h"
 
 namespace lampyr::test {
@@ -18,13 +17,13 @@ struct Rendered {
 };
 
 inline Rendered RenderBuilt(const BuiltScene& built, int samplesPerPixel, int threads) {
-  const auto integrator = MakePathIntegrator(built.scene, {built.settings.maxDepth});
+  const AnyIntegrator integrator = MakeIntegrator(built.scene, built.settings);
   Film film(built.settings.width, built.settings.height, built.settings.crop);
   StopConditions stop;
   stop.samplesPerPixel = samplesPerPixel;
   Rendered rendered;
   rendered.outcome =
-      Render(built.scene, *integrator, built.settings, stop, threads, film, [](const RenderOutcome&, double) {});
+      Render(built.scene, integrator, built.settings, stop, threads, film, [](const RenderOutcome&, double) {});
   rendered.image = film.Develop();
   rendered.rejectedRays = built.scene.geometry->RejectedRays();
   return rendered;

@@ -1,5 +1,5 @@
 // Reconstruction filters: samples against values, weights of mean 1, moments, pbrt-v4's shapes.
-#include "camera/pixel_filter.h"
+#include "film/pixel_filter.h"
 
 #include <gtest/gtest.h>
 

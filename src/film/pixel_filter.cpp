@@ -1,7 +1,7 @@
 // Reconstruction filters with pbrt-v4's parameters and shapes. Box and triangle are sampled in closed form; Gaussian,
-// Mitchell–Netravali ([Mitchell88]) and windowed sinc from quantiles of |f|, whose parts are weighted with the integral of
-// f over them, so that the weights' mean is 1.
-#include "camera/pixel_filter.h"
+// Mitchell–Netravali ([Mitchell88]) and windowed sinc from quantiles of |f|, whose parts are weighted with the integral
+// of f over them, so that the weights' mean is 1.
+#include "film/pixel_filter.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,8 +13,8 @@ namespace {
 
 using Kind = PixelFilterSettings::Kind;
 
-constexpr int kParts = 2048;          // of equal |f|, an even number: 0 lies between two
-constexpr int kSteps = 16 * kParts;   // of the quadrature (midpoint rule)
+constexpr int kParts = 2048;         // of equal |f|, an even number: 0 lies between two
+constexpr int kSteps = 16 * kParts;  // of the quadrature (midpoint rule)
 
 double Sinc(double x) {
   const double t = x * 3.14159265358979323846;
@@ -77,6 +77,9 @@ PixelFilter::Axis PixelFilter::MakeAxis(const PixelFilterSettings& settings, flo
   if (!(axis.integral > 0) || !(absoluteSum < 1e3 * sum)) {
     throw Error("the pixel filter has no positive integral over its radius");
   }
+  if (settings.kind == Kind::Gaussian && radius > 2 * settings.sigma) {  // else the difference of exponentials cancels
+    axis.edge = std::exp(-0.5f * Sqr(radius / settings.sigma)) / axis.integral;
+  }
   double sumBefore = 0;
   for (size_t part = 0, i = 0; part <= kParts; ++part) {
     const double share = absoluteSum * static_cast<double>(part) / kParts;
@@ -118,10 +121,13 @@ PixelFilter::Offset PixelFilter::Sample(const Point2& u) const {
   return result;
 }
 
-float PixelFilter::Evaluate(const Vector2& offset) const {
-  const double x = AxisValue(settings_, static_cast<double>(x_->radius), static_cast<double>(offset.x));
-  const double y = AxisValue(settings_, static_cast<double>(y_->radius), static_cast<double>(offset.y));
-  return static_cast<float>(x / static_cast<double>(x_->integral) * (y / static_cast<double>(y_->integral)));
+float PixelFilter::EvaluateAxis(const Axis& axis, float offset) const {
+  if (axis.edge > 0) {  // as AxisValue has it, at a fraction of the price: splats ask for it a lot
+    if (!(offset >= -axis.radius && offset < axis.radius)) return 0;
+    return std::max(std::exp(-0.5f * Sqr(offset / settings_.sigma)) / axis.integral - axis.edge, 0.0f);
+  }
+  const double value = AxisValue(settings_, static_cast<double>(axis.radius), static_cast<double>(offset));
+  return static_cast<float>(value / static_cast<double>(axis.integral));
 }
 
 }  // namespace lampyr

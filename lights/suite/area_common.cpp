@@ -1,0 +1,134 @@
+#include "lights/suite/area_common.h"
+
+namespace lampyr::suite {
+
+std::vector<Receiver> ReceiversAround(const Enclosure& enclosure, const Point3d& position, const Vector3d& normal) {
+  const Vector3d n = normal;
+  const Vector3d t = glm::normalize(glm::cross(n, std::abs(n.x) < 0.7 ? Vector3d(1, 0, 0) : Vector3d(0, 1, 0)));
+  const Vector3d s = glm::cross(n, t);
+  const double r = enclosure.radius;
+  const Point3d& m = enclosure.middle;
+  return {
+      {"near", Point3(position + n * (0.3 * r) + t * (0.05 * r))},
+      {"far", Point3(m + (n * 0.8 + t * 0.5 - s * 0.3) * (100 * r))},
+      {"grazing", Point3(m + t * (2 * r) + n * (0.05 * r))},
+      {"behind", Point3(m - n * (3 * r) + s * (0.2 * r))},
+      {"on-plane", Point3(position + s * (3 * r))},
+      {"inside", Point3(m + (t * 0.11 + s * 0.07 + n * 0.09) * r)},
+      {"on the axis", Point3(m + n * (2.5 * r))},
+      {"oblique", Point3(m + (n * 0.9 - t * 0.7 + s * 0.8) * r)},
+      {"beside", Point3(m + (s * 1.7 - n * 0.6 + t * 0.4) * r)},
+  };
+}
+
+void CheckAreaEmissionDirections(const SuiteSubject& subject, const SuiteOptions& options, const Enclosure& enclosure,
+                                 Rng& rng, SuiteReport& report) {
+  for (int i = 0; i < 3; ++i) {
+    const std::string where = subject.caseName + " from point " + std::to_string(i);
+    const auto start = FindFixedStart(subject, FixedPart::Position, 1e-5 * enclosure.radius, rng);
+    if (!start) {
+      // Nothing is emitted, or no random number decides on the position alone.
+      const bool emits = subject.light->GetPowerEstimate(subject.context).Average() > 0;
+      report.AddError(subject.name, "emission-directions", where, emits ? 1 : 0, 0.5);
+      continue;
+    }
+    const auto distance = static_cast<float>(2 * enclosure.radius);
+    const auto draw = [&](const Point2& v) {
+      auto photon = subject.light->GenerateEmission(start->Draw(v));
+      if (photon && photon->pdfEmitDirection.IsZero()) photon.reset();  // a place without a direction
+      return photon;
+    };
+    const auto drawDirection = [&](Rng& r) -> std::optional<Vector3> {
+      const auto photon = draw(r.NextPoint2());
+      if (!photon) return std::nullopt;
+      return photon->direction;
+    };
+    const std::vector<Vector3d> directions = DrawDirections(rng, options.photons / 2, drawDirection);
+    const std::vector<Vector3d> hints = DrawDirections(rng, kHints, drawDirection);
+    const Estimate share = LatticeMean(rng, 128, 32, [&](const float(&x)[4]) {
+      return draw({x[0], x[1]}) ? 1.0 : 0.0;
+    });
+    LightHit hit = HitOf(start->photon, distance);
+    DirectionQuadrature quadrature(
+        CapAround(hints), hints,
+        [&](const Vector3d& direction) -> Integrands {
+          hit.direction = -Vector3(direction);
+          const Point3 P = hit.position + distance * Vector3(direction);
+          const auto e = subject.light->EvaluateSamples(subject.context, hit, P);
+          return {e ? Value(e->pdfEmitDirection) : 0.0, 0};
+        },
+        rng);
+    report.AddProbability(subject.name, "emission-integral", where, EqualMeans(quadrature.Density(), share, 1e-3));
+    report.AddProbability(subject.name, "emission-directions", where, quadrature.Test(directions, options.photons / 2));
+  }
+}
+
+void CheckAreaPower(const SuiteSubject& subject, const Enclosure& enclosure, const Visibility& visibility, Rng& rng,
+                    SuiteReport& report) {
+  const Light& light = *subject.light;
+  const auto contextFor = [&](const float(&x)[4]) {
+    LightContext context = subject.context;
+    context.u = {x[0], x[1]};
+    context.uDirection = {x[2], x[3]};
+    return context;
+  };
+  bool stopsSome = false;
+  double stopped = 0;  // the most that a photon carried that the light itself stopped
+  const Estimate escaping = SharpMean(rng, subject.powerError, [&](const float(&x)[4]) {
+    const auto photon = light.GenerateEmission(contextFor(x));
+    if (!photon) return 0.0;
+    const double flux = Flux(subject, *photon);
+    if (visibility.escapes(*photon)) return flux;
+    stopsSome = true;
+    stopped = std::max(stopped, flux);
+    return 0.0;
+  });
+  const double radius = 2.5 * enclosure.radius, area = 4 * kPiDouble * radius * radius;
+  const Estimate direct = SharpMean(rng, subject.powerError, [&](const float(&x)[4]) {
+    const Vector3d outward = Cap{}.Direction(2 * static_cast<double>(x[2]), static_cast<double>(x[3]));
+    const Point3 P(enclosure.middle + outward * radius);
+    const auto sample = light.GenerateSamples(contextFor(x), P);
+    if (!sample || !visibility.sees(*sample, P)) return 0.0;
+    return -glm::dot(outward, Vector3d(sample->direction)) * area * Emitted(subject, *sample) /
+           Value(sample->pdfDirect);
+  });
+  // Some slip through the light's seams, by rounding.
+  constexpr double kSeams = 1e-4;
+  report.AddProbability(subject.name, "power", subject.caseName, EqualMeans(escaping, direct, 1e-3, kSeams * stopped));
+  // The estimate is of all that the surface emits, whether it gets away or not.
+  const Estimate emitted = !stopsSome ? escaping : SharpMean(rng, subject.powerError, [&](const float(&x)[4]) {
+    const auto photon = light.GenerateEmission(contextFor(x));
+    return photon ? Flux(subject, *photon) : 0.0;
+  });
+  CheckPowerEstimate(subject, emitted, report);
+}
+
+void CheckAreaEstimates(const SuiteSubject& subject, const Enclosure& enclosure, const Receiver& receiver, Rng& rng,
+                        SuiteReport& report) {
+  const Light& light = *subject.light;
+  double missed = light.GetIncidentRadianceEstimate(subject.context, receiver.position) > 0 ? 0 : 1;
+  for (int i = 0; i < 8; ++i) {
+    const float length = static_cast<float>(enclosure.radius) * (0.2f + 4 * rng.NextFloat());
+    const float t = length * (0.1f + 0.8f * rng.NextFloat());
+    const Vector3 direction(RandomDirection(rng));
+    const auto segment =
+        light.GetIncidentRadianceEstimate(subject.context, receiver.position - t * direction, direction, length);
+    if (!segment || !(segment->radiance > 0) || !(segment->minT <= t && t <= segment->maxT)) missed = 1;
+  }
+  report.AddError(subject.name, "estimate", subject.caseName + " " + receiver.name, missed, 0.5);
+}
+
+bool LeavesBounds(const EmissionBounds& bounds, const Enclosure& enclosure, const EmissionSample& photon) {
+  const Vector3 slack = Vector3(1e-4f * static_cast<float>(enclosure.radius)) + 4.0f * photon.positionError;
+  const bool inBox = glm::all(glm::greaterThanEqual(photon.position, bounds.box.min - slack)) &&
+                     glm::all(glm::lessThanEqual(photon.position, bounds.box.max + slack));
+  float cosine = glm::dot(photon.normal, bounds.axis);
+  if (bounds.twoSided) cosine = std::abs(cosine);
+  if (!inBox || cosine < bounds.cosThetaO - 1e-3f) return true;
+  // Within θe of the normal on its emitting side.
+  float emission = glm::dot(photon.normal, photon.direction);
+  if (bounds.twoSided) emission = std::abs(emission);
+  return emission < bounds.cosThetaE - 1e-3f;
+}
+
+}  // namespace lampyr::suite

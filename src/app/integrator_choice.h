@@ -1,0 +1,22 @@
+// The integrators by name.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "app/render_settings.h"
+#include "integrators/integrator.h"
+
+namespace lampyr {
+
+using AnyIntegrator = std::variant<std::unique_ptr<CameraIntegrator>, std::unique_ptr<LightPathIntegrator>>;
+
+// The one that the settings name. `scene` must outlive it.
+AnyIntegrator MakeIntegrator(const RenderScene& scene, const RenderSettings& settings);
+
+// Names for --integrator and for Integrator in a scene.
+const std::vector<std::string>& IntegratorNames();
+
+}  // namespace lampyr

@@ -1,0 +1,91 @@
+// The materials of a scene, resolved from the names and indices that its shapes and mixes refer to them by.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "materials/material_makers.h"
+#include "scene/scene_description.h"
+#include "textures/texture_library.h"
+
+namespace lampyr {
+
+// Materials by index and by name, made when first asked for: "mix" refers to others in any order.
+class MaterialTable {
+ public:
+  MaterialTable(const SceneDescription& description, const TextureLibrary& textures, Diagnostics& diagnostics)
+      : description_(description),
+        textures_(textures),
+        diagnostics_(diagnostics),
+        unnamed_(description.materials.size(), -1) {}
+
+  // Index into Materials() for a shape's material.
+  int32_t IndexOf(const MaterialReference& reference) {
+    if (!reference.name.empty()) return Named(reference.name, reference.where);
+    if (reference.index < 0) return Default();
+    int32_t& index = unnamed_[reference.index];
+    if (index < 0) index = Add(Make(description_.materials[reference.index]));
+    return index;
+  }
+
+  // All materials, so that a mistake in one that is not used is found too.
+  void MakeAll() {
+    for (const NamedMaterialDescription& named : description_.namedMaterials) Named(named.name, named.material.where);
+    for (size_t i = 0; i < description_.materials.size(); ++i) IndexOf({static_cast<int>(i), "", {}});
+  }
+
+  const std::vector<std::shared_ptr<const Material>>& Materials() const { return materials_; }
+
+ private:
+  int32_t Add(std::shared_ptr<const Material> material) {
+    materials_.push_back(std::move(material));
+    return static_cast<int32_t>(materials_.size()) - 1;
+  }
+
+  int32_t Default() {
+    if (default_ < 0) {
+      const ParameterList none({}, "Material \"diffuse\"", {});
+      default_ = Add(MakeMaterial("diffuse", none, textures_, Lookup({}), diagnostics_));
+    }
+    return default_;
+  }
+
+  std::shared_ptr<const Material> Make(const StatementDescription& statement) {
+    return MakeMaterial(statement.type, statement.parameters, textures_, Lookup(statement.where), diagnostics_);
+  }
+
+  MaterialLookup Lookup(const FileLocation& where) {
+    return [this, where](const std::string& name) { return materials_[Named(name, where)]; };
+  }
+
+  int32_t Named(const std::string& name, const FileLocation& where) {
+    const auto made = named_.find(name);
+    if (made != named_.end()) return made->second;
+    if (!inProgress_.insert(name).second) throw Error(where, "the material \"" + name + "\" is mixed from itself");
+    constexpr size_t deepest = 256;  // each level takes some of the stack
+    if (inProgress_.size() > deepest) throw Error(where, "materials are mixed more than 256 deep");
+    std::vector<std::string> names;
+    for (const NamedMaterialDescription& named : description_.namedMaterials) {
+      names.push_back(named.name);
+      if (named.name != name) continue;
+      const int32_t index = Add(Make(named.material));
+      inProgress_.erase(name);
+      return named_[name] = index;
+    }
+    throw Error(where, "there is no material named \"" + name + "\"" + DidYouMean(name, names));
+  }
+
+  const SceneDescription& description_;
+  const TextureLibrary& textures_;
+  Diagnostics& diagnostics_;
+  std::vector<std::shared_ptr<const Material>> materials_;
+  std::vector<int32_t> unnamed_;
+  std::map<std::string, int32_t> named_;
+  std::set<std::string> inProgress_;
+  int32_t default_ = -1;
+};
+
+}  // namespace lampyr

@@ -1,0 +1,87 @@
+// Splats: what light paths contribute to wherever on the film they are seen ([Veach97 §10.3.4.1]).
+//
+// A splat of value v (radiance times pixels², see camera/camera.h) at film point p adds f(p - centre)·v to every pixel
+// within the filter's radius; a pixel is the mean of that over all light paths. Paths are traced in chunks, each into a
+// list of its own; lists are added to the film in the order of their paths, so that every pixel sums in the same order
+// whoever traced them.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "math/vec.h"
+
+namespace lampyr {
+
+struct Splat {
+  Point2 film;  // pixels of the full image; may lie beyond it by the filter's radius
+  Color value;
+  uint32_t path = 0;  // within its list
+};
+
+// The splats of consecutive paths. Keeps its memory when it is emptied.
+class SplatList {
+ public:
+  // Film points that reach a pixel of the crop: all others need not be added. `scale` multiplies every value.
+  SplatList(const Point2& reachMin, const Point2& reachMax, float scale)
+      : reachMin_(reachMin), reachMax_(reachMax), scale_(scale) {}
+
+  void Clear() {
+    splats_.clear();
+    paths_ = 0;
+  }
+  // What is added from now on belongs to the next path.
+  void StartPath() { ++paths_; }
+
+  bool Reaches(const Point2& film) const {
+    return film.x >= reachMin_.x && film.x < reachMax_.x && film.y >= reachMin_.y && film.y < reachMax_.y;
+  }
+  // False: the value is not finite or negative, and left out.
+  bool Add(const Point2& film, const Color& value) {
+    if (!Reaches(film)) return true;
+    const Color scaled = value * scale_;
+    if (!scaled.IsValid()) return false;
+    splats_.push_back({film, scaled, paths_ - 1});
+    return true;
+  }
+
+  const std::vector<Splat>& Splats() const { return splats_; }
+  uint32_t Paths() const { return paths_; }
+
+ private:
+  Point2 reachMin_, reachMax_;
+  float scale_;
+  uint32_t paths_ = 0;
+  std::vector<Splat> splats_;
+};
+
+// Sums of one pixel over light paths. The contributions of one path are added up before they are squared: they are one
+// sample of the pixel.
+class SplatSums {
+ public:
+  void Add(uint64_t path, double weight, const Color& value) {
+    if (path != path_) EndPath(path);
+    latest_[0] += weight * static_cast<double>(value.r);
+    latest_[1] += weight * static_cast<double>(value.g);
+    latest_[2] += weight * static_cast<double>(value.b);
+  }
+  double Sum(int channel) const { return sum_[channel] + latest_[channel]; }
+  double SumOfSquares(int channel) const { return sumOfSquares_[channel] + latest_[channel] * latest_[channel]; }
+
+ private:
+  void EndPath(uint64_t next) {
+    for (int c = 0; c < 3; ++c) {
+      sum_[c] = Sum(c);
+      sumOfSquares_[c] = SumOfSquares(c);
+      latest_[c] = 0;
+    }
+    path_ = next;
+  }
+
+  double sum_[3] = {0, 0, 0};
+  double sumOfSquares_[3] = {0, 0, 0};
+  double latest_[3] = {0, 0, 0};  // of path_, not in the sums yet
+  uint64_t path_ = 0;
+};
+
+}  // namespace lampyr

@@ -1,0 +1,28 @@
+// A surface that is given by how rays meet it, whoever it is made by: lights that are their own surface. Traced in double
+// and in render space, also where it moves.
+#pragma once
+
+#include <optional>
+
+#include "geometry/ray.h"
+#include "math/bounds.h"
+
+namespace lampyr {
+
+class CustomSurface {
+ public:
+  virtual ~CustomSurface() = default;
+
+  // Whether its place depends on time.
+  virtual bool Moves() const = 0;
+
+  // Holds the surface from shutter time `begin` to `end`.
+  virtual Bounds3 GetBounds(float begin, float end) const = 0;
+
+  // The t of the nearest hit with t in (ray.tMin, ray.tMax] at shutter time `time`. The same ray finds the same hit again,
+  // also with another tMax beyond it. Where `point` is given: position, error bound, normals and uv; the indices are left
+  // alone.
+  virtual std::optional<double> Intersect(const RayDouble& ray, float time, SurfacePoint* point) const = 0;
+};
+
+}  // namespace lampyr
