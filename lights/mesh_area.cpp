@@ -13,8 +13,8 @@ LightType MeshAreaLightType() {
   type.parameters = UsdLuxSurfaceParameters({});
   type.create = [](const ParameterList& parameters, const LightBuildContext& build) {
     const EmissionReader reader = [](const ParameterList& p, const LightBuildContext& b,
-                                     SurfaceEmission::AreaFunction area) {
-      return SurfaceEmission::ReadUsdLux(p, b, std::move(area), Shaping::Emitter::Round);
+                                     const SurfaceEmission::Area& area) {
+      return SurfaceEmission::ReadUsdLux(p, b, area, Shaping::Emitter::Round);
     };
     return MakeShapeLight(MeshAreaLightType, parameters, build, reader);
   };

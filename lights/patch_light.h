@@ -15,6 +15,7 @@
 //   Bounds(patch, transform)              box, cone of normals, and whether both sides may be the outer one
 #pragma once
 
+#include "geometry/mapped_area.h"
 #include "lights/area_lights.h"
 #include "lights/direction_map.h"
 #include "lights/estimates.h"
@@ -32,10 +33,14 @@ class PatchLight final : public LightBase {
         patches_(std::move(patches)),
         built_(build.transform),
         isInPlace_(IsIdentity(build.transform.toRender)),
-        emission_(readEmission(parameters, build, [this](const LightTransform& t) { return TotalArea(t); })),
+        mappedArea_(MapArea()),
+        builtArea_(TotalArea(built_)),
+        emission_(readEmission(
+            parameters, build,
+            {builtArea_,
+             [this](const LightTransform& t) { return mappedArea_.Under(glm::dmat3(t.toRender.linear)); }})),
         exitance_(emission_, built_) {
     BuildTable();
-    builtArea_ = TotalArea(built_);
     wholePower_ = PowerOfAll(built_, exitance_);
     wholeBounds_ = BoundsOfAll(built_);
   }
@@ -103,6 +108,7 @@ class PatchLight final : public LightBase {
   bool SamplePoint(const LightContext& context, EmittingPoint& point) const;
   void BuildTable();
   double TotalArea(const LightTransform& transform) const;
+  MappedArea MapArea() const;
   Color PowerOfOne(uint32_t patch, const LightTransform& transform, const ExitanceTable& exitance) const;
   Color PowerOfAll(const LightTransform& transform, const ExitanceTable& exitance) const;
   Color PowerFor(const LightContext& context) const;
@@ -116,11 +122,12 @@ class PatchLight final : public LightBase {
   Patches patches_;
   LightTransform built_;
   bool isInPlace_;  // the patches lie in render space, while the placement is the one they were built with
+  MappedArea mappedArea_;
+  double builtArea_ = 0;
   SurfaceEmission emission_;
   ExitanceTable exitance_;
   AliasTable table_;
   Color wholePower_;
-  double builtArea_ = 0;
   EmissionBounds wholeBounds_;
 };
 
@@ -156,6 +163,17 @@ double PatchLight<Patches>::TotalArea(const LightTransform& transform) const {
   double sum = 0;
   for (uint32_t i = 0; i < patches_.Count(); ++i) sum += patches_.Area(i, linear);
   return sum;
+}
+
+template <class Patches>
+MappedArea PatchLight<Patches>::MapArea() const {
+  MappedArea area;
+  for (uint32_t i = 0; i < patches_.Count(); ++i) {
+    patches_.ForElements(i, glm::dmat3(1.0), nullptr,
+                         [&](double part, const Point2&, const Normal3& normal) { area.Add(part, Vector3d(normal)); });
+  }
+  area.Finish();
+  return area;
 }
 
 template <class Patches>
@@ -229,7 +247,8 @@ float PatchLight<Patches>::UnshapedPowerFor(const LightContext& context) const {
     area = patches_.Area(patch, glm::dmat3(now.toRender.linear));
   } else if (!IsAsBuilt(context)) {
     const auto scaleSquared = RelativeScaleSquared(built_, now);
-    area = scaleSquared ? builtArea_ * static_cast<double>(*scaleSquared) : TotalArea(now);
+    area = scaleSquared ? builtArea_ * static_cast<double>(*scaleSquared)
+                        : mappedArea_.Under(glm::dmat3(now.toRender.linear));
   }
   return emission_.MeanRadiance().Average() * static_cast<float>(area) * emission_.Strength(now) * kPi *
          emission_.SideCount();

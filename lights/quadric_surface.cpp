@@ -11,6 +11,8 @@ QuadricSurface::QuadricSurface(const Quadric& quadric, bool planarUv)
   low_ = isSphere ? std::max(quadric.zMin, -quadric.radius) : quadric.zMin;
   high_ = isSphere ? std::min(quadric.zMax, quadric.radius) : quadric.zMax;
   ownDensity_ = ComputeOwnDensity();
+  const bool isWholeCylinder = quadric.kind == Quadric::Kind::Cylinder && quadric.phiMax >= 2 * kPi;
+  if (!IsFlat() && !isFullSphere_ && !isWholeCylinder) mappedArea_ = MakeMappedArea();
 }
 
 PlacedSurface QuadricSurface::Place(const LightTransform& transform) const {
@@ -31,6 +33,18 @@ float QuadricSurface::ComputeOwnDensity() const {
   const float area = IsFlat() ? 0.5f * q.phiMax * (q.radius - q.innerRadius) * (q.radius + q.innerRadius)
                               : q.radius * q.phiMax * (high_ - low_);
   return area > 0 ? 1 / area : 0.0f;
+}
+
+std::shared_ptr<const MappedArea> QuadricSurface::MakeMappedArea() const {
+  if (!(ownDensity_ > 0)) return nullptr;
+  constexpr int n = 128;
+  auto area = std::make_shared<MappedArea>();
+  for (int i = 0; i < n * n; ++i) {
+    const Point2 square((static_cast<float>(i % n) + 0.5f) / n, (static_cast<float>(i / n) + 0.5f) / n);
+    area->Add(1.0 / (n * n * static_cast<double>(ownDensity_)), Vector3d(OutwardNormal(At(square))));
+  }
+  area->Finish();
+  return area;
 }
 
 Point3 QuadricSurface::At(const Point2& square) const {

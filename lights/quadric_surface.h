@@ -9,6 +9,9 @@
 // -x, v along +y.
 #pragma once
 
+#include <memory>
+
+#include "geometry/mapped_area.h"
 #include "geometry/quadric.h"
 #include "lights/placed_surface.h"
 #include "lights/sphere_cone.h"
@@ -25,6 +28,10 @@ class QuadricSurface {
   using Placed = PlacedSurface;
   PlacedSurface Place(const LightTransform& transform) const;
   double AreaOf(const PlacedSurface& placed) const { return GetArea(lampyr::Shape(In(placed))); }
+  // Within a thousandth, but quick where AreaOf integrates.
+  double QuickAreaOf(const PlacedSurface& placed) const {
+    return mappedArea_ ? mappedArea_->Under(glm::dmat3(placed.toRender.linear)) : AreaOf(placed);
+  }
   Bounds3 BoundsOf(const PlacedSurface& placed) const { return GetBounds(lampyr::Shape(In(placed))); }
 
   bool IsFlat() const { return quadric_.kind == Quadric::Kind::Disk; }
@@ -112,6 +119,7 @@ class QuadricSurface {
   bool IsWholeDisk() const { return IsFlat() && quadric_.innerRadius == 0 && quadric_.phiMax >= 2 * kPi; }
   bool IsConcentric() const { return IsWholeDisk() && (planarUv_ || !textured_); }
   float ComputeOwnDensity() const;
+  std::shared_ptr<const MappedArea> MakeMappedArea() const;
 
   Quadric quadric_;
   bool planarUv_;
@@ -120,6 +128,7 @@ class QuadricSurface {
   float normalSign_;  // of the outer side against the quadric's own normal
   float low_, high_;  // along z
   float ownDensity_;
+  std::shared_ptr<const MappedArea> mappedArea_;  // null: there is a closed form
 };
 
 }  // namespace lampyr

@@ -27,6 +27,7 @@ class RectSurface {
   };
   Placed Place(const LightTransform& transform) const;
   double AreaOf(const PlacedSurface& placed) const;
+  double QuickAreaOf(const PlacedSurface& placed) const { return AreaOf(placed); }
   Bounds3 BoundsOf(const PlacedSurface& placed) const;
 
   bool IsFlat() const { return true; }

@@ -14,13 +14,14 @@ namespace lampyr {
 
 class ShapedDirections {
  public:
-  // `axes` leads from the space whose -z is the primary axis to the space that the light's transform starts from.
+  // `axes` leads from the space whose -z is the primary axis to the space that the light's transform starts from;
+  // `built` is the transform that it will mostly have.
   // `isBackDark`: a cone of at most 90° is in force.
   ShapedDirections(std::shared_ptr<const Shaping> shaping, Shaping::Emitter emitter, bool twoSided, bool isBackDark,
-                   const LightTransform& axes);
+                   const LightTransform& axes, const LightTransform& built);
 
-  // Of the radiance that leaves a point with this normal in the unit direction `outgoing`; both in render space.
-  Color Factor(const LightTransform& transform, const Normal3& normal, const Vector3& outgoing) const;
+  // Of the radiance that leaves in the unit direction `outgoing`, in render space.
+  Color Factor(const LightTransform& transform, const Vector3& outgoing) const;
   float Largest() const { return shaping_->Largest(); }
 
   // Whether the two below sample directions; by the cosine law otherwise.
@@ -36,14 +37,15 @@ class ShapedDirections {
   bool KeepsAngles(const LightTransform& transform) const;
 
  private:
-  LightTransform AxesUnder(const LightTransform& transform) const;
+  // From the space whose -z is the primary axis to render space; `scratch` is where it may be made.
+  const LightTransform& AxesUnder(const LightTransform& transform, LightTransform& scratch) const;
 
   std::shared_ptr<const Shaping> shaping_;
   bool guides_;
   bool isBackDark_;
   float frontShare_ = 1;  // of the photons; the rest leaves a flat light at its back by the cosine law
   bool hasAxes_;
-  LightTransform axes_;
+  LightTransform axes_, built_, builtAxes_;
 };
 
 }  // namespace lampyr

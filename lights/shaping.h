@@ -44,7 +44,6 @@ class Shaping {
 
   // Factor of the emitted radiance (or intensity) in the direction `local`.
   Color Factor(const Vector3& local) const;
-  Color Factor(const Vector3& local, float /*cosNormal*/) const { return Factor(local); }
   // The largest that a channel of the factor can be.
   float Largest() const { return largest_; }
 

@@ -4,17 +4,17 @@
 
 namespace lampyr {
 
-SurfaceEmission::SurfaceEmission(const ParameterList& parameters, const LightBuildContext& build, AreaFunction area)
+SurfaceEmission::SurfaceEmission(const ParameterList& parameters, const LightBuildContext& build, const Area& area)
     : tint_(ReadLightTint(parameters)),
       normalize_(tint_.normalize),
       alpha_(build.alpha),
       built_(build.transform),
-      builtArea_(area(build.transform)),
-      area_(std::move(area)) {}
+      area_(area),
+      quickBuilt_(normalize_ ? area.quick(build.transform) : 0) {}
 
 // Tinted, and divided by the area where that is asked for. A surface without area emits nothing.
 void SurfaceEmission::SetRadiance(const ParameterList& parameters, const Color& radiance) {
-  const double divisor = normalize_ ? builtArea_ : 1.0;
+  const double divisor = normalize_ ? area_.built : 1.0;
   const Color tinted = radiance * tint_.color;
   const auto divide = [&](float channel) {
     return divisor > 0 ? static_cast<float>(static_cast<double>(channel) / divisor) : 0.0f;
@@ -25,8 +25,8 @@ void SurfaceEmission::SetRadiance(const ParameterList& parameters, const Color& 
 }
 
 SurfaceEmission SurfaceEmission::ReadDiffuse(const ParameterList& parameters, const LightBuildContext& build,
-                                             AreaFunction area) {
-  SurfaceEmission emission(parameters, build, std::move(area));
+                                             const Area& area) {
+  SurfaceEmission emission(parameters, build, area);
   emission.twoSided_ = parameters.GetBool("twosided", false);
   emission.image_ = EmissionImage(parameters, "filename", build);
   if (emission.HasImage() && parameters.Find("L")) {
@@ -37,7 +37,7 @@ SurfaceEmission SurfaceEmission::ReadDiffuse(const ParameterList& parameters, co
   if (power > 0) {
     // The colour keeps its own magnitude: `power` is what a surface of radiance 1, or of the image, would emit.
     const double mean = emission.HasImage() ? static_cast<double>(emission.image_.Mean().Luminance()) : 1.0;
-    const double emitted = mean * emission.builtArea_ * static_cast<double>(kPi) * (emission.twoSided_ ? 2 : 1);
+    const double emitted = mean * emission.area_.built * static_cast<double>(kPi) * (emission.twoSided_ ? 2 : 1);
     scale = emitted > 0 ? scale * power / emitted : 0.0;
   }
   const Color L = emission.HasImage() ? Color(1.0f) : ReadEmissionColor(parameters, "L");
@@ -46,8 +46,8 @@ SurfaceEmission SurfaceEmission::ReadDiffuse(const ParameterList& parameters, co
 }
 
 SurfaceEmission SurfaceEmission::ReadUsdLux(const ParameterList& parameters, const LightBuildContext& build,
-                                            AreaFunction area, Shaping::Emitter emitter) {
-  SurfaceEmission emission(parameters, build, std::move(area));
+                                            const Area& area, Shaping::Emitter emitter) {
+  SurfaceEmission emission(parameters, build, area);
   emission.twoSided_ = parameters.GetBool("twoSided", false);
   emission.image_ = EmissionImage(parameters, "texture:file", build);
   emission.SetRadiance(parameters, Color(1.0f));
@@ -57,8 +57,8 @@ SurfaceEmission SurfaceEmission::ReadUsdLux(const ParameterList& parameters, con
     const LightTransform axes{build.shapePlacement.ToAffine(), build.shapePlacement.Inverse().ToAffine()};
     const bool hasCone = parameters.Find("shaping:cone:angle") || parameters.Find("shaping:cone:softness");
     const bool isBackDark = hasCone && parameters.GetFloat("shaping:cone:angle", 90) <= 90;
-    emission.shaped_ =
-        std::make_shared<const ShapedDirections>(std::move(shaping), emitter, emission.twoSided_, isBackDark, axes);
+    emission.shaped_ = std::make_shared<const ShapedDirections>(std::move(shaping), emitter, emission.twoSided_,
+                                                                isBackDark, axes, build.transform);
   }
   return emission;
 }
@@ -66,8 +66,8 @@ SurfaceEmission SurfaceEmission::ReadUsdLux(const ParameterList& parameters, con
 float SurfaceEmission::NormalizedStrength(const LightTransform& transform) const {
   if (SamePlacement(transform, built_)) return 1;
   if (const auto scaleSquared = RelativeScaleSquared(built_, transform)) return 1 / *scaleSquared;
-  const double area = area_(transform);
-  return area > 0 ? static_cast<float>(builtArea_ / area) : 0.0f;
+  const double area = area_.quick(transform);
+  return area > 0 ? static_cast<float>(quickBuilt_ / area) : 0.0f;
 }
 
 Color SurfaceEmission::Exitance(const LightTransform& transform, const Normal3& normal) const {
@@ -82,7 +82,7 @@ Color SurfaceEmission::Exitance(const LightTransform& transform, const Normal3& 
     context.transform = &transform;
     const PdfSolidAngle density = EmissionDirectionDensity(context, normal, outgoing, cosine);
     if (cosine > 0 && !density.IsZero()) {
-      sum += shaped_->Factor(transform, normal, outgoing) * (cosine / density.value);
+      sum += shaped_->Factor(transform, outgoing) * (cosine / density.value);
     }
   }
   return sum / static_cast<float>(n * n);
@@ -96,9 +96,8 @@ float SurfaceEmission::ApparentPower(const LightContext& context, const Emission
   const float squared = LengthSquared(toPoint);
   if (!(squared > 0.25f * LengthSquared(bounds.box.Diagonal()))) return unshaped * largest;
   const Vector3 outgoing = toPoint / std::sqrt(squared);
-  const Normal3 normal = bounds.cosThetaO > 0 ? bounds.axis : outgoing;
   // Other points than the middle may be brighter.
-  const float towards = shaped_->Factor(*context.transform, normal, outgoing).Average();
+  const float towards = shaped_->Factor(*context.transform, outgoing).Average();
   return unshaped * std::max(towards, 0.02f * largest);
 }
 
@@ -134,7 +133,7 @@ std::optional<LightSample> SurfaceEmission::Sample(const LightContext& context, 
 bool SurfaceEmission::Complete(const LightContext& context, PdfArea density, LightSample& sample) const {
   if (sample.pdfDirect.IsZero()) return false;
   const Point2 uv(sample.uvw.x, sample.uvw.y);
-  Color radiance = Emitted(context, uv, sample.normal, -sample.direction);
+  Color radiance = Emitted(context, uv, -sample.direction);
   if (alpha_) radiance *= Opacity(uv, sample.position);
   if (!tint_.Split(radiance, sample)) return false;
   if (context.bidirectional) {
@@ -148,7 +147,7 @@ bool SurfaceEmission::Complete(const LightContext& context, PdfArea density, Lig
 
 Color SurfaceEmission::FoundRadiance(const LightContext& context, const LightHit& hit) const {
   if (alpha_ && Opacity(hit.uv, hit.position) == 0) return Color(0.0f);
-  return Emitted(context, hit.uv, hit.normal, -hit.direction);
+  return Emitted(context, hit.uv, -hit.direction);
 }
 
 std::optional<LightEvaluation> SurfaceEmission::Evaluate(const LightContext& context, const LightHit& hit,
@@ -202,7 +201,7 @@ std::optional<EmissionSample> SurfaceEmission::Emit(const LightContext& context,
   if (!(sample->emissionCosine > 0)) return sample;
   sample->pdfEmitDirection = EmissionDirectionDensity(context, point.normal, sample->direction, sample->emissionCosine);
   if (sample->pdfEmitDirection.IsZero()) return sample;
-  Color radiance = Emitted(context, point.uv, point.normal, sample->direction);
+  Color radiance = Emitted(context, point.uv, sample->direction);
   if (alpha_) radiance *= Opacity(point.uv, point.position);
   tint_.Split(radiance, *sample);
   return sample;

@@ -32,14 +32,17 @@ struct EmittingPoint {
 
 class SurfaceEmission {
  public:
-  // World-space area of the whole surface under a placement: what "power" is spread over and "normalize" divides by.
-  using AreaFunction = std::function<double(const LightTransform&)>;
+  // World-space area of the whole surface: what "power" is spread over and "normalize" divides by.
+  struct Area {
+    double built = 0;  // under the placement that the light is built with: exact
+    // Under any placement, quickly: within a thousandth.
+    std::function<double(const LightTransform&)> quick;
+  };
 
   // pbrt-v4's names: L, scale, power, twosided, filename.
-  static SurfaceEmission ReadDiffuse(const ParameterList& parameters, const LightBuildContext& build,
-                                     AreaFunction area);
+  static SurfaceEmission ReadDiffuse(const ParameterList& parameters, const LightBuildContext& build, const Area& area);
   // UsdLux's names: twoSided (ours), texture:file, shaping:…
-  static SurfaceEmission ReadUsdLux(const ParameterList& parameters, const LightBuildContext& build, AreaFunction area,
+  static SurfaceEmission ReadUsdLux(const ParameterList& parameters, const LightBuildContext& build, const Area& area,
                                     Shaping::Emitter emitter);
 
   bool IsTwoSided() const { return twoSided_; }
@@ -83,7 +86,7 @@ class SurfaceEmission {
                                          float emittedCosine) const {
     if (shaped_) {
       // Where the shaping is dark no photon is made.
-      if (shaped_->Factor(*context.transform, normal, outgoing).IsBlack()) return PdfSolidAngle(0);
+      if (shaped_->Factor(*context.transform, outgoing).IsBlack()) return PdfSolidAngle(0);
       if (shaped_->GuidesEmission()) return shaped_->Density(*context.transform, normal, outgoing);
     }
     return PdfSolidAngle(emittedCosine * (twoSided_ ? 0.5f * kInvPi : kInvPi));
@@ -108,17 +111,17 @@ class SurfaceEmission {
   Color ForCamera(const LightContext& context, const LightHit& hit, bool cameraVisible) const;
 
  private:
-  SurfaceEmission(const ParameterList& parameters, const LightBuildContext& build, AreaFunction area);
+  SurfaceEmission(const ParameterList& parameters, const LightBuildContext& build, const Area& area);
   void SetRadiance(const ParameterList& parameters, const Color& radiance);
   float NormalizedStrength(const LightTransform& transform) const;
   float Opacity(const Point2& uv, const Point3& position) const {
     return alpha_ ? std::clamp(alpha_->Alpha(uv, position), 0.0f, 1.0f) : 1.0f;
   }
   // Radiance with all its factors, cut-outs apart.
-  Color Emitted(const LightContext& context, const Point2& uv, const Normal3& normal, const Vector3& outgoing) const {
+  Color Emitted(const LightContext& context, const Point2& uv, const Vector3& outgoing) const {
     Color radiance = Radiance(uv);
     if (normalize_) radiance *= NormalizedStrength(*context.transform);
-    if (shaped_) radiance *= shaped_->Factor(*context.transform, normal, outgoing);
+    if (shaped_) radiance *= shaped_->Factor(*context.transform, outgoing);
     return radiance;
   }
   Color FoundRadiance(const LightContext& context, const LightHit& hit) const;
@@ -135,12 +138,12 @@ class SurfaceEmission {
   std::shared_ptr<const ShapedDirections> shaped_;
   // For `normalize` under other placements than the one the light was built with.
   LightTransform built_;
-  double builtArea_ = 0;
-  AreaFunction area_;
+  Area area_;
+  double quickBuilt_ = 0;
 };
 
 // How a type of light reads its emission.
 using EmissionReader =
-    std::function<SurfaceEmission(const ParameterList&, const LightBuildContext&, SurfaceEmission::AreaFunction)>;
+    std::function<SurfaceEmission(const ParameterList&, const LightBuildContext&, const SurfaceEmission::Area&)>;
 
 }  // namespace lampyr

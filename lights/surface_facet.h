@@ -44,8 +44,8 @@ class AnalyticLight final : public SurfaceLight<Geometry> {
  private:
   static EmissionReader Reader(Shaping::Emitter emitter) {
     return
-        [emitter](const ParameterList& parameters, const LightBuildContext& build, SurfaceEmission::AreaFunction area) {
-          return SurfaceEmission::ReadUsdLux(parameters, build, std::move(area), emitter);
+        [emitter](const ParameterList& parameters, const LightBuildContext& build, const SurfaceEmission::Area& area) {
+          return SurfaceEmission::ReadUsdLux(parameters, build, area, emitter);
         };
   }
 

@@ -25,9 +25,10 @@ class SurfaceLight : public LightBase {
         surface_(std::move(surface)),
         built_(build.transform),
         placed_(surface_.Place(built_)),
-        emission_(readEmission(parameters, build, [s = surface_](const LightTransform& transform) {
-          return s.AreaOf(s.Place(transform));
-        })) {
+        emission_(
+            readEmission(parameters, build, {surface_.AreaOf(placed_), [s = surface_](const LightTransform& transform) {
+                                               return s.QuickAreaOf(s.Place(transform));
+                                             }})) {
     if (emission_.HasImage()) BuildTable();
     power_ = PowerOf(placed_, built_);
     unshapedPower_ = UnshapedPowerOf(placed_, built_);
@@ -115,7 +116,7 @@ class SurfaceLight : public LightBase {
   Color PowerFor(const LightContext& context) const;
   // Mean of the channels, as if there were no shaping: quick under any placement.
   float UnshapedPowerOf(const Placed& placed, const LightTransform& transform) const {
-    return emission_.MeanRadiance().Average() * static_cast<float>(surface_.AreaOf(placed)) *
+    return emission_.MeanRadiance().Average() * static_cast<float>(surface_.QuickAreaOf(placed)) *
            emission_.Strength(transform) * kPi * emission_.SideCount();
   }
   float UnshapedPowerFor(const LightContext& context) const;

@@ -125,6 +125,7 @@ bool LeavesBounds(const EmissionBounds& bounds, const Enclosure& enclosure, cons
   float cosine = glm::dot(photon.normal, bounds.axis);
   if (bounds.twoSided) cosine = std::abs(cosine);
   if (!inBox || cosine < bounds.cosThetaO - 1e-3f) return true;
+  if (IsBlack(photon)) return false;  // a direction that was tried and is dark
   // Within θe of the normal on its emitting side.
   float emission = glm::dot(photon.normal, photon.direction);
   if (bounds.twoSided) emission = std::abs(emission);

@@ -182,7 +182,4 @@ Counted CountedMean(Rng& rng, const Function& function) {
 // 1 where the place of a photon, or whether there is one, depends on the random numbers of its direction; else 0.
 double WorstPhotonOrigin(const SuiteSubject& subject, Rng& rng);
 
-// 1 where the place of a photon, or whether there is one, depends on the random numbers of its direction; else 0.
-double WorstPhotonOrigin(const SuiteSubject& subject, Rng& rng);
-
 }  // namespace lampyr::suite

@@ -1,7 +1,5 @@
 // What the suite runs over: every sample block of every type, on every shape for area lights, under every transform,
 // and moved away from where it was built.
-#include <mutex>
-
 #include "base/parallel.h"
 #include "lights/suite/checks.h"
 #include "lights/suite/scene_suite.h"
@@ -63,22 +61,19 @@ struct SuiteCase {
 
 class SuiteRun {
  public:
-  SuiteRun(const std::filesystem::path& folder, const SuiteOptions& options)
-      : folder_(folder), options_(options), textures_({}, Transform(), diagnostics_) {}
+  SuiteRun(const std::filesystem::path& folder, const SuiteOptions& options) : folder_(folder), options_(options) {}
 
   void Add(const LightType& type);
   std::vector<SuiteResult> Run();
 
  private:
   void AddCases(const SuiteCase& light, int which, size_t block);
-  SuiteReport Check(const SuiteCase& suiteCase);
+  SuiteReport Check(const SuiteCase& suiteCase) const;
   std::vector<ParameterList> ChangesOf(const LightType& type, size_t index);
 
   std::filesystem::path folder_;
   SuiteOptions options_;
   Diagnostics diagnostics_{Diagnostics::Mode::Collect};
-  TextureLibrary textures_;
-  std::mutex building_;  // parameter lists and textures note their use
   std::vector<std::unique_ptr<ParameterList>> parameters_;
   std::vector<std::unique_ptr<std::vector<ParameterList>>> changes_;
   std::vector<SuiteCase> cases_;
@@ -169,12 +164,16 @@ LightTransform ToLightTransform(const Transform& toRender) {
   return {toRender.ToAffine(), toRender.Inverse().ToAffine()};
 }
 
-SuiteReport SuiteRun::Check(const SuiteCase& suiteCase) {
+SuiteReport SuiteRun::Check(const SuiteCase& suiteCase) const {
+  // Of its own: these note their use, and cases run beside each other.
+  Diagnostics diagnostics(Diagnostics::Mode::Collect);
+  const TextureLibrary textures({}, Transform(), diagnostics);
+  const ParameterList parameters = *suiteCase.parameters;
   LightBuildContext build;
   build.placement = suiteCase.builtAt;
   build.transform = ToLightTransform(suiteCase.builtAt);
-  build.textures = &textures_;
-  build.diagnostics = &diagnostics_;
+  build.textures = &textures;
+  build.diagnostics = &diagnostics;
   if (suiteCase.shape) build.shape = &*suiteCase.shape;
   const LightTransform placed = ToLightTransform(suiteCase.placedAt);
   std::unique_ptr<EmitterModel> model;
@@ -182,7 +181,6 @@ SuiteReport SuiteRun::Check(const SuiteCase& suiteCase) {
 
   SuiteReport report;
   SuiteSubject subject;
-  std::unique_ptr<Light> light;
   subject.name = suiteCase.name;
   subject.caseName = suiteCase.caseName;
   if (!suiteCase.isSharp) subject.powerError = 2.5e-3;
@@ -190,19 +188,15 @@ SuiteReport SuiteRun::Check(const SuiteCase& suiteCase) {
   subject.context.transform = &placed;
   subject.context.scene = {placed.toRender.translation, 3 * MaxAbsComponent(placed.toRender.linear[0])};
   subject.context.bidirectional = true;
-  {
-    const std::scoped_lock lock(building_);
-    light = MakeLight(*suiteCase.type, *suiteCase.parameters, build);
-    subject.light = light.get();
-    const bool isUneven = IsUneven(*suiteCase.parameters);
-    subject.isPowerExact = light->Kind() == LightKind::Area ? !isUneven : suiteCase.keepsAngles;
-    if (HasParameter(*suiteCase.type, "diffuse")) {
-      subject.diffuseMultiplier = suiteCase.parameters->GetFloat("diffuse", 1);
-      subject.specularMultiplier = suiteCase.parameters->GetFloat("specular", 1);
-    }
-    if (suiteCase.changes) {
-      suite::CheckEdit(subject, {suiteCase.type, suiteCase.parameters, &build, *suiteCase.changes}, report);
-    }
+  const std::unique_ptr<Light> light = MakeLight(*suiteCase.type, parameters, build);
+  subject.light = light.get();
+  subject.isPowerExact = light->Kind() == LightKind::Area ? !IsUneven(parameters) : suiteCase.keepsAngles;
+  if (HasParameter(*suiteCase.type, "diffuse")) {
+    subject.diffuseMultiplier = parameters.GetFloat("diffuse", 1);
+    subject.specularMultiplier = parameters.GetFloat("specular", 1);
+  }
+  if (suiteCase.changes) {
+    suite::CheckEdit(subject, {suiteCase.type, &parameters, &build, *suiteCase.changes}, report);
   }
   CheckLight(subject, options_, report);
   return report;
