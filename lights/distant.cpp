@@ -101,7 +101,7 @@ class ConeSky {
   }
 
   Color Radiance(const Vector3& local) const { return Contains(local) ? radiance_ : Color(0.0f); }
-  Vector3 Sample(const Point2& u) const { return frame_.ToWorld(SampleUniformCone(u, wSampled_)); }
+  SkySample Sample(const Point2& u) const { return {frame_.ToWorld(SampleUniformCone(u, wSampled_)), {}, false}; }
   SkyPoint Look(const Vector3& local) const {
     if (!Contains(local)) return {Color(0.0f), PdfSolidAngle(0)};
     return {radiance_, UniformConePdf(static_cast<float>(w_))};

@@ -33,11 +33,15 @@ class ImageSky {
   // Of a surface under a hemisphere of mean radiance.
   float FacingIrradiance() const { return kPi * mean_.Average(); }
 
-  Vector3 Sample(const Point2& u) const {
-    const Point2 uv = table_.Sample(u).uv;
-    // The texel is asked for next, by the direction: its way from memory is as long as the trigonometry until then.
-    image_.PrefetchNearest(uv);
-    return (map_ == SkyMap::EqualArea ? EqualAreaSquareToSphere(uv) : LatLongSquareToSphere(uv)) * toImage_;
+  SkySample Sample(const Point2& u) const {
+    // The table and the texels come from memory at the same time: that is most of what a sample costs.
+    const Distribution2D::Narrowed narrowed = table_.Narrow(u);
+    image_.PrefetchRow(static_cast<int>(narrowed.first), static_cast<int>(narrowed.last),
+                       static_cast<int>(narrowed.row));
+    const Distribution2D::Cell cell = table_.Choose(narrowed);
+    const Point2 uv = table_.At(cell);
+    const Vector3 w = map_ == SkyMap::EqualArea ? EqualAreaSquareToSphere(uv) : LatLongSquareToSphere(uv);
+    return {w * toImage_, {scale_ * image_.Texel(cell.column, cell.row), ToSolidAngle(cell.pdf, w)}, IsInside(cell, w)};
   }
 
   SkyPoint Look(const Vector3& local) const {
@@ -55,11 +59,24 @@ class ImageSky {
     return map_ == SkyMap::EqualArea ? EqualAreaSphereToSquare(w) : LatLongSphereToSquare(w);
   }
   // Of the map's direction w, which is at uv.
-  PdfSolidAngle DensityAt(const Vector3& w, const Point2& uv) const {
-    const float density = table_.Density(uv);
+  PdfSolidAngle DensityAt(const Vector3& w, const Point2& uv) const { return ToSolidAngle(table_.Density(uv), w); }
+  PdfSolidAngle ToSolidAngle(float density, const Vector3& w) const {
     if (map_ == SkyMap::EqualArea) return PdfSolidAngle(density / kEqualAreaJacobian);
     const float jacobian = LatLongJacobian(std::sqrt(Sqr(w.x) + Sqr(w.y)));
     return PdfSolidAngle(jacobian > 0 ? density / jacobian : 0.0f);
+  }
+  // Whether the map's direction w, in the cell, is farther from the cell's edges than rounding carries it, and far
+  // enough from the poles for the density.
+  bool IsInside(const Distribution2D::Cell& cell, const Vector3& w) const {
+    constexpr float kRounding = 2e-6f;  // on the unit sphere
+    float x = kRounding * static_cast<float>(image_.Width()), y = kRounding * static_cast<float>(image_.Height());
+    if (map_ == SkyMap::LatLong) {
+      const float sinTheta = std::sqrt(Sqr(w.x) + Sqr(w.y));
+      if (sinTheta < 0.05f) return false;
+      x *= 0.5f * kInvPi / sinTheta;
+      y *= kInvPi;
+    }
+    return cell.t.x > x && cell.t.x < 1 - x && cell.t.y > y && cell.t.y < 1 - y;
   }
   // sr of one texel in row y, exact.
   float RowSolidAngle(int y) const;

@@ -15,6 +15,14 @@ struct SkyPoint {
   PdfSolidAngle density;
 };
 
+// A direction that a sky has chosen, in its own space. `isInside`: what is seen there is the same for any direction as
+// near to it as float computes directions, so that nobody needs to look again; only then is `seen` of use.
+struct SkySample {
+  Vector3 local{0.0f};
+  SkyPoint seen{Color(0.0f), PdfSolidAngle(0)};
+  bool isInside = false;
+};
+
 // 1/m²: uniform on the disk.
 inline PdfArea EmissionDiskDensity(const BoundingSphere& scene) {
   return PdfArea(1 / (kPi * Sqr(scene.radius)));

@@ -3,7 +3,7 @@
 //
 // A Sky has (directions are unit, in the light's local space, towards the light):
 //   Color Radiance(local)
-//   Vector3 Sample(u)               a direction
+//   SkySample Sample(u)             a direction; if it `isInside`, what Look says of it
 //   SkyPoint Look(local)            radiance and density together; the density is never 0 where the radiance is not
 //   Color Mean()                    of the radiance over the sphere
 //   float FacingIrradiance()        estimate for a surface that faces the light, mean of the channels
@@ -40,20 +40,20 @@ class InfiniteLightWith final : public LightBase {
   }
   std::optional<EmissionBounds> GetEmissionBounds(const LightContext&) const override { return std::nullopt; }
 
+  // One variable for all returns: it is made where the caller wants it.
   std::optional<LightSample> GenerateSamples(const LightContext& context, const Point3&) const override {
-    if (isBlack_) return std::nullopt;
-    std::optional<LightSample> sample(std::in_place);
-    sample->direction = ToRenderDirection(*context.transform, sky_.Sample(context.u));
-    // What is reported belongs to the direction as rounded: the same as when another technique finds it.
-    const SkyPoint seen = Look(context, sample->direction);
+    std::optional<LightSample> sample;
+    if (isBlack_) return sample;
+    sample.emplace();
+    const SkyPoint seen = Sample(context, sample->direction);
     sample->pdfDirect = seen.density;
-    if (sample->pdfDirect.IsZero() || !tint_.Split(seen.radiance, *sample)) return std::nullopt;
     sample->normal = -sample->direction;
     if (context.bidirectional) {
       sample->pdfEmit = EmissionDiskDensity(context.scene);
       sample->pdfEmitDirection = sample->pdfDirect;
       sample->solidAngleToArea = 1;
     }
+    if (sample->pdfDirect.IsZero() || !tint_.Split(seen.radiance, *sample)) sample.reset();
     return sample;
   }
 
@@ -74,8 +74,8 @@ class InfiniteLightWith final : public LightBase {
 
   std::optional<EmissionSample> GenerateEmission(const LightContext& context) const override {
     if (isBlack_) return std::nullopt;
-    const Vector3 toLight = ToRenderDirection(*context.transform, sky_.Sample(context.u));
-    const SkyPoint seen = Look(context, toLight);
+    Vector3 toLight;
+    const SkyPoint seen = Sample(context, toLight);
     EmissionSample sample = EmitFromInfinity(context.scene, toLight, context.uDirection);
     sample.pdfEmitDirection = seen.density;
     if (sample.pdfEmitDirection.IsZero() || !tint_.Split(seen.radiance, sample)) return std::nullopt;
@@ -87,6 +87,15 @@ class InfiniteLightWith final : public LightBase {
   }
 
  private:
+  // A direction of render space. What is reported belongs to it as it is rounded: the same as when another technique
+  // finds it.
+  SkyPoint Sample(const LightContext& context, Vector3& direction) const {
+    const SkySample sample = sky_.Sample(context.u);
+    direction = ToRenderDirection(*context.transform, sample.local);
+    const bool isSame = sample.isInside && IsSimilarity(context.transform->toRender.linear);
+    return isSame && sample.seen.density.value < kInfinity ? sample.seen : Look(context, direction);
+  }
+
   // Radiance, and the density in 1/sr of render space: the one place where it is written.
   SkyPoint Look(const LightContext& context, const Vector3& direction) const {
     if (isBlack_) return {Color(0.0f), PdfSolidAngle(0)};

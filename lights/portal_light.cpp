@@ -45,6 +45,8 @@ class PortalSampler {
     return {glm::dot(offset, view_.place.dualX), glm::dot(offset, view_.place.dualY)};
   }
 
+  // Whether Density looks at uv.
+  bool DependsOnPlace() const { return rectangle_ && !rectangle_->IsUniform(); }
   // 1/sr of `direction`, which goes through `uv`.
   PdfSolidAngle Density(const Vector3& direction, const Point2d& uv) const {
     if (tables_) return tables_->Density(seen_, PortalTables::ToAxes(view_.place, Vector3d(direction)));
@@ -119,7 +121,8 @@ class PortalLight final : public LightBase {
       return std::nullopt;  // along it, once rounded
     // What is reported belongs to the direction as rounded. Only a portal narrower than the steps of directions is
     // missed by it.
-    sample->pdfDirect = sampler.Density(sample->direction, view.Meet(Vector3d(sample->direction)).value_or(uv));
+    if (sampler.DependsOnPlace()) uv = view.Meet(Vector3d(sample->direction)).value_or(uv);
+    sample->pdfDirect = sampler.Density(sample->direction, uv);
     if (sample->pdfDirect.IsZero()) return std::nullopt;
     if (!tint_.Split(Radiance(*context.transform, sample->direction), *sample)) return std::nullopt;
     sample->normal = -sample->direction;

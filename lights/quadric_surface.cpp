@@ -1,6 +1,7 @@
 #include "lights/quadric_surface.h"
 
 #include "geometry/rounding.h"
+#include "math/upper_angle.h"
 #include "sampling/warp.h"
 
 namespace lampyr {
@@ -142,8 +143,8 @@ QuadricSurface::Arc QuadricSurface::ArcFrom(const PlacedSurface& placed, const P
   if (!(distance > r * 1.000001f) || !(distance < kInfinity)) return arc;
   arc.isThere = true;
   arc.towards = Vector2(p.x, p.y) / distance;
-  arc.turns = std::atan2(p.y, p.x) * (0.5f * kInvPi);
-  arc.halfTurns = std::atan2(std::sqrt((distance - r) * (distance + r)), r) * (0.5f * kInvPi);
+  arc.turns = std::copysign(UpperAngle(std::abs(p.y), p.x), p.y) * (0.5f * kInvPi);
+  arc.halfTurns = UpperAngle(std::sqrt((distance - r) * (distance + r)), r) * (0.5f * kInvPi);
   return arc;
 }
 
@@ -159,7 +160,10 @@ PdfSolidAngle QuadricSurface::ArcDensity(Arc arc, SeenPoint seen) const {
 
 void QuadricSurface::SampleArc(Arc arc, const PlacedSurface& placed, const Point3& P, const Point2& u,
                                LightSample& sample) const {
-  const float turns = 2 * kInvPi * arc.halfTurns * std::asin(2 * u.y - 1);
+  // asin(2u - 1)
+  const float across = 2 * u.y - 1;
+  const float angle = std::copysign(UpperAngle(std::abs(across), 2 * SafeSqrt(u.y * (1 - u.y))), across);
+  const float turns = 2 * kInvPi * arc.halfTurns * angle;
   const Vector2 turn = CosSinTurns(turns);
   const Vector2 around(arc.towards.x * turn.x - arc.towards.y * turn.y,
                        arc.towards.x * turn.y + arc.towards.y * turn.x);

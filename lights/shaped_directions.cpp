@@ -26,46 +26,54 @@ ShapedDirections::ShapedDirections(std::shared_ptr<const Shaping> shaping, Shapi
       hasAxes_(axes.toRender.linear != glm::mat3(1.0f)),
       axes_(axes),
       built_(built),
-      builtAxes_(Compose(axes, built)) {
+      builtAxes_(hasAxes_ ? Compose(axes, built) : built) {
+  if (IsSimilarity(builtAxes_.toRender.linear)) builtScale_ = glm::length(builtAxes_.toRender.linear[0]);
   if (emitter == Shaping::Emitter::Flat && twoSided && !IsBackDark()) frontShare_ = 0.5f;
 }
 
-const LightTransform& ShapedDirections::AxesUnder(const LightTransform& transform, LightTransform& scratch) const {
-  if (!hasAxes_) return transform;
-  if (SamePlacement(transform, built_)) return builtAxes_;
+ShapedDirections::Axes ShapedDirections::AxesUnder(const LightTransform& transform, LightTransform& scratch) const {
+  if (SamePlacement(transform, built_)) return {builtAxes_, builtScale_};
+  if (!hasAxes_) return {transform, 0};
   scratch = Compose(axes_, transform);
-  return scratch;
+  return {scratch, 0};
 }
 
 bool ShapedDirections::KeepsAngles(const LightTransform& transform) const {
   LightTransform scratch;
-  return IsSimilarity(AxesUnder(transform, scratch).toRender.linear);
+  return IsSimilarity(AxesUnder(transform, scratch).map.toRender.linear);
 }
 
 Color ShapedDirections::Factor(const LightTransform& transform, const Vector3& outgoing) const {
   LightTransform scratch;
-  return shaping_->Factor(ToLocalDirection(AxesUnder(transform, scratch), outgoing));
+  return shaping_->Factor(AxesUnder(transform, scratch).ToLocal(outgoing));
 }
 
 Vector3 ShapedDirections::Sample(const LightTransform& transform, const Normal3& normal, const Point2& u) const {
   if (u.x < frontShare_) {
     const Point2 stretched(std::min(u.x / frontShare_, kOneMinusEpsilon), u.y);
     LightTransform scratch;
-    return ToRenderDirection(AxesUnder(transform, scratch), shaping_->SampleDirection(stretched));
+    return ToRenderDirection(AxesUnder(transform, scratch).map, shaping_->SampleDirection(stretched));
   }
   const Point2 stretched(std::min((u.x - frontShare_) / (1 - frontShare_), kOneMinusEpsilon), u.y);
   return Frame::FromNormal(-normal).ToWorld(SampleCosineHemisphere(stretched));
 }
 
-PdfSolidAngle ShapedDirections::Density(const LightTransform& transform, const Normal3& normal,
-                                        const Vector3& outgoing) const {
-  const float cosine = glm::dot(normal, outgoing);
-  if (frontShare_ < 1 && cosine < 0) return (1 - frontShare_) * CosineHemispherePdf(-cosine);
+ShapedDirections::Leaving ShapedDirections::Look(const LightTransform& transform, const Normal3& normal,
+                                                 const Vector3& outgoing) const {
   LightTransform scratch;
-  const LightTransform& axes = AxesUnder(transform, scratch);
-  const PdfSolidAngle local = shaping_->Density(ToLocalDirection(axes, outgoing));
-  const PdfSolidAngle density = frontShare_ * LocalSolidAngleFactor(axes, outgoing) * local;
-  return density.value < kInfinity ? density : PdfSolidAngle(0);
+  const Axes axes = AxesUnder(transform, scratch);
+  const Vector3 local = axes.ToLocal(outgoing);
+  Leaving leaving{shaping_->Factor(local), PdfSolidAngle(0)};
+  if (!guides_ || leaving.factor.IsBlack()) return leaving;
+  const float cosine = glm::dot(normal, outgoing);
+  if (frontShare_ < 1 && cosine < 0) {
+    leaving.density = (1 - frontShare_) * CosineHemispherePdf(-cosine);
+    return leaving;
+  }
+  const float stretch = axes.scale > 0 ? 1.0f : LocalSolidAngleFactor(axes.map, outgoing);
+  const PdfSolidAngle density = frontShare_ * stretch * shaping_->Density(local);
+  if (density.value < kInfinity) leaving.density = density;
+  return leaving;
 }
 
 }  // namespace lampyr

@@ -7,6 +7,7 @@
 
 #include <memory>
 
+#include "lights/direction_map.h"
 #include "lights/light.h"
 #include "lights/shaping.h"
 
@@ -24,11 +25,17 @@ class ShapedDirections {
   Color Factor(const LightTransform& transform, const Vector3& outgoing) const;
   float Largest() const { return shaping_->Largest(); }
 
-  // Whether the two below sample directions; by the cosine law otherwise.
+  // Whether photons' directions are sampled by this; by the cosine law otherwise.
   bool GuidesEmission() const { return guides_; }
   // Unit; may be on a side that does not emit.
   Vector3 Sample(const LightTransform& transform, const Normal3& normal, const Point2& u) const;
-  PdfSolidAngle Density(const LightTransform& transform, const Normal3& normal, const Vector3& outgoing) const;
+  // What leaves in the unit direction `outgoing`: the factor, and where this guides photons their density, 0 where the
+  // factor is black.
+  struct Leaving {
+    Color factor;
+    PdfSolidAngle density;
+  };
+  Leaving Look(const LightTransform& transform, const Normal3& normal, const Vector3& outgoing) const;
 
   // Whether nothing is emitted towards +z, whatever the surface's sides are.
   bool IsBackDark() const { return isBackDark_; }
@@ -38,7 +45,15 @@ class ShapedDirections {
 
  private:
   // From the space whose -z is the primary axis to render space; `scratch` is where it may be made.
-  const LightTransform& AxesUnder(const LightTransform& transform, LightTransform& scratch) const;
+  struct Axes {
+    const LightTransform& map;
+    float scale;  // of lengths, where it is known that angles are kept; 0: it is not known
+
+    Vector3 ToLocal(const Vector3& direction) const {
+      return scale > 0 ? map.toLocal.Vector(direction) * scale : ToLocalDirection(map, direction);
+    }
+  };
+  Axes AxesUnder(const LightTransform& transform, LightTransform& scratch) const;
 
   std::shared_ptr<const Shaping> shaping_;
   bool guides_;
@@ -46,6 +61,7 @@ class ShapedDirections {
   float frontShare_ = 1;  // of the photons; the rest leaves a flat light at its back by the cosine law
   bool hasAxes_;
   LightTransform axes_, built_, builtAxes_;
+  float builtScale_ = 0;
 };
 
 }  // namespace lampyr

@@ -69,6 +69,8 @@ ShapedTable::ShapedTable(const ShapedFactor& factor, bool flat) : flat_(flat) {
   }
   SpreadToNeighbours(cells);
   distribution_ = Distribution2D(cells, static_cast<int>(columns), static_cast<int>(rows));
+  SetDensities();
+  SetGuide();
 }
 
 // Halves the rows in which the factor changes most, until it changes little or there are many.
@@ -124,14 +126,25 @@ void ShapedTable::CutRows(const ShapedFactor& factor) {
   std::sort(bounds.begin(), bounds.end());
   for (const double theta : bounds) {
     const AxisAngle angle = AxisAngle::Of(theta);
-    const Row row{theta, angle.fromAxis, Measure(angle), 0};
+    const Row row{theta, angle.fromAxis, Measure(angle)};
     // Rows too narrow for their measure are none.
     if (rows_.empty() || row.m > rows_.back().m) rows_.push_back(row);
   }
   if (rows_.size() < 2) rows_.clear();
-  for (size_t j = 0; j + 1 < rows_.size(); ++j) {
-    rows_[j].inverseCell =
-        static_cast<float>(1 / (2 * kPiExact * static_cast<double>(RowCount()) * (rows_[j + 1].m - rows_[j].m)));
+}
+
+void ShapedTable::SetDensities() {
+  const size_t rows = RowCount(), columns = ColumnCount();
+  for (size_t j = 0; j < rows; ++j) {
+    rowW_.push_back(rows_[j].w);
+    const auto perRow =
+        static_cast<float>(1 / (2 * kPiExact * static_cast<double>(rows) * (rows_[j + 1].m - rows_[j].m)));
+    for (size_t i = 0; i < columns; ++i) {
+      const Point2 cell((static_cast<float>(i) + 0.5f) / static_cast<float>(columns),
+                        (static_cast<float>(j) + 0.5f) / static_cast<float>(rows));
+      const float perColumn = 1 / (static_cast<float>(columns) * (columns_[i + 1] - columns_[i]));
+      densities_.push_back(distribution_.Density(cell) * perRow * perColumn);
+    }
   }
 }
 
@@ -150,8 +163,6 @@ void ShapedTable::CutColumns(const ShapedFactor& factor) {
   } else {
     columns_.push_back(1);
   }
-  for (size_t i = 0; i + 1 < columns_.size(); ++i)
-    inverseColumn_.push_back(1 / (static_cast<float>(ColumnCount()) * (columns_[i + 1] - columns_[i])));
 }
 
 // A direction on the border of two cells may be found in either, by rounding: beside a cell that emits there is none
@@ -188,17 +199,36 @@ Vector3 ShapedTable::Sample(const Point2& u) const {
   return {sine * around.x, sine * around.y, static_cast<float>(-cosine)};
 }
 
+void ShapedTable::SetGuide() {
+  const size_t steps = 4 * RowCount();
+  stepsPerW_ = static_cast<double>(steps) / (rows_.back().w - rows_.front().w);
+  size_t row = 0;
+  for (size_t k = 0; k <= steps; ++k) {
+    const double w = rows_.front().w + static_cast<double>(k) / stepsPerW_;
+    while (row + 1 < RowCount() && rowW_[row + 1] <= w) ++row;
+    guide_.push_back(static_cast<uint32_t>(row));
+  }
+}
+
+// The last row that begins at or below w.
+size_t ShapedTable::RowAt(double w) const {
+  const auto step = static_cast<size_t>((w - rowW_.front()) * stepsPerW_);
+  // A step more on either side, for the rounding of its number.
+  const size_t last = guide_.size() - 1;
+  size_t j = guide_[std::min(step > 0 ? step - 1 : 0, last)];
+  for (size_t count = guide_[std::min(step + 2, last)] + 1 - j; count > 1;) {
+    const size_t half = count / 2;
+    j += static_cast<size_t>(rowW_[j + half] <= w) * half;
+    count -= half;
+  }
+  return j;
+}
+
 float ShapedTable::Density(const Vector3& local) const {
   if (IsDark() || (flat_ && local.z >= 0)) return 0;
   const double w = AxisAngle::Of(Vector3d(local)).fromAxis;
   if (w < rows_.front().w || w > rows_.back().w) return 0;
-  // The last row that begins at or below w; without a branch on the data.
-  size_t j = 0;
-  for (size_t count = RowCount(); count > 1;) {
-    const size_t half = count / 2;
-    j += static_cast<size_t>(rows_[j + half].w <= w) * half;
-    count -= half;
-  }
+  const size_t j = RowAt(w);
   size_t i = 0;
   if (ColumnCount() > 1) {
     const float turns = TurnsOf(local);
@@ -208,9 +238,7 @@ float ShapedTable::Density(const Vector3& local) const {
       count -= half;
     }
   }
-  const Point2 cell((static_cast<float>(i) + 0.5f) / static_cast<float>(ColumnCount()),
-                    (static_cast<float>(j) + 0.5f) / static_cast<float>(RowCount()));
-  const float density = distribution_.Density(cell) * rows_[j].inverseCell * inverseColumn_[i];
+  const float density = densities_[j * ColumnCount() + i];
   return flat_ ? density * -local.z : density;
 }
 

@@ -32,12 +32,14 @@ class ShapedTable {
  private:
   struct Row {  // where a row begins
     double theta = 0, w = 0, m = 0;
-    float inverseCell = 0;  // 1 / (2π · rows · width in m)
   };
-  std::vector<Row> rows_;             // one more than there are rows
-  std::vector<float> columns_;        // turns, one more than there are columns
-  std::vector<float> inverseColumn_;  // 1 / (columns · width in turns)
+  std::vector<Row> rows_;       // one more than there are rows
+  std::vector<float> columns_;  // turns, one more than there are columns
   Distribution2D distribution_;
+  std::vector<double> rowW_;     // of each row, close together for the search
+  std::vector<uint16_t> guide_;  // where to look for w: the row at each of equal steps, and the last
+  double stepsPerW_ = 0;
+  std::vector<float> densities_;  // of each cell, per measure
   bool flat_ = false;
   double effectiveMeasure_ = 0;
 
@@ -46,6 +48,9 @@ class ShapedTable {
   }
   void CutRows(const ShapedFactor& factor);
   void CutColumns(const ShapedFactor& factor);
+  void SetDensities();
+  void SetGuide();
+  size_t RowAt(double w) const;
   void SpreadToNeighbours(std::vector<float>& cells) const;
   size_t RowCount() const { return rows_.empty() ? 0 : rows_.size() - 1; }
   size_t ColumnCount() const { return columns_.size() - 1; }

@@ -15,7 +15,7 @@ struct EvenSky {
   Color radiance;
 
   Color Radiance(const Vector3&) const { return radiance; }
-  Vector3 Sample(const Point2& u) const { return SampleUniformSphere(u); }
+  SkySample Sample(const Point2& u) const { return {SampleUniformSphere(u), Look({}), true}; }
   SkyPoint Look(const Vector3&) const { return {radiance, UniformSpherePdf()}; }
   Color Mean() const { return radiance; }
   float FacingIrradiance() const { return kPi * radiance.Average(); }

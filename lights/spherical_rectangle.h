@@ -17,8 +17,10 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "math/density.h"
+#include "math/upper_angle.h"
 #include "math/vec.h"
 
 namespace lampyr {
@@ -54,8 +56,9 @@ class SphericalRectangle {
   Result Sample(const Point2& u) const {
     const auto ux = static_cast<double>(u.x), uy = static_cast<double>(u.y);
     if (ux < areaShare_) return At({ux / areaShare_, uy});
-    const double x = SampleX((ux - areaShare_) / (1 - areaShare_));
-    return At({(x - x0_) / width_, (SampleY(x, uy) - y0_) / height_});
+    const double x = SampleX(areaShare_ > 0 ? (ux - areaShare_) / (1 - areaShare_) : ux);
+    const auto [y, distance] = SampleY(x, uy);
+    return {{(x - x0_) / width_, (y - y0_) / height_}, x_ * x + y_ * y + normal_ * signedZ_, distance};
   }
 
   // 1/sr of the direction towards uv in [0,1]².
@@ -69,6 +72,9 @@ class SphericalRectangle {
     }
     return PdfSolidAngle(density < 3e38 ? static_cast<float>(density) : 0.0f);
   }
+
+  // Whether Density is the same everywhere.
+  bool IsUniform() const { return areaShare_ == 0; }
 
   // Where the ray from P along `direction` (any length) meets the rectangle.
   std::optional<Point2d> Meet(const Vector3d& direction) const {
@@ -117,18 +123,21 @@ class SphericalRectangle {
                          (x1_ * x1_ + y0_ * y1_ + z2) * r00_ + diagonal * r10_;
     const double upper = r00_ * r11_ * r01_ + diagonal * r01_ + (x0_ * x1_ + y1_ * y1_ + z2) * r00_ +
                          (x0_ * x0_ + y0_ * y1_ + z2) * r11_;
-    const double solidAngle = 2 * std::atan2(det * (lower + upper), lower * upper - det * det);
+    const double solidAngle = 2 * UpperAngle(det * (lower + upper), lower * upper - det * det);
     return solidAngle > 0 ? solidAngle : 0.0;
   }
 
+  // Which side is counted from changes from sample to sample: chosen by index, for no branch could be predicted.
   double SampleX(double u) const {
-    const bool mirrored = x1_ <= 0 || (x0_ < 0 && u < 0.5);
+    const int mirrored = static_cast<int>(x1_ <= 0) | (static_cast<int>(x0_ < 0) & static_cast<int>(u < 0.5));
+    const double sign = 1 - 2 * mirrored;
     // The solid angle of all that lies beyond x (farther right, or farther left where mirrored), twice the angle of
     // (a, b), and the part of the rectangle that is counted from there: half of their sum, by its sine and cosine.
-    const double end = mirrored ? -x0_ : x1_, r0 = mirrored ? r00_ : r10_, r1 = mirrored ? r01_ : r11_;
+    const double ends[2] = {x1_, -x0_}, r0s[2] = {r10_, r00_}, r1s[2] = {r11_, r01_};
+    const double end = ends[mirrored], r0 = r0s[mirrored], r1 = r1s[mirrored];
     const double a = r0 * r1 + end * end + y0_ * y1_ + z_ * z_ + end * (r0 + r1), b = z_ * height_;
-    const double part = 0.5 * solidAngle_ * (mirrored ? u : 1 - u);
-    const double sinPart = std::sin(part), cosPart = std::cos(part);
+    const double part = 0.5 * solidAngle_ * (mirrored + sign * (1 - u));
+    const auto [sinPart, cosPart] = SineCosineOfUpper(part);
     // Sines and cosines up to factors that cancel in x: of e/2, then of δ and δ - e/2.
     const double s = b * cosPart + a * sinPart, c = a * cosPart - b * sinPart;
     const double sinDelta = height_ * z_, cosDelta = z_ * z_ + y0_ * y1_;
@@ -137,23 +146,29 @@ class SphericalRectangle {
     const double root = sinRest * s * (z_ * c + y1_ * s) * (z_ * c - y0_ * s);
     // Beyond the end by rounding: the end itself.
     const double x = root > 0 ? 0.5 * z_ * numerator / std::sqrt(root) : end;
-    return std::clamp(mirrored ? -x : x, x0_, x1_);
+    return std::clamp(sign * x, x0_, x1_);
   }
 
-  double SampleY(double x, double v) const {
+  // And the distance of the point from P.
+  std::pair<double, double> SampleY(double x, double v) const {
     const double d2 = x * x + z_ * z_;
     // 1 - y/r for both ends, seen from above or from below.
-    const bool fromBelow = y1_ <= 0 || (y0_ < 0 && v < 0.5);
-    const double nearEnd = fromBelow ? -y0_ : y1_, farEnd = fromBelow ? -y1_ : y0_;
+    const int fromBelow = static_cast<int>(y1_ <= 0) | (static_cast<int>(y0_ < 0) & static_cast<int>(v < 0.5));
+    const double sign = 1 - 2 * fromBelow;
+    const double nearEnds[2] = {y1_, -y0_}, farEnds[2] = {y0_, -y1_};
+    const double nearEnd = nearEnds[fromBelow], farEnd = farEnds[fromBelow];
     const double m1 = OneMinusSine(nearEnd, d2), m0 = OneMinusSine(farEnd, d2);
-    const double m = m1 + (fromBelow ? v : 1 - v) * (m0 - m1);
+    const double m = m1 + (fromBelow + sign * (1 - v)) * (m0 - m1);
     const double below = m * (2 - m);
-    const double y = below > 0 ? std::sqrt(d2 / below) * (1 - m) : nearEnd;
-    return std::clamp(fromBelow ? -y : y, y0_, y1_);
+    if (!(below > 0)) return {sign * nearEnd, std::sqrt(d2 + nearEnd * nearEnd)};
+    const double distance = std::sqrt(d2 / below);
+    return {std::clamp(sign * (distance * (1 - m)), y0_, y1_), distance};
   }
   static double OneMinusSine(double y, double d2) {
-    const double r = std::sqrt(d2 + y * y);
-    return y > 0 ? d2 / (r * (r + y)) : 1 - y / r;
+    // One quotient for both signs of y: which it is nobody can predict.
+    const double r = std::sqrt(d2 + y * y), sum = r + std::abs(y);
+    const double numerator = y > 0 ? d2 : sum, denominator = y > 0 ? r * sum : r;
+    return numerator / denominator;
   }
 
   Vector3d x_{0}, y_{0}, normal_{0};

@@ -78,12 +78,11 @@ Color SurfaceEmission::Exitance(const LightTransform& transform, const Normal3& 
     const Point2 u((static_cast<float>(i % n) + 0.5f) / n, (static_cast<float>(i / n) + 0.5f) / n);
     const Vector3 outgoing = SampleEmissionDirection(transform, normal, u);
     const float cosine = EmittedCosine(glm::dot(normal, outgoing));
-    LightContext context;
-    context.transform = &transform;
-    const PdfSolidAngle density = EmissionDirectionDensity(context, normal, outgoing, cosine);
-    if (cosine > 0 && !density.IsZero()) {
-      sum += shaped_->Factor(transform, outgoing) * (cosine / density.value);
-    }
+    if (!(cosine > 0)) continue;
+    const ShapedDirections::Leaving shaped = shaped_->Look(transform, normal, outgoing);
+    if (shaped.factor.IsBlack()) continue;
+    const PdfSolidAngle density = shaped_->GuidesEmission() ? shaped.density : CosineLaw(cosine);
+    if (!density.IsZero()) sum += shaped.factor * (cosine / density.value);
   }
   return sum / static_cast<float>(n * n);
 }
@@ -133,21 +132,19 @@ std::optional<LightSample> SurfaceEmission::Sample(const LightContext& context, 
 bool SurfaceEmission::Complete(const LightContext& context, PdfArea density, LightSample& sample) const {
   if (sample.pdfDirect.IsZero()) return false;
   const Point2 uv(sample.uvw.x, sample.uvw.y);
-  Color radiance = Emitted(context, uv, -sample.direction);
-  if (alpha_) radiance *= Opacity(uv, sample.position);
-  if (!tint_.Split(radiance, sample)) return false;
+  Color radiance;
   if (context.bidirectional) {
     const float cosine = EmittedCosine(-glm::dot(sample.normal, sample.direction));
+    const Leaving leaving = Leave(context, uv, sample.normal, -sample.direction, cosine);
+    radiance = leaving.radiance;
     sample.pdfEmit = density;
-    sample.pdfEmitDirection = EmissionDirectionDensity(context, sample.normal, -sample.direction, cosine);
+    sample.pdfEmitDirection = leaving.density;
     sample.solidAngleToArea = SolidAngleToArea(Sqr(sample.distance), cosine);
+  } else {
+    radiance = Emitted(context, uv, -sample.direction);
   }
-  return true;
-}
-
-Color SurfaceEmission::FoundRadiance(const LightContext& context, const LightHit& hit) const {
-  if (alpha_ && Opacity(hit.uv, hit.position) == 0) return Color(0.0f);
-  return Emitted(context, hit.uv, -hit.direction);
+  if (alpha_) radiance *= Opacity(uv, sample.position);
+  return tint_.Split(radiance, sample);
 }
 
 std::optional<LightEvaluation> SurfaceEmission::Evaluate(const LightContext& context, const LightHit& hit,
@@ -156,13 +153,18 @@ std::optional<LightEvaluation> SurfaceEmission::Evaluate(const LightContext& con
   if (!(cosine > 0)) return std::nullopt;
   std::optional<LightEvaluation> evaluation(std::in_place);
   evaluation->normal = hit.normal;
-  tint_.Split(FoundRadiance(context, hit), *evaluation);
   evaluation->pdfDirect = pdfDirect;
+  Color radiance;
   if (context.bidirectional) {
+    const Leaving leaving = Leave(context, hit.uv, hit.normal, -hit.direction, cosine);
+    radiance = leaving.radiance;
     evaluation->pdfEmit = density;
-    evaluation->pdfEmitDirection = EmissionDirectionDensity(context, hit.normal, -hit.direction, cosine);
+    evaluation->pdfEmitDirection = leaving.density;
     evaluation->solidAngleToArea = SolidAngleToArea(Sqr(hit.distance), cosine);
+  } else {
+    radiance = Emitted(context, hit.uv, -hit.direction);
   }
+  if (!IsCutOut(hit)) tint_.Split(radiance, *evaluation);
   return evaluation;
 }
 
@@ -199,17 +201,17 @@ std::optional<EmissionSample> SurfaceEmission::Emit(const LightContext& context,
   sample->emissionCosine = EmittedCosine(glm::dot(point.normal, sample->direction));
   // Dark in this direction: black, but the place stands.
   if (!(sample->emissionCosine > 0)) return sample;
-  sample->pdfEmitDirection = EmissionDirectionDensity(context, point.normal, sample->direction, sample->emissionCosine);
+  Leaving leaving = Leave(context, point.uv, point.normal, sample->direction, sample->emissionCosine);
+  sample->pdfEmitDirection = leaving.density;
   if (sample->pdfEmitDirection.IsZero()) return sample;
-  Color radiance = Emitted(context, point.uv, sample->direction);
-  if (alpha_) radiance *= Opacity(point.uv, point.position);
-  tint_.Split(radiance, *sample);
+  if (alpha_) leaving.radiance *= Opacity(point.uv, point.position);
+  tint_.Split(leaving.radiance, *sample);
   return sample;
 }
 
 Color SurfaceEmission::ForCamera(const LightContext& context, const LightHit& hit, bool cameraVisible) const {
   const float cosine = EmittedCosine(-glm::dot(hit.normal, hit.direction));
-  return cameraVisible && cosine > 0 ? FoundRadiance(context, hit) : Color(0.0f);
+  return cameraVisible && cosine > 0 && !IsCutOut(hit) ? Emitted(context, hit.uv, -hit.direction) : Color(0.0f);
 }
 
 }  // namespace lampyr

@@ -80,18 +80,6 @@ class SurfaceEmission {
     const PdfSolidAngle pdf = ToSolidAngle(density, distanceSquared, emittedCosine);
     return pdf.value < kInfinity ? pdf : PdfSolidAngle(0);
   }
-  // pdfEmitDirection of a direction on an emitting side, whose cosine is `emittedCosine`: the shaping's own density, or
-  // the cosine law on each side.
-  PdfSolidAngle EmissionDirectionDensity(const LightContext& context, const Normal3& normal, const Vector3& outgoing,
-                                         float emittedCosine) const {
-    if (shaped_) {
-      // Where the shaping is dark no photon is made.
-      if (shaped_->Factor(*context.transform, outgoing).IsBlack()) return PdfSolidAngle(0);
-      if (shaped_->GuidesEmission()) return shaped_->Density(*context.transform, normal, outgoing);
-    }
-    return PdfSolidAngle(emittedCosine * (twoSided_ ? 0.5f * kInvPi : kInvPi));
-  }
-
   // The point as a sample for P; nullopt when it sends nothing there.
   std::optional<LightSample> Sample(const LightContext& context, const Point3& P, const EmittingPoint& point) const;
 
@@ -124,7 +112,26 @@ class SurfaceEmission {
     if (shaped_) radiance *= shaped_->Factor(*context.transform, outgoing);
     return radiance;
   }
-  Color FoundRadiance(const LightContext& context, const LightHit& hit) const;
+  // The same, and pdfEmitDirection on an emitting side, whose cosine is `emittedCosine`: the shaping's own density, or
+  // the cosine law on each side. No photon is made where the shaping is dark.
+  struct Leaving {
+    Color radiance;
+    PdfSolidAngle density;
+  };
+  Leaving Leave(const LightContext& context, const Point2& uv, const Normal3& normal, const Vector3& outgoing,
+                float emittedCosine) const {
+    Leaving leaving{Radiance(uv), CosineLaw(emittedCosine)};
+    if (normalize_) leaving.radiance *= NormalizedStrength(*context.transform);
+    if (!shaped_) return leaving;
+    const ShapedDirections::Leaving shaped = shaped_->Look(*context.transform, normal, outgoing);
+    leaving.radiance *= shaped.factor;
+    if (shaped_->GuidesEmission() || shaped.factor.IsBlack()) leaving.density = shaped.density;
+    return leaving;
+  }
+  bool IsCutOut(const LightHit& hit) const { return alpha_ && Opacity(hit.uv, hit.position) == 0; }
+  PdfSolidAngle CosineLaw(float emittedCosine) const {
+    return PdfSolidAngle(emittedCosine * (twoSided_ ? 0.5f * kInvPi : kInvPi));
+  }
   // By the cosine law; two-sided: the first random number chooses the side, and is stretched again.
   Vector3 SampleCosineLaw(const Normal3& normal, Point2 u) const;
   Vector3 SampleEmissionDirection(const LightTransform& transform, const Normal3& normal, const Point2& u) const;

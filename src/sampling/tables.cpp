@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/touch.h"
+
 namespace lampyr {
 namespace {
 
 constexpr int64_t kUnits = int64_t{1} << 24;  // a cdf counts in 1/kUnits
-constexpr uint32_t kIntervalsPerGuideStep = 8;
+constexpr uint32_t kIntervalsPerGuideStep = 16;
 
 double Cleaned(float value) {
   return value > 0 && value < kInfinity ? static_cast<double>(value) : 0.0;
@@ -32,8 +34,13 @@ float PointInInterval(int interval, float t, int n) {
   return std::nextafter(x, found < interval ? 1.0f : 0.0f);
 }
 
+// For a table that is in no cache: the guide has to be, and the intervals between two of its steps are in a few lines.
 size_t GuideSteps(size_t n) {
   return std::max<size_t>(1, n / kIntervalsPerGuideStep);
+}
+// For a small table: hardly anything is left to search.
+size_t FineGuideSteps(size_t n) {
+  return 2 * n;
 }
 
 // Writes n + 1 entries of the cumulative distribution of `values`, whose sum (as Cleaned) is `sum` > 0.
@@ -56,23 +63,34 @@ void WriteCdf(std::span<const float> values, double sum, float* cdf) {
   }
 }
 
-// guide[k] is the interval that contains u = k/steps; the last entry is the last interval that is not empty.
-void WriteGuide(const float* cdf, size_t n, uint32_t* guide) {
-  const size_t steps = GuideSteps(n);
+// guide[k] is the interval that contains u = k/steps, shifted right; the last entry is the last that is not empty.
+template <class Entry>
+void WriteGuide(const float* cdf, size_t n, size_t steps, Entry* guide, int shift = 0) {
   uint32_t interval = 0;
   for (size_t k = 0; k <= steps; ++k) {
     const float u = std::min(static_cast<float>(k) / static_cast<float>(steps), kOneMinusEpsilon);
     while (interval + 1 < n && cdf[interval + 1] <= u) ++interval;
-    guide[k] = interval;
+    guide[k] = static_cast<Entry>(interval >> shift);
   }
 }
 
-// The interval with cdf[i] <= u < cdf[i + 1], which is never one of width 0.
-uint32_t FindInterval(const float* cdf, const uint32_t* guide, size_t n, float u) {
-  const size_t steps = GuideSteps(n);
+struct Range {
+  uint32_t low, high;  // both may be the interval that is looked for
+};
+
+// What the guide leaves of n intervals for u.
+template <class Entry>
+Range GuidedRange(const Entry* guide, size_t steps, size_t n, float u, int shift = 0) {
   const size_t k = std::min(static_cast<size_t>(u * static_cast<float>(steps)), steps - 1);
-  uint32_t low = guide[k], high = guide[k + 1];
-  // The step was found with a rounded product: widen in the rare case that u is just outside of it.
+  const uint32_t low = static_cast<uint32_t>(guide[k]) << shift;
+  const uint32_t high = (static_cast<uint32_t>(guide[k + 1]) << shift) + ((1u << shift) - 1);
+  return {low, std::min(high, static_cast<uint32_t>(n) - 1)};
+}
+
+// The interval with cdf[i] <= u < cdf[i + 1], which is never one of width 0.
+uint32_t FindInterval(const float* cdf, Range range, size_t n, float u) {
+  auto [low, high] = range;
+  // The guide's step was found with a rounded product: widen in the rare case that u is just outside of it.
   if (cdf[low] > u) low = 0;
   if (cdf[high + 1] <= u) high = static_cast<uint32_t>(n) - 1;
   // The last interval that starts at or below u; without a branch on the data, which would be mispredicted.
@@ -90,8 +108,8 @@ struct Found {
   float t;  // position within the interval, [0,1)
 };
 
-Found SampleCdf(const float* cdf, const uint32_t* guide, size_t n, float u) {
-  const uint32_t i = FindInterval(cdf, guide, n, u);
+Found SampleCdf(const float* cdf, Range range, size_t n, float u) {
+  const uint32_t i = FindInterval(cdf, range, n, u);
   return {i, std::min((u - cdf[i]) / (cdf[i + 1] - cdf[i]), kOneMinusEpsilon)};
 }
 
@@ -162,12 +180,14 @@ Distribution1D::Distribution1D(std::span<const float> values) : cdf_(values.size
   if (!(sum > 0)) return;
   integral_ = sum / static_cast<double>(values.size());
   WriteCdf(values, sum, cdf_.data());
-  guide_.resize(GuideSteps(values.size()) + 1);
-  WriteGuide(cdf_.data(), values.size(), guide_.data());
+  guide_.resize(FineGuideSteps(values.size()) + 1);
+  WriteGuide(cdf_.data(), values.size(), FineGuideSteps(values.size()), guide_.data());
 }
 
 Distribution1D::Result Distribution1D::Sample(float u) const {
-  const Found found = SampleCdf(cdf_.data(), guide_.data(), Size(), ClampedUnit(u));
+  const float clamped = ClampedUnit(u);
+  const Range range = GuidedRange(guide_.data(), FineGuideSteps(Size()), Size(), clamped);
+  const Found found = SampleCdf(cdf_.data(), range, Size(), clamped);
   const float x = PointInInterval(static_cast<int>(found.interval), found.t, static_cast<int>(Size()));
   return {x, IntervalDensity(cdf_.data(), found.interval, Size()), found.interval};
 }
@@ -198,20 +218,21 @@ Distribution2D::Distribution2D(std::span<const float> values, int width, int hei
   const size_t guideSize = GuideSteps(columns) + 1;
   conditionalCdf_.assign((columns + 1) * rows, 0.0f);
   conditionalGuide_.assign(guideSize * rows, 0);
+  while ((columns - 1) >> guideShift_ > 0xffff) ++guideShift_;
   std::vector<float> scaledSums(rows);  // in the range of float, and a dark row stays above 0
   for (size_t row = 0; row < rows; ++row) {
     if (rowSums[row] == 0) continue;
     scaledSums[row] = std::max(static_cast<float>(rowSums[row] / largest), std::numeric_limits<float>::min());
     float* cdf = &conditionalCdf_[row * (columns + 1)];
     WriteCdf(values.subspan(row * columns, columns), rowSums[row], cdf);
-    WriteGuide(cdf, columns, &conditionalGuide_[row * guideSize]);
+    WriteGuide(cdf, columns, GuideSteps(columns), &conditionalGuide_[row * guideSize], guideShift_);
   }
   double scaledSum = 0;
   for (const float s : scaledSums) scaledSum += static_cast<double>(s);
   marginalCdf_.resize(rows + 1);
   WriteCdf(scaledSums, scaledSum, marginalCdf_.data());
-  marginalGuide_.resize(GuideSteps(rows) + 1);
-  WriteGuide(marginalCdf_.data(), rows, marginalGuide_.data());
+  marginalGuide_.resize(FineGuideSteps(rows) + 1);
+  WriteGuide(marginalCdf_.data(), rows, FineGuideSteps(rows), marginalGuide_.data());
 }
 
 float Distribution2D::CellDensity(int column, int row) const {
@@ -221,14 +242,35 @@ float Distribution2D::CellDensity(int column, int row) const {
          IntervalDensity(cdf, static_cast<size_t>(column), columns);
 }
 
-Distribution2D::Result Distribution2D::Sample(const Point2& u) const {
+Distribution2D::Narrowed Distribution2D::Narrow(const Point2& u) const {
   const size_t columns = static_cast<size_t>(width_), rows = static_cast<size_t>(height_);
-  const Found row = SampleCdf(marginalCdf_.data(), marginalGuide_.data(), rows, ClampedUnit(u.y));
-  const Found column =
-      SampleCdf(&conditionalCdf_[row.interval * (columns + 1)],
-                &conditionalGuide_[row.interval * (GuideSteps(columns) + 1)], columns, ClampedUnit(u.x));
-  const int i = static_cast<int>(column.interval), j = static_cast<int>(row.interval);
-  return {{PointInInterval(i, column.t, width_), PointInInterval(j, row.t, height_)}, CellDensity(i, j)};
+  const float ux = ClampedUnit(u.x), uy = ClampedUnit(u.y);
+  const Range rowRange = GuidedRange(marginalGuide_.data(), FineGuideSteps(rows), rows, uy);
+  const Found row = SampleCdf(marginalCdf_.data(), rowRange, rows, uy);
+  const size_t steps = GuideSteps(columns);
+  const Range range = GuidedRange(&conditionalGuide_[row.interval * (steps + 1)], steps, columns, ux, guideShift_);
+  const float* cdf = &conditionalCdf_[row.interval * (columns + 1)];
+  // One after the other the two would take twice as long.
+  Touch(cdf + range.low);
+  Touch(cdf + range.high + 1);
+  return {row.interval, range.low, range.high, ux, row.t};
+}
+
+Distribution2D::Cell Distribution2D::Choose(const Narrowed& narrowed) const {
+  const size_t columns = static_cast<size_t>(width_);
+  const float* cdf = &conditionalCdf_[narrowed.row * (columns + 1)];
+  const Found column = SampleCdf(cdf, {narrowed.first, narrowed.last}, columns, narrowed.u);
+  const int i = static_cast<int>(column.interval), j = static_cast<int>(narrowed.row);
+  return {i, j, {column.t, narrowed.tRow}, CellDensity(i, j)};
+}
+
+Point2 Distribution2D::At(const Cell& cell) const {
+  return {PointInInterval(cell.column, cell.t.x, width_), PointInInterval(cell.row, cell.t.y, height_)};
+}
+
+Distribution2D::Result Distribution2D::Sample(const Point2& u) const {
+  const Cell cell = Choose(Narrow(u));
+  return {At(cell), cell.pdf};
 }
 
 float Distribution2D::Density(const Point2& uv) const {
