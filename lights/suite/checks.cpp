@@ -1,5 +1,9 @@
 #include "lights/suite/checks.h"
 
+#include <mutex>
+
+#include "base/parallel.h"
+
 namespace lampyr::suite {
 
 Rng MakeRng(const SuiteSubject& subject, const SuiteOptions& options) {
@@ -136,6 +140,24 @@ std::optional<FixedStart> FindFixedStart(const SuiteSubject& subject, FixedPart 
     return std::nullopt;
   }
   return std::nullopt;
+}
+
+SuiteReport RunCases(size_t count, const SuiteOptions& options,
+                     const std::function<void(size_t index, SuiteReport& report)>& check) {
+  std::vector<SuiteReport> reports(count);
+  std::mutex counting;
+  size_t done = 0;
+  const int threads = options.threads > 0 ? options.threads : HardwareThreads();
+  ParallelFor(static_cast<int>(count), threads, [&](int i) {
+    const auto index = static_cast<size_t>(i);
+    check(index, reports[index]);
+    const std::scoped_lock lock(counting);
+    ++done;
+    if (options.progress) options.progress(static_cast<double>(done) / static_cast<double>(count));
+  });
+  SuiteReport all;
+  for (const SuiteReport& report : reports) all.Add(report);
+  return all;
 }
 
 }  // namespace lampyr::suite

@@ -24,6 +24,10 @@ struct Receiver {
   Point3 position;
 };
 
+// Checks `count` cases beside each other.
+SuiteReport RunCases(size_t count, const SuiteOptions& options,
+                     const std::function<void(size_t index, SuiteReport& report)>& check);
+
 // A generator of the case's own: results do not depend on what ran before, or on which thread.
 Rng MakeRng(const SuiteSubject& subject, const SuiteOptions& options);
 LightContext RandomContext(const SuiteSubject& subject, Rng& rng);

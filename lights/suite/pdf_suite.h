@@ -56,6 +56,8 @@ struct SuiteOptions {
   double familyWise = 1e-3;
   uint64_t seed = 1;
   int threads = 1;  // of RunPdfSuite; the results are the same with any number
+  // Called now and then with the part that is done, one call at a time. May be empty.
+  std::function<void(double fraction)> progress;
 };
 
 // A light under test, as it is placed.

@@ -2,7 +2,6 @@
 
 #include <cstdio>
 
-#include "base/parallel.h"
 #include "lights/direction_map.h"
 #include "lights/suite/checks.h"
 
@@ -88,18 +87,13 @@ bool IsUneven(const ParameterList& parameters) {
 
 std::vector<SuiteResult> RunPdfSuiteOnScene(const LightingServices& services, const std::vector<SceneLight>& lights,
                                             const SuiteOptions& options) {
-  const int threads = options.threads > 0 ? options.threads : HardwareThreads();
-  std::vector<SuiteReport> reports(lights.size());
-  ParallelFor(static_cast<int>(lights.size()), threads, [&](int i) {
-    const auto index = static_cast<size_t>(i);
+  SuiteReport all = suite::RunCases(lights.size(), options, [&](size_t index, SuiteReport& report) {
     const PlacedLight& placed = services.Lights()[index];
     for (const float time : {0.0f, 0.5f, 1.0f}) {
       if (time > 0 && !placed.motion) break;
-      CheckPlaced(placed, lights[index], services.SceneSphere(), time, options, reports[index]);
+      CheckPlaced(placed, lights[index], services.SceneSphere(), time, options, report);
     }
   });
-  SuiteReport all;
-  for (const SuiteReport& report : reports) all.Add(report);
   if (!lights.empty()) CheckSelection(services, options, all);
   return all.Finish(options.familyWise);
 }

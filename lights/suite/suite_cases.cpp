@@ -1,6 +1,5 @@
 // What the suite runs over: every sample block of every type, on every shape for area lights, under every transform,
 // and moved away from where it was built.
-#include "base/parallel.h"
 #include "lights/suite/checks.h"
 #include "lights/suite/scene_suite.h"
 #include "lights/suite/suite_inputs.h"
@@ -203,15 +202,9 @@ SuiteReport SuiteRun::Check(const SuiteCase& suiteCase) const {
 }
 
 std::vector<SuiteResult> SuiteRun::Run() {
-  std::vector<SuiteReport> reports(cases_.size());
-  const int threads = options_.threads > 0 ? options_.threads : HardwareThreads();
-  ParallelFor(static_cast<int>(cases_.size()), threads, [&](int i) {
-    const auto index = static_cast<size_t>(i);
-    reports[index] = Check(cases_[index]);
-  });
-  SuiteReport all;
-  for (const SuiteReport& report : reports) all.Add(report);
-  return all.Finish(options_.familyWise);
+  return suite::RunCases(cases_.size(), options_,
+                         [&](size_t index, SuiteReport& report) { report = Check(cases_[index]); })
+      .Finish(options_.familyWise);
 }
 
 }  // namespace

@@ -2,13 +2,13 @@
 // and a verdict.
 #include <unistd.h>
 
-#include <chrono>
 #include <cstdio>
 
 #include "app/command_line.h"
 #include "app/commands.h"
 #include "app/json_report.h"
 #include "app/scene_builder.h"
+#include "base/progress.h"
 #include "lights/suite/verdict.h"
 
 namespace lampyr {
@@ -78,10 +78,12 @@ int RunCheckLights(const CheckLightsOptions& options) {
   SuiteOptions suite;
   suite.seed = options.seed;
   suite.threads = options.threads;
-  const auto start = std::chrono::steady_clock::now();
+  Progress progress(false);
+  suite.progress = [&](double fraction) { progress.Update(fraction, ""); };
   const std::vector<SuiteResult> results =
       options.scene ? CheckScene(*options.scene, suite) : CheckTypes(options.type, suite);
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  progress.Clear();
+  const double seconds = progress.Seconds();
   const std::vector<LightVerdict> verdicts = SummariseByProperty(results);
   size_t failed = 0;
   for (const LightVerdict& verdict : verdicts) failed += verdict.passed ? 0 : 1;

@@ -115,7 +115,8 @@ int RunCommandLine(int argc, char** argv) {
   diffCommand->add_flag("--json", diff.json, "Print JSON");
 
   CheckLightsOptions check;
-  CLI::App* checkCommand = app.add_subcommand("check-lights", "Prove the densities of lights: of every type, or a scene's");
+  CLI::App* checkCommand =
+      app.add_subcommand("check-lights", "Prove the densities of lights: of every type, or a scene's");
   checkCommand->add_option("scene", check.scene, "A scene, whose lights are checked as they are placed");
   checkCommand->add_option("--type", check.type, "Only this type of light");
   checkCommand->add_flag("--json", check.json, "Print JSON");

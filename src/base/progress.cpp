@@ -48,7 +48,8 @@ void Progress::Update(double fraction, const std::string& note) {
                  std::string(width - filled, '.').c_str(), fraction * 100, left.c_str(), note.c_str());
     barShown_ = true;
   } else {
-    std::fprintf(stderr, "%3.0f %%, %s left, %s\n", fraction * 100, left.c_str(), note.c_str());
+    std::fprintf(stderr, "%3.0f %%, %s left%s%s\n", fraction * 100, left.c_str(), note.empty() ? "" : ", ",
+                 note.c_str());
   }
   std::fflush(stderr);
 }
