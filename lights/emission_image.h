@@ -5,7 +5,6 @@
 #include <memory>
 #include <string>
 
-#include "base/touch.h"
 #include "film/image.h"
 #include "lights/light_type.h"
 
@@ -28,17 +27,6 @@ class EmissionImage {
   Color Texel(int x, int y) const { return TexelAt(data_ + (static_cast<size_t>(y) * width_ + x) * stride_); }
   // Of the texel that holds uv in [0,1)²; v counts down from the image's top row.
   Color Nearest(const Point2& uv) const { return TexelAt(NearestTexel(uv)); }
-  // Has it fetched from memory while other work goes on.
-  void PrefetchNearest(const Point2& uv) const { __builtin_prefetch(NearestTexel(uv)); }
-  // The same of the texels first … last of row y, as far as that is worth it.
-  void PrefetchRow(int first, int last, int y) const {
-    const float* row = data_ + static_cast<size_t>(y) * width_ * stride_;
-    const float* end = row + (static_cast<size_t>(last) + 1) * stride_;
-    constexpr int kFloatsPerLine = 16, kMostLines = 8;
-    const float* at = row + static_cast<size_t>(first) * stride_;
-    for (int line = 0; line < kMostLines && at < end; ++line, at += kFloatsPerLine) Touch(at);
-    Touch(end - 1);
-  }
   // Bilinear between texel middles, clamped at the edges; v counts up from the image's lowest row, as on surfaces.
   Color OnSurface(const Point2& uv) const;
 

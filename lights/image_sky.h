@@ -5,8 +5,8 @@
 
 #include "lights/emission_image.h"
 #include "lights/infinite_frame.h"
+#include "sampling/color_table.h"
 #include "sampling/equal_area.h"
-#include "sampling/tables.h"
 
 namespace lampyr {
 
@@ -26,29 +26,24 @@ class ImageSky {
   }
 
   SkyMap Map() const { return map_; }
-  int Height() const { return image_.Height(); }
+  int Height() const { return table_.Height(); }
 
-  Color Radiance(const Vector3& local) const { return scale_ * image_.Nearest(ToSquare(toImage_ * local)); }
+  Color Radiance(const Vector3& local) const { return scale_ * table_.Look(ToSquare(toImage_ * local)).color; }
   Color Mean() const { return mean_; }
   // Of a surface under a hemisphere of mean radiance.
   float FacingIrradiance() const { return kPi * mean_.Average(); }
 
   SkySample Sample(const Point2& u) const {
-    // The table and the texels come from memory at the same time: that is most of what a sample costs.
-    const Distribution2D::Narrowed narrowed = table_.Narrow(u);
-    image_.PrefetchRow(static_cast<int>(narrowed.first), static_cast<int>(narrowed.last),
-                       static_cast<int>(narrowed.row));
-    const Distribution2D::Cell cell = table_.Choose(narrowed);
+    const ColorTable::Cell cell = table_.Sample(u);
     const Point2 uv = table_.At(cell);
     const Vector3 w = map_ == SkyMap::EqualArea ? EqualAreaSquareToSphere(uv) : LatLongSquareToSphere(uv);
-    return {w * toImage_, {scale_ * image_.Texel(cell.column, cell.row), ToSolidAngle(cell.pdf, w)}, IsInside(cell, w)};
+    return {w * toImage_, {scale_ * cell.color, ToSolidAngle(cell.pdf, w)}, IsInside(cell, w)};
   }
 
   SkyPoint Look(const Vector3& local) const {
     const Vector3 w = toImage_ * local;
-    const Point2 uv = ToSquare(w);
-    image_.PrefetchNearest(uv);
-    return {scale_ * image_.Nearest(uv), DensityAt(w, uv)};
+    const ColorTable::Texel texel = table_.Look(ToSquare(w));
+    return {scale_ * texel.color, ToSolidAngle(texel.pdf, w)};
   }
 
   // Luminous irradiance of a surface that faces the map's +z, from the texels of the upper hemisphere, before Scale.
@@ -58,8 +53,7 @@ class ImageSky {
   Point2 ToSquare(const Vector3& w) const {
     return map_ == SkyMap::EqualArea ? EqualAreaSphereToSquare(w) : LatLongSphereToSquare(w);
   }
-  // Of the map's direction w, which is at uv.
-  PdfSolidAngle DensityAt(const Vector3& w, const Point2& uv) const { return ToSolidAngle(table_.Density(uv), w); }
+  // From the density over the square, at the map's direction w.
   PdfSolidAngle ToSolidAngle(float density, const Vector3& w) const {
     if (map_ == SkyMap::EqualArea) return PdfSolidAngle(density / kEqualAreaJacobian);
     const float jacobian = LatLongJacobian(std::sqrt(Sqr(w.x) + Sqr(w.y)));
@@ -67,9 +61,9 @@ class ImageSky {
   }
   // Whether the map's direction w, in the cell, is farther from the cell's edges than rounding carries it, and far
   // enough from the poles for the density.
-  bool IsInside(const Distribution2D::Cell& cell, const Vector3& w) const {
+  bool IsInside(const ColorTable::Cell& cell, const Vector3& w) const {
     constexpr float kRounding = 2e-6f;  // on the unit sphere
-    float x = kRounding * static_cast<float>(image_.Width()), y = kRounding * static_cast<float>(image_.Height());
+    float x = kRounding * static_cast<float>(table_.Width()), y = kRounding * static_cast<float>(table_.Height());
     if (map_ == SkyMap::LatLong) {
       const float sinTheta = std::sqrt(Sqr(w.x) + Sqr(w.y));
       if (sinTheta < 0.05f) return false;
@@ -78,13 +72,12 @@ class ImageSky {
     }
     return cell.t.x > x && cell.t.x < 1 - x && cell.t.y > y && cell.t.y < 1 - y;
   }
-  // sr of one texel in row y, exact.
-  float RowSolidAngle(int y) const;
+  // sr of one texel in row y of a map of that size, exact.
+  float RowSolidAngle(int y, int columns, int rows) const;
 
-  EmissionImage image_;
   SkyMap map_ = SkyMap::EqualArea;
   glm::mat3 toImage_{1.0f};
-  Distribution2D table_;
+  ColorTable table_;
   Color scale_{1.0f};
   Color mean_;
 };

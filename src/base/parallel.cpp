@@ -24,6 +24,21 @@ void FlushDenormalsToZero() {
 #endif
 }
 
+namespace {
+
+// The calling thread's floating-point setting is the same after the loop as before.
+class KeptFloatSetting {
+ public:
+#if defined(__x86_64__)
+  ~KeptFloatSetting() { _mm_setcsr(setting_); }
+
+ private:
+  unsigned setting_ = _mm_getcsr();
+#endif
+};
+
+}  // namespace
+
 void ParallelFor(int count, int threads, const std::function<void(int)>& body) {
   if (threads <= 1 || count <= 1) {
     for (int i = 0; i < count; ++i) body(i);
@@ -33,6 +48,7 @@ void ParallelFor(int count, int threads, const std::function<void(int)>& body) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                   static_cast<size_t>(std::max(threads, HardwareThreads())));
   tbb::task_arena arena(threads);
+  [[maybe_unused]] const KeptFloatSetting kept;
   arena.execute([&] {
     // One item at a time: items (tiles) are large and of uneven cost.
     tbb::parallel_for(

@@ -80,23 +80,6 @@ class Distribution2D {
   };
   Result Sample(const Point2& u) const;  // requires !IsZero()
   float Density(const Point2& uv) const;
-
-  // Sample in two steps, for who can fetch what he knows of the cells while the table itself is fetched from memory.
-  struct Narrowed {
-    uint32_t row;
-    uint32_t first, last;  // the columns that are left
-    float u, tRow;
-  };
-  struct Cell {
-    int column, row;
-    Point2 t;   // position in the cell, [0,1)²
-    float pdf;  // density over [0,1]²
-  };
-  Narrowed Narrow(const Point2& u) const;  // requires !IsZero()
-  Cell Choose(const Narrowed& narrowed) const;
-  // The point of [0,1]² that Density finds in the cell.
-  Point2 At(const Cell& cell) const;
-
   Point2 Invert(const Point2& uv) const;
   double Integral() const { return integral_; }  // mean of the values
   bool IsZero() const { return integral_ <= 0; }

@@ -244,6 +244,33 @@ TEST_F(SkyImages, SamplesSeeWhatTheirDirectionSees) {
   }
 }
 
+// Neighbours differ in a large image, and the transform rounds: what a sample says is still that of its direction.
+TEST_F(SkyImages, SamplesOfNarrowTexelsSeeWhatTheirDirectionSees) {
+  Rng noise(11);
+  const auto value = [&](int) { return 0.1f + noise.NextFloat(); };
+  Write("wide.exr", 2048, 1024, value);
+  Write("square.exr", 1024, 1024, value);
+  for (const char* file : {"wide.exr", "square.exr"}) {
+    for (const Transform& placement : {Transform::Rotate(70, {1, 1, 0}), Transform::Scale({-3, 3, 3}),
+                                       Transform::Rotate(31, {0.3, 1, 0}) * Transform::Scale({1, 40, 2})}) {
+      const auto dome = Make("dome", std::string("\"string texture:file\" \"") + file + "\"", placement);
+      Rng rng(3);
+      for (int i = 0; i < 50000; ++i) {
+        dome->context.u = rng.NextPoint2();
+        const auto sample = dome->light->GenerateSamples(dome->context, Point3(0.0f));
+        ASSERT_TRUE(sample);
+        LightHit hit;
+        hit.direction = sample->direction;
+        hit.normal = -hit.direction;
+        const auto evaluation = dome->light->EvaluateSamples(dome->context, hit, Point3(0.0f));
+        ASSERT_TRUE(evaluation);
+        ASSERT_EQ(sample->diffuse, evaluation->diffuse) << file << " " << i;
+        ASSERT_NEAR(sample->pdfDirect.value / evaluation->pdfDirect.value, 1, 2e-5f) << file << " " << i;
+      }
+    }
+  }
+}
+
 TEST_F(SkyImages, OneBrightTexelGetsTheSamples) {
   // 1e9 in one texel of 8192 and 1 elsewhere; NaN and negative texels emit nothing.
   Write("sky.exr", 128, 64, [](int i) {

@@ -1,0 +1,96 @@
+#include "sampling/color_table.h"
+
+#include "base/parallel.h"
+#include "base/touch.h"
+#include "sampling/cumulative.h"
+
+namespace lampyr {
+
+using namespace cumulative;
+
+namespace {
+
+constexpr size_t kEntriesPerLine = 4;
+
+// The cumulative part of a row of entries.
+template <class Entry>
+struct RowCdf {
+  Entry* entries;
+  auto& operator[](size_t i) const { return entries[i].cdf; }
+};
+
+}  // namespace
+
+ColorTable::ColorTable(std::span<const float> weights, const std::function<Color(int x, int y)>& color, int width,
+                       int height)
+    : width_(width),
+      height_(height),
+      inverseWidth_(1 / static_cast<float>(width)),
+      inverseHeight_(1 / static_cast<float>(height)) {
+  const auto columns = static_cast<size_t>(width), rows = static_cast<size_t>(height);
+  stride_ = (columns + kEntriesPerLine) / kEntriesPerLine * kEntriesPerLine;
+  entries_ = LargeArray<Entry>(stride_ * rows);
+  const size_t steps = GuideSteps(columns);
+  guide_.assign((steps + 1) * rows, 0);
+  guideShift_ = GuideShift(columns);
+  std::vector<double> sums(rows, 0.0);
+  ParallelFor(height, HardwareThreads(), [&](int y) {
+    const auto row = static_cast<size_t>(y);
+    Entry* entries = &entries_[row * stride_];
+    for (int x = 0; x < width; ++x) entries[x].color = color(x, y);
+    const std::span<const float> ofRow = weights.subspan(row * columns, columns);
+    for (const float weight : ofRow) sums[row] += Cleaned(weight);
+    if (!(sums[row] > 0)) return;
+    const RowCdf<Entry> cdf{entries};
+    WriteCdf(ofRow, sums[row], cdf);
+    WriteGuide(cdf, columns, steps, &guide_[row * (steps + 1)], guideShift_);
+  });
+  const double largest = *std::max_element(sums.begin(), sums.end());
+  if (!(largest > 0)) return;
+  std::vector<float> scaled(rows);  // in the range of float, and a dark row stays above 0
+  double sum = 0;
+  for (size_t row = 0; row < rows; ++row) {
+    if (sums[row] > 0)
+      scaled[row] = std::max(static_cast<float>(sums[row] / largest), std::numeric_limits<float>::min());
+    sum += static_cast<double>(scaled[row]);
+  }
+  marginalCdf_.resize(rows + 1);
+  WriteCdf(scaled, sum, marginalCdf_.data());
+  marginalGuide_.resize(FineGuideSteps(rows) + 1);
+  WriteGuide(marginalCdf_.data(), rows, FineGuideSteps(rows), marginalGuide_.data());
+}
+
+float ColorTable::CellDensity(int x, int y) const {
+  return IntervalDensity(marginalCdf_.data(), static_cast<size_t>(y), static_cast<size_t>(height_)) *
+         IntervalDensity(RowCdf<const Entry>{Row(y)}, static_cast<size_t>(x), static_cast<size_t>(width_));
+}
+
+ColorTable::Cell ColorTable::Sample(const Point2& u) const {
+  const auto columns = static_cast<size_t>(width_), rows = static_cast<size_t>(height_);
+  const float ux = ClampedUnit(u.x), uy = ClampedUnit(u.y);
+  const Range rowRange = GuidedRange(marginalGuide_.data(), FineGuideSteps(rows), rows, uy);
+  const Found row = SampleCdf(marginalCdf_.data(), rowRange, rows, uy);
+  const size_t steps = GuideSteps(columns);
+  const Range range = GuidedRange(&guide_[row.interval * (steps + 1)], steps, columns, ux, guideShift_);
+  // All lines that the search may look at, at once: one after the other they would take as long each.
+  const int y = static_cast<int>(row.interval);
+  const Entry* entries = Row(y);
+  constexpr uint32_t kMostLines = 8;
+  const uint32_t first = range.low / kEntriesPerLine, last = (range.high + 1) / kEntriesPerLine;
+  for (uint32_t line = first; line <= std::min(last, first + kMostLines); ++line)
+    Touch(&entries[line * kEntriesPerLine].cdf);
+  const Found column = SampleCdf(RowCdf<const Entry>{entries}, range, columns, ux);
+  const int x = static_cast<int>(column.interval);
+  return {x, y, {column.t, row.t}, CellDensity(x, y), entries[x].color};
+}
+
+ColorTable::Texel ColorTable::Look(const Point2& uv) const {
+  const int x = IntervalAt(uv.x, width_), y = IntervalAt(uv.y, height_);
+  return {IsZero() ? 0.0f : CellDensity(x, y), ColorAt(x, y)};
+}
+
+Color ColorTable::ColorAt(int x, int y) const {
+  return Row(y)[x].color;
+}
+
+}  // namespace lampyr

@@ -1,0 +1,66 @@
+// An image that is sampled in proportion to weights of its texels: a Distribution2D whose cells hold their colours too.
+// Both lie together in memory. For an image that no cache holds a sample is one way to memory, and so is a look at a
+// point: that is most of what they cost.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "base/large_array.h"
+#include "math/vec.h"
+
+namespace lampyr {
+
+class ColorTable {
+ public:
+  ColorTable() = default;
+  // Weights and colours of the texels, rows in y. Weights that are negative, NaN or infinite count as 0.
+  ColorTable(std::span<const float> weights, const std::function<Color(int x, int y)>& color, int width, int height);
+
+  int Width() const { return width_; }
+  int Height() const { return height_; }
+  bool IsZero() const { return marginalCdf_.empty(); }  // no weight above 0
+
+  struct Cell {
+    int x, y;
+    Point2 t;   // position in the cell, [0,1)²
+    float pdf;  // density over [0,1]²
+    Color color;
+  };
+  Cell Sample(const Point2& u) const;  // requires !IsZero()
+  // The point of [0,1]², as float rounds it: at the very edge of the cell Look may find the next.
+  Point2 At(const Cell& cell) const {
+    return {(static_cast<float>(cell.x) + cell.t.x) * inverseWidth_,
+            (static_cast<float>(cell.y) + cell.t.y) * inverseHeight_};
+  }
+
+  struct Texel {
+    float pdf;
+    Color color;
+  };
+  Texel Look(const Point2& uv) const;
+  Color ColorAt(int x, int y) const;
+
+ private:
+  // Of cell x: where it begins in the cumulative distribution of its row, and its colour. One more ends the row.
+  struct Entry {
+    float cdf;
+    Color color;
+  };
+  static_assert(sizeof(Entry) == 16, "four to a line of the cache");
+  const Entry* Row(int y) const { return &entries_[static_cast<size_t>(y) * stride_]; }
+  float CellDensity(int x, int y) const;
+
+  int width_ = 0, height_ = 0;
+  float inverseWidth_ = 0, inverseHeight_ = 0;
+  size_t stride_ = 0;
+  LargeArray<Entry> entries_;
+  std::vector<uint16_t> guide_;  // of each row, of columns >> guideShift_
+  int guideShift_ = 0;
+  std::vector<float> marginalCdf_;
+  std::vector<uint32_t> marginalGuide_;
+};
+
+}  // namespace lampyr
