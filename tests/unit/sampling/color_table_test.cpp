@@ -18,7 +18,7 @@ TEST(ColorTable, IsADistributionWithColors) {
        {std::pair(1, 1), std::pair(5, 3), std::pair(37, 64), std::pair(1024, 512), std::pair(70001, 3)}) {
     Rng rng(static_cast<uint64_t>(width));
     std::vector<float> values(static_cast<size_t>(width) * static_cast<size_t>(height));
-    for (float& v : values) v = rng.NextFloat() < 0.3f ? 0.0f : std::pow(rng.NextFloat(), 8.0f);
+    for (float& v : values) v = rng.NextFloat() < 0.3f ? 0.0f : std::pow(rng.NextFloat(), 4.0f);
     values[values.size() / 2] = 1000;
     const ColorTable table(values, ColorOf, width, height);
     const Distribution2D distribution(values, width, height);
