@@ -79,6 +79,8 @@ LightType InfiniteLightType() {
       "\"string filename\" \"suite-square.exr\" \"float illuminance\" 5",
       "\"string filename\" \"suite-bright.exr\"",
       "\"string filename\" \"suite-black.exr\"",
+      "\"rgb L\" [ 3 2 1 ] \"point3 portal\" [ -1 -0.6 0.3  -1 0.6 0.3  1 0.6 0.3  1 -0.6 0.3 ] \"float specular\" 0.5",
+      "\"string filename\" \"suite-latlong.exr\" \"point3 portal\" [ -1 -0.6 0.3  -1 0.6 0.3  1 0.6 0.3  1 -0.6 0.3 ]",
   };
   return type;
 }

@@ -171,6 +171,7 @@ SuiteReport SuiteRun::Check(const SuiteCase& suiteCase) const {
   LightBuildContext build;
   build.placement = suiteCase.builtAt;
   build.transform = ToLightTransform(suiteCase.builtAt);
+  build.worldToRender = Transform::Translate(Vector3d(build.transform.toRender.translation));
   build.textures = &textures;
   build.diagnostics = &diagnostics;
   if (suiteCase.shape) build.shape = &*suiteCase.shape;
@@ -186,6 +187,8 @@ SuiteReport SuiteRun::Check(const SuiteCase& suiteCase) const {
   subject.model = model.get();
   subject.context.transform = &placed;
   subject.context.scene = {placed.toRender.translation, 3 * MaxAbsComponent(placed.toRender.linear[0])};
+  // What stands in world space is as large as it is, wherever the light is placed.
+  if (parameters.Find("portal")) subject.context.scene.radius = std::max(subject.context.scene.radius, 4.0f);
   subject.context.bidirectional = true;
   const std::unique_ptr<Light> light = MakeLight(*suiteCase.type, parameters, build);
   subject.light = light.get();
