@@ -32,30 +32,30 @@ Include "{stage}"
 LIGHTS = {
     "point": ('Translate 0.4 -1.2 2.2\nLightSource "point" "rgb I" [ 9 9 9 ]', 0),
     "spot": ('LightSource "spot" "point3 from" [ -1.8 -2.2 3 ] "point3 to" [ 0.1 0.3 0.4 ] "rgb I" [ 45 42 38 ]\n'
-             '  "float coneangle" 17 "float conedeltaangle" 4', 0),
+             '  "float coneangle" 17 "float conedeltaangle" 4', 1.3),
     "goniometric": ('Translate 0.4 -1 2.1\nLightSource "goniometric" "string filename" "stripes.png" "float scale" 16', 0),
     "projection": ('Translate -0.3 -3.4 2\nRotate -98 1 0 0\nLightSource "projection" "string filename" "window.png" "float fov" 42\n'
                    '  "float scale" 55', 0),
-    "ies": ('Translate 0 2.6 2.4\nLightSource "point" "string shaping:ies:file" "PROFILES/downlight.ies" "float intensity" 0.006', 0),
+    "ies": ('Translate 0 2.6 2.4\nLightSource "point" "string shaping:ies:file" "PROFILES/downlight.ies" "float intensity" 0.006', 2.2),
     "distant": ('LightSource "distant" "point3 from" [ -2 -2 3 ] "point3 to" [ 0 0 0 ] "rgb L" [ 3 2.8 2.5 ]', 0),
     "distant-angle": ('LightSource "distant" "point3 from" [ -2 -2 3 ] "point3 to" [ 0 0 0 ] "rgb L" [ 3 2.8 2.5 ]\n'
                       '  "float angle" 12 "bool normalize" true', 0),
     "infinite": ('LightSource "infinite" "rgb L" [ 0.9 0.95 1 ]', 0),
     "dome": ('LightSource "dome" "string texture:file" "sky.hdr" "string poleAxis" "Z"', 0),
     "portal": ('Translate -3.2 0 1.6\nRotate -90 0 1 0\nLightSource "portal" "float width" 1.8 "float height" 1.8\n'
-               '  "string texture:file" "sky.hdr" "string poleAxis" "Z" "float intensity" 6', 0),
-    "rect": ('Translate 0 -0.6 2.6\nLightSource "rect" "float width" 2.4 "float height" 0.7 "float intensity" 7', 0),
+               '  "string texture:file" "sky.hdr" "string poleAxis" "Z" "float intensity" 6', 0.9),
+    "rect": ('Translate 0 -0.6 2.6\nLightSource "rect" "float width" 2.4 "float height" 0.7 "float intensity" 7', 0.4),
     "rect-textured": ('Translate 0 1.6 2.3\nRotate -55 1 0 0\nLightSource "rect" "float width" 3 "float height" 1.4 "string texture:file" "bulbs.png"\n'
-                      '  "float intensity" 9', 0),
+                      '  "float intensity" 9', 0.9),
     "disk": ('Translate 0.5 -0.8 2.5\nLightSource "disk" "float radius" 0.6 "float intensity" 12\n'
-             '  "float shaping:cone:angle" 35 "float shaping:cone:softness" 0.4', 0),
+             '  "float shaping:cone:angle" 35 "float shaping:cone:softness" 0.4', 0.7),
     "sphere": ('Translate 0.35 -0.5 1.75\nLightSource "sphere" "float radius" 0.16 "float intensity" 110\n'
                '  "bool enableColorTemperature" true "float colorTemperature" 3400', 0),
-    "cylinder": ('Translate 0 0.2 1.9\nLightSource "cylinder" "float length" 3 "float radius" 0.05 "float intensity" 28', 0),
+    "cylinder": ('Translate 0 0.2 1.9\nLightSource "cylinder" "float length" 3 "float radius" 0.05 "float intensity" 28', 0.4),
     "mesh": ('AttributeBegin\nMaterial "diffuse" "rgb reflectance" [ 0 0 0 ]\nTranslate 0.3 -0.2 1.75\nRotate 35 1 0.4 0\n'
              'AreaLightSource "mesh" "float intensity" 16 "rgb color" [ 1 0.82 0.6 ]\n'
              'Shape "trianglemesh" "integer indices" [ 0 2 4  2 1 4  1 3 4  3 0 4  2 0 5  1 2 5  3 1 5  0 3 5 ]\n'
-             '  "point3 P" [ 0.35 0 0  -0.35 0 0  0 0.35 0  0 -0.35 0  0 0 0.35  0 0 -0.35 ]\nAttributeEnd', 0),
+             '  "point3 P" [ 0.35 0 0  -0.35 0 0  0 0.35 0  0 -0.35 0  0 0 0.35  0 0 -0.35 ]\nAttributeEnd', 0.6),
 }
 
 
