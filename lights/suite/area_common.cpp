@@ -103,6 +103,12 @@ void CheckAreaPower(const SuiteSubject& subject, const Enclosure& enclosure, con
   CheckPowerEstimate(subject, emitted, report);
 }
 
+double SolidAngleToAreaMismatch(const LightSample& sample) {
+  const double cosine = std::abs(glm::dot(Vector3d(sample.normal), glm::normalize(Vector3d(sample.direction))));
+  const auto distance = static_cast<double>(sample.distance);
+  return RelativeDifference(static_cast<double>(sample.solidAngleToArea), cosine / (distance * distance));
+}
+
 void CheckAreaEstimates(const SuiteSubject& subject, const Enclosure& enclosure, const Receiver& receiver, Rng& rng,
                         SuiteReport& report) {
   const Light& light = *subject.light;

@@ -25,6 +25,9 @@ struct Visibility {
 void CheckAreaPower(const SuiteSubject& subject, const Enclosure& enclosure, const Visibility& visibility, Rng& rng,
                     SuiteReport& report);
 
+// How far a sample's solidAngleToArea is from the cosθ / d² of what it says of itself. Not for those seen edge-on.
+double SolidAngleToAreaMismatch(const LightSample& sample);
+
 // Estimates at P and along segments through it, where light arrives.
 void CheckAreaEstimates(const SuiteSubject& subject, const Enclosure& enclosure, const Receiver& receiver, Rng& rng,
                         SuiteReport& report);

@@ -39,9 +39,33 @@ bool SameBits(const EmissionSample& a, const EmissionSample& b) {
          SameBits(a.diffuse, b.diffuse) && SameBits(a.specular, b.specular) &&
          SameBits(a.pdfEmit.value, b.pdfEmit.value) && SameBits(a.pdfEmitDirection.value, b.pdfEmitDirection.value);
 }
+bool SameBits(const SegmentEstimate& a, const SegmentEstimate& b) {
+  return SameBits(a.radiance, b.radiance) && SameBits(a.minT, b.minT) && SameBits(a.maxT, b.maxT);
+}
+bool SameBits(const LocalHit& a, const LocalHit& b) {
+  return a.t == b.t && a.position == b.position && a.normal == b.normal && a.uv == b.uv;
+}
 template <class Result>
 bool SameBits(const std::optional<Result>& a, const std::optional<Result>& b) {
   return a.has_value() == b.has_value() && (!a || SameBits(*a, *b));
+}
+
+bool SameSurfaces(const IntersectableLight* a, const IntersectableLight* b, Rng& rng) {
+  if (!a || !b) return a == b;
+  const std::vector<Point3> points = a->GetBounds();
+  if (points != b->GetBounds()) return false;
+  Bounds3d box;
+  for (const Point3& p : points) box.Add(Point3d(p));
+  for (int i = 0; i < 256; ++i) {
+    Vector3d within;
+    for (int k = 0; k < 3; ++k) within[k] = static_cast<double>(rng.NextFloat());
+    LocalRay ray;
+    ray.direction = RandomDirection(rng);
+    ray.tMax = 4 * glm::length(box.Diagonal());
+    ray.origin = box.min + within * box.Diagonal() - 0.5 * ray.tMax * ray.direction;
+    if (!SameBits(a->Intersect(ray), b->Intersect(ray))) return false;
+  }
+  return true;
 }
 
 // What differs between two lights, "" when nothing does.
@@ -62,6 +86,7 @@ std::string Difference(const SuiteSubject& subject, const Light& a, const Light&
     return "bounds";
   }
   Rng rng(subject.caseName.size());
+  if (!SameSurfaces(a.Surface(), b.Surface(), rng)) return "surface";
   for (int i = 0; i < 256; ++i) {
     const LightContext context = RandomContext(subject, rng);
     const float reach = subject.context.scene.radius * rng.NextFloat();
@@ -76,6 +101,10 @@ std::string Difference(const SuiteSubject& subject, const Light& a, const Light&
     if (!SameBits(a.GenerateEmission(context), b.GenerateEmission(context))) return "photons";
     if (!SameBits(a.GetIncidentRadianceEstimate(context, P), b.GetIncidentRadianceEstimate(context, P)))
       return "estimates";
+    const Vector3 along(RandomDirection(rng));
+    if (!SameBits(a.GetIncidentRadianceEstimate(context, P, along, reach),
+                  b.GetIncidentRadianceEstimate(context, P, along, reach)))
+      return "estimates of segments";
   }
   return "";
 }

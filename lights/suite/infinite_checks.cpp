@@ -76,7 +76,8 @@ std::vector<Receiver> InfiniteChecker::Receivers() const {
 double InfiniteChecker::SampleMismatch(const LightSample& sample, const Point3& P) const {
   const LightHit hit = HitAlong(sample.direction, P);
   const auto evaluation = light_.EvaluateSamples(subject_.context, hit, P);
-  if (isDelta_) return sample.pdfDirect.value == 1 && !evaluation ? 0 : 1;
+  if (sample.solidAngleToArea != 1) return 1;
+  if (isDelta_) return sample.pdfDirect.value == 1 && sample.pdfEmitDirection.value == 1 && !evaluation ? 0 : 1;
   return evaluation ? Mismatch(sample, *evaluation) : 1.0;
 }
 
@@ -90,7 +91,6 @@ void InfiniteChecker::CheckReceiver(const Receiver& receiver) {
     arrives = true;
     consistency = std::max(consistency, SampleMismatch(*sample, P));
     multipliers = std::max(multipliers, MultiplierMismatch(subject_, *sample));
-    if (isDelta_) continue;
     const LightHit hit = HitAlong(sample->direction, P);
     camera =
         std::max(camera, CameraMismatch(subject_, hit, light_.EvaluateSamples(subject_.context, hit, P)).value_or(0.0));
@@ -98,7 +98,7 @@ void InfiniteChecker::CheckReceiver(const Receiver& receiver) {
   const std::string where = Case(" " + receiver.name);
   report_.AddError(subject_.name, "consistency", where, consistency, 1e-4);
   report_.AddError(subject_.name, "multipliers", where, multipliers, 1e-5);
-  if (!isDelta_) report_.AddError(subject_.name, "camera", where, camera, 1e-4);
+  report_.AddError(subject_.name, "camera", where, camera, 1e-4);
   CheckEstimates(receiver, arrives);
   if (!isDelta_) CheckDirectionsAt(receiver);
 }

@@ -6,7 +6,8 @@
 //   integral             pdfDirect integrates to the probability that a sample exists, 1 where the light is all visible
 //   directions           χ² of sampled points (or directions, at infinity) against pdfDirect
 //   consistency          EvaluateSamples on a generated sample gives back radiance, normal and all densities
-//   surface              a sample's normal, position and density agree with the shape, evaluated apart from the light
+//   surface              a sample's normal, position and density agree with the shape, evaluated apart from the light;
+//                        its solidAngleToArea is that of its place
 //   one-sided            nothing leaves a one-sided surface at its back
 //   irradiance           by light sampling = by quadrature over the surface
 //   emission-integral    the densities of emission integrate to 1
@@ -17,6 +18,9 @@
 //   power-estimate       GetPowerEstimate: exact where it is a closed form, near otherwise
 //   bounds               photons leave within GetEmissionBounds
 //   estimate             no estimate is 0 where a sample arrives
+//   multipliers          diffuse and specular parts are one emission, each times the light's multiplier
+//   camera               a camera sees what receivers see, and nothing of a delta
+//   edit                 an edited light is the one that is made afresh, bit by bit
 #pragma once
 
 #include <filesystem>

@@ -115,7 +115,8 @@ void PointChecker::CheckReceiver(const Receiver& receiver) {
   hit.direction = Vector3(toLight / distance);
   hit.distance = static_cast<float>(distance);
   hit.position = position_;
-  if (light_.EvaluateSamples(subject_.context, hit, P)) consistency = 1;  // deltas are never found
+  const auto found = light_.EvaluateSamples(subject_.context, hit, P);
+  if (found) consistency = 1;  // deltas are never found
   if (sample) {
     const double rounding = 4e-7 * scale / distance;
     const auto note = [&](double error) { consistency = std::max(consistency, error); };
@@ -130,6 +131,7 @@ void PointChecker::CheckReceiver(const Receiver& receiver) {
   }
   const std::string where = Case(" " + receiver.name);
   report_.AddError(subject_.name, "consistency", where, consistency, 1e-5);
+  report_.AddError(subject_.name, "camera", where, CameraMismatch(subject_, hit, found).value_or(0.0), 1e-4);
   report_.AddError(subject_.name, "multipliers", where, multipliers, 1e-5);
   report_.AddError(subject_.name, "estimate", where, missed, 0.5);
   // The same direction from another distance; rounding of a direction matters where the intensity has an edge.

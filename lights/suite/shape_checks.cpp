@@ -164,6 +164,7 @@ void ShapeChecker::CheckSample(const LightSample& sample, const Point3& P, doubl
   const LightHit own = model_.HitFrom(sample.patchIndex, element, P);
   // Where the light is seen edge-on, rounding of the position turns the cosine.
   if (std::abs(glm::dot(own.normal, own.direction)) < 0.02f) return;
+  surface = std::max(surface, SolidAngleToAreaMismatch(sample));
   const auto other = light_.EvaluateSamples(subject_.context, own, P);
   surface = std::max(surface, other ? 0.1 * RelativeDifference(static_cast<double>(sample.pdfDirect.value),
                                                                static_cast<double>(other->pdfDirect.value))

@@ -96,6 +96,7 @@ void SurfaceReceiverChecker::Compare(const LightSample& sample, const Point3& P,
   const Vector3d direction = glm::normalize(Vector3d(sample.direction));
   const double cosine = std::abs(glm::dot(Vector3d(sample.normal), direction));
   if (cosine < kFlat) return;  // its ray may miss it
+  errors.surface = std::max(errors.surface, SolidAngleToAreaMismatch(sample));
   const auto found = tracer_.Find(Point3d(P), direction, Point3d(sample.position));
   if (!found) {
     errors.surface = 1;

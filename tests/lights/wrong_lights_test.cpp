@@ -5,107 +5,20 @@
 
 #include "light_fixture.h"
 #include "lights/suite/pdf_suite.h"
+#include "wrong_light.h"
 
 namespace lampyr {
 namespace {
 
-enum class Fault {
-  None,
-  PdfOffByOnePercent,
-  CosineForgotten,
-  LeaksBehind,
-  EmissionNotCosine,
-  PowerOffByTwo,
-  DiskNotRotated,
-  ZeroWhereItEmits,
-  OtherRadiance,
-  EmitDensityOff,
-  EstimateIsZero,
-  DarkPhotonsAreNone,
-};
-
-// A sound light with one fault.
-class WrongLight final : public Light {
- public:
-  WrongLight(const Light& light, Fault fault) : light_(light), fault_(fault) {}
-
-  LightKind Kind() const override { return light_.Kind(); }
-  const LightSettings& Settings() const override { return light_.Settings(); }
-  int PatchCount() const override { return light_.PatchCount(); }
-  float GetIncidentRadianceEstimate(const LightContext& context, const Point3& P) const override {
-    return fault_ == Fault::EstimateIsZero ? 0.0f : light_.GetIncidentRadianceEstimate(context, P);
-  }
-  std::optional<SegmentEstimate> GetIncidentRadianceEstimate(const LightContext& context, const Point3& origin,
-                                                             const Vector3& direction, float length) const override {
-    return light_.GetIncidentRadianceEstimate(context, origin, direction, length);
-  }
-  Color GetPowerEstimate(const LightContext& context) const override {
-    return light_.GetPowerEstimate(context) * (fault_ == Fault::PowerOffByTwo ? 2.0f : 1.0f);
-  }
-  std::optional<EmissionBounds> GetEmissionBounds(const LightContext& context) const override {
-    return light_.GetEmissionBounds(context);
-  }
-  std::optional<LightSample> GenerateSamples(const LightContext& context, const Point3& P) const override {
-    auto sample = light_.GenerateSamples(context, P);
-    if (!sample) return sample;
-    if (fault_ == Fault::ZeroWhereItEmits && IsNeglected(sample->position, sample->direction)) return std::nullopt;
-    sample->pdfDirect = Changed(sample->pdfDirect, glm::dot(sample->normal, sample->direction));
-    if (fault_ == Fault::EmitDensityOff) sample->pdfEmit = sample->pdfEmit * 1.05f;
-    return sample;
-  }
-  std::optional<LightEvaluation> EvaluateSamples(const LightContext& context, const LightHit& given,
-                                                 const Point3& P) const override {
-    LightHit hit = given;
-    if (fault_ == Fault::LeaksBehind && glm::dot(hit.normal, hit.direction) > 0) hit.normal = -hit.normal;
-    auto evaluation = light_.EvaluateSamples(context, hit, P);
-    if (!evaluation) return evaluation;
-    evaluation->pdfDirect = Changed(evaluation->pdfDirect, glm::dot(hit.normal, hit.direction));
-    if (fault_ == Fault::ZeroWhereItEmits && IsNeglected(hit.position, hit.direction))
-      evaluation->pdfDirect = PdfSolidAngle(0);
-    if (fault_ == Fault::OtherRadiance) evaluation->diffuse *= 1.01f;
-    if (fault_ == Fault::EmitDensityOff) evaluation->pdfEmit = evaluation->pdfEmit * 1.05f;
-    if (fault_ == Fault::EmissionNotCosine) evaluation->pdfEmitDirection = PdfSolidAngle(0.5f * kInvPi);
-    return evaluation;
-  }
-  std::optional<EmissionSample> GenerateEmission(const LightContext& context) const override {
-    auto photon = light_.GenerateEmission(context);
-    if (!photon) return photon;
-    if (fault_ == Fault::DarkPhotonsAreNone && photon->emissionCosine < 0.3f) return std::nullopt;
-    if (fault_ == Fault::EmissionNotCosine) photon->pdfEmitDirection = PdfSolidAngle(0.5f * kInvPi);
-    if (fault_ == Fault::EmitDensityOff) photon->pdfEmit = photon->pdfEmit * 1.05f;
-    if (fault_ == Fault::DiskNotRotated) {
-      const float angle = 2 * kPi * context.uDirection.x, r = std::sqrt(context.uDirection.y) * context.scene.radius;
-      photon->position = context.scene.center + Vector3(r * std::cos(angle), r * std::sin(angle), 0) -
-                         context.scene.radius * photon->direction;
-    }
-    return photon;
-  }
-  Color EvaluateEmissionForCamera(const LightContext& context, const LightHit& hit) const override {
-    return light_.EvaluateEmissionForCamera(context, hit);
-  }
-  std::unique_ptr<Light> Edit(const ParameterList& changes, const LightBuildContext& build) const override {
-    return light_.Edit(changes, build);
-  }
-
- private:
-  bool IsNeglected(const Point3& position, const Vector3& direction) const {
-    return Kind() == LightKind::Area ? position.x < 0 : direction.x < 0;
-  }
-  PdfSolidAngle Changed(PdfSolidAngle pdf, float cosine) const {
-    if (fault_ == Fault::PdfOffByOnePercent) return pdf * 1.01f;
-    return fault_ == Fault::CosineForgotten ? pdf * std::abs(cosine) : pdf;
-  }
-
-  const Light& light_;
-  Fault fault_;
-};
+using test::Fault;
+using test::WrongLight;
 
 // The properties that a light with this fault fails.
 std::set<std::string> Failures(const std::string& type, const Shape* shape, Fault fault) {
   const Transform turn = Transform::Rotate(40, {1, 0.5, 0});
   const auto built =
       test::Build(type, type == "spot" ? "\"float coneangle\" 50" : "", shape ? Transform() : turn, shape);
-  const WrongLight wrong(*built->light, fault);
+  const WrongLight wrong(std::move(built->light), fault);
   std::unique_ptr<EmitterModel> model;
   if (shape) model = MakeEmitterModel(*shape, Transform());
   SuiteSubject subject;
