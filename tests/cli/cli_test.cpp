@@ -350,7 +350,7 @@ TEST_F(Cli, ChecksTheLightsOfOneType) {
   for (const char* word : {"spot[0]", "directions", "emission-edge", "irradiance", "power", " cases, 0 of "})
     EXPECT_NE(outcome.output.find(word), std::string::npos) << word;
   EXPECT_EQ(outcome.output.find("FAILED"), std::string::npos);
-  EXPECT_EQ(outcome.output.find("rect"), std::string::npos);
+  EXPECT_EQ(outcome.output.find("rect["), std::string::npos);
 }
 
 }  // namespace
