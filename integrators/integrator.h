@@ -76,4 +76,14 @@ class LightPathIntegrator {
   virtual void TracePath(float time, Sampler& sampler, SplatList& splats, RenderCounts& counts) const = 0;
 };
 
+// An integrator that follows a path from the camera and one from a light together. Stateless: any thread may call it.
+class BidirectionalIntegrator {
+ public:
+  virtual ~BidirectionalIntegrator() = default;
+  // One sample of the radiance along `ray`, and splats of the light path wherever the camera sees it; one light path is
+  // traced per sample of each pixel of the full image. Without a ray (null: the pixel is not wanted) only splats.
+  // `time` is that of both paths.
+  virtual Color Sample(const Ray* ray, float time, Sampler& sampler, SplatList& splats, RenderCounts& counts) const = 0;
+};
+
 }  // namespace lampyr

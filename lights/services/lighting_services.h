@@ -86,6 +86,14 @@ class LightingServices {
 
   PdfDiscrete SelectionProbability(const Receiver& receiver, uint32_t light, int patch) const;
   PdfDiscrete EmissionSelectionProbability(uint32_t light) const;
+  // Whether a light has a direction only (infinite and distant lights), and whether a direction that a surface samples
+  // can find it.
+  bool IsAtInfinity(uint32_t light) const {
+    return kinds_[light] == LightKind::Infinite || kinds_[light] == LightKind::DeltaDirection;
+  }
+  bool CanBeHit(uint32_t light) const {
+    return kinds_[light] == LightKind::Infinite || (kinds_[light] == LightKind::Area && lights_[light].canBeHit);
+  }
 
   bool HasLights() const { return !lights_.empty(); }
   const std::vector<PlacedLight>& Lights() const { return lights_; }

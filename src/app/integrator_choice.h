@@ -11,7 +11,8 @@
 
 namespace lampyr {
 
-using AnyIntegrator = std::variant<std::unique_ptr<CameraIntegrator>, std::unique_ptr<LightPathIntegrator>>;
+using AnyIntegrator = std::variant<std::unique_ptr<CameraIntegrator>, std::unique_ptr<LightPathIntegrator>,
+                                   std::unique_ptr<BidirectionalIntegrator>>;
 
 // The one that the settings name. `scene` must outlive it.
 AnyIntegrator MakeIntegrator(const RenderScene& scene, const RenderSettings& settings);

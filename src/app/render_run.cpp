@@ -22,25 +22,31 @@ float SampleTime(const RenderScene& scene, Sampler& sampler) {
   return sampler.Get1D();
 }
 
-// One sample of one pixel, added to `sums`.
-void RenderSample(const RenderScene& scene, const CameraIntegrator& integrator, const PixelFilter& filter,
-                  float imagingRatio, bool pinhole, int x, int y, Sampler& sampler, PixelSums& sums,
-                  RenderCounts& counts) {
+// A ray through one pixel.
+struct PixelRay {
+  CameraRay camera;
+  float filterWeight = 1;
+};
+PixelRay MakePixelRay(const RenderScene& scene, const PixelFilter& filter, int x, int y, float time, Sampler& sampler) {
   sampler.SetDimension(dimensions::kFilm);
   const PixelFilter::Offset offset = filter.Sample(sampler.Get2D());
   const Point2 film(static_cast<float>(x) + 0.5f + offset.offset.x, static_cast<float>(y) + 0.5f + offset.offset.y);
   Point2 lens(0.5f);
-  if (!pinhole) {
+  if (!scene.camera->HasPinhole()) {
     sampler.SetDimension(dimensions::kLens);
     lens = sampler.Get2D();
   }
-  const CameraRay cameraRay = scene.camera->GenerateRay(film, lens, SampleTime(scene, sampler));
-  Color value = integrator.Radiance(cameraRay.ray, sampler, counts) * (cameraRay.weight * imagingRatio);
+  return {scene.camera->GenerateRay(film, lens, time), offset.weight};
+}
+
+// A sample of one pixel, added to `sums`. A value that is none is left out and counted.
+void AddSample(const PixelRay& ray, const Color& radiance, float imagingRatio, PixelSums& sums, RenderCounts& counts) {
+  Color value = radiance * (ray.camera.weight * imagingRatio);
   if (!value.IsValid()) {
     ++counts.droppedSamples;
     value = Color(0.0f);
   }
-  sums.Add(value, offset.weight);
+  sums.Add(value, ray.filterWeight);
 }
 
 struct Clock {
@@ -73,7 +79,6 @@ RenderCounts RenderPass(const RenderScene& scene, const CameraIntegrator& integr
   const PixelRect& crop = film.Crop();
   const int tilesX = (crop.Width() + kTileSize - 1) / kTileSize;
   const int tilesY = (crop.Height() + kTileSize - 1) / kTileSize;
-  const bool pinhole = scene.camera->HasPinhole();
   std::vector<RenderCounts> tileCounts(static_cast<size_t>(tilesX) * tilesY);
   ParallelFor(tilesX * tilesY, threads, [&](int tile) {
     const int x0 = crop.x0 + tile % tilesX * kTileSize, x1 = std::min(x0 + kTileSize, crop.x1);
@@ -85,7 +90,8 @@ RenderCounts RenderPass(const RenderScene& scene, const CameraIntegrator& integr
         PixelSums sums = film.Pixel(x, y);
         for (uint32_t i = 0; i < count; ++i) {
           sampler.StartPixelSample(x, y, first + i);
-          RenderSample(scene, integrator, filter, settings.imagingRatio, pinhole, x, y, sampler, sums, counts);
+          const PixelRay ray = MakePixelRay(scene, filter, x, y, SampleTime(scene, sampler), sampler);
+          AddSample(ray, integrator.Radiance(ray.camera.ray, sampler, counts), settings.imagingRatio, sums, counts);
         }
         film.Pixel(x, y) = sums;
       }
@@ -125,11 +131,50 @@ RenderCounts RenderPass(const RenderScene& scene, const LightPathIntegrator& int
   return total;
 }
 
+RenderCounts RenderPass(const RenderScene& scene, const BidirectionalIntegrator& integrator,
+                        const RenderSettings& settings, const PixelFilter& filter, uint32_t first, uint32_t count,
+                        int threads, Film& film) {
+  const auto width = static_cast<uint64_t>(settings.width), height = static_cast<uint64_t>(settings.height);
+  const PixelRect& crop = film.Crop();
+  const int chunks = 4 * std::max(threads, 1);
+  std::vector<SplatList> lists(static_cast<size_t>(chunks), film.MakeSplatList(filter, settings.imagingRatio));
+  std::vector<RenderCounts> counts(static_cast<size_t>(chunks));
+  // One sample of all pixels after the other: chunks never meet in a pixel, and the film adds paths in their order.
+  for (uint32_t index = first; index < first + count; ++index) {
+    for (uint64_t round = 0; round < width * height; round += chunks * kChunkPaths) {
+      ParallelFor(chunks, threads, [&](int chunk) {
+        SplatList& splats = lists[static_cast<size_t>(chunk)];
+        RenderCounts& ofChunk = counts[static_cast<size_t>(chunk)];
+        splats.Clear();
+        Sampler sampler(settings.sampler, settings.seed);
+        const uint64_t begin = round + static_cast<uint64_t>(chunk) * kChunkPaths;
+        for (uint64_t i = begin; i < std::min(begin + kChunkPaths, width * height); ++i) {
+          const int x = static_cast<int>(i % width), y = static_cast<int>(i / width);
+          sampler.StartPixelSample(x, y, index);
+          splats.StartPath();
+          const float time = SampleTime(scene, sampler);
+          if (x < crop.x0 || x >= crop.x1 || y < crop.y0 || y >= crop.y1) {
+            integrator.Sample(nullptr, time, sampler, splats, ofChunk);
+            continue;
+          }
+          const PixelRay ray = MakePixelRay(scene, filter, x, y, time, sampler);
+          const Color radiance = integrator.Sample(&ray.camera.ray, time, sampler, splats, ofChunk);
+          AddSample(ray, radiance, settings.imagingRatio, film.Pixel(x, y), ofChunk);
+        }
+      });
+      film.AddSplats(filter, lists, threads);
+    }
+  }
+  RenderCounts total;
+  for (const RenderCounts& part : counts) total += part;
+  return total;
+}
+
 RenderOutcome Render(const RenderScene& scene, const AnyIntegrator& integrator, const RenderSettings& settings,
                      const StopConditions& stop, int threads, Film& film, const PassCallback& afterPass) {
   const PixelFilter filter(settings.filter);
   // Light paths are those of the full image.
-  const bool followsLight = std::holds_alternative<std::unique_ptr<LightPathIntegrator>>(integrator);
+  const bool followsLight = !std::holds_alternative<std::unique_ptr<CameraIntegrator>>(integrator);
   const int64_t pixels = followsLight ? static_cast<int64_t>(settings.width) * settings.height
                                       : static_cast<int64_t>(film.Crop().Width()) * film.Crop().Height();
   const Clock clock;

@@ -46,4 +46,10 @@ RenderCounts RenderPass(const RenderScene& scene, const CameraIntegrator& integr
 RenderCounts RenderPass(const RenderScene& scene, const LightPathIntegrator& integrator, const RenderSettings& settings,
                         const PixelFilter& filter, uint32_t first, uint32_t count, int threads, Film& film);
 
+// Both: a light path for each sample of each pixel of the full image, a camera path for those of the crop. What lies in
+// a crop is the same as in the whole.
+RenderCounts RenderPass(const RenderScene& scene, const BidirectionalIntegrator& integrator,
+                        const RenderSettings& settings, const PixelFilter& filter, uint32_t first, uint32_t count,
+                        int threads, Film& film);
+
 }  // namespace lampyr

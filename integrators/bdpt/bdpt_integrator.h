@@ -1,0 +1,29 @@
+// Bidirectional path tracing ([Veach97 §10], [Lafortune93]): a path from the camera and a path from a light for every
+// sample, each vertex of one connected to each of the other. A technique (s,t) has s vertices from the light and t from
+// the camera; all are there, s = 0 (the light is hit by chance) and t = 1 (the light path is connected to the lens)
+// included, and are weighted by the power heuristic over all of them (integrators/common/partial_weight.h).
+//
+// Next-event estimation (s = 1) asks the lighting services for a light as path tracing does, so any selector may be
+// used; its exact probabilities at the receiver are in all weights. Lights that do not trace light paths
+// (traceLightPaths) are found by s = 0 and s = 1 alone.
+//
+// Cannot find: light from delta lights that is seen through two events that cannot be connected, a caustic in a mirror.
+#pragma once
+
+#include <memory>
+
+#include "integrators/bdpt/bdpt_path.h"
+#include "integrators/integrator.h"
+
+namespace lampyr {
+
+struct BdptSettings {
+  int maxDepth = 5;                  // scattering events
+  double filmPixels = 1;             // of the full image: light paths per sample of a pixel
+  PathObserver* observer = nullptr;  // for proofs and pictures of techniques; called from the tracing thread
+};
+
+// `scene` must outlive the integrator.
+std::unique_ptr<BidirectionalIntegrator> MakeBdptIntegrator(const RenderScene& scene, const BdptSettings& settings);
+
+}  // namespace lampyr
