@@ -24,6 +24,8 @@ struct RenderScene {
   bool hasMotion = false;  // something moves during the shutter: rays have a time; otherwise it stays 0
 };
 
+class PathObserver;  // integrators/bdpt/bdpt_path.h
+
 // Kept per tile of work and summed afterwards: no thread shares one.
 struct RenderCounts {
   uint64_t cameraRays = 0;
@@ -83,7 +85,9 @@ class BidirectionalIntegrator {
   // One sample of the radiance along `ray`, and splats of the light path wherever the camera sees it; one light path is
   // traced per sample of each pixel of the full image. Without a ray (null: the pixel is not wanted) only splats.
   // `time` is that of both paths.
-  virtual Color Sample(const Ray* ray, float time, Sampler& sampler, SplatList& splats, RenderCounts& counts) const = 0;
+  // `observer`, if any, is told of all that the sample is made of.
+  virtual Color Sample(const Ray* ray, float time, Sampler& sampler, SplatList& splats, RenderCounts& counts,
+                       PathObserver* observer) const = 0;
 };
 
 }  // namespace lampyr

@@ -21,6 +21,12 @@ struct Workspace {
   std::vector<PathVertex> light, camera;
 };
 
+// The place of vertex `index`, made where there is none yet: other vertices may move.
+PathVertex& PlaceOf(std::vector<PathVertex>& vertices, size_t index) {
+  if (index >= vertices.size()) vertices.resize(std::max<size_t>(8, 2 * index));
+  return vertices[index];
+}
+
 // A ray on its way to the next vertex, and what it carries.
 struct Flight {
   Ray ray;
@@ -39,7 +45,8 @@ class BdptIntegrator final : public BidirectionalIntegrator {
         settings_(settings),
         hasParallelRays_(scene.camera->HasParallelRays()) {}
 
-  Color Sample(const Ray* ray, float time, Sampler& sampler, SplatList& splats, RenderCounts& counts) const override;
+  Color Sample(const Ray* ray, float time, Sampler& sampler, SplatList& splats, RenderCounts& counts,
+               PathObserver* observer) const override;
 
  private:
   // One sample's state: both subpaths, where it draws from and what it adds to.
@@ -48,6 +55,7 @@ class BdptIntegrator final : public BidirectionalIntegrator {
     Sampler& sampler;
     SplatList& splats;
     RenderCounts& counts;
+    PathObserver* observer;
     float time;
     size_t lightCount = 0, cameraCount = 0;
     LightEnd end;  // of the light subpath
@@ -72,8 +80,13 @@ class BdptIntegrator final : public BidirectionalIntegrator {
   double CameraPerArea(const Ray& ray, float cosTheta, double distanceSquared) const;
   double LandingFactor(uint32_t light, float cosTheta, double distanceSquared) const;
 
-  Color Report(const ConnectedPath& path) const {
-    if (settings_.observer) settings_.observer->Observe(path);
+  // The camera's end of a path with a camera subpath.
+  static void SetLens(const Run& run, ConnectedPath& path) {
+    path.toLens = run.paths.camera[0].toPrevious;
+    path.cameraPerArea = run.paths.camera[0].pdfForward;
+  }
+  static Color Report(const Run& run, const ConnectedPath& path) {
+    if (run.observer) run.observer->Observe(path);
     return path.value * static_cast<float>(path.weight);
   }
 
@@ -199,7 +212,7 @@ void BdptIntegrator::TraceLight(Run& run) const {
   std::optional<RayHit> hit = photon->landing;
   while (hit && run.lightCount < static_cast<size_t>(settings_.maxDepth)) {
     const SurfacePoint point = geometry_.GetSurfacePoint(flight.ray, *hit);
-    PathVertex& vertex = run.paths.light[run.lightCount];
+    PathVertex& vertex = PlaceOf(run.paths.light, run.lightCount);
     if (!MakeVertex(flight.ray, *hit, point, vertex)) return;
     vertex.diffuse = flight.diffuse;
     vertex.specular = flight.specular;
@@ -268,7 +281,7 @@ void BdptIntegrator::ConnectLightToCamera(Run& run, const EmittedPhoton& photon)
   path.film = &connection->camera.film;
   path.value = radiance * static_cast<float>(static_cast<double>(cosTheta * connection->Weight()) / density);
   path.weight = 1 / (1 + Mis(path.cameraPerArea / density));
-  AddSplats(*connection, Report(path), run.splats, run.counts);
+  AddSplats(*connection, Report(run, path), run.splats, run.counts);
 }
 
 // (s,1): the last vertex of the light subpath, seen by the camera.
@@ -293,13 +306,15 @@ void BdptIntegrator::ConnectToLens(Run& run, size_t count) const {
   path.t = 1;
   path.light = run.Light(count);
   path.end = run.end;
+  path.toLight = run.paths.light[0].toPrevious;
+  path.toLens = toCamera;
   path.cameraPerArea =
       static_cast<double>(connection->Weight()) * AreaPerSolidAngle(cosTheta, 1) / settings_.filmPixels;
   path.film = &connection->camera.film;
   path.value = scattered * (std::abs(cosTheta) * ArrivalCorrection(vertex.bsdf, toLight) * connection->Weight());
   path.weight = 1 / (1 + vertex.weight.Sum(path.cameraPerArea,
                                            static_cast<double>(f.pdfReverse.value) * vertex.previousPerSolidAngle));
-  AddSplats(*connection, Report(path), run.splats, run.counts);
+  AddSplats(*connection, Report(run, path), run.splats, run.counts);
 }
 
 // s = 0: the camera subpath has found a light. `landing` is that of an emission at its last vertex.
@@ -313,12 +328,14 @@ Color BdptIntegrator::HitLight(Run& run, const Flight& flight, const FoundLight&
   path.t = static_cast<int>(run.cameraCount) + 2;
   path.camera = run.Camera(run.cameraCount);
   path.end = EndOf(found, true, landing);
+  path.toLight = flight.ray.direction;
+  SetLens(run, path);
   const double pdf = flight.pdf * path.end.perSolidAngle;
   const double earlier =
       last.weight.Next(last.scatteredDelta, 1, last.eventReverse * last.previousPerSolidAngle).earlier;
   const double direct = last.scatteredDelta ? 0.0 : Mis(path.end.direct);
   path.weight = 1 / (1 + (direct + Mis(path.end.emission) * earlier) / Mis(pdf));
-  return Report(path);
+  return Report(run, path);
 }
 
 // s = 1: next-event estimation at the camera subpath's last vertex.
@@ -356,11 +373,13 @@ Color BdptIntegrator::SampleLight(Run& run) const {
   const double squared = Sqr(static_cast<double>(sample.distance));
   path.end = EndOf(found, !direct.isDelta && lighting_.CanBeHit(direct.light),
                    LandingFactor(direct.light, CosineAt(vertex, sample.direction), squared));
+  path.toLight = sample.direction;
+  SetLens(run, path);
   const double hit = path.end.canBeHit ? Mis(static_cast<double>(f.pdfForward.value) * path.end.perSolidAngle) : 0.0;
   const double camera =
       vertex.weight.Sum(path.end.emission, static_cast<double>(f.pdfReverse.value) * vertex.previousPerSolidAngle);
   path.weight = 1 / (1 + (hit + camera) / Mis(path.end.direct));
-  return Report(path);
+  return Report(run, path);
 }
 
 // s > 1, t > 1: the first `lightCount` vertices of the light subpath, joined to the camera subpath's last.
@@ -391,12 +410,14 @@ Color BdptIntegrator::Connect(Run& run, size_t lightCount) const {
   path.light = run.Light(lightCount);
   path.camera = run.Camera(run.cameraCount);
   path.end = run.end;
+  path.toLight = run.paths.light[0].toPrevious;
+  SetLens(run, path);
   const double light = y.weight.Sum(static_cast<double>(fz.pdfForward.value) * AreaPerSolidAngle(cosY, squared),
                                     static_cast<double>(fy.pdfReverse.value) * y.previousPerSolidAngle);
   const double camera = z.weight.Sum(static_cast<double>(fy.pdfForward.value) * AreaPerSolidAngle(cosZ, squared),
                                      static_cast<double>(fz.pdfReverse.value) * z.previousPerSolidAngle);
   path.weight = 1 / (1 + light + camera);
-  return Report(path);
+  return Report(run, path);
 }
 
 Color BdptIntegrator::TraceCamera(Run& run, const Ray& cameraRay) const {
@@ -438,7 +459,7 @@ Color BdptIntegrator::TraceCamera(Run& run, const Ray& cameraRay) const {
       }
     }
     if (run.cameraCount >= static_cast<size_t>(settings_.maxDepth)) return radiance;
-    PathVertex& vertex = run.paths.camera[run.cameraCount];
+    PathVertex& vertex = PlaceOf(run.paths.camera, run.cameraCount);
     if (!MakeVertex(flight.ray, hit, point, vertex)) return radiance;
     vertex.diffuse = flight.diffuse;
     vertex.specular = flight.specular;
@@ -484,19 +505,14 @@ Color BdptIntegrator::SeenLight(Run& run, const Ray& ray, const RayHit& hit, con
     path.cameraPerArea = CameraPerArea(ray, glm::dot(ray.direction, point.Ng), Sqr(static_cast<double>(hit.t)));
     if (path.cameraPerArea > 0) path.weight = 1 / (1 + Mis(path.end.position / path.cameraPerArea));
   }
-  return Report(path);
+  return Report(run, path);
 }
 
-Color BdptIntegrator::Sample(const Ray* ray, float time, Sampler& sampler, SplatList& splats,
-                             RenderCounts& counts) const {
+Color BdptIntegrator::Sample(const Ray* ray, float time, Sampler& sampler, SplatList& splats, RenderCounts& counts,
+                             PathObserver* observer) const {
   // Kept by the thread: vertices are large, and samples many.
   thread_local Workspace workspace;
-  const auto most = static_cast<size_t>(settings_.maxDepth);
-  if (workspace.light.size() < most) {
-    workspace.light.resize(most);
-    workspace.camera.resize(most);
-  }
-  Run run{workspace, sampler, splats, counts, time, 0, 0, {}};
+  Run run{workspace, sampler, splats, counts, observer, time, 0, 0, {}};
   TraceLight(run);
   return ray ? TraceCamera(run, *ray) : Color(0.0f);
 }

@@ -18,9 +18,8 @@
 namespace lampyr {
 
 struct BdptSettings {
-  int maxDepth = 5;                  // scattering events
-  double filmPixels = 1;             // of the full image: light paths per sample of a pixel
-  PathObserver* observer = nullptr;  // for proofs and pictures of techniques; called from the tracing thread
+  int maxDepth = 5;       // scattering events
+  double filmPixels = 1;  // of the full image: light paths per sample of a pixel
 };
 
 // `scene` must outlive the integrator.

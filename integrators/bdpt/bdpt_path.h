@@ -47,13 +47,14 @@ struct ConnectedPath {
   int s = 0, t = 0;
   std::span<const PathVertex> light, camera;
   LightEnd end;
-  double cameraPerArea = 0;      // density of the vertex that the camera sees, as a camera path finds it
-  const Point2* film = nullptr;  // where it lands, for t = 1; null: in the sample's own pixel
-  Color value;                   // unweighted
+  Vector3 toLight{0.0f}, toLens{0.0f};  // unit; from the first surface vertex, and from the one that the camera sees
+  double cameraPerArea = 0;             // density of the vertex that the camera sees, as a camera path finds it
+  const Point2* film = nullptr;         // where it lands, for t = 1; null: in the sample's own pixel
+  Color value;                          // unweighted
   double weight = 1;
 };
 
-// Told of every path of a render.
+// Told of every path that a sample is made of.
 class PathObserver {
  public:
   virtual ~PathObserver() = default;

@@ -154,11 +154,11 @@ RenderCounts RenderPass(const RenderScene& scene, const BidirectionalIntegrator&
           splats.StartPath();
           const float time = SampleTime(scene, sampler);
           if (x < crop.x0 || x >= crop.x1 || y < crop.y0 || y >= crop.y1) {
-            integrator.Sample(nullptr, time, sampler, splats, ofChunk);
+            integrator.Sample(nullptr, time, sampler, splats, ofChunk, nullptr);
             continue;
           }
           const PixelRay ray = MakePixelRay(scene, filter, x, y, time, sampler);
-          const Color radiance = integrator.Sample(&ray.camera.ray, time, sampler, splats, ofChunk);
+          const Color radiance = integrator.Sample(&ray.camera.ray, time, sampler, splats, ofChunk, nullptr);
           AddSample(ray, radiance, settings.imagingRatio, film.Pixel(x, y), ofChunk);
         }
       });

@@ -69,6 +69,9 @@ inline std::string Placed(const std::string& placement, const std::string& type,
   return "AttributeBegin " + placement + " LightSource \"" + type + "\" " + parameters + " AttributeEnd\n";
 }
 
+// All of them.
+std::vector<AgreementScene> AgreementScenes();
+
 // UsdLux's lights: shaping, portals, multipliers, under all kinds of placements.
 std::vector<AgreementScene> UsdLuxScenes();
 // And its lights that are their own surface.

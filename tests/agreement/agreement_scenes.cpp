@@ -1,19 +1,9 @@
-// Path tracing and light tracing find the same light in opposite directions and share little but the scene: where both
-// can see it, they agree.
-#include <gtest/gtest.h>
-
-#include <regex>
-
+// The scenes in which all integrators see the same.
 #include "agreement/agreement_scenes.h"
-#include "lights/light_type.h"
-#include "support/replicas.h"
 
 namespace lampyr::test {
-namespace {
 
-constexpr int kReplicas = 16;
-
-std::vector<AgreementScene> Scenes() {
+std::vector<AgreementScene> AgreementScenes() {
   std::vector<AgreementScene> scenes;
   const auto add = [&](const char* name, const std::string& text) -> AgreementScene& {
     scenes.push_back({name, text});
@@ -201,56 +191,4 @@ Shape "trianglemesh" "point3 P" [-0.5 0.6 -0.4  0.5 0.6 -0.4  0.5 0.6 0.4  -0.5 
   return scenes;
 }
 
-class LightPath : public testing::TestWithParam<AgreementScene> {};
-
-TEST_P(LightPath, AgreesWithPath) {
-  const AgreementScene& scene = GetParam();
-  RenderOverrides overrides;
-  if (scene.crop) overrides.crop = scene.crop;
-  const Replicas path = RenderReplicas(scene.text, "path", kReplicas, scene.samples, overrides);
-  overrides.seed = 1000;
-  const Replicas light = RenderReplicas(scene.text, "light", kReplicas, scene.lightSamples, overrides);
-  static const int count = static_cast<int>(Scenes().size());
-  const double rate = SidakRate(1e-3, count);
-  const Agreement result = CompareReplicas(light, path, scene.blockSize, rate);
-  std::printf("%-20s %3d blocks, largest |z| %.2f (threshold %.2f), chi2 %.1f (%.1f), bias %+.3f %% +- %.3f %%\n",
-              scene.name, result.blocks, result.largestZ, result.thresholdZ, result.chiSquared,
-              result.chiSquaredThreshold, 100 * result.bias, 196 * result.biasError);
-  EXPECT_LE(result.largestZ, result.thresholdZ);
-  EXPECT_LE(result.chiSquared, result.chiSquaredThreshold);
-  EXPECT_LE(std::abs(result.meanZ), result.meanThreshold);
-  EXPECT_EQ(path.faults + light.faults, 0u);
-  // What a picture that is 2 % too bright or too dark would have given.
-  EXPECT_FALSE(CompareReplicas(light, path, scene.blockSize, rate, 1.02).Agrees()) << "too noisy to say anything";
-  EXPECT_FALSE(CompareReplicas(light, path, scene.blockSize, rate, 0.98).Agrees()) << "too noisy to say anything";
-}
-
-INSTANTIATE_TEST_SUITE_P(Scenes, LightPath, testing::ValuesIn(Scenes()),
-                         [](const auto& info) { return std::string(info.param.name); });
-
-TEST(LightPathScenes, EveryTypeOfLightIsInOne) {
-  const std::vector<AgreementScene> scenes = Scenes();
-  for (const LightType& type : LightRegistry()) {
-    const std::regex statement(std::string("(^|\\s)") + (type.isAreaLight ? "AreaLightSource" : "LightSource") +
-                               "\\s+\"" + type.name + "\"");
-    EXPECT_TRUE(std::any_of(scenes.begin(), scenes.end(),
-                            [&](const AgreementScene& scene) { return std::regex_search(scene.text, statement); }))
-        << type.name << " has no scene in which path tracing and light tracing are compared: add one";
-  }
-}
-
-// A light that sends out no paths is no part of what light tracing shows, though it is there for everyone else.
-TEST(LightPath, LightsThatTraceNoPathsAreLeftOut) {
-  const std::string head = FilmWith("box") + kDown + World(3);
-  const std::string lamp = Square("\"rgb L\" [5 5 5] \"bool traceLightPaths\" false", 0.4);
-  const std::string dark = Square("\"rgb L\" [0 0 0]", 0.4);
-  const std::string bulb = "LightSource \"point\" \"rgb I\" [5 4 3] \"point3 from\" [0.8 1.2 0.4]\n";
-  const Replicas path = RenderReplicas(head + bulb + dark + kThings, "path", kReplicas, 64);
-  const Replicas light = RenderReplicas(head + bulb + lamp + kThings, "light", kReplicas, 128);
-  EXPECT_TRUE(CompareReplicas(light, path, 8, 1e-3).Agrees());
-  const Replicas all = RenderReplicas(head + bulb + lamp + kThings, "path", kReplicas, 64);
-  EXPECT_FALSE(CompareReplicas(light, all, 8, 1e-3).Agrees());
-}
-
-}  // namespace
 }  // namespace lampyr::test

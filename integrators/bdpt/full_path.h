@@ -1,0 +1,33 @@
+// A whole path with all its densities, and the weights of its techniques computed twice: from the explicit products of
+// densities, and by the recursion that the integrator uses. Slow; the integrator's proof, not its means.
+#pragma once
+
+#include <vector>
+
+#include "integrators/bdpt/bdpt_path.h"
+
+namespace lampyr {
+
+// Surface vertices are 1 … n from the light on; 0 is the light's point, n + 1 the lens. Densities in area; those of
+// deltas are coefficients (partial_weight.h).
+struct FullPath {
+  LightEnd end;
+  std::vector<double> fromLight;   // [i]: of vertex i, sampled from i - 1; [1] is not used (LightEnd::emission)
+  std::vector<double> fromCamera;  // [i]: of vertex i, sampled from i + 1
+  std::vector<bool> isDelta;       // [i]: the event at vertex i is one
+  bool lensSeesIt = true;          // a light path may reach vertex n
+  int technique = 0;               // s of the path that it was made from
+
+  int SurfaceCount() const { return static_cast<int>(isDelta.size()) - 2; }
+  // Techniques are s = 0 … n + 1.
+  int TechniqueCount() const { return SurfaceCount() + 2; }
+};
+
+FullPath Unfold(const ConnectedPath& path);
+
+// Of all techniques, by their densities; those that cannot make the path have 0.
+std::vector<double> WeightsByDensities(const FullPath& path);
+// The same by partial weights.
+std::vector<double> WeightsByRecursion(const FullPath& path);
+
+}  // namespace lampyr

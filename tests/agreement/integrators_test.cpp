@@ -1,0 +1,76 @@
+// Path tracing and light tracing find the same light in opposite directions and share little but the scene;
+// bidirectional path tracing does it in all ways in between. Where all can see it, they agree.
+#include <gtest/gtest.h>
+
+#include <regex>
+
+#include "agreement/agreement_scenes.h"
+#include "lights/light_type.h"
+#include "support/replicas.h"
+
+namespace lampyr::test {
+namespace {
+
+constexpr int kReplicas = 16;
+
+class Integrators : public testing::TestWithParam<AgreementScene> {};
+
+void ExpectAgreement(const char* what, const AgreementScene& scene, const Replicas& other, const Replicas& path,
+                     double rate) {
+  const Agreement result = CompareReplicas(other, path, scene.blockSize, rate);
+  std::printf("%-5s %-20s %3d blocks, largest |z| %.2f (threshold %.2f), chi2 %.1f (%.1f), bias %+.3f %% +- %.3f %%\n",
+              what, scene.name, result.blocks, result.largestZ, result.thresholdZ, result.chiSquared,
+              result.chiSquaredThreshold, 100 * result.bias, 196 * result.biasError);
+  EXPECT_LE(result.largestZ, result.thresholdZ) << what;
+  EXPECT_LE(result.chiSquared, result.chiSquaredThreshold) << what;
+  EXPECT_LE(std::abs(result.meanZ), result.meanThreshold) << what;
+  EXPECT_EQ(path.faults + other.faults, 0u) << what;
+  // What a picture that is 2 % too bright or too dark would have given.
+  EXPECT_FALSE(CompareReplicas(other, path, scene.blockSize, rate, 1.02).Agrees()) << what << ": too noisy";
+  EXPECT_FALSE(CompareReplicas(other, path, scene.blockSize, rate, 0.98).Agrees()) << what << ": too noisy";
+}
+
+TEST_P(Integrators, Agree) {
+  const AgreementScene& scene = GetParam();
+  RenderOverrides overrides;
+  if (scene.crop) overrides.crop = scene.crop;
+  const Replicas path = RenderReplicas(scene.text, "path", kReplicas, scene.samples, overrides);
+  static const int count = 2 * static_cast<int>(AgreementScenes().size());
+  const double rate = SidakRate(1e-3, count);
+  overrides.seed = 1000;
+  ExpectAgreement("light", scene, RenderReplicas(scene.text, "light", kReplicas, scene.lightSamples, overrides), path,
+                  rate);
+  overrides.seed = 2000;
+  ExpectAgreement("bdpt", scene, RenderReplicas(scene.text, "bdpt", kReplicas, scene.samples / 2, overrides), path,
+                  rate);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, Integrators, testing::ValuesIn(AgreementScenes()),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+TEST(LightPathScenes, EveryTypeOfLightIsInOne) {
+  const std::vector<AgreementScene> scenes = AgreementScenes();
+  for (const LightType& type : LightRegistry()) {
+    const std::regex statement(std::string("(^|\\s)") + (type.isAreaLight ? "AreaLightSource" : "LightSource") +
+                               "\\s+\"" + type.name + "\"");
+    EXPECT_TRUE(std::any_of(scenes.begin(), scenes.end(),
+                            [&](const AgreementScene& scene) { return std::regex_search(scene.text, statement); }))
+        << type.name << " has no scene in which path tracing and light tracing are compared: add one";
+  }
+}
+
+// A light that sends out no paths is no part of what light tracing shows, though it is there for everyone else.
+TEST(LightPath, LightsThatTraceNoPathsAreLeftOut) {
+  const std::string head = FilmWith("box") + kDown + World(3);
+  const std::string lamp = Square("\"rgb L\" [5 5 5] \"bool traceLightPaths\" false", 0.4);
+  const std::string dark = Square("\"rgb L\" [0 0 0]", 0.4);
+  const std::string bulb = "LightSource \"point\" \"rgb I\" [5 4 3] \"point3 from\" [0.8 1.2 0.4]\n";
+  const Replicas path = RenderReplicas(head + bulb + dark + kThings, "path", kReplicas, 64);
+  const Replicas light = RenderReplicas(head + bulb + lamp + kThings, "light", kReplicas, 128);
+  EXPECT_TRUE(CompareReplicas(light, path, 8, 1e-3).Agrees());
+  const Replicas all = RenderReplicas(head + bulb + lamp + kThings, "path", kReplicas, 64);
+  EXPECT_FALSE(CompareReplicas(light, all, 8, 1e-3).Agrees());
+}
+
+}  // namespace
+}  // namespace lampyr::test
