@@ -43,7 +43,7 @@ class BdptIntegrator final : public BidirectionalIntegrator {
         camera_(*scene.camera),
         materials_(scene.materials),
         settings_(settings),
-        hasParallelRays_(scene.camera->HasParallelRays()) {}
+        connectsByDirection_(scene.camera->ConnectsByDirection()) {}
 
   Color Sample(const Ray* ray, float time, Sampler& sampler, SplatList& splats, RenderCounts& counts,
                PathObserver* observer) const override;
@@ -95,7 +95,7 @@ class BdptIntegrator final : public BidirectionalIntegrator {
   const Camera& camera_;
   const std::vector<std::shared_ptr<const Material>>& materials_;
   BdptSettings settings_;
-  bool hasParallelRays_;
+  bool connectsByDirection_;
 };
 
 float CosineAt(const PathVertex& vertex, const Vector3& direction) {
@@ -108,7 +108,7 @@ double BdptIntegrator::CameraPerArea(const Ray& ray, float cosTheta, double dist
   Point2 film;
   const auto densities = camera_.EvaluateRay(ray, &film);
   if (!densities) return 0;
-  if (hasParallelRays_) return static_cast<double>(densities->pdfPosition.value) * AreaPerSolidAngle(cosTheta, 1);
+  if (connectsByDirection_) return static_cast<double>(densities->pdfPosition.value) * AreaPerSolidAngle(cosTheta, 1);
   return static_cast<double>(densities->pdfDirection.value) * AreaPerSolidAngle(cosTheta, distanceSquared);
 }
 

@@ -66,7 +66,7 @@ struct RenderCommand {
     app.add_flag("--png", options.png, "Also write a tone-mapped PNG beside it");
     app.add_option("--exposure", options.exposure, "Exposure of the PNG in stops (0)")->check(CheckFinite, "");
     app.add_flag("--clip", options.clipPng, "Clip the PNG at white instead of rolling highlights off");
-    app.add_option("--integrator", overrides.integrator, "path | light");
+    app.add_option("--integrator", overrides.integrator, "path | light | bdpt");
     app.add_option("--spp", overrides.samplesPerPixel, "Stop after this many samples per pixel")
         ->check(CLI::Range(1, 1 << 30));
     app.add_option("--time", time, "Stop after this time: 90s, 5m, 2h");

@@ -248,7 +248,7 @@ void ReadIntegrator(const SceneDescription& scene, const RenderOverrides& overri
   if (overrides.integrator) {
     if (!isOneOf(*overrides.integrator, IntegratorNames())) {
       throw UsageError("--integrator: there is no integrator \"" + *overrides.integrator +
-                       "\"; there are: path, light");
+                       "\"; there are: path, light, bdpt");
     }
     settings.integrator = *overrides.integrator;
   }

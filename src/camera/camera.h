@@ -68,6 +68,10 @@ class Camera {
   virtual FilmCopies CopiesOf(const Point2& /*film*/) const { return {}; }
   virtual bool HasPinhole() const = 0;                    // the lens is a point: a delta position
   virtual bool HasParallelRays() const { return false; }  // orthographic without a lens: a delta direction
+  // Connect chooses its direction, and the position follows (orthographic); elsewhere it chooses the position. A ray's
+  // density as a path over that of the connection is pdfPosition · |cosθ| per area at the point, or pdfDirection ·
+  // |cosθ| / distance².
+  virtual bool ConnectsByDirection() const { return false; }
 };
 
 struct PerspectiveSettings {

@@ -102,6 +102,7 @@ class OrthographicCamera final : public Camera {
 
   bool HasPinhole() const override { return false; }
   bool HasParallelRays() const override { return !hasLens_; }
+  bool ConnectsByDirection() const override { return true; }
 
  private:
   Vector3 LensOffset(const Point2& u) const {

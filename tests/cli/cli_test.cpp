@@ -102,8 +102,8 @@ TEST_F(Cli, TracesLightByOptionAndByScene) {
   EXPECT_EQ(ReadImage(folder_ / "c.exr").metadata.at("lampyr.integrator"), "path");
   EXPECT_EQ(Run("render light.pbrt --time 1s -o d.exr --quiet").exitCode, 0);
   EXPECT_EQ(Run("render light.pbrt --target-error 0.2 -o d.exr --quiet").exitCode, 0);
-  EXPECT_NE(Run("render scene.pbrt --integrator magic").output.find("there are: path, light"), std::string::npos);
-  EXPECT_NE(Run("render --help").output.find("path | light"), std::string::npos);
+  EXPECT_NE(Run("render scene.pbrt --integrator magic").output.find("there are: path, light, bdpt"), std::string::npos);
+  EXPECT_NE(Run("render --help").output.find("path | light | bdpt"), std::string::npos);
   Write("light.pbrt", std::string("Integrator \"lihgt\"\n") + kScene);
   const Outcome wrong = Run("render light.pbrt");
   EXPECT_EQ(wrong.exitCode, 2);

@@ -46,22 +46,33 @@ AttributeBegin Translate -0.5 0.4 0 Shape "sphere" "float radius" 0.4 AttributeE
 )";
 }
 
-TEST(Invariance, SameBytesForAnyNumberOfThreads) {
-  const Image one = RenderText(Scene(1), 16, {}, 1).image;
-  for (const int threads : {2, 3, 4}) EXPECT_EQ(one.data, RenderText(Scene(1), 16, {}, threads).image.data) << threads;
+// By each integrator that finds all of this light.
+class Invariance : public testing::TestWithParam<const char*> {
+ protected:
+  static Rendered Render(const std::string& text, int samplesPerPixel, RenderOverrides overrides = {},
+                         int threads = 2) {
+    overrides.integrator = GetParam();
+    return RenderText(text, samplesPerPixel, overrides, threads);
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Of, Invariance, testing::Values("path", "bdpt"), [](const auto& info) { return info.param; });
+
+TEST_P(Invariance, SameBytesForAnyNumberOfThreads) {
+  const Image one = Render(Scene(1), 16, {}, 1).image;
+  for (const int threads : {2, 3, 4}) EXPECT_EQ(one.data, Render(Scene(1), 16, {}, threads).image.data) << threads;
 }
 
-TEST(Invariance, SeedsDiffer) {
+TEST_P(Invariance, SeedsDiffer) {
   RenderOverrides other;
   other.seed = 7;
-  EXPECT_NE(RenderText(Scene(1), 4).image.data, RenderText(Scene(1), 4, other).image.data);
+  EXPECT_NE(Render(Scene(1), 4).image.data, Render(Scene(1), 4, other).image.data);
 }
 
-TEST(Invariance, CroppedRenderIsCropOfRender) {
-  const Image whole = RenderText(Scene(1), 8).image;
+TEST_P(Invariance, CroppedRenderIsCropOfRender) {
+  const Image whole = Render(Scene(1), 8).image;
   RenderOverrides overrides;
   overrides.crop = "9,30,3,20";
-  const Image crop = RenderText(Scene(1), 8, overrides).image;
+  const Image crop = Render(Scene(1), 8, overrides).image;
   ASSERT_EQ(crop.width, 21);
   ASSERT_EQ(crop.height, 17);
   for (int y = 0; y < crop.height; ++y) {
@@ -83,10 +94,10 @@ double Difference(const Image& a, const Image& b) {
   return sum / total;
 }
 
-TEST(Invariance, ScaleOfTheSceneDoesNotMatter) {
-  const Image reference = RenderText(Scene(1), 64).image;
+TEST_P(Invariance, ScaleOfTheSceneDoesNotMatter) {
+  const Image reference = Render(Scene(1), 64).image;
   for (const double scale : {1e-3, 1e3}) {
-    const Rendered scaled = RenderText(Scene(scale), 64);
+    const Rendered scaled = Render(Scene(scale), 64);
     EXPECT_LT(Difference(scaled.image, reference), 0.02) << scale;
     EXPECT_NEAR(MeanOf(scaled.image).mean, MeanOf(reference).mean, 0.004 * MeanOf(reference).mean) << scale;
     EXPECT_EQ(scaled.outcome.counts.droppedSamples, 0u);
@@ -94,10 +105,10 @@ TEST(Invariance, ScaleOfTheSceneDoesNotMatter) {
   }
 }
 
-TEST(Invariance, PlaceOfTheSceneDoesNotMatter) {
-  const Image reference = RenderText(Scene(1), 64).image;
+TEST_P(Invariance, PlaceOfTheSceneDoesNotMatter) {
+  const Image reference = Render(Scene(1), 64).image;
   for (const char* offset : {"100 -50 20", "100000 0 0", "-40000 80000 33333"}) {
-    const Rendered moved = RenderText(Scene(1, offset), 64);
+    const Rendered moved = Render(Scene(1, offset), 64);
     EXPECT_LT(Difference(moved.image, reference), 0.02) << offset;
     EXPECT_NEAR(MeanOf(moved.image).mean, MeanOf(reference).mean, 0.004 * MeanOf(reference).mean) << offset;
   }
