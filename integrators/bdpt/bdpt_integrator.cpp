@@ -74,6 +74,7 @@ class BdptIntegrator final : public BidirectionalIntegrator {
   void ConnectToLens(Run& run, size_t count) const;
   Color HitLight(Run& run, const Flight& flight, const FoundLight& found, double landing) const;
   Color SeenLight(Run& run, const Ray& ray, const RayHit& hit, const SurfacePoint& point) const;
+  Color Background(const Run& run, const Ray& ray) const;
   Color SampleLight(Run& run) const;
   Color Connect(Run& run, size_t lightCount) const;
   LightEnd EndOf(const FoundLight& found, bool canBeHit, double landing) const;
@@ -278,7 +279,7 @@ void BdptIntegrator::ConnectLightToCamera(Run& run, const EmittedPhoton& photon)
   path.end.canBeHit = true;
   path.cameraPerArea =
       static_cast<double>(connection->Weight()) * AreaPerSolidAngle(cosTheta, 1) / settings_.filmPixels;
-  path.film = &connection->camera.film;
+  path.connection = &*connection;
   path.value = radiance * static_cast<float>(static_cast<double>(cosTheta * connection->Weight()) / density);
   path.weight = 1 / (1 + Mis(path.cameraPerArea / density));
   AddSplats(*connection, Report(run, path), run.splats, run.counts);
@@ -310,7 +311,7 @@ void BdptIntegrator::ConnectToLens(Run& run, size_t count) const {
   path.toLens = toCamera;
   path.cameraPerArea =
       static_cast<double>(connection->Weight()) * AreaPerSolidAngle(cosTheta, 1) / settings_.filmPixels;
-  path.film = &connection->camera.film;
+  path.connection = &*connection;
   path.value = scattered * (std::abs(cosTheta) * ArrivalCorrection(vertex.bsdf, toLight) * connection->Weight());
   path.weight = 1 / (1 + vertex.weight.Sum(path.cameraPerArea,
                                            static_cast<double>(f.pdfReverse.value) * vertex.previousPerSolidAngle));
@@ -430,7 +431,7 @@ Color BdptIntegrator::TraceCamera(Run& run, const Ray& cameraRay) const {
     ++(isFirst ? run.counts.cameraRays : run.counts.indirectRays);
     RayHit hit;
     if (!geometry_.Intersect(flight.ray, isFirst ? visibility::kCamera : visibility::kIndirect, hit)) {
-      if (isFirst) return lighting_.EscapedEmissionForCamera(flight.ray);
+      if (isFirst) return Background(run, flight.ray);
       const PathVertex& last = run.paths.camera[run.cameraCount - 1];
       for (size_t i = 0; i < lighting_.InfiniteCount(); ++i) {
         const auto found = lighting_.EvaluateEscaped(i, last.receiver, flight.ray.direction, run.time, true);
@@ -490,6 +491,16 @@ Color BdptIntegrator::TraceCamera(Run& run, const Ray& cameraRay) const {
       return radiance;
     }
   }
+}
+
+// (0,2) as well: nothing else finds a light at infinity that the camera looks at.
+Color BdptIntegrator::Background(const Run& run, const Ray& ray) const {
+  ConnectedPath path;
+  path.t = 2;
+  path.end.canBeHit = true;
+  path.cameraPerArea = 1;
+  path.value = lighting_.EscapedEmissionForCamera(ray);
+  return Report(run, path);
 }
 
 // (0,2): the camera looks at an area light, which (1,1) finds too.

@@ -4,6 +4,7 @@
 
 #include <span>
 
+#include "integrators/common/camera_connection.h"
 #include "integrators/common/partial_weight.h"
 #include "lights/services/lighting_services.h"
 #include "materials/bsdf.h"
@@ -49,8 +50,8 @@ struct ConnectedPath {
   LightEnd end;
   Vector3 toLight{0.0f}, toLens{0.0f};  // unit; from the first surface vertex, and from the one that the camera sees
   double cameraPerArea = 0;             // density of the vertex that the camera sees, as a camera path finds it
-  const Point2* film = nullptr;         // where it lands, for t = 1; null: in the sample's own pixel
-  Color value;                          // unweighted
+  const FilmConnection* connection = nullptr;  // where it lands, for t = 1; null: in the sample's own pixel
+  Color value;                                 // unweighted
   double weight = 1;
 };
 

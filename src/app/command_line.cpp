@@ -82,6 +82,8 @@ struct RenderCommand {
     app.add_option("--sampler", overrides.sampler, "sobol | independent");
     app.add_option("--light-sampler", overrides.lightSampler, "uniform | power");
     app.add_option("--stats", options.stats, "Write statistics to this JSON file");
+    app.add_option("--strategy-images", options.strategyImages,
+                   "Write what each technique of bdpt contributes, weighted and not, to this folder");
     app.add_flag("--quiet", options.quiet, "No progress and no summary");
     app.add_flag("--strict", options.strict, "Warnings about the scene are errors");
     app.add_flag("--fast-intersection", fast,

@@ -67,7 +67,7 @@ std::filesystem::path OutputPath(const RenderOptions& options, const RenderSetti
 // An image too large for the machine is told before the system ends the process for it.
 void CheckMemory(const RenderSettings& settings) {
   constexpr uint64_t channels = 6;  // of the developed image: colour and variance
-  const uint64_t splats = settings.integrator == "light" ? sizeof(SplatSums) : 0;
+  const uint64_t splats = settings.integrator == "path" ? 0 : sizeof(SplatSums);
   const uint64_t perPixel = sizeof(PixelSums) + splats + 2 * channels * sizeof(float);
   const uint64_t needed = perPixel * settings.crop.Width() * settings.crop.Height();
   const auto installed = static_cast<uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<uint64_t>(sysconf(_SC_PAGESIZE));
@@ -179,6 +179,13 @@ int RunRender(const RenderOptions& options) {
 
   const AnyIntegrator integrator = MakeIntegrator(built.scene, settings);
   Film film(settings.width, settings.height, settings.crop);
+  std::unique_ptr<TechniqueImages> techniques;
+  if (options.strategyImages) {
+    if (settings.integrator != "bdpt")
+      throw UsageError("--strategy-images: only bdpt has strategies; the integrator is " + settings.integrator);
+    techniques = std::make_unique<TechniqueImages>(settings.width, settings.height, settings.crop, settings.maxDepth,
+                                                   settings.imagingRatio);
+  }
   FinishOnInterrupt();
   {
     Progress progress(options.quiet);
@@ -186,12 +193,13 @@ int RunRender(const RenderOptions& options) {
       progress.Update(fraction, std::to_string(soFar.samplesPerPixel) + " spp, error " + Percent(soFar.relativeError));
     };
     report.outcome = Render(built.scene, integrator, settings, MakeStopConditions(options, settings), report.threads,
-                            film, afterPass);
+                            film, afterPass, techniques.get());
   }
   report.rejectedRays = built.scene.geometry->RejectedRays();
 
   const Progress clock(true);
   const Image image = DevelopWithMetadata(film, report);
+  if (techniques) techniques->Write(*options.strategyImages, film);
   WriteExr(path, image, PrecisionFor(image, settings));
   if (options.png) {
     std::filesystem::path png = path;

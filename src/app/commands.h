@@ -21,6 +21,7 @@ struct RenderOptions {
   std::optional<double> targetError;  // --target-error
   int threads = 0;                    // 0: all
   std::optional<std::filesystem::path> stats;
+  std::optional<std::filesystem::path> strategyImages;  // a folder
   bool quiet = false;
   bool strict = false;
   bool robust = true;

@@ -133,12 +133,14 @@ RenderCounts RenderPass(const RenderScene& scene, const LightPathIntegrator& int
 
 RenderCounts RenderPass(const RenderScene& scene, const BidirectionalIntegrator& integrator,
                         const RenderSettings& settings, const PixelFilter& filter, uint32_t first, uint32_t count,
-                        int threads, Film& film) {
+                        int threads, Film& film, TechniqueImages* techniques) {
   const auto width = static_cast<uint64_t>(settings.width), height = static_cast<uint64_t>(settings.height);
   const PixelRect& crop = film.Crop();
   const int chunks = 4 * std::max(threads, 1);
   std::vector<SplatList> lists(static_cast<size_t>(chunks), film.MakeSplatList(filter, settings.imagingRatio));
   std::vector<RenderCounts> counts(static_cast<size_t>(chunks));
+  std::vector<TechniqueImages::Recorder> recorders;
+  if (techniques) recorders.assign(static_cast<size_t>(chunks), TechniqueImages::Recorder(*techniques, filter));
   // One sample of all pixels after the other: chunks never meet in a pixel, and the film adds paths in their order.
   for (uint32_t index = first; index < first + count; ++index) {
     for (uint64_t round = 0; round < width * height; round += chunks * kChunkPaths) {
@@ -146,6 +148,7 @@ RenderCounts RenderPass(const RenderScene& scene, const BidirectionalIntegrator&
         SplatList& splats = lists[static_cast<size_t>(chunk)];
         RenderCounts& ofChunk = counts[static_cast<size_t>(chunk)];
         splats.Clear();
+        TechniqueImages::Recorder* recorder = techniques ? &recorders[static_cast<size_t>(chunk)] : nullptr;
         Sampler sampler(settings.sampler, settings.seed);
         const uint64_t begin = round + static_cast<uint64_t>(chunk) * kChunkPaths;
         for (uint64_t i = begin; i < std::min(begin + kChunkPaths, width * height); ++i) {
@@ -154,15 +157,18 @@ RenderCounts RenderPass(const RenderScene& scene, const BidirectionalIntegrator&
           splats.StartPath();
           const float time = SampleTime(scene, sampler);
           if (x < crop.x0 || x >= crop.x1 || y < crop.y0 || y >= crop.y1) {
-            integrator.Sample(nullptr, time, sampler, splats, ofChunk, nullptr);
+            if (recorder) recorder->StartSample(x, y, 0);
+            integrator.Sample(nullptr, time, sampler, splats, ofChunk, recorder);
             continue;
           }
           const PixelRay ray = MakePixelRay(scene, filter, x, y, time, sampler);
-          const Color radiance = integrator.Sample(&ray.camera.ray, time, sampler, splats, ofChunk, nullptr);
+          if (recorder) recorder->StartSample(x, y, ray.camera.weight * settings.imagingRatio * ray.filterWeight);
+          const Color radiance = integrator.Sample(&ray.camera.ray, time, sampler, splats, ofChunk, recorder);
           AddSample(ray, radiance, settings.imagingRatio, film.Pixel(x, y), ofChunk);
         }
       });
       film.AddSplats(filter, lists, threads);
+      if (techniques) techniques->AddSplats(filter, recorders, threads);
     }
   }
   RenderCounts total;
@@ -171,7 +177,8 @@ RenderCounts RenderPass(const RenderScene& scene, const BidirectionalIntegrator&
 }
 
 RenderOutcome Render(const RenderScene& scene, const AnyIntegrator& integrator, const RenderSettings& settings,
-                     const StopConditions& stop, int threads, Film& film, const PassCallback& afterPass) {
+                     const StopConditions& stop, int threads, Film& film, const PassCallback& afterPass,
+                     TechniqueImages* techniques) {
   const PixelFilter filter(settings.filter);
   // Light paths are those of the full image.
   const bool followsLight = !std::holds_alternative<std::unique_ptr<CameraIntegrator>>(integrator);
@@ -186,10 +193,14 @@ RenderOutcome Render(const RenderScene& scene, const AnyIntegrator& integrator, 
       const double left = *stop.seconds - outcome.seconds;
       count = std::clamp(static_cast<int>(left / perSample), 1, count);
     }
+    const auto first = static_cast<uint32_t>(outcome.samplesPerPixel), samples = static_cast<uint32_t>(count);
     outcome.counts += std::visit(
-        [&](const auto& chosen) {
-          return RenderPass(scene, *chosen, settings, filter, static_cast<uint32_t>(outcome.samplesPerPixel),
-                            static_cast<uint32_t>(count), threads, film);
+        [&]<class Chosen>(const std::unique_ptr<Chosen>& chosen) {
+          if constexpr (std::is_same_v<Chosen, BidirectionalIntegrator>) {
+            return RenderPass(scene, *chosen, settings, filter, first, samples, threads, film, techniques);
+          } else {
+            return RenderPass(scene, *chosen, settings, filter, first, samples, threads, film);
+          }
         },
         integrator);
     outcome.samplesPerPixel += count;

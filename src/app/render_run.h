@@ -11,6 +11,7 @@
 
 #include "app/integrator_choice.h"
 #include "app/render_settings.h"
+#include "app/technique_images.h"
 #include "film/film.h"
 #include "integrators/integrator.h"
 
@@ -34,9 +35,11 @@ struct RenderOutcome {
 // Called after each pass.
 using PassCallback = std::function<void(const RenderOutcome& soFar, double fractionDone)>;
 
-// Renders into `film` (empty, of the settings' crop).
+// Renders into `film` (empty, of the settings' crop). `techniques`, if any, are recorded for integrators that have
+// them.
 RenderOutcome Render(const RenderScene& scene, const AnyIntegrator& integrator, const RenderSettings& settings,
-                     const StopConditions& stop, int threads, Film& film, const PassCallback& afterPass);
+                     const StopConditions& stop, int threads, Film& film, const PassCallback& afterPass,
+                     TechniqueImages* techniques = nullptr);
 
 // Samples [first, first + count) of every pixel. Exposed for tests and benchmarks.
 RenderCounts RenderPass(const RenderScene& scene, const CameraIntegrator& integrator, const RenderSettings& settings,
@@ -50,6 +53,6 @@ RenderCounts RenderPass(const RenderScene& scene, const LightPathIntegrator& int
 // a crop is the same as in the whole.
 RenderCounts RenderPass(const RenderScene& scene, const BidirectionalIntegrator& integrator,
                         const RenderSettings& settings, const PixelFilter& filter, uint32_t first, uint32_t count,
-                        int threads, Film& film);
+                        int threads, Film& film, TechniqueImages* techniques = nullptr);
 
 }  // namespace lampyr

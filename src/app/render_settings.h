@@ -5,8 +5,8 @@
 #include <string>
 
 #include "camera/camera.h"
-#include "film/pixel_filter.h"
 #include "film/film.h"
+#include "film/pixel_filter.h"
 #include "lights/selection/light_selector.h"
 #include "sampling/sampler.h"
 #include "scene/scene_description.h"

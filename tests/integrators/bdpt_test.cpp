@@ -76,5 +76,53 @@ Translate 0 1.2 -0.5 Shape "sphere" "float radius" 0.3 AttributeEnd
   }
 }
 
+// The pictures of single techniques add up to the render, in a crop and with a wide filter, too.
+TEST(Bdpt, TechniquesAddUpToTheRender) {
+  RenderOverrides overrides;
+  overrides.integrator = "bdpt";
+  overrides.crop = "3,29,5,30";
+  overrides.maxDepth = 9;  // some are longer than those with a picture
+  Diagnostics diagnostics(Diagnostics::Mode::Collect);
+  std::string text = kHead + R"(LightSource "infinite" "rgb L" [0.2 0.2 0.3]
+LightSource "point" "rgb I" [1 1 1] "point3 from" [1 2 0.5]
+AttributeBegin AreaLightSource "diffuse" "rgb L" [8 7 6] Translate -0.8 1.2 -0.6 Shape "sphere" "float radius" 0.2 AttributeEnd
+)" + kGround + R"(Material "dielectric" "float eta" 1.5
+Translate 0 0.6 0 Shape "sphere" "float radius" 0.6
+)";
+  text.replace(text.find("\"box\""), 5, "\"gaussian\"");
+  const BuiltScene built = BuildScene(ParseScene(text, "test.pbrt", diagnostics), overrides, true, diagnostics);
+  const RenderSettings& settings = built.settings;
+  Film film(settings.width, settings.height, settings.crop);
+  TechniqueImages techniques(settings.width, settings.height, settings.crop, settings.maxDepth, settings.imagingRatio);
+  StopConditions stop;
+  stop.samplesPerPixel = 16;
+  Render(
+      built.scene, MakeIntegrator(built.scene, settings), settings, stop, 2, film, [](const RenderOutcome&, double) {},
+      &techniques);
+  const Image image = film.Develop();
+  const auto pictures = techniques.Develop(film);
+  std::vector<double> sum(3 * static_cast<size_t>(image.width) * static_cast<size_t>(image.height));
+  int seen = 0;
+  for (const TechniqueImages::Picture& picture : pictures) {
+    bool isBlack = true;
+    for (size_t i = 0; i < sum.size(); ++i) {
+      sum[i] += static_cast<double>(picture.weighted.data[i]);
+      isBlack = isBlack && picture.weighted.data[i] == 0;
+      EXPECT_GE(picture.unweighted.data[i], picture.weighted.data[i] * 0.9999f);
+    }
+    seen += isBlack ? 0 : 1;
+  }
+  EXPECT_GE(seen, 20);
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      for (size_t c = 0; c < 3; ++c) {
+        const double whole = static_cast<double>(image.At(x, y, c));
+        const size_t i = 3 * (static_cast<size_t>(y) * static_cast<size_t>(image.width) + static_cast<size_t>(x)) + c;
+        ASSERT_NEAR(sum[i], whole, 1e-5 * whole + 1e-7) << x << " " << y;
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace lampyr::test
