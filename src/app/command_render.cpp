@@ -156,6 +156,31 @@ BuiltScene LoadScene(const RenderOptions& options, RenderReport& report) {
   }
 }
 
+void WritePngOf(const Image& image, std::filesystem::path path, const RenderOptions& options) {
+  WritePng(path.replace_extension(".png"), image, options.exposure, options.clipPng ? ToneMap::Clip : ToneMap::Filmic);
+}
+
+// weighted-s2-t3.exr, unweighted-s2-t3.exr, … in the folder, which is made.
+void WriteTechniques(const RenderOptions& options, const std::vector<TechniqueImages::Picture>& pictures) {
+  const std::filesystem::path& folder = *options.strategyImages;
+  for (const TechniqueImages::Picture& picture : pictures) {
+    for (const bool isWeighted : {true, false}) {
+      const Image& image = isWeighted ? picture.weighted : picture.unweighted;
+      const std::filesystem::path path = folder / ((isWeighted ? "weighted-" : "unweighted-") + picture.name + ".exr");
+      WriteExr(path, image, ExrPrecision::Float);
+      if (options.png) WritePngOf(image, path, options);
+    }
+  }
+}
+
+// Made before the render, which would be lost if it could not be.
+void MakeFolder(const std::filesystem::path& folder, const std::string& option) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error || !std::filesystem::is_directory(folder))
+    throw UsageError(option + ": cannot make the folder \"" + folder.string() + "\"");
+}
+
 }  // namespace
 
 int RunRender(const RenderOptions& options) {
@@ -183,6 +208,7 @@ int RunRender(const RenderOptions& options) {
   if (options.strategyImages) {
     if (settings.integrator != "bdpt")
       throw UsageError("--strategy-images: only bdpt has strategies; the integrator is " + settings.integrator);
+    MakeFolder(*options.strategyImages, "--strategy-images");
     techniques = std::make_unique<TechniqueImages>(settings.width, settings.height, settings.crop, settings.maxDepth,
                                                    settings.imagingRatio);
   }
@@ -199,11 +225,10 @@ int RunRender(const RenderOptions& options) {
 
   const Progress clock(true);
   const Image image = DevelopWithMetadata(film, report);
-  if (techniques) techniques->Write(*options.strategyImages, film);
+  if (techniques) WriteTechniques(options, techniques->Develop(film));
   WriteExr(path, image, PrecisionFor(image, settings));
   if (options.png) {
-    std::filesystem::path png = path;
-    WritePng(png.replace_extension(".png"), image, options.exposure, options.clipPng ? ToneMap::Clip : ToneMap::Filmic);
+    WritePngOf(image, path, options);
   }
   report.writeSeconds = clock.Seconds();
   if (options.stats) WriteText(*options.stats, ToJson(report));

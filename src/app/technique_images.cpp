@@ -128,12 +128,4 @@ std::vector<TechniqueImages::Picture> TechniqueImages::Develop(const Film& film)
   return pictures;
 }
 
-void TechniqueImages::Write(const std::filesystem::path& folder, const Film& film) const {
-  std::filesystem::create_directories(folder);
-  for (const Picture& picture : Develop(film)) {
-    WriteExr(folder / ("weighted-" + picture.name + ".exr"), picture.weighted, ExrPrecision::Float);
-    WriteExr(folder / ("unweighted-" + picture.name + ".exr"), picture.unweighted, ExrPrecision::Float);
-  }
-}
-
 }  // namespace lampyr

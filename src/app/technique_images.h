@@ -3,8 +3,8 @@
 // render.
 #pragma once
 
-#include <filesystem>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "film/film.h"
@@ -47,8 +47,6 @@ class TechniqueImages {
   };
   // `film` is that of the render.
   std::vector<Picture> Develop(const Film& film) const;
-  // weighted-s2-t3.exr, unweighted-s2-t3.exr, … in the folder, which is made.
-  void Write(const std::filesystem::path& folder, const Film& film) const;
 
  private:
   struct Technique {

@@ -111,6 +111,36 @@ TEST_F(Cli, TracesLightByOptionAndByScene) {
   EXPECT_NE(wrong.output.find("did you mean \"light\""), std::string::npos) << wrong.output;
 }
 
+TEST_F(Cli, WritesPicturesOfTechniques) {
+  ASSERT_EQ(
+      Run("render scene.pbrt --integrator bdpt --max-depth 2 --strategy-images parts --png -o a.exr --quiet").exitCode,
+      0);
+  ASSERT_EQ(Run("render scene.pbrt --integrator bdpt --max-depth 2 -o b.exr --threads 1 --quiet").exitCode, 0);
+  const Image image = ReadImage(folder_ / "a.exr");
+  EXPECT_EQ(image.data, ReadImage(folder_ / "b.exr").data);
+  std::vector<double> sum(3 * static_cast<size_t>(image.width) * static_cast<size_t>(image.height));
+  for (int events = 0; events <= 2; ++events) {
+    for (int s = 0; s <= events + 1; ++s) {
+      const std::string name = "s" + std::to_string(s) + "-t" + std::to_string(events + 2 - s);
+      EXPECT_TRUE(std::filesystem::exists(folder_ / "parts" / ("unweighted-" + name + ".png"))) << name;
+      const Image part = ReadImage(folder_ / "parts" / ("weighted-" + name + ".exr"));
+      for (size_t k = 0; k < sum.size(); ++k) sum[k] += static_cast<double>(part.data[k]);
+    }
+  }
+  double difference = 0, total = 0;
+  for (size_t k = 0; k < sum.size(); ++k) {
+    const double whole = static_cast<double>(
+        image.At(static_cast<int>(k / 3) % image.width, static_cast<int>(k / 3) / image.width, k % 3));
+    difference += std::abs(sum[k] - whole);
+    total += whole;
+  }
+  EXPECT_GT(total, 0);
+  EXPECT_LT(difference, 1e-4 * total);
+  const Outcome wrong = Run("render scene.pbrt --integrator path --strategy-images parts -o c.exr");
+  EXPECT_EQ(wrong.exitCode, 2);
+  EXPECT_NE(wrong.output.find("only bdpt has strategies"), std::string::npos) << wrong.output;
+}
+
 TEST_F(Cli, QuietIsQuiet) {
   EXPECT_EQ(Run("render scene.pbrt -o a.exr --quiet").output, "");
 }
