@@ -8,6 +8,7 @@
 
 #include "app/command_line.h"
 #include "app/commands.h"
+#include "app/integrator_hints.h"
 #include "app/json_report.h"
 #include "app/render_run.h"
 #include "app/scene_builder.h"
@@ -211,6 +212,10 @@ int RunRender(const RenderOptions& options) {
     MakeFolder(*options.strategyImages, "--strategy-images");
     techniques = std::make_unique<TechniqueImages>(settings.width, settings.height, settings.crop, settings.maxDepth,
                                                    settings.imagingRatio);
+  }
+  if (!options.quiet) {
+    for (const std::string& hint : IntegratorHints(built.scene, settings.integrator))
+      std::fprintf(stderr, "hint: %s\n", hint.c_str());
   }
   FinishOnInterrupt();
   {

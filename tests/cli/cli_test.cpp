@@ -141,6 +141,27 @@ TEST_F(Cli, WritesPicturesOfTechniques) {
   EXPECT_NE(wrong.output.find("only bdpt has strategies"), std::string::npos) << wrong.output;
 }
 
+// What the chosen integrator cannot find is said, and which one can; nothing is said where there is nothing to find.
+TEST_F(Cli, HintsAtWhatAnIntegratorCannotFind) {
+  const std::string glass = "Material \"dielectric\" \"float eta\" 1.5\nShape \"sphere\" \"float radius\" 0.3\n";
+  const auto hintOf = [&](const std::string& scene, const std::string& integrator) {
+    Write("glass.pbrt", scene);
+    const Outcome outcome = Run("render glass.pbrt --spp 1 -o a.exr --integrator " + integrator);
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.output;
+    const size_t hint = outcome.output.find("hint: ");
+    return hint == std::string::npos ? std::string() : outcome.output.substr(hint);
+  };
+  EXPECT_NE(hintOf(kScene + glass, "path").find("1 of 1 lights"), std::string::npos);
+  EXPECT_NE(hintOf(kScene + glass, "path").find("--integrator bdpt"), std::string::npos);
+  EXPECT_NE(hintOf(kScene + glass, "light").find("stay black"), std::string::npos);
+  EXPECT_EQ(hintOf(kScene + glass, "bdpt"), "");
+  EXPECT_EQ(hintOf(kScene, "path"), "");
+  std::string lamp = kScene + glass;
+  lamp.replace(lamp.find("LightSource"), lamp.find("Shape") - lamp.find("LightSource"),
+               "LightSource \"sphere\" \"float radius\" 0.1\n");
+  EXPECT_EQ(hintOf(lamp, "path"), "");
+}
+
 TEST_F(Cli, QuietIsQuiet) {
   EXPECT_EQ(Run("render scene.pbrt -o a.exr --quiet").output, "");
 }

@@ -1,0 +1,36 @@
+#include "app/integrator_hints.h"
+
+#include <algorithm>
+
+namespace lampyr {
+
+namespace {
+
+bool IsDelta(const PlacedLight& placed) {
+  const LightKind kind = placed.light->Kind();
+  return kind == LightKind::DeltaPosition || kind == LightKind::DeltaDirection;
+}
+
+}  // namespace
+
+std::vector<std::string> IntegratorHints(const RenderScene& scene, const std::string& integrator) {
+  std::vector<std::string> hints;
+  const auto isSmooth = [](const auto& material) { return material && material->HasDelta() && !material->IsInterface(); };
+  if (!std::any_of(scene.materials.begin(), scene.materials.end(), isSmooth)) return hints;
+  const std::vector<PlacedLight>& lights = scene.lighting->Lights();
+  const auto deltas = std::count_if(lights.begin(), lights.end(), IsDelta);
+  if (integrator == "path" && deltas > 0) {
+    hints.push_back("no path from the camera can hit a light without extent (" + std::to_string(deltas) + " of " +
+                    std::to_string(lights.size()) +
+                    " lights: point, spot, distant and the like), so what they send through smooth glass or off "
+                    "mirrors is missing; --integrator bdpt finds it");
+  }
+  if (integrator == "light") {
+    hints.push_back(
+        "no path from a light can be joined to the camera at a mirror or smooth glass, so these stay "
+        "black; --integrator bdpt shows them");
+  }
+  return hints;
+}
+
+}  // namespace lampyr
