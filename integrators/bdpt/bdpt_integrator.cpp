@@ -103,6 +103,15 @@ float CosineAt(const PathVertex& vertex, const Vector3& direction) {
   return glm::dot(direction, vertex.bsdf.Ng());
 }
 
+// The densities and the weight of a vertex that its subpath found from the previous one.
+void Follow(const PathVertex& previous, const Flight& flight, PathVertex& vertex) {
+  const double squared = LengthSquared(Vector3d(vertex.point.position) - Vector3d(previous.point.position));
+  vertex.pdfForward = flight.pdf * AreaPerSolidAngle(CosineAt(vertex, flight.ray.direction), squared);
+  vertex.previousPerSolidAngle = AreaPerSolidAngle(CosineAt(previous, flight.ray.direction), squared);
+  vertex.weight = previous.weight.Next(previous.scatteredDelta, vertex.pdfForward,
+                                       previous.eventReverse * previous.previousPerSolidAngle);
+}
+
 // Density (area) of the vertex that a camera ray sees, over that of the lens point alone: what t = 2 has and t = 1 has
 // not.
 double BdptIntegrator::CameraPerArea(const Ray& ray, float cosTheta, double distanceSquared) const {
@@ -217,24 +226,19 @@ void BdptIntegrator::TraceLight(Run& run) const {
     if (!MakeVertex(flight.ray, *hit, point, vertex)) return;
     vertex.diffuse = flight.diffuse;
     vertex.specular = flight.specular;
-    const float cosTheta = CosineAt(vertex, vertex.toPrevious);
     if (run.lightCount == 0) {
       const std::optional<FoundLight> found = lighting_.EvaluateLanding(*photon, vertex.receiver);
       if (!found) return;
       const double squared = LengthSquared(Vector3d(point.position) - Vector3d(emission.position));
-      run.end = EndOf(*found, lighting_.CanBeHit(found->light), LandingFactor(found->light, cosTheta, squared));
+      run.end = EndOf(*found, lighting_.CanBeHit(found->light),
+                      LandingFactor(found->light, CosineAt(vertex, vertex.toPrevious), squared));
       if (!(run.end.emission > 0)) return;
       vertex.pdfForward = run.end.emission;
       vertex.previousPerSolidAngle = run.end.perSolidAngle;
       const double perEmission = 1 / Mis(run.end.emission);
       vertex.weight = {Mis(run.end.direct) * perEmission, run.end.canBeHit ? perEmission : 0.0};
     } else {
-      const PathVertex& previous = run.paths.light[run.lightCount - 1];
-      const double squared = LengthSquared(Vector3d(point.position) - Vector3d(previous.point.position));
-      vertex.pdfForward = flight.pdf * AreaPerSolidAngle(cosTheta, squared);
-      vertex.previousPerSolidAngle = AreaPerSolidAngle(CosineAt(previous, flight.ray.direction), squared);
-      vertex.weight = previous.weight.Next(previous.scatteredDelta, vertex.pdfForward,
-                                           previous.eventReverse * previous.previousPerSolidAngle);
+      Follow(run.paths.light[run.lightCount - 1], flight, vertex);
     }
     ++run.lightCount;
     const auto depth = static_cast<int>(run.lightCount);
@@ -442,8 +446,6 @@ Color BdptIntegrator::TraceCamera(Run& run, const Ray& cameraRay) const {
       return radiance;
     }
     const SurfacePoint point = geometry_.GetSurfacePoint(flight.ray, hit);
-    const float cosTheta = glm::dot(flight.ray.direction, point.Ng);
-    double squared = Sqr(static_cast<double>(hit.t));
     if (geometry_.Attributes(hit.primitive).light >= 0) {
       if (isFirst) {
         radiance += SeenLight(run, flight.ray, hit, point);
@@ -465,18 +467,14 @@ Color BdptIntegrator::TraceCamera(Run& run, const Ray& cameraRay) const {
     vertex.diffuse = flight.diffuse;
     vertex.specular = flight.specular;
     if (isFirst) {
-      vertex.pdfForward = CameraPerArea(flight.ray, cosTheta, squared);
+      vertex.pdfForward =
+          CameraPerArea(flight.ray, CosineAt(vertex, vertex.toPrevious), Sqr(static_cast<double>(hit.t)));
       vertex.previousPerSolidAngle = 0;  // the lens is not hit
       // Light paths come here but where they pass through.
       const bool isSplatted = vertex.pdfForward > 0 && vertex.isSeenByIndirect;
       vertex.weight = {isSplatted ? 1 / Mis(vertex.pdfForward) : 0.0, 0.0};
     } else {
-      const PathVertex& previous = run.paths.camera[run.cameraCount - 1];
-      squared = LengthSquared(Vector3d(point.position) - Vector3d(previous.point.position));
-      vertex.pdfForward = flight.pdf * AreaPerSolidAngle(cosTheta, squared);
-      vertex.previousPerSolidAngle = AreaPerSolidAngle(CosineAt(previous, flight.ray.direction), squared);
-      vertex.weight = previous.weight.Next(previous.scatteredDelta, vertex.pdfForward,
-                                           previous.eventReverse * previous.previousPerSolidAngle);
+      Follow(run.paths.camera[run.cameraCount - 1], flight, vertex);
     }
     ++run.cameraCount;
     const auto depth = static_cast<int>(run.cameraCount);

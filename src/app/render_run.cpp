@@ -137,21 +137,24 @@ RenderCounts RenderPass(const RenderScene& scene, const BidirectionalIntegrator&
   const auto width = static_cast<uint64_t>(settings.width), height = static_cast<uint64_t>(settings.height);
   const PixelRect& crop = film.Crop();
   const int chunks = 4 * std::max(threads, 1);
+  // A small image has work for all threads, too.
+  const uint64_t share = (width * height + static_cast<uint64_t>(chunks) - 1) / static_cast<uint64_t>(chunks);
+  const uint64_t chunkPaths = std::min(share, kChunkPaths);
   std::vector<SplatList> lists(static_cast<size_t>(chunks), film.MakeSplatList(filter, settings.imagingRatio));
   std::vector<RenderCounts> counts(static_cast<size_t>(chunks));
   std::vector<TechniqueImages::Recorder> recorders;
   if (techniques) recorders.assign(static_cast<size_t>(chunks), TechniqueImages::Recorder(*techniques, filter));
   // One sample of all pixels after the other: chunks never meet in a pixel, and the film adds paths in their order.
   for (uint32_t index = first; index < first + count; ++index) {
-    for (uint64_t round = 0; round < width * height; round += chunks * kChunkPaths) {
+    for (uint64_t round = 0; round < width * height; round += static_cast<uint64_t>(chunks) * chunkPaths) {
       ParallelFor(chunks, threads, [&](int chunk) {
         SplatList& splats = lists[static_cast<size_t>(chunk)];
         RenderCounts& ofChunk = counts[static_cast<size_t>(chunk)];
         splats.Clear();
         TechniqueImages::Recorder* recorder = techniques ? &recorders[static_cast<size_t>(chunk)] : nullptr;
         Sampler sampler(settings.sampler, settings.seed);
-        const uint64_t begin = round + static_cast<uint64_t>(chunk) * kChunkPaths;
-        for (uint64_t i = begin; i < std::min(begin + kChunkPaths, width * height); ++i) {
+        const uint64_t begin = round + static_cast<uint64_t>(chunk) * chunkPaths;
+        for (uint64_t i = begin; i < std::min(begin + chunkPaths, width * height); ++i) {
           const int x = static_cast<int>(i % width), y = static_cast<int>(i / width);
           sampler.StartPixelSample(x, y, index);
           splats.StartPath();

@@ -45,35 +45,22 @@ ColorTable::ColorTable(std::span<const float> weights, const std::function<Color
     WriteCdf(ofRow, sums[row], cdf);
     WriteGuide(cdf, columns, steps, &guide_[row * (steps + 1)], guideShift_);
   });
-  const double largest = *std::max_element(sums.begin(), sums.end());
-  if (!(largest > 0)) return;
-  std::vector<float> scaled(rows);  // in the range of float, and a dark row stays above 0
-  double sum = 0;
-  for (size_t row = 0; row < rows; ++row) {
-    if (sums[row] > 0)
-      scaled[row] = std::max(static_cast<float>(sums[row] / largest), std::numeric_limits<float>::min());
-    sum += static_cast<double>(scaled[row]);
-  }
-  marginalCdf_.resize(rows + 1);
-  WriteCdf(scaled, sum, marginalCdf_.data());
-  marginalGuide_.resize(FineGuideSteps(rows) + 1);
-  WriteGuide(marginalCdf_.data(), rows, FineGuideSteps(rows), marginalGuide_.data());
+  rows_ = Distribution1D(InRangeOfFloat(sums));
 }
 
 float ColorTable::CellDensity(int x, int y) const {
-  return IntervalDensity(marginalCdf_.data(), static_cast<size_t>(y), static_cast<size_t>(height_)) *
+  return rows_.DensityOf(static_cast<uint32_t>(y)) *
          IntervalDensity(RowCdf<const Entry>{Row(y)}, static_cast<size_t>(x), static_cast<size_t>(width_));
 }
 
 ColorTable::Cell ColorTable::Sample(const Point2& u) const {
-  const auto columns = static_cast<size_t>(width_), rows = static_cast<size_t>(height_);
-  const float ux = ClampedUnit(u.x), uy = ClampedUnit(u.y);
-  const Range rowRange = GuidedRange(marginalGuide_.data(), FineGuideSteps(rows), rows, uy);
-  const Found row = SampleCdf(marginalCdf_.data(), rowRange, rows, uy);
+  const auto columns = static_cast<size_t>(width_);
+  const float ux = ClampedUnit(u.x);
+  const Distribution1D::Choice row = rows_.Choose(u.y);
   const size_t steps = GuideSteps(columns);
-  const Range range = GuidedRange(&guide_[row.interval * (steps + 1)], steps, columns, ux, guideShift_);
+  const Range range = GuidedRange(&guide_[row.index * (steps + 1)], steps, columns, ux, guideShift_);
   // All lines that the search may look at, at once: one after the other they would take as long each.
-  const int y = static_cast<int>(row.interval);
+  const int y = static_cast<int>(row.index);
   const Entry* entries = Row(y);
   constexpr uint32_t kMostLines = 8;
   const uint32_t first = range.low / kEntriesPerLine, last = (range.high + 1) / kEntriesPerLine;

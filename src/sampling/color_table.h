@@ -10,6 +10,7 @@
 
 #include "base/large_array.h"
 #include "math/vec.h"
+#include "sampling/tables.h"
 
 namespace lampyr {
 
@@ -21,7 +22,7 @@ class ColorTable {
 
   int Width() const { return width_; }
   int Height() const { return height_; }
-  bool IsZero() const { return marginalCdf_.empty(); }  // no weight above 0
+  bool IsZero() const { return rows_.IsZero(); }  // no weight above 0
 
   struct Cell {
     int x, y;
@@ -59,8 +60,7 @@ class ColorTable {
   LargeArray<Entry> entries_;
   std::vector<uint16_t> guide_;  // of each row, of columns >> guideShift_
   int guideShift_ = 0;
-  std::vector<float> marginalCdf_;
-  std::vector<uint32_t> marginalGuide_;
+  Distribution1D rows_;
 };
 
 }  // namespace lampyr

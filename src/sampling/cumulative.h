@@ -9,7 +9,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
+#include <vector>
 
 #include "math/vec.h"
 
@@ -131,6 +133,15 @@ float InvertCdf(Cdf cdf, int n, float x) {
   const int i = IntervalAt(x, n);
   const float t = static_cast<float>(static_cast<double>(ClampedUnit(x)) * n - i);
   return ClampedUnit(cdf[i] + t * (cdf[i + 1] - cdf[i]));
+}
+
+// Sums that may leave the range of float, scaled into it; a dark one beside the largest stays above 0.
+inline std::vector<float> InRangeOfFloat(std::span<const double> sums) {
+  const double largest = sums.empty() ? 0 : *std::max_element(sums.begin(), sums.end());
+  std::vector<float> scaled;
+  for (const double sum : sums)
+    scaled.push_back(sum > 0 ? std::max(static_cast<float>(sum / largest), std::numeric_limits<float>::min()) : 0.0f);
+  return scaled;
 }
 
 // Narrow entries of a guide: the shift that makes n intervals fit.

@@ -70,12 +70,21 @@ Distribution1D::Distribution1D(std::span<const float> values) : cdf_(values.size
   WriteGuide(cdf_.data(), values.size(), FineGuideSteps(values.size()), guide_.data());
 }
 
-Distribution1D::Result Distribution1D::Sample(float u) const {
+Distribution1D::Choice Distribution1D::Choose(float u) const {
   const float clamped = ClampedUnit(u);
-  const Range range = GuidedRange(guide_.data(), FineGuideSteps(Size()), Size(), clamped);
-  const Found found = SampleCdf(cdf_.data(), range, Size(), clamped);
-  const float x = PointInInterval(static_cast<int>(found.interval), found.t, static_cast<int>(Size()));
-  return {x, IntervalDensity(cdf_.data(), found.interval, Size()), found.interval};
+  const Found found =
+      SampleCdf(cdf_.data(), GuidedRange(guide_.data(), FineGuideSteps(Size()), Size(), clamped), Size(), clamped);
+  return {found.interval, found.t};
+}
+
+Distribution1D::Result Distribution1D::Sample(float u) const {
+  const Choice choice = Choose(u);
+  const float x = PointInInterval(static_cast<int>(choice.index), choice.t, static_cast<int>(Size()));
+  return {x, DensityOf(choice.index), choice.index};
+}
+
+float Distribution1D::DensityOf(uint32_t index) const {
+  return IntervalDensity(cdf_.data(), index, Size());
 }
 
 float Distribution1D::Density(float x) const {
@@ -92,11 +101,10 @@ float Distribution1D::Invert(float x) const {
 Distribution2D::Distribution2D(std::span<const float> values, int width, int height) : width_(width), height_(height) {
   const size_t columns = static_cast<size_t>(width), rows = static_cast<size_t>(height);
   std::vector<double> rowSums(rows, 0.0);
-  double sum = 0, largest = 0;
+  double sum = 0;
   for (size_t row = 0; row < rows; ++row) {
     for (const float v : values.subspan(row * columns, columns)) rowSums[row] += Cleaned(v);
     sum += rowSums[row];
-    largest = std::max(largest, rowSums[row]);
   }
   if (!(sum > 0)) return;
   integral_ = sum / (static_cast<double>(columns) * static_cast<double>(rows));
@@ -105,42 +113,33 @@ Distribution2D::Distribution2D(std::span<const float> values, int width, int hei
   conditionalCdf_.assign((columns + 1) * rows, 0.0f);
   conditionalGuide_.assign(guideSize * rows, 0);
   guideShift_ = GuideShift(columns);
-  std::vector<float> scaledSums(rows);  // in the range of float, and a dark row stays above 0
   for (size_t row = 0; row < rows; ++row) {
     if (rowSums[row] == 0) continue;
-    scaledSums[row] = std::max(static_cast<float>(rowSums[row] / largest), std::numeric_limits<float>::min());
     float* cdf = &conditionalCdf_[row * (columns + 1)];
     WriteCdf(values.subspan(row * columns, columns), rowSums[row], cdf);
     WriteGuide(cdf, columns, GuideSteps(columns), &conditionalGuide_[row * guideSize], guideShift_);
   }
-  double scaledSum = 0;
-  for (const float s : scaledSums) scaledSum += static_cast<double>(s);
-  marginalCdf_.resize(rows + 1);
-  WriteCdf(scaledSums, scaledSum, marginalCdf_.data());
-  marginalGuide_.resize(FineGuideSteps(rows) + 1);
-  WriteGuide(marginalCdf_.data(), rows, FineGuideSteps(rows), marginalGuide_.data());
+  rows_ = Distribution1D(InRangeOfFloat(rowSums));
 }
 
 float Distribution2D::CellDensity(int column, int row) const {
   const size_t columns = static_cast<size_t>(width_);
   const float* cdf = &conditionalCdf_[static_cast<size_t>(row) * (columns + 1)];
-  return IntervalDensity(marginalCdf_.data(), static_cast<size_t>(row), static_cast<size_t>(height_)) *
-         IntervalDensity(cdf, static_cast<size_t>(column), columns);
+  return rows_.DensityOf(static_cast<uint32_t>(row)) * IntervalDensity(cdf, static_cast<size_t>(column), columns);
 }
 
 Distribution2D::Result Distribution2D::Sample(const Point2& u) const {
-  const size_t columns = static_cast<size_t>(width_), rows = static_cast<size_t>(height_);
-  const float ux = ClampedUnit(u.x), uy = ClampedUnit(u.y);
-  const Range rowRange = GuidedRange(marginalGuide_.data(), FineGuideSteps(rows), rows, uy);
-  const Found row = SampleCdf(marginalCdf_.data(), rowRange, rows, uy);
+  const size_t columns = static_cast<size_t>(width_);
+  const float ux = ClampedUnit(u.x);
+  const Distribution1D::Choice row = rows_.Choose(u.y);
   const size_t steps = GuideSteps(columns);
-  const Range range = GuidedRange(&conditionalGuide_[row.interval * (steps + 1)], steps, columns, ux, guideShift_);
-  const float* cdf = &conditionalCdf_[row.interval * (columns + 1)];
+  const Range range = GuidedRange(&conditionalGuide_[row.index * (steps + 1)], steps, columns, ux, guideShift_);
+  const float* cdf = &conditionalCdf_[row.index * (columns + 1)];
   // One after the other the two would take twice as long.
   Touch(cdf + range.low);
   Touch(cdf + range.high + 1);
   const Found column = SampleCdf(cdf, range, columns, ux);
-  const int i = static_cast<int>(column.interval), j = static_cast<int>(row.interval);
+  const int i = static_cast<int>(column.interval), j = static_cast<int>(row.index);
   return {{PointInInterval(i, column.t, width_), PointInInterval(j, row.t, height_)}, CellDensity(i, j)};
 }
 
@@ -152,7 +151,7 @@ float Distribution2D::Density(const Point2& uv) const {
 Point2 Distribution2D::Invert(const Point2& uv) const {
   const size_t row = static_cast<size_t>(IntervalAt(uv.y, height_));
   const float* cdf = &conditionalCdf_[row * (static_cast<size_t>(width_) + 1)];
-  return {InvertCdf(cdf, width_, uv.x), InvertCdf(marginalCdf_.data(), height_, uv.y)};
+  return {InvertCdf(cdf, width_, uv.x), rows_.Invert(uv.y)};
 }
 
 }  // namespace lampyr

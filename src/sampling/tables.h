@@ -56,8 +56,15 @@ class Distribution1D {
     uint32_t index;  // interval
   };
   Result Sample(float u) const;  // requires !IsZero()
-  float Density(float x) const;  // x outside of [0,1] counts as the nearest end
-  float Invert(float x) const;   // the u that Sample turns into x
+  // The interval alone, and the position within it, [0,1).
+  struct Choice {
+    uint32_t index;
+    float t;
+  };
+  Choice Choose(float u) const;           // requires !IsZero()
+  float DensityOf(uint32_t index) const;  // of an interval, over [0,1]
+  float Density(float x) const;           // x outside of [0,1] counts as the nearest end
+  float Invert(float x) const;            // the u that Sample turns into x
   float Integral() const { return static_cast<float>(integral_); }
   bool IsZero() const { return integral_ <= 0; }
   size_t Size() const { return cdf_.empty() ? 0 : cdf_.size() - 1; }
@@ -91,8 +98,7 @@ class Distribution2D {
   std::vector<float> conditionalCdf_;       // (width + 1) × height
   std::vector<uint16_t> conditionalGuide_;  // height guides, of columns >> guideShift_
   int guideShift_ = 0;                      // 0 up to 65536 columns
-  std::vector<float> marginalCdf_;          // height + 1
-  std::vector<uint32_t> marginalGuide_;
+  Distribution1D rows_;
   double integral_ = 0;
 };
 

@@ -1,5 +1,5 @@
-// Damaged, truncated and absurd image files: an Error that names the file, or an image with the promised pixels; never a
-// crash. Runs under sanitizers, too.
+// Damaged, truncated and absurd image files: an Error that names the file, or an image with the promised pixels; never
+// a crash. Runs under sanitizers, too.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,11 +10,13 @@
 
 #include "base/error.h"
 #include "film/image.h"
-#include "unit/film/temporary_folder.h"
+#include "support/temporary_folder.h"
 
 // OpenImageIO leaks its message when libpng jumps out of a damaged PNG: not ours, and not to fail a sanitizer run.
 extern "C" const char* __lsan_default_suppressions();
-extern "C" const char* __lsan_default_suppressions() { return "leak:OpenImageIO\n"; }
+extern "C" const char* __lsan_default_suppressions() {
+  return "leak:OpenImageIO\n";
+}
 
 namespace lampyr {
 namespace {
@@ -32,7 +34,8 @@ Image Sample(int width, int height) {
 bool Reads(const std::filesystem::path& path) {
   try {
     const Image image = ReadImage(path);
-    EXPECT_EQ(image.data.size(), static_cast<size_t>(image.width) * static_cast<size_t>(image.height) * image.channels.size());
+    EXPECT_EQ(image.data.size(),
+              static_cast<size_t>(image.width) * static_cast<size_t>(image.height) * image.channels.size());
     return true;
   } catch (const Error& e) {
     EXPECT_NE(e.Text().find(path.filename().string()), std::string::npos) << e.Text();
@@ -63,8 +66,8 @@ std::vector<std::pair<std::string, std::string>> Corpus(const TemporaryFolder& f
     tga += static_cast<char>(2 * i);
     pfm.append("\0\0\x80\x3f", 4);
   }
-  std::vector<std::pair<std::string, std::string>> corpus = {{"a.hdr", hdr}, {"a.ppm", ppm}, {"a.pfm", pfm}, {"a.tga", tga},
-                                                             {"a.jpg", GrayJpeg()}};
+  std::vector<std::pair<std::string, std::string>> corpus = {
+      {"a.hdr", hdr}, {"a.ppm", ppm}, {"a.pfm", pfm}, {"a.tga", tga}, {"a.jpg", GrayJpeg()}};
   for (const char* name : {"float.exr", "half.exr", "a.png"}) corpus.emplace_back(name, ReadBytes(folder / name));
   return corpus;
 }
@@ -147,8 +150,12 @@ TEST(ImageCorpus, AbsurdSizesAreErrors) {
   const TemporaryFolder folder;
   WriteExr(folder / "a.exr", Sample(8, 8), ExrPrecision::Float);
   const std::string good = ReadBytes(folder / "a.exr");
-  for (const auto& [x, y] : {std::pair<int32_t, int32_t>{2000000000, 7}, {7, 2000000000}, {100000, 100000},
-                             {2147483647, 2147483647}, {-5, 3}, {1 << 20, 1 << 12}}) {
+  for (const auto& [x, y] : {std::pair<int32_t, int32_t>{2000000000, 7},
+                             {7, 2000000000},
+                             {100000, 100000},
+                             {2147483647, 2147483647},
+                             {-5, 3},
+                             {1 << 20, 1 << 12}}) {
     std::string bytes = good;
     PatchWindow(bytes, "dataWindow", x, y);
     PatchWindow(bytes, "displayWindow", x, y);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "sampling/rng.h"
+#include "support/estimate.h"
 #include "support/render_scene.h"
 
 namespace lampyr::test {
@@ -54,18 +55,6 @@ SurfacePoint ReceiverAt(const GeometryScene& geometry, const Point3& position) {
   EXPECT_TRUE(geometry.Intersect(ray, visibility::kAll, hit));
   return geometry.GetSurfacePoint(ray, hit);
 }
-
-struct Estimate {
-  double sum = 0, squares = 0;
-  int count = 0;
-  void Add(double x) {
-    sum += x;
-    squares += x * x;
-    ++count;
-  }
-  double Mean() const { return sum / count; }
-  double Variance() const { return std::max(0.0, squares / count - Mean() * Mean()) / count; }
-};
 
 // Mean irradiance over the receiver.
 Estimate ByPhotons(const BuiltScene& built, int count) {

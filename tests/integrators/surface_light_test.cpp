@@ -7,8 +7,9 @@
 #include "film/image.h"
 #include "sampling/rng.h"
 #include "sampling/warp.h"
+#include "support/estimate.h"
 #include "support/render_scene.h"
-#include "unit/film/temporary_folder.h"
+#include "support/temporary_folder.h"
 
 namespace lampyr::test {
 namespace {
@@ -51,18 +52,6 @@ BuiltScene Build(const std::string& text) {
   Diagnostics diagnostics(Diagnostics::Mode::Collect);
   return BuildScene(ParseScene(kHead + text, "test.pbrt", diagnostics), {}, true, diagnostics);
 }
-
-struct Estimate {
-  double sum = 0, squares = 0;
-  int count = 0;
-  void Add(double x) {
-    sum += x;
-    squares += x * x;
-    ++count;
-  }
-  double Mean() const { return sum / count; }
-  double Variance() const { return std::max(0.0, squares / count - Mean() * Mean()) / count; }
-};
 
 SurfacePoint ReceiverPoint() {
   SurfacePoint point;

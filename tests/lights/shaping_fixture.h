@@ -2,15 +2,14 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <sstream>
 
 #include "light_fixture.h"
 #include "lights/shaping.h"
+#include "support/temporary_folder.h"
 
 namespace lampyr::test {
 
@@ -19,24 +18,13 @@ using Emitter = Shaping::Emitter;
 // An IES file that lives as long as this.
 class IesOnDisk {
  public:
-  explicit IesOnDisk(const std::string& text) {
-    std::string pattern = (std::filesystem::temp_directory_path() / "lampyr-ies-XXXXXX").string();
-    if (!mkdtemp(pattern.data())) ADD_FAILURE() << "no temporary folder";
-    folder_ = pattern;
-    std::ofstream(Path(), std::ios::binary) << text;
-  }
-  IesOnDisk(const IesOnDisk&) = delete;
-  IesOnDisk& operator=(const IesOnDisk&) = delete;
-  ~IesOnDisk() {
-    std::error_code ignored;
-    std::filesystem::remove_all(folder_, ignored);
-  }
+  explicit IesOnDisk(const std::string& text) { WriteBytes(Path(), text); }
   std::filesystem::path Path() const { return folder_ / "profile.ies"; }
   // The parameter that names it.
   std::string Parameter() const { return "\"string shaping:ies:file\" \"" + Path().string() + "\" "; }
 
  private:
-  std::filesystem::path folder_;
+  TemporaryFolder folder_;
 };
 
 // LM-63-2002, type C, no multipliers.

@@ -11,7 +11,7 @@
 
 #include "base/error.h"
 #include "film/srgb.h"
-#include "temporary_folder.h"
+#include "support/temporary_folder.h"
 
 namespace lampyr {
 namespace {
@@ -26,8 +26,10 @@ Image NoiseImage(int width, int height, std::vector<std::string> channels, float
 
 TEST(Exr, FloatLayersMetadataAndCropComeBackExactly) {
   const TemporaryFolder folder;
-  Image image = NoiseImage(37, 21, {"R", "G", "B", "A", "albedo.R", "albedo.G", "albedo.B", "variance.R", "variance.G",
-                                    "variance.B", "depth.Z"}, 100.0f);
+  Image image = NoiseImage(
+      37, 21,
+      {"R", "G", "B", "A", "albedo.R", "albedo.G", "albedo.B", "variance.R", "variance.G", "variance.B", "depth.Z"},
+      100.0f);
   image.offsetX = 5;
   image.offsetY = 9;
   image.fullWidth = 100;
@@ -42,11 +44,12 @@ TEST(Exr, FloatLayersMetadataAndCropComeBackExactly) {
   EXPECT_EQ(read.fullWidth, 100);
   EXPECT_EQ(read.fullHeight, 50);
   EXPECT_EQ(read.metadata, image.metadata);
-  const std::vector<std::string> order = {"R", "G", "B", "A", "albedo.R", "albedo.G", "albedo.B", "depth.Z",
-                                          "variance.R", "variance.G", "variance.B"};
+  const std::vector<std::string> order = {"R",        "G",       "B",          "A",          "albedo.R",  "albedo.G",
+                                          "albedo.B", "depth.Z", "variance.R", "variance.G", "variance.B"};
   ASSERT_EQ(read.channels, order);
   for (const std::string& channel : order) {
-    const auto from = static_cast<size_t>(image.ChannelIndex(channel)), to = static_cast<size_t>(read.ChannelIndex(channel));
+    const auto from = static_cast<size_t>(image.ChannelIndex(channel)),
+               to = static_cast<size_t>(read.ChannelIndex(channel));
     for (int y = 0; y < image.height; ++y) {
       for (int x = 0; x < image.width; ++x) ASSERT_EQ(image.At(x, y, from), read.At(x, y, to)) << channel;
     }

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "scene/scene_description.h"
+#include "support/temporary_folder.h"
 
 namespace lampyr {
 
@@ -50,38 +51,21 @@ inline std::string ReadError(const std::filesystem::path& file) {
   return ErrorOf([&] { ReadScene(file, diagnostics); });
 }
 
-// An empty folder of its own, removed with its contents.
-class TemporaryFolder {
+// A temporary folder for scenes.
+class TemporaryFolder : public ::TemporaryFolder {
  public:
-  TemporaryFolder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "lampyr-scene-XXXXXX").string();
-    if (!mkdtemp(pattern.data())) ADD_FAILURE() << "no temporary folder";
-    path_ = pattern;
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-
   std::filesystem::path Write(const std::string& name, const std::string& text) const {
-    std::filesystem::create_directories((path_ / name).parent_path());
-    std::ofstream(path_ / name, std::ios::binary) << text;
-    return path_ / name;
+    std::filesystem::create_directories((*this / name).parent_path());
+    std::ofstream(*this / name, std::ios::binary) << text;
+    return *this / name;
   }
   std::filesystem::path WriteGzipped(const std::string& name, const std::string& text) const {
-    const std::filesystem::path file = path_ / name;
+    const std::filesystem::path file = *this / name;
     gzFile stream = gzopen(file.c_str(), "wb");
     gzwrite(stream, text.data(), static_cast<unsigned>(text.size()));
     gzclose(stream);
     return file;
   }
-
- private:
-  std::filesystem::path path_;
 };
 
 inline std::string ReadAll(const std::filesystem::path& file) {

@@ -6,9 +6,9 @@
 #include <limits>
 
 #include "film/srgb.h"
+#include "support/temporary_folder.h"
 #include "texture_scene.h"
 #include "textures/texel_lookup.h"
-#include "unit/film/temporary_folder.h"
 
 namespace lampyr {
 namespace {
@@ -26,7 +26,9 @@ std::shared_ptr<const Image> Grid() {
 }
 
 // Texture coordinates of a texel's centre.
-Point2 Centre(int x, int y) { return {(static_cast<float>(x) + 0.5f) / 4, 1 - (static_cast<float>(y) + 0.5f) / 2}; }
+Point2 Centre(int x, int y) {
+  return {(static_cast<float>(x) + 0.5f) / 4, 1 - (static_cast<float>(y) + 0.5f) / 2};
+}
 
 TEST(TexelLookup, CentresGiveTexelsInBothFilters) {
   for (const bool bilinear : {false, true}) {
@@ -74,8 +76,8 @@ TEST(TexelLookup, AnyCoordinateIsLegal) {
   for (const WrapMode mode : {WrapMode::Repeat, WrapMode::Black, WrapMode::Clamp, WrapMode::OctahedralSphere}) {
     for (const bool bilinear : {false, true}) {
       const TexelLookup texels(Grid(), mode, bilinear);
-      for (const float x : {0.0f, -1e-30f, 1e6f, -1e9f, 1e20f, 3e38f, kInfinity, -kInfinity,
-                            std::numeric_limits<float>::quiet_NaN()}) {
+      for (const float x :
+           {0.0f, -1e-30f, 1e6f, -1e9f, 1e20f, 3e38f, kInfinity, -kInfinity, std::numeric_limits<float>::quiet_NaN()}) {
         for (const Point2 st : {Point2(x, 0.5f), Point2(0.5f, x), Point2(x, -x)}) {
           EXPECT_TRUE(texels.LookupColor(st).IsValid());
         }
@@ -116,7 +118,8 @@ TEST(ImageMap, Encodings) {
   EXPECT_NEAR(value("sRGB"), SrgbToLinear(encoded), 1e-6f);
   EXPECT_NEAR(value("linear"), encoded, 1e-6f);
   EXPECT_NEAR(value("gamma 2.2"), std::pow(encoded, 2.2f), 1e-6f);
-  for (const char* wrong : {"srgb", "gamma", "gamma -1", "gamma 2.2x", "gamma nan"}) EXPECT_THROW(value(wrong), Error) << wrong;
+  for (const char* wrong : {"srgb", "gamma", "gamma -1", "gamma 2.2x", "gamma nan"})
+    EXPECT_THROW(value(wrong), Error) << wrong;
 }
 
 TEST(ImageMap, BadChoices) {
