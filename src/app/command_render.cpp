@@ -66,10 +66,11 @@ std::filesystem::path OutputPath(const RenderOptions& options, const RenderSetti
 }
 
 // An image too large for the machine is told before the system ends the process for it.
-void CheckMemory(const RenderSettings& settings) {
+void CheckMemory(const RenderSettings& settings, bool hasTechniques) {
   constexpr uint64_t channels = 6;  // of the developed image: colour and variance
   const uint64_t splats = settings.integrator == "path" ? 0 : sizeof(SplatSums);
-  const uint64_t perPixel = sizeof(PixelSums) + splats + 2 * channels * sizeof(float);
+  const uint64_t techniques = hasTechniques ? TechniqueImages::BytesPerPixel(settings.maxDepth) : 0;
+  const uint64_t perPixel = sizeof(PixelSums) + splats + techniques + 2 * channels * sizeof(float);
   const uint64_t needed = perPixel * settings.crop.Width() * settings.crop.Height();
   const auto installed = static_cast<uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<uint64_t>(sysconf(_SC_PAGESIZE));
   if (needed <= installed) return;
@@ -191,7 +192,7 @@ int RunRender(const RenderOptions& options) {
   const RenderSettings& settings = built.settings;
   const std::filesystem::path path = OutputPath(options, settings);
   if (options.stats) CheckWritable(*options.stats, "--stats");
-  CheckMemory(settings);
+  CheckMemory(settings, options.strategyImages.has_value());
 
   report.scene = options.scene.string();
   report.integrator = settings.integrator;

@@ -15,7 +15,9 @@ bool IsDelta(const PlacedLight& placed) {
 
 std::vector<std::string> IntegratorHints(const RenderScene& scene, const std::string& integrator) {
   std::vector<std::string> hints;
-  const auto isSmooth = [](const auto& material) { return material && material->HasDelta() && !material->IsInterface(); };
+  const auto isSmooth = [](const auto& material) {
+    return material && material->HasDelta() && !material->IsInterface();
+  };
   if (!std::any_of(scene.materials.begin(), scene.materials.end(), isSmooth)) return hints;
   const std::vector<PlacedLight>& lights = scene.lighting->Lights();
   const auto deltas = std::count_if(lights.begin(), lights.end(), IsDelta);

@@ -38,6 +38,12 @@ TechniqueImages::Technique TechniqueImages::MakeTechnique(int s, int t) const {
   return technique;
 }
 
+uint64_t TechniqueImages::BytesPerPixel(int maxDepth) {
+  const auto events = static_cast<uint64_t>(std::min(maxDepth, kMostEvents));
+  const uint64_t techniques = (events + 1) * (events + 4) / 2 + 1, withSplats = events + 2;
+  return techniques * 6 * sizeof(double) + withSplats * 2 * (sizeof(PixelSums) + sizeof(SplatSums));
+}
+
 // Those with n events begin after the 2 + 3 + … + (n + 1) with fewer.
 size_t TechniqueImages::IndexOf(int s, int t) const {
   const int events = s + t - 2;

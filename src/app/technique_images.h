@@ -21,6 +21,9 @@ class TechniqueImages {
   // For a render of `width` × `height` pixels in full and paths of `maxDepth` events at most.
   TechniqueImages(int width, int height, const PixelRect& crop, int maxDepth, float imagingRatio);
 
+  // Memory that they take for each pixel of the crop.
+  static uint64_t BytesPerPixel(int maxDepth);
+
   // One thread's part of the work: told of a sample, then of its paths.
   class Recorder final : public PathObserver {
    public:

@@ -13,8 +13,8 @@
 
 namespace lampyr {
 
-// `count` values of all bits 0, on large pages where the system has them: a read then hardly ever waits for page
-// tables, which at random places costs as much as the read. Movable, not copyable.
+// `count` values of all bits 0, on large pages where the system has them: a read at a random place then hardly ever
+// waits for page tables, which is a tenth of its time. Movable, not copyable.
 template <class T>
 class LargeArray {
   static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);

@@ -139,6 +139,10 @@ TEST_F(Cli, WritesPicturesOfTechniques) {
   const Outcome wrong = Run("render scene.pbrt --integrator path --strategy-images parts -o c.exr");
   EXPECT_EQ(wrong.exitCode, 2);
   EXPECT_NE(wrong.output.find("only bdpt has strategies"), std::string::npos) << wrong.output;
+  const Outcome large =
+      Run("render scene.pbrt --integrator bdpt --strategy-images parts --resolution 6000x6000 -o c.exr");
+  EXPECT_EQ(large.exitCode, 2);
+  EXPECT_NE(large.output.find("of memory"), std::string::npos) << large.output;
 }
 
 // What the chosen integrator cannot find is said, and which one can; nothing is said where there is nothing to find.
