@@ -179,6 +179,27 @@ RenderCounts RenderPass(const RenderScene& scene, const BidirectionalIntegrator&
   return total;
 }
 
+double LargestUnseenSample(const RenderScene& scene, const RenderSettings& settings) {
+  const auto isSmooth = [](const auto& material) {
+    return material && material->HasDelta() && !material->IsInterface();
+  };
+  if (!scene.lighting->HasLights() || !std::any_of(scene.materials.begin(), scene.materials.end(), isSmooth)) return 0;
+  constexpr uint32_t photons = 16384;
+  Sampler sampler(SamplerKind::Sobol, 0);
+  float brightest = 0;
+  for (uint32_t i = 0; i < photons; ++i) {
+    sampler.StartPixelSample(0, 0, i);
+    const float uSelect = sampler.Get1D();
+    const Point2 u = sampler.Get2D(), uDirection = sampler.Get2D();
+    const auto photon = scene.lighting->GenerateEmission(uSelect, u, uDirection, 0);
+    if (!photon || !photon->landing || !scene.lighting->CanBeHit(photon->light)) continue;
+    const int material = scene.geometry->Attributes(photon->landing->primitive).material;
+    if (material < 0 || !isSmooth(scene.materials[static_cast<size_t>(material)])) continue;
+    brightest = std::max(brightest, (photon->emission.diffuse + photon->emission.specular).Luminance());
+  }
+  return static_cast<double>(brightest * settings.imagingRatio);
+}
+
 RenderOutcome Render(const RenderScene& scene, const AnyIntegrator& integrator, const RenderSettings& settings,
                      const StopConditions& stop, int threads, Film& film, const PassCallback& afterPass,
                      TechniqueImages* techniques) {
@@ -187,6 +208,7 @@ RenderOutcome Render(const RenderScene& scene, const AnyIntegrator& integrator, 
   const bool followsLight = !std::holds_alternative<std::unique_ptr<CameraIntegrator>>(integrator);
   const int64_t pixels = followsLight ? static_cast<int64_t>(settings.width) * settings.height
                                       : static_cast<int64_t>(film.Crop().Width()) * film.Crop().Height();
+  const double largestSample = LargestUnseenSample(scene, settings);
   const Clock clock;
   RenderOutcome outcome;
   while (outcome.samplesPerPixel < stop.samplesPerPixel) {
@@ -208,7 +230,7 @@ RenderOutcome Render(const RenderScene& scene, const AnyIntegrator& integrator, 
         integrator);
     outcome.samplesPerPixel += count;
     outcome.seconds = clock.Seconds();
-    outcome.relativeError = film.RelativeError();
+    outcome.relativeError = film.RelativeError(largestSample);
     afterPass(outcome, FractionDone(outcome, stop));
     if (stop.interrupted && stop.interrupted->load()) {
       outcome.interrupted = true;

@@ -32,6 +32,11 @@ struct RenderOutcome {
   RenderCounts counts;
 };
 
+// What a camera sample may add that no sample has met: the luminance on the film of the brightest emission that lands
+// on something smooth, for a path that finds the light there does so by chance and is then as bright as the light. 0
+// where there is no such thing: all other paths to lights are also sampled from the lights and weighted down.
+double LargestUnseenSample(const RenderScene& scene, const RenderSettings& settings);
+
 // Called after each pass.
 using PassCallback = std::function<void(const RenderOutcome& soFar, double fractionDone)>;
 

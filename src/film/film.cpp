@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "film/metrics.h"
 
 namespace lampyr {
 
@@ -26,6 +27,20 @@ double MeanVariance(double sum, double sumOfSquares, double n) {
   return std::max(0.0, sumOfSquares / n - mean * mean) / (n - 1);
 }
 
+constexpr double kLuminance[3] = {0.2126390, 0.7151687, 0.0721923};  // as Color::Luminance
+
+// The value that a sum of rare contributions of differing sizes does not exceed with 95 % confidence, from the sum and
+// the sum of the contributions' squares: a gamma distribution of the same moments to which one more contribution was
+// added, as large as any may be ([Fay97 eq. 4]). It is what keeps an estimate from being believed while its bright
+// samples can be counted, or while the brightest have not come: three times `largest` remain of a sum of nothing.
+double UpperBound(double sum, double sumOfSquares, double largest) {
+  largest = std::max(largest, std::sqrt(sumOfSquares));  // none that was met is larger than that
+  constexpr double certain = 1e-3;                       // so small, and the bound is the sum
+  if (!(largest > certain * sum)) return sum;
+  const double mean = sum + largest, variance = sumOfSquares + largest * largest;
+  return variance / (2 * mean) * ChiSquaredQuantile(0.05, 2 * mean * mean / variance);
+}
+
 // Intensities of 1e30 have variances that leave float: the largest float stands for them.
 float ToFiniteFloat(double value) {
   constexpr double largest = std::numeric_limits<float>::max();
@@ -38,6 +53,12 @@ void PixelSums::Add(const Color& value, float filterWeight) {
   const double w = static_cast<double>(filterWeight);
   const double weighted[3] = {w * static_cast<double>(value.r), w * static_cast<double>(value.g),
                               w * static_cast<double>(value.b)};
+  if (count > 0) {
+    const double scale = 1 / static_cast<double>(count);
+    double deviation = 0;
+    for (int c = 0; c < 3; ++c) deviation += kLuminance[c] * std::abs(weighted[c] - scale * sum[c]);
+    sumOfFourths += deviation * deviation * deviation * deviation;
+  }
   for (int c = 0; c < 3; ++c) {
     sum[c] += weighted[c];
     sumOfSquares[c] += weighted[c] * weighted[c];
@@ -75,6 +96,15 @@ double Film::VarianceOfMean(size_t pixel, int channel) const {
     variance += MeanVariance(splats.Sum(channel), splats.SumOfSquares(channel), static_cast<double>(lightPaths_));
   }
   return variance;
+}
+
+// Sum of the squares of what each sample contributes to the variance of the pixel's mean.
+double Film::FourthOfMean(size_t pixel) const {
+  const PixelSums& samples = pixels_[pixel];
+  double fourth = 0;
+  if (samples.count >= 2) fourth = samples.sumOfFourths / std::pow(Divisor(samples), 4);
+  if (lightPaths_ > 0) fourth += splats_[pixel].SumOfFourths() / std::pow(static_cast<double>(lightPaths_), 4);
+  return fourth;
 }
 
 SplatList Film::MakeSplatList(const PixelFilter& filter, float scale) const {
@@ -138,26 +168,29 @@ Image Film::Develop() const {
   return image;
 }
 
-double Film::RelativeError() const {
-  constexpr double luminance[3] = {0.2126390, 0.7151687, 0.0721923};  // as Color::Luminance
-  double varianceSum = 0, luminanceSum = 0;
+double Film::RelativeError(double largestSample) const {
+  double varianceSum = 0, fourthSum = 0, luminanceSum = 0, samples = 0;
   for (size_t i = 0; i < pixels_.size(); ++i) {
     const bool tooFew = lightPaths_ > 0 ? lightPaths_ < 2 || pixels_[i].count == 1 : pixels_[i].count < 2;
     if (tooFew) return std::numeric_limits<double>::infinity();
     // The channels of a sample share its path: taken as fully correlated, which bounds the variance from above.
     double deviation = 0, value = 0;
     for (int c = 0; c < 3; ++c) {
-      deviation += luminance[c] * std::sqrt(VarianceOfMean(i, c));
-      value += luminance[c] * Value(i, c);
+      deviation += kLuminance[c] * std::sqrt(VarianceOfMean(i, c));
+      value += kLuminance[c] * Value(i, c);
     }
     varianceSum += deviation * deviation;
+    fourthSum += FourthOfMean(i);
     luminanceSum += value;
+    samples += static_cast<double>(pixels_[i].count);
   }
-  if (varianceSum == 0) return 0;  // black or constant: nothing left to improve
   const double n = static_cast<double>(pixels_.size());
+  const double largest = samples > 0 ? std::pow(largestSample * n / samples, 2) : 0;
+  const double bound = UpperBound(varianceSum, fourthSum, largest);
+  if (bound == 0) return 0;  // black or constant: nothing left to improve
   const double meanLuminance = luminanceSum / n;
   if (!(meanLuminance > 0)) return std::numeric_limits<double>::infinity();
-  return 1.959963984540054 * std::sqrt(varianceSum / n) / meanLuminance;
+  return 1.959963984540054 * std::sqrt(bound / n) / meanLuminance;
 }
 
 }  // namespace lampyr

@@ -25,6 +25,7 @@ struct PixelRect {
 struct PixelSums {
   double sum[3] = {0, 0, 0};
   double sumOfSquares[3] = {0, 0, 0};  // of w·L
+  double sumOfFourths = 0;  // of the luminance's deviations from the mean before each sample: the error's own error
   double weight = 0;
   uint64_t count = 0;
 
@@ -55,14 +56,18 @@ class Film {
   Image Develop() const;
 
   // Estimated relative error of the image at 95 % confidence: 1.96 · sqrt(mean variance of the pixels' means) over
-  // mean luminance. Infinite while there are fewer than 2 samples per pixel, or 2 light paths.
-  double RelativeError() const;
+  // mean luminance, where the mean variance is the upper end of its own confidence interval ([Fay97], see film.cpp): a
+  // few bright samples that make up most of it say that it is not known well. `largestSample` is the luminance of the
+  // brightest sample that may not have been met yet. Infinite while there are fewer than 2 samples per pixel, or 2
+  // light paths.
+  double RelativeError(double largestSample = 0) const;
 
  private:
   size_t Index(int x, int y) const { return static_cast<size_t>(y - crop_.y0) * crop_.Width() + (x - crop_.x0); }
   void AddToRows(const PixelFilter& filter, std::span<const SplatList> lists, int band, int bands);
   double Value(size_t pixel, int channel) const;
   double VarianceOfMean(size_t pixel, int channel) const;
+  double FourthOfMean(size_t pixel) const;
 
   int fullWidth_, fullHeight_;
   PixelRect crop_;

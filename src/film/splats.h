@@ -67,9 +67,16 @@ class SplatSums {
   }
   double Sum(int channel) const { return sum_[channel] + latest_[channel]; }
   double SumOfSquares(int channel) const { return sumOfSquares_[channel] + latest_[channel] * latest_[channel]; }
+  // Of the paths' luminances.
+  double SumOfFourths() const {
+    constexpr double weights[3] = {0.2126390, 0.7151687, 0.0721923};  // as Color::Luminance
+    const double luminance = weights[0] * latest_[0] + weights[1] * latest_[1] + weights[2] * latest_[2];
+    return sumOfFourths_ + luminance * luminance * luminance * luminance;
+  }
 
  private:
   void EndPath(uint64_t next) {
+    sumOfFourths_ = SumOfFourths();
     for (int c = 0; c < 3; ++c) {
       sum_[c] = Sum(c);
       sumOfSquares_[c] = SumOfSquares(c);
@@ -80,6 +87,7 @@ class SplatSums {
 
   double sum_[3] = {0, 0, 0};
   double sumOfSquares_[3] = {0, 0, 0};
+  double sumOfFourths_ = 0;
   double latest_[3] = {0, 0, 0};  // of path_, not in the sums yet
   uint64_t path_ = 0;
 };

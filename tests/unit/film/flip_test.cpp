@@ -18,7 +18,9 @@ double Mean(const std::vector<float>& map) {
   return sum / static_cast<double>(map.size());
 }
 
-double FlipOf(const Pixels& a, const Pixels& b, int width, int height) { return Mean(FlipMap(a, b, width, height)); }
+double FlipOf(const Pixels& a, const Pixels& b, int width, int height) {
+  return Mean(FlipMap(a, b, width, height));
+}
 
 Pixels NoisePixels(size_t count, unsigned seed) {
   std::mt19937 generator(seed);
@@ -75,8 +77,7 @@ class PlainFlip {
     const auto labA = Lab(a, x, y), labB = Lab(b, x, y);
     const double hyab = std::abs(labA[0] - labB[0]) + std::hypot(labA[1] - labB[1], labA[2] - labB[2]);
     const double largest = 41.2761, distance = std::pow(hyab, 0.7), knee = 0.4 * largest;
-    const double color = distance < knee ? 0.95 * distance / knee
-                                         : 0.95 + 0.05 * (distance - knee) / (largest - knee);
+    const double color = distance < knee ? 0.95 * distance / knee : 0.95 + 0.05 * (distance - knee) / (largest - knee);
     const double edge = std::abs(Feature(a, x, y, false) - Feature(b, x, y, false));
     const double point = std::abs(Feature(a, x, y, true) - Feature(b, x, y, true));
     return std::pow(color, 1 - std::sqrt(std::max(edge, point) / std::sqrt(2.0)));
@@ -163,7 +164,8 @@ class PlainFlip {
 
 TEST(Flip, AgreesWithThePlainFormulas) {
   const int width = 33, height = 27;
-  Pixels a = NoisePixels(static_cast<size_t>(width * height), 5), b = NoisePixels(static_cast<size_t>(width * height), 6);
+  Pixels a = NoisePixels(static_cast<size_t>(width * height), 5),
+         b = NoisePixels(static_cast<size_t>(width * height), 6);
   for (int y = 0; y < height; ++y) {  // a step and a bright point, so that features weigh in
     for (int x = 0; x < width; ++x) {
       if (x > 16) a[static_cast<size_t>(y * width + x)] *= 0.1f;
