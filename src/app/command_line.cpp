@@ -14,7 +14,7 @@ namespace lampyr {
 namespace {
 
 // "90", "90s", "1.5m", "2h" -> seconds.
-double ParseDuration(const std::string& text) {
+double ParseDuration(const std::string& option, const std::string& text) {
   char* end = nullptr;
   const double number = std::strtod(text.c_str(), &end);
   const std::string unit(end);
@@ -23,7 +23,7 @@ double ParseDuration(const std::string& text) {
   if (unit == "m" || unit == "min") factor = 60;
   if (unit == "h") factor = 3600;
   if (end == text.c_str() || factor == 0 || !(number > 0) || !(number < 1e9)) {
-    throw UsageError("--time: \"" + text + "\" is not a duration; write 90s, 5m or 2h");
+    throw UsageError(option + ": \"" + text + "\" is not a duration; write 90s, 5m or 2h");
   }
   return number * factor;
 }
@@ -54,6 +54,18 @@ std::string CheckFinite(const std::string& text) {
   return "\"" + text + "\" is not a finite number";
 }
 
+// What render and compare are told alike.
+void DefineSceneOptions(CLI::App& app, RenderOverrides& overrides, std::string& resolution, int& threads) {
+  app.add_option("--seed", overrides.seed, "Seed of the random numbers (0)");
+  app.add_option("--threads", threads, "Threads (all)")->check(CLI::Range(1, 4096));
+  app.add_option("--resolution", resolution, "Size of the image, e.g. 640x360");
+  app.add_option("--crop", overrides.crop, "x0,x1,y0,y1: the part to render, in fractions of the image or in pixels");
+  app.add_option("--max-depth", overrides.maxDepth, "Scattering events of a path at most")
+      ->check(CLI::Range(0, 1 << 20));
+  app.add_option("--sampler", overrides.sampler, "sobol | independent");
+  app.add_option("--light-sampler", overrides.lightSampler, "uniform | power");
+}
+
 struct RenderCommand {
   RenderOptions options;
   std::string time, resolution;
@@ -73,14 +85,7 @@ struct RenderCommand {
     app.add_option("--target-error", options.targetError,
                    "Stop when the estimated relative error (95 % confidence) is below this, e.g. 0.02")
         ->check(CheckPositive, "POSITIVE");
-    app.add_option("--seed", overrides.seed, "Seed of the random numbers (0)");
-    app.add_option("--threads", options.threads, "Threads (all)")->check(CLI::Range(1, 4096));
-    app.add_option("--resolution", resolution, "Size of the image, e.g. 640x360");
-    app.add_option("--crop", overrides.crop, "x0,x1,y0,y1: the part to render, in fractions of the image or in pixels");
-    app.add_option("--max-depth", overrides.maxDepth, "Scattering events of a path at most")
-        ->check(CLI::Range(0, 1 << 20));
-    app.add_option("--sampler", overrides.sampler, "sobol | independent");
-    app.add_option("--light-sampler", overrides.lightSampler, "uniform | power");
+    DefineSceneOptions(app, overrides, resolution, options.threads);
     app.add_option("--stats", options.stats, "Write statistics to this JSON file");
     app.add_option("--strategy-images", options.strategyImages,
                    "Write what each technique of bdpt contributes, weighted and not, to this folder");
@@ -91,10 +96,51 @@ struct RenderCommand {
   }
 
   int Run() {
-    if (!time.empty()) options.seconds = ParseDuration(time);
+    if (!time.empty()) options.seconds = ParseDuration("--time", time);
     if (!resolution.empty()) ParseResolution(resolution, options.overrides);
     options.robust = !fast;
     return RunRender(options);
+  }
+};
+
+struct CompareCommand {
+  CompareOptions options;
+  std::vector<std::string> times;
+  std::string resolution, referenceTime;
+  bool fast = false;
+
+  void Define(CLI::App& app) {
+    app.add_option("scene", options.scene, "The scene: a pbrt-v4 file (.pbrt, .pbrt.gz)")->required();
+    app.add_option("-o,--output", options.output,
+                   "The folder for results.csv, results.json, report.html and the reference; default: SCENE-compare");
+    app.add_option("--integrators", options.integrators, "Which to compare, e.g. path,bdpt (path,bdpt)")
+        ->delimiter(',');
+    app.add_option("--budget", times, "Times to compare at, e.g. 5s,20s,80s (1s,4s,16s)")->delimiter(',');
+    app.add_option("--spp", options.sampleCounts, "Samples per pixel to compare at, e.g. 4,16,64")
+        ->delimiter(',')
+        ->check(CLI::Range(1, 1 << 30));
+    app.add_option("--repeat", options.repeats, "Renders with other seeds that the intervals come from (5)")
+        ->check(CLI::Range(2, 1000));
+    app.add_option("--reference", options.reference,
+                   "An image to measure against; default: made, and kept in the folder");
+    app.add_option("--reference-time", referenceTime,
+                   "Time to make the reference in; default: ten times the longest render");
+    app.add_option("--exposure", options.exposure, "Exposure of the pictures in stops (0)")->check(CheckFinite, "");
+    DefineSceneOptions(app, options.overrides, resolution, options.threads);
+    app.add_flag("--quiet", options.quiet, "No progress and no tables");
+    app.add_flag("--strict", options.strict, "Warnings about the scene are errors");
+    app.add_flag("--fast-intersection", fast,
+                 "Trade watertight intersection for speed: rays may slip through shared edges");
+  }
+
+  int Run(int argc, char** argv) {
+    for (const std::string& time : times) options.times.push_back(ParseDuration("--budget", time));
+    if (!referenceTime.empty()) options.referenceSeconds = ParseDuration("--reference-time", referenceTime);
+    if (!resolution.empty()) ParseResolution(resolution, options.overrides);
+    options.robust = !fast;
+    options.command = "lampyr";
+    for (int i = 1; i < argc; ++i) options.command += std::string(" ") + argv[i];
+    return RunCompare(options);
   }
 };
 
@@ -107,6 +153,10 @@ int RunCommandLine(int argc, char** argv) {
 
   RenderCommand render;
   render.Define(*app.add_subcommand("render", "Render a scene to an EXR image"));
+
+  CompareCommand compare;
+  compare.Define(
+      *app.add_subcommand("compare", "Measure integrators against each other: error by time and by samples"));
 
   DiffOptions diff;
   CLI::App* diffCommand = app.add_subcommand("diff", "Compare two images: MSE, relMSE, FLIP, bias, z-test by blocks");
@@ -136,6 +186,7 @@ int RunCommandLine(int argc, char** argv) {
   }
   try {
     if (app.got_subcommand("render")) return render.Run();
+    if (app.got_subcommand("compare")) return compare.Run(argc, argv);
     if (app.got_subcommand(diffCommand)) return RunDiff(diff);
     if (app.got_subcommand(checkCommand)) return RunCheckLights(check);
     return RunLights(lightType);

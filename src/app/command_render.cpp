@@ -1,17 +1,13 @@
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
-#include <csignal>
 #include <cstdio>
-#include <fstream>
 
 #include "app/command_line.h"
+#include "app/command_support.h"
 #include "app/commands.h"
 #include "app/integrator_hints.h"
 #include "app/json_report.h"
 #include "app/render_run.h"
-#include "app/scene_builder.h"
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "base/version.h"
@@ -19,35 +15,6 @@
 namespace lampyr {
 
 namespace {
-
-// A signal handler has no argument to be handed this through.
-std::atomic<bool> interruptRequested{false};
-
-void OnInterrupt(int signal) {
-  interruptRequested.store(true);
-  std::signal(signal, SIG_DFL);  // a second one ends the process
-}
-
-// Batch systems ask to end with SIGTERM: the work so far is kept then, too.
-void FinishOnInterrupt() {
-  std::signal(SIGINT, OnInterrupt);
-  std::signal(SIGTERM, OnInterrupt);
-}
-
-// A file that cannot be written is told before the work, not after it.
-void CheckWritable(const std::filesystem::path& path, const std::string& option) {
-  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
-  std::error_code ignored;
-  if (!std::filesystem::is_directory(folder, ignored)) {
-    throw UsageError(option + ": there is no folder \"" + folder.string() + "\"");
-  }
-  if (access(folder.c_str(), W_OK) != 0) {
-    throw UsageError(option + ": the folder \"" + folder.string() + "\" is not writable");
-  }
-  if (std::filesystem::is_directory(path, ignored)) {
-    throw UsageError(option + ": \"" + path.string() + "\" is a folder");
-  }
-}
 
 std::filesystem::path OutputPath(const RenderOptions& options, const RenderSettings& settings) {
   std::filesystem::path path;
@@ -72,7 +39,7 @@ void CheckMemory(const RenderSettings& settings, bool hasTechniques) {
   const uint64_t techniques = hasTechniques ? TechniqueImages::BytesPerPixel(settings.maxDepth) : 0;
   const uint64_t perPixel = sizeof(PixelSums) + splats + techniques + 2 * channels * sizeof(float);
   const uint64_t needed = perPixel * settings.crop.Width() * settings.crop.Height();
-  const auto installed = static_cast<uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<uint64_t>(sysconf(_SC_PAGESIZE));
+  const uint64_t installed = InstalledMemory();
   if (needed <= installed) return;
   const auto gibibytes = [](uint64_t bytes) { return std::to_string((bytes >> 30) + 1) + " GiB"; };
   throw UsageError("an image of " + std::to_string(settings.crop.Width()) + "×" +
@@ -105,17 +72,6 @@ ExrPrecision PrecisionFor(const Image& image, const RenderSettings& settings) {
   return settings.halfPrecision && fits ? ExrPrecision::Half : ExrPrecision::Float;
 }
 
-void WriteText(const std::filesystem::path& path, const std::string& text) {
-  const std::filesystem::path aside = path.string() + ".tmp";
-  {
-    std::ofstream stream(aside);
-    stream << text;
-    stream.close();
-    if (!stream) throw Error("cannot write \"" + path.string() + "\"");
-  }
-  std::filesystem::rename(aside, path);
-}
-
 void PrintSummary(const RenderReport& report, const std::filesystem::path& path) {
   const RenderOutcome& outcome = report.outcome;
   std::fprintf(stderr, "%s: %d×%d, %d spp, %s, %.2f Mray/s, relative error %s (95 %%)\n", path.c_str(), report.width,
@@ -136,26 +92,7 @@ StopConditions MakeStopConditions(const RenderOptions& options, const RenderSett
   if ((options.seconds || options.targetError) && !options.overrides.samplesPerPixel) stop.samplesPerPixel = 1 << 30;
   stop.seconds = options.seconds;
   stop.relativeError = options.targetError;
-  stop.interrupted = &interruptRequested;
   return stop;
-}
-
-// Reads and builds. All that goes wrong here is the scene's fault.
-BuiltScene LoadScene(const RenderOptions& options, RenderReport& report) {
-  Diagnostics diagnostics(options.strict ? Diagnostics::Mode::Strict : Diagnostics::Mode::Print);
-  try {
-    const Progress clock(true);
-    const SceneDescription description = ReadScene(options.scene, diagnostics);
-    report.parseSeconds = clock.Seconds();
-    report.sceneHash = description.contentHash;
-    BuiltScene built = BuildScene(description, options.overrides, options.robust, diagnostics);
-    report.buildSeconds = clock.Seconds() - report.parseSeconds;
-    return built;
-  } catch (const UsageError&) {
-    throw;
-  } catch (const Error& error) {
-    throw UsageError(error.Where(), error.Text());
-  }
 }
 
 void WritePngOf(const Image& image, std::filesystem::path path, const RenderOptions& options) {
@@ -175,26 +112,21 @@ void WriteTechniques(const RenderOptions& options, const std::vector<TechniqueIm
   }
 }
 
-// Made before the render, which would be lost if it could not be.
-void MakeFolder(const std::filesystem::path& folder, const std::string& option) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error || !std::filesystem::is_directory(folder))
-    throw UsageError(option + ": cannot make the folder \"" + folder.string() + "\"");
-}
-
 }  // namespace
 
 int RunRender(const RenderOptions& options) {
-  std::signal(SIGPIPE, SIG_IGN);  // a reader of the messages who has gone away is no reason to end
   RenderReport report;
-  const BuiltScene built = LoadScene(options, report);
+  const LoadedScene loaded = LoadScene(options.scene, options.overrides, options.strict, options.robust);
+  const BuiltScene& built = loaded.built;
   const RenderSettings& settings = built.settings;
   const std::filesystem::path path = OutputPath(options, settings);
   if (options.stats) CheckWritable(*options.stats, "--stats");
   CheckMemory(settings, options.strategyImages.has_value());
 
   report.scene = options.scene.string();
+  report.sceneHash = loaded.hash;
+  report.parseSeconds = loaded.parseSeconds;
+  report.buildSeconds = loaded.buildSeconds;
   report.integrator = settings.integrator;
   report.seed = settings.seed;
   report.threads = options.threads > 0 ? options.threads : HardwareThreads();
@@ -218,14 +150,14 @@ int RunRender(const RenderOptions& options) {
     for (const std::string& hint : IntegratorHints(built.scene, settings.integrator))
       std::fprintf(stderr, "hint: %s\n", hint.c_str());
   }
-  FinishOnInterrupt();
+  StopConditions stop = MakeStopConditions(options, settings);
+  stop.interrupted = &FinishOnInterrupt();
   {
     Progress progress(options.quiet);
     const auto afterPass = [&](const RenderOutcome& soFar, double fraction) {
       progress.Update(fraction, std::to_string(soFar.samplesPerPixel) + " spp, error " + Percent(soFar.relativeError));
     };
-    report.outcome = Render(built.scene, integrator, settings, MakeStopConditions(options, settings), report.threads,
-                            film, afterPass, techniques.get());
+    report.outcome = Render(built.scene, integrator, settings, stop, report.threads, film, afterPass, techniques.get());
   }
   report.rejectedRays = built.scene.geometry->RejectedRays();
 

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "app/render_settings.h"
 
@@ -27,6 +28,24 @@ struct RenderOptions {
   bool robust = true;
 };
 
+struct CompareOptions {
+  std::filesystem::path scene;
+  std::vector<std::string> integrators = {"path", "bdpt"};
+  std::vector<double> times;      // seconds; neither times nor sample counts: 1, 4 and 16 s
+  std::vector<int> sampleCounts;  // per pixel
+  int repeats = 5;
+  std::optional<std::filesystem::path> reference;  // absent: made, or kept from before
+  std::optional<double> referenceSeconds;          // absent: ten times the longest render
+  std::filesystem::path output;                    // a folder
+  float exposure = 0;                              // stops, of the pictures
+  RenderOverrides overrides;
+  int threads = 0;  // 0: all
+  bool quiet = false;
+  bool strict = false;
+  bool robust = true;
+  std::string command;  // as it was typed, for the report
+};
+
 struct DiffOptions {
   std::filesystem::path a, b;
   bool json = false;
@@ -43,6 +62,7 @@ struct CheckLightsOptions {
 
 // Each returns an exit code. Errors are thrown.
 int RunRender(const RenderOptions& options);
+int RunCompare(const CompareOptions& options);
 int RunDiff(const DiffOptions& options);
 int RunLights(const std::string& type);                 // "" lists all
 int RunCheckLights(const CheckLightsOptions& options);  // fails when a property does not hold

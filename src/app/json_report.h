@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "app/compare/results.h"
 #include "app/render_run.h"
 #include "film/metrics.h"
 #include "lights/suite/verdict.h"
@@ -24,6 +25,8 @@ struct RenderReport {
 std::string ToJson(const RenderReport& report);
 std::string ToJson(const std::vector<LightVerdict>& verdicts);
 std::string ToJson(const ImageDifference& difference);
+// Without the pictures.
+std::string ToJson(const ComparisonResults& results);
 
 // Largest resident set of this process so far, MiB.
 double PeakMemoryMiB();

@@ -54,14 +54,6 @@ struct Clock {
   double Seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); }
 };
 
-// The next pass: as many samples as there are so far, at most about 2^22 in the whole image, so that progress shows,
-// interrupts are answered and an error target is not overshot by much. Depends on the sample count alone.
-int NextPassSamples(int done, int64_t pixels, const StopConditions& stop) {
-  const int64_t largest = std::max<int64_t>(1, (int64_t{1} << 22) / std::max<int64_t>(1, pixels));
-  const int64_t wanted = std::min<int64_t>(std::max(1, done), largest);
-  return static_cast<int>(std::min<int64_t>(wanted, stop.samplesPerPixel - done));
-}
-
 double FractionDone(const RenderOutcome& outcome, const StopConditions& stop) {
   double fraction = static_cast<double>(outcome.samplesPerPixel) / stop.samplesPerPixel;
   if (stop.seconds) fraction = std::max(fraction, outcome.seconds / *stop.seconds);
@@ -200,36 +192,60 @@ double LargestUnseenSample(const RenderScene& scene, const RenderSettings& setti
   return static_cast<double>(brightest * settings.imagingRatio);
 }
 
+ProgressiveRender::ProgressiveRender(const RenderScene& scene, const AnyIntegrator& integrator,
+                                     const RenderSettings& settings, int threads, Film& film,
+                                     TechniqueImages* techniques)
+    : scene_(scene),
+      integrator_(integrator),
+      settings_(settings),
+      filter_(settings.filter),
+      threads_(threads),
+      film_(film),
+      techniques_(techniques) {}
+
+void ProgressiveRender::AddSamples(int count) {
+  const Clock clock;
+  const auto first = static_cast<uint32_t>(outcome_.samplesPerPixel), samples = static_cast<uint32_t>(count);
+  outcome_.counts += std::visit(
+      [&]<class Chosen>(const std::unique_ptr<Chosen>& chosen) {
+        if constexpr (std::is_same_v<Chosen, BidirectionalIntegrator>) {
+          return RenderPass(scene_, *chosen, settings_, filter_, first, samples, threads_, film_, techniques_);
+        } else {
+          return RenderPass(scene_, *chosen, settings_, filter_, first, samples, threads_, film_);
+        }
+      },
+      integrator_);
+  outcome_.samplesPerPixel += count;
+  outcome_.seconds += clock.Seconds();
+}
+
+int ProgressiveRender::NextPassSamples(int samplesPerPixel, std::optional<double> secondsLeft) const {
+  // Light paths are those of the full image.
+  const bool followsLight = !std::holds_alternative<std::unique_ptr<CameraIntegrator>>(integrator_);
+  const int64_t pixels = followsLight ? static_cast<int64_t>(settings_.width) * settings_.height
+                                      : static_cast<int64_t>(film_.Crop().Width()) * film_.Crop().Height();
+  const int64_t largest = std::max<int64_t>(1, (int64_t{1} << 22) / std::max<int64_t>(1, pixels));
+  const int done = outcome_.samplesPerPixel;
+  const int64_t wanted = std::min<int64_t>(std::max(1, done), largest);
+  const int count = static_cast<int>(std::min<int64_t>(wanted, samplesPerPixel - done));
+  if (!secondsLeft || done == 0) return std::max(count, 1);
+  const double affordable = *secondsLeft * done / std::max(outcome_.seconds, 1e-9);
+  return static_cast<int>(std::clamp(affordable, 1.0, static_cast<double>(std::max(count, 1))));
+}
+
 RenderOutcome Render(const RenderScene& scene, const AnyIntegrator& integrator, const RenderSettings& settings,
                      const StopConditions& stop, int threads, Film& film, const PassCallback& afterPass,
                      TechniqueImages* techniques) {
-  const PixelFilter filter(settings.filter);
-  // Light paths are those of the full image.
-  const bool followsLight = !std::holds_alternative<std::unique_ptr<CameraIntegrator>>(integrator);
-  const int64_t pixels = followsLight ? static_cast<int64_t>(settings.width) * settings.height
-                                      : static_cast<int64_t>(film.Crop().Width()) * film.Crop().Height();
   const double largestSample = LargestUnseenSample(scene, settings);
+  ProgressiveRender render(scene, integrator, settings, threads, film, techniques);
   const Clock clock;
   RenderOutcome outcome;
   while (outcome.samplesPerPixel < stop.samplesPerPixel) {
-    int count = NextPassSamples(outcome.samplesPerPixel, pixels, stop);
-    if (stop.seconds && outcome.samplesPerPixel > 0) {
-      const double perSample = outcome.seconds / outcome.samplesPerPixel;
-      const double left = *stop.seconds - outcome.seconds;
-      count = std::clamp(static_cast<int>(left / perSample), 1, count);
-    }
-    const auto first = static_cast<uint32_t>(outcome.samplesPerPixel), samples = static_cast<uint32_t>(count);
-    outcome.counts += std::visit(
-        [&]<class Chosen>(const std::unique_ptr<Chosen>& chosen) {
-          if constexpr (std::is_same_v<Chosen, BidirectionalIntegrator>) {
-            return RenderPass(scene, *chosen, settings, filter, first, samples, threads, film, techniques);
-          } else {
-            return RenderPass(scene, *chosen, settings, filter, first, samples, threads, film);
-          }
-        },
-        integrator);
-    outcome.samplesPerPixel += count;
-    outcome.seconds = clock.Seconds();
+    std::optional<double> secondsLeft;
+    if (stop.seconds) secondsLeft = *stop.seconds - clock.Seconds();
+    render.AddSamples(render.NextPassSamples(stop.samplesPerPixel, secondsLeft));
+    outcome = render.Outcome();
+    outcome.seconds = clock.Seconds();  // what the user waits for
     outcome.relativeError = film.RelativeError(largestSample);
     afterPass(outcome, FractionDone(outcome, stop));
     if (stop.interrupted && stop.interrupted->load()) {

@@ -26,7 +26,7 @@ struct StopConditions {
 
 struct RenderOutcome {
   int samplesPerPixel = 0;
-  double seconds = 0;
+  double seconds = 0;  // of the passes
   double relativeError = 0;
   bool interrupted = false;
   RenderCounts counts;
@@ -45,6 +45,34 @@ using PassCallback = std::function<void(const RenderOutcome& soFar, double fract
 RenderOutcome Render(const RenderScene& scene, const AnyIntegrator& integrator, const RenderSettings& settings,
                      const StopConditions& stop, int threads, Film& film, const PassCallback& afterPass,
                      TechniqueImages* techniques = nullptr);
+
+// A render that is continued as long as its owner likes. What `scene`, `integrator`, `settings`, `film` (empty, of the
+// settings' crop) and `techniques` refer to must outlive it.
+class ProgressiveRender {
+ public:
+  ProgressiveRender(const RenderScene& scene, const AnyIntegrator& integrator, const RenderSettings& settings,
+                    int threads, Film& film, TechniqueImages* techniques = nullptr);
+
+  // As many samples more of every pixel. Only this takes time that counts.
+  void AddSamples(int count);
+  // Samples that a pass should add: as many as there are, at most about 2^22 in the whole image, so that progress
+  // shows, interrupts are answered and an error target is not overshot by much; not beyond `samplesPerPixel` in all,
+  // nor, after the first pass, what takes longer than `secondsLeft`. At least 1.
+  int NextPassSamples(int samplesPerPixel, std::optional<double> secondsLeft) const;
+
+  // relativeError is not kept up to date here.
+  const RenderOutcome& Outcome() const { return outcome_; }
+
+ private:
+  const RenderScene& scene_;
+  const AnyIntegrator& integrator_;
+  const RenderSettings& settings_;
+  PixelFilter filter_;
+  int threads_;
+  Film& film_;
+  TechniqueImages* techniques_;
+  RenderOutcome outcome_;
+};
 
 // Samples [first, first + count) of every pixel. Exposed for tests and benchmarks.
 RenderCounts RenderPass(const RenderScene& scene, const CameraIntegrator& integrator, const RenderSettings& settings,

@@ -71,7 +71,9 @@ unsigned char ToDisplay(float linear, float exposure, ToneMap toneMap) {
 }  // namespace
 
 Image::Image(int w, int h, std::vector<std::string> channelNames)
-    : width(w), height(h), channels(std::move(channelNames)),
+    : width(w),
+      height(h),
+      channels(std::move(channelNames)),
       data(static_cast<size_t>(w) * static_cast<size_t>(h) * channels.size(), 0.0f) {}
 
 int Image::ChannelIndex(const std::string& name) const {
@@ -118,8 +120,8 @@ void CheckImageSize(const std::filesystem::path& path, int64_t width, int64_t he
                     int64_t bytesPerPixel) {
   constexpr int64_t maxSide = int64_t{1} << 24, maxValues = int64_t{1} << 30;
   constexpr int64_t alwaysFine = int64_t{1} << 28, largestCompression = 2000;
-  const std::string claim = std::to_string(width) + " x " + std::to_string(height) + " pixels with " +
-                            std::to_string(channels) + " channels";
+  const std::string claim =
+      std::to_string(width) + " x " + std::to_string(height) + " pixels with " + std::to_string(channels) + " channels";
   if (width <= 0 || height <= 0 || channels <= 0) {
     throw Error("cannot read image \"" + path.string() + "\": it has no pixels (" + claim + ")");
   }
@@ -155,10 +157,8 @@ Image ReadImageWithGamma(const std::filesystem::path& path, float gamma) {
   return std::move(encoded.image);
 }
 
-void WritePng(const std::filesystem::path& path, const Image& image, float exposureStops, ToneMap toneMap) {
-  if (!image.HasRgb() || image.width <= 0 || image.height <= 0) {
-    throw Error("cannot write \"" + path.string() + "\": the image has no R, G and B channels");
-  }
+std::vector<unsigned char> EncodeForDisplay(const Image& image, float exposureStops, ToneMap toneMap) {
+  if (!image.HasRgb() || image.width <= 0 || image.height <= 0) throw Error("the image has no R, G and B channels");
   const float exposure = std::exp2(exposureStops);
   std::vector<unsigned char> rgb;
   rgb.reserve(static_cast<size_t>(image.width) * static_cast<size_t>(image.height) * 3);
@@ -168,7 +168,12 @@ void WritePng(const std::filesystem::path& path, const Image& image, float expos
       for (const float value : {color.r, color.g, color.b}) rgb.push_back(ToDisplay(value, exposure, toneMap));
     }
   }
-  const std::vector<unsigned char> bytes = EncodePng(image.width, image.height, rgb);
+  return EncodePng(image.width, image.height, rgb);
+}
+
+void WritePng(const std::filesystem::path& path, const Image& image, float exposureStops, ToneMap toneMap) {
+  if (!image.HasRgb()) throw Error("cannot write \"" + path.string() + "\": the image has no R, G and B channels");
+  const std::vector<unsigned char> bytes = EncodeForDisplay(image, exposureStops, toneMap);
   AtomicFile file(path);
   file.Write(bytes.data(), bytes.size());
   file.Commit();

@@ -23,8 +23,12 @@ struct Image {
   Image() = default;
   Image(int w, int h, std::vector<std::string> channelNames);
 
-  float& At(int x, int y, size_t channel) { return data[(static_cast<size_t>(y) * width + x) * channels.size() + channel]; }
-  float At(int x, int y, size_t channel) const { return data[(static_cast<size_t>(y) * width + x) * channels.size() + channel]; }
+  float& At(int x, int y, size_t channel) {
+    return data[(static_cast<size_t>(y) * width + x) * channels.size() + channel];
+  }
+  float At(int x, int y, size_t channel) const {
+    return data[(static_cast<size_t>(y) * width + x) * channels.size() + channel];
+  }
   // Index of a channel by name, -1 when absent.
   int ChannelIndex(const std::string& name) const;
   // R, G and B at a pixel; a single-channel image, or one with a Y channel, is gray.
@@ -42,12 +46,16 @@ void WriteExr(const std::filesystem::path& path, const Image& image, ExrPrecisio
 // x up to 0.6, then 0.6 + 0.4·(1 - exp(-(x - 0.6)/0.4)) per channel.
 enum class ToneMap { Clip, Filmic };
 void WritePng(const std::filesystem::path& path, const Image& image, float exposureStops, ToneMap toneMap);
+// The bytes of such a file.
+std::vector<unsigned char> EncodeForDisplay(const Image& image, float exposureStops, ToneMap toneMap);
+// PNG bytes of 8-bit RGB pixels, as they are.
+std::vector<unsigned char> EncodePng(int width, int height, const std::vector<unsigned char>& rgb);
 
 enum class ImageEncoding { Automatic, Linear, Srgb };  // Automatic: sRGB for 8-bit files, linear otherwise
 
 // Any image, as linear floats. EXR by OpenEXR, the rest by OpenImageIO. Throws Error naming the file and what is wrong.
-// The encoding concerns integer formats only (floating point files are linear) and never alpha, which is channel "A" and
-// not multiplied into the colour. Channels come as R, G, B, A, then the layers in alphabetical order.
+// The encoding concerns integer formats only (floating point files are linear) and never alpha, which is channel "A"
+// and not multiplied into the colour. Channels come as R, G, B, A, then the layers in alphabetical order.
 Image ReadImage(const std::filesystem::path& path, ImageEncoding encoding = ImageEncoding::Automatic);
 // The same with a power law for integer formats: linear = encoded^gamma.
 Image ReadImageWithGamma(const std::filesystem::path& path, float gamma);

@@ -23,9 +23,6 @@ EncodedImage ReadThroughModule(const std::filesystem::path& path);
 // Throws Error when a JPEG file ends before its end marker. Other files pass.
 void CheckJpegIsWhole(const std::filesystem::path& path);
 
-// PNG bytes of 8-bit RGB pixels.
-std::vector<unsigned char> EncodePng(int width, int height, const std::vector<unsigned char>& rgb);
-
 // Throws Error when the size is absurd: more than 2^30 values, or far more than `fileBytes` could hold compressed
 // (a corrupt header must not claim the machine's memory). `bytesPerPixel` in the file, uncompressed.
 void CheckImageSize(const std::filesystem::path& path, int64_t width, int64_t height, int64_t channels,

@@ -199,21 +199,118 @@ BlockTest TestBlocks(const Measured& a, const Measured& b, int width, int height
 
 }  // namespace
 
-ImageDifference CompareImages(const Image& a, const Image& b, int blockSize, double familyWiseRate) {
+namespace {
+
+void CheckSameSize(const Image& a, const Image& b) {
   if (a.width != b.width || a.height != b.height || a.width <= 0 || a.height <= 0) {
     throw Error("the images have different sizes: " + std::to_string(a.width) + " x " + std::to_string(a.height) +
                 " and " + std::to_string(b.width) + " x " + std::to_string(b.height));
   }
   if (a.offsetX != b.offsetX || a.offsetY != b.offsetY) throw Error("the images are different crops");
+}
+
+// Calls visit(pixel, reference value, its variance, divisor of relMse) for all pixels and channels.
+template <class Visit>
+void VisitReference(const Measured& reference, Visit visit) {
+  const size_t pixels = reference.colors.size();
+  double squares = 0;
+  for (const Color& color : reference.colors) {
+    for (const double v : Channels(color)) squares += v * v;
+  }
+  const double floor = 0.01 * squares / (3.0 * static_cast<double>(pixels));
+  for (size_t i = 0; i < pixels; ++i) {
+    const auto value = Channels(reference.colors[i]);
+    for (size_t c = 0; c < 3; ++c) {
+      const double variance = reference.variance ? static_cast<double>((*reference.variance)[c][i]) : 0.0;
+      visit(i, c, value[c], variance, value[c] * value[c] + floor);
+    }
+  }
+}
+
+double MeanOfMap(const std::vector<float>& map) {
+  double sum = 0;
+  for (const float value : map) sum += static_cast<double>(value);
+  return sum / static_cast<double>(map.size());
+}
+
+}  // namespace
+
+ImageError MeasureError(const Image& image, const Image& reference) {
+  CheckSameSize(image, reference);
+  const Measured measured = Measure(image, "first"), truth = Measure(reference, "reference");
+  const double n = 3.0 * static_cast<double>(truth.colors.size());
+  ImageError error;
+  double sum = 0, sumOfReference = 0;
+  VisitReference(truth, [&](size_t i, size_t c, double value, double variance, double divisor) {
+    const double difference = Channels(measured.colors[i])[c] - value;
+    error.mse += (difference * difference - variance) / n;
+    error.relMse += Ratio(difference * difference - variance, divisor) / n;
+    sum += difference;
+    sumOfReference += value;
+  });
+  error.bias = Ratio(sum, std::abs(sumOfReference));
+  error.flip = MeanOfMap(FlipMap(measured.colors, truth.colors, image.width, image.height));
+  return error;
+}
+
+double CommonRelMse(const Image& a, const Image& b, const Image& reference) {
+  CheckSameSize(a, reference);
+  CheckSameSize(b, reference);
+  const std::vector<Color> first = ReadColors(a, "first"), second = ReadColors(b, "second");
+  const Measured truth = Measure(reference, "reference");
+  double sum = 0;
+  VisitReference(truth, [&](size_t i, size_t c, double value, double variance, double divisor) {
+    sum += Ratio((Channels(first[i])[c] - value) * (Channels(second[i])[c] - value) - variance, divisor);
+  });
+  return sum / (3.0 * static_cast<double>(truth.colors.size()));
+}
+
+std::optional<ImageNoise> NoiseOf(const Image& reference) {
+  const Measured truth = Measure(reference, "reference");
+  if (!truth.variance) return std::nullopt;
+  const double n = 3.0 * static_cast<double>(truth.colors.size());
+  ImageNoise noise;
+  double mean = 0;
+  VisitReference(truth, [&](size_t, size_t, double value, double variance, double divisor) {
+    noise.mse += variance / n;
+    noise.relMse += Ratio(variance, divisor) / n;
+    mean += value / n;
+  });
+  noise.relativeError = Ratio(std::sqrt(noise.mse), std::abs(mean));
+  return noise;
+}
+
+double MeanValue(const Image& image) {
+  double sum = 0;
+  const std::vector<Color> colors = ReadColors(image, "measured");
+  for (const Color& color : colors) {
+    for (const double v : Channels(color)) sum += v;
+  }
+  return sum / (3.0 * static_cast<double>(colors.size()));
+}
+
+std::vector<float> RelativeErrorMap(const Image& image, const Image& reference) {
+  CheckSameSize(image, reference);
+  const Measured measured = Measure(image, "first"), truth = Measure(reference, "reference");
+  std::vector<double> squares(truth.colors.size(), 0.0);
+  VisitReference(truth, [&](size_t i, size_t c, double value, double, double divisor) {
+    const double difference = Channels(measured.colors[i])[c] - value;
+    squares[i] += Ratio(difference * difference, divisor) / 3;
+  });
+  std::vector<float> map;
+  map.reserve(squares.size());
+  for (const double square : squares) map.push_back(static_cast<float>(std::sqrt(square)));
+  return map;
+}
+
+ImageDifference CompareImages(const Image& a, const Image& b, int blockSize, double familyWiseRate) {
+  CheckSameSize(a, b);
   if (blockSize < 1) throw Error("the block size must be at least 1");
   const Measured first = Measure(a, "first"), second = Measure(b, "second");
   ImageDifference difference;
   MeasureErrors(first, second, difference);
   MeasureBias(first, second, difference);
-  const std::vector<float> map = FlipMap(first.colors, second.colors, a.width, a.height);
-  double sum = 0;
-  for (const float value : map) sum += static_cast<double>(value);
-  difference.flip = sum / static_cast<double>(map.size());
+  difference.flip = MeanOfMap(FlipMap(first.colors, second.colors, a.width, a.height));
   difference.hasBlockTest = first.variance && second.variance;
   if (difference.hasBlockTest) {
     difference.blockTest = TestBlocks(first, second, a.width, a.height, blockSize, familyWiseRate);

@@ -1,6 +1,6 @@
-// Quantiles of the normal and the χ² distribution, accurate in the far tails where corrections for many tests live.
-// The regularised incomplete gamma function Q(a, x) by its series (x < a + 1) and by Lentz's evaluation of its
-// continued fraction (else); inverses by safeguarded Newton steps on the tail itself.
+// Quantiles of the normal, the χ² and Student's distribution, accurate in the far tails where corrections for many
+// tests live. The regularised incomplete gamma function Q(a, x) by its series (x < a + 1) and by Lentz's evaluation of
+// its continued fraction (else); inverses by safeguarded Newton steps on the tail itself.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -15,7 +15,9 @@ constexpr double kTiny = std::numeric_limits<double>::min() / std::numeric_limit
 constexpr int kMaxIterations = 1000000;  // the series takes some √a terms
 
 // x^a e^-x / Γ(a+1)
-double GammaTerm(double a, double x) { return std::exp(a * std::log(x) - x - std::lgamma(a + 1)); }
+double GammaTerm(double a, double x) {
+  return std::exp(a * std::log(x) - x - std::lgamma(a + 1));
+}
 
 double LowerBySeries(double a, double x) {
   double term = 1, sum = 1;
@@ -41,6 +43,36 @@ double UpperByFraction(double a, double x) {
     if (std::abs(d * c - 1) < 1e-15) break;
   }
   return product * a * GammaTerm(a, x);
+}
+
+// Continued fraction of the regularised incomplete beta function I_x(a, b), for x < (a+1)/(a+b+2).
+double BetaByFraction(double a, double b, double x) {
+  double c = 1, d = 1 - (a + b) * x / (a + 1);
+  d = 1 / (std::abs(d) < kTiny ? kTiny : d);
+  double product = d;
+  for (int m = 1; m < kMaxIterations; ++m) {
+    double last = 1;
+    for (const double numerator : {m * (b - m) * x / ((a + 2 * m - 1) * (a + 2 * m)),
+                                   -(a + m) * (a + b + m) * x / ((a + 2 * m) * (a + 2 * m + 1))}) {
+      d = 1 + numerator * d;
+      c = 1 + numerator / c;
+      d = 1 / (std::abs(d) < kTiny ? kTiny : d);
+      if (std::abs(c) < kTiny) c = kTiny;
+      last = c * d;
+      product *= last;
+    }
+    if (std::abs(last - 1) < 1e-15) break;
+  }
+  return product;
+}
+
+double RegularisedBeta(double a, double b, double x) {
+  if (!(x > 0)) return 0;
+  if (x >= 1) return 1;
+  const double factor =
+      std::exp(std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) + a * std::log(x) + b * std::log1p(-x));
+  if (x < (a + 1) / (a + b + 2)) return factor * BetaByFraction(a, b, x) / a;
+  return 1 - factor * BetaByFraction(b, a, 1 - x) / b;
 }
 
 // Finds where a falling `tail` equals p, starting at `guess` within (0, ∞): Newton where it stays in the bracket,
@@ -93,6 +125,19 @@ double ChiSquaredQuantile(double p, double degrees) {
   const auto tail = [degrees](double x) { return ChiSquaredTail(x, degrees); };
   const auto density = [a](double x) { return a * GammaTerm(a, 0.5 * x) / x; };
   return InvertTail(p, degrees * root * root * root, tail, density);
+}
+
+double StudentQuantileTwoSided(double p, double degrees) {
+  if (p >= 1) return 0;
+  if (degrees > 1e7) return NormalQuantileTwoSided(p);
+  p = std::max(p, std::numeric_limits<double>::min());
+  const double logScale =
+      std::lgamma(0.5 * (degrees + 1)) - std::lgamma(0.5 * degrees) - 0.5 * std::log(degrees * 3.14159265358979323846);
+  const auto tail = [&](double t) { return RegularisedBeta(0.5 * degrees, 0.5, degrees / (degrees + t * t)); };
+  const auto density = [&](double t) {
+    return 2 * std::exp(logScale - 0.5 * (degrees + 1) * std::log1p(t * t / degrees));
+  };
+  return InvertTail(p, NormalQuantileTwoSided(p), tail, density);
 }
 
 double SidakRate(double familyWiseRate, int tests) {

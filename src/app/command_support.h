@@ -1,0 +1,35 @@
+// What commands that render have in common.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "app/scene_builder.h"
+
+namespace lampyr {
+
+// From now on SIGINT and SIGTERM (batch systems ask with it) set the flag that is returned, once: a second one ends the
+// process. A reader of the messages who has gone away is no reason to end, either.
+const std::atomic<bool>& FinishOnInterrupt();
+
+// A file that cannot be written is told before the work, not after it. Throws UsageError; `option` names the culprit.
+void CheckWritable(const std::filesystem::path& path, const std::string& option);
+// Makes the folder, before the work that would be lost if it could not be made. Throws UsageError.
+void MakeFolder(const std::filesystem::path& folder, const std::string& option);
+// Whole or not at all.
+void WriteText(const std::filesystem::path& path, const std::string& text);
+
+// Of this machine, bytes.
+uint64_t InstalledMemory();
+
+struct LoadedScene {
+  BuiltScene built;
+  std::string hash;
+  double parseSeconds = 0, buildSeconds = 0;
+};
+// Reads and builds. All that goes wrong here is the scene's fault: a UsageError.
+LoadedScene LoadScene(const std::filesystem::path& scene, const RenderOverrides& overrides, bool strict, bool robust);
+
+}  // namespace lampyr

@@ -1,0 +1,270 @@
+#include "app/compare/comparison.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "app/compare/estimate.h"
+#include "app/integrator_hints.h"
+#include "film/metrics.h"
+
+namespace lampyr {
+
+namespace {
+
+constexpr double kErrors[] = {0.1, 0.05, 0.01};
+
+// One picture against the reference.
+struct Look {
+  ComparedScene::Milestone reached;
+  ImageError error;
+};
+
+struct Repeat {
+  std::vector<Look> looks;  // by milestone
+  Image last;
+};
+
+struct Run {
+  std::string integrator;
+  std::vector<Repeat> repeats;
+  std::vector<Image> pictures;  // of the first repeat, by milestone
+};
+
+template <class Value>
+std::vector<double> Collect(const std::vector<Repeat>& repeats, size_t milestone, Value value) {
+  std::vector<double> values;
+  for (const Repeat& repeat : repeats) values.push_back(value(repeat.looks[milestone]));
+  return values;
+}
+
+std::string BudgetName(bool byTime, double budget) {
+  char text[40];
+  std::snprintf(text, sizeof text, byTime ? "%gs" : "%.0fspp", budget);
+  return text;
+}
+
+std::optional<Estimate> Inverse(const std::optional<Estimate>& cost) {
+  if (!cost) return std::nullopt;
+  return Estimate{1 / cost->value, 1 / cost->high,
+                  cost->low > 0 ? 1 / cost->low : std::numeric_limits<double>::infinity()};
+}
+
+// Errors that are not above the reference's own are not told apart from it.
+std::optional<Estimate> Resolved(const std::vector<double>& errors, std::optional<double> noise) {
+  auto estimate = MeanOnLogScale(errors);
+  if (estimate && noise && estimate->value < *noise) estimate.reset();
+  return estimate;
+}
+
+// Gray levels by the logarithm of each pixel's relative error.
+std::vector<unsigned char> ErrorPicture(const Image& image, const Reference& reference,
+                                        const ComparisonResults& results) {
+  const std::vector<float> map = RelativeErrorMap(image, reference.image);
+  std::vector<unsigned char> rgb;
+  rgb.reserve(3 * map.size());
+  const double scale = 255 / std::log(results.highestError / results.lowestError);
+  for (const float error : map) {
+    const double level =
+        scale * std::log(std::max(static_cast<double>(error), results.lowestError) / results.lowestError);
+    rgb.insert(rgb.end(), 3, static_cast<unsigned char>(std::lround(std::min(level, 255.0))));
+  }
+  return EncodePng(image.width, image.height, rgb);
+}
+
+// The part of relMSE that is common to all repeats: the mean over their pairs, its error by leaving each repeat out in
+// turn (the jackknife).
+SignificantEstimate SystematicPart(const std::vector<Repeat>& repeats, const Reference& reference) {
+  const size_t n = repeats.size();
+  std::vector<double> sumWith(n, 0.0);  // of the pairs that a repeat is in
+  double sum = 0;
+  for (size_t i = 0; i < n; ++i) {
+    for (size_t j = i + 1; j < n; ++j) {
+      const double common = CommonRelMse(repeats[i].last, repeats[j].last, reference.image);
+      sum += common;
+      sumWith[i] += common;
+      sumWith[j] += common;
+    }
+  }
+  const double pairs = 0.5 * static_cast<double>(n * (n - 1));
+  std::vector<double> pseudoValues;  // n·S - (n - 1)·S without one: their mean's error is the jackknife's
+  const double count = static_cast<double>(n);
+  for (size_t i = 0; i < n; ++i) {
+    const double without = n > 2 ? (sum - sumWith[i]) / (pairs - count + 1) : sum;
+    pseudoValues.push_back(count * sum / pairs - (count - 1) * without);
+  }
+  SignificantEstimate estimate = MeanOf(pseudoValues);
+  if (n < 3) {  // one pair: its error is not known
+    estimate.low = -std::numeric_limits<double>::infinity();
+    estimate.high = std::numeric_limits<double>::infinity();
+    estimate.significant = false;
+  }
+  return estimate;
+}
+
+ComparedSnapshot Summarise(const Run& run, size_t milestone, const ComparisonPlan& plan, const Reference& reference,
+                           const RenderSettings& settings) {
+  ComparedSnapshot snapshot;
+  snapshot.byTime = milestone < plan.times.size();
+  snapshot.budget = snapshot.byTime ? plan.times[milestone] : plan.sampleCounts[milestone - plan.times.size()];
+  const auto values = [&](auto value) { return Collect(run.repeats, milestone, value); };
+  snapshot.seconds = MomentsOf(values([](const Look& look) { return look.reached.seconds; })).mean;
+  snapshot.samplesPerPixel =
+      MomentsOf(values([](const Look& look) { return static_cast<double>(look.reached.samplesPerPixel); })).mean;
+  const double pixels = static_cast<double>(settings.crop.Width()) * settings.crop.Height();
+  snapshot.samplesPerSecond = pixels * snapshot.samplesPerPixel / std::max(snapshot.seconds, 1e-9);
+  const ComparisonReference& facts = reference.facts;
+  snapshot.mse = Resolved(values([](const Look& look) { return look.error.mse; }), facts.mse);
+  snapshot.relMse = Resolved(values([](const Look& look) { return look.error.relMse; }), facts.relMse);
+  if (snapshot.mse) {
+    snapshot.efficiency =
+        Inverse(MeanOnLogScale(values([](const Look& look) { return look.error.mse * look.reached.seconds; })));
+  }
+  if (snapshot.relMse) {
+    snapshot.relEfficiency =
+        Inverse(MeanOnLogScale(values([](const Look& look) { return look.error.relMse * look.reached.seconds; })));
+  }
+  snapshot.flip = MeanOnLogScale(values([](const Look& look) { return look.error.flip; })).value_or(Estimate{});
+  return snapshot;
+}
+
+struct CurvePoint {
+  double seconds;
+  Estimate relMse;
+};
+
+// On the measured curve where it passes the error; beyond it by the law of independent samples, relMSE - systematic
+// part ~ 1/time, from the nearest point.
+TimeToError FindTime(const std::vector<CurvePoint>& curve, const SignificantEstimate& systematic, double error) {
+  TimeToError result;
+  result.error = error;
+  const double target = error * error;
+  if (curve.empty()) return result;
+  double slope = 1;
+  const CurvePoint* nearest = nullptr;
+  double seconds = 0;
+  if (curve.front().relMse.value <= target) {
+    nearest = &curve.front();
+    result.kind = TimeToError::Kind::Extrapolated;
+    seconds = nearest->seconds * nearest->relMse.value / target;
+  }
+  for (size_t i = 1; i < curve.size() && !nearest; ++i) {
+    const CurvePoint &a = curve[i - 1], &b = curve[i];
+    if (b.relMse.value > target) continue;
+    const double run = std::log(b.seconds / a.seconds), fall = std::log(a.relMse.value / b.relMse.value);
+    seconds = a.seconds * std::exp(run * std::log(a.relMse.value / target) / fall);
+    slope = std::max(run > 0 ? fall / run : 1, 0.5);
+    nearest = &b;
+    result.kind = TimeToError::Kind::Measured;
+  }
+  if (!nearest) {
+    nearest = &curve.back();
+    const double floor = systematic.significant ? std::max(systematic.value, 0.0) : 0.0;
+    if (target <= floor) return result;
+    result.kind = TimeToError::Kind::Extrapolated;
+    seconds = nearest->seconds * std::max(nearest->relMse.value - floor, 0.0) / (target - floor);
+    seconds = std::max(seconds, nearest->seconds);
+  }
+  const Estimate& measured = nearest->relMse;
+  result.seconds = {seconds, seconds * std::pow(measured.low / measured.value, 1 / slope),
+                    seconds * std::pow(measured.high / measured.value, 1 / slope)};
+  return result;
+}
+
+ComparedIntegrator Describe(const Run& run, const ComparedScene& scene, const ComparisonPlan& plan,
+                            const Reference& reference, ComparisonResults& results) {
+  ComparedIntegrator described;
+  described.name = run.integrator;
+  described.hints = IntegratorHints(scene.Built().scene, run.integrator);
+  std::vector<double> biases;
+  for (const Repeat& repeat : run.repeats) {
+    biases.push_back(MeasureError(repeat.last, reference.image).bias);
+  }
+  described.bias = MeanOf(biases, reference.meanError);
+  described.systematic = SystematicPart(run.repeats, reference);
+  std::vector<CurvePoint> curve;
+  for (size_t milestone = 0; milestone < plan.times.size() + plan.sampleCounts.size(); ++milestone) {
+    ComparedSnapshot snapshot = Summarise(run, milestone, plan, reference, scene.Built().settings);
+    if (snapshot.relMse) curve.push_back({snapshot.seconds, *snapshot.relMse});
+    snapshot.picture = run.integrator + "-" + BudgetName(snapshot.byTime, snapshot.budget);
+    snapshot.errorPicture = "error-" + snapshot.picture;
+    const Image& picture = run.pictures[milestone];
+    results.pictures.emplace_back(snapshot.picture, EncodeForDisplay(picture, plan.exposure, ToneMap::Filmic));
+    results.pictures.emplace_back(snapshot.errorPicture, ErrorPicture(picture, reference, results));
+    described.snapshots.push_back(std::move(snapshot));
+  }
+  std::sort(curve.begin(), curve.end(), [](const CurvePoint& a, const CurvePoint& b) { return a.seconds < b.seconds; });
+  for (const double error : kErrors) described.timeToError.push_back(FindTime(curve, described.systematic, error));
+  return described;
+}
+
+// Each integrator against the first.
+void AddRatios(const std::vector<Run>& runs, ComparisonResults& results) {
+  for (size_t i = 1; i < runs.size(); ++i) {
+    for (size_t milestone = 0; milestone < results.integrators[i].snapshots.size(); ++milestone) {
+      const ComparedSnapshot &own = results.integrators[i].snapshots[milestone],
+                             &first = results.integrators[0].snapshots[milestone];
+      for (const bool relative : {true, false}) {
+        const bool resolved = relative ? own.relMse && first.relMse : own.mse && first.mse;
+        if (!resolved) continue;
+        const auto cost = [&](const Look& look) {
+          return (relative ? look.error.relMse : look.error.mse) * look.reached.seconds;
+        };
+        const auto ratio =
+            RatioOfMeans(Collect(runs[0].repeats, milestone, cost), Collect(runs[i].repeats, milestone, cost));
+        if (!ratio) continue;
+        results.ratios.push_back({runs[i].integrator, runs[0].integrator, own.byTime, own.budget, relative, *ratio});
+      }
+    }
+  }
+}
+
+}  // namespace
+
+void Compare(const ComparedScene& scene, const ComparisonPlan& plan, const Reference& reference,
+             const ComparisonProgress& progress, ComparisonResults& results) {
+  std::vector<Run> runs;
+  for (const std::string& name : plan.integrators) runs.push_back({name, {}, {}});
+  const size_t milestones = plan.times.size() + plan.sampleCounts.size();
+  const double steps = static_cast<double>(plan.repeats) * static_cast<double>(runs.size());
+  double lastSeconds = plan.times.empty() ? 0 : plan.times.back();  // of one render, learnt when samples are counted
+  int whole = 0;
+  try {
+    for (; whole < plan.repeats; ++whole) {
+      // In turn, so that whatever else the machine does meets all of them.
+      for (size_t i = 0; i < runs.size(); ++i) {
+        Run& run = runs[i];
+        Repeat repeat;
+        repeat.looks.resize(milestones);
+        double seconds = 0;
+        const auto look = [&](size_t milestone, const ComparedScene::Milestone& reached, const Image& image) {
+          repeat.looks[milestone] = {reached, MeasureError(image, reference.image)};
+          repeat.last = image;
+          if (whole == 0) {
+            run.pictures.resize(milestones);
+            run.pictures[milestone] = image;
+          }
+        };
+        const double before = whole * static_cast<double>(runs.size()) + static_cast<double>(i);
+        scene.Render(run.integrator, plan.seed + static_cast<uint64_t>(whole), plan.times, plan.sampleCounts, look,
+                     [&](double now) {
+                       seconds = now;
+                       const double ofRender = lastSeconds > 0 ? std::min(now / lastSeconds, 1.0) : 0;
+                       progress((before + ofRender) / steps, run.integrator + ", " + std::to_string(whole + 1) +
+                                                                 " of " + std::to_string(plan.repeats));
+                     });
+        lastSeconds = std::max(lastSeconds, seconds);
+        run.repeats.push_back(std::move(repeat));
+      }
+    }
+  } catch (const ComparisonInterrupted&) {
+    if (whole < 2) throw;
+    for (Run& run : runs) run.repeats.resize(static_cast<size_t>(whole));
+  }
+  results.repeats = whole;
+  results.pictures.emplace_back("reference", EncodeForDisplay(reference.image, plan.exposure, ToneMap::Filmic));
+  for (const Run& run : runs) results.integrators.push_back(Describe(run, scene, plan, reference, results));
+  AddRatios(runs, results);
+}
+
+}  // namespace lampyr

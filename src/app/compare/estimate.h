@@ -1,0 +1,29 @@
+// Confidence intervals from independent repeats. A picture's pixels share paths, filters and Sobol points, so nothing
+// within one picture says how far off its error is; other seeds do.
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "app/compare/results.h"
+
+namespace lampyr {
+
+// The mean of the values and its 95 % interval by Student's t on the logarithm of the mean (its standard error by the
+// delta method): positive, and as wide up as down on a logarithmic axis. Absent where the mean is not above 0. A single
+// value has an interval from 0 to infinity.
+std::optional<Estimate> MeanOnLogScale(std::span<const double> values);
+
+// mean(a) / mean(b) likewise, Welch's degrees of freedom.
+std::optional<Estimate> RatioOfMeans(std::span<const double> a, std::span<const double> b);
+
+// The mean and its interval by Student's t. `otherError`: the standard error of what was subtracted from every value.
+SignificantEstimate MeanOf(std::span<const double> values, double otherError = 0);
+
+// Mean and variance of the mean (0 for a single value).
+struct Moments {
+  double mean = 0, varianceOfMean = 0;
+};
+Moments MomentsOf(std::span<const double> values);
+
+}  // namespace lampyr

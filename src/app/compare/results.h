@@ -1,0 +1,91 @@
+// What `lampyr compare` finds out, as plain data. Times in seconds; errors as in film/metrics.h.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace lampyr {
+
+// A value with its 95 % confidence interval.
+struct Estimate {
+  double value = 0, low = 0, high = 0;
+};
+
+// One integrator at one budget: means over the repeats. An error that is not told apart from the reference's own noise
+// is absent.
+struct ComparedSnapshot {
+  bool byTime = true;  // what the budget is of: seconds, or samples per pixel
+  double budget = 0;
+  double seconds = 0;  // that it really took: a pass is not cut short
+  double samplesPerPixel = 0, samplesPerSecond = 0;
+  std::optional<Estimate> mse, relMse, efficiency, relEfficiency;  // efficiency: 1/(MSE · seconds)
+  Estimate flip;
+  std::string picture, errorPicture;  // keys of ComparisonResults::pictures, "" none
+};
+
+// When the error is reached: the root of relMSE at `error`.
+struct TimeToError {
+  enum class Kind { Measured, Extrapolated, Never };  // Never: the systematic part alone is larger
+  double error = 0;
+  Kind kind = Kind::Never;
+  Estimate seconds;
+};
+
+struct SignificantEstimate : Estimate {
+  bool significant = false;  // the interval does not hold 0
+};
+
+struct ComparedIntegrator {
+  std::string name;
+  std::vector<std::string> hints;
+  SignificantEstimate bias;        // of the image's mean, relative to the reference's
+  SignificantEstimate systematic;  // the part of relMSE that more samples do not remove
+  std::vector<TimeToError> timeToError;
+  std::vector<ComparedSnapshot> snapshots;
+};
+
+// How many times as efficient one integrator is as another, in MSE or relMSE.
+struct EfficiencyRatio {
+  std::string integrator, against;
+  bool byTime = true;
+  double budget = 0;
+  bool relative = true;  // relMSE
+  Estimate ratio;
+};
+
+struct ComparisonReference {
+  enum class Origin { Given, Cached, Made } origin = Origin::Made;
+  std::string file;
+  std::string integrator;   // "" unknown
+  int samplesPerPixel = 0;  // of all its parts, 0 unknown
+  double seconds = 0;       // 0 unknown
+  double mean = 0;          // over pixels and channels
+  // Its own noise: absent for a given image without variance layers, which is taken as exact.
+  std::optional<double> relativeError, mse, relMse;
+};
+
+// A first look at an integrator, to choose the one that makes the reference.
+struct Pilot {
+  std::string integrator;
+  double seconds = 0;
+  int samplesPerPixel = 0;
+  double mean = 0, relMse = 0;  // relMse of `seconds` of rendering
+  bool chosen = false;
+  std::string note;
+};
+
+struct ComparisonResults {
+  std::string scene, sceneHash, command;
+  int width = 0, height = 0, maxDepth = 0, threads = 0, repeats = 0;
+  ComparisonReference reference;
+  std::vector<Pilot> pilots;
+  double lowestError = 0.001, highestError = 10;  // of the levels 0 and 255 of error pictures, in between by powers
+  std::vector<ComparedIntegrator> integrators;
+  std::vector<EfficiencyRatio> ratios;
+  std::vector<std::pair<std::string, std::vector<unsigned char>>> pictures;  // PNG by key
+};
+
+}  // namespace lampyr
