@@ -29,6 +29,11 @@ install_missing() {
   rm -f "$log"
 }
 
+# npm and node may be there without being Debian's.
+install_npm() {
+  command -v npm >/dev/null && { command -v node || command -v nodejs; } >/dev/null || install_missing nodejs npm
+}
+
 # quietly COMMAND…: prints its output only when it fails.
 quietly() {
   local log status

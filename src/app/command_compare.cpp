@@ -158,6 +158,7 @@ void WritePictures(const std::filesystem::path& folder, const ComparisonResults&
 
 int RunCompare(const CompareOptions& options) {
   const ComparisonPlan plan = MakePlan(options);
+  OutliveReaders();
   const LoadedScene loaded = LoadScene(options.scene, options.overrides, options.strict, options.robust);
   const RenderSettings& settings = loaded.built.settings;
   const std::filesystem::path folder =

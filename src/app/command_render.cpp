@@ -115,6 +115,7 @@ void WriteTechniques(const RenderOptions& options, const std::vector<TechniqueIm
 }  // namespace
 
 int RunRender(const RenderOptions& options) {
+  OutliveReaders();
   RenderReport report;
   const LoadedScene loaded = LoadScene(options.scene, options.overrides, options.strict, options.robust);
   const BuiltScene& built = loaded.built;

@@ -21,8 +21,11 @@ void OnInterrupt(int signal) {
 
 }  // namespace
 
-const std::atomic<bool>& FinishOnInterrupt() {
+void OutliveReaders() {
   std::signal(SIGPIPE, SIG_IGN);
+}
+
+const std::atomic<bool>& FinishOnInterrupt() {
   std::signal(SIGINT, OnInterrupt);
   std::signal(SIGTERM, OnInterrupt);
   return interruptRequested;

@@ -10,8 +10,10 @@
 
 namespace lampyr {
 
+// A reader of the messages who has gone away is no reason to end.
+void OutliveReaders();
 // From now on SIGINT and SIGTERM (batch systems ask with it) set the flag that is returned, once: a second one ends the
-// process. A reader of the messages who has gone away is no reason to end, either.
+// process.
 const std::atomic<bool>& FinishOnInterrupt();
 
 // A file that cannot be written is told before the work, not after it. Throws UsageError; `option` names the culprit.

@@ -4,6 +4,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -320,6 +321,75 @@ TEST_F(Cli, InterruptWritesTheImageAndExitsWith130) {
     EXPECT_GT(std::stoi(ReadImage(folder_ / "stopped.exr").metadata.at("lampyr.samplesPerPixel")), 1);
     fs::remove(folder_ / "stopped.exr");
   }
+}
+
+TEST_F(Cli, ComparesIntegrators) {
+  const std::string command =
+      "compare scene.pbrt --integrators path,bdpt --budget 0.1s,0.2s --spp 2,8 --repeat 2 --reference-time 1s -o "
+      "report";
+  const Outcome outcome = Run(command);
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.output;
+  for (const char* text : {"reference: report/reference.exr, made", "chosen", "relMSE (95 %)", "time to an error",
+                           "the efficiency of path in relMSE"}) {
+    EXPECT_NE(outcome.output.find(text), std::string::npos) << text << " in " << outcome.output;
+  }
+  const std::string csv = Read("report/results.csv");
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 2 * 4) << csv;
+  EXPECT_NE(csv.find("\nscene.pbrt,bdpt,samples,8,2,"), std::string::npos) << csv;
+  for (const char* key : {"\"origin\": \"made\"", "\"timeToError\"", "\"relEfficiency\"", "\"repeats\": 2"}) {
+    EXPECT_NE(Read("report/results.json").find(key), std::string::npos) << key;
+  }
+  EXPECT_EQ(ReadImage(folder_ / "report/path-0.2s.png").width, 32);
+  EXPECT_TRUE(fs::exists(folder_ / "report/bdpt-8spp.png"));
+  EXPECT_TRUE(fs::exists(folder_ / "report/reference.png"));
+  const std::string page = Read("report/report.html");
+  EXPECT_NE(page.find("data:image/png;base64,iVBORw0KGgo"), std::string::npos);
+  EXPECT_EQ(page.find("/*LAMPYR-"), std::string::npos);
+  // The reference is there already, and becomes one that is given.
+  EXPECT_NE(Run(command).output.find("kept from before"), std::string::npos);
+  fs::copy(folder_ / "report/reference.exr", folder_ / "given.exr");
+  const Outcome given = Run("compare scene.pbrt --integrators bdpt --spp 1 --repeat 2 --reference given.exr -o other");
+  EXPECT_EQ(given.exitCode, 0) << given.output;
+  EXPECT_NE(given.output.find("given.exr, given"), std::string::npos) << given.output;
+  EXPECT_FALSE(fs::exists(folder_ / "other/reference.exr"));
+}
+
+TEST_F(Cli, RefusesToCompareWhatCannotBe) {
+  const auto expect = [&](const std::string& arguments, const std::string& message) {
+    const Outcome outcome = Run("compare scene.pbrt -o report " + arguments);
+    EXPECT_EQ(outcome.exitCode, 2) << arguments << "\n" << outcome.output;
+    EXPECT_NE(outcome.output.find(message), std::string::npos) << outcome.output;
+  };
+  expect("--integrators path,bdtp", "did you mean \"bdpt\"?");
+  expect("--integrators path,path", "path is named twice");
+  expect("--budget 5s,soon", "--budget: \"soon\" is not a duration");
+  expect("--repeat 1", "--repeat");
+  expect("--spp 0", "--spp");
+  expect("--reference none.exr", "none.exr");
+  ASSERT_EQ(Run("render scene.pbrt --resolution 16x10 -o small.exr --quiet").exitCode, 0);
+  expect("--reference small.exr", "has 16×10 pixels, and the scene is rendered with 32×20");
+  ASSERT_EQ(Run("render scene.pbrt --integrator light --spp 2 -o coarse.exr --quiet").exitCode, 0);
+  expect("--reference coarse.exr --integrators path --budget 1s", "noisier than all that would be measured");
+  Write("file", "");
+  EXPECT_EQ(Run("compare scene.pbrt -o file").exitCode, 2);
+}
+
+TEST_F(Cli, AnInterruptedComparisonIsWholeOrAbsent) {
+  const pid_t child = fork();
+  if (child == 0) {
+    if (chdir(folder_.c_str()) != 0) _exit(99);
+    execl(LAMPYR_BINARY, LAMPYR_BINARY, "compare", "scene.pbrt", "-o", "stopped", "--budget", "0.1s", "--repeat",
+          "1000", "--reference-time", "0.5s", "--quiet", nullptr);
+    _exit(99);
+  }
+  std::this_thread::sleep_for(std::chrono::milliseconds(6000));
+  kill(child, SIGINT);
+  int status = 0;
+  waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 130);
+  EXPECT_NE(Read("stopped/results.json").find("\"repeats\": "), std::string::npos);
+  EXPECT_EQ(Read("stopped/results.json").find("\"repeats\": 1000"), std::string::npos);
 }
 
 TEST_F(Cli, RendersWhenNobodyReadsTheMessages) {

@@ -1,5 +1,6 @@
 #include "app/compare/estimate.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -24,7 +25,8 @@ Estimate OnLogScale(double value, double deviation, double degrees) {
 Moments MomentsOf(std::span<const double> values) {
   const double n = static_cast<double>(values.size());
   Moments moments;
-  for (const double v : values) moments.mean += v / n;
+  for (const double v : values) moments.mean += v;
+  moments.mean /= std::max(n, 1.0);
   if (values.size() < 2) return moments;
   for (const double v : values) moments.varianceOfMean += (v - moments.mean) * (v - moments.mean) / (n * (n - 1));
   return moments;
@@ -60,7 +62,9 @@ SignificantEstimate MeanOf(std::span<const double> values, double otherError) {
   const double half = t * std::sqrt(m.varianceOfMean + otherError * otherError);
   estimate.low = m.mean - half;
   estimate.high = m.mean + half;
-  estimate.significant = estimate.low > 0 || estimate.high < 0;
+  constexpr double byChance = 0.01;  // a verdict in words needs more than an interval
+  const double certain = StudentQuantileTwoSided(byChance, static_cast<double>(values.size()) - 1) / t;
+  estimate.significant = std::abs(m.mean) > certain * half;
   return estimate;
 }
 

@@ -35,7 +35,7 @@ struct TimeToError {
 };
 
 struct SignificantEstimate : Estimate {
-  bool significant = false;  // the interval does not hold 0
+  bool significant = false;  // 0 is improbable, p < 0.01
 };
 
 struct ComparedIntegrator {

@@ -40,6 +40,18 @@ TEST(Quantiles, ChiSquaredInvertsItsTail) {
   EXPECT_EQ(ChiSquaredQuantile(0.1, 0), 0);
 }
 
+TEST(Quantiles, StudentTable) {
+  EXPECT_NEAR(StudentQuantileTwoSided(0.05, 1), 12.7062047361747, 1e-9);
+  EXPECT_NEAR(StudentQuantileTwoSided(0.05, 4), 2.77644510519779, 1e-10);
+  EXPECT_NEAR(StudentQuantileTwoSided(0.01, 9), 3.2498355415921, 1e-10);
+  EXPECT_NEAR(StudentQuantileTwoSided(0.001, 2), 31.599054576443, 1e-8);
+  EXPECT_NEAR(StudentQuantileTwoSided(0.05, 100), 1.98397151845, 1e-8);
+  EXPECT_LT(StudentQuantileTwoSided(0.05, 2.5), StudentQuantileTwoSided(0.05, 2));
+  EXPECT_GT(StudentQuantileTwoSided(0.05, 2.5), StudentQuantileTwoSided(0.05, 3));
+  EXPECT_NEAR(StudentQuantileTwoSided(0.05, 1e6), NormalQuantileTwoSided(0.05), 1e-5);
+  EXPECT_NEAR(StudentQuantileTwoSided(0.05, 1e9), NormalQuantileTwoSided(0.05), 1e-12);
+}
+
 TEST(Quantiles, Sidak) {
   EXPECT_NEAR(SidakRate(0.05, 10), 0.005116196891823743, 1e-15);
   EXPECT_NEAR(SidakRate(1e-3, 1000000), 1.000500333083e-9, 1e-20);

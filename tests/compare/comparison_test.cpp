@@ -1,0 +1,230 @@
+// Comparing integrators: what is measured is what is there.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "app/compare/comparison.h"
+#include "app/compare/report.h"
+#include "app/json_report.h"
+#include "film/metrics.h"
+#include "support/temporary_folder.h"
+
+namespace lampyr {
+namespace {
+
+const std::string kCamera = R"(LookAt 0 2.2 2.6  0 0.3 0  0 1 0
+Film "rgb" "integer xresolution" 24 "integer yresolution" 24
+Camera "perspective" "float fov" 42
+Integrator "path" "integer maxdepth" 5
+WorldBegin
+Material "diffuse" "rgb reflectance" [0.6 0.5 0.4]
+Shape "trianglemesh" "point3 P" [-2.5 0 -2.5  -2.5 0 2.5  2.5 0 2.5  2.5 0 -2.5] "integer indices" [0 1 2 0 2 3]
+)";
+const std::string kLamp = R"(AttributeBegin
+AreaLightSource "diffuse" "rgb L" [30 28 26]
+Translate 0.8 2 0.2 Shape "sphere" "float radius" 0.2
+AttributeEnd
+)";
+// Of what the point light sends through the ball, a path from the camera finds nothing.
+const std::string kCaustic = R"(AttributeBegin
+Material "dielectric" "float eta" 1.5
+Translate 0 0.6 0 Shape "sphere" "float radius" 0.5
+AttributeEnd
+LightSource "point" "rgb I" [9 9 9] "point3 from" [0.4 2.5 0]
+)";
+
+const std::atomic<bool> kNever{false};
+
+BuiltScene Build(const std::string& text) {
+  Diagnostics diagnostics(Diagnostics::Mode::Collect);
+  return BuildScene(ParseScene(text, "test.pbrt", diagnostics), {}, true, diagnostics);
+}
+
+const ReferenceProgress kQuiet = [](double, const std::string&) {};
+
+TEST(ComparedScene, LooksAreTakenAtTheirMilestonesAndChangeNothing) {
+  const BuiltScene built = Build(kCamera + kLamp);
+  const ComparedScene scene(built, 2, kNever);
+  std::vector<int> samples(5);
+  Image last, alone;
+  const auto look = [&](size_t index, const ComparedScene::Milestone& reached, const Image& image) {
+    samples[index] = reached.samplesPerPixel;
+    if (index < 2) {
+      EXPECT_GT(reached.seconds, index == 0 ? 0.03 : 0.06);
+    }
+    if (index == 4) last = image;
+  };
+  scene.Render("path", 7, {0.05, 0.1}, {3, 8, 50}, look, [](double) {});
+  EXPECT_EQ(samples[2], 3);
+  EXPECT_EQ(samples[3], 8);
+  EXPECT_EQ(samples[4], 50);
+  EXPECT_GT(samples[1], samples[0]);
+  scene.Render(
+      "path", 7, {}, {50}, [&](size_t, const auto&, const Image& image) { alone = image; }, [](double) {});
+  EXPECT_EQ(last.data, alone.data);
+}
+
+TEST(ComparedScene, AnInterruptEndsIt) {
+  const BuiltScene built = Build(kCamera + kLamp);
+  const std::atomic<bool> interrupted{true};
+  const ComparedScene scene(built, 2, interrupted);
+  const auto look = [](size_t, const auto&, const Image&) {};
+  EXPECT_THROW(scene.Render("path", 0, {}, {4096}, look, [](double) {}), ComparisonInterrupted);
+}
+
+TEST(Reference, IsMadeByWhatFindsAllTheLight) {
+  const BuiltScene built = Build(kCamera + kCaustic);
+  const ComparedScene scene(built, 2, kNever);
+  for (const Pilot& pilot : FlyPilots(scene, 0.3, kQuiet)) {
+    // path's picture has no noise to speak of, and no caustic.
+    EXPECT_EQ(pilot.chosen, pilot.integrator == "bdpt") << pilot.integrator;
+    if (pilot.integrator == "path") {
+      EXPECT_NE(pilot.note.find("bdpt"), std::string::npos) << pilot.note;
+    }
+    EXPECT_GT(pilot.samplesPerPixel, 0);
+    EXPECT_GT(pilot.seconds, 0.15);
+  }
+}
+
+TEST(Reference, ItsErrorIsWhatItSays) {
+  const BuiltScene built = Build(kCamera + kLamp);
+  const ComparedScene scene(built, 2, kNever);
+  const Reference coarse = MakeReference(scene, "bdpt", 1, 8 * 16, kQuiet);  // 16 samples each
+  EXPECT_EQ(coarse.facts.samplesPerPixel, 128);
+  const Reference fine = MakeReference(scene, "path", 1, 8 * 1024, kQuiet);
+  const double error = CompareImages(coarse.image, fine.image).mse;
+  EXPECT_NEAR(error / *coarse.facts.mse, 1, 0.25);
+  EXPECT_NEAR(coarse.facts.mean / fine.facts.mean, 1, 4 * coarse.meanError);
+}
+
+TEST(Reference, IsKeptWhileItIsOfTheSamePicture) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder.Path() / "reference.exr";
+  const BuiltScene built = Build(kCamera + kLamp);
+  const ComparedScene scene(built, 2, kNever);
+  const std::string key = ReferenceKey(scene, "hash");
+  EXPECT_EQ(key, ReferenceKey(ComparedScene(built, 1, kNever), "hash"));
+  EXPECT_NE(key, ReferenceKey(scene, "other"));
+  const BuiltScene brighter = Build(kCamera + kLamp + kLamp);
+  EXPECT_NE(key, ReferenceKey(ComparedScene(brighter, 2, kNever), "hash"));
+
+  EXPECT_FALSE(FindKeptReference(file, key, 0));
+  const Reference made = MakeReference(scene, "path", 1, 8 * 16, kQuiet);
+  KeepReference(made, key, file);
+  const auto kept = FindKeptReference(file, key, 0.5 * made.facts.seconds);
+  ASSERT_TRUE(kept);
+  EXPECT_EQ(kept->image.data, made.image.data);
+  EXPECT_EQ(kept->facts.origin, ComparisonReference::Origin::Cached);
+  EXPECT_EQ(*kept->facts.relMse, *made.facts.relMse);
+  EXPECT_EQ(kept->meanError, made.meanError);
+  EXPECT_FALSE(FindKeptReference(file, key + "x", 0));
+  EXPECT_FALSE(FindKeptReference(file, key, 1000 * made.facts.seconds));
+  std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);
+  EXPECT_FALSE(FindKeptReference(file, key, 0));
+}
+
+class Compared : public testing::Test {
+ protected:
+  static ComparisonResults Run(const std::string& text, const ComparisonPlan& plan, int referenceSamples) {
+    const BuiltScene built = Build(text);
+    const ComparedScene scene(built, 2, kNever);
+    const Reference reference = MakeReference(scene, "bdpt", 1, 8 * referenceSamples, kQuiet);
+    ComparisonResults results;
+    results.scene = "scene, with a \"comma\".pbrt";
+    results.reference = reference.facts;
+    Compare(scene, plan, reference, kQuiet, results);
+    return results;
+  }
+  static const ComparedSnapshot& Find(const ComparisonResults& results, const std::string& integrator, double budget) {
+    for (const ComparedIntegrator& i : results.integrators) {
+      for (const ComparedSnapshot& s : i.snapshots) {
+        if (i.name == integrator && s.budget == budget) return s;
+      }
+    }
+    throw Error("no such snapshot");
+  }
+};
+
+TEST_F(Compared, ErrorsFallAndEfficienciesArePerTime) {
+  ComparisonPlan plan;
+  plan.integrators = {"path", "bdpt"};
+  plan.sampleCounts = {4, 64};
+  plan.repeats = 6;
+  const ComparisonResults results = Run(kCamera + kLamp, plan, 512);
+  for (const char* name : {"path", "bdpt"}) {
+    const ComparedSnapshot &few = Find(results, name, 4), &many = Find(results, name, 64);
+    ASSERT_TRUE(few.mse && many.mse && few.relMse && many.relMse);
+    EXPECT_EQ(few.samplesPerPixel, 4);
+    EXPECT_GT(few.mse->value / many.mse->value, 8);  // 16 and more: Sobol points do better than 1/n
+    EXPECT_LT(few.mse->low, few.mse->value);
+    EXPECT_GT(few.mse->high, few.mse->value);
+    EXPECT_NEAR(many.efficiency->value * many.mse->value * many.seconds, 1, 0.3);
+    EXPECT_GT(many.seconds, few.seconds);
+    EXPECT_GT(few.flip.value, many.flip.value);
+  }
+  for (const ComparedIntegrator& integrator : results.integrators) {
+    EXPECT_FALSE(integrator.bias.significant) << integrator.name << " " << integrator.bias.value;
+    EXPECT_LT(std::abs(integrator.bias.value), 0.01);
+    EXPECT_FALSE(integrator.systematic.significant) << integrator.name << " " << integrator.systematic.value;
+    ASSERT_EQ(integrator.timeToError.size(), 3u);
+    EXPECT_LT(integrator.timeToError[0].seconds.value, integrator.timeToError[2].seconds.value);
+  }
+  ASSERT_EQ(results.ratios.size(), 4u);
+  const EfficiencyRatio& ratio = results.ratios[2];
+  EXPECT_EQ(ratio.integrator, "bdpt");
+  EXPECT_EQ(ratio.budget, 64);
+  EXPECT_TRUE(ratio.relative);
+  EXPECT_NEAR(ratio.ratio.value,
+              Find(results, "bdpt", 64).relEfficiency->value / Find(results, "path", 64).relEfficiency->value,
+              1e-9 * ratio.ratio.value);
+  EXPECT_EQ(results.pictures.size(), 1 + 2 * 2 * 2u);
+}
+
+TEST_F(Compared, AnIntegratorThatMissesLightIsFoundOut) {
+  ComparisonPlan plan;
+  plan.integrators = {"path", "bdpt"};
+  plan.sampleCounts = {64};
+  const ComparisonResults results = Run(kCamera + kCaustic, plan, 512);
+  const ComparedIntegrator &path = results.integrators[0], &bdpt = results.integrators[1];
+  EXPECT_TRUE(path.bias.significant);
+  EXPECT_LT(path.bias.value, -0.02);
+  EXPECT_TRUE(path.systematic.significant);
+  EXPECT_EQ(path.timeToError[2].kind, TimeToError::Kind::Never);
+  EXPECT_FALSE(path.hints.empty());
+  EXPECT_FALSE(bdpt.bias.significant) << bdpt.bias.value;
+  EXPECT_NE(bdpt.timeToError[2].kind, TimeToError::Kind::Never);
+  const std::string text = ToText(results);
+  EXPECT_NE(text.find("path is darker than the reference"), std::string::npos) << text;
+  EXPECT_NE(text.find("never"), std::string::npos) << text;
+}
+
+TEST_F(Compared, NothingIsSaidBelowTheNoiseOfTheReference) {
+  ComparisonPlan plan;
+  plan.integrators = {"path"};
+  plan.sampleCounts = {1, 1024};
+  plan.repeats = 3;
+  const ComparisonResults results = Run(kCamera + kLamp, plan, 4);
+  EXPECT_TRUE(Find(results, "path", 1).relMse);
+  EXPECT_FALSE(Find(results, "path", 1024).relMse);
+  EXPECT_FALSE(Find(results, "path", 1024).relEfficiency);
+  EXPECT_NE(ToText(results).find("below the reference's noise"), std::string::npos);
+  EXPECT_NE(ToJson(results).find("\"relMse\": null"), std::string::npos);
+  const std::string csv = ToCsv(results);
+  std::istringstream lines(csv);
+  size_t columns = 0;
+  for (std::string line; std::getline(lines, line);) {
+    size_t commas = 0;
+    bool quoted = false;
+    for (const char c : line) {
+      quoted ^= c == '"';
+      commas += c == ',' && !quoted;
+    }
+    if (columns == 0) columns = commas;
+    EXPECT_EQ(commas, columns) << line;
+  }
+  EXPECT_EQ(columns, 22u);
+}
+
+}  // namespace
+}  // namespace lampyr

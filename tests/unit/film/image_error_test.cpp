@@ -1,0 +1,89 @@
+// Errors against a reference that is noisy itself.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "base/error.h"
+#include "film/metrics.h"
+
+namespace lampyr {
+namespace {
+
+constexpr int kSide = 64;
+
+// The truth is a ramp; pictures are it plus noise of a known deviation.
+double Truth(int x, int c) {
+  return 0.1 + 0.02 * x * (c + 1);
+}
+
+Image Noisy(double deviation, unsigned seed, double scale = 1) {
+  Image image(kSide, kSide, {"R", "G", "B", "variance.R", "variance.G", "variance.B"});
+  std::mt19937 generator(seed);
+  std::normal_distribution<double> normal(0, deviation);
+  for (int y = 0; y < kSide; ++y) {
+    for (int x = 0; x < kSide; ++x) {
+      for (int c = 0; c < 3; ++c) {
+        image.At(x, y, static_cast<size_t>(c)) = static_cast<float>(scale * Truth(x, c) + normal(generator));
+        image.At(x, y, static_cast<size_t>(c) + 3) = static_cast<float>(deviation * deviation);
+      }
+    }
+  }
+  return image;
+}
+
+// Of n normal deviates: the mean of their squares is off by no more than this, relative, four times in 1e5.
+const double kSlack = 4 * std::sqrt(2.0 / (3 * kSide * kSide));
+
+TEST(ImageError, TheNoiseOfTheReferenceIsSubtracted) {
+  const Image image = Noisy(0.02, 1), reference = Noisy(0.04, 2);
+  const double own = 0.02 * 0.02, added = 0.04 * 0.04;
+  EXPECT_NEAR(CompareImages(image, reference).mse, own + added, (own + added) * kSlack);
+  const ImageError error = MeasureError(image, reference);
+  EXPECT_NEAR(error.mse, own, (own + added) * kSlack);
+  const ImageNoise noise = *NoiseOf(reference);
+  EXPECT_NEAR(noise.mse, added, 1e-9);
+  EXPECT_NEAR(noise.relativeError, 0.04 / MeanValue(reference), 1e-6);
+  // relMse in the same units: noise of a quarter of the variance has a quarter of it.
+  EXPECT_NEAR(error.relMse / noise.relMse, 0.25, 0.05);
+}
+
+TEST(ImageError, WithoutNoiseItIsThatOfDiff) {
+  const Image image = Noisy(0.03, 3);
+  Image reference = Noisy(0, 4);
+  const ImageDifference difference = CompareImages(image, reference);
+  const ImageError error = MeasureError(image, reference);
+  EXPECT_NEAR(error.mse, difference.mse, 1e-12);
+  EXPECT_NEAR(error.relMse, difference.relMse, 1e-9);
+  EXPECT_NEAR(error.bias, difference.bias, 1e-9);
+  EXPECT_EQ(error.flip, difference.flip);
+  reference.channels = {"R", "G", "B", "a", "b", "c"};
+  EXPECT_FALSE(NoiseOf(reference));
+  EXPECT_NEAR(MeasureError(image, reference).mse, difference.mse, 1e-12);
+}
+
+TEST(ImageError, WhatTwoImagesHaveInCommonIsTheirBias) {
+  const Image reference = Noisy(0.01, 5);
+  EXPECT_NEAR(CommonRelMse(Noisy(0.05, 6), Noisy(0.05, 7), reference), 0, 2e-4);
+  // A tenth too bright: (0.1 v)² / (v² + floor), a little below 0.01.
+  const double common = CommonRelMse(Noisy(0.05, 6, 1.1), Noisy(0.05, 7, 1.1), reference);
+  EXPECT_GT(common, 0.0085);
+  EXPECT_LT(common, 0.0101);
+  EXPECT_NEAR(MeasureError(Noisy(0.05, 6, 1.1), reference).bias, 0.1, 1e-3);
+}
+
+TEST(ImageError, TheMapHoldsEachPixelsShare) {
+  const Image image = Noisy(0.03, 8), reference = Noisy(0, 9);
+  double sum = 0;
+  for (const float error : RelativeErrorMap(image, reference)) sum += std::pow(static_cast<double>(error), 2);
+  EXPECT_NEAR(sum / (kSide * kSide), MeasureError(image, reference).relMse, 1e-7);
+}
+
+TEST(ImageError, SizesMustAgree) {
+  const Image image(2, 2, {"R", "G", "B"}), other(2, 3, {"R", "G", "B"});
+  EXPECT_THROW(MeasureError(image, other), Error);
+  EXPECT_THROW(CommonRelMse(image, image, other), Error);
+}
+
+}  // namespace
+}  // namespace lampyr
