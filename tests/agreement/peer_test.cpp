@@ -68,7 +68,8 @@ INSTANTIATE_TEST_SUITE_P(
                     PeerScene{"glass-caustic", "path", 1536, 32}, PeerScene{"area-box", "bdpt", 256},
                     PeerScene{"mixed-lights", "bdpt", 256}, PeerScene{"sky-spheres", "bdpt", 1024},
                     PeerScene{"lights600", "bdpt", 512}, PeerScene{"glass-caustic", "bdpt", 512, 32},
-                    PeerScene{"spot-lens", "bdpt", 512}),
+                    PeerScene{"spot-lens", "bdpt", 512}, PeerScene{"area-box", "light", 512},
+                    PeerScene{"mixed-lights", "light", 512}, PeerScene{"lights600", "light", 1024}),
     [](const auto& info) {
       std::string name = std::string(info.param.integrator) + "_" + info.param.name;
       std::replace(name.begin(), name.end(), '-', '_');
