@@ -6,7 +6,6 @@
 
 #include "app/json_report.h"
 #include "base/parallel.h"
-#include "integrators/path/path_integrator.h"
 #include "sampling/rng.h"
 #include "sampling/warp.h"
 #include "support/render_scene.h"
@@ -18,9 +17,10 @@ namespace fs = std::filesystem;
 
 const fs::path kShared = LAMPYR_SHARED_DATA;
 
-BuiltScene Load(const fs::path& file, int width, int height) {
+BuiltScene Load(const fs::path& file, int width, int height, const char* integrator = "path") {
   Diagnostics diagnostics(Diagnostics::Mode::Collect);
   RenderOverrides overrides;
+  overrides.integrator = integrator;
   overrides.width = width;
   overrides.height = height;
   return BuildScene(ReadScene(file, diagnostics), overrides, true, diagnostics);
@@ -67,8 +67,11 @@ void IntersectRays(benchmark::State& state, const fs::path& file, bool occlusion
       benchmark::Counter(double(rays.size()) * double(state.iterations()), benchmark::Counter::kIsRate);
 }
 
-// Seconds of CPU time that bare intersection takes for as many rays of each kind as `counts` holds.
-double SecondsOfBareRays(const BuiltScene& built, const RenderCounts& counts) {
+// Seconds of CPU time that bare intersection takes for a ray.
+struct BareRays {
+  double closest = 0, occlusion = 0;
+};
+BareRays MeasureBareRays(const BuiltScene& built) {
   const std::vector<Ray> rays = IncoherentRays(built, 1 << 18);
   const GeometryScene& geometry = *built.scene.geometry;
   const auto secondsPerRay = [&](bool occlusion) {
@@ -86,30 +89,31 @@ double SecondsOfBareRays(const BuiltScene& built, const RenderCounts& counts) {
     benchmark::DoNotOptimize(hits);
     return best / static_cast<double>(rays.size());
   };
-  return static_cast<double>(counts.cameraRays + counts.indirectRays) * secondsPerRay(false) +
-         static_cast<double>(counts.shadowRays) * secondsPerRay(true);
+  return {secondsPerRay(false), secondsPerRay(true)};
 }
 
-void RenderScenePath(benchmark::State& state, const fs::path& file, int size) {
+void RenderWhole(benchmark::State& state, const fs::path& file, const char* name, int size) {
   if (!fs::exists(file)) return state.SkipWithError("the scene is not here");
-  const BuiltScene built = Load(file, size, size);
-  const auto integrator = MakePathIntegrator(built.scene, {built.settings.maxDepth});
-  const PixelFilter filter(built.settings.filter);
+  const BuiltScene built = Load(file, size, size, name);
+  const AnyIntegrator integrator = MakeIntegrator(built.scene, built.settings);
   Film film(size, size, built.settings.crop);
-  constexpr uint32_t samples = 16;
-  uint32_t first = 0;
-  RenderCounts counts;
+  ProgressiveRender render(built.scene, integrator, built.settings, 1, film);
+  constexpr int samples = 16;
   const double start = CpuSeconds();
-  for (auto _ : state) {
-    counts += RenderPass(built.scene, *integrator, built.settings, filter, first, samples, 1, film);
-    first += samples;
-  }
+  for (auto _ : state) render.AddSamples(samples);
   const double seconds = CpuSeconds() - start;
-  // Rays per second, as a part of what the intersector alone reaches with as many incoherent rays of both kinds.
-  state.counters["ofBareRays"] = SecondsOfBareRays(built, counts) / seconds;
-  state.counters["samples"] = benchmark::Counter(double(size) * size * first, benchmark::Counter::kIsRate);
+  const RenderCounts& counts = render.Outcome().counts;
+  const double pixelSamples = double(size) * size * render.Outcome().samplesPerPixel;
+  const BareRays bare = MeasureBareRays(built);
+  // What the intersector alone takes for as many incoherent rays of both kinds; and rays per second against its closest
+  // hits per second, all rays counted alike.
+  const double ofBoth =
+      double(counts.cameraRays + counts.indirectRays) * bare.closest + double(counts.shadowRays) * bare.occlusion;
+  state.counters["ofBareRays"] = ofBoth / seconds;
+  state.counters["ofClosestHits"] = double(counts.Rays()) * bare.closest / seconds;
+  state.counters["samples"] = benchmark::Counter(pixelSamples, benchmark::Counter::kIsRate);
   state.counters["rays"] = benchmark::Counter(double(counts.Rays()), benchmark::Counter::kIsRate);
-  state.counters["raysPerSample"] = double(counts.Rays()) / (double(size) * size * first);
+  state.counters["raysPerSample"] = double(counts.Rays()) / pixelSamples;
 }
 
 const bool kRegistered = [] {
@@ -120,15 +124,17 @@ const bool kRegistered = [] {
   benchmark::RegisterBenchmark("intersect/killeroo/occlusion", [=](benchmark::State& s) {
     IntersectRays(s, killeroo, true);
   })->Unit(benchmark::kMillisecond);
-  benchmark::RegisterBenchmark("path/killeroo", [=](benchmark::State& s) {
-    RenderScenePath(s, killeroo, 256);
-  })->Unit(benchmark::kMillisecond);
-  for (const char* name :
-       {"area-box", "mixed-lights", "glass-caustic", "spot-lens", "sky-spheres", "lights600", "pool"}) {
-    const fs::path file = kShared / "peer" / (std::string(name) + ".pbrt");
-    benchmark::RegisterBenchmark((std::string("path/") + name).c_str(), [=](benchmark::State& s) {
-      RenderScenePath(s, file, 64);
+  for (const char* integrator : {"path", "bdpt"}) {
+    benchmark::RegisterBenchmark((std::string(integrator) + "/killeroo").c_str(), [=](benchmark::State& s) {
+      RenderWhole(s, killeroo, integrator, 256);
     })->Unit(benchmark::kMillisecond);
+    for (const char* name :
+         {"area-box", "mixed-lights", "glass-caustic", "spot-lens", "sky-spheres", "lights600", "pool"}) {
+      const fs::path file = kShared / "peer" / (std::string(name) + ".pbrt");
+      benchmark::RegisterBenchmark((std::string(integrator) + "/" + name).c_str(), [=](benchmark::State& s) {
+        RenderWhole(s, file, integrator, 64);
+      })->Unit(benchmark::kMillisecond);
+    }
   }
   return true;
 }();
