@@ -1,0 +1,50 @@
+// The head of the page: scene, verdict, how the reference came about, what was set, hints.
+import {element} from './dom.mjs';
+import {formatNumber, formatPercent, formatSeconds, isNumber} from './numbers.mjs';
+import {verdictOf} from './verdict.mjs';
+
+function referenceSentence({origin, file, integrator, samplesPerPixel, seconds, relativeError}) {
+  const how = [];
+  if (integrator) how.push(`by ${integrator}`);
+  if (isNumber(samplesPerPixel)) how.push(`with ${formatNumber(samplesPerPixel)} samples per pixel`);
+  if (isNumber(seconds)) how.push(`in ${formatSeconds(seconds)}`);
+  const begin = {made: 'The reference was rendered for this comparison',
+    cached: 'The reference was rendered for an earlier comparison of this scene',
+    given: `The reference, ${file}, was given`}[origin] ?? 'The reference';
+  const made = how.length === 0 ? '' : origin === 'given' ? `; it was rendered ${how.join(' ')}` : ` ${how.join(' ')}`;
+  const error = isNumber(relativeError)
+    ? ` Its own noise is ± ${formatPercent(relativeError)} of the mean (RMS over the pixels).`
+    : ' How noisy it is, is not known: it has no variance layers.';
+  return `${begin}${made}.${error}`;
+}
+
+function facts(results) {
+  const entries = [
+    ['Picture', `${results.width} × ${results.height} pixels`],
+    ['Longest path', `${results.maxDepth} bounces`],
+    ['Repeats', `${results.repeats} independent`],
+    ['Intervals', formatPercent(results.confidence)],
+    ['Threads', String(results.threads)],
+    ['Scene hash', String(results.sceneHash).slice(0, 12)],
+    ['Version', `lampyr ${results.lampyr}`],
+  ];
+  return element('dl', {class: 'facts'}, entries.map(([term, value]) =>
+    element('div', {}, element('dt', {}, term), element('dd', {}, value))));
+}
+
+export function showHead(head, results) {
+  const {sentences, flaws} = verdictOf(results);
+  const hints = results.integrators.flatMap(({name, hints: texts}) =>
+    (texts ?? []).map((text) => element('li', {}, element('b', {}, name), `: ${text}`)));
+  head.append(
+    element('p', {class: 'overline'}, `Speed against accuracy: ${results.integrators.map(({name}) => name).join(', ')}`),
+    element('h1', {}, results.scene),
+    element('p', {class: 'verdict'}, sentences.join(' ')),
+  );
+  for (const flaw of flaws) {
+    head.append(element('p', {class: 'flaw'}, element('span', {'aria-hidden': 'true'}, '▲ '), flaw));
+  }
+  head.append(element('p', {class: 'reference'}, referenceSentence(results.reference)));
+  if (hints.length > 0) head.append(element('ul', {class: 'hints', 'aria-label': 'Hints'}, hints));
+  head.append(facts(results), element('p', {class: 'command'}, element('code', {}, results.command)));
+}

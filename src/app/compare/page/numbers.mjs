@@ -1,0 +1,101 @@
+// Numbers as people write them: at most three significant digits, 1.2 × 10⁻³, an interval beside its value.
+
+const kNone = '–';
+const kSuperscripts = '⁰¹²³⁴⁵⁶⁷⁸⁹';
+
+export function isNumber(value) {
+  return typeof value === 'number' && Number.isFinite(value);
+}
+
+export function superscript(exponent) {
+  const digits = [...String(Math.abs(exponent))].map((digit) => kSuperscripts[digit]).join('');
+  return (exponent < 0 ? '⁻' : '') + digits;
+}
+
+function minus(text) {
+  return text.replace('-', '−');
+}
+
+// The exponent of the leading digit, after rounding to three digits: 9.999 counts as 10.
+function exponentOf(value) {
+  return value === 0 ? 0 : Number(Math.abs(value).toExponential(2).split('e')[1]);
+}
+
+// Powers of ten that are written out rather than as × 10ⁿ.
+function isPlain(exponent) {
+  return exponent >= -2 && exponent <= 3;
+}
+
+export function formatPower(exponent) {
+  return `10${superscript(exponent)}`;
+}
+
+export function formatNumber(value) {
+  if (!isNumber(value)) return kNone;
+  const exponent = exponentOf(value);
+  if (isPlain(exponent)) return minus(String(Number(value.toPrecision(3))));
+  const mantissa = Number((value / 10 ** exponent).toPrecision(3));
+  return minus(`${mantissa} × ${formatPower(exponent)}`);
+}
+
+export function formatPercent(fraction) {
+  return isNumber(fraction) ? `${formatNumber(100 * fraction)} %` : kNone;
+}
+
+// Decimals by the interval's width: a digit that the interval leaves open says nothing.
+function decimalsFor(value, low, high, exponent) {
+  const width = (high - low) / 10 ** exponent;
+  return Math.max(0, (width < 0.15 ? 2 : 1) - (isPlain(exponent) ? exponent : 0));
+}
+
+function fixed(value, decimals) {
+  const text = value.toFixed(Math.min(decimals, 20));
+  const digits = text.replace(/^-?0*\.?0*/, '').replace('.', '').length;
+  return minus(digits > 3 && Math.abs(value) >= 1 ? String(Number(value.toPrecision(3))) : text);
+}
+
+// {value, low, high} as "1.2 (1.0 to 1.5) × 10⁻³"; `unit` is put where × would be for plain numbers.
+export function formatInterval(interval, unit = '') {
+  if (!interval || !isNumber(interval.value)) return kNone;
+  const {value, low, high} = interval;
+  if (!isNumber(low) || !isNumber(high)) return formatNumber(value) + unit;
+  const size = low < 0 || value === 0 ? Math.max(Math.abs(low), Math.abs(high), Math.abs(value)) : value;
+  const exponent = exponentOf(size);
+  const decimals = decimalsFor(value, low, high, exponent);
+  const scale = isPlain(exponent) ? 1 : 10 ** exponent;
+  const [v, l, h] = [value, low, high].map((number) => fixed(number / scale, decimals));
+  return `${v}${scale === 1 ? unit : ''} (${l} to ${h})${scale === 1 ? '' : ` × ${formatPower(exponent)}${unit}`}`;
+}
+
+export function formatPercentInterval(interval) {
+  if (!interval || !isNumber(interval.value)) return kNone;
+  const scaled = {value: 100 * interval.value, low: null, high: null};
+  if (isNumber(interval.low) && isNumber(interval.high)) {
+    scaled.low = 100 * interval.low;
+    scaled.high = 100 * interval.high;
+  }
+  return formatInterval(scaled, ' %');
+}
+
+export function formatSeconds(seconds) {
+  if (!isNumber(seconds)) return kNone;
+  if (seconds < 1e-3) return `${formatNumber(1e6 * seconds)} µs`;
+  if (seconds < 0.1) return `${formatNumber(1e3 * seconds)} ms`;
+  if (seconds < 59.95) return `${formatNumber(seconds)} s`;
+  const units = [['min', 60, 's', 1], ['h', 3600, 'min', 60], ['d', 86400, 'h', 3600]];
+  for (const [large, inLarge, small, inSmall] of units) {
+    const count = Math.round(seconds / inSmall);
+    const perLarge = inLarge / inSmall;
+    if (large !== 'd' && count >= (large === 'min' ? 3600 : 1440)) continue;
+    if (count >= 1000 * perLarge) break;
+    const whole = Math.floor(count / perLarge);
+    const rest = count % perLarge;
+    return `${whole} ${large}${rest === 0 ? '' : ` ${rest} ${small}`}`;
+  }
+  return `${formatNumber(seconds / 31557600)} years`;
+}
+
+// What a snapshot was given: "16 s" or "64 spp".
+export function formatBudget(kind, budget) {
+  return kind === 'time' ? formatSeconds(budget) : `${formatNumber(budget)} spp`;
+}

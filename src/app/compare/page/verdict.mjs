@@ -1,0 +1,78 @@
+// The comparison in plain sentences, each of which the numbers further down carry.
+import {formatBudget, formatInterval, formatPercent, isNumber} from './numbers.mjs';
+import {includesOne, mainBudget, ratioOf, snapshotAt} from './results.mjs';
+
+function times(ratio) {
+  return formatInterval(ratio, ' ×');
+}
+
+function joinWords(words) {
+  return words.length < 2 ? words.join('') : `${words.slice(0, -1).join(', ')} and ${words[words.length - 1]}`;
+}
+
+function singleSentence(integrator, snapshot, at) {
+  if (!snapshot?.relMse) return `At ${at}, the error of ${integrator.name} cannot be told apart from the reference’s own noise.`;
+  return `At ${at}, ${integrator.name} has a relMSE of ${formatInterval(snapshot.relMse)}.`;
+}
+
+function ratioSentence(results, {kind, budget}, at) {
+  const measured = results.integrators
+    .map((integrator) => ({integrator, efficiency: snapshotAt(integrator, kind, budget)?.relEfficiency?.value}))
+    .filter(({efficiency}) => isNumber(efficiency))
+    .sort((a, b) => b.efficiency - a.efficiency);
+  const sentences = [];
+  if (measured.length > 0) {
+    const best = measured[0].integrator.name;
+    const ratios = measured.slice(1)
+      .map(({integrator}) => ratioOf(results, best, integrator.name, kind, budget, 'relMse'))
+      .filter((ratio) => ratio !== null);
+    const shown = ratios.filter((ratio) => !includesOne(ratio));
+    const open = ratios.filter(includesOne);
+    if (shown.length > 0) {
+      const clauses = shown.map((ratio, i) =>
+        `${times(ratio)} ${i === 0 ? 'the efficiency' : 'that'} of ${ratio.against}`);
+      sentences.push(`At ${at}, ${best} has ${joinWords(clauses)} in relMSE.`);
+    }
+    for (const ratio of open) {
+      sentences.push(`${shown.length > 0 ? 'Between' : `At ${at}, between`} ${best} and ${ratio.against} no difference ` +
+        `was shown: the ratio of their efficiencies is ${times(ratio)}.`);
+    }
+    if (ratios.length === 0) {
+      sentences.push(singleSentence(measured[0].integrator,
+        snapshotAt(measured[0].integrator, kind, budget), at));
+    }
+  }
+  const unresolved = results.integrators.filter((integrator) => {
+    const snapshot = snapshotAt(integrator, kind, budget);
+    return snapshot && !snapshot.relMse;
+  });
+  if (unresolved.length > 0) {
+    sentences.push(`At ${at}, the error of ${joinWords(unresolved.map(({name}) => name))} cannot be told apart from ` +
+      'the reference’s own noise.');
+  }
+  return sentences;
+}
+
+// What keeps an integrator from ever reaching the reference.
+export function flawOf(integrator) {
+  const {name, bias, systematic} = integrator;
+  if (bias?.significant && isNumber(bias.value)) {
+    const [finds, side] = bias.value < 0 ? ['misses light', 'below'] : ['finds too much light', 'above'];
+    return `${name} ${finds}: its mean is ${formatPercent(Math.abs(bias.value))} ${side} the reference.`;
+  }
+  if (systematic?.significant && isNumber(systematic.value) && systematic.value > 0) {
+    return `${name} does not converge to the reference: an error of ${formatPercent(Math.sqrt(systematic.value))} ` +
+      'remains however many samples it takes.';
+  }
+  return null;
+}
+
+export function verdictOf(results) {
+  const main = mainBudget(results);
+  if (main === null) return {sentences: ['No budget was rendered.'], flaws: []};
+  const at = formatBudget(main.kind, main.budget);
+  const sentences = results.integrators.length === 1
+    ? [singleSentence(results.integrators[0], snapshotAt(results.integrators[0], main.kind, main.budget), at)]
+    : ratioSentence(results, main, at);
+  return {sentences, flaws: results.integrators.map(flawOf).filter((flaw) => flaw !== null)};
+}
