@@ -3,7 +3,7 @@ import * as Plot from '@observablehq/plot';
 import {
   formatBudget, formatInterval, formatNumber, formatSeconds, isNumber,
 } from './numbers.mjs';
-import {budgetTicks, logDomain, logTicks, spread, tickText} from './plot_scales.mjs';
+import {budgetTicks, logDomain, logTicks, spread, tickTexts} from './plot_scales.mjs';
 import {budgetsOf, kMetrics, metricName, positive, seriesColor, seriesSymbol, snapshotsOf} from './results.mjs';
 
 const kMargin = {top: 34, bottom: 44, left: 58};
@@ -38,8 +38,13 @@ function errorDomain(rows, metric, noise) {
   return logDomain(values, 10);
 }
 
-function tipText({name, snapshot}) {
-  const lines = [`${name}, ${formatBudget(snapshot.kind, snapshot.budget)}`];
+function rowName({name, snapshot}) {
+  return `${name}, ${formatBudget(snapshot.kind, snapshot.budget)}`;
+}
+
+function tipText(row) {
+  const {snapshot} = row;
+  const lines = [rowName(row)];
   for (const {key, name: metric} of kMetrics) {
     lines.push(`${metric}  ${snapshot[key] ? formatInterval(snapshot[key]) : 'not told apart from the reference’s noise'}`);
   }
@@ -49,13 +54,24 @@ function tipText({name, snapshot}) {
   return lines.join('\n');
 }
 
-// The line along which ten times the work gives a tenth of the error, through the middle of the points.
+// On a line of slope −1 the product of work and error is the same everywhere. This chooses the one that keeps away from
+// the points: in the widest gap between curves, or beside them all.
+function guideProduct(rows) {
+  const logs = rows.map(({x, interval}) => Math.log10(x) + Math.log10(interval.value)).sort((a, b) => a - b);
+  let [gap, middle] = [0, 0];
+  for (let i = 1; i < logs.length; i++) {
+    if (logs[i] - logs[i - 1] <= gap) continue;
+    gap = logs[i] - logs[i - 1];
+    middle = (logs[i] + logs[i - 1]) / 2;
+  }
+  return 10 ** (gap > 0.5 ? middle : logs[0] - 0.3);
+}
+
+// The line along which ten times the work gives a tenth of the error.
 function guideMarks(rows, xDomain, yDomain, geometry) {
   const resolved = rows.filter(({interval}) => interval);
   if (resolved.length === 0) return [];
-  const mean = (logs) => logs.reduce((sum, log) => sum + log, 0) / logs.length;
-  const product = 10 ** (mean(resolved.map(({x}) => Math.log10(x))) +
-    mean(resolved.map(({interval}) => Math.log10(interval.value))));
+  const product = guideProduct(resolved);
   const ends = xDomain.map((x) => ({x, y: product / x}));
   // The label follows the line, from where this enters the frame.
   const {plotWidth, plotHeight} = geometry;
@@ -75,7 +91,7 @@ function noiseMarks(noise, yDomain, name) {
   return [
     Plot.ruleY([noise], {stroke: 'var(--muted)', strokeDasharray: '5 4', className: 'noise'}),
     Plot.text([noise], {y: (value) => value, frameAnchor: 'left', text: () => `${name} of the reference’s own noise`,
-      textAnchor: 'start', lineAnchor: 'bottom', dx: 4, dy: -4, fill: 'var(--muted)', className: 'noise-label'}),
+      textAnchor: 'start', lineAnchor: 'bottom', dx: 4, dy: -7, fill: 'var(--muted)', className: 'noise-label'}),
   ];
 }
 
@@ -86,16 +102,19 @@ function seriesMarks(series, yDomain, atBottom) {
   const color = seriesColor(index);
   const low = ({interval}) => Math.max(yDomain[0], bounds(interval)[0]);
   const high = ({interval}) => bounds(interval)[1];
+  const className = (part) => `${part} series-${index}`;
   return [
-    Plot.areaY(resolved, {x: 'x', y1: low, y2: high, fill: color, fillOpacity: 0.1, className: 'band'}),
+    Plot.areaY(resolved, {x: 'x', y1: low, y2: high, fill: color, fillOpacity: 0.1, className: className('band')}),
     Plot.line(resolved, {x: 'x', y: ({interval}) => interval.value, stroke: color, strokeWidth: 1.75,
-      ariaLabel: `${name}: curve`, className: 'curve'}),
+      ariaLabel: () => name, className: className('curve')}),
     Plot.ruleX(resolved, {x: 'x', y1: low, y2: high, stroke: color, strokeWidth: 1.5,
-      ariaLabel: `${name}: intervals`, className: 'intervals'}),
+      className: className('intervals')}),
     Plot.dot(resolved, {x: 'x', y: ({interval}) => interval.value, symbol: seriesSymbol(index), fill: color, r: 4.5,
-      stroke: 'var(--paper)', strokeWidth: 1.25, ariaLabel: `${name}: points`, className: 'points'}),
+      stroke: 'var(--paper)', strokeWidth: 1.25, ariaLabel: (row) => `${rowName(row)}: ${formatInterval(row.interval)}`,
+      className: className('points')}),
     Plot.dot(open, {x: 'x', y: () => atBottom, symbol: seriesSymbol(index), fill: 'var(--paper)', stroke: color, r: 4,
-      strokeWidth: 1.5, ariaLabel: `${name}: not told apart from the reference’s noise`, className: 'unresolved'}),
+      strokeWidth: 1.5, ariaLabel: (row) => `${rowName(row)}: not told apart from the reference’s noise`,
+      className: className('unresolved')}),
     Plot.text(open, {x: 'x', y: () => atBottom, text: () => '↓', dy: 11, fill: color, className: 'unresolved-arrow'}),
   ];
 }
@@ -124,7 +143,7 @@ export function convergencePlot(results, {axis, metric, width}) {
   const yTicks = isLog ? logTicks(yDomain, 9) : 6;
   const ownBudgets = kind === axis ? budgetTicks(budgetsOf(results, kind), kind, xDomain, geometry.plotWidth) : null;
   const xTicks = ownBudgets ?? logTicks(xDomain, Math.floor(geometry.plotWidth / 45));
-  const xText = ownBudgets ? (tick) => formatBudget(kind, tick) : tickText;
+  const xText = ownBudgets ? (tick) => formatBudget(kind, tick) : tickTexts(xTicks);
 
   const atBottom = isLog && noise !== null ? Math.max(noise, yDomain[0]) : yDomain[0];
   const position = isLog ? Math.log10 : (value) => value;
@@ -151,7 +170,7 @@ export function convergencePlot(results, {axis, metric, width}) {
     marks: [
       Plot.gridY({ticks: yTicks, stroke: 'var(--grid)', strokeOpacity: 1}),
       Plot.gridX({ticks: xTicks, stroke: 'var(--grid)', strokeOpacity: 1}),
-      Plot.axisY({ticks: yTicks, tickFormat: isLog ? tickText : formatNumber, tickSize: 0, tickPadding: 8,
+      Plot.axisY({ticks: yTicks, tickFormat: isLog ? tickTexts(yTicks) : formatNumber, tickSize: 0, tickPadding: 8,
         label: name, labelAnchor: 'top', labelArrow: 'none', className: 'axis-y'}),
       Plot.axisX({ticks: xTicks, tickFormat: xText, tickSize: 4, tickPadding: 6, label: `${against}${unit}`,
         labelAnchor: 'center', labelArrow: 'none', labelOffset: 40, className: 'axis-x'}),

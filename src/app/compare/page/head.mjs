@@ -1,12 +1,12 @@
 // The head of the page: scene, verdict, how the reference came about, what was set, hints.
 import {element} from './dom.mjs';
-import {formatNumber, formatPercent, formatSeconds, isNumber} from './numbers.mjs';
+import {formatCount, formatPercent, formatSeconds, isNumber} from './numbers.mjs';
 import {verdictOf} from './verdict.mjs';
 
 function referenceSentence({origin, file, integrator, samplesPerPixel, seconds, relativeError}) {
   const how = [];
   if (integrator) how.push(`by ${integrator}`);
-  if (isNumber(samplesPerPixel)) how.push(`with ${formatNumber(samplesPerPixel)} samples per pixel`);
+  if (isNumber(samplesPerPixel)) how.push(`with ${formatCount(samplesPerPixel)} samples per pixel`);
   if (isNumber(seconds)) how.push(`in ${formatSeconds(seconds)}`);
   const begin = {made: 'The reference was rendered for this comparison',
     cached: 'The reference was rendered for an earlier comparison of this scene',

@@ -38,6 +38,11 @@ export function formatNumber(value) {
   return minus(`${mantissa} × ${formatPower(exponent)}`);
 }
 
+// A count, such as samples per pixel: whole, as it was set, unless it is very large.
+export function formatCount(value) {
+  return Number.isInteger(value) && Math.abs(value) < 1e6 ? String(value) : formatNumber(value);
+}
+
 export function formatPercent(fraction) {
   return isNumber(fraction) ? `${formatNumber(100 * fraction)} %` : kNone;
 }
@@ -54,31 +59,36 @@ function fixed(value, decimals) {
   return minus(digits > 3 && Math.abs(value) >= 1 ? String(Number(value.toPrecision(3))) : text);
 }
 
-// {value, low, high} as "1.2 (1.0 to 1.5) × 10⁻³"; `unit` is put where × would be for plain numbers.
-export function formatInterval(interval, unit = '') {
-  if (!interval || !isNumber(interval.value)) return kNone;
+// {value, low, high} in the parts of "1.2 (1.0 to 1.5) × 10⁻³". `unit` goes after the value of plain numbers, and after
+// the power of others.
+export function intervalParts(interval, unit = '') {
+  if (!interval || !isNumber(interval.value)) return {value: kNone, range: '', power: ''};
   const {value, low, high} = interval;
-  if (!isNumber(low) || !isNumber(high)) return formatNumber(value) + unit;
+  if (!isNumber(low) || !isNumber(high)) return {value: formatNumber(value) + unit, range: '', power: ''};
   const size = low < 0 || value === 0 ? Math.max(Math.abs(low), Math.abs(high), Math.abs(value)) : value;
   const exponent = exponentOf(size);
   const decimals = decimalsFor(value, low, high, exponent);
   const scale = isPlain(exponent) ? 1 : 10 ** exponent;
   const [v, l, h] = [value, low, high].map((number) => fixed(number / scale, decimals));
-  return `${v}${scale === 1 ? unit : ''} (${l} to ${h})${scale === 1 ? '' : ` × ${formatPower(exponent)}${unit}`}`;
+  return {value: v + (scale === 1 ? unit : ''), range: ` (${l} to ${h})`,
+    power: scale === 1 ? '' : ` × ${formatPower(exponent)}${unit}`};
 }
 
-export function formatPercentInterval(interval) {
-  if (!interval || !isNumber(interval.value)) return kNone;
-  const scaled = {value: 100 * interval.value, low: null, high: null};
-  if (isNumber(interval.low) && isNumber(interval.high)) {
-    scaled.low = 100 * interval.low;
-    scaled.high = 100 * interval.high;
-  }
-  return formatInterval(scaled, ' %');
+export function formatInterval(interval, unit) {
+  const {value, range, power} = intervalParts(interval, unit);
+  return value + range + power;
+}
+
+// An interval of fractions, in per cent.
+export function inPercent(interval) {
+  if (!interval) return null;
+  const scaled = (value) => isNumber(value) ? 100 * value : null;
+  return {value: scaled(interval.value), low: scaled(interval.low), high: scaled(interval.high)};
 }
 
 export function formatSeconds(seconds) {
   if (!isNumber(seconds)) return kNone;
+  if (seconds < 1e-7) return `${formatNumber(seconds)} s`;
   if (seconds < 1e-3) return `${formatNumber(1e6 * seconds)} µs`;
   if (seconds < 0.1) return `${formatNumber(1e3 * seconds)} ms`;
   if (seconds < 59.95) return `${formatNumber(seconds)} s`;
@@ -97,5 +107,5 @@ export function formatSeconds(seconds) {
 
 // What a snapshot was given: "16 s" or "64 spp".
 export function formatBudget(kind, budget) {
-  return kind === 'time' ? formatSeconds(budget) : `${formatNumber(budget)} spp`;
+  return kind === 'time' ? formatSeconds(budget) : `${formatCount(budget)} spp`;
 }

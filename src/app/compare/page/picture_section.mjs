@@ -1,7 +1,7 @@
 // The section of pictures: what stands left and right of the divider, picture or error, zoom, readout.
 import {choiceRow, element} from './dom.mjs';
 import {ErrorScale} from './error_scale.mjs';
-import {formatBudget, formatInterval, formatNumber, formatSeconds, isNumber} from './numbers.mjs';
+import {formatBudget, formatCount, formatInterval, formatNumber, formatSeconds, isNumber} from './numbers.mjs';
 import {PictureStore} from './picture_store.mjs';
 import {kZooms, PictureView} from './picture_view.mjs';
 import {mainBudget, snapshotName, snapshotsOf} from './results.mjs';
@@ -13,7 +13,7 @@ function entriesOf(results, store) {
   const entries = [];
   if (store.has('reference')) {
     const {integrator, samplesPerPixel} = results.reference;
-    const made = [integrator, isNumber(samplesPerPixel) ? `${formatNumber(samplesPerPixel)} spp` : null].filter(Boolean);
+    const made = [integrator, isNumber(samplesPerPixel) ? `${formatCount(samplesPerPixel)} spp` : null].filter(Boolean);
     entries.push({id: 'reference', name: 'Reference', group: null, caption: made.join(', '), picture: 'reference',
       errorPicture: null});
   }

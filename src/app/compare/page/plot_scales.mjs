@@ -33,10 +33,12 @@ export function logTicks(domain, most) {
   return powers.filter((tick) => Math.round(Math.log10(tick)) % step === 0);
 }
 
-export function tickText(tick) {
-  const exponent = Math.round(Math.log10(tick));
-  const isPower = Math.abs(tick / 10 ** exponent - 1) < 1e-9;
-  return isPower && (exponent < -2 || exponent > 3) ? formatPower(exponent) : formatNumber(tick);
+// How the ticks of an axis are written: all as powers of ten where some must be.
+export function tickTexts(ticks) {
+  const exponentOf = (tick) => Math.round(Math.log10(tick));
+  const isPower = (tick) => Math.abs(tick / 10 ** exponentOf(tick) - 1) < 1e-9;
+  const asPowers = ticks.every(isPower) && ticks.some((tick) => exponentOf(tick) < -2 || exponentOf(tick) > 3);
+  return (tick) => asPowers && exponentOf(tick) !== 0 ? formatPower(exponentOf(tick)) : formatNumber(tick);
 }
 
 // Budgets are the best ticks, as nothing was measured between them; only where they would touch they are not used.

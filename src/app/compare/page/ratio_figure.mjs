@@ -24,6 +24,6 @@ export function ratioFigure(ratio, furthest) {
     figure.append(svgElement('line', {class: 'ratio-interval', x1: place(ratio.low), x2: place(ratio.high), y1: middle,
       y2: middle}));
   }
-  figure.append(svgElement('circle', {class: 'ratio-value', cx: place(ratio.value), cy: middle, r: 4}));
+  figure.append(svgElement('circle', {class: 'ratio-value', cx: place(ratio.value), cy: middle, r: 3.25}));
   return figure;
 }

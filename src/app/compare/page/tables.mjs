@@ -2,7 +2,7 @@
 import {legendSymbol} from './convergence.mjs';
 import {element} from './dom.mjs';
 import {
-  formatBudget, formatInterval, formatNumber, formatPercent, formatPercentInterval, formatSeconds, isNumber,
+  formatBudget, formatNumber, formatPercent, formatSeconds, inPercent, intervalParts, isNumber,
 } from './numbers.mjs';
 import {furthestOf, ratioFigure} from './ratio_figure.mjs';
 import {budgetsOf, includesOne, kMetrics, metricName, snapshotAt} from './results.mjs';
@@ -11,8 +11,8 @@ const kUnresolved = 'not resolved';
 
 // A table in a region that scrolls by itself, so that the page does not.
 function table(id, title, columns, bodies, note) {
-  const head = element('tr', {}, columns.map(({text, number}) =>
-    element('th', {scope: 'col', class: number ? 'number' : null}, text)));
+  const head = element('tr', {}, columns.map(({text, number, figure}) =>
+    element('th', {scope: 'col', class: number ? 'number' : figure ? 'figure' : null}, text)));
   return element('div', {class: 'table', id},
     element('h3', {id: `${id}-title`}, title),
     element('div', {class: 'scroll', tabindex: 0, role: 'region', 'aria-labelledby': `${id}-title`},
@@ -29,30 +29,39 @@ function integratorCell(results, name) {
   return element('th', {scope: 'row', class: 'name'}, index >= 0 ? legendSymbol(index) : null, name);
 }
 
+// The interval steps back behind its value.
+function intervalCell(interval, unit) {
+  const {value, range, power} = intervalParts(interval, unit);
+  return numberCell(value, element('span', {class: 'range'}, range), power);
+}
+
 function errorCell(interval) {
-  return interval ? numberCell(formatInterval(interval)) : element('td', {class: 'number unresolved'}, kUnresolved);
+  return interval ? intervalCell(interval) : element('td', {class: 'number unresolved'}, kUnresolved);
 }
 
 function snapshotTable(results, kind) {
   const budgets = budgetsOf(results, kind);
   if (budgets.length === 0) return null;
-  const columns = [{text: kind === 'time' ? 'Time' : 'Samples'}, {text: 'Integrator'},
-    ...kMetrics.map(({name}) => ({text: name, number: true})), {text: 'Efficiency (relMSE)', number: true},
-    {text: 'Efficiency (MSE)', number: true}, {text: 'Seconds', number: true}, {text: 'Spp', number: true},
-    {text: 'Samples/s', number: true}];
+  // What was given is the budget; the other of time and samples is what it came to.
+  const outcome = kind === 'time' ? {text: 'Spp', of: ({samplesPerPixel}) => formatNumber(samplesPerPixel)}
+    : {text: 'Time', of: ({seconds}) => formatSeconds(seconds)};
+  const columns = [{text: kind === 'time' ? 'Time' : 'Samples'}, {text: 'Integrator'}, {...outcome, number: true},
+    {text: 'Samples/s', number: true}, ...kMetrics.map(({name}) => ({text: name, number: true})),
+    {text: '1/(relMSE · s)', number: true}, {text: '1/(MSE · s)', number: true}];
   const bodies = budgets.map((budget) => {
     const rows = results.integrators.map((integrator) => ({integrator, snapshot: snapshotAt(integrator, kind, budget)}))
       .filter(({snapshot}) => snapshot !== null);
     return element('tbody', {}, rows.map(({integrator, snapshot}, i) => element('tr', {},
       i === 0 ? element('th', {scope: 'rowgroup', rowspan: rows.length, class: 'budget'}, formatBudget(kind, budget)) : null,
       integratorCell(results, integrator.name),
+      numberCell(outcome.of(snapshot)), numberCell(formatNumber(snapshot.samplesPerSecond)),
       kMetrics.map(({key}) => errorCell(snapshot[key])),
-      errorCell(snapshot.relEfficiency), errorCell(snapshot.efficiency),
-      numberCell(formatNumber(snapshot.seconds)), numberCell(formatNumber(snapshot.samplesPerPixel)),
-      numberCell(formatNumber(snapshot.samplesPerSecond)))));
+      errorCell(snapshot.relEfficiency), errorCell(snapshot.efficiency))));
   });
-  const someOpen = results.integrators.some(({snapshots}) => snapshots.some((snapshot) => !snapshot.relMse || !snapshot.mse));
-  return table(`snapshots-${kind}`, kind === 'time' ? 'Snapshots at equal time' : 'Snapshots at equal samples', columns, bodies,
+  const isOpen = ({relMse, mse, flip}) => !relMse || !mse || !flip;
+  const someOpen = results.integrators.some(({snapshots}) => snapshots.some((snapshot) => snapshot.kind === kind && isOpen(snapshot)));
+  const title = kind === 'time' ? 'All snapshots at equal time' : 'All snapshots at equal samples';
+  return table(`snapshots-${kind}`, title, columns, bodies,
     someOpen ? `“${kUnresolved}”: the error could not be told apart from the reference’s own noise.` : null);
 }
 
@@ -60,9 +69,9 @@ function snapshotTable(results, kind) {
 function neverText(integrator) {
   const {systematic} = integrator;
   if (systematic?.significant && systematic.value > 0) {
-    return `never: ${formatPercent(Math.sqrt(systematic.value))} remains with any number of samples`;
+    return `never: ${formatPercent(Math.sqrt(systematic.value))} remains`;
   }
-  return 'never: its error did not fall with the time it was given';
+  return 'never: no fall was seen';
 }
 
 function timeCell(integrator, entry) {
@@ -70,7 +79,8 @@ function timeCell(integrator, entry) {
   if (entry.kind === 'never') return element('td', {class: 'number never'}, neverText(integrator));
   const range = isNumber(entry.low) && isNumber(entry.high)
     ? ` (${formatSeconds(entry.low)} to ${formatSeconds(entry.high)})` : '';
-  return numberCell(`${entry.kind === 'extrapolated' ? '~ ' : ''}${formatSeconds(entry.seconds)}${range}`);
+  return numberCell(`${entry.kind === 'extrapolated' ? '~ ' : ''}${formatSeconds(entry.seconds)}`,
+    element('span', {class: 'range'}, range));
 }
 
 function timeToErrorTable(results) {
@@ -80,36 +90,50 @@ function timeToErrorTable(results) {
   const rows = results.integrators.map((integrator) => element('tr', {}, integratorCell(results, integrator.name),
     errors.map((error) => timeCell(integrator, integrator.timeToError.find((entry) => entry.error === error)))));
   const kinds = results.integrators.flatMap(({timeToError}) => timeToError.map(({kind}) => kind));
+  const notes = ['The relative error is the square root of relMSE.'];
+  if (kinds.includes('extrapolated')) {
+    notes.push('~ marks times beyond what was rendered, extrapolated along the fitted curve.');
+  }
+  if (kinds.includes('never')) {
+    notes.push('“never”: a part of the error stays however many samples are taken, or none was seen to go.');
+  }
   return table('time-to-error', 'Time to an error',
     [{text: 'Integrator'}, ...errors.map((error) => ({text: `to ${formatPercent(error)}`, number: true}))],
-    element('tbody', {}, rows),
-    'The relative error is the square root of relMSE.' + (kinds.includes('extrapolated')
-      ? ' ~ marks times beyond what was rendered, extrapolated along the fitted curve.' : ''));
+    element('tbody', {}, rows), notes.join(' '));
 }
 
 function ratioTable(results) {
   const ratios = results.ratios.filter(({value}) => isNumber(value) && value > 0);
   if (ratios.length === 0) return null;
-  const furthest = furthestOf(ratios);
-  const byBudget = new Map();
+  // One row for two integrators at one budget, with a column for each metric that efficiency is measured in.
+  const metrics = kMetrics.map(({key}) => key).filter((key) => ratios.some(({metric}) => metric === key));
+  const budgets = new Map();
   for (const ratio of ratios) {
-    const key = `${ratio.kind} ${ratio.budget}`;
-    byBudget.set(key, [...(byBudget.get(key) ?? []), ratio]);
+    const rows = budgets.get(`${ratio.kind} ${ratio.budget}`) ?? new Map();
+    const pair = JSON.stringify([ratio.integrator, ratio.against]);
+    budgets.set(`${ratio.kind} ${ratio.budget}`, rows.set(pair, {...rows.get(pair), [ratio.metric]: ratio}));
   }
-  const bodies = [...byBudget.values()].map((group) => element('tbody', {}, group.map((ratio, i) => element('tr', {},
-    i === 0 ? element('th', {scope: 'rowgroup', rowspan: group.length, class: 'budget'},
-      formatBudget(ratio.kind, ratio.budget)) : null,
-    integratorCell(results, ratio.integrator), element('td', {}, ratio.against), element('td', {}, metricName(ratio.metric)),
-    numberCell(formatInterval(ratio, ' ×')), element('td', {class: 'figure'}, ratioFigure(ratio, furthest)),
-    element('td', {}, includesOne(ratio) ? 'no difference shown' : '')))));
-  return table('ratios', 'Efficiency of one over another', [{text: 'Budget'}, {text: 'Integrator'}, {text: 'Against'},
-    {text: 'Metric'}, {text: 'Ratio', number: true}, {text: '⟵ worse · 1 · better ⟶'}, {text: ''}], bodies);
+  const furthest = furthestOf(ratios);
+  const metricCells = (ratio) => ratio
+    ? [intervalCell(ratio, ' ×'), element('td', {class: 'figure'}, ratioFigure(ratio, furthest),
+      includesOne(ratio) ? element('span', {class: 'open-note'}, 'no difference shown') : null)]
+    : [numberCell('–'), element('td')];
+  const bodies = [...budgets.values()].map((rows) => element('tbody', {}, [...rows.values()].map((row, i) => {
+    const {kind, budget, integrator, against} = Object.values(row)[0];
+    return element('tr', {},
+      i === 0 ? element('th', {scope: 'rowgroup', rowspan: rows.size, class: 'budget'}, formatBudget(kind, budget)) : null,
+      integratorCell(results, integrator), element('td', {}, against), metrics.map((metric) => metricCells(row[metric])));
+  })));
+  const columns = [{text: 'Budget'}, {text: 'Integrator'}, {text: 'Against'},
+    ...metrics.flatMap((metric) => [{text: metricName(metric), number: true}, {text: 'worse ← 1 → better', figure: true}])];
+  return table('ratios', 'Efficiency of one over another', columns, bodies,
+    'The lines are logarithmic, with a mark at 1. Hollow points: the interval includes 1, no difference was shown.');
 }
 
 function systematicTable(results) {
   const verdict = (part) => part?.significant ? element('td', {class: 'significant'}, '▲ yes') : element('td', {}, 'not shown');
   const rows = results.integrators.map(({name, bias, systematic}) => element('tr', {}, integratorCell(results, name),
-    numberCell(formatPercentInterval(bias)), verdict(bias), numberCell(formatInterval(systematic)), verdict(systematic)));
+    intervalCell(inPercent(bias), ' %'), verdict(bias), intervalCell(systematic), verdict(systematic)));
   return table('systematic', 'What more samples do not remove', [{text: 'Integrator'},
     {text: 'Mean against the reference', number: true}, {text: 'Significant'}, {text: 'Systematic relMSE', number: true},
     {text: 'Significant'}], element('tbody', {}, rows));

@@ -47,8 +47,9 @@ function ratioSentence(results, {kind, budget}, at) {
     return snapshot && !snapshot.relMse;
   });
   if (unresolved.length > 0) {
-    sentences.push(`At ${at}, the error of ${joinWords(unresolved.map(({name}) => name))} cannot be told apart from ` +
-      'the reference’s own noise.');
+    const begin = sentences.length > 0 ? 'The error' : `At ${at}, the error`;
+    sentences.push(`${begin} of ${joinWords(unresolved.map(({name}) => name))} cannot be told apart from the ` +
+      'reference’s own noise.');
   }
   return sentences;
 }

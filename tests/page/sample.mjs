@@ -1,0 +1,128 @@
+// Fills the page's template with made-up results, to work on the page without rendering:
+//   node sample.mjs TEMPLATE.html OUT.html [usual|single|extreme|large]
+//
+// usual has three integrators, budgets of time and samples, one integrator with a bias and one with rows that were
+// not resolved; single has one integrator and one budget; extreme has values at the ends of what may come, and
+// hostile names; large has pictures wider than the page.
+import {readFileSync, writeFileSync} from 'node:fs';
+import {makeRandom, samplePictures} from './sample_pictures.mjs';
+
+const kScale = {lowest: 0.001, highest: 10};
+
+const kUsual = {
+  width: 512, height: 288, times: [1, 4, 16], samples: [4, 16, 64], noise: 2.4e-5, unit: 1, scene: 'scenes/lamp.pbrt',
+  integrators: [
+    {name: 'path', relMse: 0.21, speed: 9, floor: 0.018, gain: 0.91,
+      hints: ['no path from the camera can hit the point lights behind the glass; bdpt finds their caustics']},
+    {name: 'bdpt', relMse: 0.03, speed: 4, floor: 0, gain: 1, hints: []},
+    {name: 'vcm', relMse: 0.0016, speed: 2.5, floor: 0, gain: 1, hints: []},
+  ],
+};
+
+const kVariants = {
+  usual: kUsual,
+  single: {...kUsual, times: [16], samples: [], integrators: kUsual.integrators.slice(1, 2)},
+  extreme: {...kUsual, unit: 1e27, scene: 'scenes/</script><b>a very long name of a scene</b>/lamp & co.pbrt',
+    integrators: [...kUsual.integrators, {name: 'path-nothing', relMse: 1e-31, speed: 1e-9, floor: 0, gain: 1, hints: []}]},
+  large: {...kUsual, width: 1920, height: 1080, times: [4, 16], samples: []},
+};
+
+function interval(value, share) {
+  return {value, low: value / (1 + share), high: value * (1 + share)};
+}
+
+function snapshotOf(variant, integrator, kind, budget, random, pictures) {
+  const seconds = kind === 'time' ? budget * (1 + 0.02 * random()) : budget / integrator.speed;
+  const samplesPerPixel = kind === 'samples' ? budget : budget * integrator.speed;
+  // The error at 1 s, falling with the samples down to the floor.
+  const relMse = integrator.relMse / (samplesPerPixel / integrator.speed) * (0.9 + 0.2 * random()) + integrator.floor;
+  const isResolved = relMse > 5 * variant.noise;
+  const share = 0.08 + 0.15 * random();
+  const key = `${integrator.name}-${kind === 'time' ? `${budget}s` : `${budget}spp`}`;
+  const made = samplePictures({width: variant.width, height: variant.height, scale: kScale, gain: integrator.gain,
+    noise: Math.sqrt(relMse), seed: Math.floor(2 ** 32 * random())});
+  pictures[key] = made.picture;
+  pictures[`error-${key}`] = made.errorPicture;
+  return {kind, budget, seconds, samplesPerPixel,
+    samplesPerSecond: samplesPerPixel * variant.width * variant.height / seconds,
+    mse: isResolved ? interval(0.12 * relMse * variant.unit, share) : null,
+    relMse: isResolved ? interval(relMse, share) : null,
+    flip: interval(Math.min(0.9, 0.3 * relMse ** 0.35), 0.04 + 0.05 * random()),
+    efficiency: isResolved ? interval(1 / (0.12 * relMse * variant.unit * seconds), share) : null,
+    relEfficiency: isResolved ? interval(1 / (relMse * seconds), share) : null,
+    picture: key, errorPicture: `error-${key}`};
+}
+
+function timeToError({relMse, floor}, longest) {
+  return [0.1, 0.05, 0.01].map((error) => {
+    if (error ** 2 <= floor) return {error, seconds: null, low: null, high: null, kind: 'never'};
+    const seconds = relMse / (error ** 2 - floor);
+    return {error, seconds, low: 0.85 * seconds, high: 1.2 * seconds, kind: seconds > longest ? 'extrapolated' : 'measured'};
+  });
+}
+
+function ratiosOf(integrators) {
+  const ratios = [];
+  for (const [i, against] of integrators.entries()) {
+    for (const integrator of integrators.slice(i + 1)) {
+      for (const {kind, budget, relEfficiency, efficiency} of integrator.snapshots) {
+        const other = against.snapshots.find((snapshot) => snapshot.kind === kind && snapshot.budget === budget);
+        for (const [metric, a, b] of [['relMse', relEfficiency, other.relEfficiency], ['mse', efficiency, other.efficiency]]) {
+          if (a && b) ratios.push({integrator: integrator.name, against: against.name, kind, budget, metric,
+            ...interval(a.value / b.value, 0.2)});
+        }
+      }
+    }
+  }
+  return ratios;
+}
+
+function makeSample(variant) {
+  const random = makeRandom(7);
+  const pictures = {reference: samplePictures({width: variant.width, height: variant.height, noise: 0, gain: 1, seed: 1,
+    scale: kScale}).picture};
+  const longest = Math.max(...variant.times, 0);
+  const integrators = variant.integrators.map((integrator) => {
+    const bias = integrator.gain - 1;
+    return {name: integrator.name, hints: integrator.hints,
+      bias: {value: bias + 0.0004, low: bias - 0.002, high: bias + 0.0021, significant: bias < -0.003},
+      systematic: {value: integrator.floor || 1e-5, low: integrator.floor ? 0.9 * integrator.floor : -1e-5,
+        high: integrator.floor ? 1.1 * integrator.floor : 3e-5, significant: integrator.floor > 0},
+      timeToError: timeToError(integrator, longest),
+      snapshots: [...variant.times.map((budget) => snapshotOf(variant, integrator, 'time', budget, random, pictures)),
+        ...variant.samples.map((budget) => snapshotOf(variant, integrator, 'samples', budget, random, pictures))]};
+  });
+  const budgets = variant.times.map((time) => `${time}s`).join(',');
+  return {pictures, results: {
+    lampyr: '0.1.0', scene: variant.scene, sceneHash: 'ab12c94e07d3f561', width: variant.width, height: variant.height,
+    maxDepth: 10, threads: 2, repeats: 5, confidence: 0.95,
+    command: `lampyr compare ${variant.scene} --integrators ${integrators.map(({name}) => name)} --budget ${budgets} -o out`,
+    reference: {origin: 'made', file: 'reference.exr', integrator: 'bdpt', samplesPerPixel: 4096, seconds: 805.2, mean: 0.31,
+      relativeError: 0.0021, mse: 0.12 * variant.noise * variant.unit, relMse: variant.noise},
+    pilots: [
+      {integrator: 'path', seconds: 2, samplesPerPixel: 40, mean: 0.3, relMse: 0.01, chosen: false,
+        note: 'finds less light than bdpt: 94.1 % ± 0.4 %'},
+      {integrator: 'bdpt', seconds: 2.04, samplesPerPixel: 18, mean: 0.319, relMse: 0.0042, chosen: true, note: ''},
+    ],
+    errorScale: kScale, integrators, ratios: ratiosOf(integrators),
+  }};
+}
+
+function embed(value) {
+  return JSON.stringify(value).replaceAll('<', '\\u003c');
+}
+
+function fill(template, placeholder, content) {
+  const parts = template.split(placeholder);
+  if (parts.length !== 2) throw new Error(`the template must hold ${placeholder} exactly once`);
+  return parts.join(content);
+}
+
+const [templateFile, outFile, variantName = 'usual'] = process.argv.slice(2);
+if (!outFile || !kVariants[variantName]) {
+  throw new Error(`usage: node sample.mjs TEMPLATE.html OUT.html [${Object.keys(kVariants).join('|')}]`);
+}
+const {results, pictures} = makeSample(kVariants[variantName]);
+let page = fill(readFileSync(templateFile, 'utf8'), '/*LAMPYR-RESULTS*/', embed(results));
+page = fill(page, '/*LAMPYR-PICTURES*/', embed(pictures));
+writeFileSync(outFile, page);
