@@ -82,7 +82,7 @@ function guideMarks(rows, xDomain, yDomain, geometry) {
   return [
     Plot.line(ends, {x: 'x', y: 'y', clip: true, stroke: 'var(--guide)', strokeWidth: 1.25, className: 'guide'}),
     Plot.text([{x, y: product / x}], {x: 'x', y: 'y', text: () => 'slope −1', rotate: angle, textAnchor: 'start',
-      lineAnchor: 'bottom', dy: -4, fill: 'var(--faint)', className: 'guide-label', clip: true}),
+      lineAnchor: 'bottom', dy: -4, fill: 'var(--muted)', className: 'guide-label', clip: true}),
   ];
 }
 
@@ -159,7 +159,7 @@ export function convergencePlot(results, {axis, metric, width}) {
   const yOf = (row) => row.interval ? row.interval.value : atBottom;
   const against = axis === 'time' ? 'render time' : 'samples per pixel';
   const unit = ownBudgets ? '' : axis === 'time' ? ' (s)' : '';
-  return Plot.plot({
+  const plot = Plot.plot({
     width, height, marginTop: kMargin.top, marginBottom: kMargin.bottom, marginLeft: kMargin.left, marginRight,
     className: 'convergence-plot',
     ariaLabel: `${name} against ${against}`,
@@ -182,4 +182,6 @@ export function convergencePlot(results, {axis, metric, width}) {
         stroke: 'var(--rule)', pathFilter: 'none', lineHeight: 1.35, textPadding: 10, lineWidth: 40})),
     ],
   });
+  plot.setAttribute('role', 'img');
+  return plot;
 }

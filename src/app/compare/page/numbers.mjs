@@ -1,6 +1,7 @@
 // Numbers as people write them: at most three significant digits, 1.2 × 10⁻³, an interval beside its value.
 
 const kNone = '–';
+const kSpace = '\u00a0';  // a number and its unit stay on one line
 const kSuperscripts = '⁰¹²³⁴⁵⁶⁷⁸⁹';
 
 export function isNumber(value) {
@@ -35,7 +36,7 @@ export function formatNumber(value) {
   const exponent = exponentOf(value);
   if (isPlain(exponent)) return minus(String(Number(value.toPrecision(3))));
   const mantissa = Number((value / 10 ** exponent).toPrecision(3));
-  return minus(`${mantissa} × ${formatPower(exponent)}`);
+  return minus(`${mantissa}${kSpace}×${kSpace}${formatPower(exponent)}`);
 }
 
 // A count, such as samples per pixel: whole, as it was set, unless it is very large.
@@ -44,7 +45,7 @@ export function formatCount(value) {
 }
 
 export function formatPercent(fraction) {
-  return isNumber(fraction) ? `${formatNumber(100 * fraction)} %` : kNone;
+  return isNumber(fraction) ? `${formatNumber(100 * fraction)}${kSpace}%` : kNone;
 }
 
 // Decimals by the interval's width: a digit that the interval leaves open says nothing.
@@ -71,7 +72,7 @@ export function intervalParts(interval, unit = '') {
   const scale = isPlain(exponent) ? 1 : 10 ** exponent;
   const [v, l, h] = [value, low, high].map((number) => fixed(number / scale, decimals));
   return {value: v + (scale === 1 ? unit : ''), range: ` (${l} to ${h})`,
-    power: scale === 1 ? '' : ` × ${formatPower(exponent)}${unit}`};
+    power: scale === 1 ? '' : ` ×${kSpace}${formatPower(exponent)}${unit}`};
 }
 
 export function formatInterval(interval, unit) {
@@ -88,10 +89,10 @@ export function inPercent(interval) {
 
 export function formatSeconds(seconds) {
   if (!isNumber(seconds)) return kNone;
-  if (seconds < 1e-7) return `${formatNumber(seconds)} s`;
-  if (seconds < 1e-3) return `${formatNumber(1e6 * seconds)} µs`;
-  if (seconds < 0.1) return `${formatNumber(1e3 * seconds)} ms`;
-  if (seconds < 59.95) return `${formatNumber(seconds)} s`;
+  if (seconds < 1e-7) return `${formatNumber(seconds)}${kSpace}s`;
+  if (seconds < 1e-3) return `${formatNumber(1e6 * seconds)}${kSpace}µs`;
+  if (seconds < 0.1) return `${formatNumber(1e3 * seconds)}${kSpace}ms`;
+  if (seconds < 59.95) return `${formatNumber(seconds)}${kSpace}s`;
   const units = [['min', 60, 's', 1], ['h', 3600, 'min', 60], ['d', 86400, 'h', 3600]];
   for (const [large, inLarge, small, inSmall] of units) {
     const count = Math.round(seconds / inSmall);
@@ -100,12 +101,12 @@ export function formatSeconds(seconds) {
     if (count >= 1000 * perLarge) break;
     const whole = Math.floor(count / perLarge);
     const rest = count % perLarge;
-    return `${whole} ${large}${rest === 0 ? '' : ` ${rest} ${small}`}`;
+    return `${whole}${kSpace}${large}${rest === 0 ? '' : ` ${rest}${kSpace}${small}`}`;
   }
-  return `${formatNumber(seconds / 31557600)} years`;
+  return `${formatNumber(seconds / 31557600)}${kSpace}years`;
 }
 
 // What a snapshot was given: "16 s" or "64 spp".
 export function formatBudget(kind, budget) {
-  return kind === 'time' ? formatSeconds(budget) : `${formatCount(budget)} spp`;
+  return kind === 'time' ? formatSeconds(budget) : `${formatCount(budget)}${kSpace}spp`;
 }

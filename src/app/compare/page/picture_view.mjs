@@ -35,6 +35,7 @@ export class PictureView {
     this.share = 0.5;
     this.ratio = 1;  // device pixels of a CSS pixel
     this.sides = [null, null];
+    this.pointer = null;  // where the mouse is, in the window
     this.enlarged = new WeakMap();
     this.canvas = element('canvas', {class: 'view-canvas', role: 'img', 'aria-label': 'Two pictures, parted by the divider'});
     this.divider = element('div', {class: 'divider', role: 'slider', tabindex: 0, 'aria-orientation': 'horizontal',
@@ -69,6 +70,7 @@ export class PictureView {
     if (width === this.canvas.width && height === this.canvas.height) return;
     this.canvas.width = width;
     this.canvas.height = height;
+    this.settle();
     this.draw();
   }
 
@@ -80,12 +82,9 @@ export class PictureView {
   // Scale and the place of the picture's corner in the canvas.
   geometry() {
     const scale = this.scaleOf(this.zoom);
-    const corner = (extent, room, center) => {
-      const hidden = extent * scale - room;
-      return hidden <= 0 ? Math.round(-hidden / 2) : -Math.round(Math.min(hidden, Math.max(0, center * scale - room / 2)));
-    };
-    return {scale, x: corner(this.size.width, this.canvas.width, this.center.x),
-      y: corner(this.size.height, this.canvas.height, this.center.y)};
+    const corner = (room, center) => Math.round(room / 2 - center * scale);
+    return {scale, x: corner(this.canvas.width, this.center.x),
+      y: corner(this.canvas.height, this.center.y)};
   }
 
   canPan() {
@@ -113,6 +112,7 @@ export class PictureView {
     this.frame.classList.toggle('can-pan', this.canPan());
     this.hear.zoomed(zoom);
     this.draw();
+    this.tellPointed();
   }
 
   // One step in or out of what is shown, also from fitted.
@@ -129,12 +129,23 @@ export class PictureView {
     this.center = {x: this.center.x - dx / scale, y: this.center.y - dy / scale};
     this.settle();
     this.draw();
+    this.tellPointed();
   }
 
   // The centre as the frame's edges allow it: panning back must not first undo what went beyond them.
   settle() {
-    const {scale, x, y} = this.geometry();
-    this.center = {x: (this.canvas.width / 2 - x) / scale, y: (this.canvas.height / 2 - y) / scale};
+    const scale = this.scaleOf(this.zoom);
+    const within = (center, extent, room) => {
+      const half = Math.min(extent, room / scale) / 2;
+      return Math.min(extent - half, Math.max(half, center));
+    };
+    this.center = {x: within(this.center.x, this.size.width, this.canvas.width),
+      y: within(this.center.y, this.size.height, this.canvas.height)};
+  }
+
+  // The readout follows the pointer, and also the view when this moves below it.
+  tellPointed() {
+    this.hear.pointed(this.pointer && this.pixelAt(this.pointer.x, this.pointer.y));
   }
 
   source(canvas, scale) {
@@ -189,13 +200,14 @@ export class PictureView {
       }
     });
     frame.addEventListener('pointermove', (event) => {
-      this.hear.pointed(this.pixelAt(event.clientX, event.clientY));
+      this.pointer = {x: event.clientX, y: event.clientY};
       if (drag === 'divider') {
         this.setShare(shareAt(event));
       } else if (drag) {
         this.panBy((event.clientX - drag.x) * this.ratio, (event.clientY - drag.y) * this.ratio);
         drag = {x: event.clientX, y: event.clientY};
       }
+      this.tellPointed();
     });
     for (const end of ['pointerup', 'pointercancel']) {
       frame.addEventListener(end, () => {
@@ -203,7 +215,10 @@ export class PictureView {
         frame.classList.remove('panning');
       });
     }
-    frame.addEventListener('pointerleave', () => this.hear.pointed(null));
+    frame.addEventListener('pointerleave', () => {
+      this.pointer = null;
+      this.tellPointed();
+    });
     // The wheel alone scrolls the page, as everywhere; with Ctrl, or as a pinch, it zooms.
     frame.addEventListener('wheel', (event) => {
       if (!event.ctrlKey && !event.metaKey) return;

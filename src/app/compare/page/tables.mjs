@@ -115,7 +115,7 @@ function ratioTable(results) {
   }
   const furthest = furthestOf(ratios);
   const metricCells = (ratio) => ratio
-    ? [intervalCell(ratio, ' ×'), element('td', {class: 'figure'}, ratioFigure(ratio, furthest),
+    ? [intervalCell(ratio, '\u00a0×'), element('td', {class: 'figure'}, ratioFigure(ratio, furthest),
       includesOne(ratio) ? element('span', {class: 'open-note'}, 'no difference shown') : null)]
     : [numberCell('–'), element('td')];
   const bodies = [...budgets.values()].map((rows) => element('tbody', {}, [...rows.values()].map((row, i) => {
@@ -133,7 +133,7 @@ function ratioTable(results) {
 function systematicTable(results) {
   const verdict = (part) => part?.significant ? element('td', {class: 'significant'}, '▲ yes') : element('td', {}, 'not shown');
   const rows = results.integrators.map(({name, bias, systematic}) => element('tr', {}, integratorCell(results, name),
-    intervalCell(inPercent(bias), ' %'), verdict(bias), intervalCell(systematic), verdict(systematic)));
+    intervalCell(inPercent(bias), '\u00a0%'), verdict(bias), intervalCell(systematic), verdict(systematic)));
   return table('systematic', 'What more samples do not remove', [{text: 'Integrator'},
     {text: 'Mean against the reference', number: true}, {text: 'Significant'}, {text: 'Systematic relMSE', number: true},
     {text: 'Significant'}], element('tbody', {}, rows));

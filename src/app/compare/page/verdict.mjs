@@ -3,7 +3,7 @@ import {formatBudget, formatInterval, formatPercent, isNumber} from './numbers.m
 import {includesOne, mainBudget, ratioOf, snapshotAt} from './results.mjs';
 
 function times(ratio) {
-  return formatInterval(ratio, ' ×');
+  return formatInterval(ratio, '\u00a0×');
 }
 
 function joinWords(words) {

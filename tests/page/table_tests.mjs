@@ -1,0 +1,152 @@
+// Head and tables hold the numbers of the results, to the digits that they are written with.
+import assert from 'node:assert/strict';
+import {readInterval, readNumber, readSeconds} from './written_numbers.mjs';
+
+// The cells of a table's rows; a budget that spans several rows is in the first of them only.
+async function rowsOf(page, id) {
+  return page.locator(`#${id} tbody tr`).evaluateAll((rows) => rows.map((row) =>
+    [...row.cells].filter((cell) => !cell.classList.contains('budget')).map((cell) => cell.textContent)));
+}
+
+function assertClose(actual, expected, what, share = 0.055) {
+  assert.ok(Math.abs(actual - expected) <= share * Math.abs(expected), `${what}: ${actual}, expected ${expected}`);
+}
+
+function assertInterval(text, expected, what) {
+  if (!expected) {
+    assert.match(text, /not resolved/, what);
+    return;
+  }
+  const shown = readInterval(text);
+  assert.ok(shown, `${what}: no interval in “${text}”`);
+  // Bounds are written with the value's decimals: what these can hold is what they must agree to.
+  const unit = 0.055 * Math.max(Math.abs(expected.value), expected.low < 0 ? Math.abs(expected.low) : 0);
+  for (const part of ['value', 'low', 'high']) {
+    assert.ok(Math.abs(shown[part] - expected[part]) <= Math.max(unit, 0.055 * Math.abs(expected[part])),
+      `${what}, ${part}: ${shown[part]} in “${text}”, expected ${expected[part]}`);
+  }
+}
+
+function inPercent({value, low, high}) {
+  return {value: 100 * value, low: 100 * low, high: 100 * high};
+}
+
+export function testTables(pageTest, results) {
+  pageTest('the head says scene, verdict, reference and hints', {}, async (page) => {
+    assert.equal(await page.locator('h1').innerText(), results.scene);
+    const head = (await page.locator('#head').innerText()).replaceAll('\u00a0', ' ');
+    const verdict = (await page.locator('.verdict').innerText()).replaceAll('\u00a0', ' ');
+    assert.ok(results.integrators.some(({name}) => verdict.includes(name)), verdict);
+    for (const {name, bias, systematic, hints} of results.integrators) {
+      const flaws = await page.locator('.flaw').allInnerTexts();
+      const isFlawed = bias?.significant || (systematic?.significant && systematic.value > 0);
+      assert.equal(flaws.some((flaw) => flaw.replace(/^▲\s*/u, '').startsWith(`${name} `)), Boolean(isFlawed),
+        `flaw of ${name}`);
+      if (bias?.significant) {
+        const flaw = flaws.find((text) => text.includes(`${name} `)).replaceAll('\u00a0', ' ');
+        assertClose(readNumber(/is (.*) %/.exec(flaw)[1]) / 100, Math.abs(bias.value), flaw, 0.006);
+        assert.match(flaw, bias.value < 0 ? /below/ : /above/);
+      }
+      for (const hint of hints) assert.ok(head.includes(hint), hint);
+    }
+    if (results.reference.relativeError !== null) assert.match(head, /± [\d.]+/);
+    assert.ok(head.includes(results.command));
+    const longest = results.integrators[0].snapshots.filter(({kind}) => kind === 'time').map(({budget}) => budget);
+    const ratio = results.ratios.find(({metric, kind, budget, low, high}) => metric === 'relMse' && kind === 'time' &&
+      budget === Math.max(...longest) && low !== null && high !== null);
+    if (ratio && results.integrators.length === 2 && (ratio.low > 1 || ratio.high < 1)) {
+      const shown = readInterval(verdict);
+      assertClose(Math.abs(Math.log(shown.value)), Math.abs(Math.log(ratio.value)), verdict, 0.06);
+    }
+  });
+
+  for (const kind of ['time', 'samples']) {
+    pageTest(`the table of snapshots: ${kind}`, {}, async (page) => {
+      const rows = await rowsOf(page, `snapshots-${kind}`);
+      const budgets = [...new Set(results.integrators.flatMap(({snapshots}) =>
+        snapshots.filter((snapshot) => snapshot.kind === kind).map(({budget}) => budget)))].sort((a, b) => a - b);
+      const expected = budgets.flatMap((budget) => results.integrators.flatMap(({name, snapshots}) => snapshots
+        .filter((snapshot) => snapshot.kind === kind && snapshot.budget === budget).map((snapshot) => ({name, snapshot}))));
+      assert.equal(rows.length, expected.length);
+      for (const [i, {name, snapshot}] of expected.entries()) {
+        const [integrator, outcome, rate, relMse, mse, flip, relEfficiency, efficiency] = rows[i];
+        const what = `${name}, ${kind} ${snapshot.budget}`;
+        assert.equal(integrator, name, what);
+        if (kind === 'time') assertClose(readNumber(outcome), snapshot.samplesPerPixel, what, 0.006);
+        else assertClose(readSeconds(outcome), snapshot.seconds, what, 0.01);
+        assertClose(readNumber(rate), snapshot.samplesPerSecond, what, 0.006);
+        assertInterval(relMse, snapshot.relMse, `${what}, relMSE`);
+        assertInterval(mse, snapshot.mse, `${what}, MSE`);
+        assertInterval(flip, snapshot.flip, `${what}, FLIP`);
+        assertInterval(relEfficiency, snapshot.relEfficiency, `${what}, efficiency by relMSE`);
+        assertInterval(efficiency, snapshot.efficiency, `${what}, efficiency by MSE`);
+      }
+    });
+  }
+
+  pageTest('the table of times to an error', {}, async (page) => {
+    const rows = await rowsOf(page, 'time-to-error');
+    for (const [i, {name, timeToError}] of results.integrators.entries()) {
+      const sorted = [...timeToError].sort((a, b) => b.error - a.error);
+      for (const [k, {error, kind, seconds}] of sorted.entries()) {
+        const text = rows[i][k + 1];
+        const what = `${name} to ${error}: “${text}”`;
+        assert.equal(text.startsWith('~'), kind === 'extrapolated', what);
+        assert.equal(text.startsWith('never'), kind === 'never', what);
+        if (kind !== 'never') assertClose(readSeconds(text.split('(')[0]), seconds, what, 0.03);
+      }
+    }
+  });
+
+  pageTest('the table of ratios', {}, async (page) => {
+    const ratios = results.ratios.filter(({value}) => value > 0);
+    const rows = ratios.length > 0 ? await rowsOf(page, 'ratios') : [];
+    const budgetOf = ({kind, budget}) => `${kind} ${budget}`;
+    const pairOf = (ratio) => `${budgetOf(ratio)}: ${ratio.integrator} against ${ratio.against}`;
+    const expected = [...new Set(ratios.map(budgetOf))].flatMap((budget) =>
+      [...new Set(ratios.filter((ratio) => budgetOf(ratio) === budget).map(pairOf))]);
+    assert.equal(rows.length, expected.length);
+    const metrics = ['relMse', 'mse', 'flip'].filter((metric) => ratios.some((ratio) => ratio.metric === metric));
+    for (const ratio of ratios) {
+      const row = rows[expected.indexOf(pairOf(ratio))];
+      assert.deepEqual(row.slice(0, 2), [ratio.integrator, ratio.against], pairOf(ratio));
+      const column = 2 + 2 * metrics.indexOf(ratio.metric);
+      assertInterval(row[column], ratio, pairOf(ratio));
+      const includesOne = !(ratio.low > 1 || ratio.high < 1);
+      assert.equal(row[column + 1].includes('no difference'), includesOne, pairOf(ratio));
+    }
+  });
+
+  pageTest('the table of what more samples do not remove', {}, async (page) => {
+    const rows = await rowsOf(page, 'systematic');
+    for (const [i, {name, bias, systematic}] of results.integrators.entries()) {
+      assert.equal(rows[i][0], name);
+      assertInterval(rows[i][1], inPercent(bias), `bias of ${name}`);
+      assert.equal(rows[i][2].includes('yes'), bias.significant);
+      assertInterval(rows[i][3], systematic, `systematic part of ${name}`);
+      assert.equal(rows[i][4].includes('yes'), systematic.significant);
+    }
+  });
+
+  pageTest('the table of pilots', {}, async (page) => {
+    const rows = results.pilots.length > 0 ? await rowsOf(page, 'pilots') : [];
+    assert.equal(rows.length, results.pilots.length);
+    for (const [i, {integrator, mean, relMse, chosen, note}] of results.pilots.entries()) {
+      assert.equal(rows[i][0], integrator);
+      assertClose(readNumber(rows[i][3]), mean, `mean of ${integrator}`, 0.006);
+      if (relMse !== null) assertClose(readNumber(rows[i][4]), relMse, `relMSE of ${integrator}`, 0.006);
+      assert.equal(rows[i][5].includes('chosen'), chosen);
+      assert.ok(rows[i][5].includes(note ?? ''));
+    }
+  });
+
+  pageTest('how to read the page unfolds', {}, async (page) => {
+    const definitions = page.locator('.reading dl');
+    assert.equal(await definitions.isVisible(), false);
+    await page.locator('.reading summary').click();
+    assert.equal(await definitions.isVisible(), true);
+    for (const word of ['MSE', 'relMSE', 'FLIP', 'Efficiency', 'intervals']) {
+      assert.ok((await definitions.innerText()).includes(word), word);
+    }
+  });
+}
