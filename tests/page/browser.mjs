@@ -44,7 +44,8 @@ export async function settle(page) {
   await page.waitForFunction(() => {
     const frame = document.querySelector('.frame');
     if (!frame) return true;
-    const mode = document.querySelector('[aria-label="What is shown"] [aria-pressed="true"]')?.dataset.value ?? 'picture';
+    const pressed = document.querySelector('[aria-label="What is shown"] [aria-pressed="true"]');
+    const mode = pressed?.dataset.value ?? 'picture';
     const sides = [...document.querySelectorAll('.sides select')].map((select) => select.value);
     return frame.dataset.shown === [mode, ...sides].join(' ');
   });

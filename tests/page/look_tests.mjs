@@ -64,7 +64,8 @@ export function testLook(pageTest, results, screenshot) {
     });
   }
 
-  pageTest('printed, it is dark on white, unfolded, without controls', {width: 700, colorScheme: 'dark'}, async (page) => {
+  const onPaper = {width: 700, colorScheme: 'dark'};
+  pageTest('printed, it is dark on white, unfolded, without controls', onPaper, async (page) => {
     assert.equal(await page.locator('.reading dl').isVisible(), false);
     await page.emulateMedia({media: 'print', colorScheme: 'dark'});
     await settle(page);

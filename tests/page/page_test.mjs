@@ -1,7 +1,8 @@
 // The page that lampyr compare writes, as its reader meets it: node --test page_test.mjs
 //
-// LAMPYR_PAGE is the report.html to test, LAMPYR_SCREENSHOT where its picture goes (none without), CHROMIUM the browser.
-// What is expected comes from the results and pictures that are embedded in the page, so that any report will do.
+// LAMPYR_PAGE is the report.html to test, LAMPYR_SCREENSHOT where its picture goes (none without), CHROMIUM the browser
+// (/usr/bin/chromium without). What is expected comes from the results and pictures that are embedded in the page, so
+// that any report will do.
 import {after, before, test} from 'node:test';
 import assert from 'node:assert/strict';
 import {readFileSync} from 'node:fs';

@@ -98,7 +98,8 @@ export function testPictures(pageTest, results, pictures) {
     await settle(page);
     const after = await screenshotOf(page.locator('.frame'));
     // Only what lies between the old and the new place changes, and there much does.
-    assert.ok(differingShare(cropped(before, 0.24, 0.46), cropped(after, 0.24, 0.46)) > kChanged, 'the other picture came into view');
+    assert.ok(differingShare(cropped(before, 0.24, 0.46), cropped(after, 0.24, 0.46)) > kChanged,
+      'the other picture came into view');
     assert.equal(differingShare(cropped(before, 0.6, 0.98), cropped(after, 0.6, 0.98)), 0, 'the rest stays');
   });
 
@@ -117,7 +118,8 @@ export function testPictures(pageTest, results, pictures) {
     assert.ok(Math.abs(await dividerShare(page) - 0.69) < 0.01);
     await settle(page);
     const moved = await screenshotOf(page.locator('.frame'));
-    assert.ok(differingShare(cropped(before, 0.54, 0.65), cropped(moved, 0.54, 0.65)) > kChanged, 'the other picture came into view');
+    assert.ok(differingShare(cropped(before, 0.54, 0.65), cropped(moved, 0.54, 0.65)) > kChanged,
+      'the other picture came into view');
     await page.keyboard.press('Home');
     assert.equal(await divider.getAttribute('aria-valuenow'), '0');
     await zoomTo(page, 2);
@@ -129,8 +131,8 @@ export function testPictures(pageTest, results, pictures) {
 
   pageTest('another choice shows other pictures and says so', {}, async (page) => {
     const choices = await choicesOf(page);
-    const expected = ['reference', ...results.integrators.flatMap(({snapshots}) => snapshots.map(({picture}) => picture))]
-      .filter((key) => key in pictures);
+    const snapshots = results.integrators.flatMap((integrator) => integrator.snapshots);
+    const expected = ['reference', ...snapshots.map(({picture}) => picture)].filter((key) => key in pictures);
     assert.deepEqual([...choices].sort(), [...new Set(expected)].sort(), 'reference and all snapshots can be chosen');
     const rendered = choices.filter((key) => key !== 'reference');
     await choose(page, rendered[0], choices[0] === rendered[0] ? choices[choices.length - 1] : choices[0]);
@@ -163,7 +165,9 @@ export function testPictures(pageTest, results, pictures) {
     await settle(page);
     const [kind, budget] = (await buttons.nth(1).getAttribute('data-value')).split(' ');
     const expected = snapshots.find((snapshot) => snapshot.kind === kind && snapshot.budget === Number(budget));
-    for (const side of ['left', 'right']) assert.equal(await page.locator(`#side-${side}`).inputValue(), expected.picture);
+    for (const side of ['left', 'right']) {
+      assert.equal(await page.locator(`#side-${side}`).inputValue(), expected.picture);
+    }
   });
 
   if (hasErrors) {
@@ -175,7 +179,8 @@ export function testPictures(pageTest, results, pictures) {
       const picture = await screenshotOf(page.locator('.frame'));
       await showErrors(page);
       const before = await screenshotOf(page.locator('.frame'));
-      assert.ok(differingShare(cropped(picture, 0, 0.45), cropped(before, 0, 0.45)) > 0.9, 'errors look unlike the picture');
+      assert.ok(differingShare(cropped(picture, 0, 0.45), cropped(before, 0, 0.45)) > 0.9,
+        'errors look unlike the picture');
       await zoomTo(page, 4);
       const shot = await screenshotOf(page.locator('.frame'));
       const levels = decodeDataUri(pictures[snapshot.errorPicture]);
@@ -187,7 +192,8 @@ export function testPictures(pageTest, results, pictures) {
           const level = colorAt(levels, ...pixel)[0];
           const expected = lowest * (highest / lowest) ** (level / 255);
           const shown = readNumber(/error (.*) %/.exec(values[0].replaceAll('\u00a0', ' '))[1]) / 100;
-          assert.ok(Math.abs(shown / expected - 1) < 0.006, `at ${pixel} the readout says ${shown}, the data ${expected}`);
+          assert.ok(Math.abs(shown / expected - 1) < 0.006,
+            `at ${pixel} the readout says ${shown}, the data ${expected}`);
           seen.push({level, color: colorAt(shot, at.x, at.y)});
         }
       }
@@ -250,7 +256,8 @@ export function testPictures(pageTest, results, pictures) {
     await page.locator('[aria-label="Zoom"] [data-value="16"][aria-pressed="true"]').waitFor();
     const box = await frameBox(page);
     const again = await pointAt(page, at.x / box.width, at.y / box.height);
-    assert.ok(Math.max(...again.pixel.map((value, i) => Math.abs(value - pixel[i]))) <= 1, `${again.pixel}, was ${pixel}`);
+    const moved = Math.max(...again.pixel.map((value, i) => Math.abs(value - pixel[i])));
+    assert.ok(moved <= 1, `under the pointer is ${again.pixel}, and was ${pixel}`);
     const before = await page.evaluate(() => scrollY);
     await page.mouse.wheel(0, 100);
     await page.waitForFunction((y) => scrollY > y, before);

@@ -37,7 +37,7 @@ export async function readPlot(page, axis) {
 
 // What a pixel means, by the axis' own ticks: a function from value to pixel, or null where there is but one tick.
 export function axisScale(ticks, along, isLog) {
-  const read = (text) => / (µs|ms|s|min|h|d)$/u.test(text.replaceAll('\u00a0', ' ')) ? readSeconds(text) : readNumber(text);
+  const read = (text) => /\s(µs|ms|s|min|h|d|years)$/u.test(text) ? readSeconds(text) : readNumber(text);
   const position = isLog ? Math.log10 : (value) => value;
   const placed = ticks.map(({text, at}) => ({value: position(read(text)), pixel: at[along]}))
     .sort((a, b) => a.value - b.value);

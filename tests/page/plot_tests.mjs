@@ -11,9 +11,10 @@ function expectedSeries(results, axis, metric) {
   const kind = has(axis) ? axis : axis === 'time' ? 'samples' : 'time';
   return results.integrators.map(({name, snapshots}) => {
     const rows = snapshots.filter((snapshot) => snapshot.kind === kind)
-      .map((snapshot) => ({x: axis === 'time' ? snapshot.seconds : snapshot.samplesPerPixel, interval: snapshot[metric]}))
+      .map((row) => ({x: axis === 'time' ? row.seconds : row.samplesPerPixel, interval: row[metric]}))
       .sort((a, b) => a.x - b.x);
-    return {name, rows: rows.filter(({interval}) => interval), unresolved: rows.filter(({interval}) => !interval).length};
+    const resolved = rows.filter(({interval}) => interval);
+    return {name, rows: resolved, unresolved: rows.length - resolved.length};
   });
 }
 
@@ -68,7 +69,8 @@ function assertPlot(plot, results, axis, metric) {
   assert.deepEqual(plot.labels, labelled, 'labels at the ends of the curves');
   if (isLog && xScale && plot.guide) {
     const [[x0, y0], [x1, y1]] = plot.guide;
-    assert.ok(Math.abs(((y1 - y0) / yScale.perUnit) / ((x1 - x0) / xScale.perUnit) + 1) < 0.01, 'the guide has slope −1');
+    const slope = ((y1 - y0) / yScale.perUnit) / ((x1 - x0) / xScale.perUnit);
+    assert.ok(Math.abs(slope + 1) < 0.01, `the guide has slope ${slope}`);
   }
   if (isLog) {
     const hasUnresolved = expected.some(({unresolved}) => unresolved > 0);
@@ -91,8 +93,8 @@ export function testPlots(pageTest, results) {
   });
 
   pageTest('plots follow the width of the window', {}, async (page) => {
-    const width = () => page.locator('figure[data-axis="time"] svg.convergence-plot').evaluate((svg) => svg.clientWidth);
-    const before = await width();
+    const plot = page.locator('figure[data-axis="time"] svg.convergence-plot');
+    const before = await plot.evaluate((svg) => svg.clientWidth);
     await page.setViewportSize({width: 1000, height: 900});
     await page.waitForFunction((wide) =>
       document.querySelector('figure[data-axis="time"] svg.convergence-plot').getAttribute('width') < wide, before);

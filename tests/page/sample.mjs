@@ -1,9 +1,9 @@
 // Fills the page's template with made-up results, to work on the page without rendering:
-//   node sample.mjs TEMPLATE.html OUT.html [usual|single|extreme|large]
+//   node sample.mjs TEMPLATE.html OUT.html [usual|single|extreme|large|sparse]
 //
 // usual has three integrators, budgets of time and samples, one integrator with a bias and one with rows that were
 // not resolved; single has one integrator and one budget; extreme has values at the ends of what may come, and
-// hostile names; large has pictures wider than the page.
+// hostile names; large has pictures wider than the page; sparse lacks everything that may be lacking.
 import {readFileSync, writeFileSync} from 'node:fs';
 import {makeRandom, samplePictures} from './sample_pictures.mjs';
 
@@ -23,7 +23,9 @@ const kVariants = {
   usual: kUsual,
   single: {...kUsual, times: [16], samples: [], integrators: kUsual.integrators.slice(1, 2)},
   extreme: {...kUsual, unit: 1e27, scene: 'scenes/</script><b>a very long name of a scene</b>/lamp & co.pbrt',
-    integrators: [...kUsual.integrators, {name: 'path-nothing', relMse: 1e-31, speed: 1e-9, floor: 0, gain: 1, hints: []}]},
+    integrators: [...kUsual.integrators,
+      {name: 'path-nothing', relMse: 1e-31, speed: 1e-9, floor: 0, gain: 1, hints: []}]},
+  sparse: {...kUsual, times: []},
   large: {...kUsual, width: 1920, height: 1080, times: [4, 16], samples: []},
 };
 
@@ -57,7 +59,8 @@ function timeToError({relMse, floor}, longest) {
   return [0.1, 0.05, 0.01].map((error) => {
     if (error ** 2 <= floor) return {error, seconds: null, low: null, high: null, kind: 'never'};
     const seconds = relMse / (error ** 2 - floor);
-    return {error, seconds, low: 0.85 * seconds, high: 1.2 * seconds, kind: seconds > longest ? 'extrapolated' : 'measured'};
+    const kind = seconds > longest ? 'extrapolated' : 'measured';
+    return {error, seconds, low: 0.85 * seconds, high: 1.2 * seconds, kind};
   });
 }
 
@@ -67,7 +70,8 @@ function ratiosOf(integrators) {
     for (const integrator of integrators.slice(i + 1)) {
       for (const {kind, budget, relEfficiency, efficiency} of integrator.snapshots) {
         const other = against.snapshots.find((snapshot) => snapshot.kind === kind && snapshot.budget === budget);
-        for (const [metric, a, b] of [['relMse', relEfficiency, other.relEfficiency], ['mse', efficiency, other.efficiency]]) {
+        const pairs = [['relMse', relEfficiency, other.relEfficiency], ['mse', efficiency, other.efficiency]];
+        for (const [metric, a, b] of pairs) {
           if (a && b) ratios.push({integrator: integrator.name, against: against.name, kind, budget, metric,
             ...interval(a.value / b.value, 0.2)});
         }
@@ -92,13 +96,15 @@ function makeSample(variant) {
       snapshots: [...variant.times.map((budget) => snapshotOf(variant, integrator, 'time', budget, random, pictures)),
         ...variant.samples.map((budget) => snapshotOf(variant, integrator, 'samples', budget, random, pictures))]};
   });
-  const budgets = variant.times.map((time) => `${time}s`).join(',');
+  const names = integrators.map(({name}) => name);
+  const budgets = variant.times.length > 0 ? ` --budget ${variant.times.map((time) => `${time}s`)}` : '';
+  const samples = variant.samples.length > 0 ? ` --spp ${variant.samples}` : '';
   return {pictures, results: {
     lampyr: '0.1.0', scene: variant.scene, sceneHash: 'ab12c94e07d3f561', width: variant.width, height: variant.height,
     maxDepth: 10, threads: 2, repeats: 5, confidence: 0.95,
-    command: `lampyr compare ${variant.scene} --integrators ${integrators.map(({name}) => name)} --budget ${budgets} -o out`,
-    reference: {origin: 'made', file: 'reference.exr', integrator: 'bdpt', samplesPerPixel: 4096, seconds: 805.2, mean: 0.31,
-      relativeError: 0.0021, mse: 0.12 * variant.noise * variant.unit, relMse: variant.noise},
+    command: `lampyr compare ${variant.scene} --integrators ${names}${budgets}${samples} -o out`,
+    reference: {origin: 'made', file: 'reference.exr', integrator: 'bdpt', samplesPerPixel: 4096, seconds: 805.2,
+      mean: 0.31, relativeError: 0.0021, mse: 0.12 * variant.noise * variant.unit, relMse: variant.noise},
     pilots: [
       {integrator: 'path', seconds: 2, samplesPerPixel: 40, mean: 0.3, relMse: 0.01, chosen: false,
         note: 'finds less light than bdpt: 94.1 % ± 0.4 %'},
@@ -106,6 +112,21 @@ function makeSample(variant) {
     ],
     errorScale: kScale, integrators, ratios: ratiosOf(integrators),
   }};
+}
+
+// Nothing resolved, a given reference of which nothing is known, no pictures, no pilots, no ratios.
+function strip({results}) {
+  for (const integrator of results.integrators) {
+    integrator.bias = {...integrator.bias, low: null, high: null, significant: false};
+    integrator.systematic = {value: null, low: null, high: null, significant: false};
+    integrator.timeToError = integrator.timeToError.map(({error}) =>
+      ({error, seconds: null, low: null, high: null, kind: 'never'}));
+    integrator.snapshots = integrator.snapshots.map((snapshot) => ({...snapshot, mse: null, relMse: null, flip: null,
+      efficiency: null, relEfficiency: null, picture: null, errorPicture: null}));
+  }
+  const reference = {origin: 'given', file: 'kept/lamp.exr', integrator: null, samplesPerPixel: null, seconds: null,
+    mean: 0.31, relativeError: null, mse: null, relMse: null};
+  return {results: {...results, reference, pilots: [], ratios: []}, pictures: {}};
 }
 
 function embed(value) {
@@ -122,7 +143,8 @@ const [templateFile, outFile, variantName = 'usual'] = process.argv.slice(2);
 if (!outFile || !kVariants[variantName]) {
   throw new Error(`usage: node sample.mjs TEMPLATE.html OUT.html [${Object.keys(kVariants).join('|')}]`);
 }
-const {results, pictures} = makeSample(kVariants[variantName]);
+const sample = makeSample(kVariants[variantName]);
+const {results, pictures} = variantName === 'sparse' ? strip(sample) : sample;
 let page = fill(readFileSync(templateFile, 'utf8'), '/*LAMPYR-RESULTS*/', embed(results));
 page = fill(page, '/*LAMPYR-PICTURES*/', embed(pictures));
 writeFileSync(outFile, page);

@@ -26,7 +26,7 @@ async function bundle(entry) {
 
 function replaceOnce(text, placeholder, content) {
   const parts = text.split(placeholder);
-  if (parts.length !== 2) throw new Error(`page.html must hold ${placeholder} once, and holds it ${parts.length - 1} times`);
+  if (parts.length !== 2) throw new Error(`page.html must hold ${placeholder} once, not ${parts.length - 1} times`);
   return parts[0] + content + parts[1];  // not String.replace, to which $ in the content has a meaning
 }
 

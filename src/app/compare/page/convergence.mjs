@@ -24,7 +24,10 @@ function captionText(results, metric) {
   if (metric === 'flip') {
     sentences.push('FLIP runs from 0 to 1 and is drawn on a linear axis.');
   } else {
-    sentences.push('Without bias, error falls along the grey line: ten times the work, a tenth of the error.');
+    const isShown = snapshotsOf(results).some(({snapshot}) => positive(snapshot[metric]));
+    if (isShown) {
+      sentences.push('Without bias, error falls along the grey line: ten times the work, a tenth of the error.');
+    }
     const noise = positive({value: results.reference[metric]});
     if (noise) sentences.push(`The reference’s own noise is a ${metricName(metric)} of ${formatNumber(noise.value)}.`);
   }

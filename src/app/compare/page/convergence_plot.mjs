@@ -46,7 +46,8 @@ function tipText(row) {
   const {snapshot} = row;
   const lines = [rowName(row)];
   for (const {key, name: metric} of kMetrics) {
-    lines.push(`${metric}  ${snapshot[key] ? formatInterval(snapshot[key]) : 'not told apart from the reference’s noise'}`);
+    const error = snapshot[key] ? formatInterval(snapshot[key]) : 'not told apart from the reference’s noise';
+    lines.push(`${metric}  ${error}`);
   }
   lines.push(`${formatSeconds(snapshot.seconds)}, ${formatNumber(snapshot.samplesPerPixel)} samples per pixel`);
   lines.push(`${formatNumber(snapshot.samplesPerSecond)} samples/s`);
@@ -145,7 +146,6 @@ export function convergencePlot(results, {axis, metric, width}) {
   const xTicks = ownBudgets ?? logTicks(xDomain, Math.floor(geometry.plotWidth / 45));
   const xText = ownBudgets ? (tick) => formatBudget(kind, tick) : tickTexts(xTicks);
 
-  const atBottom = isLog && noise !== null ? Math.max(noise, yDomain[0]) : yDomain[0];
   const position = isLog ? Math.log10 : (value) => value;
   const [bottom, top] = yDomain.map(position);
   const toPixel = (value) => kMargin.top + geometry.plotHeight * (top - position(value)) / (top - bottom);
@@ -153,6 +153,9 @@ export function convergencePlot(results, {axis, metric, width}) {
     const at = top - (pixel - kMargin.top) / geometry.plotHeight * (top - bottom);
     return isLog ? 10 ** at : at;
   };
+  // What was not resolved stands on the line of the noise, or without one just above the axis.
+  const aboveAxis = fromPixel(height - kMargin.bottom - 24);
+  const atBottom = isLog && noise !== null ? Math.max(noise, yDomain[0]) : aboveAxis;
   const seriesList = results.integrators
     .map((integrator, index) => ({name: integrator.name, index, rows: rows.filter((row) => row.index === index)}))
     .filter((series) => series.rows.length > 0);
@@ -176,8 +179,8 @@ export function convergencePlot(results, {axis, metric, width}) {
         labelAnchor: 'center', labelArrow: 'none', labelOffset: 40, className: 'axis-x'}),
       ...(isLog ? guideMarks(rows, xDomain, yDomain, geometry) : []),
       ...(isLog ? noiseMarks(noise, yDomain, name) : []),
-      ...seriesList.flatMap((series) => seriesMarks(series, yDomain, atBottom)),
       ...endLabels(seriesList, yOf, atBottom, toPixel, fromPixel, geometry),
+      ...seriesList.flatMap((series) => seriesMarks(series, yDomain, atBottom)),
       Plot.tip(rows, Plot.pointer({x: 'x', y: yOf, title: tipText, maxRadius: 48, fill: 'var(--paper)',
         stroke: 'var(--rule)', pathFilter: 'none', lineHeight: 1.35, textPadding: 10, lineWidth: 40})),
     ],

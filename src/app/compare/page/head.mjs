@@ -36,8 +36,9 @@ export function showHead(head, results) {
   const {sentences, flaws} = verdictOf(results);
   const hints = results.integrators.flatMap(({name, hints: texts}) =>
     (texts ?? []).map((text) => element('li', {}, element('b', {}, name), `: ${text}`)));
+  const names = results.integrators.map(({name}) => name).join(', ');
   head.append(
-    element('p', {class: 'overline'}, `Speed against accuracy: ${results.integrators.map(({name}) => name).join(', ')}`),
+    element('p', {class: 'overline'}, `Speed against accuracy: ${names}`),
     element('h1', {}, results.scene),
     element('p', {class: 'verdict'}, sentences.join(' ')),
   );

@@ -96,7 +96,8 @@ class PictureSection {
       this.view.frame,
       element('div', {class: 'under-view'}, this.readout, this.legend),
       element('p', {class: 'caption'}, 'Drag the divider, or move it with the arrow keys. Ctrl and the wheel zoom; ' +
-        'when zoomed, drag to move. Pictures are tone-mapped; errors are measured before that, relative to the reference.'),
+        'when zoomed, drag to move. Pictures are tone-mapped; errors are measured before that, relative to the ' +
+        'reference.'),
     );
     this.point(null);
   }
@@ -106,7 +107,8 @@ class PictureSection {
     const rendered = this.entries.filter(({integrator}) => integrator);
     const budgets = [...new Map(rendered.map((entry) => [entry.budget, entry.budgetText]))];
     if (budgets.length < 2) return null;
-    this.budgets = choiceRow('Budget of both sides', budgets.map(([value, text]) => ({value, text})), null, (budget) => {
+    const choices = budgets.map(([value, text]) => ({value, text}));
+    this.budgets = choiceRow('Budget of both sides', choices, null, (budget) => {
       this.pair = this.pair.map((entry) => rendered.find((other) => other.integrator === entry.integrator &&
         other.budget === budget) ?? entry);
       this.update();

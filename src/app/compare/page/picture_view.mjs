@@ -37,7 +37,8 @@ export class PictureView {
     this.sides = [null, null];
     this.pointer = null;  // where the mouse is, in the window
     this.enlarged = new WeakMap();
-    this.canvas = element('canvas', {class: 'view-canvas', role: 'img', 'aria-label': 'Two pictures, parted by the divider'});
+    this.canvas = element('canvas', {class: 'view-canvas', role: 'img',
+      'aria-label': 'Two pictures, parted by the divider'});
     this.divider = element('div', {class: 'divider', role: 'slider', tabindex: 0, 'aria-orientation': 'horizontal',
       'aria-label': 'Divider between left and right picture', 'aria-valuemin': 0, 'aria-valuemax': 100}, grip());
     this.frame = element('div', {class: 'frame', tabindex: 0, role: 'group', style: `--aspect:${width / height}`,
@@ -107,7 +108,8 @@ export class PictureView {
     const held = {x: (at.x - before.x) / before.scale, y: (at.y - before.y) / before.scale};
     this.zoom = zoom;
     const scale = this.scaleOf(zoom);
-    this.center = {x: held.x + (this.canvas.width / 2 - at.x) / scale, y: held.y + (this.canvas.height / 2 - at.y) / scale};
+    this.center = {x: held.x + (this.canvas.width / 2 - at.x) / scale,
+      y: held.y + (this.canvas.height / 2 - at.y) / scale};
     this.settle();
     this.frame.classList.toggle('can-pan', this.canPan());
     this.hear.zoomed(zoom);

@@ -52,10 +52,11 @@ export function budgetTicks(budgets, kind, domain, width) {
 }
 
 // Moves wished positions apart until neighbours have `gap` between them, with as little motion as a sweep to either
-// side finds, and all between `lowest` and `highest`.
+// side finds, and all between `lowest` and `highest` as far as there is room.
 export function spread(wishes, gap, lowest, highest) {
   const order = wishes.map((_, i) => i).sort((a, b) => wishes[a] - wishes[b]);
-  const placed = [...wishes];
+  const placed = wishes.map((wish) => Math.min(highest, Math.max(lowest, wish)));
+  const last = order[order.length - 1];
   for (let round = 0; round < 50; round++) {
     let moved = false;
     for (let k = 1; k < order.length; k++) {
@@ -67,6 +68,8 @@ export function spread(wishes, gap, lowest, highest) {
       moved = true;
     }
     if (!moved) break;
+    placed[order[0]] = Math.max(lowest, placed[order[0]]);
+    placed[last] = Math.min(highest, placed[last]);
   }
-  return placed.map((position) => Math.min(highest, Math.max(lowest, position)));
+  return placed;
 }

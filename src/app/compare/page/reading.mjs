@@ -4,21 +4,23 @@ import {formatNumber} from './numbers.mjs';
 
 export function showReading(section, {confidence, repeats}) {
   const entries = [
-    ['MSE', 'The mean over pixels and colour channels of the squared difference from the reference. Bright pixels decide it.'],
-    ['relMSE', 'The same with each difference taken relative to the reference’s pixel (with a small floor against division ' +
-      'by zero), so that dark regions count as much as bright ones. Its square root is the relative error: a relMSE of ' +
-      '0.01 is an error of 10 %.'],
+    ['MSE', 'The mean over pixels and colour channels of the squared difference from the reference. Bright pixels ' +
+      'decide it.'],
+    ['relMSE', 'The same with each difference taken relative to the reference’s pixel (with a small floor against ' +
+      'division by zero), so that dark regions count as much as bright ones. Its square root is the relative error: ' +
+      'a relMSE of 0.01 is an error of 10 %.'],
     ['FLIP', 'The difference that an observer sees when flipping between picture and reference, from 0 (none) to 1. ' +
       'It knows about contrast, colour and edges, and nothing about expectation: half of it is not twice the work.'],
-    ['Efficiency', 'One over error times seconds. For an unbiased integrator it does not depend on how long it ran: twice ' +
-      'the efficiency is the same picture in half the time.'],
-    [`The ${formatNumber(100 * confidence)} % intervals`, `Each budget was rendered ${repeats} times with seeds of its own; ` +
-      'intervals come from the t distribution over the logarithms of these repeats, which is why they reach further up ' +
-      'than down. A ratio whose interval includes 1 shows no difference.'],
-    ['The reference’s own noise', 'The reference was rendered too, and its variance is known. It is subtracted from the ' +
-      'measured errors; what does not stand out from it is called not resolved.'],
-    ['Bias and systematic part', 'Noise averages out, these do not. Bias compares the mean of the whole picture with the ' +
-      'reference’s; the systematic part is the relMSE that is left when the error is extrapolated to endless samples.'],
+    ['Efficiency', 'One over error times seconds. For an unbiased integrator it does not depend on how long it ran: ' +
+      'twice the efficiency is the same picture in half the time.'],
+    [`The ${formatNumber(100 * confidence)} % intervals`, `Each budget was rendered ${repeats} times with seeds of ` +
+      'its own; intervals come from the t distribution over the logarithms of these repeats, which is why they reach ' +
+      'further up than down. A ratio whose interval includes 1 shows no difference.'],
+    ['The reference’s own noise', 'The reference was rendered too, and its variance is known. It is subtracted from ' +
+      'the measured errors; what does not stand out from it is called not resolved.'],
+    ['Bias and systematic part', 'Noise averages out, these do not. Bias compares the mean of the whole picture with ' +
+      'the reference’s; the systematic part is the relMSE that is left when the error is extrapolated to endless ' +
+      'samples.'],
   ];
   section.append(element('details', {class: 'reading'}, element('summary', {}, 'How to read this page'),
     element('dl', {}, entries.map(([term, text]) => [element('dt', {}, term), element('dd', {}, text)]))));

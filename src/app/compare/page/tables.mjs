@@ -5,7 +5,7 @@ import {
   formatBudget, formatNumber, formatPercent, formatSeconds, inPercent, intervalParts, isNumber,
 } from './numbers.mjs';
 import {furthestOf, ratioFigure} from './ratio_figure.mjs';
-import {budgetsOf, includesOne, kMetrics, metricName, snapshotAt} from './results.mjs';
+import {budgetsOf, includesOne, kMetrics, metricName, snapshotAt, snapshotsOf} from './results.mjs';
 
 const kUnresolved = 'not resolved';
 
@@ -22,6 +22,11 @@ function table(id, title, columns, bodies, note) {
 
 function numberCell(text, ...more) {
   return element('td', {class: 'number'}, text, ...more);
+}
+
+// The budget that the rows beside it share.
+function budgetCell(kind, budget, rows) {
+  return element('th', {scope: 'rowgroup', rowspan: rows, class: 'budget'}, formatBudget(kind, budget));
 }
 
 function integratorCell(results, name) {
@@ -52,14 +57,13 @@ function snapshotTable(results, kind) {
     const rows = results.integrators.map((integrator) => ({integrator, snapshot: snapshotAt(integrator, kind, budget)}))
       .filter(({snapshot}) => snapshot !== null);
     return element('tbody', {}, rows.map(({integrator, snapshot}, i) => element('tr', {},
-      i === 0 ? element('th', {scope: 'rowgroup', rowspan: rows.length, class: 'budget'}, formatBudget(kind, budget)) : null,
+      i === 0 ? budgetCell(kind, budget, rows.length) : null,
       integratorCell(results, integrator.name),
       numberCell(outcome.of(snapshot)), numberCell(formatNumber(snapshot.samplesPerSecond)),
       kMetrics.map(({key}) => errorCell(snapshot[key])),
       errorCell(snapshot.relEfficiency), errorCell(snapshot.efficiency))));
   });
-  const isOpen = ({relMse, mse, flip}) => !relMse || !mse || !flip;
-  const someOpen = results.integrators.some(({snapshots}) => snapshots.some((snapshot) => snapshot.kind === kind && isOpen(snapshot)));
+  const someOpen = snapshotsOf(results, kind).some(({snapshot}) => kMetrics.some(({key}) => !snapshot[key]));
   const title = kind === 'time' ? 'All snapshots at equal time' : 'All snapshots at equal samples';
   return table(`snapshots-${kind}`, title, columns, bodies,
     someOpen ? `“${kUnresolved}”: the error could not be told apart from the reference’s own noise.` : null);
@@ -121,33 +125,36 @@ function ratioTable(results) {
   const bodies = [...budgets.values()].map((rows) => element('tbody', {}, [...rows.values()].map((row, i) => {
     const {kind, budget, integrator, against} = Object.values(row)[0];
     return element('tr', {},
-      i === 0 ? element('th', {scope: 'rowgroup', rowspan: rows.size, class: 'budget'}, formatBudget(kind, budget)) : null,
-      integratorCell(results, integrator), element('td', {}, against), metrics.map((metric) => metricCells(row[metric])));
+      i === 0 ? budgetCell(kind, budget, rows.size) : null,
+      integratorCell(results, integrator), element('td', {}, against),
+      metrics.map((metric) => metricCells(row[metric])));
   })));
   const columns = [{text: 'Budget'}, {text: 'Integrator'}, {text: 'Against'},
-    ...metrics.flatMap((metric) => [{text: metricName(metric), number: true}, {text: 'worse ← 1 → better', figure: true}])];
+    ...metrics.flatMap((metric) => [{text: metricName(metric), number: true},
+      {text: 'worse ← 1 → better', figure: true}])];
   return table('ratios', 'Efficiency of one over another', columns, bodies,
     'The lines are logarithmic, with a mark at 1. Hollow points: the interval includes 1, no difference was shown.');
 }
 
 function systematicTable(results) {
-  const verdict = (part) => part?.significant ? element('td', {class: 'significant'}, '▲ yes') : element('td', {}, 'not shown');
+  const verdict = (part) => part?.significant ? element('td', {class: 'significant'}, '▲ yes')
+    : element('td', {}, 'not shown');
   const rows = results.integrators.map(({name, bias, systematic}) => element('tr', {}, integratorCell(results, name),
     intervalCell(inPercent(bias), '\u00a0%'), verdict(bias), intervalCell(systematic), verdict(systematic)));
   return table('systematic', 'What more samples do not remove', [{text: 'Integrator'},
-    {text: 'Mean against the reference', number: true}, {text: 'Significant'}, {text: 'Systematic relMSE', number: true},
-    {text: 'Significant'}], element('tbody', {}, rows));
+    {text: 'Mean against the reference', number: true}, {text: 'Significant'},
+    {text: 'Systematic relMSE', number: true}, {text: 'Significant'}], element('tbody', {}, rows));
 }
 
 function pilotTable(results) {
   if (!results.pilots?.length) return null;
-  const rows = results.pilots.map(({integrator, seconds, samplesPerPixel, mean, relMse, chosen, note}) => element('tr', {},
-    integratorCell(results, integrator), numberCell(formatSeconds(seconds)), numberCell(formatNumber(samplesPerPixel)),
-    numberCell(formatNumber(mean)), numberCell(formatNumber(relMse)),
-    element('td', {}, [chosen ? 'chosen' : '', note ?? ''].filter(Boolean).join('; '))));
+  const rows = results.pilots.map((pilot) => element('tr', {}, integratorCell(results, pilot.integrator),
+    numberCell(formatSeconds(pilot.seconds)), numberCell(formatNumber(pilot.samplesPerPixel)),
+    numberCell(formatNumber(pilot.mean)), numberCell(formatNumber(pilot.relMse)),
+    element('td', {}, [pilot.chosen ? 'chosen' : '', pilot.note ?? ''].filter(Boolean).join('; '))));
   return table('pilots', 'Pilots: which integrator makes the reference', [{text: 'Integrator'},
-    {text: 'Time', number: true}, {text: 'Spp', number: true}, {text: 'Mean', number: true}, {text: 'relMSE', number: true},
-    {text: 'Outcome'}], element('tbody', {}, rows));
+    ...['Time', 'Spp', 'Mean', 'relMSE'].map((text) => ({text, number: true})), {text: 'Outcome'}],
+  element('tbody', {}, rows));
 }
 
 export function showTables(section, results) {

@@ -11,7 +11,9 @@ function joinWords(words) {
 }
 
 function singleSentence(integrator, snapshot, at) {
-  if (!snapshot?.relMse) return `At ${at}, the error of ${integrator.name} cannot be told apart from the reference’s own noise.`;
+  if (!snapshot?.relMse) {
+    return `At ${at}, the error of ${integrator.name} cannot be told apart from the reference’s own noise.`;
+  }
   return `At ${at}, ${integrator.name} has a relMSE of ${formatInterval(snapshot.relMse)}.`;
 }
 
@@ -34,8 +36,9 @@ function ratioSentence(results, {kind, budget}, at) {
       sentences.push(`At ${at}, ${best} has ${joinWords(clauses)} in relMSE.`);
     }
     for (const ratio of open) {
-      sentences.push(`${shown.length > 0 ? 'Between' : `At ${at}, between`} ${best} and ${ratio.against} no difference ` +
-        `was shown: the ratio of their efficiencies is ${times(ratio)}.`);
+      const begin = shown.length > 0 ? 'Between' : `At ${at}, between`;
+      sentences.push(`${begin} ${best} and ${ratio.against} no difference was shown: the ratio of their efficiencies ` +
+        `is ${times(ratio)}.`);
     }
     if (ratios.length === 0) {
       sentences.push(singleSentence(measured[0].integrator,
