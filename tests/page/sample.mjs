@@ -1,9 +1,10 @@
 // Fills the page's template with made-up results, to work on the page without rendering:
-//   node sample.mjs TEMPLATE.html OUT.html [usual|single|extreme|large|sparse]
+//   node sample.mjs TEMPLATE.html OUT.html [usual|single|extreme|large|sparse|once]
 //
 // usual has three integrators, budgets of time and samples, one integrator with a bias and one with rows that were
 // not resolved; single has one integrator and one budget; extreme has values at the ends of what may come, and
-// hostile names; large has pictures wider than the page; sparse lacks everything that may be lacking.
+// hostile names; large has pictures wider than the page; sparse lacks everything that may be lacking; once has a single
+// repeat, and so no intervals.
 import {readFileSync, writeFileSync} from 'node:fs';
 import {makeRandom, samplePictures} from './sample_pictures.mjs';
 
@@ -26,6 +27,7 @@ const kVariants = {
     integrators: [...kUsual.integrators,
       {name: 'path-nothing', relMse: 1e-31, speed: 1e-9, floor: 0, gain: 1, hints: []}]},
   sparse: {...kUsual, times: []},
+  once: {...kUsual, samples: []},
   large: {...kUsual, width: 1920, height: 1080, times: [4, 16], samples: []},
 };
 
@@ -129,6 +131,20 @@ function strip({results}) {
   return {results: {...results, reference, pilots: [], ratios: []}, pictures: {}};
 }
 
+// A single repeat: intervals from 0 to infinity, which JSON does not have.
+function withoutIntervals({results, pictures}) {
+  const open = (value) => ({...value, low: 0, high: null});
+  for (const integrator of results.integrators) {
+    integrator.timeToError = integrator.timeToError.map((time) => time.kind === 'never' ? time : open(time));
+    for (const snapshot of integrator.snapshots) {
+      for (const key of ['mse', 'relMse', 'flip', 'efficiency', 'relEfficiency']) {
+        snapshot[key] &&= open(snapshot[key]);
+      }
+    }
+  }
+  return {results: {...results, repeats: 1, ratios: results.ratios.map(open)}, pictures};
+}
+
 function embed(value) {
   return JSON.stringify(value).replaceAll('<', '\\u003c');
 }
@@ -144,7 +160,8 @@ if (!outFile || !kVariants[variantName]) {
   throw new Error(`usage: node sample.mjs TEMPLATE.html OUT.html [${Object.keys(kVariants).join('|')}]`);
 }
 const sample = makeSample(kVariants[variantName]);
-const {results, pictures} = variantName === 'sparse' ? strip(sample) : sample;
+const change = {sparse: strip, once: withoutIntervals}[variantName] ?? ((unchanged) => unchanged);
+const {results, pictures} = change(sample);
 let page = fill(readFileSync(templateFile, 'utf8'), '/*LAMPYR-RESULTS*/', embed(results));
 page = fill(page, '/*LAMPYR-PICTURES*/', embed(pictures));
 writeFileSync(outFile, page);

@@ -19,7 +19,8 @@ function legend(results) {
 }
 
 function captionText(results, metric) {
-  const sentences = [`Points are means over ${results.repeats} repeats, bars and bands their ` +
+  const sentences = [results.repeats === 1 ? 'Of a single repeat, there are no intervals.'
+    : `Points are means over ${results.repeats} repeats, bars and bands their ` +
     `${formatNumber(100 * results.confidence)} % intervals.`];
   if (metric === 'flip') {
     sentences.push('FLIP runs from 0 to 1 and is drawn on a linear axis.');

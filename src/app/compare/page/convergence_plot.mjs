@@ -20,8 +20,9 @@ function rowsOf(results, axis, metric) {
   return {kind, rows: rows.sort((a, b) => a.x - b.x)};
 }
 
+// Without an upper bound, as after a single repeat, there is no interval to draw.
 function bounds({value, low, high}) {
-  return [isNumber(low) ? low : value, isNumber(high) ? high : value];
+  return isNumber(low) && isNumber(high) ? [low, high] : [value, value];
 }
 
 function errorDomain(rows, metric, noise) {

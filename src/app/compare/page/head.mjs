@@ -14,7 +14,7 @@ function referenceSentence({origin, file, integrator, samplesPerPixel, seconds, 
   const made = how.length === 0 ? '' : origin === 'given' ? `; it was rendered ${how.join(' ')}` : ` ${how.join(' ')}`;
   const error = isNumber(relativeError)
     ? ` Its own noise is ± ${formatPercent(relativeError)} of the mean (RMS over the pixels).`
-    : ' How noisy it is, is not known: it has no variance layers.';
+    : ' It has no variance layers, and is taken as exact.';
   return `${begin}${made}.${error}`;
 }
 
@@ -22,7 +22,7 @@ function facts(results) {
   const entries = [
     ['Picture', `${results.width} × ${results.height} pixels`],
     ['Longest path', `${results.maxDepth} bounces`],
-    ['Repeats', `${results.repeats} independent`],
+    ['Repeats', results.repeats === 1 ? 'none' : `${results.repeats} independent`],
     ['Intervals', formatPercent(results.confidence)],
     ['Threads', String(results.threads)],
     ['Scene hash', String(results.sceneHash).slice(0, 12)],

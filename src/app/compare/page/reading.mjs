@@ -3,6 +3,7 @@ import {element} from './dom.mjs';
 import {formatNumber} from './numbers.mjs';
 
 export function showReading(section, {confidence, repeats}) {
+  const times = repeats === 1 ? 'once, with a seed' : `${repeats} times, with seeds`;
   const entries = [
     ['MSE', 'The mean over pixels and colour channels of the squared difference from the reference. Bright pixels ' +
       'decide it.'],
@@ -13,11 +14,11 @@ export function showReading(section, {confidence, repeats}) {
       'It knows about contrast, colour and edges, and nothing about expectation: half of it is not twice the work.'],
     ['Efficiency', 'One over error times seconds. For an unbiased integrator it does not depend on how long it ran: ' +
       'twice the efficiency is the same picture in half the time.'],
-    [`The ${formatNumber(100 * confidence)} % intervals`, `Each budget was rendered ${repeats} times with seeds of ` +
-      'its own; intervals come from the t distribution over the logarithms of these repeats, which is why they reach ' +
-      'further up than down. A ratio whose interval includes 1 shows no difference.'],
+    [`The ${formatNumber(100 * confidence)} % intervals`, `Each budget was rendered ${times} of its ` +
+      'own; intervals come from the t distribution over the logarithms of these repeats, which is why they reach ' +
+      'further up than down. A single repeat has none. A ratio whose interval includes 1 shows no difference.'],
     ['The reference’s own noise', 'The reference was rendered too, and its variance is known. It is subtracted from ' +
-      'the measured errors; what does not stand out from it is called not resolved.'],
+      'MSE and relMSE; what does not stand out from it is called not resolved. From FLIP it cannot be subtracted.'],
     ['Bias and systematic part', 'Noise averages out, these do not. Bias compares the mean of the whole picture with ' +
       'the reference’s; the systematic part is the relMSE that is left when the error is extrapolated to endless ' +
       'samples.'],

@@ -75,7 +75,7 @@ function neverText(integrator) {
   if (systematic?.significant && systematic.value > 0) {
     return `never: ${formatPercent(Math.sqrt(systematic.value))} remains`;
   }
-  return 'never: no fall was seen';
+  return integrator.snapshots.some(({relMse}) => relMse) ? 'never' : 'never resolved';
 }
 
 function timeCell(integrator, entry) {
@@ -96,10 +96,13 @@ function timeToErrorTable(results) {
   const kinds = results.integrators.flatMap(({timeToError}) => timeToError.map(({kind}) => kind));
   const notes = ['The relative error is the square root of relMSE.'];
   if (kinds.includes('extrapolated')) {
-    notes.push('~ marks times beyond what was rendered, extrapolated along the fitted curve.');
+    notes.push('~ marks times outside what was rendered, extrapolated along the curve.');
   }
   if (kinds.includes('never')) {
-    notes.push('“never”: a part of the error stays however many samples are taken, or none was seen to go.');
+    notes.push('“never”: a part of the error stays however many samples are taken.');
+  }
+  if (results.integrators.some(({snapshots}) => !snapshots.some(({relMse}) => relMse))) {
+    notes.push('“never resolved”: the error was within the reference’s own noise from the beginning.');
   }
   return table('time-to-error', 'Time to an error',
     [{text: 'Integrator'}, ...errors.map((error) => ({text: `to ${formatPercent(error)}`, number: true}))],
@@ -133,7 +136,8 @@ function ratioTable(results) {
     ...metrics.flatMap((metric) => [{text: metricName(metric), number: true},
       {text: 'worse ← 1 → better', figure: true}])];
   return table('ratios', 'Efficiency of one over another', columns, bodies,
-    'The lines are logarithmic, with a mark at 1. Hollow points: the interval includes 1, no difference was shown.');
+    'The lines are logarithmic, with a mark at 1. Hollow points: the interval includes 1 or is not known, no difference ' +
+      'was shown.');
 }
 
 function systematicTable(results) {

@@ -38,7 +38,7 @@ function ratioSentence(results, {kind, budget}, at) {
     for (const ratio of open) {
       const begin = shown.length > 0 ? 'Between' : `At ${at}, between`;
       sentences.push(`${begin} ${best} and ${ratio.against} no difference was shown: the ratio of their efficiencies ` +
-        `is ${times(ratio)}.`);
+        `is ${times(ratio)}${isNumber(ratio.high) ? '' : ', of a single repeat and so without an interval'}.`);
     }
     if (ratios.length === 0) {
       sentences.push(singleSentence(measured[0].integrator,
