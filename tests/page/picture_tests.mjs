@@ -2,6 +2,7 @@
 // compared with the embedded PNGs, decoded by the test's own code.
 import assert from 'node:assert/strict';
 import {colorAt, decodeDataUri, differingShare, farthest, screenshotOf, settle} from './browser.mjs';
+import {decodePng} from './png.mjs';
 import {readNumber} from './written_numbers.mjs';
 
 const kSame = 2;  // levels that colour may be off
@@ -37,15 +38,25 @@ async function frameBox(page) {
   return page.locator('.frame').boundingBox();
 }
 
-// The picture's pixel under a place in the frame, given in shares of it, as the readout tells.
+// The window with all of the frame in it: its pixels are the screen's, wherever the frame begins.
+async function windowShot(page) {
+  await frameBox(page);
+  return decodePng(await page.screenshot());
+}
+
+// The picture's pixel under a place in the frame, given in shares of it, as the readout tells; `at` is the same place
+// in the window.
 async function pointAt(page, x, y) {
   const box = await frameBox(page);
-  const at = {x: Math.round(x * box.width), y: Math.round(y * box.height)};
-  await page.mouse.move(box.x + at.x + 0.5, box.y + at.y + 0.5);
+  return readAt(page, Math.round(box.x + x * box.width), Math.round(box.y + y * box.height));
+}
+
+async function readAt(page, x, y) {
+  await page.mouse.move(x + 0.5, y + 0.5);
   const text = (await page.locator('.readout').innerText()).replaceAll('\u00a0', ' ');
   const match = /(\d+), (\d+)/.exec(text);
   assert.ok(match, `the readout tells a position: ${text}`);
-  return {at, pixel: [Number(match[1]), Number(match[2])], text,
+  return {at: {x, y}, pixel: [Number(match[1]), Number(match[2])],
     values: await page.locator('.readout .value').allInnerTexts()};
 }
 
@@ -70,7 +81,7 @@ export function testPictures(pageTest, results, pictures) {
     const [left, right] = await pairOf(page);
     await choose(page, left, right);
     await zoomTo(page, 2);
-    const shot = await screenshotOf(page.locator('.frame'));
+    const shot = await windowShot(page);
     for (const [key, xs] of [[left, [0.2, 0.3, 0.4]], [right, [0.6, 0.7, 0.8]]]) {
       const picture = decodeDataUri(pictures[key]);
       for (const x of xs) {
@@ -123,7 +134,7 @@ export function testPictures(pageTest, results, pictures) {
     await page.keyboard.press('Home');
     assert.equal(await divider.getAttribute('aria-valuenow'), '0');
     await zoomTo(page, 2);
-    const shot = await screenshotOf(page.locator('.frame'));
+    const shot = await windowShot(page);
     const {at, pixel} = await pointAt(page, 0.3, 0.5);
     assert.ok(farthest(colorAt(shot, at.x, at.y), colorAt(decodeDataUri(pictures[right]), ...pixel)) <= kSame,
       'at Home all of the right picture is seen');
@@ -182,7 +193,7 @@ export function testPictures(pageTest, results, pictures) {
       assert.ok(differingShare(cropped(picture, 0, 0.45), cropped(before, 0, 0.45)) > 0.9,
         'errors look unlike the picture');
       await zoomTo(page, 4);
-      const shot = await screenshotOf(page.locator('.frame'));
+      const shot = await windowShot(page);
       const levels = decodeDataUri(pictures[snapshot.errorPicture]);
       const {lowest, highest} = results.errorScale;
       const seen = [];
@@ -227,23 +238,22 @@ export function testPictures(pageTest, results, pictures) {
     await choose(page, ...await pairOf(page));
     await zoomTo(page, 8);
     const {at, pixel} = await pointAt(page, 0.25, 0.5);
-    const shot = await screenshotOf(page.locator('.frame'));
+    const shot = await windowShot(page);
     const picture = decodeDataUri(pictures[await page.locator('#side-left').inputValue()]);
     for (let dx = -4; dx <= 4; dx++) {
       const shown = colorAt(shot, at.x + 8 * dx, at.y);
       assert.ok(farthest(shown, colorAt(picture, pixel[0] + dx, pixel[1])) <= kSame, `pixel ${dx} beside ${pixel}`);
     }
-    const box = await frameBox(page);
-    await page.mouse.move(box.x + at.x + 0.5, box.y + at.y + 0.5);
+    await page.mouse.move(at.x + 0.5, at.y + 0.5);
     await page.mouse.down();
-    await page.mouse.move(box.x + at.x + 64.5, box.y + at.y + 32.5, {steps: 3});
+    await page.mouse.move(at.x + 64.5, at.y + 32.5, {steps: 3});
     await page.mouse.up();
     assert.match(await page.locator('.readout .position').innerText(), new RegExp(`^${pixel[0]}, ${pixel[1]}$`),
       'the pixel that was dragged is still under the pointer');
     assert.ok(Math.abs(await dividerShare(page) - 0.5) < 0.01, 'the divider stays');
     await page.locator('.frame').focus();
     await page.keyboard.press('ArrowRight');
-    assert.equal((await pointAt(page, (at.x + 64) / box.width, (at.y + 32) / box.height)).pixel[0], pixel[0] + 5,
+    assert.equal((await readAt(page, at.x + 64, at.y + 32)).pixel[0], pixel[0] + 5,
       'the arrow key moves the view by 40 pixels');
   });
 
@@ -254,8 +264,7 @@ export function testPictures(pageTest, results, pictures) {
     await page.mouse.wheel(0, -100);
     await page.keyboard.up('Control');
     await page.locator('[aria-label="Zoom"] [data-value="16"][aria-pressed="true"]').waitFor();
-    const box = await frameBox(page);
-    const again = await pointAt(page, at.x / box.width, at.y / box.height);
+    const again = await readAt(page, at.x, at.y);
     const moved = Math.max(...again.pixel.map((value, i) => Math.abs(value - pixel[i])));
     assert.ok(moved <= 1, `under the pointer is ${again.pixel}, and was ${pixel}`);
     const before = await page.evaluate(() => scrollY);

@@ -71,6 +71,9 @@ export class PictureView {
     if (width === this.canvas.width && height === this.canvas.height) return;
     this.canvas.width = width;
     this.canvas.height = height;
+    // Not 100 % of a frame that may end within a pixel: then the browser would resample what is drawn here.
+    this.canvas.style.width = `${width / this.ratio}px`;
+    this.canvas.style.height = `${height / this.ratio}px`;
     this.settle();
     this.draw();
   }
@@ -93,12 +96,19 @@ export class PictureView {
     return this.size.width * scale > this.canvas.width + 1 || this.size.height * scale > this.canvas.height + 1;
   }
 
+  // A point of the window in pixels of the canvas, which browsers paint from a whole device pixel on.
+  canvasPoint(clientX, clientY) {
+    const box = this.canvas.getBoundingClientRect();
+    return {x: clientX * this.ratio - Math.round(box.left * this.ratio),
+      y: clientY * this.ratio - Math.round(box.top * this.ratio)};
+  }
+
   // The picture's pixel under a point of the page, or null.
   pixelAt(clientX, clientY) {
-    const box = this.canvas.getBoundingClientRect();
+    const at = this.canvasPoint(clientX, clientY);
     const {scale, x, y} = this.geometry();
-    const px = Math.floor(((clientX - box.left) * this.ratio - x) / scale);
-    const py = Math.floor(((clientY - box.top) * this.ratio - y) / scale);
+    const px = Math.floor((at.x - x) / scale);
+    const py = Math.floor((at.y - y) / scale);
     return px >= 0 && py >= 0 && px < this.size.width && py < this.size.height ? {x: px, y: py} : null;
   }
 
@@ -225,9 +235,7 @@ export class PictureView {
     frame.addEventListener('wheel', (event) => {
       if (!event.ctrlKey && !event.metaKey) return;
       event.preventDefault();
-      const box = this.canvas.getBoundingClientRect();
-      this.stepZoom(-Math.sign(event.deltaY),
-        {x: (event.clientX - box.left) * this.ratio, y: (event.clientY - box.top) * this.ratio});
+      this.stepZoom(-Math.sign(event.deltaY), this.canvasPoint(event.clientX, event.clientY));
     }, {passive: false});
     divider.addEventListener('keydown', (event) => this.dividerKey(event));
     frame.addEventListener('keydown', (event) => this.frameKey(event));

@@ -136,8 +136,8 @@ function ratioTable(results) {
     ...metrics.flatMap((metric) => [{text: metricName(metric), number: true},
       {text: 'worse ← 1 → better', figure: true}])];
   return table('ratios', 'Efficiency of one over another', columns, bodies,
-    'The lines are logarithmic, with a mark at 1. Hollow points: the interval includes 1 or is not known, no difference ' +
-      'was shown.');
+    'The lines are logarithmic, with a mark at 1. Hollow points: the interval includes 1 or is not known, no ' +
+      'difference was shown.');
 }
 
 function systematicTable(results) {
