@@ -2,7 +2,7 @@
 //
 // Works from whatever folder it lies in, once `npm ci` has run there.
 import {build} from 'esbuild';
-import {readFile, writeFile} from 'node:fs/promises';
+import {readdir, readFile, writeFile} from 'node:fs/promises';
 import {dirname, join} from 'node:path';
 import {fileURLToPath} from 'node:url';
 
@@ -20,8 +20,22 @@ async function bundle(entry) {
     charset: 'utf8',
     legalComments: 'none',
     logLevel: 'warning',
+    metafile: true,
   });
-  return result.outputFiles[0].text.trim();
+  return {text: result.outputFiles[0].text.trim(), inputs: Object.keys(result.metafile.inputs)};
+}
+
+// What the page is made with asks for its notice in every copy. All packages of which a file is in the bundle, sorted.
+async function licencesOf(inputs) {
+  const names = inputs.map((input) => /node_modules\/((?:@[^/]+\/)?[^/]+)\//.exec(input)?.[1]).filter(Boolean);
+  const notices = [...new Set(names)].sort().map(async (name) => {
+    const place = join(folder, 'node_modules', name);
+    const file = (await readdir(place)).find((entry) => /^licen[cs]e/i.test(entry));
+    if (!file) throw new Error(`${name} has no licence that the page could show`);
+    const {version} = JSON.parse(await readFile(join(place, 'package.json'), 'utf8'));
+    return `${name} ${version}\n\n${(await readFile(join(place, file), 'utf8')).trim()}`;
+  });
+  return (await Promise.all(notices)).join('\n\n\n').replaceAll('&', '&amp;').replaceAll('<', '&lt;');
 }
 
 function replaceOnce(text, placeholder, content) {
@@ -47,8 +61,9 @@ if (!out) throw new Error('usage: node build.mjs OUT.html');
 const [template, style, script] = await Promise.all([
   readFile(join(folder, 'page.html'), 'utf8'), bundle('page.css'), bundle('main.mjs'),
 ]);
-let page = replaceOnce(template, '/*PAGE-STYLE*/', inlineStyle(style));
-page = replaceOnce(page, '/*PAGE-SCRIPT*/', inlineScript(script));
+let page = replaceOnce(template, '/*PAGE-STYLE*/', inlineStyle(style.text));
+page = replaceOnce(page, '/*PAGE-LICENCES*/', await licencesOf(script.inputs));
+page = replaceOnce(page, '/*PAGE-SCRIPT*/', inlineScript(script.text));
 for (const placeholder of ['/*LAMPYR-RESULTS*/', '/*LAMPYR-PICTURES*/']) {
   if (page.split(placeholder).length !== 2) throw new Error(`the page must hold ${placeholder} exactly once`);
 }
