@@ -36,10 +36,9 @@ install_npm() {
 
 # quietly COMMAND…: prints its output only when it fails.
 quietly() {
-  local log status
+  local log status=0
   log=$(mktemp)
-  "$@" >"$log" 2>&1
-  status=$?
+  "$@" >"$log" 2>&1 || status=$?
   [ $status = 0 ] || cat "$log" >&2
   rm -f "$log"
   return $status

@@ -43,32 +43,38 @@ ComparisonPlan MakePlan(const CompareOptions& options) {
   return plan;
 }
 
-// How long the longest of the compared renders is going to take.
+// How long the longest of the compared renders of an integrator is going to take.
+double LongestRender(const ComparisonPlan& plan, const Pilot& pilot) {
+  const double ofTimes = plan.times.empty() ? 0 : plan.times.back();
+  const double ofSamples =
+      plan.sampleCounts.empty() ? 0 : pilot.seconds / pilot.samplesPerPixel * plan.sampleCounts.back();
+  return std::max(ofTimes, ofSamples);
+}
+
+bool IsCompared(const ComparisonPlan& plan, const Pilot& pilot) {
+  return std::find(plan.integrators.begin(), plan.integrators.end(), pilot.integrator) != plan.integrators.end();
+}
+
 double LongestRender(const ComparisonPlan& plan, const std::vector<Pilot>& pilots) {
   double longest = plan.times.empty() ? 0 : plan.times.back();
-  if (plan.sampleCounts.empty()) return longest;
   for (const Pilot& pilot : pilots) {
-    if (std::find(plan.integrators.begin(), plan.integrators.end(), pilot.integrator) == plan.integrators.end())
-      continue;
-    longest = std::max(longest, pilot.seconds / pilot.samplesPerPixel * plan.sampleCounts.back());
+    if (IsCompared(plan, pilot)) longest = std::max(longest, LongestRender(plan, pilot));
   }
   return longest;
 }
 
 // A reference that is noisier than what is measured against it says nothing: told before the work where first looks
-// know it already.
+// know it already. One that misses light has an error beside its noise.
 void CheckReferenceIsFinerThanRenders(const Reference& reference, const ComparisonPlan& plan,
                                       const std::vector<Pilot>& pilots) {
-  if (!reference.facts.relMse) return;
+  bool anyComplete = false;
   for (const Pilot& pilot : pilots) {
-    if (std::find(plan.integrators.begin(), plan.integrators.end(), pilot.integrator) == plan.integrators.end())
-      continue;
-    double longest = plan.times.empty() ? 0 : plan.times.back();
-    if (!plan.sampleCounts.empty()) {
-      longest = std::max(longest, pilot.seconds / pilot.samplesPerPixel * plan.sampleCounts.back());
-    }
-    if (pilot.relMse * pilot.seconds / longest >= *reference.facts.relMse) return;
+    if (!IsCompared(plan, pilot)) continue;
+    if (!pilot.note.empty() || !(pilot.mean > 0)) return;
+    anyComplete = true;
+    if (pilot.relMse * pilot.seconds / LongestRender(plan, pilot) >= *reference.facts.relMse) return;
   }
+  if (!anyComplete) return;
   throw UsageError("--reference: \"" + reference.facts.file +
                    "\" is noisier than all that would be measured against it; use one of more samples, or leave the "
                    "option out to have one made");
@@ -117,6 +123,10 @@ Reference ObtainReference(const CompareOptions& options, const ComparedScene& sc
     }
   }
   flyPilots();
+  const auto findsLight = [](const Pilot& pilot) { return pilot.mean > 0; };
+  if (std::none_of(results.pilots.begin(), results.pilots.end(), findsLight)) {
+    throw Error("a first look by all integrators found no light: there is nothing to compare");
+  }
   const double longest = LongestRender(plan, results.pilots);
   if (auto kept = FindKeptReference(file, key, wanted(longest))) {
     kept->facts.file = file.string();
@@ -128,9 +138,9 @@ Reference ObtainReference(const CompareOptions& options, const ComparedScene& sc
   stages.Begin(0.05, 0.05 + 0.95 * wanted(longest) / (wanted(longest) + compared));
   Reference reference =
       MakeReference(scene, chosen->integrator, chosen->seconds / chosen->samplesPerPixel, wanted(longest), update);
-  if (!(reference.facts.mean > 0)) throw Error("the scene is black: there is nothing to compare");
   reference.facts.file = file.string();
-  KeepReference(reference, key, file);
+  if (!(reference.facts.mean > 0)) throw Error("the reference came out black: there is nothing to compare");
+  KeepReference(reference, key, wanted(longest), file);
   return reference;
 }
 
@@ -213,9 +223,12 @@ int RunCompare(const CompareOptions& options) {
   if (!options.quiet) {
     std::printf("%s", ToText(results).c_str());
     if (interrupted) std::printf("interrupted: %d of %d repeats\n", results.repeats, plan.repeats);
-    if (page.empty())
-      std::fprintf(stderr, "warning: this build has no report page (npm was not there): no report.html\n");
     std::printf("\n%s: results.csv, results.json%s\n", folder.c_str(), page.empty() ? "" : ", report.html");
+  }
+  if (page.empty()) {
+    std::fprintf(stderr,
+                 "warning: no report.html: its page was not built (with npm: cmake --build … --target "
+                 "lampyr_report_page)\n");
   }
   const bool unresolved =
       std::any_of(results.integrators.begin(), results.integrators.end(), [](const auto& integrator) {
@@ -223,10 +236,8 @@ int RunCompare(const CompareOptions& options) {
                            [](const auto& s) { return !s.relMse; });
       });
   if (unresolved) {
-    std::fprintf(
-        stderr,
-        "warning: some renders are below the reference's own noise and have no figure; give the reference more "
-        "time with --reference-time\n");
+    std::fprintf(stderr, "warning: some renders are within the reference's own noise and have no figure; %s\n",
+                 options.reference ? "use a reference of more samples" : "give it more time with --reference-time");
   }
   return interrupted ? kExitInterrupted : kExitDone;
 }

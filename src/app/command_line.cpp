@@ -63,7 +63,7 @@ void DefineSceneOptions(CLI::App& app, RenderOverrides& overrides, std::string& 
   app.add_option("--max-depth", overrides.maxDepth, "Scattering events of a path at most")
       ->check(CLI::Range(0, 1 << 20));
   app.add_option("--sampler", overrides.sampler, "sobol | independent");
-  app.add_option("--light-sampler", overrides.lightSampler, "uniform | power");
+  app.add_option("--light-sampler", overrides.lightSampler, "uniform | power | tree | exhaustive");
 }
 
 struct RenderCommand {
@@ -114,10 +114,14 @@ struct CompareCommand {
     app.add_option("-o,--output", options.output,
                    "The folder for results.csv, results.json, report.html and the reference; default: SCENE-compare");
     app.add_option("--integrators", options.integrators, "Which to compare, e.g. path,bdpt (path,bdpt)")
-        ->delimiter(',');
-    app.add_option("--budget", times, "Times to compare at, e.g. 5s,20s,80s (1s,4s,16s)")->delimiter(',');
+        ->delimiter(',')
+        ->allow_extra_args(false);
+    app.add_option("--budget", times, "Times to compare at, e.g. 5s,20s,80s (1s,4s,16s)")
+        ->delimiter(',')
+        ->allow_extra_args(false);
     app.add_option("--spp", options.sampleCounts, "Samples per pixel to compare at, e.g. 4,16,64")
         ->delimiter(',')
+        ->allow_extra_args(false)
         ->check(CLI::Range(1, 1 << 30));
     app.add_option("--repeat", options.repeats, "Renders with other seeds that the intervals come from (5)")
         ->check(CLI::Range(2, 1000));

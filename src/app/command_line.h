@@ -1,4 +1,4 @@
-// The command line: lampyr render | diff | lights | check-lights.
+// The command line: lampyr render | compare | diff | lights | check-lights.
 #pragma once
 
 namespace lampyr {

@@ -8,6 +8,7 @@
 #include "app/integrator_hints.h"
 #include "app/json_report.h"
 #include "app/render_run.h"
+#include "app/unseen_samples.h"
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "base/version.h"
@@ -152,6 +153,7 @@ int RunRender(const RenderOptions& options) {
       std::fprintf(stderr, "hint: %s\n", hint.c_str());
   }
   StopConditions stop = MakeStopConditions(options, settings);
+  stop.largestSample = LargestUnseenSample(built.scene, settings);
   stop.interrupted = &FinishOnInterrupt();
   {
     Progress progress(options.quiet);

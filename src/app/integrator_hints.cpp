@@ -15,11 +15,19 @@ bool IsDelta(const PlacedLight& placed) {
 
 std::vector<std::string> IntegratorHints(const RenderScene& scene, const std::string& integrator) {
   std::vector<std::string> hints;
+  const std::vector<PlacedLight>& lights = scene.lighting->Lights();
+  const auto isBackground = [](const PlacedLight& placed) {
+    return placed.light->Kind() == LightKind::Infinite && placed.light->Settings().cameraVisible;
+  };
+  if (integrator == "light" && std::any_of(lights.begin(), lights.end(), isBackground)) {
+    hints.push_back(
+        "no path from a light behind everything can be joined to the camera, so the background stays black; "
+        "--integrator path and bdpt show it");
+  }
   const auto isSmooth = [](const auto& material) {
     return material && material->HasDelta() && !material->IsInterface();
   };
   if (!std::any_of(scene.materials.begin(), scene.materials.end(), isSmooth)) return hints;
-  const std::vector<PlacedLight>& lights = scene.lighting->Lights();
   const auto deltas = std::count_if(lights.begin(), lights.end(), IsDelta);
   if (integrator == "path" && deltas > 0) {
     hints.push_back("no path from the camera can hit a light without extent (" + std::to_string(deltas) + " of " +

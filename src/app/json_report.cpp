@@ -12,6 +12,15 @@ namespace lampyr {
 
 using Json = nlohmann::ordered_json;
 
+namespace {
+
+// Names of files may be no UTF-8.
+std::string Dump(const Json& json) {
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace
+
 double PeakMemoryMiB() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
@@ -62,7 +71,7 @@ std::string ToJson(const RenderReport& report) {
         {"cpu", CpuSeconds()}}},
       {"peakMemoryMiB", PeakMemoryMiB()},
   };
-  return json.dump(2) + "\n";
+  return Dump(json);
 }
 
 std::string ToJson(const ImageDifference& difference) {
@@ -82,7 +91,7 @@ std::string ToJson(const ImageDifference& difference) {
                          {"chiSquared", test.chiSquared}, {"chiSquaredThreshold", test.chiSquaredThreshold},
                          {"agrees", test.Agrees()}};
   }
-  return json.dump(2) + "\n";
+  return Dump(json);
 }
 
 std::string ToJson(const std::vector<LightVerdict>& verdicts) {
@@ -97,7 +106,7 @@ std::string ToJson(const std::vector<LightVerdict>& verdicts) {
                     {"threshold", verdict.worst.threshold},
                     {"worstCase", verdict.worst.caseName}});
   }
-  return rows.dump(2) + "\n";
+  return Dump(rows);
 }
 
 namespace {
@@ -145,17 +154,34 @@ Json ToTree(const ComparisonReference& reference) {
           {"mean", Number(reference.mean)},
           {"relativeError", OrNull(reference.relativeError)},
           {"mse", OrNull(reference.mse)},
-          {"relMse", OrNull(reference.relMse)}};
+          {"relMse", OrNull(reference.relMse)},
+          {"noiseIsLimit", reference.noiseIsLimit}};
 }
 
 Json ToTree(const TimeToError& time) {
-  const bool never = time.kind == TimeToError::Kind::Never;
-  const char* kind = never ? "never" : time.kind == TimeToError::Kind::Measured ? "measured" : "extrapolated";
+  using Kind = TimeToError::Kind;
+  const char* names[] = {"measured", "extrapolated", "never", "unresolved"};
+  const char* kind = names[static_cast<int>(time.kind)];
+  const bool never = time.kind == Kind::Never || time.kind == Kind::Unresolved;
   return {{"error", time.error},
           {"seconds", never ? Json(nullptr) : Number(time.seconds.value)},
           {"low", never ? Json(nullptr) : Number(time.seconds.low)},
           {"high", never ? Json(nullptr) : Number(time.seconds.high)},
           {"kind", kind}};
+}
+
+Json ToTree(const std::vector<ComparedRun>& runs) {
+  Json rows = Json::array();
+  for (const ComparedRun& run : runs) {
+    rows.push_back({{"seed", run.seed},
+                    {"seconds", run.seconds},
+                    {"samplesPerPixel", run.samplesPerPixel},
+                    {"mse", Number(run.mse)},
+                    {"relMse", Number(run.relMse)},
+                    {"flip", Number(run.flip)},
+                    {"bias", Number(run.bias)}});
+  }
+  return rows;
 }
 
 Json ToTree(const ComparedSnapshot& snapshot) {
@@ -170,7 +196,8 @@ Json ToTree(const ComparedSnapshot& snapshot) {
           {"efficiency", OrNull(snapshot.efficiency)},
           {"relEfficiency", OrNull(snapshot.relEfficiency)},
           {"picture", OrNull(snapshot.picture)},
-          {"errorPicture", OrNull(snapshot.errorPicture)}};
+          {"errorPicture", OrNull(snapshot.errorPicture)},
+          {"runs", ToTree(snapshot.runs)}};
 }
 
 Json ToTree(const ComparedIntegrator& integrator) {
@@ -219,7 +246,7 @@ std::string ToJson(const ComparisonResults& results) {
     row.update(Interval(ratio.ratio));
     json["ratios"].push_back(row);
   }
-  return json.dump(2) + "\n";
+  return Dump(json);
 }
 
 }  // namespace lampyr

@@ -171,27 +171,6 @@ RenderCounts RenderPass(const RenderScene& scene, const BidirectionalIntegrator&
   return total;
 }
 
-double LargestUnseenSample(const RenderScene& scene, const RenderSettings& settings) {
-  const auto isSmooth = [](const auto& material) {
-    return material && material->HasDelta() && !material->IsInterface();
-  };
-  if (!scene.lighting->HasLights() || !std::any_of(scene.materials.begin(), scene.materials.end(), isSmooth)) return 0;
-  constexpr uint32_t photons = 16384;
-  Sampler sampler(SamplerKind::Sobol, 0);
-  float brightest = 0;
-  for (uint32_t i = 0; i < photons; ++i) {
-    sampler.StartPixelSample(0, 0, i);
-    const float uSelect = sampler.Get1D();
-    const Point2 u = sampler.Get2D(), uDirection = sampler.Get2D();
-    const auto photon = scene.lighting->GenerateEmission(uSelect, u, uDirection, 0);
-    if (!photon || !photon->landing || !scene.lighting->CanBeHit(photon->light)) continue;
-    const int material = scene.geometry->Attributes(photon->landing->primitive).material;
-    if (material < 0 || !isSmooth(scene.materials[static_cast<size_t>(material)])) continue;
-    brightest = std::max(brightest, (photon->emission.diffuse + photon->emission.specular).Luminance());
-  }
-  return static_cast<double>(brightest * settings.imagingRatio);
-}
-
 ProgressiveRender::ProgressiveRender(const RenderScene& scene, const AnyIntegrator& integrator,
                                      const RenderSettings& settings, int threads, Film& film,
                                      TechniqueImages* techniques)
@@ -236,7 +215,6 @@ int ProgressiveRender::NextPassSamples(int samplesPerPixel, std::optional<double
 RenderOutcome Render(const RenderScene& scene, const AnyIntegrator& integrator, const RenderSettings& settings,
                      const StopConditions& stop, int threads, Film& film, const PassCallback& afterPass,
                      TechniqueImages* techniques) {
-  const double largestSample = LargestUnseenSample(scene, settings);
   ProgressiveRender render(scene, integrator, settings, threads, film, techniques);
   const Clock clock;
   RenderOutcome outcome;
@@ -246,7 +224,7 @@ RenderOutcome Render(const RenderScene& scene, const AnyIntegrator& integrator, 
     render.AddSamples(render.NextPassSamples(stop.samplesPerPixel, secondsLeft));
     outcome = render.Outcome();
     outcome.seconds = clock.Seconds();  // what the user waits for
-    outcome.relativeError = film.RelativeError(largestSample);
+    outcome.relativeError = film.RelativeError(stop.largestSample);
     afterPass(outcome, FractionDone(outcome, stop));
     if (stop.interrupted && stop.interrupted->load()) {
       outcome.interrupted = true;

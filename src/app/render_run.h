@@ -21,6 +21,7 @@ struct StopConditions {
   int samplesPerPixel = 16;                        // never more than that
   std::optional<double> seconds;                   // of rendering
   std::optional<double> relativeError;             // at 95 % confidence (Film::RelativeError)
+  double largestSample = 0;                        // that may not have come yet (unseen_samples.h)
   const std::atomic<bool>* interrupted = nullptr;  // set by a signal handler: finish the pass
 };
 
@@ -31,11 +32,6 @@ struct RenderOutcome {
   bool interrupted = false;
   RenderCounts counts;
 };
-
-// What a camera sample may add that no sample has met: the luminance on the film of the brightest emission that lands
-// on something smooth, for a path that finds the light there does so by chance and is then as bright as the light. 0
-// where there is no such thing: all other paths to lights are also sampled from the lights and weighted down.
-double LargestUnseenSample(const RenderScene& scene, const RenderSettings& settings);
 
 // Called after each pass.
 using PassCallback = std::function<void(const RenderOutcome& soFar, double fractionDone)>;

@@ -16,6 +16,8 @@ std::string FormatDuration(double seconds) {
     std::snprintf(text, sizeof text, "%ld h %02ld min", whole / 3600, whole / 60 % 60);
   } else if (whole >= 60) {
     std::snprintf(text, sizeof text, "%ld min %02ld s", whole / 60, whole % 60);
+  } else if (seconds < 0.0995 && seconds > 0) {
+    std::snprintf(text, sizeof text, "%.2g ms", 1000 * seconds);
   } else {
     std::snprintf(text, sizeof text, "%.1f s", seconds);
   }

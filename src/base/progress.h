@@ -28,7 +28,7 @@ class Progress {
   double lastPrinted_ = -1e9;
 };
 
-// "1 h 02 min", "3 min 20 s", "4.2 s".
+// "1 h 02 min", "3 min 20 s", "4.2 s", "37 ms".
 std::string FormatDuration(double seconds);
 
 }  // namespace lampyr

@@ -27,8 +27,6 @@ double MeanVariance(double sum, double sumOfSquares, double n) {
   return std::max(0.0, sumOfSquares / n - mean * mean) / (n - 1);
 }
 
-constexpr double kLuminance[3] = {0.2126390, 0.7151687, 0.0721923};  // as Color::Luminance
-
 // The value that a sum of rare contributions of differing sizes does not exceed with 95 % confidence, from the sum and
 // the sum of the contributions' squares: a gamma distribution of the same moments to which one more contribution was
 // added, as large as any may be ([Fay97 eq. 4]). It is what keeps an estimate from being believed while its bright
@@ -39,6 +37,21 @@ double UpperBound(double sum, double sumOfSquares, double largest) {
   if (!(largest > certain * sum)) return sum;
   const double mean = sum + largest, variance = sumOfSquares + largest * largest;
   return variance / (2 * mean) * ChiSquaredQuantile(0.05, 2 * mean * mean / variance);
+}
+
+// (Σ f²)² / Σ f⁴ over the pixels that a splat in the middle of one reaches.
+double SplatSpread(const PixelFilter& filter) {
+  double squares[2] = {0, 0}, fourths[2] = {0, 0};
+  for (int axis = 0; axis < 2; ++axis) {
+    const int reach = static_cast<int>(std::ceil(filter.Radius()[axis]));
+    for (int i = -reach; i <= reach; ++i) {
+      const auto offset = static_cast<float>(i);
+      const double f = static_cast<double>(axis == 0 ? filter.EvaluateX(offset) : filter.EvaluateY(offset));
+      squares[axis] += f * f;
+      fourths[axis] += f * f * f * f;
+    }
+  }
+  return std::pow(squares[0] * squares[1], 2) / (fourths[0] * fourths[1]);
 }
 
 // Intensities of 1e30 have variances that leave float: the largest float stands for them.
@@ -56,7 +69,7 @@ void PixelSums::Add(const Color& value, float filterWeight) {
   if (count > 0) {
     const double scale = 1 / static_cast<double>(count);
     double deviation = 0;
-    for (int c = 0; c < 3; ++c) deviation += kLuminance[c] * std::abs(weighted[c] - scale * sum[c]);
+    for (int c = 0; c < 3; ++c) deviation += Color::kLuminance[c] * std::abs(weighted[c] - scale * sum[c]);
     sumOfFourths += deviation * deviation * deviation * deviation;
   }
   for (int c = 0; c < 3; ++c) {
@@ -98,12 +111,14 @@ double Film::VarianceOfMean(size_t pixel, int channel) const {
   return variance;
 }
 
-// Sum of the squares of what each sample contributes to the variance of the pixel's mean.
+// Sum of the squares of what each sample contributes to the variance of the image. A splat contributes to that of all
+// pixels under the filter at once, and the square of their sum is larger than the sum of their squares.
 double Film::FourthOfMean(size_t pixel) const {
   const PixelSums& samples = pixels_[pixel];
   double fourth = 0;
   if (samples.count >= 2) fourth = samples.sumOfFourths / std::pow(Divisor(samples), 4);
-  if (lightPaths_ > 0) fourth += splats_[pixel].SumOfFourths() / std::pow(static_cast<double>(lightPaths_), 4);
+  if (lightPaths_ > 0)
+    fourth += splatSpread_ * splats_[pixel].SumOfFourths() / std::pow(static_cast<double>(lightPaths_), 4);
   return fourth;
 }
 
@@ -113,7 +128,10 @@ SplatList Film::MakeSplatList(const PixelFilter& filter, float scale) const {
 }
 
 void Film::AddSplats(const PixelFilter& filter, std::span<const SplatList> lists, int threads) {
-  if (splats_.empty()) splats_.resize(pixels_.size());
+  if (splats_.empty()) {
+    splats_.resize(pixels_.size());
+    splatSpread_ = SplatSpread(filter);
+  }
   const int bands = std::max(threads, 1);
   ParallelFor(bands, threads, [&](int band) { AddToRows(filter, lists, band, bands); });
   for (const SplatList& list : lists) lightPaths_ += list.Paths();
@@ -176,8 +194,8 @@ double Film::RelativeError(double largestSample) const {
     // The channels of a sample share its path: taken as fully correlated, which bounds the variance from above.
     double deviation = 0, value = 0;
     for (int c = 0; c < 3; ++c) {
-      deviation += kLuminance[c] * std::sqrt(VarianceOfMean(i, c));
-      value += kLuminance[c] * Value(i, c);
+      deviation += Color::kLuminance[c] * std::sqrt(VarianceOfMean(i, c));
+      value += Color::kLuminance[c] * Value(i, c);
     }
     varianceSum += deviation * deviation;
     fourthSum += FourthOfMean(i);
@@ -189,6 +207,9 @@ double Film::RelativeError(double largestSample) const {
   const double bound = UpperBound(varianceSum, fourthSum, largest);
   if (bound == 0) return 0;  // black or constant: nothing left to improve
   const double meanLuminance = luminanceSum / n;
+  // What stayed black for so long is taken for black.
+  constexpr double kLong = 4096;
+  if (varianceSum == 0 && meanLuminance == 0 && samples / n >= kLong) return 0;
   if (!(meanLuminance > 0)) return std::numeric_limits<double>::infinity();
   return 1.959963984540054 * std::sqrt(bound / n) / meanLuminance;
 }

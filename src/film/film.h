@@ -74,6 +74,7 @@ class Film {
   std::vector<PixelSums> pixels_;
   std::vector<SplatSums> splats_;  // empty while there are none
   uint64_t lightPaths_ = 0;
+  double splatSpread_ = 1;  // how many pixels a splat is worth (film.cpp)
 };
 
 }  // namespace lampyr

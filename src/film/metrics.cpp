@@ -15,7 +15,7 @@ namespace lampyr {
 
 namespace {
 
-using Planes = std::array<std::vector<float>, 3>;  // R, G, B
+using Planes = std::array<std::vector<double>, 3>;  // R, G, B
 
 // An image as the metrics see it.
 struct Measured {
@@ -58,8 +58,8 @@ std::optional<Planes> ReadVariance(const Image& image, const char* which) {
           throw Error("the layer \"" + layer + "\" of the " + which + " image has values that are no " +
                       (isVariance ? "variance" : "standard error"));
         }
-        planes[c].push_back(value);
-        if (!isVariance) planes[c].back() = std::min(value * value, std::numeric_limits<float>::max());
+        const auto wide = static_cast<double>(value);
+        planes[c].push_back(isVariance ? wide : wide * wide);
       }
     }
     return planes;
@@ -122,7 +122,7 @@ void MeasureErrors(const Measured& a, const Measured& b, ImageDifference& differ
 double VarianceOfGray(const Measured& a, const Measured& b, size_t i) {
   double deviation = 0;
   for (int c = 0; c < 3; ++c) {
-    deviation += std::sqrt(static_cast<double>((*a.variance)[c][i]) + static_cast<double>((*b.variance)[c][i]));
+    deviation += std::sqrt((*a.variance)[c][i] + (*b.variance)[c][i]);
   }
   return deviation * deviation / 9;
 }
@@ -153,7 +153,7 @@ std::optional<double> BlockZ(const Measured& a, const Measured& b, int channel, 
       const size_t i = static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x);
       sumA += Channels(a.colors[i])[channel];
       sumB += Channels(b.colors[i])[channel];
-      variance += static_cast<double>((*a.variance)[channel][i]) + static_cast<double>((*b.variance)[channel][i]);
+      variance += (*a.variance)[channel][i] + (*b.variance)[channel][i];
     }
   }
   if (variance == 0 && sumA == sumB) return std::nullopt;
@@ -221,7 +221,7 @@ void VisitReference(const Measured& reference, Visit visit) {
   for (size_t i = 0; i < pixels; ++i) {
     const auto value = Channels(reference.colors[i]);
     for (size_t c = 0; c < 3; ++c) {
-      const double variance = reference.variance ? static_cast<double>((*reference.variance)[c][i]) : 0.0;
+      const double variance = reference.variance ? (*reference.variance)[c][i] : 0.0;
       visit(i, c, value[c], variance, value[c] * value[c] + floor);
     }
   }
@@ -235,9 +235,9 @@ double MeanOfMap(const std::vector<float>& map) {
 
 }  // namespace
 
-ImageError MeasureError(const Image& image, const Image& reference) {
+ImageError MeasureError(const Image& image, const Image& reference, float exposureStops) {
   CheckSameSize(image, reference);
-  const Measured measured = Measure(image, "first"), truth = Measure(reference, "reference");
+  Measured measured = Measure(image, "first"), truth = Measure(reference, "reference");
   const double n = 3.0 * static_cast<double>(truth.colors.size());
   ImageError error;
   double sum = 0, sumOfReference = 0;
@@ -249,40 +249,78 @@ ImageError MeasureError(const Image& image, const Image& reference) {
     sumOfReference += value;
   });
   error.bias = Ratio(sum, std::abs(sumOfReference));
+  if (exposureStops != 0) {
+    const float exposure = std::exp2(exposureStops);
+    for (Color& color : measured.colors) color *= exposure;
+    for (Color& color : truth.colors) color *= exposure;
+  }
   error.flip = MeanOfMap(FlipMap(measured.colors, truth.colors, image.width, image.height));
   return error;
 }
 
-double CommonRelMse(const Image& a, const Image& b, const Image& reference) {
-  CheckSameSize(a, reference);
-  CheckSameSize(b, reference);
-  const std::vector<Color> first = ReadColors(a, "first"), second = ReadColors(b, "second");
+CommonError MeasureCommonError(std::span<const Image* const> images, const Image& reference) {
   const Measured truth = Measure(reference, "reference");
-  double sum = 0;
+  std::vector<std::vector<Color>> colors;
+  for (const Image* image : images) {
+    CheckSameSize(*image, reference);
+    colors.push_back(ReadColors(*image, "compared"));
+  }
+  const double count = static_cast<double>(images.size());
+  double sum = 0;  // over pairs
+  std::vector<double> sumWith(images.size(), 0.0);
+  std::vector<double> differences(images.size());
   VisitReference(truth, [&](size_t i, size_t c, double value, double variance, double divisor) {
-    sum += Ratio((Channels(first[i])[c] - value) * (Channels(second[i])[c] - value) - variance, divisor);
+    double total = 0, squares = 0;
+    for (size_t k = 0; k < colors.size(); ++k) {
+      differences[k] = Channels(colors[k][i])[c] - value;
+      total += differences[k];
+      squares += differences[k] * differences[k];
+    }
+    sum += Ratio(0.5 * (total * total - squares) - 0.5 * count * (count - 1) * variance, divisor);
+    for (size_t k = 0; k < colors.size(); ++k) {
+      sumWith[k] += Ratio(differences[k] * (total - differences[k]) - (count - 1) * variance, divisor);
+    }
   });
-  return sum / (3.0 * static_cast<double>(truth.colors.size()));
+  const double n = 3.0 * static_cast<double>(truth.colors.size());
+  CommonError error;
+  error.relMse = sum / (0.5 * count * (count - 1)) / n;
+  if (images.size() < 3) return error;
+  for (const double with : sumWith) error.without.push_back((sum - with) / (0.5 * (count - 1) * (count - 2)) / n);
+  return error;
 }
 
-std::optional<ImageNoise> NoiseOf(const Image& reference) {
+std::optional<ImageNoise> NoiseOf(const Image& reference, int parts) {
   const Measured truth = Measure(reference, "reference");
   if (!truth.variance) return std::nullopt;
   const double n = 3.0 * static_cast<double>(truth.colors.size());
   ImageNoise noise;
-  double mean = 0;
-  VisitReference(truth, [&](size_t, size_t, double value, double variance, double divisor) {
+  double mean = 0, varianceOfSum = 0, deviation = 0, mseDeviation = 0, relMseDeviation = 0;
+  double varianceOfMse = 0, varianceOfRelMse = 0;
+  VisitReference(truth, [&](size_t, size_t c, double value, double variance, double divisor) {
     noise.mse += variance / n;
     noise.relMse += Ratio(variance, divisor) / n;
     mean += value / n;
+    deviation += std::sqrt(variance);
+    mseDeviation += variance;
+    relMseDeviation += Ratio(variance, divisor);
+    if (c < 2) return;
+    varianceOfSum += deviation * deviation;
+    varianceOfMse += mseDeviation * mseDeviation;
+    varianceOfRelMse += relMseDeviation * relMseDeviation;
+    deviation = mseDeviation = relMseDeviation = 0;
   });
+  // e² - v̂ of a normal e with variance v: 2 v² and, v̂ from so many parts, 2 v²/(parts - 1).
+  const double factor = 2 + 2 / std::max(1.0, static_cast<double>(parts) - 1);
+  noise.mseError = std::sqrt(factor * varianceOfMse) / n;
+  noise.relMseError = std::sqrt(factor * varianceOfRelMse) / n;
   noise.relativeError = Ratio(std::sqrt(noise.mse), std::abs(mean));
+  noise.meanError = Ratio(std::sqrt(varianceOfSum) / n, std::abs(mean));
   return noise;
 }
 
 double MeanValue(const Image& image) {
   double sum = 0;
-  const std::vector<Color> colors = ReadColors(image, "measured");
+  const std::vector<Color> colors = ReadColors(image, "given");
   for (const Color& color : colors) {
     for (const double v : Channels(color)) sum += v;
   }

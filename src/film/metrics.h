@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -40,23 +41,32 @@ ImageDifference CompareImages(const Image& a, const Image& b, int blockSize = 8,
 
 // The errors of an image whose reference is itself a measurement: the variance of the reference's pixels (its variance
 // layers) is part of every square of a difference, and is subtracted. Where the reference is as noisy as the image,
-// what is left may be below 0.
+// what is left may be below 0. FLIP is of the images as shown with `exposureStops`; the part that the reference's noise
+// has in it is not known.
 struct ImageError {
-  double mse = 0, relMse = 0,
-         flip = 0;  // flip is what it is: the part that the reference's noise has in it is not known
+  double mse = 0, relMse = 0, flip = 0;
   double bias = 0;  // mean difference over the reference's mean
 };
-ImageError MeasureError(const Image& image, const Image& reference);
+ImageError MeasureError(const Image& image, const Image& reference, float exposureStops = 0);
 
-// The same of two independent images a and b, whose differences are multiplied instead of squared: an estimate of the
-// squares that have no noise of either, of what is wrong in both alike.
-double CommonRelMse(const Image& a, const Image& b, const Image& reference);
-
-// The reference's own noise. Absent without variance layers. `relativeError` is the root of mse over the mean.
-struct ImageNoise {
-  double mse = 0, relMse = 0, relativeError = 0;
+// What is wrong in all of some independent images alike, as relMSE: the mean over their pairs of one's difference times
+// the other's, in which the noise of neither is left, nor the reference's. `without`: the same without each of them.
+struct CommonError {
+  double relMse = 0;
+  std::vector<double> without;  // empty for two images
 };
-std::optional<ImageNoise> NoiseOf(const Image& reference);
+CommonError MeasureCommonError(std::span<const Image* const> images, const Image& reference);
+
+// The reference's own noise. Absent without variance layers.
+struct ImageNoise {
+  double mse = 0, relMse = 0;
+  double relativeError = 0;  // root of mse over the mean
+  double meanError = 0;      // standard error of the image's mean, relative to it; pixels taken as independent
+  // Standard errors of what subtracting the noise leaves: squares of normal deviates less their variance, which is
+  // known from `parts` independent images. Channels taken as fully correlated.
+  double mseError = 0, relMseError = 0;
+};
+std::optional<ImageNoise> NoiseOf(const Image& reference, int parts);
 
 // Mean over pixels and R, G, B.
 double MeanValue(const Image& image);

@@ -69,8 +69,8 @@ class SplatSums {
   double SumOfSquares(int channel) const { return sumOfSquares_[channel] + latest_[channel] * latest_[channel]; }
   // Of the paths' luminances.
   double SumOfFourths() const {
-    constexpr double weights[3] = {0.2126390, 0.7151687, 0.0721923};  // as Color::Luminance
-    const double luminance = weights[0] * latest_[0] + weights[1] * latest_[1] + weights[2] * latest_[2];
+    double luminance = 0;
+    for (int c = 0; c < 3; ++c) luminance += Color::kLuminance[c] * latest_[c];
     return sumOfFourths_ + luminance * luminance * luminance * luminance;
   }
 

@@ -86,6 +86,7 @@ struct Color {
   float Max() const { return std::max(r, std::max(g, b)); }
   float Average() const { return (r + g + b) * (1.0f / 3.0f); }
   float Luminance() const { return 0.2126390f * r + 0.7151687f * g + 0.0721923f * b; }
+  static constexpr double kLuminance[3] = {0.2126390, 0.7151687, 0.0721923};  // the same, of sums in double
   // Neither NaN, nor infinite, nor negative.
   bool IsValid() const { return r >= 0 && g >= 0 && b >= 0 && r + g + b < kInfinity; }
 

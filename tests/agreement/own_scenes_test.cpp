@@ -1,5 +1,6 @@
 // The scenes of scenes/, each by all integrators that can sample what is seen of it. What only one of them finds (the
-// caustics of point lights by path tracing, anything behind smooth glass by light tracing) is out of the crop.
+// caustics of point lights by path tracing, anything behind smooth glass by light tracing) is out of the crop or too
+// long.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -34,8 +35,8 @@ void PrintTo(const OwnScene& scene, std::ostream* stream) {
 const OwnScene kOwnScenes[] = {
     {"glass-sphere", "bdpt", 8, "path", 64},
     {"pool", "bdpt", 16, "path", 32},
-    {"ring", "bdpt", 8, "path",
-     32},  // Two events are too few for the way through the lens, which path tracing cannot find.
+    {"ring", "bdpt", 8, "path", 32},
+    // In two events no path gets through the lens, which path tracing could not find.
     {"spot-lens", "bdpt", 8, "path", 16, nullptr, 2},
     {"spot-lens", "bdpt", 8, "light", 32, "0.58,1,0,1"},
     {"still-life", "bdpt", 8, "path", 32},

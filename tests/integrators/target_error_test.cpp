@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/unseen_samples.h"
 #include "support/render_scene.h"
 
 namespace lampyr {
@@ -78,6 +79,7 @@ TEST_P(TargetError, HoldsForNineteenOfTwentySeeds) {
   StopConditions stop;
   stop.samplesPerPixel = 1 << 20;
   stop.relativeError = promise.targetError;
+  stop.largestSample = LargestUnseenSample(built.scene, built.settings);
   int kept = 0, samples = 0;
   double largest = 0, mean = 0;
   for (int seed = 0; seed < kSeeds; ++seed) {

@@ -122,7 +122,7 @@ function strip({results}) {
     integrator.bias = {...integrator.bias, low: null, high: null, significant: false};
     integrator.systematic = {value: null, low: null, high: null, significant: false};
     integrator.timeToError = integrator.timeToError.map(({error}) =>
-      ({error, seconds: null, low: null, high: null, kind: 'never'}));
+      ({error, seconds: null, low: null, high: null, kind: 'unresolved'}));
     integrator.snapshots = integrator.snapshots.map((snapshot) => ({...snapshot, mse: null, relMse: null, flip: null,
       efficiency: null, relEfficiency: null, picture: null, errorPicture: null}));
   }

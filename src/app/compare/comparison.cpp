@@ -14,14 +14,8 @@ namespace {
 
 constexpr double kErrors[] = {0.1, 0.05, 0.01};
 
-// One picture against the reference.
-struct Look {
-  ComparedScene::Milestone reached;
-  ImageError error;
-};
-
 struct Repeat {
-  std::vector<Look> looks;  // by milestone
+  std::vector<ComparedRun> looks;  // by milestone
   Image last;
 };
 
@@ -50,9 +44,9 @@ std::optional<Estimate> Inverse(const std::optional<Estimate>& cost) {
                   cost->low > 0 ? 1 / cost->low : std::numeric_limits<double>::infinity()};
 }
 
-// Errors that are not above the reference's own are not told apart from it.
-std::optional<Estimate> Resolved(const std::vector<double>& errors, std::optional<double> noise) {
-  auto estimate = MeanOnLogScale(errors);
+// Errors that are not above the reference's own noise are not told apart from it.
+std::optional<Estimate> Resolved(const std::vector<double>& errors, std::optional<double> noise, double noiseError) {
+  auto estimate = MeanOnLogScale(errors, noiseError);
   if (estimate && noise && estimate->value < *noise) estimate.reset();
   return estimate;
 }
@@ -72,33 +66,22 @@ std::vector<unsigned char> ErrorPicture(const Image& image, const Reference& ref
   return EncodePng(image.width, image.height, rgb);
 }
 
-// The part of relMSE that is common to all repeats: the mean over their pairs, its error by leaving each repeat out in
-// turn (the jackknife).
+// Of rounding, which is the same in all repeats: not to be taken for a flaw of an integrator.
+constexpr double kRoundingOfMean = 1e-5, kRoundingOfRelMse = 1e-10;
+
+// The part of relMSE that is common to all repeats, its error by leaving each repeat out in turn (the jackknife). What
+// is below the reference's own noise cannot be told from that.
 SignificantEstimate SystematicPart(const std::vector<Repeat>& repeats, const Reference& reference) {
-  const size_t n = repeats.size();
-  std::vector<double> sumWith(n, 0.0);  // of the pairs that a repeat is in
-  double sum = 0;
-  for (size_t i = 0; i < n; ++i) {
-    for (size_t j = i + 1; j < n; ++j) {
-      const double common = CommonRelMse(repeats[i].last, repeats[j].last, reference.image);
-      sum += common;
-      sumWith[i] += common;
-      sumWith[j] += common;
-    }
-  }
-  const double pairs = 0.5 * static_cast<double>(n * (n - 1));
-  std::vector<double> pseudoValues;  // n·S - (n - 1)·S without one: their mean's error is the jackknife's
-  const double count = static_cast<double>(n);
-  for (size_t i = 0; i < n; ++i) {
-    const double without = n > 2 ? (sum - sumWith[i]) / (pairs - count + 1) : sum;
-    pseudoValues.push_back(count * sum / pairs - (count - 1) * without);
-  }
-  SignificantEstimate estimate = MeanOf(pseudoValues);
-  if (n < 3) {  // one pair: its error is not known
-    estimate.low = -std::numeric_limits<double>::infinity();
-    estimate.high = std::numeric_limits<double>::infinity();
-    estimate.significant = false;
-  }
+  std::vector<const Image*> images;
+  for (const Repeat& repeat : repeats) images.push_back(&repeat.last);
+  const CommonError common = MeasureCommonError(images, reference.image);
+  const double n = static_cast<double>(repeats.size());
+  std::vector<double> pseudoValues;  // their mean's error is the jackknife's
+  for (const double without : common.without) pseudoValues.push_back(n * common.relMse - (n - 1) * without);
+  if (pseudoValues.empty()) pseudoValues.push_back(common.relMse);  // one pair: its error is not known
+  SignificantEstimate estimate = MeanOf(pseudoValues, reference.noise.relMseError);
+  estimate.value = common.relMse;
+  if (common.relMse < std::max(reference.facts.relMse.value_or(0), kRoundingOfRelMse)) estimate.significant = false;
   return estimate;
 }
 
@@ -108,66 +91,66 @@ ComparedSnapshot Summarise(const Run& run, size_t milestone, const ComparisonPla
   snapshot.byTime = milestone < plan.times.size();
   snapshot.budget = snapshot.byTime ? plan.times[milestone] : plan.sampleCounts[milestone - plan.times.size()];
   const auto values = [&](auto value) { return Collect(run.repeats, milestone, value); };
-  snapshot.seconds = MomentsOf(values([](const Look& look) { return look.reached.seconds; })).mean;
+  snapshot.seconds = MomentsOf(values([](const ComparedRun& one) { return one.seconds; })).mean;
   snapshot.samplesPerPixel =
-      MomentsOf(values([](const Look& look) { return static_cast<double>(look.reached.samplesPerPixel); })).mean;
+      MomentsOf(values([](const ComparedRun& one) { return static_cast<double>(one.samplesPerPixel); })).mean;
   const double pixels = static_cast<double>(settings.crop.Width()) * settings.crop.Height();
   snapshot.samplesPerSecond = pixels * snapshot.samplesPerPixel / std::max(snapshot.seconds, 1e-9);
   const ComparisonReference& facts = reference.facts;
-  snapshot.mse = Resolved(values([](const Look& look) { return look.error.mse; }), facts.mse);
-  snapshot.relMse = Resolved(values([](const Look& look) { return look.error.relMse; }), facts.relMse);
+  const ImageNoise& noise = reference.noise;
+  snapshot.mse = Resolved(values([](const ComparedRun& one) { return one.mse; }), facts.mse, noise.mseError);
+  snapshot.relMse =
+      Resolved(values([](const ComparedRun& one) { return one.relMse; }), facts.relMse, noise.relMseError);
   if (snapshot.mse) {
-    snapshot.efficiency =
-        Inverse(MeanOnLogScale(values([](const Look& look) { return look.error.mse * look.reached.seconds; })));
+    snapshot.efficiency = Inverse(MeanOnLogScale(values([](const ComparedRun& one) { return one.mse * one.seconds; }),
+                                                 noise.mseError * snapshot.seconds));
   }
   if (snapshot.relMse) {
-    snapshot.relEfficiency =
-        Inverse(MeanOnLogScale(values([](const Look& look) { return look.error.relMse * look.reached.seconds; })));
+    snapshot.relEfficiency = Inverse(MeanOnLogScale(
+        values([](const ComparedRun& one) { return one.relMse * one.seconds; }), noise.relMseError * snapshot.seconds));
   }
-  snapshot.flip = MeanOnLogScale(values([](const Look& look) { return look.error.flip; })).value_or(Estimate{});
+  for (const Repeat& repeat : run.repeats) snapshot.runs.push_back(repeat.looks[milestone]);
+  snapshot.flip = MeanOnLogScale(values([](const ComparedRun& one) { return one.flip; })).value_or(Estimate{});
   return snapshot;
 }
 
 struct CurvePoint {
-  double seconds;
+  double seconds, secondsPerSample;
   Estimate relMse;
 };
 
 // On the measured curve where it passes the error; beyond it by the law of independent samples, relMSE - systematic
-// part ~ 1/time, from the nearest point.
+// part ~ 1/time, from the nearest point. Of the systematic part, only what is sure counts.
 TimeToError FindTime(const std::vector<CurvePoint>& curve, const SignificantEstimate& systematic, double error) {
   TimeToError result;
   result.error = error;
+  if (curve.empty()) {
+    result.kind = TimeToError::Kind::Unresolved;
+    return result;
+  }
   const double target = error * error;
-  if (curve.empty()) return result;
-  double slope = 1;
-  const CurvePoint* nearest = nullptr;
-  double seconds = 0;
-  if (curve.front().relMse.value <= target) {
-    nearest = &curve.front();
-    result.kind = TimeToError::Kind::Extrapolated;
-    seconds = nearest->seconds * nearest->relMse.value / target;
-  }
-  for (size_t i = 1; i < curve.size() && !nearest; ++i) {
+  for (size_t i = 1; i < curve.size(); ++i) {
     const CurvePoint &a = curve[i - 1], &b = curve[i];
-    if (b.relMse.value > target) continue;
+    if (a.relMse.value <= target || b.relMse.value > target) continue;
     const double run = std::log(b.seconds / a.seconds), fall = std::log(a.relMse.value / b.relMse.value);
-    seconds = a.seconds * std::exp(run * std::log(a.relMse.value / target) / fall);
-    slope = std::max(run > 0 ? fall / run : 1, 0.5);
-    nearest = &b;
+    const double slope = std::max(run > 0 ? fall / run : 1, 0.5);
+    const double seconds = a.seconds * std::exp(run * std::log(a.relMse.value / target) / fall);
     result.kind = TimeToError::Kind::Measured;
+    result.seconds = {seconds, seconds * std::pow(b.relMse.low / b.relMse.value, 1 / slope),
+                      seconds * std::pow(b.relMse.high / b.relMse.value, 1 / slope)};
+    return result;
   }
-  if (!nearest) {
-    nearest = &curve.back();
-    const double floor = systematic.significant ? std::max(systematic.value, 0.0) : 0.0;
-    if (target <= floor) return result;
-    result.kind = TimeToError::Kind::Extrapolated;
-    seconds = nearest->seconds * std::max(nearest->relMse.value - floor, 0.0) / (target - floor);
-    seconds = std::max(seconds, nearest->seconds);
-  }
-  const Estimate& measured = nearest->relMse;
-  result.seconds = {seconds, seconds * std::pow(measured.low / measured.value, 1 / slope),
-                    seconds * std::pow(measured.high / measured.value, 1 / slope)};
+  const bool isBefore = curve.front().relMse.value <= target;
+  const CurvePoint& nearest = isBefore ? curve.front() : curve.back();
+  const double floor = systematic.significant ? std::max(systematic.low, 0.0) : 0.0;
+  if (target <= floor) return result;
+  result.kind = TimeToError::Kind::Extrapolated;
+  // No picture takes less than a sample per pixel, nor one that is worse than what was measured more than that.
+  const double least = isBefore ? nearest.secondsPerSample : nearest.seconds;
+  const auto timeFrom = [&](double relMse) {
+    return std::max(nearest.seconds * std::max(relMse - floor, 0.0) / (target - floor), least);
+  };
+  result.seconds = {timeFrom(nearest.relMse.value), timeFrom(nearest.relMse.low), timeFrom(nearest.relMse.high)};
   return result;
 }
 
@@ -177,15 +160,16 @@ ComparedIntegrator Describe(const Run& run, const ComparedScene& scene, const Co
   described.name = run.integrator;
   described.hints = IntegratorHints(scene.Built().scene, run.integrator);
   std::vector<double> biases;
-  for (const Repeat& repeat : run.repeats) {
-    biases.push_back(MeasureError(repeat.last, reference.image).bias);
-  }
-  described.bias = MeanOf(biases, reference.meanError);
+  for (const Repeat& repeat : run.repeats) biases.push_back(MeanValue(repeat.last) / reference.facts.mean - 1);
+  described.bias = MeanOf(biases, reference.noise.meanError);
+  if (std::abs(described.bias.value) < kRoundingOfMean) described.bias.significant = false;
   described.systematic = SystematicPart(run.repeats, reference);
   std::vector<CurvePoint> curve;
   for (size_t milestone = 0; milestone < plan.times.size() + plan.sampleCounts.size(); ++milestone) {
     ComparedSnapshot snapshot = Summarise(run, milestone, plan, reference, scene.Built().settings);
-    if (snapshot.relMse) curve.push_back({snapshot.seconds, *snapshot.relMse});
+    if (snapshot.relMse) {
+      curve.push_back({snapshot.seconds, snapshot.seconds / snapshot.samplesPerPixel, *snapshot.relMse});
+    }
     snapshot.picture = run.integrator + "-" + BudgetName(snapshot.byTime, snapshot.budget);
     snapshot.errorPicture = "error-" + snapshot.picture;
     const Image& picture = run.pictures[milestone];
@@ -207,9 +191,7 @@ void AddRatios(const std::vector<Run>& runs, ComparisonResults& results) {
       for (const bool relative : {true, false}) {
         const bool resolved = relative ? own.relMse && first.relMse : own.mse && first.mse;
         if (!resolved) continue;
-        const auto cost = [&](const Look& look) {
-          return (relative ? look.error.relMse : look.error.mse) * look.reached.seconds;
-        };
+        const auto cost = [&](const ComparedRun& run) { return (relative ? run.relMse : run.mse) * run.seconds; };
         const auto ratio =
             RatioOfMeans(Collect(runs[0].repeats, milestone, cost), Collect(runs[i].repeats, milestone, cost));
         if (!ratio) continue;
@@ -237,8 +219,11 @@ void Compare(const ComparedScene& scene, const ComparisonPlan& plan, const Refer
         Repeat repeat;
         repeat.looks.resize(milestones);
         double seconds = 0;
+        const uint64_t seed = SeedOf(SeedUse::Compared, plan.seed + static_cast<uint64_t>(whole));
         const auto look = [&](size_t milestone, const ComparedScene::Milestone& reached, const Image& image) {
-          repeat.looks[milestone] = {reached, MeasureError(image, reference.image)};
+          const ImageError error = MeasureError(image, reference.image, plan.exposure);
+          repeat.looks[milestone] = {seed,       reached.seconds, reached.samplesPerPixel, error.mse, error.relMse,
+                                     error.flip, error.bias};
           repeat.last = image;
           if (whole == 0) {
             run.pictures.resize(milestones);
@@ -246,13 +231,12 @@ void Compare(const ComparedScene& scene, const ComparisonPlan& plan, const Refer
           }
         };
         const double before = whole * static_cast<double>(runs.size()) + static_cast<double>(i);
-        scene.Render(run.integrator, plan.seed + static_cast<uint64_t>(whole), plan.times, plan.sampleCounts, look,
-                     [&](double now) {
-                       seconds = now;
-                       const double ofRender = lastSeconds > 0 ? std::min(now / lastSeconds, 1.0) : 0;
-                       progress((before + ofRender) / steps, run.integrator + ", " + std::to_string(whole + 1) +
-                                                                 " of " + std::to_string(plan.repeats));
-                     });
+        scene.Render(run.integrator, seed, plan.times, plan.sampleCounts, look, [&](double now) {
+          seconds = now;
+          const double ofRender = lastSeconds > 0 ? std::min(now / lastSeconds, 1.0) : 0;
+          progress((before + ofRender) / steps,
+                   run.integrator + ", " + std::to_string(whole + 1) + " of " + std::to_string(plan.repeats));
+        });
         lastSeconds = std::max(lastSeconds, seconds);
         run.repeats.push_back(std::move(repeat));
       }

@@ -32,10 +32,11 @@ Moments MomentsOf(std::span<const double> values) {
   return moments;
 }
 
-std::optional<Estimate> MeanOnLogScale(std::span<const double> values) {
+std::optional<Estimate> MeanOnLogScale(std::span<const double> values, double otherError) {
   const Moments m = MomentsOf(values);
   if (!(m.mean > 0)) return std::nullopt;
-  return OnLogScale(m.mean, std::sqrt(m.varianceOfMean) / m.mean, static_cast<double>(values.size()) - 1);
+  return OnLogScale(m.mean, std::sqrt(m.varianceOfMean + otherError * otherError) / m.mean,
+                    static_cast<double>(values.size()) - 1);
 }
 
 std::optional<Estimate> RatioOfMeans(std::span<const double> a, std::span<const double> b) {

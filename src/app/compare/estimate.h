@@ -11,8 +11,8 @@ namespace lampyr {
 
 // The mean of the values and its 95 % interval by Student's t on the logarithm of the mean (its standard error by the
 // delta method): positive, and as wide up as down on a logarithmic axis. Absent where the mean is not above 0. A single
-// value has an interval from 0 to infinity.
-std::optional<Estimate> MeanOnLogScale(std::span<const double> values);
+// value has an interval from 0 to infinity. `otherError`: the standard error of what was subtracted from every value.
+std::optional<Estimate> MeanOnLogScale(std::span<const double> values, double otherError = 0);
 
 // mean(a) / mean(b) likewise, Welch's degrees of freedom.
 std::optional<Estimate> RatioOfMeans(std::span<const double> a, std::span<const double> b);

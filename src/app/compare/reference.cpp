@@ -8,7 +8,7 @@
 #include "app/compare/estimate.h"
 #include "app/integrator_hints.h"
 #include "base/version.h"
-#include "film/metrics.h"
+#include "sampling/rng.h"
 
 namespace lampyr {
 
@@ -16,12 +16,10 @@ namespace {
 
 constexpr int kReferenceParts = 8;
 constexpr int kPilotParts = 4;
-// Seeds that no compared render has.
-constexpr uint64_t kReferenceSeed = uint64_t{1} << 40, kPilotSeed = uint64_t{1} << 41;
+// Standard errors have the range of the values; variances of very bright or dim pictures leave that of floats.
+const std::vector<std::string> kLayers = {"R", "G", "B", "stderr.R", "stderr.G", "stderr.B"};
 
-const std::vector<std::string> kLayers = {"R", "G", "B", "variance.R", "variance.G", "variance.B"};
-
-// Mean of pictures, with the variance of the mean by their spread.
+// Mean of pictures, with the standard error of the mean by their spread.
 class MeanOfImages {
  public:
   void Add(const Image& image) {
@@ -49,7 +47,8 @@ class MeanOfImages {
       const double shift = sums_[k] / n;
       mean.data[k / 3 * 6 + k % 3] = static_cast<float>(First(k / 3, k % 3) + shift);
       if (images_ < 2) continue;
-      mean.data[k / 3 * 6 + k % 3 + 3] = static_cast<float>(std::max(0.0, squares_[k] / n - shift * shift) / (n - 1));
+      mean.data[k / 3 * 6 + k % 3 + 3] =
+          static_cast<float>(std::sqrt(std::max(0.0, squares_[k] / n - shift * shift) / (n - 1)));
     }
     return mean;
   }
@@ -66,15 +65,20 @@ class MeanOfImages {
 };
 
 // What is known of a reference by looking at it.
-void Describe(Reference& reference, std::span<const double> means) {
+void Describe(Reference& reference) {
   ComparisonReference& facts = reference.facts;
   facts.mean = MeanValue(reference.image);
-  if (const auto noise = NoiseOf(reference.image)) {
+  if (const auto noise = NoiseOf(reference.image, kReferenceParts)) {
+    reference.noise = *noise;
     facts.mse = noise->mse;
     facts.relMse = noise->relMse;
     facts.relativeError = noise->relativeError;
   }
-  if (facts.mean > 0) reference.meanError = std::sqrt(MomentsOf(means).varianceOfMean) / facts.mean;
+}
+
+std::string MetadataOf(const Image& image, const char* name) {
+  const auto found = image.metadata.find(name);
+  return found == image.metadata.end() ? std::string() : found->second;
 }
 
 std::string Percent(double fraction) {
@@ -83,39 +87,84 @@ std::string Percent(double fraction) {
   return text;
 }
 
+// Means of the whole picture and of the blocks of a grid over it, by part of a pilot.
 struct PilotRun {
   Pilot pilot;
   std::vector<double> means;
+  std::vector<std::vector<double>> blocks;
   bool isHinted = false;
 };
 
-// Whether `other` finds significantly more light than `run`.
+constexpr int kGrid = 16;
+
+std::vector<double> BlockMeans(const Image& image) {
+  std::vector<double> sums(kGrid * kGrid, 0.0), counts(kGrid * kGrid, 0.0);
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const auto block = static_cast<size_t>(y * kGrid / image.height * kGrid + x * kGrid / image.width);
+      sums[block] += static_cast<double>(image.RgbAt(x, y).Average());
+      ++counts[block];
+    }
+  }
+  for (size_t i = 0; i < sums.size(); ++i) sums[i] /= std::max(counts[i], 1.0);
+  return sums;
+}
+
+// Whether `a` is brighter than `b`, with a probability `byChance` of being wrong. `scale`: what differences below a
+// hundred thousandth of it are rounding.
+bool IsBrighter(std::span<const double> a, std::span<const double> b, double byChance, double scale) {
+  const Moments first = MomentsOf(a), second = MomentsOf(b);
+  constexpr double rounding = 1e-5;
+  const double error = std::sqrt(first.varianceOfMean + second.varianceOfMean);
+  const double t = StudentQuantileTwoSided(byChance, static_cast<double>(a.size()) - 1);
+  return first.mean - second.mean > std::max(t * error, rounding * scale);
+}
+
+// Whether `other` finds significantly more light than `run`, in the whole picture or in a part of it.
 bool FindsMore(const PilotRun& other, const PilotRun& run) {
-  const Moments a = MomentsOf(other.means), b = MomentsOf(run.means);
-  const double variance = a.varianceOfMean + b.varianceOfMean;
-  constexpr double certain = 0.01, rounding = 1e-5;
-  const double t = StudentQuantileTwoSided(certain, kPilotParts - 1);
-  return a.mean - b.mean > std::max(t * std::sqrt(variance), rounding * std::abs(a.mean));
+  constexpr double byChance = 0.01;
+  const double scale = MomentsOf(other.means).mean;
+  if (IsBrighter(other.means, run.means, byChance, scale)) return true;
+  for (size_t block = 0; block < other.blocks.front().size(); ++block) {
+    const auto of = [block](const PilotRun& one) {
+      std::vector<double> values;
+      for (const std::vector<double>& part : one.blocks) values.push_back(part[block]);
+      return values;
+    };
+    if (IsBrighter(of(other), of(run), SidakRate(byChance, kGrid * kGrid), scale)) return true;
+  }
+  return false;
 }
 
 void Choose(std::vector<PilotRun>& runs) {
   std::sort(runs.begin(), runs.end(),
             [](const PilotRun& a, const PilotRun& b) { return a.pilot.relMse < b.pilot.relMse; });
   const bool allHinted = std::all_of(runs.begin(), runs.end(), [](const PilotRun& run) { return run.isHinted; });
+  const bool allBlack = std::none_of(runs.begin(), runs.end(), [](const PilotRun& run) { return run.pilot.mean > 0; });
   PilotRun* chosen = nullptr;
   for (PilotRun& run : runs) {
-    const auto more =
-        std::find_if(runs.begin(), runs.end(), [&](const PilotRun& other) { return FindsMore(other, run); });
+    if (!(run.pilot.mean > 0) && !allBlack) {
+      run.pilot.note = "finds no light";
+      continue;
+    }
+    auto more = runs.end();  // the brightest of those that find more
+    for (auto other = runs.begin(); other != runs.end(); ++other) {
+      const bool isBrightest = more == runs.end() || other->pilot.mean > more->pilot.mean;
+      if (isBrightest && FindsMore(*other, run)) more = other;
+    }
     if (more != runs.end()) {
       const double share = MomentsOf(run.means).mean / MomentsOf(more->means).mean;
-      run.pilot.note = "finds " + Percent(share) + " of the light that " + more->pilot.integrator + " finds";
+      run.pilot.note = "finds less light than " + more->pilot.integrator +
+                       ", in some part of the picture or in all of it (" + Percent(share) + ")";
     } else if (run.isHinted && !allHinted) {
       run.pilot.note = "cannot find all of the light";
     } else if (!chosen) {
       chosen = &run;
     }
   }
-  if (!chosen) chosen = &runs.front();
+  const auto brightest = std::max_element(
+      runs.begin(), runs.end(), [](const PilotRun& a, const PilotRun& b) { return a.pilot.mean < b.pilot.mean; });
+  if (!chosen) chosen = &*brightest;
   chosen->pilot.chosen = true;
 }
 
@@ -134,20 +183,42 @@ Reference ReadReference(const std::filesystem::path& file, const RenderSettings&
                      std::to_string(image.height) + " pixels, and the scene is rendered with " +
                      std::to_string(settings.crop.Width()) + "×" + std::to_string(settings.crop.Height()));
   }
-  // Programs differ in where they say that a crop lies; its size is what counts.
+  // Of the same full image, it is to be the same part; programs differ in how they store a crop alone.
+  const bool isOfSameImage = image.fullWidth == settings.width && image.fullHeight == settings.height;
+  if (isOfSameImage && (image.offsetX != settings.crop.x0 || image.offsetY != settings.crop.y0)) {
+    throw UsageError("--reference: \"" + file.string() + "\" is another part of the image: its corner is at " +
+                     std::to_string(image.offsetX) + "," + std::to_string(image.offsetY) + ", and that of --crop at " +
+                     std::to_string(settings.crop.x0) + "," + std::to_string(settings.crop.y0));
+  }
   reference.image.offsetX = settings.crop.x0;
   reference.image.offsetY = settings.crop.y0;
   reference.facts.origin = ComparisonReference::Origin::Given;
   reference.facts.file = file.string();
-  const auto known = image.metadata.find("lampyr.integrator");
-  if (known != image.metadata.end()) reference.facts.integrator = known->second;
+  reference.facts.integrator = MetadataOf(image, "lampyr.integrator");
   try {
-    Describe(reference, {});
+    Describe(reference);
   } catch (const Error& error) {
     throw UsageError("--reference: " + error.Text());
   }
   if (!(reference.facts.mean > 0)) throw UsageError("--reference: \"" + file.string() + "\" is black");
+  // Only what compare made itself has the spread of independent renders; variances of samples are an upper bound.
+  if (reference.facts.relMse && MetadataOf(image, "lampyr.compare.key").empty()) {
+    reference.facts.noiseIsLimit = true;
+    Image& plain = reference.image;
+    for (std::string& channel : plain.channels) {
+      for (const char* layer : {"variance.", "stderr."}) {
+        if (channel.rfind(layer, 0) == 0) channel = "limit." + channel;
+      }
+    }
+    reference.noise.mseError = reference.facts.mse.value_or(0);
+    reference.noise.relMseError = reference.facts.relMse.value_or(0);
+  }
   return reference;
+}
+
+uint64_t SeedOf(SeedUse use, uint64_t index) {
+  constexpr int bits = 52;  // a number that JSON keeps, and JavaScript
+  return Hash(static_cast<uint64_t>(use), index) >> (64 - bits);
 }
 
 std::vector<Pilot> FlyPilots(const ComparedScene& scene, double seconds, const ReferenceProgress& progress) {
@@ -167,10 +238,11 @@ std::vector<Pilot> FlyPilots(const ComparedScene& scene, double seconds, const R
         pilot.seconds += reached.seconds;
         pilot.samplesPerPixel += reached.samplesPerPixel;
         runs[i].means.push_back(MeanValue(image));
+        runs[i].blocks.push_back(BlockMeans(image));
         images[i].Add(image);
       };
-      scene.Render(pilot.integrator, kPilotSeed + static_cast<uint64_t>(part), {seconds / kPilotParts}, {}, keep,
-                   [](double) {});
+      scene.Render(pilot.integrator, SeedOf(SeedUse::Pilot, static_cast<uint64_t>(part)), {seconds / kPilotParts}, {},
+                   keep, [](double) {});
       progress((part * static_cast<double>(runs.size()) + static_cast<double>(i) + 1) / steps,
                "first look, " + pilot.integrator);
     }
@@ -178,7 +250,7 @@ std::vector<Pilot> FlyPilots(const ComparedScene& scene, double seconds, const R
   for (size_t i = 0; i < runs.size(); ++i) {
     const Image mean = images[i].Mean();
     runs[i].pilot.mean = MeanValue(mean);
-    runs[i].pilot.relMse = NoiseOf(mean)->relMse;
+    runs[i].pilot.relMse = NoiseOf(mean, kPilotParts)->relMse;
   }
   Choose(runs);
   std::vector<Pilot> pilots;
@@ -190,29 +262,28 @@ Reference MakeReference(const ComparedScene& scene, const std::string& integrato
                         double seconds, const ReferenceProgress& progress) {
   // A power of two: Sobol points are at their best there.
   const double affordable = std::max(1.0, seconds / kReferenceParts / std::max(secondsPerSample, 1e-9));
-  const int samples = 1 << static_cast<int>(std::clamp(std::round(std::log2(affordable)), 0.0, 28.0));
+  const int samples = 1 << static_cast<int>(std::clamp(std::round(std::log2(affordable)), 0.0, 27.0));
   Reference reference;
   MeanOfImages mean;
-  std::vector<double> means;
   double done = 0;
   for (int part = 0; part < kReferenceParts; ++part) {
     const auto keep = [&](size_t, const ComparedScene::Milestone& reached, const Image& image) {
       done += reached.seconds;
-      means.push_back(MeanValue(image));
       mean.Add(image);
     };
     const double expected = secondsPerSample * samples;
-    scene.Render(integrator, kReferenceSeed + static_cast<uint64_t>(part), {}, {samples}, keep, [&](double now) {
-      const double ofPart = std::min(now / std::max(expected, 1e-9), 1.0);
-      progress((part + ofPart) / kReferenceParts, "reference by " + integrator);
-    });
+    scene.Render(integrator, SeedOf(SeedUse::Reference, static_cast<uint64_t>(part)), {}, {samples}, keep,
+                 [&](double now) {
+                   const double ofPart = std::min(now / std::max(expected, 1e-9), 1.0);
+                   progress((part + ofPart) / kReferenceParts, "reference by " + integrator);
+                 });
   }
   reference.image = mean.Mean();
   reference.facts.origin = ComparisonReference::Origin::Made;
   reference.facts.integrator = integrator;
   reference.facts.samplesPerPixel = samples * kReferenceParts;
   reference.facts.seconds = done;
-  Describe(reference, means);
+  Describe(reference);
   return reference;
 }
 
@@ -223,7 +294,7 @@ std::string ReferenceKey(const ComparedScene& scene, const std::string& sceneHas
     for (const float value : image.data)
       hash = (hash ^ static_cast<uint64_t>(std::bit_cast<uint32_t>(value))) * 1099511628211u;
   };
-  scene.Render("bdpt", kReferenceSeed - 1, {}, {1}, add, [](double) {});
+  scene.Render("bdpt", SeedOf(SeedUse::Key, 0), {}, {1}, add, [](double) {});
   const PixelRect& crop = settings.crop;
   std::string key = std::string(kVersion) + " " + sceneHash + " depth " + std::to_string(settings.maxDepth) + " crop";
   for (const int side : {settings.width, settings.height, crop.x0, crop.y0, crop.x1, crop.y1})
@@ -233,7 +304,8 @@ std::string ReferenceKey(const ComparedScene& scene, const std::string& sceneHas
   return key + text;
 }
 
-void KeepReference(const Reference& reference, const std::string& key, const std::filesystem::path& file) {
+void KeepReference(const Reference& reference, const std::string& key, double seconds,
+                   const std::filesystem::path& file) {
   Image image = reference.image;
   const auto number = [](double value) {
     char text[40];
@@ -245,7 +317,7 @@ void KeepReference(const Reference& reference, const std::string& key, const std
                     {"lampyr.samplesPerPixel", std::to_string(reference.facts.samplesPerPixel)},
                     {"lampyr.compare.key", key},
                     {"lampyr.compare.seconds", number(reference.facts.seconds)},
-                    {"lampyr.compare.meanError", number(reference.meanError)}};
+                    {"lampyr.compare.secondsAskedFor", number(seconds)}};
   WriteExr(file, image, ExrPrecision::Float);
 }
 
@@ -258,20 +330,15 @@ std::optional<Reference> FindKeptReference(const std::filesystem::path& file, co
   } catch (const Error&) {
     return std::nullopt;  // of another program, or damaged: made anew
   }
-  const auto& metadata = reference.image.metadata;
-  const auto text = [&](const char* name) {
-    const auto found = metadata.find(name);
-    return found == metadata.end() ? std::string() : found->second;
-  };
-  const double took = std::atof(text("lampyr.compare.seconds").c_str());
-  constexpr double nearly = 0.5;  // sample counts are powers of two
-  if (text("lampyr.compare.key") != key || took < nearly * seconds) return std::nullopt;
+  const auto text = [&](const char* name) { return MetadataOf(reference.image, name); };
+  constexpr double rounding = 1e-6;
+  const double askedFor = std::atof(text("lampyr.compare.secondsAskedFor").c_str());
+  if (text("lampyr.compare.key") != key || askedFor < (1 - rounding) * seconds) return std::nullopt;
   reference.facts.origin = ComparisonReference::Origin::Cached;
   reference.facts.integrator = text("lampyr.integrator");
   reference.facts.samplesPerPixel = std::atoi(text("lampyr.samplesPerPixel").c_str());
-  reference.facts.seconds = took;
-  Describe(reference, {});
-  reference.meanError = std::atof(text("lampyr.compare.meanError").c_str());
+  reference.facts.seconds = std::atof(text("lampyr.compare.seconds").c_str());
+  Describe(reference);
   return reference;
 }
 

@@ -10,17 +10,22 @@
 
 #include "app/compare/compared_scene.h"
 #include "app/compare/results.h"
+#include "film/metrics.h"
 
 namespace lampyr {
 
 struct Reference {
-  Image image;  // with variance layers, unless it was given without
+  Image image;  // with its standard errors, where these are known and not just bounded
   ComparisonReference facts;
-  double meanError = 0;  // standard error of the relative mean of the image
+  ImageNoise noise;  // as far as it is known
 };
 
-// A picture of the user's. Throws UsageError when it is not of the scene's size.
+// A picture of the user's. Throws UsageError when it is not of the scene's size, or another part of it.
 Reference ReadReference(const std::filesystem::path& file, const RenderSettings& settings);
+
+// The seed of a render: other for each use, and none that a user is likely to have rendered a reference with.
+enum class SeedUse { Pilot = 1, Reference = 2, Compared = 3, Key = 4 };
+uint64_t SeedOf(SeedUse use, uint64_t index);
 
 // `fraction` done of making it.
 using ReferenceProgress = std::function<void(double fraction, const std::string& note)>;
@@ -37,8 +42,10 @@ Reference MakeReference(const ComparedScene& scene, const std::string& integrato
 // Includes a picture of one sample per pixel, in which meshes and textures show that the scene's text only names.
 std::string ReferenceKey(const ComparedScene& scene, const std::string& sceneHash);
 
-void KeepReference(const Reference& reference, const std::string& key, const std::filesystem::path& file);
-// Absent when there is none, or none of this picture that took at least `seconds`.
+// `seconds` that it was asked to take.
+void KeepReference(const Reference& reference, const std::string& key, double seconds,
+                   const std::filesystem::path& file);
+// Absent when there is none, or none of this picture that was asked to take at least `seconds`.
 std::optional<Reference> FindKeptReference(const std::filesystem::path& file, const std::string& key, double seconds);
 
 }  // namespace lampyr

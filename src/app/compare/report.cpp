@@ -90,7 +90,7 @@ std::string Budget(bool byTime, double budget) {
 
 // "1.23e-03 (1.1e-03 to 1.4e-03)".
 std::string WithInterval(const std::optional<Estimate>& estimate) {
-  if (!estimate) return "below the reference's noise";
+  if (!estimate) return "within the reference's noise";
   return Format("%.3g (%.2g to %.2g)", estimate->value, estimate->low, estimate->high);
 }
 
@@ -113,8 +113,8 @@ void PrintReference(const ComparisonResults& results, std::string& text) {
   if (reference.samplesPerPixel > 0) text += Format(", %d spp", reference.samplesPerPixel);
   if (reference.seconds > 0) text += ", " + FormatDuration(reference.seconds);
   if (reference.relativeError) {
-    text += Format("; its error is %.2g %% (relMSE %.2g), and is subtracted\n", 100 * *reference.relativeError,
-                   *reference.relMse);
+    text += Format("; its error is %s%.2g %% (relMSE %.2g), %s subtracted\n", reference.noiseIsLimit ? "at most " : "",
+                   100 * *reference.relativeError, *reference.relMse, reference.noiseIsLimit ? "and not" : "and is");
   } else {
     text += "; its error is not known, and taken as none\n";
   }
@@ -138,18 +138,18 @@ void PrintSnapshots(const ComparisonResults& results, std::string& text) {
 void PrintTimes(const ComparisonResults& results, std::string& text) {
   text += "\ntime to an error (root of relMSE) of";
   bool extrapolated = false;
-  for (const TimeToError& time : results.integrators.front().timeToError) text += Format("%10.0f %%", 100 * time.error);
+  for (const TimeToError& time : results.integrators.front().timeToError) text += Format("%12.0f %%", 100 * time.error);
   text += "\n";
   for (const ComparedIntegrator& integrator : results.integrators) {
     text += Format("  %-34s", integrator.name.c_str());
     for (const TimeToError& time : integrator.timeToError) {
-      if (time.kind == TimeToError::Kind::Never) {
-        text += Format("%12s", "never");
+      if (time.kind == TimeToError::Kind::Never || time.kind == TimeToError::Kind::Unresolved) {
+        text += Format("%14s", time.kind == TimeToError::Kind::Never ? "never" : "unresolved");
         continue;
       }
       const bool guessed = time.kind == TimeToError::Kind::Extrapolated;
       extrapolated |= guessed;
-      text += Format("%12s", ((guessed ? "~" : "") + FormatDuration(time.seconds.value)).c_str());
+      text += Format("%14s", ((guessed ? "~" : "") + FormatDuration(time.seconds.value)).c_str());
     }
     text += "\n";
   }

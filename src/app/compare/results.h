@@ -14,6 +14,14 @@ struct Estimate {
   double value = 0, low = 0, high = 0;
 };
 
+// One render at one budget.
+struct ComparedRun {
+  uint64_t seed = 0;
+  double seconds = 0;
+  int samplesPerPixel = 0;
+  double mse = 0, relMse = 0, flip = 0, bias = 0;  // the reference's noise subtracted from mse and relMse
+};
+
 // One integrator at one budget: means over the repeats. An error that is not told apart from the reference's own noise
 // is absent.
 struct ComparedSnapshot {
@@ -23,12 +31,14 @@ struct ComparedSnapshot {
   double samplesPerPixel = 0, samplesPerSecond = 0;
   std::optional<Estimate> mse, relMse, efficiency, relEfficiency;  // efficiency: 1/(MSE · seconds)
   Estimate flip;
+  std::vector<ComparedRun> runs;      // a repeat each
   std::string picture, errorPicture;  // keys of ComparisonResults::pictures, "" none
 };
 
 // When the error is reached: the root of relMSE at `error`.
 struct TimeToError {
-  enum class Kind { Measured, Extrapolated, Never };  // Never: the systematic part alone is larger
+  // Never: the systematic part alone is larger. Unresolved: no error was above the reference's own noise.
+  enum class Kind { Measured, Extrapolated, Never, Unresolved };
   double error = 0;
   Kind kind = Kind::Never;
   Estimate seconds;
@@ -65,6 +75,9 @@ struct ComparisonReference {
   double mean = 0;          // over pixels and channels
   // Its own noise: absent for a given image without variance layers, which is taken as exact.
   std::optional<double> relativeError, mse, relMse;
+  // What is known of the noise is a limit (renderers that stratify their samples give the variance of independent
+  // ones): it is not subtracted from what is measured.
+  bool noiseIsLimit = false;
 };
 
 // A first look at an integrator, to choose the one that makes the reference.

@@ -60,6 +60,8 @@ TEST(ParallelFor, CallsEachItemOnceAndPassesOnExceptions) {
 }
 
 TEST(FormatDuration, ChoosesUnits) {
+  EXPECT_EQ(FormatDuration(0.0374), "37 ms");
+  EXPECT_EQ(FormatDuration(0.0996), "0.1 s");
   EXPECT_EQ(FormatDuration(4.23), "4.2 s");
   EXPECT_EQ(FormatDuration(200), "3 min 20 s");
   EXPECT_EQ(FormatDuration(3720), "1 h 02 min");

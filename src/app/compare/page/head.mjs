@@ -3,7 +3,7 @@ import {element} from './dom.mjs';
 import {formatCount, formatPercent, formatSeconds, isNumber} from './numbers.mjs';
 import {verdictOf} from './verdict.mjs';
 
-function referenceSentence({origin, file, integrator, samplesPerPixel, seconds, relativeError}) {
+function referenceSentence({origin, file, integrator, samplesPerPixel, seconds, relativeError, noiseIsLimit}) {
   const how = [];
   if (integrator) how.push(`by ${integrator}`);
   if (isNumber(samplesPerPixel)) how.push(`with ${formatCount(samplesPerPixel)} samples per pixel`);
@@ -13,7 +13,7 @@ function referenceSentence({origin, file, integrator, samplesPerPixel, seconds, 
     given: `The reference, ${file}, was given`}[origin] ?? 'The reference';
   const made = how.length === 0 ? '' : origin === 'given' ? `; it was rendered ${how.join(' ')}` : ` ${how.join(' ')}`;
   const error = isNumber(relativeError)
-    ? ` Its own noise is ± ${formatPercent(relativeError)} of the mean (RMS over the pixels).`
+    ? ` Its own noise is ${noiseIsLimit ? 'at most ' : '± '}${formatPercent(relativeError)} of the mean (RMS over the pixels).`
     : ' It has no variance layers, and is taken as exact.';
   return `${begin}${made}.${error}`;
 }

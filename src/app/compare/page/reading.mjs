@@ -11,17 +11,18 @@ export function showReading(section, {confidence, repeats}) {
       'division by zero), so that dark regions count as much as bright ones. Its square root is the relative error: ' +
       'a relMSE of 0.01 is an error of 10 %.'],
     ['FLIP', 'The difference that an observer sees when flipping between picture and reference, from 0 (none) to 1. ' +
-      'It knows about contrast, colour and edges, and nothing about expectation: half of it is not twice the work.'],
+      'It knows about contrast, colour and edges, and nothing about expectation: half of it is not twice the work. ' +
+      'It is measured at the exposure of the pictures here, with what is brighter than white clipped.'],
     ['Efficiency', 'One over error times seconds. For an unbiased integrator it does not depend on how long it ran: ' +
-      'twice the efficiency is the same picture in half the time.'],
+      'twice the efficiency is the same error in half the time. Stratified samples do a little better the longer they run.'],
     [`The ${formatNumber(100 * confidence)} % intervals`, `Each budget was rendered ${times} of its ` +
-      'own; intervals come from the t distribution over the logarithms of these repeats, which is why they reach ' +
-      'further up than down. A single repeat has none. A ratio whose interval includes 1 shows no difference.'],
-    ['The reference’s own noise', 'The reference was rendered too, and its variance is known. It is subtracted from ' +
+      'own; intervals are those of the mean over these repeats by the t distribution, on a logarithmic scale, which is ' +
+      'why they reach further up than down. A single repeat has none. A ratio whose interval includes 1 shows no ' +
+      'difference.'],
+    ['The reference’s own noise', 'The reference was rendered too. Where its variance is known, it is subtracted from ' +
       'MSE and relMSE; what does not stand out from it is called not resolved. From FLIP it cannot be subtracted.'],
     ['Bias and systematic part', 'Noise averages out, these do not. Bias compares the mean of the whole picture with ' +
-      'the reference’s; the systematic part is the relMSE that is left when the error is extrapolated to endless ' +
-      'samples.'],
+      'the reference’s; the systematic part is the relMSE that all repeats have in common at the largest budget.'],
   ];
   section.append(element('details', {class: 'reading'}, element('summary', {}, 'How to read this page'),
     element('dl', {}, entries.map(([term, text]) => [element('dt', {}, term), element('dd', {}, text)]))));

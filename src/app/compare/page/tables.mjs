@@ -65,8 +65,16 @@ function snapshotTable(results, kind) {
   });
   const someOpen = snapshotsOf(results, kind).some(({snapshot}) => kMetrics.some(({key}) => !snapshot[key]));
   const title = kind === 'time' ? 'All snapshots at equal time' : 'All snapshots at equal samples';
-  return table(`snapshots-${kind}`, title, columns, bodies,
-    someOpen ? `“${kUnresolved}”: the error could not be told apart from the reference’s own noise.` : null);
+  // A pass is not cut short: a render may have taken longer than it was given.
+  const late = kind !== 'time' ? [] : snapshotsOf(results, kind)
+    .filter(({snapshot: {seconds, budget}}) => Math.abs(seconds / budget - 1) > 0.1)
+    .map(({integrator, snapshot: {seconds, budget}}) =>
+      `${integrator.name} took ${formatSeconds(seconds)} for ${formatSeconds(budget)}.`);
+  const notes = [
+    ...someOpen ? [`“${kUnresolved}”: the error could not be told apart from the reference’s own noise.`] : [],
+    ...late.length > 0 ? [`Not all renders could be stopped in time: ${late.join(' ')}`] : [],
+  ];
+  return table(`snapshots-${kind}`, title, columns, bodies, notes.length > 0 ? notes.join(' ') : null);
 }
 
 // Why an integrator does not get to an error.
@@ -75,11 +83,12 @@ function neverText(integrator) {
   if (systematic?.significant && systematic.value > 0) {
     return `never: ${formatPercent(Math.sqrt(systematic.value))} remains`;
   }
-  return integrator.snapshots.some(({relMse}) => relMse) ? 'never' : 'never resolved';
+  return 'never';
 }
 
 function timeCell(integrator, entry) {
   if (!entry) return numberCell('–');
+  if (entry.kind === 'unresolved') return element('td', {class: 'number never'}, 'never resolved');
   if (entry.kind === 'never') return element('td', {class: 'number never'}, neverText(integrator));
   const range = isNumber(entry.low) && isNumber(entry.high)
     ? ` (${formatSeconds(entry.low)} to ${formatSeconds(entry.high)})` : '';
@@ -96,7 +105,7 @@ function timeToErrorTable(results) {
   const kinds = results.integrators.flatMap(({timeToError}) => timeToError.map(({kind}) => kind));
   const notes = ['The relative error is the square root of relMSE.'];
   if (kinds.includes('extrapolated')) {
-    notes.push('~ marks times outside what was rendered, extrapolated along the curve.');
+    notes.push('~ marks times outside what was rendered: relMSE is taken to fall as one over time.');
   }
   if (kinds.includes('never')) {
     notes.push('“never”: a part of the error stays however many samples are taken.');
@@ -141,10 +150,11 @@ function ratioTable(results) {
 }
 
 function systematicTable(results) {
-  const verdict = (part) => part?.significant ? element('td', {class: 'significant'}, '▲ yes')
+  const verdict = (isShown) => isShown ? element('td', {class: 'significant'}, '▲ yes')
     : element('td', {}, 'not shown');
   const rows = results.integrators.map(({name, bias, systematic}) => element('tr', {}, integratorCell(results, name),
-    intervalCell(inPercent(bias), '\u00a0%'), verdict(bias), intervalCell(systematic), verdict(systematic)));
+    intervalCell(inPercent(bias), '\u00a0%'), verdict(bias?.significant), intervalCell(systematic),
+    verdict(systematic?.significant && systematic.value > 0)));
   return table('systematic', 'What more samples do not remove', [{text: 'Integrator'},
     {text: 'Mean against the reference', number: true}, {text: 'Significant'},
     {text: 'Systematic relMSE', number: true}, {text: 'Significant'}], element('tbody', {}, rows));
