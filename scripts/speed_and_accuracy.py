@@ -91,6 +91,42 @@ def ratio_text(results):
     return ''
 
 
+def listed(entries):
+    return ', '.join(entries) if entries else 'none'
+
+
+def summary(all_results):
+    """Who wins where, by how much, and what it costs."""
+    wins, losses, open_, missing, costs = [], [], [], {}, []
+    for scene, results in all_results.items():
+        integrators = {i['name']: i for i in results['integrators']}
+        for integrator in results['integrators']:
+            if not is_complete(integrator):
+                missing.setdefault(integrator['name'], []).append(scene)
+        costs.append(last(integrators['path'])['samplesPerPixel'] / last(integrators['bdpt'])['samplesPerPixel'])
+        if not (is_complete(integrators['path']) and is_complete(integrators['bdpt'])):
+            continue
+        for ratio in results['ratios']:
+            if (ratio['integrator'], ratio['metric'], ratio['budget']) != ('bdpt', 'relMse', 4):
+                continue
+            if ratio['low'] > 1:
+                wins.append((ratio['value'], scene))
+            elif ratio['high'] < 1:
+                losses.append((1 / ratio['value'], scene))
+            else:
+                open_.append(scene)
+    text = lambda pairs: listed([f'{scene} ({digits(value)} ×)' for value, scene in sorted(pairs, reverse=True)])
+    lines = [
+        f'- `bdpt` has the higher efficiency in {text(wins)}; `path` in {text(losses)}. No difference was shown in '
+        f'{listed(open_)}.',
+        f'- A sample of `bdpt` takes {digits(min(costs))} to {digits(max(costs))} times as long as one of `path`: what it '
+        'wins, it wins by samples that are worth more.',
+    ]
+    for name, scenes in missing.items():
+        lines.append(f'- `{name}` does not get to the right picture in {listed(scenes)}.')
+    return lines
+
+
 def write(all_results):
     first = next(iter(all_results.values()))
     lines = [
@@ -104,6 +140,10 @@ def write(all_results):
         '```',
         '',
         'and leaves a `report.html` for each scene, with convergence plots and the pictures side by side.',
+        '',
+        '## In short',
+        '',
+        *summary(all_results),
         '',
         '## Error after four seconds',
         '',
@@ -152,9 +192,6 @@ def write(all_results):
         lines.append(f'| {scene} | {reference["integrator"]}, {reference["samplesPerPixel"]} spp | '
                      f'{percent(reference["relMse"] ** 0.5)} | {missing or "nothing"} |')
     text = '\n'.join(lines) + '\n'
-    notes = ROOT / 'docs/speed-and-accuracy-notes.md'
-    if notes.exists():
-        text += '\n' + notes.read_text()
     (ROOT / 'docs/speed-and-accuracy.md').write_text(text)
 
 

@@ -4,6 +4,8 @@
 #include <limits>
 #include <vector>
 
+#include "base/parallel.h"
+#include "lights/selection/tree_selector.h"
 #include "sampling/tables.h"
 
 namespace lampyr {
@@ -71,6 +73,8 @@ LightTransform PlacedLight::At(float time) const {
 std::optional<LightSelection> ParseLightSelection(const std::string& name) {
   if (name == "uniform") return LightSelection::Uniform;
   if (name == "power") return LightSelection::Power;
+  if (name == "tree" || name == "bvh") return LightSelection::Tree;
+  if (name == "exhaustive") return LightSelection::Exhaustive;
   return std::nullopt;
 }
 
@@ -80,6 +84,11 @@ std::unique_ptr<LightSelector> MakeTableSelector(std::span<const float> weights)
 
 std::unique_ptr<LightSelector> MakeLightSelector(LightSelection selection, std::span<const PlacedLight> lights,
                                                  const BoundingSphere& scene) {
+  const bool isOne = lights.empty() || (lights.size() == 1 && lights[0].light->PatchCount() == 1);
+  if (!isOne && selection == LightSelection::Tree)
+    return MakeTreeSelector(EmitterSearch::Tree, lights, scene, HardwareThreads());
+  if (!isOne && selection == LightSelection::Exhaustive)
+    return MakeTreeSelector(EmitterSearch::Exhaustive, lights, scene, HardwareThreads());
   std::vector<float> weights(lights.size(), 1.0f);
   if (selection == LightSelection::Power) {
     weights = PowerWeights(lights, scene);

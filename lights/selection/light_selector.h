@@ -39,7 +39,7 @@ class LightSelector {
   virtual bool SelectsPatches() const { return false; }
 };
 
-enum class LightSelection { Uniform, Power };
+enum class LightSelection { Uniform, Power, Tree, Exhaustive };
 
 // The name as on the command line; nullopt for an unknown one.
 std::optional<LightSelection> ParseLightSelection(const std::string& name);
@@ -60,8 +60,9 @@ struct PlacedLight {
 // Selects in proportion to `weights` (not negative), whatever the receiver. With all weights 0, selects nothing.
 std::unique_ptr<LightSelector> MakeTableSelector(std::span<const float> weights);
 
-// Every light alike; or by estimated power × importanceMultiplier, with a floor so that no light is impossible. The
-// power of a light that moves is its mean over the shutter.
+// Every light alike; by estimated power × importanceMultiplier, with a floor so that no light is impossible (the power
+// of a light that moves is its mean over the shutter); or by what each is estimated to send to the receiver, with a
+// tree or one by one (tree_selector.h). A single light needs no choice, and no tree.
 std::unique_ptr<LightSelector> MakeLightSelector(LightSelection selection, std::span<const PlacedLight> lights,
                                                  const BoundingSphere& scene);
 

@@ -366,6 +366,38 @@ def strings_of_bulbs():
     write_lines("bulbs.pbrt", lines)
 
 
+def rooms():
+    """A room of 4 x 4 x 2.6 with doorways to its neighbours and 100 lamps in it, and 10 x 10 of them side by side."""
+    lines = ["# A room with 100 lamps, from 0 to 4 in x and y; its other two walls are the neighbours'. Made by",
+             "# generator/generate.py."]
+
+    def patch(a, b, c, d):
+        lines.append('Shape "bilinearmesh" "point3 P" [ %s ]' % "  ".join("%g %g %g" % p for p in (a, b, c, d)))
+
+    lines.append('Material "diffuse" "rgb reflectance" [ 0.35 0.27 0.20 ]')
+    patch((0, 0, 0), (4, 0, 0), (0, 4, 0), (4, 4, 0))
+    lines.append('Material "diffuse" "rgb reflectance" [ 0.72 0.70 0.66 ]')
+    patch((0, 0, 2.6), (4, 0, 2.6), (0, 4, 2.6), (4, 4, 2.6))
+    for from_, to, low, high in ((0, 1.4, 0, 2.6), (2.6, 4, 0, 2.6), (1.4, 2.6, 2.1, 2.6)):  # beside and above a door
+        patch((from_, 0, low), (to, 0, low), (from_, 0, high), (to, 0, high))
+        patch((0, from_, low), (0, to, low), (0, from_, high), (0, to, high))
+    lines.append('Material "diffuse" "rgb reflectance" [ 0.1 0.1 0.1 ]')
+    for i in range(100):
+        x, y = (0.25 + 3.5 * images.hash_unit(i, k, 21) for k in (0, 1))
+        z = 0.04 if i % 4 == 0 else 1.9 + 0.6 * images.hash_unit(i, 2, 21)  # on the floor, or hanging
+        radius = 0.012 + 0.02 * images.hash_unit(i, 3, 21)
+        strength = 4.0 * 40.0 ** images.hash_unit(i, 4, 21)
+        colour = mix((1.0, 0.8, 0.6), hue(images.hash_unit(i, 5, 21)), 0.35)
+        lines.append('AttributeBegin AreaLightSource "diffuse" "rgb L" [ %s ] Translate %.3f %.3f %.3f Shape "sphere" '
+                     '"float radius" %.4f AttributeEnd'
+                     % (" ".join("%.3g" % (strength * c) for c in colour), x, y, z, radius))
+    write_lines("room.pbrt", lines)
+    lines = ["# 100 rooms. Made by generator/generate.py."]
+    for i in range(100):
+        lines.append('AttributeBegin Translate %d %d 0 Include "room.pbrt" AttributeEnd' % (4 * (i % 10), 4 * (i // 10)))
+    write_lines("rooms.pbrt", lines)
+
+
 def write_lines(name, lines):
     with open(path(name), "w") as file:
         file.write("\n".join(lines) + "\n")
@@ -452,7 +484,7 @@ def main():
     os.makedirs(DATA, exist_ok=True)
     for make in (skies, pool_tiles, paving, wood, screen_pattern, water_surface, pool_furniture, rings, cyclorama, optics,
                  plinth, tumbler, tableware, lamp, sculptures, courtyard, strings_of_bulbs, grass, twisted_column, jack,
-                 stack_of_bars):
+                 stack_of_bars, rooms):
         make()
 
 

@@ -164,6 +164,48 @@ void WritePictures(const std::filesystem::path& folder, const ComparisonResults&
   }
 }
 
+void WriteResults(const CompareOptions& options, const std::filesystem::path& folder, const ComparisonPlan& plan,
+                  const ComparisonResults& results) {
+  WriteText(folder / "results.csv", ToCsv(results));
+  WriteText(folder / "results.json", ToJson(results));
+  WritePictures(folder, results);
+  const std::string page = ToPage(results);
+  if (!page.empty()) WriteText(folder / "report.html", page);
+  if (!options.quiet) {
+    std::printf("%s", ToText(results).c_str());
+    if (results.repeats < plan.repeats) std::printf("interrupted: %d of %d repeats\n", results.repeats, plan.repeats);
+    std::printf("\n%s: results.csv, results.json%s\n", folder.c_str(), page.empty() ? "" : ", report.html");
+  }
+  if (page.empty()) {
+    std::fprintf(stderr,
+                 "warning: no report.html: its page was not built (with npm: cmake --build … --target "
+                 "lampyr_report_page)\n");
+  }
+  const bool unresolved =
+      std::any_of(results.integrators.begin(), results.integrators.end(), [](const auto& integrator) {
+        return std::any_of(integrator.snapshots.begin(), integrator.snapshots.end(),
+                           [](const auto& s) { return !s.relMse; });
+      });
+  if (unresolved) {
+    std::fprintf(stderr, "warning: some renders are within the reference's own noise and have no figure; %s\n",
+                 options.reference ? "use a reference of more samples" : "give it more time with --reference-time");
+  }
+}
+
+// What the run is known by before anything is measured.
+ComparisonResults Describe(const CompareOptions& options, const LoadedScene& loaded) {
+  const RenderSettings& settings = loaded.built.settings;
+  ComparisonResults results;
+  results.scene = options.scene.string();
+  results.sceneHash = loaded.hash;
+  results.command = options.command;
+  results.width = settings.crop.Width();
+  results.height = settings.crop.Height();
+  results.maxDepth = settings.maxDepth;
+  results.threads = options.threads > 0 ? options.threads : HardwareThreads();
+  return results;
+}
+
 }  // namespace
 
 int RunCompare(const CompareOptions& options) {
@@ -177,14 +219,7 @@ int RunCompare(const CompareOptions& options) {
   MakeFolder(folder, "--output");
   CheckWritable(folder / "report.html", "--output");
 
-  ComparisonResults results;
-  results.scene = options.scene.string();
-  results.sceneHash = loaded.hash;
-  results.command = options.command;
-  results.width = settings.crop.Width();
-  results.height = settings.crop.Height();
-  results.maxDepth = settings.maxDepth;
-  results.threads = options.threads > 0 ? options.threads : HardwareThreads();
+  ComparisonResults results = Describe(options, loaded);
   const ComparedScene scene(loaded.built, results.threads, FinishOnInterrupt());
   if (!options.quiet) {
     for (const std::string& name : plan.integrators) {
@@ -215,30 +250,7 @@ int RunCompare(const CompareOptions& options) {
     std::fprintf(stderr, "interrupted before two repeats were done: nothing was measured\n");
     return kExitInterrupted;
   }
-  WriteText(folder / "results.csv", ToCsv(results));
-  WriteText(folder / "results.json", ToJson(results));
-  WritePictures(folder, results);
-  const std::string page = ToPage(results);
-  if (!page.empty()) WriteText(folder / "report.html", page);
-  if (!options.quiet) {
-    std::printf("%s", ToText(results).c_str());
-    if (interrupted) std::printf("interrupted: %d of %d repeats\n", results.repeats, plan.repeats);
-    std::printf("\n%s: results.csv, results.json%s\n", folder.c_str(), page.empty() ? "" : ", report.html");
-  }
-  if (page.empty()) {
-    std::fprintf(stderr,
-                 "warning: no report.html: its page was not built (with npm: cmake --build … --target "
-                 "lampyr_report_page)\n");
-  }
-  const bool unresolved =
-      std::any_of(results.integrators.begin(), results.integrators.end(), [](const auto& integrator) {
-        return std::any_of(integrator.snapshots.begin(), integrator.snapshots.end(),
-                           [](const auto& s) { return !s.relMse; });
-      });
-  if (unresolved) {
-    std::fprintf(stderr, "warning: some renders are within the reference's own noise and have no figure; %s\n",
-                 options.reference ? "use a reference of more samples" : "give it more time with --reference-time");
-  }
+  WriteResults(options, folder, plan, results);
   return interrupted ? kExitInterrupted : kExitDone;
 }
 

@@ -257,12 +257,9 @@ void ReadIntegrator(const SceneDescription& scene, const RenderOverrides& overri
   if (overrides.maxDepth) settings.maxDepth = *overrides.maxDepth;
 
   const std::string lightSampler = parameters.GetString("lightsampler", "power");
-  const Names samplerNames = {"uniform", "power", "bvh", "tree", "exhaustive"};
+  const Names samplerNames = {"uniform", "power", "bvh", "tree", "exhaustive"};  // bvh: pbrt-v4's name of its tree
   if (const auto selection = ParseLightSelection(lightSampler)) {
     settings.lightSelection = *selection;
-  } else if (std::find(samplerNames.begin(), samplerNames.end(), lightSampler) != samplerNames.end()) {
-    diagnostics.Warn(parameters.WhereOf("lightsampler"),
-                     "light sampler \"" + lightSampler + "\" is not supported yet; \"power\" is used");
   } else {
     throw Error(parameters.WhereOf("lightsampler"),
                 "there is no light sampler \"" + lightSampler + "\"" + DidYouMean(lightSampler, samplerNames));
@@ -270,7 +267,8 @@ void ReadIntegrator(const SceneDescription& scene, const RenderOverrides& overri
   if (overrides.lightSampler) {
     const auto selection = ParseLightSelection(*overrides.lightSampler);
     if (!selection)
-      throw UsageError("--light-sampler: \"" + *overrides.lightSampler + "\" is not one of: uniform, power");
+      throw UsageError("--light-sampler: \"" + *overrides.lightSampler +
+                       "\" is not one of: uniform, power, tree, exhaustive");
     settings.lightSelection = *selection;
   }
   // Parameters of integrators that stand back for "path" are not looked at.

@@ -376,6 +376,24 @@ TEST_F(Cli, RefusesToCompareWhatCannotBe) {
   EXPECT_EQ(Run("compare scene.pbrt -o file").exitCode, 2);
 }
 
+TEST_F(Cli, AComparisonThatIsInterruptedEarlyLeavesNoResults) {
+  const pid_t child = fork();
+  if (child == 0) {
+    if (chdir(folder_.c_str()) != 0) _exit(99);
+    execl(LAMPYR_BINARY, LAMPYR_BINARY, "compare", "scene.pbrt", "-o", "early", "--budget", "60s", "--quiet", nullptr);
+    _exit(99);
+  }
+  for (int i = 0; i < 300 && !fs::exists(folder_ / "early"); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  std::this_thread::sleep_for(std::chrono::milliseconds(1000));
+  kill(child, SIGINT);
+  int status = 0;
+  waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 130);
+  EXPECT_TRUE(fs::is_empty(folder_ / "early"));
+}
+
 TEST_F(Cli, AnInterruptedComparisonIsWholeOrAbsent) {
   const pid_t child = fork();
   if (child == 0) {

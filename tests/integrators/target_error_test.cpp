@@ -69,6 +69,31 @@ std::string Lamp(const std::string& radiance, const std::string& radius) {
          "]\nTranslate 0.8 2 0.2 Shape \"sphere\" \"float radius\" " + radius + "\nAttributeEnd\n";
 }
 
+// A ball of the material in the middle of a large plain.
+double UnseenSampleOf(const std::string& material, double radius, const std::string& light) {
+  const std::string plain =
+      "Shape \"trianglemesh\" \"point3 P\" [-50 0 -50  -50 0 50  50 0 50  50 0 -50] \"integer indices\" [0 1 2 0 2 "
+      "3]\n";
+  const BuiltScene built = Build(kStart + plain + "AttributeBegin\nMaterial " + material +
+                                     "\nTranslate 0 0.3 0 Shape \"sphere\" \"float radius\" " + std::to_string(radius) +
+                                     "\nAttributeEnd\n" + light,
+                                 "path");
+  return LargestUnseenSample(built.scene, built.settings);
+}
+
+TEST(UnseenSamples, AreAsBrightAsWhatFallsOnSomethingSmooth) {
+  const std::string lamp = Lamp("30 30 30", "0.2");
+  EXPECT_NEAR(UnseenSampleOf("\"dielectric\"", 0.3, lamp), 30, 1e-3);
+  EXPECT_NEAR(UnseenSampleOf("\"conductor\" \"float roughness\" 0.01", 0.3, lamp), 30,
+              1e-3);  // not a delta, but nearly
+  EXPECT_EQ(UnseenSampleOf("\"conductor\" \"float roughness\" 0.5", 0.3, lamp), 0);
+  EXPECT_EQ(UnseenSampleOf("\"diffuse\"", 0.3, lamp), 0);
+  // A marble that hardly any photon meets is met from the camera; a point is never hit at all.
+  EXPECT_NEAR(UnseenSampleOf("\"dielectric\"", 0.05, "LightSource \"infinite\" \"rgb L\" [2 2 2]\n"), 2, 1e-3);
+  EXPECT_EQ(UnseenSampleOf("\"dielectric\"", 0.3, "LightSource \"point\" \"rgb I\" [2 2 2] \"point3 from\" [0 3 0]\n"),
+            0);
+}
+
 class TargetError : public testing::TestWithParam<std::tuple<Promise, const char*>> {};
 
 TEST_P(TargetError, HoldsForNineteenOfTwentySeeds) {

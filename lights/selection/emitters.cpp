@@ -1,0 +1,110 @@
+#include "lights/selection/emitters.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "base/parallel.h"
+
+namespace lampyr {
+
+namespace {
+
+// Of a light that moves: all places of the shutter, with what lies between two of them, and all directions.
+ClusterBounds BoundsWhileMoving(const PlacedLight& placed, LightContext context) {
+  constexpr int steps = 64;
+  ClusterBounds all;
+  Bounds3 before;
+  Vector3 farthest(0.0f);
+  for (int i = 0; i <= steps; ++i) {
+    context.time = static_cast<float>(i) / steps;
+    const LightTransform transform = placed.At(context.time);
+    context.transform = &transform;
+    const auto bounds = placed.light->GetEmissionBounds(context);
+    if (!bounds) return {};
+    const ClusterBounds now = BoundsOfEmitter(*bounds, placed.light->Kind());
+    if (now.IsEmpty()) continue;
+    if (!before.IsEmpty()) {
+      farthest = glm::max(farthest, glm::max(glm::abs(now.box.min - before.min), glm::abs(now.box.max - before.max)));
+    }
+    before = now.box;
+    all.box.Add(now.box);
+    all.intensity = std::max(all.intensity, now.intensity);
+  }
+  if (all.IsEmpty()) return all;
+  all.box.min -= farthest;
+  all.box.max += farthest;
+  all.cosThetaO = -1;
+  all.cosThetaE = 0;
+  return all;
+}
+
+ClusterBounds BoundsOfPatch(const PlacedLight& placed, int patch, const BoundingSphere& scene) {
+  LightContext context;
+  context.transform = &placed.transform;
+  context.scene = scene;
+  context.patch = patch;
+  if (placed.motion) return BoundsWhileMoving(placed, context);
+  const auto bounds = placed.light->GetEmissionBounds(context);
+  return bounds ? BoundsOfEmitter(*bounds, placed.light->Kind()) : ClusterBounds();
+}
+
+bool IsFar(const PlacedLight& placed) {
+  const LightKind kind = placed.light->Kind();
+  return kind == LightKind::Infinite || kind == LightKind::DeltaDirection;
+}
+
+// Makes the numbers relative: see light_bounds.h.
+void Normalise(Emitters& emitters) {
+  Bounds3 all;
+  for (const ClusterBounds& bounds : emitters.bounds) {
+    all.Add(bounds.box);
+    emitters.intensity += static_cast<double>(bounds.intensity);
+  }
+  if (all.IsEmpty()) return;
+  emitters.center = all.Center();
+  // Lights all in one place have the size of that place's distance from the origin, whatever it is.
+  emitters.size = 0.5f * glm::length(all.Diagonal());
+  if (!(emitters.size > std::numeric_limits<float>::min())) emitters.size = 1;
+  // Energies are estimates: what is taken for black, or for next to nothing, keeps a chance.
+  const double floor = 1e-3 / static_cast<double>(emitters.bounds.size());
+  if (!(emitters.intensity > 0)) emitters.intensity = 1;
+  for (ClusterBounds& bounds : emitters.bounds) {
+    if (bounds.IsEmpty()) continue;
+    bounds.box.min = (bounds.box.min - emitters.center) * (1 / emitters.size);
+    bounds.box.max = (bounds.box.max - emitters.center) * (1 / emitters.size);
+    bounds.intensity = static_cast<float>(std::max(static_cast<double>(bounds.intensity) / emitters.intensity, floor));
+  }
+}
+
+}  // namespace
+
+Emitters CollectEmitters(std::span<const PlacedLight> lights, const BoundingSphere& scene, int threads) {
+  Emitters emitters;
+  for (uint32_t i = 0; i < lights.size(); ++i) {
+    emitters.first.push_back(static_cast<uint32_t>(emitters.lightOf.size()));
+    if (IsFar(lights[i])) {
+      emitters.far.push_back(i);
+      continue;
+    }
+    const int patches = lights[i].light->PatchCount();
+    emitters.hasPatches |= patches > 1;
+    emitters.lightOf.insert(emitters.lightOf.end(), static_cast<size_t>(patches), i);
+  }
+  emitters.first.push_back(static_cast<uint32_t>(emitters.lightOf.size()));
+  emitters.bounds.resize(emitters.lightOf.size());
+  constexpr size_t kChunk = 4096;
+  const auto chunks = static_cast<int>((emitters.bounds.size() + kChunk - 1) / kChunk);
+  ParallelFor(chunks, threads, [&](int chunk) {
+    const size_t begin = static_cast<size_t>(chunk) * kChunk;
+    for (size_t e = begin; e < std::min(begin + kChunk, emitters.bounds.size()); ++e) {
+      const uint32_t light = emitters.lightOf[e];
+      const bool isWhole = lights[light].light->PatchCount() == 1;
+      const int patch = isWhole ? kAnyPatch : static_cast<int>(e - emitters.first[light]);
+      emitters.bounds[e] = BoundsOfPatch(lights[light], patch, scene);
+    }
+  });
+  Normalise(emitters);
+  return emitters;
+}
+
+}  // namespace lampyr

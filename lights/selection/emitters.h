@@ -1,0 +1,33 @@
+// The emitters of a scene as selection by importance knows them: all lights with a place, meshes triangle by triangle.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "lights/selection/light_bounds.h"
+
+namespace lampyr {
+
+struct Emitters {
+  std::vector<ClusterBounds> bounds;  // relative to center, size and intensity below; empty of those that emit nothing
+  std::vector<uint32_t> first;        // by light: its first emitter; patches follow each other. One more at the end
+  std::vector<uint32_t> lightOf;      // by emitter
+  std::vector<uint32_t> far;          // lights without a place
+  Point3 center{0.0f};
+  float size = 1;           // render space units
+  double intensity = 0;     // W/sr, of all
+  bool hasPatches = false;  // some light has more than one emitter
+
+  // An importance as irradiance, W/m².
+  double Irradiance(float importance) const {
+    return static_cast<double>(importance) * intensity / (static_cast<double>(size) * static_cast<double>(size));
+  }
+  TreeReceiver Place(const Receiver& receiver) const {
+    return {(receiver.position - center) * (1 / size), receiver.normal, receiver.isTransmissive};
+  }
+};
+
+Emitters CollectEmitters(std::span<const PlacedLight> lights, const BoundingSphere& scene, int threads);
+
+}  // namespace lampyr

@@ -1,0 +1,268 @@
+#include "lights/selection/light_tree_builder.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "base/parallel.h"
+
+namespace lampyr {
+
+namespace {
+
+constexpr int kBins = 16;
+constexpr size_t kLeaf = LightTree::kWidth;
+// From here on halves: the depth stays bounded however unequal the splits were.
+constexpr int kDepthOfHalves = 40;
+
+// How much of all directions a cone of normals with emission beyond it fills ([Conty18 eq. 1]).
+float OrientationMeasure(float thetaO, float thetaE) {
+  const float thetaW = std::min(thetaO + thetaE, kPi);
+  const float sinO = std::sin(thetaO), cosO = std::cos(thetaO);
+  return 2 * kPi * (1 - cosO) +
+         0.5f * kPi * (2 * thetaW * sinO - std::cos(thetaO - 2 * thetaW) - 2 * thetaO * sinO + cosO);
+}
+
+// Surface, and a little of the diagonal: a row of points has no surface and is to be divided all the same.
+float SpatialMeasure(const Bounds3& box) {
+  const Vector3 d = box.Diagonal();
+  return 2 * (d.x * d.y + d.y * d.z + d.z * d.x) + 0.05f * glm::dot(d, d);
+}
+
+// A bin's contents, gathered cheaply: the cone is guessed from how much of the axes' sum is left.
+struct Bin {
+  Bounds3 box;
+  Vector3 axes{0.0f};
+  float widestO = 0, widestE = 0;  // angles
+  float intensity = 0;
+  size_t count = 0;
+
+  void Add(const Bin& other) {
+    box.Add(other.box);
+    axes += other.axes;
+    widestO = std::max(widestO, other.widestO);
+    widestE = std::max(widestE, other.widestE);
+    intensity += other.intensity;
+    count += other.count;
+  }
+  float Cost() const {
+    if (count == 0) return 0;
+    const float left = std::min(glm::length(axes) / static_cast<float>(count), 1.0f);
+    const float spread = std::acos(std::clamp(2 * left - 1, -1.0f, 1.0f));
+    return intensity * SpatialMeasure(box) * OrientationMeasure(std::min(spread + widestO, kPi), widestE);
+  }
+};
+
+}  // namespace
+
+LightTreeBuilder::LightTreeBuilder(std::span<const ClusterBounds> emitters, int threads)
+    : emitters_(emitters), threads_(threads) {
+  for (uint32_t i = 0; i < emitters_.size(); ++i) {
+    if (!emitters_[i].IsEmpty()) items_.push_back({emitters_[i].box.Center(), i});
+  }
+}
+
+void LightTreeBuilder::Bound(Branch& branch) const {
+  branch.bounds = ClusterBounds();
+  if (branch.left) {
+    branch.bounds.Add(branch.left->bounds);
+    branch.bounds.Add(branch.right->bounds);
+    return;
+  }
+  for (size_t i = branch.first; i < branch.first + branch.count; ++i) branch.bounds.Add(emitters_[items_[i].emitter]);
+}
+
+// Sorts the items of a branch to two sides; returns the number on the first.
+size_t LightTreeBuilder::Partition(const Branch& branch, int depth) {
+  const auto begin = items_.begin() + static_cast<std::ptrdiff_t>(branch.first);
+  const auto end = begin + static_cast<std::ptrdiff_t>(branch.count);
+  const size_t half = branch.count / 2;
+  Bounds3 centers;
+  for (auto item = begin; item != end; ++item) centers.Add(item->center);
+  const Vector3 extent = centers.Diagonal();
+  const float longest = std::max({extent.x, extent.y, extent.z});
+  if (!(longest > 0)) return half;  // all in one place
+  if (depth >= kDepthOfHalves) {
+    const int axis = extent.x == longest ? 0 : extent.y == longest ? 1 : 2;
+    std::nth_element(begin, begin + static_cast<std::ptrdiff_t>(half), end, [axis](const Item& a, const Item& b) {
+      return a.center[axis] != b.center[axis] ? a.center[axis] < b.center[axis] : a.emitter < b.emitter;
+    });
+    return half;
+  }
+  const Vector3 reference = emitters_[begin->emitter].axis;
+  const auto binOf = [&](const Item& item, int axis) {
+    const float t = (item.center[axis] - centers.min[axis]) / extent[axis] * kBins;
+    return std::min(static_cast<int>(t), kBins - 1);
+  };
+  std::array<std::array<Bin, kBins>, 3> bins;
+  for (auto item = begin; item != end; ++item) {
+    const ClusterBounds& emitter = emitters_[item->emitter];
+    Bin one;
+    one.box = emitter.box;
+    one.axes = emitter.twoSided && glm::dot(emitter.axis, reference) < 0 ? -emitter.axis : emitter.axis;
+    one.widestO = emitter.cosThetaO >= 1 ? 0.0f : std::acos(emitter.cosThetaO);
+    one.widestE = emitter.cosThetaE <= 0 ? 0.5f * kPi : emitter.cosThetaE >= 1 ? 0.0f : std::acos(emitter.cosThetaE);
+    one.intensity = emitter.intensity;
+    one.count = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (extent[axis] > 0) bins[static_cast<size_t>(axis)][static_cast<size_t>(binOf(*item, axis))].Add(one);
+    }
+  }
+  float best = kInfinity;
+  int bestAxis = -1, bestBin = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!(extent[axis] > 0)) continue;
+    const auto& row = bins[static_cast<size_t>(axis)];
+    std::array<float, kBins> above{};
+    std::array<size_t, kBins> countAbove{};
+    Bin sum;
+    for (size_t b = kBins - 1; b > 0; --b) {
+      sum.Add(row[b]);
+      above[b] = sum.Cost();
+      countAbove[b] = sum.count;
+    }
+    sum = Bin();
+    for (size_t b = 1; b < kBins; ++b) {
+      sum.Add(row[b - 1]);
+      if (sum.count == 0 || countAbove[b] == 0) continue;
+      // Thin boxes are not divided lengthwise ([Conty18 §4.3]).
+      const float cost = (sum.Cost() + above[b]) * longest / extent[axis];
+      if (cost < best) {
+        best = cost;
+        bestAxis = axis;
+        bestBin = static_cast<int>(b);
+      }
+    }
+  }
+  if (bestAxis < 0) return half;
+  const auto middle =
+      std::stable_partition(begin, end, [&](const Item& item) { return binOf(item, bestAxis) < bestBin; });
+  const auto count = static_cast<size_t>(middle - begin);
+  return count == 0 || count == branch.count ? half : count;
+}
+
+bool LightTreeBuilder::Divide(Branch& branch, int depth) {
+  if (branch.count <= kLeaf) return false;
+  const size_t count = Partition(branch, depth);
+  branch.left = std::make_unique<Branch>();
+  branch.right = std::make_unique<Branch>();
+  branch.left->first = branch.first;
+  branch.left->count = count;
+  branch.right->first = branch.first + count;
+  branch.right->count = branch.count - count;
+  return true;
+}
+
+void LightTreeBuilder::Grow(Branch& branch, int depth) {
+  if (Divide(branch, depth)) {
+    Grow(*branch.left, depth + 1);
+    Grow(*branch.right, depth + 1);
+  }
+  Bound(branch);
+}
+
+// The uppermost branches one after the other, those below on all threads: which are which depends on nothing but
+// counts.
+void LightTreeBuilder::GrowInParallel(Branch& root) {
+  constexpr size_t kAlone = 16384;  // items that one thread divides
+  struct Open {
+    Branch* branch;
+    int depth;
+  };
+  std::vector<Open> inner, outer, open{{&root, 0}};
+  while (!open.empty()) {
+    const Open next = open.back();
+    open.pop_back();
+    if (next.branch->count <= kAlone) {
+      outer.push_back(next);
+      continue;
+    }
+    Divide(*next.branch, next.depth);
+    inner.push_back(next);
+    open.push_back({next.branch->right.get(), next.depth + 1});
+    open.push_back({next.branch->left.get(), next.depth + 1});
+  }
+  ParallelFor(static_cast<int>(outer.size()), threads_, [&](int i) {
+    const Open& one = outer[static_cast<size_t>(i)];
+    Grow(*one.branch, one.depth);
+  });
+  for (auto one = inner.rbegin(); one != inner.rend(); ++one) Bound(*one->branch);
+}
+
+void LightTreeBuilder::PutChild(LightTree::Node& node, int slot, const ClusterBounds& bounds, uint32_t child) const {
+  node.minX[slot] = bounds.box.min.x;
+  node.minY[slot] = bounds.box.min.y;
+  node.minZ[slot] = bounds.box.min.z;
+  node.maxX[slot] = bounds.box.max.x;
+  node.maxY[slot] = bounds.box.max.y;
+  node.maxZ[slot] = bounds.box.max.z;
+  node.axisX[slot] = bounds.axis.x;
+  node.axisY[slot] = bounds.axis.y;
+  node.axisZ[slot] = bounds.axis.z;
+  node.cosThetaO[slot] = bounds.cosThetaO;
+  node.cosThetaE[slot] = bounds.cosThetaE;
+  node.intensity[slot] = bounds.intensity;
+  node.child[slot] = child;
+  if (bounds.twoSided) node.twoSided |= 1u << slot;
+}
+
+// A node of a branch: its largest children are opened until there are eight, and what is left of the room is filled
+// with the emitters of small ones.
+void LightTreeBuilder::Emit(const Branch& branch, uint32_t parent, int depth, LightTree& tree) {
+  constexpr auto width = static_cast<size_t>(LightTree::kWidth);
+  tree.depth_ = std::max(tree.depth_, depth);
+  std::vector<const Branch*> children{&branch};
+  const auto isLarger = [](const Branch* a, const Branch* b) {
+    const float ofA = a->bounds.intensity * SpatialMeasure(a->bounds.box);
+    const float ofB = b->bounds.intensity * SpatialMeasure(b->bounds.box);
+    return ofA != ofB ? ofA > ofB : a->count > b->count;
+  };
+  while (children.size() < width) {
+    size_t largest = children.size();
+    for (size_t i = 0; i < children.size(); ++i) {
+      if (!children[i]->left) continue;
+      if (largest == children.size() || isLarger(children[i], children[largest])) largest = i;
+    }
+    if (largest == children.size()) break;
+    const Branch* opened = children[largest];
+    children[largest] = opened->left.get();
+    children.push_back(opened->right.get());
+  }
+  const auto index = static_cast<uint32_t>(tree.nodes_.size());
+  LightTree::Node fresh{};
+  fresh.parent = parent;
+  tree.nodes_.push_back(fresh);
+  size_t slots = children.size();
+  std::sort(children.begin(), children.end(), [](const Branch* a, const Branch* b) {
+    return a->count != b->count ? a->count < b->count : a->first < b->first;
+  });
+  int slot = 0;
+  for (const Branch* child : children) {
+    const bool isSpread = !child->left && slots - 1 + child->count <= width;
+    if (isSpread) {
+      slots += child->count - 1;
+      for (size_t i = child->first; i < child->first + child->count; ++i) {
+        const uint32_t emitter = items_[i].emitter;
+        PutChild(tree.nodes_[index], slot, emitters_[emitter], LightTree::kEmitter | emitter);
+        tree.slots_[emitter] = index * LightTree::kWidth + static_cast<uint32_t>(slot++);
+      }
+      continue;
+    }
+    PutChild(tree.nodes_[index], slot, child->bounds, static_cast<uint32_t>(tree.nodes_.size()));
+    Emit(*child, index * LightTree::kWidth + static_cast<uint32_t>(slot), depth + 1, tree);
+    ++slot;
+  }
+}
+
+void LightTreeBuilder::BuildInto(LightTree& tree) {
+  tree.slots_.assign(emitters_.size(), LightTree::kNone);
+  if (items_.empty()) return;
+  Branch root;
+  root.count = items_.size();
+  GrowInParallel(root);
+  Emit(root, LightTree::kNone, 1, tree);
+  tree.nodes_.shrink_to_fit();
+}
+
+}  // namespace lampyr

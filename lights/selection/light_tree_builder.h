@@ -1,0 +1,46 @@
+// Builds light trees: a binary tree by the surface area orientation heuristic ([Conty18 §4.3]), whose nodes are then
+// gathered eight by eight. Private to light_tree.cpp.
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "lights/selection/light_tree.h"
+
+namespace lampyr {
+
+class LightTreeBuilder {
+ public:
+  LightTreeBuilder(std::span<const ClusterBounds> emitters, int threads);
+  void BuildInto(LightTree& tree);
+
+ private:
+  struct Item {
+    Point3 center;
+    uint32_t emitter;
+  };
+  // Of [first, first + count) items; a leaf when both children are null.
+  struct Branch {
+    ClusterBounds bounds;
+    size_t first = 0, count = 0;
+    std::unique_ptr<Branch> left, right;
+  };
+  struct Split {
+    int axis = -1;
+    float at = 0;  // in bins
+  };
+
+  void Grow(Branch& branch, int depth);
+  void GrowInParallel(Branch& root);
+  bool Divide(Branch& branch, int depth);
+  size_t Partition(const Branch& branch, int depth);
+  void Bound(Branch& branch) const;
+  void Emit(const Branch& branch, uint32_t parent, int depth, LightTree& tree);
+  void PutChild(LightTree::Node& node, int slot, const ClusterBounds& bounds, uint32_t child) const;
+
+  std::span<const ClusterBounds> emitters_;
+  int threads_;
+  std::vector<Item> items_;
+};
+
+}  // namespace lampyr

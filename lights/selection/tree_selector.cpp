@@ -1,0 +1,172 @@
+#include "lights/selection/tree_selector.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "lights/selection/emitters.h"
+#include "lights/selection/light_tree.h"
+#include "sampling/tables.h"
+
+namespace lampyr {
+
+namespace {
+
+// Chosen without a look at the receiver ([Hesterberg95] calls it defensive): what the estimate overlooks, or takes for
+// much less than it is, is chosen at least this part as often as by intensity.
+constexpr double kBlind = 0.05;
+// Of the lights at infinity, and of those with a place, where there are both.
+constexpr double kSmallestGroup = 0.05;
+constexpr float kLargest = 1e30f;
+
+// A float has 24 random bits, a choice among a million takes 20 of them. More are made of these and the place: equal
+// for equal arguments.
+double Refine(float u, const Point3& p) {
+  uint64_t hash = std::bit_cast<uint32_t>(u);
+  for (const float c : {p.x, p.y, p.z}) {
+    hash = (hash ^ std::bit_cast<uint32_t>(c)) * 0x9e3779b97f4a7c15u;
+    hash ^= hash >> 32;
+  }
+  return static_cast<double>(u) + 0x1p-24 * (static_cast<double>(hash >> 12) * 0x1p-52);
+}
+
+// Every emitter's importance, one after the other.
+class AllEmitters {
+ public:
+  AllEmitters(std::span<const ClusterBounds> emitters, int) : emitters_(emitters.begin(), emitters.end()) {
+    for (const ClusterBounds& emitter : emitters_) intensity_ += emitter.intensity;
+  }
+
+  bool IsEmpty() const { return !(intensity_ > 0); }
+  float TotalImportance(const TreeReceiver& receiver) const {
+    float sum = 0;
+    for (const ClusterBounds& emitter : emitters_) sum += Importance(emitter, receiver);
+    return sum;
+  }
+  LightTree::Choice Select(const TreeReceiver& receiver, double u, bool blindly) const {
+    const float total = TotalImportance(receiver);
+    const bool byIntensity = blindly || !(total > 0);
+    LightTree::Choice choice;
+    double left = u * static_cast<double>(byIntensity ? intensity_ : total);
+    for (uint32_t i = 0; i < emitters_.size(); ++i) {
+      const float weight = byIntensity ? emitters_[i].intensity : Importance(emitters_[i], receiver);
+      if (!(weight > 0)) continue;
+      choice.emitter = i;
+      if (left < static_cast<double>(weight)) break;
+      left -= static_cast<double>(weight);
+    }
+    choice.probability = Of(receiver, choice.emitter, total);
+    return choice;
+  }
+  LightTree::Probabilities ProbabilityOf(const TreeReceiver& receiver, uint32_t emitter) const {
+    return Of(receiver, emitter, TotalImportance(receiver));
+  }
+
+ private:
+  LightTree::Probabilities Of(const TreeReceiver& receiver, uint32_t emitter, float total) const {
+    const auto blind = static_cast<double>(emitters_[emitter].intensity / intensity_);
+    return {total > 0 ? static_cast<double>(Importance(emitters_[emitter], receiver) / total) : blind, blind};
+  }
+
+  std::vector<ClusterBounds> emitters_;
+  float intensity_ = 0;
+};
+
+template <class Search>
+class TreeSelector final : public LightSelector {
+ public:
+  TreeSelector(std::span<const PlacedLight> lights, const BoundingSphere& scene, int threads)
+      : emitters_(CollectEmitters(lights, scene, threads)), search_(emitters_.bounds, threads) {
+    emitters_.bounds = {};
+    std::vector<float> weights;
+    for (const uint32_t light : emitters_.far) weights.push_back(FarIrradiance(lights[light], scene));
+    for (const float weight : weights) farIrradiance_ += static_cast<double>(weight);
+    // One whose estimate at the scene's middle is nothing may shine elsewhere, as through a window.
+    constexpr double floor = 1e-3;
+    const double mean = weights.empty() ? 0 : farIrradiance_ / static_cast<double>(weights.size());
+    for (float& weight : weights) weight = mean > 0 ? std::max(weight, static_cast<float>(floor * mean)) : 1.0f;
+    farTable_ = AliasTable(weights);
+  }
+
+  bool SelectsPatches() const override { return emitters_.hasPatches; }
+
+  std::optional<SelectedLight> Select(const Receiver& receiver, float u) const override {
+    const TreeReceiver place = emitters_.Place(receiver);
+    const double far = FarShare(place);
+    double x = Refine(u, receiver.position);
+    if (x < far) {
+      const AliasTable::Result choice = farTable_.Sample(static_cast<float>(std::min(x / far, 0x1.fffffep-1)));
+      return SelectedLight{emitters_.far[choice.index], kAnyPatch,
+                           PdfDiscrete(static_cast<float>(far * static_cast<double>(choice.probability.value))),
+                           choice.u};
+    }
+    if (search_.IsEmpty()) return std::nullopt;
+    x = (x - far) / (1 - far);
+    const bool blindly = x < kBlind;
+    x = blindly ? x / kBlind : (x - kBlind) / (1 - kBlind);
+    const LightTree::Choice choice = search_.Select(place, std::min(x, 0x1.fffffffffffffp-1), blindly);
+    const uint32_t light = emitters_.lightOf[choice.emitter];
+    return SelectedLight{light, PatchOf(light, choice.emitter), Mix(choice.probability, far),
+                         static_cast<float>(std::min(choice.u, 0x1.fffffep-1))};
+  }
+
+  PdfDiscrete Probability(const Receiver& receiver, uint32_t light, int patch) const override {
+    const TreeReceiver place = emitters_.Place(receiver);
+    const double far = FarShare(place);
+    const auto at = std::find(emitters_.far.begin(), emitters_.far.end(), light);
+    if (at != emitters_.far.end()) {
+      if (farTable_.IsZero()) return PdfDiscrete(0);
+      const float within = farTable_.Probability(static_cast<uint32_t>(at - emitters_.far.begin())).value;
+      return PdfDiscrete(static_cast<float>(far * static_cast<double>(within)));
+    }
+    if (search_.IsEmpty()) return PdfDiscrete(0);
+    const uint32_t first = emitters_.first[light];
+    const uint32_t count = emitters_.first[light + 1] - first;
+    const uint32_t emitter = first + (count > 1 ? static_cast<uint32_t>(patch) : 0u);
+    if (emitter >= first + count) return PdfDiscrete(0);
+    return Mix(search_.ProbabilityOf(place, emitter), far);
+  }
+
+ private:
+  int PatchOf(uint32_t light, uint32_t emitter) const {
+    const uint32_t first = emitters_.first[light];
+    return emitters_.first[light + 1] - first > 1 ? static_cast<int>(emitter - first) : kAnyPatch;
+  }
+
+  static PdfDiscrete Mix(const LightTree::Probabilities& probability, double far) {
+    return PdfDiscrete(static_cast<float>((1 - far) * (kBlind * probability.blind + (1 - kBlind) * probability.seen)));
+  }
+
+  static float FarIrradiance(const PlacedLight& placed, const BoundingSphere& scene) {
+    LightContext context;
+    context.transform = &placed.transform;
+    context.scene = scene;
+    const float irradiance = placed.light->GetIncidentRadianceEstimate(context, scene.center);
+    return irradiance > 0 ? std::min(irradiance, kLargest) * placed.light->Settings().importanceMultiplier : 0.0f;
+  }
+
+  // How often the lights at infinity are chosen: by their irradiance against what the others are estimated to send
+  // here.
+  [[gnu::noinline]] double FarShare(const TreeReceiver& place) const {
+    if (farTable_.IsZero()) return 0;
+    if (search_.IsEmpty()) return 1;
+    const double near = emitters_.Irradiance(search_.TotalImportance(place));
+    const double share = farIrradiance_ / (farIrradiance_ + near);
+    return std::clamp(share, kSmallestGroup, 1 - kSmallestGroup);
+  }
+
+  Emitters emitters_;
+  Search search_;
+  AliasTable farTable_;
+  double farIrradiance_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<LightSelector> MakeTreeSelector(EmitterSearch search, std::span<const PlacedLight> lights,
+                                                const BoundingSphere& scene, int threads) {
+  if (search == EmitterSearch::Exhaustive) return std::make_unique<TreeSelector<AllEmitters>>(lights, scene, threads);
+  return std::make_unique<TreeSelector<LightTree>>(lights, scene, threads);
+}
+
+}  // namespace lampyr

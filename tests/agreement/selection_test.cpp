@@ -1,0 +1,175 @@
+// How lights are selected changes the noise of a picture and nothing else; and what is selected from real lights is a
+// distribution that leaves out nothing that contributes.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "agreement/agreement_scenes.h"
+#include "sampling/rng.h"
+#include "sampling/warp.h"
+#include "support/replicas.h"
+
+namespace lampyr::test {
+namespace {
+
+BuiltScene Build(const std::string& text, const std::string& selection) {
+  RenderOverrides overrides;
+  overrides.lightSampler = selection;
+  Diagnostics diagnostics(Diagnostics::Mode::Collect);
+  return BuildScene(ParseScene(text, std::string(LAMPYR_SOURCE_DIR) + "/scenes/test.pbrt", diagnostics), overrides,
+                    true, diagnostics);
+}
+
+// A courtyard with lamps of all kinds, and sky and sun over it.
+std::string ManyLights() {
+  std::string text = FilmWith("box", 24, 24) + "LookAt 0 5 6  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 50\n" +
+                     World(4) +
+                     R"(LightSource "infinite" "rgb L" [0.03 0.04 0.06]
+LightSource "distant" "rgb L" [0.1 0.09 0.08] "point3 from" [1 2 0.5]
+)";
+  std::mt19937 generator(5);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  const auto number = [&](double low, double high) {
+    return std::to_string(low + (high - low) * uniform(generator)) + " ";
+  };
+  for (int i = 0; i < 24; ++i) {
+    const std::string place = number(-3, 3) + number(0.3, 2) + number(-3, 3);
+    const std::string color = number(0.05, 0.4) + number(0.05, 0.4) + number(0.05, 0.4);
+    text += "AttributeBegin\nTranslate " + place + "Rotate " + number(0, 360) + number(-1, 1) + number(-1, 1) + "0.3\n";
+    const std::string area = "AreaLightSource \"diffuse\" \"rgb L\" [" + color + "] \"float scale\" 20\n" +
+                             "Material \"diffuse\" \"rgb reflectance\" [0.2 0.2 0.2]\n";
+    switch (i % 6) {
+      case 0:
+        text += "LightSource \"point\" \"rgb I\" [" + color + "]\n";
+        break;
+      case 1:
+        text += "LightSource \"spot\" \"rgb I\" [" + color + "] \"float scale\" 4 \"float coneangle\" 35\n";
+        break;
+      case 2:
+        text += area + "Shape \"sphere\" \"float radius\" 0.06\n";
+        break;
+      case 3:
+        text += area + "Shape \"disk\" \"float radius\" 0.1\n";
+        break;
+      case 4:  // five triangles, each an emitter of its own
+        text +=
+            area +
+            "Shape \"trianglemesh\" \"point3 P\" [0 0 0  0.3 0 0  0.3 0.2 0  0 0.3 0.1  -0.2 0.1 0.2  -0.1 -0.2 0.1] "
+            "\"integer indices\" [0 1 2  0 2 3  0 3 4  0 4 5  0 5 1]\n";
+        break;
+      default:
+        text +=
+            "AreaLightSource \"diffuse\" \"rgb L\" [" + color +
+            "] \"float scale\" 10 \"bool twosided\" true\nMaterial \"diffuse\"\nShape \"bilinearmesh\" \"point3 P\" "
+            "[-0.1 -0.1 0  0.1 -0.1 0  -0.1 0.1 0  0.1 0.1 0.05]\n";
+    }
+    text += "AttributeEnd\n";
+  }
+  return text + R"(Material "diffuse" "rgb reflectance" [0.5 0.5 0.5]
+Shape "trianglemesh" "point3 P" [-4 0 -4  -4 0 4  4 0 4  4 0 -4] "integer indices" [0 1 2 0 2 3]
+Material "diffusetransmission" "rgb reflectance" [0.4 0.3 0.3] "rgb transmittance" [0.3 0.3 0.4]
+Shape "trianglemesh" "point3 P" [-1 0 -1  1 0 -1.5  1 1.4 -1.5  -1 1.4 -1] "integer indices" [0 1 2 0 2 3]
+)";
+}
+
+std::vector<AgreementScene> AllScenes() {
+  std::vector<AgreementScene> scenes = AgreementScenes();
+  static const std::string many = ManyLights();
+  AgreementScene added{};
+  added.name = "many";
+  added.text = many;
+  scenes.push_back(added);
+  return scenes;
+}
+
+Receiver RandomReceiver(const BoundingSphere& sphere, Rng& rng) {
+  constexpr float sizes[] = {1, 1, 1, 10, 1e6f};
+  const float size = 2 * sphere.radius * sizes[rng.NextUint32() % 5];
+  const Point3 cube = Point3(rng.NextFloat(), rng.NextFloat(), rng.NextFloat()) - 0.5f;
+  Receiver receiver{sphere.center + size * cube, SampleUniformSphere(rng.NextPoint2()), rng.NextUint32() % 4 == 0};
+  if (rng.NextUint32() % 8 == 0) receiver.normal = Normal3(0.0f);
+  return receiver;
+}
+
+class Selection : public testing::TestWithParam<std::tuple<AgreementScene, const char*>> {};
+
+TEST_P(Selection, IsADistributionThatLeavesNothingOut) {
+  const auto& [scene, name] = GetParam();
+  const BuiltScene built = Build(scene.text, name);
+  const LightingServices& lighting = *built.scene.lighting;
+  const std::vector<PlacedLight>& lights = lighting.Lights();
+  Rng rng(1);
+  int contributing = 0;
+  for (int r = 0; r < 200; ++r) {
+    const Receiver receiver = RandomReceiver(lighting.SceneSphere(), rng);
+    const float time = rng.NextFloat();
+    double sum = 0;
+    for (uint32_t i = 0; i < lights.size(); ++i) {
+      LightContext context;
+      const LightTransform moved = lights[i].motion ? lights[i].At(time) : lights[i].transform;
+      context.transform = &moved;
+      context.scene = lighting.SceneSphere();
+      context.time = time;
+      for (int patch = 0; patch < lights[i].light->PatchCount(); ++patch) {
+        const float probability = lighting.SelectionProbability(receiver, i, patch).value;
+        sum += static_cast<double>(probability);
+        context.u = rng.NextPoint2();
+        context.patch = lights[i].light->PatchCount() > 1 ? patch : kAnyPatch;
+        const auto sample = lights[i].light->GenerateSamples(context, receiver.position);
+        if (!sample || (sample->diffuse + sample->specular).IsBlack()) continue;
+        const float cosine = glm::dot(sample->direction, receiver.normal);
+        const bool isLit = LengthSquared(receiver.normal) == 0 || receiver.isTransmissive || cosine > 0;
+        if (!isLit) continue;
+        ++contributing;
+        EXPECT_GT(probability, 0) << "light " << i << ", patch " << patch;
+      }
+    }
+    EXPECT_NEAR(sum, 1, 1e-4);
+    const DirectSample direct = lighting.GenerateSamples(receiver, rng.NextFloat(), rng.NextPoint2(), time, true);
+    if (!direct) continue;
+    const int patch = direct.sample->patchIndex;
+    EXPECT_EQ(direct.selection.value, lighting.SelectionProbability(receiver, direct.light, patch).value);
+  }
+  EXPECT_GT(contributing, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, Selection,
+                         testing::Combine(testing::ValuesIn(AllScenes()), testing::Values("tree", "exhaustive")),
+                         [](const auto& info) {
+                           return std::string(std::get<0>(info.param).name) + "_" + std::get<1>(info.param);
+                         });
+
+class SelectionAgreement : public testing::TestWithParam<std::tuple<const char*, const char*>> {};
+
+TEST_P(SelectionAgreement, ChangesTheNoiseAlone) {
+  const auto& [integrator, selection] = GetParam();
+  const std::string text = ManyLights();
+  static const Replicas uniform = [&] {
+    RenderOverrides overrides;
+    overrides.lightSampler = "uniform";
+    return RenderReplicas(text, "path", 16, 256, overrides);
+  }();
+  RenderOverrides overrides;
+  overrides.lightSampler = selection;
+  overrides.seed = 500;
+  const Replicas other = RenderReplicas(text, integrator, 16, 64, overrides);
+  const double rate = SidakRate(1e-3, 7);
+  const Agreement result = CompareReplicas(other, uniform, 6, rate);
+  std::printf("%s, %s: %d blocks, largest |z| %.2f (threshold %.2f), chi2 %.1f (%.1f), bias %+.3f %% +- %.3f %%\n",
+              integrator, selection, result.blocks, result.largestZ, result.thresholdZ, result.chiSquared,
+              result.chiSquaredThreshold, 100 * result.bias, 196 * result.biasError);
+  EXPECT_TRUE(result.Agrees());
+  EXPECT_EQ(other.faults, 0u);
+  EXPECT_FALSE(CompareReplicas(other, uniform, 6, rate, 1.03).Agrees()) << "too noisy";
+  EXPECT_FALSE(CompareReplicas(other, uniform, 6, rate, 0.97).Agrees()) << "too noisy";
+}
+
+INSTANTIATE_TEST_SUITE_P(Ways, SelectionAgreement,
+                         testing::Combine(testing::Values("path", "bdpt"),
+                                          testing::Values("power", "tree", "exhaustive")),
+                         [](const auto& info) {
+                           return std::string(std::get<0>(info.param)) + "_" + std::get<1>(info.param);
+                         });
+
+}  // namespace
+}  // namespace lampyr::test

@@ -1,0 +1,77 @@
+// What it costs to choose a light, and to know how likely a choice was, among 1 … 10⁶; and to build what chooses.
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+
+#include "lights/selection/light_tree.h"
+#include "sampling/rng.h"
+#include "sampling/warp.h"
+
+namespace lampyr {
+namespace {
+
+std::vector<ClusterBounds> SmallSquares(size_t count) {
+  Rng rng(1);
+  std::vector<ClusterBounds> emitters(count);
+  for (ClusterBounds& emitter : emitters) {
+    const Point3 center(rng.NextFloat() - 0.5f, rng.NextFloat() - 0.5f, rng.NextFloat() - 0.5f);
+    emitter.box.Add(center);
+    emitter.box.Add(center + 0.001f * SampleUniformSphere(rng.NextPoint2()));
+    emitter.axis = SampleUniformSphere(rng.NextPoint2());
+    emitter.cosThetaE = 0;
+    emitter.intensity = std::exp(3 * rng.NextFloat()) / static_cast<float>(count);
+  }
+  return emitters;
+}
+
+std::vector<TreeReceiver> Receivers() {
+  Rng rng(2);
+  std::vector<TreeReceiver> receivers(4096);
+  for (TreeReceiver& receiver : receivers) {
+    receiver.position = Point3(rng.NextFloat() - 0.5f, rng.NextFloat() - 0.5f, rng.NextFloat() - 0.5f);
+    receiver.normal = SampleUniformSphere(rng.NextPoint2());
+  }
+  return receivers;
+}
+
+void Select(benchmark::State& state) {
+  const LightTree tree(SmallSquares(static_cast<size_t>(state.range(0))), 2);
+  const auto receivers = Receivers();
+  Rng rng(3);
+  size_t i = 0;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(
+        tree.Select(receivers[i++ % receivers.size()], static_cast<double>(rng.NextFloat()), false));
+  }
+  state.counters["depth"] = tree.Depth();
+  state.counters["bytesPerLight"] = static_cast<double>(tree.Bytes()) / static_cast<double>(state.range(0));
+}
+BENCHMARK(Select)->Name("lightTree/select")->RangeMultiplier(10)->Range(1, 1000000);
+
+// Of lights that were chosen, as a path finds them.
+void Probability(benchmark::State& state) {
+  const LightTree tree(SmallSquares(static_cast<size_t>(state.range(0))), 2);
+  const auto receivers = Receivers();
+  Rng rng(3);
+  std::vector<uint32_t> chosen;
+  for (const TreeReceiver& receiver : receivers)
+    chosen.push_back(tree.Select(receiver, static_cast<double>(rng.NextFloat()), false).emitter);
+  size_t i = 0;
+  for (auto _ : state) {
+    const size_t k = i++ % receivers.size();
+    benchmark::DoNotOptimize(tree.ProbabilityOf(receivers[k], chosen[k]));
+  }
+}
+BENCHMARK(Probability)->Name("lightTree/probability")->RangeMultiplier(10)->Range(1, 1000000);
+
+void BuildTree(benchmark::State& state) {
+  const auto emitters = SmallSquares(static_cast<size_t>(state.range(0)));
+  for (auto _ : state) {
+    const LightTree tree(emitters, 2);
+    benchmark::DoNotOptimize(tree.Depth());
+  }
+}
+BENCHMARK(BuildTree)->Name("lightTree/build")->Arg(1000)->Arg(1000000)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+}  // namespace
+}  // namespace lampyr

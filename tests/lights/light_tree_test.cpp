@@ -1,0 +1,226 @@
+// The light tree: it is a distribution at every receiver, it never rules out what contributes, and it knows the
+// probability of what it chose to the bit.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "film/metrics.h"
+#include "lights/selection/emitters.h"
+#include "lights/selection/light_tree.h"
+#include "sampling/rng.h"
+#include "sampling/warp.h"
+
+namespace lampyr {
+namespace {
+
+Point3 RandomPoint(Rng& rng, float size) {
+  return size * (Point3(rng.NextFloat(), rng.NextFloat(), rng.NextFloat()) - 0.5f);
+}
+Vector3 RandomDirection(Rng& rng) {
+  return SampleUniformSphere(rng.NextPoint2());
+}
+
+// Points, spots, small and large surfaces, some of them two-sided.
+ClusterBounds RandomEmitter(Rng& rng, float size) {
+  ClusterBounds emitter;
+  const Point3 center = RandomPoint(rng, size);
+  emitter.box.Add(center);
+  emitter.axis = RandomDirection(rng);
+  emitter.intensity = std::exp(4 * rng.NextFloat());
+  switch (rng.NextUint32() % 4) {
+    case 0:
+      emitter.cosThetaO = -1;
+      break;
+    case 1:
+      emitter.cosThetaO = 0.3f + 0.69f * rng.NextFloat();
+      break;
+    default:
+      emitter.cosThetaE = 0;
+      emitter.twoSided = rng.NextUint32() % 4 == 0;
+      emitter.box.Add(center + 0.2f * size * rng.NextFloat() * RandomDirection(rng));
+  }
+  return emitter;
+}
+
+std::vector<ClusterBounds> RandomEmitters(size_t count, Rng& rng, float size = 1) {
+  std::vector<ClusterBounds> emitters;
+  for (size_t i = 0; i < count; ++i) emitters.push_back(RandomEmitter(rng, size));
+  return emitters;
+}
+
+// Within the boxes, around them, far away, in a volume, seen from both sides.
+TreeReceiver RandomReceiver(Rng& rng) {
+  constexpr float sizes[] = {1, 3, 1000, 1e6f};
+  TreeReceiver receiver{RandomPoint(rng, sizes[rng.NextUint32() % 4]), RandomDirection(rng), rng.NextUint32() % 4 == 0};
+  if (rng.NextUint32() % 8 == 0) receiver.normal = Normal3(0.0f);
+  return receiver;
+}
+
+TEST(LightTree, EightAtOnceAreEightOneByOne) {
+  Rng rng(1);
+  for (int trial = 0; trial < 2000; ++trial) {
+    const auto emitters = RandomEmitters(1 + rng.NextUint32() % 8, rng);
+    const LightTree tree(emitters, 1);
+    for (int i = 0; i < 8; ++i) {
+      const TreeReceiver receiver = RandomReceiver(rng);
+      float sum = 0;
+      for (const ClusterBounds& emitter : emitters) sum += Importance(emitter, receiver);
+      EXPECT_NEAR(tree.TotalImportance(receiver), sum, 2e-4f * sum);
+    }
+  }
+}
+
+TEST(LightTree, ProbabilitiesSumToOne) {
+  Rng rng(2);
+  for (const size_t count : {1, 2, 8, 9, 100, 5000}) {
+    const LightTree tree(RandomEmitters(count, rng), 2);
+    for (int i = 0; i < 50; ++i) {
+      const TreeReceiver receiver = RandomReceiver(rng);
+      double seen = 0, blind = 0;
+      for (uint32_t e = 0; e < count; ++e) {
+        const LightTree::Probabilities probability = tree.ProbabilityOf(receiver, e);
+        seen += probability.seen;
+        blind += probability.blind;
+      }
+      EXPECT_NEAR(seen, 1, 1e-5);
+      EXPECT_NEAR(blind, 1, 1e-5);
+    }
+  }
+}
+
+TEST(LightTree, ChoosesAsOftenAsItSays) {
+  Rng rng(3);
+  constexpr size_t count = 40;
+  constexpr int draws = 200000, receivers = 12;
+  const LightTree tree(RandomEmitters(count, rng), 1);
+  for (int r = 0; r < receivers; ++r) {
+    const TreeReceiver receiver = RandomReceiver(rng);
+    for (const bool blindly : {false, true}) {
+      std::vector<int> counts(count, 0);
+      for (int i = 0; i < draws; ++i) {
+        const double u = (i + static_cast<double>(rng.NextFloat())) / draws;
+        const LightTree::Choice choice = tree.Select(receiver, u, blindly);
+        ++counts[choice.emitter];
+        ASSERT_GE(choice.u, 0);
+        ASSERT_LT(choice.u, 1);
+        if (i % 100 != 0) continue;
+        const LightTree::Probabilities again = tree.ProbabilityOf(receiver, choice.emitter);
+        ASSERT_EQ(again.seen, choice.probability.seen);
+        ASSERT_EQ(again.blind, choice.probability.blind);
+      }
+      // The draws are stratified: counts are off by no more than the borders of their share.
+      for (uint32_t e = 0; e < count; ++e) {
+        const LightTree::Probabilities probability = tree.ProbabilityOf(receiver, e);
+        EXPECT_NEAR(counts[e], draws * (blindly ? probability.blind : probability.seen), 6) << e;
+      }
+    }
+  }
+}
+
+// A cluster promises no less than nothing: where a part of it contributes, it is not ruled out.
+TEST(LightTree, AClusterIsNotDarkWhereAPartOfItIsNot) {
+  Rng rng(4);
+  for (int trial = 0; trial < 20000; ++trial) {
+    ClusterBounds cluster;
+    const auto parts = RandomEmitters(2 + rng.NextUint32() % 4, rng);
+    for (const ClusterBounds& part : parts) cluster.Add(part);
+    const TreeReceiver receiver = RandomReceiver(rng);
+    const bool contributes = std::any_of(parts.begin(), parts.end(),
+                                         [&](const ClusterBounds& part) { return Importance(part, receiver) > 0; });
+    if (contributes) {
+      EXPECT_GT(Importance(cluster, receiver), 0) << trial;
+    }
+  }
+}
+
+// Against light itself: from a point of the emitter's box in a direction that it emits in, to a side of the receiver
+// that it lights.
+TEST(LightTree, NothingThatContributesIsRuledOut) {
+  Rng rng(5);
+  const auto emitters = RandomEmitters(300, rng);
+  const LightTree tree(emitters, 1);
+  int contributing = 0;
+  for (int trial = 0; trial < 200000; ++trial) {
+    const auto e = static_cast<uint32_t>(rng.NextUint32() % emitters.size());
+    const ClusterBounds& emitter = emitters[e];
+    const TreeReceiver receiver = RandomReceiver(rng);
+    const Point3 from = emitter.box.min +
+                        Point3(rng.NextFloat(), rng.NextFloat(), rng.NextFloat()) * (emitter.box.max - emitter.box.min);
+    const Vector3 way = receiver.position - from;
+    const Vector3 direction = way / glm::length(way);
+    float emitted = glm::dot(direction, emitter.axis);
+    if (emitter.twoSided) emitted = std::abs(emitted);
+    const bool isLambertian = emitter.cosThetaE == 0;
+    if (isLambertian ? emitted <= 0 : emitted < emitter.cosThetaO) continue;
+    float received = -glm::dot(direction, receiver.normal);
+    if (receiver.isTransmissive) received = std::abs(received);
+    if (LengthSquared(receiver.normal) > 0 && received <= 0) continue;
+    ++contributing;
+    EXPECT_GT(Importance(emitter, receiver), 0);
+    const LightTree::Probabilities probability = tree.ProbabilityOf(receiver, e);
+    EXPECT_GT(probability.seen, 0) << trial;
+    EXPECT_GT(probability.blind, 0) << trial;
+  }
+  EXPECT_GT(contributing, 10000);
+}
+
+TEST(LightTree, NearerAndFacingEmittersAreLikelier) {
+  std::vector<ClusterBounds> emitters(2);
+  for (int i = 0; i < 2; ++i) {
+    emitters[static_cast<size_t>(i)].box.Add(Point3(static_cast<float>(i), 0, 1));
+    emitters[static_cast<size_t>(i)].cosThetaO = -1;
+    emitters[static_cast<size_t>(i)].intensity = 1;
+  }
+  const LightTree tree(emitters, 1);
+  const TreeReceiver below{{0, 0, 0}, {0, 0, 1}, false};
+  // 1 against cos/d² of 45°.
+  const double near = tree.ProbabilityOf(below, 0).seen;
+  EXPECT_NEAR(near, 1 / (1 + std::sqrt(0.5) / 2), 1e-5);
+  const TreeReceiver turned{{0, 0, 0}, {-1, 0, 0}, false};
+  EXPECT_LT(tree.ProbabilityOf(turned, 1).seen, 1e-3);
+}
+
+TEST(LightTree, CoincidentAndEmptyEmitters) {
+  std::vector<ClusterBounds> emitters(100000);
+  for (size_t i = 0; i < emitters.size(); i += 2) {
+    emitters[i].box.Add(Point3(0.3f));
+    emitters[i].cosThetaO = -1;
+    emitters[i].intensity = 1;
+  }
+  const LightTree tree(emitters, 2);
+  EXPECT_LE(tree.Depth(), 8);
+  const TreeReceiver receiver{Point3(0.0f), Normal3(0, 0, 1), false};
+  EXPECT_NEAR(tree.ProbabilityOf(receiver, 4000).seen, 2e-5, 1e-9);
+  EXPECT_EQ(tree.ProbabilityOf(receiver, 4001).seen, 0);
+  EXPECT_GT(tree.ProbabilityOf({Point3(0.3f), Normal3(0, 0, 1), false}, 4000).seen, 0);  // at the very place
+  EXPECT_TRUE(LightTree(std::vector<ClusterBounds>(3), 1).IsEmpty());
+  EXPECT_TRUE(LightTree(std::vector<ClusterBounds>(), 1).IsEmpty());
+}
+
+TEST(LightTree, IsTheSameForAnyNumberOfThreads) {
+  Rng rng(6);
+  const auto emitters = RandomEmitters(60000, rng);
+  const LightTree one(emitters, 1), four(emitters, 4);
+  for (uint32_t e = 0; e < emitters.size(); e += 97) {
+    const TreeReceiver receiver = RandomReceiver(rng);
+    EXPECT_EQ(one.ProbabilityOf(receiver, e).seen, four.ProbabilityOf(receiver, e).seen);
+  }
+}
+
+TEST(LightTree, AMillionEmittersFitAndAreBuiltInSeconds) {
+  Rng rng(7);
+  const auto emitters = RandomEmitters(1000000, rng);
+  const auto start = std::chrono::steady_clock::now();
+  const LightTree tree(emitters, 2);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double bytes = static_cast<double>(tree.Bytes()) / static_cast<double>(emitters.size());
+  std::printf("a million emitters: %.2f s, %.0f bytes each, depth %d\n", seconds, bytes, tree.Depth());
+  EXPECT_LT(seconds, 20);  // 5 on a machine that does nothing else
+  EXPECT_LT(bytes, 120);
+  EXPECT_LT(tree.Depth(), 24);
+}
+
+}  // namespace
+}  // namespace lampyr
