@@ -12,6 +12,11 @@ namespace {
 // What scatters into less than a thirtieth of a steradian sends an image of a light rather than a glow.
 constexpr float kNearlySmooth = 30;  // 1/sr
 
+// Lights may send different radiance to diffuse and to specular lobes.
+float Brighter(const Color& diffuse, const Color& specular) {
+  return std::max(diffuse.Luminance(), specular.Luminance());
+}
+
 struct Vertex {
   SurfacePoint point;
   Vector3 wo{0.0f};
@@ -46,7 +51,7 @@ float BrightestPhoton(const RenderScene& scene) {
     const Point2 u = sampler.Get2D(), uDirection = sampler.Get2D();
     const auto photon = scene.lighting->GenerateEmission(uSelect, u, uDirection, 0);
     if (!photon || !photon->landing || !scene.lighting->CanBeHit(photon->light)) continue;
-    const float radiance = (photon->emission.diffuse + photon->emission.specular).Luminance();
+    const float radiance = Brighter(photon->emission.diffuse, photon->emission.specular);
     if (radiance <= brightest) continue;
     const auto vertex = FindVertex(scene, photon->ray, *photon->landing, sampler);
     if (vertex && vertex->isSmooth) brightest = radiance;
@@ -61,7 +66,7 @@ float DirectLight(const RenderScene& scene, const Vertex& vertex, Sampler& sampl
   const float uSelect = sampler.Get1D();
   const DirectSample direct = scene.lighting->GenerateSamples(receiver, uSelect, sampler.Get2D(), 0, false);
   if (!direct || direct.isDelta) return 0;
-  const float radiance = (direct.sample->diffuse + direct.sample->specular).Luminance();
+  const float radiance = Brighter(direct.sample->diffuse, direct.sample->specular);
   return scene.lighting->Transmission(vertex.point, direct, 0).IsBlack() ? 0.0f : radiance;
 }
 
