@@ -6,6 +6,7 @@
 
 #include "lights/selection/emitters.h"
 #include "lights/selection/light_tree.h"
+#include "sampling/rng.h"
 #include "sampling/tables.h"
 
 namespace lampyr {
@@ -22,11 +23,8 @@ constexpr float kLargest = 1e30f;
 // A float has 24 random bits, a choice among a million takes 20 of them. More are made of these and the place: equal
 // for equal arguments.
 double Refine(float u, const Point3& p) {
-  uint64_t hash = std::bit_cast<uint32_t>(u);
-  for (const float c : {p.x, p.y, p.z}) {
-    hash = (hash ^ std::bit_cast<uint32_t>(c)) * 0x9e3779b97f4a7c15u;
-    hash ^= hash >> 32;
-  }
+  const uint64_t hash = Hash(std::bit_cast<uint32_t>(u), std::bit_cast<uint32_t>(p.x), std::bit_cast<uint32_t>(p.y),
+                             std::bit_cast<uint32_t>(p.z));
   return static_cast<double>(u) + 0x1p-24 * (static_cast<double>(hash >> 12) * 0x1p-52);
 }
 

@@ -289,10 +289,9 @@ Reference MakeReference(const ComparedScene& scene, const std::string& integrato
 
 std::string ReferenceKey(const ComparedScene& scene, const std::string& sceneHash) {
   const RenderSettings& settings = scene.Built().settings;
-  uint64_t hash = 14695981039346656037u;  // FNV-1a
+  uint64_t hash = 0;
   const auto add = [&](size_t, const ComparedScene::Milestone&, const Image& image) {
-    for (const float value : image.data)
-      hash = (hash ^ static_cast<uint64_t>(std::bit_cast<uint32_t>(value))) * 1099511628211u;
+    for (const float value : image.data) hash = Hash(hash, std::bit_cast<uint32_t>(value));
   };
   scene.Render("bdpt", SeedOf(SeedUse::Key, 0), {}, {1}, add, [](double) {});
   const PixelRect& crop = settings.crop;
