@@ -72,6 +72,7 @@ void Normalise(Emitters& emitters) {
     if (bounds.IsEmpty()) continue;
     bounds.box.min = (bounds.box.min - emitters.center) * (1 / emitters.size);
     bounds.box.max = (bounds.box.max - emitters.center) * (1 / emitters.size);
+    bounds.FillBox();
     bounds.intensity = static_cast<float>(std::max(static_cast<double>(bounds.intensity) / emitters.intensity, floor));
   }
 }

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "lights/selection/light_bounds.h"
+#include "lights/selection/importance.h"
 
 namespace lampyr {
 
@@ -20,8 +20,8 @@ struct Emitters {
   bool hasPatches = false;  // some light has more than one emitter
 
   // An importance as irradiance, W/m².
-  double Irradiance(float importance) const {
-    return static_cast<double>(importance) * intensity / (static_cast<double>(size) * static_cast<double>(size));
+  double Irradiance(double importance) const {
+    return importance * intensity / (static_cast<double>(size) * static_cast<double>(size));
   }
   TreeReceiver Place(const Receiver& receiver) const {
     return {(receiver.position - center) * (1 / size), receiver.normal, receiver.isTransmissive};

@@ -43,19 +43,30 @@ void UniteCones(const Vector3& axisA, float cosA, const Vector3& axisB, float co
   cosine = static_cast<float>(std::cos(std::min(angle + rounding, pi)));
 }
 
-// cos(max(0, a - b)) of two angles in [0, π] by their sines and cosines.
-struct Angles {
-  float cosine, sine;
-};
-Angles SubtractClamped(const Angles& a, const Angles& b) {
-  if (a.cosine >= b.cosine) return {1, 0};
-  return {a.cosine * b.cosine + a.sine * b.sine, a.sine * b.cosine - a.cosine * b.sine};
+// The normals of what shines to both sides, seen from a cluster that has a side: no direction is the main one.
+Vector3 NormalIn(const ClusterBounds& part, bool twoSided) {
+  return part.twoSided == twoSided ? part.meanNormal : Vector3(0.0f);
 }
-Angles FromCosine(float cosine) {
-  return {cosine, std::sqrt(std::max(0.0f, 1 - cosine * cosine))};
+
+// Means and variances of two groups together ([Chan83 eq. 1.5]): no differences of large numbers.
+void AddMoments(ClusterBounds& cluster, const ClusterBounds& other) {
+  const float sum = cluster.intensity + other.intensity;
+  const float share = sum > 0 ? other.intensity / sum : 0.5f;
+  const Vector3 between = other.mean - cluster.mean;
+  cluster.mean += share * between;
+  cluster.variance += share * (other.variance - cluster.variance) + share * (1 - share) * glm::dot(between, between);
+  const bool twoSided = cluster.twoSided && other.twoSided;
+  const Vector3 a = NormalIn(cluster, twoSided), b = NormalIn(other, twoSided);
+  // Either side of what shines to both may be meant.
+  cluster.meanNormal = a + share * ((twoSided && glm::dot(a, b) < 0 ? -b : b) - a);
 }
 
 }  // namespace
+
+void ClusterBounds::FillBox() {
+  mean = box.Center();
+  variance = LengthSquared(box.Diagonal()) / 12;
+}
 
 void ClusterBounds::Add(const ClusterBounds& other) {
   if (other.IsEmpty()) return;
@@ -63,6 +74,7 @@ void ClusterBounds::Add(const ClusterBounds& other) {
     *this = other;
     return;
   }
+  AddMoments(*this, other);
   box.Add(other.box);
   // The axis of what shines to both sides may as well be the opposite one.
   const bool flip = other.twoSided && glm::dot(axis, other.axis) < 0;
@@ -74,6 +86,7 @@ void ClusterBounds::Add(const ClusterBounds& other) {
 }
 
 ClusterBounds BoundsOfEmitter(const EmissionBounds& bounds, LightKind kind) {
+  constexpr double pi = 3.14159265358979323846;
   ClusterBounds cluster;
   if (bounds.box.IsEmpty()) return cluster;
   cluster.box = bounds.box;
@@ -81,52 +94,28 @@ ClusterBounds BoundsOfEmitter(const EmissionBounds& bounds, LightKind kind) {
   cluster.twoSided = bounds.twoSided;
   cluster.cosThetaO = bounds.cosThetaO;
   cluster.cosThetaE = std::max(bounds.cosThetaE, 0.0f);
-  const float energy = bounds.energy > 0 ? std::min(bounds.energy, std::numeric_limits<float>::max()) : 0.0f;
+  cluster.FillBox();
+  const double energy = bounds.energy > 0 ? static_cast<double>(bounds.energy) : 0.0;
+  double intensity = 0;
   if (kind == LightKind::DeltaPosition) {
     // All of its directions are main ones: both angles together, and none beyond.
-    const double widest = std::min(Angle(bounds.cosThetaO) + Angle(bounds.cosThetaE), 3.14159265358979323846);
+    const double widest = std::min(Angle(bounds.cosThetaO) + Angle(bounds.cosThetaE), pi);
     cluster.cosThetaO = static_cast<float>(std::cos(widest));
     cluster.cosThetaE = 1;
-    const double solidAngle = 2 * 3.14159265358979323846 * std::max(1 - std::cos(widest), 1e-9);
-    cluster.intensity = static_cast<float>(static_cast<double>(energy) / solidAngle);
+    const double solidAngle = 2 * pi * std::max(1 - std::cos(widest), 1e-9);
+    intensity = 4 * energy / solidAngle;
+    // Alike within its cone; which way that points is still to be known.
+    constexpr float little = 1e-2f;
+    if (widest < pi) cluster.meanNormal = little * cluster.axis;
   } else {
-    // ∫ cosθ dω up to the end is π sin²; of both sides twice as much.
+    // ∫ cosθ dω up to the end is π sin².
     const double sine2 = std::max(1 - std::pow(static_cast<double>(cluster.cosThetaE), 2), 1e-9);
-    cluster.intensity =
-        static_cast<float>(static_cast<double>(energy) / (3.14159265358979323846 * sine2 * (bounds.twoSided ? 2 : 1)));
+    intensity = energy / (pi * sine2);
+    // Of a cone that is filled evenly.
+    cluster.meanNormal = 0.5f * (1 + cluster.cosThetaO) * cluster.axis;
   }
-  cluster.intensity = std::min(cluster.intensity, std::numeric_limits<float>::max());
+  cluster.intensity = static_cast<float>(std::min(intensity, static_cast<double>(std::numeric_limits<float>::max())));
   return cluster;
-}
-
-float Importance(const ClusterBounds& cluster, const TreeReceiver& receiver) {
-  if (cluster.IsEmpty()) return 0;
-  const Vector3 way = receiver.position - 0.5f * (cluster.box.min + cluster.box.max);
-  const Vector3 half = 0.5f * (cluster.box.max - cluster.box.min);
-  constexpr float nearest = 1e-20f;
-  const float distance2 = glm::dot(way, way), radius2 = glm::dot(half, half);
-  const float atLeast = std::max({distance2, radius2, nearest});
-  if (distance2 <= radius2) return cluster.intensity / atLeast;
-  const float inverse = 1 / std::sqrt(std::max(distance2, nearest));
-  const float sine2 = radius2 / distance2;
-  const Angles seen{std::sqrt(1 - sine2), std::sqrt(sine2)};
-
-  float cosEmitted = glm::dot(cluster.axis, way) * inverse;
-  if (cluster.twoSided) cosEmitted = std::abs(cosEmitted);
-  const Angles emitted = SubtractClamped(
-      SubtractClamped(FromCosine(std::clamp(cosEmitted, -1.0f, 1.0f)), FromCosine(cluster.cosThetaO)), seen);
-  constexpr float slack = 1e-4f;  // of rounded angles
-  if (emitted.cosine < cluster.cosThetaE - slack) return 0;
-
-  float received = 1;
-  if (LengthSquared(receiver.normal) > 0) {
-    float cosReceived = -glm::dot(receiver.normal, way) * inverse;
-    if (receiver.isTransmissive) cosReceived = std::abs(cosReceived);
-    received = SubtractClamped(FromCosine(std::clamp(cosReceived, -1.0f, 1.0f)), seen).cosine;
-    if (received < -slack) return 0;
-  }
-  // Grazing light is little, and not nothing.
-  return cluster.intensity * std::max(emitted.cosine, slack) * std::max(received, slack) / atLeast;
 }
 
 }  // namespace lampyr

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "lights/selection/light_tree_builder.h"
 
@@ -12,121 +11,79 @@ namespace {
 
 constexpr int kWidth = LightTree::kWidth;
 
-// Importance() of light_bounds.h for all children at once: the same steps, as loops over arrays that the compiler turns
-// into vectors, and choices instead of branches. One compiled function, so that a probability that is asked for again
-// has the same bits.
-[[gnu::noinline]] void Importances(const LightTree::Node& node, const TreeReceiver& receiver, float* result) {
-  constexpr float slack = 1e-4f, nearest = 1e-20f;
-  const Point3 p = receiver.position;
-  const Normal3 n = receiver.normal;
-  const bool hasNormal = n.x != 0 || n.y != 0 || n.z != 0;
-  const float isTransmissive = receiver.isTransmissive ? 1.0f : 0.0f;
-  alignas(32) float twoSided[kWidth];
-  for (int i = 0; i < kWidth; ++i) twoSided[i] = node.twoSided >> i & 1u ? 1.0f : 0.0f;
-  for (int i = 0; i < kWidth; ++i) {
-    const float x = p.x - 0.5f * (node.minX[i] + node.maxX[i]), hx = 0.5f * (node.maxX[i] - node.minX[i]);
-    const float y = p.y - 0.5f * (node.minY[i] + node.maxY[i]), hy = 0.5f * (node.maxY[i] - node.minY[i]);
-    const float z = p.z - 0.5f * (node.minZ[i] + node.maxZ[i]), hz = 0.5f * (node.maxZ[i] - node.minZ[i]);
-    const float distance2 = x * x + y * y + z * z, radius2 = hx * hx + hy * hy + hz * hz;
-    float atLeast = distance2 > radius2 ? distance2 : radius2;
-    atLeast = atLeast > nearest ? atLeast : nearest;
-    const float positive2 = distance2 > nearest ? distance2 : nearest;
-    const float inverse = 1 / std::sqrt(positive2);
-    float seenSine2 = radius2 / positive2;
-    seenSine2 = seenSine2 < 1 ? seenSine2 : 1.0f;
-    const float seenSine = std::sqrt(seenSine2), seenCosine = std::sqrt(1 - seenSine2);
-
-    float cosine = (node.axisX[i] * x + node.axisY[i] * y + node.axisZ[i] * z) * inverse;
-    cosine = twoSided[i] > 0 ? std::abs(cosine) : cosine;
-    cosine = cosine < 1 ? cosine : 1.0f;
-    cosine = cosine > -1 ? cosine : -1.0f;
-    const float sine = std::sqrt(1 - cosine * cosine);
-    const float cosO = node.cosThetaO[i], sinO = std::sqrt(1 - cosO * cosO);
-    const bool withinO = cosine >= cosO;
-    const float cosBeyond = withinO ? 1.0f : cosine * cosO + sine * sinO;
-    const float sinBeyond = withinO ? 0.0f : sine * cosO - cosine * sinO;
-    const float emitted = cosBeyond >= seenCosine ? 1.0f : cosBeyond * seenCosine + sinBeyond * seenSine;
-    const bool isDark = emitted < node.cosThetaE[i] - slack;
-
-    float facing = -(n.x * x + n.y * y + n.z * z) * inverse;
-    facing = isTransmissive > 0 ? std::abs(facing) : facing;
-    facing = facing < 1 ? facing : 1.0f;
-    facing = facing > -1 ? facing : -1.0f;
-    const float facingSine = std::sqrt(1 - facing * facing);
-    float received = facing >= seenCosine ? 1.0f : facing * seenCosine + facingSine * seenSine;
-    received = hasNormal ? received : 1.0f;
-    const bool isBehind = received < -slack;
-
-    const bool isInside = distance2 <= radius2;
-    const float most = node.intensity[i] / atLeast;
-    const float angles = (emitted > slack ? emitted : slack) * (received > slack ? received : slack);
-    const float outside = isDark || isBehind ? 0.0f : most * angles;
-    result[i] = isInside ? most : outside;
+// The child at u in [0,1) of all weights one after the other, and u within its share. No branch hangs on u.
+int Choose(const float* weights, double sum, double& u) {
+  const double x = u * sum;
+  double before[kWidth + 1];
+  before[0] = 0;
+  for (int i = 0; i < kWidth; ++i) before[i + 1] = before[i] + static_cast<double>(weights[i]);
+  int slot = 0;
+  for (int i = 1; i <= kWidth; ++i) slot += before[i] <= x ? 1 : 0;
+  if (slot == kWidth) [[unlikely]] {  // u · sum was rounded to the sum
+    while (slot > 0 && !(weights[slot - 1] > 0)) --slot;
+    u = 0x1.fffffffffffffp-1;
+    return std::max(slot - 1, 0);
   }
-}
-
-// What each child is chosen with; both add up to 1.
-struct Shares {
-  alignas(32) float seen[kWidth];
-  alignas(32) float blind[kWidth];
-};
-
-[[gnu::noinline]] void SharesOf(const LightTree::Node& node, const TreeReceiver& receiver, Shares& shares) {
-  Importances(node, receiver, shares.seen);
-  float sum = 0, sumBlind = 0;
-  for (int i = 0; i < kWidth; ++i) {
-    sum += shares.seen[i];
-    sumBlind += node.intensity[i];
-  }
-  for (int i = 0; i < kWidth; ++i) shares.blind[i] = node.intensity[i] / sumBlind;
-  // A cluster may look as if it contributed while none of its parts does.
-  const bool isDark = !(sum > 0);
-  for (int i = 0; i < kWidth; ++i) shares.seen[i] = isDark ? shares.blind[i] : shares.seen[i] / sum;
-}
-
-// The child at u in [0,1), and u within its share.
-int Choose(const float* shares, double& u) {
-  int last = 0;
-  for (int i = 0; i < kWidth; ++i) {
-    const auto share = static_cast<double>(shares[i]);
-    if (!(share > 0)) continue;
-    last = i;
-    if (u < share) {
-      u /= share;
-      return i;
-    }
-    u -= share;
-  }
-  u = 0x1.fffffffffffffp-1;  // shares that add up to a little less than 1
-  return last;
+  u = std::min((x - before[slot]) / static_cast<double>(weights[slot]), 0x1.fffffffffffffp-1);
+  return slot;
 }
 
 }  // namespace
 
 LightTree::LightTree(std::span<const ClusterBounds> emitters, int threads) {
   LightTreeBuilder(emitters, threads).BuildInto(*this);
+  if (IsEmpty()) return;
+  for (const float intensity : nodes_[0].lobes.intensity) intensity_ += static_cast<double>(intensity);
 }
 
-LightTree::Choice LightTree::Select(const TreeReceiver& receiver, double u, bool blindly) const {
-  Choice choice;
+// One compiled function: the same receiver gives the same bits, whoever asks.
+[[gnu::noinline]] LightTree::Root LightTree::LookAt(uint32_t node, const TreeReceiver& receiver) const {
+  Root root;
+  Evaluate(nodes_[node].lobes, receiver, root.importances);
+  root.irradiance = root.sum = root.importances.Sum();
+  if (root.sum > 0) [[likely]]
+    return root;
+  // A cluster may look as if it contributed while none of its parts does.
+  std::copy_n(nodes_[node].lobes.intensity, kWidth, root.importances.of);
+  root.sum = root.importances.Sum();
+  return root;
+}
+
+LightTree::Root LightTree::Look(const TreeReceiver& receiver) const {
+  return IsEmpty() ? Root() : LookAt(0, receiver);
+}
+
+EmitterChoice LightTree::Select(const TreeReceiver& receiver, const Root& root, double u, bool blindly) const {
+  EmitterChoice choice;
   uint32_t node = 0;
+  Root here = root;
   for (;;) {
-    Shares shares;
-    SharesOf(nodes_[node], receiver, shares);
-    const int slot = Choose(blindly ? shares.blind : shares.seen, u);
-    choice.probability.seen *= static_cast<double>(shares.seen[slot]);
-    choice.probability.blind *= static_cast<double>(shares.blind[slot]);
+    const float* weights = blindly ? nodes_[node].lobes.intensity : here.importances.of;
+    double sum = here.sum;
+    if (blindly) {
+      sum = 0;
+      for (int i = 0; i < kWidth; ++i) sum += static_cast<double>(weights[i]);
+    }
+    const int slot = Choose(weights, sum, u);
+    choice.probability.seen *= static_cast<double>(here.importances.of[slot]) / here.sum;
     const uint32_t child = nodes_[node].child[slot];
     if (child & kEmitter) {
       choice.emitter = child & ~kEmitter;
-      choice.u = std::min(u, 0x1.fffffffffffffp-1);
+      choice.probability.blind = BlindProbability(node * kWidth + static_cast<uint32_t>(slot));
+      choice.u = u;
       return choice;
     }
     node = child;
+    here = LookAt(node, receiver);
   }
 }
 
-LightTree::Probabilities LightTree::ProbabilityOf(const TreeReceiver& receiver, uint32_t emitter) const {
+// What the shares of the levels multiply to.
+double LightTree::BlindProbability(uint32_t slot) const {
+  return static_cast<double>(nodes_[slot / kWidth].lobes.intensity[slot % kWidth]) / intensity_;
+}
+
+EmitterProbability LightTree::ProbabilityOf(const TreeReceiver& receiver, const Root& root, uint32_t emitter) const {
   if (emitter >= slots_.size() || slots_[emitter] == kNone) return {0, 0};
   // From the root down, as it is chosen: products of the same numbers in the same order.
   constexpr size_t kRoom = 128;  // the builder divides into halves from its 40th level on, and there are 2^31 emitters
@@ -134,24 +91,15 @@ LightTree::Probabilities LightTree::ProbabilityOf(const TreeReceiver& receiver, 
   size_t length = 0;
   for (uint32_t slot = slots_[emitter]; slot != kNone && length < kRoom; slot = nodes_[slot / kWidth].parent)
     way[length++] = slot;
-  Probabilities probability;
+  EmitterProbability probability;
+  probability.seen *= static_cast<double>(root.importances.of[way[--length] % kWidth]) / root.sum;
   while (length > 0) {
     const uint32_t slot = way[--length];
-    Shares shares;
-    SharesOf(nodes_[slot / kWidth], receiver, shares);
-    probability.seen *= static_cast<double>(shares.seen[slot % kWidth]);
-    probability.blind *= static_cast<double>(shares.blind[slot % kWidth]);
+    const Root here = LookAt(slot / kWidth, receiver);
+    probability.seen *= static_cast<double>(here.importances.of[slot % kWidth]) / here.sum;
   }
+  probability.blind = BlindProbability(slots_[emitter]);
   return probability;
-}
-
-float LightTree::TotalImportance(const TreeReceiver& receiver) const {
-  if (IsEmpty()) return 0;
-  alignas(32) float importances[kWidth];
-  Importances(nodes_[0], receiver, importances);
-  float sum = 0;
-  for (const float importance : importances) sum += importance;
-  return sum;
 }
 
 size_t LightTree::Bytes() const {

@@ -191,20 +191,8 @@ void LightTreeBuilder::GrowInParallel(Branch& root) {
 }
 
 void LightTreeBuilder::PutChild(LightTree::Node& node, int slot, const ClusterBounds& bounds, uint32_t child) const {
-  node.minX[slot] = bounds.box.min.x;
-  node.minY[slot] = bounds.box.min.y;
-  node.minZ[slot] = bounds.box.min.z;
-  node.maxX[slot] = bounds.box.max.x;
-  node.maxY[slot] = bounds.box.max.y;
-  node.maxZ[slot] = bounds.box.max.z;
-  node.axisX[slot] = bounds.axis.x;
-  node.axisY[slot] = bounds.axis.y;
-  node.axisZ[slot] = bounds.axis.z;
-  node.cosThetaO[slot] = bounds.cosThetaO;
-  node.cosThetaE[slot] = bounds.cosThetaE;
-  node.intensity[slot] = bounds.intensity;
+  node.lobes.Set(slot, LobeOf(bounds));
   node.child[slot] = child;
-  if (bounds.twoSided) node.twoSided |= 1u << slot;
 }
 
 // A node of a branch: its largest children are opened until there are eight, and what is left of the room is filled

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "lights/selection/emitter_list.h"
 #include "lights/selection/emitters.h"
 #include "lights/selection/light_tree.h"
 #include "sampling/rng.h"
@@ -28,48 +29,6 @@ double Refine(float u, const Point3& p) {
   return static_cast<double>(u) + 0x1p-24 * (static_cast<double>(hash >> 12) * 0x1p-52);
 }
 
-// Every emitter's importance, one after the other.
-class AllEmitters {
- public:
-  AllEmitters(std::span<const ClusterBounds> emitters, int) : emitters_(emitters.begin(), emitters.end()) {
-    for (const ClusterBounds& emitter : emitters_) intensity_ += emitter.intensity;
-  }
-
-  bool IsEmpty() const { return !(intensity_ > 0); }
-  float TotalImportance(const TreeReceiver& receiver) const {
-    float sum = 0;
-    for (const ClusterBounds& emitter : emitters_) sum += Importance(emitter, receiver);
-    return sum;
-  }
-  LightTree::Choice Select(const TreeReceiver& receiver, double u, bool blindly) const {
-    const float total = TotalImportance(receiver);
-    const bool byIntensity = blindly || !(total > 0);
-    LightTree::Choice choice;
-    double left = u * static_cast<double>(byIntensity ? intensity_ : total);
-    for (uint32_t i = 0; i < emitters_.size(); ++i) {
-      const float weight = byIntensity ? emitters_[i].intensity : Importance(emitters_[i], receiver);
-      if (!(weight > 0)) continue;
-      choice.emitter = i;
-      if (left < static_cast<double>(weight)) break;
-      left -= static_cast<double>(weight);
-    }
-    choice.probability = Of(receiver, choice.emitter, total);
-    return choice;
-  }
-  LightTree::Probabilities ProbabilityOf(const TreeReceiver& receiver, uint32_t emitter) const {
-    return Of(receiver, emitter, TotalImportance(receiver));
-  }
-
- private:
-  LightTree::Probabilities Of(const TreeReceiver& receiver, uint32_t emitter, float total) const {
-    const auto blind = static_cast<double>(emitters_[emitter].intensity / intensity_);
-    return {total > 0 ? static_cast<double>(Importance(emitters_[emitter], receiver) / total) : blind, blind};
-  }
-
-  std::vector<ClusterBounds> emitters_;
-  float intensity_ = 0;
-};
-
 template <class Search>
 class TreeSelector final : public LightSelector {
  public:
@@ -90,7 +49,8 @@ class TreeSelector final : public LightSelector {
 
   std::optional<SelectedLight> Select(const Receiver& receiver, float u) const override {
     const TreeReceiver place = emitters_.Place(receiver);
-    const double far = FarShare(place);
+    const auto root = search_.Look(place);
+    const double far = FarShare(root.irradiance);
     double x = Refine(u, receiver.position);
     if (x < far) {
       const AliasTable::Result choice = farTable_.Sample(static_cast<float>(std::min(x / far, 0x1.fffffep-1)));
@@ -102,7 +62,7 @@ class TreeSelector final : public LightSelector {
     x = (x - far) / (1 - far);
     const bool blindly = x < kBlind;
     x = blindly ? x / kBlind : (x - kBlind) / (1 - kBlind);
-    const LightTree::Choice choice = search_.Select(place, std::min(x, 0x1.fffffffffffffp-1), blindly);
+    const EmitterChoice choice = search_.Select(place, root, std::min(x, 0x1.fffffffffffffp-1), blindly);
     const uint32_t light = emitters_.lightOf[choice.emitter];
     return SelectedLight{light, PatchOf(light, choice.emitter), Mix(choice.probability, far),
                          static_cast<float>(std::min(choice.u, 0x1.fffffep-1))};
@@ -110,7 +70,8 @@ class TreeSelector final : public LightSelector {
 
   PdfDiscrete Probability(const Receiver& receiver, uint32_t light, int patch) const override {
     const TreeReceiver place = emitters_.Place(receiver);
-    const double far = FarShare(place);
+    const auto root = search_.Look(place);
+    const double far = FarShare(root.irradiance);
     const auto at = std::find(emitters_.far.begin(), emitters_.far.end(), light);
     if (at != emitters_.far.end()) {
       if (farTable_.IsZero()) return PdfDiscrete(0);
@@ -122,7 +83,7 @@ class TreeSelector final : public LightSelector {
     const uint32_t count = emitters_.first[light + 1] - first;
     const uint32_t emitter = first + (count > 1 ? static_cast<uint32_t>(patch) : 0u);
     if (emitter >= first + count) return PdfDiscrete(0);
-    return Mix(search_.ProbabilityOf(place, emitter), far);
+    return Mix(search_.ProbabilityOf(place, root, emitter), far);
   }
 
  private:
@@ -131,7 +92,7 @@ class TreeSelector final : public LightSelector {
     return emitters_.first[light + 1] - first > 1 ? static_cast<int>(emitter - first) : kAnyPatch;
   }
 
-  static PdfDiscrete Mix(const LightTree::Probabilities& probability, double far) {
+  static PdfDiscrete Mix(const EmitterProbability& probability, double far) {
     return PdfDiscrete(static_cast<float>((1 - far) * (kBlind * probability.blind + (1 - kBlind) * probability.seen)));
   }
 
@@ -145,10 +106,10 @@ class TreeSelector final : public LightSelector {
 
   // How often the lights at infinity are chosen: by their irradiance against what the others are estimated to send
   // here.
-  [[gnu::noinline]] double FarShare(const TreeReceiver& place) const {
+  double FarShare(double importance) const {
     if (farTable_.IsZero()) return 0;
     if (search_.IsEmpty()) return 1;
-    const double near = emitters_.Irradiance(search_.TotalImportance(place));
+    const double near = emitters_.Irradiance(importance);
     const double share = farIrradiance_ / (farIrradiance_ + near);
     return std::clamp(share, kSmallestGroup, 1 - kSmallestGroup);
   }
@@ -163,7 +124,7 @@ class TreeSelector final : public LightSelector {
 
 std::unique_ptr<LightSelector> MakeTreeSelector(EmitterSearch search, std::span<const PlacedLight> lights,
                                                 const BoundingSphere& scene, int threads) {
-  if (search == EmitterSearch::Exhaustive) return std::make_unique<TreeSelector<AllEmitters>>(lights, scene, threads);
+  if (search == EmitterSearch::Exhaustive) return std::make_unique<TreeSelector<EmitterList>>(lights, scene, threads);
   return std::make_unique<TreeSelector<LightTree>>(lights, scene, threads);
 }
 

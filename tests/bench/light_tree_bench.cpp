@@ -19,6 +19,8 @@ std::vector<ClusterBounds> SmallSquares(size_t count) {
     emitter.box.Add(center + 0.001f * SampleUniformSphere(rng.NextPoint2()));
     emitter.axis = SampleUniformSphere(rng.NextPoint2());
     emitter.cosThetaE = 0;
+    emitter.meanNormal = emitter.axis;
+    emitter.FillBox();
     emitter.intensity = std::exp(3 * rng.NextFloat()) / static_cast<float>(count);
   }
   return emitters;
@@ -40,8 +42,8 @@ void Select(benchmark::State& state) {
   Rng rng(3);
   size_t i = 0;
   for (auto _ : state) {
-    benchmark::DoNotOptimize(
-        tree.Select(receivers[i++ % receivers.size()], static_cast<double>(rng.NextFloat()), false));
+    const TreeReceiver& receiver = receivers[i++ % receivers.size()];
+    benchmark::DoNotOptimize(tree.Select(receiver, tree.Look(receiver), static_cast<double>(rng.NextFloat()), false));
   }
   state.counters["depth"] = tree.Depth();
   state.counters["bytesPerLight"] = static_cast<double>(tree.Bytes()) / static_cast<double>(state.range(0));
@@ -55,11 +57,11 @@ void Probability(benchmark::State& state) {
   Rng rng(3);
   std::vector<uint32_t> chosen;
   for (const TreeReceiver& receiver : receivers)
-    chosen.push_back(tree.Select(receiver, static_cast<double>(rng.NextFloat()), false).emitter);
+    chosen.push_back(tree.Select(receiver, tree.Look(receiver), static_cast<double>(rng.NextFloat()), false).emitter);
   size_t i = 0;
   for (auto _ : state) {
     const size_t k = i++ % receivers.size();
-    benchmark::DoNotOptimize(tree.ProbabilityOf(receivers[k], chosen[k]));
+    benchmark::DoNotOptimize(tree.ProbabilityOf(receivers[k], tree.Look(receivers[k]), chosen[k]));
   }
 }
 BENCHMARK(Probability)->Name("lightTree/probability")->RangeMultiplier(10)->Range(1, 1000000);

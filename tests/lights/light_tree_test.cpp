@@ -35,12 +35,15 @@ ClusterBounds RandomEmitter(Rng& rng, float size) {
       break;
     case 1:
       emitter.cosThetaO = 0.3f + 0.69f * rng.NextFloat();
+      emitter.meanNormal = 0.01f * emitter.axis;
       break;
     default:
       emitter.cosThetaE = 0;
       emitter.twoSided = rng.NextUint32() % 4 == 0;
       emitter.box.Add(center + 0.2f * size * rng.NextFloat() * RandomDirection(rng));
+      emitter.meanNormal = emitter.axis;
   }
+  emitter.FillBox();
   return emitter;
 }
 
@@ -66,8 +69,8 @@ TEST(LightTree, EightAtOnceAreEightOneByOne) {
     for (int i = 0; i < 8; ++i) {
       const TreeReceiver receiver = RandomReceiver(rng);
       float sum = 0;
-      for (const ClusterBounds& emitter : emitters) sum += Importance(emitter, receiver);
-      EXPECT_NEAR(tree.TotalImportance(receiver), sum, 2e-4f * sum);
+      for (const ClusterBounds& emitter : emitters) sum += Importance(LobeOf(emitter), receiver);
+      EXPECT_NEAR(tree.Look(receiver).irradiance, sum, 2e-4f * sum);
     }
   }
 }
@@ -80,7 +83,7 @@ TEST(LightTree, ProbabilitiesSumToOne) {
       const TreeReceiver receiver = RandomReceiver(rng);
       double seen = 0, blind = 0;
       for (uint32_t e = 0; e < count; ++e) {
-        const LightTree::Probabilities probability = tree.ProbabilityOf(receiver, e);
+        const EmitterProbability probability = tree.ProbabilityOf(receiver, tree.Look(receiver), e);
         seen += probability.seen;
         blind += probability.blind;
       }
@@ -101,18 +104,18 @@ TEST(LightTree, ChoosesAsOftenAsItSays) {
       std::vector<int> counts(count, 0);
       for (int i = 0; i < draws; ++i) {
         const double u = (i + static_cast<double>(rng.NextFloat())) / draws;
-        const LightTree::Choice choice = tree.Select(receiver, u, blindly);
+        const EmitterChoice choice = tree.Select(receiver, tree.Look(receiver), u, blindly);
         ++counts[choice.emitter];
         ASSERT_GE(choice.u, 0);
         ASSERT_LT(choice.u, 1);
         if (i % 100 != 0) continue;
-        const LightTree::Probabilities again = tree.ProbabilityOf(receiver, choice.emitter);
+        const EmitterProbability again = tree.ProbabilityOf(receiver, tree.Look(receiver), choice.emitter);
         ASSERT_EQ(again.seen, choice.probability.seen);
         ASSERT_EQ(again.blind, choice.probability.blind);
       }
       // The draws are stratified: counts are off by no more than the borders of their share.
       for (uint32_t e = 0; e < count; ++e) {
-        const LightTree::Probabilities probability = tree.ProbabilityOf(receiver, e);
+        const EmitterProbability probability = tree.ProbabilityOf(receiver, tree.Look(receiver), e);
         EXPECT_NEAR(counts[e], draws * (blindly ? probability.blind : probability.seen), 6) << e;
       }
     }
@@ -127,10 +130,10 @@ TEST(LightTree, AClusterIsNotDarkWhereAPartOfItIsNot) {
     const auto parts = RandomEmitters(2 + rng.NextUint32() % 4, rng);
     for (const ClusterBounds& part : parts) cluster.Add(part);
     const TreeReceiver receiver = RandomReceiver(rng);
-    const bool contributes = std::any_of(parts.begin(), parts.end(),
-                                         [&](const ClusterBounds& part) { return Importance(part, receiver) > 0; });
+    const bool contributes = std::any_of(
+        parts.begin(), parts.end(), [&](const ClusterBounds& part) { return Importance(LobeOf(part), receiver) > 0; });
     if (contributes) {
-      EXPECT_GT(Importance(cluster, receiver), 0) << trial;
+      EXPECT_GT(Importance(LobeOf(cluster), receiver), 0) << trial;
     }
   }
 }
@@ -158,8 +161,8 @@ TEST(LightTree, NothingThatContributesIsRuledOut) {
     if (receiver.isTransmissive) received = std::abs(received);
     if (LengthSquared(receiver.normal) > 0 && received <= 0) continue;
     ++contributing;
-    EXPECT_GT(Importance(emitter, receiver), 0);
-    const LightTree::Probabilities probability = tree.ProbabilityOf(receiver, e);
+    EXPECT_GT(Importance(LobeOf(emitter), receiver), 0);
+    const EmitterProbability probability = tree.ProbabilityOf(receiver, tree.Look(receiver), e);
     EXPECT_GT(probability.seen, 0) << trial;
     EXPECT_GT(probability.blind, 0) << trial;
   }
@@ -172,14 +175,15 @@ TEST(LightTree, NearerAndFacingEmittersAreLikelier) {
     emitters[static_cast<size_t>(i)].box.Add(Point3(static_cast<float>(i), 0, 1));
     emitters[static_cast<size_t>(i)].cosThetaO = -1;
     emitters[static_cast<size_t>(i)].intensity = 1;
+    emitters[static_cast<size_t>(i)].FillBox();
   }
   const LightTree tree(emitters, 1);
   const TreeReceiver below{{0, 0, 0}, {0, 0, 1}, false};
   // 1 against cos/d² of 45°.
-  const double near = tree.ProbabilityOf(below, 0).seen;
+  const double near = tree.ProbabilityOf(below, tree.Look(below), 0).seen;
   EXPECT_NEAR(near, 1 / (1 + std::sqrt(0.5) / 2), 1e-5);
   const TreeReceiver turned{{0, 0, 0}, {-1, 0, 0}, false};
-  EXPECT_LT(tree.ProbabilityOf(turned, 1).seen, 1e-3);
+  EXPECT_LT(tree.ProbabilityOf(turned, tree.Look(turned), 1).seen, 1e-3);
 }
 
 TEST(LightTree, CoincidentAndEmptyEmitters) {
@@ -188,13 +192,15 @@ TEST(LightTree, CoincidentAndEmptyEmitters) {
     emitters[i].box.Add(Point3(0.3f));
     emitters[i].cosThetaO = -1;
     emitters[i].intensity = 1;
+    emitters[i].FillBox();
   }
   const LightTree tree(emitters, 2);
   EXPECT_LE(tree.Depth(), 8);
   const TreeReceiver receiver{Point3(0.0f), Normal3(0, 0, 1), false};
-  EXPECT_NEAR(tree.ProbabilityOf(receiver, 4000).seen, 2e-5, 1e-9);
-  EXPECT_EQ(tree.ProbabilityOf(receiver, 4001).seen, 0);
-  EXPECT_GT(tree.ProbabilityOf({Point3(0.3f), Normal3(0, 0, 1), false}, 4000).seen, 0);  // at the very place
+  EXPECT_NEAR(tree.ProbabilityOf(receiver, tree.Look(receiver), 4000).seen, 2e-5, 1e-9);
+  EXPECT_EQ(tree.ProbabilityOf(receiver, tree.Look(receiver), 4001).seen, 0);
+  const TreeReceiver there{Point3(0.3f), Normal3(0, 0, 1), false};  // at the very place
+  EXPECT_GT(tree.ProbabilityOf(there, tree.Look(there), 4000).seen, 0);
   EXPECT_TRUE(LightTree(std::vector<ClusterBounds>(3), 1).IsEmpty());
   EXPECT_TRUE(LightTree(std::vector<ClusterBounds>(), 1).IsEmpty());
 }
@@ -205,7 +211,8 @@ TEST(LightTree, IsTheSameForAnyNumberOfThreads) {
   const LightTree one(emitters, 1), four(emitters, 4);
   for (uint32_t e = 0; e < emitters.size(); e += 97) {
     const TreeReceiver receiver = RandomReceiver(rng);
-    EXPECT_EQ(one.ProbabilityOf(receiver, e).seen, four.ProbabilityOf(receiver, e).seen);
+    EXPECT_EQ(one.ProbabilityOf(receiver, one.Look(receiver), e).seen,
+              four.ProbabilityOf(receiver, four.Look(receiver), e).seen);
   }
 }
 

@@ -1,0 +1,59 @@
+// How much a cluster of emitters is estimated to send to a receiver: what the light tree chooses by.
+//
+// The estimate is an expectation, not a bound: of patches around a mean place, with a mean normal, the cosines at both
+// ends are taken as means of max(0, c) over a spread that the variances tell. It never vanishes because of an average
+// (a part f of the patches that faces the receiver while the others look away counts f/4 at least), so that bounds are
+// needed only for telling what is surely dark.
+#pragma once
+
+#include <cstdint>
+
+#include "lights/selection/light_bounds.h"
+
+namespace lampyr {
+
+// A receiver as importance needs it, in the tree's coordinates.
+struct TreeReceiver {
+  Point3 position{0.0f};
+  Normal3 normal{0.0f};  // 0 in a volume
+  bool isTransmissive = false;
+};
+
+// What importance needs of a cluster, digested. A node of the tree keeps the same numbers for each of its children.
+struct ClusterLobe {
+  Point3 mean{0.0f};
+  float variance = 0;
+  Vector3 meanNormal{0.0f};
+  float intensity = 0;
+  float radius = 0;       // of a sphere about the mean that all of the cluster is in
+  float coneCosine = -1;  // all light leaves within this angle of the mean normal, times its length; -1: to all sides
+  float coneReach = 0;    // how much nearer to the cone a place may be for the sphere, times that length
+  bool twoSided = false;
+};
+ClusterLobe LobeOf(const ClusterBounds& bounds);
+
+// An estimate of the irradiance at the receiver, 0 only where nothing of the cluster contributes. For one cluster,
+// written to be read.
+float Importance(const ClusterLobe& lobe, const TreeReceiver& receiver);
+
+// Eight lobes, number by number: a node's children.
+struct alignas(64) LobeBlock {
+  static constexpr int kWidth = 8;
+
+  float meanX[kWidth], meanY[kWidth], meanZ[kWidth], variance[kWidth];
+  float normalX[kWidth], normalY[kWidth], normalZ[kWidth], intensity[kWidth];  // intensity 0: nothing there
+  float radius[kWidth], coneCosine[kWidth], coneReach[kWidth];
+  float oneSided[kWidth];  // 1, or 0
+
+  void Set(int slot, const ClusterLobe& lobe);
+};
+
+// Importance() of all eight at once; a test holds the two equal. One compiled function: the same receiver gives the
+// same bits, whoever asks.
+struct alignas(64) Importances {
+  float of[LobeBlock::kWidth];
+  double Sum() const;  // from the first to the last
+};
+void Evaluate(const LobeBlock& block, const TreeReceiver& receiver, Importances& importances);
+
+}  // namespace lampyr
