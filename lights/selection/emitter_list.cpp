@@ -2,11 +2,27 @@
 
 #include <algorithm>
 
+#include "lights/selection/importance_lanes.h"
+
 namespace lampyr {
 
 namespace {
 
 constexpr uint32_t kWidth = LobeBlock::kWidth;
+
+struct Weights {
+  alignas(64) float of[kWidth];
+  double sum = 0;
+};
+
+// One compiled function: the same receiver gives the same bits, whoever asks.
+[[gnu::noinline]] Weights WeightsOf(const LobeBlock& block, const TreeReceiver& receiver, bool byIntensity) {
+  Weights weights;
+  const Lanes lanes = byIntensity ? Load(block.intensity) : Evaluate(block, receiver).importance;
+  lanes.copy_to(weights.of, simd::vector_aligned);
+  for (const float weight : weights.of) weights.sum += static_cast<double>(weight);
+  return weights;
+}
 
 }  // namespace
 
@@ -19,59 +35,43 @@ EmitterList::EmitterList(std::span<const ClusterBounds> emitters, int) {
   }
 }
 
-EmitterList::Root EmitterList::Look(const TreeReceiver& receiver) const {
-  Root root;
-  Importances importances;
-  for (const LobeBlock& block : blocks_) {
-    Evaluate(block, receiver, importances);
-    root.sum += importances.Sum();
-  }
-  root.irradiance = root.sum;
-  if (!(root.sum > 0)) root = {intensity_, 0, true};
-  return root;
+void EmitterList::Look(const TreeReceiver& receiver, Cut& cut) const {
+  cut = {};
+  for (const LobeBlock& block : blocks_) cut.sum += WeightsOf(block, receiver, false).sum;
+  cut.irradiance = cut.sum;
+  if (!(cut.sum > 0)) cut = {intensity_, 0, true};
 }
 
-EmitterChoice EmitterList::Select(const TreeReceiver& receiver, const Root& root, double u, bool blindly) const {
-  const bool byIntensity = blindly || root.byIntensity;
-  double left = u * (byIntensity ? intensity_ : root.sum);
+EmitterChoice EmitterList::Select(const TreeReceiver& receiver, const Cut& cut, double u, bool blindly) const {
+  const bool byIntensity = blindly || cut.byIntensity;
+  double left = u * (byIntensity ? intensity_ : cut.sum);
   EmitterChoice choice;
   for (uint32_t i = 0; i < blocks_.size(); ++i) {
-    Importances weights;
-    if (byIntensity) {
-      std::copy_n(blocks_[i].intensity, kWidth, weights.of);
-    } else {
-      Evaluate(blocks_[i], receiver, weights);
-    }
-    const double ofBlock = weights.Sum();
-    if (!(ofBlock > 0)) continue;
-    const bool isHere = left < ofBlock;
+    const Weights weights = WeightsOf(blocks_[i], receiver, byIntensity);
+    if (!(weights.sum > 0)) continue;
+    const bool isHere = left < weights.sum;
     for (uint32_t slot = 0; slot < kWidth; ++slot) {
       const auto weight = static_cast<double>(weights.of[slot]);
       if (!(weight > 0)) continue;
       choice.emitter = i * kWidth + slot;  // the last one that can be, should rounding leave none
       choice.u = std::clamp(left / weight, 0.0, 0x1.fffffffffffffp-1);
       if (isHere && left < weight) {
-        choice.probability = ProbabilityOf(receiver, root, choice.emitter);
+        choice.probability = ProbabilityOf(receiver, cut, choice.emitter);
         return choice;
       }
       left -= weight;
     }
   }
-  choice.probability = ProbabilityOf(receiver, root, choice.emitter);
+  choice.probability = ProbabilityOf(receiver, cut, choice.emitter);
   return choice;
 }
 
-double EmitterList::WeightOf(const TreeReceiver& receiver, bool byIntensity, uint32_t emitter) const {
-  const LobeBlock& block = blocks_[emitter / kWidth];
-  if (byIntensity) return static_cast<double>(block.intensity[emitter % kWidth]);
-  Importances importances;
-  Evaluate(block, receiver, importances);
-  return static_cast<double>(importances.of[emitter % kWidth]);
-}
-
-EmitterProbability EmitterList::ProbabilityOf(const TreeReceiver& receiver, const Root& root, uint32_t emitter) const {
+EmitterProbability EmitterList::ProbabilityOf(const TreeReceiver& receiver, const Cut& cut, uint32_t emitter) const {
   if (emitter >= blocks_.size() * kWidth) return {0, 0};
-  return {WeightOf(receiver, root.byIntensity, emitter) / root.sum, WeightOf(receiver, true, emitter) / intensity_};
+  const auto weight = [&](bool byIntensity) {
+    return static_cast<double>(WeightsOf(blocks_[emitter / kWidth], receiver, byIntensity).of[emitter % kWidth]);
+  };
+  return {weight(cut.byIntensity) / cut.sum, weight(true) / intensity_};
 }
 
 }  // namespace lampyr

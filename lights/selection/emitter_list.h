@@ -13,20 +13,18 @@ class EmitterList {
  public:
   EmitterList(std::span<const ClusterBounds> emitters, int threads);
 
-  struct Root {
+  struct Cut {
     double sum = 0;
-    double irradiance = 0;     // as LightTree::Root
+    double irradiance = 0;     // as LightTree::Cut
     bool byIntensity = false;  // nothing seems to contribute
   };
-  Root Look(const TreeReceiver& receiver) const;
-  EmitterChoice Select(const TreeReceiver& receiver, const Root& root, double u, bool blindly) const;
-  EmitterProbability ProbabilityOf(const TreeReceiver& receiver, const Root& root, uint32_t emitter) const;
+  void Look(const TreeReceiver& receiver, Cut& cut) const;
+  EmitterChoice Select(const TreeReceiver& receiver, const Cut& cut, double u, bool blindly) const;
+  EmitterProbability ProbabilityOf(const TreeReceiver& receiver, const Cut& cut, uint32_t emitter) const;
 
   bool IsEmpty() const { return !(intensity_ > 0); }
 
  private:
-  double WeightOf(const TreeReceiver& receiver, bool byIntensity, uint32_t emitter) const;
-
   std::vector<LobeBlock> blocks_;
   double intensity_ = 0;
 };

@@ -2,29 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <experimental/simd>
 
 namespace lampyr {
 
-namespace {
-
-namespace simd = std::experimental;
-
-constexpr float kNearest2 = 1e-20f;  // squared distances are no less
-// How much of the variance a squared distance is at least: the mean of 1/d² at the middle of a ball is 1.8/variance.
-constexpr float kInside = 0.55f;
-// Rounding; and grazing light is little, and not nothing.
-constexpr float kSlack = 1e-4f;
-// The mean of max(0, c) over normals of all directions is 1/4 = √s²/2: what s² is then.
-constexpr float kSpread = 0.25f;
-
-using Lanes = simd::simd<float, simd::simd_abi::deduce_t<float, LobeBlock::kWidth>>;
-
-Lanes Load(const float* values) {
-  return Lanes(values, simd::vector_aligned);
-}
-
-}  // namespace
+using namespace importance;
 
 ClusterLobe LobeOf(const ClusterBounds& bounds) {
   ClusterLobe lobe;
@@ -85,7 +66,7 @@ float Importance(const ClusterLobe& lobe, const TreeReceiver& receiver) {
     const float root = std::sqrt(cosine * cosine + kSpread * spread);
     received = receiver.isTransmissive ? root : 0.5f * (root + cosine);
   }
-  return lobe.intensity * inverse * inverse * std::max(emitted, kSlack) * std::max(received, kSlack);
+  return lobe.intensity * inverse * inverse * std::max(emitted, kLeast) * std::max(received, kLeast);
 }
 
 void LobeBlock::Set(int slot, const ClusterLobe& lobe) {
@@ -101,50 +82,6 @@ void LobeBlock::Set(int slot, const ClusterLobe& lobe) {
   coneCosine[slot] = lobe.coneCosine;
   coneReach[slot] = lobe.coneReach;
   oneSided[slot] = lobe.twoSided ? 0.0f : 1.0f;
-}
-
-double Importances::Sum() const {
-  double sum = 0;
-  for (const float importance : of) sum += static_cast<double>(importance);
-  return sum;
-}
-
-[[gnu::noinline]] void Evaluate(const LobeBlock& block, const TreeReceiver& receiver, Importances& importances) {
-  const Lanes x = receiver.position.x - Load(block.meanX), y = receiver.position.y - Load(block.meanY),
-              z = receiver.position.z - Load(block.meanZ);
-  const Lanes variance = Load(block.variance), radius = Load(block.radius);
-  const Lanes distance2 = x * x + y * y + z * z;
-  const Lanes squared = simd::max(simd::max(distance2, kInside * variance), Lanes(kNearest2));
-  const Lanes inverse = 1.0f / simd::sqrt(squared);
-  const Lanes inverse2 = inverse * inverse;
-  const Lanes spread = simd::min(variance * inverse2, Lanes(1.0f));
-  const auto isOutside = distance2 > radius * radius;
-
-  const Lanes nx = Load(block.normalX), ny = Load(block.normalY), nz = Load(block.normalZ);
-  const Lanes oneSided = Load(block.oneSided);
-  Lanes along = nx * x + ny * y + nz * z;
-  where(oneSided == 0.0f, along) = simd::abs(along);
-  const Lanes distance = distance2 * inverse;
-  const auto isDark = along < Load(block.coneCosine) * distance - Load(block.coneReach) - kSlack * distance;
-  const Lanes unevenness = 1.0f - (nx * nx + ny * ny + nz * nz);
-  const Lanes emittedCosine = along * inverse;
-  const Lanes emittedRoot = simd::sqrt(emittedCosine * emittedCosine +
-                                       kSpread * simd::min(simd::max(unevenness, Lanes(0.0f)) + spread, Lanes(1.0f)));
-  const Lanes emitted = 0.5f * (emittedRoot + oneSided * emittedCosine);
-
-  const Normal3 n = receiver.normal;
-  Lanes importance = Load(block.intensity) * inverse2 * simd::max(emitted, Lanes(kSlack));
-  where(isOutside && isDark, importance) = 0.0f;
-  if (n.x != 0 || n.y != 0 || n.z != 0) {
-    Lanes cosine = (n.x * x + n.y * y + n.z * z) * -inverse;
-    if (receiver.isTransmissive) cosine = simd::abs(cosine);
-    const auto isBehind = cosine + radius * inverse < -kSlack;
-    const Lanes root = simd::sqrt(cosine * cosine + kSpread * spread);
-    const Lanes received = receiver.isTransmissive ? root : 0.5f * (root + cosine);
-    importance *= simd::max(received, Lanes(kSlack));
-    where(isOutside && isBehind, importance) = 0.0f;
-  }
-  importance.copy_to(importances.of, simd::vector_aligned);
 }
 
 }  // namespace lampyr

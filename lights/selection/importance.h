@@ -36,7 +36,19 @@ ClusterLobe LobeOf(const ClusterBounds& bounds);
 // written to be read.
 float Importance(const ClusterLobe& lobe, const TreeReceiver& receiver);
 
-// Eight lobes, number by number: a node's children.
+namespace importance {
+
+constexpr float kNearest2 = 1e-20f;  // squared distances are no less
+// How much of the variance a squared distance is at least: the mean of 1/d² at the middle of a ball is 1.8/variance.
+constexpr float kInside = 0.55f;
+constexpr float kSlack = 1e-4f;  // of cosines, for rounding
+constexpr float kLeast = 1e-4f;  // grazing light is little, and not nothing
+// The mean of max(0, c) over normals of all directions is 1/4 = √s²/2: what s² is then.
+constexpr float kSpread = 0.25f;
+
+}  // namespace importance
+
+// Eight lobes, number by number: what is evaluated at once (importance_lanes.h).
 struct alignas(64) LobeBlock {
   static constexpr int kWidth = 8;
 
@@ -47,13 +59,5 @@ struct alignas(64) LobeBlock {
 
   void Set(int slot, const ClusterLobe& lobe);
 };
-
-// Importance() of all eight at once; a test holds the two equal. One compiled function: the same receiver gives the
-// same bits, whoever asks.
-struct alignas(64) Importances {
-  float of[LobeBlock::kWidth];
-  double Sum() const;  // from the first to the last
-};
-void Evaluate(const LobeBlock& block, const TreeReceiver& receiver, Importances& importances);
 
 }  // namespace lampyr

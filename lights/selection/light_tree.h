@@ -30,30 +30,35 @@ class LightTree {
   // Emitters with empty bounds are never chosen. Builds on `threads`; the tree is the same for any number of them.
   LightTree(std::span<const ClusterBounds> emitters, int threads);
 
-  // What every question about a receiver begins with.
-  struct Root {
-    Importances importances{};
-    double sum = 0;
-    double irradiance = 0;  // an estimate of that from all emitters: the sum, or 0 where none seems to contribute
-  };
-  Root Look(const TreeReceiver& receiver) const;
+  static constexpr int kWidth = LobeBlock::kWidth;
+  static constexpr uint32_t kNone = 0xffffffffu;
 
-  // u in [0,1). By importance, or blindly. `root` is what Look gave for this receiver. Requires !IsEmpty().
-  EmitterChoice Select(const TreeReceiver& receiver, const Root& root, double u, bool blindly) const;
+  // What every question about a receiver begins with: clusters that seem to send it much, and whose importance by
+  // itself is doubtful, are opened, so that theirs is the sum of their parts'. Not initialised: it is large.
+  struct Cut {
+    static constexpr int kRoom = 16;
+    int count;  // nodes: the root, and some whose parents are in the cut, in any order
+    uint32_t node[kRoom];
+    double sum[kRoom];                            // of a node's importances
+    alignas(64) float importance[kRoom][kWidth];  // of the children; 0 of those that are in the cut themselves
+    double total;
+    double irradiance;  // an estimate of that from all emitters: the total, or 0 where none seems to contribute
+  };
+  void Look(const TreeReceiver& receiver, Cut& cut) const;
+
+  // u in [0,1). By importance, or blindly. `cut` is what Look gave for this receiver. Requires !IsEmpty().
+  EmitterChoice Select(const TreeReceiver& receiver, const Cut& cut, double u, bool blindly) const;
   // 0 for emitters that are never chosen.
-  EmitterProbability ProbabilityOf(const TreeReceiver& receiver, const Root& root, uint32_t emitter) const;
+  EmitterProbability ProbabilityOf(const TreeReceiver& receiver, const Cut& cut, uint32_t emitter) const;
 
   bool IsEmpty() const { return nodes_.empty(); }
   size_t Bytes() const;
   int Depth() const { return depth_; }
 
-  static constexpr int kWidth = LobeBlock::kWidth;
-  static constexpr uint32_t kNone = 0xffffffffu;
-
   struct Node {
     LobeBlock lobes;
-    uint32_t child[kWidth];   // a node, or an emitter: see kEmitter
-    uint32_t parent = kNone;  // the slot in the node above: node · kWidth + child
+    alignas(32) float doubt[kWidth];  // how little a cluster's importance says, wherever it is seen from; see Look
+    uint32_t child[kWidth];           // a node, or an emitter: see kEmitter
   };
 
  private:
@@ -61,13 +66,18 @@ class LightTree {
 
   friend class LightTreeBuilder;
 
-  Root LookAt(uint32_t node, const TreeReceiver& receiver) const;
+  double LookAt(uint32_t node, const TreeReceiver& receiver, float* importance) const;
+  uint32_t SelectSlot(const TreeReceiver& receiver, const Cut& cut, double& u, double& probability) const;
+  uint32_t SelectSlotBlindly(double& u) const;
+  double SeenProbability(const TreeReceiver& receiver, const Cut& cut, uint32_t slot) const;
   double BlindProbability(uint32_t slot) const;
 
-  std::vector<Node> nodes_;      // the root first
-  std::vector<uint32_t> slots_;  // of each emitter: node · kWidth + child
-  double intensity_ = 0;         // of the root's children
-  int depth_ = 0;                // nodes from the root to an emitter, at most
+  // A slot is node · kWidth + child.
+  std::vector<Node> nodes_;        // the root first
+  std::vector<uint32_t> parents_;  // of each node: its slot in the node above
+  std::vector<uint32_t> slots_;    // of each emitter
+  double intensity_ = 0;           // of the root's children
+  int depth_ = 0;                  // nodes from the root to an emitter, at most
 };
 
 }  // namespace lampyr

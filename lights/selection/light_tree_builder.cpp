@@ -192,6 +192,10 @@ void LightTreeBuilder::GrowInParallel(Branch& root) {
 
 void LightTreeBuilder::PutChild(LightTree::Node& node, int slot, const ClusterBounds& bounds, uint32_t child) const {
   node.lobes.Set(slot, LobeOf(bounds));
+  // The more its normals differ, the less their mean says. Nothing is to be opened of an emitter.
+  constexpr float ofUnevenness = 0.3f, never = -16;
+  const bool isEmitter = child & LightTree::kEmitter;
+  node.doubt[slot] = isEmitter ? never : ofUnevenness * (1 - LengthSquared(bounds.meanNormal));
   node.child[slot] = child;
 }
 
@@ -218,9 +222,8 @@ void LightTreeBuilder::Emit(const Branch& branch, uint32_t parent, int depth, Li
     children.push_back(opened->right.get());
   }
   const auto index = static_cast<uint32_t>(tree.nodes_.size());
-  LightTree::Node fresh{};
-  fresh.parent = parent;
-  tree.nodes_.push_back(fresh);
+  tree.nodes_.push_back({});
+  tree.parents_.push_back(parent);
   size_t slots = children.size();
   std::sort(children.begin(), children.end(), [](const Branch* a, const Branch* b) {
     return a->count != b->count ? a->count < b->count : a->first < b->first;
@@ -251,6 +254,7 @@ void LightTreeBuilder::BuildInto(LightTree& tree) {
   GrowInParallel(root);
   Emit(root, LightTree::kNone, 1, tree);
   tree.nodes_.shrink_to_fit();
+  tree.parents_.shrink_to_fit();
 }
 
 }  // namespace lampyr

@@ -49,8 +49,9 @@ class TreeSelector final : public LightSelector {
 
   std::optional<SelectedLight> Select(const Receiver& receiver, float u) const override {
     const TreeReceiver place = emitters_.Place(receiver);
-    const auto root = search_.Look(place);
-    const double far = FarShare(root.irradiance);
+    typename Search::Cut cut;
+    search_.Look(place, cut);
+    const double far = FarShare(cut.irradiance);
     double x = Refine(u, receiver.position);
     if (x < far) {
       const AliasTable::Result choice = farTable_.Sample(static_cast<float>(std::min(x / far, 0x1.fffffep-1)));
@@ -62,7 +63,7 @@ class TreeSelector final : public LightSelector {
     x = (x - far) / (1 - far);
     const bool blindly = x < kBlind;
     x = blindly ? x / kBlind : (x - kBlind) / (1 - kBlind);
-    const EmitterChoice choice = search_.Select(place, root, std::min(x, 0x1.fffffffffffffp-1), blindly);
+    const EmitterChoice choice = search_.Select(place, cut, std::min(x, 0x1.fffffffffffffp-1), blindly);
     const uint32_t light = emitters_.lightOf[choice.emitter];
     return SelectedLight{light, PatchOf(light, choice.emitter), Mix(choice.probability, far),
                          static_cast<float>(std::min(choice.u, 0x1.fffffep-1))};
@@ -70,8 +71,9 @@ class TreeSelector final : public LightSelector {
 
   PdfDiscrete Probability(const Receiver& receiver, uint32_t light, int patch) const override {
     const TreeReceiver place = emitters_.Place(receiver);
-    const auto root = search_.Look(place);
-    const double far = FarShare(root.irradiance);
+    typename Search::Cut cut;
+    search_.Look(place, cut);
+    const double far = FarShare(cut.irradiance);
     const auto at = std::find(emitters_.far.begin(), emitters_.far.end(), light);
     if (at != emitters_.far.end()) {
       if (farTable_.IsZero()) return PdfDiscrete(0);
@@ -83,7 +85,7 @@ class TreeSelector final : public LightSelector {
     const uint32_t count = emitters_.first[light + 1] - first;
     const uint32_t emitter = first + (count > 1 ? static_cast<uint32_t>(patch) : 0u);
     if (emitter >= first + count) return PdfDiscrete(0);
-    return Mix(search_.ProbabilityOf(place, root, emitter), far);
+    return Mix(search_.ProbabilityOf(place, cut, emitter), far);
   }
 
  private:

@@ -36,6 +36,17 @@ std::vector<TreeReceiver> Receivers() {
   return receivers;
 }
 
+EmitterChoice Select(const LightTree& tree, const TreeReceiver& receiver, double u, bool blindly) {
+  LightTree::Cut cut;
+  tree.Look(receiver, cut);
+  return tree.Select(receiver, cut, u, blindly);
+}
+EmitterProbability ProbabilityOf(const LightTree& tree, const TreeReceiver& receiver, uint32_t emitter) {
+  LightTree::Cut cut;
+  tree.Look(receiver, cut);
+  return tree.ProbabilityOf(receiver, cut, emitter);
+}
+
 void Select(benchmark::State& state) {
   const LightTree tree(SmallSquares(static_cast<size_t>(state.range(0))), 2);
   const auto receivers = Receivers();
@@ -43,7 +54,7 @@ void Select(benchmark::State& state) {
   size_t i = 0;
   for (auto _ : state) {
     const TreeReceiver& receiver = receivers[i++ % receivers.size()];
-    benchmark::DoNotOptimize(tree.Select(receiver, tree.Look(receiver), static_cast<double>(rng.NextFloat()), false));
+    benchmark::DoNotOptimize(Select(tree, receiver, static_cast<double>(rng.NextFloat()), false));
   }
   state.counters["depth"] = tree.Depth();
   state.counters["bytesPerLight"] = static_cast<double>(tree.Bytes()) / static_cast<double>(state.range(0));
@@ -57,11 +68,11 @@ void Probability(benchmark::State& state) {
   Rng rng(3);
   std::vector<uint32_t> chosen;
   for (const TreeReceiver& receiver : receivers)
-    chosen.push_back(tree.Select(receiver, tree.Look(receiver), static_cast<double>(rng.NextFloat()), false).emitter);
+    chosen.push_back(Select(tree, receiver, static_cast<double>(rng.NextFloat()), false).emitter);
   size_t i = 0;
   for (auto _ : state) {
     const size_t k = i++ % receivers.size();
-    benchmark::DoNotOptimize(tree.ProbabilityOf(receivers[k], tree.Look(receivers[k]), chosen[k]));
+    benchmark::DoNotOptimize(ProbabilityOf(tree, receivers[k], chosen[k]));
   }
 }
 BENCHMARK(Probability)->Name("lightTree/probability")->RangeMultiplier(10)->Range(1, 1000000);

@@ -61,6 +61,18 @@ TreeReceiver RandomReceiver(Rng& rng) {
   return receiver;
 }
 
+LightTree::Cut Look(const LightTree& tree, const TreeReceiver& receiver) {
+  LightTree::Cut cut;
+  tree.Look(receiver, cut);
+  return cut;
+}
+EmitterProbability ProbabilityOf(const LightTree& tree, const TreeReceiver& receiver, uint32_t emitter) {
+  return tree.ProbabilityOf(receiver, Look(tree, receiver), emitter);
+}
+EmitterChoice Select(const LightTree& tree, const TreeReceiver& receiver, double u, bool blindly) {
+  return tree.Select(receiver, Look(tree, receiver), u, blindly);
+}
+
 TEST(LightTree, EightAtOnceAreEightOneByOne) {
   Rng rng(1);
   for (int trial = 0; trial < 2000; ++trial) {
@@ -70,7 +82,7 @@ TEST(LightTree, EightAtOnceAreEightOneByOne) {
       const TreeReceiver receiver = RandomReceiver(rng);
       float sum = 0;
       for (const ClusterBounds& emitter : emitters) sum += Importance(LobeOf(emitter), receiver);
-      EXPECT_NEAR(tree.Look(receiver).irradiance, sum, 2e-4f * sum);
+      EXPECT_NEAR(Look(tree, receiver).irradiance, sum, 2e-4f * sum);
     }
   }
 }
@@ -83,7 +95,7 @@ TEST(LightTree, ProbabilitiesSumToOne) {
       const TreeReceiver receiver = RandomReceiver(rng);
       double seen = 0, blind = 0;
       for (uint32_t e = 0; e < count; ++e) {
-        const EmitterProbability probability = tree.ProbabilityOf(receiver, tree.Look(receiver), e);
+        const EmitterProbability probability = ProbabilityOf(tree, receiver, e);
         seen += probability.seen;
         blind += probability.blind;
       }
@@ -104,18 +116,18 @@ TEST(LightTree, ChoosesAsOftenAsItSays) {
       std::vector<int> counts(count, 0);
       for (int i = 0; i < draws; ++i) {
         const double u = (i + static_cast<double>(rng.NextFloat())) / draws;
-        const EmitterChoice choice = tree.Select(receiver, tree.Look(receiver), u, blindly);
+        const EmitterChoice choice = Select(tree, receiver, u, blindly);
         ++counts[choice.emitter];
         ASSERT_GE(choice.u, 0);
         ASSERT_LT(choice.u, 1);
         if (i % 100 != 0) continue;
-        const EmitterProbability again = tree.ProbabilityOf(receiver, tree.Look(receiver), choice.emitter);
+        const EmitterProbability again = ProbabilityOf(tree, receiver, choice.emitter);
         ASSERT_EQ(again.seen, choice.probability.seen);
         ASSERT_EQ(again.blind, choice.probability.blind);
       }
       // The draws are stratified: counts are off by no more than the borders of their share.
       for (uint32_t e = 0; e < count; ++e) {
-        const EmitterProbability probability = tree.ProbabilityOf(receiver, tree.Look(receiver), e);
+        const EmitterProbability probability = ProbabilityOf(tree, receiver, e);
         EXPECT_NEAR(counts[e], draws * (blindly ? probability.blind : probability.seen), 6) << e;
       }
     }
@@ -162,7 +174,7 @@ TEST(LightTree, NothingThatContributesIsRuledOut) {
     if (LengthSquared(receiver.normal) > 0 && received <= 0) continue;
     ++contributing;
     EXPECT_GT(Importance(LobeOf(emitter), receiver), 0);
-    const EmitterProbability probability = tree.ProbabilityOf(receiver, tree.Look(receiver), e);
+    const EmitterProbability probability = ProbabilityOf(tree, receiver, e);
     EXPECT_GT(probability.seen, 0) << trial;
     EXPECT_GT(probability.blind, 0) << trial;
   }
@@ -180,10 +192,10 @@ TEST(LightTree, NearerAndFacingEmittersAreLikelier) {
   const LightTree tree(emitters, 1);
   const TreeReceiver below{{0, 0, 0}, {0, 0, 1}, false};
   // 1 against cos/d² of 45°.
-  const double near = tree.ProbabilityOf(below, tree.Look(below), 0).seen;
+  const double near = ProbabilityOf(tree, below, 0).seen;
   EXPECT_NEAR(near, 1 / (1 + std::sqrt(0.5) / 2), 1e-5);
   const TreeReceiver turned{{0, 0, 0}, {-1, 0, 0}, false};
-  EXPECT_LT(tree.ProbabilityOf(turned, tree.Look(turned), 1).seen, 1e-3);
+  EXPECT_LT(ProbabilityOf(tree, turned, 1).seen, 1e-3);
 }
 
 TEST(LightTree, CoincidentAndEmptyEmitters) {
@@ -197,10 +209,10 @@ TEST(LightTree, CoincidentAndEmptyEmitters) {
   const LightTree tree(emitters, 2);
   EXPECT_LE(tree.Depth(), 8);
   const TreeReceiver receiver{Point3(0.0f), Normal3(0, 0, 1), false};
-  EXPECT_NEAR(tree.ProbabilityOf(receiver, tree.Look(receiver), 4000).seen, 2e-5, 1e-9);
-  EXPECT_EQ(tree.ProbabilityOf(receiver, tree.Look(receiver), 4001).seen, 0);
+  EXPECT_NEAR(ProbabilityOf(tree, receiver, 4000).seen, 2e-5, 1e-9);
+  EXPECT_EQ(ProbabilityOf(tree, receiver, 4001).seen, 0);
   const TreeReceiver there{Point3(0.3f), Normal3(0, 0, 1), false};  // at the very place
-  EXPECT_GT(tree.ProbabilityOf(there, tree.Look(there), 4000).seen, 0);
+  EXPECT_GT(ProbabilityOf(tree, there, 4000).seen, 0);
   EXPECT_TRUE(LightTree(std::vector<ClusterBounds>(3), 1).IsEmpty());
   EXPECT_TRUE(LightTree(std::vector<ClusterBounds>(), 1).IsEmpty());
 }
@@ -211,8 +223,7 @@ TEST(LightTree, IsTheSameForAnyNumberOfThreads) {
   const LightTree one(emitters, 1), four(emitters, 4);
   for (uint32_t e = 0; e < emitters.size(); e += 97) {
     const TreeReceiver receiver = RandomReceiver(rng);
-    EXPECT_EQ(one.ProbabilityOf(receiver, one.Look(receiver), e).seen,
-              four.ProbabilityOf(receiver, four.Look(receiver), e).seen);
+    EXPECT_EQ(ProbabilityOf(one, receiver, e).seen, ProbabilityOf(four, receiver, e).seen);
   }
 }
 
