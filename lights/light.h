@@ -184,6 +184,8 @@ class Light {
 
   // Independently selectable parts (triangles of a mesh); at least 1.
   virtual int PatchCount() const { return 1; }
+  // How often the light itself chooses this patch: densities given the patch, times this, are those of the whole light.
+  virtual PdfDiscrete PatchProbability(int) const { return PdfDiscrete(1); }
 
   // The light's own surface, or null.
   virtual const IntersectableLight* Surface() const { return nullptr; }

@@ -47,6 +47,10 @@ class PatchLight final : public LightBase {
 
   LightKind Kind() const override { return LightKind::Area; }
   int PatchCount() const override { return std::max<int>(1, static_cast<int>(patches_.Count())); }
+  PdfDiscrete PatchProbability(int patch) const override {
+    const bool isOne = !table_.IsZero() && static_cast<uint32_t>(patch) < patches_.Count();
+    return isOne ? table_.Probability(static_cast<uint32_t>(patch)) : PdfDiscrete(0);
+  }
 
   float GetIncidentRadianceEstimate(const LightContext& context, const Point3& P) const override {
     const EmissionBounds bounds = ReachFor(context);

@@ -16,9 +16,9 @@ class TableSelector final : public LightSelector {
  public:
   explicit TableSelector(std::span<const float> weights) : table_(weights) {}
 
-  std::optional<SelectedLight> Select(const Receiver&, float u) const override {
+  std::optional<SelectedLight> Select(const Receiver&, double u) const override {
     if (table_.IsZero()) return std::nullopt;
-    if (table_.Size() == 1) return SelectedLight{0, kAnyPatch, PdfDiscrete(1), u};
+    if (table_.Size() == 1) return SelectedLight{0, kAnyPatch, PdfDiscrete(1), static_cast<float>(u)};
     const AliasTable::Result choice = table_.Sample(u);
     return SelectedLight{choice.index, kAnyPatch, choice.probability, choice.u};
   }
@@ -84,10 +84,11 @@ std::unique_ptr<LightSelector> MakeTableSelector(std::span<const float> weights)
 
 std::unique_ptr<LightSelector> MakeLightSelector(LightSelection selection, std::span<const PlacedLight> lights,
                                                  const BoundingSphere& scene) {
-  const bool isOne = lights.empty() || (lights.size() == 1 && lights[0].light->PatchCount() == 1);
-  if (!isOne && selection == LightSelection::Tree)
+  // Of one light, or of the halves of one rectangle, there is no choice that is worth a look at the receiver.
+  const bool hasChoice = lights.size() > 1 || (lights.size() == 1 && lights[0].light->PatchCount() > 2);
+  if (hasChoice && selection == LightSelection::Tree)
     return MakeTreeSelector(EmitterSearch::Tree, lights, scene, HardwareThreads());
-  if (!isOne && selection == LightSelection::Exhaustive)
+  if (hasChoice && selection == LightSelection::Exhaustive)
     return MakeTreeSelector(EmitterSearch::Exhaustive, lights, scene, HardwareThreads());
   std::vector<float> weights(lights.size(), 1.0f);
   if (selection == LightSelection::Power) {

@@ -31,8 +31,8 @@ struct SelectedLight {
 class LightSelector {
  public:
   virtual ~LightSelector() = default;
-  // nullopt: no light can contribute.
-  virtual std::optional<SelectedLight> Select(const Receiver& receiver, float u) const = 0;
+  // u in [0,1), of more bits than a float's where there are many lights. nullopt: no light can contribute.
+  virtual std::optional<SelectedLight> Select(const Receiver& receiver, double u) const = 0;
   // The probability that Select chooses this (light, patch) at this receiver.
   virtual PdfDiscrete Probability(const Receiver& receiver, uint32_t light, int patch) const = 0;
   // Whether lights are selected patch by patch: patchIndex then belongs to what is asked for.

@@ -1,13 +1,11 @@
 #include "lights/selection/tree_selector.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include "lights/selection/emitter_list.h"
 #include "lights/selection/emitters.h"
 #include "lights/selection/light_tree.h"
-#include "sampling/rng.h"
 #include "sampling/tables.h"
 
 namespace lampyr {
@@ -20,14 +18,6 @@ constexpr double kBlind = 0.05;
 // Of the lights at infinity, and of those with a place, where there are both.
 constexpr double kSmallestGroup = 0.05;
 constexpr float kLargest = 1e30f;
-
-// A float has 24 random bits, a choice among a million takes 20 of them. More are made of these and the place: equal
-// for equal arguments.
-double Refine(float u, const Point3& p) {
-  const uint64_t hash = Hash(std::bit_cast<uint32_t>(u), std::bit_cast<uint32_t>(p.x), std::bit_cast<uint32_t>(p.y),
-                             std::bit_cast<uint32_t>(p.z));
-  return static_cast<double>(u) + 0x1p-24 * (static_cast<double>(hash >> 12) * 0x1p-52);
-}
 
 template <class Search>
 class TreeSelector final : public LightSelector {
@@ -47,20 +37,19 @@ class TreeSelector final : public LightSelector {
 
   bool SelectsPatches() const override { return emitters_.hasPatches; }
 
-  std::optional<SelectedLight> Select(const Receiver& receiver, float u) const override {
+  std::optional<SelectedLight> Select(const Receiver& receiver, double u) const override {
     const TreeReceiver place = emitters_.Place(receiver);
     typename Search::Cut cut;
     search_.Look(place, cut);
     const double far = FarShare(cut.irradiance);
-    double x = Refine(u, receiver.position);
-    if (x < far) {
-      const AliasTable::Result choice = farTable_.Sample(static_cast<float>(std::min(x / far, 0x1.fffffep-1)));
+    if (u < far) {
+      const AliasTable::Result choice = farTable_.Sample(u / far);
       return SelectedLight{emitters_.far[choice.index], kAnyPatch,
                            PdfDiscrete(static_cast<float>(far * static_cast<double>(choice.probability.value))),
                            choice.u};
     }
     if (search_.IsEmpty()) return std::nullopt;
-    x = (x - far) / (1 - far);
+    double x = (u - far) / (1 - far);
     const bool blindly = x < kBlind;
     x = blindly ? x / kBlind : (x - kBlind) / (1 - kBlind);
     const EmitterChoice choice = search_.Select(place, cut, std::min(x, 0x1.fffffffffffffp-1), blindly);

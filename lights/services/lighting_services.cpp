@@ -1,5 +1,7 @@
 #include "lights/services/lighting_services.h"
 
+#include "sampling/rng.h"
+
 namespace lampyr {
 
 namespace {
@@ -27,6 +29,11 @@ LightHit EscapedHit(const Point3& origin, const Vector3& direction) {
   hit.direction = direction;
   hit.position = origin;
   return hit;
+}
+
+// For a choice among many lights.
+double MoreBits(float u, const Point3& of) {
+  return WithMoreBits(u, of.x, of.y, of.z);
 }
 
 // What next-event estimation says of a delta light that a photon came from: the photon's own numbers, with the falloff
@@ -70,9 +77,13 @@ LightContext LightingServices::Context(uint32_t light, float time, bool bidirect
   return context;
 }
 
+PdfArea LightingServices::EmissionDensity(const LightContext& context, uint32_t light, int patch, PdfArea given) const {
+  return context.patch == kAnyPatch ? given : lights_[light].light->PatchProbability(patch) * given;
+}
+
 DirectSample LightingServices::GenerateSamples(const Receiver& receiver, float uSelect, const Point2& u, float time,
                                                bool bidirectional) const {
-  const std::optional<SelectedLight> selected = selector_->Select(receiver, uSelect);
+  const std::optional<SelectedLight> selected = selector_->Select(receiver, MoreBits(uSelect, receiver.position));
   if (!selected) return {};
   const PlacedLight& placed = lights_[selected->light];
   const LightKind kind = kinds_[selected->light];
@@ -80,8 +91,13 @@ DirectSample LightingServices::GenerateSamples(const Receiver& receiver, float u
   LightContext context = Context(selected->light, time, bidirectional, moved);
   context.u = u;
   context.patch = selected->patch;
-  return {selected->light, IsDeltaKind(kind) || !placed.canBeHit, IsInfiniteKind(kind), selected->probability,
-          placed.light->GenerateSamples(context, receiver.position)};
+  DirectSample direct{selected->light, IsDeltaKind(kind) || !placed.canBeHit, IsInfiniteKind(kind),
+                      selected->probability, placed.light->GenerateSamples(context, receiver.position)};
+  if (bidirectional && direct.sample) {
+    LightSample& sample = *direct.sample;
+    sample.pdfEmit = EmissionDensity(context, selected->light, sample.patchIndex, sample.pdfEmit);
+  }
+  return direct;
 }
 
 // How far in front of a sample its own surface may be met by a ray from `from`.
@@ -113,8 +129,9 @@ std::optional<FoundLight> LightingServices::EvaluateSamples(const Receiver& rece
   LightContext context = Context(light, time, bidirectional, moved);
   const LightHit hit = SurfaceLightHit(direction, distance, point);
   if (selector_->SelectsPatches()) context.patch = hit.patchIndex;
-  const auto evaluation = lights_[light].light->EvaluateSamples(context, hit, receiver.position);
+  auto evaluation = lights_[light].light->EvaluateSamples(context, hit, receiver.position);
   if (!evaluation) return std::nullopt;
+  if (bidirectional) evaluation->pdfEmit = EmissionDensity(context, light, hit.patchIndex, evaluation->pdfEmit);
   return FoundLight{light, selector_->Probability(receiver, light, context.patch), *evaluation};
 }
 
@@ -153,7 +170,7 @@ Color LightingServices::EscapedEmissionForCamera(const Ray& ray) const {
 
 std::optional<EmittedPhoton> LightingServices::GenerateEmission(float uSelect, const Point2& u,
                                                                 const Point2& uDirection, float time) const {
-  const std::optional<SelectedLight> selected = emissionSelector_->Select({}, uSelect);
+  const std::optional<SelectedLight> selected = emissionSelector_->Select({}, MoreBits(uSelect, Point3(u.x, u.y, uDirection.x)));
   if (!selected) return std::nullopt;
   std::optional<LightTransform> moved;
   LightContext context = Context(selected->light, time, true, moved);
@@ -209,8 +226,9 @@ std::optional<FoundLight> LightingServices::EvaluateLanding(const EmittedPhoton&
     hit.uv = Point2(emission.uvw.x, emission.uvw.y);
     hit.patchIndex = emission.patchIndex;
   }
-  const auto evaluation = lights_[photon.light].light->EvaluateSamples(context, hit, receiver.position);
+  auto evaluation = lights_[photon.light].light->EvaluateSamples(context, hit, receiver.position);
   if (!evaluation) return std::nullopt;
+  evaluation->pdfEmit = EmissionDensity(context, photon.light, hit.patchIndex, evaluation->pdfEmit);
   return FoundLight{photon.light, selection, *evaluation};
 }
 

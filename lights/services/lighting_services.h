@@ -103,6 +103,8 @@ class LightingServices {
   // `moved` keeps the place of a light that moves, and must live as long as the context.
   LightContext Context(uint32_t light, float time, bool bidirectional, std::optional<LightTransform>& moved) const;
 
+  // Emission chooses a light as a whole: of densities given a patch, that of emission becomes the whole light's.
+  PdfArea EmissionDensity(const LightContext& context, uint32_t light, int patch, PdfArea given) const;
   Vector3 ErrorOfEnd(const SurfacePoint& from, const DirectSample& direct, float time) const;
 
   const GeometryScene& geometry_;

@@ -63,7 +63,7 @@ void DefineSceneOptions(CLI::App& app, RenderOverrides& overrides, std::string& 
   app.add_option("--max-depth", overrides.maxDepth, "Scattering events of a path at most")
       ->check(CLI::Range(0, 1 << 20));
   app.add_option("--sampler", overrides.sampler, "sobol | independent");
-  app.add_option("--light-sampler", overrides.lightSampler, "uniform | power | tree | exhaustive");
+  app.add_option("--light-sampler", overrides.lightSampler, "How a light is chosen: uniform | power | tree (default) | exhaustive");
 }
 
 struct RenderCommand {

@@ -256,7 +256,7 @@ void ReadIntegrator(const SceneDescription& scene, const RenderOverrides& overri
   if (settings.maxDepth < 0) throw Error(parameters.WhereOf("maxdepth"), "\"maxdepth\" must be 0 or more");
   if (overrides.maxDepth) settings.maxDepth = *overrides.maxDepth;
 
-  const std::string lightSampler = parameters.GetString("lightsampler", "power");
+  const std::string lightSampler = parameters.GetString("lightsampler", "tree");
   const Names samplerNames = {"uniform", "power", "bvh", "tree", "exhaustive"};  // bvh: pbrt-v4's name of its tree
   if (const auto selection = ParseLightSelection(lightSampler)) {
     settings.lightSelection = *selection;

@@ -34,7 +34,7 @@ struct RenderSettings {
   SamplerKind sampler = SamplerKind::Sobol;
   int samplesPerPixel = 16;
   uint64_t seed = 0;
-  LightSelection lightSelection = LightSelection::Power;
+  LightSelection lightSelection = LightSelection::Tree;
   bool halfPrecision = false;
   float imagingRatio = 1;  // exposure time · ISO / 100: film value of radiance 1
   std::string outputFile;  // as the scene names it

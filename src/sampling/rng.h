@@ -2,6 +2,7 @@
 // sample (building tables, tests, photon emission).
 #pragma once
 
+#include <bit>
 #include <cstdint>
 
 #include "math/vec.h"
@@ -27,6 +28,16 @@ constexpr uint64_t Hash(Integers... values) {
 // The upper 24 bits as a float in [0,1): every value is exact, so that 1 never appears by rounding.
 constexpr float UnitFloat(uint32_t bits) {
   return static_cast<float>(bits >> 8) * 0x1p-24f;
+}
+
+// A float in [0,1) has 24 random bits, and a choice among a million takes 20 of them. This appends 28 more that are made
+// of it and of three other numbers of the sample: equal for equal arguments, in [0,1).
+inline double WithMoreBits(float u, float a, float b, float c) {
+  const auto pair = [](float high, float low) {
+    return static_cast<uint64_t>(std::bit_cast<uint32_t>(high)) << 32 | std::bit_cast<uint32_t>(low);
+  };
+  const uint64_t hash = MixBits(pair(u, a) + 0x9e3779b97f4a7c15ull * pair(b, c));
+  return static_cast<double>(u) + 0x1p-52 * static_cast<double>(hash >> 36);
 }
 
 // PCG32: a 64-bit congruential generator whose output is permuted ([ONeill14], XSH-RR). Streams are independent

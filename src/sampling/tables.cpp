@@ -46,9 +46,9 @@ AliasTable::AliasTable(std::span<const float> weights) : bins_(weights.size()), 
   }
 }
 
-AliasTable::Result AliasTable::Sample(float u) const {
+AliasTable::Result AliasTable::Sample(double u) const {
   const size_t n = bins_.size();
-  const double scaled = static_cast<double>(ClampedUnit(u)) * static_cast<double>(n);
+  const double scaled = (u > 0 ? std::min(u, 1.0) : 0.0) * static_cast<double>(n);
   const uint32_t bin = static_cast<uint32_t>(std::min(scaled, static_cast<double>(n - 1)));
   const float fraction = std::min(static_cast<float>(scaled - bin), kOneMinusEpsilon);
   const float threshold = bins_[bin].threshold;

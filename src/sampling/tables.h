@@ -28,7 +28,8 @@ class AliasTable {
     float u;  // the random number, stretched again over [0,1): fit for another decision
   };
   // Requires !IsZero().
-  Result Sample(float u) const;
+  Result Sample(double u) const;
+  Result Sample(float u) const { return Sample(static_cast<double>(u)); }
   PdfDiscrete Probability(uint32_t index) const { return PdfDiscrete(probabilities_[index]); }
   size_t Size() const { return probabilities_.size(); }
   bool IsZero() const { return total_ <= 0; }

@@ -62,14 +62,16 @@ TEST_P(Peer, BlockMeansAgree) {
 INSTANTIATE_TEST_SUITE_P(
     Scenes, Peer,
     // The caustic of glass-caustic is found by chance by `path`, and (through glass) in the reference, whose error is
-    // estimated from four renders: only the means of large blocks are normally distributed.
+    // estimated from four renders: only the means of large blocks are normally distributed. So it is with lights600,
+    // whose reference has fireflies: once our own noise is small, 8x8 blocks differ by up to 4.4 of its standard
+    // errors, and alike whether lights are selected by power or by the tree (selection_test.cpp).
     testing::Values(PeerScene{"area-box", "path", 512}, PeerScene{"mixed-lights", "path", 512},
-                    PeerScene{"sky-spheres", "path", 2048}, PeerScene{"lights600", "path", 2048},
+                    PeerScene{"sky-spheres", "path", 2048}, PeerScene{"lights600", "path", 2048, 16},
                     PeerScene{"glass-caustic", "path", 1536, 32}, PeerScene{"area-box", "bdpt", 256},
                     PeerScene{"mixed-lights", "bdpt", 256}, PeerScene{"sky-spheres", "bdpt", 1024},
-                    PeerScene{"lights600", "bdpt", 512}, PeerScene{"glass-caustic", "bdpt", 512, 32},
+                    PeerScene{"lights600", "bdpt", 512, 16}, PeerScene{"glass-caustic", "bdpt", 512, 32},
                     PeerScene{"spot-lens", "bdpt", 512}, PeerScene{"area-box", "light", 512},
-                    PeerScene{"mixed-lights", "light", 512}, PeerScene{"lights600", "light", 1024}),
+                    PeerScene{"mixed-lights", "light", 512}, PeerScene{"lights600", "light", 1024, 16}),
     [](const auto& info) {
       std::string name = std::string(info.param.integrator) + "_" + info.param.name;
       std::replace(name.begin(), name.end(), '-', '_');

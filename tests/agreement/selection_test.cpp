@@ -129,6 +129,26 @@ TEST_P(Selection, IsADistributionThatLeavesNothingOut) {
     if (!direct) continue;
     const int patch = direct.sample->patchIndex;
     EXPECT_EQ(direct.selection.value, lighting.SelectionProbability(receiver, direct.light, patch).value);
+    // Photons come from the light as a whole, however it was selected here.
+    const PlacedLight& placed = lights[direct.light];
+    if (placed.light->Kind() != LightKind::Area) continue;
+    const LightTransform moved = placed.motion ? placed.At(time) : placed.transform;
+    LightContext context;
+    context.transform = &moved;
+    context.scene = lighting.SceneSphere();
+    context.time = time;
+    context.bidirectional = true;
+    LightHit hit;
+    hit.direction = direct.sample->direction;
+    hit.distance = direct.sample->distance;
+    hit.position = direct.sample->position;
+    hit.normal = direct.sample->normal;
+    hit.uv = Point2(direct.sample->uvw.x, direct.sample->uvw.y);
+    hit.patchIndex = patch;
+    const auto whole = placed.light->EvaluateSamples(context, hit, receiver.position);
+    if (whole && !whole->pdfEmit.IsZero()) {
+      EXPECT_NEAR(direct.sample->pdfEmit.value / whole->pdfEmit.value, 1, 1e-2);
+    }
   }
   EXPECT_GT(contributing, 0);
 }

@@ -19,6 +19,10 @@ struct ManyLightScene {
 const ManyLightScene kScenes[] = {
     {"lights600", std::string(LAMPYR_SHARED_DATA) + "/peer/lights600.pbrt", 64, 64, 16},
     {"rooms", std::string(LAMPYR_SOURCE_DIR) + "/scenes/rooms.pbrt", 64, 32, 16},
+    {"area-box", std::string(LAMPYR_SHARED_DATA) + "/peer/area-box.pbrt", 64, 64, 64},
+    {"mixed-lights", std::string(LAMPYR_SHARED_DATA) + "/peer/mixed-lights.pbrt", 64, 64, 16},
+    {"gallery", std::string(LAMPYR_SOURCE_DIR) + "/scenes/gallery.pbrt", 64, 32, 16},
+    {"still-life", std::string(LAMPYR_SOURCE_DIR) + "/scenes/still-life.pbrt", 64, 32, 16},
     {"lights-1000", std::string(LAMPYR_SOURCE_DIR) + "/scenes/lights-1000.pbrt", 64, 32, 16},
 };
 

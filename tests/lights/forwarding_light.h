@@ -14,6 +14,7 @@ class ForwardingLight : public Light {
   LightKind Kind() const override { return light_->Kind(); }
   const LightSettings& Settings() const override { return light_->Settings(); }
   int PatchCount() const override { return light_->PatchCount(); }
+  PdfDiscrete PatchProbability(int patch) const override { return light_->PatchProbability(patch); }
   const IntersectableLight* Surface() const override { return light_->Surface(); }
   float GetIncidentRadianceEstimate(const LightContext& context, const Point3& P) const override {
     return light_->GetIncidentRadianceEstimate(context, P);
