@@ -351,18 +351,24 @@ Color BdptIntegrator::SampleLight(Run& run) const {
   const float uSelect = run.sampler.Get1D();
   const Point2 u = run.sampler.Get2D();
   const DirectSample direct = lighting_.GenerateSamples(vertex.receiver, uSelect, u, run.time, true);
-  if (!direct) return Color(0.0f);
+  const auto nothingArrives = [&] {
+    lighting_.UpdateWithResults(vertex.receiver, direct, Color(0.0f));
+    return Color(0.0f);
+  };
+  if (!direct) return nothingArrives();
   const LightSample& sample = *direct.sample;
   const BsdfEvaluation f = vertex.bsdf.Evaluate(vertex.toPrevious, sample.direction, TransportMode::Radiance);
   const Color scattered = f.diffuse * sample.diffuse + f.specular * sample.specular;
-  if (scattered.IsBlack()) return scattered;
+  if (scattered.IsBlack()) return nothingArrives();
   const float cosTheta = AbsDot(sample.direction, vertex.bsdf.ShadingFrame().z);
   const PdfSolidAngle pdf = direct.selection * sample.pdfDirect;
   ConnectedPath path;
   path.value = (vertex.diffuse + vertex.specular) * scattered * (cosTheta / pdf.value);
   if (path.value.IsBlack()) return path.value;
   ++run.counts.shadowRays;
-  path.value *= lighting_.Transmission(vertex.point, direct, run.time);
+  const Color arrived = lighting_.Transmission(vertex.point, direct, run.time);
+  lighting_.UpdateWithResults(vertex.receiver, direct, arrived);
+  path.value *= arrived;
   if (path.value.IsBlack()) return path.value;
 
   path.s = 1;

@@ -81,12 +81,16 @@ Color PathIntegrator::DirectLight(const PathState& path, const SurfacePoint& poi
   const float uSelect = sampler.Get1D();
   const Point2 u = sampler.Get2D();
   const DirectSample direct = lighting_.GenerateSamples(receiver, uSelect, u, path.ray.time, false);
-  if (!direct) return Color(0.0f);
+  const auto nothingArrives = [&] {
+    lighting_.UpdateWithResults(receiver, direct, Color(0.0f));
+    return Color(0.0f);
+  };
+  if (!direct) return nothingArrives();
   const LightSample& sample = *direct.sample;
 
   const BsdfEvaluation f = bsdf.Evaluate(wo, sample.direction, TransportMode::Radiance);
   const Color scattered = f.diffuse * sample.diffuse + f.specular * sample.specular;
-  if (scattered.IsBlack()) return Color(0.0f);
+  if (scattered.IsBlack()) return nothingArrives();
 
   const PdfSolidAngle pdf = direct.selection * sample.pdfDirect;
   const float weight = direct.isDelta ? 1.0f : PowerHeuristic(pdf, f.pdfForward);
@@ -94,7 +98,9 @@ Color PathIntegrator::DirectLight(const PathState& path, const SurfacePoint& poi
   const Color contribution = path.Throughput() * scattered * (cosTheta * weight / pdf.value);
   if (contribution.IsBlack()) return Color(0.0f);
   ++counts.shadowRays;
-  return contribution * lighting_.Transmission(point, direct, path.ray.time);
+  const Color arrived = lighting_.Transmission(point, direct, path.ray.time);
+  lighting_.UpdateWithResults(receiver, direct, arrived);
+  return contribution * arrived;
 }
 
 // Continues the path by the BSDF and Russian roulette. False: it ends here.

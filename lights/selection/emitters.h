@@ -23,8 +23,9 @@ struct Emitters {
   double Irradiance(double importance) const {
     return importance * intensity / (static_cast<double>(size) * static_cast<double>(size));
   }
+  double ImportanceOf(double irradiance) const { return irradiance / Irradiance(1); }
   TreeReceiver Place(const Receiver& receiver) const {
-    return {(receiver.position - center) * (1 / size), receiver.normal, receiver.isTransmissive};
+    return {(receiver.position - center) * (1 / size), receiver.normal, receiver.isTransmissive, nullptr, 0};
   }
 };
 

@@ -12,11 +12,15 @@
 
 namespace lampyr {
 
+class LightLearning;
+
 // A receiver as importance needs it, in the tree's coordinates.
 struct TreeReceiver {
   Point3 position{0.0f};
   Normal3 normal{0.0f};  // 0 in a volume
   bool isTransmissive = false;
+  const LightLearning* learning = nullptr;  // what is known of its region, where something is to be learned
+  uint32_t region = 0;
 };
 
 // What importance needs of a cluster, digested. A node of the tree keeps the same numbers for each of its children.

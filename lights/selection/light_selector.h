@@ -28,6 +28,8 @@ struct SelectedLight {
   float u = 0;  // the random number, stretched over [0,1) again
 };
 
+class LightLearning;
+
 class LightSelector {
  public:
   virtual ~LightSelector() = default;
@@ -35,6 +37,10 @@ class LightSelector {
   virtual std::optional<SelectedLight> Select(const Receiver& receiver, double u) const = 0;
   // The probability that Select chooses this (light, patch) at this receiver.
   virtual PdfDiscrete Probability(const Receiver& receiver, uint32_t light, int patch) const = 0;
+  // From now on, selects by what `learning` knows, too; null: by nothing else. Not while anything is selected.
+  virtual void Use(LightLearning*) {}
+  // The selected light brought this irradiance (0: it was occluded, or dark); recorded where something is learned.
+  virtual void Record(const Receiver&, uint32_t, int, double) const {}
   // Whether lights are selected patch by patch: patchIndex then belongs to what is asked for.
   virtual bool SelectsPatches() const { return false; }
 };

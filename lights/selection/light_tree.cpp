@@ -4,6 +4,7 @@
 #include <array>
 
 #include "lights/selection/importance_lanes.h"
+#include "lights/selection/light_learning.h"
 #include "lights/selection/light_tree_builder.h"
 
 namespace lampyr {
@@ -41,6 +42,12 @@ uint32_t Choose(const float* weights, double sum, double& u) {
   return static_cast<uint32_t>(slot);
 }
 
+// What was learned of the children of a node, whose own factor is `parentFactor`.
+Lanes Learned(const TreeReceiver& receiver, uint32_t node, float parentFactor) {
+  const LightLearning::Row& row = receiver.learning->RowOf(receiver.region, node);
+  return simd::sqrt(Load(row.known) + parentFactor * parentFactor * Load(row.unknown));
+}
+
 }  // namespace
 
 LightTree::LightTree(std::span<const ClusterBounds> emitters, int threads) {
@@ -55,15 +62,20 @@ LightTree::LightTree(std::span<const ClusterBounds> emitters, int threads) {
   if (IsEmpty()) return;
   Lanes doubtful[Cut::kRoom];
   float total = 0;
-  const auto open = [&](uint32_t node) {
-    const LaneImportances here = Evaluate(nodes_[node].lobes, receiver);
+  const auto open = [&](uint32_t node, float parentFactor) {
+    LaneImportances here = Evaluate(nodes_[node].lobes, receiver);
+    if (receiver.learning) {
+      const Lanes factor = Learned(receiver, node, parentFactor);
+      factor.copy_to(cut.factor[cut.count], simd::vector_aligned);
+      here.importance *= factor;
+    }
     here.importance.copy_to(cut.importance[cut.count], simd::vector_aligned);
     doubtful[cut.count] =
         here.importance * simd::min(kDoubtOfSpread * here.spread + Load(nodes_[node].doubt), Lanes(1.0f));
     total += simd::reduce(here.importance);
     cut.node[cut.count++] = node;
   };
-  open(0);
+  open(0, 1);
   for (int i = 0; i < cut.count; ++i) {
     auto isToOpen = doubtful[i] > kNegligible * std::max(total, 0.0f);  // what is left after rounding
     while (simd::any_of(isToOpen) && cut.count < Cut::kRoom) {
@@ -71,7 +83,7 @@ LightTree::LightTree(std::span<const ClusterBounds> emitters, int threads) {
       isToOpen[static_cast<size_t>(slot)] = false;
       total -= cut.importance[i][slot];
       cut.importance[i][slot] = 0;
-      open(nodes_[cut.node[i]].child[slot]);
+      open(nodes_[cut.node[i]].child[slot], receiver.learning ? cut.factor[i][slot] : 1.0f);
     }
   }
   for (int i = 0; i < cut.count; ++i) cut.total += cut.sum[i] = SumOf(cut.importance[i]);
@@ -84,15 +96,22 @@ LightTree::LightTree(std::span<const ClusterBounds> emitters, int threads) {
   cut.total = cut.sum[0] = SumOf(cut.importance[0]);
 }
 
-// The importances of a node's children, below the cut; returns their sum. One compiled function, too.
-[[gnu::noinline]] double LightTree::LookAt(uint32_t node, const TreeReceiver& receiver, float* importance) const {
-  Evaluate(nodes_[node].lobes, receiver).importance.copy_to(importance, simd::vector_aligned);
-  const double sum = SumOf(importance);
-  if (sum > 0) [[likely]]
-    return sum;
+// One compiled function, too.
+[[gnu::noinline]] void LightTree::LookAt(uint32_t node, const TreeReceiver& receiver, float parentFactor,
+                                         View& view) const {
+  Lanes importance = Evaluate(nodes_[node].lobes, receiver).importance;
+  if (receiver.learning) {
+    const Lanes factor = Learned(receiver, node, parentFactor);
+    factor.copy_to(view.factor, simd::vector_aligned);
+    importance *= factor;
+  }
+  importance.copy_to(view.importance, simd::vector_aligned);
+  view.sum = SumOf(view.importance);
+  if (view.sum > 0) [[likely]]
+    return;
   // A cluster may look as if it contributed while none of its parts does.
-  std::copy_n(nodes_[node].lobes.intensity, kWidth, importance);
-  return SumOf(importance);
+  std::copy_n(nodes_[node].lobes.intensity, kWidth, view.importance);
+  view.sum = SumOf(view.importance);
 }
 
 uint32_t LightTree::SelectSlot(const TreeReceiver& receiver, const Cut& cut, double& u, double& probability) const {
@@ -104,12 +123,14 @@ uint32_t LightTree::SelectSlot(const TreeReceiver& receiver, const Cut& cut, dou
   uint32_t node = cut.node[at];
   uint32_t slot = Choose(cut.importance[at], cut.sum[at], u);
   probability = static_cast<double>(cut.importance[at][slot]) / cut.total;
+  float factor = receiver.learning ? cut.factor[at][slot] : 1.0f;
   while (!(nodes_[node].child[slot] & kEmitter)) {
     node = nodes_[node].child[slot];
-    alignas(64) float importance[kWidth];
-    const double sum = LookAt(node, receiver, importance);
-    slot = Choose(importance, sum, u);
-    probability *= static_cast<double>(importance[slot]) / sum;
+    View view;
+    LookAt(node, receiver, factor, view);
+    slot = Choose(view.importance, view.sum, u);
+    probability *= static_cast<double>(view.importance[slot]) / view.sum;
+    if (receiver.learning) factor = view.factor[slot];
   }
   return node * kWidth + slot;
 }
@@ -143,30 +164,76 @@ double LightTree::BlindProbability(uint32_t slot) const {
   return static_cast<double>(nodes_[slot / kWidth].lobes.intensity[slot % kWidth]) / intensity_;
 }
 
+namespace {
+
+int IndexIn(const LightTree::Cut& cut, uint32_t node) {
+  const uint32_t* at = std::find(cut.node, cut.node + cut.count, node);
+  return at == cut.node + cut.count ? -1 : static_cast<int>(at - cut.node);
+}
+
+// The slots from an emitter's up; the builder divides into halves from its 40th level on, and there are 2^31 emitters.
+constexpr size_t kLongestWay = 128;
+
+}  // namespace
+
 // From the cut down, as an emitter is chosen: products of the same numbers in the same order.
 double LightTree::SeenProbability(const TreeReceiver& receiver, const Cut& cut, uint32_t slot) const {
-  constexpr size_t kRoom = 128;  // the builder divides into halves from its 40th level on, and there are 2^31 emitters
-  std::array<uint32_t, kRoom> way;
+  std::array<uint32_t, kLongestWay> way;
   size_t length = 0;
-  int at = 0;
-  for (;;) {
+  int at;
+  for (;; slot = parents_[slot / kWidth]) {
     way[length++] = slot;
-    const uint32_t node = slot / kWidth;
-    const uint32_t* known = std::find(cut.node, cut.node + cut.count, node);
-    if (known != cut.node + cut.count) {
-      at = static_cast<int>(known - cut.node);
-      break;
-    }
-    slot = parents_[node];
+    at = IndexIn(cut, slot / kWidth);
+    if (at >= 0) break;
   }
-  double probability = static_cast<double>(cut.importance[at][way[--length] % kWidth]) / cut.total;
+  const uint32_t first = way[--length] % kWidth;
+  double probability = static_cast<double>(cut.importance[at][first]) / cut.total;
+  float factor = receiver.learning ? cut.factor[at][first] : 1.0f;
   while (length > 0) {
     const uint32_t below = way[--length];
-    alignas(64) float importance[kWidth];
-    const double sum = LookAt(below / kWidth, receiver, importance);
-    probability *= static_cast<double>(importance[below % kWidth]) / sum;
+    View view;
+    LookAt(below / kWidth, receiver, factor, view);
+    probability *= static_cast<double>(view.importance[below % kWidth]) / view.sum;
+    if (receiver.learning) factor = view.factor[below % kWidth];
   }
   return probability;
+}
+
+// How often the cut leads to something below this node of it.
+double LightTree::SeenThrough(const Cut& cut, uint32_t node) const {
+  double sum = 0;
+  for (int i = 0; i < cut.count; ++i) {
+    for (uint32_t above = cut.node[i];; above = parents_[above] / kWidth) {
+      if (above == node) sum += cut.sum[i];
+      if (above == node || parents_[above] == kNone) break;
+    }
+  }
+  return sum / cut.total;
+}
+
+void LightTree::Record(LightLearning& learning, const TreeReceiver& receiver, const Cut& cut, uint32_t emitter,
+                       double blindShare, double importance) const {
+  const uint32_t own = slots_[emitter];
+  const auto mix = [&](double seen, uint32_t slot) {
+    return (1 - blindShare) * seen + blindShare * BlindProbability(slot);
+  };
+  const double chosen = mix(SeenProbability(receiver, cut, own), own);
+  for (uint32_t slot = own; slot != kNone; slot = parents_[slot / kWidth]) {
+    const uint32_t node = slot / kWidth, child = nodes_[node].child[slot % kWidth];
+    alignas(64) float unlearned[kWidth];
+    Evaluate(nodes_[node].lobes, receiver).importance.copy_to(unlearned, simd::vector_aligned);
+    const auto estimate = static_cast<double>(unlearned[slot % kWidth]);
+    if (!(estimate > 0)) continue;
+    double seen = 1;
+    if (child & kEmitter) {
+      seen = chosen;
+    } else {
+      const bool isOpened = IndexIn(cut, child) >= 0;
+      seen = mix(isOpened ? SeenThrough(cut, child) : SeenProbability(receiver, cut, slot), slot);
+    }
+    // Of the cluster: the sample, over the probability of this emitter within it.
+    learning.Record(receiver.region, node, static_cast<int>(slot % kWidth), importance * seen / chosen / estimate);
+  }
 }
 
 EmitterProbability LightTree::ProbabilityOf(const TreeReceiver& receiver, const Cut& cut, uint32_t emitter) const {

@@ -41,6 +41,7 @@ class LightTree {
     uint32_t node[kRoom];
     double sum[kRoom];                            // of a node's importances
     alignas(64) float importance[kRoom][kWidth];  // of the children; 0 of those that are in the cut themselves
+    alignas(64) float factor[kRoom][kWidth];      // that was learned of the children; only where something is learned
     double total;
     double irradiance;  // an estimate of that from all emitters: the total, or 0 where none seems to contribute
   };
@@ -50,6 +51,11 @@ class LightTree {
   EmitterChoice Select(const TreeReceiver& receiver, const Cut& cut, double u, bool blindly) const;
   // 0 for emitters that are never chosen.
   EmitterProbability ProbabilityOf(const TreeReceiver& receiver, const Cut& cut, uint32_t emitter) const;
+
+  // A sample of `emitter`, chosen blindly with probability `blindShare`, brought the irradiance of `importance`: what
+  // that says of each cluster it is in. `emitter` can be chosen.
+  void Record(LightLearning& learning, const TreeReceiver& receiver, const Cut& cut, uint32_t emitter,
+              double blindShare, double importance) const;
 
   bool IsEmpty() const { return nodes_.empty(); }
   size_t Bytes() const;
@@ -66,7 +72,14 @@ class LightTree {
 
   friend class LightTreeBuilder;
 
-  double LookAt(uint32_t node, const TreeReceiver& receiver, float* importance) const;
+  // What is seen of a node's children, below the cut. The factors: as in the cut.
+  struct View {
+    alignas(64) float importance[kWidth];
+    alignas(64) float factor[kWidth];
+    double sum;
+  };
+  void LookAt(uint32_t node, const TreeReceiver& receiver, float parentFactor, View& view) const;
+  double SeenThrough(const Cut& cut, uint32_t node) const;
   uint32_t SelectSlot(const TreeReceiver& receiver, const Cut& cut, double& u, double& probability) const;
   uint32_t SelectSlotBlindly(double& u) const;
   double SeenProbability(const TreeReceiver& receiver, const Cut& cut, uint32_t slot) const;

@@ -5,6 +5,7 @@
 
 #include "lights/selection/emitter_list.h"
 #include "lights/selection/emitters.h"
+#include "lights/selection/light_learning.h"
 #include "lights/selection/light_tree.h"
 #include "sampling/tables.h"
 
@@ -38,10 +39,10 @@ class TreeSelector final : public LightSelector {
   bool SelectsPatches() const override { return emitters_.hasPatches; }
 
   std::optional<SelectedLight> Select(const Receiver& receiver, double u) const override {
-    const TreeReceiver place = emitters_.Place(receiver);
+    const TreeReceiver place = Place(receiver);
     typename Search::Cut cut;
     search_.Look(place, cut);
-    const double far = FarShare(cut.irradiance);
+    const double far = FarShare(place, cut.irradiance);
     if (u < far) {
       const AliasTable::Result choice = farTable_.Sample(u / far);
       return SelectedLight{emitters_.far[choice.index], kAnyPatch,
@@ -59,10 +60,10 @@ class TreeSelector final : public LightSelector {
   }
 
   PdfDiscrete Probability(const Receiver& receiver, uint32_t light, int patch) const override {
-    const TreeReceiver place = emitters_.Place(receiver);
+    const TreeReceiver place = Place(receiver);
     typename Search::Cut cut;
     search_.Look(place, cut);
-    const double far = FarShare(cut.irradiance);
+    const double far = FarShare(place, cut.irradiance);
     const auto at = std::find(emitters_.far.begin(), emitters_.far.end(), light);
     if (at != emitters_.far.end()) {
       if (farTable_.IsZero()) return PdfDiscrete(0);
@@ -70,17 +71,51 @@ class TreeSelector final : public LightSelector {
       return PdfDiscrete(static_cast<float>(far * static_cast<double>(within)));
     }
     if (search_.IsEmpty()) return PdfDiscrete(0);
-    const uint32_t first = emitters_.first[light];
-    const uint32_t count = emitters_.first[light + 1] - first;
-    const uint32_t emitter = first + (count > 1 ? static_cast<uint32_t>(patch) : 0u);
-    if (emitter >= first + count) return PdfDiscrete(0);
-    return Mix(search_.ProbabilityOf(place, cut, emitter), far);
+    const std::optional<uint32_t> emitter = EmitterOf(light, patch);
+    if (!emitter) return PdfDiscrete(0);
+    return Mix(search_.ProbabilityOf(place, cut, *emitter), far);
+  }
+
+  void Use(LightLearning* learning) override { learning_ = learning; }
+
+  void Record(const Receiver& receiver, uint32_t light, int patch, double irradiance) const override {
+    if (!learning_) return;
+    const TreeReceiver place = Place(receiver);
+    const auto at = std::find(emitters_.far.begin(), emitters_.far.end(), light);
+    if (at != emitters_.far.end()) {
+      const float within = farTable_.Probability(static_cast<uint32_t>(at - emitters_.far.begin())).value;
+      if (farIrradiance_ > 0)
+        learning_->Record(place.region, LightTree::kNone, 0, irradiance / static_cast<double>(within) / farIrradiance_);
+      return;
+    }
+    if constexpr (std::is_same_v<Search, LightTree>) {
+      const std::optional<uint32_t> emitter = EmitterOf(light, patch);
+      if (!emitter) return;
+      LightTree::Cut cut;
+      search_.Look(place, cut);
+      search_.Record(*learning_, place, cut, *emitter, kBlind, emitters_.ImportanceOf(irradiance));
+    }
   }
 
  private:
   int PatchOf(uint32_t light, uint32_t emitter) const {
     const uint32_t first = emitters_.first[light];
     return emitters_.first[light + 1] - first > 1 ? static_cast<int>(emitter - first) : kAnyPatch;
+  }
+
+  std::optional<uint32_t> EmitterOf(uint32_t light, int patch) const {
+    const uint32_t first = emitters_.first[light], count = emitters_.first[light + 1] - first;
+    const uint32_t emitter = first + (count > 1 ? static_cast<uint32_t>(patch) : 0u);
+    return emitter < first + count ? std::optional(emitter) : std::nullopt;
+  }
+
+  TreeReceiver Place(const Receiver& receiver) const {
+    TreeReceiver place = emitters_.Place(receiver);
+    if (learning_) {
+      place.learning = learning_;
+      place.region = learning_->RegionOf(receiver);
+    }
+    return place;
   }
 
   static PdfDiscrete Mix(const EmitterProbability& probability, double far) {
@@ -97,11 +132,16 @@ class TreeSelector final : public LightSelector {
 
   // How often the lights at infinity are chosen: by their irradiance against what the others are estimated to send
   // here.
-  double FarShare(double importance) const {
+  double FarShare(const TreeReceiver& place, double importance) const {
     if (farTable_.IsZero()) return 0;
     if (search_.IsEmpty()) return 1;
     const double near = emitters_.Irradiance(importance);
-    const double share = farIrradiance_ / (farIrradiance_ + near);
+    double far = farIrradiance_;
+    if (place.learning) {
+      const LightLearning::Row& row = place.learning->RowOf(place.region, LightTree::kNone);
+      far *= std::sqrt(static_cast<double>(row.known[0] + row.unknown[0]));
+    }
+    const double share = far / (far + near);
     return std::clamp(share, kSmallestGroup, 1 - kSmallestGroup);
   }
 
@@ -109,6 +149,7 @@ class TreeSelector final : public LightSelector {
   Search search_;
   AliasTable farTable_;
   double farIrradiance_ = 0;
+  LightLearning* learning_ = nullptr;
 };
 
 }  // namespace

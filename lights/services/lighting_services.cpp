@@ -91,13 +91,33 @@ DirectSample LightingServices::GenerateSamples(const Receiver& receiver, float u
   LightContext context = Context(selected->light, time, bidirectional, moved);
   context.u = u;
   context.patch = selected->patch;
-  DirectSample direct{selected->light, IsDeltaKind(kind) || !placed.canBeHit, IsInfiniteKind(kind),
+  DirectSample direct{selected->light,       IsDeltaKind(kind) || !placed.canBeHit,
+                      IsInfiniteKind(kind),  selected->patch,
                       selected->probability, placed.light->GenerateSamples(context, receiver.position)};
   if (bidirectional && direct.sample) {
     LightSample& sample = *direct.sample;
     sample.pdfEmit = EmissionDensity(context, selected->light, sample.patchIndex, sample.pdfEmit);
   }
   return direct;
+}
+
+void LightingServices::Use(LightLearning* learning) {
+  learning_ = learning;
+  selector_->Use(learning);
+}
+
+void LightingServices::RecordResult(const Receiver& receiver, const DirectSample& direct, const Color& arrived) const {
+  if (direct.selection.IsZero()) return;
+  double irradiance = 0;
+  if (direct && !arrived.IsBlack()) {
+    const LightSample& sample = *direct.sample;
+    const bool hasNormal = LengthSquared(receiver.normal) > 0;
+    const float cosine = hasNormal ? AbsDot(sample.direction, receiver.normal) : 1.0f;
+    // A light carries its radiance in both; a multiplier may have put out one of them.
+    const float radiance = std::max((sample.diffuse * arrived).Average(), (sample.specular * arrived).Average());
+    irradiance = static_cast<double>(radiance * cosine / sample.pdfDirect.value);
+  }
+  selector_->Record(receiver, direct.light, direct.patch, irradiance);
 }
 
 // How far in front of a sample its own surface may be met by a ray from `from`.
@@ -170,7 +190,8 @@ Color LightingServices::EscapedEmissionForCamera(const Ray& ray) const {
 
 std::optional<EmittedPhoton> LightingServices::GenerateEmission(float uSelect, const Point2& u,
                                                                 const Point2& uDirection, float time) const {
-  const std::optional<SelectedLight> selected = emissionSelector_->Select({}, MoreBits(uSelect, Point3(u.x, u.y, uDirection.x)));
+  const std::optional<SelectedLight> selected =
+      emissionSelector_->Select({}, MoreBits(uSelect, Point3(u.x, u.y, uDirection.x)));
   if (!selected) return std::nullopt;
   std::optional<LightTransform> moved;
   LightContext context = Context(selected->light, time, true, moved);

@@ -10,6 +10,7 @@
 #include "geometry/geometry_scene.h"
 #include "geometry/robust.h"
 #include "lights/light.h"
+#include "lights/selection/light_learning.h"
 #include "lights/selection/light_selector.h"
 
 namespace lampyr {
@@ -21,6 +22,7 @@ struct DirectSample {
   uint32_t light = 0;
   bool isDelta = false;               // the light has no surface or directions that a BSDF ray could find
   bool isInfinite = false;            // no end of the shadow ray
+  int patch = kAnyPatch;              // that was selected
   PdfDiscrete selection;              // at the receiver
   std::optional<LightSample> sample;  // densities without the selection
 
@@ -58,6 +60,14 @@ class LightingServices {
 
   // What of a sample's light arrives: 0 behind something opaque, 1 otherwise. Traces a shadow ray.
   Color Transmission(const SurfacePoint& from, const DirectSample& direct, float time) const;
+
+  // What became of a sample: the part of it that arrived at the receiver, 0 too where it was not worth a shadow ray.
+  // From any thread; does nothing unless something is learned.
+  void UpdateWithResults(const Receiver& receiver, const DirectSample& direct, const Color& arrived) const {
+    if (learning_ && learning_->IsRecording()) RecordResult(receiver, direct, arrived);
+  }
+  // Selection learns from results, and uses what `learning` knows; null: it does neither. Not during a pass.
+  void Use(LightLearning* learning);
 
   // The area light at a surface point that a ray from `receiver` along the unit `direction` hit; nullopt when that
   // surface emits nothing that way.
@@ -105,6 +115,7 @@ class LightingServices {
 
   // Emission chooses a light as a whole: of densities given a patch, that of emission becomes the whole light's.
   PdfArea EmissionDensity(const LightContext& context, uint32_t light, int patch, PdfArea given) const;
+  void RecordResult(const Receiver& receiver, const DirectSample& direct, const Color& arrived) const;
   Vector3 ErrorOfEnd(const SurfacePoint& from, const DirectSample& direct, float time) const;
 
   const GeometryScene& geometry_;
@@ -113,6 +124,7 @@ class LightingServices {
   std::vector<uint32_t> infinite_;
   BoundingSphere sphere_;
   std::unique_ptr<LightSelector> selector_, emissionSelector_;
+  LightLearning* learning_ = nullptr;
 };
 
 }  // namespace lampyr

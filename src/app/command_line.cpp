@@ -63,7 +63,10 @@ void DefineSceneOptions(CLI::App& app, RenderOverrides& overrides, std::string& 
   app.add_option("--max-depth", overrides.maxDepth, "Scattering events of a path at most")
       ->check(CLI::Range(0, 1 << 20));
   app.add_option("--sampler", overrides.sampler, "sobol | independent");
-  app.add_option("--light-sampler", overrides.lightSampler, "How a light is chosen: uniform | power | tree (default) | exhaustive");
+  app.add_option("--light-sampler", overrides.lightSampler,
+                 "How a light is chosen: uniform | power | tree (default) | exhaustive");
+  app.add_flag("--learn-lights,!--no-learn-lights", overrides.learnLights,
+               "Let the light tree learn which lights are occluded where (off)");
 }
 
 struct RenderCommand {

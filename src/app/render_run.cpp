@@ -1,6 +1,7 @@
 #include "app/render_run.h"
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <cmath>
 #include <vector>
@@ -180,20 +181,40 @@ ProgressiveRender::ProgressiveRender(const RenderScene& scene, const AnyIntegrat
       filter_(settings.filter),
       threads_(threads),
       film_(film),
-      techniques_(techniques) {}
+      techniques_(techniques) {
+  if (settings.learnLights) learning_ = std::make_unique<LightLearning>(scene.lighting->SceneSphere());
+}
 
-void ProgressiveRender::AddSamples(int count) {
-  const Clock clock;
-  const auto first = static_cast<uint32_t>(outcome_.samplesPerPixel), samples = static_cast<uint32_t>(count);
+void ProgressiveRender::AddPass(uint32_t first, uint32_t count) {
   outcome_.counts += std::visit(
       [&]<class Chosen>(const std::unique_ptr<Chosen>& chosen) {
         if constexpr (std::is_same_v<Chosen, BidirectionalIntegrator>) {
-          return RenderPass(scene_, *chosen, settings_, filter_, first, samples, threads_, film_, techniques_);
+          return RenderPass(scene_, *chosen, settings_, filter_, first, count, threads_, film_, techniques_);
         } else {
-          return RenderPass(scene_, *chosen, settings_, filter_, first, samples, threads_, film_);
+          return RenderPass(scene_, *chosen, settings_, filter_, first, count, threads_, film_);
         }
       },
       integrator_);
+}
+
+void ProgressiveRender::AddSamples(int count) {
+  // By then most of what can be learned has been.
+  constexpr uint32_t lastLearned = 64;
+  const Clock clock;
+  auto first = static_cast<uint32_t>(outcome_.samplesPerPixel);
+  const uint32_t end = first + static_cast<uint32_t>(count);
+  scene_.lighting->Use(learning_.get());
+  while (first < end) {
+    const uint32_t milestone = std::bit_ceil(first + 1);
+    const bool learns = learning_ && learning_->IsRecording();
+    const uint32_t next = learns ? std::min(end, milestone) : end;
+    AddPass(first, next - first);
+    first = next;
+    if (!learns || first < milestone) continue;
+    learning_->Freeze();
+    if (first >= lastLearned) learning_->StopRecording();
+  }
+  scene_.lighting->Use(nullptr);
   outcome_.samplesPerPixel += count;
   outcome_.seconds += clock.Seconds();
 }

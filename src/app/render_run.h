@@ -49,7 +49,8 @@ class ProgressiveRender {
   ProgressiveRender(const RenderScene& scene, const AnyIntegrator& integrator, const RenderSettings& settings,
                     int threads, Film& film, TechniqueImages* techniques = nullptr);
 
-  // As many samples more of every pixel. Only this takes time that counts.
+  // As many samples more of every pixel. Only this takes time that counts. What is learned of lights is learned from
+  // samples 0 … 2^n - 1 and counts from sample 2^n on, whatever the passes are.
   void AddSamples(int count);
   // Samples that a pass should add: as many as there are, at most about 2^22 in the whole image, so that progress
   // shows, interrupts are answered and an error target is not overshot by much; not beyond `samplesPerPixel` in all,
@@ -60,6 +61,8 @@ class ProgressiveRender {
   const RenderOutcome& Outcome() const { return outcome_; }
 
  private:
+  void AddPass(uint32_t first, uint32_t count);
+
   const RenderScene& scene_;
   const AnyIntegrator& integrator_;
   const RenderSettings& settings_;
@@ -68,6 +71,7 @@ class ProgressiveRender {
   Film& film_;
   TechniqueImages* techniques_;
   RenderOutcome outcome_;
+  std::unique_ptr<LightLearning> learning_;  // null: selection learns nothing
 };
 
 // Samples [first, first + count) of every pixel. Exposed for tests and benchmarks.

@@ -22,6 +22,7 @@ struct RenderOverrides {
   std::optional<std::string> crop;  // "x0,x1,y0,y1": fractions of the image, or pixels when one is above 1
   std::optional<std::string> sampler;
   std::optional<std::string> lightSampler;
+  std::optional<bool> learnLights;
   uint64_t seed = 0;
 };
 
@@ -35,6 +36,7 @@ struct RenderSettings {
   int samplesPerPixel = 16;
   uint64_t seed = 0;
   LightSelection lightSelection = LightSelection::Tree;
+  bool learnLights = false;  // selection learns from shadow rays (light_learning.h)
   bool halfPrecision = false;
   float imagingRatio = 1;  // exposure time · ISO / 100: film value of radiance 1
   std::string outputFile;  // as the scene names it

@@ -17,13 +17,13 @@ struct ManyLightScene {
 };
 
 const ManyLightScene kScenes[] = {
-    {"lights600", std::string(LAMPYR_SHARED_DATA) + "/peer/lights600.pbrt", 64, 64, 16},
-    {"rooms", std::string(LAMPYR_SOURCE_DIR) + "/scenes/rooms.pbrt", 64, 32, 16},
+    {"lights600", std::string(LAMPYR_SHARED_DATA) + "/peer/lights600.pbrt", 64, 512, 8},
+    {"rooms", std::string(LAMPYR_SOURCE_DIR) + "/scenes/rooms.pbrt", 64, 256, 6},
     {"area-box", std::string(LAMPYR_SHARED_DATA) + "/peer/area-box.pbrt", 64, 64, 64},
     {"mixed-lights", std::string(LAMPYR_SHARED_DATA) + "/peer/mixed-lights.pbrt", 64, 64, 16},
     {"gallery", std::string(LAMPYR_SOURCE_DIR) + "/scenes/gallery.pbrt", 64, 32, 16},
     {"still-life", std::string(LAMPYR_SOURCE_DIR) + "/scenes/still-life.pbrt", 64, 32, 16},
-    {"lights-1000", std::string(LAMPYR_SOURCE_DIR) + "/scenes/lights-1000.pbrt", 64, 32, 16},
+    {"lights-1000", std::string(LAMPYR_SOURCE_DIR) + "/scenes/lights-1000.pbrt", 64, 256, 8},
 };
 
 void SelectionEfficiency(benchmark::State& state, const ManyLightScene& scene, const std::string& integrator,
@@ -54,7 +54,7 @@ void SelectionEfficiency(benchmark::State& state, const ManyLightScene& scene, c
 const int registered = [] {
   for (const ManyLightScene& scene : kScenes) {
     for (const char* integrator : {"path", "bdpt"}) {
-      for (const char* selection : {"power", "uniform", "tree", "exhaustive"}) {
+      for (const char* selection : {"power", "uniform", "tree", "learned", "exhaustive"}) {
         const std::string name = std::string("selection/") + scene.name + "/" + integrator + "/" + selection;
         benchmark::RegisterBenchmark(name.c_str(),
                                      [&scene, integrator, selection](benchmark::State& state) {

@@ -31,7 +31,8 @@ inline SelectionNoise MeasureSelection(const SceneDescription& description, cons
                                        const std::string& integrator, const std::string& selection, int samplesPerPixel,
                                        int renders, RenderOverrides overrides = {}) {
   overrides.integrator = integrator;
-  overrides.lightSampler = selection;
+  overrides.learnLights = selection == "learned";
+  overrides.lightSampler = selection == "learned" ? "tree" : selection;
   Diagnostics diagnostics(Diagnostics::Mode::Collect);
   BuiltScene built = BuildScene(description, overrides, true, diagnostics);
   std::vector<double> sum(mask.size()), squares(mask.size());

@@ -1,0 +1,56 @@
+// What shadow rays find out, region by region: which clusters of emitters are occluded there, and which matter more
+// than was estimated. The light tree multiplies its importances by it.
+//
+// A region is a cell of a grid and a main direction of the normal. For each node of the tree that is looked at from it,
+// the mean square of (what a child really sends ÷ its importance) is learned: choosing by its root minimises variance
+// ([Rath20 eq. 10]), and a cluster of which a part can be seen is chosen more often than by the mean. What is not known
+// yet of a child is taken from its parent.
+//
+// Rows are found by a hash, and rows that meet share what they learn: memory is bounded, and nothing depends on who
+// comes first. Sums are integers, so that they do not depend on the order of threads. What was recorded counts from the
+// next Freeze on: between two of them, selection is one distribution, whose probabilities are known exactly.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <vector>
+
+#include "lights/selection/importance.h"
+#include "lights/selection/light_selector.h"
+
+namespace lampyr {
+
+class LightLearning {
+ public:
+  static constexpr int kWidth = LobeBlock::kWidth;
+
+  explicit LightLearning(const BoundingSphere& scene);
+
+  uint32_t RegionOf(const Receiver& receiver) const;
+
+  // The factor of a child's importance is the root of known + unknown · (the parent's factor)².
+  struct alignas(64) Row {
+    float known[kWidth], unknown[kWidth];
+  };
+  const Row& RowOf(uint32_t region, uint32_t node) const { return rows_[IndexOf(region, node)]; }
+
+  // A child of a node sent `ratio` times its importance. From any thread.
+  void Record(uint32_t region, uint32_t node, int child, double ratio);
+  // All that was recorded counts from now on. While nobody selects or records.
+  void Freeze();
+  // Once enough is known, the time that recording takes is saved.
+  void StopRecording() { isRecording_ = false; }
+  bool IsRecording() const { return isRecording_; }
+
+ private:
+  static size_t IndexOf(uint32_t region, uint32_t node);
+
+  bool isRecording_ = true;
+  Point3 center_;
+  float cellsPerUnit_;
+  std::vector<Row> rows_;
+  std::vector<std::atomic<uint64_t>> squares_;  // in units of 2^-24
+  std::vector<std::atomic<uint32_t>> counts_;
+};
+
+}  // namespace lampyr

@@ -1,0 +1,99 @@
+// Selection that learns from shadow rays: as right as without, the same for any number of threads, and worth it where
+// much of the light that seems near is behind something.
+#include <gtest/gtest.h>
+
+#include "agreement/agreement_scenes.h"
+#include "sampling/rng.h"
+#include "support/replicas.h"
+#include "support/selection_noise.h"
+
+namespace lampyr::test {
+namespace {
+
+// Two rooms and a wall between them: one is seen, with a few dim lamps; most lamps, and the bright ones, hang in the
+// other, and near the wall. Daylight comes in by no more than a slit.
+std::string TwoRooms() {
+  std::string text = FilmWith("box", 32, 32) +
+                     "LookAt -3.8 1 0  -0.5 0.8 0  0 1 0\nCamera \"perspective\" \"float fov\" 70\n" + World(4) +
+                     "LightSource \"infinite\" \"rgb L\" [0.5 0.6 0.8]\n";
+  Rng rng(1);
+  const auto lamp = [&](float x0, float x1, const char* intensity) {
+    const Point3 p(x0 + (x1 - x0) * rng.NextFloat(), 0.3f + 1.4f * rng.NextFloat(), 4 * rng.NextFloat() - 2);
+    text += "LightSource \"point\" \"point3 from\" [" + std::to_string(p.x) + " " + std::to_string(p.y) + " " +
+            std::to_string(p.z) + "] \"rgb I\" [" + intensity + "]\n";
+  };
+  for (int i = 0; i < 40; ++i) lamp(-3, -0.5f, "0.02 0.02 0.015");
+  for (int i = 0; i < 200; ++i) lamp(0.1f, 1.5f, "0.2 0.2 0.2");
+  text += "Material \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5]\n";
+  const auto box = [&](const char* points) {
+    text += std::string("Shape \"bilinearmesh\" \"point3 P\" [") + points + "]\n";
+  };
+  box("-4 0 -2.2  4 0 -2.2  -4 0 2.2  4 0 2.2");    // floor
+  box("-4 2 -2.2  4 2 -2.2  -4 2 2.1  4 2 2.1");    // ceiling, that leaves a slit
+  box("-4 0 -2.2  4 0 -2.2  -4 2 -2.2  4 2 -2.2");  // sides
+  box("-4 0 2.2  4 0 2.2  -4 2 2.2  4 2 2.2");
+  box("-4 0 -2.2  -4 0 2.2  -4 2 -2.2  -4 2 2.2");  // ends, and the wall
+  box("4 0 -2.2  4 0 2.2  4 2 -2.2  4 2 2.2");
+  box("0 0 -2.2  0 0 2.2  0 2 -2.2  0 2 2.2");
+  return text;
+}
+
+RenderOverrides Learning(bool learns) {
+  RenderOverrides overrides;
+  overrides.learnLights = learns;
+  return overrides;
+}
+
+class LearnedSelection : public testing::TestWithParam<const char*> {};
+
+TEST_P(LearnedSelection, ChangesTheNoiseAlone) {
+  const std::string text = TwoRooms();
+  const Replicas without = RenderReplicas(text, "path", 12, 128, Learning(false));
+  RenderOverrides overrides = Learning(true);
+  overrides.seed = 100;
+  const Replicas learned = RenderReplicas(text, GetParam(), 12, 96, overrides);
+  const double rate = SidakRate(1e-3, 2);
+  const Agreement result = CompareReplicas(learned, without, 8, rate);
+  std::printf("%s: %d blocks, largest |z| %.2f (threshold %.2f), chi2 %.1f (%.1f), bias %+.3f %% +- %.3f %%\n",
+              GetParam(), result.blocks, result.largestZ, result.thresholdZ, result.chiSquared,
+              result.chiSquaredThreshold, 100 * result.bias, 196 * result.biasError);
+  EXPECT_TRUE(result.Agrees());
+  EXPECT_EQ(learned.faults, 0u);
+  EXPECT_FALSE(CompareReplicas(learned, without, 8, rate, 1.03).Agrees()) << "too noisy";
+}
+
+INSTANTIATE_TEST_SUITE_P(Integrators, LearnedSelection, testing::Values("path", "bdpt"));
+
+TEST(LearnedSelectionNoise, PaysWhereMostOfTheLightIsBehindAWall) {
+  Diagnostics diagnostics(Diagnostics::Mode::Collect);
+  const SceneDescription scene = ParseScene(TwoRooms(), "test.pbrt", diagnostics);
+  const std::vector<bool> all(size_t{32} * 32, true);
+  for (const char* integrator : {"path", "bdpt"}) {
+    const SelectionNoise without = MeasureSelection(scene, all, integrator, "tree", 256, 6);
+    const SelectionNoise learned = MeasureSelection(scene, all, integrator, "learned", 256, 6);
+    const double variance = learned.meanSquaredError / without.meanSquaredError;
+    std::printf("%s: learned %.3f x the variance, %.2f x the time: %.1f x the efficiency\n", integrator, variance,
+                learned.seconds / without.seconds, learned.Efficiency() / without.Efficiency());
+    EXPECT_LT(variance, integrator == std::string("path") ? 0.4 : 0.7);
+  }
+}
+
+// Neither threads nor the lengths of passes show.
+TEST(LearnedSelectionBytes, AreThoseOfOneThread) {
+  Diagnostics diagnostics(Diagnostics::Mode::Collect);
+  for (const char* integrator : {"path", "bdpt"}) {
+    RenderOverrides overrides = Learning(true);
+    overrides.integrator = integrator;
+    const BuiltScene built = BuildScene(ParseScene(TwoRooms(), "test.pbrt", diagnostics), overrides, true, diagnostics);
+    const Image one = RenderBuilt(built, 13, 1).image;
+    EXPECT_EQ(RenderBuilt(built, 13, 3).image.data, one.data) << integrator;
+    const AnyIntegrator any = MakeIntegrator(built.scene, built.settings);
+    Film film(built.settings.width, built.settings.height, built.settings.crop);
+    ProgressiveRender passes(built.scene, any, built.settings, 2, film);
+    for (const int samples : {3, 1, 6, 3}) passes.AddSamples(samples);
+    EXPECT_EQ(film.Develop().data, one.data) << integrator;
+  }
+}
+
+}  // namespace
+}  // namespace lampyr::test
