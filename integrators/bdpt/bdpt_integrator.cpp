@@ -75,7 +75,8 @@ class BdptIntegrator final : public BidirectionalIntegrator {
   Color HitLight(Run& run, const Flight& flight, const FoundLight& found, double landing) const;
   Color SeenLight(Run& run, const Ray& ray, const RayHit& hit, const SurfacePoint& point) const;
   Color Background(const Run& run, const Ray& ray) const;
-  Color SampleLight(Run& run) const;
+  Color SampleLights(Run& run) const;
+  Color SampleLight(Run& run, const SelectedLight& light, const Point2& u) const;
   Color Connect(Run& run, size_t lightCount) const;
   LightEnd EndOf(const FoundLight& found, bool canBeHit, double landing) const;
   double CameraPerArea(const Ray& ray, float cosTheta, double distanceSquared) const;
@@ -344,13 +345,20 @@ Color BdptIntegrator::HitLight(Run& run, const Flight& flight, const FoundLight&
 }
 
 // s = 1: next-event estimation at the camera subpath's last vertex.
-Color BdptIntegrator::SampleLight(Run& run) const {
-  const PathVertex& vertex = run.paths.camera[run.cameraCount - 1];
+Color BdptIntegrator::SampleLights(Run& run) const {
   const auto index = static_cast<int>(run.cameraCount) - 1;
   run.sampler.SetDimension(CameraDimension(index, dimensions::kLightSelection));
-  const float uSelect = run.sampler.Get1D();
+  LightChoices lights;
+  lighting_.SelectLights(run.paths.camera[run.cameraCount - 1].receiver, run.sampler.Get1D(), lights);
   const Point2 u = run.sampler.Get2D();
-  const DirectSample direct = lighting_.GenerateSamples(vertex.receiver, uSelect, u, run.time, true);
+  Color sum;
+  for (int i = 0; i < lights.count; ++i) sum += SampleLight(run, lights.of[i], MovedPoint(u, i));
+  return sum;
+}
+
+Color BdptIntegrator::SampleLight(Run& run, const SelectedLight& light, const Point2& u) const {
+  const PathVertex& vertex = run.paths.camera[run.cameraCount - 1];
+  const DirectSample direct = lighting_.GenerateSamples(vertex.receiver, light, u, run.time, true);
   const auto nothingArrives = [&] {
     lighting_.UpdateWithResults(vertex.receiver, direct, Color(0.0f));
     return Color(0.0f);
@@ -485,7 +493,7 @@ Color BdptIntegrator::TraceCamera(Run& run, const Ray& cameraRay) const {
     ++run.cameraCount;
     const auto depth = static_cast<int>(run.cameraCount);
     if (!vertex.isDelta) {
-      radiance += SampleLight(run);
+      radiance += SampleLights(run);
       // As many scattering events in all as are wanted.
       const size_t most = std::min(run.lightCount, static_cast<size_t>(settings_.maxDepth - depth));
       for (size_t i = 1; i <= most; ++i) radiance += Connect(run, i);

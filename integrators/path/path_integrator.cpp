@@ -36,6 +36,8 @@ class PathIntegrator final : public CameraIntegrator {
   Color EscapedEmission(const PathState& path) const;
   Color DirectLight(const PathState& path, const SurfacePoint& point, const Bsdf& bsdf, const Vector3& wo,
                     const Receiver& receiver, Sampler& sampler, RenderCounts& counts) const;
+  Color SampleLight(const PathState& path, const SurfacePoint& point, const Bsdf& bsdf, const Vector3& wo,
+                    const Receiver& receiver, const SelectedLight& light, const Point2& u, RenderCounts& counts) const;
   bool Scatter(PathState& path, const SurfacePoint& point, const Bsdf& bsdf, const Vector3& wo,
                const Receiver& receiver, Sampler& sampler) const;
 
@@ -78,9 +80,19 @@ Color PathIntegrator::EscapedEmission(const PathState& path) const {
 Color PathIntegrator::DirectLight(const PathState& path, const SurfacePoint& point, const Bsdf& bsdf, const Vector3& wo,
                                   const Receiver& receiver, Sampler& sampler, RenderCounts& counts) const {
   sampler.SetDimension(dimensions::OfVertex(path.depth, dimensions::kLightSelection));
-  const float uSelect = sampler.Get1D();
+  LightChoices lights;
+  lighting_.SelectLights(receiver, sampler.Get1D(), lights);
   const Point2 u = sampler.Get2D();
-  const DirectSample direct = lighting_.GenerateSamples(receiver, uSelect, u, path.ray.time, false);
+  Color sum;
+  for (int i = 0; i < lights.count; ++i)
+    sum += SampleLight(path, point, bsdf, wo, receiver, lights.of[i], MovedPoint(u, i), counts);
+  return sum;
+}
+
+Color PathIntegrator::SampleLight(const PathState& path, const SurfacePoint& point, const Bsdf& bsdf, const Vector3& wo,
+                                  const Receiver& receiver, const SelectedLight& light, const Point2& u,
+                                  RenderCounts& counts) const {
+  const DirectSample direct = lighting_.GenerateSamples(receiver, light, u, path.ray.time, false);
   const auto nothingArrives = [&] {
     lighting_.UpdateWithResults(receiver, direct, Color(0.0f));
     return Color(0.0f);

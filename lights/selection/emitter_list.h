@@ -17,6 +17,8 @@ class EmitterList {
     double sum = 0;
     double irradiance = 0;     // as LightTree::Cut
     bool byIntensity = false;  // nothing seems to contribute
+
+    static double Concentration() { return 0; }  // unknown: as many samples as there may be
   };
   void Look(const TreeReceiver& receiver, Cut& cut) const;
   EmitterChoice Select(const TreeReceiver& receiver, const Cut& cut, double u, bool blindly) const;

@@ -16,19 +16,29 @@ class TableSelector final : public LightSelector {
  public:
   explicit TableSelector(std::span<const float> weights) : table_(weights) {}
 
-  std::optional<SelectedLight> Select(const Receiver&, double u) const override {
-    if (table_.IsZero()) return std::nullopt;
-    if (table_.Size() == 1) return SelectedLight{0, kAnyPatch, PdfDiscrete(1), static_cast<float>(u)};
-    const AliasTable::Result choice = table_.Sample(u);
-    return SelectedLight{choice.index, kAnyPatch, choice.probability, choice.u};
+  void Select(const Receiver&, double u, LightChoices& choices) const override {
+    choices.count = table_.IsZero() ? 0 : MostSamples();
+    for (int k = 0; k < choices.count; ++k) {
+      const double part = (u + k) / choices.count;
+      if (table_.Size() == 1) {
+        choices.of[k] = {0, kAnyPatch, Expected(PdfDiscrete(1)), static_cast<float>(part)};
+        continue;
+      }
+      const AliasTable::Result choice = table_.Sample(part);
+      choices.of[k] = {choice.index, kAnyPatch, Expected(choice.probability), choice.u};
+    }
   }
 
   PdfDiscrete Probability(const Receiver&, uint32_t light, int) const override {
     if (table_.IsZero()) return PdfDiscrete(0);
-    return table_.Size() == 1 ? PdfDiscrete(1) : table_.Probability(light);
+    return Expected(table_.Size() == 1 ? PdfDiscrete(1) : table_.Probability(light));
   }
 
  private:
+  PdfDiscrete Expected(PdfDiscrete probability) const {
+    return PdfDiscrete(static_cast<float>(MostSamples()) * probability.value);
+  }
+
   AliasTable table_;
 };
 

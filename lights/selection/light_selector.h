@@ -4,6 +4,7 @@
 // finds the same light, with the very receiver that the choice was made for: both must be the same bits.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <span>
@@ -23,9 +24,17 @@ struct Receiver {
 
 struct SelectedLight {
   uint32_t light = 0;
-  int patch = kAnyPatch;  // kAnyPatch: the light chooses its patch itself
-  PdfDiscrete probability;
-  float u = 0;  // the random number, stretched over [0,1) again
+  int patch = kAnyPatch;    // kAnyPatch: the light chooses its patch itself
+  PdfDiscrete probability;  // times the number of samples that the receiver takes: the expected number of this light
+  float u = 0;              // the random number, stretched over [0,1) again
+};
+
+// What a receiver takes: one light, or several, one from each of as many equal parts of the distribution. Not
+// initialised beyond `count`.
+struct LightChoices {
+  static constexpr int kMost = 16;
+  int count = 0;
+  SelectedLight of[kMost];
 };
 
 class LightLearning;
@@ -33,9 +42,9 @@ class LightLearning;
 class LightSelector {
  public:
   virtual ~LightSelector() = default;
-  // u in [0,1), of more bits than a float's where there are many lights. nullopt: no light can contribute.
-  virtual std::optional<SelectedLight> Select(const Receiver& receiver, double u) const = 0;
-  // The probability that Select chooses this (light, patch) at this receiver.
+  // u in [0,1), of more bits than a float's where there are many lights. None: no light can contribute.
+  virtual void Select(const Receiver& receiver, double u, LightChoices& choices) const = 0;
+  // How often Select chooses this (light, patch) at this receiver: the probability, times the number of choices.
   virtual PdfDiscrete Probability(const Receiver& receiver, uint32_t light, int patch) const = 0;
   // From now on, selects by what `learning` knows, too; null: by nothing else. Not while anything is selected.
   virtual void Use(LightLearning*) {}
@@ -43,6 +52,15 @@ class LightSelector {
   virtual void Record(const Receiver&, uint32_t, int, double) const {}
   // Whether lights are selected patch by patch: patchIndex then belongs to what is asked for.
   virtual bool SelectsPatches() const { return false; }
+
+  // At most so many choices for a receiver, in [1, LightChoices::kMost]; 1 unless said.
+  void TakeSamples(int most) { mostSamples_ = std::clamp(most, 1, LightChoices::kMost); }
+
+ protected:
+  int MostSamples() const { return mostSamples_; }
+
+ private:
+  int mostSamples_ = 1;
 };
 
 enum class LightSelection { Uniform, Power, Tree, Exhaustive };

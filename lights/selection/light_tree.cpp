@@ -96,6 +96,12 @@ LightTree::LightTree(std::span<const ClusterBounds> emitters, int threads) {
   cut.total = cut.sum[0] = SumOf(cut.importance[0]);
 }
 
+double LightTree::Cut::Concentration() const {
+  Lanes squares = 0;
+  for (int i = 0; i < count; ++i) squares += Load(importance[i]) * Load(importance[i]);
+  return total > 0 ? static_cast<double>(simd::reduce(squares)) / (total * total) : 1;
+}
+
 // One compiled function, too.
 [[gnu::noinline]] void LightTree::LookAt(uint32_t node, const TreeReceiver& receiver, float parentFactor,
                                          View& view) const {

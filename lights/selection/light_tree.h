@@ -44,6 +44,9 @@ class LightTree {
     alignas(64) float factor[kRoom][kWidth];      // that was learned of the children; only where something is learned
     double total;
     double irradiance;  // an estimate of that from all emitters: the total, or 0 where none seems to contribute
+
+    // The sum of the squares of the children's shares: 1 when a single one matters, 1/n when n matter alike.
+    double Concentration() const;
   };
   void Look(const TreeReceiver& receiver, Cut& cut) const;
 

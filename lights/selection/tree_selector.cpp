@@ -38,25 +38,14 @@ class TreeSelector final : public LightSelector {
 
   bool SelectsPatches() const override { return emitters_.hasPatches; }
 
-  std::optional<SelectedLight> Select(const Receiver& receiver, double u) const override {
+  void Select(const Receiver& receiver, double u, LightChoices& choices) const override {
     const TreeReceiver place = Place(receiver);
     typename Search::Cut cut;
     search_.Look(place, cut);
     const double far = FarShare(place, cut.irradiance);
-    if (u < far) {
-      const AliasTable::Result choice = farTable_.Sample(u / far);
-      return SelectedLight{emitters_.far[choice.index], kAnyPatch,
-                           PdfDiscrete(static_cast<float>(far * static_cast<double>(choice.probability.value))),
-                           choice.u};
-    }
-    if (search_.IsEmpty()) return std::nullopt;
-    double x = (u - far) / (1 - far);
-    const bool blindly = x < kBlind;
-    x = blindly ? x / kBlind : (x - kBlind) / (1 - kBlind);
-    const EmitterChoice choice = search_.Select(place, cut, std::min(x, 0x1.fffffffffffffp-1), blindly);
-    const uint32_t light = emitters_.lightOf[choice.emitter];
-    return SelectedLight{light, PatchOf(light, choice.emitter), Mix(choice.probability, far),
-                         static_cast<float>(std::min(choice.u, 0x1.fffffep-1))};
+    choices.count = search_.IsEmpty() && farTable_.IsZero() ? 0 : CountFor(cut, far);
+    for (int k = 0; k < choices.count; ++k)
+      choices.of[k] = SelectOne(place, cut, far, (u + k) / choices.count, choices.count);
   }
 
   PdfDiscrete Probability(const Receiver& receiver, uint32_t light, int patch) const override {
@@ -64,16 +53,15 @@ class TreeSelector final : public LightSelector {
     typename Search::Cut cut;
     search_.Look(place, cut);
     const double far = FarShare(place, cut.irradiance);
+    const int count = CountFor(cut, far);
     const auto at = std::find(emitters_.far.begin(), emitters_.far.end(), light);
     if (at != emitters_.far.end()) {
       if (farTable_.IsZero()) return PdfDiscrete(0);
-      const float within = farTable_.Probability(static_cast<uint32_t>(at - emitters_.far.begin())).value;
-      return PdfDiscrete(static_cast<float>(far * static_cast<double>(within)));
+      return FarExpected(farTable_.Probability(static_cast<uint32_t>(at - emitters_.far.begin())), far, count);
     }
     if (search_.IsEmpty()) return PdfDiscrete(0);
     const std::optional<uint32_t> emitter = EmitterOf(light, patch);
-    if (!emitter) return PdfDiscrete(0);
-    return Mix(search_.ProbabilityOf(place, cut, *emitter), far);
+    return emitter ? Expected(search_.ProbabilityOf(place, cut, *emitter), far, count) : PdfDiscrete(0);
   }
 
   void Use(LightLearning* learning) override { learning_ = learning; }
@@ -118,8 +106,36 @@ class TreeSelector final : public LightSelector {
     return place;
   }
 
-  static PdfDiscrete Mix(const EmitterProbability& probability, double far) {
-    return PdfDiscrete(static_cast<float>((1 - far) * (kBlind * probability.blind + (1 - kBlind) * probability.seen)));
+  SelectedLight SelectOne(const TreeReceiver& place, const typename Search::Cut& cut, double far, double u,
+                          int count) const {
+    if (u < far || search_.IsEmpty()) {
+      const AliasTable::Result choice = farTable_.Sample(u / far);
+      return {emitters_.far[choice.index], kAnyPatch, FarExpected(choice.probability, far, count), choice.u};
+    }
+    double x = (u - far) / (1 - far);
+    const bool blindly = x < kBlind;
+    x = blindly ? x / kBlind : (x - kBlind) / (1 - kBlind);
+    const EmitterChoice choice = search_.Select(place, cut, std::min(x, 0x1.fffffffffffffp-1), blindly);
+    const uint32_t light = emitters_.lightOf[choice.emitter];
+    return {light, PatchOf(light, choice.emitter), Expected(choice.probability, far, count),
+            static_cast<float>(std::min(choice.u, 0x1.fffffep-1))};
+  }
+
+  static PdfDiscrete Expected(const EmitterProbability& probability, double far, int count) {
+    return PdfDiscrete(
+        static_cast<float>(count * ((1 - far) * (kBlind * probability.blind + (1 - kBlind) * probability.seen))));
+  }
+  static PdfDiscrete FarExpected(PdfDiscrete within, double far, int count) {
+    return PdfDiscrete(static_cast<float>(count * (far * static_cast<double>(within.value))));
+  }
+
+  // As many samples as there are clusters and lights at infinity that matter, as it seems from here: where one makes
+  // nearly all of the light, a second sample says little.
+  [[gnu::noinline]] int CountFor(const typename Search::Cut& cut, double far) const {
+    if (MostSamples() == 1) return 1;
+    const double ofFar = farTable_.IsZero() ? 0 : far * far / static_cast<double>(farTable_.Size());
+    const double squares = ofFar + (1 - far) * (1 - far) * cut.Concentration();
+    return std::clamp(static_cast<int>(std::lround(1 / std::max(squares, 1e-3))), 1, MostSamples());
   }
 
   static float FarIrradiance(const PlacedLight& placed, const BoundingSphere& scene) {

@@ -1,7 +1,5 @@
 #include "lights/services/lighting_services.h"
 
-#include "sampling/rng.h"
-
 namespace lampyr {
 
 namespace {
@@ -29,11 +27,6 @@ LightHit EscapedHit(const Point3& origin, const Vector3& direction) {
   hit.direction = direction;
   hit.position = origin;
   return hit;
-}
-
-// For a choice among many lights.
-double MoreBits(float u, const Point3& of) {
-  return WithMoreBits(u, of.x, of.y, of.z);
 }
 
 // What next-event estimation says of a delta light that a photon came from: the photon's own numbers, with the falloff
@@ -81,22 +74,20 @@ PdfArea LightingServices::EmissionDensity(const LightContext& context, uint32_t 
   return context.patch == kAnyPatch ? given : lights_[light].light->PatchProbability(patch) * given;
 }
 
-DirectSample LightingServices::GenerateSamples(const Receiver& receiver, float uSelect, const Point2& u, float time,
-                                               bool bidirectional) const {
-  const std::optional<SelectedLight> selected = selector_->Select(receiver, MoreBits(uSelect, receiver.position));
-  if (!selected) return {};
-  const PlacedLight& placed = lights_[selected->light];
-  const LightKind kind = kinds_[selected->light];
+DirectSample LightingServices::GenerateSamples(const Receiver& receiver, const SelectedLight& selected, const Point2& u,
+                                               float time, bool bidirectional) const {
+  const PlacedLight& placed = lights_[selected.light];
+  const LightKind kind = kinds_[selected.light];
   std::optional<LightTransform> moved;
-  LightContext context = Context(selected->light, time, bidirectional, moved);
+  LightContext context = Context(selected.light, time, bidirectional, moved);
   context.u = u;
-  context.patch = selected->patch;
-  DirectSample direct{selected->light,       IsDeltaKind(kind) || !placed.canBeHit,
-                      IsInfiniteKind(kind),  selected->patch,
-                      selected->probability, placed.light->GenerateSamples(context, receiver.position)};
+  context.patch = selected.patch;
+  DirectSample direct{selected.light,       IsDeltaKind(kind) || !placed.canBeHit,
+                      IsInfiniteKind(kind), selected.patch,
+                      selected.probability, placed.light->GenerateSamples(context, receiver.position)};
   if (bidirectional && direct.sample) {
     LightSample& sample = *direct.sample;
-    sample.pdfEmit = EmissionDensity(context, selected->light, sample.patchIndex, sample.pdfEmit);
+    sample.pdfEmit = EmissionDensity(context, selected.light, sample.patchIndex, sample.pdfEmit);
   }
   return direct;
 }
@@ -190,9 +181,10 @@ Color LightingServices::EscapedEmissionForCamera(const Ray& ray) const {
 
 std::optional<EmittedPhoton> LightingServices::GenerateEmission(float uSelect, const Point2& u,
                                                                 const Point2& uDirection, float time) const {
-  const std::optional<SelectedLight> selected =
-      emissionSelector_->Select({}, MoreBits(uSelect, Point3(u.x, u.y, uDirection.x)));
-  if (!selected) return std::nullopt;
+  LightChoices choices;
+  emissionSelector_->Select({}, MoreBits(uSelect, Point3(u.x, u.y, uDirection.x)), choices);
+  if (choices.count == 0) return std::nullopt;
+  const SelectedLight* selected = choices.of;
   std::optional<LightTransform> moved;
   LightContext context = Context(selected->light, time, true, moved);
   context.u = u;

@@ -12,6 +12,7 @@
 #include "lights/light.h"
 #include "lights/selection/light_learning.h"
 #include "lights/selection/light_selector.h"
+#include "sampling/rng.h"
 
 namespace lampyr {
 
@@ -23,7 +24,7 @@ struct DirectSample {
   bool isDelta = false;               // the light has no surface or directions that a BSDF ray could find
   bool isInfinite = false;            // no end of the shadow ray
   int patch = kAnyPatch;              // that was selected
-  PdfDiscrete selection;              // at the receiver
+  PdfDiscrete selection;              // at the receiver, times the number of its samples
   std::optional<LightSample> sample;  // densities without the selection
 
   explicit operator bool() const { return sample && !sample->pdfDirect.IsZero(); }
@@ -54,8 +55,15 @@ class LightingServices {
   // `geometry` must outlive the services.
   LightingServices(const GeometryScene& geometry, std::vector<PlacedLight> lights, LightSelection selection);
 
-  // Chooses a light for the receiver and a sample on it.
-  DirectSample GenerateSamples(const Receiver& receiver, float uSelect, const Point2& u, float time,
+  // Chooses lights for the receiver: one, or as many as TakeSamples lets it.
+  void SelectLights(const Receiver& receiver, float uSelect, LightChoices& choices) const {
+    selector_->Select(receiver, MoreBits(uSelect, receiver.position), choices);
+  }
+  // At most so many lights for a receiver, in [1, LightChoices::kMost]. Each sample divides by the number that is
+  // expected of its light, so that their contributions add up; densities of next-event estimation count them all.
+  void TakeSamples(int most) { selector_->TakeSamples(most); }
+  // A sample on a chosen light.
+  DirectSample GenerateSamples(const Receiver& receiver, const SelectedLight& selected, const Point2& u, float time,
                                bool bidirectional) const;
 
   // What of a sample's light arrives: 0 behind something opaque, 1 otherwise. Traces a shadow ray.
@@ -94,6 +102,8 @@ class LightingServices {
   // without the selection. Delta lights too, which it finds with the discrete density 1.
   std::optional<FoundLight> EvaluateLanding(const EmittedPhoton& photon, const Receiver& receiver) const;
 
+  // Whether next-event estimation selects patch by patch; otherwise a light's patches have the light's probability.
+  bool SelectsPatches() const { return selector_->SelectsPatches(); }
   PdfDiscrete SelectionProbability(const Receiver& receiver, uint32_t light, int patch) const;
   PdfDiscrete EmissionSelectionProbability(uint32_t light) const;
   // Whether a light has a direction only (infinite and distant lights), and whether a direction that a surface samples
@@ -110,6 +120,7 @@ class LightingServices {
   const BoundingSphere& SceneSphere() const { return sphere_; }
 
  private:
+  static double MoreBits(float u, const Point3& of) { return WithMoreBits(u, of.x, of.y, of.z); }
   // `moved` keeps the place of a light that moves, and must live as long as the context.
   LightContext Context(uint32_t light, float time, bool bidirectional, std::optional<LightTransform>& moved) const;
 

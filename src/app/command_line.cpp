@@ -65,6 +65,9 @@ void DefineSceneOptions(CLI::App& app, RenderOverrides& overrides, std::string& 
   app.add_option("--sampler", overrides.sampler, "sobol | independent");
   app.add_option("--light-sampler", overrides.lightSampler,
                  "How a light is chosen: uniform | power | tree (default) | exhaustive");
+  app.add_option("--light-samples", overrides.lightSamples,
+                 "Lights to choose at each vertex, at most; fewer where few matter (1)")
+      ->check(CLI::Range(1, LightChoices::kMost));
   app.add_flag("--learn-lights,!--no-learn-lights", overrides.learnLights,
                "Let the light tree learn which lights are occluded where (off)");
 }

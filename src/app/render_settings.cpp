@@ -271,6 +271,7 @@ void ReadIntegrator(const SceneDescription& scene, const RenderOverrides& overri
                        "\" is not one of: uniform, power, tree, exhaustive");
     settings.lightSelection = *selection;
   }
+  if (overrides.lightSamples) settings.lightSamples = *overrides.lightSamples;
   if (overrides.learnLights) settings.learnLights = *overrides.learnLights;
   // Parameters of integrators that stand back for "path" are not looked at.
   if (isKnown) {

@@ -23,6 +23,7 @@ struct RenderOverrides {
   std::optional<std::string> sampler;
   std::optional<std::string> lightSampler;
   std::optional<bool> learnLights;
+  std::optional<int> lightSamples;
   uint64_t seed = 0;
 };
 
@@ -36,6 +37,7 @@ struct RenderSettings {
   int samplesPerPixel = 16;
   uint64_t seed = 0;
   LightSelection lightSelection = LightSelection::Tree;
+  int lightSamples = 1;      // lights that next-event estimation chooses at a vertex, at most
   bool learnLights = false;  // selection learns from shadow rays (light_learning.h)
   bool halfPrecision = false;
   float imagingRatio = 1;  // exposure time · ISO / 100: film value of radiance 1

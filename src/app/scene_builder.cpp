@@ -438,6 +438,7 @@ BuiltScene Builder::Build() {
   scene.geometry = std::make_unique<GeometryScene>(std::move(geometry_));
   scene.lighting =
       std::make_unique<LightingServices>(*scene.geometry, std::move(lights_), built_.settings.lightSelection);
+  scene.lighting->TakeSamples(built_.settings.lightSamples);
   if (!scene.lighting->HasLights()) diagnostics_.Warn("the scene has no light: the image will be black");
   return std::move(built_);
 }

@@ -63,11 +63,16 @@ float BrightestPhoton(const RenderScene& scene) {
 float DirectLight(const RenderScene& scene, const Vertex& vertex, Sampler& sampler) {
   const Normal3 Ns = vertex.bsdf.ShadingFrame().z;
   const Receiver receiver{vertex.point.position, glm::dot(Ns, vertex.wo) < 0 ? -Ns : Ns, true};
-  const float uSelect = sampler.Get1D();
-  const DirectSample direct = scene.lighting->GenerateSamples(receiver, uSelect, sampler.Get2D(), 0, false);
-  if (!direct || direct.isDelta) return 0;
-  const float radiance = Brighter(direct.sample->diffuse, direct.sample->specular);
-  return scene.lighting->Transmission(vertex.point, direct, 0).IsBlack() ? 0.0f : radiance;
+  LightChoices lights;
+  scene.lighting->SelectLights(receiver, sampler.Get1D(), lights);
+  const Point2 u = sampler.Get2D();
+  float brightest = 0;
+  for (int i = 0; i < lights.count; ++i) {
+    const DirectSample direct = scene.lighting->GenerateSamples(receiver, lights.of[i], MovedPoint(u, i), 0, false);
+    if (!direct || direct.isDelta || scene.lighting->Transmission(vertex.point, direct, 0).IsBlack()) continue;
+    brightest = std::max(brightest, Brighter(direct.sample->diffuse, direct.sample->specular));
+  }
+  return brightest;
 }
 
 float BrightestFromCamera(const RenderScene& scene, const RenderSettings& settings) {

@@ -40,6 +40,15 @@ inline double WithMoreBits(float u, float a, float b, float c) {
   return static_cast<double>(u) + 0x1p-52 * static_cast<double>(hash >> 36);
 }
 
+// A point of [0,1)² for the k-th of several samples that share one random point: moved along the additive recurrence
+// with the least discrepancy known in two dimensions ([Roberts18]); the 0th is the point itself.
+inline Point2 MovedPoint(const Point2& u, int k) {
+  if (k == 0) return u;
+  const auto step = static_cast<float>(k);
+  const Point2 moved(u.x + 0.75487766f * step, u.y + 0.56984029f * step);
+  return glm::min(moved - glm::floor(moved), Point2(0x1.fffffep-1f));
+}
+
 // PCG32: a 64-bit congruential generator whose output is permuted ([ONeill14], XSH-RR). Streams are independent
 // sequences.
 class Rng {

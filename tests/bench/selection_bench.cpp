@@ -54,7 +54,7 @@ void SelectionEfficiency(benchmark::State& state, const ManyLightScene& scene, c
 const int registered = [] {
   for (const ManyLightScene& scene : kScenes) {
     for (const char* integrator : {"path", "bdpt"}) {
-      for (const char* selection : {"power", "uniform", "tree", "learned", "exhaustive"}) {
+      for (const char* selection : {"power", "uniform", "tree", "tree4", "learned", "exhaustive"}) {
         const std::string name = std::string("selection/") + scene.name + "/" + integrator + "/" + selection;
         benchmark::RegisterBenchmark(name.c_str(),
                                      [&scene, integrator, selection](benchmark::State& state) {

@@ -86,7 +86,7 @@ Estimate ByLightSampling(const BuiltScene& built, int count) {
         ReceiverAt(*built.scene.geometry, {kHalf * (2 * u.x - 1) * 0.999f, 0, kHalf * (2 * u.y - 1) * 0.999f});
     const Receiver receiver{point.position, {0, 1, 0}, false};
     const float uSelect = rng.NextFloat();
-    const DirectSample direct = lighting.GenerateSamples(receiver, uSelect, rng.NextPoint2(), 0, false);
+    const DirectSample direct = SampleOneLight(lighting, receiver, uSelect, rng.NextPoint2(), 0, false);
     double irradiance = 0;
     if (direct && direct.sample->direction.y > 0) {
       irradiance = static_cast<double>(direct.sample->diffuse.g * direct.sample->direction.y *
@@ -139,7 +139,7 @@ std::optional<FoundLight> FindAgain(const BuiltScene& built, const EmittedPhoton
   }
   for (int i = 0; i < 64; ++i) {  // until it is this light's turn
     const float uSelect = (static_cast<float>(i) + 0.5f) / 64;
-    const DirectSample direct = lighting.GenerateSamples(receiver, uSelect, Point2(0.5f), 0, true);
+    const DirectSample direct = SampleOneLight(lighting, receiver, uSelect, Point2(0.5f), 0, true);
     if (!direct || direct.light != photon.light) continue;
     const LightSample& s = *direct.sample;
     EXPECT_GT(glm::dot(s.direction, back), 1 - 1e-5f);
@@ -203,7 +203,7 @@ TEST(LightSampling, InstancesFarAwayDoNotShadeThemselves) {
       const Point3 position = center + 4.0f * Vector3(2 * u.x - 1, 2 * u.y - 1, 2 * rng.NextFloat() - 1);
       if (glm::distance(position, center) < 0.9f) continue;
       const DirectSample direct =
-          lighting.GenerateSamples({position, {0, 1, 0}, false}, 0.5f, rng.NextPoint2(), time, false);
+          SampleOneLight(lighting, {position, {0, 1, 0}, false}, 0.5f, rng.NextPoint2(), time, false);
       if (!direct) continue;
       SurfacePoint point;
       point.position = position;

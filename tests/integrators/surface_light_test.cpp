@@ -71,7 +71,7 @@ Found ByLight(const BuiltScene& built, int count) {
   Found result;
   for (int i = 0; i < count; ++i) {
     const float time = built.scene.hasMotion ? rng.NextFloat() : 0.0f, uSelect = rng.NextFloat();
-    const DirectSample direct = lighting.GenerateSamples(kReceiver, uSelect, rng.NextPoint2(), time, false);
+    const DirectSample direct = SampleOneLight(lighting, kReceiver, uSelect, rng.NextPoint2(), time, false);
     double x = 0, arrives = 0;
     if (direct && direct.sample->direction.y > 0) {
       arrives = static_cast<double>(lighting.Transmission(ReceiverPoint(), direct, time).g);
@@ -149,7 +149,7 @@ TEST(SurfaceLight, SamplesAndHitsAreTheSamePoints) {
       Rng rng(3);
       for (int i = 0; i < 300; ++i) {
         const float time = built.scene.hasMotion ? rng.NextFloat() : 0.0f;
-        const DirectSample direct = lighting.GenerateSamples(kReceiver, 0.5f, rng.NextPoint2(), time, true);
+        const DirectSample direct = SampleOneLight(lighting, kReceiver, 0.5f, rng.NextPoint2(), time, true);
         if (!direct) continue;
         const LightSample& sample = *direct.sample;
         const Ray ray{Point3(0.0f), sample.direction, kInfinity, time};

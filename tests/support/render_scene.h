@@ -47,6 +47,15 @@ inline Rendered RenderFile(const std::filesystem::path& file, int samplesPerPixe
   return RenderDescription(ReadScene(file, diagnostics), overrides, samplesPerPixel, threads);
 }
 
+// One light chosen for the receiver, and a sample on it.
+inline DirectSample SampleOneLight(const LightingServices& lighting, const Receiver& receiver, float uSelect,
+                                   const Point2& u, float time, bool bidirectional) {
+  LightChoices choices;
+  lighting.SelectLights(receiver, uSelect, choices);
+  return choices.count == 0 ? DirectSample()
+                            : lighting.GenerateSamples(receiver, choices.of[0], u, time, bidirectional);
+}
+
 // Mean and standard error of the whole image's green channel, from the variance layer (an upper bound for stratified
 // samples).
 struct MeanValue {

@@ -20,12 +20,11 @@ struct Replicas {
   uint64_t faults = 0;  // dropped samples and rejected rays
 };
 
-inline Replicas RenderReplicas(const std::string& text, const std::string& integrator, int count, int samplesPerPixel,
-                               RenderOverrides overrides = {}) {
+inline Replicas RenderReplicas(const SceneDescription& description, const std::string& integrator, int count,
+                               int samplesPerPixel, RenderOverrides overrides = {}) {
   overrides.integrator = integrator;
   Diagnostics diagnostics(Diagnostics::Mode::Collect);
-  BuiltScene built = BuildScene(ParseScene(text, std::string(LAMPYR_SOURCE_DIR) + "/scenes/test.pbrt", diagnostics),
-                                overrides, true, diagnostics);
+  BuiltScene built = BuildScene(description, overrides, true, diagnostics);
   Replicas replicas;
   for (int i = 0; i < count; ++i) {
     built.settings.seed = overrides.seed + static_cast<uint64_t>(i);
@@ -34,6 +33,13 @@ inline Replicas RenderReplicas(const std::string& text, const std::string& integ
     replicas.faults += rendered.outcome.counts.droppedSamples + rendered.rejectedRays;
   }
   return replicas;
+}
+
+inline Replicas RenderReplicas(const std::string& text, const std::string& integrator, int count, int samplesPerPixel,
+                               RenderOverrides overrides = {}) {
+  Diagnostics diagnostics(Diagnostics::Mode::Collect);
+  return RenderReplicas(ParseScene(text, std::string(LAMPYR_SOURCE_DIR) + "/scenes/test.pbrt", diagnostics), integrator,
+                        count, samplesPerPixel, overrides);
 }
 
 struct Agreement {

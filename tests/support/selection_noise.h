@@ -27,12 +27,14 @@ struct SelectionNoise {
   double Efficiency() const { return 1 / (meanSquaredError * seconds); }
 };
 
+// `selection`: a light sampler; "learned": the tree, which learns; "tree4": the tree with four light samples.
 inline SelectionNoise MeasureSelection(const SceneDescription& description, const std::vector<bool>& mask,
                                        const std::string& integrator, const std::string& selection, int samplesPerPixel,
                                        int renders, RenderOverrides overrides = {}) {
   overrides.integrator = integrator;
   overrides.learnLights = selection == "learned";
-  overrides.lightSampler = selection == "learned" ? "tree" : selection;
+  if (selection == "tree4") overrides.lightSamples = 4;
+  overrides.lightSampler = selection == "learned" || selection == "tree4" ? "tree" : selection;
   Diagnostics diagnostics(Diagnostics::Mode::Collect);
   BuiltScene built = BuildScene(description, overrides, true, diagnostics);
   std::vector<double> sum(mask.size()), squares(mask.size());
