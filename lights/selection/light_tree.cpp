@@ -248,7 +248,7 @@ EmitterProbability LightTree::ProbabilityOf(const TreeReceiver& receiver, const 
 }
 
 size_t LightTree::Bytes() const {
-  return nodes_.capacity() * sizeof(Node) + (parents_.capacity() + slots_.capacity()) * sizeof(uint32_t);
+  return nodes_.Size() * sizeof(Node) + (parents_.capacity() + slots_.capacity()) * sizeof(uint32_t);
 }
 
 }  // namespace lampyr

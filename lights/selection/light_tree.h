@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "base/large_array.h"
 #include "lights/selection/importance.h"
 
 namespace lampyr {
@@ -60,7 +61,7 @@ class LightTree {
   void Record(LightLearning& learning, const TreeReceiver& receiver, const Cut& cut, uint32_t emitter,
               double blindShare, double importance) const;
 
-  bool IsEmpty() const { return nodes_.empty(); }
+  bool IsEmpty() const { return nodes_.Size() == 0; }
   size_t Bytes() const;
   int Depth() const { return depth_; }
 
@@ -89,7 +90,7 @@ class LightTree {
   double BlindProbability(uint32_t slot) const;
 
   // A slot is node · kWidth + child.
-  std::vector<Node> nodes_;        // the root first
+  LargeArray<Node> nodes_;         // the root first
   std::vector<uint32_t> parents_;  // of each node: its slot in the node above
   std::vector<uint32_t> slots_;    // of each emitter
   double intensity_ = 0;           // of the root's children

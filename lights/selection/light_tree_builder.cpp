@@ -221,8 +221,8 @@ void LightTreeBuilder::Emit(const Branch& branch, uint32_t parent, int depth, Li
     children[largest] = opened->left.get();
     children.push_back(opened->right.get());
   }
-  const auto index = static_cast<uint32_t>(tree.nodes_.size());
-  tree.nodes_.push_back({});
+  const auto index = static_cast<uint32_t>(nodes_.size());
+  nodes_.push_back({});
   tree.parents_.push_back(parent);
   size_t slots = children.size();
   std::sort(children.begin(), children.end(), [](const Branch* a, const Branch* b) {
@@ -235,12 +235,12 @@ void LightTreeBuilder::Emit(const Branch& branch, uint32_t parent, int depth, Li
       slots += child->count - 1;
       for (size_t i = child->first; i < child->first + child->count; ++i) {
         const uint32_t emitter = items_[i].emitter;
-        PutChild(tree.nodes_[index], slot, emitters_[emitter], LightTree::kEmitter | emitter);
+        PutChild(nodes_[index], slot, emitters_[emitter], LightTree::kEmitter | emitter);
         tree.slots_[emitter] = index * LightTree::kWidth + static_cast<uint32_t>(slot++);
       }
       continue;
     }
-    PutChild(tree.nodes_[index], slot, child->bounds, static_cast<uint32_t>(tree.nodes_.size()));
+    PutChild(nodes_[index], slot, child->bounds, static_cast<uint32_t>(nodes_.size()));
     Emit(*child, index * LightTree::kWidth + static_cast<uint32_t>(slot), depth + 1, tree);
     ++slot;
   }
@@ -253,7 +253,8 @@ void LightTreeBuilder::BuildInto(LightTree& tree) {
   root.count = items_.size();
   GrowInParallel(root);
   Emit(root, LightTree::kNone, 1, tree);
-  tree.nodes_.shrink_to_fit();
+  tree.nodes_ = LargeArray<LightTree::Node>(nodes_.size());
+  std::copy(nodes_.begin(), nodes_.end(), &tree.nodes_[0]);
   tree.parents_.shrink_to_fit();
 }
 

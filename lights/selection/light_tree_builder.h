@@ -41,6 +41,7 @@ class LightTreeBuilder {
   std::span<const ClusterBounds> emitters_;
   int threads_;
   std::vector<Item> items_;
+  std::vector<LightTree::Node> nodes_;
 };
 
 }  // namespace lampyr

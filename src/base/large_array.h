@@ -1,6 +1,8 @@
 // An array for tables of many megabytes that are read at random places.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdlib>
 #include <cstring>
 #include <memory>
@@ -26,14 +28,15 @@ class LargeArray {
     constexpr size_t kPage = size_t{2} << 20;
     const size_t bytes = (count * sizeof(T) + kPage - 1) / kPage * kPage;
     const bool isLarge = count * sizeof(T) >= kPage;
-    T* memory = static_cast<T*>(isLarge ? std::aligned_alloc(kPage, bytes) : std::calloc(count, sizeof(T)));
+    const size_t taken = isLarge ? bytes : count * sizeof(T);
+    T* memory = static_cast<T*>(
+        std::aligned_alloc(isLarge ? kPage : std::max(alignof(T), alignof(std::max_align_t)), RoundedUp(taken)));
     if (!memory) throw std::bad_alloc();
     data_.reset(memory);
-    if (!isLarge) return;
 #if defined(__linux__)
-    madvise(memory, bytes, MADV_HUGEPAGE);  // advice only: the array is there without it
+    if (isLarge) madvise(memory, bytes, MADV_HUGEPAGE);  // advice only: the array is there without it
 #endif
-    std::memset(static_cast<void*>(memory), 0, bytes);
+    std::memset(static_cast<void*>(memory), 0, taken);
   }
 
   size_t Size() const {
@@ -47,6 +50,11 @@ class LargeArray {
   }
 
  private:
+  // aligned_alloc takes whole multiples of the alignment.
+  static size_t RoundedUp(size_t bytes) {
+    constexpr size_t unit = std::max(alignof(T), alignof(std::max_align_t));
+    return (bytes + unit - 1) / unit * unit;
+  }
   struct Free {
     void operator()(T* memory) const { std::free(memory); }
   };

@@ -2,10 +2,15 @@
 // pixels that see no light directly; `gain` is it in units of what `power` has.
 #include <benchmark/benchmark.h>
 
+#include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <map>
 
+#include "sampling/rng.h"
+#include "sampling/warp.h"
 #include "support/selection_noise.h"
+#include "support/temporary_folder.h"
 
 namespace lampyr::test {
 namespace {
@@ -17,13 +22,13 @@ struct ManyLightScene {
 };
 
 const ManyLightScene kScenes[] = {
-    {"lights600", std::string(LAMPYR_SHARED_DATA) + "/peer/lights600.pbrt", 64, 512, 8},
-    {"rooms", std::string(LAMPYR_SOURCE_DIR) + "/scenes/rooms.pbrt", 64, 256, 6},
-    {"area-box", std::string(LAMPYR_SHARED_DATA) + "/peer/area-box.pbrt", 64, 64, 64},
+    {"lights600", std::string(LAMPYR_SHARED_DATA) + "/peer/lights600.pbrt", 64, 128, 12},
+    {"rooms", std::string(LAMPYR_SOURCE_DIR) + "/scenes/rooms.pbrt", 64, 64, 6},
+    {"area-box", std::string(LAMPYR_SHARED_DATA) + "/peer/area-box.pbrt", 64, 64, 16},
     {"mixed-lights", std::string(LAMPYR_SHARED_DATA) + "/peer/mixed-lights.pbrt", 64, 64, 16},
     {"gallery", std::string(LAMPYR_SOURCE_DIR) + "/scenes/gallery.pbrt", 64, 32, 16},
     {"still-life", std::string(LAMPYR_SOURCE_DIR) + "/scenes/still-life.pbrt", 64, 32, 16},
-    {"lights-1000", std::string(LAMPYR_SOURCE_DIR) + "/scenes/lights-1000.pbrt", 64, 256, 8},
+    {"lights-1000", std::string(LAMPYR_SOURCE_DIR) + "/scenes/lights-1000.pbrt", 64, 128, 8},
 };
 
 void SelectionEfficiency(benchmark::State& state, const ManyLightScene& scene, const std::string& integrator,
@@ -50,6 +55,67 @@ void SelectionEfficiency(benchmark::State& state, const ManyLightScene& scene, c
     state.counters["gain"] = noise.Efficiency() / ofPower[key].Efficiency();
   }
 }
+
+// A hall with a million small triangles under its ceiling, of which some emit, each its own way: how the cost of a
+// sample grows with the emitters alone. With the geometry: what a user sees.
+void WriteTriangles(const std::filesystem::path& file, size_t first, size_t count, size_t ofAll) {
+  std::ofstream out(file, std::ios::binary);
+  out << "ply\nformat binary_little_endian 1.0\nelement vertex " << 3 * count
+      << "\nproperty float x\nproperty float y\nproperty float z\nelement face " << count
+      << "\nproperty list uchar int vertex_indices\nend_header\n";
+  Rng rng(1, first);
+  const float size = 2 / std::sqrt(static_cast<float>(ofAll));
+  for (size_t i = 0; i < count; ++i) {
+    const Point3 p(10 * rng.NextFloat() - 5, 3 + rng.NextFloat(), 10 * rng.NextFloat() - 5);
+    for (int corner = 0; corner < 3; ++corner) {
+      const Point3 q = p + size * SampleUniformSphere(rng.NextPoint2());
+      out.write(reinterpret_cast<const char*>(&q), sizeof q);
+    }
+  }
+  for (int i = 0; i < static_cast<int>(count); ++i) {
+    const int indices[3] = {3 * i, 3 * i + 1, 3 * i + 2};
+    out.put(3);
+    out.write(reinterpret_cast<const char*>(indices), sizeof indices);
+  }
+}
+
+void CostOfASample(benchmark::State& state) {
+  const TemporaryFolder folder;
+  const auto emitters = static_cast<size_t>(state.range(0)), all = static_cast<size_t>(state.range(1));
+  WriteTriangles(folder.Path() / "emitters.ply", 0, emitters, all);
+  if (all > emitters) WriteTriangles(folder.Path() / "dark.ply", emitters, all - emitters, all);
+  std::string text = R"(LookAt 0 1.5 -4.5  0 0.5 0  0 1 0
+Camera "perspective" "float fov" 60
+Film "rgb" "integer xresolution" 128 "integer yresolution" 128
+Integrator "path" "integer maxdepth" 3
+WorldBegin
+Material "diffuse" "rgb reflectance" [0.5 0.5 0.5]
+Shape "bilinearmesh" "point3 P" [-5 0 -5  5 0 -5  -5 0 5  5 0 5]
+)";
+  if (all > emitters) text += "Shape \"plymesh\" \"string filename\" \"dark.ply\"\n";
+  text +=
+      "AreaLightSource \"diffuse\" \"rgb L\" [1 1 1] \"bool twosided\" true\n"
+      "Shape \"plymesh\" \"string filename\" \"emitters.ply\"\n";
+  Diagnostics diagnostics(Diagnostics::Mode::Collect);
+  const SceneDescription description = ParseScene(text, (folder.Path() / "scene.pbrt").string(), diagnostics);
+  const BuiltScene built = BuildScene(description, {}, true, diagnostics);
+  constexpr int samplesPerPixel = 64;
+  for (auto _ : state) {
+    const std::clock_t start = std::clock();
+    benchmark::DoNotOptimize(RenderBuilt(built, samplesPerPixel, 2).image.data.data());
+    state.SetIterationTime(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC /
+                           (128.0 * 128 * samplesPerPixel));
+  }
+}
+BENCHMARK(CostOfASample)
+    ->Name("selection/costOfASample")
+    ->ArgNames({"emitters", "triangles"})
+    ->Args({10, 1000000})
+    ->Args({1000, 1000000})
+    ->Args({1000000, 1000000})
+    ->Args({10, 10})
+    ->Iterations(3)
+    ->UseManualTime();
 
 const int registered = [] {
   for (const ManyLightScene& scene : kScenes) {
