@@ -103,6 +103,22 @@ void CheckAreaPower(const SuiteSubject& subject, const Enclosure& enclosure, con
   CheckPowerEstimate(subject, emitted, report);
 }
 
+double PatchMismatch(const SuiteSubject& subject, const LightHit& hit, const Point3& P) {
+  const Light& light = *subject.light;
+  if (light.PatchCount() < 2) return 0;
+  const auto whole = light.EvaluateSamples(subject.context, hit, P);
+  LightContext given = subject.context;
+  given.patch = hit.patchIndex;
+  const auto part = light.EvaluateSamples(given, hit, P);
+  given.patch = (hit.patchIndex + 1) % light.PatchCount();
+  const auto other = light.EvaluateSamples(given, hit, P);
+  if (!whole || !part) return whole || part ? 1 : 0;
+  if (other && !(other->pdfDirect.IsZero() && other->pdfEmit.IsZero())) return 1;
+  const auto choice = static_cast<double>(light.PatchProbability(hit.patchIndex).value);
+  return std::max(RelativeDifference(choice * Value(part->pdfDirect), Value(whole->pdfDirect)),
+                  RelativeDifference(choice * Value(part->pdfEmit), Value(whole->pdfEmit)));
+}
+
 double SolidAngleToAreaMismatch(const LightSample& sample) {
   const double cosine = std::abs(glm::dot(Vector3d(sample.normal), glm::normalize(Vector3d(sample.direction))));
   const auto distance = static_cast<double>(sample.distance);

@@ -25,6 +25,10 @@ struct Visibility {
 void CheckAreaPower(const SuiteSubject& subject, const Enclosure& enclosure, const Visibility& visibility, Rng& rng,
                     SuiteReport& report);
 
+// Of a light of several patches: how far what is found on `hit` given its patch, times the probability that the light
+// chooses that patch, is from what is found of the whole light; 1 when another patch claims it.
+double PatchMismatch(const SuiteSubject& subject, const LightHit& hit, const Point3& P);
+
 // How far a sample's solidAngleToArea is from the cosθ / d² of what it says of itself. Not for those seen edge-on.
 double SolidAngleToAreaMismatch(const LightSample& sample);
 

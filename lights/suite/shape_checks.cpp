@@ -179,10 +179,11 @@ void ShapeChecker::CheckReceiver(const Receiver& receiver) {
   const size_t count = cells_.Count();
   std::vector<double> observed(count + 1, 0.0), expected(count + 1, 0.0), errors(count + 1, 0.0);
   const bool inside = IsInside(P);
-  double consistency = 0, surface = 0, multipliers = 0;
+  double consistency = 0, surface = 0, multipliers = 0, patches = 0;
   for (int i = 0; i < options_.samples; ++i) {
     const auto sample = light_.GenerateSamples(RandomContext(subject_, rng_), P);
     if (sample && i % 4 == 0) CheckSample(*sample, P, consistency, surface);
+    if (sample && i % 16 == 0) patches = std::max(patches, PatchMismatch(subject_, HitOf(*sample, P), P));
     if (sample) multipliers = std::max(multipliers, MultiplierMismatch(subject_, *sample));
     const bool arrives = sample && Arrives(*sample, P, inside);
     ++observed[arrives ? cells_.Of(model_, sample->patchIndex, sample->position) : count];
@@ -215,6 +216,7 @@ void ShapeChecker::CheckReceiver(const Receiver& receiver) {
                          EqualMeans(fluence, {fine.fluence, 2 * std::abs(fine.fluence - coarse.fluence)}, 1e-3));
   report_.AddError(subject_.name, "consistency", where, consistency, 1e-4);
   report_.AddError(subject_.name, "multipliers", where, multipliers, 1e-5);
+  if (light_.PatchCount() > 1) report_.AddError(subject_.name, "patches", where, patches, 1e-4);
   report_.AddError(subject_.name, "surface", where, surface, 2e-3);
   report_.AddError(subject_.name, "one-sided", where, fine.leak, 0.5);
   report_.AddError(subject_.name, "camera", where, fine.camera, 1e-4);

@@ -69,8 +69,8 @@ TEST(LearnedSelectionNoise, PaysWhereMostOfTheLightIsBehindAWall) {
   const SceneDescription scene = ParseScene(TwoRooms(), "test.pbrt", diagnostics);
   const std::vector<bool> all(size_t{32} * 32, true);
   for (const char* integrator : {"path", "bdpt"}) {
-    const SelectionNoise without = MeasureSelection(scene, all, integrator, "tree", 256, 6);
-    const SelectionNoise learned = MeasureSelection(scene, all, integrator, "learned", 256, 6);
+    const SelectionNoise without = MeasureSelection(scene, all, integrator, "tree", 256, 4);
+    const SelectionNoise learned = MeasureSelection(scene, all, integrator, "learned", 256, 4);
     const double variance = learned.meanSquaredError / without.meanSquaredError;
     std::printf("%s: learned %.3f x the variance, %.2f x the time: %.1f x the efficiency\n", integrator, variance,
                 learned.seconds / without.seconds, learned.Efficiency() / without.Efficiency());

@@ -285,7 +285,7 @@ TEST_P(ManyLightScenes, AgreeWhateverSelects) {
   static std::map<std::string, Replicas> references;
   if (!references.count(one.scene)) {
     overrides.seed = 1000;
-    references[one.scene] = RenderReplicas(description, "path", 8, 256, overrides);
+    references[one.scene] = RenderReplicas(description, "path", 8, 128, overrides);
   }
   overrides.seed = 0;
   overrides.lightSampler = one.selection;
@@ -293,7 +293,7 @@ TEST_P(ManyLightScenes, AgreeWhateverSelects) {
     overrides.lightSampler = "tree";
     overrides.lightSamples = 4;
   }
-  const Replicas replicas = RenderReplicas(description, one.integrator, 8, 96, overrides);
+  const Replicas replicas = RenderReplicas(description, one.integrator, 8, 48, overrides);
   const double rate = SidakRate(1e-3, 21);
   const Agreement result = CompareReplicas(replicas, references[one.scene], 16, rate);
   std::printf("%s, %s, %s: %d blocks, largest |z| %.2f (threshold %.2f), chi2 %.1f (%.1f), bias %+.2f %% +- %.2f %%\n",
@@ -328,9 +328,9 @@ TEST(SelectionNoiseOf, TheTreeIsNearTheLimitAndFarFromPower) {
     int samplesPerPixel;
     double gain;
     bool againstAll;
-  } cases[] = {{shared, 64, 2, true},
-               {std::string(LAMPYR_SOURCE_DIR) + "/scenes/lights-1000.pbrt", 32, 1, true},
-               {std::string(LAMPYR_SOURCE_DIR) + "/scenes/rooms.pbrt", 32, 4, false}};
+  } cases[] = {{shared, 32, 2, true},
+               {std::string(LAMPYR_SOURCE_DIR) + "/scenes/lights-1000.pbrt", 16, 1, true},
+               {std::string(LAMPYR_SOURCE_DIR) + "/scenes/rooms.pbrt", 16, 4, false}};
   for (const auto& one : cases) {
     if (!std::filesystem::exists(one.file)) continue;
     Diagnostics diagnostics(Diagnostics::Mode::Collect);

@@ -207,6 +207,8 @@ TEST_F(Cli, WrongUsageExitsWithTwo) {
                                 "render scene.pbrt --crop 0,0,0,0",
                                 "render scene.pbrt --integrator magic",
                                 "render scene.pbrt --light-sampler best",
+                                "render scene.pbrt --light-samples 0",
+                                "render scene.pbrt --light-samples 17",
                                 "render scene.pbrt --sampler best",
                                 "render scene.pbrt -o out.jpg",
                                 "render scene.pbrt -o nowhere/out.exr",

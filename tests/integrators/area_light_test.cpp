@@ -172,15 +172,20 @@ TEST(AreaLight, CameraSeesThroughWhatIsNotVisible) {
 }
 
 TEST(AreaLight, PowerBeyondFloatIsLikelyAndNotImpossible) {
-  Diagnostics diagnostics(Diagnostics::Mode::Collect);
-  const BuiltScene built = BuildScene(ParseScene(kReceiver + R"(LightSource "point"
+  for (const char* selection : {"power", "tree", "exhaustive"}) {
+    Diagnostics diagnostics(Diagnostics::Mode::Collect);
+    RenderOverrides overrides;
+    overrides.lightSampler = selection;
+    const BuiltScene built = BuildScene(ParseScene(kReceiver + R"(LightSource "point"
 AreaLightSource "diffuse" "rgb L" [1e36 1e36 1e36]
 Translate 0 5000 0
 Shape "sphere" "float radius" 1000
 )",
-                                                 "test.pbrt", diagnostics),
-                                      {}, true, diagnostics);
-  EXPECT_GT(built.scene.lighting->SelectionProbability({}, 1, kAnyPatch).value, 0.9f);
+                                                   "test.pbrt", diagnostics),
+                                        overrides, true, diagnostics);
+    const Receiver receiver{built.scene.lighting->SceneSphere().center, Normal3(0.0f), false};
+    EXPECT_GT(built.scene.lighting->SelectionProbability(receiver, 1, kAnyPatch).value, 0.9f) << selection;
+  }
 }
 
 }  // namespace

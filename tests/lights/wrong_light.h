@@ -28,9 +28,10 @@ enum class Fault {
   PhotonsNotWhereTheyEmit,  // one half sends no photons, and says so
   DarkPhotonsAreNone,
   PlaceDependsOnDirection,
-  PowerOffByTwo,  // GetPowerEstimate
-  BoxTooSmall,    // of the emission bounds
-  ConeTooNarrow,  // of the emission bounds
+  PatchChoiceForgotten,  // of several patches each is said to be chosen always
+  PowerOffByTwo,         // GetPowerEstimate
+  BoxTooSmall,           // of the emission bounds
+  ConeTooNarrow,         // of the emission bounds
   EstimateIsZero,
   SegmentIsMissed,
   SegmentEndsEarly,
@@ -49,6 +50,9 @@ class WrongLight final : public ForwardingLight {
     if (Is(Fault::SegmentIsMissed)) return std::nullopt;
     if (segment && Is(Fault::SegmentEndsEarly)) segment->maxT = glm::mix(segment->minT, segment->maxT, 0.3f);
     return segment;
+  }
+  PdfDiscrete PatchProbability(int patch) const override {
+    return Is(Fault::PatchChoiceForgotten) ? PdfDiscrete(1) : Sound().PatchProbability(patch);
   }
   Color GetPowerEstimate(const LightContext& context) const override {
     return Sound().GetPowerEstimate(context) * (Is(Fault::PowerOffByTwo) ? 2.0f : 1.0f);

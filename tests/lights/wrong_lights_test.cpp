@@ -60,6 +60,7 @@ TEST(WrongLights, EveryFaultOfAnAreaLightIsFound) {
     EXPECT_TRUE(Failures("diffuse", shape, Fault::EstimateIsZero).count("estimate"));
     EXPECT_TRUE(Failures("diffuse", shape, Fault::DarkPhotonsAreNone).count("emission-origin"));
   }
+  EXPECT_TRUE(Failures("diffuse", &square, Fault::PatchChoiceForgotten).count("patches"));  // two triangles
 }
 
 TEST(WrongLights, EveryFaultAtInfinityIsFound) {

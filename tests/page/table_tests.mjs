@@ -27,8 +27,10 @@ function assertInterval(text, expected, what) {
   }
   const shown = readInterval(text);
   assert.ok(shown, `${what}: no interval in “${text}”`);
-  // Bounds are written with the value's decimals: what these can hold is what they must agree to.
-  const unit = 0.055 * Math.max(Math.abs(expected.value), expected.low < 0 ? Math.abs(expected.low) : 0);
+  // All three are written with the same decimals, those of the value or, where it may be 0, of the largest: what these
+  // can hold is what they must agree to.
+  const largest = expected.low < 0 ? Math.max(Math.abs(expected.low), Math.abs(expected.high)) : 0;
+  const unit = 0.055 * Math.max(Math.abs(expected.value), largest);
   for (const part of ['value', 'low', 'high']) {
     assert.ok(Math.abs(shown[part] - expected[part]) <= Math.max(unit, 0.055 * Math.abs(expected[part])),
       `${what}, ${part}: ${shown[part]} in “${text}”, expected ${expected[part]}`);
