@@ -147,8 +147,8 @@ class TreeSelector final : public LightSelector {
   }
 
   // How often the lights at infinity are chosen: by their irradiance against what the others are estimated to send
-  // here.
-  double FarShare(const TreeReceiver& place, double importance) const {
+  // here. One compiled function: the same bits, whoever asks.
+  [[gnu::noinline]] double FarShare(const TreeReceiver& place, double importance) const {
     if (farTable_.IsZero()) return 0;
     if (search_.IsEmpty()) return 1;
     const double near = emitters_.Irradiance(importance);
