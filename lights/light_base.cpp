@@ -8,10 +8,10 @@
 namespace lampyr {
 
 LightBase::LightBase(LightTypeFunction type, const ParameterList& parameters)
-    : type_(type), parameters_(parameters), settings_(ReadLightSettings(parameters)) {}
+    : made_(std::make_unique<const Made>(type, parameters, ReadLightSettings(parameters))) {}
 
 std::unique_ptr<Light> LightBase::Edit(const ParameterList& changes, const LightBuildContext& build) const {
-  return MakeLight(type_(), MergeParameters(parameters_, changes), build);
+  return MakeLight(made_->type(), MergeParameters(made_->parameters, changes), build);
 }
 
 std::vector<ParameterInfo> WithCommonParameters(std::vector<ParameterInfo> parameters) {

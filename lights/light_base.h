@@ -36,13 +36,17 @@ class LightBase : public Light {
  public:
   LightBase(LightTypeFunction type, const ParameterList& parameters);
 
-  const LightSettings& Settings() const final { return settings_; }
+  const LightSettings& Settings() const final { return made_->settings; }
   std::unique_ptr<Light> Edit(const ParameterList& changes, const LightBuildContext& build) const final;
 
  private:
-  LightTypeFunction type_;
-  ParameterList parameters_;
-  LightSettings settings_;
+  // Hardly ever read while rendering: kept apart, so that a light itself is small.
+  struct Made {
+    LightTypeFunction type;
+    ParameterList parameters;
+    LightSettings settings;
+  };
+  std::unique_ptr<const Made> made_;
 };
 
 // The rows that every light's parameter table ends with: name, lightGroup, cameraVisible, …

@@ -81,27 +81,32 @@ void Normalise(Emitters& emitters) {
 
 Emitters CollectEmitters(std::span<const PlacedLight> lights, const BoundingSphere& scene, int threads) {
   Emitters emitters;
+  uint32_t count = 0;
   for (uint32_t i = 0; i < lights.size(); ++i) {
-    emitters.first.push_back(static_cast<uint32_t>(emitters.lightOf.size()));
+    emitters.first.push_back(count);
     if (IsFar(lights[i])) {
       emitters.far.push_back(i);
       continue;
     }
     const int patches = lights[i].light->PatchCount();
     emitters.hasPatches |= patches > 1;
-    emitters.lightOf.insert(emitters.lightOf.end(), static_cast<size_t>(patches), i);
+    count += static_cast<uint32_t>(patches);
   }
-  emitters.first.push_back(static_cast<uint32_t>(emitters.lightOf.size()));
-  emitters.bounds.resize(emitters.lightOf.size());
+  emitters.first.push_back(count);
+  emitters.patches = LargeArray<Emitters::Patch>(count);
+  for (uint32_t light = 0; light < lights.size(); ++light) {
+    const uint32_t first = emitters.first[light], patches = emitters.first[light + 1] - first;
+    for (uint32_t i = 0; i < patches; ++i)
+      emitters.patches[first + i] = {light, patches > 1 ? static_cast<int>(i) : kAnyPatch};
+  }
+  emitters.bounds.resize(count);
   constexpr size_t kChunk = 4096;
   const auto chunks = static_cast<int>((emitters.bounds.size() + kChunk - 1) / kChunk);
   ParallelFor(chunks, threads, [&](int chunk) {
     const size_t begin = static_cast<size_t>(chunk) * kChunk;
     for (size_t e = begin; e < std::min(begin + kChunk, emitters.bounds.size()); ++e) {
-      const uint32_t light = emitters.lightOf[e];
-      const bool isWhole = lights[light].light->PatchCount() == 1;
-      const int patch = isWhole ? kAnyPatch : static_cast<int>(e - emitters.first[light]);
-      emitters.bounds[e] = BoundsOfPatch(lights[light], patch, scene);
+      const Emitters::Patch& own = emitters.patches[e];
+      emitters.bounds[e] = BoundsOfPatch(lights[own.light], own.patch, scene);
     }
   });
   Normalise(emitters);

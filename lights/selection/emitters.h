@@ -5,14 +5,20 @@
 #include <span>
 #include <vector>
 
+#include "base/large_array.h"
 #include "lights/selection/importance.h"
 
 namespace lampyr {
 
 struct Emitters {
+  // What selection gives for an emitter: read once for each choice, at a random place.
+  struct Patch {
+    uint32_t light;
+    int patch;  // kAnyPatch: the light has only one
+  };
   std::vector<ClusterBounds> bounds;  // relative to center, size and intensity below; empty of those that emit nothing
   std::vector<uint32_t> first;        // by light: its first emitter; patches follow each other. One more at the end
-  std::vector<uint32_t> lightOf;      // by emitter
+  LargeArray<Patch> patches;          // by emitter
   std::vector<uint32_t> far;          // lights without a place
   Point3 center{0.0f};
   float size = 1;           // render space units

@@ -53,11 +53,12 @@ constexpr float kSpread = 0.25f;
 }  // namespace importance
 
 // Eight lobes, number by number: what is evaluated at once (importance_lanes.h).
-struct alignas(64) LobeBlock {
+struct alignas(32) LobeBlock {
   static constexpr int kWidth = 8;
 
+  float intensity[kWidth];  // 0: nothing there
   float meanX[kWidth], meanY[kWidth], meanZ[kWidth], variance[kWidth];
-  float normalX[kWidth], normalY[kWidth], normalZ[kWidth], intensity[kWidth];  // intensity 0: nothing there
+  float normalX[kWidth], normalY[kWidth], normalZ[kWidth];
   float radius[kWidth], coneCosine[kWidth], coneReach[kWidth];
   float oneSided[kWidth];  // 1, or 0
 

@@ -65,10 +65,11 @@ class LightTree {
   size_t Bytes() const;
   int Depth() const { return depth_; }
 
-  struct Node {
+  // A choice by intensity reads `child` and the block's first row alone: together a line of the cache.
+  struct alignas(64) Node {
+    uint32_t child[kWidth];  // a node, or an emitter: see kEmitter
     LobeBlock lobes;
     alignas(32) float doubt[kWidth];  // how little a cluster's importance says, wherever it is seen from; see Look
-    uint32_t child[kWidth];           // a node, or an emitter: see kEmitter
   };
 
  private:

@@ -54,10 +54,10 @@ class TreeSelector final : public LightSelector {
     search_.Look(place, cut);
     const double far = FarShare(place, cut.irradiance);
     const int count = CountFor(cut, far);
-    const auto at = std::find(emitters_.far.begin(), emitters_.far.end(), light);
-    if (at != emitters_.far.end()) {
+    const std::optional<uint32_t> at = FarIndexOf(light);
+    if (at) {
       if (farTable_.IsZero()) return PdfDiscrete(0);
-      return FarExpected(farTable_.Probability(static_cast<uint32_t>(at - emitters_.far.begin())), far, count);
+      return FarExpected(farTable_.Probability(*at), far, count);
     }
     if (search_.IsEmpty()) return PdfDiscrete(0);
     const std::optional<uint32_t> emitter = EmitterOf(light, patch);
@@ -69,9 +69,9 @@ class TreeSelector final : public LightSelector {
   void Record(const Receiver& receiver, uint32_t light, int patch, double irradiance) const override {
     if (!learning_) return;
     const TreeReceiver place = Place(receiver);
-    const auto at = std::find(emitters_.far.begin(), emitters_.far.end(), light);
-    if (at != emitters_.far.end()) {
-      const float within = farTable_.Probability(static_cast<uint32_t>(at - emitters_.far.begin())).value;
+    const std::optional<uint32_t> at = FarIndexOf(light);
+    if (at) {
+      const float within = farTable_.Probability(*at).value;
       if (farIrradiance_ > 0)
         learning_->Record(place.region, LightTree::kNone, 0, irradiance / static_cast<double>(within) / farIrradiance_);
       return;
@@ -86,9 +86,11 @@ class TreeSelector final : public LightSelector {
   }
 
  private:
-  int PatchOf(uint32_t light, uint32_t emitter) const {
-    const uint32_t first = emitters_.first[light];
-    return emitters_.first[light + 1] - first > 1 ? static_cast<int>(emitter - first) : kAnyPatch;
+  // In emitters_.far, which is in the lights' order.
+  std::optional<uint32_t> FarIndexOf(uint32_t light) const {
+    const auto at = std::lower_bound(emitters_.far.begin(), emitters_.far.end(), light);
+    if (at == emitters_.far.end() || *at != light) return std::nullopt;
+    return static_cast<uint32_t>(at - emitters_.far.begin());
   }
 
   std::optional<uint32_t> EmitterOf(uint32_t light, int patch) const {
@@ -116,8 +118,8 @@ class TreeSelector final : public LightSelector {
     const bool blindly = x < kBlind;
     x = blindly ? x / kBlind : (x - kBlind) / (1 - kBlind);
     const EmitterChoice choice = search_.Select(place, cut, std::min(x, 0x1.fffffffffffffp-1), blindly);
-    const uint32_t light = emitters_.lightOf[choice.emitter];
-    return {light, PatchOf(light, choice.emitter), Expected(choice.probability, far, count),
+    const Emitters::Patch& own = emitters_.patches[choice.emitter];
+    return {own.light, own.patch, Expected(choice.probability, far, count),
             static_cast<float>(std::min(choice.u, 0x1.fffffep-1))};
   }
 

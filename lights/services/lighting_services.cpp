@@ -49,9 +49,12 @@ LightEvaluation DeltaLanding(const EmissionSample& emission, LightKind kind, flo
 LightingServices::LightingServices(const GeometryScene& geometry, std::vector<PlacedLight> lights,
                                    LightSelection selection)
     : geometry_(geometry), lights_(std::move(lights)), sphere_(geometry.GetBoundingSphere()) {
+  fronts_ = LargeArray<Front>(lights_.size());
   for (uint32_t i = 0; i < lights_.size(); ++i) {
-    kinds_.push_back(lights_[i].light->Kind());
-    if (kinds_.back() == LightKind::Infinite) infinite_.push_back(i);
+    const PlacedLight& placed = lights_[i];
+    fronts_[i] = {placed.light.get(), placed.light->Kind(), placed.canBeHit, placed.isInstance,
+                  placed.motion != nullptr};
+    if (fronts_[i].kind == LightKind::Infinite) infinite_.push_back(i);
   }
   selector_ = MakeLightSelector(selection, lights_, sphere_);
   emissionSelector_ = MakeEmissionSelector(lights_, sphere_);
@@ -62,7 +65,7 @@ LightContext LightingServices::Context(uint32_t light, float time, bool bidirect
   const PlacedLight& placed = lights_[light];
   LightContext context;
   context.transform = &placed.transform;
-  if (placed.motion) [[unlikely]]
+  if (fronts_[light].moves) [[unlikely]]
     context.transform = &moved.emplace(placed.At(time));
   context.scene = sphere_;
   context.time = time;
@@ -71,20 +74,22 @@ LightContext LightingServices::Context(uint32_t light, float time, bool bidirect
 }
 
 PdfArea LightingServices::EmissionDensity(const LightContext& context, uint32_t light, int patch, PdfArea given) const {
-  return context.patch == kAnyPatch ? given : lights_[light].light->PatchProbability(patch) * given;
+  return context.patch == kAnyPatch ? given : fronts_[light].light->PatchProbability(patch) * given;
 }
 
 DirectSample LightingServices::GenerateSamples(const Receiver& receiver, const SelectedLight& selected, const Point2& u,
                                                float time, bool bidirectional) const {
-  const PlacedLight& placed = lights_[selected.light];
-  const LightKind kind = kinds_[selected.light];
+  const Front& front = fronts_[selected.light];
   std::optional<LightTransform> moved;
   LightContext context = Context(selected.light, time, bidirectional, moved);
   context.u = u;
   context.patch = selected.patch;
-  DirectSample direct{selected.light,       IsDeltaKind(kind) || !placed.canBeHit,
-                      IsInfiniteKind(kind), selected.patch,
-                      selected.probability, placed.light->GenerateSamples(context, receiver.position)};
+  DirectSample direct{selected.light,
+                      IsDeltaKind(front.kind) || !front.canBeHit,
+                      IsInfiniteKind(front.kind),
+                      selected.patch,
+                      selected.probability,
+                      front.light->GenerateSamples(context, receiver.position)};
   if (bidirectional && direct.sample) {
     LightSample& sample = *direct.sample;
     sample.pdfEmit = EmissionDensity(context, selected.light, sample.patchIndex, sample.pdfEmit);
@@ -114,9 +119,9 @@ void LightingServices::RecordResult(const Receiver& receiver, const DirectSample
 // How far in front of a sample its own surface may be met by a ray from `from`.
 Vector3 LightingServices::ErrorOfEnd(const SurfacePoint& from, const DirectSample& direct, float time) const {
   const LightSample& sample = *direct.sample;
-  const PlacedLight& placed = lights_[direct.light];
-  if (!placed.isInstance) [[likely]]
+  if (!fronts_[direct.light].isInstance) [[likely]]
     return sample.positionError;
+  const PlacedLight& placed = lights_[direct.light];
   const LightTransform transform = placed.motion ? placed.At(time) : placed.transform;
   const Point3 reach = glm::max(glm::abs(from.position), glm::abs(sample.position));
   return sample.positionError + InstanceRayError(transform.toRender, transform.toLocal, reach);
@@ -140,7 +145,7 @@ std::optional<FoundLight> LightingServices::EvaluateSamples(const Receiver& rece
   LightContext context = Context(light, time, bidirectional, moved);
   const LightHit hit = SurfaceLightHit(direction, distance, point);
   if (selector_->SelectsPatches()) context.patch = hit.patchIndex;
-  auto evaluation = lights_[light].light->EvaluateSamples(context, hit, receiver.position);
+  auto evaluation = fronts_[light].light->EvaluateSamples(context, hit, receiver.position);
   if (!evaluation) return std::nullopt;
   if (bidirectional) evaluation->pdfEmit = EmissionDensity(context, light, hit.patchIndex, evaluation->pdfEmit);
   return FoundLight{light, selector_->Probability(receiver, light, context.patch), *evaluation};
@@ -153,7 +158,7 @@ std::optional<FoundLight> LightingServices::EvaluateEscaped(size_t i, const Rece
   const LightHit hit = EscapedHit(receiver.position, direction);
   std::optional<LightTransform> moved;
   const LightContext context = Context(light, time, bidirectional, moved);
-  const auto evaluation = lights_[light].light->EvaluateSamples(context, hit, receiver.position);
+  const auto evaluation = fronts_[light].light->EvaluateSamples(context, hit, receiver.position);
   if (!evaluation) return std::nullopt;
   return FoundLight{light, selector_->Probability(receiver, light, kAnyPatch), *evaluation};
 }
@@ -164,7 +169,7 @@ Color LightingServices::EmissionForCamera(const Vector3& direction, float distan
   if (index < 0) return Color(0.0f);
   const auto light = static_cast<uint32_t>(index);
   std::optional<LightTransform> moved;
-  return lights_[light].light->EvaluateEmissionForCamera(Context(light, time, false, moved),
+  return fronts_[light].light->EvaluateEmissionForCamera(Context(light, time, false, moved),
                                                          SurfaceLightHit(direction, distance, point));
 }
 
@@ -172,9 +177,9 @@ Color LightingServices::EscapedEmissionForCamera(const Ray& ray) const {
   Color sum;
   const LightHit hit = EscapedHit(ray.origin, ray.direction);
   for (const uint32_t light : infinite_) {
-    if (!lights_[light].light->Settings().cameraVisible) continue;
+    if (!fronts_[light].light->Settings().cameraVisible) continue;
     std::optional<LightTransform> moved;
-    sum += lights_[light].light->EvaluateEmissionForCamera(Context(light, ray.time, false, moved), hit);
+    sum += fronts_[light].light->EvaluateEmissionForCamera(Context(light, ray.time, false, moved), hit);
   }
   return sum;
 }
@@ -189,11 +194,11 @@ std::optional<EmittedPhoton> LightingServices::GenerateEmission(float uSelect, c
   LightContext context = Context(selected->light, time, true, moved);
   context.u = u;
   context.uDirection = uDirection;
-  const std::optional<EmissionSample> emission = lights_[selected->light].light->GenerateEmission(context);
+  const std::optional<EmissionSample> emission = fronts_[selected->light].light->GenerateEmission(context);
   if (!emission) return std::nullopt;
   EmittedPhoton photon{selected->light, selected->probability, *emission, std::nullopt, {}, false};
-  const bool fromSurface = kinds_[selected->light] == LightKind::Area;
-  photon.fromSurface = fromSurface && lights_[selected->light].canBeHit;
+  const bool fromSurface = fronts_[selected->light].kind == LightKind::Area;
+  photon.fromSurface = fromSurface && fronts_[selected->light].canBeHit;
   photon.ray.origin =
       fromSurface ? OffsetRayOrigin(emission->position, emission->positionError, emission->normal, emission->direction)
                   : emission->position;
@@ -221,7 +226,7 @@ bool LightingServices::IsOrigin(const EmittedPhoton& photon, const SurfacePoint&
 std::optional<FoundLight> LightingServices::EvaluateLanding(const EmittedPhoton& photon,
                                                             const Receiver& receiver) const {
   const EmissionSample& emission = photon.emission;
-  const LightKind kind = kinds_[photon.light];
+  const LightKind kind = fronts_[photon.light].kind;
   std::optional<LightTransform> moved;
   LightContext context = Context(photon.light, photon.ray.time, true, moved);
   if (selector_->SelectsPatches()) context.patch = emission.patchIndex;
@@ -239,7 +244,7 @@ std::optional<FoundLight> LightingServices::EvaluateLanding(const EmittedPhoton&
     hit.uv = Point2(emission.uvw.x, emission.uvw.y);
     hit.patchIndex = emission.patchIndex;
   }
-  auto evaluation = lights_[photon.light].light->EvaluateSamples(context, hit, receiver.position);
+  auto evaluation = fronts_[photon.light].light->EvaluateSamples(context, hit, receiver.position);
   if (!evaluation) return std::nullopt;
   evaluation->pdfEmit = EmissionDensity(context, photon.light, hit.patchIndex, evaluation->pdfEmit);
   return FoundLight{photon.light, selection, *evaluation};

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/large_array.h"
 #include "geometry/geometry_scene.h"
 #include "geometry/robust.h"
 #include "lights/light.h"
@@ -109,10 +110,11 @@ class LightingServices {
   // Whether a light has a direction only (infinite and distant lights), and whether a direction that a surface samples
   // can find it.
   bool IsAtInfinity(uint32_t light) const {
-    return kinds_[light] == LightKind::Infinite || kinds_[light] == LightKind::DeltaDirection;
+    return fronts_[light].kind == LightKind::Infinite || fronts_[light].kind == LightKind::DeltaDirection;
   }
   bool CanBeHit(uint32_t light) const {
-    return kinds_[light] == LightKind::Infinite || (kinds_[light] == LightKind::Area && lights_[light].canBeHit);
+    return fronts_[light].kind == LightKind::Infinite ||
+           (fronts_[light].kind == LightKind::Area && fronts_[light].canBeHit);
   }
 
   bool HasLights() const { return !lights_.empty(); }
@@ -131,7 +133,13 @@ class LightingServices {
 
   const GeometryScene& geometry_;
   std::vector<PlacedLight> lights_;
-  std::vector<LightKind> kinds_;
+  // What every question about a light begins with: read at random places among all of them.
+  struct Front {
+    const Light* light;
+    LightKind kind;
+    bool canBeHit, isInstance, moves;
+  };
+  LargeArray<Front> fronts_;
   std::vector<uint32_t> infinite_;
   BoundingSphere sphere_;
   std::unique_ptr<LightSelector> selector_, emissionSelector_;

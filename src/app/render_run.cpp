@@ -197,13 +197,31 @@ void ProgressiveRender::AddPass(uint32_t first, uint32_t count) {
       integrator_);
 }
 
+namespace {
+
+// Selection learns while this lives, whatever ends a pass.
+class LearnedSelection {
+ public:
+  LearnedSelection(LightingServices& lighting, LightLearning* learning) : lighting_(lighting) {
+    lighting_.Use(learning);
+  }
+  ~LearnedSelection() { lighting_.Use(nullptr); }
+  LearnedSelection(const LearnedSelection&) = delete;
+  LearnedSelection& operator=(const LearnedSelection&) = delete;
+
+ private:
+  LightingServices& lighting_;
+};
+
+}  // namespace
+
 void ProgressiveRender::AddSamples(int count) {
   // By then most of what can be learned has been.
   constexpr uint32_t lastLearned = 64;
   const Clock clock;
   auto first = static_cast<uint32_t>(outcome_.samplesPerPixel);
   const uint32_t end = first + static_cast<uint32_t>(count);
-  scene_.lighting->Use(learning_.get());
+  const LearnedSelection selection(*scene_.lighting, learning_.get());
   while (first < end) {
     const uint32_t milestone = std::bit_ceil(first + 1);
     const bool learns = learning_ && learning_->IsRecording();
@@ -214,7 +232,6 @@ void ProgressiveRender::AddSamples(int count) {
     learning_->Freeze();
     if (first >= lastLearned) learning_->StopRecording();
   }
-  scene_.lighting->Use(nullptr);
   outcome_.samplesPerPixel += count;
   outcome_.seconds += clock.Seconds();
 }

@@ -79,25 +79,9 @@ void WriteTriangles(const std::filesystem::path& file, size_t first, size_t coun
   }
 }
 
-void CostOfASample(benchmark::State& state) {
-  const TemporaryFolder folder;
-  const auto emitters = static_cast<size_t>(state.range(0)), all = static_cast<size_t>(state.range(1));
-  WriteTriangles(folder.Path() / "emitters.ply", 0, emitters, all);
-  if (all > emitters) WriteTriangles(folder.Path() / "dark.ply", emitters, all - emitters, all);
-  std::string text = R"(LookAt 0 1.5 -4.5  0 0.5 0  0 1 0
-Camera "perspective" "float fov" 60
-Film "rgb" "integer xresolution" 128 "integer yresolution" 128
-Integrator "path" "integer maxdepth" 3
-WorldBegin
-Material "diffuse" "rgb reflectance" [0.5 0.5 0.5]
-Shape "bilinearmesh" "point3 P" [-5 0 -5  5 0 -5  -5 0 5  5 0 5]
-)";
-  if (all > emitters) text += "Shape \"plymesh\" \"string filename\" \"dark.ply\"\n";
-  text +=
-      "AreaLightSource \"diffuse\" \"rgb L\" [1 1 1] \"bool twosided\" true\n"
-      "Shape \"plymesh\" \"string filename\" \"emitters.ply\"\n";
+void TimeSamples(benchmark::State& state, const std::string& text, const std::filesystem::path& folder) {
   Diagnostics diagnostics(Diagnostics::Mode::Collect);
-  const SceneDescription description = ParseScene(text, (folder.Path() / "scene.pbrt").string(), diagnostics);
+  const SceneDescription description = ParseScene(text, (folder / "scene.pbrt").string(), diagnostics);
   const BuiltScene built = BuildScene(description, {}, true, diagnostics);
   constexpr int samplesPerPixel = 64;
   for (auto _ : state) {
@@ -107,6 +91,43 @@ Shape "bilinearmesh" "point3 P" [-5 0 -5  5 0 -5  -5 0 5  5 0 5]
                            (128.0 * 128 * samplesPerPixel));
   }
 }
+
+constexpr const char* kHall = R"(LookAt 0 1.5 -4.5  0 0.5 0  0 1 0
+Camera "perspective" "float fov" 60
+Film "rgb" "integer xresolution" 128 "integer yresolution" 128
+Integrator "path" "integer maxdepth" 3
+WorldBegin
+Material "diffuse" "rgb reflectance" [0.5 0.5 0.5]
+Shape "bilinearmesh" "point3 P" [-5 0 -5  5 0 -5  -5 0 5  5 0 5]
+)";
+
+void CostOfASample(benchmark::State& state) {
+  const TemporaryFolder folder;
+  const auto emitters = static_cast<size_t>(state.range(0)), all = static_cast<size_t>(state.range(1));
+  WriteTriangles(folder.Path() / "emitters.ply", 0, emitters, all);
+  if (all > emitters) WriteTriangles(folder.Path() / "dark.ply", emitters, all - emitters, all);
+  std::string text = kHall;
+  if (all > emitters) text += "Shape \"plymesh\" \"string filename\" \"dark.ply\"\n";
+  text +=
+      "AreaLightSource \"diffuse\" \"rgb L\" [1 1 1] \"bool twosided\" true\n"
+      "Shape \"plymesh\" \"string filename\" \"emitters.ply\"\n";
+  TimeSamples(state, text, folder.Path());
+}
+
+// The same hall without triangles, lit by points: where rays cost least, and lights are all there is.
+void CostOfASampleOfPoints(benchmark::State& state) {
+  const TemporaryFolder folder;
+  std::string text = kHall;
+  Rng rng(1);
+  const std::string intensity = std::to_string(1e3 / static_cast<double>(state.range(0)));
+  for (int64_t i = 0; i < state.range(0); ++i) {
+    text += "LightSource \"point\" \"rgb I\" [" + intensity + " " + intensity + " " + intensity + "] \"point3 from\" [";
+    for (const float x : {10 * rng.NextFloat() - 5, 3 + rng.NextFloat(), 10 * rng.NextFloat() - 5})
+      text += std::to_string(x) + " ";
+    text += "]\n";
+  }
+  TimeSamples(state, text, folder.Path());
+}
 BENCHMARK(CostOfASample)
     ->Name("selection/costOfASample")
     ->ArgNames({"emitters", "triangles"})
@@ -114,6 +135,14 @@ BENCHMARK(CostOfASample)
     ->Args({1000, 1000000})
     ->Args({1000000, 1000000})
     ->Args({10, 10})
+    ->Iterations(3)
+    ->UseManualTime();
+
+BENCHMARK(CostOfASampleOfPoints)
+    ->Name("selection/costOfASampleOfPoints")
+    ->Arg(10)
+    ->Arg(1000)
+    ->Arg(1000000)
     ->Iterations(3)
     ->UseManualTime();
 
