@@ -6,6 +6,7 @@ RenderCounts& RenderCounts::operator+=(const RenderCounts& other) {
   cameraRays += other.cameraRays;
   indirectRays += other.indirectRays;
   shadowRays += other.shadowRays;
+  lookups += other.lookups;
   droppedSamples += other.droppedSamples;
   return *this;
 }

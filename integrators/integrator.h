@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "camera/camera.h"
@@ -25,12 +26,15 @@ struct RenderScene {
 };
 
 class PathObserver;  // integrators/bdpt/bdpt_path.h
+class PhotonList;    // integrators/common/photon.h
+struct PhotonPass;   // integrators/common/photon_pass.h
 
 // Kept per tile of work and summed afterwards: no thread shares one.
 struct RenderCounts {
   uint64_t cameraRays = 0;
   uint64_t indirectRays = 0;
   uint64_t shadowRays = 0;
+  uint64_t lookups = 0;         // of photons
   uint64_t droppedSamples = 0;  // NaN, infinite or negative: a defect, counted and reported
 
   RenderCounts& operator+=(const RenderCounts& other);
@@ -78,16 +82,31 @@ class LightPathIntegrator {
   virtual void TracePath(float time, Sampler& sampler, SplatList& splats, RenderCounts& counts) const = 0;
 };
 
+// How an integrator that gathers photons wants them.
+struct PhotonSettings {
+  double radius = 0;      // of the first pass, scene units; 0: chosen by the integrator
+  double alpha = 2. / 3;  // how fast the radius shrinks: as pass^((alpha - 1) / 2); 1: never
+};
+
+// Where a sample goes, besides what it returns, and what it may use.
+struct SampleSinks {
+  SplatList& splats;
+  RenderCounts& counts;
+  PathObserver* observer = nullptr;    // is told of all that the sample is made of
+  const PhotonPass* gather = nullptr;  // the photons that may be used; null: none yet
+  PhotonList* photons = nullptr;       // where those of this sample's light path go; null: nobody wants them
+};
+
 // An integrator that follows a path from the camera and one from a light together. Stateless: any thread may call it.
 class BidirectionalIntegrator {
  public:
   virtual ~BidirectionalIntegrator() = default;
   // One sample of the radiance along `ray`, and splats of the light path wherever the camera sees it; one light path is
-  // traced per sample of each pixel of the full image. Without a ray (null: the pixel is not wanted) only splats.
-  // `time` is that of both paths.
-  // `observer`, if any, is told of all that the sample is made of.
-  virtual Color Sample(const Ray* ray, float time, Sampler& sampler, SplatList& splats, RenderCounts& counts,
-                       PathObserver* observer) const = 0;
+  // traced per sample of each pixel of the full image. Without a ray (null: the pixel is not wanted) only splats and
+  // photons. `time` is that of both paths.
+  virtual Color Sample(const Ray* ray, float time, Sampler& sampler, const SampleSinks& sinks) const = 0;
+  // Of an integrator that uses photons; nullopt: it does not.
+  virtual std::optional<PhotonSettings> Photons() const { return std::nullopt; }
 };
 
 }  // namespace lampyr

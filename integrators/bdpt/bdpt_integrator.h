@@ -13,6 +13,7 @@
 #include <memory>
 
 #include "integrators/bdpt/bdpt_path.h"
+#include "integrators/common/photon_pass.h"
 #include "integrators/integrator.h"
 
 namespace lampyr {
@@ -20,6 +21,8 @@ namespace lampyr {
 struct BdptSettings {
   int maxDepth = 5;       // scattering events
   double filmPixels = 1;  // of the full image: light paths per sample of a pixel
+  bool merges = false;    // vertex merging as well
+  PhotonSettings photons;
 };
 
 // `scene` must outlive the integrator.

@@ -30,6 +30,7 @@ FullPath Unfold(const ConnectedPath& path) {
   FullPath full;
   full.end = path.end;
   full.technique = path.s;
+  full.mergesPerDensity = path.mergesPerDensity;
   full.fromLight.assign(n + 2, 0.0);
   full.fromCamera.assign(n + 2, 0.0);
   full.isDelta.assign(n + 2, false);
@@ -80,6 +81,13 @@ std::vector<double> WeightsByDensities(const FullPath& path) {
     for (int i = s; i <= n; ++i) density *= path.fromCamera[static_cast<size_t>(i)];
     densities[static_cast<size_t>(s)] = density;
   }
+  for (int i = 1; i <= n; ++i) {
+    if (!path.CanMerge(i)) continue;
+    long double density = path.end.emission * path.mergesPerDensity;
+    for (int k = 2; k <= i; ++k) density *= path.fromLight[static_cast<size_t>(k)];
+    for (int k = i; k <= n; ++k) density *= path.fromCamera[static_cast<size_t>(k)];
+    densities[static_cast<size_t>(n + 1 + i)] = density;
+  }
   long double sum = 0;
   for (const long double density : densities) sum += density * density;
   std::vector<double> weights;
@@ -93,6 +101,8 @@ std::vector<double> WeightsByRecursion(const FullPath& path) {
   const auto B = [&](int i) { return path.fromCamera[static_cast<size_t>(i)]; };
   const auto isDelta = [&](int i) { return static_cast<bool>(path.isDelta[static_cast<size_t>(i)]); };
   const LightEnd& end = path.end;
+  const double merge = Mis(path.mergesPerDensity);
+  const auto mergeAt = [&](int i) { return path.CanMerge(i) ? merge : 0.0; };
   std::vector<double> weights(static_cast<size_t>(path.TechniqueCount()), 0.0);
   if (n == 0) {
     const double ratio = Mis(end.position / B(0));
@@ -103,29 +113,38 @@ std::vector<double> WeightsByRecursion(const FullPath& path) {
   // Of vertex i as the end of either subpath.
   std::vector<PartialWeight> light(static_cast<size_t>(n) + 1), camera(static_cast<size_t>(n) + 1);
   const double perEmission = 1 / Mis(end.emission);
-  light[1] = {Mis(end.direct) * perEmission, end.canBeHit ? perEmission : 0.0};
+  light[1] = {Mis(end.direct) * perEmission, end.canBeHit ? perEmission : 0.0, 0.0};
   for (int i = 2; i <= n; ++i)
-    light[static_cast<size_t>(i)] = light[static_cast<size_t>(i - 1)].Next(isDelta(i - 1), F(i), B(i - 2));
-  camera[static_cast<size_t>(n)] = {path.lensSeesIt ? 1 / Mis(B(n)) : 0.0, 0.0};
+    light[static_cast<size_t>(i)] =
+        light[static_cast<size_t>(i - 1)].Next(isDelta(i - 1), path.CanMerge(i - 1), F(i), B(i - 2));
+  camera[static_cast<size_t>(n)] = {path.lensSeesIt ? 1 / Mis(B(n)) : 0.0, 0.0, 0.0};
   for (int i = n - 1; i >= 1; --i) {
     const double reverse = i + 2 <= n ? F(i + 2) : 0.0;
-    camera[static_cast<size_t>(i)] = camera[static_cast<size_t>(i + 1)].Next(isDelta(i + 1), B(i), reverse);
+    camera[static_cast<size_t>(i)] =
+        camera[static_cast<size_t>(i + 1)].Next(isDelta(i + 1), path.CanMerge(i + 1), B(i), reverse);
   }
   for (int s = 0; s <= n + 1; ++s) {
     if (s == 0 && !end.canBeHit) continue;
     if ((s > 1 && isDelta(s - 1)) || (s > 0 && s <= n && isDelta(s)) || (s == n + 1 && !path.lensSeesIt)) continue;
     double others;
     if (s == 0) {
-      const PartialWeight atLight = camera[1].Next(isDelta(1), B(0), n > 1 ? F(2) : 0.0);
-      others = (isDelta(1) ? 0.0 : Mis(end.direct / B(0))) + Mis(end.emission) * atLight.earlier;
+      const PartialWeight atLight = camera[1].Next(isDelta(1), path.CanMerge(1), B(0), n > 1 ? F(2) : 0.0);
+      others =
+          (isDelta(1) ? 0.0 : Mis(end.direct / B(0))) + Mis(end.emission) * (atLight.earlier + merge * atLight.merging);
     } else if (s == 1) {
       const double hit = end.canBeHit ? Mis(B(0)) : 0.0;
-      others = (hit + camera[1].Sum(end.emission, n > 1 ? F(2) : 0.0)) / Mis(end.direct);
+      others = (hit + camera[1].Sum(end.emission, n > 1 ? F(2) : 0.0, mergeAt(1))) / Mis(end.direct);
     } else {
-      others = light[static_cast<size_t>(s - 1)].Sum(B(s - 1), B(s - 2));
-      if (s <= n) others += camera[static_cast<size_t>(s)].Sum(F(s), s < n ? F(s + 1) : 0.0);
+      others = light[static_cast<size_t>(s - 1)].Sum(B(s - 1), B(s - 2), mergeAt(s - 1));
+      if (s <= n) others += camera[static_cast<size_t>(s)].Sum(F(s), s < n ? F(s + 1) : 0.0, mergeAt(s));
     }
     weights[static_cast<size_t>(s)] = 1 / (1 + others);
+  }
+  for (int i = 1; i <= n; ++i) {
+    if (!path.CanMerge(i)) continue;
+    const double before = light[static_cast<size_t>(i)].BeforeReverse(B(i - 1), merge) +
+                          camera[static_cast<size_t>(i)].BeforeReverse(i < n ? F(i + 1) : 0.0, merge);
+    weights[static_cast<size_t>(n + 1 + i)] = 1 / (1 + before / merge);
   }
   return weights;
 }

@@ -16,11 +16,15 @@ struct FullPath {
   std::vector<double> fromCamera;  // [i]: of vertex i, sampled from i + 1
   std::vector<bool> isDelta;       // [i]: the event at vertex i is one
   bool lensSeesIt = true;          // a light path may reach vertex n
-  int technique = 0;               // s of the path that it was made from
+  double mergesPerDensity = 0;     // N π r²; 0: there is no merging
+  int technique = 0;               // of the path that it was made from
 
   int SurfaceCount() const { return static_cast<int>(isDelta.size()) - 2; }
-  // Techniques are s = 0 … n + 1.
-  int TechniqueCount() const { return SurfaceCount() + 2; }
+  // Techniques are s = 0 … n + 1, and merging at vertex i = 1 … n, which is technique n + 1 + i.
+  int TechniqueCount() const { return 2 * SurfaceCount() + 2; }
+  bool CanMerge(int i) const {
+    return mergesPerDensity > 0 && !isDelta[static_cast<size_t>(i)] && (i < SurfaceCount() || lensSeesIt);
+  }
 };
 
 FullPath Unfold(const ConnectedPath& path);

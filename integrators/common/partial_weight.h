@@ -9,7 +9,14 @@
 // and the weight of s is 1 / (1 + Σ_(i≠s) (p_i / p_s)^β). A vertex x_j of a light subpath knows all but the last two
 // reverse densities B_j and B_(j-1), which depend on what it is connected to:
 //   Σ_(i≤j) (p_i / p_(j+1))^β = B_j^β · (connect + B_(j-1)^β · earlier).
-// The same holds from the camera's side with F and B exchanged. Russian roulette is in no density: it is in the
+// The same holds from the camera's side with F and B exchanged.
+//
+// Merging at x_j, where a photon of any of the N light paths lies within the radius r of the camera's vertex, has the
+// density p_(j+1) · B_j · N π r² ([Georgiev12 eq. 22]): with merge = (N π r²)^β each vertex that can be merged at adds
+// the term B_j^β · merge, which the recursion carries on like the others. It is kept apart, because the radius of the
+// pass that photons are gathered in is not that of the pass in which they were traced. Without merging, merge is 0.
+//
+// Russian roulette is in no density: it is in the
 // throughput of both subpaths alone, so that weights do not depend on it.
 //
 // A delta is never connected to: the technique is not there, and the term is 0. Its two densities, discrete
@@ -30,20 +37,24 @@ inline double Mis(double ratio) {
 
 struct PartialWeight {
   double connect = 0, earlier = 0;
+  double merging = 0;  // what `merge` multiplies: of the vertices before this one
 
-  // Σ (p_i / p)^β over the techniques with fewer vertices on this side.
-  double Sum(double pdfReverse, double pdfPreviousReverse) const {
-    return Mis(pdfReverse) * BeforeReverse(pdfPreviousReverse);
+  // Σ (p_i / p)^β over the techniques with fewer vertices on this side, merging at this vertex included.
+  double Sum(double pdfReverse, double pdfPreviousReverse, double merge) const {
+    return Mis(pdfReverse) * (merge + BeforeReverse(pdfPreviousReverse, merge));
   }
-  double BeforeReverse(double pdfPreviousReverse) const { return connect + Mis(pdfPreviousReverse) * earlier; }
+  // The same without this vertex's own reverse density, and without merging at it.
+  double BeforeReverse(double pdfPreviousReverse, double merge) const {
+    return connect + Mis(pdfPreviousReverse) * (earlier + merge * merging);
+  }
 
   // Of the next vertex, whose density (area) is pdfForward, after the event at this one whose reverse density towards
-  // the previous vertex is pdfPreviousReverse (area). A delta event forbids to connect at this vertex, and over the
-  // edge to the next.
-  PartialWeight Next(bool isDelta, double pdfForward, double pdfPreviousReverse) const {
-    const double inverse = 1 / Mis(pdfForward);
-    const double before = isDelta ? Mis(pdfPreviousReverse) * earlier : BeforeReverse(pdfPreviousReverse);
-    return {isDelta ? 0.0 : inverse, before * inverse};
+  // the previous vertex is pdfPreviousReverse (area). A delta event forbids to connect at this vertex and over the edge
+  // to the next, and to merge at this vertex; so may the vertex itself.
+  PartialWeight Next(bool isDelta, bool canMerge, double pdfForward, double pdfPreviousReverse) const {
+    const double inverse = 1 / Mis(pdfForward), reverse = Mis(pdfPreviousReverse);
+    return {isDelta ? 0.0 : inverse, ((isDelta ? 0.0 : connect) + reverse * earlier) * inverse,
+            ((isDelta || !canMerge ? 0.0 : 1.0) + reverse * merging) * inverse};
   }
 };
 

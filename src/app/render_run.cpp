@@ -145,6 +145,7 @@ RenderCounts RenderPass(const RenderScene& scene, const BidirectionalIntegrator&
         RenderCounts& ofChunk = counts[static_cast<size_t>(chunk)];
         splats.Clear();
         TechniqueImages::Recorder* recorder = techniques ? &recorders[static_cast<size_t>(chunk)] : nullptr;
+        const SampleSinks sinks{splats, ofChunk, recorder};
         Sampler sampler(settings.sampler, settings.seed);
         const uint64_t begin = round + static_cast<uint64_t>(chunk) * chunkPaths;
         for (uint64_t i = begin; i < std::min(begin + chunkPaths, width * height); ++i) {
@@ -154,12 +155,12 @@ RenderCounts RenderPass(const RenderScene& scene, const BidirectionalIntegrator&
           const float time = SampleTime(scene, sampler);
           if (x < crop.x0 || x >= crop.x1 || y < crop.y0 || y >= crop.y1) {
             if (recorder) recorder->StartSample(x, y, 0);
-            integrator.Sample(nullptr, time, sampler, splats, ofChunk, recorder);
+            integrator.Sample(nullptr, time, sampler, sinks);
             continue;
           }
           const PixelRay ray = MakePixelRay(scene, filter, x, y, time, sampler);
           if (recorder) recorder->StartSample(x, y, ray.camera.weight * settings.imagingRatio * ray.filterWeight);
-          const Color radiance = integrator.Sample(&ray.camera.ray, time, sampler, splats, ofChunk, recorder);
+          const Color radiance = integrator.Sample(&ray.camera.ray, time, sampler, sinks);
           AddSample(ray, radiance, settings.imagingRatio, film.Pixel(x, y), ofChunk);
         }
       });

@@ -2,6 +2,7 @@
 
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -30,12 +31,18 @@ namespace {
 class KeptFloatSetting {
  public:
 #if defined(__x86_64__)
-  ~KeptFloatSetting() { _mm_setcsr(setting_); }
+  ~KeptFloatSetting() {
+    _mm_setcsr(setting_);
+  }
 
  private:
   unsigned setting_ = _mm_getcsr();
 #endif
 };
+
+bool IsBefore(const SortItem& a, const SortItem& b) {
+  return a.key != b.key ? a.key < b.key : a.item < b.item;
+}
 
 }  // namespace
 
@@ -59,6 +66,13 @@ void ParallelFor(int count, int threads, const std::function<void(int)>& body) {
         },
         tbb::simple_partitioner());
   });
+}
+
+void ParallelSort(std::span<SortItem> items, int threads) {
+  if (threads <= 1) return std::sort(items.begin(), items.end(), IsBefore);
+  tbb::task_arena arena(threads);
+  [[maybe_unused]] const KeptFloatSetting kept;
+  arena.execute([&] { tbb::parallel_sort(items.begin(), items.end(), IsBefore); });
 }
 
 }  // namespace lampyr

@@ -1,7 +1,9 @@
 // A parallel loop over independent items. What each item computes must not depend on which thread runs it, or when.
 #pragma once
 
+#include <cstdint>
 #include <functional>
+#include <span>
 
 namespace lampyr {
 
@@ -15,5 +17,12 @@ void FlushDenormalsToZero();
 
 // Calls body(0) … body(count - 1) on at most `threads` threads. An exception of a body is thrown here.
 void ParallelFor(int count, int threads, const std::function<void(int)>& body);
+
+// Sorts by key; equal keys by item. Where no item is twice, there is one order, whatever the threads.
+struct SortItem {
+  uint64_t key = 0;
+  uint32_t item = 0;
+};
+void ParallelSort(std::span<SortItem> items, int threads);
 
 }  // namespace lampyr

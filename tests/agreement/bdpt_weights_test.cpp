@@ -63,7 +63,7 @@ Worst CheckScene(const std::string& text, int paths) {
     const float time = built.scene.hasMotion ? sampler.Get1D() : 0.0f;
     const Point2 film(u.x * static_cast<float>(width), u.y * static_cast<float>(height));
     const CameraRay ray = built.scene.camera->GenerateRay(film, lens, time);
-    integrator->Sample(&ray.ray, time, sampler, splats, counts, &checker);
+    integrator->Sample(&ray.ray, time, sampler, {splats, counts, &checker});
   }
   return checker.Result();
 }

@@ -1,0 +1,76 @@
+#include "integrators/common/light_subpath.h"
+
+#include <algorithm>
+
+namespace lampyr {
+
+// The weight of the first vertex is that of the selection there: next-event estimation from it would have chosen this
+// light so often. False: the light does not send anything there.
+bool LightSubpathTracer::Land(const EmittedPhoton& photon, LightSubpath& path) const {
+  PathVertex& vertex = path.vertices[0];
+  const std::optional<FoundLight> found = scene_.lighting->EvaluateLanding(photon, vertex.receiver);
+  if (!found) return false;
+  const double squared = LengthSquared(Vector3d(vertex.point.position) - Vector3d(photon.emission.position));
+  const double landing = LandingFactor(*scene_.lighting, found->light, CosineAt(vertex, vertex.toPrevious), squared);
+  path.end = EndOf(*scene_.lighting, *found, scene_.lighting->CanBeHit(found->light), landing);
+  if (!(path.end.emission > 0)) return false;
+  vertex.pdfForward = path.end.emission;
+  vertex.previousPerSolidAngle = path.end.perSolidAngle;
+  const double perEmission = 1 / Mis(path.end.emission);
+  vertex.weight = {Mis(path.end.direct) * perEmission, path.end.canBeHit ? perEmission : 0.0, 0.0};
+  return true;
+}
+
+void LightSubpathTracer::Trace(float time, Sampler& sampler, RenderCounts& counts, LightSubpath& path,
+                               LightSubpathVisitor& visitor) const {
+  path.count = 0;
+  sampler.SetDimension(dimensions_.Of(0, dimensions::kLightSelection));
+  const float uSelect = sampler.Get1D();
+  const Point2 u = sampler.Get2D();
+  sampler.SetDimension(dimensions_.Of(0, dimensions::kDirection));
+  const std::optional<EmittedPhoton> photon = scene_.lighting->GenerateEmission(uSelect, u, sampler.Get2D(), time);
+  if (!photon) return;
+  if (photon->fromSurface) visitor.Emitted(*photon);
+  if (photon->IsDark()) return;
+  ++counts.indirectRays;
+  const EmissionSample& emission = photon->emission;
+  const double density = static_cast<double>(emission.pdfEmit.value) *
+                         static_cast<double>(emission.pdfEmitDirection.value) *
+                         static_cast<double>(photon->emissionSelection.value);
+  const auto inverse = static_cast<float>(static_cast<double>(emission.emissionCosine) / density);
+  Flight flight;
+  flight.ray = photon->ray;
+  flight.diffuse = emission.diffuse * inverse;
+  flight.specular = emission.specular * inverse;
+  const float emitted = std::max(flight.diffuse.Max(), flight.specular.Max());
+  if (!(emitted > 0)) return;  // less than a float can say
+
+  std::optional<RayHit> hit = photon->landing;
+  while (hit && path.count < static_cast<size_t>(maxDepth_)) {
+    const SurfacePoint point = scene_.geometry->GetSurfacePoint(flight.ray, *hit);
+    PathVertex& vertex = PlaceOf(path.vertices, path.count);
+    if (!MakeVertex(scene_, flight.ray, *hit, point, vertex)) return;
+    vertex.diffuse = flight.diffuse;
+    vertex.specular = flight.specular;
+    if (weighs_) {
+      if (path.count > 0) {
+        Follow(path.Last(), flight, vertex);
+      } else if (!Land(*photon, path)) {
+        return;
+      }
+    }
+    ++path.count;
+    visitor.Arrived(path);
+    const auto depth = static_cast<int>(path.count);
+    if (depth >= maxDepth_ ||
+        !Scatter(vertex, TransportMode::Importance, depth, dimensions_, depth, emitted, sampler, flight)) {
+      return;
+    }
+    ++counts.indirectRays;
+    RayHit next;
+    if (!scene_.geometry->Intersect(flight.ray, visibility::kIndirect, next)) return;
+    hit = next;
+  }
+}
+
+}  // namespace lampyr

@@ -1,0 +1,50 @@
+// Paths from a light: emission, the first landing, scattering from there. The one tracer of all integrators that follow
+// light.
+#pragma once
+
+#include <vector>
+
+#include "integrators/common/subpath.h"
+
+namespace lampyr {
+
+// Its memory is kept from path to path: vertices are large.
+struct LightSubpath {
+  std::vector<PathVertex> vertices;  // the first `count`
+  size_t count = 0;
+  LightEnd end;
+
+  const PathVertex& Last() const { return vertices[count - 1]; }
+};
+
+class LightSubpathVisitor {
+ public:
+  virtual ~LightSubpathVisitor() = default;
+  // The path leaves a surface that camera rays can hit.
+  virtual void Emitted(const EmittedPhoton&) {}
+  // The path has come to another vertex, its last.
+  virtual void Arrived(const LightSubpath& path) = 0;
+};
+
+class LightSubpathTracer {
+ public:
+  // `maxDepth` vertices at most. Densities and partial weights are known where `weighs`; without, only what vertices
+  // carry.
+  LightSubpathTracer(const RenderScene& scene, int maxDepth, SubpathDimensions dimensions, bool weighs)
+      : scene_(scene), maxDepth_(maxDepth), dimensions_(dimensions), weighs_(weighs) {}
+
+  void Trace(float time, Sampler& sampler, RenderCounts& counts, LightSubpath& path,
+             LightSubpathVisitor& visitor) const;
+
+  const SubpathDimensions& Dimensions() const { return dimensions_; }
+
+ private:
+  bool Land(const EmittedPhoton& photon, LightSubpath& path) const;
+
+  const RenderScene& scene_;
+  int maxDepth_;
+  SubpathDimensions dimensions_;
+  bool weighs_;
+};
+
+}  // namespace lampyr

@@ -1,0 +1,90 @@
+// Photons: what light paths leave behind at their vertices, for camera paths to find.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "integrators/common/path_vertex.h"
+
+namespace lampyr {
+
+// A unit vector in four bytes ([Cigolle14], oct16x2): off by 3e-5 at most.
+class PackedNormal {
+ public:
+  PackedNormal() = default;
+  explicit PackedNormal(const Normal3& n) {
+    const float sum = std::abs(n.x) + std::abs(n.y) + std::abs(n.z);
+    float x = n.x / sum, y = n.y / sum;
+    if (n.z < 0) {
+      const float folded = (1 - std::abs(y)) * (x < 0 ? -1.0f : 1.0f);
+      y = (1 - std::abs(x)) * (y < 0 ? -1.0f : 1.0f);
+      x = folded;
+    }
+    x_ = static_cast<int16_t>(std::lround(x * kScale));
+    y_ = static_cast<int16_t>(std::lround(y * kScale));
+  }
+  Normal3 Unpack() const {
+    Normal3 n(x_ / kScale, y_ / kScale, 0);
+    n.z = 1 - std::abs(n.x) - std::abs(n.y);
+    const float t = std::max(-n.z, 0.0f);
+    n.x += n.x >= 0 ? -t : t;
+    n.y += n.y >= 0 ? -t : t;
+    return glm::normalize(n);
+  }
+
+ private:
+  static constexpr float kScale = 32767;
+  int16_t x_ = 0, y_ = 0;
+};
+
+// A photon as its path left it: what makes one in a map, once the radius of the pass that gathers it is known.
+struct TracedPhoton {
+  Point3 position;
+  Vector3 toPrevious;
+  Color diffuse, specular;  // flux (W) over the path's density, for either kind of lobe
+  PartialWeight weight;
+  float previousPerSolidAngle;
+  PackedNormal normal;
+  int depth;  // 1: it has come straight from the light
+};
+
+// The photons of consecutive light paths. Keeps its memory when it is emptied.
+class PhotonList {
+ public:
+  void Clear() { photons_.clear(); }
+  void Add(const PathVertex& vertex, int depth) {
+    photons_.push_back({vertex.point.position, vertex.toPrevious, vertex.diffuse, vertex.specular, vertex.weight,
+                        static_cast<float>(vertex.previousPerSolidAngle), PackedNormal(vertex.bsdf.Ng()), depth});
+  }
+  const std::vector<TracedPhoton>& Photons() const { return photons_; }
+
+ private:
+  std::vector<TracedPhoton> photons_;
+};
+
+// A photon in a map, without its position.
+struct Photon {
+  Vector3 toPrevious{0.0f};         // unit
+  Color flux;                       // W over the path's density, for diffuse lobes; for specular ones see PhotonMap
+  double connect = 0, earlier = 0;  // PartialWeight, with merging in it
+  float previousPerSolidAngle = 0;
+  PackedNormal normal;  // of the surface
+  uint32_t specular = kSame;
+  uint32_t depth = 0;
+
+  static constexpr uint32_t kSame = 0xffffffffu;
+
+  // As PartialWeight: for the density (1/sr) with which a path from the camera would go on to where the photon came
+  // from.
+  double BeforeReverse(double pdfSolidAngle) const {
+    return connect + Mis(pdfSolidAngle * static_cast<double>(previousPerSolidAngle)) * earlier;
+  }
+  // Not on the other side of a thin wall, nor around a corner.
+  bool IsOnSurface(const Normal3& Ng) const {
+    constexpr float cosine = 0.8f;
+    return std::abs(glm::dot(normal.Unpack(), Ng)) > cosine;
+  }
+};
+
+}  // namespace lampyr
