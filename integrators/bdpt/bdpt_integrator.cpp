@@ -65,6 +65,7 @@ class BdptIntegrator final : public BidirectionalIntegrator {
   Color SampleLight(Run& run, const SelectedLight& light, const Point2& u) const;
   Color Connect(Run& run, size_t lightCount) const;
   Color Merge(Run& run) const;
+  static void ReportMerge(const Run& run, const Photon& photon, const Color& value, double weight);
   double CameraPerArea(const Ray& ray, float cosTheta, double distanceSquared) const;
 
   // The camera's end of a path with a camera subpath.
@@ -259,6 +260,20 @@ Color BdptIntegrator::Connect(Run& run, size_t lightCount) const {
   return Report(run, path);
 }
 
+void BdptIntegrator::ReportMerge(const Run& run, const Photon& photon, const Color& value, double weight) {
+  ConnectedPath path;
+  path.isMerged = true;
+  path.s = static_cast<int>(photon.depth) + 1;
+  path.t = static_cast<int>(run.cameraCount) + 1;
+  path.camera = run.Camera(run.cameraCount);
+  path.toLight = photon.toPrevious;
+  SetLens(run, path);
+  path.mergesPerDensity = std::sqrt(run.merge);
+  path.value = value;
+  path.weight = weight;
+  run.sinks.observer->ObserveMerge(path, photon);
+}
+
 // Photons of the last pass's light paths near the camera subpath's last vertex: each could have been its next step to
 // the light ([Georgiev12 §3]).
 Color BdptIntegrator::Merge(Run& run) const {
@@ -266,6 +281,7 @@ Color BdptIntegrator::Merge(Run& run) const {
   const PathVertex& vertex = run.paths.camera[run.cameraCount - 1];
   const auto most = static_cast<size_t>(settings_.maxDepth) + 1;
   const double perMerge = 1 / run.merge;
+  const auto perDensity = static_cast<float>(1 / std::sqrt(run.merge));
   ++run.Counts().lookups;
   Color sum;
   for (const uint32_t index : pass.map->Find(vertex.point.position, pass.radius, run.paths.lookup)) {
@@ -278,10 +294,13 @@ Color BdptIntegrator::Merge(Run& run) const {
     const double light = photon.BeforeReverse(static_cast<double>(f.pdfForward.value));
     const double camera =
         vertex.weight.BeforeReverse(static_cast<double>(f.pdfReverse.value) * vertex.previousPerSolidAngle, run.merge);
-    const auto weight = static_cast<float>(1 / (1 + (light + camera) * perMerge));
-    sum += scattered * (weight * ArrivalCorrection(vertex.bsdf, toLight));
+    const double weight = 1 / (1 + (light + camera) * perMerge);
+    const Color value = scattered * ArrivalCorrection(vertex.bsdf, toLight);
+    sum += value * static_cast<float>(weight);
+    if (run.sinks.observer) [[unlikely]]
+      ReportMerge(run, photon, value * (vertex.diffuse + vertex.specular) * perDensity, weight);
   }
-  return (vertex.diffuse + vertex.specular) * sum * static_cast<float>(1 / std::sqrt(run.merge));
+  return (vertex.diffuse + vertex.specular) * sum * perDensity;
 }
 
 Color BdptIntegrator::TraceCamera(Run& run, const Ray& cameraRay) const {

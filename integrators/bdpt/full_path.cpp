@@ -23,13 +23,16 @@ double AreaAt(const PathVertex& to, const PathVertex& from, const Vector3& direc
 
 FullPath Unfold(const ConnectedPath& path) {
   std::vector<const PathVertex*> vertices = {nullptr};
-  for (const PathVertex& vertex : path.light) vertices.push_back(&vertex);
+  // Where the subpaths merge, the vertex is the camera's; the photon's says how its own path came there.
+  const size_t ofLight = path.light.size() - (path.isMerged ? 1 : 0);
+  const PathVertex* photon = path.isMerged ? &path.light.back() : nullptr;
+  for (const PathVertex& vertex : path.light.first(ofLight)) vertices.push_back(&vertex);
   for (size_t i = path.camera.size(); i > 0; --i) vertices.push_back(&path.camera[i - 1]);
-  const size_t n = vertices.size() - 1, ofLight = path.light.size();
+  const size_t n = vertices.size() - 1;
 
   FullPath full;
   full.end = path.end;
-  full.technique = path.s;
+  full.technique = path.isMerged ? static_cast<int>(n + 1 + ofLight + 1) : path.s;
   full.mergesPerDensity = path.mergesPerDensity;
   full.fromLight.assign(n + 2, 0.0);
   full.fromCamera.assign(n + 2, 0.0);
@@ -41,6 +44,8 @@ FullPath Unfold(const ConnectedPath& path) {
     const PathVertex& vertex = *vertices[i];
     // Along the rays that were traced; the edge that joins the subpaths goes from vertex to vertex.
     const auto directionTo = [&](size_t other) {
+      if (photon && i == ofLight + 1 && other == ofLight) return photon->toPrevious;
+      if (photon && i == ofLight && other == ofLight + 1) return -photon->toPrevious;
       if (i <= ofLight && other <= ofLight) return other < i ? vertex.toPrevious : -vertices[other]->toPrevious;
       if (i > ofLight && other > ofLight) return other > i ? vertex.toPrevious : -vertices[other]->toPrevious;
       return glm::normalize(Vector3(Vector3d(vertices[other]->point.position) - Vector3d(vertex.point.position)));
@@ -48,7 +53,8 @@ FullPath Unfold(const ConnectedPath& path) {
     const Vector3 toLight = i == 1 ? path.toLight : directionTo(i - 1);
     const Vector3 toCamera = i == n ? path.toLens : directionTo(i + 1);
     // The last vertex of either subpath is joined to something else, but where the camera's has found the light.
-    const bool isLight = i <= ofLight, isLast = isLight ? i == ofLight : i == ofLight + 1 && path.s > 0;
+    const bool isLight = i <= ofLight;
+    const bool isLast = isLight ? i == ofLight && !photon : i == ofLight + 1 && path.s > 0;
     DirectionDensities densities;
     if (!isLast && vertex.scatteredDelta) {
       full.isDelta[i] = true;
@@ -60,7 +66,9 @@ FullPath Unfold(const ConnectedPath& path) {
     full.fromCamera[i - 1] =
         densities.toLight * (i == 1 ? path.end.perSolidAngle : AreaAt(*vertices[i - 1], vertex, toLight));
     if (i < n) full.fromLight[i + 1] = densities.toCamera * AreaAt(*vertices[i + 1], vertex, toCamera);
+    if (photon && i == ofLight + 1) full.fromCamera[i - 1] = densities.toLight * photon->previousPerSolidAngle;
   }
+  if (photon && ofLight > 0) full.fromLight[ofLight + 1] = photon->pdfForward;
   return full;
 }
 

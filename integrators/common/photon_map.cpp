@@ -1,9 +1,9 @@
 // The only file that includes FLANN.
 #include "integrators/common/photon_map.h"
 
-#include <flann/flann.hpp>
 #include <algorithm>
 #include <chrono>
+#include <flann/flann.hpp>
 #include <limits>
 
 #include "base/parallel.h"

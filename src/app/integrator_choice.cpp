@@ -2,21 +2,34 @@
 
 #include "base/error.h"
 #include "integrators/bdpt/bdpt_integrator.h"
+#include "integrators/common/footprint.h"
 #include "integrators/light/light_integrator.h"
 #include "integrators/path/path_integrator.h"
 
 namespace lampyr {
 
+namespace {
+
+// The radius of merging in the first pass, where the user names none: a blur no wider than that of most pixel
+// filters.
+constexpr double kRadiusInPixels = 1;
+
+}  // namespace
+
 const std::vector<std::string>& IntegratorNames() {
-  static const std::vector<std::string> names = {"path", "light", "bdpt"};
+  static const std::vector<std::string> names = {"path", "light", "bdpt", "vcm"};
   return names;
 }
 
 AnyIntegrator MakeIntegrator(const RenderScene& scene, const RenderSettings& settings) {
   if (settings.integrator == "path") return MakePathIntegrator(scene, {settings.maxDepth});
   if (settings.integrator == "light") return MakeLightIntegrator(scene, {settings.maxDepth});
-  if (settings.integrator == "bdpt") {
+  if (settings.integrator == "bdpt" || settings.integrator == "vcm") {
     BdptSettings bdpt;
+    bdpt.merges = settings.integrator == "vcm";
+    bdpt.photons = settings.photons;
+    if (bdpt.merges && bdpt.photons.radius == 0)
+      bdpt.photons.radius = kRadiusInPixels * TypicalFootprint(scene, settings.width, settings.height);
     bdpt.maxDepth = settings.maxDepth;
     bdpt.filmPixels = static_cast<double>(settings.width) * static_cast<double>(settings.height);
     return MakeBdptIntegrator(scene, bdpt);

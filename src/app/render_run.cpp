@@ -4,9 +4,11 @@
 #include <bit>
 #include <chrono>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "base/parallel.h"
+#include "sampling/rng.h"
 
 namespace lampyr {
 
@@ -14,7 +16,8 @@ namespace {
 
 constexpr int kTileSize = 16;
 constexpr uint64_t kChunkPaths = 4096;  // light paths that one thread traces before their splats are added
-constexpr int kLightPaths = -1;         // where camera samples have the row of their pixel
+constexpr uint64_t kBeforeTheFirst = 0x6a09e667f3bcc908;  // of the seed of the photons that the first pass gathers
+constexpr int kLightPaths = -1;                           // where camera samples have the row of their pixel
 
 // One time of the shutter for all of a path.
 float SampleTime(const RenderScene& scene, Sampler& sampler) {
@@ -124,53 +127,107 @@ RenderCounts RenderPass(const RenderScene& scene, const LightPathIntegrator& int
   return total;
 }
 
+namespace {
+
+// What a sweep over all pixels leaves, chunk by chunk.
+struct Sweep {
+  Sweep(int chunks, const Film& film, const PixelFilter& filter, float scale)
+      : splats(static_cast<size_t>(chunks), film.MakeSplatList(filter, scale)),
+        photons(static_cast<size_t>(chunks)),
+        counts(static_cast<size_t>(chunks)) {}
+
+  RenderCounts Total() const {
+    RenderCounts total;
+    for (const RenderCounts& part : counts) total += part;
+    return total;
+  }
+
+  std::vector<SplatList> splats;
+  std::vector<PhotonList> photons;
+  std::vector<RenderCounts> counts;
+};
+
+}  // namespace
+
 RenderCounts RenderPass(const RenderScene& scene, const BidirectionalIntegrator& integrator,
                         const RenderSettings& settings, const PixelFilter& filter, uint32_t first, uint32_t count,
-                        int threads, Film& film, TechniqueImages* techniques) {
+                        int threads, Film& film, TechniqueImages* techniques, PhotonPass* kept) {
   const auto width = static_cast<uint64_t>(settings.width), height = static_cast<uint64_t>(settings.height);
+  const uint64_t pixels = width * height;
   const PixelRect& crop = film.Crop();
   const int chunks = 4 * std::max(threads, 1);
   // A small image has work for all threads, too.
-  const uint64_t share = (width * height + static_cast<uint64_t>(chunks) - 1) / static_cast<uint64_t>(chunks);
+  const uint64_t share = (pixels + static_cast<uint64_t>(chunks) - 1) / static_cast<uint64_t>(chunks);
   const uint64_t chunkPaths = std::min(share, kChunkPaths);
-  std::vector<SplatList> lists(static_cast<size_t>(chunks), film.MakeSplatList(filter, settings.imagingRatio));
-  std::vector<RenderCounts> counts(static_cast<size_t>(chunks));
+  Sweep sweep(chunks, film, filter, settings.imagingRatio);
   std::vector<TechniqueImages::Recorder> recorders;
   if (techniques) recorders.assign(static_cast<size_t>(chunks), TechniqueImages::Recorder(*techniques, filter));
+
+  const std::optional<PhotonSettings> wanted = integrator.Photons();
+  PhotonPass here;
+  PhotonPass& gather = kept ? *kept : here;
+  // The pixels from `round` on, as many as the chunks take. Without the camera: light paths and their photons alone.
+  const auto render = [&](uint64_t round, uint32_t index, uint64_t seed, bool withCamera) {
+    ParallelFor(chunks, threads, [&](int chunk) {
+      const auto own = static_cast<size_t>(chunk);
+      SplatList& splats = sweep.splats[own];
+      RenderCounts& ofChunk = sweep.counts[own];
+      splats.Clear();
+      TechniqueImages::Recorder* recorder = techniques && withCamera ? &recorders[own] : nullptr;
+      const SampleSinks sinks{splats, ofChunk, recorder, wanted && withCamera ? &gather : nullptr,
+                              wanted ? &sweep.photons[own] : nullptr};
+      Sampler sampler(settings.sampler, seed);
+      const uint64_t begin = round + static_cast<uint64_t>(chunk) * chunkPaths;
+      for (uint64_t i = begin; i < std::min(begin + chunkPaths, pixels); ++i) {
+        const int x = static_cast<int>(i % width), y = static_cast<int>(i / width);
+        sampler.StartPixelSample(x, y, index);
+        splats.StartPath();
+        const float time = SampleTime(scene, sampler);
+        if (!withCamera || x < crop.x0 || x >= crop.x1 || y < crop.y0 || y >= crop.y1) {
+          if (recorder) recorder->StartSample(x, y, 0);
+          integrator.Sample(nullptr, time, sampler, sinks);
+          continue;
+        }
+        const PixelRay ray = MakePixelRay(scene, filter, x, y, time, sampler);
+        if (recorder) recorder->StartSample(x, y, ray.camera.weight * settings.imagingRatio * ray.filterWeight);
+        const Color radiance = integrator.Sample(&ray.camera.ray, time, sampler, sinks);
+        AddSample(ray, radiance, settings.imagingRatio, film.Pixel(x, y), ofChunk);
+      }
+    });
+  };
+  const uint64_t perRound = static_cast<uint64_t>(chunks) * chunkPaths;
+  // Photons wait in lists by round and chunk, and so in the order of their paths.
+  std::vector<PhotonList> waiting;
+  const auto keepPhotons = [&] {
+    for (PhotonList& list : sweep.photons) waiting.push_back(std::exchange(list, PhotonList()));
+  };
+  const auto startPass = [&](uint32_t pass) {
+    gather.pass = pass;
+    gather.lightPaths = static_cast<double>(pixels);
+    gather.radius = static_cast<float>(wanted->radius * RadiusScale(pass, wanted->alpha));
+    gather.map = std::make_shared<PhotonMap>(waiting, Mis(gather.MergesPerDensity()), threads);
+    waiting.clear();
+  };
+  if (wanted && (!gather.map || gather.pass != first)) {
+    // The photons that the pass before would have left; before the very first one, of light paths of their own.
+    const uint64_t seed = first == 0 ? MixBits(settings.seed + kBeforeTheFirst) : settings.seed;
+    for (uint64_t round = 0; round < pixels; round += perRound) {
+      render(round, first == 0 ? 0 : first - 1, seed, false);
+      keepPhotons();
+    }
+    startPass(first);
+  }
   // One sample of all pixels after the other: chunks never meet in a pixel, and the film adds paths in their order.
   for (uint32_t index = first; index < first + count; ++index) {
-    for (uint64_t round = 0; round < width * height; round += static_cast<uint64_t>(chunks) * chunkPaths) {
-      ParallelFor(chunks, threads, [&](int chunk) {
-        SplatList& splats = lists[static_cast<size_t>(chunk)];
-        RenderCounts& ofChunk = counts[static_cast<size_t>(chunk)];
-        splats.Clear();
-        TechniqueImages::Recorder* recorder = techniques ? &recorders[static_cast<size_t>(chunk)] : nullptr;
-        const SampleSinks sinks{splats, ofChunk, recorder};
-        Sampler sampler(settings.sampler, settings.seed);
-        const uint64_t begin = round + static_cast<uint64_t>(chunk) * chunkPaths;
-        for (uint64_t i = begin; i < std::min(begin + chunkPaths, width * height); ++i) {
-          const int x = static_cast<int>(i % width), y = static_cast<int>(i / width);
-          sampler.StartPixelSample(x, y, index);
-          splats.StartPath();
-          const float time = SampleTime(scene, sampler);
-          if (x < crop.x0 || x >= crop.x1 || y < crop.y0 || y >= crop.y1) {
-            if (recorder) recorder->StartSample(x, y, 0);
-            integrator.Sample(nullptr, time, sampler, sinks);
-            continue;
-          }
-          const PixelRay ray = MakePixelRay(scene, filter, x, y, time, sampler);
-          if (recorder) recorder->StartSample(x, y, ray.camera.weight * settings.imagingRatio * ray.filterWeight);
-          const Color radiance = integrator.Sample(&ray.camera.ray, time, sampler, sinks);
-          AddSample(ray, radiance, settings.imagingRatio, film.Pixel(x, y), ofChunk);
-        }
-      });
-      film.AddSplats(filter, lists, threads);
+    for (uint64_t round = 0; round < pixels; round += perRound) {
+      render(round, index, settings.seed, true);
+      if (wanted) keepPhotons();
+      film.AddSplats(filter, sweep.splats, threads);
       if (techniques) techniques->AddSplats(filter, recorders, threads);
     }
+    if (wanted) startPass(index + 1);
   }
-  RenderCounts total;
-  for (const RenderCounts& part : counts) total += part;
-  return total;
+  return sweep.Total();
 }
 
 ProgressiveRender::ProgressiveRender(const RenderScene& scene, const AnyIntegrator& integrator,
@@ -190,7 +247,7 @@ void ProgressiveRender::AddPass(uint32_t first, uint32_t count) {
   outcome_.counts += std::visit(
       [&]<class Chosen>(const std::unique_ptr<Chosen>& chosen) {
         if constexpr (std::is_same_v<Chosen, BidirectionalIntegrator>) {
-          return RenderPass(scene_, *chosen, settings_, filter_, first, count, threads_, film_, techniques_);
+          return RenderPass(scene_, *chosen, settings_, filter_, first, count, threads_, film_, techniques_, &photons_);
         } else {
           return RenderPass(scene_, *chosen, settings_, filter_, first, count, threads_, film_);
         }

@@ -13,6 +13,7 @@
 #include "app/render_settings.h"
 #include "app/technique_images.h"
 #include "film/film.h"
+#include "integrators/common/photon_pass.h"
 #include "integrators/integrator.h"
 
 namespace lampyr {
@@ -72,6 +73,7 @@ class ProgressiveRender {
   TechniqueImages* techniques_;
   RenderOutcome outcome_;
   std::unique_ptr<LightLearning> learning_;  // null: selection learns nothing
+  PhotonPass photons_;                       // of integrators that gather them
 };
 
 // Samples [first, first + count) of every pixel. Exposed for tests and benchmarks.
@@ -83,9 +85,11 @@ RenderCounts RenderPass(const RenderScene& scene, const LightPathIntegrator& int
                         const PixelFilter& filter, uint32_t first, uint32_t count, int threads, Film& film);
 
 // Both: a light path for each sample of each pixel of the full image, a camera path for those of the crop. What lies in
-// a crop is the same as in the whole.
+// a crop is the same as in the whole. Where the integrator gathers photons, each sample is a pass: it uses those that
+// the sample before has left. `kept` is what one call leaves to the next; without it, or where it does not continue,
+// the light paths of the sample before are traced again.
 RenderCounts RenderPass(const RenderScene& scene, const BidirectionalIntegrator& integrator,
                         const RenderSettings& settings, const PixelFilter& filter, uint32_t first, uint32_t count,
-                        int threads, Film& film, TechniqueImages* techniques = nullptr);
+                        int threads, Film& film, TechniqueImages* techniques = nullptr, PhotonPass* kept = nullptr);
 
 }  // namespace lampyr

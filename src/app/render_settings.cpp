@@ -272,6 +272,8 @@ void ReadIntegrator(const SceneDescription& scene, const RenderOverrides& overri
     settings.lightSelection = *selection;
   }
   if (overrides.lightSamples) settings.lightSamples = *overrides.lightSamples;
+  if (overrides.radius) settings.photons.radius = *overrides.radius;
+  if (overrides.alpha) settings.photons.alpha = *overrides.alpha;
   if (overrides.learnLights) settings.learnLights = *overrides.learnLights;
   // Parameters of integrators that stand back for "path" are not looked at.
   if (isKnown) {

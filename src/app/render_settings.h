@@ -7,6 +7,7 @@
 #include "camera/camera.h"
 #include "film/film.h"
 #include "film/pixel_filter.h"
+#include "integrators/integrator.h"
 #include "lights/selection/light_selector.h"
 #include "sampling/sampler.h"
 #include "scene/scene_description.h"
@@ -24,6 +25,7 @@ struct RenderOverrides {
   std::optional<std::string> lightSampler;
   std::optional<bool> learnLights;
   std::optional<int> lightSamples;
+  std::optional<double> radius, alpha;  // of photons, see PhotonSettings
   uint64_t seed = 0;
 };
 
@@ -39,6 +41,7 @@ struct RenderSettings {
   LightSelection lightSelection = LightSelection::Tree;
   int lightSamples = 1;      // lights that next-event estimation chooses at a vertex, at most
   bool learnLights = false;  // selection learns from shadow rays (light_learning.h)
+  PhotonSettings photons;
   bool halfPrecision = false;
   float imagingRatio = 1;  // exposure time · ISO / 100: film value of radiance 1
   std::string outputFile;  // as the scene names it

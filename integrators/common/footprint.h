@@ -1,0 +1,16 @@
+// How much of the scene a pixel sees: the scale that radii of photon lookups come from.
+#pragma once
+
+#include "integrators/integrator.h"
+
+namespace lampyr {
+
+// The area (square of scene units, across the ray) that a pixel of the full image sees at `distance` along a camera
+// ray. Mirrors and glass between are taken for flat.
+double PixelArea(const Camera& camera, const Ray& ray, double filmPixels, double distance);
+
+// The side of a pixel where the camera sees something that is not a delta: the median over the image, and over mirrors
+// and glass. Without anything to see, a thousandth of the scene's radius. Always the same for a scene.
+double TypicalFootprint(const RenderScene& scene, int width, int height);
+
+}  // namespace lampyr
