@@ -70,9 +70,9 @@ void DefineSceneOptions(CLI::App& app, RenderOverrides& overrides, std::string& 
       ->check(CLI::Range(1, LightChoices::kMost));
   app.add_option(
          "--radius", overrides.radius,
-         "vcm: radius within which photons are gathered in the first pass, scene units (from the size of pixels)")
+         "sppm, vcm: radius within which photons are gathered in the first pass, scene units (from the size of pixels)")
       ->check(CheckPositive, "POSITIVE");
-  app.add_option("--alpha", overrides.alpha, "vcm: how fast that radius shrinks, as pass^((alpha - 1) / 2) (2/3)")
+  app.add_option("--alpha", overrides.alpha, "sppm, vcm: how fast that radius shrinks, as pass^((alpha - 1) / 2) (2/3)")
       ->check(CLI::Range(0.0, 1.0));
   app.add_flag("--learn-lights,!--no-learn-lights", overrides.learnLights,
                "Let the light tree learn which lights are occluded where (off)");
@@ -90,7 +90,7 @@ struct RenderCommand {
     app.add_flag("--png", options.png, "Also write a tone-mapped PNG beside it");
     app.add_option("--exposure", options.exposure, "Exposure of the PNG in stops (0)")->check(CheckFinite, "");
     app.add_flag("--clip", options.clipPng, "Clip the PNG at white instead of rolling highlights off");
-    app.add_option("--integrator", overrides.integrator, "path | light | bdpt | vcm");
+    app.add_option("--integrator", overrides.integrator, "path | light | bdpt | sppm | vcm");
     app.add_option("--spp", overrides.samplesPerPixel, "Stop after this many samples per pixel")
         ->check(CLI::Range(1, 1 << 30));
     app.add_option("--time", time, "Stop after this time: 90s, 5m, 2h");

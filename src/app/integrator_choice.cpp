@@ -5,6 +5,7 @@
 #include "integrators/common/footprint.h"
 #include "integrators/light/light_integrator.h"
 #include "integrators/path/path_integrator.h"
+#include "integrators/photon/sppm_integrator.h"
 
 namespace lampyr {
 
@@ -17,7 +18,7 @@ constexpr double kRadiusInPixels = 1;
 }  // namespace
 
 const std::vector<std::string>& IntegratorNames() {
-  static const std::vector<std::string> names = {"path", "light", "bdpt", "vcm"};
+  static const std::vector<std::string> names = {"path", "light", "bdpt", "sppm", "vcm"};
   return names;
 }
 
@@ -33,6 +34,13 @@ AnyIntegrator MakeIntegrator(const RenderScene& scene, const RenderSettings& set
     bdpt.maxDepth = settings.maxDepth;
     bdpt.filmPixels = static_cast<double>(settings.width) * static_cast<double>(settings.height);
     return MakeBdptIntegrator(scene, bdpt);
+  }
+  if (settings.integrator == "sppm") {
+    SppmSettings sppm;
+    sppm.maxDepth = settings.maxDepth;
+    sppm.filmPixels = static_cast<double>(settings.width) * static_cast<double>(settings.height);
+    sppm.photons = settings.photons;
+    return MakeSppmIntegrator(scene, sppm);
   }
   throw Error("there is no integrator \"" + settings.integrator + "\"");
 }

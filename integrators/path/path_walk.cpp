@@ -1,0 +1,155 @@
+#include "integrators/path/path_walk.h"
+
+#include "integrators/common/mis.h"
+#include "integrators/common/roulette.h"
+
+namespace lampyr {
+
+// The path so far. Throughput is split by the lobe that the last direction came from, because a light may show diffuse
+// and specular lobes different radiance.
+struct PathWalk::State {
+  Ray ray;
+  Color throughputDiffuse{0.0f};
+  Color throughputSpecular{1.0f};
+  Receiver receiver;           // the last vertex: where the other technique would have sampled the light
+  PdfSolidAngle pdfDirection;  // of `ray`, by the BSDF
+  float etaScale = 1;
+  float length = 0;        // from the camera
+  int depth = 0;           // scattering events so far
+  bool fromCamera = true;  // nothing has scattered yet
+  bool fromDelta = false;  // the last event was a delta: light sampling could not have found this
+
+  Color Throughput() const { return throughputDiffuse + throughputSpecular; }
+};
+
+// Radiance of a light that the BSDF's direction found, weighted against next-event estimation.
+Color PathWalk::WeightedEmission(const State& path, const FoundLight& found) const {
+  const Color radiance =
+      path.throughputDiffuse * found.evaluation.diffuse + path.throughputSpecular * found.evaluation.specular;
+  if (path.fromDelta || !samplesLights_) return radiance;
+  return radiance * PowerHeuristic(path.pdfDirection, found.selection * found.evaluation.pdfDirect);
+}
+
+Color PathWalk::EmissionAt(const State& path, const RayHit& hit, const SurfacePoint& point) const {
+  if (path.fromCamera) {
+    return path.throughputSpecular * lighting_.EmissionForCamera(path.ray.direction, hit.t, point, path.ray.time);
+  }
+  const float distance = glm::distance(point.position, path.receiver.position);
+  const auto found =
+      lighting_.EvaluateSamples(path.receiver, path.ray.direction, distance, point, path.ray.time, false);
+  return found ? WeightedEmission(path, *found) : Color(0.0f);
+}
+
+Color PathWalk::EscapedEmission(const State& path) const {
+  if (path.fromCamera) {
+    return path.throughputSpecular * lighting_.EscapedEmissionForCamera(path.ray);
+  }
+  Color sum;
+  for (size_t i = 0; i < lighting_.InfiniteCount(); ++i) {
+    const auto found = lighting_.EvaluateEscaped(i, path.receiver, path.ray.direction, path.ray.time, false);
+    if (found) sum += WeightedEmission(path, *found);
+  }
+  return sum;
+}
+
+Color PathWalk::DirectLight(const State& path, const SurfacePoint& point, const Bsdf& bsdf, const Vector3& wo,
+                            const Receiver& receiver, Sampler& sampler, RenderCounts& counts) const {
+  sampler.SetDimension(dimensions_.Of(path.depth, dimensions::kLightSelection));
+  LightChoices lights;
+  lighting_.SelectLights(receiver, sampler.Get1D(), lights);
+  const Point2 u = sampler.Get2D();
+  Color sum;
+  for (int i = 0; i < lights.count; ++i)
+    sum += SampleLight(path, point, bsdf, wo, receiver, lights.of[i], MovedPoint(u, i), counts);
+  return sum;
+}
+
+Color PathWalk::SampleLight(const State& path, const SurfacePoint& point, const Bsdf& bsdf, const Vector3& wo,
+                            const Receiver& receiver, const SelectedLight& light, const Point2& u,
+                            RenderCounts& counts) const {
+  const DirectSample direct = lighting_.GenerateSamples(receiver, light, u, path.ray.time, false);
+  const auto nothingArrives = [&] {
+    lighting_.UpdateWithResults(receiver, direct, Color(0.0f));
+    return Color(0.0f);
+  };
+  if (!direct) return nothingArrives();
+  const LightSample& sample = *direct.sample;
+
+  const BsdfEvaluation f = bsdf.Evaluate(wo, sample.direction, TransportMode::Radiance);
+  const Color scattered = f.diffuse * sample.diffuse + f.specular * sample.specular;
+  if (scattered.IsBlack()) return nothingArrives();
+
+  const PdfSolidAngle pdf = direct.selection * sample.pdfDirect;
+  // Directions that are left to the gatherer are never followed.
+  const bool isOnly = direct.isDelta || f.pdfForward.value <= gatherBelow_;
+  const float weight = isOnly ? 1.0f : PowerHeuristic(pdf, f.pdfForward);
+  const float cosTheta = AbsDot(sample.direction, bsdf.ShadingFrame().z);
+  const Color contribution = path.Throughput() * scattered * (cosTheta * weight / pdf.value);
+  if (contribution.IsBlack()) return Color(0.0f);
+  ++counts.shadowRays;
+  const Color arrived = lighting_.Transmission(point, direct, path.ray.time);
+  lighting_.UpdateWithResults(receiver, direct, arrived);
+  return contribution * arrived;
+}
+
+// Continues the path by the BSDF and Russian roulette. False: it ends here.
+bool PathWalk::Scatter(State& path, const SurfacePoint& point, const Bsdf& bsdf, const Vector3& wo,
+                       const Receiver& receiver, Sampler& sampler) const {
+  sampler.SetDimension(dimensions_.Of(path.depth, dimensions::kLobe));
+  const float uLobe = sampler.Get1D();
+  const auto sample = bsdf.Sample(wo, uLobe, sampler.Get2D(), TransportMode::Radiance);
+  if (!sample || (!sample->isDelta && sample->pdfForward.value <= gatherBelow_)) return false;
+  const Color throughput = path.Throughput();
+  path.throughputDiffuse = throughput * sample->weightDiffuse;
+  path.throughputSpecular = throughput * sample->weightSpecular;
+  if (sample->isTransmission) path.etaScale *= Sqr(sample->eta);
+  path.pdfDirection = sample->pdfForward;
+  path.fromDelta = sample->isDelta;
+  path.fromCamera = false;
+  path.receiver = receiver;
+  path.ray = SpawnRay(point, sample->wi, path.ray.time);
+  ++path.depth;
+
+  const float survival = SurvivalProbability(path.Throughput(), path.etaScale, path.depth);
+  if (survival < 1) {
+    sampler.SetDimension(dimensions_.Of(path.depth - 1, dimensions::kRoulette));
+    if (sampler.Get1D() >= survival) return false;
+    path.throughputDiffuse /= survival;
+    path.throughputSpecular /= survival;
+  }
+  return true;
+}
+
+Color PathWalk::Radiance(const Ray& cameraRay, Sampler& sampler, RenderCounts& counts,
+                         const PhotonGatherer* gatherer) const {
+  State path;
+  path.ray = cameraRay;
+  Color radiance;
+  for (;;) {
+    ++(path.fromCamera ? counts.cameraRays : counts.indirectRays);
+    RayHit hit;
+    if (!geometry_.Intersect(path.ray, path.fromCamera ? visibility::kCamera : visibility::kIndirect, hit)) {
+      return radiance + EscapedEmission(path);
+    }
+    path.length += hit.t;
+    const SurfacePoint point = geometry_.GetSurfacePoint(path.ray, hit);
+    const GeometryAttributes& attributes = geometry_.Attributes(hit.primitive);
+    if (attributes.light >= 0) radiance += EmissionAt(path, hit, point);
+
+    const Material* material = attributes.material >= 0 ? materials_[attributes.material].get() : nullptr;
+    if (!material) return radiance;  // a black surface, such as an analytic light
+    if (path.depth >= maxDepth_) return radiance;
+
+    const Vector3 wo = -path.ray.direction;
+    const Bsdf bsdf = material->GetBsdf(point, wo);
+    const Normal3 Ns = bsdf.ShadingFrame().z;
+    const Receiver receiver{point.position, glm::dot(Ns, wo) < 0 ? -Ns : Ns, bsdf.IsTransmissive()};
+    if (!bsdf.IsDelta()) {
+      if (samplesLights_) radiance += DirectLight(path, point, bsdf, wo, receiver, sampler, counts);
+      if (gatherer) radiance += path.Throughput() * gatherer->Gather(point, bsdf, wo, path.depth + 1, path.length);
+    }
+    if (!Scatter(path, point, bsdf, wo, receiver, sampler)) return radiance;
+  }
+}
+
+}  // namespace lampyr

@@ -1,0 +1,63 @@
+// A path from the camera that looks for light at each vertex: next-event estimation and the BSDF's own directions,
+// weighted by the power heuristic. All of path tracing, and the first part of photon mapping.
+#pragma once
+
+#include "integrators/common/subpath.h"
+#include "integrators/integrator.h"
+
+namespace lampyr {
+
+// What light arrives from directions that are not followed.
+class PhotonGatherer {
+ public:
+  virtual ~PhotonGatherer() = default;
+  // Scattered towards wo, by directions whose density is not above PathWalkSettings::gatherBelow. `events` scattering
+  // events of the path so far, this one included; `length` is that of the path from the camera.
+  virtual Color Gather(const SurfacePoint& point, const Bsdf& bsdf, const Vector3& wo, int events,
+                       float length) const = 0;
+};
+
+struct PathWalkSettings {
+  int maxDepth = 5;  // scattering events
+  SubpathDimensions dimensions;
+  float gatherBelow = 0;      // 1/sr: directions of no higher density end the path; 0: all are followed
+  bool samplesLights = true;  // next-event estimation; without it, lights are found by followed directions alone
+};
+
+class PathWalk {
+ public:
+  PathWalk(const RenderScene& scene, const PathWalkSettings& settings)
+      : geometry_(*scene.geometry),
+        lighting_(*scene.lighting),
+        materials_(scene.materials),
+        maxDepth_(settings.maxDepth),
+        dimensions_(settings.dimensions),
+        gatherBelow_(settings.gatherBelow),
+        samplesLights_(settings.samplesLights) {}
+
+  // One sample of the radiance that arrives along `ray`. `gatherer` may be null where gatherBelow is 0.
+  Color Radiance(const Ray& ray, Sampler& sampler, RenderCounts& counts, const PhotonGatherer* gatherer) const;
+
+ private:
+  struct State;
+
+  Color WeightedEmission(const State& path, const FoundLight& found) const;
+  Color EmissionAt(const State& path, const RayHit& hit, const SurfacePoint& point) const;
+  Color EscapedEmission(const State& path) const;
+  Color DirectLight(const State& path, const SurfacePoint& point, const Bsdf& bsdf, const Vector3& wo,
+                    const Receiver& receiver, Sampler& sampler, RenderCounts& counts) const;
+  Color SampleLight(const State& path, const SurfacePoint& point, const Bsdf& bsdf, const Vector3& wo,
+                    const Receiver& receiver, const SelectedLight& light, const Point2& u, RenderCounts& counts) const;
+  bool Scatter(State& path, const SurfacePoint& point, const Bsdf& bsdf, const Vector3& wo, const Receiver& receiver,
+               Sampler& sampler) const;
+
+  const GeometryScene& geometry_;
+  const LightingServices& lighting_;
+  const std::vector<std::shared_ptr<const Material>>& materials_;
+  int maxDepth_;
+  SubpathDimensions dimensions_;
+  float gatherBelow_;
+  bool samplesLights_;
+};
+
+}  // namespace lampyr

@@ -1,0 +1,113 @@
+#include "integrators/photon/sppm_integrator.h"
+
+#include <cmath>
+
+#include "integrators/common/adjoint.h"
+#include "integrators/common/footprint.h"
+#include "integrators/common/light_subpath.h"
+#include "integrators/common/photon_pass.h"
+#include "integrators/path/path_walk.h"
+
+namespace lampyr {
+
+namespace {
+
+constexpr SubpathDimensions kOfCamera{2, 0}, kOfLight{2, 1};
+
+// 1/sr. A lobe that is wider than a quarter of a steradian or so is worth gathering photons for; what is narrower
+// would show few of them.
+constexpr float kWide = 4;
+
+// The radius of the first pass, in pixels as they are seen at the vertex, where the user names none.
+constexpr double kRadiusInPixels = 2;
+
+class SppmIntegrator final : public BidirectionalIntegrator {
+ public:
+  SppmIntegrator(const RenderScene& scene, const SppmSettings& settings)
+      : scene_(scene),
+        settings_(settings),
+        light_(scene, settings.maxDepth, kOfLight, false),
+        walk_(scene, {settings.maxDepth, kOfCamera, kWide, !settings.directFromPhotons}) {}
+
+  Color Sample(const Ray* ray, float time, Sampler& sampler, const SampleSinks& sinks) const override;
+  std::optional<PhotonSettings> Photons() const override { return settings_.photons; }
+
+ private:
+  struct Kept;
+  struct Gathered;
+
+  const RenderScene& scene_;
+  SppmSettings settings_;
+  LightSubpathTracer light_;
+  PathWalk walk_;
+};
+
+struct SppmIntegrator::Kept final : LightSubpathVisitor {
+  Kept(PhotonList& list, size_t first) : photons(list), firstDepth(first) {}
+  void Arrived(const LightSubpath& path) override {
+    if (path.count >= firstDepth && !path.Last().isDelta) photons.Add(path.Last(), static_cast<int>(path.count));
+  }
+
+  PhotonList& photons;
+  size_t firstDepth;
+};
+
+// The photons of the pass, as one camera path sees them.
+struct SppmIntegrator::Gathered final : PhotonGatherer {
+  Gathered(const SppmIntegrator& integrator, const PhotonPass& aPass, const Ray& ray, RenderCounts& someCounts)
+      : own(integrator), pass(aPass), counts(someCounts) {
+    if (own.settings_.photons.radius > 0) return;
+    const double area = PixelArea(*own.scene_.camera, ray, own.settings_.filmPixels, 1);
+    perLength =
+        static_cast<float>(kRadiusInPixels * std::sqrt(area) * RadiusScale(pass.pass, own.settings_.photons.alpha));
+  }
+
+  float RadiusAt(float length) const {
+    if (own.settings_.photons.radius > 0) return pass.radius;
+    return own.scene_.camera->HasParallelRays() ? perLength : perLength * length;
+  }
+
+  Color Gather(const SurfacePoint& point, const Bsdf& bsdf, const Vector3& wo, int events,
+               float length) const override {
+    thread_local PhotonLookup lookup;
+    const float radius = RadiusAt(length);
+    ++counts.lookups;
+    Color sum;
+    for (const uint32_t index : pass.map->Find(point.position, radius, lookup)) {
+      const Photon& photon = (*pass.map)[index];
+      // The vertex is counted by both paths.
+      if (static_cast<int>(photon.depth) + events > own.settings_.maxDepth + 1) continue;
+      if (!photon.IsOnSurface(bsdf.Ng())) continue;
+      const BsdfEvaluation f = bsdf.Evaluate(wo, photon.toPrevious, TransportMode::Radiance);
+      if (f.pdfForward.value > kWide) continue;
+      sum += (f.diffuse * photon.flux + f.specular * pass.map->SpecularFlux(photon)) *
+             ArrivalCorrection(bsdf, photon.toPrevious);
+    }
+    const double area = static_cast<double>(kPi) * static_cast<double>(radius) * static_cast<double>(radius);
+    return area > 0 ? sum * static_cast<float>(1 / (pass.lightPaths * area)) : Color(0.0f);
+  }
+
+  const SppmIntegrator& own;
+  const PhotonPass& pass;
+  RenderCounts& counts;
+  float perLength = 0;
+};
+
+Color SppmIntegrator::Sample(const Ray* ray, float time, Sampler& sampler, const SampleSinks& sinks) const {
+  if (sinks.photons) {
+    thread_local LightSubpath path;
+    Kept kept(*sinks.photons, settings_.directFromPhotons ? 1 : 2);
+    light_.Trace(time, sampler, sinks.counts, path, kept);
+  }
+  if (!ray || !sinks.gather) return Color(0.0f);
+  const Gathered gathered(*this, *sinks.gather, *ray, sinks.counts);
+  return walk_.Radiance(*ray, sampler, sinks.counts, &gathered);
+}
+
+}  // namespace
+
+std::unique_ptr<BidirectionalIntegrator> MakeSppmIntegrator(const RenderScene& scene, const SppmSettings& settings) {
+  return std::make_unique<SppmIntegrator>(scene, settings);
+}
+
+}  // namespace lampyr
