@@ -7,6 +7,7 @@ RenderCounts& RenderCounts::operator+=(const RenderCounts& other) {
   indirectRays += other.indirectRays;
   shadowRays += other.shadowRays;
   lookups += other.lookups;
+  foundPhotons += other.foundPhotons;
   droppedSamples += other.droppedSamples;
   return *this;
 }

@@ -34,6 +34,7 @@ struct RenderCounts {
   uint64_t cameraRays = 0;
   uint64_t indirectRays = 0;
   uint64_t shadowRays = 0;
+  uint64_t foundPhotons = 0;    // by lookups of photons
   uint64_t lookups = 0;         // of photons
   uint64_t droppedSamples = 0;  // NaN, infinite or negative: a defect, counted and reported
 
@@ -84,8 +85,10 @@ class LightPathIntegrator {
 
 // How an integrator that gathers photons wants them.
 struct PhotonSettings {
-  double radius = 0;      // of the first pass, scene units; 0: chosen by the integrator
-  double alpha = 2. / 3;  // how fast the radius shrinks: as pass^((alpha - 1) / 2); 1: never
+  double radius = 0;        // of the first pass, scene units; 0: chosen by the integrator
+  double alpha = 2. / 3;    // how fast the radius shrinks: as pass^((alpha - 1) / 2); 1: never
+  uint64_t lightPaths = 0;  // whose photons a pass gathers; 0: as many as the full image has pixels
+  uint64_t mostBytes = 0;   // of photons, while a map is made of them; 0: whatever it takes
 };
 
 // Where a sample goes, besides what it returns, and what it may use.

@@ -28,7 +28,8 @@ class BdptIntegrator final : public BidirectionalIntegrator {
         geometry_(*scene.geometry),
         lighting_(*scene.lighting),
         settings_(settings),
-        light_(scene, settings.maxDepth, kOfLight, true),
+        light_(scene, settings.maxDepth, kOfLight,
+               settings.connects ? LightSubpathTracer::Weights::All : LightSubpathTracer::Weights::Merging),
         connectsByDirection_(scene.camera->ConnectsByDirection()) {}
 
   Color Sample(const Ray* ray, float time, Sampler& sampler, const SampleSinks& sinks) const override;
@@ -46,6 +47,7 @@ class BdptIntegrator final : public BidirectionalIntegrator {
     float time;
     double merge = 0;  // (N π r²)^β, see partial_weight.h; 0: nothing is merged
     size_t cameraCount = 0;
+    bool couldMerge = false;  // at a vertex of the camera subpath
 
     RenderCounts& Counts() const { return sinks.counts; }
     std::span<const PathVertex> Light(size_t count) const { return {paths.light.vertices.data(), count}; }
@@ -153,6 +155,10 @@ Color BdptIntegrator::HitLight(Run& run, const Flight& flight, const FoundLight&
   path.t = static_cast<int>(run.cameraCount) + 2;
   path.camera = run.Camera(run.cameraCount);
   path.end = EndOf(lighting_, found, true, landing);
+  if (!settings_.connects && path.end.emission > 0) {
+    if (run.couldMerge) return Color(0.0f);
+    return Report(run, path);
+  }
   path.toLight = flight.ray.direction;
   SetLens(run, path);
   const double pdf = flight.pdf * path.end.perSolidAngle;
@@ -178,6 +184,7 @@ Color BdptIntegrator::SampleLights(Run& run) const {
 
 Color BdptIntegrator::SampleLight(Run& run, const SelectedLight& light, const Point2& u) const {
   const PathVertex& vertex = run.paths.camera[run.cameraCount - 1];
+  if (!settings_.connects && !lighting_.EmissionSelectionProbability(light.light).IsZero()) return Color(0.0f);
   const DirectSample direct = lighting_.GenerateSamples(vertex.receiver, light, u, run.time, true);
   const auto nothingArrives = [&] {
     lighting_.UpdateWithResults(vertex.receiver, direct, Color(0.0f));
@@ -282,9 +289,11 @@ Color BdptIntegrator::Merge(Run& run) const {
   const auto most = static_cast<size_t>(settings_.maxDepth) + 1;
   const double perMerge = 1 / run.merge;
   const auto perDensity = static_cast<float>(1 / std::sqrt(run.merge));
+  const std::span<const uint32_t> found = pass.map->Find(vertex.point.position, pass.radius, run.paths.lookup);
   ++run.Counts().lookups;
+  run.Counts().foundPhotons += found.size();
   Color sum;
-  for (const uint32_t index : pass.map->Find(vertex.point.position, pass.radius, run.paths.lookup)) {
+  for (const uint32_t index : found) {
     const Photon& photon = (*pass.map)[index];
     if (photon.depth + run.cameraCount > most || !photon.IsOnSurface(vertex.bsdf.Ng())) continue;
     const Vector3& toLight = photon.toPrevious;
@@ -350,9 +359,9 @@ Color BdptIntegrator::TraceCamera(Run& run, const Ray& cameraRay) const {
       vertex.previousPerSolidAngle = 0;  // the lens is not hit
       // Light paths come here but where they pass through.
       const bool isSplatted = vertex.pdfForward > 0 && vertex.isSeenByIndirect;
-      vertex.weight = {isSplatted ? 1 / Mis(vertex.pdfForward) : 0.0, 0.0, 0.0};
+      vertex.weight = {isSplatted && settings_.connects ? 1 / Mis(vertex.pdfForward) : 0.0, 0.0, 0.0};
     } else {
-      Follow(run.paths.camera[run.cameraCount - 1], flight, vertex);
+      Follow(run.paths.camera[run.cameraCount - 1], flight, settings_.connects, vertex);
     }
     ++run.cameraCount;
     const auto depth = static_cast<int>(run.cameraCount);
@@ -360,12 +369,13 @@ Color BdptIntegrator::TraceCamera(Run& run, const Ray& cameraRay) const {
       radiance += SampleLights(run);
       // As many scattering events in all as are wanted.
       const size_t most = std::min(run.paths.light.count, static_cast<size_t>(settings_.maxDepth - depth));
-      for (size_t i = 1; i <= most; ++i) radiance += Connect(run, i);
+      for (size_t i = 1; settings_.connects && i <= most; ++i) radiance += Connect(run, i);
       if (run.merge > 0 && vertex.CanMerge()) radiance += Merge(run);
     }
     if (!Scatter(vertex, TransportMode::Radiance, depth, kOfCamera, depth - 1, 1, run.sampler, flight)) {
       return radiance;
     }
+    run.couldMerge = run.couldMerge || (vertex.CanMerge() && !vertex.scatteredDelta);
   }
 }
 
@@ -390,7 +400,8 @@ Color BdptIntegrator::SeenLight(Run& run, const Ray& ray, const RayHit& hit, con
   if (const auto found = lighting_.EvaluateSamples(lens, ray.direction, hit.t, point, run.time, true)) {
     path.end = EndOf(lighting_, *found, lighting_.CanBeHit(found->light), 0);
     path.cameraPerArea = CameraPerArea(ray, glm::dot(ray.direction, point.Ng), Sqr(static_cast<double>(hit.t)));
-    if (path.cameraPerArea > 0) path.weight = 1 / (1 + Mis(path.end.position / path.cameraPerArea));
+    if (path.cameraPerArea > 0 && settings_.connects)
+      path.weight = 1 / (1 + Mis(path.end.position / path.cameraPerArea));
   }
   return Report(run, path);
 }
@@ -398,10 +409,12 @@ Color BdptIntegrator::SeenLight(Run& run, const Ray& ray, const RayHit& hit, con
 // What becomes of a light subpath on its way.
 struct BdptIntegrator::LightVisitor final : LightSubpathVisitor {
   LightVisitor(const BdptIntegrator& integrator, Run& aRun) : own(integrator), run(aRun) {}
-  void Emitted(const EmittedPhoton& photon) override { own.SeeLightPoint(run, photon); }
+  void Emitted(const EmittedPhoton& photon) override {
+    if (own.settings_.connects) own.SeeLightPoint(run, photon);
+  }
   void Arrived(const LightSubpath& path) override {
     const PathVertex& vertex = path.Last();
-    own.SeeLightVertex(run);
+    if (own.settings_.connects) own.SeeLightVertex(run);
     if (run.sinks.photons && !vertex.isDelta) run.sinks.photons->Add(vertex, static_cast<int>(path.count));
   }
 

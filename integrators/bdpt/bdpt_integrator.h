@@ -22,6 +22,9 @@ struct BdptSettings {
   int maxDepth = 5;       // scattering events
   double filmPixels = 1;  // of the full image: light paths per sample of a pixel
   bool merges = false;    // vertex merging as well
+  // Without, merging is all there is (bidirectional photon mapping), but for lights that trace no light paths, and for
+  // what cannot be merged: lights that the camera sees, or sees by deltas alone. Requires `merges`.
+  bool connects = true;
   PhotonSettings photons;
 };
 

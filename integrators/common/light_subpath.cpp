@@ -16,6 +16,8 @@ bool LightSubpathTracer::Land(const EmittedPhoton& photon, LightSubpath& path) c
   if (!(path.end.emission > 0)) return false;
   vertex.pdfForward = path.end.emission;
   vertex.previousPerSolidAngle = path.end.perSolidAngle;
+  vertex.weight = {};
+  if (weights_ == Weights::Merging) return true;
   const double perEmission = 1 / Mis(path.end.emission);
   vertex.weight = {Mis(path.end.direct) * perEmission, path.end.canBeHit ? perEmission : 0.0, 0.0};
   return true;
@@ -52,9 +54,9 @@ void LightSubpathTracer::Trace(float time, Sampler& sampler, RenderCounts& count
     if (!MakeVertex(scene_, flight.ray, *hit, point, vertex)) return;
     vertex.diffuse = flight.diffuse;
     vertex.specular = flight.specular;
-    if (weighs_) {
+    if (weights_ != Weights::None) {
       if (path.count > 0) {
-        Follow(path.Last(), flight, vertex);
+        Follow(path.Last(), flight, weights_ == Weights::All, vertex);
       } else if (!Land(*photon, path)) {
         return;
       }

@@ -28,10 +28,12 @@ class LightSubpathVisitor {
 
 class LightSubpathTracer {
  public:
-  // `maxDepth` vertices at most. Densities and partial weights are known where `weighs`; without, only what vertices
-  // carry.
-  LightSubpathTracer(const RenderScene& scene, int maxDepth, SubpathDimensions dimensions, bool weighs)
-      : scene_(scene), maxDepth_(maxDepth), dimensions_(dimensions), weighs_(weighs) {}
+  // What of a path's densities is known, and which techniques its weights are of.
+  enum class Weights { None, Merging, All };
+
+  // `maxDepth` vertices at most.
+  LightSubpathTracer(const RenderScene& scene, int maxDepth, SubpathDimensions dimensions, Weights weights)
+      : scene_(scene), maxDepth_(maxDepth), dimensions_(dimensions), weights_(weights) {}
 
   void Trace(float time, Sampler& sampler, RenderCounts& counts, LightSubpath& path,
              LightSubpathVisitor& visitor) const;
@@ -44,7 +46,7 @@ class LightSubpathTracer {
   const RenderScene& scene_;
   int maxDepth_;
   SubpathDimensions dimensions_;
-  bool weighs_;
+  Weights weights_;
 };
 
 }  // namespace lampyr

@@ -52,15 +52,30 @@ struct TracedPhoton {
 // The photons of consecutive light paths. Keeps its memory when it is emptied.
 class PhotonList {
  public:
-  void Clear() { photons_.clear(); }
+  void Clear() {
+    photons_.clear();
+    starts_.clear();
+  }
+  // What is added from now on belongs to the next path.
+  void StartPath() { starts_.push_back(static_cast<uint32_t>(photons_.size())); }
   void Add(const PathVertex& vertex, int depth) {
     photons_.push_back({vertex.point.position, vertex.toPrevious, vertex.diffuse, vertex.specular, vertex.weight,
                         static_cast<float>(vertex.previousPerSolidAngle), PackedNormal(vertex.bsdf.Ng()), depth});
+  }
+  size_t Paths() const { return starts_.size(); }
+  // Leaves out whole paths at the end until there are no more than `most` photons; returns the number of paths left.
+  size_t KeepPaths(size_t most) {
+    while (photons_.size() > most && !starts_.empty()) {
+      photons_.resize(starts_.back());
+      starts_.pop_back();
+    }
+    return starts_.size();
   }
   const std::vector<TracedPhoton>& Photons() const { return photons_; }
 
  private:
   std::vector<TracedPhoton> photons_;
+  std::vector<uint32_t> starts_;  // where each path starts
 };
 
 // A photon in a map, without its position.

@@ -65,12 +65,13 @@ bool Scatter(PathVertex& vertex, TransportMode mode, int depth, const SubpathDim
   return true;
 }
 
-void Follow(const PathVertex& previous, const Flight& flight, PathVertex& vertex) {
+void Follow(const PathVertex& previous, const Flight& flight, bool connects, PathVertex& vertex) {
   const double squared = LengthSquared(Vector3d(vertex.point.position) - Vector3d(previous.point.position));
   vertex.pdfForward = flight.pdf * AreaPerSolidAngle(CosineAt(vertex, flight.ray.direction), squared);
   vertex.previousPerSolidAngle = AreaPerSolidAngle(CosineAt(previous, flight.ray.direction), squared);
   vertex.weight = previous.weight.Next(previous.scatteredDelta, previous.CanMerge(), vertex.pdfForward,
                                        previous.eventReverse * previous.previousPerSolidAngle);
+  if (!connects) vertex.weight.connect = 0;
 }
 
 double LandingFactor(const LightingServices& lighting, uint32_t light, float cosTheta, double distanceSquared) {

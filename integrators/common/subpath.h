@@ -41,7 +41,9 @@ bool Scatter(PathVertex& vertex, TransportMode mode, int depth, const SubpathDim
              Sampler& sampler, Flight& flight);
 
 // Sets the densities and the weight of a vertex that its subpath found from the previous one.
-void Follow(const PathVertex& previous, const Flight& flight, PathVertex& vertex);
+// Without `connects`, the weight is that of merging
+// alone.
+void Follow(const PathVertex& previous, const Flight& flight, bool connects, PathVertex& vertex);
 
 // From the densities of an emission to area at the vertex where it lands.
 double LandingFactor(const LightingServices& lighting, uint32_t light, float cosTheta, double distanceSquared);

@@ -10,7 +10,7 @@ namespace {
 class LightIntegrator final : public LightPathIntegrator {
  public:
   LightIntegrator(const RenderScene& scene, const LightPathSettings& settings)
-      : scene_(scene), tracer_(scene, settings.maxDepth, SubpathDimensions{}, false) {}
+      : scene_(scene), tracer_(scene, settings.maxDepth, SubpathDimensions{}, LightSubpathTracer::Weights::None) {}
 
   void TracePath(float time, Sampler& sampler, SplatList& splats, RenderCounts& counts) const override;
 

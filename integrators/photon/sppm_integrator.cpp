@@ -26,7 +26,7 @@ class SppmIntegrator final : public BidirectionalIntegrator {
   SppmIntegrator(const RenderScene& scene, const SppmSettings& settings)
       : scene_(scene),
         settings_(settings),
-        light_(scene, settings.maxDepth, kOfLight, false),
+        light_(scene, settings.maxDepth, kOfLight, LightSubpathTracer::Weights::None),
         walk_(scene, {settings.maxDepth, kOfCamera, kWide, !settings.directFromPhotons}) {}
 
   Color Sample(const Ray* ray, float time, Sampler& sampler, const SampleSinks& sinks) const override;
@@ -71,9 +71,11 @@ struct SppmIntegrator::Gathered final : PhotonGatherer {
                float length) const override {
     thread_local PhotonLookup lookup;
     const float radius = RadiusAt(length);
+    const std::span<const uint32_t> found = pass.map->Find(point.position, radius, lookup);
     ++counts.lookups;
+    counts.foundPhotons += found.size();
     Color sum;
-    for (const uint32_t index : pass.map->Find(point.position, radius, lookup)) {
+    for (const uint32_t index : found) {
       const Photon& photon = (*pass.map)[index];
       // The vertex is counted by both paths.
       if (static_cast<int>(photon.depth) + events > own.settings_.maxDepth + 1) continue;

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "app/command_support.h"
 #include "app/commands.h"
 #include "base/version.h"
 
@@ -26,6 +27,23 @@ double ParseDuration(const std::string& option, const std::string& text) {
     throw UsageError(option + ": \"" + text + "\" is not a duration; write 90s, 5m or 2h");
   }
   return number * factor;
+}
+
+// "800M", "4G", "1000000000" -> bytes; a quarter of the machine's where nothing is said.
+uint64_t ParseMemory(const std::string& option, const std::string& text) {
+  if (text.empty()) return InstalledMemory() / 4;
+  char* end = nullptr;
+  const double number = std::strtod(text.c_str(), &end);
+  const std::string unit(end);
+  double factor = 0;
+  if (unit.empty() || unit == "B") factor = 1;
+  if (unit == "K" || unit == "KiB") factor = 1024;
+  if (unit == "M" || unit == "MiB") factor = 1024.0 * 1024;
+  if (unit == "G" || unit == "GiB") factor = 1024.0 * 1024 * 1024;
+  if (end == text.c_str() || factor == 0 || !(number * factor >= 1) || !(number * factor < 1e15)) {
+    throw UsageError(option + ": \"" + text + "\" is not a size; write 800M or 4G");
+  }
+  return static_cast<uint64_t>(number * factor);
 }
 
 void ParseResolution(const std::string& text, RenderOverrides& overrides) {
@@ -54,8 +72,15 @@ std::string CheckFinite(const std::string& text) {
   return "\"" + text + "\" is not a finite number";
 }
 
+// Absent unless the flag or its opposite is given.
+void AddSwitch(CLI::App& app, const std::string& names, std::optional<bool>& value, const std::string& description) {
+  app.add_flag(
+      names, [&value](int64_t times) { value = times > 0; }, description);
+}
+
 // What render and compare are told alike.
-void DefineSceneOptions(CLI::App& app, RenderOverrides& overrides, std::string& resolution, int& threads) {
+void DefineSceneOptions(CLI::App& app, RenderOverrides& overrides, std::string& resolution, std::string& photonMemory,
+                        int& threads) {
   app.add_option("--seed", overrides.seed, "Seed of the random numbers (0)");
   app.add_option("--threads", threads, "Threads (all)")->check(CLI::Range(1, 4096));
   app.add_option("--resolution", resolution, "Size of the image, e.g. 640x360");
@@ -68,19 +93,28 @@ void DefineSceneOptions(CLI::App& app, RenderOverrides& overrides, std::string& 
   app.add_option("--light-samples", overrides.lightSamples,
                  "Lights to choose at each vertex, at most; fewer where few matter (1)")
       ->check(CLI::Range(1, LightChoices::kMost));
-  app.add_option(
-         "--radius", overrides.radius,
-         "sppm, vcm: radius within which photons are gathered in the first pass, scene units (from the size of pixels)")
+  app.add_option("--photons", overrides.photons, "sppm, vcm: light paths of a pass (as many as the image has pixels)")
+      ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 31));
+  app.add_option("--photon-memory", photonMemory,
+                 "sppm, vcm: memory for the photons of a pass, e.g. 512M, 4G; fewer light paths where it does not do "
+                 "(a quarter of the machine's)");
+  app.add_option("--radius", overrides.radius,
+                 "sppm, vcm: where photons are gathered in the first pass, scene units (from the size of pixels)")
       ->check(CheckPositive, "POSITIVE");
   app.add_option("--alpha", overrides.alpha, "sppm, vcm: how fast that radius shrinks, as pass^((alpha - 1) / 2) (2/3)")
       ->check(CLI::Range(0.0, 1.0));
-  app.add_flag("--learn-lights,!--no-learn-lights", overrides.learnLights,
-               "Let the light tree learn which lights are occluded where (off)");
+  AddSwitch(app, "--merge,!--no-merge", overrides.merges, "vcm: merge with photons (on); without, it is bdpt");
+  AddSwitch(app, "--connect,!--no-connect", overrides.connects,
+            "vcm: connect vertices (on); without, it is bidirectional photon mapping");
+  AddSwitch(app, "--direct-photons,!--no-direct-photons", overrides.directFromPhotons,
+            "sppm: gather photons for direct light, too, instead of sampling lights (off)");
+  AddSwitch(app, "--learn-lights,!--no-learn-lights", overrides.learnLights,
+            "Let the light tree learn which lights are occluded where (off)");
 }
 
 struct RenderCommand {
   RenderOptions options;
-  std::string time, resolution;
+  std::string time, resolution, photonMemory;
   bool fast = false;
 
   void Define(CLI::App& app) {
@@ -97,7 +131,7 @@ struct RenderCommand {
     app.add_option("--target-error", options.targetError,
                    "Stop when the estimated relative error (95 % confidence) is below this, e.g. 0.02")
         ->check(CheckPositive, "POSITIVE");
-    DefineSceneOptions(app, overrides, resolution, options.threads);
+    DefineSceneOptions(app, overrides, resolution, photonMemory, options.threads);
     app.add_option("--stats", options.stats, "Write statistics to this JSON file");
     app.add_option("--strategy-images", options.strategyImages,
                    "Write what each technique of bdpt contributes, weighted and not, to this folder");
@@ -110,6 +144,7 @@ struct RenderCommand {
   int Run() {
     if (!time.empty()) options.seconds = ParseDuration("--time", time);
     if (!resolution.empty()) ParseResolution(resolution, options.overrides);
+    options.overrides.photonMemory = ParseMemory("--photon-memory", photonMemory);
     options.robust = !fast;
     return RunRender(options);
   }
@@ -118,7 +153,7 @@ struct RenderCommand {
 struct CompareCommand {
   CompareOptions options;
   std::vector<std::string> times;
-  std::string resolution, referenceTime;
+  std::string resolution, photonMemory, referenceTime;
   bool fast = false;
 
   void Define(CLI::App& app) {
@@ -142,7 +177,7 @@ struct CompareCommand {
     app.add_option("--reference-time", referenceTime,
                    "Time to make the reference in; default: ten times the longest render");
     app.add_option("--exposure", options.exposure, "Exposure of the pictures in stops (0)")->check(CheckFinite, "");
-    DefineSceneOptions(app, options.overrides, resolution, options.threads);
+    DefineSceneOptions(app, options.overrides, resolution, photonMemory, options.threads);
     app.add_flag("--quiet", options.quiet, "No progress and no tables");
     app.add_flag("--strict", options.strict, "Warnings about the scene are errors");
     app.add_flag("--fast-intersection", fast,
@@ -153,6 +188,7 @@ struct CompareCommand {
     for (const std::string& time : times) options.times.push_back(ParseDuration("--budget", time));
     if (!referenceTime.empty()) options.referenceSeconds = ParseDuration("--reference-time", referenceTime);
     if (!resolution.empty()) ParseResolution(resolution, options.overrides);
+    options.overrides.photonMemory = ParseMemory("--photon-memory", photonMemory);
     options.robust = !fast;
     options.command = "lampyr";
     for (int i = 1; i < argc; ++i) options.command += std::string(" ") + argv[i];

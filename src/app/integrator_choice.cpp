@@ -27,7 +27,8 @@ AnyIntegrator MakeIntegrator(const RenderScene& scene, const RenderSettings& set
   if (settings.integrator == "light") return MakeLightIntegrator(scene, {settings.maxDepth});
   if (settings.integrator == "bdpt" || settings.integrator == "vcm") {
     BdptSettings bdpt;
-    bdpt.merges = settings.integrator == "vcm";
+    bdpt.merges = settings.integrator == "vcm" && settings.merges;
+    bdpt.connects = settings.integrator == "bdpt" || settings.connects;
     bdpt.photons = settings.photons;
     if (bdpt.merges && bdpt.photons.radius == 0)
       bdpt.photons.radius = kRadiusInPixels * TypicalFootprint(scene, settings.width, settings.height);
@@ -40,6 +41,7 @@ AnyIntegrator MakeIntegrator(const RenderScene& scene, const RenderSettings& set
     sppm.maxDepth = settings.maxDepth;
     sppm.filmPixels = static_cast<double>(settings.width) * static_cast<double>(settings.height);
     sppm.photons = settings.photons;
+    sppm.directFromPhotons = settings.directFromPhotons;
     return MakeSppmIntegrator(scene, sppm);
   }
   throw Error("there is no integrator \"" + settings.integrator + "\"");

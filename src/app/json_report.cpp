@@ -41,7 +41,7 @@ std::string ToJson(const RenderReport& report) {
   const RenderCounts& counts = outcome.counts;
   const double samples = static_cast<double>(report.pixels) * outcome.samplesPerPixel;
   const double seconds = outcome.seconds > 0 ? outcome.seconds : 1e-9;
-  const Json json = {
+  Json json = {
       {"scene", report.scene},
       {"sceneHash", report.sceneHash},
       {"integrator", report.integrator},
@@ -71,6 +71,13 @@ std::string ToJson(const RenderReport& report) {
         {"cpu", CpuSeconds()}}},
       {"peakMemoryMiB", PeakMemoryMiB()},
   };
+  if (const std::optional<PhotonStatistics>& photons = outcome.photons) {
+    json["photons"] = {{"passes", photons->passes},           {"stored", photons->photons},
+                       {"mostInAPass", photons->mostPhotons}, {"mostBytes", photons->mostBytes},
+                       {"rejected", photons->rejected},       {"lookups", counts.lookups},
+                       {"found", counts.foundPhotons},        {"buildSeconds", photons->buildSeconds},
+                       {"firstRadius", photons->firstRadius}, {"lastRadius", photons->lastRadius}};
+  }
   return Dump(json);
 }
 

@@ -151,7 +151,7 @@ struct Sweep {
 
 RenderCounts RenderPass(const RenderScene& scene, const BidirectionalIntegrator& integrator,
                         const RenderSettings& settings, const PixelFilter& filter, uint32_t first, uint32_t count,
-                        int threads, Film& film, TechniqueImages* techniques, PhotonPass* kept) {
+                        int threads, Film& film, TechniqueImages* techniques, PhotonStore* kept) {
   const auto width = static_cast<uint64_t>(settings.width), height = static_cast<uint64_t>(settings.height);
   const uint64_t pixels = width * height;
   const PixelRect& crop = film.Crop();
@@ -164,24 +164,29 @@ RenderCounts RenderPass(const RenderScene& scene, const BidirectionalIntegrator&
   if (techniques) recorders.assign(static_cast<size_t>(chunks), TechniqueImages::Recorder(*techniques, filter));
 
   const std::optional<PhotonSettings> wanted = integrator.Photons();
-  PhotonPass here;
-  PhotonPass& gather = kept ? *kept : here;
+  PhotonStore here(wanted.value_or(PhotonSettings()), pixels);
+  PhotonStore& store = kept ? *kept : here;
+  const PhotonPass* gather = nullptr;
+  const uint64_t lightPaths = wanted ? store.LightPaths() : pixels;
   // The pixels from `round` on, as many as the chunks take. Without the camera: light paths and their photons alone.
-  const auto render = [&](uint64_t round, uint32_t index, uint64_t seed, bool withCamera) {
+  const auto render = [&](uint64_t round, uint64_t end, uint32_t index, uint64_t seed, bool withCamera) {
     ParallelFor(chunks, threads, [&](int chunk) {
       const auto own = static_cast<size_t>(chunk);
       SplatList& splats = sweep.splats[own];
       RenderCounts& ofChunk = sweep.counts[own];
       splats.Clear();
       TechniqueImages::Recorder* recorder = techniques && withCamera ? &recorders[own] : nullptr;
-      const SampleSinks sinks{splats, ofChunk, recorder, wanted && withCamera ? &gather : nullptr,
-                              wanted ? &sweep.photons[own] : nullptr};
+      const SampleSinks withPhotons{splats, ofChunk, recorder, withCamera ? gather : nullptr, &sweep.photons[own]};
+      const SampleSinks withoutPhotons{splats, ofChunk, recorder, withCamera ? gather : nullptr, nullptr};
       Sampler sampler(settings.sampler, seed);
       const uint64_t begin = round + static_cast<uint64_t>(chunk) * chunkPaths;
-      for (uint64_t i = begin; i < std::min(begin + chunkPaths, pixels); ++i) {
+      for (uint64_t i = begin; i < std::min(begin + chunkPaths, end); ++i) {
         const int x = static_cast<int>(i % width), y = static_cast<int>(i / width);
         sampler.StartPixelSample(x, y, index);
         splats.StartPath();
+        const bool keepsPhotons = wanted && i < lightPaths && store.HasRoom();
+        if (keepsPhotons) sweep.photons[own].StartPath();
+        const SampleSinks& sinks = keepsPhotons ? withPhotons : withoutPhotons;
         const float time = SampleTime(scene, sampler);
         if (!withCamera || x < crop.x0 || x >= crop.x1 || y < crop.y0 || y >= crop.y1) {
           if (recorder) recorder->StartSample(x, y, 0);
@@ -196,36 +201,31 @@ RenderCounts RenderPass(const RenderScene& scene, const BidirectionalIntegrator&
     });
   };
   const uint64_t perRound = static_cast<uint64_t>(chunks) * chunkPaths;
-  // Photons wait in lists by round and chunk, and so in the order of their paths.
-  std::vector<PhotonList> waiting;
-  const auto keepPhotons = [&] {
-    for (PhotonList& list : sweep.photons) waiting.push_back(std::exchange(list, PhotonList()));
-  };
-  const auto startPass = [&](uint32_t pass) {
-    gather.pass = pass;
-    gather.lightPaths = static_cast<double>(pixels);
-    gather.radius = static_cast<float>(wanted->radius * RadiusScale(pass, wanted->alpha));
-    gather.map = std::make_shared<PhotonMap>(waiting, Mis(gather.MergesPerDensity()), threads);
-    waiting.clear();
-  };
-  if (wanted && (!gather.map || gather.pass != first)) {
-    // The photons that the pass before would have left; before the very first one, of light paths of their own.
-    const uint64_t seed = first == 0 ? MixBits(settings.seed + kBeforeTheFirst) : settings.seed;
-    for (uint64_t round = 0; round < pixels; round += perRound) {
-      render(round, first == 0 ? 0 : first - 1, seed, false);
-      keepPhotons();
+  // Light paths alone, for their photons.
+  const auto tracePhotons = [&](uint64_t begin, uint32_t index, uint64_t seed) {
+    for (uint64_t round = begin; round < lightPaths; round += perRound) {
+      render(round, lightPaths, index, seed, false);
+      store.Take(sweep.photons);
     }
-    startPass(first);
+  };
+  if (wanted && !store.IsFor(first)) {
+    // What the pass before would have left; before the very first one, photons of light paths of their own.
+    store.Clear();
+    tracePhotons(0, first == 0 ? 0 : first - 1, first == 0 ? MixBits(settings.seed + kBeforeTheFirst) : settings.seed);
+    store.Finish(first);
   }
   // One sample of all pixels after the other: chunks never meet in a pixel, and the film adds paths in their order.
   for (uint32_t index = first; index < first + count; ++index) {
+    if (wanted) gather = &store.Open(index, threads);
     for (uint64_t round = 0; round < pixels; round += perRound) {
-      render(round, index, settings.seed, true);
-      if (wanted) keepPhotons();
+      render(round, pixels, index, settings.seed, true);
+      if (wanted) store.Take(sweep.photons);
       film.AddSplats(filter, sweep.splats, threads);
       if (techniques) techniques->AddSplats(filter, recorders, threads);
     }
-    if (wanted) startPass(index + 1);
+    if (!wanted) continue;
+    tracePhotons(pixels, index, settings.seed);
+    store.Finish(index + 1);
   }
   return sweep.Total();
 }
@@ -240,6 +240,12 @@ ProgressiveRender::ProgressiveRender(const RenderScene& scene, const AnyIntegrat
       threads_(threads),
       film_(film),
       techniques_(techniques) {
+  if (const auto* chosen = std::get_if<std::unique_ptr<BidirectionalIntegrator>>(&integrator)) {
+    if (const std::optional<PhotonSettings> wanted = (*chosen)->Photons()) {
+      photons_ = std::make_unique<PhotonStore>(
+          *wanted, static_cast<uint64_t>(settings.width) * static_cast<uint64_t>(settings.height));
+    }
+  }
   if (settings.learnLights) learning_ = std::make_unique<LightLearning>(scene.lighting->SceneSphere());
 }
 
@@ -247,7 +253,8 @@ void ProgressiveRender::AddPass(uint32_t first, uint32_t count) {
   outcome_.counts += std::visit(
       [&]<class Chosen>(const std::unique_ptr<Chosen>& chosen) {
         if constexpr (std::is_same_v<Chosen, BidirectionalIntegrator>) {
-          return RenderPass(scene_, *chosen, settings_, filter_, first, count, threads_, film_, techniques_, &photons_);
+          return RenderPass(scene_, *chosen, settings_, filter_, first, count, threads_, film_, techniques_,
+                            photons_.get());
         } else {
           return RenderPass(scene_, *chosen, settings_, filter_, first, count, threads_, film_);
         }
@@ -290,6 +297,7 @@ void ProgressiveRender::AddSamples(int count) {
     learning_->Freeze();
     if (first >= lastLearned) learning_->StopRecording();
   }
+  if (photons_) outcome_.photons = photons_->Statistics();
   outcome_.samplesPerPixel += count;
   outcome_.seconds += clock.Seconds();
 }

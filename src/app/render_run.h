@@ -13,7 +13,7 @@
 #include "app/render_settings.h"
 #include "app/technique_images.h"
 #include "film/film.h"
-#include "integrators/common/photon_pass.h"
+#include "integrators/common/photon_store.h"
 #include "integrators/integrator.h"
 
 namespace lampyr {
@@ -32,6 +32,7 @@ struct RenderOutcome {
   double relativeError = 0;
   bool interrupted = false;
   RenderCounts counts;
+  std::optional<PhotonStatistics> photons;  // of integrators that gather them
 };
 
 // Called after each pass.
@@ -73,7 +74,7 @@ class ProgressiveRender {
   TechniqueImages* techniques_;
   RenderOutcome outcome_;
   std::unique_ptr<LightLearning> learning_;  // null: selection learns nothing
-  PhotonPass photons_;                       // of integrators that gather them
+  std::unique_ptr<PhotonStore> photons_;     // of integrators that gather them
 };
 
 // Samples [first, first + count) of every pixel. Exposed for tests and benchmarks.
@@ -90,6 +91,6 @@ RenderCounts RenderPass(const RenderScene& scene, const LightPathIntegrator& int
 // the light paths of the sample before are traced again.
 RenderCounts RenderPass(const RenderScene& scene, const BidirectionalIntegrator& integrator,
                         const RenderSettings& settings, const PixelFilter& filter, uint32_t first, uint32_t count,
-                        int threads, Film& film, TechniqueImages* techniques = nullptr, PhotonPass* kept = nullptr);
+                        int threads, Film& film, TechniqueImages* techniques = nullptr, PhotonStore* kept = nullptr);
 
 }  // namespace lampyr

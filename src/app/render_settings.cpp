@@ -219,6 +219,31 @@ void ReadSampler(const SceneDescription& scene, const RenderOverrides& overrides
   if (overrides.samplesPerPixel) settings.samplesPerPixel = *overrides.samplesPerPixel;
 }
 
+// Of sppm and vcm. The first two are pbrt-v4's; its default radius of 1 is not taken over: it suits few scenes.
+void ReadPhotons(const ParameterList& parameters, const RenderOverrides& overrides, RenderSettings& settings) {
+  PhotonSettings& photons = settings.photons;
+  const int perPass = parameters.GetInteger("photonsperiteration", -1);
+  if (perPass > 0) photons.lightPaths = static_cast<uint64_t>(perPass);
+  photons.radius = parameters.GetFloat("radius", 0);
+  if (!(photons.radius >= 0)) throw Error(parameters.WhereOf("radius"), "\"radius\" must be 0 or more");
+  photons.alpha = parameters.GetFloat("alpha", photons.alpha);
+  if (!(photons.alpha >= 0 && photons.alpha <= 1))
+    throw Error(parameters.WhereOf("alpha"), "\"alpha\" must be from 0 to 1");
+  settings.merges = parameters.GetBool("merge", settings.merges);
+  settings.connects = parameters.GetBool("connect", settings.connects);
+  settings.directFromPhotons = parameters.GetBool("directphotons", settings.directFromPhotons);
+  if (overrides.photons) photons.lightPaths = *overrides.photons;
+  if (overrides.photonMemory) photons.mostBytes = *overrides.photonMemory;
+  if (overrides.radius) photons.radius = *overrides.radius;
+  if (overrides.alpha) photons.alpha = *overrides.alpha;
+  if (overrides.merges) settings.merges = *overrides.merges;
+  if (overrides.connects) settings.connects = *overrides.connects;
+  if (overrides.directFromPhotons) settings.directFromPhotons = *overrides.directFromPhotons;
+  if (!settings.merges && !settings.connects) {
+    throw UsageError("--no-merge and --no-connect: vcm has nothing left to find light by");
+  }
+}
+
 void ReadIntegrator(const SceneDescription& scene, const RenderOverrides& overrides, RenderSettings& settings,
                     Diagnostics& diagnostics) {
   const ParameterList& parameters = scene.integrator.parameters;
@@ -232,8 +257,7 @@ void ReadIntegrator(const SceneDescription& scene, const RenderOverrides& overri
   settings.integrator = synonym != synonyms.end() ? synonym->second : type;
   const bool isKnown = isOneOf(settings.integrator, IntegratorNames());
   if (!isKnown) {
-    const Names notYet = {"ambientocclusion", "bdpt",          "function", "mlt", "randomwalk",
-                          "simplepath",       "simplevolpath", "sppm",     "vcm"};
+    const Names notYet = {"ambientocclusion", "function", "mlt", "randomwalk", "simplepath", "simplevolpath"};
     if (!isOneOf(type, notYet)) {
       Names all = notYet;
       all.insert(all.end(), IntegratorNames().begin(), IntegratorNames().end());
@@ -248,7 +272,7 @@ void ReadIntegrator(const SceneDescription& scene, const RenderOverrides& overri
   if (overrides.integrator) {
     if (!isOneOf(*overrides.integrator, IntegratorNames())) {
       throw UsageError("--integrator: there is no integrator \"" + *overrides.integrator +
-                       "\"; there are: path, light, bdpt");
+                       "\"; there are: path, light, bdpt, sppm, vcm");
     }
     settings.integrator = *overrides.integrator;
   }
@@ -272,12 +296,14 @@ void ReadIntegrator(const SceneDescription& scene, const RenderOverrides& overri
     settings.lightSelection = *selection;
   }
   if (overrides.lightSamples) settings.lightSamples = *overrides.lightSamples;
-  if (overrides.radius) settings.photons.radius = *overrides.radius;
-  if (overrides.alpha) settings.photons.alpha = *overrides.alpha;
+  ReadPhotons(parameters, overrides, settings);
   if (overrides.learnLights) settings.learnLights = *overrides.learnLights;
   // Parameters of integrators that stand back for "path" are not looked at.
   if (isKnown) {
-    parameters.CheckAllUsed({"regularize", "options"}, {"maxdepth", "lightsampler"}, diagnostics);
+    parameters.CheckAllUsed(
+        {"regularize", "options"},
+        {"maxdepth", "lightsampler", "photonsperiteration", "radius", "alpha", "merge", "connect", "directphotons"},
+        diagnostics);
   }
 }
 

@@ -26,6 +26,8 @@ struct RenderOverrides {
   std::optional<bool> learnLights;
   std::optional<int> lightSamples;
   std::optional<double> radius, alpha;  // of photons, see PhotonSettings
+  std::optional<uint64_t> photons, photonMemory;
+  std::optional<bool> merges, connects, directFromPhotons;
   uint64_t seed = 0;
 };
 
@@ -42,6 +44,8 @@ struct RenderSettings {
   int lightSamples = 1;      // lights that next-event estimation chooses at a vertex, at most
   bool learnLights = false;  // selection learns from shadow rays (light_learning.h)
   PhotonSettings photons;
+  bool merges = true, connects = true;  // vcm: which techniques
+  bool directFromPhotons = false;       // sppm: light that comes straight from lights, too
   bool halfPrecision = false;
   float imagingRatio = 1;  // exposure time · ISO / 100: film value of radiance 1
   std::string outputFile;  // as the scene names it

@@ -103,7 +103,7 @@ Worst CheckScene(const std::string& text, int paths, float radius = 0) {
   if (radius > 0) {
     gather.lightPaths = 2000;
     gather.radius = radius * built.scene.lighting->SceneSphere().radius;
-    const LightSubpathTracer tracer(built.scene, settings.maxDepth, {2, 1}, true);
+    const LightSubpathTracer tracer(built.scene, settings.maxDepth, {2, 1}, LightSubpathTracer::Weights::All);
     LightSubpath path;
     for (uint32_t i = 0; i < 2000; ++i) {
       sampler.StartPixelSample(1, 0, i);

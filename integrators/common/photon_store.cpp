@@ -1,0 +1,72 @@
+#include "integrators/common/photon_store.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "base/parallel.h"
+
+namespace lampyr {
+
+uint64_t PhotonStore::BytesPerPhoton() {
+  constexpr uint64_t pointer = sizeof(void*), position = 3 * sizeof(float), tree = 2 * position + pointer + 16;
+  return sizeof(TracedPhoton) + sizeof(Photon) + sizeof(SortItem) + pointer + tree;
+}
+
+PhotonStore::PhotonStore(const PhotonSettings& settings, uint64_t pixels)
+    : settings_(settings),
+      lightPaths_(settings.lightPaths > 0 ? settings.lightPaths : pixels),
+      most_(settings.mostBytes > 0 ? std::max<uint64_t>(settings.mostBytes / BytesPerPhoton(), 1)
+                                   : std::numeric_limits<uint32_t>::max() / 2) {}
+
+void PhotonStore::Take(std::vector<PhotonList>& lists) {
+  for (PhotonList& list : lists) {
+    if (hasRoom_ && photons_ + list.Photons().size() <= most_) {
+      photons_ += list.Photons().size();
+      paths_ += list.Paths();
+      waiting_.push_back(std::exchange(list, PhotonList()));
+      continue;
+    }
+    if (hasRoom_) {
+      paths_ += list.KeepPaths(most_ - photons_);
+      photons_ += list.Photons().size();
+      waiting_.push_back(std::exchange(list, PhotonList()));
+      hasRoom_ = false;
+    }
+    list.Clear();
+  }
+}
+
+void PhotonStore::Finish(uint32_t next) {
+  isTaken_ = true;
+  pass_ = next;
+}
+
+const PhotonPass& PhotonStore::Open(uint32_t pass, int threads) {
+  if (open_.map && open_.pass == pass) return open_;
+  open_ = PhotonPass();
+  open_.pass = pass;
+  open_.lightPaths = static_cast<double>(std::max<uint64_t>(paths_, 1));
+  open_.radius = static_cast<float>(settings_.radius * RadiusScale(pass, settings_.alpha));
+  open_.map = std::make_shared<PhotonMap>(waiting_, Mis(open_.MergesPerDensity()), threads);
+  Clear();
+  const PhotonMap& map = *open_.map;
+  ++statistics_.passes;
+  statistics_.photons += map.Size();
+  statistics_.mostPhotons = std::max<uint64_t>(statistics_.mostPhotons, map.Size());
+  statistics_.mostBytes = std::max<uint64_t>(statistics_.mostBytes, map.Bytes());
+  statistics_.rejected += map.Rejected();
+  statistics_.buildSeconds += map.BuildSeconds();
+  if (statistics_.passes == 1) statistics_.firstRadius = static_cast<double>(open_.radius);
+  statistics_.lastRadius = static_cast<double>(open_.radius);
+  return open_;
+}
+
+void PhotonStore::Clear() {
+  waiting_.clear();
+  photons_ = paths_ = 0;
+  hasRoom_ = true;
+  isTaken_ = false;
+}
+
+}  // namespace lampyr
