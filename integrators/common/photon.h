@@ -9,7 +9,7 @@
 
 namespace lampyr {
 
-// A unit vector in four bytes ([Cigolle14], oct16x2): off by 3e-5 at most.
+// A unit vector in four bytes ([Cigolle14], oct16x2): off by 7e-5 at most.
 class PackedNormal {
  public:
   PackedNormal() = default;

@@ -1,0 +1,278 @@
+// Photons are found exactly, whatever lies where: against a search through all of them.
+#include "integrators/common/photon_map.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <set>
+
+#include "integrators/common/photon_store.h"
+#include "sampling/rng.h"
+#include "sampling/warp.h"
+#include "support/allocation_count.h"
+
+namespace lampyr {
+namespace {
+
+// At a place; its number is its flux.
+void AddPhoton(PhotonList& list, const Point3& position, size_t number) {
+  PathVertex vertex;
+  vertex.point.position = position;
+  vertex.toPrevious = Vector3(0, 0, 1);
+  vertex.diffuse = vertex.specular = Color(static_cast<float>(number));
+  list.StartPath();
+  list.Add(vertex, 1);
+}
+
+PhotonList ListOf(const std::vector<Point3>& positions) {
+  PhotonList list;
+  for (size_t i = 0; i < positions.size(); ++i) AddPhoton(list, positions[i], i);
+  return list;
+}
+
+PhotonMap MapOf(const std::vector<Point3>& positions, int threads = 2) {
+  const PhotonList list = ListOf(positions);
+  return {std::span(&list, 1), 0, threads};
+}
+
+std::set<size_t> NumbersOf(const PhotonMap& map, std::span<const uint32_t> found) {
+  std::set<size_t> numbers;
+  for (const uint32_t index : found) numbers.insert(static_cast<size_t>(map[index].flux.r));
+  EXPECT_EQ(numbers.size(), found.size()) << "found twice";
+  return numbers;
+}
+
+// On a floor, in a caustic and in the air, around `center`.
+std::vector<Point3> Places(size_t count, const Point3& center, float size, uint64_t seed) {
+  Rng rng(seed);
+  std::vector<Point3> positions;
+  for (size_t i = 0; i < count; ++i) {
+    const float part = rng.NextFloat();
+    Point3 p(rng.NextFloat() - 0.5f, rng.NextFloat() - 0.5f, rng.NextFloat() - 0.5f);
+    if (part < 0.7f) p.z = -0.5f;
+    if (part < 0.4f) p = Point3(0.1f * p.x, 0.1f * p.y * p.y, -0.5f);
+    positions.push_back(center + size * p);
+  }
+  return positions;
+}
+
+double SquaredDistance(const Point3& a, const Point3& b) {
+  const Vector3d d = Vector3d(a) - Vector3d(b);
+  return glm::dot(d, d);
+}
+
+void ExpectExact(const std::vector<Point3>& positions, float size, uint64_t seed) {
+  const PhotonMap map = MapOf(positions);
+  ASSERT_EQ(positions.size(), map.Size());
+  Rng rng(seed, 1);
+  PhotonLookup lookup;
+  for (int query = 0; query < 300; ++query) {
+    const auto pick = static_cast<size_t>(rng.NextFloat() * static_cast<float>(positions.size()));
+    const Point3 center = positions[std::min(pick, positions.size() - 1)] +
+                          (query % 3 == 0 ? 0.0f : 0.03f) * size * SampleUniformSphere(rng.NextPoint2());
+    const float radius = size * std::pow(10.0f, -3.5f + 4 * rng.NextFloat());
+    const std::set<size_t> found = NumbersOf(map, map.Find(center, radius, lookup));
+    // Rounding decides on the rim alone.
+    const double squared = static_cast<double>(radius) * static_cast<double>(radius);
+    const double rim = 1e-5 * squared + 1e-6 * static_cast<double>(size) * static_cast<double>(radius);
+    for (size_t i = 0; i < positions.size(); ++i) {
+      const double distance = SquaredDistance(positions[i], center);
+      if (std::abs(distance - squared) <= rim) continue;
+      const bool isInside = distance < squared, isFound = found.count(i) > 0;
+      EXPECT_EQ(isInside, isFound) << distance / squared;
+    }
+    const int count = 1 + static_cast<int>(60 * rng.NextFloat());
+    const std::span<const uint32_t> nearest = map.FindNearest(center, count, radius, lookup);
+    ASSERT_EQ(std::min(found.size(), static_cast<size_t>(count)), nearest.size());
+    NumbersOf(map, nearest);
+    if (nearest.empty()) continue;
+    std::vector<double> distances;
+    for (const Point3& position : positions) distances.push_back(SquaredDistance(position, center));
+    std::nth_element(distances.begin(), distances.begin() + static_cast<std::ptrdiff_t>(nearest.size() - 1),
+                     distances.end());
+    const double farthest = static_cast<double>(*std::max_element(lookup.distances.begin(), lookup.distances.end()));
+    EXPECT_NEAR(distances[nearest.size() - 1], farthest, rim + 1e-5 * farthest);
+    EXPECT_FLOAT_EQ(lookup.distances[0], static_cast<float>(farthest)) << "the farthest is first";
+  }
+}
+
+TEST(PhotonMap, FindsWhatASearchThroughAllFinds) {
+  ExpectExact(Places(3000, Point3(0.0f), 1, 1), 1, 2);
+}
+
+TEST(PhotonMap, SmallAndLargeScenes) {
+  ExpectExact(Places(2000, Point3(0.0f), 1e-4f, 3), 1e-4f, 4);
+  ExpectExact(Places(2000, Point3(1e3f, -5e3f, 2e4f), 1e5f, 5), 1e5f, 6);
+}
+
+// Distances are of positions as they are: no precision is lost to where the scene lies.
+TEST(PhotonMap, FarFromTheOrigin) {
+  ExpectExact(Places(2000, Point3(1e5f, -1e5f, 1e5f), 100, 7), 100, 8);
+}
+
+TEST(PhotonMap, NoPhotons) {
+  PhotonLookup lookup;
+  const PhotonMap none;
+  EXPECT_TRUE(none.Find(Point3(0.0f), 1, lookup).empty());
+  const PhotonMap empty = MapOf({});
+  EXPECT_TRUE(empty.IsEmpty());
+  EXPECT_TRUE(empty.Find(Point3(0.0f), std::numeric_limits<float>::max(), lookup).empty());
+  EXPECT_TRUE(empty.FindNearest(Point3(0.0f), 5, 1, lookup).empty());
+}
+
+TEST(PhotonMap, OnePhoton) {
+  const PhotonMap map = MapOf({Point3(1, 2, 3)});
+  PhotonLookup lookup;
+  EXPECT_EQ(1u, map.Find(Point3(1, 2, 3), 1e-6f, lookup).size());
+  EXPECT_EQ(1u, map.Find(Point3(1, 2, 4), 1.001f, lookup).size());
+  EXPECT_TRUE(map.Find(Point3(1, 2, 4), 0.999f, lookup).empty());
+  EXPECT_TRUE(map.Find(Point3(1, 2, 3), 0, lookup).empty());
+  EXPECT_EQ(1u, map.FindNearest(Point3(0.0f), 5, 100, lookup).size());
+}
+
+TEST(PhotonMap, AMillionInOnePlace) {
+  const PhotonMap map = MapOf(std::vector<Point3>(1000000, Point3(1, 2, 3)));
+  PhotonLookup lookup;
+  EXPECT_EQ(1000000u, map.Find(Point3(1, 2, 3), 1e-3f, lookup).size());
+  EXPECT_TRUE(map.Find(Point3(1, 2, 3.1f), 1e-3f, lookup).empty());
+  EXPECT_EQ(50u, map.FindNearest(Point3(1, 2, 3), 50, 1, lookup).size());
+}
+
+TEST(PhotonMap, ARadiusLargerThanTheScene) {
+  const PhotonMap map = MapOf(Places(5000, Point3(0.0f), 1, 9));
+  PhotonLookup lookup;
+  for (const float radius : {10.0f, 1e6f, 1e18f, std::numeric_limits<float>::infinity()})
+    EXPECT_EQ(5000u, NumbersOf(map, map.Find(Point3(0.3f), radius, lookup)).size());
+}
+
+// One of them would spoil FLANN's search for all others.
+TEST(PhotonMap, WhatIsNoNumberIsLeftOutAndCounted) {
+  std::vector<Point3> positions = Places(100, Point3(0.0f), 1, 10);
+  positions[17].y = std::numeric_limits<float>::quiet_NaN();
+  positions[50].x = std::numeric_limits<float>::infinity();
+  const PhotonMap map = MapOf(positions);
+  EXPECT_EQ(98u, map.Size());
+  EXPECT_EQ(2u, map.Rejected());
+  PhotonLookup lookup;
+  EXPECT_EQ(98u, map.Find(Point3(0.0f), 10, lookup).size());
+}
+
+TEST(PhotonMap, LookupsTakeNoMemory) {
+  const PhotonMap map = MapOf(Places(20000, Point3(0.0f), 1, 11));
+  PhotonLookup lookup;
+  map.Find(Point3(0.0f), 10, lookup);
+  map.FindNearest(Point3(0.0f), 100, 10, lookup);
+  const uint64_t before = test::AllocationCount();
+  Rng rng(12);
+  size_t found = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const Point3 center(rng.NextFloat() - 0.5f, rng.NextFloat() - 0.5f, -0.5f);
+    found += map.Find(center, 0.05f, lookup).size();
+    found += map.FindNearest(center, 50, 0.1f, lookup).size();
+  }
+  EXPECT_EQ(before, test::AllocationCount());
+  EXPECT_GT(found, 50000u);
+}
+
+// Sums over photons are in the order in which they are found.
+TEST(PhotonMap, ThreadsAndListsDoNotMatter) {
+  const std::vector<Point3> positions = Places(50000, Point3(0.0f), 1, 13);
+  const PhotonList whole = ListOf(positions);
+  std::vector<PhotonList> parts(7);
+  for (size_t i = 0; i < positions.size(); ++i) AddPhoton(parts[i * 7 / positions.size()], positions[i], i);
+  const PhotonMap one(std::span(&whole, 1), 0.5, 1), many(parts, 0.5, 4);
+  PhotonLookup a, b;
+  Rng rng(14);
+  for (int i = 0; i < 200; ++i) {
+    const Point3 center(rng.NextFloat() - 0.5f, rng.NextFloat() - 0.5f, -0.5f);
+    const std::span<const uint32_t> fromOne = one.Find(center, 0.05f, a), fromMany = many.Find(center, 0.05f, b);
+    ASSERT_TRUE(std::equal(fromOne.begin(), fromOne.end(), fromMany.begin(), fromMany.end()));
+    for (const uint32_t index : fromOne) ASSERT_EQ(one[index].flux, many[index].flux);
+  }
+}
+
+TEST(PhotonMap, MergingIsInTheWeights) {
+  PathVertex vertex;
+  vertex.toPrevious = Vector3(0, 0, 1);
+  vertex.diffuse = Color(1, 2, 3);
+  vertex.specular = Color(4, 5, 6);
+  vertex.weight = {2, 3, 5};
+  vertex.previousPerSolidAngle = 0.5;
+  PhotonList list;
+  list.StartPath();
+  list.Add(vertex, 3);
+  const PhotonMap map(std::span(&list, 1), 7, 1);
+  EXPECT_DOUBLE_EQ(vertex.weight.BeforeReverse(0.5 * 11, 7), map[0].BeforeReverse(11));
+  EXPECT_EQ(Color(1, 2, 3), map[0].flux);
+  EXPECT_EQ(Color(4, 5, 6), map.SpecularFlux(map[0]));
+  EXPECT_EQ(3u, map[0].depth);
+}
+
+TEST(PackedNormal, IsNearTheNormal) {
+  Rng rng(15);
+  for (int i = 0; i < 100000; ++i) {
+    const Normal3 n = SampleUniformSphere(rng.NextPoint2());
+    EXPECT_LT(glm::length(PackedNormal(n).Unpack() - n), 7e-5f);
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const float sign : {-1.0f, 1.0f}) {
+      Normal3 n(0.0f);
+      n[axis] = sign;
+      EXPECT_EQ(n, PackedNormal(n).Unpack());
+    }
+  }
+}
+
+std::vector<PhotonList> PathsOf(size_t lists, size_t pathsInEach, size_t photonsOnEach) {
+  std::vector<PhotonList> result(lists);
+  PathVertex vertex;
+  vertex.toPrevious = Vector3(0, 0, 1);
+  for (PhotonList& list : result) {
+    for (size_t path = 0; path < pathsInEach; ++path) {
+      list.StartPath();
+      for (size_t i = 0; i < photonsOnEach; ++i) list.Add(vertex, 1);
+    }
+  }
+  return result;
+}
+
+TEST(PhotonStore, KeepsToItsMemory) {
+  for (const size_t lists : {1, 3, 8}) {
+    PhotonSettings settings;
+    settings.radius = 1;
+    settings.mostBytes = 1000 * PhotonStore::BytesPerPhoton();
+    PhotonStore store(settings, 4800);
+    std::vector<PhotonList> taken = PathsOf(lists, 4800 / lists, 7);
+    store.Take(taken);
+    EXPECT_FALSE(store.HasRoom());
+    store.Finish(0);
+    const PhotonPass& pass = store.Open(0, 2);
+    EXPECT_EQ(142, pass.lightPaths) << "whole paths, the same however they were cut into lists";
+    EXPECT_EQ(994u, pass.map->Size());
+    EXPECT_TRUE(store.HasRoom()) << "for the next pass";
+  }
+}
+
+TEST(PhotonStore, PassesFollowEachOther) {
+  PhotonSettings settings;
+  settings.radius = 2;
+  settings.alpha = 0.5;
+  PhotonStore store(settings, 10);
+  EXPECT_FALSE(store.IsFor(0));
+  std::vector<PhotonList> taken = PathsOf(1, 10, 2);
+  store.Take(taken);
+  store.Finish(15);
+  EXPECT_TRUE(store.IsFor(15));
+  EXPECT_FALSE(store.IsFor(14));
+  const PhotonPass& pass = store.Open(15, 1);
+  EXPECT_FLOAT_EQ(1, pass.radius);  // 2 · 16^(-1/4)
+  EXPECT_EQ(10, pass.lightPaths);
+  EXPECT_EQ(20u, pass.map->Size());
+  EXPECT_EQ(&pass, &store.Open(15, 1)) << "it is made once";
+  EXPECT_EQ(1u, store.Statistics().passes);
+  EXPECT_FALSE(store.IsFor(16));
+}
+
+}  // namespace
+}  // namespace lampyr
