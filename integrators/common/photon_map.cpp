@@ -33,7 +33,7 @@ template struct Opens<RootOf, &Index::root_node_>;
 template struct Opens<StartOf, &Index::computeInitialDistances>;
 template struct Opens<LevelOf, &Index::searchLevel<false>>;
 
-constexpr int kLeaf = 32;  // photons
+constexpr int kLeaf = 64;  // photons: with 32, lookups of 50 take 1.1 to 1.5 times as long
 
 // Bits of x spread out, two zeros between each: 21 of them.
 uint64_t Spread(uint64_t x) {
