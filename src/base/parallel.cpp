@@ -70,6 +70,8 @@ void ParallelFor(int count, int threads, const std::function<void(int)>& body) {
 
 void ParallelSort(std::span<SortItem> items, int threads) {
   if (threads <= 1) return std::sort(items.begin(), items.end(), IsBefore);
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                  static_cast<size_t>(std::max(threads, HardwareThreads())));
   tbb::task_arena arena(threads);
   [[maybe_unused]] const KeptFloatSetting kept;
   arena.execute([&] { tbb::parallel_sort(items.begin(), items.end(), IsBefore); });

@@ -17,6 +17,9 @@ struct PeerScene {
   const char* integrator;
   int samplesPerPixel;
   int blockSize = 8;
+  double radius = 0;  // of photons: their blur stays below the noise
+  bool connects = true;
+  const char* reference = "";  // added to the name
 };
 
 class Peer : public testing::TestWithParam<PeerScene> {};
@@ -39,8 +42,10 @@ TEST_P(Peer, BlockMeansAgree) {
   if (IsSkipped()) return;
   RenderOverrides overrides;
   overrides.integrator = GetParam().integrator;
+  if (GetParam().radius > 0) overrides.radius = GetParam().radius;
+  overrides.connects = GetParam().connects;
   const Rendered rendered = RenderFile(scene, GetParam().samplesPerPixel, overrides);
-  const Image reference = ReadImage(kPeer / (std::string(GetParam().name) + ".exr"));
+  const Image reference = ReadImage(kPeer / (std::string(GetParam().name) + GetParam().reference + ".exr"));
   const ImageDifference difference = CompareImages(rendered.image, reference, GetParam().blockSize);
   ASSERT_TRUE(difference.hasBlockTest);
   const BlockTest& test = difference.blockTest;
@@ -71,9 +76,22 @@ INSTANTIATE_TEST_SUITE_P(
                     PeerScene{"mixed-lights", "bdpt", 256}, PeerScene{"sky-spheres", "bdpt", 1024},
                     PeerScene{"lights600", "bdpt", 512, 16}, PeerScene{"glass-caustic", "bdpt", 512, 32},
                     PeerScene{"spot-lens", "bdpt", 512}, PeerScene{"area-box", "light", 512},
-                    PeerScene{"mixed-lights", "light", 512}, PeerScene{"lights600", "light", 1024, 16}),
+                    PeerScene{"mixed-lights", "light", 512}, PeerScene{"lights600", "light", 1024, 16},
+                    PeerScene{"area-box", "vcm", 256, 8, 0.01}, PeerScene{"mixed-lights", "vcm", 256, 8, 0.01},
+                    PeerScene{"sky-spheres", "vcm", 1024, 8, 0.02}, PeerScene{"lights600", "vcm", 512, 16, 0.01},
+                    PeerScene{"glass-caustic", "vcm", 512, 32, 0.01},
+                    PeerScene{"area-box", "vcm", 1024, 16, 0.02, false},
+                    PeerScene{"mixed-lights", "vcm", 1024, 16, 0.02, false},
+                    // Both see the caustic through the lens. The reference's own photons blur it: blocks are large.
+                    PeerScene{"spot-lens", "vcm", 512, 64, 0.02, true, "-sppm"},
+                    PeerScene{"spot-lens", "sppm", 1024, 64, 0.02, true, "-sppm"},
+                    PeerScene{"spot-lens", "vcm", 512, 8, 0.02}, PeerScene{"pool", "vcm", 256, 32, 0.02, true, "-sppm"},
+                    PeerScene{"pool", "sppm", 512, 32, 0.02, true, "-sppm"},
+                    PeerScene{"area-box", "sppm", 1024, 8, 0.01}, PeerScene{"mixed-lights", "sppm", 1024, 8, 0.01},
+                    PeerScene{"lights600", "sppm", 1280, 16, 0.02}, PeerScene{"glass-caustic", "sppm", 1280, 32, 0.02}),
     [](const auto& info) {
-      std::string name = std::string(info.param.integrator) + "_" + info.param.name;
+      std::string name = std::string(info.param.integrator) + "_" + info.param.name +
+                         (info.param.connects ? "" : "_by_merging_alone") + info.param.reference;
       std::replace(name.begin(), name.end(), '-', '_');
       return name;
     });

@@ -55,7 +55,8 @@ class Invariance : public testing::TestWithParam<const char*> {
     return RenderText(text, samplesPerPixel, overrides, threads);
   }
 };
-INSTANTIATE_TEST_SUITE_P(Of, Invariance, testing::Values("path", "bdpt"), [](const auto& info) { return info.param; });
+INSTANTIATE_TEST_SUITE_P(Of, Invariance, testing::Values("path", "bdpt", "sppm", "vcm"),
+                         [](const auto& info) { return info.param; });
 
 TEST_P(Invariance, SameBytesForAnyNumberOfThreads) {
   const Image one = Render(Scene(1), 16, {}, 1).image;
