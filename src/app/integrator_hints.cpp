@@ -35,6 +35,11 @@ std::vector<std::string> IntegratorHints(const RenderScene& scene, const std::st
                     " lights: point, spot, distant and the like), so what they send through smooth glass or off "
                     "mirrors is missing; --integrator bdpt finds it");
   }
+  if (integrator == "bdpt" && deltas > 0) {
+    hints.push_back("light without extent (" + std::to_string(deltas) + " of " + std::to_string(lights.size()) +
+                    " lights) that comes through smooth glass or off mirrors and is seen through or in them again "
+                    "cannot be found by joining paths; --integrator vcm and sppm find it");
+  }
   if (integrator == "light") {
     hints.push_back(
         "no path from a light can be joined to the camera at a mirror or smooth glass, so these stay "

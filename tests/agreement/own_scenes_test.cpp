@@ -26,6 +26,7 @@ struct OwnScene {
   int replicas = 16;
   int blockSize = 9;
   double noticed = 1.03;  // a picture that is wrong by this factor, which the test finds
+  double radius = 0;      // of photons, so small that their blur is not noticed
 };
 
 void PrintTo(const OwnScene& scene, std::ostream* stream) {
@@ -47,6 +48,10 @@ const OwnScene kOwnScenes[] = {
     {"lights-1000", "bdpt", 16, "light", 64, "0,1,0.55,1", -1, 16, 9, 1.05},
     {"gallery", "bdpt", 8, "path", 16},
     {"caustics", "bdpt", 8, "light", 16},
+    // What only photons find: connections or none, all directions or wide ones.
+    {"diver", "vcm", 16, "sppm", 32, nullptr, -1, 16, 18, 1.05, 0.015},
+    {"mirror", "vcm", 16, "sppm", 32, nullptr, -1, 16, 18, 1.05, 0.02},
+    {"lamp", "sppm", 32, "bdpt", 8, nullptr, -1, 16, 9, 1.03, 0.008},
 };
 
 class OwnScenes : public testing::TestWithParam<OwnScene> {};
@@ -64,6 +69,7 @@ TEST_P(OwnScenes, LookAlikeToAllIntegrators) {
   overrides.height = 54;
   if (scene.crop) overrides.crop = scene.crop;
   if (scene.maxDepth >= 0) overrides.maxDepth = scene.maxDepth;
+  if (scene.radius > 0) overrides.radius = scene.radius;
   const Replicas first = RenderReplicas(text, scene.first, scene.replicas, scene.firstSamples, overrides);
   overrides.seed = 1000;
   const Replicas second = RenderReplicas(text, scene.second, scene.replicas, scene.secondSamples, overrides);

@@ -159,12 +159,36 @@ TEST_F(Cli, HintsAtWhatAnIntegratorCannotFind) {
   EXPECT_NE(hintOf(kScene + glass, "path").find("1 of 1 lights"), std::string::npos);
   EXPECT_NE(hintOf(kScene + glass, "path").find("--integrator bdpt"), std::string::npos);
   EXPECT_NE(hintOf(kScene + glass, "light").find("stay black"), std::string::npos);
-  EXPECT_EQ(hintOf(kScene + glass, "bdpt"), "");
+  EXPECT_NE(hintOf(kScene + glass, "bdpt").find("--integrator vcm"), std::string::npos);
+  EXPECT_EQ(hintOf(kScene + glass, "vcm"), "");
+  EXPECT_EQ(hintOf(kScene + glass, "sppm"), "");
   EXPECT_EQ(hintOf(kScene, "path"), "");
   std::string lamp = kScene + glass;
   lamp.replace(lamp.find("LightSource"), lamp.find("Shape") - lamp.find("LightSource"),
                "LightSource \"sphere\" \"float radius\" 0.1\n");
   EXPECT_EQ(hintOf(lamp, "path"), "");
+  EXPECT_EQ(hintOf(lamp, "bdpt"), "");
+}
+
+TEST_F(Cli, StatisticsOfPhotons) {
+  for (const std::string integrator : {"sppm", "vcm", "vcm --no-connect", "sppm --direct-photons"}) {
+    const Outcome outcome =
+        Run("render scene.pbrt --spp 3 -o a.exr --stats a.json --photons 500 --radius 0.1 --integrator " + integrator);
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.output;
+    const std::string stats = Read("a.json");
+    EXPECT_NE(stats.find("\"passes\": 3,"), std::string::npos) << stats;
+    EXPECT_NE(stats.find("\"firstRadius\": 0.1"), std::string::npos) << stats;
+  }
+  Run("render scene.pbrt --spp 1 -o a.exr --stats a.json --integrator bdpt");
+  EXPECT_EQ(Read("a.json").find("photons"), std::string::npos);
+}
+
+// vcm is bdpt and merging.
+TEST_F(Cli, WithoutMergingVcmIsBdpt) {
+  Run("render scene.pbrt --spp 4 -o a.exr --integrator vcm --no-merge");
+  Run("render scene.pbrt --spp 4 -o b.exr --integrator bdpt");
+  const Outcome outcome = Run("diff a.exr b.exr");
+  EXPECT_EQ(outcome.output.find("MSE      0\n"), 0u) << outcome.output;
 }
 
 TEST_F(Cli, QuietIsQuiet) {
@@ -210,6 +234,13 @@ TEST_F(Cli, WrongUsageExitsWithTwo) {
                                 "render scene.pbrt --light-samples 0",
                                 "render scene.pbrt --light-samples 17",
                                 "render scene.pbrt --sampler best",
+                                "render scene.pbrt --radius 0",
+                                "render scene.pbrt --radius -1",
+                                "render scene.pbrt --alpha 1.5",
+                                "render scene.pbrt --photons 0",
+                                "render scene.pbrt --photon-memory much",
+                                "render scene.pbrt --photon-memory 0",
+                                "render scene.pbrt --integrator vcm --no-merge --no-connect",
                                 "render scene.pbrt -o out.jpg",
                                 "render scene.pbrt -o nowhere/out.exr",
                                 "render absent.pbrt",
