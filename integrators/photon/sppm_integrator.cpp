@@ -85,8 +85,9 @@ struct SppmIntegrator::Gathered final : PhotonGatherer {
       sum += (f.diffuse * photon.flux + f.specular * pass.map->SpecularFlux(photon)) *
              ArrivalCorrection(bsdf, photon.toPrevious);
     }
+    if (sum.IsBlack()) return sum;
     const double area = static_cast<double>(kPi) * static_cast<double>(radius) * static_cast<double>(radius);
-    return area > 0 ? sum * static_cast<float>(1 / (pass.lightPaths * area)) : Color(0.0f);
+    return sum * static_cast<float>(1 / (pass.lightPaths * area));
   }
 
   const SppmIntegrator& own;

@@ -23,7 +23,8 @@ struct SppmSettings {
   int maxDepth = 5;       // scattering events
   double filmPixels = 1;  // of the full image: light paths per pass
   PhotonSettings photons;
-  bool directFromPhotons = false;  // light that comes straight from lights is gathered as well
+  // Light that comes straight from lights is gathered as well, and lights with traceLightPaths off are lost.
+  bool directFromPhotons = false;
 };
 
 // `scene` must outlive the integrator.

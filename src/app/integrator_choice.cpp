@@ -1,5 +1,7 @@
 #include "app/integrator_choice.h"
 
+#include <algorithm>
+
 #include "base/error.h"
 #include "integrators/bdpt/bdpt_integrator.h"
 #include "integrators/common/footprint.h"
@@ -15,6 +17,14 @@ namespace {
 // filters.
 constexpr double kRadiusInPixels = 1;
 
+// A radius that the scene can have: two of its own find everything, and what is less than its rounding finds nothing.
+PhotonSettings PhotonsFor(const RenderScene& scene, const RenderSettings& settings) {
+  PhotonSettings photons = settings.photons;
+  const auto size = static_cast<double>(scene.lighting->SceneSphere().radius);
+  if (photons.radius > 0 && size > 0) photons.radius = std::clamp(photons.radius, 1e-7 * size, 2 * size);
+  return photons;
+}
+
 }  // namespace
 
 const std::vector<std::string>& IntegratorNames() {
@@ -29,7 +39,7 @@ AnyIntegrator MakeIntegrator(const RenderScene& scene, const RenderSettings& set
     BdptSettings bdpt;
     bdpt.merges = settings.integrator == "vcm" && settings.merges;
     bdpt.connects = settings.integrator == "bdpt" || settings.connects;
-    bdpt.photons = settings.photons;
+    bdpt.photons = PhotonsFor(scene, settings);
     if (bdpt.merges && bdpt.photons.radius == 0)
       bdpt.photons.radius = kRadiusInPixels * TypicalFootprint(scene, settings.width, settings.height);
     bdpt.maxDepth = settings.maxDepth;
@@ -40,7 +50,7 @@ AnyIntegrator MakeIntegrator(const RenderScene& scene, const RenderSettings& set
     SppmSettings sppm;
     sppm.maxDepth = settings.maxDepth;
     sppm.filmPixels = static_cast<double>(settings.width) * static_cast<double>(settings.height);
-    sppm.photons = settings.photons;
+    sppm.photons = PhotonsFor(scene, settings);
     sppm.directFromPhotons = settings.directFromPhotons;
     return MakeSppmIntegrator(scene, sppm);
   }

@@ -183,6 +183,23 @@ TEST_F(Cli, StatisticsOfPhotons) {
   EXPECT_EQ(Read("a.json").find("photons"), std::string::npos);
 }
 
+// No photons, a single one, none to be found, all of them found.
+TEST_F(Cli, PhotonsAtTheExtremes) {
+  Write("dark.pbrt", "WorldBegin\nShape \"sphere\" \"float radius\" 0.3\n");
+  Write("nothing.pbrt", "WorldBegin\nLightSource \"point\"\n");
+  for (const char* scene : {"scene.pbrt", "dark.pbrt", "nothing.pbrt"}) {
+    for (const char* options : {"", "--photons 1", "--radius 1e-30", "--radius 1e30", "--photon-memory 1"}) {
+      for (const char* integrator : {"sppm", "vcm", "sppm --direct-photons", "vcm --no-connect"}) {
+        const std::string command = std::string("render ") + scene + " --resolution 24x16 --spp 4 -o a.exr " + options +
+                                    " --integrator " + integrator;
+        const Outcome outcome = Run(command);
+        EXPECT_EQ(outcome.exitCode, 0) << command << "\n" << outcome.output;
+        EXPECT_EQ(outcome.output.find("dropped"), std::string::npos) << command << "\n" << outcome.output;
+      }
+    }
+  }
+}
+
 // vcm is bdpt and merging.
 TEST_F(Cli, WithoutMergingVcmIsBdpt) {
   Run("render scene.pbrt --spp 4 -o a.exr --integrator vcm --no-merge");
