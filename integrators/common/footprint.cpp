@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <vector>
 
 #include "integrators/common/subpath.h"
@@ -19,46 +18,39 @@ double PixelArea(const Camera& camera, const Ray& ray, double filmPixels, double
   return distance * distance / (static_cast<double>(densities->pdfDirection.value) * filmPixels);
 }
 
-namespace {
-
-// The distance that a camera ray goes until it meets something that is not a delta, past those that are.
-std::optional<double> DistanceSeen(const RenderScene& scene, const Ray& ray, Sampler& sampler) {
+bool FindSeenVertex(const RenderScene& scene, const Ray& ray, Sampler& sampler, PathVertex& vertex, double& distance) {
   constexpr int mostEvents = 16;
-  double distance = 0;
+  distance = 0;
   Flight flight;
   flight.ray = ray;
-  flight.specular = Color(1.0f);
   for (int depth = 1; depth <= mostEvents; ++depth) {
     RayHit hit;
     if (!scene.geometry->Intersect(flight.ray, depth == 1 ? visibility::kCamera : visibility::kIndirect, hit))
-      return std::nullopt;
-    PathVertex vertex;
+      return false;
     const SurfacePoint point = scene.geometry->GetSurfacePoint(flight.ray, hit);
     distance += static_cast<double>(hit.t);
-    if (!MakeVertex(scene, flight.ray, hit, point, vertex)) return std::nullopt;
-    if (!vertex.isDelta) return distance;
+    if (!MakeVertex(scene, flight.ray, hit, point, vertex)) return false;
+    if (!vertex.isDelta) return true;
     vertex.specular = Color(1.0f);
-    if (!Scatter(vertex, TransportMode::Radiance, 1, SubpathDimensions(), depth, 1, sampler, flight))
-      return std::nullopt;
+    if (!Scatter(vertex, TransportMode::Radiance, 1, SubpathDimensions(), depth, 1, sampler, flight)) return false;
   }
-  return std::nullopt;
+  return false;
 }
-
-}  // namespace
 
 double TypicalFootprint(const RenderScene& scene, int width, int height) {
   constexpr int across = 24;
   const double filmPixels = static_cast<double>(width) * static_cast<double>(height);
   std::vector<double> areas;
+  PathVertex vertex;
   Sampler sampler(SamplerKind::Independent, 0);
   for (int i = 0; i < across * across; ++i) {
     sampler.StartPixelSample(i, 0, 0);
     const Point2 film((static_cast<float>(i % across) + 0.5f) / across * static_cast<float>(width),
                       (static_cast<float>(i / across) + 0.5f) / across * static_cast<float>(height));
     const CameraRay ray = scene.camera->GenerateRay(film, Point2(0.5f), 0);
-    const std::optional<double> distance = DistanceSeen(scene, ray.ray, sampler);
-    if (!distance) continue;
-    const double area = PixelArea(*scene.camera, ray.ray, filmPixels, *distance);
+    double distance;
+    if (!FindSeenVertex(scene, ray.ray, sampler, vertex, distance)) continue;
+    const double area = PixelArea(*scene.camera, ray.ray, filmPixels, distance);
     if (area > 0 && std::isfinite(area)) areas.push_back(area);
   }
   if (areas.empty()) return 1e-3 * static_cast<double>(scene.lighting->SceneSphere().radius);

@@ -124,7 +124,8 @@ struct RenderCommand {
     app.add_flag("--png", options.png, "Also write a tone-mapped PNG beside it");
     app.add_option("--exposure", options.exposure, "Exposure of the PNG in stops (0)")->check(CheckFinite, "");
     app.add_flag("--clip", options.clipPng, "Clip the PNG at white instead of rolling highlights off");
-    app.add_option("--integrator", overrides.integrator, "path | light | bdpt | sppm | vcm");
+    app.add_option("--integrator", overrides.integrator,
+                   "path | light | bdpt | sppm | vcm, or auto: as `lampyr plan` says");
     app.add_option("--spp", overrides.samplesPerPixel, "Stop after this many samples per pixel")
         ->check(CLI::Range(1, 1 << 30));
     app.add_option("--time", time, "Stop after this time: 90s, 5m, 2h");
@@ -210,6 +211,14 @@ int RunCommandLine(int argc, char** argv) {
   compare.Define(
       *app.add_subcommand("compare", "Measure integrators against each other: error by time and by samples"));
 
+  PlanOptions plan;
+  CLI::App* planCommand =
+      app.add_subcommand("plan", "What a scene requires, and what is therefore modelled, with reasons");
+  plan.overrides.integrator = "auto";
+  planCommand->add_option("scene", plan.scene, "The scene: a pbrt-v4 file (.pbrt, .pbrt.gz)")->required();
+  planCommand->add_option("--integrator", plan.overrides.integrator, "Instead of the one that suits the scene");
+  planCommand->add_flag("--strict", plan.strict, "Warnings about the scene are errors");
+
   DiffOptions diff;
   CLI::App* diffCommand = app.add_subcommand("diff", "Compare two images: MSE, relMSE, FLIP, bias, z-test by blocks");
   diffCommand->add_option("a", diff.a, "The image that is judged")->required();
@@ -239,6 +248,7 @@ int RunCommandLine(int argc, char** argv) {
   try {
     if (app.got_subcommand("render")) return render.Run();
     if (app.got_subcommand("compare")) return compare.Run(argc, argv);
+    if (app.got_subcommand(planCommand)) return RunPlan(plan);
     if (app.got_subcommand(diffCommand)) return RunDiff(diff);
     if (app.got_subcommand(checkCommand)) return RunCheckLights(check);
     return RunLights(lightType);

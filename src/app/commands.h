@@ -46,6 +46,12 @@ struct CompareOptions {
   std::string command;  // as it was typed, for the report
 };
 
+struct PlanOptions {
+  std::filesystem::path scene;
+  RenderOverrides overrides;
+  bool strict = false;
+};
+
 struct DiffOptions {
   std::filesystem::path a, b;
   bool json = false;
@@ -63,6 +69,7 @@ struct CheckLightsOptions {
 // Each returns an exit code. Errors are thrown.
 int RunRender(const RenderOptions& options);
 int RunCompare(const CompareOptions& options);
+int RunPlan(const PlanOptions& options);
 int RunDiff(const DiffOptions& options);
 int RunLights(const std::string& type);                 // "" lists all
 int RunCheckLights(const CheckLightsOptions& options);  // fails when a property does not hold

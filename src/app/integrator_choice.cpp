@@ -27,6 +27,11 @@ PhotonSettings PhotonsFor(const RenderScene& scene, const RenderSettings& settin
 
 }  // namespace
 
+double FirstRadius(const RenderScene& scene, const RenderSettings& settings) {
+  const double radius = PhotonsFor(scene, settings).radius;
+  return radius > 0 ? radius : kRadiusInPixels * TypicalFootprint(scene, settings.width, settings.height);
+}
+
 const std::vector<std::string>& IntegratorNames() {
   static const std::vector<std::string> names = {"path", "light", "bdpt", "sppm", "vcm"};
   return names;
@@ -40,8 +45,7 @@ AnyIntegrator MakeIntegrator(const RenderScene& scene, const RenderSettings& set
     bdpt.merges = settings.integrator == "vcm" && settings.merges;
     bdpt.connects = settings.integrator == "bdpt" || settings.connects;
     bdpt.photons = PhotonsFor(scene, settings);
-    if (bdpt.merges && bdpt.photons.radius == 0)
-      bdpt.photons.radius = kRadiusInPixels * TypicalFootprint(scene, settings.width, settings.height);
+    if (bdpt.merges) bdpt.photons.radius = FirstRadius(scene, settings);
     bdpt.maxDepth = settings.maxDepth;
     bdpt.filmPixels = static_cast<double>(settings.width) * static_cast<double>(settings.height);
     return MakeBdptIntegrator(scene, bdpt);

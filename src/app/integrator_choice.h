@@ -17,6 +17,9 @@ using AnyIntegrator = std::variant<std::unique_ptr<CameraIntegrator>, std::uniqu
 // The one that the settings name. `scene` must outlive it.
 AnyIntegrator MakeIntegrator(const RenderScene& scene, const RenderSettings& settings);
 
+// The radius (scene units) within which the first pass of vcm gathers photons.
+double FirstRadius(const RenderScene& scene, const RenderSettings& settings);
+
 // Names for --integrator and for Integrator in a scene.
 const std::vector<std::string>& IntegratorNames();
 

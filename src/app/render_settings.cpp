@@ -255,7 +255,7 @@ void ReadIntegrator(const SceneDescription& scene, const RenderOverrides& overri
   const std::map<std::string, std::string> synonyms = {{"", "path"}, {"volpath", "path"}, {"lightpath", "light"}};
   const auto synonym = synonyms.find(type);
   settings.integrator = synonym != synonyms.end() ? synonym->second : type;
-  const bool isKnown = isOneOf(settings.integrator, IntegratorNames());
+  const bool isKnown = settings.integrator == "auto" || isOneOf(settings.integrator, IntegratorNames());
   if (!isKnown) {
     const Names notYet = {"ambientocclusion", "function", "mlt", "randomwalk", "simplepath", "simplevolpath"};
     if (!isOneOf(type, notYet)) {
@@ -270,9 +270,9 @@ void ReadIntegrator(const SceneDescription& scene, const RenderOverrides& overri
     settings.integrator = "path";
   }
   if (overrides.integrator) {
-    if (!isOneOf(*overrides.integrator, IntegratorNames())) {
+    if (*overrides.integrator != "auto" && !isOneOf(*overrides.integrator, IntegratorNames())) {
       throw UsageError("--integrator: there is no integrator \"" + *overrides.integrator +
-                       "\"; there are: path, light, bdpt, sppm, vcm");
+                       "\"; there are: path, light, bdpt, sppm, vcm, auto");
     }
     settings.integrator = *overrides.integrator;
   }

@@ -5,6 +5,7 @@
 #include <unordered_map>
 
 #include "app/material_table.h"
+#include "app/plan.h"
 #include "app/shape_builder.h"
 #include "lights/light_type.h"
 #include "lights/services/light_surface.h"
@@ -439,6 +440,7 @@ BuiltScene Builder::Build() {
   scene.lighting =
       std::make_unique<LightingServices>(*scene.geometry, std::move(lights_), built_.settings.lightSelection);
   scene.lighting->TakeSamples(built_.settings.lightSamples);
+  if (built_.settings.integrator == "auto") built_.settings.integrator = PlanFor(scene, built_.settings).integrator;
   if (!scene.lighting->HasLights()) diagnostics_.Warn("the scene has no light: the image will be black");
   return std::move(built_);
 }

@@ -183,6 +183,41 @@ TEST_F(Cli, StatisticsOfPhotons) {
   EXPECT_EQ(Read("a.json").find("photons"), std::string::npos);
 }
 
+TEST_F(Cli, PlanSaysWhatIsModelledAndWhy) {
+  const std::string mirror = "Material \"conductor\" \"float roughness\" 0\nShape \"sphere\" \"float radius\" 0.3\n";
+  const std::string sky = "WorldBegin\nLightSource \"infinite\"\n" + mirror;
+  Write("mirror.pbrt", kScene + mirror);
+  Write("sky.pbrt", sky);
+  Write("dark.pbrt", "WorldBegin\n" + mirror);
+  const auto planOf = [&](const std::string& arguments) {
+    const Outcome outcome = Run("plan " + arguments);
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.output;
+    return outcome.output;
+  };
+  EXPECT_NE(planOf("mirror.pbrt").find("vcm      1 light without extent and 1 smooth material"), std::string::npos)
+      << planOf("mirror.pbrt");
+  EXPECT_NE(planOf("mirror.pbrt").find("merging          on"), std::string::npos);
+  EXPECT_NE(planOf("scene.pbrt").find("path     nothing is smooth and"), std::string::npos) << planOf("scene.pbrt");
+  EXPECT_NE(planOf("scene.pbrt").find("merging          off"), std::string::npos);
+  EXPECT_NE(planOf("sky.pbrt").find("path     smooth surfaces under lights at infinity"), std::string::npos)
+      << planOf("sky.pbrt");
+  EXPECT_NE(planOf("dark.pbrt").find("nothing emits"), std::string::npos);
+  EXPECT_NE(planOf("scene.pbrt --integrator sppm").find("as it is set; \"auto\" would be path"), std::string::npos);
+  EXPECT_EQ(Run("plan absent.pbrt").exitCode, 2);
+}
+
+TEST_F(Cli, AutoIsWhatThePlanSays) {
+  const std::string mirror = "Material \"conductor\" \"float roughness\" 0\nShape \"sphere\" \"float radius\" 0.3\n";
+  Write("mirror.pbrt", kScene + mirror);
+  Write("auto.pbrt", std::string("Integrator \"auto\"\n") + kScene + mirror);
+  Run("render mirror.pbrt --spp 2 -o a.exr --integrator vcm");
+  Run("render mirror.pbrt --spp 2 -o b.exr --integrator auto --stats b.json");
+  Run("render auto.pbrt --spp 2 -o c.exr --stats c.json");
+  EXPECT_EQ(Read("a.exr"), Read("b.exr"));
+  EXPECT_NE(Read("b.json").find("\"integrator\": \"vcm\""), std::string::npos);
+  EXPECT_NE(Read("c.json").find("\"integrator\": \"vcm\""), std::string::npos);
+}
+
 // No photons, a single one, none to be found, all of them found.
 TEST_F(Cli, PhotonsAtTheExtremes) {
   Write("dark.pbrt", "WorldBegin\nShape \"sphere\" \"float radius\" 0.3\n");
