@@ -32,6 +32,10 @@ double FirstRadius(const RenderScene& scene, const RenderSettings& settings) {
   return radius > 0 ? radius : kRadiusInPixels * TypicalFootprint(scene, settings.width, settings.height);
 }
 
+bool GathersPhotons(const std::string& integrator) {
+  return integrator == "sppm" || integrator == "vcm";
+}
+
 const std::vector<std::string>& IntegratorNames() {
   static const std::vector<std::string> names = {"path", "light", "bdpt", "sppm", "vcm"};
   return names;

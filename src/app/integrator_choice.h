@@ -20,6 +20,9 @@ AnyIntegrator MakeIntegrator(const RenderScene& scene, const RenderSettings& set
 // The radius (scene units) within which the first pass of vcm gathers photons.
 double FirstRadius(const RenderScene& scene, const RenderSettings& settings);
 
+// Of a name: whether it finds light by photons, and blurs it.
+bool GathersPhotons(const std::string& integrator);
+
 // Names for --integrator and for Integrator in a scene.
 const std::vector<std::string>& IntegratorNames();
 

@@ -225,6 +225,7 @@ std::vector<Pilot> FlyPilots(const ComparedScene& scene, double seconds, const R
   std::vector<PilotRun> runs;
   std::vector<MeanOfImages> images(IntegratorNames().size());
   for (const std::string& name : IntegratorNames()) {
+    if (GathersPhotons(name)) continue;  // a reference must not be blurred
     PilotRun run;
     run.pilot.integrator = name;
     run.isHinted = !IntegratorHints(scene.Built().scene, name).empty();
