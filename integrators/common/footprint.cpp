@@ -13,8 +13,7 @@ double PixelArea(const Camera& camera, const Ray& ray, double filmPixels, double
   const auto densities = camera.EvaluateRay(ray, &film);
   if (!densities) return 0;
   // Of film points chosen uniformly in the full image.
-  if (camera.HasParallelRays() || camera.ConnectsByDirection())
-    return 1 / (static_cast<double>(densities->pdfPosition.value) * filmPixels);
+  if (camera.ConnectsByDirection()) return 1 / (static_cast<double>(densities->pdfPosition.value) * filmPixels);
   return distance * distance / (static_cast<double>(densities->pdfDirection.value) * filmPixels);
 }
 

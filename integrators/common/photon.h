@@ -95,7 +95,7 @@ struct Photon {
   double BeforeReverse(double pdfSolidAngle) const {
     return connect + Mis(pdfSolidAngle * static_cast<double>(previousPerSolidAngle)) * earlier;
   }
-  // Not on the other side of a thin wall, nor around a corner.
+  // Not around a corner. The other side of a thin wall scatters nothing of it: its BSDF says so.
   bool IsOnSurface(const Normal3& Ng) const {
     constexpr float cosine = 0.8f;
     return std::abs(glm::dot(normal.Unpack(), Ng)) > cosine;

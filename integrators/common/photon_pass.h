@@ -17,6 +17,7 @@ inline double RadiusScale(uint32_t pass, double alpha) {
 struct PhotonPass {
   std::shared_ptr<const PhotonMap> map;
   float radius = 0;       // scene units
+  float radiusScale = 1;  // RadiusScale of the pass, for who looks as far as a pixel is large
   double lightPaths = 1;  // that the photons come from
   uint32_t pass = 0;
 

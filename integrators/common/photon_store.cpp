@@ -47,7 +47,9 @@ const PhotonPass& PhotonStore::Open(uint32_t pass, int threads) {
   open_ = PhotonPass();
   open_.pass = pass;
   open_.lightPaths = static_cast<double>(std::max<uint64_t>(paths_, 1));
-  open_.radius = static_cast<float>(settings_.radius * RadiusScale(pass, settings_.alpha));
+  const double scale = RadiusScale(pass, settings_.alpha);
+  open_.radiusScale = static_cast<float>(scale);
+  open_.radius = static_cast<float>(settings_.radius * scale);
   open_.map = std::make_shared<PhotonMap>(waiting_, Mis(open_.MergesPerDensity()), threads);
   Clear();
   const PhotonMap& map = *open_.map;

@@ -40,9 +40,8 @@ bool MakeVertex(const RenderScene& scene, const Ray& ray, const RayHit& hit, con
 bool Scatter(PathVertex& vertex, TransportMode mode, int depth, const SubpathDimensions& from, int block, float scale,
              Sampler& sampler, Flight& flight);
 
-// Sets the densities and the weight of a vertex that its subpath found from the previous one.
-// Without `connects`, the weight is that of merging
-// alone.
+// Sets the densities and the weight of a vertex that its subpath found from the previous one. Without `connects`, the
+// weight is that of merging alone.
 void Follow(const PathVertex& previous, const Flight& flight, bool connects, PathVertex& vertex);
 
 // From the densities of an emission to area at the vertex where it lands.

@@ -58,13 +58,12 @@ struct SppmIntegrator::Gathered final : PhotonGatherer {
       : own(integrator), pass(aPass), counts(someCounts) {
     if (own.settings_.photons.radius > 0) return;
     const double area = PixelArea(*own.scene_.camera, ray, own.settings_.filmPixels, 1);
-    perLength =
-        static_cast<float>(kRadiusInPixels * std::sqrt(area) * RadiusScale(pass.pass, own.settings_.photons.alpha));
+    perLength = static_cast<float>(kRadiusInPixels * std::sqrt(area)) * pass.radiusScale;
   }
 
   float RadiusAt(float length) const {
     if (own.settings_.photons.radius > 0) return pass.radius;
-    return own.scene_.camera->HasParallelRays() ? perLength : perLength * length;
+    return own.scene_.camera->ConnectsByDirection() ? perLength : perLength * length;
   }
 
   Color Gather(const SurfacePoint& point, const Bsdf& bsdf, const Vector3& wo, int events,
