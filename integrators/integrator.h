@@ -89,6 +89,7 @@ struct PhotonSettings {
   double alpha = 2. / 3;    // how fast the radius shrinks: as pass^((alpha - 1) / 2); 1: never
   uint64_t lightPaths = 0;  // whose photons a pass gathers; 0: as many as the full image has pixels
   uint64_t mostBytes = 0;   // of photons, while a map is made of them; 0: whatever it takes
+  bool guided = true;       // learn where photons are of use, and aim them there if it pays (emission_learning.h)
 };
 
 // Where a sample goes, besides what it returns, and what it may use.
@@ -98,6 +99,7 @@ struct SampleSinks {
   PathObserver* observer = nullptr;    // is told of all that the sample is made of
   const PhotonPass* gather = nullptr;  // the photons that may be used; null: none yet
   PhotonList* photons = nullptr;       // where those of this sample's light path go; null: nobody wants them
+  bool withOrigin = false;             // and where that path comes from
 };
 
 // An integrator that follows a path from the camera and one from a light together. Stateless: any thread may call it.

@@ -50,6 +50,13 @@ enum class LightKind {
   Infinite,        // a distribution of directions: dome, distant with an angle
 };
 
+constexpr bool IsDelta(LightKind kind) {
+  return kind == LightKind::DeltaPosition || kind == LightKind::DeltaDirection;
+}
+constexpr bool IsAtInfinity(LightKind kind) {
+  return kind == LightKind::Infinite || kind == LightKind::DeltaDirection;
+}
+
 // Placement of a light at one instant of the shutter.
 struct LightTransform {
   Affine toRender;  // the light's local space to render space
@@ -212,6 +219,10 @@ class Light {
   // never found: they give nullopt. For infinite lights any direction is a hit.
   virtual std::optional<LightEvaluation> EvaluateSamples(const LightContext& context, const LightHit& hit,
                                                          const Point3& P) const = 0;
+
+  // Whether photons may be aimed: sent in any direction from a place on the light, or, by a light at infinity, along any
+  // line of the direction it has chosen. False where the light shines through something that the photon must meet.
+  virtual bool CanBeAimed() const { return true; }
 
   // A photon by context.u and context.uDirection; nullopt when this choice of numbers emits nothing. An area light
   // chooses the position by u alone, and then the direction by uDirection. It gives nullopt only where it has no

@@ -146,6 +146,9 @@ class PortalLight final : public LightBase {
     return evaluation;
   }
 
+  // Its photons come through the portal.
+  bool CanBeAimed() const override { return false; }
+
   std::optional<EmissionSample> GenerateEmission(const LightContext& context) const override {
     if (isBlack_) return std::nullopt;
     PortalPlace scratch;

@@ -306,6 +306,10 @@ Color BdptIntegrator::Merge(Run& run) const {
     const double weight = 1 / (1 + (light + camera) * perMerge);
     const Color value = scattered * ArrivalCorrection(vertex.bsdf, toLight);
     sum += value * static_cast<float>(weight);
+    if (pass.use) [[unlikely]] {
+      const Color part = (vertex.diffuse + vertex.specular) * f.Sum();
+      pass.use->Add(index, part.Average() * static_cast<float>(weight));
+    }
     if (run.sinks.observer) [[unlikely]]
       ReportMerge(run, photon, value * (vertex.diffuse + vertex.specular) * perDensity, weight);
   }
@@ -411,6 +415,9 @@ struct BdptIntegrator::LightVisitor final : LightSubpathVisitor {
   LightVisitor(const BdptIntegrator& integrator, Run& aRun) : own(integrator), run(aRun) {}
   void Emitted(const EmittedPhoton& photon) override {
     if (own.settings_.connects) own.SeeLightPoint(run, photon);
+  }
+  void Landed(const EmittedPhoton& photon, const PathVertex& first) override {
+    if (run.sinks.withOrigin) run.sinks.photons->SetOrigin(OriginOf(own.lighting_, photon, first));
   }
   void Arrived(const LightSubpath& path) override {
     const PathVertex& vertex = path.Last();

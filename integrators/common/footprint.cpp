@@ -36,22 +36,27 @@ bool FindSeenVertex(const RenderScene& scene, const Ray& ray, Sampler& sampler, 
   return false;
 }
 
-double TypicalFootprint(const RenderScene& scene, int width, int height) {
-  constexpr int across = 24;
-  const double filmPixels = static_cast<double>(width) * static_cast<double>(height);
-  std::vector<double> areas;
+void VisitSeen(const RenderScene& scene, int width, int height, int across, const SeenVisitor& visit) {
   PathVertex vertex;
   Sampler sampler(SamplerKind::Independent, 0);
+  const auto cells = static_cast<float>(across);
   for (int i = 0; i < across * across; ++i) {
     sampler.StartPixelSample(i, 0, 0);
-    const Point2 film((static_cast<float>(i % across) + 0.5f) / across * static_cast<float>(width),
-                      (static_cast<float>(i / across) + 0.5f) / across * static_cast<float>(height));
-    const CameraRay ray = scene.camera->GenerateRay(film, Point2(0.5f), 0);
+    const Point2 film((static_cast<float>(i % across) + 0.5f) / cells * static_cast<float>(width),
+                      (static_cast<float>(i / across) + 0.5f) / cells * static_cast<float>(height));
+    const Ray ray = scene.camera->GenerateRay(film, Point2(0.5f), 0).ray;
     double distance;
-    if (!FindSeenVertex(scene, ray.ray, sampler, vertex, distance)) continue;
-    const double area = PixelArea(*scene.camera, ray.ray, filmPixels, distance);
-    if (area > 0 && std::isfinite(area)) areas.push_back(area);
+    if (FindSeenVertex(scene, ray, sampler, vertex, distance)) visit(ray, vertex, distance, sampler);
   }
+}
+
+double TypicalFootprint(const RenderScene& scene, int width, int height) {
+  const double filmPixels = static_cast<double>(width) * static_cast<double>(height);
+  std::vector<double> areas;
+  VisitSeen(scene, width, height, 24, [&](const Ray& ray, const PathVertex&, double distance, Sampler&) {
+    const double area = PixelArea(*scene.camera, ray, filmPixels, distance);
+    if (area > 0 && std::isfinite(area)) areas.push_back(area);
+  });
   if (areas.empty()) return 1e-3 * static_cast<double>(scene.lighting->SceneSphere().radius);
   const auto middle = areas.begin() + static_cast<std::ptrdiff_t>(areas.size() / 2);
   std::nth_element(areas.begin(), middle, areas.end());

@@ -23,6 +23,18 @@ bool LightSubpathTracer::Land(const EmittedPhoton& photon, LightSubpath& path) c
   return true;
 }
 
+PathOrigin OriginOf(const LightingServices& lighting, const EmittedPhoton& photon, const PathVertex& first) {
+  PathOrigin origin;
+  origin.light = photon.light;
+  origin.start = photon.emission.position;
+  origin.landing = first.point.position;
+  // A light carries its radiance in both; a multiplier may have put out one of them.
+  origin.flux = std::max(first.diffuse.Average(), first.specular.Average());
+  origin.pdfUnguided = photon.pdfUnguided;
+  origin.gain = lighting.EmissionGain(photon);
+  return origin;
+}
+
 void LightSubpathTracer::Trace(float time, Sampler& sampler, RenderCounts& counts, LightSubpath& path,
                                LightSubpathVisitor& visitor) const {
   path.count = 0;
@@ -61,6 +73,7 @@ void LightSubpathTracer::Trace(float time, Sampler& sampler, RenderCounts& count
         return;
       }
     }
+    if (path.count == 0) visitor.Landed(*photon, vertex);
     ++path.count;
     visitor.Arrived(path);
     const auto depth = static_cast<int>(path.count);

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "integrators/common/photon_use.h"
 #include "integrators/common/subpath.h"
 
 namespace lampyr {
@@ -22,9 +23,14 @@ class LightSubpathVisitor {
   virtual ~LightSubpathVisitor() = default;
   // The path leaves a surface that camera rays can hit.
   virtual void Emitted(const EmittedPhoton&) {}
+  // The path has landed for the first time; before it has Arrived there.
+  virtual void Landed(const EmittedPhoton&, const PathVertex&) {}
   // The path has come to another vertex, its last.
   virtual void Arrived(const LightSubpath& path) = 0;
 };
+
+// What is kept of the emission of a path that has landed at `first`.
+PathOrigin OriginOf(const LightingServices& lighting, const EmittedPhoton& photon, const PathVertex& first);
 
 class LightSubpathTracer {
  public:

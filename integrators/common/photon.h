@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "integrators/common/path_vertex.h"
+#include "integrators/common/photon_use.h"
 
 namespace lampyr {
 
@@ -46,7 +47,8 @@ struct TracedPhoton {
   PartialWeight weight;
   float previousPerSolidAngle;
   PackedNormal normal;
-  int depth;  // 1: it has come straight from the light
+  int depth;        // 1: it has come straight from the light
+  uint32_t origin;  // of its path, in the list
 };
 
 // The photons of consecutive light paths. Keeps its memory when it is emptied.
@@ -55,12 +57,20 @@ class PhotonList {
   void Clear() {
     photons_.clear();
     starts_.clear();
+    origins_.clear();
   }
   // What is added from now on belongs to the next path.
   void StartPath() { starts_.push_back(static_cast<uint32_t>(photons_.size())); }
+  // Where the path comes from, for who wants to know; before its first photon, or never.
+  void SetOrigin(const PathOrigin& origin) {
+    origins_.resize(KeptOrigins());  // without those of paths that left no photon
+    origins_.push_back(origin);
+  }
   void Add(const PathVertex& vertex, int depth) {
+    const auto origin = static_cast<uint32_t>(origins_.size()) - 1;
     photons_.push_back({vertex.point.position, vertex.toPrevious, vertex.diffuse, vertex.specular, vertex.weight,
-                        static_cast<float>(vertex.previousPerSolidAngle), PackedNormal(vertex.bsdf.Ng()), depth});
+                        static_cast<float>(vertex.previousPerSolidAngle), PackedNormal(vertex.bsdf.Ng()), depth,
+                        origin});
   }
   size_t Paths() const { return starts_.size(); }
   // Leaves out whole paths at the end until there are no more than `most` photons; returns the number of paths left.
@@ -69,13 +79,19 @@ class PhotonList {
       photons_.resize(starts_.back());
       starts_.pop_back();
     }
+    origins_.resize(KeptOrigins());
     return starts_.size();
   }
   const std::vector<TracedPhoton>& Photons() const { return photons_; }
+  const std::vector<PathOrigin>& Origins() const { return origins_; }
 
  private:
+  // Of paths that left photons; none where nobody has set any.
+  size_t KeptOrigins() const { return photons_.empty() ? 0 : static_cast<size_t>(photons_.back().origin + 1); }
+
   std::vector<TracedPhoton> photons_;
   std::vector<uint32_t> starts_;  // where each path starts
+  std::vector<PathOrigin> origins_;
 };
 
 // A photon in a map, without its position.

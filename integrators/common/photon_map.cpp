@@ -128,9 +128,11 @@ PhotonMap::~PhotonMap() = default;
 PhotonMap::PhotonMap(PhotonMap&&) noexcept = default;
 PhotonMap& PhotonMap::operator=(PhotonMap&&) noexcept = default;
 
-PhotonMap::PhotonMap(std::span<const PhotonList> lists, double merge, int threads) {
+PhotonMap::PhotonMap(std::span<const PhotonList> lists, double merge, int threads, std::vector<uint32_t>* origins) {
   const auto start = std::chrono::steady_clock::now();
   std::vector<const TracedPhoton*> traced;
+  std::vector<uint32_t> unsorted;  // origins
+  uint32_t firstOrigin = 0;
   size_t count = 0;
   for (const PhotonList& list : lists) count += list.Photons().size();
   traced.reserve(count);
@@ -145,7 +147,9 @@ PhotonMap::PhotonMap(std::span<const PhotonList> lists, double merge, int thread
       least = glm::min(least, photon.position);
       most = glm::max(most, photon.position);
       traced.push_back(&photon);
+      if (origins) unsorted.push_back(firstOrigin + photon.origin);
     }
+    firstOrigin += static_cast<uint32_t>(list.Origins().size());
   }
   if (traced.empty()) return;
   center_ = least + 0.5f * (most - least);
@@ -170,6 +174,10 @@ PhotonMap::PhotonMap(std::span<const PhotonList> lists, double merge, int thread
   });
   ParallelSort(order, threads);
 
+  if (origins) {
+    origins->resize(traced.size());
+    forAll([&](size_t i) { (*origins)[i] = unsorted[order[i].item]; });
+  }
   photons_.resize(traced.size());
   std::vector<float> positions(3 * traced.size());
   forAll([&](size_t i) {

@@ -29,8 +29,9 @@ class PhotonMap {
   PhotonMap& operator=(PhotonMap&&) noexcept;
 
   // Of the lists one after the other. `merge`: see PartialWeight, of the radius that photons will be gathered with.
-  // Photons whose position or flux is not finite are left out and counted.
-  PhotonMap(std::span<const PhotonList> lists, double merge, int threads);
+  // Photons whose position or flux is not finite are left out and counted. `origins`, if wanted: for each photon, the
+  // origin of its path in the lists' origins one after the other.
+  PhotonMap(std::span<const PhotonList> lists, double merge, int threads, std::vector<uint32_t>* origins = nullptr);
 
   // All photons nearer than `radius`, in an order that depends on the photons alone; valid until the next lookup. A
   // radius of 0 finds nothing.

@@ -8,13 +8,15 @@
 
 namespace lampyr {
 
-uint64_t PhotonStore::BytesPerPhoton() {
+uint64_t PhotonStore::BytesPerPhoton() const {
   constexpr uint64_t pointer = sizeof(void*), position = 3 * sizeof(float), tree = 2 * position + pointer + 16;
-  return sizeof(TracedPhoton) + sizeof(Photon) + sizeof(SortItem) + pointer + tree;
+  const uint64_t use = learning_ ? PhotonUse::kBytesPerPhoton + sizeof(PathOrigin) + sizeof(uint32_t) : 0;
+  return sizeof(TracedPhoton) + sizeof(Photon) + sizeof(SortItem) + pointer + tree + use;
 }
 
-PhotonStore::PhotonStore(const PhotonSettings& settings, uint64_t pixels)
+PhotonStore::PhotonStore(const PhotonSettings& settings, uint64_t pixels, EmissionLearning* learning)
     : settings_(settings),
+      learning_(learning),
       lightPaths_(settings.lightPaths > 0 ? settings.lightPaths : pixels),
       most_(settings.mostBytes > 0 ? std::max<uint64_t>(settings.mostBytes / BytesPerPhoton(), 1)
                                    : std::numeric_limits<uint32_t>::max() / 2) {}
@@ -38,6 +40,10 @@ void PhotonStore::Take(std::vector<PhotonList>& lists) {
 }
 
 void PhotonStore::Finish(uint32_t next) {
+  if (open_.use) {
+    learning_->Learn(*open_.use);
+    open_.use.reset();
+  }
   isTaken_ = true;
   pass_ = next;
 }
@@ -50,7 +56,11 @@ const PhotonPass& PhotonStore::Open(uint32_t pass, int threads) {
   const double scale = RadiusScale(pass, settings_.alpha);
   open_.radiusScale = static_cast<float>(scale);
   open_.radius = static_cast<float>(settings_.radius * scale);
-  open_.map = std::make_shared<PhotonMap>(waiting_, Mis(open_.MergesPerDensity()), threads);
+  std::vector<uint32_t> origins;
+  const bool wantsUse = WantsOrigins();
+  open_.map =
+      std::make_shared<PhotonMap>(waiting_, Mis(open_.MergesPerDensity()), threads, wantsUse ? &origins : nullptr);
+  if (wantsUse) open_.use = MakeUse(std::move(origins));
   Clear();
   const PhotonMap& map = *open_.map;
   ++statistics_.passes;
@@ -62,6 +72,13 @@ const PhotonPass& PhotonStore::Open(uint32_t pass, int threads) {
   if (statistics_.passes == 1) statistics_.firstRadius = static_cast<double>(open_.radius);
   statistics_.lastRadius = static_cast<double>(open_.radius);
   return open_;
+}
+
+// Photons that were traced before somebody wanted to know have no origin.
+std::shared_ptr<PhotonUse> PhotonStore::MakeUse(std::vector<uint32_t> origins) const {
+  std::vector<PathOrigin> all;
+  for (const PhotonList& list : waiting_) all.insert(all.end(), list.Origins().begin(), list.Origins().end());
+  return all.empty() ? nullptr : std::make_shared<PhotonUse>(std::move(origins), std::move(all));
 }
 
 void PhotonStore::Clear() {

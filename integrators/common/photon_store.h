@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "integrators/common/emission_learning.h"
 #include "integrators/common/photon_pass.h"
 #include "integrators/integrator.h"
 
@@ -16,16 +17,21 @@ struct PhotonStatistics {
   uint64_t mostBytes = 0;                  // of one map
   uint64_t rejected = 0;                   // not finite
   double buildSeconds = 0;                 // of all maps
+  double guideGain = 1;                    // EmissionLearning::Gain
+  int guideTargets = 0;                    // that photons are aimed at; 0: they are not
   double firstRadius = 0, lastRadius = 0;  // scene units; 0: by the pixel's size where it looks
 };
 
 class PhotonStore {
  public:
   // A pass traces `pixels` light paths unless the settings say otherwise.
-  PhotonStore(const PhotonSettings& settings, uint64_t pixels);
+  // `learning` is told what became of each pass's photons, as long as it records; null: nobody is.
+  PhotonStore(const PhotonSettings& settings, uint64_t pixels, EmissionLearning* learning = nullptr);
 
   // Light paths of which photons are wanted in each pass.
   uint64_t LightPaths() const { return lightPaths_; }
+  // Whether the paths' origins are wanted.
+  bool WantsOrigins() const { return learning_ && learning_->IsRecording(); }
   // Whether photons of the pass being traced still fit into memory.
   bool HasRoom() const { return hasRoom_; }
   // Takes the photons of paths that follow those taken before, all of one pass. Where they leave no room, whole paths
@@ -35,7 +41,7 @@ class PhotonStore {
 
   // Whether what has been taken is for this pass.
   bool IsFor(uint32_t pass) const { return isTaken_ && pass_ == pass; }
-  // All light paths of a pass are traced; their photons are for pass `next`.
+  // All light paths of a pass are traced, and its own photons are gathered; those of the paths are for pass `next`.
   void Finish(uint32_t next);
   // Makes the map, unless it is made. Requires IsFor(pass).
   const PhotonPass& Open(uint32_t pass, int threads);
@@ -43,10 +49,13 @@ class PhotonStore {
 
   const PhotonStatistics& Statistics() const { return statistics_; }
   // While a map is made of them, everything counted.
-  static uint64_t BytesPerPhoton();
+  uint64_t BytesPerPhoton() const;
 
  private:
+  std::shared_ptr<PhotonUse> MakeUse(std::vector<uint32_t> origins) const;
+
   PhotonSettings settings_;
+  EmissionLearning* learning_;
   uint64_t lightPaths_;
   uint64_t most_;  // photons
   std::vector<PhotonList> waiting_;

@@ -146,7 +146,7 @@ Color PathWalk::Radiance(const Ray& cameraRay, Sampler& sampler, RenderCounts& c
     const Receiver receiver{point.position, glm::dot(Ns, wo) < 0 ? -Ns : Ns, bsdf.IsTransmissive()};
     if (!bsdf.IsDelta()) {
       if (samplesLights_) radiance += DirectLight(path, point, bsdf, wo, receiver, sampler, counts);
-      if (gatherer) radiance += path.Throughput() * gatherer->Gather(point, bsdf, wo, path.depth + 1, path.length);
+      if (gatherer) radiance += gatherer->Gather(point, bsdf, wo, path.Throughput(), path.depth + 1, path.length);
     }
     if (!Scatter(path, point, bsdf, wo, receiver, sampler)) return radiance;
   }

@@ -11,10 +11,10 @@ namespace lampyr {
 class PhotonGatherer {
  public:
   virtual ~PhotonGatherer() = default;
-  // Scattered towards wo, by directions whose density is not above PathWalkSettings::gatherBelow. `events` scattering
-  // events of the path so far, this one included; `length` is that of the path from the camera.
-  virtual Color Gather(const SurfacePoint& point, const Bsdf& bsdf, const Vector3& wo, int events,
-                       float length) const = 0;
+  // Scattered towards wo, by directions whose density is not above PathWalkSettings::gatherBelow, times `throughput`:
+  // that of the path so far, as are its scattering `events`, this one included, and its `length` from the camera.
+  virtual Color Gather(const SurfacePoint& point, const Bsdf& bsdf, const Vector3& wo, const Color& throughput,
+                       int events, float length) const = 0;
 };
 
 struct PathWalkSettings {

@@ -43,12 +43,18 @@ class SppmIntegrator final : public BidirectionalIntegrator {
 };
 
 struct SppmIntegrator::Kept final : LightSubpathVisitor {
-  Kept(PhotonList& list, size_t first) : photons(list), firstDepth(first) {}
+  Kept(const LightingServices& services, const SampleSinks& sinks, size_t first)
+      : lighting(services), photons(*sinks.photons), withOrigin(sinks.withOrigin), firstDepth(first) {}
+  void Landed(const EmittedPhoton& photon, const PathVertex& vertex) override {
+    if (withOrigin) photons.SetOrigin(OriginOf(lighting, photon, vertex));
+  }
   void Arrived(const LightSubpath& path) override {
     if (path.count >= firstDepth && !path.Last().isDelta) photons.Add(path.Last(), static_cast<int>(path.count));
   }
 
+  const LightingServices& lighting;
   PhotonList& photons;
+  bool withOrigin;
   size_t firstDepth;
 };
 
@@ -66,7 +72,14 @@ struct SppmIntegrator::Gathered final : PhotonGatherer {
     return own.scene_.camera->ConnectsByDirection() ? perLength : perLength * length;
   }
 
-  Color Gather(const SurfacePoint& point, const Bsdf& bsdf, const Vector3& wo, int events,
+  // How much a photon counts, beside what is scattered of it: the smaller the radius, the more, in parts of what it
+  // would be where the radius is that of the scene seen from its rim.
+  float Importance(float length) const {
+    if (own.settings_.photons.radius > 0 || own.scene_.camera->ConnectsByDirection()) return 1;
+    return Sqr(own.scene_.lighting->SceneSphere().radius / length);
+  }
+
+  Color Gather(const SurfacePoint& point, const Bsdf& bsdf, const Vector3& wo, const Color& throughput, int events,
                float length) const override {
     thread_local PhotonLookup lookup;
     const float radius = RadiusAt(length);
@@ -83,10 +96,12 @@ struct SppmIntegrator::Gathered final : PhotonGatherer {
       if (f.pdfForward.value > kWide) continue;
       sum += (f.diffuse * photon.flux + f.specular * pass.map->SpecularFlux(photon)) *
              ArrivalCorrection(bsdf, photon.toPrevious);
+      if (pass.use) [[unlikely]]
+        pass.use->Add(index, (throughput * f.Sum()).Average() * Importance(length));
     }
     if (sum.IsBlack()) return sum;
     const double area = static_cast<double>(kPi) * static_cast<double>(radius) * static_cast<double>(radius);
-    return sum * static_cast<float>(1 / (pass.lightPaths * area));
+    return throughput * sum * static_cast<float>(1 / (pass.lightPaths * area));
   }
 
   const SppmIntegrator& own;
@@ -98,7 +113,7 @@ struct SppmIntegrator::Gathered final : PhotonGatherer {
 Color SppmIntegrator::Sample(const Ray* ray, float time, Sampler& sampler, const SampleSinks& sinks) const {
   if (sinks.photons) {
     thread_local LightSubpath path;
-    Kept kept(*sinks.photons, settings_.directFromPhotons ? 1 : 2);
+    Kept kept(*scene_.lighting, sinks, settings_.directFromPhotons ? 1 : 2);
     light_.Trace(time, sampler, sinks.counts, path, kept);
   }
   if (!ray || !sinks.gather) return Color(0.0f);

@@ -48,11 +48,6 @@ ClusterBounds BoundsOfPatch(const PlacedLight& placed, int patch, const Bounding
   return bounds ? BoundsOfEmitter(*bounds, placed.light->Kind()) : ClusterBounds();
 }
 
-bool IsFar(const PlacedLight& placed) {
-  const LightKind kind = placed.light->Kind();
-  return kind == LightKind::Infinite || kind == LightKind::DeltaDirection;
-}
-
 // Makes the numbers relative: see light_bounds.h.
 void Normalise(Emitters& emitters) {
   Bounds3 all;
@@ -84,7 +79,7 @@ Emitters CollectEmitters(std::span<const PlacedLight> lights, const BoundingSphe
   uint32_t count = 0;
   for (uint32_t i = 0; i < lights.size(); ++i) {
     emitters.first.push_back(count);
-    if (IsFar(lights[i])) {
+    if (IsAtInfinity(lights[i].light->Kind())) {
       emitters.far.push_back(i);
       continue;
     }

@@ -4,13 +4,6 @@ namespace lampyr {
 
 namespace {
 
-bool IsDeltaKind(LightKind kind) {
-  return kind == LightKind::DeltaPosition || kind == LightKind::DeltaDirection;
-}
-bool IsInfiniteKind(LightKind kind) {
-  return kind == LightKind::Infinite || kind == LightKind::DeltaDirection;
-}
-
 LightHit SurfaceLightHit(const Vector3& direction, float distance, const SurfacePoint& point) {
   LightHit hit;
   hit.direction = direction;
@@ -27,21 +20,6 @@ LightHit EscapedHit(const Point3& origin, const Vector3& direction) {
   hit.direction = direction;
   hit.position = origin;
   return hit;
-}
-
-// What next-event estimation says of a delta light that a photon came from: the photon's own numbers, with the falloff
-// of the distance that the light's samples have.
-LightEvaluation DeltaLanding(const EmissionSample& emission, LightKind kind, float distanceSquared) {
-  LightEvaluation evaluation;
-  const float falloff = kind == LightKind::DeltaPosition ? 1 / distanceSquared : 1.0f;
-  evaluation.normal = kind == LightKind::DeltaPosition ? Normal3(0.0f) : emission.direction;
-  evaluation.diffuse = emission.diffuse * falloff;
-  evaluation.specular = emission.specular * falloff;
-  evaluation.pdfDirect = PdfSolidAngle(1);
-  evaluation.pdfEmit = emission.pdfEmit;
-  evaluation.pdfEmitDirection = emission.pdfEmitDirection;
-  evaluation.solidAngleToArea = 1;
-  return evaluation;
 }
 
 }  // namespace
@@ -85,14 +63,15 @@ DirectSample LightingServices::GenerateSamples(const Receiver& receiver, const S
   context.u = u;
   context.patch = selected.patch;
   DirectSample direct{selected.light,
-                      IsDeltaKind(front.kind) || !front.canBeHit,
-                      IsInfiniteKind(front.kind),
+                      IsDelta(front.kind) || !front.canBeHit,
+                      lampyr::IsAtInfinity(front.kind),
                       selected.patch,
                       selected.probability,
                       front.light->GenerateSamples(context, receiver.position)};
   if (bidirectional && direct.sample) {
     LightSample& sample = *direct.sample;
     sample.pdfEmit = EmissionDensity(context, selected.light, sample.patchIndex, sample.pdfEmit);
+    Aim(selected.light, direct.isInfinite ? receiver.position : sample.position, -sample.direction, sample);
   }
   return direct;
 }
@@ -147,7 +126,10 @@ std::optional<FoundLight> LightingServices::EvaluateSamples(const Receiver& rece
   if (selector_->SelectsPatches()) context.patch = hit.patchIndex;
   auto evaluation = fronts_[light].light->EvaluateSamples(context, hit, receiver.position);
   if (!evaluation) return std::nullopt;
-  if (bidirectional) evaluation->pdfEmit = EmissionDensity(context, light, hit.patchIndex, evaluation->pdfEmit);
+  if (bidirectional) {
+    evaluation->pdfEmit = EmissionDensity(context, light, hit.patchIndex, evaluation->pdfEmit);
+    Aim(light, hit.position, -direction, *evaluation);
+  }
   return FoundLight{light, selector_->Probability(receiver, light, context.patch), *evaluation};
 }
 
@@ -158,8 +140,9 @@ std::optional<FoundLight> LightingServices::EvaluateEscaped(size_t i, const Rece
   const LightHit hit = EscapedHit(receiver.position, direction);
   std::optional<LightTransform> moved;
   const LightContext context = Context(light, time, bidirectional, moved);
-  const auto evaluation = fronts_[light].light->EvaluateSamples(context, hit, receiver.position);
+  auto evaluation = fronts_[light].light->EvaluateSamples(context, hit, receiver.position);
   if (!evaluation) return std::nullopt;
+  if (bidirectional) Aim(light, receiver.position, -direction, *evaluation);
   return FoundLight{light, selector_->Probability(receiver, light, kAnyPatch), *evaluation};
 }
 
@@ -184,78 +167,8 @@ Color LightingServices::EscapedEmissionForCamera(const Ray& ray) const {
   return sum;
 }
 
-std::optional<EmittedPhoton> LightingServices::GenerateEmission(float uSelect, const Point2& u,
-                                                                const Point2& uDirection, float time) const {
-  LightChoices choices;
-  emissionSelector_->Select({}, MoreBits(uSelect, Point3(u.x, u.y, uDirection.x)), choices);
-  if (choices.count == 0) return std::nullopt;
-  const SelectedLight* selected = choices.of;
-  std::optional<LightTransform> moved;
-  LightContext context = Context(selected->light, time, true, moved);
-  context.u = u;
-  context.uDirection = uDirection;
-  const std::optional<EmissionSample> emission = fronts_[selected->light].light->GenerateEmission(context);
-  if (!emission) return std::nullopt;
-  EmittedPhoton photon{selected->light, selected->probability, *emission, std::nullopt, {}, false};
-  const bool fromSurface = fronts_[selected->light].kind == LightKind::Area;
-  photon.fromSurface = fromSurface && fronts_[selected->light].canBeHit;
-  photon.ray.origin =
-      fromSurface ? OffsetRayOrigin(emission->position, emission->positionError, emission->normal, emission->direction)
-                  : emission->position;
-  photon.ray.direction = emission->direction;
-  photon.ray.time = time;
-  RayHit hit;
-  if (!photon.IsDark() && geometry_.Intersect(photon.ray, visibility::kIndirect, hit) && hit.t >= emission->shinesFrom)
-    photon.landing = hit;
-  return photon;
-}
-
-bool LightingServices::IsOrigin(const EmittedPhoton& photon, const SurfacePoint& point, const Vector3& toRay,
-                                float distance) const {
-  if (geometry_.LightAt(point.primitive, point.instance) != static_cast<int32_t>(photon.light)) return false;
-  const EmissionSample& emission = photon.emission;
-  // The same side of the surface, and as near as rounding allows: a unit direction is off by 2^-22, along a grazing
-  // surface by more.
-  const float cosine = glm::dot(point.Ng, toRay);
-  if (cosine * glm::dot(emission.normal, toRay) < 0) return false;
-  const float error =
-      MaxAbsComponent(point.positionError) + MaxAbsComponent(emission.positionError) + 0x1p-20f * distance;
-  return glm::distance(point.position, emission.position) * std::abs(cosine) <= 8 * error;
-}
-
-std::optional<FoundLight> LightingServices::EvaluateLanding(const EmittedPhoton& photon,
-                                                            const Receiver& receiver) const {
-  const EmissionSample& emission = photon.emission;
-  const LightKind kind = fronts_[photon.light].kind;
-  std::optional<LightTransform> moved;
-  LightContext context = Context(photon.light, photon.ray.time, true, moved);
-  if (selector_->SelectsPatches()) context.patch = emission.patchIndex;
-  const PdfDiscrete selection = selector_->Probability(receiver, photon.light, context.patch);
-  const Vector3 way = receiver.position - emission.position;
-  if (IsDeltaKind(kind)) {
-    if (!(LengthSquared(way) > 0)) return std::nullopt;
-    return FoundLight{photon.light, selection, DeltaLanding(emission, kind, LengthSquared(way))};
-  }
-  LightHit hit = EscapedHit(receiver.position, -emission.direction);
-  if (kind == LightKind::Area) {
-    hit.position = emission.position;
-    hit.distance = glm::length(way);
-    hit.normal = emission.normal;
-    hit.uv = Point2(emission.uvw.x, emission.uvw.y);
-    hit.patchIndex = emission.patchIndex;
-  }
-  auto evaluation = fronts_[photon.light].light->EvaluateSamples(context, hit, receiver.position);
-  if (!evaluation) return std::nullopt;
-  evaluation->pdfEmit = EmissionDensity(context, photon.light, hit.patchIndex, evaluation->pdfEmit);
-  return FoundLight{photon.light, selection, *evaluation};
-}
-
 PdfDiscrete LightingServices::SelectionProbability(const Receiver& receiver, uint32_t light, int patch) const {
   return selector_->Probability(receiver, light, patch);
-}
-
-PdfDiscrete LightingServices::EmissionSelectionProbability(uint32_t light) const {
-  return emissionSelector_->Probability({}, light, kAnyPatch);
 }
 
 }  // namespace lampyr

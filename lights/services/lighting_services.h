@@ -11,6 +11,7 @@
 #include "geometry/geometry_scene.h"
 #include "geometry/robust.h"
 #include "lights/light.h"
+#include "lights/selection/emission_guide.h"
 #include "lights/selection/light_learning.h"
 #include "lights/selection/light_selector.h"
 #include "sampling/rng.h"
@@ -43,6 +44,8 @@ struct EmittedPhoton {
   uint32_t light = 0;
   PdfDiscrete emissionSelection;
   EmissionSample emission;
+  float pdfUnguided = 0;  // of the density that a guide has a part in, what it would be without: 1/m² of lights at
+                          // infinity, 1/sr of others
   std::optional<RayHit> landing;  // nullopt: it left the scene, or is dark
   Ray ray;
   bool fromSurface = false;  // it started on a surface that camera rays can hit
@@ -78,6 +81,11 @@ class LightingServices {
   // Selection learns from results, and uses what `learning` knows; null: it does neither. Not during a pass.
   void Use(LightLearning* learning);
 
+  // From now on photons are aimed by `guide`, and every emission density says so; null: they are not. Not during a pass.
+  void AimBy(const EmissionGuide* guide) { guide_ = guide; }
+  // How lights are chosen for emission without a guide.
+  const LightSelector& EmissionSelector() const { return *emissionSelector_; }
+
   // The area light at a surface point that a ray from `receiver` along the unit `direction` hit; nullopt when that
   // surface emits nothing that way.
   std::optional<FoundLight> EvaluateSamples(const Receiver& receiver, const Vector3& direction, float distance,
@@ -99,6 +107,8 @@ class LightingServices {
   // Chooses a light for emission, emits and traces to the landing point.
   std::optional<EmittedPhoton> GenerateEmission(float uSelect, const Point2& u, const Point2& uDirection,
                                                 float time) const;
+  // How much more often this photon is sent than it would be without a guide.
+  float EmissionGain(const EmittedPhoton& photon) const;
   // The light vertex of a photon that landed at `receiver`, as next-event estimation from there sees it: densities
   // without the selection. Delta lights too, which it finds with the discrete density 1.
   std::optional<FoundLight> EvaluateLanding(const EmittedPhoton& photon, const Receiver& receiver) const;
@@ -109,9 +119,7 @@ class LightingServices {
   PdfDiscrete EmissionSelectionProbability(uint32_t light) const;
   // Whether a light has a direction only (infinite and distant lights), and whether a direction that a surface samples
   // can find it.
-  bool IsAtInfinity(uint32_t light) const {
-    return fronts_[light].kind == LightKind::Infinite || fronts_[light].kind == LightKind::DeltaDirection;
-  }
+  bool IsAtInfinity(uint32_t light) const { return lampyr::IsAtInfinity(fronts_[light].kind); }
   bool CanBeHit(uint32_t light) const {
     return fronts_[light].kind == LightKind::Infinite ||
            (fronts_[light].kind == LightKind::Area && fronts_[light].canBeHit);
@@ -125,6 +133,18 @@ class LightingServices {
   static double MoreBits(float u, const Point3& of) { return WithMoreBits(u, of.x, of.y, of.z); }
   // `moved` keeps the place of a light that moves, and must live as long as the context.
   LightContext Context(uint32_t light, float time, bool bidirectional, std::optional<LightTransform>& moved) const;
+
+  // What chooses a light and makes its photon, without the guide's part in the densities.
+  struct Emission {
+    PdfDiscrete selection;
+    uint32_t light = 0;
+    EmissionSample sample;
+  };
+  std::optional<Emission> Emit(double uSelect, const Point2& u, const Point2& uDirection, float time) const;
+  std::optional<EmissionSample> EmitAimed(const LightContext& context, const EmissionGuide::Choice& choice) const;
+  // The guide's part in the density of an emission from `from` along `direction`; at infinity, of any point on the line.
+  template <class Record>
+  void Aim(uint32_t light, const Point3& from, const Vector3& direction, Record& record) const;
 
   // Emission chooses a light as a whole: of densities given a patch, that of emission becomes the whole light's.
   PdfArea EmissionDensity(const LightContext& context, uint32_t light, int patch, PdfArea given) const;
@@ -144,6 +164,20 @@ class LightingServices {
   BoundingSphere sphere_;
   std::unique_ptr<LightSelector> selector_, emissionSelector_;
   LightLearning* learning_ = nullptr;
+  const EmissionGuide* guide_ = nullptr;
 };
+
+template <class Record>
+void LightingServices::Aim(uint32_t light, const Point3& from, const Vector3& direction, Record& record) const {
+  if (!guide_) return;
+  const float share = guide_->Share(light);
+  if (!(share > 0)) return;
+  if (IsAtInfinity(light)) {
+    record.pdfEmit = (1 - share) * record.pdfEmit + share * guide_->LineDensity(light, from, direction);
+  } else {
+    record.pdfEmitDirection =
+        (1 - share) * record.pdfEmitDirection + share * guide_->DirectionDensity(light, from, direction);
+  }
+}
 
 }  // namespace lampyr

@@ -108,6 +108,8 @@ void DefineSceneOptions(CLI::App& app, RenderOverrides& overrides, std::string& 
             "vcm: connect vertices (on); without, it is bidirectional photon mapping");
   AddSwitch(app, "--direct-photons,!--no-direct-photons", overrides.directFromPhotons,
             "sppm: gather photons for direct light, too, instead of sampling lights (off)");
+  AddSwitch(app, "--guide-photons,!--no-guide-photons", overrides.guidesPhotons,
+            "sppm, vcm: learn where photons are of use, and aim them there if it pays (on)");
   AddSwitch(app, "--learn-lights,!--no-learn-lights", overrides.learnLights,
             "Let the light tree learn which lights are occluded where (off)");
 }

@@ -4,15 +4,6 @@
 
 namespace lampyr {
 
-namespace {
-
-bool IsDelta(const PlacedLight& placed) {
-  const LightKind kind = placed.light->Kind();
-  return kind == LightKind::DeltaPosition || kind == LightKind::DeltaDirection;
-}
-
-}  // namespace
-
 std::vector<std::string> IntegratorHints(const RenderScene& scene, const std::string& integrator) {
   std::vector<std::string> hints;
   const std::vector<PlacedLight>& lights = scene.lighting->Lights();
@@ -24,11 +15,10 @@ std::vector<std::string> IntegratorHints(const RenderScene& scene, const std::st
         "no path from a light behind everything can be joined to the camera, so the background stays black; "
         "--integrator path and bdpt show it");
   }
-  const auto isSmooth = [](const auto& material) {
-    return material && material->HasDelta() && !material->IsInterface();
-  };
+  const auto isSmooth = [](const auto& material) { return material && material->IsSmooth(); };
   if (!std::any_of(scene.materials.begin(), scene.materials.end(), isSmooth)) return hints;
-  const auto deltas = std::count_if(lights.begin(), lights.end(), IsDelta);
+  const auto deltas = std::count_if(
+      lights.begin(), lights.end(), [](const PlacedLight& placed) { return IsDelta(placed.light->Kind()); });
   if (integrator == "path" && deltas > 0) {
     hints.push_back("no path from the camera can hit a light without extent (" + std::to_string(deltas) + " of " +
                     std::to_string(lights.size()) +

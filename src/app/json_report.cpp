@@ -76,6 +76,7 @@ std::string ToJson(const RenderReport& report) {
                        {"mostInAPass", photons->mostPhotons}, {"mostBytes", photons->mostBytes},
                        {"rejected", photons->rejected},       {"lookups", counts.lookups},
                        {"found", counts.foundPhotons},        {"buildSeconds", photons->buildSeconds},
+                       {"guideGain", photons->guideGain},     {"guideTargets", photons->guideTargets},
                        {"firstRadius", photons->firstRadius}, {"lastRadius", photons->lastRadius}};
   }
   return Dump(json);

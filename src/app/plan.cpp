@@ -20,17 +20,8 @@ struct Facts {
 
 // Of what next-event estimation would bring to what the camera sees, the part that nothing is in the way of.
 void MeasureDirectLight(const RenderScene& scene, const RenderSettings& settings, Facts& facts) {
-  constexpr int across = 32;
   double sent = 0, arrived = 0;
-  Sampler sampler(SamplerKind::Independent, 0);
-  PathVertex vertex;
-  for (int i = 0; i < across * across; ++i) {
-    sampler.StartPixelSample(i, 0, 0);
-    const Point2 film((static_cast<float>(i % across) + 0.5f) / across * static_cast<float>(settings.width),
-                      (static_cast<float>(i / across) + 0.5f) / across * static_cast<float>(settings.height));
-    double distance;
-    if (!FindSeenVertex(scene, scene.camera->GenerateRay(film, Point2(0.5f), 0).ray, sampler, vertex, distance))
-      continue;
+  VisitSeen(scene, settings.width, settings.height, 32, [&](const Ray&, PathVertex& vertex, double, Sampler& sampler) {
     LightChoices lights;
     scene.lighting->SelectLights(vertex.receiver, sampler.Get1D(), lights);
     const Point2 u = sampler.Get2D();
@@ -49,7 +40,7 @@ void MeasureDirectLight(const RenderScene& scene, const RenderSettings& settings
       sent += weight;
       if (!scene.lighting->Transmission(vertex.point, direct, 0).IsBlack()) arrived += weight;
     }
-  }
+  });
   if (sent > 0) facts.arriving = arrived / sent;
 }
 
@@ -57,16 +48,14 @@ Facts FactsOf(const RenderScene& scene, const RenderSettings& settings) {
   Facts facts;
   for (const PlacedLight& placed : scene.lighting->Lights()) {
     const LightKind kind = placed.light->Kind();
-    const bool isDelta = kind == LightKind::DeltaPosition || kind == LightKind::DeltaDirection;
     ++facts.lights;
     facts.patches += static_cast<size_t>(placed.light->PatchCount());
-    facts.deltas += isDelta ? 1 : 0;
+    facts.deltas += IsDelta(kind) ? 1 : 0;
     facts.infinite += kind == LightKind::Infinite ? 1 : 0;
     facts.finite += kind == LightKind::Area ? 1 : 0;
     facts.tracing += placed.light->Settings().traceLightPaths ? 1 : 0;
   }
-  for (const auto& material : scene.materials)
-    facts.smooth += material && material->HasDelta() && !material->IsInterface() ? 1 : 0;
+  for (const auto& material : scene.materials) facts.smooth += material && material->IsSmooth() ? 1 : 0;
   MeasureDirectLight(scene, settings, facts);
   return facts;
 }

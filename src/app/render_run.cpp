@@ -176,8 +176,9 @@ RenderCounts RenderPass(const RenderScene& scene, const BidirectionalIntegrator&
       RenderCounts& ofChunk = sweep.counts[own];
       splats.Clear();
       TechniqueImages::Recorder* recorder = techniques && withCamera ? &recorders[own] : nullptr;
-      const SampleSinks withPhotons{splats, ofChunk, recorder, withCamera ? gather : nullptr, &sweep.photons[own]};
-      const SampleSinks withoutPhotons{splats, ofChunk, recorder, withCamera ? gather : nullptr, nullptr};
+      const PhotonPass* found = withCamera ? gather : nullptr;
+      const SampleSinks withPhotons{splats, ofChunk, recorder, found, &sweep.photons[own], store.WantsOrigins()};
+      const SampleSinks withoutPhotons{splats, ofChunk, recorder, found};
       Sampler sampler(settings.sampler, seed);
       const uint64_t begin = round + static_cast<uint64_t>(chunk) * chunkPaths;
       for (uint64_t i = begin; i < std::min(begin + chunkPaths, end); ++i) {
@@ -242,8 +243,9 @@ ProgressiveRender::ProgressiveRender(const RenderScene& scene, const AnyIntegrat
       techniques_(techniques) {
   if (const auto* chosen = std::get_if<std::unique_ptr<BidirectionalIntegrator>>(&integrator)) {
     if (const std::optional<PhotonSettings> wanted = (*chosen)->Photons()) {
+      if (wanted->guided) guiding_ = std::make_unique<EmissionLearning>(scene, settings.width, settings.height);
       photons_ = std::make_unique<PhotonStore>(
-          *wanted, static_cast<uint64_t>(settings.width) * static_cast<uint64_t>(settings.height));
+          *wanted, static_cast<uint64_t>(settings.width) * static_cast<uint64_t>(settings.height), guiding_.get());
     }
   }
   if (settings.learnLights) learning_ = std::make_unique<LightLearning>(scene.lighting->SceneSphere());
@@ -264,15 +266,23 @@ void ProgressiveRender::AddPass(uint32_t first, uint32_t count) {
 
 namespace {
 
-// Selection learns while this lives, whatever ends a pass.
-class LearnedSelection {
+// By then most of what can be learned has been.
+constexpr uint32_t kLastLearned = 64;
+
+// What is learned counts while this lives, whatever ends a pass.
+class LearnedLighting {
  public:
-  LearnedSelection(LightingServices& lighting, LightLearning* learning) : lighting_(lighting) {
-    lighting_.Use(learning);
+  LearnedLighting(LightingServices& lighting, LightLearning* selection, const EmissionGuide* guide)
+      : lighting_(lighting) {
+    lighting_.Use(selection);
+    lighting_.AimBy(guide);
   }
-  ~LearnedSelection() { lighting_.Use(nullptr); }
-  LearnedSelection(const LearnedSelection&) = delete;
-  LearnedSelection& operator=(const LearnedSelection&) = delete;
+  ~LearnedLighting() {
+    lighting_.Use(nullptr);
+    lighting_.AimBy(nullptr);
+  }
+  LearnedLighting(const LearnedLighting&) = delete;
+  LearnedLighting& operator=(const LearnedLighting&) = delete;
 
  private:
   LightingServices& lighting_;
@@ -280,24 +290,36 @@ class LearnedSelection {
 
 }  // namespace
 
+// At a milestone.
+void ProgressiveRender::Learn(uint32_t samples) {
+  if (learning_ && learning_->IsRecording()) {
+    learning_->Freeze();
+    if (samples >= kLastLearned) learning_->StopRecording();
+  }
+  // The photons of the last pass have densities that are no longer: others are traced in their place.
+  if (guiding_ && guiding_->IsRecording() && guiding_->Decide(samples)) photons_->Clear();
+}
+
 void ProgressiveRender::AddSamples(int count) {
-  // By then most of what can be learned has been.
-  constexpr uint32_t lastLearned = 64;
   const Clock clock;
   auto first = static_cast<uint32_t>(outcome_.samplesPerPixel);
   const uint32_t end = first + static_cast<uint32_t>(count);
-  const LearnedSelection selection(*scene_.lighting, learning_.get());
   while (first < end) {
     const uint32_t milestone = std::bit_ceil(first + 1);
-    const bool learns = learning_ && learning_->IsRecording();
+    const bool learns = (learning_ && learning_->IsRecording()) || (guiding_ && guiding_->IsRecording());
     const uint32_t next = learns ? std::min(end, milestone) : end;
-    AddPass(first, next - first);
+    {
+      const LearnedLighting lighting(*scene_.lighting, learning_.get(), guiding_ ? guiding_->Guide() : nullptr);
+      AddPass(first, next - first);
+    }
     first = next;
-    if (!learns || first < milestone) continue;
-    learning_->Freeze();
-    if (first >= lastLearned) learning_->StopRecording();
+    if (learns && first == milestone) Learn(first);
   }
   if (photons_) outcome_.photons = photons_->Statistics();
+  if (guiding_) {
+    outcome_.photons->guideGain = guiding_->Gain();
+    outcome_.photons->guideTargets = guiding_->Targets();
+  }
   outcome_.samplesPerPixel += count;
   outcome_.seconds += clock.Seconds();
 }

@@ -64,6 +64,7 @@ class ProgressiveRender {
 
  private:
   void AddPass(uint32_t first, uint32_t count);
+  void Learn(uint32_t samples);
 
   const RenderScene& scene_;
   const AnyIntegrator& integrator_;
@@ -73,7 +74,8 @@ class ProgressiveRender {
   Film& film_;
   TechniqueImages* techniques_;
   RenderOutcome outcome_;
-  std::unique_ptr<LightLearning> learning_;  // null: selection learns nothing
+  std::unique_ptr<LightLearning> learning_;    // null: selection learns nothing
+  std::unique_ptr<EmissionLearning> guiding_;  // null: photons are not aimed
   std::unique_ptr<PhotonStore> photons_;     // of integrators that gather them
 };
 

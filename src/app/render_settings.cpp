@@ -232,6 +232,7 @@ void ReadPhotons(const ParameterList& parameters, const RenderOverrides& overrid
   settings.merges = parameters.GetBool("merge", settings.merges);
   settings.connects = parameters.GetBool("connect", settings.connects);
   settings.directFromPhotons = parameters.GetBool("directphotons", settings.directFromPhotons);
+  settings.photons.guided = parameters.GetBool("guidephotons", settings.photons.guided);
   if (overrides.photons) photons.lightPaths = *overrides.photons;
   if (overrides.photonMemory) photons.mostBytes = *overrides.photonMemory;
   if (overrides.radius) photons.radius = *overrides.radius;
@@ -239,6 +240,7 @@ void ReadPhotons(const ParameterList& parameters, const RenderOverrides& overrid
   if (overrides.merges) settings.merges = *overrides.merges;
   if (overrides.connects) settings.connects = *overrides.connects;
   if (overrides.directFromPhotons) settings.directFromPhotons = *overrides.directFromPhotons;
+  if (overrides.guidesPhotons) settings.photons.guided = *overrides.guidesPhotons;
   if (!settings.merges && !settings.connects) {
     throw UsageError("--no-merge and --no-connect: vcm has nothing left to find light by");
   }
@@ -302,7 +304,8 @@ void ReadIntegrator(const SceneDescription& scene, const RenderOverrides& overri
   if (isKnown) {
     parameters.CheckAllUsed(
         {"regularize", "options"},
-        {"maxdepth", "lightsampler", "photonsperiteration", "radius", "alpha", "merge", "connect", "directphotons"},
+        {"maxdepth", "lightsampler", "photonsperiteration", "radius", "alpha", "merge", "connect", "directphotons",
+         "guidephotons"},
         diagnostics);
   }
 }

@@ -27,7 +27,7 @@ struct RenderOverrides {
   std::optional<int> lightSamples;
   std::optional<double> radius, alpha;  // of photons, see PhotonSettings
   std::optional<uint64_t> photons, photonMemory;
-  std::optional<bool> merges, connects, directFromPhotons;
+  std::optional<bool> merges, connects, directFromPhotons, guidesPhotons;
   uint64_t seed = 0;
 };
 

@@ -26,6 +26,8 @@ class Material {
   // Whether some point of it may scatter by deltas only, or may transmit: what the scene has to be modelled for.
   virtual bool MayTransmit() const { return false; }
   virtual bool HasDelta() const { return false; }
+  // Mirrors and clear glass: what shows light sharply.
+  bool IsSmooth() const { return HasDelta() && !IsInterface(); }
 };
 
 // Finds materials by name while a "mix" is being made; throws an Error when there is none.

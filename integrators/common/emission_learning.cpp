@@ -1,0 +1,147 @@
+#include "integrators/common/emission_learning.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "geometry/rounding.h"
+#include "integrators/common/footprint.h"
+#include "integrators/common/subpath.h"
+
+namespace lampyr {
+
+namespace {
+
+// Useful photons that are remembered; beyond, one in so many, each worth as many more.
+constexpr size_t kMostUseful = size_t{1} << 15;
+// A guide must promise more than it costs: its densities are asked for at every light path, shadow ray and hit.
+constexpr double kWorthwhile = 1.5;
+// Photons that a verdict is based on, at least: of sums of squares, a few may be all.
+constexpr double kFewestTested = 8;
+// By then most of what can be learned has been, if there is a verdict; later than the last, nothing more.
+constexpr uint32_t kLearned = 64, kLastLearned = 4096;
+
+// Photons of use that are a better guess than the first one.
+constexpr size_t kManyUseful = 256;
+// Of the first guess.
+constexpr double kRare = 0.1;     // photons that come near to what is seen: if there are fewer, they are aimed
+constexpr int kSeenAcross = 32;   // rays
+constexpr int kGuessed = 4096;    // photons
+constexpr size_t kBrightest = 8;  // lights that are aimed
+
+}  // namespace
+
+EmissionLearning::EmissionLearning(const RenderScene& scene, int width, int height) : lighting_(*scene.lighting) {
+  Guess(scene, width, height);
+}
+
+std::shared_ptr<const EmissionGuide> EmissionLearning::MakeGuide(std::span<const UsefulPhoton> photons) const {
+  return std::make_shared<const EmissionGuide>(photons, lighting_.Lights(), lighting_.EmissionSelector(),
+                                               lighting_.SceneSphere());
+}
+
+void EmissionLearning::Guess(const RenderScene& scene, int width, int height) {
+  std::vector<Point3> seen;
+  VisitSeen(scene, width, height, kSeenAcross, [&](const Ray&, PathVertex& vertex, double, Sampler& sampler) {
+    seen.push_back(vertex.point.position);
+    vertex.diffuse = Color(0.0f);
+    vertex.specular = Color(1.0f);
+    Flight flight;
+    PathVertex next;
+    double distance;
+    if (Scatter(vertex, TransportMode::Radiance, 1, SubpathDimensions(), 1, 1, sampler, flight) &&
+        FindSeenVertex(scene, flight.ray, sampler, next, distance)) {
+      seen.push_back(next.point.position);
+    }
+  });
+  std::vector<EmittedPhoton> photons;
+  std::vector<uint32_t> counts(lighting_.Lights().size());
+  Sampler sampler(SamplerKind::Sobol, 0);
+  for (uint32_t i = 0; i < kGuessed; ++i) {
+    sampler.StartPixelSample(0, 0, i);
+    const float uSelect = sampler.Get1D();
+    const Point2 u = sampler.Get2D(), uDirection = sampler.Get2D();
+    if (const auto photon = lighting_.GenerateEmission(uSelect, u, uDirection, 0)) {
+      photons.push_back(*photon);
+      ++counts[photon->light];
+    }
+  }
+  // The lights that most photons come from.
+  std::vector<uint32_t> brightest(counts.size());
+  std::iota(brightest.begin(), brightest.end(), 0u);
+  std::stable_sort(brightest.begin(), brightest.end(), [&](uint32_t a, uint32_t b) { return counts[a] > counts[b]; });
+  if (brightest.size() > kBrightest) brightest.resize(kBrightest);
+  std::vector<UsefulPhoton> guessed;
+  for (const uint32_t light : brightest) {
+    if (counts[light] == 0) continue;
+    for (const Point3& place : seen) guessed.push_back({light, place, 1, 1, 1});
+  }
+  const auto guess = MakeGuide(guessed);
+  double near = 0;
+  for (const EmittedPhoton& photon : photons)
+    near += guess->Aims(photon.light, photon.emission.position, photon.emission.direction) ? 1 : 0;
+  if (near < kRare * static_cast<double>(photons.size())) guide_ = guess;
+}
+
+void EmissionLearning::Learn(const PhotonUse& use) {
+  const std::vector<PathOrigin>& origins = use.Origins();
+  std::vector<double> worth(origins.size());
+  for (size_t i = 0; i < use.Photons(); ++i) worth[use.PathOf(i)] += use.Sum(i);
+  for (size_t i = 0; i < origins.size(); ++i) {
+    const PathOrigin& origin = origins[i];
+    const double brought = worth[i] * static_cast<double>(origin.flux);
+    if (!(brought > 0)) continue;
+    // The density of the photon was `gain` times the unguided one.
+    const double squared = brought * brought * static_cast<double>(origin.gain);
+    const Vector3 way = origin.landing - origin.start;
+    const bool isAtInfinity = lighting_.IsAtInfinity(origin.light);
+    const double across = static_cast<double>(isAtInfinity ? 1.0f : LengthSquared(way));
+    const double own = across > 0 ? static_cast<double>(origin.pdfUnguided) / across : 0.0;
+    useful_.push_back({origin.light, origin.landing, brought, squared, own});
+    if (!tried_) continue;
+    const Vector3 direction = SafeNormalize(way, Vector3(0.0f));
+    const Point3& on = isAtInfinity ? origin.landing : origin.start;
+    unguided_.Add(squared);
+    aimed_.Add(squared / tried_->Gain(origin.light, on, direction, static_cast<double>(origin.pdfUnguided)));
+  }
+  Thin();
+}
+
+// As many as may be kept, chosen one after the other at equal steps of what they brought.
+void EmissionLearning::Thin() {
+  if (useful_.size() <= 2 * kMostUseful) return;
+  double total = 0;
+  for (const UsefulPhoton& photon : useful_) total += photon.worth;
+  const double step = total / static_cast<double>(kMostUseful);
+  std::vector<UsefulPhoton> kept;
+  double at = 0, next = 0.5 * step;
+  for (const UsefulPhoton& photon : useful_) {
+    at += photon.worth;
+    int times = 0;
+    for (; next < at; next += step) ++times;
+    if (times == 0) continue;
+    kept.push_back(photon);
+    kept.back().worth = times * step;
+    kept.back().squared *= times * step / photon.worth;
+  }
+  useful_ = std::move(kept);
+}
+
+bool EmissionLearning::Decide(uint32_t samples) {
+  const bool wasInUse = guide_ != nullptr;
+  const double gain = aimed_.sum > 0 ? unguided_.sum / aimed_.sum : 1;
+  // Chance makes the second sum rather too large than too small: what a guide has overlooked is in it fourfold.
+  const double sureness = gain > kWorthwhile ? unguided_.Count() : std::min(unguided_.Count(), aimed_.Count());
+  if (tried_ && tried_->LightCount() > 0 && sureness >= kFewestTested) {
+    gain_ = gain;
+    unguided_ = aimed_ = Sum();
+    hasVerdict_ = true;
+  }
+  tried_ = MakeGuide(useful_);
+  // What has stood the test was made of fewer photons than the one that takes its place.
+  if (hasVerdict_) guide_ = gain_ > kWorthwhile ? tried_ : nullptr;
+  if (!hasVerdict_ && guide_ && useful_.size() >= kManyUseful) guide_ = tried_;
+  if (samples >= kLastLearned || (samples >= kLearned && hasVerdict_)) isRecording_ = false;
+  return wasInUse || guide_;
+}
+
+}  // namespace lampyr

@@ -1,0 +1,53 @@
+// What becomes of photons, where somebody wants to know: how much the camera's paths got by each.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "math/vec.h"
+
+namespace lampyr {
+
+// Where a light path came from and first landed.
+struct PathOrigin {
+  uint32_t light = 0;
+  Point3 start{0.0f}, landing{0.0f};
+  float flux = 0;         // as it was emitted, over the density of its emission; W, mean of the channels
+  float pdfUnguided = 0;  // EmittedPhoton::pdfUnguided
+  float gain = 1;         // how much more often it is sent than without a guide
+};
+
+class PhotonUse {
+ public:
+  // `paths`: of each photon of the map, an index into `origins`.
+  PhotonUse(std::vector<uint32_t> paths, std::vector<PathOrigin> origins)
+      : paths_(std::move(paths)), origins_(std::move(origins)), sums_(paths_.size()) {}
+
+  // `part`: of the photon's flux that came to the camera by it, per density of photons; not negative. From any thread:
+  // sums are integers, the same whatever the order.
+  void Add(uint32_t photon, float part) {
+    constexpr float most = 0x1p16f;
+    sums_[photon].fetch_add(static_cast<uint64_t>(std::min(part, most) * kUnit), std::memory_order_relaxed);
+  }
+  size_t Photons() const { return paths_.size(); }
+  uint32_t PathOf(size_t photon) const { return paths_[photon]; }
+  double Sum(size_t photon) const {
+    return static_cast<double>(sums_[photon].load(std::memory_order_relaxed)) / static_cast<double>(kUnit);
+  }
+  const std::vector<PathOrigin>& Origins() const { return origins_; }
+
+  // Beside the photon itself.
+  static constexpr uint64_t kBytesPerPhoton = sizeof(uint32_t) + sizeof(uint64_t) + sizeof(PathOrigin);
+
+ private:
+  static constexpr float kUnit = 0x1p24f;
+
+  std::vector<uint32_t> paths_;
+  std::vector<PathOrigin> origins_;
+  std::vector<std::atomic<uint64_t>> sums_;
+};
+
+}  // namespace lampyr

@@ -1,0 +1,186 @@
+// The lights' part of light subpaths: photons, aimed by a guide or not, and what next-event estimation says of them
+// where they land.
+#include "lights/services/lighting_services.h"
+
+namespace lampyr {
+
+namespace {
+
+// What next-event estimation says of a delta light that a photon came from: the photon's own numbers, with the falloff
+// of the distance that the light's samples have.
+LightEvaluation DeltaLanding(const EmissionSample& emission, LightKind kind, float distanceSquared) {
+  LightEvaluation evaluation;
+  const float falloff = kind == LightKind::DeltaPosition ? 1 / distanceSquared : 1.0f;
+  evaluation.normal = kind == LightKind::DeltaPosition ? Normal3(0.0f) : emission.direction;
+  evaluation.diffuse = emission.diffuse * falloff;
+  evaluation.specular = emission.specular * falloff;
+  evaluation.pdfDirect = PdfSolidAngle(1);
+  evaluation.pdfEmit = emission.pdfEmit;
+  evaluation.pdfEmitDirection = emission.pdfEmitDirection;
+  evaluation.solidAngleToArea = 1;
+  return evaluation;
+}
+
+LightHit HitOf(const EmissionSample& emission, LightKind kind, const Vector3& direction, const Point3& P) {
+  LightHit hit;
+  hit.direction = -direction;
+  hit.position = P;
+  if (kind != LightKind::Area) return hit;
+  hit.position = emission.position;
+  hit.distance = glm::distance(P, emission.position);
+  hit.normal = emission.normal;
+  hit.uv = Point2(emission.uvw.x, emission.uvw.y);
+  hit.patchIndex = emission.patchIndex;
+  return hit;
+}
+
+// The intensity of a point and its densities, from a sample of it seen from P.
+std::optional<EmissionSample> EmissionOfPoint(const LightSample& seen) {
+  EmissionSample sample;
+  const float squared = Sqr(seen.distance);
+  sample.position = seen.position;
+  sample.positionError = seen.positionError;
+  sample.diffuse = seen.diffuse * squared;
+  sample.specular = seen.specular * squared;
+  sample.pdfEmit = seen.pdfEmit;
+  sample.pdfEmitDirection = seen.pdfEmitDirection;
+  return sample;
+}
+
+}  // namespace
+
+// The light's own place or direction, and the other of the two towards a target.
+std::optional<EmissionSample> LightingServices::EmitAimed(const LightContext& context,
+                                                          const EmissionGuide::Choice& choice) const {
+  const Light& light = *fronts_[choice.light].light;
+  const LightKind kind = light.Kind();
+  std::optional<EmissionSample> emission = light.GenerateEmission(context);
+  if (IsAtInfinity(choice.light)) {
+    if (!emission) return std::nullopt;
+    const Vector3& direction = emission->direction;
+    const Vector3 offset = guide_->SampleLine(choice, direction, context.uDirection) - sphere_.center;
+    emission->position = sphere_.center + offset - (glm::dot(offset, direction) + sphere_.radius) * direction;
+    if (guide_->LineDensity(choice.light, emission->position, direction).IsZero()) return std::nullopt;
+    return emission;
+  }
+  if (kind == LightKind::DeltaPosition && !emission) {
+    // The direction it would have chosen is dark.
+    const auto bounds = light.GetEmissionBounds(context);
+    if (!bounds) return std::nullopt;
+    emission.emplace().position = bounds->box.Center();
+  }
+  if (!emission) return std::nullopt;
+  const Vector3 direction = guide_->SampleDirection(choice, emission->position, context.uDirection);
+  // A direction on a target's rim may be rounded past it, where its density would not be that of its sampling.
+  const bool isMissed = guide_->DirectionDensity(choice.light, emission->position, direction).IsZero();
+  const Point3 P = emission->position + guide_->Reach(choice, emission->position) * direction;
+  if (kind == LightKind::DeltaPosition) {
+    const auto seen = light.GenerateSamples(context, P);
+    if (!seen || isMissed) return std::nullopt;
+    emission = EmissionOfPoint(*seen);
+    emission->direction = emission->normal = direction;
+    return emission;
+  }
+  const auto found = light.EvaluateSamples(context, HitOf(*emission, kind, direction, P), P);
+  const LightEvaluation evaluation = found && !isMissed ? *found : LightEvaluation();
+  emission->direction = direction;
+  emission->emissionCosine = AbsDot(emission->normal, direction);
+  emission->diffuse = evaluation.diffuse;
+  emission->specular = evaluation.specular;
+  emission->pdfEmitDirection = evaluation.pdfEmitDirection;
+  return emission;
+}
+
+std::optional<LightingServices::Emission> LightingServices::Emit(double uSelect, const Point2& u,
+                                                                 const Point2& uDirection, float time) const {
+  EmissionGuide::Choice choice;
+  if (guide_) {
+    choice = guide_->Select(uSelect);
+    if (!choice.exists) return std::nullopt;
+  } else {
+    LightChoices choices;
+    emissionSelector_->Select({}, uSelect, choices);
+    if (choices.count == 0) return std::nullopt;
+    choice.light = choices.of[0].light;
+    choice.probability = choices.of[0].probability;
+  }
+  std::optional<LightTransform> moved;
+  LightContext context = Context(choice.light, time, true, moved);
+  context.u = u;
+  context.uDirection = uDirection;
+  const Light& light = *fronts_[choice.light].light;
+  const auto sample = choice.target == EmissionGuide::kNone ? light.GenerateEmission(context) : EmitAimed(context, choice);
+  if (!sample) return std::nullopt;
+  return Emission{choice.probability, choice.light, *sample};
+}
+
+std::optional<EmittedPhoton> LightingServices::GenerateEmission(float uSelect, const Point2& u,
+                                                                const Point2& uDirection, float time) const {
+  const auto emitted = Emit(MoreBits(uSelect, Point3(u.x, u.y, uDirection.x)), u, uDirection, time);
+  if (!emitted) return std::nullopt;
+  const Front& front = fronts_[emitted->light];
+  EmittedPhoton photon;
+  photon.light = emitted->light;
+  photon.emissionSelection = emitted->selection;
+  photon.emission = emitted->sample;
+  EmissionSample& emission = photon.emission;
+  photon.pdfUnguided = IsAtInfinity(photon.light) ? emission.pdfEmit.value : emission.pdfEmitDirection.value;
+  Aim(photon.light, emission.position, emission.direction, emission);
+  const bool fromSurface = front.kind == LightKind::Area;
+  photon.fromSurface = fromSurface && front.canBeHit;
+  photon.ray.origin = fromSurface ? OffsetRayOrigin(emission.position, emission.positionError, emission.normal,
+                                                    emission.direction)
+                                  : emission.position;
+  photon.ray.direction = emission.direction;
+  photon.ray.time = time;
+  RayHit hit;
+  if (!photon.IsDark() && geometry_.Intersect(photon.ray, visibility::kIndirect, hit) && hit.t >= emission.shinesFrom)
+    photon.landing = hit;
+  return photon;
+}
+
+float LightingServices::EmissionGain(const EmittedPhoton& photon) const {
+  if (!guide_) return 1;
+  return static_cast<float>(guide_->Gain(photon.light, photon.emission.position, photon.emission.direction,
+                                         static_cast<double>(photon.pdfUnguided)));
+}
+
+bool LightingServices::IsOrigin(const EmittedPhoton& photon, const SurfacePoint& point, const Vector3& toRay,
+                                float distance) const {
+  if (geometry_.LightAt(point.primitive, point.instance) != static_cast<int32_t>(photon.light)) return false;
+  const EmissionSample& emission = photon.emission;
+  // The same side of the surface, and as near as rounding allows: a unit direction is off by 2^-22, along a grazing
+  // surface by more.
+  const float cosine = glm::dot(point.Ng, toRay);
+  if (cosine * glm::dot(emission.normal, toRay) < 0) return false;
+  const float error =
+      MaxAbsComponent(point.positionError) + MaxAbsComponent(emission.positionError) + 0x1p-20f * distance;
+  return glm::distance(point.position, emission.position) * std::abs(cosine) <= 8 * error;
+}
+
+std::optional<FoundLight> LightingServices::EvaluateLanding(const EmittedPhoton& photon,
+                                                            const Receiver& receiver) const {
+  const EmissionSample& emission = photon.emission;
+  const LightKind kind = fronts_[photon.light].kind;
+  std::optional<LightTransform> moved;
+  LightContext context = Context(photon.light, photon.ray.time, true, moved);
+  if (selector_->SelectsPatches()) context.patch = emission.patchIndex;
+  const PdfDiscrete selection = selector_->Probability(receiver, photon.light, context.patch);
+  const Vector3 way = receiver.position - emission.position;
+  if (IsDelta(kind)) {
+    if (!(LengthSquared(way) > 0)) return std::nullopt;
+    return FoundLight{photon.light, selection, DeltaLanding(emission, kind, LengthSquared(way))};
+  }
+  const LightHit hit = HitOf(emission, kind, emission.direction, receiver.position);
+  auto evaluation = fronts_[photon.light].light->EvaluateSamples(context, hit, receiver.position);
+  if (!evaluation) return std::nullopt;
+  evaluation->pdfEmit = EmissionDensity(context, photon.light, hit.patchIndex, evaluation->pdfEmit);
+  Aim(photon.light, emission.position, emission.direction, *evaluation);
+  return FoundLight{photon.light, selection, *evaluation};
+}
+
+PdfDiscrete LightingServices::EmissionSelectionProbability(uint32_t light) const {
+  return guide_ ? guide_->Probability(light) : emissionSelector_->Probability({}, light, kAnyPatch);
+}
+
+}  // namespace lampyr
