@@ -14,16 +14,16 @@ namespace {
 // Useful photons that are remembered; beyond, one in so many, each worth as many more.
 constexpr size_t kMostUseful = size_t{1} << 15;
 // A guide must promise more than it costs: its densities are asked for at every light path, shadow ray and hit.
-constexpr double kWorthwhile = 1.5;
+constexpr double kWorthwhile = 2;
 // Photons that a verdict is based on, at least: of sums of squares, a few may be all.
 constexpr double kFewestTested = 8;
 // By then most of what can be learned has been, if there is a verdict; later than the last, nothing more.
 constexpr uint32_t kLearned = 64, kLastLearned = 4096;
 
-// Photons of use that are a better guess than the first one.
+// Photons of a light that say more than a guess.
 constexpr size_t kManyUseful = 256;
 // Of the first guess.
-constexpr double kRare = 0.1;     // photons that come near to what is seen: if there are fewer, they are aimed
+constexpr float kRare = 5;        // photons are aimed if most would be sent so many times as often
 constexpr int kSeenAcross = 32;   // rays
 constexpr int kGuessed = 4096;    // photons
 constexpr size_t kBrightest = 8;  // lights that are aimed
@@ -53,42 +53,78 @@ void EmissionLearning::Guess(const RenderScene& scene, int width, int height) {
       seen.push_back(next.point.position);
     }
   });
-  std::vector<EmittedPhoton> photons;
   std::vector<uint32_t> counts(lighting_.Lights().size());
-  Sampler sampler(SamplerKind::Sobol, 0);
-  for (uint32_t i = 0; i < kGuessed; ++i) {
-    sampler.StartPixelSample(0, 0, i);
-    const float uSelect = sampler.Get1D();
-    const Point2 u = sampler.Get2D(), uDirection = sampler.Get2D();
-    if (const auto photon = lighting_.GenerateEmission(uSelect, u, uDirection, 0)) {
-      photons.push_back(*photon);
-      ++counts[photon->light];
+  const auto emit = [&](const auto& visit) {
+    Sampler sampler(SamplerKind::Sobol, 0);
+    for (uint32_t i = 0; i < kGuessed; ++i) {
+      sampler.StartPixelSample(0, 0, i);
+      const float uSelect = sampler.Get1D();
+      const Point2 u = sampler.Get2D(), uDirection = sampler.Get2D();
+      if (const auto photon = lighting_.GenerateEmission(uSelect, u, uDirection, 0)) visit(*photon);
     }
-  }
+  };
+  emit([&](const EmittedPhoton& photon) { ++counts[photon.light]; });
   // The lights that most photons come from.
   std::vector<uint32_t> brightest(counts.size());
   std::iota(brightest.begin(), brightest.end(), 0u);
   std::stable_sort(brightest.begin(), brightest.end(), [&](uint32_t a, uint32_t b) { return counts[a] > counts[b]; });
   if (brightest.size() > kBrightest) brightest.resize(kBrightest);
-  std::vector<UsefulPhoton> guessed;
+  const auto radius = static_cast<double>(lighting_.SceneSphere().radius);
+  const double across = 1 / (static_cast<double>(kPi) * radius * radius), part = 1 / static_cast<double>(seen.size());
   for (const uint32_t light : brightest) {
     if (counts[light] == 0) continue;
-    for (const Point3& place : seen) guessed.push_back({light, place, 1, 1, 1});
+    for (const Point3& place : seen) guessed_.push_back({light, place, part, part, across});
   }
-  const auto guess = MakeGuide(guessed);
-  double near = 0;
-  for (const EmittedPhoton& photon : photons)
-    near += guess->Aims(photon.light, photon.emission.position, photon.emission.direction) ? 1 : 0;
-  if (near < kRare * static_cast<double>(photons.size())) guide_ = guess;
+  const auto guess = MakeGuide(guessed_);
+  int photons = 0, rare = 0;
+  scene.lighting->AimBy(guess.get());
+  emit([&](const EmittedPhoton& photon) {
+    ++photons;
+    rare += lighting_.EmissionGain(photon) > kRare ? 1 : 0;
+  });
+  scene.lighting->AimBy(nullptr);
+  if (3 * rare > photons) {
+    guide_ = guess;
+  } else {
+    guessed_.clear();
+  }
+}
+
+// Where few photons of a light have been of use, what was guessed of it counts as well.
+std::vector<UsefulPhoton> EmissionLearning::Evidence() const {
+  std::vector<UsefulPhoton> evidence = useful_;
+  if (guessed_.empty()) return evidence;
+  struct Known {
+    uint64_t count = 0;
+    double worth = 0, squared = 0;
+  };
+  std::vector<Known> known(lighting_.Lights().size());
+  Known all;
+  for (const UsefulPhoton& photon : useful_) {
+    for (Known* one : {&known[photon.light], &all}) {
+      ++one->count;
+      one->worth += photon.worth;
+      one->squared += photon.squared;
+    }
+  }
+  for (const UsefulPhoton& photon : guessed_) {
+    const Known& of = known[photon.light];
+    if (of.count >= kManyUseful) continue;
+    // Like all others, where there is nothing to go by.
+    const Known& like = of.count > 0 || all.count == 0 ? of : all;
+    evidence.push_back(photon);
+    if (all.count == 0) continue;
+    evidence.back().worth *= like.worth;
+    evidence.back().squared *= like.squared;
+  }
+  return evidence;
 }
 
 void EmissionLearning::Learn(const PhotonUse& use) {
   const std::vector<PathOrigin>& origins = use.Origins();
-  std::vector<double> worth(origins.size());
-  for (size_t i = 0; i < use.Photons(); ++i) worth[use.PathOf(i)] += use.Sum(i);
   for (size_t i = 0; i < origins.size(); ++i) {
     const PathOrigin& origin = origins[i];
-    const double brought = worth[i] * static_cast<double>(origin.flux);
+    const double brought = use.Sum(i) * static_cast<double>(origin.flux);
     if (!(brought > 0)) continue;
     // The density of the photon was `gain` times the unguided one.
     const double squared = brought * brought * static_cast<double>(origin.gain);
@@ -129,17 +165,17 @@ void EmissionLearning::Thin() {
 bool EmissionLearning::Decide(uint32_t samples) {
   const bool wasInUse = guide_ != nullptr;
   const double gain = aimed_.sum > 0 ? unguided_.sum / aimed_.sum : 1;
-  // Chance makes the second sum rather too large than too small: what a guide has overlooked is in it fourfold.
+  // Chance makes the second sum rather too large than too small: what a guide has overlooked is in it manifold.
   const double sureness = gain > kWorthwhile ? unguided_.Count() : std::min(unguided_.Count(), aimed_.Count());
   if (tried_ && tried_->LightCount() > 0 && sureness >= kFewestTested) {
     gain_ = gain;
     unguided_ = aimed_ = Sum();
     hasVerdict_ = true;
   }
-  tried_ = MakeGuide(useful_);
+  tried_ = MakeGuide(Evidence());
   // What has stood the test was made of fewer photons than the one that takes its place.
-  if (hasVerdict_) guide_ = gain_ > kWorthwhile ? tried_ : nullptr;
-  if (!hasVerdict_ && guide_ && useful_.size() >= kManyUseful) guide_ = tried_;
+  const bool isWorthwhile = hasVerdict_ ? gain_ > kWorthwhile : wasInUse;
+  guide_ = isWorthwhile ? tried_ : nullptr;
   if (samples >= kLastLearned || (samples >= kLearned && hasVerdict_)) isRecording_ = false;
   return wasInUse || guide_;
 }

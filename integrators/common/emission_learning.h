@@ -24,7 +24,8 @@ class EmissionLearning {
 
   // What the camera's paths of a pass got by the photons it gathered.
   void Learn(const PhotonUse& use);
-  // A milestone is reached, after so many samples of each pixel: makes up its mind. Whether photons are to be aimed otherwise from now on, by Guide().
+  // A milestone is reached, after so many samples of each pixel: makes up its mind. Whether photons are to be aimed
+  // otherwise from now on, by Guide().
   bool Decide(uint32_t samples);
   // Null: photons are not aimed.
   const EmissionGuide* Guide() const { return guide_.get(); }
@@ -38,11 +39,13 @@ class EmissionLearning {
 
  private:
   void Guess(const RenderScene& scene, int width, int height);
+  std::vector<UsefulPhoton> Evidence() const;
   void Thin();
   std::shared_ptr<const EmissionGuide> MakeGuide(std::span<const UsefulPhoton> photons) const;
 
   const LightingServices& lighting_;
   bool isRecording_ = true;
+  std::vector<UsefulPhoton> guessed_;  // none: photons come near to what is seen by themselves
   std::vector<UsefulPhoton> useful_;
   std::shared_ptr<const EmissionGuide> guide_;  // in use, or null
   std::shared_ptr<const EmissionGuide> tried_;  // on trial, or null
@@ -56,7 +59,8 @@ class EmissionLearning {
     // As many equal ones would be as sure.
     double Count() const { return squares > 0 ? sum * sum / squares : 0; }
   };
-  // Of the photons since the last verdict: squares of what they brought, as if aimed by nobody, and by the one on trial.
+  // Of the photons since the last verdict: squares of what they brought, as if aimed by nobody, and by the one on
+  // trial.
   Sum unguided_, aimed_;
   double gain_ = 1;
   bool hasVerdict_ = false;

@@ -17,9 +17,9 @@ inline double RadiusScale(uint32_t pass, double alpha) {
 struct PhotonPass {
   std::shared_ptr<const PhotonMap> map;
   std::shared_ptr<PhotonUse> use;  // null: nobody wants to know what the photons are good for
-  float radius = 0;       // scene units
-  float radiusScale = 1;  // RadiusScale of the pass, for who looks as far as a pixel is large
-  double lightPaths = 1;  // that the photons come from
+  float radius = 0;                // scene units
+  float radiusScale = 1;           // RadiusScale of the pass, for who looks as far as a pixel is large
+  double lightPaths = 1;           // that the photons come from
   uint32_t pass = 0;
 
   // Photons that are merged with a vertex per density (1/m²) of them: N π r².

@@ -8,9 +8,9 @@
 
 namespace lampyr {
 
-uint64_t PhotonStore::BytesPerPhoton() const {
+uint64_t PhotonStore::BytesPerPhoton(bool withUse) {
   constexpr uint64_t pointer = sizeof(void*), position = 3 * sizeof(float), tree = 2 * position + pointer + 16;
-  const uint64_t use = learning_ ? PhotonUse::kBytesPerPhoton + sizeof(PathOrigin) + sizeof(uint32_t) : 0;
+  const uint64_t use = withUse ? PhotonUse::kMostBytesPerPhoton + sizeof(PathOrigin) + sizeof(uint32_t) : 0;
   return sizeof(TracedPhoton) + sizeof(Photon) + sizeof(SortItem) + pointer + tree + use;
 }
 
@@ -18,7 +18,7 @@ PhotonStore::PhotonStore(const PhotonSettings& settings, uint64_t pixels, Emissi
     : settings_(settings),
       learning_(learning),
       lightPaths_(settings.lightPaths > 0 ? settings.lightPaths : pixels),
-      most_(settings.mostBytes > 0 ? std::max<uint64_t>(settings.mostBytes / BytesPerPhoton(), 1)
+      most_(settings.mostBytes > 0 ? std::max<uint64_t>(settings.mostBytes / BytesPerPhoton(learning != nullptr), 1)
                                    : std::numeric_limits<uint32_t>::max() / 2) {}
 
 void PhotonStore::Take(std::vector<PhotonList>& lists) {

@@ -49,7 +49,7 @@ class PhotonStore {
 
   const PhotonStatistics& Statistics() const { return statistics_; }
   // While a map is made of them, everything counted.
-  uint64_t BytesPerPhoton() const;
+  static uint64_t BytesPerPhoton(bool withUse = false);
 
  private:
   std::shared_ptr<PhotonUse> MakeUse(std::vector<uint32_t> origins) const;

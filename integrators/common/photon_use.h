@@ -24,23 +24,22 @@ class PhotonUse {
  public:
   // `paths`: of each photon of the map, an index into `origins`.
   PhotonUse(std::vector<uint32_t> paths, std::vector<PathOrigin> origins)
-      : paths_(std::move(paths)), origins_(std::move(origins)), sums_(paths_.size()) {}
+      : paths_(std::move(paths)), origins_(std::move(origins)), sums_(origins_.size()) {}
 
   // `part`: of the photon's flux that came to the camera by it, per density of photons; not negative. From any thread:
   // sums are integers, the same whatever the order.
   void Add(uint32_t photon, float part) {
     constexpr float most = 0x1p16f;
-    sums_[photon].fetch_add(static_cast<uint64_t>(std::min(part, most) * kUnit), std::memory_order_relaxed);
-  }
-  size_t Photons() const { return paths_.size(); }
-  uint32_t PathOf(size_t photon) const { return paths_[photon]; }
-  double Sum(size_t photon) const {
-    return static_cast<double>(sums_[photon].load(std::memory_order_relaxed)) / static_cast<double>(kUnit);
+    sums_[paths_[photon]].fetch_add(static_cast<uint64_t>(std::min(part, most) * kUnit), std::memory_order_relaxed);
   }
   const std::vector<PathOrigin>& Origins() const { return origins_; }
+  // Of all photons of a path.
+  double Sum(size_t path) const {
+    return static_cast<double>(sums_[path].load(std::memory_order_relaxed)) / static_cast<double>(kUnit);
+  }
 
-  // Beside the photon itself.
-  static constexpr uint64_t kBytesPerPhoton = sizeof(uint32_t) + sizeof(uint64_t) + sizeof(PathOrigin);
+  // Beside the photon itself, if it is the only one of its path.
+  static constexpr uint64_t kMostBytesPerPhoton = sizeof(uint32_t) + sizeof(uint64_t) + sizeof(PathOrigin);
 
  private:
   static constexpr float kUnit = 0x1p24f;

@@ -59,9 +59,8 @@ size_t DivideCell(std::span<UsefulPhoton> photons, const Cell& cell) {
   const Vector3 extent = cell.box.Diagonal();
   const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
   const std::span<UsefulPhoton> own = photons.subspan(cell.first, cell.count);
-  std::stable_sort(own.begin(), own.end(), [axis](const UsefulPhoton& a, const UsefulPhoton& b) {
-    return a.landing[axis] < b.landing[axis];
-  });
+  std::stable_sort(own.begin(), own.end(),
+                   [axis](const UsefulPhoton& a, const UsefulPhoton& b) { return a.landing[axis] < b.landing[axis]; });
   double sum = 0;
   size_t count = 0;
   while (count < own.size() && sum < 0.5 * cell.worth) sum += own[count++].worth;
@@ -157,8 +156,8 @@ double EmissionGuide::LearnedProbability(uint32_t light) const {
 PdfDiscrete EmissionGuide::Probability(uint32_t light) const {
   const PdfDiscrete unguided = unguided_.Probability({}, light, kAnyPatch);
   if (table_.IsZero()) return unguided;
-  return PdfDiscrete(static_cast<float>((1 - kGuided) * static_cast<double>(unguided.value) +
-                                        kGuided * LearnedProbability(light)));
+  return PdfDiscrete(
+      static_cast<float>((1 - kGuided) * static_cast<double>(unguided.value) + kGuided * LearnedProbability(light)));
 }
 
 float EmissionGuide::Share(uint32_t light) const {

@@ -37,7 +37,7 @@ struct UsefulPhoton {
 
 class EmissionGuide {
  public:
-  static constexpr double kGuided = 0.75;
+  static constexpr double kGuided = 0.6;
   static constexpr int kMostTargets = 64;  // of a light
 
   // `unguided` chooses lights otherwise and must outlive the guide, like `lights`. Without useful photons the guide

@@ -109,7 +109,8 @@ std::optional<LightingServices::Emission> LightingServices::Emit(double uSelect,
   context.u = u;
   context.uDirection = uDirection;
   const Light& light = *fronts_[choice.light].light;
-  const auto sample = choice.target == EmissionGuide::kNone ? light.GenerateEmission(context) : EmitAimed(context, choice);
+  const auto sample =
+      choice.target == EmissionGuide::kNone ? light.GenerateEmission(context) : EmitAimed(context, choice);
   if (!sample) return std::nullopt;
   return Emission{choice.probability, choice.light, *sample};
 }
@@ -128,9 +129,9 @@ std::optional<EmittedPhoton> LightingServices::GenerateEmission(float uSelect, c
   Aim(photon.light, emission.position, emission.direction, emission);
   const bool fromSurface = front.kind == LightKind::Area;
   photon.fromSurface = fromSurface && front.canBeHit;
-  photon.ray.origin = fromSurface ? OffsetRayOrigin(emission.position, emission.positionError, emission.normal,
-                                                    emission.direction)
-                                  : emission.position;
+  photon.ray.origin =
+      fromSurface ? OffsetRayOrigin(emission.position, emission.positionError, emission.normal, emission.direction)
+                  : emission.position;
   photon.ray.direction = emission.direction;
   photon.ray.time = time;
   RayHit hit;

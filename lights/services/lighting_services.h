@@ -81,7 +81,8 @@ class LightingServices {
   // Selection learns from results, and uses what `learning` knows; null: it does neither. Not during a pass.
   void Use(LightLearning* learning);
 
-  // From now on photons are aimed by `guide`, and every emission density says so; null: they are not. Not during a pass.
+  // From now on photons are aimed by `guide`, and every emission density says so; null: they are not. Not during a
+  // pass.
   void AimBy(const EmissionGuide* guide) { guide_ = guide; }
   // How lights are chosen for emission without a guide.
   const LightSelector& EmissionSelector() const { return *emissionSelector_; }
@@ -142,7 +143,8 @@ class LightingServices {
   };
   std::optional<Emission> Emit(double uSelect, const Point2& u, const Point2& uDirection, float time) const;
   std::optional<EmissionSample> EmitAimed(const LightContext& context, const EmissionGuide::Choice& choice) const;
-  // The guide's part in the density of an emission from `from` along `direction`; at infinity, of any point on the line.
+  // The guide's part in the density of an emission from `from` along `direction`; at infinity, of any point on the
+  // line.
   template <class Record>
   void Aim(uint32_t light, const Point3& from, const Vector3& direction, Record& record) const;
 

@@ -17,8 +17,8 @@ std::vector<std::string> IntegratorHints(const RenderScene& scene, const std::st
   }
   const auto isSmooth = [](const auto& material) { return material && material->IsSmooth(); };
   if (!std::any_of(scene.materials.begin(), scene.materials.end(), isSmooth)) return hints;
-  const auto deltas = std::count_if(
-      lights.begin(), lights.end(), [](const PlacedLight& placed) { return IsDelta(placed.light->Kind()); });
+  const auto deltas = std::count_if(lights.begin(), lights.end(),
+                                    [](const PlacedLight& placed) { return IsDelta(placed.light->Kind()); });
   if (integrator == "path" && deltas > 0) {
     hints.push_back("no path from the camera can hit a light without extent (" + std::to_string(deltas) + " of " +
                     std::to_string(lights.size()) +

@@ -76,7 +76,7 @@ class ProgressiveRender {
   RenderOutcome outcome_;
   std::unique_ptr<LightLearning> learning_;    // null: selection learns nothing
   std::unique_ptr<EmissionLearning> guiding_;  // null: photons are not aimed
-  std::unique_ptr<PhotonStore> photons_;     // of integrators that gather them
+  std::unique_ptr<PhotonStore> photons_;       // of integrators that gather them
 };
 
 // Samples [first, first + count) of every pixel. Exposed for tests and benchmarks.

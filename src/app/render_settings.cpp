@@ -302,11 +302,10 @@ void ReadIntegrator(const SceneDescription& scene, const RenderOverrides& overri
   if (overrides.learnLights) settings.learnLights = *overrides.learnLights;
   // Parameters of integrators that stand back for "path" are not looked at.
   if (isKnown) {
-    parameters.CheckAllUsed(
-        {"regularize", "options"},
-        {"maxdepth", "lightsampler", "photonsperiteration", "radius", "alpha", "merge", "connect", "directphotons",
-         "guidephotons"},
-        diagnostics);
+    parameters.CheckAllUsed({"regularize", "options"},
+                            {"maxdepth", "lightsampler", "photonsperiteration", "radius", "alpha", "merge", "connect",
+                             "directphotons", "guidephotons"},
+                            diagnostics);
   }
 }
 

@@ -9,6 +9,7 @@
 #include "integrators/bdpt/bdpt_integrator.h"
 #include "integrators/bdpt/full_path.h"
 #include "integrators/common/light_subpath.h"
+#include "support/aimed.h"
 #include "support/render_scene.h"
 
 namespace lampyr::test {
@@ -85,11 +86,14 @@ class WeightChecker final : public PathObserver {
   Worst worst_;
 };
 
-// With photons gathered within `radius`, in parts of the scene's; 0: none.
-Worst CheckScene(const std::string& text, int paths, float radius = 0) {
+// With photons gathered within `radius`, in parts of the scene's; 0: none. Aimed: at two balls in its middle.
+Worst CheckScene(const std::string& text, int paths, float radius = 0, bool aimed = false) {
   Diagnostics diagnostics(Diagnostics::Mode::Collect);
   const std::filesystem::path file = std::filesystem::path(LAMPYR_SOURCE_DIR) / "scenes" / "test.pbrt";
   const BuiltScene built = BuildScene(ParseScene(text, file, diagnostics), {}, true, diagnostics);
+  const BoundingSphere& sphere = built.scene.lighting->SceneSphere();
+  const auto guide = AimAt(*built.scene.lighting, sphere.center, 0.2f * sphere.radius);
+  if (aimed) built.scene.lighting->AimBy(guide.get());
   BdptSettings settings;
   settings.maxDepth = built.settings.maxDepth;
   const int width = built.settings.width, height = built.settings.height;
@@ -102,7 +106,7 @@ Worst CheckScene(const std::string& text, int paths, float radius = 0) {
   RenderCounts counts;
   if (radius > 0) {
     gather.lightPaths = 2000;
-    gather.radius = radius * built.scene.lighting->SceneSphere().radius;
+    gather.radius = radius * sphere.radius;
     const LightSubpathTracer tracer(built.scene, settings.maxDepth, {2, 1}, LightSubpathTracer::Weights::All);
     LightSubpath path;
     for (uint32_t i = 0; i < 2000; ++i) {
@@ -156,8 +160,9 @@ TEST(BdptWeights, InEveryAgreementScene) {
 TEST(BdptWeights, WithMergingInEveryAgreementScene) {
   int merges = 0;
   for (const AgreementScene& scene : AgreementScenes()) {
-    for (const float radius : {0.003f, 0.1f}) {
-      const Worst worst = CheckScene(scene.text, 4000, radius);
+    // Wherever photons are aimed, weights know it.
+    for (const bool aimed : {false, true}) {
+      const Worst worst = CheckScene(scene.text, 4000, aimed ? 0.1f : 0.003f, aimed);
       EXPECT_GE(worst.paths, 4000) << scene.name;
       ExpectExact(scene.name, worst);
       merges += worst.merges;

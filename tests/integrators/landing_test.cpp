@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "sampling/rng.h"
+#include "support/aimed.h"
 #include "support/estimate.h"
 #include "support/render_scene.h"
 
@@ -106,6 +107,13 @@ TEST(Photons, LandWhereLightSamplingFindsLight) {
     ASSERT_GT(direct.Mean(), 0.05) << light.name;
     EXPECT_LT(sigma, 0.02 * direct.Mean()) << light.name;
     EXPECT_NEAR(photons.Mean(), direct.Mean(), 4.5 * sigma + 2e-3 * direct.Mean()) << light.name;
+    // Aimed at a part of the receiver and past its rim, they bring the same.
+    const auto guide = AimAt(*built.scene.lighting, Point3(0.3f, 0, -0.2f), 0.2f);
+    built.scene.lighting->AimBy(guide.get());
+    const Estimate aimed = ByPhotons(built, 400000);
+    const double either = std::sqrt(aimed.Variance() + direct.Variance());
+    EXPECT_LT(either, 0.02 * direct.Mean()) << light.name;
+    EXPECT_NEAR(aimed.Mean(), direct.Mean(), 4.5 * either + 2e-3 * direct.Mean()) << light.name << ", aimed";
   }
 }
 
@@ -151,10 +159,14 @@ std::optional<FoundLight> FindAgain(const BuiltScene& built, const EmittedPhoton
   return std::nullopt;
 }
 
-TEST(Photons, LandingsHaveTheDensitiesOfTheOtherTechniques) {
+class Landings : public testing::TestWithParam<bool> {};  // aimed
+
+TEST_P(Landings, HaveTheDensitiesOfTheOtherTechniques) {
   for (const NamedLight& light : Lights()) {
     const BuiltScene built = Build(light.text);
-    const LightingServices& lighting = *built.scene.lighting;
+    LightingServices& lighting = *built.scene.lighting;
+    const auto guide = AimAt(lighting, Point3(0.3f, 0, -0.2f), 0.2f);
+    if (GetParam()) lighting.AimBy(guide.get());
     Rng rng(3);
     int compared = 0, missed = 0;
     for (int i = 0; i < 20000 && compared < 300; ++i) {
@@ -182,6 +194,9 @@ TEST(Photons, LandingsHaveTheDensitiesOfTheOtherTechniques) {
     EXPECT_LE(missed, 2) << light.name;
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Photons, Landings, testing::Bool(),
+                         [](const auto& tested) { return tested.param ? "Aimed" : "Unaimed"; });
 
 // A shadow ray stops short of the sample, also where the light is turned and far from the origin.
 TEST(LightSampling, InstancesFarAwayDoNotShadeThemselves) {
