@@ -1,6 +1,7 @@
 // Selection that does not look at the receiver: uniform and by power. See the header.
 #include "lights/selection/light_selector.h"
 
+#include <array>
 #include <limits>
 #include <vector>
 
@@ -80,12 +81,21 @@ LightTransform PlacedLight::At(float time) const {
   return {toRender, toRender.Inverse()};
 }
 
+namespace {
+
+constexpr std::array<const char*, 4> kSelectionNames = {"uniform", "power", "tree", "exhaustive"};
+
+}  // namespace
+
 std::optional<LightSelection> ParseLightSelection(const std::string& name) {
-  if (name == "uniform") return LightSelection::Uniform;
-  if (name == "power") return LightSelection::Power;
-  if (name == "tree" || name == "bvh") return LightSelection::Tree;
-  if (name == "exhaustive") return LightSelection::Exhaustive;
-  return std::nullopt;
+  if (name == "bvh") return LightSelection::Tree;
+  const auto at = std::find(kSelectionNames.begin(), kSelectionNames.end(), name);
+  if (at == kSelectionNames.end()) return std::nullopt;
+  return static_cast<LightSelection>(at - kSelectionNames.begin());
+}
+
+std::string NameOf(LightSelection selection) {
+  return kSelectionNames.at(static_cast<size_t>(selection));
 }
 
 std::unique_ptr<LightSelector> MakeTableSelector(std::span<const float> weights) {

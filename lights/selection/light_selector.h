@@ -65,8 +65,9 @@ class LightSelector {
 
 enum class LightSelection { Uniform, Power, Tree, Exhaustive };
 
-// The name as on the command line; nullopt for an unknown one.
+// The name as on the command line (or "bvh", pbrt-v4's name of its tree); nullopt for an unknown one.
 std::optional<LightSelection> ParseLightSelection(const std::string& name);
+std::string NameOf(LightSelection selection);
 
 // A light as the services hold it.
 struct PlacedLight {

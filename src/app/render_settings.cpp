@@ -254,7 +254,7 @@ void ReadIntegrator(const SceneDescription& scene, const RenderOverrides& overri
     return std::find(names.begin(), names.end(), name) != names.end();
   };
   // pbrt-v4's names for what lampyr has.
-  const std::map<std::string, std::string> synonyms = {{"", "path"}, {"volpath", "path"}, {"lightpath", "light"}};
+  const std::map<std::string, std::string> synonyms = {{"", "auto"}, {"volpath", "path"}, {"lightpath", "light"}};
   const auto synonym = synonyms.find(type);
   settings.integrator = synonym != synonyms.end() ? synonym->second : type;
   const bool isKnown = settings.integrator == "auto" || isOneOf(settings.integrator, IntegratorNames());
