@@ -194,7 +194,7 @@ TEST_F(Cli, PlanSaysWhatIsModelledAndWhy) {
     EXPECT_EQ(outcome.exitCode, 0) << outcome.output;
     return outcome.output;
   };
-  EXPECT_NE(planOf("mirror.pbrt").find("vcm      1 light without extent and 1 smooth material"), std::string::npos)
+  EXPECT_NE(planOf("mirror.pbrt").find("vcm         1 light without extent and 1 smooth material"), std::string::npos)
       << planOf("mirror.pbrt");
   EXPECT_NE(planOf("mirror.pbrt").find("merging          on"), std::string::npos);
   EXPECT_NE(planOf("scene.pbrt").find("path     nothing is smooth and"), std::string::npos) << planOf("scene.pbrt");

@@ -27,7 +27,7 @@ double FresnelNormal(double eta) {
 class Analytic : public testing::TestWithParam<const char*> {
  protected:
   static Rendered Render(const std::string& text, int samplesPerPixel, RenderOverrides overrides = {},
-                         int threads = 2) {
+                         int threads = 1) {
     overrides.integrator = GetParam();
     return RenderText(text, samplesPerPixel, overrides, threads);
   }

@@ -50,7 +50,7 @@ AttributeBegin Translate -0.5 0.4 0 Shape "sphere" "float radius" 0.4 AttributeE
 class Invariance : public testing::TestWithParam<const char*> {
  protected:
   static Rendered Render(const std::string& text, int samplesPerPixel, RenderOverrides overrides = {},
-                         int threads = 2) {
+                         int threads = 1) {
     overrides.integrator = GetParam();
     return RenderText(text, samplesPerPixel, overrides, threads);
   }

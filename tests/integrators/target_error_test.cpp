@@ -98,7 +98,7 @@ class TargetError : public testing::TestWithParam<std::tuple<Promise, const char
 
 TEST_P(TargetError, HoldsForNineteenOfTwentySeeds) {
   const auto& [promise, integrator] = GetParam();
-  const Image reference = test::RenderBuilt(Build(promise.text, "bdpt"), promise.referenceSamples, 2).image;
+  const Image reference = test::RenderBuilt(Build(promise.text, "bdpt"), promise.referenceSamples, 1).image;
   BuiltScene built = Build(promise.text, integrator);
   const AnyIntegrator chosen = MakeIntegrator(built.scene, built.settings);
   StopConditions stop;

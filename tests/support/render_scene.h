@@ -30,19 +30,19 @@ inline Rendered RenderBuilt(const BuiltScene& built, int samplesPerPixel, int th
 }
 
 inline Rendered RenderDescription(const SceneDescription& description, RenderOverrides overrides, int samplesPerPixel,
-                                  int threads = 2) {
+                                  int threads = 1) {
   Diagnostics diagnostics(Diagnostics::Mode::Collect);
   return RenderBuilt(BuildScene(description, overrides, true, diagnostics), samplesPerPixel, threads);
 }
 
 inline Rendered RenderText(const std::string& text, int samplesPerPixel, const RenderOverrides& overrides = {},
-                           int threads = 2) {
+                           int threads = 1) {
   Diagnostics diagnostics(Diagnostics::Mode::Collect);
   return RenderDescription(ParseScene(text, "test.pbrt", diagnostics), overrides, samplesPerPixel, threads);
 }
 
 inline Rendered RenderFile(const std::filesystem::path& file, int samplesPerPixel,
-                           const RenderOverrides& overrides = {}, int threads = 2) {
+                           const RenderOverrides& overrides = {}, int threads = 1) {
   Diagnostics diagnostics(Diagnostics::Mode::Collect);
   return RenderDescription(ReadScene(file, diagnostics), overrides, samplesPerPixel, threads);
 }

@@ -28,7 +28,7 @@ inline Replicas RenderReplicas(const SceneDescription& description, const std::s
   Replicas replicas;
   for (int i = 0; i < count; ++i) {
     built.settings.seed = overrides.seed + static_cast<uint64_t>(i);
-    const Rendered rendered = RenderBuilt(built, samplesPerPixel, 2);
+    const Rendered rendered = RenderBuilt(built, samplesPerPixel, 1);
     replicas.images.push_back(rendered.image);
     replicas.faults += rendered.outcome.counts.droppedSamples + rendered.rejectedRays;
   }

@@ -42,7 +42,7 @@ inline SelectionNoise MeasureSelection(const SceneDescription& description, cons
   for (int i = 0; i < renders; ++i) {
     built.settings.seed = static_cast<uint64_t>(i);
     const std::clock_t start = std::clock();
-    const Image image = RenderBuilt(built, samplesPerPixel, 2).image;
+    const Image image = RenderBuilt(built, samplesPerPixel, 1).image;
     noise.seconds += static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC / renders;
     for (size_t p = 0; p < mask.size(); ++p) {
       const auto value =
