@@ -88,6 +88,18 @@ TEST(Reference, IsMadeByWhatFindsAllTheLight) {
   }
 }
 
+// The caustic, seen in a mirror.
+TEST(Reference, IsMadeWithPhotonsWhereNothingElseFindsTheLight) {
+  std::string text = kCamera + kCaustic;
+  text.replace(0, text.find("Film"), "LookAt 0 1.2 -1  0 0.2 1.5  0 1 0\n");
+  text +=
+      "Material \"conductor\" \"rgb reflectance\" [ 0.9 0.9 0.9 ]\n"
+      "Shape \"bilinearmesh\" \"point3 P\" [ -2 0 1.5  2 0 1.5  -2 3 1.5  2 3 1.5 ]\n";
+  const BuiltScene built = Build(text);
+  for (const Pilot& pilot : FlyPilots(ComparedScene(built, 2, kNever), 0.5, kQuiet))
+    EXPECT_EQ(pilot.chosen, pilot.integrator == "vcm") << pilot.integrator << ": " << pilot.note;
+}
+
 TEST(Reference, ItsErrorIsWhatItSays) {
   const BuiltScene built = Build(kCamera + kLamp);
   const ComparedScene scene(built, 2, kNever);

@@ -93,6 +93,7 @@ struct PilotRun {
   std::vector<double> means;
   std::vector<std::vector<double>> blocks;
   bool isHinted = false;
+  bool isBlurred = false;  // by photons: chosen where the others miss light, and only there
 };
 
 constexpr int kGrid = 16;
@@ -125,13 +126,22 @@ bool FindsMore(const PilotRun& other, const PilotRun& run) {
   constexpr double byChance = 0.01;
   const double scale = MomentsOf(other.means).mean;
   if (IsBrighter(other.means, run.means, byChance, scale)) return true;
-  for (size_t block = 0; block < other.blocks.front().size(); ++block) {
-    const auto of = [block](const PilotRun& one) {
+  // What is blurred is brighter beside what is bright: larger blocks do not see that.
+  const int side = other.isBlurred ? 4 : 1, across = kGrid / side;
+  for (int block = 0; block < across * across; ++block) {
+    const auto of = [=](const PilotRun& one) {
       std::vector<double> values;
-      for (const std::vector<double>& part : one.blocks) values.push_back(part[block]);
+      for (const std::vector<double>& part : one.blocks) {
+        double sum = 0;
+        for (int i = 0; i < side * side; ++i) {
+          const int x = block % across * side + i % side, y = block / across * side + i / side;
+          sum += part[static_cast<size_t>(y * kGrid + x)];
+        }
+        values.push_back(sum / (side * side));
+      }
       return values;
     };
-    if (IsBrighter(of(other), of(run), SidakRate(byChance, kGrid * kGrid), scale)) return true;
+    if (IsBrighter(of(other), of(run), SidakRate(byChance, across * across), scale)) return true;
   }
   return false;
 }
@@ -139,7 +149,8 @@ bool FindsMore(const PilotRun& other, const PilotRun& run) {
 void Choose(std::vector<PilotRun>& runs) {
   std::sort(runs.begin(), runs.end(),
             [](const PilotRun& a, const PilotRun& b) { return a.pilot.relMse < b.pilot.relMse; });
-  const bool allHinted = std::all_of(runs.begin(), runs.end(), [](const PilotRun& run) { return run.isHinted; });
+  const bool allHinted =
+      std::all_of(runs.begin(), runs.end(), [](const PilotRun& run) { return run.isHinted || run.isBlurred; });
   const bool allBlack = std::none_of(runs.begin(), runs.end(), [](const PilotRun& run) { return run.pilot.mean > 0; });
   PilotRun* chosen = nullptr;
   for (PilotRun& run : runs) {
@@ -158,6 +169,8 @@ void Choose(std::vector<PilotRun>& runs) {
                        ", in some part of the picture or in all of it (" + Percent(share) + ")";
     } else if (run.isHinted && !allHinted) {
       run.pilot.note = "cannot find all of the light";
+    } else if (run.isBlurred) {
+      run.pilot.note = "blurs, and finds no more light than others";
     } else if (!chosen) {
       chosen = &run;
     }
@@ -165,6 +178,8 @@ void Choose(std::vector<PilotRun>& runs) {
   const auto brightest = std::max_element(
       runs.begin(), runs.end(), [](const PilotRun& a, const PilotRun& b) { return a.pilot.mean < b.pilot.mean; });
   if (!chosen) chosen = &*brightest;
+  if (chosen->isBlurred)
+    chosen->pilot.note = "finds light that the others miss; blurs it by a pixel at first, then less";
   chosen->pilot.chosen = true;
 }
 
@@ -223,14 +238,18 @@ uint64_t SeedOf(SeedUse use, uint64_t index) {
 
 std::vector<Pilot> FlyPilots(const ComparedScene& scene, double seconds, const ReferenceProgress& progress) {
   std::vector<PilotRun> runs;
-  std::vector<MeanOfImages> images(IntegratorNames().size());
+  // A reference should not be blurred. What joins paths misses some light in some scenes; then photons are all there
+  // is.
+  const bool needsPhotons = !IntegratorHints(scene.Built().scene, "bdpt").empty();
   for (const std::string& name : IntegratorNames()) {
-    if (GathersPhotons(name)) continue;  // a reference must not be blurred
+    if (GathersPhotons(name) && !(needsPhotons && name == "vcm")) continue;
     PilotRun run;
+    run.isBlurred = GathersPhotons(name);
     run.pilot.integrator = name;
     run.isHinted = !IntegratorHints(scene.Built().scene, name).empty();
     runs.push_back(run);
   }
+  std::vector<MeanOfImages> images(runs.size());
   const double steps = static_cast<double>(kPilotParts) * static_cast<double>(runs.size());
   for (int part = 0; part < kPilotParts; ++part) {
     for (size_t i = 0; i < runs.size(); ++i) {
