@@ -8,6 +8,8 @@ RenderCounts& RenderCounts::operator+=(const RenderCounts& other) {
   shadowRays += other.shadowRays;
   lookups += other.lookups;
   foundPhotons += other.foundPhotons;
+  timedLookups += other.timedLookups;
+  lookupSeconds += other.lookupSeconds;
   droppedSamples += other.droppedSamples;
   return *this;
 }

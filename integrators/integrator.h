@@ -36,6 +36,8 @@ struct RenderCounts {
   uint64_t shadowRays = 0;
   uint64_t foundPhotons = 0;    // by lookups of photons
   uint64_t lookups = 0;         // of photons
+  uint64_t timedLookups = 0;
+  double lookupSeconds = 0;  // of those
   uint64_t droppedSamples = 0;  // NaN, infinite or negative: a defect, counted and reported
 
   RenderCounts& operator+=(const RenderCounts& other);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "integrators/common/adjoint.h"
+#include "integrators/common/find_photons.h"
 #include "integrators/common/lens.h"
 #include "integrators/common/light_subpath.h"
 
@@ -289,9 +290,8 @@ Color BdptIntegrator::Merge(Run& run) const {
   const auto most = static_cast<size_t>(settings_.maxDepth) + 1;
   const double perMerge = 1 / run.merge;
   const auto perDensity = static_cast<float>(1 / std::sqrt(run.merge));
-  const std::span<const uint32_t> found = pass.map->Find(vertex.point.position, pass.radius, run.paths.lookup);
-  ++run.Counts().lookups;
-  run.Counts().foundPhotons += found.size();
+  const std::span<const uint32_t> found =
+      FindPhotons(*pass.map, vertex.point.position, pass.radius, run.paths.lookup, run.Counts());
   Color sum;
   for (const uint32_t index : found) {
     const Photon& photon = (*pass.map)[index];

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "integrators/common/adjoint.h"
+#include "integrators/common/find_photons.h"
 #include "integrators/common/footprint.h"
 #include "integrators/common/light_subpath.h"
 #include "integrators/common/photon_pass.h"
@@ -83,9 +84,7 @@ struct SppmIntegrator::Gathered final : PhotonGatherer {
                float length) const override {
     thread_local PhotonLookup lookup;
     const float radius = RadiusAt(length);
-    const std::span<const uint32_t> found = pass.map->Find(point.position, radius, lookup);
-    ++counts.lookups;
-    counts.foundPhotons += found.size();
+    const std::span<const uint32_t> found = FindPhotons(*pass.map, point.position, radius, lookup, counts);
     Color sum;
     for (const uint32_t index : found) {
       const Photon& photon = (*pass.map)[index];

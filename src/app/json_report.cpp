@@ -3,6 +3,7 @@
 
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -72,12 +73,20 @@ std::string ToJson(const RenderReport& report) {
       {"peakMemoryMiB", PeakMemoryMiB()},
   };
   if (const std::optional<PhotonStatistics>& photons = outcome.photons) {
-    json["photons"] = {{"passes", photons->passes},           {"stored", photons->photons},
-                       {"mostInAPass", photons->mostPhotons}, {"mostBytes", photons->mostBytes},
-                       {"rejected", photons->rejected},       {"lookups", counts.lookups},
-                       {"found", counts.foundPhotons},        {"buildSeconds", photons->buildSeconds},
-                       {"guideGain", photons->guideGain},     {"guideTargets", photons->guideTargets},
-                       {"firstRadius", photons->firstRadius}, {"lastRadius", photons->lastRadius}};
+    json["photons"] = {{"passes", photons->passes},
+                       {"stored", photons->photons},
+                       {"mostInAPass", photons->mostPhotons},
+                       {"mostBytes", photons->mostBytes},
+                       {"rejected", photons->rejected},
+                       {"lookups", counts.lookups},
+                       {"found", counts.foundPhotons},
+                       {"buildSeconds", photons->buildSeconds},
+                       {"nanosecondsPerLookup",
+                        1e9 * counts.lookupSeconds / static_cast<double>(std::max<uint64_t>(counts.timedLookups, 1))},
+                       {"guideGain", photons->guideGain},
+                       {"guideTargets", photons->guideTargets},
+                       {"firstRadius", photons->firstRadius},
+                       {"lastRadius", photons->lastRadius}};
   }
   return Dump(json);
 }
