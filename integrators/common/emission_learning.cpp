@@ -12,13 +12,16 @@ namespace lampyr {
 namespace {
 
 // Useful photons that are remembered; beyond, one in so many, each worth as many more.
-constexpr size_t kMostUseful = size_t{1} << 15;
+constexpr size_t kMostUseful = size_t{1} << 14;
+constexpr size_t kMostOfAPass = size_t{1} << 13;
 // A guide must promise more than it costs: its densities are asked for at every light path, shadow ray and hit.
 constexpr double kWorthwhile = 2;
 // Photons that a verdict is based on, at least: of sums of squares, a few may be all.
 constexpr double kFewestTested = 8;
 // By then most of what can be learned has been, if there is a verdict; later than the last, nothing more.
 constexpr uint32_t kLearned = 64, kLastLearned = 4096;
+// And by then, if nothing is to be had at all.
+constexpr uint32_t kHopeless = 8;
 
 // Photons of a light that say more than a guess.
 constexpr size_t kManyUseful = 256;
@@ -122,17 +125,23 @@ std::vector<UsefulPhoton> EmissionLearning::Evidence() const {
 
 void EmissionLearning::Learn(const PhotonUse& use) {
   const std::vector<PathOrigin>& origins = use.Origins();
+  std::vector<uint32_t> ofUse;
   for (size_t i = 0; i < origins.size(); ++i) {
-    const PathOrigin& origin = origins[i];
-    const double brought = use.Sum(i) * static_cast<double>(origin.flux);
-    if (!(brought > 0)) continue;
+    if (use.Sum(i) > 0 && origins[i].flux > 0) ofUse.push_back(static_cast<uint32_t>(i));
+  }
+  // Where there are many, one in so many stands for all.
+  const size_t step = 1 + ofUse.size() / kMostOfAPass;
+  const auto share = static_cast<double>(step);
+  for (size_t k = 0; k < ofUse.size(); k += step) {
+    const PathOrigin& origin = origins[ofUse[k]];
+    const double brought = use.Sum(ofUse[k]) * static_cast<double>(origin.flux);
     // The density of the photon was `gain` times the unguided one.
-    const double squared = brought * brought * static_cast<double>(origin.gain);
+    const double squared = share * brought * brought * static_cast<double>(origin.gain);
     const Vector3 way = origin.landing - origin.start;
     const bool isAtInfinity = lighting_.IsAtInfinity(origin.light);
     const double across = static_cast<double>(isAtInfinity ? 1.0f : LengthSquared(way));
     const double own = across > 0 ? static_cast<double>(origin.pdfUnguided) / across : 0.0;
-    useful_.push_back({origin.light, origin.landing, brought, squared, own});
+    useful_.push_back({origin.light, origin.landing, share * brought, squared, own});
     if (!tried_) continue;
     const Vector3 direction = SafeNormalize(way, Vector3(0.0f));
     const Point3& on = isAtInfinity ? origin.landing : origin.start;
@@ -176,7 +185,8 @@ bool EmissionLearning::Decide(uint32_t samples) {
   // What has stood the test was made of fewer photons than the one that takes its place.
   const bool isWorthwhile = hasVerdict_ ? gain_ > kWorthwhile : wasInUse;
   guide_ = isWorthwhile ? tried_ : nullptr;
-  if (samples >= kLastLearned || (samples >= kLearned && hasVerdict_)) isRecording_ = false;
+  const uint32_t last = !hasVerdict_ ? kLastLearned : gain_ < 1 ? kHopeless : kLearned;
+  if (samples >= last) isRecording_ = false;
   return wasInUse || guide_;
 }
 
