@@ -2,9 +2,9 @@
 // here is the first way alone, from the light to where a photon lands).
 //
 // A guide that was made of the photons seen so far is tried on those of the passes that follow, which it knows nothing
-// of: would their sums have been less noisy, had it aimed them? Only then is it used. What photons
-// bring is summed in integers, the same for any number of threads, and the guide changes at samples 1, 2, 4 … alone, so
-// that each pass has one density.
+// of: would their sums have been less noisy, had it aimed them? Only then is it used. What photons bring is summed in
+// integers, the same for any number of threads, and the guide changes at samples 1, 2, 4 … alone, so that each pass has
+// one density.
 #pragma once
 
 #include <cstdint>
