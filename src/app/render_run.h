@@ -51,8 +51,9 @@ class ProgressiveRender {
   ProgressiveRender(const RenderScene& scene, const AnyIntegrator& integrator, const RenderSettings& settings,
                     int threads, Film& film, TechniqueImages* techniques = nullptr);
 
-  // As many samples more of every pixel. Only this takes time that counts. What is learned of lights is learned from
-  // samples 0 … 2^n - 1 and counts from sample 2^n on, whatever the passes are.
+  // As many samples more of every pixel. Only this takes time that counts. What is learned of lights and of
+  // where photons are of use is learned from samples 0 … 2^n - 1 and counts from sample 2^n on, whatever the passes
+  // are.
   void AddSamples(int count);
   // Samples that a pass should add: as many as there are, at most about 2^22 in the whole image, so that progress
   // shows, interrupts are answered and an error target is not overshot by much; not beyond `samplesPerPixel` in all,
@@ -88,9 +89,9 @@ RenderCounts RenderPass(const RenderScene& scene, const LightPathIntegrator& int
                         const PixelFilter& filter, uint32_t first, uint32_t count, int threads, Film& film);
 
 // Both: a light path for each sample of each pixel of the full image, a camera path for those of the crop. What lies in
-// a crop is the same as in the whole. Where the integrator gathers photons, each sample is a pass: it uses those that
-// the sample before has left. `kept` is what one call leaves to the next; without it, or where it does not continue,
-// the light paths of the sample before are traced again.
+// a crop is the same as in the whole, unless something was learned from what is seen. Where the integrator gathers
+// photons, each sample is a pass: it uses those that the sample before has left. `kept` is what one call leaves to the
+// next; without it, or where it does not continue, the light paths of the sample before are traced again.
 RenderCounts RenderPass(const RenderScene& scene, const BidirectionalIntegrator& integrator,
                         const RenderSettings& settings, const PixelFilter& filter, uint32_t first, uint32_t count,
                         int threads, Film& film, TechniqueImages* techniques = nullptr, PhotonStore* kept = nullptr);
