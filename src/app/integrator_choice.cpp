@@ -27,6 +27,16 @@ PhotonSettings PhotonsFor(const RenderScene& scene, const RenderSettings& settin
 
 }  // namespace
 
+bool HasSmoothMaterial(const RenderScene& scene) {
+  return std::any_of(scene.materials.begin(), scene.materials.end(),
+                     [](const auto& material) { return material && material->IsSmooth(); });
+}
+
+// Where nothing is smooth, connections find all light: photons are little of it, whatever they are aimed at.
+bool MayGuidePhotons(const RenderScene& scene, const RenderSettings& settings, const std::string& integrator) {
+  return integrator == "sppm" || (integrator == "vcm" && (!settings.connects || HasSmoothMaterial(scene)));
+}
+
 double FirstRadius(const RenderScene& scene, const RenderSettings& settings) {
   const double radius = PhotonsFor(scene, settings).radius;
   return radius > 0 ? radius : kRadiusInPixels * TypicalFootprint(scene, settings.width, settings.height);
@@ -50,6 +60,7 @@ AnyIntegrator MakeIntegrator(const RenderScene& scene, const RenderSettings& set
     bdpt.connects = settings.integrator == "bdpt" || settings.connects;
     bdpt.photons = PhotonsFor(scene, settings);
     if (bdpt.merges) bdpt.photons.radius = FirstRadius(scene, settings);
+    bdpt.photons.guided = bdpt.photons.guided && MayGuidePhotons(scene, settings, "vcm");
     bdpt.maxDepth = settings.maxDepth;
     bdpt.filmPixels = static_cast<double>(settings.width) * static_cast<double>(settings.height);
     return MakeBdptIntegrator(scene, bdpt);

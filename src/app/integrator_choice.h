@@ -23,6 +23,12 @@ double FirstRadius(const RenderScene& scene, const RenderSettings& settings);
 // Of a name: whether it finds light by photons, and blurs it.
 bool GathersPhotons(const std::string& integrator);
 
+// Whether any material has a mirror or clear glass in it.
+bool HasSmoothMaterial(const RenderScene& scene);
+
+// Whether the integrator of that name learns where photons are of use, if the settings let it.
+bool MayGuidePhotons(const RenderScene& scene, const RenderSettings& settings, const std::string& integrator);
+
 // Names for --integrator and for Integrator in a scene.
 const std::vector<std::string>& IntegratorNames();
 

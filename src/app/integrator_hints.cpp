@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "app/integrator_choice.h"
+
 namespace lampyr {
 
 std::vector<std::string> IntegratorHints(const RenderScene& scene, const std::string& integrator) {
@@ -15,8 +17,7 @@ std::vector<std::string> IntegratorHints(const RenderScene& scene, const std::st
         "no path from a light behind everything can be joined to the camera, so the background stays black; "
         "--integrator path and bdpt show it");
   }
-  const auto isSmooth = [](const auto& material) { return material && material->IsSmooth(); };
-  if (!std::any_of(scene.materials.begin(), scene.materials.end(), isSmooth)) return hints;
+  if (!HasSmoothMaterial(scene)) return hints;
   const auto deltas = std::count_if(lights.begin(), lights.end(),
                                     [](const PlacedLight& placed) { return IsDelta(placed.light->Kind()); });
   if (integrator == "path" && deltas > 0) {

@@ -175,6 +175,13 @@ PlanDecision ChooseMerging(const Facts& facts, const std::string& integrator, co
           facts.smooth == 0 ? "nothing is smooth: other techniques find all light" : "the integrator has none"};
 }
 
+PlanDecision ChooseGuiding(const RenderScene& scene, const RenderSettings& settings, const std::string& integrator) {
+  if (!settings.photons.guided) return {"guiding", "off", "--no-guide-photons"};
+  if (!MayGuidePhotons(scene, settings, integrator))
+    return {"guiding", "off", "nothing is smooth: photons are little of the light"};
+  return {"guiding", "if it pays", "learned from the first samples"};
+}
+
 }  // namespace
 
 ScenePlan PlanFor(const RenderScene& scene, const RenderSettings& settings) {
@@ -192,9 +199,7 @@ ScenePlan PlanFor(const RenderScene& scene, const RenderSettings& settings) {
   plan.decisions.push_back(ChooseSelection(facts, settings));
   plan.decisions.push_back(ChooseMerging(facts, integrator, scene, settings));
   if (GathersPhotons(integrator)) {
-    plan.decisions.push_back(settings.photons.guided
-                                 ? PlanDecision{"guiding", "if it pays", "learned from the first samples"}
-                                 : PlanDecision{"guiding", "off", "--no-guide-photons"});
+    plan.decisions.push_back(ChooseGuiding(scene, settings, integrator));
   }
   plan.decisions.push_back(scene.hasMotion ? PlanDecision{"motion", "on", "something moves while the shutter is open"}
                                            : PlanDecision{"motion", "off", "nothing moves: rays have no time"});
