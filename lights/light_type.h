@@ -8,23 +8,12 @@
 
 #include "geometry/shapes.h"
 #include "lights/light.h"
-#include "scene/parameters.h"
+#include "lights/parameter_table.h"
 
 namespace lampyr {
 
 class TextureLibrary;
 class AlphaSource;
-
-// One row of a light's parameter table: what the parser checks against, error messages quote and `lampyr lights`
-// prints.
-struct ParameterInfo {
-  std::string name;
-  ParameterType type;
-  std::string unit;          // "W/sr", "m", "°", "" for none
-  std::string defaultValue;  // as a scene file would write it
-  std::string range;         // "> 0", "[0,1]", "" for any
-  std::string help;          // one line
-};
 
 // Everything besides its parameters that a light is made from.
 struct LightBuildContext {
@@ -39,14 +28,11 @@ struct LightBuildContext {
   Diagnostics* diagnostics = nullptr;
 };
 
-struct LightType {
-  std::string name;          // as in LightSource "name" or AreaLightSource "name"
-  bool isAreaLight = false;  // made by AreaLightSource from a shape
-  std::string help;          // one line
-  std::vector<ParameterInfo> parameters;
+struct LightType : TypeDescription {
+  bool isAreaLight = false;  // made by AreaLightSource from a shape; LightSource otherwise
   std::function<std::unique_ptr<Light>(const ParameterList&, const LightBuildContext&)> create;
-  // Parameter blocks in scene syntax for the suites: each is one variant of the light that has to pass.
-  std::vector<std::string> samples;
+
+  const char* Statement() const { return isAreaLight ? "AreaLightSource" : "LightSource"; }
 };
 
 // All built-in types, one row each.
@@ -55,8 +41,7 @@ const std::vector<LightType>& LightRegistry();
 // The type, or null.
 const LightType* FindLightType(const std::string& name, bool isAreaLight);
 
-// Throws a located Error for a parameter whose name (with the nearest known one), type or range is not in the type's
-// table. Marks all parameters as used.
+// CheckParameters of parameter_table.h.
 void CheckParameters(const LightType& type, const ParameterList& parameters);
 
 // Checks `parameters` against the type's table (unknown names, wrong types, values out of range: a located Error with

@@ -1,4 +1,4 @@
-#include "lights/light_type.h"
+#include "lights/parameter_table.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -47,15 +47,15 @@ void CheckOne(const ParameterInfo& row, const Parameter& parameter, const std::s
 
 }  // namespace
 
-void CheckParameters(const LightType& type, const ParameterList& parameters) {
+void CheckParameters(const TypeDescription& type, const std::string& statement, const ParameterList& parameters) {
   std::vector<std::string> names;
   for (const ParameterInfo& row : type.parameters) names.push_back(row.name);
-  const std::string owner = (type.isAreaLight ? "AreaLightSource \"" : "LightSource \"") + type.name + "\"";
+  const std::string owner = statement + " \"" + type.name + "\"";
   for (const Parameter& parameter : parameters.All()) {
     const auto row = std::find_if(type.parameters.begin(), type.parameters.end(),
                                   [&](const ParameterInfo& info) { return info.name == parameter.name; });
     if (row == type.parameters.end()) {
-      if (parameter.mayBeUnused) continue;  // of an Attribute, for lights of other types
+      if (parameter.mayBeUnused) continue;  // of an Attribute, for other types
       throw Error(parameter.where,
                   owner + " has no parameter \"" + parameter.name + "\"" + DidYouMean(parameter.name, names));
     }

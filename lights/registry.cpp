@@ -34,6 +34,10 @@ const LightType* FindLightType(const std::string& name, bool isAreaLight) {
   return nullptr;
 }
 
+void CheckParameters(const LightType& type, const ParameterList& parameters) {
+  CheckParameters(type, type.Statement(), parameters);
+}
+
 std::unique_ptr<Light> MakeLight(const LightType& type, const ParameterList& parameters,
                                  const LightBuildContext& build) {
   CheckParameters(type, parameters);

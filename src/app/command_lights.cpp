@@ -2,18 +2,15 @@
 
 #include "app/command_line.h"
 #include "app/commands.h"
+#include "lights/filters/filter_type.h"
 #include "lights/light_type.h"
 
 namespace lampyr {
 
 namespace {
 
-std::string Statement(const LightType& type) {
-  return std::string(type.isAreaLight ? "AreaLightSource" : "LightSource") + " \"" + type.name + "\"";
-}
-
-void PrintType(const LightType& type) {
-  std::printf("%s\n    %s\n", Statement(type).c_str(), type.help.c_str());
+void PrintType(const char* statement, const TypeDescription& type) {
+  std::printf("%s \"%s\"\n    %s\n", statement, type.name.c_str(), type.help.c_str());
   for (const ParameterInfo& parameter : type.parameters) {
     const std::string name = std::string(ToString(parameter.type)) + " " + parameter.name;
     const std::string value = parameter.defaultValue + (parameter.unit.empty() ? "" : " " + parameter.unit);
@@ -28,13 +25,15 @@ void PrintType(const LightType& type) {
 int RunLights(const std::string& name) {
   bool found = false;
   std::vector<std::string> names;
-  for (const LightType& type : LightRegistry()) {
+  const auto print = [&](const char* statement, const TypeDescription& type) {
     names.push_back(type.name);
-    if (!name.empty() && type.name != name) continue;
+    if (!name.empty() && type.name != name) return;
     found = true;
-    PrintType(type);
-  }
-  if (!found) throw UsageError("there is no light \"" + name + "\"" + DidYouMean(name, names));
+    PrintType(statement, type);
+  };
+  for (const LightType& type : LightRegistry()) print(type.Statement(), type);
+  for (const FilterType& type : FilterRegistry()) print("LightFilter", type);
+  if (!found) throw UsageError("there is no light or filter \"" + name + "\"" + DidYouMean(name, names));
   return kExitDone;
 }
 
