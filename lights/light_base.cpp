@@ -83,8 +83,8 @@ ParameterList MergeParameters(const ParameterList& base, const ParameterList& ch
   return {base.Where(), base.Owner(), std::move(merged)};
 }
 
-Color ReadEmissionColor(const ParameterList& parameters, const std::string& name) {
-  const Color color = parameters.GetColor(name, Color(1.0f), SpectrumRole::Illuminant);
+Color ReadEmissionColor(const ParameterList& parameters, const std::string& name, const Color& defaultValue) {
+  const Color color = parameters.GetColor(name, defaultValue, SpectrumRole::Illuminant);
   if (!color.IsValid()) {
     throw Error(parameters.WhereOf(name), parameters.Owner() + ": \"" + name + "\" must not be negative or infinite");
   }

@@ -56,7 +56,8 @@ LightSettings ReadLightSettings(const ParameterList& parameters);
 // `base` with the parameters of `changes` in place of those of the same name, or added.
 ParameterList MergeParameters(const ParameterList& base, const ParameterList& changes);
 
-// A colour of light, scaled; an Error where a channel is negative.
-Color ReadEmissionColor(const ParameterList& parameters, const std::string& name);
+// A colour of light; an Error where a channel is negative.
+Color ReadEmissionColor(const ParameterList& parameters, const std::string& name,
+                        const Color& defaultValue = Color(1.0f));
 
 }  // namespace lampyr

@@ -400,7 +400,7 @@ Color BdptIntegrator::SeenLight(Run& run, const Ray& ray, const RayHit& hit, con
   if (path.value.IsBlack()) return path.value;
   path.s = 0;
   path.t = 2;
-  const Receiver lens{ray.origin, Normal3(0.0f), false};
+  const Receiver lens{ray.origin, Normal3(0.0f), false, Receiver::kCamera};
   if (const auto found = lighting_.EvaluateSamples(lens, ray.direction, hit.t, point, run.time, true)) {
     path.end = EndOf(lighting_, *found, lighting_.CanBeHit(found->light), 0);
     path.cameraPerArea = CameraPerArea(ray, glm::dot(ray.direction, point.Ng), Sqr(static_cast<double>(hit.t)));

@@ -66,6 +66,10 @@ void LightSubpathTracer::Trace(float time, Sampler& sampler, RenderCounts& count
     if (!MakeVertex(scene_, flight.ray, *hit, point, vertex)) return;
     vertex.diffuse = flight.diffuse;
     vertex.specular = flight.specular;
+    if (path.count == 0 &&
+        !scene_.lighting->FilterLanding(*photon, vertex.receiver, vertex.diffuse, vertex.specular)) {
+      return;
+    }
     if (weights_ != Weights::None) {
       if (path.count > 0) {
         Follow(path.Last(), flight, weights_ == Weights::All, vertex);

@@ -21,7 +21,8 @@ bool MakeVertex(const RenderScene& scene, const Ray& ray, const RayHit& hit, con
   vertex.toPrevious = -ray.direction;
   vertex.bsdf = material->GetBsdf(point, vertex.toPrevious);
   const Normal3 Ns = vertex.bsdf.ShadingFrame().z;
-  vertex.receiver = {point.position, glm::dot(Ns, vertex.toPrevious) < 0 ? -Ns : Ns, vertex.bsdf.IsTransmissive()};
+  vertex.receiver = {point.position, glm::dot(Ns, vertex.toPrevious) < 0 ? -Ns : Ns, vertex.bsdf.IsTransmissive(),
+                     attributes.link};
   vertex.isDelta = vertex.bsdf.IsDelta();
   vertex.isSeenByCamera = (attributes.visibility & visibility::kCamera) != 0;
   vertex.isSeenByIndirect = (attributes.visibility & visibility::kIndirect) != 0;

@@ -143,7 +143,7 @@ Color PathWalk::Radiance(const Ray& cameraRay, Sampler& sampler, RenderCounts& c
     const Vector3 wo = -path.ray.direction;
     const Bsdf bsdf = material->GetBsdf(point, wo);
     const Normal3 Ns = bsdf.ShadingFrame().z;
-    const Receiver receiver{point.position, glm::dot(Ns, wo) < 0 ? -Ns : Ns, bsdf.IsTransmissive()};
+    const Receiver receiver{point.position, glm::dot(Ns, wo) < 0 ? -Ns : Ns, bsdf.IsTransmissive(), attributes.link};
     if (!bsdf.IsDelta()) {
       if (samplesLights_) radiance += DirectLight(path, point, bsdf, wo, receiver, sampler, counts);
       if (gatherer) radiance += gatherer->Gather(point, bsdf, wo, path.Throughput(), path.depth + 1, path.length);

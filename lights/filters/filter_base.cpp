@@ -24,7 +24,7 @@ std::vector<std::string> ReadNames(const ParameterList& parameters, const std::s
   return names;
 }
 
-CombineMode ParseCombineMode(const ParameterList& parameters, const std::string& name) {
+CombineMode ReadCombineMode(const ParameterList& parameters, const std::string& name) {
   const std::string mode = parameters.GetString(name, kCombineModes[0]);
   const auto at = std::find(kCombineModes.begin(), kCombineModes.end(), mode);
   if (at == kCombineModes.end()) {
@@ -37,7 +37,6 @@ CombineMode ParseCombineMode(const ParameterList& parameters, const std::string&
 
 FilterSettings ReadFilterSettings(const ParameterList& parameters) {
   FilterSettings settings;
-  settings.combineMode = ParseCombineMode(parameters, "combineMode");
   const double density = parameters.GetFloat("density", 1);
   settings.diffuse = static_cast<float>(density * parameters.GetFloat("diffuse", 1));
   settings.specular = static_cast<float>(density * parameters.GetFloat("specular", 1));

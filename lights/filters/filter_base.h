@@ -10,19 +10,16 @@
 
 namespace lampyr {
 
-// How a filter's factor meets those of the others in a combiner.
-enum class CombineMode { Multiply, Max, Min, Screen };
-
 struct FilterSettings {
-  CombineMode combineMode = CombineMode::Multiply;
   float diffuse = 1, specular = 1;  // strengths, density included
   bool invert = false;
   std::vector<std::string> linkingGroups;
 };
 
-// combineMode, density, invert, diffuse, specular, linkingGroups.
+// density, invert, diffuse, specular, linkingGroups.
 FilterSettings ReadFilterSettings(const ParameterList& parameters);
-CombineMode ParseCombineMode(const ParameterList& parameters, const std::string& name);
+// multiply (also where there is none), max, min or screen; an Error for anything else.
+CombineMode ReadCombineMode(const ParameterList& parameters, const std::string& name);
 
 // The rows that every shipped filter's table ends with: the above, name and coordsys.
 std::vector<ParameterInfo> WithCommonFilterParameters(std::vector<ParameterInfo> parameters);
@@ -57,6 +54,14 @@ class FilterBase : public LightFilter {
   LightTransform transform_;
   std::shared_ptr<const Motion> motion_;
 };
+
+// 1 for x ≤ 0, 0 from x = width on, smooth between; a step where the width is 0.
+inline float SoftEdge(float x, float width) {
+  if (!(x > 0)) return 1;
+  if (x >= width) return 0;
+  const float t = x / width;
+  return 1 - t * t * (3 - 2 * t);
+}
 
 // An edge in the filter's own space. `towards` is not unit length where its transform scales.
 struct FilterEdge {

@@ -23,10 +23,8 @@
 
 namespace lampyr {
 
-// Edges between one light and receivers, `count` of each array. Not more than kMost at a time.
+// Edges between one light and receivers, `count` of each array.
 struct FilterSamples {
-  static constexpr int kMost = 4096;
-
   int count = 0;
   const Point3* receiver = nullptr;          // the surface that is lit
   const Vector3* toLight = nullptr;          // unit
@@ -35,15 +33,25 @@ struct FilterSamples {
   // In and out: what the light sends to diffuse and specular lobes there.
   Color* diffuse = nullptr;
   Color* specular = nullptr;
+
+  FilterSamples Part(int begin, int howMany) const {
+    return {howMany,           receiver + begin, toLight + begin, distance + begin,
+            pdfDirect + begin, diffuse + begin,  specular + begin};
+  }
 };
 
 class LightFilter;
 
-// A filter as the scene holds it: with the groups that it belongs to, as a number that a context can look up.
+// How a filter's factor meets those of the others in a combiner: the product, the largest, the smallest, or 1 less the
+// product of what each takes away.
+enum class CombineMode { Multiply, Max, Min, Screen };
+
+// A filter as the scene holds it.
 struct FilterInstance {
-  std::shared_ptr<const LightFilter> filter;
-  uint32_t linking = 0;  // Linking::FilterKey; 0: in no group, and enabled everywhere
+  std::shared_ptr<const LightFilter> filter;  // null: it never changes anything
   std::string name;
+  CombineMode combineMode = CombineMode::Multiply;
+  uint32_t linking = 0;  // its groups, as a number that a context can look up; 0: none, it is enabled everywhere
 };
 
 // What a filter is given beside the samples.

@@ -7,7 +7,14 @@ const std::vector<FilterType>& FilterRegistry() {
   static const std::vector<FilterType> registry = [] {
     std::vector<FilterType> types;
     // clang-format off
-    extern FilterType IntMultFilterType();  types.push_back(IntMultFilterType());
+    extern FilterType BarnFilterType();      types.push_back(BarnFilterType());
+    extern FilterType BlockerFilterType();   types.push_back(BlockerFilterType());
+    extern FilterType CombinerFilterType();  types.push_back(CombinerFilterType());
+    extern FilterType CookieFilterType();    types.push_back(CookieFilterType());
+    extern FilterType GoboFilterType();      types.push_back(GoboFilterType());
+    extern FilterType IntMultFilterType();   types.push_back(IntMultFilterType());
+    extern FilterType RampFilterType();      types.push_back(RampFilterType());
+    extern FilterType RodFilterType();       types.push_back(RodFilterType());
     // clang-format on
     return types;
   }();

@@ -43,9 +43,14 @@ ClusterBounds BoundsOfPatch(const PlacedLight& placed, int patch, const Bounding
   context.transform = &placed.transform;
   context.scene = scene;
   context.patch = patch;
-  if (placed.motion) return BoundsWhileMoving(placed, context);
-  const auto bounds = placed.light->GetEmissionBounds(context);
-  return bounds ? BoundsOfEmitter(*bounds, placed.light->Kind()) : ClusterBounds();
+  ClusterBounds result;
+  if (placed.motion) {
+    result = BoundsWhileMoving(placed, context);
+  } else if (const auto bounds = placed.light->GetEmissionBounds(context)) {
+    result = BoundsOfEmitter(*bounds, placed.light->Kind());
+  }
+  result.intensity = std::min(result.intensity * placed.radianceModifier, std::numeric_limits<float>::max());
+  return result;
 }
 
 // Makes the numbers relative: see light_bounds.h.

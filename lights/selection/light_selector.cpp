@@ -63,7 +63,8 @@ float MeanPower(const PlacedLight& placed, const BoundingSphere& scene) {
 std::vector<float> PowerWeights(std::span<const PlacedLight> lights, const BoundingSphere& scene) {
   std::vector<float> weights;
   for (const PlacedLight& placed : lights) {
-    const float power = MeanPower(placed, scene) * placed.light->Settings().importanceMultiplier;
+    const float power =
+        MeanPower(placed, scene) * placed.light->Settings().importanceMultiplier * placed.radianceModifier;
     // A power beyond float is the largest one; NaN compares false.
     weights.push_back(power > 0 ? std::min(power, std::numeric_limits<float>::max()) : 0.0f);
   }

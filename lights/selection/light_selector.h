@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "lights/light.h"
 #include "math/motion.h"
@@ -20,6 +21,10 @@ struct Receiver {
   Point3 position{0.0f};
   Normal3 normal{0.0f};         // shading normal, on the side of the path's previous vertex; 0 in a volume
   bool isTransmissive = false;  // light from behind counts too
+  uint32_t link = 0;            // class of its light linking and light filters (services/linking.h)
+
+  // The camera's own place: what it sees is neither linked nor filtered.
+  static constexpr uint32_t kCamera = 0xffffffffu;
 };
 
 struct SelectedLight {
@@ -50,11 +55,11 @@ class LightSelector {
   virtual void Use(LightLearning*) {}
   // The selected light brought this irradiance (0: it was occluded, or dark); recorded where something is learned.
   virtual void Record(const Receiver&, uint32_t, int, double) const {}
-  // Whether lights are selected patch by patch: patchIndex then belongs to what is asked for.
-  virtual bool SelectsPatches() const { return false; }
+  // Whether lights are selected patch by patch at this receiver: patchIndex then belongs to what is asked for.
+  virtual bool SelectsPatches(const Receiver&) const { return false; }
 
   // At most so many choices for a receiver, in [1, LightChoices::kMost]; 1 unless said.
-  void TakeSamples(int most) { mostSamples_ = std::clamp(most, 1, LightChoices::kMost); }
+  virtual void TakeSamples(int most) { mostSamples_ = std::clamp(most, 1, LightChoices::kMost); }
 
  protected:
   int MostSamples() const { return mostSamples_; }
@@ -78,8 +83,18 @@ struct PlacedLight {
 
   bool isInstance = false;  // its shape is traced within an instance, placed as the light is
 
+  int32_t filter = -1;         // index of its light filter, -1: none
+  float radianceModifier = 1;  // how much of it the filter lets through, as selection is to take it
+
   // Of a light that moves.
   LightTransform At(float time) const;
+};
+
+// Receivers by the lights that shine on them: `ofClass` says for each class of receivers (Receiver::link) which of
+// `lights` these are, in ascending order. Empty: all lights shine on all.
+struct LightSets {
+  std::vector<uint32_t> ofClass;
+  std::vector<std::vector<uint32_t>> lights;
 };
 
 // Selects in proportion to `weights` (not negative), whatever the receiver. With all weights 0, selects nothing.

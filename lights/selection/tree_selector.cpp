@@ -36,7 +36,7 @@ class TreeSelector final : public LightSelector {
     farTable_ = AliasTable(weights);
   }
 
-  bool SelectsPatches() const override { return emitters_.hasPatches; }
+  bool SelectsPatches(const Receiver&) const override { return emitters_.hasPatches; }
 
   void Select(const Receiver& receiver, double u, LightChoices& choices) const override {
     const TreeReceiver place = Place(receiver);
@@ -145,7 +145,8 @@ class TreeSelector final : public LightSelector {
     context.transform = &placed.transform;
     context.scene = scene;
     const float irradiance = placed.light->GetIncidentRadianceEstimate(context, scene.center);
-    return irradiance > 0 ? std::min(irradiance, kLargest) * placed.light->Settings().importanceMultiplier : 0.0f;
+    const float factor = placed.light->Settings().importanceMultiplier * placed.radianceModifier;
+    return irradiance > 0 ? std::min(irradiance, kLargest) * factor : 0.0f;
   }
 
   // How often the lights at infinity are chosen: by their irradiance against what the others are estimated to send

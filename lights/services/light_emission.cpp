@@ -165,7 +165,7 @@ std::optional<FoundLight> LightingServices::EvaluateLanding(const EmittedPhoton&
   const LightKind kind = fronts_[photon.light].kind;
   std::optional<LightTransform> moved;
   LightContext context = Context(photon.light, photon.ray.time, true, moved);
-  if (selector_->SelectsPatches()) context.patch = emission.patchIndex;
+  if (selector_->SelectsPatches(receiver)) context.patch = emission.patchIndex;
   const PdfDiscrete selection = selector_->Probability(receiver, photon.light, context.patch);
   const Vector3 way = receiver.position - emission.position;
   if (IsDelta(kind)) {
@@ -178,6 +178,18 @@ std::optional<FoundLight> LightingServices::EvaluateLanding(const EmittedPhoton&
   evaluation->pdfEmit = EmissionDensity(context, photon.light, hit.patchIndex, evaluation->pdfEmit);
   Aim(photon.light, emission.position, emission.direction, *evaluation);
   return FoundLight{photon.light, selection, *evaluation};
+}
+
+bool LightingServices::LandsFiltered(const EmittedPhoton& photon, const Receiver& receiver, Color& diffuse,
+                                     Color& specular) const {
+  if (!Reaches(photon.light, receiver)) return false;
+  if (lights_[photon.light].filter < 0) return true;
+  const std::optional<FoundLight> found = EvaluateLanding(photon, receiver);
+  if (!found) return false;
+  const Point3& start = photon.emission.position;
+  const float distance = IsAtInfinity(photon.light) ? kInfinity : glm::distance(receiver.position, start);
+  return RunFilter(photon.light, receiver, -photon.emission.direction, distance, photon.ray.time,
+                   found->evaluation.pdfDirect, diffuse, specular);
 }
 
 PdfDiscrete LightingServices::EmissionSelectionProbability(uint32_t light) const {

@@ -1,5 +1,7 @@
 #include "lights/services/lighting_services.h"
 
+#include "lights/selection/linked_selector.h"
+
 namespace lampyr {
 
 namespace {
@@ -25,8 +27,12 @@ LightHit EscapedHit(const Point3& origin, const Vector3& direction) {
 }  // namespace
 
 LightingServices::LightingServices(const GeometryScene& geometry, std::vector<PlacedLight> lights,
-                                   LightSelection selection)
-    : geometry_(geometry), lights_(std::move(lights)), sphere_(geometry.GetBoundingSphere()) {
+                                   LightSelection selection, LightLinking linking)
+    : geometry_(geometry),
+      lights_(std::move(lights)),
+      sphere_(geometry.GetBoundingSphere()),
+      linking_(std::move(linking)),
+      isLinked_(linking_.Excludes() || linking_.HasFilters()) {
   fronts_ = LargeArray<Front>(lights_.size());
   for (uint32_t i = 0; i < lights_.size(); ++i) {
     const PlacedLight& placed = lights_[i];
@@ -34,7 +40,8 @@ LightingServices::LightingServices(const GeometryScene& geometry, std::vector<Pl
                   placed.motion != nullptr};
     if (fronts_[i].kind == LightKind::Infinite) infinite_.push_back(i);
   }
-  selector_ = MakeLightSelector(selection, lights_, sphere_);
+  selector_ = linking_.Excludes() ? MakeLinkedSelector(selection, lights_, sphere_, linking_.Sets())
+                                  : MakeLightSelector(selection, lights_, sphere_);
   emissionSelector_ = MakeEmissionSelector(lights_, sphere_);
 }
 
@@ -62,12 +69,17 @@ DirectSample LightingServices::GenerateSamples(const Receiver& receiver, const S
   LightContext context = Context(selected.light, time, bidirectional, moved);
   context.u = u;
   context.patch = selected.patch;
-  DirectSample direct{selected.light,
-                      IsDelta(front.kind) || !front.canBeHit,
-                      lampyr::IsAtInfinity(front.kind),
-                      selected.patch,
-                      selected.probability,
-                      front.light->GenerateSamples(context, receiver.position)};
+  DirectSample direct{
+      selected.light,
+      IsDelta(front.kind) || !front.canBeHit,
+      lampyr::IsAtInfinity(front.kind),
+      selected.patch,
+      selected.probability,
+      Reaches(selected.light, receiver) ? front.light->GenerateSamples(context, receiver.position) : std::nullopt};
+  if (direct.sample &&
+      !Filter(selected.light, receiver, direct.sample->direction, direct.sample->distance, time, *direct.sample)) {
+    direct.sample.reset();
+  }
   if (bidirectional && direct.sample) {
     LightSample& sample = *direct.sample;
     sample.pdfEmit = EmissionDensity(context, selected.light, sample.patchIndex, sample.pdfEmit);
@@ -120,12 +132,13 @@ std::optional<FoundLight> LightingServices::EvaluateSamples(const Receiver& rece
   const int32_t index = geometry_.LightAt(point.primitive, point.instance);
   if (index < 0) return std::nullopt;
   const auto light = static_cast<uint32_t>(index);
+  if (!Reaches(light, receiver)) return std::nullopt;
   std::optional<LightTransform> moved;
   LightContext context = Context(light, time, bidirectional, moved);
   const LightHit hit = SurfaceLightHit(direction, distance, point);
-  if (selector_->SelectsPatches()) context.patch = hit.patchIndex;
+  if (selector_->SelectsPatches(receiver)) context.patch = hit.patchIndex;
   auto evaluation = fronts_[light].light->EvaluateSamples(context, hit, receiver.position);
-  if (!evaluation) return std::nullopt;
+  if (!evaluation || !Filter(light, receiver, direction, distance, time, *evaluation)) return std::nullopt;
   if (bidirectional) {
     evaluation->pdfEmit = EmissionDensity(context, light, hit.patchIndex, evaluation->pdfEmit);
     Aim(light, hit.position, -direction, *evaluation);
@@ -137,13 +150,25 @@ std::optional<FoundLight> LightingServices::EvaluateEscaped(size_t i, const Rece
                                                             const Vector3& direction, float time,
                                                             bool bidirectional) const {
   const uint32_t light = infinite_[i];
+  if (!Reaches(light, receiver)) return std::nullopt;
   const LightHit hit = EscapedHit(receiver.position, direction);
   std::optional<LightTransform> moved;
   const LightContext context = Context(light, time, bidirectional, moved);
   auto evaluation = fronts_[light].light->EvaluateSamples(context, hit, receiver.position);
-  if (!evaluation) return std::nullopt;
+  if (!evaluation || !Filter(light, receiver, direction, kInfinity, time, *evaluation)) return std::nullopt;
   if (bidirectional) Aim(light, receiver.position, -direction, *evaluation);
   return FoundLight{light, selector_->Probability(receiver, light, kAnyPatch), *evaluation};
+}
+
+bool LightingServices::RunFilter(uint32_t light, const Receiver& receiver, const Vector3& toLight, float distance,
+                                 float time, PdfSolidAngle pdfDirect, Color& diffuse, Color& specular) const {
+  if (receiver.link == Receiver::kCamera) return true;
+  const FilterInstance& root = linking_.Filters()[static_cast<size_t>(lights_[light].filter)];
+  const FilterContext context{time, linking_.EnabledFilters(receiver.link)};
+  if (context.IsEnabled(root)) {
+    root.filter->Filter(context, {1, &receiver.position, &toLight, &distance, &pdfDirect, &diffuse, &specular});
+  }
+  return !diffuse.IsBlack() || !specular.IsBlack();
 }
 
 Color LightingServices::EmissionForCamera(const Vector3& direction, float distance, const SurfacePoint& point,

@@ -14,6 +14,7 @@
 #include "lights/selection/emission_guide.h"
 #include "lights/selection/light_learning.h"
 #include "lights/selection/light_selector.h"
+#include "lights/services/linking.h"
 #include "sampling/rng.h"
 
 namespace lampyr {
@@ -57,7 +58,8 @@ struct EmittedPhoton {
 class LightingServices {
  public:
   // `geometry` must outlive the services.
-  LightingServices(const GeometryScene& geometry, std::vector<PlacedLight> lights, LightSelection selection);
+  LightingServices(const GeometryScene& geometry, std::vector<PlacedLight> lights, LightSelection selection,
+                   LightLinking linking = {});
 
   // Chooses lights for the receiver: one, or as many as TakeSamples lets it.
   void SelectLights(const Receiver& receiver, float uSelect, LightChoices& choices) const {
@@ -114,8 +116,15 @@ class LightingServices {
   // without the selection. Delta lights too, which it finds with the discrete density 1.
   std::optional<FoundLight> EvaluateLanding(const EmittedPhoton& photon, const Receiver& receiver) const;
 
-  // Whether next-event estimation selects patch by patch; otherwise a light's patches have the light's probability.
-  bool SelectsPatches() const { return selector_->SelectsPatches(); }
+  // What a photon brings to the receiver that it has landed on: its light's filter changes it, and where the light is
+  // not linked to the receiver it brings nothing. False: nothing is left.
+  bool FilterLanding(const EmittedPhoton& photon, const Receiver& receiver, Color& diffuse, Color& specular) const {
+    return !isLinked_ || LandsFiltered(photon, receiver, diffuse, specular);
+  }
+
+  // Whether next-event estimation at a receiver selects patch by patch; otherwise a light's patches have the light's
+  // probability.
+  bool SelectsPatches(const Receiver& receiver) const { return selector_->SelectsPatches(receiver); }
   PdfDiscrete SelectionProbability(const Receiver& receiver, uint32_t light, int patch) const;
   PdfDiscrete EmissionSelectionProbability(uint32_t light) const;
   // Whether a light has a direction only (infinite and distant lights), and whether a direction that a surface samples
@@ -128,6 +137,7 @@ class LightingServices {
 
   bool HasLights() const { return !lights_.empty(); }
   const std::vector<PlacedLight>& Lights() const { return lights_; }
+  const LightLinking& Linking() const { return linking_; }
   const BoundingSphere& SceneSphere() const { return sphere_; }
 
  private:
@@ -148,6 +158,21 @@ class LightingServices {
   template <class Record>
   void Aim(uint32_t light, const Point3& from, const Vector3& direction, Record& record) const;
 
+  // An edge between a light and a receiver, with what the light sends along it: linking and filters act on it. False:
+  // nothing is left. Each technique that makes such an edge comes here, or to FilterLanding.
+  bool Reaches(uint32_t light, const Receiver& receiver) const {
+    return !isLinked_ || receiver.link == Receiver::kCamera || linking_.IsLit(receiver.link, light);
+  }
+  template <class Record>
+  bool Filter(uint32_t light, const Receiver& receiver, const Vector3& toLight, float distance, float time,
+              Record& record) const {
+    return !isLinked_ || lights_[light].filter < 0 ||
+           RunFilter(light, receiver, toLight, distance, time, record.pdfDirect, record.diffuse, record.specular);
+  }
+  bool RunFilter(uint32_t light, const Receiver& receiver, const Vector3& toLight, float distance, float time,
+                 PdfSolidAngle pdfDirect, Color& diffuse, Color& specular) const;
+  bool LandsFiltered(const EmittedPhoton& photon, const Receiver& receiver, Color& diffuse, Color& specular) const;
+
   // Emission chooses a light as a whole: of densities given a patch, that of emission becomes the whole light's.
   PdfArea EmissionDensity(const LightContext& context, uint32_t light, int patch, PdfArea given) const;
   void RecordResult(const Receiver& receiver, const DirectSample& direct, const Color& arrived) const;
@@ -164,6 +189,8 @@ class LightingServices {
   LargeArray<Front> fronts_;
   std::vector<uint32_t> infinite_;
   BoundingSphere sphere_;
+  LightLinking linking_;
+  bool isLinked_ = false;  // some light has a filter, or does not shine on everything
   std::unique_ptr<LightSelector> selector_, emissionSelector_;
   LightLearning* learning_ = nullptr;
   const EmissionGuide* guide_ = nullptr;

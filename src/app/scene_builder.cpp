@@ -7,6 +7,7 @@
 #include "app/material_table.h"
 #include "app/plan.h"
 #include "app/shape_builder.h"
+#include "lights/filters/filter_base.h"
 #include "lights/light_type.h"
 #include "lights/services/light_surface.h"
 #include "math/motion.h"
@@ -95,6 +96,9 @@ class Builder {
   void AddAreaLight(const ShapeDescription& description, const Shape& shape, const RenderPlacement& placement,
                     const Transform& shapePlacement, const std::shared_ptr<const AlphaSource>& alpha);
   void CheckAreaLights();
+  void AddFilters();
+  void Bind(int filter, PlacedLight& light) const;
+  uint32_t LinkOf(const ShapeDescription& shape);
   void AddLights();
   SceneLight Describe(const StatementDescription& statement, const PlacedLight& placed) const;
   void AddLightSurface(const PlacedLight& placed);
@@ -106,6 +110,7 @@ class Builder {
   std::vector<SceneLight>* described_ = nullptr;  // null: nobody asks
   GeometryDescription geometry_;
   std::vector<PlacedLight> lights_;
+  LightLinking linking_;
   std::unique_ptr<TextureLibrary> textures_;
   std::unique_ptr<MaterialTable> materials_;
   MotionTimes times_;
@@ -227,7 +232,7 @@ void Builder::CheckAreaLights() {
 // A constant opacity of 0 makes a light that shines and is not there, as in pbrt-v4; any other cuts out a part of it.
 void Builder::AddAreaLight(const ShapeDescription& description, const Shape& shape, const RenderPlacement& placement,
                            const Transform& shapePlacement, const std::shared_ptr<const AlphaSource>& alpha) {
-  const StatementDescription& statement = description_.areaLights[description.areaLight];
+  const AreaLightDescription& statement = description_.areaLights[description.areaLight];
   const auto opacity = textures_->FindFloat(description.shape.parameters, "alpha");
   const bool canBeHit = !opacity || !opacity->IsConstant() || opacity->Evaluate({}) > 0;
   const LightType* type = FindType(statement, true);
@@ -236,6 +241,7 @@ void Builder::AddAreaLight(const ShapeDescription& description, const Shape& sha
   build.shapePlacement = shapePlacement;
   if (canBeHit) build.alpha = alpha;
   lights_.push_back({MakeLight(*type, statement.parameters, build), build.transform, canBeHit, placement.motion});
+  Bind(statement.filter, lights_.back());
   if (!described_) return;
   SceneLight light = Describe(statement, lights_.back());
   light.shape = shape;
@@ -270,9 +276,11 @@ void Builder::PlaceEntry(const ReadEntry& entry, const Transform& toRender, std:
   std::shared_ptr<const AlphaSource> alpha;
   if (const auto parameter = textures_->FindFloat(shape.shape.parameters, "alpha")) alpha = MakeAlphaSource(*parameter);
 
+  const uint32_t link = LinkOf(shape);
   for (Shape& placed : PlaceShape(entry.local, toRender)) {
     GeometryEntry result;
     result.attributes.material = entry.material;
+    result.attributes.link = link;
     result.attributes.alpha = alpha;
     result.shape = std::move(placed);
     const bool isCurve = std::holds_alternative<std::shared_ptr<const CurveSet>>(result.shape);
@@ -382,6 +390,72 @@ void Builder::PlaceEntries() {
   for (const FlatInstance& instance : instances_) PlaceInstance(instance, parts[instance.object]);
 }
 
+// The type of a filter statement.
+const FilterType& FindType(const StatementDescription& statement) {
+  if (const FilterType* type = FindFilterType(statement.type)) return *type;
+  std::vector<std::string> names = {"none"};
+  for (const FilterType& known : FilterRegistry()) names.push_back(known.name);
+  throw Error(statement.where,
+              "there is no LightFilter \"" + statement.type + "\"" + DidYouMean(statement.type, names));
+}
+
+void Builder::AddFilters() {
+  for (const LightFilterDescription& description : description_.lightFilters) {
+    const StatementDescription& statement = description.filter;
+    const FilterType& type = FindType(statement);
+    RenderPlacement placement{worldToRender_ * description.placement.start, nullptr};
+    if (description.placement.IsAnimated()) {
+      const AnimatedTransform toWorld = ToAnimated(description.placement, "a light filter", statement.where);
+      placement = PlaceMoving(MotionChain(worldToRender_) * toWorld, {}, "a light filter", statement.where);
+    }
+    if (!placement.toRender.IsAffine())
+      throw Error(statement.where, "a light filter cannot have a perspective transform");
+    FilterBuildContext build;
+    build.transform = ToLightTransform(placement.toRender);
+    build.motion = placement.motion;
+    build.textures = textures_.get();
+    build.diagnostics = &diagnostics_;
+    build.find = [&](const std::string& name, const FileLocation& where) {
+      const std::vector<FilterInstance>& before = linking_.Filters();
+      const auto found = std::find_if(before.rbegin(), before.rend(),
+                                      [&](const FilterInstance& filter) { return filter.name == name; });
+      if (found != before.rend()) return *found;
+      std::vector<std::string> names;
+      for (const FilterInstance& filter : before) names.push_back(filter.name);
+      throw Error(where,
+                  "there is no LightFilter with the name \"" + name + "\" before this one" + DidYouMean(name, names));
+    };
+    FilterInstance filter;
+    filter.filter = MakeFilter(type, statement.parameters, build);
+    filter.name = statement.parameters.GetString("name", "");
+    filter.combineMode = ReadCombineMode(statement.parameters, "combineMode");
+    const auto* groups = filter.filter->GetProperty(FilterProperty::LinkingGroups);
+    if (groups) filter.linking = linking_.FilterKey(*groups);
+    if (filter.filter->IsIdentity()) filter.filter = nullptr;
+    linking_.Add(std::move(filter));
+  }
+}
+
+void Builder::Bind(int filter, PlacedLight& light) const {
+  if (filter < 0) return;
+  const FilterInstance& bound = linking_.Filters()[static_cast<size_t>(filter)];
+  if (!bound.filter) return;
+  light.filter = filter;
+  const std::optional<float> modifier = bound.filter->GetRadianceModifier();
+  if (!modifier || !(*modifier >= 0 && *modifier < kInfinity)) return;
+  // A filter that is off for some receivers takes nothing away there.
+  light.radianceModifier = bound.linking == 0 ? *modifier : std::max(*modifier, 1.0f);
+}
+
+uint32_t Builder::LinkOf(const ShapeDescription& shape) {
+  const auto find = [&](const char* target) -> const ParameterList* {
+    const auto found = shape.attributes.find(target);
+    return found == shape.attributes.end() ? nullptr : &found->second;
+  };
+  if (shape.attributes.empty()) return 0;
+  return linking_.ClassOf(find("lighting"), find("lightfilter"));
+}
+
 // A light that is its own surface can be hit: black, and where its settings say so not seen by the camera.
 void Builder::AddLightSurface(const PlacedLight& placed) {
   GeometryEntry entry;
@@ -403,6 +477,7 @@ void Builder::AddLights() {
     if (!placement.toRender.IsAffine()) throw Error(statement.where, "a light cannot have a perspective transform");
     const LightBuildContext build = LightContextFor(placement);
     PlacedLight placed{MakeLight(*type, statement.parameters, build), build.transform, true, placement.motion};
+    Bind(light.filter, placed);
     if (placed.light->Surface()) {
       AddLightSurface(placed);
     } else {
@@ -430,6 +505,7 @@ BuiltScene Builder::Build() {
   for (auto& object : objects_) resolve(object);
 
   CheckAreaLights();
+  AddFilters();
   AddLights();
   PlaceEntries();
 
@@ -437,8 +513,9 @@ BuiltScene Builder::Build() {
   scene.materials = materials_->Materials();
   scene.camera = BuildCamera(description_, built_.settings, worldToRender_, diagnostics_);
   scene.geometry = std::make_unique<GeometryScene>(std::move(geometry_));
-  scene.lighting =
-      std::make_unique<LightingServices>(*scene.geometry, std::move(lights_), built_.settings.lightSelection);
+  linking_.Finish(lights_, diagnostics_);
+  scene.lighting = std::make_unique<LightingServices>(*scene.geometry, std::move(lights_),
+                                                      built_.settings.lightSelection, std::move(linking_));
   scene.lighting->TakeSamples(built_.settings.lightSamples);
   if (built_.settings.integrator == "auto") built_.settings.integrator = PlanFor(scene, built_.settings).integrator;
   if (!scene.lighting->HasLights()) diagnostics_.Warn("the scene has no light: the image will be black");

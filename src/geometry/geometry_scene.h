@@ -24,6 +24,7 @@ struct GeometryAttributes {
   int32_t material = -1;
   int32_t light = -1;  // index of the area light that this shape is, -1 for none
   uint32_t visibility = visibility::kAll;
+  uint32_t link = 0;  // class of light linking and light filters
   std::shared_ptr<const AlphaSource> alpha;  // null: opaque
 };
 

@@ -33,15 +33,25 @@ struct NamedMaterialDescription {
 
 struct TextureDescription {
   std::string name;
-  bool isSpectrum = false;  // a colour, not a float
+  bool isSpectrum = false;       // a colour, not a float
   StatementDescription texture;  // type: "imagemap", "scale", …
   Placement placement;
+};
+
+struct LightFilterDescription {
+  StatementDescription filter;
+  Placement placement;  // of its own coordinate system, or of the one it names
 };
 
 struct LightDescription {
   StatementDescription light;
   Placement placement;
   std::string mediumName;  // outside medium
+  int filter = -1;         // index into lightFilters, -1 none
+};
+
+struct AreaLightDescription : StatementDescription {
+  int filter = -1;  // index into lightFilters, -1 none
 };
 
 // A material by reference: index into `materials`, or a name among `namedMaterials`.
@@ -58,7 +68,8 @@ struct ShapeDescription {
   MaterialReference material;
   int areaLight = -1;  // index into areaLights, -1 none
   std::string insideMedium, outsideMedium;
-  // Attributes by target ("shape", "lightfilter", "lighting", …) that are in force and not parameters of the shape itself.
+  // Attributes by target ("shape", "lightfilter", "lighting", …) that are in force and not parameters of the shape
+  // itself.
   std::map<std::string, ParameterList> attributes;
 };
 
@@ -87,14 +98,16 @@ struct SceneDescription {
   std::vector<StatementDescription> materials;
   std::vector<NamedMaterialDescription> namedMaterials;
   std::vector<TextureDescription> textures;
-  std::vector<StatementDescription> areaLights;
+  std::vector<LightFilterDescription> lightFilters;  // without those of type "none"
+  std::vector<AreaLightDescription> areaLights;
   std::vector<LightDescription> lights;
   std::vector<ShapeDescription> shapes;
   std::vector<ObjectDescription> objects;
   std::vector<InstanceDescription> instances;
 };
 
-// Reads a scene file (plain or gzipped) and its includes. Throws Error with file, line and column; warns through `diagnostics`.
+// Reads a scene file (plain or gzipped) and its includes. Throws Error with file, line and column; warns through
+// `diagnostics`.
 SceneDescription ReadScene(const std::filesystem::path& file, Diagnostics& diagnostics);
 
 // The same for text in memory; `name` stands for the file in messages, relative files are looked for beside it.

@@ -30,6 +30,7 @@ struct GraphicsState {
   RgbColorSpace colorSpace = RgbColorSpace::Srgb;
   MaterialReference material;
   int areaLight = -1;
+  int lightFilter = -1;
   std::string insideMedium, outsideMedium;
   std::map<std::string, std::vector<Parameter>> attributes;  // by target
 };

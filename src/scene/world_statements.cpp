@@ -39,7 +39,27 @@ void SceneParser::CloseScope(const Token& statement, bool isObject) {
   scopes_.pop_back();
 }
 
-void SceneParser::Attribute(const Token& statement) {
+namespace {
+
+// Attributes of lighting and lightfilter are not defaults of other statements: their names are known.
+void CheckLinking(const std::string& target, const Parameter& parameter) {
+  std::vector<std::string> names = {"subset"};
+  if (target == "lighting") names.emplace_back("excludesubset");
+  if (target != "lighting" && target != "lightfilter") return;
+  const std::string owner = "Attribute \"" + target + "\"";
+  if (std::find(names.begin(), names.end(), parameter.name) == names.end()) {
+    throw Error(parameter.where,
+                owner + " has no parameter \"" + parameter.name + "\"" + DidYouMean(parameter.name, names));
+  }
+  if (parameter.type != ParameterType::String) {
+    throw Error(parameter.where, owner + ": parameter \"" + parameter.name + "\" is of type \"" +
+                                     ToString(parameter.type) + "\", expected \"string\"");
+  }
+}
+
+}  // namespace
+
+void SceneParser::Attribute(const Token&) {
   const Token target = tokens_.Next();
   if (target.kind != TokenKind::String) {
     throw Error(target.where, "Attribute needs a target in quotes, found " + Describe(target));
@@ -51,12 +71,10 @@ void SceneParser::Attribute(const Token& statement) {
     throw Error(target.where,
                 "there is no Attribute target \"" + target.text + "\"" + DidYouMean(target.text, targets));
   }
-  if (target.text == "lighting" || target.text == "lightfilter") {
-    diagnostics_.Warn(statement.where, "Attribute \"" + target.text + "\" is not supported yet: it is ignored");
-  }
   std::vector<Parameter>& defaults = state_.attributes[target.text];
   for (Parameter& parameter : ReadParameters(tokens_, state_.colorSpace)) {
     parameter.mayBeUnused = true;
+    CheckLinking(target.text, parameter);
     const auto sameName = [&](const Parameter& other) { return other.name == parameter.name; };
     std::erase_if(defaults, sameName);
     defaults.push_back(std::move(parameter));
@@ -156,17 +174,42 @@ void SceneParser::Texture(const Token& statement) {
 }
 
 void SceneParser::AreaLightSource(const Token& statement) {
-  scene_.areaLights.push_back(ReadTyped(statement, "light"));
+  scene_.areaLights.push_back({ReadTyped(statement, "light"), state_.lightFilter});
   state_.areaLight = static_cast<int>(scene_.areaLights.size()) - 1;
 }
 
 void SceneParser::LightSource(const Token& statement) {
-  scene_.lights.push_back({ReadTyped(statement, "light"), CurrentPlacement(), state_.outsideMedium});
+  scene_.lights.push_back(
+      {ReadTyped(statement, "light"), CurrentPlacement(), state_.outsideMedium, state_.lightFilter});
 }
 
 void SceneParser::LightFilter(const Token& statement) {
-  const StatementDescription filter = ReadTyped(statement);
-  diagnostics_.Warn(statement.where, "LightFilter \"" + filter.type + "\" is not supported yet: it is ignored");
+  StatementDescription filter = ReadTyped(statement);
+  if (filter.type == "none") {
+    if (!filter.parameters.All().empty())
+      throw Error(filter.parameters.All().front().where, "LightFilter \"none\" has no parameters");
+    state_.lightFilter = -1;
+    return;
+  }
+  Placement placement = CurrentPlacement();
+  const std::string name = filter.parameters.GetString("coordsys", "");
+  if (!name.empty()) {
+    const auto found = coordinateSystems_.find(name);
+    if (found == coordinateSystems_.end()) {
+      std::vector<std::string> names;
+      for (const auto& known : coordinateSystems_) names.push_back(known.first);
+      throw Error(filter.parameters.WhereOf("coordsys"),
+                  "there is no coordinate system \"" + name + "\"" + DidYouMean(name, names));
+    }
+    placement = {found->second[0], found->second[1]};
+  }
+  if (currentObject_ >= 0) {
+    diagnostics_.Warn(statement.where,
+                      "a LightFilter within an object stays where it is written: it does not move "
+                      "with the object's instances");
+  }
+  state_.lightFilter = static_cast<int>(scene_.lightFilters.size());
+  scene_.lightFilters.push_back({std::move(filter), placement});
 }
 
 void SceneParser::MakeNamedMedium(const Token& statement) {

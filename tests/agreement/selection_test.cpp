@@ -115,7 +115,7 @@ TEST_P(Selection, IsADistributionThatLeavesNothingOut) {
       context.time = time;
       for (int patch = 0; patch < lights[i].light->PatchCount(); ++patch) {
         const float probability = lighting.SelectionProbability(receiver, i, patch).value;
-        if (patch == 0 || lighting.SelectsPatches()) sum += static_cast<double>(probability);
+        if (patch == 0 || lighting.SelectsPatches(receiver)) sum += static_cast<double>(probability);
         context.u = rng.NextPoint2();
         context.patch = lights[i].light->PatchCount() > 1 ? patch : kAnyPatch;
         const auto sample = lights[i].light->GenerateSamples(context, receiver.position);
@@ -177,7 +177,7 @@ TEST_P(Selection, CountsSeveralSamples) {
     ASSERT_LE(choices.count, 5);
     double sum = 0;
     for (uint32_t i = 0; i < lighting.Lights().size(); ++i) {
-      const int patches = lighting.SelectsPatches() ? lighting.Lights()[i].light->PatchCount() : 1;
+      const int patches = lighting.SelectsPatches(receiver) ? lighting.Lights()[i].light->PatchCount() : 1;
       for (int patch = 0; patch < patches; ++patch)
         sum += static_cast<double>(lighting.SelectionProbability(receiver, i, patch).value);
     }

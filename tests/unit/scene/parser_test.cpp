@@ -7,6 +7,7 @@ namespace lampyr {
 namespace {
 
 using testing::ElementsAre;
+using testing::HasSubstr;
 using testing::IsEmpty;
 
 TEST(Parser, OptionsOfTheWholeGrammar) {
@@ -126,8 +127,54 @@ TEST(Parser, LinkingAttributesGoToTheShape) {
       ParseScene(InWorld("Attribute \"lighting\" \"string subset\" [ \"keys\" \"rims\" ] Shape \"sphere\"\n"),
                  "scene.pbrt", diagnostics);
   EXPECT_THAT(scene.shapes.at(0).attributes.at("lighting").GetStrings("subset"), ElementsAre("keys", "rims"));
-  EXPECT_THAT(diagnostics.Warnings(),
-              ElementsAre("scene.pbrt:2:1: warning: Attribute \"lighting\" is not supported yet: it is ignored"));
+  EXPECT_THAT(diagnostics.Warnings(), ElementsAre());
+}
+
+TEST(Parser, LinkingAttributesHaveKnownNames) {
+  EXPECT_THAT(
+      ParseError(InWorld("Attribute \"lighting\" \"string subst\" \"keys\"\n")),
+      HasSubstr("scene.pbrt:2:22: Attribute \"lighting\" has no parameter \"subst\" (did you mean \"subset\"?)"));
+  EXPECT_THAT(ParseError(InWorld("Attribute \"lightfilter\" \"string excludesubset\" \"keys\"\n")),
+              HasSubstr("has no parameter \"excludesubset\""));
+  EXPECT_THAT(ParseError(InWorld("Attribute \"lightfilter\" \"float subset\" 3\n")),
+              HasSubstr("is of type \"float\", expected \"string\""));
+}
+
+// The last one before a light, within its scope.
+TEST(Parser, LightFiltersBindByScope) {
+  const SceneDescription scene = Parse(InWorld(R"(
+    LightSource "point"
+    LightFilter "rod" Translate 1 0 0 CoordinateSystem "there"
+    LightSource "point"
+    AttributeBegin
+      LightFilter "barn" "string name" "doors"
+      LightSource "point"
+      LightFilter "ramp" "string coordsys" "there"
+      AreaLightSource "diffuse"
+      LightFilter "none"
+      LightSource "point"
+    AttributeEnd
+    LightSource "point"
+    AttributeBegin Translate 5 0 0 LightFilter "gobo" "string coordsys" "there" AttributeEnd
+  )"));
+  std::vector<int> bound;
+  for (const LightDescription& light : scene.lights) bound.push_back(light.filter);
+  EXPECT_THAT(bound, ElementsAre(-1, 0, 1, -1, 0));
+  EXPECT_EQ(scene.areaLights.at(0).filter, 2);
+  ASSERT_EQ(scene.lightFilters.size(), 4u);
+  EXPECT_TRUE(scene.lightFilters[0].placement.start.IsIdentity());
+  EXPECT_EQ(scene.lightFilters[1].filter.type, "barn");
+  EXPECT_EQ(scene.lightFilters[3].placement.start.Point(Point3d(0.0)), Point3d(1, 0, 0));
+}
+
+TEST(Parser, LightFiltersThatCannotBe) {
+  EXPECT_THAT(ParseError(InWorld("CoordinateSystem \"lamp\" LightFilter \"gobo\" \"string coordsys\" \"lmap\"")),
+              HasSubstr("there is no coordinate system \"lmap\" (did you mean \"lamp\"?)"));
+  EXPECT_THAT(ParseError(InWorld("LightFilter \"none\" \"float density\" 1")),
+              HasSubstr("LightFilter \"none\" has no parameters"));
+  EXPECT_THAT(WarningsOf(InWorld("ObjectBegin \"o\" LightFilter \"rod\" ObjectEnd")),
+              ElementsAre("scene.pbrt:2:17: warning: a LightFilter within an object stays where it is written: it does "
+                          "not move with the object's instances"));
 }
 
 TEST(Parser, ObjectsAndNestedInstances) {
@@ -177,9 +224,6 @@ TEST(Parser, WarnsOnceOfWhatIsNotSupported) {
                          "MediumInterface \"\" \"fog\" Shape \"sphere\"")),
       ElementsAre(
           "scene.pbrt:2:1: warning: participating media are not supported yet: the medium \"fog\" is left out"));
-  EXPECT_THAT(
-      WarningsOf(InWorld(" LightFilter \"gobo\" \"string name\" \"leaves\" \"float width\" 3\nShape \"sphere\"")),
-      ElementsAre("scene.pbrt:2:2: warning: LightFilter \"gobo\" is not supported yet: it is ignored"));
   EXPECT_THAT(
       WarningsOf(InWorld("TransformBegin\nTransformEnd\nWorldEnd")),
       ElementsAre(

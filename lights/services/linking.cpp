@@ -1,0 +1,140 @@
+#include "lights/services/linking.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "lights/filters/filter_base.h"
+
+namespace lampyr {
+
+namespace {
+
+std::vector<std::string> ReadSorted(const ParameterList* parameters, const char* name) {
+  if (!parameters) return {};
+  std::vector<std::string> names = ReadNames(*parameters, name);
+  std::sort(names.begin(), names.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  return names;
+}
+
+bool Has(const std::vector<std::string>& sorted, const std::string& name) {
+  return std::binary_search(sorted.begin(), sorted.end(), name);
+}
+
+void WarnOfUnknown(const std::vector<std::string>& names, const FileLocation& where, const std::string& what,
+                   const std::set<std::string>& known, Diagnostics& diagnostics) {
+  for (const std::string& name : names) {
+    if (known.contains(name)) continue;
+    diagnostics.Warn(where,
+                     "there is no " + what + " \"" + name + "\"" + DidYouMean(name, {known.begin(), known.end()}));
+  }
+}
+
+}  // namespace
+
+LightLinking::LightLinking() : classes_(1), filterGroups_(1) {}
+
+uint32_t LightLinking::ClassOf(const ParameterList* lighting, const ParameterList* lightFilter) {
+  Class wanted;
+  wanted.lights = ReadSorted(lighting, "subset");
+  wanted.withoutLights = ReadSorted(lighting, "excludesubset");
+  wanted.filterGroups = ReadSorted(lightFilter, "subset");
+  if (lighting) wanted.whereLights = lighting->WhereOf("subset");
+  if (lighting) wanted.whereWithout = lighting->WhereOf("excludesubset");
+  if (lightFilter) wanted.whereGroups = lightFilter->WhereOf("subset");
+  const auto same = std::find_if(classes_.begin(), classes_.end(), [&](const Class& c) { return c.IsSame(wanted); });
+  const auto index = static_cast<uint32_t>(same - classes_.begin());
+  if (same == classes_.end()) classes_.push_back(std::move(wanted));
+  return index;
+}
+
+uint32_t LightLinking::FilterKey(const std::vector<std::string>& groups) {
+  std::vector<std::string> sorted = groups;
+  std::sort(sorted.begin(), sorted.end());
+  const auto same = std::find(filterGroups_.begin(), filterGroups_.end(), sorted);
+  const auto key = static_cast<uint32_t>(same - filterGroups_.begin());
+  if (same == filterGroups_.end()) filterGroups_.push_back(std::move(sorted));
+  return key;
+}
+
+int32_t LightLinking::Add(FilterInstance filter) {
+  filters_.push_back(std::move(filter));
+  return static_cast<int32_t>(filters_.size()) - 1;
+}
+
+// Lights are told apart by those of their names that some class mentions: the table stays small, however many they are.
+void LightLinking::FinishLights(std::span<const PlacedLight> lights, Diagnostics& diagnostics) {
+  std::set<std::string> mentioned, known;
+  for (const Class& c : classes_) {
+    mentioned.insert(c.lights.begin(), c.lights.end());
+    mentioned.insert(c.withoutLights.begin(), c.withoutLights.end());
+  }
+  excludes_ = !mentioned.empty();
+  if (!excludes_) return;
+  using Key = std::pair<std::string, std::string>;
+  std::map<Key, uint32_t> keys;
+  for (const PlacedLight& placed : lights) {
+    const LightSettings& settings = placed.light->Settings();
+    for (const std::string& name : {settings.name, settings.lightGroup}) {
+      if (!name.empty()) known.insert(name);
+    }
+    const Key key(mentioned.contains(settings.name) ? settings.name : "",
+                  mentioned.contains(settings.lightGroup) ? settings.lightGroup : "");
+    lightKey_.push_back(keys.emplace(key, static_cast<uint32_t>(keys.size())).first->second);
+  }
+  lightKeys_ = keys.size();
+  lit_.resize(classes_.size() * lightKeys_);
+  for (size_t i = 0; i < classes_.size(); ++i) {
+    const Class& c = classes_[i];
+    WarnOfUnknown(c.lights, c.whereLights, "light or light group", known, diagnostics);
+    WarnOfUnknown(c.withoutLights, c.whereWithout, "light or light group", known, diagnostics);
+    for (const auto& [key, index] : keys) {
+      const bool isNamed = c.lights.empty() || Has(c.lights, key.first) || Has(c.lights, key.second);
+      const bool isLit = isNamed && !Has(c.withoutLights, key.first) && !Has(c.withoutLights, key.second);
+      lit_[i * lightKeys_ + index] = isLit ? 1 : 0;
+    }
+  }
+}
+
+void LightLinking::FinishFilters(Diagnostics& diagnostics) {
+  std::set<std::string> known;
+  for (const auto& groups : filterGroups_) known.insert(groups.begin(), groups.end());
+  enabled_.resize(classes_.size() * filterGroups_.size());
+  for (size_t i = 0; i < classes_.size(); ++i) {
+    const Class& c = classes_[i];
+    WarnOfUnknown(c.filterGroups, c.whereGroups, "filter in the group", known, diagnostics);
+    for (size_t key = 0; key < filterGroups_.size(); ++key) {
+      const auto& groups = filterGroups_[key];
+      const bool subscribes = std::any_of(groups.begin(), groups.end(),
+                                          [&](const std::string& group) { return Has(c.filterGroups, group); });
+      enabled_[i * filterGroups_.size() + key] = groups.empty() || subscribes ? 1 : 0;
+    }
+  }
+}
+
+void LightLinking::Finish(std::span<const PlacedLight> lights, Diagnostics& diagnostics) {
+  FinishLights(lights, diagnostics);
+  FinishFilters(diagnostics);
+  hasFilters_ = std::any_of(lights.begin(), lights.end(), [](const PlacedLight& light) { return light.filter >= 0; });
+}
+
+LightSets LightLinking::Sets() const {
+  LightSets sets;
+  if (!excludes_) return sets;
+  std::map<std::string, uint32_t> known;
+  for (size_t i = 0; i < classes_.size(); ++i) {
+    const auto row = lit_.begin() + static_cast<std::ptrdiff_t>(i * lightKeys_);
+    const std::string lit(row, row + static_cast<std::ptrdiff_t>(lightKeys_));
+    const auto [entry, isNew] = known.emplace(lit, static_cast<uint32_t>(sets.lights.size()));
+    sets.ofClass.push_back(entry->second);
+    if (!isNew) continue;
+    std::vector<uint32_t>& members = sets.lights.emplace_back();
+    for (uint32_t light = 0; light < lightKey_.size(); ++light) {
+      if (lit[lightKey_[light]]) members.push_back(light);
+    }
+  }
+  return sets;
+}
+
+}  // namespace lampyr
