@@ -129,13 +129,13 @@ AttributeEnd
       {"mirror",
        FilmWith("gaussian", 24, 24) + kSeesLamp + World(4) + "AttributeBegin Translate 0 1.3 0 " +
            Filter("rod", "\"float width\" 9 \"float height\" 9 \"float depth\" 9 \"rgb color\" [0.9 0.5 0.2]") +
-           "AreaLightSource \"diffuse\" \"rgb L\" [5 4 3] Shape \"sphere\" \"float radius\" 0.25 AttributeEnd\n" +
+           "AreaLightSource \"diffuse\" \"rgb L\" [2 1.6 1.2] Shape \"sphere\" \"float radius\" 0.4 AttributeEnd\n" +
            "AttributeBegin Rotate -90 1 0 0 " + Filter("intmult", "\"rgb tint\" [0.2 0.5 1] \"float saturation\" 1.5") +
            "LightSource \"dome\" \"string texture:file\" \"data/sky-evening.hdr\" \"float intensity\" 0.3 "
            "AttributeEnd\nAttributeBegin Material \"conductor\" \"rgb reflectance\" [0.9 0.9 0.9] \"float "
            "roughness\" 0 Translate 0.3 0.4 0.9 Shape \"sphere\" \"float radius\" 0.35 AttributeEnd\n" +
            kThings,
-       64, false});
+       96, false});
   return scenes;
 }
 
@@ -222,7 +222,7 @@ Color MeanOver(const Image& image, int x0, int y0, int x1, int y1) {
   return sum / static_cast<float>((x1 - x0) * (y1 - y0));
 }
 
-// Two spheres side by side under one light, and how bright each is against a scene without the filter.
+// Two spheres side by side under one light, at −x and +x, and how bright each is against a scene without the filter.
 struct TwoSpheres {
   double left = 0, right = 0;
 };
@@ -239,7 +239,7 @@ TwoSpheres Brightness(const std::string& filters, const std::string& onLeft, con
   const auto ratio = [&](int x0, int x1) {
     return static_cast<double>(MeanOver(with, x0, 12, x1, 20).Average() / MeanOver(without, x0, 12, x1, 20).Average());
   };
-  return {ratio(6, 13), ratio(19, 26)};
+  return {ratio(19, 26), ratio(6, 13)};  // +x is on the left of the picture
 }
 
 // "Attribute lightfilter" turns on the filters of a group for the sphere that subscribes.

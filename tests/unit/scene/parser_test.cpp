@@ -133,7 +133,8 @@ TEST(Parser, LinkingAttributesGoToTheShape) {
 TEST(Parser, LinkingAttributesHaveKnownNames) {
   EXPECT_THAT(
       ParseError(InWorld("Attribute \"lighting\" \"string subst\" \"keys\"\n")),
-      HasSubstr("scene.pbrt:2:22: Attribute \"lighting\" has no parameter \"subst\" (did you mean \"subset\"?)"));
+      HasSubstr(
+          "scene.pbrt:2:22: error: Attribute \"lighting\" has no parameter \"subst\" (did you mean \"subset\"?)"));
   EXPECT_THAT(ParseError(InWorld("Attribute \"lightfilter\" \"string excludesubset\" \"keys\"\n")),
               HasSubstr("has no parameter \"excludesubset\""));
   EXPECT_THAT(ParseError(InWorld("Attribute \"lightfilter\" \"float subset\" 3\n")),
