@@ -62,8 +62,8 @@ class BdptIntegrator final : public BidirectionalIntegrator {
   void SeeLightPoint(Run& run, const EmittedPhoton& photon) const;
   void SeeLightVertex(Run& run) const;
   Color HitLight(Run& run, const Flight& flight, const FoundLight& found, double landing) const;
-  Color SeenLight(Run& run, const Ray& ray, const RayHit& hit, const SurfacePoint& point) const;
-  Color Background(const Run& run, const Ray& ray) const;
+  Color SeenLight(Run& run, const Flight& flight, const RayHit& hit, const SurfacePoint& point) const;
+  Color Background(const Run& run, const Flight& flight) const;
   Color SampleLights(Run& run) const;
   Color SampleLight(Run& run, const SelectedLight& light, const Point2& u) const;
   Color Connect(Run& run, size_t lightCount) const;
@@ -250,7 +250,8 @@ Color BdptIntegrator::Connect(Run& run, size_t lightCount) const {
   if (path.value.IsBlack()) return path.value;
   ++run.Counts().shadowRays;
   const Ray ray = SpawnRayTo(z.point, y.point.position, y.point.positionError, y.point.Ng, run.time);
-  if (geometry_.Occluded(ray, visibility::kIndirect)) return Color(0.0f);
+  path.value *= geometry_.Transmission(ray, visibility::kIndirect);
+  if (path.value.IsBlack()) return path.value;
 
   path.s = static_cast<int>(lightCount) + 1;
   path.t = static_cast<int>(run.cameraCount) + 1;
@@ -325,8 +326,13 @@ Color BdptIntegrator::TraceCamera(Run& run, const Ray& cameraRay) const {
     const bool isFirst = run.cameraCount == 0;
     ++(isFirst ? run.Counts().cameraRays : run.Counts().indirectRays);
     RayHit hit;
-    if (!geometry_.Intersect(flight.ray, isFirst ? visibility::kCamera : visibility::kIndirect, hit)) {
-      if (isFirst) return Background(run, flight.ray);
+    Color passed;
+    const bool isHit =
+        geometry_.Intersect(flight.ray, isFirst ? visibility::kCamera : visibility::kIndirect, hit, passed);
+    flight.diffuse *= passed;
+    flight.specular *= passed;
+    if (!isHit) {
+      if (isFirst) return Background(run, flight);
       const PathVertex& last = run.paths.camera[run.cameraCount - 1];
       for (size_t i = 0; i < lighting_.InfiniteCount(); ++i) {
         const auto found = lighting_.EvaluateEscaped(i, last.receiver, flight.ray.direction, run.time, true);
@@ -339,7 +345,7 @@ Color BdptIntegrator::TraceCamera(Run& run, const Ray& cameraRay) const {
     const SurfacePoint point = geometry_.GetSurfacePoint(flight.ray, hit);
     if (geometry_.Attributes(hit.primitive).light >= 0) {
       if (isFirst) {
-        radiance += SeenLight(run, flight.ray, hit, point);
+        radiance += SeenLight(run, flight, hit, point);
       } else {
         const PathVertex& last = run.paths.camera[run.cameraCount - 1];
         const float distance = glm::distance(point.position, last.point.position);
@@ -384,19 +390,20 @@ Color BdptIntegrator::TraceCamera(Run& run, const Ray& cameraRay) const {
 }
 
 // (0,2) as well: nothing else finds a light at infinity that the camera looks at.
-Color BdptIntegrator::Background(const Run& run, const Ray& ray) const {
+Color BdptIntegrator::Background(const Run& run, const Flight& flight) const {
   ConnectedPath path;
   path.t = 2;
   path.end.canBeHit = true;
   path.cameraPerArea = 1;
-  path.value = lighting_.EscapedEmissionForCamera(ray);
+  path.value = flight.specular * lighting_.EscapedEmissionForCamera(flight.ray);
   return Report(run, path);
 }
 
 // (0,2): the camera looks at an area light, which (1,1) finds too.
-Color BdptIntegrator::SeenLight(Run& run, const Ray& ray, const RayHit& hit, const SurfacePoint& point) const {
+Color BdptIntegrator::SeenLight(Run& run, const Flight& flight, const RayHit& hit, const SurfacePoint& point) const {
+  const Ray& ray = flight.ray;
   ConnectedPath path;
-  path.value = lighting_.EmissionForCamera(ray.direction, hit.t, point, run.time);
+  path.value = flight.specular * lighting_.EmissionForCamera(ray.direction, hit.t, point, run.time);
   if (path.value.IsBlack()) return path.value;
   path.s = 0;
   path.t = 2;

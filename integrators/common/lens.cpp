@@ -19,10 +19,11 @@ std::optional<SeenFromLens> SeeLight(const RenderScene& scene, const EmittedPhot
   const Ray ray{connection->camera.position, fromLens / distance, kInfinity, time};
   ++counts.cameraRays;
   RayHit hit;
-  if (!scene.geometry->Intersect(ray, visibility::kCamera, hit)) return std::nullopt;
+  Color passed;
+  if (!scene.geometry->Intersect(ray, visibility::kCamera, hit, passed)) return std::nullopt;
   const SurfacePoint point = scene.geometry->GetSurfacePoint(ray, hit);
   if (!scene.lighting->IsOrigin(photon, point, -ray.direction, distance)) return std::nullopt;
-  const Color radiance = scene.lighting->EmissionForCamera(ray.direction, hit.t, point, time);
+  const Color radiance = passed * scene.lighting->EmissionForCamera(ray.direction, hit.t, point, time);
   if (radiance.IsBlack()) return std::nullopt;
   const double density =
       static_cast<double>(photon.emissionSelection.value) * static_cast<double>(photon.emission.pdfEmit.value);
@@ -48,9 +49,11 @@ std::optional<SeenFromLens> SeeVertex(const RenderScene& scene, const PathVertex
   if (scattered.IsBlack()) return std::nullopt;
   ++counts.shadowRays;
   const Ray ray = SpawnRayTo(vertex.point, connection->camera.position, Vector3(0.0f), Normal3(0.0f), time);
-  if (scene.geometry->Occluded(ray, visibility::kCamera)) return std::nullopt;
+  const Color arriving = scene.geometry->Transmission(ray, visibility::kCamera);
+  if (arriving.IsBlack()) return std::nullopt;
   seen.cosTheta = CosineAt(vertex, seen.toCamera);
-  seen.value = scattered * (std::abs(seen.cosTheta) * ArrivalCorrection(vertex.bsdf, toLight) * connection->Weight());
+  seen.value =
+      scattered * arriving * (std::abs(seen.cosTheta) * ArrivalCorrection(vertex.bsdf, toLight) * connection->Weight());
   return seen;
 }
 

@@ -54,8 +54,8 @@ void LightSubpathTracer::Trace(float time, Sampler& sampler, RenderCounts& count
   const auto inverse = static_cast<float>(static_cast<double>(emission.emissionCosine) / density);
   Flight flight;
   flight.ray = photon->ray;
-  flight.diffuse = emission.diffuse * inverse;
-  flight.specular = emission.specular * inverse;
+  flight.diffuse = emission.diffuse * photon->passed * inverse;
+  flight.specular = emission.specular * photon->passed * inverse;
   const float emitted = std::max(flight.diffuse.Max(), flight.specular.Max());
   if (!(emitted > 0)) return;  // less than a float can say
 
@@ -66,8 +66,7 @@ void LightSubpathTracer::Trace(float time, Sampler& sampler, RenderCounts& count
     if (!MakeVertex(scene_, flight.ray, *hit, point, vertex)) return;
     vertex.diffuse = flight.diffuse;
     vertex.specular = flight.specular;
-    if (path.count == 0 &&
-        !scene_.lighting->FilterLanding(*photon, vertex.receiver, vertex.diffuse, vertex.specular)) {
+    if (path.count == 0 && !scene_.lighting->FilterLanding(*photon, vertex.receiver, vertex.diffuse, vertex.specular)) {
       return;
     }
     if (weights_ != Weights::None) {
@@ -87,7 +86,10 @@ void LightSubpathTracer::Trace(float time, Sampler& sampler, RenderCounts& count
     }
     ++counts.indirectRays;
     RayHit next;
-    if (!scene_.geometry->Intersect(flight.ray, visibility::kIndirect, next)) return;
+    Color passed;
+    if (!scene_.geometry->Intersect(flight.ray, visibility::kIndirect, next, passed)) return;
+    flight.diffuse *= passed;
+    flight.specular *= passed;
     hit = next;
   }
 }

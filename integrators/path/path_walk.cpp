@@ -128,9 +128,12 @@ Color PathWalk::Radiance(const Ray& cameraRay, Sampler& sampler, RenderCounts& c
   for (;;) {
     ++(path.fromCamera ? counts.cameraRays : counts.indirectRays);
     RayHit hit;
-    if (!geometry_.Intersect(path.ray, path.fromCamera ? visibility::kCamera : visibility::kIndirect, hit)) {
-      return radiance + EscapedEmission(path);
-    }
+    Color passed;
+    const bool isHit =
+        geometry_.Intersect(path.ray, path.fromCamera ? visibility::kCamera : visibility::kIndirect, hit, passed);
+    path.throughputDiffuse *= passed;
+    path.throughputSpecular *= passed;
+    if (!isHit) return radiance + EscapedEmission(path);
     path.length += hit.t;
     const SurfacePoint point = geometry_.GetSurfacePoint(path.ray, hit);
     const GeometryAttributes& attributes = geometry_.Attributes(hit.primitive);

@@ -135,8 +135,10 @@ std::optional<EmittedPhoton> LightingServices::GenerateEmission(float uSelect, c
   photon.ray.direction = emission.direction;
   photon.ray.time = time;
   RayHit hit;
-  if (!photon.IsDark() && geometry_.Intersect(photon.ray, visibility::kIndirect, hit) && hit.t >= emission.shinesFrom)
+  if (!photon.IsDark() && geometry_.Intersect(photon.ray, visibility::kIndirect, hit, photon.passed) &&
+      hit.t >= emission.shinesFrom) {
     photon.landing = hit;
+  }
   return photon;
 }
 

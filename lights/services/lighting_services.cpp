@@ -123,7 +123,7 @@ Color LightingServices::Transmission(const SurfacePoint& from, const DirectSampl
   const Ray ray = direct.isInfinite
                       ? SpawnRay(from, sample.direction, time)
                       : SpawnRayTo(from, sample.position, ErrorOfEnd(from, direct, time), sample.normal, time);
-  return geometry_.Occluded(ray, visibility::kShadow) ? Color(0.0f) : Color(1.0f);
+  return geometry_.Transmission(ray, visibility::kShadow);
 }
 
 std::optional<FoundLight> LightingServices::EvaluateSamples(const Receiver& receiver, const Vector3& direction,

@@ -48,6 +48,7 @@ struct EmittedPhoton {
   float pdfUnguided = 0;  // of the density that a guide has a part in, what it would be without: 1/m² of lights at
                           // infinity, 1/sr of others
   std::optional<RayHit> landing;  // nullopt: it left the scene, or is dark
+  Color passed{1.0f};             // what its flux is multiplied by for what it went through on its way there
   Ray ray;
   bool fromSurface = false;  // it started on a surface that camera rays can hit
 
@@ -72,7 +73,8 @@ class LightingServices {
   DirectSample GenerateSamples(const Receiver& receiver, const SelectedLight& selected, const Point2& u, float time,
                                bool bidirectional) const;
 
-  // What of a sample's light arrives: 0 behind something opaque, 1 otherwise. Traces a shadow ray.
+  // What of a sample's light arrives: 0 behind something opaque, 1 where nothing is in the way, and a colour behind
+  // cut-outs and thin glass. Traces a shadow ray.
   Color Transmission(const SurfacePoint& from, const DirectSample& direct, float time) const;
 
   // What became of a sample: the part of it that arrived at the receiver, 0 too where it was not worth a shadow ray.

@@ -277,11 +277,16 @@ void Builder::PlaceEntry(const ReadEntry& entry, const Transform& toRender, std:
   if (const auto parameter = textures_->FindFloat(shape.shape.parameters, "alpha")) alpha = MakeAlphaSource(*parameter);
 
   const uint32_t link = LinkOf(shape);
+  // What shines is met by every ray.
+  const std::shared_ptr<const Material>& material = materials_->Materials()[entry.material];
+  std::shared_ptr<const SheetSource> sheet;
+  if (shape.areaLight < 0 && material->Sheet()) sheet = {material, material->Sheet()};
   for (Shape& placed : PlaceShape(entry.local, toRender)) {
     GeometryEntry result;
     result.attributes.material = entry.material;
     result.attributes.link = link;
     result.attributes.alpha = alpha;
+    result.attributes.sheet = sheet;
     result.shape = std::move(placed);
     const bool isCurve = std::holds_alternative<std::shared_ptr<const CurveSet>>(result.shape);
     if (shape.areaLight >= 0 && isCurve) {

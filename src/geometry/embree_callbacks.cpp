@@ -2,6 +2,7 @@
 #include "geometry/embree_callbacks.h"
 
 #include <bit>
+#include <cmath>
 
 #include "geometry/bilinear.h"
 #include "geometry/scene_tables.h"
@@ -10,15 +11,18 @@ namespace lampyr {
 
 namespace {
 
-const PrimitiveRecord& Record(const void* userPointer) { return *static_cast<const PrimitiveRecord*>(userPointer); }
+const PrimitiveRecord& Record(const void* userPointer) {
+  return *static_cast<const PrimitiveRecord*>(userPointer);
+}
 
 RayDouble ToDouble(const RTCRay& ray) {
   return {Point3d(Point3(ray.org_x, ray.org_y, ray.org_z)), Vector3d(Vector3(ray.dir_x, ray.dir_y, ray.dir_z)),
           static_cast<double>(ray.tnear), static_cast<double>(ray.tfar)};
 }
 
-// A number in [0,1) that is a function of the ray and the hit alone, so that a ray sees the same cut-out whichever way the
-// tree is walked, and on every thread. `crossing` tells a primitive's hits apart: each is another chance to be stopped.
+// A number in [0,1) that is a function of the ray and the hit alone, so that a ray sees the same cut-out whichever way
+// the tree is walked, and on every thread. `crossing` tells a primitive's hits apart: each is another chance to be
+// stopped.
 float HashToUnit(const RTCRay& ray, uint32_t instance, uint32_t geometry, uint32_t patch, uint32_t crossing) {
   uint64_t hash = 0x9e3779b97f4a7c15u;
   const auto mix = [&hash](uint32_t value) {
@@ -36,9 +40,31 @@ float HashToUnit(const RTCRay& ray, uint32_t instance, uint32_t geometry, uint32
   return static_cast<float>(hash >> 40) * 0x1p-24f;
 }
 
-// Whether the cut-out lets the ray through at this hit.
-bool PassesThrough(const PrimitiveRecord& record, const RTCRay& ray, const RayHit& hit, uint32_t geometryId,
-                   uint32_t crossing) {
+TraceContext& Trace(RTCIntersectContext* context) {
+  return *reinterpret_cast<TraceContext*>(context);
+}
+
+// Of the ray to the shading normal, in render space: instances may be stretched.
+float CosineAt(const PrimitiveRecord& record, const RTCRay& ray, const RayHit& hit, SurfacePoint point) {
+  Vector3 direction(ray.dir_x, ray.dir_y, ray.dir_z);
+  if (hit.instance != RTC_INVALID_GEOMETRY_ID) {
+    const InstanceRecord& instance = record.tables->instances[hit.instance - record.tables->firstInstanceId];
+    const InstancePlacement placement = instance.motion ? PlacementAt(*instance.motion, ray.time) : instance.placement;
+    ApplyInstance(placement, point);
+    direction = placement.toRender.Vector(direction);
+  }
+  return std::abs(glm::dot(glm::normalize(direction), point.Ns));
+}
+
+// What a hit lets through: the chance to be stopped, and what the rest is multiplied by.
+struct Passage {
+  float stopped = 1;
+  Color tint{1.0f};
+
+  Color Transmission() const { return tint * (1 - stopped); }
+};
+
+Passage PassageAt(const PrimitiveRecord& record, const RTCRay& ray, const RayHit& hit) {
   const Ray inObject{{ray.org_x, ray.org_y, ray.org_z}, {ray.dir_x, ray.dir_y, ray.dir_z}, kInfinity, ray.time};
   const SurfacePoint point = EvaluatePrimitive(record, inObject, hit);
   Point3 position = point.position;
@@ -47,10 +73,31 @@ bool PassesThrough(const PrimitiveRecord& record, const RTCRay& ray, const RayHi
     const Affine& still = instance.placement.toRender;
     position = instance.motion ? instance.motion->At(ray.time).Point(position) : still.Point(position);
   }
-  const float alpha = record.alpha->Alpha(point.uv, position);
-  if (alpha >= 1) return false;
-  if (!(alpha > 0)) return true;
-  return HashToUnit(ray, hit.instance, geometryId, hit.patch, crossing) >= alpha;
+  const float alpha = record.alpha ? record.alpha->Alpha(point.uv, position) : 1.0f;
+  if (!record.sheet) return {alpha, Color(1.0f)};
+  const float passes = record.sheet->PassingPart(CosineAt(record, ray, hit, point));
+  Passage passage{alpha * (1 - passes), Color(1.0f)};
+  // Through the hole of the cut-out without a tint, through the sheet with it.
+  if (!record.sheet->IsClear() && passage.stopped < 1) {
+    const Color through = Color(1 - alpha) + record.sheet->Tint(point.uv, position) * (alpha * passes);
+    passage.tint = through / (1 - passage.stopped);
+  }
+  return passage;
+}
+
+// Whether the ray goes on; a shadow ray does as long as something is left of it.
+bool PassesThrough(const PrimitiveRecord& record, const RTCRay& ray, const RayHit& hit, uint32_t geometryId,
+                   uint32_t crossing, TraceContext& trace, bool isShadow) {
+  const Passage passage = PassageAt(record, ray, hit);
+  if (passage.stopped >= 1) return false;
+  if (isShadow) {
+    trace.transmission *= passage.Transmission();
+    return !trace.transmission.IsBlack();
+  }
+  if (passage.stopped > 0 && HashToUnit(ray, hit.instance, geometryId, hit.patch, crossing) < passage.stopped)
+    return false;
+  if (trace.sheets && record.sheet) trace.sheets->push_back({hit.t, passage.tint});
+  return true;
 }
 
 struct Candidate {
@@ -58,14 +105,21 @@ struct Candidate {
   float u, v;
 };
 
-// The nearest of the candidates that the cut-out does not let through, or -1.
-int FirstOpaque(const PrimitiveRecord& record, const RTCRay& ray, const Candidate* candidates, int count,
-                uint32_t patch, uint32_t instance, uint32_t geometryId) {
+// Where user geometry is met.
+struct Meeting {
+  const PrimitiveRecord& record;
+  uint32_t patch, instance, geometryId;
+  TraceContext& trace;
+  bool isShadow;
+};
+
+// The nearest of the candidates that lets nothing through, or -1.
+int FirstOpaque(const Meeting& at, const RTCRay& ray, const Candidate* candidates, int count) {
   for (int i = 0; i < count; ++i) {
-    if (!record.alpha) return i;
+    if (!at.record.LetsPass()) return i;
     const Candidate& c = candidates[i];
-    const RayHit hit{static_cast<float>(c.t), geometryId, patch, instance, c.u, c.v};
-    if (!PassesThrough(record, ray, hit, geometryId, static_cast<uint32_t>(i))) return i;
+    const RayHit hit{static_cast<float>(c.t), at.geometryId, at.patch, at.instance, c.u, c.v};
+    if (!PassesThrough(at.record, ray, hit, at.geometryId, static_cast<uint32_t>(i), at.trace, at.isShadow)) return i;
   }
   return -1;
 }
@@ -101,7 +155,8 @@ void IntersectUserGeometry(const RTCIntersectFunctionNArguments* arguments) {
   const uint32_t instance = arguments->context->instID[0];
   Candidate candidates[2];
   const int count = kFind(record, arguments->primID, rayHit.ray, candidates);
-  const int i = FirstOpaque(record, rayHit.ray, candidates, count, arguments->primID, instance, arguments->geomID);
+  const Meeting at{record, arguments->primID, instance, arguments->geomID, Trace(arguments->context), false};
+  const int i = FirstOpaque(at, rayHit.ray, candidates, count);
   if (i < 0) return;
   rayHit.ray.tfar = static_cast<float>(candidates[i].t);
   rayHit.hit.u = candidates[i].u;
@@ -118,10 +173,9 @@ void OccludeUserGeometry(const RTCOccludedFunctionNArguments* arguments) {
   auto& ray = *reinterpret_cast<RTCRay*>(arguments->ray);
   Candidate candidates[2];
   const int count = kFind(record, arguments->primID, ray, candidates);
-  const uint32_t instance = arguments->context->instID[0];
-  if (FirstOpaque(record, ray, candidates, count, arguments->primID, instance, arguments->geomID) >= 0) {
-    ray.tfar = -kInfinity;
-  }
+  const Meeting at{
+      record, arguments->primID, arguments->context->instID[0], arguments->geomID, Trace(arguments->context), true};
+  if (FirstOpaque(at, ray, candidates, count) >= 0) ray.tfar = -kInfinity;
 }
 
 void SetBounds(const Bounds3& bounds, RTCBounds* out) {
@@ -160,23 +214,47 @@ void CustomBounds(const RTCBoundsFunctionArguments* arguments) {
   SetBounds(surface.GetBounds(begin, end), arguments->bounds_o);
 }
 
-void CustomIntersect(const RTCIntersectFunctionNArguments* arguments) { IntersectUserGeometry<FindCustom>(arguments); }
-void CustomOccluded(const RTCOccludedFunctionNArguments* arguments) { OccludeUserGeometry<FindCustom>(arguments); }
-void QuadricIntersect(const RTCIntersectFunctionNArguments* arguments) { IntersectUserGeometry<FindQuadric>(arguments); }
-void QuadricOccluded(const RTCOccludedFunctionNArguments* arguments) { OccludeUserGeometry<FindQuadric>(arguments); }
-void PatchIntersect(const RTCIntersectFunctionNArguments* arguments) { IntersectUserGeometry<FindPatch>(arguments); }
-void PatchOccluded(const RTCOccludedFunctionNArguments* arguments) { OccludeUserGeometry<FindPatch>(arguments); }
+void CustomIntersect(const RTCIntersectFunctionNArguments* arguments) {
+  IntersectUserGeometry<FindCustom>(arguments);
+}
+void CustomOccluded(const RTCOccludedFunctionNArguments* arguments) {
+  OccludeUserGeometry<FindCustom>(arguments);
+}
+void QuadricIntersect(const RTCIntersectFunctionNArguments* arguments) {
+  IntersectUserGeometry<FindQuadric>(arguments);
+}
+void QuadricOccluded(const RTCOccludedFunctionNArguments* arguments) {
+  OccludeUserGeometry<FindQuadric>(arguments);
+}
+void PatchIntersect(const RTCIntersectFunctionNArguments* arguments) {
+  IntersectUserGeometry<FindPatch>(arguments);
+}
+void PatchOccluded(const RTCOccludedFunctionNArguments* arguments) {
+  OccludeUserGeometry<FindPatch>(arguments);
+}
 
-void AlphaFilter(const RTCFilterFunctionNArguments* arguments) {
+namespace {
+
+void Filter(const RTCFilterFunctionNArguments* arguments, bool isShadow) {
   if (!arguments->valid[0]) return;
   const auto& ray = *reinterpret_cast<const RTCRay*>(arguments->ray);
   const auto& hit = *reinterpret_cast<const RTCHit*>(arguments->hit);
   const RayHit rayHit{ray.tfar, hit.geomID, hit.primID, hit.instID[0], hit.u, hit.v};
   // A round curve is entered and left: the normal tells which.
   const bool leaves = hit.Ng_x * ray.dir_x + hit.Ng_y * ray.dir_y + hit.Ng_z * ray.dir_z > 0;
-  if (PassesThrough(Record(arguments->geometryUserPtr), ray, rayHit, hit.geomID, leaves ? 1 : 0)) {
+  if (PassesThrough(Record(arguments->geometryUserPtr), ray, rayHit, hit.geomID, leaves ? 1 : 0,
+                    Trace(arguments->context), isShadow)) {
     arguments->valid[0] = 0;
   }
+}
+
+}  // namespace
+
+void PassFilter(const RTCFilterFunctionNArguments* arguments) {
+  Filter(arguments, false);
+}
+void TransmitFilter(const RTCFilterFunctionNArguments* arguments) {
+  Filter(arguments, true);
 }
 
 }  // namespace lampyr

@@ -139,6 +139,7 @@ struct GeometryScene::Implementation {
   SceneHandle scene;
   Bounds3 bounds;
   float largest = kLargest;
+  bool hasTints = false;  // some sheet colours what passes it
   mutable std::atomic<uint64_t> rejected{0};
 
   explicit Implementation(GeometryDescription given) : description(std::move(given)) {
@@ -190,6 +191,8 @@ void GeometryScene::Implementation::AddEntries(const std::vector<GeometryEntry>&
     }
     std::visit([](const auto* shape) { CheckShape(*shape); }, record.shape);
     record.alpha = entry.attributes.alpha.get();
+    record.sheet = entry.attributes.sheet.get();
+    hasTints = hasTints || (record.sheet && !record.sheet->IsClear());
     record.tables = &tables;
     tables.primitives.push_back(record);
     tables.attributes.push_back(entry.attributes);
@@ -397,10 +400,10 @@ void GeometryScene::Implementation::AttachEntries(RTCScene target, size_t first,
     if (!geometry) continue;
     rtcSetGeometryMask(geometry, tables.attributes[first + i].visibility);
     rtcSetGeometryUserData(geometry, const_cast<PrimitiveRecord*>(&record));
-    // User geometry looks at the cut-out by itself.
-    if (record.alpha && (record.shape.index() == 0 || record.shape.index() == 3)) {
-      rtcSetGeometryIntersectFilterFunction(geometry, AlphaFilter);
-      rtcSetGeometryOccludedFilterFunction(geometry, AlphaFilter);
+    // User geometry looks at what it lets pass by itself.
+    if (record.LetsPass() && (record.shape.index() == 0 || record.shape.index() == 3)) {
+      rtcSetGeometryIntersectFilterFunction(geometry, PassFilter);
+      rtcSetGeometryOccludedFilterFunction(geometry, TransmitFilter);
     }
     Attach(target, geometry, static_cast<uint32_t>(i));
   }
@@ -452,16 +455,36 @@ void FillRay(const Ray& ray, uint32_t kinds, float tMax, RTCRay& out) {
 
 }  // namespace
 
-bool GeometryScene::Intersect(const Ray& ray, uint32_t kinds, RayHit& hit) const {
+namespace {
+
+// Of the sheets that a ray would pass, those in front of what it hit.
+Color TintBefore(const std::vector<PassedSheet>& sheets, float t) {
+  Color tint(1.0f);
+  for (const PassedSheet& sheet : sheets) {
+    if (sheet.t < t) tint *= sheet.tint;
+  }
+  return tint;
+}
+
+}  // namespace
+
+bool GeometryScene::Intersect(const Ray& ray, uint32_t kinds, RayHit& hit, Color& passed) const {
   const Implementation& scene = *implementation_;
+  passed = Color(1.0f);
   if (!scene.Accept(ray)) return false;
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
+  thread_local std::vector<PassedSheet> sheets;
+  TraceContext trace;
+  rtcInitIntersectContext(&trace.context);
+  if (scene.hasTints) {
+    sheets.clear();
+    trace.sheets = &sheets;
+  }
   RTCRayHit rayHit;
   FillRay(ray, kinds, ray.tMax, rayHit.ray);
   rayHit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   rayHit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(scene.scene.get(), &context, &rayHit);
+  rtcIntersect1(scene.scene.get(), &trace.context, &rayHit);
+  if (scene.hasTints) passed = TintBefore(sheets, rayHit.ray.tfar);
   if (rayHit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
   hit.t = rayHit.ray.tfar;
   hit.patch = rayHit.hit.primID;
@@ -477,16 +500,16 @@ bool GeometryScene::Intersect(const Ray& ray, uint32_t kinds, RayHit& hit) const
   return true;
 }
 
-bool GeometryScene::Occluded(const Ray& ray, uint32_t kinds) const {
+Color GeometryScene::Transmission(const Ray& ray, uint32_t kinds) const {
   const Implementation& scene = *implementation_;
-  if (!scene.Accept(ray)) return false;
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
+  if (!scene.Accept(ray)) return Color(1.0f);
+  TraceContext trace;
+  rtcInitIntersectContext(&trace.context);
   RTCRay shadowRay;
   // Embree's interval is closed above; ours is open.
   FillRay(ray, kinds, ray.tMax * kOneMinusEpsilon, shadowRay);
-  rtcOccluded1(scene.scene.get(), &context, &shadowRay);
-  return shadowRay.tfar < 0;
+  rtcOccluded1(scene.scene.get(), &trace.context, &shadowRay);
+  return shadowRay.tfar < 0 ? Color(0.0f) : trace.transmission;
 }
 
 SurfacePoint GeometryScene::GetSurfacePoint(const Ray& ray, const RayHit& hit) const {

@@ -19,13 +19,28 @@ class AlphaSource {
   virtual float Alpha(const Point2& uv, const Point3& position) const = 0;
 };
 
+// A sheet without thickness, such as thin glass: some of the light that meets it goes straight on, and the rest is up
+// to the surface. What goes straight on does not meet the surface at all: it is the same light whether a shadow ray, a
+// scattered ray or a photon carries it. Implemented by materials.
+class SheetSource {
+ public:
+  virtual ~SheetSource() = default;
+  // The part of rays at the cosine `cosTheta` > 0 to the shading normal that goes on, in [0,1].
+  virtual float PassingPart(float cosTheta) const = 0;
+  // What those are multiplied by.
+  virtual Color Tint(const Point2& uv, const Point3& position) const = 0;
+  // Whether that is white everywhere.
+  virtual bool IsClear() const = 0;
+};
+
 // What a shape carries along. The indices mean nothing to the geometry.
 struct GeometryAttributes {
   int32_t material = -1;
   int32_t light = -1;  // index of the area light that this shape is, -1 for none
   uint32_t visibility = visibility::kAll;
-  uint32_t link = 0;  // class of light linking and light filters
+  uint32_t link = 0;                         // class of light linking and light filters
   std::shared_ptr<const AlphaSource> alpha;  // null: opaque
+  std::shared_ptr<const SheetSource> sheet;  // null: nothing goes straight on where the surface is
 };
 
 struct GeometryEntry {
@@ -65,11 +80,20 @@ class GeometryScene {
   GeometryScene(const GeometryScene&) = delete;
   GeometryScene& operator=(const GeometryScene&) = delete;
 
-  // Nearest hit with t in (0, ray.tMax] on a primitive visible to one of `kinds`. False: nothing, `hit` untouched.
-  bool Intersect(const Ray& ray, uint32_t kinds, RayHit& hit) const;
+  // Nearest hit with t in (0, ray.tMax] on a primitive visible to one of `kinds`. False: nothing, `hit` untouched. By
+  // chance, in the right proportion, the ray passes cut-outs and sheets on its way; `passed` becomes what it is
+  // multiplied by for that.
+  bool Intersect(const Ray& ray, uint32_t kinds, RayHit& hit, Color& passed) const;
+  bool Intersect(const Ray& ray, uint32_t kinds, RayHit& hit) const {
+    Color passed;
+    return Intersect(ray, kinds, hit, passed);
+  }
 
-  // Whether anything lies in (0, ray.tMax).
-  bool Occluded(const Ray& ray, uint32_t kinds) const;
+  // What is left of light after (0, ray.tMax): 0 behind something opaque, 1 where nothing is, and behind cut-outs and
+  // sheets the product of what they let pass, which is the mean of what Intersect makes of it.
+  Color Transmission(const Ray& ray, uint32_t kinds) const;
+  // Whether that is nothing.
+  bool Occluded(const Ray& ray, uint32_t kinds) const { return Transmission(ray, kinds).IsBlack(); }
 
   // Position with error bound, normals, uv and tangents of a hit that `ray` made.
   SurfacePoint GetSurfacePoint(const Ray& ray, const RayHit& hit) const;
@@ -78,9 +102,9 @@ class GeometryScene {
   // Index of the light at a hit, instances resolved; -1 for none.
   int32_t LightAt(uint32_t primitive, uint32_t instance) const;
 
-  size_t PrimitiveCount() const;  // shapes, instanced ones once
-  const Bounds3& GetBounds() const;             // empty for an empty scene
-  BoundingSphere GetBoundingSphere() const;     // radius 1 around 0 for an empty scene
+  size_t PrimitiveCount() const;             // shapes, instanced ones once
+  const Bounds3& GetBounds() const;          // empty for an empty scene
+  BoundingSphere GetBoundingSphere() const;  // radius 1 around 0 for an empty scene
   uint64_t RejectedRays() const;
 
  private:

@@ -54,6 +54,7 @@ struct SurfacePoint {
   uint32_t primitive = kNoIndex;
   uint32_t patch = 0;
   uint32_t instance = kNoIndex;
+  bool isSheet = false;  // what goes straight on is not for the surface to scatter (SheetSource)
 };
 
 }  // namespace lampyr

@@ -46,6 +46,7 @@ SurfacePoint EvaluatePrimitive(const PrimitiveRecord& record, const Ray& ray, co
     default:
       EvaluateCustom(**std::get_if<4>(&record.shape), ray, hit.t, point);
   }
+  point.isSheet = record.sheet != nullptr;
   // A surface in a coordinate plane has no error across it, and a ray that starts on it exactly would find it again: a
   // floor of a millionth of the largest component.
   point.positionError += Vector3(1e-6f * MaxComponent(point.positionError));

@@ -16,6 +16,9 @@ struct PrimitiveRecord {
   std::variant<const TriangleMesh*, const BilinearMesh*, const PreparedQuadric*, const CurveSet*, const CustomSurface*>
       shape;
   const AlphaSource* alpha = nullptr;  // null: opaque
+  const SheetSource* sheet = nullptr;  // null: none
+
+  bool LetsPass() const { return alpha || sheet; }
   const SceneTables* tables = nullptr;
 };
 

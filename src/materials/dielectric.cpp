@@ -127,14 +127,18 @@ std::optional<BsdfSample> DielectricBsdf::Sample(const Vector3& wo, float uLobe,
   return sample;
 }
 
+float ThinReflectance(float cosTheta, float eta) {
+  const float R = FresnelDielectric(cosTheta, eta);
+  return R < 1 ? R + Sqr(1 - R) * R / (1 - R * R) : 1.0f;
+}
+
 std::optional<BsdfSample> ThinDielectricBsdf::Sample(const Vector3& wo, float uLobe, const Point2&,
                                                      TransportMode) const {
-  float R = FresnelDielectric(std::abs(wo.z), eta);
-  if (R < 1) R += Sqr(1 - R) * R / (1 - R * R);  // all orders of reflection between the two sides
+  const float R = isReflectionOnly ? 1.0f : ThinReflectance(std::abs(wo.z), eta);
   const bool reflects = uLobe < R;
   BsdfSample sample;
   sample.wi = reflects ? Vector3(-wo.x, -wo.y, wo.z) : -wo;
-  sample.weightSpecular = Color(1.0f);
+  sample.weightSpecular = reflects ? Color(1.0f) : transmittance;
   sample.pdfForward = sample.pdfReverse = PdfSolidAngle(reflects ? R : 1 - R);
   sample.isDelta = true;
   sample.isTransmission = !reflects;

@@ -22,9 +22,15 @@ struct DielectricBsdf {
   Color ApproximateAlbedo() const { return Color(1.0f); }
 };
 
-// A sheet with parallel sides: all reflections between the two are summed, and light leaves undeflected.
+// The part of light that a sheet with parallel sides reflects: all orders of reflection between the two are summed.
+float ThinReflectance(float cosTheta, float eta);
+
+// Such a sheet. Light leaves undeflected, coloured by `transmittance`; unless the tracing of rays has seen to that
+// already (SurfacePoint::isSheet): then there is only the reflection left.
 struct ThinDielectricBsdf {
   float eta = 1;
+  Color transmittance{1.0f};
+  bool isReflectionOnly = false;
 
   BsdfEvaluation Evaluate(const Vector3&, const Vector3&, TransportMode) const { return {}; }
   std::optional<BsdfSample> Sample(const Vector3& wo, float uLobe, const Point2& u, TransportMode mode) const;

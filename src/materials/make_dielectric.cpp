@@ -1,4 +1,5 @@
-// "dielectric": eta (1.5), roughness (0), uroughness, vroughness, remaproughness (true). "thindielectric": eta (1.5).
+// "dielectric": eta (1.5), roughness (0), uroughness, vroughness, remaproughness (true). "thindielectric": eta (1.5),
+// transmittance (1), which is lampyr's own: the colour of what passes.
 #include "materials/material_makers.h"
 #include "materials/recipe_material.h"
 
@@ -17,14 +18,29 @@ struct DielectricRecipe {
   bool HasDelta() const { return eta == 1 || roughness.MayBeSmooth(); }
 };
 
-struct ThinDielectricRecipe {
-  float eta;
+class ThinDielectric final : public Material, public SheetSource {
+ public:
+  ThinDielectric(float eta, ColorParameter transmittance, ShadingNormal shadingNormal)
+      : eta_(eta), transmittance_(std::move(transmittance)), shadingNormal_(std::move(shadingNormal)) {}
 
-  BsdfModel Make(const TextureContext&) const { return ThinDielectricBsdf{eta}; }
-  bool IsConstant() const { return true; }
-  bool IsAnisotropic() const { return false; }
-  bool MayTransmit() const { return true; }
-  bool HasDelta() const { return true; }
+  Bsdf GetBsdf(const SurfacePoint& point, const Vector3&) const override {
+    const Frame frame = shadingNormal_.IsPlain() ? Frame::FromNormal(point.Ns) : shadingNormal_.GetFrame(point);
+    return Bsdf(frame, point.Ng, ThinDielectricBsdf{eta_, Tint(point.uv, point.position), point.isSheet});
+  }
+  bool MayTransmit() const override { return true; }
+  bool HasDelta() const override { return true; }
+  const SheetSource* Sheet() const override { return this; }
+
+  float PassingPart(float cosTheta) const override { return 1 - ThinReflectance(cosTheta, eta_); }
+  Color Tint(const Point2& uv, const Point3& position) const override {
+    return ClampToUnit(transmittance_.Evaluate({uv, position}));
+  }
+  bool IsClear() const override { return transmittance_.IsConstant() && Tint({}, {}) == Color(1.0f); }
+
+ private:
+  float eta_;
+  ColorParameter transmittance_;
+  ShadingNormal shadingNormal_;
 };
 
 }  // namespace
@@ -37,10 +53,12 @@ std::shared_ptr<const Material> MakeDielectric(const MaterialInput& input) {
 }
 
 std::shared_ptr<const Material> MakeThinDielectric(const MaterialInput& input) {
-  ThinDielectricRecipe recipe{GetEta(input, "eta", 1.5f)};
+  const float eta = GetEta(input, "eta", 1.5f);
+  ColorParameter transmittance =
+      input.textures.GetColor(input.parameters, "transmittance", Color(1.0f), SpectrumRole::Albedo);
   ShadingNormal shadingNormal(input.parameters, input.textures, input.diagnostics);
-  CheckMaterialParameters(input, {"eta"});
-  return std::make_shared<RecipeMaterial<ThinDielectricRecipe>>(std::move(recipe), std::move(shadingNormal));
+  CheckMaterialParameters(input, {"eta", "transmittance"});
+  return std::make_shared<ThinDielectric>(eta, std::move(transmittance), std::move(shadingNormal));
 }
 
 }  // namespace lampyr

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "geometry/ray.h"
+#include "geometry/geometry_scene.h"
 #include "materials/bsdf.h"
 
 namespace lampyr {
@@ -26,6 +26,9 @@ class Material {
   // Whether some point of it may scatter by deltas only, or may transmit: what the scene has to be modelled for.
   virtual bool MayTransmit() const { return false; }
   virtual bool HasDelta() const { return false; }
+  // Of a sheet without thickness: what of the light goes straight on without meeting it. Null: not one. Whoever traces
+  // rays must see to it where SurfacePoint::isSheet says so.
+  virtual const SheetSource* Sheet() const { return nullptr; }
   // Mirrors and clear glass: what shows light sharply.
   bool IsSmooth() const { return HasDelta() && !IsInterface(); }
 };

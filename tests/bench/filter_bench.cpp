@@ -41,6 +41,8 @@ class Bench {
   void Run(benchmark::State& state, int batch) {
     const LightFilter& filter = *filters_.back().filter;
     for (auto _ : state) {
+      std::fill(diffuse_.begin(), diffuse_.end(), Color(1.0f));
+      std::fill(specular_.begin(), specular_.end(), Color(1.0f));
       for (int i = 0; i < kCount; i += batch) {
         filter.Filter({},
                       {batch, &receivers_[i], &directions_[i], &distances_[i], &pdfs_[i], &diffuse_[i], &specular_[i]});
