@@ -49,6 +49,7 @@ class BdptIntegrator final : public BidirectionalIntegrator {
     double merge = 0;  // (N π r²)^β, see partial_weight.h; 0: nothing is merged
     size_t cameraCount = 0;
     bool couldMerge = false;  // at a vertex of the camera subpath
+    Color gathered{0.0f};     // by the camera subpath so far
 
     RenderCounts& Counts() const { return sinks.counts; }
     std::span<const PathVertex> Light(size_t count) const { return {paths.light.vertices.data(), count}; }
@@ -71,6 +72,11 @@ class BdptIntegrator final : public BidirectionalIntegrator {
   static void ReportMerge(const Run& run, const Photon& photon, const Color& value, double weight);
   double CameraPerArea(const Ray& ray, float cosTheta, double distanceSquared) const;
 
+  // Of a connection, before its shadow ray. Who observes paths is shown all of them.
+  float WorthOf(const Run& run, const ConnectedPath& path, uint64_t decider) const {
+    if (run.sinks.observer) return 1;
+    return settings_.shadowRays.Worth(path.value * static_cast<float>(path.weight), run.gathered, decider);
+  }
   // The camera's end of a path with a camera subpath.
   static void SetLens(const Run& run, ConnectedPath& path) {
     path.toLens = run.paths.camera[0].toPrevious;
@@ -201,12 +207,6 @@ Color BdptIntegrator::SampleLight(Run& run, const SelectedLight& light, const Po
   ConnectedPath path;
   path.value = (vertex.diffuse + vertex.specular) * scattered * (cosTheta / pdf.value);
   if (path.value.IsBlack()) return path.value;
-  ++run.Counts().shadowRays;
-  const Color arrived = lighting_.Transmission(vertex.point, direct, run.time);
-  lighting_.UpdateWithResults(vertex.receiver, direct, arrived);
-  path.value *= arrived;
-  if (path.value.IsBlack()) return path.value;
-
   path.s = 1;
   path.t = static_cast<int>(run.cameraCount) + 1;
   path.camera = run.Camera(run.cameraCount);
@@ -226,7 +226,14 @@ Color BdptIntegrator::SampleLight(Run& run, const SelectedLight& light, const Po
   const double camera = vertex.weight.Sum(
       path.end.emission, static_cast<double>(f.pdfReverse.value) * vertex.previousPerSolidAngle, run.MergeAt(vertex));
   path.weight = 1 / (1 + (hit + camera) / Mis(path.end.direct));
-  return Report(run, path);
+  const float worth = WorthOf(run, path, ShadowRays::DeciderOf(u.x, u.y));
+  if (worth == 0) return Color(0.0f);
+  ++run.Counts().shadowRays;
+  const Color arrived = lighting_.Transmission(vertex.point, direct, run.time);
+  lighting_.UpdateWithResults(vertex.receiver, direct, arrived);
+  path.value *= arrived;
+  if (path.value.IsBlack()) return path.value;
+  return Report(run, path) * worth;
 }
 
 // s > 1, t > 1: the first `lightCount` vertices of the light subpath, joined to the camera subpath's last.
@@ -248,11 +255,6 @@ Color BdptIntegrator::Connect(Run& run, size_t lightCount) const {
                static_cast<float>(
                    static_cast<double>(std::abs(cosY) * arriving * ArrivalCorrection(y.bsdf, y.toPrevious)) / squared);
   if (path.value.IsBlack()) return path.value;
-  ++run.Counts().shadowRays;
-  const Ray ray = SpawnRayTo(z.point, y.point.position, y.point.positionError, y.point.Ng, run.time);
-  path.value *= geometry_.Transmission(ray, visibility::kIndirect);
-  if (path.value.IsBlack()) return path.value;
-
   path.s = static_cast<int>(lightCount) + 1;
   path.t = static_cast<int>(run.cameraCount) + 1;
   path.light = run.Light(lightCount);
@@ -266,7 +268,13 @@ Color BdptIntegrator::Connect(Run& run, size_t lightCount) const {
       z.weight.Sum(static_cast<double>(fy.pdfForward.value) * AreaPerSolidAngle(cosZ, squared),
                    static_cast<double>(fz.pdfReverse.value) * z.previousPerSolidAngle, run.MergeAt(z));
   path.weight = 1 / (1 + light + camera);
-  return Report(run, path);
+  const float worth = WorthOf(run, path, ShadowRays::DeciderOf(toCamera.x, toCamera.y));
+  if (worth == 0) return Color(0.0f);
+  ++run.Counts().shadowRays;
+  const Ray ray = SpawnRayTo(z.point, y.point.position, y.point.positionError, y.point.Ng, run.time);
+  path.value *= geometry_.Transmission(ray, visibility::kIndirect);
+  if (path.value.IsBlack()) return path.value;
+  return Report(run, path) * worth;
 }
 
 void BdptIntegrator::ReportMerge(const Run& run, const Photon& photon, const Color& value, double weight) {
@@ -376,10 +384,14 @@ Color BdptIntegrator::TraceCamera(Run& run, const Ray& cameraRay) const {
     ++run.cameraCount;
     const auto depth = static_cast<int>(run.cameraCount);
     if (!vertex.isDelta) {
+      run.gathered = radiance;
       radiance += SampleLights(run);
       // As many scattering events in all as are wanted.
       const size_t most = std::min(run.paths.light.count, static_cast<size_t>(settings_.maxDepth - depth));
-      for (size_t i = 1; settings_.connects && i <= most; ++i) radiance += Connect(run, i);
+      for (size_t i = 1; settings_.connects && i <= most; ++i) {
+        run.gathered = radiance;
+        radiance += Connect(run, i);
+      }
       if (run.merge > 0 && vertex.CanMerge()) radiance += Merge(run);
     }
     if (!Scatter(vertex, TransportMode::Radiance, depth, kOfCamera, depth - 1, 1, run.sampler, flight)) {

@@ -14,6 +14,7 @@
 
 #include "integrators/bdpt/bdpt_path.h"
 #include "integrators/common/photon_pass.h"
+#include "integrators/common/shadow_roulette.h"
 #include "integrators/integrator.h"
 
 namespace lampyr {
@@ -26,6 +27,7 @@ struct BdptSettings {
   // what cannot be merged: lights that the camera sees, or sees by deltas alone. Requires `merges`.
   bool connects = true;
   PhotonSettings photons;
+  ShadowRays shadowRays;
 };
 
 // `scene` must outlive the integrator.

@@ -9,7 +9,7 @@ namespace {
 class PathIntegrator final : public CameraIntegrator {
  public:
   PathIntegrator(const RenderScene& scene, const PathSettings& settings)
-      : walk_(scene, {settings.maxDepth, {}, 0, true}) {}
+      : walk_(scene, {settings.maxDepth, {}, 0, true, settings.shadowRays}) {}
 
   Color Radiance(const Ray& ray, Sampler& sampler, RenderCounts& counts) const override {
     return walk_.Radiance(ray, sampler, counts, nullptr);

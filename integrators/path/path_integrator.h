@@ -6,12 +6,14 @@
 
 #include <memory>
 
+#include "integrators/common/shadow_roulette.h"
 #include "integrators/integrator.h"
 
 namespace lampyr {
 
 struct PathSettings {
   int maxDepth = 5;  // scattering events; 0 shows only what the camera sees of the lights
+  ShadowRays shadowRays;
 };
 
 // `scene` must outlive the integrator.

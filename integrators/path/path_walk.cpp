@@ -53,19 +53,20 @@ Color PathWalk::EscapedEmission(const State& path) const {
 }
 
 Color PathWalk::DirectLight(const State& path, const SurfacePoint& point, const Bsdf& bsdf, const Vector3& wo,
-                            const Receiver& receiver, Sampler& sampler, RenderCounts& counts) const {
+                            const Receiver& receiver, const Color& soFar, Sampler& sampler,
+                            RenderCounts& counts) const {
   sampler.SetDimension(dimensions_.Of(path.depth, dimensions::kLightSelection));
   LightChoices lights;
   lighting_.SelectLights(receiver, sampler.Get1D(), lights);
   const Point2 u = sampler.Get2D();
   Color sum;
   for (int i = 0; i < lights.count; ++i)
-    sum += SampleLight(path, point, bsdf, wo, receiver, lights.of[i], MovedPoint(u, i), counts);
+    sum += SampleLight(path, point, bsdf, wo, receiver, lights.of[i], MovedPoint(u, i), soFar + sum, counts);
   return sum;
 }
 
 Color PathWalk::SampleLight(const State& path, const SurfacePoint& point, const Bsdf& bsdf, const Vector3& wo,
-                            const Receiver& receiver, const SelectedLight& light, const Point2& u,
+                            const Receiver& receiver, const SelectedLight& light, const Point2& u, const Color& soFar,
                             RenderCounts& counts) const {
   const DirectSample direct = lighting_.GenerateSamples(receiver, light, u, path.ray.time, false);
   const auto nothingArrives = [&] {
@@ -86,10 +87,12 @@ Color PathWalk::SampleLight(const State& path, const SurfacePoint& point, const 
   const float cosTheta = AbsDot(sample.direction, bsdf.ShadingFrame().z);
   const Color contribution = path.Throughput() * scattered * (cosTheta * weight / pdf.value);
   if (contribution.IsBlack()) return Color(0.0f);
+  const float worth = shadowRays_.Worth(contribution, soFar, ShadowRays::DeciderOf(u.x, u.y));
+  if (worth == 0) return Color(0.0f);
   ++counts.shadowRays;
   const Color arrived = lighting_.Transmission(point, direct, path.ray.time);
   lighting_.UpdateWithResults(receiver, direct, arrived);
-  return contribution * arrived;
+  return contribution * arrived * worth;
 }
 
 // Continues the path by the BSDF and Russian roulette. False: it ends here.
@@ -148,7 +151,7 @@ Color PathWalk::Radiance(const Ray& cameraRay, Sampler& sampler, RenderCounts& c
     const Normal3 Ns = bsdf.ShadingFrame().z;
     const Receiver receiver{point.position, glm::dot(Ns, wo) < 0 ? -Ns : Ns, bsdf.IsTransmissive(), attributes.link};
     if (!bsdf.IsDelta()) {
-      if (samplesLights_) radiance += DirectLight(path, point, bsdf, wo, receiver, sampler, counts);
+      if (samplesLights_) radiance += DirectLight(path, point, bsdf, wo, receiver, radiance, sampler, counts);
       if (gatherer) radiance += gatherer->Gather(point, bsdf, wo, path.Throughput(), path.depth + 1, path.length);
     }
     if (!Scatter(path, point, bsdf, wo, receiver, sampler)) return radiance;

@@ -2,6 +2,7 @@
 // weighted by the power heuristic. All of path tracing, and the first part of photon mapping.
 #pragma once
 
+#include "integrators/common/shadow_roulette.h"
 #include "integrators/common/subpath.h"
 #include "integrators/integrator.h"
 
@@ -22,6 +23,7 @@ struct PathWalkSettings {
   SubpathDimensions dimensions;
   float gatherBelow = 0;      // 1/sr: directions of no higher density end the path; 0: all are followed
   bool samplesLights = true;  // next-event estimation; without it, lights are found by followed directions alone
+  ShadowRays shadowRays;
 };
 
 class PathWalk {
@@ -33,7 +35,8 @@ class PathWalk {
         maxDepth_(settings.maxDepth),
         dimensions_(settings.dimensions),
         gatherBelow_(settings.gatherBelow),
-        samplesLights_(settings.samplesLights) {}
+        samplesLights_(settings.samplesLights),
+        shadowRays_(settings.shadowRays) {}
 
   // One sample of the radiance that arrives along `ray`. `gatherer` may be null where gatherBelow is 0.
   Color Radiance(const Ray& ray, Sampler& sampler, RenderCounts& counts, const PhotonGatherer* gatherer) const;
@@ -45,9 +48,10 @@ class PathWalk {
   Color EmissionAt(const State& path, const RayHit& hit, const SurfacePoint& point) const;
   Color EscapedEmission(const State& path) const;
   Color DirectLight(const State& path, const SurfacePoint& point, const Bsdf& bsdf, const Vector3& wo,
-                    const Receiver& receiver, Sampler& sampler, RenderCounts& counts) const;
+                    const Receiver& receiver, const Color& soFar, Sampler& sampler, RenderCounts& counts) const;
   Color SampleLight(const State& path, const SurfacePoint& point, const Bsdf& bsdf, const Vector3& wo,
-                    const Receiver& receiver, const SelectedLight& light, const Point2& u, RenderCounts& counts) const;
+                    const Receiver& receiver, const SelectedLight& light, const Point2& u, const Color& soFar,
+                    RenderCounts& counts) const;
   bool Scatter(State& path, const SurfacePoint& point, const Bsdf& bsdf, const Vector3& wo, const Receiver& receiver,
                Sampler& sampler) const;
 
@@ -58,6 +62,7 @@ class PathWalk {
   SubpathDimensions dimensions_;
   float gatherBelow_;
   bool samplesLights_;
+  ShadowRays shadowRays_;
 };
 
 }  // namespace lampyr

@@ -28,7 +28,7 @@ class SppmIntegrator final : public BidirectionalIntegrator {
       : scene_(scene),
         settings_(settings),
         light_(scene, settings.maxDepth, kOfLight, LightSubpathTracer::Weights::None),
-        walk_(scene, {settings.maxDepth, kOfCamera, kWide, !settings.directFromPhotons}) {}
+        walk_(scene, {settings.maxDepth, kOfCamera, kWide, !settings.directFromPhotons, settings.shadowRays}) {}
 
   Color Sample(const Ray* ray, float time, Sampler& sampler, const SampleSinks& sinks) const override;
   std::optional<PhotonSettings> Photons() const override { return settings_.photons; }

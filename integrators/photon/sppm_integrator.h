@@ -15,6 +15,7 @@
 
 #include <memory>
 
+#include "integrators/common/shadow_roulette.h"
 #include "integrators/integrator.h"
 
 namespace lampyr {
@@ -25,6 +26,7 @@ struct SppmSettings {
   PhotonSettings photons;
   // Light that comes straight from lights is gathered as well, and lights with traceLightPaths off are lost.
   bool directFromPhotons = false;
+  ShadowRays shadowRays;
 };
 
 // `scene` must outlive the integrator.

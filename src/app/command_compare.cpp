@@ -20,11 +20,7 @@ namespace {
 ComparisonPlan MakePlan(const CompareOptions& options) {
   ComparisonPlan plan;
   for (const std::string& name : options.integrators) {
-    const auto& known = IntegratorNames();
-    if (std::find(known.begin(), known.end(), name) == known.end()) {
-      throw UsageError("--integrators: there is no integrator \"" + name + "\"" + DidYouMean(name, known) +
-                       "; there are: path, light, bdpt");
-    }
+    VariantOf({}, name);
     if (std::find(plan.integrators.begin(), plan.integrators.end(), name) != plan.integrators.end()) {
       throw UsageError("--integrators: " + name + " is named twice");
     }

@@ -110,6 +110,15 @@ void DefineSceneOptions(CLI::App& app, RenderOverrides& overrides, std::string& 
             "sppm: gather photons for direct light, too, instead of sampling lights (off)");
   AddSwitch(app, "--guide-photons,!--no-guide-photons", overrides.guidesPhotons,
             "sppm, vcm: learn where photons are of use, and aim them there if it pays (on)");
+  app.add_option(
+         "--shadow-roulette", overrides.shadowRoulette,
+         "Trace shadow rays by chance whose light is below this part of what their sample has gathered: the mean "
+         "stays (0.05); 0: trace all")
+      ->check(CLI::Range(0.0, 1.0));
+  app.add_option(
+         "--shadow-threshold", overrides.shadowThreshold,
+         "Leave out light that is below this, in the image's units, without a shadow ray: faster, and biased (0)")
+      ->check(CLI::NonNegativeNumber);
   AddSwitch(app, "--learn-lights,!--no-learn-lights", overrides.learnLights,
             "Let the light tree learn which lights are occluded where (off)");
 }
@@ -163,7 +172,9 @@ struct CompareCommand {
     app.add_option("scene", options.scene, "The scene: a pbrt-v4 file (.pbrt, .pbrt.gz)")->required();
     app.add_option("-o,--output", options.output,
                    "The folder for results.csv, results.json, report.html and the reference; default: SCENE-compare");
-    app.add_option("--integrators", options.integrators, "Which to compare, e.g. path,bdpt (path,bdpt)")
+    app.add_option(
+           "--integrators", options.integrators,
+           "Which to compare, e.g. path,bdpt (path,bdpt); path:shadow-threshold=0.01 is one with a setting changed")
         ->delimiter(',')
         ->allow_extra_args(false);
     app.add_option("--budget", times, "Times to compare at, e.g. 5s,20s,80s (1s,4s,16s)")

@@ -1,6 +1,7 @@
 #include "app/integrator_choice.h"
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "base/error.h"
 #include "integrators/bdpt/bdpt_integrator.h"
@@ -51,8 +52,38 @@ const std::vector<std::string>& IntegratorNames() {
   return names;
 }
 
+RenderSettings VariantOf(const RenderSettings& settings, const std::string& name) {
+  RenderSettings variant = settings;
+  const size_t colon = name.find(':');
+  variant.integrator = name.substr(0, colon);
+  if (std::find(IntegratorNames().begin(), IntegratorNames().end(), variant.integrator) == IntegratorNames().end()) {
+    std::string all;
+    for (const std::string& known : IntegratorNames()) all += (all.empty() ? "" : ", ") + known;
+    throw UsageError("--integrators: there is no integrator \"" + variant.integrator + "\"" +
+                     DidYouMean(variant.integrator, IntegratorNames()) + "; there are: " + all);
+  }
+  if (colon == std::string::npos) return variant;
+  const std::string setting = name.substr(colon + 1);
+  const size_t equals = setting.find('=');
+  const std::string key = setting.substr(0, equals);
+  const std::vector<std::string> keys = {"shadow-roulette", "shadow-threshold"};
+  float* value = key == keys[0]   ? &variant.shadowRays.roulette
+                 : key == keys[1] ? &variant.shadowRays.threshold
+                                  : nullptr;
+  if (!value) {
+    throw UsageError("--integrators: \"" + name + "\": there is no setting \"" + key + "\"" + DidYouMean(key, keys) +
+                     "; there are: shadow-roulette, shadow-threshold");
+  }
+  const std::string number = equals == std::string::npos ? "" : setting.substr(equals + 1);
+  char* end = nullptr;
+  *value = std::strtof(number.c_str(), &end);
+  if (number.empty() || *end != '\0' || !(*value >= 0 && *value < kInfinity))
+    throw UsageError("--integrators: \"" + name + "\": " + key + " is a number of 0 or more, such as " + key + "=0.01");
+  return variant;
+}
+
 AnyIntegrator MakeIntegrator(const RenderScene& scene, const RenderSettings& settings) {
-  if (settings.integrator == "path") return MakePathIntegrator(scene, {settings.maxDepth});
+  if (settings.integrator == "path") return MakePathIntegrator(scene, {settings.maxDepth, settings.shadowRays});
   if (settings.integrator == "light") return MakeLightIntegrator(scene, {settings.maxDepth});
   if (settings.integrator == "bdpt" || settings.integrator == "vcm") {
     BdptSettings bdpt;
@@ -62,12 +93,14 @@ AnyIntegrator MakeIntegrator(const RenderScene& scene, const RenderSettings& set
     if (bdpt.merges) bdpt.photons.radius = FirstRadius(scene, settings);
     bdpt.photons.guided = bdpt.photons.guided && MayGuidePhotons(scene, settings, "vcm");
     bdpt.maxDepth = settings.maxDepth;
+    bdpt.shadowRays = settings.shadowRays;
     bdpt.filmPixels = static_cast<double>(settings.width) * static_cast<double>(settings.height);
     return MakeBdptIntegrator(scene, bdpt);
   }
   if (settings.integrator == "sppm") {
     SppmSettings sppm;
     sppm.maxDepth = settings.maxDepth;
+    sppm.shadowRays = settings.shadowRays;
     sppm.filmPixels = static_cast<double>(settings.width) * static_cast<double>(settings.height);
     sppm.photons = PhotonsFor(scene, settings);
     sppm.directFromPhotons = settings.directFromPhotons;

@@ -17,6 +17,10 @@ using AnyIntegrator = std::variant<std::unique_ptr<CameraIntegrator>, std::uniqu
 // The one that the settings name. `scene` must outlive it.
 AnyIntegrator MakeIntegrator(const RenderScene& scene, const RenderSettings& settings);
 
+// The settings with the integrator of a name such as "path", or "path:shadow-threshold=0.01": one of its settings is
+// then changed. Throws a UsageError that says what there is.
+RenderSettings VariantOf(const RenderSettings& settings, const std::string& name);
+
 // The radius (scene units) within which the first pass of vcm gathers photons.
 double FirstRadius(const RenderScene& scene, const RenderSettings& settings);
 

@@ -246,6 +246,16 @@ void ReadPhotons(const ParameterList& parameters, const RenderOverrides& overrid
   }
 }
 
+void ReadShadowRays(const ParameterList& parameters, const RenderOverrides& overrides, ShadowRays& shadowRays) {
+  const auto read = [&](const char* name, const std::optional<double>& given, float& value) {
+    const double number = given.value_or(parameters.GetFloat(name, static_cast<double>(value)));
+    if (!(number >= 0)) throw Error(parameters.WhereOf(name), "\"" + std::string(name) + "\" must be 0 or more");
+    value = static_cast<float>(number);
+  };
+  read("shadowroulette", overrides.shadowRoulette, shadowRays.roulette);
+  read("shadowthreshold", overrides.shadowThreshold, shadowRays.threshold);
+}
+
 void ReadIntegrator(const SceneDescription& scene, const RenderOverrides& overrides, RenderSettings& settings,
                     Diagnostics& diagnostics) {
   const ParameterList& parameters = scene.integrator.parameters;
@@ -281,6 +291,7 @@ void ReadIntegrator(const SceneDescription& scene, const RenderOverrides& overri
   settings.maxDepth = parameters.GetInteger("maxdepth", settings.maxDepth);
   if (settings.maxDepth < 0) throw Error(parameters.WhereOf("maxdepth"), "\"maxdepth\" must be 0 or more");
   if (overrides.maxDepth) settings.maxDepth = *overrides.maxDepth;
+  ReadShadowRays(parameters, overrides, settings.shadowRays);
 
   const std::string lightSampler = parameters.GetString("lightsampler", "tree");
   const Names samplerNames = {"uniform", "power", "bvh", "tree", "exhaustive"};  // bvh: pbrt-v4's name of its tree
@@ -304,7 +315,7 @@ void ReadIntegrator(const SceneDescription& scene, const RenderOverrides& overri
   if (isKnown) {
     parameters.CheckAllUsed({"regularize", "options"},
                             {"maxdepth", "lightsampler", "photonsperiteration", "radius", "alpha", "merge", "connect",
-                             "directphotons", "guidephotons"},
+                             "directphotons", "guidephotons", "shadowroulette", "shadowthreshold"},
                             diagnostics);
   }
 }

@@ -7,6 +7,7 @@
 #include "camera/camera.h"
 #include "film/film.h"
 #include "film/pixel_filter.h"
+#include "integrators/common/shadow_roulette.h"
 #include "integrators/integrator.h"
 #include "lights/selection/light_selector.h"
 #include "sampling/sampler.h"
@@ -28,6 +29,7 @@ struct RenderOverrides {
   std::optional<double> radius, alpha;  // of photons, see PhotonSettings
   std::optional<uint64_t> photons, photonMemory;
   std::optional<bool> merges, connects, directFromPhotons, guidesPhotons;
+  std::optional<double> shadowRoulette, shadowThreshold;
   uint64_t seed = 0;
 };
 
@@ -41,7 +43,8 @@ struct RenderSettings {
   int samplesPerPixel = 16;
   uint64_t seed = 0;
   LightSelection lightSelection = LightSelection::Tree;
-  int lightSamples = 1;      // lights that next-event estimation chooses at a vertex, at most
+  int lightSamples = 1;  // lights that next-event estimation chooses at a vertex, at most
+  ShadowRays shadowRays;
   bool learnLights = false;  // selection learns from shadow rays (light_learning.h)
   PhotonSettings photons;
   bool merges = true, connects = true;  // vcm: which techniques

@@ -26,7 +26,7 @@ std::string OpenWindowScene() {
     ASSERT_NE(at, std::string::npos) << from;
     text.replace(at, from.size(), to);
   };
-  replace("Material \"thindielectric\" \"float eta\" 1.5", "Material \"interface\"");
+  replace("Material \"dielectric\" \"float eta\" 1.52", "Material \"interface\"");
   replace("Material \"dielectric\" \"float eta\" 1.5", "Material \"diffuse\" \"rgb reflectance\" [ 0.8 0.7 0.6 ]");
   replace("[ -50 -50 0  50 -50 0  -50 50 0  50 50 0 ]", "[ -6 -6 0  6 -6 0  -6 6 0  6 6 0 ]");
   replace("Translate 3.5 11 1.2", "Translate 2.5 5 1.2");

@@ -7,8 +7,7 @@ namespace lampyr {
 void ComparedScene::Render(const std::string& integrator, uint64_t seed, const std::vector<double>& times,
                            const std::vector<int>& sampleCounts, const AtMilestone& atMilestone,
                            const AfterPass& afterPass) const {
-  RenderSettings settings = built_.settings;
-  settings.integrator = integrator;
+  RenderSettings settings = VariantOf(built_.settings, integrator);
   settings.seed = seed;
   const AnyIntegrator chosen = MakeIntegrator(built_.scene, settings);
   Film film(settings.width, settings.height, settings.crop);
