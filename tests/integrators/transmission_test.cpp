@@ -101,7 +101,7 @@ TEST(Transmission, OfPhotonsIsTheSame) {
     };
     const MeanValue path = mean(measure("path", 4096));
     for (const char* integrator : {"light", "bdpt"}) {
-      const MeanValue other = mean(measure(integrator, 16384));
+      const MeanValue other = mean(measure(integrator, 32768));
       EXPECT_NEAR(other.mean, path.mean, 4 * std::hypot(path.standardError, other.standardError)) << integrator;
       EXPECT_LT(other.standardError, 0.02 * path.mean);
     }
