@@ -40,6 +40,8 @@ class PluginFile {
 
   std::optional<std::string> Stamp() {
     const Elf64_Ehdr header = ReadHeader();
+    // The table of sections is nothing that is loaded, but it comes last: without it, something was cut off.
+    if (header.e_shoff > 0) RequireUpTo(header.e_shoff, uint64_t{header.e_shnum} * header.e_shentsize);
     std::optional<std::string> stamp;
     for (Elf64_Half i = 0; i < header.e_phnum; ++i) {
       const auto segment = ReadAt<Elf64_Phdr>(header.e_phoff + uint64_t{i} * sizeof(Elf64_Phdr));

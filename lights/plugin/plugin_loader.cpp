@@ -41,8 +41,18 @@ class PluginLoader {
 
   // All symbols now: one that is missing is a message here, and not the end of the process when it is first called.
   void* Open() const {
-    // An absolute path: a bare name would be looked for among the system's libraries.
-    void* library = dlopen(std::filesystem::absolute(file_).c_str(), RTLD_NOW | RTLD_LOCAL);
+    // By a pointer that the compiler knows nothing of: dlopen is declared to throw nothing, and what its callees throw
+    // would end the process here. An absolute path: a bare name would be looked for among the system's libraries.
+    void* (*const volatile open)(const char*, int) = dlopen;
+    void* library = nullptr;
+    try {
+      library = open(std::filesystem::absolute(file_).c_str(), RTLD_NOW | RTLD_LOCAL);
+    } catch (const std::exception& error) {
+      throw LoaderBroken(
+          name_ + ": expected a library that can be loaded, found static constructors that throw: " + error.what());
+    } catch (...) {
+      throw LoaderBroken(name_ + ": expected a library that can be loaded, found static constructors that throw");
+    }
     if (!library) Fail(Explain(dlerror()));
     return library;
   }

@@ -8,6 +8,13 @@
 
 namespace lampyr {
 
+// A plugin whose static constructors threw. The system's loader was left in the midst of its work and keeps other threads
+// waiting from then on: the process must end.
+class LoaderBroken : public Error {
+ public:
+  using Error::Error;
+};
+
 // Looks at the file and its stamp, resolves all of its symbols, and asks its entry point for the types. Throws an Error
 // that names the file, what was expected and what was found, when any of that does not hold or the plugin throws.
 //

@@ -77,6 +77,8 @@ class TypeLoader {
     for (const fs::path& file : PluginsIn(folder)) {
       try {
         Add(file);
+      } catch (const LoaderBroken& error) {
+        throw UsageError(error.Text());
       } catch (const Error& error) {
         Warn(error.Text() + " (it is left out; " + kPathVariable + ")");
       }
