@@ -1,12 +1,12 @@
 // What a plugin includes: a shared library that brings types of lights and of light filters.
 //
-//   LampyrType.cpp                                            CMakeLists.txt
-//     #include "lights/plugin/plugin_api.h"                     find_package(lampyr REQUIRED)
-//     …                                                         lampyr_plugin(ring SOURCES ring.cpp)
+//   plugin.cpp                                         CMakeLists.txt
+//     #include "lights/plugin/plugin_api.h"              find_package(lampyr REQUIRED)
+//     lampyr::LightType RingLightType();                 lampyr_plugin(ring SOURCES plugin.cpp ring.cpp)
 //     LAMPYR_PLUGIN({.lights = {RingLightType()}})
 //
-// That is all: the macro defines the plugin's stamp (plugin_stamp.h) and its one C entry point. tests/plugins is a
-// whole one.
+// The macro defines the plugin's stamp (plugin_stamp.h) and its one C entry point: with the light itself, that is all.
+// tests/plugins/example is a whole plugin.
 //
 // Where a plugin's symbols come from: it links no lampyr library. The lampyr that loads it exports all of its own core
 // and lights, also what it does not use itself, and the loader resolves the plugin against that. There is thus one copy

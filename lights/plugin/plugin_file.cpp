@@ -22,7 +22,7 @@ constexpr Elf64_Half kMachine = EM_X86_64;
 #elif defined(__aarch64__)
 constexpr Elf64_Half kMachine = EM_AARCH64;
 #else
-#error "which ELF machine is this?"
+constexpr Elf64_Half kMachine = EM_NONE;  // not known: the system's loader will say
 #endif
 
 class PluginFile {
@@ -31,6 +31,9 @@ class PluginFile {
     std::error_code code;
     if (!std::filesystem::exists(file, code)) Fail("expected a shared library, found no such file");
     if (std::filesystem::is_directory(file, code)) Fail("expected a shared library, found a folder");
+    // Opening a pipe could wait for ever.
+    if (!std::filesystem::is_regular_file(file, code))
+      Fail("expected a shared library, found something that is no file");
     stream_.open(file, std::ios::binary);
     size_ = std::filesystem::file_size(file, code);
     if (!stream_ || code)
@@ -60,7 +63,7 @@ class PluginFile {
   void RequireUpTo(uint64_t offset, uint64_t count) const {
     if (offset <= size_ && count <= size_ - offset) return;
     const uint64_t end = offset + count;
-    Fail("expected " + (end < offset ? "more" : std::to_string(end)) + " bytes at least, found " +
+    Fail("expected " + (end < offset ? "2^64" : std::to_string(end)) + " bytes at least, found " +
          std::to_string(size_) + ": its end is missing");
   }
 
@@ -84,7 +87,8 @@ class PluginFile {
       Fail("expected a shared library (ELF), found another kind of file");
     const auto header = ReadAt<Elf64_Ehdr>(0);
     constexpr char order = __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__ ? ELFDATA2LSB : ELFDATA2MSB;
-    if (ident[EI_CLASS] != ELFCLASS64 || ident[EI_DATA] != order || header.e_machine != kMachine) {
+    if (ident[EI_CLASS] != ELFCLASS64 || ident[EI_DATA] != order ||
+        (kMachine != EM_NONE && header.e_machine != kMachine)) {
       Fail("expected a shared library for this machine (" + std::to_string(kMachine) +
            " of ELF's, 64 bit), found one for another (" + std::to_string(header.e_machine) + ")");
     }

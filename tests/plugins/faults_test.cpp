@@ -62,6 +62,7 @@ TEST_F(BrokenPlugins, ThatAreNoSharedLibraries) {
   const fs::path file = folder_ / "file.so";
   ExpectRefused(file, "a shared library", "no such file");
   ExpectRefused(folder_ / "folder", "a shared library", "a folder");
+  ExpectRefused("/dev/zero", "a shared library", "something that is no file");
   Write("file.so", "");
   ExpectRefused(file, "a shared library", "an empty file");
   Write("file.so", "#!/bin/sh\necho it is a light\n");
