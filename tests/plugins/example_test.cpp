@@ -90,7 +90,7 @@ Replicas RenderRing(const std::string& text, const std::string& integrator, int 
   return replicas;
 }
 
-// Textured, mirrored and squeezed, before the camera and above a ground with matte and metal on it.
+// Textured, mirrored and squeezed, through an iris, before the camera and above a ground with matte and metal on it.
 TEST(Ring, IsTheSameToAllIntegrators) {
   const std::string scene = R"(Film "rgb" "integer xresolution" 24 "integer yresolution" 24
 PixelFilter "box"
@@ -100,6 +100,7 @@ Integrator "path" "integer maxdepth" 3
 WorldBegin
 AttributeBegin
 Translate 0.2 1.1 -0.3 Scale -1 0.6 1 Rotate 25 1 0 0 Rotate 180 0 1 0
+LightFilter "iris" "float angle" 75 "float density" 0.8
 LightSource "ring" "float outerRadius" 0.6 "float intensity" 6 "bool twoSided" true "string texture:file" "data/screen.png"
 AttributeEnd
 Material "diffuse" "rgb reflectance" [0.6 0.5 0.4]

@@ -165,6 +165,10 @@ TEST_F(MisbehavingTypes, FactoriesThatMakeNothing) {
   ExpectUnmade("throws-error", "an error: the mantle is torn");
   ExpectUnmade("throws-number", "something thrown that is no exception");
   ExpectUnmade("makes-null", "null");
+  Write("scene.pbrt", SceneWith("LightFilter \"filter-throws\" LightSource \"rect\""));
+  ExpectSays(Run("render scene.pbrt" + With()), 2,
+             {"scene.pbrt:9:1: error: LightFilter \"filter-throws\" of the plugin ",
+              "expected a filter, found something thrown that is no exception"});
   // An Error that says where is what it is for a built-in light: it crosses from the plugin as the class that it is.
   Write("scene.pbrt", SceneWith("LightSource \"throws-located-error\" \"float intensity\" 2"));
   const Outcome outcome = Run("render scene.pbrt" + With());

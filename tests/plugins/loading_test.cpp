@@ -51,6 +51,24 @@ TEST_F(Plugins, AreFoundByOptionSceneAndEnvironment) {
   EXPECT_FALSE(Exists("none.exr") || Exists("f.exr"));
 }
 
+// A filter of a plugin on a light of the plugin, and on one of lampyr's own.
+TEST_F(Plugins, BringFilters) {
+  for (const std::string& light : {std::string(kRing), std::string("LightSource \"disk\" \"float intensity\" 4")}) {
+    Write("bare.pbrt", SceneWith(light));
+    Write("open.pbrt", SceneWith("LightFilter \"iris\" \"float angle\" 180 \"float softness\" 0 " + light));
+    Write("narrow.pbrt", SceneWith("LightFilter \"iris\" \"float angle\" 30 " + light));
+    for (const std::string name : {"bare", "open", "narrow"}) {
+      ExpectSays(
+          Run("render " + name + ".pbrt --strict --max-depth 1 --quiet -o " + name + ".exr" + Option(RingPlugin())), 0,
+          {});
+    }
+    EXPECT_EQ(MeanOf(folder_ / "open.exr"), MeanOf(folder_ / "bare.exr"));
+    EXPECT_LT(MeanOf(folder_ / "narrow.exr"), 0.8 * MeanOf(folder_ / "bare.exr"));
+    EXPECT_GT(MeanOf(folder_ / "narrow.exr"), 0);
+  }
+  ExpectSays(Run("render narrow.pbrt"), 2, {"narrow.pbrt:9:1: error: there is no LightFilter \"iris\""});
+}
+
 TEST_F(Plugins, AreTheSameFileWhoeverNamesIt) {
   Write("scene.pbrt", SceneWith(kRing, "Option \"plugins\" [ \"" + RingPlugin().string() + "\" ]"));
   fs::create_symlink(RingPlugin(), folder_ / "link.so");

@@ -20,10 +20,7 @@ struct Iris {
     // The light leaves along -towards: its angle from -z is that of `towards` from +z.
     const float length = glm::length(edge.towards);
     const float angle = std::acos(std::clamp(edge.towards.z / length, -1.0f, 1.0f));
-    if (angle <= inner) return Color(1.0f);
-    if (angle >= outer) return Color(0.0f);
-    const float t = (angle - inner) / (outer - inner);
-    return Color(1 - t * t * (3 - 2 * t));
+    return Color(SoftEdge(angle - inner, outer - inner));
   }
 };
 
