@@ -8,8 +8,8 @@
 
 namespace lampyr {
 
-// A plugin whose static constructors threw. The system's loader was left in the midst of its work and keeps other threads
-// waiting from then on: the process must end.
+// A plugin whose static constructors threw. The system's loader was left in the midst of its work and keeps other
+// threads waiting from then on: the process must end.
 class LoaderBroken : public Error {
  public:
   using Error::Error;
