@@ -16,5 +16,5 @@ install(EXPORT lampyrTargets NAMESPACE lampyr:: DESTINATION ${CMAKE_INSTALL_LIBD
 configure_package_config_file(cmake/lampyrConfig.cmake.in ${CMAKE_BINARY_DIR}/lampyrConfig.cmake
   INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/lampyr)
 write_basic_package_version_file(${CMAKE_BINARY_DIR}/lampyrConfigVersion.cmake COMPATIBILITY SameMinorVersion)
-install(FILES ${CMAKE_BINARY_DIR}/lampyrConfig.cmake ${CMAKE_BINARY_DIR}/lampyrConfigVersion.cmake
+install(FILES ${CMAKE_BINARY_DIR}/lampyrConfig.cmake ${CMAKE_BINARY_DIR}/lampyrConfigVersion.cmake cmake/LampyrPlugin.cmake
   DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/lampyr)

@@ -31,3 +31,14 @@ function(lampyr_room name)
     PRIVATE $<BUILD_INTERFACE:lampyr_warnings> ${ROOM_PRIVATE_LINK})
   set_property(GLOBAL APPEND PROPERTY LAMPYR_ROOMS lampyr_${name})
 endfunction()
+
+# lampyr_plugin_host(TARGET): an executable that loads plugins. They bring no copy of the rooms (lights/plugin/plugin_api.h
+# says why) and use those of the executable: it holds the lights and all that they know in full, also what it does not
+# use itself, and exports the symbols of namespace lampyr. Not those of the libraries below, which would replace others'.
+function(lampyr_plugin_host target)
+  set_target_properties(${target} PROPERTIES LINK_LIBRARY_OVERRIDE
+    "WHOLE_ARCHIVE,lampyr_base,lampyr_math,lampyr_sampling,lampyr_scene,lampyr_geometry,lampyr_film,lampyr_textures,lampyr_materials,lampyr_lights")
+  set(list ${PROJECT_SOURCE_DIR}/cmake/plugin_symbols.list)
+  target_link_options(${target} PRIVATE LINKER:--dynamic-list=${list})
+  set_property(TARGET ${target} APPEND PROPERTY LINK_DEPENDS ${list})
+endfunction()

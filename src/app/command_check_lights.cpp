@@ -1,5 +1,5 @@
-// The pdf consistency suite on every registered light, or on the lights of a scene: a line for each light and property,
-// and a verdict.
+// The pdf consistency suite on every type of light, on those of a plugin, or on the lights of a scene: a line for each
+// light and property, and a verdict.
 #include <unistd.h>
 
 #include <cstdio>
@@ -7,6 +7,7 @@
 #include "app/command_line.h"
 #include "app/commands.h"
 #include "app/json_report.h"
+#include "app/plugins.h"
 #include "app/scene_builder.h"
 #include "base/progress.h"
 #include "lights/suite/verdict.h"
@@ -34,35 +35,55 @@ class ScratchFolder {
   std::filesystem::path path_;
 };
 
-// `only`: the name of a type, "" for all.
-std::vector<SuiteResult> CheckTypes(const std::string& only, const SuiteOptions& suite) {
+// The type that is named; else those of the plugins that are asked for; else all.
+std::vector<LightType> ChooseTypes(const CheckLightsOptions& options, const TypeRegistry& registry) {
   std::vector<LightType> types;
-  std::vector<std::string> names;
-  for (const LightType& type : LightRegistry()) {
-    names.push_back(type.name);
-    if (only.empty() || type.name == only) types.push_back(type);
+  if (options.type.empty() && !options.plugins.empty()) {
+    for (const LightType* type : LightsOf(registry, options.plugins)) types.push_back(*type);
+    if (types.empty()) throw UsageError("--plugin: expected a type of light to check, found none");
+    return types;
   }
-  if (types.empty()) throw UsageError("there is no light \"" + only + "\"" + DidYouMean(only, names));
+  std::vector<std::string> names;
+  for (const LightType* type : registry.Lights()) {
+    names.push_back(type->name);
+    if (options.type.empty() || type->name == options.type) types.push_back(*type);
+  }
+  if (types.empty()) throw UsageError("there is no light \"" + options.type + "\"" + DidYouMean(options.type, names));
+  return types;
+}
+
+std::vector<SuiteResult> CheckTypes(const CheckLightsOptions& options, const SuiteOptions& suite) {
+  const TypeRegistry registry = LoadTypes(options.plugins, nullptr);
+  const std::vector<LightType> types = ChooseTypes(options, registry);
+  for (const LightType& type : types) {
+    // What was not looked at must not pass.
+    if (type.samples.empty()) throw UsageError("the light \"" + type.name + "\" has no sample blocks to check it by");
+  }
   const ScratchFolder scratch;
-  std::vector<SuiteResult> results = RunPdfSuite(types, scratch.Path(), suite);
+  std::vector<SuiteResult> results;
+  RunForeignCode(registry, [&] { results = RunPdfSuite(types, scratch.Path(), suite); });
   if (results.empty()) throw Error("no light was checked");
   return results;
 }
 
 // Errors of the scene are errors of usage, as when it is rendered.
-std::vector<SuiteResult> CheckScene(const std::filesystem::path& file, const SuiteOptions& suite) {
+std::vector<SuiteResult> CheckScene(const CheckLightsOptions& options, const SuiteOptions& suite) {
   Diagnostics diagnostics;
+  TypeRegistry types;
   std::vector<SceneLight> lights;
-  const BuiltScene built = [&] {
-    try {
-      return BuildScene(ReadScene(file, diagnostics), true, diagnostics, lights);
-    } catch (const UsageError&) {
-      throw;
-    } catch (const Error& error) {
-      throw UsageError(error.Where(), error.Text());
-    }
-  }();
-  return RunPdfSuiteOnScene(*built.scene.lighting, lights, suite);
+  BuiltScene built;
+  try {
+    const SceneDescription description = ReadScene(*options.scene, diagnostics);
+    types = LoadTypes(options.plugins, &description);
+    RunForeignCode(types, [&] { built = BuildScene(description, true, diagnostics, lights, types); });
+  } catch (const UsageError&) {
+    throw;
+  } catch (const Error& error) {
+    throw UsageError(error.Where(), error.Text());
+  }
+  std::vector<SuiteResult> results;
+  RunForeignCode(types, [&] { results = RunPdfSuiteOnScene(*built.scene.lighting, lights, suite); });
+  return results;
 }
 
 void Print(const LightVerdict& verdict) {
@@ -80,8 +101,7 @@ int RunCheckLights(const CheckLightsOptions& options) {
   suite.threads = options.threads;
   Progress progress(false);
   suite.progress = [&](double fraction) { progress.Update(fraction, ""); };
-  const std::vector<SuiteResult> results =
-      options.scene ? CheckScene(*options.scene, suite) : CheckTypes(options.type, suite);
+  const std::vector<SuiteResult> results = options.scene ? CheckScene(options, suite) : CheckTypes(options, suite);
   progress.Clear();
   const double seconds = progress.Seconds();
   const std::vector<LightVerdict> verdicts = SummariseByProperty(results);

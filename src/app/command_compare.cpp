@@ -202,12 +202,7 @@ ComparisonResults Describe(const CompareOptions& options, const LoadedScene& loa
   return results;
 }
 
-}  // namespace
-
-int RunCompare(const CompareOptions& options) {
-  const ComparisonPlan plan = MakePlan(options);
-  OutliveReaders();
-  const LoadedScene loaded = LoadScene(options.scene, options.overrides, options.strict, options.robust);
+int CompareLoaded(const CompareOptions& options, const ComparisonPlan& plan, const LoadedScene& loaded) {
   const RenderSettings& settings = loaded.built.settings;
   const std::filesystem::path folder =
       options.output.empty() ? std::filesystem::path(options.scene.stem().string() + "-compare") : options.output;
@@ -248,6 +243,18 @@ int RunCompare(const CompareOptions& options) {
   }
   WriteResults(options, folder, plan, results);
   return interrupted ? kExitInterrupted : kExitDone;
+}
+
+}  // namespace
+
+int RunCompare(const CompareOptions& options) {
+  const ComparisonPlan plan = MakePlan(options);
+  OutliveReaders();
+  const LoadedScene loaded =
+      LoadScene(options.scene, options.plugins, options.overrides, options.strict, options.robust);
+  int exitCode = kExitFailed;
+  RunForeignCode(loaded.types, [&] { exitCode = CompareLoaded(options, plan, loaded); });
+  return exitCode;
 }
 
 }  // namespace lampyr

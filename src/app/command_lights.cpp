@@ -2,15 +2,16 @@
 
 #include "app/command_line.h"
 #include "app/commands.h"
-#include "lights/filters/filter_type.h"
-#include "lights/light_type.h"
+#include "app/plugins.h"
 
 namespace lampyr {
 
 namespace {
 
-void PrintType(const char* statement, const TypeDescription& type) {
+// `plugin`: that it is from; null for built-in types.
+void PrintType(const char* statement, const TypeDescription& type, const Plugin* plugin) {
   std::printf("%s \"%s\"\n    %s\n", statement, type.name.c_str(), type.help.c_str());
+  if (plugin) std::printf("    from the plugin \"%s\"\n", plugin->file.c_str());
   for (const ParameterInfo& parameter : type.parameters) {
     const std::string name = std::string(ToString(parameter.type)) + " " + parameter.name;
     const std::string value = parameter.defaultValue + (parameter.unit.empty() ? "" : " " + parameter.unit);
@@ -22,17 +23,23 @@ void PrintType(const char* statement, const TypeDescription& type) {
 
 }  // namespace
 
-int RunLights(const std::string& name) {
+int RunLights(const LightsOptions& options) {
+  const TypeRegistry types = LoadTypes(options.plugins, nullptr);
+  const std::string& name = options.type;
   bool found = false;
   std::vector<std::string> names;
-  const auto print = [&](const char* statement, const TypeDescription& type) {
+  const auto print = [&](const char* statement, const TypeDescription& type, const Plugin* plugin) {
     names.push_back(type.name);
     if (!name.empty() && type.name != name) return;
     found = true;
-    PrintType(statement, type);
+    PrintType(statement, type, plugin);
   };
-  for (const LightType& type : LightRegistry()) print(type.Statement(), type);
-  for (const FilterType& type : FilterRegistry()) print("LightFilter", type);
+  const auto printAll = [&](const auto& lights, const auto& filters, const Plugin* plugin) {
+    for (const LightType& type : lights) print(type.Statement(), type, plugin);
+    for (const FilterType& type : filters) print("LightFilter", type, plugin);
+  };
+  printAll(LightRegistry(), FilterRegistry(), nullptr);
+  for (const Plugin& plugin : types.Plugins()) printAll(plugin.lights, plugin.filters, &plugin);
   if (!found) throw UsageError("there is no light or filter \"" + name + "\"" + DidYouMean(name, names));
   return kExitDone;
 }

@@ -78,6 +78,13 @@ void AddSwitch(CLI::App& app, const std::string& names, std::optional<bool>& val
       names, [&value](int64_t times) { value = times > 0; }, description);
 }
 
+void DefinePluginOption(CLI::App& app, std::vector<std::string>& plugins) {
+  app.add_option("--plugin", plugins,
+                 "A plugin with types of lights and filters, e.g. ring.so; may be given several times. Those in the "
+                 "folders of LAMPYR_PLUGIN_PATH are loaded, too")
+      ->allow_extra_args(false);
+}
+
 // What render and compare are told alike.
 void DefineSceneOptions(CLI::App& app, RenderOverrides& overrides, std::string& resolution, std::string& photonMemory,
                         int& threads) {
@@ -144,6 +151,7 @@ struct RenderCommand {
                    "Stop when the estimated relative error (95 % confidence) is below this, e.g. 0.02")
         ->check(CheckPositive, "POSITIVE");
     DefineSceneOptions(app, overrides, resolution, photonMemory, options.threads);
+    DefinePluginOption(app, options.plugins);
     app.add_option("--stats", options.stats, "Write statistics to this JSON file");
     app.add_option("--strategy-images", options.strategyImages,
                    "Write what each technique of bdpt contributes, weighted and not, to this folder");
@@ -192,6 +200,7 @@ struct CompareCommand {
                    "Time to make the reference in; default: ten times the longest render");
     app.add_option("--exposure", options.exposure, "Exposure of the pictures in stops (0)")->check(CheckFinite, "");
     DefineSceneOptions(app, options.overrides, resolution, photonMemory, options.threads);
+    DefinePluginOption(app, options.plugins);
     app.add_flag("--quiet", options.quiet, "No progress and no tables");
     app.add_flag("--strict", options.strict, "Warnings about the scene are errors");
     app.add_flag("--fast-intersection", fast,
@@ -231,6 +240,7 @@ int RunCommandLine(int argc, char** argv) {
   planCommand->add_option("scene", plan.scene, "The scene: a pbrt-v4 file (.pbrt, .pbrt.gz)")->required();
   planCommand->add_option("--integrator", plan.overrides.integrator, "Instead of the one that suits the scene");
   planCommand->add_flag("--strict", plan.strict, "Warnings about the scene are errors");
+  DefinePluginOption(*planCommand, plan.plugins);
 
   DiffOptions diff;
   CLI::App* diffCommand = app.add_subcommand("diff", "Compare two images: MSE, relMSE, FLIP, bias, z-test by blocks");
@@ -242,16 +252,19 @@ int RunCommandLine(int argc, char** argv) {
 
   CheckLightsOptions check;
   CLI::App* checkCommand =
-      app.add_subcommand("check-lights", "Prove the densities of lights: of every type, or a scene's");
+      app.add_subcommand("check-lights", "Prove the densities of lights: of every type, a plugin's, or a scene's");
   checkCommand->add_option("scene", check.scene, "A scene, whose lights are checked as they are placed");
   checkCommand->add_option("--type", check.type, "Only this type of light");
+  DefinePluginOption(*checkCommand, check.plugins);
   checkCommand->add_flag("--json", check.json, "Print JSON");
   checkCommand->add_option("--seed", check.seed, "Seed of the samples (1)");
   checkCommand->add_option("--threads", check.threads, "Threads (all)")->check(CLI::Range(1, 4096));
 
-  std::string lightType;
-  CLI::App* lightsCommand = app.add_subcommand("lights", "The types of light and their parameters");
-  lightsCommand->add_option("type", lightType, "Only this type");
+  LightsOptions lights;
+  CLI::App* lightsCommand =
+      app.add_subcommand("lights", "The types of light and of light filter, and their parameters");
+  lightsCommand->add_option("type", lights.type, "Only this type");
+  DefinePluginOption(*lightsCommand, lights.plugins);
 
   try {
     app.parse(argc, argv);
@@ -264,7 +277,7 @@ int RunCommandLine(int argc, char** argv) {
     if (app.got_subcommand(planCommand)) return RunPlan(plan);
     if (app.got_subcommand(diffCommand)) return RunDiff(diff);
     if (app.got_subcommand(checkCommand)) return RunCheckLights(check);
-    return RunLights(lightType);
+    return RunLights(lights);
   } catch (const UsageError& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return kExitUsage;

@@ -9,10 +9,11 @@
 namespace lampyr {
 
 int RunPlan(const PlanOptions& options) {
-  const LoadedScene loaded = LoadScene(options.scene, options.overrides, options.strict, true);
+  const LoadedScene loaded = LoadScene(options.scene, options.plugins, options.overrides, options.strict, true);
   RenderSettings settings = loaded.built.settings;
   if (options.overrides.integrator) settings.integrator = *options.overrides.integrator;
-  const ScenePlan plan = PlanFor(loaded.built.scene, settings);
+  ScenePlan plan;
+  RunForeignCode(loaded.types, [&] { plan = PlanFor(loaded.built.scene, settings); });
   size_t subject = 0, choice = 0;
   for (const PlanDecision& decision : plan.decisions) {
     subject = std::max(subject, decision.subject.size());

@@ -113,12 +113,8 @@ void WriteTechniques(const RenderOptions& options, const std::vector<TechniqueIm
   }
 }
 
-}  // namespace
-
-int RunRender(const RenderOptions& options) {
-  OutliveReaders();
+int RenderLoaded(const RenderOptions& options, const LoadedScene& loaded) {
   RenderReport report;
-  const LoadedScene loaded = LoadScene(options.scene, options.overrides, options.strict, options.robust);
   const BuiltScene& built = loaded.built;
   const RenderSettings& settings = built.settings;
   const std::filesystem::path path = OutputPath(options, settings);
@@ -175,6 +171,17 @@ int RunRender(const RenderOptions& options) {
   if (options.stats) WriteText(*options.stats, ToJson(report));
   if (!options.quiet) PrintSummary(report, path);
   return report.outcome.interrupted ? kExitInterrupted : kExitDone;
+}
+
+}  // namespace
+
+int RunRender(const RenderOptions& options) {
+  OutliveReaders();
+  const LoadedScene loaded =
+      LoadScene(options.scene, options.plugins, options.overrides, options.strict, options.robust);
+  int exitCode = kExitFailed;
+  RunForeignCode(loaded.types, [&] { exitCode = RenderLoaded(options, loaded); });
+  return exitCode;
 }
 
 }  // namespace lampyr

@@ -62,7 +62,8 @@ uint64_t InstalledMemory() {
   return static_cast<uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<uint64_t>(sysconf(_SC_PAGESIZE));
 }
 
-LoadedScene LoadScene(const std::filesystem::path& scene, const RenderOverrides& overrides, bool strict, bool robust) {
+LoadedScene LoadScene(const std::filesystem::path& scene, const std::vector<std::string>& plugins,
+                      const RenderOverrides& overrides, bool strict, bool robust) {
   Diagnostics diagnostics(strict ? Diagnostics::Mode::Strict : Diagnostics::Mode::Print);
   try {
     const Progress clock(true);
@@ -70,7 +71,9 @@ LoadedScene LoadScene(const std::filesystem::path& scene, const RenderOverrides&
     const SceneDescription description = ReadScene(scene, diagnostics);
     loaded.parseSeconds = clock.Seconds();
     loaded.hash = description.contentHash;
-    loaded.built = BuildScene(description, overrides, robust, diagnostics);
+    loaded.types = LoadTypes(plugins, &description);
+    RunForeignCode(loaded.types,
+                   [&] { loaded.built = BuildScene(description, overrides, robust, diagnostics, loaded.types); });
     loaded.buildSeconds = clock.Seconds() - loaded.parseSeconds;
     return loaded;
   } catch (const UsageError&) {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <string>
 
+#include "app/plugins.h"
 #include "app/scene_builder.h"
 
 namespace lampyr {
@@ -27,11 +28,14 @@ void WriteText(const std::filesystem::path& path, const std::string& text);
 uint64_t InstalledMemory();
 
 struct LoadedScene {
+  TypeRegistry types;
   BuiltScene built;
   std::string hash;
   double parseSeconds = 0, buildSeconds = 0;
 };
-// Reads and builds. All that goes wrong here is the scene's fault: a UsageError.
-LoadedScene LoadScene(const std::filesystem::path& scene, const RenderOverrides& overrides, bool strict, bool robust);
+// Reads and builds, with the plugins that are asked for and those that the scene names. All that goes wrong here is the
+// scene's fault, or that of a plugin: a UsageError.
+LoadedScene LoadScene(const std::filesystem::path& scene, const std::vector<std::string>& plugins,
+                      const RenderOverrides& overrides, bool strict, bool robust);
 
 }  // namespace lampyr

@@ -10,8 +10,10 @@
 
 namespace lampyr {
 
+// `plugins`: files of plugins that the command line names, see plugins.h.
 struct RenderOptions {
   std::filesystem::path scene;
+  std::vector<std::string> plugins;
   std::optional<std::filesystem::path>
       output;  // default: the scene's own file name, else the scene's stem, in this folder
   bool png = false;
@@ -30,6 +32,7 @@ struct RenderOptions {
 
 struct CompareOptions {
   std::filesystem::path scene;
+  std::vector<std::string> plugins;
   std::vector<std::string> integrators = {"path", "bdpt"};
   std::vector<double> times;      // seconds; neither times nor sample counts: 1, 4 and 16 s
   std::vector<int> sampleCounts;  // per pixel
@@ -48,6 +51,7 @@ struct CompareOptions {
 
 struct PlanOptions {
   std::filesystem::path scene;
+  std::vector<std::string> plugins;
   RenderOverrides overrides;
   bool strict = false;
 };
@@ -59,11 +63,17 @@ struct DiffOptions {
 };
 
 struct CheckLightsOptions {
-  std::optional<std::filesystem::path> scene;  // absent: every registered type
-  std::string type;                            // "" all
+  std::optional<std::filesystem::path> scene;  // absent: types
+  std::vector<std::string> plugins;
+  std::string type;  // "": those of `plugins`, or of everyone where none is named
   bool json = false;
   uint64_t seed = 1;
   int threads = 0;  // 0: all
+};
+
+struct LightsOptions {
+  std::vector<std::string> plugins;
+  std::string type;  // "" lists all
 };
 
 // Each returns an exit code. Errors are thrown.
@@ -71,7 +81,7 @@ int RunRender(const RenderOptions& options);
 int RunCompare(const CompareOptions& options);
 int RunPlan(const PlanOptions& options);
 int RunDiff(const DiffOptions& options);
-int RunLights(const std::string& type);                 // "" lists all
+int RunLights(const LightsOptions& options);
 int RunCheckLights(const CheckLightsOptions& options);  // fails when a property does not hold
 
 }  // namespace lampyr

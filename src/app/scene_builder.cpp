@@ -65,8 +65,9 @@ MotionTimes ReadMotionTimes(const SceneDescription& description) {
 
 class Builder {
  public:
-  Builder(const SceneDescription& description, const RenderOverrides& overrides, bool robust, Diagnostics& diagnostics)
-      : description_(description), diagnostics_(diagnostics) {
+  Builder(const SceneDescription& description, const RenderOverrides& overrides, bool robust, Diagnostics& diagnostics,
+          const TypeRegistry& types)
+      : description_(description), diagnostics_(diagnostics), types_(types) {
     built_.settings = ReadRenderSettings(description, overrides, diagnostics);
     geometry_.robust = robust;
   }
@@ -95,6 +96,8 @@ class Builder {
   // `shapePlacement` leads from the shape's own axes to the space that `placement` starts from.
   void AddAreaLight(const ShapeDescription& description, const Shape& shape, const RenderPlacement& placement,
                     const Transform& shapePlacement, const std::shared_ptr<const AlphaSource>& alpha);
+  const LightType& FindType(const StatementDescription& statement, bool isAreaLight) const;
+  const FilterType& FindFilter(const StatementDescription& statement) const;
   void CheckAreaLights();
   void AddFilters();
   void Bind(int filter, PlacedLight& light) const;
@@ -106,6 +109,7 @@ class Builder {
 
   const SceneDescription& description_;
   Diagnostics& diagnostics_;
+  const TypeRegistry& types_;
   BuiltScene built_;
   std::vector<SceneLight>* described_ = nullptr;  // null: nobody asks
   GeometryDescription geometry_;
@@ -211,13 +215,13 @@ LightBuildContext Builder::LightContextFor(const RenderPlacement& placement) con
 }
 
 // The type of a light statement.
-const LightType* FindType(const StatementDescription& statement, bool isAreaLight) {
-  if (const LightType* type = FindLightType(statement.type, isAreaLight)) return type;
+const LightType& Builder::FindType(const StatementDescription& statement, bool isAreaLight) const {
+  if (const LightType* type = types_.FindLight(statement.type, isAreaLight)) return *type;
   const std::string owner =
       std::string(isAreaLight ? "AreaLightSource" : "LightSource") + " \"" + statement.type + "\"";
   std::vector<std::string> names;
-  for (const LightType& known : LightRegistry()) {
-    if (known.isAreaLight == isAreaLight) names.push_back(known.name);
+  for (const LightType* known : types_.Lights()) {
+    if (known->isAreaLight == isAreaLight) names.push_back(known->name);
   }
   throw Error(statement.where, "there is no " + owner + DidYouMean(statement.type, names));
 }
@@ -225,7 +229,7 @@ const LightType* FindType(const StatementDescription& statement, bool isAreaLigh
 // Area lights are made shape by shape: what is wrong with one that no shape uses is found here.
 void Builder::CheckAreaLights() {
   for (const StatementDescription& statement : description_.areaLights) {
-    CheckParameters(*FindType(statement, true), statement.parameters);
+    CheckParameters(FindType(statement, true), statement.parameters);
   }
 }
 
@@ -235,19 +239,19 @@ void Builder::AddAreaLight(const ShapeDescription& description, const Shape& sha
   const AreaLightDescription& statement = description_.areaLights[description.areaLight];
   const auto opacity = textures_->FindFloat(description.shape.parameters, "alpha");
   const bool canBeHit = !opacity || !opacity->IsConstant() || opacity->Evaluate({}) > 0;
-  const LightType* type = FindType(statement, true);
+  const LightType& type = FindType(statement, true);
   LightBuildContext build = LightContextFor(placement);
   build.shape = &shape;
   build.shapePlacement = shapePlacement;
   if (canBeHit) build.alpha = alpha;
-  lights_.push_back({MakeLight(*type, statement.parameters, build), build.transform, canBeHit, placement.motion});
+  lights_.push_back({MakeLight(type, statement.parameters, build), build.transform, canBeHit, placement.motion});
   Bind(statement.filter, lights_.back());
   if (!described_) return;
   SceneLight light = Describe(statement, lights_.back());
   light.shape = shape;
   if (build.alpha) {
     build.alpha = nullptr;
-    light.withoutCutOuts = MakeLight(*type, statement.parameters, build);
+    light.withoutCutOuts = MakeLight(type, statement.parameters, build);
   }
   described_->push_back(std::move(light));
 }
@@ -396,10 +400,10 @@ void Builder::PlaceEntries() {
 }
 
 // The type of a filter statement.
-const FilterType& FindType(const StatementDescription& statement) {
-  if (const FilterType* type = FindFilterType(statement.type)) return *type;
+const FilterType& Builder::FindFilter(const StatementDescription& statement) const {
+  if (const FilterType* type = types_.FindFilter(statement.type)) return *type;
   std::vector<std::string> names = {"none"};
-  for (const FilterType& known : FilterRegistry()) names.push_back(known.name);
+  for (const FilterType* known : types_.Filters()) names.push_back(known->name);
   throw Error(statement.where,
               "there is no LightFilter \"" + statement.type + "\"" + DidYouMean(statement.type, names));
 }
@@ -407,7 +411,7 @@ const FilterType& FindType(const StatementDescription& statement) {
 void Builder::AddFilters() {
   for (const LightFilterDescription& description : description_.lightFilters) {
     const StatementDescription& statement = description.filter;
-    const FilterType& type = FindType(statement);
+    const FilterType& type = FindFilter(statement);
     RenderPlacement placement{worldToRender_ * description.placement.start, nullptr};
     if (description.placement.IsAnimated()) {
       const AnimatedTransform toWorld = ToAnimated(description.placement, "a light filter", statement.where);
@@ -473,7 +477,7 @@ void Builder::AddLightSurface(const PlacedLight& placed) {
 void Builder::AddLights() {
   for (const LightDescription& light : description_.lights) {
     const StatementDescription& statement = light.light;
-    const LightType* type = FindType(statement, false);
+    const LightType& type = FindType(statement, false);
     RenderPlacement placement{worldToRender_ * light.placement.start, nullptr};
     if (light.placement.IsAnimated()) {
       const AnimatedTransform toWorld = ToAnimated(light.placement, "a light", statement.where);
@@ -481,7 +485,7 @@ void Builder::AddLights() {
     }
     if (!placement.toRender.IsAffine()) throw Error(statement.where, "a light cannot have a perspective transform");
     const LightBuildContext build = LightContextFor(placement);
-    PlacedLight placed{MakeLight(*type, statement.parameters, build), build.transform, true, placement.motion};
+    PlacedLight placed{MakeLight(type, statement.parameters, build), build.transform, true, placement.motion};
     Bind(light.filter, placed);
     if (placed.light->Surface()) {
       AddLightSurface(placed);
@@ -530,13 +534,13 @@ BuiltScene Builder::Build() {
 }  // namespace
 
 BuiltScene BuildScene(const SceneDescription& description, const RenderOverrides& overrides, bool robust,
-                      Diagnostics& diagnostics) {
-  return Builder(description, overrides, robust, diagnostics).Build();
+                      Diagnostics& diagnostics, const TypeRegistry& types) {
+  return Builder(description, overrides, robust, diagnostics, types).Build();
 }
 
 BuiltScene BuildScene(const SceneDescription& description, bool robust, Diagnostics& diagnostics,
-                      std::vector<SceneLight>& lights) {
-  Builder builder(description, {}, robust, diagnostics);
+                      std::vector<SceneLight>& lights, const TypeRegistry& types) {
+  Builder builder(description, {}, robust, diagnostics, types);
   builder.DescribeLightsIn(&lights);
   return builder.Build();
 }

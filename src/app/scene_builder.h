@@ -4,6 +4,7 @@
 #include "app/render_settings.h"
 #include "integrators/integrator.h"
 #include "lights/suite/scene_suite.h"
+#include "lights/type_registry.h"
 
 namespace lampyr {
 
@@ -12,15 +13,16 @@ struct BuiltScene {
   RenderScene scene;
 };
 
-// Throws located Errors for what cannot be rendered. `robust`: watertight intersection.
+// Throws located Errors for what cannot be rendered. `robust`: watertight intersection. `types`: what lights there are,
+// which is wanted here alone.
 //
 // Render space is world space moved so that the scene's middle lies near the origin, where floats are dense; a scene
 // that is there already is not moved.
 BuiltScene BuildScene(const SceneDescription& description, const RenderOverrides& overrides, bool robust,
-                      Diagnostics& diagnostics);
+                      Diagnostics& diagnostics, const TypeRegistry& types = TypeRegistry::BuiltIn());
 
 // The same, and of each light of the scene what checking it takes.
 BuiltScene BuildScene(const SceneDescription& description, bool robust, Diagnostics& diagnostics,
-                      std::vector<SceneLight>& lights);
+                      std::vector<SceneLight>& lights, const TypeRegistry& types = TypeRegistry::BuiltIn());
 
 }  // namespace lampyr

@@ -147,6 +147,22 @@ int FindCustom(const PrimitiveRecord& record, uint32_t, const RTCRay& ray, Candi
 
 using Finder = int (*)(const PrimitiveRecord&, uint32_t, const RTCRay&, Candidate*);
 
+// Quadrics and patches throw nothing.
+template <Finder kFind>
+int Find(const PrimitiveRecord& record, uint32_t primitive, const RTCRay& ray, RTCIntersectContext* context,
+         Candidate candidates[2]) {
+  if constexpr (kFind == FindCustom) {
+    try {
+      return kFind(record, primitive, ray, candidates);
+    } catch (...) {
+      Trace(context).failure = std::current_exception();
+      return 0;
+    }
+  } else {
+    return kFind(record, primitive, ray, candidates);
+  }
+}
+
 template <Finder kFind>
 void IntersectUserGeometry(const RTCIntersectFunctionNArguments* arguments) {
   if (!arguments->valid[0]) return;
@@ -154,7 +170,7 @@ void IntersectUserGeometry(const RTCIntersectFunctionNArguments* arguments) {
   auto& rayHit = *reinterpret_cast<RTCRayHit*>(arguments->rayhit);
   const uint32_t instance = arguments->context->instID[0];
   Candidate candidates[2];
-  const int count = kFind(record, arguments->primID, rayHit.ray, candidates);
+  const int count = Find<kFind>(record, arguments->primID, rayHit.ray, arguments->context, candidates);
   const Meeting at{record, arguments->primID, instance, arguments->geomID, Trace(arguments->context), false};
   const int i = FirstOpaque(at, rayHit.ray, candidates, count);
   if (i < 0) return;
@@ -172,7 +188,7 @@ void OccludeUserGeometry(const RTCOccludedFunctionNArguments* arguments) {
   const PrimitiveRecord& record = Record(arguments->geometryUserPtr);
   auto& ray = *reinterpret_cast<RTCRay*>(arguments->ray);
   Candidate candidates[2];
-  const int count = kFind(record, arguments->primID, ray, candidates);
+  const int count = Find<kFind>(record, arguments->primID, ray, arguments->context, candidates);
   const Meeting at{
       record, arguments->primID, arguments->context->instID[0], arguments->geomID, Trace(arguments->context), true};
   if (FirstOpaque(at, ray, candidates, count) >= 0) ray.tfar = -kInfinity;

@@ -4,6 +4,7 @@
 
 #include <embree3/rtcore.h>
 
+#include <exception>
 #include <vector>
 
 #include "math/vec.h"
@@ -21,6 +22,13 @@ struct TraceContext {
   RTCIntersectContext context;
   std::vector<PassedSheet>* sheets = nullptr;  // of Intersect; null: no sheet has a colour
   Color transmission{1.0f};                    // of Transmission: what is left so far
+  // What a custom surface threw, which is then missed: no exception may pass through Embree. To be thrown when it has
+  // returned.
+  std::exception_ptr failure;
+
+  void ThrowFailure() const {
+    if (failure) [[unlikely]] std::rethrow_exception(failure);
+  }
 };
 
 void QuadricBounds(const RTCBoundsFunctionArguments* arguments);

@@ -484,6 +484,7 @@ bool GeometryScene::Intersect(const Ray& ray, uint32_t kinds, RayHit& hit, Color
   rayHit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   rayHit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect1(scene.scene.get(), &trace.context, &rayHit);
+  trace.ThrowFailure();
   if (scene.hasTints) passed = TintBefore(sheets, rayHit.ray.tfar);
   if (rayHit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
   hit.t = rayHit.ray.tfar;
@@ -509,6 +510,7 @@ Color GeometryScene::Transmission(const Ray& ray, uint32_t kinds) const {
   // Embree's interval is closed above; ours is open.
   FillRay(ray, kinds, ray.tMax * kOneMinusEpsilon, shadowRay);
   rtcOccluded1(scene.scene.get(), &trace.context, &shadowRay);
+  trace.ThrowFailure();
   return shadowRay.tfar < 0 ? Color(0.0f) : trace.transmission;
 }
 

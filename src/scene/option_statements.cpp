@@ -7,7 +7,7 @@ namespace lampyr {
 
 namespace {
 
-// pbrt-v4's options, spelt as they are compared: lower case, without "-" and "_".
+// pbrt-v4's options and our own "plugins", spelt as they are compared: lower case, without "-" and "_".
 const std::vector<std::string>& OptionNames() {
   static const std::vector<std::string> names = {"disablepixeljitter",
                                                  "disabletexturefiltering",
@@ -17,6 +17,7 @@ const std::vector<std::string>& OptionNames() {
                                                  "msereferenceimage",
                                                  "msereferenceout",
                                                  "pixelstats",
+                                                 "plugins",
                                                  "rendercoordsys",
                                                  "seed",
                                                  "wavefront"};
@@ -61,6 +62,19 @@ void SceneParser::Accelerator(const Token& statement) {
   scene_.accelerator = ReadTyped(statement);
 }
 
+// "a.so" or [ "a.so" "b.so" ].
+void SceneParser::ReadPlugins() {
+  const auto add = [&](Token name) {
+    if (name.kind != TokenKind::String || name.text.empty()) {
+      throw Error(name.where, "the option \"plugins\" needs names of files in quotes, found " + Describe(name));
+    }
+    scene_.plugins.push_back({std::move(name.text), name.where});
+  };
+  Token value = tokens_.Next();
+  if (value.kind != TokenKind::Open) return add(std::move(value));
+  for (value = tokens_.Next(); value.kind != TokenKind::Close; value = tokens_.Next()) add(std::move(value));
+}
+
 // Option "name" value. The value tells its type: true, false, a number or a string.
 void SceneParser::Option(const Token& statement) {
   Token name = tokens_.Next();
@@ -75,6 +89,7 @@ void SceneParser::Option(const Token& statement) {
   if (std::find(known.begin(), known.end(), option.name) == known.end()) {
     throw Error(name.where, "there is no option \"" + name.text + "\"" + DidYouMean(option.name, known));
   }
+  if (option.name == "plugins") return ReadPlugins();
   Token value = tokens_.Next();
   if (value.kind == TokenKind::String) {
     option.type = ParameterType::String;

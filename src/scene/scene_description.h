@@ -86,6 +86,12 @@ struct InstanceDescription {
   Placement placement;
 };
 
+// A shared library with types that the scene names: a file beside the scene's, or a name to look for.
+struct PluginReference {
+  std::string name;
+  FileLocation where;
+};
+
 struct SceneDescription {
   std::filesystem::path file;
   std::string contentHash;  // of all the text that was read, hexadecimal
@@ -94,6 +100,7 @@ struct SceneDescription {
   Placement cameraToWorld;
   double shutterOpen = 0, shutterClose = 1;  // TransformTimes
   std::map<std::string, Parameter> options;
+  std::vector<PluginReference> plugins;  // Option "plugins"
 
   std::vector<StatementDescription> materials;
   std::vector<NamedMaterialDescription> namedMaterials;

@@ -119,6 +119,7 @@ class SceneParser {
   void Integrator(const Token&);
   void Accelerator(const Token&);
   void Option(const Token&);
+  void ReadPlugins();
   void ColorSpaceStatement(const Token&);
   void WorldBegin(const Token&);
 

@@ -137,7 +137,8 @@ TEST(Layers, HeavyLibrariesInOnePlace) {
 
 TEST(Layers, NothingNamesAConcreteLightOutsideItsFile) {
   // Adding a light touches its own file and the registry: no other file may include a light's own header.
-  const std::set<std::string> shared = {"lights/light.h", "lights/light_type.h"};
+  const std::set<std::string> shared = {"lights/light.h", "lights/light_type.h", "lights/type_registry.h",
+                                        "lights/plugin/plugin_loader.h", "lights/filters/filter_base.h"};
   for (const SourceFile& file : SourceFiles()) {
     if (RoomOf(file.path) == "lights") continue;
     for (const std::string& included : file.quoted) {

@@ -1,14 +1,15 @@
-# Installs lampyr from BUILD_DIR to a folder of its own, then configures, builds and runs the consumer in SOURCE_DIR.
-set(work ${BUILD_DIR}/package-test)
-file(REMOVE_RECURSE ${work})
+# Configures and builds the project in SOURCE_DIR against the package installed in PREFIX, in the folder WORK, which is
+# kept: what has not changed is not built again. Then runs RUN, if given, and the installed command.
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(NOT result EQUAL 0)
     message(FATAL_ERROR "${ARGN} failed:\n${output}")
   endif()
 endfunction()
-run(${CMAKE_COMMAND} --install ${BUILD_DIR} --prefix ${work}/installed)
-run(${CMAKE_COMMAND} -S ${SOURCE_DIR} -B ${work}/build -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH=${work}/installed)
-run(${CMAKE_COMMAND} --build ${work}/build)
-run(${work}/build/consumer)
-run(${work}/installed/bin/lampyr --version)
+run(${CMAKE_COMMAND} -S ${SOURCE_DIR} -B ${WORK} -G Ninja -DCMAKE_BUILD_TYPE=${CONFIGURATION}
+  -DCMAKE_CXX_FLAGS_DEBUG=-O0 -DCMAKE_PREFIX_PATH=${PREFIX})
+run(${CMAKE_COMMAND} --build ${WORK})
+if(RUN)
+  run(${WORK}/${RUN})
+endif()
+run(${PREFIX}/bin/lampyr --version)

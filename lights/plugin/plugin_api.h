@@ -1,0 +1,53 @@
+// What a plugin includes: a shared library that brings types of lights and of light filters.
+//
+//   plugin.cpp                                         CMakeLists.txt
+//     #include "lights/plugin/plugin_api.h"              find_package(lampyr REQUIRED)
+//     lampyr::LightType RingLightType();                 lampyr_plugin(ring SOURCES plugin.cpp ring.cpp)
+//     LAMPYR_PLUGIN({.lights = {RingLightType()}})
+//
+// The macro defines the plugin's stamp (plugin_stamp.h) and its one C entry point: with the light itself, that is all.
+// tests/plugins/example is a whole plugin.
+//
+// Where a plugin's symbols come from: it links no lampyr library. The lampyr that loads it exports all of its own core
+// and lights, also what it does not use itself, and the loader resolves the plugin against that. There is thus one copy
+// of each function, of each type and of each table in the process: what one side throws the other catches, what one
+// side allocates the other frees, and no registry or cache is there twice. (A plugin with its own copy of the libraries
+// would have a second image module, second tables, and whatever code they had on the day when it was built.) The price
+// is that a plugin belongs to one version of lampyr, which the stamp makes a message.
+#pragma once
+
+#include <vector>
+
+#include "lights/filters/filter_type.h"
+#include "lights/light_type.h"
+#include "lights/plugin/plugin_stamp.h"
+
+namespace lampyr {
+
+// What a plugin brings. Names are new ones; `create` is there, and gives an object or throws.
+struct PluginTypes {
+  std::vector<LightType> lights;
+  std::vector<FilterType> filters;
+};
+
+// The entry point. Called once, after the stamp has been found to match and all symbols are resolved; may throw. What
+// it points to is copied.
+inline constexpr const char* kPluginEntryPoint = "lampyr_plugin";
+using PluginEntryPoint = const PluginTypes* (*)();
+
+}  // namespace lampyr
+
+#define LAMPYR_PLUGIN_EXPORT extern "C" __attribute__((visibility("default")))
+
+// The stamp alone, for a plugin that writes its entry point itself. Once in a plugin.
+#define LAMPYR_PLUGIN_STAMP                                                                                        \
+  __attribute__((section(".note.lampyr"), used, aligned(4))) static constexpr lampyr::PluginNote lampyrPluginNote{ \
+      lampyr::kPluginStamp};
+
+// Both, with a PluginTypes in braces. Once in a plugin, outside of namespaces.
+#define LAMPYR_PLUGIN(...)                                          \
+  LAMPYR_PLUGIN_STAMP                                               \
+  LAMPYR_PLUGIN_EXPORT const lampyr::PluginTypes* lampyr_plugin() { \
+    static const lampyr::PluginTypes types = __VA_ARGS__;           \
+    return &types;                                                  \
+  }

@@ -1,0 +1,28 @@
+// Which plugins a command loads, and from where.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "lights/type_registry.h"
+#include "scene/scene_description.h"
+
+namespace lampyr {
+
+// The built-in types, and those of plugins: of the files `asked` for (--plugin), of those that the scene names (null:
+// no scene), and of all *.so in the folders of the environment variable LAMPYR_PLUGIN_PATH, which a colon separates.
+//
+// A name without a folder that is not beside the scene (of `asked`: in the working folder) is looked for in those
+// folders. Throws a UsageError for a plugin of the first two kinds that cannot be used; one of the folders' is left out
+// with a warning. The same file is loaded once, whoever names it.
+TypeRegistry LoadTypes(const std::vector<std::string>& asked, const SceneDescription* scene);
+
+// The types that `asked` brought, of those that LoadTypes gave.
+std::vector<const LightType*> LightsOf(const TypeRegistry& types, const std::vector<std::string>& asked);
+
+// Runs work that calls lights. What the code of a plugin throws may be anything: all but an Error leaves as one that
+// names the plugins. Without plugins nothing is changed.
+void RunForeignCode(const TypeRegistry& types, const std::function<void()>& work);
+
+}  // namespace lampyr

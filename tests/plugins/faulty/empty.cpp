@@ -1,0 +1,1 @@
+// Nothing: for the headers that are compiled beside it.
