@@ -155,6 +155,46 @@ def screen_pattern():
     images.write_png(path("screen.png"), size, size, pixel)
 
 
+def leaves():
+    """A gobo: twigs with leaves, dark before the light, on one side more than on the other."""
+    width, height = 320, 240
+    state = [7]
+
+    def random():
+        state[0] = (state[0] * 1103515245 + 12345) % 2**31
+        return state[0] / 2**31
+
+    blades = []
+    for twig in range(6):
+        x, y, angle = 0.05 + 0.14 * twig * random(), 0.1 + 0.16 * twig, 0.5 * random() - 0.25
+        for k in range(11):
+            x += 0.075 * math.cos(angle)
+            y += 0.075 * math.sin(angle)
+            angle += 0.3 * (random() - 0.5)
+            turn = angle + (1 if k % 2 else -1) * (0.6 + 0.5 * random())
+            length = 0.05 + 0.035 * random()
+            blades.append((x + length * math.cos(turn), y + length * math.sin(turn), turn, length, 0.35 * length))
+
+    def covered(u, v):
+        for x, y, turn, length, half in blades:
+            dx, dy = u - x, v - y
+            along = (dx * math.cos(turn) + dy * math.sin(turn)) / length
+            if abs(along) < 1:
+                across = abs(-dx * math.sin(turn) + dy * math.cos(turn)) / half
+                if across < (1 - along * along) * (1 - 0.35 * along):
+                    return True
+        return False
+
+    cells = 3
+
+    def pixel(x, y):
+        dark = sum(covered((x + (i + 0.5) / cells) / height, (y + (j + 0.5) / cells) / height)
+                   for i in range(cells) for j in range(cells)) / cells**2
+        return (1 - 0.96 * dark,)
+
+    images.write_png(path("leaves.png"), width, height, pixel)
+
+
 # Meshes --------------------------------------------------------------------------------------------------------------
 
 def water_surface():
@@ -482,7 +522,8 @@ def stack_of_bars():
 
 def main():
     os.makedirs(DATA, exist_ok=True)
-    for make in (skies, pool_tiles, paving, wood, screen_pattern, water_surface, pool_furniture, rings, cyclorama, optics,
+    for make in (skies, pool_tiles, paving, wood, screen_pattern, leaves, water_surface, pool_furniture, rings, cyclorama,
+                 optics,
                  plinth, tumbler, tableware, lamp, sculptures, courtyard, strings_of_bulbs, grass, twisted_column, jack,
                  stack_of_bars, rooms):
         make()

@@ -175,6 +175,19 @@ PlanDecision ChooseMerging(const Facts& facts, const std::string& integrator, co
           facts.smooth == 0 ? "nothing is smooth: other techniques find all light" : "the integrator has none"};
 }
 
+PlanDecision ChooseFilters(const LightingServices& lighting) {
+  size_t filtered = 0;
+  for (const PlacedLight& placed : lighting.Lights()) filtered += placed.filter >= 0 ? 1 : 0;
+  if (filtered == 0) return {"light filters", "off", "no light has one: nothing is called"};
+  return {"light filters", "on", Count(filtered, "light") + " with a filter, on every edge from there to a surface"};
+}
+
+PlanDecision ChooseLinking(const LightingServices& lighting) {
+  if (!lighting.Linking().Excludes()) return {"light linking", "off", "all lights shine on all surfaces"};
+  return {"light linking", "on",
+          std::to_string(lighting.Linking().Sets().lights.size()) + " sets of lights, each with a selector of its own"};
+}
+
 PlanDecision ChooseGuiding(const RenderScene& scene, const RenderSettings& settings, const std::string& integrator) {
   if (!settings.photons.guided) return {"guiding", "off", "--no-guide-photons"};
   if (!MayGuidePhotons(scene, settings, integrator))
@@ -197,6 +210,8 @@ ScenePlan PlanFor(const RenderScene& scene, const RenderSettings& settings) {
   }
   const std::string integrator = plan.decisions.front().choice;
   plan.decisions.push_back(ChooseSelection(facts, settings));
+  plan.decisions.push_back(ChooseLinking(*scene.lighting));
+  plan.decisions.push_back(ChooseFilters(*scene.lighting));
   plan.decisions.push_back(ChooseMerging(facts, integrator, scene, settings));
   if (GathersPhotons(integrator)) {
     plan.decisions.push_back(ChooseGuiding(scene, settings, integrator));
