@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "integrators/common/adjoint.h"
+#include "integrators/common/escaped_emission.h"
 #include "integrators/common/find_photons.h"
 #include "integrators/common/lens.h"
 #include "integrators/common/light_subpath.h"
@@ -83,6 +84,15 @@ class BdptIntegrator final : public BidirectionalIntegrator {
     }
     return path.value * static_cast<float>(path.weight);
   }
+  // The same of a path that lands in the sample's own pixel.
+  Color Found(const Run& run, ConnectedPath& path) const {
+    const Color contribution = Report(run, path);
+    if (run.sinks.layers) run.sinks.layers->Add(lighting_.GroupOf(path.end.light), contribution);
+    return contribution;
+  }
+  void Splat(const Run& run, ConnectedPath& path) const {
+    AddSplats(*path.connection, Report(run, path), lighting_.GroupOf(path.end.light), run.sinks.splats, run.Counts());
+  }
 
   const RenderScene& scene_;
   const GeometryScene& geometry_;
@@ -119,7 +129,7 @@ void BdptIntegrator::SeeLightPoint(Run& run, const EmittedPhoton& photon) const 
   path.connection = &seen->connection;
   path.value = seen->value;
   path.weight = 1 / (1 + Mis(path.cameraPerArea / path.end.position));
-  AddSplats(seen->connection, Report(run, path), run.sinks.splats, run.Counts());
+  Splat(run, path);
 }
 
 // (s,1): the last vertex of the light subpath, seen by the camera.
@@ -142,7 +152,7 @@ void BdptIntegrator::SeeLightVertex(Run& run) const {
   path.value = seen->value;
   const double reverse = static_cast<double>(seen->f.pdfReverse.value) * vertex.previousPerSolidAngle;
   path.weight = 1 / (1 + vertex.weight.Sum(path.cameraPerArea, reverse, run.MergeAt(vertex)));
-  AddSplats(seen->connection, Report(run, path), run.sinks.splats, run.Counts());
+  Splat(run, path);
 }
 
 // s = 0: the camera subpath has found a light. `landing` is that of an emission at its last vertex.
@@ -158,7 +168,7 @@ Color BdptIntegrator::HitLight(Run& run, const Flight& flight, const FoundLight&
   path.end = EndOf(lighting_, found, true, landing);
   if (!settings_.connects && path.end.emission > 0) {
     if (run.couldMerge) return Color(0.0f);
-    return Report(run, path);
+    return Found(run, path);
   }
   path.toLight = flight.ray.direction;
   SetLens(run, path);
@@ -168,7 +178,7 @@ Color BdptIntegrator::HitLight(Run& run, const Flight& flight, const FoundLight&
   const double earlier = atLight.earlier + run.merge * atLight.merging;
   const double direct = last.scatteredDelta ? 0.0 : Mis(path.end.direct);
   path.weight = 1 / (1 + (direct + Mis(path.end.emission) * earlier) / Mis(pdf));
-  return Report(run, path);
+  return Found(run, path);
 }
 
 // s = 1: next-event estimation at the camera subpath's last vertex.
@@ -226,7 +236,7 @@ Color BdptIntegrator::SampleLight(Run& run, const SelectedLight& light, const Po
   const double camera = vertex.weight.Sum(
       path.end.emission, static_cast<double>(f.pdfReverse.value) * vertex.previousPerSolidAngle, run.MergeAt(vertex));
   path.weight = 1 / (1 + (hit + camera) / Mis(path.end.direct));
-  return Report(run, path);
+  return Found(run, path);
 }
 
 // s > 1, t > 1: the first `lightCount` vertices of the light subpath, joined to the camera subpath's last.
@@ -265,7 +275,7 @@ Color BdptIntegrator::Connect(Run& run, size_t lightCount) const {
       z.weight.Sum(static_cast<double>(fy.pdfForward.value) * AreaPerSolidAngle(cosZ, squared),
                    static_cast<double>(fz.pdfReverse.value) * z.previousPerSolidAngle, run.MergeAt(z));
   path.weight = 1 / (1 + light + camera);
-  return Report(run, path);
+  return Found(run, path);
 }
 
 void BdptIntegrator::ReportMerge(const Run& run, const Photon& photon, const Color& value, double weight) {
@@ -306,6 +316,11 @@ Color BdptIntegrator::Merge(Run& run) const {
     const double weight = 1 / (1 + (light + camera) * perMerge);
     const Color value = scattered * ArrivalCorrection(vertex.bsdf, toLight);
     sum += value * static_cast<float>(weight);
+    // In another order: a product that both share would not be rounded as it is where nobody wants layers.
+    if (run.sinks.layers) [[unlikely]] {
+      const Color carried = (vertex.diffuse + vertex.specular) * perDensity * static_cast<float>(weight);
+      run.sinks.layers->Add(photon.group, carried * value);
+    }
     if (pass.use) [[unlikely]] {
       const Color part = (vertex.diffuse + vertex.specular) * f.Sum();
       pass.use->Add(index, part.Average() * static_cast<float>(weight));
@@ -389,7 +404,7 @@ Color BdptIntegrator::Background(const Run& run, const Ray& ray) const {
   path.t = 2;
   path.end.canBeHit = true;
   path.cameraPerArea = 1;
-  path.value = lighting_.EscapedEmissionForCamera(ray);
+  path.value = EscapedEmissionForCamera(lighting_, ray, run.sinks.layers);
   return Report(run, path);
 }
 
@@ -407,7 +422,10 @@ Color BdptIntegrator::SeenLight(Run& run, const Ray& ray, const RayHit& hit, con
     if (path.cameraPerArea > 0 && settings_.connects)
       path.weight = 1 / (1 + Mis(path.end.position / path.cameraPerArea));
   }
-  return Report(run, path);
+  const Color contribution = Report(run, path);
+  // Lights that are seen from one side only may have no density there, and no end of the path.
+  if (run.sinks.layers) run.sinks.layers->Add(lighting_.GroupAt(point), contribution);
+  return contribution;
 }
 
 // What becomes of a light subpath on its way.
@@ -422,7 +440,8 @@ struct BdptIntegrator::LightVisitor final : LightSubpathVisitor {
   void Arrived(const LightSubpath& path) override {
     const PathVertex& vertex = path.Last();
     if (own.settings_.connects) own.SeeLightVertex(run);
-    if (run.sinks.photons && !vertex.isDelta) run.sinks.photons->Add(vertex, static_cast<int>(path.count));
+    if (run.sinks.photons && !vertex.isDelta)
+      run.sinks.photons->Add(vertex, path.count, own.lighting_.GroupOf(path.light));
   }
 
   const BdptIntegrator& own;

@@ -26,7 +26,7 @@ LightHit EscapedHit(const Point3& origin, const Vector3& direction) {
 
 LightingServices::LightingServices(const GeometryScene& geometry, std::vector<PlacedLight> lights,
                                    LightSelection selection)
-    : geometry_(geometry), lights_(std::move(lights)), sphere_(geometry.GetBoundingSphere()) {
+    : geometry_(geometry), lights_(std::move(lights)), groups_(lights_), sphere_(geometry.GetBoundingSphere()) {
   fronts_ = LargeArray<Front>(lights_.size());
   for (uint32_t i = 0; i < lights_.size(); ++i) {
     const PlacedLight& placed = lights_[i];
@@ -156,15 +156,12 @@ Color LightingServices::EmissionForCamera(const Vector3& direction, float distan
                                                          SurfaceLightHit(direction, distance, point));
 }
 
-Color LightingServices::EscapedEmissionForCamera(const Ray& ray) const {
-  Color sum;
+Color LightingServices::EscapedEmissionForCamera(size_t i, const Ray& ray) const {
+  const uint32_t light = infinite_[i];
+  if (!fronts_[light].light->Settings().cameraVisible) return Color(0.0f);
   const LightHit hit = EscapedHit(ray.origin, ray.direction);
-  for (const uint32_t light : infinite_) {
-    if (!fronts_[light].light->Settings().cameraVisible) continue;
-    std::optional<LightTransform> moved;
-    sum += fronts_[light].light->EvaluateEmissionForCamera(Context(light, ray.time, false, moved), hit);
-  }
-  return sum;
+  std::optional<LightTransform> moved;
+  return fronts_[light].light->EvaluateEmissionForCamera(Context(light, ray.time, false, moved), hit);
 }
 
 PdfDiscrete LightingServices::SelectionProbability(const Receiver& receiver, uint32_t light, int patch) const {
