@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <tuple>
 
 #include "support/replicas.h"
 #include "support/temporary_folder.h"
@@ -58,8 +59,12 @@ std::vector<GroupedLight> Lights() {
       // The camera sees it, and its caustic.
       {"warm", "AttributeBegin AreaLightSource \"diffuse\" ", "\"rgb L\" [9 5 2]", "\"rgb L\" [0 0 0]",
        quad + "-1.1 1.8 -0.2  -0.6 1.8 -0.2  -0.6 1.9 0.2  -1.1 1.9 0.2" + indices},
-      {"cool", "AttributeBegin AreaLightSource \"mesh\" ", "\"rgb color\" [2 4 8]", "\"rgb color\" [0 0 0]",
-       quad + "0.5 2 0  0.9 2 0  0.9 2 0.4  0.5 2 0.4" + indices},
+      // Two instances of one lamp.
+      {"cool", "ObjectBegin \"lamp\" AttributeBegin AreaLightSource \"mesh\" ", "\"rgb color\" [2 4 8]",
+       "\"rgb color\" [0 0 0]",
+       quad + "0.5 2 0  0.9 2 0  0.9 2 0.4  0.5 2 0.4" + indices +
+           "ObjectEnd\nObjectInstance \"lamp\"\n"
+           "AttributeBegin Translate -1 -0.2 -0.8 Scale 0.7 1 0.7 ObjectInstance \"lamp\" AttributeEnd\n"},
       {"", "AttributeBegin Translate 1.2 1.9 -0.6 Rotate -60 1 0 0 LightSource \"rect\" \"float width\" 0.4 ",
        "\"rgb color\" [3 9 3]", "\"rgb color\" [0 0 0]", " AttributeEnd\n"},
       {"cool", "LightSource \"point\" \"point3 from\" [-1.2 1.6 1.2] ", "\"rgb I\" [0.4 0.8 1.6]", "\"rgb I\" [0 0 0]",
@@ -163,6 +168,26 @@ TEST_P(LightGroupLayers, AddUpToThePicture) {
     std::printf("%-5s %-8s %2d samples: %.2f ulp\n", GetParam(), tried.filter, tried.samples, difference);
     EXPECT_LE(difference, 4);
     EXPECT_GT(LargestDifference(image, {"cool", "warm"}), 1e4);
+  }
+}
+
+// What is not done unless it is asked for.
+TEST(LightGroups, AddUpWithAllSwitches) {
+  std::vector<RenderOverrides> all;
+  for (const auto& [integrator, merges, connects, direct] :
+       {std::tuple{"vcm", false, true, false}, std::tuple{"vcm", true, false, false},
+        std::tuple{"sppm", true, true, true}}) {
+    RenderOverrides overrides = With(integrator);
+    if (!merges) overrides.merges = false;
+    if (!connects) overrides.connects = false;
+    if (direct) overrides.directFromPhotons = true;
+    overrides.learnLights = true;
+    all.push_back(overrides);
+  }
+  for (const RenderOverrides& overrides : all) {
+    const Image image = RenderText(WithGroups(), 8, overrides, 2).image;
+    EXPECT_LE(LargestDifference(image, {"cool", "warm", "rest"}), 4) << *overrides.integrator;
+    EXPECT_GT(LargestDifference(image, {"cool", "warm"}), 1e4) << *overrides.integrator;
   }
 }
 
