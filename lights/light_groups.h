@@ -20,11 +20,10 @@ class LightGroups {
   // Throws Error where two groups would share a layer, or where there are more than 65535 of them.
   explicit LightGroups(const std::vector<PlacedLight>& lights);
 
-  // 0: no light names a group. Otherwise the lights that name none are a group too, the last one, called "rest".
-  size_t Count() const { return layers_.size(); }
-  // The name of each group's layer: in alphabetical order, then "rest".
+  // The name of each group's layer, in alphabetical order; then "rest", if there are lights that name no group. None
+  // where no light names one.
   const std::vector<std::string>& Layers() const { return layers_; }
-  // Of lights[light]; 0 where there are none.
+  // The group of lights[light], an index into Layers(); 0 where there are none.
   uint32_t Of(uint32_t light) const { return ofLight_.empty() ? 0 : ofLight_[light]; }
 
   static constexpr size_t kMost = 65535;

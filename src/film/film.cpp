@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -174,10 +175,11 @@ void Film::AddToRows(const PixelFilter& filter, std::span<const SplatList> lists
   const auto firstPixel = [](float p, float r) { return static_cast<int>(std::floor(p - 0.5f - r)); };
   const auto lastPixel = [](float p, float r) { return static_cast<int>(std::ceil(p - 0.5f + r)); };
   std::vector<float> weightsX(static_cast<size_t>(2 * radius.x) + 4);
+  const bool hasLayers = HasLayers();
   uint64_t firstPath = lightPaths_ + 1;  // 0 is the path of pixels that have met none
   for (const SplatList& list : lists) {
-    for (size_t i = 0; i < list.Splats().size(); ++i) {
-      const Splat& splat = list.Splats()[i];
+    const uint32_t* layer = hasLayers ? list.Layers().data() : nullptr;  // of the splat
+    for (const Splat& splat : list.Splats()) {
       const int y0 = std::max(firstPixel(splat.film.y, radius.y), crop_.y0);
       const int y1 = std::min(lastPixel(splat.film.y, radius.y), crop_.y1 - 1);
       const int x0 = std::max(firstPixel(splat.film.x, radius.x), crop_.x0);
@@ -197,9 +199,10 @@ void Film::AddToRows(const PixelFilter& filter, std::span<const SplatList> lists
           const float weight = weightY * weightsX[static_cast<size_t>(x - x0)];
           if (weight == 0) continue;
           splats_[Index(x, y)].Add(firstPath + splat.path, static_cast<double>(weight), splat.value);
-          if (HasLayers()) AddTo(layerSplats_[Index(x, y) * layers_.size() + list.Layers()[i]], weight, splat.value);
+          if (hasLayers) AddTo(layerSplats_[Index(x, y) * layers_.size() + *layer], weight, splat.value);
         }
       }
+      if (hasLayers) ++layer;
     }
     firstPath += list.Paths();
   }
