@@ -404,7 +404,7 @@ Color BdptIntegrator::Background(const Run& run, const Ray& ray) const {
   path.t = 2;
   path.end.canBeHit = true;
   path.cameraPerArea = 1;
-  path.value = EscapedEmissionForCamera(lighting_, ray, run.sinks.layers);
+  path.value = EscapedEmissionForCamera(lighting_, ray, Color(1.0f), run.sinks.layers);
   return Report(run, path);
 }
 

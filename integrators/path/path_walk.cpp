@@ -55,8 +55,7 @@ Color PathWalk::EmissionAt(const State& path, const RayHit& hit, const SurfacePo
 
 Color PathWalk::EscapedEmission(const State& path) const {
   if (path.fromCamera) {
-    // Nothing has changed the light on its way: the throughput is 1.
-    return path.throughputSpecular * EscapedEmissionForCamera(lighting_, path.ray, path.layers);
+    return EscapedEmissionForCamera(lighting_, path.ray, path.throughputSpecular, path.layers);
   }
   Color sum;
   for (size_t i = 0; i < lighting_.InfiniteCount(); ++i) {
