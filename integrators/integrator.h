@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "camera/camera.h"
+#include "film/layer_sample.h"
 #include "film/splats.h"
 #include "geometry/geometry_scene.h"
 #include "lights/services/lighting_services.h"
@@ -34,10 +35,10 @@ struct RenderCounts {
   uint64_t cameraRays = 0;
   uint64_t indirectRays = 0;
   uint64_t shadowRays = 0;
-  uint64_t foundPhotons = 0;    // by lookups of photons
-  uint64_t lookups = 0;         // of photons
+  uint64_t foundPhotons = 0;  // by lookups of photons
+  uint64_t lookups = 0;       // of photons
   uint64_t timedLookups = 0;
-  double lookupSeconds = 0;  // of those
+  double lookupSeconds = 0;     // of those
   uint64_t droppedSamples = 0;  // NaN, infinite or negative: a defect, counted and reported
 
   RenderCounts& operator+=(const RenderCounts& other);
@@ -71,8 +72,9 @@ constexpr uint32_t OfVertex(int vertex, uint32_t which) {
 class CameraIntegrator {
  public:
   virtual ~CameraIntegrator() = default;
-  // One sample of the radiance that arrives along `ray`. `sampler` has been started for the pixel sample.
-  virtual Color Radiance(const Ray& ray, Sampler& sampler, RenderCounts& counts) const = 0;
+  // One sample of the radiance that arrives along `ray`. `sampler` has been started for the pixel sample. `layers`: see
+  // SampleSinks.
+  virtual Color Radiance(const Ray& ray, Sampler& sampler, RenderCounts& counts, LayerSample* layers) const = 0;
 };
 
 // An integrator that follows one path at a time from a light and splats it wherever the camera sees it. As many paths
@@ -81,7 +83,7 @@ class LightPathIntegrator {
  public:
   virtual ~LightPathIntegrator() = default;
   // `sampler` has been started for the path, `splats` too. Splats are what a single path would contribute: the film
-  // divides by the number of paths. `time` is that of the whole path.
+  // divides by the number of paths, and each is of the layer of its light's group. `time` is that of the whole path.
   virtual void TracePath(float time, Sampler& sampler, SplatList& splats, RenderCounts& counts) const = 0;
 };
 
@@ -102,6 +104,9 @@ struct SampleSinks {
   const PhotonPass* gather = nullptr;  // the photons that may be used; null: none yet
   PhotonList* photons = nullptr;       // where those of this sample's light path go; null: nobody wants them
   bool withOrigin = false;             // and where that path comes from
+  // What the sample returns, split by LightingServices::GroupOf the light that it comes from; null: nobody wants it.
+  // The caller has cleared it.
+  LayerSample* layers = nullptr;
 };
 
 // An integrator that follows a path from the camera and one from a light together. Stateless: any thread may call it.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lights/light_groups.h"
 #include "scene/spectrum.h"
 
 namespace lampyr {
@@ -28,7 +29,8 @@ std::vector<ParameterInfo> WithCommonParameters(std::vector<ParameterInfo> param
       {"diffuse", ParameterType::Float, "", "1", ">= 0", "multiplies what diffuse lobes receive"},
       {"specular", ParameterType::Float, "", "1", ">= 0", "multiplies what specular lobes receive"},
       {"name", ParameterType::String, "", "\"\"", "", "what messages and statistics call this light"},
-      {"lightGroup", ParameterType::String, "", "\"\"", "", "the light group this light is summed up in"},
+      {"lightGroup", ParameterType::String, "", "\"\"", "",
+       "the layer of the image that this light is summed up in as well"},
       {"cameraVisible", ParameterType::Bool, "", "true", "", "whether the camera sees the light itself"},
       {"traceLightPaths", ParameterType::Bool, "", "true", "", "whether the light may emit photons"},
       {"importanceMultiplier", ParameterType::Float, "", "1", "> 0", "scales the light's chance of being selected"},
@@ -43,6 +45,13 @@ LightSettings ReadLightSettings(const ParameterList& parameters) {
   LightSettings settings;
   settings.name = parameters.GetString("name", "");
   settings.lightGroup = parameters.GetString("lightGroup", "");
+  if (!settings.lightGroup.empty()) {
+    try {
+      LayerOfLightGroup(settings.lightGroup);
+    } catch (const Error& e) {
+      throw Error(parameters.WhereOf("lightGroup"), e.Text());
+    }
+  }
   settings.cameraVisible = parameters.GetBool("cameraVisible", true);
   settings.traceLightPaths = parameters.GetBool("traceLightPaths", true);
   settings.importanceMultiplier = static_cast<float>(parameters.GetFloat("importanceMultiplier", 1));

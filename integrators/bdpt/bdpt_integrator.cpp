@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "integrators/common/adjoint.h"
+#include "integrators/common/escaped_emission.h"
 #include "integrators/common/find_photons.h"
 #include "integrators/common/lens.h"
 #include "integrators/common/light_subpath.h"
@@ -89,6 +90,15 @@ class BdptIntegrator final : public BidirectionalIntegrator {
     }
     return path.value * static_cast<float>(path.weight);
   }
+  // The same of a path that lands in the sample's own pixel.
+  Color Found(const Run& run, ConnectedPath& path, float worth = 1) const {
+    const Color contribution = Report(run, path) * worth;
+    if (run.sinks.layers) run.sinks.layers->Add(lighting_.GroupOf(path.end.light), contribution);
+    return contribution;
+  }
+  void Splat(const Run& run, ConnectedPath& path) const {
+    AddSplats(*path.connection, Report(run, path), lighting_.GroupOf(path.end.light), run.sinks.splats, run.Counts());
+  }
 
   const RenderScene& scene_;
   const GeometryScene& geometry_;
@@ -125,7 +135,7 @@ void BdptIntegrator::SeeLightPoint(Run& run, const EmittedPhoton& photon) const 
   path.connection = &seen->connection;
   path.value = seen->value;
   path.weight = 1 / (1 + Mis(path.cameraPerArea / path.end.position));
-  AddSplats(seen->connection, Report(run, path), run.sinks.splats, run.Counts());
+  Splat(run, path);
 }
 
 // (s,1): the last vertex of the light subpath, seen by the camera.
@@ -148,7 +158,7 @@ void BdptIntegrator::SeeLightVertex(Run& run) const {
   path.value = seen->value;
   const double reverse = static_cast<double>(seen->f.pdfReverse.value) * vertex.previousPerSolidAngle;
   path.weight = 1 / (1 + vertex.weight.Sum(path.cameraPerArea, reverse, run.MergeAt(vertex)));
-  AddSplats(seen->connection, Report(run, path), run.sinks.splats, run.Counts());
+  Splat(run, path);
 }
 
 // s = 0: the camera subpath has found a light. `landing` is that of an emission at its last vertex.
@@ -164,7 +174,7 @@ Color BdptIntegrator::HitLight(Run& run, const Flight& flight, const FoundLight&
   path.end = EndOf(lighting_, found, true, landing);
   if (!settings_.connects && path.end.emission > 0) {
     if (run.couldMerge) return Color(0.0f);
-    return Report(run, path);
+    return Found(run, path);
   }
   path.toLight = flight.ray.direction;
   SetLens(run, path);
@@ -174,7 +184,7 @@ Color BdptIntegrator::HitLight(Run& run, const Flight& flight, const FoundLight&
   const double earlier = atLight.earlier + run.merge * atLight.merging;
   const double direct = last.scatteredDelta ? 0.0 : Mis(path.end.direct);
   path.weight = 1 / (1 + (direct + Mis(path.end.emission) * earlier) / Mis(pdf));
-  return Report(run, path);
+  return Found(run, path);
 }
 
 // s = 1: next-event estimation at the camera subpath's last vertex.
@@ -233,7 +243,7 @@ Color BdptIntegrator::SampleLight(Run& run, const SelectedLight& light, const Po
   lighting_.UpdateWithResults(vertex.receiver, direct, arrived);
   path.value *= arrived;
   if (path.value.IsBlack()) return path.value;
-  return Report(run, path) * worth;
+  return Found(run, path, worth);
 }
 
 // s > 1, t > 1: the first `lightCount` vertices of the light subpath, joined to the camera subpath's last.
@@ -274,7 +284,7 @@ Color BdptIntegrator::Connect(Run& run, size_t lightCount) const {
   const Ray ray = SpawnRayTo(z.point, y.point.position, y.point.positionError, y.point.Ng, run.time);
   path.value *= geometry_.Transmission(ray, visibility::kIndirect);
   if (path.value.IsBlack()) return path.value;
-  return Report(run, path) * worth;
+  return Found(run, path, worth);
 }
 
 void BdptIntegrator::ReportMerge(const Run& run, const Photon& photon, const Color& value, double weight) {
@@ -315,6 +325,11 @@ Color BdptIntegrator::Merge(Run& run) const {
     const double weight = 1 / (1 + (light + camera) * perMerge);
     const Color value = scattered * ArrivalCorrection(vertex.bsdf, toLight);
     sum += value * static_cast<float>(weight);
+    // In another order: a product that both share would not be rounded as it is where nobody wants layers.
+    if (run.sinks.layers) [[unlikely]] {
+      const Color carried = (vertex.diffuse + vertex.specular) * perDensity * static_cast<float>(weight);
+      run.sinks.layers->Add(photon.group, carried * value);
+    }
     if (pass.use) [[unlikely]] {
       const Color part = (vertex.diffuse + vertex.specular) * f.Sum();
       pass.use->Add(index, part.Average() * static_cast<float>(weight));
@@ -407,7 +422,7 @@ Color BdptIntegrator::Background(const Run& run, const Flight& flight) const {
   path.t = 2;
   path.end.canBeHit = true;
   path.cameraPerArea = 1;
-  path.value = flight.specular * lighting_.EscapedEmissionForCamera(flight.ray);
+  path.value = EscapedEmissionForCamera(lighting_, flight.ray, flight.specular, run.sinks.layers);
   return Report(run, path);
 }
 
@@ -426,7 +441,10 @@ Color BdptIntegrator::SeenLight(Run& run, const Flight& flight, const RayHit& hi
     if (path.cameraPerArea > 0 && settings_.connects)
       path.weight = 1 / (1 + Mis(path.end.position / path.cameraPerArea));
   }
-  return Report(run, path);
+  const Color contribution = Report(run, path);
+  // Lights that are seen from one side only may have no density there, and no end of the path.
+  if (run.sinks.layers) run.sinks.layers->Add(lighting_.GroupAt(point), contribution);
+  return contribution;
 }
 
 // What becomes of a light subpath on its way.
@@ -441,7 +459,8 @@ struct BdptIntegrator::LightVisitor final : LightSubpathVisitor {
   void Arrived(const LightSubpath& path) override {
     const PathVertex& vertex = path.Last();
     if (own.settings_.connects) own.SeeLightVertex(run);
-    if (run.sinks.photons && !vertex.isDelta) run.sinks.photons->Add(vertex, static_cast<int>(path.count));
+    if (run.sinks.photons && !vertex.isDelta)
+      run.sinks.photons->Add(vertex, path.count, own.lighting_.GroupOf(path.light));
   }
 
   const BdptIntegrator& own;

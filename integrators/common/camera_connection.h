@@ -38,11 +38,13 @@ inline std::optional<FilmConnection> ConnectToCamera(const Camera& camera, const
   return result;
 }
 
-// Adds `value` wherever the connection lands. A value that is not finite or negative is dropped and counted.
-inline void AddSplats(const FilmConnection& connection, const Color& value, SplatList& splats, RenderCounts& counts) {
-  bool isValid = splats.Add(connection.camera.film, value);
+// Adds `value`, of a light of `group`, wherever the connection lands. A value that is not finite or negative is dropped
+// and counted.
+inline void AddSplats(const FilmConnection& connection, const Color& value, uint32_t group, SplatList& splats,
+                      RenderCounts& counts) {
+  bool isValid = splats.Add(connection.camera.film, value, group);
   for (int i = 0; i < connection.copies.count; ++i) {
-    isValid &= splats.Add(connection.copies.points[static_cast<size_t>(i)], value);
+    isValid &= splats.Add(connection.copies.points[static_cast<size_t>(i)], value, group);
   }
   if (!isValid) ++counts.droppedSamples;
 }

@@ -44,6 +44,7 @@ void LightSubpathTracer::Trace(float time, Sampler& sampler, RenderCounts& count
   sampler.SetDimension(dimensions_.Of(0, dimensions::kDirection));
   const std::optional<EmittedPhoton> photon = scene_.lighting->GenerateEmission(uSelect, u, sampler.Get2D(), time);
   if (!photon) return;
+  path.light = photon->light;
   if (photon->fromSurface) visitor.Emitted(*photon);
   if (photon->IsDark()) return;
   ++counts.indirectRays;

@@ -13,7 +13,8 @@ namespace lampyr {
 struct LightSubpath {
   std::vector<PathVertex> vertices;  // the first `count`
   size_t count = 0;
-  LightEnd end;
+  uint32_t light = 0;  // that it comes from
+  LightEnd end;        // where weights are wanted
 
   const PathVertex& Last() const { return vertices[count - 1]; }
 };

@@ -1,6 +1,7 @@
 // Photons: what light paths leave behind at their vertices, for camera paths to find.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -47,7 +48,8 @@ struct TracedPhoton {
   PartialWeight weight;
   float previousPerSolidAngle;
   PackedNormal normal;
-  int depth;        // 1: it has come straight from the light
+  uint16_t depth;   // 1: it has come straight from the light
+  uint16_t group;   // of the light
   uint32_t origin;  // of its path, in the list
 };
 
@@ -66,12 +68,14 @@ class PhotonList {
     origins_.resize(KeptOrigins());  // without those of paths that left no photon
     origins_.push_back(origin);
   }
-  void Add(const PathVertex& vertex, int depth) {
+  // `group`: of its light (LightGroups). A depth beyond kDeepest is taken for that.
+  void Add(const PathVertex& vertex, size_t depth, uint32_t group = 0) {
     const auto origin = static_cast<uint32_t>(origins_.size()) - 1;
     photons_.push_back({vertex.point.position, vertex.toPrevious, vertex.diffuse, vertex.specular, vertex.weight,
-                        static_cast<float>(vertex.previousPerSolidAngle), PackedNormal(vertex.bsdf.Ng()), depth,
-                        origin});
+                        static_cast<float>(vertex.previousPerSolidAngle), PackedNormal(vertex.bsdf.Ng()),
+                        static_cast<uint16_t>(std::min(depth, kDeepest)), static_cast<uint16_t>(group), origin});
   }
+  static constexpr size_t kDeepest = 65535;
   size_t Paths() const { return starts_.size(); }
   // Leaves out whole paths at the end until there are no more than `most` photons; returns the number of paths left.
   size_t KeepPaths(size_t most) {
@@ -102,7 +106,8 @@ struct Photon {
   float previousPerSolidAngle = 0;
   PackedNormal normal;  // of the surface
   uint32_t specular = kSame;
-  uint32_t depth = 0;
+  uint16_t depth = 0;
+  uint16_t group = 0;  // of the light that it comes from
 
   static constexpr uint32_t kSame = 0xffffffffu;
 
@@ -117,5 +122,6 @@ struct Photon {
     return std::abs(glm::dot(normal.Unpack(), Ng)) > cosine;
   }
 };
+static_assert(sizeof(Photon) == 56, "photons are counted in millions");
 
 }  // namespace lampyr

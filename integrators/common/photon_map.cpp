@@ -191,7 +191,8 @@ PhotonMap::PhotonMap(std::span<const PhotonList> lists, double merge, int thread
     photon.earlier = source.weight.earlier + merge * source.weight.merging;
     photon.previousPerSolidAngle = source.previousPerSolidAngle;
     photon.normal = source.normal;
-    photon.depth = static_cast<uint32_t>(source.depth);
+    photon.depth = source.depth;
+    photon.group = source.group;
   });
   for (size_t i = 0; i < traced.size(); ++i) {
     const TracedPhoton& source = *traced[order[i].item];

@@ -29,14 +29,15 @@ void LightIntegrator::TracePath(float time, Sampler& sampler, SplatList& splats,
 
     Seen(const LightIntegrator& integrator, float t, Sampler& s, SplatList& list, RenderCounts& c)
         : own(integrator), time(t), sampler(s), splats(list), counts(c) {}
+    uint32_t GroupOf(uint32_t light) const { return own.scene_.lighting->GroupOf(light); }
     void Emitted(const EmittedPhoton& photon) override {
       if (const auto seen = SeeLight(own.scene_, photon, time, dimensions::kLens, sampler, splats, counts))
-        AddSplats(seen->connection, seen->value, splats, counts);
+        AddSplats(seen->connection, seen->value, GroupOf(photon.light), splats, counts);
     }
     void Arrived(const LightSubpath& path) override {
       const uint32_t lens = own.tracer_.Dimensions().Of(static_cast<int>(path.count), dimensions::kLight);
       if (const auto seen = SeeVertex(own.scene_, path.Last(), time, lens, sampler, splats, counts))
-        AddSplats(seen->connection, seen->value, splats, counts);
+        AddSplats(seen->connection, seen->value, GroupOf(path.light), splats, counts);
     }
   };
   // Kept by the thread: vertices are large, and paths many.

@@ -11,8 +11,8 @@ class PathIntegrator final : public CameraIntegrator {
   PathIntegrator(const RenderScene& scene, const PathSettings& settings)
       : walk_(scene, {settings.maxDepth, {}, 0, true, settings.shadowRays}) {}
 
-  Color Radiance(const Ray& ray, Sampler& sampler, RenderCounts& counts) const override {
-    return walk_.Radiance(ray, sampler, counts, nullptr);
+  Color Radiance(const Ray& ray, Sampler& sampler, RenderCounts& counts, LayerSample* layers) const override {
+    return walk_.Radiance(ray, sampler, counts, nullptr, layers);
   }
 
  private:

@@ -1,5 +1,6 @@
 #include "integrators/path/path_walk.h"
 
+#include "integrators/common/escaped_emission.h"
 #include "integrators/common/mis.h"
 #include "integrators/common/roulette.h"
 
@@ -8,6 +9,9 @@ namespace lampyr {
 // The path so far. Throughput is split by the lobe that the last direction came from, because a light may show diffuse
 // and specular lobes different radiance.
 struct PathWalk::State {
+  explicit State(const Ray& cameraRay, LayerSample* wanted) : layers(wanted), ray(cameraRay) {}
+
+  LayerSample* const layers;
   Ray ray;
   Color throughputDiffuse{0.0f};
   Color throughputSpecular{1.0f};
@@ -22,6 +26,12 @@ struct PathWalk::State {
   Color Throughput() const { return throughputDiffuse + throughputSpecular; }
 };
 
+// Whatever the walk itself returns has come through here, or is the background.
+inline Color PathWalk::Found(const State& path, uint32_t light, const Color& radiance) const {
+  if (path.layers) path.layers->Add(lighting_.GroupOf(light), radiance);
+  return radiance;
+}
+
 // Radiance of a light that the BSDF's direction found, weighted against next-event estimation.
 Color PathWalk::WeightedEmission(const State& path, const FoundLight& found) const {
   const Color radiance =
@@ -32,22 +42,25 @@ Color PathWalk::WeightedEmission(const State& path, const FoundLight& found) con
 
 Color PathWalk::EmissionAt(const State& path, const RayHit& hit, const SurfacePoint& point) const {
   if (path.fromCamera) {
-    return path.throughputSpecular * lighting_.EmissionForCamera(path.ray.direction, hit.t, point, path.ray.time);
+    const Color seen =
+        path.throughputSpecular * lighting_.EmissionForCamera(path.ray.direction, hit.t, point, path.ray.time);
+    if (path.layers) path.layers->Add(lighting_.GroupAt(point), seen);
+    return seen;
   }
   const float distance = glm::distance(point.position, path.receiver.position);
   const auto found =
       lighting_.EvaluateSamples(path.receiver, path.ray.direction, distance, point, path.ray.time, false);
-  return found ? WeightedEmission(path, *found) : Color(0.0f);
+  return found ? Found(path, found->light, WeightedEmission(path, *found)) : Color(0.0f);
 }
 
 Color PathWalk::EscapedEmission(const State& path) const {
   if (path.fromCamera) {
-    return path.throughputSpecular * lighting_.EscapedEmissionForCamera(path.ray);
+    return EscapedEmissionForCamera(lighting_, path.ray, path.throughputSpecular, path.layers);
   }
   Color sum;
   for (size_t i = 0; i < lighting_.InfiniteCount(); ++i) {
     const auto found = lighting_.EvaluateEscaped(i, path.receiver, path.ray.direction, path.ray.time, false);
-    if (found) sum += WeightedEmission(path, *found);
+    if (found) sum += Found(path, found->light, WeightedEmission(path, *found));
   }
   return sum;
 }
@@ -92,7 +105,7 @@ Color PathWalk::SampleLight(const State& path, const SurfacePoint& point, const 
   ++counts.shadowRays;
   const Color arrived = lighting_.Transmission(point, direct, path.ray.time);
   lighting_.UpdateWithResults(receiver, direct, arrived);
-  return contribution * arrived * worth;
+  return Found(path, light.light, contribution * arrived * worth);
 }
 
 // Continues the path by the BSDF and Russian roulette. False: it ends here.
@@ -123,10 +136,9 @@ bool PathWalk::Scatter(State& path, const SurfacePoint& point, const Bsdf& bsdf,
   return true;
 }
 
-Color PathWalk::Radiance(const Ray& cameraRay, Sampler& sampler, RenderCounts& counts,
-                         const PhotonGatherer* gatherer) const {
-  State path;
-  path.ray = cameraRay;
+Color PathWalk::Radiance(const Ray& cameraRay, Sampler& sampler, RenderCounts& counts, const PhotonGatherer* gatherer,
+                         LayerSample* layers) const {
+  State path(cameraRay, layers);
   Color radiance;
   for (;;) {
     ++(path.fromCamera ? counts.cameraRays : counts.indirectRays);

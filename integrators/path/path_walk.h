@@ -38,12 +38,15 @@ class PathWalk {
         samplesLights_(settings.samplesLights),
         shadowRays_(settings.shadowRays) {}
 
-  // One sample of the radiance that arrives along `ray`. `gatherer` may be null where gatherBelow is 0.
-  Color Radiance(const Ray& ray, Sampler& sampler, RenderCounts& counts, const PhotonGatherer* gatherer) const;
+  // One sample of the radiance that arrives along `ray`. `gatherer` may be null where gatherBelow is 0, and adds to
+  // `layers` (SampleSinks) itself.
+  Color Radiance(const Ray& ray, Sampler& sampler, RenderCounts& counts, const PhotonGatherer* gatherer,
+                 LayerSample* layers) const;
 
  private:
   struct State;
 
+  Color Found(const State& path, uint32_t light, const Color& radiance) const;
   Color WeightedEmission(const State& path, const FoundLight& found) const;
   Color EmissionAt(const State& path, const RayHit& hit, const SurfacePoint& point) const;
   Color EscapedEmission(const State& path) const;

@@ -50,7 +50,8 @@ struct SppmIntegrator::Kept final : LightSubpathVisitor {
     if (withOrigin) photons.SetOrigin(OriginOf(lighting, photon, vertex));
   }
   void Arrived(const LightSubpath& path) override {
-    if (path.count >= firstDepth && !path.Last().isDelta) photons.Add(path.Last(), static_cast<int>(path.count));
+    if (path.count >= firstDepth && !path.Last().isDelta)
+      photons.Add(path.Last(), path.count, lighting.GroupOf(path.light));
   }
 
   const LightingServices& lighting;
@@ -61,8 +62,8 @@ struct SppmIntegrator::Kept final : LightSubpathVisitor {
 
 // The photons of the pass, as one camera path sees them.
 struct SppmIntegrator::Gathered final : PhotonGatherer {
-  Gathered(const SppmIntegrator& integrator, const PhotonPass& aPass, const Ray& ray, RenderCounts& someCounts)
-      : own(integrator), pass(aPass), counts(someCounts) {
+  Gathered(const SppmIntegrator& integrator, const Ray& ray, const SampleSinks& sinks)
+      : own(integrator), pass(*sinks.gather), counts(sinks.counts), layers(sinks.layers) {
     if (own.settings_.photons.radius > 0) return;
     const double area = PixelArea(*own.scene_.camera, ray, own.settings_.filmPixels, 1);
     perLength = static_cast<float>(kRadiusInPixels * std::sqrt(area)) * pass.radiusScale;
@@ -95,17 +96,31 @@ struct SppmIntegrator::Gathered final : PhotonGatherer {
       if (f.pdfForward.value > kWide) continue;
       sum += (f.diffuse * photon.flux + f.specular * pass.map->SpecularFlux(photon)) *
              ArrivalCorrection(bsdf, photon.toPrevious);
+      if (layers) [[unlikely]]
+        AddToLayers(photon, bsdf, f, throughput * PerArea(radius));
       if (pass.use) [[unlikely]]
         pass.use->Add(index, (throughput * f.Sum()).Average() * Importance(length));
     }
     if (sum.IsBlack()) return sum;
+    return throughput * sum * PerArea(radius);
+  }
+
+  // 1/m², of a photon within the radius.
+  float PerArea(float radius) const {
     const double area = static_cast<double>(kPi) * static_cast<double>(radius) * static_cast<double>(radius);
-    return throughput * sum * static_cast<float>(1 / (pass.lightPaths * area));
+    return static_cast<float>(1 / (pass.lightPaths * area));
+  }
+  // Apart from the sum of all: a product that both shared would be rounded otherwise than where there are no layers.
+  [[gnu::noinline]] void AddToLayers(const Photon& photon, const Bsdf& bsdf, const BsdfEvaluation& f,
+                                     const Color& factor) const {
+    const Color scattered = f.diffuse * photon.flux + f.specular * pass.map->SpecularFlux(photon);
+    layers->Add(photon.group, factor * scattered * ArrivalCorrection(bsdf, photon.toPrevious));
   }
 
   const SppmIntegrator& own;
   const PhotonPass& pass;
   RenderCounts& counts;
+  LayerSample* layers;
   float perLength = 0;
 };
 
@@ -116,8 +131,8 @@ Color SppmIntegrator::Sample(const Ray* ray, float time, Sampler& sampler, const
     light_.Trace(time, sampler, sinks.counts, path, kept);
   }
   if (!ray || !sinks.gather) return Color(0.0f);
-  const Gathered gathered(*this, *sinks.gather, *ray, sinks.counts);
-  return walk_.Radiance(*ray, sampler, sinks.counts, &gathered);
+  const Gathered gathered(*this, *ray, sinks);
+  return walk_.Radiance(*ray, sampler, sinks.counts, &gathered, sinks.layers);
 }
 
 }  // namespace

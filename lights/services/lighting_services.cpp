@@ -30,6 +30,7 @@ LightingServices::LightingServices(const GeometryScene& geometry, std::vector<Pl
                                    LightSelection selection, LightLinking linking)
     : geometry_(geometry),
       lights_(std::move(lights)),
+      groups_(lights_),
       sphere_(geometry.GetBoundingSphere()),
       linking_(std::move(linking)),
       isLinked_(linking_.Excludes() || linking_.HasFilters()) {
@@ -181,15 +182,12 @@ Color LightingServices::EmissionForCamera(const Vector3& direction, float distan
                                                          SurfaceLightHit(direction, distance, point));
 }
 
-Color LightingServices::EscapedEmissionForCamera(const Ray& ray) const {
-  Color sum;
+Color LightingServices::EscapedEmissionForCamera(size_t i, const Ray& ray) const {
+  const uint32_t light = infinite_[i];
+  if (!fronts_[light].light->Settings().cameraVisible) return Color(0.0f);
   const LightHit hit = EscapedHit(ray.origin, ray.direction);
-  for (const uint32_t light : infinite_) {
-    if (!fronts_[light].light->Settings().cameraVisible) continue;
-    std::optional<LightTransform> moved;
-    sum += fronts_[light].light->EvaluateEmissionForCamera(Context(light, ray.time, false, moved), hit);
-  }
-  return sum;
+  std::optional<LightTransform> moved;
+  return fronts_[light].light->EvaluateEmissionForCamera(Context(light, ray.time, false, moved), hit);
 }
 
 PdfDiscrete LightingServices::SelectionProbability(const Receiver& receiver, uint32_t light, int patch) const {

@@ -3,6 +3,7 @@
 // every technique.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "geometry/geometry_scene.h"
 #include "geometry/robust.h"
 #include "lights/light.h"
+#include "lights/light_groups.h"
 #include "lights/selection/emission_guide.h"
 #include "lights/selection/light_learning.h"
 #include "lights/selection/light_selector.h"
@@ -102,9 +104,9 @@ class LightingServices {
   std::optional<FoundLight> EvaluateEscaped(size_t i, const Receiver& receiver, const Vector3& direction, float time,
                                             bool bidirectional) const;
 
-  // What a camera ray sees of a light it hit, or of all lights at infinity when it escapes.
+  // What a camera ray sees of a light it hit, or of a light at infinity when it escapes: i in [0, InfiniteCount()).
   Color EmissionForCamera(const Vector3& direction, float distance, const SurfacePoint& point, float time) const;
-  Color EscapedEmissionForCamera(const Ray& ray) const;
+  Color EscapedEmissionForCamera(size_t i, const Ray& ray) const;
   // Whether a ray that hit `point` from the direction of the unit vector `toRay` met the very place that the photon
   // left.
   bool IsOrigin(const EmittedPhoton& photon, const SurfacePoint& point, const Vector3& toRay, float distance) const;
@@ -135,6 +137,14 @@ class LightingServices {
   bool CanBeHit(uint32_t light) const {
     return fronts_[light].kind == LightKind::Infinite ||
            (fronts_[light].kind == LightKind::Area && fronts_[light].canBeHit);
+  }
+
+  // The groups that lights are in, and that of the light at infinity `i` and of the area light at a surface point.
+  const LightGroups& Groups() const { return groups_; }
+  uint32_t GroupOf(uint32_t light) const { return groups_.Of(light); }
+  uint32_t GroupOfInfinite(size_t i) const { return groups_.Of(infinite_[i]); }
+  uint32_t GroupAt(const SurfacePoint& point) const {
+    return groups_.Of(static_cast<uint32_t>(std::max(geometry_.LightAt(point.primitive, point.instance), 0)));
   }
 
   bool HasLights() const { return !lights_.empty(); }
@@ -190,6 +200,7 @@ class LightingServices {
   };
   LargeArray<Front> fronts_;
   std::vector<uint32_t> infinite_;
+  LightGroups groups_;
   BoundingSphere sphere_;
   LightLinking linking_;
   bool isLinked_ = false;  // some light has a filter, or does not shine on everything

@@ -34,11 +34,11 @@ std::filesystem::path OutputPath(const RenderOptions& options, const RenderSetti
 }
 
 // An image too large for the machine is told before the system ends the process for it.
-void CheckMemory(const RenderSettings& settings, bool hasTechniques) {
-  constexpr uint64_t channels = 6;  // of the developed image: colour and variance
-  const uint64_t splats = settings.integrator == "path" ? 0 : sizeof(SplatSums);
+void CheckMemory(const RenderSettings& settings, size_t layers, bool hasTechniques) {
+  const uint64_t channels = 6 + 3 * layers;  // of the developed image: colour, variance and layers
   const uint64_t techniques = hasTechniques ? TechniqueImages::BytesPerPixel(settings.maxDepth) : 0;
-  const uint64_t perPixel = sizeof(PixelSums) + splats + techniques + 2 * channels * sizeof(float);
+  const uint64_t perPixel =
+      Film::BytesPerPixel(layers, settings.integrator != "path") + techniques + 2 * channels * sizeof(float);
   const uint64_t needed = perPixel * settings.crop.Width() * settings.crop.Height();
   const uint64_t installed = InstalledMemory();
   if (needed <= installed) return;
@@ -55,6 +55,12 @@ std::string Percent(double fraction) {
   return text;
 }
 
+std::string Joined(const std::vector<std::string>& names, const char* separator) {
+  std::string all;
+  for (const std::string& name : names) all += (all.empty() ? "" : separator) + name;
+  return all;
+}
+
 Image DevelopWithMetadata(const Film& film, const RenderReport& report) {
   Image image = film.Develop();
   image.metadata = {{"lampyr.version", kVersion},
@@ -62,6 +68,7 @@ Image DevelopWithMetadata(const Film& film, const RenderReport& report) {
                     {"lampyr.integrator", report.integrator},
                     {"lampyr.samplesPerPixel", std::to_string(report.outcome.samplesPerPixel)},
                     {"lampyr.seed", std::to_string(report.seed)}};
+  if (!report.lightGroups.empty()) image.metadata["lampyr.lightGroups"] = Joined(report.lightGroups, ",");
   return image;
 }
 
@@ -119,7 +126,8 @@ int RenderLoaded(const RenderOptions& options, const LoadedScene& loaded) {
   const RenderSettings& settings = built.settings;
   const std::filesystem::path path = OutputPath(options, settings);
   if (options.stats) CheckWritable(*options.stats, "--stats");
-  CheckMemory(settings, options.strategyImages.has_value());
+  const std::vector<std::string>& layers = built.scene.lighting->Groups().Layers();
+  CheckMemory(settings, layers.size(), options.strategyImages.has_value());
 
   report.scene = options.scene.string();
   report.sceneHash = loaded.hash;
@@ -133,9 +141,10 @@ int RenderLoaded(const RenderOptions& options, const LoadedScene& loaded) {
   report.pixels = static_cast<int64_t>(settings.crop.Width()) * settings.crop.Height();
   report.primitives = built.scene.geometry->PrimitiveCount();
   report.lights = built.scene.lighting->Lights().size();
+  report.lightGroups = layers;
 
   const AnyIntegrator integrator = MakeIntegrator(built.scene, settings);
-  Film film(settings.width, settings.height, settings.crop);
+  Film film(settings.width, settings.height, settings.crop, layers);
   std::unique_ptr<TechniqueImages> techniques;
   if (options.strategyImages) {
     if (settings.integrator != "bdpt")

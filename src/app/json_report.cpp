@@ -52,6 +52,7 @@ std::string ToJson(const RenderReport& report) {
       {"height", report.height},
       {"primitives", report.primitives},
       {"lights", report.lights},
+      {"lightGroups", report.lightGroups},
       {"samplesPerPixel", outcome.samplesPerPixel},
       {"samples", samples},
       {"samplesPerSecond", samples / seconds},

@@ -17,6 +17,7 @@ struct RenderReport {
   int threads = 1, width = 0, height = 0;
   int64_t pixels = 0;
   size_t primitives = 0, lights = 0;
+  std::vector<std::string> lightGroups;  // the image's layers
   double parseSeconds = 0, buildSeconds = 0, writeSeconds = 0;
   uint64_t rejectedRays = 0;
   RenderOutcome outcome;

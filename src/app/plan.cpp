@@ -195,6 +195,16 @@ PlanDecision ChooseGuiding(const RenderScene& scene, const RenderSettings& setti
   return {"guiding", "if it pays", "learned from the first samples"};
 }
 
+PlanDecision ChooseLayers(const RenderScene& scene) {
+  const std::vector<std::string>& layers = scene.lighting->Groups().Layers();
+  if (layers.empty()) return {"light groups", "none", "no light names one: the picture has no layers"};
+  constexpr size_t most = 8;  // that one wants to read
+  std::string names;
+  for (size_t i = 0; i < std::min(most, layers.size()); ++i) names += (i > 0 ? ", " : "") + layers[i];
+  if (layers.size() > most) names += ", …";
+  return {"light groups", Count(layers.size(), "layer"), names};
+}
+
 }  // namespace
 
 ScenePlan PlanFor(const RenderScene& scene, const RenderSettings& settings) {
@@ -216,6 +226,7 @@ ScenePlan PlanFor(const RenderScene& scene, const RenderSettings& settings) {
   if (GathersPhotons(integrator)) {
     plan.decisions.push_back(ChooseGuiding(scene, settings, integrator));
   }
+  plan.decisions.push_back(ChooseLayers(scene));
   plan.decisions.push_back(scene.hasMotion ? PlanDecision{"motion", "on", "something moves while the shutter is open"}
                                            : PlanDecision{"motion", "off", "nothing moves: rays have no time"});
   plan.decisions.push_back(scene.camera->HasPinhole()

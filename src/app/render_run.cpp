@@ -43,15 +43,38 @@ PixelRay MakePixelRay(const RenderScene& scene, const PixelFilter& filter, int x
   return {scene.camera->GenerateRay(film, lens, time), offset.weight};
 }
 
-// A sample of one pixel, added to `sums`. A value that is none is left out and counted.
-void AddSample(const PixelRay& ray, const Color& radiance, float imagingRatio, PixelSums& sums, RenderCounts& counts) {
-  Color value = radiance * (ray.camera.weight * imagingRatio);
-  if (!value.IsValid()) {
-    ++counts.droppedSamples;
-    value = Color(0.0f);
+// Where samples of one thread go.
+struct SampleAdder {
+  SampleAdder(const RenderSettings& settings, Film& aFilm, RenderCounts& someCounts)
+      : imagingRatio(settings.imagingRatio), film(aFilm), counts(someCounts) {
+    if (film.HasLayers()) layers.emplace(film.Layers().size());
   }
-  sums.Add(value, ray.filterWeight);
-}
+
+  // What the next sample is to be split into; null: nothing.
+  LayerSample* StartLayers() {
+    if (!layers) return nullptr;
+    layers->Clear();
+    return &*layers;
+  }
+  // A sample of one pixel, added to `sums` and to the pixel's layers. A value that is none is left out of both and
+  // counted.
+  void Add(int x, int y, const PixelRay& ray, const Color& radiance, PixelSums& sums) {
+    const float scale = ray.camera.weight * imagingRatio;
+    Color value = radiance * scale;
+    const bool isValid = value.IsValid();
+    if (!isValid) {
+      ++counts.droppedSamples;
+      value = Color(0.0f);
+    }
+    sums.Add(value, ray.filterWeight);
+    if (layers && isValid) film.AddToLayers(x, y, *layers, scale, ray.filterWeight);
+  }
+
+  float imagingRatio;
+  Film& film;
+  RenderCounts& counts;
+  std::optional<LayerSample> layers;
+};
 
 struct Clock {
   std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
@@ -81,13 +104,14 @@ RenderCounts RenderPass(const RenderScene& scene, const CameraIntegrator& integr
     const int y0 = crop.y0 + tile / tilesX * kTileSize, y1 = std::min(y0 + kTileSize, crop.y1);
     Sampler sampler(settings.sampler, settings.seed);
     RenderCounts counts;
+    SampleAdder adder(settings, film, counts);
     for (int y = y0; y < y1; ++y) {
       for (int x = x0; x < x1; ++x) {
         PixelSums sums = film.Pixel(x, y);
         for (uint32_t i = 0; i < count; ++i) {
           sampler.StartPixelSample(x, y, first + i);
           const PixelRay ray = MakePixelRay(scene, filter, x, y, SampleTime(scene, sampler), sampler);
-          AddSample(ray, integrator.Radiance(ray.camera.ray, sampler, counts), settings.imagingRatio, sums, counts);
+          adder.Add(x, y, ray, integrator.Radiance(ray.camera.ray, sampler, counts, adder.StartLayers()), sums);
         }
         film.Pixel(x, y) = sums;
       }
@@ -177,8 +201,11 @@ RenderCounts RenderPass(const RenderScene& scene, const BidirectionalIntegrator&
       splats.Clear();
       TechniqueImages::Recorder* recorder = techniques && withCamera ? &recorders[own] : nullptr;
       const PhotonPass* found = withCamera ? gather : nullptr;
-      const SampleSinks withPhotons{splats, ofChunk, recorder, found, &sweep.photons[own], store.WantsOrigins()};
-      const SampleSinks withoutPhotons{splats, ofChunk, recorder, found};
+      SampleAdder adder(settings, film, ofChunk);
+      LayerSample* layers = adder.StartLayers();
+      const SampleSinks withPhotons{splats, ofChunk, recorder, found, &sweep.photons[own], store.WantsOrigins(),
+                                    layers};
+      const SampleSinks withoutPhotons{splats, ofChunk, recorder, found, nullptr, false, layers};
       Sampler sampler(settings.sampler, seed);
       const uint64_t begin = round + static_cast<uint64_t>(chunk) * chunkPaths;
       for (uint64_t i = begin; i < std::min(begin + chunkPaths, end); ++i) {
@@ -196,8 +223,9 @@ RenderCounts RenderPass(const RenderScene& scene, const BidirectionalIntegrator&
         }
         const PixelRay ray = MakePixelRay(scene, filter, x, y, time, sampler);
         if (recorder) recorder->StartSample(x, y, ray.camera.weight * settings.imagingRatio * ray.filterWeight);
+        adder.StartLayers();
         const Color radiance = integrator.Sample(&ray.camera.ray, time, sampler, sinks);
-        AddSample(ray, radiance, settings.imagingRatio, film.Pixel(x, y), ofChunk);
+        adder.Add(x, y, ray, radiance, film.Pixel(x, y));
       }
     });
   };

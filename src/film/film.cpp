@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -60,6 +61,12 @@ float ToFiniteFloat(double value) {
   return static_cast<float>(std::clamp(value, -largest, largest));
 }
 
+void AddTo(std::array<double, 3>& sum, float weight, const Color& value) {
+  sum[0] += static_cast<double>(weight) * static_cast<double>(value.r);
+  sum[1] += static_cast<double>(weight) * static_cast<double>(value.g);
+  sum[2] += static_cast<double>(weight) * static_cast<double>(value.b);
+}
+
 }  // namespace
 
 void PixelSums::Add(const Color& value, float filterWeight) {
@@ -80,20 +87,42 @@ void PixelSums::Add(const Color& value, float filterWeight) {
   ++count;
 }
 
-Film::Film(int fullWidth, int fullHeight, const PixelRect& crop)
-    : fullWidth_(fullWidth), fullHeight_(fullHeight), crop_(crop) {
+Film::Film(int fullWidth, int fullHeight, const PixelRect& crop, std::vector<std::string> layers)
+    : fullWidth_(fullWidth), fullHeight_(fullHeight), crop_(crop), layers_(std::move(layers)) {
   const bool inside = crop.x0 >= 0 && crop.y0 >= 0 && crop.x1 <= fullWidth && crop.y1 <= fullHeight;
   if (!inside || crop.Width() <= 0 || crop.Height() <= 0) {
     throw Error("the crop holds no pixel of the " + std::to_string(fullWidth) + " x " + std::to_string(fullHeight) +
                 " image, or pixels outside of it");
   }
   pixels_.resize(static_cast<size_t>(crop.Width()) * static_cast<size_t>(crop.Height()));
+  layerSums_.resize(pixels_.size() * layers_.size());
+}
+
+void Film::AddToLayers(int x, int y, const LayerSample& sample, float scale, float filterWeight) {
+  const double factor = static_cast<double>(scale) * static_cast<double>(filterWeight);
+  LayerSum* sums = layerSums_.data() + Index(x, y) * layers_.size();
+  for (const uint32_t layer : sample.Met()) {
+    for (int c = 0; c < 3; ++c) sums[layer][static_cast<size_t>(c)] += factor * sample.Sum(layer, c);
+  }
+}
+
+uint64_t Film::BytesPerPixel(size_t layers, bool withSplats) {
+  const uint64_t ofLayer = (withSplats ? 2 : 1) * sizeof(LayerSum);
+  return sizeof(PixelSums) + (withSplats ? sizeof(SplatSums) : 0) + layers * ofLayer;
 }
 
 double Film::Value(size_t pixel, int channel) const {
   const PixelSums& samples = pixels_[pixel];
   double value = samples.count > 0 ? samples.sum[channel] / Divisor(samples) : 0.0;
   if (lightPaths_ > 0) value += splats_[pixel].Sum(channel) / static_cast<double>(lightPaths_);
+  return value;
+}
+
+double Film::LayerValue(size_t pixel, size_t layer, size_t channel) const {
+  const PixelSums& samples = pixels_[pixel];
+  const size_t index = pixel * layers_.size() + layer;
+  double value = samples.count > 0 ? layerSums_[index][channel] / Divisor(samples) : 0.0;
+  if (lightPaths_ > 0) value += layerSplats_[index][channel] / static_cast<double>(lightPaths_);
   return value;
 }
 
@@ -124,12 +153,14 @@ double Film::FourthOfMean(size_t pixel) const {
 
 SplatList Film::MakeSplatList(const PixelFilter& filter, float scale) const {
   const Vector2 radius = filter.Radius() - Vector2(0.5f);  // beyond the pixels' centres
-  return {Point2(crop_.x0, crop_.y0) + Vector2(0.5f) - filter.Radius(), Point2(crop_.x1, crop_.y1) + radius, scale};
+  return {Point2(crop_.x0, crop_.y0) + Vector2(0.5f) - filter.Radius(), Point2(crop_.x1, crop_.y1) + radius, scale,
+          HasLayers()};
 }
 
 void Film::AddSplats(const PixelFilter& filter, std::span<const SplatList> lists, int threads) {
   if (splats_.empty()) {
     splats_.resize(pixels_.size());
+    layerSplats_.resize(layerSums_.size());
     splatSpread_ = SplatSpread(filter);
   }
   const int bands = std::max(threads, 1);
@@ -144,8 +175,10 @@ void Film::AddToRows(const PixelFilter& filter, std::span<const SplatList> lists
   const auto firstPixel = [](float p, float r) { return static_cast<int>(std::floor(p - 0.5f - r)); };
   const auto lastPixel = [](float p, float r) { return static_cast<int>(std::ceil(p - 0.5f + r)); };
   std::vector<float> weightsX(static_cast<size_t>(2 * radius.x) + 4);
+  const bool hasLayers = HasLayers();
   uint64_t firstPath = lightPaths_ + 1;  // 0 is the path of pixels that have met none
   for (const SplatList& list : lists) {
+    const uint32_t* layer = hasLayers ? list.Layers().data() : nullptr;  // of the splat
     for (const Splat& splat : list.Splats()) {
       const int y0 = std::max(firstPixel(splat.film.y, radius.y), crop_.y0);
       const int y1 = std::min(lastPixel(splat.film.y, radius.y), crop_.y1 - 1);
@@ -164,16 +197,23 @@ void Film::AddToRows(const PixelFilter& filter, std::span<const SplatList> lists
         }
         for (int x = x0; x <= x1; ++x) {
           const float weight = weightY * weightsX[static_cast<size_t>(x - x0)];
-          if (weight != 0) splats_[Index(x, y)].Add(firstPath + splat.path, static_cast<double>(weight), splat.value);
+          if (weight == 0) continue;
+          splats_[Index(x, y)].Add(firstPath + splat.path, static_cast<double>(weight), splat.value);
+          if (hasLayers) AddTo(layerSplats_[Index(x, y) * layers_.size() + *layer], weight, splat.value);
         }
       }
+      if (hasLayers) ++layer;
     }
     firstPath += list.Paths();
   }
 }
 
 Image Film::Develop() const {
-  Image image(crop_.Width(), crop_.Height(), {"R", "G", "B", "variance.R", "variance.G", "variance.B"});
+  std::vector<std::string> channels = {"R", "G", "B", "variance.R", "variance.G", "variance.B"};
+  for (const std::string& layer : layers_) {
+    for (const char* channel : {".R", ".G", ".B"}) channels.push_back(layer + channel);
+  }
+  Image image(crop_.Width(), crop_.Height(), std::move(channels));
   image.offsetX = crop_.x0;
   image.offsetY = crop_.y0;
   image.fullWidth = fullWidth_;
@@ -182,6 +222,9 @@ Image Film::Develop() const {
   for (size_t i = 0; i < pixels_.size(); ++i) {
     for (int c = 0; c < 3; ++c) *out++ = ToFiniteFloat(Value(i, c));
     for (int c = 0; c < 3; ++c) *out++ = ToFiniteFloat(VarianceOfMean(i, c));
+    for (size_t layer = 0; layer < layers_.size(); ++layer) {
+      for (size_t c = 0; c < 3; ++c) *out++ = ToFiniteFloat(LayerValue(i, layer, c));
+    }
   }
   return image;
 }

@@ -2,13 +2,19 @@
 //
 // A pixel is what its camera samples say plus what light paths have splatted on it. The two are different techniques of
 // one estimate, or one of them is absent: a pure path tracer makes no splats, and a pure light tracer no samples.
+//
+// A film may have layers, which split the picture: each part of a sample or splat belongs to one of them. They are
+// summed and normalised as the picture is, so they add up to it but for rounding.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "film/image.h"
+#include "film/layer_sample.h"
 #include "film/pixel_filter.h"
 #include "film/splats.h"
 #include "math/vec.h"
@@ -34,13 +40,20 @@ struct PixelSums {
 
 class Film {
  public:
-  // `crop` in pixels of the full image.
-  Film(int fullWidth, int fullHeight, const PixelRect& crop);
+  // `crop` in pixels of the full image. `layers`: their names.
+  Film(int fullWidth, int fullHeight, const PixelRect& crop, std::vector<std::string> layers = {});
 
   const PixelRect& Crop() const { return crop_; }
   // Pixels are independent: two threads may work on two pixels at once.
   PixelSums& Pixel(int x, int y) { return pixels_[Index(x, y)]; }
   const PixelSums& Pixel(int x, int y) const { return pixels_[Index(x, y)]; }
+
+  const std::vector<std::string>& Layers() const { return layers_; }
+  bool HasLayers() const { return !layers_.empty(); }
+  // The parts of a sample whose value is added to the pixel itself: `scale` times them, weighted by the filter.
+  void AddToLayers(int x, int y, const LayerSample& sample, float scale, float filterWeight);
+  // Memory that `layers` of them take for each pixel.
+  static uint64_t BytesPerPixel(size_t layers, bool withSplats);
 
   // An empty list for splats on this film.
   SplatList MakeSplatList(const PixelFilter& filter, float scale) const;
@@ -52,7 +65,7 @@ class Film {
 
   // R, G, B and variance.R, .G, .B: the variance of the pixel's mean (sample variance / n; an upper bound for
   // stratified samplers). Samples and splats count as independent: a sample that also splats does so on all pixels
-  // alike, and its share in its own is small.
+  // alike, and its share in its own is small. Then NAME.R, .G, .B of each layer.
   Image Develop() const;
 
   // Estimated relative error of the image at 95 % confidence: 1.96 · sqrt(mean variance of the pixels' means) over
@@ -63,9 +76,12 @@ class Film {
   double RelativeError(double largestSample = 0) const;
 
  private:
+  using LayerSum = std::array<double, 3>;
+
   size_t Index(int x, int y) const { return static_cast<size_t>(y - crop_.y0) * crop_.Width() + (x - crop_.x0); }
   void AddToRows(const PixelFilter& filter, std::span<const SplatList> lists, int band, int bands);
   double Value(size_t pixel, int channel) const;
+  double LayerValue(size_t pixel, size_t layer, size_t channel) const;
   double VarianceOfMean(size_t pixel, int channel) const;
   double FourthOfMean(size_t pixel) const;
 
@@ -73,6 +89,8 @@ class Film {
   PixelRect crop_;
   std::vector<PixelSums> pixels_;
   std::vector<SplatSums> splats_;  // empty while there are none
+  std::vector<std::string> layers_;
+  std::vector<LayerSum> layerSums_, layerSplats_;  // of each layer of each pixel; splats: empty while there are none
   uint64_t lightPaths_ = 0;
   double splatSpread_ = 1;  // how many pixels a splat is worth (film.cpp)
 };

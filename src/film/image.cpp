@@ -118,14 +118,14 @@ std::vector<size_t> ChannelOrder(const std::vector<std::string>& names) {
 
 void CheckImageSize(const std::filesystem::path& path, int64_t width, int64_t height, int64_t channels,
                     int64_t bytesPerPixel) {
-  constexpr int64_t maxSide = int64_t{1} << 24, maxValues = int64_t{1} << 30;
+  constexpr int64_t maxSide = int64_t{1} << 24, maxValues = int64_t{1} << 30, maxChannels = int64_t{1} << 18;
   constexpr int64_t alwaysFine = int64_t{1} << 28, largestCompression = 2000;
   const std::string claim =
       std::to_string(width) + " x " + std::to_string(height) + " pixels with " + std::to_string(channels) + " channels";
   if (width <= 0 || height <= 0 || channels <= 0) {
     throw Error("cannot read image \"" + path.string() + "\": it has no pixels (" + claim + ")");
   }
-  if (width > maxSide || height > maxSide || channels > 4096 || width * height > maxValues / channels) {
+  if (width > maxSide || height > maxSide || channels > maxChannels || width * height > maxValues / channels) {
     throw Error("cannot read image \"" + path.string() + "\": too large (" + claim + ")");
   }
   std::error_code code;

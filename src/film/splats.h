@@ -23,11 +23,13 @@ struct Splat {
 class SplatList {
  public:
   // Film points that reach a pixel of the crop: all others need not be added. `scale` multiplies every value.
-  SplatList(const Point2& reachMin, const Point2& reachMax, float scale)
-      : reachMin_(reachMin), reachMax_(reachMax), scale_(scale) {}
+  // `hasLayers`: the layer of each splat is wanted.
+  SplatList(const Point2& reachMin, const Point2& reachMax, float scale, bool hasLayers = false)
+      : reachMin_(reachMin), reachMax_(reachMax), scale_(scale), hasLayers_(hasLayers) {}
 
   void Clear() {
     splats_.clear();
+    layers_.clear();
     paths_ = 0;
   }
   // What is added from now on belongs to the next path.
@@ -37,22 +39,27 @@ class SplatList {
     return film.x >= reachMin_.x && film.x < reachMax_.x && film.y >= reachMin_.y && film.y < reachMax_.y;
   }
   // False: the value is not finite or negative, and left out.
-  bool Add(const Point2& film, const Color& value) {
+  bool Add(const Point2& film, const Color& value, uint32_t layer = 0) {
     if (!Reaches(film)) return true;
     const Color scaled = value * scale_;
     if (!scaled.IsValid()) return false;
     splats_.push_back({film, scaled, paths_ - 1});
+    if (hasLayers_) layers_.push_back(layer);
     return true;
   }
 
   const std::vector<Splat>& Splats() const { return splats_; }
+  // One for each splat, or none at all.
+  const std::vector<uint32_t>& Layers() const { return layers_; }
   uint32_t Paths() const { return paths_; }
 
  private:
   Point2 reachMin_, reachMax_;
   float scale_;
+  bool hasLayers_;
   uint32_t paths_ = 0;
   std::vector<Splat> splats_;
+  std::vector<uint32_t> layers_;
 };
 
 // Sums of one pixel over light paths. The contributions of one path are added up before they are squared: they are one

@@ -118,6 +118,9 @@ TEST(Plan, IsWhatASceneNeeds) {
   EXPECT_EQ(ChoiceOf(PlanOf(plain), "lens"), "pinhole");
   EXPECT_EQ(ChoiceOf(PlanOf(plain), "motion"), "off");
   EXPECT_EQ(ChoiceOf(PlanOf(plain), "light selection"), "tree");
+  EXPECT_EQ(ChoiceOf(PlanOf(plain), "light groups"), "none");
+  EXPECT_EQ(ChoiceOf(PlanOf(plain + "LightSource \"point\" \"string lightGroup\" \"key\"\n"), "light groups"),
+            "2 layers");
   EXPECT_EQ(ChoiceOf(PlanOf(kSwitches[13].head + kSwitches[13].camera + kThings), "lens"), "sampled");
   EXPECT_EQ(ChoiceOf(PlanOf(plain + kSwitches[14].more), "motion"), "on");
   // A lamp behind a screen: only what it lights is seen.

@@ -82,6 +82,37 @@ TEST_F(Cli, RendersAnImageWithMetadataAndStatistics) {
   }
 }
 
+TEST_F(Cli, LightGroupsAreLayersOfTheImageAndOfNothingElse) {
+  const std::string more = "LightSource \"infinite\" \"rgb L\" [0.1 0.2 0.3]";
+  Write("plain.pbrt", kScene + more + "\n");
+  Write("grouped.pbrt", kScene + more + " \"string lightGroup\" \"sky light\"\n");
+  ASSERT_EQ(Run("render plain.pbrt -o plain.exr --png --quiet").exitCode, 0);
+  ASSERT_EQ(Run("render grouped.pbrt -o grouped.exr --png --quiet --stats stats.json").exitCode, 0);
+  const Image plain = ReadImage(folder_ / "plain.exr"), grouped = ReadImage(folder_ / "grouped.exr");
+  EXPECT_EQ(plain.channels, (std::vector<std::string>{"R", "G", "B", "variance.R", "variance.G", "variance.B"}));
+  EXPECT_EQ(plain.metadata.count("lampyr.lightGroups"), 0u);
+  EXPECT_EQ(grouped.channels,
+            (std::vector<std::string>{"R", "G", "B", "rest.R", "rest.G", "rest.B", "sky_light.R", "sky_light.G",
+                                      "sky_light.B", "variance.R", "variance.G", "variance.B"}));
+  EXPECT_EQ(grouped.metadata.at("lampyr.lightGroups"), "sky_light,rest");
+  EXPECT_EQ(Read("plain.png"), Read("grouped.png"));
+  const std::string stats = Read("stats.json");
+  EXPECT_NE(stats.find("\"lightGroups\": [\n    \"sky_light\",\n    \"rest\"\n  ]"), std::string::npos) << stats;
+  const Outcome diff = Run("diff plain.exr grouped.exr --json");
+  EXPECT_EQ(diff.exitCode, 0) << diff.output;
+  EXPECT_NE(diff.output.find("\"mse\": 0.0"), std::string::npos) << diff.output;
+  EXPECT_NE(Run("plan grouped.pbrt").output.find("light groups     2 layers"), std::string::npos);
+  ASSERT_EQ(Run("render grouped.pbrt --spp 256 -o reference.exr --quiet").exitCode, 0);
+  const Outcome compared =
+      Run("compare grouped.pbrt --integrators path,bdpt --spp 2 --repeat 2 --reference reference.exr -o c");
+  EXPECT_EQ(compared.exitCode, 0) << compared.output;
+  Write("taken.pbrt", std::string(kScene) + "LightSource \"point\" \"string lightGroup\" \"variance\"\n");
+  const Outcome taken = Run("render taken.pbrt");
+  EXPECT_EQ(taken.exitCode, 2);
+  EXPECT_NE(taken.output.find("taken.pbrt:8:21: error: a light group cannot be called"), std::string::npos)
+      << taken.output;
+}
+
 TEST_F(Cli, SameFileForAnyNumberOfThreads) {
   ASSERT_EQ(Run("render scene.pbrt -o a.exr --threads 1 --quiet").exitCode, 0);
   ASSERT_EQ(Run("render scene.pbrt -o b.exr --threads 4 --quiet").exitCode, 0);

@@ -79,7 +79,7 @@ void ExpectExact(const std::vector<Point3>& positions, float size, uint64_t seed
     for (size_t i = 0; i < positions.size(); ++i) {
       const double distance = SquaredDistance(positions[i], center);
       if (std::abs(distance - squared) <= rim) continue;
-      const bool isInside = distance < squared, isFound = found.count(i) > 0;
+      const bool isInside = distance<squared, isFound = found.count(i)> 0;
       EXPECT_EQ(isInside, isFound) << distance / squared;
     }
     const int count = 1 + static_cast<int>(60 * rng.NextFloat());
@@ -207,6 +207,27 @@ TEST(PhotonMap, MergingIsInTheWeights) {
   EXPECT_EQ(Color(1, 2, 3), map[0].flux);
   EXPECT_EQ(Color(4, 5, 6), map.SpecularFlux(map[0]));
   EXPECT_EQ(3u, map[0].depth);
+  EXPECT_EQ(0u, map[0].group);
+}
+
+TEST(PhotonMap, KeepsTheGroupAndAsMuchOfTheDepthAsItCan) {
+  PhotonList list;
+  list.StartPath();
+  PathVertex vertex;
+  vertex.toPrevious = Vector3(0, 0, 1);
+  const std::pair<size_t, uint32_t> photons[] = {{1, 0}, {7, 65534}, {65535, 1}, {65536, 2}, {1u << 20, 3}};
+  for (const auto& [depth, group] : photons) {
+    vertex.point.position.x = static_cast<float>(group);
+    list.Add(vertex, depth, group);
+  }
+  const PhotonMap map(std::span(&list, 1), 0, 1);
+  for (const auto& [depth, group] : photons) {
+    PhotonLookup lookup;
+    const auto found = map.Find(Point3(static_cast<float>(group), 0, 0), 0.4f, lookup);
+    ASSERT_EQ(found.size(), 1u) << group;
+    EXPECT_EQ(map[found[0]].group, group);
+    EXPECT_EQ(map[found[0]].depth, std::min<size_t>(depth, 65535));
+  }
 }
 
 TEST(PackedNormal, IsNearTheNormal) {

@@ -18,7 +18,7 @@ struct Rendered {
 
 inline Rendered RenderBuilt(const BuiltScene& built, int samplesPerPixel, int threads) {
   const AnyIntegrator integrator = MakeIntegrator(built.scene, built.settings);
-  Film film(built.settings.width, built.settings.height, built.settings.crop);
+  Film film(built.settings.width, built.settings.height, built.settings.crop, built.scene.lighting->Groups().Layers());
   StopConditions stop;
   stop.samplesPerPixel = samplesPerPixel;
   Rendered rendered;

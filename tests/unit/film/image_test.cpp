@@ -94,6 +94,20 @@ std::string FailureOf(const std::filesystem::path& path, bool png = false) {
   return "";
 }
 
+// A layer for each of many light groups.
+TEST(Exr, ThousandsOfLayersComeBack) {
+  const TemporaryFolder folder;
+  std::vector<std::string> channels = {"R", "G", "B"};
+  for (int i = 1000; i < 3000; ++i) {
+    for (const char* channel : {".R", ".G", ".B"}) channels.push_back("g" + std::to_string(i) + channel);
+  }
+  const Image image = NoiseImage(3, 2, channels);
+  WriteExr(folder.Path() / "many.exr", image, ExrPrecision::Float);
+  const Image read = ReadImage(folder.Path() / "many.exr");
+  EXPECT_EQ(read.channels, image.channels);
+  EXPECT_EQ(read.data, image.data);
+}
+
 TEST(AtomicWrite, FailuresNameFileAndReason) {
   const TemporaryFolder folder;
   WriteBytes(folder / "file", "old");
