@@ -12,6 +12,28 @@ namespace {
 
 // Beyond so many standard deviations a Gaussian is left out.
 constexpr float kBlurReach = 3;
+// So many texels are enough for a standard deviation: blurred images are kept no finer.
+constexpr float kBlurTexels = 16;
+// So that tints and sums stay finite.
+constexpr float kLargestFactor = 1e18f;
+
+// The means over `count` equal parts of each of the lines, which lie `next` apart and have `size` entries `step` apart;
+// the results lie one after the other.
+std::vector<Color> Shrunk(const std::vector<Color>& from, int lines, size_t next, int size, size_t step, int count) {
+  std::vector<Color> result(static_cast<size_t>(lines) * count);
+  for (int line = 0; line < lines; ++line) {
+    for (int i = 0; i < count; ++i) {
+      const double begin = static_cast<double>(i) * size / count, end = static_cast<double>(i + 1) * size / count;
+      Color sum;
+      for (int j = static_cast<int>(begin); j < size && j < end; ++j) {
+        const double part = std::min(end, j + 1.0) - std::max(begin, static_cast<double>(j));
+        sum += from[line * next + j * step] * static_cast<float>(part / (end - begin));
+      }
+      result[static_cast<size_t>(line) * count + i] = sum;
+    }
+  }
+  return result;
+}
 
 }  // namespace
 
@@ -27,18 +49,40 @@ BeamImage::BeamImage(const ParameterList& parameters, const FilterBuildContext& 
                             build.diagnostics);
   const Color tint = ReadEmissionColor(parameters, "tint");
   const auto get = [&](const char* name, double value) { return static_cast<float>(parameters.GetFloat(name, value)); };
-  texelsPerLength_ = {static_cast<float>(image.Width()) / get("width", 1),
-                      static_cast<float>(image.Height()) / get("height", 1)};
-  const Vector2 sigma = get("blur", 0) * Vector2(image.Width(), image.Height());
-  const int marginX = tiles_ ? 0 : static_cast<int>(std::ceil(kBlurReach * sigma.x));
-  const int marginY = tiles_ ? 0 : static_cast<int>(std::ceil(kBlurReach * sigma.y));
-  width_ = image.Width() + 2 * marginX;
-  height_ = image.Height() + 2 * marginY;
-  middle_ = 0.5f * Vector2(width_, height_);
-  texels_.assign(static_cast<size_t>(width_) * height_, fill_);
+  const float blur = get("blur", 0);
+  const auto enough = [&](int size) {
+    return blur > 0 ? static_cast<int>(std::min(std::ceil(kBlurTexels / blur), static_cast<float>(size))) : size;
+  };
+  const int width = enough(image.Width()), height = enough(image.Height());
+  std::vector<Color> texels;
   for (int y = 0; y < image.Height(); ++y) {
     for (int x = 0; x < image.Width(); ++x) {
-      texels_[static_cast<size_t>(y + marginY) * width_ + x + marginX] = image.Texel(x, y) * tint;
+      const Color texel = image.Texel(x, y) * tint;
+      texels.emplace_back(std::min(texel.r, kLargestFactor), std::min(texel.g, kLargestFactor),
+                          std::min(texel.b, kLargestFactor));
+    }
+  }
+  if (width < image.Width())  // columns of the result follow each other row by row
+    texels = Shrunk(texels, image.Height(), image.Width(), image.Width(), 1, width);
+  if (height < image.Height()) {
+    const std::vector<Color> columns = Shrunk(texels, width, 1, image.Height(), width, height);
+    texels.resize(static_cast<size_t>(width) * height);
+    for (int y = 0; y < height; ++y) {
+      for (int x = 0; x < width; ++x)
+        texels[static_cast<size_t>(y) * width + x] = columns[static_cast<size_t>(x) * height + y];
+    }
+  }
+  texelsPerLength_ = {static_cast<float>(width) / get("width", 1), static_cast<float>(height) / get("height", 1)};
+  const Vector2 sigma = blur * Vector2(width, height);
+  const int marginX = tiles_ ? 0 : static_cast<int>(std::ceil(kBlurReach * sigma.x));
+  const int marginY = tiles_ ? 0 : static_cast<int>(std::ceil(kBlurReach * sigma.y));
+  width_ = width + 2 * marginX;
+  height_ = height + 2 * marginY;
+  middle_ = 0.5f * Vector2(width_, height_);
+  texels_.assign(static_cast<size_t>(width_) * height_, fill_);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      texels_[static_cast<size_t>(y + marginY) * width_ + x + marginX] = texels[static_cast<size_t>(y) * width + x];
     }
   }
   if (sigma.x > 0) Blur(sigma.x, true);

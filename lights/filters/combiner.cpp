@@ -71,8 +71,14 @@ class CombinerFilter final : public LightFilter {
  private:
   const std::vector<FilterInstance>& Children(CombineMode mode) const { return children_[static_cast<size_t>(mode)]; }
 
+  // A batch of one is what integrators ask for: room for more would cost more than the filters.
   void CombineAll(CombineMode mode, const FilterContext& context, const FilterSamples& samples) const {
-    constexpr int room = 64;
+    if (samples.count == 1) return CombineIn<1>(mode, context, samples);
+    CombineIn<64>(mode, context, samples);
+  }
+
+  template <int room>
+  void CombineIn(CombineMode mode, const FilterContext& context, const FilterSamples& samples) const {
     std::array<Color, room> diffuse, specular, childDiffuse, childSpecular;
     for (int begin = 0; begin < samples.count; begin += room) {
       FilterSamples part = samples.Part(begin, std::min(room, samples.count - begin));

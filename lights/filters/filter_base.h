@@ -44,6 +44,7 @@ class FilterBase : public LightFilter {
 
   // One factor F for an edge, as it is applied.
   Color Applied(const Color& factor, float strength) const {
+    if (strength == 1 && !settings_.invert) return factor;
     Color f = factor;
     if (settings_.invert) f = Color(std::max(1 - f.r, 0.0f), std::max(1 - f.g, 0.0f), std::max(1 - f.b, 0.0f));
     return Color(1.0f) + (f - Color(1.0f)) * strength;

@@ -163,6 +163,20 @@ TEST(BeamImages, LieUprightInTheBeam) {
     const auto faded = Make(type, file + "\"float blur\" 0.5");
     EXPECT_NEAR(Filter(*faded, {1, 1, -2}, Point3(0.0f)).diffuse.Average(), 0.5f * (0.4444f * 0.5f), 0.1f);
   }
+  // A large image is blurred at no more texels than that takes: half black, half white, and between them the integral
+  // of a Gaussian.
+  Image large(3000, 7, {"R", "G", "B"});
+  for (int y = 0; y < 7; ++y) {
+    for (int x = 1500; x < 3000; ++x) large.At(x, y, 0) = large.At(x, y, 1) = large.At(x, y, 2) = 1;
+  }
+  WriteExr(folder / "large.exr", large, ExrPrecision::Float);
+  const auto step = Make("gobo", "\"string filename\" \"" + (folder / "large.exr").string() +
+                                     "\" \"float blur\" 0.04 \"rgb fill\" [0 0 0]");
+  for (const float x : {-0.1f, -0.04f, 0.0f, 0.02f, 0.08f}) {
+    EXPECT_NEAR(Filter(*step, {2 * x, 0, -2}, Point3(0.0f)).diffuse.r, 0.5f * std::erfc(-x / 0.04f / std::sqrt(2.0f)),
+                4e-3f)
+        << x;
+  }
   // Of the two, the gobo moves with the place on the light.
   const auto gobo = Make("gobo", file), cookie = Make("cookie", file);
   EXPECT_EQ(Filter(*gobo, {0.25f, 0.25f, -2}, {0.25f, 0.25f, 0}).diffuse, Color(0, 1, 0));

@@ -1,4 +1,5 @@
-// GeometryScene: hits and surface points on meshes, instances against their baked copies, cut-outs, visibility, the gate.
+// GeometryScene: hits and surface points on meshes, instances against their baked copies, cut-outs, visibility, the
+// gate.
 #include <gtest/gtest.h>
 
 #include <gmock/gmock.h>
@@ -124,7 +125,8 @@ TEST(Triangle, WithoutAreaNeverGivesNaN) {
       const Vector3 d = random.Direction();
       const Ray ray{target - d, d};
       RayHit hit;
-      if (!scene.Intersect(ray, visibility::kAll, hit)) hit = {1, 0, static_cast<uint32_t>(i % 4), kNoIndex, 0.3f, 0.3f};
+      if (!scene.Intersect(ray, visibility::kAll, hit))
+        hit = {1, 0, static_cast<uint32_t>(i % 4), kNoIndex, 0.3f, 0.3f};
       const SurfacePoint p = scene.GetSurfacePoint(ray, hit);
       ASSERT_TRUE(IsFinite(p.position) && IsFinite(p.Ng) && IsFinite(p.Ns) && IsFinite(p.dpdu) && IsFinite(p.dpdv));
       ASSERT_NEAR(glm::length(p.Ng), 1, 1e-5);
@@ -144,9 +146,9 @@ TEST(Triangle, NormalsOfTinyAndHugeOnes) {
 TEST(Gate, RejectsWhatEmbreeDoesNotSurvive) {
   const GeometryScene scene(SceneOf(Sphere(1)));
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  const Ray bad[] = {{{nan, 0, 0}, {0, 0, 1}},        {{0, kInfinity, 0}, {0, 0, 1}},  {{0, 0, 1e20f}, {0, 0, 1}},
-                     {{0, 0, 0}, {0, nan, 1}},        {{0, 0, 0}, {0, kInfinity, 1}},  {{0, 0, 0}, {0, 0, 0}},
-                     {{0, 0, 0}, {0, 0, 1e20f}},      {{0, 0, 0}, {0, 0, 1}, nan},     {{0, 0, 0}, {0, 0, 1}, -1},
+  const Ray bad[] = {{{nan, 0, 0}, {0, 0, 1}},         {{0, kInfinity, 0}, {0, 0, 1}},    {{0, 0, 1e20f}, {0, 0, 1}},
+                     {{0, 0, 0}, {0, nan, 1}},         {{0, 0, 0}, {0, kInfinity, 1}},    {{0, 0, 0}, {0, 0, 0}},
+                     {{0, 0, 0}, {0, 0, 1e20f}},       {{0, 0, 0}, {0, 0, 1}, nan},       {{0, 0, 0}, {0, 0, 1}, -1},
                      {{-3e38f, 0, 0}, {0, 0, -3e38f}}, {{0, 0, 0}, {0, 0, 1}, -kInfinity}};
   uint64_t count = 0;
   for (const Ray& ray : bad) {
@@ -193,10 +195,10 @@ TEST(Scene, IntervalAndVisibility) {
   EXPECT_EQ(hit.primitive, 0u);
   EXPECT_EQ(hit.t, 2);
   EXPECT_TRUE(scene.Occluded(down, visibility::kShadow));
-  EXPECT_FALSE(scene.Occluded({down.origin, down.direction, 2}, visibility::kShadow));     // open above
+  EXPECT_FALSE(scene.Occluded({down.origin, down.direction, 2}, visibility::kShadow));       // open above
   EXPECT_TRUE(scene.Intersect({down.origin, down.direction, 2}, visibility::kShadow, hit));  // closed above
   EXPECT_TRUE(scene.Occluded({down.origin, down.direction, 2.001f}, visibility::kShadow));
-  EXPECT_FALSE(scene.Occluded({{0.1f, 0.1f, 0}, {0, 0, 1}}, visibility::kShadow));           // open below
+  EXPECT_FALSE(scene.Occluded({{0.1f, 0.1f, 0}, {0, 0, 1}}, visibility::kShadow));  // open below
 }
 
 TEST(Scene, BadMeshesAreErrors) {
@@ -220,8 +222,7 @@ TEST(Scene, BadMeshesAreErrors) {
 // An instanced mesh, sphere, cylinder and patch hit like their baked copies, under every kind of transform.
 TEST(Instances, EqualTheBakedShapes) {
   const Transform placements[] = {
-      Transform::Translate({1, 2, 3}) * Transform::Rotate(30, {1, 2, 3}),
-      Transform::Scale({-1, 1, 1}),
+      Transform::Translate({1, 2, 3}) * Transform::Rotate(30, {1, 2, 3}), Transform::Scale({-1, 1, 1}),
       Transform::Translate({-3, 0, 1}) * Transform::Rotate(70, {0, 1, 1}) * Transform::Scale({0.5, -2, 1.5}),
       Transform(glm::dmat4(1, 0.3, 0, 0, -0.4, 1, 0.1, 0, 0.2, 0, -1, 0, 1, 1, 1, 1))};  // sheared and mirrored
   TriangleMesh mesh = NoisySphere(12, 1, Point3(0.0f), 0.005f, 5);
@@ -266,10 +267,12 @@ TEST(Instances, EqualTheBakedShapes) {
     const Point3 center = Point3(m.Point({0, 0, 0}));
     int hits = 0, differing = 0, seen[3] = {};
     for (int i = 0; i < 20000; ++i) {
-      const Ray ray{center + random.InBox(8), glm::normalize(random.InBox(2) + center - center + random.Direction() * 0.1f)};
+      const Ray ray{center + random.InBox(8),
+                    glm::normalize(random.InBox(2) + center - center + random.Direction() * 0.1f)};
       const Ray aimed{ray.origin, glm::normalize(Point3(m.Point(Point3d(random.InBox(2)))) - ray.origin)};
       RayHit a, b;
-      const bool hitA = bakedScene.Intersect(aimed, visibility::kAll, a), hitB = instancedScene.Intersect(aimed, visibility::kAll, b);
+      const bool hitA = bakedScene.Intersect(aimed, visibility::kAll, a),
+                 hitB = instancedScene.Intersect(aimed, visibility::kAll, b);
       if (hitA != hitB || (hitA && (a.primitive + 1 != b.primitive || a.patch != b.patch))) {
         ++differing;  // on an edge
         continue;
@@ -310,7 +313,9 @@ class ConstantAlpha : public AlphaSource {
 class HalfAlpha : public AlphaSource {
  public:
   explicit HalfAlpha(bool byPosition) : byPosition_(byPosition) {}
-  float Alpha(const Point2& uv, const Point3& p) const override { return (byPosition_ ? p.x > 1 : uv.x > 0.5f) ? 1.0f : 0.0f; }
+  float Alpha(const Point2& uv, const Point3& p) const override {
+    return (byPosition_ ? p.x > 1 : uv.x > 0.5f) ? 1.0f : 0.0f;
+  }
 
  private:
   bool byPosition_;
@@ -341,8 +346,8 @@ TEST(CutOut, FrequencyIsTheOpacity) {
         const Ray ray{{random.Uniform(-0.9f, 0.9f), random.Uniform(-0.9f, 0.9f), 0.5f}, {0, 0, -1}};
         RayHit hit;
         const bool found = scene.Intersect(ray, visibility::kAll, hit);
-        ASSERT_EQ(found, scene.Occluded(ray, visibility::kAll));
-        ASSERT_EQ(found, scene.Intersect(ray, visibility::kAll, hit));  // the same ray, the same answer
+        ASSERT_NEAR(scene.Transmission(ray, visibility::kAll).g, 1 - alpha, 1e-6f);  // the mean
+        ASSERT_EQ(found, scene.Intersect(ray, visibility::kAll, hit));               // the same ray, the same answer
         stopped += found;
       }
       const double expected = static_cast<double>(alpha), sigma = std::sqrt(expected * (1 - expected) / kCount);
@@ -378,7 +383,7 @@ TEST(CutOut, BothSidesOfAShapeAreIndependent) {
         const Ray ray{{random.Uniform(-0.9f, 0.9f), random.Uniform(-0.9f, 0.9f), 5}, {0, 0, -1}};
         RayHit hit;
         const bool found = scene.Intersect(ray, visibility::kAll, hit);
-        ASSERT_EQ(found, scene.Occluded(ray, visibility::kAll));
+        ASSERT_NEAR(scene.Transmission(ray, visibility::kAll).g, (1 - alpha) * (1 - alpha), 1e-6f);
         stopped += found;
       }
       const double expected = 1 - std::pow(1 - static_cast<double>(alpha), 2);
@@ -401,9 +406,62 @@ TEST(CutOut, LayersAreIndependent) {
   constexpr int kCount = 20000;
   int stopped = 0;
   for (int i = 0; i < kCount; ++i) {
-    stopped += scene.Occluded({{random.Uniform(0, 0.5f), random.Uniform(0, 0.5f), 1}, {0, 0, -1}}, visibility::kAll);
+    const Ray ray{{random.Uniform(0, 0.5f), random.Uniform(0, 0.5f), 1}, {0, 0, -1}};
+    RayHit hit;
+    stopped += scene.Intersect(ray, visibility::kAll, hit);
+    ASSERT_EQ(scene.Transmission(ray, visibility::kAll), Color(0.125f));
   }
   EXPECT_NEAR(static_cast<double>(stopped) / kCount, 0.875, 5 * std::sqrt(0.875 * 0.125 / kCount));
+}
+
+// Sheets by the angle, and in colours: those in front of what is hit, and only those, whatever order they are met in.
+class Pane : public SheetSource {
+ public:
+  Pane(float part, const Color& tint) : part_(part), tint_(tint) {}
+  float PassingPart(float cosTheta) const override { return part_ * cosTheta; }
+  Color Tint(const Point2&, const Point3&) const override { return tint_; }
+  bool IsClear() const override { return tint_ == Color(1.0f); }
+
+ private:
+  float part_;
+  Color tint_;
+};
+
+TEST(Sheets, PassInProportionAndColour) {
+  GeometryDescription description;
+  const auto add = [&](float z, std::shared_ptr<const SheetSource> sheet) {
+    TriangleMesh mesh = UnitTriangle();
+    for (Point3& p : mesh.positions) p = Point3(p.x * 8 - 2, p.y * 8 - 2, z);
+    description.entries.push_back(Entry(MeshShape(mesh), nullptr));
+    description.entries.back().attributes.sheet = std::move(sheet);
+  };
+  add(0, std::make_shared<Pane>(0.8f, Color(1, 0.5f, 0.25f)));
+  add(-3, std::make_shared<Pane>(0.8f, Color(0.0f)));  // behind the wall
+  add(-1, std::make_shared<Pane>(0.5f, Color(0.5f, 1, 1)));
+  add(-2, nullptr);  // the wall
+  const GeometryScene scene(std::move(description));
+  Random random(44);
+  const Vector3 way(0.6f, 0, -0.8f);
+  constexpr int kCount = 20000;
+  int reached = 0;
+  for (int i = 0; i < kCount; ++i) {
+    Ray ray{{random.Uniform(-1, -0.5f), random.Uniform(-1, 0), 1}, way};
+    RayHit hit;
+    Color passed;
+    ASSERT_TRUE(scene.Intersect(ray, visibility::kAll, hit, passed));
+    const bool isWall = hit.primitive == 3;
+    reached += isWall;
+    const Color expected = isWall ? Color(0.5f, 0.5f, 0.25f) : hit.primitive == 2 ? Color(1, 0.5f, 0.25f) : Color(1.0f);
+    ASSERT_EQ(passed, expected) << hit.primitive;
+    ASSERT_TRUE(scene.GetSurfacePoint(ray, hit).isSheet == !isWall);
+    EXPECT_TRUE(scene.Transmission(ray, visibility::kAll).IsBlack());
+    ray.tMax = 3.6f;  // in front of the wall
+    const Color left = scene.Transmission(ray, visibility::kAll);
+    ASSERT_NEAR(left.r, 0.64f * 0.4f * 0.5f, 1e-6f);
+    ASSERT_NEAR(left.b, 0.64f * 0.4f * 0.25f, 1e-6f);
+  }
+  const double expected = 0.64 * 0.4;
+  EXPECT_NEAR(static_cast<double>(reached) / kCount, expected, 5 * std::sqrt(expected * (1 - expected) / kCount));
 }
 
 TEST(CutOut, SeesTextureCoordinatesAndRenderSpacePositions) {
@@ -441,7 +499,8 @@ TEST(Scene, BoundingSphereHoldsTheBox) {
   const GeometryScene scene(SceneOf(MeshShape(NoisySphere(8, 2, {1e4f, -3e3f, 7}, 0.3f, 3))));
   const BoundingSphere sphere = scene.GetBoundingSphere();
   for (int i = 0; i < 8; ++i) {
-    EXPECT_LE(glm::length(Vector3d(scene.GetBounds().Corner(i)) - Vector3d(sphere.center)), static_cast<double>(sphere.radius));
+    EXPECT_LE(glm::length(Vector3d(scene.GetBounds().Corner(i)) - Vector3d(sphere.center)),
+              static_cast<double>(sphere.radius));
   }
   TriangleMesh dot;
   dot.positions.assign(3, Point3(0.0f));
