@@ -1,6 +1,8 @@
 // See embree_callbacks.h.
 #include "geometry/embree_callbacks.h"
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 
@@ -85,18 +87,34 @@ Passage PassageAt(const PrimitiveRecord& record, const RTCRay& ray, const RayHit
   return passage;
 }
 
+// Embree reports a curve at several of its parts, at nearly the same place: what passes is counted once for entering
+// it, and once for leaving it.
+bool IsCounted(const PrimitiveRecord& record, const RayHit& hit, uint32_t geometryId, uint32_t crossing,
+               TraceContext& trace) {
+  if (record.shape.index() != 3) return false;
+  using Crossing = std::array<uint32_t, 4>;
+  thread_local std::vector<Crossing> crossings;
+  if (!trace.hasCrossedCurves) crossings.clear();
+  trace.hasCrossedCurves = true;
+  const Crossing here{hit.instance, geometryId, hit.patch, crossing};
+  if (std::find(crossings.begin(), crossings.end(), here) != crossings.end()) return true;
+  crossings.push_back(here);
+  return false;
+}
+
 // Whether the ray goes on; a shadow ray does as long as something is left of it.
 bool PassesThrough(const PrimitiveRecord& record, const RTCRay& ray, const RayHit& hit, uint32_t geometryId,
                    uint32_t crossing, TraceContext& trace, bool isShadow) {
   const Passage passage = PassageAt(record, ray, hit);
   if (passage.stopped >= 1) return false;
   if (isShadow) {
-    trace.transmission *= passage.Transmission();
+    if (!IsCounted(record, hit, geometryId, crossing, trace)) trace.transmission *= passage.Transmission();
     return !trace.transmission.IsBlack();
   }
   if (passage.stopped > 0 && HashToUnit(ray, hit.instance, geometryId, hit.patch, crossing) < passage.stopped)
     return false;
-  if (trace.sheets && record.sheet) trace.sheets->push_back({hit.t, passage.tint});
+  if (trace.sheets && record.sheet && !IsCounted(record, hit, geometryId, crossing, trace))
+    trace.sheets->push_back({hit.t, passage.tint});
   return true;
 }
 

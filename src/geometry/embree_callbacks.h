@@ -22,6 +22,7 @@ struct TraceContext {
   RTCIntersectContext context;
   std::vector<PassedSheet>* sheets = nullptr;  // of Intersect; null: no sheet has a colour
   Color transmission{1.0f};                    // of Transmission: what is left so far
+  bool hasCrossedCurves = false;               // some curve that lets something pass
   // What a custom surface threw, which is then missed: no exception may pass through Embree. To be thrown when it has
   // returned.
   std::exception_ptr failure;
