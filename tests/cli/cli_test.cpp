@@ -113,6 +113,57 @@ TEST_F(Cli, LightGroupsAreLayersOfTheImageAndOfNothingElse) {
       << taken.output;
 }
 
+// What a threshold on shadow rays saves and costs is compared like another integrator.
+TEST_F(Cli, ComparesSettingsOfAnIntegrator) {
+  const std::string compare = "compare scene.pbrt --spp 2,4 --repeat 2 -o c --integrators ";
+  const Outcome compared = Run(compare + "path,path:shadow-threshold=0.05,path:shadow-roulette=0");
+  ASSERT_EQ(compared.exitCode, 0) << compared.output;
+  EXPECT_NE(compared.output.find("path:shadow-threshold=0.05"), std::string::npos) << compared.output;
+  const auto error = [&](const std::string& command) {
+    const Outcome outcome = Run(command);
+    EXPECT_EQ(outcome.exitCode, 2) << outcome.output;
+    return outcome.output;
+  };
+  EXPECT_NE(error(compare + "path:shadow-treshold=1").find("no setting \"shadow-treshold\" (did you mean"),
+            std::string::npos);
+  EXPECT_NE(error(compare + "path:shadow-threshold=x").find("is a number of 0 or more"), std::string::npos);
+  EXPECT_NE(error(compare + "pat:shadow-threshold=1").find("no integrator \"pat\" (did you mean \"path\"?)"),
+            std::string::npos);
+  error("render scene.pbrt --shadow-threshold -1");
+  error("render scene.pbrt --shadow-roulette 2");
+}
+
+TEST_F(Cli, LightFiltersThatCannotBe) {
+  const auto error = [&](const std::string& statements) {
+    Write("bad.pbrt", std::string(kScene) + statements);
+    const Outcome outcome = Run("render bad.pbrt");
+    EXPECT_EQ(outcome.exitCode, 2) << outcome.output;
+    return outcome.output;
+  };
+  EXPECT_NE(error("LightFilter \"goboo\"\n")
+                .find("bad.pbrt:8:1: error: there is no LightFilter \"goboo\" (did you mean \"gobo\"?)"),
+            std::string::npos);
+  EXPECT_NE(
+      error("LightFilter \"rod\" \"string name\" \"rod1\"\nLightFilter \"combiner\" \"string filters\" \"rod2\"\n")
+          .find("bad.pbrt:9:24: error: there is no LightFilter with the name \"rod2\" before this one (did you "
+                "mean \"rod1\"?)"),
+      std::string::npos);
+  EXPECT_NE(error("LightFilter \"gobo\" \"string filename\" \"nowhere.png\"\n").find("bad.pbrt:8:20: error:"),
+            std::string::npos);
+  EXPECT_NE(error("LightFilter \"rod\" \"string combineMode\" \"mx\"\n").find("multiply, max, min or screen"),
+            std::string::npos);
+  Write("warned.pbrt", std::string(kScene) +
+                           "LightSource \"point\" \"string lightGroup\" \"keys\"\n"
+                           "Attribute \"lighting\" \"string subset\" \"kys\"\nShape \"sphere\"\n");
+  const Outcome warned = Run("render warned.pbrt --quiet -o w.exr");
+  EXPECT_EQ(warned.exitCode, 0);
+  EXPECT_NE(warned.output.find("warned.pbrt:9:22: warning: there is no light or light group \"kys\" (did you mean "
+                               "\"keys\"?)"),
+            std::string::npos)
+      << warned.output;
+  EXPECT_EQ(Run("render warned.pbrt --strict").exitCode, 2);
+}
+
 TEST_F(Cli, SameFileForAnyNumberOfThreads) {
   ASSERT_EQ(Run("render scene.pbrt -o a.exr --threads 1 --quiet").exitCode, 0);
   ASSERT_EQ(Run("render scene.pbrt -o b.exr --threads 4 --quiet").exitCode, 0);

@@ -127,7 +127,7 @@ TEST_P(TargetError, HoldsForNineteenOfTwentySeeds) {
 INSTANTIATE_TEST_SUITE_P(
     Scenes, TargetError,
     testing::Combine(testing::Values(Promise{"matte", kStart + Lamp("30 28 26", "0.2"), 0.02, 1024},
-                                     Promise{"caustic", kStart + kGlassBall + Lamp("30 28 26", "0.2"), 0.3, 8192},
+                                     Promise{"caustic", kStart + kGlassBall + Lamp("30 28 26", "0.2"), 0.45, 4096},
                                      Promise{"mirror", kStart + kMirrorBall + Lamp("30 28 26", "0.2"), 0.5, 2048}),
                      testing::Values("path", "bdpt")),
     [](const auto& info) { return std::string(std::get<0>(info.param).name) + "_" + std::get<1>(info.param); });
