@@ -457,6 +457,13 @@ void FillRay(const Ray& ray, uint32_t kinds, float tMax, RTCRay& out) {
 
 namespace {
 
+// The thread's own list, empty.
+std::vector<PassedSheet>& NoSheets() {
+  thread_local std::vector<PassedSheet> sheets;
+  sheets.clear();
+  return sheets;
+}
+
 // Of the sheets that a ray would pass, those in front of what it hit.
 Color TintBefore(const std::vector<PassedSheet>& sheets, float t) {
   Color tint(1.0f);
@@ -472,20 +479,16 @@ bool GeometryScene::Intersect(const Ray& ray, uint32_t kinds, RayHit& hit, Color
   const Implementation& scene = *implementation_;
   passed = Color(1.0f);
   if (!scene.Accept(ray)) return false;
-  thread_local std::vector<PassedSheet> sheets;
   TraceContext trace;
   rtcInitIntersectContext(&trace.context);
-  if (scene.hasTints) {
-    sheets.clear();
-    trace.sheets = &sheets;
-  }
+  if (scene.hasTints) trace.sheets = &NoSheets();
   RTCRayHit rayHit;
   FillRay(ray, kinds, ray.tMax, rayHit.ray);
   rayHit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   rayHit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect1(scene.scene.get(), &trace.context, &rayHit);
   trace.ThrowFailure();
-  if (scene.hasTints) passed = TintBefore(sheets, rayHit.ray.tfar);
+  if (scene.hasTints) passed = TintBefore(*trace.sheets, rayHit.ray.tfar);
   if (rayHit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
   hit.t = rayHit.ray.tfar;
   hit.patch = rayHit.hit.primID;
