@@ -13,12 +13,8 @@ std::vector<ParameterInfo> WithBeamParameters(const char* mode, std::vector<Para
 BeamWindow ReadBeamWindow(const ParameterList& parameters, const char* mode) {
   BeamWindow window;
   window.distance = static_cast<float>(parameters.GetFloat("distance", 1));
-  const std::string given = parameters.GetString("mode", mode);
-  if (given != "physical" && given != "analytic") {
-    throw Error(parameters.WhereOf("mode"), parameters.Owner() + ": \"mode\" is physical or analytic, not \"" + given +
-                                                "\"" + DidYouMean(given, {"physical", "analytic"}));
-  }
-  window.isPhysical = given == "physical";
+  const std::vector<std::string> modes = {"physical", "analytic"};
+  window.isPhysical = ReadChoice(parameters, "mode", modes, mode == modes[1] ? 1 : 0) == 0;
   return window;
 }
 

@@ -15,15 +15,11 @@ FilterRegion ReadBlocker(const ParameterList& parameters) {
   FilterRegion region;
   region.edge = get("edge", 0);
   region.color = ReadEmissionColor(parameters, "color", Color(0.0f));
-  const std::string shape = parameters.GetString("shape", "sphere");
-  if (shape == "sphere") {
+  if (ReadChoice(parameters, "shape", {"sphere", "box"}) == 0) {
     region.radius = get("radius", 0.5);
-  } else if (shape == "box") {
+  } else {
     const Vector3 half = 0.5f * Vector3(get("width", 1), get("height", 1), get("depth", 1));
     region.SetBox(-half, half, get("rounding", 0));
-  } else {
-    throw Error(parameters.WhereOf("shape"), parameters.Owner() + ": \"shape\" is sphere or box, not \"" + shape +
-                                                 "\"" + DidYouMean(shape, {"sphere", "box"}));
   }
   return region;
 }

@@ -1,14 +1,6 @@
 #include "lights/filters/filter_base.h"
 
-#include <array>
-
 namespace lampyr {
-
-namespace {
-
-constexpr std::array<const char*, 4> kCombineModes = {"multiply", "max", "min", "screen"};
-
-}  // namespace
 
 std::vector<std::string> ReadNames(const ParameterList& parameters, const std::string& name) {
   constexpr const char* space = " \t\n";
@@ -24,15 +16,19 @@ std::vector<std::string> ReadNames(const ParameterList& parameters, const std::s
   return names;
 }
 
+int ReadChoice(const ParameterList& parameters, const std::string& name, const std::vector<std::string>& choices,
+               int missing) {
+  const std::string given = parameters.GetString(name, choices[static_cast<size_t>(missing)]);
+  const auto at = std::find(choices.begin(), choices.end(), given);
+  if (at != choices.end()) return static_cast<int>(at - choices.begin());
+  std::string all = choices.front();
+  for (size_t i = 1; i < choices.size(); ++i) all += (i + 1 < choices.size() ? ", " : " or ") + choices[i];
+  throw Error(parameters.WhereOf(name), parameters.Owner() + ": \"" + name + "\" is " + all + ", not \"" + given +
+                                            "\"" + DidYouMean(given, choices));
+}
+
 CombineMode ReadCombineMode(const ParameterList& parameters, const std::string& name) {
-  const std::string mode = parameters.GetString(name, kCombineModes[0]);
-  const auto at = std::find(kCombineModes.begin(), kCombineModes.end(), mode);
-  if (at == kCombineModes.end()) {
-    throw Error(parameters.WhereOf(name), parameters.Owner() + ": \"" + name +
-                                              "\" is multiply, max, min or screen, not \"" + mode + "\"" +
-                                              DidYouMean(mode, {kCombineModes.begin(), kCombineModes.end()}));
-  }
-  return static_cast<CombineMode>(at - kCombineModes.begin());
+  return static_cast<CombineMode>(ReadChoice(parameters, name, {"multiply", "max", "min", "screen"}));
 }
 
 FilterSettings ReadFilterSettings(const ParameterList& parameters) {

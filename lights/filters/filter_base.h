@@ -18,7 +18,10 @@ struct FilterSettings {
 
 // density, invert, diffuse, specular, linkingGroups.
 FilterSettings ReadFilterSettings(const ParameterList& parameters);
-// multiply (also where there is none), max, min or screen; an Error for anything else.
+// Which of `choices` a parameter names, `missing` where there is no such parameter; an Error for anything else.
+int ReadChoice(const ParameterList& parameters, const std::string& name, const std::vector<std::string>& choices,
+               int missing = 0);
+// multiply (also where there is none), max, min or screen.
 CombineMode ReadCombineMode(const ParameterList& parameters, const std::string& name);
 
 // The rows that every shipped filter's table ends with: the above, name and coordsys.

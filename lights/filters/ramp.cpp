@@ -1,6 +1,5 @@
 // "ramp": a colour that changes with the distance of what is lit from the filter's origin, or with its angle from the
 // filter's −z axis.
-#include <array>
 #include <cmath>
 
 #include "lights/filters/filter_base.h"
@@ -38,14 +37,6 @@ struct RampModel {
     return Lerp(colors[i], colors[i + 1], t);
   }
 };
-
-int ReadChoice(const ParameterList& parameters, const std::string& name, const std::vector<std::string>& choices) {
-  const std::string given = parameters.GetString(name, choices.front());
-  const auto at = std::find(choices.begin(), choices.end(), given);
-  if (at != choices.end()) return static_cast<int>(at - choices.begin());
-  throw Error(parameters.WhereOf(name),
-              parameters.Owner() + ": there is no \"" + name + "\" \"" + given + "\"" + DidYouMean(given, choices));
-}
 
 RampModel ReadRamp(const ParameterList& parameters) {
   RampModel ramp;
