@@ -18,7 +18,7 @@ namespace lampyr {
 struct ShadowRays {
   // Contributions below this part of what the sample has gathered so far are traced by chance; 0: all are traced.
   float roulette = 0.05f;
-  // Contributions whose largest channel is below this, in the image's own units, are left out; 0: none.
+  // Contributions whose largest channel is below this (radiance) are left out; 0: none.
   float threshold = 0;
 
   // What a contribution is to be multiplied by, if its ray is traced at all; 0: it is not. `decider`: random bits of

@@ -46,7 +46,7 @@ class LinkedSelector final : public LightSelector {
     const auto at = std::lower_bound(part->lights.begin(), part->lights.end(), light);
     if (at == part->lights.end() || *at != light) return PdfDiscrete(0);
     const auto own = static_cast<uint32_t>(at - part->lights.begin());
-    return part->selector->Probability(receiver, own, part->selector->SelectsPatches(receiver) ? patch : kAnyPatch);
+    return part->selector->Probability(receiver, own, patch);
   }
 
   // What is learned is of one tree: that of all lights.

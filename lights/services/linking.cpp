@@ -1,7 +1,6 @@
 #include "lights/services/linking.h"
 
 #include <algorithm>
-#include <map>
 #include <set>
 
 #include "lights/filters/filter_base.h"
@@ -33,7 +32,7 @@ void WarnOfUnknown(const std::vector<std::string>& names, const FileLocation& wh
 
 }  // namespace
 
-LightLinking::LightLinking() : classes_(1), filterGroups_(1) {}
+LightLinking::LightLinking() : classes_(1), classIndex_{{ClassNames(), 0}}, filterGroups_(1) {}
 
 uint32_t LightLinking::ClassOf(const ParameterList* lighting, const ParameterList* lightFilter) {
   Class wanted;
@@ -43,10 +42,10 @@ uint32_t LightLinking::ClassOf(const ParameterList* lighting, const ParameterLis
   if (lighting) wanted.whereLights = lighting->WhereOf("subset");
   if (lighting) wanted.whereWithout = lighting->WhereOf("excludesubset");
   if (lightFilter) wanted.whereGroups = lightFilter->WhereOf("subset");
-  const auto same = std::find_if(classes_.begin(), classes_.end(), [&](const Class& c) { return c.IsSame(wanted); });
-  const auto index = static_cast<uint32_t>(same - classes_.begin());
-  if (same == classes_.end()) classes_.push_back(std::move(wanted));
-  return index;
+  const auto [entry, isNew] = classIndex_.emplace(ClassNames{wanted.lights, wanted.withoutLights, wanted.filterGroups},
+                                                  static_cast<uint32_t>(classes_.size()));
+  if (isNew) classes_.push_back(std::move(wanted));
+  return entry->second;
 }
 
 uint32_t LightLinking::FilterKey(const std::vector<std::string>& groups) {

@@ -4,7 +4,9 @@
 // carries. Names are looked up while the scene is built: rendering reads one byte of a table.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -52,15 +54,13 @@ class LightLinking {
   struct Class {
     std::vector<std::string> lights, withoutLights, filterGroups;  // sorted
     FileLocation whereLights, whereWithout, whereGroups;
-
-    bool IsSame(const Class& other) const {
-      return lights == other.lights && withoutLights == other.withoutLights && filterGroups == other.filterGroups;
-    }
   };
+  using ClassNames = std::array<std::vector<std::string>, 3>;
   void FinishLights(std::span<const PlacedLight> lights, Diagnostics& diagnostics);
   void FinishFilters(Diagnostics& diagnostics);
 
-  std::vector<Class> classes_;                          // 0: says nothing
+  std::vector<Class> classes_;  // 0: says nothing
+  std::map<ClassNames, uint32_t> classIndex_;
   std::vector<std::vector<std::string>> filterGroups_;  // by FilterKey; 0: none
   std::vector<FilterInstance> filters_;
   bool excludes_ = false, hasFilters_ = false;

@@ -26,6 +26,13 @@ PhotonSettings PhotonsFor(const RenderScene& scene, const RenderSettings& settin
   return photons;
 }
 
+// The threshold is in the image's units; integrators know radiance.
+ShadowRays ShadowRaysFor(const RenderSettings& settings) {
+  ShadowRays shadowRays = settings.shadowRays;
+  if (settings.imagingRatio > 0) shadowRays.threshold /= settings.imagingRatio;
+  return shadowRays;
+}
+
 }  // namespace
 
 bool HasSmoothMaterial(const RenderScene& scene) {
@@ -83,7 +90,7 @@ RenderSettings VariantOf(const RenderSettings& settings, const std::string& name
 }
 
 AnyIntegrator MakeIntegrator(const RenderScene& scene, const RenderSettings& settings) {
-  if (settings.integrator == "path") return MakePathIntegrator(scene, {settings.maxDepth, settings.shadowRays});
+  if (settings.integrator == "path") return MakePathIntegrator(scene, {settings.maxDepth, ShadowRaysFor(settings)});
   if (settings.integrator == "light") return MakeLightIntegrator(scene, {settings.maxDepth});
   if (settings.integrator == "bdpt" || settings.integrator == "vcm") {
     BdptSettings bdpt;
@@ -93,14 +100,14 @@ AnyIntegrator MakeIntegrator(const RenderScene& scene, const RenderSettings& set
     if (bdpt.merges) bdpt.photons.radius = FirstRadius(scene, settings);
     bdpt.photons.guided = bdpt.photons.guided && MayGuidePhotons(scene, settings, "vcm");
     bdpt.maxDepth = settings.maxDepth;
-    bdpt.shadowRays = settings.shadowRays;
+    bdpt.shadowRays = ShadowRaysFor(settings);
     bdpt.filmPixels = static_cast<double>(settings.width) * static_cast<double>(settings.height);
     return MakeBdptIntegrator(scene, bdpt);
   }
   if (settings.integrator == "sppm") {
     SppmSettings sppm;
     sppm.maxDepth = settings.maxDepth;
-    sppm.shadowRays = settings.shadowRays;
+    sppm.shadowRays = ShadowRaysFor(settings);
     sppm.filmPixels = static_cast<double>(settings.width) * static_cast<double>(settings.height);
     sppm.photons = PhotonsFor(scene, settings);
     sppm.directFromPhotons = settings.directFromPhotons;

@@ -249,7 +249,8 @@ void ReadPhotons(const ParameterList& parameters, const RenderOverrides& overrid
 void ReadShadowRays(const ParameterList& parameters, const RenderOverrides& overrides, ShadowRays& shadowRays) {
   const auto read = [&](const char* name, const std::optional<double>& given, float& value) {
     const double number = given.value_or(parameters.GetFloat(name, static_cast<double>(value)));
-    if (!(number >= 0)) throw Error(parameters.WhereOf(name), "\"" + std::string(name) + "\" must be 0 or more");
+    if (!(number >= 0 && number < static_cast<double>(kInfinity)))
+      throw Error(parameters.WhereOf(name), "\"" + std::string(name) + "\" must be a number of 0 or more");
     value = static_cast<float>(number);
   };
   read("shadowroulette", overrides.shadowRoulette, shadowRays.roulette);

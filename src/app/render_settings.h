@@ -43,8 +43,8 @@ struct RenderSettings {
   int samplesPerPixel = 16;
   uint64_t seed = 0;
   LightSelection lightSelection = LightSelection::Tree;
-  int lightSamples = 1;  // lights that next-event estimation chooses at a vertex, at most
-  ShadowRays shadowRays;
+  int lightSamples = 1;      // lights that next-event estimation chooses at a vertex, at most
+  ShadowRays shadowRays;     // its threshold in the image's units
   bool learnLights = false;  // selection learns from shadow rays (light_learning.h)
   PhotonSettings photons;
   bool merges = true, connects = true;  // vcm: which techniques

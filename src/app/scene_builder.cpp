@@ -85,6 +85,7 @@ class Builder {
   Transform StillPlacement(const ReadEntry& entry) const;
   RenderPlacement PlaceMoving(const MotionChain& toRender, const Bounds3& moved, const char* what,
                               const FileLocation& where);
+  RenderPlacement PlaceInWorld(const Placement& placement, const char* what, const FileLocation& where);
   void PlaceEntries();
   std::vector<Part> MovingParts(const std::vector<ReadEntry>& entries);
   void BuildPart(Part& part);
@@ -408,17 +409,20 @@ const FilterType& Builder::FindFilter(const StatementDescription& statement) con
               "there is no LightFilter \"" + statement.type + "\"" + DidYouMean(statement.type, names));
 }
 
+// Of something without an extent of its own: a light or a filter.
+RenderPlacement Builder::PlaceInWorld(const Placement& placement, const char* what, const FileLocation& where) {
+  RenderPlacement placed{worldToRender_ * placement.start, nullptr};
+  if (placement.IsAnimated())
+    placed = PlaceMoving(MotionChain(worldToRender_) * ToAnimated(placement, what, where), {}, what, where);
+  if (!placed.toRender.IsAffine()) throw Error(where, std::string(what) + " cannot have a perspective transform");
+  return placed;
+}
+
 void Builder::AddFilters() {
   for (const LightFilterDescription& description : description_.lightFilters) {
     const StatementDescription& statement = description.filter;
     const FilterType& type = FindFilter(statement);
-    RenderPlacement placement{worldToRender_ * description.placement.start, nullptr};
-    if (description.placement.IsAnimated()) {
-      const AnimatedTransform toWorld = ToAnimated(description.placement, "a light filter", statement.where);
-      placement = PlaceMoving(MotionChain(worldToRender_) * toWorld, {}, "a light filter", statement.where);
-    }
-    if (!placement.toRender.IsAffine())
-      throw Error(statement.where, "a light filter cannot have a perspective transform");
+    const RenderPlacement placement = PlaceInWorld(description.placement, "a light filter", statement.where);
     FilterBuildContext build;
     build.transform = ToLightTransform(placement.toRender);
     build.motion = placement.motion;
@@ -478,12 +482,7 @@ void Builder::AddLights() {
   for (const LightDescription& light : description_.lights) {
     const StatementDescription& statement = light.light;
     const LightType& type = FindType(statement, false);
-    RenderPlacement placement{worldToRender_ * light.placement.start, nullptr};
-    if (light.placement.IsAnimated()) {
-      const AnimatedTransform toWorld = ToAnimated(light.placement, "a light", statement.where);
-      placement = PlaceMoving(MotionChain(worldToRender_) * toWorld, {}, "a light", statement.where);
-    }
-    if (!placement.toRender.IsAffine()) throw Error(statement.where, "a light cannot have a perspective transform");
+    const RenderPlacement placement = PlaceInWorld(light.placement, "a light", statement.where);
     const LightBuildContext build = LightContextFor(placement);
     PlacedLight placed{MakeLight(type, statement.parameters, build), build.transform, true, placement.motion};
     Bind(light.filter, placed);

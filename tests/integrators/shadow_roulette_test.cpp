@@ -81,6 +81,23 @@ TEST(ShadowRoulette, AThresholdIsABiasThatHasABound) {
   }
 }
 
+// In the image's units: of a film that is twice as sensitive, twice as much.
+TEST(ShadowRoulette, TheThresholdIsOfTheImage) {
+  std::string sensitive = kScene;
+  const std::string size = "\"integer yresolution\" 24";
+  sensitive.replace(sensitive.find(size), size.size(), size + " \"float iso\" 200");
+  for (const char* integrator : {"path", "bdpt", "sppm"}) {
+    const auto rays = [&](const std::string& text, double threshold) {
+      RenderOverrides overrides;
+      overrides.integrator = integrator;
+      overrides.shadowThreshold = threshold;
+      return RenderText(text, 8, overrides).outcome.counts.shadowRays;
+    };
+    EXPECT_EQ(rays(kScene, 0.01), rays(sensitive, 0.02)) << integrator;
+    EXPECT_LT(rays(kScene, 0.01), rays(sensitive, 0.01)) << integrator;
+  }
+}
+
 TEST(ShadowRoulette, WorthIsOneInTheMean) {
   const ShadowRays rays{0.5f, 0};
   for (const float value : {0.01f, 0.1f, 0.3f, 0.49f, 0.5f, 3.0f}) {
