@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "base/byte_stream.h"
+#include "base/error.h"
 #include "geometry/rounding.h"
 #include "integrators/common/footprint.h"
 #include "integrators/common/subpath.h"
@@ -14,6 +16,7 @@ namespace {
 // Useful photons that are remembered; beyond, one in so many, each worth as many more.
 constexpr size_t kMostUseful = size_t{1} << 14;
 constexpr size_t kMostOfAPass = size_t{1} << 13;
+constexpr size_t kMostRemembered = 2 * kMostUseful + 2 * kMostOfAPass;
 // A guide must promise more than it costs: its densities are asked for at every light path, shadow ray and hit.
 constexpr double kWorthwhile = 2;
 // Photons that a verdict is based on, at least: of sums of squares, a few may be all.
@@ -181,13 +184,48 @@ bool EmissionLearning::Decide(uint32_t samples) {
     unguided_ = aimed_ = Sum();
     hasVerdict_ = true;
   }
-  tried_ = MakeGuide(Evidence());
+  evidence_ = Evidence();
+  tried_ = MakeGuide(evidence_);
   // What has stood the test was made of fewer photons than the one that takes its place.
   const bool isWorthwhile = hasVerdict_ ? gain_ > kWorthwhile : wasInUse;
   guide_ = isWorthwhile ? tried_ : nullptr;
   const uint32_t last = !hasVerdict_ ? kLastLearned : gain_ < 1 ? kHopeless : kLearned;
   if (samples >= last) isRecording_ = false;
   return wasInUse || guide_;
+}
+
+// A guide is saved as what it was made of. The one in use is the one on trial, or the first guess, or none.
+void EmissionLearning::Save(ByteWriter& bytes) const {
+  bytes.Value<uint8_t>(isRecording_ ? 1 : 0);
+  bytes.Value<uint8_t>(tried_ ? 1 : 0);
+  bytes.Value<uint8_t>(guide_ ? 1 : 0);
+  bytes.Value<uint8_t>(hasVerdict_ ? 1 : 0);
+  bytes.Value(gain_);
+  bytes.Value(unguided_);
+  bytes.Value(aimed_);
+  bytes.List(std::span(useful_));
+  bytes.List(std::span(evidence_));
+}
+
+void EmissionLearning::Load(ByteReader& bytes) {
+  isRecording_ = bytes.Flag();
+  const bool hasTried = bytes.Flag(), hasGuide = bytes.Flag();
+  hasVerdict_ = bytes.Flag();
+  gain_ = bytes.Value<double>();
+  unguided_ = bytes.Value<Sum>();
+  aimed_ = bytes.Value<Sum>();
+  useful_ = bytes.List<UsefulPhoton>(kMostRemembered);
+  evidence_ = bytes.List<UsefulPhoton>(kMostRemembered + guessed_.size());
+  for (const std::vector<UsefulPhoton>* photons : {&useful_, &evidence_}) {
+    for (const UsefulPhoton& photon : *photons) {
+      const bool isOne = photon.light < lighting_.Lights().size() && IsFinite(photon.landing) && photon.worth >= 0 &&
+                         photon.squared >= 0 && photon.own >= 0;
+      if (!isOne) throw Error("it holds a photon that cannot be");
+    }
+  }
+  if (!hasTried) return;
+  tried_ = MakeGuide(evidence_);
+  guide_ = hasGuide ? tried_ : nullptr;
 }
 
 }  // namespace lampyr

@@ -16,6 +16,9 @@
 
 namespace lampyr {
 
+class ByteReader;
+class ByteWriter;
+
 class EmissionLearning {
  public:
   // `scene` must outlive it. Begins with a guess: where next to none of the photons come near to what an image of
@@ -37,6 +40,12 @@ class EmissionLearning {
   double Gain() const { return gain_; }
   int Targets() const { return guide_ ? guide_->TargetCount() : 0; }
 
+  // All that was learned. Between passes.
+  void Save(ByteWriter& bytes) const;
+  // Into one that has learned nothing, of the same scene and image. Throws an Error where this is not what has been
+  // saved.
+  void Load(ByteReader& bytes);
+
  private:
   void Guess(const RenderScene& scene, int width, int height);
   std::vector<UsefulPhoton> Evidence() const;
@@ -48,7 +57,8 @@ class EmissionLearning {
   std::vector<UsefulPhoton> guessed_;  // none: photons come near to what is seen by themselves
   std::vector<UsefulPhoton> useful_;
   std::shared_ptr<const EmissionGuide> guide_;  // in use, or null
-  std::shared_ptr<const EmissionGuide> tried_;  // on trial, or null
+  std::shared_ptr<const EmissionGuide> tried_;  // on trial, or null; all that it is made of:
+  std::vector<UsefulPhoton> evidence_;
   // A sum that few may have decided.
   struct Sum {
     double sum = 0, squares = 0;

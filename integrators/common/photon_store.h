@@ -48,6 +48,8 @@ class PhotonStore {
   void Clear();
 
   const PhotonStatistics& Statistics() const { return statistics_; }
+  // Counts on from there.
+  const PhotonStatistics& Continue(const PhotonStatistics& before) { return statistics_ = before; }
   // While a map is made of them, everything counted.
   static uint64_t BytesPerPhoton(bool withUse = false);
 

@@ -1,8 +1,11 @@
 #include "lights/selection/light_learning.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "base/byte_stream.h"
+#include "base/error.h"
 #include "sampling/rng.h"
 
 namespace lampyr {
@@ -18,6 +21,14 @@ constexpr double kPrior = 4;
 // A sample that is larger by chance is no better known than this.
 constexpr double kLargestRatio = 8;
 constexpr double kUnit = 0x1p24;
+
+// A row of which something is known, as it is saved.
+struct SavedRow {
+  uint32_t index = 0;
+  std::array<uint32_t, LightLearning::kWidth> counts{};
+  std::array<uint64_t, LightLearning::kWidth> squares{};
+  std::array<float, LightLearning::kWidth> known{}, unknown{};
+};
 
 }  // namespace
 
@@ -61,6 +72,41 @@ void LightLearning::Freeze() {
       const double all = static_cast<double>(counts_[i].load(std::memory_order_relaxed)) + kPrior;
       rows_[row].known[child] = static_cast<float>(squares / all);
       rows_[row].unknown[child] = static_cast<float>(kPrior / all);
+    }
+  }
+}
+
+// What counts was frozen earlier than the newest records: both are saved.
+void LightLearning::Save(ByteWriter& bytes) const {
+  std::vector<SavedRow> rows;
+  for (uint32_t row = 0; row < kRows; ++row) {
+    SavedRow saved{row, {}, {}, {}, {}};
+    bool isKnown = false;
+    for (size_t child = 0; child < kWidth; ++child) {
+      const size_t i = row * kWidth + child;
+      saved.counts[child] = counts_[i].load(std::memory_order_relaxed);
+      saved.squares[child] = squares_[i].load(std::memory_order_relaxed);
+      saved.known[child] = rows_[row].known[child];
+      saved.unknown[child] = rows_[row].unknown[child];
+      isKnown = isKnown || saved.counts[child] > 0;
+    }
+    if (isKnown) rows.push_back(saved);
+  }
+  bytes.Value<uint8_t>(isRecording_ ? 1 : 0);
+  bytes.List(std::span<const SavedRow>(rows));
+}
+
+void LightLearning::Load(ByteReader& bytes) {
+  isRecording_ = bytes.Flag();
+  for (const SavedRow& saved : bytes.List<SavedRow>(kRows)) {
+    if (saved.index >= kRows) throw Error("it holds a number that cannot be");
+    for (size_t child = 0; child < kWidth; ++child) {
+      const size_t i = saved.index * kWidth + child;
+      if (!(saved.known[child] >= 0) || !(saved.unknown[child] >= 0)) throw Error("it holds a number that cannot be");
+      counts_[i].store(saved.counts[child], std::memory_order_relaxed);
+      squares_[i].store(saved.squares[child], std::memory_order_relaxed);
+      rows_[saved.index].known[child] = saved.known[child];
+      rows_[saved.index].unknown[child] = saved.unknown[child];
     }
   }
 }

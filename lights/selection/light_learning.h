@@ -20,6 +20,9 @@
 
 namespace lampyr {
 
+class ByteReader;
+class ByteWriter;
+
 class LightLearning {
  public:
   static constexpr int kWidth = LobeBlock::kWidth;
@@ -41,6 +44,11 @@ class LightLearning {
   // Once enough is known, the time that recording takes is saved.
   void StopRecording() { isRecording_ = false; }
   bool IsRecording() const { return isRecording_; }
+
+  // All that was learned and recorded. While nobody selects or records.
+  void Save(ByteWriter& bytes) const;
+  // Into one that has learned nothing, of the same scene. Throws an Error where this is not what has been saved.
+  void Load(ByteReader& bytes);
 
  private:
   static size_t IndexOf(uint32_t region, uint32_t node);

@@ -239,10 +239,10 @@ int CompareLoaded(const CompareOptions& options, const ComparisonPlan& plan, con
   }
   if (interrupted && results.integrators.empty()) {
     std::fprintf(stderr, "interrupted before two repeats were done: nothing was measured\n");
-    return kExitInterrupted;
+    return InterruptExitCode();
   }
   WriteResults(options, folder, plan, results);
-  return interrupted ? kExitInterrupted : kExitDone;
+  return interrupted ? InterruptExitCode() : kExitDone;
 }
 
 }  // namespace

@@ -130,9 +130,23 @@ void DefineSceneOptions(CLI::App& app, RenderOverrides& overrides, std::string& 
             "Let the light tree learn which lights are occluded where (off)");
 }
 
+// "2/8".
+std::pair<int, int> ParseShard(const std::string& text) {
+  int index = 0, count = 0;
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%d/%d%c", &index, &count, &rest) != 2 || count < 1 || count > 1 << 20 || index < 1 ||
+      index > count) {
+    throw UsageError("--shard: \"" + text + "\" is no part; write 2/8 for the second of eight");
+  }
+  return {index, count};
+}
+
+// How often --resume goes on writing checkpoints, where nothing is said.
+constexpr double kCheckpointSeconds = 60;
+
 struct RenderCommand {
   RenderOptions options;
-  std::string time, resolution, photonMemory;
+  std::string time, resolution, photonMemory, checkpoint, shard;
   bool fast = false;
 
   void Define(CLI::App& app) {
@@ -152,6 +166,12 @@ struct RenderCommand {
         ->check(CheckPositive, "POSITIVE");
     DefineSceneOptions(app, overrides, resolution, photonMemory, options.threads);
     DefinePluginOption(app, options.plugins);
+    app.add_option("--checkpoint", checkpoint,
+                   "Write the image and what it takes to go on (OUT.checkpoint) this often: 30s, 5m. It stays there");
+    app.add_flag("--resume", options.resume,
+                 "Go on where OUT.checkpoint ends, if there is one, and write more of them (every minute)");
+    app.add_option("--shard", shard,
+                   "Render one part of the samples, e.g. 2/8, for `lampyr merge`; default of --output: OUT.2-of-8.exr");
     app.add_option("--stats", options.stats, "Write statistics to this JSON file");
     app.add_option("--strategy-images", options.strategyImages,
                    "Write what each technique of bdpt contributes, weighted and not, to this folder");
@@ -163,12 +183,25 @@ struct RenderCommand {
 
   int Run() {
     if (!time.empty()) options.seconds = ParseDuration("--time", time);
+    if (options.resume) options.checkpointSeconds = kCheckpointSeconds;
+    if (!checkpoint.empty()) options.checkpointSeconds = ParseDuration("--checkpoint", checkpoint);
+    if (!shard.empty()) options.shard = ParseShard(shard);
     if (!resolution.empty()) ParseResolution(resolution, options.overrides);
     options.overrides.photonMemory = ParseMemory("--photon-memory", photonMemory);
     options.robust = !fast;
     return RunRender(options);
   }
 };
+
+void DefineMerge(CLI::App& app, MergeOptions& options) {
+  app.add_option("parts", options.parts, "Images of `lampyr render --shard`")->required();
+  app.add_option("-o,--output", options.output, "The image to write (.exr)")->required();
+  app.add_flag("--partial", options.partial, "Merge what there is, even if parts are missing or not finished");
+  app.add_flag("--png", options.png, "Also write a tone-mapped PNG beside it");
+  app.add_option("--exposure", options.exposure, "Exposure of the PNG in stops (0)")->check(CheckFinite, "");
+  app.add_flag("--clip", options.clipPng, "Clip the PNG at white instead of rolling highlights off");
+  app.add_flag("--quiet", options.quiet, "No summary");
+}
 
 struct CompareCommand {
   CompareOptions options;
@@ -233,6 +266,10 @@ int RunCommandLine(int argc, char** argv) {
   compare.Define(
       *app.add_subcommand("compare", "Measure integrators against each other: error by time and by samples"));
 
+  MergeOptions merge;
+  CLI::App* mergeCommand = app.add_subcommand("merge", "Make one image of the parts of a render");
+  DefineMerge(*mergeCommand, merge);
+
   PlanOptions plan;
   CLI::App* planCommand =
       app.add_subcommand("plan", "What a scene requires, and what is therefore modelled, with reasons");
@@ -273,6 +310,7 @@ int RunCommandLine(int argc, char** argv) {
   }
   try {
     if (app.got_subcommand("render")) return render.Run();
+    if (app.got_subcommand(mergeCommand)) return RunMerge(merge);
     if (app.got_subcommand("compare")) return compare.Run(argc, argv);
     if (app.got_subcommand(planCommand)) return RunPlan(plan);
     if (app.got_subcommand(diffCommand)) return RunDiff(diff);

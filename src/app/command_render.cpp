@@ -1,13 +1,19 @@
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
+#include "app/checkpoints.h"
 #include "app/command_line.h"
 #include "app/command_support.h"
 #include "app/commands.h"
 #include "app/integrator_hints.h"
 #include "app/json_report.h"
+#include "app/output_lock.h"
+#include "app/render_part.h"
 #include "app/render_run.h"
+#include "app/sample_image.h"
 #include "app/unseen_samples.h"
 #include "base/parallel.h"
 #include "base/progress.h"
@@ -17,19 +23,20 @@ namespace lampyr {
 
 namespace {
 
+// out.2-of-8.exr for a part, unless the user names it.
 std::filesystem::path OutputPath(const RenderOptions& options, const RenderSettings& settings) {
   std::filesystem::path path;
   if (options.output) {
     path = *options.output;
   } else {
     path = settings.outputFile.empty() ? options.scene.stem() : std::filesystem::path(settings.outputFile).filename();
-    path.replace_extension(".exr");
+    std::string extension = ".exr";
+    if (options.shard)
+      extension =
+          "." + std::to_string(options.shard->first) + "-of-" + std::to_string(options.shard->second) + extension;
+    path.replace_extension(extension);
   }
-  if (path.extension() != ".exr") {
-    throw UsageError("--output: \"" + path.string() + "\" must end in .exr (--png writes a PNG beside it)");
-  }
-  CheckWritable(path, "--output");
-  if (options.png) CheckWritable(std::filesystem::path(path).replace_extension(".png"), "--png");
+  CheckImageOutput(path, "--output", options.png);
   return path;
 }
 
@@ -55,29 +62,24 @@ std::string Percent(double fraction) {
   return text;
 }
 
-std::string Joined(const std::vector<std::string>& names, const char* separator) {
-  std::string all;
-  for (const std::string& name : names) all += (all.empty() ? "" : separator) + name;
-  return all;
-}
-
-Image DevelopWithMetadata(const Film& film, const RenderReport& report) {
-  Image image = film.Develop();
-  image.metadata = {{"lampyr.version", kVersion},
-                    {"lampyr.sceneHash", report.sceneHash},
-                    {"lampyr.integrator", report.integrator},
-                    {"lampyr.samplesPerPixel", std::to_string(report.outcome.samplesPerPixel)},
-                    {"lampyr.seed", std::to_string(report.seed)}};
-  if (!report.lightGroups.empty()) image.metadata["lampyr.lightGroups"] = Joined(report.lightGroups, ",");
-  return image;
-}
-
-// Halves end at 65504: an image that is brighter is kept in floats.
-ExrPrecision PrecisionFor(const Image& image, const RenderSettings& settings) {
-  constexpr float largestHalf = 65504;
-  const bool fits =
-      std::all_of(image.data.begin(), image.data.end(), [](float v) { return std::abs(v) <= largestHalf; });
-  return settings.halfPrecision && fits ? ExrPrecision::Half : ExrPrecision::Float;
+// Of the picture that all samples of a part make, but for their number.
+PartHeader MakeHeader(const RenderOptions& options, const LoadedScene& loaded, const Shard& shard) {
+  const RenderSettings& settings = loaded.built.settings;
+  PartHeader header;
+  header.shard = shard;
+  header.width = settings.width;
+  header.height = settings.height;
+  header.crop = settings.crop;
+  header.layers = loaded.built.scene.lighting->Groups().Layers();
+  header.halfPrecision = settings.halfPrecision;
+  header.metadata = {{"lampyr.version", kVersion},
+                     {"lampyr.sceneHash", loaded.hash},
+                     {"lampyr.integrator", settings.integrator},
+                     {"lampyr.seed", std::to_string(settings.seed)}};
+  if (!header.layers.empty()) header.metadata["lampyr.lightGroups"] = Joined(header.layers, ",");
+  if (options.shard || options.resume || options.checkpointSeconds)
+    header.identity = IdentityOf(loaded, options.robust);
+  return header;
 }
 
 void PrintSummary(const RenderReport& report, const std::filesystem::path& path) {
@@ -93,18 +95,20 @@ void PrintSummary(const RenderReport& report, const std::filesystem::path& path)
   }
 }
 
-StopConditions MakeStopConditions(const RenderOptions& options, const RenderSettings& settings) {
-  StopConditions stop;
-  stop.samplesPerPixel = settings.samplesPerPixel;
+// Of the whole picture.
+int SamplesWanted(const RenderOptions& options, const RenderSettings& settings) {
   // Asked to stop by time or error only: the scene's own sample count does not matter.
-  if ((options.seconds || options.targetError) && !options.overrides.samplesPerPixel) stop.samplesPerPixel = 1 << 30;
-  stop.seconds = options.seconds;
-  stop.relativeError = options.targetError;
-  return stop;
+  const bool isOpen = (options.seconds || options.targetError) && !options.overrides.samplesPerPixel;
+  return isOpen ? 1 << 30 : settings.samplesPerPixel;
 }
 
-void WritePngOf(const Image& image, std::filesystem::path path, const RenderOptions& options) {
-  WritePng(path.replace_extension(".png"), image, options.exposure, options.clipPng ? ToneMap::Clip : ToneMap::Filmic);
+StopConditions MakeStopConditions(const RenderOptions& options, const Shard& shard) {
+  StopConditions stop;
+  stop.samplesPerPixel = static_cast<int>(shard.end - shard.first);
+  stop.seconds = options.seconds;
+  stop.longestPass = options.checkpointSeconds;
+  stop.relativeError = options.targetError;
+  return stop;
 }
 
 // weighted-s2-t3.exr, unweighted-s2-t3.exr, … in the folder, which is made.
@@ -115,19 +119,66 @@ void WriteTechniques(const RenderOptions& options, const std::vector<TechniqueIm
       const Image& image = isWeighted ? picture.weighted : picture.unweighted;
       const std::filesystem::path path = folder / ((isWeighted ? "weighted-" : "unweighted-") + picture.name + ".exr");
       WriteExr(path, image, ExrPrecision::Float);
-      if (options.png) WritePngOf(image, path, options);
+      if (options.png) WritePngBeside(path, image, options.exposure, options.clipPng);
     }
   }
+}
+
+// The picture so far. One part of a picture carries its sums.
+void WriteImage(const std::filesystem::path& path, const RenderOptions& options, const PartHeader& ofAll,
+                const Film& film, const RenderOutcome& outcome) {
+  PartHeader header = ofAll;
+  header.samples = static_cast<uint32_t>(outcome.samplesPerPixel);
+  header.isFinished = !outcome.interrupted || header.samples == header.shard.end - header.shard.first;
+  if (!options.shard) {
+    WriteSamples(path, header, film);
+    return;
+  }
+  WriteSamples(path, header, film, [&](AtomicFile& file) {
+    AppendPart(file, PartKind::Picture, header, [&film](ByteWriter& bytes) { film.Save(bytes); });
+  });
+}
+
+// What hours were spent on is not lost because its folder is full or gone: it is kept where temporary files are.
+void WriteImageOrKeepIt(const std::filesystem::path& path, const RenderOptions& options, const PartHeader& header,
+                        const Film& film, const RenderOutcome& outcome) {
+  try {
+    WriteImage(path, options, header, film, outcome);
+  } catch (const Error& error) {
+    const std::filesystem::path refuge =
+        std::filesystem::temp_directory_path() /
+        (path.stem().string() + "-" + std::to_string(getpid()) + path.extension().string());
+    try {
+      WriteImage(refuge, options, header, film, outcome);
+    } catch (const Error&) {
+      throw error;
+    }
+    throw Error(error.Text() + "; the picture is kept as \"" + refuge.string() + "\"");
+  }
+}
+
+void CheckOptions(const RenderOptions& options, const RenderSettings& settings) {
+  if (options.stats) CheckWritable(*options.stats, "--stats");
+  if (!options.strategyImages) return;
+  if (settings.integrator != "bdpt")
+    throw UsageError("--strategy-images: only bdpt has strategies; the integrator is " + settings.integrator);
+  if (options.resume || options.checkpointSeconds || options.shard)
+    throw UsageError("--strategy-images goes without --checkpoint, --resume and --shard: they do not keep techniques");
+  MakeFolder(*options.strategyImages, "--strategy-images");
 }
 
 int RenderLoaded(const RenderOptions& options, const LoadedScene& loaded) {
   RenderReport report;
   const BuiltScene& built = loaded.built;
   const RenderSettings& settings = built.settings;
-  const std::filesystem::path path = OutputPath(options, settings);
-  if (options.stats) CheckWritable(*options.stats, "--stats");
+  const std::filesystem::path path = OutputPath(options, settings), checkpointPath = CheckpointPath(path);
+  CheckOptions(options, settings);
   const std::vector<std::string>& layers = built.scene.lighting->Groups().Layers();
   CheckMemory(settings, layers.size(), options.strategyImages.has_value());
+  const auto [part, parts] = options.shard.value_or(std::pair(1, 1));
+  const Shard shard = ShardOf(part, parts, SamplesWanted(options, settings));
+  const PartHeader header = MakeHeader(options, loaded, shard);
+  const OutputLock lock(path);
 
   report.scene = options.scene.string();
   report.sceneHash = loaded.hash;
@@ -144,12 +195,9 @@ int RenderLoaded(const RenderOptions& options, const LoadedScene& loaded) {
   report.lightGroups = layers;
 
   const AnyIntegrator integrator = MakeIntegrator(built.scene, settings);
-  Film film(settings.width, settings.height, settings.crop, layers);
+  Film film = header.MakeFilm();
   std::unique_ptr<TechniqueImages> techniques;
   if (options.strategyImages) {
-    if (settings.integrator != "bdpt")
-      throw UsageError("--strategy-images: only bdpt has strategies; the integrator is " + settings.integrator);
-    MakeFolder(*options.strategyImages, "--strategy-images");
     techniques = std::make_unique<TechniqueImages>(settings.width, settings.height, settings.crop, settings.maxDepth,
                                                    settings.imagingRatio);
   }
@@ -157,29 +205,47 @@ int RenderLoaded(const RenderOptions& options, const LoadedScene& loaded) {
     for (const std::string& hint : IntegratorHints(built.scene, settings.integrator))
       std::fprintf(stderr, "hint: %s\n", hint.c_str());
   }
-  StopConditions stop = MakeStopConditions(options, settings);
+  ProgressiveRender render(built.scene, integrator, settings, report.threads, film, techniques.get(), shard.first);
+  if (options.resume) {
+    if (std::filesystem::exists(checkpointPath)) {
+      ResumeFrom(checkpointPath, header, render);
+      report.resumedSamples = render.Outcome().samplesPerPixel;
+      if (!options.quiet)
+        std::fprintf(stderr, "%s: goes on after %d spp\n", checkpointPath.c_str(), report.resumedSamples);
+    } else if (!options.quiet) {
+      std::fprintf(stderr, "there is no \"%s\" to go on with: starts anew\n", checkpointPath.c_str());
+    }
+  }
+  std::optional<Checkpoints> checkpoints;
+  if (options.checkpointSeconds) {
+    checkpoints.emplace(checkpointPath, *options.checkpointSeconds, header, render, [&](const RenderOutcome& soFar) {
+      RenderOutcome unfinished = soFar;
+      unfinished.interrupted = true;
+      WriteImage(path, options, header, film, unfinished);
+    });
+  }
+  StopConditions stop = MakeStopConditions(options, shard);
   stop.largestSample = LargestUnseenSample(built.scene, settings);
   stop.interrupted = &FinishOnInterrupt();
   {
     Progress progress(options.quiet);
     const auto afterPass = [&](const RenderOutcome& soFar, double fraction) {
       progress.Update(fraction, std::to_string(soFar.samplesPerPixel) + " spp, error " + Percent(soFar.relativeError));
+      if (checkpoints && fraction < 1) checkpoints->MayWrite(soFar);
     };
-    report.outcome = Render(built.scene, integrator, settings, stop, report.threads, film, afterPass, techniques.get());
+    report.outcome = Continue(render, stop, afterPass);
   }
   report.rejectedRays = built.scene.geometry->RejectedRays();
 
   const Progress clock(true);
-  const Image image = DevelopWithMetadata(film, report);
   if (techniques) WriteTechniques(options, techniques->Develop(film));
-  WriteExr(path, image, PrecisionFor(image, settings));
-  if (options.png) {
-    WritePngOf(image, path, options);
-  }
+  WriteImageOrKeepIt(path, options, header, film, report.outcome);
+  if (checkpoints) checkpoints->Finish(report.outcome);
+  if (options.png) WritePngBeside(path, film.Develop(), options.exposure, options.clipPng);
   report.writeSeconds = clock.Seconds();
   if (options.stats) WriteText(*options.stats, ToJson(report));
   if (!options.quiet) PrintSummary(report, path);
-  return report.outcome.interrupted ? kExitInterrupted : kExitDone;
+  return report.outcome.interrupted ? InterruptExitCode() : kExitDone;
 }
 
 }  // namespace

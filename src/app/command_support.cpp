@@ -4,8 +4,10 @@
 
 #include <csignal>
 
+#include "app/command_line.h"
 #include "base/progress.h"
 #include "film/atomic_file.h"
+#include "scene/referenced_files.h"
 
 namespace lampyr {
 
@@ -13,8 +15,10 @@ namespace {
 
 // A signal handler has no argument to be handed this through.
 std::atomic<bool> interruptRequested{false};
+std::atomic<int> interruptSignal{SIGINT};
 
 void OnInterrupt(int signal) {
+  interruptSignal.store(signal);
   interruptRequested.store(true);
   std::signal(signal, SIG_DFL);
 }
@@ -31,8 +35,18 @@ const std::atomic<bool>& FinishOnInterrupt() {
   return interruptRequested;
 }
 
+int InterruptExitCode() {
+  return kExitSignalled + interruptSignal.load();
+}
+
+std::string Joined(const std::vector<std::string>& names, const char* separator) {
+  std::string all;
+  for (const std::string& name : names) all += (all.empty() ? "" : separator) + name;
+  return all;
+}
+
 void CheckWritable(const std::filesystem::path& path, const std::string& option) {
-  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  const std::filesystem::path folder = FolderOf(path);
   std::error_code ignored;
   if (!std::filesystem::is_directory(folder, ignored)) {
     throw UsageError(option + ": there is no folder \"" + folder.string() + "\"");
@@ -72,6 +86,8 @@ LoadedScene LoadScene(const std::filesystem::path& scene, const std::vector<std:
     loaded.parseSeconds = clock.Seconds();
     loaded.hash = description.contentHash;
     loaded.types = LoadTypes(plugins, &description);
+    loaded.files = ReferencedFiles(description);
+    for (const Plugin& plugin : loaded.types.Plugins()) loaded.files.push_back(plugin.file.string());
     RunForeignCode(loaded.types,
                    [&] { loaded.built = BuildScene(description, overrides, robust, diagnostics, loaded.types); });
     loaded.buildSeconds = clock.Seconds() - loaded.parseSeconds;

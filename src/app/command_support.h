@@ -16,11 +16,14 @@ void OutliveReaders();
 // From now on SIGINT and SIGTERM (batch systems ask with it) set the flag that is returned, once: a second one ends the
 // process.
 const std::atomic<bool>& FinishOnInterrupt();
+// Of a command that has been interrupted so.
+int InterruptExitCode();
 
 // A file that cannot be written is told before the work, not after it. Throws UsageError; `option` names the culprit.
 void CheckWritable(const std::filesystem::path& path, const std::string& option);
 // Makes the folder, before the work that would be lost if it could not be made. Throws UsageError.
 void MakeFolder(const std::filesystem::path& folder, const std::string& option);
+std::string Joined(const std::vector<std::string>& names, const char* separator);
 // Whole or not at all.
 void WriteText(const std::filesystem::path& path, const std::string& text);
 
@@ -30,7 +33,8 @@ uint64_t InstalledMemory();
 struct LoadedScene {
   TypeRegistry types;
   BuiltScene built;
-  std::string hash;
+  std::string hash;                // of its text
+  std::vector<std::string> files;  // that it names, and those of plugins
   double parseSeconds = 0, buildSeconds = 0;
 };
 // Reads and builds, with the plugins that are asked for and those that the scene names. All that goes wrong here is the

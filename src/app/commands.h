@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/render_settings.h"
@@ -25,9 +26,22 @@ struct RenderOptions {
   int threads = 0;                    // 0: all
   std::optional<std::filesystem::path> stats;
   std::optional<std::filesystem::path> strategyImages;  // a folder
+  std::optional<double> checkpointSeconds;              // --checkpoint
+  bool resume = false;
+  std::optional<std::pair<int, int>> shard;  // which of how many, from 1
   bool quiet = false;
   bool strict = false;
   bool robust = true;
+};
+
+struct MergeOptions {
+  std::vector<std::filesystem::path> parts;
+  std::filesystem::path output;
+  bool partial = false;  // parts may be missing
+  bool png = false;
+  float exposure = 0;  // stops, of the PNG
+  bool clipPng = false;
+  bool quiet = false;
 };
 
 struct CompareOptions {
@@ -78,6 +92,7 @@ struct LightsOptions {
 
 // Each returns an exit code. Errors are thrown.
 int RunRender(const RenderOptions& options);
+int RunMerge(const MergeOptions& options);
 int RunCompare(const CompareOptions& options);
 int RunPlan(const PlanOptions& options);
 int RunDiff(const DiffOptions& options);

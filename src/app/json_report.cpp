@@ -54,6 +54,7 @@ std::string ToJson(const RenderReport& report) {
       {"lights", report.lights},
       {"lightGroups", report.lightGroups},
       {"samplesPerPixel", outcome.samplesPerPixel},
+      {"resumedSamplesPerPixel", report.resumedSamples},
       {"samples", samples},
       {"samplesPerSecond", samples / seconds},
       {"droppedSamples", counts.droppedSamples},

@@ -20,6 +20,7 @@ struct RenderReport {
   std::vector<std::string> lightGroups;  // the image's layers
   double parseSeconds = 0, buildSeconds = 0, writeSeconds = 0;
   uint64_t rejectedRays = 0;
+  int resumedSamples = 0;  // per pixel, that a checkpoint brought
   RenderOutcome outcome;
 };
 

@@ -261,14 +261,15 @@ RenderCounts RenderPass(const RenderScene& scene, const BidirectionalIntegrator&
 
 ProgressiveRender::ProgressiveRender(const RenderScene& scene, const AnyIntegrator& integrator,
                                      const RenderSettings& settings, int threads, Film& film,
-                                     TechniqueImages* techniques)
+                                     TechniqueImages* techniques, uint32_t firstSample)
     : scene_(scene),
       integrator_(integrator),
       settings_(settings),
       filter_(settings.filter),
       threads_(threads),
       film_(film),
-      techniques_(techniques) {
+      techniques_(techniques),
+      firstSample_(firstSample) {
   if (const auto* chosen = std::get_if<std::unique_ptr<BidirectionalIntegrator>>(&integrator)) {
     if (const std::optional<PhotonSettings> wanted = (*chosen)->Photons()) {
       if (wanted->guided) guiding_ = std::make_unique<EmissionLearning>(scene, settings.width, settings.height);
@@ -279,7 +280,8 @@ ProgressiveRender::ProgressiveRender(const RenderScene& scene, const AnyIntegrat
   if (settings.learnLights) learning_ = std::make_unique<LightLearning>(scene.lighting->SceneSphere());
 }
 
-void ProgressiveRender::AddPass(uint32_t first, uint32_t count) {
+void ProgressiveRender::AddPass(uint32_t done, uint32_t count) {
+  const uint32_t first = firstSample_ + done;
   outcome_.counts += std::visit(
       [&]<class Chosen>(const std::unique_ptr<Chosen>& chosen) {
         if constexpr (std::is_same_v<Chosen, BidirectionalIntegrator>) {
@@ -366,30 +368,65 @@ int ProgressiveRender::NextPassSamples(int samplesPerPixel, std::optional<double
   return static_cast<int>(std::clamp(affordable, 1.0, static_cast<double>(std::max(count, 1))));
 }
 
-RenderOutcome Render(const RenderScene& scene, const AnyIntegrator& integrator, const RenderSettings& settings,
-                     const StopConditions& stop, int threads, Film& film, const PassCallback& afterPass,
-                     TechniqueImages* techniques) {
-  ProgressiveRender render(scene, integrator, settings, threads, film, techniques);
+// Photons are not saved: those of the last pass are traced again.
+void ProgressiveRender::Save(ByteWriter& bytes) const {
+  bytes.Value(static_cast<uint32_t>(outcome_.samplesPerPixel));
+  bytes.Value(outcome_.seconds);
+  bytes.Value(outcome_.counts);
+  if (photons_) bytes.Value(photons_->Statistics());
+  if (learning_) learning_->Save(bytes);
+  if (guiding_) guiding_->Save(bytes);
+  film_.Save(bytes);
+}
+
+void ProgressiveRender::Load(ByteReader& bytes) {
+  outcome_.samplesPerPixel = static_cast<int>(bytes.Value<uint32_t>());
+  outcome_.seconds = bytes.Value<double>();
+  if (outcome_.samplesPerPixel < 0 || !(outcome_.seconds >= 0)) throw Error("it holds a number that cannot be");
+  outcome_.counts = bytes.Value<RenderCounts>();
+  if (photons_) outcome_.photons = photons_->Continue(bytes.Value<PhotonStatistics>());
+  if (learning_) learning_->Load(bytes);
+  if (guiding_) guiding_->Load(bytes);
+  film_.Load(bytes);
+}
+
+RenderOutcome Continue(ProgressiveRender& render, const StopConditions& stop, const PassCallback& afterPass) {
   const Clock clock;
-  RenderOutcome outcome;
-  while (outcome.samplesPerPixel < stop.samplesPerPixel) {
-    std::optional<double> secondsLeft;
-    if (stop.seconds) secondsLeft = *stop.seconds - clock.Seconds();
-    render.AddSamples(render.NextPassSamples(stop.samplesPerPixel, secondsLeft));
+  const double before = render.Outcome().seconds;
+  RenderOutcome outcome = render.Outcome();
+  const auto measure = [&] {
     outcome = render.Outcome();
-    outcome.seconds = clock.Seconds();  // what the user waits for
-    outcome.relativeError = film.RelativeError(stop.largestSample);
+    outcome.seconds = before + clock.Seconds();  // what the user waits for
+    outcome.relativeError = render.Picture().RelativeError(stop.largestSample);
+  };
+  measure();
+  const auto isDone = [&] {
+    if (outcome.samplesPerPixel >= stop.samplesPerPixel) return true;
+    if (outcome.samplesPerPixel == 0) return false;
+    if (stop.seconds && outcome.seconds >= *stop.seconds * 0.999) return true;
+    // Too few samples may all have missed what makes the error.
+    constexpr int fewest = 16;
+    return stop.relativeError && outcome.samplesPerPixel >= fewest && outcome.relativeError <= *stop.relativeError;
+  };
+  while (!isDone()) {
+    std::optional<double> most = stop.longestPass;
+    if (stop.seconds) most = std::min(*stop.seconds - outcome.seconds, most.value_or(*stop.seconds));
+    render.AddSamples(render.NextPassSamples(stop.samplesPerPixel, most));
+    measure();
     afterPass(outcome, FractionDone(outcome, stop));
     if (stop.interrupted && stop.interrupted->load()) {
       outcome.interrupted = true;
       break;
     }
-    if (stop.seconds && outcome.seconds >= *stop.seconds * 0.999) break;
-    // Too few samples may all have missed what makes the error.
-    constexpr int fewest = 16;
-    if (stop.relativeError && outcome.samplesPerPixel >= fewest && outcome.relativeError <= *stop.relativeError) break;
   }
   return outcome;
+}
+
+RenderOutcome Render(const RenderScene& scene, const AnyIntegrator& integrator, const RenderSettings& settings,
+                     const StopConditions& stop, int threads, Film& film, const PassCallback& afterPass,
+                     TechniqueImages* techniques) {
+  ProgressiveRender render(scene, integrator, settings, threads, film, techniques);
+  return Continue(render, stop, afterPass);
 }
 
 }  // namespace lampyr

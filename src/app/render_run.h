@@ -12,6 +12,7 @@
 #include "app/integrator_choice.h"
 #include "app/render_settings.h"
 #include "app/technique_images.h"
+#include "base/byte_stream.h"
 #include "film/film.h"
 #include "integrators/common/photon_store.h"
 #include "integrators/integrator.h"
@@ -22,13 +23,14 @@ struct StopConditions {
   int samplesPerPixel = 16;                        // never more than that
   std::optional<double> seconds;                   // of rendering
   std::optional<double> relativeError;             // at 95 % confidence (Film::RelativeError)
+  std::optional<double> longestPass;               // seconds, where something is to be done between passes
   double largestSample = 0;                        // that may not have come yet (unseen_samples.h)
   const std::atomic<bool>* interrupted = nullptr;  // set by a signal handler: finish the pass
 };
 
 struct RenderOutcome {
   int samplesPerPixel = 0;
-  double seconds = 0;  // of the passes
+  double seconds = 0;  // of the passes; of Continue: until it has ended
   double relativeError = 0;
   bool interrupted = false;
   RenderCounts counts;
@@ -38,18 +40,14 @@ struct RenderOutcome {
 // Called after each pass.
 using PassCallback = std::function<void(const RenderOutcome& soFar, double fractionDone)>;
 
-// Renders into `film` (empty, of the settings' crop). `techniques`, if any, are recorded for integrators that have
-// them.
-RenderOutcome Render(const RenderScene& scene, const AnyIntegrator& integrator, const RenderSettings& settings,
-                     const StopConditions& stop, int threads, Film& film, const PassCallback& afterPass,
-                     TechniqueImages* techniques = nullptr);
-
 // A render that is continued as long as its owner likes. What `scene`, `integrator`, `settings`, `film` (empty, of the
 // settings' crop) and `techniques` refer to must outlive it.
 class ProgressiveRender {
  public:
+  // `firstSample`: of each pixel. Who starts later renders a part of what who starts at 0 does: photons have the radii
+  // of their pass.
   ProgressiveRender(const RenderScene& scene, const AnyIntegrator& integrator, const RenderSettings& settings,
-                    int threads, Film& film, TechniqueImages* techniques = nullptr);
+                    int threads, Film& film, TechniqueImages* techniques = nullptr, uint32_t firstSample = 0);
 
   // As many samples more of every pixel. Only this takes time that counts. What is learned of lights and of
   // where photons are of use is learned from samples 0 … 2^n - 1 and counts from sample 2^n on, whatever the passes
@@ -62,6 +60,13 @@ class ProgressiveRender {
 
   // relativeError is not kept up to date here.
   const RenderOutcome& Outcome() const { return outcome_; }
+  const Film& Picture() const { return film_; }
+
+  // All that the samples to come depend on, and the film. Between passes.
+  void Save(ByteWriter& bytes) const;
+  // Goes on where one of the same scene, settings and first sample was saved, before any sample is added here. Throws
+  // an Error where this is not what has been saved; it is of no use then.
+  void Load(ByteReader& bytes);
 
  private:
   void AddPass(uint32_t first, uint32_t count);
@@ -74,11 +79,21 @@ class ProgressiveRender {
   int threads_;
   Film& film_;
   TechniqueImages* techniques_;
+  uint32_t firstSample_;
   RenderOutcome outcome_;
   std::unique_ptr<LightLearning> learning_;    // null: selection learns nothing
   std::unique_ptr<EmissionLearning> guiding_;  // null: photons are not aimed
   std::unique_ptr<PhotonStore> photons_;       // of integrators that gather them
 };
+
+// Adds samples until a condition holds. What was loaded counts: its samples and its time.
+RenderOutcome Continue(ProgressiveRender& render, const StopConditions& stop, const PassCallback& afterPass);
+
+// A new render, into `film` (empty, of the settings' crop). `techniques`, if any, are recorded for integrators that
+// have them.
+RenderOutcome Render(const RenderScene& scene, const AnyIntegrator& integrator, const RenderSettings& settings,
+                     const StopConditions& stop, int threads, Film& film, const PassCallback& afterPass,
+                     TechniqueImages* techniques = nullptr);
 
 // Samples [first, first + count) of every pixel. Exposed for tests and benchmarks.
 RenderCounts RenderPass(const RenderScene& scene, const CameraIntegrator& integrator, const RenderSettings& settings,

@@ -116,7 +116,7 @@ std::vector<TechniqueImages::Picture> TechniqueImages::Develop(const Film& film)
       const Image splatted = splats ? splats->Develop() : Image();
       for (int y = 0; y < crop_.Height(); ++y) {
         for (int x = 0; x < crop_.Width(); ++x) {
-          const double weight = film.Pixel(crop_.x0 + x, crop_.y0 + y).weight;
+          const double weight = film.Pixel(crop_.x0 + x, crop_.y0 + y).weight.Value();
           for (size_t c = 0; c < 3; ++c) {
             const size_t i =
                 3 * (static_cast<size_t>(y) * static_cast<size_t>(crop_.Width()) + static_cast<size_t>(x)) + c;

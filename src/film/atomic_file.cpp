@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstring>
 #include <string>
 #include <system_error>
 
@@ -11,13 +12,21 @@
 
 namespace lampyr {
 
+namespace {
+
+constexpr const char* kSuffix = ".tmp";
+
+std::string TemporaryPrefix(const std::filesystem::path& path) {
+  return "." + path.filename().string() + ".";
+}
+
+}  // namespace
+
 AtomicFile::AtomicFile(const std::filesystem::path& path) : path_(path), temporary_(path) {
   if (!path.has_filename()) throw Error("cannot write \"" + path.string() + "\": it names no file");
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) Fail(EISDIR);
-  std::string name = ".";
-  name.append(path.filename().string()).append(".").append(std::to_string(getpid())).append(".tmp");
-  temporary_.replace_filename(name);
+  temporary_.replace_filename(TemporaryPrefix(path) + std::to_string(getpid()) + kSuffix);
   errno = 0;
   file_ = std::fopen(temporary_.c_str(), "wb");
   if (!file_) Fail(errno);
@@ -50,6 +59,10 @@ void AtomicFile::Seek(uint64_t position) {
   if (fseeko(file_, static_cast<off_t>(position), SEEK_SET) != 0) Fail(errno);
 }
 
+void AtomicFile::SeekToEnd() {
+  if (fseeko(file_, 0, SEEK_END) != 0) Fail(errno);
+}
+
 void AtomicFile::ThrowIfFailed() {
   if (firstError_ != 0) Fail(firstError_);
 }
@@ -57,6 +70,8 @@ void AtomicFile::ThrowIfFailed() {
 void AtomicFile::Commit() {
   ThrowIfFailed();
   if (std::fflush(file_) != 0) Fail(errno);
+  // Not every file system can; that it is asked for is what matters: the name must not come before the bytes.
+  if (fsync(fileno(file_)) != 0 && errno != EINVAL && errno != ENOTSUP) Fail(errno);
   std::FILE* file = file_;
   file_ = nullptr;
   int failure = std::fclose(file) != 0 ? errno : 0;
@@ -65,6 +80,22 @@ void AtomicFile::Commit() {
   std::error_code ignored;
   std::filesystem::remove(temporary_, ignored);
   Fail(failure);
+}
+
+void AtomicFile::RemoveLeftovers(const std::filesystem::path& path) {
+  const std::string prefix = TemporaryPrefix(path);
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(FolderOf(path), ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (name.size() <= prefix.size() + std::strlen(kSuffix) || !name.starts_with(prefix) || !name.ends_with(kSuffix))
+      continue;
+    const std::string process = name.substr(prefix.size(), name.size() - prefix.size() - std::strlen(kSuffix));
+    if (process.find_first_not_of("0123456789") == std::string::npos) std::filesystem::remove(entry.path(), ignored);
+  }
+}
+
+std::filesystem::path FolderOf(const std::filesystem::path& path) {
+  return path.has_parent_path() ? path.parent_path() : ".";
 }
 
 }  // namespace lampyr

@@ -19,11 +19,15 @@ class AtomicFile {
   void Write(const void* bytes, size_t count);
   uint64_t Position();
   void Seek(uint64_t position);
+  void SeekToEnd();
 
   // Throws when an earlier Write failed and its Error was lost on the way here (in a destructor, say).
   void ThrowIfFailed();
-  // Gives the file its name. Throws as ThrowIfFailed does, too.
+  // Gives the file its name, once its bytes are on the disk. Throws as ThrowIfFailed does, too.
   void Commit();
+
+  // Removes what processes that were ended while they wrote this file have left beside it. While nobody writes it.
+  static void RemoveLeftovers(const std::filesystem::path& path);
 
  private:
   [[noreturn]] void Fail(int errorNumber);
@@ -32,5 +36,8 @@ class AtomicFile {
   std::FILE* file_ = nullptr;
   int firstError_ = 0;
 };
+
+// Of a file's name; "." where it names none.
+std::filesystem::path FolderOf(const std::filesystem::path& path);
 
 }  // namespace lampyr

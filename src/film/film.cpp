@@ -1,11 +1,13 @@
-// Sums per pixel in double and the image made of them. Radiance in W/(m² sr); a million samples do not drift.
+// Sums per pixel and the image made of them. Radiance in W/(m² sr); a million samples do not drift.
 #include "film/film.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
 #include <utility>
 
+#include "base/byte_stream.h"
 #include "base/error.h"
 #include "base/parallel.h"
 #include "film/metrics.h"
@@ -18,7 +20,8 @@ namespace {
 // cancel it when there are few samples, and then n itself is used, which keeps the pixel finite and unbiased.
 double Divisor(const PixelSums& pixel) {
   const double n = static_cast<double>(pixel.count);
-  return pixel.weight > 0.1 * n ? pixel.weight : n;
+  const double weight = pixel.weight.Value();
+  return weight > 0.1 * n ? weight : n;
 }
 
 // Variance of the mean of n samples from their sums. 0 below 2 samples.
@@ -61,10 +64,21 @@ float ToFiniteFloat(double value) {
   return static_cast<float>(std::clamp(value, -largest, largest));
 }
 
-void AddTo(std::array<double, 3>& sum, float weight, const Color& value) {
-  sum[0] += static_cast<double>(weight) * static_cast<double>(value.r);
-  sum[1] += static_cast<double>(weight) * static_cast<double>(value.g);
-  sum[2] += static_cast<double>(weight) * static_cast<double>(value.b);
+void AddTo(std::array<CompensatedSum, 3>& sum, float weight, const Color& value) {
+  sum[0].Add(static_cast<double>(weight) * static_cast<double>(value.r));
+  sum[1].Add(static_cast<double>(weight) * static_cast<double>(value.g));
+  sum[2].Add(static_cast<double>(weight) * static_cast<double>(value.b));
+}
+
+template <class Sums>
+void AddAll(std::vector<Sums>& to, const std::vector<Sums>& from) {
+  for (size_t i = 0; i < from.size(); ++i) {
+    for (size_t c = 0; c < 3; ++c) to[i][c].Add(from[i][c]);
+  }
+}
+
+bool AreFinite(std::span<const CompensatedSum> sums) {
+  return std::all_of(sums.begin(), sums.end(), [](const CompensatedSum& sum) { return sum.IsFinite(); });
 }
 
 }  // namespace
@@ -76,15 +90,29 @@ void PixelSums::Add(const Color& value, float filterWeight) {
   if (count > 0) {
     const double scale = 1 / static_cast<double>(count);
     double deviation = 0;
-    for (int c = 0; c < 3; ++c) deviation += Color::kLuminance[c] * std::abs(weighted[c] - scale * sum[c]);
+    for (int c = 0; c < 3; ++c) deviation += Color::kLuminance[c] * std::abs(weighted[c] - scale * sum[c].Value());
     sumOfFourths += deviation * deviation * deviation * deviation;
   }
   for (int c = 0; c < 3; ++c) {
-    sum[c] += weighted[c];
-    sumOfSquares[c] += weighted[c] * weighted[c];
+    sum[c].Add(weighted[c]);
+    sumOfSquares[c].Add(weighted[c] * weighted[c]);
   }
-  weight += w;
+  weight.Add(w);
   ++count;
+}
+
+void PixelSums::Add(const PixelSums& other) {
+  for (int c = 0; c < 3; ++c) {
+    sum[c].Add(other.sum[c]);
+    sumOfSquares[c].Add(other.sumOfSquares[c]);
+  }
+  weight.Add(other.weight);
+  sumOfFourths += other.sumOfFourths;
+  count += other.count;
+}
+
+bool PixelSums::IsFinite() const {
+  return AreFinite(sum) && AreFinite(sumOfSquares) && weight.IsFinite() && std::isfinite(sumOfFourths);
 }
 
 Film::Film(int fullWidth, int fullHeight, const PixelRect& crop, std::vector<std::string> layers)
@@ -102,7 +130,7 @@ void Film::AddToLayers(int x, int y, const LayerSample& sample, float scale, flo
   const double factor = static_cast<double>(scale) * static_cast<double>(filterWeight);
   LayerSum* sums = layerSums_.data() + Index(x, y) * layers_.size();
   for (const uint32_t layer : sample.Met()) {
-    for (int c = 0; c < 3; ++c) sums[layer][static_cast<size_t>(c)] += factor * sample.Sum(layer, c);
+    for (int c = 0; c < 3; ++c) sums[layer][static_cast<size_t>(c)].Add(factor * sample.Sum(layer, c));
   }
 }
 
@@ -113,7 +141,7 @@ uint64_t Film::BytesPerPixel(size_t layers, bool withSplats) {
 
 double Film::Value(size_t pixel, int channel) const {
   const PixelSums& samples = pixels_[pixel];
-  double value = samples.count > 0 ? samples.sum[channel] / Divisor(samples) : 0.0;
+  double value = samples.count > 0 ? samples.sum[channel].Value() / Divisor(samples) : 0.0;
   if (lightPaths_ > 0) value += splats_[pixel].Sum(channel) / static_cast<double>(lightPaths_);
   return value;
 }
@@ -121,8 +149,8 @@ double Film::Value(size_t pixel, int channel) const {
 double Film::LayerValue(size_t pixel, size_t layer, size_t channel) const {
   const PixelSums& samples = pixels_[pixel];
   const size_t index = pixel * layers_.size() + layer;
-  double value = samples.count > 0 ? layerSums_[index][channel] / Divisor(samples) : 0.0;
-  if (lightPaths_ > 0) value += layerSplats_[index][channel] / static_cast<double>(lightPaths_);
+  double value = samples.count > 0 ? layerSums_[index][channel].Value() / Divisor(samples) : 0.0;
+  if (lightPaths_ > 0) value += layerSplats_[index][channel].Value() / static_cast<double>(lightPaths_);
   return value;
 }
 
@@ -131,7 +159,8 @@ double Film::VarianceOfMean(size_t pixel, int channel) const {
   const double n = static_cast<double>(samples.count);
   double variance = 0;
   if (samples.count >= 2) {  // w·L in units of the mean weight
-    variance = MeanVariance(samples.sum[channel], samples.sumOfSquares[channel], n) * std::pow(n / Divisor(samples), 2);
+    variance = MeanVariance(samples.sum[channel].Value(), samples.sumOfSquares[channel].Value(), n) *
+               std::pow(n / Divisor(samples), 2);
   }
   if (lightPaths_ > 0) {
     const SplatSums& splats = splats_[pixel];
@@ -157,12 +186,14 @@ SplatList Film::MakeSplatList(const PixelFilter& filter, float scale) const {
           HasLayers()};
 }
 
+void Film::MakeSplats() {
+  splats_.resize(pixels_.size());
+  layerSplats_.resize(layerSums_.size());
+}
+
 void Film::AddSplats(const PixelFilter& filter, std::span<const SplatList> lists, int threads) {
-  if (splats_.empty()) {
-    splats_.resize(pixels_.size());
-    layerSplats_.resize(layerSums_.size());
-    splatSpread_ = SplatSpread(filter);
-  }
+  MakeSplats();
+  if (splatSpread_ == 0) splatSpread_ = SplatSpread(filter);
   const int bands = std::max(threads, 1);
   ParallelFor(bands, threads, [&](int band) { AddToRows(filter, lists, band, bands); });
   for (const SplatList& list : lists) lightPaths_ += list.Paths();
@@ -206,6 +237,49 @@ void Film::AddToRows(const PixelFilter& filter, std::span<const SplatList> lists
     }
     firstPath += list.Paths();
   }
+}
+
+void Film::Add(const Film& other) {
+  for (size_t i = 0; i < pixels_.size(); ++i) pixels_[i].Add(other.pixels_[i]);
+  AddAll(layerSums_, other.layerSums_);
+  if (other.splats_.empty()) return;
+  MakeSplats();
+  for (size_t i = 0; i < splats_.size(); ++i) splats_[i].Add(other.splats_[i]);
+  AddAll(layerSplats_, other.layerSplats_);
+  lightPaths_ += other.lightPaths_;
+  splatSpread_ = other.splatSpread_;
+}
+
+void Film::Save(ByteWriter& bytes) const {
+  bytes.Values(std::span(pixels_));
+  bytes.Values(std::span(layerSums_));
+  bytes.Value<uint8_t>(splats_.empty() ? 0 : 1);
+  if (splats_.empty()) return;
+  bytes.Values(std::span(splats_));
+  bytes.Values(std::span(layerSplats_));
+  bytes.Value(lightPaths_);
+  bytes.Value(splatSpread_);
+}
+
+void Film::Load(ByteReader& bytes) {
+  Film film(fullWidth_, fullHeight_, crop_, layers_);
+  bytes.Values(std::span(film.pixels_));
+  bytes.Values(std::span(film.layerSums_));
+  if (bytes.Flag()) {
+    film.MakeSplats();
+    bytes.Values(std::span(film.splats_));
+    bytes.Values(std::span(film.layerSplats_));
+    film.lightPaths_ = bytes.Value<uint64_t>();
+    film.splatSpread_ = bytes.Value<double>();
+  }
+  const bool isFinite =
+      std::all_of(film.pixels_.begin(), film.pixels_.end(), [](const PixelSums& pixel) { return pixel.IsFinite(); }) &&
+      std::all_of(film.splats_.begin(), film.splats_.end(), [](const SplatSums& sums) { return sums.IsFinite(); }) &&
+      std::all_of(film.layerSums_.begin(), film.layerSums_.end(), [](const LayerSum& s) { return AreFinite(s); }) &&
+      std::all_of(film.layerSplats_.begin(), film.layerSplats_.end(), [](const LayerSum& s) { return AreFinite(s); }) &&
+      std::isfinite(film.splatSpread_);
+  if (!isFinite) throw Error("it holds sums that are not finite");
+  *this = std::move(film);
 }
 
 Image Film::Develop() const {

@@ -1,10 +1,13 @@
-// The film: sums of samples per pixel in double, their variance, and the image made of them.
+// The film: sums of samples per pixel, their variance, and the image made of them.
 //
 // A pixel is what its camera samples say plus what light paths have splatted on it. The two are different techniques of
 // one estimate, or one of them is absent: a pure path tracer makes no splats, and a pure light tracer no samples.
 //
 // A film may have layers, which split the picture: each part of a sample or splat belongs to one of them. They are
 // summed and normalised as the picture is, so they add up to it but for rounding.
+//
+// The order of samples does not show in the image: sums are compensated (math/compensated_sum.h), so that the films of
+// parts of the samples add up to that of all of them.
 #pragma once
 
 #include <array>
@@ -17,6 +20,7 @@
 #include "film/layer_sample.h"
 #include "film/pixel_filter.h"
 #include "film/splats.h"
+#include "math/compensated_sum.h"
 #include "math/vec.h"
 
 namespace lampyr {
@@ -29,14 +33,20 @@ struct PixelRect {
 
 // Sums of one pixel. A sample with filter weight w and value L adds w·L; the pixel is Σ wL / Σ w.
 struct PixelSums {
-  double sum[3] = {0, 0, 0};
-  double sumOfSquares[3] = {0, 0, 0};  // of w·L
+  CompensatedSum sum[3];
+  CompensatedSum sumOfSquares[3];  // of w·L
+  CompensatedSum weight;
   double sumOfFourths = 0;  // of the luminance's deviations from the mean before each sample: the error's own error
-  double weight = 0;
   uint64_t count = 0;
 
   void Add(const Color& value, float filterWeight);
+  // All samples of another one.
+  void Add(const PixelSums& other);
+  bool IsFinite() const;
 };
+
+class ByteReader;
+class ByteWriter;
 
 class Film {
  public:
@@ -63,6 +73,14 @@ class Film {
   // Light paths so far, those that were never seen included.
   uint64_t LightPaths() const { return lightPaths_; }
 
+  // All samples and light paths of another film, of the same size, crop and layers.
+  void Add(const Film& other);
+  // Everything but size, crop and layers.
+  void Save(ByteWriter& bytes) const;
+  // Into an empty film of the same size, crop and layers. Throws an Error, and leaves the film as it was, where this is
+  // not what has been saved.
+  void Load(ByteReader& bytes);
+
   // R, G, B and variance.R, .G, .B: the variance of the pixel's mean (sample variance / n; an upper bound for
   // stratified samplers). Samples and splats count as independent: a sample that also splats does so on all pixels
   // alike, and its share in its own is small. Then NAME.R, .G, .B of each layer.
@@ -76,7 +94,7 @@ class Film {
   double RelativeError(double largestSample = 0) const;
 
  private:
-  using LayerSum = std::array<double, 3>;
+  using LayerSum = std::array<CompensatedSum, 3>;
 
   size_t Index(int x, int y) const { return static_cast<size_t>(y - crop_.y0) * crop_.Width() + (x - crop_.x0); }
   void AddToRows(const PixelFilter& filter, std::span<const SplatList> lists, int band, int bands);
@@ -84,6 +102,7 @@ class Film {
   double LayerValue(size_t pixel, size_t layer, size_t channel) const;
   double VarianceOfMean(size_t pixel, int channel) const;
   double FourthOfMean(size_t pixel) const;
+  void MakeSplats();
 
   int fullWidth_, fullHeight_;
   PixelRect crop_;
@@ -92,7 +111,7 @@ class Film {
   std::vector<std::string> layers_;
   std::vector<LayerSum> layerSums_, layerSplats_;  // of each layer of each pixel; splats: empty while there are none
   uint64_t lightPaths_ = 0;
-  double splatSpread_ = 1;  // how many pixels a splat is worth (film.cpp)
+  double splatSpread_ = 0;  // how many pixels a splat is worth (film.cpp)
 };
 
 }  // namespace lampyr

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -10,6 +11,8 @@
 #include "math/vec.h"
 
 namespace lampyr {
+
+class AtomicFile;
 
 // Interleaved float channels, row by row from the top.
 struct Image {
@@ -40,7 +43,9 @@ enum class ExrPrecision { Half, Float };
 
 // Written to a temporary name in the same folder, then renamed: the file is whole or it is not there.
 // Throws Error (unwritable folder, full disk).
-void WriteExr(const std::filesystem::path& path, const Image& image, ExrPrecision precision);
+// `append`, if any, writes more behind the image, which readers of EXR files do not look at.
+void WriteExr(const std::filesystem::path& path, const Image& image, ExrPrecision precision,
+              const std::function<void(AtomicFile&)>& append = {});
 
 // 8-bit sRGB with tone mapping for pictures to look at: exposure in stops, then clipping at 1, or a filmic shoulder:
 // x up to 0.6, then 0.6 + 0.4·(1 - exp(-(x - 0.6)/0.4)) per channel.

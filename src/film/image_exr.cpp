@@ -35,10 +35,13 @@ class AtomicStream : public Imf::OStream {
   AtomicFile& file_;
 };
 
-int BytesOf(Imf::PixelType type) { return type == Imf::HALF ? 2 : 4; }
+int BytesOf(Imf::PixelType type) {
+  return type == Imf::HALF ? 2 : 4;
+}
 
 // Names of all channels in our order. Throws on channels that are not stored at every pixel.
-std::vector<std::string> ListChannels(const std::filesystem::path& path, const Imf::Header& header, int& bytesPerPixel) {
+std::vector<std::string> ListChannels(const std::filesystem::path& path, const Imf::Header& header,
+                                      int& bytesPerPixel) {
   std::vector<std::string> names;
   bytesPerPixel = 0;
   for (auto i = header.channels().begin(); i != header.channels().end(); ++i) {
@@ -113,8 +116,8 @@ void WriteOpenExr(Imf::OStream& stream, const Image& image, ExrPrecision precisi
   const bool asHalf = precision == ExrPrecision::Half;
   const Imf::PixelType type = asHalf ? Imf::HALF : Imf::FLOAT;
   const std::vector<half> halves = asHalf ? ToHalf(image.data) : std::vector<half>();
-  const char* first = asHalf ? reinterpret_cast<const char*>(halves.data())
-                             : reinterpret_cast<const char*>(image.data.data());
+  const char* first =
+      asHalf ? reinterpret_cast<const char*>(halves.data()) : reinterpret_cast<const char*>(image.data.data());
   const size_t valueBytes = static_cast<size_t>(BytesOf(type));
   const size_t xStride = valueBytes * image.channels.size(), yStride = xStride * static_cast<size_t>(image.width);
   const Imf::Header header = MakeHeader(image, type);
@@ -140,7 +143,8 @@ Image ReadExr(const std::filesystem::path& path) {
   }
 }
 
-void WriteExr(const std::filesystem::path& path, const Image& image, ExrPrecision precision) {
+void WriteExr(const std::filesystem::path& path, const Image& image, ExrPrecision precision,
+              const std::function<void(AtomicFile&)>& append) {
   if (image.width <= 0 || image.height <= 0 || image.channels.empty()) {
     throw Error("cannot write \"" + path.string() + "\": the image has no pixels");
   }
@@ -148,6 +152,11 @@ void WriteExr(const std::filesystem::path& path, const Image& image, ExrPrecisio
   try {
     AtomicStream stream(file, path.string());
     WriteOpenExr(stream, image, precision);
+    if (append) {
+      file.ThrowIfFailed();
+      file.SeekToEnd();
+      append(file);
+    }
   } catch (const std::exception& e) {
     file.ThrowIfFailed();  // the system's reason is better than OpenEXR's
     throw Error("cannot write \"" + path.string() + "\": " + e.what());

@@ -6,9 +6,11 @@
 // whoever traced them.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
+#include "math/compensated_sum.h"
 #include "math/vec.h"
 
 namespace lampyr {
@@ -72,8 +74,28 @@ class SplatSums {
     latest_[1] += weight * static_cast<double>(value.g);
     latest_[2] += weight * static_cast<double>(value.b);
   }
-  double Sum(int channel) const { return sum_[channel] + latest_[channel]; }
-  double SumOfSquares(int channel) const { return sumOfSquares_[channel] + latest_[channel] * latest_[channel]; }
+  // All paths of other sums; those of the two are not the same.
+  void Add(const SplatSums& other) {
+    EndPath(0);
+    SplatSums ended = other;
+    ended.EndPath(0);
+    sumOfFourths_ += ended.sumOfFourths_;
+    for (int c = 0; c < 3; ++c) {
+      sum_[c].Add(ended.sum_[c]);
+      sumOfSquares_[c].Add(ended.sumOfSquares_[c]);
+    }
+  }
+  bool IsFinite() const {
+    bool isFinite = std::isfinite(sumOfFourths_);
+    for (int c = 0; c < 3; ++c) {
+      isFinite = isFinite && sum_[c].IsFinite() && sumOfSquares_[c].IsFinite() && std::isfinite(latest_[c]);
+    }
+    return isFinite;
+  }
+  double Sum(int channel) const { return sum_[channel].ValueWith(latest_[channel]); }
+  double SumOfSquares(int channel) const {
+    return sumOfSquares_[channel].ValueWith(latest_[channel] * latest_[channel]);
+  }
   // Of the paths' luminances.
   double SumOfFourths() const {
     double luminance = 0;
@@ -85,15 +107,15 @@ class SplatSums {
   void EndPath(uint64_t next) {
     sumOfFourths_ = SumOfFourths();
     for (int c = 0; c < 3; ++c) {
-      sum_[c] = Sum(c);
-      sumOfSquares_[c] = SumOfSquares(c);
+      sum_[c].Add(latest_[c]);
+      sumOfSquares_[c].Add(latest_[c] * latest_[c]);
       latest_[c] = 0;
     }
     path_ = next;
   }
 
-  double sum_[3] = {0, 0, 0};
-  double sumOfSquares_[3] = {0, 0, 0};
+  CompensatedSum sum_[3];
+  CompensatedSum sumOfSquares_[3];
   double sumOfFourths_ = 0;
   double latest_[3] = {0, 0, 0};  // of path_, not in the sums yet
   uint64_t path_ = 0;

@@ -89,6 +89,8 @@ class ParameterList {
   // A file name made absolute: against the folder of the scene (as pbrt-v4 does) when it is there, else against the
   // folder of the file that wrote it (an included one may lie elsewhere). "" when absent.
   std::string GetFile(const std::string& name) const;
+  // The same for a name that is at hand. "" for "".
+  std::string ResolveFile(const std::string& name, const FileLocation& writtenAt) const;
 
   // The texture's name when the parameter `name` is of type "texture".
   std::optional<std::string> GetTextureName(const std::string& name) const;
@@ -117,7 +119,6 @@ class ParameterList {
                                bool single) const;
   std::vector<Color> ColorsOf(const Parameter& parameter, SpectrumRole role) const;
   [[noreturn]] void WrongCount(const Parameter& parameter, size_t needed, size_t found) const;
-  std::string ResolveFile(const std::string& name, const FileLocation& writtenAt) const;
 };
 
 }  // namespace lampyr

@@ -123,8 +123,8 @@ TEST(FilmLayers, AreTheSameForAnyListsAndThreads) {
 TEST(FilmLayers, TakeTheMemoryThatIsTold) {
   EXPECT_EQ(Film::BytesPerPixel(0, false), sizeof(PixelSums));
   EXPECT_EQ(Film::BytesPerPixel(0, true), sizeof(PixelSums) + sizeof(SplatSums));
-  EXPECT_EQ(Film::BytesPerPixel(10, false), sizeof(PixelSums) + 10 * 24);
-  EXPECT_EQ(Film::BytesPerPixel(10, true), sizeof(PixelSums) + sizeof(SplatSums) + 10 * 48);
+  EXPECT_EQ(Film::BytesPerPixel(10, false), sizeof(PixelSums) + 10 * 48);
+  EXPECT_EQ(Film::BytesPerPixel(10, true), sizeof(PixelSums) + sizeof(SplatSums) + 10 * 96);
 }
 
 }  // namespace

@@ -1,0 +1,103 @@
+// lampyr merge: one picture from parts that were rendered apart.
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "app/command_line.h"
+#include "app/commands.h"
+#include "app/output_lock.h"
+#include "app/render_part.h"
+#include "app/sample_image.h"
+
+namespace lampyr {
+
+namespace {
+
+std::string Quoted(const std::filesystem::path& path) {
+  return "\"" + path.string() + "\"";
+}
+
+struct Part {
+  std::filesystem::path path;
+  std::unique_ptr<PartReader> reader;
+  const PartHeader& Header() const { return reader->Header(); }
+  uint32_t First() const { return Header().shard.first; }
+  uint32_t End() const { return First() + Header().samples; }
+};
+
+// In the order of their samples. Throws where they are of different renders or hold the same samples.
+std::vector<Part> OpenParts(const std::vector<std::filesystem::path>& paths) {
+  std::vector<Part> parts;
+  for (const std::filesystem::path& path : paths)
+    parts.push_back({path, std::make_unique<PartReader>(path, PartKind::Picture)});
+  const Part& first = parts.front();
+  for (const Part& part : parts) {
+    std::string difference = DifferenceOf(first.Header().identity, part.Header().identity);
+    if (difference.empty() && part.Header().layers != first.Header().layers) difference = "their light groups differ";
+    if (difference.empty()) continue;
+    throw Error(Quoted(first.path) + " and " + Quoted(part.path) + " do not belong together: " + difference);
+  }
+  std::stable_sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.First() < b.First(); });
+  for (size_t i = 1; i < parts.size(); ++i) {
+    const Part &before = parts[i - 1], &part = parts[i];
+    const bool isSame = part.First() == before.First();
+    if (!isSame && before.End() <= part.First()) continue;
+    throw Error(Quoted(before.path) + " and " + Quoted(part.path) + " hold the same samples" +
+                (isSame ? ": each part counts once" : ": they are of different divisions"));
+  }
+  return parts;
+}
+
+// What is missing of the whole picture, for people; "": nothing.
+std::string MissingOf(const std::vector<Part>& parts) {
+  std::string missing;
+  const auto add = [&](const std::string& what) { missing += (missing.empty() ? "" : ", ") + what; };
+  const int count = parts.front().Header().shard.count;
+  for (int index = 1; index <= count; ++index) {
+    const auto part = std::find_if(parts.begin(), parts.end(), [&](const Part& p) {
+      return p.Header().shard.index == index && p.Header().shard.count == count;
+    });
+    const std::string name = std::to_string(index) + "/" + std::to_string(count);
+    if (part == parts.end()) {
+      add("part " + name);
+    } else if (!part->Header().isFinished) {
+      const Shard& shard = part->Header().shard;
+      add("the rest of part " + name + " (" + std::to_string(part->Header().samples) + " of " +
+          std::to_string(shard.end - shard.first) + " samples are there)");
+    }
+  }
+  return missing;
+}
+
+}  // namespace
+
+int RunMerge(const MergeOptions& options) {
+  CheckImageOutput(options.output, "--output", options.png);
+  const std::vector<Part> parts = OpenParts(options.parts);
+  const std::string missing = MissingOf(parts);
+  if (!missing.empty() && !options.partial) {
+    throw Error("the picture is not whole: " + missing + (missing.find(',') == std::string::npos ? " is" : " are") +
+                " missing; render it, or merge what there is with --partial");
+  }
+  const OutputLock lock(options.output);
+  PartHeader whole = parts.front().Header();
+  whole.samples = 0;
+  Film film = whole.MakeFilm();
+  for (const Part& part : parts) {
+    Film own = whole.MakeFilm();
+    part.reader->Load([&own](ByteReader& bytes) { own.Load(bytes); });
+    film.Add(own);
+    whole.samples += part.Header().samples;
+  }
+  WriteSamples(options.output, whole, film);
+  if (options.png) WritePngBeside(options.output, film.Develop(), options.exposure, options.clipPng);
+  if (!missing.empty()) std::fprintf(stderr, "warning: the picture is not whole: without %s\n", missing.c_str());
+  if (!options.quiet) {
+    std::fprintf(stderr, "%s: %d×%d, %u spp of %zu parts\n", options.output.c_str(), whole.crop.Width(),
+                 whole.crop.Height(), whole.samples, parts.size());
+  }
+  return kExitDone;
+}
+
+}  // namespace lampyr
