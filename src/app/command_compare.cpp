@@ -249,7 +249,7 @@ int CompareLoaded(const CompareOptions& options, const ComparisonPlan& plan, con
 
 int RunCompare(const CompareOptions& options) {
   const ComparisonPlan plan = MakePlan(options);
-  OutliveReaders();
+  OutliveSurroundings();
   const LoadedScene loaded =
       LoadScene(options.scene, options.plugins, options.overrides, options.strict, options.robust);
   int exitCode = kExitFailed;

@@ -26,6 +26,10 @@ struct Part {
   uint32_t End() const { return First() + Header().samples; }
 };
 
+std::string DivisionOf(const Shard& shard) {
+  return std::to_string(shard.whole) + " samples in " + std::to_string(shard.count) + " parts";
+}
+
 // In the order of their samples. Throws where they are of different renders or hold the same samples.
 std::vector<Part> OpenParts(const std::vector<std::filesystem::path>& paths) {
   std::vector<Part> parts;
@@ -35,16 +39,18 @@ std::vector<Part> OpenParts(const std::vector<std::filesystem::path>& paths) {
   for (const Part& part : parts) {
     std::string difference = DifferenceOf(first.Header().identity, part.Header().identity);
     if (difference.empty() && part.Header().layers != first.Header().layers) difference = "their light groups differ";
+    const Shard &there = first.Header().shard, &here = part.Header().shard;
+    if (difference.empty() && (there.count != here.count || there.whole != here.whole)) {
+      difference = "they are of " + DivisionOf(there) + " and of " + DivisionOf(here);
+    }
     if (difference.empty()) continue;
     throw Error(Quoted(first.path) + " and " + Quoted(part.path) + " do not belong together: " + difference);
   }
   std::stable_sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.First() < b.First(); });
   for (size_t i = 1; i < parts.size(); ++i) {
     const Part &before = parts[i - 1], &part = parts[i];
-    const bool isSame = part.First() == before.First();
-    if (!isSame && before.End() <= part.First()) continue;
-    throw Error(Quoted(before.path) + " and " + Quoted(part.path) + " hold the same samples" +
-                (isSame ? ": each part counts once" : ": they are of different divisions"));
+    if (before.End() <= part.First()) continue;
+    throw Error(Quoted(before.path) + " and " + Quoted(part.path) + " hold the same samples: each part counts once");
   }
   return parts;
 }
@@ -55,9 +61,8 @@ std::string MissingOf(const std::vector<Part>& parts) {
   const auto add = [&](const std::string& what) { missing += (missing.empty() ? "" : ", ") + what; };
   const int count = parts.front().Header().shard.count;
   for (int index = 1; index <= count; ++index) {
-    const auto part = std::find_if(parts.begin(), parts.end(), [&](const Part& p) {
-      return p.Header().shard.index == index && p.Header().shard.count == count;
-    });
+    const auto part =
+        std::find_if(parts.begin(), parts.end(), [&](const Part& p) { return p.Header().shard.index == index; });
     const std::string name = std::to_string(index) + "/" + std::to_string(count);
     if (part == parts.end()) {
       add("part " + name);

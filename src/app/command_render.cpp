@@ -157,8 +157,10 @@ void WriteImageOrKeepIt(const std::filesystem::path& path, const RenderOptions& 
   }
 }
 
-void CheckOptions(const RenderOptions& options, const RenderSettings& settings) {
+void CheckOptions(const RenderOptions& options, const RenderSettings& settings,
+                  const std::filesystem::path& checkpoint) {
   if (options.stats) CheckWritable(*options.stats, "--stats");
+  if (options.checkpointSeconds) CheckWritable(checkpoint, "--checkpoint");
   if (!options.strategyImages) return;
   if (settings.integrator != "bdpt")
     throw UsageError("--strategy-images: only bdpt has strategies; the integrator is " + settings.integrator);
@@ -172,7 +174,7 @@ int RenderLoaded(const RenderOptions& options, const LoadedScene& loaded) {
   const BuiltScene& built = loaded.built;
   const RenderSettings& settings = built.settings;
   const std::filesystem::path path = OutputPath(options, settings), checkpointPath = CheckpointPath(path);
-  CheckOptions(options, settings);
+  CheckOptions(options, settings, checkpointPath);
   const std::vector<std::string>& layers = built.scene.lighting->Groups().Layers();
   CheckMemory(settings, layers.size(), options.strategyImages.has_value());
   const auto [part, parts] = options.shard.value_or(std::pair(1, 1));
@@ -251,7 +253,7 @@ int RenderLoaded(const RenderOptions& options, const LoadedScene& loaded) {
 }  // namespace
 
 int RunRender(const RenderOptions& options) {
-  OutliveReaders();
+  OutliveSurroundings();
   const LoadedScene loaded =
       LoadScene(options.scene, options.plugins, options.overrides, options.strict, options.robust);
   int exitCode = kExitFailed;

@@ -25,8 +25,9 @@ void OnInterrupt(int signal) {
 
 }  // namespace
 
-void OutliveReaders() {
+void OutliveSurroundings() {
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
 }
 
 const std::atomic<bool>& FinishOnInterrupt() {
@@ -56,6 +57,12 @@ void CheckWritable(const std::filesystem::path& path, const std::string& option)
   }
   if (std::filesystem::is_directory(path, ignored)) {
     throw UsageError(option + ": \"" + path.string() + "\" is a folder");
+  }
+  // The permissions do not tell everything.
+  try {
+    const AtomicFile probe(path);
+  } catch (const Error& error) {
+    throw UsageError(option + ": " + error.Text());
   }
 }
 

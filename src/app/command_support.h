@@ -11,8 +11,8 @@
 
 namespace lampyr {
 
-// A reader of the messages who has gone away is no reason to end.
-void OutliveReaders();
+// A reader of the messages who has gone away is no reason to end, and a file that may not grow is an error of writing.
+void OutliveSurroundings();
 // From now on SIGINT and SIGTERM (batch systems ask with it) set the flag that is returned, once: a second one ends the
 // process.
 const std::atomic<bool>& FinishOnInterrupt();

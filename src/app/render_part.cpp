@@ -72,7 +72,7 @@ void CheckHeader(const PartHeader& header, uint64_t bytesLeft) {
                        header.height <= kMostPixels && crop.x0 >= 0 && crop.y0 >= 0 && crop.x1 > crop.x0 &&
                        crop.y1 > crop.y0 && crop.x1 <= header.width && crop.y1 <= header.height;
   const bool isShard = shard.count >= 1 && shard.index >= 1 && shard.index <= shard.count && shard.first < shard.end &&
-                       shard.end <= (1u << 30) && header.samples <= (1u << 30);
+                       shard.end <= shard.whole && shard.whole <= (1u << 30) && header.samples <= (1u << 30);
   if (!isSized || !isShard) throw Error("it holds a number that cannot be");
   // The film alone is larger than what is left: told before memory is taken for it.
   const uint64_t pixels = static_cast<uint64_t>(crop.Width()) * static_cast<uint64_t>(crop.Height());
@@ -170,12 +170,11 @@ std::string DifferenceOf(const RenderIdentity& there, const RenderIdentity& here
 
 Shard ShardOf(int index, int count, int samples) {
   const auto bound = [&](int part) { return static_cast<uint32_t>(static_cast<int64_t>(samples) * part / count); };
-  const Shard shard{index, count, bound(index - 1), bound(index)};
-  if (shard.first == shard.end) {
+  if (samples < count) {
     throw UsageError("--shard: " + std::to_string(samples) + " samples per pixel make no " + std::to_string(count) +
                      " parts; raise --spp or make fewer");
   }
-  return shard;
+  return {index, count, bound(index - 1), bound(index), static_cast<uint32_t>(samples)};
 }
 
 void AppendPart(AtomicFile& file, PartKind kind, const PartHeader& header,

@@ -29,10 +29,10 @@ RenderIdentity IdentityOf(const LoadedScene& loaded, bool robustIntersection);
 // The first thing that differs, for people: `seed is 3 there and 4 here`; "": nothing.
 std::string DifferenceOf(const RenderIdentity& there, const RenderIdentity& here);
 
-// Part `index` of `count`, from 1: samples [first, end) of all pixels.
+// Part `index` of `count`, from 1: samples [first, end) of each pixel, of `whole` in all.
 struct Shard {
   int index = 1, count = 1;
-  uint32_t first = 0, end = 0;
+  uint32_t first = 0, end = 0, whole = 0;
   bool operator==(const Shard&) const = default;
 };
 // Of `samples` in all. Throws UsageError where a part would have none.

@@ -1,7 +1,5 @@
 // The binary as a user runs it: exit codes, messages, files.
 #include <gtest/gtest.h>
-#include <signal.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -13,16 +11,15 @@
 #include <thread>
 
 #include "film/image.h"
+#include "support/lampyr_process.h"
 
 namespace lampyr {
 namespace {
 
 namespace fs = std::filesystem;
 
-struct Outcome {
-  int exitCode = -1;
-  std::string output;  // standard output and error together
-};
+using test::LampyrProcess;
+using test::Outcome;
 
 class Cli : public testing::Test {
  protected:
@@ -42,16 +39,7 @@ class Cli : public testing::Test {
   }
 
   // Runs lampyr in the test's folder.
-  Outcome Run(const std::string& arguments) {
-    Outcome outcome;
-    const std::string command = "cd '" + folder_.string() + "' && '" LAMPYR_BINARY "' " + arguments + " 2>&1";
-    FILE* pipe = popen(command.c_str(), "r");
-    char buffer[4096];
-    for (size_t n; (n = fread(buffer, 1, sizeof buffer, pipe)) > 0;) outcome.output.append(buffer, n);
-    const int status = pclose(pipe);
-    outcome.exitCode = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-    return outcome;
-  }
+  Outcome Run(const std::string& arguments) { return test::RunLampyr(folder_, arguments); }
 
   static constexpr const char* kScene = R"(Film "rgb" "integer xresolution" 32 "integer yresolution" 20
 LookAt 0 1 3  0 0 0  0 1 0
@@ -470,21 +458,11 @@ TEST_F(Cli, EmptySceneIsBlackAndSaysSo) {
   for (const float value : image.data) EXPECT_EQ(value, 0.0f);
 }
 
-TEST_F(Cli, InterruptWritesTheImageAndExitsWith130) {
-  for (const int signal : {SIGINT, SIGTERM}) {
-    const pid_t child = fork();
-    if (child == 0) {
-      if (chdir(folder_.c_str()) != 0) _exit(99);
-      execl(LAMPYR_BINARY, LAMPYR_BINARY, "render", "scene.pbrt", "-o", "stopped.exr", "--spp", "100000000", "--quiet",
-            nullptr);
-      _exit(99);
-    }
+TEST_F(Cli, InterruptWritesTheImageAndExitsWithTheSignal) {
+  for (const auto& [signal, exitCode] : {std::pair(SIGINT, 130), std::pair(SIGTERM, 143)}) {
+    LampyrProcess render(folder_, "render scene.pbrt -o stopped.exr --spp 100000000 --quiet");
     std::this_thread::sleep_for(std::chrono::milliseconds(1500));
-    kill(child, signal);
-    int status = 0;
-    waitpid(child, &status, 0);
-    ASSERT_TRUE(WIFEXITED(status));
-    EXPECT_EQ(WEXITSTATUS(status), 130);
+    EXPECT_EQ(render.Kill(signal), exitCode);
     EXPECT_GT(std::stoi(ReadImage(folder_ / "stopped.exr").metadata.at("lampyr.samplesPerPixel")), 1);
     fs::remove(folder_ / "stopped.exr");
   }
@@ -544,40 +522,22 @@ TEST_F(Cli, RefusesToCompareWhatCannotBe) {
 }
 
 TEST_F(Cli, AComparisonThatIsInterruptedEarlyLeavesNoResults) {
-  const pid_t child = fork();
-  if (child == 0) {
-    if (chdir(folder_.c_str()) != 0) _exit(99);
-    execl(LAMPYR_BINARY, LAMPYR_BINARY, "compare", "scene.pbrt", "-o", "early", "--budget", "60s", "--quiet", nullptr);
-    _exit(99);
-  }
+  LampyrProcess compare(folder_, "compare scene.pbrt -o early --budget 60s --quiet");
   for (int i = 0; i < 300 && !fs::exists(folder_ / "early"); ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
   std::this_thread::sleep_for(std::chrono::milliseconds(1000));
-  kill(child, SIGINT);
-  int status = 0;
-  waitpid(child, &status, 0);
-  ASSERT_TRUE(WIFEXITED(status));
-  EXPECT_EQ(WEXITSTATUS(status), 130);
+  EXPECT_EQ(compare.Kill(SIGINT), 130);
   EXPECT_TRUE(fs::is_empty(folder_ / "early"));
 }
 
 TEST_F(Cli, AnInterruptedComparisonIsWholeOrAbsent) {
-  const pid_t child = fork();
-  if (child == 0) {
-    if (chdir(folder_.c_str()) != 0) _exit(99);
-    execl(LAMPYR_BINARY, LAMPYR_BINARY, "compare", "scene.pbrt", "-o", "stopped", "--budget", "0.1s", "--repeat",
-          "1000", "--reference-time", "0.5s", "--quiet", nullptr);
-    _exit(99);
-  }
+  LampyrProcess compare(folder_,
+                        "compare scene.pbrt -o stopped --budget 0.1s --repeat 1000 --reference-time 0.5s --quiet");
   // When the reference is there, repeats are under way; each takes a fifth of a second.
   for (int i = 0; i < 300 && !fs::exists(folder_ / "stopped/reference.exr"); ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
   std::this_thread::sleep_for(std::chrono::milliseconds(4000));
-  kill(child, SIGINT);
-  int status = 0;
-  waitpid(child, &status, 0);
-  ASSERT_TRUE(WIFEXITED(status));
-  EXPECT_EQ(WEXITSTATUS(status), 130);
+  EXPECT_EQ(compare.Kill(SIGINT), 130);
   EXPECT_NE(Read("stopped/results.json").find("\"repeats\": "), std::string::npos);
   EXPECT_EQ(Read("stopped/results.json").find("\"repeats\": 1000"), std::string::npos);
 }

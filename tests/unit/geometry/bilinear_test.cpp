@@ -17,7 +17,9 @@ BilinearMesh Patch(const std::vector<Point3>& corners) {
   return mesh;
 }
 
-Shape ToShape(BilinearMesh mesh) { return std::make_shared<const BilinearMesh>(std::move(mesh)); }
+Shape ToShape(BilinearMesh mesh) {
+  return std::make_shared<const BilinearMesh>(std::move(mesh));
+}
 
 Vector3d PointOn(const BilinearMesh& m, double u, double v) {
   return (Vector3d(m.positions[0]) * (1 - u) + Vector3d(m.positions[1]) * u) * (1 - v) +
@@ -100,8 +102,9 @@ TEST(Bilinear, AreaAndDegenerateOnes) {
   // A hyperbolic paraboloid z = uv over the unit square: ∫∫ √(1 + u² + v²) = 1.28078898…
   EXPECT_NEAR(GetArea(ToShape(Patch({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 1}}))), 1.2807892, 2e-6);
   Random random(53);
-  for (const BilinearMesh& mesh : {Patch(std::vector<Point3>(4, Point3(0.0f))), Patch({{0, 0, 0}, {1, 0, 0}, {0, 0, 0}, {1, 0, 0}}),
-                                   Patch({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {1, 1, 0}})}) {
+  for (const BilinearMesh& mesh :
+       {Patch(std::vector<Point3>(4, Point3(0.0f))), Patch({{0, 0, 0}, {1, 0, 0}, {0, 0, 0}, {1, 0, 0}}),
+        Patch({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {1, 1, 0}})}) {
     const GeometryScene scene(SceneOf(ToShape(mesh)));
     for (int i = 0; i < 2000; ++i) {
       const Ray ray{random.InBox(1), random.Direction()};

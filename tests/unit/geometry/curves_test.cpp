@@ -20,7 +20,9 @@ CurveParameters Straight(CurveSet::Kind kind) {
   return p;
 }
 
-Shape ToShape(CurveSet curves) { return std::make_shared<const CurveSet>(std::move(curves)); }
+Shape ToShape(CurveSet curves) {
+  return std::make_shared<const CurveSet>(std::move(curves));
+}
 
 TEST(Curves, SegmentsOfEveryBasisAndDegree) {
   CurveParameters p;
@@ -87,7 +89,8 @@ TEST(Curves, NoSelfIntersection) {
       int hits = 0, again = 0;
       for (int i = 0; i < 5000; ++i) {
         const Point3 target = Point3(0, 0, random.Uniform(0.5f, 2.5f)) * scale;
-        const Vector3 side = glm::normalize(Vector3(random.Uniform(0.3f, 1), random.Uniform(-1, 1), random.Uniform(-0.5f, 0.5f)));
+        const Vector3 side =
+            glm::normalize(Vector3(random.Uniform(0.3f, 1), random.Uniform(-1, 1), random.Uniform(-0.5f, 0.5f)));
         const Ray ray{target + side * scale, -side};
         RayHit hit;
         if (!scene.Intersect(ray, visibility::kAll, hit)) continue;

@@ -34,7 +34,8 @@ TEST(LoopSubdivision, CountsAndEuler) {
 }
 
 TEST(LoopSubdivision, VerticesLieOnTheLimitAtEveryLevel) {
-  // The limit of an octahedron's vertex: valence 4, opposite neighbours cancel: p · (1 - 4γ), γ = 1/(4 + 3/(8·3/32)) = 1/8.
+  // The limit of an octahedron's vertex: valence 4, opposite neighbours cancel: p · (1 - 4γ), γ = 1/(4 + 3/(8·3/32)) =
+  // 1/8.
   for (int levels = 0; levels <= 4; ++levels) {
     const SubdividedMesh mesh = Subdivide(kOctahedron, kOctahedronFaces, levels);
     for (size_t i = 0; i < 6; ++i) {
@@ -44,7 +45,8 @@ TEST(LoopSubdivision, VerticesLieOnTheLimitAtEveryLevel) {
     }
   }
   // What a level calls the limit, the next ones keep.
-  const SubdividedMesh coarse = Subdivide(kOctahedron, kOctahedronFaces, 1), fine = Subdivide(kOctahedron, kOctahedronFaces, 4);
+  const SubdividedMesh coarse = Subdivide(kOctahedron, kOctahedronFaces, 1),
+                       fine = Subdivide(kOctahedron, kOctahedronFaces, 4);
   for (size_t i = 0; i < coarse.positions.size(); ++i) {
     EXPECT_NEAR(glm::length(coarse.positions[i] - fine.positions[i]), 0, 1e-6);
     EXPECT_NEAR(glm::length(coarse.normals[i] - fine.normals[i]), 0, 1e-5);
@@ -54,7 +56,8 @@ TEST(LoopSubdivision, VerticesLieOnTheLimitAtEveryLevel) {
 TEST(LoopSubdivision, NormalsAreThoseOfTheFineFacesAgainstTheirWinding) {
   const SubdividedMesh mesh = Subdivide(kOctahedron, kOctahedronFaces, 5);
   for (const auto& f : mesh.triangles) {
-    const Vector3 n = glm::normalize(glm::cross(mesh.positions[f[1]] - mesh.positions[f[0]], mesh.positions[f[2]] - mesh.positions[f[0]]));
+    const Vector3 n = glm::normalize(
+        glm::cross(mesh.positions[f[1]] - mesh.positions[f[0]], mesh.positions[f[2]] - mesh.positions[f[0]]));
     EXPECT_GT(glm::dot(n, mesh.positions[f[0]]), 0);
     // Curvature is unbounded at vertices of valence 4, so faces there stay at an angle.
     for (const uint32_t i : f) EXPECT_LT(glm::dot(n, mesh.normals[i]), -0.97f);
@@ -137,7 +140,8 @@ TEST(LoopSubdivision, EveryValenceHasNormals) {
       std::vector<Point3> positions = {{0, 0, 0.3f}};
       Faces faces;
       for (uint32_t i = 0; i < valence; ++i) {
-        const float angle = (closed ? 2 : 1) * kPi * static_cast<float>(i) / static_cast<float>(closed ? valence : valence - 1);
+        const float angle =
+            (closed ? 2 : 1) * kPi * static_cast<float>(i) / static_cast<float>(closed ? valence : valence - 1);
         positions.emplace_back(std::cos(angle), std::sin(angle), 0.0f);
         if (closed || i > 0) faces.push_back({0, closed ? i + 1 : i, closed ? (i + 1) % valence + 1 : i + 1});
       }
@@ -162,13 +166,16 @@ TEST(LoopSubdivision, BadInputIsAnError) {
     return "";
   };
   const std::vector<Point3> p = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}};
-  EXPECT_NE(message(p, {{0, 1, 2}, {0, 1, 3}}, 1).find("a.pbrt:7:1: error: loopsubdiv: the faces at the edge between vertices 0 and 1"), std::string::npos);
+  EXPECT_NE(message(p, {{0, 1, 2}, {0, 1, 3}}, 1)
+                .find("a.pbrt:7:1: error: loopsubdiv: the faces at the edge between vertices 0 and 1"),
+            std::string::npos);
   EXPECT_NE(message(p, {{0, 1, 2}, {0, 1, 3}}, 1).find("opposite directions"), std::string::npos);
   EXPECT_NE(message(p, {{0, 1, 5}}, 1).find("beyond the 5 vertices"), std::string::npos);
   EXPECT_NE(message(p, {{0, 1, 1}}, 1).find("same vertex twice"), std::string::npos);
   EXPECT_NE(message(p, {{0, 1, 2}}, -1).find("negative"), std::string::npos);
   EXPECT_NE(message(p, {{0, 1, 2}}, 1000).find("levels"), std::string::npos);
-  EXPECT_NE(message({{0, 0, 0}, {1, 0, 0}, {0, std::nanf(""), 0}}, {{0, 1, 2}}, 1).find("not finite"), std::string::npos);
+  EXPECT_NE(message({{0, 0, 0}, {1, 0, 0}, {0, std::nanf(""), 0}}, {{0, 1, 2}}, 1).find("not finite"),
+            std::string::npos);
   EXPECT_EQ(Subdivide({}, {}, 3).triangles.size(), 0u);
 }
 

@@ -15,8 +15,8 @@ namespace {
 constexpr double kPiDouble = 3.14159265358979323846;
 
 const glm::dmat3 kMaps[] = {glm::dmat3(1, 0, 0, 0, 1, 0, 0, 0, 1), glm::dmat3(3, 0, 0, 0, 1, 0, 0, 0, 1),
-                            glm::dmat3(1, 0.2, -0.3, 0.6, 1, 0.1, 0, -0.4, 1),
-                            glm::dmat3(2, 0, 0, 0, -1, 0, 0, 0, 0.7), 1e6 * glm::dmat3(1, 0.5, 0, 0, 1, 0, 0, 0, 2)};
+                            glm::dmat3(1, 0.2, -0.3, 0.6, 1, 0.1, 0, -0.4, 1), glm::dmat3(2, 0, 0, 0, -1, 0, 0, 0, 0.7),
+                            1e6 * glm::dmat3(1, 0.5, 0, 0, 1, 0, 0, 0, 2)};
 
 // |cof(m) n| by way of what m does to the plane across n.
 double Stretch(const glm::dmat3& m, const glm::dvec3& n) {

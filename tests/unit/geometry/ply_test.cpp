@@ -31,12 +31,13 @@ class Bytes {
 };
 
 std::string BinarySquare(bool bigEndian) {
-  std::string header = std::string("ply\nformat ") + (bigEndian ? "binary_big_endian" : "binary_little_endian") +
-                       " 1.0\ncomment by hand\nelement vertex 5\nproperty double x\nproperty float y\nproperty short z\n"
-                       "property uchar red\nproperty float nx\nproperty float ny\nproperty float nz\nproperty float s\n"
-                       "property float t\nelement edge 2\nproperty int a\nproperty list uchar short b\nelement face 3\n"
-                       "property uchar flag\nproperty list uint8 uint32 vertex_indices\nproperty int face_indices\n"
-                       "end_header\n";
+  std::string header =
+      std::string("ply\nformat ") + (bigEndian ? "binary_big_endian" : "binary_little_endian") +
+      " 1.0\ncomment by hand\nelement vertex 5\nproperty double x\nproperty float y\nproperty short z\n"
+      "property uchar red\nproperty float nx\nproperty float ny\nproperty float nz\nproperty float s\n"
+      "property float t\nelement edge 2\nproperty int a\nproperty list uchar short b\nelement face 3\n"
+      "property uchar flag\nproperty list uint8 uint32 vertex_indices\nproperty int face_indices\n"
+      "end_header\n";
   Bytes body(bigEndian);
   for (int i = 0; i < 5; ++i) {
     body.Add(i * 0.5).Add(i * 0.25f).Add(static_cast<int16_t>(-i)).Add(uint8_t{7}).Add(0.f).Add(0.f).Add(1.f);
@@ -93,7 +94,8 @@ TEST(Ply, FilesPlainAndGzipped) {
 TEST(Ply, AsciiWithAnyLineEnds) {
   const std::string text =
       "ply\nformat ascii 1.0\nobj_info x\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
-      "property float texture_u\nproperty float texture_v\nelement face 2\nproperty list uchar int vertex_index\nend_header\n"
+      "property float texture_u\nproperty float texture_v\nelement face 2\nproperty list uchar int "
+      "vertex_index\nend_header\n"
       "0 0 0 0 0\n1e0 0 0 1 0\n+1 1. 1e-60 1 1\n0 1 -.5 0 1\n3 0 1 2\n4 0 1 2 3";
   for (const std::string lineEnd : {"\n", "\r\n", "\r"}) {
     std::string content;
@@ -111,8 +113,10 @@ TEST(Ply, AsciiWithAnyLineEnds) {
 }
 
 TEST(Ply, NoFacesAtAllIsAnEmptyMesh) {
-  const PlyMesh mesh = ParsePly("ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\nproperty float z\n"
-                                "element face 0\nproperty list uchar int vertex_indices\nend_header\n", "empty.ply");
+  const PlyMesh mesh = ParsePly(
+      "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 0\nproperty list uchar int vertex_indices\nend_header\n",
+      "empty.ply");
   EXPECT_TRUE(mesh.positions.empty() && mesh.triangles.empty() && mesh.quads.empty());
 }
 

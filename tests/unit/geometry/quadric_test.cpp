@@ -44,7 +44,8 @@ using Real = long double;
 
 // The nearest root in (0, ∞) that lies on the part of the quadric, or -1; NaN when a limit is too close to call.
 Real Reference(const Quadric& q, const Ray& ray) {
-  const Real o[3] = {ray.origin.x, ray.origin.y, ray.origin.z}, d[3] = {ray.direction.x, ray.direction.y, ray.direction.z};
+  const Real o[3] = {ray.origin.x, ray.origin.y, ray.origin.z},
+             d[3] = {ray.direction.x, ray.direction.y, ray.direction.z};
   const Real r = q.radius, zMin = q.zMin, zMax = q.zMax, inner = q.innerRadius, phiMax = q.phiMax;
   Real roots[2] = {-1, -1};
   if (q.kind == Quadric::Kind::Disk) {
@@ -124,8 +125,8 @@ TEST(Quadric, ParametersAndTangentsAreConsistent) {
       ASSERT_GE(point.uv.y, 0);
       ASSERT_LE(point.uv.y, 1);
       ASSERT_NEAR(glm::length(point.Ng), 1, 1e-5);
-      ASSERT_NEAR(point.uv.x * q.phiMax,
-                  std::fmod(std::atan2(point.position.y, point.position.x) + 2 * kPi, 2 * kPi), 1e-5);
+      ASSERT_NEAR(point.uv.x * q.phiMax, std::fmod(std::atan2(point.position.y, point.position.x) + 2 * kPi, 2 * kPi),
+                  1e-5);
       if (std::hypot(point.position.x, point.position.y) < 0.05f) continue;
       const Vector3 n = glm::normalize(glm::cross(point.dpdu, point.dpdv));
       ASSERT_GT(glm::dot(n, point.Ng), 0.9999f);
@@ -154,7 +155,8 @@ TEST(Quadric, FollowsPbrtParametrisation) {
 }
 
 TEST(Quadric, OutsideIsOutsideUnderMirroring) {
-  const Transform placements[] = {Transform::Scale({1, 1, 1}), Transform::Scale({-1, 1, 1}), Transform::Scale({2, -3, 1}),
+  const Transform placements[] = {Transform::Scale({1, 1, 1}), Transform::Scale({-1, 1, 1}),
+                                  Transform::Scale({2, -3, 1}),
                                   Transform::Rotate(40, {1, 2, 3}) * Transform::Scale({-1, -2, -1})};
   for (const Transform& placement : placements) {
     for (const bool reverse : {false, true}) {
@@ -219,18 +221,21 @@ TEST(Quadric, Areas) {
   // Prolate spheroid a = 1, c = 3: 2πa² (1 + c/(ae) asin e); oblate a = 3, c = 1: 2πa² (1 + (1-e²)/e atanh e).
   const double e = std::sqrt(1 - 1.0 / 9);
   EXPECT_NEAR(GetArea(Place(Sphere(1), Transform::Scale({1, 1, 3}))) / (2 * pi * (1 + 3 / e * std::asin(e))), 1, 1e-5);
-  EXPECT_NEAR(GetArea(Place(Sphere(1), Transform::Scale({3, -3, 1}))) / (18 * pi * (1 + (1 - e * e) / e * std::atanh(e))),
-              1, 1e-5);
+  EXPECT_NEAR(
+      GetArea(Place(Sphere(1), Transform::Scale({3, -3, 1}))) / (18 * pi * (1 + (1 - e * e) / e * std::atanh(e))), 1,
+      1e-5);
   // The same spheroid along other axes.
   EXPECT_NEAR(GetArea(Place(Sphere(1), Transform::Rotate(30, {1, 1, 0}) * Transform::Scale({3, 1, 1}))) /
-                  (2 * pi * (1 + 3 / e * std::asin(e))), 1, 1e-5);
+                  (2 * pi * (1 + 3 / e * std::asin(e))),
+              1, 1e-5);
   // Flattened a hundredfold it is two disks, almost.
   EXPECT_NEAR(GetArea(Place(Sphere(1), Transform::Scale({1, 0.001, 1}))) / (2 * pi), 1, 1e-4);
 }
 
 TEST(Quadric, BoundsHoldEveryHit) {
   Random random(6);
-  const Transform placement = Transform::Translate({10, -20, 5}) * Transform::Rotate(33, {1, 2, 3}) * Transform::Scale({1, 2, 0.3});
+  const Transform placement =
+      Transform::Translate({10, -20, 5}) * Transform::Rotate(33, {1, 2, 3}) * Transform::Scale({1, 2, 0.3});
   for (const Quadric& q : {Sphere(1.3f), PartialSphere(), PartialDisk(), PartialCylinder()}) {
     const Quadric placed = Place(q, placement);
     const Bounds3 bounds = GetBounds(placed);

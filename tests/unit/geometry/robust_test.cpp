@@ -57,7 +57,8 @@ void CheckConvex(const GeometryScene& scene, const Point3& center, float size, i
   }
   EXPECT_GT(tried, count * 9 / 10);
   EXPECT_EQ(outwards, 0) << what << " scale " << s.scale << " shift " << s.shift;
-  EXPECT_LE(inwards, allowedInwardsMisses * static_cast<float>(tried)) << what << " scale " << s.scale << " shift " << s.shift;
+  EXPECT_LE(inwards, allowedInwardsMisses * static_cast<float>(tried))
+      << what << " scale " << s.scale << " shift " << s.shift;
 }
 
 TriangleMesh Box(float half, const Point3& center) {
@@ -126,14 +127,17 @@ TEST(SpawnRayTo, ReachesALightAndIsStoppedByAWall) {
     Random random(11);
     int blocked = 0, seen = 0, cases = 0;
     for (int i = 0; i < 20000; ++i) {
-      const Ray down{center + Vector3(random.Uniform(-1.9f, 1.9f), random.Uniform(-1.9f, 1.9f), 0.4f) * s.scale, {0, 0, -1}};
+      const Ray down{center + Vector3(random.Uniform(-1.9f, 1.9f), random.Uniform(-1.9f, 1.9f), 0.4f) * s.scale,
+                     {0, 0, -1}};
       const Vector3 direction = random.Direction();
       const Ray in{center + Vector3(0, 0, s.scale) + direction * (2 * s.scale), -direction};
       RayHit floorHit, lightHit;
-      if (!open.Intersect(down, visibility::kAll, floorHit) || !open.Intersect(in, visibility::kAll, lightHit)) continue;
+      if (!open.Intersect(down, visibility::kAll, floorHit) || !open.Intersect(in, visibility::kAll, lightHit))
+        continue;
       const SurfacePoint floor = open.GetSurfacePoint(down, floorHit), light = open.GetSurfacePoint(in, lightHit);
       // Facing, but for angles that the rounding of a scene 1e4 sizes away cannot tell from grazing.
-      if (lightHit.primitive != 1 || glm::dot(glm::normalize(floor.position - light.position), light.Ng) < 0.03f) continue;
+      if (lightHit.primitive != 1 || glm::dot(glm::normalize(floor.position - light.position), light.Ng) < 0.03f)
+        continue;
       ++cases;
       blocked += open.Occluded(SpawnRayTo(floor, light.position, light.positionError, light.Ng, 0), visibility::kAll);
       seen += !closed.Occluded(SpawnRayTo(floor, light.position, light.positionError, light.Ng, 0), visibility::kAll);
@@ -161,7 +165,8 @@ TEST(OffsetRayOrigin, LeavesTheErrorBoxToTheSideOfTheDirection) {
     const Vector3 d = random.Direction();
     const Vector3d moved = Vector3d(OffsetRayOrigin(p, error, n, d)) - Vector3d(p);
     const double side = glm::dot(d, n) < 0 ? -1 : 1;
-    ASSERT_GE(side * glm::dot(moved, Vector3d(n)), glm::dot(Vector3d(glm::abs(n)), Vector3d(error)) * (1 - 1e-5) - 1e-12);
+    ASSERT_GE(side * glm::dot(moved, Vector3d(n)),
+              glm::dot(Vector3d(glm::abs(n)), Vector3d(error)) * (1 - 1e-5) - 1e-12);
   }
 }
 

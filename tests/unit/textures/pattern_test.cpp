@@ -11,7 +11,8 @@ namespace lampyr {
 namespace {
 
 TEST(Patterns, Bilerp) {
-  const TextureScene scene("bilerp", false, {FloatValue("v00", 1), FloatValue("v01", 2), FloatValue("v10", 4), FloatValue("v11", 8)});
+  const TextureScene scene("bilerp", false,
+                           {FloatValue("v00", 1), FloatValue("v01", 2), FloatValue("v10", 4), FloatValue("v11", 8)});
   EXPECT_FLOAT_EQ(scene.FloatAt(0, 0), 1);
   EXPECT_FLOAT_EQ(scene.FloatAt(0, 1), 2);
   EXPECT_FLOAT_EQ(scene.FloatAt(1, 0), 4);
@@ -22,12 +23,14 @@ TEST(Patterns, Bilerp) {
 }
 
 TEST(Patterns, ScaleAndMix) {
-  const TextureScene scene({MakeTexture("ramp", false, "bilerp", {FloatValue("v10", 1), FloatValue("v01", 0)}),
-                            MakeTexture("c", true, "bilerp", {RgbValue("v00", 0, 0, 0), RgbValue("v10", 0, 0, 0),
-                                                              RgbValue("v01", 1, 0.5, 0), RgbValue("v11", 1, 0.5, 0)}),
-                            MakeTexture("s", true, "scale", {TextureName("tex", "c"), TextureName("scale", "ramp")}),
-                            MakeTexture("t", true, "mix", {TextureName("tex1", "s"), RgbValue("tex2", 0, 0, 1),
-                                                           TextureName("amount", "ramp")})});
+  const TextureScene scene(
+      {MakeTexture("ramp", false, "bilerp", {FloatValue("v10", 1), FloatValue("v01", 0)}),
+       MakeTexture("c", true, "bilerp",
+                   {RgbValue("v00", 0, 0, 0), RgbValue("v10", 0, 0, 0), RgbValue("v01", 1, 0.5, 0),
+                    RgbValue("v11", 1, 0.5, 0)}),
+       MakeTexture("s", true, "scale", {TextureName("tex", "c"), TextureName("scale", "ramp")}),
+       MakeTexture("t", true, "mix",
+                   {TextureName("tex1", "s"), RgbValue("tex2", 0, 0, 1), TextureName("amount", "ramp")})});
   // ramp = u, c = v·(1, ½, 0), s = u·c, t = (1-u)·s + u·(0, 0, 1)
   const float u = 0.25f, v = 0.5f;
   const Color color = scene.ColorAt(u, v);
@@ -37,9 +40,11 @@ TEST(Patterns, ScaleAndMix) {
 }
 
 TEST(Patterns, Checkerboard2D) {
-  const TextureScene scene("checkerboard", false, {FloatValue("uscale", 4), FloatValue("vscale", 2), FloatValue("udelta", 1),
-                                                   FloatValue("tex1", 5), FloatValue("tex2", 7)});
-  for (const auto& [u, v] : {std::pair{0.1f, 0.1f}, {0.3f, 0.1f}, {-0.1f, 0.1f}, {0.1f, -0.1f}, {0.9f, 0.9f}, {-3.3f, -7.7f}}) {
+  const TextureScene scene("checkerboard", false,
+                           {FloatValue("uscale", 4), FloatValue("vscale", 2), FloatValue("udelta", 1),
+                            FloatValue("tex1", 5), FloatValue("tex2", 7)});
+  for (const auto& [u, v] :
+       {std::pair{0.1f, 0.1f}, {0.3f, 0.1f}, {-0.1f, 0.1f}, {0.1f, -0.1f}, {0.9f, 0.9f}, {-3.3f, -7.7f}}) {
     const int cells = static_cast<int>(std::floor(4 * u + 1) + std::floor(2 * v));
     EXPECT_EQ(scene.FloatAt(u, v), cells % 2 == 0 ? 5 : 7) << u << " " << v;
   }
@@ -48,10 +53,10 @@ TEST(Patterns, Checkerboard2D) {
 TEST(Patterns, Checkerboard3DUsesTheTexturesPlace) {
   const Transform place = Transform::Translate({10, 0, 0}) * Transform::Scale({2, 2, 2});
   const TextureScene scene("checkerboard", false, {IntegerValue("dimension", 3)}, place);
-  EXPECT_EQ(scene.FloatAt(0, 0, {11, 1, 1}), 1);    // cell (0,0,0)
-  EXPECT_EQ(scene.FloatAt(0, 0, {9, 1, 1}), 0);     // (-1,0,0)
-  EXPECT_EQ(scene.FloatAt(0, 0, {9, 3, 1}), 1);     // (-1,1,0)
-  EXPECT_EQ(scene.FloatAt(0, 0, {13, 3, -1}), 0);   // (1,1,-1)
+  EXPECT_EQ(scene.FloatAt(0, 0, {11, 1, 1}), 1);   // cell (0,0,0)
+  EXPECT_EQ(scene.FloatAt(0, 0, {9, 1, 1}), 0);    // (-1,0,0)
+  EXPECT_EQ(scene.FloatAt(0, 0, {9, 3, 1}), 1);    // (-1,1,0)
+  EXPECT_EQ(scene.FloatAt(0, 0, {13, 3, -1}), 0);  // (1,1,-1)
 }
 
 TEST(Patterns, WorldToRenderMovesTextures) {
@@ -75,7 +80,8 @@ TEST(Patterns, DotsAreDisksInAboutHalfOfTheCells) {
 }
 
 // The coordinates that a mapping gives, read through a bilinear ramp.
-Point2 Mapped(std::vector<Parameter> mapping, const Point2& uv, const Point3& position, const Transform& transform = {}) {
+Point2 Mapped(std::vector<Parameter> mapping, const Point2& uv, const Point3& position,
+              const Transform& transform = {}) {
   std::vector<Parameter> s = mapping, t = mapping;
   for (const auto& p : {FloatValue("v10", 1), FloatValue("v01", 0)}) s.push_back(p);
   const TextureScene along("bilerp", false, s, transform), across("bilerp", false, t, transform);
@@ -88,14 +94,17 @@ TEST(Mappings, ByHand) {
     EXPECT_NEAR(a.y, b.y, 1e-5f);
   };
   near(Mapped({FloatValue("uscale", 2), FloatValue("vscale", 3), FloatValue("udelta", 0.5), FloatValue("vdelta", -1)},
-              {0.25f, 0.5f}, {}), {1.0f, 0.5f});
+              {0.25f, 0.5f}, {}),
+       {1.0f, 0.5f});
   near(Mapped({StringValue("mapping", "spherical")}, {}, {0, 2, 0}), {0.5f, 0.25f});
   near(Mapped({StringValue("mapping", "spherical")}, {}, {0, -2, 0}), {0.5f, 0.75f});
   near(Mapped({StringValue("mapping", "spherical")}, {}, {0, 0, 3}), {0.0f, 0.0f});
   near(Mapped({StringValue("mapping", "spherical")}, {}, {1, 0, -1}), {0.75f, 0.0f});
   near(Mapped({StringValue("mapping", "cylindrical")}, {}, {0, 1, 7}), {0.75f, 7.0f});
   near(Mapped({StringValue("mapping", "planar"), VectorValue("v1", 2, 0, 0), VectorValue("v2", 0, 0, 1),
-               FloatValue("udelta", 0.5)}, {}, {1, 5, 3}), {2.5f, 3.0f});
+               FloatValue("udelta", 0.5)},
+              {}, {1, 5, 3}),
+       {2.5f, 3.0f});
   near(Mapped({StringValue("mapping", "planar")}, {}, {3, 4, 5}, Transform::Scale({2, 4, 1})), {1.5f, 1.0f});
   near(Mapped({StringValue("mapping", "spherical")}, {}, {0, 0, 0}), {0.0f, 0.0f});  // the centre: finite
 }
@@ -103,7 +112,8 @@ TEST(Mappings, ByHand) {
 TEST(NoiseField, ZeroAtLatticePointsSmoothAndBounded) {
   float largest = 0;
   for (int i = 0; i < 20000; ++i) {
-    const Point3 p(0.137f * static_cast<float>(i % 97), 0.311f * static_cast<float>(i % 89), 0.173f * static_cast<float>(i % 101));
+    const Point3 p(0.137f * static_cast<float>(i % 97), 0.311f * static_cast<float>(i % 89),
+                   0.173f * static_cast<float>(i % 101));
     const float value = Noise(p);
     largest = std::max(largest, std::abs(value));
     EXPECT_NEAR(Noise(p + Vector3(1e-3f, 1e-3f, -1e-3f)), value, 0.02f);

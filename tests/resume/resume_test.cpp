@@ -1,0 +1,120 @@
+// Going on with a render: more samples, after a signal; and what is refused.
+#include <chrono>
+#include <thread>
+
+#include "app/render_part.h"
+#include "film/image.h"
+#include "resume/resume_fixture.h"
+
+namespace lampyr::test {
+namespace {
+
+const std::string kRender = "render scene.pbrt --quiet -o out.exr --resume ";
+
+TEST_F(Resume, MoreSamplesAreThoseOfOneRender) {
+  for (const char* integrator : {"path", "light", "bdpt", "sppm", "vcm"}) {
+    const std::string chosen = std::string("--integrator ") + integrator;
+    Do("render scene.pbrt --quiet -o whole.exr --spp 24 " + chosen);
+    for (const char* samples : {"1", "5", "24"}) Do(kRender + chosen + " --spp " + samples);
+    EXPECT_EQ(Bytes("out.exr"), Bytes("whole.exr")) << integrator;
+    std::filesystem::remove(folder_ / "out.checkpoint");
+  }
+}
+
+TEST_F(Resume, WithoutACheckpointItStartsAnew) {
+  const Outcome outcome = Run("render scene.pbrt -o out.exr --resume --spp 2");
+  EXPECT_EQ(outcome.exitCode, 0);
+  EXPECT_NE(outcome.output.find("there is no \"out.checkpoint\" to go on with: starts anew"), std::string::npos)
+      << outcome.output;
+  EXPECT_TRUE(Exists("out.checkpoint"));
+  const Outcome again = Run("render scene.pbrt -o out.exr --resume --spp 4 --stats stats.json");
+  EXPECT_NE(again.output.find("out.checkpoint: goes on after 2 spp"), std::string::npos) << again.output;
+  EXPECT_NE(Bytes("stats.json").find("\"resumedSamplesPerPixel\": 2"), std::string::npos);
+}
+
+TEST_F(Resume, TimeCountsOn) {
+  Do(kRender + "--time 0.4s");
+  const auto start = std::chrono::steady_clock::now();
+  Do(kRender + "--time 0.5s");
+  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 0.45);
+}
+
+TEST_F(Resume, GoesOnAfterASignal) {
+  const std::string render = "render scene.pbrt --quiet --integrator bdpt --spp 600 ";
+  for (const auto& [signal, exitCode] : {std::pair(SIGTERM, 143), std::pair(SIGINT, 130)}) {
+    LampyrProcess process(folder_.Path(), render + "-o out.exr --checkpoint 0.2s --resume");
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    EXPECT_EQ(process.Kill(signal), exitCode);
+    const PartReader part(folder_ / "out.checkpoint", PartKind::Checkpoint);
+    EXPECT_EQ(std::to_string(part.Header().samples),
+              ReadImage(folder_ / "out.exr").metadata.at("lampyr.samplesPerPixel"));
+  }
+  Do(render + "-o out.exr --resume");
+  Do(render + "-o whole.exr");
+  EXPECT_EQ(Bytes("out.exr"), Bytes("whole.exr"));
+}
+
+TEST_F(Resume, WhatIsOfAnotherRenderIsRefused) {
+  Do(kRender + "--spp 4");
+  const std::string image = Bytes("out.exr"), checkpoint = Bytes("out.checkpoint");
+  const auto refused = [&](const std::string& options, const std::string& why) {
+    ExpectRefused(kRender + options, 2, "--resume: \"out.checkpoint\" is of another render: " + why);
+  };
+  refused("--seed 3", "the seed is 0 there and 3 here");
+  refused("--integrator bdpt", "the integrator is path there and bdpt here");
+  refused("--resolution 24x16", "the resolution is 48x32 there and 24x16 here");
+  refused("--crop 0,24,0,32", "the crop is 0,48,0,32 there and 0,24,0,32 here");
+  refused("--max-depth 2", "the maximum depth is 5 there and 2 here");
+  refused("--sampler independent", "the sampler is sobol there and independent here");
+  refused("--light-sampler power", "the number of the light sampler");
+  refused("--learn-lights", "learning of lights is off there and on here");
+  refused("--shadow-roulette 0", "the roulette of shadow rays");
+  refused("--fast-intersection", "watertight intersection is on there and off here");
+  refused("--shard 1/2", "the part is 1/1 there and 1/2 here");
+  ExpectRefused(kRender + "--spp 2", 2, "holds 4 samples per pixel already, which is more than the 2");
+  WriteBytes(folder_ / "floor.ply", Floor(6));
+  refused("", "what the files of the scene hold");
+  WriteBytes(folder_ / "floor.ply", Floor(5));
+  WriteBytes(folder_ / "scene.pbrt", std::string(kScene) + "Shape \"sphere\"\n");
+  refused("", "the scene's text");
+  WriteBytes(folder_ / "scene.pbrt", kScene);
+  EXPECT_EQ(Bytes("out.exr"), image);
+  EXPECT_EQ(Bytes("out.checkpoint"), checkpoint);
+  Do(kRender + "--spp 8");
+}
+
+TEST_F(Resume, ADamagedCheckpointIsRefusedAndStays) {
+  Do(kRender + "--integrator vcm --spp 4");
+  const std::string whole = Bytes("out.checkpoint"), image = Bytes("out.exr");
+  for (size_t i = 0; i < 40; ++i) {
+    std::string damaged = whole;
+    const size_t at = i * 7919 % whole.size();
+    if (i % 2) {
+      damaged.resize(at);
+    } else {
+      damaged[at] = static_cast<char>(damaged[at] ^ (1 << (i / 2 % 8)));
+    }
+    WriteBytes(folder_ / "out.checkpoint", damaged);
+    ExpectRefused(kRender + "--integrator vcm --spp 5", 1, "\"out.checkpoint\" cannot be used: ");
+    EXPECT_EQ(Bytes("out.checkpoint"), damaged);
+    EXPECT_EQ(Bytes("out.exr"), image);
+  }
+  WriteBytes(folder_ / "out.checkpoint", "");
+  ExpectRefused(kRender + "--integrator vcm", 1, "it holds no sums");
+  std::string later = whole;
+  later.back() = '2';
+  WriteBytes(folder_ / "out.checkpoint", later);
+  ExpectRefused(kRender + "--integrator vcm", 1, "another version of lampyr has written it");
+  std::filesystem::remove(folder_ / "out.checkpoint");
+  std::filesystem::create_directory(folder_ / "out.checkpoint");
+  ExpectRefused(kRender + "--integrator vcm", 2, "\"out.checkpoint\" is a folder");
+}
+
+TEST_F(Resume, TechniquesAreNotKept) {
+  ExpectRefused("render scene.pbrt --integrator bdpt --strategy-images s --checkpoint 1s", 2,
+                "--strategy-images goes without --checkpoint");
+  ExpectRefused("render scene.pbrt --checkpoint soon", 2, "--checkpoint: \"soon\" is not a duration");
+}
+
+}  // namespace
+}  // namespace lampyr::test
