@@ -51,7 +51,7 @@ TEST(ByteStream, TakesNoMoreThanThereIs) {
     written.writer.Value(count);
     written.writer.Value<uint64_t>(1);
     EXPECT_THROW(ByteReader(written.bytes).List<double>(~uint64_t{0}), Error) << count;
-    if (count > 8) EXPECT_THROW(ByteReader(written.bytes).Text(), Error) << count;
+    EXPECT_THROW(ByteReader(written.bytes).Text(3), Error) << count;
   }
   Written three;
   three.writer.List(std::span<const char>("abc", 3));
