@@ -24,9 +24,6 @@ void MakeFolder(const std::filesystem::path& folder, const std::string& option);
 // Whole or not at all.
 void WriteText(const std::filesystem::path& path, const std::string& text);
 
-// Of this machine, bytes.
-uint64_t InstalledMemory();
-
 struct LoadedScene {
   TypeRegistry types;
   BuiltScene built;

@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "base/error.h"
+#include "base/memory.h"
 #include "film/atomic_file.h"
 #include "film/image_formats.h"
 #include "film/image_kind.h"
@@ -125,6 +126,12 @@ void CheckImageSize(const std::filesystem::path& path, int64_t width, int64_t he
   }
   if (width > maxSide || height > maxSide || channels > maxChannels || width * height > maxValues / channels) {
     throw Error("cannot read image \"" + path.string() + "\": too large (" + claim + ")");
+  }
+  const double needed = 4.0 * static_cast<double>(width * height * channels);
+  const double available = static_cast<double>(AvailableMemory());
+  if (needed > available) {
+    throw Error("cannot read image \"" + path.string() + "\": its " + claim + " take " + FormatBytes(needed) +
+                " of memory, and there are " + FormatBytes(available));
   }
   std::error_code code;
   const auto fileBytes = std::filesystem::file_size(path, code);

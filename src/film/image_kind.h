@@ -7,8 +7,9 @@
 namespace lampyr {
 
 struct ImageKind {
-  const char* format = "";        // OpenImageIO's name
-  int64_t width = 0, height = 0;  // as the header has them, of formats whose readers take memory before they tell; 0: later
+  const char* format = "";  // OpenImageIO's name
+  int64_t width = 0,
+          height = 0;  // as the header has them, of formats whose readers take memory before they tell; 0: later
 };
 
 // Throws an Error that names the formats that are read when the file is of none of them. The rest of what the image

@@ -35,6 +35,7 @@ std::string ErrorOf(const OIIO::ImageInput& input) {
 
 // "" when all went well.
 std::string Read(const char* path, const char* format, lampyr::ImageModuleAllocate allocate, void* context) {
+  OIIO::attribute("limits:imagesize_MB", 1 << 30);  // what is too large is told by `allocate`
   OIIO::ImageSpec configuration, opened;
   configuration.attribute("oiio:UnassociatedAlpha", 1);  // colours as stored, not multiplied by alpha
   const auto input = OIIO::ImageInput::create(format);

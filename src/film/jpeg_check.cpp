@@ -1,6 +1,6 @@
-// JPEG readers fill what a truncated file lacks with gray and call it read. So the file's markers are walked first: it is
-// whole when they end with EOI (ITU T.81 annex B). The frame's size is met on the way, before any reader takes memory
-// for it.
+// JPEG readers fill what a truncated file lacks with gray and call it read. So the file's markers are walked first: it
+// is whole when they end with EOI (ITU T.81 annex B). The frame's size is met on the way, before any reader takes
+// memory for it.
 #include <fstream>
 #include <iterator>
 #include <string>

@@ -3,15 +3,16 @@
 
 namespace lampyr::fuzz {
 
-void BuildSceneText(std::string_view bytes) {
+bool BuildSceneText(std::string_view bytes) {
   Diagnostics diagnostics(Diagnostics::Mode::Collect);
-  AcceptErrors([&] {
+  return AcceptErrors([&] {
     const SceneDescription description = ParseScene(std::string(bytes), SceneName(), diagnostics);
     RenderOverrides overrides;
     overrides.width = overrides.height = 3;
     overrides.maxDepth = 3;
     overrides.photons = 9;
     overrides.photonMemory = 1 << 24;
+    overrides.memory = 1 << 28;
     test::RenderBuilt(BuildScene(description, overrides, true, diagnostics), 1, 1);
   });
 }

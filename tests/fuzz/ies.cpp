@@ -5,8 +5,8 @@
 
 namespace lampyr::fuzz {
 
-void ReadIesFile(std::string_view bytes) {
-  AcceptErrors([&] {
+bool ReadIesFile(std::string_view bytes) {
+  return AcceptErrors([&] {
     const auto profile = ParseIes(std::string(bytes), "input.ies");
     if (!std::isfinite(profile->Power()) || profile->Power() < 0) Fail("an IES profile without a finite power");
     constexpr int kDirections = 24;

@@ -1,5 +1,5 @@
-#include "fuzz/target_support.h"
 #include "geometry/ply.h"
+#include "fuzz/target_support.h"
 
 namespace lampyr::fuzz {
 
@@ -16,8 +16,8 @@ void CheckIndices(const std::vector<std::array<uint32_t, N>>& faces, size_t vert
 
 }  // namespace
 
-void ReadPlyFile(std::string_view bytes) {
-  AcceptErrors([&] {
+bool ReadPlyFile(std::string_view bytes) {
+  return AcceptErrors([&] {
     const PlyMesh mesh = IsGzip(bytes) ? ReadPly(AsFile(bytes, ".ply")) : ParsePly(std::string(bytes), "input.ply");
     const size_t vertices = mesh.positions.size();
     CheckIndices(mesh.triangles, vertices);

@@ -46,9 +46,9 @@ void AskForAll(const SceneDescription& scene) {
 
 }  // namespace
 
-void ReadSceneText(std::string_view bytes) {
+bool ReadSceneText(std::string_view bytes) {
   Diagnostics diagnostics(Diagnostics::Mode::Collect);
-  AcceptErrors([&] {
+  return AcceptErrors([&] {
     AskForAll(IsGzip(bytes) ? ReadScene(AsFile(bytes, ".pbrt.gz"), diagnostics)
                             : ParseScene(std::string(bytes), SceneName(), diagnostics));
   });

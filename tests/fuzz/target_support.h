@@ -19,13 +19,15 @@ inline bool IsGzip(std::string_view bytes) {
 // Where scenes under test are said to be: beside a few files that they may name.
 std::filesystem::path SceneName();
 
-// An Error is an answer.
+// Whether there was no Error.
 template <class Read>
-void AcceptErrors(const Read& read) {
+bool AcceptErrors(const Read& read) {
   try {
     read();
+    return true;
   } catch (const Error& error) {
     if (error.Text().empty()) Fail("an Error without a text");
+    return false;
   }
 }
 
