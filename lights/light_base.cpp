@@ -9,7 +9,7 @@
 namespace lampyr {
 
 LightBase::LightBase(LightTypeFunction type, const ParameterList& parameters)
-    : made_(std::make_unique<const Made>(type, parameters, ReadLightSettings(parameters))) {}
+    : made_(new const Made{type, parameters, ReadLightSettings(parameters)}) {}
 
 std::unique_ptr<Light> LightBase::Edit(const ParameterList& changes, const LightBuildContext& build) const {
   return MakeLight(made_->type(), MergeParameters(made_->parameters, changes), build);

@@ -6,6 +6,9 @@ LAMPYR_BUILD_PACKAGES="g++ cmake ninja-build ccache libembree-dev libopenimageio
 # What its tests and benchmarks need besides.
 LAMPYR_TEST_PACKAGES="libgtest-dev libgmock-dev libbenchmark-dev"
 
+# What its fuzzers need besides.
+LAMPYR_FUZZ_PACKAGES="clang"
+
 # install_missing PACKAGE…: quiet when there is nothing to do.
 install_missing() {
   local missing="" package as_root=""

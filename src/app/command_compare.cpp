@@ -9,6 +9,7 @@
 #include "app/compare/report.h"
 #include "app/integrator_hints.h"
 #include "app/json_report.h"
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "film/atomic_file.h"
@@ -146,7 +147,7 @@ void CheckMemory(const RenderSettings& settings, const ComparisonPlan& plan) {
   const double images = static_cast<double>(plan.integrators.size()) * (milestones + plan.repeats) + 8;
   const double pixels = static_cast<double>(settings.crop.Width()) * settings.crop.Height();
   const double bytes = images * pixels * 6 * sizeof(float) + 400 * pixels;
-  if (bytes <= static_cast<double>(InstalledMemory())) return;
+  if (bytes <= static_cast<double>(AvailableMemory())) return;
   throw UsageError("comparing takes " + std::to_string(static_cast<int64_t>(bytes / (1 << 30)) + 1) +
                    " GiB of memory, more than there is: use fewer budgets or repeats, --crop or --resolution");
 }

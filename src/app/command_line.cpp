@@ -8,6 +8,7 @@
 
 #include "app/command_support.h"
 #include "app/commands.h"
+#include "base/memory.h"
 #include "base/version.h"
 
 namespace lampyr {
@@ -31,7 +32,7 @@ double ParseDuration(const std::string& option, const std::string& text) {
 
 // "800M", "4G", "1000000000" -> bytes; a quarter of the machine's where nothing is said.
 uint64_t ParseMemory(const std::string& option, const std::string& text) {
-  if (text.empty()) return InstalledMemory() / 4;
+  if (text.empty()) return AvailableMemory() / 4;
   char* end = nullptr;
   const double number = std::strtod(text.c_str(), &end);
   const std::string unit(end);

@@ -15,6 +15,7 @@
 #include "app/render_run.h"
 #include "app/sample_image.h"
 #include "app/unseen_samples.h"
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "base/version.h"
@@ -47,12 +48,12 @@ void CheckMemory(const RenderSettings& settings, size_t layers, bool hasTechniqu
   const uint64_t perPixel =
       Film::BytesPerPixel(layers, settings.integrator != "path") + techniques + 2 * channels * sizeof(float);
   const uint64_t needed = perPixel * settings.crop.Width() * settings.crop.Height();
-  const uint64_t installed = InstalledMemory();
-  if (needed <= installed) return;
+  const uint64_t available = AvailableMemory();
+  if (needed <= available) return;
   const auto gibibytes = [](uint64_t bytes) { return std::to_string((bytes >> 30) + 1) + " GiB"; };
   throw UsageError("an image of " + std::to_string(settings.crop.Width()) + "×" +
                    std::to_string(settings.crop.Height()) + " pixels takes " + gibibytes(needed) +
-                   " of memory and there are " + gibibytes(installed) + ": render it in parts with --crop");
+                   " of memory and there are " + gibibytes(available) + ": render it in parts with --crop");
 }
 
 std::string Percent(double fraction) {

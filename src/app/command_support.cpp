@@ -79,10 +79,6 @@ void WriteText(const std::filesystem::path& path, const std::string& text) {
   file.Commit();
 }
 
-uint64_t InstalledMemory() {
-  return static_cast<uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<uint64_t>(sysconf(_SC_PAGESIZE));
-}
-
 LoadedScene LoadScene(const std::filesystem::path& scene, const std::vector<std::string>& plugins,
                       const RenderOverrides& overrides, bool strict, bool robust) {
   Diagnostics diagnostics(strict ? Diagnostics::Mode::Strict : Diagnostics::Mode::Print);

@@ -27,9 +27,6 @@ std::string Joined(const std::vector<std::string>& names, const char* separator)
 // Whole or not at all.
 void WriteText(const std::filesystem::path& path, const std::string& text);
 
-// Of this machine, bytes.
-uint64_t InstalledMemory();
-
 struct LoadedScene {
   TypeRegistry types;
   BuiltScene built;

@@ -173,6 +173,7 @@ void ReadPixelFilter(const SceneDescription& scene, RenderSettings& settings, Di
     known.push_back("tau");
   }
   parameters.CheckAllUsed({}, known, diagnostics);
+  LocateErrors(scene.pixelFilter.where, [&] { return PixelFilter(filter); });  // whether there can be such a one
 }
 
 SamplerKind SamplerByName(const std::string& name, bool* known) {

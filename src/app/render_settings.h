@@ -30,6 +30,7 @@ struct RenderOverrides {
   std::optional<uint64_t> photons, photonMemory;
   std::optional<bool> merges, connects, directFromPhotons, guidesPhotons;
   std::optional<double> shadowRoulette, shadowThreshold;
+  std::optional<uint64_t> memory;  // bytes that the scene may take; absent: all that there is
   uint64_t seed = 0;
 };
 

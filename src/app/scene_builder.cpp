@@ -7,6 +7,7 @@
 #include "app/material_table.h"
 #include "app/plan.h"
 #include "app/shape_builder.h"
+#include "base/memory.h"
 #include "lights/filters/filter_base.h"
 #include "lights/light_type.h"
 #include "lights/services/light_surface.h"
@@ -54,6 +55,13 @@ struct RenderPlacement {
   std::shared_ptr<const Motion> motion;  // null: stays
 };
 
+// Of an area light with its tables, roughly.
+double BytesOfLight(const Shape& shape) {
+  const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&shape);
+  constexpr double ofLight = 1024, ofTriangle = 32;
+  return ofLight + (mesh ? ofTriangle * static_cast<double>((*mesh)->triangles.size()) : 0.0);
+}
+
 // When the transform times lie in the time that the camera's shutter is open.
 MotionTimes ReadMotionTimes(const SceneDescription& description) {
   const StatementDescription& camera = description.camera;
@@ -67,7 +75,10 @@ class Builder {
  public:
   Builder(const SceneDescription& description, const RenderOverrides& overrides, bool robust, Diagnostics& diagnostics,
           const TypeRegistry& types)
-      : description_(description), diagnostics_(diagnostics), types_(types) {
+      : description_(description),
+        diagnostics_(diagnostics),
+        types_(types),
+        memory_(overrides.memory.value_or(AvailableMemory())) {
     built_.settings = ReadRenderSettings(description, overrides, diagnostics);
     geometry_.robust = robust;
   }
@@ -111,6 +122,7 @@ class Builder {
   const SceneDescription& description_;
   Diagnostics& diagnostics_;
   const TypeRegistry& types_;
+  MemoryBudget memory_;
   BuiltScene built_;
   std::vector<SceneLight>* described_ = nullptr;  // null: nobody asks
   GeometryDescription geometry_;
@@ -128,7 +140,7 @@ class Builder {
 std::vector<ReadEntry> Builder::ReadShapes(const std::vector<ShapeDescription>& shapes) {
   std::vector<ReadEntry> entries;
   for (const ShapeDescription& shape : shapes) {
-    std::optional<LocalShape> local = ReadShape(shape, diagnostics_);
+    std::optional<LocalShape> local = ReadShape(shape, memory_, diagnostics_);
     if (local) entries.push_back({std::move(*local), -1});
   }
   return entries;
@@ -136,6 +148,12 @@ std::vector<ReadEntry> Builder::ReadShapes(const std::vector<ShapeDescription>& 
 
 // Without recursion: objects may be nested as deep as a file is long.
 void Builder::FlattenInstances() {
+  if (!description_.instances.empty()) {
+    constexpr double bytesPerInstance = 1024;  // here and in the intersector
+    memory_.Take(
+        description_.instanceCount * bytesPerInstance, description_.instances.front().where,
+        std::to_string(static_cast<uint64_t>(description_.instanceCount)) + " instances, of which this is the first,");
+  }
   std::unordered_map<std::string_view, size_t> objects;
   for (size_t i = 0; i < description_.objects.size(); ++i) objects.emplace(description_.objects[i].name, i);
   struct Visit {
@@ -241,6 +259,7 @@ void Builder::AddAreaLight(const ShapeDescription& description, const Shape& sha
   const auto opacity = textures_->FindFloat(description.shape.parameters, "alpha");
   const bool canBeHit = !opacity || !opacity->IsConstant() || opacity->Evaluate({}) > 0;
   const LightType& type = FindType(statement, true);
+  memory_.Take(BytesOfLight(shape), description.shape.where, "the lights that this shape makes, with their tables,");
   LightBuildContext build = LightContextFor(placement);
   build.shape = &shape;
   build.shapePlacement = shapePlacement;
@@ -287,6 +306,7 @@ void Builder::PlaceEntry(const ReadEntry& entry, const Transform& toRender, std:
   std::shared_ptr<const SheetSource> sheet;
   if (shape.areaLight < 0 && material->Sheet()) sheet = {material, material->Sheet()};
   for (Shape& placed : PlaceShape(entry.local, toRender)) {
+    LocateErrors(shape.shape.where, [&] { CheckShape(placed); });
     GeometryEntry result;
     result.attributes.material = entry.material;
     result.attributes.link = link;
@@ -519,7 +539,8 @@ BuiltScene Builder::Build() {
 
   RenderScene& scene = built_.scene;
   scene.materials = materials_->Materials();
-  scene.camera = BuildCamera(description_, built_.settings, worldToRender_, diagnostics_);
+  scene.camera = LocateErrors(description_.camera.where,
+                              [&] { return BuildCamera(description_, built_.settings, worldToRender_, diagnostics_); });
   scene.geometry = std::make_unique<GeometryScene>(std::move(geometry_));
   linking_.Finish(lights_, diagnostics_);
   scene.lighting = std::make_unique<LightingServices>(*scene.geometry, std::move(lights_),
@@ -534,7 +555,8 @@ BuiltScene Builder::Build() {
 
 BuiltScene BuildScene(const SceneDescription& description, const RenderOverrides& overrides, bool robust,
                       Diagnostics& diagnostics, const TypeRegistry& types) {
-  return Builder(description, overrides, robust, diagnostics, types).Build();
+  return LocateErrors({std::make_shared<const std::string>(description.file.string())},
+                      [&] { return Builder(description, overrides, robust, diagnostics, types).Build(); });
 }
 
 BuiltScene BuildScene(const SceneDescription& description, bool robust, Diagnostics& diagnostics,

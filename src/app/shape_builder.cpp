@@ -84,7 +84,10 @@ LocalMesh ReadBilinearMesh(const ParameterList& parameters, Diagnostics& diagnos
   return mesh;
 }
 
-LocalMesh ReadSubdivision(const ParameterList& parameters, Diagnostics& diagnostics) {
+// Of a triangle or patch, as it is read, as it is placed and in the intersector: a round number below what is measured.
+constexpr double kBytesPerFace = 128;
+
+LocalMesh ReadSubdivision(const ParameterList& parameters, MemoryBudget& memory, Diagnostics& diagnostics) {
   const std::vector<Point3d> controlPoints = parameters.GetPoint3s("P");
   if (controlPoints.empty()) throw Error(parameters.Where(), parameters.Owner() + " needs vertices: \"point3 P\"");
   const std::vector<int64_t> indices = parameters.GetIntegers("indices");
@@ -99,6 +102,12 @@ LocalMesh ReadSubdivision(const ParameterList& parameters, Diagnostics& diagnost
     throw Error(parameters.WhereOf("scheme"), "there is no subdivision scheme \"" + scheme + "\"; there is: loop");
   parameters.CheckAllUsed({}, {"P", "indices", "levels", "scheme", "alpha"}, diagnostics);
 
+  const double faces = static_cast<double>(triangles.size()) * std::pow(4.0, levels);
+  if (faces > 0) {
+    memory.Take(faces * kBytesPerFace, parameters.WhereOf("levels"),
+                std::to_string(levels) + " levels of " + Count(triangles.size()) + " faces make " +
+                    Count(static_cast<size_t>(faces)) + " triangles, which");
+  }
   std::vector<Point3> positions;
   for (const Point3d& p : controlPoints) positions.push_back(Point3(p));
   const SubdividedMesh subdivided = Subdivide(positions, triangles, levels, parameters.Where());
@@ -109,7 +118,7 @@ LocalMesh ReadSubdivision(const ParameterList& parameters, Diagnostics& diagnost
   return mesh;
 }
 
-LocalMesh ReadPlyMesh(const ParameterList& parameters, Diagnostics& diagnostics) {
+LocalMesh ReadPlyMesh(const ParameterList& parameters, MemoryBudget& memory, Diagnostics& diagnostics) {
   const std::string file = parameters.GetFile("filename");
   if (file.empty()) throw Error(parameters.Where(), parameters.Owner() + " needs \"string filename\"");
   PlyMesh ply = ReadPly(file, parameters.WhereOf("filename"));
@@ -118,6 +127,9 @@ LocalMesh ReadPlyMesh(const ParameterList& parameters, Diagnostics& diagnostics)
                      "displacement of meshes is not supported; the mesh is rendered without");
   }
   parameters.CheckAllUsed({"displacement", "edgelength"}, {"filename", "alpha"}, diagnostics);
+  // The same file may be named again and again.
+  memory.Take(static_cast<double>(ply.triangles.size() + ply.quads.size()) * kBytesPerFace,
+              parameters.WhereOf("filename"), "the faces of \"" + file + "\"");
   LocalMesh mesh;
   for (const Point3& p : ply.positions) mesh.positions.push_back(Point3d(p));
   for (const Normal3& n : ply.normals) mesh.normals.push_back(Vector3d(n));
@@ -248,7 +260,8 @@ std::vector<Shape> PlaceMesh(const LocalMesh& local, const ShapeDescription& des
 
 }  // namespace
 
-std::optional<LocalShape> ReadShape(const ShapeDescription& description, Diagnostics& diagnostics) {
+std::optional<LocalShape> ReadShape(const ShapeDescription& description, MemoryBudget& memory,
+                                    Diagnostics& diagnostics) {
   const std::string& type = description.shape.type;
   const ParameterList& parameters = description.shape.parameters;
   parameters.Find("alpha");  // read by whoever knows the textures
@@ -257,9 +270,9 @@ std::optional<LocalShape> ReadShape(const ShapeDescription& description, Diagnos
   if (type == "trianglemesh") {
     local.shape = ReadTriangleMesh(parameters, diagnostics);
   } else if (type == "plymesh") {
-    local.shape = ReadPlyMesh(parameters, diagnostics);
+    local.shape = ReadPlyMesh(parameters, memory, diagnostics);
   } else if (type == "loopsubdiv") {
-    local.shape = ReadSubdivision(parameters, diagnostics);
+    local.shape = ReadSubdivision(parameters, memory, diagnostics);
   } else if (type == "bilinearmesh") {
     local.shape = ReadBilinearMesh(parameters, diagnostics);
   } else if (type == "sphere") {

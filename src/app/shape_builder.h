@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "base/memory.h"
 #include "geometry/curves.h"
 #include "geometry/shapes.h"
 #include "math/transform.h"
@@ -28,9 +29,10 @@ struct LocalShape {
   const ShapeDescription* description = nullptr;
 };
 
-// Reads the parameters and files of a shape. Throws located Errors; nullopt (with a warning) when it is empty or of a
-// kind that is not supported.
-std::optional<LocalShape> ReadShape(const ShapeDescription& description, Diagnostics& diagnostics);
+// Reads the parameters and files of a shape. Throws located Errors, also where its triangles take more than is left of
+// `memory`; nullopt (with a warning) when it is empty or of a kind that is not supported.
+std::optional<LocalShape> ReadShape(const ShapeDescription& description, MemoryBudget& memory,
+                                    Diagnostics& diagnostics);
 
 // Bounds under `toWorld`.
 Bounds3d GetBounds(const LocalShape& shape, const Transform& toWorld);

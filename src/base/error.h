@@ -44,6 +44,20 @@ class UsageError : public Error {
   using Error::Error;
 };
 
+// What `work` gives. An Error that names no place becomes one at `where`: for what is checked by code that knows
+// nothing of files.
+template <class Work>
+auto LocateErrors(const FileLocation& where, const Work& work) {
+  try {
+    return work();
+  } catch (const UsageError&) {
+    throw;
+  } catch (const Error& error) {
+    if (error.Where().file) throw;
+    throw Error(where, error.Text());
+  }
+}
+
 // Collects warnings. Each distinct (place, text) is reported once. Thread-safe.
 class Diagnostics {
  public:

@@ -5,22 +5,21 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <string_view>
 #include <system_error>
 
 #include "base/error.h"
+#include "base/memory.h"
 #include "film/atomic_file.h"
 #include "film/image_formats.h"
+#include "film/image_kind.h"
 #include "film/srgb.h"
 
 namespace lampyr {
 
 namespace {
 
-bool HasExtension(const std::filesystem::path& path, const char* extension) {
-  std::string own = path.extension().string();
-  for (char& c : own) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return own == extension;
-}
+constexpr std::string_view kOpenExr = "openexr";
 
 // Applies `decode` to all channels but alpha. 8-bit values go through a table: a texture has millions of them.
 template <class Decode>
@@ -119,7 +118,7 @@ std::vector<size_t> ChannelOrder(const std::vector<std::string>& names) {
 void CheckImageSize(const std::filesystem::path& path, int64_t width, int64_t height, int64_t channels,
                     int64_t bytesPerPixel) {
   constexpr int64_t maxSide = int64_t{1} << 24, maxValues = int64_t{1} << 30, maxChannels = int64_t{1} << 18;
-  constexpr int64_t alwaysFine = int64_t{1} << 28, largestCompression = 2000;
+  constexpr int64_t alwaysFine = int64_t{1} << 27, largestCompression = 2000;
   const std::string claim =
       std::to_string(width) + " x " + std::to_string(height) + " pixels with " + std::to_string(channels) + " channels";
   if (width <= 0 || height <= 0 || channels <= 0) {
@@ -128,10 +127,17 @@ void CheckImageSize(const std::filesystem::path& path, int64_t width, int64_t he
   if (width > maxSide || height > maxSide || channels > maxChannels || width * height > maxValues / channels) {
     throw Error("cannot read image \"" + path.string() + "\": too large (" + claim + ")");
   }
+  const double needed = 4.0 * static_cast<double>(width * height * channels);
+  const double available = static_cast<double>(AvailableMemory());
+  if (needed > available) {
+    throw Error("cannot read image \"" + path.string() + "\": its " + claim + " take " + FormatBytes(needed) +
+                " of memory, and there are " + FormatBytes(available));
+  }
   std::error_code code;
   const auto fileBytes = std::filesystem::file_size(path, code);
   const int64_t bytes = width * height * bytesPerPixel;
-  if (!code && bytes > alwaysFine && bytes / largestCompression > static_cast<int64_t>(fileBytes)) {
+  const bool isLarge = width * height * channels > alwaysFine;
+  if (!code && isLarge && bytes / largestCompression > static_cast<int64_t>(fileBytes)) {
     throw Error("cannot read image \"" + path.string() + "\": it claims " + claim + ", more than " +
                 std::to_string(fileBytes) + " bytes can hold");
   }
@@ -139,8 +145,9 @@ void CheckImageSize(const std::filesystem::path& path, int64_t width, int64_t he
 
 Image ReadImage(const std::filesystem::path& path, ImageEncoding encoding) {
   CheckReadable(path);
-  if (HasExtension(path, ".exr")) return ReadExr(path);
-  EncodedImage encoded = ReadThroughModule(path);
+  const ImageKind kind = FindImageKind(path);
+  if (kind.format == kOpenExr) return ReadExr(path);
+  EncodedImage encoded = ReadThroughModule(path, kind);
   const bool automatic = encoded.integerBits == 8 || (encoded.integerBits > 0 && encoded.saysSrgb);
   const bool decode = encoding == ImageEncoding::Automatic ? automatic : encoding == ImageEncoding::Srgb;
   if (decode && encoded.integerBits > 0) DecodeChannels(encoded, SrgbToLinear);
@@ -149,8 +156,9 @@ Image ReadImage(const std::filesystem::path& path, ImageEncoding encoding) {
 
 Image ReadImageWithGamma(const std::filesystem::path& path, float gamma) {
   CheckReadable(path);
-  if (HasExtension(path, ".exr")) return ReadExr(path);
-  EncodedImage encoded = ReadThroughModule(path);
+  const ImageKind kind = FindImageKind(path);
+  if (kind.format == kOpenExr) return ReadExr(path);
+  EncodedImage encoded = ReadThroughModule(path, kind);
   if (encoded.integerBits > 0) {
     DecodeChannels(encoded, [gamma](float value) { return std::pow(std::max(value, 0.0f), gamma); });
   }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "film/image.h"
+#include "film/image_kind.h"
 
 namespace lampyr {
 
@@ -18,13 +19,16 @@ struct EncodedImage {
   int integerBits = 0;     // 8, 16, …; 0 for floating point
   bool saysSrgb = false;   // the file (or its format's rule) says that it is sRGB
 };
-EncodedImage ReadThroughModule(const std::filesystem::path& path);
+EncodedImage ReadThroughModule(const std::filesystem::path& path, const ImageKind& kind);
 
-// Throws Error when a JPEG file ends before its end marker. Other files pass.
-void CheckJpegIsWhole(const std::filesystem::path& path);
+struct JpegSize {
+  int64_t width = 0, height = 0;
+};
+// Of the frame header. Throws Error when the file ends before its end marker or has no frame.
+JpegSize ReadJpegSize(const std::filesystem::path& path);
 
-// Throws Error when the size is absurd: more than 2^30 values, or far more than `fileBytes` could hold compressed
-// (a corrupt header must not claim the machine's memory). `bytesPerPixel` in the file, uncompressed.
+// Throws Error when the size is absurd: more than 2^30 values, or more than 2^27 and far more than the file could hold
+// compressed (a corrupt header must not claim the machine's memory). `bytesPerPixel` in the file, uncompressed.
 void CheckImageSize(const std::filesystem::path& path, int64_t width, int64_t height, int64_t channels,
                     int64_t bytesPerPixel);
 

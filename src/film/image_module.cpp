@@ -28,14 +28,26 @@ int IntegerBits(const OIIO::TypeDesc& format) {
   return isFloat ? 0 : static_cast<int>(8 * format.basesize());
 }
 
+std::string ErrorOf(const OIIO::ImageInput& input) {
+  const std::string text = input.geterror();
+  return text.empty() ? "it is damaged" : text;
+}
+
 // "" when all went well.
-std::string Read(const char* path, lampyr::ImageModuleAllocate allocate, void* context) {
-  OIIO::ImageSpec configuration;
+std::string Read(const char* path, const char* format, lampyr::ImageModuleAllocate allocate, void* context) {
+  OIIO::attribute("limits:imagesize_MB", 1 << 30);  // what is too large is told by `allocate`
+  OIIO::ImageSpec configuration, opened;
   configuration.attribute("oiio:UnassociatedAlpha", 1);  // colours as stored, not multiplied by alpha
-  const auto input = OIIO::ImageInput::open(path, &configuration);
+  const auto input = OIIO::ImageInput::create(format);
   if (!input) return OIIO::geterror();
+  if (!input->open(path, opened, configuration)) return ErrorOf(*input);
   const OIIO::ImageSpec& spec = input->spec();
   if (spec.depth > 1) return "it is a volume";
+  // A reader takes memory for a whole tile.
+  constexpr auto largestTile = OIIO::imagesize_t{1} << 24;
+  if (spec.tile_width > 0 && spec.tile_pixels() > std::max(largestTile, spec.image_pixels())) {
+    return "its tiles are larger than the image";
+  }
 
   std::vector<const char*> names;
   for (const std::string& name : spec.channelnames) names.push_back(name.c_str());
@@ -50,8 +62,7 @@ std::string Read(const char* path, lampyr::ImageModuleAllocate allocate, void* c
   float* pixels = allocate(context, &info);
   if (!pixels) return "it is too large";
   if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, pixels)) {
-    const std::string text = input->geterror();
-    return text.empty() ? "it is damaged" : text;
+    return ErrorOf(*input);
   }
   return "";
 }
@@ -92,9 +103,9 @@ extern "C" {
 
 int lampyr_image_module_version() { return lampyr::kImageModuleVersion; }
 
-int lampyr_read_image(const char* path, lampyr::ImageModuleAllocate allocate, void* context, char* error,
-                      size_t errorSize) {
-  return Guarded(error, errorSize, [&] { return Read(path, allocate, context); });
+int lampyr_read_image(const char* path, const char* format, lampyr::ImageModuleAllocate allocate, void* context,
+                      char* error, size_t errorSize) {
+  return Guarded(error, errorSize, [&] { return Read(path, format, allocate, context); });
 }
 
 int lampyr_encode_png(int width, int height, const unsigned char* rgb, lampyr::ImageModuleSink sink, void* context,

@@ -6,7 +6,7 @@
 
 namespace lampyr {
 
-inline constexpr int kImageModuleVersion = 1;
+inline constexpr int kImageModuleVersion = 2;
 
 // What the module tells about an image before it reads the pixels.
 struct ImageModuleInfo {
@@ -21,9 +21,10 @@ struct ImageModuleInfo {
 using ImageModuleAllocate = float* (*)(void* context, const ImageModuleInfo* info);
 using ImageModuleSink = void (*)(void* context, const void* bytes, size_t count);
 
-// Both return 0, or 1 with a text in `error` (of `errorSize` characters, 0 at the end).
-using ImageModuleRead = int (*)(const char* path, ImageModuleAllocate allocate, void* context, char* error,
-                                size_t errorSize);
+// Both return 0, or 1 with a text in `error` (of `errorSize` characters, 0 at the end). `format`: the only reader to be
+// tried.
+using ImageModuleRead = int (*)(const char* path, const char* format, ImageModuleAllocate allocate, void* context,
+                                char* error, size_t errorSize);
 using ImageModuleEncodePng = int (*)(int width, int height, const unsigned char* rgb, ImageModuleSink sink,
                                      void* context, char* error, size_t errorSize);
 using ImageModuleVersion = int (*)();

@@ -92,11 +92,12 @@ void AppendBytes(void* opaque, const void* bytes, size_t count) {
 
 }  // namespace
 
-EncodedImage ReadThroughModule(const std::filesystem::path& path) {
-  CheckJpegIsWhole(path);
+EncodedImage ReadThroughModule(const std::filesystem::path& path, const ImageKind& kind) {
+  constexpr int64_t channels = 4, bytesPerPixel = 4;  // what readers take that take all of it at once
+  if (kind.width > 0 && kind.height > 0) CheckImageSize(path, kind.width, kind.height, channels, bytesPerPixel);
   std::array<char, 512> error{};
   ReadContext context{path, {}, nullptr};
-  if (GetImageModule().read(path.c_str(), AllocateImage, &context, error.data(), error.size()) != 0) {
+  if (GetImageModule().read(path.c_str(), kind.format, AllocateImage, &context, error.data(), error.size()) != 0) {
     if (!context.failure) {
       std::string text = error.data();  // of several lines when several things went wrong
       std::replace(text.begin(), text.end(), '\n', ' ');

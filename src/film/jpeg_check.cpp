@@ -1,5 +1,6 @@
-// JPEG readers fill what a truncated file lacks with gray and call it read. So the file's markers are walked first: it is
-// whole when they end with EOI (ITU T.81 annex B). Files that are no JPEG pass.
+// JPEG readers fill what a truncated file lacks with gray and call it read. So the file's markers are walked first: it
+// is whole when they end with EOI (ITU T.81 annex B). The frame's size is met on the way, before any reader takes
+// memory for it.
 #include <fstream>
 #include <iterator>
 #include <string>
@@ -23,8 +24,14 @@ size_t SkipScan(const std::string& bytes, size_t position) {
   return bytes.size();
 }
 
-bool IsWholeJpeg(const std::string& bytes) {
+bool StartsFrame(unsigned marker) {
+  return marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
+}
+
+// Whether the file is whole; `size`: of its first frame.
+bool WalkMarkers(const std::string& bytes, JpegSize& size) {
   const auto at = [&](size_t i) { return i < bytes.size() ? static_cast<unsigned char>(bytes[i]) : 0u; };
+  const auto numberAt = [&](size_t i) { return 256 * at(i) + at(i + 1); };
   size_t position = 2;
   while (position + 1 < bytes.size()) {
     const unsigned marker = at(position + 1);
@@ -35,7 +42,8 @@ bool IsWholeJpeg(const std::string& bytes) {
     if (marker == kEndOfImage) return true;
     position += 2;
     if (marker == 0 || marker == 1 || (marker >= 0xd0 && marker <= kStartOfImage)) continue;  // no length follows
-    position += 256 * at(position) + at(position + 1);
+    if (StartsFrame(marker) && size.width == 0) size = {numberAt(position + 5), numberAt(position + 3)};
+    position += numberAt(position);
     if (marker == kStartOfScan) position = SkipScan(bytes, position);
   }
   return false;
@@ -43,12 +51,13 @@ bool IsWholeJpeg(const std::string& bytes) {
 
 }  // namespace
 
-void CheckJpegIsWhole(const std::filesystem::path& path) {
+JpegSize ReadJpegSize(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
-  std::string bytes(3, '\0');
-  if (!file.read(bytes.data(), 3) || bytes != "\xff\xd8\xff") return;
-  bytes.append(std::istreambuf_iterator<char>(file), {});
-  if (!IsWholeJpeg(bytes)) throw Error("cannot read image \"" + path.string() + "\": the file is truncated");
+  const std::string bytes(std::istreambuf_iterator<char>(file), {});
+  JpegSize size;
+  if (!WalkMarkers(bytes, size)) throw Error("cannot read image \"" + path.string() + "\": the file is truncated");
+  if (size.width == 0 || size.height == 0) throw Error("cannot read image \"" + path.string() + "\": it has no size");
+  return size;
 }
 
 }  // namespace lampyr

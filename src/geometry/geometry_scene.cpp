@@ -128,7 +128,19 @@ float LargestThrough(const Affine& toObject) {
   return kLargest / stretch;
 }
 
+struct ShapeCheck {
+  template <class T>
+  void operator()(const std::shared_ptr<const T>& shape) const {
+    CheckShape(*shape);
+  }
+  void operator()(const Quadric& quadric) const { CheckShape(PreparedQuadric(quadric)); }
+};
+
 }  // namespace
+
+void CheckShape(const Shape& shape) {
+  std::visit(ShapeCheck{}, shape);
+}
 
 struct GeometryScene::Implementation {
   GeometryDescription description;

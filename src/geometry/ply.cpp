@@ -351,7 +351,8 @@ std::string ReadWhole(const std::filesystem::path& path, const Failure& fail) {
   if (!file) fail("cannot be opened");
   gzbuffer(file.get(), 1 << 18);
   std::string content;
-  constexpr size_t kChunk = 1 << 20;
+  constexpr size_t kChunk = 1 << 20, kAlwaysFine = size_t{64} << 20, kLargestGrowth = 200;
+  const std::uintmax_t fileSize = std::filesystem::file_size(path, ignored);
   for (;;) {
     const size_t size = content.size();
     if (content.capacity() < size + kChunk) content.reserve(2 * size + kChunk);
@@ -363,6 +364,9 @@ std::string ReadWhole(const std::filesystem::path& path, const Failure& fail) {
       fail(code == Z_BUF_ERROR ? "the gzipped file ends too early" : std::string("cannot be read: ") + message);
     }
     content.resize(size + static_cast<size_t>(got));
+    if (content.size() > kAlwaysFine && content.size() / kLargestGrowth > fileSize) {
+      fail("grows to more than 200 times its size when it is decompressed: it is no mesh");
+    }
     if (got == 0) return content;
   }
 }

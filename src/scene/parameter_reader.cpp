@@ -2,6 +2,8 @@
 
 #include <optional>
 
+#include "scene/limits.h"
+
 namespace lampyr {
 
 namespace {
@@ -148,6 +150,8 @@ std::vector<Parameter> ReadParameters(TokenStream& tokens, RgbColorSpace colorSp
       return parameters;
     }
     Parameter parameter = ReadDeclaration(token);
+    if (parameters.size() == limits::kParameters)
+      throw Error(parameter.where, "a statement has at most 1000 parameters");
     parameter.colorSpace = colorSpace;
     for (const Parameter& other : parameters) {
       if (other.name != parameter.name) continue;

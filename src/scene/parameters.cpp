@@ -12,10 +12,6 @@ namespace {
 constexpr const char* kTypeNames[] = {"float",   "integer", "bool", "string",   "point2",    "vector2", "point3",
                                       "vector3", "normal",  "rgb",  "spectrum", "blackbody", "texture"};
 
-size_t ValueCount(const Parameter& p) {
-  return p.numbers.size() + p.integers.size() + p.strings.size() + p.bools.size();
-}
-
 std::string CountOf(size_t count) {
   return std::to_string(count) + (count == 1 ? " value" : " values");
 }
@@ -59,7 +55,7 @@ const Parameter* ParameterList::FindTyped(const std::string& name, std::initiali
     throw Error(parameter->where, "\"" + name + "\" of " + owner_ + ": expected " + TypeList(types) + ", found " +
                                       ToString(parameter->type));
   }
-  if (ValueCount(*parameter) == 0) throw Error(parameter->where, "\"" + name + "\" of " + owner_ + " has no values");
+  if (parameter->ValueCount() == 0) throw Error(parameter->where, "\"" + name + "\" of " + owner_ + " has no values");
   return parameter;
 }
 

@@ -46,6 +46,8 @@ struct Parameter {
   RgbColorSpace colorSpace = RgbColorSpace::Srgb;  // of `numbers` when the type is Rgb; ParameterList's getters convert
   bool mayBeUnused = false;                        // a default that an Attribute statement gave
   mutable bool used = false;  // asked for by whoever reads the list; single-threaded, while the scene is built
+
+  size_t ValueCount() const { return numbers.size() + integers.size() + strings.size() + bools.size(); }
 };
 
 // What a colour stands for decides how a spectrum becomes RGB ([Pharr23 §4.6]).

@@ -34,7 +34,7 @@ void SceneParser::CheckReferences() const {
 
 // Depth first without recursion: objects may be nested as deep as a file is long. And as they multiply, a few lines can
 // ask for more than any memory holds.
-void SceneParser::CheckInstances() const {
+void SceneParser::CountInstances() {
   enum class Mark { New, Open, Done };
   std::vector<Mark> marks(scene_.objects.size(), Mark::New);
   std::vector<double> within(scene_.objects.size(), 0);  // instances that one of the object brings along
@@ -80,7 +80,7 @@ void SceneParser::CheckInstances() const {
       path.push_back({inner});
     }
   }
-  count(scene_.instances);
+  scene_.instanceCount = count(scene_.instances);
 }
 
 }  // namespace lampyr

@@ -111,6 +111,7 @@ struct SceneDescription {
   std::vector<ShapeDescription> shapes;
   std::vector<ObjectDescription> objects;
   std::vector<InstanceDescription> instances;
+  double instanceCount = 0;  // with those that objects bring along
 };
 
 // Reads a scene file (plain or gzipped) and its includes. Throws Error with file, line and column; warns through

@@ -8,6 +8,7 @@
 #include <array>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <set>
 #include <string>
 #include <string_view>
@@ -32,7 +33,8 @@ struct GraphicsState {
   int areaLight = -1;
   int lightFilter = -1;
   std::string insideMedium, outsideMedium;
-  std::map<std::string, std::vector<Parameter>> attributes;  // by target
+  // By target; shared, so that scopes are cheap to save.
+  std::map<std::string, std::shared_ptr<const std::vector<Parameter>>> attributes;
 };
 
 // A reference by name, to be checked at the end.
@@ -146,11 +148,13 @@ class SceneParser {
   void ReverseOrientation(const Token&);
   void Include(const Token&);
   void Import(const Token&);
+  void OpenNamedFile(const Token& statement);
+  void OpenScope(const Token& statement, bool isObject);
   void CloseScope(const Token& statement, bool isObject);
 
   // scene_checks.cpp
   void CheckReferences() const;
-  void CheckInstances() const;
+  void CountInstances();
 };
 
 template <size_t N>

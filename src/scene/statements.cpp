@@ -63,7 +63,7 @@ SceneDescription SceneParser::Parse(std::string text) {
   CheckScopesClosed(0);
   if (!inWorld_) throw Error(tokens_.Next().where, "the scene ends before WorldBegin: it describes no world");
   CheckReferences();
-  CheckInstances();
+  CountInstances();
   scene_.file = file_;
   scene_.contentHash = tokens_.HashOfAll();
   return std::move(scene_);
@@ -146,7 +146,7 @@ ParameterList SceneParser::ReadList(const Token& statement, const std::string& o
     const auto defaults = state_.attributes.find(attributeTarget);
     if (defaults != state_.attributes.end()) {
       const size_t own = parameters.size();
-      for (const Parameter& parameter : defaults->second) {
+      for (const Parameter& parameter : *defaults->second) {
         bool given = false;
         for (size_t i = 0; i < own; ++i) given |= parameters[i].name == parameter.name;
         if (!given) parameters.push_back(parameter);

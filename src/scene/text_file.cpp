@@ -9,6 +9,8 @@
 #include <memory>
 #include <system_error>
 
+#include "scene/limits.h"
+
 namespace lampyr {
 
 namespace {
@@ -22,8 +24,9 @@ std::string ReadBytes(const std::filesystem::path& file, const FileLocation& whe
   std::error_code ignored;
   const std::filesystem::file_status status = std::filesystem::status(file, ignored);
   if (std::filesystem::is_directory(status)) Fail(file, where, "is a folder, not a scene file");
-  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) &&
-      !std::filesystem::is_fifo(status)) {
+  // A scene may come through a pipe; a file that it names may not: nobody might ever write to it.
+  const bool isPipe = std::filesystem::is_fifo(status) && !where.file;
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) && !isPipe) {
     Fail(file, where, "is not a regular file");
   }
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"), &std::fclose);
@@ -62,6 +65,9 @@ std::string Decompress(const std::string& bytes, const std::filesystem::path& fi
     stream.avail_out = static_cast<uInt>(buffer.size());
     const int result = inflate(&stream, Z_NO_FLUSH);
     text.append(buffer.data(), buffer.size() - stream.avail_out);
+    if (text.size() > limits::kAlwaysFineText && text.size() / limits::kLargestGrowth > bytes.size()) {
+      Fail(file, where, "grows to more than 200 times its size when it is decompressed: it is no text");
+    }
     if (result == Z_STREAM_END) {
       const bool more = stream.avail_in > 0 || given < bytes.size();
       if (!more) return text;

@@ -3,13 +3,12 @@
 #include <system_error>
 #include <utility>
 
+#include "scene/limits.h"
 #include "scene/scene_paths.h"
 
 namespace lampyr {
 
 namespace {
-
-constexpr size_t kDeepestNesting = 256;  // files open at once
 
 std::filesystem::path Canonical(const std::filesystem::path& file) {
   std::error_code failed;
@@ -28,16 +27,30 @@ void TokenStream::OpenText(const std::filesystem::path& file, std::string text) 
   files_.push_back({Lexer(std::move(name), std::move(text)), Canonical(file)});
 }
 
-void TokenStream::OpenFile(const Token& name) {
+std::filesystem::path TokenStream::OpenFile(const Token& name) {
   if (name.text.empty()) throw Error(name.where, "the file's name is empty");
   const std::filesystem::path file = FindSceneFile(name.text, *name.where.file, *sceneFile_);
-  CheckNotOpen(file, Canonical(file), name.where);
-  OpenText(file, ReadTextFile(file, name.where));
+  const std::filesystem::path canonical = Canonical(file);
+  CheckNotOpen(file, canonical, name.where);
+  if (++named_ > limits::kNamedFiles) {
+    throw Error(name.where,
+                "files are included more than 50000 times in all; what repeats can be an object "
+                "(ObjectBegin) with instances");
+  }
+  std::string text = ReadTextFile(file, name.where);
+  if (!seen_.insert(canonical).second) repeated_ += text.size();
+  if (repeated_ > limits::kRepeatedText) {
+    throw Error(name.where,
+                "files that are included again make more than 1 GiB of text; what repeats can be an object "
+                "(ObjectBegin) with instances");
+  }
+  OpenText(file, std::move(text));
+  return canonical;
 }
 
 void TokenStream::CheckNotOpen(const std::filesystem::path& file, const std::filesystem::path& canonical,
                                const FileLocation& where) const {
-  if (files_.size() >= kDeepestNesting) throw Error(where, "files are nested more than 256 deep");
+  if (files_.size() >= limits::kOpenFiles) throw Error(where, "files are nested more than 256 deep");
   std::string chain;
   for (const OpenedFile& open : files_) {
     if (chain.empty() && open.canonical != canonical) continue;

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "scene/lexer.h"
@@ -17,8 +18,8 @@ class TokenStream {
   // Opens a text; its tokens come before what is left of the file that is read now.
   void OpenText(const std::filesystem::path& file, std::string text);
   // The same for a file that the string `name` asks for: looked for beside the scene's file, then beside the one that
-  // asks. Throws when it cannot be read or is being read already.
-  void OpenFile(const Token& name);
+  // asks. Throws when it cannot be read or is being read already. Gives its canonical path.
+  std::filesystem::path OpenFile(const Token& name);
 
   // End: the bottom of the stack is reached; an included file's end is passed over.
   Token Next();
@@ -44,6 +45,9 @@ class TokenStream {
   size_t bottom_ = 0;
   std::optional<Token> waiting_;
   ContentHash hash_;
+  size_t named_ = 0;                      // files, by Include and Import
+  std::set<std::filesystem::path> seen_;  // of those, canonical
+  uint64_t repeated_ = 0;                 // bytes of files that were seen before
 
   void CheckNotOpen(const std::filesystem::path& file, const std::filesystem::path& canonical,
                     const FileLocation& where) const;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "scene/limits.h"
 #include "scene/scene_parser.h"
 
 namespace lampyr {
@@ -10,8 +11,16 @@ void SceneParser::WorldEnd(const Token& statement) {
   diagnostics_.Warn(statement.where, "WorldEnd is of pbrt-v3: it is ignored");
 }
 
+void SceneParser::OpenScope(const Token& statement, bool isObject) {
+  if (scopes_.size() == limits::kOpenScopes) {
+    throw Error(statement.where, "scopes are nested more than 50000 deep; the innermost is the " +
+                                     scopes_.back().statement + " at " + scopes_.back().where.ToString());
+  }
+  scopes_.push_back({state_, isObject, statement.text, statement.where});
+}
+
 void SceneParser::AttributeBegin(const Token& statement) {
-  scopes_.push_back({state_, false, statement.text, statement.where});
+  OpenScope(statement, false);
 }
 
 void SceneParser::AttributeEnd(const Token& statement) {
@@ -71,7 +80,8 @@ void SceneParser::Attribute(const Token&) {
     throw Error(target.where,
                 "there is no Attribute target \"" + target.text + "\"" + DidYouMean(target.text, targets));
   }
-  std::vector<Parameter>& defaults = state_.attributes[target.text];
+  std::shared_ptr<const std::vector<Parameter>>& kept = state_.attributes[target.text];
+  std::vector<Parameter> defaults = kept ? *kept : std::vector<Parameter>();
   for (Parameter& parameter : ReadParameters(tokens_, state_.colorSpace)) {
     parameter.mayBeUnused = true;
     CheckLinking(target.text, parameter);
@@ -79,6 +89,14 @@ void SceneParser::Attribute(const Token&) {
     std::erase_if(defaults, sameName);
     defaults.push_back(std::move(parameter));
   }
+  size_t values = 0;
+  for (const Parameter& parameter : defaults) values += parameter.ValueCount();
+  if (defaults.size() > limits::kDefaultParameters || values > limits::kDefaultValues) {
+    throw Error(target.where, "Attribute \"" + target.text +
+                                  "\" gives more than 64 parameters or 1000 values, of which every statement that "
+                                  "follows has a copy; they can be given to the statement itself");
+  }
+  kept = std::make_shared<const std::vector<Parameter>>(std::move(defaults));
 }
 
 void SceneParser::ObjectBegin(const Token& statement) {
@@ -92,7 +110,7 @@ void SceneParser::ObjectBegin(const Token& statement) {
     throw Error(statement.where, "the object \"" + name + "\" is defined twice; the first is at " +
                                      scene_.objects[entry->second].where.ToString());
   }
-  scopes_.push_back({state_, true, statement.text, statement.where});
+  OpenScope(statement, true);
   currentObject_ = entry->second;
   scene_.objects.push_back({name, statement.where, {}, {}});
 }
@@ -119,9 +137,9 @@ void SceneParser::Shape(const Token& statement) {
   shape.outsideMedium = state_.outsideMedium;
   for (const char* target : {"lighting", "lightfilter"}) {
     const auto found = state_.attributes.find(target);
-    if (found == state_.attributes.end() || found->second.empty()) continue;
+    if (found == state_.attributes.end() || found->second->empty()) continue;
     const std::string owner = std::string("Attribute \"") + target + "\"";
-    shape.attributes[target] = ParameterList(found->second.front().where, owner, found->second, tokens_.SceneFile());
+    shape.attributes[target] = ParameterList(found->second->front().where, owner, *found->second, tokens_.SceneFile());
   }
   auto& list = currentObject_ >= 0 ? scene_.objects[currentObject_].shapes : scene_.shapes;
   list.push_back(std::move(shape));
@@ -242,21 +260,38 @@ void SceneParser::ReverseOrientation(const Token&) {
   state_.reverseOrientation = !state_.reverseOrientation;
 }
 
-void SceneParser::Include(const Token& statement) {
+namespace {
+
+bool IsWithin(const std::filesystem::path& file, const std::filesystem::path& folder) {
+  return std::mismatch(folder.begin(), folder.end(), file.begin(), file.end()).first == folder.end();
+}
+
+}  // namespace
+
+// Scenes share files beside their folder. What lies farther off is read, too, and told: it may be a file that was not
+// meant to be.
+void SceneParser::OpenNamedFile(const Token& statement) {
   const Token name = tokens_.Next();
   if (name.kind != TokenKind::String)
     throw Error(name.where, statement.text + " needs a file's name in quotes, found " + Describe(name));
-  tokens_.OpenFile(name);
+  const std::filesystem::path file = tokens_.OpenFile(name);
+  std::error_code failed;
+  const std::filesystem::path folder = std::filesystem::weakly_canonical(std::filesystem::absolute(file_), failed)
+                                           .parent_path(),
+                              above = folder.parent_path();
+  if (failed || IsWithin(file, folder) || (above.has_relative_path() && IsWithin(file, above))) return;
+  diagnostics_.Warn(name.where, statement.text + " leaves the folders of the scene: \"" + file.string() + "\" is read");
+}
+
+void SceneParser::Include(const Token& statement) {
+  OpenNamedFile(statement);
 }
 
 // Like Include, but the graphics state and the coordinate systems are afterwards what they were before.
 void SceneParser::Import(const Token& statement) {
-  const Token name = tokens_.Next();
-  if (name.kind != TokenKind::String)
-    throw Error(name.where, statement.text + " needs a file's name in quotes, found " + Describe(name));
   const GraphicsState state = state_;
   const auto coordinateSystems = coordinateSystems_;
-  tokens_.OpenFile(name);
+  OpenNamedFile(statement);
   const size_t bottom = tokens_.SetBottom();
   const size_t lowestScope = std::exchange(lowestScope_, scopes_.size());
   ParseStatements();

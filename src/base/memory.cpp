@@ -1,0 +1,58 @@
+#include "base/memory.h"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+namespace lampyr {
+
+namespace {
+
+// What the control group of this process may use, where the system has such groups (version 2).
+uint64_t GroupMemory() {
+  uint64_t least = UINT64_MAX;
+  std::ifstream groups("/proc/self/cgroup");
+  for (std::string line; std::getline(groups, line);) {
+    if (!line.starts_with("0::")) continue;
+    // Each group above may say less.
+    for (std::string group = line.substr(3);; group.resize(std::min(group.rfind('/'), group.size()))) {
+      uint64_t bytes = 0;
+      if (std::ifstream("/sys/fs/cgroup" + group + "/memory.max") >> bytes) least = std::min(least, bytes);
+      if (group.empty()) break;
+    }
+  }
+  return least;
+}
+
+}  // namespace
+
+uint64_t AvailableMemory() {
+  static const uint64_t machine = std::min(
+      static_cast<uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<uint64_t>(sysconf(_SC_PAGESIZE)), GroupMemory());
+  rlimit space{};
+  if (getrlimit(RLIMIT_AS, &space) != 0 || space.rlim_cur == RLIM_INFINITY) return machine;
+  return std::min(machine, static_cast<uint64_t>(space.rlim_cur));
+}
+
+std::string FormatBytes(double bytes) {
+  constexpr const char* units[] = {"bytes", "KiB", "MiB", "GiB", "TiB"};
+  size_t unit = 0;
+  for (; bytes >= 1024 && unit + 1 < std::size(units); ++unit) bytes /= 1024;
+  char text[64];
+  std::snprintf(text, sizeof text, unit > 0 && bytes < 10 ? "%.1f %s" : "%.0f %s", bytes, units[unit]);
+  return text;
+}
+
+void MemoryBudget::Take(double bytes, const FileLocation& where, const std::string& what) {
+  if (taken_ + bytes > bytes_) {
+    const std::string before = taken_ > 0 ? " besides the " + FormatBytes(taken_) + " of the scene before them" : "";
+    throw Error(where, what + " take " + FormatBytes(bytes) + " of memory" + before + ", and there are " +
+                           FormatBytes(bytes_) + " in all");
+  }
+  taken_ += bytes;
+}
+
+}  // namespace lampyr

@@ -1,0 +1,91 @@
+#include "film/image_kind.h"
+
+#include <fstream>
+#include <string>
+#include <string_view>
+
+#include "base/error.h"
+#include "film/image_formats.h"
+
+namespace lampyr {
+
+namespace {
+
+struct Mark {
+  std::string_view bytes;  // at the file's start
+  const char* format;
+};
+
+constexpr Mark kMarks[] = {{"\x89PNG\r\n\x1a\n", "png"},
+                           {"\xff\xd8\xff", "jpeg"},
+                           {{"II*\0", 4}, "tiff"},
+                           {{"MM\0*", 4}, "tiff"},
+                           {{"II+\0", 4}, "tiff"},  // of more than 4 GB
+                           {{"MM\0+", 4}, "tiff"},
+                           {"#?", "hdr"},
+                           {"BM", "bmp"},
+                           {"GIF8", "gif"},
+                           {"\x76\x2f\x31\x01", "openexr"}};
+
+// P1 … P6 and Pf, PF, then a blank.
+bool IsPortableMap(std::string_view head) {
+  constexpr std::string_view kinds = "123456fF", blanks = " \t\r\n";
+  return head.size() > 2 && head[0] == 'P' && kinds.find(head[1]) != kinds.npos && blanks.find(head[2]) != blanks.npos;
+}
+
+bool IsNamedTarga(const std::filesystem::path& path) {
+  const std::string extension = path.extension().string();
+  return extension == ".tga" || extension == ".TGA";
+}
+
+const char* FormatOf(std::string_view head, const std::filesystem::path& path) {
+  for (const Mark& mark : kMarks) {
+    if (head.starts_with(mark.bytes)) return mark.format;
+  }
+  if (head.starts_with("RIFF") && head.size() >= 12 && head.substr(8, 4) == "WEBP") return "webp";
+  if (IsPortableMap(head)) return "pnm";
+  if (IsNamedTarga(path)) return "targa";  // has no mark at its start
+  throw Error("cannot read image \"" + path.string() +
+              "\": its content is of none of the formats that are read: OpenEXR, PNG, JPEG, TIFF, Radiance (hdr), PFM, "
+              "PPM, PGM, PBM, BMP, GIF, WebP, Targa (named .tga)");
+}
+
+// A little-endian number of `count` bytes; 0 beyond the end.
+int64_t NumberAt(std::string_view head, size_t position, size_t count) {
+  if (position + count > head.size()) return 0;
+  int64_t number = 0;
+  for (size_t i = 0; i < count; ++i) number |= int64_t{static_cast<unsigned char>(head[position + i])} << (8 * i);
+  return number;
+}
+
+void ReadBmpSize(std::string_view head, ImageKind& kind) {
+  constexpr int64_t kOldHeader = 12;  // of OS/2: sizes of two bytes
+  const size_t bytes = NumberAt(head, 14, 4) == kOldHeader ? 2 : 4;
+  const auto absolute = [&](int64_t n) { return bytes == 4 && n > 0x7fffffff ? (int64_t{1} << 32) - n : n; };
+  kind.width = absolute(NumberAt(head, 18, bytes));
+  kind.height = absolute(NumberAt(head, 18 + bytes, bytes));  // negative: from the top
+}
+
+}  // namespace
+
+ImageKind FindImageKind(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string head(64, '\0');
+  file.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<size_t>(file.gcount()));
+  ImageKind kind{FormatOf(head, path)};
+  const std::string_view format = kind.format;
+  if (format == "gif") {
+    kind.width = NumberAt(head, 6, 2);
+    kind.height = NumberAt(head, 8, 2);
+  } else if (format == "bmp") {
+    ReadBmpSize(head, kind);
+  } else if (format == "jpeg") {
+    const JpegSize size = ReadJpegSize(path);
+    kind.width = size.width;
+    kind.height = size.height;
+  }
+  return kind;
+}
+
+}  // namespace lampyr

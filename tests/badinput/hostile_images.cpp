@@ -1,0 +1,135 @@
+// Images whose headers announce more than they hold: refused before a reader, ours or the library's, takes the memory.
+#include <gmock/gmock.h>
+#include <zlib.h>
+
+#include "badinput/hostile_support.h"
+#include "film/image.h"
+
+namespace lampyr {
+namespace {
+
+using testing::AnyOf;
+using testing::HasSubstr;
+
+// Numbers of `bytes` bytes.
+std::string Little(uint64_t n, int bytes) {
+  std::string text;
+  for (int i = 0; i < bytes; ++i) text += static_cast<char>(n >> (8 * i));
+  return text;
+}
+std::string Big(uint64_t n, int bytes) {
+  const std::string little = Little(n, bytes);
+  return {little.rbegin(), little.rend()};
+}
+
+std::string PngChunk(const std::string& type, const std::string& data) {
+  const std::string body = type + data;
+  const auto sum = crc32(0, reinterpret_cast<const Bytef*>(body.data()), static_cast<uInt>(body.size()));
+  return Big(data.size(), 4) + body + Big(sum, 4);
+}
+
+// Bytes that compress to nothing, as a PNG of 8-bit gray.
+std::string Png(uint32_t width, uint32_t height, size_t bytesOfPixels) {
+  const std::string pixels(bytesOfPixels, '\0');
+  std::string packed(compressBound(pixels.size()), '\0');
+  uLongf size = packed.size();
+  compress(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(pixels.data()),
+           pixels.size());
+  packed.resize(size);
+  return "\x89PNG\r\n\x1a\n" + PngChunk("IHDR", Big(width, 4) + Big(height, 4) + std::string("\x08\0\0\0\0", 5)) +
+         PngChunk("IDAT", packed) + PngChunk("IEND", "");
+}
+
+std::string Bmp(uint32_t width, uint32_t height, uint32_t compression) {
+  return "BM" + Little(70, 4) + Little(0, 4) + Little(54, 4) + Little(40, 4) + Little(width, 4) + Little(height, 4) +
+         Little(1, 2) + Little(compression ? 8 : 24, 2) + Little(compression, 4) + std::string(36, '\0');
+}
+
+std::string Gif(uint32_t width, uint32_t height) {
+  return "GIF89a" + Little(width, 2) + Little(height, 2) + std::string("\x80\0\0", 3) + std::string(6, '\0') + "," +
+         Little(0, 4) + Little(width, 2) + Little(height, 2) + std::string("\0\2\2\x4c\1\0;", 7);
+}
+
+std::string Tga(uint32_t width, uint32_t height) {
+  return std::string("\0\0\xa\0\0\0\0\0\0\0\0\0", 12) + Little(width, 2) + Little(height, 2) + "\x20\x08" + "\xff....";
+}
+
+// Progressive: its reader keeps all coefficients of the picture.
+std::string Jpeg(uint32_t width, uint32_t height) {
+  return std::string("\xff\xd8\xff\xc2\0\x0b\x08", 7) + Big(height, 2) + Big(width, 2) + std::string("\1\1\x11\0", 4) +
+         std::string("\xff\xda\0\x08\1\1\0\0\0\0", 10) + "\xff\xd9";
+}
+
+std::string Tiff(uint32_t width, uint32_t height) {
+  std::string entries;
+  int count = 0;
+  const auto add = [&](int tag, uint32_t value) {
+    entries += Little(static_cast<uint64_t>(tag), 2) + Little(4, 2) + Little(1, 4) + Little(value, 4);
+    ++count;
+  };
+  add(256, width);
+  add(257, height);
+  add(258, 8);
+  add(259, 1);
+  add(262, 1);
+  add(273, 8);
+  add(277, 1);
+  add(278, height);
+  add(279, 4);
+  return std::string("II*\0", 4) + Little(8, 4) + Little(static_cast<uint64_t>(count), 2) + entries + Little(0, 4) +
+         "....";
+}
+
+TEST(HostileImages, HeadersThatAnnounceMoreThanTheFileHoldsTakeNoMemory) {
+  const std::pair<const char*, std::string> files[] = {
+      {"a.png", Png(1000000, 1000000, 10)},
+      {"b.png", Png(30000, 30000, 10)},
+      {"a.bmp", Bmp(1000000, 1000000, 0)},
+      {"b.bmp", Bmp(0x7fffffff, 0x7fffffff, 1)},
+      {"c.bmp", Bmp(30000, static_cast<uint32_t>(-30000), 1)},
+      {"a.gif", Gif(65535, 65535)},
+      {"a.tga", Tga(65535, 65535)},
+      {"a.jpg", Jpeg(65500, 65500)},
+      {"a.tif", Tiff(1000000, 1000000)},
+      {"a.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1000000 +X 1000000\n...."},
+      {"a.pfm", "PF\n1000000 1000000\n-1.0\n...."},
+      {"a.ppm", "P6\n1000000 1000000\n255\n...."},
+      {"a.pgm", "P5\n30000 30000\n255\n...."},
+  };
+  const TemporaryFolder folder;
+  folder.Write("small.png", Png(1, 1, 2));
+  ASSERT_EQ(ReadImage(folder / "small.png").width, 1);  // loads the image library
+  for (const auto& [name, bytes] : files) {
+    folder.Write(name, bytes);
+    const PeakMemory peak;
+    const std::string error = ErrorOf([&] { ReadImage(folder / name); });
+    EXPECT_THAT(error, HasSubstr(name));
+    EXPECT_THAT(error, AnyOf(HasSubstr("too large"), HasSubstr("bytes can hold")));
+    EXPECT_LT(peak.GrownBy(), 64) << name;
+  }
+}
+
+TEST(HostileImages, PixelsThatCompressToNothingAreReadToALimit) {
+  const TemporaryFolder folder;
+  folder.Write("plain.png", Png(2000, 2000, 2001 * 2000));
+  EXPECT_EQ(ReadImage(folder / "plain.png").data.size(), 4000000u);
+  // More values than any image has.
+  folder.Write("huge.png", Png(70000, 70000, 10 * kMebibyte));
+  EXPECT_THAT(ErrorOf([&] { ReadImage(folder / "huge.png"); }), HasSubstr("too large"));
+}
+
+TEST(HostileImages, FilesAreToldApartByTheirContent) {
+  const TemporaryFolder folder;
+  folder.Write("photo.exr", Png(3, 2, 8));
+  EXPECT_EQ(ReadImage(folder / "photo.exr").width, 3);
+  // Formats of which the library has readers, too.
+  for (const char* start : {"8BPS", "SDPX", "FORM....CIMG", "\x53\x80\xf6\x34", "DICM", "%!PS", "\x01\xda\x01\x01"}) {
+    folder.Write("other.png", start + std::string(300, '\0'));
+    EXPECT_THAT(ErrorOf([&] { ReadImage(folder / "other.png"); }),
+                HasSubstr("its content is of none of the formats that are read: OpenEXR, PNG"))
+        << start;
+  }
+}
+
+}  // namespace
+}  // namespace lampyr

@@ -1,0 +1,20 @@
+#include "fuzz/target_support.h"
+#include "support/render_scene.h"
+
+namespace lampyr::fuzz {
+
+bool BuildSceneText(std::string_view bytes) {
+  Diagnostics diagnostics(Diagnostics::Mode::Collect);
+  return AcceptErrors([&] {
+    const SceneDescription description = ParseScene(std::string(bytes), SceneName(), diagnostics);
+    RenderOverrides overrides;
+    overrides.width = overrides.height = 3;
+    overrides.maxDepth = 3;
+    overrides.photons = 9;
+    overrides.photonMemory = 1 << 24;
+    overrides.memory = 1 << 28;
+    test::RenderBuilt(BuildScene(description, overrides, true, diagnostics), 1, 1);
+  });
+}
+
+}  // namespace lampyr::fuzz
