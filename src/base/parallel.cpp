@@ -25,6 +25,9 @@ void FlushDenormalsToZero() {
 #endif
 }
 
+// parallel_threads.cpp has them for ThreadSanitizer.
+#if !defined(__SANITIZE_THREAD__)
+
 namespace {
 
 // The calling thread's floating-point setting is the same after the loop as before.
@@ -76,5 +79,7 @@ void ParallelSort(std::span<SortItem> items, int threads) {
   [[maybe_unused]] const KeptFloatSetting kept;
   arena.execute([&] { tbb::parallel_sort(items.begin(), items.end(), IsBefore); });
 }
+
+#endif
 
 }  // namespace lampyr
