@@ -160,21 +160,33 @@ Translate 0.7 0.4 0.5 Shape "sphere" "float radius" 0.4 AttributeEnd
 AttributeBegin Material "diffuse" "rgb reflectance" [0.2 0.6 0.1]
 Shape "bilinearmesh" "point3 P" [ 0.2 1.2 -0.5  1.4 1.2 -0.5  0.2 1 0.7  1.4 1.2 0.7 ] "texture alpha" "holes" AttributeEnd
 )";
-  const Replicas path = RenderReplicas(text, "path", 12, 128);
+  // Path tracing cannot find what the glass reflects of the point onto the floor.
+  const std::string withoutPoint = [&] {
+    const size_t start = text.find("LightSource \"point\"");
+    return std::string(text).erase(start, text.find('\n', start) - start);
+  }();
+  ASSERT_EQ(withoutPoint.find("\"point\""), std::string::npos);
+  struct Pair {
+    const char *first, *second;
+    const std::string& scene;
+    int secondSamples;
+  };
   uint64_t seed = 0;
-  for (const char* integrator : {"bdpt", "vcm", "sppm"}) {
+  for (const Pair& pair :
+       {Pair{"bdpt", "path", withoutPoint, 64}, {"vcm", "bdpt", text, 64}, {"sppm", "bdpt", text, 64}}) {
     RenderOverrides overrides;
-    overrides.seed = seed += 1000;
     overrides.radius = 0.01;
     overrides.photons = 6000;
-    const Replicas other = RenderReplicas(text, integrator, 12, 64, overrides);
-    const Agreement result = CompareReplicas(other, path, 8, 3e-4);
-    std::printf("%-5s largest |z| %.2f (%.2f), chi2 %.1f (%.1f), bias %+.3f %% +- %.3f %%\n", integrator,
-                result.largestZ, result.thresholdZ, result.chiSquared, result.chiSquaredThreshold, 100 * result.bias,
-                196 * result.biasError);
-    EXPECT_TRUE(result.Agrees()) << integrator;
-    EXPECT_EQ(other.faults + path.faults, 0u);
-    EXPECT_FALSE(CompareReplicas(other, path, 8, 3e-4, 1.04).Agrees()) << integrator << ": too noisy";
+    const Replicas second = RenderReplicas(pair.scene, pair.second, 12, pair.secondSamples, overrides);
+    overrides.seed = seed += 1000;
+    const Replicas first = RenderReplicas(pair.scene, pair.first, 12, 64, overrides);
+    const Agreement result = CompareReplicas(first, second, 8, 3e-4);
+    std::printf("%s and %s: largest |z| %.2f (%.2f), chi2 %.1f (%.1f), bias %+.3f %% +- %.3f %%\n", pair.first,
+                pair.second, result.largestZ, result.thresholdZ, result.chiSquared, result.chiSquaredThreshold,
+                100 * result.bias, 196 * result.biasError);
+    EXPECT_TRUE(result.Agrees()) << pair.first << " and " << pair.second;
+    EXPECT_EQ(first.faults + second.faults, 0u);
+    EXPECT_FALSE(CompareReplicas(first, second, 8, 3e-4, 1.04).Agrees()) << pair.first << ": too noisy";
   }
 }
 
