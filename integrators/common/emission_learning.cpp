@@ -207,6 +207,15 @@ void EmissionLearning::Save(ByteWriter& bytes) const {
   bytes.List(std::span(evidence_));
 }
 
+namespace {
+
+// Products of two are numbers still.
+bool IsSensible(double value) {
+  return value >= 0 && value < 1e150;
+}
+
+}  // namespace
+
 void EmissionLearning::Load(ByteReader& bytes) {
   isRecording_ = bytes.Flag();
   const bool hasTried = bytes.Flag(), hasGuide = bytes.Flag();
@@ -218,8 +227,8 @@ void EmissionLearning::Load(ByteReader& bytes) {
   evidence_ = bytes.List<UsefulPhoton>(kMostRemembered + guessed_.size());
   for (const std::vector<UsefulPhoton>* photons : {&useful_, &evidence_}) {
     for (const UsefulPhoton& photon : *photons) {
-      const bool isOne = photon.light < lighting_.Lights().size() && IsFinite(photon.landing) && photon.worth >= 0 &&
-                         photon.squared >= 0 && photon.own >= 0;
+      const bool isOne = photon.light < lighting_.Lights().size() && IsFinite(photon.landing) &&
+                         IsSensible(photon.worth) && IsSensible(photon.squared) && IsSensible(photon.own);
       if (!isOne) throw Error("it holds a photon that cannot be");
     }
   }

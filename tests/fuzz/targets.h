@@ -20,6 +20,8 @@ bool ReadPlyFile(std::string_view bytes);
 bool ReadImageFile(std::string_view bytes);
 // An IES file: read, then asked for intensities.
 bool ReadIesFile(std::string_view bytes);
+// One byte that says what the rest is of (part.cpp), then a saved render: read, and gone on with or added.
+bool ReadSavedPart(std::string_view bytes);
 
 inline constexpr const char* kImageExtensions[] = {".exr", ".png", ".jpg", ".hdr", ".tif",  ".tga",
                                                    ".bmp", ".pfm", ".ppm", ".gif", ".webp", ".other"};
@@ -29,11 +31,8 @@ struct Target {
   bool (*run)(std::string_view bytes);
 };
 
-inline constexpr Target kTargets[] = {{"scene", ReadSceneText},
-                                      {"build", BuildSceneText},
-                                      {"ply", ReadPlyFile},
-                                      {"image", ReadImageFile},
-                                      {"ies", ReadIesFile}};
+inline constexpr Target kTargets[] = {{"scene", ReadSceneText}, {"build", BuildSceneText}, {"ply", ReadPlyFile},
+                                      {"image", ReadImageFile}, {"ies", ReadIesFile},      {"part", ReadSavedPart}};
 
 // Thrown by a target that was given an answer that cannot be right.
 [[noreturn]] void Fail(const std::string& what);
