@@ -189,12 +189,17 @@ class IesReader {
   static void Finish(IesProfile& profile) {
     const size_t count = profile.thetas_.size();
     profile.largest_ = *std::max_element(profile.candela_.begin(), profile.candela_.end());
+    std::vector<double> lowWeights, highWeights;  // of each row's two ends: the same in all planes
+    for (size_t i = 0; i + 1 < count; ++i) {
+      lowWeights.push_back(IntegrateRow(profile.thetas_[i], profile.thetas_[i + 1], 1, 0));
+      highWeights.push_back(IntegrateRow(profile.thetas_[i], profile.thetas_[i + 1], 0, 1));
+    }
     for (size_t j = 0; j + 1 < profile.phis_.size(); ++j) {
       const double* values = &profile.candela_[j * count];
       double sum = 0;
       for (size_t i = 0; i + 1 < count; ++i) {
         const double low = 0.5 * (values[i] + values[i + count]), high = 0.5 * (values[i + 1] + values[i + 1 + count]);
-        sum += IntegrateRow(profile.thetas_[i], profile.thetas_[i + 1], low, high);
+        sum += lowWeights[i] * low + highWeights[i] * high;
       }
       profile.power_ += sum * (profile.phis_[j + 1] - profile.phis_[j]);
     }

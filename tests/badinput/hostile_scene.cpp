@@ -67,10 +67,10 @@ TEST(HostileScene, FilesThatMultiplyAreCounted) {
 TEST(HostileScene, TextThatIsReadAgainAndAgainIsCounted) {
   const TemporaryFolder folder;
   constexpr size_t size = 64 * kMebibyte;
-  folder.Write("long", "#" + std::string(size, ' '));
-  const std::string file = folder.Write("s.pbrt", "WorldBegin\n" + Repeated("Include \"long\"\n", 18));
+  folder.Write("long", std::string(size, '\n'));
+  const std::string file = folder.Write("s.pbrt", "WorldBegin\n" + Repeated("Include \"long\"\n", 20));
   EXPECT_THAT(ReadError(file),
-              HasSubstr("s.pbrt:18:9: error: files that are included again make more than 1 GiB of text"));
+              HasSubstr("s.pbrt:19:9: error: files that are included again make more than 1 GiB of text"));
 }
 
 // Each level holds ten of the one below.
@@ -94,11 +94,12 @@ TEST(HostileScene, InstancesThatMultiplyAreCountedBeforeTheyAreMade) {
 }
 
 TEST(HostileScene, LightsOfInstancesAreCounted) {
-  std::string text = NestedObjects(6);  // 111 111 instances fit
-  EXPECT_EQ(BuildError(text, {}, 200 * kMebibyte), "no error");
+  constexpr uint64_t memory = 20 * kMebibyte;
+  std::string text = NestedObjects(5);  // 11 111 instances fit
+  EXPECT_EQ(BuildError(text, {}, memory), "no error");
   const std::string light = "AreaLightSource \"diffuse\" ";
   text.insert(text.find("Shape"), light);
-  EXPECT_THAT(BuildError(text, {}, 200 * kMebibyte),
+  EXPECT_THAT(BuildError(text, {}, memory),
               HasSubstr("scene.pbrt:2:44: error: the lights that this shape makes, with their tables, take"));
 }
 
