@@ -96,11 +96,13 @@ void PrintSummary(const RenderReport& report, const std::filesystem::path& path)
   }
 }
 
+constexpr int kOpenEnd = 1 << 30;
+
 // Of the whole picture.
 int SamplesWanted(const RenderOptions& options, const RenderSettings& settings) {
   // Asked to stop by time or error only: the scene's own sample count does not matter.
   const bool isOpen = (options.seconds || options.targetError) && !options.overrides.samplesPerPixel;
-  return isOpen ? 1 << 30 : settings.samplesPerPixel;
+  return isOpen ? kOpenEnd : settings.samplesPerPixel;
 }
 
 StopConditions MakeStopConditions(const RenderOptions& options, const Shard& shard) {
@@ -162,6 +164,10 @@ void CheckOptions(const RenderOptions& options, const RenderSettings& settings,
                   const std::filesystem::path& checkpoint) {
   if (options.stats) CheckWritable(*options.stats, "--stats");
   if (options.checkpointSeconds) CheckWritable(checkpoint, "--checkpoint");
+  if (options.shard && GathersPhotons(settings.integrator) && SamplesWanted(options, settings) == kOpenEnd) {
+    throw UsageError("--shard with " + settings.integrator +
+                     " needs --spp: each part has the radii of its own samples, whose numbers must be known");
+  }
   if (!options.strategyImages) return;
   if (settings.integrator != "bdpt")
     throw UsageError("--strategy-images: only bdpt has strategies; the integrator is " + settings.integrator);

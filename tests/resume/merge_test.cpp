@@ -137,6 +137,7 @@ TEST_F(Merge, APartThatWasInterruptedIsNotWhole) {
 TEST_F(Merge, PartsOfATimeAreWholeWhenItIsOver) {
   for (const char* part : {"1", "2"})
     Do(std::string("render scene.pbrt --quiet --time 0.2s --shard ") + part + "/2 -o p" + part + ".exr");
+  ExpectRefused("render scene.pbrt --integrator vcm --time 0.2s --shard 2/2", 2, "--shard with vcm needs --spp");
   Do("merge -o merged.exr p1.exr p2.exr");
   EXPECT_GT(std::stoi(ReadImage(folder_ / "merged.exr").metadata.at("lampyr.samplesPerPixel")), 1);
 }

@@ -1,8 +1,11 @@
 // Going on with a render: more samples, after a signal; and what is refused.
 #include <chrono>
+#include <cstring>
+#include <span>
 #include <thread>
 
 #include "app/render_part.h"
+#include "base/version.h"
 #include "film/image.h"
 #include "resume/resume_fixture.h"
 
@@ -78,6 +81,16 @@ TEST_F(Resume, WhatIsOfAnotherRenderIsRefused) {
   WriteBytes(folder_ / "scene.pbrt", std::string(kScene) + "Shape \"sphere\"\n");
   refused("", "the scene's text");
   WriteBytes(folder_ / "scene.pbrt", kScene);
+  // Of another version: the same bytes but for its name, and the checksum of that.
+  constexpr size_t kEnd = 24, kChecksum = 16;
+  std::string other = checkpoint;
+  const std::string version = kVersion;
+  other.replace(other.find(version), version.size(), std::string(version.size(), '9'));
+  const uint32_t checksum = ChecksumOf(std::as_bytes(std::span(other).first(other.size() - kEnd)));
+  std::memcpy(other.data() + other.size() - kChecksum, &checksum, sizeof checksum);
+  WriteBytes(folder_ / "out.checkpoint", other);
+  refused("", "the version of lampyr is 99999 there and " + version + " here");
+  WriteBytes(folder_ / "out.checkpoint", checkpoint);
   EXPECT_EQ(Bytes("out.exr"), image);
   EXPECT_EQ(Bytes("out.checkpoint"), checkpoint);
   Do(kRender + "--spp 8");
