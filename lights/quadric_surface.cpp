@@ -143,17 +143,23 @@ QuadricSurface::Arc QuadricSurface::ArcFrom(const PlacedSurface& placed, const P
   if (!(distance > r * 1.000001f) || !(distance < kInfinity)) return arc;
   arc.isThere = true;
   arc.towards = Vector2(p.x, p.y) / distance;
+  arc.distance = distance;
+  arc.along = p.z;
   arc.turns = std::copysign(UpperAngle(std::abs(p.y), p.x), p.y) * (0.5f * kInvPi);
   arc.halfTurns = UpperAngle(std::sqrt((distance - r) * (distance + r)), r) * (0.5f * kInvPi);
   return arc;
 }
 
-// Over the arc the density falls to its ends like a cosine, as the arc's share of P's view does from afar.
+// Over the arc the density falls to its ends like a cosine, as the arc's share of P's view does from afar; along the
+// axis it is even in the angle at P, so that a long cylinder is sampled where it is near.
 PdfSolidAngle QuadricSurface::ArcDensity(Arc arc, SeenPoint seen) const {
   float turns = seen.uv.x - arc.turns;
-  turns = std::abs(turns - std::round(turns)) / arc.halfTurns;  // 1 at the ends
-  if (!(turns < 1)) return PdfSolidAngle(0);
-  const float density = 0.25f * kPi / arc.halfTurns * CosSinTurns(0.25f * turns).x;
+  turns = std::abs(turns - std::round(turns));
+  const float part = turns / arc.halfTurns;  // 1 at the ends
+  if (!(part < 1)) return PdfSolidAngle(0);
+  const LineView line = LineOf(arc, CosSinTurns(turns).x);
+  const float density = 0.25f * kPi / arc.halfTurns * CosSinTurns(0.25f * part).x * (high_ - low_) *
+                        line.Density(glm::mix(low_, high_, seen.uv.y));
   const PdfSolidAngle pdf = ToSolidAngle(seen.evenDensity * density, seen.distanceSquared, seen.outwardCosine);
   return pdf.value < kInfinity ? pdf : PdfSolidAngle(0);
 }
@@ -167,12 +173,12 @@ void QuadricSurface::SampleArc(Arc arc, const PlacedSurface& placed, const Point
   const Vector2 turn = CosSinTurns(turns);
   const Vector2 around(arc.towards.x * turn.x - arc.towards.y * turn.y,
                        arc.towards.x * turn.y + arc.towards.y * turn.x);
-  const Point3 p(quadric_.radius * around.x, quadric_.radius * around.y, glm::mix(low_, high_, u.x));
+  const Point3 p(quadric_.radius * around.x, quadric_.radius * around.y, LineOf(arc, turn.x).Sample(u.x));
   sample.position = placed.toRender.Point(p);
   sample.positionError = placed.toRender.PointError(p, Gamma(8) * glm::abs(p));
   sample.normal = placed.NormalAt(OutwardNormal(p));
   const float phi = arc.turns + turns;
-  sample.uvw = {warp_internal::ClampUnit(phi - std::floor(phi)), u.x, 0};
+  sample.uvw = {warp_internal::ClampUnit(phi - std::floor(phi)), (p.z - low_) / (high_ - low_), 0};
   const Vector3 toLight = sample.position - P;
   sample.distance = glm::length(toLight);
   sample.direction = sample.distance > 0 ? toLight / sample.distance : Vector3(0.0f);

@@ -13,6 +13,7 @@
 
 #include "geometry/mapped_area.h"
 #include "geometry/quadric.h"
+#include "lights/line_view.h"
 #include "lights/placed_surface.h"
 #include "lights/sphere_cone.h"
 
@@ -62,6 +63,7 @@ class QuadricSurface {
     Vector2 towards{1, 0};  // unit, from the axis to P, in the quadric's own space
     float turns = 0;        // of it, and half of the arc, both in turns
     float halfTurns = 0;
+    float distance = 0, along = 0;  // of P from the axis, and its z
   };
   struct View {
     float weight = 0;  // of sampling by it: 1, or 0 when there is none
@@ -101,6 +103,12 @@ class QuadricSurface {
   }
 
  private:
+  // The line of a cylinder at an angle (cosine against `towards`), as P sees it: by angle, evenly.
+  LineView LineOf(const Arc& arc, float cosine) const {
+    const float height = std::sqrt(Sqr(arc.distance - quadric_.radius) +
+                                   2 * arc.distance * quadric_.radius * std::max(1 - cosine, 0.0f));
+    return {height, arc.along, low_, high_};
+  }
   Arc ArcFrom(const PlacedSurface& placed, const Point3& P, bool twoSided) const;
   PdfSolidAngle ArcDensity(Arc arc, SeenPoint seen) const;
   void SampleArc(Arc arc, const PlacedSurface& placed, const Point3& P, const Point2& u, LightSample& sample) const;

@@ -263,7 +263,8 @@ Color BdptIntegrator::Connect(Run& run, size_t lightCount) const {
   ConnectedPath path;
   path.value = (z.diffuse + z.specular) * fz.Sum() * leaving *
                static_cast<float>(
-                   static_cast<double>(std::abs(cosY) * arriving * ArrivalCorrection(y.bsdf, y.toPrevious)) / squared);
+                   static_cast<double>(std::abs(cosY) * arriving * ArrivalCorrection(y.bsdf, y.toPrevious)) / squared) *
+               lighting_.FluxUnit();
   if (path.value.IsBlack()) return path.value;
   path.s = static_cast<int>(lightCount) + 1;
   path.t = static_cast<int>(run.cameraCount) + 1;
@@ -309,6 +310,7 @@ Color BdptIntegrator::Merge(Run& run) const {
   const auto most = static_cast<size_t>(settings_.maxDepth) + 1;
   const double perMerge = 1 / run.merge;
   const auto perDensity = static_cast<float>(1 / std::sqrt(run.merge));
+  const float unit = lighting_.FluxUnit();
   const std::span<const uint32_t> found =
       FindPhotons(*pass.map, vertex.point.position, pass.radius, run.paths.lookup, run.Counts());
   Color sum;
@@ -328,16 +330,16 @@ Color BdptIntegrator::Merge(Run& run) const {
     // In another order: a product that both share would not be rounded as it is where nobody wants layers.
     if (run.sinks.layers) [[unlikely]] {
       const Color carried = (vertex.diffuse + vertex.specular) * perDensity * static_cast<float>(weight);
-      run.sinks.layers->Add(photon.group, carried * value);
+      run.sinks.layers->Add(photon.group, carried * value * unit);
     }
     if (pass.use) [[unlikely]] {
       const Color part = (vertex.diffuse + vertex.specular) * f.Sum();
       pass.use->Add(index, part.Average() * static_cast<float>(weight));
     }
     if (run.sinks.observer) [[unlikely]]
-      ReportMerge(run, photon, value * (vertex.diffuse + vertex.specular) * perDensity, weight);
+      ReportMerge(run, photon, value * (vertex.diffuse + vertex.specular) * perDensity * unit, weight);
   }
-  return (vertex.diffuse + vertex.specular) * sum * perDensity;
+  return (vertex.diffuse + vertex.specular) * sum * perDensity * unit;
 }
 
 Color BdptIntegrator::TraceCamera(Run& run, const Ray& cameraRay) const {

@@ -54,6 +54,7 @@ std::optional<SeenFromLens> SeeVertex(const RenderScene& scene, const PathVertex
   seen.cosTheta = CosineAt(vertex, seen.toCamera);
   seen.value =
       scattered * arriving * (std::abs(seen.cosTheta) * ArrivalCorrection(vertex.bsdf, toLight) * connection->Weight());
+  seen.value *= scene.lighting->FluxUnit();
   return seen;
 }
 

@@ -49,9 +49,9 @@ void LightSubpathTracer::Trace(float time, Sampler& sampler, RenderCounts& count
   if (photon->IsDark()) return;
   ++counts.indirectRays;
   const EmissionSample& emission = photon->emission;
-  const double density = static_cast<double>(emission.pdfEmit.value) *
-                         static_cast<double>(emission.pdfEmitDirection.value) *
-                         static_cast<double>(photon->emissionSelection.value);
+  const double density =
+      static_cast<double>(emission.pdfEmit.value) * static_cast<double>(emission.pdfEmitDirection.value) *
+      static_cast<double>(photon->emissionSelection.value) * static_cast<double>(scene_.lighting->FluxUnit());
   const auto inverse = static_cast<float>(static_cast<double>(emission.emissionCosine) / density);
   Flight flight;
   flight.ray = photon->ray;

@@ -16,8 +16,8 @@ struct PathVertex {
       0;                  // area at the previous vertex per solid angle at this one (solidAngleToArea, a light)
   double pdfForward = 0;  // 1/m², by its own subpath
   PartialWeight weight;
-  // What arrives: flux on light subpaths, importance on the camera's. In two parts at the first vertex of a light
-  // subpath, because a light may show diffuse and specular lobes different radiance.
+  // What arrives: flux on light subpaths, in LightingServices::FluxUnit, importance on the camera's. In two parts at
+  // the first vertex of a light subpath, because a light may show diffuse and specular lobes different radiance.
   Color diffuse, specular;
   Receiver receiver;
   bool isDelta = false;          // only deltas: nothing can be connected to it

@@ -44,7 +44,7 @@ class PackedNormal {
 struct TracedPhoton {
   Point3 position;
   Vector3 toPrevious;
-  Color diffuse, specular;  // flux (W) over the path's density, for either kind of lobe
+  Color diffuse, specular;  // flux (LightingServices::FluxUnit) over the path's density, for either kind of lobe
   PartialWeight weight;
   float previousPerSolidAngle;
   PackedNormal normal;
@@ -100,8 +100,8 @@ class PhotonList {
 
 // A photon in a map, without its position.
 struct Photon {
-  Vector3 toPrevious{0.0f};         // unit
-  Color flux;                       // W over the path's density, for diffuse lobes; for specular ones see PhotonMap
+  Vector3 toPrevious{0.0f};  // unit
+  Color flux;  // LightingServices::FluxUnit over the path's density, for diffuse lobes; for specular ones see PhotonMap
   double connect = 0, earlier = 0;  // PartialWeight, with merging in it
   float previousPerSolidAngle = 0;
   PackedNormal normal;  // of the surface

@@ -15,7 +15,8 @@ namespace lampyr {
 struct PathOrigin {
   uint32_t light = 0;
   Point3 start{0.0f}, landing{0.0f};
-  float flux = 0;         // as it was emitted, over the density of its emission; W, mean of the channels
+  float flux =
+      0;  // as it was emitted, over the density of its emission; in LightingServices::FluxUnit, mean of the channels
   float pdfUnguided = 0;  // EmittedPhoton::pdfUnguided
   float gain = 1;         // how much more often it is sent than without a guide
 };

@@ -22,6 +22,7 @@ struct PathWalk::State {
   int depth = 0;           // scattering events so far
   bool fromCamera = true;  // nothing has scattered yet
   bool fromDelta = false;  // the last event was a delta: light sampling could not have found this
+  bool isLook = false;     // the ray is for lights alone: other light from there is left to the gatherer
 
   Color Throughput() const { return throughputDiffuse + throughputSpecular; }
 };
@@ -94,9 +95,7 @@ Color PathWalk::SampleLight(const State& path, const SurfacePoint& point, const 
   if (scattered.IsBlack()) return nothingArrives();
 
   const PdfSolidAngle pdf = direct.selection * sample.pdfDirect;
-  // Directions that are left to the gatherer are never followed.
-  const bool isOnly = direct.isDelta || f.pdfForward.value <= gatherBelow_;
-  const float weight = isOnly ? 1.0f : PowerHeuristic(pdf, f.pdfForward);
+  const float weight = direct.isDelta ? 1.0f : PowerHeuristic(pdf, f.pdfForward);
   const float cosTheta = AbsDot(sample.direction, bsdf.ShadingFrame().z);
   const Color contribution = path.Throughput() * scattered * (cosTheta * weight / pdf.value);
   if (contribution.IsBlack()) return Color(0.0f);
@@ -114,7 +113,9 @@ bool PathWalk::Scatter(State& path, const SurfacePoint& point, const Bsdf& bsdf,
   sampler.SetDimension(dimensions_.Of(path.depth, dimensions::kLobe));
   const float uLobe = sampler.Get1D();
   const auto sample = bsdf.Sample(wo, uLobe, sampler.Get2D(), TransportMode::Radiance);
-  if (!sample || (!sample->isDelta && sample->pdfForward.value <= gatherBelow_)) return false;
+  if (!sample) return false;
+  path.isLook = !sample->isDelta && sample->pdfForward.value <= gatherBelow_;
+  if (path.isLook && !looksForLights_) return false;
   const Color throughput = path.Throughput();
   path.throughputDiffuse = throughput * sample->weightDiffuse;
   path.throughputSpecular = throughput * sample->weightSpecular;
@@ -153,6 +154,7 @@ Color PathWalk::Radiance(const Ray& cameraRay, Sampler& sampler, RenderCounts& c
     const SurfacePoint point = geometry_.GetSurfacePoint(path.ray, hit);
     const GeometryAttributes& attributes = geometry_.Attributes(hit.primitive);
     if (attributes.light >= 0) radiance += EmissionAt(path, hit, point);
+    if (path.isLook) return radiance;
 
     const Material* material = attributes.material >= 0 ? materials_[attributes.material].get() : nullptr;
     if (!material) return radiance;  // a black surface, such as an analytic light

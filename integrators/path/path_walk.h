@@ -21,7 +21,8 @@ class PhotonGatherer {
 struct PathWalkSettings {
   int maxDepth = 5;  // scattering events
   SubpathDimensions dimensions;
-  float gatherBelow = 0;      // 1/sr: directions of no higher density end the path; 0: all are followed
+  // 1/sr: directions of no higher density end the path, but for what shines on it by itself; 0: all are followed
+  float gatherBelow = 0;
   bool samplesLights = true;  // next-event estimation; without it, lights are found by followed directions alone
   ShadowRays shadowRays;
 };
@@ -36,6 +37,7 @@ class PathWalk {
         dimensions_(settings.dimensions),
         gatherBelow_(settings.gatherBelow),
         samplesLights_(settings.samplesLights),
+        looksForLights_(settings.samplesLights && lighting_.HasLightThatCanBeHit()),
         shadowRays_(settings.shadowRays) {}
 
   // One sample of the radiance that arrives along `ray`. `gatherer` may be null where gatherBelow is 0, and adds to
@@ -65,6 +67,7 @@ class PathWalk {
   SubpathDimensions dimensions_;
   float gatherBelow_;
   bool samplesLights_;
+  bool looksForLights_;  // also in directions that are not followed
   ShadowRays shadowRays_;
 };
 

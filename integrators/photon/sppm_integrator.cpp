@@ -102,7 +102,7 @@ struct SppmIntegrator::Gathered final : PhotonGatherer {
         pass.use->Add(index, (throughput * f.Sum()).Average() * Importance(length));
     }
     if (sum.IsBlack()) return sum;
-    return throughput * sum * PerArea(radius);
+    return throughput * sum * PerArea(radius) * own.scene_.lighting->FluxUnit();
   }
 
   // 1/m², of a photon within the radius.
@@ -114,7 +114,8 @@ struct SppmIntegrator::Gathered final : PhotonGatherer {
   [[gnu::noinline]] void AddToLayers(const Photon& photon, const Bsdf& bsdf, const BsdfEvaluation& f,
                                      const Color& factor) const {
     const Color scattered = f.diffuse * photon.flux + f.specular * pass.map->SpecularFlux(photon);
-    layers->Add(photon.group, factor * scattered * ArrivalCorrection(bsdf, photon.toPrevious));
+    layers->Add(photon.group,
+                factor * scattered * ArrivalCorrection(bsdf, photon.toPrevious) * own.scene_.lighting->FluxUnit());
   }
 
   const SppmIntegrator& own;

@@ -47,6 +47,17 @@ std::optional<EmissionSample> EmissionOfPoint(const LightSample& seen) {
   return sample;
 }
 
+// Beyond the surface that the photon leaves. A point leaves behind it what it touches but for rounding, as shadow rays
+// to it do: a point in the plane of a floor does not light it.
+Point3 OriginOf(const EmissionSample& emission, LightKind kind) {
+  if (IsAtInfinity(kind)) return emission.position;
+  if (kind == LightKind::Area)
+    return OffsetRayOrigin(emission.position, emission.positionError, emission.normal, emission.direction);
+  constexpr float kLeast = 1e-30f;  // a point at the origin is exact
+  return OffsetRayOrigin(emission.position, emission.positionError + Vector3(kLeast), emission.direction,
+                         emission.direction);
+}
+
 }  // namespace
 
 // The light's own place or direction, and the other of the two towards a target.
@@ -129,9 +140,7 @@ std::optional<EmittedPhoton> LightingServices::GenerateEmission(float uSelect, c
   Aim(photon.light, emission.position, emission.direction, emission);
   const bool fromSurface = front.kind == LightKind::Area;
   photon.fromSurface = fromSurface && front.canBeHit;
-  photon.ray.origin =
-      fromSurface ? OffsetRayOrigin(emission.position, emission.positionError, emission.normal, emission.direction)
-                  : emission.position;
+  photon.ray.origin = OriginOf(emission, front.kind);
   photon.ray.direction = emission.direction;
   photon.ray.time = time;
   RayHit hit;

@@ -1,5 +1,9 @@
 #include "lights/services/lighting_services.h"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include "lights/selection/linked_selector.h"
 
 namespace lampyr {
@@ -24,6 +28,20 @@ LightHit EscapedHit(const Point3& origin, const Vector3& direction) {
   return hit;
 }
 
+// Estimates that left float are its ends.
+float FluxUnitOf(const std::vector<PlacedLight>& lights, const BoundingSphere& sphere) {
+  double power = 0;
+  for (const PlacedLight& placed : lights) {
+    LightContext context;
+    context.transform = &placed.transform;
+    context.scene = sphere;
+    const double estimate = static_cast<double>(placed.light->GetPowerEstimate(context).Average());
+    if (estimate > 0) power += std::min(estimate, static_cast<double>(std::numeric_limits<float>::max()));
+  }
+  if (!(power > 0)) return 1;
+  return static_cast<float>(std::exp2(std::clamp(std::round(std::log2(power)), -120.0, 120.0)));
+}
+
 }  // namespace
 
 LightingServices::LightingServices(const GeometryScene& geometry, std::vector<PlacedLight> lights,
@@ -32,6 +50,7 @@ LightingServices::LightingServices(const GeometryScene& geometry, std::vector<Pl
       lights_(std::move(lights)),
       groups_(lights_),
       sphere_(geometry.GetBoundingSphere()),
+      fluxUnit_(FluxUnitOf(lights_, sphere_)),
       linking_(std::move(linking)),
       isLinked_(linking_.Excludes() || linking_.HasFilters()) {
   fronts_ = LargeArray<Front>(lights_.size());
@@ -44,6 +63,13 @@ LightingServices::LightingServices(const GeometryScene& geometry, std::vector<Pl
   selector_ = linking_.Excludes() ? MakeLinkedSelector(selection, lights_, sphere_, linking_.Sets())
                                   : MakeLightSelector(selection, lights_, sphere_);
   emissionSelector_ = MakeEmissionSelector(lights_, sphere_);
+}
+
+bool LightingServices::HasLightThatCanBeHit() const {
+  for (uint32_t light = 0; light < fronts_.Size(); ++light) {
+    if (CanBeHit(light)) return true;
+  }
+  return false;
 }
 
 LightContext LightingServices::Context(uint32_t light, float time, bool bidirectional,

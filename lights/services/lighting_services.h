@@ -138,6 +138,8 @@ class LightingServices {
     return fronts_[light].kind == LightKind::Infinite ||
            (fronts_[light].kind == LightKind::Area && fronts_[light].canBeHit);
   }
+  // Whether there is one that can: a direction that a surface samples may find light.
+  bool HasLightThatCanBeHit() const;
 
   // The groups that lights are in, and that of the light at infinity `i` and of the area light at a surface point.
   const LightGroups& Groups() const { return groups_; }
@@ -148,6 +150,9 @@ class LightingServices {
   }
 
   bool HasLights() const { return !lights_.empty(); }
+  // W: what light paths carry is in parts of this, a power of two near the power of all lights. A lamp of 1e30 that is
+  // a kilometre wide, or of 1e-30 and a micrometre, has a power that no float holds; what arrives of it fits again.
+  float FluxUnit() const { return fluxUnit_; }
   const std::vector<PlacedLight>& Lights() const { return lights_; }
   const LightLinking& Linking() const { return linking_; }
   const BoundingSphere& SceneSphere() const { return sphere_; }
@@ -202,6 +207,7 @@ class LightingServices {
   std::vector<uint32_t> infinite_;
   LightGroups groups_;
   BoundingSphere sphere_;
+  float fluxUnit_ = 1;
   LightLinking linking_;
   bool isLinked_ = false;  // some light has a filter, or does not shine on everything
   std::unique_ptr<LightSelector> selector_, emissionSelector_;

@@ -200,6 +200,11 @@ Transform Builder::ChooseRenderSpace() const {
     const Transform end = instance.motion ? instance.motion->At(1) : instance.toWorld;
     for (const ReadEntry& entry : objects_[instance.object]) add(entry, instance.toWorld, end);
   }
+  // Lights without any shape: they and the camera say where the scene is.
+  if (bounds.IsEmpty() && !description_.lights.empty()) {
+    bounds.Add(description_.cameraToWorld.start.Point(Point3d(0.0)));
+    for (const LightDescription& light : description_.lights) bounds.Add(light.placement.start.Point(Point3d(0.0)));
+  }
   if (bounds.IsEmpty()) return Transform();
   constexpr double farInRadii = 8;
   const Point3d center = bounds.Center();
