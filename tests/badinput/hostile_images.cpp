@@ -109,6 +109,30 @@ TEST(HostileImages, HeadersThatAnnounceMoreThanTheFileHoldsTakeNoMemory) {
   }
 }
 
+// A header of the attributes given: names with types, sizes and what is there of the values.
+std::string Exr(const std::string& attributes, bool severalParts) {
+  return "\x76\x2f\x31\x01" + Little(severalParts ? 0x1002 : 2, 4) + attributes;
+}
+
+std::string Attribute(const std::string& name, const std::string& type, uint32_t size, const std::string& value) {
+  return name + '\0' + type + '\0' + Little(size, 4) + value;
+}
+
+TEST(HostileImages, AttributesLongerThanTheFileTakeNoMemory) {
+  const TemporaryFolder folder;
+  const std::string fine = Attribute("comments", "string", 5, "hello");
+  for (const bool severalParts : {false, true}) {
+    for (const uint32_t size : {0x7fffffffu, 0xffffffffu, 0x40000000u, 100u}) {
+      const std::string next = severalParts ? fine + '\0' : "";  // also in a header that is not the first
+      folder.Write("a.exr", Exr(next + fine + Attribute("owner", "string", size, "me"), severalParts));
+      const PeakMemory peak;
+      EXPECT_THAT(ErrorOf([&] { ReadImage(folder / "a.exr"); }),
+                  HasSubstr("its attribute \"owner\" announces " + std::to_string(size) + " bytes"));
+      EXPECT_LT(peak.GrownBy(), 64);
+    }
+  }
+}
+
 TEST(HostileImages, PixelsThatCompressToNothingAreReadToALimit) {
   const TemporaryFolder folder;
   folder.Write("plain.png", Png(2000, 2000, 2001 * 2000));
