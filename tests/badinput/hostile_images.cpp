@@ -54,6 +54,10 @@ std::string Tga(uint32_t width, uint32_t height) {
   return std::string("\0\0\xa\0\0\0\0\0\0\0\0\0", 12) + Little(width, 2) + Little(height, 2) + "\x20\x08" + "\xff....";
 }
 
+std::string Webp(const std::string& chunk, const std::string& data) {
+  return "RIFF" + Little(12 + data.size(), 4) + "WEBP" + chunk + Little(data.size(), 4) + data;
+}
+
 // Progressive: its reader keeps all coefficients of the picture.
 std::string Jpeg(uint32_t width, uint32_t height) {
   return std::string("\xff\xd8\xff\xc2\0\x0b\x08", 7) + Big(height, 2) + Big(width, 2) + std::string("\1\1\x11\0", 4) +
@@ -90,6 +94,10 @@ TEST(HostileImages, HeadersThatAnnounceMoreThanTheFileHoldsTakeNoMemory) {
       {"a.gif", Gif(65535, 65535)},
       {"a.tga", Tga(65535, 65535)},
       {"a.jpg", Jpeg(65500, 65500)},
+      {"a.webp", Webp("VP8L", "\x2f" + Little(0x0fffffff, 4) + std::string(27, '\0'))},
+      {"b.webp", Webp("VP8X", std::string(4, '\0') + Little(16382, 3) + Little(16382, 3) + std::string(10, '\0'))},
+      {"c.webp", Webp("VP8 ", std::string("\x10\0\0\x9d\x01\x2a", 6) + Little(16383, 2) + Little(16383, 2) +
+                                  std::string(20, '\0'))},
       {"a.tif", Tiff(1000000, 1000000)},
       {"a.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1000000 +X 1000000\n...."},
       {"a.pfm", "PF\n1000000 1000000\n-1.0\n...."},
