@@ -134,6 +134,7 @@ void WriteOpenExr(Imf::OStream& stream, const Image& image, ExrPrecision precisi
 }  // namespace
 
 Image ReadExr(const std::filesystem::path& path) {
+  CheckExrHeader(path);
   try {
     return ReadOpenExr(path);
   } catch (const Error&) {

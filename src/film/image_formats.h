@@ -27,6 +27,9 @@ struct JpegSize {
 // Of the frame header. Throws Error when the file ends before its end marker or has no frame.
 JpegSize ReadJpegSize(const std::filesystem::path& path);
 
+// Throws Error when an attribute of an OpenEXR file's header is longer than the file.
+void CheckExrHeader(const std::filesystem::path& path);
+
 // Throws Error when the size is absurd: more than 2^30 values, or more than 2^27 and far more than the file could hold
 // compressed (a corrupt header must not claim the machine's memory). `bytesPerPixel` in the file, uncompressed.
 void CheckImageSize(const std::filesystem::path& path, int64_t width, int64_t height, int64_t channels,

@@ -66,6 +66,23 @@ void ReadBmpSize(std::string_view head, ImageKind& kind) {
   kind.height = absolute(NumberAt(head, 18 + bytes, bytes));  // negative: from the top
 }
 
+// Of the first chunk: lossy, lossless, or with the size of the whole canvas.
+void ReadWebpSize(std::string_view head, ImageKind& kind) {
+  constexpr size_t chunk = 12;
+  const std::string_view name = head.substr(chunk, 4);
+  if (name == "VP8 ") {
+    kind.width = NumberAt(head, 26, 2) & 0x3fff;
+    kind.height = NumberAt(head, 28, 2) & 0x3fff;
+  } else if (name == "VP8L") {
+    const int64_t sizes = NumberAt(head, 21, 4);
+    kind.width = (sizes & 0x3fff) + 1;
+    kind.height = ((sizes >> 14) & 0x3fff) + 1;
+  } else if (name == "VP8X") {
+    kind.width = NumberAt(head, 24, 3) + 1;
+    kind.height = NumberAt(head, 27, 3) + 1;
+  }
+}
+
 }  // namespace
 
 ImageKind FindImageKind(const std::filesystem::path& path) {
@@ -80,6 +97,8 @@ ImageKind FindImageKind(const std::filesystem::path& path) {
     kind.height = NumberAt(head, 8, 2);
   } else if (format == "bmp") {
     ReadBmpSize(head, kind);
+  } else if (format == "webp") {
+    ReadWebpSize(head, kind);
   } else if (format == "jpeg") {
     const JpegSize size = ReadJpegSize(path);
     kind.width = size.width;

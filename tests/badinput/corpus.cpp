@@ -10,6 +10,13 @@
 #include "support/temporary_folder.h"
 
 namespace lampyr {
+
+namespace fuzz {
+void PrintTo(const Target& target, std::ostream* out) {
+  *out << target.name;
+}
+}  // namespace fuzz
+
 namespace {
 
 class Corpus : public testing::TestWithParam<fuzz::Target> {};

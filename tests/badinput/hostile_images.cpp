@@ -54,6 +54,10 @@ std::string Tga(uint32_t width, uint32_t height) {
   return std::string("\0\0\xa\0\0\0\0\0\0\0\0\0", 12) + Little(width, 2) + Little(height, 2) + "\x20\x08" + "\xff....";
 }
 
+std::string Webp(const std::string& chunk, const std::string& data) {
+  return "RIFF" + Little(12 + data.size(), 4) + "WEBP" + chunk + Little(data.size(), 4) + data;
+}
+
 // Progressive: its reader keeps all coefficients of the picture.
 std::string Jpeg(uint32_t width, uint32_t height) {
   return std::string("\xff\xd8\xff\xc2\0\x0b\x08", 7) + Big(height, 2) + Big(width, 2) + std::string("\1\1\x11\0", 4) +
@@ -90,6 +94,10 @@ TEST(HostileImages, HeadersThatAnnounceMoreThanTheFileHoldsTakeNoMemory) {
       {"a.gif", Gif(65535, 65535)},
       {"a.tga", Tga(65535, 65535)},
       {"a.jpg", Jpeg(65500, 65500)},
+      {"a.webp", Webp("VP8L", "\x2f" + Little(0x0fffffff, 4) + std::string(27, '\0'))},
+      {"b.webp", Webp("VP8X", std::string(4, '\0') + Little(16382, 3) + Little(16382, 3) + std::string(10, '\0'))},
+      {"c.webp", Webp("VP8 ", std::string("\x10\0\0\x9d\x01\x2a", 6) + Little(16383, 2) + Little(16383, 2) +
+                                  std::string(20, '\0'))},
       {"a.tif", Tiff(1000000, 1000000)},
       {"a.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1000000 +X 1000000\n...."},
       {"a.pfm", "PF\n1000000 1000000\n-1.0\n...."},
@@ -106,6 +114,30 @@ TEST(HostileImages, HeadersThatAnnounceMoreThanTheFileHoldsTakeNoMemory) {
     EXPECT_THAT(error, HasSubstr(name));
     EXPECT_THAT(error, AnyOf(HasSubstr("too large"), HasSubstr("bytes can hold")));
     EXPECT_LT(peak.GrownBy(), 64) << name;
+  }
+}
+
+// A header of the attributes given: names with types, sizes and what is there of the values.
+std::string Exr(const std::string& attributes, bool severalParts) {
+  return "\x76\x2f\x31\x01" + Little(severalParts ? 0x1002 : 2, 4) + attributes;
+}
+
+std::string Attribute(const std::string& name, const std::string& type, uint32_t size, const std::string& value) {
+  return name + '\0' + type + '\0' + Little(size, 4) + value;
+}
+
+TEST(HostileImages, AttributesLongerThanTheFileTakeNoMemory) {
+  const TemporaryFolder folder;
+  const std::string fine = Attribute("comments", "string", 5, "hello");
+  for (const bool severalParts : {false, true}) {
+    for (const uint32_t size : {0x7fffffffu, 0xffffffffu, 0x40000000u, 100u}) {
+      const std::string next = severalParts ? fine + '\0' : "";  // also in a header that is not the first
+      folder.Write("a.exr", Exr(next + fine + Attribute("owner", "string", size, "me"), severalParts));
+      const PeakMemory peak;
+      EXPECT_THAT(ErrorOf([&] { ReadImage(folder / "a.exr"); }),
+                  HasSubstr("its attribute \"owner\" announces " + std::to_string(size) + " bytes"));
+      EXPECT_LT(peak.GrownBy(), 64);
+    }
   }
 }
 
