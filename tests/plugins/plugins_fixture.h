@@ -2,12 +2,12 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
-#include <cstdio>
 #include <filesystem>
 #include <string>
+#include <vector>
 
+#include "support/lampyr_process.h"
 #include "support/temporary_folder.h"
 
 namespace lampyr::test {
@@ -19,24 +19,11 @@ inline std::filesystem::path FaultyPlugin(const std::string& name) {
   return LAMPYR_PLUGINS "/faulty/" + name + ".so";
 }
 
-struct Outcome {
-  int exitCode = -1;   // 128 and the signal where one has ended it, as the shell says it
-  std::string output;  // standard output and error together
-};
-
 class Plugins : public testing::Test {
  protected:
   // Runs lampyr in the test's folder, with LAMPYR_PLUGIN_PATH set to `path`.
   Outcome Run(const std::string& arguments, const std::string& path = "") {
-    Outcome outcome;
-    const std::string command = "cd '" + folder_.Path().string() + "' && LAMPYR_PLUGIN_PATH='" + path +
-                                "' '" LAMPYR_BINARY "' " + arguments + " 2>&1";
-    FILE* pipe = popen(command.c_str(), "r");
-    char buffer[4096];
-    for (size_t n; (n = fread(buffer, 1, sizeof buffer, pipe)) > 0;) outcome.output.append(buffer, n);
-    const int status = pclose(pipe);
-    outcome.exitCode = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-    return outcome;
+    return RunLampyr(folder_.Path(), arguments, "LAMPYR_PLUGIN_PATH='" + path + "'");
   }
 
   // That the command ends with `exitCode`, and says each of `texts`.
