@@ -25,6 +25,41 @@ void EvaluateCustom(const CustomSurface& surface, const Ray& ray, float t, Surfa
 
 }  // namespace
 
+namespace {
+
+// Of a triangle or patch, in double: at the hit's coordinates as they are rounded, on the surface nevertheless.
+Point3d PrecisePoint(const PrimitiveRecord& record, const RayHit& hit) {
+  const double u = static_cast<double>(hit.u), v = static_cast<double>(hit.v);
+  if (const auto* triangles = std::get_if<0>(&record.shape)) {
+    const auto& t = (*triangles)->triangles[hit.patch];
+    const auto& x = (*triangles)->positions;
+    return (1 - u - v) * Point3d(x[t[0]]) + u * Point3d(x[t[1]]) + v * Point3d(x[t[2]]);
+  }
+  const auto& patches = **std::get_if<1>(&record.shape);
+  const auto& q = patches.patches[hit.patch];
+  const auto& x = patches.positions;
+  return (1 - v) * ((1 - u) * Point3d(x[q[0]]) + u * Point3d(x[q[1]])) +
+         v * ((1 - u) * Point3d(x[q[2]]) + u * Point3d(x[q[3]]));
+}
+
+// Coordinates on a plain of a million metres tell places apart by a tenth of one, while the ray that found one knows it
+// to a hair: where the one is coarse beside the ray's length, the point is where the ray meets the tangent plane. The
+// bound of the error stays what it is: rays that start here must clear what the intersection of others takes for the
+// surface.
+void MoveOntoRay(const PrimitiveRecord& record, const Ray& ray, const RayHit& hit, SurfacePoint& point) {
+  const Point3d onSurface = PrecisePoint(record, hit), origin(ray.origin);
+  const Vector3d direction(ray.direction), normal(point.Ng);
+  const double slope = glm::dot(direction, normal);
+  constexpr double kGrazing = 1e-3;
+  if (!(std::abs(slope) > kGrazing * glm::length(direction))) return;
+  const Point3 moved(origin + direction * (glm::dot(onSurface - origin, normal) / slope));
+  const Vector3 way = glm::abs(moved - point.position);
+  if (way.x <= 4 * point.positionError.x && way.y <= 4 * point.positionError.y && way.z <= 4 * point.positionError.z)
+    point.position = moved;
+}
+
+}  // namespace
+
 SurfacePoint EvaluatePrimitive(const PrimitiveRecord& record, const Ray& ray, const RayHit& hit) {
   SurfacePoint point;
   const Point2 uv(hit.u, hit.v);
@@ -49,7 +84,11 @@ SurfacePoint EvaluatePrimitive(const PrimitiveRecord& record, const Ray& ray, co
   point.isSheet = record.sheet != nullptr;
   // A surface in a coordinate plane has no error across it, and a ray that starts on it exactly would find it again: a
   // floor of a millionth of the largest component.
-  point.positionError += Vector3(1e-6f * MaxComponent(point.positionError));
+  const float coarse = MaxComponent(point.positionError);
+  point.positionError += Vector3(1e-6f * coarse);
+  constexpr float kCoarse = 1e-5f;
+  if (record.shape.index() < 2 && coarse > kCoarse * hit.t * MaxAbsComponent(direction)) [[unlikely]]
+    MoveOntoRay(record, ray, hit, point);
   return point;
 }
 
