@@ -575,7 +575,12 @@ BuiltScene Builder::Build() {
   scene.lighting->TakeSamples(built_.settings.lightSamples);
   if (built_.settings.integrator == "auto") built_.settings.integrator = PlanFor(scene, built_.settings).integrator;
   if (!scene.lighting->HasLights()) diagnostics_.Warn("the scene has no light: the image will be black");
-  WarnOfCoarsePlaces(built_, diagnostics_);
+  // A surface that a plugin brings may throw anything; it is heard of when it is rendered.
+  try {
+    WarnOfCoarsePlaces(built_, diagnostics_);
+  } catch (const Error&) {
+    throw;  // a warning, where they are errors
+  } catch (...) {}
   return std::move(built_);
 }
 

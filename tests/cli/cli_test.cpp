@@ -548,11 +548,12 @@ TEST_F(Cli, RendersWhenNobodyReadsTheMessages) {
   EXPECT_TRUE(fs::exists(folder_ / "unread.exr"));
 }
 
-TEST_F(Cli, AFailedWriteExitsWithOneAndLeavesNothing) {
+TEST_F(Cli, ANameThatCannotBeWrittenIsRefusedAndLeavesNothing) {
   // The image's name is as long as names may be, that of the file written aside is longer.
   const std::string name = "busy" + std::string(247, 'x') + ".exr";
   const Outcome outcome = Run("render scene.pbrt -o " + name + " --quiet");
-  EXPECT_EQ(outcome.exitCode, 1) << outcome.output;
+  EXPECT_EQ(outcome.exitCode, 2) << outcome.output;
+  EXPECT_NE(outcome.output.find("File name too long"), std::string::npos) << outcome.output;
   for (const auto& entry : fs::directory_iterator(folder_)) {
     EXPECT_EQ(entry.path().filename().string().find("busy"), std::string::npos) << "a part of an image was left behind";
   }

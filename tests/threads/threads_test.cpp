@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "base/parallel.h"
 #include "support/render_scene.h"
 
 namespace lampyr::test {
@@ -26,11 +27,13 @@ std::vector<std::string> SceneNames() {
 class Threads : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Of, Threads, testing::ValuesIn(SceneNames()), [](const auto& info) {
   std::string name = info.param;
-  std::replace_if(name.begin(), name.end(), [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); }, '_');
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); }, '_');
   return name;
 });
 
 TEST_P(Threads, OneToFourGiveTheSameBytes) {
+  FlushDenormalsToZero();  // as the program does, on all of its threads
   Diagnostics diagnostics(Diagnostics::Mode::Collect);
   const SceneDescription description =
       ReadScene(fs::path(LAMPYR_SOURCE_DIR) / "scenes" / (GetParam() + ".pbrt"), diagnostics);
