@@ -63,6 +63,11 @@ std::string Percent(double fraction) {
   return text;
 }
 
+// For another process: it must be told which render it is of.
+bool KeepsState(const RenderOptions& options) {
+  return options.shard || options.resume || options.checkpointSeconds;
+}
+
 // Of the picture that all samples of a part make, but for their number.
 PartHeader MakeHeader(const RenderOptions& options, const LoadedScene& loaded, const Shard& shard) {
   const RenderSettings& settings = loaded.built.settings;
@@ -171,7 +176,7 @@ void CheckOptions(const RenderOptions& options, const RenderSettings& settings,
   if (!options.strategyImages) return;
   if (settings.integrator != "bdpt")
     throw UsageError("--strategy-images: only bdpt has strategies; the integrator is " + settings.integrator);
-  if (options.resume || options.checkpointSeconds || options.shard)
+  if (KeepsState(options))
     throw UsageError("--strategy-images goes without --checkpoint, --resume and --shard: they do not keep techniques");
   MakeFolder(*options.strategyImages, "--strategy-images");
 }
@@ -249,8 +254,8 @@ int RenderLoaded(const RenderOptions& options, const LoadedScene& loaded) {
   const Progress clock(true);
   if (techniques) WriteTechniques(options, techniques->Develop(film));
   WriteImageOrKeepIt(path, options, header, film, report.outcome);
-  if (checkpoints) checkpoints->Finish(report.outcome);
   if (options.png) WritePngBeside(path, film.Develop(), options.exposure, options.clipPng);
+  if (checkpoints) checkpoints->Finish(report.outcome);
   report.writeSeconds = clock.Seconds();
   if (options.stats) WriteText(*options.stats, ToJson(report));
   if (!options.quiet) PrintSummary(report, path);
@@ -262,7 +267,7 @@ int RenderLoaded(const RenderOptions& options, const LoadedScene& loaded) {
 int RunRender(const RenderOptions& options) {
   OutliveSurroundings();
   const LoadedScene loaded =
-      LoadScene(options.scene, options.plugins, options.overrides, options.strict, options.robust);
+      LoadScene(options.scene, options.plugins, options.overrides, options.strict, options.robust, KeepsState(options));
   int exitCode = kExitFailed;
   RunForeignCode(loaded.types, [&] { exitCode = RenderLoaded(options, loaded); });
   return exitCode;

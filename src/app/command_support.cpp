@@ -80,7 +80,7 @@ void WriteText(const std::filesystem::path& path, const std::string& text) {
 }
 
 LoadedScene LoadScene(const std::filesystem::path& scene, const std::vector<std::string>& plugins,
-                      const RenderOverrides& overrides, bool strict, bool robust) {
+                      const RenderOverrides& overrides, bool strict, bool robust, bool namesFiles) {
   Diagnostics diagnostics(strict ? Diagnostics::Mode::Strict : Diagnostics::Mode::Print);
   try {
     const Progress clock(true);
@@ -89,8 +89,10 @@ LoadedScene LoadScene(const std::filesystem::path& scene, const std::vector<std:
     loaded.parseSeconds = clock.Seconds();
     loaded.hash = description.contentHash;
     loaded.types = LoadTypes(plugins, &description);
-    loaded.files = ReferencedFiles(description);
-    for (const Plugin& plugin : loaded.types.Plugins()) loaded.files.push_back(plugin.file.string());
+    if (namesFiles) {
+      loaded.files = ReferencedFiles(description);
+      for (const Plugin& plugin : loaded.types.Plugins()) loaded.files.push_back(plugin.file.string());
+    }
     RunForeignCode(loaded.types,
                    [&] { loaded.built = BuildScene(description, overrides, robust, diagnostics, loaded.types); });
     loaded.buildSeconds = clock.Seconds() - loaded.parseSeconds;

@@ -31,12 +31,12 @@ struct LoadedScene {
   TypeRegistry types;
   BuiltScene built;
   std::string hash;                // of its text
-  std::vector<std::string> files;  // that it names, and those of plugins
+  std::vector<std::string> files;  // that it names, and those of plugins, if they are asked for
   double parseSeconds = 0, buildSeconds = 0;
 };
 // Reads and builds, with the plugins that are asked for and those that the scene names. All that goes wrong here is the
 // scene's fault, or that of a plugin: a UsageError.
 LoadedScene LoadScene(const std::filesystem::path& scene, const std::vector<std::string>& plugins,
-                      const RenderOverrides& overrides, bool strict, bool robust);
+                      const RenderOverrides& overrides, bool strict, bool robust, bool namesFiles = false);
 
 }  // namespace lampyr

@@ -1,10 +1,10 @@
 #include "app/scene_builder.h"
 
 #include <algorithm>
-#include <sstream>
 #include <string_view>
 #include <unordered_map>
 
+#include "app/coarse_places.h"
 #include "app/material_table.h"
 #include "app/plan.h"
 #include "app/shape_builder.h"
@@ -522,27 +522,6 @@ void Builder::AddLights() {
   }
 }
 
-// Places on a surface are known to a part of its size: a plain of a million metres is rounded to decimetres. Looked at
-// in the middle of the picture; what is large and far away, such as a sky of triangles, is none of it.
-void WarnOfCoarsePlaces(const BuiltScene& built, Diagnostics& diagnostics) {
-  const RenderSettings& settings = built.settings;
-  const Point2 middle(0.5f * static_cast<float>(settings.width), 0.5f * static_cast<float>(settings.height));
-  const Ray ray = built.scene.camera->GenerateRay(middle, Point2(0.5f), 0).ray;
-  const Ray beside = built.scene.camera->GenerateRay(middle + Point2(1, 0), Point2(0.5f), 0).ray;
-  RayHit hit;
-  Color passed;
-  if (!built.scene.geometry->Intersect(ray, visibility::kCamera, hit, passed)) return;
-  const float error = MaxComponent(built.scene.geometry->GetSurfacePoint(ray, hit).positionError);
-  const float pixel = glm::distance(ray.origin + hit.t * ray.direction, beside.origin + hit.t * beside.direction);
-  constexpr float kCoarse = 0.1f;
-  if (!(error > kCoarse * hit.t && error > pixel)) return;
-  std::ostringstream text;
-  text << "the surface in the middle of the picture is so large that places on it are known to " << error
-       << " units only, and the camera is " << hit.t
-       << " away: what is smaller is lost there. Smaller surfaces, where the camera is, would be exact";
-  diagnostics.Warn(text.str());
-}
-
 BuiltScene Builder::Build() {
   times_ = ReadMotionTimes(description_);
   entries_ = ReadShapes(description_.shapes);
@@ -575,12 +554,7 @@ BuiltScene Builder::Build() {
   scene.lighting->TakeSamples(built_.settings.lightSamples);
   if (built_.settings.integrator == "auto") built_.settings.integrator = PlanFor(scene, built_.settings).integrator;
   if (!scene.lighting->HasLights()) diagnostics_.Warn("the scene has no light: the image will be black");
-  // A surface that a plugin brings may throw anything; it is heard of when it is rendered.
-  try {
-    WarnOfCoarsePlaces(built_, diagnostics_);
-  } catch (const Error&) {
-    throw;  // a warning, where they are errors
-  } catch (...) {}
+  WarnOfCoarsePlaces(scene, built_.settings, diagnostics_);
   return std::move(built_);
 }
 

@@ -23,10 +23,6 @@ void EvaluateCustom(const CustomSurface& surface, const Ray& ray, float t, Surfa
   point.Ng = point.Ns = -ray.direction;
 }
 
-}  // namespace
-
-namespace {
-
 // Of a triangle or patch, in double: at the hit's coordinates as they are rounded, on the surface nevertheless.
 Point3d PrecisePoint(const PrimitiveRecord& record, const RayHit& hit) {
   const double u = static_cast<double>(hit.u), v = static_cast<double>(hit.v);
