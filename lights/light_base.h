@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lights/light.h"
+#include "lights/light_memory.h"
 #include "lights/light_type.h"
 
 namespace lampyr {
@@ -35,6 +36,9 @@ LightTint ReadLightTint(const ParameterList& parameters);
 class LightBase : public Light {
  public:
   LightBase(LightTypeFunction type, const ParameterList& parameters);
+
+  static void* operator new(size_t bytes) { return TakeLightMemory(bytes); }
+  static void operator delete(void* light, size_t bytes) noexcept { ReturnLightMemory(light, bytes); }
 
   const LightSettings& Settings() const final { return made_->settings; }
   std::unique_ptr<Light> Edit(const ParameterList& changes, const LightBuildContext& build) const final;

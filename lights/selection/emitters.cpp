@@ -84,20 +84,19 @@ Emitters CollectEmitters(std::span<const PlacedLight> lights, const BoundingSphe
   uint32_t count = 0;
   for (uint32_t i = 0; i < lights.size(); ++i) {
     emitters.first.push_back(count);
-    if (IsAtInfinity(lights[i].light->Kind())) {
-      emitters.far.push_back(i);
-      continue;
-    }
+    if (IsAtInfinity(lights[i].light->Kind())) emitters.far.push_back(i);
     const int patches = lights[i].light->PatchCount();
     emitters.hasPatches |= patches > 1;
     count += static_cast<uint32_t>(patches);
   }
   emitters.first.push_back(count);
-  emitters.patches = LargeArray<Emitters::Patch>(count);
-  for (uint32_t light = 0; light < lights.size(); ++light) {
-    const uint32_t first = emitters.first[light], patches = emitters.first[light + 1] - first;
-    for (uint32_t i = 0; i < patches; ++i)
-      emitters.patches[first + i] = {light, patches > 1 ? static_cast<int>(i) : kAnyPatch};
+  if (emitters.hasPatches) {
+    emitters.patches = LargeArray<Emitters::Patch>(count);
+    for (uint32_t light = 0; light < lights.size(); ++light) {
+      const uint32_t first = emitters.first[light], patches = emitters.first[light + 1] - first;
+      for (uint32_t i = 0; i < patches; ++i)
+        emitters.patches[first + i] = {light, patches > 1 ? static_cast<int>(i) : kAnyPatch};
+    }
   }
   emitters.bounds.resize(count);
   constexpr size_t kChunk = 4096;
@@ -105,8 +104,9 @@ Emitters CollectEmitters(std::span<const PlacedLight> lights, const BoundingSphe
   ParallelFor(chunks, threads, [&](int chunk) {
     const size_t begin = static_cast<size_t>(chunk) * kChunk;
     for (size_t e = begin; e < std::min(begin + kChunk, emitters.bounds.size()); ++e) {
-      const Emitters::Patch& own = emitters.patches[e];
-      emitters.bounds[e] = BoundsOfPatch(lights[own.light], own.patch, scene);
+      const Emitters::Patch own = emitters.PatchOf(static_cast<uint32_t>(e));
+      if (!IsAtInfinity(lights[own.light].light->Kind()))
+        emitters.bounds[e] = BoundsOfPatch(lights[own.light], own.patch, scene);
     }
   });
   Normalise(emitters);

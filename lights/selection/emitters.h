@@ -18,12 +18,14 @@ struct Emitters {
   };
   std::vector<ClusterBounds> bounds;  // relative to center, size and intensity below; empty of those that emit nothing
   std::vector<uint32_t> first;        // by light: its first emitter; patches follow each other. One more at the end
-  LargeArray<Patch> patches;          // by emitter
-  std::vector<uint32_t> far;          // lights without a place
+  LargeArray<Patch> patches;          // by emitter; none where emitters are lights, number by number
+  std::vector<uint32_t> far;          // lights without a place: emitters, too, but empty ones
   Point3 center{0.0f};
   float size = 1;           // render space units
   double intensity = 0;     // W/sr, of all
   bool hasPatches = false;  // some light has more than one emitter
+
+  Patch PatchOf(uint32_t emitter) const { return hasPatches ? patches[emitter] : Patch{emitter, kAnyPatch}; }
 
   // An importance as irradiance, W/m².
   double Irradiance(double importance) const {

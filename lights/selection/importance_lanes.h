@@ -20,7 +20,8 @@ inline Lanes Load(const float* values) {
 
 struct LaneImportances {
   Lanes importance;
-  Lanes spread;  // the variance of a cluster's places over the squared distance, at most 1
+  Lanes spread;      // the variance of a cluster's places over the squared distance, at most 1
+  Lanes unevenness;  // the variance of its normals, but for rounding
 };
 
 inline LaneImportances Evaluate(const LobeBlock& block, const TreeReceiver& receiver) {
@@ -59,7 +60,7 @@ inline LaneImportances Evaluate(const LobeBlock& block, const TreeReceiver& rece
     importance *= simd::max(received, Lanes(kLeast));
     where(isOutside && isBehind, importance) = 0.0f;
   }
-  return {importance, spread};
+  return {importance, spread, unevenness};
 }
 
 }  // namespace lampyr

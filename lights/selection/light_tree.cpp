@@ -16,8 +16,11 @@ constexpr int kWidth = LightTree::kWidth;
 // A cluster is opened when its importance times its doubt is more than this part of all: lights600 has 0.85 × the
 // variance by it, rooms 0.5 ×, for a fifth more time.
 constexpr float kNegligible = 1.0f / 32;
-// Doubt for being near: of clusters that are seen under more than 60° or so, nothing is sure.
-constexpr float kDoubtOfSpread = 4;
+// Doubt for being near: of clusters that are seen under more than 60° or so, nothing is sure. And for normals that
+// differ: the more, the less their mean says. Nothing is to be opened of an emitter.
+constexpr float kDoubtOfSpread = 4, kDoubtOfUnevenness = 0.3f, kNoDoubt = -16;
+// What choosing by intensity within a cluster may add to the variance of its light, relative to the square of that.
+constexpr float kAlike = 0.004f;
 
 double SumOf(const float* weights) {
   double sum = 0;
@@ -52,7 +55,6 @@ Lanes Learned(const TreeReceiver& receiver, uint32_t node, float parentFactor) {
 
 LightTree::LightTree(std::span<const ClusterBounds> emitters, int threads) {
   LightTreeBuilder(emitters, threads).BuildInto(*this);
-  if (!IsEmpty()) intensity_ = SumOf(nodes_[0].lobes.intensity);
 }
 
 // One compiled function: the same receiver gives the same bits, whoever asks.
@@ -70,8 +72,9 @@ LightTree::LightTree(std::span<const ClusterBounds> emitters, int threads) {
       here.importance *= factor;
     }
     here.importance.copy_to(cut.importance[cut.count], simd::vector_aligned);
-    doubtful[cut.count] =
-        here.importance * simd::min(kDoubtOfSpread * here.spread + Load(nodes_[node].doubt), Lanes(1.0f));
+    Lanes doubt = kDoubtOfUnevenness * here.unevenness;
+    where(Load(nodes_[node].variety) < 0.0f, doubt) = kNoDoubt;
+    doubtful[cut.count] = here.importance * simd::min(kDoubtOfSpread * here.spread + doubt, Lanes(1.0f));
     total += simd::reduce(here.importance);
     cut.node[cut.count++] = node;
   };
@@ -120,7 +123,74 @@ double LightTree::Cut::Concentration() const {
   view.sum = SumOf(view.importance);
 }
 
-uint32_t LightTree::SelectSlot(const TreeReceiver& receiver, const Cut& cut, double& u, double& probability) const {
+// Whether the parts of a cluster send a receiver light in proportion to their intensities, but for a variance of
+// kAlike. With s² the variance of places over the squared distance, 1/d² varies by 4 s² or less, and a cosine c by
+// s²/c² and by the variance of normals over c². Places are bounded by the sphere that all are in, filled evenly, and
+// not by the moments, in which a weak emitter that is near does not show. One compiled function, too.
+[[gnu::noinline]] bool LightTree::IsAlike(uint32_t node, uint32_t child, const TreeReceiver& receiver) const {
+  using namespace importance;
+  if (receiver.learning) return false;  // what is in the way of some is not in the way of others
+  const LobeBlock& block = nodes_[node].lobes;
+  const float variety = nodes_[node].variety[child];
+  const Vector3 way = receiver.position - Point3(block.meanX[child], block.meanY[child], block.meanZ[child]);
+  const float squared = std::max(glm::dot(way, way), kNearest2);
+  const float spread = block.radius[child] * block.radius[child] / (3 * squared);
+  if (!(4 * spread + variety < kAlike)) return false;
+  const float inverse = 1 / std::sqrt(squared);
+  const Vector3 normal(block.normalX[child], block.normalY[child], block.normalZ[child]);
+  const float length2 = glm::dot(normal, normal);
+  float emitted = glm::dot(normal, way) * inverse;
+  if (block.oneSided[child] == 0) emitted = std::abs(emitted);
+  // Points shine alike to all sides: they have no normal.
+  const float emitted2 = length2 > 0 ? emitted * emitted : 1.0f;
+  if (!(emitted > 0) && length2 > 0) return false;
+  float received2 = 1;
+  if (LengthSquared(receiver.normal) > 0) {
+    float received = -glm::dot(receiver.normal, way) * inverse;
+    if (receiver.isTransmissive) received = std::abs(received);
+    if (!(received > 0)) return false;
+    received2 = received * received;
+  }
+  return (4 * spread * received2 + spread) * emitted2 + (spread * length2 + variety) * received2 <
+         kAlike * emitted2 * received2;
+}
+
+// u in [0,1), stretched again, chooses among the emitters below a node. Of like ones, the first guess is right.
+LightTree::Found LightTree::FindByIntensity(uint32_t node, double& u) const {
+  const Below& below = below_[node];
+  const double x = below.before + u * below.intensity;
+  size_t from = below.first, to = from + below.count;  // it is in [from, to)
+  size_t at = from + std::min(static_cast<size_t>(u * below.count), static_cast<size_t>(below.count) - 1);
+  if (places_[at].before <= x) {
+    for (size_t step = 1; from = at, at + step < to; step *= 2) {
+      if (places_[at + step].before > x) {
+        to = at + step;
+        break;
+      }
+      at += step;
+    }
+  } else {
+    for (size_t step = 1; to = at, at - from > step; step *= 2) {
+      at -= step;
+      if (places_[at].before <= x) {
+        from = at;
+        break;
+      }
+    }
+  }
+  while (to - from > 1) {
+    const size_t middle = from + (to - from) / 2;
+    (places_[middle].before <= x ? from : to) = middle;
+  }
+  // x was rounded to the end, where there may be what has no intensity.
+  while (from > below.first && !(places_[from].intensity > 0)) --from;
+  const Place& place = places_[from];
+  u = std::clamp((x - place.before) / static_cast<double>(place.intensity), 0.0, 0x1.fffffffffffffp-1);
+  return {place.emitter, place.intensity};
+}
+
+LightTree::Found LightTree::Descend(const TreeReceiver& receiver, const Cut& cut, double& u,
+                                    double& probability) const {
   double x = u * cut.total;
   int at = 0;
   while (at + 1 < cut.count && x >= cut.sum[at]) x -= cut.sum[at++];
@@ -130,44 +200,36 @@ uint32_t LightTree::SelectSlot(const TreeReceiver& receiver, const Cut& cut, dou
   uint32_t slot = Choose(cut.importance[at], cut.sum[at], u);
   probability = static_cast<double>(cut.importance[at][slot]) / cut.total;
   float factor = receiver.learning ? cut.factor[at][slot] : 1.0f;
-  while (!(nodes_[node].child[slot] & kEmitter)) {
-    node = nodes_[node].child[slot];
+  for (;;) {
+    const uint32_t child = nodes_[node].child[slot];
+    if (child & kEmitter) return {child & ~kEmitter, nodes_[node].lobes.intensity[slot]};
+    if (IsAlike(node, slot, receiver)) {
+      const Found found = FindByIntensity(child, u);
+      probability *= static_cast<double>(found.intensity) / below_[child].intensity;
+      return found;
+    }
+    node = child;
     View view;
     LookAt(node, receiver, factor, view);
     slot = Choose(view.importance, view.sum, u);
     probability *= static_cast<double>(view.importance[slot]) / view.sum;
     if (receiver.learning) factor = view.factor[slot];
   }
-  return node * kWidth + slot;
-}
-
-uint32_t LightTree::SelectSlotBlindly(double& u) const {
-  for (uint32_t node = 0;;) {
-    const float* intensity = nodes_[node].lobes.intensity;
-    const uint32_t slot = Choose(intensity, SumOf(intensity), u);
-    if (nodes_[node].child[slot] & kEmitter) return node * kWidth + slot;
-    node = nodes_[node].child[slot];
-  }
 }
 
 EmitterChoice LightTree::Select(const TreeReceiver& receiver, const Cut& cut, double u, bool blindly) const {
   EmitterChoice choice;
   choice.u = u;
-  uint32_t slot;
+  Found found;
   if (blindly) {
-    slot = SelectSlotBlindly(choice.u);
-    choice.probability.seen = SeenProbability(receiver, cut, slot);
+    found = FindByIntensity(0, choice.u);
+    choice.probability.seen = SeenProbability(receiver, cut, slots_[found.emitter]);
   } else {
-    slot = SelectSlot(receiver, cut, choice.u, choice.probability.seen);
+    found = Descend(receiver, cut, choice.u, choice.probability.seen);
   }
-  choice.probability.blind = BlindProbability(slot);
-  choice.emitter = nodes_[slot / kWidth].child[slot % kWidth] & ~kEmitter;
+  choice.probability.blind = BlindProbability(found.intensity);
+  choice.emitter = found.emitter;
   return choice;
-}
-
-// What the shares of the levels multiply to.
-double LightTree::BlindProbability(uint32_t slot) const {
-  return static_cast<double>(nodes_[slot / kWidth].lobes.intensity[slot % kWidth]) / intensity_;
 }
 
 namespace {
@@ -187,18 +249,21 @@ double LightTree::SeenProbability(const TreeReceiver& receiver, const Cut& cut, 
   std::array<uint32_t, kLongestWay> way;
   size_t length = 0;
   int at;
-  for (;; slot = parents_[slot / kWidth]) {
-    way[length++] = slot;
-    at = IndexIn(cut, slot / kWidth);
+  for (uint32_t above = slot;; above = parents_[above / kWidth]) {
+    way[length++] = above;
+    at = IndexIn(cut, above / kWidth);
     if (at >= 0) break;
   }
   const uint32_t first = way[--length] % kWidth;
   double probability = static_cast<double>(cut.importance[at][first]) / cut.total;
   float factor = receiver.learning ? cut.factor[at][first] : 1.0f;
-  while (length > 0) {
-    const uint32_t below = way[--length];
+  for (uint32_t above = way[length]; length > 0; above = way[length]) {
+    const uint32_t below = way[--length], child = below / kWidth;
+    if (IsAlike(above / kWidth, above % kWidth, receiver)) {
+      return probability * (static_cast<double>(IntensityOf(slot)) / below_[child].intensity);
+    }
     View view;
-    LookAt(below / kWidth, receiver, factor, view);
+    LookAt(child, receiver, factor, view);
     probability *= static_cast<double>(view.importance[below % kWidth]) / view.sum;
     if (receiver.learning) factor = view.factor[below % kWidth];
   }
@@ -221,7 +286,7 @@ void LightTree::Record(LightLearning& learning, const TreeReceiver& receiver, co
                        double blindShare, double importance) const {
   const uint32_t own = slots_[emitter];
   const auto mix = [&](double seen, uint32_t slot) {
-    return (1 - blindShare) * seen + blindShare * BlindProbability(slot);
+    return (1 - blindShare) * seen + blindShare * BlindProbability(IntensityOf(slot));
   };
   const double chosen = mix(SeenProbability(receiver, cut, own), own);
   for (uint32_t slot = own; slot != kNone; slot = parents_[slot / kWidth]) {
@@ -244,11 +309,13 @@ void LightTree::Record(LightLearning& learning, const TreeReceiver& receiver, co
 
 EmitterProbability LightTree::ProbabilityOf(const TreeReceiver& receiver, const Cut& cut, uint32_t emitter) const {
   if (emitter >= slots_.size() || slots_[emitter] == kNone) return {0, 0};
-  return {SeenProbability(receiver, cut, slots_[emitter]), BlindProbability(slots_[emitter])};
+  const uint32_t slot = slots_[emitter];
+  return {SeenProbability(receiver, cut, slot), BlindProbability(IntensityOf(slot))};
 }
 
 size_t LightTree::Bytes() const {
-  return nodes_.Size() * sizeof(Node) + (parents_.capacity() + slots_.capacity()) * sizeof(uint32_t);
+  return nodes_.Size() * sizeof(Node) + below_.Size() * sizeof(Below) + places_.Size() * sizeof(Place) +
+         (parents_.capacity() + slots_.capacity()) * sizeof(uint32_t);
 }
 
 }  // namespace lampyr

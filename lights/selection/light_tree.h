@@ -1,6 +1,9 @@
 // A tree over emitters that chooses one of them for a receiver, in proportion to an estimate of what it sends there
 // ([Conty18 §4, §5]; the estimate: importance.h). Nodes have eight children, whose importances are evaluated together.
 //
+// A cluster that is so far that its parts can only differ in their intensities is not looked into: by these, the
+// emitter is found among all of the cluster's at once.
+//
 // The probability of a given emitter is the product of its shares on the way from the root, which it knows the nodes
 // of: O(depth), the same operations in the same order as when it was chosen, and so the same bits.
 #pragma once
@@ -65,12 +68,13 @@ class LightTree {
   size_t Bytes() const;
   int Depth() const { return depth_; }
 
-  // A choice by intensity reads `child` and the block's first row alone: together a line of the cache.
   struct alignas(64) Node {
     uint32_t child[kWidth];  // a node, or an emitter: see kEmitter
     LobeBlock lobes;
-    alignas(32) float doubt[kWidth];  // how little a cluster's importance says, wherever it is seen from; see Look
+    // The variance of the normals of a cluster's parts, kUnlike where their light ends at an edge; below 0: an emitter.
+    alignas(32) float variety[kWidth];
   };
+  static constexpr float kUnlike = 1e6f;
 
  private:
   static constexpr uint32_t kEmitter = 0x80000000u;
@@ -85,16 +89,35 @@ class LightTree {
   };
   void LookAt(uint32_t node, const TreeReceiver& receiver, float parentFactor, View& view) const;
   double SeenThrough(const Cut& cut, uint32_t node) const;
-  uint32_t SelectSlot(const TreeReceiver& receiver, const Cut& cut, double& u, double& probability) const;
-  uint32_t SelectSlotBlindly(double& u) const;
+  bool IsAlike(uint32_t node, uint32_t child, const TreeReceiver& receiver) const;
+  // An emitter, with its intensity.
+  struct Found {
+    uint32_t emitter;
+    float intensity;
+  };
+  Found Descend(const TreeReceiver& receiver, const Cut& cut, double& u, double& probability) const;
+  Found FindByIntensity(uint32_t node, double& u) const;
   double SeenProbability(const TreeReceiver& receiver, const Cut& cut, uint32_t slot) const;
-  double BlindProbability(uint32_t slot) const;
+  float IntensityOf(uint32_t slot) const { return nodes_[slot / kWidth].lobes.intensity[slot % kWidth]; }
+  double BlindProbability(float intensity) const { return static_cast<double>(intensity) / below_[0].intensity; }
+
+  // Emitters in the order of the tree, so that those below a node are one after the other.
+  struct Place {
+    double before;  // sum of the intensities of all places before this one
+    uint32_t emitter;
+    float intensity;
+  };
+  struct Below {
+    double before, intensity;  // sums: up to its first place, and of its places
+    uint32_t first, count;     // places
+  };
 
   // A slot is node · kWidth + child.
   LargeArray<Node> nodes_;         // the root first
+  LargeArray<Below> below_;        // of each node
+  LargeArray<Place> places_;       // one more at the end
   std::vector<uint32_t> parents_;  // of each node: its slot in the node above
   std::vector<uint32_t> slots_;    // of each emitter
-  double intensity_ = 0;           // of the root's children
   int depth_ = 0;                  // nodes from the root to an emitter, at most
 };
 

@@ -64,12 +64,21 @@ LightTreeBuilder::LightTreeBuilder(std::span<const ClusterBounds> emitters, int 
 
 void LightTreeBuilder::Bound(Branch& branch) const {
   branch.bounds = ClusterBounds();
+  const auto add = [&branch](const ClusterBounds& bounds, float normals2, bool hasEdge) {
+    branch.bounds.Add(bounds);
+    const float share = branch.bounds.intensity > 0 ? bounds.intensity / branch.bounds.intensity : 1.0f;
+    branch.normals2 += share * (normals2 - branch.normals2);
+    branch.hasEdge |= hasEdge;
+  };
   if (branch.left) {
-    branch.bounds.Add(branch.left->bounds);
-    branch.bounds.Add(branch.right->bounds);
+    for (const Branch* part : {branch.left.get(), branch.right.get()}) add(part->bounds, part->normals2, part->hasEdge);
     return;
   }
-  for (size_t i = branch.first; i < branch.first + branch.count; ++i) branch.bounds.Add(emitters_[items_[i].emitter]);
+  for (size_t i = branch.first; i < branch.first + branch.count; ++i) {
+    const ClusterBounds& emitter = emitters_[items_[i].emitter];
+    const bool shinesAllAround = emitter.cosThetaO <= -1;
+    add(emitter, LengthSquared(emitter.meanNormal), !shinesAllAround && emitter.cosThetaE > 0);
+  }
 }
 
 // Sorts the items of a branch to two sides; returns the number on the first.
@@ -189,12 +198,10 @@ void LightTreeBuilder::GrowInParallel(Branch& root) {
   for (auto one = inner.rbegin(); one != inner.rend(); ++one) Bound(*one->branch);
 }
 
-void LightTreeBuilder::PutChild(LightTree::Node& node, int slot, const ClusterBounds& bounds, uint32_t child) const {
+void LightTreeBuilder::PutChild(LightTree::Node& node, int slot, const ClusterBounds& bounds, uint32_t child,
+                                float variety) const {
   node.lobes.Set(slot, LobeOf(bounds));
-  // The more its normals differ, the less their mean says. Nothing is to be opened of an emitter.
-  constexpr float ofUnevenness = 0.3f, never = -16;
-  const bool isEmitter = child & LightTree::kEmitter;
-  node.doubt[slot] = isEmitter ? never : ofUnevenness * (1 - LengthSquared(bounds.meanNormal));
+  node.variety[slot] = variety;
   node.child[slot] = child;
 }
 
@@ -222,6 +229,7 @@ void LightTreeBuilder::Emit(const Branch& branch, uint32_t parent, int depth, Li
   }
   const auto index = static_cast<uint32_t>(nodes_.size());
   nodes_.push_back({});
+  below_.push_back({intensity_, 0, static_cast<uint32_t>(places_.size()), 0});
   tree.parents_.push_back(parent);
   size_t slots = children.size();
   std::sort(children.begin(), children.end(), [](const Branch* a, const Branch* b) {
@@ -234,15 +242,23 @@ void LightTreeBuilder::Emit(const Branch& branch, uint32_t parent, int depth, Li
       slots += child->count - 1;
       for (size_t i = child->first; i < child->first + child->count; ++i) {
         const uint32_t emitter = items_[i].emitter;
-        PutChild(nodes_[index], slot, emitters_[emitter], LightTree::kEmitter | emitter);
+        constexpr float ofAnEmitter = -1;
+        PutChild(nodes_[index], slot, emitters_[emitter], LightTree::kEmitter | emitter, ofAnEmitter);
+        places_.push_back({intensity_, emitter, emitters_[emitter].intensity});
+        intensity_ += static_cast<double>(emitters_[emitter].intensity);
         tree.slots_[emitter] = index * LightTree::kWidth + static_cast<uint32_t>(slot++);
       }
       continue;
     }
-    PutChild(nodes_[index], slot, child->bounds, static_cast<uint32_t>(nodes_.size()));
+    const float variety =
+        child->hasEdge ? LightTree::kUnlike : std::max(child->normals2 - LengthSquared(child->bounds.meanNormal), 0.0f);
+    PutChild(nodes_[index], slot, child->bounds, static_cast<uint32_t>(nodes_.size()), variety);
     Emit(*child, index * LightTree::kWidth + static_cast<uint32_t>(slot), depth + 1, tree);
     ++slot;
   }
+  LightTree::Below& below = below_[index];
+  below.count = static_cast<uint32_t>(places_.size()) - below.first;
+  below.intensity = intensity_ - below.before;
 }
 
 void LightTreeBuilder::BuildInto(LightTree& tree) {
@@ -254,6 +270,11 @@ void LightTreeBuilder::BuildInto(LightTree& tree) {
   Emit(root, LightTree::kNone, 1, tree);
   tree.nodes_ = LargeArray<LightTree::Node>(nodes_.size());
   std::copy(nodes_.begin(), nodes_.end(), &tree.nodes_[0]);
+  tree.below_ = LargeArray<LightTree::Below>(below_.size());
+  std::copy(below_.begin(), below_.end(), &tree.below_[0]);
+  places_.push_back({intensity_, 0, 0});
+  tree.places_ = LargeArray<LightTree::Place>(places_.size());
+  std::copy(places_.begin(), places_.end(), &tree.places_[0]);
   tree.parents_.shrink_to_fit();
 }
 

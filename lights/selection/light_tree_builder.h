@@ -22,12 +22,10 @@ class LightTreeBuilder {
   // Of [first, first + count) items; a leaf when both children are null.
   struct Branch {
     ClusterBounds bounds;
+    float normals2 = 0;    // the mean squared length of its emitters' normals, weighted by intensity
+    bool hasEdge = false;  // the light of some ends at an edge
     size_t first = 0, count = 0;
     std::unique_ptr<Branch> left, right;
-  };
-  struct Split {
-    int axis = -1;
-    float at = 0;  // in bins
   };
 
   void Grow(Branch& branch, int depth);
@@ -36,12 +34,15 @@ class LightTreeBuilder {
   size_t Partition(const Branch& branch, int depth);
   void Bound(Branch& branch) const;
   void Emit(const Branch& branch, uint32_t parent, int depth, LightTree& tree);
-  void PutChild(LightTree::Node& node, int slot, const ClusterBounds& bounds, uint32_t child) const;
+  void PutChild(LightTree::Node& node, int slot, const ClusterBounds& bounds, uint32_t child, float variety) const;
 
   std::span<const ClusterBounds> emitters_;
   int threads_;
   std::vector<Item> items_;
   std::vector<LightTree::Node> nodes_;
+  std::vector<LightTree::Below> below_;
+  std::vector<LightTree::Place> places_;
+  double intensity_ = 0;  // of all places so far
 };
 
 }  // namespace lampyr

@@ -118,7 +118,7 @@ class TreeSelector final : public LightSelector {
     const bool blindly = x < kBlind;
     x = blindly ? x / kBlind : (x - kBlind) / (1 - kBlind);
     const EmitterChoice choice = search_.Select(place, cut, std::min(x, 0x1.fffffffffffffp-1), blindly);
-    const Emitters::Patch& own = emitters_.patches[choice.emitter];
+    const Emitters::Patch own = emitters_.PatchOf(choice.emitter);
     return {own.light, own.patch, Expected(choice.probability, far, count),
             static_cast<float>(std::min(choice.u, 0x1.fffffep-1))};
   }

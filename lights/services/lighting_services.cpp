@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
+#include <type_traits>
 
 #include "lights/selection/linked_selector.h"
 
@@ -42,6 +44,11 @@ float FluxUnitOf(const std::vector<PlacedLight>& lights, const BoundingSphere& s
   return static_cast<float>(std::exp2(std::clamp(std::round(std::log2(power)), -120.0, 120.0)));
 }
 
+bool HasSamePlace(const PlacedLight& a, const PlacedLight& b) {
+  static_assert(std::is_trivially_copyable_v<LightTransform>);
+  return std::memcmp(&a.transform, &b.transform, sizeof a.transform) == 0;
+}
+
 }  // namespace
 
 LightingServices::LightingServices(const GeometryScene& geometry, std::vector<PlacedLight> lights,
@@ -56,9 +63,14 @@ LightingServices::LightingServices(const GeometryScene& geometry, std::vector<Pl
   fronts_ = LargeArray<Front>(lights_.size());
   for (uint32_t i = 0; i < lights_.size(); ++i) {
     const PlacedLight& placed = lights_[i];
-    fronts_[i] = {placed.light.get(), placed.light->Kind(), placed.canBeHit, placed.isInstance,
-                  placed.motion != nullptr};
-    if (fronts_[i].kind == LightKind::Infinite) infinite_.push_back(i);
+    Front& front = fronts_[i];
+    front.light = placed.light.get();
+    front.place = i > 0 && HasSamePlace(placed, lights_[i - 1]) ? fronts_[i - 1].place : i;
+    front.kind = placed.light->Kind();
+    front.canBeHit = placed.canBeHit;
+    front.isInstance = placed.isInstance;
+    front.moves = placed.motion != nullptr;
+    if (front.kind == LightKind::Infinite) infinite_.push_back(i);
   }
   selector_ = linking_.Excludes() ? MakeLinkedSelector(selection, lights_, sphere_, linking_.Sets())
                                   : MakeLightSelector(selection, lights_, sphere_);
@@ -74,11 +86,11 @@ bool LightingServices::HasLightThatCanBeHit() const {
 
 LightContext LightingServices::Context(uint32_t light, float time, bool bidirectional,
                                        std::optional<LightTransform>& moved) const {
-  const PlacedLight& placed = lights_[light];
+  const Front& front = fronts_[light];
   LightContext context;
-  context.transform = &placed.transform;
-  if (fronts_[light].moves) [[unlikely]]
-    context.transform = &moved.emplace(placed.At(time));
+  context.transform = &lights_[front.place].transform;
+  if (front.moves) [[unlikely]]
+    context.transform = &moved.emplace(lights_[light].At(time));
   context.scene = sphere_;
   context.time = time;
   context.bidirectional = bidirectional;

@@ -200,9 +200,11 @@ class LightingServices {
   // What every question about a light begins with: read at random places among all of them.
   struct Front {
     const Light* light;
-    LightKind kind;
-    bool canBeHit, isInstance, moves;
+    uint32_t place;  // the light in whose PlacedLight its transform is: many have the same, and need not read their own
+    LightKind kind : 8;
+    bool canBeHit : 1, isInstance : 1, moves : 1;
   };
+  static_assert(sizeof(Front) == 16);
   LargeArray<Front> fronts_;
   std::vector<uint32_t> infinite_;
   LightGroups groups_;

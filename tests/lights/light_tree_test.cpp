@@ -217,6 +217,74 @@ TEST(LightTree, CoincidentAndEmptyEmitters) {
   EXPECT_TRUE(LightTree(std::vector<ClusterBounds>(), 1).IsEmpty());
 }
 
+enum class Kind { Points, ParallelSurfaces };
+
+// In a box of size 1, of intensities over five orders of magnitude, all looking up.
+std::vector<ClusterBounds> LikeEmitters(Kind kind, size_t count, Rng& rng) {
+  std::vector<ClusterBounds> emitters(count);
+  for (ClusterBounds& emitter : emitters) {
+    emitter.box.Add(RandomPoint(rng, 1));
+    emitter.intensity = std::exp(12 * rng.NextFloat());
+    const bool isPoint = kind == Kind::Points;
+    emitter.cosThetaO = isPoint ? -1.0f : 1.0f;
+    emitter.cosThetaE = isPoint ? 1.0f : 0.0f;
+    emitter.meanNormal = (isPoint ? 0.0f : 1.0f) * emitter.axis;
+    emitter.FillBox();
+  }
+  return emitters;
+}
+
+// From afar clusters of like emitters are not looked into: what that leaves out is little, whatever the intensities.
+TEST(LightTree, LikeEmittersAreChosenByIntensityFromAfar) {
+  Rng rng(9);
+  constexpr size_t count = 3000;
+  constexpr int draws = 100000;
+  for (const Kind kind : {Kind::Points, Kind::ParallelSurfaces}) {
+    const auto emitters = LikeEmitters(kind, count, rng);
+    const LightTree tree(emitters, 1);
+    for (const float distance : {3.0f, 10.0f, 1000.0f}) {
+      const TreeReceiver receiver{distance * glm::normalize(Vector3(0.3f, 0.2f, 1)), Normal3(0, 0.6f, -0.8f), false};
+      std::vector<double> importances, seen;
+      double sum = 0, squares = 0, sumSeen = 0;
+      for (uint32_t e = 0; e < count; ++e) {
+        importances.push_back(static_cast<double>(Importance(LobeOf(emitters[e]), receiver)));
+        seen.push_back(ProbabilityOf(tree, receiver, e).seen);
+        sum += importances[e];
+        sumSeen += seen[e];
+      }
+      for (uint32_t e = 0; e < count; ++e) squares += importances[e] * importances[e] / seen[e];
+      EXPECT_NEAR(sumSeen, 1, 1e-6);
+      // Relative variance of the light of one choice; of 3000 choices without regard to the receiver it is 0.1 at
+      // distance 3.
+      EXPECT_LT(squares / (sum * sum) - 1, 0.01) << distance;
+      std::vector<int> counts(count, 0);
+      for (int i = 0; i < draws; ++i) {
+        const EmitterChoice choice = Select(tree, receiver, (i + static_cast<double>(rng.NextFloat())) / draws, false);
+        ++counts[choice.emitter];
+        ASSERT_EQ(choice.probability.seen, seen[choice.emitter]);
+      }
+      for (uint32_t e = 0; e < count; ++e) EXPECT_NEAR(counts[e], draws * seen[e], 3) << e;
+    }
+  }
+}
+
+// A lamp that is weak but near counts as much as strong ones far behind it in the same cluster.
+TEST(LightTree, AWeakEmitterNearbyIsNotHiddenByItsCluster) {
+  std::vector<ClusterBounds> emitters(1000);
+  Rng rng(11);
+  for (size_t i = 0; i < emitters.size(); ++i) {
+    const bool isNear = i == 0;
+    emitters[i].box.Add(isNear ? Point3(0, 0, 10) : RandomPoint(rng, 0.01f));
+    emitters[i].cosThetaO = -1;
+    emitters[i].intensity = isNear ? 1e-3f : 1.0f;
+    emitters[i].FillBox();
+  }
+  const LightTree tree(emitters, 1);
+  const TreeReceiver receiver{Point3(0, 0, 10.01f), Normal3(0, 0, -1), false};
+  // 1e-3/0.01² = 10 beside 999/10² = 10.
+  EXPECT_NEAR(ProbabilityOf(tree, receiver, 0).seen, 0.5, 0.05);
+}
+
 TEST(LightTree, IsTheSameForAnyNumberOfThreads) {
   Rng rng(6);
   const auto emitters = RandomEmitters(60000, rng);

@@ -1,0 +1,72 @@
+#include "lights/light_memory.h"
+
+#include <cstdint>
+#include <cstdlib>
+#include <mutex>
+#include <new>
+
+#if defined(__linux__)
+#include <sys/mman.h>
+#endif
+
+namespace lampyr {
+
+namespace {
+
+constexpr size_t kLine = 64, kPage = size_t{2} << 20;
+
+// At the beginning of a page: what is taken of it, and how many lights are still there.
+struct Page {
+  size_t taken = kLine;
+  size_t lights = 0;
+};
+static_assert(sizeof(Page) <= kLine);
+
+std::mutex mutex;
+Page* open = nullptr;  // the page that lights are put on
+
+size_t Rounded(size_t bytes) {
+  return (bytes + kLine - 1) / kLine * kLine;
+}
+// What is larger than a part of a page has one of its own elsewhere.
+bool HasOwn(size_t bytes) {
+  return bytes > kPage / 16;
+}
+
+Page* PageOf(void* memory) {
+  return reinterpret_cast<Page*>(reinterpret_cast<uintptr_t>(memory) / kPage * kPage);
+}
+
+}  // namespace
+
+void* TakeLightMemory(size_t bytes) {
+  if (HasOwn(bytes)) return ::operator new (bytes, std::align_val_t{kLine});
+  const std::lock_guard lock(mutex);
+  if (!open || open->taken + bytes > kPage) {
+    void* page = std::aligned_alloc(kPage, kPage);
+    if (!page) throw std::bad_alloc();
+#if defined(__linux__)
+    madvise(page, kPage, MADV_HUGEPAGE);  // advice only
+#endif
+    open = new (page) Page;
+  }
+  void* memory = reinterpret_cast<std::byte*>(open) + open->taken;
+  open->taken += Rounded(bytes);
+  ++open->lights;
+  return memory;
+}
+
+void ReturnLightMemory(void* memory, size_t bytes) noexcept {
+  if (!memory) return;
+  if (HasOwn(bytes)) return ::operator delete (memory, std::align_val_t{kLine});
+  const std::lock_guard lock(mutex);
+  Page* page = PageOf(memory);
+  if (--page->lights > 0) return;
+  if (page == open) {
+    page->taken = kLine;
+  } else {
+    std::free(page);
+  }
+}
+
+}  // namespace lampyr
