@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "base/parallel.h"
 
@@ -79,6 +80,12 @@ void Normalise(Emitters& emitters) {
 
 }  // namespace
 
+Emitters::Patch Emitters::FindPatch(uint32_t emitter) const {
+  const auto next = std::upper_bound(first.begin(), first.end(), emitter);
+  const auto light = static_cast<uint32_t>(next - first.begin()) - 1;
+  return {light, *next - first[light] > 1 ? static_cast<int>(emitter - first[light]) : kAnyPatch};
+}
+
 Emitters CollectEmitters(std::span<const PlacedLight> lights, const BoundingSphere& scene, int threads) {
   Emitters emitters;
   uint32_t count = 0;
@@ -90,13 +97,12 @@ Emitters CollectEmitters(std::span<const PlacedLight> lights, const BoundingSphe
     count += static_cast<uint32_t>(patches);
   }
   emitters.first.push_back(count);
-  if (emitters.hasPatches) {
-    emitters.patches = LargeArray<Emitters::Patch>(count);
-    for (uint32_t light = 0; light < lights.size(); ++light) {
-      const uint32_t first = emitters.first[light], patches = emitters.first[light + 1] - first;
-      for (uint32_t i = 0; i < patches; ++i)
-        emitters.patches[first + i] = {light, patches > 1 ? static_cast<int>(i) : kAnyPatch};
-    }
+  // Few lights, such as one mesh, are found in `first` before a table would have come from memory.
+  constexpr size_t few = 256;
+  if (emitters.hasPatches && lights.size() > few) {
+    LargeArray<Emitters::Patch> patches(count);
+    for (uint32_t e = 0; e < count; ++e) patches[e] = emitters.FindPatch(e);
+    emitters.patches = std::move(patches);
   }
   emitters.bounds.resize(count);
   constexpr size_t kChunk = 4096;

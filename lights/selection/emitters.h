@@ -18,14 +18,18 @@ struct Emitters {
   };
   std::vector<ClusterBounds> bounds;  // relative to center, size and intensity below; empty of those that emit nothing
   std::vector<uint32_t> first;        // by light: its first emitter; patches follow each other. One more at the end
-  LargeArray<Patch> patches;          // by emitter; none where emitters are lights, number by number
+  LargeArray<Patch> patches;          // by emitter; none where `first` tells it sooner
   std::vector<uint32_t> far;          // lights without a place: emitters, too, but empty ones
   Point3 center{0.0f};
   float size = 1;           // render space units
   double intensity = 0;     // W/sr, of all
   bool hasPatches = false;  // some light has more than one emitter
 
-  Patch PatchOf(uint32_t emitter) const { return hasPatches ? patches[emitter] : Patch{emitter, kAnyPatch}; }
+  Patch PatchOf(uint32_t emitter) const {
+    if (!hasPatches) return {emitter, kAnyPatch};
+    return patches.Size() > 0 ? patches[emitter] : FindPatch(emitter);
+  }
+  Patch FindPatch(uint32_t emitter) const;
 
   // An importance as irradiance, W/m².
   double Irradiance(double importance) const {
