@@ -55,6 +55,7 @@ function assertPlot(plot, results, axis, metric) {
   const expected = expectedSeries(results, axis, metric);
   assert.ok(plot.xTicks.length >= 1, 'the horizontal axis has ticks');
   assert.ok(plot.yTicks.length >= 2, 'the vertical axis has ticks');
+  assert.ok([...plot.xTicks, ...plot.yTicks].every(({text}) => text !== ''), 'each tick says what it is');
   const xScale = axisScale(plot.xTicks, 0, true);
   const yScale = axisScale(plot.yTicks, 1, isLog);
   assert.ok(yScale.perUnit < 0, 'errors grow upwards');

@@ -174,9 +174,10 @@ export function convergencePlot(results, {axis, metric, width}) {
     marks: [
       Plot.gridY({ticks: yTicks, stroke: 'var(--grid)', strokeOpacity: 1}),
       Plot.gridX({ticks: xTicks, stroke: 'var(--grid)', strokeOpacity: 1}),
-      Plot.axisY({ticks: yTicks, tickFormat: isLog ? tickTexts(yTicks) : formatNumber, tickSize: 0, tickPadding: 8,
+      // As texts: of formats, a logarithmic axis leaves some ticks out.
+      Plot.axisY({ticks: yTicks, text: isLog ? tickTexts(yTicks) : formatNumber, tickSize: 0, tickPadding: 8,
         label: name, labelAnchor: 'top', labelArrow: 'none', className: 'axis-y'}),
-      Plot.axisX({ticks: xTicks, tickFormat: xText, tickSize: 4, tickPadding: 6, label: `${against}${unit}`,
+      Plot.axisX({ticks: xTicks, text: xText, tickSize: 4, tickPadding: 6, label: `${against}${unit}`,
         labelAnchor: 'center', labelArrow: 'none', labelOffset: 40, className: 'axis-x'}),
       ...(isLog ? guideMarks(rows, xDomain, yDomain, geometry) : []),
       ...(isLog ? noiseMarks(noise, yDomain, name) : []),
