@@ -113,9 +113,9 @@ class LightTree {
   };
 
   // A slot is node · kWidth + child.
-  LargeArray<Node> nodes_;         // the root first
-  LargeArray<Below> below_;        // of each node
-  LargeArray<Place> places_;       // one more at the end
+  LargeArray<Node> nodes_;   // the root first
+  LargeArray<Below> below_;  // of each node
+  LargeArray<Place> places_;
   std::vector<uint32_t> parents_;  // of each node: its slot in the node above
   std::vector<uint32_t> slots_;    // of each emitter
   int depth_ = 0;                  // nodes from the root to an emitter, at most

@@ -272,7 +272,6 @@ void LightTreeBuilder::BuildInto(LightTree& tree) {
   std::copy(nodes_.begin(), nodes_.end(), &tree.nodes_[0]);
   tree.below_ = LargeArray<LightTree::Below>(below_.size());
   std::copy(below_.begin(), below_.end(), &tree.below_[0]);
-  places_.push_back({intensity_, 0, 0});
   tree.places_ = LargeArray<LightTree::Place>(places_.size());
   std::copy(places_.begin(), places_.end(), &tree.places_[0]);
   tree.parents_.shrink_to_fit();

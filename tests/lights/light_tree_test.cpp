@@ -254,8 +254,7 @@ TEST(LightTree, LikeEmittersAreChosenByIntensityFromAfar) {
       }
       for (uint32_t e = 0; e < count; ++e) squares += importances[e] * importances[e] / seen[e];
       EXPECT_NEAR(sumSeen, 1, 1e-6);
-      // Relative variance of the light of one choice; of 3000 choices without regard to the receiver it is 0.1 at
-      // distance 3.
+      // The relative variance of the light of one choice.
       EXPECT_LT(squares / (sum * sum) - 1, 0.01) << distance;
       std::vector<int> counts(count, 0);
       for (int i = 0; i < draws; ++i) {
