@@ -143,9 +143,9 @@ class PointLightWith final : public LightBase {
   static float ToFactor(double value) { return static_cast<float>(value); }
   static const Color& ToFactor(const Color& value) { return value; }
 
-  Profile profile_;
-  Color intensity_;  // W/sr where the profile's shape is 1, with the tint's colour
-  Point3 from_;      // local space
+  [[no_unique_address]] Profile profile_;  // one that keeps nothing takes no room: a light that shines evenly is a line
+  Color intensity_;                        // W/sr where the profile's shape is 1, with the tint's colour
+  Point3 from_;                            // local space
   LightTint tint_;
 };
 

@@ -69,19 +69,38 @@ float Importance(const ClusterLobe& lobe, const TreeReceiver& receiver) {
   return lobe.intensity * inverse * inverse * std::max(emitted, kLeast) * std::max(received, kLeast);
 }
 
+uint16_t RoundUpToBfloat16(float value) {
+  return static_cast<uint16_t>((std::bit_cast<uint32_t>(value) + 0xffffu) >> 16);
+}
+
 void LobeBlock::Set(int slot, const ClusterLobe& lobe) {
+  const auto nearest = [](float value) { return static_cast<int16_t>(std::lround(value * kUnit)); };
+  intensity[slot] = lobe.intensity;
   meanX[slot] = lobe.mean.x;
   meanY[slot] = lobe.mean.y;
   meanZ[slot] = lobe.mean.z;
   variance[slot] = lobe.variance;
-  normalX[slot] = lobe.meanNormal.x;
-  normalY[slot] = lobe.meanNormal.y;
-  normalZ[slot] = lobe.meanNormal.z;
-  intensity[slot] = lobe.intensity;
-  radius[slot] = lobe.radius;
-  coneCosine[slot] = lobe.coneCosine;
-  coneReach[slot] = lobe.coneReach;
-  oneSided[slot] = lobe.twoSided ? 0.0f : 1.0f;
+  normalX[slot] = nearest(lobe.meanNormal.x);
+  normalY[slot] = nearest(lobe.meanNormal.y);
+  normalZ[slot] = nearest(lobe.meanNormal.z);
+  coneCosine[slot] = static_cast<int16_t>(std::floor(lobe.coneCosine * kUnit));
+  radius[slot] = RoundUpToBfloat16(lobe.radius);
+  coneReach[slot] = RoundUpToBfloat16(lobe.coneReach);
+  oneSided[slot] = lobe.twoSided ? 0 : 1;
+}
+
+ClusterLobe LobeBlock::Get(int slot) const {
+  const auto fraction = [](int16_t value) { return static_cast<float>(value) * (1 / kUnit); };
+  ClusterLobe lobe;
+  lobe.intensity = intensity[slot];
+  lobe.mean = {meanX[slot], meanY[slot], meanZ[slot]};
+  lobe.variance = variance[slot];
+  lobe.meanNormal = {fraction(normalX[slot]), fraction(normalY[slot]), fraction(normalZ[slot])};
+  lobe.coneCosine = fraction(coneCosine[slot]);
+  lobe.radius = FromBfloat16(radius[slot]);
+  lobe.coneReach = FromBfloat16(coneReach[slot]);
+  lobe.twoSided = oneSided[slot] == 0;
+  return lobe;
 }
 
 }  // namespace lampyr

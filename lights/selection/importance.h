@@ -6,6 +6,7 @@
 // needed only for telling what is surely dark.
 #pragma once
 
+#include <bit>
 #include <cstdint>
 
 #include "lights/selection/light_bounds.h"
@@ -52,17 +53,28 @@ constexpr float kSpread = 0.25f;
 
 }  // namespace importance
 
-// Eight lobes, number by number: what is evaluated at once (importance_lanes.h).
-struct alignas(32) LobeBlock {
+// Eight lobes, number by number: what is evaluated at once (importance_lanes.h). Waiting for them is most of what a
+// choice costs, so what is only a bound, or a direction, is kept in 16 bits, rounded so that nothing is ruled out.
+struct alignas(64) LobeBlock {
   static constexpr int kWidth = 8;
 
   float intensity[kWidth];  // 0: nothing there
   float meanX[kWidth], meanY[kWidth], meanZ[kWidth], variance[kWidth];
-  float normalX[kWidth], normalY[kWidth], normalZ[kWidth];
-  float radius[kWidth], coneCosine[kWidth], coneReach[kWidth];
-  float oneSided[kWidth];  // 1, or 0
+  int16_t normalX[kWidth], normalY[kWidth], normalZ[kWidth];  // in 1/kUnit
+  int16_t coneCosine[kWidth];                                 // in 1/kUnit, or a little less
+  uint16_t radius[kWidth], coneReach[kWidth];                 // the upper half of a float, or a little more
+  uint16_t oneSided[kWidth];                                  // 1, or 0
+
+  static constexpr float kUnit = 32767;
 
   void Set(int slot, const ClusterLobe& lobe);
+  ClusterLobe Get(int slot) const;
 };
+
+// A float that is not negative in its upper 16 bits (bfloat16), rounded up; and as a float again.
+uint16_t RoundUpToBfloat16(float value);
+inline float FromBfloat16(uint16_t bits) {
+  return std::bit_cast<float>(static_cast<uint32_t>(bits) << 16);
+}
 
 }  // namespace lampyr

@@ -18,6 +18,19 @@ inline Lanes Load(const float* values) {
   return Lanes(values, simd::vector_aligned);
 }
 
+namespace importance {
+
+using LaneBits = simd::rebind_simd_t<uint32_t, Lanes>;
+
+inline Lanes LoadBfloat16(const uint16_t* values) {
+  return std::bit_cast<Lanes>(LaneBits(values, simd::element_aligned) << 16);
+}
+inline Lanes LoadFraction(const int16_t* values) {
+  return Lanes(values, simd::element_aligned) * (1 / LobeBlock::kUnit);
+}
+
+}  // namespace importance
+
 struct LaneImportances {
   Lanes importance;
   Lanes spread;      // the variance of a cluster's places over the squared distance, at most 1
@@ -28,7 +41,7 @@ inline LaneImportances Evaluate(const LobeBlock& block, const TreeReceiver& rece
   using namespace importance;
   const Lanes x = receiver.position.x - Load(block.meanX), y = receiver.position.y - Load(block.meanY),
               z = receiver.position.z - Load(block.meanZ);
-  const Lanes variance = Load(block.variance), radius = Load(block.radius);
+  const Lanes variance = Load(block.variance), radius = LoadBfloat16(block.radius);
   const Lanes distance2 = x * x + y * y + z * z;
   const Lanes squared = simd::max(simd::max(distance2, kInside * variance), Lanes(kNearest2));
   const Lanes inverse = 1.0f / simd::sqrt(squared);
@@ -36,12 +49,13 @@ inline LaneImportances Evaluate(const LobeBlock& block, const TreeReceiver& rece
   const Lanes spread = simd::min(variance * inverse2, Lanes(1.0f));
   const auto isOutside = distance2 > radius * radius;
 
-  const Lanes nx = Load(block.normalX), ny = Load(block.normalY), nz = Load(block.normalZ);
-  const Lanes oneSided = Load(block.oneSided);
+  const Lanes nx = LoadFraction(block.normalX), ny = LoadFraction(block.normalY), nz = LoadFraction(block.normalZ);
+  const Lanes oneSided(block.oneSided, simd::element_aligned);
   Lanes along = nx * x + ny * y + nz * z;
   where(oneSided == 0.0f, along) = simd::abs(along);
   const Lanes distance = distance2 * inverse;
-  const auto isDark = along < Load(block.coneCosine) * distance - Load(block.coneReach) - kSlack * distance;
+  const auto isDark =
+      along < LoadFraction(block.coneCosine) * distance - LoadBfloat16(block.coneReach) - kSlack * distance;
   const Lanes unevenness = 1.0f - (nx * nx + ny * ny + nz * nz);
   const Lanes emittedCosine = along * inverse;
   const Lanes emittedRoot = simd::sqrt(emittedCosine * emittedCosine +

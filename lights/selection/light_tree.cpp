@@ -6,6 +6,7 @@
 #include "lights/selection/importance_lanes.h"
 #include "lights/selection/light_learning.h"
 #include "lights/selection/light_tree_builder.h"
+#include "sampling/rng.h"
 
 namespace lampyr {
 
@@ -19,8 +20,9 @@ constexpr float kNegligible = 1.0f / 32;
 // Doubt for being near: of clusters that are seen under more than 60° or so, nothing is sure. And for normals that
 // differ: the more, the less their mean says. Nothing is to be opened of an emitter.
 constexpr float kDoubtOfSpread = 4, kDoubtOfUnevenness = 0.3f, kNoDoubt = -16;
-// What choosing by intensity within a cluster may add to the variance of its light, relative to the square of that.
-constexpr float kAlike = 0.004f;
+// What choosing by intensity and trend within a cluster may add to the variance of its light, relative to the square of
+// that. And the trend's largest change from the middle outwards, so that most trials of emitters are the last.
+constexpr float kAlike = 0.004f, kSteepest = 0.75f;
 
 double SumOf(const float* weights) {
   double sum = 0;
@@ -73,7 +75,7 @@ LightTree::LightTree(std::span<const ClusterBounds> emitters, int threads) {
     }
     here.importance.copy_to(cut.importance[cut.count], simd::vector_aligned);
     Lanes doubt = kDoubtOfUnevenness * here.unevenness;
-    where(Load(nodes_[node].variety) < 0.0f, doubt) = kNoDoubt;
+    where(importance::LoadBfloat16(nodes_[node].variety) < 0.0f, doubt) = kNoDoubt;
     doubtful[cut.count] = here.importance * simd::min(kDoubtOfSpread * here.spread + doubt, Lanes(1.0f));
     total += simd::reduce(here.importance);
     cut.node[cut.count++] = node;
@@ -123,41 +125,64 @@ double LightTree::Cut::Concentration() const {
   view.sum = SumOf(view.importance);
 }
 
-// Whether the parts of a cluster send a receiver light in proportion to their intensities, but for a variance of
-// kAlike. With s² the variance of places over the squared distance, 1/d² varies by 4 s² or less, and a cosine c by
-// s²/c² and by the variance of normals over c². Places are bounded by the sphere that all are in, filled evenly, and
-// not by the moments, in which a weak emitter that is near does not show. One compiled function, too.
-[[gnu::noinline]] bool LightTree::IsAlike(uint32_t node, uint32_t child, const TreeReceiver& receiver) const {
-  using namespace importance;
-  if (receiver.learning) return false;  // what is in the way of some is not in the way of others
-  const LobeBlock& block = nodes_[node].lobes;
-  const float variety = nodes_[node].variety[child];
-  const Vector3 way = receiver.position - Point3(block.meanX[child], block.meanY[child], block.meanZ[child]);
-  const float squared = std::max(glm::dot(way, way), kNearest2);
-  const float spread = block.radius[child] * block.radius[child] / (3 * squared);
-  if (!(4 * spread + variety < kAlike)) return false;
-  const float inverse = 1 / std::sqrt(squared);
-  const Vector3 normal(block.normalX[child], block.normalY[child], block.normalZ[child]);
-  const float length2 = glm::dot(normal, normal);
-  float emitted = glm::dot(normal, way) * inverse;
-  if (block.oneSided[child] == 0) emitted = std::abs(emitted);
-  // Points shine alike to all sides: they have no normal.
-  const float emitted2 = length2 > 0 ? emitted * emitted : 1.0f;
-  if (!(emitted > 0) && length2 > 0) return false;
-  float received2 = 1;
-  if (LengthSquared(receiver.normal) > 0) {
-    float received = -glm::dot(receiver.normal, way) * inverse;
-    if (receiver.isTransmissive) received = std::abs(received);
-    if (!(received > 0)) return false;
-    received2 = received * received;
-  }
-  return (4 * spread * received2 + spread) * emitted2 + (spread * length2 + variety) * received2 <
-         kAlike * emitted2 * received2;
+// One compiled function, too.
+[[gnu::noinline]] double LightTree::Trend::At(const Point3& position) const {
+  return static_cast<double>(base + glm::dot(gradient, position - middle));
 }
 
-// u in [0,1), stretched again, chooses among the emitters below a node. Of like ones, the first guess is right.
-LightTree::Found LightTree::FindByIntensity(uint32_t node, double& u) const {
-  const Below& below = below_[node];
+// Whether the parts of a cluster send a receiver light in proportion to their intensities and a trend, but for a
+// variance of kAlike. For a part at x from the middle, w from the receiver, with normals n there and m of the light,
+// the cosines and 1/d² are (n·w')(m·w')/|w'|^k, w' = w + x: its gradient is taken, and its second order, of places that
+// fill a sphere evenly, is what is left. The sphere is one that all are in, and not that of the moments, in which a
+// weak emitter that is near does not show. One compiled function, too.
+[[gnu::noinline]] bool LightTree::IsAlike(uint32_t node, uint32_t child, const TreeReceiver& receiver,
+                                          Trend& trend) const {
+  using namespace importance;
+  if (receiver.learning) return false;  // what is in the way of some is not in the way of others
+  const float variety = FromBfloat16(nodes_[node].variety[child]);
+  const ClusterLobe cluster = nodes_[node].lobes.Get(static_cast<int>(child));
+  const Vector3 way = cluster.mean - receiver.position;
+  const float inverse2 = 1 / std::max(glm::dot(way, way), kNearest2);
+  const float away2 = cluster.radius * cluster.radius * inverse2;
+  if (!(away2 < 0.1f && variety < kAlike)) return false;
+  // How much each factor changes over the radius, and the power of the distance.
+  float power = 2, received = 0, emitted = 0, unevenness = 0;
+  trend.gradient = Vector3(0.0f);
+  if (LengthSquared(receiver.normal) > 0) {
+    float height = glm::dot(receiver.normal, way);
+    trend.gradient += receiver.normal / height;
+    if (receiver.isTransmissive) height = std::abs(height);
+    if (!(height > cluster.radius)) return false;
+    received = cluster.radius / height;
+    ++power;
+  }
+  const float length2 = glm::dot(cluster.meanNormal, cluster.meanNormal);
+  if (length2 > 0) {  // points shine alike to all sides
+    float height = -glm::dot(cluster.meanNormal, way);
+    trend.gradient -= cluster.meanNormal / height;
+    if (cluster.twoSided) height = std::abs(height);
+    if (!(height > cluster.radius * std::sqrt(length2))) return false;
+    emitted = cluster.radius * std::sqrt(length2) / height;
+    unevenness = variety / (height * height * inverse2);
+    ++power;
+  }
+  constexpr float kFill = 0.11f;  // √(1/81): of two coordinates in a cube's sphere, the mean of the product's square
+  const float away = std::sqrt(away2);
+  const float left =
+      kFill * (received * emitted + power * away * (received + emitted) + 0.5f * power * (power + 2) * away2);
+  if (!(left * left + unevenness < kAlike)) return false;
+  trend.gradient -= power * inverse2 * way;
+  const float change = cluster.radius * glm::length(trend.gradient);
+  if (!(change < kSteepest)) return false;
+  trend.middle = cluster.mean;
+  trend.base = 1 - glm::dot(trend.gradient, below_[nodes_[node].child[child]].offset);
+  trend.most = 1 + static_cast<double>(change);
+  return true;
+}
+
+// u in [0,1), stretched again, chooses among the emitters below a node by intensity. Of like ones, the first guess is
+// right.
+size_t LightTree::PlaceAt(const Below& below, double& u) const {
   const double x = below.before + u * below.intensity;
   size_t from = below.first, to = from + below.count;  // it is in [from, to)
   size_t at = from + std::min(static_cast<size_t>(u * below.count), static_cast<size_t>(below.count) - 1);
@@ -183,10 +208,24 @@ LightTree::Found LightTree::FindByIntensity(uint32_t node, double& u) const {
     (places_[middle].before <= x ? from : to) = middle;
   }
   // x was rounded to the end, where there may be what has no intensity.
-  while (from > below.first && !(places_[from].intensity > 0)) --from;
-  const Place& place = places_[from];
-  u = std::clamp((x - place.before) / static_cast<double>(place.intensity), 0.0, 0x1.fffffffffffffp-1);
-  return {place.emitter, place.intensity};
+  while (from > below.first && !(IntensityAt(from) > 0)) --from;
+  u = std::clamp((x - places_[from].before) / static_cast<double>(IntensityAt(from)), 0.0, 0x1.fffffffffffffp-1);
+  return from;
+}
+
+// By intensity and trend: of those that intensity chooses, some are sent back.
+LightTree::Found LightTree::FindByIntensity(uint32_t node, const Trend& trend, double& u) const {
+  constexpr uint64_t trials = 64;  // all in vain: at most once in 10^15
+  const uint64_t bits = std::bit_cast<uint64_t>(u);
+  for (uint64_t trial = 1;; ++trial) {
+    const size_t at = PlaceAt(below_[node], u);
+    const double weight = trend.At(places_[at].position), share = weight / trend.most;
+    if (u < share || trial == trials) {
+      u = std::min(u / share, 0x1.fffffffffffffp-1);
+      return {places_[at].emitter, IntensityAt(at), weight};
+    }
+    u = static_cast<double>(Hash(bits, trial) >> 11) * 0x1p-53;
+  }
 }
 
 LightTree::Found LightTree::Descend(const TreeReceiver& receiver, const Cut& cut, double& u,
@@ -202,10 +241,10 @@ LightTree::Found LightTree::Descend(const TreeReceiver& receiver, const Cut& cut
   float factor = receiver.learning ? cut.factor[at][slot] : 1.0f;
   for (;;) {
     const uint32_t child = nodes_[node].child[slot];
-    if (child & kEmitter) return {child & ~kEmitter, nodes_[node].lobes.intensity[slot]};
-    if (IsAlike(node, slot, receiver)) {
-      const Found found = FindByIntensity(child, u);
-      probability *= static_cast<double>(found.intensity) / below_[child].intensity;
+    if (child & kEmitter) return {child & ~kEmitter, nodes_[node].lobes.intensity[slot], 1};
+    if (Trend trend; IsAlike(node, slot, receiver, trend)) {
+      const Found found = FindByIntensity(child, trend, u);
+      probability *= found.ofTrend * (static_cast<double>(found.intensity) / below_[child].intensity);
       return found;
     }
     node = child;
@@ -222,7 +261,7 @@ EmitterChoice LightTree::Select(const TreeReceiver& receiver, const Cut& cut, do
   choice.u = u;
   Found found;
   if (blindly) {
-    found = FindByIntensity(0, choice.u);
+    found = FindByIntensity(0, Trend(), choice.u);
     choice.probability.seen = SeenProbability(receiver, cut, slots_[found.emitter]);
   } else {
     found = Descend(receiver, cut, choice.u, choice.probability.seen);
@@ -259,8 +298,9 @@ double LightTree::SeenProbability(const TreeReceiver& receiver, const Cut& cut, 
   float factor = receiver.learning ? cut.factor[at][first] : 1.0f;
   for (uint32_t above = way[length]; length > 0; above = way[length]) {
     const uint32_t below = way[--length], child = below / kWidth;
-    if (IsAlike(above / kWidth, above % kWidth, receiver)) {
-      return probability * (static_cast<double>(IntensityOf(slot)) / below_[child].intensity);
+    if (Trend trend; IsAlike(above / kWidth, above % kWidth, receiver, trend)) {
+      return probability *
+             (trend.At(PositionOf(slot)) * (static_cast<double>(IntensityOf(slot)) / below_[child].intensity));
     }
     View view;
     LookAt(child, receiver, factor, view);

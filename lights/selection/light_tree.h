@@ -1,8 +1,8 @@
 // A tree over emitters that chooses one of them for a receiver, in proportion to an estimate of what it sends there
 // ([Conty18 §4, §5]; the estimate: importance.h). Nodes have eight children, whose importances are evaluated together.
 //
-// A cluster that is so far that its parts can only differ in their intensities is not looked into: by these, the
-// emitter is found among all of the cluster's at once.
+// A cluster that is so far that its parts can only differ in their intensities, and a little by a trend over their
+// places, is not looked into: an emitter is found by these among all of the cluster's at once.
 //
 // The probability of a given emitter is the product of its shares on the way from the root, which it knows the nodes
 // of: O(depth), the same operations in the same order as when it was chosen, and so the same bits.
@@ -68,11 +68,12 @@ class LightTree {
   size_t Bytes() const;
   int Depth() const { return depth_; }
 
-  struct alignas(64) Node {
-    uint32_t child[kWidth];  // a node, or an emitter: see kEmitter
+  struct Node {
     LobeBlock lobes;
-    // The variance of the normals of a cluster's parts, kUnlike where their light ends at an edge; below 0: an emitter.
-    alignas(32) float variety[kWidth];
+    uint32_t child[kWidth];  // a node, or an emitter: see kEmitter
+    // The variance of the normals of a cluster's parts, kUnlike where their light ends at an edge: the upper half of a
+    // float, or a little more. Below 0: an emitter.
+    uint16_t variety[kWidth];
   };
   static constexpr float kUnlike = 1e6f;
 
@@ -89,33 +90,53 @@ class LightTree {
   };
   void LookAt(uint32_t node, const TreeReceiver& receiver, float parentFactor, View& view) const;
   double SeenThrough(const Cut& cut, uint32_t node) const;
-  bool IsAlike(uint32_t node, uint32_t child, const TreeReceiver& receiver) const;
-  // An emitter, with its intensity.
+  // What a part of a cluster sends beside one of the same intensity in its middle, to first order: of all parts by
+  // intensity, the mean is 1.
+  struct Trend {
+    Vector3 gradient{0.0f};
+    Point3 middle{0.0f};
+    float base = 1;
+    double most = 1;
+
+    double At(const Point3& position) const;
+  };
+  bool IsAlike(uint32_t node, uint32_t child, const TreeReceiver& receiver, Trend& trend) const;
   struct Found {
     uint32_t emitter;
     float intensity;
+    double ofTrend;  // what the trend says of it
   };
   Found Descend(const TreeReceiver& receiver, const Cut& cut, double& u, double& probability) const;
-  Found FindByIntensity(uint32_t node, double& u) const;
+  Found FindByIntensity(uint32_t node, const Trend& trend, double& u) const;
   double SeenProbability(const TreeReceiver& receiver, const Cut& cut, uint32_t slot) const;
   float IntensityOf(uint32_t slot) const { return nodes_[slot / kWidth].lobes.intensity[slot % kWidth]; }
+  Point3 PositionOf(uint32_t slot) const {
+    const LobeBlock& lobes = nodes_[slot / kWidth].lobes;
+    return {lobes.meanX[slot % kWidth], lobes.meanY[slot % kWidth], lobes.meanZ[slot % kWidth]};
+  }
   double BlindProbability(float intensity) const { return static_cast<double>(intensity) / below_[0].intensity; }
 
-  // Emitters in the order of the tree, so that those below a node are one after the other.
+  // Emitters in the order of the tree, so that those below a node are one after the other. Intensity and position are
+  // those of the emitter's slot, to the bit.
   struct Place {
     double before;  // sum of the intensities of all places before this one
     uint32_t emitter;
-    float intensity;
+    Point3 position;
   };
   struct Below {
     double before, intensity;  // sums: up to its first place, and of its places
     uint32_t first, count;     // places
+    Vector3 offset;            // of the places' mean by intensity from what the node above says it is, but for rounding
   };
+  size_t PlaceAt(const Below& below, double& u) const;
+  float IntensityAt(size_t place) const {
+    return static_cast<float>(places_[place + 1].before - places_[place].before);
+  }
 
   // A slot is node · kWidth + child.
-  LargeArray<Node> nodes_;   // the root first
-  LargeArray<Below> below_;  // of each node
-  LargeArray<Place> places_;
+  LargeArray<Node> nodes_;         // the root first
+  LargeArray<Below> below_;        // of each node
+  LargeArray<Place> places_;       // and one more at the end
   std::vector<uint32_t> parents_;  // of each node: its slot in the node above
   std::vector<uint32_t> slots_;    // of each emitter
   int depth_ = 0;                  // nodes from the root to an emitter, at most

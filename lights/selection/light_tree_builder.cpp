@@ -199,10 +199,26 @@ void LightTreeBuilder::GrowInParallel(Branch& root) {
 }
 
 void LightTreeBuilder::PutChild(LightTree::Node& node, int slot, const ClusterBounds& bounds, uint32_t child,
-                                float variety) const {
+                                uint16_t variety) const {
   node.lobes.Set(slot, LobeOf(bounds));
   node.variety[slot] = variety;
   node.child[slot] = child;
+}
+
+// Keeps what its probability is made of as it is found again, from the difference of two sums.
+void LightTreeBuilder::PutPlace(uint32_t emitter) {
+  places_.push_back({intensity_, emitter, emitters_[emitter].mean});
+  intensity_ += static_cast<double>(emitters_[emitter].intensity);
+}
+
+Vector3 LightTreeBuilder::OffsetOfMean(const LightTree::Below& below, const Point3& mean) const {
+  Point3d sum(0.0);
+  for (size_t i = below.first; i < below.first + below.count; ++i) {
+    const double next = i + 1 < places_.size() ? places_[i + 1].before : intensity_;
+    const auto intensity = static_cast<double>(static_cast<float>(next - places_[i].before));
+    sum += intensity * Point3d(places_[i].position - mean);
+  }
+  return below.intensity > 0 ? Vector3(sum / below.intensity) : Vector3(0.0f);
 }
 
 // A node of a branch: its largest children are opened until there are eight, and what is left of the room is filled
@@ -229,7 +245,7 @@ void LightTreeBuilder::Emit(const Branch& branch, uint32_t parent, int depth, Li
   }
   const auto index = static_cast<uint32_t>(nodes_.size());
   nodes_.push_back({});
-  below_.push_back({intensity_, 0, static_cast<uint32_t>(places_.size()), 0});
+  below_.push_back({intensity_, 0, static_cast<uint32_t>(places_.size()), 0, Vector3(0.0f)});
   tree.parents_.push_back(parent);
   size_t slots = children.size();
   std::sort(children.begin(), children.end(), [](const Branch* a, const Branch* b) {
@@ -242,16 +258,17 @@ void LightTreeBuilder::Emit(const Branch& branch, uint32_t parent, int depth, Li
       slots += child->count - 1;
       for (size_t i = child->first; i < child->first + child->count; ++i) {
         const uint32_t emitter = items_[i].emitter;
-        constexpr float ofAnEmitter = -1;
+        constexpr uint16_t ofAnEmitter = 0xbf80;  // -1
+        PutPlace(emitter);
         PutChild(nodes_[index], slot, emitters_[emitter], LightTree::kEmitter | emitter, ofAnEmitter);
-        places_.push_back({intensity_, emitter, emitters_[emitter].intensity});
-        intensity_ += static_cast<double>(emitters_[emitter].intensity);
+        nodes_[index].lobes.intensity[slot] = static_cast<float>(intensity_ - places_.back().before);
         tree.slots_[emitter] = index * LightTree::kWidth + static_cast<uint32_t>(slot++);
       }
       continue;
     }
-    const float variety =
-        child->hasEdge ? LightTree::kUnlike : std::max(child->normals2 - LengthSquared(child->bounds.meanNormal), 0.0f);
+    const uint16_t variety =
+        RoundUpToBfloat16(child->hasEdge ? LightTree::kUnlike
+                                         : std::max(child->normals2 - LengthSquared(child->bounds.meanNormal), 0.0f));
     PutChild(nodes_[index], slot, child->bounds, static_cast<uint32_t>(nodes_.size()), variety);
     Emit(*child, index * LightTree::kWidth + static_cast<uint32_t>(slot), depth + 1, tree);
     ++slot;
@@ -259,6 +276,7 @@ void LightTreeBuilder::Emit(const Branch& branch, uint32_t parent, int depth, Li
   LightTree::Below& below = below_[index];
   below.count = static_cast<uint32_t>(places_.size()) - below.first;
   below.intensity = intensity_ - below.before;
+  below.offset = OffsetOfMean(below, branch.bounds.mean);
 }
 
 void LightTreeBuilder::BuildInto(LightTree& tree) {
@@ -272,6 +290,7 @@ void LightTreeBuilder::BuildInto(LightTree& tree) {
   std::copy(nodes_.begin(), nodes_.end(), &tree.nodes_[0]);
   tree.below_ = LargeArray<LightTree::Below>(below_.size());
   std::copy(below_.begin(), below_.end(), &tree.below_[0]);
+  places_.push_back({intensity_, LightTree::kNone, Point3(0.0f)});
   tree.places_ = LargeArray<LightTree::Place>(places_.size());
   std::copy(places_.begin(), places_.end(), &tree.places_[0]);
   tree.parents_.shrink_to_fit();

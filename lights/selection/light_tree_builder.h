@@ -34,7 +34,10 @@ class LightTreeBuilder {
   size_t Partition(const Branch& branch, int depth);
   void Bound(Branch& branch) const;
   void Emit(const Branch& branch, uint32_t parent, int depth, LightTree& tree);
-  void PutChild(LightTree::Node& node, int slot, const ClusterBounds& bounds, uint32_t child, float variety) const;
+  void PutChild(LightTree::Node& node, int slot, const ClusterBounds& bounds, uint32_t child, uint16_t variety) const;
+
+  void PutPlace(uint32_t emitter);
+  Vector3 OffsetOfMean(const LightTree::Below& below, const Point3& mean) const;
 
   std::span<const ClusterBounds> emitters_;
   int threads_;

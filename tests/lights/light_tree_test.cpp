@@ -73,6 +73,32 @@ EmitterChoice Select(const LightTree& tree, const TreeReceiver& receiver, double
   return tree.Select(receiver, Look(tree, receiver), u, blindly);
 }
 
+// As the tree keeps it.
+ClusterLobe KeptLobeOf(const ClusterBounds& emitter) {
+  LobeBlock block;
+  block.Set(3, LobeOf(emitter));
+  return block.Get(3);
+}
+
+TEST(LightTree, WhatIsKeptInFewerBitsRulesOutNoMore) {
+  Rng rng(12);
+  for (int trial = 0; trial < 20000; ++trial) {
+    const ClusterBounds emitter = RandomEmitter(rng, std::exp(10 * rng.NextFloat() - 9));
+    const ClusterLobe lobe = LobeOf(emitter), kept = KeptLobeOf(emitter);
+    EXPECT_EQ(kept.intensity, lobe.intensity);
+    EXPECT_EQ(kept.mean, lobe.mean);
+    EXPECT_EQ(kept.variance, lobe.variance);
+    EXPECT_EQ(kept.twoSided, lobe.twoSided);
+    EXPECT_LT(glm::length(kept.meanNormal - lobe.meanNormal), 3e-5f);
+    EXPECT_GE(kept.radius, lobe.radius);
+    EXPECT_LE(kept.radius, 1.008f * lobe.radius);
+    EXPECT_GE(kept.coneReach, lobe.coneReach);
+    EXPECT_LE(kept.coneReach, 1.008f * lobe.coneReach);
+    EXPECT_LE(kept.coneCosine, lobe.coneCosine + 1e-7f);
+    EXPECT_GE(kept.coneCosine, lobe.coneCosine - 3.2e-5f);
+  }
+}
+
 TEST(LightTree, EightAtOnceAreEightOneByOne) {
   Rng rng(1);
   for (int trial = 0; trial < 2000; ++trial) {
@@ -81,7 +107,7 @@ TEST(LightTree, EightAtOnceAreEightOneByOne) {
     for (int i = 0; i < 8; ++i) {
       const TreeReceiver receiver = RandomReceiver(rng);
       float sum = 0;
-      for (const ClusterBounds& emitter : emitters) sum += Importance(LobeOf(emitter), receiver);
+      for (const ClusterBounds& emitter : emitters) sum += Importance(KeptLobeOf(emitter), receiver);
       EXPECT_NEAR(Look(tree, receiver).irradiance, sum, 2e-4f * sum);
     }
   }
@@ -234,15 +260,35 @@ std::vector<ClusterBounds> LikeEmitters(Kind kind, size_t count, Rng& rng) {
   return emitters;
 }
 
+// Of Poisson's counts, as many as there are: their squared differences in units of their variance.
+void ExpectCounts(const std::vector<int>& counts, int draws, const std::vector<double>& probabilities) {
+  double sum = 0, cells = 0, fewExpected = 0, fewCounted = 0;
+  const auto add = [&](double counted, double expected) {
+    sum += (counted - expected) * (counted - expected) / expected;
+    ++cells;
+  };
+  for (size_t e = 0; e < counts.size(); ++e) {
+    const double expected = draws * probabilities[e];
+    if (expected >= 5) {
+      add(counts[e], expected);
+    } else {
+      fewExpected += expected;
+      fewCounted += counts[e];
+    }
+  }
+  if (fewExpected >= 5) add(fewCounted, fewExpected);
+  EXPECT_LT(sum, cells + 5 * std::sqrt(2 * cells));
+}
+
 // From afar clusters of like emitters are not looked into: what that leaves out is little, whatever the intensities.
-TEST(LightTree, LikeEmittersAreChosenByIntensityFromAfar) {
+TEST(LightTree, LikeEmittersAreChosenByIntensityAndTrendFromAfar) {
   Rng rng(9);
   constexpr size_t count = 3000;
-  constexpr int draws = 100000;
+  constexpr int draws = 300000;
   for (const Kind kind : {Kind::Points, Kind::ParallelSurfaces}) {
     const auto emitters = LikeEmitters(kind, count, rng);
     const LightTree tree(emitters, 1);
-    for (const float distance : {3.0f, 10.0f, 1000.0f}) {
+    for (const float distance : {1.3f, 3.0f, 10.0f, 1000.0f}) {
       const TreeReceiver receiver{distance * glm::normalize(Vector3(0.3f, 0.2f, 1)), Normal3(0, 0.6f, -0.8f), false};
       std::vector<double> importances, seen;
       double sum = 0, squares = 0, sumSeen = 0;
@@ -261,10 +307,48 @@ TEST(LightTree, LikeEmittersAreChosenByIntensityFromAfar) {
         const EmitterChoice choice = Select(tree, receiver, (i + static_cast<double>(rng.NextFloat())) / draws, false);
         ++counts[choice.emitter];
         ASSERT_EQ(choice.probability.seen, seen[choice.emitter]);
+        ASSERT_GE(choice.u, 0);
+        ASSERT_LT(choice.u, 1);
       }
-      for (uint32_t e = 0; e < count; ++e) EXPECT_NEAR(counts[e], draws * seen[e], 3) << e;
+      ExpectCounts(counts, draws, seen);
     }
   }
+}
+
+// The trend's mean is 1 by the very places of a cluster: also of one that is tiny beside where it is.
+TEST(LightTree, ATinyFarClusterHasProbabilitiesThatSumToOne) {
+  Rng rng(13);
+  for (const float size : {1e-2f, 1e-4f, 1e-6f}) {
+    std::vector<ClusterBounds> emitters(400);
+    for (size_t i = 0; i < emitters.size(); ++i) {
+      emitters[i].box.Add(i == 0 ? Point3(-0.5f) : Point3(0.4f, 0.3f, 0.2f) + RandomPoint(rng, size));
+      emitters[i].cosThetaO = -1;
+      emitters[i].intensity = std::exp(3 * rng.NextFloat());
+      emitters[i].FillBox();
+    }
+    const LightTree tree(emitters, 1);
+    for (const float distance : {3.0f, 6.0f, 30.0f}) {
+      const Vector3 direction = RandomDirection(rng);
+      const TreeReceiver receiver{Point3(0.4f, 0.3f, 0.2f) + distance * size * direction, -direction, false};
+      double sum = 0;
+      for (uint32_t e = 0; e < emitters.size(); ++e) sum += ProbabilityOf(tree, receiver, e).seen;
+      EXPECT_NEAR(sum, 1, 1e-6) << size << " " << distance;
+    }
+  }
+}
+
+// What a sample is stretched to serves the light's own sampling: it is even over [0,1) whatever was chosen.
+TEST(LightTree, WhatIsLeftOfTheRandomNumberIsEven) {
+  Rng rng(14);
+  const LightTree tree(LikeEmitters(Kind::Points, 3000, rng), 1);
+  const TreeReceiver receiver{2.0f * glm::normalize(Vector3(0.3f, 0.2f, 1)), Normal3(0, 0.6f, -0.8f), false};
+  constexpr int draws = 200000, bins = 64;
+  std::vector<int> counts(bins, 0);
+  for (int i = 0; i < draws; ++i) {
+    const double u = static_cast<double>(rng.NextUint64() >> 11) * 0x1p-53;
+    ++counts[static_cast<size_t>(bins * Select(tree, receiver, u, false).u)];
+  }
+  ExpectCounts(counts, draws, std::vector<double>(bins, 1.0 / bins));
 }
 
 // A lamp that is weak but near counts as much as strong ones far behind it in the same cluster.
