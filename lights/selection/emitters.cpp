@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <utility>
 
 #include "base/parallel.h"
 
@@ -80,8 +79,21 @@ void Normalise(Emitters& emitters) {
 
 }  // namespace
 
+void Emitters::IndexLights() {
+  const size_t lights = first.size() - 1;
+  lightAt.clear();
+  uint32_t light = 0;
+  for (uint64_t emitter = 0; emitter < uint64_t{first.back()} + kStep; emitter += kStep) {
+    while (light + 1 < lights && first[light + 1] <= emitter) ++light;
+    lightAt.push_back(light);
+  }
+}
+
+// The light is that of the emitter's step, or one of as many as have emitters before the next: a short search, in
+// what is a few bytes of each light, whatever the patches.
 Emitters::Patch Emitters::FindPatch(uint32_t emitter) const {
-  const auto next = std::upper_bound(first.begin(), first.end(), emitter);
+  const auto from = first.begin() + lightAt[emitter / kStep], to = first.begin() + lightAt[emitter / kStep + 1] + 1;
+  const auto next = std::upper_bound(from, to, emitter);
   const auto light = static_cast<uint32_t>(next - first.begin()) - 1;
   return {light, *next - first[light] > 1 ? static_cast<int>(emitter - first[light]) : kAnyPatch};
 }
@@ -97,13 +109,7 @@ Emitters CollectEmitters(std::span<const PlacedLight> lights, const BoundingSphe
     count += static_cast<uint32_t>(patches);
   }
   emitters.first.push_back(count);
-  // Few lights, such as one mesh, are found in `first` before a table would have come from memory.
-  constexpr size_t few = 256;
-  if (emitters.hasPatches && lights.size() > few) {
-    LargeArray<Emitters::Patch> patches(count);
-    for (uint32_t e = 0; e < count; ++e) patches[e] = emitters.FindPatch(e);
-    emitters.patches = std::move(patches);
-  }
+  if (emitters.hasPatches) emitters.IndexLights();
   emitters.bounds.resize(count);
   constexpr size_t kChunk = 4096;
   const auto chunks = static_cast<int>((emitters.bounds.size() + kChunk - 1) / kChunk);

@@ -368,6 +368,27 @@ TEST(LightTree, AWeakEmitterNearbyIsNotHiddenByItsCluster) {
   EXPECT_NEAR(ProbabilityOf(tree, receiver, 0).seen, 0.5, 0.05);
 }
 
+TEST(Emitters, AnEmitterIsAPatchOfItsLight) {
+  Rng rng(15);
+  for (const int most : {1, 3, 100, 10000}) {
+    Emitters emitters;
+    emitters.hasPatches = true;
+    std::vector<Emitters::Patch> patches;
+    for (uint32_t light = 0; light < 300; ++light) {
+      emitters.first.push_back(static_cast<uint32_t>(patches.size()));
+      const int count = 1 + static_cast<int>(static_cast<float>(most) * rng.NextFloat() * rng.NextFloat());
+      for (int i = 0; i < count; ++i) patches.push_back({light, count > 1 ? i : kAnyPatch});
+    }
+    emitters.first.push_back(static_cast<uint32_t>(patches.size()));
+    emitters.IndexLights();
+    for (uint32_t e = 0; e < patches.size(); ++e) {
+      const Emitters::Patch patch = emitters.PatchOf(e);
+      ASSERT_EQ(patch.light, patches[e].light) << e;
+      ASSERT_EQ(patch.patch, patches[e].patch) << e;
+    }
+  }
+}
+
 TEST(LightTree, IsTheSameForAnyNumberOfThreads) {
   Rng rng(6);
   const auto emitters = RandomEmitters(60000, rng);
