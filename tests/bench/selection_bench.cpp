@@ -101,6 +101,21 @@ Material "diffuse" "rgb reflectance" [0.5 0.5 0.5]
 Shape "bilinearmesh" "point3 P" [-5 0 -5  5 0 -5  -5 0 5  5 0 5]
 )";
 
+// Closed, and seen for five events: every vertex chooses.
+constexpr const char* kRoom = R"(LookAt 4.5 1 4.5  0 1 0  0 1 0
+Camera "perspective" "float fov" 70
+Film "rgb" "integer xresolution" 128 "integer yresolution" 128
+Integrator "path" "integer maxdepth" 5
+WorldBegin
+Material "diffuse" "rgb reflectance" [0.5 0.5 0.5]
+Shape "bilinearmesh" "point3 P" [-5.5 0 -5.5  5.5 0 -5.5  -5.5 0 5.5  5.5 0 5.5]
+Shape "bilinearmesh" "point3 P" [-5.5 5 -5.5  5.5 5 -5.5  -5.5 5 5.5  5.5 5 5.5]
+Shape "bilinearmesh" "point3 P" [-5.5 0 -5.5  5.5 0 -5.5  -5.5 5 -5.5  5.5 5 -5.5]
+Shape "bilinearmesh" "point3 P" [-5.5 0 5.5  5.5 0 5.5  -5.5 5 5.5  5.5 5 5.5]
+Shape "bilinearmesh" "point3 P" [-5.5 0 -5.5  -5.5 0 5.5  -5.5 5 -5.5  -5.5 5 5.5]
+Shape "bilinearmesh" "point3 P" [5.5 0 -5.5  5.5 0 5.5  5.5 5 -5.5  5.5 5 5.5]
+)";
+
 void CostOfASample(benchmark::State& state) {
   const TemporaryFolder folder;
   const auto emitters = static_cast<size_t>(state.range(0)), all = static_cast<size_t>(state.range(1));
@@ -114,10 +129,10 @@ void CostOfASample(benchmark::State& state) {
   TimeSamples(state, text, folder.Path());
 }
 
-// The same hall without triangles, lit by points: where rays cost least, and lights are all there is.
-void CostOfASampleOfPoints(benchmark::State& state) {
+// Without triangles, lit by points: where rays cost least, and lights are all there is.
+void CostOfASampleOfPoints(benchmark::State& state, const char* place) {
   const TemporaryFolder folder;
-  std::string text = kHall;
+  std::string text = place;
   Rng rng(1);
   const std::string intensity = std::to_string(1e3 / static_cast<double>(state.range(0)));
   for (int64_t i = 0; i < state.range(0); ++i) {
@@ -138,8 +153,16 @@ BENCHMARK(CostOfASample)
     ->Iterations(3)
     ->UseManualTime();
 
-BENCHMARK(CostOfASampleOfPoints)
+BENCHMARK_CAPTURE(CostOfASampleOfPoints, hall, kHall)
     ->Name("selection/costOfASampleOfPoints")
+    ->Arg(10)
+    ->Arg(1000)
+    ->Arg(1000000)
+    ->Iterations(3)
+    ->UseManualTime();
+
+BENCHMARK_CAPTURE(CostOfASampleOfPoints, room, kRoom)
+    ->Name("selection/costOfASampleOfPointsInARoom")
     ->Arg(10)
     ->Arg(1000)
     ->Arg(1000000)
