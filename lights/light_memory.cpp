@@ -5,15 +5,13 @@
 #include <mutex>
 #include <new>
 
-#if defined(__linux__)
-#include <sys/mman.h>
-#endif
+#include "base/large_pages.h"
 
 namespace lampyr {
 
 namespace {
 
-constexpr size_t kLine = 64, kPage = size_t{2} << 20;
+constexpr size_t kLine = 64;
 
 // At the beginning of a page: what is taken of it, and how many lights are still there.
 struct Page {
@@ -30,11 +28,11 @@ size_t Rounded(size_t bytes) {
 }
 // What is larger than a part of a page has one of its own elsewhere.
 bool HasOwn(size_t bytes) {
-  return bytes > kPage / 16;
+  return bytes > kLargePage / 16;
 }
 
 Page* PageOf(void* memory) {
-  return reinterpret_cast<Page*>(reinterpret_cast<uintptr_t>(memory) / kPage * kPage);
+  return reinterpret_cast<Page*>(reinterpret_cast<uintptr_t>(memory) / kLargePage * kLargePage);
 }
 
 }  // namespace
@@ -42,13 +40,8 @@ Page* PageOf(void* memory) {
 void* TakeLightMemory(size_t bytes) {
   if (HasOwn(bytes)) return ::operator new (bytes, std::align_val_t{kLine});
   const std::lock_guard lock(mutex);
-  if (!open || open->taken + bytes > kPage) {
-    void* page = std::aligned_alloc(kPage, kPage);
-    if (!page) throw std::bad_alloc();
-#if defined(__linux__)
-    madvise(page, kPage, MADV_HUGEPAGE);  // advice only
-#endif
-    open = new (page) Page;
+  if (!open || open->taken + bytes > kLargePage) {
+    open = new (TakeLargePages(kLargePage)) Page;
   }
   void* memory = reinterpret_cast<std::byte*>(open) + open->taken;
   open->taken += Rounded(bytes);

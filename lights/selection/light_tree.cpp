@@ -74,8 +74,10 @@ LightTree::LightTree(std::span<const ClusterBounds> emitters, int threads) {
       here.importance *= factor;
     }
     here.importance.copy_to(cut.importance[cut.count], simd::vector_aligned);
-    Lanes doubt = kDoubtOfUnevenness * here.unevenness;
-    where(importance::LoadBfloat16(nodes_[node].variety) < 0.0f, doubt) = kNoDoubt;
+    const Lanes variety = importance::LoadBfloat16(nodes_[node].variety);
+    // Points have no normals, and yet do not differ by them: unevenness is more than the variety of the parts.
+    Lanes doubt = kDoubtOfUnevenness * simd::min(here.unevenness, variety);
+    where(variety < 0.0f, doubt) = kNoDoubt;
     doubtful[cut.count] = here.importance * simd::min(kDoubtOfSpread * here.spread + doubt, Lanes(1.0f));
     total += simd::reduce(here.importance);
     cut.node[cut.count++] = node;

@@ -9,9 +9,7 @@
 #include <new>
 #include <type_traits>
 
-#if defined(__linux__)
-#include <sys/mman.h>
-#endif
+#include "base/large_pages.h"
 
 namespace lampyr {
 
@@ -25,18 +23,10 @@ class LargeArray {
   LargeArray() = default;
   explicit LargeArray(size_t count) : size_(count) {
     if (count == 0) return;
-    constexpr size_t kPage = size_t{2} << 20;
-    const size_t bytes = (count * sizeof(T) + kPage - 1) / kPage * kPage;
-    const bool isLarge = count * sizeof(T) >= kPage;
-    const size_t taken = isLarge ? bytes : count * sizeof(T);
-    T* memory = static_cast<T*>(
-        std::aligned_alloc(isLarge ? kPage : std::max(alignof(T), alignof(std::max_align_t)), RoundedUp(taken)));
-    if (!memory) throw std::bad_alloc();
-    data_.reset(memory);
-#if defined(__linux__)
-    if (isLarge) madvise(memory, bytes, MADV_HUGEPAGE);  // advice only: the array is there without it
-#endif
-    std::memset(static_cast<void*>(memory), 0, taken);
+    const size_t bytes = count * sizeof(T);
+    void* memory = bytes >= kLargePage ? TakeLargePages(bytes) : TakeAligned(bytes);
+    data_.reset(static_cast<T*>(memory));
+    std::memset(memory, 0, bytes);
   }
 
   size_t Size() const {
@@ -50,10 +40,11 @@ class LargeArray {
   }
 
  private:
-  // aligned_alloc takes whole multiples of the alignment.
-  static size_t RoundedUp(size_t bytes) {
+  static void* TakeAligned(size_t bytes) {
     constexpr size_t unit = std::max(alignof(T), alignof(std::max_align_t));
-    return (bytes + unit - 1) / unit * unit;
+    void* memory = std::aligned_alloc(unit, (bytes + unit - 1) / unit * unit);  // takes whole multiples only
+    if (!memory) throw std::bad_alloc();
+    return memory;
   }
   struct Free {
     void operator()(T* memory) const { std::free(memory); }

@@ -1,0 +1,14 @@
+// Memory on large pages, where the system has them: reads at random places of it hardly ever wait for page tables.
+#pragma once
+
+#include <cstddef>
+
+namespace lampyr {
+
+constexpr size_t kLargePage = size_t{2} << 20;
+
+// At least `bytes`, from the beginning of a large page to the end of one; given back with std::free. Throws
+// std::bad_alloc. A system without such pages gives ordinary ones.
+void* TakeLargePages(size_t bytes);
+
+}  // namespace lampyr
