@@ -187,7 +187,7 @@ double LightTree::Cut::Concentration() const {
 size_t LightTree::PlaceAt(const Below& below, double& u) const {
   const double x = below.before + u * below.intensity;
   size_t from = below.first, to = from + below.count;  // it is in [from, to)
-  size_t at = from + std::min(static_cast<size_t>(u * below.count), static_cast<size_t>(below.count) - 1);
+  size_t at = GuessAt(below, u);
   if (places_[at].before <= x) {
     for (size_t step = 1; from = at, at + step < to; step *= 2) {
       if (places_[at + step].before > x) {
@@ -215,18 +215,22 @@ size_t LightTree::PlaceAt(const Below& below, double& u) const {
   return from;
 }
 
-// By intensity and trend: of those that intensity chooses, some are sent back.
+// By intensity and trend: of those that intensity chooses, some are sent back. The next trial's place is asked for
+// while this one's is waited for.
 LightTree::Found LightTree::FindByIntensity(uint32_t node, const Trend& trend, double& u) const {
   constexpr uint64_t trials = 64;  // all in vain: at most once in 10^15
   const uint64_t bits = std::bit_cast<uint64_t>(u);
+  const Below& below = below_[node];
   for (uint64_t trial = 1;; ++trial) {
-    const size_t at = PlaceAt(below_[node], u);
+    const double next = static_cast<double>(Hash(bits, trial) >> 11) * 0x1p-53;
+    if (trend.most > 1) __builtin_prefetch(&places_[GuessAt(below, next)]);
+    const size_t at = PlaceAt(below, u);
     const double weight = trend.At(places_[at].position), share = weight / trend.most;
     if (u < share || trial == trials) {
       u = std::min(u / share, 0x1.fffffffffffffp-1);
       return {places_[at].emitter, IntensityAt(at), weight};
     }
-    u = static_cast<double>(Hash(bits, trial) >> 11) * 0x1p-53;
+    u = next;
   }
 }
 

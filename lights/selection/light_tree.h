@@ -8,6 +8,7 @@
 // of: O(depth), the same operations in the same order as when it was chosen, and so the same bits.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -129,6 +130,10 @@ class LightTree {
     Vector3 offset;            // of the places' mean by intensity from what the node above says it is, but for rounding
   };
   size_t PlaceAt(const Below& below, double& u) const;
+  // Where it is when all have the same intensity.
+  static size_t GuessAt(const Below& below, double u) {
+    return below.first + std::min(static_cast<size_t>(u * below.count), static_cast<size_t>(below.count) - 1);
+  }
   float IntensityAt(size_t place) const {
     return static_cast<float>(places_[place + 1].before - places_[place].before);
   }

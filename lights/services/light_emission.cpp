@@ -130,7 +130,7 @@ std::optional<EmittedPhoton> LightingServices::GenerateEmission(float uSelect, c
                                                                 const Point2& uDirection, float time) const {
   const auto emitted = Emit(MoreBits(uSelect, Point3(u.x, u.y, uDirection.x)), u, uDirection, time);
   if (!emitted) return std::nullopt;
-  const Front& front = fronts_[emitted->light];
+  const LightFront front = fronts_[emitted->light];
   EmittedPhoton photon;
   photon.light = emitted->light;
   photon.emissionSelection = emitted->selection;

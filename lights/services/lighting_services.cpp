@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
-#include <type_traits>
 
 #include "lights/selection/linked_selector.h"
 
@@ -44,33 +42,20 @@ float FluxUnitOf(const std::vector<PlacedLight>& lights, const BoundingSphere& s
   return static_cast<float>(std::exp2(std::clamp(std::round(std::log2(power)), -120.0, 120.0)));
 }
 
-bool HasSamePlace(const PlacedLight& a, const PlacedLight& b) {
-  static_assert(std::is_trivially_copyable_v<LightTransform>);
-  return std::memcmp(&a.transform, &b.transform, sizeof a.transform) == 0;
-}
-
 }  // namespace
 
 LightingServices::LightingServices(const GeometryScene& geometry, std::vector<PlacedLight> lights,
                                    LightSelection selection, LightLinking linking)
     : geometry_(geometry),
       lights_(std::move(lights)),
+      fronts_(lights_),
       groups_(lights_),
       sphere_(geometry.GetBoundingSphere()),
       fluxUnit_(FluxUnitOf(lights_, sphere_)),
       linking_(std::move(linking)),
       isLinked_(linking_.Excludes() || linking_.HasFilters()) {
-  fronts_ = LargeArray<Front>(lights_.size());
   for (uint32_t i = 0; i < lights_.size(); ++i) {
-    const PlacedLight& placed = lights_[i];
-    Front& front = fronts_[i];
-    front.light = placed.light.get();
-    front.place = i > 0 && HasSamePlace(placed, lights_[i - 1]) ? fronts_[i - 1].place : i;
-    front.kind = placed.light->Kind();
-    front.canBeHit = placed.canBeHit;
-    front.isInstance = placed.isInstance;
-    front.moves = placed.motion != nullptr;
-    if (front.kind == LightKind::Infinite) infinite_.push_back(i);
+    if (fronts_[i].kind == LightKind::Infinite) infinite_.push_back(i);
   }
   selector_ = linking_.Excludes() ? MakeLinkedSelector(selection, lights_, sphere_, linking_.Sets())
                                   : MakeLightSelector(selection, lights_, sphere_);
@@ -86,7 +71,7 @@ bool LightingServices::HasLightThatCanBeHit() const {
 
 LightContext LightingServices::Context(uint32_t light, float time, bool bidirectional,
                                        std::optional<LightTransform>& moved) const {
-  const Front& front = fronts_[light];
+  const LightFront front = fronts_[light];
   LightContext context;
   context.transform = &lights_[front.place].transform;
   if (front.moves) [[unlikely]]
@@ -103,7 +88,7 @@ PdfArea LightingServices::EmissionDensity(const LightContext& context, uint32_t 
 
 DirectSample LightingServices::GenerateSamples(const Receiver& receiver, const SelectedLight& selected, const Point2& u,
                                                float time, bool bidirectional) const {
-  const Front& front = fronts_[selected.light];
+  const LightFront front = fronts_[selected.light];
   std::optional<LightTransform> moved;
   LightContext context = Context(selected.light, time, bidirectional, moved);
   context.u = u;

@@ -8,7 +8,6 @@
 #include <optional>
 #include <vector>
 
-#include "base/large_array.h"
 #include "geometry/geometry_scene.h"
 #include "geometry/robust.h"
 #include "lights/light.h"
@@ -16,6 +15,7 @@
 #include "lights/selection/emission_guide.h"
 #include "lights/selection/light_learning.h"
 #include "lights/selection/light_selector.h"
+#include "lights/services/light_fronts.h"
 #include "lights/services/linking.h"
 #include "sampling/rng.h"
 
@@ -135,8 +135,8 @@ class LightingServices {
   // can find it.
   bool IsAtInfinity(uint32_t light) const { return lampyr::IsAtInfinity(fronts_[light].kind); }
   bool CanBeHit(uint32_t light) const {
-    return fronts_[light].kind == LightKind::Infinite ||
-           (fronts_[light].kind == LightKind::Area && fronts_[light].canBeHit);
+    const LightFront front = fronts_[light];
+    return front.kind == LightKind::Infinite || (front.kind == LightKind::Area && front.canBeHit);
   }
   // Whether there is one that can: a direction that a surface samples may find light.
   bool HasLightThatCanBeHit() const;
@@ -197,15 +197,7 @@ class LightingServices {
 
   const GeometryScene& geometry_;
   std::vector<PlacedLight> lights_;
-  // What every question about a light begins with: read at random places among all of them.
-  struct Front {
-    const Light* light;
-    uint32_t place;  // the light in whose PlacedLight its transform is: many have the same, and need not read their own
-    LightKind kind : 8;
-    bool canBeHit : 1, isInstance : 1, moves : 1;
-  };
-  static_assert(sizeof(Front) == 16);
-  LargeArray<Front> fronts_;
+  LightFronts fronts_;
   std::vector<uint32_t> infinite_;
   LightGroups groups_;
   BoundingSphere sphere_;
