@@ -135,8 +135,8 @@ double LightTree::Cut::Concentration() const {
 // Whether the parts of a cluster send a receiver light in proportion to their intensities and a trend, but for a
 // variance of kAlike. For a part at x from the middle, w from the receiver, with normals n there and m of the light,
 // the cosines and 1/d² are (n·w')(m·w')/|w'|^k, w' = w + x: its gradient is taken, and its second order, of places that
-// fill a sphere evenly, is what is left. The sphere is one that all are in, and not that of the moments, in which a
-// weak emitter that is near does not show. One compiled function, too.
+// fill a cube evenly, is what is left. The cube is in the sphere that all are in, and not in that of the moments, in
+// which a weak emitter that is near does not show. One compiled function, too.
 [[gnu::noinline]] bool LightTree::IsAlike(uint32_t node, uint32_t child, const TreeReceiver& receiver,
                                           Trend& trend) const {
   using namespace importance;
@@ -168,7 +168,7 @@ double LightTree::Cut::Concentration() const {
     unevenness = variety / (height * height * inverse2);
     ++power;
   }
-  constexpr float kFill = 0.11f;  // √(1/81): of two coordinates in a cube's sphere, the mean of the product's square
+  constexpr float kFill = 0.11f;  // of two coordinates x, y in a cube, √ of the mean of x²y², over the radius² about it
   const float away = std::sqrt(away2);
   const float left =
       kFill * (received * emitted + power * away * (received + emitted) + 0.5f * power * (power + 2) * away2);

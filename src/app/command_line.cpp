@@ -5,6 +5,9 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <initializer_list>
+#include <optional>
+#include <string_view>
 
 #include "app/command_support.h"
 #include "app/commands.h"
@@ -15,36 +18,41 @@ namespace lampyr {
 
 namespace {
 
-// "90", "90s", "1.5m", "2h" -> seconds.
-double ParseDuration(const std::string& option, const std::string& text) {
+struct Unit {
+  const char* name;
+  double factor;
+};
+
+// A number and one of the units, or none. Nothing where it is not that.
+std::optional<double> ParseWithUnit(const std::string& text, std::initializer_list<Unit> units) {
   char* end = nullptr;
   const double number = std::strtod(text.c_str(), &end);
-  const std::string unit(end);
-  double factor = 0;
-  if (unit.empty() || unit == "s") factor = 1;
-  if (unit == "m" || unit == "min") factor = 60;
-  if (unit == "h") factor = 3600;
-  if (end == text.c_str() || factor == 0 || !(number > 0) || !(number < 1e9)) {
+  if (end == text.c_str()) return std::nullopt;
+  for (const Unit& unit : units) {
+    if (std::string_view(end) == unit.name) return number * unit.factor;
+  }
+  return std::nullopt;
+}
+
+// "90", "90s", "1.5m", "2h" -> seconds.
+double ParseDuration(const std::string& option, const std::string& text) {
+  const auto seconds = ParseWithUnit(text, {{"", 1}, {"s", 1}, {"m", 60}, {"min", 60}, {"h", 3600}});
+  if (!seconds || !(*seconds > 0) || !(*seconds < 1e9)) {
     throw UsageError(option + ": \"" + text + "\" is not a duration; write 90s, 5m or 2h");
   }
-  return number * factor;
+  return *seconds;
 }
 
 // "800M", "4G", "1000000000" -> bytes; a quarter of the machine's where nothing is said.
 uint64_t ParseMemory(const std::string& option, const std::string& text) {
   if (text.empty()) return AvailableMemory() / 4;
-  char* end = nullptr;
-  const double number = std::strtod(text.c_str(), &end);
-  const std::string unit(end);
-  double factor = 0;
-  if (unit.empty() || unit == "B") factor = 1;
-  if (unit == "K" || unit == "KiB") factor = 1024;
-  if (unit == "M" || unit == "MiB") factor = 1024.0 * 1024;
-  if (unit == "G" || unit == "GiB") factor = 1024.0 * 1024 * 1024;
-  if (end == text.c_str() || factor == 0 || !(number * factor >= 1) || !(number * factor < 1e15)) {
+  constexpr double kibi = 1024, mebi = 1024 * kibi, gibi = 1024 * mebi;
+  const auto bytes = ParseWithUnit(
+      text, {{"", 1}, {"B", 1}, {"K", kibi}, {"KiB", kibi}, {"M", mebi}, {"MiB", mebi}, {"G", gibi}, {"GiB", gibi}});
+  if (!bytes || !(*bytes >= 1) || !(*bytes < 1e15)) {
     throw UsageError(option + ": \"" + text + "\" is not a size; write 800M or 4G");
   }
-  return static_cast<uint64_t>(number * factor);
+  return static_cast<uint64_t>(*bytes);
 }
 
 void ParseResolution(const std::string& text, RenderOverrides& overrides) {

@@ -144,7 +144,7 @@ RenderIdentity IdentityOf(const LoadedScene& loaded, bool robustIntersection) {
                Exactly(static_cast<double>(f.c)) + " " + Exactly(static_cast<double>(f.tau))},
           {"the sampler", s.sampler == SamplerKind::Sobol ? "sobol" : "independent"},
           {"the maximum depth", integer(s.maxDepth)},
-          {"the number of the light sampler", integer(static_cast<int>(s.lightSelection))},
+          {"the light sampler", NameOf(s.lightSelection)},
           {"the number of light samples", integer(s.lightSamples)},
           {"learning of lights", YesOrNo(s.learnLights)},
           {"the roulette of shadow rays", Exactly(static_cast<double>(s.shadowRays.roulette))},
