@@ -117,7 +117,9 @@ class BilinearModel final : public EmitterModel {
       const double aa = glm::dot(a, a), ab = glm::dot(a, b), bb = glm::dot(b, b), determinant = aa * bb - ab * ab;
       if (determinant == 0) break;
       const double ar = glm::dot(a, r), br = glm::dot(b, r);
+      const Point2d before = p;
       p = glm::clamp(p + Point2d(bb * ar - ab * br, aa * br - ab * ar) / determinant, Point2d(0.0), Point2d(1.0));
+      if (glm::length(p - before) < 1e-13) break;
     }
     return p;
   }
