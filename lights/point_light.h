@@ -143,7 +143,7 @@ class PointLightWith final : public LightBase {
   static float ToFactor(double value) { return static_cast<float>(value); }
   static const Color& ToFactor(const Color& value) { return value; }
 
-  [[no_unique_address]] Profile profile_;  // one that keeps nothing takes no room: a light that shines evenly is a line
+  [[no_unique_address]] Profile profile_;  // one that keeps nothing takes no room
   Color intensity_;                        // W/sr where the profile's shape is 1, with the tint's colour
   Point3 from_;                            // local space
   LightTint tint_;

@@ -53,8 +53,8 @@ constexpr float kSpread = 0.25f;
 
 }  // namespace importance
 
-// Eight lobes, number by number: what is evaluated at once (importance_lanes.h). Waiting for them is most of what a
-// choice costs, so what is only a bound, or a direction, is kept in 16 bits, rounded so that nothing is ruled out.
+// Eight lobes, number by number: what is evaluated at once (importance_lanes.h). A choice among many reads a dozen of
+// these, so what is only a bound, or a direction, is kept in 16 bits, rounded so that nothing more is ruled out.
 struct alignas(64) LobeBlock {
   static constexpr int kWidth = 8;
 

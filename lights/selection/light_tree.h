@@ -127,7 +127,7 @@ class LightTree {
   struct Below {
     double before, intensity;  // sums: up to its first place, and of its places
     uint32_t first, count;     // places
-    Vector3 offset;            // of the places' mean by intensity from what the node above says it is, but for rounding
+    Vector3 offset;  // what rounding left between the places' mean by intensity and what the node above has for it
   };
   size_t PlaceAt(const Below& below, double& u) const;
   // Where it is when all have the same intensity.
