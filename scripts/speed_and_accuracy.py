@@ -116,9 +116,9 @@ def summary(all_results):
             else:
                 open_.append(scene)
     text = lambda pairs: listed([f'{scene} ({digits(value)} ×)' for value, scene in sorted(pairs, reverse=True)])
+    undecided = f' No difference was shown in {listed(open_)}.' if open_ else ''
     lines = [
-        f'- `bdpt` has the higher efficiency in {text(wins)}; `path` in {text(losses)}. No difference was shown in '
-        f'{listed(open_)}.',
+        f'- `bdpt` has the higher efficiency in {text(wins)}; `path` in {text(losses)}.{undecided}',
         f'- A sample of `bdpt` takes {digits(min(costs))} to {digits(max(costs))} times as long as one of `path`: what it '
         'wins, it wins by samples that are worth more.',
     ]
