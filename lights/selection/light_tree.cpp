@@ -146,7 +146,7 @@ double LightTree::Cut::Concentration() const {
   const Vector3 way = cluster.mean - receiver.position;
   const float inverse2 = 1 / std::max(glm::dot(way, way), kNearest2);
   const float away2 = cluster.radius * cluster.radius * inverse2;
-  if (!(away2 < 0.1f && variety < kAlike)) return false;
+  if (!(away2 < 0.1f && variety < kAlike)) return false;  // what follows would say the same of most, later
   // How much each factor changes over the radius, and the power of the distance.
   float power = 2, received = 0, emitted = 0, unevenness = 0;
   trend.gradient = Vector3(0.0f);
