@@ -315,10 +315,7 @@ void ReadIntegrator(const SceneDescription& scene, const RenderOverrides& overri
   if (overrides.learnLights) settings.learnLights = *overrides.learnLights;
   // Parameters of integrators that stand back for "path" are not looked at.
   if (isKnown) {
-    parameters.CheckAllUsed({"regularize", "options"},
-                            {"maxdepth", "lightsampler", "photonsperiteration", "radius", "alpha", "merge", "connect",
-                             "directphotons", "guidephotons", "shadowroulette", "shadowthreshold"},
-                            diagnostics);
+    parameters.CheckAllUsed({"regularize", "options"}, IntegratorParameterNames(), diagnostics);
   }
 }
 
@@ -336,6 +333,13 @@ void CheckAccelerator(const SceneDescription& scene, Diagnostics& diagnostics) {
 }
 
 }  // namespace
+
+const std::vector<std::string>& IntegratorParameterNames() {
+  static const std::vector<std::string> names = {
+      "maxdepth", "lightsampler",  "photonsperiteration", "radius",         "alpha",          "merge",
+      "connect",  "directphotons", "guidephotons",        "shadowroulette", "shadowthreshold"};
+  return names;
+}
 
 RenderSettings ReadRenderSettings(const SceneDescription& description, const RenderOverrides& overrides,
                                   Diagnostics& diagnostics) {

@@ -59,6 +59,9 @@ struct RenderSettings {
 RenderSettings ReadRenderSettings(const SceneDescription& description, const RenderOverrides& overrides,
                                   Diagnostics& diagnostics);
 
+// The parameters that Integrator may have in a scene.
+const std::vector<std::string>& IntegratorParameterNames();
+
 // Reads Camera. `worldToRender` moves the world to where it is rendered.
 std::unique_ptr<Camera> BuildCamera(const SceneDescription& description, const RenderSettings& settings,
                                     const Transform& worldToRender, Diagnostics& diagnostics);

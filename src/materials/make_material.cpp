@@ -29,6 +29,14 @@ constexpr MaterialType kTypes[] = {
 
 }  // namespace
 
+std::vector<std::string> MaterialTypeNames() {
+  std::vector<std::string> names;
+  for (const MaterialType& type : kTypes) {
+    if (type.make) names.emplace_back(type.name);
+  }
+  return names;
+}
+
 std::shared_ptr<const Material> MakeMaterial(const std::string& type, const ParameterList& parameters,
                                              const TextureLibrary& textures, const MaterialLookup& namedMaterials,
                                              Diagnostics& diagnostics) {

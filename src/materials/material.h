@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "geometry/geometry_scene.h"
 #include "materials/bsdf.h"
@@ -41,5 +42,8 @@ using MaterialLookup = std::function<std::shared_ptr<const Material>(const std::
 std::shared_ptr<const Material> MakeMaterial(const std::string& type, const ParameterList& parameters,
                                              const TextureLibrary& textures, const MaterialLookup& namedMaterials,
                                              Diagnostics& diagnostics);
+
+// The types that are supported, as scenes name them.
+std::vector<std::string> MaterialTypeNames();
 
 }  // namespace lampyr

@@ -1,0 +1,168 @@
+// Materials, every one of them mixed with a matte one as well; maps of normals and heights, sheets, cut-outs. A closed
+// room shows a material to photons and paths at every bounce. What is smooth stands in the room as an object that the
+// camera does not see, too: light tracing has its part in those.
+#include "matrix/matrix_rigs.h"
+
+namespace lampyr::test {
+
+using namespace rigs;
+
+namespace {
+
+struct Sample {
+  std::string type, name, parameters;
+  bool isSmooth = false;  // deltas alone
+  bool hasDelta = false;  // beside others
+};
+
+const std::vector<Sample>& MaterialSamples() {
+  static const std::vector<Sample> samples = {
+      {"diffuse", "matte", "\"rgb reflectance\" [0.7 0.6 0.5]"},
+      {"diffusetransmission", "leaf", "\"rgb reflectance\" [0.5 0.4 0.3] \"rgb transmittance\" [0.2 0.3 0.4]"},
+      {"conductor", "rough_metal", "\"rgb reflectance\" [0.8 0.7 0.6] \"float roughness\" 0.5"},
+      {"conductor", "mirror", "\"rgb reflectance\" [0.9 0.8 0.7] \"float roughness\" 0", true},
+      {"dielectric", "rough_glass", "\"float eta\" 1.5 \"float roughness\" 0.5"},
+      {"dielectric", "glass", "\"float eta\" 1.5 \"float roughness\" 0", true},
+      {"thindielectric", "pane", "\"float eta\" 1.5 \"rgb transmittance\" [0.9 0.7 0.8]", true},
+      {"coateddiffuse", "varnish", "\"rgb reflectance\" [0.6 0.5 0.4] \"float roughness\" 0", false, true},
+      {"coateddiffuse", "satin", "\"rgb reflectance\" [0.6 0.5 0.4] \"float roughness\" 0.4"},
+      {"coatedconductor", "lacquer", "\"float conductor.roughness\" 0.5 \"float interface.roughness\" 0", false, true},
+      {"coatedconductor", "smooth_lacquer", "\"float conductor.roughness\" 0 \"float interface.roughness\" 0", true},
+      {"interface", "boundary", "", true},
+  };
+  return samples;
+}
+
+std::string Statement(const Sample& sample) {
+  return "Material \"" + sample.type + "\" " + sample.parameters + " ";
+}
+std::string Named(const Sample& sample) {
+  return "MakeNamedMaterial \"" + sample.name + "\" \"string type\" \"" + sample.type + "\" " + sample.parameters +
+         "\n";
+}
+std::string Mix(const std::string& name, const std::string& a, const std::string& b, double amount) {
+  return "MakeNamedMaterial \"" + name + "\" \"string type\" \"mix\" \"string materials\" [ \"" + a + "\" \"" + b +
+         "\" ] \"float amount\" " + std::to_string(amount) + "\n";
+}
+
+// In the room, between the lamp and what is seen, and itself not seen.
+std::string Object(const std::string& material) {
+  return Scope(material + " Translate -0.15 0.5 0.55 Shape \"sphere\" \"float radius\" 0.25");
+}
+
+const std::string kMatteNamed =
+    "MakeNamedMaterial \"white\" \"string type\" \"diffuse\" \"rgb reflectance\" [0.7 0.6 0.5]\n";
+
+}  // namespace
+
+void AddMaterialRigs(std::vector<Rig>& rigs) {
+  for (const Sample& sample : MaterialSamples()) {
+    const std::string what = "material " + sample.type;
+    // Walls that all light passes would show nothing; a mirror without end shows the lamp alone.
+    if (!sample.isSmooth) rigs.push_back({sample.name + "_walls", Room(Statement(sample), Lamp()), {what}});
+    if (sample.isSmooth)
+      rigs.push_back({sample.name + "_object", Room(kMatte, Lamp() + Object(Statement(sample))), {what}});
+    if (!sample.isSmooth && !sample.hasDelta) continue;
+    const std::string mixed = kMatteNamed + Named(sample) + Mix("both", "white", sample.name, 0.5);
+    const std::string covers = what + " in mix";
+    Rig walls{
+        "mix_with_" + sample.name + "_walls", Room("NamedMaterial \"both\"", mixed + Lamp()), {covers, "material mix"}};
+    walls.cameraSeesDeltas = sample.isSmooth;
+    rigs.push_back(walls);
+    if (sample.isSmooth) {
+      rigs.push_back({"mix_with_" + sample.name + "_object",
+                      Room(kMatte, mixed + Lamp() + Object("NamedMaterial \"both\"")),
+                      {covers, "material mix"}});
+    }
+  }
+  // What the others are called, and mixes of what is rough.
+  rigs.push_back(
+      {"boundaries",
+       Room(kMatte, Lamp() +
+                        Scope("Material \"none\" Translate 0 0.3 0.4 Shape \"sphere\" \"float radius\" "
+                              "0.2") +
+                        Scope("Material \"\" Translate -0.6 -0.2 0.3 Shape \"sphere\" \"float radius\" 0.2")),
+       {"material none", "material "}});
+  std::string rough = kMatteNamed;
+  for (const Sample& sample : MaterialSamples()) {
+    if (!sample.isSmooth && !sample.hasDelta) rough += Named(sample);
+  }
+  rough += Mix("a", "matte", "leaf", 0.5) + Mix("b", "rough_metal", "rough_glass", 0.3) + Mix("c", "a", "b", 0.4) +
+           Mix("d", "c", "satin", 0.3);
+  rigs.push_back({"mix_of_what_is_rough",
+                  Room("NamedMaterial \"d\"", rough + Lamp()),
+                  {"material diffuse in mix", "material diffusetransmission in mix", "material conductor in mix",
+                   "material dielectric in mix", "material coateddiffuse in mix"}});
+  const Sample mirror = MaterialSamples()[3], glass = MaterialSamples()[5];
+  const std::string nested = kMatteNamed + Named(mirror) + Named(glass) + Mix("inner", "white", "mirror", 0.4) +
+                             Mix("outer", "glass", "inner", 0.7);
+  Rig walls{"mix_of_mixes_walls", Room("NamedMaterial \"outer\"", nested + Lamp()), {"material mix in mix"}};
+  walls.cameraSeesDeltas = true;
+  rigs.push_back(walls);
+  rigs.push_back({"mix_of_mixes_object",
+                  Room(kMatte, nested + Lamp() + Object("NamedMaterial \"outer\"")),
+                  {"material mix in mix"}});
+  // A share that varies over the surface, and reaches both ends.
+  const std::string spots =
+      "Texture \"share\" \"float\" \"checkerboard\" \"float uscale\" 6 \"float vscale\" 6 \"float tex1\" 1 \"float "
+      "tex2\" 0.3\nMakeNamedMaterial \"both\" \"string type\" \"mix\" \"string materials\" [ \"white\" \"mirror\" ] "
+      "\"texture amount\" \"share\"\n";
+  walls = {"mix_by_texture_walls",
+           Room("NamedMaterial \"both\"", kMatteNamed + Named(mirror) + spots + Lamp()),
+           {"material mix by texture"}};
+  walls.cameraSeesDeltas = true;
+  rigs.push_back(walls);
+
+  const std::string source = LAMPYR_SOURCE_DIR "/scenes/data/";
+  rigs.push_back({"normal_map",
+                  Room("Material \"diffuse\" \"rgb reflectance\" [0.7 0.6 0.5] \"string normalmap\" \"" + source +
+                           "paving-normal.png\"",
+                       Lamp()),
+                  {"normal map"}});
+  rigs.push_back({"normal_map_on_metal",
+                  Room("Material \"conductor\" \"float roughness\" 0.5 \"rgb reflectance\" [0.8 0.7 0.6] \"string "
+                       "normalmap\" \"" +
+                           source + "paving-normal.png\"",
+                       Lamp()),
+                  {"normal map"}});
+  const std::string bumps =
+      "Texture \"waves\" \"float\" \"wrinkled\" \"integer octaves\" 3\nTexture \"bumps\" \"float\" \"scale\" "
+      "\"texture tex\" \"waves\" \"float scale\" 0.05\n";
+  rigs.push_back({"bump_map",
+                  Room("Material \"diffuse\" \"rgb reflectance\" [0.7 0.6 0.5] \"texture displacement\" \"bumps\"",
+                       bumps + Lamp()),
+                  {"bump map"}});
+  rigs.push_back({"interpolated_normals",
+                  Floor(Lamp("-0.2 1 0.3"), "Material \"diffuse\" \"rgb reflectance\" [0.7 0.7 0.7]") +
+                      Scope("Material \"diffuse\" \"rgb reflectance\" [0.6 0.6 0.6] Translate -0.35 0.02 0.3 Shape "
+                            "\"trianglemesh\" \"point3 P\" [-.3 0 -.3 .3 0 -.3 .3 0 .3 -.3 0 .3] \"normal N\" [-.6 1 "
+                            "-.6 .6 1 -.6 .6 1 .6 -.6 1 .6] \"integer indices\" [0 2 1 0 3 2]"),
+                  {"shading normals"}});
+
+  const std::string sheet = "Translate 0 0.15 0.2 Rotate -90 1 0 0 Shape \"disk\" \"float radius\" 0.6 ";
+  rigs.push_back({"thin_surface",
+                  Room(kMatte, Lamp("0.1 0.55 0.2") +
+                                   Scope("Material \"thindielectric\" \"rgb transmittance\" [0.9 0.6 0.7] " + sheet) +
+                                   Scope("Material \"thindielectric\" Translate 0 -0.1 0 " + sheet)),
+                  {"thin surface", "material thindielectric"}});
+  const std::string holes =
+      "Texture \"holes\" \"float\" \"checkerboard\" \"float uscale\" 4 \"float vscale\" 4 \"float tex1\" 0.8 \"float "
+      "tex2\" 0.1\n";
+  rigs.push_back({"cut_out",
+                  Room(kMatte, holes + Lamp("0.1 0.55 0.2") +
+                                   Scope("Material \"diffuse\" " + sheet + "\"texture alpha\" \"holes\"")),
+                  {"cut-out"}});
+  rigs.push_back({"cut_out_seen",
+                  Floor(Lamp("-0.2 1 0.3") + holes +
+                        Scope("Material \"diffuse\" \"rgb reflectance\" [0.2 0.7 0.3] Translate -0.3 0.2 0.25 Rotate "
+                              "-90 1 0 0 Shape \"disk\" \"float radius\" 0.4 \"texture alpha\" \"holes\"")),
+                  {"cut-out"}});
+  rigs.push_back({"cut_out_lamp",
+                  Room(kMatte, holes + Scope("Translate 0.1 0.5 0.2 Material \"diffuse\" "
+                                             "AreaLightSource \"diffuse\" \"rgb L\" [4 3 2] Shape "
+                                             "\"sphere\" \"float radius\" 0.3 \"texture alpha\" "
+                                             "\"holes\"")),
+                  {"cut-out"}});
+}
+
+}  // namespace lampyr::test

@@ -1,0 +1,61 @@
+// The modes of the integrators: each is a column of the matrix.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "app/integrator_choice.h"
+
+namespace lampyr::test {
+
+struct Mode {
+  std::string name, integrator;
+  bool merges = true, connects = true;  // vcm
+  bool directFromPhotons = false;       // sppm
+  bool guides = false;                  // photons
+  bool learns = false;                  // the selection of lights
+  int samples = 8;                      // per pixel of a trial replica; at least that many in each
+
+  bool GathersPhotons() const { return lampyr::GathersPhotons(integrator) && merges; }
+  // Merging blurs: the radius is a fixed one, large enough to find photons and small beside what the radiance bends.
+  void Apply(RenderSettings& settings) const {
+    settings.integrator = integrator;
+    settings.merges = merges;
+    settings.connects = connects;
+    settings.directFromPhotons = directFromPhotons;
+    settings.learnLights = learns;
+    settings.photons.guided = guides;
+    settings.photons.radius = 0.1;
+    settings.photons.alpha = 1;
+    settings.photons.lightPaths = 600;
+  }
+};
+
+inline const std::vector<Mode>& Modes() {
+  static const std::vector<Mode> modes = {
+      {.name = "path, learning", .integrator = "path", .learns = true},
+      {.name = "light", .integrator = "light"},
+      {.name = "bdpt", .integrator = "bdpt"},
+      {.name = "bdpt, learning", .integrator = "bdpt", .learns = true},
+      {.name = "vcm", .integrator = "vcm"},
+      {.name = "vcm, guided, learning", .integrator = "vcm", .guides = true, .learns = true},
+      {.name = "vcm --no-connect", .integrator = "vcm", .connects = false},
+      {.name = "vcm --no-connect, guided, learning",
+       .integrator = "vcm",
+       .connects = false,
+       .guides = true,
+       .learns = true},
+      {.name = "sppm", .integrator = "sppm"},
+      {.name = "sppm, guided, learning", .integrator = "sppm", .guides = true, .learns = true},
+      {.name = "sppm --direct-photons", .integrator = "sppm", .directFromPhotons = true},
+      {.name = "sppm --direct-photons, guided", .integrator = "sppm", .directFromPhotons = true, .guides = true},
+  };
+  return modes;
+}
+
+// Mode `path` is what all are held against.
+inline Mode Reference() {
+  return {.name = "path", .integrator = "path"};
+}
+
+}  // namespace lampyr::test

@@ -1,0 +1,281 @@
+// The matrix of agreement: every feature crossed with every integrator in every mode.
+//
+// A row is a rig (matrix_rigs.h), a column a mode of an integrator (matrix_modes.h). In each cell the mode's picture
+// is held against path tracing's: the means of the picture and of its quarters, per channel, from replicas with other
+// seeds, by Welch's test. All cells together raise a false alarm once in a thousand suites (Šidák).
+//
+// A trial tells how many samples a cell takes until it would notice a picture that is so much too bright in 19 of 20
+// cases: 5 % in the default suite, 2 % in `tests/run matrix-whole` (LAMPYR_MATRIX_NOTICES). A cell that cannot afford
+// them fails.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <regex>
+
+#include "lights/type_registry.h"
+#include "matrix/matrix_modes.h"
+#include "matrix/matrix_rigs.h"
+#include "support/render_scene.h"
+#include "support/replicas.h"
+
+namespace lampyr::test {
+namespace {
+
+constexpr double kFamilyWise = 1e-3;
+constexpr int kReplicas = 32, kTrials = 12;
+constexpr int kMostRounds = 4;
+// Standard errors between the truth and a threshold that it crosses in 19 of 20 cases.
+constexpr double kPower = 1.645;
+// Samples per pixel of a cell, at most: 12 × 12 pixels.
+constexpr double kMostSamples = 200000;
+
+// Relative bias of a picture that every cell notices.
+double Noticed() {
+  const char* text = std::getenv("LAMPYR_MATRIX_NOTICES");
+  return text ? std::strtod(text, nullptr) : 0.05;
+}
+
+const std::vector<Rig>& Rigs() {
+  static const std::filesystem::path folder = [] {
+    const auto path = std::filesystem::temp_directory_path() / ("lampyr-matrix-" + std::to_string(getpid()));
+    std::filesystem::create_directories(path);
+    return path;
+  }();
+  static const std::vector<Rig> rigs = MatrixRigs(folder);
+  struct Cleaner {
+    ~Cleaner() { std::filesystem::remove_all(folder); }
+  };
+  static const Cleaner cleaner;
+  return rigs;
+}
+
+bool Sees(const Rig& rig, const Mode& mode) {
+  return mode.integrator != "light" || !rig.cameraSeesDeltas;
+}
+
+int Cells() {
+  int cells = 0;
+  for (const Rig& rig : Rigs()) {
+    for (const Mode& mode : Modes()) cells += Sees(rig, mode);
+  }
+  return cells;
+}
+
+BuiltScene Build(const std::string& text) {
+  Diagnostics diagnostics(Diagnostics::Mode::Collect);
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("lampyr-matrix-" + std::to_string(getpid()));
+  return BuildScene(ParseScene(text, (folder / "rig.pbrt").string(), diagnostics), {}, true, diagnostics);
+}
+
+Replicas RenderMode(BuiltScene& built, const Mode& mode, int replicas, int samples, uint64_t seed) {
+  mode.Apply(built.settings);
+  Replicas result;
+  for (int i = 0; i < replicas; ++i) {
+    built.settings.seed = seed + static_cast<uint64_t>(i);
+    const Rendered rendered = RenderBuilt(built, samples, 1);
+    result.images.push_back(rendered.image);
+    result.faults += rendered.outcome.counts.droppedSamples + rendered.rejectedRays;
+  }
+  return result;
+}
+
+// Relative standard error of one replica's mean.
+double NoiseOf(const Replicas& replicas) {
+  using namespace replicas_internal;
+  double worst = 0;
+  for (size_t c = 0; c < 3; ++c) {
+    const Moments moments = MomentsOf(Means(replicas, c, 0, 0, replicas.images[0].width, replicas.images[0].height));
+    if (moments.mean > 0)
+      worst = std::max(worst, std::sqrt(moments.variance * static_cast<double>(replicas.images.size())) / moments.mean);
+  }
+  return worst;
+}
+
+struct Cell {
+  Replicas replicas;
+  int samples = 0;  // per pixel and replica
+
+  void Add(const Replicas& more) {
+    replicas.images.insert(replicas.images.end(), more.images.begin(), more.images.end());
+    replicas.faults += more.faults;
+  }
+};
+
+// As many samples as make the standard error of the mean of all replicas `error`, told by a trial.
+Cell RenderTo(BuiltScene& built, const Mode& mode, double error, uint64_t seed) {
+  const double noise = NoiseOf(RenderMode(built, mode, kTrials, mode.samples, seed + 1000000));
+  const double wanted = mode.samples * Sqr(noise / error) / kReplicas;
+  Cell cell;
+  cell.samples = static_cast<int>(std::clamp(std::ceil(wanted), double(mode.samples), kMostSamples / kReplicas));
+  cell.replicas = RenderMode(built, mode, kReplicas, cell.samples, seed);
+  return cell;
+}
+
+struct Verdict {
+  double bias = 0, error = 0;          // of the mean, of the channel that is farthest off
+  double largestZ = 0, threshold = 0;  // over all means
+  double noticed = 0;                  // the relative bias of a picture that would be found in 19 of 20 cases
+  bool Agrees() const { return largestZ <= threshold; }
+};
+
+Verdict Compare(const Replicas& a, const Replicas& b, double rate) {
+  using namespace replicas_internal;
+  const int width = a.images[0].width, height = a.images[0].height;
+  Verdict verdict;
+  const auto n = static_cast<double>(std::min(a.images.size(), b.images.size()));
+  const auto compare = [&](size_t c, int x0, int y0, int x1, int y1) {
+    const Moments first = MomentsOf(Means(a, c, x0, y0, x1, y1)), second = MomentsOf(Means(b, c, x0, y0, x1, y1));
+    const double z = Deviate(first, second, n);
+    verdict.largestZ = std::max(verdict.largestZ, std::abs(z));
+    return std::pair((first.mean - second.mean) / second.mean,
+                     std::sqrt(first.variance + second.variance) / second.mean);
+  };
+  verdict.threshold = NormalQuantileTwoSided(SidakRate(rate, 15));
+  for (size_t c = 0; c < 3; ++c) {
+    const auto [bias, error] = compare(c, 0, 0, width, height);
+    if (std::abs(bias) >= std::abs(verdict.bias)) verdict.bias = bias;
+    verdict.error = std::max(verdict.error, error);
+    for (const int x : {0, width / 2}) {
+      for (const int y : {0, height / 2}) compare(c, x, y, x + width / 2, y + height / 2);
+    }
+  }
+  // Student's quantile that belongs to the normal threshold ([Wallace59], inverted), for the degrees of freedom of a
+  // mode that is much noisier than the reference.
+  const double nu = n - 1, z = verdict.threshold * (8 * nu + 3) / (8 * nu + 1);
+  const double student = std::sqrt(nu * std::expm1(z * z / nu));
+  verdict.noticed = (student + kPower) * verdict.error;
+  return verdict;
+}
+
+// The error that a cell's means may have for Noticed(), of the mode and of the reference.
+struct Errors {
+  double mode, reference;
+};
+Errors WantedErrors(double rate) {
+  const double threshold = NormalQuantileTwoSided(SidakRate(rate, 15));
+  const double nu = kReplicas - 1, z = threshold * (8 * nu + 3) / (8 * nu + 1);
+  const double error = 0.95 * Noticed() / (std::sqrt(nu * std::expm1(z * z / nu)) + kPower);
+  return {0.9 * error, 0.43 * error};
+}
+
+class Matrix : public testing::TestWithParam<Rig> {};
+
+TEST_P(Matrix, Agrees) {
+  const Rig& rig = GetParam();
+  static const double rate = SidakRate(kFamilyWise, Cells());
+  const Errors errors = WantedErrors(rate);
+  BuiltScene built = Build(rig.text);
+  const Cell reference = RenderTo(built, Reference(), errors.reference, 1);
+  EXPECT_EQ(reference.replicas.faults, 0u);
+  uint64_t seed = 1;
+  const char* only = std::getenv("LAMPYR_MATRIX_MODE");
+  for (const Mode& mode : Modes()) {
+    seed += 10000;
+    if (!Sees(rig, mode) || (only && mode.name != only)) continue;
+    Cell cell = RenderTo(built, mode, errors.mode, seed);
+    Verdict verdict = Compare(cell.replicas, reference.replicas, rate);
+    // A trial of a few replicas tells the noise to a quarter or so. More are asked for by the noise alone: that is no
+    // bias.
+    for (int round = 1; round < kMostRounds && verdict.noticed > Noticed(); ++round) {
+      cell.Add(RenderMode(built, mode, kReplicas, cell.samples, seed + 1000 * static_cast<uint64_t>(round)));
+      verdict = Compare(cell.replicas, reference.replicas, rate);
+    }
+    std::printf("[   info   ] %-36s %-36s %+.2f %% +- %.2f %%, largest |z| %.2f (%.2f), notices %.2f %%, %d samples\n",
+                rig.name.c_str(), mode.name.c_str(), 100 * verdict.bias, 100 * verdict.error, verdict.largestZ,
+                verdict.threshold, 100 * verdict.noticed, cell.samples * static_cast<int>(cell.replicas.images.size()));
+    EXPECT_TRUE(verdict.Agrees()) << rig.name << " by " << mode.name << " is off by " << 100 * verdict.bias << " %";
+    EXPECT_LE(verdict.noticed, Noticed()) << rig.name << " by " << mode.name << ": too noisy";
+    EXPECT_EQ(cell.replicas.faults, 0u) << rig.name << " by " << mode.name << ": samples dropped, or rays rejected";
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, Matrix, testing::ValuesIn(Rigs()), [](const auto& info) { return info.param.name; });
+
+bool IsCovered(const std::string& what) {
+  return std::any_of(Rigs().begin(), Rigs().end(), [&](const Rig& rig) {
+    return std::find(rig.covers.begin(), rig.covers.end(), what) != rig.covers.end();
+  });
+}
+
+TEST(MatrixIsWhole, EveryRegisteredTypeHasARig) {
+  for (const std::string& type : MaterialTypeNames()) {
+    EXPECT_TRUE(IsCovered("material " + type)) << "material " << type;
+    // "none" and "" are other names of "interface".
+    if (type == "none" || type.empty()) continue;
+    EXPECT_TRUE(IsCovered("material " + type + " in mix")) << "a mix with " << type;
+  }
+  for (const LightType* type : TypeRegistry::BuiltIn().Lights()) {
+    EXPECT_TRUE(IsCovered((type->isAreaLight ? "area light " : "light ") + type->name)) << type->name;
+  }
+  for (const FilterType* type : TypeRegistry::BuiltIn().Filters()) {
+    EXPECT_TRUE(IsCovered("filter " + type->name)) << type->name;
+  }
+  for (const char* camera : {"perspective", "orthographic", "spherical"})
+    EXPECT_TRUE(IsCovered(std::string("camera ") + camera)) << camera;
+  std::printf("[   info   ] %zu rigs, %zu modes, %d cells\n", Rigs().size(), Modes().size(), Cells());
+}
+
+// Each integrator, and each setting that decides on how light is found, in both of its ways.
+TEST(MatrixIsWhole, EveryModeIsAColumn) {
+  for (const std::string& name : IntegratorNames()) {
+    const bool isThere =
+        name == Reference().integrator ||
+        std::any_of(Modes().begin(), Modes().end(), [&](const Mode& mode) { return mode.integrator == name; });
+    EXPECT_TRUE(isThere) << name;
+    if (name == "light") continue;
+    // It learns, and does not.
+    for (const bool learns : {false, true}) {
+      EXPECT_TRUE(std::any_of(Modes().begin(), Modes().end(),
+                              [&](const Mode& mode) { return mode.integrator == name && mode.learns == learns; }) ||
+                  (name == "path" && !learns))
+          << name << (learns ? " learning" : "");
+    }
+    if (!GathersPhotons(name)) continue;
+    for (const bool guides : {false, true}) {
+      EXPECT_TRUE(std::any_of(Modes().begin(), Modes().end(),
+                              [&](const Mode& mode) { return mode.integrator == name && mode.guides == guides; }))
+          << name << (guides ? " guided" : "");
+    }
+  }
+  // Settings of integrators in scenes: those that are no mode change no more than the noise or the blur.
+  const std::vector<std::string> modes = {"merge", "connect", "directphotons", "guidephotons"},
+                                 others = {"maxdepth", "lightsampler",   "photonsperiteration", "radius",
+                                           "alpha",    "shadowroulette", "shadowthreshold"};
+  for (const std::string& name : IntegratorParameterNames()) {
+    EXPECT_TRUE(std::count(modes.begin(), modes.end(), name) + std::count(others.begin(), others.end(), name) == 1)
+        << "the integrators' parameter \"" << name << "\" is neither a mode nor said to be none";
+  }
+}
+
+// Ten cells whose picture is as much too bright as they are said to notice.
+TEST(MatrixNotices, WhatIsPlantedInTenCells) {
+  const double rate = SidakRate(kFamilyWise, Cells());
+  const Errors errors = WantedErrors(rate);
+  const char* rigs[] = {"matte_walls", "mix_with_mirror_object", "light_spot", "filter_gobo", "camera_spherical"};
+  const char* modes[] = {"bdpt", "vcm --no-connect", "sppm --direct-photons", "light", "vcm"};
+  int found = 0, planted = 0;
+  for (size_t i = 0; i < 5; ++i) {
+    const auto rig = std::find_if(Rigs().begin(), Rigs().end(), [&](const Rig& r) { return r.name == rigs[i]; });
+    ASSERT_NE(rig, Rigs().end()) << rigs[i];
+    BuiltScene built = Build(rig->text);
+    // Exposure is no part of what integrators know of a scene.
+    BuiltScene bright = Build(rig->text);
+    bright.settings.imagingRatio *= 1 + static_cast<float>(Noticed());
+    const Cell reference = RenderTo(built, Reference(), errors.reference, 5);
+    for (size_t k = 0; k < 2; ++k) {
+      const auto mode =
+          std::find_if(Modes().begin(), Modes().end(), [&](const Mode& m) { return m.name == modes[(i + 2 * k) % 5]; });
+      ASSERT_NE(mode, Modes().end());
+      const Cell cell = RenderTo(bright, *mode, errors.mode, 7000 + 100 * i);
+      ++planted;
+      found += Compare(cell.replicas, reference.replicas, rate).Agrees() ? 0 : 1;
+    }
+  }
+  EXPECT_EQ(found, planted);
+  std::printf("[   info   ] %d of %d found\n", found, planted);
+}
+
+}  // namespace
+}  // namespace lampyr::test
