@@ -104,6 +104,7 @@ struct SampleSinks {
   const PhotonPass* gather = nullptr;  // the photons that may be used; null: none yet
   PhotonList* photons = nullptr;       // where those of this sample's light path go; null: nobody wants them
   bool withOrigin = false;             // and where that path comes from
+  bool isForPhotonsAlone = false;      // nothing else of the light path is wanted: it is not connected to the camera
   // What the sample returns, split by LightingServices::GroupOf the light that it comes from; null: nobody wants it.
   // The caller has cleared it.
   LayerSample* layers = nullptr;

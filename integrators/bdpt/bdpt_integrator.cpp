@@ -453,15 +453,15 @@ Color BdptIntegrator::SeenLight(Run& run, const Flight& flight, const RayHit& hi
 struct BdptIntegrator::LightVisitor final : LightSubpathVisitor {
   LightVisitor(const BdptIntegrator& integrator, Run& aRun) : own(integrator), run(aRun) {}
   void Emitted(const EmittedPhoton& photon) override {
-    if (own.settings_.connects) own.SeeLightPoint(run, photon);
+    if (own.settings_.connects && !run.sinks.isForPhotonsAlone) own.SeeLightPoint(run, photon);
   }
   void Landed(const EmittedPhoton& photon, const PathVertex& first) override {
     if (run.sinks.withOrigin) run.sinks.photons->SetOrigin(OriginOf(own.lighting_, photon, first));
   }
   void Arrived(const LightSubpath& path) override {
     const PathVertex& vertex = path.Last();
-    if (own.settings_.connects) own.SeeLightVertex(run);
-    if (run.sinks.photons && !vertex.isDelta)
+    if (own.settings_.connects && !run.sinks.isForPhotonsAlone) own.SeeLightVertex(run);
+    if (run.sinks.photons && vertex.storesPhotons)
       run.sinks.photons->Add(vertex, path.count, own.lighting_.GroupOf(path.light));
   }
 
@@ -473,8 +473,11 @@ Color BdptIntegrator::Sample(const Ray* ray, float time, Sampler& sampler, const
   thread_local Workspace workspace;
   Run run{workspace, sampler, sinks, time};
   if (sinks.gather) run.merge = Mis(sinks.gather->MergesPerDensity());
-  LightVisitor visitor(*this, run);
-  light_.Trace(time, sampler, sinks.counts, workspace.light, visitor);
+  workspace.light.count = 0;
+  if (settings_.connects || sinks.photons) {
+    LightVisitor visitor(*this, run);
+    light_.Trace(time, sampler, sinks.counts, workspace.light, visitor);
+  }
   return ray ? TraceCamera(run, *ray) : Color(0.0f);
 }
 

@@ -20,7 +20,11 @@ struct PathVertex {
   // the first vertex of a light subpath, because a light may show diffuse and specular lobes different radiance.
   Color diffuse, specular;
   Receiver receiver;
+  // Probability that a ray meets the surface here: less than 1 on cut-outs. It is in the density of whoever came here,
+  // once.
+  float coverage = 1;
   bool isDelta = false;          // only deltas: nothing can be connected to it
+  bool storesPhotons = true;     // of its material, whatever was drawn of a mix: who gathers draws anew
   bool isSeenByCamera = true;    // camera rays meet it
   bool isSeenByIndirect = true;  // rays of light subpaths meet it
   // Of the event that led on from here; only on subpaths that go on.

@@ -68,11 +68,13 @@ class PhotonList {
     origins_.resize(KeptOrigins());  // without those of paths that left no photon
     origins_.push_back(origin);
   }
-  // `group`: of its light (LightGroups). A depth beyond kDeepest is taken for that.
+  // `group`: of its light (LightGroups). A depth beyond kDeepest is taken for that. On a cut-out both the photon and
+  // who gathers it meet the surface by chance: the photon stands for those that have passed, too.
   void Add(const PathVertex& vertex, size_t depth, uint32_t group = 0) {
+    const float passed = vertex.coverage > 0 ? 1 / vertex.coverage : 0.0f;
     const auto origin = static_cast<uint32_t>(origins_.size()) - 1;
-    photons_.push_back({vertex.point.position, vertex.toPrevious, vertex.diffuse, vertex.specular, vertex.weight,
-                        static_cast<float>(vertex.previousPerSolidAngle), PackedNormal(vertex.bsdf.Ng()),
+    photons_.push_back({vertex.point.position, vertex.toPrevious, vertex.diffuse * passed, vertex.specular * passed,
+                        vertex.weight, static_cast<float>(vertex.previousPerSolidAngle), PackedNormal(vertex.bsdf.Ng()),
                         static_cast<uint16_t>(std::min(depth, kDeepest)), static_cast<uint16_t>(group), origin});
   }
   static constexpr size_t kDeepest = 65535;

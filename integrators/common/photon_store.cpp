@@ -39,11 +39,14 @@ void PhotonStore::Take(std::vector<PhotonList>& lists) {
   }
 }
 
+void PhotonStore::EndGathering() {
+  if (!open_.use) return;
+  learning_->Learn(*open_.use);
+  open_.use.reset();
+}
+
 void PhotonStore::Finish(uint32_t next) {
-  if (open_.use) {
-    learning_->Learn(*open_.use);
-    open_.use.reset();
-  }
+  EndGathering();
   isTaken_ = true;
   pass_ = next;
 }

@@ -41,6 +41,8 @@ class PhotonStore {
 
   // Whether what has been taken is for this pass.
   bool IsFor(uint32_t pass) const { return isTaken_ && pass_ == pass; }
+  // The photons of the pass that is open have been gathered: what they were good for is learned.
+  void EndGathering();
   // All light paths of a pass are traced, and its own photons are gathered; those of the paths are for pass `next`.
   void Finish(uint32_t next);
   // Makes the map, unless it is made. Requires IsFor(pass).

@@ -23,7 +23,9 @@ bool MakeVertex(const RenderScene& scene, const Ray& ray, const RayHit& hit, con
   const Normal3 Ns = vertex.bsdf.ShadingFrame().z;
   vertex.receiver = {point.position, glm::dot(Ns, vertex.toPrevious) < 0 ? -Ns : Ns, vertex.bsdf.IsTransmissive(),
                      attributes.link};
+  vertex.coverage = attributes.alpha ? attributes.alpha->Alpha(point.uv, point.position) : 1.0f;
   vertex.isDelta = vertex.bsdf.IsDelta();
+  vertex.storesPhotons = !vertex.isDelta || !material->IsAlwaysDelta();
   vertex.isSeenByCamera = (attributes.visibility & visibility::kCamera) != 0;
   vertex.isSeenByIndirect = (attributes.visibility & visibility::kIndirect) != 0;
   return true;

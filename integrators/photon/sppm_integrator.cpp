@@ -50,7 +50,7 @@ struct SppmIntegrator::Kept final : LightSubpathVisitor {
     if (withOrigin) photons.SetOrigin(OriginOf(lighting, photon, vertex));
   }
   void Arrived(const LightSubpath& path) override {
-    if (path.count >= firstDepth && !path.Last().isDelta)
+    if (path.count >= firstDepth && path.Last().storesPhotons)
       photons.Add(path.Last(), path.count, lighting.GroupOf(path.light));
   }
 

@@ -17,11 +17,21 @@ namespace {
 constexpr int kTileSize = 16;
 constexpr uint64_t kChunkPaths = 4096;  // light paths that one thread traces before their splats are added
 constexpr uint64_t kBeforeTheFirst = 0x6a09e667f3bcc908;  // of the seed of the photons that the first pass gathers
-constexpr int kLightPaths = -1;                           // where camera samples have the row of their pixel
+// Where camera samples have the row of their pixel:
+constexpr int kLightPaths = -1, kPassTimes = -2;
 
 // One time of the shutter for all of a path.
 float SampleTime(const RenderScene& scene, Sampler& sampler) {
   if (!scene.hasMotion) return 0;
+  sampler.SetDimension(dimensions::kTime);
+  return sampler.Get1D();
+}
+
+// The time of all paths of a pass, in scenes with motion: a photon is where its path was at that time, and only paths
+// of the same time may meet it. Times of consecutive passes are stratified.
+float PassTime(const RenderSettings& settings, uint32_t pass) {
+  Sampler sampler(settings.sampler, settings.seed);
+  sampler.StartPixelSample(0, kPassTimes, pass);
   sampler.SetDimension(dimensions::kTime);
   return sampler.Get1D();
 }
@@ -192,8 +202,12 @@ RenderCounts RenderPass(const RenderScene& scene, const BidirectionalIntegrator&
   PhotonStore& store = kept ? *kept : here;
   const PhotonPass* gather = nullptr;
   const uint64_t lightPaths = wanted ? store.LightPaths() : pixels;
+  // Photons are those that the light paths of the pass before have left, or, where things move, those of paths that are
+  // traced for them at the time of the pass that gathers them.
+  const bool hasTimes = wanted && scene.hasMotion;
   // The pixels from `round` on, as many as the chunks take. Without the camera: light paths and their photons alone.
   const auto render = [&](uint64_t round, uint64_t end, uint32_t index, uint64_t seed, bool withCamera) {
+    const float passTime = hasTimes ? PassTime(settings, index) : 0;
     ParallelFor(chunks, threads, [&](int chunk) {
       const auto own = static_cast<size_t>(chunk);
       SplatList& splats = sweep.splats[own];
@@ -203,19 +217,23 @@ RenderCounts RenderPass(const RenderScene& scene, const BidirectionalIntegrator&
       const PhotonPass* found = withCamera ? gather : nullptr;
       SampleAdder adder(settings, film, ofChunk);
       LayerSample* layers = adder.StartLayers();
-      const SampleSinks withPhotons{splats, ofChunk, recorder, found, &sweep.photons[own], store.WantsOrigins(),
-                                    layers};
-      const SampleSinks withoutPhotons{splats, ofChunk, recorder, found, nullptr, false, layers};
+      SampleSinks withoutPhotons{splats, ofChunk, recorder, found};
+      withoutPhotons.layers = layers;
+      SampleSinks withPhotons = withoutPhotons;
+      withPhotons.photons = &sweep.photons[own];
+      withPhotons.withOrigin = store.WantsOrigins();
+      withPhotons.isForPhotonsAlone = !withCamera;
       Sampler sampler(settings.sampler, seed);
       const uint64_t begin = round + static_cast<uint64_t>(chunk) * chunkPaths;
       for (uint64_t i = begin; i < std::min(begin + chunkPaths, end); ++i) {
         const int x = static_cast<int>(i % width), y = static_cast<int>(i / width);
         sampler.StartPixelSample(x, y, index);
         splats.StartPath();
-        const bool keepsPhotons = wanted && i < lightPaths && store.HasRoom();
+        const bool keepsPhotons = wanted && i < lightPaths && store.HasRoom() && !(hasTimes && withCamera);
+        if (!keepsPhotons && !withCamera) break;
         if (keepsPhotons) sweep.photons[own].StartPath();
         const SampleSinks& sinks = keepsPhotons ? withPhotons : withoutPhotons;
-        const float time = SampleTime(scene, sampler);
+        const float time = hasTimes ? passTime : SampleTime(scene, sampler);
         if (!withCamera || x < crop.x0 || x >= crop.x1 || y < crop.y0 || y >= crop.y1) {
           if (recorder) recorder->StartSample(x, y, 0);
           integrator.Sample(nullptr, time, sampler, sinks);
@@ -237,22 +255,32 @@ RenderCounts RenderPass(const RenderScene& scene, const BidirectionalIntegrator&
       store.Take(sweep.photons);
     }
   };
-  if (wanted && !store.IsFor(first)) {
+  const uint64_t seedOfPhotons = MixBits(settings.seed + kBeforeTheFirst);
+  if (wanted && !hasTimes && !store.IsFor(first)) {
     // What the pass before would have left; before the very first one, photons of light paths of their own.
     store.Clear();
-    tracePhotons(0, first == 0 ? 0 : first - 1, first == 0 ? MixBits(settings.seed + kBeforeTheFirst) : settings.seed);
+    tracePhotons(0, first == 0 ? 0 : first - 1, first == 0 ? seedOfPhotons : settings.seed);
     store.Finish(first);
   }
   // One sample of all pixels after the other: chunks never meet in a pixel, and the film adds paths in their order.
   for (uint32_t index = first; index < first + count; ++index) {
+    if (hasTimes) {
+      store.Clear();
+      tracePhotons(0, index, seedOfPhotons);
+      store.Finish(index);
+    }
     if (wanted) gather = &store.Open(index, threads);
     for (uint64_t round = 0; round < pixels; round += perRound) {
       render(round, pixels, index, settings.seed, true);
-      if (wanted) store.Take(sweep.photons);
+      if (wanted && !hasTimes) store.Take(sweep.photons);
       film.AddSplats(filter, sweep.splats, threads);
       if (techniques) techniques->AddSplats(filter, recorders, threads);
     }
     if (!wanted) continue;
+    if (hasTimes) {
+      store.EndGathering();
+      continue;
+    }
     tracePhotons(pixels, index, settings.seed);
     store.Finish(index + 1);
   }
@@ -322,12 +350,16 @@ class LearnedLighting {
 
 // At a milestone.
 void ProgressiveRender::Learn(uint32_t samples) {
+  bool hasChanged = false;
   if (learning_ && learning_->IsRecording()) {
     learning_->Freeze();
     if (samples >= kLastLearned) learning_->StopRecording();
+    hasChanged = true;
   }
-  // The photons of the last pass have densities that are no longer: others are traced in their place.
-  if (guiding_ && guiding_->IsRecording() && guiding_->Decide(samples)) photons_->Clear();
+  if (guiding_ && guiding_->IsRecording() && guiding_->Decide(samples)) hasChanged = true;
+  // The photons of the last pass have densities, or weights of a selection, that are no longer: others are traced in
+  // their place.
+  if (hasChanged && photons_) photons_->Clear();
 }
 
 void ProgressiveRender::AddSamples(int count) {

@@ -106,7 +106,8 @@ RenderCounts RenderPass(const RenderScene& scene, const LightPathIntegrator& int
 // Both: a light path for each sample of each pixel of the full image, a camera path for those of the crop. What lies in
 // a crop is the same as in the whole, unless something was learned from what is seen. Where the integrator gathers
 // photons, each sample is a pass: it uses those that the sample before has left. `kept` is what one call leaves to the
-// next; without it, or where it does not continue, the light paths of the sample before are traced again.
+// next; without it, or where it does not continue, the light paths of the sample before are traced again. In scenes
+// with motion all paths of such a pass have one time, and its photons are of light paths of that time.
 RenderCounts RenderPass(const RenderScene& scene, const BidirectionalIntegrator& integrator,
                         const RenderSettings& settings, const PixelFilter& filter, uint32_t first, uint32_t count,
                         int threads, Film& film, TechniqueImages* techniques = nullptr, PhotonStore* kept = nullptr);

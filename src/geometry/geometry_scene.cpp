@@ -497,7 +497,10 @@ Color TintBefore(const std::vector<PassedSheet>& sheets, float t) {
 bool GeometryScene::Intersect(const Ray& ray, uint32_t kinds, RayHit& hit, Color& passed) const {
   const Implementation& scene = *implementation_;
   passed = Color(1.0f);
-  if (!scene.Accept(ray)) return false;
+  if (!scene.Accept(ray)) {
+    passed = Color(0.0f);
+    return false;
+  }
   TraceContext trace;
   rtcInitIntersectContext(&trace.context);
   if (scene.hasTints) trace.sheets = &NoSheets();
@@ -525,7 +528,7 @@ bool GeometryScene::Intersect(const Ray& ray, uint32_t kinds, RayHit& hit, Color
 
 Color GeometryScene::Transmission(const Ray& ray, uint32_t kinds) const {
   const Implementation& scene = *implementation_;
-  if (!scene.Accept(ray)) return Color(1.0f);
+  if (!scene.Accept(ray)) return Color(0.0f);
   TraceContext trace;
   rtcInitIntersectContext(&trace.context);
   RTCRay shadowRay;

@@ -85,7 +85,7 @@ class GeometryScene {
 
   // Nearest hit with t in (0, ray.tMax] on a primitive visible to one of `kinds`. False: nothing, `hit` untouched. By
   // chance, in the right proportion, the ray passes cut-outs and sheets on its way; `passed` becomes what it is
-  // multiplied by for that.
+  // multiplied by for that. A ray that is rejected (RejectedRays) hits nothing and carries nothing: `passed` is 0.
   bool Intersect(const Ray& ray, uint32_t kinds, RayHit& hit, Color& passed) const;
   bool Intersect(const Ray& ray, uint32_t kinds, RayHit& hit) const {
     Color passed;
@@ -93,7 +93,8 @@ class GeometryScene {
   }
 
   // What is left of light after (0, ray.tMax): 0 behind something opaque, 1 where nothing is, and behind cut-outs and
-  // sheets the product of what they let pass, which is the mean of what Intersect makes of it.
+  // sheets the product of what they let pass, which is the mean of what Intersect makes of it. 0 for a ray that is
+  // rejected.
   Color Transmission(const Ray& ray, uint32_t kinds) const;
   // Whether that is nothing.
   bool Occluded(const Ray& ray, uint32_t kinds) const { return Transmission(ray, kinds).IsBlack(); }
@@ -108,6 +109,7 @@ class GeometryScene {
   size_t PrimitiveCount() const;             // shapes, instanced ones once
   const Bounds3& GetBounds() const;          // empty for an empty scene
   BoundingSphere GetBoundingSphere() const;  // radius 1 around 0 for an empty scene
+  // Rays that Embree would not survive: not finite, without a direction, or from beyond all bounds.
   uint64_t RejectedRays() const;
 
  private:

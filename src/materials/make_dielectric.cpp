@@ -29,6 +29,7 @@ class ThinDielectric final : public Material, public SheetSource {
   }
   bool MayTransmit() const override { return true; }
   bool HasDelta() const override { return true; }
+  bool IsAlwaysDelta() const override { return true; }
   const SheetSource* Sheet() const override { return this; }
 
   float PassingPart(float cosTheta) const override { return 1 - ThinReflectance(cosTheta, eta_); }

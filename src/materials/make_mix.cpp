@@ -26,6 +26,7 @@ class MixMaterial final : public Material {
   bool IsInterface() const override { return materials_[0]->IsInterface() && materials_[1]->IsInterface(); }
   bool MayTransmit() const override { return materials_[0]->MayTransmit() || materials_[1]->MayTransmit(); }
   bool HasDelta() const override { return materials_[0]->HasDelta() || materials_[1]->HasDelta(); }
+  bool IsAlwaysDelta() const override { return materials_[0]->IsAlwaysDelta() && materials_[1]->IsAlwaysDelta(); }
 
  private:
   const Material& Choose(const SurfacePoint& point, const Vector3& wo) const {
@@ -50,6 +51,7 @@ class InterfaceMaterial final : public Material {
   bool IsInterface() const override { return true; }
   bool MayTransmit() const override { return true; }
   bool HasDelta() const override { return true; }
+  bool IsAlwaysDelta() const override { return true; }
 };
 
 }  // namespace

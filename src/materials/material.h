@@ -27,6 +27,9 @@ class Material {
   // Whether some point of it may scatter by deltas only, or may transmit: what the scene has to be modelled for.
   virtual bool MayTransmit() const { return false; }
   virtual bool HasDelta() const { return false; }
+  // True if it scatters by deltas only, everywhere and in every draw: no photon can be gathered there. A mix is drawn
+  // anew by each path that meets it, so that a draw of it that is a delta says nothing of the draws of other paths.
+  virtual bool IsAlwaysDelta() const { return false; }
   // Of a sheet without thickness: what of the light goes straight on without meeting it. Null: not one. Whoever traces
   // rays must see to it where SurfacePoint::isSheet says so.
   virtual const SheetSource* Sheet() const { return nullptr; }

@@ -148,14 +148,18 @@ void AddMaterialRigs(std::vector<Rig>& rigs) {
   const std::string holes =
       "Texture \"holes\" \"float\" \"checkerboard\" \"float uscale\" 4 \"float vscale\" 4 \"float tex1\" 0.8 \"float "
       "tex2\" 0.1\n";
+  // Balls: photons near the rim of something flat would be missed.
   rigs.push_back({"cut_out",
-                  Room(kMatte, holes + Lamp("0.1 0.55 0.2") +
-                                   Scope("Material \"diffuse\" " + sheet + "\"texture alpha\" \"holes\"")),
+                  Room(kMatte, holes + Lamp("0.1 0.6 0.2") +
+                                   Scope("Material \"diffuse\" Translate 0 0 0.2 Shape \"sphere\" \"float "
+                                         "radius\" 0.3 \"texture alpha\" \"holes\"")),
                   {"cut-out"}});
-  rigs.push_back({"cut_out_seen",
-                  Floor(Lamp("-0.2 1 0.3") + holes +
-                        Scope("Material \"diffuse\" \"rgb reflectance\" [0.2 0.7 0.3] Translate -0.3 0.2 0.25 Rotate "
-                              "-90 1 0 0 Shape \"disk\" \"float radius\" 0.4 \"texture alpha\" \"holes\"")),
+  const std::string seen =
+      "Material \"diffuse\" \"rgb reflectance\" [0.2 0.7 0.3] Translate -0.3 0.25 0.25 Shape \"sphere\" \"float "
+      "radius\" 0.2 ";
+  rigs.push_back({"cut_out_seen", Floor(Lamp("-0.2 1 0.3") + Scope(seen + "\"float alpha\" 0.4")), {"cut-out"}});
+  rigs.push_back({"cut_out_by_texture_seen",
+                  Floor(Lamp("-0.2 1 0.3") + holes + Scope(seen + "\"texture alpha\" \"holes\"")),
                   {"cut-out"}});
   rigs.push_back({"cut_out_lamp",
                   Room(kMatte, holes + Scope("Translate 0.1 0.5 0.2 Material \"diffuse\" "

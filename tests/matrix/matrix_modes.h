@@ -17,7 +17,6 @@ struct Mode {
   int samples = 8;                      // per pixel of a trial replica; at least that many in each
 
   bool GathersPhotons() const { return lampyr::GathersPhotons(integrator) && merges; }
-  // Merging blurs: the radius is a fixed one, large enough to find photons and small beside what the radiance bends.
   void Apply(RenderSettings& settings) const {
     settings.integrator = integrator;
     settings.merges = merges;
@@ -25,9 +24,6 @@ struct Mode {
     settings.directFromPhotons = directFromPhotons;
     settings.learnLights = learns;
     settings.photons.guided = guides;
-    settings.photons.radius = 0.1;
-    settings.photons.alpha = 1;
-    settings.photons.lightPaths = 600;
   }
 };
 

@@ -8,21 +8,23 @@ namespace rigs {
 
 namespace {
 
-std::string Head(int depth) {
+// Photons are blurred over a radius that finds some of them, and over which radiance hardly bends.
+std::string Head(int depth, double radius) {
   return "Film \"rgb\" \"integer xresolution\" 12 \"integer yresolution\" 12\nPixelFilter \"box\"\n"
          "Integrator \"path\" \"integer maxdepth\" " +
-         std::to_string(depth) + "\n";
+         std::to_string(depth) + " \"float radius\" " + std::to_string(radius) +
+         " \"float alpha\" 1 \"integer photonsperiteration\" 600\n";
 }
 
 }  // namespace
 
 std::string Room(const std::string& material, const std::string& inside, const std::string& camera, int depth) {
-  return Head(depth) + "LookAt -0.2 -0.15 0  -1 -0.6 0.5  0 1 0\n" + camera + "WorldBegin\n" + inside +
+  return Head(depth, 0.08) + "LookAt -0.2 -0.15 0  -1 -0.6 0.5  0 1 0\n" + camera + "WorldBegin\n" + inside +
          Scope(material + " Shape \"sphere\" \"float radius\" 1");
 }
 
 std::string Floor(const std::string& above, const std::string& ball, int depth) {
-  return Head(depth) +
+  return Head(depth, 0.04) +
          "LookAt -0.6 1.6 1.2  -0.25 0 0.2  0 1 0\nCamera \"perspective\" \"float fov\" 26\nWorldBegin\n" + above +
          Scope(kMatte + "Rotate -90 1 0 0 Shape \"disk\" \"float radius\" 1") +
          Scope((ball.empty() ? "Material \"diffuse\" \"rgb reflectance\" [0.3 0.5 0.7]" : ball) +

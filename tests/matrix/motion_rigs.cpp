@@ -10,22 +10,23 @@ void AddMotionRigs(std::vector<Rig>& rigs) {
     rigs.push_back({"motion_of_" + name, scene, {"motion " + name}});
   };
   const std::string left = "Translate -0.6 0 0 ", right = "Translate 0.6 0 0 ";
-  const std::string plate =
-      "Material \"diffuse\" \"rgb reflectance\" [0.8 0.3 0.3] Translate -0.25 0.2 0.2 Rotate -90 1 0 0 Shape \"disk\" "
-      "\"float radius\" 0.3";
+  // Balls: photons near the rim of something flat would be missed.
+  const std::string ball =
+      "Material \"diffuse\" \"rgb reflectance\" [0.8 0.3 0.3] Translate -0.25 0.25 0.2 Shape \"sphere\" \"float "
+      "radius\" 0.2";
   const std::string shade =
-      "Material \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5] Translate -0.1 0.75 0.2 Rotate -90 1 0 0 Shape \"disk\" "
-      "\"float radius\" 0.3";
+      "Material \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5] Translate -0.1 0.65 0.2 Shape \"sphere\" \"float "
+      "radius\" 0.2";
   const std::string lamp =
       "Translate -0.1 1.05 0.2 Material \"diffuse\" AreaLightSource \"diffuse\" \"rgb L\" [6 5 4] ";
-  const std::string ball = "Shape \"sphere\" \"float radius\" 0.15 ";
-  add("what_is_seen", Floor(Lamp("-0.2 1 0.2", 0.2) + Scope(Moving(left, right) + plate)));
+  const std::string bulb = "Shape \"sphere\" \"float radius\" 0.15 ";
+  add("what_is_seen", Floor(Lamp("-0.2 1 0.2", 0.2) + Scope(Moving(left, right) + ball)));
   add("receiver", Room(kMatte, Lamp() + Scope(Moving("Translate 0.4 0 0", "Translate -0.5 -0.3 0.4") +
                                               "Material \"diffuse\" \"rgb reflectance\" [0.9 0.9 0.9] Shape \"sphere\" "
                                               "\"float radius\" 0.2")));
-  add("occluder", Floor(Scope(lamp + ball) + Scope(Moving(left, right) + shade)));
-  add("area_light", Floor(Scope(Moving(left, right) + lamp + ball)));
-  add("light_and_occluder", Floor(Scope(Moving(left, right) + Scope(lamp + ball) + Scope(shade))));
+  add("occluder", Floor(Scope(lamp + bulb) + Scope(Moving(left, right) + shade)));
+  add("area_light", Floor(Scope(Moving(left, right) + lamp + bulb)));
+  add("light_and_occluder", Floor(Scope(Moving(left, right) + Scope(lamp + bulb) + Scope(shade))));
   add("point_light", Floor(Scope(Moving(left, right) + "Translate -0.1 1 0.2 LightSource \"point\" \"rgb I\" [2 2 2]") +
                            Scope(shade)));
   add("own_surface_light", Floor(Scope(Moving("Rotate -50 0 0 1 ", "Rotate 50 0 0 1 ") +
@@ -34,8 +35,8 @@ void AddMotionRigs(std::vector<Rig>& rigs) {
   add("distant_light", Floor(Scope(Moving("Rotate -40 0 0 1 ", "Rotate 40 0 0 1 ") +
                                    "Rotate -90 1 0 0 LightSource \"distant\" \"float angle\" 5 \"float illuminance\" 3 "
                                    "\"point3 from\" [0 0 1] \"point3 to\" [0 0 0]")));
-  add("instance", Floor(Lamp("-0.2 1 0.2", 0.2) + "ObjectBegin \"plate\" " + Scope(plate) + "ObjectEnd\n" +
-                        Scope(Moving(left, right) + "ObjectInstance \"plate\"")));
+  add("instance", Floor(Lamp("-0.2 1 0.2", 0.2) + "ObjectBegin \"ball\" " + Scope(ball) + "ObjectEnd\n" +
+                        Scope(Moving(left, right) + "ObjectInstance \"ball\"")));
   add("glass", Floor(Scope(lamp + "Shape \"sphere\" \"float radius\" 0.25") +
                      Scope(Moving("Translate -0.8 0 0 ", "Translate 0.1 0 0 ") +
                            "Material \"thindielectric\" \"rgb transmittance\" [0.9 0.3 0.3] Translate 0.2 0.7 0.2 "

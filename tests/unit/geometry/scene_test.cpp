@@ -154,8 +154,10 @@ TEST(Gate, RejectsWhatEmbreeDoesNotSurvive) {
   for (const Ray& ray : bad) {
     RayHit hit;
     hit.patch = 77;
-    EXPECT_FALSE(scene.Intersect(ray, visibility::kAll, hit));
-    EXPECT_FALSE(scene.Occluded(ray, visibility::kAll));
+    Color passed(1.0f);
+    EXPECT_FALSE(scene.Intersect(ray, visibility::kAll, hit, passed));
+    EXPECT_TRUE(passed.IsBlack());
+    EXPECT_TRUE(scene.Occluded(ray, visibility::kAll));
     EXPECT_EQ(hit.patch, 77u);
     count += 2;
     EXPECT_EQ(scene.RejectedRays(), count);
