@@ -274,7 +274,7 @@ TEST(MatrixNotices, WhatIsPlantedInTenCells) {
     }
   }
   EXPECT_EQ(found, planted);
-  std::printf("[   info   ] %d of %d found\n", found, planted);
+  std::printf("[   info   ] %d of %d planted faults found\n", found, planted);
 }
 
 }  // namespace
