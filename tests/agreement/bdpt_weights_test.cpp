@@ -28,7 +28,7 @@ struct Worst {
 class KeptLightPaths final : public LightSubpathVisitor {
  public:
   void Arrived(const LightSubpath& path) override {
-    if (path.Last().isDelta) return;
+    if (!path.Last().storesPhotons) return;
     photons.Add(path.Last(), static_cast<int>(path.count));
     const auto vertices = path.vertices.begin();
     const PathVertex& last = path.Last();
@@ -173,7 +173,8 @@ TEST(BdptWeights, WithMergingInEveryAgreementScene) {
   EXPECT_GT(merges, 20000);
 }
 
-// Mirrors, smooth glass and what only passes through: deltas in all places of a path.
+// Mirrors, smooth glass, what only passes through, and mixes that are now matte and now a mirror: deltas in all places
+// of a path.
 TEST(BdptWeights, WithDeltas) {
   const std::string glass = R"(AttributeBegin
 Material "dielectric" "float eta" 1.5
@@ -186,6 +187,14 @@ AttributeEnd
 AttributeBegin
 Material "thindielectric"
 Translate 0.5 0.9 0.2 Rotate 80 1 0 0 Shape "disk" "float radius" 0.5
+AttributeEnd
+MakeNamedMaterial "white" "string type" "diffuse"
+MakeNamedMaterial "mirror" "string type" "conductor"
+MakeNamedMaterial "both" "string type" "mix" "string materials" [ "white" "mirror" ]
+AttributeBegin
+NamedMaterial "both"
+Translate -0.3 0.2 0.9 Shape "sphere" "float radius" 0.2
+Translate 0.7 0 0 Shape "sphere" "float radius" 0.2
 AttributeEnd
 )";
   const std::string lamps[] = {"LightSource \"point\" \"rgb I\" [5 4 3] \"point3 from\" [0.4 2 0.4]\n",
