@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/stop.h"
 #include "integrators/common/adjoint.h"
 #include "integrators/common/escaped_emission.h"
 #include "integrators/common/find_photons.h"
@@ -348,6 +349,7 @@ Color BdptIntegrator::TraceCamera(Run& run, const Ray& cameraRay) const {
   flight.specular = Color(1.0f);
   Color radiance;
   for (;;) {
+    CheckStop();
     const bool isFirst = run.cameraCount == 0;
     ++(isFirst ? run.Counts().cameraRays : run.Counts().indirectRays);
     RayHit hit;
@@ -406,6 +408,7 @@ Color BdptIntegrator::TraceCamera(Run& run, const Ray& cameraRay) const {
       // As many scattering events in all as are wanted.
       const size_t most = std::min(run.paths.light.count, static_cast<size_t>(settings_.maxDepth - depth));
       for (size_t i = 1; settings_.connects && i <= most; ++i) {
+        CheckStop();
         run.gathered = radiance;
         radiance += Connect(run, i);
       }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/stop.h"
+
 namespace lampyr {
 
 // The weight of the first vertex is that of the selection there: next-event estimation from it would have chosen this
@@ -62,6 +64,7 @@ void LightSubpathTracer::Trace(float time, Sampler& sampler, RenderCounts& count
 
   std::optional<RayHit> hit = photon->landing;
   while (hit && path.count < static_cast<size_t>(maxDepth_)) {
+    CheckStop();
     const SurfacePoint point = scene_.geometry->GetSurfacePoint(flight.ray, *hit);
     PathVertex& vertex = PlaceOf(path.vertices, path.count);
     if (!MakeVertex(scene_, flight.ray, *hit, point, vertex)) return;

@@ -1,5 +1,6 @@
 #include "integrators/path/path_walk.h"
 
+#include "base/stop.h"
 #include "integrators/common/escaped_emission.h"
 #include "integrators/common/mis.h"
 #include "integrators/common/roulette.h"
@@ -142,6 +143,7 @@ Color PathWalk::Radiance(const Ray& cameraRay, Sampler& sampler, RenderCounts& c
   State path(cameraRay, layers);
   Color radiance;
   for (;;) {
+    CheckStop();
     ++(path.fromCamera ? counts.cameraRays : counts.indirectRays);
     RayHit hit;
     Color passed;

@@ -76,6 +76,15 @@ void LightLearning::Freeze() {
   }
 }
 
+void LightLearning::CopyFrom(const LightLearning& other) {
+  isRecording_ = other.isRecording_;
+  rows_ = other.rows_;
+  for (size_t i = 0; i < squares_.size(); ++i) {
+    squares_[i].store(other.squares_[i].load(std::memory_order_relaxed), std::memory_order_relaxed);
+    counts_[i].store(other.counts_[i].load(std::memory_order_relaxed), std::memory_order_relaxed);
+  }
+}
+
 // What counts was frozen earlier than the newest records: both are saved.
 void LightLearning::Save(ByteWriter& bytes) const {
   std::vector<SavedRow> rows;

@@ -45,6 +45,9 @@ class LightLearning {
   void StopRecording() { isRecording_ = false; }
   bool IsRecording() const { return isRecording_; }
 
+  // All that another one of the same scene has learned and recorded. While nobody selects or records with either.
+  void CopyFrom(const LightLearning& other);
+
   // All that was learned and recorded. While nobody selects or records.
   void Save(ByteWriter& bytes) const;
   // Into one that has learned nothing, of the same scene. Throws an Error where this is not what has been saved.

@@ -238,12 +238,14 @@ int CompareLoaded(const CompareOptions& options, const ComparisonPlan& plan, con
       interrupted = true;
     }
   }
-  if (interrupted && results.integrators.empty()) {
-    std::fprintf(stderr, "interrupted before two repeats were done: nothing was measured\n");
-    return InterruptExitCode();
-  }
-  WriteResults(options, folder, plan, results);
-  return interrupted ? InterruptExitCode() : kExitDone;
+  return FinishRendering([&] {
+    if (interrupted && results.integrators.empty()) {
+      std::fprintf(stderr, "interrupted before two repeats were done: nothing was measured\n");
+      return InterruptExitCode();
+    }
+    WriteResults(options, folder, plan, results);
+    return interrupted ? InterruptExitCode() : kExitDone;
+  });
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <memory>
+#include <utility>
 
 #include "app/checkpoints.h"
 #include "app/command_line.h"
@@ -41,12 +43,13 @@ std::filesystem::path OutputPath(const RenderOptions& options, const RenderSetti
   return path;
 }
 
-// An image too large for the machine is told before the system ends the process for it.
+// An image too large for the machine is told before the system ends the process for it. The film is kept twice
+// (render_backup.h).
 void CheckMemory(const RenderSettings& settings, size_t layers, bool hasTechniques) {
   const uint64_t channels = 6 + 3 * layers;  // of the developed image: colour, variance and layers
   const uint64_t techniques = hasTechniques ? TechniqueImages::BytesPerPixel(settings.maxDepth) : 0;
   const uint64_t perPixel =
-      Film::BytesPerPixel(layers, settings.integrator != "path") + techniques + 2 * channels * sizeof(float);
+      2 * (Film::BytesPerPixel(layers, settings.integrator != "path") + techniques) + 2 * channels * sizeof(float);
   const uint64_t needed = perPixel * settings.crop.Width() * settings.crop.Height();
   const uint64_t available = AvailableMemory();
   if (needed <= available) return;
@@ -101,6 +104,18 @@ void PrintSummary(const RenderReport& report, const std::filesystem::path& path)
   }
 }
 
+// Of a picture without a whole sample of each pixel: how much of the first one is there.
+std::string DescribePartialPicture(const RenderOptions& options, const Film& film, const RenderSettings& settings) {
+  if (options.shard) return "the part holds no samples";
+  if (settings.integrator != "light") {
+    return "the picture is a part of the first sample: " + Percent(film.SampledFraction()) +
+           " of its pixels have it, the others are black";
+  }
+  const double whole = static_cast<double>(settings.width) * static_cast<double>(settings.height);
+  return "the picture is made of " + Percent(static_cast<double>(film.LightPaths()) / whole) +
+         " of the light paths of the first sample";
+}
+
 constexpr int kOpenEnd = 1 << 30;
 
 // Of the whole picture.
@@ -137,7 +152,8 @@ void WriteImage(const std::filesystem::path& path, const RenderOptions& options,
                 const Film& film, const RenderOutcome& outcome) {
   PartHeader header = ofAll;
   header.samples = static_cast<uint32_t>(outcome.samplesPerPixel);
-  header.isFinished = !outcome.interrupted || header.samples == header.shard.end - header.shard.first;
+  const bool wasCut = outcome.interrupted || outcome.isPartial;
+  header.isFinished = !wasCut || header.samples == header.shard.end - header.shard.first;
   if (!options.shard) {
     WriteSamples(path, header, film);
     return;
@@ -181,6 +197,32 @@ void CheckOptions(const RenderOptions& options, const RenderSettings& settings,
   MakeFolder(*options.strategyImages, "--strategy-images");
 }
 
+// Writes what the render has come to. The exit code.
+int FinishRender(const RenderOptions& options, const RenderSettings& settings, const PartHeader& header,
+                 ProgressiveRender& render, Checkpoints* checkpoints, const std::filesystem::path& path,
+                 RenderReport& report) {
+  const Progress clock(true);
+  const Film& film = render.Picture();
+  const bool isPartial = report.outcome.isPartial;
+  const std::string partialPicture = isPartial ? DescribePartialPicture(options, film, settings) : "";
+  // The sums in a part's image are of whole samples.
+  if (options.shard) render.DropPartialPass();
+  if (render.Techniques()) WriteTechniques(options, render.Techniques()->Develop(film));
+  WriteImageOrKeepIt(path, options, header, film, report.outcome);
+  if (options.png) WritePngBeside(path, film.Develop(), options.exposure, options.clipPng);
+  render.DropPartialPass();
+  if (checkpoints) checkpoints->Finish(report.outcome);
+  report.writeSeconds = clock.Seconds();
+  if (options.stats) WriteText(*options.stats, ToJson(report));
+  if (!options.quiet) PrintSummary(report, path);
+  if (report.outcome.interrupted) {
+    if (isPartial && !options.quiet) std::fprintf(stderr, "warning: interrupted: %s\n", partialPicture.c_str());
+    return InterruptExitCode();
+  }
+  if (isPartial) throw Error("no sample of every pixel was done in the time (--time): " + partialPicture);
+  return kExitDone;
+}
+
 int RenderLoaded(const RenderOptions& options, const LoadedScene& loaded) {
   RenderReport report;
   const BuiltScene& built = loaded.built;
@@ -192,7 +234,7 @@ int RenderLoaded(const RenderOptions& options, const LoadedScene& loaded) {
   const auto [part, parts] = options.shard.value_or(std::pair(1, 1));
   const Shard shard = ShardOf(part, parts, SamplesWanted(options, settings));
   const PartHeader header = MakeHeader(options, loaded, shard);
-  const OutputLock lock(path);
+  auto lock = std::make_unique<OutputLock>(path);
 
   report.scene = options.scene.string();
   report.sceneHash = loaded.hash;
@@ -250,16 +292,10 @@ int RenderLoaded(const RenderOptions& options, const LoadedScene& loaded) {
     report.outcome = Continue(render, stop, afterPass);
   }
   report.rejectedRays = built.scene.geometry->RejectedRays();
-
-  const Progress clock(true);
-  if (techniques) WriteTechniques(options, techniques->Develop(film));
-  WriteImageOrKeepIt(path, options, header, film, report.outcome);
-  if (options.png) WritePngBeside(path, film.Develop(), options.exposure, options.clipPng);
-  if (checkpoints) checkpoints->Finish(report.outcome);
-  report.writeSeconds = clock.Seconds();
-  if (options.stats) WriteText(*options.stats, ToJson(report));
-  if (!options.quiet) PrintSummary(report, path);
-  return report.outcome.interrupted ? InterruptExitCode() : kExitDone;
+  return FinishRendering([&] {
+    const std::unique_ptr<OutputLock> held = std::move(lock);
+    return FinishRender(options, settings, header, render, checkpoints ? &*checkpoints : nullptr, path, report);
+  });
 }
 
 }  // namespace

@@ -3,9 +3,12 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <cstdio>
+#include <cstdlib>
 
 #include "app/command_line.h"
 #include "base/progress.h"
+#include "base/stop.h"
 #include "film/atomic_file.h"
 #include "scene/referenced_files.h"
 
@@ -17,10 +20,18 @@ namespace {
 std::atomic<bool> interruptRequested{false};
 std::atomic<int> interruptSignal{SIGINT};
 
+constexpr int kInterrupts[] = {SIGINT, SIGTERM, SIGHUP};
+
+// A second one ends the process, but for SIGHUP: of a connection that is lost, the system and the shell both send one.
 void OnInterrupt(int signal) {
   interruptSignal.store(signal);
   interruptRequested.store(true);
-  std::signal(signal, SIG_DFL);
+  for (const int other : kInterrupts) std::signal(other, other == SIGHUP ? SIG_IGN : SIG_DFL);
+}
+
+bool IsIgnored(int signal) {
+  struct sigaction action {};
+  return sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
 }
 
 }  // namespace
@@ -31,9 +42,22 @@ void OutliveSurroundings() {
 }
 
 const std::atomic<bool>& FinishOnInterrupt() {
-  std::signal(SIGINT, OnInterrupt);
-  std::signal(SIGTERM, OnInterrupt);
+  for (const int signal : kInterrupts) {
+    if (!IsIgnored(signal)) std::signal(signal, OnInterrupt);
+  }
   return interruptRequested;
+}
+
+int FinishRendering(const std::function<int()>& finish) {
+  if (!HasGivenUpWork()) return finish();
+  int exitCode = kExitFailed;
+  try {
+    exitCode = finish();
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+  }
+  std::fflush(stdout);
+  std::_Exit(exitCode);
 }
 
 int InterruptExitCode() {

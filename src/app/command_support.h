@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 
 #include "app/plugins.h"
@@ -13,9 +14,13 @@ namespace lampyr {
 
 // A reader of the messages who has gone away is no reason to end, and a file that may not grow is an error of writing.
 void OutliveSurroundings();
-// From now on SIGINT and SIGTERM (batch systems ask with it) set the flag that is returned, once: a second one ends the
-// process.
+// From now on SIGINT, SIGTERM (batch systems ask with it) and SIGHUP (a connection is lost) set the flag that is
+// returned, once: a second SIGINT or SIGTERM ends the process. Until then, each of them ends it. A signal that the
+// process was started to ignore (nohup) stays ignored.
 const std::atomic<bool>& FinishOnInterrupt();
+// Runs `finish`, what is left to do after rendering, and returns its exit code. Where work was given up (base/stop.h),
+// ends the process with that code: threads still use what the caller is about to destroy.
+int FinishRendering(const std::function<int()>& finish);
 // Of a command that has been interrupted so.
 int InterruptExitCode();
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "base/stop.h"
 #include "sampling/rng.h"
 
 namespace lampyr {
@@ -295,31 +296,38 @@ ProgressiveRender::ProgressiveRender(const RenderScene& scene, const AnyIntegrat
       settings_(settings),
       filter_(settings.filter),
       threads_(threads),
-      film_(film),
+      film_(&film),
       techniques_(techniques),
-      firstSample_(firstSample) {
-  if (const auto* chosen = std::get_if<std::unique_ptr<BidirectionalIntegrator>>(&integrator)) {
-    if (const std::optional<PhotonSettings> wanted = (*chosen)->Photons()) {
-      if (wanted->guided) guiding_ = std::make_unique<EmissionLearning>(scene, settings.width, settings.height);
-      photons_ = std::make_unique<PhotonStore>(
-          *wanted, static_cast<uint64_t>(settings.width) * static_cast<uint64_t>(settings.height), guiding_.get());
-    }
-  }
+      firstSample_(firstSample),
+      backup_(scene.lighting->SceneSphere()) {
+  if (const auto* chosen = std::get_if<std::unique_ptr<BidirectionalIntegrator>>(&integrator))
+    wantedPhotons_ = (*chosen)->Photons();
+  if (wantedPhotons_ && wantedPhotons_->guided)
+    guiding_ = std::make_unique<EmissionLearning>(scene, settings.width, settings.height);
+  MakePhotonStore();
   if (settings.learnLights) learning_ = std::make_unique<LightLearning>(scene.lighting->SceneSphere());
+}
+
+void ProgressiveRender::MakePhotonStore() {
+  if (!wantedPhotons_) return;
+  const uint64_t pixels = static_cast<uint64_t>(settings_.width) * static_cast<uint64_t>(settings_.height);
+  photons_ = std::make_unique<PhotonStore>(*wantedPhotons_, pixels, guiding_.get());
 }
 
 void ProgressiveRender::AddPass(uint32_t done, uint32_t count) {
   const uint32_t first = firstSample_ + done;
-  outcome_.counts += std::visit(
+  const RenderCounts counts = std::visit(
       [&]<class Chosen>(const std::unique_ptr<Chosen>& chosen) {
         if constexpr (std::is_same_v<Chosen, BidirectionalIntegrator>) {
-          return RenderPass(scene_, *chosen, settings_, filter_, first, count, threads_, film_, techniques_,
+          return RenderPass(scene_, *chosen, settings_, filter_, first, count, threads_, *film_, techniques_,
                             photons_.get());
         } else {
-          return RenderPass(scene_, *chosen, settings_, filter_, first, count, threads_, film_);
+          return RenderPass(scene_, *chosen, settings_, filter_, first, count, threads_, *film_);
         }
       },
       integrator_);
+  CheckStop();  // a pass that was given up adds to nothing
+  counts_ += counts;
 }
 
 namespace {
@@ -350,19 +358,53 @@ class LearnedLighting {
 
 // At a milestone.
 void ProgressiveRender::Learn(uint32_t samples) {
-  bool hasChanged = false;
+  bool changesDensities = false;
   if (learning_ && learning_->IsRecording()) {
     learning_->Freeze();
     if (samples >= kLastLearned) learning_->StopRecording();
-    hasChanged = true;
+    changesDensities = true;
   }
-  if (guiding_ && guiding_->IsRecording() && guiding_->Decide(samples)) hasChanged = true;
-  // The photons of the last pass have densities, or weights of a selection, that are no longer: others are traced in
-  // their place.
-  if (hasChanged && photons_) photons_->Clear();
+  if (guiding_ && guiding_->IsRecording() && guiding_->Decide(samples)) changesDensities = true;
+  // The photons of the last pass have densities that are no longer, of their emission or in their weights: others are
+  // traced in their place, as they are where a render is resumed.
+  if (changesDensities && photons_) photons_->Clear();
 }
 
-void ProgressiveRender::AddSamples(int count) {
+bool ProgressiveRender::AddSamples(int count) {
+  DropPartialPass();
+  const bool isFirst = outcome_.samplesPerPixel == 0;
+  backup_.Take(State(), !isFirst, threads_);
+  const WorkEnd end = RunUntilStopped([this, count] { AddWholePass(count); });
+  if (end == WorkEnd::Done) return true;
+  const bool isGivenUp = end == WorkEnd::GivenUp;
+  if (isGivenUp) LeaveToGivenUpPass();
+  backup_.Restore(State(), threads_, isGivenUp);
+  counts_ = RenderCounts();
+  // As after loading: the photons are traced again.
+  MakePhotonStore();
+  if (photons_ && outcome_.photons) photons_->Continue(*outcome_.photons);
+  outcome_.isPartial = isFirst;
+  return false;
+}
+
+// Its threads still use the film and the rest: these are theirs from now on.
+void ProgressiveRender::LeaveToGivenUpPass() {
+  ownFilm_.emplace(film_->EmptyCopy());
+  film_ = &*ownFilm_;
+  if (techniques_) {
+    ownTechniques_.emplace(techniques_->EmptyCopy());
+    techniques_ = &*ownTechniques_;
+  }
+  (void)photons_.release();
+}
+
+void ProgressiveRender::DropPartialPass() {
+  if (!outcome_.isPartial) return;
+  *film_ = film_->EmptyCopy();
+  outcome_.isPartial = false;
+}
+
+void ProgressiveRender::AddWholePass(int count) {
   const Clock clock;
   auto first = static_cast<uint32_t>(outcome_.samplesPerPixel);
   const uint32_t end = first + static_cast<uint32_t>(count);
@@ -382,6 +424,7 @@ void ProgressiveRender::AddSamples(int count) {
     outcome_.photons->guideGain = guiding_->Gain();
     outcome_.photons->guideTargets = guiding_->Targets();
   }
+  outcome_.counts += std::exchange(counts_, RenderCounts());
   outcome_.samplesPerPixel += count;
   outcome_.seconds += clock.Seconds();
 }
@@ -390,7 +433,7 @@ int ProgressiveRender::NextPassSamples(int samplesPerPixel, std::optional<double
   // Light paths are those of the full image.
   const bool followsLight = !std::holds_alternative<std::unique_ptr<CameraIntegrator>>(integrator_);
   const int64_t pixels = followsLight ? static_cast<int64_t>(settings_.width) * settings_.height
-                                      : static_cast<int64_t>(film_.Crop().Width()) * film_.Crop().Height();
+                                      : static_cast<int64_t>(film_->Crop().Width()) * film_->Crop().Height();
   const int64_t largest = std::max<int64_t>(1, (int64_t{1} << 22) / std::max<int64_t>(1, pixels));
   const int done = outcome_.samplesPerPixel;
   const int64_t wanted = std::min<int64_t>(std::max(1, done), largest);
@@ -408,7 +451,7 @@ void ProgressiveRender::Save(ByteWriter& bytes) const {
   if (photons_) bytes.Value(photons_->Statistics());
   if (learning_) learning_->Save(bytes);
   if (guiding_) guiding_->Save(bytes);
-  film_.Save(bytes);
+  film_->Save(bytes);
 }
 
 void ProgressiveRender::Load(ByteReader& bytes) {
@@ -419,7 +462,7 @@ void ProgressiveRender::Load(ByteReader& bytes) {
   if (photons_) outcome_.photons = photons_->Continue(bytes.Value<PhotonStatistics>());
   if (learning_) learning_->Load(bytes);
   if (guiding_) guiding_->Load(bytes);
-  film_.Load(bytes);
+  film_->Load(bytes);
 }
 
 RenderOutcome Continue(ProgressiveRender& render, const StopConditions& stop, const PassCallback& afterPass) {
@@ -440,16 +483,17 @@ RenderOutcome Continue(ProgressiveRender& render, const StopConditions& stop, co
     constexpr int fewest = 16;
     return stop.relativeError && outcome.samplesPerPixel >= fewest && outcome.relativeError <= *stop.relativeError;
   };
+  std::optional<double> secondsLeft;
+  if (stop.seconds) secondsLeft = std::max(*stop.seconds - outcome.seconds, 0.0);
+  const StopWatch watch(stop.interrupted, secondsLeft);
   while (!isDone()) {
     std::optional<double> most = stop.longestPass;
     if (stop.seconds) most = std::min(*stop.seconds - outcome.seconds, most.value_or(*stop.seconds));
-    render.AddSamples(render.NextPassSamples(stop.samplesPerPixel, most));
+    const bool isWhole = render.AddSamples(render.NextPassSamples(stop.samplesPerPixel, most));
     measure();
-    afterPass(outcome, FractionDone(outcome, stop));
-    if (stop.interrupted && stop.interrupted->load()) {
-      outcome.interrupted = true;
-      break;
-    }
+    if (isWhole) afterPass(outcome, FractionDone(outcome, stop));
+    outcome.interrupted = stop.interrupted && stop.interrupted->load();
+    if (outcome.interrupted || !isWhole) break;
   }
   return outcome;
 }

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "app/integrator_choice.h"
+#include "app/render_backup.h"
 #include "app/render_settings.h"
 #include "app/technique_images.h"
 #include "base/byte_stream.h"
@@ -25,7 +26,7 @@ struct StopConditions {
   std::optional<double> relativeError;             // at 95 % confidence (Film::RelativeError)
   std::optional<double> longestPass;               // seconds, where something is to be done between passes
   double largestSample = 0;                        // that may not have come yet (unseen_samples.h)
-  const std::atomic<bool>* interrupted = nullptr;  // set by a signal handler: finish the pass
+  const std::atomic<bool>* interrupted = nullptr;  // set by a signal handler: end soon (StopWatch)
 };
 
 struct RenderOutcome {
@@ -33,6 +34,8 @@ struct RenderOutcome {
   double seconds = 0;  // of the passes; of Continue: until it has ended
   double relativeError = 0;
   bool interrupted = false;
+  // The first pass was cut short: the film holds a part of the first sample, for looking at.
+  bool isPartial = false;
   RenderCounts counts;
   std::optional<PhotonStatistics> photons;  // of integrators that gather them
 };
@@ -49,10 +52,14 @@ class ProgressiveRender {
   ProgressiveRender(const RenderScene& scene, const AnyIntegrator& integrator, const RenderSettings& settings,
                     int threads, Film& film, TechniqueImages* techniques = nullptr, uint32_t firstSample = 0);
 
-  // As many samples more of every pixel. Only this takes time that counts. What is learned of lights and of
+  // A pass: as many samples more of every pixel. Only this takes time that counts. What is learned of lights and of
   // where photons are of use is learned from samples 0 … 2^n - 1 and counts from sample 2^n on, whatever the passes
-  // are.
-  void AddSamples(int count);
+  // are. False: a stop was requested (base/stop.h), and the pass was cut short. All is as it was before the pass then,
+  // but that of the first pass the film keeps what there is, until it is dropped. Where the pass had to be given up
+  // (HasGivenUpWork), scene, integrator, settings, film, techniques and this must stay until the process ends.
+  bool AddSamples(int count);
+  // Empties the film of what a first pass that was cut short has left in it.
+  void DropPartialPass();
   // Samples that a pass should add: as many as there are, at most about 2^22 in the whole image, so that progress
   // shows, interrupts are answered and an error target is not overshot by much; not beyond `samplesPerPixel` in all,
   // nor, after the first pass, what takes longer than `secondsLeft`. At least 1.
@@ -60,9 +67,11 @@ class ProgressiveRender {
 
   // relativeError is not kept up to date here.
   const RenderOutcome& Outcome() const { return outcome_; }
-  const Film& Picture() const { return film_; }
+  // The given film, but for another one after a pass that was given up.
+  const Film& Picture() const { return *film_; }
+  const TechniqueImages* Techniques() const { return techniques_; }
 
-  // All that the samples to come depend on, and the film. Between passes.
+  // All that the samples to come depend on, and the film. Between whole passes.
   void Save(ByteWriter& bytes) const;
   // Goes on where one of the same scene, settings and first sample was saved, before any sample is added here. Throws
   // an Error where this is not what has been saved; it is of no use then.
@@ -70,20 +79,29 @@ class ProgressiveRender {
 
  private:
   void AddPass(uint32_t first, uint32_t count);
+  void AddWholePass(int count);
   void Learn(uint32_t samples);
+  void MakePhotonStore();
+  void LeaveToGivenUpPass();
+  PassState State() { return {*film_, techniques_, &learning_, &guiding_}; }
 
   const RenderScene& scene_;
   const AnyIntegrator& integrator_;
   const RenderSettings& settings_;
   PixelFilter filter_;
   int threads_;
-  Film& film_;
+  Film* film_;
   TechniqueImages* techniques_;
+  std::optional<Film> ownFilm_;  // in the place of what a pass that was given up uses
+  std::optional<TechniqueImages> ownTechniques_;
   uint32_t firstSample_;
   RenderOutcome outcome_;
+  RenderCounts counts_;  // of the pass under way
+  std::optional<PhotonSettings> wantedPhotons_;
   std::unique_ptr<LightLearning> learning_;    // null: selection learns nothing
   std::unique_ptr<EmissionLearning> guiding_;  // null: photons are not aimed
   std::unique_ptr<PhotonStore> photons_;       // of integrators that gather them
+  RenderBackup backup_;
 };
 
 // Adds samples until a condition holds. What was loaded counts: its samples and its time.

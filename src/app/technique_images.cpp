@@ -24,6 +24,10 @@ TechniqueImages::TechniqueImages(int width, int height, const PixelRect& crop, i
   techniques_.push_back(MakeTechnique(-1, 0));
 }
 
+TechniqueImages TechniqueImages::EmptyCopy() const {
+  return {width_, height_, crop_, mostEvents_, imagingRatio_};
+}
+
 TechniqueImages::Technique TechniqueImages::MakeTechnique(int s, int t) const {
   Technique technique;
   technique.s = s;
@@ -32,8 +36,8 @@ TechniqueImages::Technique TechniqueImages::MakeTechnique(int s, int t) const {
   technique.weighted.assign(values, 0.0);
   technique.unweighted.assign(values, 0.0);
   if (HasSplats(t)) {
-    technique.weightedSplats = std::make_unique<Film>(width_, height_, crop_);
-    technique.unweightedSplats = std::make_unique<Film>(width_, height_, crop_);
+    technique.weightedSplats = Film(width_, height_, crop_);
+    technique.unweightedSplats = Film(width_, height_, crop_);
   }
   return technique;
 }
@@ -54,7 +58,7 @@ size_t TechniqueImages::IndexOf(int s, int t) const {
 TechniqueImages::Recorder::Recorder(TechniqueImages& images, const PixelFilter& filter) : images_(&images) {
   for (const Technique& technique : images.techniques_) {
     const SplatList none({0, 0}, {0, 0}, 1);
-    const bool has = technique.weightedSplats != nullptr;
+    const bool has = technique.weightedSplats.has_value();
     weighted_.push_back(has ? technique.weightedSplats->MakeSplatList(filter, images.imagingRatio_) : none);
     unweighted_.push_back(weighted_.back());
   }
@@ -111,7 +115,7 @@ std::vector<TechniqueImages::Picture> TechniqueImages::Develop(const Film& film)
   for (const Technique& technique : techniques_) {
     Picture picture;
     picture.name = technique.s < 0 ? "longer" : "s" + std::to_string(technique.s) + "-t" + std::to_string(technique.t);
-    const auto develop = [&](const std::vector<double>& sums, const Film* splats) {
+    const auto develop = [&](const std::vector<double>& sums, const std::optional<Film>& splats) {
       Image image(crop_.Width(), crop_.Height(), {"R", "G", "B"});
       const Image splatted = splats ? splats->Develop() : Image();
       for (int y = 0; y < crop_.Height(); ++y) {
@@ -127,8 +131,8 @@ std::vector<TechniqueImages::Picture> TechniqueImages::Develop(const Film& film)
       }
       return image;
     };
-    picture.weighted = develop(technique.weighted, technique.weightedSplats.get());
-    picture.unweighted = develop(technique.unweighted, technique.unweightedSplats.get());
+    picture.weighted = develop(technique.weighted, technique.weightedSplats);
+    picture.unweighted = develop(technique.unweighted, technique.unweightedSplats);
     pictures.push_back(std::move(picture));
   }
   return pictures;

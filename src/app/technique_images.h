@@ -3,7 +3,7 @@
 // render.
 #pragma once
 
-#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +20,8 @@ class TechniqueImages {
 
   // For a render of `width` × `height` pixels in full and paths of `maxDepth` events at most.
   TechniqueImages(int width, int height, const PixelRect& crop, int maxDepth, float imagingRatio);
+
+  TechniqueImages EmptyCopy() const;
 
   // Memory that they take for each pixel of the crop.
   static uint64_t BytesPerPixel(int maxDepth);
@@ -55,7 +57,7 @@ class TechniqueImages {
   struct Technique {
     int s = 0, t = 0;
     std::vector<double> weighted, unweighted;  // Σ filter weight · value, three for each pixel of the crop
-    std::unique_ptr<Film> weightedSplats, unweightedSplats;  // t = 1, and longer paths
+    std::optional<Film> weightedSplats, unweightedSplats;  // t = 1, and longer paths
   };
   Technique MakeTechnique(int s, int t) const;
   size_t IndexOf(int s, int t) const;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #include "base/byte_stream.h"
@@ -75,6 +76,20 @@ void AddAll(std::vector<Sums>& to, const std::vector<Sums>& from) {
   for (size_t i = 0; i < from.size(); ++i) {
     for (size_t c = 0; c < 3; ++c) to[i][c].Add(from[i][c]);
   }
+}
+
+// In bands, one for each thread: the speed of memory is more than one thread can use.
+template <class Sums>
+void Copy(std::vector<Sums>& to, const std::vector<Sums>& from, int threads) {
+  static_assert(std::is_trivially_copyable_v<Sums>);
+  to.resize(from.size());
+  const size_t band = from.size() / static_cast<size_t>(std::max(threads, 1)) + 1;
+  ParallelFor(std::max(threads, 1), threads, [&](int index) {
+    const size_t begin = std::min(static_cast<size_t>(index) * band, from.size());
+    const size_t end = std::min(begin + band, from.size());
+    std::copy(from.begin() + static_cast<std::ptrdiff_t>(begin), from.begin() + static_cast<std::ptrdiff_t>(end),
+              to.begin() + static_cast<std::ptrdiff_t>(begin));
+  });
 }
 
 bool AreFinite(std::span<const CompensatedSum> sums) {
@@ -248,6 +263,21 @@ void Film::Add(const Film& other) {
   AddAll(layerSplats_, other.layerSplats_);
   lightPaths_ += other.lightPaths_;
   splatSpread_ = other.splatSpread_;
+}
+
+void Film::CopyFrom(const Film& other, int threads) {
+  Copy(pixels_, other.pixels_, threads);
+  Copy(splats_, other.splats_, threads);
+  Copy(layerSums_, other.layerSums_, threads);
+  Copy(layerSplats_, other.layerSplats_, threads);
+  lightPaths_ = other.lightPaths_;
+  splatSpread_ = other.splatSpread_;
+}
+
+double Film::SampledFraction() const {
+  const auto sampled =
+      std::count_if(pixels_.begin(), pixels_.end(), [](const PixelSums& pixel) { return pixel.count > 0; });
+  return static_cast<double>(sampled) / static_cast<double>(pixels_.size());
 }
 
 void Film::Save(ByteWriter& bytes) const {

@@ -75,6 +75,12 @@ class Film {
 
   // All samples and light paths of another film, of the same size, crop and layers.
   void Add(const Film& other);
+  // The same samples and light paths as another film, of the same size, crop and layers. Reuses its memory.
+  void CopyFrom(const Film& other, int threads);
+  // Without samples and light paths, of the same size, crop and layers.
+  Film EmptyCopy() const { return {fullWidth_, fullHeight_, crop_, layers_}; }
+  // The fraction of the pixels that have a sample.
+  double SampledFraction() const;
   // Everything but size, crop and layers.
   void Save(ByteWriter& bytes) const;
   // Into an empty film of the same size, crop and layers. Throws an Error, and leaves the film as it was, where this is

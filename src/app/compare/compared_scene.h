@@ -11,7 +11,7 @@
 
 namespace lampyr {
 
-// Set by an interrupt: what is under way ends after its pass, by this.
+// Thrown where an interrupt has ended what was under way.
 struct ComparisonInterrupted {};
 
 class ComparedScene {
