@@ -19,6 +19,9 @@ void CheckInfiniteLight(const SuiteSubject& subject, const SuiteOptions& options
 // patches, shines-from, position-error, energy, uvw.
 void CheckAttributes(const SuiteSubject& subject, const SuiteOptions& options, SuiteReport& report);
 
+// Where few samples go.
+void CheckStrata(const SuiteSubject& subject, const SuiteOptions& options, SuiteReport& report);
+
 // An edited light is the light made afresh, bit by bit.
 void CheckEdit(const SuiteSubject& subject, const SuiteOrigin& origin, SuiteReport& report);
 

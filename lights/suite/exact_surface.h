@@ -2,6 +2,8 @@
 // the light's own surface.
 #pragma once
 
+#include <utility>
+
 #include "lights/suite/surface_tracer.h"
 
 namespace lampyr::suite {
@@ -21,7 +23,21 @@ class ExactSurface {
   std::optional<ExactPoint> At(const Point3& position, const Normal3& normal, int patch) const;
   const Enclosure& Around() const { return around_; }
 
+  // Whether no other part of the surface hides a sample from P.
+  bool Sees(const Point3& P, const LightSample& sample) const;
+  // ∫ f dω over the directions in which P sees the surface; f is given what a ray finds there and its cosine. `hints`:
+  // samples that go where much is.
+  using Integrand = std::function<Integrands(const LightHit& hit, double cosine)>;
+  std::pair<Estimate, Estimate> IntegrateDirections(const Point3& P, std::span<const LightSample> hints,
+                                                    const Integrand& f, Rng& rng, int budget) const;
+
  private:
+  bool IsHidden(const Point3d& position, const Vector3d& normal, const Point3& P) const;
+  std::pair<Estimate, Estimate> IntegrateModel(const Point3& P, std::span<const LightSample> hints, const Integrand& f,
+                                               Rng& rng, int budget) const;
+  std::pair<Estimate, Estimate> IntegrateTraced(const Point3& P, std::span<const LightSample> hints, const Integrand& f,
+                                                Rng& rng, int budget) const;
+
   const EmitterModel* model_;
   std::optional<SurfaceTracer> tracer_;
   Enclosure around_;

@@ -67,6 +67,7 @@ void CheckLight(const SuiteSubject& subject, const SuiteOptions& options, SuiteR
   }
   if (options.parts & kAttributePart) suite::CheckAttributes(subject, options, report);
   if (options.parts & kDensityPart) CheckDensities(subject, options, report);
+  if (subject.isThorough && (options.parts & kStrataPart)) suite::CheckStrata(subject, options, report);
   if (contract) contract->CheckRepeat(report);
 }
 
