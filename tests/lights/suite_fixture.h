@@ -123,7 +123,7 @@ class SuiteTest : public ::testing::Test {
 
   // The properties that fails what `change` makes of the light of that name.
   using Change = std::function<std::unique_ptr<Light>(std::shared_ptr<const Light>)>;
-  Properties Failures(const std::string& name, const Change& change) {
+  Properties Failures(const std::string& name, const Change& change, unsigned parts = kAllParts) {
     const SuiteLight& light = SuiteLights().at(name);
     const std::unique_ptr<Light> changed = change(Make(light));
     SuiteSubject subject = SubjectOf(name, *changed);
@@ -131,7 +131,9 @@ class SuiteTest : public ::testing::Test {
     if (light.shape) model = MakeEmitterModel(*light.shape, turned_);
     subject.model = model.get();
     SuiteReport report;
-    CheckLight(subject, {}, report);
+    SuiteOptions options;
+    options.parts = parts;
+    CheckLight(subject, options, report);
     return Failed(report.Finish(1e-3));
   }
 
