@@ -127,6 +127,9 @@ FilterType CombinerFilterType() {
   type.create = [](const ParameterList& parameters, const FilterBuildContext& build) -> std::unique_ptr<LightFilter> {
     return std::make_unique<CombinerFilter>(parameters, build);
   };
+  // The suite has filters of these names.
+  type.samples = {"\"string filters\" [ \"suite-slot\" \"suite-fade, suite-ball\" \"suite-tint\" ]",
+                  "\"string filters\" \"suite-fade, suite-ball\" \"string mode\" \"screen\""};
   return type;
 }
 
