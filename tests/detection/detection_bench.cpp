@@ -3,8 +3,8 @@
 //
 //   detection_bench list                            what there is to run
 //   detection_bench lights|filters SUBJECT [NAME…]  the faults of a subject, or those named, and the sound one
-//   detection_bench weights BUDGET.json [record]    the integrators as they were built; `record` writes the budget and
-//                                                   the truth, of sound ones
+//   detection_bench weights TRUTH.json [record]     the integrators as they were built; `record` writes the true mean
+//                                                   of the furnace, by sound ones
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -30,13 +30,6 @@ Json ToJson(const Finding& finding) {
 void Print(const Json& line) {
   std::cout << line.dump() << std::endl;
 }
-
-// What the baselines are given of a sound light or filter.
-struct Help {
-  double seconds = 0;  // that the suite takes
-  double truth = 0;    // mean of the furnace
-  uint64_t draws = 0;  // at which the χ² test still passes
-};
 
 double TrueMean(const BaselineScene& scene) {
   MeanRadiance mean;
@@ -64,36 +57,28 @@ void RunLights(const std::string& name, const std::vector<std::string>& only, co
   const auto tiles = [&](const LightFault* fault) {
     return SceneOf(TileScene(subject, "planted"), scratch, PlantedType(name, fault));
   };
-  // The sound light: what each method takes, and that none rejects it.
-  Help help;
-  const Finding suite = FindBySuite(subject, nullptr, scratch, true);
-  help.seconds = suite.seconds;
-  help.truth = TrueMean(furnace(nullptr));
-  const Finding directions = FindByChiSquared(tiles(nullptr), ~uint64_t{0}, 2 * help.seconds, Queries);
-  help.draws = directions.found ? directions.draws / 4 : directions.draws;
-  const Finding looks = FindBySuite(subject, nullptr, scratch);
-  Print({{"kind", "sound"},
-         {"subject", name},
-         {"name", name},
-         {"budget", help.seconds},
-         {"full", suite.samples},
-         {"ours", ToJson(looks)},
-         {"furnace", ToJson(FindByFurnace(furnace(nullptr), kIntegrators, help.truth, help.seconds, Queries))},
-         {"chi2", ToJson(FindByChiSquared(tiles(nullptr), help.draws, help.seconds, Queries))},
-         {"chi2Limit", help.draws},
-         {"ttest", ToJson(FindByTiles(tiles(nullptr), "path", "bdpt", help.seconds, Queries))}});
+  // Of the sound light: the mean of the furnace, and how many draws the χ² test takes before it rejects it.
+  const double truth = TrueMean(furnace(nullptr));
+  const Finding directions = FindByChiSquared(tiles(nullptr), ~uint64_t{0}, 2 * kLeastSeconds, Queries);
+  const uint64_t draws = directions.found ? directions.draws / 4 : directions.draws;
+  const auto print = [&](const LightFault* fault, const Json& about) {
+    const Finding ours = FindBySuite(subject, fault, scratch);
+    const double seconds = std::max(ours.seconds, kLeastSeconds);
+    Json line = about;
+    line.update({{"subject", name},
+                 {"budget", seconds},
+                 {"ours", ToJson(ours)},
+                 {"furnace", ToJson(FindByFurnace(furnace(fault), kIntegrators, truth, seconds, Queries))},
+                 {"chi2", ToJson(FindByChiSquared(tiles(fault), draws, seconds, Queries))},
+                 {"chi2Limit", draws},
+                 {"ttest", ToJson(FindByTiles(tiles(fault), "path", "bdpt", seconds, Queries))}});
+    Print(line);
+  };
+  if (only.empty()) print(nullptr, {{"kind", "sound"}, {"name", name}});
   for (const LightFault& fault : LightFaults()) {
     if (fault.subject != name) continue;
     if (!only.empty() && std::find(only.begin(), only.end(), fault.name) == only.end()) continue;
-    Print({{"kind", "light"},
-           {"subject", name},
-           {"name", fault.name},
-           {"what", fault.what},
-           {"budget", help.seconds},
-           {"ours", ToJson(FindBySuite(subject, &fault, scratch))},
-           {"furnace", ToJson(FindByFurnace(furnace(&fault), kIntegrators, help.truth, help.seconds, Queries))},
-           {"chi2", ToJson(FindByChiSquared(tiles(&fault), help.draws, help.seconds, Queries))},
-           {"ttest", ToJson(FindByTiles(tiles(&fault), "path", "bdpt", help.seconds, Queries))}});
+    print(&fault, {{"kind", "light"}, {"name", fault.name}, {"what", fault.what}});
   }
 }
 
@@ -109,56 +94,50 @@ void RunFilters(const std::string& name, const std::vector<std::string>& only, c
   const auto tiles = [&](const FilterFault* fault, const std::string& more) {
     return SceneOf(TileScene(light, "rect", statement(more)), scratch, PlantedFilterType(name, fault));
   };
-  const Finding suite = FindBySuite(subject, nullptr, scratch);
-  const double truth = TrueMean(furnace(nullptr, ""));
-  const double seconds = suite.seconds;
-  Finding nothing;
-  nothing.applies = false;
-  Print({{"kind", "sound"},
-         {"subject", name},
-         {"name", "filter " + name},
-         {"budget", seconds},
-         {"full", suite.samples},
-         {"ours", ToJson(suite)},
-         {"furnace", ToJson(FindByFurnace(furnace(nullptr, ""), kIntegrators, truth, seconds, Edges))},
-         {"chi2", ToJson(nothing)},
-         {"ttest", ToJson(FindByTiles(tiles(nullptr, ""), "path", "bdpt", seconds, Edges))}});
+  const auto print = [&](const FilterFault* fault, const Json& about) {
+    const std::string more = fault ? fault->parameters : "";
+    const double truth = TrueMean(furnace(nullptr, more));
+    const Finding ours = FindBySuite(subject, fault, scratch);
+    const double seconds = std::max(ours.seconds, kLeastSeconds);
+    Finding nothing;
+    nothing.applies = false;
+    Json line = about;
+    line.update({{"subject", name},
+                 {"budget", seconds},
+                 {"ours", ToJson(ours)},
+                 {"furnace", ToJson(FindByFurnace(furnace(fault, more), kIntegrators, truth, seconds, Edges))},
+                 {"chi2", ToJson(nothing)},
+                 {"ttest", ToJson(FindByTiles(tiles(fault, more), "path", "bdpt", seconds, Edges))}});
+    Print(line);
+  };
+  if (only.empty()) print(nullptr, {{"kind", "sound"}, {"name", "filter " + name}});
   for (const FilterFault& fault : FilterFaults()) {
     if (fault.subject != name) continue;
     if (!only.empty() && std::find(only.begin(), only.end(), fault.name) == only.end()) continue;
-    const double itsTruth = fault.parameters.empty() ? truth : TrueMean(furnace(nullptr, fault.parameters));
-    Print(
-        {{"kind", "filter"},
-         {"subject", name},
-         {"name", fault.name},
-         {"what", fault.what},
-         {"budget", seconds},
-         {"ours", ToJson(FindBySuite(subject, &fault, scratch))},
-         {"furnace", ToJson(FindByFurnace(furnace(&fault, fault.parameters), kIntegrators, itsTruth, seconds, Edges))},
-         {"chi2", ToJson(nothing)},
-         {"ttest", ToJson(FindByTiles(tiles(&fault, fault.parameters), "path", "bdpt", seconds, Edges))}});
+    print(&fault, {{"kind", "filter"}, {"name", fault.name}, {"what", fault.what}});
   }
 }
 
 void List() {
   for (const LightSubject& subject : LightSubjects()) std::printf("lights %s\n", subject.name.c_str());
   for (const FilterSubject& subject : FilterSubjects()) std::printf("filters %s\n", subject.name.c_str());
+  for (const PatchFault& fault : PatchFaults()) std::printf("patch %s %s\n", fault.name.c_str(), fault.what.c_str());
 }
 
 void RunWeights(const std::filesystem::path& file, bool record) {
+  if (record) std::ofstream(file) << Json{{"truth", TrueMeanOfLamp()}};
   Json known;
-  if (!record) std::ifstream(file) >> known;
-  const WeightHelp help = record ? PrepareWeights() : WeightHelp{known["seconds"], known["truth"]};
-  if (record) std::ofstream(file) << Json{{"seconds", help.seconds}, {"truth", help.truth}};
+  std::ifstream(file) >> known;
   const Finding ours = FindByProofs();
+  const double seconds = std::max(ours.seconds, kLeastSeconds);
   Finding nothing;
   nothing.applies = false;
   Print({{"kind", "weights"},
-         {"budget", help.seconds},
+         {"budget", seconds},
          {"ours", ToJson(ours)},
-         {"furnace", ToJson(FindWeightsByFurnace(help))},
+         {"furnace", ToJson(FindWeightsByFurnace(known.at("truth"), seconds))},
          {"chi2", ToJson(nothing)},
-         {"ttest", ToJson(FindWeightsByTiles(help))}});
+         {"ttest", ToJson(FindWeightsByTiles(seconds))}});
 }
 
 int Run(const std::vector<std::string>& words) {

@@ -25,9 +25,9 @@ struct FilterFault {
   std::string parameters;  // that the fault needs to show in a picture
 };
 
-// A patch of the source, tests/detection/patches/<file>.patch.
+// A patch of the source, tests/detection/patches/<name>.patch.
 struct PatchFault {
-  std::string name, file, what;
+  std::string name, what;
 };
 
 const std::vector<LightFault>& LightFaults();

@@ -17,6 +17,32 @@ ParameterList Without(const ParameterList& parameters, const std::string& name) 
 
 }  // namespace
 
+const std::vector<PatchFault>& PatchFaults() {
+  static const std::vector<PatchFault> faults = {
+      {"beta-exponent", "the recursion raises forward densities to the power 1, the rest to 2"},
+      {"merge-term", "a connection's weight leaves out merging at its own vertices"},
+      {"delta-flag", "a connection at a delta counts as a technique"},
+      {"refraction-mode", "the stretch of solid angles by refraction is taken on the wrong side"},
+      {"landing-selection", "where a photon lands, next-event estimation counts without its selection"},
+      {"emission-selection", "densities of emission lack the selection of the light, in all techniques alike"},
+      {"reverse-for-forward", "the density back to the previous vertex is the forward one"},
+      {"roulette-in-density", "Russian roulette enters the density of the next vertex"},
+      {"roulette-not-divided", "what survives Russian roulette is not divided by the probability (specular part)"},
+      {"connection-reversed", "a connection takes the camera vertex's reverse density for the forward one"},
+      {"hit-of-delta", "a light that no ray can hit counts as hit"},
+      {"film-pixels", "the camera's density lacks the number of pixels where a light path is seen"},
+      {"lens-density", "the density of the point on the lens counts twice"},
+      {"merge-reversed", "merging takes the reverse density for the forward one"},
+      {"infinite-distance", "the density of a landing from infinity is divided by the squared distance"},
+      {"merge-area", "the area of merging is half of what it is"},
+      {"photon-count", "the photons of a pass count as those of two"},
+      {"adjoint-forgotten", "no adjoint correction for shading normals where light arrives"},
+      {"photons-unfiltered", "photons ignore the light's filter"},
+      {"path-selection-forgotten", "path tracing weighs a hit by the light's density without its selection"},
+  };
+  return faults;
+}
+
 LightType PlantedType(const std::string& subjectName, const LightFault* fault) {
   const LightSubject& subject = FindLightSubject(subjectName);
   LightType type = *FindLightType(subject.type, subject.isOnShape);

@@ -26,13 +26,15 @@ struct Finding {
   std::string property;  // what failed
 };
 
+// What each baseline gets: the time that ours took, and never less than this.
+inline constexpr double kLeastSeconds = 2;
+
 inline double CpuSeconds() {
   return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
-// The suite, over the type as `check-lights` runs it: at 1/16, 1/4 and all of its samples. `full`: at once with all.
-Finding FindBySuite(const LightSubject& subject, const LightFault* fault, const std::filesystem::path& scratch,
-                    bool full = false);
+// The suite: on the light in one place first; then over its type, as `check-lights` runs it.
+Finding FindBySuite(const LightSubject& subject, const LightFault* fault, const std::filesystem::path& scratch);
 // The suite of filters.
 Finding FindBySuite(const FilterSubject& subject, const FilterFault* fault, const std::filesystem::path& scratch);
 

@@ -19,11 +19,13 @@ std::string SceneNamed(const std::string& name) {
   throw std::invalid_argument("there is no scene of agreement \"" + name + "\"");
 }
 
-// Glass and a mirror under lights of several kinds.
+// Glass and a mirror under lights of several kinds, through a lens.
 std::string SceneWithDeltas() {
-  return FilmWith("box") + kDown + World(5) +
-         "LightSource \"point\" \"rgb I\" [2 2 1] \"point3 from\" [0.8 1.5 0.4]\n" + Square("\"rgb L\" [6 6 6]", 0.5) +
-         kThings + R"(AttributeBegin
+  return FilmWith("box") +
+         "LookAt 0 3 2.5  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 36 \"float lensradius\" 0.1 \"float "
+         "focaldistance\" 3.8\n" +
+         World(5) + "LightSource \"point\" \"rgb I\" [2 2 1] \"point3 from\" [0.8 1.5 0.4]\n" +
+         Square("\"rgb L\" [6 6 6]", 0.5) + kThings + R"(AttributeBegin
 Material "dielectric" "float eta" 1.5
 Translate 0 0.6 0.3 Shape "sphere" "float radius" 0.3
 AttributeEnd
@@ -32,6 +34,15 @@ Material "conductor" "rgb reflectance" [0.9 0.9 0.9]
 Translate 0 0.5 -1 Shape "disk" "float radius" 0.8
 AttributeEnd
 )";
+}
+
+// A light with a filter.
+std::string FilteredScene() {
+  return FilmWith("box") + kDown + World(3) +
+         "AttributeBegin Translate 0 1.6 0 Rotate -90 1 0 0\nLightFilter \"barn\" \"float width\" 1.2 \"float "
+         "height\" 1 \"float edge\" 0.4\nLightSource \"rect\" \"float width\" 0.4 \"float height\" 0.3 \"float "
+         "intensity\" 20\nAttributeEnd\n" +
+         kThings;
 }
 
 // Paths that the weights were proved of, until they were found wrong.
@@ -57,26 +68,17 @@ Finding FindByWeights() {
   return finding;
 }
 
-struct AgreementPair {
-  std::string scene, integrator;
-  int blockSize = 8;
+struct AgreementCase {
+  std::string scene;
+  std::vector<std::string> integrators;
 };
 
-// A selection of tests/agreement, and photons, which are compared in tests of their own there.
-std::vector<AgreementPair> AgreementPairs() {
-  std::vector<AgreementPair> pairs;
-  for (const char* scene : {"several_kinds", "smooth_normals", "rough_glass", "cylinder_lens", "portals"}) {
-    for (const char* integrator : {"bdpt", "light"}) pairs.push_back({SceneNamed(scene), integrator});
-  }
-  for (const char* integrator : {"bdpt", "vcm", "sppm"}) pairs.push_back({SceneWithDeltas(), integrator});
-  const std::string filtered =
-      FilmWith("box") + kDown + World(3) +
-      "AttributeBegin Translate 0 1.6 0 Rotate -90 1 0 0\nLightFilter \"barn\" \"float width\" 1.2 \"float height\" 1 "
-      "\"float edge\" 0.4\nLightSource \"rect\" \"float width\" 0.4 \"float height\" 0.3 \"float intensity\" 20\n"
-      "AttributeEnd\n" +
-      kThings;
-  for (const char* integrator : {"bdpt", "light", "vcm"}) pairs.push_back({filtered, integrator});
-  return pairs;
+// A selection of tests/agreement; and photons, which are compared in tests of their own there.
+std::vector<AgreementCase> AgreementCases() {
+  return {{SceneNamed("several_kinds"), {"bdpt", "light"}},
+          {SceneNamed("smooth_normals"), {"bdpt", "light"}},
+          {FilteredScene(), {"bdpt", "light"}},
+          {SceneWithDeltas(), {"bdpt", "vcm", "sppm"}}};
 }
 
 RenderOverrides WithPhotons(const std::string& integrator) {
@@ -88,24 +90,30 @@ RenderOverrides WithPhotons(const std::string& integrator) {
 }
 
 Finding FindByAgreement() {
-  constexpr int kCount = 12, kSamples = 64;
+  constexpr int kCount = 12, kSamples = 16, kComparisons = 9;
   Finding finding;
   const double start = CpuSeconds();
-  const std::vector<AgreementPair> pairs = AgreementPairs();
-  const double rate = SidakRate(kFamilyWise, static_cast<int>(pairs.size()));
+  const double rate = SidakRate(kFamilyWise, kComparisons);
   uint64_t seed = 0;
-  for (const AgreementPair& pair : pairs) {
-    if (finding.found) break;
-    RenderOverrides overrides = WithPhotons(pair.integrator);
+  const auto render = [&](const std::string& scene, const std::string& integrator) {
+    RenderOverrides overrides = WithPhotons(integrator);
     overrides.seed = seed += 1000;
-    const int own = pair.integrator == "light" ? 2 * kSamples : kSamples;
-    const Replicas path = RenderReplicas(pair.scene, "path", kCount, kSamples);
-    const Replicas other = RenderReplicas(pair.scene, pair.integrator, kCount, own, overrides);
-    const auto pixels = static_cast<uint64_t>(path.images[0].width * path.images[0].height);
-    finding.samples += pixels * static_cast<uint64_t>(kCount * (kSamples + own));
-    const Agreement result = CompareReplicas(other, path, pair.blockSize, rate);
-    finding.found = !result.Agrees() || other.faults + path.faults > 0;
-    if (finding.found) finding.property = "agreement: " + pair.integrator;
+    const int samples = integrator == "light" ? 2 * kSamples : kSamples;
+    Replicas replicas = RenderReplicas(scene, integrator, kCount, samples, overrides);
+    const Image& image = replicas.images[0];
+    finding.samples += static_cast<uint64_t>(image.width) * static_cast<uint64_t>(image.height * kCount * samples);
+    return replicas;
+  };
+  for (const AgreementCase& part : AgreementCases()) {
+    const Replicas path = render(part.scene, "path");
+    for (const std::string& integrator : part.integrators) {
+      const Replicas other = render(part.scene, integrator);
+      finding.found = !CompareReplicas(other, path, 8, rate).Agrees() || other.faults + path.faults > 0;
+      if (!finding.found) continue;
+      finding.property = "agreement: " + integrator;
+      finding.seconds = CpuSeconds() - start;
+      return finding;
+    }
   }
   finding.seconds = CpuSeconds() - start;
   return finding;
@@ -126,14 +134,8 @@ const std::vector<std::string> kFurnaceIntegrators = {"path", "light", "bdpt", "
 
 }  // namespace
 
-WeightHelp PrepareWeights() {
-  WeightHelp help;
-  const double start = CpuSeconds();
-  FindByWeights();
-  FindByAgreement();
-  help.seconds = CpuSeconds() - start;
-  help.truth = RenderMean({Furnace(), "", {}}, "path", 512, 77).mean;
-  return help;
+double TrueMeanOfLamp() {
+  return RenderMean({Furnace(), "", {}}, "path", 256, 77).mean;
 }
 
 Finding FindByProofs() {
@@ -145,14 +147,20 @@ Finding FindByProofs() {
   return agreement;
 }
 
-Finding FindWeightsByFurnace(const WeightHelp& help) {
-  return FindByFurnace({Furnace(), "", {}}, kFurnaceIntegrators, help.truth, help.seconds, Paths);
+Finding FindWeightsByFurnace(double truth, double seconds) {
+  return FindByFurnace({Furnace(), "", {}}, kFurnaceIntegrators, truth, seconds, Paths);
 }
 
-Finding FindWeightsByTiles(const WeightHelp& help) {
+Finding FindWeightsByTiles(double seconds) {
+  const std::vector<std::pair<std::string, std::string>> pairs = {{SceneWithDeltas(), "bdpt"},
+                                                                  {SceneWithDeltas(), "vcm"},
+                                                                  {SceneWithDeltas(), "sppm"},
+                                                                  {SceneNamed("smooth_normals"), "bdpt"},
+                                                                  {FilteredScene(), "bdpt"}};
   Finding finding;
-  for (const char* integrator : {"bdpt", "vcm", "sppm"}) {
-    const Finding one = FindByTiles({SceneWithDeltas(), "", {}}, "path", integrator, help.seconds / 3, Paths);
+  for (const auto& [scene, integrator] : pairs) {
+    const double part = seconds / static_cast<double>(pairs.size());
+    const Finding one = FindByTiles({scene, "", {}}, "path", integrator, part, Paths);
     finding.seconds += one.seconds;
     finding.samples += one.samples;
     finding.property = one.property;

@@ -5,18 +5,14 @@
 
 namespace lampyr::test {
 
-// From integrators without a fault.
-struct WeightHelp {
-  double seconds = 0;  // that the proofs take
-  double truth = 0;    // mean of the furnace
-};
-WeightHelp PrepareWeights();
+// Mean of the furnace, by integrators without a fault.
+double TrueMeanOfLamp();
 
 // First the weights of single paths, until one is wrong; then, block by block, whether the integrators agree with each
 // other. Samples are paths.
 Finding FindByProofs();
-Finding FindWeightsByFurnace(const WeightHelp& help);
-// Path tracing against bdpt, vcm and sppm in turn.
-Finding FindWeightsByTiles(const WeightHelp& help);
+Finding FindWeightsByFurnace(double truth, double seconds);
+// Path tracing against bdpt, vcm and sppm in three scenes, each with a part of the time.
+Finding FindWeightsByTiles(double seconds);
 
 }  // namespace lampyr::test
