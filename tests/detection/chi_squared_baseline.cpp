@@ -128,11 +128,12 @@ class Sampling {
       first = light_.light->GenerateEmission(context);
     }
     if (!first || light_.light->Kind() == LightKind::DeltaDirection) return std::nullopt;
-    const bool isInfinite = lighting_.IsAtInfinity(0);
+    const bool hasPlace = light_.light->Kind() == LightKind::Area;
     return Sampled{"photons",
-                   [this, context, isInfinite](Rng& r) -> std::optional<Vector3> {
+                   [this, context, hasPlace](Rng& r) -> std::optional<Vector3> {
                      LightContext drawn = context;
-                     (isInfinite ? drawn.u : drawn.uDirection) = r.NextPoint2();
+                     if (!hasPlace) drawn.u = r.NextPoint2();
+                     drawn.uDirection = r.NextPoint2();
                      const auto photon = light_.light->GenerateEmission(drawn);
                      if (!photon || photon->pdfEmitDirection.IsZero()) return std::nullopt;
                      return photon->direction;

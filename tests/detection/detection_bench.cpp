@@ -33,9 +33,9 @@ void Print(const Json& line) {
 
 double TrueMean(const BaselineScene& scene) {
   MeanRadiance mean;
-  for (int samples = 16; samples <= 1024; samples *= 4) {
+  for (int samples = 16; samples <= 256; samples *= 4) {
     mean = RenderMean(scene, "path", samples, 77);
-    if (mean.error < 2e-3 * mean.mean) break;
+    if (mean.error < 3e-3 * mean.mean) break;
   }
   return mean.mean;
 }

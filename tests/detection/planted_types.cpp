@@ -19,8 +19,8 @@ ParameterList Without(const ParameterList& parameters, const std::string& name) 
 
 const std::vector<PatchFault>& PatchFaults() {
   static const std::vector<PatchFault> faults = {
-      {"beta-exponent", "the recursion raises forward densities to the power 1, the rest to 2"},
-      {"merge-term", "a connection's weight leaves out merging at its own vertices"},
+      {"beta-exponent", "along subpaths a forward density enters with the power 1, the rest with 2"},
+      {"merge-term", "a connection leaves out merging at its light vertex"},
       {"delta-flag", "a connection at a delta counts as a technique"},
       {"refraction-mode", "the stretch of solid angles by refraction is taken on the wrong side"},
       {"landing-selection", "where a photon lands, next-event estimation counts without its selection"},
@@ -36,7 +36,7 @@ const std::vector<PatchFault>& PatchFaults() {
       {"infinite-distance", "the density of a landing from infinity is divided by the squared distance"},
       {"merge-area", "the area of merging is half of what it is"},
       {"photon-count", "the photons of a pass count as those of two"},
-      {"adjoint-forgotten", "no adjoint correction for shading normals where light arrives"},
+      {"adjoint-forgotten", "light paths that scatter lack the adjoint correction of where light arrives"},
       {"photons-unfiltered", "photons ignore the light's filter"},
       {"path-selection-forgotten", "path tracing weighs a hit by the light's density without its selection"},
   };

@@ -12,7 +12,8 @@ double TrueMeanOfLamp();
 // other. Samples are paths.
 Finding FindByProofs();
 Finding FindWeightsByFurnace(double truth, double seconds);
-// Path tracing against bdpt, vcm and sppm in three scenes, each with a part of the time.
+// Path tracing against bdpt in three scenes and vcm in one, each with a part of the time. Not sppm: the test finds its
+// blur, which is no fault.
 Finding FindWeightsByTiles(double seconds);
 
 }  // namespace lampyr::test
