@@ -2,6 +2,7 @@
 
 #include "lights/suite/checks.h"
 #include "lights/suite/contract_checks.h"
+#include "lights/suite/direction_source.h"
 #include "lights/suite/statistics.h"
 
 namespace lampyr {
@@ -68,6 +69,7 @@ void CheckLight(const SuiteSubject& subject, const SuiteOptions& options, SuiteR
   if (options.parts & kAttributePart) suite::CheckAttributes(subject, options, report);
   if (options.parts & kDensityPart) CheckDensities(subject, options, report);
   if (subject.isThorough && (options.parts & kStrataPart)) suite::CheckStrata(subject, options, report);
+  if (subject.isThorough && (options.parts & kDirectionPart)) suite::CheckDirectionsFinely(subject, options, report);
   if (contract) contract->CheckRepeat(report);
 }
 

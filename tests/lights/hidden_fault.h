@@ -37,8 +37,9 @@ enum class HiddenFault {
   PdfOffNear,        // 20 % within 0.05 sizes
   PdfOffOfDiscrete,  // of a delta, far away
   // pdfEmitDirection, everywhere that it is reported.
-  Ripple,  // 5 %
-  Tilt,    // 1 %
+  FineRipple,  // 5 %, many waves
+  Ripple,      // 5 %, few of them
+  Tilt,        // 1 %
   UvwMirrored,
   UvwOfPhotonsConstant,
   // The second of two equal calls, and what it says after another call.
@@ -86,7 +87,8 @@ class HiddenFaultLight final : public ForwardingLight {
   void Spoil(const LightContext& context, const Vector3& toLight, float cosine, float distance, Result& result) const;
   // What all three report of a direction away from the light.
   PdfSolidAngle SpoiltDirection(PdfSolidAngle density, const Vector3& outward) const {
-    if (Is(HiddenFault::Ripple)) return density * (1 + 0.05f * std::sin(40 * outward.x) * std::cos(25 * outward.y));
+    if (Is(HiddenFault::FineRipple)) return density * (1 + 0.05f * std::sin(40 * outward.x) * std::cos(25 * outward.y));
+    if (Is(HiddenFault::Ripple)) return density * (1 + 0.05f * std::sin(9 * outward.x) * std::cos(7 * outward.y));
     if (Is(HiddenFault::Tilt)) return density * (1 + 0.01f * outward.x);
     return density;
   }

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <functional>
+#include <iostream>
 #include <map>
 #include <set>
 
@@ -134,7 +135,13 @@ class SuiteTest : public ::testing::Test {
     SuiteOptions options;
     options.parts = parts;
     CheckLight(subject, options, report);
-    return Failed(report.Finish(1e-3));
+    const std::vector<SuiteResult> results = report.Finish(1e-3);
+    for (const SuiteResult& result : results) {
+      if (result.passed) continue;
+      std::cout << name << " fails " << result.property << result.caseName << ", " << result.statistic << ": "
+                << result.words << "\n";
+    }
+    return Failed(results);
   }
 
   double powerError_ = 2.5e-3;  // 6e-4 finds a hundredth, in thrice the time
