@@ -69,6 +69,14 @@ FilterInstance FindSuiteFilter(const std::string& name, const FilterBuildContext
   return instance;
 }
 
+std::string SuiteFilterStatements() {
+  std::string text;
+  for (const NamedFilter& filter : kNamed) {
+    text += Statement(filter.type, std::string("\"string name\" \"") + filter.name + "\" " + filter.parameters) + "\n";
+  }
+  return text;
+}
+
 bool FilterMaker::Has(const std::string& parameter) const {
   return std::any_of(type_.parameters.begin(), type_.parameters.end(),
                      [&](const ParameterInfo& info) { return info.name == parameter; });

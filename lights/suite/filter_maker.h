@@ -18,6 +18,9 @@ namespace lampyr::suite {
 // The filter of that name, of those above. Throws an Error at `where` for any other.
 FilterInstance FindSuiteFilter(const std::string& name, const FilterBuildContext& build, const FileLocation& where);
 
+// All of them as a scene has them: statements, with their names.
+std::string SuiteFilterStatements();
+
 // Of one sample block. For one thread.
 class FilterMaker {
  public:
