@@ -4,7 +4,7 @@
 LAMPYR_BUILD_PACKAGES="g++ cmake ninja-build ccache libembree-dev libopenimageio-dev libopenexr-dev libflann-dev
   liblz4-dev libglm-dev libtbb-dev libcli11-dev libfmt-dev nlohmann-json3-dev zlib1g-dev"
 # What its tests and benchmarks need besides.
-LAMPYR_TEST_PACKAGES="libgtest-dev libgmock-dev libbenchmark-dev"
+LAMPYR_TEST_PACKAGES="libgtest-dev libgmock-dev libbenchmark-dev patch"
 
 # What its fuzzers need besides.
 LAMPYR_FUZZ_PACKAGES="clang"

@@ -57,9 +57,9 @@ void LightSubpathTracer::Trace(float time, Sampler& sampler, RenderCounts& count
   const auto inverse = static_cast<float>(static_cast<double>(emission.emissionCosine) / density);
   Flight flight;
   flight.ray = photon->ray;
-  flight.diffuse = emission.diffuse * photon->passed * inverse;
-  flight.specular = emission.specular * photon->passed * inverse;
-  const float emitted = std::max(flight.diffuse.Max(), flight.specular.Max());
+  flight.diffuse = emission.diffuse * inverse;
+  flight.specular = emission.specular * inverse;
+  const float emitted = std::max((flight.diffuse * photon->passed).Max(), (flight.specular * photon->passed).Max());
   if (!(emitted > 0)) return;  // less than a float can say
 
   std::optional<RayHit> hit = photon->landing;
@@ -70,8 +70,11 @@ void LightSubpathTracer::Trace(float time, Sampler& sampler, RenderCounts& count
     if (!MakeVertex(scene_, flight.ray, *hit, point, vertex)) return;
     vertex.diffuse = flight.diffuse;
     vertex.specular = flight.specular;
-    if (path.count == 0 && !scene_.lighting->FilterLanding(*photon, vertex.receiver, vertex.diffuse, vertex.specular)) {
-      return;
+    if (path.count == 0) {
+      // As in next-event estimation, the filter is asked of what the light sends, and not of what is left of it.
+      if (!scene_.lighting->FilterLanding(*photon, vertex.receiver, vertex.diffuse, vertex.specular)) return;
+      vertex.diffuse *= photon->passed;
+      vertex.specular *= photon->passed;
     }
     if (weights_ != Weights::None) {
       if (path.count > 0) {

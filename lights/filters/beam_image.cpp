@@ -161,6 +161,9 @@ FilterType BeamImageType(const char* name, const char* help, const char* mode) {
                                            const FilterBuildContext& build) -> std::unique_ptr<LightFilter> {
     return std::make_unique<FilterWith<BeamImage>>(parameters, build, BeamImage(parameters, build, mode.c_str()));
   };
+  type.samples = {
+      "\"string filename\" \"suite-texture.exr\" \"float width\" 1.2 \"rgb fill\" [ 0.3 0.1 0.2 ]",
+      "\"string filename\" \"suite-texture.exr\" \"bool tile\" true \"float blur\" 0.1 \"rgb tint\" [ 1 0.6 0.3 ]"};
   return type;
 }
 

@@ -1,6 +1,7 @@
 // "combiner": runs other filters. Those of each mode are combined first (max, min, screen, multiply, in that order),
 // and the results are multiplied. A filter that is not enabled on what is lit is left out.
 #include <array>
+#include <limits>
 
 #include "lights/filters/filter_base.h"
 
@@ -50,18 +51,22 @@ class CombinerFilter final : public LightFilter {
     return property == FilterProperty::LinkingGroups ? &linkingGroups_ : nullptr;
   }
 
-  // Of a product whose factors all are known, everywhere.
+  // Of a product whose factors all are known, everywhere. It is finite, and 0 only where one of them is: what a float
+  // cannot hold is brought to its ends.
   std::optional<float> GetRadianceModifier() const override {
+    using Limits = std::numeric_limits<float>;
     float product = 1;
+    bool isDark = false;
     for (const auto& children : children_) {
       if (&children != &Children(CombineMode::Multiply) && !children.empty()) return std::nullopt;
     }
     for (const FilterInstance& child : Children(CombineMode::Multiply)) {
       const std::optional<float> modifier = child.filter->GetRadianceModifier();
       if (!modifier || child.linking != 0) return std::nullopt;
-      product *= *modifier;
+      product = std::clamp(product * *modifier, Limits::min(), Limits::max());
+      isDark = isDark || *modifier == 0;
     }
-    return product;
+    return isDark ? 0.0f : product;
   }
 
   bool IsIdentity() const override {
@@ -127,6 +132,9 @@ FilterType CombinerFilterType() {
   type.create = [](const ParameterList& parameters, const FilterBuildContext& build) -> std::unique_ptr<LightFilter> {
     return std::make_unique<CombinerFilter>(parameters, build);
   };
+  // The suite has filters of these names.
+  type.samples = {"\"string filters\" [ \"suite-slot\" \"suite-fade, suite-ball\" \"suite-tint\" ]",
+                  "\"string filters\" \"suite-fade, suite-ball\" \"string mode\" \"screen\""};
   return type;
 }
 

@@ -20,35 +20,46 @@ class IntMultFilter final : public FilterBase {
       throw Error(parameters.WhereOf("intensity"),
                   parameters.Owner() + ": intensity and exposure leave the range of numbers");
     }
-    const float saturation = static_cast<float>(parameters.GetFloat("saturation", 1));
-    const auto part = [&](float ofEffect) { return Part{Applied(factor, ofEffect), 1 + ofEffect * (saturation - 1)}; };
+    saturation_ = static_cast<float>(parameters.GetFloat("saturation", 1));
+    // Without a saturation the whole effect is one factor.
+    const auto part = [&](float effect) { return Part{Applied(factor, effect), Applied(factor, 1), effect}; };
     diffuse_ = part(Settings().diffuse);
     specular_ = part(Settings().specular);
   }
 
   void Filter(const FilterContext&, const FilterSamples& samples) const override {
     for (int i = 0; i < samples.count; ++i) {
-      diffuse_.Apply(samples.diffuse[i]);
-      specular_.Apply(samples.specular[i]);
+      Apply(diffuse_, samples.diffuse[i]);
+      Apply(specular_, samples.specular[i]);
     }
   }
 
   std::optional<float> GetRadianceModifier() const override {
-    return std::max(diffuse_.factor.Average(), specular_.factor.Average());
+    Color diffuse(1.0f), specular(1.0f);
+    Apply(diffuse_, diffuse);
+    Apply(specular_, specular);
+    return std::max(diffuse.Average(), specular.Average());
   }
 
  private:
   struct Part {
-    Color factor{1.0f};
-    float saturation = 1;
-
-    void Apply(Color& color) const {
-      color *= factor;
-      if (saturation == 1) return;
-      const Color moved = Lerp(Color(color.Luminance()), color, saturation);
-      color = Color(std::max(moved.r, 0.0f), std::max(moved.g, 0.0f), std::max(moved.b, 0.0f));
-    }
+    Color factor{1.0f};  // as it is applied, the saturation aside
+    Color whole{1.0f};   // the same at full strength
+    float strength = 1;
   };
+
+  void Apply(const Part& part, Color& color) const {
+    if (saturation_ == 1) {
+      color *= part.factor;
+      return;
+    }
+    const Color tinted = color * part.whole;
+    const Color moved = Lerp(Color(tinted.Luminance()), tinted, saturation_);
+    const Color whole(std::max(moved.r, 0.0f), std::max(moved.g, 0.0f), std::max(moved.b, 0.0f));
+    color = part.strength == 1 ? whole : Lerp(color, whole, part.strength);
+  }
+
+  float saturation_ = 1;
   Part diffuse_, specular_;
 };
 
@@ -67,7 +78,8 @@ FilterType IntMultFilterType() {
   type.create = [](const ParameterList& parameters, const FilterBuildContext& build) -> std::unique_ptr<LightFilter> {
     return std::make_unique<IntMultFilter>(parameters, build);
   };
-  type.samples = {"\"rgb tint\" [ 0.2 0.5 1 ] \"float intensity\" 1.5", "\"float saturation\" 0 \"float exposure\" -1"};
+  type.samples = {"\"rgb tint\" [ 0.2 0.5 1 ] \"float intensity\" 1.5", "\"float saturation\" 0 \"float exposure\" -1",
+                  "\"rgb tint\" [ 1 0.3 0.2 ] \"float saturation\" 1.4"};
   return type;
 }
 

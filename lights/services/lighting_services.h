@@ -121,7 +121,8 @@ class LightingServices {
   std::optional<FoundLight> EvaluateLanding(const EmittedPhoton& photon, const Receiver& receiver) const;
 
   // What a photon brings to the receiver that it has landed on: its light's filter changes it, and where the light is
-  // not linked to the receiver it brings nothing. False: nothing is left.
+  // not linked to the receiver it brings nothing. False: nothing is left. The light as it was sent: what it passed on
+  // its way (EmittedPhoton::passed) comes after the filter.
   bool FilterLanding(const EmittedPhoton& photon, const Receiver& receiver, Color& diffuse, Color& specular) const {
     return !isLinked_ || LandsFiltered(photon, receiver, diffuse, specular);
   }

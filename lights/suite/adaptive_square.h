@@ -43,6 +43,10 @@ class AdaptiveSquare {
   const std::vector<Estimate>& Cells() const { return cells_; }
   size_t CellOf(double x, double y) const;
 
+  // Of `count` functions at once, by new points in the same leaves.
+  using Functions = std::function<void(double x, double y, std::span<double> values)>;
+  std::vector<Estimate> Integrate(size_t count, const Functions& f, Rng& rng) const;
+
  private:
   struct Node {
     double x = 0, y = 0, size = 1;

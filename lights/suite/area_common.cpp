@@ -1,5 +1,7 @@
 #include "lights/suite/area_common.h"
 
+#include "lights/suite/direction_source.h"
+
 namespace lampyr::suite {
 
 std::vector<Receiver> ReceiversAround(const Enclosure& enclosure, const Point3d& position, const Vector3d& normal) {
@@ -32,34 +34,10 @@ void CheckAreaEmissionDirections(const SuiteSubject& subject, const SuiteOptions
       report.AddError(subject.name, "emission-directions", where, emits ? 1 : 0, 0.5);
       continue;
     }
-    const auto distance = static_cast<float>(2 * enclosure.radius);
-    const auto draw = [&](const Point2& v) {
-      auto photon = subject.light->GenerateEmission(start->Draw(v));
-      if (photon && photon->pdfEmitDirection.IsZero()) photon.reset();  // a place without a direction
-      return photon;
-    };
-    const auto drawDirection = [&](Rng& r) -> std::optional<Vector3> {
-      const auto photon = draw(r.NextPoint2());
-      if (!photon) return std::nullopt;
-      return photon->direction;
-    };
-    const std::vector<Vector3d> directions = DrawDirections(rng, options.photons / 2, drawDirection);
-    const std::vector<Vector3d> hints = DrawDirections(rng, kHints, drawDirection);
-    const Estimate share = LatticeMean(rng, 128, 32, [&](const float(&x)[4]) {
-      return draw({x[0], x[1]}) ? 1.0 : 0.0;
-    });
-    LightHit hit = HitOf(start->photon, distance);
-    DirectionQuadrature quadrature(
-        CapAround(hints), hints,
-        [&](const Vector3d& direction) -> Integrands {
-          hit.direction = -Vector3(direction);
-          const Point3 P = hit.position + distance * Vector3(direction);
-          const auto e = subject.light->EvaluateSamples(subject.context, hit, P);
-          return {e ? Value(e->pdfEmitDirection) : 0.0, 0};
-        },
-        rng);
-    report.AddProbability(subject.name, "emission-integral", where, EqualMeans(quadrature.Density(), share, 1e-3));
-    report.AddProbability(subject.name, "emission-directions", where, quadrature.Test(directions, options.photons / 2));
+    DirectionEffort effort;
+    effort.draws = options.photons / 2;
+    CheckDirectionsOf(subject, DirectionsFrom(subject, *start, static_cast<float>(2 * enclosure.radius)), where, effort,
+                      rng, report);
   }
 }
 

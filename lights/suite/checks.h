@@ -16,6 +16,12 @@ void CheckSurfaceLight(const SuiteSubject& subject, const SuiteOptions& options,
 void CheckPointLight(const SuiteSubject& subject, const SuiteOptions& options, SuiteReport& report);
 void CheckInfiniteLight(const SuiteSubject& subject, const SuiteOptions& options, SuiteReport& report);  // deltas too
 
+// patches, shines-from, position-error, energy, uvw.
+void CheckAttributes(const SuiteSubject& subject, const SuiteOptions& options, SuiteReport& report);
+
+// Where few samples go.
+void CheckStrata(const SuiteSubject& subject, const SuiteOptions& options, SuiteReport& report);
+
 // An edited light is the light made afresh, bit by bit.
 void CheckEdit(const SuiteSubject& subject, const SuiteOrigin& origin, SuiteReport& report);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "lights/suite/statistics.h"
 
@@ -86,28 +87,59 @@ Estimate DirectionQuadrature::Radiance() const {
   return sum;
 }
 
-double DirectionQuadrature::Test(std::span<const Vector3d> directions, double draws) {
+double DirectionQuadrature::Test(std::span<const Vector3d> directions, double draws, int cells, std::string* worst) {
   std::vector<double> observed, expected, errors;
   std::vector<size_t> first;
   for (Part& part : parts_) {
     first.push_back(expected.size());
-    part.square.MakeCells(48);
+    part.square.MakeCells(cells);
     for (const Estimate& cell : part.square.Cells()) {
       expected.push_back(draws * cell.value);
       errors.push_back(draws * cell.error);
     }
   }
   observed.resize(expected.size(), 0.0);
+  std::vector<Vector3d> middles(expected.size(), Vector3d(0.0));
   for (const Vector3d& direction : directions) {
-    const size_t which = parts_.size() > 1 && parts_[0].cap.Invert(direction).x >= 1 ? 1 : 0;
+    const size_t which = PartOf(direction);
     const Point2d p = parts_[which].cap.Invert(direction);
-    ++observed[first[which] + parts_[which].square.CellOf(p.x, p.y)];
+    const size_t cell = first[which] + parts_[which].square.CellOf(p.x, p.y);
+    ++observed[cell];
+    middles[cell] += direction;
+  }
+  if (worst) {
+    size_t at = 0;
+    double most = -1;
+    for (size_t i = 0; i < observed.size(); ++i) {
+      const double excess = std::abs(observed[i] - expected[i]) / std::sqrt(expected[i] + errors[i] * errors[i] + 1);
+      if (excess > most) {
+        most = excess;
+        at = i;
+      }
+    }
+    const Vector3d middle = observed[at] > 0 ? middles[at] / observed[at] : Vector3d(0.0);
+    char text[200];
+    std::snprintf(text, sizeof(text), "of %.0f draws %.0f went around the direction %.3f %.3f %.3f; expected %.1f",
+                  draws, observed[at], middle.x, middle.y, middle.z, expected[at]);
+    *worst = text;
   }
   const Estimate total = Density();
   observed.push_back(draws - static_cast<double>(directions.size()));
   expected.push_back(draws * std::max(1 - total.value, 0.0));
   errors.push_back(draws * (total.error + 1e-3));
   return ChiSquaredTest(observed, expected, errors);
+}
+
+std::vector<Estimate> DirectionQuadrature::Integrate(size_t count, const Functions& f, Rng& rng) const {
+  std::vector<Estimate> sums(count);
+  for (const Part& part : parts_) {
+    const std::vector<Estimate> of = part.square.Integrate(
+        count,
+        [&](double x, double y, std::span<double> values) { f(part.cap.Direction(part.cap.wMax * x, y), values); },
+        rng);
+    for (size_t i = 0; i < count; ++i) sums[i] = sums[i] + of[i];
+  }
+  return sums;
 }
 
 }  // namespace lampyr::suite

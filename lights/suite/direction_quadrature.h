@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 
 #include "lights/suite/adaptive_square.h"
 
@@ -34,13 +35,21 @@ class DirectionQuadrature {
   Estimate Density() const;
   Estimate Radiance() const;
   // p-value of `directions`, and draws - directions.size() draws that gave none, against the density.
-  double Test(std::span<const Vector3d> directions, double draws);
+  // `worst`, if wanted: the cell that differs most, in words.
+  double Test(std::span<const Vector3d> directions, double draws, int cells = 48, std::string* worst = nullptr);
+
+  // ∫ f dω of `count` functions at once, over points like those of Density().
+  using Functions = std::function<void(const Vector3d&, std::span<double> values)>;
+  std::vector<Estimate> Integrate(size_t count, const Functions& f, Rng& rng) const;
 
  private:
   struct Part {
     Cap cap;
     AdaptiveSquare square;
   };
+  size_t PartOf(const Vector3d& direction) const {
+    return parts_.size() > 1 && parts_[0].cap.Invert(direction).x >= 1 ? 1 : 0;
+  }
   std::vector<Part> parts_;
 };
 

@@ -1,8 +1,7 @@
 // The suite's properties of lights from infinity. What they send may differ from place to place (a window does that):
 // densities of directions are tested at several receivers, those of emission along the lines that photons take.
-#include <glm/matrix.hpp>
-
 #include "lights/suite/checks.h"
+#include "lights/suite/direction_source.h"
 #include "math/frame.h"
 
 namespace lampyr::suite {
@@ -236,56 +235,11 @@ void InfiniteChecker::CheckStartsGivenDirection(int index) {
   report_.AddProbability(subject_.name, "emission-positions", where, ChiSquaredTest(observed, expected, errors));
 }
 
-// Directions of photons. What is emitted in a direction is asked for at the end of a line on which photons do travel:
-// one through the point that is nearest to all photons' lines, or through one of those where each comes nearest to it.
 void InfiniteChecker::CheckEmissionDirections() {
-  const auto draw = [&](Rng& rng) -> std::optional<Vector3> {
-    const auto photon = light_.GenerateEmission(RandomContext(subject_, rng));
-    if (!photon) return std::nullopt;
-    return -photon->direction;
-  };
-  const std::vector<Vector3d> hints = DrawDirections(rng_, kHints, draw);
-  std::vector<Vector3d> directions;
-  std::vector<EmissionSample> photons;
-  glm::dmat3 sum(1e-12);
-  Vector3d right(0.0);
-  for (int i = 0; i < options_.photons; ++i) {
-    const auto photon = light_.GenerateEmission(RandomContext(subject_, rng_));
-    if (!photon) continue;
-    const Vector3d d = glm::normalize(Vector3d(photon->direction));
-    directions.push_back(-d);
-    photons.push_back(*photon);
-    const glm::dmat3 across = glm::dmat3(1.0) - glm::outerProduct(d, d);
-    sum += across;
-    right += across * ((Vector3d(photon->position) - Vector3d(scene_.center)) / radius_);
-  }
-  std::vector<Vector3d> anchors{glm::inverse(sum) * right, Vector3d(0.0)};  // in radii from the scene's centre
-  for (size_t i = 0; i < std::min<size_t>(photons.size(), 16); ++i) {
-    const Vector3d from = (Vector3d(photons[i].position) - Vector3d(scene_.center)) / radius_;
-    anchors.push_back(from - directions[i] * glm::dot(anchors[0] - from, -directions[i]));
-  }
-  DirectionQuadrature quadrature(
-      CapAround(hints), hints,
-      [&](const Vector3d& toLight) -> Integrands {
-        for (const Vector3d& anchor : anchors) {
-          const Vector3d end = anchor - toLight * (1 + glm::dot(anchor, toLight));
-          const Point3 P(Point3d(scene_.center) + radius_ * end);
-          const auto e = light_.EvaluateSamples(subject_.context, HitAlong(Rounded(toLight), P), P);
-          if (e && !IsBlack(*e) && !e->pdfEmit.IsZero()) return {Value(e->pdfEmitDirection), 0};
-        }
-        return {};
-      },
-      rng_);
-  const Estimate share = LatticeMean(rng_, 128, 32, [&](const float(&x)[4]) {
-    LightContext context = subject_.context;
-    context.u = {x[0], x[1]};
-    context.uDirection = {x[2], x[3]};
-    return light_.GenerateEmission(context) ? 1.0 : 0.0;
-  });
-  report_.AddProbability(subject_.name, "emission-integral", Case(" directions"),
-                         EqualMeans(quadrature.Density(), share, 1e-3));
-  report_.AddProbability(subject_.name, "emission-directions", subject_.caseName,
-                         quadrature.Test(directions, options_.photons));
+  DirectionEffort effort;
+  effort.draws = options_.photons;
+  CheckDirectionsOf(subject_, DirectionsFromInfinity(subject_, options_.photons, rng_), Case(" directions"), effort,
+                    rng_, report_);
 }
 
 // By emission, and what leaves the scene's sphere by direct sampling at its points.

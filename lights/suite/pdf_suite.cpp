@@ -1,18 +1,20 @@
 #include "lights/suite/pdf_suite.h"
 
 #include "lights/suite/checks.h"
+#include "lights/suite/contract_checks.h"
+#include "lights/suite/direction_source.h"
 #include "lights/suite/statistics.h"
 
 namespace lampyr {
 
 void SuiteReport::AddProbability(const std::string& light, const std::string& property, const std::string& caseName,
-                                 double pValue) {
-  results_.push_back({light, property, caseName, true, pValue, 0, false});
+                                 double pValue, const std::string& words) {
+  results_.push_back({light, property, caseName, true, pValue, 0, false, words});
 }
 
 void SuiteReport::AddError(const std::string& light, const std::string& property, const std::string& caseName,
-                           double error, double tolerance) {
-  results_.push_back({light, property, caseName, false, error, tolerance, error <= tolerance});
+                           double error, double tolerance, const std::string& words) {
+  results_.push_back({light, property, caseName, false, error, tolerance, error <= tolerance, words});
 }
 
 void SuiteReport::Add(const SuiteReport& other) {
@@ -31,7 +33,9 @@ std::vector<SuiteResult> SuiteReport::Finish(double familyWise) {
   return results_;
 }
 
-void CheckLight(const SuiteSubject& subject, const SuiteOptions& options, SuiteReport& report) {
+namespace {
+
+void CheckDensities(const SuiteSubject& subject, const SuiteOptions& options, SuiteReport& report) {
   switch (subject.light->Kind()) {
     case LightKind::Area:
       if (subject.model) {
@@ -51,6 +55,22 @@ void CheckLight(const SuiteSubject& subject, const SuiteOptions& options, SuiteR
       suite::CheckInfiniteLight(subject, options, report);
       break;
   }
+}
+
+}  // namespace
+
+void CheckLight(const SuiteSubject& subject, const SuiteOptions& options, SuiteReport& report) {
+  std::optional<suite::ContractChecker> contract;
+  if (options.parts & kContractPart) {
+    contract.emplace(subject, options);
+    contract->CheckBidirectional(report);
+    contract->CheckTime(report);
+  }
+  if (options.parts & kAttributePart) suite::CheckAttributes(subject, options, report);
+  if (options.parts & kDensityPart) CheckDensities(subject, options, report);
+  if (subject.isThorough && (options.parts & kStrataPart)) suite::CheckStrata(subject, options, report);
+  if (subject.isThorough && (options.parts & kDirectionPart)) suite::CheckDirectionsFinely(subject, options, report);
+  if (contract) contract->CheckRepeat(report);
 }
 
 }  // namespace lampyr

@@ -38,14 +38,15 @@ struct SuiteResult {
   bool isProbability = false;  // statistic is a p-value that must exceed the threshold; else an error that must not
   double statistic = 0, threshold = 0;
   bool passed = false;
+  std::string words;  // where it was worst, what was expected there and what was found; may be empty
 };
 
 class SuiteReport {
  public:
-  void AddProbability(const std::string& light, const std::string& property, const std::string& caseName,
-                      double pValue);
+  void AddProbability(const std::string& light, const std::string& property, const std::string& caseName, double pValue,
+                      const std::string& words = "");
   void AddError(const std::string& light, const std::string& property, const std::string& caseName, double error,
-                double tolerance);
+                double tolerance, const std::string& words = "");
   void Add(const SuiteReport& other);
   // Judges the p-values at a family-wise level over all that were added.
   std::vector<SuiteResult> Finish(double familyWise);
@@ -54,12 +55,23 @@ class SuiteReport {
   std::vector<SuiteResult> results_;
 };
 
+// What CheckLight looks at.
+enum SuiteParts : unsigned {
+  kContractPart = 1,    // bidirectional, time, repeat
+  kAttributePart = 2,   // patches, shines-from, position-error, energy, uvw
+  kDensityPart = 4,     // all that compares densities with samples and with each other
+  kStrataPart = 8,      // strata: a second or so for each light
+  kDirectionPart = 16,  // emission-directions, with many photons
+  kAllParts = 31
+};
+
 struct SuiteOptions {
   int samples = 3000;  // per receiver
   int photons = 8000;  // per light and transform
   double familyWise = 1e-3;
   uint64_t seed = 1;
   int threads = 1;  // of RunPdfSuite; the results are the same with any number
+  unsigned parts = kAllParts;
   // Called now and then with the part that is done, one call at a time. May be empty.
   std::function<void(double fraction)> progress;
 };
@@ -72,6 +84,8 @@ struct SuiteSubject {
   bool isPowerExact = true;             // GetPowerEstimate is a closed form here
   // The light's parameters of these names: what samples, evaluations and photons carry is what is emitted times them.
   double diffuseMultiplier = 1, specularMultiplier = 1;
+  // Where few samples go, and photons' directions finely: the strata and direction parts, some seconds.
+  bool isThorough = true;
   double powerError = 6e-4;  // relative standard error that power is known to: five of it are below half a per cent
   std::string name, caseName;
 };

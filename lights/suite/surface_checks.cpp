@@ -30,8 +30,6 @@ class SurfaceReceiverChecker {
   std::optional<SurfaceHit> Seen(const LightSample& sample, const Point3& P) const;
   void Compare(const LightSample& sample, const Point3& P, SampleErrors& errors) const;
   Integrands At(const Point3& P, const Vector3d& direction);
-  LightHit HitFrom(const SurfaceHit& hit, const Vector3d& direction) const;
-  Cap CapTowards(const Point3& P) const;
 
   const SuiteSubject& subject_;
   const Light& light_;
@@ -42,27 +40,6 @@ class SurfaceReceiverChecker {
   bool oneSided_ = false;
   double leak_ = 0, compared_ = 0, cameraDiffers_ = 0;  // on the edge of a beam, roundings may
 };
-
-LightHit SurfaceReceiverChecker::HitFrom(const SurfaceHit& found, const Vector3d& direction) const {
-  LightHit hit;
-  hit.direction = glm::normalize(Vector3(direction));
-  hit.distance = static_cast<float>(found.distance);
-  hit.position = Point3(found.position);
-  hit.normal = Normal3(found.normal);
-  hit.uv = found.uv;
-  return hit;
-}
-
-// Where a ray may find the light at all.
-Cap SurfaceReceiverChecker::CapTowards(const Point3& P) const {
-  Cap cap;
-  const Vector3d way = tracer_.Around().middle - Point3d(P);
-  const double distance = glm::length(way), sine = tracer_.Around().radius / distance;
-  if (!(sine < 0.95)) return cap;
-  cap.axis = way / distance;
-  cap.wMax = 1.02 * sine * sine / (1 + std::sqrt(1 - sine * sine));
-  return cap;
-}
 
 Integrands SurfaceReceiverChecker::At(const Point3& P, const Vector3d& direction) {
   const auto found = tracer_.Trace(Point3d(P), direction);
@@ -124,7 +101,7 @@ void SurfaceReceiverChecker::Check(const Receiver& receiver) {
     return sample->direction;
   });
   DirectionQuadrature quadrature(
-      CapTowards(P), hints, [&](const Vector3d& direction) { return At(P, direction); }, rng_);
+      CapTowards(tracer_.Around(), P), hints, [&](const Vector3d& direction) { return At(P, direction); }, rng_);
   std::vector<Vector3d> directions;
   SampleErrors errors;
   for (int i = 0; i < options_.samples; ++i) {

@@ -115,4 +115,24 @@ std::vector<Estimate> SurfaceTracer::IntegrateOver(size_t cells, const std::func
   return result;
 }
 
+LightHit HitFrom(const SurfaceHit& found, const Vector3d& direction) {
+  LightHit hit;
+  hit.direction = glm::normalize(Vector3(direction));
+  hit.distance = static_cast<float>(found.distance);
+  hit.position = Point3(found.position);
+  hit.normal = Normal3(found.normal);
+  hit.uv = found.uv;
+  return hit;
+}
+
+Cap CapTowards(const Enclosure& around, const Point3& P) {
+  Cap cap;
+  const Vector3d way = around.middle - Point3d(P);
+  const double distance = glm::length(way), sine = around.radius / distance;
+  if (!(sine < 0.95)) return cap;
+  cap.axis = way / distance;
+  cap.wMax = 1.02 * sine * sine / (1 + std::sqrt(1 - sine * sine));
+  return cap;
+}
+
 }  // namespace lampyr::suite

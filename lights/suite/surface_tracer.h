@@ -53,4 +53,9 @@ class SurfaceTracer {
   Enclosure enclosure_;
 };
 
+// What a ray in this direction tells the light of what it found.
+LightHit HitFrom(const SurfaceHit& found, const Vector3d& direction);
+// Where a ray from P may find the light at all.
+Cap CapTowards(const Enclosure& around, const Point3& P);
+
 }  // namespace lampyr::suite

@@ -1,5 +1,5 @@
-// The pdf consistency suite on every type of light, on those of a plugin, or on the lights of a scene: a line for each
-// light and property, and a verdict.
+// The pdf consistency suite on every type of light and the filter suite on every type of light filter, on those of a
+// plugin, or the former on the lights of a scene: a line for each light or filter and property, and a verdict.
 #include <unistd.h>
 
 #include <cstdio>
@@ -10,6 +10,7 @@
 #include "app/plugins.h"
 #include "app/scene_builder.h"
 #include "base/progress.h"
+#include "lights/suite/filter_suite.h"
 #include "lights/suite/verdict.h"
 
 namespace lampyr {
@@ -35,34 +36,63 @@ class ScratchFolder {
   std::filesystem::path path_;
 };
 
-// The type that is named; else those of the plugins that are asked for; else all.
-std::vector<LightType> ChooseTypes(const CheckLightsOptions& options, const TypeRegistry& registry) {
-  std::vector<LightType> types;
+struct ChosenTypes {
+  std::vector<LightType> lights;
+  std::vector<FilterType> filters;
+
+  bool IsEmpty() const { return lights.empty() && filters.empty(); }
+};
+
+// Those of the name that is asked for; else those of the plugins that are asked for; else all.
+ChosenTypes ChooseTypes(const CheckLightsOptions& options, const TypeRegistry& registry) {
+  ChosenTypes types;
   if (options.type.empty() && !options.plugins.empty()) {
-    for (const LightType* type : LightsOf(registry, options.plugins)) types.push_back(*type);
-    if (types.empty()) throw UsageError("--plugin: expected a type of light to check, found none");
+    for (const LightType* type : LightsOf(registry, options.plugins)) types.lights.push_back(*type);
+    for (const FilterType* type : FiltersOf(registry, options.plugins)) types.filters.push_back(*type);
+    if (types.IsEmpty()) throw UsageError("--plugin: expected a type of light or of light filter to check, found none");
     return types;
   }
   std::vector<std::string> names;
-  for (const LightType* type : registry.Lights()) {
-    names.push_back(type->name);
-    if (options.type.empty() || type->name == options.type) types.push_back(*type);
-  }
-  if (types.empty()) throw UsageError("there is no light \"" + options.type + "\"" + DidYouMean(options.type, names));
+  const auto choose = [&](const auto& all, auto& chosen) {
+    for (const auto* type : all) {
+      names.push_back(type->name);
+      if (options.type.empty() || type->name == options.type) chosen.push_back(*type);
+    }
+  };
+  choose(registry.Lights(), types.lights);
+  choose(registry.Filters(), types.filters);
+  if (types.IsEmpty())
+    throw UsageError("there is no light or filter \"" + options.type + "\"" + DidYouMean(options.type, names));
   return types;
+}
+
+// What was not looked at must not pass.
+template <class Type>
+void RequireSamples(const std::vector<Type>& types, const char* what) {
+  for (const Type& type : types) {
+    if (type.samples.empty())
+      throw UsageError(std::string("the ") + what + " \"" + type.name + "\" has no sample blocks to check it by");
+  }
 }
 
 std::vector<SuiteResult> CheckTypes(const CheckLightsOptions& options, const SuiteOptions& suite) {
   const TypeRegistry registry = LoadTypes(options.plugins, nullptr);
-  const std::vector<LightType> types = ChooseTypes(options, registry);
-  for (const LightType& type : types) {
-    // What was not looked at must not pass.
-    if (type.samples.empty()) throw UsageError("the light \"" + type.name + "\" has no sample blocks to check it by");
-  }
+  const ChosenTypes types = ChooseTypes(options, registry);
+  RequireSamples(types.lights, "light");
+  RequireSamples(types.filters, "filter");
   const ScratchFolder scratch;
   std::vector<SuiteResult> results;
-  RunForeignCode(registry, [&] { results = RunPdfSuite(types, scratch.Path(), suite); });
-  if (results.empty()) throw Error("no light was checked");
+  RunForeignCode(registry, [&] {
+    SuiteOptions silent = suite;  // filters take next to no time where there are lights
+    if (!types.lights.empty()) {
+      results = RunPdfSuite(types.lights, scratch.Path(), suite);
+      silent.progress = nullptr;
+    }
+    if (types.filters.empty()) return;
+    const std::vector<SuiteResult> filters = RunFilterSuite(types.filters, scratch.Path(), silent);
+    results.insert(results.end(), filters.begin(), filters.end());
+  });
+  if (results.empty()) throw Error("nothing was checked");
   return results;
 }
 
@@ -91,6 +121,8 @@ void Print(const LightVerdict& verdict) {
               verdict.light.c_str(), verdict.property.c_str(), verdict.cases,
               verdict.worst.isProbability ? "p" : "error", verdict.worst.statistic, verdict.worst.threshold,
               verdict.passed ? "" : ": ", verdict.passed ? "" : verdict.worst.caseName.c_str());
+  const std::string meaning = verdict.passed ? "" : FilterPropertyMeaning(verdict.property);
+  if (!meaning.empty()) std::printf("       %s: %s\n", verdict.property.c_str(), meaning.c_str());
 }
 
 }  // namespace

@@ -298,9 +298,11 @@ int RunCommandLine(int argc, char** argv) {
 
   CheckLightsOptions check;
   CLI::App* checkCommand =
-      app.add_subcommand("check-lights", "Prove the densities of lights: of every type, a plugin's, or a scene's");
+      app.add_subcommand("check-lights",
+                         "Prove the densities of lights, and light filters: of every type, a plugin's, or a scene's "
+                         "lights");
   checkCommand->add_option("scene", check.scene, "A scene, whose lights are checked as they are placed");
-  checkCommand->add_option("--type", check.type, "Only this type of light");
+  checkCommand->add_option("--type", check.type, "Only this type of light or of light filter");
   DefinePluginOption(*checkCommand, check.plugins);
   checkCommand->add_flag("--json", check.json, "Print JSON");
   checkCommand->add_option("--seed", check.seed, "Seed of the samples (1)");

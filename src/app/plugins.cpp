@@ -95,6 +95,19 @@ class TypeLoader {
   std::set<fs::path> seen_;
 };
 
+template <class Type>
+std::vector<const Type*> TypesOf(const TypeRegistry& types, const std::vector<std::string>& asked,
+                                 std::vector<Type> Plugin::*ofPlugin) {
+  std::set<fs::path> files;
+  for (const std::string& name : asked) files.insert(Canonical(FindPlugin(name, name)));
+  std::vector<const Type*> found;
+  for (const Plugin& plugin : types.Plugins()) {
+    if (!files.count(Canonical(plugin.file))) continue;
+    for (const Type& type : plugin.*ofPlugin) found.push_back(&type);
+  }
+  return found;
+}
+
 }  // namespace
 
 TypeRegistry LoadTypes(const std::vector<std::string>& asked, const SceneDescription* scene) {
@@ -111,14 +124,11 @@ TypeRegistry LoadTypes(const std::vector<std::string>& asked, const SceneDescrip
 }
 
 std::vector<const LightType*> LightsOf(const TypeRegistry& types, const std::vector<std::string>& asked) {
-  std::set<fs::path> files;
-  for (const std::string& name : asked) files.insert(Canonical(FindPlugin(name, name)));
-  std::vector<const LightType*> lights;
-  for (const Plugin& plugin : types.Plugins()) {
-    if (!files.count(Canonical(plugin.file))) continue;
-    for (const LightType& type : plugin.lights) lights.push_back(&type);
-  }
-  return lights;
+  return TypesOf(types, asked, &Plugin::lights);
+}
+
+std::vector<const FilterType*> FiltersOf(const TypeRegistry& types, const std::vector<std::string>& asked) {
+  return TypesOf(types, asked, &Plugin::filters);
 }
 
 void RunForeignCode(const TypeRegistry& types, const std::function<void()>& work) {

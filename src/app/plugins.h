@@ -20,6 +20,7 @@ TypeRegistry LoadTypes(const std::vector<std::string>& asked, const SceneDescrip
 
 // The types that `asked` brought, of those that LoadTypes gave.
 std::vector<const LightType*> LightsOf(const TypeRegistry& types, const std::vector<std::string>& asked);
+std::vector<const FilterType*> FiltersOf(const TypeRegistry& types, const std::vector<std::string>& asked);
 
 // Runs work that calls lights. What the code of a plugin throws may be anything: all but an Error leaves as one that
 // names the plugins. Without plugins nothing is changed.

@@ -627,6 +627,21 @@ TEST_F(Cli, ChecksTheLightsOfOneType) {
     EXPECT_NE(outcome.output.find(word), std::string::npos) << word;
   EXPECT_EQ(outcome.output.find("FAILED"), std::string::npos);
   EXPECT_EQ(outcome.output.find("rect["), std::string::npos);
+  EXPECT_EQ(outcome.output.find("filter "), std::string::npos);
+}
+
+TEST_F(Cli, ChecksTheFiltersOfOneType) {
+  const Outcome outcome = Run("check-lights --type barn");
+  EXPECT_EQ(outcome.exitCode, 0) << outcome.output;
+  for (const char* word : {"ok     filter barn[0]", "filter barn[1]", "combine", "placement", " cases, 0 of 34 "})
+    EXPECT_NE(outcome.output.find(word), std::string::npos) << word;
+  EXPECT_EQ(outcome.output.find("gobo["), std::string::npos);
+  const Outcome json = Run("check-lights --type barn --json");
+  EXPECT_NE(json.output.find("\"light\": \"filter barn[1]\""), std::string::npos) << json.output;
+  const Outcome unknown = Run("check-lights --type gobbo");
+  EXPECT_EQ(unknown.exitCode, 2);
+  EXPECT_NE(unknown.output.find("there is no light or filter \"gobbo\" (did you mean \"gobo\"?)"), std::string::npos)
+      << unknown.output;
 }
 
 }  // namespace

@@ -34,6 +34,7 @@ class ForwardingLight : public Light {
                                                  const Point3& P) const override {
     return light_->EvaluateSamples(context, hit, P);
   }
+  bool CanBeAimed() const override { return light_->CanBeAimed(); }
   std::optional<EmissionSample> GenerateEmission(const LightContext& context) const override {
     return light_->GenerateEmission(context);
   }

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <functional>
+#include <iostream>
 #include <map>
 #include <set>
 
@@ -123,7 +124,7 @@ class SuiteTest : public ::testing::Test {
 
   // The properties that fails what `change` makes of the light of that name.
   using Change = std::function<std::unique_ptr<Light>(std::shared_ptr<const Light>)>;
-  Properties Failures(const std::string& name, const Change& change) {
+  Properties Failures(const std::string& name, const Change& change, unsigned parts = kAllParts) {
     const SuiteLight& light = SuiteLights().at(name);
     const std::unique_ptr<Light> changed = change(Make(light));
     SuiteSubject subject = SubjectOf(name, *changed);
@@ -131,8 +132,16 @@ class SuiteTest : public ::testing::Test {
     if (light.shape) model = MakeEmitterModel(*light.shape, turned_);
     subject.model = model.get();
     SuiteReport report;
-    CheckLight(subject, {}, report);
-    return Failed(report.Finish(1e-3));
+    SuiteOptions options;
+    options.parts = parts;
+    CheckLight(subject, options, report);
+    const std::vector<SuiteResult> results = report.Finish(1e-3);
+    for (const SuiteResult& result : results) {
+      if (result.passed) continue;
+      std::cout << name << " fails " << result.property << result.caseName << ", " << result.statistic << ": "
+                << result.words << "\n";
+    }
+    return Failed(results);
   }
 
   double powerError_ = 2.5e-3;  // 6e-4 finds a hundredth, in thrice the time

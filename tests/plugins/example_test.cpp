@@ -6,6 +6,7 @@
 #include "lights/plugin/plugin_loader.h"
 #include "plugins/plugins_fixture.h"
 #include "sampling/rng.h"
+#include "support/filter_agreement.h"
 #include "support/replicas.h"
 
 namespace lampyr::test {
@@ -178,6 +179,10 @@ TEST(Iris, IsPlacedAndInverted) {
       MakeFilter(*Types().FindFilter("iris"), ParametersOf("\"float softness\" 0 \"bool invert\" true"), build);
   EXPECT_EQ(Filter(*filter, {1, 0, 0}).diffuse, 0.0f);
   EXPECT_EQ(Filter(*filter, {0, 0, 1}).diffuse, 1.0f);
+}
+
+TEST(Iris, IsTheSameToAllIntegrators) {
+  ExpectFilterAgreement(*Types().FindFilter("iris"), Types(), 1);
 }
 
 TEST(Iris, HasItsParametersChecked) {

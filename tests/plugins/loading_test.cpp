@@ -111,13 +111,35 @@ TEST_F(Plugins, HaveTheirParametersChecked) {
   ExpectSays(Run("render order.pbrt" + Option(RingPlugin())), 2, {"order.pbrt:9", "innerRadius must be less"});
 }
 
-// The whole suite, on the plugin's type and no other.
+// The whole of both suites, on the plugin's types and no others.
 TEST_F(Plugins, PassTheSuite) {
   const Outcome outcome = Run("check-lights --threads 2" + Option(RingPlugin()));
-  ExpectSays(outcome, 0, {"ok     ring[0]", "ok     ring[3]", "emission-edge", "edit", ", 0 of 72 properties failed"});
+  ExpectSays(outcome, 0,
+             {"ok     ring[0]", "ok     ring[3]", "emission-edge", "edit", "ok     filter iris[0]",
+              "ok     filter iris[1]", "light-pdf", ", 0 of 106 properties failed"});
   EXPECT_EQ(outcome.output.find("FAILED"), std::string::npos);
   EXPECT_EQ(outcome.output.find("rect["), std::string::npos);
   EXPECT_EQ(outcome.output.find("sphere["), std::string::npos);
+  EXPECT_EQ(outcome.output.find("barn["), std::string::npos);
+  const Outcome iris = Run("check-lights --type iris --threads 2" + Option(RingPlugin()));
+  ExpectSays(iris, 0, {"ok     filter iris[1]", ", 0 of 34 properties failed"});
+  EXPECT_EQ(iris.output.find("ring["), std::string::npos);
+  ExpectSays(Run("check-lights --type irsi" + Option(RingPlugin())), 2,
+             {"there is no light or filter \"irsi\" (did you mean \"iris\"?)"});
+}
+
+// A wrong filter is told by its property, what that means, and its worst case.
+TEST_F(Plugins, AreToldByNameWhereAFilterIsNotTheSameTwice) {
+  const Outcome outcome = Run("check-lights --threads 2" + Option(FaultyPlugin("wrong_iris")));
+  ExpectSays(outcome, 1,
+             {"FAILED filter wrong_iris[0]", "repeat: asked again, a filter gives the same bits",
+              "asked for the second time, edge", "right is ("});
+}
+
+// A type that nothing can be said of does not pass.
+TEST_F(Plugins, AreNotCheckedWithoutSamples) {
+  ExpectSays(Run("check-lights --type filter-throws" + Option(FaultyPlugin("behaviour"))), 2,
+             {"the filter \"filter-throws\" has no sample blocks to check it by"});
 }
 
 // The properties that fail.

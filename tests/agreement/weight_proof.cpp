@@ -1,0 +1,259 @@
+#include "agreement/weight_proof.h"
+
+#include <array>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+
+#include "integrators/bdpt/bdpt_integrator.h"
+#include "integrators/bdpt/full_path.h"
+#include "integrators/common/light_subpath.h"
+#include "support/aimed.h"
+#include "support/render_scene.h"
+
+namespace lampyr::test {
+
+void InputCheck::Note(double value, double expected) {
+  ++asked;
+  if (!(std::abs(value - expected) <= 1e-2 * std::abs(expected))) ++wrong;
+}
+
+std::string WeightErrors::WhatIsWrong() const {
+  if (!(sum < 1e-6)) return "sum";
+  if (!(recursion < 1e-6)) return "recursion";
+  // Densities are floats, here of the event as seen from the other end: narrow lobes amplify how directions are
+  // rounded.
+  if (!(reported < 5e-5)) return "reported";
+  if (!direct.Passes()) return "direct";
+  if (!emission.Passes()) return "emission";
+  if (!lens.Passes()) return "lens";
+  if (!mergesPerDensity.Passes()) return "merges";
+  if (!refraction.Passes()) return "refraction";
+  return "";
+}
+
+namespace {
+
+constexpr uint32_t kLightPaths = 2000;  // that leave photons
+
+// Light paths that leave photons, kept whole, so that a merge can be unfolded: a photon is known by what it carries.
+class KeptLightPaths final : public LightSubpathVisitor {
+ public:
+  void Arrived(const LightSubpath& path) override {
+    if (!path.Last().storesPhotons) return;
+    photons.Add(path.Last(), static_cast<int>(path.count));
+    const auto vertices = path.vertices.begin();
+    const PathVertex& last = path.Last();
+    paths_[KeyOf(last.toPrevious, last.diffuse, last.weight.connect, static_cast<float>(last.previousPerSolidAngle),
+                 path.count)] = {{vertices, vertices + static_cast<std::ptrdiff_t>(path.count)}, path.end};
+  }
+  struct Kept {
+    std::vector<PathVertex> vertices;
+    LightEnd end;
+  };
+  const Kept& PathOf(const Photon& photon) const {
+    return paths_.at(KeyOf(photon.toPrevious, photon.flux, photon.connect, photon.previousPerSolidAngle, photon.depth));
+  }
+
+  PhotonList photons;
+
+ private:
+  using Key = std::array<double, 9>;
+  static Key KeyOf(const Vector3& d, const Color& c, double connect, float perSolidAngle, size_t depth) {
+    return {d.x, d.y, d.z, c.r, c.g, c.b, connect, perSolidAngle, static_cast<double>(depth)};
+  }
+  std::map<Key, Kept> paths_;
+};
+
+double CosineAtGeometry(const PathVertex& vertex, const Vector3& direction) {
+  return std::abs(glm::dot(Vector3d(vertex.bsdf.Ng()), Vector3d(direction)));
+}
+
+class WeightChecker final : public PathObserver {
+ public:
+  WeightChecker(const RenderScene& scene, const KeptLightPaths& kept, double mergesPerDensity)
+      : scene_(scene), kept_(kept), mergesPerDensity_(mergesPerDensity) {}
+
+  // Of the sample that makes the paths that follow.
+  void StartSample(const Ray& cameraRay, float time) {
+    cameraRay_ = cameraRay;
+    time_ = time;
+  }
+  void ObserveMerge(const ConnectedPath& path, const Photon& photon) override {
+    ConnectedPath merged = path;
+    const KeptLightPaths::Kept& light = kept_.PathOf(photon);
+    if (photon.depth != light.vertices.size()) throw std::logic_error("a photon of another path");
+    merged.light = light.vertices;
+    merged.end = light.end;
+    merged.toLight = light.vertices[0].toPrevious;
+    ++worst_.merges;
+    Observe(merged);
+  }
+  void Observe(const ConnectedPath& path) override {
+    const FullPath full = Unfold(path);
+    const std::vector<double> expected = WeightsByDensities(full), recursive = WeightsByRecursion(full);
+    ++worst_.paths;
+    if (!path.isMerged) ++worst_.perTechnique[{path.s, path.t}];
+    double sum = 0;
+    for (size_t s = 0; s < expected.size(); ++s) {
+      sum += recursive[s];
+      worst_.recursion = std::max(worst_.recursion, std::abs(recursive[s] - expected[s]));
+    }
+    worst_.sum = std::max(worst_.sum, std::abs(sum - 1));
+    worst_.reported = std::max(worst_.reported, std::abs(path.weight - expected[static_cast<size_t>(full.technique)]));
+    CheckInputs(path);
+  }
+  const WeightErrors& Result() const { return worst_; }
+
+ private:
+  void CheckInputs(const ConnectedPath& path) {
+    if (path.light.empty() && path.camera.empty()) return;
+    if (path.s + path.t > 2) worst_.mergesPerDensity.Note(path.mergesPerDensity, mergesPerDensity_);
+    CheckLens(path);
+    if (!path.isMerged) CheckLightEnd(path);
+    for (size_t i = 0; i + 1 < path.camera.size(); ++i) {
+      const PathVertex& vertex = path.camera[i];
+      CheckRefraction(vertex, -path.camera[i + 1].toPrevious, vertex.toPrevious, vertex.eventForward,
+                      vertex.eventReverse);
+    }
+    for (size_t i = 0; i + 1 < path.light.size(); ++i) {
+      const PathVertex& vertex = path.light[i];
+      CheckRefraction(vertex, vertex.toPrevious, -path.light[i + 1].toPrevious, vertex.eventReverse,
+                      vertex.eventForward);
+    }
+  }
+
+  // The density (area) with which the camera finds its first vertex, from where the path meets the lens.
+  void CheckLens(const ConnectedPath& path) {
+    if (path.camera.empty() && !path.connection) return;
+    const PathVertex& vertex = path.camera.empty() ? path.light.back() : path.camera.front();
+    const Point3 lens = path.camera.empty() ? path.connection->camera.position : cameraRay_.origin;
+    const auto densities = scene_.camera->EvaluateRay({lens, -path.toLens}, &film_);
+    if (!densities || !(path.cameraPerArea > 0)) return;
+    const Vector3d way = Vector3d(vertex.point.position) - Vector3d(lens);
+    const double cosine = CosineAtGeometry(vertex, path.toLens);
+    worst_.lens.Note(path.cameraPerArea,
+                     scene_.camera->ConnectsByDirection()
+                         ? static_cast<double>(densities->pdfPosition.value) * cosine
+                         : static_cast<double>(densities->pdfDirection.value) * cosine / glm::dot(way, way));
+  }
+
+  // The light as a ray from the first surface vertex finds it.
+  std::optional<FoundLight> FindLight(const ConnectedPath& path, const PathVertex& first, double& distance) const {
+    const LightingServices& lighting = *scene_.lighting;
+    for (size_t i = 0; i < lighting.InfiniteCount(); ++i) {
+      const auto found = lighting.EvaluateEscaped(i, first.receiver, path.toLight, time_, true);
+      if (found && found->light == path.end.light) return found;
+    }
+    if (lighting.IsAtInfinity(path.end.light)) return std::nullopt;
+    const Ray ray = SpawnRay(first.point, path.toLight, time_);
+    RayHit hit;
+    Color passed;
+    if (!scene_.geometry->Intersect(ray, visibility::kIndirect, hit, passed)) return std::nullopt;
+    const SurfacePoint point = scene_.geometry->GetSurfacePoint(ray, hit);
+    distance = glm::distance(Vector3d(point.position), Vector3d(first.point.position));
+    const auto found =
+        lighting.EvaluateSamples(first.receiver, path.toLight, static_cast<float>(distance), point, time_, true);
+    return found && found->light == path.end.light ? found : std::nullopt;
+  }
+  void CheckLightEnd(const ConnectedPath& path) {
+    const LightingServices& lighting = *scene_.lighting;
+    if (path.end.direct == 0 || path.end.emission == 0) return;  // one of them is not there
+    const PathVertex& first = path.light.empty() ? path.camera.back() : path.light.front();
+    const PlacedLight& placed = lighting.Lights()[path.end.light];
+    if (IsDelta(placed.light->Kind())) {
+      worst_.direct.Note(path.end.direct,
+                         static_cast<double>(lighting.SelectionProbability(first.receiver, path.end.light, 0).value));
+      return;
+    }
+    double distance = 1;
+    const auto found = FindLight(path, first, distance);
+    if (!found) return;
+    const LightEvaluation& e = found->evaluation;
+    if (e.pdfDirect.IsZero() || e.pdfEmit.IsZero() || e.pdfEmitDirection.IsZero()) return;
+    const double cosine = CosineAtGeometry(first, path.toLight);
+    if (cosine < 1e-3) return;
+    worst_.direct.Note(path.end.direct, static_cast<double>(found->selection.value) *
+                                            static_cast<double>(e.pdfDirect.value) *
+                                            static_cast<double>(e.solidAngleToArea));
+    const double chosen = static_cast<double>(lighting.EmissionSelectionProbability(path.end.light).value);
+    worst_.emission.Note(path.end.emission, chosen * static_cast<double>(e.pdfEmit.value) *
+                                                static_cast<double>(e.pdfEmitDirection.value) * cosine /
+                                                (distance * distance));
+  }
+
+  // A delta that refracts: the density towards the light over that towards the camera is how solid angles are
+  // stretched, η_l² cosθ_l / (η_c² cosθ_c), and Snell's law says η.
+  void CheckRefraction(const PathVertex& vertex, const Vector3& toLight, const Vector3& toCamera, double densityToLight,
+                       double densityToCamera) {
+    if (!vertex.scatteredDelta) return;
+    const Vector3d n(vertex.bsdf.ShadingFrame().z);
+    const double cosLight = glm::dot(n, Vector3d(toLight)), cosCamera = glm::dot(n, Vector3d(toCamera));
+    if (cosLight * cosCamera > 0) return;                                                    // reflected
+    const double sinLight = 1 - cosLight * cosLight, sinCamera = 1 - cosCamera * cosCamera;  // squared
+    if (sinLight < 0.02 || sinCamera < 0.02 || std::abs(cosLight) < 0.05 || std::abs(cosCamera) < 0.05) return;
+    worst_.refraction.Note(densityToLight / densityToCamera,
+                           sinCamera / sinLight * std::abs(cosLight) / std::abs(cosCamera));
+  }
+
+  const RenderScene& scene_;
+  const KeptLightPaths& kept_;
+  const double mergesPerDensity_;
+  Ray cameraRay_;
+  float time_ = 0;
+  Point2 film_;
+  WeightErrors worst_;
+};
+
+}  // namespace
+
+WeightErrors CheckWeights(const std::string& sceneText, const WeightProof& proof) {
+  Diagnostics diagnostics(Diagnostics::Mode::Collect);
+  const std::filesystem::path file = std::filesystem::path(LAMPYR_SOURCE_DIR) / "scenes" / "test.pbrt";
+  const BuiltScene built = BuildScene(ParseScene(sceneText, file, diagnostics), {}, true, diagnostics);
+  const BoundingSphere& sphere = built.scene.lighting->SceneSphere();
+  const auto guide = AimAt(*built.scene.lighting, sphere.center, 0.2f * sphere.radius);
+  if (proof.aimed) built.scene.lighting->AimBy(guide.get());
+  BdptSettings settings;
+  settings.maxDepth = built.settings.maxDepth;
+  const int width = built.settings.width, height = built.settings.height;
+  settings.filmPixels = static_cast<double>(width) * static_cast<double>(height);
+  settings.merges = proof.radius > 0;
+  const auto integrator = MakeBdptIntegrator(built.scene, settings);
+  Sampler sampler(SamplerKind::Independent, 5);
+  KeptLightPaths kept;
+  PhotonPass gather;
+  RenderCounts counts;
+  double mergesPerDensity = 0;
+  if (proof.radius > 0) {
+    gather.lightPaths = kLightPaths;
+    gather.radius = proof.radius * sphere.radius;
+    const auto radius = static_cast<double>(gather.radius);
+    mergesPerDensity = kLightPaths * 3.14159265358979323846 * radius * radius;
+    const LightSubpathTracer tracer(built.scene, settings.maxDepth, {2, 1}, LightSubpathTracer::Weights::All);
+    LightSubpath path;
+    for (uint32_t i = 0; i < kLightPaths; ++i) {
+      sampler.StartPixelSample(1, 0, i);
+      tracer.Trace(0.5f, sampler, counts, path, kept);
+    }
+    gather.map = std::make_shared<PhotonMap>(std::span(&kept.photons, 1), Mis(gather.MergesPerDensity()), 1);
+  }
+  WeightChecker checker(built.scene, kept, mergesPerDensity);
+  SplatList splats({0, 0}, {static_cast<float>(width), static_cast<float>(height)}, 1);
+  for (uint32_t index = 0; checker.Result().paths < proof.paths && index < 100000; ++index) {
+    sampler.StartPixelSample(0, 0, index);
+    splats.Clear();
+    splats.StartPath();
+    sampler.SetDimension(dimensions::kFilm);
+    const Point2 u = sampler.Get2D(), lens = sampler.Get2D();
+    const float time = built.scene.hasMotion ? sampler.Get1D() : 0.0f;
+    const Point2 film(u.x * static_cast<float>(width), u.y * static_cast<float>(height));
+    const CameraRay ray = built.scene.camera->GenerateRay(film, lens, time);
+    checker.StartSample(ray.ray, time);
+    integrator->Sample(&ray.ray, time, sampler, {splats, counts, &checker, proof.radius > 0 ? &gather : nullptr});
+    if (proof.stopsAtFirst && !checker.Result().WhatIsWrong().empty()) break;
+  }
+  return checker.Result();
+}
+
+}  // namespace lampyr::test
