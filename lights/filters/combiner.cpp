@@ -35,6 +35,7 @@ class CombinerFilter final : public LightFilter {
       if (isForAll) child.combineMode = mode;
       children_[static_cast<size_t>(child.combineMode)].push_back(std::move(child));
     }
+    radianceModifier_ = FindRadianceModifier();
   }
 
   void Filter(const FilterContext& context, const FilterSamples& samples) const override {
@@ -50,8 +51,15 @@ class CombinerFilter final : public LightFilter {
     return property == FilterProperty::LinkingGroups ? &linkingGroups_ : nullptr;
   }
 
+  std::optional<float> GetRadianceModifier() const override { return radianceModifier_; }
+
+  bool IsIdentity() const override {
+    return std::all_of(children_.begin(), children_.end(), [](const auto& children) { return children.empty(); });
+  }
+
+ private:
   // Of a product whose factors all are known, everywhere.
-  std::optional<float> GetRadianceModifier() const override {
+  std::optional<float> FindRadianceModifier() const {
     float product = 1;
     for (const auto& children : children_) {
       if (&children != &Children(CombineMode::Multiply) && !children.empty()) return std::nullopt;
@@ -64,11 +72,6 @@ class CombinerFilter final : public LightFilter {
     return product;
   }
 
-  bool IsIdentity() const override {
-    return std::all_of(children_.begin(), children_.end(), [](const auto& children) { return children.empty(); });
-  }
-
- private:
   const std::vector<FilterInstance>& Children(CombineMode mode) const { return children_[static_cast<size_t>(mode)]; }
 
   // A batch of one is what integrators ask for: room for more would cost more than the filters.
@@ -107,6 +110,7 @@ class CombinerFilter final : public LightFilter {
 
   std::vector<std::string> linkingGroups_;
   std::array<std::vector<FilterInstance>, 4> children_;  // by mode
+  std::optional<float> radianceModifier_;
 };
 
 }  // namespace
