@@ -10,8 +10,8 @@
 
 namespace {
 
-// Where no caller can catch what is thrown: in a thread of a library, in a function that must not throw, or by a library
-// that cannot clean up after what went wrong. Embree ends in this way where it gets no threads.
+// Where no caller can catch what is thrown: in a thread of a library, in a function that must not throw, or by a
+// library that cannot clean up after what went wrong. Embree ends in this way where it gets no threads.
 [[noreturn]] void EndWithMessage() {
   try {
     if (std::current_exception()) std::rethrow_exception(std::current_exception());
@@ -25,8 +25,7 @@ namespace {
     std::_Exit(lampyr::kExitFailed);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "error: %s\n", error.what());
-  } catch (...) {
-  }
+  } catch (...) {}
   std::abort();
 }
 
