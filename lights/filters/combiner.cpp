@@ -36,6 +36,7 @@ class CombinerFilter final : public LightFilter {
       if (isForAll) child.combineMode = mode;
       children_[static_cast<size_t>(child.combineMode)].push_back(std::move(child));
     }
+    radianceModifier_ = FindRadianceModifier();
   }
 
   void Filter(const FilterContext& context, const FilterSamples& samples) const override {
@@ -51,9 +52,16 @@ class CombinerFilter final : public LightFilter {
     return property == FilterProperty::LinkingGroups ? &linkingGroups_ : nullptr;
   }
 
+  std::optional<float> GetRadianceModifier() const override { return radianceModifier_; }
+
+  bool IsIdentity() const override {
+    return std::all_of(children_.begin(), children_.end(), [](const auto& children) { return children.empty(); });
+  }
+
+ private:
   // Of a product whose factors all are known, everywhere. It is finite, and 0 only where one of them is: what a float
   // cannot hold is brought to its ends.
-  std::optional<float> GetRadianceModifier() const override {
+  std::optional<float> FindRadianceModifier() const {
     using Limits = std::numeric_limits<float>;
     float product = 1;
     bool isDark = false;
@@ -69,11 +77,6 @@ class CombinerFilter final : public LightFilter {
     return isDark ? 0.0f : product;
   }
 
-  bool IsIdentity() const override {
-    return std::all_of(children_.begin(), children_.end(), [](const auto& children) { return children.empty(); });
-  }
-
- private:
   const std::vector<FilterInstance>& Children(CombineMode mode) const { return children_[static_cast<size_t>(mode)]; }
 
   // A batch of one is what integrators ask for: room for more would cost more than the filters.
@@ -112,6 +115,7 @@ class CombinerFilter final : public LightFilter {
 
   std::vector<std::string> linkingGroups_;
   std::array<std::vector<FilterInstance>, 4> children_;  // by mode
+  std::optional<float> radianceModifier_;
 };
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "lights/filters/filter_base.h"
+#include "scene/limits.h"
 
 namespace lampyr {
 
@@ -23,11 +24,21 @@ bool Has(const std::vector<std::string>& sorted, const std::string& name) {
 
 void WarnOfUnknown(const std::vector<std::string>& names, const FileLocation& where, const std::string& what,
                    const std::set<std::string>& known, Diagnostics& diagnostics) {
+  // Each name may be wrong, and each is compared with all.
+  const bool suggests = known.size() <= limits::kSuggestedNames;
   for (const std::string& name : names) {
     if (known.contains(name)) continue;
-    diagnostics.Warn(where,
-                     "there is no " + what + " \"" + name + "\"" + DidYouMean(name, {known.begin(), known.end()}));
+    const std::string hint = suggests ? DidYouMean(name, {known.begin(), known.end()}) : "";
+    diagnostics.Warn(where, "there is no " + what + " \"" + name + "\"" + hint);
   }
+}
+
+// Of classes and what they tell apart: the product may be large where neither is.
+void CheckTable(size_t rows, size_t columns, const FileLocation& where) {
+  if (rows <= limits::kLinks / std::max(columns, size_t{1})) return;
+  throw Error(where, "the attributes \"lighting\" and \"lightfilter\" make " + std::to_string(rows) +
+                         " classes of surfaces, and tell " + std::to_string(columns) +
+                         " lights or filters apart: their product is more than " + std::to_string(limits::kLinks));
 }
 
 }  // namespace
@@ -51,10 +62,10 @@ uint32_t LightLinking::ClassOf(const ParameterList* lighting, const ParameterLis
 uint32_t LightLinking::FilterKey(const std::vector<std::string>& groups) {
   std::vector<std::string> sorted = groups;
   std::sort(sorted.begin(), sorted.end());
-  const auto same = std::find(filterGroups_.begin(), filterGroups_.end(), sorted);
-  const auto key = static_cast<uint32_t>(same - filterGroups_.begin());
-  if (same == filterGroups_.end()) filterGroups_.push_back(std::move(sorted));
-  return key;
+  if (sorted.empty()) return 0;
+  const auto [entry, isNew] = filterKeys_.emplace(sorted, static_cast<uint32_t>(filterGroups_.size()));
+  if (isNew) filterGroups_.push_back(std::move(sorted));
+  return entry->second;
 }
 
 int32_t LightLinking::Add(FilterInstance filter) {
@@ -83,6 +94,7 @@ void LightLinking::FinishLights(std::span<const PlacedLight> lights, Diagnostics
     lightKey_.push_back(keys.emplace(key, static_cast<uint32_t>(keys.size())).first->second);
   }
   lightKeys_ = keys.size();
+  CheckTable(classes_.size(), lightKeys_, WhereOf(classes_.back()));
   lit_.resize(classes_.size() * lightKeys_);
   for (size_t i = 0; i < classes_.size(); ++i) {
     const Class& c = classes_[i];
@@ -96,9 +108,17 @@ void LightLinking::FinishLights(std::span<const PlacedLight> lights, Diagnostics
   }
 }
 
+FileLocation LightLinking::WhereOf(const Class& c) {
+  for (const FileLocation& where : {c.whereLights, c.whereWithout, c.whereGroups}) {
+    if (where.file) return where;
+  }
+  return {};
+}
+
 void LightLinking::FinishFilters(Diagnostics& diagnostics) {
   std::set<std::string> known;
   for (const auto& groups : filterGroups_) known.insert(groups.begin(), groups.end());
+  CheckTable(classes_.size(), filterGroups_.size(), WhereOf(classes_.back()));
   enabled_.resize(classes_.size() * filterGroups_.size());
   for (size_t i = 0; i < classes_.size(); ++i) {
     const Class& c = classes_[i];
@@ -122,6 +142,7 @@ LightSets LightLinking::Sets() const {
   LightSets sets;
   if (!excludes_) return sets;
   std::map<std::string, uint32_t> known;
+  size_t listed = 0;
   for (size_t i = 0; i < classes_.size(); ++i) {
     const auto row = lit_.begin() + static_cast<std::ptrdiff_t>(i * lightKeys_);
     const std::string lit(row, row + static_cast<std::ptrdiff_t>(lightKeys_));
@@ -131,6 +152,11 @@ LightSets LightLinking::Sets() const {
     std::vector<uint32_t>& members = sets.lights.emplace_back();
     for (uint32_t light = 0; light < lightKey_.size(); ++light) {
       if (lit[lightKey_[light]]) members.push_back(light);
+    }
+    listed += members.size();
+    if (listed > limits::kLinks) {
+      throw Error(WhereOf(classes_[i]), "the sets of lights that surfaces are linked to have more than " +
+                                            std::to_string(limits::kLinks) + " members in all");
     }
   }
   return sets;

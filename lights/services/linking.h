@@ -55,6 +55,7 @@ class LightLinking {
     std::vector<std::string> lights, withoutLights, filterGroups;  // sorted
     FileLocation whereLights, whereWithout, whereGroups;
   };
+  static FileLocation WhereOf(const Class& c);
   using ClassNames = std::array<std::vector<std::string>, 3>;
   void FinishLights(std::span<const PlacedLight> lights, Diagnostics& diagnostics);
   void FinishFilters(Diagnostics& diagnostics);
@@ -62,6 +63,7 @@ class LightLinking {
   std::vector<Class> classes_;  // 0: says nothing
   std::map<ClassNames, uint32_t> classIndex_;
   std::vector<std::vector<std::string>> filterGroups_;  // by FilterKey; 0: none
+  std::map<std::vector<std::string>, uint32_t> filterKeys_;
   std::vector<FilterInstance> filters_;
   bool excludes_ = false, hasFilters_ = false;
   size_t lightKeys_ = 0;            // kinds of lights that classes can tell apart

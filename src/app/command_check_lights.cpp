@@ -46,7 +46,7 @@ struct ChosenTypes {
 // Those of the name that is asked for; else those of the plugins that are asked for; else all.
 ChosenTypes ChooseTypes(const CheckLightsOptions& options, const TypeRegistry& registry) {
   ChosenTypes types;
-  if (options.type.empty() && !options.plugins.empty()) {
+  if (options.type.empty() && !options.plugins.files.empty()) {
     for (const LightType* type : LightsOf(registry, options.plugins)) types.lights.push_back(*type);
     for (const FilterType* type : FiltersOf(registry, options.plugins)) types.filters.push_back(*type);
     if (types.IsEmpty()) throw UsageError("--plugin: expected a type of light or of light filter to check, found none");

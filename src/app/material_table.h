@@ -1,13 +1,16 @@
 // The materials of a scene, resolved from the names and indices that its shapes and mixes refer to them by.
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "materials/material_makers.h"
+#include "scene/limits.h"
 #include "scene/scene_description.h"
 #include "textures/texture_library.h"
 
@@ -20,7 +23,9 @@ class MaterialTable {
       : description_(description),
         textures_(textures),
         diagnostics_(diagnostics),
-        unnamed_(description.materials.size(), -1) {}
+        unnamed_(description.materials.size(), -1) {
+    for (const NamedMaterialDescription& named : description.namedMaterials) descriptions_.emplace(named.name, &named);
+  }
 
   // Index into Materials() for a shape's material.
   int32_t IndexOf(const MaterialReference& reference) {
@@ -61,30 +66,51 @@ class MaterialTable {
     return [this, where](const std::string& name) { return materials_[Named(name, where)]; };
   }
 
+  // A mix asks one of its two, so that what counts is how deep they are, and not how often each is named.
   int32_t Named(const std::string& name, const FileLocation& where) {
     const auto made = named_.find(name);
-    if (made != named_.end()) return made->second;
-    if (!inProgress_.insert(name).second) throw Error(where, "the material \"" + name + "\" is mixed from itself");
-    constexpr size_t deepest = 256;  // each level takes some of the stack
-    if (inProgress_.size() > deepest) throw Error(where, "materials are mixed more than 256 deep");
-    std::vector<std::string> names;
-    for (const NamedMaterialDescription& named : description_.namedMaterials) {
-      names.push_back(named.name);
-      if (named.name != name) continue;
-      const int32_t index = Add(Make(named.material));
-      inProgress_.erase(name);
-      return named_[name] = index;
+    if (made != named_.end()) {
+      deepest_ = std::max(deepest_, made->second.depth);
+      return made->second.index;
     }
-    throw Error(where, "there is no material named \"" + name + "\"" + DidYouMean(name, names));
+    const auto description = descriptions_.find(name);
+    if (description == descriptions_.end()) {
+      std::vector<std::string> names;
+      for (const auto& entry : descriptions_) names.push_back(entry.first);
+      throw Error(where, "there is no material named \"" + name + "\"" + DidYouMean(name, names));
+    }
+    if (!inProgress_.insert(name).second) throw Error(where, "the material \"" + name + "\" is mixed from itself");
+    CheckDepth(inProgress_.size(), where);
+    const StatementDescription& material = description->second->material;
+    const size_t beside = std::exchange(deepest_, 0);
+    const int32_t index = Add(Make(material));
+    const size_t depth = deepest_ + 1;
+    CheckDepth(depth, material.where);
+    deepest_ = std::max(beside, depth);
+    inProgress_.erase(name);
+    named_[name] = {index, depth};
+    return index;
   }
+
+  // Each level takes some of the stack.
+  static void CheckDepth(size_t depth, const FileLocation& where) {
+    if (depth > limits::kNestedNames) throw Error(where, "materials are mixed more than 256 deep");
+  }
+
+  struct MadeMaterial {
+    int32_t index = -1;
+    size_t depth = 1;  // mixes within one another, and what they are mixed of
+  };
 
   const SceneDescription& description_;
   const TextureLibrary& textures_;
   Diagnostics& diagnostics_;
   std::vector<std::shared_ptr<const Material>> materials_;
   std::vector<int32_t> unnamed_;
-  std::map<std::string, int32_t> named_;
+  std::map<std::string, const NamedMaterialDescription*> descriptions_;
+  std::map<std::string, MadeMaterial> named_;
   std::set<std::string> inProgress_;
+  size_t deepest_ = 0;  // of the materials that were named since the one that is being made was begun
   int32_t default_ = -1;
 };
 

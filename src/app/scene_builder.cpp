@@ -1,6 +1,7 @@
 #include "app/scene_builder.h"
 
 #include <algorithm>
+#include <map>
 #include <string_view>
 #include <unordered_map>
 
@@ -13,6 +14,8 @@
 #include "lights/light_type.h"
 #include "lights/services/light_surface.h"
 #include "math/motion.h"
+#include "scene/limits.h"
+#include "scene/nesting.h"
 #include "textures/alpha.h"
 
 namespace lampyr {
@@ -63,6 +66,11 @@ double BytesOfLight(const Shape& shape) {
   return ofLight + (mesh ? ofTriangle * static_cast<double>((*mesh)->triangles.size()) : 0.0);
 }
 
+// Of an instance that moves: how, and the keys that are made of it.
+double BytesOfMotion(const MotionChain& chain) {
+  return static_cast<double>(chain.Length() * sizeof(AnimatedTransform) + size_t{kMaxMotionKeys} * sizeof(Affine));
+}
+
 // When the transform times lie in the time that the camera's shutter is open.
 MotionTimes ReadMotionTimes(const SceneDescription& description) {
   const StatementDescription& camera = description.camera;
@@ -70,6 +78,15 @@ MotionTimes ReadMotionTimes(const SceneDescription& description) {
                close = camera.parameters.GetFloat("shutterclose", 1);
   if (!(close > open)) throw Error(camera.where, "\"shutterclose\" must be after \"shutteropen\"");
   return {(description.shutterOpen - open) / (close - open), (description.shutterClose - open) / (close - open)};
+}
+
+void WarnOfAlpha(const FloatParameter& alpha, const ParameterList& parameters, Diagnostics& diagnostics) {
+  if (!alpha.IsConstant()) return;
+  const float value = alpha.Evaluate({});
+  if (value >= 0 && value <= 1) return;
+  diagnostics.Warn(parameters.WhereOf("alpha"),
+                   "\"alpha\" is an opacity from 0 to 1: what is " +
+                       std::string(value < 0 ? "below is taken as 0" : "above is taken as 1"));
 }
 
 class Builder {
@@ -178,6 +195,9 @@ void Builder::FlattenInstances() {
       const MotionChain parent = visit.parentMotion ? *visit.parentMotion : MotionChain(visit.parent);
       const AnimatedTransform own = ToAnimated(instance.placement, "an instance", instance.where);
       motion = std::make_shared<const MotionChain>(parent * own);
+      if (motion->Length() > limits::kNestedNames)
+        throw Error(instance.where, "motions are nested more than 256 deep: instances that move within others that do");
+      memory_.Take(BytesOfMotion(*motion), instance.where, "the motions of instances within one another");
     }
     const size_t object = objects.at(instance.object);
     if (!objects_[object].empty()) instances_.push_back({object, toWorld, motion, &instance});
@@ -266,6 +286,8 @@ void Builder::AddAreaLight(const ShapeDescription& description, const Shape& sha
   const bool canBeHit = !opacity || !opacity->IsConstant() || opacity->Evaluate({}) > 0;
   const LightType& type = FindType(statement, true);
   memory_.Take(BytesOfLight(shape), description.shape.where, "the lights that this shape makes, with their tables,");
+  if (!(static_cast<float>(GetArea(shape)) > 0))
+    diagnostics_.Warn(description.shape.where, "this shape has no area: it emits no light");
   LightBuildContext build = LightContextFor(placement);
   build.shape = &shape;
   build.shapePlacement = shapePlacement;
@@ -304,7 +326,10 @@ void Builder::PlaceEntry(const ReadEntry& entry, const Transform& toRender, std:
     return;
   }
   std::shared_ptr<const AlphaSource> alpha;
-  if (const auto parameter = textures_->FindFloat(shape.shape.parameters, "alpha")) alpha = MakeAlphaSource(*parameter);
+  if (const auto parameter = textures_->FindFloat(shape.shape.parameters, "alpha")) {
+    WarnOfAlpha(*parameter, shape.shape.parameters, diagnostics_);
+    alpha = MakeAlphaSource(*parameter);
+  }
 
   const uint32_t link = LinkOf(shape);
   // What shines is met by every ray.
@@ -445,32 +470,40 @@ RenderPlacement Builder::PlaceInWorld(const Placement& placement, const char* wh
 }
 
 void Builder::AddFilters() {
+  std::map<std::string, size_t> latest;  // of each name
+  std::vector<Nesting> nestings;
   for (const LightFilterDescription& description : description_.lightFilters) {
     const StatementDescription& statement = description.filter;
     const FilterType& type = FindFilter(statement);
     const RenderPlacement placement = PlaceInWorld(description.placement, "a light filter", statement.where);
+    Nesting nesting;
     FilterBuildContext build;
     build.transform = ToLightTransform(placement.toRender);
     build.motion = placement.motion;
     build.textures = textures_.get();
     build.diagnostics = &diagnostics_;
     build.find = [&](const std::string& name, const FileLocation& where) {
-      const std::vector<FilterInstance>& before = linking_.Filters();
-      const auto found = std::find_if(before.rbegin(), before.rend(),
-                                      [&](const FilterInstance& filter) { return filter.name == name; });
-      if (found != before.rend()) return *found;
+      const auto found = latest.find(name);
+      if (found != latest.end()) {
+        const FilterInstance& filter = linking_.Filters()[found->second];
+        if (filter.filter) nesting.Add(nestings[found->second]);
+        return filter;
+      }
       std::vector<std::string> names;
-      for (const FilterInstance& filter : before) names.push_back(filter.name);
+      for (const auto& entry : latest) names.push_back(entry.first);
       throw Error(where,
                   "there is no LightFilter with the name \"" + name + "\" before this one" + DidYouMean(name, names));
     };
     FilterInstance filter;
     filter.filter = MakeFilter(type, statement.parameters, build);
+    nesting.Check("light filters", description_.lightFilters.size(), statement.where);
     filter.name = statement.parameters.GetString("name", "");
     filter.combineMode = ReadCombineMode(statement.parameters, "combineMode");
     const auto* groups = filter.filter->GetProperty(FilterProperty::LinkingGroups);
     if (groups) filter.linking = linking_.FilterKey(*groups);
     if (filter.filter->IsIdentity()) filter.filter = nullptr;
+    if (!filter.name.empty()) latest[filter.name] = nestings.size();
+    nestings.push_back(nesting);
     linking_.Add(std::move(filter));
   }
 }
@@ -553,6 +586,12 @@ BuiltScene Builder::Build() {
                                                       built_.settings.lightSelection, std::move(linking_));
   scene.lighting->TakeSamples(built_.settings.lightSamples);
   if (built_.settings.integrator == "auto") built_.settings.integrator = PlanFor(scene, built_.settings).integrator;
+  const auto& lights = scene.lighting->Lights();
+  const bool hasSky = std::any_of(lights.begin(), lights.end(), [](const PlacedLight& placed) {
+    return placed.light->Kind() == LightKind::Infinite;
+  });
+  if (scene.geometry->PrimitiveCount() == 0 && !hasSky && scene.lighting->HasLights())
+    diagnostics_.Warn("the scene has no shape for light to fall on: the image will be black");
   if (!scene.lighting->HasLights()) diagnostics_.Warn("the scene has no light: the image will be black");
   WarnOfCoarsePlaces(scene, built_.settings, diagnostics_);
   return std::move(built_);

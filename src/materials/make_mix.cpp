@@ -18,15 +18,21 @@ uint64_t HashVector(uint64_t seed, const Vector3& v) {
 class MixMaterial final : public Material {
  public:
   MixMaterial(std::array<std::shared_ptr<const Material>, 2> materials, FloatParameter amount, uint64_t salt)
-      : materials_(std::move(materials)), amount_(std::move(amount)), salt_(salt) {}
+      : materials_(std::move(materials)),
+        amount_(std::move(amount)),
+        salt_(salt),
+        isInterface_(materials_[0]->IsInterface() && materials_[1]->IsInterface()),
+        mayTransmit_(materials_[0]->MayTransmit() || materials_[1]->MayTransmit()),
+        hasDelta_(materials_[0]->HasDelta() || materials_[1]->HasDelta()),
+        isAlwaysDelta_(materials_[0]->IsAlwaysDelta() && materials_[1]->IsAlwaysDelta()) {}
 
   Bsdf GetBsdf(const SurfacePoint& point, const Vector3& wo) const override {
     return Choose(point, wo).GetBsdf(point, wo);
   }
-  bool IsInterface() const override { return materials_[0]->IsInterface() && materials_[1]->IsInterface(); }
-  bool MayTransmit() const override { return materials_[0]->MayTransmit() || materials_[1]->MayTransmit(); }
-  bool HasDelta() const override { return materials_[0]->HasDelta() || materials_[1]->HasDelta(); }
-  bool IsAlwaysDelta() const override { return materials_[0]->IsAlwaysDelta() && materials_[1]->IsAlwaysDelta(); }
+  bool IsInterface() const override { return isInterface_; }
+  bool MayTransmit() const override { return mayTransmit_; }
+  bool HasDelta() const override { return hasDelta_; }
+  bool IsAlwaysDelta() const override { return isAlwaysDelta_; }
 
  private:
   const Material& Choose(const SurfacePoint& point, const Vector3& wo) const {
@@ -40,6 +46,8 @@ class MixMaterial final : public Material {
   std::array<std::shared_ptr<const Material>, 2> materials_;
   FloatParameter amount_;
   uint64_t salt_;  // of the names: mixes of mixes choose independently
+  // Of both, asked once: mixes of mixes that name a material twice would ask it 2^depth times.
+  bool isInterface_, mayTransmit_, hasDelta_, isAlwaysDelta_;
 };
 
 class InterfaceMaterial final : public Material {

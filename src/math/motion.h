@@ -54,6 +54,7 @@ class MotionChain {
 
   bool IsAnimated() const;
   Transform At(double fraction) const;
+  size_t Length() const { return parts_.size(); }
 
  private:
   std::vector<AnimatedTransform> parts_;  // neighbours that stay are multiplied into one

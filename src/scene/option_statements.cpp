@@ -34,15 +34,24 @@ std::string Normalized(const std::string& name) {
 
 }  // namespace
 
+// A statement of which a scene has one.
+void SceneParser::ReadOnly(const Token& statement, StatementDescription& into) {
+  if (into.where.file) {
+    diagnostics_.Warn(statement.where,
+                      "a second " + statement.text + ": it replaces the one at " + into.where.ToString());
+  }
+  into = ReadTyped(statement);
+}
+
 void SceneParser::Camera(const Token& statement) {
-  scene_.camera = ReadTyped(statement);
+  ReadOnly(statement, scene_.camera);
   const TransformPair cameraToWorld = {state_.ctm[0].Inverse(), state_.ctm[1].Inverse()};
-  coordinateSystems_["camera"] = cameraToWorld;
+  SetCoordinateSystem("camera", cameraToWorld);
   scene_.cameraToWorld = {cameraToWorld[0], cameraToWorld[1]};
 }
 
 void SceneParser::Film(const Token& statement) {
-  scene_.film = ReadTyped(statement);
+  ReadOnly(statement, scene_.film);
   if (state_.colorSpace != RgbColorSpace::Srgb) {
     diagnostics_.Warn(statement.where,
                       "images in another colour space than \"srgb\" are not supported yet: the image is linear sRGB");
@@ -50,16 +59,16 @@ void SceneParser::Film(const Token& statement) {
 }
 
 void SceneParser::PixelFilter(const Token& statement) {
-  scene_.pixelFilter = ReadTyped(statement);
+  ReadOnly(statement, scene_.pixelFilter);
 }
 void SceneParser::Sampler(const Token& statement) {
-  scene_.sampler = ReadTyped(statement);
+  ReadOnly(statement, scene_.sampler);
 }
 void SceneParser::Integrator(const Token& statement) {
-  scene_.integrator = ReadTyped(statement);
+  ReadOnly(statement, scene_.integrator);
 }
 void SceneParser::Accelerator(const Token& statement) {
-  scene_.accelerator = ReadTyped(statement);
+  ReadOnly(statement, scene_.accelerator);
 }
 
 // "a.so" or [ "a.so" "b.so" ].
@@ -128,7 +137,7 @@ void SceneParser::WorldBegin(const Token&) {
   inWorld_ = true;
   state_.ctm = {};
   state_.active = {true, true};
-  coordinateSystems_["world"] = state_.ctm;
+  SetCoordinateSystem("world", state_.ctm);
 }
 
 }  // namespace lampyr

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -75,6 +76,9 @@ class SceneParser {
   bool inWorld_ = false;
   int currentObject_ = -1;
   std::map<std::string, TransformPair> coordinateSystems_;
+  // What an Import has to put back: the names that were set since, and what they were before, if anything.
+  std::vector<std::pair<std::string, std::optional<TransformPair>>> changedSystems_;
+  size_t imports_ = 0;  // within one another, at this place
   std::set<std::pair<std::string, bool>> textureNames_;
   std::map<std::string, FileLocation> namedMaterials_, media_;
   std::map<std::string, int> objects_;
@@ -108,12 +112,15 @@ class SceneParser {
   void LookAt(const Token&);
   void TransformStatement(const Token&);
   void ConcatTransform(const Token&);
+  void SetCoordinateSystem(const std::string& name, const TransformPair& transforms);
+  void RestoreCoordinateSystems(size_t changes);
   void CoordinateSystem(const Token&);
   void CoordSysTransform(const Token&);
   void ActiveTransform(const Token&);
   void TransformTimes(const Token&);
 
   // option_statements.cpp
+  void ReadOnly(const Token& statement, StatementDescription& into);
   void Camera(const Token&);
   void Film(const Token&);
   void PixelFilter(const Token&);

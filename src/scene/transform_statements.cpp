@@ -7,6 +7,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 
+#include "scene/limits.h"
 #include "scene/scene_parser.h"
 
 namespace lampyr {
@@ -135,8 +136,26 @@ void SceneParser::ConcatTransform(const Token& statement) {
   Concat(statement, MatrixTransform(ReadMatrix(statement), statement));
 }
 
+// A file may be imported as often as there are coordinate systems: only what changes is kept to be put back.
+void SceneParser::SetCoordinateSystem(const std::string& name, const TransformPair& transforms) {
+  const auto [entry, isNew] = coordinateSystems_.emplace(name, transforms);
+  if (imports_ > 0) changedSystems_.emplace_back(name, isNew ? std::nullopt : std::optional(entry->second));
+  entry->second = transforms;
+}
+
+void SceneParser::RestoreCoordinateSystems(size_t changes) {
+  for (; changedSystems_.size() > changes; changedSystems_.pop_back()) {
+    const auto& [name, before] = changedSystems_.back();
+    if (before) {
+      coordinateSystems_[name] = *before;
+    } else {
+      coordinateSystems_.erase(name);
+    }
+  }
+}
+
 void SceneParser::CoordinateSystem(const Token& statement) {
-  coordinateSystems_[ReadString(statement, "a name")] = state_.ctm;
+  SetCoordinateSystem(ReadString(statement, "a name"), state_.ctm);
 }
 
 void SceneParser::CoordSysTransform(const Token& statement) {
@@ -148,7 +167,9 @@ void SceneParser::CoordSysTransform(const Token& statement) {
   }
   // As in pbrt-v4 the transform stays as it is; it is likely not what was meant.
   std::vector<std::string> names;
-  for (const auto& entry : coordinateSystems_) names.push_back(entry.first);
+  if (coordinateSystems_.size() <= limits::kSuggestedNames) {
+    for (const auto& entry : coordinateSystems_) names.push_back(entry.first);
+  }
   diagnostics_.Warn(statement.where, "there is no coordinate system \"" + name + "\"" + DidYouMean(name, names) +
                                          ": the transform stays as it is");
 }

@@ -290,8 +290,9 @@ void SceneParser::Include(const Token& statement) {
 // Like Include, but the graphics state and the coordinate systems are afterwards what they were before.
 void SceneParser::Import(const Token& statement) {
   const GraphicsState state = state_;
-  const auto coordinateSystems = coordinateSystems_;
+  const size_t changedSystems = changedSystems_.size();
   OpenNamedFile(statement);
+  ++imports_;
   const size_t bottom = tokens_.SetBottom();
   const size_t lowestScope = std::exchange(lowestScope_, scopes_.size());
   ParseStatements();
@@ -300,7 +301,8 @@ void SceneParser::Import(const Token& statement) {
   lowestScope_ = lowestScope;
   tokens_.RestoreBottom(bottom);
   state_ = state;
-  coordinateSystems_ = coordinateSystems;
+  RestoreCoordinateSystems(changedSystems);
+  --imports_;
 }
 
 }  // namespace lampyr

@@ -65,16 +65,23 @@ void TextureLibrary::Add(const TextureDescription& description, const Transform&
   const TextureType& type = FindType(description);
   TextureRequest request{description, *this, RenderToTexture(description, worldToRender, diagnostics),
                          SpectrumRole::Albedo, diagnostics};
+  Nesting nesting;
+  beingMade_ = &nesting;
   if (description.isSpectrum) {
     ColorVariants variants;
     for (size_t i = 0; i < kRoles.size(); ++i) {
+      nesting = {};
       request.role = kRoles[i];
       variants[i] = type.makeColor(request);
     }
-    colorTextures_.emplace(description.name, std::move(variants));
+    nesting.Check("textures", allNames_.size(), description.texture.where);
+    colorTextures_.emplace(description.name, Named<ColorVariants>{std::move(variants), nesting});
   } else {
-    floatTextures_.emplace(description.name, type.makeFloat(request));
+    FloatParameter value = type.makeFloat(request);
+    nesting.Check("textures", allNames_.size(), description.texture.where);
+    floatTextures_.emplace(description.name, Named<FloatParameter>{std::move(value), nesting});
   }
+  beingMade_ = nullptr;
   description.texture.parameters.CheckAllUsed(type.alsoInPbrt, type.parameters, diagnostics);
 }
 
@@ -104,7 +111,9 @@ std::optional<FloatParameter> TextureLibrary::FindFloat(const ParameterList& par
   if (const auto texture = parameters.GetTextureName(name)) {
     const auto found = floatTextures_.find(*texture);
     if (found == floatTextures_.end()) ThrowUnknownTexture(parameters, name, *texture, false);
-    return found->second;
+    const auto& [value, nesting] = found->second;
+    if (beingMade_ && !value.IsConstant()) beingMade_->Add(nesting);
+    return value;
   }
   if (!parameters.Find(name)) return std::nullopt;
   return FloatParameter(static_cast<float>(parameters.GetFloat(name, 0)));
@@ -115,7 +124,10 @@ std::optional<ColorParameter> TextureLibrary::FindColor(const ParameterList& par
   if (const auto texture = parameters.GetTextureName(name)) {
     const auto found = colorTextures_.find(*texture);
     if (found == colorTextures_.end()) ThrowUnknownTexture(parameters, name, *texture, true);
-    return found->second[IndexOf(role)];
+    const auto& [variants, nesting] = found->second;
+    const ColorParameter& value = variants[IndexOf(role)];
+    if (beingMade_ && !value.IsConstant()) beingMade_->Add(nesting);
+    return value;
   }
   if (const auto color = parameters.FindColor(name, role)) return ColorParameter(*color);
   return std::nullopt;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "film/image.h"
+#include "scene/nesting.h"
 #include "scene/parameters.h"
 #include "scene/scene_description.h"
 #include "textures/texture.h"
@@ -30,7 +31,8 @@ class TextureLibrary {
                           SpectrumRole role) const;
   // The same, but absent when the parameter was not given.
   std::optional<FloatParameter> FindFloat(const ParameterList& parameters, const std::string& name) const;
-  std::optional<ColorParameter> FindColor(const ParameterList& parameters, const std::string& name, SpectrumRole role) const;
+  std::optional<ColorParameter> FindColor(const ParameterList& parameters, const std::string& name,
+                                          SpectrumRole role) const;
 
   // An image file, read once and shared. Throws an Error at `where` when it cannot be read.
   std::shared_ptr<const Image> GetImage(const std::filesystem::path& file, ImageEncoding encoding,
@@ -42,13 +44,19 @@ class TextureLibrary {
  private:
   // A colour texture as albedo, unbounded and illuminant: what it is used for decides how its spectra become RGB.
   using ColorVariants = std::array<ColorParameter, 3>;
+  template <class Value>
+  struct Named {
+    Value value;
+    Nesting nesting;  // of textures that vary: constants are not asked
+  };
 
   void Add(const TextureDescription& description, const Transform& worldToRender, Diagnostics& diagnostics);
   [[noreturn]] void ThrowUnknownTexture(const ParameterList& parameters, const std::string& parameter,
                                         const std::string& texture, bool isSpectrum) const;
 
-  std::map<std::string, FloatParameter> floatTextures_;  // textures that do not vary are constants
-  std::map<std::string, ColorVariants> colorTextures_;
+  std::map<std::string, Named<FloatParameter>> floatTextures_;  // textures that do not vary are constants
+  std::map<std::string, Named<ColorVariants>> colorTextures_;
+  Nesting* beingMade_ = nullptr;       // of the texture that is being made
   std::vector<std::string> allNames_;  // of textures that come later, too: for messages
   mutable std::map<std::string, std::shared_ptr<const Image>> images_;
 };
