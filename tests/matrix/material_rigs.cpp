@@ -58,22 +58,18 @@ const std::string kMatteNamed =
 void AddMaterialRigs(std::vector<Rig>& rigs) {
   for (const Sample& sample : MaterialSamples()) {
     const std::string what = "material " + sample.type;
+    const bool hasDelta = sample.isSmooth || sample.hasDelta;
     // Walls that all light passes would show nothing; a mirror without end shows the lamp alone.
-    if (!sample.isSmooth) rigs.push_back({sample.name + "_walls", Room(Statement(sample), Lamp()), {what}});
-    if (sample.isSmooth)
-      rigs.push_back({sample.name + "_object", Room(kMatte, Lamp() + Object(Statement(sample))), {what}});
-    if (!sample.isSmooth && !sample.hasDelta) continue;
+    if (!sample.isSmooth)
+      rigs.push_back({sample.name + "_walls", Room(Statement(sample), Lamp()), {what}, sample.hasDelta});
+    if (!hasDelta) continue;
+    rigs.push_back({sample.name + "_object", Room(kMatte, Lamp() + Object(Statement(sample))), {what}});
     const std::string mixed = kMatteNamed + Named(sample) + Mix("both", "white", sample.name, 0.5);
-    const std::string covers = what + " in mix";
-    Rig walls{
-        "mix_with_" + sample.name + "_walls", Room("NamedMaterial \"both\"", mixed + Lamp()), {covers, "material mix"}};
-    walls.cameraSeesDeltas = sample.isSmooth;
-    rigs.push_back(walls);
-    if (sample.isSmooth) {
-      rigs.push_back({"mix_with_" + sample.name + "_object",
-                      Room(kMatte, mixed + Lamp() + Object("NamedMaterial \"both\"")),
-                      {covers, "material mix"}});
-    }
+    const std::vector<std::string> covers = {what + " in mix", "material mix"};
+    rigs.push_back(
+        {"mix_with_" + sample.name + "_walls", Room("NamedMaterial \"both\"", mixed + Lamp()), covers, true});
+    rigs.push_back({"mix_with_" + sample.name + "_object",
+                    Room(kMatte, mixed + Lamp() + Object("NamedMaterial \"both\"")), covers});
   }
   // What the others are called, and mixes of what is rough.
   rigs.push_back(
