@@ -24,7 +24,7 @@ namespace {
 
 constexpr double kFamilyWise = 1e-3;
 constexpr int kReplicas = 32, kTrials = 12;
-constexpr int kMostRounds = 4;
+constexpr int kMostRounds = 8;
 // Standard errors between the truth and a threshold that it crosses in 19 of 20 cases.
 constexpr double kPower = 1.645;
 // Samples per pixel of a cell, at most: 12 × 12 pixels.
