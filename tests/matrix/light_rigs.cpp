@@ -1,6 +1,7 @@
 // Every type of light with every sample block of its table: the first by itself, the others together, each in its
 // place. Lights with a place shine in the closed room, those at infinity on the floor.
 #include <array>
+#include <cmath>
 
 #include "lights/type_registry.h"
 #include "matrix/matrix_rigs.h"
@@ -34,11 +35,11 @@ bool IsAtInfinity(const std::string& type) {
 std::string Placement(const std::string& type, size_t k) {
   if (type == "portal") return "Translate -0.1 0.9 0.1 Rotate -90 1 0 0 Scale 0.5 0.5 0.5 ";
   if (IsAtInfinity(type)) return "Rotate -90 1 0 0 ";
-  constexpr std::array<const char*, 8> places = {"0.25 0.4 0.1",  "0.5 -0.1 0.3", "0.1 0.1 -0.6",  "0.4 0.55 -0.3",
-                                                 "0.6 -0.3 -0.2", "0 0.7 0.3",    "0.1 -0.6 -0.5", "0.75 0.2 -0.1"};
-  const double size = k == 0 ? 0.3 : 0.15;
-  return std::string("Translate ") + places[k % places.size()] + " Rotate " + std::to_string(40 * k) + " 1 2 3 Scale " +
-         std::to_string(size) + " " + std::to_string(size) + " " + std::to_string(size) + " ";
+  if (k == 0) return "Translate 0.2 0.25 0 Scale 0.25 0.25 0.25 ";
+  // Far from the walls, where a light that is near would make a bright spot that nobody samples well.
+  const double angle = 0.8 * static_cast<double>(k);
+  return "Translate " + std::to_string(0.3 + 0.2 * std::cos(angle)) + " 0.2 " + std::to_string(0.25 * std::sin(angle)) +
+         " Rotate " + std::to_string(40 * k) + " 1 2 3 Scale 0.1 0.1 0.1 ";
 }
 
 std::string Statement(const LightType& type, const std::string& block, size_t k, const std::string& more = "") {

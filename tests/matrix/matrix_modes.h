@@ -14,7 +14,7 @@ struct Mode {
   bool directFromPhotons = false;       // sppm
   bool guides = false;                  // photons
   bool learns = false;                  // the selection of lights
-  int samples = 8;                      // per pixel of a trial replica; at least that many in each
+  int samples = 6;                      // per pixel of a trial replica; at least that many in each
 
   bool GathersPhotons() const { return lampyr::GathersPhotons(integrator) && merges; }
   void Apply(RenderSettings& settings) const {

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <regex>
 
@@ -23,7 +24,7 @@ namespace lampyr::test {
 namespace {
 
 constexpr double kFamilyWise = 1e-3;
-constexpr int kReplicas = 32, kTrials = 12;
+constexpr int kReplicas = 24, kTrials = 8;
 constexpr int kMostRounds = 8;
 // Standard errors between the truth and a threshold that it crosses in 19 of 20 cases.
 constexpr double kPower = 1.645;
@@ -174,6 +175,7 @@ TEST_P(Matrix, Agrees) {
   for (const Mode& mode : Modes()) {
     seed += 10000;
     if (!Sees(rig, mode) || (only && mode.name != only)) continue;
+    const auto start = std::chrono::steady_clock::now();
     Cell cell = RenderTo(built, mode, errors.mode, seed);
     Verdict verdict = Compare(cell.replicas, reference.replicas, rate);
     // A trial of a few replicas tells the noise to a quarter or so. More are asked for by the noise alone: that is no
@@ -182,9 +184,11 @@ TEST_P(Matrix, Agrees) {
       cell.Add(RenderMode(built, mode, kReplicas, cell.samples, seed + 1000 * static_cast<uint64_t>(round)));
       verdict = Compare(cell.replicas, reference.replicas, rate);
     }
-    std::printf("[   info   ] %-36s %-36s %+.2f %% +- %.2f %%, largest |z| %.2f (%.2f), notices %.2f %%, %d samples\n",
-                rig.name.c_str(), mode.name.c_str(), 100 * verdict.bias, 100 * verdict.error, verdict.largestZ,
-                verdict.threshold, 100 * verdict.noticed, cell.samples * static_cast<int>(cell.replicas.images.size()));
+    std::printf(
+        "[   info   ] %-36s %-36s %+.2f %% +- %.2f %%, largest |z| %.2f (%.2f), notices %.2f %%, %d samples, %.1f s\n",
+        rig.name.c_str(), mode.name.c_str(), 100 * verdict.bias, 100 * verdict.error, verdict.largestZ,
+        verdict.threshold, 100 * verdict.noticed, cell.samples * static_cast<int>(cell.replicas.images.size()),
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
     EXPECT_TRUE(verdict.Agrees()) << rig.name << " by " << mode.name << " is off by " << 100 * verdict.bias << " %";
     EXPECT_LE(verdict.noticed, Noticed()) << rig.name << " by " << mode.name << ": too noisy";
     EXPECT_EQ(cell.replicas.faults, 0u) << rig.name << " by " << mode.name << ": samples dropped, or rays rejected";
