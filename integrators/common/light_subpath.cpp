@@ -60,6 +60,10 @@ void LightSubpathTracer::Trace(float time, Sampler& sampler, RenderCounts& count
   flight.diffuse = emission.diffuse * photon->passed * inverse;
   flight.specular = emission.specular * photon->passed * inverse;
   const float emitted = std::max(flight.diffuse.Max(), flight.specular.Max());
+  if (!flight.diffuse.IsValid() || !flight.specular.IsValid()) {
+    ++counts.droppedSamples;
+    return;
+  }
   if (!(emitted > 0)) return;  // less than a float can say
 
   std::optional<RayHit> hit = photon->landing;

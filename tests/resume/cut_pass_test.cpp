@@ -82,9 +82,9 @@ class CutPass : public Resume {
       EXPECT_TRUE(whole.render->AddSamples(count));
       const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
       std::uniform_real_distribution<double> moment(0, seconds);
+      const std::string before = SavedBytes(*cut.render);
       bool isDone = false;
       for (int i = 0; i < 4 && !isDone; ++i) {
-        const std::string before = SavedBytes(*cut.render);
         {
           const StopAfter stop(moment(random));
           isDone = cut.render->AddSamples(count);

@@ -61,6 +61,19 @@ TEST_F(Resume, GoesOnAfterASignal) {
   EXPECT_EQ(Bytes("out.exr"), Bytes("whole.exr"));
 }
 
+// The limit of photons shows in the picture: it is part of what a render is, and the same on all machines.
+TEST_F(Resume, TheMemoryForPhotonsIsPartOfTheRender) {
+  Do(kRender + "--spp 1 --integrator vcm");
+  ExpectRefused(kRender + "--spp 2 --integrator vcm --photon-memory 1M", 2,
+                "is of another render: the memory for photons is 4294967296 there and 1048576 here");
+  Do(kRender + "--spp 2 --integrator vcm --photon-memory 4G");
+  const std::string photons = "render scene.pbrt --quiet --integrator sppm --photons 400000 --spp 2 --threads 1 -o ";
+  Do(photons + "whole.exr");
+  const Outcome little = RunLampyr(folder_.Path(), photons + "little.exr", "ulimit -v 800000;");
+  EXPECT_EQ(little.exitCode, 0) << little.output;
+  EXPECT_TRUE(Bytes("whole.exr") == Bytes("little.exr")) << "a machine of less memory renders another picture";
+}
+
 TEST_F(Resume, WhatIsOfAnotherRenderIsRefused) {
   Do(kRender + "--spp 4");
   const std::string image = Bytes("out.exr"), checkpoint = Bytes("out.checkpoint");
