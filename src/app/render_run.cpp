@@ -346,6 +346,7 @@ void ProgressiveRender::Learn(uint32_t samples) {
 bool ProgressiveRender::AddSamples(int count) {
   DropPartialPass();
   const bool isFirst = outcome_.samplesPerPixel == 0;
+  const PhotonStatistics statistics = photons_ ? photons_->Statistics() : PhotonStatistics();
   backup_.Take(State(), !isFirst, threads_);
   const WorkEnd end = RunUntilStopped([this, count] { AddWholePass(count); });
   if (end == WorkEnd::Done) return true;
@@ -355,7 +356,7 @@ bool ProgressiveRender::AddSamples(int count) {
   counts_ = RenderCounts();
   // As after loading: the photons are traced again.
   MakePhotonStore();
-  if (photons_ && outcome_.photons) photons_->Continue(*outcome_.photons);
+  if (photons_) photons_->Continue(statistics);
   outcome_.isPartial = isFirst;
   return false;
 }

@@ -67,11 +67,12 @@ TEST_F(Resume, TheMemoryForPhotonsIsPartOfTheRender) {
   ExpectRefused(kRender + "--spp 2 --integrator vcm --photon-memory 1M", 2,
                 "is of another render: the memory for photons is 4294967296 there and 1048576 here");
   Do(kRender + "--spp 2 --integrator vcm --photon-memory 4G");
-  const std::string photons = "render scene.pbrt --quiet --integrator sppm --photons 400000 --spp 2 --threads 1 -o ";
-  Do(photons + "whole.exr");
-  const Outcome little = RunLampyr(folder_.Path(), photons + "little.exr", "ulimit -v 800000;");
+  // On a machine of less memory it is the same render.
+  const Outcome little =
+      RunLampyr(folder_.Path(), kRender + "--spp 3 --integrator vcm --threads 1", "ulimit -v 800000;");
   EXPECT_EQ(little.exitCode, 0) << little.output;
-  EXPECT_TRUE(Bytes("whole.exr") == Bytes("little.exr")) << "a machine of less memory renders another picture";
+  Do("render scene.pbrt --quiet -o whole.exr --spp 3 --integrator vcm");
+  EXPECT_TRUE(Bytes("whole.exr") == Bytes("out.exr"));
 }
 
 TEST_F(Resume, WhatIsOfAnotherRenderIsRefused) {
