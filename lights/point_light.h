@@ -98,7 +98,8 @@ class PointLightWith final : public LightBase {
     sample->distance = std::sqrt(squared);
     sample->direction = toLight / sample->distance;
     const Color radiance = intensity_ * (profile_.Shape(*context.transform, -sample->direction) / squared);
-    if (!tint_.Split(radiance, *sample) || !radiance.IsValid()) return std::nullopt;
+    // An infinite one is left to be dropped and counted: it is more than nothing.
+    if (!tint_.Split(radiance, *sample)) return std::nullopt;
     sample->position = position;
     sample->positionError = PositionError(context);
     sample->pdfDirect = PdfSolidAngle(1);

@@ -60,6 +60,10 @@ void LightSubpathTracer::Trace(float time, Sampler& sampler, RenderCounts& count
   flight.diffuse = emission.diffuse * inverse;
   flight.specular = emission.specular * inverse;
   const float emitted = std::max((flight.diffuse * photon->passed).Max(), (flight.specular * photon->passed).Max());
+  if (!flight.diffuse.IsValid() || !flight.specular.IsValid()) {
+    ++counts.droppedSamples;
+    return;
+  }
   if (!(emitted > 0)) return;  // less than a float can say
 
   std::optional<RayHit> hit = photon->landing;

@@ -13,7 +13,6 @@
 
 #include "app/command_support.h"
 #include "app/commands.h"
-#include "base/memory.h"
 #include "base/version.h"
 
 namespace lampyr {
@@ -45,9 +44,9 @@ double ParseDuration(const std::string& option, const std::string& text) {
   return *seconds;
 }
 
-// "800M", "4G", "1000000000" -> bytes; a quarter of the machine's where nothing is said.
-uint64_t ParseMemory(const std::string& option, const std::string& text) {
-  if (text.empty()) return AvailableMemory() / 4;
+// "800M", "4G", "1000000000" -> bytes; nothing where nothing is said.
+std::optional<uint64_t> ParseMemory(const std::string& option, const std::string& text) {
+  if (text.empty()) return std::nullopt;
   constexpr double kibi = 1024, mebi = 1024 * kibi, gibi = 1024 * mebi;
   const auto bytes = ParseWithUnit(
       text, {{"", 1}, {"B", 1}, {"K", kibi}, {"KiB", kibi}, {"M", mebi}, {"MiB", mebi}, {"G", gibi}, {"GiB", gibi}});
@@ -134,7 +133,7 @@ void DefineSceneOptions(CLI::App& app, RenderOverrides& overrides, std::string& 
       ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 31));
   app.add_option("--photon-memory", photonMemory,
                  "sppm, vcm: memory for the photons of a pass, e.g. 512M, 4G; fewer light paths where it does not do "
-                 "(a quarter of the machine's)");
+                 "(4G, on any machine: the picture depends on it)");
   app.add_option("--radius", overrides.radius,
                  "sppm, vcm: where photons are gathered in the first pass, scene units (from the size of pixels)")
       ->check(CheckPositive, "POSITIVE");
@@ -318,6 +317,10 @@ int ParseAndRun(int argc, char** argv) {
   diffCommand->add_option("--block", diff.blockSize, "Side of the z-test's blocks in pixels (8)")
       ->check(CLI::Range(1, 4096));
   diffCommand->add_flag("--json", diff.json, "Print JSON");
+  diffCommand->add_flag("--fail", diff.fail, "Exit with 1 unless the images are equal or agree");
+  diffCommand->add_option(
+      "-o,--output", diff.output,
+      "Write the error image (.exr): the absolute difference of each pixel, and its relative error");
 
   CheckLightsOptions check;
   CLI::App* checkCommand =

@@ -11,6 +11,7 @@
 #include "app/command_support.h"
 #include "app/commands.h"
 #include "app/integrator_hints.h"
+#include "app/invalid_light.h"
 #include "app/json_report.h"
 #include "app/output_lock.h"
 #include "app/render_part.h"
@@ -59,6 +60,22 @@ void CheckMemory(const RenderSettings& settings, size_t layers, bool hasTechniqu
                    " of memory and there are " + gibibytes(available) + ": render it in parts with --crop");
 }
 
+// The limit is the same on all machines, and what is kept of a pass of photons may be more than this one has.
+void WarnOfPhotonMemory(const RenderSettings& settings) {
+  if (!GathersPhotons(settings)) return;
+  const double paths = settings.photons.lightPaths > 0
+                           ? static_cast<double>(settings.photons.lightPaths)
+                           : static_cast<double>(settings.width) * static_cast<double>(settings.height);
+  const double most = paths * settings.maxDepth * static_cast<double>(PhotonStore::BytesPerPhoton(true));
+  const double needed = std::min(most, static_cast<double>(settings.photons.mostBytes));
+  const auto available = static_cast<double>(AvailableMemory());
+  if (needed <= available) return;
+  std::fprintf(stderr,
+               "warning: the photons of a pass may take %s of memory and there are %s: set a lower limit with "
+               "--photon-memory, the same on all machines that share the render\n",
+               FormatBytes(needed).c_str(), FormatBytes(available).c_str());
+}
+
 std::string Percent(double fraction) {
   if (!std::isfinite(fraction)) return "unknown";
   char text[32];
@@ -97,11 +114,33 @@ void PrintSummary(const RenderReport& report, const std::filesystem::path& path)
                report.height, outcome.samplesPerPixel, FormatDuration(outcome.seconds).c_str(),
                static_cast<double>(outcome.counts.Rays()) / (1e6 * std::max(outcome.seconds, 1e-9)),
                Percent(outcome.relativeError).c_str());
-  if (outcome.counts.droppedSamples > 0 || report.rejectedRays > 0) {
-    std::fprintf(stderr, "warning: %llu samples were dropped (not finite or negative) and %llu rays rejected\n",
-                 static_cast<unsigned long long>(outcome.counts.droppedSamples),
+  if (report.rejectedRays > 0) {
+    std::fprintf(stderr, "warning: %llu rays were rejected (not finite)\n",
                  static_cast<unsigned long long>(report.rejectedRays));
   }
+}
+
+// Samples, and photons, that were left out.
+struct DroppedReport {
+  FileLocation where;
+  std::string text;  // "": none
+};
+DroppedReport DescribeDropped(const RenderOutcome& outcome, const BuiltScene& built) {
+  DroppedReport report;
+  const uint64_t photons = outcome.photons ? outcome.photons->rejected : 0;
+  const uint64_t samples = outcome.counts.droppedSamples;
+  if (samples + photons == 0) return report;
+  report.text = samples > 0 ? std::to_string(samples) + " samples" : "";
+  if (photons > 0) report.text += (samples > 0 ? " and " : "") + std::to_string(photons) + " photons";
+  report.text += " were dropped";
+  if (const std::optional<InvalidLight> invalid = FindInvalidLight(built)) {
+    report.where = invalid->where;
+    report.text = invalid->text + ": " + report.text;
+  } else {
+    report.text += " (not finite or negative)";
+  }
+  if (outcome.droppedFraction > kMostDropped) report.text += ": the picture is wrong, and its error is unknown";
+  return report;
 }
 
 // Of a picture without a whole sample of each pixel: how much of the first one is there.
@@ -185,7 +224,7 @@ void CheckOptions(const RenderOptions& options, const RenderSettings& settings,
                   const std::filesystem::path& checkpoint) {
   if (options.stats) CheckWritable(*options.stats, "--stats");
   if (options.checkpointSeconds) CheckWritable(checkpoint, "--checkpoint");
-  if (options.shard && GathersPhotons(settings.integrator) && SamplesWanted(options, settings) == kOpenEnd) {
+  if (options.shard && GathersPhotons(settings) && SamplesWanted(options, settings) == kOpenEnd) {
     throw UsageError("--shard with " + settings.integrator +
                      " needs --spp: each part has the radii of its own samples, whose numbers must be known");
   }
@@ -198,13 +237,13 @@ void CheckOptions(const RenderOptions& options, const RenderSettings& settings,
 }
 
 // Writes what the render has come to. The exit code.
-int FinishRender(const RenderOptions& options, const RenderSettings& settings, const PartHeader& header,
+int FinishRender(const RenderOptions& options, const BuiltScene& built, const PartHeader& header,
                  ProgressiveRender& render, Checkpoints* checkpoints, const std::filesystem::path& path,
                  RenderReport& report) {
   const Progress clock(true);
   const Film& film = render.Picture();
   const bool isPartial = report.outcome.isPartial;
-  const std::string partialPicture = isPartial ? DescribePartialPicture(options, film, settings) : "";
+  const std::string partialPicture = isPartial ? DescribePartialPicture(options, film, built.settings) : "";
   // The sums in a part's image are of whole samples.
   if (options.shard) render.DropPartialPass();
   if (render.Techniques()) WriteTechniques(options, render.Techniques()->Develop(film));
@@ -215,6 +254,13 @@ int FinishRender(const RenderOptions& options, const RenderSettings& settings, c
   report.writeSeconds = clock.Seconds();
   if (options.stats) WriteText(*options.stats, ToJson(report));
   if (!options.quiet) PrintSummary(report, path);
+  const DroppedReport dropped = DescribeDropped(report.outcome, built);
+  const bool isWrong = report.outcome.droppedFraction > kMostDropped && !report.outcome.interrupted;
+  if (isWrong) throw Error(dropped.where, dropped.text);
+  if (!dropped.text.empty() && !options.quiet) {
+    const std::string where = dropped.where.ToString();
+    std::fprintf(stderr, "%s%swarning: %s\n", where.c_str(), where.empty() ? "" : ": ", dropped.text.c_str());
+  }
   if (report.outcome.interrupted) {
     if (isPartial && !options.quiet) std::fprintf(stderr, "warning: interrupted: %s\n", partialPicture.c_str());
     return InterruptExitCode();
@@ -231,6 +277,7 @@ int RenderLoaded(const RenderOptions& options, const LoadedScene& loaded) {
   CheckOptions(options, settings, checkpointPath);
   const std::vector<std::string>& layers = built.scene.lighting->Groups().Layers();
   CheckMemory(settings, layers.size(), options.strategyImages.has_value());
+  if (!options.quiet) WarnOfPhotonMemory(settings);
   const auto [part, parts] = options.shard.value_or(std::pair(1, 1));
   const Shard shard = ShardOf(part, parts, SamplesWanted(options, settings));
   const PartHeader header = MakeHeader(options, loaded, shard);
@@ -294,7 +341,7 @@ int RenderLoaded(const RenderOptions& options, const LoadedScene& loaded) {
   report.rejectedRays = built.scene.geometry->RejectedRays();
   return FinishRendering([&] {
     const std::unique_ptr<OutputLock> held = std::move(lock);
-    return FinishRender(options, settings, header, render, checkpoints ? &*checkpoints : nullptr, path, report);
+    return FinishRender(options, built, header, render, checkpoints ? &*checkpoints : nullptr, path, report);
   });
 }
 

@@ -73,6 +73,8 @@ struct PlanOptions {
 struct DiffOptions {
   std::filesystem::path a, b;
   bool json = false;
+  bool fail = false;             // exit with 1 unless they agree
+  std::filesystem::path output;  // of the error image; empty: none
   int blockSize = 8;
 };
 

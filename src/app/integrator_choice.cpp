@@ -54,6 +54,10 @@ bool GathersPhotons(const std::string& integrator) {
   return integrator == "sppm" || integrator == "vcm";
 }
 
+bool GathersPhotons(const RenderSettings& settings) {
+  return settings.integrator == "sppm" || (settings.integrator == "vcm" && settings.merges);
+}
+
 const std::vector<std::string>& IntegratorNames() {
   static const std::vector<std::string> names = {"path", "light", "bdpt", "sppm", "vcm"};
   return names;

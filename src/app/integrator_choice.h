@@ -24,8 +24,10 @@ RenderSettings VariantOf(const RenderSettings& settings, const std::string& name
 // The radius (scene units) within which the first pass of vcm gathers photons.
 double FirstRadius(const RenderScene& scene, const RenderSettings& settings);
 
-// Of a name: whether it finds light by photons, and blurs it.
+// Of a name: whether it finds light by photons, and blurs it, unless its settings say otherwise.
 bool GathersPhotons(const std::string& integrator);
+// With these settings: vcm that does not merge gathers none.
+bool GathersPhotons(const RenderSettings& settings);
 
 // Whether any material has a mirror or clear glass in it.
 bool HasSmoothMaterial(const RenderScene& scene);

@@ -102,6 +102,8 @@ std::string ToJson(const ImageDifference& difference) {
       {"meanB", difference.meanB},
       {"bias", difference.bias},
       {"biasInterval95", difference.biasInterval},
+      {"verdict", NameOf(difference.verdict)},
+      {"reason", difference.reason.empty() ? Json(nullptr) : Json(difference.reason)},
   };
   if (difference.hasBlockTest) {
     const BlockTest& test = difference.blockTest;

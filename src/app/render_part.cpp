@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstring>
 
+#include "app/integrator_choice.h"
 #include "base/version.h"
 #include "film/atomic_file.h"
 #include "scene/referenced_files.h"
@@ -152,6 +153,7 @@ RenderIdentity IdentityOf(const LoadedScene& loaded, bool robustIntersection) {
           {"the photons' radius", Exactly(s.photons.radius)},
           {"the photons' alpha", Exactly(s.photons.alpha)},
           {"the number of light paths", integer(s.photons.lightPaths)},
+          {"the memory for photons", integer(GathersPhotons(s) ? s.photons.mostBytes : 0)},
           {"guiding of photons", YesOrNo(s.photons.guided)},
           {"merging", YesOrNo(s.merges)},
           {"connecting", YesOrNo(s.connects)},

@@ -4,6 +4,7 @@
 #include <bit>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -373,6 +374,7 @@ void ProgressiveRender::Learn(uint32_t samples) {
 bool ProgressiveRender::AddSamples(int count) {
   DropPartialPass();
   const bool isFirst = outcome_.samplesPerPixel == 0;
+  const PhotonStatistics statistics = photons_ ? photons_->Statistics() : PhotonStatistics();
   backup_.Take(State(), !isFirst, threads_);
   const WorkEnd end = RunUntilStopped([this, count] { AddWholePass(count); });
   if (end == WorkEnd::Done) return true;
@@ -382,7 +384,7 @@ bool ProgressiveRender::AddSamples(int count) {
   counts_ = RenderCounts();
   // As after loading: the photons are traced again.
   MakePhotonStore();
-  if (photons_ && outcome_.photons) photons_->Continue(*outcome_.photons);
+  if (photons_) photons_->Continue(statistics);
   outcome_.isPartial = isFirst;
   return false;
 }
@@ -443,6 +445,19 @@ int ProgressiveRender::NextPassSamples(int samplesPerPixel, std::optional<double
   return static_cast<int>(std::clamp(affordable, 1.0, static_cast<double>(std::max(count, 1))));
 }
 
+double ProgressiveRender::DroppedFraction() const {
+  const auto fraction = [](uint64_t dropped, double all) {
+    return dropped == 0 ? 0 : static_cast<double>(dropped) / std::max(all, static_cast<double>(dropped));
+  };
+  const double pixels = std::holds_alternative<std::unique_ptr<CameraIntegrator>>(integrator_)
+                            ? static_cast<double>(film_->Crop().Width()) * film_->Crop().Height()
+                            : static_cast<double>(settings_.width) * settings_.height;
+  const double ofSamples = fraction(outcome_.counts.droppedSamples, pixels * outcome_.samplesPerPixel);
+  if (!outcome_.photons) return ofSamples;
+  const auto photons = static_cast<double>(outcome_.photons->photons + outcome_.photons->rejected);
+  return std::max(ofSamples, fraction(outcome_.photons->rejected, photons));
+}
+
 // Photons are not saved: those of the last pass are traced again.
 void ProgressiveRender::Save(ByteWriter& bytes) const {
   bytes.Value(static_cast<uint32_t>(outcome_.samplesPerPixel));
@@ -473,6 +488,9 @@ RenderOutcome Continue(ProgressiveRender& render, const StopConditions& stop, co
     outcome = render.Outcome();
     outcome.seconds = before + clock.Seconds();  // what the user waits for
     outcome.relativeError = render.Picture().RelativeError(stop.largestSample);
+    outcome.droppedFraction = render.DroppedFraction();
+    // What was left out may have been all that there is to see.
+    if (outcome.droppedFraction > kMostDropped) outcome.relativeError = std::numeric_limits<double>::infinity();
   };
   measure();
   const auto isDone = [&] {
@@ -481,6 +499,9 @@ RenderOutcome Continue(ProgressiveRender& render, const StopConditions& stop, co
     if (stop.seconds && outcome.seconds >= *stop.seconds * 0.999) return true;
     // Too few samples may all have missed what makes the error.
     constexpr int fewest = 16;
+    // An error that stays unknown is never met.
+    const bool isHopeless = outcome.droppedFraction > kMostDropped && stop.relativeError;
+    if (isHopeless && outcome.samplesPerPixel >= fewest) return true;
     return stop.relativeError && outcome.samplesPerPixel >= fewest && outcome.relativeError <= *stop.relativeError;
   };
   std::optional<double> secondsLeft;

@@ -31,14 +31,18 @@ struct StopConditions {
 
 struct RenderOutcome {
   int samplesPerPixel = 0;
-  double seconds = 0;  // of the passes; of Continue: until it has ended
-  double relativeError = 0;
+  double seconds = 0;          // of the passes; of Continue: until it has ended
+  double relativeError = 0;    // infinite where it is unknown
+  double droppedFraction = 0;  // ProgressiveRender::DroppedFraction
   bool interrupted = false;
   // The first pass was cut short: the film holds a part of the first sample, for looking at.
   bool isPartial = false;
   RenderCounts counts;
   std::optional<PhotonStatistics> photons;  // of integrators that gather them
 };
+
+// A picture that more than this part of its samples was dropped from is wrong, and its error unknown.
+constexpr double kMostDropped = 1e-3;
 
 // Called after each pass.
 using PassCallback = std::function<void(const RenderOutcome& soFar, double fractionDone)>;
@@ -69,6 +73,8 @@ class ProgressiveRender {
   const RenderOutcome& Outcome() const { return outcome_; }
   // The given film, but for another one after a pass that was given up.
   const Film& Picture() const { return *film_; }
+  // Of the samples, or of the photons where that is more, the part that was dropped because it was no finite number.
+  double DroppedFraction() const;
   const TechniqueImages* Techniques() const { return techniques_; }
 
   // All that the samples to come depend on, and the film. Between whole passes.

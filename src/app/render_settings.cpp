@@ -23,6 +23,8 @@ int PositiveInteger(const ParameterList& parameters, const std::string& name, in
   return value;
 }
 
+// Which light paths are left out for want of memory shows in the picture: the limit is the same on all machines.
+constexpr uint64_t kPhotonMemory = uint64_t{4} << 30;
 constexpr int kMaxResolution = 1 << 16;
 constexpr int kMaxSamples = 1 << 30;
 
@@ -239,7 +241,7 @@ void ReadPhotons(const ParameterList& parameters, const RenderOverrides& overrid
   settings.directFromPhotons = parameters.GetBool("directphotons", settings.directFromPhotons);
   settings.photons.guided = parameters.GetBool("guidephotons", settings.photons.guided);
   if (overrides.photons) photons.lightPaths = *overrides.photons;
-  if (overrides.photonMemory) photons.mostBytes = *overrides.photonMemory;
+  photons.mostBytes = overrides.photonMemory.value_or(kPhotonMemory);
   if (overrides.radius) photons.radius = *overrides.radius;
   if (overrides.alpha) photons.alpha = *overrides.alpha;
   if (overrides.merges) settings.merges = *overrides.merges;

@@ -294,6 +294,7 @@ void Builder::AddAreaLight(const ShapeDescription& description, const Shape& sha
   if (canBeHit) build.alpha = alpha;
   lights_.push_back({MakeLight(type, statement.parameters, build), build.transform, canBeHit, placement.motion});
   Bind(statement.filter, lights_.back());
+  built_.lightPlaces.push_back(statement.where);
   if (!described_) return;
   SceneLight light = Describe(statement, lights_.back());
   light.shape = shape;
@@ -505,6 +506,7 @@ void Builder::AddFilters() {
     if (!filter.name.empty()) latest[filter.name] = nestings.size();
     nestings.push_back(nesting);
     linking_.Add(std::move(filter));
+    built_.filterPlaces.push_back(statement.where);
   }
 }
 
@@ -552,6 +554,7 @@ void Builder::AddLights() {
     }
     if (described_) described_->push_back(Describe(statement, placed));
     lights_.push_back(std::move(placed));
+    built_.lightPlaces.push_back(statement.where);
   }
 }
 

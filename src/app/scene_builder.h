@@ -11,6 +11,8 @@ namespace lampyr {
 struct BuiltScene {
   RenderSettings settings;
   RenderScene scene;
+  // Where the scene names its lights and its light filters, by their indices.
+  std::vector<FileLocation> lightPlaces, filterPlaces;
 };
 
 // Throws located Errors for what cannot be rendered. `robust`: watertight intersection. `types`: what lights there are,

@@ -21,6 +21,7 @@ using Planes = std::array<std::vector<double>, 3>;  // R, G, B
 struct Measured {
   std::vector<Color> colors;
   std::optional<Planes> variance;  // of the pixels' means
+  bool isOfOneSample = false;      // its variances are 0 because one sample has none
   float relativeRounding = 0;      // of what is stored: half or float
 };
 
@@ -76,12 +77,30 @@ float RelativeRounding(const std::vector<Color>& colors) {
   return allHalf ? 0x1p-11f : 0x1p-22f;
 }
 
+// Light paths are as many as pixels: a sample of "light" is many, and has a variance.
+bool IsOfOneSample(const Image& image) {
+  const auto text = [&](const char* name) {
+    const auto found = image.metadata.find(name);
+    return found == image.metadata.end() ? std::string() : found->second;
+  };
+  const std::string samples = text("lampyr.samplesPerPixel");
+  return (samples == "0" || samples == "1") && text("lampyr.integrator") != "light";
+}
+
 Measured Measure(const Image& image, const char* which) {
   Measured measured;
   measured.colors = ReadColors(image, which);
   measured.variance = ReadVariance(image, which);
   measured.relativeRounding = RelativeRounding(measured.colors);
+  measured.isOfOneSample = IsOfOneSample(image);
   return measured;
+}
+
+// Two values may differ by that much because of how they were added up and stored.
+double RoundingOf(double a, double b, const Measured& first, const Measured& second) {
+  return std::abs(a) * static_cast<double>(first.relativeRounding) +
+         std::abs(b) * static_cast<double>(second.relativeRounding) +
+         static_cast<double>(std::numeric_limits<float>::min());
 }
 
 std::array<double, 3> Channels(const Color& c) {
@@ -144,8 +163,8 @@ void MeasureBias(const Measured& a, const Measured& b, ImageDifference& differen
   difference.biasInterval = Ratio(1.959963984540054 * std::sqrt(varianceOfMean), std::abs(difference.meanB));
 }
 
-// z of one block and channel: difference of the block's means over its standard error. Empty when there is neither a
-// difference nor a variance.
+// z of one block and channel: difference of the block's means over its standard error; 0 for what is no more than
+// rounding. Empty when there is neither a difference nor a variance.
 std::optional<double> BlockZ(const Measured& a, const Measured& b, int channel, int width, const int (&block)[4]) {
   double sumA = 0, sumB = 0, variance = 0;
   for (int y = block[1]; y < block[3]; ++y) {
@@ -156,11 +175,11 @@ std::optional<double> BlockZ(const Measured& a, const Measured& b, int channel, 
       variance += (*a.variance)[channel][i] + (*b.variance)[channel][i];
     }
   }
-  if (variance == 0 && sumA == sumB) return std::nullopt;
   // The rounding of a constant region is the same at all its pixels: it adds up like the values.
-  const double rounding = std::abs(sumA) * static_cast<double>(a.relativeRounding) +
-                          std::abs(sumB) * static_cast<double>(b.relativeRounding);
-  return (sumA - sumB) / std::sqrt(variance + rounding * rounding / 3);
+  const double rounding = RoundingOf(sumA, sumB, a, b);
+  const bool isRounding = std::abs(sumA - sumB) <= rounding;
+  if (variance == 0 && isRounding) return std::nullopt;
+  return isRounding ? 0 : (sumA - sumB) / std::sqrt(variance + rounding * rounding / 3);
 }
 
 // Half of the family-wise rate goes to the largest z, half to the sum of squares; each is divided among the channels.
@@ -341,6 +360,59 @@ std::vector<float> RelativeErrorMap(const Image& image, const Image& reference) 
   return map;
 }
 
+namespace {
+
+bool IsBlack(const Measured& image) {
+  return std::all_of(image.colors.begin(), image.colors.end(), [](const Color& color) { return color.IsBlack(); });
+}
+
+bool IsEqual(const Measured& a, const Measured& b) {
+  for (size_t i = 0; i < a.colors.size(); ++i) {
+    const auto va = Channels(a.colors[i]), vb = Channels(b.colors[i]);
+    for (size_t c = 0; c < 3; ++c) {
+      if (std::abs(va[c] - vb[c]) > RoundingOf(va[c], vb[c], a, b)) return false;
+    }
+  }
+  return true;
+}
+
+// What cannot be said, and why; "": something can be.
+std::string ReasonForSilence(const Measured& a, const Measured& b) {
+  if (!a.variance || !b.variance) return "both images need variance layers";
+  if (a.isOfOneSample || b.isOfOneSample) {
+    const char* which = a.isOfOneSample && b.isOfOneSample ? "both images have"
+                        : a.isOfOneSample                  ? "the first image has"
+                                                           : "the second image has";
+    return std::string(which) + " one sample per pixel, whose variance is not known";
+  }
+  return "";
+}
+
+}  // namespace
+
+const char* NameOf(Verdict verdict) {
+  constexpr const char* names[] = {"equal", "agree", "differ", "cannot say"};
+  return names[static_cast<int>(verdict)];
+}
+
+Image DifferenceImage(const Image& image, const Image& reference) {
+  const std::vector<float> relative = RelativeErrorMap(image, reference);
+  Image difference(image.width, image.height, {"R", "G", "B", "relative.Y"});
+  difference.offsetX = image.offsetX;
+  difference.offsetY = image.offsetY;
+  difference.fullWidth = image.fullWidth;
+  difference.fullHeight = image.fullHeight;
+  float* out = difference.data.data();
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const Color d = image.RgbAt(x, y) - reference.RgbAt(x, y);
+      for (const float value : {d.r, d.g, d.b}) *out++ = std::abs(value);
+      *out++ = relative[static_cast<size_t>(y) * static_cast<size_t>(image.width) + static_cast<size_t>(x)];
+    }
+  }
+  return difference;
+}
+
 ImageDifference CompareImages(const Image& a, const Image& b, int blockSize, double familyWiseRate) {
   CheckSameSize(a, b);
   if (blockSize < 1) throw Error("the block size must be at least 1");
@@ -349,9 +421,18 @@ ImageDifference CompareImages(const Image& a, const Image& b, int blockSize, dou
   MeasureErrors(first, second, difference);
   MeasureBias(first, second, difference);
   difference.flip = MeanOfMap(FlipMap(first.colors, second.colors, a.width, a.height));
-  difference.hasBlockTest = first.variance && second.variance;
+  difference.reason = ReasonForSilence(first, second);
+  difference.hasBlockTest = difference.reason.empty();
   if (difference.hasBlockTest) {
     difference.blockTest = TestBlocks(first, second, a.width, a.height, blockSize, familyWiseRate);
+    difference.verdict = difference.blockTest.Agrees() ? Verdict::Agree : Verdict::Differ;
+  }
+  if (IsBlack(first) && IsBlack(second)) {
+    difference.verdict = Verdict::CannotSay;
+    difference.reason = "both images are black";
+  } else if (IsEqual(first, second)) {
+    difference.verdict = Verdict::Equal;
+    difference.reason.clear();
   }
   return difference;
 }

@@ -20,6 +20,10 @@ struct BlockTest {
   bool Agrees() const { return largestZ <= threshold && chiSquared <= chiSquaredThreshold; }
 };
 
+// What can be said of two images. CannotSay is no agreement: nothing was tested.
+enum class Verdict { Equal, Agree, Differ, CannotSay };
+const char* NameOf(Verdict verdict);  // "equal", "agree", "differ", "cannot say"
+
 struct ImageDifference {
   double mse = 0;     // mean over pixels and RGB of (a-b)²
   double relMse = 0;  // (a-b)² / (b² + 1 % of the mean of b²); infinite against a black image
@@ -29,8 +33,11 @@ struct ImageDifference {
   double bias = 0;  // mean (a-b) over pixels and channels, relative to meanB
   double biasInterval =
       0;  // half width of its 95 % confidence interval, relative to meanB; from variance layers, else from the pixels
-  bool hasBlockTest = false;  // both images have variance (or standard error) layers
+  bool hasBlockTest = false;  // both images have variance (or standard error) layers, of two samples or more
   BlockTest blockTest;
+  // Equal: no value differs by more than rounding. Agree, Differ: by the block test.
+  Verdict verdict = Verdict::CannotSay;
+  std::string reason;  // why it cannot be said
 };
 
 // Throws Error when the images have different sizes, crops, no R, G, B (nor gray), or values that are not finite.
@@ -70,6 +77,10 @@ std::optional<ImageNoise> NoiseOf(const Image& reference, int parts);
 
 // Mean over pixels and R, G, B.
 double MeanValue(const Image& image);
+
+// What is to be looked at: R, G and B are the absolute differences, "relative.Y" is RelativeErrorMap. Throws as
+// CompareImages does.
+Image DifferenceImage(const Image& image, const Image& reference);
 
 // Each pixel's share of relMse, its root: the relative error of the pixel. The reference's noise is in it.
 std::vector<float> RelativeErrorMap(const Image& image, const Image& reference);

@@ -458,6 +458,38 @@ TEST_F(Cli, EmptySceneIsBlackAndSaysSo) {
   for (const float value : image.data) EXPECT_EQ(value, 0.0f);
 }
 
+// Of a picture that all of its samples were dropped from nothing is known, whoever finds the light; the message names
+// what has spoilt them.
+TEST_F(Cli, APictureWithoutItsSamplesIsAnErrorThatNamesTheCause) {
+  const std::string begin =
+      "Film \"rgb\" \"integer xresolution\" 16 \"integer yresolution\" 16\nLookAt 0 1 3  0 0 0  0 1 0\n"
+      "Camera \"perspective\" \"float fov\" 30\nWorldBegin\n";
+  const std::string floor =
+      "Shape \"trianglemesh\" \"point3 P\" [-5 0 -5 -5 0 5 5 0 5 5 0 -5] \"integer indices\" [0 1 2 0 2 3]\n";
+  Write("filter.pbrt", begin +
+                           "LightFilter \"intmult\" \"float intensity\" 1e38\nLightSource \"point\" \"rgb I\" [9000 "
+                           "9000 9000] \"point3 from\" [0 2 1]\n" +
+                           floor);
+  Write("light.pbrt", begin + "LightSource \"point\" \"rgb I\" [1e37 1e37 1e37] \"point3 from\" [0 0.01 0]\n" + floor);
+  for (const char* integrator : {"path", "light", "bdpt", "sppm", "vcm"}) {
+    for (const char* scene : {"filter", "light"}) {
+      const std::string command = std::string("render ") + scene +
+                                  ".pbrt --spp 16 -o a.exr --stats a.json --integrator " + integrator +
+                                  " --target-error 0.1";
+      const Outcome outcome = Run(command);
+      SCOPED_TRACE(command + "\n" + outcome.output);
+      EXPECT_EQ(outcome.exitCode, 1);
+      EXPECT_NE(outcome.output.find("relative error unknown"), std::string::npos);
+      EXPECT_NE(Read("a.json").find("\"relativeError\": null"), std::string::npos);
+      EXPECT_TRUE(fs::exists(folder_ / "a.exr"));
+      const char* const cause = scene == std::string("filter") ? "filter.pbrt:5:1: error: this LightFilter gives values"
+                                                               : "light.pbrt:5:1: error: this light gives values";
+      EXPECT_NE(outcome.output.find(cause), std::string::npos);
+      EXPECT_NE(outcome.output.find("samples were dropped: the picture is wrong"), std::string::npos);
+    }
+  }
+}
+
 TEST_F(Cli, InterruptWritesTheImageAndExitsWithTheSignal) {
   for (const auto& [signal, exitCode] : {std::pair(SIGINT, 130), std::pair(SIGTERM, 143)}) {
     LampyrProcess render(folder_, "render scene.pbrt -o stopped.exr --spp 100000000 --quiet");
@@ -601,6 +633,48 @@ TEST_F(Cli, DiffTellsEqualFromDifferent) {
   EXPECT_NE(outcome.output.find("DIFFER"), std::string::npos) << outcome.output;
   outcome = Run("diff a.exr a.exr --json");
   EXPECT_NE(outcome.output.find("\"mse\": 0.0"), std::string::npos) << outcome.output;
+  EXPECT_NE(outcome.output.find("\"verdict\": \"equal\""), std::string::npos) << outcome.output;
+  EXPECT_EQ(Run("diff a.exr b.exr --fail").exitCode, 0);
+  EXPECT_EQ(Run("diff a.exr a.exr --fail").exitCode, 0);
+  EXPECT_EQ(Run("diff c.exr a.exr --fail").exitCode, 1);
+  EXPECT_EQ(Run("diff c.exr a.exr --fail --json").exitCode, 1);
+}
+
+// One sample has no variance, and nothing has none to speak of: neither is an agreement.
+TEST_F(Cli, DiffSaysWhereItCannotSay) {
+  ASSERT_EQ(Run("render scene.pbrt -o a.exr --spp 1 --quiet").exitCode, 0);
+  ASSERT_EQ(Run("render scene.pbrt -o b.exr --spp 1 --seed 5 --quiet").exitCode, 0);
+  ASSERT_EQ(Run("render scene.pbrt -o c.exr --spp 16 --quiet").exitCode, 0);
+  const auto expect = [&](const std::string& images, const std::string& text) {
+    const Outcome outcome = Run("diff --fail " + images);
+    EXPECT_EQ(outcome.exitCode, 1) << outcome.output;
+    EXPECT_NE(outcome.output.find("z-test   cannot say: " + text), std::string::npos) << outcome.output;
+  };
+  expect("a.exr b.exr", "both images have one sample per pixel, whose variance is not known");
+  expect("c.exr b.exr", "the second image has one sample per pixel");
+  Write("dark.pbrt", "Film \"rgb\" \"integer xresolution\" 16 \"integer yresolution\" 16\nWorldBegin\n");
+  ASSERT_EQ(Run("render dark.pbrt -o black.exr --spp 4 --quiet").exitCode, 0);
+  expect("black.exr black.exr", "both images are black");
+}
+
+TEST_F(Cli, DiffWritesTheErrorImage) {
+  ASSERT_EQ(Run("render scene.pbrt -o a.exr --spp 4 --quiet").exitCode, 0);
+  ASSERT_EQ(Run("render scene.pbrt -o b.exr --spp 4 --seed 5 --quiet").exitCode, 0);
+  ASSERT_EQ(Run("diff a.exr b.exr -o error.exr").exitCode, 0);
+  const Image a = ReadImage(folder_ / "a.exr"), b = ReadImage(folder_ / "b.exr"),
+              error = ReadImage(folder_ / "error.exr");
+  double squares = 0;
+  for (int y = 0; y < a.height; ++y) {
+    for (int x = 0; x < a.width; ++x) {
+      const Color d = error.RgbAt(x, y);
+      EXPECT_FLOAT_EQ(d.g, std::abs(a.RgbAt(x, y).g - b.RgbAt(x, y).g));
+      squares += static_cast<double>(d.r * d.r + d.g * d.g + d.b * d.b);
+    }
+  }
+  EXPECT_GT(squares, 0);
+  EXPECT_GE(error.ChannelIndex("relative.Y"), 0);
+  EXPECT_EQ(Run("diff a.exr b.exr -o error.png").exitCode, 2);
+  EXPECT_EQ(Run("diff a.exr b.exr -o none/error.exr").exitCode, 2);
 }
 
 TEST_F(Cli, AnswersThatCannotBeWrittenAreAFailure) {

@@ -140,6 +140,8 @@ TEST_F(Merge, PartsOfATimeAreWholeWhenItIsOver) {
   ExpectRefused("render scene.pbrt --integrator vcm --time 0.2s --shard 2/2", 2, "--shard with vcm needs --spp");
   Do("merge -o merged.exr p1.exr p2.exr");
   EXPECT_GT(std::stoi(ReadImage(folder_ / "merged.exr").metadata.at("lampyr.samplesPerPixel")), 1);
+  // Without merging, vcm gathers none.
+  Do("render scene.pbrt --quiet --integrator vcm --no-merge --time 0.1s --shard 2/2 -o p3.exr");
 }
 
 TEST_F(Merge, PartsCanBeGoneOnWith) {

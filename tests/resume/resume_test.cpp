@@ -61,6 +61,20 @@ TEST_F(Resume, GoesOnAfterASignal) {
   EXPECT_EQ(Bytes("out.exr"), Bytes("whole.exr"));
 }
 
+// The limit of photons shows in the picture: it is part of what a render is, and the same on all machines.
+TEST_F(Resume, TheMemoryForPhotonsIsPartOfTheRender) {
+  Do(kRender + "--spp 1 --integrator vcm");
+  ExpectRefused(kRender + "--spp 2 --integrator vcm --photon-memory 1M", 2,
+                "is of another render: the memory for photons is 4294967296 there and 1048576 here");
+  Do(kRender + "--spp 2 --integrator vcm --photon-memory 4G");
+  // On a machine of less memory it is the same render.
+  const Outcome little =
+      RunLampyr(folder_.Path(), kRender + "--spp 3 --integrator vcm --threads 1", "ulimit -v 800000;");
+  EXPECT_EQ(little.exitCode, 0) << little.output;
+  Do("render scene.pbrt --quiet -o whole.exr --spp 3 --integrator vcm");
+  EXPECT_TRUE(Bytes("whole.exr") == Bytes("out.exr"));
+}
+
 TEST_F(Resume, WhatIsOfAnotherRenderIsRefused) {
   Do(kRender + "--spp 4");
   const std::string image = Bytes("out.exr"), checkpoint = Bytes("out.checkpoint");

@@ -147,6 +147,34 @@ TEST(BlockTest, PixelsWithoutVarianceMustBeEqualUpToRounding) {
   EXPECT_FALSE(CompareImages(a, b).blockTest.Agrees());
 }
 
+TEST(ImageVerdict, DifferencesOfRoundingAreNone) {
+  Image a = Noisy(64, 1, 0, 1), b = a;
+  for (size_t i = 0; i < a.data.size(); ++i) {
+    if (i % 6 < 3) a.data[i] = 0.7f + 1e-3f * static_cast<float>(i % 7);
+    if (i % 6 < 3) b.data[i] = std::nextafter(std::nextafter(a.data[i], 2.0f), 2.0f);
+  }
+  EXPECT_EQ(CompareImages(a, b).verdict, Verdict::Equal);
+  // In one block alone something is noisy: all others have rounding, and agree.
+  for (size_t i = 3; i < 6; ++i) a.data[i] = b.data[i] = 1;
+  b.data[0] += 1;
+  const ImageDifference difference = CompareImages(a, b);
+  EXPECT_EQ(difference.verdict, Verdict::Agree) << difference.blockTest.chiSquared;
+  b.data[600] += 0.1f;
+  EXPECT_EQ(CompareImages(a, b).verdict, Verdict::Differ);
+}
+
+TEST(ImageVerdict, CannotSayWhatWasNotMeasured) {
+  Image a = Noisy(16, 1, 0.1f, 1), b = Noisy(16, 1, 0.1f, 2);
+  EXPECT_EQ(CompareImages(a, b).verdict, Verdict::Agree);
+  b.metadata["lampyr.samplesPerPixel"] = "1";
+  EXPECT_EQ(CompareImages(a, b).verdict, Verdict::CannotSay);
+  EXPECT_EQ(CompareImages(b, b).verdict, Verdict::Equal);
+  b.metadata["lampyr.integrator"] = "light";
+  EXPECT_EQ(CompareImages(a, b).verdict, Verdict::Agree);
+  EXPECT_EQ(CompareImages(Constant(4, 4, 0), Constant(4, 4, 0)).verdict, Verdict::CannotSay);
+  EXPECT_EQ(CompareImages(Constant(4, 4, 1), Constant(4, 4, 2)).verdict, Verdict::CannotSay);
+}
+
 TEST(BlockTest, PartialBlocksAtTheBordersCount) {
   const Image a = Noisy(21, 1, 0.1f, 1), b = Noisy(21, 1, 0.1f, 2);
   EXPECT_EQ(CompareImages(a, b).blockTest.blocks, 9);
