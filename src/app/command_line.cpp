@@ -298,7 +298,9 @@ int RunCommandLine(int argc, char** argv) {
 
   CheckLightsOptions check;
   CLI::App* checkCommand =
-      app.add_subcommand("check-lights", "Prove the densities of lights: of every type, a plugin's, or a scene's");
+      app.add_subcommand("check-lights",
+                         "Prove the densities of lights: of every type, a plugin's, or a scene's. What fails is "
+                         "named, with what that means and where it was worst");
   checkCommand->add_option("scene", check.scene, "A scene, whose lights are checked as they are placed");
   checkCommand->add_option("--type", check.type, "Only this type of light");
   DefinePluginOption(*checkCommand, check.plugins);
