@@ -22,7 +22,6 @@ const std::vector<PatchFault>& PatchFaults() {
       {"beta-exponent", "along subpaths a forward density enters with the power 1, the rest with 2"},
       {"merge-term", "a connection leaves out merging at its light vertex"},
       {"delta-flag", "a connection at a delta counts as a technique"},
-      {"refraction-stretch", "refraction leaves the density per solid angle as it is"},
       {"landing-selection", "where a photon lands, next-event estimation counts without its selection"},
       {"emission-selection", "densities of emission lack the selection of the light, in all techniques alike"},
       {"reverse-for-forward", "the density back to the previous vertex is the forward one"},
