@@ -23,6 +23,13 @@ std::vector<Receiver> ReceiversAround(const Enclosure& enclosure, const Point3d&
   };
 }
 
+std::string InWords(const Enclosure& enclosure, const Receiver& receiver) {
+  char text[160];
+  std::snprintf(text, sizeof(text), "receiver \"%s\", %.3g sizes from the light's middle: ", receiver.name.c_str(),
+                glm::length(Point3d(receiver.position) - enclosure.middle) / enclosure.radius);
+  return text;
+}
+
 void CheckAreaEmissionDirections(const SuiteSubject& subject, const SuiteOptions& options, const Enclosure& enclosure,
                                  Rng& rng, SuiteReport& report) {
   for (int i = 0; i < 3; ++i) {
@@ -72,7 +79,8 @@ void CheckAreaPower(const SuiteSubject& subject, const Enclosure& enclosure, con
   });
   // Some slip through the light's seams, by rounding.
   constexpr double kSeams = 1e-4;
-  report.AddProbability(subject.name, "power", subject.caseName, EqualMeans(escaping, direct, 1e-3, kSeams * stopped));
+  report.AddProbability(subject.name, "power", subject.caseName, EqualMeans(escaping, direct, 1e-3, kSeams * stopped),
+                        InWords("the power that photons carry away, in W,", escaping, direct));
   // The estimate is of all that the surface emits, whether it gets away or not.
   const Estimate emitted = !stopsSome ? escaping : SharpMean(rng, subject.powerError, [&](const float(&x)[4]) {
     const auto photon = light.GenerateEmission(contextFor(x));

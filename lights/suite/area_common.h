@@ -13,6 +13,9 @@ struct Enclosure {
 // Nine places around a surface, of which `position` and `normal` are one point.
 std::vector<Receiver> ReceiversAround(const Enclosure& enclosure, const Point3d& position, const Vector3d& normal);
 
+// "receiver "near", 0.3 sizes from the light's middle: "
+std::string InWords(const Enclosure& enclosure, const Receiver& receiver);
+
 // Given a position, the directions of photons: integral and χ² of pdfEmitDirection.
 void CheckAreaEmissionDirections(const SuiteSubject& subject, const SuiteOptions& options, const Enclosure& enclosure,
                                  Rng& rng, SuiteReport& report);

@@ -1,5 +1,6 @@
 #include "lights/suite/checks.h"
 
+#include <cstdio>
 #include <mutex>
 
 #include "base/parallel.h"
@@ -99,6 +100,13 @@ double EqualMeans(const Estimate& a, const Estimate& b, double tolerance, double
   return error > 0 ? NormalTail(excess / error) : 0.0;
 }
 
+std::string InWords(const std::string& what, const Estimate& got, const Estimate& expected) {
+  char numbers[160];
+  std::snprintf(numbers, sizeof(numbers), " is %.5g ± %.1g; expected %.5g ± %.1g", got.value, got.error, expected.value,
+                expected.error);
+  return what + numbers;
+}
+
 double Flux(const SuiteSubject& subject, const EmissionSample& photon) {
   if (photon.pdfEmitDirection.IsZero()) return 0;  // dark in this direction
   return Emitted(subject, photon) * static_cast<double>(photon.emissionCosine) /
@@ -109,11 +117,12 @@ void CheckPowerEstimate(const SuiteSubject& subject, const Estimate& emitted, Su
   if (!(emitted.value > 0)) return;
   const auto estimate = static_cast<double>(subject.light->GetPowerEstimate(subject.context).Average());
   if (subject.isPowerExact) {
-    report.AddProbability(subject.name, "power-estimate", subject.caseName, EqualMeans(emitted, {estimate, 0}, 1e-3));
+    report.AddProbability(subject.name, "power-estimate", subject.caseName, EqualMeans(emitted, {estimate, 0}, 1e-3),
+                          InWords("GetPowerEstimate in W", {estimate, 0}, emitted));
   } else {
     // Without a closed form only the order of magnitude is promised.
     report.AddError(subject.name, "power-estimate", subject.caseName, std::abs(std::log(estimate / emitted.value)),
-                    std::log(10.0));
+                    std::log(10.0), InWords("GetPowerEstimate in W", {estimate, 0}, emitted));
   }
 }
 

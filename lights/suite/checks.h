@@ -98,6 +98,9 @@ inline Estimate EstimateOf(const RunningMean& mean) {
   return {mean.Mean(), mean.StandardError()};
 }
 
+// Two means in words: "light sampling gives 0.51 ± 1e-4, expected 0.5 ± 1e-5".
+std::string InWords(const std::string& what, const Estimate& got, const Estimate& expected);
+
 // Flux of a photon; a light's power is its mean, those that were not emitted as 0.
 double Flux(const SuiteSubject& subject, const EmissionSample& photon);
 

@@ -21,26 +21,48 @@ std::string Difference(const SuiteSubject& subject, const Light& fresh, const Li
 
 }  // namespace
 
-void CheckEdit(const SuiteSubject& subject, const SuiteOrigin& origin, SuiteReport& report) {
-  for (size_t i = 0; i < origin.changes.size(); ++i) {
-    const ParameterList& changes = origin.changes[i];
-    std::unique_ptr<Light> fresh, edited;
-    try {
-      fresh = MakeLight(*origin.type, MergeParameters(*origin.parameters, changes), *origin.build);
-    } catch (const Error&) {
-      // The two do not go together: editing must say so too.
-    }
-    try {
-      edited = subject.light->Edit(changes, *origin.build);
-    } catch (const Error&) {}
-    std::string difference = "error";
-    if (!fresh && !edited) difference = "";
-    if (fresh && edited) difference = Difference(subject, *fresh, *edited);
-    const std::string what = changes.All().empty() ? "nothing" : changes.All()[0].name;
-    report.AddError(subject.name, "edit",
-                    subject.caseName + " by " + what + (difference.empty() ? "" : ": other " + difference),
-                    difference.empty() ? 0 : 1, 0.5);
+namespace {
+
+std::string NameOf(const ParameterList& changes) {
+  return changes.All().empty() ? "nothing" : changes.All()[0].name;
+}
+
+// `edit` makes the light that is to be what the merged parameters make afresh.
+void CompareEdit(const SuiteSubject& subject, const SuiteOrigin& origin, const ParameterList& merged,
+                 const std::string& by, const std::function<std::unique_ptr<Light>()>& edit, SuiteReport& report) {
+  std::unique_ptr<Light> fresh, edited;
+  try {
+    fresh = MakeLight(*origin.type, merged, *origin.build);
+  } catch (const Error&) {
+    // The two do not go together: editing must say so too.
   }
+  try {
+    edited = edit();
+  } catch (const Error&) {}
+  std::string difference = fresh ? "editing fails, where a light can be made afresh"
+                                 : "editing makes a light, where none can be made afresh";
+  if (!fresh && !edited) difference = "";
+  if (fresh && edited) difference = Difference(subject, *fresh, *edited);
+  const bool isSame = difference.empty();
+  report.AddError(subject.name, "edit", subject.caseName + " by " + by, isSame ? 0 : 1, 0.5,
+                  isSame ? "" : "edited by \"" + by + "\": " + difference);
+}
+
+}  // namespace
+
+void CheckEdit(const SuiteSubject& subject, const SuiteOrigin& origin, SuiteReport& report) {
+  const std::vector<ParameterList>& changes = origin.changes;
+  for (const ParameterList& change : changes) {
+    CompareEdit(
+        subject, origin, MergeParameters(*origin.parameters, change), NameOf(change),
+        [&] { return subject.light->Edit(change, *origin.build); }, report);
+  }
+  if (changes.size() < 2) return;
+  // One after the other: an edited light knows all that it was made of.
+  const ParameterList both = MergeParameters(MergeParameters(*origin.parameters, changes[0]), changes[1]);
+  CompareEdit(
+      subject, origin, both, NameOf(changes[0]) + " and then " + NameOf(changes[1]),
+      [&] { return subject.light->Edit(changes[0], *origin.build)->Edit(changes[1], *origin.build); }, report);
 }
 
 }  // namespace lampyr::suite

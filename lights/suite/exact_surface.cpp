@@ -89,4 +89,23 @@ std::pair<Estimate, Estimate> ExactSurface::IntegrateTraced(const Point3& P, std
   return {quadrature.Density(), quadrature.Radiance()};
 }
 
+Estimate ExactSurface::IntegrateSurface(const Point3& P, const Integrand& f, Rng& rng) const {
+  return tracer_->IntegrateOver(
+      1, [](const SurfaceHit&) { return 0; },
+      [&](const SurfaceHit& hit) {
+        const Vector3d way = hit.position - Point3d(P);
+        const double squared = glm::dot(way, way), distance = std::sqrt(squared);
+        const Vector3d direction = way / distance;
+        const double cosine = -glm::dot(hit.normal, direction);
+        SurfaceHit found = hit;
+        found.distance = distance;
+        const double value = f(HitFrom(found, direction), cosine).density;
+        if (value == 0) return 0.0;
+        const auto first = tracer_->Trace(Point3d(P), direction);
+        const bool isHidden = first && first->distance <= distance - 1e-2 * around_.radius;
+        return isHidden ? 0.0 : value * std::abs(cosine) / squared;
+      },
+      rng)[0];
+}
+
 }  // namespace lampyr::suite

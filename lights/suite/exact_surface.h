@@ -30,6 +30,8 @@ class ExactSurface {
   using Integrand = std::function<Integrands(const LightHit& hit, double cosine)>;
   std::pair<Estimate, Estimate> IntegrateDirections(const Point3& P, std::span<const LightSample> hints,
                                                     const Integrand& f, Rng& rng, int budget) const;
+  // The same by random points of the surface, for strips that are too thin to be found among directions.
+  Estimate IntegrateSurface(const Point3& P, const Integrand& f, Rng& rng) const;
 
  private:
   bool IsHidden(const Point3d& position, const Vector3d& normal, const Point3& P) const;

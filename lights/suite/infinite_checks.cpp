@@ -134,9 +134,14 @@ void InfiniteChecker::CheckDirectionsAt(const Receiver& receiver) {
     return sample ? Emitted(subject_, *sample) / Value(sample->pdfDirect) : 0.0;
   });
   const std::string where = Case(" " + receiver.name);
-  report_.AddProbability(subject_.name, "integral", where, EqualMeans(quadrature.Density(), share, 1e-3));
-  report_.AddProbability(subject_.name, "directions", where, quadrature.Test(directions, options_.samples));
-  report_.AddProbability(subject_.name, "irradiance", where, EqualMeans(quadrature.Radiance(), fluence, 1e-3));
+  const std::string words = "receiver \"" + receiver.name + "\": ";
+  report_.AddProbability(subject_.name, "integral", where, EqualMeans(quadrature.Density(), share, 1e-3),
+                         InWords(words + "the integral of pdfDirect", quadrature.Density(), share));
+  std::string worst;
+  const double p = quadrature.Test(directions, options_.samples, 48, &worst);
+  report_.AddProbability(subject_.name, "directions", where, p, words + worst);
+  report_.AddProbability(subject_.name, "irradiance", where, EqualMeans(quadrature.Radiance(), fluence, 1e-3),
+                         InWords(words + "what light sampling brings", fluence, quadrature.Radiance()));
 }
 
 void InfiniteChecker::CheckEstimates(const Receiver& receiver, bool arrives) {
@@ -263,7 +268,8 @@ void InfiniteChecker::CheckPower() {
     const double leaving = std::max(-glm::dot(outward, Vector3d(sample->direction)), 0.0);
     return area * leaving * Emitted(subject_, *sample) / Value(sample->pdfDirect);
   });
-  report_.AddProbability(subject_.name, "power", subject_.caseName, EqualMeans(emitted, direct, 1e-3));
+  report_.AddProbability(subject_.name, "power", subject_.caseName, EqualMeans(emitted, direct, 1e-3),
+                         InWords("the power that photons carry, in W,", emitted, direct));
   CheckPowerEstimate(subject_, emitted, report_);
 }
 

@@ -1,26 +1,37 @@
 // The pdf consistency suite: proof by statistics that the three techniques of a light agree. It runs over the registry,
 // over a plugin's type or over a single light, and prints nothing itself.
 //
-// Properties, by their names in the results:
+// Properties, by their names in the results (properties.h says the same of them to those whose light fails one):
 //
 //   integral             pdfDirect integrates to the probability that a sample exists, 1 where the light is all visible
 //   directions           χ² of sampled points (or directions, at infinity) against pdfDirect
+//   strata               the same by classes of the cosine at the light, from receivers very near and very far, grazing
+//                        and edge-on: where few samples go
 //   consistency          EvaluateSamples on a generated sample gives back radiance, normal and all densities
 //   surface              a sample's normal, position and density agree with the shape, evaluated apart from the light;
 //                        its solidAngleToArea is that of its place
 //   one-sided            nothing leaves a one-sided surface at its back
 //   irradiance           by light sampling = by quadrature over the surface
+//   patches              each is chosen as PatchProbability says; a light that is its own surface has one
+//   position-error       bounds how far a position is off the surface, and is no more than rounding can be
+//   uvw                  what a ray finds there; a light that is the same all over may leave it at 0
 //   emission-integral    the densities of emission integrate to 1
-//   emission-positions   χ² of photons against pdfEmit; emission-directions: against pdfEmitDirection
+//   emission-positions   χ² of photons against pdfEmit; emission-directions: against pdfEmitDirection, and moments
 //   emission-edge        a photon's densities are those that EvaluateSamples gives for that edge
 //   emission-origin      a photon's place does not depend on its direction, be that dark
+//   shines-from          a photon lights what is beyond shinesFrom, nothing before; it is 0 where CanBeAimed is true
 //   power                by emission = by direct sampling on an enclosing sphere
 //   power-estimate       GetPowerEstimate: exact where it is a closed form, near otherwise
+//   energy               of the bounds: the power estimate times importanceMultiplier
 //   bounds               photons leave within GetEmissionBounds
 //   estimate             no estimate is 0 where a sample arrives
 //   multipliers          diffuse and specular parts are one emission, each times the light's multiplier
 //   camera               a camera sees what receivers see, and nothing of a delta
-//   edit                 an edited light is the one that is made afresh, bit by bit
+//   bidirectional        without it nothing is missing but the densities of emission: the bits are compared
+//   time                 nothing depends on it but the placement, which is given
+//   repeat               the same question has the same answer: in another order, on another thread, at the end
+//   parameters           what all lights have (intensity, exposure, …, cameraVisible) does what it says
+//   edit                 an edited light is the one that is made afresh, bit by bit, by each parameter of its type
 #pragma once
 
 #include <filesystem>
@@ -62,7 +73,8 @@ enum SuiteParts : unsigned {
   kDensityPart = 4,     // all that compares densities with samples and with each other
   kStrataPart = 8,      // strata: a second or so for each light
   kDirectionPart = 16,  // emission-directions, with many photons
-  kAllParts = 31
+  kParameterPart = 32,  // edit, parameters: of types, not of single lights
+  kAllParts = 63
 };
 
 struct SuiteOptions {

@@ -216,14 +216,17 @@ void PointChecker::CheckEmissionDirections() {
   const Estimate share = LatticeMean(
       rng_, 128, 32, [&](const float(&x)[4]) { return light_.GenerateEmission(contextFor(x)) ? 1.0 : 0.0; });
   report_.AddProbability(subject_.name, "emission-integral", subject_.caseName,
-                         EqualMeans(quadrature.Density(), share, 1e-3));
-  report_.AddProbability(subject_.name, "emission-directions", subject_.caseName,
-                         quadrature.Test(directions, options_.photons));
+                         EqualMeans(quadrature.Density(), share, 1e-3),
+                         InWords("the integral of pdfEmitDirection", quadrature.Density(), share));
+  std::string worst;
+  const double p = quadrature.Test(directions, options_.photons, 48, &worst);
+  report_.AddProbability(subject_.name, "emission-directions", subject_.caseName, p, worst);
   const Estimate emitted = SharpMean(rng_, subject_.powerError, [&](const float(&x)[4]) {
     const auto photon = light_.GenerateEmission(contextFor(x));
     return photon ? Flux(subject_, *photon) : 0.0;
   });
-  report_.AddProbability(subject_.name, "power", subject_.caseName, EqualMeans(emitted, quadrature.Radiance(), 1e-3));
+  report_.AddProbability(subject_.name, "power", subject_.caseName, EqualMeans(emitted, quadrature.Radiance(), 1e-3),
+                         InWords("the power that photons carry, in W,", emitted, quadrature.Radiance()));
   CheckPowerEstimate(subject_, emitted, report_);
 }
 

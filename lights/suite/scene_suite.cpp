@@ -4,24 +4,21 @@
 
 #include "lights/direction_map.h"
 #include "lights/suite/checks.h"
+#include "lights/suite/suite_shapes.h"
 
 namespace lampyr {
 
 namespace {
 
-Transform ToDouble(const Affine& affine) {
-  glm::dmat4 m(1.0);
-  for (int c = 0; c < 3; ++c) m[c] = glm::dvec4(Vector3d(affine.linear[c]), 0.0);
-  m[3] = glm::dvec4(Vector3d(affine.translation), 1.0);
-  return Transform(m);
-}
+// A second or two each: in a scene of more lights than that, types are for checking them thoroughly.
+constexpr size_t kThoroughLights = 16;
 
 // One light at one time of the shutter.
 void CheckPlaced(const PlacedLight& placed, const SceneLight& scene, const BoundingSphere& sphere, float time,
-                 const SuiteOptions& options, SuiteReport& report) {
+                 bool isThorough, const SuiteOptions& options, SuiteReport& report) {
   const LightTransform transform = placed.motion ? placed.At(time) : placed.transform;
   std::unique_ptr<EmitterModel> model;
-  if (scene.shape) model = MakeEmitterModel(*scene.shape, ToDouble(transform.toRender));
+  if (scene.shape) model = MakeEmitterModel(*scene.shape, suite::ToTransform(transform.toRender));
   SuiteSubject subject;
   subject.light = scene.withoutCutOuts ? scene.withoutCutOuts.get() : placed.light.get();
   subject.context.transform = &transform;
@@ -29,6 +26,7 @@ void CheckPlaced(const PlacedLight& placed, const SceneLight& scene, const Bound
   subject.context.time = time;
   subject.context.bidirectional = true;
   subject.model = model.get();
+  subject.isThorough = isThorough;
   subject.diffuseMultiplier = scene.parameters.GetFloat("diffuse", 1);
   subject.specularMultiplier = scene.parameters.GetFloat("specular", 1);
   const bool keepsAngles = IsSimilarity(transform.toRender.linear);
@@ -91,7 +89,8 @@ std::vector<SuiteResult> RunPdfSuiteOnScene(const LightingServices& services, co
     const PlacedLight& placed = services.Lights()[index];
     for (const float time : {0.0f, 0.5f, 1.0f}) {
       if (time > 0 && !placed.motion) break;
-      CheckPlaced(placed, lights[index], services.SceneSphere(), time, options, report);
+      const bool isThorough = time == 0 && lights.size() <= kThoroughLights;
+      CheckPlaced(placed, lights[index], services.SceneSphere(), time, isThorough, options, report);
     }
   });
   if (!lights.empty()) CheckSelection(services, options, all);

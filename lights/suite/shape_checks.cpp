@@ -200,10 +200,11 @@ void ShapeChecker::CheckReceiver(const Receiver& receiver) {
   const Estimate share = meanOf([](const LightSample&) { return 1.0; });
   const Estimate fluence =
       meanOf([&](const LightSample& sample) { return Emitted(subject_, sample) / Value(sample.pdfDirect); });
-  const std::string where = Case(" " + receiver.name);
+  const std::string where = Case(" " + receiver.name), words = InWords(enclosure_, receiver);
   // The quadrature's error is bounded, not random: it comes on top of what is random in the share.
   report_.AddError(subject_.name, "integral", where, std::abs(fine.integral - share.value),
-                   2e-3 + 2 * error + 5.5 * share.error);
+                   2e-3 + 2 * error + 5.5 * share.error,
+                   InWords(words + "the integral of pdfDirect", {fine.integral, error}, share));
   for (size_t i = 0; i < count; ++i) {
     expected[i] = options_.samples * fine.cells[i];
     // The last term: a cell that the horizon touches between the quadrature's points.
@@ -212,9 +213,11 @@ void ShapeChecker::CheckReceiver(const Receiver& receiver) {
   expected[count] = options_.samples * std::max(1 - fine.integral, 0.0);
   errors[count] = options_.samples * (2 * error + 1e-3);
   report_.AddProbability(subject_.name, "directions", where, ChiSquaredTest(observed, expected, errors));
-  report_.AddProbability(subject_.name, "irradiance", where,
-                         EqualMeans(fluence, {fine.fluence, 2 * std::abs(fine.fluence - coarse.fluence)}, 1e-3));
-  report_.AddError(subject_.name, "consistency", where, consistency, 1e-4);
+  const Estimate arriving{fine.fluence, 2 * std::abs(fine.fluence - coarse.fluence)};
+  report_.AddProbability(subject_.name, "irradiance", where, EqualMeans(fluence, arriving, 1e-3),
+                         InWords(words + "what light sampling brings", fluence, arriving));
+  report_.AddError(subject_.name, "consistency", where, consistency, 1e-4,
+                   words + "largest relative difference of a sample and its evaluation");
   report_.AddError(subject_.name, "multipliers", where, multipliers, 1e-5);
   if (light_.PatchCount() > 1) report_.AddError(subject_.name, "patches", where, patches, 1e-4);
   report_.AddError(subject_.name, "surface", where, surface, 2e-3);

@@ -137,7 +137,8 @@ void StrataChecker::Integrate(const Point3& P, int first, const Shares& seen, Sh
     return stratum == first ? Integrands{pdf, 0} : Integrands{0, pdf};
   };
   const auto [one, other] = surface_.IntegrateDirections(P, hints, density, rng_, kBudget);
-  promised.of[first] = one;
+  // The first is a strip, around whatever is round: among directions it cannot be found, but on the surface.
+  promised.of[first] = first == 0 && !subject_.model ? surface_.IntegrateSurface(P, density, rng_) : one;
   if (first + 1 < kStrata) promised.of[first + 1] = other;
 }
 
@@ -158,7 +159,7 @@ void StrataChecker::CheckReceiver(const Receiver& receiver) {
   for (int first = 0; first < kStrata; first += 2) {
     const double hits = seen.hits[first] + (first + 1 < kStrata ? seen.hits[first + 1] : 0.0);
     // Where no sample goes at all, "irradiance" says whether one should.
-    if (hits > 0) Integrate(receiver.position, first, seen, promised);
+    if (hits >= kEnough) Integrate(receiver.position, first, seen, promised);
   }
   for (int i = 0; i < kStrata; ++i) {
     // A strip that few samples meet is too thin for the quadrature, too.

@@ -1,6 +1,9 @@
 // What the suite runs over: every sample block of every type, on every shape for area lights, under every transform,
 // and moved away from where it was built.
+#include <set>
+
 #include "lights/suite/checks.h"
+#include "lights/suite/parameter_checks.h"
 #include "lights/suite/scene_suite.h"
 #include "lights/suite/suite_inputs.h"
 #include "lights/suite/suite_shapes.h"
@@ -56,6 +59,8 @@ struct SuiteCase {
   Transform builtAt, placedAt;
   bool keepsAngles = true;
   bool isSharp = true;  // power to half a per cent; two per cent otherwise
+  bool isThorough = false;
+  bool isEditedByAll = false;  // by each parameter of its type
 };
 
 class SuiteRun {
@@ -68,6 +73,8 @@ class SuiteRun {
  private:
   void AddCases(const SuiteCase& light, int which, size_t block);
   SuiteReport Check(const SuiteCase& suiteCase) const;
+  void CheckParametersOf(const SuiteCase& suiteCase, const SuiteSubject& subject, SuiteOrigin origin,
+                         SuiteReport& report) const;
   std::vector<ParameterList> ChangesOf(const LightType& type, size_t index);
 
   std::filesystem::path folder_;
@@ -76,6 +83,7 @@ class SuiteRun {
   std::vector<std::unique_ptr<ParameterList>> parameters_;
   std::vector<std::unique_ptr<std::vector<ParameterList>>> changes_;
   std::vector<SuiteCase> cases_;
+  std::set<std::string> edited_;
 };
 
 // A colour, an intensity, other files, and whatever the next sample block says.
@@ -130,6 +138,9 @@ void SuiteRun::AddCases(const SuiteCase& light, int which, size_t block) {
     const size_t place = k++;
     if (block > 0 && (place + turn) % 5 > 1) return;
     placed.isSharp = block == 0 ? place == 0 || place == transforms.size() - 1 || isMoved : kept == 0;
+    // One placement of each block on each shape, another one in turn.
+    placed.isThorough = block == 0 ? place == turn % transforms.size() : kept == 0;
+    placed.isEditedByAll = placed.isThorough && edited_.insert(light.name).second;
     ++kept;
     cases_.push_back(std::move(placed));
   };
@@ -163,6 +174,20 @@ LightTransform ToLightTransform(const Transform& toRender) {
   return {toRender.ToAffine(), toRender.Inverse().ToAffine()};
 }
 
+void SuiteRun::CheckParametersOf(const SuiteCase& suiteCase, const SuiteSubject& subject, SuiteOrigin origin,
+                                 SuiteReport& report) const {
+  if (suiteCase.isThorough) suite::CheckCommonParameters(subject, origin, report);
+  if (suiteCase.changes) origin.changes = *suiteCase.changes;
+  if (suiteCase.isEditedByAll) {
+    Diagnostics diagnostics(Diagnostics::Mode::Collect);
+    const auto parse = [&](const std::string& text) {
+      return ParseSample(*suiteCase.type, text, folder_, diagnostics);
+    };
+    for (const ParameterList& change : suite::ChangesOfEach(subject, origin, parse)) origin.changes.push_back(change);
+  }
+  suite::CheckEdit(subject, origin, report);
+}
+
 SuiteReport SuiteRun::Check(const SuiteCase& suiteCase) const {
   // Of its own: these note their use, and cases run beside each other.
   Diagnostics diagnostics(Diagnostics::Mode::Collect);
@@ -177,13 +202,15 @@ SuiteReport SuiteRun::Check(const SuiteCase& suiteCase) const {
   if (suiteCase.shape) build.shape = &*suiteCase.shape;
   const LightTransform placed = ToLightTransform(suiteCase.placedAt);
   std::unique_ptr<EmitterModel> model;
-  if (suiteCase.shape) model = MakeEmitterModel(*suiteCase.shape, suiteCase.placedAt);
+  // By the very numbers that the light is given: what differs is its own rounding.
+  if (suiteCase.shape) model = MakeEmitterModel(*suiteCase.shape, suite::ToTransform(placed.toRender));
 
   SuiteReport report;
   SuiteSubject subject;
   subject.name = suiteCase.name;
   subject.caseName = suiteCase.caseName;
   if (!suiteCase.isSharp) subject.powerError = 2.5e-3;
+  subject.isThorough = suiteCase.isThorough;
   subject.model = model.get();
   subject.context.transform = &placed;
   subject.context.scene = {placed.toRender.translation, 3 * MaxAbsComponent(placed.toRender.linear[0])};
@@ -197,9 +224,8 @@ SuiteReport SuiteRun::Check(const SuiteCase& suiteCase) const {
     subject.diffuseMultiplier = parameters.GetFloat("diffuse", 1);
     subject.specularMultiplier = parameters.GetFloat("specular", 1);
   }
-  if (suiteCase.changes) {
-    suite::CheckEdit(subject, {suiteCase.type, &parameters, &build, *suiteCase.changes}, report);
-  }
+  if (options_.parts & kParameterPart)
+    CheckParametersOf(suiteCase, subject, {suiteCase.type, &parameters, &build, {}}, report);
   CheckLight(subject, options_, report);
   return report;
 }

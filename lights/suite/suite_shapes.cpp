@@ -96,4 +96,11 @@ Shape Bake(const Shape& shape, const Transform& transform) {
   return quadric;
 }
 
+Transform ToTransform(const Affine& affine) {
+  glm::dmat4 m(1.0);
+  for (int c = 0; c < 3; ++c) m[c] = glm::dvec4(Vector3d(affine.linear[c]), 0.0);
+  m[3] = glm::dvec4(Vector3d(affine.translation), 1.0);
+  return Transform(m);
+}
+
 }  // namespace lampyr::suite

@@ -25,4 +25,7 @@ std::vector<NamedShape> Shapes();
 // The shape as a scene without instances holds it: already where the transform leads.
 Shape Bake(const Shape& shape, const Transform& transform);
 
+// The same map in double.
+Transform ToTransform(const Affine& affine);
+
 }  // namespace lampyr::suite

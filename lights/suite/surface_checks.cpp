@@ -123,17 +123,23 @@ void SurfaceReceiverChecker::Check(const Receiver& receiver) {
     return std::nullopt;
   });
   const std::string where = subject_.caseName + " " + receiver.name;
-  const auto probability = [&](const char* property, double p) {
-    report_.AddProbability(subject_.name, property, where, p);
+  const std::string words = InWords(tracer_.Around(), receiver);
+  const auto probability = [&](const char* property, double p, const std::string& text) {
+    report_.AddProbability(subject_.name, property, where, p, words + text);
   };
   const auto error = [&](const char* property, double e, double tolerance) {
-    report_.AddError(subject_.name, property, where, e, tolerance);
+    report_.AddError(subject_.name, property, where, e, tolerance,
+                     words + "the largest error is above what is allowed");
   };
   // A ray may slip through a seam that the light has: by rounding, less than one in ten thousand.
   constexpr double kSeams = 1e-4;
-  probability("integral", EqualMeans(quadrature.Density(), counted.share, 1e-3, kSeams));
-  probability("directions", quadrature.Test(directions, options_.samples));
-  probability("irradiance", EqualMeans(quadrature.Radiance(), counted.sum, 1e-3, kSeams * hidden));
+  probability("integral", EqualMeans(quadrature.Density(), counted.share, 1e-3, kSeams),
+              InWords("the integral of pdfDirect", quadrature.Density(), counted.share));
+  std::string worst;
+  const double p = quadrature.Test(directions, options_.samples, 48, &worst);
+  probability("directions", p, worst);
+  probability("irradiance", EqualMeans(quadrature.Radiance(), counted.sum, 1e-3, kSeams * hidden),
+              InWords("what light sampling brings", counted.sum, quadrature.Radiance()));
   error("consistency", errors.consistency, 1e-4);
   error("multipliers", errors.multipliers, 1e-5);
   error("surface", errors.surface, 1e-3);

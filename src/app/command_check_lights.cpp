@@ -11,6 +11,7 @@
 #include "app/scene_builder.h"
 #include "base/progress.h"
 #include "lights/suite/filter_suite.h"
+#include "lights/suite/properties.h"
 #include "lights/suite/verdict.h"
 
 namespace lampyr {
@@ -116,13 +117,22 @@ std::vector<SuiteResult> CheckScene(const CheckLightsOptions& options, const Sui
   return results;
 }
 
+// What failed is explained: what the property means, and where it was worst.
 void Print(const LightVerdict& verdict) {
   std::printf("%-6s %-34s %-20s %5zu cases, worst %s %.3g (threshold %.3g)%s%s\n", verdict.passed ? "ok" : "FAILED",
               verdict.light.c_str(), verdict.property.c_str(), verdict.cases,
               verdict.worst.isProbability ? "p" : "error", verdict.worst.statistic, verdict.worst.threshold,
               verdict.passed ? "" : ": ", verdict.passed ? "" : verdict.worst.caseName.c_str());
-  const std::string meaning = verdict.passed ? "" : FilterPropertyMeaning(verdict.property);
-  if (!meaning.empty()) std::printf("       %s: %s\n", verdict.property.c_str(), meaning.c_str());
+  if (verdict.passed) return;
+  const bool isFilter = verdict.light.starts_with("filter ");
+  const std::string meaning = isFilter ? FilterPropertyMeaning(verdict.property) : MeaningOf(verdict.property);
+  std::printf("         %s: %s\n", verdict.property.c_str(), meaning.c_str());
+  if (!verdict.worst.words.empty()) {
+    std::printf("         worst: %s\n", verdict.worst.words.c_str());
+  } else {
+    std::printf("         worst: an error of %.3g where %.3g is allowed, in the case \"%s\"\n", verdict.worst.statistic,
+                verdict.worst.threshold, verdict.worst.caseName.c_str());
+  }
 }
 
 }  // namespace

@@ -326,7 +326,7 @@ int ParseAndRun(int argc, char** argv) {
   CLI::App* checkCommand =
       app.add_subcommand("check-lights",
                          "Prove the densities of lights, and light filters: of every type, a plugin's, or a scene's "
-                         "lights");
+                         "lights. What fails is named, with what that means and where it was worst");
   checkCommand->add_option("scene", check.scene, "A scene, whose lights are checked as they are placed");
   checkCommand->add_option("--type", check.type, "Only this type of light or of light filter");
   DefinePluginOption(*checkCommand, check.plugins);

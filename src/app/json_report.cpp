@@ -1,6 +1,8 @@
 // The only file that includes nlohmann-json.
 #include "app/json_report.h"
 
+#include "lights/suite/properties.h"
+
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -125,7 +127,9 @@ std::string ToJson(const std::vector<LightVerdict>& verdicts) {
                     {"statistic", verdict.worst.isProbability ? "p-value" : "error"},
                     {"worst", verdict.worst.statistic},
                     {"threshold", verdict.worst.threshold},
-                    {"worstCase", verdict.worst.caseName}});
+                    {"worstCase", verdict.worst.caseName},
+                    {"meaning", MeaningOf(verdict.property)},
+                    {"words", verdict.worst.words}});
   }
   return Dump(rows);
 }

@@ -98,13 +98,16 @@ class Sampling {
  public:
   explicit Sampling(const BuiltScene& built)
       : lighting_(*built.scene.lighting), geometry_(*built.scene.geometry), light_(lighting_.Lights().at(0)) {
-    // Before the light, which shines along its own -z; of one at infinity, in the middle.
-    const bool isInfinite = lighting_.IsAtInfinity(0);
-    receiver_.position =
-        isInfinite ? lighting_.SceneSphere().center : light_.transform.toRender.Point({0.3f, -0.4f, -1.6f});
     context_.transform = &light_.transform;
     context_.scene = lighting_.SceneSphere();
     context_.bidirectional = true;
+    receiver_.position = context_.scene.center;
+    // Before the light, a little off its axis.
+    if (const auto bounds = light_.light->GetEmissionBounds(context_)) {
+      const float size = std::max(0.5f * glm::length(bounds->box.Diagonal()), 0.1f);
+      const Vector3 aside = std::abs(bounds->axis.x) < 0.7f ? Vector3(1, 0, 0) : Vector3(0, 1, 0);
+      receiver_.position = bounds->box.Center() + size * (1.6f * bounds->axis + 0.4f * glm::cross(bounds->axis, aside));
+    }
   }
 
   Sampled Direct() const {

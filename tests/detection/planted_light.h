@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "lights/forwarding_light.h"
+#include "scene/parameters.h"
 
 namespace lampyr::test {
 
@@ -81,11 +82,14 @@ class CountedLight final : public ForwardingLight {
   // `planting` may be empty. `edited`, if there is one, makes the wrong light from the edited one and the one before.
   using EditedPlanting =
       std::function<std::unique_ptr<Light>(std::shared_ptr<const Light> edited, std::shared_ptr<const Light> before)>;
-  CountedLight(std::shared_ptr<const Light> sound, Planting planting, EditedPlanting edited)
+  // `reading`: what the light makes of changes before it heeds them; empty: nothing.
+  using Reading = std::function<ParameterList(const ParameterList&)>;
+  CountedLight(std::shared_ptr<const Light> sound, Planting planting, EditedPlanting edited, Reading reading)
       : ForwardingLight(planting ? std::shared_ptr<const Light>(planting(sound)) : sound),
         sound_(std::move(sound)),
         planting_(std::move(planting)),
-        edited_(std::move(edited)) {}
+        edited_(std::move(edited)),
+        reading_(std::move(reading)) {}
 
   bool CanBeAimed() const override { return sound_->CanBeAimed(); }
   std::optional<LightSample> GenerateSamples(const LightContext& context, const Point3& P) const override {
@@ -102,15 +106,16 @@ class CountedLight final : public ForwardingLight {
     return Sound().GenerateEmission(context);
   }
   std::unique_ptr<Light> Edit(const ParameterList& changes, const LightBuildContext& build) const override {
-    std::shared_ptr<const Light> changed = sound_->Edit(changes, build);
+    std::shared_ptr<const Light> changed = sound_->Edit(reading_ ? reading_(changes) : changes, build);
     if (edited_) changed = edited_(changed, sound_);
-    return std::make_unique<CountedLight>(std::move(changed), planting_, edited_);
+    return std::make_unique<CountedLight>(std::move(changed), planting_, edited_, reading_);
   }
 
  private:
   std::shared_ptr<const Light> sound_;
   Planting planting_;
   EditedPlanting edited_;
+  Reading reading_;
 };
 
 }  // namespace lampyr::test

@@ -22,7 +22,6 @@ const std::vector<PatchFault>& PatchFaults() {
       {"beta-exponent", "along subpaths a forward density enters with the power 1, the rest with 2"},
       {"merge-term", "a connection leaves out merging at its light vertex"},
       {"delta-flag", "a connection at a delta counts as a technique"},
-      {"refraction-mode", "the stretch of solid angles by refraction is taken on the wrong side"},
       {"landing-selection", "where a photon lands, next-event estimation counts without its selection"},
       {"emission-selection", "densities of emission lack the selection of the light, in all techniques alike"},
       {"reverse-for-forward", "the density back to the previous vertex is the forward one"},
@@ -49,10 +48,14 @@ LightType PlantedType(const std::string& subjectName, const LightFault* fault) {
   type.name = "planted";
   type.samples = {subject.parameters};
   const LightFault planted = fault ? *fault : LightFault();
-  type.create = [create = type.create, planted](const ParameterList& parameters, const LightBuildContext& build) {
-    const bool drops = !planted.ignored.empty() && parameters.Find(planted.ignored);
-    std::shared_ptr<const Light> sound = create(drops ? Without(parameters, planted.ignored) : parameters, build);
-    return std::make_unique<CountedLight>(std::move(sound), planted.planting, planted.edited);
+  CountedLight::Reading reading;
+  if (!planted.ignored.empty())
+    reading = [name = planted.ignored](const ParameterList& parameters) { return Without(parameters, name); };
+  type.create = [create = type.create, planted, reading](const ParameterList& parameters,
+                                                         const LightBuildContext& build) {
+    if (reading) parameters.Find(planted.ignored);  // has been asked for
+    std::shared_ptr<const Light> sound = create(reading ? reading(parameters) : parameters, build);
+    return std::make_unique<CountedLight>(std::move(sound), planted.planting, planted.edited, reading);
   };
   return type;
 }
