@@ -84,9 +84,9 @@ struct LightSample {
   Vector3 direction{0.0f};      // unit, from P towards the light
   float distance = kInfinity;   // to `position`; infinite for lights at infinity
   Point3 position{0.0f};        // on the light; unset for lights at infinity
-  Vector3 positionError{0.0f};  // bound on its rounding error
+  Vector3 positionError{0.0f};  // bound on its rounding error: rays start or end that far off the surface
   Normal3 normal{0.0f};         // unit, of the light at `position`; 0 for points; -direction at infinity
-  Point3 uvw{0.0f};
+  Point3 uvw{0.0f};             // as a hit there has it; a light that never looks at it may leave it at 0
   int patchIndex = 0;
   Color diffuse, specular;  // incident radiance for diffuse and specular lobes; deltas: intensity/d² or irradiance
   PdfSolidAngle pdfDirect;
@@ -123,7 +123,8 @@ struct EmissionSample {
   Normal3 normal{0.0f};      // of the light; the direction itself for the other kinds
   Vector3 direction{0.0f};   // unit, away from the light
   float emissionCosine = 1;  // |cosθ| between normal and direction for area lights, 1 otherwise
-  float shinesFrom = 0;      // what it hits before this distance stops it and is not lit: a portal's outer side
+  // What it hits before this distance stops it and is not lit: a portal's outer side. 0 where CanBeAimed.
+  float shinesFrom = 0;
   Point3 uvw{0.0f};
   int patchIndex = 0;
   Color diffuse, specular;  // radiance (area, infinite), intensity (points), irradiance (delta directions)
@@ -189,7 +190,8 @@ class Light {
   virtual LightKind Kind() const = 0;
   virtual const LightSettings& Settings() const = 0;
 
-  // Independently selectable parts (triangles of a mesh); at least 1.
+  // Independently selectable parts (triangles of a mesh); at least 1, and 1 where Surface() is: a ray that hits it does
+  // not tell one part from another.
   virtual int PatchCount() const { return 1; }
   // How often the light itself chooses this patch: densities given the patch, times this, are those of the whole light.
   virtual PdfDiscrete PatchProbability(int) const { return PdfDiscrete(1); }
@@ -220,8 +222,8 @@ class Light {
   virtual std::optional<LightEvaluation> EvaluateSamples(const LightContext& context, const LightHit& hit,
                                                          const Point3& P) const = 0;
 
-  // Whether photons may be aimed: sent in any direction from a place on the light, or, by a light at infinity, along any
-  // line of the direction it has chosen. False where the light shines through something that the photon must meet.
+  // Whether photons may be aimed: sent in any direction from a place on the light, or, by a light at infinity, along
+  // any line of the direction it has chosen. False where the light shines through something that the photon must meet.
   virtual bool CanBeAimed() const { return true; }
 
   // A photon by context.u and context.uDirection; nullopt when this choice of numbers emits nothing. An area light

@@ -84,6 +84,7 @@ struct SuiteOptions {
   uint64_t seed = 1;
   int threads = 1;  // of RunPdfSuite; the results are the same with any number
   unsigned parts = kAllParts;
+  int thoroughEvery = 1;  // of RunPdfSuite: each n-th of the cases that would be looked at thoroughly
   // Called now and then with the part that is done, one call at a time. May be empty.
   std::function<void(double fraction)> progress;
 };

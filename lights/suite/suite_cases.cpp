@@ -60,6 +60,7 @@ struct SuiteCase {
   bool keepsAngles = true;
   bool isSharp = true;  // power to half a per cent; two per cent otherwise
   bool isThorough = false;
+  bool looksClosely = false;   // isThorough, and each n-th of those as the options say
   bool isEditedByAll = false;  // by each parameter of its type
 };
 
@@ -84,6 +85,7 @@ class SuiteRun {
   std::vector<std::unique_ptr<std::vector<ParameterList>>> changes_;
   std::vector<SuiteCase> cases_;
   std::set<std::string> edited_;
+  int thorough_ = 0;
 };
 
 // A colour, an intensity, other files, and whatever the next sample block says.
@@ -140,6 +142,7 @@ void SuiteRun::AddCases(const SuiteCase& light, int which, size_t block) {
     placed.isSharp = block == 0 ? place == 0 || place == transforms.size() - 1 || isMoved : kept == 0;
     // One placement of each block on each shape, another one in turn.
     placed.isThorough = block == 0 ? place == turn % transforms.size() : kept == 0;
+    placed.looksClosely = placed.isThorough && thorough_++ % std::max(options_.thoroughEvery, 1) == 0;
     placed.isEditedByAll = placed.isThorough && edited_.insert(light.name).second;
     ++kept;
     cases_.push_back(std::move(placed));
@@ -210,7 +213,7 @@ SuiteReport SuiteRun::Check(const SuiteCase& suiteCase) const {
   subject.name = suiteCase.name;
   subject.caseName = suiteCase.caseName;
   if (!suiteCase.isSharp) subject.powerError = 2.5e-3;
-  subject.isThorough = suiteCase.isThorough;
+  subject.isThorough = suiteCase.looksClosely;
   subject.model = model.get();
   subject.context.transform = &placed;
   subject.context.scene = {placed.toRender.translation, 3 * MaxAbsComponent(placed.toRender.linear[0])};

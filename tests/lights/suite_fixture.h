@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <functional>
-#include <iostream>
 #include <map>
 #include <set>
 
@@ -113,15 +112,22 @@ class SuiteTest : public ::testing::Test {
     }
     return failed;
   }
+  // What failed last, in words.
+  static std::string& Explained() {
+    static std::string explained;
+    return explained;
+  }
   // All of `named` failed, and nothing but them and those that may `follow`.
   static void ExpectNamed(const Properties& failed, const Properties& named, const Properties& follow,
                           const std::string& what) {
-    for (const std::string& property : named) EXPECT_TRUE(failed.count(property)) << what << " passes " << property;
+    for (const std::string& property : named)
+      EXPECT_TRUE(failed.count(property)) << what << " passes " << property << Explained();
     for (const std::string& property : failed) {
-      EXPECT_TRUE(named.count(property) || follow.count(property)) << what << " fails " << property;
+      EXPECT_TRUE(named.count(property) || follow.count(property)) << what << " fails " << property << Explained();
     }
   }
 
+  // What takes seconds (strata, fine directions) is looked at where single parts are asked for.
   // The properties that fails what `change` makes of the light of that name.
   using Change = std::function<std::unique_ptr<Light>(std::shared_ptr<const Light>)>;
   Properties Failures(const std::string& name, const Change& change, unsigned parts = kAllParts) {
@@ -131,15 +137,16 @@ class SuiteTest : public ::testing::Test {
     std::unique_ptr<EmitterModel> model;
     if (light.shape) model = MakeEmitterModel(*light.shape, turned_);
     subject.model = model.get();
+    subject.isThorough = parts != kAllParts;
     SuiteReport report;
     SuiteOptions options;
     options.parts = parts;
     CheckLight(subject, options, report);
     const std::vector<SuiteResult> results = report.Finish(1e-3);
+    Explained().clear();
     for (const SuiteResult& result : results) {
       if (result.passed) continue;
-      std::cout << name << " fails " << result.property << result.caseName << ", " << result.statistic << ": "
-                << result.words << "\n";
+      Explained() += "\n  fails " + result.property + result.caseName + ": " + result.words;
     }
     return Failed(results);
   }

@@ -25,6 +25,7 @@ std::set<std::string> Failures(const std::string& type, const Shape* shape, Faul
   subject.light = &wrong;
   subject.context = built->context;
   subject.model = model.get();
+  subject.isThorough = false;
   subject.name = type;
   subject.caseName = "wrong";
   SuiteReport report;
