@@ -14,6 +14,9 @@ namespace lampyr::fuzz {
 bool ReadSceneText(std::string_view bytes);
 // The text of a scene file: read, built and rendered, a few pixels with one sample each.
 bool BuildSceneText(std::string_view bytes);
+// Records of four bytes, of which each is a statement that names others (graph.cpp): the scene's text that they make is
+// built and rendered as the above.
+bool BuildSceneGraph(std::string_view bytes);
 // A PLY file, gzipped or not.
 bool ReadPlyFile(std::string_view bytes);
 // One byte that chooses the format (kImageExtensions), then an image file of it.
@@ -31,7 +34,7 @@ struct Target {
   bool (*run)(std::string_view bytes);
 };
 
-inline constexpr Target kTargets[] = {{"scene", ReadSceneText}, {"build", BuildSceneText}, {"ply", ReadPlyFile},
+inline constexpr Target kTargets[] = {{"scene", ReadSceneText}, {"build", BuildSceneText}, {"graph", BuildSceneGraph}, {"ply", ReadPlyFile},
                                       {"image", ReadImageFile}, {"ies", ReadIesFile},      {"part", ReadSavedPart}};
 
 // Thrown by a target that was given an answer that cannot be right.
