@@ -50,7 +50,7 @@ EmissionImage::EmissionImage(std::shared_ptr<const Image> image, const std::stri
   mean_ = {static_cast<float>(sum[0] / count), static_cast<float>(sum[1] / count), static_cast<float>(sum[2] / count)};
   if (unclean > 0 && diagnostics) {
     diagnostics->Warn(where, "\"" + name + "\": " + std::to_string(unclean) +
-                                 " texels are negative, infinite or not a number and emit nothing");
+                                 " texels are negative, not a number, or 1e37 and more, and emit nothing");
   }
 }
 

@@ -41,8 +41,9 @@ class EmissionImage {
   }
   Color TexelAt(const float* texel) const { return {Clean(texel[r_]), Clean(texel[g_]), Clean(texel[b_])}; }
 
-  // Finite, and small enough that scales and sums of a few texels stay finite.
-  static float Clean(float value) { return value > 0 && value < 1e37f ? value : 0.0f; }
+  // Scales and sums of a few texels stay finite.
+  static constexpr float kBrightestTexel = 1e37f;
+  static float Clean(float value) { return value > 0 && value < kBrightestTexel ? value : 0.0f; }
 
   std::shared_ptr<const Image> image_;
   const float* data_ = nullptr;

@@ -1,7 +1,9 @@
 #include "lights/parameter_table.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
+#include <limits>
 
 namespace lampyr {
 
@@ -43,6 +45,12 @@ void CheckOne(const ParameterInfo& row, const Parameter& parameter, const std::s
   for (const double number : parameter.numbers) inside = inside && InRange(number, row.range);
   for (const int64_t number : parameter.integers) inside = inside && InRange(static_cast<double>(number), row.range);
   if (!inside) throw Error(parameter.where, what + " is out of range: " + row.range + " is allowed");
+  if (InRange(0, row.range)) return;
+  for (const double number : parameter.numbers) {
+    // It would be 0 in single precision.
+    if (number != 0 && std::abs(number) < static_cast<double>(std::numeric_limits<float>::min()))
+      throw Error(parameter.where, what + " is too small: at least 1.2e-38 is needed");
+  }
 }
 
 }  // namespace

@@ -1,4 +1,6 @@
 // All built-in lights. A light is its own file, which defines `LightType …LightType()`, and one row here.
+#include <cstdio>
+
 #include "lights/light_type.h"
 
 namespace lampyr {
@@ -38,9 +40,29 @@ void CheckParameters(const LightType& type, const ParameterList& parameters) {
   CheckParameters(type, type.Statement(), parameters);
 }
 
+namespace {
+
+// "power" and its like count above 0, and are -1 where they are not given (pbrt-v4's rule): another number is likely
+// meant as one.
+void WarnOfIgnoredNumbers(const LightType& type, const ParameterList& parameters, Diagnostics& diagnostics) {
+  for (const ParameterInfo& row : type.parameters) {
+    if (row.type != ParameterType::Float || row.defaultValue != "-1") continue;
+    const double value = parameters.GetFloat(row.name, -1);
+    if (value > 0 || value == -1) continue;
+    char text[32];
+    std::snprintf(text, sizeof text, "%g", value);
+    diagnostics.Warn(parameters.WhereOf(row.name), std::string(type.Statement()) + " \"" + type.name + "\": \"" +
+                                                       row.name + "\" is " + text +
+                                                       ", which is ignored: it counts above 0");
+  }
+}
+
+}  // namespace
+
 std::unique_ptr<Light> MakeLight(const LightType& type, const ParameterList& parameters,
                                  const LightBuildContext& build) {
   CheckParameters(type, parameters);
+  if (build.diagnostics) WarnOfIgnoredNumbers(type, parameters, *build.diagnostics);
   return type.create(parameters, build);
 }
 

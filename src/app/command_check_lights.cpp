@@ -38,7 +38,7 @@ class ScratchFolder {
 // The type that is named; else those of the plugins that are asked for; else all.
 std::vector<LightType> ChooseTypes(const CheckLightsOptions& options, const TypeRegistry& registry) {
   std::vector<LightType> types;
-  if (options.type.empty() && !options.plugins.empty()) {
+  if (options.type.empty() && !options.plugins.files.empty()) {
     for (const LightType* type : LightsOf(registry, options.plugins)) types.push_back(*type);
     if (types.empty()) throw UsageError("--plugin: expected a type of light to check, found none");
     return types;

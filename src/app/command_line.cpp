@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <initializer_list>
+#include <limits>
+#include <new>
 #include <optional>
 #include <string_view>
 
@@ -66,19 +68,35 @@ void ParseResolution(const std::string& text, RenderOverrides& overrides) {
   overrides.height = height;
 }
 
-// CLI::PositiveNumber lets NaN through.
-std::string CheckPositive(const std::string& text) {
+// The number that the whole text is; NaN where it is none. CLI11's own checks let NaN through.
+double ParseFinite(const std::string& text) {
   char* end = nullptr;
   const double number = std::strtod(text.c_str(), &end);
-  if (end != text.c_str() && *end == '\0' && number > 0 && std::isfinite(number)) return "";
-  return "\"" + text + "\" is not a number above 0";
+  return end != text.c_str() && *end == '\0' && std::isfinite(number) ? number : std::nan("");
+}
+
+constexpr double kSmallestFloat = std::numeric_limits<float>::min(), kLargestFloat = std::numeric_limits<float>::max();
+
+// Of numbers that become floats: less is 0 there, and more is infinite.
+std::string CheckPositive(const std::string& text) {
+  const double number = ParseFinite(text);
+  if (number >= kSmallestFloat && number <= kLargestFloat) return "";
+  if (!(number > 0)) return "\"" + text + "\" is not a number above 0";
+  return "\"" + text + "\" is too " + (number < 1 ? "small: at least 1.2e-38" : "large: at most 3.4e38");
+}
+
+std::string CheckNotNegative(const std::string& text) {
+  const double number = ParseFinite(text);
+  return number >= 0 && number <= kLargestFloat ? "" : "\"" + text + "\" is not a number of 0 or more";
+}
+
+std::string CheckFraction(const std::string& text) {
+  const double number = ParseFinite(text);
+  return number >= 0 && number <= 1 ? "" : "\"" + text + "\" is not a number from 0 to 1";
 }
 
 std::string CheckFinite(const std::string& text) {
-  char* end = nullptr;
-  const double number = std::strtod(text.c_str(), &end);
-  if (end != text.c_str() && *end == '\0' && std::isfinite(number)) return "";
-  return "\"" + text + "\" is not a finite number";
+  return std::abs(ParseFinite(text)) <= kLargestFloat ? "" : "\"" + text + "\" is not a finite number";
 }
 
 // Absent unless the flag or its opposite is given.
@@ -87,11 +105,14 @@ void AddSwitch(CLI::App& app, const std::string& names, std::optional<bool>& val
       names, [&value](int64_t times) { value = times > 0; }, description);
 }
 
-void DefinePluginOption(CLI::App& app, std::vector<std::string>& plugins) {
-  app.add_option("--plugin", plugins,
+void DefinePluginOption(CLI::App& app, PluginOptions& plugins, bool readsScenes = true) {
+  app.add_option("--plugin", plugins.files,
                  "A plugin with types of lights and filters, e.g. ring.so; may be given several times. Those in the "
                  "folders of LAMPYR_PLUGIN_PATH are loaded, too")
       ->allow_extra_args(false);
+  if (!readsScenes) return;
+  app.add_flag("--allow-scene-plugins", plugins.allowsScenePlugins,
+               "Load the plugins that the scene names (Option \"plugins\"), wherever they lie: they are native code");
 }
 
 // What render and compare are told alike.
@@ -118,7 +139,7 @@ void DefineSceneOptions(CLI::App& app, RenderOverrides& overrides, std::string& 
                  "sppm, vcm: where photons are gathered in the first pass, scene units (from the size of pixels)")
       ->check(CheckPositive, "POSITIVE");
   app.add_option("--alpha", overrides.alpha, "sppm, vcm: how fast that radius shrinks, as pass^((alpha - 1) / 2) (2/3)")
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(CheckFraction, "");
   AddSwitch(app, "--merge,!--no-merge", overrides.merges, "vcm: merge with photons (on); without, it is bdpt");
   AddSwitch(app, "--connect,!--no-connect", overrides.connects,
             "vcm: connect vertices (on); without, it is bidirectional photon mapping");
@@ -130,11 +151,11 @@ void DefineSceneOptions(CLI::App& app, RenderOverrides& overrides, std::string& 
          "--shadow-roulette", overrides.shadowRoulette,
          "Trace shadow rays by chance whose light is below this part of what their sample has gathered: the mean "
          "stays (0.05); 0: trace all")
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(CheckFraction, "");
   app.add_option(
          "--shadow-threshold", overrides.shadowThreshold,
          "Leave out light that is below this, in the image's units, without a shadow ray: faster, and biased (0)")
-      ->check(CLI::NonNegativeNumber);
+      ->check(CheckNotNegative, "");
   AddSwitch(app, "--learn-lights,!--no-learn-lights", overrides.learnLights,
             "Let the light tree learn which lights are occluded where (off)");
 }
@@ -263,7 +284,9 @@ struct CompareCommand {
 
 }  // namespace
 
-int RunCommandLine(int argc, char** argv) {
+namespace {
+
+int ParseAndRun(int argc, char** argv) {
   CLI::App app("lampyr: a renderer whose subject is the light", "lampyr");
   app.set_version_flag("--version", std::string("lampyr ") + kVersion);
   app.require_subcommand(1);
@@ -310,26 +333,38 @@ int RunCommandLine(int argc, char** argv) {
   CLI::App* lightsCommand =
       app.add_subcommand("lights", "The types of light and of light filter, and their parameters");
   lightsCommand->add_option("type", lights.type, "Only this type");
-  DefinePluginOption(*lightsCommand, lights.plugins);
+  DefinePluginOption(*lightsCommand, lights.plugins, false);
 
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kExitDone : kExitUsage;
   }
+  if (app.got_subcommand("render")) return render.Run();
+  if (app.got_subcommand(mergeCommand)) return RunMerge(merge);
+  if (app.got_subcommand("compare")) return compare.Run(argc, argv);
+  if (app.got_subcommand(planCommand)) return RunPlan(plan);
+  if (app.got_subcommand(diffCommand)) return RunDiff(diff);
+  if (app.got_subcommand(checkCommand)) return RunCheckLights(check);
+  return RunLights(lights);
+}
+
+}  // namespace
+
+int RunCommandLine(int argc, char** argv) {
   try {
-    if (app.got_subcommand("render")) return render.Run();
-    if (app.got_subcommand(mergeCommand)) return RunMerge(merge);
-    if (app.got_subcommand("compare")) return compare.Run(argc, argv);
-    if (app.got_subcommand(planCommand)) return RunPlan(plan);
-    if (app.got_subcommand(diffCommand)) return RunDiff(diff);
-    if (app.got_subcommand(checkCommand)) return RunCheckLights(check);
-    return RunLights(lights);
+    return ParseAndRun(argc, argv);
   } catch (const UsageError& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return kExitUsage;
-  } catch (const std::exception& error) {
+  } catch (const Error& error) {
     std::fprintf(stderr, "%s\n", error.what());
+    return kExitFailed;
+  } catch (const std::bad_alloc&) {
+    ReportMemoryFailure();
+    return kExitFailed;
+  } catch (const std::exception& error) {  // of a library or of the system
+    std::fprintf(stderr, "error: %s\n", error.what());
     return kExitFailed;
   }
 }

@@ -3,6 +3,8 @@
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "app/command_line.h"
 #include "app/commands.h"
@@ -75,9 +77,28 @@ std::string MissingOf(const std::vector<Part>& parts) {
   return missing;
 }
 
+bool IsSameFile(const std::filesystem::path& a, const std::filesystem::path& b) {
+  std::error_code ignored;
+  return std::filesystem::equivalent(a, b, ignored);
+}
+
+// A part is what hours of rendering have made.
+void CheckPartsStay(const MergeOptions& options) {
+  std::vector<std::pair<std::filesystem::path, const char*>> written = {{options.output, "--output"}};
+  if (options.png) written.emplace_back(std::filesystem::path(options.output).replace_extension(".png"), "--png");
+  for (const auto& [file, option] : written) {
+    for (const std::filesystem::path& part : options.parts) {
+      if (!IsSameFile(file, part)) continue;
+      throw UsageError(std::string(option) + ": " + Quoted(file) + " is one of the parts that are merged, " +
+                       Quoted(part) + ": it would be lost; write to another file");
+    }
+  }
+}
+
 }  // namespace
 
 int RunMerge(const MergeOptions& options) {
+  CheckPartsStay(options);
   CheckImageOutput(options.output, "--output", options.png);
   const std::vector<Part> parts = OpenParts(options.parts);
   const std::string missing = MissingOf(parts);

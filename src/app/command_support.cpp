@@ -5,6 +5,7 @@
 #include <csignal>
 
 #include "app/command_line.h"
+#include "base/memory.h"
 #include "base/progress.h"
 #include "film/atomic_file.h"
 #include "scene/referenced_files.h"
@@ -24,6 +25,14 @@ void OnInterrupt(int signal) {
 }
 
 }  // namespace
+
+void ReportMemoryFailure() {
+  constexpr double bytesPerMebibyte = 1 << 20;
+  std::fprintf(stderr,
+               "error: there is not enough memory: all of the %.0f MiB that lampyr may use are taken; give it more "
+               "(ulimit -v, the container, the batch job), or render in parts with --crop\n",
+               static_cast<double>(AvailableMemory()) / bytesPerMebibyte);
+}
 
 void OutliveSurroundings() {
   std::signal(SIGPIPE, SIG_IGN);
@@ -47,7 +56,12 @@ std::string Joined(const std::vector<std::string>& names, const char* separator)
 }
 
 void CheckWritable(const std::filesystem::path& path, const std::string& option) {
-  const std::filesystem::path folder = FolderOf(path);
+  std::filesystem::path folder;
+  try {
+    folder = FolderOf(WriteTarget(path));
+  } catch (const Error& error) {
+    throw UsageError(option + ": " + error.Text());
+  }
   std::error_code ignored;
   if (!std::filesystem::is_directory(folder, ignored)) {
     throw UsageError(option + ": there is no folder \"" + folder.string() + "\"");
@@ -79,7 +93,7 @@ void WriteText(const std::filesystem::path& path, const std::string& text) {
   file.Commit();
 }
 
-LoadedScene LoadScene(const std::filesystem::path& scene, const std::vector<std::string>& plugins,
+LoadedScene LoadScene(const std::filesystem::path& scene, const PluginOptions& plugins,
                       const RenderOverrides& overrides, bool strict, bool robust, bool namesFiles) {
   Diagnostics diagnostics(strict ? Diagnostics::Mode::Strict : Diagnostics::Mode::Print);
   try {

@@ -34,9 +34,9 @@ struct LoadedScene {
   std::vector<std::string> files;  // that it names, and those of plugins, if they are asked for
   double parseSeconds = 0, buildSeconds = 0;
 };
-// Reads and builds, with the plugins that are asked for and those that the scene names. All that goes wrong here is the
+// Reads and builds, with the plugins that are asked for and those that the scene names, where it may. All that goes wrong here is the
 // scene's fault, or that of a plugin: a UsageError.
-LoadedScene LoadScene(const std::filesystem::path& scene, const std::vector<std::string>& plugins,
+LoadedScene LoadScene(const std::filesystem::path& scene, const PluginOptions& plugins,
                       const RenderOverrides& overrides, bool strict, bool robust, bool namesFiles = false);
 
 }  // namespace lampyr

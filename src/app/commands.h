@@ -7,14 +7,14 @@
 #include <utility>
 #include <vector>
 
+#include "app/plugins.h"
 #include "app/render_settings.h"
 
 namespace lampyr {
 
-// `plugins`: files of plugins that the command line names, see plugins.h.
 struct RenderOptions {
   std::filesystem::path scene;
-  std::vector<std::string> plugins;
+  PluginOptions plugins;
   std::optional<std::filesystem::path>
       output;  // default: the scene's own file name, else the scene's stem, in this folder
   bool png = false;
@@ -46,7 +46,7 @@ struct MergeOptions {
 
 struct CompareOptions {
   std::filesystem::path scene;
-  std::vector<std::string> plugins;
+  PluginOptions plugins;
   std::vector<std::string> integrators = {"path", "bdpt"};
   std::vector<double> times;      // seconds; neither times nor sample counts: 1, 4 and 16 s
   std::vector<int> sampleCounts;  // per pixel
@@ -65,7 +65,7 @@ struct CompareOptions {
 
 struct PlanOptions {
   std::filesystem::path scene;
-  std::vector<std::string> plugins;
+  PluginOptions plugins;
   RenderOverrides overrides;
   bool strict = false;
 };
@@ -78,7 +78,7 @@ struct DiffOptions {
 
 struct CheckLightsOptions {
   std::optional<std::filesystem::path> scene;  // absent: types
-  std::vector<std::string> plugins;
+  PluginOptions plugins;
   std::string type;  // "": those of `plugins`, or of everyone where none is named
   bool json = false;
   uint64_t seed = 1;
@@ -86,7 +86,7 @@ struct CheckLightsOptions {
 };
 
 struct LightsOptions {
-  std::vector<std::string> plugins;
+  PluginOptions plugins;
   std::string type;  // "" lists all
 };
 

@@ -32,7 +32,7 @@ std::string OwnerOf(int file) {
 }  // namespace
 
 OutputLock::OutputLock(const std::filesystem::path& output)
-    : path_(FolderOf(output) / ("." + output.filename().string() + ".lock")) {
+    : path_(FolderOf(WriteTarget(output)) / ("." + WriteTarget(output).filename().string() + ".lock")) {
   while (file_ < 0) {
     const int file = open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     if (file < 0) return;  // writing will say why

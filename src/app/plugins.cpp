@@ -6,6 +6,7 @@
 #include <set>
 #include <sstream>
 
+#include "film/atomic_file.h"
 #include "lights/plugin/plugin_loader.h"
 #include "scene/scene_paths.h"
 
@@ -63,8 +64,29 @@ fs::path FindPlugin(const std::string& name, const fs::path& inPlace) {
   return inPlace;
 }
 
+// Directly in one of the folders: by its name, or as the file that a link leads to.
+bool IsInPluginFolder(const fs::path& file) {
+  const fs::path named = Canonical(FolderOf(file)), linked = Canonical(file).parent_path();
+  const std::vector<fs::path> folders = PluginFolders();
+  return std::any_of(folders.begin(), folders.end(), [&](const fs::path& folder) {
+    const fs::path canonical = Canonical(folder);
+    return canonical == named || canonical == linked;
+  });
+}
+
+[[noreturn]] void RefusePlugin(const PluginReference& plugin, const fs::path& file) {
+  throw UsageError(plugin.where, "the scene names the plugin \"" + plugin.name +
+                                     "\", which is native code and could do anything: if you trust it, add "
+                                     "--plugin '" +
+                                     file.string() +
+                                     "', or --allow-scene-plugins for all that the scene "
+                                     "names, or put it into a folder of " +
+                                     kPathVariable);
+}
+
 class TypeLoader {
  public:
+  bool Has(const fs::path& file) const { return seen_.count(Canonical(file)) != 0; }
   // A plugin that somebody needs.
   void Require(const fs::path& file, const FileLocation& where) {
     try {
@@ -97,22 +119,24 @@ class TypeLoader {
 
 }  // namespace
 
-TypeRegistry LoadTypes(const std::vector<std::string>& asked, const SceneDescription* scene) {
+TypeRegistry LoadTypes(const PluginOptions& options, const SceneDescription* scene) {
   TypeLoader loader;
-  for (const std::string& name : asked) loader.Require(FindPlugin(name, name), {});
+  for (const std::string& name : options.files) loader.Require(FindPlugin(name, name), {});
   if (scene) {
     for (const PluginReference& plugin : scene->plugins) {
       const std::string writer = plugin.where.file ? *plugin.where.file : scene->file.string();
-      loader.Require(FindPlugin(plugin.name, FindSceneFile(plugin.name, writer, scene->file.string())), plugin.where);
+      const fs::path file = FindPlugin(plugin.name, FindSceneFile(plugin.name, writer, scene->file.string()));
+      if (!options.allowsScenePlugins && !loader.Has(file) && !IsInPluginFolder(file)) RefusePlugin(plugin, file);
+      loader.Require(file, plugin.where);
     }
   }
   for (const fs::path& folder : PluginFolders()) loader.AddAllOf(folder);
   return loader.Take();
 }
 
-std::vector<const LightType*> LightsOf(const TypeRegistry& types, const std::vector<std::string>& asked) {
+std::vector<const LightType*> LightsOf(const TypeRegistry& types, const PluginOptions& options) {
   std::set<fs::path> files;
-  for (const std::string& name : asked) files.insert(Canonical(FindPlugin(name, name)));
+  for (const std::string& name : options.files) files.insert(Canonical(FindPlugin(name, name)));
   std::vector<const LightType*> lights;
   for (const Plugin& plugin : types.Plugins()) {
     if (!files.count(Canonical(plugin.file))) continue;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <sstream>
 
@@ -227,6 +228,9 @@ void ReadPhotons(const ParameterList& parameters, const RenderOverrides& overrid
   if (perPass > 0) photons.lightPaths = static_cast<uint64_t>(perPass);
   photons.radius = parameters.GetFloat("radius", 0);
   if (!(photons.radius >= 0)) throw Error(parameters.WhereOf("radius"), "\"radius\" must be 0 or more");
+  if (photons.radius > 0 && photons.radius < static_cast<double>(std::numeric_limits<float>::min()))
+    throw Error(parameters.WhereOf("radius"),
+                "\"radius\" is too small: at least 1.2e-38 is needed, or 0 for the default");
   photons.alpha = parameters.GetFloat("alpha", photons.alpha);
   if (!(photons.alpha >= 0 && photons.alpha <= 1))
     throw Error(parameters.WhereOf("alpha"), "\"alpha\" must be from 0 to 1");

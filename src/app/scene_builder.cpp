@@ -586,8 +586,12 @@ BuiltScene Builder::Build() {
                                                       built_.settings.lightSelection, std::move(linking_));
   scene.lighting->TakeSamples(built_.settings.lightSamples);
   if (built_.settings.integrator == "auto") built_.settings.integrator = PlanFor(scene, built_.settings).integrator;
-  if (scene.geometry->PrimitiveCount() == 0)
-    diagnostics_.Warn("the scene has no shape: the camera sees what lights at infinity there are, and nothing else");
+  const auto& lights = scene.lighting->Lights();
+  const bool hasSky = std::any_of(lights.begin(), lights.end(), [](const PlacedLight& placed) {
+    return placed.light->Kind() == LightKind::Infinite;
+  });
+  if (scene.geometry->PrimitiveCount() == 0 && !hasSky && scene.lighting->HasLights())
+    diagnostics_.Warn("the scene has no shape for light to fall on: the image will be black");
   if (!scene.lighting->HasLights()) diagnostics_.Warn("the scene has no light: the image will be black");
   WarnOfCoarsePlaces(scene, built_.settings, diagnostics_);
   return std::move(built_);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "geometry/loop_subdivision.h"
 #include "geometry/ply.h"
@@ -146,6 +147,8 @@ LocalMesh ReadPlyMesh(const ParameterList& parameters, MemoryBudget& memory, Dia
 float Positive(const ParameterList& parameters, const std::string& name, double defaultValue) {
   const double value = parameters.GetFloat(name, defaultValue);
   if (!(value > 0)) throw Error(parameters.WhereOf(name), "\"" + name + "\" must be above 0");
+  if (value < static_cast<double>(std::numeric_limits<float>::min()))  // 0 in single precision
+    throw Error(parameters.WhereOf(name), "\"" + name + "\" is too small: at least 1.2e-38 is needed");
   return static_cast<float>(value);
 }
 

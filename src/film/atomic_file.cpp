@@ -22,11 +22,17 @@ std::string TemporaryPrefix(const std::filesystem::path& path) {
 
 }  // namespace
 
-AtomicFile::AtomicFile(const std::filesystem::path& path) : path_(path), temporary_(path) {
+AtomicFile::AtomicFile(const std::filesystem::path& path) : path_(path) {
   if (!path.has_filename()) throw Error("cannot write \"" + path.string() + "\": it names no file");
+  target_ = WriteTarget(path);
   std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) Fail(EISDIR);
-  temporary_.replace_filename(TemporaryPrefix(path) + std::to_string(getpid()) + kSuffix);
+  const std::filesystem::file_status there = std::filesystem::status(target_, ignored);
+  if (std::filesystem::is_directory(there)) Fail(EISDIR);
+  // The new name would take the place of the device itself.
+  if (std::filesystem::exists(there) && !std::filesystem::is_regular_file(there))
+    throw Error("cannot write \"" + path.string() + "\": it is a device or a pipe, not a file");
+  temporary_ = target_;
+  temporary_.replace_filename(TemporaryPrefix(target_) + std::to_string(getpid()) + kSuffix);
   errno = 0;
   file_ = std::fopen(temporary_.c_str(), "wb");
   if (!file_) Fail(errno);
@@ -75,7 +81,7 @@ void AtomicFile::Commit() {
   std::FILE* file = file_;
   file_ = nullptr;
   int failure = std::fclose(file) != 0 ? errno : 0;
-  if (failure == 0 && std::rename(temporary_.c_str(), path_.c_str()) != 0) failure = errno;
+  if (failure == 0 && std::rename(temporary_.c_str(), target_.c_str()) != 0) failure = errno;
   if (failure == 0) return;
   std::error_code ignored;
   std::filesystem::remove(temporary_, ignored);
@@ -83,15 +89,28 @@ void AtomicFile::Commit() {
 }
 
 void AtomicFile::RemoveLeftovers(const std::filesystem::path& path) {
-  const std::string prefix = TemporaryPrefix(path);
+  const std::filesystem::path target = WriteTarget(path);
+  const std::string prefix = TemporaryPrefix(target);
   std::error_code ignored;
-  for (const auto& entry : std::filesystem::directory_iterator(FolderOf(path), ignored)) {
+  for (const auto& entry : std::filesystem::directory_iterator(FolderOf(target), ignored)) {
     const std::string name = entry.path().filename().string();
     if (name.size() <= prefix.size() + std::strlen(kSuffix) || !name.starts_with(prefix) || !name.ends_with(kSuffix))
       continue;
     const std::string process = name.substr(prefix.size(), name.size() - prefix.size() - std::strlen(kSuffix));
     if (process.find_first_not_of("0123456789") == std::string::npos) std::filesystem::remove(entry.path(), ignored);
   }
+}
+
+std::filesystem::path WriteTarget(const std::filesystem::path& path) {
+  constexpr int mostLinks = 40;  // as the system follows
+  std::filesystem::path target = path;
+  for (int i = 0; i < mostLinks; ++i) {
+    std::error_code code;
+    const std::filesystem::path next = std::filesystem::read_symlink(target, code);
+    if (code) return target;  // it is none
+    target = next.is_absolute() ? next : FolderOf(target) / next;
+  }
+  throw Error("cannot write \"" + path.string() + "\": " + std::generic_category().message(ELOOP));
 }
 
 std::filesystem::path FolderOf(const std::filesystem::path& path) {

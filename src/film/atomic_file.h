@@ -1,5 +1,6 @@
 // A file that is written whole or not at all: bytes go to a temporary name in the same folder, which takes the final
-// name when all are written. Every failure is an Error with the system's reason; the old file stays as it was.
+// name when all are written. A link stays one: what it leads to is written. Every failure is an Error with the system's
+// reason; the old file stays as it was.
 #pragma once
 
 #include <cstddef>
@@ -32,10 +33,14 @@ class AtomicFile {
  private:
   [[noreturn]] void Fail(int errorNumber);
 
-  std::filesystem::path path_, temporary_;
+  std::filesystem::path path_, target_, temporary_;
   std::FILE* file_ = nullptr;
   int firstError_ = 0;
 };
+
+// The file that is written when `path` is: where links lead, also where there is nothing yet. Throws an Error where they
+// lead in a circle.
+std::filesystem::path WriteTarget(const std::filesystem::path& path);
 
 // Of a file's name; "." where it names none.
 std::filesystem::path FolderOf(const std::filesystem::path& path);

@@ -139,6 +139,8 @@ Image ReadExr(const std::filesystem::path& path) {
     return ReadOpenExr(path);
   } catch (const Error&) {
     throw;
+  } catch (const std::bad_alloc&) {
+    throw Error("cannot read image \"" + path.string() + "\": there is not enough memory for it");
   } catch (const std::exception& e) {
     throw Error("cannot read image \"" + path.string() + "\": " + e.what());
   }
@@ -158,6 +160,8 @@ void WriteExr(const std::filesystem::path& path, const Image& image, ExrPrecisio
       file.SeekToEnd();
       append(file);
     }
+  } catch (const std::bad_alloc&) {
+    throw Error("cannot write \"" + path.string() + "\": there is not enough memory for it");
   } catch (const std::exception& e) {
     file.ThrowIfFailed();  // the system's reason is better than OpenEXR's
     throw Error("cannot write \"" + path.string() + "\": " + e.what());

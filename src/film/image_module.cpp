@@ -6,9 +6,13 @@
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <cstring>
 #include <exception>
 #include <memory>
+#include <mutex>
+#include <new>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +25,27 @@ void SetError(char* error, size_t errorSize, std::string text) {
   std::memcpy(error, text.data(), length);
   error[length] = '\0';
 }
+
+// While there is one, what is printed to stderr by C's streams is not seen: libpng says what is wrong there, too, which
+// comes back as an error's text. Sanitizers and crash handlers write to the descriptor itself.
+class SilentStderr {
+ public:
+  SilentStderr() : lock_(Mutex()), before_(stderr) {
+    static std::FILE* const nowhere = std::fopen("/dev/null", "w");  // never closed: somebody may still hold it
+    if (nowhere) stderr = nowhere;
+  }
+  ~SilentStderr() { stderr = before_; }
+  SilentStderr(const SilentStderr&) = delete;
+  SilentStderr& operator=(const SilentStderr&) = delete;
+
+ private:
+  static std::mutex& Mutex() {
+    static std::mutex mutex;
+    return mutex;
+  }
+  const std::lock_guard<std::mutex> lock_;
+  std::FILE* const before_;
+};
 
 int IntegerBits(const OIIO::TypeDesc& format) {
   const bool isFloat = format.basetype == OIIO::TypeDesc::HALF || format.basetype == OIIO::TypeDesc::FLOAT ||
@@ -36,6 +61,8 @@ std::string ErrorOf(const OIIO::ImageInput& input) {
 // "" when all went well.
 std::string Read(const char* path, const char* format, lampyr::ImageModuleAllocate allocate, void* context) {
   OIIO::attribute("limits:imagesize_MB", 1 << 30);  // what is too large is told by `allocate`
+  std::optional<SilentStderr> silent;
+  if (std::strcmp(format, "png") == 0) silent.emplace();
   OIIO::ImageSpec configuration, opened;
   configuration.attribute("oiio:UnassociatedAlpha", 1);  // colours as stored, not multiplied by alpha
   const auto input = OIIO::ImageInput::create(format);
@@ -75,8 +102,8 @@ std::string EncodePng(int width, int height, const unsigned char* rgb, lampyr::I
   OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
   spec.attribute("oiio:ColorSpace", "sRGB");
   output->set_ioproxy(&memory);
-  const bool done = output->open("picture.png", spec) && output->write_image(OIIO::TypeDesc::UINT8, rgb) &&
-                    output->close();
+  const bool done =
+      output->open("picture.png", spec) && output->write_image(OIIO::TypeDesc::UINT8, rgb) && output->close();
   if (!done) return output->geterror();
   sink(context, bytes.data(), bytes.size());
   return "";
@@ -88,6 +115,8 @@ int Guarded(char* error, size_t errorSize, Work work) {
   try {
     text = work();
     if (text.empty()) return 0;
+  } catch (const std::bad_alloc&) {
+    text = "there is not enough memory for it";
   } catch (const std::exception& e) {
     text = e.what();
   } catch (...) {
@@ -101,7 +130,9 @@ int Guarded(char* error, size_t errorSize, Work work) {
 
 extern "C" {
 
-int lampyr_image_module_version() { return lampyr::kImageModuleVersion; }
+int lampyr_image_module_version() {
+  return lampyr::kImageModuleVersion;
+}
 
 int lampyr_read_image(const char* path, const char* format, lampyr::ImageModuleAllocate allocate, void* context,
                       char* error, size_t errorSize) {

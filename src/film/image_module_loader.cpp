@@ -107,6 +107,8 @@ EncodedImage ReadThroughModule(const std::filesystem::path& path, const ImageKin
       std::rethrow_exception(context.failure);
     } catch (const Error&) {
       throw;
+    } catch (const std::bad_alloc&) {
+      throw Error("cannot read image \"" + path.string() + "\": there is not enough memory for it");
     } catch (const std::exception& e) {
       throw Error("cannot read image \"" + path.string() + "\": " + e.what());
     }

@@ -209,7 +209,7 @@ IesFile ParseIesFile(const std::string& source, const std::string& name) {
   double factor = TiltFactor(text, labels.tilt, labels.tiltWhere);
   text.Number("the number of lamps");
   text.Number("the lumens of a lamp");  // the candela are for that many; -1 for absolute photometry
-  factor *= text.NumberInRange("the candela multiplier", 0, kLargestCandela, "0 or more");
+  factor *= text.NumberInRange("the candela multiplier", 0, kLargestCandela, "between 0 and 1e30");
   const size_t vertical = text.Count("vertical angles", 2);
   text.SkipSeparators();
   const FileLocation horizontalCount = text.Here();
@@ -223,7 +223,9 @@ IesFile ParseIesFile(const std::string& source, const std::string& name) {
   const double ballastLamp = text.Number("the ballast-lamp photometric factor (or file generation type)");
   if (labels.hasBallastLampFactor && ballastLamp > 0) factor *= ballastLamp;
   text.Number("the input watts");
-  if (!(factor <= kLargestCandela)) throw Error(labels.tiltWhere, "the multipliers of the candela leave all bounds");
+  if (!(factor <= kLargestCandela))
+    throw Error(labels.tiltWhere, "the tilt factor, the candela multiplier and the ballast factors make " +
+                                      Shown(factor) + " together: it has to be at most 1e30");
 
   text.CheckRoom(static_cast<double>(vertical) * static_cast<double>(horizontal), "candela values", horizontalCount);
   const bool typeC = file.type == IesPhotometry::TypeC;
@@ -240,7 +242,9 @@ IesFile ParseIesFile(const std::string& source, const std::string& name) {
     const double value =
         text.Number("candela value " + std::to_string(i + 1) + " of " + std::to_string(file.candela.size()));
     file.candela[i] = std::max(value * factor, 0.0);
-    if (!(file.candela[i] <= kLargestCandela)) throw Error(where, "this candela value leaves all bounds");
+    if (!(file.candela[i] <= kLargestCandela))
+      throw Error(where, "the candela value " + Shown(value) + ", times the file's multipliers " + Shown(factor) +
+                             ", is " + Shown(file.candela[i]) + ": it has to be at most 1e30");
   }
   return file;
 }

@@ -39,16 +39,52 @@ TEST_F(Plugins, AreFoundByOptionSceneAndEnvironment) {
   const double mean = MeanOf(folder_ / "a.exr");
 
   Write("beside/scene.pbrt", SceneWith(kRing, "Option \"string plugins\" [ \"ring.so\" ]"));
-  ExpectSays(Run("render beside/scene.pbrt -o d.exr --quiet --strict"), 0, {});
+  ExpectSays(Run("render beside/scene.pbrt -o d.exr --quiet --strict --allow-scene-plugins"), 0, {});
   EXPECT_EQ(MeanOf(folder_ / "d.exr"), mean);
   Write("named.pbrt", SceneWith(kRing, "Option \"plugins\" \"ring.so\""));
   ExpectSays(Run("render named.pbrt -o e.exr --quiet", "lib"), 0, {});
   EXPECT_EQ(MeanOf(folder_ / "e.exr"), mean);
-  ExpectSays(Run("render named.pbrt -o f.exr --quiet"), 2,
+  ExpectSays(Run("render named.pbrt -o f.exr --quiet --allow-scene-plugins"), 2,
              {"named.pbrt:5:18: error: the plugin \"ring.so\": expected a shared library, found no such file"});
   Write("number.pbrt", SceneWith(kRing, "Option \"plugins\" [ \"ring.so\" 3 ]"));
   ExpectSays(Run("render number.pbrt -o f.exr --quiet"), 2, {"number.pbrt:5:30", "names of files"});
   EXPECT_FALSE(Exists("none.exr") || Exists("f.exr"));
+}
+
+// A scene comes from anywhere: that it names a plugin is no reason to run its code.
+TEST_F(Plugins, OfScenesAreLoadedOnlyWhereTheyAreTrusted) {
+  fs::create_directory(folder_ / "trusted");
+  fs::create_directory(folder_ / "scenes");
+  fs::copy_file(RingPlugin(), folder_ / "scenes/ring.so");
+  Write("scenes/scene.pbrt", SceneWith(kRing, "Option \"string plugins\" [ \"ring.so\" ]"));
+  const std::string small = " --resolution 8x8 ";
+  const std::vector<std::string> refused = {"scenes/scene.pbrt:5:27: error: the scene names the plugin \"ring.so\"",
+                                            "--plugin '", "scenes/ring.so'", "--allow-scene-plugins",
+                                            "LAMPYR_PLUGIN_PATH"};
+  const std::string compare =
+      "compare scenes/scene.pbrt -o out --quiet --integrators path --spp 1 --repeat 2 "
+      "--reference-time 0.2s --resolution 8x8 ";
+  for (const std::string& command : {"render scenes/scene.pbrt --quiet" + small, std::string("plan scenes/scene.pbrt "),
+                                     compare, std::string("check-lights scenes/scene.pbrt --threads 2 ")}) {
+    ExpectSays(Run(command), 2, refused);
+    // Neither is one that lies above a trusted folder, or is reached by way of it.
+    ExpectSays(Run(command, "trusted"), 2, refused);
+    ExpectSays(Run(command + "--allow-scene-plugins"), 0, {});
+  }
+  ExpectSays(Run("render scenes/scene.pbrt --quiet --plugin scenes/ring.so" + small), 0, {});
+  ExpectSays(Run("render scenes/scene.pbrt --quiet" + small, "scenes"), 0, {});
+  Write("scenes/around.pbrt", SceneWith(kRing, "Option \"plugins\" \"../trusted/../scenes/ring.so\""));
+  ExpectSays(Run("render scenes/around.pbrt --quiet" + small, "trusted"), 2, {"around.pbrt:5:18: error"});
+  // A link in the scene's folder to what is trusted, and one in the trusted folder to what its owner has put there.
+  fs::rename(folder_ / "scenes/ring.so", folder_ / "trusted/ring.so");
+  fs::create_symlink("../trusted/ring.so", folder_ / "scenes/ring.so");
+  ExpectSays(Run("render scenes/scene.pbrt --quiet" + small, "trusted"), 0, {});
+  fs::remove(folder_ / "scenes/ring.so");
+  fs::rename(folder_ / "trusted/ring.so", folder_ / "elsewhere.so");
+  fs::create_symlink("../elsewhere.so", folder_ / "trusted/ring.so");
+  ExpectSays(Run("render scenes/scene.pbrt --quiet" + small, "trusted"), 0, {});
+  EXPECT_EQ(Run("lights --help").output.find("--allow-scene-plugins"), std::string::npos);
+  EXPECT_NE(Run("plan --help").output.find("--allow-scene-plugins"), std::string::npos);
 }
 
 // A filter of a plugin on a light of the plugin, and on one of lampyr's own.
