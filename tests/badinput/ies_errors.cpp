@@ -61,7 +61,8 @@ TEST(IesErrors, SayWhereAndWhatWouldBeRight) {
       {WithNumbers("1 -1 1 2 3 1 2 0 0 0\n1 1 1\n0 90\n0 90.001 90.004\n1 1 1 1 1 1"), "a.ies:6:1", "too close"},
       {WithNumbers("1 -1 1 2 1 1 2 0 0 0\n1 1 1\n0 90\n0\n7 "), "a.ies:7:3", "candela value 2 of 2"},
       {WithNumbers("1 -1 1 2 1 1 2 0 0 0\n1 1 1\n0 90\n0\n7 inf"), "a.ies:7:3", "not a finite number"},
-      {WithNumbers("1 -1 1e20 2 1 1 2 0 0 0\n1 1 1\n0 90\n0\n7 1e20"), "a.ies:7:3", "leaves all bounds"},
+      {WithNumbers("1 -1 1e20 2 1 1 2 0 0 0\n1 1 1\n0 90\n0\n7 1e20"), "a.ies:7:3",
+       "candela value 1e+20, times the file's multipliers 1e+20, is 1e+40: it has to be at most 1e30"},
   };
   for (const Case& c : cases) {
     const std::string error = IesError(c.text);
