@@ -34,11 +34,14 @@ class IntMultFilter final : public FilterBase {
     }
   }
 
+  // Saturation takes nothing of light that has the tint's colour already: no less than without it.
   std::optional<float> GetRadianceModifier() const override {
-    Color diffuse(1.0f), specular(1.0f);
-    Apply(diffuse_, diffuse);
-    Apply(specular_, specular);
-    return std::max(diffuse.Average(), specular.Average());
+    const auto through = [&](const Part& part) {
+      Color white(1.0f);
+      Apply(part, white);
+      return std::max(white.Average(), part.factor.Average());
+    };
+    return std::max(through(diffuse_), through(specular_));
   }
 
  private:
