@@ -1,8 +1,6 @@
 // The only file that includes nlohmann-json.
 #include "app/json_report.h"
 
-#include "lights/suite/properties.h"
-
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -10,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/version.h"
+#include "lights/suite/properties.h"
 
 namespace lampyr {
 
