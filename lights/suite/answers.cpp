@@ -71,8 +71,8 @@ Fields FieldsOf(const EmissionSample& p) {
   write("patchIndex", static_cast<float>(p.patchIndex));
   write("diffuse radiance", p.diffuse);
   write("specular radiance", p.specular);
-  write("pdfEmit", p.pdfEmit.value);
-  write("pdfEmitDirection", p.pdfEmitDirection.value);
+  write.Bidirectional("pdfEmit", p.pdfEmit.value);
+  write.Bidirectional("pdfEmitDirection", p.pdfEmitDirection.value);
   return fields;
 }
 Fields FieldsOf(const SegmentEstimate& s) {
@@ -209,7 +209,7 @@ std::string Difference(const Answer& wanted, const Answer& got, Compare compare)
        {DifferenceOf("samples", wanted.sample, got.sample, compare),
         DifferenceOf("evaluations", wanted.evaluation, got.evaluation, compare),
         DifferenceOf("what the camera sees", FieldsOf(wanted.camera), FieldsOf(got.camera), all),
-        DifferenceOf("photons", wanted.photon, got.photon, all),
+        DifferenceOf("photons", wanted.photon, got.photon, compare),
         DifferenceOf("evaluations where photons land", wanted.landing, got.landing, compare),
         DifferenceOf("estimates", FieldsOf(wanted.estimate), FieldsOf(got.estimate), all),
         DifferenceOf("estimates of segments", wanted.segment, got.segment, all)}) {

@@ -44,7 +44,8 @@ class StrataChecker {
   static constexpr double kTolerance = 2e-3;  // relative, of what the quadrature may be off by
   static constexpr int kLattices = 128, kFewest = 128, kMost = 2048;
   static constexpr double kEnough = 400;
-  static constexpr int kBudget = 20000;  // of a quadrature
+  static constexpr double kFar = 100, kStrip = 0.03;  // sizes of the light; share of the samples
+  static constexpr int kBudget = 20000;               // of a quadrature
 
   std::vector<Receiver> Receivers();
   void CheckReceiver(const Receiver& receiver);
@@ -137,9 +138,21 @@ void StrataChecker::Integrate(const Point3& P, int first, const Shares& seen, Sh
     return stratum == first ? Integrands{pdf, 0} : Integrands{0, pdf};
   };
   const auto [one, other] = surface_.IntegrateDirections(P, hints, density, rng_, kBudget);
-  // The first is a strip, around whatever is round: among directions it cannot be found, but on the surface.
-  promised.of[first] = first == 0 && !subject_.model ? surface_.IntegrateSurface(P, density, rng_) : one;
+  promised.of[first] = one;
   if (first + 1 < kStrata) promised.of[first + 1] = other;
+  // A strip, as there is around whatever is round, or in a corner, may not be found among directions: then it is on the
+  // surface.
+  if (subject_.model) return;
+  for (const int stratum : {first, first + 1}) {
+    if (stratum >= kStrata || (stratum > 0 && promised.of[stratum].value > 0)) continue;
+    promised.of[stratum] = surface_.IntegrateSurface(
+        P,
+        [&](const LightHit& hit, double cosine) -> Integrands {
+          const Integrands both = density(hit, cosine);
+          return {stratum == first ? both.density : both.radiance, 0};
+        },
+        rng_);
+  }
 }
 
 std::string StrataChecker::Words(const Receiver& receiver, int i, const Estimate& promised, const Shares& seen) const {
@@ -161,9 +174,12 @@ void StrataChecker::CheckReceiver(const Receiver& receiver) {
     // Where no sample goes at all, "irradiance" says whether one should.
     if (hits >= kEnough) Integrate(receiver.position, first, seen, promised);
   }
+  const bool isFar =
+      glm::length(Point3d(receiver.position) - surface_.Around().middle) > kFar * surface_.Around().radius;
   for (int i = 0; i < kStrata; ++i) {
-    // A strip that few samples meet is too thin for the quadrature, too.
-    if (seen.hits[i] < kEnough) continue;
+    // A strip that few samples meet is too thin for the quadrature, too. From afar a flat part has one cosine: where an
+    // edge of the classes runs across it, a strip of it is left.
+    if (seen.hits[i] < kEnough || (isFar && seen.of[i].value < kStrip)) continue;
     char where[96];
     std::snprintf(where, sizeof(where), " %s, cosine from %g", receiver.name.c_str(), kEdges[i]);
     report_.AddProbability(subject_.name, "strata", subject_.caseName + where,

@@ -176,6 +176,12 @@ class TilesLight final : public Light, private IntersectableLight {
   std::vector<float> cumulative_;
 };
 
+// Of a place on a tile: a few roundings of the terms that it is the sum of.
+inline Vector3 RoundingAt(const LightContext& context, const Point3& position) {
+  const Vector3& translation = context.transform->toRender.translation;
+  return 1e-6f * (glm::abs(position) + 2.0f * glm::abs(translation) + Vector3(1.0f));
+}
+
 inline std::vector<Point3> TilesLight::Corners() const {
   std::vector<Point3> points;
   for (const Tile& tile : setup_.tiles) {
@@ -237,6 +243,7 @@ inline std::optional<LightSample> TilesLight::GenerateSamples(const LightContext
   sample->distance = glm::length(way);
   sample->direction = way / sample->distance;
   sample->normal = ToRender(context, chosen.tile->Normal());
+  sample->positionError = RoundingAt(context, sample->position);
   sample->uvw = Point3(chosen.uv, 0.0f);
   const Color emitted = Radiance(context, chosen.uv, sample->normal, -sample->direction);
   LightHit hit;
@@ -279,6 +286,7 @@ inline std::optional<EmissionSample> TilesLight::GenerateEmission(const LightCon
   EmissionSample photon;
   photon.position = context.transform->toRender.Point(chosen.tile->corner + chosen.uv.x * chosen.tile->a +
                                                       chosen.uv.y * chosen.tile->b);
+  photon.positionError = RoundingAt(context, photon.position);
   photon.normal = ToRender(context, chosen.tile->Normal());
   photon.uvw = Point3(chosen.uv, 0.0f);
   float turns = context.uDirection.y;

@@ -59,7 +59,7 @@ TEST_F(WrongTypes, AreCaughtAtReceivers) {
       {Fault::ZeroWhereItEmits,
        kPoints + Lights{"parallel"},
        {"power", "emission-integral"},
-       {"emission-directions", "emission-positions", "emission-edge"}},
+       {"emission-directions", "emission-positions", "emission-edge", "shines-from"}},
       {Fault::OtherRadiance,
        kSurfaces + kSkies + Lights{"portal"},
        {"consistency"},
@@ -82,14 +82,16 @@ TEST_F(WrongTypes, AreCaughtOnTheirBack) {
 
 // Where something is, asked in the wrong space or from the wrong place.
 TEST_F(WrongTypes, AreCaughtInTheWrongPlace) {
-  const Properties atReceivers = {"consistency", "directions", "integral", "irradiance", "power"};
-  const Properties ofPhotons = {"bounds", "emission-integral", "emission-positions", "power", "power-estimate"};
+  const Properties atReceivers = {"consistency", "directions",     "integral", "irradiance",
+                                  "power",       "position-error", "uvw"};
+  const Properties ofPhotons = {"bounds",         "emission-integral", "emission-positions", "power",
+                                "power-estimate", "position-error",    "shines-from",        "uvw"};
   ExpectEach({
       {Fault::PdfOfTheOrigin, kPortals, {"integral", "directions", "irradiance"}, {"power"}},
       {Fault::SeenFromTheOrigin,
        {"portal"},
        {"camera", "emission-integral", "emission-edge", "power"},
-       {"emission-directions", "emission-positions", "estimate"}},
+       {"emission-directions", "emission-positions", "estimate", "shines-from"}},
       {Fault::FrameNotTurned, {"square", "rect", "disk"}, {"surface"}, atReceivers},
       {Fault::FrameNotTurned, {"sun", "dome", "portal"}, {"consistency", "directions"}, atReceivers},
       {Fault::FrameNotTurned,
@@ -98,7 +100,7 @@ TEST_F(WrongTypes, AreCaughtInTheWrongPlace) {
        {"estimate"}},
       {Fault::FrameNotTurned, {"parallel"}, {"emission-edge"}, {}},
       {Fault::PhotonFrameNotTurned, {"rect", "disk"}, {"surface", "emission-positions"}, ofPhotons},
-      {Fault::PhotonFrameNotTurned, {"square"}, {"emission-positions"}, {"bounds"}},
+      {Fault::PhotonFrameNotTurned, {"square"}, {"emission-positions"}, {"bounds", "position-error"}},
       {Fault::PhotonFrameNotTurned,
        {"spot", "goniometric", "projection", "dome", "portal"},
        {"emission-directions", "emission-edge"},
@@ -107,7 +109,7 @@ TEST_F(WrongTypes, AreCaughtInTheWrongPlace) {
       {Fault::DiskNotRotated,
        kSkies + Lights{"parallel", "portal"},
        {"emission-positions"},
-       {"emission-edge", "emission-directions", "emission-integral"}},
+       {"emission-edge", "emission-directions", "emission-integral", "position-error", "shines-from"}},
   });
 }
 
@@ -183,8 +185,8 @@ TEST_F(WrongTypes, AreCaughtWithAnAngleConvertedTwice) {
   const std::vector<Converted> faults = {
       {"spot", "coneangle", 50, Part::PhotonDraws, {"emission-directions"}, power},
       {"spot", "coneangle", 50, Part::PhotonPdf, {"emission-directions", "power"}, {"power-estimate"}},
-      {"spot", "coneangle", 50, Part::Power, {"power-estimate"}, {}},
-      {"spot", "coneangle", 50, Part::Bounds, {"bounds"}, {}},
+      {"spot", "coneangle", 50, Part::Power, {"power-estimate"}, {"energy"}},
+      {"spot", "coneangle", 50, Part::Bounds, {"bounds"}, {"energy"}},
       {"spot", "coneangle", 50, Part::Estimate, {"estimate"}, {}},
       {"spot", "coneangle", 50, Part::Segment, {"estimate"}, {}},
       {"sun", "angle", 40, Part::Draws, {"directions"}, {}},
@@ -195,7 +197,7 @@ TEST_F(WrongTypes, AreCaughtWithAnAngleConvertedTwice) {
       {"sun", "angle", 40, Part::Camera, {"camera"}, {}},
       {"rect", "shaping:cone:angle", 40, Part::PhotonDraws, {"emission-directions"}, power},
       {"rect", "shaping:cone:angle", 40, Part::PhotonPdf, {"emission-directions", "power"}, ofDensity},
-      {"rect", "shaping:cone:angle", 40, Part::Bounds, {"bounds"}, {}},
+      {"rect", "shaping:cone:angle", 40, Part::Bounds, {"bounds"}, {"energy"}},
       {"rect", "shaping:cone:angle", 40, Part::Camera, {"camera"}, {}},
   };
   for (const auto& [name, angle, degrees, part, named, follow] : faults) {
