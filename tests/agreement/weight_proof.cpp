@@ -44,8 +44,9 @@ class KeptLightPaths final : public LightSubpathVisitor {
     photons.Add(path.Last(), static_cast<int>(path.count));
     const auto vertices = path.vertices.begin();
     const PathVertex& last = path.Last();
-    paths_[KeyOf(last.toPrevious, last.diffuse, last.weight.connect, static_cast<float>(last.previousPerSolidAngle),
-                 path.count)] = {{vertices, vertices + static_cast<std::ptrdiff_t>(path.count)}, path.end};
+    paths_[KeyOf(last.toPrevious, photons.Photons().back().diffuse, last.weight.connect,
+                 static_cast<float>(last.previousPerSolidAngle), path.count)] = {
+        {vertices, vertices + static_cast<std::ptrdiff_t>(path.count)}, path.end};
   }
   struct Kept {
     std::vector<PathVertex> vertices;

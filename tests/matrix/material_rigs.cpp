@@ -110,16 +110,18 @@ void AddMaterialRigs(std::vector<Rig>& rigs) {
   rigs.push_back(walls);
 
   const std::string source = LAMPYR_SOURCE_DIR "/scenes/data/";
+  // The correction of importance for shading normals has no bound: light that grazes the surface twice is rare and
+  // much.
   rigs.push_back({"normal_map",
                   Room("Material \"diffuse\" \"rgb reflectance\" [0.7 0.6 0.5] \"string normalmap\" \"" + source +
                            "paving-normal.png\"",
-                       Lamp()),
+                       Lamp(), kCamera, 2),
                   {"normal map"}});
   rigs.push_back({"normal_map_on_metal",
                   Room("Material \"conductor\" \"float roughness\" 0.5 \"rgb reflectance\" [0.8 0.7 0.6] \"string "
                        "normalmap\" \"" +
                            source + "paving-normal.png\"",
-                       Lamp()),
+                       Lamp(), kCamera, 2),
                   {"normal map"}});
   const std::string bumps =
       "Texture \"waves\" \"float\" \"wrinkled\" \"integer octaves\" 3\nTexture \"bumps\" \"float\" \"scale\" "

@@ -42,11 +42,16 @@ std::string Lamp(const std::string& place, double radius, const std::string& mor
 std::vector<Rig> MatrixRigs(const std::filesystem::path& folder) {
   suite::WriteSuiteInputs(folder);
   std::vector<Rig> all;
-  AddMaterialRigs(all);
-  AddLightRigs(all);
-  AddFilterRigs(all);
-  AddMotionRigs(all);
-  AddCameraRigs(all);
+  const auto add = [&](const char* kind, void (*rigs)(std::vector<Rig>&)) {
+    const size_t first = all.size();
+    rigs(all);
+    for (size_t i = first; i < all.size(); ++i) all[i].kind = kind;
+  };
+  add("materials", AddMaterialRigs);
+  add("lights", AddLightRigs);
+  add("filters", AddFilterRigs);
+  add("motion", AddMotionRigs);
+  add("cameras", AddCameraRigs);
   return all;
 }
 

@@ -16,6 +16,7 @@ struct Rig {
   std::vector<std::string> covers;
   // Light tracing connects every vertex to the camera: it is blind to what the camera sees of deltas.
   bool cameraSeesDeltas = false;
+  std::string kind = "";  // "materials", "lights", "filters", "motion", "cameras"
 };
 
 inline void PrintTo(const Rig& rig, std::ostream* stream) {
@@ -36,8 +37,9 @@ namespace rigs {
 
 // The inside of a sphere of radius 1. Photons are merged without bias but for what the radiance bends within the
 // radius: a ball around a point of a sphere cuts a cap of exactly π r² from it, and there are no edges.
-std::string Room(const std::string& material, const std::string& inside,
-                 const std::string& camera = "Camera \"perspective\" \"float fov\" 80\n", int depth = 3);
+inline const std::string kCamera = "Camera \"perspective\" \"float fov\" 80\n";
+std::string Room(const std::string& material, const std::string& inside, const std::string& camera = kCamera,
+                 int depth = 3);
 
 // A floor of radius 1 under the sky with a ball on it; its middle is seen.
 std::string Floor(const std::string& above, const std::string& ball = "", int depth = 3);

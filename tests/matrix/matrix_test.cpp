@@ -161,6 +161,19 @@ Errors WantedErrors(double rate) {
   return {0.9 * error, 0.43 * error};
 }
 
+// A cell, and what it says. A trial of a few replicas tells the noise to a quarter or so: more replicas are asked for
+// by the noise alone, which is no bias.
+Verdict Measure(BuiltScene& built, const Mode& mode, double error, uint64_t seed, const Cell& reference, double rate,
+                Cell& cell) {
+  cell = RenderTo(built, mode, error, seed);
+  Verdict verdict = Compare(cell.replicas, reference.replicas, rate);
+  for (int round = 1; round < kMostRounds && verdict.noticed > Noticed(); ++round) {
+    cell.Add(RenderMode(built, mode, kReplicas, cell.samples, seed + 1000 * static_cast<uint64_t>(round)));
+    verdict = Compare(cell.replicas, reference.replicas, rate);
+  }
+  return verdict;
+}
+
 class Matrix : public testing::TestWithParam<Rig> {};
 
 TEST_P(Matrix, Agrees) {
@@ -176,14 +189,8 @@ TEST_P(Matrix, Agrees) {
     seed += 10000;
     if (!Sees(rig, mode) || (only && mode.name != only)) continue;
     const auto start = std::chrono::steady_clock::now();
-    Cell cell = RenderTo(built, mode, errors.mode, seed);
-    Verdict verdict = Compare(cell.replicas, reference.replicas, rate);
-    // A trial of a few replicas tells the noise to a quarter or so. More are asked for by the noise alone: that is no
-    // bias.
-    for (int round = 1; round < kMostRounds && verdict.noticed > Noticed(); ++round) {
-      cell.Add(RenderMode(built, mode, kReplicas, cell.samples, seed + 1000 * static_cast<uint64_t>(round)));
-      verdict = Compare(cell.replicas, reference.replicas, rate);
-    }
+    Cell cell;
+    const Verdict verdict = Measure(built, mode, errors.mode, seed, reference, rate, cell);
     std::printf(
         "[   info   ] %-36s %-36s %+.2f %% +- %.2f %%, largest |z| %.2f (%.2f), notices %.2f %%, %d samples, %.1f s\n",
         rig.name.c_str(), mode.name.c_str(), 100 * verdict.bias, 100 * verdict.error, verdict.largestZ,
@@ -195,7 +202,22 @@ TEST_P(Matrix, Agrees) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, Matrix, testing::ValuesIn(Rigs()), [](const auto& info) { return info.param.name; });
+// By what they vary.
+std::vector<Rig> Of(const char* kind) {
+  std::vector<Rig> some;
+  for (const Rig& rig : Rigs()) {
+    if (rig.kind == kind) some.push_back(rig);
+  }
+  return some;
+}
+std::string NameOf(const testing::TestParamInfo<Rig>& info) {
+  return info.param.name;
+}
+INSTANTIATE_TEST_SUITE_P(Materials, Matrix, testing::ValuesIn(Of("materials")), NameOf);
+INSTANTIATE_TEST_SUITE_P(Lights, Matrix, testing::ValuesIn(Of("lights")), NameOf);
+INSTANTIATE_TEST_SUITE_P(Filters, Matrix, testing::ValuesIn(Of("filters")), NameOf);
+INSTANTIATE_TEST_SUITE_P(Motion, Matrix, testing::ValuesIn(Of("motion")), NameOf);
+INSTANTIATE_TEST_SUITE_P(Cameras, Matrix, testing::ValuesIn(Of("cameras")), NameOf);
 
 bool IsCovered(const std::string& what) {
   return std::any_of(Rigs().begin(), Rigs().end(), [&](const Rig& rig) {
@@ -253,10 +275,13 @@ TEST(MatrixIsWhole, EveryModeIsAColumn) {
   }
 }
 
-// Ten cells whose picture is as much too bright as they are said to notice.
+// Ten cells whose picture is as much too bright as they are said to notice. That is in 19 of 20 cases; with errors that
+// are smaller by a quarter it is all but sure.
 TEST(MatrixNotices, WhatIsPlantedInTenCells) {
   const double rate = SidakRate(kFamilyWise, Cells());
-  const Errors errors = WantedErrors(rate);
+  Errors errors = WantedErrors(rate);
+  errors.mode *= 0.75;
+  errors.reference *= 0.75;
   const char* rigs[] = {"matte_walls", "mix_with_mirror_object", "light_spot", "filter_gobo", "camera_spherical"};
   const char* modes[] = {"bdpt", "vcm --no-connect", "sppm --direct-photons", "light", "vcm"};
   int found = 0, planted = 0;
@@ -272,9 +297,12 @@ TEST(MatrixNotices, WhatIsPlantedInTenCells) {
       const auto mode =
           std::find_if(Modes().begin(), Modes().end(), [&](const Mode& m) { return m.name == modes[(i + 2 * k) % 5]; });
       ASSERT_NE(mode, Modes().end());
-      const Cell cell = RenderTo(bright, *mode, errors.mode, 7000 + 100 * i);
+      Cell cell;
+      const Verdict verdict = Measure(bright, *mode, errors.mode, 7000 + 100 * i, reference, rate, cell);
+      std::printf("[   info   ] %-24s %-24s %+.2f %% +- %.2f %%, largest |z| %.2f (%.2f)\n", rigs[i],
+                  mode->name.c_str(), 100 * verdict.bias, 100 * verdict.error, verdict.largestZ, verdict.threshold);
       ++planted;
-      found += Compare(cell.replicas, reference.replicas, rate).Agrees() ? 0 : 1;
+      found += verdict.Agrees() ? 0 : 1;
     }
   }
   EXPECT_EQ(found, planted);
