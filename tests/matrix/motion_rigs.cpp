@@ -41,6 +41,7 @@ void AddMotionRigs(std::vector<Rig>& rigs) {
                      Scope(Moving("Translate -0.8 0 0 ", "Translate 0.1 0 0 ") +
                            "Material \"thindielectric\" \"rgb transmittance\" [0.9 0.3 0.3] Translate 0.2 0.7 0.2 "
                            "Rotate -90 1 0 0 Shape \"disk\" \"float radius\" 0.4")));
+  rigs.back().cameraSeesDeltas = true;  // the lamp in the pane
   add("filter", Floor(Scope("Translate -0.1 1 0.2 Rotate -90 1 0 0 AttributeBegin " +
                             Moving("Translate -0.6 0 0 ", "Translate 0.6 0 0 ") +
                             "LightFilter \"barn\" \"string name\" \"doors\" \"float width\" 0.4 \"float height\" 1 "
