@@ -28,7 +28,9 @@ void AddNothing(std::vector<ExtremeCase>& cases) {
   dark("only a zero-area triangle",
        kCamera + "Shape \"trianglemesh\" \"integer indices\" [0 1 1] \"point3 P\" [0 0 0 1 0 0 0 1 0]\n");
   cases.push_back({"only a point", kCamera + "LightSource \"point\"\n", 0, kAll});
+  cases.back().warning = "no shape for light to fall on";
   cases.push_back({"only a sun", kCamera + "LightSource \"distant\"\n", 0, kAll});
+  cases.back().warning = "no shape for light to fall on";
   cases.push_back({"only a sky", kCamera + "LightSource \"infinite\" \"rgb L\" [0.3 0.3 0.3]\n", 0.3, kFromCamera});
   cases.push_back({"only a sky of a wide sun",
                    kCamera + "LightSource \"distant\" \"rgb L\" [0.3 0.3 0.3] \"float angle\" 360\n", 0.3,
@@ -51,6 +53,7 @@ void AddNothing(std::vector<ExtremeCase>& cases) {
                              "\"trianglemesh\" \"integer indices\" [0 1 1 0 0 2] "
                              "\"point3 P\" [0 0 0 1 0 0 0 1 0]\n",
                    0.3, kFromCamera});
+  cases.back().warning = "has no area";
   // A sphere far away that nothing else stands beside.
   cases.push_back({"only a sphere that shines, 1e6 away",
                    kHead + "LookAt 1e6 0 4 1e6 0 0 0 1 0\nCamera \"perspective\" \"float fov\" 10\nWorldBegin\n"

@@ -78,6 +78,7 @@ void AddZeroAreas(std::vector<ExtremeCase>& cases) {
            kPoint + "[0 1 0]\n" + lamp +
            "Shape \"trianglemesh\" \"integer indices\" [0 1 1 2 2 2] \"point3 P\" [0 0 0 1 0 0 2 0 0] AttributeEnd\n"),
        UnderPoint(rig, 1), kAll});
+  cases.back().warning = "has no area";
   // A lamp of a needle of a triangle beside a broad one.
   for (const double width : {1e-3, 1e-6}) {
     const double w = width, a = 0.25;
