@@ -75,7 +75,7 @@ void LightSubpathTracer::Trace(float time, Sampler& sampler, RenderCounts& count
     vertex.diffuse = flight.diffuse;
     vertex.specular = flight.specular;
     if (path.count == 0) {
-      // As in next-event estimation, the filter is asked of what the light sends, and not of what is left of it.
+      // Filters act on the emitted radiance, before the transmittance of thin surfaces, as in next-event estimation.
       if (!scene_.lighting->FilterLanding(*photon, vertex.receiver, vertex.diffuse, vertex.specular)) return;
       vertex.diffuse *= photon->passed;
       vertex.specular *= photon->passed;

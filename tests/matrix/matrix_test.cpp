@@ -19,6 +19,7 @@
 #include "matrix/matrix_rigs.h"
 #include "support/render_scene.h"
 #include "support/replicas.h"
+#include "support/temporary_folder.h"
 
 namespace lampyr::test {
 namespace {
@@ -37,17 +38,14 @@ double Noticed() {
   return text ? std::strtod(text, nullptr) : 0.07;
 }
 
+// Of the files that rigs read.
+const TemporaryFolder& Folder() {
+  static const TemporaryFolder folder;
+  return folder;
+}
+
 const std::vector<Rig>& Rigs() {
-  static const std::filesystem::path folder = [] {
-    const auto path = std::filesystem::temp_directory_path() / ("lampyr-matrix-" + std::to_string(getpid()));
-    std::filesystem::create_directories(path);
-    return path;
-  }();
-  static const std::vector<Rig> rigs = MatrixRigs(folder);
-  struct Cleaner {
-    ~Cleaner() { std::filesystem::remove_all(folder); }
-  };
-  static const Cleaner cleaner;
+  static const std::vector<Rig> rigs = MatrixRigs(Folder().Path());
   return rigs;
 }
 
@@ -65,9 +63,7 @@ int Cells() {
 
 BuiltScene Build(const std::string& text) {
   Diagnostics diagnostics(Diagnostics::Mode::Collect);
-  const std::filesystem::path folder =
-      std::filesystem::temp_directory_path() / ("lampyr-matrix-" + std::to_string(getpid()));
-  return BuildScene(ParseScene(text, (folder / "rig.pbrt").string(), diagnostics), {}, true, diagnostics);
+  return BuildScene(ParseScene(text, (Folder() / "rig.pbrt").string(), diagnostics), {}, true, diagnostics);
 }
 
 Replicas RenderMode(BuiltScene& built, const Mode& mode, int replicas, int samples, uint64_t seed) {
