@@ -123,7 +123,8 @@ struct EmissionSample {
   Normal3 normal{0.0f};      // of the light; the direction itself for the other kinds
   Vector3 direction{0.0f};   // unit, away from the light
   float emissionCosine = 1;  // |cosθ| between normal and direction for area lights, 1 otherwise
-  // What it hits before this distance stops it and is not lit: a portal's outer side. 0 where CanBeAimed.
+  // Distance along `direction` within which a surface blocks the emission and is not lit by it: the outer side of a
+  // portal. 0 where CanBeAimed.
   float shinesFrom = 0;
   Point3 uvw{0.0f};
   int patchIndex = 0;
@@ -222,8 +223,9 @@ class Light {
   virtual std::optional<LightEvaluation> EvaluateSamples(const LightContext& context, const LightHit& hit,
                                                          const Point3& P) const = 0;
 
-  // Whether photons may be aimed: sent in any direction from a place on the light, or, by a light at infinity, along
-  // any line of the direction it has chosen. False where the light shines through something that the photon must meet.
+  // Whether emission may be guided: started from a position on the light in any direction, or, by a light at infinity,
+  // along any line that is parallel to the direction it has chosen. False for a light that shines through an opening
+  // of its own (a portal), which the emitted ray has to pass.
   virtual bool CanBeAimed() const { return true; }
 
   // A photon by context.u and context.uDirection; nullopt when this choice of numbers emits nothing. An area light

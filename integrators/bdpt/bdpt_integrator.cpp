@@ -262,10 +262,9 @@ Color BdptIntegrator::Connect(Run& run, size_t lightCount) const {
   const float cosY = CosineAt(y, toCamera), cosZ = CosineAt(z, toCamera);
   const float arriving = AbsDot(toCamera, z.bsdf.ShadingFrame().z);
   ConnectedPath path;
-  path.value = (z.diffuse + z.specular) * fz.Sum() * leaving *
-               static_cast<float>(
-                   static_cast<double>(std::abs(cosY) * arriving * ArrivalCorrection(y.bsdf, y.toPrevious)) / squared) *
-               lighting_.FluxUnit();
+  const double geometric = static_cast<double>(std::abs(cosY) * arriving * ArrivalCorrection(y.bsdf, y.toPrevious)) / squared;
+  path.value = Product((z.diffuse + z.specular) * fz.Sum(), leaving,
+                       geometric * static_cast<double>(lighting_.FluxUnit()));
   if (path.value.IsBlack()) return path.value;
   path.s = static_cast<int>(lightCount) + 1;
   path.t = static_cast<int>(run.cameraCount) + 1;
@@ -310,8 +309,7 @@ Color BdptIntegrator::Merge(Run& run) const {
   const PathVertex& vertex = run.paths.camera[run.cameraCount - 1];
   const auto most = static_cast<size_t>(settings_.maxDepth) + 1;
   const double perMerge = 1 / run.merge;
-  const auto perDensity = static_cast<float>(1 / std::sqrt(run.merge));
-  const float unit = lighting_.FluxUnit();
+  const double perDensity = static_cast<double>(lighting_.FluxUnit()) / std::sqrt(run.merge);
   const std::span<const uint32_t> found =
       FindPhotons(*pass.map, vertex.point.position, pass.radius, run.paths.lookup, run.Counts());
   Color sum;
@@ -330,17 +328,16 @@ Color BdptIntegrator::Merge(Run& run) const {
     sum += value * static_cast<float>(weight);
     // In another order: a product that both share would not be rounded as it is where nobody wants layers.
     if (run.sinks.layers) [[unlikely]] {
-      const Color carried = (vertex.diffuse + vertex.specular) * perDensity * static_cast<float>(weight);
-      run.sinks.layers->Add(photon.group, carried * value * unit);
+      run.sinks.layers->Add(photon.group, Product(vertex.diffuse + vertex.specular, value, perDensity * weight));
     }
     if (pass.use) [[unlikely]] {
       const Color part = (vertex.diffuse + vertex.specular) * f.Sum();
       pass.use->Add(index, part.Average() * static_cast<float>(weight));
     }
     if (run.sinks.observer) [[unlikely]]
-      ReportMerge(run, photon, value * (vertex.diffuse + vertex.specular) * perDensity * unit, weight);
+      ReportMerge(run, photon, Product(vertex.diffuse + vertex.specular, value, perDensity), weight);
   }
-  return (vertex.diffuse + vertex.specular) * sum * perDensity * unit;
+  return Product(vertex.diffuse + vertex.specular, sum, perDensity);
 }
 
 Color BdptIntegrator::TraceCamera(Run& run, const Ray& cameraRay) const {

@@ -52,9 +52,9 @@ std::optional<SeenFromLens> SeeVertex(const RenderScene& scene, const PathVertex
   const Color arriving = scene.geometry->Transmission(ray, visibility::kCamera);
   if (arriving.IsBlack()) return std::nullopt;
   seen.cosTheta = CosineAt(vertex, seen.toCamera);
-  seen.value =
-      scattered * arriving * (std::abs(seen.cosTheta) * ArrivalCorrection(vertex.bsdf, toLight) * connection->Weight());
-  seen.value *= scene.lighting->FluxUnit();
+  const float importance = std::abs(seen.cosTheta) * ArrivalCorrection(vertex.bsdf, toLight) * connection->Weight();
+  seen.value = Product(scattered, arriving,
+                       static_cast<double>(importance) * static_cast<double>(scene.lighting->FluxUnit()));
   return seen;
 }
 

@@ -97,25 +97,24 @@ struct SppmIntegrator::Gathered final : PhotonGatherer {
       sum += (f.diffuse * photon.flux + f.specular * pass.map->SpecularFlux(photon)) *
              ArrivalCorrection(bsdf, photon.toPrevious);
       if (layers) [[unlikely]]
-        AddToLayers(photon, bsdf, f, throughput * PerArea(radius));
+        AddToLayers(photon, bsdf, f, throughput, PerArea(radius));
       if (pass.use) [[unlikely]]
         pass.use->Add(index, (throughput * f.Sum()).Average() * Importance(length));
     }
     if (sum.IsBlack()) return sum;
-    return throughput * sum * PerArea(radius) * own.scene_.lighting->FluxUnit();
+    return Product(throughput, sum, PerArea(radius));
   }
 
-  // 1/m², of a photon within the radius.
-  float PerArea(float radius) const {
+  // W/m², of a photon within the radius that carries a unit of flux.
+  double PerArea(float radius) const {
     const double area = static_cast<double>(kPi) * static_cast<double>(radius) * static_cast<double>(radius);
-    return static_cast<float>(1 / (pass.lightPaths * area));
+    return static_cast<double>(own.scene_.lighting->FluxUnit()) / (pass.lightPaths * area);
   }
   // Apart from the sum of all: a product that both shared would be rounded otherwise than where there are no layers.
   [[gnu::noinline]] void AddToLayers(const Photon& photon, const Bsdf& bsdf, const BsdfEvaluation& f,
-                                     const Color& factor) const {
+                                     const Color& throughput, double perArea) const {
     const Color scattered = f.diffuse * photon.flux + f.specular * pass.map->SpecularFlux(photon);
-    layers->Add(photon.group,
-                factor * scattered * ArrivalCorrection(bsdf, photon.toPrevious) * own.scene_.lighting->FluxUnit());
+    layers->Add(photon.group, Product(throughput, scattered * ArrivalCorrection(bsdf, photon.toPrevious), perArea));
   }
 
   const SppmIntegrator& own;

@@ -59,8 +59,8 @@ class CombinerFilter final : public LightFilter {
   }
 
  private:
-  // Of a product whose factors all are known, everywhere. It is finite, and 0 only where one of them is: what a float
-  // cannot hold is brought to its ends.
+  // The product of the children's modifiers, if all children are multiplied and each has a modifier; nullopt otherwise.
+  // Finite, and 0 only if one of the modifiers is 0: a product beyond the range of float is clamped to it.
   std::optional<float> FindRadianceModifier() const {
     using Limits = std::numeric_limits<float>;
     float product = 1;

@@ -80,10 +80,10 @@ class LightFilter {
   // The answer to a question, or null where the filter has none.
   virtual const std::vector<std::string>* GetProperty(FilterProperty) const { return nullptr; }
 
-  // How much of a white light gets through, about: a hint for selecting lights. Finite; no less than a tenth of what
-  // gets through on any edge, for a light is chosen the more rarely the less it is; and 0 only where nothing ever does,
-  // for such a light may never be chosen. nullopt: it cannot be said, and the light is selected as if there were no
-  // filter.
+  // The approximate transmittance for white light: a hint for selecting lights, which scales the light's estimate.
+  // Finite. At least a tenth of the transmittance of any edge, since a light is selected in proportion to it; 0 only if
+  // no edge transmits anything, since the light may then never be selected. nullopt: unknown, and the light is selected
+  // as if it had no filter.
   virtual std::optional<float> GetRadianceModifier() const { return std::nullopt; }
 
   // Whether it never changes anything, as with a density of 0: it is then not called.

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <vector>
 
 #include "base/byte_stream.h"
 #include "base/error.h"
@@ -27,7 +29,7 @@ struct SavedRow {
   uint32_t index = 0;
   std::array<uint32_t, LightLearning::kWidth> counts{};
   std::array<uint64_t, LightLearning::kWidth> squares{};
-  std::array<float, LightLearning::kWidth> known{}, unknown{};
+  std::array<float, LightLearning::kWidth> known{}, learned{};
 };
 
 }  // namespace
@@ -37,8 +39,15 @@ LightLearning::LightLearning(const BoundingSphere& scene)
       cellsPerUnit_(kCells / std::max(scene.radius, 1e-30f)),
       rows_(kRows),
       squares_(kRows * kWidth),
-      counts_(kRows * kWidth) {
-  Freeze();
+      counts_(kRows * kWidth),
+      used_(kRows / 64) {}
+
+template <class Visit>
+void LightLearning::ForUsedRows(const Visit& visit) const {
+  for (size_t word = 0; word < kRows / 64; ++word) {
+    for (uint64_t bits = used_[word].load(std::memory_order_relaxed); bits != 0; bits &= bits - 1)
+      visit(64 * word + static_cast<size_t>(std::countr_zero(bits)));
+  }
 }
 
 uint32_t LightLearning::RegionOf(const Receiver& receiver) const {
@@ -58,49 +67,56 @@ size_t LightLearning::IndexOf(uint32_t region, uint32_t node) {
 }
 
 void LightLearning::Record(uint32_t region, uint32_t node, int child, double ratio) {
-  const size_t i = IndexOf(region, node) * kWidth + static_cast<size_t>(child);
+  const size_t row = IndexOf(region, node), i = row * kWidth + static_cast<size_t>(child);
   const double bounded = ratio > 0 ? std::min(ratio, kLargestRatio) : 0.0;
   squares_[i].fetch_add(static_cast<uint64_t>(bounded * bounded * kUnit), std::memory_order_relaxed);
   counts_[i].fetch_add(1, std::memory_order_relaxed);
+  std::atomic<uint64_t>& used = used_[row / 64];
+  const uint64_t bit = uint64_t{1} << row % 64;
+  if (!(used.load(std::memory_order_relaxed) & bit)) used.fetch_or(bit, std::memory_order_relaxed);
 }
 
 void LightLearning::Freeze() {
-  for (size_t row = 0; row < kRows; ++row) {
+  ForUsedRows([&](size_t row) {
     for (size_t child = 0; child < kWidth; ++child) {
       const size_t i = row * kWidth + child;
       const double squares = static_cast<double>(squares_[i].load(std::memory_order_relaxed)) / kUnit;
-      const double all = static_cast<double>(counts_[i].load(std::memory_order_relaxed)) + kPrior;
+      const auto count = static_cast<double>(counts_[i].load(std::memory_order_relaxed)), all = count + kPrior;
       rows_[row].known[child] = static_cast<float>(squares / all);
-      rows_[row].unknown[child] = static_cast<float>(kPrior / all);
+      rows_[row].learned[child] = static_cast<float>(count / all);
     }
-  }
+  });
 }
 
 void LightLearning::CopyFrom(const LightLearning& other) {
   isRecording_ = other.isRecording_;
-  rows_ = other.rows_;
-  for (size_t i = 0; i < squares_.size(); ++i) {
-    squares_[i].store(other.squares_[i].load(std::memory_order_relaxed), std::memory_order_relaxed);
-    counts_[i].store(other.counts_[i].load(std::memory_order_relaxed), std::memory_order_relaxed);
-  }
+  const auto copy = [&](size_t row) {
+    rows_[row] = other.rows_[row];
+    for (size_t i = row * kWidth; i < (row + 1) * kWidth; ++i) {
+      squares_[i].store(other.squares_[i].load(std::memory_order_relaxed), std::memory_order_relaxed);
+      counts_[i].store(other.counts_[i].load(std::memory_order_relaxed), std::memory_order_relaxed);
+    }
+  };
+  ForUsedRows(copy);  // those that the other one has not used become 0
+  other.ForUsedRows(copy);
+  for (size_t word = 0; word < kRows / 64; ++word)
+    used_[word].store(other.used_[word].load(std::memory_order_relaxed), std::memory_order_relaxed);
 }
 
 // What counts was frozen earlier than the newest records: both are saved.
 void LightLearning::Save(ByteWriter& bytes) const {
   std::vector<SavedRow> rows;
-  for (uint32_t row = 0; row < kRows; ++row) {
-    SavedRow saved{row, {}, {}, {}, {}};
-    bool isKnown = false;
+  ForUsedRows([&](size_t row) {
+    SavedRow saved{static_cast<uint32_t>(row), {}, {}, {}, {}};
     for (size_t child = 0; child < kWidth; ++child) {
       const size_t i = row * kWidth + child;
       saved.counts[child] = counts_[i].load(std::memory_order_relaxed);
       saved.squares[child] = squares_[i].load(std::memory_order_relaxed);
       saved.known[child] = rows_[row].known[child];
-      saved.unknown[child] = rows_[row].unknown[child];
-      isKnown = isKnown || saved.counts[child] > 0;
+      saved.learned[child] = rows_[row].learned[child];
     }
-    if (isKnown) rows.push_back(saved);
-  }
+    rows.push_back(saved);
+  });
   bytes.Value<uint8_t>(isRecording_ ? 1 : 0);
   bytes.List(std::span<const SavedRow>(rows));
 }
@@ -109,13 +125,15 @@ void LightLearning::Load(ByteReader& bytes) {
   isRecording_ = bytes.Flag();
   for (const SavedRow& saved : bytes.List<SavedRow>(kRows)) {
     if (saved.index >= kRows) throw Error("it holds a number that cannot be");
+    used_[saved.index / 64].fetch_or(uint64_t{1} << saved.index % 64, std::memory_order_relaxed);
     for (size_t child = 0; child < kWidth; ++child) {
       const size_t i = saved.index * kWidth + child;
-      if (!(saved.known[child] >= 0) || !(saved.unknown[child] >= 0)) throw Error("it holds a number that cannot be");
+      if (!(saved.known[child] >= 0) || !(saved.learned[child] >= 0 && saved.learned[child] <= 1))
+        throw Error("it holds a number that cannot be");
       counts_[i].store(saved.counts[child], std::memory_order_relaxed);
       squares_[i].store(saved.squares[child], std::memory_order_relaxed);
       rows_[saved.index].known[child] = saved.known[child];
-      rows_[saved.index].unknown[child] = saved.unknown[child];
+      rows_[saved.index].learned[child] = saved.learned[child];
     }
   }
 }

@@ -13,8 +13,8 @@
 
 #include <atomic>
 #include <cstdint>
-#include <vector>
 
+#include "base/large_array.h"
 #include "lights/selection/importance.h"
 #include "lights/selection/light_selector.h"
 
@@ -31,9 +31,10 @@ class LightLearning {
 
   uint32_t RegionOf(const Receiver& receiver) const;
 
-  // The factor of a child's importance is the root of known + unknown · (the parent's factor)².
+  // The factor of a child's importance is the root of known + (1 - learned) · (the parent's factor)². All 0: nothing is
+  // known.
   struct alignas(64) Row {
-    float known[kWidth], unknown[kWidth];
+    float known[kWidth], learned[kWidth];
   };
   const Row& RowOf(uint32_t region, uint32_t node) const { return rows_[IndexOf(region, node)]; }
 
@@ -56,12 +57,18 @@ class LightLearning {
  private:
   static size_t IndexOf(uint32_t region, uint32_t node);
 
+  // Calls visit(row) for all rows that something was recorded in.
+  template <class Visit>
+  void ForUsedRows(const Visit& visit) const;
+
   bool isRecording_ = true;
   Point3 center_;
   float cellsPerUnit_;
-  std::vector<Row> rows_;
-  std::vector<std::atomic<uint64_t>> squares_;  // in units of 2^-24
-  std::vector<std::atomic<uint32_t>> counts_;
+  // Most rows of most scenes are never touched, and take no memory then.
+  SparseArray<Row> rows_;
+  SparseArray<std::atomic<uint64_t>> squares_;  // in units of 2^-24
+  SparseArray<std::atomic<uint32_t>> counts_;
+  SparseArray<std::atomic<uint64_t>> used_;  // a bit for each row
 };
 
 }  // namespace lampyr

@@ -50,7 +50,7 @@ uint32_t Choose(const float* weights, double sum, double& u) {
 // What was learned of the children of a node, whose own factor is `parentFactor`.
 Lanes Learned(const TreeReceiver& receiver, uint32_t node, float parentFactor) {
   const LightLearning::Row& row = receiver.learning->RowOf(receiver.region, node);
-  return simd::sqrt(Load(row.known) + parentFactor * parentFactor * Load(row.unknown));
+  return simd::sqrt(Load(row.known) + parentFactor * parentFactor * (1 - Load(row.learned)));
 }
 
 }  // namespace

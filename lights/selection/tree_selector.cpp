@@ -158,7 +158,7 @@ class TreeSelector final : public LightSelector {
     double far = farIrradiance_;
     if (place.learning) {
       const LightLearning::Row& row = place.learning->RowOf(place.region, LightTree::kNone);
-      far *= std::sqrt(static_cast<double>(row.known[0] + row.unknown[0]));
+      far *= std::sqrt(static_cast<double>(row.known[0] + (1 - row.learned[0])));
     }
     const double share = far / (far + near);
     return std::clamp(share, kSmallestGroup, 1 - kSmallestGroup);

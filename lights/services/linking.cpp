@@ -33,7 +33,8 @@ void WarnOfUnknown(const std::vector<std::string>& names, const FileLocation& wh
   }
 }
 
-// Of classes and what they tell apart: the product may be large where neither is.
+// The size of a linking table, which is the product of its rows and columns, is limited: files that are short can ask
+// for a table that no memory holds.
 void CheckTable(size_t rows, size_t columns, const FileLocation& where) {
   if (rows <= limits::kLinks / std::max(columns, size_t{1})) return;
   throw Error(where, "the attributes \"lighting\" and \"lightfilter\" make " + std::to_string(rows) +

@@ -43,7 +43,7 @@ class AdaptiveSquare {
   const std::vector<Estimate>& Cells() const { return cells_; }
   size_t CellOf(double x, double y) const;
 
-  // Of `count` functions at once, by new points in the same leaves.
+  // The integrals of `count` functions that share their points, by new points in the same leaves.
   using Functions = std::function<void(double x, double y, std::span<double> values)>;
   std::vector<Estimate> Integrate(size_t count, const Functions& f, Rng& rng) const;
 

@@ -1,4 +1,5 @@
-// What a light answers to some questions, bit by bit: for comparing two lights, or one light with itself.
+// The values that a light's methods return for a fixed set of inputs, compared bit by bit: two lights with each other,
+// or one light with itself.
 #pragma once
 
 #include "lights/suite/checks.h"

@@ -32,9 +32,10 @@ std::string InWords(const Enclosure& enclosure, const Receiver& receiver) {
 
 void CheckAreaEmissionDirections(const SuiteSubject& subject, const SuiteOptions& options, const Enclosure& enclosure,
                                  Rng& rng, SuiteReport& report) {
+  Rng places = MakeRngOfPlaces(subject, options);
   for (int i = 0; i < 3; ++i) {
     const std::string where = subject.caseName + " from point " + std::to_string(i);
-    const auto start = FindFixedStart(subject, FixedPart::Position, 1e-5 * enclosure.radius, rng);
+    const auto start = FindFixedStart(subject, FixedPart::Position, 1e-5 * enclosure.radius, places);
     if (!start) {
       // Nothing is emitted, or no random number decides on the position alone.
       const bool emits = subject.light->GetPowerEstimate(subject.context).Average() > 0;
@@ -43,6 +44,7 @@ void CheckAreaEmissionDirections(const SuiteSubject& subject, const SuiteOptions
     }
     DirectionEffort effort;
     effort.draws = options.photons / 2;
+    effort.budget *= options.effort;
     CheckDirectionsOf(subject, DirectionsFrom(subject, *start, static_cast<float>(2 * enclosure.radius)), where, effort,
                       rng, report);
   }

@@ -7,10 +7,16 @@
 
 namespace lampyr::suite {
 
-Rng MakeRng(const SuiteSubject& subject, const SuiteOptions& options) {
+Rng MakeRngOfPlaces(const SuiteSubject& subject, const SuiteOptions& options) {
   uint64_t hash = 0;
   for (const char c : subject.name + "|" + subject.caseName) hash = Hash(hash, static_cast<uint64_t>(c));
   return Rng(options.seed, hash);
+}
+
+Rng MakeRng(const SuiteSubject& subject, const SuiteOptions& options) {
+  SuiteOptions seeded = options;
+  seeded.seed = Hash(options.seed, static_cast<uint64_t>(options.look));
+  return MakeRngOfPlaces(subject, seeded);
 }
 
 LightContext RandomContext(const SuiteSubject& subject, Rng& rng) {

@@ -36,6 +36,8 @@ SuiteReport RunCases(size_t count, const SuiteOptions& options,
 
 // A generator of the case's own: results do not depend on what ran before, or on which thread.
 Rng MakeRng(const SuiteSubject& subject, const SuiteOptions& options);
+// The same in each look at a light (SuiteOptions::look): for what is looked at, as opposed to the samples it is judged by.
+Rng MakeRngOfPlaces(const SuiteSubject& subject, const SuiteOptions& options);
 LightContext RandomContext(const SuiteSubject& subject, Rng& rng);
 
 // A uniform direction.
@@ -155,6 +157,22 @@ Estimate SharpMean(Rng& rng, double relative, const Function& function) {
     if (estimate.error <= relative * std::abs(estimate.value)) break;
   }
   return estimate;
+}
+// Adds the check that pdfDirect integrates to at most 1 over all directions of `cap`: `emitting` is its integral where
+// light comes from, and `dark(direction)` the density where none does, 0 elsewhere.
+template <class Function>
+void CheckDarkDensity(const SuiteSubject& subject, const std::string& where, const Estimate& emitting, const Cap& cap,
+                      const Function& dark, Rng& rng, SuiteReport& report) {
+  constexpr int kDirections = 4096;
+  RunningMean mean;
+  for (int i = 0; i < kDirections; ++i) {
+    const auto w = static_cast<double>(rng.NextFloat());
+    mean.Add(cap.SolidAngle() * dark(cap.Direction(cap.wMax * w, static_cast<double>(rng.NextFloat()))));
+  }
+  const Estimate all = emitting + EstimateOf(mean);
+  report.AddProbability(subject.name, "integral", where + " with what is dark",
+                        all.value <= 1 ? 1.0 : EqualMeans(all, {1, 0}, 1e-3),
+                        InWords("the integral of pdfDirect, dark directions included,", all, {1, 0}));
 }
 // How often something that happens in few of the draws happens, and what it adds up to: as many draws as it takes to
 // see it some hundred times.

@@ -145,17 +145,17 @@ void CheckDirectionsOf(const SuiteSubject& subject, const DirectionSource& sourc
 
 void CheckDirectionsFinely(const SuiteSubject& subject, const SuiteOptions& options, SuiteReport& report) {
   const Light& light = *subject.light;
-  Rng rng = MakeRng(subject, options);
+  Rng rng = MakeRng(subject, options), places = MakeRngOfPlaces(subject, options);
   DirectionEffort effort;
   effort.draws = 200000;
   effort.cells = 400;
   effort.points = 2048;
-  effort.budget = 3 * DirectionQuadrature::kBudget;
+  effort.budget = 3 * options.effort * DirectionQuadrature::kBudget;
   effort.moments = true;
   const std::string where = subject.caseName + " finely";
   if (light.Kind() == LightKind::Area && (subject.model || light.Surface())) {
     const double radius = ExactSurface(subject).Around().radius;
-    const auto start = FindFixedStart(subject, FixedPart::Position, 1e-5 * radius, rng);
+    const auto start = FindFixedStart(subject, FixedPart::Position, 1e-5 * radius, places);
     if (!start) return;  // the ordinary test says so
     CheckDirectionsOf(subject, DirectionsFrom(subject, *start, static_cast<float>(2 * radius)), where, effort, rng,
                       report);
@@ -163,7 +163,7 @@ void CheckDirectionsFinely(const SuiteSubject& subject, const SuiteOptions& opti
     const auto photon = light.GenerateEmission(RandomContext(subject, rng));
     if (photon) CheckDirectionsOf(subject, DirectionsOfPoint(subject, photon->position), where, effort, rng, report);
   } else if (light.Kind() == LightKind::Infinite) {
-    CheckDirectionsOf(subject, DirectionsFromInfinity(subject, options.photons, rng), where, effort, rng, report);
+    CheckDirectionsOf(subject, DirectionsFromInfinity(subject, options.photons, places), where, effort, rng, report);
   }
 }
 

@@ -38,7 +38,7 @@ class DirectionQuadrature {
   // `worst`, if wanted: the cell that differs most, in words.
   double Test(std::span<const Vector3d> directions, double draws, int cells = 48, std::string* worst = nullptr);
 
-  // ∫ f dω of `count` functions at once, over points like those of Density().
+  // ∫ f dω of `count` functions that share their points, which are distributed like those of Density().
   using Functions = std::function<void(const Vector3d&, std::span<double> values)>;
   std::vector<Estimate> Integrate(size_t count, const Functions& f, Rng& rng) const;
 

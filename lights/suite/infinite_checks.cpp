@@ -22,7 +22,8 @@ class InfiniteChecker {
         isDelta_(subject.light->Kind() == LightKind::DeltaDirection),
         options_(options),
         report_(report),
-        rng_(MakeRng(subject, options)) {}
+        rng_(MakeRng(subject, options)),
+        places_(MakeRngOfPlaces(subject, options)) {}
 
   void Run() {
     for (const Receiver& receiver : Receivers()) CheckReceiver(receiver);
@@ -59,7 +60,7 @@ class InfiniteChecker {
   bool isDelta_;
   const SuiteOptions& options_;
   SuiteReport& report_;
-  Rng rng_;
+  Rng rng_, places_;
 };
 
 // All over the scene: a window has receivers before and behind it, near its plane and far from it.
@@ -118,7 +119,7 @@ void InfiniteChecker::CheckDirectionsAt(const Receiver& receiver) {
         if (!e || IsBlack(*e)) return {};
         return {Value(e->pdfDirect), Emitted(subject_, *e)};
       },
-      rng_);
+      rng_, options_.effort * DirectionQuadrature::kBudget);
   Estimate share, fluence;
   share = LatticeMean(rng_, 128, 32, [&](const float(&x)[4]) {
     LightContext context = subject_.context;
@@ -137,6 +138,13 @@ void InfiniteChecker::CheckDirectionsAt(const Receiver& receiver) {
   const std::string words = "receiver \"" + receiver.name + "\": ";
   report_.AddProbability(subject_.name, "integral", where, EqualMeans(quadrature.Density(), share, 1e-3),
                          InWords(words + "the integral of pdfDirect", quadrature.Density(), share));
+  CheckDarkDensity(
+      subject_, where, quadrature.Density(), Cap{},
+      [&](const Vector3d& direction) {
+        const auto e = light_.EvaluateSamples(subject_.context, HitAlong(Rounded(direction), P), P);
+        return e && IsBlack(*e) ? Value(e->pdfDirect) : 0.0;
+      },
+      rng_, report_);
   std::string worst;
   const double p = quadrature.Test(directions, options_.samples, 48, &worst);
   report_.AddProbability(subject_.name, "directions", where, p, words + worst);
@@ -187,7 +195,7 @@ void InfiniteChecker::CheckPhotons() {
 
 // Positions on the scene's disk, given a direction.
 void InfiniteChecker::CheckStartsGivenDirection(int index) {
-  const auto start = FindFixedStart(subject_, FixedPart::Direction, 1e-5, rng_);
+  const auto start = FindFixedStart(subject_, FixedPart::Direction, 1e-5, places_);
   const std::string where = Case(" disk " + std::to_string(index));
   if (!start) {
     // Nothing is emitted, or no random number decides on the direction alone.
@@ -220,7 +228,8 @@ void InfiniteChecker::CheckStartsGivenDirection(int index) {
   for (int i = 0; i < kHints; ++i) {
     if (const auto p = onDisk(light_.GenerateEmission(start->Draw(rng_.NextPoint2())))) hints.push_back(*p);
   }
-  AdaptiveSquare quadrature(kPiDouble * radius_ * radius_, hints, pdfAt, rng_, DirectionQuadrature::kBudget);
+  AdaptiveSquare quadrature(kPiDouble * radius_ * radius_, hints, pdfAt, rng_,
+                            options_.effort * DirectionQuadrature::kBudget);
   const Estimate share = LatticeMean(rng_, 128, 32, [&](const float(&v)[4]) {
     return onDisk(light_.GenerateEmission(start->Draw({v[0], v[1]}))) ? 1.0 : 0.0;
   });
@@ -243,7 +252,8 @@ void InfiniteChecker::CheckStartsGivenDirection(int index) {
 void InfiniteChecker::CheckEmissionDirections() {
   DirectionEffort effort;
   effort.draws = options_.photons;
-  CheckDirectionsOf(subject_, DirectionsFromInfinity(subject_, options_.photons, rng_), Case(" directions"), effort,
+  effort.budget *= options_.effort;
+  CheckDirectionsOf(subject_, DirectionsFromInfinity(subject_, options_.photons, places_), Case(" directions"), effort,
                     rng_, report_);
 }
 

@@ -59,6 +59,12 @@ class SuiteReport {
   void AddError(const std::string& light, const std::string& property, const std::string& caseName, double error,
                 double tolerance, const std::string& words = "");
   void Add(const SuiteReport& other);
+  // How many p-values are below `p`.
+  size_t CountBelow(double p) const;
+  // A second look at the same light, by other random numbers: each p-value below `doubtful` becomes the larger of the
+  // two. A fault is found in both; a quadrature that has missed a narrow feature, and knows nothing of its error, is
+  // not wrong at the same place again.
+  void Confirm(const SuiteReport& again, double doubtful);
   // Judges the p-values at a family-wise level over all that were added.
   std::vector<SuiteResult> Finish(double familyWise);
 
@@ -84,6 +90,8 @@ struct SuiteOptions {
   uint64_t seed = 1;
   int threads = 1;  // of RunPdfSuite; the results are the same with any number
   unsigned parts = kAllParts;
+  int look = 0;           // which of several at the same places, by other random numbers
+  int effort = 1;         // multiplies the number of points that a quadrature may take
   int thoroughEvery = 1;  // of RunPdfSuite: each n-th of the cases that would be looked at thoroughly
   // Called now and then with the part that is done, one call at a time. May be empty.
   std::function<void(double fraction)> progress;

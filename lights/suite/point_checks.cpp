@@ -206,7 +206,7 @@ void PointChecker::CheckEmissionDirections() {
         const auto sample = SampleAt(outward);
         return {sample ? Value(sample->pdfEmitDirection) : 0.0, Intensity(sample)};
       },
-      rng_, 4 * DirectionQuadrature::kBudget);
+      rng_, 4 * options_.effort * DirectionQuadrature::kBudget);
   const auto contextFor = [&](const float(&x)[4]) {
     LightContext context = subject_.context;
     context.u = {x[0], x[1]};

@@ -42,6 +42,7 @@ struct Cells {
 struct Quadrature {
   std::vector<double> cells;  // ∫ pdfDirect dω, where light arrives
   double integral = 0, fluence = 0;
+  double dark = 0;    // ∫ pdfDirect dω, where none does
   double leak = 0;    // radiance behind a one-sided surface
   double camera = 0;  // what a camera sees of it that is not what is evaluated
 };
@@ -140,8 +141,12 @@ Quadrature ShapeChecker::Integrate(const Point3& P, int subdivisions) const {
     if (!evaluation) return;
     const double radiance = Emitted(subject_, *evaluation), pdf = Value(evaluation->pdfDirect);
     if (oneSided_ && cosine < -1e-4) result.leak = std::max(result.leak, radiance > 0 ? 1.0 : 0.0);
-    if (IsHidden(element, P, inside) || radiance == 0 || std::abs(cosine) < kEdgeOn) return;
+    if (IsHidden(element, P, inside) || std::abs(cosine) < kEdgeOn) return;
     const double solidAngle = std::abs(cosine) / squared * area;
+    if (radiance == 0) {
+      result.dark += pdf * solidAngle;
+      return;
+    }
     result.cells[cell] += pdf * solidAngle;
     result.integral += pdf * solidAngle;
     result.fluence += radiance * solidAngle;
@@ -172,7 +177,7 @@ void ShapeChecker::CheckSample(const LightSample& sample, const Point3& P, doubl
 }
 
 void ShapeChecker::CheckReceiver(const Receiver& receiver) {
-  const int n = cells_.Subdivisions(9216);
+  const int n = cells_.Subdivisions(9216 * options_.effort);
   const Point3& P = receiver.position;
   const Quadrature fine = Integrate(P, n), coarse = Integrate(P, n / 2);
   const double error = std::abs(fine.integral - coarse.integral);
@@ -205,6 +210,9 @@ void ShapeChecker::CheckReceiver(const Receiver& receiver) {
   report_.AddError(subject_.name, "integral", where, std::abs(fine.integral - share.value),
                    2e-3 + 2 * error + 5.5 * share.error,
                    InWords(words + "the integral of pdfDirect", {fine.integral, error}, share));
+  const double all = fine.integral + fine.dark, allError = error + std::abs(fine.dark - coarse.dark);
+  report_.AddError(subject_.name, "integral", where + " with what is dark", std::max(all - 1, 0.0), 2e-3 + 2 * allError,
+                   InWords(words + "the integral of pdfDirect, dark directions included,", {all, allError}, {1, 0}));
   for (size_t i = 0; i < count; ++i) {
     expected[i] = options_.samples * fine.cells[i];
     // The last term: a cell that the horizon touches between the quadrature's points.
@@ -228,7 +236,7 @@ void ShapeChecker::CheckReceiver(const Receiver& receiver) {
 
 void ShapeChecker::CheckEmission() {
   const size_t count = cells_.Count();
-  const int n = cells_.Subdivisions(4096);
+  const int n = cells_.Subdivisions(4096 * options_.effort);
   std::vector<double> expected(count + 1, 0.0), errors(count + 1, 0.0), observed(count + 1, 0.0);
   double integral = 0;
   cells_.ForAll(model_, n, [&](size_t cell, int patch, const Element& element, double area) {

@@ -32,8 +32,10 @@ class StrataChecker {
   StrataChecker(const SuiteSubject& subject, const SuiteOptions& options, SuiteReport& report)
       : subject_(subject),
         light_(*subject.light),
+        effort_(options.effort),
         report_(report),
         rng_(MakeRng(subject, options)),
+        places_(MakeRngOfPlaces(subject, options)),
         surface_(subject) {}
 
   void Run() {
@@ -57,8 +59,9 @@ class StrataChecker {
 
   const SuiteSubject& subject_;
   const Light& light_;
+  int effort_;
   SuiteReport& report_;
-  Rng rng_;
+  Rng rng_, places_;
   ExactSurface surface_;
 };
 
@@ -66,7 +69,7 @@ std::vector<Receiver> StrataChecker::Receivers() {
   // Where it emits: some photon's place, on its side.
   std::optional<EmissionSample> photon;
   for (int i = 0; i < 256 && !photon; ++i) {
-    photon = light_.GenerateEmission(RandomContext(subject_, rng_));
+    photon = light_.GenerateEmission(RandomContext(subject_, places_));
     if (photon && (photon->pdfEmitDirection.IsZero() || IsBlack(*photon))) photon.reset();
   }
   if (!photon) return {};
@@ -137,7 +140,7 @@ void StrataChecker::Integrate(const Point3& P, int first, const Shares& seen, Sh
     const double pdf = Value(e->pdfDirect);
     return stratum == first ? Integrands{pdf, 0} : Integrands{0, pdf};
   };
-  const auto [one, other] = surface_.IntegrateDirections(P, hints, density, rng_, kBudget);
+  const auto [one, other] = surface_.IntegrateDirections(P, hints, density, rng_, effort_ * kBudget);
   promised.of[first] = one;
   if (first + 1 < kStrata) promised.of[first + 1] = other;
   // A strip, as there is around whatever is round, or in a corner, may not be found among directions: then it is on the

@@ -101,7 +101,8 @@ void SurfaceReceiverChecker::Check(const Receiver& receiver) {
     return sample->direction;
   });
   DirectionQuadrature quadrature(
-      CapTowards(tracer_.Around(), P), hints, [&](const Vector3d& direction) { return At(P, direction); }, rng_);
+      CapTowards(tracer_.Around(), P), hints, [&](const Vector3d& direction) { return At(P, direction); }, rng_,
+      options_.effort * DirectionQuadrature::kBudget);
   std::vector<Vector3d> directions;
   SampleErrors errors;
   for (int i = 0; i < options_.samples; ++i) {
@@ -135,6 +136,15 @@ void SurfaceReceiverChecker::Check(const Receiver& receiver) {
   constexpr double kSeams = 1e-4;
   probability("integral", EqualMeans(quadrature.Density(), counted.share, 1e-3, kSeams),
               InWords("the integral of pdfDirect", quadrature.Density(), counted.share));
+  CheckDarkDensity(
+      subject_, where, quadrature.Density(), CapTowards(tracer_.Around(), P),
+      [&](const Vector3d& direction) {
+        const auto found = tracer_.Trace(Point3d(P), direction);
+        if (!found || std::abs(glm::dot(found->normal, direction)) < kEdgeOn) return 0.0;
+        const auto e = light_.EvaluateSamples(subject_.context, HitFrom(*found, direction), P);
+        return e && IsBlack(*e) ? Value(e->pdfDirect) : 0.0;
+      },
+      rng_, report_);
   std::string worst;
   const double p = quadrature.Test(directions, options_.samples, 48, &worst);
   probability("directions", p, worst);
@@ -155,13 +165,14 @@ void CheckSurfaceReceivers(const SuiteSubject& subject, const SuiteOptions& opti
                            Rng& rng, SuiteReport& report) {
   // Some point of the surface, by lines through its box.
   std::optional<SurfaceHit> some;
+  Rng places = MakeRngOfPlaces(subject, options);
   tracer.IntegrateOver(
       1, [](const SurfaceHit&) { return 0; },
       [&](const SurfaceHit& hit) {
         if (!some) some = hit;
         return 0.0;
       },
-      rng);
+      places);
   if (!some) return;
   SurfaceReceiverChecker checker(subject, options, tracer, rng, report);
   for (const Receiver& receiver : ReceiversAround(tracer.Around(), Point3(some->position), some->normal)) {

@@ -77,11 +77,6 @@ std::string MissingOf(const std::vector<Part>& parts) {
   return missing;
 }
 
-bool IsSameFile(const std::filesystem::path& a, const std::filesystem::path& b) {
-  std::error_code ignored;
-  return std::filesystem::equivalent(a, b, ignored);
-}
-
 // A part is what hours of rendering have made.
 void CheckPartsStay(const MergeOptions& options) {
   std::vector<std::pair<std::filesystem::path, const char*>> written = {{options.output, "--output"}};

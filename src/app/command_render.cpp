@@ -22,6 +22,7 @@
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "base/version.h"
+#include "scene/referenced_files.h"
 
 namespace lampyr {
 
@@ -42,6 +43,29 @@ std::filesystem::path OutputPath(const RenderOptions& options, const RenderSetti
   }
   CheckImageOutput(path, "--output", options.png);
   return path;
+}
+
+// What the scene is made of is not written over.
+void CheckSceneStays(const RenderOptions& options, const SceneDescription& scene, const RenderSettings& settings) {
+  const std::filesystem::path image = OutputPath(options, settings);
+  std::vector<std::pair<std::filesystem::path, const char*>> written = {{image, "--output"}};
+  if (options.png) written.emplace_back(std::filesystem::path(image).replace_extension(".png"), "--png");
+  if (options.stats) written.emplace_back(*options.stats, "--stats");
+  if (options.checkpointSeconds) written.emplace_back(CheckpointPath(image), "--checkpoint");
+  std::erase_if(written, [](const auto& file) {
+    std::error_code ignored;
+    return !std::filesystem::exists(file.first, ignored);
+  });
+  if (written.empty()) return;
+  std::vector<std::string> read = ReferencedFiles(scene);
+  read.insert(read.end(), scene.files.begin(), scene.files.end());
+  for (const auto& [file, option] : written) {
+    for (const std::string& part : read) {
+      if (!IsSameFile(file, part)) continue;
+      throw UsageError(std::string(option) + ": \"" + file.string() + "\" is a file that the scene reads, \"" + part +
+                       "\": it would be lost; write to another file");
+    }
+  }
 }
 
 // An image too large for the machine is told before the system ends the process for it. The film is kept twice
@@ -349,8 +373,11 @@ int RenderLoaded(const RenderOptions& options, const LoadedScene& loaded) {
 
 int RunRender(const RenderOptions& options) {
   OutliveSurroundings();
-  const LoadedScene loaded =
-      LoadScene(options.scene, options.plugins, options.overrides, options.strict, options.robust, KeepsState(options));
+  const LoadedScene loaded = LoadScene(
+      options.scene, options.plugins, options.overrides, options.strict, options.robust, KeepsState(options),
+      [&](const SceneDescription& scene, const RenderSettings& settings) {
+        CheckSceneStays(options, scene, settings);
+      });
   int exitCode = kExitFailed;
   RunForeignCode(loaded.types, [&] { exitCode = RenderLoaded(options, loaded); });
   return exitCode;

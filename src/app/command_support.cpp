@@ -118,7 +118,8 @@ void WriteText(const std::filesystem::path& path, const std::string& text) {
 }
 
 LoadedScene LoadScene(const std::filesystem::path& scene, const PluginOptions& plugins,
-                      const RenderOverrides& overrides, bool strict, bool robust, bool namesFiles) {
+                      const RenderOverrides& overrides, bool strict, bool robust, bool namesFiles,
+                      const SceneCheck& check) {
   Diagnostics diagnostics(strict ? Diagnostics::Mode::Strict : Diagnostics::Mode::Print);
   try {
     const Progress clock(true);
@@ -134,12 +135,18 @@ LoadedScene LoadScene(const std::filesystem::path& scene, const PluginOptions& p
     RunForeignCode(loaded.types,
                    [&] { loaded.built = BuildScene(description, overrides, robust, diagnostics, loaded.types); });
     loaded.buildSeconds = clock.Seconds() - loaded.parseSeconds;
+    if (check) check(description, loaded.built.settings);
     return loaded;
   } catch (const UsageError&) {
     throw;
   } catch (const Error& error) {
     throw UsageError(error.Where(), error.Text());
   }
+}
+
+bool IsSameFile(const std::filesystem::path& a, const std::filesystem::path& b) {
+  std::error_code ignored;
+  return std::filesystem::equivalent(a, b, ignored);
 }
 
 }  // namespace lampyr

@@ -39,9 +39,14 @@ struct LoadedScene {
   std::vector<std::string> files;  // that it names, and those of plugins, if they are asked for
   double parseSeconds = 0, buildSeconds = 0;
 };
-// Reads and builds, with the plugins that are asked for and those that the scene names, where it may. All that goes wrong here is the
-// scene's fault, or that of a plugin: a UsageError.
+// Reads and builds, with the plugins that are asked for and those that the scene names, where it may. All that goes
+// wrong here is the scene's fault, or that of a plugin: a UsageError. `check`, if given, is called last.
+using SceneCheck = std::function<void(const SceneDescription&, const RenderSettings&)>;
 LoadedScene LoadScene(const std::filesystem::path& scene, const PluginOptions& plugins,
-                      const RenderOverrides& overrides, bool strict, bool robust, bool namesFiles = false);
+                      const RenderOverrides& overrides, bool strict, bool robust, bool namesFiles = false,
+                      const SceneCheck& check = {});
+
+// Whether both are there and one file, by whatever links.
+bool IsSameFile(const std::filesystem::path& a, const std::filesystem::path& b);
 
 }  // namespace lampyr

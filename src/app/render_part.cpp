@@ -15,7 +15,7 @@ namespace lampyr {
 namespace {
 
 // The last digit is the version of what stands before it.
-constexpr std::array<char, 12> kMark = {'l', 'a', 'm', 'p', 'y', 'r', ' ', 'p', 'a', 'r', 't', '1'};
+constexpr std::array<char, 12> kMark = {'l', 'a', 'm', 'p', 'y', 'r', ' ', 'p', 'a', 'r', 't', '2'};
 constexpr size_t kEndBytes = sizeof(uint64_t) + sizeof(uint32_t) + kMark.size();
 constexpr uint64_t kMostEntries = 1 << 16;
 constexpr int kMostPixels = 1 << 16;  // across

@@ -53,4 +53,23 @@ class LargeArray {
   size_t size_ = 0;
 };
 
+// `count` values of all bits 0, whose memory the system provides as it is touched. `count` is not 0. Not copyable.
+template <class T>
+class SparseArray {
+  static_assert(std::is_trivially_destructible_v<T>);
+
+ public:
+  explicit SparseArray(size_t count) : data_(static_cast<T*>(TakePagesOnDemand(count * sizeof(T)))), size_(count) {}
+  ~SparseArray() { GiveBackPages(data_, size_ * sizeof(T)); }
+  SparseArray(const SparseArray&) = delete;
+  SparseArray& operator=(const SparseArray&) = delete;
+
+  T& operator[](size_t i) { return data_[i]; }
+  const T& operator[](size_t i) const { return data_[i]; }
+
+ private:
+  T* data_;
+  size_t size_;
+};
+
 }  // namespace lampyr

@@ -19,4 +19,23 @@ void* TakeLargePages(size_t bytes) {
   return memory;
 }
 
+void* TakePagesOnDemand(size_t bytes) {
+#if defined(__linux__)
+  void* memory = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (memory == MAP_FAILED) throw std::bad_alloc();
+#else
+  void* memory = std::calloc(bytes, 1);
+  if (!memory) throw std::bad_alloc();
+#endif
+  return memory;
+}
+
+void GiveBackPages(void* memory, [[maybe_unused]] size_t bytes) {
+#if defined(__linux__)
+  munmap(memory, bytes);
+#else
+  std::free(memory);
+#endif
+}
+
 }  // namespace lampyr

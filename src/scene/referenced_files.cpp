@@ -43,7 +43,7 @@ class Collector {
 std::vector<std::string> ReferencedFiles(const SceneDescription& scene) {
   Collector collector;
   for (const StatementDescription* statement :
-       {&scene.camera, &scene.film, &scene.pixelFilter, &scene.sampler, &scene.integrator, &scene.accelerator}) {
+       {&scene.camera, &scene.pixelFilter, &scene.sampler, &scene.integrator, &scene.accelerator}) {
     collector.Add(*statement);
   }
   for (const auto& material : scene.materials) collector.Add(material);

@@ -94,7 +94,8 @@ struct PluginReference {
 
 struct SceneDescription {
   std::filesystem::path file;
-  std::string contentHash;  // of all the text that was read, hexadecimal
+  std::string contentHash;         // of all the text that was read, hexadecimal
+  std::vector<std::string> files;  // the scene's own and those that it includes
 
   StatementDescription camera, film, pixelFilter, sampler, integrator, accelerator;
   Placement cameraToWorld;

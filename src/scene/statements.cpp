@@ -66,6 +66,7 @@ SceneDescription SceneParser::Parse(std::string text) {
   CountInstances();
   scene_.file = file_;
   scene_.contentHash = tokens_.HashOfAll();
+  scene_.files = tokens_.Files();
   return std::move(scene_);
 }
 

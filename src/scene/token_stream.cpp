@@ -77,4 +77,10 @@ void TokenStream::RestoreBottom(size_t bottom) {
   bottom_ = bottom;
 }
 
+std::vector<std::string> TokenStream::Files() const {
+  std::vector<std::string> files = {*sceneFile_};
+  for (const std::filesystem::path& file : seen_) files.push_back(file.string());
+  return files;
+}
+
 }  // namespace lampyr

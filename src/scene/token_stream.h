@@ -34,6 +34,8 @@ class TokenStream {
 
   const std::shared_ptr<const std::string>& SceneFile() const { return sceneFile_; }
   std::string HashOfAll() const { return hash_.Hex(); }
+  // The scene's file and those that it included or imported, each once.
+  std::vector<std::string> Files() const;
 
  private:
   struct OpenedFile {

@@ -190,6 +190,31 @@ TEST_F(Harmless, MergeKeepsItsParts) {
   EXPECT_EQ(Run("merge p1.exr p2.exr -o whole.exr --quiet").exitCode, 0);
 }
 
+// Textures, the scene's own text and what it includes.
+TEST_F(Harmless, RenderKeepsWhatItsSceneReads) {
+  Image sky(4, 4, {"R", "G", "B"});
+  WriteExr(folder_ / "sky.exr", sky, ExrPrecision::Float);
+  Write("lights.pbrt", "LightSource \"infinite\" \"string filename\" \"sky.exr\"\n");
+  Write("reads.pbrt",
+        "Film \"rgb\" \"integer xresolution\" 4 \"integer yresolution\" 4 \"string filename\" \"again.exr\"\n"
+        "Camera \"perspective\"\nWorldBegin\nInclude \"lights.pbrt\"\nShape \"sphere\"\n");
+  fs::create_symlink("sky.exr", folder_ / "link.exr");
+  const std::string before = Read("sky.exr"), text = Read("lights.pbrt");
+  for (const auto& [options, file] : {std::pair("-o sky.exr", "--output: \"sky.exr\""),
+                                      {"-o link.exr", "--output: \"link.exr\""},
+                                      {"--stats lights.pbrt", "--stats: \"lights.pbrt\""},
+                                      {"--stats reads.pbrt", "--stats: \"reads.pbrt\""}}) {
+    const Outcome outcome = Run(std::string("render reads.pbrt --quiet --spp 1 ") + options);
+    EXPECT_EQ(outcome.exitCode, 2) << options;
+    EXPECT_THAT(outcome.output, HasSubstr(std::string("error: ") + file + " is a file that the scene reads"));
+  }
+  EXPECT_EQ(Read("sky.exr"), before);
+  EXPECT_EQ(Read("lights.pbrt"), text);
+  // A picture of its own is written over, and is no part of what the render is made of.
+  EXPECT_EQ(Run("render reads.pbrt --quiet --spp 2 --checkpoint 1000").exitCode, 0);
+  EXPECT_EQ(Run("render reads.pbrt --quiet --spp 4 --checkpoint 1000 --resume").exitCode, 0);
+}
+
 TEST_F(Harmless, BrokenPngsAreToldOnce) {
   Image image(4, 4, {"R", "G", "B"});
   WritePng(folder_ / "whole.png", image, 0, ToneMap::Clip);

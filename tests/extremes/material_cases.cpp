@@ -146,9 +146,16 @@ void AddSheets(std::vector<ExtremeCase>& cases) {
       {"sun of 1e30 through a sheet that lets 1e-30 pass",
        rig.Scene("LightSource \"distant\" \"rgb L\" [3e30 3e30 3e30] \"point3 from\" [0 1 0] \"point3 to\" [0 0 0]\n" +
                  stack(1, "\"float eta\" 1 \"rgb transmittance\" [1e-30 1e-30 1e-30]")),
-       1.5 / M_PI,
-       // vcm is 7 % low there: what a photon of 1e-30 brings to a merge of little weight is less than a float holds.
-       {"path", "bdpt", "sppm"}});
+       1.5 / M_PI, kAll, 64, 2048});
+  cases.back().noise = 0.15;
+  FloorRig above = rig;
+  above.eye = 1;
+  cases.push_back({"sun of 1e34 through a sheet that lets 1e-20 pass, seen through it",
+                   above.Scene("LightSource \"distant\" \"rgb L\" [3e34 3e34 3e34] \"point3 from\" [0 1 0] \"point3 "
+                               "to\" [0 0 0]\n" +
+                               stack(1, "\"float eta\" 1 \"rgb transmittance\" [1e-20 1e-20 1e-20]")),
+                   1.5e-6 / M_PI, kAll, 64, 2048});
+  cases.back().noise = 0.15;
   cases.push_back({"sun through a sheet that lets nothing pass",
                    rig.Scene(sun + stack(1, "\"float eta\" 1 \"rgb transmittance\" [0 0 0]")), 0, kAll});
 }

@@ -20,7 +20,7 @@ std::vector<std::byte> Sealed(std::string_view bytes) {
   };
   append(&size, sizeof size);
   append(&checksum, sizeof checksum);
-  append("lampyr part1", 12);
+  append("lampyr part2", 12);
   return file;
 }
 

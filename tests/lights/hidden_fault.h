@@ -36,6 +36,7 @@ enum class HiddenFault {
   PdfOffFarAway,     // 5 % beyond 150 sizes of the light
   PdfOffNear,        // 20 % within 0.05 sizes
   PdfOffOfDiscrete,  // of a delta, far away
+  PdfWhereDark,      // 1 per sr where it is 0
   // pdfEmitDirection, everywhere that it is reported.
   FineRipple,  // 5 %, many waves
   Ripple,      // 5 %, few of them
@@ -145,6 +146,7 @@ inline std::optional<LightEvaluation> HiddenFaultLight::EvaluateSamples(const Li
   auto evaluation = Sound().EvaluateSamples(context, hit, P);
   if (!evaluation) return evaluation;
   Spoil(context, hit.direction, std::abs(glm::dot(hit.normal, hit.direction)), hit.distance, *evaluation);
+  if (Is(HiddenFault::PdfWhereDark) && evaluation->pdfDirect.IsZero()) evaluation->pdfDirect = PdfSolidAngle(1);
   // Right where the sample was made just before.
   if (Is(HiddenFault::EvaluationOfLastSample) && lastPdf_ > 0 && !evaluation->pdfDirect.IsZero())
     evaluation->pdfDirect = PdfSolidAngle(lastPdf_);

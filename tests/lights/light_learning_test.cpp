@@ -22,7 +22,7 @@ Receiver At(const Point3& position, const Normal3& normal) {
 // Of a child whose parent has this factor.
 double FactorOf(const LightLearning& learning, uint32_t region, uint32_t node, int child, double parent = 1) {
   const LightLearning::Row& row = learning.RowOf(region, node);
-  return std::sqrt(static_cast<double>(row.known[child]) + static_cast<double>(row.unknown[child]) * parent * parent);
+  return std::sqrt(static_cast<double>(row.known[child]) + (1 - static_cast<double>(row.learned[child])) * parent * parent);
 }
 
 TEST(LightLearning, WithoutRecordsEverythingIsAsItsParent) {
@@ -77,7 +77,7 @@ TEST(LightLearning, ThreadsAndOrderDoNotMatter) {
   for (uint32_t region = 0; region < 3; ++region) {
     for (int child = 0; child < LightLearning::kWidth; ++child) {
       EXPECT_EQ(one.RowOf(region, 0).known[child], many.RowOf(region, 0).known[child]);
-      EXPECT_EQ(one.RowOf(region, 0).unknown[child], many.RowOf(region, 0).unknown[child]);
+      EXPECT_EQ(one.RowOf(region, 0).learned[child], many.RowOf(region, 0).learned[child]);
     }
   }
 }
