@@ -18,7 +18,7 @@ struct PhotonStatistics {
   uint64_t rejected = 0;                   // not finite
   double buildSeconds = 0;                 // of all maps
   double guideGain = 1;                    // EmissionLearning::Gain
-  int guideTargets = 0;                    // that photons are aimed at; 0: they are not
+  int64_t guideTargets = 0;                // that photons are aimed at; 0: they are not
   double firstRadius = 0, lastRadius = 0;  // scene units; 0: by the pixel's size where it looks
 };
 

@@ -26,7 +26,7 @@ constexpr double kUnit = 0x1p24;
 
 // A row of which something is known, as it is saved.
 struct SavedRow {
-  uint32_t index = 0;
+  uint64_t index = 0;
   std::array<uint32_t, LightLearning::kWidth> counts{};
   std::array<uint64_t, LightLearning::kWidth> squares{};
   std::array<float, LightLearning::kWidth> known{}, learned{};
@@ -107,7 +107,7 @@ void LightLearning::CopyFrom(const LightLearning& other) {
 void LightLearning::Save(ByteWriter& bytes) const {
   std::vector<SavedRow> rows;
   ForUsedRows([&](size_t row) {
-    SavedRow saved{static_cast<uint32_t>(row), {}, {}, {}, {}};
+    SavedRow saved{row, {}, {}, {}, {}};
     for (size_t child = 0; child < kWidth; ++child) {
       const size_t i = row * kWidth + child;
       saved.counts[child] = counts_[i].load(std::memory_order_relaxed);

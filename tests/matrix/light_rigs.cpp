@@ -32,7 +32,9 @@ bool IsAtInfinity(const std::string& type) {
 }
 
 // The k-th place in the room, out of sight, or over the floor.
-std::string Placement(const std::string& type, size_t k) {
+std::string Placement(const std::string& type, const std::string& block, size_t k) {
+  // It shines along +z unless it says from where.
+  if (type == "distant" && block.find("point3 from") == std::string::npos) return "Rotate 90 1 0 0 ";
   if (type == "portal") return "Translate -0.1 0.9 0.1 Rotate -90 1 0 0 Scale 0.5 0.5 0.5 ";
   if (IsAtInfinity(type)) return "Rotate -90 1 0 0 ";
   if (k == 0) return "Translate 0.2 0.25 0 Scale 0.25 0.25 0.25 ";
@@ -43,7 +45,7 @@ std::string Placement(const std::string& type, size_t k) {
 }
 
 std::string Statement(const LightType& type, const std::string& block, size_t k, const std::string& more = "") {
-  const std::string place = Placement(type.name, k);
+  const std::string place = Placement(type.name, block, k);
   if (!type.isAreaLight) return Scope(place + "LightSource \"" + type.name + "\" " + block + more);
   return Scope(place + "Material \"diffuse\" \"rgb reflectance\" [0.2 0.2 0.2] AreaLightSource \"" + type.name + "\" " +
                block + more +
@@ -52,8 +54,10 @@ std::string Statement(const LightType& type, const std::string& block, size_t k,
                              "indices\" [0 1 2 0 2 3] \"point2 uv\" [0 0 1 0 1 1 0 1]"));
 }
 
+// The whole room is seen: what a light projects has edges, and photons blur one that is the border of the picture out of
+// it, or into it.
 std::string Lit(const LightType& type, const std::string& lights) {
-  return IsAtInfinity(type.name) ? Floor(lights) : Room(kMatte, lights);
+  return IsAtInfinity(type.name) ? Floor(lights) : Room(kMatte, lights, "Camera \"spherical\"\n");
 }
 
 }  // namespace
@@ -146,7 +150,7 @@ void AddFilterRigs(std::vector<Rig>& rigs) {
                                                              "\"string linkingGroups\" \"dim\"");
   rigs.push_back({"filter_linking",
                   lit(grouped, Scope("Attribute \"lightfilter\" \"string subset\" [ \"dim\" ] Material \"diffuse\" "
-                                     "\"rgb reflectance\" [0.7 0.7 0.7] Translate -0.4 0.15 0.3 Shape \"sphere\" "
+                                     "\"rgb reflectance\" [0.7 0.7 0.7] Translate -0.4 0.2 0.3 Shape \"sphere\" "
                                      "\"float radius\" 0.15")),
                   {"filter linking"}});
 }

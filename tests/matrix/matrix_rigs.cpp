@@ -28,7 +28,7 @@ std::string Floor(const std::string& above, const std::string& ball, int depth) 
          "LookAt -0.6 1.6 1.2  -0.25 0 0.2  0 1 0\nCamera \"perspective\" \"float fov\" 26\nWorldBegin\n" + above +
          Scope(kMatte + "Rotate -90 1 0 0 Shape \"disk\" \"float radius\" 1") +
          Scope((ball.empty() ? "Material \"diffuse\" \"rgb reflectance\" [0.3 0.5 0.7]" : ball) +
-               " Translate 0.2 0.25 0 Shape \"sphere\" \"float radius\" 0.25");
+               " Translate 0.2 0.3 0 Shape \"sphere\" \"float radius\" 0.25");
 }
 
 std::string Lamp(const std::string& place, double radius, const std::string& more) {

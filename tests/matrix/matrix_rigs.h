@@ -41,7 +41,8 @@ inline const std::string kCamera = "Camera \"perspective\" \"float fov\" 80\n";
 std::string Room(const std::string& material, const std::string& inside, const std::string& camera = kCamera,
                  int depth = 3);
 
-// A floor of radius 1 under the sky with a ball on it; its middle is seen.
+// A floor of radius 1 under the sky with a ball over it; its middle is seen. The ball does not touch the floor: photons
+// on the lower side of the floor would be merged with what the ball receives from below.
 std::string Floor(const std::string& above, const std::string& ball = "", int depth = 3);
 
 // A glowing ball of radius `radius`.
