@@ -123,10 +123,11 @@ TEST_F(WrongTypes, AreCaughtEmitting) {
        {"emission-integral", "power"},
        {"power-estimate"}},
       {Fault::EmitDensityOff, kPoints, {"power"}, {"power-estimate"}},
+      // So few photons are left of a sun that there may be none to look at.
       {Fault::PhotonsNotWhereTheyEmit,
        kSurfaces + kSkies + Lights{"point", "spot", "goniometric", "portal"},
        {"power"},
-       {"power-estimate"}},
+       {"power-estimate", "emission-positions"}},
       {Fault::DarkPhotonsAreNone, kSurfaces, {"emission-origin"}, follow},
       {Fault::PlaceDependsOnDirection, kSurfaces, {"emission-origin"}, {"emission-directions"}},
       // There it is the direction that must not depend on the place.
