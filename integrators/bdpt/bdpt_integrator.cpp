@@ -262,9 +262,10 @@ Color BdptIntegrator::Connect(Run& run, size_t lightCount) const {
   const float cosY = CosineAt(y, toCamera), cosZ = CosineAt(z, toCamera);
   const float arriving = AbsDot(toCamera, z.bsdf.ShadingFrame().z);
   ConnectedPath path;
-  const double geometric = static_cast<double>(std::abs(cosY) * arriving * ArrivalCorrection(y.bsdf, y.toPrevious)) / squared;
-  path.value = Product((z.diffuse + z.specular) * fz.Sum(), leaving,
-                       geometric * static_cast<double>(lighting_.FluxUnit()));
+  const double geometric =
+      static_cast<double>(std::abs(cosY) * arriving * ArrivalCorrection(y.bsdf, y.toPrevious)) / squared;
+  path.value =
+      Product((z.diffuse + z.specular) * fz.Sum(), leaving, geometric * static_cast<double>(lighting_.FluxUnit()));
   if (path.value.IsBlack()) return path.value;
   path.s = static_cast<int>(lightCount) + 1;
   path.t = static_cast<int>(run.cameraCount) + 1;

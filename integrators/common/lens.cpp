@@ -53,8 +53,8 @@ std::optional<SeenFromLens> SeeVertex(const RenderScene& scene, const PathVertex
   if (arriving.IsBlack()) return std::nullopt;
   seen.cosTheta = CosineAt(vertex, seen.toCamera);
   const float importance = std::abs(seen.cosTheta) * ArrivalCorrection(vertex.bsdf, toLight) * connection->Weight();
-  seen.value = Product(scattered, arriving,
-                       static_cast<double>(importance) * static_cast<double>(scene.lighting->FluxUnit()));
+  seen.value =
+      Product(scattered, arriving, static_cast<double>(importance) * static_cast<double>(scene.lighting->FluxUnit()));
   return seen;
 }
 

@@ -119,7 +119,7 @@ void InfiniteChecker::CheckDirectionsAt(const Receiver& receiver) {
         if (!e || IsBlack(*e)) return {};
         return {Value(e->pdfDirect), Emitted(subject_, *e)};
       },
-      rng_, options_.effort * DirectionQuadrature::kBudget);
+      rng_, options_.effort* DirectionQuadrature::kBudget);
   Estimate share, fluence;
   share = LatticeMean(rng_, 128, 32, [&](const float(&x)[4]) {
     LightContext context = subject_.context;

@@ -373,11 +373,11 @@ int RenderLoaded(const RenderOptions& options, const LoadedScene& loaded) {
 
 int RunRender(const RenderOptions& options) {
   OutliveSurroundings();
-  const LoadedScene loaded = LoadScene(
-      options.scene, options.plugins, options.overrides, options.strict, options.robust, KeepsState(options),
-      [&](const SceneDescription& scene, const RenderSettings& settings) {
-        CheckSceneStays(options, scene, settings);
-      });
+  const LoadedScene loaded =
+      LoadScene(options.scene, options.plugins, options.overrides, options.strict, options.robust, KeepsState(options),
+                [&](const SceneDescription& scene, const RenderSettings& settings) {
+                  CheckSceneStays(options, scene, settings);
+                });
   int exitCode = kExitFailed;
   RunForeignCode(loaded.types, [&] { exitCode = RenderLoaded(options, loaded); });
   return exitCode;

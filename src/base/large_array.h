@@ -29,15 +29,9 @@ class LargeArray {
     std::memset(memory, 0, bytes);
   }
 
-  size_t Size() const {
-    return size_;
-  }
-  T& operator[](size_t i) {
-    return data_[i];
-  }
-  const T& operator[](size_t i) const {
-    return data_[i];
-  }
+  size_t Size() const { return size_; }
+  T& operator[](size_t i) { return data_[i]; }
+  const T& operator[](size_t i) const { return data_[i]; }
 
  private:
   static void* TakeAligned(size_t bytes) {

@@ -102,8 +102,8 @@ inline Color operator-(const Color& a, const Color& b) {
 inline Color operator*(const Color& a, const Color& b) {
   return {a.r * b.r, a.g * b.g, a.b * b.b};
 }
-// a · b · scale, in double: two small throughputs and a large unit of flux may have a product that float holds, while the
-// product of the first two is below its range.
+// a · b · scale, in double: two small throughputs and a large unit of flux may have a product that float holds, while
+// the product of the first two is below its range.
 inline Color Product(const Color& a, const Color& b, double scale) {
   const auto channel = [scale](float x, float y) {
     return static_cast<float>(static_cast<double>(x) * static_cast<double>(y) * scale);

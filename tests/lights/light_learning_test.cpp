@@ -22,7 +22,8 @@ Receiver At(const Point3& position, const Normal3& normal) {
 // Of a child whose parent has this factor.
 double FactorOf(const LightLearning& learning, uint32_t region, uint32_t node, int child, double parent = 1) {
   const LightLearning::Row& row = learning.RowOf(region, node);
-  return std::sqrt(static_cast<double>(row.known[child]) + (1 - static_cast<double>(row.learned[child])) * parent * parent);
+  return std::sqrt(static_cast<double>(row.known[child]) +
+                   (1 - static_cast<double>(row.learned[child])) * parent * parent);
 }
 
 TEST(LightLearning, WithoutRecordsEverythingIsAsItsParent) {

@@ -54,8 +54,8 @@ std::string Statement(const LightType& type, const std::string& block, size_t k,
                              "indices\" [0 1 2 0 2 3] \"point2 uv\" [0 0 1 0 1 1 0 1]"));
 }
 
-// The whole room is seen: what a light projects has edges, and photons blur one that is the border of the picture out of
-// it, or into it.
+// The whole room is seen: what a light projects has edges, and photons blur one that is the border of the picture out
+// of it, or into it.
 std::string Lit(const LightType& type, const std::string& lights) {
   return IsAtInfinity(type.name) ? Floor(lights) : Room(kMatte, lights, "Camera \"spherical\"\n");
 }

@@ -176,7 +176,8 @@ Verdict Measure(BuiltScene& built, const Mode& mode, double error, uint64_t seed
   Verdict verdict = Compare(cell.replicas, reference.replicas, rate);
   for (int round = 1; round < kMostRounds && verdict.noticed > Noticed(); ++round) {
     const double missing = 1.1 * (verdict.noticed * verdict.noticed / (Noticed() * Noticed()) - 1);
-    const auto more = static_cast<int>(std::ceil(std::min(missing, 1.0) * static_cast<double>(cell.replicas.images.size())));
+    const auto more =
+        static_cast<int>(std::ceil(std::min(missing, 1.0) * static_cast<double>(cell.replicas.images.size())));
     cell.Add(RenderMode(built, mode, std::max(more, 4), cell.samples, seed + 1000 * static_cast<uint64_t>(round)));
     verdict = Compare(cell.replicas, reference.replicas, rate);
   }
@@ -308,7 +309,8 @@ TEST(MatrixNotices, WhatIsPlantedInTenCells) {
           std::find_if(Modes().begin(), Modes().end(), [&](const Mode& m) { return m.name == modes[(i + 2 * k) % 5]; });
       ASSERT_NE(mode, Modes().end());
       Cell cell;
-      const Verdict verdict = Measure(bright, *mode, errors.mode, 7000 + 100000 * (2 * i + k + 1), reference, rate, cell);
+      const Verdict verdict =
+          Measure(bright, *mode, errors.mode, 7000 + 100000 * (2 * i + k + 1), reference, rate, cell);
       std::printf("[   info   ] %-24s %-24s %+.2f %% +- %.2f %%, largest |z| %.2f (%.2f)\n", rigs[i],
                   mode->name.c_str(), 100 * verdict.bias, 100 * verdict.error, verdict.largestZ, verdict.threshold);
       ++planted;
