@@ -15,7 +15,7 @@ inline constexpr size_t kParameters = 1000;            // of one statement
 // Of one target of Attribute: each statement that follows has a copy of them.
 inline constexpr size_t kDefaultParameters = 64, kDefaultValues = 1000;
 inline constexpr size_t kNestedNames = 256;      // textures, materials or light filters, or motions, within one another
-inline constexpr size_t kEvaluations = 10'000;   // of textures or filters that name others, for one that is asked
+inline constexpr size_t kEvaluations = 2000;     // of textures or filters that name others, for one that is asked
 inline constexpr size_t kSuggestedNames = 1000;  // among which warnings look for the one that was meant
 inline constexpr size_t kLinks = size_t{1} << 27;  // entries of the tables of which light shines where
 // Compressed text that grows by more, and beyond what any machine bears, is no text.

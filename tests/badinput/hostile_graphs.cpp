@@ -116,9 +116,10 @@ TEST(HostileGraphs, MultiplyToALimit) {
         [&] { error = RenderError(Chain(kind.first, kind.twice, many) + kind.use + Last(many) + kind.after); });
     EXPECT_LT(seconds, 5) << kind.twice;
     if (kind.multiplies) {
-      // 2^13 - 1 evaluations of the thirteenth are fewer than the limit, those of the fourteenth are more.
-      EXPECT_THAT(error, HasSubstr("test.pbrt:17:1: error: " + std::string(kind.what) +
-                                   " within one another multiply to more than 10000 evaluations"))
+      // 2^10 - 1 evaluations of the tenth are fewer than the limit, those of the eleventh are more.
+      static_assert(limits::kEvaluations >= 1023 && limits::kEvaluations < 2047);
+      EXPECT_THAT(error, HasSubstr("test.pbrt:14:1: error: " + std::string(kind.what) +
+                                   " within one another multiply to more than 2000 evaluations"))
           << kind.twice;
     } else {
       EXPECT_EQ(error, "no error") << kind.twice;
