@@ -99,7 +99,7 @@ static void CheckSamples(const SuiteSubject& subject, const SuiteOptions& option
 // below the second is wrong beyond doubt.
 static void CheckSamplesTwice(const SuiteSubject& subject, const SuiteOptions& options, SuiteReport& report) {
   constexpr double kDoubtful = 1e-4, kSure = 1e-9;
-  constexpr size_t kMany = 4;
+  constexpr size_t kMany = 3;
   constexpr int kMoreEffort = 4;
   SuiteReport first;
   CheckSamples(subject, options, first);

@@ -92,6 +92,7 @@ struct SuiteOptions {
   unsigned parts = kAllParts;
   int look = 0;           // which of several at the same places, by other random numbers
   int effort = 1;         // multiplies the number of points that a quadrature may take
+  int caseEvery = 1;      // of RunPdfSuite: each n-th of the placed lights
   int thoroughEvery = 1;  // of RunPdfSuite: each n-th of the cases that would be looked at thoroughly
   // Called now and then with the part that is done, one call at a time. May be empty.
   std::function<void(double fraction)> progress;

@@ -234,6 +234,13 @@ SuiteReport SuiteRun::Check(const SuiteCase& suiteCase) const {
 }
 
 std::vector<SuiteResult> SuiteRun::Run() {
+  // Those that are edited by each parameter are the only ones of their block.
+  std::vector<SuiteCase> chosen;
+  for (size_t i = 0; i < cases_.size(); ++i) {
+    if (i % static_cast<size_t>(std::max(options_.caseEvery, 1)) == 0 || cases_[i].isEditedByAll)
+      chosen.push_back(std::move(cases_[i]));
+  }
+  cases_ = std::move(chosen);
   return suite::RunCases(cases_.size(), options_,
                          [&](size_t index, SuiteReport& report) { report = Check(cases_[index]); })
       .Finish(options_.familyWise);

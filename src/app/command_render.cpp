@@ -100,13 +100,6 @@ void WarnOfPhotonMemory(const RenderSettings& settings) {
                FormatBytes(needed).c_str(), FormatBytes(available).c_str());
 }
 
-std::string Percent(double fraction) {
-  if (!std::isfinite(fraction)) return "unknown";
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2g %%", 100 * fraction);
-  return text;
-}
-
 // For another process: it must be told which render it is of.
 bool KeepsState(const RenderOptions& options) {
   return options.shard || options.resume || options.checkpointSeconds;
@@ -137,7 +130,7 @@ void PrintSummary(const RenderReport& report, const std::filesystem::path& path)
   std::fprintf(stderr, "%s: %d×%d, %d spp, %s, %.2f Mray/s, relative error %s (95 %%)\n", path.c_str(), report.width,
                report.height, outcome.samplesPerPixel, FormatDuration(outcome.seconds).c_str(),
                static_cast<double>(outcome.counts.Rays()) / (1e6 * std::max(outcome.seconds, 1e-9)),
-               Percent(outcome.relativeError).c_str());
+               FormatPercent(outcome.relativeError).c_str());
   if (report.rejectedRays > 0) {
     std::fprintf(stderr, "warning: %llu rays were rejected (not finite)\n",
                  static_cast<unsigned long long>(report.rejectedRays));
@@ -171,11 +164,11 @@ DroppedReport DescribeDropped(const RenderOutcome& outcome, const BuiltScene& bu
 std::string DescribePartialPicture(const RenderOptions& options, const Film& film, const RenderSettings& settings) {
   if (options.shard) return "the part holds no samples";
   if (settings.integrator != "light") {
-    return "the picture is a part of the first sample: " + Percent(film.SampledFraction()) +
+    return "the picture is a part of the first sample: " + FormatPercent(film.SampledFraction()) +
            " of its pixels have it, the others are black";
   }
   const double whole = static_cast<double>(settings.width) * static_cast<double>(settings.height);
-  return "the picture is made of " + Percent(static_cast<double>(film.LightPaths()) / whole) +
+  return "the picture is made of " + FormatPercent(static_cast<double>(film.LightPaths()) / whole) +
          " of the light paths of the first sample";
 }
 
@@ -357,7 +350,7 @@ int RenderLoaded(const RenderOptions& options, const LoadedScene& loaded) {
   {
     Progress progress(options.quiet);
     const auto afterPass = [&](const RenderOutcome& soFar, double fraction) {
-      progress.Update(fraction, std::to_string(soFar.samplesPerPixel) + " spp, error " + Percent(soFar.relativeError));
+      progress.Update(fraction, std::to_string(soFar.samplesPerPixel) + " spp, error " + FormatPercent(soFar.relativeError));
       if (checkpoints && fraction < 1) checkpoints->MayWrite(soFar);
     };
     report.outcome = Continue(render, stop, afterPass);

@@ -128,6 +128,12 @@ LocalMesh ReadPlyMesh(const ParameterList& parameters, MemoryBudget& memory, Dia
                      "displacement of meshes is not supported; the mesh is rendered without");
   }
   parameters.CheckAllUsed({"displacement", "edgelength"}, {"filename", "alpha"}, diagnostics);
+  if (ply.missingNormals > 0) {
+    diagnostics.Warn(parameters.WhereOf("filename"),
+                     std::to_string(ply.missingNormals) + " of the " + std::to_string(ply.normals.size()) +
+                         " normals of \"" + file +
+                         "\" are not finite, or beyond 1e18: the mesh is rendered without those");
+  }
   // The same file may be named again and again.
   memory.Take(static_cast<double>(ply.triangles.size() + ply.quads.size()) * kBytesPerFace,
               parameters.WhereOf("filename"), "the faces of \"" + file + "\"");

@@ -8,6 +8,22 @@
 
 namespace lampyr {
 
+std::string FormatPercent(double fraction) {
+  const double percent = 100 * fraction;
+  if (!std::isfinite(percent)) return "unknown";
+  if (percent == 0) return "0 %";
+  constexpr int kDigits = 2, kMostDecimals = 12;
+  const int magnitude = static_cast<int>(std::floor(std::log10(std::abs(percent))));
+  const double unit = std::pow(10.0, std::max(magnitude - kDigits + 1, 0));
+  const int decimals = std::clamp(kDigits - 1 - magnitude, 0, kMostDecimals);
+  char text[400];  // the largest double has 309 digits
+  std::snprintf(text, sizeof text, "%.*f", decimals, unit > 1 ? std::round(percent / unit) * unit : percent);
+  std::string number = text;
+  if (number.find('.') != std::string::npos) number.erase(number.find_last_not_of('0') + 1);
+  if (number.back() == '.') number.pop_back();
+  return number + " %";
+}
+
 std::string FormatDuration(double seconds) {
   char text[64];
   if (!(seconds < 1e9)) return "?";

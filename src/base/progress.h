@@ -31,4 +31,8 @@ class Progress {
 // "1 h 02 min", "3 min 20 s", "4.2 s", "37 ms".
 std::string FormatDuration(double seconds);
 
+// A fraction in percent with two significant digits and without an exponent: "0.12 %", "5 %", "190 %"; "unknown" where
+// it is not finite.
+std::string FormatPercent(double fraction);
+
 }  // namespace lampyr

@@ -267,6 +267,7 @@ void ReadVertices(const Element& element, ValueReader& reader, PlyMesh& mesh, co
   mesh.positions.reserve(element.count + 1);  // one more than needed: the intersector reads past the last vertex
   for (uint64_t i = 0; i < element.count; ++i) {
     float values[8] = {};
+    bool hasNormal = true;
     for (size_t k = 0; k < slots.size(); ++k) {
       if (slots[k] < 0) {
         SkipValue(element.properties[k], reader);
@@ -274,12 +275,20 @@ void ReadVertices(const Element& element, ValueReader& reader, PlyMesh& mesh, co
       }
       const double value = reader.Read(element.properties[k].type);
       if (!(std::abs(value) <= 1e18)) {
+        // Modellers write such normals where a face has no area; the shape is whole without them.
+        if (slots[k] >= 3 && slots[k] <= 5) {
+          hasNormal = false;
+          continue;
+        }
         fail("vertex " + std::to_string(i) + ": " + element.properties[k].name + " is not finite, or beyond 1e18");
       }
       values[slots[k]] = static_cast<float>(value);
     }
     mesh.positions.emplace_back(values[0], values[1], values[2]);
-    if (hasNormals) mesh.normals.emplace_back(values[3], values[4], values[5]);
+    if (hasNormals) {
+      mesh.normals.push_back(hasNormal ? Normal3(values[3], values[4], values[5]) : Normal3(0.0f));
+      mesh.missingNormals += hasNormal ? 0 : 1;
+    }
     if (hasUvs) mesh.uvs.emplace_back(values[6], values[7]);
   }
 }

@@ -14,7 +14,8 @@ namespace lampyr {
 
 struct PlyMesh {
   std::vector<Point3> positions;
-  std::vector<Normal3> normals;  // per vertex, or empty; as in the file (not normalised)
+  std::vector<Normal3> normals;  // per vertex, or empty; as in the file (not normalised); 0 for none
+  size_t missingNormals = 0;     // those that are 0 because those of the file are not finite, or beyond 1e18
   std::vector<Point2> uvs;       // per vertex, or empty
   std::vector<std::array<uint32_t, 3>> triangles;  // of more than four corners: a fan
   // Corners in order around the face; as a bilinear patch p00 p10 p01 p11 that is corners 0, 1, 3, 2.

@@ -109,7 +109,10 @@ namespace {
 
 // Numbers come column by column, as GLM has them: 12, 13, 14 are the translation.
 Transform MatrixTransform(const std::array<double, 16>& n, const Token& statement) {
-  if (n[3] != 0 || n[7] != 0 || n[11] != 0 || n[15] == 0) {
+  // Exporters that invert matrices leave rounding in the last row.
+  constexpr double kRounding = 1e-5;
+  const double largest = std::max({std::abs(n[3]), std::abs(n[7]), std::abs(n[11])});
+  if (!(largest <= kRounding * std::abs(n[15])) || n[15] == 0) {
     throw Error(statement.where, "the matrix of " + statement.text +
                                      " is not affine: its 4th, 8th and 12th numbers must be 0 and its 16th must not");
   }

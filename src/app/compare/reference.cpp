@@ -7,6 +7,7 @@
 
 #include "app/compare/estimate.h"
 #include "app/integrator_hints.h"
+#include "base/progress.h"
 #include "base/version.h"
 #include "sampling/rng.h"
 
@@ -79,12 +80,6 @@ void Describe(Reference& reference) {
 std::string MetadataOf(const Image& image, const char* name) {
   const auto found = image.metadata.find(name);
   return found == image.metadata.end() ? std::string() : found->second;
-}
-
-std::string Percent(double fraction) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g %%", 100 * fraction);
-  return text;
 }
 
 // Means of the whole picture and of the blocks of a grid over it, by part of a pilot.
@@ -166,7 +161,7 @@ void Choose(std::vector<PilotRun>& runs) {
     if (more != runs.end()) {
       const double share = MomentsOf(run.means).mean / MomentsOf(more->means).mean;
       run.pilot.note = "finds less light than " + more->pilot.integrator +
-                       ", in some part of the picture or in all of it (" + Percent(share) + ")";
+                       ", in some part of the picture or in all of it (" + FormatPercent(share) + ")";
     } else if (run.isHinted && !allHinted) {
       run.pilot.note = "cannot find all of the light";
     } else if (run.isBlurred) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 #include "base/parallel.h"
@@ -57,6 +58,20 @@ TEST(ParallelFor, CallsEachItemOnceAndPassesOnExceptions) {
                  Error);
   }
   ParallelFor(0, 2, [](int) { FAIL(); });
+}
+
+TEST(FormatPercent, HasTwoDigitsAndNoExponent) {
+  EXPECT_EQ(FormatPercent(0), "0 %");
+  EXPECT_EQ(FormatPercent(0.00123), "0.12 %");
+  EXPECT_EQ(FormatPercent(0.05), "5 %");
+  EXPECT_EQ(FormatPercent(0.0996), "10 %");
+  EXPECT_EQ(FormatPercent(0.875), "88 %");
+  EXPECT_EQ(FormatPercent(1.9), "190 %");
+  EXPECT_EQ(FormatPercent(1234.5), "120000 %");
+  EXPECT_EQ(FormatPercent(-0.034), "-3.4 %");
+  EXPECT_EQ(FormatPercent(1e-9), "0.0000001 %");
+  EXPECT_EQ(FormatPercent(std::numeric_limits<double>::infinity()), "unknown");
+  EXPECT_EQ(FormatPercent(std::nan("")), "unknown");
 }
 
 TEST(FormatDuration, ChoosesUnits) {

@@ -112,6 +112,21 @@ TEST(Ply, AsciiWithAnyLineEnds) {
   }
 }
 
+// Published scenes have them; the mesh is there all the same.
+TEST(Ply, NormalsThatAreNotFiniteAreLeftOut) {
+  const PlyMesh mesh = ParsePly(
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "property float nx\nproperty float ny\nproperty float nz\nelement face 1\nproperty list uchar int "
+      "vertex_indices\nend_header\n0 0 0 0 0 1\n1 0 0 0 nan 1\n0 1 0 inf 0 0\n3 0 1 2\n",
+      "normals.ply");
+  ASSERT_EQ(mesh.normals.size(), 3u);
+  EXPECT_EQ(mesh.normals[0], Normal3(0, 0, 1));
+  EXPECT_EQ(mesh.normals[1], Normal3(0.0f));
+  EXPECT_EQ(mesh.normals[2], Normal3(0.0f));
+  EXPECT_EQ(mesh.missingNormals, 2u);
+  EXPECT_EQ(mesh.triangles.size(), 1u);
+}
+
 TEST(Ply, NoFacesAtAllIsAnEmptyMesh) {
   const PlyMesh mesh = ParsePly(
       "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\nproperty float z\n"
