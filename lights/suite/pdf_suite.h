@@ -59,7 +59,7 @@ class SuiteReport {
   void AddError(const std::string& light, const std::string& property, const std::string& caseName, double error,
                 double tolerance, const std::string& words = "");
   void Add(const SuiteReport& other);
-  // How many p-values are below `p`.
+  // The number of p-values below `p`.
   size_t CountBelow(double p) const;
   // A second look at the same light, by other random numbers: each p-value below `doubtful` becomes the larger of the
   // two. A fault is found in both; a quadrature that has missed a narrow feature, and knows nothing of its error, is

@@ -45,7 +45,7 @@ std::filesystem::path OutputPath(const RenderOptions& options, const RenderSetti
   return path;
 }
 
-// What the scene is made of is not written over.
+// Throws a UsageError if an output file is one of the files that the scene is read from.
 void CheckSceneStays(const RenderOptions& options, const SceneDescription& scene, const RenderSettings& settings) {
   const std::filesystem::path image = OutputPath(options, settings);
   std::vector<std::pair<std::filesystem::path, const char*>> written = {{image, "--output"}};
@@ -350,7 +350,8 @@ int RenderLoaded(const RenderOptions& options, const LoadedScene& loaded) {
   {
     Progress progress(options.quiet);
     const auto afterPass = [&](const RenderOutcome& soFar, double fraction) {
-      progress.Update(fraction, std::to_string(soFar.samplesPerPixel) + " spp, error " + FormatPercent(soFar.relativeError));
+      progress.Update(fraction,
+                      std::to_string(soFar.samplesPerPixel) + " spp, error " + FormatPercent(soFar.relativeError));
       if (checkpoints && fraction < 1) checkpoints->MayWrite(soFar);
     };
     report.outcome = Continue(render, stop, afterPass);

@@ -46,7 +46,7 @@ LoadedScene LoadScene(const std::filesystem::path& scene, const PluginOptions& p
                       const RenderOverrides& overrides, bool strict, bool robust, bool namesFiles = false,
                       const SceneCheck& check = {});
 
-// Whether both are there and one file, by whatever links.
+// True if both paths exist and lead to the same file, through links too.
 bool IsSameFile(const std::filesystem::path& a, const std::filesystem::path& b);
 
 }  // namespace lampyr

@@ -38,7 +38,7 @@ double Noticed() {
   return text ? std::strtod(text, nullptr) : 0.1;
 }
 
-// Of the files that rigs read.
+// The folder of the files that rigs read.
 const TemporaryFolder& Folder() {
   static const TemporaryFolder folder;
   return folder;

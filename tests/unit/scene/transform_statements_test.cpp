@@ -46,7 +46,7 @@ TEST(TransformStatements, MatricesComeColumnByColumn) {
                {{{2, 0, 0, 8}, {0, 4, 0, 10}, {0, 0, 6, 12}, {0, 0, 0, 1}}});
   ExpectMatrix(PlacementAfter("Transform [ 2 0 0 0  0 2 0 0  0 0 2 0  4 6 8 2 ]").start,
                {{{1, 0, 0, 2}, {0, 1, 0, 3}, {0, 0, 1, 4}, {0, 0, 0, 1}}});
-  // What an exporter's rounding leaves in the last row.
+  // A last row that is (0, 0, 0, 1) but for rounding.
   ExpectMatrix(PlacementAfter("Transform [ 1 0 0 3e-9  0 1 0 -2e-8  0 0 1 1e-7  4 5 6 1 ]").start,
                {{{1, 0, 0, 4}, {0, 1, 0, 5}, {0, 0, 1, 6}, {0, 0, 0, 1}}});
   EXPECT_TRUE(PlacementAfter("Translate 1 2 3 Identity").start.IsIdentity());
