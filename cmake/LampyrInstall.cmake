@@ -10,8 +10,8 @@ install(TARGETS ${rooms} lampyr_settings EXPORT lampyrTargets ARCHIVE DESTINATIO
 install(TARGETS lampyr RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(TARGETS lampyr_image_module LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/lampyr)
 install(FILES ${CMAKE_BINARY_DIR}/lampyr_report_page.html DESTINATION ${CMAKE_INSTALL_LIBDIR}/lampyr OPTIONAL)
-install(DIRECTORY src/ DESTINATION include/lampyr FILES_MATCHING PATTERN "*.h" PATTERN app EXCLUDE)
-install(DIRECTORY lights integrators DESTINATION include/lampyr FILES_MATCHING PATTERN "*.h")
+install(DIRECTORY src/ DESTINATION include/lampyr FILES_MATCHING PATTERN "*.h")
+install(DIRECTORY lights suite integrators render DESTINATION include/lampyr FILES_MATCHING PATTERN "*.h")
 install(EXPORT lampyrTargets NAMESPACE lampyr:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/lampyr)
 configure_package_config_file(cmake/lampyrConfig.cmake.in ${CMAKE_BINARY_DIR}/lampyrConfig.cmake
   INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/lampyr)

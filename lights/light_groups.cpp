@@ -4,8 +4,7 @@
 #include <map>
 
 #include "base/error.h"
-#include "lights/light.h"
-#include "lights/selection/light_selector.h"
+#include "lights/placed_light.h"
 
 namespace lampyr {
 

@@ -1,55 +1,54 @@
 #include "integrators/light/light_integrator.h"
 
-#include "integrators/common/lens.h"
-#include "integrators/common/light_subpath.h"
+#include "integrators/walk/lens.h"
+#include "integrators/walk/light_path.h"
 
 namespace lampyr {
 
 namespace {
 
-class LightIntegrator final : public LightPathIntegrator {
+// Connects the light, and each vertex, to the camera.
+class Seen final : public LightPathVisitor {
  public:
-  LightIntegrator(const RenderScene& scene, const LightPathSettings& settings)
-      : scene_(scene), tracer_(scene, settings.maxDepth, SubpathDimensions{}, LightSubpathTracer::Weights::None) {}
-
-  void TracePath(float time, Sampler& sampler, SplatList& splats, RenderCounts& counts) const override;
+  explicit Seen(const SampleContext& context) : context_(context) {}
+  void Emitted(const EmittedPhoton& photon) override {
+    Add(SeeLight(context_, photon, dimensions::kLens), photon.light);
+  }
+  void Arrived(LightPath& path, const PathState&) override {
+    const uint32_t lens = PathDimensions().Of(static_cast<int>(path.vertices.Count()), dimensions::kLight);
+    Add(SeeVertex(context_, path.vertices.Last(), lens), path.light);
+  }
 
  private:
-  const RenderScene& scene_;
-  LightSubpathTracer tracer_;
+  void Add(const std::optional<SeenFromLens>& seen, uint32_t light) {
+    if (!seen) return;
+    AddSplats(seen->connection, seen->value, context_.scene.lighting->GroupOf(light), *context_.splats,
+              context_.counts);
+  }
+
+  const SampleContext& context_;
 };
 
-void LightIntegrator::TracePath(float time, Sampler& sampler, SplatList& splats, RenderCounts& counts) const {
-  struct Seen final : LightSubpathVisitor {
-    const LightIntegrator& own;
-    float time;
-    Sampler& sampler;
-    SplatList& splats;
-    RenderCounts& counts;
+class LightIntegrator final : public Integrator {
+ public:
+  explicit LightIntegrator(const LightPathSettings& settings) : settings_(settings) {}
 
-    Seen(const LightIntegrator& integrator, float t, Sampler& s, SplatList& list, RenderCounts& c)
-        : own(integrator), time(t), sampler(s), splats(list), counts(c) {}
-    uint32_t GroupOf(uint32_t light) const { return own.scene_.lighting->GroupOf(light); }
-    void Emitted(const EmittedPhoton& photon) override {
-      if (const auto seen = SeeLight(own.scene_, photon, time, dimensions::kLens, sampler, splats, counts))
-        AddSplats(seen->connection, seen->value, GroupOf(photon.light), splats, counts);
-    }
-    void Arrived(const LightSubpath& path) override {
-      const uint32_t lens = own.tracer_.Dimensions().Of(static_cast<int>(path.count), dimensions::kLight);
-      if (const auto seen = SeeVertex(own.scene_, path.Last(), time, lens, sampler, splats, counts))
-        AddSplats(seen->connection, seen->value, GroupOf(path.light), splats, counts);
-    }
-  };
-  // Kept by the thread: vertices are large, and paths many.
-  thread_local LightSubpath path;
-  Seen visitor(*this, time, sampler, splats, counts);
-  tracer_.Trace(time, sampler, counts, path, visitor);
-}
+  TracedPaths Paths() const override { return TracedPaths::Light; }
+  Color Sample(const Ray*, const SampleContext& context) const override {
+    thread_local LightPath path(false);
+    Seen visitor(context);
+    TraceLightPath(context, settings_.maxDepth, {}, path, visitor);
+    return Color(0.0f);
+  }
+
+ private:
+  LightPathSettings settings_;
+};
 
 }  // namespace
 
-std::unique_ptr<LightPathIntegrator> MakeLightIntegrator(const RenderScene& scene, const LightPathSettings& settings) {
-  return std::make_unique<LightIntegrator>(scene, settings);
+std::unique_ptr<Integrator> MakeLightIntegrator(const LightPathSettings& settings) {
+  return std::make_unique<LightIntegrator>(settings);
 }
 
 }  // namespace lampyr

@@ -13,7 +13,7 @@
 
 #include <memory>
 
-#include "integrators/integrator.h"
+#include "integrators/walk/integrator.h"
 
 namespace lampyr {
 
@@ -21,7 +21,6 @@ struct LightPathSettings {
   int maxDepth = 5;  // scattering events; 0 shows only the surfaces of lights
 };
 
-// `scene` must outlive the integrator.
-std::unique_ptr<LightPathIntegrator> MakeLightIntegrator(const RenderScene& scene, const LightPathSettings& settings);
+std::unique_ptr<Integrator> MakeLightIntegrator(const LightPathSettings& settings);
 
 }  // namespace lampyr

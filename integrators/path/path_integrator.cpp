@@ -1,28 +1,29 @@
 #include "integrators/path/path_integrator.h"
 
-#include "integrators/path/path_walk.h"
+#include "integrators/path/camera_path.h"
 
 namespace lampyr {
 
 namespace {
 
-class PathIntegrator final : public CameraIntegrator {
+class PathIntegrator final : public Integrator {
  public:
-  PathIntegrator(const RenderScene& scene, const PathSettings& settings)
-      : walk_(scene, {settings.maxDepth, {}, 0, true, settings.shadowRays}) {}
+  explicit PathIntegrator(const PathSettings& settings)
+      : settings_{settings.maxDepth, {}, 0, true, settings.shadowRays} {}
 
-  Color Radiance(const Ray& ray, Sampler& sampler, RenderCounts& counts, LayerSample* layers) const override {
-    return walk_.Radiance(ray, sampler, counts, nullptr, layers);
+  TracedPaths Paths() const override { return TracedPaths::Camera; }
+  Color Sample(const Ray* ray, const SampleContext& context) const override {
+    return TraceCameraPath(context, settings_, *ray, nullptr);
   }
 
  private:
-  PathWalk walk_;
+  CameraPathSettings settings_;
 };
 
 }  // namespace
 
-std::unique_ptr<CameraIntegrator> MakePathIntegrator(const RenderScene& scene, const PathSettings& settings) {
-  return std::make_unique<PathIntegrator>(scene, settings);
+std::unique_ptr<Integrator> MakePathIntegrator(const PathSettings& settings) {
+  return std::make_unique<PathIntegrator>(settings);
 }
 
 }  // namespace lampyr

@@ -1,13 +1,13 @@
-// Path tracing with next-event estimation: at each vertex one light is sampled and one BSDF direction followed, and the
-// two ways of reaching a light are weighted by the power heuristic ([Veach97 §9], [Pharr23 §13.4]).
+// Path tracing with next-event estimation: at each vertex lights are sampled and one BSDF direction is followed, and
+// the two ways of reaching a light are weighted by the power heuristic ([Veach97 §9], [Pharr23 §13.4]).
 //
 // Cannot find: delta lights through anything but diffuse or rough surfaces (no caustics of point lights).
 #pragma once
 
 #include <memory>
 
-#include "integrators/common/shadow_roulette.h"
-#include "integrators/integrator.h"
+#include "integrators/walk/integrator.h"
+#include "integrators/walk/shadow_roulette.h"
 
 namespace lampyr {
 
@@ -16,7 +16,6 @@ struct PathSettings {
   ShadowRays shadowRays;
 };
 
-// `scene` must outlive the integrator.
-std::unique_ptr<CameraIntegrator> MakePathIntegrator(const RenderScene& scene, const PathSettings& settings);
+std::unique_ptr<Integrator> MakePathIntegrator(const PathSettings& settings);
 
 }  // namespace lampyr

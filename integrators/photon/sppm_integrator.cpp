@@ -2,18 +2,17 @@
 
 #include <cmath>
 
-#include "integrators/common/adjoint.h"
-#include "integrators/common/find_photons.h"
-#include "integrators/common/footprint.h"
-#include "integrators/common/light_subpath.h"
-#include "integrators/common/photon_pass.h"
-#include "integrators/path/path_walk.h"
+#include "integrators/path/camera_path.h"
+#include "integrators/photon/find_photons.h"
+#include "integrators/photon/photon_pass.h"
+#include "integrators/walk/footprint.h"
+#include "integrators/walk/light_path.h"
 
 namespace lampyr {
 
 namespace {
 
-constexpr SubpathDimensions kOfCamera{2, 0}, kOfLight{2, 1};
+constexpr PathDimensions kOfCamera{2, 0}, kOfLight{2, 1};
 
 // 1/sr. A lobe that is wider than a quarter of a steradian or so is worth gathering photons for; what is narrower
 // would show few of them.
@@ -22,123 +21,122 @@ constexpr float kWide = 4;
 // The radius of the first pass, in pixels as they are seen at the vertex, where the user names none.
 constexpr double kRadiusInPixels = 2;
 
-class SppmIntegrator final : public BidirectionalIntegrator {
+class SppmIntegrator final : public Integrator {
  public:
-  SppmIntegrator(const RenderScene& scene, const SppmSettings& settings)
-      : scene_(scene),
-        settings_(settings),
-        light_(scene, settings.maxDepth, kOfLight, LightSubpathTracer::Weights::None),
-        walk_(scene, {settings.maxDepth, kOfCamera, kWide, !settings.directFromPhotons, settings.shadowRays}) {}
+  explicit SppmIntegrator(const SppmSettings& settings)
+      : settings_(settings),
+        path_{settings.maxDepth, kOfCamera, kWide, !settings.directFromPhotons, settings.shadowRays} {}
 
-  Color Sample(const Ray* ray, float time, Sampler& sampler, const SampleSinks& sinks) const override;
+  TracedPaths Paths() const override { return TracedPaths::Both; }
+  Color Sample(const Ray* ray, const SampleContext& context) const override;
   std::optional<PhotonSettings> Photons() const override { return settings_.photons; }
 
  private:
-  struct Kept;
-  struct Gathered;
-
-  const RenderScene& scene_;
   SppmSettings settings_;
-  LightSubpathTracer light_;
-  PathWalk walk_;
+  CameraPathSettings path_;
 };
 
-struct SppmIntegrator::Kept final : LightSubpathVisitor {
-  Kept(const LightingServices& services, const SampleSinks& sinks, size_t first)
-      : lighting(services), photons(*sinks.photons), withOrigin(sinks.withOrigin), firstDepth(first) {}
-  void Landed(const EmittedPhoton& photon, const PathVertex& vertex) override {
-    if (withOrigin) photons.SetOrigin(OriginOf(lighting, photon, vertex));
+// Keeps photons from the vertex `firstDepth` on.
+class Kept final : public LightPathVisitor {
+ public:
+  Kept(const SampleContext& context, size_t firstDepth) : context_(context), firstDepth_(firstDepth) {}
+
+  bool Landed(const EmittedPhoton& photon, PathVertex& first) override {
+    if (context_.withOrigin) context_.photons->SetOrigin(OriginOf(*context_.scene.lighting, photon, first));
+    return true;
   }
-  void Arrived(const LightSubpath& path) override {
-    if (path.count >= firstDepth && path.Last().storesPhotons)
-      photons.Add(path.Last(), path.count, lighting.GroupOf(path.light));
+  void Arrived(LightPath& path, const PathState&) override {
+    const PathVertex& vertex = path.vertices.Last();
+    if (path.vertices.Count() >= firstDepth_ && vertex.storesPhotons)
+      context_.photons->Add(vertex, path.vertices.Count(), context_.scene.lighting->GroupOf(path.light));
   }
 
-  const LightingServices& lighting;
-  PhotonList& photons;
-  bool withOrigin;
-  size_t firstDepth;
+ private:
+  const SampleContext& context_;
+  const size_t firstDepth_;
 };
 
 // The photons of the pass, as one camera path sees them.
-struct SppmIntegrator::Gathered final : PhotonGatherer {
-  Gathered(const SppmIntegrator& integrator, const Ray& ray, const SampleSinks& sinks)
-      : own(integrator), pass(*sinks.gather), counts(sinks.counts), layers(sinks.layers) {
-    if (own.settings_.photons.radius > 0) return;
-    const double area = PixelArea(*own.scene_.camera, ray, own.settings_.filmPixels, 1);
-    perLength = static_cast<float>(kRadiusInPixels * std::sqrt(area)) * pass.radiusScale;
+class Gathered final : public PhotonGatherer {
+ public:
+  Gathered(const SppmSettings& settings, const SampleContext& context, const Ray& ray)
+      : settings_(settings), context_(context), pass_(*context.gather) {
+    if (settings.photons.radius > 0) return;
+    const double area = PixelArea(*context.scene.camera, ray, settings.filmPixels, 1);
+    perLength_ = static_cast<float>(kRadiusInPixels * std::sqrt(area)) * pass_.radiusScale;
   }
 
-  float RadiusAt(float length) const {
-    if (own.settings_.photons.radius > 0) return pass.radius;
-    return own.scene_.camera->ConnectsByDirection() ? perLength : perLength * length;
-  }
-
-  // How much a photon counts, beside what is scattered of it: the smaller the radius, the more, in parts of what it
-  // would be where the radius is that of the scene seen from its rim.
-  float Importance(float length) const {
-    if (own.settings_.photons.radius > 0 || own.scene_.camera->ConnectsByDirection()) return 1;
-    return Sqr(own.scene_.lighting->SceneSphere().radius / length);
-  }
-
-  Color Gather(const SurfacePoint& point, const Bsdf& bsdf, const Vector3& wo, const Color& throughput, int events,
-               float length) const override {
+  Color Gather(const PathVertex& vertex, int events, float length) const override {
     thread_local PhotonLookup lookup;
     const float radius = RadiusAt(length);
-    const std::span<const uint32_t> found = FindPhotons(*pass.map, point.position, radius, lookup, counts);
+    const std::span<const uint32_t> found =
+        FindPhotons(*pass_.map, vertex.point.position, radius, lookup, context_.counts);
     Color sum;
     for (const uint32_t index : found) {
-      const Photon& photon = (*pass.map)[index];
+      const Photon& photon = (*pass_.map)[index];
       // The vertex is counted by both paths.
-      if (static_cast<int>(photon.depth) + events > own.settings_.maxDepth + 1) continue;
-      if (!photon.IsOnSurface(bsdf.Ng())) continue;
-      const BsdfEvaluation f = bsdf.Evaluate(wo, photon.toPrevious, TransportMode::Radiance);
+      if (static_cast<int>(photon.depth) + events > settings_.maxDepth + 1) continue;
+      if (!photon.IsOnSurface(vertex.bsdf.Ng())) continue;
+      const BsdfEvaluation f = vertex.Evaluate(photon.toPrevious, TransportMode::Radiance);
       if (f.pdfForward.value > kWide) continue;
-      sum += (f.diffuse * photon.flux + f.specular * pass.map->SpecularFlux(photon)) *
-             ArrivalCorrection(bsdf, photon.toPrevious);
-      if (layers) [[unlikely]]
-        AddToLayers(photon, bsdf, f, throughput, PerArea(radius));
-      if (pass.use) [[unlikely]]
-        pass.use->Add(index, (throughput * f.Sum()).Average() * Importance(length));
+      sum += (f.diffuse * photon.flux + f.specular * pass_.map->SpecularFlux(photon)) *
+             vertex.ArrivalCorrection(photon.toPrevious);
+      if (context_.layers) [[unlikely]]
+        AddToLayers(photon, vertex, f, PerArea(radius));
+      if (pass_.use) [[unlikely]]
+        pass_.use->Add(index, (vertex.Throughput() * f.Sum()).Average() * Importance(length));
     }
     if (sum.IsBlack()) return sum;
-    return Product(throughput, sum, PerArea(radius));
+    return Product(vertex.Throughput(), sum, PerArea(radius));
+  }
+
+ private:
+  float RadiusAt(float length) const {
+    if (settings_.photons.radius > 0) return pass_.radius;
+    return context_.scene.camera->ConnectsByDirection() ? perLength_ : perLength_ * length;
+  }
+
+  // The weight of a photon for emission guiding, beside what is scattered of it: the smaller the radius, the more, in
+  // parts of what it would be where the radius is that of the scene seen from its rim.
+  float Importance(float length) const {
+    if (settings_.photons.radius > 0 || context_.scene.camera->ConnectsByDirection()) return 1;
+    return Sqr(context_.scene.lighting->SceneSphere().radius / length);
   }
 
   // W/m², of a photon within the radius that carries a unit of flux.
   double PerArea(float radius) const {
     const double area = static_cast<double>(kPi) * static_cast<double>(radius) * static_cast<double>(radius);
-    return static_cast<double>(own.scene_.lighting->FluxUnit()) / (pass.lightPaths * area);
+    return static_cast<double>(context_.scene.lighting->FluxUnit()) / (pass_.lightPaths * area);
   }
   // Apart from the sum of all: a product that both shared would be rounded otherwise than where there are no layers.
-  [[gnu::noinline]] void AddToLayers(const Photon& photon, const Bsdf& bsdf, const BsdfEvaluation& f,
-                                     const Color& throughput, double perArea) const {
-    const Color scattered = f.diffuse * photon.flux + f.specular * pass.map->SpecularFlux(photon);
-    layers->Add(photon.group, Product(throughput, scattered * ArrivalCorrection(bsdf, photon.toPrevious), perArea));
+  [[gnu::noinline]] void AddToLayers(const Photon& photon, const PathVertex& vertex, const BsdfEvaluation& f,
+                                     double perArea) const {
+    const Color scattered = f.diffuse * photon.flux + f.specular * pass_.map->SpecularFlux(photon);
+    context_.layers->Add(
+        photon.group, Product(vertex.Throughput(), scattered * vertex.ArrivalCorrection(photon.toPrevious), perArea));
   }
 
-  const SppmIntegrator& own;
-  const PhotonPass& pass;
-  RenderCounts& counts;
-  LayerSample* layers;
-  float perLength = 0;
+  const SppmSettings& settings_;
+  const SampleContext& context_;
+  const PhotonPass& pass_;
+  float perLength_ = 0;
 };
 
-Color SppmIntegrator::Sample(const Ray* ray, float time, Sampler& sampler, const SampleSinks& sinks) const {
-  if (sinks.photons) {
-    thread_local LightSubpath path;
-    Kept kept(*scene_.lighting, sinks, settings_.directFromPhotons ? 1 : 2);
-    light_.Trace(time, sampler, sinks.counts, path, kept);
+Color SppmIntegrator::Sample(const Ray* ray, const SampleContext& context) const {
+  if (context.photons) {
+    thread_local LightPath path(false);
+    Kept kept(context, settings_.directFromPhotons ? 1 : 2);
+    TraceLightPath(context, settings_.maxDepth, kOfLight, path, kept);
   }
-  if (!ray || !sinks.gather) return Color(0.0f);
-  const Gathered gathered(*this, *ray, sinks);
-  return walk_.Radiance(*ray, sampler, sinks.counts, &gathered, sinks.layers);
+  if (!ray || !context.gather) return Color(0.0f);
+  const Gathered gathered(settings_, context, *ray);
+  return TraceCameraPath(context, path_, *ray, &gathered);
 }
 
 }  // namespace
 
-std::unique_ptr<BidirectionalIntegrator> MakeSppmIntegrator(const RenderScene& scene, const SppmSettings& settings) {
-  return std::make_unique<SppmIntegrator>(scene, settings);
+std::unique_ptr<Integrator> MakeSppmIntegrator(const SppmSettings& settings) {
+  return std::make_unique<SppmIntegrator>(settings);
 }
 
 }  // namespace lampyr

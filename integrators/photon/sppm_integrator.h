@@ -15,8 +15,8 @@
 
 #include <memory>
 
-#include "integrators/common/shadow_roulette.h"
-#include "integrators/integrator.h"
+#include "integrators/walk/integrator.h"
+#include "integrators/walk/shadow_roulette.h"
 
 namespace lampyr {
 
@@ -29,7 +29,6 @@ struct SppmSettings {
   ShadowRays shadowRays;
 };
 
-// `scene` must outlive the integrator.
-std::unique_ptr<BidirectionalIntegrator> MakeSppmIntegrator(const RenderScene& scene, const SppmSettings& settings);
+std::unique_ptr<Integrator> MakeSppmIntegrator(const SppmSettings& settings);
 
 }  // namespace lampyr

@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "lights/type_registry.h"
+#include "lights/types/type_registry.h"
 
 namespace lampyr {
 

@@ -17,7 +17,7 @@ class TableSelector final : public LightSelector {
  public:
   explicit TableSelector(std::span<const float> weights) : table_(weights) {}
 
-  void Select(const Receiver&, double u, LightChoices& choices) const override {
+  void Select(const Receiver&, const LightLearning*, double u, LightChoices& choices) const override {
     choices.count = table_.IsZero() ? 0 : MostSamples();
     for (int k = 0; k < choices.count; ++k) {
       const double part = (u + k) / choices.count;
@@ -30,7 +30,7 @@ class TableSelector final : public LightSelector {
     }
   }
 
-  PdfDiscrete Probability(const Receiver&, uint32_t light, int) const override {
+  PdfDiscrete Probability(const Receiver&, const LightLearning*, uint32_t light, int) const override {
     if (table_.IsZero()) return PdfDiscrete(0);
     return Expected(table_.Size() == 1 ? PdfDiscrete(1) : table_.Probability(light));
   }
@@ -76,11 +76,6 @@ std::vector<float> PowerWeights(std::span<const PlacedLight> lights, const Bound
 constexpr float kFloorOfEqualShare = 1e-3f;
 
 }  // namespace
-
-LightTransform PlacedLight::At(float time) const {
-  const Affine toRender = motion->At(time);
-  return {toRender, toRender.Inverse()};
-}
 
 namespace {
 

@@ -11,8 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "lights/light.h"
-#include "math/motion.h"
+#include "lights/placed_light.h"
 
 namespace lampyr {
 
@@ -47,18 +46,27 @@ class LightLearning;
 class LightSelector {
  public:
   virtual ~LightSelector() = default;
-  // u in [0,1), of more bits than a float's where there are many lights. None: no light can contribute.
-  virtual void Select(const Receiver& receiver, double u, LightChoices& choices) const = 0;
-  // How often Select chooses this (light, patch) at this receiver: the probability, times the number of choices.
-  virtual PdfDiscrete Probability(const Receiver& receiver, uint32_t light, int patch) const = 0;
-  // From now on, selects by what `learning` knows, too; null: by nothing else. Not while anything is selected.
-  virtual void Use(LightLearning*) {}
-  // The selected light brought this irradiance (0: it was occluded, or dark); recorded where something is learned.
-  virtual void Record(const Receiver&, uint32_t, int, double) const {}
+  // u in [0,1), of more bits than a float's where there are many lights. `learned`: what is known from shadow rays, or
+  // null. No choices: no light can contribute.
+  virtual void Select(const Receiver& receiver, const LightLearning* learned, double u,
+                      LightChoices& choices) const = 0;
+  // Expected number of times that Select chooses this (light, patch) at this receiver: the probability, times the
+  // number of choices.
+  virtual PdfDiscrete Probability(const Receiver& receiver, const LightLearning* learned, uint32_t light,
+                                  int patch) const = 0;
+  // The same with nothing learned.
+  void Select(const Receiver& receiver, double u, LightChoices& choices) const {
+    Select(receiver, nullptr, u, choices);
+  }
+  PdfDiscrete Probability(const Receiver& receiver, uint32_t light, int patch) const {
+    return Probability(receiver, nullptr, light, patch);
+  }
+  // Records in `learning` that the selected light brought this irradiance (0: it was occluded, or dark).
+  virtual void Record(LightLearning&, const Receiver&, uint32_t, int, double) const {}
   // Whether lights are selected patch by patch at this receiver: patchIndex then belongs to what is asked for.
   virtual bool SelectsPatches(const Receiver&) const { return false; }
 
-  // At most so many choices for a receiver, in [1, LightChoices::kMost]; 1 unless said.
+  // At most so many choices for a receiver, in [1, LightChoices::kMost]; 1 unless said. Before the first Select.
   virtual void TakeSamples(int most) { mostSamples_ = std::clamp(most, 1, LightChoices::kMost); }
 
  protected:
@@ -73,22 +81,6 @@ enum class LightSelection { Uniform, Power, Tree, Exhaustive };
 // The name as on the command line (or "bvh", pbrt-v4's name of its tree); nullopt for an unknown one.
 std::optional<LightSelection> ParseLightSelection(const std::string& name);
 std::string NameOf(LightSelection selection);
-
-// A light as the services hold it.
-struct PlacedLight {
-  std::shared_ptr<const Light> light;
-  LightTransform transform;
-  bool canBeHit = true;  // false: an area light whose surface lets every ray through; only light sampling finds it
-  std::shared_ptr<const Motion> motion = nullptr;  // null: stays. Otherwise `transform` is the place at shutter open
-
-  bool isInstance = false;  // its shape is traced within an instance, placed as the light is
-
-  int32_t filter = -1;         // index of its light filter, -1: none
-  float radianceModifier = 1;  // how much of it the filter lets through, as selection is to take it
-
-  // Of a light that moves.
-  LightTransform At(float time) const;
-};
 
 // Receivers by the lights that shine on them: `ofClass` says for each class of receivers (Receiver::link) which of
 // `lights` these are, in ascending order. Empty: all lights shine on all.

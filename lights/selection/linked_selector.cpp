@@ -33,26 +33,27 @@ class LinkedSelector final : public LightSelector {
     for (uint32_t& set : setOfClass_) set = place[set];
   }
 
-  void Select(const Receiver& receiver, double u, LightChoices& choices) const override {
+  // What is learned is of one tree: that of all lights.
+  void Select(const Receiver& receiver, const LightLearning* learned, double u, LightChoices& choices) const override {
     const Part* part = PartOf(receiver);
-    if (!part) return all_->Select(receiver, u, choices);
-    part->selector->Select(receiver, u, choices);
+    if (!part) return all_->Select(receiver, learned, u, choices);
+    part->selector->Select(receiver, nullptr, u, choices);
     for (int i = 0; i < choices.count; ++i) choices.of[i].light = part->lights[choices.of[i].light];
   }
 
-  PdfDiscrete Probability(const Receiver& receiver, uint32_t light, int patch) const override {
+  PdfDiscrete Probability(const Receiver& receiver, const LightLearning* learned, uint32_t light,
+                          int patch) const override {
     const Part* part = PartOf(receiver);
-    if (!part) return all_->Probability(receiver, light, patch);
+    if (!part) return all_->Probability(receiver, learned, light, patch);
     const auto at = std::lower_bound(part->lights.begin(), part->lights.end(), light);
     if (at == part->lights.end() || *at != light) return PdfDiscrete(0);
     const auto own = static_cast<uint32_t>(at - part->lights.begin());
-    return part->selector->Probability(receiver, own, patch);
+    return part->selector->Probability(receiver, nullptr, own, patch);
   }
 
-  // What is learned is of one tree: that of all lights.
-  void Use(LightLearning* learning) override { all_->Use(learning); }
-  void Record(const Receiver& receiver, uint32_t light, int patch, double irradiance) const override {
-    if (!PartOf(receiver)) all_->Record(receiver, light, patch, irradiance);
+  void Record(LightLearning& learning, const Receiver& receiver, uint32_t light, int patch,
+              double irradiance) const override {
+    if (!PartOf(receiver)) all_->Record(learning, receiver, light, patch, irradiance);
   }
 
   bool SelectsPatches(const Receiver& receiver) const override {

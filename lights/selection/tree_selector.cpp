@@ -38,8 +38,8 @@ class TreeSelector final : public LightSelector {
 
   bool SelectsPatches(const Receiver&) const override { return emitters_.hasPatches; }
 
-  void Select(const Receiver& receiver, double u, LightChoices& choices) const override {
-    const TreeReceiver place = Place(receiver);
+  void Select(const Receiver& receiver, const LightLearning* learned, double u, LightChoices& choices) const override {
+    const TreeReceiver place = Place(receiver, learned);
     typename Search::Cut cut;
     search_.Look(place, cut);
     const double far = FarShare(place, cut.irradiance);
@@ -48,8 +48,9 @@ class TreeSelector final : public LightSelector {
       choices.of[k] = SelectOne(place, cut, far, (u + k) / choices.count, choices.count);
   }
 
-  PdfDiscrete Probability(const Receiver& receiver, uint32_t light, int patch) const override {
-    const TreeReceiver place = Place(receiver);
+  PdfDiscrete Probability(const Receiver& receiver, const LightLearning* learned, uint32_t light,
+                          int patch) const override {
+    const TreeReceiver place = Place(receiver, learned);
     typename Search::Cut cut;
     search_.Look(place, cut);
     const double far = FarShare(place, cut.irradiance);
@@ -64,16 +65,14 @@ class TreeSelector final : public LightSelector {
     return emitter ? Expected(search_.ProbabilityOf(place, cut, *emitter), far, count) : PdfDiscrete(0);
   }
 
-  void Use(LightLearning* learning) override { learning_ = learning; }
-
-  void Record(const Receiver& receiver, uint32_t light, int patch, double irradiance) const override {
-    if (!learning_) return;
-    const TreeReceiver place = Place(receiver);
+  void Record(LightLearning& learning, const Receiver& receiver, uint32_t light, int patch,
+              double irradiance) const override {
+    const TreeReceiver place = Place(receiver, &learning);
     const std::optional<uint32_t> at = FarIndexOf(light);
     if (at) {
       const float within = farTable_.Probability(*at).value;
       if (farIrradiance_ > 0)
-        learning_->Record(place.region, LightTree::kNone, 0, irradiance / static_cast<double>(within) / farIrradiance_);
+        learning.Record(place.region, LightTree::kNone, 0, irradiance / static_cast<double>(within) / farIrradiance_);
       return;
     }
     if constexpr (std::is_same_v<Search, LightTree>) {
@@ -81,7 +80,7 @@ class TreeSelector final : public LightSelector {
       if (!emitter) return;
       LightTree::Cut cut;
       search_.Look(place, cut);
-      search_.Record(*learning_, place, cut, *emitter, kBlind, emitters_.ImportanceOf(irradiance));
+      search_.Record(learning, place, cut, *emitter, kBlind, emitters_.ImportanceOf(irradiance));
     }
   }
 
@@ -99,11 +98,11 @@ class TreeSelector final : public LightSelector {
     return emitter < first + count ? std::optional(emitter) : std::nullopt;
   }
 
-  TreeReceiver Place(const Receiver& receiver) const {
+  TreeReceiver Place(const Receiver& receiver, const LightLearning* learned) const {
     TreeReceiver place = emitters_.Place(receiver);
-    if (learning_) {
-      place.learning = learning_;
-      place.region = learning_->RegionOf(receiver);
+    if (learned) {
+      place.learning = learned;
+      place.region = learned->RegionOf(receiver);
     }
     return place;
   }
@@ -168,7 +167,6 @@ class TreeSelector final : public LightSelector {
   Search search_;
   AliasTable farTable_;
   double farIrradiance_ = 0;
-  LightLearning* learning_ = nullptr;
 };
 
 }  // namespace

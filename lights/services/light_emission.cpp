@@ -63,14 +63,15 @@ Point3 OriginOf(const EmissionSample& emission, LightKind kind) {
 // The light's own place or direction, and the other of the two towards a target.
 std::optional<EmissionSample> LightingServices::EmitAimed(const LightContext& context,
                                                           const EmissionGuide::Choice& choice) const {
-  const Light& light = *fronts_[choice.light].light;
+  const Light& light = *scene_->fronts[choice.light].light;
   const LightKind kind = light.Kind();
   std::optional<EmissionSample> emission = light.GenerateEmission(context);
   if (IsAtInfinity(choice.light)) {
     if (!emission) return std::nullopt;
     const Vector3& direction = emission->direction;
-    const Vector3 offset = guide_->SampleLine(choice, direction, context.uDirection) - sphere_.center;
-    emission->position = sphere_.center + offset - (glm::dot(offset, direction) + sphere_.radius) * direction;
+    const Vector3 offset = guide_->SampleLine(choice, direction, context.uDirection) - scene_->sphere.center;
+    emission->position =
+        scene_->sphere.center + offset - (glm::dot(offset, direction) + scene_->sphere.radius) * direction;
     if (guide_->LineDensity(choice.light, emission->position, direction).IsZero()) return std::nullopt;
     return emission;
   }
@@ -110,7 +111,7 @@ std::optional<LightingServices::Emission> LightingServices::Emit(double uSelect,
     if (!choice.exists) return std::nullopt;
   } else {
     LightChoices choices;
-    emissionSelector_->Select({}, uSelect, choices);
+    scene_->emissionSelector->Select({}, uSelect, choices);
     if (choices.count == 0) return std::nullopt;
     choice.light = choices.of[0].light;
     choice.probability = choices.of[0].probability;
@@ -119,7 +120,7 @@ std::optional<LightingServices::Emission> LightingServices::Emit(double uSelect,
   LightContext context = Context(choice.light, time, true, moved);
   context.u = u;
   context.uDirection = uDirection;
-  const Light& light = *fronts_[choice.light].light;
+  const Light& light = *scene_->fronts[choice.light].light;
   const auto sample =
       choice.target == EmissionGuide::kNone ? light.GenerateEmission(context) : EmitAimed(context, choice);
   if (!sample) return std::nullopt;
@@ -130,7 +131,7 @@ std::optional<EmittedPhoton> LightingServices::GenerateEmission(float uSelect, c
                                                                 const Point2& uDirection, float time) const {
   const auto emitted = Emit(MoreBits(uSelect, Point3(u.x, u.y, uDirection.x)), u, uDirection, time);
   if (!emitted) return std::nullopt;
-  const LightFront front = fronts_[emitted->light];
+  const LightFront front = scene_->fronts[emitted->light];
   EmittedPhoton photon;
   photon.light = emitted->light;
   photon.emissionSelection = emitted->selection;
@@ -143,11 +144,6 @@ std::optional<EmittedPhoton> LightingServices::GenerateEmission(float uSelect, c
   photon.ray.origin = OriginOf(emission, front.kind);
   photon.ray.direction = emission.direction;
   photon.ray.time = time;
-  RayHit hit;
-  if (!photon.IsDark() && geometry_.Intersect(photon.ray, visibility::kIndirect, hit, photon.passed) &&
-      hit.t >= emission.shinesFrom) {
-    photon.landing = hit;
-  }
   return photon;
 }
 
@@ -159,7 +155,7 @@ float LightingServices::EmissionGain(const EmittedPhoton& photon) const {
 
 bool LightingServices::IsOrigin(const EmittedPhoton& photon, const SurfacePoint& point, const Vector3& toRay,
                                 float distance) const {
-  if (geometry_.LightAt(point.primitive, point.instance) != static_cast<int32_t>(photon.light)) return false;
+  if (scene_->geometry.LightAt(point.primitive, point.instance) != static_cast<int32_t>(photon.light)) return false;
   const EmissionSample& emission = photon.emission;
   // The same side of the surface, and as near as rounding allows: a unit direction is off by 2^-22, along a grazing
   // surface by more.
@@ -173,18 +169,18 @@ bool LightingServices::IsOrigin(const EmittedPhoton& photon, const SurfacePoint&
 std::optional<FoundLight> LightingServices::EvaluateLanding(const EmittedPhoton& photon,
                                                             const Receiver& receiver) const {
   const EmissionSample& emission = photon.emission;
-  const LightKind kind = fronts_[photon.light].kind;
+  const LightKind kind = scene_->fronts[photon.light].kind;
   std::optional<LightTransform> moved;
   LightContext context = Context(photon.light, photon.ray.time, true, moved);
-  if (selector_->SelectsPatches(receiver)) context.patch = emission.patchIndex;
-  const PdfDiscrete selection = selector_->Probability(receiver, photon.light, context.patch);
+  if (scene_->selector->SelectsPatches(receiver)) context.patch = emission.patchIndex;
+  const PdfDiscrete selection = scene_->selector->Probability(receiver, learning_, photon.light, context.patch);
   const Vector3 way = receiver.position - emission.position;
   if (IsDelta(kind)) {
     if (!(LengthSquared(way) > 0)) return std::nullopt;
     return FoundLight{photon.light, selection, DeltaLanding(emission, kind, LengthSquared(way))};
   }
   const LightHit hit = HitOf(emission, kind, emission.direction, receiver.position);
-  auto evaluation = fronts_[photon.light].light->EvaluateSamples(context, hit, receiver.position);
+  auto evaluation = scene_->fronts[photon.light].light->EvaluateSamples(context, hit, receiver.position);
   if (!evaluation) return std::nullopt;
   evaluation->pdfEmit = EmissionDensity(context, photon.light, hit.patchIndex, evaluation->pdfEmit);
   Aim(photon.light, emission.position, emission.direction, *evaluation);
@@ -194,7 +190,7 @@ std::optional<FoundLight> LightingServices::EvaluateLanding(const EmittedPhoton&
 bool LightingServices::LandsFiltered(const EmittedPhoton& photon, const Receiver& receiver, Color& diffuse,
                                      Color& specular) const {
   if (!Reaches(photon.light, receiver)) return false;
-  if (lights_[photon.light].filter < 0) return true;
+  if (scene_->lights[photon.light].filter < 0) return true;
   const std::optional<FoundLight> found = EvaluateLanding(photon, receiver);
   if (!found) return false;
   const Point3& start = photon.emission.position;
@@ -204,7 +200,7 @@ bool LightingServices::LandsFiltered(const EmittedPhoton& photon, const Receiver
 }
 
 PdfDiscrete LightingServices::EmissionSelectionProbability(uint32_t light) const {
-  return guide_ ? guide_->Probability(light) : emissionSelector_->Probability({}, light, kAnyPatch);
+  return guide_ ? guide_->Probability(light) : scene_->emissionSelector->Probability({}, light, kAnyPatch);
 }
 
 }  // namespace lampyr

@@ -44,51 +44,58 @@ float FluxUnitOf(const std::vector<PlacedLight>& lights, const BoundingSphere& s
 
 }  // namespace
 
-LightingServices::LightingServices(const GeometryScene& geometry, std::vector<PlacedLight> lights,
-                                   LightSelection selection, LightLinking linking)
-    : geometry_(geometry),
-      lights_(std::move(lights)),
-      fronts_(lights_),
-      groups_(lights_),
-      sphere_(geometry.GetBoundingSphere()),
-      fluxUnit_(FluxUnitOf(lights_, sphere_)),
-      linking_(std::move(linking)),
-      isLinked_(linking_.Excludes() || linking_.HasFilters()) {
-  for (uint32_t i = 0; i < lights_.size(); ++i) {
-    if (fronts_[i].kind == LightKind::Infinite) infinite_.push_back(i);
+LightingServices::SceneLights::SceneLights(const GeometryScene& traced, std::vector<PlacedLight> placed,
+                                           LightSelection selection, LightLinking links, int mostSamples)
+    : geometry(traced),
+      lights(std::move(placed)),
+      fronts(lights),
+      groups(lights),
+      sphere(geometry.GetBoundingSphere()),
+      fluxUnit(FluxUnitOf(lights, sphere)),
+      linking(std::move(links)),
+      isLinked(linking.Excludes() || linking.HasFilters()) {
+  for (uint32_t i = 0; i < lights.size(); ++i) {
+    if (fronts[i].kind == LightKind::Infinite) infinite.push_back(i);
+    hasLightThatCanBeHit = hasLightThatCanBeHit || CanBeHit(i);
   }
-  selector_ = linking_.Excludes() ? MakeLinkedSelector(selection, lights_, sphere_, linking_.Sets())
-                                  : MakeLightSelector(selection, lights_, sphere_);
-  emissionSelector_ = MakeEmissionSelector(lights_, sphere_);
+  selector = linking.Excludes() ? MakeLinkedSelector(selection, lights, sphere, linking.Sets())
+                                : MakeLightSelector(selection, lights, sphere);
+  selector->TakeSamples(mostSamples);
+  emissionSelector = MakeEmissionSelector(lights, sphere);
 }
 
-bool LightingServices::HasLightThatCanBeHit() const {
-  for (uint32_t light = 0; light < fronts_.Size(); ++light) {
-    if (CanBeHit(light)) return true;
-  }
-  return false;
+LightingServices::LightingServices(const GeometryScene& geometry, std::vector<PlacedLight> lights,
+                                   LightSelection selection, LightLinking linking, int mostSamples)
+    : scene_(std::make_shared<const SceneLights>(geometry, std::move(lights), selection, std::move(linking),
+                                                 mostSamples)) {}
+
+LightingServices LightingServices::With(LightLearning* learning, const EmissionGuide* guide) const {
+  LightingServices view = *this;
+  view.learning_ = learning;
+  view.guide_ = guide;
+  return view;
 }
 
 LightContext LightingServices::Context(uint32_t light, float time, bool bidirectional,
                                        std::optional<LightTransform>& moved) const {
-  const LightFront front = fronts_[light];
+  const LightFront front = scene_->fronts[light];
   LightContext context;
-  context.transform = &lights_[front.place].transform;
+  context.transform = &scene_->lights[front.place].transform;
   if (front.moves) [[unlikely]]
-    context.transform = &moved.emplace(lights_[light].At(time));
-  context.scene = sphere_;
+    context.transform = &moved.emplace(scene_->lights[light].At(time));
+  context.scene = scene_->sphere;
   context.time = time;
   context.bidirectional = bidirectional;
   return context;
 }
 
 PdfArea LightingServices::EmissionDensity(const LightContext& context, uint32_t light, int patch, PdfArea given) const {
-  return context.patch == kAnyPatch ? given : fronts_[light].light->PatchProbability(patch) * given;
+  return context.patch == kAnyPatch ? given : scene_->fronts[light].light->PatchProbability(patch) * given;
 }
 
 DirectSample LightingServices::GenerateSamples(const Receiver& receiver, const SelectedLight& selected, const Point2& u,
                                                float time, bool bidirectional) const {
-  const LightFront front = fronts_[selected.light];
+  const LightFront front = scene_->fronts[selected.light];
   std::optional<LightTransform> moved;
   LightContext context = Context(selected.light, time, bidirectional, moved);
   context.u = u;
@@ -112,11 +119,6 @@ DirectSample LightingServices::GenerateSamples(const Receiver& receiver, const S
   return direct;
 }
 
-void LightingServices::Use(LightLearning* learning) {
-  learning_ = learning;
-  selector_->Use(learning);
-}
-
 void LightingServices::RecordResult(const Receiver& receiver, const DirectSample& direct, const Color& arrived) const {
   if (direct.selection.IsZero()) return;
   double irradiance = 0;
@@ -128,15 +130,15 @@ void LightingServices::RecordResult(const Receiver& receiver, const DirectSample
     const float radiance = std::max((sample.diffuse * arrived).Average(), (sample.specular * arrived).Average());
     irradiance = static_cast<double>(radiance * cosine / sample.pdfDirect.value);
   }
-  selector_->Record(receiver, direct.light, direct.patch, irradiance);
+  scene_->selector->Record(*learning_, receiver, direct.light, direct.patch, irradiance);
 }
 
 // How far in front of a sample its own surface may be met by a ray from `from`.
 Vector3 LightingServices::ErrorOfEnd(const SurfacePoint& from, const DirectSample& direct, float time) const {
   const LightSample& sample = *direct.sample;
-  if (!fronts_[direct.light].isInstance) [[likely]]
+  if (!scene_->fronts[direct.light].isInstance) [[likely]]
     return sample.positionError;
-  const PlacedLight& placed = lights_[direct.light];
+  const PlacedLight& placed = scene_->lights[direct.light];
   const LightTransform transform = placed.motion ? placed.At(time) : placed.transform;
   const Point3 reach = glm::max(glm::abs(from.position), glm::abs(sample.position));
   return sample.positionError + InstanceRayError(transform.toRender, transform.toLocal, reach);
@@ -147,48 +149,48 @@ Color LightingServices::Transmission(const SurfacePoint& from, const DirectSampl
   const Ray ray = direct.isInfinite
                       ? SpawnRay(from, sample.direction, time)
                       : SpawnRayTo(from, sample.position, ErrorOfEnd(from, direct, time), sample.normal, time);
-  return geometry_.Transmission(ray, visibility::kShadow);
+  return scene_->geometry.Transmission(ray, visibility::kShadow);
 }
 
 std::optional<FoundLight> LightingServices::EvaluateSamples(const Receiver& receiver, const Vector3& direction,
                                                             float distance, const SurfacePoint& point, float time,
                                                             bool bidirectional) const {
-  const int32_t index = geometry_.LightAt(point.primitive, point.instance);
+  const int32_t index = scene_->geometry.LightAt(point.primitive, point.instance);
   if (index < 0) return std::nullopt;
   const auto light = static_cast<uint32_t>(index);
   if (!Reaches(light, receiver)) return std::nullopt;
   std::optional<LightTransform> moved;
   LightContext context = Context(light, time, bidirectional, moved);
   const LightHit hit = SurfaceLightHit(direction, distance, point);
-  if (selector_->SelectsPatches(receiver)) context.patch = hit.patchIndex;
-  auto evaluation = fronts_[light].light->EvaluateSamples(context, hit, receiver.position);
+  if (scene_->selector->SelectsPatches(receiver)) context.patch = hit.patchIndex;
+  auto evaluation = scene_->fronts[light].light->EvaluateSamples(context, hit, receiver.position);
   if (!evaluation || !Filter(light, receiver, direction, distance, time, *evaluation)) return std::nullopt;
   if (bidirectional) {
     evaluation->pdfEmit = EmissionDensity(context, light, hit.patchIndex, evaluation->pdfEmit);
     Aim(light, hit.position, -direction, *evaluation);
   }
-  return FoundLight{light, selector_->Probability(receiver, light, context.patch), *evaluation};
+  return FoundLight{light, scene_->selector->Probability(receiver, learning_, light, context.patch), *evaluation};
 }
 
 std::optional<FoundLight> LightingServices::EvaluateEscaped(size_t i, const Receiver& receiver,
                                                             const Vector3& direction, float time,
                                                             bool bidirectional) const {
-  const uint32_t light = infinite_[i];
+  const uint32_t light = scene_->infinite[i];
   if (!Reaches(light, receiver)) return std::nullopt;
   const LightHit hit = EscapedHit(receiver.position, direction);
   std::optional<LightTransform> moved;
   const LightContext context = Context(light, time, bidirectional, moved);
-  auto evaluation = fronts_[light].light->EvaluateSamples(context, hit, receiver.position);
+  auto evaluation = scene_->fronts[light].light->EvaluateSamples(context, hit, receiver.position);
   if (!evaluation || !Filter(light, receiver, direction, kInfinity, time, *evaluation)) return std::nullopt;
   if (bidirectional) Aim(light, receiver.position, -direction, *evaluation);
-  return FoundLight{light, selector_->Probability(receiver, light, kAnyPatch), *evaluation};
+  return FoundLight{light, scene_->selector->Probability(receiver, learning_, light, kAnyPatch), *evaluation};
 }
 
 bool LightingServices::RunFilter(uint32_t light, const Receiver& receiver, const Vector3& toLight, float distance,
                                  float time, PdfSolidAngle pdfDirect, Color& diffuse, Color& specular) const {
   if (receiver.link == Receiver::kCamera) return true;
-  const FilterInstance& root = linking_.Filters()[static_cast<size_t>(lights_[light].filter)];
-  const FilterContext context{time, linking_.EnabledFilters(receiver.link)};
+  const FilterInstance& root = scene_->linking.Filters()[static_cast<size_t>(scene_->lights[light].filter)];
+  const FilterContext context{time, scene_->linking.EnabledFilters(receiver.link)};
   if (context.IsEnabled(root)) {
     root.filter->Filter(context, {1, &receiver.position, &toLight, &distance, &pdfDirect, &diffuse, &specular});
   }
@@ -197,24 +199,24 @@ bool LightingServices::RunFilter(uint32_t light, const Receiver& receiver, const
 
 Color LightingServices::EmissionForCamera(const Vector3& direction, float distance, const SurfacePoint& point,
                                           float time) const {
-  const int32_t index = geometry_.LightAt(point.primitive, point.instance);
+  const int32_t index = scene_->geometry.LightAt(point.primitive, point.instance);
   if (index < 0) return Color(0.0f);
   const auto light = static_cast<uint32_t>(index);
   std::optional<LightTransform> moved;
-  return fronts_[light].light->EvaluateEmissionForCamera(Context(light, time, false, moved),
-                                                         SurfaceLightHit(direction, distance, point));
+  return scene_->fronts[light].light->EvaluateEmissionForCamera(Context(light, time, false, moved),
+                                                                SurfaceLightHit(direction, distance, point));
 }
 
 Color LightingServices::EscapedEmissionForCamera(size_t i, const Ray& ray) const {
-  const uint32_t light = infinite_[i];
-  if (!fronts_[light].light->Settings().cameraVisible) return Color(0.0f);
+  const uint32_t light = scene_->infinite[i];
+  if (!scene_->fronts[light].light->Settings().cameraVisible) return Color(0.0f);
   const LightHit hit = EscapedHit(ray.origin, ray.direction);
   std::optional<LightTransform> moved;
-  return fronts_[light].light->EvaluateEmissionForCamera(Context(light, ray.time, false, moved), hit);
+  return scene_->fronts[light].light->EvaluateEmissionForCamera(Context(light, ray.time, false, moved), hit);
 }
 
 PdfDiscrete LightingServices::SelectionProbability(const Receiver& receiver, uint32_t light, int patch) const {
-  return selector_->Probability(receiver, light, patch);
+  return scene_->selector->Probability(receiver, learning_, light, patch);
 }
 
 }  // namespace lampyr

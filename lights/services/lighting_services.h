@@ -1,6 +1,10 @@
 // The one door between integrators and lights: selection, sampling, shadows and emission. An integrator never calls a
 // light itself, so whatever happens on the edge between a light and the first surface happens here, once, and alike for
 // every technique.
+//
+// A LightingServices is a view of the scene's lights that never changes. What is learned while an image is rendered
+// (which lights are occluded where, where photons are of use) makes another view of the same lights: `With`. A pass is
+// given one view, and so has one distribution, whose densities are known exactly.
 #pragma once
 
 #include <algorithm>
@@ -42,15 +46,13 @@ struct FoundLight {
   LightEvaluation evaluation;
 };
 
-// A photon, traced to its first surface.
+// A photon as it leaves its light.
 struct EmittedPhoton {
   uint32_t light = 0;
   PdfDiscrete emissionSelection;
   EmissionSample emission;
   float pdfUnguided = 0;  // of the density that a guide has a part in, what it would be without: 1/m² of lights at
                           // infinity, 1/sr of others
-  std::optional<RayHit> landing;  // nullopt: it left the scene, or is dark
-  Color passed{1.0f};             // what its flux is multiplied by for what it went through on its way there
   Ray ray;
   bool fromSurface = false;  // it started on a surface that camera rays can hit
 
@@ -60,17 +62,21 @@ struct EmittedPhoton {
 
 class LightingServices {
  public:
-  // `geometry` must outlive the services.
+  // `geometry` must outlive the services. At most `mostSamples` lights are chosen for a receiver, in
+  // [1, LightChoices::kMost]. Each sample divides by the number that is expected of its light, so that their
+  // contributions add up; densities of next-event estimation count them all.
   LightingServices(const GeometryScene& geometry, std::vector<PlacedLight> lights, LightSelection selection,
-                   LightLinking linking = {});
+                   LightLinking linking = {}, int mostSamples = 1);
 
-  // Chooses lights for the receiver: one, or as many as TakeSamples lets it.
+  // The same lights, where next-event estimation selects by what `learning` knows, too, and records its results there
+  // while that is recording, and where photons are aimed by `guide`. Both must outlive the view, and what they know
+  // stays the same while it is used; null: without.
+  LightingServices With(LightLearning* learning, const EmissionGuide* guide) const;
+
+  // Chooses lights for the receiver.
   void SelectLights(const Receiver& receiver, float uSelect, LightChoices& choices) const {
-    selector_->Select(receiver, MoreBits(uSelect, receiver.position), choices);
+    scene_->selector->Select(receiver, learning_, MoreBits(uSelect, receiver.position), choices);
   }
-  // At most so many lights for a receiver, in [1, LightChoices::kMost]. Each sample divides by the number that is
-  // expected of its light, so that their contributions add up; densities of next-event estimation count them all.
-  void TakeSamples(int most) { selector_->TakeSamples(most); }
   // A sample on a chosen light.
   DirectSample GenerateSamples(const Receiver& receiver, const SelectedLight& selected, const Point2& u, float time,
                                bool bidirectional) const;
@@ -80,18 +86,12 @@ class LightingServices {
   Color Transmission(const SurfacePoint& from, const DirectSample& direct, float time) const;
 
   // What became of a sample: the part of it that arrived at the receiver, 0 too where it was not worth a shadow ray.
-  // From any thread; does nothing unless something is learned.
+  // From any thread; does nothing unless something is recorded.
   void UpdateWithResults(const Receiver& receiver, const DirectSample& direct, const Color& arrived) const {
     if (learning_ && learning_->IsRecording()) RecordResult(receiver, direct, arrived);
   }
-  // Selection learns from results, and uses what `learning` knows; null: it does neither. Not during a pass.
-  void Use(LightLearning* learning);
-
-  // From now on photons are aimed by `guide`, and every emission density says so; null: they are not. Not during a
-  // pass.
-  void AimBy(const EmissionGuide* guide) { guide_ = guide; }
   // How lights are chosen for emission without a guide.
-  const LightSelector& EmissionSelector() const { return *emissionSelector_; }
+  const LightSelector& EmissionSelector() const { return *scene_->emissionSelector; }
 
   // The area light at a surface point that a ray from `receiver` along the unit `direction` hit; nullopt when that
   // surface emits nothing that way.
@@ -100,7 +100,7 @@ class LightingServices {
 
   // The lights at infinity, each as seen by a ray from `receiver` that escapes along `direction`: i in [0,
   // InfiniteCount()).
-  size_t InfiniteCount() const { return infinite_.size(); }
+  size_t InfiniteCount() const { return scene_->infinite.size(); }
   std::optional<FoundLight> EvaluateEscaped(size_t i, const Receiver& receiver, const Vector3& direction, float time,
                                             bool bidirectional) const;
 
@@ -111,7 +111,7 @@ class LightingServices {
   // left.
   bool IsOrigin(const EmittedPhoton& photon, const SurfacePoint& point, const Vector3& toRay, float distance) const;
 
-  // Chooses a light for emission, emits and traces to the landing point.
+  // Chooses a light for emission, and emits. Surfaces nearer than EmissionSample::shinesFrom stop the photon.
   std::optional<EmittedPhoton> GenerateEmission(float uSelect, const Point2& u, const Point2& uDirection,
                                                 float time) const;
   // How much more often this photon is sent than it would be without a guide.
@@ -122,41 +122,39 @@ class LightingServices {
 
   // What a photon brings to the receiver that it has landed on: its light's filter changes it, and where the light is
   // not linked to the receiver it brings nothing. False: nothing is left. The light as it was sent: what it passed on
-  // its way (EmittedPhoton::passed) comes after the filter.
+  // its way comes after the filter.
   bool FilterLanding(const EmittedPhoton& photon, const Receiver& receiver, Color& diffuse, Color& specular) const {
-    return !isLinked_ || LandsFiltered(photon, receiver, diffuse, specular);
+    return !scene_->isLinked || LandsFiltered(photon, receiver, diffuse, specular);
   }
 
   // Whether next-event estimation at a receiver selects patch by patch; otherwise a light's patches have the light's
   // probability.
-  bool SelectsPatches(const Receiver& receiver) const { return selector_->SelectsPatches(receiver); }
+  bool SelectsPatches(const Receiver& receiver) const { return scene_->selector->SelectsPatches(receiver); }
   PdfDiscrete SelectionProbability(const Receiver& receiver, uint32_t light, int patch) const;
   PdfDiscrete EmissionSelectionProbability(uint32_t light) const;
   // Whether a light has a direction only (infinite and distant lights), and whether a direction that a surface samples
   // can find it.
-  bool IsAtInfinity(uint32_t light) const { return lampyr::IsAtInfinity(fronts_[light].kind); }
-  bool CanBeHit(uint32_t light) const {
-    const LightFront front = fronts_[light];
-    return front.kind == LightKind::Infinite || (front.kind == LightKind::Area && front.canBeHit);
-  }
+  bool IsAtInfinity(uint32_t light) const { return lampyr::IsAtInfinity(scene_->fronts[light].kind); }
+  bool CanBeHit(uint32_t light) const { return scene_->CanBeHit(light); }
   // Whether there is one that can: a direction that a surface samples may find light.
-  bool HasLightThatCanBeHit() const;
+  bool HasLightThatCanBeHit() const { return scene_->hasLightThatCanBeHit; }
 
   // The groups that lights are in, and that of the light at infinity `i` and of the area light at a surface point.
-  const LightGroups& Groups() const { return groups_; }
-  uint32_t GroupOf(uint32_t light) const { return groups_.Of(light); }
-  uint32_t GroupOfInfinite(size_t i) const { return groups_.Of(infinite_[i]); }
+  const LightGroups& Groups() const { return scene_->groups; }
+  uint32_t GroupOf(uint32_t light) const { return scene_->groups.Of(light); }
+  uint32_t GroupOfInfinite(size_t i) const { return scene_->groups.Of(scene_->infinite[i]); }
   uint32_t GroupAt(const SurfacePoint& point) const {
-    return groups_.Of(static_cast<uint32_t>(std::max(geometry_.LightAt(point.primitive, point.instance), 0)));
+    return scene_->groups.Of(
+        static_cast<uint32_t>(std::max(scene_->geometry.LightAt(point.primitive, point.instance), 0)));
   }
 
-  bool HasLights() const { return !lights_.empty(); }
+  bool HasLights() const { return !scene_->lights.empty(); }
   // W: what light paths carry is in parts of this, a power of two near the power of all lights. A lamp of 1e30 that is
   // a kilometre wide, or of 1e-30 and a micrometre, has a power that no float holds; what arrives of it fits again.
-  float FluxUnit() const { return fluxUnit_; }
-  const std::vector<PlacedLight>& Lights() const { return lights_; }
-  const LightLinking& Linking() const { return linking_; }
-  const BoundingSphere& SceneSphere() const { return sphere_; }
+  float FluxUnit() const { return scene_->fluxUnit; }
+  const std::vector<PlacedLight>& Lights() const { return scene_->lights; }
+  const LightLinking& Linking() const { return scene_->linking; }
+  const BoundingSphere& SceneSphere() const { return scene_->sphere; }
 
  private:
   static double MoreBits(float u, const Point3& of) { return WithMoreBits(u, of.x, of.y, of.z); }
@@ -179,12 +177,12 @@ class LightingServices {
   // An edge between a light and a receiver, with what the light sends along it: linking and filters act on it. False:
   // nothing is left. Each technique that makes such an edge comes here, or to FilterLanding.
   bool Reaches(uint32_t light, const Receiver& receiver) const {
-    return !isLinked_ || receiver.link == Receiver::kCamera || linking_.IsLit(receiver.link, light);
+    return !scene_->isLinked || receiver.link == Receiver::kCamera || scene_->linking.IsLit(receiver.link, light);
   }
   template <class Record>
   bool Filter(uint32_t light, const Receiver& receiver, const Vector3& toLight, float distance, float time,
               Record& record) const {
-    return !isLinked_ || lights_[light].filter < 0 ||
+    return !scene_->isLinked || scene_->lights[light].filter < 0 ||
            RunFilter(light, receiver, toLight, distance, time, record.pdfDirect, record.diffuse, record.specular);
   }
   bool RunFilter(uint32_t light, const Receiver& receiver, const Vector3& toLight, float distance, float time,
@@ -196,16 +194,29 @@ class LightingServices {
   void RecordResult(const Receiver& receiver, const DirectSample& direct, const Color& arrived) const;
   Vector3 ErrorOfEnd(const SurfacePoint& from, const DirectSample& direct, float time) const;
 
-  const GeometryScene& geometry_;
-  std::vector<PlacedLight> lights_;
-  LightFronts fronts_;
-  std::vector<uint32_t> infinite_;
-  LightGroups groups_;
-  BoundingSphere sphere_;
-  float fluxUnit_ = 1;
-  LightLinking linking_;
-  bool isLinked_ = false;  // some light has a filter, or does not shine on everything
-  std::unique_ptr<LightSelector> selector_, emissionSelector_;
+  // What all views of a scene share.
+  struct SceneLights {
+    SceneLights(const GeometryScene& geometry, std::vector<PlacedLight> lights, LightSelection selection,
+                LightLinking linking, int mostSamples);
+    bool CanBeHit(uint32_t light) const {
+      const LightFront& front = fronts[light];
+      return front.kind == LightKind::Infinite || (front.kind == LightKind::Area && front.canBeHit);
+    }
+
+    const GeometryScene& geometry;
+    std::vector<PlacedLight> lights;
+    LightFronts fronts;
+    std::vector<uint32_t> infinite;
+    bool hasLightThatCanBeHit = false;
+    LightGroups groups;
+    BoundingSphere sphere;
+    float fluxUnit = 1;
+    LightLinking linking;
+    bool isLinked = false;  // some light has a filter, or does not shine on everything
+    std::unique_ptr<LightSelector> selector, emissionSelector;
+  };
+
+  std::shared_ptr<const SceneLights> scene_;
   LightLearning* learning_ = nullptr;
   const EmissionGuide* guide_ = nullptr;
 };

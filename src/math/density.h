@@ -13,6 +13,7 @@ namespace measure {
 struct SolidAngle {};  // 1/sr
 struct Area {};        // 1/m²
 struct Discrete {};    // a probability
+struct AreaPair {};    // 1/m⁴, of two points on surfaces
 }  // namespace measure
 
 template <class Measure>
@@ -54,6 +55,41 @@ inline float SolidAngleToArea(float distanceSquared, float cosTheta) {
 }
 inline PdfArea ToArea(PdfSolidAngle pdf, float solidAngleToArea) {
   return PdfArea(pdf.value * solidAngleToArea);
+}
+
+// Densities along a path, in double: they multiply, and those of a light of 1e-6 m are 1e12. Of a delta, which has no
+// density, `value` is the coefficient of the delta, in the measure that its path is compared in.
+template <class Measure>
+struct Density {
+  double value = 0;
+
+  Density() = default;
+  constexpr explicit Density(double v) : value(v) {}
+  explicit Density(Pdf<Measure> pdf) : value(static_cast<double>(pdf.value)) {}
+
+  friend Density operator*(double s, Density a) { return Density(s * a.value); }
+  // The ratio of two techniques' densities of the same sample; 0 if the first one cannot make it.
+  friend double operator/(Density a, Density b) { return a.value == 0 ? 0.0 : a.value / b.value; }
+};
+
+using SolidAngleDensity = Density<measure::SolidAngle>;
+using AreaDensity = Density<measure::Area>;
+using AreaPairDensity = Density<measure::AreaPair>;
+
+inline AreaPairDensity operator*(AreaDensity a, AreaDensity b) {
+  return AreaPairDensity(a.value * b.value);
+}
+// Of one point given the other; 0 if the pair has no density.
+inline AreaDensity operator/(AreaPairDensity pair, AreaDensity other) {
+  return AreaDensity(pair.value == 0 ? 0.0 : pair.value / other.value);
+}
+
+// dω/dA, what turns a density in solid angle at one point into one in area at the other: cosθ / d² at the other point.
+struct SolidAnglePerArea {
+  double value = 1;
+};
+inline AreaDensity operator*(SolidAngleDensity density, SolidAnglePerArea edge) {
+  return AreaDensity(density.value * edge.value);
 }
 
 }  // namespace lampyr

@@ -87,9 +87,9 @@ TEST(LearnedSelectionBytes, AreThoseOfOneThread) {
     const BuiltScene built = BuildScene(ParseScene(TwoRooms(), "test.pbrt", diagnostics), overrides, true, diagnostics);
     const Image one = RenderBuilt(built, 13, 1).image;
     EXPECT_EQ(RenderBuilt(built, 13, 3).image.data, one.data) << integrator;
-    const AnyIntegrator any = MakeIntegrator(built.scene, built.settings);
+    const std::unique_ptr<Integrator> any = MakeIntegrator(built.scene, built.settings);
     Film film(built.settings.width, built.settings.height, built.settings.crop);
-    ProgressiveRender passes(built.scene, any, built.settings, 2, film);
+    ProgressiveRender passes(built.scene, *any, built.settings, 2, film);
     for (const int samples : {3, 1, 6, 3}) passes.AddSamples(samples);
     EXPECT_EQ(film.Develop().data, one.data) << integrator;
   }

@@ -215,11 +215,11 @@ TEST_P(LightGroupLayers, AreTheSameForAnyThreadsAndPasses) {
   Diagnostics diagnostics(Diagnostics::Mode::Collect);
   BuiltScene built =
       BuildScene(ParseScene(WithGroups(), "test.pbrt", diagnostics), With(GetParam()), true, diagnostics);
-  const AnyIntegrator integrator = MakeIntegrator(built.scene, built.settings);
+  const std::unique_ptr<Integrator> integrator = MakeIntegrator(built.scene, built.settings);
   const auto render = [&](const std::vector<int>& passes, int threads) {
     Film film(built.settings.width, built.settings.height, built.settings.crop,
               built.scene.lighting->Groups().Layers());
-    ProgressiveRender progress(built.scene, integrator, built.settings, threads, film);
+    ProgressiveRender progress(built.scene, *integrator, built.settings, threads, film);
     for (const int samples : passes) progress.AddSamples(samples);
     return film.Develop().data;
   };
@@ -284,20 +284,21 @@ TEST(LightGroups, WithoutUngroupedLightsThereIsNoRest) {
 
 // A sample that is dropped is dropped by all layers.
 TEST(LightGroups, DroppedSamplesAreInNoLayer) {
-  class Faulty final : public CameraIntegrator {
+  class Faulty final : public Integrator {
    public:
-    Color Radiance(const Ray&, Sampler& sampler, RenderCounts&, LayerSample* layers) const override {
-      sampler.SetDimension(dimensions::OfVertex(0, dimensions::kLight));
-      const float u = sampler.Get1D();
+    TracedPaths Paths() const override { return TracedPaths::Camera; }
+    Color Sample(const Ray*, const SampleContext& context) const override {
+      context.sampler.SetDimension(PathDimensions().Of(0, dimensions::kLight));
+      const float u = context.sampler.Get1D();
       const float fault = u < 0.25f ? std::numeric_limits<float>::quiet_NaN() : u < 0.5f ? -5.0f : 1.0f;
-      layers->Add(0, Color(2.0f));
-      layers->Add(2, Color(fault));
+      context.layers->Add(0, Color(2.0f));
+      context.layers->Add(2, Color(fault));
       return Color(2.0f) + Color(fault);
     }
   };
   Diagnostics diagnostics(Diagnostics::Mode::Collect);
   const BuiltScene built = BuildScene(ParseScene(WithGroups("box"), "test.pbrt", diagnostics), {}, true, diagnostics);
-  const AnyIntegrator integrator = std::make_unique<Faulty>();
+  const Faulty integrator;
   Film film(built.settings.width, built.settings.height, built.settings.crop, {"a", "b", "c"});
   ProgressiveRender render(built.scene, integrator, built.settings, 2, film);
   render.AddSamples(16);

@@ -132,9 +132,9 @@ TEST(PhotonGuiding, TheSameForAnyThreadsAndPasses) {
   const Rendered one = RenderBuilt(built, 20, 1), two = RenderBuilt(built, 20, 2);
   EXPECT_GT(one.outcome.photons->guideTargets, 0);
   EXPECT_TRUE(IsSame(one.image, two.image));
-  const AnyIntegrator integrator = MakeIntegrator(built.scene, built.settings);
+  const std::unique_ptr<Integrator> integrator = MakeIntegrator(built.scene, built.settings);
   Film film(built.settings.width, built.settings.height, built.settings.crop);
-  ProgressiveRender render(built.scene, integrator, built.settings, 2, film);
+  ProgressiveRender render(built.scene, *integrator, built.settings, 2, film);
   for (const int count : {1, 4, 2, 12, 1}) render.AddSamples(count);
   EXPECT_TRUE(IsSame(one.image, film.Develop()));
 }

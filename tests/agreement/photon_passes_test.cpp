@@ -4,6 +4,7 @@
 
 #include "agreement/agreement_scenes.h"
 #include "base/byte_stream.h"
+#include "render/passes.h"
 #include "support/render_scene.h"
 
 namespace lampyr::test {
@@ -34,14 +35,13 @@ BuiltScene BuildLamps(const char* integrator, bool learns, bool connects) {
 // Light paths that are traced again for their photons alone are not connected to the camera.
 TEST(PhotonPasses, LightPathsForPhotonsAloneCostNoShadowRays) {
   BuiltScene built = BuildLamps("vcm", false, true);
-  const AnyIntegrator any = MakeIntegrator(built.scene, built.settings);
-  const auto& integrator = *std::get<std::unique_ptr<BidirectionalIntegrator>>(any);
+  const std::unique_ptr<Integrator> integrator = MakeIntegrator(built.scene, built.settings);
   const PixelFilter filter(built.settings.filter);
   const auto render = [&](uint32_t first, uint32_t count, PhotonStore* kept) {
     Film film(built.settings.width, built.settings.height, built.settings.crop, {});
-    return RenderPass(built.scene, integrator, built.settings, filter, first, count, 1, film, nullptr, kept);
+    return RenderPass(built.scene, *integrator, built.settings, filter, first, count, 1, film, nullptr, kept);
   };
-  PhotonStore kept(*integrator.Photons(), 16 * 16);
+  PhotonStore kept(*integrator->Photons(), 16 * 16);
   render(0, 3, &kept);
   const RenderCounts continued = render(3, 1, &kept), again = render(3, 1, nullptr);
   EXPECT_EQ(continued.shadowRays, again.shadowRays);
@@ -53,15 +53,15 @@ TEST(PhotonPasses, LightPathsForPhotonsAloneCostNoShadowRays) {
 TEST(PhotonPasses, ResumedWhereTheSelectionOfLightsIsLearned) {
   for (const bool connects : {true, false}) {
     BuiltScene built = BuildLamps("vcm", true, connects);
-    const AnyIntegrator integrator = MakeIntegrator(built.scene, built.settings);
+    const std::unique_ptr<Integrator> integrator = MakeIntegrator(built.scene, built.settings);
     const auto film = [&] { return Film(built.settings.width, built.settings.height, built.settings.crop, {}); };
     Film whole = film();
-    ProgressiveRender uninterrupted(built.scene, integrator, built.settings, 1, whole);
+    ProgressiveRender uninterrupted(built.scene, *integrator, built.settings, 1, whole);
     uninterrupted.AddSamples(11);
     // Milestones of learning, and what is between them.
     for (const int samples : {1, 2, 3, 4, 7, 8}) {
       Film first = film(), second = film();
-      ProgressiveRender before(built.scene, integrator, built.settings, 1, first);
+      ProgressiveRender before(built.scene, *integrator, built.settings, 1, first);
       before.AddSamples(samples);
       std::vector<std::byte> saved;
       ByteWriter writer([&](const void* bytes, size_t count) {
@@ -69,7 +69,7 @@ TEST(PhotonPasses, ResumedWhereTheSelectionOfLightsIsLearned) {
         saved.insert(saved.end(), from, from + count);
       });
       before.Save(writer);
-      ProgressiveRender after(built.scene, integrator, built.settings, 1, second);
+      ProgressiveRender after(built.scene, *integrator, built.settings, 1, second);
       ByteReader bytes(saved);
       after.Load(bytes);
       after.AddSamples(11 - samples);

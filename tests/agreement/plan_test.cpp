@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "app/plan.h"
+#include "render/analysis/plan.h"
 #include "support/replicas.h"
 
 namespace lampyr::test {

@@ -15,8 +15,9 @@
 namespace lampyr::test {
 namespace {
 
-BuiltScene Build(const std::string& text, const std::string& selection) {
+BuiltScene Build(const std::string& text, const std::string& selection, int samples = 1) {
   RenderOverrides overrides;
+  overrides.lightSamples = samples;
   overrides.lightSampler = selection;
   Diagnostics diagnostics(Diagnostics::Mode::Collect);
   return BuildScene(ParseScene(text, std::string(LAMPYR_SOURCE_DIR) + "/scenes/test.pbrt", diagnostics), overrides,
@@ -165,9 +166,8 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Selection,
 // Of several samples at a receiver, each light expects its part; all of them together are as many as there are.
 TEST_P(Selection, CountsSeveralSamples) {
   const auto& [scene, name] = GetParam();
-  const BuiltScene built = Build(scene.text, name);
-  LightingServices& lighting = *built.scene.lighting;
-  lighting.TakeSamples(5);
+  const BuiltScene built = Build(scene.text, name, 5);
+  const LightingServices& lighting = *built.scene.lighting;
   Rng rng(2);
   for (int r = 0; r < 40; ++r) {
     const Receiver receiver = RandomReceiver(lighting.SceneSphere(), rng);

@@ -5,9 +5,9 @@
 #include <optional>
 #include <stdexcept>
 
-#include "integrators/bdpt/bdpt_integrator.h"
-#include "integrators/bdpt/full_path.h"
-#include "integrators/common/light_subpath.h"
+#include "integrators/bidirectional/bidirectional_integrator.h"
+#include "integrators/bidirectional/full_path.h"
+#include "integrators/bidirectional/subpath_weights.h"
 #include "support/aimed.h"
 #include "support/render_scene.h"
 
@@ -36,34 +36,46 @@ namespace {
 
 constexpr uint32_t kLightPaths = 2000;  // that leave photons
 
-// Light paths that leave photons, kept whole, so that a merge can be unfolded: a photon is known by what it carries.
-class KeptLightPaths final : public LightSubpathVisitor {
+// A light path that leaves photons, kept whole, so that a merge can be unfolded: a photon is known by what it carries.
+struct KeptPath {
+  std::vector<PathVertex> vertices;
+  LightEnd end;
+};
+class KeptLightPaths {
  public:
-  void Arrived(const LightSubpath& path) override {
-    if (!path.Last().storesPhotons) return;
-    photons.Add(path.Last(), static_cast<int>(path.count));
-    const auto vertices = path.vertices.begin();
-    const PathVertex& last = path.Last();
+  void Keep(const LightPath& path, const LightEnd& end) {
+    const PathVertex& last = path.vertices.Last();
+    const size_t count = path.vertices.Count();
+    photons.Add(last, count);
+    const auto vertices = path.vertices.First(count);
     paths_[KeyOf(last.toPrevious, photons.Photons().back().diffuse, last.weight.connect,
-                 static_cast<float>(last.previousPerSolidAngle), path.count)] = {
-        {vertices, vertices + static_cast<std::ptrdiff_t>(path.count)}, path.end};
+                 static_cast<float>(last.previousSolidAnglePerArea.value), count)] = {
+        {vertices.begin(), vertices.end()}, end};
   }
-  struct Kept {
-    std::vector<PathVertex> vertices;
-    LightEnd end;
-  };
-  const Kept& PathOf(const Photon& photon) const {
-    return paths_.at(KeyOf(photon.toPrevious, photon.flux, photon.connect, photon.previousPerSolidAngle, photon.depth));
+  const KeptPath& PathOf(const Photon& photon) const {
+    return paths_.at(
+        KeyOf(photon.toPrevious, photon.flux, photon.connect, photon.previousSolidAnglePerArea, photon.depth));
   }
 
   PhotonList photons;
 
  private:
   using Key = std::array<double, 9>;
-  static Key KeyOf(const Vector3& d, const Color& c, double connect, float perSolidAngle, size_t depth) {
-    return {d.x, d.y, d.z, c.r, c.g, c.b, connect, perSolidAngle, static_cast<double>(depth)};
+  static Key KeyOf(const Vector3& d, const Color& c, double connect, float edge, size_t depth) {
+    return {d.x, d.y, d.z, c.r, c.g, c.b, connect, edge, static_cast<double>(depth)};
   }
-  std::map<Key, Kept> paths_;
+  std::map<Key, KeptPath> paths_;
+};
+
+class KeepsPaths final : public WeighedLightPath {
+ public:
+  KeepsPaths(const SampleContext& context, KeptLightPaths& kept) : WeighedLightPath(context, true), kept_(kept) {}
+
+ private:
+  void Weighed(const LightPath& path) override {
+    if (path.vertices.Last().storesPhotons) kept_.Keep(path, End());
+  }
+  KeptLightPaths& kept_;
 };
 
 double CosineAtGeometry(const PathVertex& vertex, const Vector3& direction) {
@@ -82,7 +94,7 @@ class WeightChecker final : public PathObserver {
   }
   void ObserveMerge(const ConnectedPath& path, const Photon& photon) override {
     ConnectedPath merged = path;
-    const KeptLightPaths::Kept& light = kept_.PathOf(photon);
+    const KeptPath& light = kept_.PathOf(photon);
     if (photon.depth != light.vertices.size()) throw std::logic_error("a photon of another path");
     merged.light = light.vertices;
     merged.end = light.end;
@@ -130,10 +142,10 @@ class WeightChecker final : public PathObserver {
     const PathVertex& vertex = path.camera.empty() ? path.light.back() : path.camera.front();
     const Point3 lens = path.camera.empty() ? path.connection->camera.position : cameraRay_.origin;
     const auto densities = scene_.camera->EvaluateRay({lens, -path.toLens}, &film_);
-    if (!densities || !(path.cameraPerArea > 0)) return;
+    if (!densities || !(path.atLens.value > 0)) return;
     const Vector3d way = Vector3d(vertex.point.position) - Vector3d(lens);
     const double cosine = CosineAtGeometry(vertex, path.toLens);
-    worst_.lens.Note(path.cameraPerArea,
+    worst_.lens.Note(path.atLens.value,
                      scene_.camera->ConnectsByDirection()
                          ? static_cast<double>(densities->pdfPosition.value) * cosine
                          : static_cast<double>(densities->pdfDirection.value) * cosine / glm::dot(way, way));
@@ -159,11 +171,11 @@ class WeightChecker final : public PathObserver {
   }
   void CheckLightEnd(const ConnectedPath& path) {
     const LightingServices& lighting = *scene_.lighting;
-    if (path.end.direct == 0 || path.end.emission == 0) return;  // one of them is not there
+    if (path.end.direct.value == 0 || path.end.emission.value == 0) return;  // one of them is not there
     const PathVertex& first = path.light.empty() ? path.camera.back() : path.light.front();
     const PlacedLight& placed = lighting.Lights()[path.end.light];
     if (IsDelta(placed.light->Kind())) {
-      worst_.direct.Note(path.end.direct,
+      worst_.direct.Note(path.end.direct.value,
                          static_cast<double>(lighting.SelectionProbability(first.receiver, path.end.light, 0).value));
       return;
     }
@@ -174,19 +186,19 @@ class WeightChecker final : public PathObserver {
     if (e.pdfDirect.IsZero() || e.pdfEmit.IsZero() || e.pdfEmitDirection.IsZero()) return;
     const double cosine = CosineAtGeometry(first, path.toLight);
     if (cosine < 1e-3) return;
-    worst_.direct.Note(path.end.direct, static_cast<double>(found->selection.value) *
-                                            static_cast<double>(e.pdfDirect.value) *
-                                            static_cast<double>(e.solidAngleToArea));
+    worst_.direct.Note(path.end.direct.value, static_cast<double>(found->selection.value) *
+                                                  static_cast<double>(e.pdfDirect.value) *
+                                                  static_cast<double>(e.solidAngleToArea));
     const double chosen = static_cast<double>(lighting.EmissionSelectionProbability(path.end.light).value);
-    worst_.emission.Note(path.end.emission, chosen * static_cast<double>(e.pdfEmit.value) *
-                                                static_cast<double>(e.pdfEmitDirection.value) * cosine /
-                                                (distance * distance));
+    worst_.emission.Note(path.end.emission.value, chosen * static_cast<double>(e.pdfEmit.value) *
+                                                      static_cast<double>(e.pdfEmitDirection.value) * cosine /
+                                                      (distance * distance));
   }
 
   // A delta that refracts: the density towards the light over that towards the camera is how solid angles are
   // stretched, η_l² cosθ_l / (η_c² cosθ_c), and Snell's law says η.
-  void CheckRefraction(const PathVertex& vertex, const Vector3& toLight, const Vector3& toCamera, double densityToLight,
-                       double densityToCamera) {
+  void CheckRefraction(const PathVertex& vertex, const Vector3& toLight, const Vector3& toCamera,
+                       SolidAngleDensity densityToLight, SolidAngleDensity densityToCamera) {
     if (!vertex.scatteredDelta) return;
     const Vector3d n(vertex.bsdf.ShadingFrame().z);
     const double cosLight = glm::dot(n, Vector3d(toLight)), cosCamera = glm::dot(n, Vector3d(toCamera));
@@ -208,38 +220,56 @@ class WeightChecker final : public PathObserver {
 
 }  // namespace
 
+namespace {
+
+// What is told of photons, if the proof merges.
+struct Photons {
+  KeptLightPaths kept;
+  PhotonPass gather;
+};
+
+void TracePhotons(const RenderScene& scene, int maxDepth, float radius, Sampler& sampler, Photons& photons) {
+  photons.gather.lightPaths = kLightPaths;
+  photons.gather.radius = radius;
+  RenderCounts counts;
+  LightPath path;
+  const SampleContext context{scene, sampler, 0.5f, counts};
+  KeepsPaths visitor(context, photons.kept);
+  for (uint32_t i = 0; i < kLightPaths; ++i) {
+    sampler.StartPixelSample(1, 0, i);
+    TraceLightPath(context, maxDepth, {2, 1}, path, visitor);
+  }
+  photons.gather.map =
+      std::make_shared<PhotonMap>(std::span(&photons.kept.photons, 1), Mis(photons.gather.MergesPerDensity()), 1);
+}
+
+}  // namespace
+
 WeightErrors CheckWeights(const std::string& sceneText, const WeightProof& proof) {
   Diagnostics diagnostics(Diagnostics::Mode::Collect);
   const std::filesystem::path file = std::filesystem::path(LAMPYR_SOURCE_DIR) / "scenes" / "test.pbrt";
   const BuiltScene built = BuildScene(ParseScene(sceneText, file, diagnostics), {}, true, diagnostics);
   const BoundingSphere& sphere = built.scene.lighting->SceneSphere();
   const auto guide = AimAt(*built.scene.lighting, sphere.center, 0.2f * sphere.radius);
-  if (proof.aimed) built.scene.lighting->AimBy(guide.get());
-  BdptSettings settings;
+  RenderScene scene = built.scene;
+  if (proof.aimed)
+    scene.lighting = std::make_shared<const LightingServices>(scene.lighting->With(nullptr, guide.get()));
+  BidirectionalSettings settings;
   settings.maxDepth = built.settings.maxDepth;
   const int width = built.settings.width, height = built.settings.height;
   settings.filmPixels = static_cast<double>(width) * static_cast<double>(height);
   settings.merges = proof.radius > 0;
-  const auto integrator = MakeBdptIntegrator(built.scene, settings);
+  const auto integrator = MakeBidirectionalIntegrator(settings);
   Sampler sampler(SamplerKind::Independent, 5);
-  KeptLightPaths kept;
-  PhotonPass gather;
-  RenderCounts counts;
+  Photons photons;
   double mergesPerDensity = 0;
   if (proof.radius > 0) {
-    gather.lightPaths = kLightPaths;
-    gather.radius = proof.radius * sphere.radius;
-    const auto radius = static_cast<double>(gather.radius);
+    TracePhotons(scene, settings.maxDepth, proof.radius * sphere.radius, sampler, photons);
+    const auto radius = static_cast<double>(photons.gather.radius);
     mergesPerDensity = kLightPaths * 3.14159265358979323846 * radius * radius;
-    const LightSubpathTracer tracer(built.scene, settings.maxDepth, {2, 1}, LightSubpathTracer::Weights::All);
-    LightSubpath path;
-    for (uint32_t i = 0; i < kLightPaths; ++i) {
-      sampler.StartPixelSample(1, 0, i);
-      tracer.Trace(0.5f, sampler, counts, path, kept);
-    }
-    gather.map = std::make_shared<PhotonMap>(std::span(&kept.photons, 1), Mis(gather.MergesPerDensity()), 1);
   }
-  WeightChecker checker(built.scene, kept, mergesPerDensity);
+  WeightChecker checker(scene, photons.kept, mergesPerDensity);
+  RenderCounts counts;
   SplatList splats({0, 0}, {static_cast<float>(width), static_cast<float>(height)}, 1);
   for (uint32_t index = 0; checker.Result().paths < proof.paths && index < 100000; ++index) {
     sampler.StartPixelSample(0, 0, index);
@@ -247,11 +277,15 @@ WeightErrors CheckWeights(const std::string& sceneText, const WeightProof& proof
     splats.StartPath();
     sampler.SetDimension(dimensions::kFilm);
     const Point2 u = sampler.Get2D(), lens = sampler.Get2D();
-    const float time = built.scene.hasMotion ? sampler.Get1D() : 0.0f;
+    const float time = scene.hasMotion ? sampler.Get1D() : 0.0f;
     const Point2 film(u.x * static_cast<float>(width), u.y * static_cast<float>(height));
-    const CameraRay ray = built.scene.camera->GenerateRay(film, lens, time);
+    const CameraRay ray = scene.camera->GenerateRay(film, lens, time);
     checker.StartSample(ray.ray, time);
-    integrator->Sample(&ray.ray, time, sampler, {splats, counts, &checker, proof.radius > 0 ? &gather : nullptr});
+    SampleContext context{scene, sampler, time, counts};
+    context.splats = &splats;
+    context.observer = &checker;
+    context.gather = proof.radius > 0 ? &photons.gather : nullptr;
+    integrator->Sample(&ray.ray, context);
     if (proof.stopsAtFirst && !checker.Result().WhatIsWrong().empty()) break;
   }
   return checker.Result();

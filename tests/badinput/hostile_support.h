@@ -4,7 +4,7 @@
 #include <fstream>
 #include <string>
 
-#include "app/scene_builder.h"
+#include "render/build/scene_builder.h"
 #include "unit/scene/scene_support.h"
 
 namespace lampyr {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <ctime>
 
-#include "integrators/common/photon_map.h"
+#include "integrators/photon/photon_map.h"
 #include "sampling/rng.h"
 #include "support/render_scene.h"
 
@@ -41,7 +41,8 @@ PhotonList ListOf(const std::vector<Point3>& positions) {
 
 // What a lookup is for: a sum over what photons carry.
 double Gather(const Photon& photon) {
-  return static_cast<double>(photon.flux.r) * photon.BeforeReverse(static_cast<double>(photon.toPrevious.z)) +
+  return static_cast<double>(photon.flux.r) *
+             photon.BeforeReverse(SolidAngleDensity(static_cast<double>(photon.toPrevious.z))) +
          static_cast<double>(photon.normal.Unpack().z);
 }
 

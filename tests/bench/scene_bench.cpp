@@ -4,8 +4,8 @@
 
 #include <filesystem>
 
-#include "app/json_report.h"
 #include "base/parallel.h"
+#include "base/process_usage.h"
 #include "sampling/rng.h"
 #include "sampling/warp.h"
 #include "support/render_scene.h"
@@ -95,9 +95,9 @@ BareRays MeasureBareRays(const BuiltScene& built) {
 void RenderWhole(benchmark::State& state, const fs::path& file, const char* name, int size) {
   if (!fs::exists(file)) return state.SkipWithError("the scene is not here");
   const BuiltScene built = Load(file, size, size, name);
-  const AnyIntegrator integrator = MakeIntegrator(built.scene, built.settings);
+  const std::unique_ptr<Integrator> integrator = MakeIntegrator(built.scene, built.settings);
   Film film(size, size, built.settings.crop);
-  ProgressiveRender render(built.scene, integrator, built.settings, 1, film);
+  ProgressiveRender render(built.scene, *integrator, built.settings, 1, film);
   constexpr int samples = 16;
   const double start = CpuSeconds();
   for (auto _ : state) render.AddSamples(samples);

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "detection/baseline_render.h"
-#include "lights/suite/statistics.h"
+#include "suite/statistics.h"
 
 namespace lampyr::test {
 

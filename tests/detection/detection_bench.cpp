@@ -14,7 +14,7 @@
 
 #include "detection/baselines.h"
 #include "detection/weight_search.h"
-#include "lights/suite/suite_inputs.h"
+#include "suite/suite_inputs.h"
 #include "support/temporary_folder.h"
 
 namespace lampyr::test {

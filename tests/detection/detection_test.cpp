@@ -7,7 +7,7 @@
 #include <set>
 
 #include "detection/search.h"
-#include "lights/suite/suite_inputs.h"
+#include "suite/suite_inputs.h"
 #include "support/temporary_folder.h"
 
 namespace lampyr::test {

@@ -6,7 +6,7 @@
 
 #include "detection/planted_filter.h"
 #include "detection/planted_light.h"
-#include "lights/type_registry.h"
+#include "lights/types/type_registry.h"
 
 namespace lampyr::test {
 

@@ -9,7 +9,7 @@
 
 #include "detection/faults.h"
 #include "detection/subjects.h"
-#include "lights/suite/pdf_suite.h"
+#include "suite/pdf_suite.h"
 
 namespace lampyr::test {
 

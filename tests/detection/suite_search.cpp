@@ -2,13 +2,13 @@
 
 #include "detection/search.h"
 #include "lights/light_base.h"
-#include "lights/suite/checks.h"
-#include "lights/suite/filter_suite.h"
-#include "lights/suite/scene_suite.h"
-#include "lights/suite/statistics.h"
-#include "lights/suite/suite_inputs.h"
-#include "lights/suite/verdict.h"
 #include "scene/scene_description.h"
+#include "suite/checks.h"
+#include "suite/filter_suite.h"
+#include "suite/scene_suite.h"
+#include "suite/statistics.h"
+#include "suite/suite_inputs.h"
+#include "suite/verdict.h"
 #include "textures/texture_library.h"
 
 namespace lampyr::test {

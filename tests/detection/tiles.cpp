@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "detection/baseline_render.h"
-#include "lights/suite/statistics.h"
+#include "suite/statistics.h"
 
 namespace lampyr::test {
 

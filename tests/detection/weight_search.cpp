@@ -5,7 +5,7 @@
 #include "agreement/agreement_scenes.h"
 #include "agreement/weight_proof.h"
 #include "detection/baseline_render.h"
-#include "lights/suite/statistics.h"
+#include "suite/statistics.h"
 #include "support/replicas.h"
 
 namespace lampyr::test {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "app/render_settings.h"
+#include "render/settings/render_settings.h"
 
 namespace lampyr::test {
 

@@ -1,8 +1,9 @@
 // Saved renders: what `--resume` and `merge` read.
-#include "app/render_part.h"
-#include "app/render_run.h"
-#include "app/scene_builder.h"
 #include "fuzz/target_support.h"
+#include "render/build/scene_builder.h"
+#include "render/progressive_render.h"
+#include "render/render_part.h"
+#include "render/settings/integrator_choice.h"
 
 namespace lampyr::fuzz {
 
@@ -58,7 +59,7 @@ Material "conductor" Shape "trianglemesh" "point3 P" [ -5 0 -5 -5 0 5 5 0 5 5 0 
 
   void GoOn(ByteReader& bytes) const {
     Film film(3, 3, {0, 0, 3, 3}, built.scene.lighting->Groups().Layers());
-    ProgressiveRender render(built.scene, integrator, built.settings, 1, film);
+    ProgressiveRender render(built.scene, *integrator, built.settings, 1, film);
     render.Load(bytes);
     bytes.CheckEnd();
     render.AddSamples(1);
@@ -66,7 +67,7 @@ Material "conductor" Shape "trianglemesh" "point3 P" [ -5 0 -5 -5 0 5 5 0 5 5 0 
   }
 
   BuiltScene built;
-  AnyIntegrator integrator;
+  std::unique_ptr<Integrator> integrator;
 };
 
 }  // namespace

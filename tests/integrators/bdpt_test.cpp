@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "integrators/bdpt/bdpt_integrator.h"
+#include "integrators/bidirectional/bidirectional_integrator.h"
 #include "support/replicas.h"
 
 namespace lampyr::test {
@@ -97,7 +97,7 @@ Translate 0 0.6 0 Shape "sphere" "float radius" 0.6
   StopConditions stop;
   stop.samplesPerPixel = 16;
   Render(
-      built.scene, MakeIntegrator(built.scene, settings), settings, stop, 2, film, [](const RenderOutcome&, double) {},
+      built.scene, *MakeIntegrator(built.scene, settings), settings, stop, 2, film, [](const RenderOutcome&, double) {},
       &techniques);
   const Image image = film.Develop();
   const auto pictures = techniques.Develop(film);

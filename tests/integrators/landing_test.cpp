@@ -57,9 +57,16 @@ SurfacePoint ReceiverAt(const GeometryScene& geometry, const Point3& position) {
   return geometry.GetSurfacePoint(ray, hit);
 }
 
+// Where a photon meets the first surface that it lights.
+std::optional<RayHit> LandingOf(const GeometryScene& geometry, const EmittedPhoton& photon) {
+  RayHit hit;
+  const bool isLit = !photon.IsDark() && geometry.Intersect(photon.ray, visibility::kIndirect, hit) &&
+                     hit.t >= photon.emission.shinesFrom;
+  return isLit ? std::optional(hit) : std::nullopt;
+}
+
 // Mean irradiance over the receiver.
-Estimate ByPhotons(const BuiltScene& built, int count) {
-  const LightingServices& lighting = *built.scene.lighting;
+Estimate ByPhotons(const BuiltScene& built, const LightingServices& lighting, int count) {
   Rng rng(1);
   Estimate estimate;
   for (int i = 0; i < count; ++i) {
@@ -67,7 +74,8 @@ Estimate ByPhotons(const BuiltScene& built, int count) {
     const Point2 u = rng.NextPoint2();
     const auto photon = lighting.GenerateEmission(uSelect, u, rng.NextPoint2(), 0);
     double flux = 0;
-    if (photon && photon->landing && photon->landing->primitive == 0 && photon->ray.direction.y < 0) {
+    const auto landing = photon ? LandingOf(*built.scene.geometry, *photon) : std::nullopt;
+    if (landing && landing->primitive == 0 && photon->ray.direction.y < 0) {
       const EmissionSample& e = photon->emission;
       flux = static_cast<double>(e.diffuse.g * e.emissionCosine / e.pdfEmit.value / e.pdfEmitDirection.value /
                                  photon->emissionSelection.value);
@@ -102,15 +110,14 @@ Estimate ByLightSampling(const BuiltScene& built, int count) {
 TEST(Photons, LandWhereLightSamplingFindsLight) {
   for (const NamedLight& light : Lights()) {
     const BuiltScene built = Build(light.text);
-    const Estimate photons = ByPhotons(built, 400000), direct = ByLightSampling(built, 100000);
+    const Estimate photons = ByPhotons(built, *built.scene.lighting, 400000), direct = ByLightSampling(built, 100000);
     const double sigma = std::sqrt(photons.Variance() + direct.Variance());
     ASSERT_GT(direct.Mean(), 0.05) << light.name;
     EXPECT_LT(sigma, 0.02 * direct.Mean()) << light.name;
     EXPECT_NEAR(photons.Mean(), direct.Mean(), 4.5 * sigma + 2e-3 * direct.Mean()) << light.name;
     // Aimed at a part of the receiver and past its rim, they bring the same.
     const auto guide = AimAt(*built.scene.lighting, Point3(0.3f, 0, -0.2f), 0.2f);
-    built.scene.lighting->AimBy(guide.get());
-    const Estimate aimed = ByPhotons(built, 400000);
+    const Estimate aimed = ByPhotons(built, built.scene.lighting->With(nullptr, guide.get()), 400000);
     const double either = std::sqrt(aimed.Variance() + direct.Variance());
     EXPECT_LT(either, 0.02 * direct.Mean()) << light.name;
     EXPECT_NEAR(aimed.Mean(), direct.Mean(), 4.5 * either + 2e-3 * direct.Mean()) << light.name << ", aimed";
@@ -132,9 +139,8 @@ void ExpectSame(const LightEvaluation& landing, const LightEvaluation& other, co
 }
 
 // The light vertex of a photon again, as a ray from the receiver finds it, or as the only sample of a delta light.
-std::optional<FoundLight> FindAgain(const BuiltScene& built, const EmittedPhoton& photon, const SurfacePoint& point,
-                                    const Receiver& receiver) {
-  const LightingServices& lighting = *built.scene.lighting;
+std::optional<FoundLight> FindAgain(const BuiltScene& built, const LightingServices& lighting,
+                                    const EmittedPhoton& photon, const SurfacePoint& point, const Receiver& receiver) {
   const LightKind kind = lighting.Lights()[photon.light].light->Kind();
   const Vector3 back = -photon.ray.direction;
   if (kind == LightKind::Infinite) return lighting.EvaluateEscaped(0, receiver, back, 0, true);
@@ -164,21 +170,21 @@ class Landings : public testing::TestWithParam<bool> {};  // aimed
 TEST_P(Landings, HaveTheDensitiesOfTheOtherTechniques) {
   for (const NamedLight& light : Lights()) {
     const BuiltScene built = Build(light.text);
-    LightingServices& lighting = *built.scene.lighting;
-    const auto guide = AimAt(lighting, Point3(0.3f, 0, -0.2f), 0.2f);
-    if (GetParam()) lighting.AimBy(guide.get());
+    const auto guide = AimAt(*built.scene.lighting, Point3(0.3f, 0, -0.2f), 0.2f);
+    const LightingServices lighting = built.scene.lighting->With(nullptr, GetParam() ? guide.get() : nullptr);
     Rng rng(3);
     int compared = 0, missed = 0;
     for (int i = 0; i < 20000 && compared < 300; ++i) {
       const float uSelect = rng.NextFloat();
       const Point2 u = rng.NextPoint2();
       const auto photon = lighting.GenerateEmission(uSelect, u, rng.NextPoint2(), 0);
-      if (!photon || !photon->landing || photon->landing->primitive != 0) continue;
-      const SurfacePoint point = built.scene.geometry->GetSurfacePoint(photon->ray, *photon->landing);
+      const auto hit = photon ? LandingOf(*built.scene.geometry, *photon) : std::nullopt;
+      if (!hit || hit->primitive != 0) continue;
+      const SurfacePoint point = built.scene.geometry->GetSurfacePoint(photon->ray, *hit);
       const Receiver receiver{point.position, point.Ns, false};
       const auto landing = lighting.EvaluateLanding(*photon, receiver);
       ASSERT_TRUE(landing) << light.name;
-      const auto again = FindAgain(built, *photon, point, receiver);
+      const auto again = FindAgain(built, lighting, *photon, point, receiver);
       if (!again || again->light != landing->light) {  // the rim of a light, missed by a rounding
         ++missed;
         continue;

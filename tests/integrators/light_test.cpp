@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "render/passes.h"
 #include "support/replicas.h"
 
 namespace lampyr::test {
@@ -92,14 +93,13 @@ TEST(Light, SameBytesForAnyNumberOfThreads) {
 TEST(Light, SameBytesHoweverTheSamplesAreDivided) {
   Diagnostics diagnostics(Diagnostics::Mode::Collect);
   const BuiltScene built = BuildScene(ParseScene(kHead + kWorld, "test.pbrt", diagnostics), {}, true, diagnostics);
-  const AnyIntegrator integrator = MakeIntegrator(built.scene, built.settings);
-  const auto& light = *std::get<std::unique_ptr<LightPathIntegrator>>(integrator);
+  const std::unique_ptr<Integrator> light = MakeIntegrator(built.scene, built.settings);
   const PixelFilter filter(built.settings.filter);
   const auto render = [&](std::initializer_list<uint32_t> passes) {
     Film film(built.settings.width, built.settings.height, built.settings.crop);
     uint32_t first = 0;
     for (const uint32_t count : passes) {
-      RenderPass(built.scene, light, built.settings, filter, first, count, 2, film);
+      RenderPass(built.scene, *light, built.settings, filter, first, count, 2, film);
       first += count;
     }
     EXPECT_EQ(film.LightPaths(), uint64_t{first} * 40 * 30);

@@ -1,5 +1,5 @@
 // Photons are found exactly, whatever lies where: against a search through all of them.
-#include "integrators/common/photon_map.h"
+#include "integrators/photon/photon_map.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <limits>
 #include <set>
 
-#include "integrators/common/photon_store.h"
+#include "integrators/photon/photon_store.h"
 #include "sampling/rng.h"
 #include "sampling/warp.h"
 #include "support/allocation_count.h"
@@ -198,12 +198,12 @@ TEST(PhotonMap, MergingIsInTheWeights) {
   vertex.diffuse = Color(1, 2, 3);
   vertex.specular = Color(4, 5, 6);
   vertex.weight = {2, 3, 5};
-  vertex.previousPerSolidAngle = 0.5;
+  vertex.previousSolidAnglePerArea = {0.5};
   PhotonList list;
   list.StartPath();
   list.Add(vertex, 3);
   const PhotonMap map(std::span(&list, 1), 7, 1);
-  EXPECT_DOUBLE_EQ(vertex.weight.BeforeReverse(0.5 * 11, 7), map[0].BeforeReverse(11));
+  EXPECT_DOUBLE_EQ(vertex.weight.BeforeReverse(AreaDensity(0.5 * 11), 7), map[0].BeforeReverse(SolidAngleDensity(11)));
   EXPECT_EQ(Color(1, 2, 3), map[0].flux);
   EXPECT_EQ(Color(4, 5, 6), map.SpecularFlux(map[0]));
   EXPECT_EQ(3u, map[0].depth);

@@ -1,5 +1,5 @@
 // Shadow rays that are traced by chance, or not at all.
-#include "integrators/common/shadow_roulette.h"
+#include "integrators/walk/shadow_roulette.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/unseen_samples.h"
+#include "render/analysis/unseen_samples.h"
 #include "support/render_scene.h"
 
 namespace lampyr {
@@ -100,7 +100,7 @@ TEST_P(TargetError, HoldsForNineteenOfTwentySeeds) {
   const auto& [promise, integrator] = GetParam();
   const Image reference = test::RenderBuilt(Build(promise.text, "bdpt"), promise.referenceSamples, 1).image;
   BuiltScene built = Build(promise.text, integrator);
-  const AnyIntegrator chosen = MakeIntegrator(built.scene, built.settings);
+  const std::unique_ptr<Integrator> chosen = MakeIntegrator(built.scene, built.settings);
   StopConditions stop;
   stop.samplesPerPixel = 1 << 20;
   stop.relativeError = promise.targetError;
@@ -111,7 +111,7 @@ TEST_P(TargetError, HoldsForNineteenOfTwentySeeds) {
     built.settings.seed = 1000 + static_cast<uint64_t>(seed);
     Film film(built.settings.width, built.settings.height, built.settings.crop);
     const RenderOutcome outcome =
-        Render(built.scene, chosen, built.settings, stop, 2, film, [](const RenderOutcome&, double) {});
+        Render(built.scene, *chosen, built.settings, stop, 2, film, [](const RenderOutcome&, double) {});
     EXPECT_LE(outcome.relativeError, promise.targetError);
     const double error = TrueError(film.Develop(), reference);
     kept += error <= promise.targetError;

@@ -3,8 +3,8 @@
 
 #include <map>
 
-#include "lights/suite/filter_suite.h"
-#include "lights/suite/verdict.h"
+#include "suite/filter_suite.h"
+#include "suite/verdict.h"
 #include "support/temporary_folder.h"
 
 namespace lampyr::test {

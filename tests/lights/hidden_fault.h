@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "forwarding_light.h"
-#include "lights/suite/checks.h"
+#include "suite/checks.h"
 
 namespace lampyr::test {
 

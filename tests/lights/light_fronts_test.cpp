@@ -1,4 +1,4 @@
-// A light's front is its own, whether it is kept or told from the first of a run.
+// A light's front is its own, and its place that of a light with the same transform.
 #include "lights/services/light_fronts.h"
 
 #include <gtest/gtest.h>
@@ -51,7 +51,7 @@ TEST(LightFronts, AreThoseOfEachLight) {
   }
 }
 
-// Each of these ends a run, or makes one uneven, somewhere.
+// Lights that differ from their neighbours in kind, object or place.
 TEST(LightFronts, OfLightsThatDiffer) {
   const std::vector<std::function<void(Lights&, size_t)>> differences = {
       [](Lights& lights, size_t) { lights.Add("spot"); },

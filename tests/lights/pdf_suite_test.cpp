@@ -4,7 +4,7 @@
 #include <iostream>
 #include <map>
 
-#include "lights/suite/pdf_suite.h"
+#include "suite/pdf_suite.h"
 
 namespace lampyr {
 namespace {
@@ -16,7 +16,7 @@ TEST(PdfSuite, EveryRegisteredLightPasses) {
   // `lampyr check-lights` looks at all, in minutes; so does `tests/run seeds`.
   options.caseEvery = 3;
   options.thoroughEvery = 8;
-  options.threads = 0;        // all: the results are the same
+  options.threads = 0;  // all: the results are the same
   const std::vector<SuiteResult> results = RunPdfSuite(LightRegistry(), folder, options);
   std::map<std::string, std::pair<int, int>> byProperty;  // tests, failures
   int reported = 0;

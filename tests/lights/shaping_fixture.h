@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "light_fixture.h"
-#include "lights/shaping.h"
+#include "lights/types/shaping.h"
 #include "support/temporary_folder.h"
 
 namespace lampyr::test {

@@ -1,6 +1,6 @@
 // The rectangle as seen from a point: solid angles against a formula of its own in long double and against quadrature,
 // samples against the density, from points near, far, grazing and in the plane.
-#include "lights/spherical_rectangle.h"
+#include "lights/types/spherical_rectangle.h"
 
 #include <gtest/gtest.h>
 

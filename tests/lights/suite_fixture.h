@@ -10,8 +10,8 @@
 
 #include "light_fixture.h"
 #include "lights/light_base.h"
-#include "lights/suite/pdf_suite.h"
-#include "lights/suite/suite_inputs.h"
+#include "suite/pdf_suite.h"
+#include "suite/suite_inputs.h"
 #include "textures/texture_library.h"
 
 namespace lampyr::test {

@@ -1,5 +1,5 @@
 // Sums and samples of windows against the cells themselves.
-#include "lights/windowed_table.h"
+#include "lights/types/windowed_table.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // Lights that, once edited, have kept a part of what they were: the suite fails them by "edit".
 #include "lights/light_base.h"
-#include "lights/suite/checks.h"
 #include "mixed_light.h"
+#include "suite/checks.h"
 #include "suite_fixture.h"
 
 namespace lampyr {

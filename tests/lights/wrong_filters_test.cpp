@@ -9,7 +9,7 @@
 
 #include "lights/filters/filter_base.h"
 #include "lights/light_base.h"
-#include "lights/suite/filter_suite.h"
+#include "suite/filter_suite.h"
 #include "support/temporary_folder.h"
 
 namespace lampyr::test {

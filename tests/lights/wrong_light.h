@@ -2,7 +2,7 @@
 #pragma once
 
 #include "forwarding_light.h"
-#include "lights/suite/checks.h"
+#include "suite/checks.h"
 
 namespace lampyr::test {
 

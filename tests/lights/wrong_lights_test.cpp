@@ -4,7 +4,7 @@
 #include <set>
 
 #include "light_fixture.h"
-#include "lights/suite/pdf_suite.h"
+#include "suite/pdf_suite.h"
 #include "wrong_light.h"
 
 namespace lampyr {

@@ -5,7 +5,7 @@
 #include <map>
 #include <set>
 
-#include "lights/suite/pdf_suite.h"
+#include "suite/pdf_suite.h"
 #include "tiles_light.h"
 
 namespace lampyr {

@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "lights/type_registry.h"
+#include "lights/types/type_registry.h"
 #include "matrix/matrix_rigs.h"
 
 namespace lampyr::test {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "app/integrator_choice.h"
+#include "render/settings/integrator_choice.h"
 
 namespace lampyr::test {
 

@@ -1,6 +1,6 @@
 #include "matrix/matrix_rigs.h"
 
-#include "lights/suite/suite_inputs.h"
+#include "suite/suite_inputs.h"
 
 namespace lampyr::test {
 

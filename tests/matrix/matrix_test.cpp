@@ -14,7 +14,7 @@
 #include <cmath>
 #include <regex>
 
-#include "lights/type_registry.h"
+#include "lights/types/type_registry.h"
 #include "matrix/matrix_modes.h"
 #include "matrix/matrix_rigs.h"
 #include "support/render_scene.h"

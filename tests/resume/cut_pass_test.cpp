@@ -5,10 +5,11 @@
 #include <random>
 #include <thread>
 
-#include "app/render_run.h"
-#include "app/scene_builder.h"
 #include "base/byte_stream.h"
 #include "base/stop.h"
+#include "render/build/scene_builder.h"
+#include "render/progressive_render.h"
+#include "render/settings/integrator_choice.h"
 #include "resume/resume_fixture.h"
 #include "scene/scene_description.h"
 
@@ -33,9 +34,9 @@ struct OwnRender {
              built.scene.lighting->Groups().Layers()) {
     const RenderSettings& s = built.settings;
     if (withTechniques) techniques.emplace(s.width, s.height, s.crop, s.maxDepth, s.imagingRatio);
-    render.emplace(built.scene, integrator, s, 2, film, techniques ? &*techniques : nullptr);
+    render.emplace(built.scene, *integrator, s, 2, film, techniques ? &*techniques : nullptr);
   }
-  AnyIntegrator integrator;
+  std::unique_ptr<Integrator> integrator;
   Film film;
   std::optional<TechniqueImages> techniques;
   std::optional<ProgressiveRender> render;

@@ -4,8 +4,8 @@
 #include <random>
 #include <thread>
 
-#include "app/render_part.h"
 #include "film/image.h"
+#include "render/render_part.h"
 #include "resume/resume_fixture.h"
 
 namespace lampyr::test {

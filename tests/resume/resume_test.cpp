@@ -4,9 +4,9 @@
 #include <span>
 #include <thread>
 
-#include "app/render_part.h"
 #include "base/version.h"
 #include "film/image.h"
+#include "render/render_part.h"
 #include "resume/resume_fixture.h"
 
 namespace lampyr::test {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "lights/suite/filter_maker.h"
-#include "lights/suite/suite_inputs.h"
+#include "suite/filter_maker.h"
+#include "suite/suite_inputs.h"
 #include "support/replicas.h"
 #include "support/temporary_folder.h"
 

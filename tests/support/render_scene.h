@@ -4,8 +4,9 @@
 #include <filesystem>
 #include <string>
 
-#include "app/render_run.h"
-#include "app/scene_builder.h"
+#include "render/build/scene_builder.h"
+#include "render/progressive_render.h"
+#include "render/settings/integrator_choice.h"
 #include "scene/scene_description.h"
 
 namespace lampyr::test {
@@ -17,13 +18,13 @@ struct Rendered {
 };
 
 inline Rendered RenderBuilt(const BuiltScene& built, int samplesPerPixel, int threads) {
-  const AnyIntegrator integrator = MakeIntegrator(built.scene, built.settings);
+  const std::unique_ptr<Integrator> integrator = MakeIntegrator(built.scene, built.settings);
   Film film(built.settings.width, built.settings.height, built.settings.crop, built.scene.lighting->Groups().Layers());
   StopConditions stop;
   stop.samplesPerPixel = samplesPerPixel;
   Rendered rendered;
   rendered.outcome =
-      Render(built.scene, integrator, built.settings, stop, threads, film, [](const RenderOutcome&, double) {});
+      Render(built.scene, *integrator, built.settings, stop, threads, film, [](const RenderOutcome&, double) {});
   rendered.image = film.Develop();
   rendered.rejectedRays = built.scene.geometry->RejectedRays();
   return rendered;

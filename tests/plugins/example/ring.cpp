@@ -15,11 +15,11 @@
 #include <numbers>
 
 #include "geometry/rounding.h"
-#include "lights/area_lights.h"
 #include "lights/emission_image.h"
 #include "lights/estimates.h"
 #include "lights/light_base.h"
-#include "lights/surface_table.h"
+#include "lights/types/area_lights.h"
+#include "lights/types/surface_table.h"
 #include "math/frame.h"
 #include "sampling/warp.h"
 

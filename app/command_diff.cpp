@@ -1,0 +1,59 @@
+#include <cstdio>
+
+#include "app/command_line.h"
+#include "app/commands.h"
+#include "app/json_report.h"
+#include "film/metrics.h"
+#include "render/sample_image.h"
+
+namespace lampyr {
+
+namespace {
+
+void Print(const ImageDifference& difference) {
+  std::printf("MSE      %.6g\n", difference.mse);
+  std::printf("relMSE   %.6g\n", difference.relMse);
+  std::printf("FLIP     %.4f\n", difference.flip);
+  std::printf("mean     %.6g against %.6g: bias %+.3f %% ± %.3f %% (95 %%)\n", difference.meanA, difference.meanB,
+              100 * difference.bias, 100 * difference.biasInterval);
+  const BlockTest& test = difference.blockTest;
+  switch (difference.verdict) {
+    case Verdict::Equal:
+      std::printf("z-test   equal: no value differs by more than rounding\n");
+      break;
+    case Verdict::CannotSay:
+      std::printf("z-test   cannot say: %s\n", difference.reason.c_str());
+      break;
+    case Verdict::Agree:
+    case Verdict::Differ:
+      std::printf("z-test   %s: %d blocks of %d×%d, largest |z| %.2f (threshold %.2f), χ² %.1f (threshold %.1f)\n",
+                  difference.verdict == Verdict::Agree ? "agree" : "DIFFER", test.blocks, test.blockSize,
+                  test.blockSize, test.largestZ, test.threshold, test.chiSquared, test.chiSquaredThreshold);
+      break;
+  }
+}
+
+}  // namespace
+
+int RunDiff(const DiffOptions& options) {
+  if (!options.output.empty()) CheckImageOutput(options.output, "--output", false);
+  ImageDifference difference;
+  Image error;
+  try {
+    const Image a = ReadImage(options.a), b = ReadImage(options.b);
+    difference = CompareImages(a, b, options.blockSize);
+    if (!options.output.empty()) error = DifferenceImage(a, b);
+  } catch (const Error& wrong) {  // what cannot be read or compared is wrong usage
+    throw UsageError(wrong.Where(), wrong.Text());
+  }
+  if (!options.output.empty()) WriteExr(options.output, error, ExrPrecision::Float);
+  if (options.json) {
+    std::printf("%s", ToJson(difference).c_str());
+  } else {
+    Print(difference);
+  }
+  const bool agrees = difference.verdict == Verdict::Equal || difference.verdict == Verdict::Agree;
+  return options.fail && !agrees ? kExitFailed : kExitDone;
+}
+
+}  // namespace lampyr

@@ -1,0 +1,383 @@
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <utility>
+
+#include "app/command_line.h"
+#include "app/command_support.h"
+#include "app/commands.h"
+#include "app/json_report.h"
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "base/progress.h"
+#include "base/version.h"
+#include "render/analysis/integrator_hints.h"
+#include "render/analysis/unseen_samples.h"
+#include "render/build/invalid_light.h"
+#include "render/checkpoints.h"
+#include "render/load_scene.h"
+#include "render/output_files.h"
+#include "render/output_lock.h"
+#include "render/progressive_render.h"
+#include "render/render_part.h"
+#include "render/sample_image.h"
+#include "render/settings/integrator_choice.h"
+#include "scene/referenced_files.h"
+
+namespace lampyr {
+
+namespace {
+
+// out.2-of-8.exr for a part, unless the user names it.
+std::filesystem::path OutputPath(const RenderOptions& options, const RenderSettings& settings) {
+  std::filesystem::path path;
+  if (options.output) {
+    path = *options.output;
+  } else {
+    path = settings.outputFile.empty() ? options.scene.stem() : std::filesystem::path(settings.outputFile).filename();
+    std::string extension = ".exr";
+    if (options.shard)
+      extension =
+          "." + std::to_string(options.shard->first) + "-of-" + std::to_string(options.shard->second) + extension;
+    path.replace_extension(extension);
+  }
+  CheckImageOutput(path, "--output", options.png);
+  return path;
+}
+
+// Throws a UsageError if an output file is one of the files that the scene is read from.
+void CheckSceneStays(const RenderOptions& options, const SceneDescription& scene, const RenderSettings& settings) {
+  const std::filesystem::path image = OutputPath(options, settings);
+  std::vector<std::pair<std::filesystem::path, const char*>> written = {{image, "--output"}};
+  if (options.png) written.emplace_back(std::filesystem::path(image).replace_extension(".png"), "--png");
+  if (options.stats) written.emplace_back(*options.stats, "--stats");
+  if (options.checkpointSeconds) written.emplace_back(CheckpointPath(image), "--checkpoint");
+  std::erase_if(written, [](const auto& file) {
+    std::error_code ignored;
+    return !std::filesystem::exists(file.first, ignored);
+  });
+  if (written.empty()) return;
+  std::vector<std::string> read = ReferencedFiles(scene);
+  read.insert(read.end(), scene.files.begin(), scene.files.end());
+  for (const auto& [file, option] : written) {
+    for (const std::string& part : read) {
+      if (!IsSameFile(file, part)) continue;
+      throw UsageError(std::string(option) + ": \"" + file.string() + "\" is a file that the scene reads, \"" + part +
+                       "\": it would be lost; write to another file");
+    }
+  }
+}
+
+// An image too large for the machine is told before the system ends the process for it. The film is kept twice
+// (render_backup.h).
+void CheckMemory(const RenderSettings& settings, size_t layers, bool hasTechniques) {
+  const uint64_t channels = 6 + 3 * layers;  // of the developed image: colour, variance and layers
+  const uint64_t techniques = hasTechniques ? TechniqueImages::BytesPerPixel(settings.maxDepth) : 0;
+  const uint64_t perPixel =
+      2 * (Film::BytesPerPixel(layers, settings.integrator != "path") + techniques) + 2 * channels * sizeof(float);
+  const uint64_t needed = perPixel * settings.crop.Width() * settings.crop.Height();
+  const uint64_t available = AvailableMemory();
+  if (needed <= available) return;
+  const auto gibibytes = [](uint64_t bytes) { return std::to_string((bytes >> 30) + 1) + " GiB"; };
+  throw UsageError("an image of " + std::to_string(settings.crop.Width()) + "×" +
+                   std::to_string(settings.crop.Height()) + " pixels takes " + gibibytes(needed) +
+                   " of memory and there are " + gibibytes(available) + ": render it in parts with --crop");
+}
+
+// The limit is the same on all machines, and what is kept of a pass of photons may be more than this one has.
+void WarnOfPhotonMemory(const RenderSettings& settings) {
+  if (!GathersPhotons(settings)) return;
+  const double paths = settings.photons.lightPaths > 0
+                           ? static_cast<double>(settings.photons.lightPaths)
+                           : static_cast<double>(settings.width) * static_cast<double>(settings.height);
+  const double most = paths * settings.maxDepth * static_cast<double>(PhotonStore::BytesPerPhoton(true));
+  const double needed = std::min(most, static_cast<double>(settings.photons.mostBytes));
+  const auto available = static_cast<double>(AvailableMemory());
+  if (needed <= available) return;
+  std::fprintf(stderr,
+               "warning: the photons of a pass may take %s of memory and there are %s: set a lower limit with "
+               "--photon-memory, the same on all machines that share the render\n",
+               FormatBytes(needed).c_str(), FormatBytes(available).c_str());
+}
+
+// For another process: it must be told which render it is of.
+bool KeepsState(const RenderOptions& options) {
+  return options.shard || options.resume || options.checkpointSeconds;
+}
+
+// Of the picture that all samples of a part make, but for their number.
+PartHeader MakeHeader(const RenderOptions& options, const LoadedScene& loaded, const Shard& shard) {
+  const RenderSettings& settings = loaded.built.settings;
+  PartHeader header;
+  header.shard = shard;
+  header.width = settings.width;
+  header.height = settings.height;
+  header.crop = settings.crop;
+  header.layers = loaded.built.scene.lighting->Groups().Layers();
+  header.halfPrecision = settings.halfPrecision;
+  header.metadata = {{"lampyr.version", kVersion},
+                     {"lampyr.sceneHash", loaded.hash},
+                     {"lampyr.integrator", settings.integrator},
+                     {"lampyr.seed", std::to_string(settings.seed)}};
+  if (!header.layers.empty()) header.metadata["lampyr.lightGroups"] = Joined(header.layers, ",");
+  if (options.shard || options.resume || options.checkpointSeconds)
+    header.identity = IdentityOf(loaded, options.robust);
+  return header;
+}
+
+void PrintSummary(const RenderReport& report, const std::filesystem::path& path) {
+  const RenderOutcome& outcome = report.outcome;
+  std::fprintf(stderr, "%s: %d×%d, %d spp, %s, %.2f Mray/s, relative error %s (95 %%)\n", path.c_str(), report.width,
+               report.height, outcome.samplesPerPixel, FormatDuration(outcome.seconds).c_str(),
+               static_cast<double>(outcome.counts.Rays()) / (1e6 * std::max(outcome.seconds, 1e-9)),
+               FormatPercent(outcome.relativeError).c_str());
+  if (report.rejectedRays > 0) {
+    std::fprintf(stderr, "warning: %llu rays were rejected (not finite)\n",
+                 static_cast<unsigned long long>(report.rejectedRays));
+  }
+}
+
+// Samples, and photons, that were left out.
+struct DroppedReport {
+  FileLocation where;
+  std::string text;  // "": none
+};
+DroppedReport DescribeDropped(const RenderOutcome& outcome, const BuiltScene& built) {
+  DroppedReport report;
+  const uint64_t photons = outcome.photons ? outcome.photons->rejected : 0;
+  const uint64_t samples = outcome.counts.droppedSamples;
+  if (samples + photons == 0) return report;
+  report.text = samples > 0 ? std::to_string(samples) + " samples" : "";
+  if (photons > 0) report.text += (samples > 0 ? " and " : "") + std::to_string(photons) + " photons";
+  report.text += " were dropped";
+  if (const std::optional<InvalidLight> invalid = FindInvalidLight(built)) {
+    report.where = invalid->where;
+    report.text = invalid->text + ": " + report.text;
+  } else {
+    report.text += " (not finite or negative)";
+  }
+  if (outcome.droppedFraction > kMostDropped) report.text += ": the picture is wrong, and its error is unknown";
+  return report;
+}
+
+// Of a picture without a whole sample of each pixel: how much of the first one is there.
+std::string DescribePartialPicture(const RenderOptions& options, const Film& film, const RenderSettings& settings) {
+  if (options.shard) return "the part holds no samples";
+  if (settings.integrator != "light") {
+    return "the picture is a part of the first sample: " + FormatPercent(film.SampledFraction()) +
+           " of its pixels have it, the others are black";
+  }
+  const double whole = static_cast<double>(settings.width) * static_cast<double>(settings.height);
+  return "the picture is made of " + FormatPercent(static_cast<double>(film.LightPaths()) / whole) +
+         " of the light paths of the first sample";
+}
+
+constexpr int kOpenEnd = 1 << 30;
+
+// Of the whole picture.
+int SamplesWanted(const RenderOptions& options, const RenderSettings& settings) {
+  // Asked to stop by time or error only: the scene's own sample count does not matter.
+  const bool isOpen = (options.seconds || options.targetError) && !options.overrides.samplesPerPixel;
+  return isOpen ? kOpenEnd : settings.samplesPerPixel;
+}
+
+StopConditions MakeStopConditions(const RenderOptions& options, const Shard& shard) {
+  StopConditions stop;
+  stop.samplesPerPixel = static_cast<int>(shard.end - shard.first);
+  stop.seconds = options.seconds;
+  stop.longestPass = options.checkpointSeconds;
+  stop.relativeError = options.targetError;
+  return stop;
+}
+
+// weighted-s2-t3.exr, unweighted-s2-t3.exr, … in the folder, which is made.
+void WriteTechniques(const RenderOptions& options, const std::vector<TechniqueImages::Picture>& pictures) {
+  const std::filesystem::path& folder = *options.strategyImages;
+  for (const TechniqueImages::Picture& picture : pictures) {
+    for (const bool isWeighted : {true, false}) {
+      const Image& image = isWeighted ? picture.weighted : picture.unweighted;
+      const std::filesystem::path path = folder / ((isWeighted ? "weighted-" : "unweighted-") + picture.name + ".exr");
+      WriteExr(path, image, ExrPrecision::Float);
+      if (options.png) WritePngBeside(path, image, options.exposure, options.clipPng);
+    }
+  }
+}
+
+// The picture so far. One part of a picture carries its sums.
+void WriteImage(const std::filesystem::path& path, const RenderOptions& options, const PartHeader& ofAll,
+                const Film& film, const RenderOutcome& outcome) {
+  PartHeader header = ofAll;
+  header.samples = static_cast<uint32_t>(outcome.samplesPerPixel);
+  const bool wasCut = outcome.interrupted || outcome.isPartial;
+  header.isFinished = !wasCut || header.samples == header.shard.end - header.shard.first;
+  if (!options.shard) {
+    WriteSamples(path, header, film);
+    return;
+  }
+  WriteSamples(path, header, film, [&](AtomicFile& file) {
+    AppendPart(file, PartKind::Picture, header, [&film](ByteWriter& bytes) { film.Save(bytes); });
+  });
+}
+
+// What hours were spent on is not lost because its folder is full or gone: it is kept where temporary files are.
+void WriteImageOrKeepIt(const std::filesystem::path& path, const RenderOptions& options, const PartHeader& header,
+                        const Film& film, const RenderOutcome& outcome) {
+  try {
+    WriteImage(path, options, header, film, outcome);
+  } catch (const Error& error) {
+    const std::filesystem::path refuge =
+        std::filesystem::temp_directory_path() /
+        (path.stem().string() + "-" + std::to_string(getpid()) + path.extension().string());
+    try {
+      WriteImage(refuge, options, header, film, outcome);
+    } catch (const Error&) {
+      throw error;
+    }
+    throw Error(error.Text() + "; the picture is kept as \"" + refuge.string() + "\"");
+  }
+}
+
+void CheckOptions(const RenderOptions& options, const RenderSettings& settings,
+                  const std::filesystem::path& checkpoint) {
+  if (options.stats) CheckWritable(*options.stats, "--stats");
+  if (options.checkpointSeconds) CheckWritable(checkpoint, "--checkpoint");
+  if (options.shard && GathersPhotons(settings) && SamplesWanted(options, settings) == kOpenEnd) {
+    throw UsageError("--shard with " + settings.integrator +
+                     " needs --spp: each part has the radii of its own samples, whose numbers must be known");
+  }
+  if (!options.strategyImages) return;
+  if (settings.integrator != "bdpt")
+    throw UsageError("--strategy-images: only bdpt has strategies; the integrator is " + settings.integrator);
+  if (KeepsState(options))
+    throw UsageError("--strategy-images goes without --checkpoint, --resume and --shard: they do not keep techniques");
+  MakeFolder(*options.strategyImages, "--strategy-images");
+}
+
+// Writes what the render has come to. The exit code.
+int FinishRender(const RenderOptions& options, const BuiltScene& built, const PartHeader& header,
+                 ProgressiveRender& render, Checkpoints* checkpoints, const std::filesystem::path& path,
+                 RenderReport& report) {
+  const Progress clock(true);
+  const Film& film = render.Picture();
+  const bool isPartial = report.outcome.isPartial;
+  const std::string partialPicture = isPartial ? DescribePartialPicture(options, film, built.settings) : "";
+  // The sums in a part's image are of whole samples.
+  if (options.shard) render.DropPartialPass();
+  if (render.Techniques()) WriteTechniques(options, render.Techniques()->Develop(film));
+  WriteImageOrKeepIt(path, options, header, film, report.outcome);
+  if (options.png) WritePngBeside(path, film.Develop(), options.exposure, options.clipPng);
+  render.DropPartialPass();
+  if (checkpoints) checkpoints->Finish(report.outcome);
+  report.writeSeconds = clock.Seconds();
+  if (options.stats) WriteText(*options.stats, ToJson(report));
+  if (!options.quiet) PrintSummary(report, path);
+  const DroppedReport dropped = DescribeDropped(report.outcome, built);
+  const bool isWrong = report.outcome.droppedFraction > kMostDropped && !report.outcome.interrupted;
+  if (isWrong) throw Error(dropped.where, dropped.text);
+  if (!dropped.text.empty() && !options.quiet) {
+    const std::string where = dropped.where.ToString();
+    std::fprintf(stderr, "%s%swarning: %s\n", where.c_str(), where.empty() ? "" : ": ", dropped.text.c_str());
+  }
+  if (report.outcome.interrupted) {
+    if (isPartial && !options.quiet) std::fprintf(stderr, "warning: interrupted: %s\n", partialPicture.c_str());
+    return InterruptExitCode();
+  }
+  if (isPartial) throw Error("no sample of every pixel was done in the time (--time): " + partialPicture);
+  return kExitDone;
+}
+
+int RenderLoaded(const RenderOptions& options, const LoadedScene& loaded) {
+  RenderReport report;
+  const BuiltScene& built = loaded.built;
+  const RenderSettings& settings = built.settings;
+  const std::filesystem::path path = OutputPath(options, settings), checkpointPath = CheckpointPath(path);
+  CheckOptions(options, settings, checkpointPath);
+  const std::vector<std::string>& layers = built.scene.lighting->Groups().Layers();
+  CheckMemory(settings, layers.size(), options.strategyImages.has_value());
+  if (!options.quiet) WarnOfPhotonMemory(settings);
+  const auto [part, parts] = options.shard.value_or(std::pair(1, 1));
+  const Shard shard = ShardOf(part, parts, SamplesWanted(options, settings));
+  const PartHeader header = MakeHeader(options, loaded, shard);
+  auto lock = std::make_unique<OutputLock>(path);
+
+  report.scene = options.scene.string();
+  report.sceneHash = loaded.hash;
+  report.parseSeconds = loaded.parseSeconds;
+  report.buildSeconds = loaded.buildSeconds;
+  report.integrator = settings.integrator;
+  report.seed = settings.seed;
+  report.threads = options.threads > 0 ? options.threads : HardwareThreads();
+  report.width = settings.width;
+  report.height = settings.height;
+  report.pixels = static_cast<int64_t>(settings.crop.Width()) * settings.crop.Height();
+  report.primitives = built.scene.geometry->PrimitiveCount();
+  report.lights = built.scene.lighting->Lights().size();
+  report.lightGroups = layers;
+
+  const std::unique_ptr<Integrator> integrator = MakeIntegrator(built.scene, settings);
+  Film film = header.MakeFilm();
+  std::unique_ptr<TechniqueImages> techniques;
+  if (options.strategyImages) {
+    techniques = std::make_unique<TechniqueImages>(settings.width, settings.height, settings.crop, settings.maxDepth,
+                                                   settings.imagingRatio);
+  }
+  if (!options.quiet) {
+    for (const std::string& hint : IntegratorHints(built.scene, settings.integrator))
+      std::fprintf(stderr, "hint: %s\n", hint.c_str());
+  }
+  ProgressiveRender render(built.scene, *integrator, settings, report.threads, film, techniques.get(), shard.first);
+  if (options.resume) {
+    if (std::filesystem::exists(checkpointPath)) {
+      ResumeFrom(checkpointPath, header, render);
+      report.resumedSamples = render.Outcome().samplesPerPixel;
+      if (!options.quiet)
+        std::fprintf(stderr, "%s: goes on after %d spp\n", checkpointPath.c_str(), report.resumedSamples);
+    } else if (!options.quiet) {
+      std::fprintf(stderr, "there is no \"%s\" to go on with: starts anew\n", checkpointPath.c_str());
+    }
+  }
+  std::optional<Checkpoints> checkpoints;
+  if (options.checkpointSeconds) {
+    checkpoints.emplace(checkpointPath, *options.checkpointSeconds, header, render, [&](const RenderOutcome& soFar) {
+      RenderOutcome unfinished = soFar;
+      unfinished.interrupted = true;
+      WriteImage(path, options, header, film, unfinished);
+    });
+  }
+  StopConditions stop = MakeStopConditions(options, shard);
+  stop.largestSample = LargestUnseenSample(built.scene, settings);
+  stop.interrupted = &FinishOnInterrupt();
+  {
+    Progress progress(options.quiet);
+    const auto afterPass = [&](const RenderOutcome& soFar, double fraction) {
+      progress.Update(fraction,
+                      std::to_string(soFar.samplesPerPixel) + " spp, error " + FormatPercent(soFar.relativeError));
+      if (checkpoints && fraction < 1) checkpoints->MayWrite(soFar);
+    };
+    report.outcome = Continue(render, stop, afterPass);
+  }
+  report.rejectedRays = built.scene.geometry->RejectedRays();
+  return FinishRendering([&] {
+    const std::unique_ptr<OutputLock> held = std::move(lock);
+    return FinishRender(options, built, header, render, checkpoints ? &*checkpoints : nullptr, path, report);
+  });
+}
+
+}  // namespace
+
+int RunRender(const RenderOptions& options) {
+  OutliveSurroundings();
+  const LoadedScene loaded =
+      LoadScene(options.scene, options.plugins, options.overrides, options.strict, options.robust, KeepsState(options),
+                [&](const SceneDescription& scene, const RenderSettings& settings) {
+                  CheckSceneStays(options, scene, settings);
+                });
+  int exitCode = kExitFailed;
+  RunForeignCode(loaded.types, [&] { exitCode = RenderLoaded(options, loaded); });
+  return exitCode;
+}
+
+}  // namespace lampyr

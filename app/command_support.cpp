@@ -1,0 +1,79 @@
+#include "app/command_support.h"
+
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+
+#include "app/command_line.h"
+#include "base/memory.h"
+#include "base/stop.h"
+
+namespace lampyr {
+
+namespace {
+
+// A signal handler has no argument to be handed this through.
+std::atomic<bool> interruptRequested{false};
+std::atomic<int> interruptSignal{SIGINT};
+
+constexpr int kInterrupts[] = {SIGINT, SIGTERM, SIGHUP};
+
+// A second one ends the process, but for SIGHUP: of a connection that is lost, the system and the shell both send one.
+void OnInterrupt(int signal) {
+  interruptSignal.store(signal);
+  interruptRequested.store(true);
+  for (const int other : kInterrupts) std::signal(other, other == SIGHUP ? SIG_IGN : SIG_DFL);
+}
+
+bool IsIgnored(int signal) {
+  struct sigaction action {};
+  return sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
+}
+
+}  // namespace
+
+void ReportMemoryFailure() {
+  constexpr double bytesPerMebibyte = 1 << 20;
+  std::fprintf(stderr,
+               "error: there is not enough memory: all of the %.0f MiB that lampyr may use are taken; give it more "
+               "(ulimit -v, the container, the batch job), or render in parts with --crop\n",
+               static_cast<double>(AvailableMemory()) / bytesPerMebibyte);
+}
+
+void OutliveSurroundings() {
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
+}
+
+const std::atomic<bool>& FinishOnInterrupt() {
+  for (const int signal : kInterrupts) {
+    if (!IsIgnored(signal)) std::signal(signal, OnInterrupt);
+  }
+  return interruptRequested;
+}
+
+int FinishRendering(const std::function<int()>& finish) {
+  if (!HasGivenUpWork()) return finish();
+  int exitCode = kExitFailed;
+  try {
+    exitCode = finish();
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+  }
+  std::fflush(stdout);
+  std::_Exit(exitCode);
+}
+
+int InterruptExitCode() {
+  return kExitSignalled + interruptSignal.load();
+}
+
+std::string Joined(const std::vector<std::string>& names, const char* separator) {
+  std::string all;
+  for (const std::string& name : names) all += (all.empty() ? "" : separator) + name;
+  return all;
+}
+
+}  // namespace lampyr

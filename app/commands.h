@@ -1,0 +1,104 @@
+// What each command does, with its options as plain data: no command line here.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "render/build/plugins.h"
+#include "render/settings/render_settings.h"
+
+namespace lampyr {
+
+struct RenderOptions {
+  std::filesystem::path scene;
+  PluginOptions plugins;
+  std::optional<std::filesystem::path>
+      output;  // default: the scene's own file name, else the scene's stem, in this folder
+  bool png = false;
+  float exposure = 0;    // stops, of the PNG
+  bool clipPng = false;  // the PNG ends at 1 instead of rolling highlights off
+  RenderOverrides overrides;
+  std::optional<double> seconds;      // --time
+  std::optional<double> targetError;  // --target-error
+  int threads = 0;                    // 0: all
+  std::optional<std::filesystem::path> stats;
+  std::optional<std::filesystem::path> strategyImages;  // a folder
+  std::optional<double> checkpointSeconds;              // --checkpoint
+  bool resume = false;
+  std::optional<std::pair<int, int>> shard;  // which of how many, from 1
+  bool quiet = false;
+  bool strict = false;
+  bool robust = true;
+};
+
+struct MergeOptions {
+  std::vector<std::filesystem::path> parts;
+  std::filesystem::path output;
+  bool partial = false;  // parts may be missing
+  bool png = false;
+  float exposure = 0;  // stops, of the PNG
+  bool clipPng = false;
+  bool quiet = false;
+};
+
+struct CompareOptions {
+  std::filesystem::path scene;
+  PluginOptions plugins;
+  std::vector<std::string> integrators = {"path", "bdpt"};
+  std::vector<double> times;      // seconds; neither times nor sample counts: 1, 4 and 16 s
+  std::vector<int> sampleCounts;  // per pixel
+  int repeats = 5;
+  std::optional<std::filesystem::path> reference;  // absent: made, or kept from before
+  std::optional<double> referenceSeconds;          // absent: ten times the longest render
+  std::filesystem::path output;                    // a folder
+  float exposure = 0;                              // stops, of the pictures
+  RenderOverrides overrides;
+  int threads = 0;  // 0: all
+  bool quiet = false;
+  bool strict = false;
+  bool robust = true;
+  std::string command;  // as it was typed, for the report
+};
+
+struct PlanOptions {
+  std::filesystem::path scene;
+  PluginOptions plugins;
+  RenderOverrides overrides;
+  bool strict = false;
+};
+
+struct DiffOptions {
+  std::filesystem::path a, b;
+  bool json = false;
+  bool fail = false;             // exit with 1 unless they agree
+  std::filesystem::path output;  // of the error image; empty: none
+  int blockSize = 8;
+};
+
+struct CheckLightsOptions {
+  std::optional<std::filesystem::path> scene;  // absent: types
+  PluginOptions plugins;
+  std::string type;  // "": those of `plugins`, or of everyone where none is named
+  bool json = false;
+  uint64_t seed = 1;
+  int threads = 0;  // 0: all
+};
+
+struct LightsOptions {
+  PluginOptions plugins;
+  std::string type;  // "" lists all
+};
+
+// Each returns an exit code. Errors are thrown.
+int RunRender(const RenderOptions& options);
+int RunMerge(const MergeOptions& options);
+int RunCompare(const CompareOptions& options);
+int RunPlan(const PlanOptions& options);
+int RunDiff(const DiffOptions& options);
+int RunLights(const LightsOptions& options);
+int RunCheckLights(const CheckLightsOptions& options);  // fails when a property does not hold
+
+}  // namespace lampyr

@@ -1,0 +1,265 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "app/command_line.h"
+#include "app/command_support.h"
+#include "app/commands.h"
+#include "app/compare/comparison.h"
+#include "app/compare/report.h"
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "base/progress.h"
+#include "film/atomic_file.h"
+#include "render/analysis/integrator_hints.h"
+#include "render/load_scene.h"
+#include "render/output_files.h"
+#include "render/settings/integrator_choice.h"
+
+namespace lampyr {
+
+namespace {
+
+ComparisonPlan MakePlan(const CompareOptions& options) {
+  ComparisonPlan plan;
+  for (const std::string& name : options.integrators) {
+    VariantOf({}, name);
+    if (std::find(plan.integrators.begin(), plan.integrators.end(), name) != plan.integrators.end()) {
+      throw UsageError("--integrators: " + name + " is named twice");
+    }
+    plan.integrators.push_back(name);
+  }
+  plan.times = options.times;
+  plan.sampleCounts = options.sampleCounts;
+  if (plan.times.empty() && plan.sampleCounts.empty()) plan.times = {1, 4, 16};
+  std::sort(plan.times.begin(), plan.times.end());
+  std::sort(plan.sampleCounts.begin(), plan.sampleCounts.end());
+  plan.times.erase(std::unique(plan.times.begin(), plan.times.end()), plan.times.end());
+  plan.sampleCounts.erase(std::unique(plan.sampleCounts.begin(), plan.sampleCounts.end()), plan.sampleCounts.end());
+  plan.repeats = options.repeats;
+  plan.seed = options.overrides.seed;
+  plan.exposure = options.exposure;
+  return plan;
+}
+
+// How long the longest of the compared renders of an integrator is going to take.
+double LongestRender(const ComparisonPlan& plan, const Pilot& pilot) {
+  const double ofTimes = plan.times.empty() ? 0 : plan.times.back();
+  const double ofSamples =
+      plan.sampleCounts.empty() ? 0 : pilot.seconds / pilot.samplesPerPixel * plan.sampleCounts.back();
+  return std::max(ofTimes, ofSamples);
+}
+
+bool IsCompared(const ComparisonPlan& plan, const Pilot& pilot) {
+  return std::find(plan.integrators.begin(), plan.integrators.end(), pilot.integrator) != plan.integrators.end();
+}
+
+double LongestRender(const ComparisonPlan& plan, const std::vector<Pilot>& pilots) {
+  double longest = plan.times.empty() ? 0 : plan.times.back();
+  for (const Pilot& pilot : pilots) {
+    if (IsCompared(plan, pilot)) longest = std::max(longest, LongestRender(plan, pilot));
+  }
+  return longest;
+}
+
+// A reference that is noisier than what is measured against it says nothing: told before the work where first looks
+// know it already. One that misses light has an error beside its noise.
+void CheckReferenceIsFinerThanRenders(const Reference& reference, const ComparisonPlan& plan,
+                                      const std::vector<Pilot>& pilots) {
+  bool anyComplete = false;
+  for (const Pilot& pilot : pilots) {
+    if (!IsCompared(plan, pilot)) continue;
+    if (!pilot.note.empty() || !(pilot.mean > 0)) return;
+    anyComplete = true;
+    if (pilot.relMse * pilot.seconds / LongestRender(plan, pilot) >= *reference.facts.relMse) return;
+  }
+  if (!anyComplete) return;
+  throw UsageError("--reference: \"" + reference.facts.file +
+                   "\" is noisier than all that would be measured against it; use one of more samples, or leave the "
+                   "option out to have one made");
+}
+
+// The bar of a stage of the work; stages before and after it are known by their share only.
+class Stages {
+ public:
+  explicit Stages(bool quiet) : progress_(quiet) {}
+  void Begin(double from, double to) {
+    from_ = from;
+    to_ = to;
+  }
+  void Update(double fraction, const std::string& note) { progress_.Update(from_ + (to_ - from_) * fraction, note); }
+
+ private:
+  Progress progress_;
+  double from_ = 0, to_ = 1;
+};
+
+Reference ObtainReference(const CompareOptions& options, const ComparedScene& scene, const ComparisonPlan& plan,
+                          const std::string& sceneHash, const std::filesystem::path& folder, Stages& stages,
+                          ComparisonResults& results) {
+  const auto update = [&](double fraction, const std::string& note) { stages.Update(fraction, note); };
+  const double time = plan.times.empty() ? 4 : plan.times.back();
+  const double pilotSeconds = std::clamp(0.5 * time, 0.5, 10.0);
+  const auto flyPilots = [&] {
+    stages.Begin(0, 0.05);
+    results.pilots = FlyPilots(scene, pilotSeconds, update);
+  };
+  if (options.reference) {
+    Reference reference = ReadReference(*options.reference, scene.Built().settings);
+    if (reference.facts.relMse) {
+      flyPilots();
+      CheckReferenceIsFinerThanRenders(reference, plan, results.pilots);
+    }
+    return reference;
+  }
+  const std::filesystem::path file = folder / "reference.exr";
+  const std::string key = ReferenceKey(scene, sceneHash);
+  const auto wanted = [&](double longest) { return options.referenceSeconds.value_or(10 * longest); };
+  if (options.referenceSeconds || plan.sampleCounts.empty()) {  // the time is known without a first look
+    if (auto kept = FindKeptReference(file, key, wanted(time))) {
+      kept->facts.file = file.string();
+      return *kept;
+    }
+  }
+  flyPilots();
+  const auto findsLight = [](const Pilot& pilot) { return pilot.mean > 0; };
+  if (std::none_of(results.pilots.begin(), results.pilots.end(), findsLight)) {
+    throw Error("a first look by all integrators found no light: there is nothing to compare");
+  }
+  const double longest = LongestRender(plan, results.pilots);
+  if (auto kept = FindKeptReference(file, key, wanted(longest))) {
+    kept->facts.file = file.string();
+    return *kept;
+  }
+  const auto chosen =
+      std::find_if(results.pilots.begin(), results.pilots.end(), [](const Pilot& p) { return p.chosen; });
+  const double compared = longest * plan.repeats * static_cast<double>(plan.integrators.size());
+  stages.Begin(0.05, 0.05 + 0.95 * wanted(longest) / (wanted(longest) + compared));
+  Reference reference =
+      MakeReference(scene, chosen->integrator, chosen->seconds / chosen->samplesPerPixel, wanted(longest), update);
+  reference.facts.file = file.string();
+  if (!(reference.facts.mean > 0)) throw Error("the reference came out black: there is nothing to compare");
+  KeepReference(reference, key, wanted(longest), file);
+  return reference;
+}
+
+// A picture in memory for each milestone, and the last of each repeat.
+void CheckMemory(const RenderSettings& settings, const ComparisonPlan& plan) {
+  const double milestones = static_cast<double>(plan.times.size() + plan.sampleCounts.size());
+  const double images = static_cast<double>(plan.integrators.size()) * (milestones + plan.repeats) + 8;
+  const double pixels = static_cast<double>(settings.crop.Width()) * settings.crop.Height();
+  const double bytes = images * pixels * 6 * sizeof(float) + 400 * pixels;
+  if (bytes <= static_cast<double>(AvailableMemory())) return;
+  throw UsageError("comparing takes " + std::to_string(static_cast<int64_t>(bytes / (1 << 30)) + 1) +
+                   " GiB of memory, more than there is: use fewer budgets or repeats, --crop or --resolution");
+}
+
+void WritePictures(const std::filesystem::path& folder, const ComparisonResults& results) {
+  for (const auto& [key, png] : results.pictures) {
+    if (key.rfind("error-", 0) == 0) continue;  // levels, which the page colours
+    AtomicFile file(folder / (key + ".png"));
+    file.Write(png.data(), png.size());
+    file.Commit();
+  }
+}
+
+void WriteResults(const CompareOptions& options, const std::filesystem::path& folder, const ComparisonPlan& plan,
+                  const ComparisonResults& results) {
+  WriteText(folder / "results.csv", ToCsv(results));
+  WriteText(folder / "results.json", ToJson(results));
+  WritePictures(folder, results);
+  const std::string page = ToPage(results);
+  if (!page.empty()) WriteText(folder / "report.html", page);
+  if (!options.quiet) {
+    std::printf("%s", ToText(results).c_str());
+    if (results.repeats < plan.repeats) std::printf("interrupted: %d of %d repeats\n", results.repeats, plan.repeats);
+    std::printf("\n%s: results.csv, results.json%s\n", folder.c_str(), page.empty() ? "" : ", report.html");
+  }
+  if (page.empty()) {
+    std::fprintf(stderr,
+                 "warning: no report.html: its page was not built (with npm: cmake --build … --target "
+                 "lampyr_report_page)\n");
+  }
+  const bool unresolved =
+      std::any_of(results.integrators.begin(), results.integrators.end(), [](const auto& integrator) {
+        return std::any_of(integrator.snapshots.begin(), integrator.snapshots.end(),
+                           [](const auto& s) { return !s.relMse; });
+      });
+  if (unresolved) {
+    std::fprintf(stderr, "warning: some renders are within the reference's own noise and have no figure; %s\n",
+                 options.reference ? "use a reference of more samples" : "give it more time with --reference-time");
+  }
+}
+
+// What the run is known by before anything is measured.
+ComparisonResults Describe(const CompareOptions& options, const LoadedScene& loaded) {
+  const RenderSettings& settings = loaded.built.settings;
+  ComparisonResults results;
+  results.scene = options.scene.string();
+  results.sceneHash = loaded.hash;
+  results.command = options.command;
+  results.width = settings.crop.Width();
+  results.height = settings.crop.Height();
+  results.maxDepth = settings.maxDepth;
+  results.threads = options.threads > 0 ? options.threads : HardwareThreads();
+  return results;
+}
+
+int CompareLoaded(const CompareOptions& options, const ComparisonPlan& plan, const LoadedScene& loaded) {
+  const RenderSettings& settings = loaded.built.settings;
+  const std::filesystem::path folder =
+      options.output.empty() ? std::filesystem::path(options.scene.stem().string() + "-compare") : options.output;
+  CheckMemory(settings, plan);
+  MakeFolder(folder, "--output");
+  CheckWritable(folder / "report.html", "--output");
+
+  ComparisonResults results = Describe(options, loaded);
+  const ComparedScene scene(loaded.built, results.threads, FinishOnInterrupt());
+  if (!options.quiet) {
+    for (const std::string& name : plan.integrators) {
+      for (const std::string& hint : IntegratorHints(loaded.built.scene, name)) {
+        std::fprintf(stderr, "hint: %s: %s\n", name.c_str(), hint.c_str());
+      }
+    }
+  }
+  bool interrupted = false;
+  {
+    Stages stages(options.quiet);
+    try {
+      const Reference reference = ObtainReference(options, scene, plan, loaded.hash, folder, stages, results);
+      results.reference = reference.facts;
+      const double longest = std::max(LongestRender(plan, results.pilots), 1e-3);
+      const double compared = longest * plan.repeats * static_cast<double>(plan.integrators.size());
+      const bool wasMade = reference.facts.origin == ComparisonReference::Origin::Made;
+      stages.Begin(wasMade ? 1 - 0.95 * compared / (compared + reference.facts.seconds) : 0.05, 1);
+      Compare(
+          scene, plan, reference, [&](double fraction, const std::string& note) { stages.Update(fraction, note); },
+          results);
+      interrupted = results.repeats < plan.repeats;
+    } catch (const ComparisonInterrupted&) {
+      interrupted = true;
+    }
+  }
+  return FinishRendering([&] {
+    if (interrupted && results.integrators.empty()) {
+      std::fprintf(stderr, "interrupted before two repeats were done: nothing was measured\n");
+      return InterruptExitCode();
+    }
+    WriteResults(options, folder, plan, results);
+    return interrupted ? InterruptExitCode() : kExitDone;
+  });
+}
+
+}  // namespace
+
+int RunCompare(const CompareOptions& options) {
+  const ComparisonPlan plan = MakePlan(options);
+  OutliveSurroundings();
+  const LoadedScene loaded =
+      LoadScene(options.scene, options.plugins, options.overrides, options.strict, options.robust);
+  int exitCode = kExitFailed;
+  RunForeignCode(loaded.types, [&] { exitCode = CompareLoaded(options, plan, loaded); });
+  return exitCode;
+}
+
+}  // namespace lampyr

@@ -1,0 +1,55 @@
+#include "app/compare/compared_scene.h"
+
+#include <algorithm>
+#include <memory>
+
+#include "base/stop.h"
+#include "render/settings/integrator_choice.h"
+
+namespace lampyr {
+
+void ComparedScene::Render(const std::string& integrator, uint64_t seed, const std::vector<double>& times,
+                           const std::vector<int>& sampleCounts, const AtMilestone& atMilestone,
+                           const AfterPass& afterPass) const {
+  // Kept for good where a pass had to be given up: its threads use it.
+  struct Run {
+    RenderSettings settings;
+    std::unique_ptr<Integrator> integrator;
+    Film film;
+    ProgressiveRender render;
+    Run(const RenderScene& scene, const RenderSettings& chosen, int threads)
+        : settings(chosen),
+          integrator(MakeIntegrator(scene, settings)),
+          film(settings.width, settings.height, settings.crop),
+          render(scene, *integrator, settings, threads, film) {}
+  };
+  RenderSettings settings = VariantOf(built_.settings, integrator);
+  settings.seed = seed;
+  auto run = std::make_unique<Run>(built_.scene, settings, threads_);
+  ProgressiveRender& render = run->render;
+  const Film& film = run->film;
+  const RenderOutcome& outcome = render.Outcome();
+  const StopWatch watch(&interrupted_, std::nullopt);
+  size_t nextTime = 0, nextCount = 0;
+  while (nextTime < times.size() || nextCount < sampleCounts.size()) {
+    std::optional<double> left;
+    if (nextTime < times.size()) left = times[nextTime] - outcome.seconds;
+    const int most = nextCount < sampleCounts.size() ? sampleCounts[nextCount] : 1 << 30;
+    const bool isWhole = render.AddSamples(render.NextPassSamples(most, left));
+    if (isWhole) afterPass(outcome.seconds);
+    if (HasGivenUpWork()) (void)run.release();
+    if (!isWhole || interrupted_.load()) throw ComparisonInterrupted{};
+    // The sample that would take the render beyond its time is left out when it would by more than half.
+    const double perSample = outcome.seconds / outcome.samplesPerPixel;
+    while (nextTime < times.size() && outcome.seconds + 0.5 * perSample >= times[nextTime]) {
+      atMilestone(nextTime, {outcome.seconds, outcome.samplesPerPixel}, film.Develop());
+      ++nextTime;
+    }
+    while (nextCount < sampleCounts.size() && outcome.samplesPerPixel >= sampleCounts[nextCount]) {
+      atMilestone(times.size() + nextCount, {outcome.seconds, outcome.samplesPerPixel}, film.Develop());
+      ++nextCount;
+    }
+  }
+}
+
+}  // namespace lampyr

@@ -1,0 +1,47 @@
+// A scene that is rendered again and again: with each integrator, with many seeds.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <map>
+#include <string>
+
+#include "render/build/scene_builder.h"
+#include "render/progressive_render.h"
+
+namespace lampyr {
+
+// Thrown where an interrupt has ended what was under way.
+struct ComparisonInterrupted {};
+
+class ComparedScene {
+ public:
+  // `built` must outlive it.
+  ComparedScene(const BuiltScene& built, int threads, const std::atomic<bool>& interrupted)
+      : built_(built), threads_(threads), interrupted_(interrupted) {}
+
+  const BuiltScene& Built() const { return built_; }
+  int Threads() const { return threads_; }
+
+  // What one render has come to: after `seconds` of rendering with `samplesPerPixel`.
+  struct Milestone {
+    double seconds = 0;
+    int samplesPerPixel = 0;
+  };
+  // The picture at a milestone: `index` counts the times, then the sample counts.
+  using AtMilestone = std::function<void(size_t index, const Milestone& reached, const Image& image)>;
+  // Called after each pass with the seconds of rendering so far.
+  using AfterPass = std::function<void(double seconds)>;
+
+  // One render, which goes on until the last of `times` (seconds) and of `sampleCounts`, both rising, and is looked at
+  // on its way. Looking takes no time that counts. Throws ComparisonInterrupted.
+  void Render(const std::string& integrator, uint64_t seed, const std::vector<double>& times,
+              const std::vector<int>& sampleCounts, const AtMilestone& atMilestone, const AfterPass& afterPass) const;
+
+ private:
+  const BuiltScene& built_;
+  int threads_;
+  const std::atomic<bool>& interrupted_;
+};
+
+}  // namespace lampyr

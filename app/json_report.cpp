@@ -1,0 +1,120 @@
+// The only file that includes nlohmann-json.
+#include "app/json_report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "base/process_usage.h"
+#include "base/version.h"
+#include "suite/properties.h"
+
+namespace lampyr {
+
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+// Names of files may be no UTF-8.
+std::string Dump(const Json& json) {
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace
+
+std::string ToJson(const RenderReport& report) {
+  const RenderOutcome& outcome = report.outcome;
+  const RenderCounts& counts = outcome.counts;
+  const double samples = static_cast<double>(report.pixels) * outcome.samplesPerPixel;
+  const double seconds = outcome.seconds > 0 ? outcome.seconds : 1e-9;
+  Json json = {
+      {"scene", report.scene},
+      {"sceneHash", report.sceneHash},
+      {"integrator", report.integrator},
+      {"seed", report.seed},
+      {"threads", report.threads},
+      {"width", report.width},
+      {"height", report.height},
+      {"primitives", report.primitives},
+      {"lights", report.lights},
+      {"lightGroups", report.lightGroups},
+      {"samplesPerPixel", outcome.samplesPerPixel},
+      {"resumedSamplesPerPixel", report.resumedSamples},
+      {"samples", samples},
+      {"samplesPerSecond", samples / seconds},
+      {"droppedSamples", counts.droppedSamples},
+      {"rejectedRays", report.rejectedRays},
+      {"relativeError", outcome.relativeError},
+      {"interrupted", outcome.interrupted},
+      {"rays",
+       {{"camera", counts.cameraRays},
+        {"indirect", counts.indirectRays},
+        {"shadow", counts.shadowRays},
+        {"perSecond", static_cast<double>(counts.Rays()) / seconds}}},
+      {"seconds",
+       {{"parse", report.parseSeconds},
+        {"build", report.buildSeconds},
+        {"render", outcome.seconds},
+        {"write", report.writeSeconds},
+        {"cpu", CpuSeconds()}}},
+      {"peakMemoryMiB", PeakMemoryMiB()},
+  };
+  if (const std::optional<PhotonStatistics>& photons = outcome.photons) {
+    json["photons"] = {{"passes", photons->passes},
+                       {"stored", photons->photons},
+                       {"mostInAPass", photons->mostPhotons},
+                       {"mostBytes", photons->mostBytes},
+                       {"rejected", photons->rejected},
+                       {"lookups", counts.lookups},
+                       {"found", counts.foundPhotons},
+                       {"buildSeconds", photons->buildSeconds},
+                       {"nanosecondsPerLookup",
+                        1e9 * counts.lookupSeconds / static_cast<double>(std::max<uint64_t>(counts.timedLookups, 1))},
+                       {"guideGain", photons->guideGain},
+                       {"guideTargets", photons->guideTargets},
+                       {"firstRadius", photons->firstRadius},
+                       {"lastRadius", photons->lastRadius}};
+  }
+  return Dump(json);
+}
+
+std::string ToJson(const ImageDifference& difference) {
+  Json json = {
+      {"mse", difference.mse},
+      {"relMse", difference.relMse},
+      {"flip", difference.flip},
+      {"meanA", difference.meanA},
+      {"meanB", difference.meanB},
+      {"bias", difference.bias},
+      {"biasInterval95", difference.biasInterval},
+      {"verdict", NameOf(difference.verdict)},
+      {"reason", difference.reason.empty() ? Json(nullptr) : Json(difference.reason)},
+  };
+  if (difference.hasBlockTest) {
+    const BlockTest& test = difference.blockTest;
+    json["blockTest"] = {{"blockSize", test.blockSize},   {"blocks", test.blocks},
+                         {"largestZ", test.largestZ},     {"threshold", test.threshold},
+                         {"chiSquared", test.chiSquared}, {"chiSquaredThreshold", test.chiSquaredThreshold},
+                         {"agrees", test.Agrees()}};
+  }
+  return Dump(json);
+}
+
+std::string ToJson(const std::vector<LightVerdict>& verdicts) {
+  Json rows = Json::array();
+  for (const LightVerdict& verdict : verdicts) {
+    rows.push_back({{"light", verdict.light},
+                    {"property", verdict.property},
+                    {"cases", verdict.cases},
+                    {"passed", verdict.passed},
+                    {"statistic", verdict.worst.isProbability ? "p-value" : "error"},
+                    {"worst", verdict.worst.statistic},
+                    {"threshold", verdict.worst.threshold},
+                    {"worstCase", verdict.worst.caseName},
+                    {"meaning", MeaningOf(verdict.property)},
+                    {"words", verdict.worst.words}});
+  }
+  return Dump(rows);
+}
+
+}  // namespace lampyr

@@ -1,0 +1,30 @@
+// Machine-readable reports.
+#pragma once
+
+#include <string>
+
+#include "film/metrics.h"
+#include "render/progressive_render.h"
+#include "suite/verdict.h"
+
+namespace lampyr {
+
+// Everything `--stats` holds. Times in seconds, memory in MiB.
+struct RenderReport {
+  std::string scene, sceneHash, integrator;
+  uint64_t seed = 0;
+  int threads = 1, width = 0, height = 0;
+  int64_t pixels = 0;
+  size_t primitives = 0, lights = 0;
+  std::vector<std::string> lightGroups;  // the image's layers
+  double parseSeconds = 0, buildSeconds = 0, writeSeconds = 0;
+  uint64_t rejectedRays = 0;
+  int resumedSamples = 0;  // per pixel, that a checkpoint brought
+  RenderOutcome outcome;
+};
+
+std::string ToJson(const RenderReport& report);
+std::string ToJson(const std::vector<LightVerdict>& verdicts);
+std::string ToJson(const ImageDifference& difference);
+
+}  // namespace lampyr

@@ -1,0 +1,46 @@
+// s > 1, t > 1: a vertex of the light subpath is connected to one of the camera subpath.
+#include <cmath>
+
+#include "integrators/bidirectional/techniques.h"
+#include "integrators/bidirectional/weights.h"
+
+namespace lampyr {
+
+Color Connect(const BidirectionalSample& sample, size_t lightCount) {
+  const SampleContext& context = sample.context;
+  const PathVertex &y = sample.light.vertices[lightCount - 1], &z = sample.camera.Last();
+  if (y.isDelta) return Color(0.0f);
+  const Vector3d difference = Vector3d(z.point.position) - Vector3d(y.point.position);
+  const double squared = LengthSquared(difference);
+  if (!(squared > 0)) return Color(0.0f);
+  const Vector3 toCamera(difference / std::sqrt(squared));
+  const BsdfEvaluation fy = y.Evaluate(toCamera, TransportMode::Importance);
+  const Color leaving = y.diffuse * fy.diffuse + y.specular * fy.specular;
+  if (leaving.IsBlack()) return leaving;
+  const BsdfEvaluation fz = z.Evaluate(-toCamera, TransportMode::Radiance);
+  const double geometric =
+      static_cast<double>(y.GeometryTerm(toCamera) * z.ScatteringCosine(toCamera) * y.ArrivalCorrection(y.toPrevious)) /
+      squared;
+  ConnectedPath path;
+  path.value =
+      Product(z.Throughput() * fz.Sum(), leaving, geometric * static_cast<double>(sample.Lighting().FluxUnit()));
+  if (path.value.IsBlack()) return path.value;
+  sample.SetLight(path, lightCount);
+  sample.SetCamera(path);
+  path.weight = ConnectWeight(
+      y.weight,
+      {SolidAngleDensity(fz.pdfForward) * EdgeDensity(y, toCamera, squared), y.PreviousReverse(fy.pdfReverse)},
+      sample.MergeAt(y), z.weight,
+      {SolidAngleDensity(fy.pdfForward) * EdgeDensity(z, toCamera, squared), z.PreviousReverse(fz.pdfReverse)},
+      sample.MergeAt(z));
+  const float worth = sample.WantedShadowRays().Worth(path.value * static_cast<float>(path.weight), sample.radiance,
+                                                      ShadowRays::DeciderOf(toCamera.x, toCamera.y));
+  if (worth == 0) return Color(0.0f);
+  ++context.counts.shadowRays;
+  const Ray ray = SpawnRayTo(z.point, y.point.position, y.point.positionError, y.point.Ng, context.time);
+  path.value *= context.scene.geometry->Transmission(ray, visibility::kIndirect);
+  if (path.value.IsBlack()) return path.value;
+  return sample.Found(path, worth);
+}
+
+}  // namespace lampyr

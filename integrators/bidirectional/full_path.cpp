@@ -1,0 +1,172 @@
+#include "integrators/bidirectional/full_path.h"
+
+#include "integrators/bidirectional/weights.h"
+
+namespace lampyr {
+
+namespace {
+
+// Of the event at a vertex.
+struct DirectionDensities {
+  SolidAngleDensity toLight, toCamera;
+};
+
+// By asking the BSDF; deltas cannot be asked.
+DirectionDensities At(const PathVertex& vertex, const Vector3& toLight, const Vector3& toCamera) {
+  const BsdfEvaluation f = vertex.bsdf.Evaluate(toCamera, toLight, TransportMode::Radiance);
+  return {SolidAngleDensity(f.pdfForward), SolidAngleDensity(f.pdfReverse)};
+}
+
+SolidAnglePerArea EdgeBetween(const PathVertex& from, const PathVertex& to, const Vector3& direction) {
+  const Vector3d way = Vector3d(to.point.position) - Vector3d(from.point.position);
+  return EdgeDensity(to, direction, glm::dot(way, way));
+}
+
+}  // namespace
+
+FullPath Unfold(const ConnectedPath& path) {
+  std::vector<const PathVertex*> vertices = {nullptr};
+  // Where the subpaths merge, the vertex is the camera's; the photon's says how its own path came there.
+  const size_t ofLight = path.light.size() - (path.isMerged ? 1 : 0);
+  const PathVertex* photon = path.isMerged ? &path.light.back() : nullptr;
+  for (const PathVertex& vertex : path.light.first(ofLight)) vertices.push_back(&vertex);
+  for (size_t i = path.camera.size(); i > 0; --i) vertices.push_back(&path.camera[i - 1]);
+  const size_t n = vertices.size() - 1;
+
+  FullPath full;
+  full.end = path.end;
+  full.technique = path.isMerged ? static_cast<int>(n + 1 + ofLight + 1) : path.s;
+  full.mergesPerDensity = path.mergesPerDensity;
+  full.fromLight.assign(n + 2, AreaDensity());
+  full.fromCamera.assign(n + 2, AreaDensity());
+  full.isDelta.assign(n + 2, false);
+  full.fromCamera[n] = path.atLens;
+  if (n == 0) return full;
+  full.lensSeesIt = vertices[n]->isSeenByIndirect && path.atLens.value > 0;
+  for (size_t i = 1; i <= n; ++i) {
+    const PathVertex& vertex = *vertices[i];
+    // Along the rays that were traced; the edge that joins the subpaths goes from vertex to vertex.
+    const auto directionTo = [&](size_t other) {
+      if (photon && i == ofLight + 1 && other == ofLight) return photon->toPrevious;
+      if (photon && i == ofLight && other == ofLight + 1) return -photon->toPrevious;
+      if (i <= ofLight && other <= ofLight) return other < i ? vertex.toPrevious : -vertices[other]->toPrevious;
+      if (i > ofLight && other > ofLight) return other > i ? vertex.toPrevious : -vertices[other]->toPrevious;
+      return glm::normalize(Vector3(Vector3d(vertices[other]->point.position) - Vector3d(vertex.point.position)));
+    };
+    const Vector3 toLight = i == 1 ? path.toLight : directionTo(i - 1);
+    const Vector3 toCamera = i == n ? path.toLens : directionTo(i + 1);
+    // The last vertex of either subpath is joined to something else, but where the camera's has found the light.
+    const bool isLight = i <= ofLight;
+    const bool isLast = isLight ? i == ofLight && !photon : i == ofLight + 1 && path.s > 0;
+    DirectionDensities densities;
+    if (!isLast && vertex.scatteredDelta) {
+      full.isDelta[i] = true;
+      densities.toLight = isLight ? vertex.eventReverse : vertex.eventForward;
+      densities.toCamera = isLight ? vertex.eventForward : vertex.eventReverse;
+    } else {
+      densities = At(vertex, toLight, toCamera);
+    }
+    full.fromCamera[i - 1] =
+        densities.toLight * (i == 1 ? path.end.solidAnglePerArea : EdgeBetween(vertex, *vertices[i - 1], toLight));
+    if (i < n) full.fromLight[i + 1] = densities.toCamera * EdgeBetween(vertex, *vertices[i + 1], toCamera);
+    if (photon && i == ofLight + 1) full.fromCamera[i - 1] = densities.toLight * photon->previousSolidAnglePerArea;
+  }
+  if (photon && ofLight > 0) full.fromLight[ofLight + 1] = photon->pdfForward;
+  return full;
+}
+
+std::vector<double> WeightsByDensities(const FullPath& path) {
+  const int n = path.SurfaceCount();
+  std::vector<long double> densities(static_cast<size_t>(path.TechniqueCount()), 0.0L);
+  const auto isDelta = [&](int i) { return static_cast<bool>(path.isDelta[static_cast<size_t>(i)]); };
+  const auto fromLight = [&](int i) { return path.fromLight[static_cast<size_t>(i)].value; };
+  const auto fromCamera = [&](int i) { return path.fromCamera[static_cast<size_t>(i)].value; };
+  for (int s = 0; s <= n + 1; ++s) {
+    // The edge that joins the subpaths must not end in a delta.
+    if (s == 0 && !path.end.canBeHit) continue;
+    if (s > 1 && isDelta(s - 1)) continue;
+    if (s > 0 && s <= n && isDelta(s)) continue;
+    if (s == n + 1 && !path.lensSeesIt) continue;
+    long double density = 1;
+    if (s == 1) density = n == 0 ? path.end.position.value : path.end.direct.value;
+    if (s > 1) density = path.end.emission.value;
+    for (int i = 2; i < s; ++i) density *= fromLight(i);
+    for (int i = s; i <= n; ++i) density *= fromCamera(i);
+    densities[static_cast<size_t>(s)] = density;
+  }
+  for (int i = 1; i <= n; ++i) {
+    if (!path.CanMerge(i)) continue;
+    long double density = path.end.emission.value * path.mergesPerDensity;
+    for (int k = 2; k <= i; ++k) density *= fromLight(k);
+    for (int k = i; k <= n; ++k) density *= fromCamera(k);
+    densities[static_cast<size_t>(n + 1 + i)] = density;
+  }
+  long double sum = 0;
+  for (const long double density : densities) sum += density * density;
+  std::vector<double> weights;
+  for (const long double density : densities) weights.push_back(static_cast<double>(density * density / sum));
+  return weights;
+}
+
+namespace {
+
+// Both subpaths of a full path as they are carried along: [i] is vertex i as the end of either.
+struct Carried {
+  std::vector<PartialWeight> light, camera;
+};
+
+Carried Carry(const FullPath& path) {
+  const int n = path.SurfaceCount();
+  const auto F = [&](int i) { return i <= n ? path.fromLight[static_cast<size_t>(i)] : AreaDensity(); };
+  const auto B = [&](int i) { return path.fromCamera[static_cast<size_t>(i)]; };
+  const auto isDelta = [&](int i) { return static_cast<bool>(path.isDelta[static_cast<size_t>(i)]); };
+  const auto size = static_cast<size_t>(n) + 1;
+  Carried carried{std::vector<PartialWeight>(size), std::vector<PartialWeight>(size)};
+  carried.light[1] = PartialWeight::AtLanding(path.end, true);
+  for (int i = 2; i <= n; ++i) {
+    const auto at = static_cast<size_t>(i);
+    carried.light[at] = carried.light[at - 1].Next(isDelta(i - 1), path.CanMerge(i - 1), F(i), B(i - 2));
+  }
+  carried.camera[size - 1] = PartialWeight::AtLens(B(n), path.lensSeesIt);
+  for (int i = n - 1; i >= 1; --i) {
+    const auto at = static_cast<size_t>(i);
+    carried.camera[at] = carried.camera[at + 1].Next(isDelta(i + 1), path.CanMerge(i + 1), B(i), F(i + 2));
+  }
+  return carried;
+}
+
+}  // namespace
+
+std::vector<double> WeightsByRecursion(const FullPath& path) {
+  const int n = path.SurfaceCount();
+  const auto F = [&](int i) { return i <= n ? path.fromLight[static_cast<size_t>(i)] : AreaDensity(); };
+  const auto B = [&](int i) { return path.fromCamera[static_cast<size_t>(i)]; };
+  const auto isDelta = [&](int i) { return static_cast<bool>(path.isDelta[static_cast<size_t>(i)]); };
+  const LightEnd& end = path.end;
+  const double merge = Mis(path.mergesPerDensity);
+  const auto mergeAt = [&](int i) { return path.CanMerge(i) ? merge : 0.0; };
+  if (n == 0) return {SeenLightWeight(end.position, B(0)), SplatLightWeight(end.position, B(0))};
+  std::vector<double> weights(static_cast<size_t>(path.TechniqueCount()), 0.0);
+  const Carried carried = Carry(path);
+  const auto light = [&](int i) -> const PartialWeight& { return carried.light[static_cast<size_t>(i)]; };
+  const auto camera = [&](int i) -> const PartialWeight& { return carried.camera[static_cast<size_t>(i)]; };
+  const auto weigh = [&](int s) {
+    if (s == 0) return HitWeight(end, camera(1), {isDelta(1), path.CanMerge(1), F(2)}, B(0), merge);
+    if (s == 1) return NextEventWeight(end, camera(1), end.canBeHit ? B(0) : AreaDensity(), F(2), mergeAt(1));
+    if (s == n + 1) return SplatWeight(light(n), {B(n), B(n - 1)}, mergeAt(n));
+    return ConnectWeight(light(s - 1), {B(s - 1), B(s - 2)}, mergeAt(s - 1), camera(s), {F(s), F(s + 1)}, mergeAt(s));
+  };
+  for (int s = 0; s <= n + 1; ++s) {
+    if (s == 0 && !end.canBeHit) continue;
+    if ((s > 1 && isDelta(s - 1)) || (s > 0 && s <= n && isDelta(s)) || (s == n + 1 && !path.lensSeesIt)) continue;
+    weights[static_cast<size_t>(s)] = weigh(s);
+  }
+  for (int i = 1; i <= n; ++i) {
+    if (!path.CanMerge(i)) continue;
+    weights[static_cast<size_t>(n + 1 + i)] =
+        MergeWeight(light(i).BeforeReverse(B(i - 1), merge), camera(i).BeforeReverse(F(i + 1), merge), merge);
+  }
+  return weights;
+}
+
+}  // namespace lampyr

@@ -1,0 +1,92 @@
+// s = 0: the camera subpath finds a light by itself.
+#include "integrators/bidirectional/techniques.h"
+#include "integrators/bidirectional/weights.h"
+
+namespace lampyr {
+
+namespace {
+
+// `landing`: the edge of an emission to the camera subpath's last vertex.
+Color HitLight(const BidirectionalSample& sample, const PathState& state, const FoundLight& found,
+               SolidAnglePerArea landing) {
+  const LightEvaluation& e = found.evaluation;
+  ConnectedPath path;
+  path.value = state.diffuse * e.diffuse + state.specular * e.specular;
+  if (path.value.IsBlack()) return path.value;
+  path.s = 0;
+  path.end = EndOf(sample.Lighting(), found, true, landing);
+  sample.SetCamera(path);
+  path.t = static_cast<int>(sample.camera.Count()) + 2;
+  if (!sample.settings.connects && path.end.emission.value > 0) {
+    if (sample.couldMerge) return Color(0.0f);
+    return sample.Found(path);
+  }
+  path.toLight = state.ray.direction;
+  const PathVertex& last = sample.camera.Last();
+  const LastEvent event{last.scatteredDelta, last.CanMerge(), last.PreviousReverse(last.eventReverse)};
+  path.weight = HitWeight(path.end, last.weight, event, state.pdfDirection * path.end.solidAnglePerArea, sample.merge);
+  return sample.Found(path);
+}
+
+}  // namespace
+
+Color SeeLightAt(const BidirectionalSample& sample, const PathState& state, const RayHit& hit,
+                 const SurfacePoint& point) {
+  const SampleContext& context = sample.context;
+  const LightingServices& lighting = sample.Lighting();
+  const Ray& ray = state.ray;
+  ConnectedPath path;
+  path.value = state.specular * lighting.EmissionForCamera(ray.direction, hit.t, point, context.time);
+  if (path.value.IsBlack()) return path.value;
+  path.s = 0;
+  path.t = 2;
+  const Receiver lens{ray.origin, Normal3(0.0f), false, Receiver::kCamera};
+  if (const auto found = lighting.EvaluateSamples(lens, ray.direction, hit.t, point, context.time, true)) {
+    path.end = EndOf(lighting, *found, lighting.CanBeHit(found->light), {0});
+    path.atLens =
+        DensityAtLens(*context.scene.camera, ray, AbsDot(ray.direction, point.Ng), Sqr(static_cast<double>(hit.t)));
+    if (path.atLens.value > 0 && sample.settings.connects)
+      path.weight = SeenLightWeight(path.end.position, path.atLens);
+  }
+  const Color contribution = sample.Report(path);
+  // Lights that are seen from one side only may have no density there, and no end of the path.
+  if (context.layers) context.layers->Add(lighting.GroupAt(point), contribution);
+  return contribution;
+}
+
+// Nothing else finds a light at infinity that the camera looks at.
+Color SeeBackground(const BidirectionalSample& sample, const PathState& state) {
+  ConnectedPath path;
+  path.t = 2;
+  path.end.canBeHit = true;
+  path.atLens = AreaDensity(1);
+  path.value = EscapedEmissionForCamera(sample.context, state.ray, state.specular);
+  return sample.Report(path);
+}
+
+Color HitLightAt(const BidirectionalSample& sample, const PathState& state, const SurfacePoint& point) {
+  const LightingServices& lighting = sample.Lighting();
+  const PathVertex& last = sample.camera.Last();
+  const float distance = glm::distance(point.position, last.point.position);
+  const auto found =
+      lighting.EvaluateSamples(last.receiver, state.ray.direction, distance, point, sample.context.time, true);
+  if (!found) return Color(0.0f);
+  return HitLight(
+      sample, state, *found,
+      LandingEdge(lighting, found->light, last.GeometryTerm(state.ray.direction), Sqr(static_cast<double>(distance))));
+}
+
+Color HitInfiniteLights(const BidirectionalSample& sample, const PathState& state) {
+  const LightingServices& lighting = sample.Lighting();
+  const PathVertex& last = sample.camera.Last();
+  Color sum;
+  for (size_t i = 0; i < lighting.InfiniteCount(); ++i) {
+    const auto found = lighting.EvaluateEscaped(i, last.receiver, state.ray.direction, sample.context.time, true);
+    if (!found) continue;
+    sum +=
+        HitLight(sample, state, *found, LandingEdge(lighting, found->light, last.GeometryTerm(state.ray.direction), 1));
+  }
+  return sum;
+}
+
+}  // namespace lampyr

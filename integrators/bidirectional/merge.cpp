@@ -1,0 +1,59 @@
+// Vertex merging: photons of other light paths near a vertex of the camera subpath.
+#include <cmath>
+
+#include "integrators/bidirectional/techniques.h"
+#include "integrators/bidirectional/weights.h"
+#include "integrators/photon/find_photons.h"
+#include "integrators/photon/photon_pass.h"
+
+namespace lampyr {
+
+namespace {
+
+void ReportMerge(const BidirectionalSample& sample, const Photon& photon, const Color& value, double weight) {
+  ConnectedPath path;
+  sample.SetCamera(path);
+  path.isMerged = true;
+  path.s = static_cast<int>(photon.depth) + 1;
+  path.toLight = photon.toPrevious;
+  path.mergesPerDensity = std::sqrt(sample.merge);
+  path.value = value;
+  path.weight = weight;
+  sample.context.observer->ObserveMerge(path, photon);
+}
+
+}  // namespace
+
+Color Merge(const BidirectionalSample& sample) {
+  const SampleContext& context = sample.context;
+  const PhotonPass& pass = *context.gather;
+  const PathVertex& vertex = sample.camera.Last();
+  const auto most = static_cast<size_t>(sample.settings.maxDepth) + 1;
+  const double perDensity = static_cast<double>(sample.Lighting().FluxUnit()) / std::sqrt(sample.merge);
+  const std::span<const uint32_t> found =
+      FindPhotons(*pass.map, vertex.point.position, pass.radius, sample.lookup, context.counts);
+  Color sum;
+  for (const uint32_t index : found) {
+    const Photon& photon = (*pass.map)[index];
+    if (photon.depth + sample.camera.Count() > most || !photon.IsOnSurface(vertex.bsdf.Ng())) continue;
+    const Vector3& toLight = photon.toPrevious;
+    const BsdfEvaluation f = vertex.Evaluate(toLight, TransportMode::Radiance);
+    const Color scattered = f.diffuse * photon.flux + f.specular * pass.map->SpecularFlux(photon);
+    if (scattered.IsBlack()) continue;
+    const double weight =
+        MergeWeight(photon.BeforeReverse(SolidAngleDensity(f.pdfForward)),
+                    vertex.weight.BeforeReverse(vertex.PreviousReverse(f.pdfReverse), sample.merge), sample.merge);
+    const Color value = scattered * vertex.ArrivalCorrection(toLight);
+    sum += value * static_cast<float>(weight);
+    // In another order: a product that both share would not be rounded as it is where there are no layers.
+    if (context.layers) [[unlikely]]
+      context.layers->Add(photon.group, Product(vertex.Throughput(), value, perDensity * weight));
+    if (pass.use) [[unlikely]]
+      pass.use->Add(index, (vertex.Throughput() * f.Sum()).Average() * static_cast<float>(weight));
+    if (sample.IsObserved()) [[unlikely]]
+      ReportMerge(sample, photon, Product(vertex.Throughput(), value, perDensity), weight);
+  }
+  return Product(vertex.Throughput(), sum, perDensity);
+}
+
+}  // namespace lampyr

@@ -1,0 +1,64 @@
+// s = 1: next-event estimation.
+#include "integrators/bidirectional/techniques.h"
+#include "integrators/bidirectional/weights.h"
+
+namespace lampyr {
+
+namespace {
+
+class Weighed final : public NextEventVisitor {
+ public:
+  explicit Weighed(const BidirectionalSample& sample) : sample_(sample), vertex_(sample.camera.Last()) {
+    sample_.SetCamera(path_);
+    path_.s = 1;
+  }
+
+  bool Wants(uint32_t light) override {
+    return sample_.settings.connects || sample_.Lighting().EmissionSelectionProbability(light).IsZero();
+  }
+
+  float Weigh(const LightConnection& light) override {
+    const LightingServices& lighting = sample_.Lighting();
+    const DirectSample& direct = light.direct;
+    const LightSample& sample = *direct.sample;
+    FoundLight found;
+    found.light = direct.light;
+    found.selection = direct.selection;
+    found.evaluation.pdfDirect = sample.pdfDirect;
+    found.evaluation.pdfEmit = sample.pdfEmit;
+    found.evaluation.pdfEmitDirection = sample.pdfEmitDirection;
+    found.evaluation.solidAngleToArea = sample.solidAngleToArea;
+    const SolidAnglePerArea landing = LandingEdge(lighting, direct.light, vertex_.GeometryTerm(sample.direction),
+                                                  Sqr(static_cast<double>(sample.distance)));
+    path_.end = EndOf(lighting, found, !direct.isDelta && lighting.CanBeHit(direct.light), landing);
+    path_.toLight = sample.direction;
+    const AreaDensity hit =
+        path_.end.canBeHit ? SolidAngleDensity(light.f.pdfForward) * path_.end.solidAnglePerArea : AreaDensity(0);
+    path_.weight = NextEventWeight(path_.end, vertex_.weight, hit, vertex_.PreviousReverse(light.f.pdfReverse),
+                                   sample_.MergeAt(vertex_));
+    return static_cast<float>(path_.weight);
+  }
+
+  void Arrived(const LightConnection& light, const Color& value, const Color& contribution) override {
+    if (sample_.context.layers)
+      sample_.context.layers->Add(sample_.Lighting().GroupOf(light.direct.light), contribution);
+    if (!sample_.IsObserved()) return;
+    path_.value = value;
+    sample_.Report(path_);
+  }
+
+ private:
+  const BidirectionalSample& sample_;
+  const PathVertex& vertex_;
+  ConnectedPath path_;
+};
+
+}  // namespace
+
+Color EstimateDirectLight(const BidirectionalSample& sample) {
+  Weighed visitor(sample);
+  return SampleDirectLight(sample.context, {kOfCamera, true, sample.WantedShadowRays()}, sample.camera.Last(),
+                           static_cast<int>(sample.camera.Count()) - 1, sample.radiance, visitor);
+}
+
+}  // namespace lampyr

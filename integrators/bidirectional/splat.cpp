@@ -1,0 +1,51 @@
+// t = 1: the light path is connected to the lens.
+#include "integrators/bidirectional/techniques.h"
+#include "integrators/bidirectional/weights.h"
+
+namespace lampyr {
+
+namespace {
+
+void AddSplat(const BidirectionalSample& sample, ConnectedPath& path) {
+  AddSplats(*path.connection, sample.Report(path), sample.Lighting().GroupOf(path.end.light), *sample.context.splats,
+            sample.context.counts);
+}
+
+void SetLens(const BidirectionalSample& sample, const SeenFromLens& seen, ConnectedPath& path) {
+  path.t = 1;
+  path.toLens = seen.toCamera;
+  path.atLens = AreaDensity(static_cast<double>(seen.connection.Weight()) * EdgeDensity(seen.geometryTerm, 1).value /
+                            sample.settings.filmPixels);
+  path.connection = &seen.connection;
+  path.value = seen.value;
+}
+
+}  // namespace
+
+void SplatLight(const BidirectionalSample& sample, const EmittedPhoton& photon) {
+  const auto seen = SeeLight(sample.context, photon, kOfLight.Of(0, dimensions::kRoulette));
+  if (!seen) return;
+  ConnectedPath path;
+  path.s = 1;
+  SetLens(sample, *seen, path);
+  path.end.light = photon.light;
+  path.end.position = static_cast<double>(photon.emissionSelection.value) * AreaDensity(photon.emission.pdfEmit);
+  path.end.canBeHit = true;
+  path.weight = SplatLightWeight(path.end.position, path.atLens);
+  AddSplat(sample, path);
+}
+
+void SplatVertex(const BidirectionalSample& sample) {
+  const Subpath& light = sample.light.vertices;
+  const PathVertex& vertex = light.Last();
+  const auto seen = SeeVertex(sample.context, vertex, kOfLight.Of(static_cast<int>(light.Count()), dimensions::kLight));
+  if (!seen) return;
+  ConnectedPath path;
+  sample.SetLight(path, light.Count());
+  SetLens(sample, *seen, path);
+  path.weight =
+      SplatWeight(vertex.weight, {path.atLens, vertex.PreviousReverse(seen->f.pdfReverse)}, sample.MergeAt(vertex));
+  AddSplat(sample, path);
+}
+
+}  // namespace lampyr

@@ -1,0 +1,55 @@
+#include "integrators/bidirectional/subpath_weights.h"
+
+namespace lampyr {
+
+void SetWeights(const PathVertex& previous, const PathState& state, bool connects, PathVertex& vertex) {
+  const double squared = LengthSquared(Vector3d(vertex.point.position) - Vector3d(previous.point.position));
+  vertex.pdfForward = state.pdfDirection * EdgeDensity(vertex, state.ray.direction, squared);
+  vertex.previousSolidAnglePerArea = EdgeDensity(previous, state.ray.direction, squared);
+  vertex.weight = previous.weight.Next(previous.scatteredDelta, previous.CanMerge(), vertex.pdfForward,
+                                       previous.PreviousReverse(previous.eventReverse));
+  if (!connects) vertex.weight.connect = 0;
+}
+
+SolidAnglePerArea LandingEdge(const LightingServices& lighting, uint32_t light, float geometryTerm,
+                              double distanceSquared) {
+  return EdgeDensity(geometryTerm, lighting.IsAtInfinity(light) ? 1 : distanceSquared);
+}
+
+LightEnd EndOf(const LightingServices& lighting, const FoundLight& found, bool canBeHit, SolidAnglePerArea landing) {
+  const LightEvaluation& e = found.evaluation;
+  const auto selection = static_cast<double>(found.selection.value);
+  LightEnd end;
+  end.light = found.light;
+  end.solidAnglePerArea = {static_cast<double>(e.solidAngleToArea)};
+  end.direct = selection * SolidAngleDensity(e.pdfDirect) * end.solidAnglePerArea;
+  const auto emissionSelection = static_cast<double>(lighting.EmissionSelectionProbability(found.light).value);
+  const AreaDensity position = emissionSelection * AreaDensity(e.pdfEmit);
+  end.emission = position * (SolidAngleDensity(e.pdfEmitDirection) * landing);
+  end.canBeHit = canBeHit;
+  if (canBeHit && !lighting.IsAtInfinity(found.light)) end.position = position;
+  return end;
+}
+
+// The weight of the first vertex is that of the selection there: next-event estimation from it would have chosen this
+// light so often. False: the light does not send anything there.
+bool WeighedLightPath::Landed(const EmittedPhoton& photon, PathVertex& first) {
+  const LightingServices& lighting = *context_.scene.lighting;
+  const std::optional<FoundLight> found = lighting.EvaluateLanding(photon, first.receiver);
+  if (!found) return false;
+  const double squared = LengthSquared(Vector3d(first.point.position) - Vector3d(photon.emission.position));
+  const SolidAnglePerArea landing = LandingEdge(lighting, found->light, first.GeometryTerm(first.toPrevious), squared);
+  end_ = EndOf(lighting, *found, lighting.CanBeHit(found->light), landing);
+  if (!(end_.emission.value > 0)) return false;
+  first.previousSolidAnglePerArea = end_.solidAnglePerArea;
+  first.weight = PartialWeight::AtLanding(end_, connects_);
+  return true;
+}
+
+void WeighedLightPath::Arrived(LightPath& path, const PathState& state) {
+  const size_t count = path.vertices.Count();
+  if (count > 1) SetWeights(path.vertices[count - 2], state, connects_, path.vertices.Last());
+  Weighed(path);
+}
+
+}  // namespace lampyr

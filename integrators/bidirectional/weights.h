@@ -1,0 +1,66 @@
+// Weights of the techniques of bidirectional path tracing and vertex merging: one function for each way of making a
+// path, from the partial weights of both its sides ([Veach97 §10.2], [Georgiev12 §4]; departures from both are those of
+// walk/partial_weight.h). The integrator calls them, and so does the proof that holds them against explicit densities
+// (full_path.h).
+//
+// `merge` is (N π r²)^β of the vertex that it is said of; 0 where photons are not merged there.
+#pragma once
+
+#include "integrators/walk/vertex.h"
+
+namespace lampyr {
+
+// 1 / (1 + Σ (p_i / p)^β) ([Georgiev12 eq. 37]).
+inline double WeightAgainst(double others) {
+  return 1 / (1 + others);
+}
+
+// (0,2): the camera sees a point of a light. (1,1) finds it, too. `position`: by emission; `camera`: by the ray.
+inline double SeenLightWeight(AreaDensity position, AreaDensity camera) {
+  return WeightAgainst(Mis(position / camera));
+}
+// (1,1): a point of a light is connected to the lens.
+inline double SplatLightWeight(AreaDensity position, AreaDensity camera) {
+  return WeightAgainst(Mis(camera / position));
+}
+
+// The event at the last vertex of a camera subpath that has found a light.
+struct LastEvent {
+  bool isDelta = false, canMerge = false;
+  AreaDensity previousReverse;  // of the vertex before
+};
+// s = 0, t > 2: the camera subpath hits the light, whose point has the density `hit` ([Georgiev12 eq. 43]).
+inline double HitWeight(const LightEnd& end, const PartialWeight& camera, const LastEvent& event, AreaDensity hit,
+                        double merge) {
+  const PartialWeight atLight = camera.Next(event.isDelta, event.canMerge, AreaDensity(1), event.previousReverse);
+  const double direct = event.isDelta ? 0.0 : Mis(end.direct / hit);
+  return WeightAgainst(direct + Mis(end.emission / hit) * (atLight.earlier + merge * atLight.merging));
+}
+
+// s = 1, t > 1: the light is sampled at the last vertex of the camera subpath ([Georgiev12 eqs. 44, 45]). `hit`:
+// density with which scattering there would find the light's point; 0: it cannot. `previousReverse`: of the vertex
+// before.
+inline double NextEventWeight(const LightEnd& end, const PartialWeight& camera, AreaDensity hit,
+                              AreaDensity previousReverse, double merge) {
+  return WeightAgainst(Mis(hit / end.direct) + camera.Sum({end.emission / end.direct, previousReverse}, merge));
+}
+
+// s > 1, t > 1: the last vertices of both subpaths are connected ([Georgiev12 eqs. 40, 41]).
+inline double ConnectWeight(const PartialWeight& light, const ReverseDensities& ofLight, double mergeAtLight,
+                            const PartialWeight& camera, const ReverseDensities& ofCamera, double mergeAtCamera) {
+  return WeightAgainst(light.Sum(ofLight, mergeAtLight) + camera.Sum(ofCamera, mergeAtCamera));
+}
+
+// s > 1, t = 1: the last vertex of the light subpath is connected to the lens ([Georgiev12 eq. 46]). `reverse`: of that
+// vertex, by a camera ray, and of the one before.
+inline double SplatWeight(const PartialWeight& light, const ReverseDensities& reverse, double merge) {
+  return WeightAgainst(light.Sum(reverse, merge));
+}
+
+// The last vertices of both subpaths are merged ([Georgiev12 eqs. 38, 39]). `light`, `camera`: BeforeReverse of either
+// side.
+inline double MergeWeight(double light, double camera, double merge) {
+  return WeightAgainst((light + camera) / merge);
+}
+
+}  // namespace lampyr

@@ -1,0 +1,108 @@
+#include "integrators/path/camera_path.h"
+
+#include "integrators/walk/lens.h"
+#include "integrators/walk/mis.h"
+
+namespace lampyr {
+
+namespace {
+
+class CameraPath final : public PathVisitor, NextEventVisitor {
+ public:
+  CameraPath(const SampleContext& context, const CameraPathSettings& settings, const PhotonGatherer* gatherer)
+      : context_(context),
+        lighting_(*context.scene.lighting),
+        settings_(settings),
+        nextEvent_{settings.dimensions, false, settings.shadowRays},
+        gatherer_(gatherer) {}
+
+  void Escaped(const Subpath& path, const PathState& state) override {
+    if (path.Count() == 0) {
+      radiance_ += EscapedEmissionForCamera(context_, state.ray, state.specular);
+      return;
+    }
+    for (size_t i = 0; i < lighting_.InfiniteCount(); ++i) {
+      const auto found = lighting_.EvaluateEscaped(i, path.Last().receiver, state.ray.direction, context_.time, false);
+      if (found) AddFound(path.Last(), state, *found);
+    }
+  }
+
+  bool Met(const Subpath& path, const PathState& state, const RayHit& hit, const SurfacePoint& point,
+           bool isLight) override {
+    if (isLight && path.Count() == 0) {
+      const Color seen = state.specular * lighting_.EmissionForCamera(state.ray.direction, hit.t, point, context_.time);
+      if (context_.layers) context_.layers->Add(lighting_.GroupAt(point), seen);
+      radiance_ += seen;
+    } else if (isLight) {
+      const Receiver& receiver = path.Last().receiver;
+      const float distance = glm::distance(point.position, receiver.position);
+      const auto found =
+          lighting_.EvaluateSamples(receiver, state.ray.direction, distance, point, context_.time, false);
+      if (found) AddFound(path.Last(), state, *found);
+    }
+    return !isLook_;
+  }
+
+  bool Arrived(Subpath& path, const PathState& state) override {
+    const PathVertex& vertex = path.Last();
+    if (vertex.isDelta) return true;
+    const auto events = static_cast<int>(path.Count());
+    if (settings_.samplesLights)
+      radiance_ += SampleDirectLight(context_, nextEvent_, vertex, events - 1, radiance_, *this);
+    if (gatherer_) radiance_ += gatherer_->Gather(vertex, events, state.length);
+    return true;
+  }
+
+  // Directions that photons are gathered from are looked along for lights alone: next-event estimation would miss a
+  // panel that touches the floor.
+  bool Scattered(const Subpath& path, const PathState& state) override {
+    isLook_ = !path.Last().scatteredDelta && state.pdfDirection.value <= static_cast<double>(settings_.gatherBelow);
+    return !isLook_ || (settings_.samplesLights && lighting_.HasLightThatCanBeHit());
+  }
+
+  const Color& Radiance() const { return radiance_; }
+
+ private:
+  // A light that the BSDF's direction found, weighted against next-event estimation.
+  void AddFound(const PathVertex& last, const PathState& state, const FoundLight& found) {
+    Color radiance = state.diffuse * found.evaluation.diffuse + state.specular * found.evaluation.specular;
+    if (!last.scatteredDelta && settings_.samplesLights) {
+      const PdfSolidAngle direction(static_cast<float>(state.pdfDirection.value));
+      radiance *= PowerHeuristic(direction, found.selection * found.evaluation.pdfDirect);
+    }
+    if (context_.layers) context_.layers->Add(lighting_.GroupOf(found.light), radiance);
+    radiance_ += radiance;
+  }
+
+  float Weigh(const LightConnection& light) override {
+    if (light.direct.isDelta) return 1;
+    return PowerHeuristic(light.direct.selection * light.direct.sample->pdfDirect, light.f.pdfForward);
+  }
+  void Arrived(const LightConnection& light, const Color&, const Color& contribution) override {
+    if (context_.layers) context_.layers->Add(lighting_.GroupOf(light.direct.light), contribution);
+  }
+
+  const SampleContext& context_;
+  const LightingServices& lighting_;
+  const CameraPathSettings& settings_;
+  const NextEventSettings nextEvent_;
+  const PhotonGatherer* gatherer_;
+  bool isLook_ = false;  // the ray is for lights alone: other light from there is left to the gatherer
+  Color radiance_;
+};
+
+}  // namespace
+
+Color TraceCameraPath(const SampleContext& context, const CameraPathSettings& settings, const Ray& ray,
+                      const PhotonGatherer* gatherer) {
+  thread_local Subpath path(false);
+  path.Clear();
+  PathState state;
+  state.ray = ray;
+  state.specular = Color(1.0f);
+  CameraPath visitor(context, settings, gatherer);
+  Walk(context, {TransportMode::Radiance, settings.maxDepth, settings.dimensions}, state, path, visitor);
+  return visitor.Radiance();
+}
+
+}  // namespace lampyr

@@ -1,0 +1,233 @@
+#include "integrators/photon/emission_learning.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "base/byte_stream.h"
+#include "base/error.h"
+#include "geometry/rounding.h"
+#include "integrators/walk/footprint.h"
+
+namespace lampyr {
+
+namespace {
+
+// Useful photons that are remembered; beyond, one in so many, each worth as many more.
+constexpr size_t kMostUseful = size_t{1} << 14;
+constexpr size_t kMostOfAPass = size_t{1} << 13;
+constexpr size_t kMostRemembered = 2 * kMostUseful + 2 * kMostOfAPass;
+// A guide must promise more than it costs: its densities are asked for at every light path, shadow ray and hit.
+constexpr double kWorthwhile = 2;
+// Photons that a verdict is based on, at least: of sums of squares, a few may be all.
+constexpr double kFewestTested = 8;
+// By then most of what can be learned has been, if there is a verdict; later than the last, nothing more.
+constexpr uint32_t kLearned = 64, kLastLearned = 4096;
+// And by then, if nothing is to be had at all.
+constexpr uint32_t kHopeless = 8;
+
+// Photons of a light that say more than a guess.
+constexpr size_t kManyUseful = 256;
+// Of the first guess.
+constexpr float kRare = 5;        // photons are aimed if most would be sent so many times as often
+constexpr int kSeenAcross = 32;   // rays
+constexpr int kGuessed = 4096;    // photons
+constexpr size_t kBrightest = 8;  // lights that are aimed
+
+}  // namespace
+
+EmissionLearning::EmissionLearning(const RenderScene& scene, int width, int height) : lighting_(*scene.lighting) {
+  Guess(scene, width, height);
+}
+
+std::shared_ptr<const EmissionGuide> EmissionLearning::MakeGuide(std::span<const UsefulPhoton> photons) const {
+  return std::make_shared<const EmissionGuide>(photons, lighting_.Lights(), lighting_.EmissionSelector(),
+                                               lighting_.SceneSphere());
+}
+
+void EmissionLearning::Guess(const RenderScene& scene, int width, int height) {
+  std::vector<Point3> seen;
+  SceneProbe probe(scene);
+  probe.ForSeen(width, height, kSeenAcross, [&](const Ray&, SeenVertex& first) {
+    seen.push_back(first.vertex.point.position);
+    PathState state;
+    SeenVertex next;
+    if (probe.Bounce(first, 0, state, next)) seen.push_back(next.vertex.point.position);
+  });
+  std::vector<uint32_t> counts(lighting_.Lights().size());
+  const auto emit = [&](const LightingServices& lighting, const auto& visit) {
+    Sampler sampler(SamplerKind::Sobol, 0);
+    for (uint32_t i = 0; i < kGuessed; ++i) {
+      sampler.StartPixelSample(0, 0, i);
+      const float uSelect = sampler.Get1D();
+      const Point2 u = sampler.Get2D(), uDirection = sampler.Get2D();
+      if (const auto photon = lighting.GenerateEmission(uSelect, u, uDirection, 0)) visit(*photon);
+    }
+  };
+  emit(lighting_, [&](const EmittedPhoton& photon) { ++counts[photon.light]; });
+  // The lights that most photons come from.
+  std::vector<uint32_t> brightest(counts.size());
+  std::iota(brightest.begin(), brightest.end(), 0u);
+  std::stable_sort(brightest.begin(), brightest.end(), [&](uint32_t a, uint32_t b) { return counts[a] > counts[b]; });
+  if (brightest.size() > kBrightest) brightest.resize(kBrightest);
+  const auto radius = static_cast<double>(lighting_.SceneSphere().radius);
+  const double across = 1 / (static_cast<double>(kPi) * radius * radius), part = 1 / static_cast<double>(seen.size());
+  for (const uint32_t light : brightest) {
+    if (counts[light] == 0) continue;
+    for (const Point3& place : seen) guessed_.push_back({light, place, part, part, across});
+  }
+  const auto guess = MakeGuide(guessed_);
+  int photons = 0, rare = 0;
+  const LightingServices aimed = lighting_.With(nullptr, guess.get());
+  emit(aimed, [&](const EmittedPhoton& photon) {
+    ++photons;
+    rare += aimed.EmissionGain(photon) > kRare ? 1 : 0;
+  });
+  if (3 * rare > photons) {
+    guide_ = guess;
+  } else {
+    guessed_.clear();
+  }
+}
+
+// Where few photons of a light have been of use, what was guessed of it counts as well.
+std::vector<UsefulPhoton> EmissionLearning::Evidence() const {
+  std::vector<UsefulPhoton> evidence = useful_;
+  if (guessed_.empty()) return evidence;
+  struct Known {
+    uint64_t count = 0;
+    double worth = 0, squared = 0;
+  };
+  std::vector<Known> known(lighting_.Lights().size());
+  Known all;
+  for (const UsefulPhoton& photon : useful_) {
+    for (Known* one : {&known[photon.light], &all}) {
+      ++one->count;
+      one->worth += photon.worth;
+      one->squared += photon.squared;
+    }
+  }
+  for (const UsefulPhoton& photon : guessed_) {
+    const Known& of = known[photon.light];
+    if (of.count >= kManyUseful) continue;
+    // Like all others, where there is nothing to go by.
+    const Known& like = of.count > 0 || all.count == 0 ? of : all;
+    evidence.push_back(photon);
+    if (all.count == 0) continue;
+    evidence.back().worth *= like.worth;
+    evidence.back().squared *= like.squared;
+  }
+  return evidence;
+}
+
+void EmissionLearning::Learn(const PhotonUse& use) {
+  const std::vector<PathOrigin>& origins = use.Origins();
+  std::vector<uint32_t> ofUse;
+  for (size_t i = 0; i < origins.size(); ++i) {
+    if (use.Sum(i) > 0 && origins[i].flux > 0) ofUse.push_back(static_cast<uint32_t>(i));
+  }
+  // Where there are many, one in so many stands for all.
+  const size_t step = 1 + ofUse.size() / kMostOfAPass;
+  const auto share = static_cast<double>(step);
+  for (size_t k = 0; k < ofUse.size(); k += step) {
+    const PathOrigin& origin = origins[ofUse[k]];
+    const double brought = use.Sum(ofUse[k]) * static_cast<double>(origin.flux);
+    // The density of the photon was `gain` times the unguided one.
+    const double squared = share * brought * brought * static_cast<double>(origin.gain);
+    const Vector3 way = origin.landing - origin.start;
+    const bool isAtInfinity = lighting_.IsAtInfinity(origin.light);
+    const double across = static_cast<double>(isAtInfinity ? 1.0f : LengthSquared(way));
+    const double own = across > 0 ? static_cast<double>(origin.pdfUnguided) / across : 0.0;
+    useful_.push_back({origin.light, origin.landing, share * brought, squared, own});
+    if (!tried_) continue;
+    const Vector3 direction = SafeNormalize(way, Vector3(0.0f));
+    const Point3& on = isAtInfinity ? origin.landing : origin.start;
+    unguided_.Add(squared);
+    aimed_.Add(squared / tried_->Gain(origin.light, on, direction, static_cast<double>(origin.pdfUnguided)));
+  }
+  Thin();
+}
+
+// As many as may be kept, chosen one after the other at equal steps of what they brought.
+void EmissionLearning::Thin() {
+  if (useful_.size() <= 2 * kMostUseful) return;
+  double total = 0;
+  for (const UsefulPhoton& photon : useful_) total += photon.worth;
+  const double step = total / static_cast<double>(kMostUseful);
+  std::vector<UsefulPhoton> kept;
+  double at = 0, next = 0.5 * step;
+  for (const UsefulPhoton& photon : useful_) {
+    at += photon.worth;
+    int times = 0;
+    for (; next < at; next += step) ++times;
+    if (times == 0) continue;
+    kept.push_back(photon);
+    kept.back().worth = times * step;
+    kept.back().squared *= times * step / photon.worth;
+  }
+  useful_ = std::move(kept);
+}
+
+bool EmissionLearning::Decide(uint32_t samples) {
+  const bool wasInUse = guide_ != nullptr;
+  const double gain = aimed_.sum > 0 ? unguided_.sum / aimed_.sum : 1;
+  // Chance makes the second sum rather too large than too small: what a guide has overlooked is in it manifold.
+  const double sureness = gain > kWorthwhile ? unguided_.Count() : std::min(unguided_.Count(), aimed_.Count());
+  if (tried_ && tried_->LightCount() > 0 && sureness >= kFewestTested) {
+    gain_ = gain;
+    unguided_ = aimed_ = Sum();
+    hasVerdict_ = true;
+  }
+  evidence_ = Evidence();
+  tried_ = MakeGuide(evidence_);
+  // What has stood the test was made of fewer photons than the one that takes its place.
+  const bool isWorthwhile = hasVerdict_ ? gain_ > kWorthwhile : wasInUse;
+  guide_ = isWorthwhile ? tried_ : nullptr;
+  const uint32_t last = !hasVerdict_ ? kLastLearned : gain_ < 1 ? kHopeless : kLearned;
+  if (samples >= last) isRecording_ = false;
+  return wasInUse || guide_;
+}
+
+// A guide is saved as what it was made of. The one in use is the one on trial, or the first guess, or none.
+void EmissionLearning::Save(ByteWriter& bytes) const {
+  bytes.Value<uint8_t>(isRecording_ ? 1 : 0);
+  bytes.Value<uint8_t>(tried_ ? 1 : 0);
+  bytes.Value<uint8_t>(guide_ ? 1 : 0);
+  bytes.Value<uint8_t>(hasVerdict_ ? 1 : 0);
+  bytes.Value(gain_);
+  bytes.Value(unguided_);
+  bytes.Value(aimed_);
+  bytes.List(std::span(useful_));
+  bytes.List(std::span(evidence_));
+}
+
+namespace {
+
+// Products of two are numbers still.
+bool IsSensible(double value) {
+  return value >= 0 && value < 1e150;
+}
+
+}  // namespace
+
+void EmissionLearning::Load(ByteReader& bytes) {
+  isRecording_ = bytes.Flag();
+  const bool hasTried = bytes.Flag(), hasGuide = bytes.Flag();
+  hasVerdict_ = bytes.Flag();
+  gain_ = bytes.Value<double>();
+  unguided_ = bytes.Value<Sum>();
+  aimed_ = bytes.Value<Sum>();
+  useful_ = bytes.List<UsefulPhoton>(kMostRemembered);
+  evidence_ = bytes.List<UsefulPhoton>(kMostRemembered + guessed_.size());
+  for (const std::vector<UsefulPhoton>* photons : {&useful_, &evidence_}) {
+    for (const UsefulPhoton& photon : *photons) {
+      const bool isOne = photon.light < lighting_.Lights().size() && IsFinite(photon.landing) &&
+                         IsSensible(photon.worth) && IsSensible(photon.squared) && IsSensible(photon.own);
+      if (!isOne) throw Error("it holds a photon that cannot be");
+    }
+  }
+  if (!hasTried) return;
+  tried_ = MakeGuide(evidence_);
+  guide_ = hasGuide ? tried_ : nullptr;
+}
+
+}  // namespace lampyr

@@ -1,0 +1,94 @@
+#include "integrators/photon/photon_store.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "base/parallel.h"
+
+namespace lampyr {
+
+uint64_t PhotonStore::BytesPerPhoton(bool withUse) {
+  constexpr uint64_t pointer = sizeof(void*), position = 3 * sizeof(float), tree = 2 * position + pointer + 16;
+  const uint64_t use = withUse ? PhotonUse::kMostBytesPerPhoton + sizeof(PathOrigin) + sizeof(uint32_t) : 0;
+  return sizeof(TracedPhoton) + sizeof(Photon) + sizeof(SortItem) + pointer + tree + use;
+}
+
+PhotonStore::PhotonStore(const PhotonSettings& settings, uint64_t pixels, EmissionLearning* learning)
+    : settings_(settings),
+      learning_(learning),
+      lightPaths_(settings.lightPaths > 0 ? settings.lightPaths : pixels),
+      most_(settings.mostBytes > 0 ? std::max<uint64_t>(settings.mostBytes / BytesPerPhoton(learning != nullptr), 1)
+                                   : std::numeric_limits<uint32_t>::max() / 2) {}
+
+void PhotonStore::Take(std::vector<PhotonList>& lists) {
+  for (PhotonList& list : lists) {
+    if (hasRoom_ && photons_ + list.Photons().size() <= most_) {
+      photons_ += list.Photons().size();
+      paths_ += list.Paths();
+      waiting_.push_back(std::exchange(list, PhotonList()));
+      continue;
+    }
+    if (hasRoom_) {
+      paths_ += list.KeepPaths(most_ - photons_);
+      photons_ += list.Photons().size();
+      waiting_.push_back(std::exchange(list, PhotonList()));
+      hasRoom_ = false;
+    }
+    list.Clear();
+  }
+}
+
+void PhotonStore::EndGathering() {
+  if (!open_.use) return;
+  learning_->Learn(*open_.use);
+  open_.use.reset();
+}
+
+void PhotonStore::Finish(uint32_t next) {
+  EndGathering();
+  isTaken_ = true;
+  pass_ = next;
+}
+
+const PhotonPass& PhotonStore::Open(uint32_t pass, int threads) {
+  if (open_.map && open_.pass == pass) return open_;
+  open_ = PhotonPass();
+  open_.pass = pass;
+  open_.lightPaths = static_cast<double>(std::max<uint64_t>(paths_, 1));
+  const double scale = RadiusScale(pass, settings_.alpha);
+  open_.radiusScale = static_cast<float>(scale);
+  open_.radius = static_cast<float>(settings_.radius * scale);
+  std::vector<uint32_t> origins;
+  const bool wantsUse = WantsOrigins();
+  open_.map =
+      std::make_shared<PhotonMap>(waiting_, Mis(open_.MergesPerDensity()), threads, wantsUse ? &origins : nullptr);
+  if (wantsUse) open_.use = MakeUse(std::move(origins));
+  Clear();
+  const PhotonMap& map = *open_.map;
+  ++statistics_.passes;
+  statistics_.photons += map.Size();
+  statistics_.mostPhotons = std::max<uint64_t>(statistics_.mostPhotons, map.Size());
+  statistics_.mostBytes = std::max<uint64_t>(statistics_.mostBytes, map.Bytes());
+  statistics_.rejected += map.Rejected();
+  statistics_.buildSeconds += map.BuildSeconds();
+  if (statistics_.passes == 1) statistics_.firstRadius = static_cast<double>(open_.radius);
+  statistics_.lastRadius = static_cast<double>(open_.radius);
+  return open_;
+}
+
+// Photons that were traced before somebody wanted to know have no origin.
+std::shared_ptr<PhotonUse> PhotonStore::MakeUse(std::vector<uint32_t> origins) const {
+  std::vector<PathOrigin> all;
+  for (const PhotonList& list : waiting_) all.insert(all.end(), list.Origins().begin(), list.Origins().end());
+  return all.empty() ? nullptr : std::make_shared<PhotonUse>(std::move(origins), std::move(all));
+}
+
+void PhotonStore::Clear() {
+  waiting_.clear();
+  photons_ = paths_ = 0;
+  hasRoom_ = true;
+  isTaken_ = false;
+}
+
+}  // namespace lampyr

@@ -1,0 +1,100 @@
+#include "integrators/walk/lens.h"
+
+#include <cmath>
+
+namespace lampyr {
+
+namespace {
+
+std::optional<FilmConnection> ConnectToCamera(const SampleContext& context, const Point3& position,
+                                              uint32_t dimension) {
+  const Camera& camera = *context.scene.camera;
+  const SplatList& splats = *context.splats;
+  Point2 lens(0.5f);
+  if (!camera.HasPinhole()) {
+    context.sampler.SetDimension(dimension);
+    lens = context.sampler.Get2D();
+  }
+  const auto connection = camera.Connect(position, lens);
+  if (!connection) return std::nullopt;
+  FilmConnection result{*connection, camera.CopiesOf(connection->film)};
+  bool reaches = splats.Reaches(connection->film);
+  for (int i = 0; i < result.copies.count; ++i) {
+    reaches = reaches || splats.Reaches(result.copies.points[static_cast<size_t>(i)]);
+  }
+  if (!reaches) return std::nullopt;
+  return result;
+}
+
+}  // namespace
+
+std::optional<SeenFromLens> SeeLight(const SampleContext& context, const EmittedPhoton& photon,
+                                     uint32_t lensDimension) {
+  const RenderScene& scene = context.scene;
+  const Point3& position = photon.emission.position;
+  const auto connection = ConnectToCamera(context, position, lensDimension);
+  if (!connection) return std::nullopt;
+  const Vector3 fromLens = position - connection->camera.position;
+  const float distance = glm::length(fromLens);
+  if (!(distance > 0)) return std::nullopt;
+  const Ray ray{connection->camera.position, fromLens / distance, kInfinity, context.time};
+  ++context.counts.cameraRays;
+  RayHit hit;
+  Color passed;
+  if (!scene.geometry->Intersect(ray, visibility::kCamera, hit, passed)) return std::nullopt;
+  const SurfacePoint point = scene.geometry->GetSurfacePoint(ray, hit);
+  if (!scene.lighting->IsOrigin(photon, point, -ray.direction, distance)) return std::nullopt;
+  const Color radiance = passed * scene.lighting->EmissionForCamera(ray.direction, hit.t, point, context.time);
+  if (radiance.IsBlack()) return std::nullopt;
+  const double density =
+      static_cast<double>(photon.emissionSelection.value) * static_cast<double>(photon.emission.pdfEmit.value);
+  SeenFromLens seen{*connection, -ray.direction, Color(), AbsDot(ray.direction, photon.emission.normal), {}};
+  seen.value = radiance * static_cast<float>(static_cast<double>(seen.geometryTerm * connection->Weight()) / density);
+  return seen;
+}
+
+std::optional<SeenFromLens> SeeVertex(const SampleContext& context, const PathVertex& vertex, uint32_t lensDimension) {
+  if (!vertex.isSeenByCamera || vertex.isDelta) return std::nullopt;
+  const RenderScene& scene = context.scene;
+  const Point3& position = vertex.point.position;
+  const auto connection = ConnectToCamera(context, position, lensDimension);
+  if (!connection) return std::nullopt;
+  const Vector3 difference = connection->camera.position - position;
+  const float squared = LengthSquared(difference);
+  if (!(squared > 0)) return std::nullopt;
+  SeenFromLens seen{*connection, difference / std::sqrt(squared), Color(), 0, {}};
+  seen.f = vertex.Evaluate(seen.toCamera, TransportMode::Importance);
+  const Color scattered = vertex.diffuse * seen.f.diffuse + vertex.specular * seen.f.specular;
+  if (scattered.IsBlack()) return std::nullopt;
+  ++context.counts.shadowRays;
+  const Ray ray = SpawnRayTo(vertex.point, connection->camera.position, Vector3(0.0f), Normal3(0.0f), context.time);
+  const Color arriving = scene.geometry->Transmission(ray, visibility::kCamera);
+  if (arriving.IsBlack()) return std::nullopt;
+  seen.geometryTerm = vertex.GeometryTerm(seen.toCamera);
+  const float importance = seen.geometryTerm * vertex.ArrivalCorrection(vertex.toPrevious) * connection->Weight();
+  seen.value =
+      Product(scattered, arriving, static_cast<double>(importance) * static_cast<double>(scene.lighting->FluxUnit()));
+  return seen;
+}
+
+void AddSplats(const FilmConnection& connection, const Color& value, uint32_t group, SplatList& splats,
+               RenderCounts& counts) {
+  bool isValid = splats.Add(connection.camera.film, value, group);
+  for (int i = 0; i < connection.copies.count; ++i) {
+    isValid &= splats.Add(connection.copies.points[static_cast<size_t>(i)], value, group);
+  }
+  if (!isValid) ++counts.droppedSamples;
+}
+
+Color EscapedEmissionForCamera(const SampleContext& context, const Ray& ray, const Color& throughput) {
+  const LightingServices& lighting = *context.scene.lighting;
+  Color sum;
+  for (size_t i = 0; i < lighting.InfiniteCount(); ++i) {
+    const Color seen = lighting.EscapedEmissionForCamera(i, ray);
+    sum += seen;
+    if (context.layers) context.layers->Add(lighting.GroupOfInfinite(i), throughput * seen);
+  }
+  return throughput * sum;
+}
+
+}  // namespace lampyr

@@ -1,0 +1,178 @@
+// Light from one direction, parallel (pbrt-v4's "distant"), or from a disk of the sky around it (UsdLux's
+// DistantLight).
+//
+// Without `angle`, L is the irradiance in W/m² of a surface that faces the light. With an angle of 2θ, L is the
+// radiance in W/(m² sr) of all directions within θ. `normalize` divides it by UsdLux's size factor, π sin²θ up to 90°
+// and π (2 - sin²θ) beyond, so that a small disk gives the irradiance of parallel light; `illuminance` makes it such
+// that a facing surface receives that times L.
+//
+// The disk is a cone in local directions: under a transform that does not keep angles it becomes an ellipse. It enters
+// as w = 1 - cosθ, half the squared chord to the axis, so that nothing cancels; sampled uniformly in it.
+// A unit direction in float is only known to 1e-7: below an angle of 1e-3° the disk has no room for samples to differ,
+// and the light is rendered as parallel with the irradiance that the disk would give.
+#include "lights/types/infinite_light.h"
+
+namespace lampyr {
+
+LightType DistantLightType();
+
+namespace {
+
+constexpr double kPiDouble = 3.14159265358979323846;
+constexpr double kSmallestAngle = 1e-3;  // degrees
+
+Vector3 ReadToLight(const ParameterList& parameters) {
+  const Vector3d toLight = parameters.GetPoint3("from", {0, 0, 0}) - parameters.GetPoint3("to", {0, 0, 1});
+  if (!(glm::length(toLight) > 0)) {
+    throw Error(parameters.Where(), "LightSource \"distant\": \"from\" and \"to\" are the same point");
+  }
+  return Vector3(glm::normalize(toLight));
+}
+
+class ParallelLight final : public LightBase {
+ public:
+  ParallelLight(const ParameterList& parameters, const Color& irradiance)
+      : LightBase(DistantLightType, parameters),
+        toLight_(ReadToLight(parameters)),
+        irradiance_(irradiance),
+        tint_(ReadLightTint(parameters)) {}
+
+  LightKind Kind() const override { return LightKind::DeltaDirection; }
+
+  float GetIncidentRadianceEstimate(const LightContext&, const Point3&) const override { return irradiance_.Average(); }
+  std::optional<SegmentEstimate> GetIncidentRadianceEstimate(const LightContext&, const Point3&, const Vector3&,
+                                                             float length) const override {
+    if (irradiance_.IsBlack()) return std::nullopt;
+    return SegmentEstimate{irradiance_.Average(), 0, length};
+  }
+  Color GetPowerEstimate(const LightContext& context) const override {
+    return irradiance_ * EmissionDiskArea(context.scene);
+  }
+  std::optional<EmissionBounds> GetEmissionBounds(const LightContext&) const override { return std::nullopt; }
+
+  std::optional<LightSample> GenerateSamples(const LightContext& context, const Point3&) const override {
+    std::optional<LightSample> sample(std::in_place);
+    if (!tint_.Split(irradiance_, *sample)) return std::nullopt;
+    sample->direction = ToRenderDirection(*context.transform, toLight_);
+    sample->normal = -sample->direction;
+    sample->pdfDirect = PdfSolidAngle(1);
+    if (context.bidirectional) {
+      sample->pdfEmit = EmissionDiskDensity(context.scene);
+      sample->pdfEmitDirection = PdfSolidAngle(1);
+      sample->solidAngleToArea = 1;
+    }
+    return sample;
+  }
+
+  std::optional<LightEvaluation> EvaluateSamples(const LightContext&, const LightHit&, const Point3&) const override {
+    return std::nullopt;
+  }
+
+  std::optional<EmissionSample> GenerateEmission(const LightContext& context) const override {
+    EmissionSample sample =
+        EmitFromInfinity(context.scene, ToRenderDirection(*context.transform, toLight_), context.uDirection);
+    if (!tint_.Split(irradiance_, sample)) return std::nullopt;
+    sample.pdfEmitDirection = PdfSolidAngle(1);
+    return sample;
+  }
+
+  Color EvaluateEmissionForCamera(const LightContext&, const LightHit&) const override { return Color(0.0f); }
+
+ private:
+  Vector3 toLight_;  // local, unit
+  Color irradiance_;
+  LightTint tint_;
+};
+
+// The same radiance within a cone of directions.
+class ConeSky {
+ public:
+  ConeSky(const Vector3& axis, double halfAngle, const Color& radiance)
+      : axis_(axis), frame_(Frame::FromNormal(axis)), radiance_(radiance) {
+    const double chord = 2 * std::sin(0.5 * halfAngle);
+    w_ = 0.5 * chord * chord;
+    isSphere_ = halfAngle >= kPiDouble;
+    // Samples keep away from the rim by what their direction is rounded: each lies in the cone as well when it is
+    // found.
+    const double inner = isSphere_ ? chord : std::max(chord - 3e-7, 0.0);
+    wSampled_ = static_cast<float>(0.5 * inner * inner);
+    const double sine = std::sin(halfAngle);
+    facing_ = static_cast<float>(halfAngle < 0.5 * kPiDouble ? kPiDouble * sine * sine : kPiDouble);
+  }
+
+  Color Radiance(const Vector3& local) const { return Contains(local) ? radiance_ : Color(0.0f); }
+  SkySample Sample(const Point2& u) const { return {frame_.ToWorld(SampleUniformCone(u, wSampled_)), {}, false}; }
+  SkyPoint Look(const Vector3& local) const {
+    if (!Contains(local)) return {Color(0.0f), PdfSolidAngle(0)};
+    return {radiance_, UniformConePdf(static_cast<float>(w_))};
+  }
+  Color Mean() const { return radiance_ * static_cast<float>(0.5 * w_); }
+  float FacingIrradiance() const { return facing_ * radiance_.Average(); }
+
+ private:
+  bool Contains(const Vector3& local) const {
+    return isSphere_ || 0.5f * LengthSquared(local - axis_) <= static_cast<float>(w_);
+  }
+
+  Vector3 axis_;  // local, unit
+  Frame frame_;
+  Color radiance_;
+  double w_ = 0;  // 1 - cosθ
+  float wSampled_ = 0, facing_ = 0;
+  bool isSphere_ = false;
+};
+
+std::unique_ptr<Light> CreateDistant(const ParameterList& parameters, const LightBuildContext&) {
+  const LightTint tint = ReadLightTint(parameters);
+  const double angle = parameters.GetFloat("angle", 0), theta = angle * kPiDouble / 360;
+  const double sineSquared = std::sin(theta) * std::sin(theta);
+  const bool isWide = angle > 180;
+  double scale = parameters.GetFloat("scale", 1);
+  const double illuminance = parameters.GetFloat("illuminance", -1);
+  // From L to the irradiance that a facing surface receives, for parallel light and disks alike.
+  const double facing = isWide ? kPiDouble : kPiDouble * sineSquared;
+  const double normalized = isWide ? 1 / (2 - sineSquared) : 1;  // facing / size factor
+  double toIrradiance = scale;
+  if (angle > 0 && !(illuminance > 0)) toIrradiance *= tint.normalize ? normalized : facing;
+  if (illuminance > 0) toIrradiance *= illuminance;
+  const Color color = ReadEmissionColor(parameters, "L") * tint.color;
+  const Color irradiance = color * static_cast<float>(toIrradiance);
+  if (!irradiance.IsValid()) throw Error(parameters.Where(), "LightSource \"distant\": the irradiance is not finite");
+  if (angle < kSmallestAngle) return std::make_unique<ParallelLight>(parameters, irradiance);
+  const Color radiance = color * static_cast<float>(toIrradiance / facing);
+  if (!radiance.IsValid()) throw Error(parameters.Where(), "LightSource \"distant\": the radiance is not finite");
+  return std::make_unique<InfiniteLightWith<ConeSky>>(DistantLightType, parameters,
+                                                      ConeSky(ReadToLight(parameters), theta, radiance));
+}
+
+}  // namespace
+
+LightType DistantLightType() {
+  LightType type;
+  type.name = "distant";
+  type.help = "light from one direction, like the sun's: parallel, or from a disk of the sky";
+  type.parameters = WithCommonParameters({
+      {"L", ParameterType::Spectrum, "W/m²", "1", "",
+       "irradiance of a surface that faces the light; with an angle: radiance of the disk in W/(m² sr)"},
+      {"scale", ParameterType::Float, "", "1", ">= 0", "multiplies L"},
+      {"illuminance", ParameterType::Float, "W/m²", "-1", "",
+       "if positive: irradiance of a facing surface for an L of 1, whatever the angle"},
+      {"from", ParameterType::Point3, "", "0 0 0", "", "the light comes from here"},
+      {"to", ParameterType::Point3, "", "0 0 1", "", "and goes there"},
+      {"angle", ParameterType::Float, "°", "0", "[0,360]",
+       "diameter of the disk (the sun's is 0.53); below 0.001: parallel light of the same irradiance"},
+  });
+  type.create = CreateDistant;
+  type.samples = {
+      "\"rgb L\" [ 3 2 1 ]",
+      "\"point3 from\" [ 1 4 1.5 ] \"point3 to\" [ 0 0 0 ] \"float illuminance\" 7 \"float diffuse\" 0.5",
+      "\"float angle\" 0.53 \"rgb L\" [ 3 2 1 ] \"float intensity\" 50000",
+      "\"float angle\" 40 \"bool normalize\" true \"point3 from\" [ 1 -2 0.5 ] \"point3 to\" [ 0 0 0 ] \"float "
+      "specular\" 3",
+      "\"float angle\" 250 \"bool normalize\" true \"rgb color\" [ 1 0 2 ]",
+      "\"float angle\" 360 \"float illuminance\" 2",
+  };
+  return type;
+}
+
+}  // namespace lampyr

@@ -1,0 +1,79 @@
+#include "lights/types/image_sky.h"
+
+#include "base/parallel.h"
+
+namespace lampyr {
+
+namespace {
+
+constexpr double kSphere = 4 * 3.14159265358979323846;
+
+Point2 TexelMiddle(int x, int y, int width, int height) {
+  return {(static_cast<float>(x) + 0.5f) / static_cast<float>(width),
+          (static_cast<float>(y) + 0.5f) / static_cast<float>(height)};
+}
+
+}  // namespace
+
+ImageSky::ImageSky(const ParameterList& parameters, const std::string& name, const LightBuildContext& build) {
+  const EmissionImage image(parameters, name, build);
+  const int width = image.Width(), height = image.Height();
+  if (width != height && width != 2 * height) {
+    throw Error(parameters.WhereOf(name),
+                parameters.Owner() + ": the image is " + std::to_string(width) + "×" + std::to_string(height) +
+                    "; a square (equal-area) or one twice as wide as high (latitude-longitude) is needed");
+  }
+  map_ = width == height ? SkyMap::EqualArea : SkyMap::LatLong;
+
+  const size_t columns = static_cast<size_t>(width);
+  std::vector<float> weights(columns * static_cast<size_t>(height));
+  struct RowSum {
+    double r = 0, g = 0, b = 0;
+  };
+  std::vector<RowSum> rows(static_cast<size_t>(height));
+  ParallelFor(height, HardwareThreads(), [&](int y) {
+    const float solidAngle = RowSolidAngle(y, width, height);
+    RowSum sum;
+    for (int x = 0; x < width; ++x) {
+      const Color texel = image.Texel(x, y) * solidAngle;
+      weights[static_cast<size_t>(y) * columns + static_cast<size_t>(x)] = texel.Average();
+      sum.r += static_cast<double>(texel.r);
+      sum.g += static_cast<double>(texel.g);
+      sum.b += static_cast<double>(texel.b);
+    }
+    rows[static_cast<size_t>(y)] = sum;
+  });
+  RowSum all;
+  for (const RowSum& row : rows) all.r += row.r, all.g += row.g, all.b += row.b;
+  mean_ = {static_cast<float>(all.r / kSphere), static_cast<float>(all.g / kSphere),
+           static_cast<float>(all.b / kSphere)};
+  // A dim texel beside one of 1e9 keeps a density that a float can hold.
+  const auto floor = static_cast<float>(1e-6 * (all.r + all.g + all.b) / 3 / static_cast<double>(weights.size()));
+  for (float& weight : weights) weight = weight > 0 ? std::max(weight, floor) : 0.0f;
+  table_ = ColorTable(
+      weights, [&](int x, int y) { return image.Texel(x, y); }, width, height);
+  // What shines below the smallest numbers does not shine.
+  if (table_.IsZero()) mean_ = Color(0.0f);
+}
+
+float ImageSky::RowSolidAngle(int y, int columns, int rows) const {
+  const double width = columns, height = rows;
+  if (map_ == SkyMap::EqualArea) return static_cast<float>(kSphere / (width * height));
+  const double pi = 0.25 * kSphere, middle = pi * (y + 0.5) / height, half = 0.5 * pi / height;
+  return static_cast<float>(2 * pi / width * 2 * std::sin(middle) * std::sin(half));
+}
+
+double ImageSky::UpperIlluminance() const {
+  const int width = table_.Width(), height = table_.Height();
+  double sum = 0;
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const Point2 uv = TexelMiddle(x, y, width, height);
+      const Vector3 w = map_ == SkyMap::EqualArea ? EqualAreaSquareToSphere(uv) : LatLongSquareToSphere(uv);
+      if (w.z > 0) sum += static_cast<double>(table_.ColorAt(x, y).Luminance() * w.z * RowSolidAngle(y, width, height));
+    }
+  }
+  return sum;
+}
+
+}  // namespace lampyr

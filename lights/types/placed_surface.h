@@ -1,0 +1,52 @@
+// A surface of its own space as it lies in render space at one instant.
+#pragma once
+
+#include "geometry/rounding.h"
+#include "lights/direction_map.h"
+#include "lights/light.h"
+#include "lights/types/area_lights.h"
+
+namespace lampyr {
+
+struct PlacedSurface {
+  Affine toRender, toOwn;
+  bool isSimilar = false;  // angles are kept on the way to render space
+  bool isFlat = false;
+  float scale = 1;           // if similar: how lengths grow
+  float evenStretch = 0;     // how areas grow, where that is the same for the whole surface; 0 otherwise
+  Normal3 flatNormal{0.0f};  // of a flat surface, unit, on the outer side
+
+  // `own` leads from the surface's space to that which `placement` starts from, `ownInverse` back.
+  static PlacedSurface From(const Affine& own, const Affine& ownInverse, const LightTransform& placement) {
+    PlacedSurface placed;
+    placed.toRender = {placement.toRender.linear * own.linear, placement.toRender.Point(own.translation)};
+    placed.toOwn = {ownInverse.linear * placement.toLocal.linear, ownInverse.Point(placement.toLocal.translation)};
+    placed.isSimilar = IsSimilarity(placed.toRender.linear);
+    placed.scale = glm::length(placed.toRender.linear[0]);
+    if (placed.isSimilar) placed.evenStretch = Sqr(placed.scale);
+    return placed;
+  }
+  void SetFlat(const Normal3& ownNormal) {
+    isFlat = true;
+    flatNormal = SafeNormalize(toOwn.NormalByInverse(ownNormal), Normal3(0, 0, 1));
+    evenStretch = AreaStretch(toRender, flatNormal);
+  }
+
+  // In the surface's space, by way of its origin: nothing cancels where the light is small and far from the origin.
+  Point3 ToOwn(const Point3& P) const { return toOwn.linear * (P - toRender.translation); }
+  // dA in render space over dA in the surface's own, where the normal is `normal`.
+  float StretchAt(const Normal3& normal) const { return evenStretch > 0 ? evenStretch : AreaStretch(toRender, normal); }
+  Normal3 NormalAt(const Normal3& own) const {
+    return isFlat ? flatNormal : SafeNormalize(toOwn.NormalByInverse(own), Normal3(0.0f));
+  }
+};
+
+// A point of a surface that a receiver sees.
+struct SeenPoint {
+  Point2 uv{0.0f};
+  float outwardCosine = 0;  // of the normal and the way to the receiver
+  float distanceSquared = 0;
+  PdfArea evenDensity;  // 1/m² when the whole surface is sampled evenly
+};
+
+}  // namespace lampyr

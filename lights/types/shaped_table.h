@@ -1,0 +1,59 @@
+// Sampling of a ShapedFactor, and its integrals. Internal to shaping.cpp.
+//
+// The sphere is cut into rows between angles from the axis and columns between φ, at all kinks of the factor and finer
+// where it changes; a cell is chosen by its exact mass and filled evenly in (m, φ), where m is the measure that the
+// emitter's photons are even in: w = 1 - cosθ, and for flat emitters sin²θ/2, dm = cosθ dw. A cone with a hard edge, on
+// a point or a flat emitter, is one cell: it is sampled exactly in proportion.
+#pragma once
+
+#include <functional>
+
+#include "lights/types/shaped_factor.h"
+#include "math/density.h"
+#include "sampling/tables.h"
+
+namespace lampyr {
+
+class ShapedTable {
+ public:
+  // `flat`: only the hemisphere of -z emits, and density includes the cosine.
+  ShapedTable(const ShapedFactor& factor, bool flat);
+
+  bool IsDark() const { return distribution_.IsZero(); }
+  Vector3 Sample(const Point2& u) const;  // requires !IsDark()
+  float Density(const Vector3& local) const;
+  double WidestTheta() const { return rows_.empty() ? 0 : rows_.back().theta; }
+  // The solid angle (or projected solid angle) that would take the same light at an even factor.
+  double EffectiveMeasure() const { return effectiveMeasure_; }
+
+  // ∫ factor · weight dω over the emitting side; without a weight, of the cosine for flat emitters.
+  Color Integrate(const ShapedFactor& factor, const std::function<double(const Vector3d&)>* weight) const;
+
+ private:
+  struct Row {  // where a row begins
+    double theta = 0, w = 0, m = 0;
+  };
+  std::vector<Row> rows_;       // one more than there are rows
+  std::vector<float> columns_;  // turns, one more than there are columns
+  Distribution2D distribution_;
+  std::vector<double> rowW_;     // of each row, close together for the search
+  std::vector<uint16_t> guide_;  // where to look for w: the row at each of equal steps, and the last
+  double stepsPerW_ = 0;
+  std::vector<float> densities_;  // of each cell, per measure
+  bool flat_ = false;
+  double effectiveMeasure_ = 0;
+
+  double Measure(const AxisAngle& angle) const {
+    return flat_ ? 0.5 * angle.fromAxis * angle.fromZenith : angle.fromAxis;
+  }
+  void CutRows(const ShapedFactor& factor);
+  void CutColumns(const ShapedFactor& factor);
+  void SetDensities();
+  void SetGuide();
+  size_t RowAt(double w) const;
+  void SpreadToNeighbours(std::vector<float>& cells) const;
+  size_t RowCount() const { return rows_.empty() ? 0 : rows_.size() - 1; }
+  size_t ColumnCount() const { return columns_.size() - 1; }
+};
+
+}  // namespace lampyr

@@ -1,0 +1,156 @@
+// What all area lights share, whatever their shape: radiance over the surface, its sides, its shaping, and how a chosen
+// point of the surface becomes a sample, an evaluation or a photon. The shape gives the point and its density; the
+// densities of direction are written here, once.
+//
+// The surface emits on the side that its normal points to, or on both. Radiance in W/(m² sr) is a constant or a factor
+// times an image over the surface's uv, tinted and shaped (light_base.h, shaping.h). A ray that finds the light has
+// passed the cut-outs of the geometry; a sample and a photon have not, so these two carry the opacity as a factor.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "geometry/geometry_scene.h"
+#include "lights/emission_image.h"
+#include "lights/light_base.h"
+#include "lights/types/shaped_directions.h"
+#include "math/frame.h"
+#include "sampling/warp.h"
+
+namespace lampyr {
+
+// A point that a shape's sampling chose.
+struct EmittingPoint {
+  Point3 position{0.0f};
+  Vector3 positionError{0.0f};
+  Normal3 normal{0.0f};  // unit, on the outer side
+  Point2 uv{0.0f};
+  int patch = 0;
+  PdfArea density;  // world-space surface
+};
+
+class SurfaceEmission {
+ public:
+  // World-space area of the whole surface: what "power" is spread over and "normalize" divides by.
+  struct Area {
+    double built = 0;  // under the placement that the light is built with: exact
+    // Under any placement, quickly: within a thousandth.
+    std::function<double(const LightTransform&)> quick;
+  };
+
+  // pbrt-v4's names: L, scale, power, twosided, filename.
+  static SurfaceEmission ReadDiffuse(const ParameterList& parameters, const LightBuildContext& build, const Area& area);
+  // UsdLux's names: twoSided (ours), texture:file, shaping:…
+  static SurfaceEmission ReadUsdLux(const ParameterList& parameters, const LightBuildContext& build, const Area& area,
+                                    Shaping::Emitter emitter);
+
+  bool IsTwoSided() const { return twoSided_; }
+  bool HasImage() const { return !image_.IsEmpty(); }
+  bool NeedsUv() const { return HasImage() || alpha_ != nullptr; }
+  const EmissionImage& EmittedImage() const { return image_; }
+  const ShapedDirections* Shaped() const { return shaped_.get(); }
+
+  // On an emitting side under the placement that the light was built with, shaping and cut-outs apart.
+  Color Radiance(const Point2& uv) const { return image_.IsEmpty() ? radiance_ : radiance_ * image_.OnSurface(uv); }
+  Color MeanRadiance() const { return image_.IsEmpty() ? radiance_ : radiance_ * image_.Mean(); }
+  // What Radiance is multiplied by under another placement: 1 unless it is normalised by the area.
+  float Strength(const LightTransform& transform) const { return normalize_ ? NormalizedStrength(transform) : 1.0f; }
+  // The factor of the power when the surface, with all that it emits, is carried to another place by a similarity whose
+  // square of the scale this is.
+  float PowerScale(float scaleSquared) const { return normalize_ ? 1.0f : scaleSquared; }
+  float SideCount() const { return twoSided_ ? 2.0f : 1.0f; }
+
+  // W/m² of a point with this normal and radiance 1, all its sides counted: ∫ factor · |cosθ| dω. Exact without
+  // shaping; by quadrature over the photons' directions with it.
+  Color Exitance(const LightTransform& transform, const Normal3& normal) const;
+
+  // The power, as SurfaceIrradianceEstimate takes it, that stands for what P receives: that of an unshaped light as
+  // bright as this one towards P. Never 0 for a light that shines.
+  float ApparentPower(const LightContext& context, const EmissionBounds& bounds, float unshaped, const Point3& P) const;
+  float LargestPower(float unshaped) const { return shaped_ ? unshaped * shaped_->Largest() : unshaped; }
+  // What a cone makes of the bounds of a flat light: its angle, and a far side that is dark.
+  void NarrowFlat(const LightTransform& transform, EmissionBounds& bounds) const;
+
+  // The cosine towards the receiver if that side emits, 0 otherwise.
+  float EmittedCosine(float cosine) const { return twoSided_ ? std::abs(cosine) : std::max(cosine, 0.0f); }
+
+  // pdfDirect of a point with this density; 0 where it has no solid angle or the number leaves the float range.
+  static PdfSolidAngle DirectDensity(PdfArea density, float distanceSquared, float emittedCosine) {
+    const PdfSolidAngle pdf = ToSolidAngle(density, distanceSquared, emittedCosine);
+    return pdf.value < kInfinity ? pdf : PdfSolidAngle(0);
+  }
+  // The point as a sample for P; nullopt when it sends nothing there.
+  std::optional<LightSample> Sample(const LightContext& context, const Point3& P, const EmittingPoint& point) const;
+
+  // Fills colours and bidirectional densities of a sample whose direction, distance, position, normal, uvw and
+  // pdfDirect are there; false when it sends nothing. `density` is that of its position by GenerateEmission.
+  bool Complete(const LightContext& context, PdfArea density, LightSample& sample) const;
+
+  // For a hit whose density over the surface is `density` and over directions `pdfDirect`.
+  std::optional<LightEvaluation> Evaluate(const LightContext& context, const LightHit& hit, PdfArea density,
+                                          PdfSolidAngle pdfDirect) const;
+  // The same where pdfDirect follows from `density`.
+  std::optional<LightEvaluation> Evaluate(const LightContext& context, const LightHit& hit, PdfArea density) const;
+
+  std::optional<EmissionSample> Emit(const LightContext& context, const EmittingPoint& point) const;
+
+  // Without the diffuse and specular multipliers.
+  Color ForCamera(const LightContext& context, const LightHit& hit, bool cameraVisible) const;
+
+ private:
+  SurfaceEmission(const ParameterList& parameters, const LightBuildContext& build, const Area& area);
+  void SetRadiance(const ParameterList& parameters, const Color& radiance);
+  float NormalizedStrength(const LightTransform& transform) const;
+  float Opacity(const Point2& uv, const Point3& position) const {
+    return alpha_ ? std::clamp(alpha_->Alpha(uv, position), 0.0f, 1.0f) : 1.0f;
+  }
+  // Radiance with all its factors, cut-outs apart.
+  Color Emitted(const LightContext& context, const Point2& uv, const Vector3& outgoing) const {
+    Color radiance = Radiance(uv);
+    if (normalize_) radiance *= NormalizedStrength(*context.transform);
+    if (shaped_) radiance *= shaped_->Factor(*context.transform, outgoing);
+    return radiance;
+  }
+  // The same, and pdfEmitDirection on an emitting side, whose cosine is `emittedCosine`: the shaping's own density, or
+  // the cosine law on each side. No photon is made where the shaping is dark.
+  struct Leaving {
+    Color radiance;
+    PdfSolidAngle density;
+  };
+  Leaving Leave(const LightContext& context, const Point2& uv, const Normal3& normal, const Vector3& outgoing,
+                float emittedCosine) const {
+    Leaving leaving{Radiance(uv), CosineLaw(emittedCosine)};
+    if (normalize_) leaving.radiance *= NormalizedStrength(*context.transform);
+    if (!shaped_) return leaving;
+    const ShapedDirections::Leaving shaped = shaped_->Look(*context.transform, normal, outgoing);
+    leaving.radiance *= shaped.factor;
+    if (shaped_->GuidesEmission() || shaped.factor.IsBlack()) leaving.density = shaped.density;
+    return leaving;
+  }
+  bool IsCutOut(const LightHit& hit) const { return alpha_ && Opacity(hit.uv, hit.position) == 0; }
+  PdfSolidAngle CosineLaw(float emittedCosine) const {
+    return PdfSolidAngle(emittedCosine * (twoSided_ ? 0.5f * kInvPi : kInvPi));
+  }
+  // By the cosine law; two-sided: the first random number chooses the side, and is stretched again.
+  Vector3 SampleCosineLaw(const Normal3& normal, Point2 u) const;
+  Vector3 SampleEmissionDirection(const LightTransform& transform, const Normal3& normal, const Point2& u) const;
+
+  LightTint tint_;
+  Color radiance_;
+  bool twoSided_ = false;
+  bool normalize_ = false;
+  EmissionImage image_;
+  std::shared_ptr<const AlphaSource> alpha_;
+  std::shared_ptr<const ShapedDirections> shaped_;
+  // For `normalize` under other placements than the one the light was built with.
+  LightTransform built_;
+  Area area_;
+  double quickBuilt_ = 0;
+};
+
+// How a type of light reads its emission.
+using EmissionReader =
+    std::function<SurfaceEmission(const ParameterList&, const LightBuildContext&, const SurfaceEmission::Area&)>;
+
+}  // namespace lampyr

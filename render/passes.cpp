@@ -1,0 +1,318 @@
+#include "render/passes.h"
+
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+#include "base/parallel.h"
+#include "sampling/rng.h"
+
+namespace lampyr {
+
+namespace {
+
+constexpr int kTileSize = 16;
+constexpr uint64_t kChunkPaths = 4096;  // light paths that one thread traces before their splats are added
+constexpr uint64_t kBeforeTheFirst = 0x6a09e667f3bcc908;  // of the seed of the photons that the first pass gathers
+// Where camera samples have the row of their pixel:
+constexpr int kLightPaths = -1, kPassTimes = -2;
+
+// One time of the shutter for all of a path.
+float SampleTime(const RenderScene& scene, Sampler& sampler) {
+  if (!scene.hasMotion) return 0;
+  sampler.SetDimension(dimensions::kTime);
+  return sampler.Get1D();
+}
+
+// The time of all paths of a pass, in scenes with motion: a photon is where its path was at that time, and only paths
+// of the same time may meet it. Times of consecutive passes are stratified.
+float PassTime(const RenderSettings& settings, uint32_t pass) {
+  Sampler sampler(settings.sampler, settings.seed);
+  sampler.StartPixelSample(0, kPassTimes, pass);
+  sampler.SetDimension(dimensions::kTime);
+  return sampler.Get1D();
+}
+
+// A ray through one pixel.
+struct PixelRay {
+  CameraRay camera;
+  float filterWeight = 1;
+};
+PixelRay MakePixelRay(const RenderScene& scene, const PixelFilter& filter, int x, int y, float time, Sampler& sampler) {
+  sampler.SetDimension(dimensions::kFilm);
+  const PixelFilter::Offset offset = filter.Sample(sampler.Get2D());
+  const Point2 film(static_cast<float>(x) + 0.5f + offset.offset.x, static_cast<float>(y) + 0.5f + offset.offset.y);
+  Point2 lens(0.5f);
+  if (!scene.camera->HasPinhole()) {
+    sampler.SetDimension(dimensions::kLens);
+    lens = sampler.Get2D();
+  }
+  return {scene.camera->GenerateRay(film, lens, time), offset.weight};
+}
+
+// Where samples of one thread go.
+struct SampleAdder {
+  SampleAdder(const RenderSettings& settings, Film& aFilm, RenderCounts& someCounts)
+      : imagingRatio(settings.imagingRatio), film(aFilm), counts(someCounts) {
+    if (film.HasLayers()) layers.emplace(film.Layers().size());
+  }
+
+  // What the next sample is to be split into; null: nothing.
+  LayerSample* StartLayers() {
+    if (!layers) return nullptr;
+    layers->Clear();
+    return &*layers;
+  }
+  // A sample of one pixel, added to `sums` and to the pixel's layers. A value that is none is left out of both and
+  // counted.
+  void Add(int x, int y, const PixelRay& ray, const Color& radiance, PixelSums& sums) {
+    const float scale = ray.camera.weight * imagingRatio;
+    Color value = radiance * scale;
+    const bool isValid = value.IsValid();
+    if (!isValid) {
+      ++counts.droppedSamples;
+      value = Color(0.0f);
+    }
+    sums.Add(value, ray.filterWeight);
+    if (layers && isValid) film.AddToLayers(x, y, *layers, scale, ray.filterWeight);
+  }
+
+  float imagingRatio;
+  Film& film;
+  RenderCounts& counts;
+  std::optional<LayerSample> layers;
+};
+
+RenderCounts Total(const std::vector<RenderCounts>& parts) {
+  RenderCounts total;
+  for (const RenderCounts& part : parts) total += part;
+  return total;
+}
+
+// What all kinds of pass are given.
+struct Pass {
+  const RenderScene& scene;
+  const Integrator& integrator;
+  const RenderSettings& settings;
+  const PixelFilter& filter;
+  uint32_t first, end;  // samples
+  int threads;
+  Film& film;
+
+  uint64_t Pixels() const { return static_cast<uint64_t>(settings.width) * static_cast<uint64_t>(settings.height); }
+};
+
+RenderCounts TraceCameraPaths(const Pass& pass) {
+  const PixelRect& crop = pass.film.Crop();
+  const int tilesX = (crop.Width() + kTileSize - 1) / kTileSize;
+  const int tilesY = (crop.Height() + kTileSize - 1) / kTileSize;
+  std::vector<RenderCounts> tileCounts(static_cast<size_t>(tilesX) * tilesY);
+  ParallelFor(tilesX * tilesY, pass.threads, [&](int tile) {
+    const int x0 = crop.x0 + tile % tilesX * kTileSize, x1 = std::min(x0 + kTileSize, crop.x1);
+    const int y0 = crop.y0 + tile / tilesX * kTileSize, y1 = std::min(y0 + kTileSize, crop.y1);
+    Sampler sampler(pass.settings.sampler, pass.settings.seed);
+    RenderCounts counts;
+    SampleAdder adder(pass.settings, pass.film, counts);
+    for (int y = y0; y < y1; ++y) {
+      for (int x = x0; x < x1; ++x) {
+        PixelSums sums = pass.film.Pixel(x, y);
+        for (uint32_t i = pass.first; i < pass.end; ++i) {
+          sampler.StartPixelSample(x, y, i);
+          const float time = SampleTime(pass.scene, sampler);
+          const PixelRay ray = MakePixelRay(pass.scene, pass.filter, x, y, time, sampler);
+          const SampleContext context{pass.scene, sampler, time, counts, adder.StartLayers()};
+          adder.Add(x, y, ray, pass.integrator.Sample(&ray.camera.ray, context), sums);
+        }
+        pass.film.Pixel(x, y) = sums;
+      }
+    }
+    tileCounts[tile] = counts;
+  });
+  return Total(tileCounts);
+}
+
+RenderCounts TraceLightPaths(const Pass& pass) {
+  const uint64_t end = pass.end * pass.Pixels();
+  // As many chunks at a time as keep all threads busy: memory stays bounded. The film adds paths in their order, so the
+  // division into chunks does not show.
+  const int chunks = 4 * std::max(pass.threads, 1);
+  std::vector<SplatList> lists(static_cast<size_t>(chunks),
+                               pass.film.MakeSplatList(pass.filter, pass.settings.imagingRatio));
+  std::vector<RenderCounts> counts(static_cast<size_t>(chunks));
+  for (uint64_t round = pass.first * pass.Pixels(); round < end; round += chunks * kChunkPaths) {
+    ParallelFor(chunks, pass.threads, [&](int chunk) {
+      SplatList& splats = lists[static_cast<size_t>(chunk)];
+      splats.Clear();
+      Sampler sampler(pass.settings.sampler, pass.settings.seed);
+      const uint64_t begin = round + static_cast<uint64_t>(chunk) * kChunkPaths;
+      for (uint64_t i = begin; i < std::min(begin + kChunkPaths, end); ++i) {
+        sampler.StartPixelSample(static_cast<int>(i >> 32), kLightPaths, static_cast<uint32_t>(i));
+        splats.StartPath();
+        SampleContext context{pass.scene, sampler, SampleTime(pass.scene, sampler), counts[static_cast<size_t>(chunk)]};
+        context.splats = &splats;
+        pass.integrator.Sample(nullptr, context);
+      }
+    });
+    pass.film.AddSplats(pass.filter, lists, pass.threads);
+  }
+  return Total(counts);
+}
+
+// A pass of both paths, chunk by chunk of the pixels of the full image.
+class BothPaths {
+ public:
+  BothPaths(const Pass& pass, TechniqueImages* techniques, PhotonStore* kept)
+      : pass_(pass),
+        techniques_(techniques),
+        wanted_(pass.integrator.Photons()),
+        own_(wanted_.value_or(PhotonSettings()), pass.Pixels()),
+        store_(kept ? *kept : own_),
+        lightPaths_(wanted_ ? store_.LightPaths() : pass.Pixels()),
+        hasTimes_(wanted_ && pass.scene.hasMotion),
+        chunks_(4 * std::max(pass.threads, 1)),
+        // A small image has work for all threads, too.
+        chunkPaths_(std::min((pass.Pixels() + static_cast<uint64_t>(chunks_) - 1) / static_cast<uint64_t>(chunks_),
+                             kChunkPaths)),
+        splats_(static_cast<size_t>(chunks_), pass.film.MakeSplatList(pass.filter, pass.settings.imagingRatio)),
+        photons_(static_cast<size_t>(chunks_)),
+        counts_(static_cast<size_t>(chunks_)) {
+    if (techniques)
+      recorders_.assign(static_cast<size_t>(chunks_), TechniqueImages::Recorder(*techniques, pass.filter));
+  }
+
+  RenderCounts Trace() {
+    if (wanted_ && !hasTimes_ && !store_.IsFor(pass_.first)) TracePhotonsBefore(pass_.first);
+    // One sample of all pixels after the other: chunks never meet in a pixel, and the film adds paths in their order.
+    for (uint32_t index = pass_.first; index < pass_.end; ++index) {
+      if (hasTimes_) {
+        store_.Clear();
+        TracePhotons(0, index, SeedOfPhotons());
+        store_.Finish(index);
+      }
+      if (wanted_) gather_ = &store_.Open(index, pass_.threads);
+      for (uint64_t round = 0; round < pass_.Pixels(); round += PathsPerRound()) {
+        TraceRound(round, pass_.Pixels(), index, pass_.settings.seed, true);
+        if (wanted_ && !hasTimes_) store_.Take(photons_);
+        pass_.film.AddSplats(pass_.filter, splats_, pass_.threads);
+        if (techniques_) techniques_->AddSplats(pass_.filter, recorders_, pass_.threads);
+      }
+      if (hasTimes_) {
+        store_.EndGathering();
+      } else if (wanted_) {
+        TracePhotons(pass_.Pixels(), index, pass_.settings.seed);
+        store_.Finish(index + 1);
+      }
+    }
+    return Total(counts_);
+  }
+
+ private:
+  uint64_t PathsPerRound() const { return static_cast<uint64_t>(chunks_) * chunkPaths_; }
+  uint64_t SeedOfPhotons() const { return MixBits(pass_.settings.seed + kBeforeTheFirst); }
+
+  // What the sample before would have left; before the very first one, photons of light paths of their own.
+  void TracePhotonsBefore(uint32_t index) {
+    store_.Clear();
+    TracePhotons(0, index == 0 ? 0 : index - 1, index == 0 ? SeedOfPhotons() : pass_.settings.seed);
+    store_.Finish(index);
+  }
+  // Light paths alone, for their photons.
+  void TracePhotons(uint64_t begin, uint32_t index, uint64_t seed) {
+    for (uint64_t round = begin; round < lightPaths_; round += PathsPerRound()) {
+      TraceRound(round, lightPaths_, index, seed, false);
+      store_.Take(photons_);
+    }
+  }
+
+  // The pixels from `round` on, as many as the chunks take. Without the camera: light paths and their photons alone.
+  void TraceRound(uint64_t round, uint64_t end, uint32_t index, uint64_t seed, bool withCamera) {
+    const float passTime = hasTimes_ ? PassTime(pass_.settings, index) : 0;
+    ParallelFor(chunks_, pass_.threads, [&](int chunk) {
+      const uint64_t begin = round + static_cast<uint64_t>(chunk) * chunkPaths_;
+      TraceChunk(static_cast<size_t>(chunk), begin, std::min(begin + chunkPaths_, end), index, seed, withCamera,
+                 passTime);
+    });
+  }
+  void TraceChunk(size_t chunk, uint64_t begin, uint64_t end, uint32_t index, uint64_t seed, bool withCamera,
+                  float passTime);
+
+  const Pass& pass_;
+  TechniqueImages* techniques_;
+  const std::optional<PhotonSettings> wanted_;
+  PhotonStore own_;
+  PhotonStore& store_;
+  const uint64_t lightPaths_;
+  // Photons are those that the light paths of the sample before have left, or, where things move, those of paths that
+  // are traced for them at the time of the sample that gathers them.
+  const bool hasTimes_;
+  const int chunks_;
+  const uint64_t chunkPaths_;
+  const PhotonPass* gather_ = nullptr;
+  // By chunk:
+  std::vector<SplatList> splats_;
+  std::vector<PhotonList> photons_;
+  std::vector<RenderCounts> counts_;
+  std::vector<TechniqueImages::Recorder> recorders_;
+};
+
+void BothPaths::TraceChunk(size_t chunk, uint64_t begin, uint64_t end, uint32_t index, uint64_t seed, bool withCamera,
+                           float passTime) {
+  const RenderSettings& settings = pass_.settings;
+  const auto width = static_cast<uint64_t>(settings.width);
+  const PixelRect& crop = pass_.film.Crop();
+  SplatList& splats = splats_[chunk];
+  splats.Clear();
+  TechniqueImages::Recorder* recorder = techniques_ && withCamera ? &recorders_[chunk] : nullptr;
+  SampleAdder adder(settings, pass_.film, counts_[chunk]);
+  LayerSample* layers = adder.StartLayers();
+  Sampler sampler(settings.sampler, seed);
+  for (uint64_t i = begin; i < end; ++i) {
+    const int x = static_cast<int>(i % width), y = static_cast<int>(i / width);
+    sampler.StartPixelSample(x, y, index);
+    splats.StartPath();
+    const bool keepsPhotons = wanted_ && i < lightPaths_ && store_.HasRoom() && !(hasTimes_ && withCamera);
+    if (!keepsPhotons && !withCamera) break;
+    if (keepsPhotons) photons_[chunk].StartPath();
+    const float time = hasTimes_ ? passTime : SampleTime(pass_.scene, sampler);
+    const SampleContext context{pass_.scene,
+                                sampler,
+                                time,
+                                counts_[chunk],
+                                layers,
+                                &splats,
+                                recorder,
+                                withCamera ? gather_ : nullptr,
+                                keepsPhotons ? &photons_[chunk] : nullptr,
+                                keepsPhotons && store_.WantsOrigins(),
+                                !withCamera};
+    if (!withCamera || x < crop.x0 || x >= crop.x1 || y < crop.y0 || y >= crop.y1) {
+      if (recorder) recorder->StartSample(x, y, 0);
+      pass_.integrator.Sample(nullptr, context);
+      continue;
+    }
+    const PixelRay ray = MakePixelRay(pass_.scene, pass_.filter, x, y, time, sampler);
+    if (recorder) recorder->StartSample(x, y, ray.camera.weight * settings.imagingRatio * ray.filterWeight);
+    adder.StartLayers();
+    const Color radiance = pass_.integrator.Sample(&ray.camera.ray, context);
+    adder.Add(x, y, ray, radiance, pass_.film.Pixel(x, y));
+  }
+}
+
+}  // namespace
+
+RenderCounts RenderPass(const RenderScene& scene, const Integrator& integrator, const RenderSettings& settings,
+                        const PixelFilter& filter, uint32_t first, uint32_t count, int threads, Film& film,
+                        TechniqueImages* techniques, PhotonStore* kept) {
+  const Pass pass{scene, integrator, settings, filter, first, first + count, threads, film};
+  switch (integrator.Paths()) {
+    case TracedPaths::Camera:
+      return TraceCameraPaths(pass);
+    case TracedPaths::Light:
+      return TraceLightPaths(pass);
+    case TracedPaths::Both:
+      break;
+  }
+  return BothPaths(pass, techniques, kept).Trace();
+}
+
+}  // namespace lampyr

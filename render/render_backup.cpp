@@ -1,0 +1,37 @@
+#include "render/render_backup.h"
+
+namespace lampyr {
+
+void RenderBackup::Take(const PassState& state, bool withFilm, int threads) {
+  hasFilm_ = withFilm;
+  if (withFilm) {
+    if (!film_) film_.emplace(state.film.EmptyCopy());
+    film_->CopyFrom(state.film, threads);
+  }
+  if (state.techniques) techniques_ = *state.techniques;
+  // What has stopped recording changes no more.
+  const LightLearning* learning = state.learning ? state.learning->get() : nullptr;
+  if (learning && (learning->IsRecording() || (learning_ && learning_->IsRecording()))) {
+    if (!learning_) learning_ = std::make_unique<LightLearning>(scene_);
+    learning_->CopyFrom(*learning);
+  }
+  const EmissionLearning* guiding = state.guiding ? state.guiding->get() : nullptr;
+  if (guiding && (guiding->IsRecording() || (guiding_ && guiding_->IsRecording())))
+    guiding_ = std::make_unique<EmissionLearning>(*guiding);
+}
+
+void RenderBackup::Restore(const PassState& state, int threads, bool keepsOld) {
+  if (hasFilm_) state.film.CopyFrom(*film_, threads);
+  if (techniques_) *state.techniques = *techniques_;
+  if (learning_) {
+    if (keepsOld) (void)state.learning->release();
+    *state.learning = std::make_unique<LightLearning>(scene_);
+    (*state.learning)->CopyFrom(*learning_);
+  }
+  if (guiding_) {
+    if (keepsOld) (void)state.guiding->release();
+    *state.guiding = std::make_unique<EmissionLearning>(*guiding_);
+  }
+}
+
+}  // namespace lampyr

@@ -1,0 +1,220 @@
+#include "render/render_part.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <cstring>
+
+#include "base/version.h"
+#include "film/atomic_file.h"
+#include "render/settings/integrator_choice.h"
+#include "scene/referenced_files.h"
+
+namespace lampyr {
+
+namespace {
+
+// The last digit is the version of what stands before it.
+constexpr std::array<char, 12> kMark = {'l', 'a', 'm', 'p', 'y', 'r', ' ', 'p', 'a', 'r', 't', '2'};
+constexpr size_t kEndBytes = sizeof(uint64_t) + sizeof(uint32_t) + kMark.size();
+constexpr uint64_t kMostEntries = 1 << 16;
+constexpr int kMostPixels = 1 << 16;  // across
+
+// With all of its bits.
+std::string Exactly(double value) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.17g", value);
+  return text;
+}
+
+std::string YesOrNo(bool value) {
+  return value ? "on" : "off";
+}
+
+template <class List>
+void SavePairs(ByteWriter& bytes, const List& pairs) {
+  bytes.Value<uint64_t>(pairs.size());
+  for (const auto& [name, value] : pairs) {
+    bytes.Text(name);
+    bytes.Text(value);
+  }
+}
+
+RenderIdentity LoadPairs(ByteReader& bytes) {
+  RenderIdentity pairs;
+  const auto count = bytes.Value<uint64_t>();
+  if (count > kMostEntries) throw Error("it holds a number that cannot be");
+  for (uint64_t i = 0; i < count; ++i) {
+    std::string name = bytes.Text();
+    pairs.emplace_back(std::move(name), bytes.Text());
+  }
+  return pairs;
+}
+
+void Save(ByteWriter& bytes, PartKind kind, const PartHeader& header) {
+  bytes.Value(kind);
+  SavePairs(bytes, header.identity);
+  bytes.Value(header.shard);
+  bytes.Value(header.samples);
+  bytes.Value<uint8_t>(header.isFinished ? 1 : 0);
+  bytes.Value(header.width);
+  bytes.Value(header.height);
+  bytes.Value(header.crop);
+  bytes.Value<uint64_t>(header.layers.size());
+  for (const std::string& layer : header.layers) bytes.Text(layer);
+  bytes.Value<uint8_t>(header.halfPrecision ? 1 : 0);
+  SavePairs(bytes, header.metadata);
+}
+
+void CheckHeader(const PartHeader& header, uint64_t bytesLeft) {
+  const Shard& shard = header.shard;
+  const PixelRect& crop = header.crop;
+  const bool isSized = header.width >= 1 && header.height >= 1 && header.width <= kMostPixels &&
+                       header.height <= kMostPixels && crop.x0 >= 0 && crop.y0 >= 0 && crop.x1 > crop.x0 &&
+                       crop.y1 > crop.y0 && crop.x1 <= header.width && crop.y1 <= header.height;
+  const bool isShard = shard.count >= 1 && shard.index >= 1 && shard.index <= shard.count && shard.first < shard.end &&
+                       shard.end <= shard.whole && shard.whole <= (1u << 30) && header.samples <= (1u << 30);
+  if (!isSized || !isShard) throw Error("it holds a number that cannot be");
+  // The film alone is larger than what is left: told before memory is taken for it.
+  const uint64_t pixels = static_cast<uint64_t>(crop.Width()) * static_cast<uint64_t>(crop.Height());
+  if (bytesLeft / Film::BytesPerPixel(header.layers.size(), false) < pixels) throw Error("it ends too early");
+}
+
+PartHeader LoadHeader(ByteReader& bytes, PartKind kind) {
+  if (bytes.Value<PartKind>() != kind) {
+    throw Error(kind == PartKind::Checkpoint ? "it is a part of a picture and not a checkpoint"
+                                             : "it is a checkpoint and not a part of a picture");
+  }
+  PartHeader header;
+  header.identity = LoadPairs(bytes);
+  header.shard = bytes.Value<Shard>();
+  header.samples = bytes.Value<uint32_t>();
+  header.isFinished = bytes.Flag();
+  header.width = bytes.Value<int>();
+  header.height = bytes.Value<int>();
+  header.crop = bytes.Value<PixelRect>();
+  const auto layers = bytes.Value<uint64_t>();
+  if (layers > kMostEntries) throw Error("it holds a number that cannot be");
+  for (uint64_t i = 0; i < layers; ++i) header.layers.push_back(bytes.Text());
+  header.halfPrecision = bytes.Flag();
+  for (auto& [name, value] : LoadPairs(bytes)) header.metadata[name] = std::move(value);
+  CheckHeader(header, bytes.Left());
+  return header;
+}
+
+// What stands before the mark, if it is whole.
+std::span<const std::byte> FindState(std::span<const std::byte> file) {
+  const auto end = file.size() >= kEndBytes ? file.last(kEndBytes) : std::span<const std::byte>();
+  constexpr size_t markAt = kEndBytes - kMark.size(), versionAt = kEndBytes - 1;
+  if (end.empty() || std::memcmp(end.data() + markAt, kMark.data(), kMark.size() - 1) != 0) {
+    throw Error("it holds no sums: only images of `lampyr render --shard` and checkpoints do, as they were written");
+  }
+  if (static_cast<char>(end[versionAt]) != kMark.back()) {
+    throw Error("another version of lampyr has written it, whose files this one does not know");
+  }
+  ByteReader tail(end);
+  const auto size = tail.Value<uint64_t>();
+  const auto checksum = tail.Value<uint32_t>();
+  if (size > file.size() - kEndBytes) throw Error("it ends too early");
+  const std::span<const std::byte> state = file.subspan(file.size() - kEndBytes - size, size);
+  if (ChecksumOf(state) != checksum) throw Error("it is damaged: its checksum is another one");
+  return state;
+}
+
+}  // namespace
+
+RenderIdentity IdentityOf(const LoadedScene& loaded, bool robustIntersection) {
+  const RenderSettings& s = loaded.built.settings;
+  const PixelFilterSettings& f = s.filter;
+  const auto integer = [](auto value) { return std::to_string(value); };
+  const PixelRect& crop = s.crop;
+  return {{"the version of lampyr", kVersion},
+          {"the scene's text (its fingerprint)", loaded.hash},
+          {"what the files of the scene hold (its fingerprint)", HashOfFiles(loaded.files)},
+          {"the number of plugins", integer(loaded.types.Plugins().size())},
+          {"the integrator", s.integrator},
+          {"the seed", integer(s.seed)},
+          {"the resolution", integer(s.width) + "x" + integer(s.height)},
+          {"the crop", integer(crop.x0) + "," + integer(crop.x1) + "," + integer(crop.y0) + "," + integer(crop.y1)},
+          {"the exposure", Exactly(static_cast<double>(s.imagingRatio))},
+          {"half precision", YesOrNo(s.halfPrecision)},
+          {"the kind of pixel filter", integer(static_cast<int>(f.kind))},
+          {"the pixel filter's settings",
+           Exactly(static_cast<double>(f.radiusX)) + " " + Exactly(static_cast<double>(f.radiusY)) + " " +
+               Exactly(static_cast<double>(f.sigma)) + " " + Exactly(static_cast<double>(f.b)) + " " +
+               Exactly(static_cast<double>(f.c)) + " " + Exactly(static_cast<double>(f.tau))},
+          {"the sampler", s.sampler == SamplerKind::Sobol ? "sobol" : "independent"},
+          {"the maximum depth", integer(s.maxDepth)},
+          {"the light sampler", NameOf(s.lightSelection)},
+          {"the number of light samples", integer(s.lightSamples)},
+          {"learning of lights", YesOrNo(s.learnLights)},
+          {"the roulette of shadow rays", Exactly(static_cast<double>(s.shadowRays.roulette))},
+          {"the threshold of shadow rays", Exactly(static_cast<double>(s.shadowRays.threshold))},
+          {"the photons' radius", Exactly(s.photons.radius)},
+          {"the photons' alpha", Exactly(s.photons.alpha)},
+          {"the number of light paths", integer(s.photons.lightPaths)},
+          {"the memory for photons", integer(GathersPhotons(s) ? s.photons.mostBytes : 0)},
+          {"guiding of photons", YesOrNo(s.photons.guided)},
+          {"merging", YesOrNo(s.merges)},
+          {"connecting", YesOrNo(s.connects)},
+          {"photons for direct light", YesOrNo(s.directFromPhotons)},
+          {"watertight intersection", YesOrNo(robustIntersection)}};
+}
+
+std::string DifferenceOf(const RenderIdentity& there, const RenderIdentity& here) {
+  for (size_t i = 0; i < std::max(there.size(), here.size()); ++i) {
+    if (i >= there.size() || i >= here.size() || there[i].first != here[i].first) return "the settings are other ones";
+    if (there[i].second != here[i].second)
+      return there[i].first + " is " + there[i].second + " there and " + here[i].second + " here";
+  }
+  return "";
+}
+
+Shard ShardOf(int index, int count, int samples) {
+  const auto bound = [&](int part) { return static_cast<uint32_t>(static_cast<int64_t>(samples) * part / count); };
+  if (samples < count) {
+    throw UsageError("--shard: " + std::to_string(samples) + " samples per pixel make no " + std::to_string(count) +
+                     " parts; raise --spp or make fewer");
+  }
+  return {index, count, bound(index - 1), bound(index), static_cast<uint32_t>(samples)};
+}
+
+void AppendPart(AtomicFile& file, PartKind kind, const PartHeader& header,
+                const std::function<void(ByteWriter&)>& save) {
+  ByteWriter state([&](const void* bytes, size_t count) { file.Write(bytes, count); });
+  Save(state, kind, header);
+  save(state);
+  const uint64_t size = state.Written();
+  const uint32_t checksum = state.Checksum();
+  file.Write(&size, sizeof size);
+  file.Write(&checksum, sizeof checksum);
+  file.Write(kMark.data(), kMark.size());
+}
+
+PartHeader ReadPart(std::span<const std::byte> bytes, PartKind kind, std::span<const std::byte>& state) {
+  const std::span<const std::byte> all = FindState(bytes);
+  ByteReader reader(all);
+  PartHeader header = LoadHeader(reader, kind);
+  state = all.last(reader.Left());
+  return header;
+}
+
+PartReader::PartReader(const std::filesystem::path& path, PartKind kind) : path_(path), file_(path) {
+  try {
+    header_ = ReadPart(file_.Bytes(), kind, state_);
+  } catch (const Error& error) {
+    throw Error("\"" + path.string() + "\" cannot be used: " + error.Text());
+  }
+}
+
+void PartReader::Load(const std::function<void(ByteReader&)>& load) const {
+  try {
+    ByteReader reader(state_);
+    load(reader);
+    reader.CheckEnd();
+  } catch (const Error& error) {
+    throw Error("\"" + path_.string() + "\" cannot be used: " + error.Text());
+  }
+}
+
+}  // namespace lampyr

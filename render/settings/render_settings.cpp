@@ -1,0 +1,420 @@
+#include "render/settings/render_settings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <sstream>
+
+#include "render/settings/integrator_choice.h"
+
+namespace lampyr {
+
+namespace {
+
+using Names = std::vector<std::string>;
+
+int PositiveInteger(const ParameterList& parameters, const std::string& name, int defaultValue, int maximum) {
+  const int value = parameters.GetInteger(name, defaultValue);
+  if (value < 1 || value > maximum) {
+    throw Error(parameters.WhereOf(name),
+                "\"" + name + "\" is " + std::to_string(value) + "; it must be from 1 to " + std::to_string(maximum));
+  }
+  return value;
+}
+
+// Which light paths are left out for want of memory shows in the picture: the limit is the same on all machines.
+constexpr uint64_t kPhotonMemory = uint64_t{4} << 30;
+constexpr int kMaxResolution = 1 << 16;
+constexpr int kMaxSamples = 1 << 30;
+
+PixelRect CropFromFractions(double x0, double x1, double y0, double y1, int width, int height) {
+  const auto pixel = [](double fraction, int size) {
+    return static_cast<int>(std::ceil(std::clamp(fraction, 0.0, 1.0) * size));
+  };
+  return {pixel(x0, width), pixel(y0, height), pixel(x1, width), pixel(y1, height)};
+}
+
+PixelRect ParseCrop(const std::string& text, int width, int height) {
+  std::vector<double> numbers;
+  std::stringstream stream(text);
+  for (std::string item; std::getline(stream, item, ',');) {
+    size_t used = 0;
+    double value = 0;
+    try {
+      value = std::stod(item, &used);
+    } catch (const std::exception&) {
+      used = 0;
+    }
+    if (used == 0 || used != item.size() || !std::isfinite(value))
+      throw UsageError("--crop: \"" + item + "\" is not a number");
+    numbers.push_back(value);
+  }
+  if (numbers.size() != 4) throw UsageError("--crop takes four numbers x0,x1,y0,y1, not \"" + text + "\"");
+  const bool pixels = std::any_of(numbers.begin(), numbers.end(), [](double n) { return n > 1; });
+  if (!pixels) return CropFromFractions(numbers[0], numbers[1], numbers[2], numbers[3], width, height);
+  const auto clampPixel = [](double n, int size) { return static_cast<int>(std::clamp(n, 0.0, double(size))); };
+  return {clampPixel(numbers[0], width), clampPixel(numbers[2], height), clampPixel(numbers[1], width),
+          clampPixel(numbers[3], height)};
+}
+
+// The cameras whose sensors pbrt-v4 knows.
+void CheckSensorName(const ParameterList& film, const std::string& sensor) {
+  const Names known = {
+      "cie1931",       "canon_eos_100d",     "canon_eos_1dx_mkii", "canon_eos_200d",    "canon_eos_200d_mkii",
+      "canon_eos_5d",  "canon_eos_5d_mkii",  "canon_eos_5d_mkiii", "canon_eos_5d_mkiv", "canon_eos_5ds",
+      "canon_eos_m",   "hasselblad_l1d_20c", "nikon_d810",         "nikon_d850",        "sony_ilce_6400",
+      "sony_ilce_7m3", "sony_ilce_7rm3",     "sony_ilce_9"};
+  if (std::find(known.begin(), known.end(), sensor) != known.end()) return;
+  throw Error(film.WhereOf("sensor"), "there is no sensor \"" + sensor + "\"" + DidYouMean(sensor, known));
+}
+
+void ReadFilm(const SceneDescription& scene, const RenderOverrides& overrides, RenderSettings& settings,
+              Diagnostics& diagnostics) {
+  const ParameterList& film = scene.film.parameters;
+  const std::string& type = scene.film.type;
+  if (type == "gbuffer" || type == "spectral") {
+    diagnostics.Warn(scene.film.where, "Film \"" + type + "\" is not supported yet; \"rgb\" is used");
+  } else if (!type.empty() && type != "rgb") {
+    throw Error(scene.film.where,
+                "there is no Film \"" + type + "\"" + DidYouMean(type, {"rgb", "gbuffer", "spectral"}));
+  }
+  settings.width = PositiveInteger(film, "xresolution", settings.width, kMaxResolution);
+  settings.height = PositiveInteger(film, "yresolution", settings.height, kMaxResolution);
+  if (overrides.width) settings.width = *overrides.width;
+  if (overrides.height) settings.height = *overrides.height;
+  settings.outputFile = film.GetString("filename", "");
+  // pbrt-v4 writes halves unless told otherwise. Variances need floats: halves only where the scene asks for them.
+  settings.halfPrecision = film.GetBool("savefp16", false);
+  const std::string sensor = film.GetString("sensor", "cie1931");
+  if (sensor != "cie1931") {
+    CheckSensorName(film, sensor);
+    diagnostics.Warn(film.WhereOf("sensor"), "sensor \"" + sensor + "\" is not modelled; \"cie1931\" is used");
+  }
+  const ParameterList& camera = scene.camera.parameters;
+  const double exposureTime = camera.GetFloat("shutterclose", 1) - camera.GetFloat("shutteropen", 0);
+  settings.imagingRatio = static_cast<float>(exposureTime * film.GetFloat("iso", 100) / 100);
+  if (!(settings.imagingRatio > 0)) {
+    throw Error(film.Where(),
+                "the exposure is not positive: \"shutterclose\" must be after \"shutteropen\" and \"iso\" above 0");
+  }
+
+  settings.crop = {0, 0, settings.width, settings.height};
+  const std::vector<double> window = film.GetFloats("cropwindow");
+  const std::vector<int64_t> bounds = film.GetIntegers("pixelbounds");
+  if (overrides.crop) {
+    settings.crop = ParseCrop(*overrides.crop, settings.width, settings.height);
+  } else if (!window.empty()) {
+    if (window.size() != 4)
+      throw Error(film.WhereOf("cropwindow"), "\"cropwindow\" needs 4 values, has " + std::to_string(window.size()));
+    settings.crop = CropFromFractions(window[0], window[1], window[2], window[3], settings.width, settings.height);
+  } else if (!bounds.empty()) {
+    if (bounds.size() != 4)
+      throw Error(film.WhereOf("pixelbounds"), "\"pixelbounds\" needs 4 values, has " + std::to_string(bounds.size()));
+    const auto limit = [](int64_t n, int size) { return static_cast<int>(std::clamp<int64_t>(n, 0, size)); };
+    settings.crop = {limit(bounds[0], settings.width), limit(bounds[2], settings.height),
+                     limit(bounds[1], settings.width), limit(bounds[3], settings.height)};
+  }
+  if (settings.crop.Width() <= 0 || settings.crop.Height() <= 0) {
+    if (overrides.crop)
+      throw UsageError("--crop leaves no pixel of the " + std::to_string(settings.width) + "×" +
+                       std::to_string(settings.height) + " image");
+    throw Error(film.Where(), "the crop leaves no pixel of the image");
+  }
+  film.Find("diagonal");  // the film's size in mm: of use to "realistic" cameras only
+  if (film.GetFloat("whitebalance", 0) != 0) {
+    diagnostics.Warn(film.WhereOf("whitebalance"), "\"whitebalance\" is not supported yet; the image is not balanced");
+  }
+  film.CheckAllUsed(
+      {"diagonal", "maxcomponentvalue", "coordinatesystem", "nbuckets", "lambdamin", "lambdamax"},
+      {"xresolution", "yresolution", "filename", "savefp16", "sensor", "iso", "cropwindow", "pixelbounds"},
+      diagnostics);
+}
+
+void ReadPixelFilter(const SceneDescription& scene, RenderSettings& settings, Diagnostics& diagnostics) {
+  using Kind = PixelFilterSettings::Kind;
+  const ParameterList& parameters = scene.pixelFilter.parameters;
+  const std::string type = scene.pixelFilter.type.empty() ? "gaussian" : scene.pixelFilter.type;
+  PixelFilterSettings& filter = settings.filter;
+  struct Entry {
+    const char* name;
+    Kind kind;
+    double radius;
+  };
+  // pbrt-v4's names and default radii.
+  constexpr Entry entries[] = {{"box", Kind::Box, 0.5},
+                               {"triangle", Kind::Triangle, 2},
+                               {"gaussian", Kind::Gaussian, 1.5},
+                               {"mitchell", Kind::Mitchell, 2},
+                               {"sinc", Kind::Sinc, 4}};
+  const Entry* found = nullptr;
+  Names names;
+  for (const Entry& entry : entries) {
+    names.push_back(entry.name);
+    if (type == entry.name) found = &entry;
+  }
+  if (!found)
+    throw Error(scene.pixelFilter.where, "there is no PixelFilter \"" + type + "\"" + DidYouMean(type, names));
+  filter.kind = found->kind;
+  filter.radiusX = static_cast<float>(parameters.GetFloat("xradius", found->radius));
+  filter.radiusY = static_cast<float>(parameters.GetFloat("yradius", found->radius));
+  for (const auto& [name, radius] : {std::pair{"xradius", filter.radiusX}, std::pair{"yradius", filter.radiusY}}) {
+    if (!(radius > 0)) throw Error(parameters.WhereOf(name), std::string("\"") + name + "\" must be above 0");
+  }
+  Names known = {"xradius", "yradius"};
+  if (filter.kind == Kind::Gaussian) {
+    filter.sigma = static_cast<float>(parameters.GetFloat("sigma", 0.5));
+    if (!(filter.sigma > 0)) throw Error(parameters.WhereOf("sigma"), "\"sigma\" must be above 0");
+    known.push_back("sigma");
+  } else if (filter.kind == Kind::Mitchell) {
+    filter.b = static_cast<float>(parameters.GetFloat("B", 1.0 / 3));
+    filter.c = static_cast<float>(parameters.GetFloat("C", 1.0 / 3));
+    known.insert(known.end(), {"B", "C"});
+  } else if (filter.kind == Kind::Sinc) {
+    filter.tau = static_cast<float>(parameters.GetFloat("tau", 3));
+    if (!(filter.tau > 0)) throw Error(parameters.WhereOf("tau"), "\"tau\" must be above 0");
+    known.push_back("tau");
+  }
+  parameters.CheckAllUsed({}, known, diagnostics);
+  LocateErrors(scene.pixelFilter.where, [&] { return PixelFilter(filter); });  // whether there can be such a one
+}
+
+SamplerKind SamplerByName(const std::string& name, bool* known) {
+  *known = true;
+  if (name == "independent") return SamplerKind::Independent;
+  // pbrt-v4's low-discrepancy samplers all become our Owen-scrambled Sobol points.
+  const Names sobol = {"sobol", "zsobol", "paddedsobol", "halton", "pmj02bn", "stratified"};
+  *known = std::find(sobol.begin(), sobol.end(), name) != sobol.end();
+  return SamplerKind::Sobol;
+}
+
+void ReadSampler(const SceneDescription& scene, const RenderOverrides& overrides, RenderSettings& settings,
+                 Diagnostics& diagnostics) {
+  const Names names = {"independent", "sobol", "zsobol", "paddedsobol", "halton", "pmj02bn", "stratified"};
+  const ParameterList& parameters = scene.sampler.parameters;
+  const std::string& type = scene.sampler.type;
+  bool known = true;
+  if (!type.empty()) settings.sampler = SamplerByName(type, &known);
+  if (!known) throw Error(scene.sampler.where, "there is no Sampler \"" + type + "\"" + DidYouMean(type, names));
+  if (type == "stratified") {
+    settings.samplesPerPixel =
+        PositiveInteger(parameters, "xsamples", 4, 1 << 15) * PositiveInteger(parameters, "ysamples", 4, 1 << 15);
+    if (!parameters.GetBool("jitter", true)) {
+      diagnostics.Warn(parameters.WhereOf("jitter"), "samples without jitter are not supported; they are jittered");
+    }
+  } else {
+    settings.samplesPerPixel = PositiveInteger(parameters, "pixelsamples", settings.samplesPerPixel, kMaxSamples);
+  }
+  const auto option = scene.options.find("seed");
+  if (option != scene.options.end() && option->second.integers.empty()) {
+    throw Error(option->second.where, "the option \"seed\" needs an integer");
+  }
+  const int64_t optionSeed =
+      option != scene.options.end() && !option->second.integers.empty() ? option->second.integers[0] : 0;
+  settings.seed = static_cast<uint64_t>(parameters.GetInteger("seed", 0) + optionSeed) + overrides.seed;
+  parameters.CheckAllUsed({"randomization", "jitter", "xsamples", "ysamples", "pixelsamples"}, {"pixelsamples", "seed"},
+                          diagnostics);
+  if (overrides.sampler) {
+    settings.sampler = SamplerByName(*overrides.sampler, &known);
+    if (!known)
+      throw UsageError("--sampler: there is no sampler \"" + *overrides.sampler + "\"" +
+                       DidYouMean(*overrides.sampler, names));
+  }
+  if (overrides.samplesPerPixel) settings.samplesPerPixel = *overrides.samplesPerPixel;
+}
+
+// Of sppm and vcm. The first two are pbrt-v4's; its default radius of 1 is not taken over: it suits few scenes.
+void ReadPhotons(const ParameterList& parameters, const RenderOverrides& overrides, RenderSettings& settings) {
+  PhotonSettings& photons = settings.photons;
+  const int perPass = parameters.GetInteger("photonsperiteration", -1);
+  if (perPass > 0) photons.lightPaths = static_cast<uint64_t>(perPass);
+  photons.radius = parameters.GetFloat("radius", 0);
+  if (!(photons.radius >= 0)) throw Error(parameters.WhereOf("radius"), "\"radius\" must be 0 or more");
+  if (photons.radius > 0 && photons.radius < static_cast<double>(std::numeric_limits<float>::min()))
+    throw Error(parameters.WhereOf("radius"),
+                "\"radius\" is too small: at least 1.2e-38 is needed, or 0 for the default");
+  photons.alpha = parameters.GetFloat("alpha", photons.alpha);
+  if (!(photons.alpha >= 0 && photons.alpha <= 1))
+    throw Error(parameters.WhereOf("alpha"), "\"alpha\" must be from 0 to 1");
+  settings.merges = parameters.GetBool("merge", settings.merges);
+  settings.connects = parameters.GetBool("connect", settings.connects);
+  settings.directFromPhotons = parameters.GetBool("directphotons", settings.directFromPhotons);
+  settings.photons.guided = parameters.GetBool("guidephotons", settings.photons.guided);
+  if (overrides.photons) photons.lightPaths = *overrides.photons;
+  photons.mostBytes = overrides.photonMemory.value_or(kPhotonMemory);
+  if (overrides.radius) photons.radius = *overrides.radius;
+  if (overrides.alpha) photons.alpha = *overrides.alpha;
+  if (overrides.merges) settings.merges = *overrides.merges;
+  if (overrides.connects) settings.connects = *overrides.connects;
+  if (overrides.directFromPhotons) settings.directFromPhotons = *overrides.directFromPhotons;
+  if (overrides.guidesPhotons) settings.photons.guided = *overrides.guidesPhotons;
+  if (!settings.merges && !settings.connects) {
+    throw UsageError("--no-merge and --no-connect: vcm has nothing left to find light by");
+  }
+}
+
+void ReadShadowRays(const ParameterList& parameters, const RenderOverrides& overrides, ShadowRays& shadowRays) {
+  const auto read = [&](const char* name, const std::optional<double>& given, float& value) {
+    const double number = given.value_or(parameters.GetFloat(name, static_cast<double>(value)));
+    if (!(number >= 0 && number < static_cast<double>(kInfinity)))
+      throw Error(parameters.WhereOf(name), "\"" + std::string(name) + "\" must be a number of 0 or more");
+    value = static_cast<float>(number);
+  };
+  read("shadowroulette", overrides.shadowRoulette, shadowRays.roulette);
+  read("shadowthreshold", overrides.shadowThreshold, shadowRays.threshold);
+}
+
+void ReadIntegrator(const SceneDescription& scene, const RenderOverrides& overrides, RenderSettings& settings,
+                    Diagnostics& diagnostics) {
+  const ParameterList& parameters = scene.integrator.parameters;
+  const std::string& type = scene.integrator.type;
+  const auto isOneOf = [](const std::string& name, const Names& names) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  // pbrt-v4's names for what lampyr has.
+  const std::map<std::string, std::string> synonyms = {{"", "auto"}, {"volpath", "path"}, {"lightpath", "light"}};
+  const auto synonym = synonyms.find(type);
+  settings.integrator = synonym != synonyms.end() ? synonym->second : type;
+  const bool isKnown = settings.integrator == "auto" || isOneOf(settings.integrator, IntegratorNames());
+  if (!isKnown) {
+    const Names notYet = {"ambientocclusion", "function", "mlt", "randomwalk", "simplepath", "simplevolpath"};
+    if (!isOneOf(type, notYet)) {
+      Names all = notYet;
+      all.insert(all.end(), IntegratorNames().begin(), IntegratorNames().end());
+      all.insert(all.end(), {"volpath", "lightpath"});
+      throw Error(scene.integrator.where, "there is no Integrator \"" + type + "\"" + DidYouMean(type, all));
+    }
+    if (!overrides.integrator) {
+      diagnostics.Warn(scene.integrator.where, "Integrator \"" + type + "\" is not supported yet; \"path\" is used");
+    }
+    settings.integrator = "path";
+  }
+  if (overrides.integrator) {
+    if (*overrides.integrator != "auto" && !isOneOf(*overrides.integrator, IntegratorNames())) {
+      throw UsageError("--integrator: there is no integrator \"" + *overrides.integrator +
+                       "\"; there are: path, light, bdpt, sppm, vcm, auto");
+    }
+    settings.integrator = *overrides.integrator;
+  }
+  settings.maxDepth = parameters.GetInteger("maxdepth", settings.maxDepth);
+  if (settings.maxDepth < 0) throw Error(parameters.WhereOf("maxdepth"), "\"maxdepth\" must be 0 or more");
+  if (overrides.maxDepth) settings.maxDepth = *overrides.maxDepth;
+  ReadShadowRays(parameters, overrides, settings.shadowRays);
+
+  const std::string lightSampler = parameters.GetString("lightsampler", "tree");
+  const Names samplerNames = {"uniform", "power", "bvh", "tree", "exhaustive"};  // bvh: pbrt-v4's name of its tree
+  if (const auto selection = ParseLightSelection(lightSampler)) {
+    settings.lightSelection = *selection;
+  } else {
+    throw Error(parameters.WhereOf("lightsampler"),
+                "there is no light sampler \"" + lightSampler + "\"" + DidYouMean(lightSampler, samplerNames));
+  }
+  if (overrides.lightSampler) {
+    const auto selection = ParseLightSelection(*overrides.lightSampler);
+    if (!selection)
+      throw UsageError("--light-sampler: \"" + *overrides.lightSampler +
+                       "\" is not one of: uniform, power, tree, exhaustive");
+    settings.lightSelection = *selection;
+  }
+  if (overrides.lightSamples) settings.lightSamples = *overrides.lightSamples;
+  ReadPhotons(parameters, overrides, settings);
+  if (overrides.learnLights) settings.learnLights = *overrides.learnLights;
+  // Parameters of integrators that stand back for "path" are not looked at.
+  if (isKnown) {
+    parameters.CheckAllUsed({"regularize", "options"}, IntegratorParameterNames(), diagnostics);
+  }
+}
+
+// Embree stands for all of pbrt-v4's: they change no image, so there is nothing to warn of.
+void CheckAccelerator(const SceneDescription& scene, Diagnostics& diagnostics) {
+  const std::string& type = scene.accelerator.type;
+  const Names types = {"bvh", "kdtree"};
+  if (!type.empty() && std::find(types.begin(), types.end(), type) == types.end()) {
+    throw Error(scene.accelerator.where, "there is no Accelerator \"" + type + "\"" + DidYouMean(type, types));
+  }
+  const Names known = {"maxnodeprims", "splitmethod", "intersectcost", "traversalcost",
+                       "emptybonus",   "maxprims",    "maxdepth"};
+  for (const std::string& name : known) scene.accelerator.parameters.Find(name);
+  scene.accelerator.parameters.CheckAllUsed({}, known, diagnostics);
+}
+
+}  // namespace
+
+const std::vector<std::string>& IntegratorParameterNames() {
+  static const std::vector<std::string> names = {
+      "maxdepth", "lightsampler",  "photonsperiteration", "radius",         "alpha",          "merge",
+      "connect",  "directphotons", "guidephotons",        "shadowroulette", "shadowthreshold"};
+  return names;
+}
+
+RenderSettings ReadRenderSettings(const SceneDescription& description, const RenderOverrides& overrides,
+                                  Diagnostics& diagnostics) {
+  RenderSettings settings;
+  ReadFilm(description, overrides, settings, diagnostics);
+  ReadPixelFilter(description, settings, diagnostics);
+  ReadSampler(description, overrides, settings, diagnostics);
+  ReadIntegrator(description, overrides, settings, diagnostics);
+  CheckAccelerator(description, diagnostics);
+  return settings;
+}
+
+std::unique_ptr<Camera> BuildCamera(const SceneDescription& description, const RenderSettings& settings,
+                                    const Transform& worldToRender, Diagnostics& diagnostics) {
+  const StatementDescription& statement = description.camera;
+  const ParameterList& parameters = statement.parameters;
+  if (description.cameraToWorld.IsAnimated()) {
+    diagnostics.Warn(statement.where, "a moving camera is not supported yet; its place at shutter open is used");
+  }
+  CameraFrame frame;
+  frame.cameraToRender = worldToRender * description.cameraToWorld.start;
+  frame.width = settings.width;
+  frame.height = settings.height;
+  frame.filmMargin = {settings.filter.radiusX, settings.filter.radiusY};
+  const double aspect = parameters.GetFloat("frameaspectratio", double(frame.width) / frame.height);
+  if (!(aspect > 0)) throw Error(parameters.WhereOf("frameaspectratio"), "\"frameaspectratio\" must be above 0");
+  SetDefaultScreenWindow(frame, static_cast<float>(aspect));
+  const std::vector<double> window = parameters.GetFloats("screenwindow");
+  if (!window.empty()) {
+    if (window.size() != 4 || !(window[0] < window[1]) || !(window[2] < window[3])) {
+      throw Error(parameters.WhereOf("screenwindow"), "\"screenwindow\" needs 4 values: left < right, bottom < top");
+    }
+    frame.screenMin = {float(window[0]), float(window[2])};
+    frame.screenMax = {float(window[1]), float(window[3])};
+  }
+  const auto lensRadius = static_cast<float>(parameters.GetFloat("lensradius", 0));
+  const auto focalDistance = static_cast<float>(parameters.GetFloat("focaldistance", 1e6));
+  if (lensRadius < 0) throw Error(parameters.WhereOf("lensradius"), "\"lensradius\" must be 0 or more");
+  if (!(focalDistance > 0)) throw Error(parameters.WhereOf("focaldistance"), "\"focaldistance\" must be above 0");
+  Names known = {"frameaspectratio", "screenwindow", "shutteropen", "shutterclose", "lensradius", "focaldistance"};
+
+  std::string type = statement.type.empty() ? "perspective" : statement.type;
+  if (type == "realistic") {
+    diagnostics.Warn(statement.where, "Camera \"realistic\" is not supported; \"perspective\" is used");
+    return MakePerspectiveCamera(frame, PerspectiveSettings{Degrees(90), 0, 1e6f});
+  }
+  std::unique_ptr<Camera> camera;
+  if (type == "perspective") {
+    const double fov = parameters.GetFloat("fov", 90);
+    if (!(fov > 0 && fov < 180)) throw Error(parameters.WhereOf("fov"), "\"fov\" must be between 0 and 180 degrees");
+    known.push_back("fov");
+    camera = MakePerspectiveCamera(frame, {Degrees(static_cast<float>(fov)), lensRadius, focalDistance});
+  } else if (type == "orthographic") {
+    camera = MakeOrthographicCamera(frame, {lensRadius, focalDistance});
+  } else if (type == "spherical") {
+    const std::string mapping = parameters.GetString("mapping", "equalarea");
+    if (mapping != "equalarea" && mapping != "equirectangular") {
+      throw Error(parameters.WhereOf("mapping"),
+                  "there is no mapping \"" + mapping + "\"" + DidYouMean(mapping, {"equalarea", "equirectangular"}));
+    }
+    known.push_back("mapping");
+    camera = MakeSphericalCamera(
+        frame, mapping == "equalarea" ? SphericalMapping::EqualArea : SphericalMapping::EquiRectangular);
+  } else {
+    throw Error(statement.where, "there is no Camera \"" + type + "\"" +
+                                     DidYouMean(type, {"perspective", "orthographic", "spherical", "realistic"}));
+  }
+  parameters.CheckAllUsed({}, known, diagnostics);
+  return camera;
+}
+
+}  // namespace lampyr

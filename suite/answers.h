@@ -1,0 +1,57 @@
+// The values that a light's methods return for a fixed set of inputs, compared bit by bit: two lights with each other,
+// or one light with itself.
+#pragma once
+
+#include "suite/checks.h"
+
+namespace lampyr::suite {
+
+// One edge between a receiver and the light, and one choice of random numbers.
+struct Question {
+  LightContext context;
+  Point3 P{0.0f};
+  Vector3 along{0, 0, 1};  // of a segment from P
+  float reach = 1;
+  // What a ray found, and where a photon went: of the light when the question was made.
+  std::optional<LightHit> hit, landing;
+  Point3 landingAt{0.0f};
+};
+
+struct Answer {
+  std::optional<LightSample> sample;
+  std::optional<LightEvaluation> evaluation, landing;
+  Color camera{0.0f};
+  std::optional<EmissionSample> photon;
+  float estimate = 0;
+  std::optional<SegmentEstimate> segment;
+};
+
+// `count` questions: receivers all over the scene, and on the ways of photons, from very near to far.
+std::vector<Question> MakeQuestions(const SuiteSubject& subject, const Light& light, int count, Rng& rng);
+
+// In which order the methods are called: what one of them remembers of another shows when it is turned.
+enum class CallOrder { Forwards, Backwards };
+Answer Ask(const Light& light, const Question& question, const LightContext& context,
+           CallOrder order = CallOrder::Forwards);
+inline Answer Ask(const Light& light, const Question& question) {
+  return Ask(light, question, question.context);
+}
+
+// Densities that are only asked for by bidirectional techniques: where they are not, they may be 0.
+enum class Compare { Everything, AllButBidirectional };
+
+// What differs first, in words: "radiance of samples: 1 0.5 0.2 instead of 2 1 0.4"; "" when nothing does.
+std::string Difference(const Answer& wanted, const Answer& got, Compare compare = Compare::Everything);
+// Of what does not depend on a question: kind, settings, power, bounds, patches; and of the light's own surface.
+std::string DifferenceAsWhole(const SuiteSubject& subject, const Light& wanted, const Light& got);
+
+// The power, bounds and choice of patches of a light, for comparing it with itself.
+struct Whole {
+  Color power{0.0f};
+  std::optional<EmissionBounds> bounds;
+  std::vector<float> patches;
+};
+Whole AskWhole(const Light& light, const LightContext& context);
+std::string Difference(const Whole& wanted, const Whole& got);
+
+}  // namespace lampyr::suite

@@ -1,0 +1,217 @@
+// The parts of the suite: by kind of light, and what they share. Private to the suite.
+#pragma once
+
+#include <optional>
+
+#include "suite/direction_quadrature.h"
+#include "suite/pdf_suite.h"
+#include "suite/statistics.h"
+
+namespace lampyr::suite {
+
+inline constexpr double kPiDouble = 3.14159265358979323846;
+
+void CheckShapeLight(const SuiteSubject& subject, const SuiteOptions& options, SuiteReport& report);    // by its model
+void CheckSurfaceLight(const SuiteSubject& subject, const SuiteOptions& options, SuiteReport& report);  // by Surface()
+void CheckPointLight(const SuiteSubject& subject, const SuiteOptions& options, SuiteReport& report);
+void CheckInfiniteLight(const SuiteSubject& subject, const SuiteOptions& options, SuiteReport& report);  // deltas too
+
+// patches, shines-from, position-error, energy, uvw.
+void CheckAttributes(const SuiteSubject& subject, const SuiteOptions& options, SuiteReport& report);
+
+// Where few samples go.
+void CheckStrata(const SuiteSubject& subject, const SuiteOptions& options, SuiteReport& report);
+
+// An edited light is the light made afresh, bit by bit.
+void CheckEdit(const SuiteSubject& subject, const SuiteOrigin& origin, SuiteReport& report);
+
+struct Receiver {
+  std::string name;
+  Point3 position;
+};
+
+// Checks `count` cases beside each other.
+SuiteReport RunCases(size_t count, const SuiteOptions& options,
+                     const std::function<void(size_t index, SuiteReport& report)>& check);
+
+// A generator of the case's own: results do not depend on what ran before, or on which thread.
+Rng MakeRng(const SuiteSubject& subject, const SuiteOptions& options);
+// A generator that does not depend on SuiteOptions::look, for receivers and fixed starts: both looks test the same
+// places with independent samples.
+Rng MakeRngOfPlaces(const SuiteSubject& subject, const SuiteOptions& options);
+LightContext RandomContext(const SuiteSubject& subject, Rng& rng);
+
+// A uniform direction.
+Vector3d RandomDirection(Rng& rng);
+
+// Directions of `count` draws; those that give none are left out.
+inline constexpr int kHints = 2048;
+template <class Function>
+std::vector<Vector3d> DrawDirections(Rng& rng, int count, const Function& draw) {
+  std::vector<Vector3d> directions;
+  for (int i = 0; i < count; ++i) {
+    if (const std::optional<Vector3> direction = draw(rng)) directions.push_back(glm::normalize(Vector3d(*direction)));
+  }
+  return directions;
+}
+
+// What is emitted by a sample, an evaluation or a photon: mean of the channels, the light's diffuse and specular
+// multipliers taken out.
+template <class Result>
+double Emitted(const SuiteSubject& subject, const Result& result) {
+  const double multipliers = subject.diffuseMultiplier + subject.specularMultiplier;
+  const auto both = static_cast<double>(result.diffuse.Average()) + static_cast<double>(result.specular.Average());
+  return multipliers > 0 ? both / multipliers : 0.0;
+}
+template <class Result>
+bool IsBlack(const Result& result) {
+  return result.diffuse.IsBlack() && result.specular.IsBlack();
+}
+
+inline double Value(PdfSolidAngle pdf) {
+  return static_cast<double>(pdf.value);
+}
+inline double Value(PdfArea pdf) {
+  return static_cast<double>(pdf.value);
+}
+
+// Relative difference of two densities or colours, 0 for equal ones.
+double RelativeDifference(double a, double b);
+double RelativeDifference(const Color& a, const Color& b);
+
+// Largest relative difference between what a sample, or a photon, reports and what EvaluateSamples says of it.
+double Mismatch(const LightSample& sample, const LightEvaluation& evaluation);
+double Mismatch(const EmissionSample& photon, const LightEvaluation& evaluation);
+LightHit HitOf(const LightSample& sample, const Point3& P);
+LightHit HitOf(const EmissionSample& photon, float distance);
+
+// How far the two parts of a result are from the light's diffuse and specular multipliers of one emission.
+template <class Result>
+double MultiplierMismatch(const SuiteSubject& subject, const Result& result) {
+  return RelativeDifference(result.diffuse * static_cast<float>(subject.specularMultiplier),
+                            result.specular * static_cast<float>(subject.diffuseMultiplier));
+}
+// What the camera sees of a hit against the evaluation of it. nullopt: nothing is reflected that could be compared.
+std::optional<double> CameraMismatch(const SuiteSubject& subject, const LightHit& hit,
+                                     const std::optional<LightEvaluation>& evaluation);
+
+// p-value of two means being equal up to a relative error of `tolerance`, or one of `absolute`.
+double EqualMeans(const Estimate& a, const Estimate& b, double tolerance, double absolute = 0);
+inline Estimate EstimateOf(const RunningMean& mean) {
+  return {mean.Mean(), mean.StandardError()};
+}
+
+// Two means in words: "light sampling gives 0.51 ± 1e-4, expected 0.5 ± 1e-5".
+std::string InWords(const std::string& what, const Estimate& got, const Estimate& expected);
+
+// Flux of a photon; a light's power is its mean, those that were not emitted as 0.
+double Flux(const SuiteSubject& subject, const EmissionSample& photon);
+
+void CheckPowerEstimate(const SuiteSubject& subject, const Estimate& emitted, SuiteReport& report);
+
+// Directions of emission for photons that start at one place (a fixed context.u, or a fixed context.uDirection where
+// that is what decides on the place); `subject` must emit there. Fails as `property` where neither fixes it.
+struct FixedStart {
+  LightContext context;
+  bool byDirection = false;  // uDirection is fixed, u varies
+  EmissionSample photon;
+
+  LightContext Draw(const Point2& v) const {
+    LightContext drawn = context;
+    (byDirection ? drawn.u : drawn.uDirection) = v;
+    return drawn;
+  }
+};
+enum class FixedPart { Position, Direction };
+std::optional<FixedStart> FindFixedStart(const SuiteSubject& subject, FixedPart part, double tolerance, Rng& rng);
+
+// Mean of function(x) over the four-dimensional unit cube, from `lattices` randomly shifted lattices of `points` each:
+// far less noise than independent numbers, and the spread of the lattices' means is the error.
+template <class Function>
+Estimate LatticeMean(Rng& rng, int lattices, int points, const Function& function) {
+  // Powers of the inverse of the root of x⁵ = x + 1 ([Roberts18]).
+  constexpr double steps[4] = {0.8566748838545029, 0.7338918566271260, 0.6287067210378087, 0.5385972572236101};
+  RunningMean means;
+  for (int lattice = 0; lattice < lattices; ++lattice) {
+    double shift[4], sum = 0;
+    for (double& s : shift) s = static_cast<double>(rng.NextFloat());
+    for (int i = 0; i < points; ++i) {
+      float x[4];
+      for (int k = 0; k < 4; ++k) {
+        const double value = shift[k] + i * steps[k];
+        x[k] = std::min(static_cast<float>(value - std::floor(value)), 0x1.fffffep-1f);
+      }
+      sum += function(x);
+    }
+    means.Add(sum / points);
+  }
+  return EstimateOf(means);
+}
+
+// The same with more and more points until the error is below `relative` times the mean.
+template <class Function>
+Estimate SharpMean(Rng& rng, double relative, const Function& function) {
+  constexpr int kLattices = 128, kMost = 4096;
+  Estimate estimate;
+  for (int points = 64; points <= kMost; points *= 4) {
+    estimate = LatticeMean(rng, kLattices, points, function);
+    if (estimate.error <= relative * std::abs(estimate.value)) break;
+  }
+  return estimate;
+}
+// Adds the check that pdfDirect integrates to at most 1 over all directions of `cap`: `emitting` is its integral where
+// light comes from, and `dark(direction)` the density where none does, 0 elsewhere.
+template <class Function>
+void CheckDarkDensity(const SuiteSubject& subject, const std::string& where, const Estimate& emitting, const Cap& cap,
+                      const Function& dark, Rng& rng, SuiteReport& report) {
+  constexpr int kDirections = 4096;
+  RunningMean mean;
+  for (int i = 0; i < kDirections; ++i) {
+    const auto w = static_cast<double>(rng.NextFloat());
+    mean.Add(cap.SolidAngle() * dark(cap.Direction(cap.wMax * w, static_cast<double>(rng.NextFloat()))));
+  }
+  const Estimate all = emitting + EstimateOf(mean);
+  report.AddProbability(subject.name, "integral", where + " with what is dark",
+                        all.value <= 1 ? 1.0 : EqualMeans(all, {1, 0}, 1e-3),
+                        InWords("the integral of pdfDirect, dark directions included,", all, {1, 0}));
+}
+// How often something that happens in few of the draws happens, and what it adds up to: as many draws as it takes to
+// see it some hundred times.
+struct Counted {
+  Estimate share, sum;  // of the draws that count; mean of their values over all draws
+};
+template <class Function>  // std::optional<double>(x): the value of a draw that counts
+Counted CountedMean(Rng& rng, const Function& function) {
+  constexpr int kLattices = 128, kMost = 1024, kEnough = 200;
+  Counted counted;
+  for (int points = 32; points <= kMost; points *= 4) {
+    RunningMean shares, sums;
+    double found = 0;
+    for (int lattice = 0; lattice < kLattices; ++lattice) {
+      double sum = 0, hits = 0;
+      LatticeMean(rng, 1, points, [&](const float(&x)[4]) {
+        if (const std::optional<double> value = function(x)) {
+          ++hits;
+          sum += *value;
+        }
+        return 0.0;
+      });
+      shares.Add(hits / points);
+      sums.Add(sum / points);
+      found += hits;
+    }
+    counted = {EstimateOf(shares), EstimateOf(sums)};
+    if (found >= kEnough) break;
+    // What was not seen may happen all the same: at least the error of a count of one.
+    const double draws = static_cast<double>(kLattices) * points, least = std::sqrt(std::max(found, 1.0)) / draws;
+    counted.share.error = std::max(counted.share.error, least);
+    const double each = found > 0 ? counted.sum.value / counted.share.value : 0.0;
+    counted.sum.error = std::max(counted.sum.error, each * least);
+  }
+  return counted;
+}
+
+// 1 where the place of a photon, or whether there is one, depends on the random numbers of its direction; else 0.
+double WorstPhotonOrigin(const SuiteSubject& subject, Rng& rng);
+
+}  // namespace lampyr::suite

@@ -1,0 +1,67 @@
+#include "suite/contract_checks.h"
+
+#include <future>
+
+namespace lampyr::suite {
+
+ContractChecker::ContractChecker(const SuiteSubject& subject, const SuiteOptions& options)
+    : subject_(subject), light_(*subject.light) {
+  Rng rng = MakeRng(subject, options);
+  constexpr int kQuestions = 64;
+  questions_ = MakeQuestions(subject, light_, kQuestions, rng);
+  for (const Question& question : questions_) answers_.push_back(Ask(light_, question));
+  whole_ = AskWhole(light_, subject.context);
+}
+
+std::string ContractChecker::FirstDifference(const Change& change, Compare compare) const {
+  for (size_t i = 0; i < questions_.size(); ++i) {
+    LightContext context = questions_[i].context;
+    change(context);
+    const std::string difference = Difference(answers_[i], Ask(light_, questions_[i], context), compare);
+    if (!difference.empty()) return difference;
+  }
+  LightContext context = subject_.context;
+  change(context);
+  return Difference(whole_, AskWhole(light_, context));
+}
+
+// Each question twice in a row, the last one first.
+std::string ContractChecker::FirstDifferenceBackwards() const {
+  for (size_t i = questions_.size(); i-- > 0;) {
+    for (const CallOrder order : {CallOrder::Backwards, CallOrder::Forwards, CallOrder::Forwards}) {
+      const Answer again = Ask(light_, questions_[i], questions_[i].context, order);
+      const std::string difference = Difference(answers_[i], again);
+      if (!difference.empty()) return difference;
+    }
+  }
+  return Difference(whole_, AskWhole(light_, subject_.context));
+}
+
+void ContractChecker::Add(const char* property, const std::string& suffix, const std::string& difference,
+                          SuiteReport& report) const {
+  report.AddError(subject_.name, property, subject_.caseName + suffix, difference.empty() ? 0 : 1, 0.5, difference);
+}
+
+void ContractChecker::CheckBidirectional(SuiteReport& report) const {
+  const auto without = [](LightContext& context) { context.bidirectional = false; };
+  Add("bidirectional", "", FirstDifference(without, Compare::AllButBidirectional), report);
+}
+
+void ContractChecker::CheckTime(SuiteReport& report) const {
+  for (const float time : {0.0f, 0.37f, 0.74f, 1.0f}) {
+    const std::string difference = FirstDifference([&](LightContext& c) { c.time = time; }, Compare::Everything);
+    char when[32];
+    std::snprintf(when, sizeof(when), " time %g", static_cast<double>(time));
+    Add("time", when, difference, report);
+  }
+}
+
+void ContractChecker::CheckRepeat(SuiteReport& report) const {
+  const auto nothing = [](LightContext&) {};
+  Add("repeat", " asked again", FirstDifference(nothing, Compare::Everything), report);
+  Add("repeat", " in another order", FirstDifferenceBackwards(), report);
+  auto elsewhere = std::async(std::launch::async, [&] { return FirstDifference(nothing, Compare::Everything); });
+  Add("repeat", " on another thread", elsewhere.get(), report);
+}
+
+}  // namespace lampyr::suite

@@ -1,0 +1,56 @@
+// Distributions of directions: their integral over the sphere, and the χ² test of sampled directions against them.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "suite/adaptive_square.h"
+
+namespace lampyr::suite {
+
+// Directions within `wMax` = 1 - cosθ of an axis: uniform in (w, turns) is uniform in solid angle.
+struct Cap {
+  Vector3d axis{0, 0, 1};
+  double wMax = 2;
+
+  double SolidAngle() const;
+  Vector3d Direction(double w, double turns) const;
+  // (w / wMax, turns), both in [0,1] within the cap.
+  Point2d Invert(const Vector3d& direction) const;
+  bool IsSphere() const { return wMax >= 2; }
+};
+
+// The smallest cap around the mean of `directions` that holds them all, a little widened; the sphere beyond 60°.
+Cap CapAround(std::span<const Vector3d> directions);
+
+// Over the whole sphere: of the cap, where the light is, and of all that is outside of it.
+class DirectionQuadrature {
+ public:
+  using Function = std::function<Integrands(const Vector3d&)>;  // of a unit direction, per sr
+  static constexpr int kBudget = 48000;
+  // `hints`: directions in which there is much; not those that are tested.
+  DirectionQuadrature(const Cap& cap, std::span<const Vector3d> hints, const Function& function, Rng& rng,
+                      int budget = kBudget);
+
+  Estimate Density() const;
+  Estimate Radiance() const;
+  // p-value of `directions`, and draws - directions.size() draws that gave none, against the density.
+  // `worst`, if wanted: the cell that differs most, in words.
+  double Test(std::span<const Vector3d> directions, double draws, int cells = 48, std::string* worst = nullptr);
+
+  // ∫ f dω of `count` functions that share their points, which are distributed like those of Density().
+  using Functions = std::function<void(const Vector3d&, std::span<double> values)>;
+  std::vector<Estimate> Integrate(size_t count, const Functions& f, Rng& rng) const;
+
+ private:
+  struct Part {
+    Cap cap;
+    AdaptiveSquare square;
+  };
+  size_t PartOf(const Vector3d& direction) const {
+    return parts_.size() > 1 && parts_[0].cap.Invert(direction).x >= 1 ? 1 : 0;
+  }
+  std::vector<Part> parts_;
+};
+
+}  // namespace lampyr::suite

@@ -1,0 +1,129 @@
+#include "suite/pdf_suite.h"
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+
+#include "suite/checks.h"
+#include "suite/contract_checks.h"
+#include "suite/direction_source.h"
+#include "suite/statistics.h"
+
+namespace lampyr {
+
+void SuiteReport::AddProbability(const std::string& light, const std::string& property, const std::string& caseName,
+                                 double pValue, const std::string& words) {
+  results_.push_back({light, property, caseName, true, pValue, 0, false, words});
+}
+
+void SuiteReport::AddError(const std::string& light, const std::string& property, const std::string& caseName,
+                           double error, double tolerance, const std::string& words) {
+  results_.push_back({light, property, caseName, false, error, tolerance, error <= tolerance, words});
+}
+
+void SuiteReport::Add(const SuiteReport& other) {
+  results_.insert(results_.end(), other.results_.begin(), other.results_.end());
+}
+
+size_t SuiteReport::CountBelow(double p) const {
+  return static_cast<size_t>(std::count_if(results_.begin(), results_.end(), [p](const SuiteResult& result) {
+    return result.isProbability && result.statistic < p;
+  }));
+}
+
+void SuiteReport::Confirm(const SuiteReport& again, double doubtful) {
+  using Key = std::tuple<std::string, std::string, std::string>;
+  const auto keyOf = [](const SuiteResult& result) { return Key(result.light, result.property, result.caseName); };
+  // Several results may have one name: the n-th belongs to the n-th.
+  std::map<Key, std::vector<const SuiteResult*>> second;
+  for (const SuiteResult& result : again.results_) {
+    if (result.isProbability) second[keyOf(result)].push_back(&result);
+  }
+  std::map<Key, size_t> seen;
+  for (SuiteResult& result : results_) {
+    if (!result.isProbability) continue;
+    const size_t index = seen[keyOf(result)]++;
+    if (result.statistic >= doubtful) continue;
+    const auto found = second.find(keyOf(result));
+    if (found == second.end() || index >= found->second.size()) continue;
+    if (found->second[index]->statistic > result.statistic) result = *found->second[index];
+  }
+}
+
+std::vector<SuiteResult> SuiteReport::Finish(double familyWise) {
+  int tests = 0;
+  for (const SuiteResult& result : results_) tests += result.isProbability ? 1 : 0;
+  const double level = SidakLevel(familyWise, tests);
+  for (SuiteResult& result : results_) {
+    if (!result.isProbability) continue;
+    result.threshold = level;
+    result.passed = result.statistic >= level;
+  }
+  return results_;
+}
+
+namespace {
+
+void CheckDensities(const SuiteSubject& subject, const SuiteOptions& options, SuiteReport& report) {
+  switch (subject.light->Kind()) {
+    case LightKind::Area:
+      if (subject.model) {
+        suite::CheckShapeLight(subject, options, report);
+      } else if (subject.light->Surface()) {
+        suite::CheckSurfaceLight(subject, options, report);
+      } else {
+        // A light that no ray can find: nothing of it can be proved.
+        report.AddError(subject.name, "surface", subject.caseName, 1, 0.5);
+      }
+      break;
+    case LightKind::DeltaPosition:
+      suite::CheckPointLight(subject, options, report);
+      break;
+    case LightKind::DeltaDirection:
+    case LightKind::Infinite:
+      suite::CheckInfiniteLight(subject, options, report);
+      break;
+  }
+}
+
+}  // namespace
+
+// All that is random, which may be looked at a second time.
+static void CheckSamples(const SuiteSubject& subject, const SuiteOptions& options, SuiteReport& report) {
+  if (options.parts & kDensityPart) CheckDensities(subject, options, report);
+  if (subject.isThorough && (options.parts & kStrataPart)) suite::CheckStrata(subject, options, report);
+  if (subject.isThorough && (options.parts & kDirectionPart)) suite::CheckDirectionsFinely(subject, options, report);
+}
+
+// A sound light has one p-value in ten thousand below the first threshold, and is looked at again. One that has several
+// below the second is wrong beyond doubt.
+static void CheckSamplesTwice(const SuiteSubject& subject, const SuiteOptions& options, SuiteReport& report) {
+  constexpr double kDoubtful = 1e-4, kSure = 1e-9;
+  constexpr size_t kMany = 3;
+  constexpr int kMoreEffort = 4;
+  SuiteReport first;
+  CheckSamples(subject, options, first);
+  if (first.CountBelow(kDoubtful) > 0 && first.CountBelow(kSure) < kMany) {
+    SuiteOptions closer = options;
+    closer.look = 1;
+    closer.effort *= kMoreEffort;
+    SuiteReport second;
+    CheckSamples(subject, closer, second);
+    first.Confirm(second, kDoubtful);
+  }
+  report.Add(first);
+}
+
+void CheckLight(const SuiteSubject& subject, const SuiteOptions& options, SuiteReport& report) {
+  std::optional<suite::ContractChecker> contract;
+  if (options.parts & kContractPart) {
+    contract.emplace(subject, options);
+    contract->CheckBidirectional(report);
+    contract->CheckTime(report);
+  }
+  if (options.parts & kAttributePart) suite::CheckAttributes(subject, options, report);
+  CheckSamplesTwice(subject, options, report);
+  if (contract) contract->CheckRepeat(report);
+}
+
+}  // namespace lampyr

@@ -1,0 +1,130 @@
+// The pdf consistency suite: proof by statistics that the three techniques of a light agree. It runs over the registry,
+// over a plugin's type or over a single light, and prints nothing itself.
+//
+// Properties, by their names in the results (properties.h says the same of them to those whose light fails one):
+//
+//   integral             pdfDirect integrates to the probability that a sample exists, 1 where the light is all visible
+//   directions           χ² of sampled points (or directions, at infinity) against pdfDirect
+//   strata               the same by classes of the cosine at the light, from receivers very near and very far, grazing
+//                        and edge-on: where few samples go
+//   consistency          EvaluateSamples on a generated sample gives back radiance, normal and all densities
+//   surface              a sample's normal, position and density agree with the shape, evaluated apart from the light;
+//                        its solidAngleToArea is that of its place
+//   one-sided            nothing leaves a one-sided surface at its back
+//   irradiance           by light sampling = by quadrature over the surface
+//   patches              each is chosen as PatchProbability says; a light that is its own surface has one
+//   position-error       bounds how far a position is off the surface, and is no more than rounding can be
+//   uvw                  what a ray finds there; a light that is the same all over may leave it at 0
+//   emission-integral    the densities of emission integrate to 1
+//   emission-positions   χ² of photons against pdfEmit; emission-directions: against pdfEmitDirection, and moments
+//   emission-edge        a photon's densities are those that EvaluateSamples gives for that edge
+//   emission-origin      a photon's place does not depend on its direction, be that dark
+//   shines-from          a photon lights what is beyond shinesFrom, nothing before; it is 0 where CanBeAimed is true
+//   power                by emission = by direct sampling on an enclosing sphere
+//   power-estimate       GetPowerEstimate: exact where it is a closed form, near otherwise
+//   energy               of the bounds: the power estimate times importanceMultiplier
+//   bounds               photons leave within GetEmissionBounds
+//   estimate             no estimate is 0 where a sample arrives
+//   multipliers          diffuse and specular parts are one emission, each times the light's multiplier
+//   camera               a camera sees what receivers see, and nothing of a delta
+//   bidirectional        without it nothing is missing but the densities of emission: the bits are compared
+//   time                 nothing depends on it but the placement, which is given
+//   repeat               the same question has the same answer: in another order, on another thread, at the end
+//   parameters           what all lights have (intensity, exposure, …, cameraVisible) does what it says
+//   edit                 an edited light is the one that is made afresh, bit by bit, by each parameter of its type
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "lights/light_type.h"
+#include "suite/emitter_model.h"
+
+namespace lampyr {
+
+struct SuiteResult {
+  std::string light, property, caseName;
+  bool isProbability = false;  // statistic is a p-value that must exceed the threshold; else an error that must not
+  double statistic = 0, threshold = 0;
+  bool passed = false;
+  std::string words;  // where it was worst, what was expected there and what was found; may be empty
+};
+
+class SuiteReport {
+ public:
+  void AddProbability(const std::string& light, const std::string& property, const std::string& caseName, double pValue,
+                      const std::string& words = "");
+  void AddError(const std::string& light, const std::string& property, const std::string& caseName, double error,
+                double tolerance, const std::string& words = "");
+  void Add(const SuiteReport& other);
+  // The number of p-values below `p`.
+  size_t CountBelow(double p) const;
+  // A second look at the same light, by other random numbers: each p-value below `doubtful` becomes the larger of the
+  // two. A fault is found in both; a quadrature that has missed a narrow feature, and knows nothing of its error, is
+  // not wrong at the same place again.
+  void Confirm(const SuiteReport& again, double doubtful);
+  // Judges the p-values at a family-wise level over all that were added.
+  std::vector<SuiteResult> Finish(double familyWise);
+
+ private:
+  std::vector<SuiteResult> results_;
+};
+
+// What CheckLight looks at.
+enum SuiteParts : unsigned {
+  kContractPart = 1,    // bidirectional, time, repeat
+  kAttributePart = 2,   // patches, shines-from, position-error, energy, uvw
+  kDensityPart = 4,     // all that compares densities with samples and with each other
+  kStrataPart = 8,      // strata: a second or so for each light
+  kDirectionPart = 16,  // emission-directions, with many photons
+  kParameterPart = 32,  // edit, parameters: of types, not of single lights
+  kAllParts = 63
+};
+
+struct SuiteOptions {
+  int samples = 3000;  // per receiver
+  int photons = 8000;  // per light and transform
+  double familyWise = 1e-3;
+  uint64_t seed = 1;
+  int threads = 1;  // of RunPdfSuite; the results are the same with any number
+  unsigned parts = kAllParts;
+  int look = 0;           // which of several at the same places, by other random numbers
+  int effort = 1;         // multiplies the number of points that a quadrature may take
+  int caseEvery = 1;      // of RunPdfSuite: each n-th of the placed lights
+  int thoroughEvery = 1;  // of RunPdfSuite: each n-th of the cases that would be looked at thoroughly
+  // Called now and then with the part that is done, one call at a time. May be empty.
+  std::function<void(double fraction)> progress;
+};
+
+// A light under test, as it is placed.
+struct SuiteSubject {
+  const Light* light = nullptr;
+  LightContext context;                 // transform and scene; bidirectional
+  const EmitterModel* model = nullptr;  // area lights on a shape; those that are their own surface have none
+  bool isPowerExact = true;             // GetPowerEstimate is a closed form here
+  // The light's parameters of these names: what samples, evaluations and photons carry is what is emitted times them.
+  double diffuseMultiplier = 1, specularMultiplier = 1;
+  // Where few samples go, and photons' directions finely: the strata and direction parts, some seconds.
+  bool isThorough = true;
+  double powerError = 6e-4;  // relative standard error that power is known to: five of it are below half a per cent
+  std::string name, caseName;
+};
+
+// What a light was made from: editing it is compared with making it afresh.
+struct SuiteOrigin {
+  const LightType* type = nullptr;
+  const ParameterList* parameters = nullptr;
+  const LightBuildContext* build = nullptr;
+  std::vector<ParameterList> changes;  // each is laid over the parameters
+};
+
+// All properties of one placed light.
+void CheckLight(const SuiteSubject& subject, const SuiteOptions& options, SuiteReport& report);
+
+// All sample blocks of the types × shapes × transforms × receivers. `scratch` is an existing folder for images.
+std::vector<SuiteResult> RunPdfSuite(const std::vector<LightType>& types, const std::filesystem::path& scratch,
+                                     const SuiteOptions& options);
+
+}  // namespace lampyr

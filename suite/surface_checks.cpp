@@ -1,0 +1,204 @@
+// The suite's properties of lights that are their own surface, as receivers see them: rays are traced to it.
+#include "suite/surface_checks.h"
+
+namespace lampyr::suite {
+
+namespace {
+
+// Seen from nearer to its plane than this, what rounding does to a cosine is more than the test can bear: such points
+// count as not sampled, and the quadrature leaves them out too.
+constexpr double kEdgeOn = 0.01;
+constexpr double kFlat = 0.03;  // as inclined as that, the densities of one point are compared
+
+class SurfaceReceiverChecker {
+ public:
+  SurfaceReceiverChecker(const SuiteSubject& subject, const SuiteOptions& options, const SurfaceTracer& tracer,
+                         Rng& rng, SuiteReport& report)
+      : subject_(subject), light_(*subject.light), options_(options), tracer_(tracer), rng_(rng), report_(report) {
+    const std::optional<EmissionBounds> bounds = light_.GetEmissionBounds(subject.context);
+    oneSided_ = bounds && !bounds->twoSided;
+  }
+
+  void Check(const Receiver& receiver);
+
+ private:
+  // The generated sample as its ray finds it; nullopt: it is hidden, edge-on, or does not lie on the surface.
+  struct SampleErrors {
+    double consistency = 0, surface = 0, multipliers = 0;
+    int compared = 0, differing = 0;
+  };
+  std::optional<SurfaceHit> Seen(const LightSample& sample, const Point3& P) const;
+  bool IsFoundBeside(const LightSample& sample, const Point3& P, const Vector3d& direction) const;
+  void Compare(const LightSample& sample, const Point3& P, SampleErrors& errors) const;
+  Integrands At(const Point3& P, const Vector3d& direction);
+
+  const SuiteSubject& subject_;
+  const Light& light_;
+  const SuiteOptions& options_;
+  const SurfaceTracer& tracer_;
+  Rng& rng_;
+  SuiteReport& report_;
+  bool oneSided_ = false;
+  double leak_ = 0, compared_ = 0, cameraDiffers_ = 0;  // on the edge of a beam, roundings may
+};
+
+Integrands SurfaceReceiverChecker::At(const Point3& P, const Vector3d& direction) {
+  const auto found = tracer_.Trace(Point3d(P), direction);
+  if (!found) return {};
+  const LightHit hit = HitFrom(*found, direction);
+  const auto e = light_.EvaluateSamples(subject_.context, hit, P);
+  const double cosine = -glm::dot(found->normal, direction);
+  if (std::abs(cosine) > 1e-4) {
+    ++compared_;
+    cameraDiffers_ += CameraMismatch(subject_, hit, e).value_or(0.0) > 1e-4 ? 1 : 0;
+    if (oneSided_ && cosine < 0 && e && (!IsBlack(*e) || !e->pdfDirect.IsZero())) leak_ = 1;
+  }
+  if (!e || IsBlack(*e) || std::abs(cosine) < kEdgeOn) return {};
+  return {Value(e->pdfDirect), Emitted(subject_, *e)};
+}
+
+std::optional<SurfaceHit> SurfaceReceiverChecker::Seen(const LightSample& sample, const Point3& P) const {
+  const Vector3d direction = glm::normalize(Vector3d(sample.direction));
+  const auto found = tracer_.Find(Point3d(P), direction, Point3d(sample.position));
+  if (!found || !found->isFirst || std::abs(glm::dot(found->hit.normal, direction)) < kEdgeOn) return std::nullopt;
+  // Another part of the surface, where the ray passes along that of the sample.
+  const double scale = tracer_.Around().radius + 1e-2 * glm::length(Point3d(sample.position) - Point3d(P));
+  if (glm::length(found->hit.position - Point3d(sample.position)) > 1e-2 * scale) return std::nullopt;
+  return found->hit;
+}
+
+// A ray to a sample on the very rim may pass it: the direction is rounded to 6e-8.
+bool SurfaceReceiverChecker::IsFoundBeside(const LightSample& sample, const Point3& P,
+                                           const Vector3d& direction) const {
+  constexpr int kWays = 8;
+  constexpr double kAside = 1e-6;  // rad
+  const Cap around{direction, 0.5 * kAside * kAside};
+  for (int i = 0; i < kWays; ++i) {
+    const Vector3d beside = glm::normalize(around.Direction(around.wMax, static_cast<double>(i) / kWays));
+    if (tracer_.Find(Point3d(P), beside, Point3d(sample.position))) return true;
+  }
+  return false;
+}
+
+void SurfaceReceiverChecker::Compare(const LightSample& sample, const Point3& P, SampleErrors& errors) const {
+  const auto own = light_.EvaluateSamples(subject_.context, HitOf(sample, P), P);
+  errors.consistency = std::max(errors.consistency, own ? Mismatch(sample, *own) : 1.0);
+  errors.multipliers = std::max(errors.multipliers, MultiplierMismatch(subject_, sample));
+  const Vector3d direction = glm::normalize(Vector3d(sample.direction));
+  const double cosine = std::abs(glm::dot(Vector3d(sample.normal), direction));
+  if (cosine < kFlat) return;  // its ray may miss it
+  errors.surface = std::max(errors.surface, SolidAngleToAreaMismatch(sample));
+  const auto found = tracer_.Find(Point3d(P), direction, Point3d(sample.position));
+  if (!found) {
+    if (!IsFoundBeside(sample, P, direction)) errors.surface = 1;
+    return;
+  }
+  const SurfaceHit& hit = found->hit;
+  const auto distance = static_cast<double>(sample.distance);
+  const double scale = tracer_.Around().radius + 1e-2 * (distance + glm::length(hit.position));
+  errors.surface = std::max(errors.surface, glm::length(hit.position - Point3d(sample.position)) * cosine / scale);
+  errors.surface = std::max(errors.surface, std::abs(hit.distance - distance) * cosine / scale);
+  // The ray meets the surface where rounding has it slide, by 1 / cosine: there the normal is another too.
+  errors.surface = std::max(errors.surface, glm::length(hit.normal - Vector3d(sample.normal)) * cosine);
+  // The edge of a texel, or of a beam, may lie between the two: a few samples may differ.
+  ++errors.compared;
+  const auto e = light_.EvaluateSamples(subject_.context, HitFrom(hit, direction), P);
+  if (!e || Mismatch(sample, *e) > 2e-2) ++errors.differing;
+}
+
+void SurfaceReceiverChecker::Check(const Receiver& receiver) {
+  const Point3& P = receiver.position;
+  leak_ = compared_ = cameraDiffers_ = 0;
+  const std::vector<Vector3d> hints = DrawDirections(rng_, kHints, [&](Rng& rng) -> std::optional<Vector3> {
+    const auto sample = light_.GenerateSamples(RandomContext(subject_, rng), P);
+    if (!sample) return std::nullopt;
+    return sample->direction;
+  });
+  DirectionQuadrature quadrature(
+      CapTowards(tracer_.Around(), P), hints, [&](const Vector3d& direction) { return At(P, direction); }, rng_,
+      options_.effort * DirectionQuadrature::kBudget);
+  std::vector<Vector3d> directions;
+  SampleErrors errors;
+  for (int i = 0; i < options_.samples; ++i) {
+    const auto sample = light_.GenerateSamples(RandomContext(subject_, rng_), P);
+    if (!sample) continue;
+    if (i % 4 == 0) Compare(*sample, P, errors);
+    if (Seen(*sample, P)) directions.push_back(glm::normalize(Vector3d(sample->direction)));
+  }
+  double hidden = 0;  // the most that a sample would bring that the light itself hides
+  const Counted counted = CountedMean(rng_, [&](const float(&x)[4]) -> std::optional<double> {
+    LightContext context = subject_.context;
+    context.u = {x[0], x[1]};
+    context.uDirection = {x[2], x[3]};
+    const auto sample = light_.GenerateSamples(context, P);
+    if (!sample) return std::nullopt;
+    const double brought = Emitted(subject_, *sample) / Value(sample->pdfDirect);
+    if (Seen(*sample, P)) return brought;
+    hidden = std::max(hidden, brought);
+    return std::nullopt;
+  });
+  const std::string where = subject_.caseName + " " + receiver.name;
+  const std::string words = InWords(tracer_.Around(), receiver);
+  const auto probability = [&](const char* property, double p, const std::string& text) {
+    report_.AddProbability(subject_.name, property, where, p, words + text);
+  };
+  const auto error = [&](const char* property, double e, double tolerance) {
+    report_.AddError(subject_.name, property, where, e, tolerance,
+                     words + "the largest error is above what is allowed");
+  };
+  // A ray may slip through a seam that the light has: by rounding, less than one in ten thousand.
+  constexpr double kSeams = 1e-4;
+  probability("integral", EqualMeans(quadrature.Density(), counted.share, 1e-3, kSeams),
+              InWords("the integral of pdfDirect", quadrature.Density(), counted.share));
+  CheckDarkDensity(
+      subject_, where, quadrature.Density(), CapTowards(tracer_.Around(), P),
+      [&](const Vector3d& direction) {
+        const auto found = tracer_.Trace(Point3d(P), direction);
+        if (!found || std::abs(glm::dot(found->normal, direction)) < kEdgeOn) return 0.0;
+        const auto e = light_.EvaluateSamples(subject_.context, HitFrom(*found, direction), P);
+        return e && IsBlack(*e) ? Value(e->pdfDirect) : 0.0;
+      },
+      rng_, report_);
+  std::string worst;
+  const double p = quadrature.Test(directions, options_.samples, 48, &worst);
+  probability("directions", p, worst);
+  probability("irradiance", EqualMeans(quadrature.Radiance(), counted.sum, 1e-3, kSeams * hidden),
+              InWords("what light sampling brings", counted.sum, quadrature.Radiance()));
+  error("consistency", errors.consistency, 1e-4);
+  error("multipliers", errors.multipliers, 1e-5);
+  error("surface", errors.surface, 1e-3);
+  error("surface", errors.compared > 0 ? static_cast<double>(errors.differing) / errors.compared : 0.0, 1e-2);
+  error("one-sided", leak_, 0.5);
+  error("camera", compared_ > 0 ? cameraDiffers_ / compared_ : 0.0, 1e-2);
+  if (!directions.empty()) CheckAreaEstimates(subject_, tracer_.Around(), receiver, rng_, report_);
+}
+
+}  // namespace
+
+void CheckSurfaceReceivers(const SuiteSubject& subject, const SuiteOptions& options, const SurfaceTracer& tracer,
+                           Rng& rng, SuiteReport& report) {
+  // Some point of the surface, by lines through its box.
+  std::optional<SurfaceHit> some;
+  Rng places = MakeRngOfPlaces(subject, options);
+  tracer.IntegrateOver(
+      1, [](const SurfaceHit&) { return 0; },
+      [&](const SurfaceHit& hit) {
+        if (!some) some = hit;
+        return 0.0;
+      },
+      places);
+  if (!some) return;
+  SurfaceReceiverChecker checker(subject, options, tracer, rng, report);
+  for (const Receiver& receiver : ReceiversAround(tracer.Around(), Point3(some->position), some->normal)) {
+    checker.Check(receiver);
+  }
+}
+
+void CheckSurfaceLight(const SuiteSubject& subject, const SuiteOptions& options, SuiteReport& report) {
+  const SurfaceTracer tracer(*subject.light->Surface(), *subject.context.transform);
+  Rng rng = MakeRng(subject, options);
+  CheckSurfaceReceivers(subject, options, tracer, rng, report);
+  CheckSurfaceEmission(subject, options, tracer, rng, report);
+}
+
+}  // namespace lampyr::suite

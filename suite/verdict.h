@@ -1,0 +1,21 @@
+// The suite's results as a person reads them: one verdict for each light and property, over all its cases.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "suite/pdf_suite.h"
+
+namespace lampyr {
+
+struct LightVerdict {
+  std::string light, property;
+  size_t cases = 0;
+  bool passed = true;  // in every case
+  SuiteResult worst;   // the case that is nearest to failing, or failed by most
+};
+
+// In the order in which the results first name them.
+std::vector<LightVerdict> SummariseByProperty(const std::vector<SuiteResult>& results);
+
+}  // namespace lampyr
