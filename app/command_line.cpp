@@ -2,11 +2,12 @@
 #include "app/command_line.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <initializer_list>
 #include <limits>
+#include <map>
 #include <new>
 #include <optional>
 #include <string_view>
@@ -14,46 +15,19 @@
 #include "app/command_support.h"
 #include "app/commands.h"
 #include "base/version.h"
+#include "integrators/registry.h"
 
 namespace lampyr {
 
 namespace {
 
-struct Unit {
-  const char* name;
-  double factor;
-};
-
-// A number and one of the units, or none. Nothing where it is not that.
-std::optional<double> ParseWithUnit(const std::string& text, std::initializer_list<Unit> units) {
-  char* end = nullptr;
-  const double number = std::strtod(text.c_str(), &end);
-  if (end == text.c_str()) return std::nullopt;
-  for (const Unit& unit : units) {
-    if (std::string_view(end) == unit.name) return number * unit.factor;
-  }
-  return std::nullopt;
-}
-
 // "90", "90s", "1.5m", "2h" -> seconds.
 double ParseDuration(const std::string& option, const std::string& text) {
-  const auto seconds = ParseWithUnit(text, {{"", 1}, {"s", 1}, {"m", 60}, {"min", 60}, {"h", 3600}});
-  if (!seconds || !(*seconds > 0) || !(*seconds < 1e9)) {
+  const double seconds = ParseWithUnit(text, {{"", 1}, {"s", 1}, {"m", 60}, {"min", 60}, {"h", 3600}});
+  if (!(seconds > 0) || !(seconds < 1e9)) {
     throw UsageError(option + ": \"" + text + "\" is not a duration; write 90s, 5m or 2h");
   }
-  return *seconds;
-}
-
-// "800M", "4G", "1000000000" -> bytes; nothing where nothing is said.
-std::optional<uint64_t> ParseMemory(const std::string& option, const std::string& text) {
-  if (text.empty()) return std::nullopt;
-  constexpr double kibi = 1024, mebi = 1024 * kibi, gibi = 1024 * mebi;
-  const auto bytes = ParseWithUnit(
-      text, {{"", 1}, {"B", 1}, {"K", kibi}, {"KiB", kibi}, {"M", mebi}, {"MiB", mebi}, {"G", gibi}, {"GiB", gibi}});
-  if (!bytes || !(*bytes >= 1) || !(*bytes < 1e15)) {
-    throw UsageError(option + ": \"" + text + "\" is not a size; write 800M or 4G");
-  }
-  return static_cast<uint64_t>(*bytes);
+  return seconds;
 }
 
 void ParseResolution(const std::string& text, RenderOverrides& overrides) {
@@ -84,24 +58,52 @@ std::string CheckPositive(const std::string& text) {
   return "\"" + text + "\" is too " + (number < 1 ? "small: at least 1.2e-38" : "large: at most 3.4e38");
 }
 
-std::string CheckNotNegative(const std::string& text) {
-  const double number = ParseFinite(text);
-  return number >= 0 && number <= kLargestFloat ? "" : "\"" + text + "\" is not a number of 0 or more";
-}
-
-std::string CheckFraction(const std::string& text) {
-  const double number = ParseFinite(text);
-  return number >= 0 && number <= 1 ? "" : "\"" + text + "\" is not a number from 0 to 1";
-}
-
 std::string CheckFinite(const std::string& text) {
   return std::abs(ParseFinite(text)) <= kLargestFloat ? "" : "\"" + text + "\" is not a finite number";
 }
 
-// Absent unless the flag or its opposite is given.
-void AddSwitch(CLI::App& app, const std::string& names, std::optional<bool>& value, const std::string& description) {
-  app.add_flag(
-      names, [&value](int64_t times) { value = times > 0; }, description);
+// The help of a setting: with its default, and which integrators have it where not all do.
+std::string HelpOf(const Setting& setting) {
+  std::string owners;
+  size_t count = 0;
+  for (const IntegratorType& type : IntegratorRegistry()) {
+    if (std::find(type.settings.begin(), type.settings.end(), &setting) == type.settings.end()) continue;
+    owners += (count > 0 ? ", " : "") + type.name;
+    ++count;
+  }
+  // Most have it: it is nobody's own.
+  std::string help = count + 1 >= IntegratorRegistry().size() ? "" : owners + ": ";
+  help +=
+      setting.help + " (" + (setting.fallbackText.empty() ? setting.Format(setting.fallback) : setting.fallbackText);
+  if (!setting.without.empty()) help += "; without, " + setting.without;
+  return help + ")";
+}
+
+// An option for each setting of an integrator: --name VALUE, of switches --name and --no-name.
+void DefineSettings(CLI::App& app, std::map<std::string, SettingValue>& values) {
+  const Settings all = IntegratorSettings();
+  for (const auto& [declared, fallback] : all.All()) {
+    const Setting* setting = declared;
+    const std::string name = "--" + setting->name, help = HelpOf(*setting);
+    if (std::holds_alternative<bool>(fallback)) {
+      app.add_flag(
+          name + ",!--no-" + setting->name, [&values, setting](int64_t times) { values[setting->name] = times > 0; },
+          help);
+      continue;
+    }
+    app.add_option_function<std::string>(
+           name, [&values, setting](const std::string& text) { values[setting->name] = setting->Parse(text); }, help)
+        ->check(CLI::Validator(
+            [setting](std::string& text) -> std::string {
+              try {
+                setting->Parse(text);
+                return "";
+              } catch (const Error& error) {
+                return error.Text();
+              }
+            },
+            ""));
+  }
 }
 
 void DefinePluginOption(CLI::App& app, PluginOptions& plugins, bool readsScenes = true) {
@@ -115,48 +117,13 @@ void DefinePluginOption(CLI::App& app, PluginOptions& plugins, bool readsScenes 
 }
 
 // What render and compare are told alike.
-void DefineSceneOptions(CLI::App& app, RenderOverrides& overrides, std::string& resolution, std::string& photonMemory,
-                        int& threads) {
+void DefineSceneOptions(CLI::App& app, RenderOverrides& overrides, std::string& resolution, int& threads) {
   app.add_option("--seed", overrides.seed, "Seed of the random numbers (0)");
   app.add_option("--threads", threads, "Threads (all)")->check(CLI::Range(1, 4096));
   app.add_option("--resolution", resolution, "Size of the image, e.g. 640x360");
   app.add_option("--crop", overrides.crop, "x0,x1,y0,y1: the part to render, in fractions of the image or in pixels");
-  app.add_option("--max-depth", overrides.maxDepth, "Scattering events of a path at most")
-      ->check(CLI::Range(0, 1 << 20));
   app.add_option("--sampler", overrides.sampler, "sobol | independent");
-  app.add_option("--light-sampler", overrides.lightSampler,
-                 "How a light is chosen: uniform | power | tree (default) | exhaustive");
-  app.add_option("--light-samples", overrides.lightSamples,
-                 "Lights to choose at each vertex, at most; fewer where few matter (1)")
-      ->check(CLI::Range(1, LightChoices::kMost));
-  app.add_option("--photons", overrides.photons, "sppm, vcm: light paths of a pass (as many as the image has pixels)")
-      ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 31));
-  app.add_option("--photon-memory", photonMemory,
-                 "sppm, vcm: memory for the photons of a pass, e.g. 512M, 4G; fewer light paths where it does not do "
-                 "(4G, on any machine: the picture depends on it)");
-  app.add_option("--radius", overrides.radius,
-                 "sppm, vcm: where photons are gathered in the first pass, scene units (from the size of pixels)")
-      ->check(CheckPositive, "POSITIVE");
-  app.add_option("--alpha", overrides.alpha, "sppm, vcm: how fast that radius shrinks, as pass^((alpha - 1) / 2) (2/3)")
-      ->check(CheckFraction, "");
-  AddSwitch(app, "--merge,!--no-merge", overrides.merges, "vcm: merge with photons (on); without, it is bdpt");
-  AddSwitch(app, "--connect,!--no-connect", overrides.connects,
-            "vcm: connect vertices (on); without, it is bidirectional photon mapping");
-  AddSwitch(app, "--direct-photons,!--no-direct-photons", overrides.directFromPhotons,
-            "sppm: gather photons for direct light, too, instead of sampling lights (off)");
-  AddSwitch(app, "--guide-photons,!--no-guide-photons", overrides.guidesPhotons,
-            "sppm, vcm: learn where photons are of use, and aim them there if it pays (on)");
-  app.add_option(
-         "--shadow-roulette", overrides.shadowRoulette,
-         "Trace shadow rays by chance whose light is below this part of what their sample has gathered: the mean "
-         "stays (0.05); 0: trace all")
-      ->check(CheckFraction, "");
-  app.add_option(
-         "--shadow-threshold", overrides.shadowThreshold,
-         "Leave out light that is below this, in the image's units, without a shadow ray: faster, and biased (0)")
-      ->check(CheckNotNegative, "");
-  AddSwitch(app, "--learn-lights,!--no-learn-lights", overrides.learnLights,
-            "Let the light tree learn which lights are occluded where (off)");
+  DefineSettings(app, overrides.values);
 }
 
 // "2/8".
@@ -175,7 +142,7 @@ constexpr double kCheckpointSeconds = 60;
 
 struct RenderCommand {
   RenderOptions options;
-  std::string time, resolution, photonMemory, checkpoint, shard;
+  std::string time, resolution, checkpoint, shard;
   bool fast = false;
 
   void Define(CLI::App& app) {
@@ -185,15 +152,16 @@ struct RenderCommand {
     app.add_flag("--png", options.png, "Also write a tone-mapped PNG beside it");
     app.add_option("--exposure", options.exposure, "Exposure of the PNG in stops (0)")->check(CheckFinite, "");
     app.add_flag("--clip", options.clipPng, "Clip the PNG at white instead of rolling highlights off");
-    app.add_option("--integrator", overrides.integrator,
-                   "path | light | bdpt | sppm | vcm, or auto: as `lampyr plan` says");
+    std::string names;
+    for (const IntegratorType& type : IntegratorRegistry()) names += (names.empty() ? "" : " | ") + type.name;
+    app.add_option("--integrator", overrides.integrator, names + ", or auto: as `lampyr plan` says");
     app.add_option("--spp", overrides.samplesPerPixel, "Stop after this many samples per pixel")
         ->check(CLI::Range(1, 1 << 30));
     app.add_option("--time", time, "Stop after this time: 90s, 5m, 2h");
     app.add_option("--target-error", options.targetError,
                    "Stop when the estimated relative error (95 % confidence) is below this, e.g. 0.02")
         ->check(CheckPositive, "POSITIVE");
-    DefineSceneOptions(app, overrides, resolution, photonMemory, options.threads);
+    DefineSceneOptions(app, overrides, resolution, options.threads);
     DefinePluginOption(app, options.plugins);
     app.add_option("--checkpoint", checkpoint,
                    "Write the image and what it takes to go on (OUT.checkpoint) this often: 30s, 5m. It stays there");
@@ -216,7 +184,6 @@ struct RenderCommand {
     if (!checkpoint.empty()) options.checkpointSeconds = ParseDuration("--checkpoint", checkpoint);
     if (!shard.empty()) options.shard = ParseShard(shard);
     if (!resolution.empty()) ParseResolution(resolution, options.overrides);
-    options.overrides.photonMemory = ParseMemory("--photon-memory", photonMemory);
     options.robust = !fast;
     return RunRender(options);
   }
@@ -235,7 +202,7 @@ void DefineMerge(CLI::App& app, MergeOptions& options) {
 struct CompareCommand {
   CompareOptions options;
   std::vector<std::string> times;
-  std::string resolution, photonMemory, referenceTime;
+  std::string resolution, referenceTime;
   bool fast = false;
 
   void Define(CLI::App& app) {
@@ -261,7 +228,7 @@ struct CompareCommand {
     app.add_option("--reference-time", referenceTime,
                    "Time to make the reference in; default: ten times the longest render");
     app.add_option("--exposure", options.exposure, "Exposure of the pictures in stops (0)")->check(CheckFinite, "");
-    DefineSceneOptions(app, options.overrides, resolution, photonMemory, options.threads);
+    DefineSceneOptions(app, options.overrides, resolution, options.threads);
     DefinePluginOption(app, options.plugins);
     app.add_flag("--quiet", options.quiet, "No progress and no tables");
     app.add_flag("--strict", options.strict, "Warnings about the scene are errors");
@@ -273,7 +240,6 @@ struct CompareCommand {
     for (const std::string& time : times) options.times.push_back(ParseDuration("--budget", time));
     if (!referenceTime.empty()) options.referenceSeconds = ParseDuration("--reference-time", referenceTime);
     if (!resolution.empty()) ParseResolution(resolution, options.overrides);
-    options.overrides.photonMemory = ParseMemory("--photon-memory", photonMemory);
     options.robust = !fast;
     options.command = "lampyr";
     for (int i = 1; i < argc; ++i) options.command += std::string(" ") + argv[i];

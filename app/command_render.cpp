@@ -14,7 +14,6 @@
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "base/version.h"
-#include "render/analysis/integrator_hints.h"
 #include "render/analysis/unseen_samples.h"
 #include "render/build/invalid_light.h"
 #include "render/checkpoints.h"
@@ -73,11 +72,11 @@ void CheckSceneStays(const RenderOptions& options, const SceneDescription& scene
 
 // An image too large for the machine is told before the system ends the process for it. The film is kept twice
 // (render_backup.h).
-void CheckMemory(const RenderSettings& settings, size_t layers, bool hasTechniques) {
+void CheckMemory(const RenderSettings& settings, TracedPaths paths, size_t layers, bool hasTechniques) {
   const uint64_t channels = 6 + 3 * layers;  // of the developed image: colour, variance and layers
-  const uint64_t techniques = hasTechniques ? TechniqueImages::BytesPerPixel(settings.maxDepth) : 0;
+  const uint64_t techniques = hasTechniques ? TechniqueImages::BytesPerPixel(settings.MaxDepth()) : 0;
   const uint64_t perPixel =
-      2 * (Film::BytesPerPixel(layers, settings.integrator != "path") + techniques) + 2 * channels * sizeof(float);
+      2 * (Film::BytesPerPixel(layers, paths != TracedPaths::Camera) + techniques) + 2 * channels * sizeof(float);
   const uint64_t needed = perPixel * settings.crop.Width() * settings.crop.Height();
   const uint64_t available = AvailableMemory();
   if (needed <= available) return;
@@ -88,13 +87,12 @@ void CheckMemory(const RenderSettings& settings, size_t layers, bool hasTechniqu
 }
 
 // The limit is the same on all machines, and what is kept of a pass of photons may be more than this one has.
-void WarnOfPhotonMemory(const RenderSettings& settings) {
-  if (!GathersPhotons(settings)) return;
-  const double paths = settings.photons.lightPaths > 0
-                           ? static_cast<double>(settings.photons.lightPaths)
+void WarnOfPhotonMemory(const RenderSettings& settings, const PhotonSettings& photons) {
+  const double paths = photons.lightPaths > 0
+                           ? static_cast<double>(photons.lightPaths)
                            : static_cast<double>(settings.width) * static_cast<double>(settings.height);
-  const double most = paths * settings.maxDepth * static_cast<double>(PhotonStore::BytesPerPhoton(true));
-  const double needed = std::min(most, static_cast<double>(settings.photons.mostBytes));
+  const double most = paths * settings.MaxDepth() * static_cast<double>(PhotonStore::BytesPerPhoton(true));
+  const double needed = std::min(most, static_cast<double>(photons.mostBytes));
   const auto available = static_cast<double>(AvailableMemory());
   if (needed <= available) return;
   std::fprintf(stderr,
@@ -164,9 +162,10 @@ DroppedReport DescribeDropped(const RenderOutcome& outcome, const BuiltScene& bu
 }
 
 // Of a picture without a whole sample of each pixel: how much of the first one is there.
-std::string DescribePartialPicture(const RenderOptions& options, const Film& film, const RenderSettings& settings) {
+std::string DescribePartialPicture(const RenderOptions& options, const Film& film, const RenderSettings& settings,
+                                   TracedPaths paths) {
   if (options.shard) return "the part holds no samples";
-  if (settings.integrator != "light") {
+  if (paths != TracedPaths::Light) {
     return "the picture is a part of the first sample: " + FormatPercent(film.SampledFraction()) +
            " of its pixels have it, the others are black";
   }
@@ -249,121 +248,173 @@ void CheckOptions(const RenderOptions& options, const RenderSettings& settings,
                      " needs --spp: each part has the radii of its own samples, whose numbers must be known");
   }
   if (!options.strategyImages) return;
-  if (settings.integrator != "bdpt")
-    throw UsageError("--strategy-images: only bdpt has strategies; the integrator is " + settings.integrator);
+  if (!IntegratorOf(settings.integrator).hasTechniques) {
+    std::vector<std::string> names;
+    for (const IntegratorType& type : IntegratorRegistry()) {
+      if (type.hasTechniques) names.push_back(type.name);
+    }
+    throw UsageError("--strategy-images: only " + Joined(names, ", ") + " has strategies; the integrator is " +
+                     settings.integrator);
+  }
   if (KeepsState(options))
     throw UsageError("--strategy-images goes without --checkpoint, --resume and --shard: they do not keep techniques");
   MakeFolder(*options.strategyImages, "--strategy-images");
 }
 
-// Writes what the render has come to. The exit code.
-int FinishRender(const RenderOptions& options, const BuiltScene& built, const PartHeader& header,
-                 ProgressiveRender& render, Checkpoints* checkpoints, const std::filesystem::path& path,
-                 RenderReport& report) {
+// One render, from the scene to its files.
+class RenderJob {
+ public:
+  RenderJob(const RenderOptions& options, const LoadedScene& loaded);
+  // The exit code.
+  int Run();
+
+ private:
+  void Describe();
+  void GoOn(ProgressiveRender& render);
+  void Trace(ProgressiveRender& render, Checkpoints* checkpoints);
+  int Finish(ProgressiveRender& render, Checkpoints* checkpoints);
+  int ExitCode(const std::string& partialPicture) const;
+
+  const RenderOptions& options_;
+  const LoadedScene& loaded_;
+  const BuiltScene& built_;
+  const RenderSettings& settings_;
+  const std::filesystem::path path_, checkpointPath_;
+  std::unique_ptr<Integrator> integrator_;
+  Shard shard_;
+  PartHeader header_;
+  RenderReport report_;
+};
+
+RenderJob::RenderJob(const RenderOptions& options, const LoadedScene& loaded)
+    : options_(options),
+      loaded_(loaded),
+      built_(loaded.built),
+      settings_(built_.settings),
+      path_(OutputPath(options, settings_)),
+      checkpointPath_(CheckpointPath(path_)) {
+  CheckOptions(options, settings_, checkpointPath_);
+  integrator_ = MakeIntegrator(built_.scene, settings_);
+  CheckMemory(settings_, integrator_->Paths(), built_.scene.lighting->Groups().Layers().size(),
+              options.strategyImages.has_value());
+  if (const auto photons = integrator_->Photons(); photons && !options.quiet) WarnOfPhotonMemory(settings_, *photons);
+  const auto [part, parts] = options.shard.value_or(std::pair(1, 1));
+  shard_ = ShardOf(part, parts, SamplesWanted(options, settings_));
+  header_ = MakeHeader(options, loaded, shard_);
+  Describe();
+}
+
+void RenderJob::Describe() {
+  report_.scene = options_.scene.string();
+  report_.sceneHash = loaded_.hash;
+  report_.parseSeconds = loaded_.parseSeconds;
+  report_.buildSeconds = loaded_.buildSeconds;
+  report_.integrator = settings_.integrator;
+  for (const Setting* setting : IntegratorOf(settings_.integrator).settings)
+    report_.settings.emplace_back(setting->name, settings_.values.Value(setting->name));
+  report_.seed = settings_.seed;
+  report_.threads = options_.threads > 0 ? options_.threads : HardwareThreads();
+  report_.width = settings_.width;
+  report_.height = settings_.height;
+  report_.pixels = static_cast<int64_t>(settings_.crop.Width()) * settings_.crop.Height();
+  report_.primitives = built_.scene.geometry->PrimitiveCount();
+  report_.lights = built_.scene.lighting->Lights().size();
+  report_.lightGroups = built_.scene.lighting->Groups().Layers();
+}
+
+void RenderJob::GoOn(ProgressiveRender& render) {
+  if (std::filesystem::exists(checkpointPath_)) {
+    ResumeFrom(checkpointPath_, header_, render);
+    report_.resumedSamples = render.Outcome().samplesPerPixel;
+    if (!options_.quiet)
+      std::fprintf(stderr, "%s: goes on after %d spp\n", checkpointPath_.c_str(), report_.resumedSamples);
+  } else if (!options_.quiet) {
+    std::fprintf(stderr, "there is no \"%s\" to go on with: starts anew\n", checkpointPath_.c_str());
+  }
+}
+
+void RenderJob::Trace(ProgressiveRender& render, Checkpoints* checkpoints) {
+  StopConditions stop = MakeStopConditions(options_, shard_);
+  stop.largestSample = LargestUnseenSample(built_.scene, settings_);
+  stop.interrupted = &FinishOnInterrupt();
+  Progress progress(options_.quiet);
+  const auto afterPass = [&](const RenderOutcome& soFar, double fraction) {
+    progress.Update(fraction,
+                    std::to_string(soFar.samplesPerPixel) + " spp, error " + FormatPercent(soFar.relativeError));
+    if (checkpoints && fraction < 1) checkpoints->MayWrite(soFar);
+  };
+  report_.outcome = Continue(render, stop, afterPass);
+}
+
+int RenderJob::Run() {
+  auto lock = std::make_unique<OutputLock>(path_);
+  Film film = header_.MakeFilm();
+  std::unique_ptr<TechniqueImages> techniques;
+  if (options_.strategyImages) {
+    techniques = std::make_unique<TechniqueImages>(settings_.width, settings_.height, settings_.crop,
+                                                   settings_.MaxDepth(), settings_.imagingRatio);
+  }
+  if (!options_.quiet) {
+    for (const std::string& hint : IntegratorHints(built_.scene, settings_.integrator))
+      std::fprintf(stderr, "hint: %s\n", hint.c_str());
+  }
+  ProgressiveRender render(built_.scene, *integrator_, settings_, report_.threads, film, techniques.get(),
+                           shard_.first);
+  if (options_.resume) GoOn(render);
+  std::optional<Checkpoints> checkpoints;
+  if (options_.checkpointSeconds) {
+    checkpoints.emplace(checkpointPath_, *options_.checkpointSeconds, header_, render, [&](const RenderOutcome& soFar) {
+      RenderOutcome unfinished = soFar;
+      unfinished.interrupted = true;
+      WriteImage(path_, options_, header_, film, unfinished);
+    });
+  }
+  Checkpoints* const written = checkpoints ? &*checkpoints : nullptr;
+  Trace(render, written);
+  report_.rejectedRays = built_.scene.geometry->RejectedRays();
+  return FinishRendering([&] {
+    const std::unique_ptr<OutputLock> held = std::move(lock);
+    return Finish(render, written);
+  });
+}
+
+// Writes what the render has come to.
+int RenderJob::Finish(ProgressiveRender& render, Checkpoints* checkpoints) {
   const Progress clock(true);
   const Film& film = render.Picture();
-  const bool isPartial = report.outcome.isPartial;
-  const std::string partialPicture = isPartial ? DescribePartialPicture(options, film, built.settings) : "";
+  const bool isPartial = report_.outcome.isPartial;
+  const std::string partialPicture =
+      isPartial ? DescribePartialPicture(options_, film, settings_, integrator_->Paths()) : "";
   // The sums in a part's image are of whole samples.
-  if (options.shard) render.DropPartialPass();
-  if (render.Techniques()) WriteTechniques(options, render.Techniques()->Develop(film));
-  WriteImageOrKeepIt(path, options, header, film, report.outcome);
-  if (options.png) WritePngBeside(path, film.Develop(), options.exposure, options.clipPng);
+  if (options_.shard) render.DropPartialPass();
+  if (render.Techniques()) WriteTechniques(options_, render.Techniques()->Develop(film));
+  WriteImageOrKeepIt(path_, options_, header_, film, report_.outcome);
+  if (options_.png) WritePngBeside(path_, film.Develop(), options_.exposure, options_.clipPng);
   render.DropPartialPass();
-  if (checkpoints) checkpoints->Finish(report.outcome);
-  report.writeSeconds = clock.Seconds();
-  if (options.stats) WriteText(*options.stats, ToJson(report));
-  if (!options.quiet) PrintSummary(report, path);
-  const DroppedReport dropped = DescribeDropped(report.outcome, built);
-  const bool isWrong = report.outcome.droppedFraction > kMostDropped && !report.outcome.interrupted;
+  if (checkpoints) checkpoints->Finish(report_.outcome);
+  report_.writeSeconds = clock.Seconds();
+  if (options_.stats) WriteText(*options_.stats, ToJson(report_));
+  if (!options_.quiet) PrintSummary(report_, path_);
+  return ExitCode(partialPicture);
+}
+
+// `partialPicture`: of a picture without a whole sample of each pixel, how much is there.
+int RenderJob::ExitCode(const std::string& partialPicture) const {
+  const RenderOutcome& outcome = report_.outcome;
+  const DroppedReport dropped = DescribeDropped(outcome, built_);
+  const bool isWrong = outcome.droppedFraction > kMostDropped && !outcome.interrupted;
   if (isWrong) throw Error(dropped.where, dropped.text);
-  if (!dropped.text.empty() && !options.quiet) {
+  if (!dropped.text.empty() && !options_.quiet) {
     const std::string where = dropped.where.ToString();
     std::fprintf(stderr, "%s%swarning: %s\n", where.c_str(), where.empty() ? "" : ": ", dropped.text.c_str());
   }
-  if (report.outcome.interrupted) {
-    if (isPartial && !options.quiet) std::fprintf(stderr, "warning: interrupted: %s\n", partialPicture.c_str());
+  if (outcome.interrupted) {
+    if (outcome.isPartial && !options_.quiet)
+      std::fprintf(stderr, "warning: interrupted: %s\n", partialPicture.c_str());
     return InterruptExitCode();
   }
-  if (isPartial) throw Error("no sample of every pixel was done in the time (--time): " + partialPicture);
+  if (outcome.isPartial) throw Error("no sample of every pixel was done in the time (--time): " + partialPicture);
   return kExitDone;
-}
-
-int RenderLoaded(const RenderOptions& options, const LoadedScene& loaded) {
-  RenderReport report;
-  const BuiltScene& built = loaded.built;
-  const RenderSettings& settings = built.settings;
-  const std::filesystem::path path = OutputPath(options, settings), checkpointPath = CheckpointPath(path);
-  CheckOptions(options, settings, checkpointPath);
-  const std::vector<std::string>& layers = built.scene.lighting->Groups().Layers();
-  CheckMemory(settings, layers.size(), options.strategyImages.has_value());
-  if (!options.quiet) WarnOfPhotonMemory(settings);
-  const auto [part, parts] = options.shard.value_or(std::pair(1, 1));
-  const Shard shard = ShardOf(part, parts, SamplesWanted(options, settings));
-  const PartHeader header = MakeHeader(options, loaded, shard);
-  auto lock = std::make_unique<OutputLock>(path);
-
-  report.scene = options.scene.string();
-  report.sceneHash = loaded.hash;
-  report.parseSeconds = loaded.parseSeconds;
-  report.buildSeconds = loaded.buildSeconds;
-  report.integrator = settings.integrator;
-  report.seed = settings.seed;
-  report.threads = options.threads > 0 ? options.threads : HardwareThreads();
-  report.width = settings.width;
-  report.height = settings.height;
-  report.pixels = static_cast<int64_t>(settings.crop.Width()) * settings.crop.Height();
-  report.primitives = built.scene.geometry->PrimitiveCount();
-  report.lights = built.scene.lighting->Lights().size();
-  report.lightGroups = layers;
-
-  const std::unique_ptr<Integrator> integrator = MakeIntegrator(built.scene, settings);
-  Film film = header.MakeFilm();
-  std::unique_ptr<TechniqueImages> techniques;
-  if (options.strategyImages) {
-    techniques = std::make_unique<TechniqueImages>(settings.width, settings.height, settings.crop, settings.maxDepth,
-                                                   settings.imagingRatio);
-  }
-  if (!options.quiet) {
-    for (const std::string& hint : IntegratorHints(built.scene, settings.integrator))
-      std::fprintf(stderr, "hint: %s\n", hint.c_str());
-  }
-  ProgressiveRender render(built.scene, *integrator, settings, report.threads, film, techniques.get(), shard.first);
-  if (options.resume) {
-    if (std::filesystem::exists(checkpointPath)) {
-      ResumeFrom(checkpointPath, header, render);
-      report.resumedSamples = render.Outcome().samplesPerPixel;
-      if (!options.quiet)
-        std::fprintf(stderr, "%s: goes on after %d spp\n", checkpointPath.c_str(), report.resumedSamples);
-    } else if (!options.quiet) {
-      std::fprintf(stderr, "there is no \"%s\" to go on with: starts anew\n", checkpointPath.c_str());
-    }
-  }
-  std::optional<Checkpoints> checkpoints;
-  if (options.checkpointSeconds) {
-    checkpoints.emplace(checkpointPath, *options.checkpointSeconds, header, render, [&](const RenderOutcome& soFar) {
-      RenderOutcome unfinished = soFar;
-      unfinished.interrupted = true;
-      WriteImage(path, options, header, film, unfinished);
-    });
-  }
-  StopConditions stop = MakeStopConditions(options, shard);
-  stop.largestSample = LargestUnseenSample(built.scene, settings);
-  stop.interrupted = &FinishOnInterrupt();
-  {
-    Progress progress(options.quiet);
-    const auto afterPass = [&](const RenderOutcome& soFar, double fraction) {
-      progress.Update(fraction,
-                      std::to_string(soFar.samplesPerPixel) + " spp, error " + FormatPercent(soFar.relativeError));
-      if (checkpoints && fraction < 1) checkpoints->MayWrite(soFar);
-    };
-    report.outcome = Continue(render, stop, afterPass);
-  }
-  report.rejectedRays = built.scene.geometry->RejectedRays();
-  return FinishRendering([&] {
-    const std::unique_ptr<OutputLock> held = std::move(lock);
-    return FinishRender(options, built, header, render, checkpoints ? &*checkpoints : nullptr, path, report);
-  });
 }
 
 }  // namespace
@@ -376,7 +427,7 @@ int RunRender(const RenderOptions& options) {
                   CheckSceneStays(options, scene, settings);
                 });
   int exitCode = kExitFailed;
-  RunForeignCode(loaded.types, [&] { exitCode = RenderLoaded(options, loaded); });
+  RunForeignCode(loaded.types, [&] { exitCode = RenderJob(options, loaded).Run(); });
   return exitCode;
 }
 

@@ -20,6 +20,12 @@ std::string Dump(const Json& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
+Json ToTree(const std::vector<std::pair<std::string, SettingValue>>& settings) {
+  Json tree = Json::object();
+  for (const auto& [name, value] : settings) std::visit([&](const auto& own) { tree[name] = own; }, value);
+  return tree;
+}
+
 }  // namespace
 
 std::string ToJson(const RenderReport& report) {
@@ -31,6 +37,7 @@ std::string ToJson(const RenderReport& report) {
       {"scene", report.scene},
       {"sceneHash", report.sceneHash},
       {"integrator", report.integrator},
+      {"settings", ToTree(report.settings)},
       {"seed", report.seed},
       {"threads", report.threads},
       {"width", report.width},

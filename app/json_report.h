@@ -12,6 +12,7 @@ namespace lampyr {
 // Everything `--stats` holds. Times in seconds, memory in MiB.
 struct RenderReport {
   std::string scene, sceneHash, integrator;
+  std::vector<std::pair<std::string, SettingValue>> settings;  // of the integrator
   uint64_t seed = 0;
   int threads = 1, width = 0, height = 0;
   int64_t pixels = 0;

@@ -48,7 +48,7 @@ ProgressiveRender::ProgressiveRender(const RenderScene& scene, const Integrator&
   if (wantedPhotons_ && wantedPhotons_->guided)
     guiding_ = std::make_unique<EmissionLearning>(scene, settings.width, settings.height);
   MakePhotonStore();
-  if (settings.learnLights) learning_ = std::make_unique<LightLearning>(scene.lighting->SceneSphere());
+  if (settings.LearnsLights()) learning_ = std::make_unique<LightLearning>(scene.lighting->SceneSphere());
 }
 
 void ProgressiveRender::MakePhotonStore() {

@@ -128,37 +128,28 @@ RenderIdentity IdentityOf(const LoadedScene& loaded, bool robustIntersection) {
   const PixelFilterSettings& f = s.filter;
   const auto integer = [](auto value) { return std::to_string(value); };
   const PixelRect& crop = s.crop;
-  return {{"the version of lampyr", kVersion},
-          {"the scene's text (its fingerprint)", loaded.hash},
-          {"what the files of the scene hold (its fingerprint)", HashOfFiles(loaded.files)},
-          {"the number of plugins", integer(loaded.types.Plugins().size())},
-          {"the integrator", s.integrator},
-          {"the seed", integer(s.seed)},
-          {"the resolution", integer(s.width) + "x" + integer(s.height)},
-          {"the crop", integer(crop.x0) + "," + integer(crop.x1) + "," + integer(crop.y0) + "," + integer(crop.y1)},
-          {"the exposure", Exactly(static_cast<double>(s.imagingRatio))},
-          {"half precision", YesOrNo(s.halfPrecision)},
-          {"the kind of pixel filter", integer(static_cast<int>(f.kind))},
-          {"the pixel filter's settings",
-           Exactly(static_cast<double>(f.radiusX)) + " " + Exactly(static_cast<double>(f.radiusY)) + " " +
-               Exactly(static_cast<double>(f.sigma)) + " " + Exactly(static_cast<double>(f.b)) + " " +
-               Exactly(static_cast<double>(f.c)) + " " + Exactly(static_cast<double>(f.tau))},
-          {"the sampler", s.sampler == SamplerKind::Sobol ? "sobol" : "independent"},
-          {"the maximum depth", integer(s.maxDepth)},
-          {"the light sampler", NameOf(s.lightSelection)},
-          {"the number of light samples", integer(s.lightSamples)},
-          {"learning of lights", YesOrNo(s.learnLights)},
-          {"the roulette of shadow rays", Exactly(static_cast<double>(s.shadowRays.roulette))},
-          {"the threshold of shadow rays", Exactly(static_cast<double>(s.shadowRays.threshold))},
-          {"the photons' radius", Exactly(s.photons.radius)},
-          {"the photons' alpha", Exactly(s.photons.alpha)},
-          {"the number of light paths", integer(s.photons.lightPaths)},
-          {"the memory for photons", integer(GathersPhotons(s) ? s.photons.mostBytes : 0)},
-          {"guiding of photons", YesOrNo(s.photons.guided)},
-          {"merging", YesOrNo(s.merges)},
-          {"connecting", YesOrNo(s.connects)},
-          {"photons for direct light", YesOrNo(s.directFromPhotons)},
-          {"watertight intersection", YesOrNo(robustIntersection)}};
+  RenderIdentity identity = {
+      {"the version of lampyr", kVersion},
+      {"the scene's text (its fingerprint)", loaded.hash},
+      {"what the files of the scene hold (its fingerprint)", HashOfFiles(loaded.files)},
+      {"the number of plugins", integer(loaded.types.Plugins().size())},
+      {"the integrator", s.integrator},
+      {"the seed", integer(s.seed)},
+      {"the resolution", integer(s.width) + "x" + integer(s.height)},
+      {"the crop", integer(crop.x0) + "," + integer(crop.x1) + "," + integer(crop.y0) + "," + integer(crop.y1)},
+      {"the exposure", Exactly(static_cast<double>(s.imagingRatio))},
+      {"half precision", YesOrNo(s.halfPrecision)},
+      {"the kind of pixel filter", integer(static_cast<int>(f.kind))},
+      {"the pixel filter's settings",
+       Exactly(static_cast<double>(f.radiusX)) + " " + Exactly(static_cast<double>(f.radiusY)) + " " +
+           Exactly(static_cast<double>(f.sigma)) + " " + Exactly(static_cast<double>(f.b)) + " " +
+           Exactly(static_cast<double>(f.c)) + " " + Exactly(static_cast<double>(f.tau))},
+      {"the sampler", s.sampler == SamplerKind::Sobol ? "sobol" : "independent"},
+      {"watertight intersection", YesOrNo(robustIntersection)}};
+  for (const Setting* setting : IntegratorOf(s.integrator).settings) {
+    if (setting->changesPicture) identity.emplace_back("--" + setting->name, Setting::Exactly(s.values.Value(setting->name)));
+  }
+  return identity;
 }
 
 std::string DifferenceOf(const RenderIdentity& there, const RenderIdentity& here) {

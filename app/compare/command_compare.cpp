@@ -11,7 +11,6 @@
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "film/atomic_file.h"
-#include "render/analysis/integrator_hints.h"
 #include "render/load_scene.h"
 #include "render/output_files.h"
 #include "render/settings/integrator_choice.h"
@@ -200,7 +199,7 @@ ComparisonResults Describe(const CompareOptions& options, const LoadedScene& loa
   results.command = options.command;
   results.width = settings.crop.Width();
   results.height = settings.crop.Height();
-  results.maxDepth = settings.maxDepth;
+  results.maxDepth = settings.MaxDepth();
   results.threads = options.threads > 0 ? options.threads : HardwareThreads();
   return results;
 }

@@ -6,7 +6,6 @@
 
 #include "app/compare/estimate.h"
 #include "film/metrics.h"
-#include "render/analysis/integrator_hints.h"
 
 namespace lampyr {
 

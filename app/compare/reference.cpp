@@ -8,7 +8,6 @@
 #include "app/compare/estimate.h"
 #include "base/progress.h"
 #include "base/version.h"
-#include "render/analysis/integrator_hints.h"
 #include "render/settings/integrator_choice.h"
 #include "sampling/rng.h"
 
@@ -238,9 +237,9 @@ std::vector<Pilot> FlyPilots(const ComparedScene& scene, double seconds, const R
   // is.
   const bool needsPhotons = !IntegratorHints(scene.Built().scene, "bdpt").empty();
   for (const std::string& name : IntegratorNames()) {
-    if (GathersPhotons(name) && !(needsPhotons && name == "vcm")) continue;
+    if (GathersPhotons(name, scene.Built().settings.values) && !(needsPhotons && name == "vcm")) continue;
     PilotRun run;
-    run.isBlurred = GathersPhotons(name);
+    run.isBlurred = GathersPhotons(name, scene.Built().settings.values);
     run.pilot.integrator = name;
     run.isHinted = !IntegratorHints(scene.Built().scene, name).empty();
     runs.push_back(run);
@@ -311,7 +310,7 @@ std::string ReferenceKey(const ComparedScene& scene, const std::string& sceneHas
   };
   scene.Render("bdpt", SeedOf(SeedUse::Key, 0), {}, {1}, add, [](double) {});
   const PixelRect& crop = settings.crop;
-  std::string key = std::string(kVersion) + " " + sceneHash + " depth " + std::to_string(settings.maxDepth) + " crop";
+  std::string key = std::string(kVersion) + " " + sceneHash + " depth " + std::to_string(settings.MaxDepth()) + " crop";
   for (const int side : {settings.width, settings.height, crop.x0, crop.y0, crop.x1, crop.y1})
     key += " " + std::to_string(side);
   char text[32];

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/error.h"
 #include "base/stop.h"
 #include "integrators/bidirectional/techniques.h"
 #include "integrators/photon/photon_pass.h"
+#include "integrators/photon/photon_settings.h"
+#include "integrators/walk/footprint.h"
 
 namespace lampyr {
 
@@ -183,6 +186,73 @@ Color BidirectionalIntegrator::Sample(const Ray* ray, const SampleContext& conte
 
 std::unique_ptr<Integrator> MakeBidirectionalIntegrator(const BidirectionalSettings& settings) {
   return std::make_unique<BidirectionalIntegrator>(settings);
+}
+
+namespace {
+
+// The radius of merging in the first pass, where the user names none: a blur no wider than that of most pixel filters.
+constexpr double kRadiusInPixels = 1;
+
+const Setting kMerge{.name = "merge", .help = "Merge with photons", .fallback = true, .without = "it is bdpt"};
+const Setting kConnect{
+    .name = "connect", .help = "Connect vertices", .fallback = true, .without = "it is bidirectional photon mapping"};
+
+BidirectionalSettings SettingsOf(const IntegratorInput& input) {
+  BidirectionalSettings settings;
+  settings.maxDepth = MaxDepthOf(input.settings);
+  settings.filmPixels = input.FilmPixels();
+  settings.shadowRays = ShadowRaysOf(input);
+  return settings;
+}
+
+std::unique_ptr<Integrator> CreateVcm(const IntegratorInput& input) {
+  BidirectionalSettings settings = SettingsOf(input);
+  settings.merges = input.settings.IsOn(kMerge.name);
+  settings.connects = input.settings.IsOn(kConnect.name);
+  if (!settings.merges && !settings.connects)
+    throw UsageError("--no-merge and --no-connect: vcm has nothing left to find light by");
+  settings.photons = PhotonSettingsOf(input);
+  if (settings.merges && settings.photons.radius == 0)
+    settings.photons.radius = kRadiusInPixels * TypicalFootprint(input.scene, input.width, input.height);
+  // Where nothing is smooth, connections find all light: photons are little of it, whatever they are aimed at.
+  settings.photons.guided = settings.photons.guided && (!settings.connects || HasSmoothMaterial(input.scene));
+  return MakeBidirectionalIntegrator(settings);
+}
+
+std::vector<std::string> BdptHints(const RenderScene& scene) {
+  const size_t deltas = DeltaLightCount(scene);
+  if (deltas == 0 || !HasSmoothMaterial(scene)) return {};
+  return {
+      "light without extent (" + std::to_string(deltas) + " of " + std::to_string(scene.lighting->Lights().size()) +
+      " lights) that comes through smooth glass or off mirrors and is seen through or in them again cannot be found "
+      "by connecting paths; --integrator vcm and sppm find it"};
+}
+
+}  // namespace
+
+IntegratorType BdptIntegratorType() {
+  IntegratorType type;
+  type.name = "bdpt";
+  type.help = "paths from both sides, each vertex of one connected to each of the other";
+  type.settings = {&common_settings::kMaxDepth};
+  type.settings.insert(type.settings.end(), common_settings::kOfNextEvent.begin(), common_settings::kOfNextEvent.end());
+  type.create = [](const IntegratorInput& input) { return MakeBidirectionalIntegrator(SettingsOf(input)); };
+  type.hasTechniques = true;
+  type.hints = BdptHints;
+  return type;
+}
+
+IntegratorType VcmIntegratorType() {
+  IntegratorType type;
+  type.name = "vcm";
+  type.help = "the same, and photons of other light paths near each vertex of the camera's";
+  type.settings = {&common_settings::kMaxDepth};
+  for (const auto* more : {&common_settings::kOfNextEvent, &photon_settings::kAll})
+    type.settings.insert(type.settings.end(), more->begin(), more->end());
+  type.settings.insert(type.settings.end(), {&kMerge, &kConnect});
+  type.create = CreateVcm;
+  type.gathersPhotons = [](const Settings& settings) { return settings.IsOn(kMerge.name); };
+  return type;
 }
 
 }  // namespace lampyr

@@ -1,5 +1,17 @@
-#include "integrators/light/light_integrator.h"
+// Light tracing: paths start at the lights, and each of their vertices is connected to the camera ([Veach97 §10.3.1],
+// the techniques with t = 1; particle tracing of [Dutré93]).
+//
+// Finds what path tracing cannot: caustics of point, spot and distant lights on anything that is not perfectly smooth.
+// Cannot find: what the camera sees in or through something perfectly smooth (a mirror, a pane, glass), because a delta
+// is never met by a connection; lights at infinity seen directly (the background), which have no point to connect; and
+// lights with traceLightPaths off, which send out nothing. Such parts of the picture are black, not wrong.
+// What is small or far off in the image gets few paths: they go where the light goes, not where the camera looks.
+//
+// Depth counts scattering events between light and camera, as for `path`. Survival of roulette enters the throughput
+// only.
+#include <algorithm>
 
+#include "integrators/walk/integrator_type.h"
 #include "integrators/walk/lens.h"
 #include "integrators/walk/light_path.h"
 
@@ -31,24 +43,51 @@ class Seen final : public LightPathVisitor {
 
 class LightIntegrator final : public Integrator {
  public:
-  explicit LightIntegrator(const LightPathSettings& settings) : settings_(settings) {}
+  explicit LightIntegrator(int maxDepth) : maxDepth_(maxDepth) {}
 
   TracedPaths Paths() const override { return TracedPaths::Light; }
   Color Sample(const Ray*, const SampleContext& context) const override {
     thread_local LightPath path(false);
     Seen visitor(context);
-    TraceLightPath(context, settings_.maxDepth, {}, path, visitor);
+    TraceLightPath(context, maxDepth_, {}, path, visitor);
     return Color(0.0f);
   }
 
  private:
-  LightPathSettings settings_;
+  int maxDepth_;
 };
+
+std::vector<std::string> Hints(const RenderScene& scene) {
+  std::vector<std::string> hints;
+  const std::vector<PlacedLight>& lights = scene.lighting->Lights();
+  const bool hasBackground = std::any_of(lights.begin(), lights.end(), [](const PlacedLight& placed) {
+    return placed.light->Kind() == LightKind::Infinite && placed.light->Settings().cameraVisible;
+  });
+  if (hasBackground) {
+    hints.push_back(
+        "no path from a light behind everything can be connected to the camera, so the background stays black; "
+        "--integrator path and bdpt show it");
+  }
+  if (HasSmoothMaterial(scene)) {
+    hints.push_back(
+        "no path from a light can be connected to the camera at a mirror or smooth glass, so these stay black; "
+        "--integrator bdpt shows them");
+  }
+  return hints;
+}
 
 }  // namespace
 
-std::unique_ptr<Integrator> MakeLightIntegrator(const LightPathSettings& settings) {
-  return std::make_unique<LightIntegrator>(settings);
+IntegratorType LightIntegratorType() {
+  IntegratorType type;
+  type.name = "light";
+  type.help = "paths from the lights, each vertex connected to the camera";
+  type.settings = {&common_settings::kMaxDepth};
+  type.create = [](const IntegratorInput& input) {
+    return std::make_unique<LightIntegrator>(MaxDepthOf(input.settings));
+  };
+  type.hints = Hints;
+  return type;
 }
 
 }  // namespace lampyr

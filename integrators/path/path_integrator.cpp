@@ -1,6 +1,9 @@
-#include "integrators/path/path_integrator.h"
-
+// Path tracing with next-event estimation: at each vertex lights are sampled and one BSDF direction is followed, and
+// the two ways of reaching a light are weighted by the power heuristic ([Veach97 §9], [Pharr23 §13.4]).
+//
+// Cannot find: delta lights through anything but diffuse or rough surfaces (no caustics of point lights).
 #include "integrators/path/camera_path.h"
+#include "integrators/walk/integrator_type.h"
 
 namespace lampyr {
 
@@ -8,8 +11,7 @@ namespace {
 
 class PathIntegrator final : public Integrator {
  public:
-  explicit PathIntegrator(const PathSettings& settings)
-      : settings_{settings.maxDepth, {}, 0, true, settings.shadowRays} {}
+  explicit PathIntegrator(const CameraPathSettings& settings) : settings_(settings) {}
 
   TracedPaths Paths() const override { return TracedPaths::Camera; }
   Color Sample(const Ray* ray, const SampleContext& context) const override {
@@ -20,10 +22,33 @@ class PathIntegrator final : public Integrator {
   CameraPathSettings settings_;
 };
 
+std::unique_ptr<Integrator> Create(const IntegratorInput& input) {
+  CameraPathSettings settings;
+  settings.maxDepth = MaxDepthOf(input.settings);
+  settings.shadowRays = ShadowRaysOf(input);
+  return std::make_unique<PathIntegrator>(settings);
+}
+
+std::vector<std::string> Hints(const RenderScene& scene) {
+  const size_t deltas = DeltaLightCount(scene);
+  if (deltas == 0 || !HasSmoothMaterial(scene)) return {};
+  return {"no path from the camera can hit a light without extent (" + std::to_string(deltas) + " of " +
+          std::to_string(scene.lighting->Lights().size()) +
+          " lights: point, spot, distant and the like), so what they send through smooth glass or off mirrors is "
+          "missing; --integrator bdpt finds it"};
+}
+
 }  // namespace
 
-std::unique_ptr<Integrator> MakePathIntegrator(const PathSettings& settings) {
-  return std::make_unique<PathIntegrator>(settings);
+IntegratorType PathIntegratorType() {
+  IntegratorType type;
+  type.name = "path";
+  type.help = "paths from the camera, with next-event estimation";
+  type.settings = {&common_settings::kMaxDepth};
+  type.settings.insert(type.settings.end(), common_settings::kOfNextEvent.begin(), common_settings::kOfNextEvent.end());
+  type.create = Create;
+  type.hints = Hints;
+  return type;
 }
 
 }  // namespace lampyr

@@ -143,24 +143,23 @@ PlanDecision ChooseSelection(const Facts& facts, const RenderSettings& settings)
   const size_t infinite = facts.infinite, others = facts.lights - infinite;
   if (facts.lights <= 1 && facts.patches <= 2)
     return {"light selection", "none", facts.lights == 0 ? "there is no light" : "there is a single light"};
-  const std::string name = NameOf(settings.lightSelection);
+  const std::string name = NameOf(settings.LightSampler());
   std::string of = Count(others, "light");
   if (facts.patches > facts.lights) of += " of " + std::to_string(facts.patches - infinite) + " patches";
   if (infinite > 0) of += ", " + std::to_string(infinite) + " at infinity beside";
   return {"light selection", name, of};
 }
 
-PlanDecision ChooseMerging(const Facts& facts, const std::string& integrator, const RenderScene& scene,
-                           const RenderSettings& settings) {
-  if (integrator == "vcm" && settings.merges) {
-    char text[96];
-    const double radius = FirstRadius(scene, settings);
-    std::snprintf(text, sizeof text, "within %.3g of a vertex at first, a pixel as it is seen", radius);
-    return {"merging", "on", settings.photons.radius > 0 ? "within the radius that is set" : text};
+PlanDecision ChooseMerging(const Facts& facts, const std::optional<PhotonSettings>& photons, bool hasOwnRadius) {
+  if (!photons) {
+    return {"photons", "none",
+            facts.smooth == 0 ? "nothing is smooth: other techniques find all light" : "the integrator has none"};
   }
-  if (integrator == "sppm") return {"photons", "gathered", "all light but that which is sampled directly"};
-  return {"merging", "off",
-          facts.smooth == 0 ? "nothing is smooth: other techniques find all light" : "the integrator has none"};
+  if (hasOwnRadius) return {"photons", "gathered", "within the radius that is set"};
+  if (photons->radius == 0) return {"photons", "gathered", "within two pixels, as they are seen there, at first"};
+  char text[96];
+  std::snprintf(text, sizeof text, "within %.3g of a vertex at first, a pixel as it is seen", photons->radius);
+  return {"photons", "gathered", text};
 }
 
 PlanDecision ChooseFilters(const LightingServices& lighting) {
@@ -176,10 +175,9 @@ PlanDecision ChooseLinking(const LightingServices& lighting) {
           std::to_string(lighting.Linking().Sets().lights.size()) + " sets of lights, each with a selector of its own"};
 }
 
-PlanDecision ChooseGuiding(const RenderScene& scene, const RenderSettings& settings, const std::string& integrator) {
-  if (!settings.photons.guided) return {"guiding", "off", "--no-guide-photons"};
-  if (!MayGuidePhotons(scene, settings, integrator))
-    return {"guiding", "off", "nothing is smooth: photons are little of the light"};
+PlanDecision ChooseGuiding(const RenderSettings& settings, const PhotonSettings& photons) {
+  if (!settings.values.IsOn("guide-photons")) return {"guiding", "off", "--no-guide-photons"};
+  if (!photons.guided) return {"guiding", "off", "nothing is smooth: photons are little of the light"};
   return {"guiding", "if it pays", "learned from the first samples"};
 }
 
@@ -206,14 +204,14 @@ ScenePlan PlanFor(const RenderScene& scene, const RenderSettings& settings) {
     plan.decisions.push_back({"integrator", settings.integrator, "as it is set; \"auto\" would be " + chosen.choice});
     if (settings.integrator != chosen.choice) plan.decisions.back().reason += ": " + chosen.reason;
   }
-  const std::string integrator = plan.decisions.front().choice;
+  RenderSettings chosenSettings = settings;
+  chosenSettings.integrator = plan.decisions.front().choice;
+  const std::optional<PhotonSettings> photons = MakeIntegrator(scene, chosenSettings)->Photons();
   plan.decisions.push_back(ChooseSelection(facts, settings));
   plan.decisions.push_back(ChooseLinking(*scene.lighting));
   plan.decisions.push_back(ChooseFilters(*scene.lighting));
-  plan.decisions.push_back(ChooseMerging(facts, integrator, scene, settings));
-  if (GathersPhotons(integrator)) {
-    plan.decisions.push_back(ChooseGuiding(scene, settings, integrator));
-  }
+  plan.decisions.push_back(ChooseMerging(facts, photons, settings.values.Number("radius") > 0));
+  if (photons) plan.decisions.push_back(ChooseGuiding(settings, *photons));
   plan.decisions.push_back(ChooseLayers(scene));
   plan.decisions.push_back(scene.hasMotion ? PlanDecision{"motion", "on", "something moves while the shutter is open"}
                                            : PlanDecision{"motion", "off", "nothing moves: rays have no time"});
@@ -221,7 +219,7 @@ ScenePlan PlanFor(const RenderScene& scene, const RenderSettings& settings) {
                                ? PlanDecision{"lens", "pinhole", "the camera has no lens: nothing is drawn for it"}
                                : PlanDecision{"lens", "sampled", "the camera has a lens"});
   plan.decisions.push_back(
-      settings.learnLights
+      settings.LearnsLights()
           ? PlanDecision{"learning", "on", "--learn-lights"}
           : PlanDecision{"learning", "off", "it pays where what is near is behind walls: --learn-lights"});
   return plan;

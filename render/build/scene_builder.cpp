@@ -585,9 +585,9 @@ BuiltScene Builder::Build() {
                               [&] { return BuildCamera(description_, built_.settings, worldToRender_, diagnostics_); });
   scene.geometry = std::make_shared<const GeometryScene>(std::move(geometry_));
   linking_.Finish(lights_, diagnostics_);
-  scene.lighting =
-      std::make_shared<const LightingServices>(*scene.geometry, std::move(lights_), built_.settings.lightSelection,
-                                               std::move(linking_), built_.settings.lightSamples);
+  scene.lighting = std::make_shared<const LightingServices>(
+      *scene.geometry, std::move(lights_), built_.settings.LightSampler(), std::move(linking_),
+      static_cast<int>(built_.settings.values.Integer("light-samples")));
   if (built_.settings.integrator == "auto") built_.settings.integrator = PlanFor(scene, built_.settings).integrator;
   const auto& lights = scene.lighting->Lights();
   const bool hasSky = std::any_of(lights.begin(), lights.end(), [](const PlacedLight& placed) {

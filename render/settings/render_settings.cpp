@@ -2,11 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <sstream>
-
-#include "render/settings/integrator_choice.h"
 
 namespace lampyr {
 
@@ -23,8 +20,6 @@ int PositiveInteger(const ParameterList& parameters, const std::string& name, in
   return value;
 }
 
-// Which light paths are left out for want of memory shows in the picture: the limit is the same on all machines.
-constexpr uint64_t kPhotonMemory = uint64_t{4} << 30;
 constexpr int kMaxResolution = 1 << 16;
 constexpr int kMaxSamples = 1 << 30;
 
@@ -223,45 +218,39 @@ void ReadSampler(const SceneDescription& scene, const RenderOverrides& overrides
   if (overrides.samplesPerPixel) settings.samplesPerPixel = *overrides.samplesPerPixel;
 }
 
-// Of sppm and vcm. The first two are pbrt-v4's; its default radius of 1 is not taken over: it suits few scenes.
-void ReadPhotons(const ParameterList& parameters, const RenderOverrides& overrides, RenderSettings& settings) {
-  PhotonSettings& photons = settings.photons;
-  const int perPass = parameters.GetInteger("photonsperiteration", -1);
-  if (perPass > 0) photons.lightPaths = static_cast<uint64_t>(perPass);
-  photons.radius = parameters.GetFloat("radius", 0);
-  if (!(photons.radius >= 0)) throw Error(parameters.WhereOf("radius"), "\"radius\" must be 0 or more");
-  if (photons.radius > 0 && photons.radius < static_cast<double>(std::numeric_limits<float>::min()))
-    throw Error(parameters.WhereOf("radius"),
-                "\"radius\" is too small: at least 1.2e-38 is needed, or 0 for the default");
-  photons.alpha = parameters.GetFloat("alpha", photons.alpha);
-  if (!(photons.alpha >= 0 && photons.alpha <= 1))
-    throw Error(parameters.WhereOf("alpha"), "\"alpha\" must be from 0 to 1");
-  settings.merges = parameters.GetBool("merge", settings.merges);
-  settings.connects = parameters.GetBool("connect", settings.connects);
-  settings.directFromPhotons = parameters.GetBool("directphotons", settings.directFromPhotons);
-  settings.photons.guided = parameters.GetBool("guidephotons", settings.photons.guided);
-  if (overrides.photons) photons.lightPaths = *overrides.photons;
-  photons.mostBytes = overrides.photonMemory.value_or(kPhotonMemory);
-  if (overrides.radius) photons.radius = *overrides.radius;
-  if (overrides.alpha) photons.alpha = *overrides.alpha;
-  if (overrides.merges) settings.merges = *overrides.merges;
-  if (overrides.connects) settings.connects = *overrides.connects;
-  if (overrides.directFromPhotons) settings.directFromPhotons = *overrides.directFromPhotons;
-  if (overrides.guidesPhotons) settings.photons.guided = *overrides.guidesPhotons;
-  if (!settings.merges && !settings.connects) {
-    throw UsageError("--no-merge and --no-connect: vcm has nothing left to find light by");
-  }
+// The value that a scene gives a setting; the fallback if it gives none.
+SettingValue ValueIn(const ParameterList& parameters, const Setting& setting) {
+  const std::string name = setting.NameInScenes();
+  if (const bool* isOn = std::get_if<bool>(&setting.fallback)) return parameters.GetBool(name, *isOn);
+  if (const auto* integer = std::get_if<int64_t>(&setting.fallback))
+    return int64_t{parameters.GetInteger(name, static_cast<int>(*integer))};
+  if (const double* number = std::get_if<double>(&setting.fallback)) return parameters.GetFloat(name, *number);
+  return parameters.GetString(name, std::get<std::string>(setting.fallback));
 }
 
-void ReadShadowRays(const ParameterList& parameters, const RenderOverrides& overrides, ShadowRays& shadowRays) {
-  const auto read = [&](const char* name, const std::optional<double>& given, float& value) {
-    const double number = given.value_or(parameters.GetFloat(name, static_cast<double>(value)));
-    if (!(number >= 0 && number < static_cast<double>(kInfinity)))
-      throw Error(parameters.WhereOf(name), "\"" + std::string(name) + "\" must be a number of 0 or more");
-    value = static_cast<float>(number);
-  };
-  read("shadowroulette", overrides.shadowRoulette, shadowRays.roulette);
-  read("shadowthreshold", overrides.shadowThreshold, shadowRays.threshold);
+// What the scene says of the settings of integrators, and the command line over it.
+void ReadSettings(const ParameterList& parameters, const RenderOverrides& overrides, Settings& values) {
+  for (const std::string& name : values.Names()) {
+    const Setting& setting = *values.Find(name);
+    if (!setting.isInScenes) continue;
+    const SettingValue value = ValueIn(parameters, setting);
+    try {
+      values.Set(name, value);
+    } catch (const Error& error) {
+      const bool isWord = std::holds_alternative<std::string>(value);
+      throw Error(parameters.WhereOf(setting.NameInScenes()),
+                  "\"" + setting.NameInScenes() + "\"" +
+                      (isWord ? ": " + error.Text() + DidYouMean(std::get<std::string>(value), setting.choices)
+                              : " must be " + setting.Range()));
+    }
+  }
+  for (const auto& [name, value] : overrides.values) {
+    try {
+      values.Set(name, value);
+    } catch (const Error& error) {
+      throw UsageError("--" + name + ": " + error.Text());
+    }
+  }
 }
 
 void ReadIntegrator(const SceneDescription& scene, const RenderOverrides& overrides, RenderSettings& settings,
@@ -280,7 +269,8 @@ void ReadIntegrator(const SceneDescription& scene, const RenderOverrides& overri
     const Names notYet = {"ambientocclusion", "function", "mlt", "randomwalk", "simplepath", "simplevolpath"};
     if (!isOneOf(type, notYet)) {
       Names all = notYet;
-      all.insert(all.end(), IntegratorNames().begin(), IntegratorNames().end());
+      const Names ours = IntegratorNames();
+      all.insert(all.end(), ours.begin(), ours.end());
       all.insert(all.end(), {"volpath", "lightpath"});
       throw Error(scene.integrator.where, "there is no Integrator \"" + type + "\"" + DidYouMean(type, all));
     }
@@ -291,38 +281,23 @@ void ReadIntegrator(const SceneDescription& scene, const RenderOverrides& overri
   }
   if (overrides.integrator) {
     if (*overrides.integrator != "auto" && !isOneOf(*overrides.integrator, IntegratorNames())) {
-      throw UsageError("--integrator: there is no integrator \"" + *overrides.integrator +
-                       "\"; there are: path, light, bdpt, sppm, vcm, auto");
+      Names all = IntegratorNames();
+      all.push_back("auto");
+      std::string list;
+      for (const std::string& name : all) list += (list.empty() ? "" : ", ") + name;
+      throw UsageError("--integrator: there is no integrator \"" + *overrides.integrator + "\"" +
+                       DidYouMean(*overrides.integrator, all) + "; there are: " + list);
     }
     settings.integrator = *overrides.integrator;
   }
-  settings.maxDepth = parameters.GetInteger("maxdepth", settings.maxDepth);
-  if (settings.maxDepth < 0) throw Error(parameters.WhereOf("maxdepth"), "\"maxdepth\" must be 0 or more");
-  if (overrides.maxDepth) settings.maxDepth = *overrides.maxDepth;
-  ReadShadowRays(parameters, overrides, settings.shadowRays);
-
-  const std::string lightSampler = parameters.GetString("lightsampler", "tree");
-  const Names samplerNames = {"uniform", "power", "bvh", "tree", "exhaustive"};  // bvh: pbrt-v4's name of its tree
-  if (const auto selection = ParseLightSelection(lightSampler)) {
-    settings.lightSelection = *selection;
-  } else {
-    throw Error(parameters.WhereOf("lightsampler"),
-                "there is no light sampler \"" + lightSampler + "\"" + DidYouMean(lightSampler, samplerNames));
-  }
-  if (overrides.lightSampler) {
-    const auto selection = ParseLightSelection(*overrides.lightSampler);
-    if (!selection)
-      throw UsageError("--light-sampler: \"" + *overrides.lightSampler +
-                       "\" is not one of: uniform, power, tree, exhaustive");
-    settings.lightSelection = *selection;
-  }
-  if (overrides.lightSamples) settings.lightSamples = *overrides.lightSamples;
-  ReadPhotons(parameters, overrides, settings);
-  if (overrides.learnLights) settings.learnLights = *overrides.learnLights;
+  ReadSettings(parameters, overrides, settings.values);
   // Parameters of integrators that stand back for "path" are not looked at.
-  if (isKnown) {
-    parameters.CheckAllUsed({"regularize", "options"}, IntegratorParameterNames(), diagnostics);
+  if (!isKnown) return;
+  Names known;
+  for (const auto& [setting, value] : settings.values.All()) {
+    if (setting->isInScenes) known.push_back(setting->NameInScenes());
   }
+  parameters.CheckAllUsed({"regularize", "options"}, known, diagnostics);
 }
 
 // Embree stands for all of pbrt-v4's: they change no image, so there is nothing to warn of.
@@ -339,13 +314,6 @@ void CheckAccelerator(const SceneDescription& scene, Diagnostics& diagnostics) {
 }
 
 }  // namespace
-
-const std::vector<std::string>& IntegratorParameterNames() {
-  static const std::vector<std::string> names = {
-      "maxdepth", "lightsampler",  "photonsperiteration", "radius",         "alpha",          "merge",
-      "connect",  "directphotons", "guidephotons",        "shadowroulette", "shadowthreshold"};
-  return names;
-}
 
 RenderSettings ReadRenderSettings(const SceneDescription& description, const RenderOverrides& overrides,
                                   Diagnostics& diagnostics) {

@@ -165,9 +165,9 @@ TEST_P(Filters, AreTheSameForAllTechniques) {
     if (integrator != name && std::string(scene.name) != "receivers") continue;
     RenderOverrides overrides;
     overrides.seed = seed += 1000;
-    overrides.radius = 0.01;
-    overrides.photons = 6000;
-    overrides.directFromPhotons = integrator != name;
+    overrides.values["radius"] = 0.01;
+    overrides.values["photons"] = 6000;
+    overrides.values["direct-photons"] = integrator != name;
     const int samples = integrator == "light" ? 4 * scene.samples : scene.samples;
     const Replicas other = RenderReplicas(scene.text, integrator, kReplicas, samples, overrides);
     const Agreement result = CompareReplicas(other, path, 8, rate);
@@ -304,7 +304,7 @@ TEST(FilterScenes, NoLightIsCulledByAFilterThatSaysNothing) {
   Diagnostics diagnostics(Diagnostics::Mode::Collect);
   for (const char* selection : {"power", "tree", "exhaustive", "uniform"}) {
     RenderOverrides overrides = By("path");
-    overrides.lightSampler = selection;
+    overrides.values["light-sampler"] = selection;
     const BuiltScene built =
         BuildScene(ParseScene(kHead + lights, "test.pbrt", diagnostics), overrides, true, diagnostics);
     const Receiver receiver{Point3(0.0f), Normal3(0, 1, 0)};

@@ -40,7 +40,7 @@ std::string TwoRooms() {
 
 RenderOverrides Learning(bool learns) {
   RenderOverrides overrides;
-  overrides.learnLights = learns;
+  overrides.values["learn-lights"] = learns;
   return overrides;
 }
 

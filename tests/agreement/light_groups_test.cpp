@@ -167,7 +167,7 @@ TEST_P(LightGroupLayers, AddUpToThePicture) {
                             Case{"box", 7, nullptr, 1}, Case{"mitchell", 16, "5,18,3,17", 1}}) {
     RenderOverrides overrides = With(GetParam());
     if (tried.crop) overrides.crop = tried.crop;
-    overrides.lightSamples = tried.lightSamples;
+    overrides.values["light-samples"] = tried.lightSamples;
     const Image image = RenderText(WithGroups(tried.filter), tried.samples, overrides, 2).image;
     EXPECT_EQ(image.channels,
               (std::vector<std::string>{"R", "G", "B", "variance.R", "variance.G", "variance.B", "cool.R", "cool.G",
@@ -186,10 +186,10 @@ TEST(LightGroups, AddUpWithAllSwitches) {
        {std::tuple{"vcm", false, true, false}, std::tuple{"vcm", true, false, false},
         std::tuple{"sppm", true, true, true}}) {
     RenderOverrides overrides = With(integrator);
-    if (!merges) overrides.merges = false;
-    if (!connects) overrides.connects = false;
-    if (direct) overrides.directFromPhotons = true;
-    overrides.learnLights = true;
+    if (!merges) overrides.values["merge"] = false;
+    if (!connects) overrides.values["connect"] = false;
+    if (direct) overrides.values["direct-photons"] = true;
+    overrides.values["learn-lights"] = true;
     all.push_back(overrides);
   }
   for (const RenderOverrides& overrides : all) {
@@ -232,7 +232,7 @@ TEST_P(LightGroupLayers, AreTheSameForAnyThreadsAndPasses) {
 
 TEST_P(LightGroupLayers, OfACropAreThoseOfThePicture) {
   RenderOverrides overrides = With(GetParam());
-  overrides.guidesPhotons = false;  // they would be aimed at the crop
+  overrides.values["guide-photons"] = false;  // they would be aimed at the crop
   const Image whole = RenderText(WithGroups(), 4, overrides).image;
   overrides.crop = "5,18,3,17";
   const Image crop = RenderText(WithGroups(), 4, overrides).image;

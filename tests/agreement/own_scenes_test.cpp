@@ -68,8 +68,8 @@ TEST_P(OwnScenes, LookAlikeToAllIntegrators) {
   overrides.width = 96;
   overrides.height = 54;
   if (scene.crop) overrides.crop = scene.crop;
-  if (scene.maxDepth >= 0) overrides.maxDepth = scene.maxDepth;
-  if (scene.radius > 0) overrides.radius = scene.radius;
+  if (scene.maxDepth >= 0) overrides.values["max-depth"] = scene.maxDepth;
+  if (scene.radius > 0) overrides.values["radius"] = scene.radius;
   const Replicas first = RenderReplicas(text, scene.first, scene.replicas, scene.firstSamples, overrides);
   overrides.seed = 1000;
   const Replicas second = RenderReplicas(text, scene.second, scene.replicas, scene.secondSamples, overrides);

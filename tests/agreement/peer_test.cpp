@@ -44,8 +44,8 @@ TEST_P(Peer, BlockMeansAgree) {
   if (IsSkipped()) return;
   RenderOverrides overrides;
   overrides.integrator = GetParam().integrator;
-  if (GetParam().radius > 0) overrides.radius = GetParam().radius;
-  overrides.connects = GetParam().connects;
+  if (GetParam().radius > 0) overrides.values["radius"] = GetParam().radius;
+  overrides.values["connect"] = GetParam().connects;
   const Rendered rendered = RenderFile(scene, GetParam().samplesPerPixel, overrides);
   const Image reference = ReadImage(kPeer / (std::string(GetParam().name) + GetParam().reference + ".exr"));
   const ImageDifference difference = CompareImages(rendered.image, reference, GetParam().blockSize);

@@ -56,7 +56,7 @@ RenderOverrides Small(const char* integrator, bool guides, uint64_t seed = 0, in
   overrides.integrator = integrator;
   overrides.width = width;
   overrides.height = width * 9 / 16;
-  overrides.guidesPhotons = guides;
+  overrides.values["guide-photons"] = guides;
   overrides.seed = seed;
   return overrides;
 }
@@ -66,8 +66,8 @@ TEST(PhotonGuiding, AgreesWithPathTracing) {
   const Replicas path = RenderReplicas(text, "path", 16, 256, Small("path", false, 1000));
   for (const char* integrator : {"vcm", "sppm"}) {
     RenderOverrides overrides = Small(integrator, true);
-    overrides.radius = 0.02;
-    overrides.photons = 10000;
+    overrides.values["radius"] = 0.02;
+    overrides.values["photons"] = 10000;
     EXPECT_GT(RenderText(text, 32, overrides).outcome.photons->guideTargets, 0u) << integrator;
     const Replicas guided = RenderReplicas(text, integrator, 16, 32, overrides);
     const Agreement result = CompareReplicas(guided, path, 9, 5e-4);
@@ -142,7 +142,7 @@ TEST(PhotonGuiding, TheSameForAnyThreadsAndPasses) {
 TEST(PhotonGuiding, NothingIsAimedWhereEverythingIsOfUse) {
   const auto render = [](bool guides) {
     RenderOverrides overrides = Small("vcm", guides);
-    overrides.connects = false;  // with connections it would not be tried, since nothing is smooth
+    overrides.values["connect"] = false;  // with connections it would not be tried, since nothing is smooth
     return RenderText(kBox, 32, overrides);
   };
   const Rendered with = render(true), without = render(false);

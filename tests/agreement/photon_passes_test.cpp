@@ -24,10 +24,10 @@ std::string Lamps() {
 BuiltScene BuildLamps(const char* integrator, bool learns, bool connects) {
   RenderOverrides overrides;
   overrides.integrator = integrator;
-  overrides.learnLights = learns;
-  overrides.connects = connects;
-  overrides.guidesPhotons = false;
-  overrides.radius = 0.2;
+  overrides.values["learn-lights"] = learns;
+  overrides.values["connect"] = connects;
+  overrides.values["guide-photons"] = false;
+  overrides.values["radius"] = 0.2;
   Diagnostics diagnostics(Diagnostics::Mode::Collect);
   return BuildScene(ParseScene(Lamps(), "test.pbrt", diagnostics), overrides, true, diagnostics);
 }

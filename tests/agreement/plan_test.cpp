@@ -46,17 +46,17 @@ const Switch kSwitches[] = {
     {"path", [](RenderOverrides& o) { o.integrator = "path"; }},
     {"bdpt", [](RenderOverrides& o) { o.integrator = "bdpt"; }},
     {"vcm", [](RenderOverrides& o) { o.integrator = "vcm"; }},
-    {"no merging", [](RenderOverrides& o) { o.integrator = "vcm", o.merges = false; }},
-    {"no connections", [](RenderOverrides& o) { o.integrator = "vcm", o.connects = false; }},
-    {"no guiding", [](RenderOverrides& o) { o.integrator = "vcm", o.guidesPhotons = false; }},
+    {"no merging", [](RenderOverrides& o) { o.integrator = "vcm", o.values["merge"] = false; }},
+    {"no connections", [](RenderOverrides& o) { o.integrator = "vcm", o.values["connect"] = false; }},
+    {"no guiding", [](RenderOverrides& o) { o.integrator = "vcm", o.values["guide-photons"] = false; }},
     {"sppm", [](RenderOverrides& o) { o.integrator = "sppm"; }},
     {"photons for direct light",
-     [](RenderOverrides& o) { o.integrator = "sppm", o.directFromPhotons = true, o.photons = 4000; }},
-    {"uniform selection", [](RenderOverrides& o) { o.lightSampler = "uniform"; }},
-    {"selection by power", [](RenderOverrides& o) { o.lightSampler = "power"; }},
-    {"exhaustive selection", [](RenderOverrides& o) { o.lightSampler = "exhaustive"; }},
-    {"learning", [](RenderOverrides& o) { o.learnLights = true; }},
-    {"several lights", [](RenderOverrides& o) { o.lightSamples = 4; }},
+     [](RenderOverrides& o) { o.integrator = "sppm", o.values["direct-photons"] = true, o.values["photons"] = 4000; }},
+    {"uniform selection", [](RenderOverrides& o) { o.values["light-sampler"] = "uniform"; }},
+    {"selection by power", [](RenderOverrides& o) { o.values["light-sampler"] = "power"; }},
+    {"exhaustive selection", [](RenderOverrides& o) { o.values["light-sampler"] = "exhaustive"; }},
+    {"learning", [](RenderOverrides& o) { o.values["learn-lights"] = true; }},
+    {"several lights", [](RenderOverrides& o) { o.values["light-samples"] = 4; }},
     {"a lens", [](RenderOverrides&) {}, kHead,
      "LookAt 0 1 -3  0 0.8 0  0 1 0\nCamera \"perspective\" \"float fov\" 40 \"float lensradius\" 1e-5 "
      "\"float focaldistance\" 3\n"},
@@ -70,8 +70,8 @@ class PlanSwitches : public testing::TestWithParam<bool> {};
 TEST_P(PlanSwitches, ChangeNothingButNoise) {
   const std::string things = std::string(kThings) + (GetParam() ? kGlass : "");
   RenderOverrides planned;
-  planned.maxDepth = 6;
-  planned.radius = 0.03;
+  planned.values["max-depth"] = 6;
+  planned.values["radius"] = 0.03;
   planned.integrator = "auto";
   constexpr int replicas = 8, samples = 128;
   const Replicas base = RenderReplicas(kHead + std::string(kCamera) + things, "auto", replicas, samples, planned);

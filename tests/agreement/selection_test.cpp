@@ -17,8 +17,8 @@ namespace {
 
 BuiltScene Build(const std::string& text, const std::string& selection, int samples = 1) {
   RenderOverrides overrides;
-  overrides.lightSamples = samples;
-  overrides.lightSampler = selection;
+  overrides.values["light-samples"] = samples;
+  overrides.values["light-sampler"] = selection;
   Diagnostics diagnostics(Diagnostics::Mode::Collect);
   return BuildScene(ParseScene(text, std::string(LAMPYR_SOURCE_DIR) + "/scenes/test.pbrt", diagnostics), overrides,
                     true, diagnostics);
@@ -238,11 +238,11 @@ TEST_P(SelectionAgreement, ChangesTheNoiseAlone) {
   const std::string text = ManyLights();
   static const Replicas uniform = [&] {
     RenderOverrides overrides;
-    overrides.lightSampler = "uniform";
+    overrides.values["light-sampler"] = "uniform";
     return RenderReplicas(text, "path", 16, 256, overrides);
   }();
   RenderOverrides overrides;
-  overrides.lightSampler = selection;
+  overrides.values["light-sampler"] = selection;
   overrides.seed = 500;
   const Replicas other = RenderReplicas(text, integrator, 16, 64, overrides);
   const double rate = SidakRate(1e-3, 7);
@@ -281,7 +281,7 @@ TEST_P(ManyLightScenes, AgreeWhateverSelects) {
   const SceneDescription description = ReadScene(file, diagnostics);
   RenderOverrides overrides;
   overrides.width = overrides.height = 32;
-  overrides.lightSampler = "tree";
+  overrides.values["light-sampler"] = "tree";
   const int more = isPeer ? 4 : 1;  // edges of lights that are seen are what is noisy there, and a sample costs little
   static std::map<std::string, Replicas> references;
   if (!references.count(one.scene)) {
@@ -289,10 +289,10 @@ TEST_P(ManyLightScenes, AgreeWhateverSelects) {
     references[one.scene] = RenderReplicas(description, "path", 8, more * 128, overrides);
   }
   overrides.seed = 0;
-  overrides.lightSampler = one.selection;
+  overrides.values["light-sampler"] = one.selection;
   if (one.selection == std::string("split")) {
-    overrides.lightSampler = "tree";
-    overrides.lightSamples = 4;
+    overrides.values["light-sampler"] = "tree";
+    overrides.values["light-samples"] = 4;
   }
   const Replicas replicas = RenderReplicas(description, one.integrator, 8, more * 48, overrides);
   const double rate = SidakRate(1e-3, 21);

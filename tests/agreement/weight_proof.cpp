@@ -255,7 +255,7 @@ WeightErrors CheckWeights(const std::string& sceneText, const WeightProof& proof
   if (proof.aimed)
     scene.lighting = std::make_shared<const LightingServices>(scene.lighting->With(nullptr, guide.get()));
   BidirectionalSettings settings;
-  settings.maxDepth = built.settings.maxDepth;
+  settings.maxDepth = built.settings.MaxDepth();
   const int width = built.settings.width, height = built.settings.height;
   settings.filmPixels = static_cast<double>(width) * static_cast<double>(height);
   settings.merges = proof.radius > 0;

@@ -23,7 +23,7 @@ WorldBegin
 std::string RenderError(const std::string& world) {
   RenderOverrides overrides;
   overrides.integrator = "path";
-  overrides.maxDepth = 2;
+  overrides.values["max-depth"] = 2;
   overrides.memory = 256 * kMebibyte;
   return ErrorOf([&] { test::RenderText(kHead + world, 1, overrides); });
 }

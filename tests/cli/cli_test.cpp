@@ -114,7 +114,7 @@ TEST_F(Cli, ComparesSettingsOfAnIntegrator) {
   };
   EXPECT_NE(error(compare + "path:shadow-treshold=1").find("no setting \"shadow-treshold\" (did you mean"),
             std::string::npos);
-  EXPECT_NE(error(compare + "path:shadow-threshold=x").find("is a number of 0 or more"), std::string::npos);
+  EXPECT_NE(error(compare + "path:shadow-threshold=x").find("\"x\" is not a number: it must be 0 or more"), std::string::npos);
   EXPECT_NE(error(compare + "pat:shadow-threshold=1").find("no integrator \"pat\" (did you mean \"path\"?)"),
             std::string::npos);
   error("render scene.pbrt --shadow-threshold -1");
@@ -266,9 +266,9 @@ TEST_F(Cli, PlanSaysWhatIsModelledAndWhy) {
   };
   EXPECT_NE(planOf("mirror.pbrt").find("vcm         1 light without extent and 1 smooth material"), std::string::npos)
       << planOf("mirror.pbrt");
-  EXPECT_NE(planOf("mirror.pbrt").find("merging          on"), std::string::npos);
+  EXPECT_NE(planOf("mirror.pbrt").find("photons          gathered"), std::string::npos);
   EXPECT_NE(planOf("scene.pbrt").find("path     nothing is smooth and"), std::string::npos) << planOf("scene.pbrt");
-  EXPECT_NE(planOf("scene.pbrt").find("merging          off"), std::string::npos);
+  EXPECT_NE(planOf("scene.pbrt").find("photons          none"), std::string::npos);
   EXPECT_NE(planOf("sky.pbrt").find("path     smooth surfaces under lights at infinity"), std::string::npos)
       << planOf("sky.pbrt");
   EXPECT_NE(planOf("dark.pbrt").find("nothing emits"), std::string::npos);

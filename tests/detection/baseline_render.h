@@ -15,8 +15,8 @@ inline BuiltScene BuildFor(const BaselineScene& scene, const std::string& integr
   overrides.integrator = integrator;
   if (integrator == "vcm" || integrator == "sppm") {
     // So few and so near that the blur is below the noise.
-    overrides.radius = 0.005;
-    overrides.photons = 6000;
+    overrides.values["radius"] = 0.005;
+    overrides.values["photons"] = 6000;
   }
   return BuildScene(ParseScene(scene.text, scene.folder / "detection.pbrt", diagnostics), overrides, true, diagnostics,
                     scene.types);

@@ -98,8 +98,8 @@ std::vector<AgreementCase> AgreementCases() {
 RenderOverrides WithPhotons(const std::string& integrator) {
   RenderOverrides overrides;
   overrides.integrator = integrator;
-  overrides.radius = 0.01;
-  overrides.photons = 6000;
+  overrides.values["radius"] = 0.01;
+  overrides.values["photons"] = 6000;
   return overrides;
 }
 

@@ -59,8 +59,8 @@ void AddFields(std::vector<ExtremeCase>& cases) {
               "1]\nMaterial \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5]\nShape \"sphere\" \"float radius\" " +
               Number(radius) + "\n",
           2, kFromCamera, 32};
-      extreme.overrides.radius = 0.3 * radius;
-      extreme.overrides.photons = 256;
+      extreme.overrides.values["radius"] = 0.3 * radius;
+      extreme.overrides.values["photons"] = 256;
       cases.push_back(extreme);
     }
   }

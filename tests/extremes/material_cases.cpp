@@ -77,8 +77,8 @@ void AddBalls(std::vector<ExtremeCase>& cases) {
     // What microfacets shadow of each other is lost: at the rim alone.
     if (roughness > 1e-4) rough.bias = 5e-3;
     // Few of the ball's directions are wide enough for photons, and few photons come to each.
-    rough.overrides.radius = 0.1;
-    rough.overrides.photons = 1024;
+    rough.overrides.values["radius"] = 0.1;
+    rough.overrides.values["photons"] = 1024;
     cases.push_back(rough);
   }
   cases.push_back({"ball of η 1.0001 and roughness 1e-5",
@@ -111,8 +111,8 @@ void AddLampsInGlass(std::vector<ExtremeCase>& cases) {
         kAll,
         64,
         1024};
-    extreme.overrides.radius = 0.05;
-    extreme.overrides.photons = 256;
+    extreme.overrides.values["radius"] = 0.05;
+    extreme.overrides.values["photons"] = 256;
     extreme.noise = 0.3;
     // One part in a million is reflected, and photons are blurred.
     extreme.bias = 2e-3;
@@ -192,8 +192,8 @@ void AddFurnaces(std::vector<ExtremeCase>& cases) {
                             Gray(furnace.reflectance) + "\nShape \"sphere\" \"float radius\" 3\n",
                         expected, furnace.integrators, furnace.samples};
     extreme.noise = furnace.noise;
-    extreme.overrides.radius = 1;  // a cap of a sphere within a distance r of a point has the area π r²
-    extreme.overrides.photons = 64;
+    extreme.overrides.values["radius"] = 1;  // a cap of a sphere within a distance r of a point has the area π r²
+    extreme.overrides.values["photons"] = 64;
     cases.push_back(extreme);
   }
   // The camera in the middle of a mirror that shines: every ray comes back to where it was.

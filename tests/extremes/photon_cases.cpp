@@ -22,22 +22,22 @@ const std::vector<std::string> kPhotons = {"sppm", "vcm"};
 void AddRadii(std::vector<ExtremeCase>& cases) {
   for (const double radius : {1e-12, 1e-9, 1e-3}) {
     ExtremeCase extreme{"photons within " + Short(radius) + " of a sphere of radius 2", Ball(), kAllLight, {"vcm"}, 16};
-    extreme.overrides.radius = radius;
+    extreme.overrides.values["radius"] = radius;
     extreme.noise = 0.3;
     cases.push_back(extreme);
   }
   for (const double radius : {0.03, 0.3, 1.0}) {
     ExtremeCase extreme{"photons within " + Short(radius) + " of a sphere of radius 2", Ball(), kAllLight, kPhotons, 4};
-    extreme.overrides.radius = radius;
+    extreme.overrides.values["radius"] = radius;
     extreme.noise = 0.3;
-    extreme.overrides.photons = radius < 0.1 ? 4096 : 512;
+    extreme.overrides.values["photons"] = radius < 0.1 ? 4096 : 512;
     cases.push_back(extreme);
   }
   for (const double alpha : {1e-3, 1.0}) {
     ExtremeCase extreme{"photons whose radius shrinks with α " + Short(alpha), Ball(), kAllLight, kPhotons, 4};
-    extreme.overrides.radius = 0.5;
-    extreme.overrides.photons = 512;
-    extreme.overrides.alpha = alpha;
+    extreme.overrides.values["radius"] = 0.5;
+    extreme.overrides.values["photons"] = 512;
+    extreme.overrides.values["alpha"] = alpha;
     cases.push_back(extreme);
   }
   for (const double size : {1e-6, 1e6}) {
@@ -46,16 +46,16 @@ void AddRadii(std::vector<ExtremeCase>& cases) {
     scaled.replace(scaled.find("WorldBegin\n"), 11, "WorldBegin\nScale " + Numbers({size, size, size}) + "\n");
     ExtremeCase extreme{"photons in a sphere of radius " + Short(size) + " times 2", scaled, kAllLight / (size * size),
                         kPhotons, 4};
-    extreme.overrides.radius = 0.5 * size;
-    extreme.overrides.photons = 256;
+    extreme.overrides.values["radius"] = 0.5 * size;
+    extreme.overrides.values["photons"] = 256;
     cases.push_back(extreme);
   }
   for (const double strength : {1e-30, 1e30}) {
     ExtremeCase extreme{"photons " + Short(strength) + " times as bright",
                         Ball("LightSource \"point\" \"rgb I\" [3 3 3] \"float intensity\" " + Number(strength) + "\n"),
                         strength * kAllLight, kPhotons, 4};
-    extreme.overrides.radius = 0.5;
-    extreme.overrides.photons = 256;
+    extreme.overrides.values["radius"] = 0.5;
+    extreme.overrides.values["photons"] = 256;
     cases.push_back(extreme);
   }
 }
@@ -64,8 +64,8 @@ void AddCounts(std::vector<ExtremeCase>& cases) {
   for (const int count : {1, 20000}) {
     ExtremeCase extreme{std::to_string(count) + " light paths a pass", Ball(), kAllLight, kPhotons,
                         count == 1 ? 256 : 1};
-    extreme.overrides.radius = count == 1 ? 1 : 0.05;
-    extreme.overrides.photons = static_cast<uint64_t>(count);
+    extreme.overrides.values["radius"] = count == 1 ? 1 : 0.05;
+    extreme.overrides.values["photons"] = int64_t{count};
     extreme.noise = count == 1 ? 0.3 : 0.25;
     cases.push_back(extreme);
   }

@@ -9,9 +9,9 @@ bool BuildSceneText(std::string_view bytes) {
     const SceneDescription description = ParseScene(std::string(bytes), SceneName(), diagnostics);
     RenderOverrides overrides;
     overrides.width = overrides.height = 3;
-    overrides.maxDepth = 3;
-    overrides.photons = 9;
-    overrides.photonMemory = 1 << 24;
+    overrides.values["max-depth"] = 3;
+    overrides.values["photons"] = 9;
+    overrides.values["photon-memory"] = 1 << 24;
     overrides.memory = 1 << 25;  // a million emitting triangles take half a minute under sanitizers
     test::RenderBuilt(BuildScene(description, overrides, true, diagnostics), 1, 1);
   });

@@ -233,7 +233,7 @@ AttributeEnd
   }
   for (const char* selection : {"uniform", "power"}) {
     RenderOverrides overrides;
-    overrides.lightSampler = selection;
+    overrides.values["light-sampler"] = selection;
     const MeanValue together = MeanOf(Render(head + all + ground, 1024, overrides).image);
     const double error = std::sqrt(variance + together.standardError * together.standardError);
     EXPECT_LT(error, 0.01 * sum);

@@ -175,7 +175,7 @@ TEST(AreaLight, PowerBeyondFloatIsLikelyAndNotImpossible) {
   for (const char* selection : {"power", "tree", "exhaustive"}) {
     Diagnostics diagnostics(Diagnostics::Mode::Collect);
     RenderOverrides overrides;
-    overrides.lightSampler = selection;
+    overrides.values["light-sampler"] = selection;
     const BuiltScene built = BuildScene(ParseScene(kReceiver + R"(LightSource "point"
 AreaLightSource "diffuse" "rgb L" [1e36 1e36 1e36]
 Translate 0 5000 0

@@ -65,7 +65,7 @@ Translate 0 1.2 -0.5 Shape "sphere" "float radius" 0.3 AttributeEnd
 )";
   for (const int depth : {0, 1, 2, 6}) {
     RenderOverrides overrides;
-    overrides.maxDepth = depth;
+    overrides.values["max-depth"] = depth;
     const Replicas path = RenderReplicas(kHead + lamp + kGround, "path", 16, 32, overrides);
     const Replicas bdpt = RenderReplicas(kHead + lamp + kGround, "bdpt", 16, 32, overrides);
     const Agreement agreement = CompareReplicas(bdpt, path, 8, 1e-3);
@@ -81,7 +81,7 @@ TEST(Bdpt, TechniquesAddUpToTheRender) {
   RenderOverrides overrides;
   overrides.integrator = "bdpt";
   overrides.crop = "3,29,5,30";
-  overrides.maxDepth = 9;  // some are longer than those with a picture
+  overrides.values["max-depth"] = 9;  // some are longer than those with a picture
   Diagnostics diagnostics(Diagnostics::Mode::Collect);
   std::string text = kHead + R"(LightSource "infinite" "rgb L" [0.2 0.2 0.3]
 LightSource "point" "rgb I" [1 1 1] "point3 from" [1 2 0.5]
@@ -93,7 +93,8 @@ Translate 0 0.6 0 Shape "sphere" "float radius" 0.6
   const BuiltScene built = BuildScene(ParseScene(text, "test.pbrt", diagnostics), overrides, true, diagnostics);
   const RenderSettings& settings = built.settings;
   Film film(settings.width, settings.height, settings.crop);
-  TechniqueImages techniques(settings.width, settings.height, settings.crop, settings.maxDepth, settings.imagingRatio);
+  TechniqueImages techniques(settings.width, settings.height, settings.crop, settings.MaxDepth(),
+                             settings.imagingRatio);
   StopConditions stop;
   stop.samplesPerPixel = 16;
   Render(

@@ -132,7 +132,7 @@ TEST(Light, DepthCountsScatteringEvents) {
   double light[3], path[3];
   for (int depth = 0; depth < 3; ++depth) {
     RenderOverrides overrides;
-    overrides.maxDepth = depth;
+    overrides.values["max-depth"] = depth;
     light[depth] = MeanOf(RenderText(Furnace("box", 0.5), 512, overrides).image).mean;
     overrides.integrator = "path";
     path[depth] = MeanOf(RenderText(Furnace("box", 0.5), 64, overrides).image).mean;

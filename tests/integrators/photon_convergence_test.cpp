@@ -36,8 +36,8 @@ Rendered RenderBy(const char* integrator, int samplesPerPixel, uint64_t seed, do
   overrides.integrator = integrator;
   overrides.seed = seed;
   overrides.crop = kCrop;
-  overrides.guidesPhotons = false;  // which would grow better from pass to pass
-  if (radius > 0) overrides.radius = radius;
+  overrides.values["guide-photons"] = false;  // which would grow better from pass to pass
+  if (radius > 0) overrides.values["radius"] = radius;
   return RenderText(kScene, samplesPerPixel, overrides);
 }
 

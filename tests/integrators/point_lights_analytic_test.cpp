@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "support/render_scene.h"
+#include "support/temporary_folder.h"
 
 namespace lampyr::test {
 namespace {
@@ -44,12 +45,6 @@ void ExpectNear(const Color& color, const Color& expected) {
 
 class PointLightsAnalytic : public ::testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::path(::testing::TempDir()) / "lampyr-point-lights-analytic";
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   std::string Write(int width, int height, const std::function<Color(int, int)>& texel) {
     Image image(width, height, {"R", "G", "B"});
     for (int i = 0; i < width * height; ++i) {
@@ -58,12 +53,12 @@ class PointLightsAnalytic : public ::testing::Test {
       image.At(i % width, i / width, 1) = c.g;
       image.At(i % width, i / width, 2) = c.b;
     }
-    const std::filesystem::path file = folder_ / "image.exr";
+    const std::filesystem::path file = folder_.Path() / "image.exr";
     WriteExr(file, image, ExrPrecision::Float);
     return "\"string filename\" \"" + file.string() + "\" ";
   }
 
-  std::filesystem::path folder_;
+  TemporaryFolder folder_;
 };
 
 TEST_F(PointLightsAnalytic, PointWithAllThatMultipliesIt) {
@@ -127,7 +122,7 @@ TEST_F(PointLightsAnalytic, PowerOfAProjector) {
 
 // 100, 60 and 0 cd at 0°, 45° and 90° from the nadir.
 TEST_F(PointLightsAnalytic, ProfilesOnTheFloor) {
-  const std::filesystem::path file = folder_ / "lamp.ies";
+  const std::filesystem::path file = folder_.Path() / "lamp.ies";
   std::ofstream(file) << "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 3 1 1 2 0 0 0\n1 1 0\n0 45 90\n0\n100 60 0\n";
   const std::string ies = " \"string shaping:ies:file\" \"" + file.string() + "\" ";
   // A point's profile is about -z: turned to look down. At (1, 0): θ = atan(1/2).

@@ -29,8 +29,8 @@ LightSource "point" "rgb I" [ 0.02 0.05 0.2 ] "point3 from" [ -0.6 0.5 0.4 ]
 Rendered RenderWith(const char* integrator, double roulette, double threshold) {
   RenderOverrides overrides;
   overrides.integrator = integrator;
-  overrides.shadowRoulette = roulette;
-  overrides.shadowThreshold = threshold;
+  overrides.values["shadow-roulette"] = roulette;
+  overrides.values["shadow-threshold"] = threshold;
   return RenderText(kScene, 64, overrides);
 }
 
@@ -38,8 +38,8 @@ Rendered RenderWith(const char* integrator, double roulette, double threshold) {
 TEST(ShadowRoulette, LeavesTheMeanAlone) {
   for (const char* integrator : {"path", "bdpt", "vcm", "sppm"}) {
     RenderOverrides all, some;
-    all.shadowRoulette = 0;
-    some.shadowRoulette = 1;
+    all.values["shadow-roulette"] = 0;
+    some.values["shadow-roulette"] = 1;
     some.seed = 1000;
     const int samples = std::string(integrator) == "path" ? 64 : 32;
     const Replicas traced = RenderReplicas(kScene, integrator, 12, samples, all);
@@ -90,7 +90,7 @@ TEST(ShadowRoulette, TheThresholdIsOfTheImage) {
     const auto rays = [&](const std::string& text, double threshold) {
       RenderOverrides overrides;
       overrides.integrator = integrator;
-      overrides.shadowThreshold = threshold;
+      overrides.values["shadow-threshold"] = threshold;
       return RenderText(text, 8, overrides).outcome.counts.shadowRays;
     };
     EXPECT_EQ(rays(kScene, 0.01), rays(sensitive, 0.02)) << integrator;

@@ -175,8 +175,8 @@ Shape "bilinearmesh" "point3 P" [ 0.2 1.2 -0.5  1.4 1.2 -0.5  0.2 1 0.7  1.4 1.2
   for (const Pair& pair :
        {Pair{"bdpt", "path", withoutPoint, 64}, {"vcm", "bdpt", text, 64}, {"sppm", "bdpt", text, 64}}) {
     RenderOverrides overrides;
-    overrides.radius = 0.01;
-    overrides.photons = 6000;
+    overrides.values["radius"] = 0.01;
+    overrides.values["photons"] = 6000;
     const Replicas second = RenderReplicas(pair.scene, pair.second, 12, pair.secondSamples, overrides);
     overrides.seed = seed += 1000;
     const Replicas first = RenderReplicas(pair.scene, pair.first, 12, 64, overrides);

@@ -16,14 +16,18 @@ struct Mode {
   bool learns = false;                  // the selection of lights
   int samples = 6;                      // per pixel of a trial replica; at least that many in each
 
-  bool GathersPhotons() const { return lampyr::GathersPhotons(integrator) && merges; }
+  bool GathersPhotons() const {
+    RenderSettings settings;
+    Apply(settings);
+    return lampyr::GathersPhotons(settings);
+  }
   void Apply(RenderSettings& settings) const {
     settings.integrator = integrator;
-    settings.merges = merges;
-    settings.connects = connects;
-    settings.directFromPhotons = directFromPhotons;
-    settings.learnLights = learns;
-    settings.photons.guided = guides;
+    settings.values.Set("merge", merges);
+    settings.values.Set("connect", connects);
+    settings.values.Set("direct-photons", directFromPhotons);
+    settings.values.Set("learn-lights", learns);
+    settings.values.Set("guide-photons", guides);
   }
 };
 

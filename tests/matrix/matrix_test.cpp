@@ -271,20 +271,21 @@ TEST(MatrixIsWhole, EveryModeIsAColumn) {
                   (name == "path" && !learns))
           << name << (learns ? " learning" : "");
     }
-    if (!GathersPhotons(name)) continue;
+    if (!GathersPhotons(name, IntegratorSettings())) continue;
     for (const bool guides : {false, true}) {
       EXPECT_TRUE(std::any_of(Modes().begin(), Modes().end(),
                               [&](const Mode& mode) { return mode.integrator == name && mode.guides == guides; }))
           << name << (guides ? " guided" : "");
     }
   }
-  // Settings of integrators in scenes: those that are no mode change no more than the noise or the blur.
-  const std::vector<std::string> modes = {"merge", "connect", "directphotons", "guidephotons"},
-                                 others = {"maxdepth", "lightsampler",   "photonsperiteration", "radius",
-                                           "alpha",    "shadowroulette", "shadowthreshold"};
-  for (const std::string& name : IntegratorParameterNames()) {
+  // Settings of integrators: those that are no mode change no more than the noise or the blur.
+  const std::vector<std::string> modes = {"merge", "connect", "direct-photons", "guide-photons", "learn-lights"},
+                                 others = {"max-depth", "light-sampler",   "light-samples",
+                                           "photons",   "photon-memory",   "radius",
+                                           "alpha",     "shadow-roulette", "shadow-threshold"};
+  for (const std::string& name : IntegratorSettings().Names()) {
     EXPECT_TRUE(std::count(modes.begin(), modes.end(), name) + std::count(others.begin(), others.end(), name) == 1)
-        << "the integrators' parameter \"" << name << "\" is neither a mode nor said to be none";
+        << "the setting \"" << name << "\" of integrators is neither a mode nor said to be none";
   }
 }
 

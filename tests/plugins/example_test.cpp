@@ -127,7 +127,7 @@ Translate 0.45 0.3 0.4 Shape "sphere" "float radius" 0.3
   expectAgreement("bdpt", RenderRing(scene, "bdpt", 48, 2000));
   // Photons blur within a radius: a small one leaves what is to be seen of it below the noise.
   RenderOverrides sharp;
-  sharp.radius = 0.01;
+  sharp.values["radius"] = 0.01;
   expectAgreement("vcm", RenderRing(scene, "vcm", 48, 3000, sharp));
 }
 

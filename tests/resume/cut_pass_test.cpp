@@ -33,7 +33,7 @@ struct OwnRender {
         film(built.settings.width, built.settings.height, built.settings.crop,
              built.scene.lighting->Groups().Layers()) {
     const RenderSettings& s = built.settings;
-    if (withTechniques) techniques.emplace(s.width, s.height, s.crop, s.maxDepth, s.imagingRatio);
+    if (withTechniques) techniques.emplace(s.width, s.height, s.crop, s.MaxDepth(), s.imagingRatio);
     render.emplace(built.scene, *integrator, s, 2, film, techniques ? &*techniques : nullptr);
   }
   std::unique_ptr<Integrator> integrator;
@@ -68,7 +68,7 @@ class CutPass : public Resume {
     Diagnostics diagnostics(Diagnostics::Mode::Collect);
     RenderOverrides overrides;
     overrides.integrator = integrator;
-    overrides.learnLights = learns;
+    overrides.values["learn-lights"] = learns;
     overrides.width = resolution;
     overrides.height = resolution;
     return BuildScene(ReadScene(folder_ / "scene.pbrt", diagnostics), overrides, true, diagnostics);

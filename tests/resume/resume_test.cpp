@@ -65,7 +65,7 @@ TEST_F(Resume, GoesOnAfterASignal) {
 TEST_F(Resume, TheMemoryForPhotonsIsPartOfTheRender) {
   Do(kRender + "--spp 1 --integrator vcm");
   ExpectRefused(kRender + "--spp 2 --integrator vcm --photon-memory 1M", 2,
-                "is of another render: the memory for photons is 4294967296 there and 1048576 here");
+                "is of another render: --photon-memory is 4294967296 there and 1048576 here");
   Do(kRender + "--spp 2 --integrator vcm --photon-memory 4G");
   // On a machine of less memory it is the same render.
   const Outcome little =
@@ -85,11 +85,11 @@ TEST_F(Resume, WhatIsOfAnotherRenderIsRefused) {
   refused("--integrator bdpt", "the integrator is path there and bdpt here");
   refused("--resolution 24x16", "the resolution is 48x32 there and 24x16 here");
   refused("--crop 0,24,0,32", "the crop is 0,48,0,32 there and 0,24,0,32 here");
-  refused("--max-depth 2", "the maximum depth is 5 there and 2 here");
+  refused("--max-depth 2", "--max-depth is 5 there and 2 here");
   refused("--sampler independent", "the sampler is sobol there and independent here");
-  refused("--light-sampler power", "the light sampler is tree there and power here");
-  refused("--learn-lights", "learning of lights is off there and on here");
-  refused("--shadow-roulette 0", "the roulette of shadow rays");
+  refused("--light-sampler power", "--light-sampler is tree there and power here");
+  refused("--learn-lights", "--learn-lights is off there and on here");
+  refused("--shadow-roulette 0", "--shadow-roulette is 0.05 there and 0 here");
   refused("--fast-intersection", "watertight intersection is on there and off here");
   refused("--shard 1/2", "the part is 1/1 there and 1/2 here");
   ExpectRefused(kRender + "--spp 2", 2, "holds 4 samples per pixel already, which is more than the 2");

@@ -60,9 +60,11 @@ inline const std::vector<FilterTechnique>& FilterTechniques() {
       {"light", "light", 256, [](RenderOverrides&) {}},
       {"bdpt", "bdpt", 32, [](RenderOverrides&) {}},
       {"vcm", "vcm", 32, [](RenderOverrides&) {}},
-      {"vcm --no-connect", "vcm", 20, [](RenderOverrides& o) { o.connects = false, o.photons = 6000; }},
-      {"sppm", "sppm", 32, [](RenderOverrides& o) { o.photons = 1000; }},
-      {"sppm --direct-photons", "sppm", 18, [](RenderOverrides& o) { o.directFromPhotons = true, o.photons = 6000; }},
+      {"vcm --no-connect", "vcm", 20,
+       [](RenderOverrides& o) { o.values["connect"] = false, o.values["photons"] = 6000; }},
+      {"sppm", "sppm", 32, [](RenderOverrides& o) { o.values["photons"] = 1000; }},
+      {"sppm --direct-photons", "sppm", 18,
+       [](RenderOverrides& o) { o.values["direct-photons"] = true, o.values["photons"] = 6000; }},
   };
   return techniques;
 }
@@ -73,9 +75,9 @@ inline Replicas RenderFilterScene(const std::string& filter, const FilterTechniq
   const TemporaryFolder folder;
   suite::WriteSuiteInputs(folder.Path());
   RenderOverrides overrides;
-  overrides.radius = 0.05;  // half a pixel, and no less in later passes
-  overrides.alpha = 1;
-  overrides.guidesPhotons = false;  // it would cost more than it gains
+  overrides.values["radius"] = 0.05;  // half a pixel, and no less in later passes
+  overrides.values["alpha"] = 1;
+  overrides.values["guide-photons"] = false;  // it would cost more than it gains
   technique.change(overrides);
   overrides.integrator = technique.integrator;
   Diagnostics diagnostics(Diagnostics::Mode::Collect);

@@ -12,7 +12,7 @@ namespace lampyr::test {
 // Pixels of which no camera ray sees a light: what is left is the noise of gathering.
 inline std::vector<bool> SeesNoLight(const SceneDescription& description, RenderOverrides overrides) {
   overrides.integrator = "path";
-  overrides.maxDepth = 0;
+  overrides.values["max-depth"] = 0;
   const Image image = RenderDescription(description, overrides, 256).image;
   std::vector<bool> mask;
   for (int y = 0; y < image.height; ++y) {
@@ -32,9 +32,9 @@ inline SelectionNoise MeasureSelection(const SceneDescription& description, cons
                                        const std::string& integrator, const std::string& selection, int samplesPerPixel,
                                        int renders, RenderOverrides overrides = {}) {
   overrides.integrator = integrator;
-  overrides.learnLights = selection == "learned";
-  if (selection == "tree4") overrides.lightSamples = 4;
-  overrides.lightSampler = selection == "learned" || selection == "tree4" ? "tree" : selection;
+  overrides.values["learn-lights"] = selection == "learned";
+  if (selection == "tree4") overrides.values["light-samples"] = 4;
+  overrides.values["light-sampler"] = selection == "learned" || selection == "tree4" ? "tree" : selection;
   Diagnostics diagnostics(Diagnostics::Mode::Collect);
   BuiltScene built = BuildScene(description, overrides, true, diagnostics);
   std::vector<double> sum(mask.size()), squares(mask.size());

@@ -1,0 +1,51 @@
+// Settings of integrators that gather photons.
+#pragma once
+
+#include "integrators/walk/integrator_type.h"
+
+namespace lampyr {
+
+namespace photon_settings {
+
+inline const Setting kPhotons{.name = "photons",
+                              .help = "Light paths of a pass, for their photons",
+                              .fallback = int64_t{-1},
+                              .least = 1,
+                              .most = static_cast<double>(int64_t{1} << 31),
+                              .range = "from 1 to 2147483648",
+                              .fallbackText = "as many as the image has pixels",
+                              .sceneName = "photonsperiteration"};
+// Which light paths are left out for want of memory shows in the picture: the limit is the same on all machines.
+inline const Setting kPhotonMemory{.name = "photon-memory",
+                                   .help =
+                                       "Memory for the photons of a pass, e.g. 512M; fewer light paths where it does "
+                                       "not do. The same on any machine: the picture depends on it",
+                                   .fallback = int64_t{4} << 30,
+                                   .least = 1,
+                                   .most = 1e15,
+                                   .unit = "bytes",
+                                   .isInScenes = false};
+inline const Setting kRadius{.name = "radius",
+                             .help = "Where photons are gathered in the first pass",
+                             .fallback = 0.0,
+                             .least = std::numeric_limits<float>::min(),
+                             .most = std::numeric_limits<float>::max(),
+                             .range = "above 0, from 1.2e-38 to 3.4e38",
+                             .unit = "scene units",
+                             .fallbackText = "from the size of pixels"};
+inline const Setting kAlpha{.name = "alpha",
+                            .help = "How fast that radius shrinks, as pass^((alpha - 1) / 2)",
+                            .fallback = 2. / 3,
+                            .least = 0,
+                            .most = 1};
+inline const Setting kGuidePhotons{
+    .name = "guide-photons", .help = "Learn where photons are of use, and aim them there if it pays", .fallback = true};
+
+inline const std::vector<const Setting*> kAll = {&kPhotons, &kPhotonMemory, &kRadius, &kAlpha, &kGuidePhotons};
+
+}  // namespace photon_settings
+
+// As the settings say, with a radius that the scene can have.
+PhotonSettings PhotonSettingsOf(const IntegratorInput& input);
+
+}  // namespace lampyr

@@ -1,0 +1,59 @@
+// All integrators. One is its own file, which defines `IntegratorType …IntegratorType()`, and one row here.
+#include "integrators/registry.h"
+
+#include "base/error.h"
+
+namespace lampyr {
+
+const std::vector<IntegratorType>& IntegratorRegistry() {
+  static const std::vector<IntegratorType> registry = [] {
+    std::vector<IntegratorType> types;
+    // clang-format off
+    extern IntegratorType PathIntegratorType();  types.push_back(PathIntegratorType());
+    extern IntegratorType LightIntegratorType(); types.push_back(LightIntegratorType());
+    extern IntegratorType BdptIntegratorType();  types.push_back(BdptIntegratorType());
+    extern IntegratorType SppmIntegratorType();  types.push_back(SppmIntegratorType());
+    extern IntegratorType VcmIntegratorType();   types.push_back(VcmIntegratorType());
+    // clang-format on
+    return types;
+  }();
+  return registry;
+}
+
+std::vector<std::string> IntegratorNames() {
+  std::vector<std::string> names;
+  for (const IntegratorType& type : IntegratorRegistry()) names.push_back(type.name);
+  return names;
+}
+
+const IntegratorType* FindIntegrator(const std::string& name) {
+  for (const IntegratorType& type : IntegratorRegistry()) {
+    if (type.name == name) return &type;
+  }
+  return nullptr;
+}
+
+const IntegratorType& IntegratorOf(const std::string& name) {
+  if (const IntegratorType* type = FindIntegrator(name)) return *type;
+  throw Error("there is no integrator \"" + name + "\"" + DidYouMean(name, IntegratorNames()));
+}
+
+Settings IntegratorSettings() {
+  std::vector<const Setting*> all;
+  for (const IntegratorType& type : IntegratorRegistry()) {
+    all.insert(all.end(), type.settings.begin(), type.settings.end());
+  }
+  return Settings(all);
+}
+
+bool GathersPhotons(const std::string& integrator, const Settings& settings) {
+  const IntegratorType* type = FindIntegrator(integrator);
+  return type && type->gathersPhotons && type->gathersPhotons(settings);
+}
+
+std::vector<std::string> IntegratorHints(const RenderScene& scene, const std::string& integrator) {
+  const IntegratorType* type = FindIntegrator(integrator);
+  return type && type->hints ? type->hints(scene) : std::vector<std::string>();
+}
+
+}  // namespace lampyr
