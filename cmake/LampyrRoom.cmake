@@ -16,8 +16,9 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   target_compile_options(lampyr_warnings INTERFACE -Werror)
 endif()
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
-  # g++ 12 reports overlaps that cannot be in `"text" + std::string` (GCC bug 105651).
-  target_compile_options(lampyr_warnings INTERFACE -Wno-restrict)
+  # g++ 12 reports overlaps and overflows that cannot be, in `"text" + std::string` (GCC bug 105651, 105329).
+  target_compile_options(lampyr_warnings INTERFACE -Wno-restrict -Wno-stringop-overflow -Wno-stringop-overread
+    -Wno-array-bounds)
 endif()
 if(LAMPYR_NATIVE)
   target_compile_options(lampyr_warnings INTERFACE -march=native)
@@ -27,12 +28,27 @@ if(LAMPYR_SANITIZE)
   target_link_options(lampyr_warnings INTERFACE -fsanitize=${LAMPYR_SANITIZE})
 endif()
 
+# Headers that nearly every file reads, parsed once: half of the time that compiling takes. Files include what they use
+# all the same: other builds (fuzzers, ThreadSanitizer, plugins) go without.
+set(LAMPYR_COMMON_HEADERS <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <map> <memory> <optional> <set>
+  <span> <sstream> <string> <variant> <vector> ${PROJECT_SOURCE_DIR}/src/math/vec.h)
+if(LAMPYR_PRECOMPILE)
+  file(WRITE ${CMAKE_BINARY_DIR}/precompiled.cpp.new "")
+  file(COPY_FILE ${CMAKE_BINARY_DIR}/precompiled.cpp.new ${CMAKE_BINARY_DIR}/precompiled.cpp ONLY_IF_DIFFERENT)
+  add_library(lampyr_precompiled OBJECT ${CMAKE_BINARY_DIR}/precompiled.cpp)
+  target_link_libraries(lampyr_precompiled PRIVATE lampyr_settings lampyr_warnings)
+  target_precompile_headers(lampyr_precompiled PRIVATE ${LAMPYR_COMMON_HEADERS})
+endif()
+
 function(lampyr_room name)
   cmake_parse_arguments(ROOM "" "" "SOURCES;LINK;PRIVATE_LINK" ${ARGN})
   add_library(lampyr_${name} STATIC ${ROOM_SOURCES})
   target_link_libraries(lampyr_${name}
     PUBLIC lampyr_settings ${ROOM_LINK}
     PRIVATE $<BUILD_INTERFACE:lampyr_warnings> ${ROOM_PRIVATE_LINK})
+  if(LAMPYR_PRECOMPILE)
+    target_precompile_headers(lampyr_${name} REUSE_FROM lampyr_precompiled)
+  endif()
   set_property(GLOBAL APPEND PROPERTY LAMPYR_ROOMS lampyr_${name})
 endfunction()
 
