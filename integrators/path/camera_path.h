@@ -18,7 +18,7 @@ class PhotonGatherer {
 
 struct CameraPathSettings {
   int maxDepth = 5;  // scattering events
-  PathDimensions dimensions;
+  PathDimensions dimensions{};
   // 1/sr: directions of no higher density end the path, but for the light that shines from there by itself; 0: all are
   // followed.
   float gatherBelow = 0;

@@ -26,7 +26,7 @@ class NextEventVisitor {
 };
 
 struct NextEventSettings {
-  PathDimensions dimensions;
+  PathDimensions dimensions{};
   bool bidirectional = false;  // densities of emission are wanted, too
   ShadowRays shadowRays;
 };

@@ -72,7 +72,7 @@ class PathVisitor {
 struct WalkSettings {
   TransportMode mode = TransportMode::Radiance;
   int maxDepth = 5;  // vertices at most
-  PathDimensions dimensions;
+  PathDimensions dimensions{};
   bool hasRoulette = true;
 };
 

@@ -10,7 +10,7 @@
 // as w = 1 - cosθ, half the squared chord to the axis, so that nothing cancels; sampled uniformly in it.
 // A unit direction in float is only known to 1e-7: below an angle of 1e-3° the disk has no room for samples to differ,
 // and the light is rendered as parallel with the irradiance that the disk would give.
-#include "lights/types/infinite_light.h"
+#include "lights/infinite_light.h"
 
 namespace lampyr {
 

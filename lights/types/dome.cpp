@@ -1,7 +1,7 @@
 // Light from all around: pbrt-v4's "infinite", and UsdLux's DomeLight, "dome". The same radiance in W/(m² sr)
 // everywhere, or an image. The two differ in their parameters and in how an image is turned: "infinite" has pbrt-v4's
 // +z up, "dome" OpenEXR's +Y up (sky_parameters.cpp).
-#include "lights/types/infinite_light.h"
+#include "lights/infinite_light.h"
 #include "lights/types/portal_light.h"
 
 namespace lampyr {

@@ -8,7 +8,7 @@
 
 #include "lights/cone_bound.h"
 #include "lights/direction_map.h"
-#include "lights/types/point_light.h"
+#include "lights/point_light.h"
 #include "lights/types/shaping.h"
 #include "math/frame.h"
 
