@@ -14,25 +14,6 @@ namespace {
 
 using Index = flann::KDTreeSingleIndex<flann::L2_3D<float>>;
 
-// FLANN's own door to a search takes memory each time, for three numbers. The steps behind it do not, but are private:
-// naming a member in an explicit instantiation is the way that the language leaves open ([temp.spec] 6).
-template <class Tag, auto Member>
-struct Opens {
-  friend constexpr auto MemberOf(Tag) { return Member; }
-};
-struct RootOf {
-  friend constexpr auto MemberOf(RootOf);
-};
-struct StartOf {
-  friend constexpr auto MemberOf(StartOf);
-};
-struct LevelOf {
-  friend constexpr auto MemberOf(LevelOf);
-};
-template struct Opens<RootOf, &Index::root_node_>;
-template struct Opens<StartOf, &Index::computeInitialDistances>;
-template struct Opens<LevelOf, &Index::searchLevel<false>>;
-
 constexpr int kLeaf = 64;  // photons: with 32, lookups of 50 take 1.1 to 1.5 times as long
 
 // Bits of x spread out, two zeros between each: 21 of them.
@@ -59,52 +40,6 @@ class WithinRadius final : public flann::ResultSet<float> {
   std::vector<uint32_t>& found_;
 };
 
-// A heap, the farthest on top.
-class Nearest final : public flann::ResultSet<float> {
- public:
-  Nearest(size_t count, float radiusSquared, std::vector<uint32_t>& found, std::vector<float>& distances)
-      : count_(count), radiusSquared_(radiusSquared), found_(found), distances_(distances) {}
-  bool full() const override { return distances_.size() == count_; }
-  void addPoint(float distance, size_t index) override {
-    if (full()) {
-      if (!(distance < distances_[0])) return;
-      Sift(0, distance, static_cast<uint32_t>(index), count_);
-      return;
-    }
-    distances_.push_back(distance);
-    found_.push_back(static_cast<uint32_t>(index));
-    size_t at = distances_.size() - 1;
-    while (at > 0 && distances_[(at - 1) / 2] < distance) {
-      distances_[at] = distances_[(at - 1) / 2];
-      found_[at] = found_[(at - 1) / 2];
-      at = (at - 1) / 2;
-    }
-    distances_[at] = distance;
-    found_[at] = static_cast<uint32_t>(index);
-  }
-  float worstDist() const override { return full() ? std::min(distances_[0], radiusSquared_) : radiusSquared_; }
-
- private:
-  void Sift(size_t at, float distance, uint32_t index, size_t size) {
-    for (;;) {
-      size_t child = 2 * at + 1;
-      if (child >= size) break;
-      if (child + 1 < size && distances_[child + 1] > distances_[child]) ++child;
-      if (!(distances_[child] > distance)) break;
-      distances_[at] = distances_[child];
-      found_[at] = found_[child];
-      at = child;
-    }
-    distances_[at] = distance;
-    found_[at] = index;
-  }
-
-  size_t count_;
-  float radiusSquared_;
-  std::vector<uint32_t>& found_;
-  std::vector<float>& distances_;
-};
-
 }  // namespace
 
 struct PhotonMap::Search {
@@ -113,11 +48,9 @@ struct PhotonMap::Search {
               flann::KDTreeSingleIndexParams(kLeaf, true)) {
     index.buildIndex();
   }
-  void Run(const Point3& relative, flann::ResultSet<float>& result, std::vector<float>& bounds) const {
+  void Run(const Point3& relative, flann::ResultSet<float>& result) const {
     const float query[3] = {relative.x, relative.y, relative.z};
-    bounds.assign(3, 0.0f);
-    const float start = (index.*MemberOf(StartOf()))(query, bounds);
-    (index.*MemberOf(LevelOf()))(result, query, index.*MemberOf(RootOf()), start, bounds, 1.0f);
+    index.findNeighbors(result, query, flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED));
   }
 
   Index index;
@@ -208,17 +141,7 @@ std::span<const uint32_t> PhotonMap::Find(const Point3& position, float radius, 
   lookup.found.clear();
   if (!search_) return {};
   WithinRadius result(radius * radius, lookup.found);
-  search_->Run(position - center_, result, lookup.bounds);
-  return lookup.found;
-}
-
-std::span<const uint32_t> PhotonMap::FindNearest(const Point3& position, int count, float radius,
-                                                 PhotonLookup& lookup) const {
-  lookup.found.clear();
-  lookup.distances.clear();
-  if (!search_ || count < 1) return {};
-  Nearest result(static_cast<size_t>(count), radius * radius, lookup.found, lookup.distances);
-  search_->Run(position - center_, result, lookup.bounds);
+  search_->Run(position - center_, result);
   return lookup.found;
 }
 

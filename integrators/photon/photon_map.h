@@ -1,5 +1,5 @@
-// The photons of one pass, found by place: all within a radius, or the nearest ones. Exact, from any thread, and the
-// same for any number of threads that made them.
+// The photons of one pass, found by place: all within a radius. Exact, from any thread, and the same for any number of
+// threads that made them.
 //
 // The search is FLANN's tree of points in three dimensions. Photons are sorted along a space-filling curve first: the
 // tree is then built several times faster, and what is found lies together in memory.
@@ -14,11 +14,9 @@
 
 namespace lampyr {
 
-// What a thread keeps from one lookup to the next, so that none takes memory.
+// What a thread keeps from one lookup to the next.
 struct PhotonLookup {
   std::vector<uint32_t> found;
-  std::vector<float> distances;  // squared; of the nearest ones
-  std::vector<float> bounds;     // the search's own
 };
 
 class PhotonMap {
@@ -36,9 +34,6 @@ class PhotonMap {
   // All photons nearer than `radius`, in an order that depends on the photons alone; valid until the next lookup. A
   // radius of 0 finds nothing.
   std::span<const uint32_t> Find(const Point3& position, float radius, PhotonLookup& lookup) const;
-  // The `count` nearest ones nearer than `radius`, or as many as there are; the farthest first, and
-  // PhotonLookup::distances beside them.
-  std::span<const uint32_t> FindNearest(const Point3& position, int count, float radius, PhotonLookup& lookup) const;
 
   const Photon& operator[](uint32_t index) const { return photons_[index]; }
   // What a photon sends to specular lobes: a light may show them other radiance than diffuse ones.

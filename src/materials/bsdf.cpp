@@ -44,12 +44,4 @@ bool Bsdf::IsTransmissive() const {
   return std::visit([](const auto& model) { return model.IsTransmissive(); }, model_);
 }
 
-bool Bsdf::HasExactPdf() const {
-  return true;
-}  // no model here is stochastic
-
-Color Bsdf::ApproximateAlbedo() const {
-  return std::visit([](const auto& model) { return model.ApproximateAlbedo(); }, model_);
-}
-
 }  // namespace lampyr

@@ -37,10 +37,6 @@ class Bsdf {
   bool IsDelta() const;
   // Light may come from the other side: light selection looks at both.
   bool IsTransmissive() const;
-  // pdfForward is exactly the density of Sample (not so for stochastically layered models).
-  bool HasExactPdf() const;
-  // Directional-hemispherical albedo estimate for AOVs and roulette; cheap, not exact.
-  Color ApproximateAlbedo() const;
 
   const Frame& ShadingFrame() const { return frame_; }
   const Normal3& Ng() const { return Ng_; }

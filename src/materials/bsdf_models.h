@@ -1,6 +1,6 @@
 // The scattering models that a Bsdf may hold: small, trivially copyable values. Each works in its local frame (z is the
 // shading normal, unit directions away from the surface, nothing exactly in the plane z = 0) and has
-//   Evaluate(wo, wi, mode), Sample(wo, uLobe, u, mode), IsDelta(), IsTransmissive(), ApproximateAlbedo()
+//   Evaluate(wo, wi, mode), Sample(wo, uLobe, u, mode), IsDelta(), IsTransmissive()
 // with the meaning of the same methods of Bsdf.
 #pragma once
 
@@ -23,7 +23,6 @@ struct AbsorbingBsdf {
   std::optional<BsdfSample> Sample(const Vector3&, float, const Point2&, TransportMode) const { return std::nullopt; }
   bool IsDelta() const { return true; }
   bool IsTransmissive() const { return false; }
-  Color ApproximateAlbedo() const { return Color(0.0f); }
 };
 
 using BsdfModel = std::variant<AbsorbingBsdf, DiffuseBsdf, DiffuseTransmissionBsdf, ConductorBsdf, DielectricBsdf,

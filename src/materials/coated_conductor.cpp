@@ -148,8 +148,4 @@ std::optional<BsdfSample> CoatedConductorBsdf::Sample(const Vector3& wo, float u
   return sample;
 }
 
-Color CoatedConductorBsdf::ApproximateAlbedo() const {
-  return FresnelConductor(1, eta_, k_) * Sqr(PairTransmittance(1)) + Color(settings_->coat->Reflectance(1, coatSlice_));
-}
-
 }  // namespace lampyr

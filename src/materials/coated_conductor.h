@@ -40,7 +40,6 @@ class CoatedConductorBsdf {
   std::optional<BsdfSample> Sample(const Vector3& wo, float uLobe, const Point2& u, TransportMode mode) const;
   bool IsDelta() const { return base_.IsSmooth(); }  // only when both are
   bool IsTransmissive() const { return false; }
-  Color ApproximateAlbedo() const;
 
  private:
   struct Base {

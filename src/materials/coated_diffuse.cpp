@@ -72,9 +72,4 @@ std::optional<BsdfSample> CoatedDiffuseBsdf::Sample(const Vector3& wo, float uLo
   return sample;
 }
 
-Color CoatedDiffuseBsdf::ApproximateAlbedo() const {
-  const float T = table_->Transmittance(1, slice_);
-  return base_ * (T * table_->MeanTransmittance(slice_)) + Color(table_->Reflectance(1, slice_));
-}
-
 }  // namespace lampyr

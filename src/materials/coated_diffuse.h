@@ -27,7 +27,6 @@ class CoatedDiffuseBsdf {
   std::optional<BsdfSample> Sample(const Vector3& wo, float uLobe, const Point2& u, TransportMode mode) const;
   bool IsDelta() const { return CoatIsDelta() && base_.IsBlack(); }
   bool IsTransmissive() const { return false; }
-  Color ApproximateAlbedo() const;
 
  private:
   bool CoatIsDelta() const { return eta_ == 1 || microfacets_.IsSmooth(); }

@@ -43,8 +43,4 @@ std::optional<BsdfSample> ConductorBsdf::Sample(const Vector3& wo, float, const 
   return sample;
 }
 
-Color ConductorBsdf::ApproximateAlbedo() const {
-  return FresnelConductor(1, eta, k);
-}
-
 }  // namespace lampyr

@@ -17,7 +17,6 @@ struct ConductorBsdf {
   std::optional<BsdfSample> Sample(const Vector3& wo, float uLobe, const Point2& u, TransportMode mode) const;
   bool IsDelta() const { return microfacets.IsSmooth(); }
   bool IsTransmissive() const { return false; }
-  Color ApproximateAlbedo() const;
 };
 
 }  // namespace lampyr

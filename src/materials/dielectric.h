@@ -19,7 +19,6 @@ struct DielectricBsdf {
   std::optional<BsdfSample> Sample(const Vector3& wo, float uLobe, const Point2& u, TransportMode mode) const;
   bool IsDelta() const { return eta == 1 || microfacets.IsSmooth(); }
   bool IsTransmissive() const { return true; }
-  Color ApproximateAlbedo() const { return Color(1.0f); }
 };
 
 // The part of light that a sheet with parallel sides reflects: all orders of reflection between the two are summed.
@@ -36,7 +35,6 @@ struct ThinDielectricBsdf {
   std::optional<BsdfSample> Sample(const Vector3& wo, float uLobe, const Point2& u, TransportMode mode) const;
   bool IsDelta() const { return true; }
   bool IsTransmissive() const { return true; }
-  Color ApproximateAlbedo() const { return Color(1.0f); }
 };
 
 }  // namespace lampyr

@@ -30,7 +30,6 @@ struct DiffuseBsdf {
 
   bool IsDelta() const { return false; }
   bool IsTransmissive() const { return false; }
-  Color ApproximateAlbedo() const { return reflectance; }
 };
 
 // Reflects and transmits diffusely; the lobe is chosen by the larger component of either colour.
@@ -66,7 +65,6 @@ struct DiffuseTransmissionBsdf {
 
   bool IsDelta() const { return false; }
   bool IsTransmissive() const { return !transmittance.IsBlack(); }
-  Color ApproximateAlbedo() const { return reflectance + transmittance; }
 };
 
 }  // namespace lampyr

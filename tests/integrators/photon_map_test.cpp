@@ -10,7 +10,6 @@
 #include "integrators/photon/photon_store.h"
 #include "sampling/rng.h"
 #include "sampling/warp.h"
-#include "support/allocation_count.h"
 
 namespace lampyr {
 namespace {
@@ -82,18 +81,6 @@ void ExpectExact(const std::vector<Point3>& positions, float size, uint64_t seed
       const bool isInside = distance<squared, isFound = found.count(i)> 0;
       EXPECT_EQ(isInside, isFound) << distance / squared;
     }
-    const int count = 1 + static_cast<int>(60 * rng.NextFloat());
-    const std::span<const uint32_t> nearest = map.FindNearest(center, count, radius, lookup);
-    ASSERT_EQ(std::min(found.size(), static_cast<size_t>(count)), nearest.size());
-    NumbersOf(map, nearest);
-    if (nearest.empty()) continue;
-    std::vector<double> distances;
-    for (const Point3& position : positions) distances.push_back(SquaredDistance(position, center));
-    std::nth_element(distances.begin(), distances.begin() + static_cast<std::ptrdiff_t>(nearest.size() - 1),
-                     distances.end());
-    const double farthest = static_cast<double>(*std::max_element(lookup.distances.begin(), lookup.distances.end()));
-    EXPECT_NEAR(distances[nearest.size() - 1], farthest, rim + 1e-5 * farthest);
-    EXPECT_FLOAT_EQ(lookup.distances[0], static_cast<float>(farthest)) << "the farthest is first";
   }
 }
 
@@ -118,7 +105,6 @@ TEST(PhotonMap, NoPhotons) {
   const PhotonMap empty = MapOf({});
   EXPECT_TRUE(empty.IsEmpty());
   EXPECT_TRUE(empty.Find(Point3(0.0f), std::numeric_limits<float>::max(), lookup).empty());
-  EXPECT_TRUE(empty.FindNearest(Point3(0.0f), 5, 1, lookup).empty());
 }
 
 TEST(PhotonMap, OnePhoton) {
@@ -128,7 +114,6 @@ TEST(PhotonMap, OnePhoton) {
   EXPECT_EQ(1u, map.Find(Point3(1, 2, 4), 1.001f, lookup).size());
   EXPECT_TRUE(map.Find(Point3(1, 2, 4), 0.999f, lookup).empty());
   EXPECT_TRUE(map.Find(Point3(1, 2, 3), 0, lookup).empty());
-  EXPECT_EQ(1u, map.FindNearest(Point3(0.0f), 5, 100, lookup).size());
 }
 
 TEST(PhotonMap, AMillionInOnePlace) {
@@ -136,7 +121,6 @@ TEST(PhotonMap, AMillionInOnePlace) {
   PhotonLookup lookup;
   EXPECT_EQ(1000000u, map.Find(Point3(1, 2, 3), 1e-3f, lookup).size());
   EXPECT_TRUE(map.Find(Point3(1, 2, 3.1f), 1e-3f, lookup).empty());
-  EXPECT_EQ(50u, map.FindNearest(Point3(1, 2, 3), 50, 1, lookup).size());
 }
 
 TEST(PhotonMap, ARadiusLargerThanTheScene) {
@@ -156,23 +140,6 @@ TEST(PhotonMap, WhatIsNoNumberIsLeftOutAndCounted) {
   EXPECT_EQ(2u, map.Rejected());
   PhotonLookup lookup;
   EXPECT_EQ(98u, map.Find(Point3(0.0f), 10, lookup).size());
-}
-
-TEST(PhotonMap, LookupsTakeNoMemory) {
-  const PhotonMap map = MapOf(Places(20000, Point3(0.0f), 1, 11));
-  PhotonLookup lookup;
-  map.Find(Point3(0.0f), 10, lookup);
-  map.FindNearest(Point3(0.0f), 100, 10, lookup);
-  const uint64_t before = test::AllocationCount();
-  Rng rng(12);
-  size_t found = 0;
-  for (int i = 0; i < 1000; ++i) {
-    const Point3 center(rng.NextFloat() - 0.5f, rng.NextFloat() - 0.5f, -0.5f);
-    found += map.Find(center, 0.05f, lookup).size();
-    found += map.FindNearest(center, 50, 0.1f, lookup).size();
-  }
-  EXPECT_EQ(before, test::AllocationCount());
-  EXPECT_GT(found, 50000u);
 }
 
 // Sums over photons are in the order in which they are found.
