@@ -91,7 +91,7 @@ Passage PassageAt(const PrimitiveRecord& record, const RTCRay& ray, const RayHit
 // it, and once for leaving it.
 bool IsCounted(const PrimitiveRecord& record, const RayHit& hit, uint32_t geometryId, uint32_t crossing,
                TraceContext& trace) {
-  if (record.shape.index() != 3) return false;
+  if (!record.As<CurveSet>()) return false;
   using Crossing = std::array<uint32_t, 4>;
   thread_local std::vector<Crossing> crossings;
   if (!trace.hasCrossedCurves) crossings.clear();
@@ -144,20 +144,20 @@ int FirstOpaque(const Meeting& at, const RTCRay& ray, const Candidate* candidate
 
 int FindQuadric(const PrimitiveRecord& record, uint32_t, const RTCRay& ray, Candidate candidates[2]) {
   QuadricHit hits[2];
-  const int count = (*std::get_if<2>(&record.shape))->Intersect(ToDouble(ray), hits);
+  const int count = record.As<PreparedQuadric>()->Intersect(ToDouble(ray), hits);
   for (int i = 0; i < count; ++i) candidates[i] = {hits[i].t, hits[i].coordinates.x, hits[i].coordinates.y};
   return count;
 }
 
 int FindPatch(const PrimitiveRecord& record, uint32_t patch, const RTCRay& ray, Candidate candidates[2]) {
   PatchHit hits[2];
-  const int count = IntersectPatch(**std::get_if<1>(&record.shape), patch, ToDouble(ray), hits);
+  const int count = IntersectPatch(*record.As<BilinearMesh>(), patch, ToDouble(ray), hits);
   for (int i = 0; i < count; ++i) candidates[i] = {hits[i].t, hits[i].uv.x, hits[i].uv.y};
   return count;
 }
 
 int FindCustom(const PrimitiveRecord& record, uint32_t, const RTCRay& ray, Candidate candidates[2]) {
-  const auto t = (*std::get_if<4>(&record.shape))->Intersect(ToDouble(ray), ray.time, nullptr);
+  const auto t = record.As<CustomSurface>()->Intersect(ToDouble(ray), ray.time, nullptr);
   if (!t) return 0;
   candidates[0] = {*t, 0, 0};
   return 1;
@@ -224,12 +224,12 @@ void SetBounds(const Bounds3& bounds, RTCBounds* out) {
 }  // namespace
 
 void QuadricBounds(const RTCBoundsFunctionArguments* arguments) {
-  const PreparedQuadric& quadric = **std::get_if<2>(&Record(arguments->geometryUserPtr).shape);
+  const PreparedQuadric& quadric = *Record(arguments->geometryUserPtr).As<PreparedQuadric>();
   SetBounds(GetBounds(quadric.Shape()), arguments->bounds_o);
 }
 
 void PatchBounds(const RTCBoundsFunctionArguments* arguments) {
-  const BilinearMesh& mesh = **std::get_if<1>(&Record(arguments->geometryUserPtr).shape);
+  const BilinearMesh& mesh = *Record(arguments->geometryUserPtr).As<BilinearMesh>();
   Bounds3 bounds;
   for (const uint32_t i : mesh.patches[arguments->primID]) bounds.Add(mesh.positions[i]);
   SetBounds(bounds, arguments->bounds_o);
@@ -238,7 +238,7 @@ void PatchBounds(const RTCBoundsFunctionArguments* arguments) {
 // Embree takes the surface to be within boxes that change evenly from one time step to the next: each holds it from the
 // step before to the step after.
 void CustomBounds(const RTCBoundsFunctionArguments* arguments) {
-  const CustomSurface& surface = **std::get_if<4>(&Record(arguments->geometryUserPtr).shape);
+  const CustomSurface& surface = *Record(arguments->geometryUserPtr).As<CustomSurface>();
   float begin = 0, end = 1;
   if (surface.Moves()) {
     constexpr float segments = kCustomTimeSteps - 1;

@@ -191,22 +191,14 @@ struct GeometryScene::Implementation {
 void GeometryScene::Implementation::AddEntries(const std::vector<GeometryEntry>& entries) {
   for (const GeometryEntry& entry : entries) {
     PrimitiveRecord record;
-    switch (entry.shape.index()) {
-      case 0:
-        record.shape = std::get<0>(entry.shape).get();
-        break;
-      case 1:
-        record.shape = std::get<1>(entry.shape).get();
-        break;
-      case 2:
-        record.shape = &quadrics.emplace_back(std::get<2>(entry.shape));
-        break;
-      case 3:
-        record.shape = std::get<3>(entry.shape).get();
-        break;
-      default:
-        record.shape = std::get<4>(entry.shape).get();
-        break;
+    if (const Quadric* quadric = std::get_if<Quadric>(&entry.shape)) {
+      record.shape = &quadrics.emplace_back(*quadric);
+    } else {
+      std::visit(
+          [&]<class Kind>(const Kind& shape) {
+            if constexpr (!std::is_same_v<Kind, Quadric>) record.shape = shape.get();
+          },
+          entry.shape);
     }
     std::visit([](const auto* shape) { CheckShape(*shape); }, record.shape);
     record.alpha = entry.attributes.alpha.get();
@@ -225,7 +217,8 @@ void GeometryScene::Implementation::FillTables() {
   for (const GeometryObject& object : description.objects) {
     firstPrimitives.push_back(static_cast<uint32_t>(tables.primitives.size()));
     for (const GeometryEntry& entry : object.entries) {
-      if (entry.shape.index() == 4) throw Error("a custom surface cannot be part of an object");
+      if (std::holds_alternative<std::shared_ptr<const CustomSurface>>(entry.shape))
+        throw Error("a custom surface cannot be part of an object");
     }
     AddEntries(object.entries);
   }
@@ -420,7 +413,7 @@ void GeometryScene::Implementation::AttachEntries(RTCScene target, size_t first,
     rtcSetGeometryMask(geometry, tables.attributes[first + i].visibility);
     rtcSetGeometryUserData(geometry, const_cast<PrimitiveRecord*>(&record));
     // User geometry looks at what it lets pass by itself.
-    if (record.LetsPass() && (record.shape.index() == 0 || record.shape.index() == 3)) {
+    if (record.LetsPass() && (record.As<TriangleMesh>() || record.As<CurveSet>())) {
       rtcSetGeometryIntersectFilterFunction(geometry, PassFilter);
       rtcSetGeometryOccludedFilterFunction(geometry, TransmitFilter);
     }

@@ -26,12 +26,12 @@ void EvaluateCustom(const CustomSurface& surface, const Ray& ray, float t, Surfa
 // Of a triangle or patch, in double: at the hit's coordinates as they are rounded, on the surface nevertheless.
 Point3d PrecisePoint(const PrimitiveRecord& record, const RayHit& hit) {
   const double u = static_cast<double>(hit.u), v = static_cast<double>(hit.v);
-  if (const auto* triangles = std::get_if<0>(&record.shape)) {
-    const auto& t = (*triangles)->triangles[hit.patch];
-    const auto& x = (*triangles)->positions;
+  if (const TriangleMesh* triangles = record.As<TriangleMesh>()) {
+    const auto& t = triangles->triangles[hit.patch];
+    const auto& x = triangles->positions;
     return (1 - u - v) * Point3d(x[t[0]]) + u * Point3d(x[t[1]]) + v * Point3d(x[t[2]]);
   }
-  const auto& patches = **std::get_if<1>(&record.shape);
+  const BilinearMesh& patches = *record.As<BilinearMesh>();
   const auto& q = patches.patches[hit.patch];
   const auto& x = patches.positions;
   return (1 - v) * ((1 - u) * Point3d(x[q[0]]) + u * Point3d(x[q[1]])) +
@@ -54,37 +54,36 @@ void MoveOntoRay(const PrimitiveRecord& record, const Ray& ray, const RayHit& hi
     point.position = moved;
 }
 
+// One overload for each kind of shape; `uv` are the hit's coordinates.
+struct Evaluate {
+  const Ray& ray;
+  const RayHit& hit;
+  SurfacePoint& point;
+  Point2 uv{hit.u, hit.v};
+
+  void operator()(const TriangleMesh* mesh) const { EvaluateTriangle(*mesh, hit.patch, uv, -ray.direction, point); }
+  void operator()(const BilinearMesh* mesh) const { EvaluatePatch(*mesh, hit.patch, uv, -ray.direction, point); }
+  void operator()(const PreparedQuadric* quadric) const { quadric->Evaluate(uv, point); }
+  void operator()(const CurveSet* curves) const {
+    EvaluateCurve(*curves, hit.patch, hit.u, ray.origin, ray.direction, hit.t, point);
+  }
+  void operator()(const CustomSurface* surface) const { EvaluateCustom(*surface, ray, hit.t, point); }
+};
+
 }  // namespace
 
 SurfacePoint EvaluatePrimitive(const PrimitiveRecord& record, const Ray& ray, const RayHit& hit) {
   SurfacePoint point;
-  const Point2 uv(hit.u, hit.v);
-  const Point3& origin = ray.origin;
-  const Vector3& direction = ray.direction;
-  switch (record.shape.index()) {
-    case 0:
-      EvaluateTriangle(**std::get_if<0>(&record.shape), hit.patch, uv, -direction, point);
-      break;
-    case 1:
-      EvaluatePatch(**std::get_if<1>(&record.shape), hit.patch, uv, -direction, point);
-      break;
-    case 2:
-      (*std::get_if<2>(&record.shape))->Evaluate(uv, point);
-      break;
-    case 3:
-      EvaluateCurve(**std::get_if<3>(&record.shape), hit.patch, hit.u, origin, direction, hit.t, point);
-      break;
-    default:
-      EvaluateCustom(**std::get_if<4>(&record.shape), ray, hit.t, point);
-  }
+  std::visit(Evaluate{ray, hit, point}, record.shape);
   point.isSheet = record.sheet != nullptr;
   // A surface in a coordinate plane has no error across it, and a ray that starts on it exactly would find it again: a
   // floor of a millionth of the largest component.
   const float coarse = MaxComponent(point.positionError);
   point.positionError += Vector3(1e-6f * coarse);
   constexpr float kCoarse = 1e-5f;
-  if (record.shape.index() < 2 && coarse > kCoarse * hit.t * MaxAbsComponent(direction)) [[unlikely]]
-    MoveOntoRay(record, ray, hit, point);
+  if (coarse > kCoarse * hit.t * MaxAbsComponent(ray.direction)) [[unlikely]] {
+    if (record.As<TriangleMesh>() || record.As<BilinearMesh>()) MoveOntoRay(record, ray, hit, point);
+  }
   return point;
 }
 

@@ -19,6 +19,12 @@ struct PrimitiveRecord {
   const SheetSource* sheet = nullptr;  // null: none
 
   bool LetsPass() const { return alpha || sheet; }
+  // The shape if it is of this kind, or null.
+  template <class Kind>
+  const Kind* As() const {
+    const auto* held = std::get_if<const Kind*>(&shape);
+    return held ? *held : nullptr;
+  }
   const SceneTables* tables = nullptr;
 };
 
@@ -43,7 +49,7 @@ struct SceneTables {
   std::vector<PrimitiveRecord> primitives;  // entries of the scene, then of object 0, 1, …
   std::vector<GeometryAttributes> attributes;
   std::vector<InstanceRecord> instances;  // what comes or goes while the shutter is open is several
-  uint32_t firstInstanceId = 0;  // Embree's id of instance 0; the scene's own entries come before
+  uint32_t firstInstanceId = 0;           // Embree's id of instance 0; the scene's own entries come before
 };
 
 // Point of a hit in the space of the primitive, which `ray` is in too. `hit` needs t, patch, u and v.
