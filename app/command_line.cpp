@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <limits>
 #include <map>
 #include <new>
@@ -251,6 +252,57 @@ struct CompareCommand {
 
 namespace {
 
+// The words of the command line, as CLI11 takes them: "lampyr SCENE.pbrt …" renders, and "lampyr help COMMAND" is the
+// help of the command. Throws a UsageError for a command that there is not.
+std::vector<std::string> CommandWords(const CLI::App& app, int argc, char** argv) {
+  std::vector<std::string> words(argv + 1, argv + argc);
+  if (words.empty()) return {"--help"};
+  std::vector<std::string> commands = {"help"};
+  for (const CLI::App* command : app.get_subcommands({})) commands.push_back(command->get_name());
+  const auto isCommand = [&](const std::string& word) {
+    return std::find(commands.begin(), commands.end(), word) != commands.end();
+  };
+  std::string& first = words.front();
+  if (first == "help") {
+    words.erase(words.begin());
+    if (!words.empty() && !isCommand(words.front()))
+      throw UsageError("there is no command \"" + words.front() + "\"" + DidYouMean(words.front(), commands));
+    words.resize(std::min<size_t>(words.size(), 1));
+    words.push_back("--help");
+    return words;
+  }
+  if (first.starts_with("-") || isCommand(first)) return words;
+  const bool isScene = first.ends_with(".pbrt") || first.ends_with(".pbrt.gz") || std::filesystem::exists(first);
+  if (!isScene) {
+    std::string all;
+    for (const std::string& command : commands) all += (all.empty() ? "" : ", ") + command;
+    throw UsageError("there is no command \"" + first + "\"" + DidYouMean(first, commands) + "; there are: " + all +
+                     "; or name a scene to render, SCENE.pbrt");
+  }
+  words.insert(words.begin(), "render");
+  return words;
+}
+
+// What is wrong with the words, in our own form; an option that there is not with the nearest one.
+int ReportParseError(const CLI::App& app, const CLI::ParseError& error) {
+  const std::vector<CLI::App*> parsed = app.get_subcommands();
+  const CLI::App& command = parsed.empty() ? app : *parsed.front();
+  std::string text = error.what();
+  const std::vector<std::string> extras = app.remaining(true);
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) && !extras.empty()) {
+    std::vector<std::string> known;
+    for (const CLI::Option* option : command.get_options()) {
+      for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+    }
+    const std::string given = extras.front().substr(0, extras.front().find('='));
+    text = given.starts_with("-") ? "there is no option \"" + given + "\"" + DidYouMean(given, known)
+                                  : "\"" + given + "\" is one word too many";
+  }
+  const std::string name = parsed.empty() ? "" : " " + command.get_name();
+  std::fprintf(stderr, "error: %s; `lampyr%s --help` lists the options\n", text.c_str(), name.c_str());
+  return kExitUsage;
+}
+
 int ParseAndRun(int argc, char** argv) {
   CLI::App app("lampyr: a renderer whose subject is the light", "lampyr");
   app.set_version_flag("--version", std::string("lampyr ") + kVersion);
@@ -307,9 +359,13 @@ int ParseAndRun(int argc, char** argv) {
   DefinePluginOption(*lightsCommand, lights.plugins, false);
 
   try {
-    app.parse(argc, argv);
+    std::vector<std::string> words = CommandWords(app, argc, argv);
+    std::reverse(words.begin(), words.end());  // as CLI11 takes them
+    app.parse(std::move(words));
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kExitDone : kExitUsage;
+    if (error.get_exit_code() != 0) return ReportParseError(app, error);
+    app.exit(error);
+    return kExitDone;
   }
   if (app.got_subcommand("render")) return render.Run();
   if (app.got_subcommand(mergeCommand)) return RunMerge(merge);

@@ -114,7 +114,8 @@ TEST_F(Cli, ComparesSettingsOfAnIntegrator) {
   };
   EXPECT_NE(error(compare + "path:shadow-treshold=1").find("no setting \"shadow-treshold\" (did you mean"),
             std::string::npos);
-  EXPECT_NE(error(compare + "path:shadow-threshold=x").find("\"x\" is not a number: it must be 0 or more"), std::string::npos);
+  EXPECT_NE(error(compare + "path:shadow-threshold=x").find("\"x\" is not a number: it must be 0 or more"),
+            std::string::npos);
   EXPECT_NE(error(compare + "pat:shadow-threshold=1").find("no integrator \"pat\" (did you mean \"path\"?)"),
             std::string::npos);
   error("render scene.pbrt --shadow-threshold -1");
@@ -253,6 +254,32 @@ TEST_F(Cli, StatisticsOfPhotons) {
   EXPECT_EQ(Read("a.json").find("photons"), std::string::npos);
 }
 
+// What a newcomer types.
+TEST_F(Cli, GuessesWhatIsMeant) {
+  const auto wrong = [&](const std::string& command, const std::string& what) {
+    const Outcome outcome = Run(command);
+    EXPECT_EQ(outcome.exitCode, 2) << command;
+    EXPECT_NE(outcome.output.find("error: " + what), std::string::npos) << command << ": " << outcome.output;
+  };
+  wrong("rendr scene.pbrt", "there is no command \"rendr\" (did you mean \"render\"?); there are: help, render,");
+  wrong("help rendr", "there is no command \"rendr\" (did you mean \"render\"?)");
+  wrong("render scene.pbrt --integrater path",
+        "there is no option \"--integrater\" (did you mean \"--integrator\"?); `lampyr render --help`");
+  wrong("render scene.pbrt --no-merg=1", "there is no option \"--no-merg\" (did you mean \"--no-merge\"?)");
+  wrong("render scene.pbrt other.pbrt", "\"other.pbrt\" is one word too many");
+  wrong("render scene.pbrt --integrator pth", "--integrator: there is no integrator \"pth\" (did you mean \"path\"?)");
+  wrong("render", "scene is required; `lampyr render --help`");
+  for (const char* help : {"help", "", "--help"}) {
+    const Outcome outcome = Run(help);
+    EXPECT_EQ(outcome.exitCode, 0) << help;
+    EXPECT_NE(outcome.output.find("check-lights"), std::string::npos) << help << ": " << outcome.output;
+  }
+  EXPECT_EQ(Run("help render").output, Run("render --help").output);
+  const Outcome rendered = Run("scene.pbrt --spp 1 -o short.exr");
+  EXPECT_EQ(rendered.exitCode, 0) << rendered.output;
+  EXPECT_TRUE(fs::exists(folder_ / "short.exr"));
+}
+
 TEST_F(Cli, PlanSaysWhatIsModelledAndWhy) {
   const std::string mirror = "Material \"conductor\" \"float roughness\" 0\nShape \"sphere\" \"float radius\" 0.3\n";
   const std::string sky = "WorldBegin\nLightSource \"infinite\"\n" + mirror;
@@ -342,8 +369,7 @@ TEST_F(Cli, StopsByTimeAndByError) {
 
 TEST_F(Cli, WrongUsageExitsWithTwo) {
   fs::create_directories(folder_ / "folder.exr");
-  for (const char* arguments : {"",
-                                "rendr scene.pbrt",
+  for (const char* arguments : {"rendr scene.pbrt",
                                 "render",
                                 "render scene.pbrt --spp 0",
                                 "render scene.pbrt --spp x",
