@@ -283,7 +283,7 @@ std::vector<std::string> CommandWords(const CLI::App& app, int argc, char** argv
   return words;
 }
 
-// What is wrong with the words, in our own form; an option that there is not with the nearest one.
+// Prints a parse error as `error: …` and returns the exit code. An unknown option is named with the nearest known one.
 int ReportParseError(const CLI::App& app, const CLI::ParseError& error) {
   const std::vector<CLI::App*> parsed = app.get_subcommands();
   const CLI::App& command = parsed.empty() ? app : *parsed.front();

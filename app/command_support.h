@@ -1,4 +1,4 @@
-// What commands that render have in common: signals, and the end of a process whose work was given up.
+// Signals, and the exit of a process that has given up work: common to the commands that render.
 #pragma once
 
 #include <atomic>
@@ -17,7 +17,7 @@ const std::atomic<bool>& FinishOnInterrupt();
 // Runs `finish`, what is left to do after rendering, and returns its exit code. Where work was given up (base/stop.h),
 // ends the process with that code: threads still use what the caller is about to destroy.
 int FinishRendering(const std::function<int()>& finish);
-// Of a command that has been interrupted so.
+// Exit code of a command that was interrupted: 128 and the number of the signal.
 int InterruptExitCode();
 
 std::string Joined(const std::vector<std::string>& names, const char* separator);

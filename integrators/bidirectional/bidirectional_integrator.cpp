@@ -110,7 +110,7 @@ class CameraSide final : public PathVisitor {
     if (vertex.isDelta) return true;
     sample_.radiance += EstimateDirectLight(sample_);
     if (sample_.settings.connects) {
-      // As many scattering events in all as are wanted.
+      // The two subpaths together have at most maxDepth scattering events.
       const size_t most =
           std::min(sample_.light.vertices.Count(), static_cast<size_t>(sample_.settings.maxDepth) - depth);
       for (size_t i = 1; i <= most; ++i) {
@@ -214,16 +214,16 @@ std::unique_ptr<Integrator> CreateVcm(const IntegratorInput& input) {
   settings.photons = PhotonSettingsOf(input);
   if (settings.merges && settings.photons.radius == 0)
     settings.photons.radius = kRadiusInPixels * TypicalFootprint(input.scene, input.width, input.height);
-  // Where nothing is smooth, connections find all light: photons are little of it, whatever they are aimed at.
+  // Without smooth materials connections find all light, and guided photons would add next to nothing.
   settings.photons.guided = settings.photons.guided && (!settings.connects || HasSmoothMaterial(input.scene));
   return MakeBidirectionalIntegrator(settings);
 }
 
 std::vector<std::string> BdptHints(const RenderScene& scene) {
-  const size_t deltas = DeltaLightCount(scene);
-  if (deltas == 0 || !HasSmoothMaterial(scene)) return {};
+  const std::string lights = DeltaLightsOfCaustics(scene);
+  if (lights.empty()) return {};
   return {
-      "light without extent (" + std::to_string(deltas) + " of " + std::to_string(scene.lighting->Lights().size()) +
+      "light without extent (" + lights +
       " lights) that comes through smooth glass or off mirrors and is seen through or in them again cannot be found "
       "by connecting paths; --integrator vcm and sppm find it"};
 }
@@ -234,8 +234,7 @@ IntegratorType BdptIntegratorType() {
   IntegratorType type;
   type.name = "bdpt";
   type.help = "paths from both sides, each vertex of one connected to each of the other";
-  type.settings = {&common_settings::kMaxDepth};
-  type.settings.insert(type.settings.end(), common_settings::kOfNextEvent.begin(), common_settings::kOfNextEvent.end());
+  type.settings = common_settings::kOfNextEvent;
   type.create = [](const IntegratorInput& input) { return MakeBidirectionalIntegrator(SettingsOf(input)); };
   type.hasTechniques = true;
   type.hints = BdptHints;
@@ -246,9 +245,8 @@ IntegratorType VcmIntegratorType() {
   IntegratorType type;
   type.name = "vcm";
   type.help = "the same, and photons of other light paths near each vertex of the camera's";
-  type.settings = {&common_settings::kMaxDepth};
-  for (const auto* more : {&common_settings::kOfNextEvent, &photon_settings::kAll})
-    type.settings.insert(type.settings.end(), more->begin(), more->end());
+  type.settings = common_settings::kOfNextEvent;
+  type.settings.insert(type.settings.end(), photon_settings::kAll.begin(), photon_settings::kAll.end());
   type.settings.insert(type.settings.end(), {&kMerge, &kConnect});
   type.create = CreateVcm;
   type.gathersPhotons = [](const Settings& settings) { return settings.IsOn(kMerge.name); };

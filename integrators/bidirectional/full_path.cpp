@@ -6,12 +6,12 @@ namespace lampyr {
 
 namespace {
 
-// Of the event at a vertex.
+// Densities of scattering at a vertex, towards either end of the path.
 struct DirectionDensities {
   SolidAngleDensity toLight, toCamera;
 };
 
-// By asking the BSDF; deltas cannot be asked.
+// From the BSDF. A delta has none: its event says its coefficients.
 DirectionDensities At(const PathVertex& vertex, const Vector3& toLight, const Vector3& toCamera) {
   const BsdfEvaluation f = vertex.bsdf.Evaluate(toCamera, toLight, TransportMode::Radiance);
   return {SolidAngleDensity(f.pdfForward), SolidAngleDensity(f.pdfReverse)};

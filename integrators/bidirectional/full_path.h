@@ -31,7 +31,7 @@ FullPath Unfold(const ConnectedPath& path);
 
 // Of all techniques, by their densities; those that cannot make the path have 0.
 std::vector<double> WeightsByDensities(const FullPath& path);
-// The same by partial weights, with the functions that the integrator calls (weights.h).
+// Weights of all techniques by partial weights, from the functions that the integrator calls (weights.h).
 std::vector<double> WeightsByRecursion(const FullPath& path);
 
 }  // namespace lampyr

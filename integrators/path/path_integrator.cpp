@@ -30,10 +30,9 @@ std::unique_ptr<Integrator> Create(const IntegratorInput& input) {
 }
 
 std::vector<std::string> Hints(const RenderScene& scene) {
-  const size_t deltas = DeltaLightCount(scene);
-  if (deltas == 0 || !HasSmoothMaterial(scene)) return {};
-  return {"no path from the camera can hit a light without extent (" + std::to_string(deltas) + " of " +
-          std::to_string(scene.lighting->Lights().size()) +
+  const std::string lights = DeltaLightsOfCaustics(scene);
+  if (lights.empty()) return {};
+  return {"no path from the camera can hit a light without extent (" + lights +
           " lights: point, spot, distant and the like), so what they send through smooth glass or off mirrors is "
           "missing; --integrator bdpt finds it"};
 }
@@ -44,8 +43,7 @@ IntegratorType PathIntegratorType() {
   IntegratorType type;
   type.name = "path";
   type.help = "paths from the camera, with next-event estimation";
-  type.settings = {&common_settings::kMaxDepth};
-  type.settings.insert(type.settings.end(), common_settings::kOfNextEvent.begin(), common_settings::kOfNextEvent.end());
+  type.settings = common_settings::kOfNextEvent;
   type.create = Create;
   type.hints = Hints;
   return type;

@@ -164,9 +164,8 @@ IntegratorType SppmIntegratorType() {
   IntegratorType type;
   type.name = "sppm";
   type.help = "direct light as path finds it, all other light from photons where it is scattered widely";
-  type.settings = {&common_settings::kMaxDepth};
-  for (const auto* more : {&common_settings::kOfNextEvent, &photon_settings::kAll})
-    type.settings.insert(type.settings.end(), more->begin(), more->end());
+  type.settings = common_settings::kOfNextEvent;
+  type.settings.insert(type.settings.end(), photon_settings::kAll.begin(), photon_settings::kAll.end());
   type.settings.push_back(&kDirectPhotons);
   type.create = [](const IntegratorInput& input) {
     SppmSettings settings;

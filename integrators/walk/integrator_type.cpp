@@ -21,10 +21,12 @@ bool HasSmoothMaterial(const RenderScene& scene) {
                      [](const auto& material) { return material && material->IsSmooth(); });
 }
 
-size_t DeltaLightCount(const RenderScene& scene) {
+std::string DeltaLightsOfCaustics(const RenderScene& scene) {
   const std::vector<PlacedLight>& lights = scene.lighting->Lights();
-  return static_cast<size_t>(std::count_if(lights.begin(), lights.end(),
-                                           [](const PlacedLight& placed) { return IsDelta(placed.light->Kind()); }));
+  const auto deltas = std::count_if(lights.begin(), lights.end(),
+                                    [](const PlacedLight& placed) { return IsDelta(placed.light->Kind()); });
+  if (deltas == 0 || !HasSmoothMaterial(scene)) return "";
+  return std::to_string(deltas) + " of " + std::to_string(lights.size());
 }
 
 }  // namespace lampyr

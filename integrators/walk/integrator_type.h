@@ -74,9 +74,9 @@ inline const Setting kShadowThreshold{
     .most = std::numeric_limits<float>::max(),
     .range = "0 or more"};
 
-// All but the first: of integrators that do next-event estimation.
-inline const std::vector<const Setting*> kOfNextEvent = {&kLightSampler, &kLightSamples, &kLearnLights,
-                                                         &kShadowRoulette, &kShadowThreshold};
+// Of integrators that do next-event estimation.
+inline const std::vector<const Setting*> kOfNextEvent = {&kMaxDepth,    &kLightSampler,   &kLightSamples,
+                                                         &kLearnLights, &kShadowRoulette, &kShadowThreshold};
 
 }  // namespace common_settings
 
@@ -86,7 +86,7 @@ int MaxDepthOf(const Settings& settings);
 
 // Whether any material has a mirror or clear glass in it.
 bool HasSmoothMaterial(const RenderScene& scene);
-// Lights without extent, which no ray hits: point, spot, distant and the like.
-size_t DeltaLightCount(const RenderScene& scene);
+// "2 of 5": how many of the lights have no extent, where a smooth material may make caustics of them; "": no caustics.
+std::string DeltaLightsOfCaustics(const RenderScene& scene);
 
 }  // namespace lampyr

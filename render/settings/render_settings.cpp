@@ -222,8 +222,11 @@ void ReadSampler(const SceneDescription& scene, const RenderOverrides& overrides
 SettingValue ValueIn(const ParameterList& parameters, const Setting& setting) {
   const std::string name = setting.NameInScenes();
   if (const bool* isOn = std::get_if<bool>(&setting.fallback)) return parameters.GetBool(name, *isOn);
-  if (const auto* integer = std::get_if<int64_t>(&setting.fallback))
-    return int64_t{parameters.GetInteger(name, static_cast<int>(*integer))};
+  if (const auto* integer = std::get_if<int64_t>(&setting.fallback)) {
+    // pbrt-v4's -1 stands for a number that is not given, and so does any that is not above 0.
+    const int value = parameters.GetInteger(name, static_cast<int>(*integer));
+    return *integer < 0 && value <= 0 ? *integer : int64_t{value};
+  }
   if (const double* number = std::get_if<double>(&setting.fallback)) return parameters.GetFloat(name, *number);
   return parameters.GetString(name, std::get<std::string>(setting.fallback));
 }

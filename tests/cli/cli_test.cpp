@@ -254,6 +254,15 @@ TEST_F(Cli, StatisticsOfPhotons) {
   EXPECT_EQ(Read("a.json").find("photons"), std::string::npos);
 }
 
+// pbrt-v4 takes any number of photons that is not above 0 for one that is not given.
+TEST_F(Cli, PhotonsOfPbrtThatAreNotGiven) {
+  for (const char* number : {"-1", "0", "-5"}) {
+    Write("photons.pbrt", std::string("Integrator \"sppm\" \"integer photonsperiteration\" ") + number + "\n" + kScene);
+    const Outcome outcome = Run("render photons.pbrt --quiet -o photons.exr");
+    EXPECT_EQ(outcome.exitCode, 0) << number << ": " << outcome.output;
+  }
+}
+
 // What a newcomer types.
 TEST_F(Cli, GuessesWhatIsMeant) {
   const auto wrong = [&](const std::string& command, const std::string& what) {
