@@ -1,46 +1,121 @@
+#include <unistd.h>
+
+#include <algorithm>
 #include <cstdio>
 
 #include "app/command_line.h"
 #include "app/commands.h"
+#include "base/terminal.h"
 #include "render/build/plugins.h"
 
 namespace lampyr {
 
 namespace {
 
-// `plugin`: that it is from; null for built-in types.
-void PrintType(const char* statement, const TypeDescription& type, const Plugin* plugin) {
-  std::printf("%s \"%s\"\n    %s\n", statement, type.name.c_str(), type.help.c_str());
-  if (plugin) std::printf("    from the plugin \"%s\"\n", plugin->file.c_str());
-  for (const ParameterInfo& parameter : type.parameters) {
-    const std::string name = std::string(ToString(parameter.type)) + " " + parameter.name;
-    const std::string value = parameter.defaultValue + (parameter.unit.empty() ? "" : " " + parameter.unit);
-    std::printf("    %-32s %-14s %-10s %s\n", name.c_str(), value.c_str(), parameter.range.c_str(),
-                parameter.help.c_str());
+using Rows = std::vector<ParameterInfo>;
+
+std::string Padded(std::string text, int columns) {
+  text.append(static_cast<size_t>(std::max(columns - ColumnsOf(text), 0)), ' ');
+  return text + " ";
+}
+
+// One parameter: a row of a table where the terminal is wide enough, else its help below it.
+void PrintParameter(const ParameterInfo& parameter, int columns) {
+  constexpr int kWideEnough = 100, kName = 30, kValue = 14, kRange = 12;
+  const std::string name = "  " + std::string(ToString(parameter.type)) + " " + parameter.name;
+  const std::string value = parameter.defaultValue + (parameter.unit.empty() ? "" : " " + parameter.unit);
+  if (columns >= kWideEnough) {
+    const std::string row = Padded(name, kName) + Padded(value, kValue) + Padded(parameter.range, kRange);
+    std::printf("%s", Indented(row, parameter.help, columns).c_str());
+    return;
   }
-  std::printf("\n");
+  std::string facts = value.empty() ? "" : "= " + value;
+  if (!parameter.range.empty()) facts += (facts.empty() ? "" : ", ") + parameter.range;
+  std::printf("%s", Indented(name + "  ", facts, columns).c_str());
+  std::printf("%s", Indented("      ", parameter.help, columns).c_str());
+}
+
+void PrintParameters(const Rows& rows, bool areCommon, int columns) {
+  for (const ParameterInfo& row : rows) {
+    if (row.isCommon == areCommon) PrintParameter(row, columns);
+  }
+}
+
+// A type and its own parameters. `plugin`: the one that it is from; null for built-in types.
+void PrintType(const char* statement, const TypeDescription& type, const Plugin* plugin, int columns) {
+  std::printf("%s \"%s\"\n%s", statement, type.name.c_str(), Indented("  ", type.help, columns).c_str());
+  if (plugin) std::printf("  from the plugin \"%s\"\n", plugin->file.c_str());
+  PrintParameters(type.parameters, false, columns);
+}
+
+// The common parameters of a list of types: each once, by the first type that has it.
+Rows CommonRows(const std::vector<const TypeDescription*>& types) {
+  Rows common;
+  for (const TypeDescription* type : types) {
+    for (const ParameterInfo& row : type->parameters) {
+      const bool isNew = std::none_of(common.begin(), common.end(),
+                                      [&](const ParameterInfo& other) { return other.name == row.name; });
+      if (row.isCommon && isNew) common.push_back(row);
+    }
+  }
+  return common;
+}
+
+// A type with the statement that names it and the plugin that it is from.
+struct Entry {
+  std::string statement;
+  const TypeDescription* type;
+  const Plugin* plugin;
+  bool isFilter;
+};
+
+std::vector<Entry> AllEntries(const TypeRegistry& types) {
+  std::vector<Entry> entries;
+  const auto add = [&](const auto& lights, const auto& filters, const Plugin* plugin) {
+    for (const LightType& type : lights) entries.push_back({type.Statement(), &type, plugin, false});
+    for (const FilterType& type : filters) entries.push_back({"LightFilter", &type, plugin, true});
+  };
+  add(LightRegistry(), FilterRegistry(), nullptr);
+  for (const Plugin& plugin : types.Plugins()) add(plugin.lights, plugin.filters, &plugin);
+  return entries;
+}
+
+void PrintCommon(const std::vector<Entry>& entries, bool ofFilters, int columns) {
+  std::vector<const TypeDescription*> types;
+  for (const Entry& entry : entries) {
+    if (entry.isFilter == ofFilters) types.push_back(entry.type);
+  }
+  const Rows common = CommonRows(types);
+  if (common.empty()) return;
+  std::printf("common to all %s\n", ofFilters ? "light filters" : "lights");
+  PrintParameters(common, true, columns);
 }
 
 }  // namespace
 
 int RunLights(const LightsOptions& options) {
   const TypeRegistry types = LoadTypes(options.plugins, nullptr);
-  const std::string& name = options.type;
+  constexpr int kUnbounded = 1 << 20;  // in a file or a pipe: one line each
+  const int columns = TerminalColumns(STDOUT_FILENO, kUnbounded);
+  const std::vector<Entry> entries = AllEntries(types);
+  const bool isOne = !options.type.empty();
   bool found = false;
   std::vector<std::string> names;
-  const auto print = [&](const char* statement, const TypeDescription& type, const Plugin* plugin) {
-    names.push_back(type.name);
-    if (!name.empty() && type.name != name) return;
+  for (const Entry& entry : entries) {
+    names.push_back(entry.type->name);
+    if (isOne && entry.type->name != options.type) continue;
+    PrintType(entry.statement.c_str(), *entry.type, entry.plugin, columns);
+    if (isOne) PrintCommon({entry}, entry.isFilter, columns);
+    std::printf("\n");
     found = true;
-    PrintType(statement, type, plugin);
-  };
-  const auto printAll = [&](const auto& lights, const auto& filters, const Plugin* plugin) {
-    for (const LightType& type : lights) print(type.Statement(), type, plugin);
-    for (const FilterType& type : filters) print("LightFilter", type, plugin);
-  };
-  printAll(LightRegistry(), FilterRegistry(), nullptr);
-  for (const Plugin& plugin : types.Plugins()) printAll(plugin.lights, plugin.filters, &plugin);
-  if (!found) throw UsageError("there is no light or filter \"" + name + "\"" + DidYouMean(name, names));
+  }
+  if (!found)
+    throw UsageError("there is no light or filter \"" + options.type + "\"" + DidYouMean(options.type, names));
+  if (!isOne) {
+    PrintCommon(entries, false, columns);
+    std::printf("\n");
+    PrintCommon(entries, true, columns);
+  }
   return kExitDone;
 }
 

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <map>
 #include <new>
@@ -190,15 +191,86 @@ struct RenderCommand {
   }
 };
 
-void DefineMerge(CLI::App& app, MergeOptions& options) {
-  app.add_option("parts", options.parts, "Images of `lampyr render --shard`")->required();
-  app.add_option("-o,--output", options.output, "The image to write (.exr)")->required();
-  app.add_flag("--partial", options.partial, "Merge what there is, even if parts are missing or not finished");
-  app.add_flag("--png", options.png, "Also write a tone-mapped PNG beside it");
-  app.add_option("--exposure", options.exposure, "Exposure of the PNG in stops (0)")->check(CheckFinite, "");
-  app.add_flag("--clip", options.clipPng, "Clip the PNG at white instead of rolling highlights off");
-  app.add_flag("--quiet", options.quiet, "No summary");
-}
+struct MergeCommand {
+  MergeOptions options;
+
+  void Define(CLI::App& app) {
+    app.add_option("parts", options.parts, "Images of `lampyr render --shard`")->required();
+    app.add_option("-o,--output", options.output, "The image to write (.exr)")->required();
+    app.add_flag("--partial", options.partial, "Merge what there is, even if parts are missing or not finished");
+    app.add_flag("--png", options.png, "Also write a tone-mapped PNG beside it");
+    app.add_option("--exposure", options.exposure, "Exposure of the PNG in stops (0)")->check(CheckFinite, "");
+    app.add_flag("--clip", options.clipPng, "Clip the PNG at white instead of rolling highlights off");
+    app.add_flag("--quiet", options.quiet, "No summary");
+  }
+  int Run() { return RunMerge(options); }
+};
+
+struct PngCommand {
+  PngOptions options;
+
+  void Define(CLI::App& app) {
+    app.add_option("image", options.input, "The image: an EXR, or another format that textures may have")->required();
+    app.add_option("-o,--output", options.output, "The PNG to write; default: beside the image, with its name");
+    app.add_option("--exposure", options.exposure, "Exposure in stops (0)")->check(CheckFinite, "");
+    app.add_flag("--clip", options.clip, "Clip at white instead of rolling highlights off");
+    app.add_flag("--quiet", options.quiet, "No summary");
+  }
+  int Run() { return RunPng(options); }
+};
+
+struct PlanCommand {
+  PlanOptions options;
+
+  void Define(CLI::App& app) {
+    options.overrides.integrator = "auto";
+    app.add_option("scene", options.scene, "The scene: a pbrt-v4 file (.pbrt, .pbrt.gz)")->required();
+    app.add_option("--integrator", options.overrides.integrator, "Instead of the one that suits the scene");
+    app.add_flag("--strict", options.strict, "Warnings about the scene are errors");
+    DefinePluginOption(app, options.plugins);
+  }
+  int Run() { return RunPlan(options); }
+};
+
+struct DiffCommand {
+  DiffOptions options;
+
+  void Define(CLI::App& app) {
+    app.add_option("a", options.a, "The image that is judged")->required();
+    app.add_option("b", options.b, "The reference")->required();
+    app.add_option("--block", options.blockSize, "Side of the z-test's blocks in pixels (8)")
+        ->check(CLI::Range(1, 4096));
+    app.add_flag("--json", options.json, "Print JSON");
+    app.add_flag("--fail", options.fail, "Exit with 1 unless the images are equal or agree");
+    app.add_option("-o,--output", options.output,
+                   "Write the error image (.exr): the absolute difference of each pixel, and its relative error");
+  }
+  int Run() { return RunDiff(options); }
+};
+
+struct CheckLightsCommand {
+  CheckLightsOptions options;
+
+  void Define(CLI::App& app) {
+    app.add_option("scene", options.scene, "A scene, whose lights are checked as they are placed");
+    app.add_option("--type", options.type, "Only this type of light or of light filter");
+    DefinePluginOption(app, options.plugins);
+    app.add_flag("--json", options.json, "Print JSON");
+    app.add_option("--seed", options.seed, "Seed of the samples (1)");
+    app.add_option("--threads", options.threads, "Threads (all)")->check(CLI::Range(1, 4096));
+  }
+  int Run() { return RunCheckLights(options); }
+};
+
+struct LightsCommand {
+  LightsOptions options;
+
+  void Define(CLI::App& app) {
+    app.add_option("type", options.type, "Only this type");
+    DefinePluginOption(app, options.plugins, false);
+  }
+  int Run() { return RunLights(options); }
+};
 
 struct CompareCommand {
   CompareOptions options;
@@ -237,13 +309,16 @@ struct CompareCommand {
                  "Trade watertight intersection for speed: rays may slip through shared edges");
   }
 
-  int Run(int argc, char** argv) {
+  // The command as it was typed, for the report.
+  void Remember(int argc, char** argv) {
+    options.command = "lampyr";
+    for (int i = 1; i < argc; ++i) options.command += std::string(" ") + argv[i];
+  }
+  int Run() {
     for (const std::string& time : times) options.times.push_back(ParseDuration("--budget", time));
     if (!referenceTime.empty()) options.referenceSeconds = ParseDuration("--reference-time", referenceTime);
     if (!resolution.empty()) ParseResolution(resolution, options.overrides);
     options.robust = !fast;
-    options.command = "lampyr";
-    for (int i = 1; i < argc; ++i) options.command += std::string(" ") + argv[i];
     return RunCompare(options);
   }
 };
@@ -303,61 +378,55 @@ int ReportParseError(const CLI::App& app, const CLI::ParseError& error) {
   return kExitUsage;
 }
 
+// The commands, each with what its options are read into.
+class Commands {
+ public:
+  Commands(CLI::App& app, int argc, char** argv) : app_(app) {
+    compare_.Remember(argc, argv);
+    Add("render", "Render a scene to an EXR image", render_);
+    Add("compare", "Measure integrators against each other: error by time and by samples", compare_);
+    Add("merge", "Make one image of the parts of a render", merge_);
+    Add("plan", "What a scene requires, and what is therefore modelled, with reasons", plan_);
+    Add("diff", "Compare two images: MSE, relMSE, FLIP, bias, z-test by blocks", diff_);
+    Add("png", "Make a PNG to look at of an image", png_);
+    Add("check-lights",
+        "Prove the densities of lights, and light filters: of every type, a plugin's, or a scene's lights. What fails "
+        "is named, with what that means and where it was worst",
+        checkLights_);
+    Add("lights", "The types of light and of light filter, and their parameters", lights_);
+  }
+
+  // Runs the command that was parsed.
+  int Run() {
+    const auto parsed = std::find_if(runs_.begin(), runs_.end(), [](const auto& run) { return run.first->parsed(); });
+    return parsed->second();
+  }
+
+ private:
+  template <class Command>
+  void Add(const char* name, const char* help, Command& command) {
+    CLI::App* subcommand = app_.add_subcommand(name, help);
+    command.Define(*subcommand);
+    runs_.emplace_back(subcommand, [&command] { return command.Run(); });
+  }
+
+  CLI::App& app_;
+  RenderCommand render_;
+  CompareCommand compare_;
+  MergeCommand merge_;
+  PlanCommand plan_;
+  DiffCommand diff_;
+  PngCommand png_;
+  CheckLightsCommand checkLights_;
+  LightsCommand lights_;
+  std::vector<std::pair<CLI::App*, std::function<int()>>> runs_;
+};
+
 int ParseAndRun(int argc, char** argv) {
   CLI::App app("lampyr: a renderer whose subject is the light", "lampyr");
   app.set_version_flag("--version", std::string("lampyr ") + kVersion);
   app.require_subcommand(1);
-
-  RenderCommand render;
-  render.Define(*app.add_subcommand("render", "Render a scene to an EXR image"));
-
-  CompareCommand compare;
-  compare.Define(
-      *app.add_subcommand("compare", "Measure integrators against each other: error by time and by samples"));
-
-  MergeOptions merge;
-  CLI::App* mergeCommand = app.add_subcommand("merge", "Make one image of the parts of a render");
-  DefineMerge(*mergeCommand, merge);
-
-  PlanOptions plan;
-  CLI::App* planCommand =
-      app.add_subcommand("plan", "What a scene requires, and what is therefore modelled, with reasons");
-  plan.overrides.integrator = "auto";
-  planCommand->add_option("scene", plan.scene, "The scene: a pbrt-v4 file (.pbrt, .pbrt.gz)")->required();
-  planCommand->add_option("--integrator", plan.overrides.integrator, "Instead of the one that suits the scene");
-  planCommand->add_flag("--strict", plan.strict, "Warnings about the scene are errors");
-  DefinePluginOption(*planCommand, plan.plugins);
-
-  DiffOptions diff;
-  CLI::App* diffCommand = app.add_subcommand("diff", "Compare two images: MSE, relMSE, FLIP, bias, z-test by blocks");
-  diffCommand->add_option("a", diff.a, "The image that is judged")->required();
-  diffCommand->add_option("b", diff.b, "The reference")->required();
-  diffCommand->add_option("--block", diff.blockSize, "Side of the z-test's blocks in pixels (8)")
-      ->check(CLI::Range(1, 4096));
-  diffCommand->add_flag("--json", diff.json, "Print JSON");
-  diffCommand->add_flag("--fail", diff.fail, "Exit with 1 unless the images are equal or agree");
-  diffCommand->add_option(
-      "-o,--output", diff.output,
-      "Write the error image (.exr): the absolute difference of each pixel, and its relative error");
-
-  CheckLightsOptions check;
-  CLI::App* checkCommand =
-      app.add_subcommand("check-lights",
-                         "Prove the densities of lights, and light filters: of every type, a plugin's, or a scene's "
-                         "lights. What fails is named, with what that means and where it was worst");
-  checkCommand->add_option("scene", check.scene, "A scene, whose lights are checked as they are placed");
-  checkCommand->add_option("--type", check.type, "Only this type of light or of light filter");
-  DefinePluginOption(*checkCommand, check.plugins);
-  checkCommand->add_flag("--json", check.json, "Print JSON");
-  checkCommand->add_option("--seed", check.seed, "Seed of the samples (1)");
-  checkCommand->add_option("--threads", check.threads, "Threads (all)")->check(CLI::Range(1, 4096));
-
-  LightsOptions lights;
-  CLI::App* lightsCommand =
-      app.add_subcommand("lights", "The types of light and of light filter, and their parameters");
-  lightsCommand->add_option("type", lights.type, "Only this type");
-  DefinePluginOption(*lightsCommand, lights.plugins, false);
-
+  Commands commands(app, argc, argv);
   try {
     std::vector<std::string> words = CommandWords(app, argc, argv);
     std::reverse(words.begin(), words.end());  // as CLI11 takes them
@@ -367,13 +436,7 @@ int ParseAndRun(int argc, char** argv) {
     app.exit(error);
     return kExitDone;
   }
-  if (app.got_subcommand("render")) return render.Run();
-  if (app.got_subcommand(mergeCommand)) return RunMerge(merge);
-  if (app.got_subcommand("compare")) return compare.Run(argc, argv);
-  if (app.got_subcommand(planCommand)) return RunPlan(plan);
-  if (app.got_subcommand(diffCommand)) return RunDiff(diff);
-  if (app.got_subcommand(checkCommand)) return RunCheckLights(check);
-  return RunLights(lights);
+  return commands.Run();
 }
 
 }  // namespace

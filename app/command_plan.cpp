@@ -1,8 +1,11 @@
+#include <unistd.h>
+
 #include <algorithm>
 #include <cstdio>
 
 #include "app/command_line.h"
 #include "app/commands.h"
+#include "base/terminal.h"
 #include "render/analysis/plan.h"
 #include "render/load_scene.h"
 
@@ -19,9 +22,20 @@ int RunPlan(const PlanOptions& options) {
     subject = std::max(subject, decision.subject.size());
     choice = std::max(choice, decision.choice.size());
   }
+  constexpr int kUnbounded = 1 << 20;  // in a file or a pipe: one line each
+  const int columns = TerminalColumns(STDOUT_FILENO, kUnbounded);
   for (const PlanDecision& decision : plan.decisions) {
-    std::printf("%-*s  %-*s  %s\n", static_cast<int>(subject), decision.subject.c_str(), static_cast<int>(choice),
-                decision.choice.c_str(), decision.reason.c_str());
+    const auto padded = [](const std::string& text, size_t size) {
+      return text + std::string(size + 2 - text.size(), ' ');
+    };
+    const std::string row = padded(decision.subject, subject) + padded(decision.choice, choice);
+    std::printf("%s", Indented(row, decision.reason, columns).c_str());
+  }
+  const std::string& named = loaded.built.settings.namedIntegrator;
+  if (settings.integrator == "auto" && !named.empty() && named != plan.integrator) {
+    const std::string note = "The scene names " + named + ": `lampyr render` renders with " + named + ", and with " +
+                             plan.integrator + " by --integrator auto.";
+    std::printf("%s", Indented("", note, columns).c_str());
   }
   return kExitDone;
 }

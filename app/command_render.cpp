@@ -14,6 +14,7 @@
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "base/version.h"
+#include "render/analysis/plan.h"
 #include "render/analysis/unseen_samples.h"
 #include "render/build/invalid_light.h"
 #include "render/checkpoints.h"
@@ -270,6 +271,7 @@ class RenderJob {
 
  private:
   void Describe();
+  void PrintHints() const;
   void GoOn(ProgressiveRender& render);
   void Trace(ProgressiveRender& render, Checkpoints* checkpoints);
   int Finish(ProgressiveRender& render, Checkpoints* checkpoints);
@@ -346,18 +348,26 @@ void RenderJob::Trace(ProgressiveRender& render, Checkpoints* checkpoints) {
   report_.outcome = Continue(render, stop, afterPass);
 }
 
+void RenderJob::PrintHints() const {
+  for (const std::string& hint : IntegratorHints(built_.scene, settings_.integrator))
+    std::fprintf(stderr, "hint: %s\n", hint.c_str());
+  if (options_.overrides.integrator || settings_.namedIntegrator.empty()) return;
+  PlanDecision suits;
+  RunForeignCode(loaded_.types, [&] { suits = ChooseIntegrator(built_.scene, settings_); });
+  if (suits.choice == settings_.namedIntegrator) return;
+  std::fprintf(stderr, "hint: the scene names %s; --integrator auto would render with %s: %s\n",
+               settings_.namedIntegrator.c_str(), suits.choice.c_str(), suits.reason.c_str());
+}
+
 int RenderJob::Run() {
   auto lock = std::make_unique<OutputLock>(path_);
   Film film = header_.MakeFilm();
   std::unique_ptr<TechniqueImages> techniques;
   if (options_.strategyImages) {
     techniques = std::make_unique<TechniqueImages>(settings_.width, settings_.height, settings_.crop,
-                                                   settings_.MaxDepth(), settings_.imagingRatio);
+                                                   settings_.MaxDepth(), settings_.sensor);
   }
-  if (!options_.quiet) {
-    for (const std::string& hint : IntegratorHints(built_.scene, settings_.integrator))
-      std::fprintf(stderr, "hint: %s\n", hint.c_str());
-  }
+  if (!options_.quiet) PrintHints();
   ProgressiveRender render(built_.scene, *integrator_, settings_, report_.threads, film, techniques.get(),
                            shard_.first);
   if (options_.resume) GoOn(render);

@@ -78,6 +78,13 @@ struct DiffOptions {
   int blockSize = 8;
 };
 
+struct PngOptions {
+  std::filesystem::path input, output;  // output empty: beside the input, with the extension .png
+  float exposure = 0;                   // stops
+  bool clip = false;                    // ends at 1 instead of rolling highlights off
+  bool quiet = false;
+};
+
 struct CheckLightsOptions {
   std::optional<std::filesystem::path> scene;  // absent: types
   PluginOptions plugins;
@@ -98,6 +105,7 @@ int RunMerge(const MergeOptions& options);
 int RunCompare(const CompareOptions& options);
 int RunPlan(const PlanOptions& options);
 int RunDiff(const DiffOptions& options);
+int RunPng(const PngOptions& options);
 int RunLights(const LightsOptions& options);
 int RunCheckLights(const CheckLightsOptions& options);  // fails when a property does not hold
 

@@ -1,4 +1,4 @@
-// All integrators. One is its own file, which defines `IntegratorType …IntegratorType()`, and one row here.
+// The list of all integrators. A new one is a file that defines `IntegratorType …IntegratorType()`, and one row here.
 #include "integrators/registry.h"
 
 #include "base/error.h"

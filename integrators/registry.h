@@ -1,4 +1,4 @@
-// The integrators, and what may be set of them: what the renderer and the commands ask.
+// Registry of the integrators and their settings, for the renderer and the commands.
 #pragma once
 
 #include <memory>
@@ -11,18 +11,18 @@ namespace lampyr {
 
 const std::vector<IntegratorType>& IntegratorRegistry();
 std::vector<std::string> IntegratorNames();
-// The type of that name, or null.
+// The type of that name; null if there is none.
 const IntegratorType* FindIntegrator(const std::string& name);
-// The same; throws an Error where there is none.
+// The type of that name. Throws an Error if there is none.
 const IntegratorType& IntegratorOf(const std::string& name);
 
-// The settings of all integrators, each once, at their fallbacks.
+// The settings of all integrators, each once, at their default values.
 Settings IntegratorSettings();
 
-// Whether the integrator of that name finds light by photons with these settings.
+// True if the integrator of that name gathers photons with these settings; false for an unknown name.
 bool GathersPhotons(const std::string& integrator, const Settings& settings);
 
-// IntegratorType::hints.
+// IntegratorType::hints of the integrator of that name; empty for an unknown name.
 std::vector<std::string> IntegratorHints(const RenderScene& scene, const std::string& integrator);
 
 }  // namespace lampyr

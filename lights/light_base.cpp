@@ -37,7 +37,10 @@ std::vector<ParameterInfo> WithCommonParameters(std::vector<ParameterInfo> param
       {"fixedSampleCount", ParameterType::Integer, "", "0", ">= 0",
        "samples per shading point; 0: as the integrator does"},
   };
-  parameters.insert(parameters.end(), std::begin(common), std::end(common));
+  for (const ParameterInfo& row : common) {
+    parameters.push_back(row);
+    parameters.back().isCommon = true;
+  }
   return parameters;
 }
 

@@ -17,6 +17,7 @@ struct ParameterInfo {
   std::string defaultValue;  // as a scene file would write it
   std::string range;         // "> 0", "[0,1]", "" for any
   std::string help;          // one line
+  bool isCommon = false;     // of all lights, or of all light filters
 };
 
 // What a type is called, and what may be said of it.

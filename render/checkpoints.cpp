@@ -10,7 +10,7 @@ namespace lampyr {
 
 namespace {
 
-// Writing takes at most one part in so many of the time.
+// Smallest interval between checkpoints, in multiples of the time that writing the last one took.
 constexpr double kMostCost = 20;
 
 double SecondsSince(std::chrono::steady_clock::time_point start) {

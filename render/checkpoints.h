@@ -1,4 +1,4 @@
-// A render's state on the disk, now and then, so that it can be gone on with whatever ends it.
+// Checkpoints: the state of a render, written to disk at intervals, so that the render can be resumed however it ends.
 #pragma once
 
 #include <chrono>
@@ -11,20 +11,21 @@
 
 namespace lampyr {
 
-// Beside the image: out.exr has out.checkpoint.
+// Path of an image's checkpoint: out.checkpoint beside out.exr.
 std::filesystem::path CheckpointPath(const std::filesystem::path& image);
 
 class Checkpoints {
  public:
-  // `seconds` between two of them. `header` is that of all that are written, but for its samples. `writeImage` writes
-  // the picture so far; a checkpoint comes after it.
+  // `seconds`: interval between checkpoints. `header`: header of all checkpoints, but for the number of samples.
+  // `writeImage` writes the picture so far; it is called before each checkpoint.
   Checkpoints(std::filesystem::path path, double seconds, PartHeader header, const ProgressiveRender& render,
               std::function<void(const RenderOutcome&)> writeImage);
 
-  // Writes if it is time: those of a large picture that take long come less often, so that they cost little. What goes
-  // wrong is a warning, and the next one may succeed: no render ends for it.
+  // Writes picture and checkpoint if the interval has passed. The interval grows with the time that writing takes, so
+  // that checkpoints of large pictures cost little. An error is only a warning: the render goes on, and the next
+  // checkpoint may succeed.
   void MayWrite(const RenderOutcome& soFar);
-  // The last one. Throws an Error.
+  // Writes the last checkpoint. Throws an Error.
   void Finish(const RenderOutcome& outcome);
 
  private:
@@ -40,7 +41,8 @@ class Checkpoints {
   double lastCost_ = 0;  // seconds
 };
 
-// Goes on where the checkpoint ends. Throws a UsageError where it is of another render, an Error where it is damaged.
+// Loads a checkpoint into `render`. Throws a UsageError if it is of another render or has more samples than are wanted,
+// an Error if it is damaged.
 void ResumeFrom(const std::filesystem::path& path, const PartHeader& header, ProgressiveRender& render);
 
 }  // namespace lampyr

@@ -24,7 +24,7 @@ void CheckWritable(const std::filesystem::path& path, const std::string& option)
   if (std::filesystem::is_directory(path, ignored)) {
     throw UsageError(option + ": \"" + path.string() + "\" is a folder");
   }
-  // The permissions do not tell everything.
+  // Permissions alone are not conclusive: the file is created to find out.
   try {
     const AtomicFile probe(path);
   } catch (const Error& error) {

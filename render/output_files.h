@@ -6,14 +6,14 @@
 
 namespace lampyr {
 
-// Throws a UsageError if the file cannot be written; `option` names the culprit.
+// Throws a UsageError if the file cannot be written. `option`: the command-line option that the message names.
 void CheckWritable(const std::filesystem::path& path, const std::string& option);
-// Makes the folder. Throws a UsageError if it cannot be made.
+// Creates the folder. Throws a UsageError if that fails.
 void MakeFolder(const std::filesystem::path& folder, const std::string& option);
-// Whole or not at all.
+// Writes a text file, whole or not at all. Throws an Error.
 void WriteText(const std::filesystem::path& path, const std::string& text);
 
-// True if both paths exist and lead to the same file, through links too.
+// True if both paths exist and lead to the same file, also through links.
 bool IsSameFile(const std::filesystem::path& a, const std::filesystem::path& b);
 
 }  // namespace lampyr

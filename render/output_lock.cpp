@@ -15,7 +15,8 @@ namespace lampyr {
 
 namespace {
 
-// Whoever removes a lock's file leaves those who have it open with a lock on nothing.
+// True if `path` is still the opened file. A process that releases the lock removes the file, and a lock on a removed
+// file excludes nobody.
 bool IsStillThere(int file, const std::filesystem::path& path) {
   struct stat opened {
   }, there{};
@@ -35,7 +36,7 @@ OutputLock::OutputLock(const std::filesystem::path& output)
     : path_(FolderOf(WriteTarget(output)) / ("." + WriteTarget(output).filename().string() + ".lock")) {
   while (file_ < 0) {
     const int file = open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    if (file < 0) return;  // writing will say why
+    if (file < 0) return;  // writing the output reports the reason
     if (flock(file, LOCK_EX | LOCK_NB) != 0) {
       const bool isTaken = errno == EWOULDBLOCK;
       const std::string owner = isTaken ? OwnerOf(file) : "";
@@ -52,7 +53,7 @@ OutputLock::OutputLock(const std::filesystem::path& output)
   }
   const std::string own = std::to_string(getpid());
   if (ftruncate(file_, 0) != 0 || pwrite(file_, own.data(), own.size(), 0) < 0) {
-    // The number is for a message alone.
+    // The process id is only for the message.
   }
   for (const char* extension : {".exr", ".png", ".checkpoint"})
     AtomicFile::RemoveLeftovers(std::filesystem::path(output).replace_extension(extension));

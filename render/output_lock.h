@@ -1,5 +1,5 @@
-// One render at a time writes an image and its checkpoint: another one that is told to write the same is refused, and
-// what an ended one has left half written beside them is removed.
+// Lock on an image and its checkpoint. A second render with the same output is refused, and temporary files that an
+// ended render left beside them are removed.
 #pragma once
 
 #include <filesystem>
@@ -8,8 +8,8 @@ namespace lampyr {
 
 class OutputLock {
  public:
-  // Held until the end of the process at the latest, however it ends. Throws an Error where another process holds it.
-  // On file systems that know no locks there are none.
+  // Takes the lock, which is held until the end of the process at the latest, however it ends. Throws an Error if
+  // another process holds it. Without effect on file systems that have no locks.
   explicit OutputLock(const std::filesystem::path& output);
   ~OutputLock();
   OutputLock(const OutputLock&) = delete;

@@ -13,19 +13,19 @@ namespace {
 
 constexpr int kTileSize = 16;
 constexpr uint64_t kChunkPaths = 4096;  // light paths that one thread traces before their splats are added
-constexpr uint64_t kBeforeTheFirst = 0x6a09e667f3bcc908;  // of the seed of the photons that the first pass gathers
-// Where camera samples have the row of their pixel:
+constexpr uint64_t kBeforeTheFirst = 0x6a09e667f3bcc908;  // changes the seed for the photons of the first pass
+// In the place of the pixel row, for samples that belong to no pixel:
 constexpr int kLightPaths = -1, kPassTimes = -2;
 
-// One time of the shutter for all of a path.
+// Shutter time of a sample, the same for all of its path.
 float SampleTime(const RenderScene& scene, Sampler& sampler) {
   if (!scene.hasMotion) return 0;
   sampler.SetDimension(dimensions::kTime);
   return sampler.Get1D();
 }
 
-// The time of all paths of a pass, in scenes with motion: a photon is where its path was at that time, and only paths
-// of the same time may meet it. Times of consecutive passes are stratified.
+// Shutter time of all paths of a pass with photons, in scenes with motion: a photon lies where the surface was at the
+// time of its path, so only paths of the same time may gather it. Times of consecutive passes are stratified.
 float PassTime(const RenderSettings& settings, uint32_t pass) {
   Sampler sampler(settings.sampler, settings.seed);
   sampler.StartPixelSample(0, kPassTimes, pass);
@@ -33,7 +33,7 @@ float PassTime(const RenderSettings& settings, uint32_t pass) {
   return sampler.Get1D();
 }
 
-// A ray through one pixel.
+// A camera ray through a pixel, with the weight of the pixel filter.
 struct PixelRay {
   CameraRay camera;
   float filterWeight = 1;
@@ -50,34 +50,34 @@ PixelRay MakePixelRay(const RenderScene& scene, const PixelFilter& filter, int x
   return {scene.camera->GenerateRay(film, lens, time), offset.weight};
 }
 
-// Where samples of one thread go.
+// Adds the samples of one thread to the film.
 struct SampleAdder {
   SampleAdder(const RenderSettings& settings, Film& aFilm, RenderCounts& someCounts)
-      : imagingRatio(settings.imagingRatio), film(aFilm), counts(someCounts) {
+      : sensor(settings.sensor), film(aFilm), counts(someCounts) {
     if (film.HasLayers()) layers.emplace(film.Layers().size());
   }
 
-  // What the next sample is to be split into; null: nothing.
+  // The cleared layers for the next sample; null: the film has none.
   LayerSample* StartLayers() {
     if (!layers) return nullptr;
     layers->Clear();
     return &*layers;
   }
-  // A sample of one pixel, added to `sums` and to the pixel's layers. A value that is none is left out of both and
-  // counted.
+  // Adds a sample of a pixel to `sums` and to the pixel's layers. An invalid value (negative or not finite) is counted,
+  // added to `sums` as black, and left out of the layers.
   void Add(int x, int y, const PixelRay& ray, const Color& radiance, PixelSums& sums) {
-    const float scale = ray.camera.weight * imagingRatio;
+    const float scale = ray.camera.weight * sensor.Scale(radiance * ray.camera.weight);
     Color value = radiance * scale;
     const bool isValid = value.IsValid();
     if (!isValid) {
       ++counts.droppedSamples;
       value = Color(0.0f);
     }
-    sums.Add(value, ray.filterWeight);
-    if (layers && isValid) film.AddToLayers(x, y, *layers, scale, ray.filterWeight);
+    sums.Add(sensor.Balance(value), ray.filterWeight);
+    if (layers && isValid) film.AddToLayers(x, y, *layers, scale, ray.filterWeight, sensor);
   }
 
-  float imagingRatio;
+  const SensorResponse& sensor;
   Film& film;
   RenderCounts& counts;
   std::optional<LayerSample> layers;
@@ -89,7 +89,7 @@ RenderCounts Total(const std::vector<RenderCounts>& parts) {
   return total;
 }
 
-// What all kinds of pass are given.
+// Parameters of all kinds of pass.
 struct Pass {
   const RenderScene& scene;
   const Integrator& integrator;
@@ -133,11 +133,10 @@ RenderCounts TraceCameraPaths(const Pass& pass) {
 
 RenderCounts TraceLightPaths(const Pass& pass) {
   const uint64_t end = pass.end * pass.Pixels();
-  // As many chunks at a time as keep all threads busy: memory stays bounded. The film adds paths in their order, so the
-  // division into chunks does not show.
+  // A fixed number of chunks at a time, enough to keep all threads busy, bounds the memory of the splats. The film adds
+  // paths in their order, so the result does not depend on the division into chunks.
   const int chunks = 4 * std::max(pass.threads, 1);
-  std::vector<SplatList> lists(static_cast<size_t>(chunks),
-                               pass.film.MakeSplatList(pass.filter, pass.settings.imagingRatio));
+  std::vector<SplatList> lists(static_cast<size_t>(chunks), pass.film.MakeSplatList(pass.filter, pass.settings.sensor));
   std::vector<RenderCounts> counts(static_cast<size_t>(chunks));
   for (uint64_t round = pass.first * pass.Pixels(); round < end; round += chunks * kChunkPaths) {
     ParallelFor(chunks, pass.threads, [&](int chunk) {
@@ -158,7 +157,7 @@ RenderCounts TraceLightPaths(const Pass& pass) {
   return Total(counts);
 }
 
-// A pass of both paths, chunk by chunk of the pixels of the full image.
+// A pass of camera and light paths, in chunks of the pixels of the full image.
 class BothPaths {
  public:
   BothPaths(const Pass& pass, TechniqueImages* techniques, PhotonStore* kept)
@@ -170,10 +169,10 @@ class BothPaths {
         lightPaths_(wanted_ ? store_.LightPaths() : pass.Pixels()),
         hasTimes_(wanted_ && pass.scene.hasMotion),
         chunks_(4 * std::max(pass.threads, 1)),
-        // A small image has work for all threads, too.
+        // Smaller chunks for small images, so that all threads have work.
         chunkPaths_(std::min((pass.Pixels() + static_cast<uint64_t>(chunks_) - 1) / static_cast<uint64_t>(chunks_),
                              kChunkPaths)),
-        splats_(static_cast<size_t>(chunks_), pass.film.MakeSplatList(pass.filter, pass.settings.imagingRatio)),
+        splats_(static_cast<size_t>(chunks_), pass.film.MakeSplatList(pass.filter, pass.settings.sensor)),
         photons_(static_cast<size_t>(chunks_)),
         counts_(static_cast<size_t>(chunks_)) {
     if (techniques)
@@ -182,7 +181,7 @@ class BothPaths {
 
   RenderCounts Trace() {
     if (wanted_ && !hasTimes_ && !store_.IsFor(pass_.first)) TracePhotonsBefore(pass_.first);
-    // One sample of all pixels after the other: chunks never meet in a pixel, and the film adds paths in their order.
+    // Sample by sample over all pixels: chunks never share a pixel, and the film adds paths in their order.
     for (uint32_t index = pass_.first; index < pass_.end; ++index) {
       if (hasTimes_) {
         store_.Clear();
@@ -210,13 +209,14 @@ class BothPaths {
   uint64_t PathsPerRound() const { return static_cast<uint64_t>(chunks_) * chunkPaths_; }
   uint64_t SeedOfPhotons() const { return MixBits(pass_.settings.seed + kBeforeTheFirst); }
 
-  // What the sample before would have left; before the very first one, photons of light paths of their own.
+  // Traces the photons that the sample before would have left. Before the very first sample these are photons of other
+  // light paths.
   void TracePhotonsBefore(uint32_t index) {
     store_.Clear();
     TracePhotons(0, index == 0 ? 0 : index - 1, index == 0 ? SeedOfPhotons() : pass_.settings.seed);
     store_.Finish(index);
   }
-  // Light paths alone, for their photons.
+  // Traces light paths for their photons only.
   void TracePhotons(uint64_t begin, uint32_t index, uint64_t seed) {
     for (uint64_t round = begin; round < lightPaths_; round += PathsPerRound()) {
       TraceRound(round, lightPaths_, index, seed, false);
@@ -224,7 +224,8 @@ class BothPaths {
     }
   }
 
-  // The pixels from `round` on, as many as the chunks take. Without the camera: light paths and their photons alone.
+  // Traces the pixels from `round` on, as many as the chunks take. Without `withCamera`: light paths for their photons
+  // only.
   void TraceRound(uint64_t round, uint64_t end, uint32_t index, uint64_t seed, bool withCamera) {
     const float passTime = hasTimes_ ? PassTime(pass_.settings, index) : 0;
     ParallelFor(chunks_, pass_.threads, [&](int chunk) {
@@ -242,13 +243,13 @@ class BothPaths {
   PhotonStore own_;
   PhotonStore& store_;
   const uint64_t lightPaths_;
-  // Photons are those that the light paths of the sample before have left, or, where things move, those of paths that
-  // are traced for them at the time of the sample that gathers them.
+  // True if photons come from light paths traced for each sample at its time, because things move. Otherwise they are
+  // those that the light paths of the sample before have left.
   const bool hasTimes_;
   const int chunks_;
   const uint64_t chunkPaths_;
   const PhotonPass* gather_ = nullptr;
-  // By chunk:
+  // Per chunk:
   std::vector<SplatList> splats_;
   std::vector<PhotonList> photons_;
   std::vector<RenderCounts> counts_;
@@ -291,7 +292,7 @@ void BothPaths::TraceChunk(size_t chunk, uint64_t begin, uint64_t end, uint32_t 
       continue;
     }
     const PixelRay ray = MakePixelRay(pass_.scene, pass_.filter, x, y, time, sampler);
-    if (recorder) recorder->StartSample(x, y, ray.camera.weight * settings.imagingRatio * ray.filterWeight);
+    if (recorder) recorder->StartSample(x, y, ray.camera.weight * settings.sensor.ImagingRatio() * ray.filterWeight);
     adder.StartLayers();
     const Color radiance = pass_.integrator.Sample(&ray.camera.ray, context);
     adder.Add(x, y, ray, radiance, pass_.film.Pixel(x, y));

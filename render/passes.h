@@ -1,7 +1,7 @@
-// Passes: samples of every pixel, shared among threads.
+// Render passes: samples of every pixel, divided among threads.
 //
-// The picture after n samples per pixel is a pure function of scene, settings and seed: neither the number of threads
-// nor the division into passes shows in it.
+// The picture after n samples per pixel is a pure function of scene, settings and seed. It depends neither on the
+// number of threads nor on the division into passes.
 #pragma once
 
 #include "film/film.h"
@@ -12,18 +12,19 @@
 
 namespace lampyr {
 
-// Samples [first, first + count) of every pixel of the crop, added to the film.
+// Adds samples [first, first + count) of every pixel of the crop to the film.
 //
-// An integrator of camera paths: of each pixel one after the other.
+// Integrators of camera paths: all samples of one pixel after the other.
 //
-// An integrator of light paths: width · height of them, of the full image, are a sample per pixel. They are numbered
-// through all of a render, whatever is cropped, and are points of one Sobol sequence.
+// Integrators of light paths: width · height light paths of the full image are one sample per pixel. They are numbered
+// through the whole render, whatever the crop, and are points of one Sobol sequence.
 //
-// An integrator of both: a light path for each sample of each pixel of the full image, a camera path for those of the
-// crop. What lies in a crop is the same as in the whole, unless something was learned from what is seen. Where the
-// integrator gathers photons, each sample is a pass: it uses those that the sample before has left. `kept` is what one
-// call leaves to the next; without it, or where it does not continue, the light paths of the sample before are traced
-// again. In scenes with motion all paths of such a pass have one time, and its photons are of light paths of that time.
+// Integrators of both: one light path for each sample of each pixel of the full image, and one camera path for each of
+// the crop. A crop equals that part of the full image, unless something was learned from what the camera sees. If the
+// integrator gathers photons, each sample of all pixels is a pass that gathers the photons of the sample before. `kept`
+// carries photons from one call to the next; without it, or if it holds those of another sample, the light paths of the
+// sample before are traced again. In scenes with motion all paths of such a pass have the same time, and its photons
+// come from light paths of that time.
 RenderCounts RenderPass(const RenderScene& scene, const Integrator& integrator, const RenderSettings& settings,
                         const PixelFilter& filter, uint32_t first, uint32_t count, int threads, Film& film,
                         TechniqueImages* techniques = nullptr, PhotonStore* kept = nullptr);

@@ -58,24 +58,24 @@ void ProgressiveRender::MakePhotonStore() {
 }
 
 void ProgressiveRender::AddPass(uint32_t done, uint32_t count) {
-  // The lights as they are known by now, until the pass has ended.
+  // The lighting with what has been learned so far; it does not change during the pass.
   view_ = scene_;
   view_.lighting = std::make_shared<const LightingServices>(
       scene_.lighting->With(learning_.get(), guiding_ ? guiding_->Guide() : nullptr));
   const RenderCounts counts = RenderPass(view_, integrator_, settings_, filter_, firstSample_ + done, count, threads_,
                                          *film_, techniques_, photons_.get());
-  CheckStop();  // a pass that was given up adds to nothing
+  CheckStop();  // the counts of a given-up pass are not added
   counts_ += counts;
 }
 
 namespace {
 
-// By then most of what can be learned has been.
+// Samples per pixel at which learning of light selection ends: most of what can be learned has been by then.
 constexpr uint32_t kLastLearned = 64;
 
 }  // namespace
 
-// At a milestone.
+// Called at milestones: after 2^n samples.
 void ProgressiveRender::Learn(uint32_t samples) {
   bool changesDensities = false;
   if (learning_ && learning_->IsRecording()) {
@@ -84,8 +84,8 @@ void ProgressiveRender::Learn(uint32_t samples) {
     changesDensities = true;
   }
   if (guiding_ && guiding_->IsRecording() && guiding_->Decide(samples)) changesDensities = true;
-  // The photons of the last pass have densities that are no longer, of their emission or in their weights: others are
-  // traced in their place, as they are where a render is resumed.
+  // The photons of the last pass, and their weights, have densities of the view before. They are dropped and others
+  // traced in their place, as when a render is resumed.
   if (changesDensities && photons_) photons_->Clear();
 }
 
@@ -100,14 +100,14 @@ bool ProgressiveRender::AddSamples(int count) {
   if (isGivenUp) LeaveToGivenUpPass();
   backup_.Restore(State(), threads_, isGivenUp);
   counts_ = RenderCounts();
-  // As after loading: the photons are traced again.
+  // As after loading, photons are traced again.
   MakePhotonStore();
   if (photons_) photons_->Continue(statistics);
   outcome_.isPartial = isFirst;
   return false;
 }
 
-// Its threads still use the film and the rest: these are theirs from now on.
+// The threads of a given-up pass still use film, techniques and photons: these are left to them and replaced.
 void ProgressiveRender::LeaveToGivenUpPass() {
   ownFilm_.emplace(film_->EmptyCopy());
   film_ = &*ownFilm_;
@@ -204,7 +204,7 @@ RenderOutcome Continue(ProgressiveRender& render, const StopConditions& stop, co
     outcome.seconds = before + clock.Seconds();  // what the user waits for
     outcome.relativeError = render.Picture().RelativeError(stop.largestSample);
     outcome.droppedFraction = render.DroppedFraction();
-    // What was left out may have been all that there is to see.
+    // The dropped samples may have held any part of the light.
     if (outcome.droppedFraction > kMostDropped) outcome.relativeError = std::numeric_limits<double>::infinity();
   };
   measure();
@@ -212,9 +212,9 @@ RenderOutcome Continue(ProgressiveRender& render, const StopConditions& stop, co
     if (outcome.samplesPerPixel >= stop.samplesPerPixel) return true;
     if (outcome.samplesPerPixel == 0) return false;
     if (stop.seconds && outcome.seconds >= *stop.seconds * 0.999) return true;
-    // Too few samples may all have missed what makes the error.
+    // With fewer samples, all of them may have missed what causes the error.
     constexpr int fewest = 16;
-    // An error that stays unknown is never met.
+    // An unknown error never reaches the target.
     const bool isHopeless = outcome.droppedFraction > kMostDropped && stop.relativeError;
     if (isHopeless && outcome.samplesPerPixel >= fewest) return true;
     return stop.relativeError && outcome.samplesPerPixel >= fewest && outcome.relativeError <= *stop.relativeError;

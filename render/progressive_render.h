@@ -1,7 +1,7 @@
 // Rendering in passes until a stop condition holds: samples, time, error or an interrupt.
 //
-// The picture after n samples per pixel is a pure function of scene, settings and seed: neither the number of threads
-// nor the division into passes shows in it.
+// The picture after n samples per pixel is a pure function of scene, settings and seed. It depends neither on the
+// number of threads nor on the division into passes.
 #pragma once
 
 #include <atomic>
@@ -20,66 +20,67 @@
 namespace lampyr {
 
 struct StopConditions {
-  int samplesPerPixel = 16;                        // never more than that
+  int samplesPerPixel = 16;                        // maximum
   std::optional<double> seconds;                   // of rendering
   std::optional<double> relativeError;             // at 95 % confidence (Film::RelativeError)
-  std::optional<double> longestPass;               // seconds, where something is to be done between passes
-  double largestSample = 0;                        // that may not have come yet (unseen_samples.h)
+  std::optional<double> longestPass;               // longest duration of a pass, for work between passes
+  double largestSample = 0;                        // brightest sample that may not have come yet (unseen_samples.h)
   const std::atomic<bool>* interrupted = nullptr;  // set by a signal handler: end soon (StopWatch)
 };
 
 struct RenderOutcome {
   int samplesPerPixel = 0;
-  double seconds = 0;          // of the passes; of Continue: until it has ended
+  double seconds = 0;          // of the passes; returned by Continue: until its end
   double relativeError = 0;    // infinite where it is unknown
   double droppedFraction = 0;  // ProgressiveRender::DroppedFraction
   bool interrupted = false;
-  // The first pass was cut short: the film holds a part of the first sample, for looking at.
+  // True if the first pass was cut short: the film holds part of the first sample, for preview only.
   bool isPartial = false;
   RenderCounts counts;
   std::optional<PhotonStatistics> photons;  // of integrators that gather them
 };
 
-// A picture that more than this part of its samples was dropped from is wrong, and its error unknown.
+// Fraction of dropped samples above which the picture counts as wrong and its error as unknown.
 constexpr double kMostDropped = 1e-3;
 
 // Called after each pass.
 using PassCallback = std::function<void(const RenderOutcome& soFar, double fractionDone)>;
 
-// A render that is continued as long as its owner likes. What `scene`, `integrator`, `settings`, `film` (empty, of the
-// settings' crop) and `techniques` refer to must outlive it.
+// A render that can be continued at any time. The objects behind `scene`, `integrator`, `settings`, `film` (empty, of
+// the settings' crop) and `techniques` must outlive it.
 class ProgressiveRender {
  public:
-  // `firstSample`: of each pixel. Who starts later renders a part of what who starts at 0 does: photons have the radii
-  // of their pass.
+  // `firstSample`: index of the first sample of each pixel. A render that starts later computes a part of the render
+  // that starts at 0, pass by pass with the same photon radii.
   ProgressiveRender(const RenderScene& scene, const Integrator& integrator, const RenderSettings& settings, int threads,
                     Film& film, TechniqueImages* techniques = nullptr, uint32_t firstSample = 0);
 
-  // A pass: as many samples more of every pixel. Only this takes time that counts. What is learned of lights and of
-  // where photons are of use is learned from samples 0 … 2^n - 1 and counts from sample 2^n on, whatever the passes
-  // are. False: a stop was requested (base/stop.h), and the pass was cut short. All is as it was before the pass then,
-  // but that of the first pass the film keeps what there is, until it is dropped. Where the pass had to be given up
-  // (HasGivenUpWork), scene, integrator, settings, film, techniques and this must stay until the process ends.
+  // Adds a pass of `count` samples to every pixel. Only this counts as render time. Light selection and emission
+  // guiding learn from samples 0 … 2^n - 1 and use that from sample 2^n on, whatever the division into passes. False: a
+  // stop was requested (base/stop.h), and the pass was cut short. The state is then that before the pass, except that
+  // after the first pass the film keeps its partial sample until that is dropped. If the pass had to be given up
+  // (HasGivenUpWork), its threads may still run: scene, integrator, settings, film, techniques and this object must
+  // stay until the process ends.
   bool AddSamples(int count);
-  // Empties the film of what a first pass that was cut short has left in it.
+  // Removes from the film what a first pass that was cut short has left in it.
   void DropPartialPass();
-  // Samples that a pass should add: as many as there are, at most about 2^22 in the whole image, so that progress
-  // shows, interrupts are answered and an error target is not overshot by much; not beyond `samplesPerPixel` in all,
-  // nor, after the first pass, what takes longer than `secondsLeft`. At least 1.
+  // Samples per pixel that the next pass should add: as many as the film has already, but at most about 2^22 in the
+  // whole image, so that progress is shown, interrupts are answered, and an error target is not exceeded by much.
+  // Limited to `samplesPerPixel` in all and, after the first pass, to what fits into `secondsLeft`. At least 1.
   int NextPassSamples(int samplesPerPixel, std::optional<double> secondsLeft) const;
 
-  // relativeError is not kept up to date here.
+  // Does not update relativeError.
   const RenderOutcome& Outcome() const { return outcome_; }
-  // The given film, but for another one after a pass that was given up.
+  // The given film, or its replacement after a pass was given up.
   const Film& Picture() const { return *film_; }
-  // Of the samples, or of the photons where that is more, the part that was dropped because it was no finite number.
+  // Fraction of the samples, or of the photons if that is larger, that was dropped as invalid (not finite or negative).
   double DroppedFraction() const;
   const TechniqueImages* Techniques() const { return techniques_; }
 
-  // All that the samples to come depend on, and the film. Between whole passes.
+  // Saves the film and all state that later samples depend on. To be called between whole passes.
   void Save(ByteWriter& bytes) const;
-  // Goes on where one of the same scene, settings and first sample was saved, before any sample is added here. Throws
-  // an Error where this is not what has been saved; it is of no use then.
+  // Restores the state that a render of the same scene, settings and first sample saved; to be called before any sample
+  // is added. Throws an Error if the data is not what Save wrote, after which this object must not be used.
   void Load(ByteReader& bytes);
 
  private:
@@ -91,30 +92,30 @@ class ProgressiveRender {
   PassState State() { return {*film_, techniques_, &learning_, &guiding_}; }
 
   const RenderScene& scene_;
-  RenderScene view_;  // as the pass under way sees it
+  RenderScene view_;  // as the current pass sees it, with what has been learned
   const Integrator& integrator_;
   const RenderSettings& settings_;
   PixelFilter filter_;
   int threads_;
   Film* film_;
   TechniqueImages* techniques_;
-  std::optional<Film> ownFilm_;  // in the place of what a pass that was given up uses
+  std::optional<Film> ownFilm_;  // replaces the film that a given-up pass still uses
   std::optional<TechniqueImages> ownTechniques_;
   uint32_t firstSample_;
   std::optional<PhotonSettings> wantedPhotons_;
   RenderOutcome outcome_;
-  RenderCounts counts_;                        // of the pass under way
+  RenderCounts counts_;                        // of the current pass
   std::unique_ptr<LightLearning> learning_;    // null: selection learns nothing
-  std::unique_ptr<EmissionLearning> guiding_;  // null: photons are not aimed
+  std::unique_ptr<EmissionLearning> guiding_;  // null: no emission guiding
   std::unique_ptr<PhotonStore> photons_;       // of integrators that gather them
   RenderBackup backup_;
 };
 
-// Adds samples until a condition holds. What was loaded counts: its samples and its time.
+// Adds samples until a stop condition holds. The samples and the time of a loaded state count.
 RenderOutcome Continue(ProgressiveRender& render, const StopConditions& stop, const PassCallback& afterPass);
 
-// A new render, into `film` (empty, of the settings' crop). `techniques`, if any, are recorded for integrators that
-// have them.
+// Renders into `film` (empty, of the settings' crop). `techniques`, if any, are recorded for integrators that have
+// them.
 RenderOutcome Render(const RenderScene& scene, const Integrator& integrator, const RenderSettings& settings,
                      const StopConditions& stop, int threads, Film& film, const PassCallback& afterPass,
                      TechniqueImages* techniques = nullptr);

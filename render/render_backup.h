@@ -1,4 +1,4 @@
-// The state of a render after its last whole pass, for the case that the next pass is cut short.
+// The state of a render after its last whole pass, to be restored if the next pass is cut short.
 #pragma once
 
 #include <memory>
@@ -12,7 +12,7 @@
 
 namespace lampyr {
 
-// What of a render its passes change. Null: the render has none of it.
+// The parts of a render that a pass changes. Null: the render does not have that part.
 struct PassState {
   Film& film;
   TechniqueImages* techniques = nullptr;
@@ -20,15 +20,15 @@ struct PassState {
   std::unique_ptr<EmissionLearning>* guiding = nullptr;
 };
 
-// Its memory, as much as the film takes, is kept from pass to pass.
+// Takes as much memory as the film, and keeps it from pass to pass.
 class RenderBackup {
  public:
   explicit RenderBackup(const BoundingSphere& scene) : scene_(scene) {}
 
   // `withFilm`: false before the first pass, when the film is empty.
   void Take(const PassState& state, bool withFilm, int threads);
-  // The film as it was taken; where it was not, it stays as the pass has left it. What was learned is put into objects
-  // of its own; `keepsOld`: the old ones are not destroyed, because a pass that was given up uses them.
+  // Restores what was taken. A film that was not taken stays as the pass has left it. What was learned is restored into
+  // new objects; with `keepsOld` the old ones are not destroyed, because a given-up pass still uses them.
   void Restore(const PassState& state, int threads, bool keepsOld);
 
  private:

@@ -14,16 +14,25 @@ namespace lampyr {
 
 namespace {
 
-// The last digit is the version of what stands before it.
+// The last digit is the version of the format.
 constexpr std::array<char, 12> kMark = {'l', 'a', 'm', 'p', 'y', 'r', ' ', 'p', 'a', 'r', 't', '2'};
 constexpr size_t kEndBytes = sizeof(uint64_t) + sizeof(uint32_t) + kMark.size();
 constexpr uint64_t kMostEntries = 1 << 16;
 constexpr int kMostPixels = 1 << 16;  // across
 
-// With all of its bits.
+// Decimal digits that restore the exact value.
 std::string Exactly(double value) {
   char text[40];
   std::snprintf(text, sizeof text, "%.17g", value);
+  return text;
+}
+
+std::string Exactly(const glm::mat3& matrix) {
+  std::string text;
+  for (int column = 0; column < 3; ++column) {
+    for (int row = 0; row < 3; ++row)
+      text += (text.empty() ? "" : " ") + Exactly(static_cast<double>(matrix[column][row]));
+  }
   return text;
 }
 
@@ -75,7 +84,7 @@ void CheckHeader(const PartHeader& header, uint64_t bytesLeft) {
   const bool isShard = shard.count >= 1 && shard.index >= 1 && shard.index <= shard.count && shard.first < shard.end &&
                        shard.end <= shard.whole && shard.whole <= (1u << 30) && header.samples <= (1u << 30);
   if (!isSized || !isShard) throw Error("it holds a number that cannot be");
-  // The film alone is larger than what is left: told before memory is taken for it.
+  // The film alone would be larger than the rest of the file: checked before its memory is allocated.
   const uint64_t pixels = static_cast<uint64_t>(crop.Width()) * static_cast<uint64_t>(crop.Height());
   if (bytesLeft / Film::BytesPerPixel(header.layers.size(), false) < pixels) throw Error("it ends too early");
 }
@@ -102,7 +111,7 @@ PartHeader LoadHeader(ByteReader& bytes, PartKind kind) {
   return header;
 }
 
-// What stands before the mark, if it is whole.
+// The state before the mark, after checking its size and checksum.
 std::span<const std::byte> FindState(std::span<const std::byte> file) {
   const auto end = file.size() >= kEndBytes ? file.last(kEndBytes) : std::span<const std::byte>();
   constexpr size_t markAt = kEndBytes - kMark.size(), versionAt = kEndBytes - 1;
@@ -137,7 +146,9 @@ RenderIdentity IdentityOf(const LoadedScene& loaded, bool robustIntersection) {
       {"the seed", integer(s.seed)},
       {"the resolution", integer(s.width) + "x" + integer(s.height)},
       {"the crop", integer(crop.x0) + "," + integer(crop.x1) + "," + integer(crop.y0) + "," + integer(crop.y1)},
-      {"the exposure", Exactly(static_cast<double>(s.imagingRatio))},
+      {"the exposure", Exactly(static_cast<double>(s.sensor.ImagingRatio()))},
+      {"the white balance", Exactly(s.sensor.BalanceMatrix())},
+      {"the limit on samples", Exactly(static_cast<double>(s.sensor.MaxComponent()))},
       {"half precision", YesOrNo(s.halfPrecision)},
       {"the kind of pixel filter", integer(static_cast<int>(f.kind))},
       {"the pixel filter's settings",
@@ -147,7 +158,8 @@ RenderIdentity IdentityOf(const LoadedScene& loaded, bool robustIntersection) {
       {"the sampler", s.sampler == SamplerKind::Sobol ? "sobol" : "independent"},
       {"watertight intersection", YesOrNo(robustIntersection)}};
   for (const Setting* setting : IntegratorOf(s.integrator).settings) {
-    if (setting->changesPicture) identity.emplace_back("--" + setting->name, Setting::Exactly(s.values.Value(setting->name)));
+    if (setting->changesPicture)
+      identity.emplace_back("--" + setting->name, Setting::Exactly(s.values.Value(setting->name)));
   }
   return identity;
 }

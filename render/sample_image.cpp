@@ -10,7 +10,7 @@ namespace lampyr {
 
 namespace {
 
-// Halves end at 65504: an image that is brighter is kept in floats.
+// The largest half is 65504; a brighter image is written in floats.
 bool FitsHalves(const Image& image) {
   constexpr float largestHalf = 65504;
   return std::all_of(image.data.begin(), image.data.end(), [](float v) { return std::abs(v) <= largestHalf; });

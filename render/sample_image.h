@@ -8,16 +8,16 @@
 
 namespace lampyr {
 
-// Names an EXR that can be written, and a PNG beside it if one is wanted, or throws UsageError; `option` names the
-// culprit.
+// Throws a UsageError unless `path` is an EXR that can be written and, if `withPng`, so can a PNG beside it. `option`:
+// the command-line option that the message names.
 void CheckImageOutput(const std::filesystem::path& path, const char* option, bool withPng);
 
-// The picture that the samples of the film make, with the metadata of the header and the number of samples. In halves
-// if the header says so and they are enough. `append`: see WriteExr.
+// Writes the developed film, with the metadata of the header and the number of samples. In half precision if the header
+// asks for it and all values fit. `append`: see WriteExr.
 void WriteSamples(const std::filesystem::path& path, const PartHeader& header, const Film& film,
                   const std::function<void(AtomicFile&)>& append = {});
 
-// Tone-mapped, with the extension .png.
+// Writes the tone-mapped image with the extension .png.
 void WritePngBeside(std::filesystem::path path, const Image& image, float exposureStops, bool clips);
 
 }  // namespace lampyr

@@ -12,12 +12,9 @@ bool HasSplats(int t) {
 
 }  // namespace
 
-TechniqueImages::TechniqueImages(int width, int height, const PixelRect& crop, int maxDepth, float imagingRatio)
-    : width_(width),
-      height_(height),
-      crop_(crop),
-      imagingRatio_(imagingRatio),
-      mostEvents_(std::min(maxDepth, kMostEvents)) {
+TechniqueImages::TechniqueImages(int width, int height, const PixelRect& crop, int maxDepth,
+                                 const SensorResponse& sensor)
+    : width_(width), height_(height), crop_(crop), sensor_(sensor), mostEvents_(std::min(maxDepth, kMostEvents)) {
   for (int events = 0; events <= mostEvents_; ++events) {
     for (int s = 0; s <= events + 1; ++s) techniques_.push_back(MakeTechnique(s, events + 2 - s));
   }
@@ -25,7 +22,7 @@ TechniqueImages::TechniqueImages(int width, int height, const PixelRect& crop, i
 }
 
 TechniqueImages TechniqueImages::EmptyCopy() const {
-  return {width_, height_, crop_, mostEvents_, imagingRatio_};
+  return {width_, height_, crop_, mostEvents_, sensor_};
 }
 
 TechniqueImages::Technique TechniqueImages::MakeTechnique(int s, int t) const {
@@ -48,7 +45,7 @@ uint64_t TechniqueImages::BytesPerPixel(int maxDepth) {
   return techniques * 6 * sizeof(double) + withSplats * 2 * (sizeof(PixelSums) + sizeof(SplatSums));
 }
 
-// Those with n events begin after the 2 + 3 + … + (n + 1) with fewer.
+// Techniques of paths with n events come after the 2 + 3 + … + (n + 1) techniques of shorter paths.
 size_t TechniqueImages::IndexOf(int s, int t) const {
   const int events = s + t - 2;
   if (events > mostEvents_) return techniques_.size() - 1;
@@ -59,7 +56,7 @@ TechniqueImages::Recorder::Recorder(TechniqueImages& images, const PixelFilter& 
   for (const Technique& technique : images.techniques_) {
     const SplatList none({0, 0}, {0, 0}, 1);
     const bool has = technique.weightedSplats.has_value();
-    weighted_.push_back(has ? technique.weightedSplats->MakeSplatList(filter, images.imagingRatio_) : none);
+    weighted_.push_back(has ? technique.weightedSplats->MakeSplatList(filter, images.sensor_) : none);
     unweighted_.push_back(weighted_.back());
   }
 }
@@ -86,9 +83,10 @@ void TechniqueImages::Recorder::Observe(const ConnectedPath& path) {
   const auto pixel =
       3 * (static_cast<size_t>(y_ - crop.y0) * static_cast<size_t>(crop.Width()) + static_cast<size_t>(x_ - crop.x0));
   const auto add = [&](std::vector<double>& sums, const Color& value) {
-    sums[pixel] += static_cast<double>(scale_ * value.r);
-    sums[pixel + 1] += static_cast<double>(scale_ * value.g);
-    sums[pixel + 2] += static_cast<double>(scale_ * value.b);
+    const Color balanced = images_->sensor_.Balance(value);
+    sums[pixel] += static_cast<double>(scale_ * balanced.r);
+    sums[pixel + 1] += static_cast<double>(scale_ * balanced.g);
+    sums[pixel + 2] += static_cast<double>(scale_ * balanced.b);
   };
   add(technique.weighted, weighted);
   add(technique.unweighted, path.value);

@@ -1,6 +1,5 @@
-// Pictures of what each technique (s,t) of bidirectional path tracing contributes, with its weight and without: where a
-// picture is wrong or noisy, they tell which technique it is ([Veach97 fig. 10.4]). The weighted ones add up to the
-// render.
+// Images of the contribution of each technique (s,t) of bidirectional path tracing, weighted and unweighted: they show
+// which technique makes a picture wrong or noisy ([Veach97 fig. 10.4]). The weighted images add up to the render.
 #pragma once
 
 #include <optional>
@@ -14,23 +13,23 @@ namespace lampyr {
 
 class TechniqueImages {
  public:
-  // Techniques of paths with up to this many scattering events have pictures of their own; those of longer paths share
-  // one.
+  // Techniques of paths with up to this many scattering events have images of their own; those of longer paths share
+  // one image.
   static constexpr int kMostEvents = 6;
 
   // For a render of `width` × `height` pixels in full and paths of `maxDepth` events at most.
-  TechniqueImages(int width, int height, const PixelRect& crop, int maxDepth, float imagingRatio);
+  TechniqueImages(int width, int height, const PixelRect& crop, int maxDepth, const SensorResponse& sensor);
 
   TechniqueImages EmptyCopy() const;
 
-  // Memory that they take for each pixel of the crop.
+  // Memory per pixel of the crop, bytes.
   static uint64_t BytesPerPixel(int maxDepth);
 
-  // One thread's part of the work: told of a sample, then of its paths.
+  // Records the paths of one thread's samples: StartSample, then Observe for each path.
   class Recorder final : public PathObserver {
    public:
     Recorder(TechniqueImages& images, const PixelFilter& filter);
-    // `scale` multiplies what the camera path finds; pixels outside of the crop have none.
+    // `scale`: factor of what the camera path finds. Pixels outside of the crop have no camera path.
     void StartSample(int x, int y, float scale);
     void Observe(const ConnectedPath& path) override;
 
@@ -50,7 +49,7 @@ class TechniqueImages {
     std::string name;  // "s2-t3", "longer"
     Image weighted, unweighted;
   };
-  // `film` is that of the render.
+  // `film`: that of the render.
   std::vector<Picture> Develop(const Film& film) const;
 
  private:
@@ -64,7 +63,7 @@ class TechniqueImages {
 
   int width_, height_;
   PixelRect crop_;
-  float imagingRatio_;
+  SensorResponse sensor_;
   int mostEvents_;
   std::vector<Technique> techniques_;  // the last is that of longer paths
 };

@@ -30,6 +30,9 @@ class SurfaceReceiverChecker {
   std::optional<SurfaceHit> Seen(const LightSample& sample, const Point3& P) const;
   bool IsFoundBeside(const LightSample& sample, const Point3& P, const Vector3d& direction) const;
   void Compare(const LightSample& sample, const Point3& P, SampleErrors& errors) const;
+  std::vector<Vector3d> CompareSamples(const Point3& P, SampleErrors& errors);
+  Counted CountSamples(const Point3& P, double& hidden);
+  double DarkDensity(const Point3& P, const Vector3d& direction) const;
   Integrands At(const Point3& P, const Vector3d& direction);
 
   const SuiteSubject& subject_;
@@ -106,6 +109,42 @@ void SurfaceReceiverChecker::Compare(const LightSample& sample, const Point3& P,
   if (!e || Mismatch(sample, *e) > 2e-2) ++errors.differing;
 }
 
+// The light's own samples: compared with the surface that is traced. Directions of those that are seen.
+std::vector<Vector3d> SurfaceReceiverChecker::CompareSamples(const Point3& P, SampleErrors& errors) {
+  std::vector<Vector3d> directions;
+  for (int i = 0; i < options_.samples; ++i) {
+    const auto sample = light_.GenerateSamples(RandomContext(subject_, rng_), P);
+    if (!sample) continue;
+    if (i % 4 == 0) Compare(*sample, P, errors);
+    if (Seen(*sample, P)) directions.push_back(glm::normalize(Vector3d(sample->direction)));
+  }
+  return directions;
+}
+
+// Irradiance, without the cosine, by light sampling. `hidden`: the most that a sample would bring that the light itself
+// hides.
+Counted SurfaceReceiverChecker::CountSamples(const Point3& P, double& hidden) {
+  return CountedMean(rng_, [&](const float(&x)[4]) -> std::optional<double> {
+    LightContext context = subject_.context;
+    context.u = {x[0], x[1]};
+    context.uDirection = {x[2], x[3]};
+    const auto sample = light_.GenerateSamples(context, P);
+    if (!sample) return std::nullopt;
+    const double brought = Emitted(subject_, *sample) / Value(sample->pdfDirect);
+    if (Seen(*sample, P)) return brought;
+    hidden = std::max(hidden, brought);
+    return std::nullopt;
+  });
+}
+
+// pdfDirect of the directions from which the light is black.
+double SurfaceReceiverChecker::DarkDensity(const Point3& P, const Vector3d& direction) const {
+  const auto found = tracer_.Trace(Point3d(P), direction);
+  if (!found || std::abs(glm::dot(found->normal, direction)) < kEdgeOn) return 0;
+  const auto e = light_.EvaluateSamples(subject_.context, HitFrom(*found, direction), P);
+  return e && IsBlack(*e) ? Value(e->pdfDirect) : 0.0;
+}
+
 void SurfaceReceiverChecker::Check(const Receiver& receiver) {
   const Point3& P = receiver.position;
   leak_ = compared_ = cameraDiffers_ = 0;
@@ -117,26 +156,10 @@ void SurfaceReceiverChecker::Check(const Receiver& receiver) {
   DirectionQuadrature quadrature(
       CapTowards(tracer_.Around(), P), hints, [&](const Vector3d& direction) { return At(P, direction); }, rng_,
       options_.effort * DirectionQuadrature::kBudget);
-  std::vector<Vector3d> directions;
   SampleErrors errors;
-  for (int i = 0; i < options_.samples; ++i) {
-    const auto sample = light_.GenerateSamples(RandomContext(subject_, rng_), P);
-    if (!sample) continue;
-    if (i % 4 == 0) Compare(*sample, P, errors);
-    if (Seen(*sample, P)) directions.push_back(glm::normalize(Vector3d(sample->direction)));
-  }
-  double hidden = 0;  // the most that a sample would bring that the light itself hides
-  const Counted counted = CountedMean(rng_, [&](const float(&x)[4]) -> std::optional<double> {
-    LightContext context = subject_.context;
-    context.u = {x[0], x[1]};
-    context.uDirection = {x[2], x[3]};
-    const auto sample = light_.GenerateSamples(context, P);
-    if (!sample) return std::nullopt;
-    const double brought = Emitted(subject_, *sample) / Value(sample->pdfDirect);
-    if (Seen(*sample, P)) return brought;
-    hidden = std::max(hidden, brought);
-    return std::nullopt;
-  });
+  const std::vector<Vector3d> directions = CompareSamples(P, errors);
+  double hidden = 0;
+  const Counted counted = CountSamples(P, hidden);
   const std::string where = subject_.caseName + " " + receiver.name;
   const std::string words = InWords(tracer_.Around(), receiver);
   const auto probability = [&](const char* property, double p, const std::string& text) {
@@ -152,13 +175,7 @@ void SurfaceReceiverChecker::Check(const Receiver& receiver) {
               InWords("the integral of pdfDirect", quadrature.Density(), counted.share));
   CheckDarkDensity(
       subject_, where, quadrature.Density(), CapTowards(tracer_.Around(), P),
-      [&](const Vector3d& direction) {
-        const auto found = tracer_.Trace(Point3d(P), direction);
-        if (!found || std::abs(glm::dot(found->normal, direction)) < kEdgeOn) return 0.0;
-        const auto e = light_.EvaluateSamples(subject_.context, HitFrom(*found, direction), P);
-        return e && IsBlack(*e) ? Value(e->pdfDirect) : 0.0;
-      },
-      rng_, report_);
+      [&](const Vector3d& direction) { return DarkDensity(P, direction); }, rng_, report_);
   std::string worst;
   const double p = quadrature.Test(directions, options_.samples, 48, &worst);
   probability("directions", p, worst);

@@ -112,8 +112,9 @@ void PrintReference(const ComparisonResults& results, std::string& text) {
   if (reference.samplesPerPixel > 0) text += Format(", %d spp", reference.samplesPerPixel);
   if (reference.seconds > 0) text += ", " + FormatDuration(reference.seconds);
   if (reference.relativeError) {
-    text += Format("; its error is %s%.2g %% (relMSE %.2g), %s subtracted\n", reference.noiseIsLimit ? "at most " : "",
-                   100 * *reference.relativeError, *reference.relMse, reference.noiseIsLimit ? "and not" : "and is");
+    text += Format("; its noise is a relMSE of %s%.2g, an error of %s, %s subtracted\n",
+                   reference.noiseIsLimit ? "at most " : "", *reference.relMse,
+                   FormatPercent(std::sqrt(*reference.relMse)).c_str(), reference.noiseIsLimit ? "and not" : "and is");
   } else {
     text += "; its error is not known, and taken as none\n";
   }

@@ -51,7 +51,7 @@ AreaDensity DensityAtLens(const Camera& camera, const Ray& ray, float geometryTe
 
 namespace {
 
-// The light subpath, as it grows.
+// Visitor of the light subpath.
 class LightSide final : public WeighedLightPath {
  public:
   explicit LightSide(BidirectionalSample& sample)
@@ -81,7 +81,7 @@ class LightSide final : public WeighedLightPath {
   const bool isConnected_;
 };
 
-// The camera subpath, as it grows.
+// Visitor of the camera subpath.
 class CameraSide final : public PathVisitor {
  public:
   explicit CameraSide(BidirectionalSample& sample) : sample_(sample) {}
@@ -133,7 +133,7 @@ class CameraSide final : public PathVisitor {
     vertex.pdfForward = DensityAtLens(*sample_.context.scene.camera, state.ray, vertex.GeometryTerm(vertex.toPrevious),
                                       Sqr(static_cast<double>(state.length)));
     vertex.previousSolidAnglePerArea = {0};  // the lens is not hit
-    // Light paths come here but where they pass through.
+    // Light paths reach the vertex unless its surface is invisible to them.
     const bool isSplatted = vertex.pdfForward.value > 0 && vertex.isSeenByIndirect;
     vertex.weight = PartialWeight::AtLens(vertex.pdfForward, isSplatted && sample_.settings.connects);
   }
@@ -155,7 +155,7 @@ class BidirectionalIntegrator final : public Integrator {
   BidirectionalSettings settings_;
 };
 
-// Kept by the thread: vertices are large, and samples many.
+// Reused by each thread, because vertices are large.
 struct Workspace {
   LightPath light;
   Subpath camera;
@@ -190,7 +190,7 @@ std::unique_ptr<Integrator> MakeBidirectionalIntegrator(const BidirectionalSetti
 
 namespace {
 
-// The radius of merging in the first pass, where the user names none: a blur no wider than that of most pixel filters.
+// Merging radius of the first pass by default, in pixel footprints: a blur no wider than that of most pixel filters.
 constexpr double kRadiusInPixels = 1;
 
 const Setting kMerge{.name = "merge", .help = "Merge with photons", .fallback = true, .without = "it is bdpt"};

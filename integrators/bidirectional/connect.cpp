@@ -38,7 +38,7 @@ Color Connect(const BidirectionalSample& sample, size_t lightCount) {
   if (worth == 0) return Color(0.0f);
   ++context.counts.shadowRays;
   const Ray ray = SpawnRayTo(z.point, y.point.position, y.point.positionError, y.point.Ng, context.time);
-  path.value *= context.scene.geometry->Transmission(ray, visibility::kIndirect);
+  path.value *= context.scene.geometry->Transmittance(ray, visibility::kIndirect);
   if (path.value.IsBlack()) return path.value;
   return sample.Found(path, worth);
 }

@@ -11,7 +11,7 @@ struct DirectionDensities {
   SolidAngleDensity toLight, toCamera;
 };
 
-// From the BSDF. A delta has none: its event says its coefficients.
+// Densities from the BSDF. Delta events have none; their coefficients are in the vertex.
 DirectionDensities At(const PathVertex& vertex, const Vector3& toLight, const Vector3& toCamera) {
   const BsdfEvaluation f = vertex.bsdf.Evaluate(toCamera, toLight, TransportMode::Radiance);
   return {SolidAngleDensity(f.pdfForward), SolidAngleDensity(f.pdfReverse)};
@@ -26,7 +26,7 @@ SolidAnglePerArea EdgeBetween(const PathVertex& from, const PathVertex& to, cons
 
 FullPath Unfold(const ConnectedPath& path) {
   std::vector<const PathVertex*> vertices = {nullptr};
-  // Where the subpaths merge, the vertex is the camera's; the photon's says how its own path came there.
+  // In a merged path the shared vertex is the camera's; the photon's vertex has the densities of its own subpath.
   const size_t ofLight = path.light.size() - (path.isMerged ? 1 : 0);
   const PathVertex* photon = path.isMerged ? &path.light.back() : nullptr;
   for (const PathVertex& vertex : path.light.first(ofLight)) vertices.push_back(&vertex);
@@ -45,7 +45,7 @@ FullPath Unfold(const ConnectedPath& path) {
   full.lensSeesIt = vertices[n]->isSeenByIndirect && path.atLens.value > 0;
   for (size_t i = 1; i <= n; ++i) {
     const PathVertex& vertex = *vertices[i];
-    // Along the rays that were traced; the edge that joins the subpaths goes from vertex to vertex.
+    // Directions of the rays that were traced; for the connecting edge, from vertex to vertex.
     const auto directionTo = [&](size_t other) {
       if (photon && i == ofLight + 1 && other == ofLight) return photon->toPrevious;
       if (photon && i == ofLight && other == ofLight + 1) return -photon->toPrevious;
@@ -55,7 +55,8 @@ FullPath Unfold(const ConnectedPath& path) {
     };
     const Vector3 toLight = i == 1 ? path.toLight : directionTo(i - 1);
     const Vector3 toCamera = i == n ? path.toLens : directionTo(i + 1);
-    // The last vertex of either subpath is joined to something else, but where the camera's has found the light.
+    // The last vertex of a subpath is connected and has no event on the path, except where the camera's has hit the
+    // light.
     const bool isLight = i <= ofLight;
     const bool isLast = isLight ? i == ofLight && !photon : i == ofLight + 1 && path.s > 0;
     DirectionDensities densities;
@@ -82,7 +83,7 @@ std::vector<double> WeightsByDensities(const FullPath& path) {
   const auto fromLight = [&](int i) { return path.fromLight[static_cast<size_t>(i)].value; };
   const auto fromCamera = [&](int i) { return path.fromCamera[static_cast<size_t>(i)].value; };
   for (int s = 0; s <= n + 1; ++s) {
-    // The edge that joins the subpaths must not end in a delta.
+    // The connecting edge must not end at a delta.
     if (s == 0 && !path.end.canBeHit) continue;
     if (s > 1 && isDelta(s - 1)) continue;
     if (s > 0 && s <= n && isDelta(s)) continue;
@@ -110,7 +111,7 @@ std::vector<double> WeightsByDensities(const FullPath& path) {
 
 namespace {
 
-// Both subpaths of a full path as they are carried along: [i] is vertex i as the end of either.
+// Partial weights of both subpaths of a full path: [i] is that of vertex i as the last one of its subpath.
 struct Carried {
   std::vector<PartialWeight> light, camera;
 };

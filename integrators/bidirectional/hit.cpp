@@ -1,4 +1,4 @@
-// s = 0: the camera subpath finds a light by itself.
+// s = 0: the camera subpath hits a light.
 #include "integrators/bidirectional/techniques.h"
 #include "integrators/bidirectional/weights.h"
 
@@ -6,7 +6,7 @@ namespace lampyr {
 
 namespace {
 
-// `landing`: the edge of an emission to the camera subpath's last vertex.
+// `landing`: LandingEdge from the light that was found to the camera subpath's last vertex.
 Color HitLight(const BidirectionalSample& sample, const PathState& state, const FoundLight& found,
                SolidAnglePerArea landing) {
   const LightEvaluation& e = found.evaluation;
@@ -49,12 +49,13 @@ Color SeeLightAt(const BidirectionalSample& sample, const PathState& state, cons
       path.weight = SeenLightWeight(path.end.position, path.atLens);
   }
   const Color contribution = sample.Report(path);
-  // Lights that are seen from one side only may have no density there, and no end of the path.
+  // The group is that of the surface, because path.end may be unset: a light that emits from one side only may have no
+  // density here.
   if (context.layers) context.layers->Add(lighting.GroupAt(point), contribution);
   return contribution;
 }
 
-// Nothing else finds a light at infinity that the camera looks at.
+// No other technique finds a light at infinity that the camera sees directly.
 Color SeeBackground(const BidirectionalSample& sample, const PathState& state) {
   ConnectedPath path;
   path.t = 2;

@@ -45,7 +45,7 @@ Color Merge(const BidirectionalSample& sample) {
                     vertex.weight.BeforeReverse(vertex.PreviousReverse(f.pdfReverse), sample.merge), sample.merge);
     const Color value = scattered * vertex.ArrivalCorrection(toLight);
     sum += value * static_cast<float>(weight);
-    // In another order: a product that both share would not be rounded as it is where there are no layers.
+    // Multiplied in another order than the sum: a shared product would be rounded differently than without layers.
     if (context.layers) [[unlikely]]
       context.layers->Add(photon.group, Product(vertex.Throughput(), value, perDensity * weight));
     if (pass.use) [[unlikely]]

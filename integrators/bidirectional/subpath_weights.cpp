@@ -31,8 +31,8 @@ LightEnd EndOf(const LightingServices& lighting, const FoundLight& found, bool c
   return end;
 }
 
-// The weight of the first vertex is that of the selection there: next-event estimation from it would have chosen this
-// light so often. False: the light does not send anything there.
+// The partial weight of the first vertex depends on light selection there: on the probability with which next-event
+// estimation from it would have chosen this light. False: the light does not send anything there.
 bool WeighedLightPath::Landed(const EmittedPhoton& photon, PathVertex& first) {
   const LightingServices& lighting = *context_.scene.lighting;
   const std::optional<FoundLight> found = lighting.EvaluateLanding(photon, first.receiver);

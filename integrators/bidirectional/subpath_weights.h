@@ -5,18 +5,18 @@
 
 namespace lampyr {
 
-// Sets the densities and the weight of a vertex that its subpath found from the previous one by the ray of `state`.
-// Without `connects`, the weight is that of merging alone.
+// Sets the densities and the partial weight of `vertex`, which its subpath found from `previous` by the ray of `state`.
+// Without `connects`: the weight for merging alone.
 void SetWeights(const PathVertex& previous, const PathState& state, bool connects, PathVertex& vertex);
 
-// From the densities of an emission to area where it lands: EdgeDensity, without the distance of a light at infinity.
+// dω/dA at the first hit of an emitted path: EdgeDensity, for a light at infinity without the squared distance.
 SolidAnglePerArea LandingEdge(const LightingServices& lighting, uint32_t light, float geometryTerm,
                               double distanceSquared);
 
-// `landing`: LandingEdge at the first surface vertex.
+// The light's end of a path, for a light found from its first surface vertex. `landing`: LandingEdge at that vertex.
 LightEnd EndOf(const LightingServices& lighting, const FoundLight& found, bool canBeHit, SolidAnglePerArea landing);
 
-// A visitor that sets the weights of a light path while it grows, for those who go on with it.
+// Sets densities and partial weights of a light path while it grows; base of visitors that need them.
 class WeighedLightPath : public LightPathVisitor {
  public:
   WeighedLightPath(const SampleContext& context, bool connects) : context_(context), connects_(connects) {}
@@ -25,7 +25,7 @@ class WeighedLightPath : public LightPathVisitor {
   void Arrived(LightPath& path, const PathState& state) final;
 
  protected:
-  // The path has come to another vertex, whose weights are set.
+  // A vertex was added to the path, and its weights are set.
   virtual void Weighed(const LightPath& path) = 0;
   const LightEnd& End() const { return end_; }
 

@@ -1,5 +1,5 @@
-// The techniques of a bidirectional sample. Each makes paths in one way, weighs them (weights.h) and returns what they
-// contribute to the sample's own pixel, or splats it.
+// The techniques of a bidirectional sample. Each function makes paths by one technique, weights them (weights.h), and
+// returns their contribution to the sample's own pixel or splats it.
 #pragma once
 
 #include "integrators/bidirectional/bidirectional_integrator.h"
@@ -10,10 +10,10 @@
 
 namespace lampyr {
 
-// The two paths of a sample take turns in the sampler's dimensions, so that neither runs into the other.
+// The two subpaths of a sample use alternating blocks of sampler dimensions, so that neither uses the other's.
 inline constexpr PathDimensions kOfCamera{2, 0}, kOfLight{2, 1};
 
-// A sample under way: both subpaths, and what the camera subpath has gathered so far.
+// State of a sample: both subpaths, and the radiance that the camera subpath has gathered so far.
 struct BidirectionalSample {
   const SampleContext& context;
   const BidirectionalSettings& settings;
@@ -21,35 +21,37 @@ struct BidirectionalSample {
   LightEnd lightEnd;  // of `light`
   Subpath& camera;
   PhotonLookup& lookup;
-  double merge = 0;         // (N π r²)^β; 0: nothing is merged
-  bool couldMerge = false;  // at a vertex of the camera subpath
+  double merge = 0;         // (N π r²)^β; 0: no merging
+  bool couldMerge = false;  // merging was possible at a vertex of the camera subpath
   Color radiance;
 
   const LightingServices& Lighting() const { return *context.scene.lighting; }
-  // Of a vertex that techniques may merge at.
+  // `merge` if photons can be merged at `vertex`, 0 otherwise.
   double MergeAt(const PathVertex& vertex) const { return vertex.CanMerge() ? merge : 0.0; }
   bool IsObserved() const { return context.observer != nullptr; }
-  // Which shadow rays are traced: an observer is shown all of them.
+  // Roulette of shadow rays; off with an observer, which receives all paths.
   ShadowRays WantedShadowRays() const { return IsObserved() ? ShadowRays{0, 0} : settings.shadowRays; }
 
-  // The ends of a path with a camera subpath, or with the light subpath of this sample.
+  // Set the camera's end of `path` from the camera subpath, and its light's end from the first `count` vertices of the
+  // light subpath.
   void SetCamera(ConnectedPath& path) const;
   void SetLight(ConnectedPath& path, size_t count) const;
-  // What a path contributes; observers are told of it.
+  // The weighted contribution of a path. The observer, if any, receives the path.
   Color Report(ConnectedPath& path) const;
-  // The same of a path that lands in the sample's own pixel, in the layer of its light; `worth`: ShadowRays::Worth.
+  // Report for a path that contributes to the sample's own pixel: scales the contribution by the survival weight
+  // `worth` (ShadowRays::Worth) and adds it to the layer of the light.
   Color Found(ConnectedPath& path, float worth = 1) const;
 };
 
-// Density (area) of the vertex that a camera ray sees, over that of the point on the lens alone: what t = 2 has and
-// t = 1 has not.
+// Area density of the vertex that a camera ray hits, over the density of the lens point: the factor of t = 2 that t = 1
+// does not have.
 AreaDensity DensityAtLens(const Camera& camera, const Ray& ray, float geometryTerm, double distanceSquared);
 
-// (0,2): the camera looks at an area light, or past everything at lights at infinity.
+// (0,2): the camera sees an area light, or lights at infinity.
 Color SeeLightAt(const BidirectionalSample& sample, const PathState& state, const RayHit& hit,
                  const SurfacePoint& point);
 Color SeeBackground(const BidirectionalSample& sample, const PathState& state);
-// s = 0, t > 2: the camera subpath has found a light by scattering: an area light at `point`, or those at infinity.
+// s = 0, t > 2: after scattering, the camera subpath hits an area light at `point`, or escapes to lights at infinity.
 Color HitLightAt(const BidirectionalSample& sample, const PathState& state, const SurfacePoint& point);
 Color HitInfiniteLights(const BidirectionalSample& sample, const PathState& state);
 
@@ -63,7 +65,7 @@ Color Connect(const BidirectionalSample& sample, size_t lightCount);
 void SplatLight(const BidirectionalSample& sample, const EmittedPhoton& photon);
 void SplatVertex(const BidirectionalSample& sample);
 
-// Photons near the camera subpath's last vertex: each could have been its next step to the light ([Georgiev12 §3]).
+// Vertex merging: photons near the camera subpath's last vertex ([Georgiev12 §3]).
 Color Merge(const BidirectionalSample& sample);
 
 }  // namespace lampyr

@@ -1,9 +1,8 @@
-// Weights of the techniques of bidirectional path tracing and vertex merging: one function for each way of making a
-// path, from the partial weights of both its sides ([Veach97 §10.2], [Georgiev12 §4]; departures from both are those of
-// walk/partial_weight.h). The integrator calls them, and so does the proof that holds them against explicit densities
-// (full_path.h).
+// MIS weights of bidirectional path tracing and vertex merging: one function per technique, from the partial weights of
+// both subpaths ([Veach97 §10.2], [Georgiev12 §4]; the departures from both are in walk/partial_weight.h). The
+// integrator calls these functions, and so does the test against explicit densities (full_path.h).
 //
-// `merge` is (N π r²)^β of the vertex that it is said of; 0 where photons are not merged there.
+// `merge`: (N π r²)^β at the vertex in question; 0 if photons are not merged there.
 #pragma once
 
 #include "integrators/walk/vertex.h"
@@ -15,7 +14,8 @@ inline double WeightAgainst(double others) {
   return 1 / (1 + others);
 }
 
-// (0,2): the camera sees a point of a light. (1,1) finds it, too. `position`: by emission; `camera`: by the ray.
+// (0,2): the camera hits a point of a light, which (1,1) also finds. Densities of the point: `position` by emission,
+// `camera` by the camera ray.
 inline double SeenLightWeight(AreaDensity position, AreaDensity camera) {
   return WeightAgainst(Mis(position / camera));
 }
@@ -24,10 +24,10 @@ inline double SplatLightWeight(AreaDensity position, AreaDensity camera) {
   return WeightAgainst(Mis(camera / position));
 }
 
-// The event at the last vertex of a camera subpath that has found a light.
+// The scattering event at the last vertex of a camera subpath that hit a light.
 struct LastEvent {
   bool isDelta = false, canMerge = false;
-  AreaDensity previousReverse;  // of the vertex before
+  AreaDensity previousReverse;  // reverse density of the vertex before
 };
 // s = 0, t > 2: the camera subpath hits the light, whose point has the density `hit` ([Georgiev12 eq. 43]).
 inline double HitWeight(const LightEnd& end, const PartialWeight& camera, const LastEvent& event, AreaDensity hit,
@@ -38,8 +38,8 @@ inline double HitWeight(const LightEnd& end, const PartialWeight& camera, const 
 }
 
 // s = 1, t > 1: the light is sampled at the last vertex of the camera subpath ([Georgiev12 eqs. 44, 45]). `hit`:
-// density with which scattering there would find the light's point; 0: it cannot. `previousReverse`: of the vertex
-// before.
+// density with which scattering there would find the light's point; 0: it cannot. `previousReverse`: reverse density of
+// the vertex before.
 inline double NextEventWeight(const LightEnd& end, const PartialWeight& camera, AreaDensity hit,
                               AreaDensity previousReverse, double merge) {
   return WeightAgainst(Mis(hit / end.direct) + camera.Sum({end.emission / end.direct, previousReverse}, merge));
@@ -51,14 +51,14 @@ inline double ConnectWeight(const PartialWeight& light, const ReverseDensities& 
   return WeightAgainst(light.Sum(ofLight, mergeAtLight) + camera.Sum(ofCamera, mergeAtCamera));
 }
 
-// s > 1, t = 1: the last vertex of the light subpath is connected to the lens ([Georgiev12 eq. 46]). `reverse`: of that
-// vertex, by a camera ray, and of the one before.
+// s > 1, t = 1: the last vertex of the light subpath is connected to the lens ([Georgiev12 eq. 46]). `reverse`: reverse
+// densities of that vertex, by a camera ray, and of the one before.
 inline double SplatWeight(const PartialWeight& light, const ReverseDensities& reverse, double merge) {
   return WeightAgainst(light.Sum(reverse, merge));
 }
 
-// The last vertices of both subpaths are merged ([Georgiev12 eqs. 38, 39]). `light`, `camera`: BeforeReverse of either
-// side.
+// The last vertices of both subpaths are merged ([Georgiev12 eqs. 38, 39]). `light`, `camera`: BeforeReverse of the two
+// subpaths.
 inline double MergeWeight(double light, double camera, double merge) {
   return WeightAgainst((light + camera) / merge);
 }

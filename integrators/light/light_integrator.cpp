@@ -2,13 +2,13 @@
 // the techniques with t = 1; particle tracing of [Dutré93]).
 //
 // Finds what path tracing cannot: caustics of point, spot and distant lights on anything that is not perfectly smooth.
-// Cannot find: what the camera sees in or through something perfectly smooth (a mirror, a pane, glass), because a delta
-// is never met by a connection; lights at infinity seen directly (the background), which have no point to connect; and
-// lights with traceLightPaths off, which send out nothing. Such parts of the picture are black, not wrong.
-// What is small or far off in the image gets few paths: they go where the light goes, not where the camera looks.
+// Cannot find: what the camera sees in or through something perfectly smooth (a mirror, a pane, glass), because delta
+// vertices cannot be connected; lights at infinity seen directly (the background), which have no point to connect; and
+// light of lights with traceLightPaths off, which start no paths. These parts of the image are black; all others are
+// unbiased. Objects that are small or far from the camera receive few paths, because paths follow the light and not the
+// camera.
 //
-// Depth counts scattering events between light and camera, as for `path`. Survival of roulette enters the throughput
-// only.
+// Depth counts scattering events between light and camera, as for `path`. Russian roulette enters the throughput only.
 #include <algorithm>
 
 #include "integrators/walk/integrator_type.h"

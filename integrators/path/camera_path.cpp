@@ -53,8 +53,8 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
     return true;
   }
 
-  // Directions that photons are gathered from are looked along for lights alone: next-event estimation would miss a
-  // panel that touches the floor.
+  // Directions from which photons are gathered are still traced for the emission of the surface they hit: next-event
+  // estimation alone would miss a panel that touches the floor.
   bool Scattered(const Subpath& path, const PathState& state) override {
     isLook_ = !path.Last().scatteredDelta && state.pdfDirection.value <= static_cast<double>(settings_.gatherBelow);
     return !isLook_ || (settings_.samplesLights && lighting_.HasLightThatCanBeHit());
@@ -63,7 +63,7 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
   const Color& Radiance() const { return radiance_; }
 
  private:
-  // A light that the BSDF's direction found, weighted against next-event estimation.
+  // A light found by BSDF sampling, weighted against next-event estimation.
   void AddFound(const PathVertex& last, const PathState& state, const FoundLight& found) {
     Color radiance = state.diffuse * found.evaluation.diffuse + state.specular * found.evaluation.specular;
     if (!last.scatteredDelta && settings_.samplesLights) {
@@ -87,7 +87,7 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
   const CameraPathSettings& settings_;
   const NextEventSettings nextEvent_;
   const PhotonGatherer* gatherer_;
-  bool isLook_ = false;  // the ray is for lights alone: other light from there is left to the gatherer
+  bool isLook_ = false;  // the ray is traced for emission alone: other light from there is gathered
   Color radiance_;
 };
 

@@ -1,32 +1,32 @@
-// A path from the camera that looks for light at each vertex: next-event estimation and the BSDF's own directions,
-// weighted by the power heuristic. All of path tracing, and the first part of photon mapping.
+// Camera paths that look for light at each vertex by next-event estimation and by BSDF sampling, weighted by the power
+// heuristic. The whole of path tracing, and the camera paths of photon mapping.
 #pragma once
 
 #include "integrators/walk/next_event.h"
 
 namespace lampyr {
 
-// Light that arrives from directions that are not followed.
+// Photon gathering, for light from directions that a camera path does not follow.
 class PhotonGatherer {
  public:
   virtual ~PhotonGatherer() = default;
-  // Scattered towards the previous vertex, by directions whose density is not above CameraPathSettings::gatherBelow,
-  // times the vertex's throughput. `events`: scattering events of the path, this one included. `length`: from the
-  // camera.
+  // Light of photons scattered at `vertex` towards the previous one, times the vertex's throughput. Only photons from
+  // directions that the BSDF samples with a density of at most CameraPathSettings::gatherBelow. `events`: scattering
+  // events of the path, this one included. `length`: path length from the camera, scene units.
   virtual Color Gather(const PathVertex& vertex, int events, float length) const = 0;
 };
 
 struct CameraPathSettings {
   int maxDepth = 5;  // scattering events
   PathDimensions dimensions{};
-  // 1/sr: directions of no higher density end the path, but for the light that shines from there by itself; 0: all are
-  // followed.
+  // 1/sr. A sampled direction whose density is not higher ends the path: of the surface that it hits only the emission
+  // is used, all other light from there is gathered. 0: all directions are followed.
   float gatherBelow = 0;
-  bool samplesLights = true;  // next-event estimation; without it, lights are found by followed directions alone
+  bool samplesLights = true;  // next-event estimation; without it, lights are found by BSDF sampling alone
   ShadowRays shadowRays;
 };
 
-// An estimate of the radiance that arrives along `ray`. `gatherer` may be null where gatherBelow is 0, and adds to
+// Estimates the radiance arriving along `ray`. `gatherer` may be null if gatherBelow is 0; it adds to
 // SampleContext::layers itself.
 Color TraceCameraPath(const SampleContext& context, const CameraPathSettings& settings, const Ray& ray,
                       const PhotonGatherer* gatherer);

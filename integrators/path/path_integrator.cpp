@@ -1,7 +1,7 @@
 // Path tracing with next-event estimation: at each vertex lights are sampled and one BSDF direction is followed, and
-// the two ways of reaching a light are weighted by the power heuristic ([Veach97 §9], [Pharr23 §13.4]).
+// the two techniques are weighted by the power heuristic ([Veach97 §9], [Pharr23 §13.4]).
 //
-// Cannot find: delta lights through anything but diffuse or rough surfaces (no caustics of point lights).
+// Cannot find: light of delta lights through or off smooth surfaces (no caustics of point lights).
 #include "integrators/path/camera_path.h"
 #include "integrators/walk/integrator_type.h"
 

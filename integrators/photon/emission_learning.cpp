@@ -12,26 +12,28 @@ namespace lampyr {
 
 namespace {
 
-// Useful photons that are remembered; beyond, one in so many, each worth as many more.
+// Useful photons to keep, and to take from one pass. Of more, a subset is kept with proportionally larger weights.
 constexpr size_t kMostUseful = size_t{1} << 14;
 constexpr size_t kMostOfAPass = size_t{1} << 13;
 constexpr size_t kMostRemembered = 2 * kMostUseful + 2 * kMostOfAPass;
-// A guide must promise more than it costs: its densities are asked for at every light path, shadow ray and hit.
+// Smallest gain for which a guide is used. It must outweigh the cost of evaluating the guide's density for every light
+// path, shadow ray and hit.
 constexpr double kWorthwhile = 2;
-// Photons that a verdict is based on, at least: of sums of squares, a few may be all.
+// Smallest effective number of photons for a verdict: a sum of squares may be dominated by a few.
 constexpr double kFewestTested = 8;
-// By then most of what can be learned has been, if there is a verdict; later than the last, nothing more.
+// Samples per pixel at which recording ends: with a verdict, when most of what can be learned is known, and without
+// one.
 constexpr uint32_t kLearned = 64, kLastLearned = 4096;
-// And by then, if nothing is to be had at all.
+// The same with the verdict that guiding would increase the error.
 constexpr uint32_t kHopeless = 8;
 
-// Photons of a light that say more than a guess.
+// Useful photons of a light from which on its guess is no longer used.
 constexpr size_t kManyUseful = 256;
-// Of the first guess.
-constexpr float kRare = 5;        // photons are aimed if most would be sent so many times as often
-constexpr int kSeenAcross = 32;   // rays
-constexpr int kGuessed = 4096;    // photons
-constexpr size_t kBrightest = 8;  // lights that are aimed
+// The initial guess:
+constexpr float kRare = 5;        // guide if more than a third of the photons are sent more than so many times as often
+constexpr int kSeenAcross = 32;   // camera rays along each side of the grid
+constexpr int kGuessed = 4096;    // emitted photons
+constexpr size_t kBrightest = 8;  // lights that are guided
 
 }  // namespace
 
@@ -64,7 +66,7 @@ void EmissionLearning::Guess(const RenderScene& scene, int width, int height) {
     }
   };
   emit(lighting_, [&](const EmittedPhoton& photon) { ++counts[photon.light]; });
-  // The lights that most photons come from.
+  // The lights that emit most photons.
   std::vector<uint32_t> brightest(counts.size());
   std::iota(brightest.begin(), brightest.end(), 0u);
   std::stable_sort(brightest.begin(), brightest.end(), [&](uint32_t a, uint32_t b) { return counts[a] > counts[b]; });
@@ -89,7 +91,7 @@ void EmissionLearning::Guess(const RenderScene& scene, int width, int height) {
   }
 }
 
-// Where few photons of a light have been of use, what was guessed of it counts as well.
+// The useful photons, and the guess for lights of which few photons were useful.
 std::vector<UsefulPhoton> EmissionLearning::Evidence() const {
   std::vector<UsefulPhoton> evidence = useful_;
   if (guessed_.empty()) return evidence;
@@ -109,7 +111,7 @@ std::vector<UsefulPhoton> EmissionLearning::Evidence() const {
   for (const UsefulPhoton& photon : guessed_) {
     const Known& of = known[photon.light];
     if (of.count >= kManyUseful) continue;
-    // Like all others, where there is nothing to go by.
+    // A light without useful photons is taken to be like all lights.
     const Known& like = of.count > 0 || all.count == 0 ? of : all;
     evidence.push_back(photon);
     if (all.count == 0) continue;
@@ -125,7 +127,7 @@ void EmissionLearning::Learn(const PhotonUse& use) {
   for (size_t i = 0; i < origins.size(); ++i) {
     if (use.Sum(i) > 0 && origins[i].flux > 0) ofUse.push_back(static_cast<uint32_t>(i));
   }
-  // Where there are many, one in so many stands for all.
+  // At most kMostOfAPass photons: every step-th, with `step` times its weight.
   const size_t step = 1 + ofUse.size() / kMostOfAPass;
   const auto share = static_cast<double>(step);
   for (size_t k = 0; k < ofUse.size(); k += step) {
@@ -147,7 +149,7 @@ void EmissionLearning::Learn(const PhotonUse& use) {
   Thin();
 }
 
-// As many as may be kept, chosen one after the other at equal steps of what they brought.
+// Resamples the useful photons systematically to kMostUseful, in proportion to their contribution.
 void EmissionLearning::Thin() {
   if (useful_.size() <= 2 * kMostUseful) return;
   double total = 0;
@@ -170,7 +172,8 @@ void EmissionLearning::Thin() {
 bool EmissionLearning::Decide(uint32_t samples) {
   const bool wasInUse = guide_ != nullptr;
   const double gain = aimed_.sum > 0 ? unguided_.sum / aimed_.sum : 1;
-  // Chance makes the second sum rather too large than too small: what a guide has overlooked is in it manifold.
+  // The sum with the candidate is more likely to be too large than too small, because photons that the candidate has
+  // overlooked enter it with a large factor. So it needs to be certain only if the verdict is against the candidate.
   const double sureness = gain > kWorthwhile ? unguided_.Count() : std::min(unguided_.Count(), aimed_.Count());
   if (tried_ && tried_->LightCount() > 0 && sureness >= kFewestTested) {
     gain_ = gain;
@@ -179,7 +182,7 @@ bool EmissionLearning::Decide(uint32_t samples) {
   }
   evidence_ = Evidence();
   tried_ = MakeGuide(evidence_);
-  // What has stood the test was made of fewer photons than the one that takes its place.
+  // The guide put to use is made of more photons than the one that was tested.
   const bool isWorthwhile = hasVerdict_ ? gain_ > kWorthwhile : wasInUse;
   guide_ = isWorthwhile ? tried_ : nullptr;
   const uint32_t last = !hasVerdict_ ? kLastLearned : gain_ < 1 ? kHopeless : kLearned;
@@ -187,7 +190,7 @@ bool EmissionLearning::Decide(uint32_t samples) {
   return wasInUse || guide_;
 }
 
-// A guide is saved as what it was made of. The one in use is the one on trial, or the first guess, or none.
+// A guide is saved as the photons it was made of. The guide in use is the candidate, the initial guess, or none.
 void EmissionLearning::Save(ByteWriter& bytes) const {
   bytes.Value<uint8_t>(isRecording_ ? 1 : 0);
   bytes.Value<uint8_t>(tried_ ? 1 : 0);
@@ -202,7 +205,7 @@ void EmissionLearning::Save(ByteWriter& bytes) const {
 
 namespace {
 
-// Products of two are numbers still.
+// Limited so that the product of two values is finite.
 bool IsSensible(double value) {
   return value >= 0 && value < 1e150;
 }

@@ -1,10 +1,10 @@
-// Learns from the photons of each pass where photons are worth sending ([Vorba14] calls it guiding; what is learned
-// here is the first way alone, from the light to where a photon lands).
+// Emission guiding ([Vorba14]): learns from the photons of each pass where to send photons. Only the first segment of
+// light paths is guided, from the light to the first hit.
 //
-// A guide that was made of the photons seen so far is tried on those of the passes that follow, which it knows nothing
-// of: would their sums have been less noisy, had it aimed them? Only then is it used. What photons bring is summed in
-// integers, the same for any number of threads, and the guide changes at samples 1, 2, 4 … alone, so that each pass has
-// one density.
+// A candidate guide is made of the photons seen so far and tested on the photons of the following passes, which are
+// independent of it. It is used only if it would have reduced the variance of their sums enough. Contributions of
+// photons are summed in integers, so that they are the same for any number of threads. The guide changes at samples 1,
+// 2, 4 … only, so that each pass has one density.
 #pragma once
 
 #include <cstdint>
@@ -21,29 +21,29 @@ class ByteWriter;
 
 class EmissionLearning {
  public:
-  // `scene` must outlive it. Begins with a guess: where next to none of the photons come near to what an image of
-  // width × height sees, at once or after another bounce, they are aimed there until it is known better.
+  // `scene` must outlive it. Starts with a guess: if very few photons come near to what an image of width × height
+  // pixels sees, directly or after one more bounce, photons are guided there until measurements replace the guess.
   EmissionLearning(const RenderScene& scene, int width, int height);
 
-  // What the camera's paths of a pass got by the photons it gathered.
+  // Adds the per-photon image contributions of a pass.
   void Learn(const PhotonUse& use);
-  // A milestone is reached, after so many samples of each pixel: makes up its mind. Whether photons are to be aimed
-  // otherwise from now on, by Guide().
+  // Called at milestones, after `samples` samples per pixel: evaluates the candidate and updates Guide(). True if the
+  // density of emission may have changed.
   bool Decide(uint32_t samples);
-  // Null: photons are not aimed.
+  // The guide in use; null: photons are not guided.
   const EmissionGuide* Guide() const { return guide_.get(); }
 
-  // Until enough is known: recording takes time.
+  // True until enough is known; recording contributions takes time.
   bool IsRecording() const { return isRecording_; }
 
-  // By how much less the squared error of the photons' sums is said to be than without a guide; of the last decision.
+  // Squared error of the photons' sums without a guide, over that with the candidate, as estimated by the last verdict.
   double Gain() const { return gain_; }
   int Targets() const { return guide_ ? guide_->TargetCount() : 0; }
 
-  // All that was learned. Between passes.
+  // Saves all that was learned. To be called between passes.
   void Save(ByteWriter& bytes) const;
-  // Into one that has learned nothing, of the same scene and image. Throws an Error where this is not what has been
-  // saved.
+  // Loads into an object that has learned nothing, of the same scene and image. Throws an Error if the data is not what
+  // Save wrote.
   void Load(ByteReader& bytes);
 
  private:
@@ -54,23 +54,24 @@ class EmissionLearning {
 
   const LightingServices& lighting_;
   bool isRecording_ = true;
-  std::vector<UsefulPhoton> guessed_;  // none: photons come near to what is seen by themselves
+  std::vector<UsefulPhoton> guessed_;  // empty: photons come near to what is seen without a guide
   std::vector<UsefulPhoton> useful_;
-  std::shared_ptr<const EmissionGuide> guide_;  // in use, or null
-  std::shared_ptr<const EmissionGuide> tried_;  // on trial, or null; all that it is made of:
+  std::shared_ptr<const EmissionGuide> guide_;  // the guide in use, or null
+  // The candidate, or null; and all photons that it is made of.
+  std::shared_ptr<const EmissionGuide> tried_;
   std::vector<UsefulPhoton> evidence_;
-  // A sum that few may have decided.
+  // A sum with its effective number of terms.
   struct Sum {
     double sum = 0, squares = 0;
     void Add(double value) {
       sum += value;
       squares += value * value;
     }
-    // As many equal ones would be as sure.
+    // Number of equal terms with the same relative variance.
     double Count() const { return squares > 0 ? sum * sum / squares : 0; }
   };
-  // Of the photons since the last verdict: squares of what they brought, as if aimed by nobody, and by the one on
-  // trial.
+  // Squared contributions of the photons since the last verdict: as they would be without a guide, and with the
+  // candidate.
   Sum unguided_, aimed_;
   double gain_ = 1;
   bool hasVerdict_ = false;

@@ -1,4 +1,4 @@
-// Lookups of photons by integrators: counted, and now and then timed.
+// Photon lookups with counters and timing.
 #pragma once
 
 #include <chrono>
@@ -9,7 +9,8 @@
 
 namespace lampyr {
 
-// PhotonMap::Find. One lookup in 256 is timed: reading the clock takes as long as a small lookup.
+// PhotonMap::Find, counted in `counts`. One lookup in 256 is timed, because reading the clock takes as long as a small
+// lookup.
 inline std::span<const uint32_t> FindPhotons(const PhotonMap& map, const Point3& position, float radius,
                                              PhotonLookup& lookup, RenderCounts& counts) {
   const bool isTimed = counts.lookups++ % 256 == 0;

@@ -1,4 +1,4 @@
-// Photons: what light paths leave behind at their vertices, for camera paths to find.
+// Photons: vertices of light paths, stored for camera paths to gather.
 #pragma once
 
 #include <algorithm>
@@ -40,7 +40,7 @@ class PackedNormal {
   int16_t x_ = 0, y_ = 0;
 };
 
-// A photon as its path left it: what makes one in a map, once the radius of the pass that gathers it is known.
+// A photon as its light path stored it. It becomes a Photon once the radius of the pass that gathers it is known.
 struct TracedPhoton {
   Point3 position;
   Vector3 toPrevious;
@@ -48,9 +48,9 @@ struct TracedPhoton {
   PartialWeight weight;
   float previousSolidAnglePerArea;
   PackedNormal normal;
-  uint16_t depth;   // 1: it has come straight from the light
+  uint16_t depth;   // 1: first hit of its path
   uint16_t group;   // of the light
-  uint32_t origin;  // of its path, in the list
+  uint32_t origin;  // index of its path's origin in the list
 };
 
 // The photons of consecutive light paths. Keeps its memory when it is emptied.
@@ -63,13 +63,14 @@ class PhotonList {
   }
   // What is added from now on belongs to the next path.
   void StartPath() { starts_.push_back(static_cast<uint32_t>(photons_.size())); }
-  // Where the path comes from, for who wants to know; before its first photon, or never.
+  // Sets the origin of the current path, for emission guiding. Before its first photon, or not at all.
   void SetOrigin(const PathOrigin& origin) {
-    origins_.resize(KeptOrigins());  // without those of paths that left no photon
+    origins_.resize(KeptOrigins());  // drops origins of paths that stored no photon
     origins_.push_back(origin);
   }
-  // `group`: of its light (LightGroups). A depth beyond kDeepest is taken for that. On a cut-out both the photon and
-  // who gathers it meet the surface by chance: the photon stands for those that have passed, too.
+  // Stores a photon at `vertex`. `group`: of its light (LightGroups). `depth` is clamped to kDeepest. On a cut-out the
+  // light path and the gathering path each hit the surface with probability `coverage`; dividing the flux by it makes
+  // the factor count once.
   void Add(const PathVertex& vertex, size_t depth, uint32_t group = 0) {
     const float passed = vertex.coverage > 0 ? 1 / vertex.coverage : 0.0f;
     const auto origin = static_cast<uint32_t>(origins_.size()) - 1;
@@ -80,7 +81,7 @@ class PhotonList {
   }
   static constexpr size_t kDeepest = 65535;
   size_t Paths() const { return starts_.size(); }
-  // Leaves out whole paths at the end until there are no more than `most` photons; returns the number of paths left.
+  // Removes whole paths from the end until there are no more than `most` photons; returns the number of paths left.
   size_t KeepPaths(size_t most) {
     while (photons_.size() > most && !starts_.empty()) {
       photons_.resize(starts_.back());
@@ -93,11 +94,11 @@ class PhotonList {
   const std::vector<PathOrigin>& Origins() const { return origins_; }
 
  private:
-  // Of paths that left photons; none where nobody has set any.
+  // Number of origins whose paths stored photons; 0 if no origin was set.
   size_t KeptOrigins() const { return photons_.empty() ? 0 : static_cast<size_t>(photons_.back().origin + 1); }
 
   std::vector<TracedPhoton> photons_;
-  std::vector<uint32_t> starts_;  // where each path starts
+  std::vector<uint32_t> starts_;  // index of the first photon of each path
   std::vector<PathOrigin> origins_;
 };
 
@@ -105,7 +106,7 @@ class PhotonList {
 struct Photon {
   Vector3 toPrevious{0.0f};  // unit
   Color flux;  // LightingServices::FluxUnit over the path's density, for diffuse lobes; for specular ones see PhotonMap
-  double connect = 0, earlier = 0;  // PartialWeight, with merging in it
+  double connect = 0, earlier = 0;  // PartialWeight, with the terms of merging added to `earlier`
   float previousSolidAnglePerArea = 0;
   PackedNormal normal;  // of the surface
   uint32_t specular = kSame;
@@ -114,13 +115,14 @@ struct Photon {
 
   static constexpr uint32_t kSame = 0xffffffffu;
 
-  // PartialWeight::BeforeReverse, for the density with which a path from the camera would go on to where the photon
-  // came from.
+  // PartialWeight::BeforeReverse. `towardsLight`: density with which the camera path would sample the direction that
+  // the photon came from.
   double BeforeReverse(SolidAngleDensity towardsLight) const {
     const SolidAnglePerArea edge{static_cast<double>(previousSolidAnglePerArea)};
     return connect + Mis(towardsLight * edge) * earlier;
   }
-  // Not around a corner. The other side of a thin wall scatters nothing of it: its BSDF says so.
+  // True if the photon may lie on a surface with normal `Ng`, and not around a corner from it. A photon on the other
+  // side of a thin wall passes this test, but the BSDF scatters nothing of it.
   bool IsOnSurface(const Normal3& Ng) const {
     constexpr float cosine = 0.8f;
     return std::abs(glm::dot(normal.Unpack(), Ng)) > cosine;

@@ -14,9 +14,9 @@ namespace {
 
 using Index = flann::KDTreeSingleIndex<flann::L2_3D<float>>;
 
-constexpr int kLeaf = 64;  // photons: with 32, lookups of 50 take 1.1 to 1.5 times as long
+constexpr int kLeaf = 64;  // photons per leaf; with 32, lookups of 50 photons take 1.1 to 1.5 times as long
 
-// Bits of x spread out, two zeros between each: 21 of them.
+// The low 21 bits of x, with two zeros after each.
 uint64_t Spread(uint64_t x) {
   x &= 0x1fffff;
   x = (x | x << 32) & 0x1f00000000ffff;
@@ -27,7 +27,7 @@ uint64_t Spread(uint64_t x) {
   return x;
 }
 
-// All of them, whatever comes.
+// Collects all points within the radius.
 class WithinRadius final : public flann::ResultSet<float> {
  public:
   WithinRadius(float radiusSquared, std::vector<uint32_t>& found) : radiusSquared_(radiusSquared), found_(found) {}
@@ -61,60 +61,82 @@ PhotonMap::~PhotonMap() = default;
 PhotonMap::PhotonMap(PhotonMap&&) noexcept = default;
 PhotonMap& PhotonMap::operator=(PhotonMap&&) noexcept = default;
 
-PhotonMap::PhotonMap(std::span<const PhotonList> lists, double merge, int threads, std::vector<uint32_t>* origins) {
-  const auto start = std::chrono::steady_clock::now();
-  std::vector<const TracedPhoton*> traced;
-  std::vector<uint32_t> unsorted;  // origins
+// Photons as they were traced, the unusable ones left out, with their bounds and origins.
+struct PhotonMap::Traced {
+  std::vector<const TracedPhoton*> photons;
+  std::vector<uint32_t> origins;  // empty unless wanted
+  Point3 least{std::numeric_limits<float>::infinity()}, most{-std::numeric_limits<float>::infinity()};
+};
+
+PhotonMap::Traced PhotonMap::Collect(std::span<const PhotonList> lists, bool wantsOrigins) {
+  Traced traced;
   uint32_t firstOrigin = 0;
   size_t count = 0;
   for (const PhotonList& list : lists) count += list.Photons().size();
-  traced.reserve(count);
-  Point3 least(std::numeric_limits<float>::infinity()), most(-std::numeric_limits<float>::infinity());
+  traced.photons.reserve(count);
   for (const PhotonList& list : lists) {
     for (const TracedPhoton& photon : list.Photons()) {
-      // One coordinate that is no number would spoil the whole search.
+      // A single coordinate that is not a number would corrupt the whole tree.
       if (!IsFinite(photon.position) || !photon.diffuse.IsValid() || !photon.specular.IsValid()) {
         ++rejected_;
         continue;
       }
-      least = glm::min(least, photon.position);
-      most = glm::max(most, photon.position);
-      traced.push_back(&photon);
-      if (origins) unsorted.push_back(firstOrigin + photon.origin);
+      traced.least = glm::min(traced.least, photon.position);
+      traced.most = glm::max(traced.most, photon.position);
+      traced.photons.push_back(&photon);
+      if (wantsOrigins) traced.origins.push_back(firstOrigin + photon.origin);
     }
     firstOrigin += static_cast<uint32_t>(list.Origins().size());
   }
-  if (traced.empty()) return;
-  center_ = least + 0.5f * (most - least);
+  return traced;
+}
 
-  const Vector3 extent = most - least;
+namespace {
+
+// body(i) for all i below `count`, on all threads.
+template <class Body>
+void ForAll(size_t count, int threads, const Body& body) {
+  constexpr size_t kChunk = 16384;
+  ParallelFor(static_cast<int>((count + kChunk - 1) / kChunk), threads, [&](int chunk) {
+    const size_t begin = static_cast<size_t>(chunk) * kChunk;
+    for (size_t i = begin; i < std::min(begin + kChunk, count); ++i) body(i);
+  });
+}
+
+// Indices of the photons along a Morton curve: neighbours in space are neighbours in memory.
+std::vector<SortItem> MortonOrder(const std::vector<const TracedPhoton*>& photons, const Point3& least,
+                                  const Vector3& extent, int threads) {
   const float longest = std::max({extent.x, extent.y, extent.z});
   const float scale = longest > 0 ? static_cast<float>((1 << 21) - 1) / longest : 0.0f;
-  constexpr size_t kChunk = 16384;
-  const auto chunks = static_cast<int>((traced.size() + kChunk - 1) / kChunk);
-  const auto forAll = [&](const auto& body) {
-    ParallelFor(chunks, threads, [&](int chunk) {
-      const size_t begin = static_cast<size_t>(chunk) * kChunk;
-      for (size_t i = begin; i < std::min(begin + kChunk, traced.size()); ++i) body(i);
-    });
-  };
-  std::vector<SortItem> order(traced.size());
-  forAll([&](size_t i) {
-    const Vector3 p = (traced[i]->position - least) * scale;
+  std::vector<SortItem> order(photons.size());
+  ForAll(photons.size(), threads, [&](size_t i) {
+    const Vector3 p = (photons[i]->position - least) * scale;
     order[i] = {Spread(static_cast<uint64_t>(p.x)) << 2 | Spread(static_cast<uint64_t>(p.y)) << 1 |
                     Spread(static_cast<uint64_t>(p.z)),
                 static_cast<uint32_t>(i)};
   });
   ParallelSort(order, threads);
+  return order;
+}
 
+}  // namespace
+
+PhotonMap::PhotonMap(std::span<const PhotonList> lists, double merge, int threads, std::vector<uint32_t>* origins) {
+  const auto start = std::chrono::steady_clock::now();
+  const Traced traced = Collect(lists, origins != nullptr);
+  const size_t count = traced.photons.size();
+  if (count == 0) return;
+  const Vector3 extent = traced.most - traced.least;
+  center_ = traced.least + 0.5f * extent;
+  const std::vector<SortItem> order = MortonOrder(traced.photons, traced.least, extent, threads);
   if (origins) {
-    origins->resize(traced.size());
-    forAll([&](size_t i) { (*origins)[i] = unsorted[order[i].item]; });
+    origins->resize(count);
+    ForAll(count, threads, [&](size_t i) { (*origins)[i] = traced.origins[order[i].item]; });
   }
-  photons_.resize(traced.size());
-  std::vector<float> positions(3 * traced.size());
-  forAll([&](size_t i) {
-    const TracedPhoton& source = *traced[order[i].item];
+  photons_.resize(count);
+  std::vector<float> positions(3 * count);
+  ForAll(count, threads, [&](size_t i) {
+    const TracedPhoton& source = *traced.photons[order[i].item];
     const Vector3 relative = source.position - center_;
     for (int axis = 0; axis < 3; ++axis) positions[3 * i + static_cast<size_t>(axis)] = relative[axis];
     Photon& photon = photons_[i];
@@ -127,8 +149,8 @@ PhotonMap::PhotonMap(std::span<const PhotonList> lists, double merge, int thread
     photon.depth = source.depth;
     photon.group = source.group;
   });
-  for (size_t i = 0; i < traced.size(); ++i) {
-    const TracedPhoton& source = *traced[order[i].item];
+  for (size_t i = 0; i < count; ++i) {
+    const TracedPhoton& source = *traced.photons[order[i].item];
     if (source.specular == source.diffuse) continue;
     photons_[i].specular = static_cast<uint32_t>(specular_.size());
     specular_.push_back(source.specular);
@@ -145,8 +167,8 @@ std::span<const uint32_t> PhotonMap::Find(const Point3& position, float radius, 
   return lookup.found;
 }
 
-// Of the search: a copy of the positions in the tree's order, pointers to the rows it was given and indices, one each;
-// and nodes, two for each leaf, which is half full at least on average.
+// Memory of the tree: a copy of the positions in the tree's order; one row pointer and one index per photon; and two
+// nodes for each leaf, which is at least half full on average.
 size_t PhotonMap::Bytes() const {
   constexpr size_t node = 48;
   const size_t perPhoton = sizeof(Photon) + 3 * sizeof(float) + sizeof(float*) + sizeof(int);

@@ -1,8 +1,8 @@
-// The photons of one pass, found by place: all within a radius. Exact, from any thread, and the same for any number of
-// threads that made them.
+// The photons of one pass, with a search for all photons within a radius. The search is exact, may run in any thread,
+// and does not depend on the number of threads that built the map.
 //
-// The search is FLANN's tree of points in three dimensions. Photons are sorted along a space-filling curve first: the
-// tree is then built several times faster, and what is found lies together in memory.
+// The search uses FLANN's kd-tree in three dimensions. Photons are first sorted along a space-filling curve: the tree
+// is then built several times faster, and the photons that a lookup finds lie together in memory.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace lampyr {
 
-// What a thread keeps from one lookup to the next.
+// Buffer of a thread, reused from lookup to lookup.
 struct PhotonLookup {
   std::vector<uint32_t> found;
 };
@@ -26,17 +26,17 @@ class PhotonMap {
   PhotonMap(PhotonMap&&) noexcept;
   PhotonMap& operator=(PhotonMap&&) noexcept;
 
-  // Of the lists one after the other. `merge`: see PartialWeight, of the radius that photons will be gathered with.
-  // Photons whose position or flux is not finite are left out and counted. `origins`, if wanted: for each photon, the
-  // origin of its path in the lists' origins one after the other.
+  // Builds the map of the concatenated lists. `merge`: (N π r²)^β for the radius with which photons will be gathered
+  // (PartialWeight). Photons whose position or flux is not finite are left out and counted. `origins`, if not null,
+  // receives for each photon the index of its path's origin in the concatenated origins of the lists.
   PhotonMap(std::span<const PhotonList> lists, double merge, int threads, std::vector<uint32_t>* origins = nullptr);
 
-  // All photons nearer than `radius`, in an order that depends on the photons alone; valid until the next lookup. A
-  // radius of 0 finds nothing.
+  // Indices of all photons nearer than `radius` (scene units), in an order that depends on the photons alone. Valid
+  // until the next lookup. A radius of 0 finds nothing.
   std::span<const uint32_t> Find(const Point3& position, float radius, PhotonLookup& lookup) const;
 
   const Photon& operator[](uint32_t index) const { return photons_[index]; }
-  // What a photon sends to specular lobes: a light may show them other radiance than diffuse ones.
+  // Flux of a photon for specular lobes; a light may send them other radiance than diffuse lobes.
   const Color& SpecularFlux(const Photon& photon) const {
     return photon.specular == Photon::kSame ? photon.flux : specular_[photon.specular];
   }
@@ -44,12 +44,14 @@ class PhotonMap {
   size_t Size() const { return photons_.size(); }
   bool IsEmpty() const { return photons_.empty(); }
   size_t Rejected() const { return rejected_; }
-  // Of the photons and the search's own, as it keeps them.
+  // Memory of the photons and of the search tree.
   size_t Bytes() const;
   double BuildSeconds() const { return buildSeconds_; }
 
  private:
   struct Search;
+  struct Traced;
+  Traced Collect(std::span<const PhotonList> lists, bool wantsOrigins);
 
   Point3 center_{0.0f};  // positions are kept relative to it
   std::vector<Photon> photons_;

@@ -8,7 +8,7 @@ PhotonSettings PhotonSettingsOf(const IntegratorInput& input) {
   const Settings& settings = input.settings;
   PhotonSettings photons;
   photons.radius = settings.Number("radius");
-  // Twice the scene's radius finds everything, and what is less than its rounding finds nothing.
+  // Twice the scene's radius finds all photons; less than the rounding of positions finds none.
   const auto size = static_cast<double>(input.scene.lighting->SceneSphere().radius);
   if (photons.radius > 0 && size > 0) photons.radius = std::clamp(photons.radius, 1e-7 * size, 2 * size);
   photons.alpha = settings.Number("alpha");

@@ -15,7 +15,7 @@ inline const Setting kPhotons{.name = "photons",
                               .range = "from 1 to 2147483648",
                               .fallbackText = "as many as the image has pixels",
                               .sceneName = "photonsperiteration"};
-// Which light paths are left out for want of memory shows in the picture: the limit is the same on all machines.
+// Which light paths are left out at the memory limit affects the picture, so the limit is the same on all machines.
 inline const Setting kPhotonMemory{.name = "photon-memory",
                                    .help =
                                        "Memory for the photons of a pass, e.g. 512M; fewer light paths where it does "
@@ -45,7 +45,7 @@ inline const std::vector<const Setting*> kAll = {&kPhotons, &kPhotonMemory, &kRa
 
 }  // namespace photon_settings
 
-// As the settings say, with a radius that the scene can have.
+// PhotonSettings with the radius clamped to the range that makes sense for the scene.
 PhotonSettings PhotonSettingsOf(const IntegratorInput& input);
 
 }  // namespace lampyr

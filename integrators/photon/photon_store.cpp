@@ -77,7 +77,7 @@ const PhotonPass& PhotonStore::Open(uint32_t pass, int threads) {
   return open_;
 }
 
-// Photons that were traced before somebody wanted to know have no origin.
+// Null if the photons were traced before origins were recorded.
 std::shared_ptr<PhotonUse> PhotonStore::MakeUse(std::vector<uint32_t> origins) const {
   std::vector<PathOrigin> all;
   for (const PhotonList& list : waiting_) all.insert(all.end(), list.Origins().begin(), list.Origins().end());

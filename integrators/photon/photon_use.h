@@ -1,4 +1,4 @@
-// Per-photon image contribution, recorded for emission guiding: how much the camera's paths got by each photon.
+// Per-photon image contribution, recorded for emission guiding.
 #pragma once
 
 #include <algorithm>
@@ -11,23 +11,23 @@
 
 namespace lampyr {
 
-// Where a light path came from and first landed.
+// Emission and first hit of a light path.
 struct PathOrigin {
   uint32_t light = 0;
   Point3 start{0.0f}, landing{0.0f};
-  float flux =
-      0;  // as it was emitted, over the density of its emission; in LightingServices::FluxUnit, mean of the channels
+  // Emitted flux over the density of its emission, mean of the channels; in LightingServices::FluxUnit.
+  float flux = 0;
   float pdfUnguided = 0;  // EmittedPhoton::pdfUnguided
-  float gain = 1;         // how much more often it is sent than without a guide
+  float gain = 1;         // density of its emission, over that without a guide
 };
 
-// What is kept of the emission of a path that has landed at `first`. `lighting`: that emitted it.
+// The origin of a light path whose first hit is `first`. `lighting`: the view that emitted it.
 inline PathOrigin OriginOf(const LightingServices& lighting, const EmittedPhoton& photon, const PathVertex& first) {
   PathOrigin origin;
   origin.light = photon.light;
   origin.start = photon.emission.position;
   origin.landing = first.point.position;
-  // A light carries its radiance in both; a multiplier may have put out one of them.
+  // Both parts hold the light's radiance; a multiplier may have set one of them to 0.
   origin.flux = std::max(first.diffuse.Average(), first.specular.Average());
   origin.pdfUnguided = photon.pdfUnguided;
   origin.gain = lighting.EmissionGain(photon);
@@ -36,23 +36,23 @@ inline PathOrigin OriginOf(const LightingServices& lighting, const EmittedPhoton
 
 class PhotonUse {
  public:
-  // `paths`: of each photon of the map, an index into `origins`.
+  // `paths`: for each photon of the map, the index of its path in `origins`.
   PhotonUse(std::vector<uint32_t> paths, std::vector<PathOrigin> origins)
       : paths_(std::move(paths)), origins_(std::move(origins)), sums_(origins_.size()) {}
 
-  // `part`: of the photon's flux that came to the camera by it, per density of photons; not negative. From any thread:
-  // sums are integers, the same whatever the order.
+  // Adds a contribution. `part`: fraction of the photon's flux that reached the camera, per density of photons; 0 or
+  // more. May be called from any thread: sums are integers, independent of the order.
   void Add(uint32_t photon, float part) {
     constexpr float most = 0x1p16f;
     sums_[paths_[photon]].fetch_add(static_cast<uint64_t>(std::min(part, most) * kUnit), std::memory_order_relaxed);
   }
   const std::vector<PathOrigin>& Origins() const { return origins_; }
-  // Of all photons of a path.
+  // Sum over all photons of a path.
   double Sum(size_t path) const {
     return static_cast<double>(sums_[path].load(std::memory_order_relaxed)) / static_cast<double>(kUnit);
   }
 
-  // Beside the photon itself, if it is the only one of its path.
+  // Memory per photon besides the photon itself, if it is the only one of its path.
   static constexpr uint64_t kMostBytesPerPhoton = sizeof(uint32_t) + sizeof(uint64_t) + sizeof(PathOrigin);
 
  private:

@@ -1,16 +1,15 @@
 // Progressive photon mapping ([Hachisuka08], [Hachisuka09]; the radius is a function of the pass alone, as in
 // [Knaus11]).
 //
-// A path from the camera is followed through what is smooth, or nearly, to where light is scattered widely; the light
-// that arrives there is sampled, directly, and gathered from photons, indirectly. Which of the two a direction belongs
-// to is told by the density with which the BSDF samples it: at every vertex directions of high density are followed,
-// and photons that come from the others are gathered. Nothing is counted twice and nothing is missed, whatever lobes a
-// material mixes.
+// Camera paths are followed over smooth or nearly smooth surfaces to where light is scattered widely. There direct
+// light is sampled, and indirect light is gathered from photons. Directions are divided between the two by the density
+// with which the BSDF samples them: at every vertex directions of high density are followed, and photons from all other
+// directions are gathered. No light is counted twice or missed, whatever lobes a material mixes.
 //
-// Finds all light, caustics seen in mirrors and through glass included. Photons blur it by the radius, which shrinks
-// from pass to pass as i^((α - 1) / 2): the error vanishes, the squared one as i^(-α) at best.
+// Finds all light, including caustics seen in mirrors and through glass. Photons blur it by the radius, which shrinks
+// from pass to pass as i^((α - 1) / 2): the error vanishes, the squared error as i^(-α) at best.
 //
-// Lights with traceLightPaths off are sampled directly and light nothing else.
+// Of lights with traceLightPaths off only direct light is found.
 #include <cmath>
 
 #include "integrators/path/camera_path.h"
@@ -26,11 +25,11 @@ namespace {
 
 constexpr PathDimensions kOfCamera{2, 0}, kOfLight{2, 1};
 
-// 1/sr. A lobe that is wider than a quarter of a steradian or so is worth gathering photons for; what is narrower
-// would show few of them.
+// 1/sr. Photons are gathered for lobes wider than about a quarter of a steradian; a narrower lobe would find few of
+// them.
 constexpr float kWide = 4;
 
-// The radius of the first pass, in pixels as they are seen at the vertex, where the user names none.
+// Radius of the first pass by default, in pixel footprints at the vertex.
 constexpr double kRadiusInPixels = 2;
 
 const Setting kDirectPhotons{.name = "direct-photons",
@@ -41,7 +40,7 @@ struct SppmSettings {
   int maxDepth = 5;       // scattering events
   double filmPixels = 1;  // of the full image: light paths per pass
   PhotonSettings photons;
-  // Light that comes straight from lights is gathered as well, and lights with traceLightPaths off are lost.
+  // Direct light is gathered from photons, too; lights with traceLightPaths off are then lost.
   bool directFromPhotons = false;
   ShadowRays shadowRays;
 };
@@ -61,7 +60,7 @@ class SppmIntegrator final : public Integrator {
   CameraPathSettings path_;
 };
 
-// Keeps photons from the vertex `firstDepth` on.
+// Stores the photons of a light path from its vertex `firstDepth` on.
 class Kept final : public LightPathVisitor {
  public:
   Kept(const SampleContext& context, size_t firstDepth) : context_(context), firstDepth_(firstDepth) {}
@@ -81,7 +80,7 @@ class Kept final : public LightPathVisitor {
   const size_t firstDepth_;
 };
 
-// The photons of the pass, as one camera path sees them.
+// Gathers the photons of the pass along one camera path.
 class Gathered final : public PhotonGatherer {
  public:
   Gathered(const SppmSettings& settings, const SampleContext& context, const Ray& ray)
@@ -99,7 +98,7 @@ class Gathered final : public PhotonGatherer {
     Color sum;
     for (const uint32_t index : found) {
       const Photon& photon = (*pass_.map)[index];
-      // The vertex is counted by both paths.
+      // Both depths count the vertex.
       if (static_cast<int>(photon.depth) + events > settings_.maxDepth + 1) continue;
       if (!photon.IsOnSurface(vertex.bsdf.Ng())) continue;
       const BsdfEvaluation f = vertex.Evaluate(photon.toPrevious, TransportMode::Radiance);
@@ -121,19 +120,19 @@ class Gathered final : public PhotonGatherer {
     return context_.scene.camera->ConnectsByDirection() ? perLength_ : perLength_ * length;
   }
 
-  // The weight of a photon for emission guiding, beside what is scattered of it: the smaller the radius, the more, in
-  // parts of what it would be where the radius is that of the scene seen from its rim.
+  // Weight of a photon for emission guiding, besides its scattering: proportional to 1 / radius², relative to that at a
+  // path length of the scene's radius.
   float Importance(float length) const {
     if (settings_.photons.radius > 0 || context_.scene.camera->ConnectsByDirection()) return 1;
     return Sqr(context_.scene.lighting->SceneSphere().radius / length);
   }
 
-  // W/m², of a photon within the radius that carries a unit of flux.
+  // Irradiance (W/m²) by a photon within the radius that carries a unit of flux.
   double PerArea(float radius) const {
     const double area = static_cast<double>(kPi) * static_cast<double>(radius) * static_cast<double>(radius);
     return static_cast<double>(context_.scene.lighting->FluxUnit()) / (pass_.lightPaths * area);
   }
-  // Apart from the sum of all: a product that both shared would be rounded otherwise than where there are no layers.
+  // Not inlined into the sum: a shared product would be rounded differently than without layers.
   [[gnu::noinline]] void AddToLayers(const Photon& photon, const PathVertex& vertex, const BsdfEvaluation& f,
                                      double perArea) const {
     const Color scattered = f.diffuse * photon.flux + f.specular * pass_.map->SpecularFlux(photon);

@@ -8,7 +8,7 @@ namespace lampyr {
 
 namespace {
 
-// Past mirrors and glass, to the first vertex that scatters widely.
+// Follows a path over delta vertices to the first vertex that is not a delta.
 class PastDeltas final : public PathVisitor {
  public:
   bool Arrived(Subpath& path, const PathState& state) override {
@@ -21,7 +21,7 @@ class PastDeltas final : public PathVisitor {
     vertex.diffuse = Color(0.0f);
     return true;
   }
-  // Of the vertex, once there is one.
+  // Path length to that vertex, once it is found.
   const std::optional<float>& Distance() const { return distance_; }
 
  private:
@@ -36,7 +36,7 @@ double PixelArea(const Camera& camera, const Ray& ray, double filmPixels, double
   Point2 film;
   const auto densities = camera.EvaluateRay(ray, &film);
   if (!densities) return 0;
-  // Of film points chosen uniformly in the full image.
+  // Both densities are for film points chosen uniformly in the full image.
   if (camera.ConnectsByDirection()) return 1 / (static_cast<double>(densities->pdfPosition.value) * filmPixels);
   return distance * distance / (static_cast<double>(densities->pdfDirection.value) * filmPixels);
 }

@@ -1,5 +1,5 @@
-// How much of the scene a pixel sees: the scale that radii of photon lookups come from. And what a grid of camera rays
-// sees, for those who look at a scene before it is rendered.
+// Pixel footprints, from which the radii of photon lookups are derived; and SceneProbe, which analyses a scene by a
+// coarse grid of camera rays before it is rendered.
 #pragma once
 
 #include <functional>
@@ -8,27 +8,30 @@
 
 namespace lampyr {
 
-// The area (square of scene units, across the ray) that a pixel of the full image sees at `distance` along a camera
-// ray. Mirrors and glass between are taken for flat.
+// Area of the footprint of a pixel of the full image, in square scene units perpendicular to the camera ray, at path
+// length `distance`. `filmPixels`: pixels of the full image. Mirrors and glass on the way are treated as flat. 0 if the
+// camera does not generate `ray`.
 double PixelArea(const Camera& camera, const Ray& ray, double filmPixels, double distance);
 
-// A vertex that a ray finds, past those that are deltas alone; `distance` is the length of the way there.
+// The first vertex on a path that is not a delta. `distance`: path length to it, scene units.
 struct SeenVertex {
-  PathVertex vertex;  // its throughput is 1
+  PathVertex vertex;  // with throughput 1
   float distance = 0;
 };
 
-// For those who look at a scene with rays: paths from a grid over the image, always the same.
+// Traces paths over a regular grid of film points, for scene analysis. Deterministic.
 class SceneProbe {
  public:
   explicit SceneProbe(const RenderScene& scene) : scene_(scene), sampler_(SamplerKind::Independent, 0) {}
 
   using Visit = std::function<void(const Ray& ray, SeenVertex& seen)>;
-  // Calls `visit` with what a grid of across² rays over the image of width × height sees, where it sees something.
+  // Calls `visit` with the first non-delta vertex of each of across² camera rays on a grid over an image of width ×
+  // height pixels. Rays that reach no such vertex are skipped.
   void ForSeen(int width, int height, int across, const Visit& visit);
 
-  // What is seen from a vertex along a direction that scattering samples there; `state` has its throughput. False:
-  // nothing. `block`: of the sampler's dimensions, another one for other numbers.
+  // Samples the scattering at `from` and finds the first non-delta vertex in that direction. `state`: path state after
+  // the scattering, with its throughput. `block`: the vertex block of sampler dimensions to draw from; each block has
+  // other numbers. False: no vertex was found.
   bool Bounce(SeenVertex& from, int block, PathState& state, SeenVertex& seen);
 
   Sampler& Numbers() { return sampler_; }
@@ -43,8 +46,8 @@ class SceneProbe {
   Subpath path_{false};
 };
 
-// The side of a pixel where the camera sees something that is not a delta: the median over the image, and over mirrors
-// and glass. Without anything to see, a thousandth of the scene's radius. Always the same for a scene.
+// Median side length of the pixel footprints at the first non-delta vertices, over a grid of camera rays, in scene
+// units. A thousandth of the scene's radius if no ray reaches such a vertex. Deterministic.
 double TypicalFootprint(const RenderScene& scene, int width, int height);
 
 }  // namespace lampyr

@@ -1,5 +1,5 @@
-// What an integrator is registered with: its name, its settings, how it is made, and what may be asked of it before. A
-// new one is a file that defines `IntegratorType …IntegratorType()`, and a row in integrators/registry.cpp.
+// Registration of an integrator: name, settings, factory, and properties that are known before it is created. A new
+// integrator is a file that defines `IntegratorType …IntegratorType()`, and a row in integrators/registry.cpp.
 #pragma once
 
 #include <functional>
@@ -13,7 +13,7 @@
 
 namespace lampyr {
 
-// What an integrator is made from.
+// Input of an integrator's factory.
 struct IntegratorInput {
   const RenderScene& scene;
   int width = 1, height = 1;  // of the full image, pixels
@@ -25,20 +25,20 @@ struct IntegratorInput {
 
 struct IntegratorType {
   std::string name;
-  std::string help;  // one line: what it finds light by
-  // Settings that it looks at. One that others have, too, is the same declaration.
+  std::string help;  // one line: how it finds light
+  // Settings that it reads. A setting shared by several integrators is one declaration (common_settings).
   std::vector<const Setting*> settings;
   std::function<std::unique_ptr<Integrator>(const IntegratorInput&)> create;
-  // Whether it finds light by photons, and blurs it, with these settings. Empty: it never does.
+  // True if it gathers photons, which blurs light, with these settings. Empty: never.
   std::function<bool(const Settings&)> gathersPhotons;
-  // It tells PathObserver of all paths, each of one technique: --strategy-images.
+  // True if it reports each path with its technique to SampleContext::observer, for --strategy-images.
   bool hasTechniques = false;
-  // A line for each kind of light path that it cannot find, though the scene may have it, and which integrator can.
-  // From the lights and materials alone: whether such a path exists is not looked at. Empty: it finds all.
+  // One line for each kind of light path that the scene may have and this integrator cannot find, with the integrator
+  // that can. Judged by lights and materials alone, without testing that such a path exists. Empty: it finds all light.
   std::function<std::vector<std::string>(const RenderScene&)> hints;
 };
 
-// Settings that several integrators have.
+// Settings shared by several integrators.
 namespace common_settings {
 
 inline const Setting kMaxDepth{.name = "max-depth",
@@ -74,19 +74,19 @@ inline const Setting kShadowThreshold{
     .most = std::numeric_limits<float>::max(),
     .range = "0 or more"};
 
-// Of integrators that do next-event estimation.
+// Settings of integrators with next-event estimation.
 inline const std::vector<const Setting*> kOfNextEvent = {&kMaxDepth,    &kLightSampler,   &kLightSamples,
                                                          &kLearnLights, &kShadowRoulette, &kShadowThreshold};
 
 }  // namespace common_settings
 
-// As the settings say; the threshold is in the image's units, and integrators know radiance.
+// Shadow-ray settings. The threshold is converted from the image's units to radiance.
 ShadowRays ShadowRaysOf(const IntegratorInput& input);
 int MaxDepthOf(const Settings& settings);
 
-// Whether any material has a mirror or clear glass in it.
+// True if any material has a delta lobe that scatters: a mirror or clear glass.
 bool HasSmoothMaterial(const RenderScene& scene);
-// "2 of 5": how many of the lights have no extent, where a smooth material may make caustics of them; "": no caustics.
+// Number of delta lights among all lights, as "2 of 5", if smooth materials may form caustics of them; "" if not.
 std::string DeltaLightsOfCaustics(const RenderScene& scene);
 
 }  // namespace lampyr

@@ -68,7 +68,7 @@ std::optional<SeenFromLens> SeeVertex(const SampleContext& context, const PathVe
   if (scattered.IsBlack()) return std::nullopt;
   ++context.counts.shadowRays;
   const Ray ray = SpawnRayTo(vertex.point, connection->camera.position, Vector3(0.0f), Normal3(0.0f), context.time);
-  const Color arriving = scene.geometry->Transmission(ray, visibility::kCamera);
+  const Color arriving = scene.geometry->Transmittance(ray, visibility::kCamera);
   if (arriving.IsBlack()) return std::nullopt;
   seen.geometryTerm = vertex.GeometryTerm(seen.toCamera);
   const float importance = seen.geometryTerm * vertex.ArrivalCorrection(vertex.toPrevious) * connection->Weight();

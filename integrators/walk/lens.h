@@ -1,6 +1,6 @@
-// What the camera sees of a light path: its vertices, and the point of the light that it left from, connected to the
-// lens ([Veach97 §10.3.4.1]; the weight of a connection is in camera/camera.h). And what it sees without one: lights
-// at infinity.
+// Connections of light paths to the lens (t = 1), from their vertices and from their starting point on a light
+// ([Veach97 §10.3.4.1]; the weight of a connection is in camera/camera.h). And emission of lights at infinity, which
+// the camera sees without a connection.
 #pragma once
 
 #include <optional>
@@ -10,39 +10,39 @@
 
 namespace lampyr {
 
-// A connection that lands on film that is wanted.
+// A camera connection with at least one film point that the rendered crop covers.
 struct FilmConnection {
   CameraConnection camera;
-  FilmCopies copies;  // where else it lands
+  FilmCopies copies;  // further film points that it contributes to
 
-  // The measured value of unit radiance along the connection, per pixel² and per 1/(m² sr) of density.
+  // Measured pixel value of unit radiance along the connection, per pixel² and per unit of path density, 1/(m² sr).
   float Weight() const { return camera.importance / camera.pdfLensSolidAngle; }
 };
 
-// A connection that nothing is in the way of.
+// An unoccluded connection to the lens.
 struct SeenFromLens {
   FilmConnection connection;
   Vector3 toCamera{0.0f};  // unit
-  Color value;             // of the whole path, unweighted
-  float geometryTerm = 0;  // of the point
-  BsdfEvaluation f;        // of a surface vertex
+  Color value;             // contribution of the whole path, before its MIS weight
+  float geometryTerm = 0;  // at the connected point, towards the camera
+  BsdfEvaluation f;        // BSDF of a surface vertex, towards the camera
 };
 
-// A point of an area light as the camera sees it. The ray goes from the camera, so that cut-outs and what is invisible
-// to cameras are met as any camera ray meets them. The point of the lens is chosen by `lensDimension`; nothing is drawn
-// for a pinhole.
+// Connects the starting point of an emitted path on an area light to the lens; nullopt if the camera does not see it.
+// The ray is traced from the camera, so that cut-outs and camera visibility apply as for any camera ray.
+// `lensDimension`: sampler dimension of the lens point; not used with a pinhole.
 std::optional<SeenFromLens> SeeLight(const SampleContext& context, const EmittedPhoton& photon, uint32_t lensDimension);
 
-// A vertex of a light path. Nothing where it is a delta, or the camera does not see its surface.
+// Connects a vertex of a light path to the lens; nullopt if it is a delta, or the camera does not see it.
 std::optional<SeenFromLens> SeeVertex(const SampleContext& context, const PathVertex& vertex, uint32_t lensDimension);
 
-// Adds `value`, of a light of `group`, wherever the connection lands. A value that is not finite or negative is dropped
-// and counted.
+// Adds `value`, from a light of `group`, at all film points of the connection. A value that is negative or not finite
+// is dropped and counted.
 void AddSplats(const FilmConnection& connection, const Color& value, uint32_t group, SplatList& splats,
                RenderCounts& counts);
 
-// All lights at infinity that a camera ray sees that meets nothing, times `throughput`: what is left of them on their
-// way.
+// Emission of all lights at infinity along a camera ray that has left the scene, times `throughput`: the transmittance
+// of what the ray crossed. Also added to SampleContext::layers.
 Color EscapedEmissionForCamera(const SampleContext& context, const Ray& ray, const Color& throughput);
 
 }  // namespace lampyr

@@ -6,7 +6,8 @@ namespace lampyr {
 
 namespace {
 
-// The first segment is the light's: its filter, and what it shines past. The others are any path's.
+// Adds what applies to the first segment alone: the light filter, and the distance within which a surface blocks the
+// emission without being lit (EmissionSample::shinesFrom). All other segments are those of any path.
 class Grown final : public PathVisitor {
  public:
   Grown(const SampleContext& context, const EmittedPhoton& photon, const PathState& start, int maxDepth,
@@ -50,7 +51,8 @@ class Grown final : public PathVisitor {
   LightPathVisitor& visitor_;
 };
 
-// Flux in LightingServices::FluxUnit over the density of the emission.
+// Sets the path state of an emission: flux in LightingServices::FluxUnit, over the density of the emission. False: it
+// carries no light, or an invalid value, which is dropped and counted.
 bool Emit(const SampleContext& context, const EmittedPhoton& photon, PathState& state) {
   const EmissionSample& emission = photon.emission;
   const double density =
@@ -65,7 +67,7 @@ bool Emit(const SampleContext& context, const EmittedPhoton& photon, PathState& 
     ++context.counts.droppedSamples;
     return false;
   }
-  return state.emitted > 0;  // or it is less than a float can say
+  return state.emitted > 0;  // 0 also if the flux underflows float
 }
 
 }  // namespace

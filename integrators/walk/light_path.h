@@ -1,32 +1,31 @@
-// Paths from a light: emission, the first landing, scattering from there. The one tracer of all integrators that follow
-// light.
+// Light paths: emission, first hit, and the walk from there. Used by all integrators that trace paths from lights.
 #pragma once
 
 #include "integrators/walk/walk.h"
 
 namespace lampyr {
 
-// Its memory is kept from path to path: vertices are large.
+// Reused from path to path, because vertices are large.
 struct LightPath {
   explicit LightPath(bool keepsAll = true) : vertices(keepsAll) {}
 
-  Subpath vertices;    // on surfaces
-  uint32_t light = 0;  // that it comes from
+  Subpath vertices;    // surface vertices
+  uint32_t light = 0;  // index of the emitting light
 };
 
-// What somebody makes of a light path while it grows.
+// Callbacks while a light path grows.
 class LightPathVisitor {
  public:
   virtual ~LightPathVisitor() = default;
-  // The path leaves a surface that camera rays can hit.
+  // The path starts on a surface that camera rays can hit.
   virtual void Emitted(const EmittedPhoton&) {}
-  // The path has landed for the first time; before it has Arrived there. False: it ends.
+  // First hit of the path, before Arrived is called for it. False: the path ends without a vertex.
   virtual bool Landed(const EmittedPhoton&, PathVertex&) { return true; }
-  // The path has come to another vertex, its last.
+  // A vertex was added to the path: the last one.
   virtual void Arrived(LightPath& path, const PathState& state) = 0;
 };
 
-// Traces a path with `maxDepth` vertices at most.
+// Traces a light path with at most `maxDepth` surface vertices.
 void TraceLightPath(const SampleContext& context, int maxDepth, const PathDimensions& dimensions, LightPath& path,
                     LightPathVisitor& visitor);
 

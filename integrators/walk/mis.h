@@ -5,8 +5,8 @@
 
 namespace lampyr {
 
-// The term of a technique in the sum that a weight divides by: (p_i / p)^β for the ratio p_i / p of its density to that
-// of the technique that is weighed. Of a density: its own factor of such a ratio.
+// (p_i / p)^β, the term of technique i in the denominator of a weight, for the ratio p_i / p of its density to that of
+// the technique being weighted. Of a density: its factor of such a term.
 inline double Mis(double ratio) {
   return ratio * ratio;
 }
@@ -15,8 +15,8 @@ double Mis(Density<Measure> density) {
   return density.value * density.value;
 }
 
-// The weight of a sample of the technique with density `own`, against one other. Written with a ratio: densities of
-// tiny lights leave the range of float when squared.
+// Weight of a sample drawn with density `own`, against one other technique. Computed from the ratio, because densities
+// of tiny lights leave the range of float when squared.
 inline float PowerHeuristic(PdfSolidAngle own, PdfSolidAngle other) {
   if (own.value <= 0) return 0;
   const float ratio = other.value / own.value;

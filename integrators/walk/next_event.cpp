@@ -4,7 +4,7 @@ namespace lampyr {
 
 namespace {
 
-// Of one light.
+// Contribution of one selected light.
 Color SampleLight(const SampleContext& context, const NextEventSettings& settings, const PathVertex& vertex,
                   const SelectedLight& light, const Point2& u, const Color& soFar, NextEventVisitor& visitor) {
   const LightingServices& lighting = *context.scene.lighting;
@@ -27,7 +27,7 @@ Color SampleLight(const SampleContext& context, const NextEventSettings& setting
   const float worth = settings.shadowRays.Worth(connection.value * weight, soFar, ShadowRays::DeciderOf(u.x, u.y));
   if (worth == 0) return Color(0.0f);
   ++context.counts.shadowRays;
-  const Color transmitted = lighting.Transmission(vertex.point, direct, context.time);
+  const Color transmitted = lighting.Transmittance(vertex.point, direct, context.time);
   lighting.UpdateWithResults(vertex.receiver, direct, transmitted);
   const Color value = connection.value * transmitted;
   if (value.IsBlack()) return value;

@@ -1,5 +1,5 @@
-// Next-event estimation: lights are chosen at a vertex, sampled, and joined to it by a shadow ray. The only place that
-// does so; each technique brings its weight (NextEventVisitor).
+// Next-event estimation: lights are selected at a vertex, sampled, and connected to it by a shadow ray. Shared by all
+// integrators; each supplies the MIS weight (NextEventVisitor).
 #pragma once
 
 #include "integrators/walk/shadow_roulette.h"
@@ -10,33 +10,34 @@ namespace lampyr {
 // A sample of a light at a vertex, before its shadow ray.
 struct LightConnection {
   const DirectSample& direct;
-  BsdfEvaluation f;  // of the vertex, towards the light
-  Color value;       // unweighted contribution to the path, if nothing is in the way
+  BsdfEvaluation f;  // BSDF of the vertex, towards the light
+  Color value;       // contribution of the path, before MIS weight and transmittance
 };
 
 class NextEventVisitor {
  public:
   virtual ~NextEventVisitor() = default;
-  // False: this light is found otherwise.
+  // False: skip this light, because it is found by other techniques.
   virtual bool Wants(uint32_t /*light*/) { return true; }
-  // The weight of the sample against other techniques.
+  // MIS weight of the sample.
   virtual float Weigh(const LightConnection&) = 0;
-  // A part of the value has arrived: the unweighted value, and what it contributes.
+  // The shadow ray was not fully occluded. `value` includes the transmittance but not the MIS weight; `contribution` is
+  // what is added to the estimate.
   virtual void Arrived(const LightConnection&, const Color& /*value*/, const Color& /*contribution*/) {}
 };
 
 struct NextEventSettings {
   PathDimensions dimensions{};
-  bool bidirectional = false;  // densities of emission are wanted, too
+  bool bidirectional = false;  // evaluate the densities of emission, too
   ShadowRays shadowRays;
 };
 
-// The sum of the weighted contributions. `index`: of the vertex on its path, from 0. `soFar`: what the sample has
-// gathered before (ShadowRays).
+// Direct light scattered at `vertex`: the sum of the weighted contributions. `index`: of the vertex on its path, from
+// 0. `soFar`: radiance that the sample has gathered so far, for the roulette of shadow rays.
 Color SampleDirectLight(const SampleContext& context, const NextEventSettings& settings, const PathVertex& vertex,
                         int index, const Color& soFar, NextEventVisitor& visitor);
 
-// Calls visit(selected, u) for each light that is chosen at `receiver`, with the numbers of its sample.
+// Calls visit(selected, u) for each light selected at `receiver`; u: the numbers to sample that light with.
 template <class Visit>
 void ForChosenLights(const LightingServices& lighting, const Receiver& receiver, float uSelect, const Point2& u,
                      const Visit& visit) {

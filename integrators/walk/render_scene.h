@@ -1,4 +1,4 @@
-// The scene as integrators see it, the counts that they keep, and the sampler's dimensions that paths draw from.
+// The scene as integrators see it, the counters that they keep, and the layout of sampler dimensions.
 #pragma once
 
 #include <cstdint>
@@ -12,33 +12,33 @@
 
 namespace lampyr {
 
-// Immutable, and cheap to copy: a pass may be given the same scene with another view of the lights
-// (LightingServices::With). Lights are reached through `lighting` only.
+// Immutable and cheap to copy. A pass may be given a copy with another view of the lights (LightingServices::With).
+// Integrators reach lights only through `lighting`.
 struct RenderScene {
   std::shared_ptr<const GeometryScene> geometry;
   std::vector<std::shared_ptr<const Material>> materials;  // by GeometryAttributes::material
   std::shared_ptr<const LightingServices> lighting;
   std::shared_ptr<const Camera> camera;
-  bool hasMotion = false;  // something moves during the shutter: rays have a time; otherwise it stays 0
+  bool hasMotion = false;  // something moves while the shutter is open; otherwise all rays have time 0
 };
 
-// Kept per tile of work and summed afterwards: no thread shares one.
+// Counted per tile of work and summed afterwards; never shared between threads.
 struct RenderCounts {
   uint64_t cameraRays = 0;
   uint64_t indirectRays = 0;
   uint64_t shadowRays = 0;
-  uint64_t foundPhotons = 0;  // by lookups of photons
-  uint64_t lookups = 0;       // of photons
+  uint64_t foundPhotons = 0;  // in all lookups
+  uint64_t lookups = 0;       // photon lookups
   uint64_t timedLookups = 0;
-  double lookupSeconds = 0;     // of those
+  double lookupSeconds = 0;     // of the timed lookups
   uint64_t droppedSamples = 0;  // NaN, infinite or negative: a defect, counted and reported
 
   RenderCounts& operator+=(const RenderCounts& other);
   uint64_t Rays() const { return cameraRays + indirectRays + shadowRays; }
 };
 
-// Sampler dimensions: the film and lens come first, then a fixed block per path vertex, so that the same decision of
-// two paths of a pixel is always made by the same dimension and stays stratified.
+// Sampler dimensions: film, lens and time come first, then a fixed block per path vertex. The same decision uses the
+// same dimension in all samples of a pixel, so that it stays stratified.
 namespace dimensions {
 inline constexpr uint32_t kFilm = 0;
 inline constexpr uint32_t kLens = 1;
@@ -53,12 +53,13 @@ inline constexpr uint32_t kRoulette = 4;
 inline constexpr uint32_t kPerVertex = 5;
 }  // namespace dimensions
 
-// Where a path draws from: vertex v has the block step · v + first. The two paths of a bidirectional sample take turns.
+// The blocks of dimensions of a path: vertex v has the block step · v + first. The two subpaths of a bidirectional
+// sample use alternating blocks.
 //
-// The first surface vertex of a path from the camera is 0. For paths from a light, 0 is the light (kLightSelection,
-// kLight: the position on it, kDirection) and the first surface vertex is 1, where kLight chooses the point of the lens
-// to connect to. The light itself is connected to the lens by dimensions::kLens or, where a camera path has that, by
-// its kRoulette.
+// On camera paths vertex 0 is the first surface vertex. On light paths vertex 0 is the light (kLightSelection, kLight
+// for the position on it, kDirection) and vertex 1 the first surface vertex, where kLight samples the lens point of a
+// connection. A connection from the light itself samples its lens point by dimensions::kLens or, where the camera path
+// of the sample uses that, by the light's kRoulette.
 struct PathDimensions {
   int step = 1, first = 0;
   constexpr uint32_t Of(int vertex, uint32_t which) const {

@@ -1,10 +1,10 @@
-// Which shadow rays are worth tracing. What a connection would contribute is known before its shadow ray is traced;
-// next to what its sample has gathered already, much of it is nothing to speak of.
+// Russian roulette of shadow rays. The contribution of a connection is known before its shadow ray is traced, and is
+// often negligible against what the sample has gathered already.
 //
-// By default such rays are traced by chance, and count for more when they are: the mean stays what it is, and the noise
-// that is added is small against that of the sample ([Veach97 §10.4.2]: here the probability is in proportion
-// to the contribution). A threshold leaves out what is below it, for good: that is a bias, which
-// `lampyr compare` measures.
+// By default such shadow rays are traced with a survival probability and weighted by its inverse: the mean is
+// unchanged, and the added noise is small against that of the sample ([Veach97 §10.4.2]; here the probability is
+// proportional to the contribution). A threshold drops contributions below it for good: a bias, which `lampyr compare`
+// measures.
 #pragma once
 
 #include <bit>
@@ -16,13 +16,15 @@
 namespace lampyr {
 
 struct ShadowRays {
-  // Contributions below this part of what the sample has gathered so far are traced by chance; 0: all are traced.
+  // Contributions below this fraction of what the sample has gathered so far are subject to roulette; 0: all are
+  // traced.
   float roulette = 0.05f;
-  // Contributions whose largest channel is below this (radiance) are left out; 0: none.
+  // Contributions whose largest channel is below this (radiance) are dropped; 0: none.
   float threshold = 0;
 
-  // What a contribution is to be multiplied by, if its ray is traced at all; 0: it is not. `decider`: random bits of
-  // the connection, such as those of the sampled numbers or places, which nothing else is decided by.
+  // Survival weight of a contribution: 1 over the probability with which its shadow ray is traced; 0: the ray is not
+  // traced. `decider`: random bits of the connection, such as those of its random numbers or its direction, that decide
+  // nothing else.
   float Worth(const Color& contribution, const Color& soFar, uint64_t decider) const {
     const float value = contribution.Max();
     if (value < threshold) return 0;

@@ -1,4 +1,4 @@
-// Vertices of paths: points where light scatters, whatever it is that scatters there.
+// Path vertices: points where light scatters, whatever the scatterer is.
 #pragma once
 
 #include <algorithm>
@@ -11,57 +11,58 @@
 
 namespace lampyr {
 
-// A point on a surface, as the path that came there sees it. Directions are unit vectors that point away from it.
+// A surface point as seen by the path that arrived there. Directions are unit vectors that point away from it.
 struct Vertex {
   SurfacePoint point;
   Bsdf bsdf;
   Vector3 toPrevious{0.0f};
   Receiver receiver;
-  // Probability that a ray meets the surface here: less than 1 on cut-outs. It is in the density of whoever came here,
-  // once.
+  // Probability that a ray meets the surface here: less than 1 on cut-outs. The density of the path that arrived here
+  // has it as a factor once.
   float coverage = 1;
-  bool isDelta = false;          // only deltas: nothing can be connected to it
-  bool storesPhotons = true;     // of its material, whatever was drawn of a mix: who gathers draws anew
+  bool isDelta = false;          // only delta lobes: cannot be connected
+  bool storesPhotons = true;     // by material, not by the component drawn from a mix: gathering paths draw anew
   bool isSeenByCamera = true;    // camera rays meet it
   bool isSeenByIndirect = true;  // rays of light subpaths meet it
 
-  // Light that scatters between the previous vertex and `direction`.
+  // Scattering between the previous vertex and `direction`.
   BsdfEvaluation Evaluate(const Vector3& direction, TransportMode mode) const {
     return bsdf.Evaluate(toPrevious, direction, mode);
   }
   std::optional<BsdfSample> Sample(float uLobe, const Point2& u, TransportMode mode) const {
     return bsdf.Sample(toPrevious, uLobe, u, mode);
   }
-  // |cosθ| of the scattering integral, to the shading normal.
+  // |cosθ| to the shading normal, as in the scattering integral.
   float ScatteringCosine(const Vector3& direction) const { return AbsDot(direction, bsdf.ShadingFrame().z); }
-  // What a beam along `direction` is multiplied by where it is spread over this point: |cosθ| to the geometric normal.
+  // Geometry term of an edge along `direction`: |cosθ| to the geometric normal.
   float GeometryTerm(const Vector3& direction) const { return AbsDot(direction, bsdf.Ng()); }
 
-  // Shading normals make the scattering of importance another one than that of radiance ([Veach97 §5.3]). Radiance at a
-  // surface is f · |wl·Ns| times what arrives from wl, wl towards the light, wherever the camera looks from. The same
-  // number, read from the light's side: flux arrives in proportion to |wl·Ng| and leaves towards wc in proportion to
-  // |wc·Ng|, so what arrives is scattered by f · |wl·Ns| |wc·Ng| / |wl·Ng|.
+  // With shading normals importance scatters differently from radiance ([Veach97 §5.3]). Radiance that arrives from wl,
+  // towards the light, is scattered by f · |wl·Ns|, whatever the direction wc towards the camera. From the light's side
+  // the same transport is: flux arrives in proportion to |wl·Ng| and leaves in proportion to |wc·Ng|, so it is
+  // scattered by f · |wl·Ns| |wc·Ng| / |wl·Ng|.
   //
-  // |wl·Ns| / |wl·Ng|: the weight of light that arrives from `toLight`.
+  // |wl·Ns| / |wl·Ng|: correction of light that arrives from `toLight`.
   float ArrivalCorrection(const Vector3& toLight) const {
     if (bsdf.ShadingFrame().z == bsdf.Ng()) return 1;
     return ScatteringCosine(toLight) / std::max(GeometryTerm(toLight), kSmallestGeometricCosine);
   }
-  // |w·Ng| / |w·Ns|: the same for a direction that was sampled with the weight f · |w·Ns| / pdf.
+  // |w·Ng| / |w·Ns|: correction of a sampled direction, whose sample weight is f · |w·Ns| / pdf.
   float DepartureCorrection(const Vector3& direction) const {
     if (bsdf.ShadingFrame().z == bsdf.Ng()) return 1;
     return GeometryTerm(direction) / std::max(ScatteringCosine(direction), kSmallestGeometricCosine);
   }
 
  private:
-  // A grazing cosine is known to rounding only, and a light path that arrives at one weighs 1/cosine: both end here.
-  // What is lost is the light from within this of the geometric horizon, less than 1e-5 of what a surface receives.
+  // Lower bound of the cosines divided by. Grazing cosines have lost their precision to rounding, and the weight
+  // 1/cosine of a light path that arrives at one is unbounded. The bound costs the light from within this cosine of the
+  // geometric horizon, less than 1e-5 of what a surface receives.
   static constexpr float kSmallestGeometricCosine = 1e-5f;
 };
 
-// The density over the edge that arrives at a point: from solid angle at one end to area at the other, |cosθ| there
-// (`geometryTerm`) over the squared distance. A cosine is known to rounding only: the smallest that counts is the same
-// for every technique.
+// dω/dA of an edge, which turns a density over solid angle at one end into one over area at the other: |cosθ| there
+// (`geometryTerm`) over the squared distance. Small cosines have lost their precision to rounding, so they have a lower
+// bound, the same for every technique.
 inline SolidAnglePerArea EdgeDensity(float geometryTerm, double distanceSquared) {
   constexpr double kSmallestCosine = 1e-6;
   return {std::max(static_cast<double>(geometryTerm), kSmallestCosine) / distanceSquared};
@@ -70,23 +71,24 @@ inline SolidAnglePerArea EdgeDensity(const Vertex& to, const Vector3& direction,
   return EdgeDensity(to.GeometryTerm(direction), distanceSquared);
 }
 
-// A vertex of a subpath from the camera or from a light, with what the path carries there. It is made at its place in
-// an array and stays there.
+// A vertex of a camera or light subpath, with the throughput that arrives there. Constructed in place in an array
+// (Subpath).
 struct PathVertex : Vertex {
-  // What arrives: flux on light subpaths, in LightingServices::FluxUnit, importance on the camera's. In two parts,
-  // because a light may show diffuse and specular lobes different radiance: at the first vertex of a light subpath for
-  // the lobes of that vertex, on camera subpaths by the kind of lobe that the path took at the vertex before.
+  // Arriving throughput: flux on light subpaths, in LightingServices::FluxUnit; importance on camera subpaths. In two
+  // parts, because a light may send different radiance to diffuse and to specular lobes. On light subpaths: by the kind
+  // of lobe at this vertex; the parts differ at the first vertex only. On camera subpaths: by the kind of lobe that
+  // scattered at the previous vertex; the throughput is their sum.
   Color diffuse, specular;
-  // Of the event that led on from here; only on subpaths that go on.
+  // The scattering event at this vertex; set only if the subpath continues.
   bool scatteredDelta = false;
   SolidAngleDensity eventForward, eventReverse;  // DensitiesOf
-  // Of bidirectional paths:
-  SolidAnglePerArea previousSolidAnglePerArea;  // from this vertex to the previous one, or to the light's point
-  AreaDensity pdfForward;                       // by its own subpath
+  // Bidirectional paths only:
+  SolidAnglePerArea previousSolidAnglePerArea;  // dω/dA from this vertex to the previous one, or to the light's point
+  AreaDensity pdfForward;                       // density of this vertex by its own subpath
   PartialWeight weight;
 
   Color Throughput() const { return diffuse + specular; }
-  // Photons can be merged here.
+  // True if photons can be merged here.
   bool CanMerge() const { return !isDelta && isSeenByIndirect; }
   // Reverse density of the previous vertex, for an event here whose density towards it is `pdfReverse`.
   AreaDensity PreviousReverse(SolidAngleDensity pdfReverse) const { return pdfReverse * previousSolidAnglePerArea; }

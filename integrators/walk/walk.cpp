@@ -8,13 +8,12 @@ namespace lampyr {
 
 namespace {
 
-// Russian roulette ([Veach97 §10.4.1]): the probability with which a path goes on is the square root of the largest
-// channel of its throughput, undone for refraction. 1 for the first scattering event: what a mirror shows of a light is
-// free of noise and stays so.
+// Survival probability of Russian roulette ([Veach97 §10.4.1]): the square root of the largest channel of the
+// throughput, without the η² scaling of refraction. 1 for the first scattering event, so that a light seen in a mirror
+// stays free of noise.
 //
-// The root halves the damage: a path that survives keeps a throughput of the root, not of 1, so its rare long relatives
-// weigh less. On closed boxes that is worth 20 % in efficiency against the throughput itself, although paths are
-// longer.
+// By the square root a surviving path keeps a throughput of the root and not of 1, so that rare long paths weigh less.
+// In closed boxes this is 20 % more efficient than the throughput itself as the probability, although paths are longer.
 float SurvivalProbability(const Color& throughput, float etaScale, int depth) {
   if (depth < 2) return 1;
   return std::min(1.0f, std::sqrt(throughput.Max() * etaScale));
@@ -42,7 +41,7 @@ bool MakeVertex(const RenderScene& scene, const Ray& ray, const RayHit& hit, con
   const Normal3 Ns = vertex.bsdf.ShadingFrame().z;
   vertex.receiver = {point.position, glm::dot(Ns, vertex.toPrevious) < 0 ? -Ns : Ns, vertex.bsdf.IsTransmissive(),
                      attributes.link};
-  vertex.coverage = attributes.alpha ? attributes.alpha->Alpha(point.uv, point.position) : 1.0f;
+  vertex.coverage = attributes.alpha ? attributes.alpha->Alpha(point.uv, point.position, point.Ng) : 1.0f;
   vertex.isDelta = vertex.bsdf.IsDelta();
   vertex.storesPhotons = !vertex.isDelta || !material->IsAlwaysDelta();
   vertex.isSeenByCamera = (attributes.visibility & visibility::kCamera) != 0;

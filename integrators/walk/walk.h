@@ -1,5 +1,5 @@
-// How paths grow, from the camera and from lights alike: a ray is traced, its hit becomes a vertex, the vertex scatters
-// into the next ray. The only loop that does so; integrators watch it (PathVisitor) and estimate light at its vertices.
+// The random walk of camera and light paths: a ray is traced, its hit becomes a vertex, the vertex scatters into the
+// next ray. This is the only such loop; integrators observe it (PathVisitor) and estimate light at its vertices.
 #pragma once
 
 #include <algorithm>
@@ -10,25 +10,26 @@
 
 namespace lampyr {
 
-// A path on its way from one vertex to the next.
+// Path state between two vertices.
 struct PathState {
   Ray ray;
-  // Throughput β, by the kind of lobe that it left the last vertex by: a light that it finds may send either different
-  // radiance. On paths from a light both are the same, but up to the first vertex.
+  // Throughput β, in two parts, because a light may send different radiance to diffuse and to specular lobes. On camera
+  // paths: by the kind of lobe that scattered at the last vertex. On light paths: for either kind of lobe at the next
+  // vertex; equal from the first vertex on.
   Color diffuse, specular;
-  SolidAngleDensity pdfDirection;  // of the ray at the last vertex (DensitiesOf)
-  Color passed{1.0f};              // part of the throughput: what the last ray was multiplied by for what it crossed
+  SolidAngleDensity pdfDirection;  // density of the ray's direction at the last vertex (DensitiesOf)
+  Color passed{1.0f};              // transmittance of what the last ray crossed; already a factor of β
   float length = 0;                // of the whole path so far
-  float etaScale = 1;              // radiance is scaled by η² where it enters glass: what undoes that
-  float emitted = 1;               // throughput at the start, which Russian roulette compares with
+  float etaScale = 1;              // undoes the scaling of radiance by η² in refraction, for Russian roulette
+  float emitted = 1;               // initial throughput, to which Russian roulette compares
 
   Color Throughput() const { return diffuse + specular; }
 };
 
-// The vertices of a path so far. Its memory is kept from path to path: vertices are large.
+// The vertices of a path so far. Reused from path to path, because vertices are large.
 class Subpath {
  public:
-  // Without `keepsAll`, the last vertex alone is there.
+  // Without `keepsAll` only the last vertex is kept.
   explicit Subpath(bool keepsAll = true) : keepsAll_(keepsAll) {}
 
   void Clear() { count_ = 0; }
@@ -39,7 +40,7 @@ class Subpath {
   PathVertex& Last() { return (*this)[count_ - 1]; }
   std::span<const PathVertex> First(size_t count) const { return {vertices_.data(), count}; }
 
-  // The place of the vertex that comes next; other vertices may move. It counts once it is added.
+  // Storage of the next vertex, which counts only after Add(). May reallocate, which moves the other vertices.
   PathVertex& Next() {
     const size_t index = keepsAll_ ? count_ : 0;
     if (index >= vertices_.size()) vertices_.resize(keepsAll_ ? std::max<size_t>(8, 2 * index) : 1);
@@ -53,17 +54,17 @@ class Subpath {
   size_t count_ = 0;
 };
 
-// What somebody makes of a path while it grows. `path` has the vertices before the ray that is spoken of.
+// Callbacks while a path grows. `path` has the vertices before the ray in question.
 class PathVisitor {
  public:
   virtual ~PathVisitor() = default;
-  // The ray has left the scene. The path ends.
+  // The ray has left the scene; the path ends.
   virtual void Escaped(const Subpath& /*path*/, const PathState&) {}
-  // The ray has met a surface, which emits light if `isLight`. False: the path ends there.
+  // The ray has hit a surface, which emits light if `isLight`. False: the path ends there.
   virtual bool Met(const Subpath& /*path*/, const PathState&, const RayHit&, const SurfacePoint&, bool /*isLight*/) {
     return true;
   }
-  // The path has another vertex, its last. False: it ends there.
+  // A vertex was added to the path: the last one. False: the path ends there.
   virtual bool Arrived(Subpath& path, const PathState&) = 0;
   // The last vertex has scattered into the next ray, which is not traced yet. False: the path ends there.
   virtual bool Scattered(const Subpath& /*path*/, const PathState&) { return true; }
@@ -71,23 +72,24 @@ class PathVisitor {
 
 struct WalkSettings {
   TransportMode mode = TransportMode::Radiance;
-  int maxDepth = 5;  // vertices at most
+  int maxDepth = 5;  // maximum number of vertices
   PathDimensions dimensions{};
   bool hasRoulette = true;
 };
 
-// Lets a path grow from `state` until it ends, is told to, or has as many vertices as it may have. `path` is its
-// vertices so far: none, or those that `state` comes from. Rays that a camera path begins with are counted as camera
-// rays.
+// Extends a path from `state` until it escapes or is absorbed, the visitor ends it, or it has hit a surface with
+// maxDepth vertices behind it. `path`: its vertices so far; none, or those that `state` comes from. The first ray of a
+// camera path is counted as a camera ray, all others as indirect rays.
 void Walk(const SampleContext& context, const WalkSettings& settings, PathState& state, Subpath& path,
           PathVisitor& visitor);
 
-// One step of it: chooses how a path goes on from `vertex`, with Russian roulette, and sets the vertex's event.
-// `index`: of the vertex, from 0. False: the path ends.
+// One step of the walk: samples the scattering at `vertex`, applies Russian roulette, and sets the event of the vertex
+// and the next ray of `state`. `index`: of the vertex, from 0. False: the path ends.
 bool Scatter(const SampleContext& context, const WalkSettings& settings, int index, PathVertex& vertex,
              PathState& state);
 
-// What a vertex is by itself: point, scattering, receiver, visibility. False: a black surface, where paths end.
+// Makes a vertex of a hit: point, BSDF, receiver, visibility. False: the surface has no material and is black, and
+// paths end there.
 bool MakeVertex(const RenderScene& scene, const Ray& ray, const RayHit& hit, const SurfacePoint& point, Vertex& vertex);
 
 }  // namespace lampyr

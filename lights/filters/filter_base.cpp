@@ -55,7 +55,10 @@ std::vector<ParameterInfo> WithCommonFilterParameters(std::vector<ParameterInfo>
        "a named coordinate system to be placed in; otherwise the current one"},
       {"name", ParameterType::String, "", "\"\"", "", "what combiners call this filter"},
   };
-  parameters.insert(parameters.end(), std::begin(common), std::end(common));
+  for (const ParameterInfo& row : common) {
+    parameters.push_back(row);
+    parameters.back().isCommon = true;
+  }
   return parameters;
 }
 

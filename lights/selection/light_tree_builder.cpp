@@ -81,31 +81,24 @@ void LightTreeBuilder::Bound(Branch& branch) const {
   }
 }
 
-// Sorts the items of a branch to two sides; returns the number on the first.
-size_t LightTreeBuilder::Partition(const Branch& branch, int depth) {
-  const auto begin = items_.begin() + static_cast<std::ptrdiff_t>(branch.first);
-  const auto end = begin + static_cast<std::ptrdiff_t>(branch.count);
-  const size_t half = branch.count / 2;
+// The bins of a branch's items along each axis of the bounds of their centres.
+struct LightTreeBuilder::Binning {
+  using Row = std::array<Bin, kBins>;
   Bounds3 centers;
-  for (auto item = begin; item != end; ++item) centers.Add(item->center);
-  const Vector3 extent = centers.Diagonal();
-  const float longest = std::max({extent.x, extent.y, extent.z});
-  if (!(longest > 0)) return half;  // all in one place
-  if (depth >= kDepthOfHalves) {
-    const int axis = extent.x == longest ? 0 : extent.y == longest ? 1 : 2;
-    std::nth_element(begin, begin + static_cast<std::ptrdiff_t>(half), end, [axis](const Item& a, const Item& b) {
-      return a.center[axis] != b.center[axis] ? a.center[axis] < b.center[axis] : a.emitter < b.emitter;
-    });
-    return half;
-  }
-  const Vector3 reference = emitters_[begin->emitter].axis;
-  const auto binOf = [&](const Item& item, int axis) {
+  Vector3 extent{0.0f};
+  std::array<Row, 3> rows;
+
+  int BinOf(const Item& item, int axis) const {
     const float t = (item.center[axis] - centers.min[axis]) / extent[axis] * kBins;
     return std::min(static_cast<int>(t), kBins - 1);
-  };
-  std::array<std::array<Bin, kBins>, 3> bins;
-  for (auto item = begin; item != end; ++item) {
-    const ClusterBounds& emitter = emitters_[item->emitter];
+  }
+};
+
+void LightTreeBuilder::FillBins(const Branch& branch, Binning& binning) const {
+  const Vector3 reference = emitters_[items_[branch.first].emitter].axis;
+  for (size_t i = branch.first; i < branch.first + branch.count; ++i) {
+    const Item& item = items_[i];
+    const ClusterBounds& emitter = emitters_[item.emitter];
     Bin one;
     one.box = emitter.box;
     one.axes = emitter.twoSided && glm::dot(emitter.axis, reference) < 0 ? -emitter.axis : emitter.axis;
@@ -114,14 +107,21 @@ size_t LightTreeBuilder::Partition(const Branch& branch, int depth) {
     one.intensity = emitter.intensity;
     one.count = 1;
     for (int axis = 0; axis < 3; ++axis) {
-      if (extent[axis] > 0) bins[static_cast<size_t>(axis)][static_cast<size_t>(binOf(*item, axis))].Add(one);
+      if (binning.extent[axis] > 0)
+        binning.rows[static_cast<size_t>(axis)][static_cast<size_t>(binning.BinOf(item, axis))].Add(one);
     }
   }
-  float best = kInfinity;
-  int bestAxis = -1, bestBin = 0;
+}
+
+// The division between two bins of least cost ([Conty18 §4.3]); no axis: none has items on both sides.
+LightTreeBuilder::Split LightTreeBuilder::CheapestSplit(const Binning& binning) {
+  const Vector3& extent = binning.extent;
+  const float longest = std::max({extent.x, extent.y, extent.z});
+  Split best;
+  float leastCost = kInfinity;
   for (int axis = 0; axis < 3; ++axis) {
     if (!(extent[axis] > 0)) continue;
-    const auto& row = bins[static_cast<size_t>(axis)];
+    const Binning::Row& row = binning.rows[static_cast<size_t>(axis)];
     std::array<float, kBins> above{};
     std::array<size_t, kBins> countAbove{};
     Bin sum;
@@ -134,18 +134,39 @@ size_t LightTreeBuilder::Partition(const Branch& branch, int depth) {
     for (size_t b = 1; b < kBins; ++b) {
       sum.Add(row[b - 1]);
       if (sum.count == 0 || countAbove[b] == 0) continue;
-      // Thin boxes are not divided lengthwise ([Conty18 §4.3]).
+      // Thin boxes are not divided lengthwise.
       const float cost = (sum.Cost() + above[b]) * longest / extent[axis];
-      if (cost < best) {
-        best = cost;
-        bestAxis = axis;
-        bestBin = static_cast<int>(b);
+      if (cost < leastCost) {
+        leastCost = cost;
+        best = {axis, static_cast<int>(b)};
       }
     }
   }
-  if (bestAxis < 0) return half;
+  return best;
+}
+
+// Sorts the items of a branch to two sides; returns the number on the first.
+size_t LightTreeBuilder::Partition(const Branch& branch, int depth) {
+  const auto begin = items_.begin() + static_cast<std::ptrdiff_t>(branch.first);
+  const auto end = begin + static_cast<std::ptrdiff_t>(branch.count);
+  const size_t half = branch.count / 2;
+  Binning binning;
+  for (auto item = begin; item != end; ++item) binning.centers.Add(item->center);
+  const Vector3 extent = binning.extent = binning.centers.Diagonal();
+  const float longest = std::max({extent.x, extent.y, extent.z});
+  if (!(longest > 0)) return half;  // all in one place
+  if (depth >= kDepthOfHalves) {
+    const int axis = extent.x == longest ? 0 : extent.y == longest ? 1 : 2;
+    std::nth_element(begin, begin + static_cast<std::ptrdiff_t>(half), end, [axis](const Item& a, const Item& b) {
+      return a.center[axis] != b.center[axis] ? a.center[axis] < b.center[axis] : a.emitter < b.emitter;
+    });
+    return half;
+  }
+  FillBins(branch, binning);
+  const Split split = CheapestSplit(binning);
+  if (split.axis < 0) return half;
   const auto middle =
-      std::stable_partition(begin, end, [&](const Item& item) { return binOf(item, bestAxis) < bestBin; });
+      std::stable_partition(begin, end, [&](const Item& item) { return binning.BinOf(item, split.axis) < split.bin; });
   const auto count = static_cast<size_t>(middle - begin);
   return count == 0 || count == branch.count ? half : count;
 }

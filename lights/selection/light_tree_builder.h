@@ -31,7 +31,14 @@ class LightTreeBuilder {
   void Grow(Branch& branch, int depth);
   void GrowInParallel(Branch& root);
   bool Divide(Branch& branch, int depth);
+  struct Binning;
+  // Between the bins `bin` - 1 and `bin` along `axis`; -1: none.
+  struct Split {
+    int axis = -1, bin = 0;
+  };
   size_t Partition(const Branch& branch, int depth);
+  void FillBins(const Branch& branch, Binning& binning) const;
+  static Split CheapestSplit(const Binning& binning);
   void Bound(Branch& branch) const;
   void Emit(const Branch& branch, uint32_t parent, int depth, LightTree& tree);
   void PutChild(LightTree::Node& node, int slot, const ClusterBounds& bounds, uint32_t child, uint16_t variety) const;

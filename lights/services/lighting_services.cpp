@@ -144,12 +144,12 @@ Vector3 LightingServices::ErrorOfEnd(const SurfacePoint& from, const DirectSampl
   return sample.positionError + InstanceRayError(transform.toRender, transform.toLocal, reach);
 }
 
-Color LightingServices::Transmission(const SurfacePoint& from, const DirectSample& direct, float time) const {
+Color LightingServices::Transmittance(const SurfacePoint& from, const DirectSample& direct, float time) const {
   const LightSample& sample = *direct.sample;
   const Ray ray = direct.isInfinite
                       ? SpawnRay(from, sample.direction, time)
                       : SpawnRayTo(from, sample.position, ErrorOfEnd(from, direct, time), sample.normal, time);
-  return scene_->geometry.Transmission(ray, visibility::kShadow);
+  return scene_->geometry.Transmittance(ray, visibility::kShadow);
 }
 
 std::optional<FoundLight> LightingServices::EvaluateSamples(const Receiver& receiver, const Vector3& direction,

@@ -83,7 +83,7 @@ class LightingServices {
 
   // What of a sample's light arrives: 0 behind something opaque, 1 where nothing is in the way, and a colour behind
   // cut-outs and thin glass. Traces a shadow ray.
-  Color Transmission(const SurfacePoint& from, const DirectSample& direct, float time) const;
+  Color Transmittance(const SurfacePoint& from, const DirectSample& direct, float time) const;
 
   // What became of a sample: the part of it that arrived at the receiver, 0 too where it was not worth a shadow ray.
   // From any thread; does nothing unless something is recorded.

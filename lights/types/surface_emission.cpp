@@ -143,7 +143,7 @@ bool SurfaceEmission::Complete(const LightContext& context, PdfArea density, Lig
   } else {
     radiance = Emitted(context, uv, -sample.direction);
   }
-  if (alpha_) radiance *= Opacity(uv, sample.position);
+  if (alpha_) radiance *= Opacity(uv, sample.position, sample.normal);
   return tint_.Split(radiance, sample);
 }
 
@@ -204,7 +204,7 @@ std::optional<EmissionSample> SurfaceEmission::Emit(const LightContext& context,
   Leaving leaving = Leave(context, point.uv, point.normal, sample->direction, sample->emissionCosine);
   sample->pdfEmitDirection = leaving.density;
   if (sample->pdfEmitDirection.IsZero()) return sample;
-  if (alpha_) leaving.radiance *= Opacity(point.uv, point.position);
+  if (alpha_) leaving.radiance *= Opacity(point.uv, point.position, point.normal);
   tint_.Split(leaving.radiance, *sample);
   return sample;
 }

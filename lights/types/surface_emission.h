@@ -102,8 +102,8 @@ class SurfaceEmission {
   SurfaceEmission(const ParameterList& parameters, const LightBuildContext& build, const Area& area);
   void SetRadiance(const ParameterList& parameters, const Color& radiance);
   float NormalizedStrength(const LightTransform& transform) const;
-  float Opacity(const Point2& uv, const Point3& position) const {
-    return alpha_ ? std::clamp(alpha_->Alpha(uv, position), 0.0f, 1.0f) : 1.0f;
+  float Opacity(const Point2& uv, const Point3& position, const Normal3& normal) const {
+    return alpha_ ? std::clamp(alpha_->Alpha(uv, position, normal), 0.0f, 1.0f) : 1.0f;
   }
   // Radiance with all its factors, cut-outs apart.
   Color Emitted(const LightContext& context, const Point2& uv, const Vector3& outgoing) const {
@@ -128,7 +128,7 @@ class SurfaceEmission {
     if (shaped_->GuidesEmission() || shaped.factor.IsBlack()) leaving.density = shaped.density;
     return leaving;
   }
-  bool IsCutOut(const LightHit& hit) const { return alpha_ && Opacity(hit.uv, hit.position) == 0; }
+  bool IsCutOut(const LightHit& hit) const { return alpha_ && Opacity(hit.uv, hit.position, hit.normal) == 0; }
   PdfSolidAngle CosineLaw(float emittedCosine) const {
     return PdfSolidAngle(emittedCosine * (twoSided_ ? 0.5f * kInvPi : kInvPi));
   }

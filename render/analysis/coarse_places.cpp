@@ -16,7 +16,7 @@ void WarnOfCoarsePlaces(const RenderScene& scene, const RenderSettings& settings
     error = MaxComponent(scene.geometry->GetSurfacePoint(ray, hit).positionError);
     distance = hit.t;
   } catch (...) {
-    return;  // a surface that a plugin brings may throw anything; it is heard of when it is rendered
+    return;  // a plugin's surface may throw anything; the render will report it
   }
   const float pixel = glm::distance(ray.origin + distance * ray.direction, beside.origin + distance * beside.direction);
   constexpr float kCoarse = 0.1f;

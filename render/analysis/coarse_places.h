@@ -1,4 +1,4 @@
-// Surfaces so large that the numbers of a float do not tell apart the places that are looked at.
+// Warns of a surface so large that the rounding of points on it is coarser than what the camera resolves.
 #pragma once
 
 #include "base/error.h"
@@ -7,8 +7,9 @@
 
 namespace lampyr {
 
-// Places on a surface are known to a part of its size: a plain of a million metres is rounded to decimetres. Looked at
-// in the middle of the picture; what is large and far away, such as a sky of triangles, is none of it.
+// Points on a surface have an error in proportion to its size: on a plane of a million metres they are rounded to
+// decimetres. Tested in the middle of the image. Large surfaces that are far away, such as a sky of triangles, are
+// exempt.
 void WarnOfCoarsePlaces(const RenderScene& scene, const RenderSettings& settings, Diagnostics& diagnostics);
 
 }  // namespace lampyr

@@ -13,17 +13,17 @@ namespace {
 
 struct Facts {
   size_t lights = 0, deltas = 0, finite = 0, infinite = 0, patches = 0, tracing = 0;
-  size_t smooth = 0;     // materials with a delta that is more than a way through
-  double arriving = 1;   // the part of sampled light that arrives where the camera looks
-  bool hasSeen = false;  // the camera sees something that light could be sampled at
-  double indirect = 0;   // the part of the light there that has come by way of one other surface
-  // How unevenly that comes from where the surfaces sample: the mean square over the square of the mean. 1: evenly.
+  size_t smooth = 0;     // materials with a delta lobe other than passing straight through
+  double arriving = 1;   // fraction of sampled light that is unoccluded where the camera looks
+  bool hasSeen = false;  // light was sampled at something that the camera sees
+  double indirect = 0;   // fraction of the light there that arrives over one other surface
+  // Unevenness of that light over BSDF samples: the mean square over the square of the mean. 1: even.
   double concentration = 1;
 
   double SecondHandNoise() const { return indirect * indirect * concentration; }
 };
 
-// Next-event estimation at a vertex, with what is in the way and without.
+// Next-event estimation at a vertex, before and after occlusion.
 struct SampledLight final : NextEventVisitor {
   double sent = 0, arrived = 0;
 
@@ -36,7 +36,7 @@ struct SampledLight final : NextEventVisitor {
   }
 };
 
-// `block`: of the sampler's dimensions.
+// `block`: vertex block of sampler dimensions to draw from.
 SampledLight SampleLightAt(const RenderScene& scene, const PathVertex& vertex, int block, Sampler& sampler) {
   SampledLight sampled;
   RenderCounts counts;
@@ -45,7 +45,7 @@ SampledLight SampleLightAt(const RenderScene& scene, const PathVertex& vertex, i
   return sampled;
 }
 
-// The light that comes to what the camera sees, at first and at second hand.
+// Measures direct light, and indirect light after one bounce, at what the camera sees.
 void MeasureLight(const RenderScene& scene, const RenderSettings& settings, Facts& facts) {
   constexpr int across = 32, bounces = 4;
   double sent = 0, arrived = 0, indirect = 0, squares = 0;
@@ -59,7 +59,7 @@ void MeasureLight(const RenderScene& scene, const RenderSettings& settings, Fact
       ++rays;
       PathState state;
       SeenVertex next;
-      // The block of another vertex each time: other numbers.
+      // Another block of dimensions for each bounce: other numbers.
       if (!probe.Bounce(seen, 20 + i, state, next)) continue;
       const double value = SampleLightAt(scene, next.vertex, 41 + i, probe.Numbers()).arrived *
                            static_cast<double>(state.Throughput().Average());
@@ -99,10 +99,11 @@ std::string Percent(double part) {
   return std::to_string(std::lround(100 * part)) + " %";
 }
 
-// Light that arrives at less than this part is mostly found at second hand, where light paths go by themselves.
+// If less than this fraction of sampled light is unoccluded, most light is indirect, and light paths find it by
+// themselves.
 constexpr double kMostlyHidden = 0.25;
-// Of the squared relative noise of a sample that goes by way of one other surface: rooms with lamps on their ceilings
-// have 0.1 to 0.5, the shade of scenes/lamp 3.
+// Threshold of Facts::SecondHandNoise, the squared relative noise of a sample of indirect light. Rooms with lamps on
+// their ceilings have 0.1 to 0.5, the lampshade of scenes/lamp has 3.
 constexpr double kNoisy = 1.5;
 
 PlanDecision ChooseIntegrator(const Facts& facts) {
@@ -184,7 +185,7 @@ PlanDecision ChooseGuiding(const RenderSettings& settings, const PhotonSettings&
 PlanDecision ChooseLayers(const RenderScene& scene) {
   const std::vector<std::string>& layers = scene.lighting->Groups().Layers();
   if (layers.empty()) return {"light groups", "none", "no light names one: the picture has no layers"};
-  constexpr size_t most = 8;  // that one wants to read
+  constexpr size_t most = 8;  // names that are listed
   std::string names;
   for (size_t i = 0; i < std::min(most, layers.size()); ++i) names += (i > 0 ? ", " : "") + layers[i];
   if (layers.size() > most) names += ", …";
@@ -192,6 +193,10 @@ PlanDecision ChooseLayers(const RenderScene& scene) {
 }
 
 }  // namespace
+
+PlanDecision ChooseIntegrator(const RenderScene& scene, const RenderSettings& settings) {
+  return ChooseIntegrator(FactsOf(scene, settings));
+}
 
 ScenePlan PlanFor(const RenderScene& scene, const RenderSettings& settings) {
   const Facts facts = FactsOf(scene, settings);

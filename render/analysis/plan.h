@@ -1,5 +1,5 @@
-// What a scene requires, and what is therefore modelled: each decision with its reason. Facts about the scene and a few
-// thousand rays, no pictures.
+// The plan of a render: which features the scene requires, each decision with its reason. Derived from facts about the
+// scene and a few thousand rays, without images.
 #pragma once
 
 #include <string>
@@ -15,11 +15,14 @@ struct PlanDecision {
 };
 
 struct ScenePlan {
-  std::string integrator;  // that suits the scene: what "auto" stands for
+  std::string integrator;  // that suits the scene; "auto" selects it
   std::vector<PlanDecision> decisions;
 };
 
-// Always the same for a scene and its settings.
+// The integrator that suits the scene. Deterministic for a scene and its size; a few thousand rays.
+PlanDecision ChooseIntegrator(const RenderScene& scene, const RenderSettings& settings);
+
+// Deterministic for a scene and its settings.
 ScenePlan PlanFor(const RenderScene& scene, const RenderSettings& settings);
 
 }  // namespace lampyr

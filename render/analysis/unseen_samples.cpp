@@ -9,7 +9,7 @@ namespace lampyr {
 
 namespace {
 
-// What scatters into less than a thirtieth of a steradian sends an image of a light rather than a glow.
+// A lobe narrower than a thirtieth of a steradian shows an image of a light rather than a glow.
 constexpr float kNearlySmooth = 30;  // 1/sr
 
 // Lights may send different radiance to diffuse and to specular lobes.
@@ -17,7 +17,7 @@ float Brighter(const Color& diffuse, const Color& specular) {
   return std::max(diffuse.Luminance(), specular.Luminance());
 }
 
-// Whether a light is seen sharply in it, at this draw of what it scatters by.
+// True if one random sample of the vertex's scattering shows a sharp image of a light.
 bool IsSmooth(const RenderScene& scene, const Vertex& vertex, Sampler& sampler) {
   const int index = scene.geometry->Attributes(vertex.point.primitive).material;
   if (scene.materials[static_cast<size_t>(index)]->IsInterface()) return false;
@@ -26,7 +26,7 @@ bool IsSmooth(const RenderScene& scene, const Vertex& vertex, Sampler& sampler) 
   return sample && (sample->isDelta || sample->pdfForward.value > kNearlySmooth);
 }
 
-// Photons that land on something smooth.
+// The brightest emission whose first hit is smooth.
 class BrightPhotons final : public LightPathVisitor {
  public:
   explicit BrightPhotons(const SampleContext& context) : context_(context) {}
@@ -60,7 +60,7 @@ float BrightestPhoton(const RenderScene& scene) {
   return visitor.brightest;
 }
 
-// Light that reaches smooth vertices of camera paths straight from lights that can be hit.
+// The brightest direct light of lights that can be hit, at smooth vertices of camera paths.
 class BrightVertices final : public PathVisitor {
  public:
   explicit BrightVertices(const SampleContext& context) : context_(context) {}
@@ -78,7 +78,7 @@ class BrightVertices final : public PathVisitor {
     ForChosenLights(*scene.lighting, receiver, uSelect, sampler.Get2D(),
                     [&](const SelectedLight& light, const Point2& u) {
                       const DirectSample direct = scene.lighting->GenerateSamples(receiver, light, u, 0, false);
-                      if (!direct || direct.isDelta || scene.lighting->Transmission(vertex.point, direct, 0).IsBlack())
+                      if (!direct || direct.isDelta || scene.lighting->Transmittance(vertex.point, direct, 0).IsBlack())
                         return;
                       brightest = std::max(brightest, Brighter(direct.sample->diffuse, direct.sample->specular));
                     });
@@ -88,7 +88,7 @@ class BrightVertices final : public PathVisitor {
   float brightest = 0;
 
  private:
-  static constexpr int kBlock = 20;  // of the sampler's dimensions, beyond those of the path
+  static constexpr int kBlock = 20;  // block of sampler dimensions, beyond those of the path
 
   const SampleContext& context_;
 };
@@ -119,7 +119,7 @@ float BrightestFromCamera(const RenderScene& scene, const RenderSettings& settin
 double LargestUnseenSample(const RenderScene& scene, const RenderSettings& settings) {
   if (!scene.lighting->HasLightThatCanBeHit()) return 0;
   const float brightest = std::max(BrightestPhoton(scene), BrightestFromCamera(scene, settings));
-  return static_cast<double>(brightest) * static_cast<double>(settings.imagingRatio);
+  return static_cast<double>(brightest) * static_cast<double>(settings.sensor.ImagingRatio());
 }
 
 }  // namespace lampyr

@@ -11,7 +11,7 @@ namespace lampyr {
 
 namespace {
 
-constexpr int kAcross = 16;          // camera rays
+constexpr int kAcross = 16;          // camera rays along each side of the grid
 constexpr size_t kAsked = 1 << 20;   // samples of lights, at most
 constexpr uint32_t kPhotons = 4096;  // photons
 
@@ -54,7 +54,7 @@ std::optional<InvalidLight> FindInvalidLight(const BuiltScene& built) {
     for (size_t i = light % step; i < receivers.size(); i += step) {
       const Point2 u = rng.NextPoint2();
       if (!SendsInvalid(lighting, receivers[i], light, u)) continue;
-      // What the camera itself sees is not filtered.
+      // Light is not filtered for Receiver::kCamera: this tells the light from its filter.
       Receiver unfiltered = receivers[i];
       unfiltered.link = Receiver::kCamera;
       if (lights[light].filter < 0 || SendsInvalid(lighting, unfiltered, light, u)) return ofLight(light);

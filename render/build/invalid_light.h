@@ -1,4 +1,4 @@
-// Who has sent light that is no number, or an infinite one.
+// Finds the light or light filter that gives invalid values.
 #pragma once
 
 #include <optional>
@@ -10,11 +10,11 @@ namespace lampyr {
 
 struct InvalidLight {
   FileLocation where;
-  std::string text;  // "this LightFilter gives values that are not finite"
+  std::string text;  // "this LightFilter gives values that are not finite, or negative"
 };
 
-// Asks all lights, and their filters, for samples at places that the camera sees, and for photons: the first one that
-// gives something not finite or negative. nullopt: none does there.
+// Samples all lights, with their filters, at points that the camera sees, and their emission. Returns the first that
+// gives values that are not finite or negative; nullopt: none was found.
 std::optional<InvalidLight> FindInvalidLight(const BuiltScene& built);
 
 }  // namespace lampyr

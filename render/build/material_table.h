@@ -36,7 +36,7 @@ class MaterialTable {
     return index;
   }
 
-  // All materials, so that a mistake in one that is not used is found too.
+  // Makes all materials, so that mistakes in unused ones are found, too.
   void MakeAll() {
     for (const NamedMaterialDescription& named : description_.namedMaterials) Named(named.name, named.material.where);
     for (size_t i = 0; i < description_.materials.size(); ++i) IndexOf({static_cast<int>(i), "", {}});
@@ -66,7 +66,7 @@ class MaterialTable {
     return [this, where](const std::string& name) { return materials_[Named(name, where)]; };
   }
 
-  // A mix asks one of its two, so that what counts is how deep they are, and not how often each is named.
+  // A mix evaluates only one of its two materials: what is limited is the depth of mixes, not how often each is named.
   int32_t Named(const std::string& name, const FileLocation& where) {
     const auto made = named_.find(name);
     if (made != named_.end()) {
@@ -92,14 +92,14 @@ class MaterialTable {
     return index;
   }
 
-  // Each level takes some of the stack.
+  // Each level takes stack memory.
   static void CheckDepth(size_t depth, const FileLocation& where) {
     if (depth > limits::kNestedNames) throw Error(where, "materials are mixed more than 256 deep");
   }
 
   struct MadeMaterial {
     int32_t index = -1;
-    size_t depth = 1;  // mixes within one another, and what they are mixed of
+    size_t depth = 1;  // levels of mixes within one another, this material included
   };
 
   const SceneDescription& description_;
@@ -110,7 +110,7 @@ class MaterialTable {
   std::map<std::string, const NamedMaterialDescription*> descriptions_;
   std::map<std::string, MadeMaterial> named_;
   std::set<std::string> inProgress_;
-  size_t deepest_ = 0;  // of the materials that were named since the one that is being made was begun
+  size_t deepest_ = 0;  // largest depth of the materials named so far by the one being made
   int32_t default_ = -1;
 };
 

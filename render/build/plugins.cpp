@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kPathVariable = "LAMPYR_PLUGIN_PATH";
 
-// Where it is, free of links: the same file is the same path.
+// Absolute path without links: the same for the same file.
 fs::path Canonical(const fs::path& file) {
   std::error_code code;
   const fs::path canonical = fs::weakly_canonical(file, code);
@@ -39,7 +39,7 @@ void Warn(const std::string& text) {
   std::fprintf(stderr, "warning: %s\n", text.c_str());
 }
 
-// By name, so that it does not depend on the file system which of two wins.
+// Sorted by name, so that the precedence of two files does not depend on the file system.
 std::vector<fs::path> PluginsIn(const fs::path& folder) {
   std::vector<fs::path> files;
   try {
@@ -54,7 +54,7 @@ std::vector<fs::path> PluginsIn(const fs::path& folder) {
   return files;
 }
 
-// `inPlace`: the file as it would be without looking for it.
+// `inPlace`: the path without a search.
 fs::path FindPlugin(const std::string& name, const fs::path& inPlace) {
   std::error_code code;
   if (fs::path(name).has_parent_path() || fs::exists(inPlace, code)) return inPlace;
@@ -64,7 +64,7 @@ fs::path FindPlugin(const std::string& name, const fs::path& inPlace) {
   return inPlace;
 }
 
-// Directly in one of the folders: by its name, or as the file that a link leads to.
+// True if the file, or the target of a link, lies directly in one of the folders.
 bool IsInPluginFolder(const fs::path& file) {
   const fs::path named = Canonical(FolderOf(file)), linked = Canonical(file).parent_path();
   const std::vector<fs::path> folders = PluginFolders();
@@ -87,7 +87,7 @@ bool IsInPluginFolder(const fs::path& file) {
 class TypeLoader {
  public:
   bool Has(const fs::path& file) const { return seen_.count(Canonical(file)) != 0; }
-  // A plugin that somebody needs.
+  // Loads a plugin that must be usable.
   void Require(const fs::path& file, const FileLocation& where) {
     try {
       Add(file);

@@ -10,31 +10,31 @@
 
 namespace lampyr {
 
-// What the command line says of plugins.
+// Plugin options of the command line.
 struct PluginOptions {
   std::vector<std::string> files;  // --plugin
   bool allowsScenePlugins = false;
 };
 
-// The built-in types, and those of plugins: of the files that the command line asks for, of those that the scene names
-// (null: no scene), and of all *.so in the folders of the environment variable LAMPYR_PLUGIN_PATH, which a colon
-// separates.
+// Loads the built-in types and those of plugins: of the files in `options`, of those that the scene names (null: no
+// scene), and of all *.so in the folders of the environment variable LAMPYR_PLUGIN_PATH, separated by colons.
 //
-// A plugin is native code, and a scene may come from anywhere: what a scene names is loaded only where
-// `allowsScenePlugins` is set, or the file is asked for, or lies in one of those folders. A UsageError at its place
-// otherwise.
+// A plugin is native code, and a scene may come from anywhere. A plugin that the scene names is loaded only if
+// `allowsScenePlugins` is set, `options` asks for the file, or it lies in one of those folders; otherwise a UsageError
+// with the location in the scene.
 //
-// A name without a folder that is not beside the scene (of --plugin: in the working folder) is looked for in those
-// folders. Throws a UsageError for a plugin of the first two kinds that cannot be used; one of the folders' is left out
-// with a warning. The same file is loaded once, whoever names it.
+// A name without a folder that does not exist beside the scene (of --plugin: in the working folder) is looked for in
+// those folders. Throws a UsageError for a plugin of `options` or of the scene that cannot be used. One in those
+// folders is left out with a warning, unless it leaves the system's loader broken (LoaderBroken), which is a
+// UsageError. Each file is loaded once.
 TypeRegistry LoadTypes(const PluginOptions& options, const SceneDescription* scene);
 
-// The types that the files of --plugin brought, of those that LoadTypes gave.
+// The types of `types` that come from the files of --plugin.
 std::vector<const LightType*> LightsOf(const TypeRegistry& types, const PluginOptions& options);
 std::vector<const FilterType*> FiltersOf(const TypeRegistry& types, const PluginOptions& options);
 
-// Runs work that calls lights. What the code of a plugin throws may be anything: all but an Error leaves as one that
-// names the plugins. Without plugins nothing is changed.
+// Runs `work`, which may call code of plugins. Exceptions other than Error and std::bad_alloc are replaced by an Error
+// that names the plugins. Without plugins all exceptions pass unchanged.
 void RunForeignCode(const TypeRegistry& types, const std::function<void()>& work);
 
 }  // namespace lampyr

@@ -22,7 +22,7 @@ namespace lampyr {
 
 namespace {
 
-// A shape that was read, with what it is made of.
+// A shape that was read, with its material.
 struct ReadEntry {
   LocalShape local;
   int32_t material = -1;
@@ -36,9 +36,9 @@ struct FlatInstance {
   const InstanceDescription* description = nullptr;
 };
 
-// Shapes that keep their places to one another, as one object of the geometry.
+// Shapes with the same motion, or none, as one object of the geometry.
 struct Part {
-  std::optional<AnimatedTransform> placement;  // of shapes that move, out of their own space
+  std::optional<AnimatedTransform> placement;  // motion from the shapes' own space; nullopt: they do not move
   std::vector<const ReadEntry*> entries;
   uint32_t object = 0;                         // of the geometry
   Bounds3 bounds;                              // of the object, in its own space
@@ -53,25 +53,25 @@ AnimatedTransform ToAnimated(const Placement& placement, const char* what, const
   return AnimatedTransform(placement.start, placement.end, what, where);
 }
 
-// A place in render space: at shutter open, and how it moves from there.
+// Placement in render space: at shutter open, and the motion from there.
 struct RenderPlacement {
   Transform toRender;
   std::shared_ptr<const Motion> motion;  // null: stays
 };
 
-// Of an area light with its tables, roughly.
+// Approximate memory of an area light with its tables, bytes.
 double BytesOfLight(const Shape& shape) {
   const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&shape);
   constexpr double ofLight = 1024, ofTriangle = 32;
   return ofLight + (mesh ? ofTriangle * static_cast<double>((*mesh)->triangles.size()) : 0.0);
 }
 
-// Of an instance that moves: how, and the keys that are made of it.
+// Memory of the motion of an instance, with the keys made of it, bytes.
 double BytesOfMotion(const MotionChain& chain) {
   return static_cast<double>(chain.Length() * sizeof(AnimatedTransform) + size_t{kMaxMotionKeys} * sizeof(Affine));
 }
 
-// When the transform times lie in the time that the camera's shutter is open.
+// The transform times, as fractions of the time that the camera's shutter is open.
 MotionTimes ReadMotionTimes(const SceneDescription& description) {
   const StatementDescription& camera = description.camera;
   const double open = camera.parameters.GetFloat("shutteropen", 0),
@@ -123,7 +123,7 @@ class Builder {
   void PlaceInstance(const FlatInstance& instance, const std::vector<Part>& parts);
   void PlaceEntry(const ReadEntry& entry, const Transform& toRender, std::vector<GeometryEntry>& entries,
                   std::vector<const ReadEntry*>* lightEntries);
-  // `shapePlacement` leads from the shape's own axes to the space that `placement` starts from.
+  // `shapePlacement`: from the shape's own axes to the space that `placement` starts from.
   void AddAreaLight(const ShapeDescription& description, const Shape& shape, const RenderPlacement& placement,
                     const Transform& shapePlacement, const std::shared_ptr<const AlphaSource>& alpha);
   const LightType& FindType(const StatementDescription& statement, bool isAreaLight) const;
@@ -142,7 +142,7 @@ class Builder {
   const TypeRegistry& types_;
   MemoryBudget memory_;
   BuiltScene built_;
-  std::vector<SceneLight>* described_ = nullptr;  // null: nobody asks
+  std::vector<SceneLight>* described_ = nullptr;  // null: not wanted
   GeometryDescription geometry_;
   std::vector<PlacedLight> lights_;
   LightLinking linking_;
@@ -164,7 +164,7 @@ std::vector<ReadEntry> Builder::ReadShapes(const std::vector<ShapeDescription>& 
   return entries;
 }
 
-// Without recursion: objects may be nested as deep as a file is long.
+// Without recursion, because objects may be nested as deep as a file is long.
 void Builder::FlattenInstances() {
   if (!description_.instances.empty()) {
     constexpr double bytesPerInstance = 1024;  // here and in the intersector
@@ -205,8 +205,8 @@ void Builder::FlattenInstances() {
   }
 }
 
-// Where the middle of the scene is far from the origin compared with its size, floats around it are sparse: it is
-// moved. What moves is looked at where it starts and where it ends.
+// A scene whose middle is far from the origin, compared with its size, is moved to the origin, because floats are
+// sparse where it is. Of what moves, the start and the end of the motion are considered.
 Transform Builder::ChooseRenderSpace() const {
   Bounds3d bounds;
   const auto add = [&bounds](const ReadEntry& entry, const Transform& startToWorld, const Transform& endToWorld) {
@@ -221,7 +221,7 @@ Transform Builder::ChooseRenderSpace() const {
     const Transform end = instance.motion ? instance.motion->At(1) : instance.toWorld;
     for (const ReadEntry& entry : objects_[instance.object]) add(entry, instance.toWorld, end);
   }
-  // Lights without any shape: they and the camera say where the scene is.
+  // Without shapes, the lights and the camera determine where the scene is.
   if (bounds.IsEmpty() && !description_.lights.empty()) {
     bounds.Add(description_.cameraToWorld.start.Point(Point3d(0.0)));
     for (const LightDescription& light : description_.lights) bounds.Add(light.placement.start.Point(Point3d(0.0)));
@@ -233,14 +233,14 @@ Transform Builder::ChooseRenderSpace() const {
   return Transform::Translate(-center);
 }
 
-// Of something that does not move while the shutter is open.
+// Placement of a shape that does not move while the shutter is open.
 Transform Builder::StillPlacement(const ReadEntry& entry) const {
   const ShapeDescription& shape = *entry.local.description;
   if (!shape.placement.IsAnimated()) return shape.placement.start;
   return ToAnimated(shape.placement, "a shape", shape.shape.where).At(times_.FractionAt(0));
 }
 
-// `moved` bounds what moves, in its own space.
+// `moved`: bounds of what moves, in its own space.
 RenderPlacement Builder::PlaceMoving(const MotionChain& toRender, const Bounds3& moved, const char* what,
                                      const FileLocation& where) {
   RenderPlacement placement{toRender.At(times_.FractionAt(0)), MakeMotion(toRender, times_, moved, what, where)};
@@ -271,14 +271,15 @@ const LightType& Builder::FindType(const StatementDescription& statement, bool i
   throw Error(statement.where, "there is no " + owner + DidYouMean(statement.type, names));
 }
 
-// Area lights are made shape by shape: what is wrong with one that no shape uses is found here.
+// Area lights are made per shape; mistakes in one that no shape uses are found here.
 void Builder::CheckAreaLights() {
   for (const StatementDescription& statement : description_.areaLights) {
     CheckParameters(FindType(statement, true), statement.parameters);
   }
 }
 
-// A constant opacity of 0 makes a light that shines and is not there, as in pbrt-v4; any other cuts out a part of it.
+// With a constant opacity of 0 the light emits but rays pass its surface, as in pbrt-v4. Any other opacity cuts out a
+// part of it.
 void Builder::AddAreaLight(const ShapeDescription& description, const Shape& shape, const RenderPlacement& placement,
                            const Transform& shapePlacement, const std::shared_ptr<const AlphaSource>& alpha) {
   const AreaLightDescription& statement = description_.areaLights[description.areaLight];
@@ -309,7 +310,7 @@ SceneLight Builder::Describe(const StatementDescription& statement, const Placed
   const std::string& name = placed.light->Settings().name;
   SceneLight light;
   light.name = (name.empty() ? statement.type : name) + " (" + statement.where.ToString() + ")";
-  // Several shapes share a statement.
+  // Several shapes may share a statement.
   size_t same = 1;
   for (const SceneLight& other : *described_) same += other.name.starts_with(light.name) ? 1 : 0;
   if (same > 1) light.name += " #" + std::to_string(same);
@@ -320,7 +321,7 @@ SceneLight Builder::Describe(const StatementDescription& statement, const Placed
 void Builder::PlaceEntry(const ReadEntry& entry, const Transform& toRender, std::vector<GeometryEntry>& entries,
                          std::vector<const ReadEntry*>* lightEntries) {
   const ShapeDescription& shape = *entry.local.description;
-  if (materials_->Materials()[entry.material]->IsInterface()) {  // nothing to see: rays would only pass
+  if (materials_->Materials()[entry.material]->IsInterface()) {  // rays would only pass
     if (shape.areaLight >= 0) {
       diagnostics_.Warn(shape.shape.where, "a shape of material \"interface\" emits no light, as in pbrt-v4");
     }
@@ -333,17 +334,17 @@ void Builder::PlaceEntry(const ReadEntry& entry, const Transform& toRender, std:
   }
 
   const uint32_t link = LinkOf(shape);
-  // What shines is met by every ray.
+  // Surfaces that emit are never thin: every ray hits them.
   const std::shared_ptr<const Material>& material = materials_->Materials()[entry.material];
-  std::shared_ptr<const SheetSource> sheet;
-  if (shape.areaLight < 0 && material->Sheet()) sheet = {material, material->Sheet()};
+  std::shared_ptr<const ThinSurface> thin;
+  if (shape.areaLight < 0 && material->Thin()) thin = {material, material->Thin()};
   for (Shape& placed : PlaceShape(entry.local, toRender)) {
     LocateErrors(shape.shape.where, [&] { CheckShape(placed); });
     GeometryEntry result;
     result.attributes.material = entry.material;
     result.attributes.link = link;
     result.attributes.alpha = alpha;
-    result.attributes.sheet = sheet;
+    result.attributes.thin = thin;
     result.shape = std::move(placed);
     const bool isCurve = std::holds_alternative<std::shared_ptr<const CurveSet>>(result.shape);
     if (shape.areaLight >= 0 && isCurve) {
@@ -363,7 +364,7 @@ void Builder::PlaceEntry(const ReadEntry& entry, const Transform& toRender, std:
   }
 }
 
-// The shapes that move, together where their motion is the same.
+// The shapes that move; consecutive shapes with the same motion are one part.
 std::vector<Part> Builder::MovingParts(const std::vector<ReadEntry>& entries) {
   std::vector<Part> parts;
   const Placement* last = nullptr;
@@ -415,7 +416,7 @@ void Builder::PlaceMovingPart(const Part& part, const MotionChain& parentToRende
   PlacePart(part, PlaceMoving(parentToRender * *part.placement, part.bounds, "a shape", where));
 }
 
-// The first part are the object's shapes that stay in it.
+// The first part has the object's shapes that do not move within it.
 void Builder::PlaceInstance(const FlatInstance& instance, const std::vector<Part>& parts) {
   const FileLocation& where = instance.description->where;
   if (!instance.motion) {
@@ -461,7 +462,7 @@ const FilterType& Builder::FindFilter(const StatementDescription& statement) con
               "there is no LightFilter \"" + statement.type + "\"" + DidYouMean(statement.type, names));
 }
 
-// Of something without an extent of its own: a light or a filter.
+// Placement of something without an extent of its own: a light or a filter.
 RenderPlacement Builder::PlaceInWorld(const Placement& placement, const char* what, const FileLocation& where) {
   RenderPlacement placed{worldToRender_ * placement.start, nullptr};
   if (placement.IsAnimated())
@@ -471,7 +472,7 @@ RenderPlacement Builder::PlaceInWorld(const Placement& placement, const char* wh
 }
 
 void Builder::AddFilters() {
-  std::map<std::string, size_t> latest;  // of each name
+  std::map<std::string, size_t> latest;  // index of the last filter of each name
   std::vector<Nesting> nestings;
   for (const LightFilterDescription& description : description_.lightFilters) {
     const StatementDescription& statement = description.filter;
@@ -517,7 +518,7 @@ void Builder::Bind(int filter, PlacedLight& light) const {
   light.filter = filter;
   const std::optional<float> modifier = bound.filter->GetRadianceModifier();
   if (!modifier || !(*modifier >= 0 && *modifier < kInfinity)) return;
-  // A filter that is off for some receivers takes nothing away there.
+  // For receivers where linking turns the filter off, light is not reduced: the modifier is at least 1.
   light.radianceModifier = bound.linking == 0 ? *modifier : std::max(*modifier, 1.0f);
 }
 
@@ -530,7 +531,8 @@ uint32_t Builder::LinkOf(const ShapeDescription& shape) {
   return linking_.ClassOf(find("lighting"), find("lightfilter"));
 }
 
-// A light that is its own surface can be hit: black, and where its settings say so not seen by the camera.
+// The surface of a light that is its own surface, so that rays can hit it: black, and invisible to the camera if the
+// settings say so.
 void Builder::AddLightSurface(const PlacedLight& placed) {
   GeometryEntry entry;
   entry.shape = MakeLightSurface(placed);
@@ -588,7 +590,8 @@ BuiltScene Builder::Build() {
   scene.lighting = std::make_shared<const LightingServices>(
       *scene.geometry, std::move(lights_), built_.settings.LightSampler(), std::move(linking_),
       static_cast<int>(built_.settings.values.Integer("light-samples")));
-  if (built_.settings.integrator == "auto") built_.settings.integrator = PlanFor(scene, built_.settings).integrator;
+  if (built_.settings.integrator == "auto")
+    built_.settings.integrator = ChooseIntegrator(scene, built_.settings).choice;
   const auto& lights = scene.lighting->Lights();
   const bool hasSky = std::any_of(lights.begin(), lights.end(), [](const PlacedLight& placed) {
     return placed.light->Kind() == LightKind::Infinite;

@@ -1,4 +1,4 @@
-// From a scene's description to what an integrator renders: shapes placed and built, lights made, materials resolved.
+// Builds the scene that integrators render from its description: places shapes, makes lights, resolves materials.
 #pragma once
 
 #include "integrators/walk/integrator.h"
@@ -11,19 +11,19 @@ namespace lampyr {
 struct BuiltScene {
   RenderSettings settings;
   RenderScene scene;
-  // Where the scene names its lights and its light filters, by their indices.
+  // Locations of the lights and the light filters in the scene file, by their indices.
   std::vector<FileLocation> lightPlaces, filterPlaces;
 };
 
-// Throws located Errors for what cannot be rendered. `robust`: watertight intersection. `types`: what lights there are,
-// which is wanted here alone.
+// Throws located Errors for what cannot be rendered. `robust`: watertight intersection. `types`: the types of lights
+// and filters, used only during the call.
 //
-// Render space is world space moved so that the scene's middle lies near the origin, where floats are dense; a scene
-// that is there already is not moved.
+// Render space is world space, translated so that the scene's middle lies near the origin, where floats are dense. A
+// scene that is near the origin already is not moved.
 BuiltScene BuildScene(const SceneDescription& description, const RenderOverrides& overrides, bool robust,
                       Diagnostics& diagnostics, const TypeRegistry& types = TypeRegistry::BuiltIn());
 
-// The same, and of each light of the scene what checking it takes.
+// The same, and fills `lights` with what checking each light of the scene requires.
 BuiltScene BuildScene(const SceneDescription& description, bool robust, Diagnostics& diagnostics,
                       std::vector<SceneLight>& lights, const TypeRegistry& types = TypeRegistry::BuiltIn());
 

@@ -85,7 +85,7 @@ LocalMesh ReadBilinearMesh(const ParameterList& parameters, Diagnostics& diagnos
   return mesh;
 }
 
-// Of a triangle or patch, as it is read, as it is placed and in the intersector: a round number below what is measured.
+// Memory of a triangle or patch as read, as placed, and in the intersector: a round number below the measured one.
 constexpr double kBytesPerFace = 128;
 
 LocalMesh ReadSubdivision(const ParameterList& parameters, MemoryBudget& memory, Diagnostics& diagnostics) {
@@ -134,7 +134,7 @@ LocalMesh ReadPlyMesh(const ParameterList& parameters, MemoryBudget& memory, Dia
                          " normals of \"" + file +
                          "\" are not finite, or beyond 1e18: the mesh is rendered without those");
   }
-  // The same file may be named again and again.
+  // Counted for each use: the same file may be named many times.
   memory.Take(static_cast<double>(ply.triangles.size() + ply.quads.size()) * kBytesPerFace,
               parameters.WhereOf("filename"), "the faces of \"" + file + "\"");
   LocalMesh mesh;
@@ -273,7 +273,7 @@ std::optional<LocalShape> ReadShape(const ShapeDescription& description, MemoryB
                                     Diagnostics& diagnostics) {
   const std::string& type = description.shape.type;
   const ParameterList& parameters = description.shape.parameters;
-  parameters.Find("alpha");  // read by whoever knows the textures
+  parameters.Find("alpha");  // marked as used here; read where the textures are known
   LocalShape local;
   local.description = &description;
   if (type == "trianglemesh") {

@@ -1,6 +1,6 @@
 // Shapes as scene files describe them: read into their own space (double), then placed into render space.
 //
-// Two steps, because where render space lies depends on the bounds of all shapes.
+// Two steps, because the choice of render space depends on the bounds of all shapes.
 #pragma once
 
 #include <optional>

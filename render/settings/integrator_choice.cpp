@@ -14,7 +14,7 @@ std::string Listed(const std::vector<std::string>& names) {
   return all;
 }
 
-// "shadow-threshold=0.01". A switch alone is on.
+// Applies a change such as "shadow-threshold=0.01". A switch without a value is on.
 void Change(const std::string& variant, const IntegratorType& type, const std::string& change, Settings& values) {
   const size_t equals = change.find('=');
   const std::string key = change.substr(0, equals);
@@ -40,7 +40,7 @@ void Change(const std::string& variant, const IntegratorType& type, const std::s
 
 std::unique_ptr<Integrator> MakeIntegrator(const RenderScene& scene, const RenderSettings& settings) {
   return IntegratorOf(settings.integrator)
-      .create({scene, settings.width, settings.height, settings.imagingRatio, settings.values});
+      .create({scene, settings.width, settings.height, settings.sensor.ImagingRatio(), settings.values});
 }
 
 RenderSettings VariantOf(const RenderSettings& settings, const std::string& name) {

@@ -1,4 +1,4 @@
-// The integrator that settings name.
+// Creates the integrator that the settings name; integrator variants.
 #pragma once
 
 #include <memory>
@@ -8,11 +8,11 @@
 
 namespace lampyr {
 
-// For `scene`.
+// The integrator of the settings, for `scene`.
 std::unique_ptr<Integrator> MakeIntegrator(const RenderScene& scene, const RenderSettings& settings);
 
-// The settings with the integrator of a name such as "path", or "path:shadow-threshold=0.01:light-samples=4": some of
-// its settings are then changed. Throws a UsageError that says what there is.
+// The settings with another integrator, by a name such as "path", or with some of its settings changed, too:
+// "path:shadow-threshold=0.01:light-samples=4". Throws a UsageError that lists the valid names.
 RenderSettings VariantOf(const RenderSettings& settings, const std::string& name);
 
 bool GathersPhotons(const RenderSettings& settings);

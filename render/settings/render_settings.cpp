@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <sstream>
 
@@ -53,7 +54,7 @@ PixelRect ParseCrop(const std::string& text, int width, int height) {
           clampPixel(numbers[3], height)};
 }
 
-// The cameras whose sensors pbrt-v4 knows.
+// Throws an Error unless pbrt-v4 has a sensor of that name.
 void CheckSensorName(const ParameterList& film, const std::string& sensor) {
   const Names known = {
       "cie1931",       "canon_eos_100d",     "canon_eos_1dx_mkii", "canon_eos_200d",    "canon_eos_200d_mkii",
@@ -62,6 +63,18 @@ void CheckSensorName(const ParameterList& film, const std::string& sensor) {
       "sony_ilce_7m3", "sony_ilce_7rm3",     "sony_ilce_9"};
   if (std::find(known.begin(), known.end(), sensor) != known.end()) return;
   throw Error(film.WhereOf("sensor"), "there is no sensor \"" + sensor + "\"" + DidYouMean(sensor, known));
+}
+
+// A named camera's sensor is modelled as the CIE observer followed by white balance, with its own exposure and white
+// balance. `isObserver`: the sensor's channels are X, Y and Z, to which its limit applies.
+SensorResponse ReadSensor(const ParameterList& film, float imagingRatio, bool isObserver) {
+  const double kelvin = film.GetFloat("whitebalance", 0);
+  const double most = film.GetFloat("maxcomponentvalue", std::numeric_limits<double>::infinity());
+  if (!(most > 0)) throw Error(film.WhereOf("maxcomponentvalue"), "\"maxcomponentvalue\" must be above 0");
+  const glm::dmat3 balance =
+      LocateErrors(film.WhereOf("whitebalance"), [&] { return kelvin == 0 ? glm::dmat3(1.0) : WhiteBalance(kelvin); });
+  return {imagingRatio, glm::mat3(balance), isObserver ? glm::mat3(Rec709ToXyz()) : glm::mat3(1.0f),
+          static_cast<float>(most)};
 }
 
 void ReadFilm(const SceneDescription& scene, const RenderOverrides& overrides, RenderSettings& settings,
@@ -79,20 +92,18 @@ void ReadFilm(const SceneDescription& scene, const RenderOverrides& overrides, R
   if (overrides.width) settings.width = *overrides.width;
   if (overrides.height) settings.height = *overrides.height;
   settings.outputFile = film.GetString("filename", "");
-  // pbrt-v4 writes halves unless told otherwise. Variances need floats: halves only where the scene asks for them.
+  // pbrt-v4 writes halves by default. Variances need floats, so halves are written only if the scene asks for them.
   settings.halfPrecision = film.GetBool("savefp16", false);
   const std::string sensor = film.GetString("sensor", "cie1931");
-  if (sensor != "cie1931") {
-    CheckSensorName(film, sensor);
-    diagnostics.Warn(film.WhereOf("sensor"), "sensor \"" + sensor + "\" is not modelled; \"cie1931\" is used");
-  }
+  CheckSensorName(film, sensor);
   const ParameterList& camera = scene.camera.parameters;
   const double exposureTime = camera.GetFloat("shutterclose", 1) - camera.GetFloat("shutteropen", 0);
-  settings.imagingRatio = static_cast<float>(exposureTime * film.GetFloat("iso", 100) / 100);
-  if (!(settings.imagingRatio > 0)) {
+  const auto imagingRatio = static_cast<float>(exposureTime * film.GetFloat("iso", 100) / 100);
+  if (!(imagingRatio > 0)) {
     throw Error(film.Where(),
                 "the exposure is not positive: \"shutterclose\" must be after \"shutteropen\" and \"iso\" above 0");
   }
+  settings.sensor = ReadSensor(film, imagingRatio, sensor == "cie1931");
 
   settings.crop = {0, 0, settings.width, settings.height};
   const std::vector<double> window = film.GetFloats("cropwindow");
@@ -117,13 +128,10 @@ void ReadFilm(const SceneDescription& scene, const RenderOverrides& overrides, R
     throw Error(film.Where(), "the crop leaves no pixel of the image");
   }
   film.Find("diagonal");  // the film's size in mm: of use to "realistic" cameras only
-  if (film.GetFloat("whitebalance", 0) != 0) {
-    diagnostics.Warn(film.WhereOf("whitebalance"), "\"whitebalance\" is not supported yet; the image is not balanced");
-  }
-  film.CheckAllUsed(
-      {"diagonal", "maxcomponentvalue", "coordinatesystem", "nbuckets", "lambdamin", "lambdamax"},
-      {"xresolution", "yresolution", "filename", "savefp16", "sensor", "iso", "cropwindow", "pixelbounds"},
-      diagnostics);
+  film.CheckAllUsed({"coordinatesystem", "nbuckets", "lambdamin", "lambdamax"},
+                    {"xresolution", "yresolution", "filename", "savefp16", "sensor", "iso", "whitebalance",
+                     "maxcomponentvalue", "cropwindow", "pixelbounds", "diagonal"},
+                    diagnostics);
 }
 
 void ReadPixelFilter(const SceneDescription& scene, RenderSettings& settings, Diagnostics& diagnostics) {
@@ -171,7 +179,7 @@ void ReadPixelFilter(const SceneDescription& scene, RenderSettings& settings, Di
     known.push_back("tau");
   }
   parameters.CheckAllUsed({}, known, diagnostics);
-  LocateErrors(scene.pixelFilter.where, [&] { return PixelFilter(filter); });  // whether there can be such a one
+  LocateErrors(scene.pixelFilter.where, [&] { return PixelFilter(filter); });  // throws if the settings are invalid
 }
 
 SamplerKind SamplerByName(const std::string& name, bool* known) {
@@ -223,7 +231,7 @@ SettingValue ValueIn(const ParameterList& parameters, const Setting& setting) {
   const std::string name = setting.NameInScenes();
   if (const bool* isOn = std::get_if<bool>(&setting.fallback)) return parameters.GetBool(name, *isOn);
   if (const auto* integer = std::get_if<int64_t>(&setting.fallback)) {
-    // pbrt-v4's -1 stands for a number that is not given, and so does any that is not above 0.
+    // In pbrt-v4 -1 stands for a number that is not given; all numbers that are not above 0 are read like that.
     const int value = parameters.GetInteger(name, static_cast<int>(*integer));
     return *integer < 0 && value <= 0 ? *integer : int64_t{value};
   }
@@ -231,7 +239,7 @@ SettingValue ValueIn(const ParameterList& parameters, const Setting& setting) {
   return parameters.GetString(name, std::get<std::string>(setting.fallback));
 }
 
-// What the scene says of the settings of integrators, and the command line over it.
+// Reads the settings of integrators from the scene, overridden by the command line.
 void ReadSettings(const ParameterList& parameters, const RenderOverrides& overrides, Settings& values) {
   for (const std::string& name : values.Names()) {
     const Setting& setting = *values.Find(name);
@@ -263,7 +271,7 @@ void ReadIntegrator(const SceneDescription& scene, const RenderOverrides& overri
   const auto isOneOf = [](const std::string& name, const Names& names) {
     return std::find(names.begin(), names.end(), name) != names.end();
   };
-  // pbrt-v4's names for what lampyr has.
+  // Names that pbrt-v4 has for integrators of lampyr.
   const std::map<std::string, std::string> synonyms = {{"", "auto"}, {"volpath", "path"}, {"lightpath", "light"}};
   const auto synonym = synonyms.find(type);
   settings.integrator = synonym != synonyms.end() ? synonym->second : type;
@@ -282,6 +290,7 @@ void ReadIntegrator(const SceneDescription& scene, const RenderOverrides& overri
     }
     settings.integrator = "path";
   }
+  if (settings.integrator != "auto") settings.namedIntegrator = settings.integrator;
   if (overrides.integrator) {
     if (*overrides.integrator != "auto" && !isOneOf(*overrides.integrator, IntegratorNames())) {
       Names all = IntegratorNames();
@@ -294,7 +303,7 @@ void ReadIntegrator(const SceneDescription& scene, const RenderOverrides& overri
     settings.integrator = *overrides.integrator;
   }
   ReadSettings(parameters, overrides, settings.values);
-  // Parameters of integrators that stand back for "path" are not looked at.
+  // Parameters of an integrator that is replaced by "path" are not checked.
   if (!isKnown) return;
   Names known;
   for (const auto& [setting, value] : settings.values.All()) {
@@ -303,7 +312,7 @@ void ReadIntegrator(const SceneDescription& scene, const RenderOverrides& overri
   parameters.CheckAllUsed({"regularize", "options"}, known, diagnostics);
 }
 
-// Embree stands for all of pbrt-v4's: they change no image, so there is nothing to warn of.
+// Embree replaces all accelerators of pbrt-v4. They do not change the image, so there is no warning.
 void CheckAccelerator(const SceneDescription& scene, Diagnostics& diagnostics) {
   const std::string& type = scene.accelerator.type;
   const Names types = {"bvh", "kdtree"};

@@ -1,4 +1,4 @@
-// How a scene is to be rendered: what its file says, with what the command line says laid over it.
+// Render settings: those of the scene file, overridden by the command line.
 #pragma once
 
 #include <map>
@@ -15,7 +15,7 @@
 
 namespace lampyr {
 
-// What the command line may change. Absent: as the scene file says.
+// Overrides of the command line. Absent: the scene file's value.
 struct RenderOverrides {
   std::optional<std::string> integrator;
   std::map<std::string, SettingValue> values;  // settings of integrators, by name
@@ -23,12 +23,13 @@ struct RenderOverrides {
   std::optional<int> width, height;
   std::optional<std::string> crop;  // "x0,x1,y0,y1": fractions of the image, or pixels when one is above 1
   std::optional<std::string> sampler;
-  std::optional<uint64_t> memory;  // bytes that the scene may take; absent: all that there is
+  std::optional<uint64_t> memory;  // limit on the scene's memory, bytes; absent: all available memory
   uint64_t seed = 0;
 };
 
 struct RenderSettings {
   std::string integrator = "path";
+  std::string namedIntegrator;             // named by the scene, as lampyr calls it; "" if it names none or "auto"
   Settings values = IntegratorSettings();  // of all integrators
   int width = 1280, height = 720;
   PixelRect crop;
@@ -37,8 +38,8 @@ struct RenderSettings {
   int samplesPerPixel = 16;
   uint64_t seed = 0;
   bool halfPrecision = false;
-  float imagingRatio = 1;  // exposure time · ISO / 100: film value of radiance 1
-  std::string outputFile;  // as the scene names it
+  SensorResponse sensor;   // exposure, white balance, limit on samples
+  std::string outputFile;  // named by the scene
 
   int MaxDepth() const { return MaxDepthOf(values); }
   bool LearnsLights() const { return values.IsOn("learn-lights"); }
@@ -49,7 +50,7 @@ struct RenderSettings {
 RenderSettings ReadRenderSettings(const SceneDescription& description, const RenderOverrides& overrides,
                                   Diagnostics& diagnostics);
 
-// Reads Camera. `worldToRender` moves the world to where it is rendered.
+// Reads Camera. `worldToRender`: from world space to render space.
 std::unique_ptr<Camera> BuildCamera(const SceneDescription& description, const RenderSettings& settings,
                                     const Transform& worldToRender, Diagnostics& diagnostics);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <functional>
 
 namespace lampyr {
 
@@ -49,13 +50,48 @@ Error::Error(const std::string& text) : std::runtime_error(Format({}, "error", t
 Error::Error(const FileLocation& where, const std::string& text)
     : std::runtime_error(Format(where, "error", text)), where_(where), text_(text) {}
 
+namespace {
+
+// The text without its quoted names and its numbers.
+std::string KindOf(const std::string& text) {
+  std::string kind;
+  bool isQuoted = false;
+  for (const char c : text) {
+    if (c == '"') isQuoted = !isQuoted;
+    const bool isDigit = c >= '0' && c <= '9';
+    if (!isQuoted && !isDigit) kind += c;
+  }
+  return kind;
+}
+
+}  // namespace
+
 void Diagnostics::Warn(const FileLocation& where, const std::string& text) {
   if (mode_ == Mode::Strict) throw Error(where, text + " (--strict makes this warning an error)");
   const std::lock_guard lock(mutex_);
+  if (mode_ == Mode::Print) return Print(where, text);
   const std::string message = Format(where, "warning", text);
-  if (!seen_.insert(message).second) return;
-  warnings_.push_back(message);
-  if (mode_ == Mode::Print) std::fprintf(stderr, "%s\n", message.c_str());
+  if (seen_.insert(message).second) warnings_.push_back(message);
+}
+
+void Diagnostics::Print(const FileLocation& where, const std::string& text) {
+  constexpr size_t kMostOfAKind = 3;
+  const std::string message = Format(where, "warning", text);
+  if (!seenHashes_.insert(std::hash<std::string>()(message)).second) return;
+  Kind& kind = kinds_[KindOf(text)];
+  const bool isNew = kind.printed.size() < kMostOfAKind && kind.printed.insert(text).second;
+  if (isNew) {
+    std::fprintf(stderr, "%s\n", message.c_str());
+  } else {
+    ++kind.further;
+  }
+}
+
+Diagnostics::~Diagnostics() {
+  for (const auto& [name, kind] : kinds_) {
+    if (kind.further == 0) continue;
+    std::fprintf(stderr, "warning: %zu more like this: %s\n", kind.further, kind.printed.begin()->c_str());
+  }
 }
 
 std::vector<std::string> Diagnostics::Warnings() const {

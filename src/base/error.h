@@ -4,6 +4,7 @@
 // (nothing here is global). Both print as `file:line:col: error: what, and what would be right`.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <mutex>
 #include <set>
@@ -58,23 +59,36 @@ auto LocateErrors(const FileLocation& where, const Work& work) {
   }
 }
 
-// Collects warnings. Each distinct (place, text) is reported once. Thread-safe.
+// Collects warnings. Each distinct (place, text) is reported once. Print: of warnings that differ in their numbers and
+// quoted names alone, the first few texts are printed, and the rest is counted when the object goes. Thread-safe.
 class Diagnostics {
  public:
   enum class Mode { Print, Collect, Strict };  // Strict: the first warning is thrown as an Error
   explicit Diagnostics(Mode mode = Mode::Print) : mode_(mode) {}
+  ~Diagnostics();
+  Diagnostics(const Diagnostics&) = delete;
+  Diagnostics& operator=(const Diagnostics&) = delete;
 
   void Warn(const FileLocation& where, const std::string& text);
   void Warn(const std::string& text) { Warn({}, text); }
 
-  // All warnings so far, formatted, in the order they came.
+  // All warnings so far, formatted, in the order they came. Not of Print, which keeps none.
   std::vector<std::string> Warnings() const;
 
  private:
+  struct Kind {
+    std::set<std::string> printed;  // texts
+    size_t further = 0;             // warnings that were not printed
+  };
+  void Print(const FileLocation& where, const std::string& text);
+
   Mode mode_;
   mutable std::mutex mutex_;
   std::set<std::string> seen_;
   std::vector<std::string> warnings_;
+  // Of Print: of messages that may be millions, the hashes alone.
+  std::set<size_t> seenHashes_;
+  std::map<std::string, Kind> kinds_;
 };
 
 // The entry of `known` that a person most likely meant by `given`, or "" when none is near

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "base/terminal.h"
+
 namespace lampyr {
 
 std::string FormatPercent(double fraction) {
@@ -40,6 +42,23 @@ std::string FormatDuration(double seconds) {
   return text;
 }
 
+std::string ProgressLine(double fraction, const std::string& left, const std::string& note, int columns) {
+  constexpr int kWidestBar = 30, kNarrowestBar = 8, kFrame = 3;  // brackets and a space
+  char percent[16];
+  std::snprintf(percent, sizeof percent, "%3.0f %%", fraction * 100);
+  std::string text = std::string(percent) + ", " + left + " left" + (note.empty() ? "" : ", ") + note;
+  // The last column stays free: some terminals wrap a full line.
+  const int spare = columns - 1 - ColumnsOf(text);
+  const int width = std::min(kWidestBar, spare - kFrame);
+  if (width >= kNarrowestBar) {
+    const int filled = static_cast<int>(fraction * width);
+    const auto repeated = [](int count, char c) { return std::string(static_cast<size_t>(count), c); };
+    return "[" + repeated(filled, '#') + repeated(width - filled, '.') + "] " + text;
+  }
+  while (ColumnsOf(text) >= columns) text.pop_back();
+  return text;
+}
+
 Progress::Progress(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0), start_(Clock::now()) {}
 
 Progress::~Progress() {
@@ -60,10 +79,9 @@ void Progress::Update(double fraction, const std::string& note) {
   fraction = std::clamp(fraction, 0.0, 1.0);
   const std::string left = fraction > 0 ? FormatDuration(now * (1 - fraction) / fraction) : "?";
   if (terminal_) {
-    constexpr int width = 30;
-    const int filled = static_cast<int>(fraction * width);
-    std::fprintf(stderr, "\r\033[K[%s%s] %3.0f %%  %s left  %s", std::string(filled, '#').c_str(),
-                 std::string(width - filled, '.').c_str(), fraction * 100, left.c_str(), note.c_str());
+    constexpr int kUsualColumns = 80;
+    const int columns = TerminalColumns(STDERR_FILENO, kUsualColumns);
+    std::fprintf(stderr, "\r\033[K%s", ProgressLine(fraction, left, note, columns).c_str());
     barShown_ = true;
   } else {
     std::fprintf(stderr, "%3.0f %%, %s left%s%s\n", fraction * 100, left.c_str(), note.empty() ? "" : ", ",

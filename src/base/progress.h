@@ -28,6 +28,10 @@ class Progress {
   double lastPrinted_ = -1e9;
 };
 
+// The bar of a terminal with `columns` columns, on one line that is shorter than they are: at 40 columns without a bar
+// ("50 %, 3 min 20 s left, 64 spp"), the note cut off where it does not fit.
+std::string ProgressLine(double fraction, const std::string& left, const std::string& note, int columns);
+
 // "1 h 02 min", "3 min 20 s", "4.2 s", "37 ms".
 std::string FormatDuration(double seconds);
 

@@ -141,11 +141,19 @@ Film::Film(int fullWidth, int fullHeight, const PixelRect& crop, std::vector<std
   layerSums_.resize(pixels_.size() * layers_.size());
 }
 
-void Film::AddToLayers(int x, int y, const LayerSample& sample, float scale, float filterWeight) {
+void Film::AddToLayers(int x, int y, const LayerSample& sample, float scale, float filterWeight,
+                       const SensorResponse& sensor) {
   const double factor = static_cast<double>(scale) * static_cast<double>(filterWeight);
   LayerSum* sums = layerSums_.data() + Index(x, y) * layers_.size();
   for (const uint32_t layer : sample.Met()) {
-    for (int c = 0; c < 3; ++c) sums[layer][static_cast<size_t>(c)].Add(factor * sample.Sum(layer, c));
+    for (int c = 0; c < 3; ++c) {
+      double value = sample.Sum(layer, c);
+      if (sensor.Balances()) [[unlikely]] {
+        value = 0;
+        for (int k = 0; k < 3; ++k) value += static_cast<double>(sensor.BalanceMatrix()[k][c]) * sample.Sum(layer, k);
+      }
+      sums[layer][static_cast<size_t>(c)].Add(factor * value);
+    }
   }
 }
 
@@ -195,9 +203,9 @@ double Film::FourthOfMean(size_t pixel) const {
   return fourth;
 }
 
-SplatList Film::MakeSplatList(const PixelFilter& filter, float scale) const {
+SplatList Film::MakeSplatList(const PixelFilter& filter, const SensorResponse& sensor) const {
   const Vector2 radius = filter.Radius() - Vector2(0.5f);  // beyond the pixels' centres
-  return {Point2(crop_.x0, crop_.y0) + Vector2(0.5f) - filter.Radius(), Point2(crop_.x1, crop_.y1) + radius, scale,
+  return {Point2(crop_.x0, crop_.y0) + Vector2(0.5f) - filter.Radius(), Point2(crop_.x1, crop_.y1) + radius, sensor,
           HasLayers()};
 }
 

@@ -61,12 +61,13 @@ class Film {
   const std::vector<std::string>& Layers() const { return layers_; }
   bool HasLayers() const { return !layers_.empty(); }
   // The parts of a sample whose value is added to the pixel itself: `scale` times them, weighted by the filter.
-  void AddToLayers(int x, int y, const LayerSample& sample, float scale, float filterWeight);
+  void AddToLayers(int x, int y, const LayerSample& sample, float scale, float filterWeight,
+                   const SensorResponse& sensor = {});
   // Memory that `layers` of them take for each pixel.
   static uint64_t BytesPerPixel(size_t layers, bool withSplats);
 
   // An empty list for splats on this film.
-  SplatList MakeSplatList(const PixelFilter& filter, float scale) const;
+  SplatList MakeSplatList(const PixelFilter& filter, const SensorResponse& sensor) const;
   // Adds the paths of the lists, in their order. What is made of a sequence of paths does not depend on how it is cut
   // into lists and calls, nor on the number of threads.
   void AddSplats(const PixelFilter& filter, std::span<const SplatList> lists, int threads);

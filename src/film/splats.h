@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "film/sensor_response.h"
 #include "math/compensated_sum.h"
 #include "math/vec.h"
 
@@ -24,10 +25,11 @@ struct Splat {
 // The splats of consecutive paths. Keeps its memory when it is emptied.
 class SplatList {
  public:
-  // Film points that reach a pixel of the crop: all others need not be added. `scale` multiplies every value.
+  // Film points that reach a pixel of the crop: all others need not be added. `sensor` is applied to every
+  // value.
   // `hasLayers`: the layer of each splat is wanted.
-  SplatList(const Point2& reachMin, const Point2& reachMax, float scale, bool hasLayers = false)
-      : reachMin_(reachMin), reachMax_(reachMax), scale_(scale), hasLayers_(hasLayers) {}
+  SplatList(const Point2& reachMin, const Point2& reachMax, const SensorResponse& sensor, bool hasLayers = false)
+      : reachMin_(reachMin), reachMax_(reachMax), sensor_(sensor), hasLayers_(hasLayers) {}
 
   void Clear() {
     splats_.clear();
@@ -43,9 +45,9 @@ class SplatList {
   // False: the value is not finite or negative, and left out.
   bool Add(const Point2& film, const Color& value, uint32_t layer = 0) {
     if (!Reaches(film)) return true;
-    const Color scaled = value * scale_;
+    const Color scaled = value * sensor_.Scale(value);
     if (!scaled.IsValid()) return false;
-    splats_.push_back({film, scaled, paths_ - 1});
+    splats_.push_back({film, sensor_.Balance(scaled), paths_ - 1});
     if (hasLayers_) layers_.push_back(layer);
     return true;
   }
@@ -57,7 +59,7 @@ class SplatList {
 
  private:
   Point2 reachMin_, reachMax_;
-  float scale_;
+  SensorResponse sensor_;
   bool hasLayers_;
   uint32_t paths_ = 0;
   std::vector<Splat> splats_;

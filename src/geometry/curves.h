@@ -1,4 +1,4 @@
-// Curves: from a scene file's parameters to cubic Bézier segments, and what is known of a point on one.
+// Curves: from a scene file's parameters to cubic Bézier segments, and the surface point of a hit on one.
 //
 // Embree traces them: Flat turns towards the ray, Cylinder is a swept round tube, Ribbon follows given normals. Texture
 // coordinates are pbrt-v4's: u along each segment, v across the width.

@@ -1,5 +1,5 @@
-// A surface that is given by how rays meet it, whoever it is made by: lights that are their own surface. Traced in double
-// and in render space, also where it moves.
+// A surface that is defined by its intersection with rays, such as that of a light with a shape of its own. Traced in
+// double and in render space, also while it moves.
 #pragma once
 
 #include <optional>
@@ -13,10 +13,10 @@ class CustomSurface {
  public:
   virtual ~CustomSurface() = default;
 
-  // Whether its place depends on time.
+  // True if the surface depends on time.
   virtual bool Moves() const = 0;
 
-  // Holds the surface from shutter time `begin` to `end`.
+  // Bounds of the surface from shutter time `begin` to `end`.
   virtual Bounds3 GetBounds(float begin, float end) const = 0;
 
   // The t of the nearest hit with t in (ray.tMin, ray.tMax] at shutter time `time`. The same ray finds the same hit again,

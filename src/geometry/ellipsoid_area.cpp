@@ -11,10 +11,10 @@ namespace lampyr {
 
 namespace {
 
-// The series after the duplications is cut where its terms fall below this to the sixth power.
+// The series after the duplications is truncated where its terms fall below the sixth power of this.
 constexpr double kNear = 2e-3;
 
-// R_F and R_D together: the same duplications bring their arguments near each other.
+// R_F and R_D together: both use the same duplications.
 void CarlsonRFAndRD(double x, double y, double z, double& rf, double& rd) {
   double sum = 0, power = 1;
   for (int i = 0; i < 100; ++i) {
@@ -37,7 +37,7 @@ void CarlsonRFAndRD(double x, double y, double z, double& rf, double& rd) {
        3 * sum;
 }
 
-// Of a symmetric matrix, not below 0 ([Smith61]).
+// Eigenvalues of a symmetric matrix, clamped to 0 ([Smith61]).
 std::array<double, 3> Eigenvalues(const glm::dmat3& g) {
   const double mean = (g[0][0] + g[1][1] + g[2][2]) / 3;
   const double off = g[0][1] * g[0][1] + g[0][2] * g[0][2] + g[1][2] * g[1][2];

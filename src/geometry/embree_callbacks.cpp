@@ -2,7 +2,6 @@
 #include "geometry/embree_callbacks.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 
@@ -22,10 +21,9 @@ RayDouble ToDouble(const RTCRay& ray) {
           static_cast<double>(ray.tnear), static_cast<double>(ray.tfar)};
 }
 
-// A number in [0,1) that is a function of the ray and the hit alone, so that a ray sees the same cut-out whichever way
-// the tree is walked, and on every thread. `crossing` tells a primitive's hits apart: each is another chance to be
-// stopped.
-float HashToUnit(const RTCRay& ray, uint32_t instance, uint32_t geometry, uint32_t patch, uint32_t crossing) {
+// A number in [0,1) that is a function of the ray and the hit alone: a ray sees the same cut-out in any order of
+// traversal and on every thread. `side` tells the hits on one primitive apart, which are decided independently.
+float HashToUnit(const RTCRay& ray, uint32_t instance, uint32_t geometry, uint32_t patch, uint32_t side) {
   uint64_t hash = 0x9e3779b97f4a7c15u;
   const auto mix = [&hash](uint32_t value) {
     hash = (hash ^ value) * 0xbf58476d1ce4e5b9u;
@@ -37,7 +35,7 @@ float HashToUnit(const RTCRay& ray, uint32_t instance, uint32_t geometry, uint32
   mix(instance);
   mix(geometry);
   mix(patch);
-  mix(crossing);
+  mix(side);
   hash = (hash ^ (hash >> 31)) * 0x94d049bb133111ebu;
   return static_cast<float>(hash >> 40) * 0x1p-24f;
 }
@@ -46,75 +44,81 @@ TraceContext& Trace(RTCIntersectContext* context) {
   return *reinterpret_cast<TraceContext*>(context);
 }
 
-// Of the ray to the shading normal, in render space: instances may be stretched.
-float CosineAt(const PrimitiveRecord& record, const RTCRay& ray, const RayHit& hit, SurfacePoint point) {
+// Where a ray meets a surface that may let it pass.
+struct Meeting {
+  const PrimitiveRecord& record;
+  uint32_t geometryId, patch, instanceId;
+  uint32_t side;  // 0 and 1: the hits on one primitive, such as entering and leaving a sphere
+};
+
+// The part of a ray that is stopped, and the factor on the rest.
+struct Passage {
+  float stopped = 1;
+  Color tint{1.0f};
+  bool entering = false;  // goes from the outside (the side of Ng) to the inside
+
+  Color Transmittance() const { return tint * (1 - stopped); }
+};
+
+Passage PassageAt(const Meeting& at, const RTCRay& ray, const RayHit& hit) {
+  const PrimitiveRecord& record = at.record;
   Vector3 direction(ray.dir_x, ray.dir_y, ray.dir_z);
-  if (hit.instance != RTC_INVALID_GEOMETRY_ID) {
-    const InstanceRecord& instance = record.tables->instances[hit.instance - record.tables->firstInstanceId];
+  SurfacePoint point =
+      EvaluatePrimitive(record, {{ray.org_x, ray.org_y, ray.org_z}, direction, kInfinity, ray.time}, hit);
+  // To render space: positions of textures are there, and instances may be stretched.
+  if (at.instanceId != RTC_INVALID_GEOMETRY_ID) {
+    const InstanceRecord& instance = record.tables->instances[at.instanceId - record.tables->firstInstanceId];
     const InstancePlacement placement = instance.motion ? PlacementAt(*instance.motion, ray.time) : instance.placement;
     ApplyInstance(placement, point);
     direction = placement.toRender.Vector(direction);
   }
-  return std::abs(glm::dot(glm::normalize(direction), point.Ns));
-}
-
-// What a hit lets through: the chance to be stopped, and what the rest is multiplied by.
-struct Passage {
-  float stopped = 1;
-  Color tint{1.0f};
-
-  Color Transmission() const { return tint * (1 - stopped); }
-};
-
-Passage PassageAt(const PrimitiveRecord& record, const RTCRay& ray, const RayHit& hit) {
-  const Ray inObject{{ray.org_x, ray.org_y, ray.org_z}, {ray.dir_x, ray.dir_y, ray.dir_z}, kInfinity, ray.time};
-  const SurfacePoint point = EvaluatePrimitive(record, inObject, hit);
-  Point3 position = point.position;
-  if (hit.instance != RTC_INVALID_GEOMETRY_ID) {
-    const InstanceRecord& instance = record.tables->instances[hit.instance - record.tables->firstInstanceId];
-    const Affine& still = instance.placement.toRender;
-    position = instance.motion ? instance.motion->At(ray.time).Point(position) : still.Point(position);
-  }
-  const float alpha = record.alpha ? record.alpha->Alpha(point.uv, position) : 1.0f;
-  if (!record.sheet) return {alpha, Color(1.0f)};
-  const float passes = record.sheet->PassingPart(CosineAt(record, ray, hit, point));
-  Passage passage{alpha * (1 - passes), Color(1.0f)};
-  // Through the hole of the cut-out without a tint, through the sheet with it.
-  if (!record.sheet->IsClear() && passage.stopped < 1) {
-    const Color through = Color(1 - alpha) + record.sheet->Tint(point.uv, position) * (alpha * passes);
+  const float alpha = record.alpha ? record.alpha->Alpha(point.uv, point.position, point.Ng) : 1.0f;
+  // Embree's normal tells the sides of a curve apart; that of a flat curve's point faces the ray.
+  const bool entering = record.As<CurveSet>() ? at.side == 0 : glm::dot(direction, point.Ng) < 0;
+  if (!record.thin) return {alpha, Color(1.0f), entering};
+  const float passes = record.thin->StraightPart(std::abs(glm::dot(glm::normalize(direction), point.Ns)));
+  Passage passage{alpha * (1 - passes), Color(1.0f), entering};
+  // Through the hole of the cut-out without a tint, through the surface with it.
+  if (!record.thin->IsClear() && passage.stopped < 1) {
+    const Color through = Color(1 - alpha) + record.thin->Tint(point.uv, point.position, point.Ng) * (alpha * passes);
     passage.tint = through / (1 - passage.stopped);
   }
   return passage;
 }
 
-// Embree reports a curve at several of its parts, at nearly the same place: what passes is counted once for entering
-// it, and once for leaving it.
-bool IsCounted(const PrimitiveRecord& record, const RayHit& hit, uint32_t geometryId, uint32_t crossing,
-               TraceContext& trace) {
-  if (!record.As<CurveSet>()) return false;
-  using Crossing = std::array<uint32_t, 4>;
-  thread_local std::vector<Crossing> crossings;
-  if (!trace.hasCrossedCurves) crossings.clear();
-  trace.hasCrossedCurves = true;
-  const Crossing here{hit.instance, geometryId, hit.patch, crossing};
-  if (std::find(crossings.begin(), crossings.end(), here) != crossings.end()) return true;
-  crossings.push_back(here);
-  return false;
+// Embree reports a curve at several of its parts, at nearly the same place. It is crossed once on entering and once on
+// leaving.
+bool IsCrossedAlready(const Crossing& crossing, const std::vector<Crossing>& crossings) {
+  return std::any_of(crossings.begin(), crossings.end(), [&](const Crossing& other) {
+    return other.primitive == crossing.primitive && other.instance == crossing.instance &&
+           other.patch == crossing.patch && other.entering == crossing.entering;
+  });
 }
 
-// Whether the ray goes on; a shadow ray does as long as something is left of it.
-bool PassesThrough(const PrimitiveRecord& record, const RTCRay& ray, const RayHit& hit, uint32_t geometryId,
-                   uint32_t crossing, TraceContext& trace, bool isShadow) {
-  const Passage passage = PassageAt(record, ray, hit);
+// Records the crossing, unless it is known already.
+void AddCrossing(const Meeting& at, const RayHit& hit, const Passage& passage, const Color& transmittance,
+                 TraceContext& trace) {
+  const SceneTables& tables = *at.record.tables;
+  Crossing crossing{
+      hit.t,        static_cast<uint32_t>(&at.record - tables.primitives.data()), at.patch, kNoIndex, passage.entering,
+      transmittance};
+  if (at.instanceId != RTC_INVALID_GEOMETRY_ID) crossing.instance = at.instanceId - tables.firstInstanceId;
+  if (at.record.As<CurveSet>() && IsCrossedAlready(crossing, *trace.crossings)) return;
+  trace.crossings->push_back(crossing);
+  trace.transmittance *= transmittance;
+}
+
+// True if the ray goes on. Of Intersect by chance, in proportion; of Transmittance as long as something is left.
+bool PassesThrough(const Meeting& at, const RTCRay& ray, const RayHit& hit, TraceContext& trace, bool isShadow) {
+  const Passage passage = PassageAt(at, ray, hit);
   if (passage.stopped >= 1) return false;
   if (isShadow) {
-    if (!IsCounted(record, hit, geometryId, crossing, trace)) trace.transmission *= passage.Transmission();
-    return !trace.transmission.IsBlack();
+    AddCrossing(at, hit, passage, passage.Transmittance(), trace);
+    return !trace.transmittance.IsBlack();
   }
-  if (passage.stopped > 0 && HashToUnit(ray, hit.instance, geometryId, hit.patch, crossing) < passage.stopped)
+  if (passage.stopped > 0 && HashToUnit(ray, at.instanceId, at.geometryId, at.patch, at.side) < passage.stopped)
     return false;
-  if (trace.sheets && record.sheet && !IsCounted(record, hit, geometryId, crossing, trace))
-    trace.sheets->push_back({hit.t, passage.tint});
+  if (trace.crossings && at.record.thin) AddCrossing(at, hit, passage, passage.tint, trace);
   return true;
 }
 
@@ -123,21 +127,15 @@ struct Candidate {
   float u, v;
 };
 
-// Where user geometry is met.
-struct Meeting {
-  const PrimitiveRecord& record;
-  uint32_t patch, instance, geometryId;
-  TraceContext& trace;
-  bool isShadow;
-};
-
-// The nearest of the candidates that lets nothing through, or -1.
-int FirstOpaque(const Meeting& at, const RTCRay& ray, const Candidate* candidates, int count) {
+// Index of the nearest candidate that stops the ray, or -1.
+int FirstStop(Meeting at, const RTCRay& ray, const Candidate* candidates, int count, TraceContext& trace,
+              bool isShadow) {
   for (int i = 0; i < count; ++i) {
     if (!at.record.LetsPass()) return i;
     const Candidate& c = candidates[i];
-    const RayHit hit{static_cast<float>(c.t), at.geometryId, at.patch, at.instance, c.u, c.v};
-    if (!PassesThrough(at.record, ray, hit, at.geometryId, static_cast<uint32_t>(i), at.trace, at.isShadow)) return i;
+    const RayHit hit{static_cast<float>(c.t), at.geometryId, at.patch, at.instanceId, c.u, c.v};
+    at.side = static_cast<uint32_t>(i);
+    if (!PassesThrough(at, ray, hit, trace, isShadow)) return i;
   }
   return -1;
 }
@@ -165,7 +163,7 @@ int FindCustom(const PrimitiveRecord& record, uint32_t, const RTCRay& ray, Candi
 
 using Finder = int (*)(const PrimitiveRecord&, uint32_t, const RTCRay&, Candidate*);
 
-// Quadrics and patches throw nothing.
+// Only custom surfaces may throw.
 template <Finder kFind>
 int Find(const PrimitiveRecord& record, uint32_t primitive, const RTCRay& ray, RTCIntersectContext* context,
          Candidate candidates[2]) {
@@ -189,8 +187,8 @@ void IntersectUserGeometry(const RTCIntersectFunctionNArguments* arguments) {
   const uint32_t instance = arguments->context->instID[0];
   Candidate candidates[2];
   const int count = Find<kFind>(record, arguments->primID, rayHit.ray, arguments->context, candidates);
-  const Meeting at{record, arguments->primID, instance, arguments->geomID, Trace(arguments->context), false};
-  const int i = FirstOpaque(at, rayHit.ray, candidates, count);
+  const Meeting at{record, arguments->geomID, arguments->primID, instance, 0};
+  const int i = FirstStop(at, rayHit.ray, candidates, count, Trace(arguments->context), false);
   if (i < 0) return;
   rayHit.ray.tfar = static_cast<float>(candidates[i].t);
   rayHit.hit.u = candidates[i].u;
@@ -207,9 +205,8 @@ void OccludeUserGeometry(const RTCOccludedFunctionNArguments* arguments) {
   auto& ray = *reinterpret_cast<RTCRay*>(arguments->ray);
   Candidate candidates[2];
   const int count = Find<kFind>(record, arguments->primID, ray, arguments->context, candidates);
-  const Meeting at{
-      record, arguments->primID, arguments->context->instID[0], arguments->geomID, Trace(arguments->context), true};
-  if (FirstOpaque(at, ray, candidates, count) >= 0) ray.tfar = -kInfinity;
+  const Meeting at{record, arguments->geomID, arguments->primID, arguments->context->instID[0], 0};
+  if (FirstStop(at, ray, candidates, count, Trace(arguments->context), true) >= 0) ray.tfar = -kInfinity;
 }
 
 void SetBounds(const Bounds3& bounds, RTCBounds* out) {
@@ -235,8 +232,8 @@ void PatchBounds(const RTCBoundsFunctionArguments* arguments) {
   SetBounds(bounds, arguments->bounds_o);
 }
 
-// Embree takes the surface to be within boxes that change evenly from one time step to the next: each holds it from the
-// step before to the step after.
+// Embree interpolates the bounds linearly between two time steps. The bounds of a step therefore hold the surface from
+// the step before to the step after.
 void CustomBounds(const RTCBoundsFunctionArguments* arguments) {
   const CustomSurface& surface = *Record(arguments->geometryUserPtr).As<CustomSurface>();
   float begin = 0, end = 1;
@@ -276,10 +273,8 @@ void Filter(const RTCFilterFunctionNArguments* arguments, bool isShadow) {
   const RayHit rayHit{ray.tfar, hit.geomID, hit.primID, hit.instID[0], hit.u, hit.v};
   // A round curve is entered and left: the normal tells which.
   const bool leaves = hit.Ng_x * ray.dir_x + hit.Ng_y * ray.dir_y + hit.Ng_z * ray.dir_z > 0;
-  if (PassesThrough(Record(arguments->geometryUserPtr), ray, rayHit, hit.geomID, leaves ? 1 : 0,
-                    Trace(arguments->context), isShadow)) {
-    arguments->valid[0] = 0;
-  }
+  const Meeting at{Record(arguments->geometryUserPtr), hit.geomID, hit.primID, hit.instID[0], leaves ? 1u : 0u};
+  if (PassesThrough(at, ray, rayHit, Trace(arguments->context), isShadow)) arguments->valid[0] = 0;
 }
 
 }  // namespace

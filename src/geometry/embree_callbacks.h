@@ -7,28 +7,24 @@
 #include <exception>
 #include <vector>
 
-#include "math/vec.h"
+#include "geometry/ray.h"
 
 namespace lampyr {
 
-// A sheet that a ray goes through, if it comes that far.
-struct PassedSheet {
-  float t;
-  Color tint;
-};
-
-// What a query carries along: Embree hands the address of its first member to every callback.
+// State of one query. Embree hands the address of its first member to every callback.
 struct TraceContext {
   RTCIntersectContext context;
-  std::vector<PassedSheet>* sheets = nullptr;  // of Intersect; null: no sheet has a colour
-  Color transmission{1.0f};                    // of Transmission: what is left so far
-  bool hasCrossedCurves = false;               // some curve that lets something pass
-  // What a custom surface threw, which is then missed: no exception may pass through Embree. To be thrown when it has
-  // returned.
+  // Surfaces that let the ray pass, in the order in which Embree visits them: of Intersect, the thin surfaces with a
+  // tint, whether or not a nearer hit is found later; of Transmittance, cut-outs and thin surfaces. Null: not recorded.
+  std::vector<Crossing>* crossings = nullptr;
+  Color transmittance{1.0f};  // of Transmittance: product over the crossings so far; the query ends when it is black
+  // Thrown by a custom surface, which counts as missed: no exception may pass through Embree. Rethrown by
+  // ThrowFailure after Embree has returned.
   std::exception_ptr failure;
 
   void ThrowFailure() const {
-    if (failure) [[unlikely]] std::rethrow_exception(failure);
+    if (failure) [[unlikely]]
+      std::rethrow_exception(failure);
   }
 };
 
@@ -40,14 +36,15 @@ void PatchBounds(const RTCBoundsFunctionArguments* arguments);
 void PatchIntersect(const RTCIntersectFunctionNArguments* arguments);
 void PatchOccluded(const RTCOccludedFunctionNArguments* arguments);
 
-// For surfaces that move, with kCustomTimeSteps bounds over the shutter.
+// Surfaces that move have kCustomTimeSteps bounds over the shutter.
 inline constexpr unsigned kCustomTimeSteps = 33;
 void CustomBounds(const RTCBoundsFunctionArguments* arguments);
 void CustomIntersect(const RTCIntersectFunctionNArguments* arguments);
 void CustomOccluded(const RTCOccludedFunctionNArguments* arguments);
 
-// For geometry that Embree intersects itself: rejects hits that a cut-out or a sheet lets through, by chance; and, of
-// shadow rays, all that leave something of them.
+// Filters for geometry that Embree intersects itself. PassFilter (Intersect) rejects the hits at which a cut-out or
+// thin surface lets the ray pass, which is decided by hash. TransmitFilter (Transmittance) rejects all hits that leave
+// some transmittance.
 void PassFilter(const RTCFilterFunctionNArguments* arguments);
 void TransmitFilter(const RTCFilterFunctionNArguments* arguments);
 

@@ -3,10 +3,12 @@
 
 #include <embree3/rtcore.h>
 
+#include <algorithm>
 #include <atomic>
 #include <deque>
 #include <optional>
 #include <string>
+#include <tuple>
 
 #include "base/error.h"
 #include "geometry/embree_callbacks.h"
@@ -158,7 +160,7 @@ struct GeometryScene::Implementation {
   SceneHandle scene;
   Bounds3 bounds;
   float largest = kLargest;
-  bool hasTints = false;  // some sheet colours what passes it
+  bool hasTints = false;  // some thin surface is not clear
   mutable std::atomic<uint64_t> rejected{0};
 
   explicit Implementation(GeometryDescription given) : description(std::move(given)) {
@@ -176,8 +178,9 @@ struct GeometryScene::Implementation {
   SceneHandle NewScene() const;
   void AttachEntries(RTCScene target, size_t first, size_t count);
   void BuildScenes();
+  bool Trace(const Ray& ray, uint32_t kinds, RayHit& hit, std::vector<Crossing>* crossings) const;
 
-  // Whether Embree survives the ray. A NaN anywhere makes a comparison false.
+  // True if Embree survives the ray. A NaN anywhere makes a comparison false.
   bool Accept(const Ray& ray) const {
     const float direction = std::abs(ray.direction.x) + std::abs(ray.direction.y) + std::abs(ray.direction.z);
     const float origin = std::abs(ray.origin.x) + std::abs(ray.origin.y) + std::abs(ray.origin.z);
@@ -202,8 +205,8 @@ void GeometryScene::Implementation::AddEntries(const std::vector<GeometryEntry>&
     }
     std::visit([](const auto* shape) { CheckShape(*shape); }, record.shape);
     record.alpha = entry.attributes.alpha.get();
-    record.sheet = entry.attributes.sheet.get();
-    hasTints = hasTints || (record.sheet && !record.sheet->IsClear());
+    record.thin = entry.attributes.thin.get();
+    hasTints = hasTints || (record.thin && !record.thin->IsClear());
     record.tables = &tables;
     tables.primitives.push_back(record);
     tables.attributes.push_back(entry.attributes);
@@ -412,7 +415,7 @@ void GeometryScene::Implementation::AttachEntries(RTCScene target, size_t first,
     if (!geometry) continue;
     rtcSetGeometryMask(geometry, tables.attributes[first + i].visibility);
     rtcSetGeometryUserData(geometry, const_cast<PrimitiveRecord*>(&record));
-    // User geometry looks at what it lets pass by itself.
+    // User geometry decides in its own callbacks what passes.
     if (record.LetsPass() && (record.As<TriangleMesh>() || record.As<CurveSet>())) {
       rtcSetGeometryIntersectFilterFunction(geometry, PassFilter);
       rtcSetGeometryOccludedFilterFunction(geometry, TransmitFilter);
@@ -465,45 +468,40 @@ void FillRay(const Ray& ray, uint32_t kinds, float tMax, RTCRay& out) {
   out.flags = 0;
 }
 
-}  // namespace
-
-namespace {
-
-// The thread's own list, empty.
-std::vector<PassedSheet>& NoSheets() {
-  thread_local std::vector<PassedSheet> sheets;
-  sheets.clear();
-  return sheets;
+// A list of the thread, emptied: valid until the thread asks again.
+std::vector<Crossing>& ThreadCrossings() {
+  thread_local std::vector<Crossing> crossings;
+  crossings.clear();
+  return crossings;
 }
 
-// Of the sheets that a ray would pass, those in front of what it hit.
-Color TintBefore(const std::vector<PassedSheet>& sheets, float t) {
-  Color tint(1.0f);
-  for (const PassedSheet& sheet : sheets) {
-    if (sheet.t < t) tint *= sheet.tint;
-  }
-  return tint;
+// Equal distances by primitive, so that a product does not depend on the order of traversal.
+void SortByDistance(std::vector<Crossing>& crossings) {
+  std::sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) {
+    return std::tie(a.t, a.instance, a.primitive, a.patch, a.entering) <
+           std::tie(b.t, b.instance, b.primitive, b.patch, b.entering);
+  });
 }
 
 }  // namespace
 
-bool GeometryScene::Intersect(const Ray& ray, uint32_t kinds, RayHit& hit, Color& passed) const {
-  const Implementation& scene = *implementation_;
-  passed = Color(1.0f);
-  if (!scene.Accept(ray)) {
-    passed = Color(0.0f);
-    return false;
-  }
+// The ray is accepted. `crossings`, which is empty, becomes what the ray passed before the hit; null: not wanted.
+bool GeometryScene::Implementation::Trace(const Ray& ray, uint32_t kinds, RayHit& hit,
+                                          std::vector<Crossing>* crossings) const {
   TraceContext trace;
   rtcInitIntersectContext(&trace.context);
-  if (scene.hasTints) trace.sheets = &NoSheets();
+  trace.crossings = crossings;
   RTCRayHit rayHit;
   FillRay(ray, kinds, ray.tMax, rayHit.ray);
   rayHit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   rayHit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(scene.scene.get(), &trace.context, &rayHit);
+  rtcIntersect1(scene.get(), &trace.context, &rayHit);
   trace.ThrowFailure();
-  if (scene.hasTints) passed = TintBefore(*trace.sheets, rayHit.ray.tfar);
+  if (crossings && !crossings->empty()) {
+    // Embree visits what lies behind the hit, too.
+    std::erase_if(*crossings, [&](const Crossing& crossing) { return !(crossing.t < rayHit.ray.tfar); });
+    SortByDistance(*crossings);
+  }
   if (rayHit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
   hit.t = rayHit.ray.tfar;
   hit.patch = rayHit.hit.primID;
@@ -513,23 +511,50 @@ bool GeometryScene::Intersect(const Ray& ray, uint32_t kinds, RayHit& hit, Color
     hit.primitive = rayHit.hit.geomID;
     hit.instance = kNoIndex;
   } else {
-    hit.instance = rayHit.hit.instID[0] - scene.tables.firstInstanceId;
-    hit.primitive = scene.tables.instances[hit.instance].firstPrimitive + rayHit.hit.geomID;
+    hit.instance = rayHit.hit.instID[0] - tables.firstInstanceId;
+    hit.primitive = tables.instances[hit.instance].firstPrimitive + rayHit.hit.geomID;
   }
   return true;
 }
 
-Color GeometryScene::Transmission(const Ray& ray, uint32_t kinds) const {
+bool GeometryScene::Trace(const Ray& ray, uint32_t kinds, RayHit& hit, std::vector<Crossing>& crossings) const {
+  const Implementation& scene = *implementation_;
+  crossings.clear();
+  if (!scene.Accept(ray)) return false;
+  return scene.Trace(ray, kinds, hit, scene.hasTints ? &crossings : nullptr);
+}
+
+bool GeometryScene::Intersect(const Ray& ray, uint32_t kinds, RayHit& hit, Color& tint) const {
+  const Implementation& scene = *implementation_;
+  if (!scene.Accept(ray)) {
+    tint = Color(0.0f);
+    return false;
+  }
+  tint = Color(1.0f);
+  if (!scene.hasTints) [[likely]]
+    return scene.Trace(ray, kinds, hit, nullptr);
+  std::vector<Crossing>& crossings = ThreadCrossings();
+  const bool isHit = scene.Trace(ray, kinds, hit, &crossings);
+  tint = lampyr::Transmittance(crossings);
+  return isHit;
+}
+
+Color GeometryScene::Transmittance(const Ray& ray, uint32_t kinds) const {
   const Implementation& scene = *implementation_;
   if (!scene.Accept(ray)) return Color(0.0f);
   TraceContext trace;
   rtcInitIntersectContext(&trace.context);
+  trace.crossings = &ThreadCrossings();
   RTCRay shadowRay;
   // Embree's interval is closed above; ours is open.
   FillRay(ray, kinds, ray.tMax * kOneMinusEpsilon, shadowRay);
   rtcOccluded1(scene.scene.get(), &trace.context, &shadowRay);
   trace.ThrowFailure();
-  return shadowRay.tfar < 0 ? Color(0.0f) : trace.transmission;
+  if (shadowRay.tfar < 0) return Color(0.0f);
+  if (trace.crossings->empty()) [[likely]]
+    return Color(1.0f);
+  SortByDistance(*trace.crossings);
+  return lampyr::Transmittance(*trace.crossings);
 }
 
 SurfacePoint GeometryScene::GetSurfacePoint(const Ray& ray, const RayHit& hit) const {

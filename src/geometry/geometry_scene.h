@@ -15,32 +15,32 @@ namespace lampyr {
 class AlphaSource {
  public:
   virtual ~AlphaSource() = default;
-  // In [0,1]; 0 lets a ray through. `position` in render space.
-  virtual float Alpha(const Point2& uv, const Point3& position) const = 0;
+  // In [0,1]; 0 lets a ray through. `position` and the geometric normal in render space.
+  virtual float Alpha(const Point2& uv, const Point3& position, const Normal3& Ng) const = 0;
 };
 
-// A sheet without thickness, such as thin glass: some of the light that meets it goes straight on, and the rest is up
-// to the surface. What goes straight on does not meet the surface at all: it is the same light whether a shadow ray, a
-// scattered ray or a photon carries it. Implemented by materials.
-class SheetSource {
+// A surface without thickness, such as a pane of thin glass: part of the light that meets it goes straight on, the rest
+// is scattered by the surface's material. The straight part is not scattering: shadow rays, scattered rays and photons
+// all carry it on alike. Implemented by materials.
+class ThinSurface {
  public:
-  virtual ~SheetSource() = default;
-  // The part of rays at the cosine `cosTheta` > 0 to the shading normal that goes on, in [0,1].
-  virtual float PassingPart(float cosTheta) const = 0;
-  // What those are multiplied by.
-  virtual Color Tint(const Point2& uv, const Point3& position) const = 0;
-  // Whether that is white everywhere.
+  virtual ~ThinSurface() = default;
+  // Part of the rays that goes straight on, in [0,1], at the cosine `cosTheta` > 0 to the shading normal.
+  virtual float StraightPart(float cosTheta) const = 0;
+  // Factor on that part, in [0,1] a channel.
+  virtual Color Tint(const Point2& uv, const Point3& position, const Normal3& Ng) const = 0;
+  // True if the tint is white everywhere.
   virtual bool IsClear() const = 0;
 };
 
-// What a shape carries along. The indices mean nothing to the geometry.
+// Attributes of a shape. The indices are the caller's: the geometry hands them back.
 struct GeometryAttributes {
   int32_t material = -1;
   int32_t light = -1;  // index of the area light that this shape is, -1 for none
   uint32_t visibility = visibility::kAll;
   uint32_t link = 0;                         // class of light linking and light filters
   std::shared_ptr<const AlphaSource> alpha;  // null: opaque
-  std::shared_ptr<const SheetSource> sheet;  // null: nothing goes straight on where the surface is
+  std::shared_ptr<const ThinSurface> thin;   // null: no light goes straight on through the surface
 };
 
 struct GeometryEntry {
@@ -83,21 +83,24 @@ class GeometryScene {
   GeometryScene(const GeometryScene&) = delete;
   GeometryScene& operator=(const GeometryScene&) = delete;
 
-  // Nearest hit with t in (0, ray.tMax] on a primitive visible to one of `kinds`. False: nothing, `hit` untouched. By
-  // chance, in the right proportion, the ray passes cut-outs and sheets on its way; `passed` becomes what it is
-  // multiplied by for that. A ray that is rejected (RejectedRays) hits nothing and carries nothing: `passed` is 0.
-  bool Intersect(const Ray& ray, uint32_t kinds, RayHit& hit, Color& passed) const;
+  // Nearest hit with t in (0, ray.tMax] on a primitive visible to one of `kinds`. False: nothing, `hit` is untouched.
+  // A ray passes cut-outs and thin surfaces with the probability of their transmittance. `crossings` becomes the thin
+  // surfaces that it passed before the hit, by increasing t, with their tints as transmittances; empty in scenes whose
+  // thin surfaces are all clear.
+  bool Trace(const Ray& ray, uint32_t kinds, RayHit& hit, std::vector<Crossing>& crossings) const;
+
+  // The same, where the crossings matter by their product alone: `tint`. A ray that is rejected (RejectedRays) hits
+  // nothing and carries nothing: `tint` is 0.
+  bool Intersect(const Ray& ray, uint32_t kinds, RayHit& hit, Color& tint) const;
   bool Intersect(const Ray& ray, uint32_t kinds, RayHit& hit) const {
-    Color passed;
-    return Intersect(ray, kinds, hit, passed);
+    Color tint;
+    return Intersect(ray, kinds, hit, tint);
   }
 
-  // What is left of light after (0, ray.tMax): 0 behind something opaque, 1 where nothing is, and behind cut-outs and
-  // sheets the product of what they let pass, which is the mean of what Intersect makes of it. 0 for a ray that is
-  // rejected.
-  Color Transmission(const Ray& ray, uint32_t kinds) const;
-  // Whether that is nothing.
-  bool Occluded(const Ray& ray, uint32_t kinds) const { return Transmission(ray, kinds).IsBlack(); }
+  // Transmittance of (0, ray.tMax): 0 behind an opaque surface; otherwise the product over all cut-outs and thin
+  // surfaces, by increasing t. It is the expected value of Intersect's outcome. 0 for a ray that is rejected.
+  Color Transmittance(const Ray& ray, uint32_t kinds) const;
+  bool Occluded(const Ray& ray, uint32_t kinds) const { return Transmittance(ray, kinds).IsBlack(); }
 
   // Position with error bound, normals, uv and tangents of a hit that `ray` made.
   SurfacePoint GetSurfacePoint(const Ray& ray, const RayHit& hit) const;
@@ -109,7 +112,7 @@ class GeometryScene {
   size_t PrimitiveCount() const;             // shapes, instanced ones once
   const Bounds3& GetBounds() const;          // empty for an empty scene
   BoundingSphere GetBoundingSphere() const;  // radius 1 around 0 for an empty scene
-  // Rays that Embree would not survive: not finite, without a direction, or from beyond all bounds.
+  // Count of rays that Embree would not survive: not finite, without a direction, or from beyond all bounds.
   uint64_t RejectedRays() const;
 
  private:

@@ -120,7 +120,7 @@ void SeparateFans(Mesh& mesh) {
 // Weight of each neighbour of an interior vertex ([Warren95]).
 double RingWeight(uint32_t valence) { return valence == 3 ? 3.0 / 16 : 3.0 / (8.0 * valence); }
 
-// What all neighbours, and those along the boundary, add up to.
+// Sums over all neighbours of a vertex, and over those along the boundary.
 struct Neighbourhood {
   std::vector<Point3d> sums, boundarySums;
   std::vector<uint32_t> valences;
@@ -147,7 +147,7 @@ Neighbourhood GetNeighbourhood(const Mesh& mesh) {
   return n;
 }
 
-// Every vertex as a blend of itself and its neighbours: `interior(valence)` and `boundary` are a neighbour's weight.
+// Blends every vertex with its neighbours; `interior(valence)` and `boundary` are the weights of one neighbour.
 template <class InteriorWeight>
 std::vector<Point3d> Blend(const Mesh& mesh, const InteriorWeight& interior, double boundary) {
   const Neighbourhood n = GetNeighbourhood(mesh);

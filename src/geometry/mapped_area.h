@@ -1,5 +1,5 @@
-// The area of a surface under linear maps, from the distribution of its normals: quick enough to be asked for with each
-// sample of a surface that changes its shape as it moves.
+// The area of a surface under linear maps, from the distribution of its normals. Fast enough to be evaluated for every
+// sample of a surface whose motion changes its area.
 #pragma once
 
 #include <vector>
@@ -10,14 +10,14 @@
 
 namespace lampyr {
 
-// A part of the surface of area dA and normal n has the area |cof(M) n| dA under M. Parts with similar normals are put
-// together, with their second moments: exact for a few flat faces, within 1e-3 for round surfaces and maps that stretch
+// A part of the surface of area dA and normal n has the area |cof(M) n| dA under M. Parts with similar normals share a
+// cell, which keeps their second moments: exact for a few flat faces, within 1e-3 for round surfaces and maps that stretch
 // one way three times as much as another.
 class MappedArea {
  public:
   // A part: its area and unit normal (of either side), in the surface's own space.
   void Add(double area, const Vector3d& normal);
-  // To be called after the last part: drops what is not needed any more.
+  // Call after the last part: drops empty cells.
   void Finish();
 
   double Under(const glm::dmat3& linear) const;

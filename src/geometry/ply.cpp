@@ -40,14 +40,14 @@ size_t SizeOf(Type type) {
   }
 }
 
-// Which error is thrown is the same everywhere: the file, then what is wrong.
+// Throws errors of one form: the file, then what is wrong.
 struct Failure {
   std::string name;
   FileLocation where;
   [[noreturn]] void operator()(const std::string& text) const { throw Error(where, "\"" + name + "\": " + text); }
 };
 
-// The values of the body, one after the other, in whichever format.
+// Reads the values of the body one by one, in any of the formats.
 class ValueReader {
  public:
   ValueReader(std::string_view body, Format format, const Failure& fail) : body_(body), format_(format), fail_(fail) {}
@@ -85,7 +85,7 @@ class ValueReader {
 
   size_t Remaining() const { return body_.size() - position_; }
 
-  // Bytes that a value takes at least; ascii: a digit and a separator, the last separator aside.
+  // Least bytes of a value. In ascii one digit: the last value need not have a separator.
   size_t SmallestSize(Type type) const { return format_ == Format::Ascii ? 1 : SizeOf(type); }
 
  private:
@@ -107,7 +107,7 @@ class ValueReader {
     const char* number = *begin == '+' ? begin + 1 : begin;
     const auto [stop, error] = std::from_chars(number, end, value);
     if (error == std::errc::result_out_of_range) {
-      value = 0;  // below the smallest double; what is above the largest is caught as not finite
+      value = 0;  // below the smallest double; values above the largest are rejected as not finite
       if (std::string_view(begin, end).find("e-") == std::string_view::npos &&
           std::string_view(begin, end).find("E-") == std::string_view::npos) {
         value = HUGE_VAL;
@@ -229,7 +229,7 @@ Header ParseHeader(HeaderReader& reader, const Failure& fail) {
   }
 }
 
-// An absurd count is found before any memory is asked for.
+// Rejects an impossible count before memory is allocated for it.
 void CheckCount(const Element& element, const ValueReader& reader, const Failure& fail) {
   uint64_t smallest = 0;
   for (const Property& p : element.properties) smallest += reader.SmallestSize(p.countType ? *p.countType : p.type);
@@ -244,7 +244,7 @@ void SkipValue(const Property& property, ValueReader& reader) {
   for (size_t i = 0; i < count; ++i) reader.Read(property.type);
 }
 
-// What a vertex property means: 0-2 position, 3-5 normal, 6-7 texture coordinates, or -1.
+// Slot of a vertex property: 0-2 position, 3-5 normal, 6-7 texture coordinates; -1 if it has none.
 int VertexSlot(const std::string& name) {
   static constexpr std::pair<std::string_view, int> names[] = {
       {"x", 0},  {"y", 1},  {"z", 2},  {"nx", 3},        {"ny", 4},        {"nz", 5},        {"u", 6},        {"v", 7},
@@ -275,7 +275,7 @@ void ReadVertices(const Element& element, ValueReader& reader, PlyMesh& mesh, co
       }
       const double value = reader.Read(element.properties[k].type);
       if (!(std::abs(value) <= 1e18)) {
-        // Modellers write such normals where a face has no area; the shape is whole without them.
+        // Some exporters write such normals for faces without area; the shape needs no normal there.
         if (slots[k] >= 3 && slots[k] <= 5) {
           hasNormal = false;
           continue;

@@ -82,8 +82,8 @@ PreparedQuadric::PreparedQuadric(const Quadric& quadric) : quadric_(quadric), no
 int PreparedQuadric::IntersectSphere(const Point3d& o, const Vector3d& d, double tMax, double roots[2]) const {
   const double r = static_cast<double>(quadric_.radius);
   const double a = glm::dot(d, d), b = -glm::dot(o, d);
-  // Most rays that meet the sphere's box miss it, or are shadow rays that end in front of it. Both are told without a root or
-  // a division, where it is beyond all rounding.
+  // Most rays that meet the sphere's box miss the sphere, or are shadow rays that end in front of it. Both are rejected
+  // without a root or a division if the decision is beyond rounding.
   constexpr double kBeyondRounding = 1e-12;
   const double outside = glm::dot(o, o) - r * r;
   if (b * b * (1 + kBeyondRounding) < a * outside) return 0;

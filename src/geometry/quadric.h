@@ -19,15 +19,16 @@ struct QuadricHit {
   Point2 coordinates{0.0f};
 };
 
-// A quadric as traced. The inverse transform is made here, in double, from the very matrix that places hit points.
+// A quadric prepared for intersection. The inverse transform is computed in double from the matrix that places hit
+// points, so that both agree.
 class PreparedQuadric {
  public:
   explicit PreparedQuadric(const Quadric& quadric);
 
-  // The hits with t in (tMin, tMax], nearest first; returns how many. The ray is in the space that `toRender` leads to.
+  // The hits with t in (tMin, tMax], nearest first; returns how many. The ray is in render space (the target of `toRender`).
   int Intersect(const RayDouble& ray, QuadricHit hits[2]) const;
 
-  // Position, error, normals, uv and tangents in the space that `toRender` leads to. The indices are left alone.
+  // Position, error, normals, uv and tangents, in the target space of `toRender`. The indices are left alone.
   void Evaluate(const Point2& coordinates, SurfacePoint& point) const;
 
   const Quadric& Shape() const { return quadric_; }
@@ -46,8 +47,8 @@ class PreparedQuadric {
   float normalSign_ = 1;  // of the outer side against the object-space normal
 };
 
-// +1 where the outer side of the quadric is the image of the object-space cross product dpdu × dpdv, -1 where it is the
-// other side: only ReverseOrientation turns it, mirroring does not.
+// +1 if the outer side of the quadric is the image of the object-space cross product dpdu × dpdv, -1 if it is the other
+// side. ReverseOrientation turns it; mirroring does not.
 inline float OutsideSign(const Quadric& quadric) {
   return quadric.flipNormals != quadric.toRender.SwapsHandedness() ? -1.0f : 1.0f;
 }

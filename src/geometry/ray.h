@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "math/vec.h"
 
@@ -43,6 +44,23 @@ struct RayHit {
   float u = 0, v = 0;              // barycentric (triangles), parametric otherwise
 };
 
+// A surface that a ray went straight through: a thin surface, or a cut-out in part (GeometryScene::Trace).
+struct Crossing {
+  float t = 0;                    // ray parameter
+  uint32_t primitive = kNoIndex;  // as in RayHit
+  uint32_t patch = 0;
+  uint32_t instance = kNoIndex;
+  bool entering = false;  // from the outside, which is the side that Ng points to
+  Color transmittance{1.0f};
+};
+
+// Product of the crossings' transmittances.
+inline Color Transmittance(std::span<const Crossing> crossings) {
+  Color product(1.0f);
+  for (const Crossing& crossing : crossings) product *= crossing.transmittance;
+  return product;
+}
+
 // A point on a surface. Everything is in render space.
 struct SurfacePoint {
   Point3 position{0.0f};
@@ -54,7 +72,7 @@ struct SurfacePoint {
   uint32_t primitive = kNoIndex;
   uint32_t patch = 0;
   uint32_t instance = kNoIndex;
-  bool isSheet = false;  // what goes straight on is not for the surface to scatter (SheetSource)
+  bool isThin = false;  // light that goes straight on is not the surface's to scatter (ThinSurface)
 };
 
 }  // namespace lampyr

@@ -40,8 +40,8 @@ Ray SpawnRayTo(const SurfacePoint& from, const Point3& target, const Vector3& ta
                float time) {
   const Vector3 straight = target - from.position;
   const Point3 origin = OffsetRayOrigin(from.position, from.positionError, from.Ng, straight);
-  // A unit direction is rounded, so the ray passes the target at up to 1.5e-7 of the distance to its side: at a grazing
-  // angle that alone would make it end behind the target's surface.
+  // The rounding of a unit direction makes the ray miss the target by up to 1.5e-7 of the distance. At a grazing angle
+  // that alone would make it end behind the target's surface.
   constexpr float kDirectionError = 0x1p-22f;
   const Vector3 endError = targetError + Vector3(kDirectionError * MaxAbsComponent(straight));
   const Point3 end = OffsetRayOrigin(target, endError, targetNg, -straight);

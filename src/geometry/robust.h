@@ -11,8 +11,9 @@ namespace lampyr {
 Point3 OffsetRayOrigin(const Point3& position, const Vector3& positionError, const Normal3& Ng,
                        const Vector3& direction);
 
-// A ray that starts at `origin` is carried into an instance's space in float: bound on what is rounded there, back in
-// render space. Far more than a point's own error where the instance is turned and lies far from render space's origin.
+// Bound, in render space, on the rounding error of a ray that starts at `origin` and is transformed to an instance's
+// space in float. It exceeds a point's own error by far if the instance is rotated and far from the origin of render
+// space.
 Vector3 InstanceRayError(const Affine& toRender, const Affine& toObject, const Point3& origin);
 
 // A ray from a surface point along the unit `direction`.

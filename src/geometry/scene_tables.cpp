@@ -13,7 +13,7 @@ namespace lampyr {
 
 namespace {
 
-// By meeting the surface again: the same ray finds the same hit.
+// Intersects the surface again: the same ray finds the same hit.
 void EvaluateCustom(const CustomSurface& surface, const Ray& ray, float t, SurfacePoint& point) {
   const RayDouble again{Point3d(ray.origin), Vector3d(ray.direction), static_cast<double>(kNearestHit),
                         std::numeric_limits<double>::infinity()};
@@ -23,7 +23,7 @@ void EvaluateCustom(const CustomSurface& surface, const Ray& ray, float t, Surfa
   point.Ng = point.Ns = -ray.direction;
 }
 
-// Of a triangle or patch, in double: at the hit's coordinates as they are rounded, on the surface nevertheless.
+// Point of a triangle or patch in double. The hit's coordinates are rounded, but the point is on the surface.
 Point3d PrecisePoint(const PrimitiveRecord& record, const RayHit& hit) {
   const double u = static_cast<double>(hit.u), v = static_cast<double>(hit.v);
   if (const TriangleMesh* triangles = record.As<TriangleMesh>()) {
@@ -38,10 +38,10 @@ Point3d PrecisePoint(const PrimitiveRecord& record, const RayHit& hit) {
          v * ((1 - u) * Point3d(x[q[2]]) + u * Point3d(x[q[3]]));
 }
 
-// Coordinates on a plain of a million metres tell places apart by a tenth of one, while the ray that found one knows it
-// to a hair: where the one is coarse beside the ray's length, the point is where the ray meets the tangent plane. The
-// bound of the error stays what it is: rays that start here must clear what the intersection of others takes for the
-// surface.
+// Barycentric coordinates resolve a plain of a million metres to a tenth of a metre only, and the ray resolves it far
+// better. If the resolution is coarse relative to the ray's length, the point is moved to the intersection of the ray
+// with the tangent plane. The error bound is kept: rays that start here must clear the surface as the intersection of
+// other rays sees it.
 void MoveOntoRay(const PrimitiveRecord& record, const Ray& ray, const RayHit& hit, SurfacePoint& point) {
   const Point3d onSurface = PrecisePoint(record, hit), origin(ray.origin);
   const Vector3d direction(ray.direction), normal(point.Ng);
@@ -75,9 +75,9 @@ struct Evaluate {
 SurfacePoint EvaluatePrimitive(const PrimitiveRecord& record, const Ray& ray, const RayHit& hit) {
   SurfacePoint point;
   std::visit(Evaluate{ray, hit, point}, record.shape);
-  point.isSheet = record.sheet != nullptr;
-  // A surface in a coordinate plane has no error across it, and a ray that starts on it exactly would find it again: a
-  // floor of a millionth of the largest component.
+  point.isThin = record.thin != nullptr;
+  // A surface in a coordinate plane has no error across it, and a ray that starts exactly on it would hit it again: the
+  // error of each component is at least a millionth of the largest.
   const float coarse = MaxComponent(point.positionError);
   point.positionError += Vector3(1e-6f * coarse);
   constexpr float kCoarse = 1e-5f;
@@ -96,7 +96,7 @@ void ApplyInstance(const InstancePlacement& instance, SurfacePoint& point) {
   point.positionError = instance.toRender.PointError(point.position, point.positionError);
   point.position = instance.toRender.Point(point.position);
   point.positionError += InstanceRayError(instance.toRender, instance.toObject, point.position);
-  // By the inverse transpose: the outer side stays the outer side, mirrored or not.
+  // Normals by the inverse transpose: the outer side stays the outer side, mirrored or not.
   point.Ng = SafeNormalize(instance.toObject.NormalByInverse(point.Ng), point.Ng);
   point.Ns = SafeNormalize(instance.toObject.NormalByInverse(point.Ns), point.Ng);
   if (glm::dot(point.Ng, point.Ns) < 0) point.Ns = -point.Ns;

@@ -1,4 +1,4 @@
-// Private to the geometry: what a traced primitive's index leads to. Flat arrays, no virtual calls.
+// Private to the geometry: tables of primitives and instances, by the indices of a hit. Flat arrays, no virtual calls.
 #pragma once
 
 #include <variant>
@@ -11,14 +11,14 @@ namespace lampyr {
 
 struct SceneTables;
 
-// What Embree's callbacks and GetSurfacePoint need of a primitive.
+// A primitive as Embree's callbacks and GetSurfacePoint need it.
 struct PrimitiveRecord {
   std::variant<const TriangleMesh*, const BilinearMesh*, const PreparedQuadric*, const CurveSet*, const CustomSurface*>
       shape;
   const AlphaSource* alpha = nullptr;  // null: opaque
-  const SheetSource* sheet = nullptr;  // null: none
+  const ThinSurface* thin = nullptr;   // null: none
 
-  bool LetsPass() const { return alpha || sheet; }
+  bool LetsPass() const { return alpha || thin; }
   // The shape if it is of this kind, or null.
   template <class Kind>
   const Kind* As() const {
@@ -32,7 +32,7 @@ struct InstancePlacement {
   Affine toRender, toObject;
 };
 
-// As Embree knows it: for some part of the shutter, as a whole or moving by keys that divide that part evenly.
+// An instance of Embree. It exists during part of the shutter, and stays there or moves by evenly spaced keys.
 struct InstanceRecord {
   InstancePlacement placement;  // unless it moves
   uint32_t object = 0;
@@ -42,20 +42,20 @@ struct InstanceRecord {
   float begin = 0, end = 1;        // shutter times
 };
 
-// Where a moving instance is.
+// Placement of a moving instance at a shutter time.
 InstancePlacement PlacementAt(const Motion& motion, float time);
 
 struct SceneTables {
   std::vector<PrimitiveRecord> primitives;  // entries of the scene, then of object 0, 1, …
   std::vector<GeometryAttributes> attributes;
-  std::vector<InstanceRecord> instances;  // what comes or goes while the shutter is open is several
+  std::vector<InstanceRecord> instances;  // one that appears or vanishes during the shutter takes several
   uint32_t firstInstanceId = 0;           // Embree's id of instance 0; the scene's own entries come before
 };
 
 // Point of a hit in the space of the primitive, which `ray` is in too. `hit` needs t, patch, u and v.
 SurfacePoint EvaluatePrimitive(const PrimitiveRecord& record, const Ray& ray, const RayHit& hit);
 
-// Carries a point of an instanced object over to render space.
+// Transforms a point of an instanced object to render space.
 void ApplyInstance(const InstancePlacement& instance, SurfacePoint& point);
 
 }  // namespace lampyr

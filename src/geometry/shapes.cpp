@@ -36,7 +36,7 @@ Bounds3 BoundsOf(const Quadric& q) {
   } else {
     for (int i = 0; i < 8; ++i) bounds.Add(q.toRender.Point(local.Corner(i)));
   }
-  // A box around what double-precision intersection finds, not around its rounding.
+  // Padded: the box must hold the points that intersection in double finds, not their rounded positions.
   const Point3 reach = glm::max(glm::abs(local.min), glm::abs(local.max));
   const Vector3 error = q.toRender.PointError(reach, Vector3(0.0f)) * 2.0f;
   return {bounds.min - error, bounds.max + error};
@@ -54,7 +54,7 @@ Bounds3 BoundsOf(const CurveSet& curves) {
   return bounds;
 }
 
-// ∫ f over [a,b] by composite Gauss-Legendre of 5 nodes, doubled until it stands.
+// ∫ f over [a,b] by composite Gauss-Legendre quadrature of 5 nodes; intervals are doubled until it converges.
 template <class Function>
 double Integrate(double a, double b, const Function& f, double tolerance) {
   constexpr double nodes[5] = {-0.9061798459386640, -0.5384693101056831, 0, 0.5384693101056831, 0.9061798459386640};
@@ -75,13 +75,13 @@ double Integrate(double a, double b, const Function& f, double tolerance) {
   return last;
 }
 
-// How a map stretches area across an object-space normal: |det M| |M⁻ᵀ n|.
+// Factor by which a map stretches area of an object-space normal: |det M| |M⁻ᵀ n|.
 struct AreaStretch {
   glm::dmat3 cofactors;
   explicit AreaStretch(const glm::dmat3& m)
       : cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1])) {}
   double operator()(const Vector3d& normal) const { return glm::length(cofactors * normal); }
-  // The common stretch of all directions of a similarity, 0 for any other map.
+  // The factor of a similarity, which is the same for all normals; 0 for any other map.
   double Uniform() const {
     const double x = glm::length(cofactors[0]), y = glm::length(cofactors[1]), z = glm::length(cofactors[2]);
     const double skew = std::abs(glm::dot(cofactors[0], cofactors[1])) +
@@ -188,7 +188,7 @@ double AreaOf(const CustomSurface&) {
   return 0;
 }
 
-// Looks through the pointer that all shapes but quadrics are held by.
+// Dereferences the pointer by which all shapes but quadrics are held.
 const Quadric& Plain(const Quadric& q) {
   return q;
 }

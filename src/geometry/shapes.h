@@ -67,11 +67,11 @@ struct CurveSet {
 using Shape = std::variant<std::shared_ptr<const TriangleMesh>, std::shared_ptr<const BilinearMesh>, Quadric,
                            std::shared_ptr<const CurveSet>, std::shared_ptr<const CustomSurface>>;
 
-// Bounds in render space; of something that moves, over the whole shutter.
+// Bounds in render space; for a moving shape, over the whole shutter.
 Bounds3 GetBounds(const Shape& shape);
 
 // Surface area in render space, exact for triangle meshes, by quadrature (relative error < 1e-5) for the rest under
-// a transform that is not a similarity. 0 for a CustomSurface, which only says how rays meet it.
+// a transform that is not a similarity. 0 for a CustomSurface, of which only the intersection is known.
 double GetArea(const Shape& shape);
 
 }  // namespace lampyr

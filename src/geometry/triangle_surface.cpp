@@ -7,7 +7,8 @@ namespace lampyr {
 
 namespace {
 
-// References, here and below: a copy on the stack is written in other pieces than it is read in, and the processor waits.
+// References, here and below: a copy on the stack is stored in smaller pieces than it is loaded in, and store forwarding
+// stalls.
 struct UvCorners {
   const Point2 &uv0, &uv1, &uv2;
 };
@@ -26,7 +27,7 @@ void SetTangents(const UvCorners& c, const Vector3& edge02, const Vector3& edge1
   point.dpdv = (edge12 * uv02.x - edge02 * uv12.x) * inverse;
 }
 
-// The normal of the winding where float loses it (edges below 1e-7 or above 1e7), or `fallback` without an area.
+// Normal of the winding in double, for edges below 1e-7 or above 1e7; `fallback` for a triangle without area.
 Normal3 PreciseNormal(const Point3& p0, const Point3& p1, const Point3& p2, const Vector3& fallback) {
   const Vector3d normal = glm::cross(Vector3d(p0) - Vector3d(p2), Vector3d(p1) - Vector3d(p2));
   const double length = glm::length(normal);

@@ -1,4 +1,4 @@
-// What is known of a point on a triangle mesh.
+// Surface points on triangle meshes.
 #pragma once
 
 #include "geometry/ray.h"

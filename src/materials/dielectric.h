@@ -25,7 +25,7 @@ struct DielectricBsdf {
 float ThinReflectance(float cosTheta, float eta);
 
 // Such a sheet. Light leaves undeflected, coloured by `transmittance`; unless the tracing of rays has seen to that
-// already (SurfacePoint::isSheet): then there is only the reflection left.
+// already (SurfacePoint::isThin): then there is only the reflection left.
 struct ThinDielectricBsdf {
   float eta = 1;
   Color transmittance{1.0f};

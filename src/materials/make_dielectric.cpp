@@ -18,25 +18,25 @@ struct DielectricRecipe {
   bool HasDelta() const { return eta == 1 || roughness.MayBeSmooth(); }
 };
 
-class ThinDielectric final : public Material, public SheetSource {
+class ThinDielectric final : public Material, public ThinSurface {
  public:
   ThinDielectric(float eta, ColorParameter transmittance, ShadingNormal shadingNormal)
       : eta_(eta), transmittance_(std::move(transmittance)), shadingNormal_(std::move(shadingNormal)) {}
 
   Bsdf GetBsdf(const SurfacePoint& point, const Vector3&) const override {
     const Frame frame = shadingNormal_.IsPlain() ? Frame::FromNormal(point.Ns) : shadingNormal_.GetFrame(point);
-    return Bsdf(frame, point.Ng, ThinDielectricBsdf{eta_, Tint(point.uv, point.position), point.isSheet});
+    return Bsdf(frame, point.Ng, ThinDielectricBsdf{eta_, Tint(point.uv, point.position, point.Ng), point.isThin});
   }
   bool MayTransmit() const override { return true; }
   bool HasDelta() const override { return true; }
   bool IsAlwaysDelta() const override { return true; }
-  const SheetSource* Sheet() const override { return this; }
+  const ThinSurface* Thin() const override { return this; }
 
-  float PassingPart(float cosTheta) const override { return 1 - ThinReflectance(cosTheta, eta_); }
-  Color Tint(const Point2& uv, const Point3& position) const override {
-    return ClampToUnit(transmittance_.Evaluate({uv, position}));
+  float StraightPart(float cosTheta) const override { return 1 - ThinReflectance(cosTheta, eta_); }
+  Color Tint(const Point2& uv, const Point3& position, const Normal3& Ng) const override {
+    return ClampToUnit(transmittance_.Evaluate({uv, position, Ng}));
   }
-  bool IsClear() const override { return transmittance_.IsConstant() && Tint({}, {}) == Color(1.0f); }
+  bool IsClear() const override { return transmittance_.IsConstant() && Tint({}, {}, {}) == Color(1.0f); }
 
  private:
   float eta_;

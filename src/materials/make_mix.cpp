@@ -36,7 +36,7 @@ class MixMaterial final : public Material {
 
  private:
   const Material& Choose(const SurfacePoint& point, const Vector3& wo) const {
-    const float amount = amount_.Evaluate({point.uv, point.position});
+    const float amount = amount_.Evaluate({point.uv, point.position, point.Ng});
     if (!(amount > 0)) return *materials_[0];
     if (amount >= 1) return *materials_[1];
     const uint64_t hash = HashVector(HashVector(salt_, point.position), wo);

@@ -31,8 +31,8 @@ class Material {
   // anew by each path that meets it, so that a draw of it that is a delta says nothing of the draws of other paths.
   virtual bool IsAlwaysDelta() const { return false; }
   // Of a sheet without thickness: what of the light goes straight on without meeting it. Null: not one. Whoever traces
-  // rays must see to it where SurfacePoint::isSheet says so.
-  virtual const SheetSource* Sheet() const { return nullptr; }
+  // rays must see to it where SurfacePoint::isThin says so.
+  virtual const ThinSurface* Thin() const { return nullptr; }
   // Mirrors and clear glass: what shows light sharply.
   bool IsSmooth() const { return HasDelta() && !IsInterface(); }
 };

@@ -25,7 +25,7 @@ class RecipeMaterial final : public Material {
   Bsdf GetBsdf(const SurfacePoint& point, const Vector3&) const override {
     const Frame frame = GetFrame(point);
     if (isConstant_) return Bsdf(frame, point.Ng, model_);
-    return Bsdf(frame, point.Ng, recipe_.Make({point.uv, point.position}));
+    return Bsdf(frame, point.Ng, recipe_.Make({point.uv, point.position, point.Ng}));
   }
   bool MayTransmit() const override { return recipe_.MayTransmit(); }
   bool HasDelta() const override { return recipe_.HasDelta(); }

@@ -65,11 +65,11 @@ Frame ShadingNormal::FromDisplacement(const SurfacePoint& point) const {
   // Tangents of the smooth surface that Ns describes.
   const Vector3 dpdu = point.dpdu - point.Ns * glm::dot(point.Ns, point.dpdu);
   const Vector3 dpdv = point.dpdv - point.Ns * glm::dot(point.Ns, point.dpdv);
-  const float here = displacement_->Evaluate({point.uv, point.position});
+  const float here = displacement_->Evaluate({point.uv, point.position, point.Ng});
   const float alongU =
-      displacement_->Evaluate({point.uv + Point2(kBumpStep, 0), point.position + kBumpStep * point.dpdu});
+      displacement_->Evaluate({point.uv + Point2(kBumpStep, 0), point.position + kBumpStep * point.dpdu, point.Ng});
   const float alongV =
-      displacement_->Evaluate({point.uv + Point2(0, kBumpStep), point.position + kBumpStep * point.dpdv});
+      displacement_->Evaluate({point.uv + Point2(0, kBumpStep), point.position + kBumpStep * point.dpdv, point.Ng});
   const Vector3 bumpedU = dpdu + ((alongU - here) / kBumpStep) * point.Ns;
   const Vector3 bumpedV = dpdv + ((alongV - here) / kBumpStep) * point.Ns;
   return FrameAround(glm::cross(bumpedU, bumpedV), point, bumpedU);

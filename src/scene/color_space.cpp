@@ -3,6 +3,8 @@
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 
+#include "base/error.h"
+
 namespace lampyr {
 
 namespace {
@@ -79,6 +81,41 @@ Vector3d XyzOfChromaticity(double x, double y) {
 Vector3d XyzToRec709(const Vector3d& xyz) {
   static const glm::dmat3 matrix = glm::inverse(RgbToXyz(kSpaces[0]));
   return matrix * xyz;
+}
+
+const glm::dmat3& Rec709ToXyz() {
+  static const glm::dmat3 matrix = RgbToXyz(kSpaces[0]);
+  return matrix;
+}
+
+namespace {
+
+// The cubic approximation of the Planckian locus from 1667 to 4000 K ([Kim02]).
+Chromaticity ChromaticityOfBlackbody(double kelvin) {
+  const double per = 1e3 / kelvin;
+  const double x = ((-0.2661239 * per - 0.2343589) * per + 0.8776956) * per + 0.179910;
+  const double y = kelvin < 2222 ? ((-1.1063814 * x - 1.34811020) * x + 2.18555832) * x - 0.20219683
+                                 : ((-0.9549476 * x - 1.37418593) * x + 2.09137015) * x - 0.16748867;
+  return {x, y};
+}
+
+Chromaticity ChromaticityOfDaylight(double kelvin) {
+  constexpr double kNewOverOldRadiation = 1.4388 / 1.4380;  // of the constant that the temperatures are named by
+  const double t = kelvin * kNewOverOldRadiation, per = 1e3 / t;
+  const double x = t <= 7000 ? ((-4.6070 * per + 2.9678) * per + 0.09911) * per + 0.244063
+                             : ((-2.0064 * per + 1.9018) * per + 0.24748) * per + 0.237040;
+  return {x, (-3 * x + 2.870) * x - 0.275};
+}
+
+}  // namespace
+
+glm::dmat3 WhiteBalance(double kelvin) {
+  if (!(kelvin >= 1667 && kelvin <= 25000)) throw Error("a white balance is from 1667 to 25000 K");
+  constexpr double kColdestDaylight = 4000;
+  const Chromaticity white =
+      kelvin < kColdestDaylight ? ChromaticityOfBlackbody(kelvin) : ChromaticityOfDaylight(kelvin);
+  const glm::dmat3& toXyz = Rec709ToXyz();
+  return glm::inverse(toXyz) * Adaptation(white, kSpaces[0].white) * toXyz;
 }
 
 Vector3d ToRec709(const Vector3d& rgb, RgbColorSpace from, WhiteHandling white) {

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <glm/mat3x3.hpp>
+
 #include "math/vec.h"
 
 namespace lampyr {
@@ -29,6 +31,14 @@ Vector3d XyzToRec709(const Vector3d& xyz);
 
 // XYZ of a chromaticity at luminance 1.
 Vector3d XyzOfChromaticity(double x, double y);
+
+// Linear Rec. 709 as CIE 1931 XYZ: a matrix.
+const glm::dmat3& Rec709ToXyz();
+
+// White balance of linear Rec. 709: light of the given temperature becomes white (Bradford adaptation, [Lam85]). The
+// light is CIE daylight ([CIE15]) from 4000 to 25000 K, and a black body ([Kim02]) from 1667 K to there. Throws an
+// Error for a temperature beyond.
+glm::dmat3 WhiteBalance(double kelvin);
 
 // Negative components become 0 and the rest is scaled so that the luminance stays.
 Color ClampToGamut(const Vector3d& rgb);

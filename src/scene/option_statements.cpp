@@ -45,7 +45,8 @@ void SceneParser::ReadOnly(const Token& statement, StatementDescription& into) {
 
 void SceneParser::Camera(const Token& statement) {
   ReadOnly(statement, scene_.camera);
-  const TransformPair cameraToWorld = {state_.ctm[0].Inverse(), state_.ctm[1].Inverse()};
+  const Placement worldToCamera = PlacementOf(statement);
+  const TransformPair cameraToWorld = {worldToCamera.start.Inverse(), worldToCamera.end.Inverse()};
   SetCoordinateSystem("camera", cameraToWorld);
   scene_.cameraToWorld = {cameraToWorld[0], cameraToWorld[1]};
 }
@@ -136,6 +137,7 @@ void SceneParser::ColorSpaceStatement(const Token& statement) {
 void SceneParser::WorldBegin(const Token&) {
   inWorld_ = true;
   state_.ctm = {};
+  state_.singular.reset();
   state_.active = {true, true};
   SetCoordinateSystem("world", state_.ctm);
 }

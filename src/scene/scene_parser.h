@@ -28,6 +28,8 @@ using TransformPair = std::array<Transform, 2>;
 struct GraphicsState {
   TransformPair ctm;  // current transformation matrix: local to world
   std::array<bool, 2> active = {true, true};
+  // The statement that made the CTM singular, and its place: `ctm` is what it was before. Absent: it is not singular.
+  std::optional<Token> singular;
   bool reverseOrientation = false;
   RgbColorSpace colorSpace = RgbColorSpace::Srgb;
   MaterialReference material;
@@ -100,11 +102,15 @@ class SceneParser {
   std::array<double, 16> ReadMatrix(const Token& statement);
   StatementDescription ReadTyped(const Token& statement, const char* attributeTarget = nullptr);
   ParameterList ReadList(const Token& statement, const std::string& owner, const char* attributeTarget);
-  Placement CurrentPlacement() const { return {state_.ctm[0], state_.ctm[1]}; }
+  // Throws an Error if the CTM is singular.
+  Placement PlacementOf(const Token& statement) const;
+  // True if the CTM is singular. Then what `statement` places has no extent: it is left out, with a warning.
+  bool IsSquashed(const Token& statement) const;
 
   // transform_statements.cpp
   void Concat(const Token& statement, const Transform& transform);
-  void CheckInvertible(const Token& statement, const Transform& transform) const;
+  // False: it is singular. Throws an Error for what leaves the range of floats.
+  static bool IsInvertible(const Token& statement, const Transform& transform);
   void Identity(const Token&);
   void Translate(const Token&);
   void Scale(const Token&);

@@ -33,25 +33,50 @@ bool FitsFloat(const glm::dmat4& m) {
 
 }  // namespace
 
-void SceneParser::CheckInvertible(const Token& statement, const Transform& transform) const {
+bool SceneParser::IsInvertible(const Token& statement, const Transform& transform) {
+  if (transform.IsSingular()) return false;
   if (!FitsFloat(transform.Matrix()) || !FitsFloat(transform.InverseMatrix())) {
     throw Error(statement.where, statement.text + " makes the transform too large or too small (beyond 3.4e38)");
   }
-  if (transform.IsSingular())
-    throw Error(statement.where, statement.text + " makes the transform singular: it cannot be inverted");
+  return true;
+}
+
+Placement SceneParser::PlacementOf(const Token& statement) const {
+  if (state_.singular) {
+    throw Error(state_.singular->where, state_.singular->text +
+                                            " makes the transform singular: it cannot be inverted, as " +
+                                            statement.text + " at " + statement.where.ToString() + " needs it");
+  }
+  return {state_.ctm[0], state_.ctm[1]};
+}
+
+bool SceneParser::IsSquashed(const Token& statement) const {
+  if (!state_.singular) return false;
+  diagnostics_.Warn(statement.where, "this " + statement.text + " is left out: " + state_.singular->text + " at " +
+                                         state_.singular->where.ToString() +
+                                         " makes its transform singular, so that it has no extent");
+  return true;
 }
 
 void SceneParser::Concat(const Token& statement, const Transform& transform) {
-  CheckInvertible(statement, transform);
+  if (state_.singular) return;  // and stays so
+  if (IsNearlySingular(transform.Matrix()) || !IsInvertible(statement, transform)) {
+    state_.singular = statement;
+    return;
+  }
   for (int i = 0; i < 2; ++i) {
     if (!state_.active[i]) continue;
     const Transform product = state_.ctm[i] * transform;
-    CheckInvertible(statement, product);
+    if (!IsInvertible(statement, product)) {
+      state_.singular = statement;
+      return;
+    }
     state_.ctm[i] = product;
   }
 }
 
 void SceneParser::Identity(const Token&) {
+  state_.singular.reset();
   for (int i = 0; i < 2; ++i) {
     if (state_.active[i]) state_.ctm[i] = Transform();
   }
@@ -64,9 +89,6 @@ void SceneParser::Translate(const Token& statement) {
 
 void SceneParser::Scale(const Token& statement) {
   const auto n = ReadNumbers<3>(statement);
-  for (const double factor : n) {
-    if (factor == 0) throw Error(statement.where, "Scale by 0 makes the transform singular: it cannot be inverted");
-  }
   Concat(statement, Transform::Scale({n[0], n[1], n[2]}));
 }
 
@@ -120,8 +142,6 @@ Transform MatrixTransform(const std::array<double, 16>& n, const Token& statemen
   for (int column = 0; column < 4; ++column) {
     for (int row = 0; row < 3; ++row) m[column][row] = n[4 * column + row] / n[15];
   }
-  if (IsNearlySingular(m))
-    throw Error(statement.where, "the matrix of " + statement.text + " is singular: it cannot be inverted");
   return Transform(m);
 }
 
@@ -129,7 +149,11 @@ Transform MatrixTransform(const std::array<double, 16>& n, const Token& statemen
 
 void SceneParser::TransformStatement(const Token& statement) {
   const Transform transform = MatrixTransform(ReadMatrix(statement), statement);
-  CheckInvertible(statement, transform);
+  state_.singular.reset();
+  if (IsNearlySingular(transform.Matrix()) || !IsInvertible(statement, transform)) {
+    state_.singular = statement;
+    return;
+  }
   for (int i = 0; i < 2; ++i) {
     if (state_.active[i]) state_.ctm[i] = transform;
   }
@@ -158,13 +182,16 @@ void SceneParser::RestoreCoordinateSystems(size_t changes) {
 }
 
 void SceneParser::CoordinateSystem(const Token& statement) {
-  SetCoordinateSystem(ReadString(statement, "a name"), state_.ctm);
+  const std::string name = ReadString(statement, "a name");
+  const Placement placement = PlacementOf(statement);
+  SetCoordinateSystem(name, {placement.start, placement.end});
 }
 
 void SceneParser::CoordSysTransform(const Token& statement) {
   const std::string name = ReadString(statement, "a name");
   const auto found = coordinateSystems_.find(name);
   if (found != coordinateSystems_.end()) {
+    state_.singular.reset();
     state_.ctm = found->second;
     return;
   }

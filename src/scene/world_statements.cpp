@@ -121,7 +121,9 @@ void SceneParser::ObjectEnd(const Token& statement) {
 }
 
 void SceneParser::ObjectInstance(const Token& statement) {
-  InstanceDescription instance{ReadString(statement, "an object's name"), statement.where, CurrentPlacement()};
+  const std::string name = ReadString(statement, "an object's name");
+  if (IsSquashed(statement)) return;
+  InstanceDescription instance{name, statement.where, PlacementOf(statement)};
   auto& list = currentObject_ >= 0 ? scene_.objects[currentObject_].instances : scene_.instances;
   list.push_back(std::move(instance));
 }
@@ -129,7 +131,8 @@ void SceneParser::ObjectInstance(const Token& statement) {
 void SceneParser::Shape(const Token& statement) {
   ShapeDescription shape;
   shape.shape = ReadTyped(statement, "shape");
-  shape.placement = CurrentPlacement();
+  if (IsSquashed(statement)) return;
+  shape.placement = PlacementOf(statement);
   shape.reverseOrientation = state_.reverseOrientation;
   shape.material = state_.material;
   shape.areaLight = state_.areaLight;
@@ -184,7 +187,7 @@ void SceneParser::Texture(const Token& statement) {
   }
   texture.isSpectrum = value.text == "spectrum";
   texture.texture = ReadTyped(statement, "texture");
-  texture.placement = CurrentPlacement();
+  texture.placement = PlacementOf(statement);
   if (!textureNames_.emplace(texture.name, texture.isSpectrum).second) {
     throw Error(statement.where, "the " + value.text + " texture \"" + texture.name + "\" is defined twice");
   }
@@ -197,8 +200,8 @@ void SceneParser::AreaLightSource(const Token& statement) {
 }
 
 void SceneParser::LightSource(const Token& statement) {
-  scene_.lights.push_back(
-      {ReadTyped(statement, "light"), CurrentPlacement(), state_.outsideMedium, state_.lightFilter});
+  StatementDescription light = ReadTyped(statement, "light");
+  scene_.lights.push_back({std::move(light), PlacementOf(statement), state_.outsideMedium, state_.lightFilter});
 }
 
 void SceneParser::LightFilter(const Token& statement) {
@@ -209,7 +212,7 @@ void SceneParser::LightFilter(const Token& statement) {
     state_.lightFilter = -1;
     return;
   }
-  Placement placement = CurrentPlacement();
+  Placement placement = PlacementOf(statement);
   const std::string name = filter.parameters.GetString("coordsys", "");
   if (!name.empty()) {
     const auto found = coordinateSystems_.find(name);

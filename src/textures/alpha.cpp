@@ -11,8 +11,8 @@ class ParameterAlpha : public AlphaSource {
  public:
   explicit ParameterAlpha(FloatParameter parameter) : parameter_(std::move(parameter)) {}
 
-  float Alpha(const Point2& uv, const Point3& position) const override {
-    return std::clamp(parameter_.Evaluate({uv, position}), 0.0f, 1.0f);
+  float Alpha(const Point2& uv, const Point3& position, const Normal3& Ng) const override {
+    return std::clamp(parameter_.Evaluate({uv, position, Ng}), 0.0f, 1.0f);
   }
 
  private:

@@ -16,7 +16,8 @@ Value Blend(const ParameterOf<Value>& a, const ParameterOf<Value>& b, float t, c
 template <class Value>
 class ScaleTexture : public Texture<Value> {
  public:
-  ScaleTexture(ParameterOf<Value> texture, FloatParameter scale) : texture_(std::move(texture)), scale_(std::move(scale)) {}
+  ScaleTexture(ParameterOf<Value> texture, FloatParameter scale)
+      : texture_(std::move(texture)), scale_(std::move(scale)) {}
   Value Evaluate(const TextureContext& where) const override {
     return texture_.Evaluate(where) * scale_.Evaluate(where);
   }
@@ -48,8 +49,25 @@ ParameterOf<Value> Mixed(ParameterOf<Value> first, ParameterOf<Value> second, Fl
     if (t == 1) return second;
     if (first.IsConstant() && second.IsConstant()) return Blend(first, second, t, {});
   }
-  return ParameterOf<Value>(std::make_shared<MixTexture<Value>>(std::move(first), std::move(second), std::move(amount)));
+  return ParameterOf<Value>(
+      std::make_shared<MixTexture<Value>>(std::move(first), std::move(second), std::move(amount)));
 }
+
+// The first texture where the surface faces along a direction or against it, the second where it runs along it, and
+// by the cosine between the two.
+template <class Value>
+class DirectionMixTexture : public Texture<Value> {
+ public:
+  DirectionMixTexture(ParameterOf<Value> along, ParameterOf<Value> across, const Vector3& direction)
+      : along_(std::move(along)), across_(std::move(across)), direction_(direction) {}
+  Value Evaluate(const TextureContext& where) const override {
+    return Blend(across_, along_, std::min(std::abs(glm::dot(where.normal, direction_)), 1.0f), where);
+  }
+
+ private:
+  ParameterOf<Value> along_, across_;
+  Vector3 direction_;
+};
 
 }  // namespace
 
@@ -73,10 +91,13 @@ ParameterOf<Value> MakeMix(const TextureRequest& request) {
 
 template <class Value>
 ParameterOf<Value> MakeDirectionMix(const TextureRequest& request) {
-  request.diagnostics.Warn(request.description.texture.where,
-                           "texture type \"directionmix\" is not supported yet: an even mix of tex1 and tex2 stands for it");
-  request.Parameters().Find("dir");
-  return Mixed<Value>(GetValue<Value>(request, "tex1", 0), GetValue<Value>(request, "tex2", 1), FloatParameter(0.5f));
+  const Vector3 given(request.Parameters().GetVector3("dir", {0, 1, 0}));
+  const Vector3 direction = request.renderToTexture.Inverse().Vector(given);
+  if (!(LengthSquared(direction) > 0) || !(LengthSquared(direction) < kInfinity))
+    throw Error(request.Parameters().WhereOf("dir"), "\"dir\" is no direction");
+  ParameterOf<Value> along = GetValue<Value>(request, "tex1", 0), across = GetValue<Value>(request, "tex2", 1);
+  return ParameterOf<Value>(
+      std::make_shared<DirectionMixTexture<Value>>(std::move(along), std::move(across), glm::normalize(direction)));
 }
 
 template FloatParameter MakeScale<float>(const TextureRequest&);

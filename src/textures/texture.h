@@ -8,10 +8,12 @@
 
 namespace lampyr {
 
-// Where a texture is evaluated. `position` is in render space; textures with a 3-D mapping hold their own transform.
+// Where a texture is evaluated. `position` and the geometric `normal` are in render space; textures that depend on them
+// hold their own transform.
 struct TextureContext {
   Point2 uv{0.0f};
   Point3 position{0.0f};
+  Normal3 normal{0.0f};  // unit, of either side
 };
 
 template <class Value>

@@ -148,11 +148,18 @@ INSTANTIATE_TEST_SUITE_P(
              At("1:27", "ConcatTransform needs 16 numbers, has 4 before \"]\"")},
         Case{"MatrixTooLong", "Transform [ 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 5 ]",
              At("1:45", "Transform needs \"]\" after 16 numbers, found the number \"5\"")},
-        Case{"ScaleZero", "  Scale 1 0 1", At("1:3", "Scale by 0 makes the transform singular: it cannot be inverted")},
-        Case{"SingularMatrix", "Transform [ 1 2 3 0  2 4 6 0  0 0 1 0  0 0 0 1 ]",
-             At("1:1", "the matrix of Transform is singular: it cannot be inverted")},
-        Case{"SingularByRounding", "ConcatTransform [ .1 .2 .3 0  .7 1.4 2.1 0  0 0 1 0  0 0 0 1 ]",
-             At("1:1", "the matrix of ConcatTransform is singular: it cannot be inverted")},
+        Case{"ScaleZero", "  Scale 1 0 1 Camera \"perspective\"",
+             At("1:3",
+                "Scale makes the transform singular: it cannot be inverted, as Camera at scene.pbrt:1:15 needs it")},
+        Case{"SingularMatrix", "Transform [ 1 2 3 0  2 4 6 0  0 0 1 0  0 0 0 1 ] CoordinateSystem \"a\"",
+             At("1:1",
+                "Transform makes the transform singular: it cannot be inverted, as CoordinateSystem at "
+                "scene.pbrt:1:50 needs it")},
+        Case{"SingularByRounding",
+             "WorldBegin ConcatTransform [ .1 .2 .3 0  .7 1.4 2.1 0  0 0 1 0  0 0 0 1 ] LightSource \"point\"",
+             At("1:12",
+                "ConcatTransform makes the transform singular: it cannot be inverted, as LightSource at "
+                "scene.pbrt:1:75 needs it")},
         Case{"TooSmall", "Scale 1e-38 1 1 Scale 1e-3 1 1",
              At("1:17", "Scale makes the transform too large or too small (beyond 3.4e38)")},
         Case{

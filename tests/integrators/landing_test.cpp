@@ -99,7 +99,7 @@ Estimate ByLightSampling(const BuiltScene& built, int count) {
     double irradiance = 0;
     if (direct && direct.sample->direction.y > 0) {
       irradiance = static_cast<double>(direct.sample->diffuse.g * direct.sample->direction.y *
-                                       lighting.Transmission(point, direct, 0).g /
+                                       lighting.Transmittance(point, direct, 0).g /
                                        (direct.selection * direct.sample->pdfDirect).value);
     }
     estimate.Add(irradiance);
@@ -230,7 +230,7 @@ TEST(LightSampling, InstancesFarAwayDoNotShadeThemselves) {
       point.position = position;
       point.Ng = point.Ns = direct.sample->direction;
       ++samples;
-      occluded += lighting.Transmission(point, direct, time).IsBlack();
+      occluded += lighting.Transmittance(point, direct, time).IsBlack();
     }
     EXPECT_GT(samples, 90000) << moves;
     EXPECT_EQ(occluded, 0) << moves;

@@ -74,7 +74,7 @@ Found ByLight(const BuiltScene& built, int count) {
     const DirectSample direct = SampleOneLight(lighting, kReceiver, uSelect, rng.NextPoint2(), time, false);
     double x = 0, arrives = 0;
     if (direct && direct.sample->direction.y > 0) {
-      arrives = static_cast<double>(lighting.Transmission(ReceiverPoint(), direct, time).g);
+      arrives = static_cast<double>(lighting.Transmittance(ReceiverPoint(), direct, time).g);
       x = arrives * static_cast<double>(direct.sample->diffuse.g * direct.sample->direction.y /
                                         (direct.selection * direct.sample->pdfDirect).value);
     }

@@ -127,7 +127,7 @@ TEST(LightValues, PatchesAreGivenThePatch) {
 
 class HalfOpaque final : public AlphaSource {
  public:
-  float Alpha(const Point2& uv, const Point3&) const override { return uv.x < 0.5f ? 0.0f : 1.0f; }
+  float Alpha(const Point2& uv, const Point3&, const Normal3&) const override { return uv.x < 0.5f ? 0.0f : 1.0f; }
 };
 
 TEST(LightValues, CutOutsDoNotEmit) {

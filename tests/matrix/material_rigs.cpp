@@ -159,6 +159,14 @@ void AddMaterialRigs(std::vector<Rig>& rigs) {
   rigs.push_back({"cut_out_by_texture_seen",
                   Floor(Lamp("-0.2 1 0.3") + holes + Scope(seen + "\"texture alpha\" \"holes\"")),
                   {"cut-out"}});
+  const std::string facing =
+      "Texture \"facing\" \"float\" \"directionmix\" \"float tex1\" 0.9 \"float tex2\" 0.3 \"vector3 dir\" [1 2 0]\n"
+      "Texture \"cap\" \"spectrum\" \"directionmix\" \"rgb tex1\" [0.8 0.4 0.2] \"rgb tex2\" [0.2 0.3 0.7]\n";
+  rigs.push_back({"direction_mix",
+                  Room(kMatte, facing + Lamp("0.1 0.6 0.2") +
+                                   Scope("Material \"diffuse\" \"texture reflectance\" \"cap\" Translate 0 0 0.2 Shape "
+                                         "\"sphere\" \"float radius\" 0.3 \"texture alpha\" \"facing\"")),
+                  {"cut-out", "directionmix"}});
   rigs.push_back({"cut_out_lamp",
                   Room(kMatte, holes + Scope("Translate 0.1 0.5 0.2 Material \"diffuse\" "
                                              "AreaLightSource \"diffuse\" \"rgb L\" [4 3 2] Shape "

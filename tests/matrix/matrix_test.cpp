@@ -319,7 +319,7 @@ TEST(MatrixNotices, WhatIsPlantedInTenCells) {
     BuiltScene built = Build(rig->text);
     // Exposure is no part of what integrators know of a scene.
     BuiltScene bright = Build(rig->text);
-    bright.settings.imagingRatio *= 1 + static_cast<float>(Noticed());
+    bright.settings.sensor = bright.settings.sensor.ImagingRatio() * (1 + static_cast<float>(Noticed()));
     const Cell reference = RenderReference(built, errors.reference, 5);
     for (size_t k = 0; k < 2; ++k) {
       const auto mode =

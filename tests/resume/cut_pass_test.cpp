@@ -33,7 +33,7 @@ struct OwnRender {
         film(built.settings.width, built.settings.height, built.settings.crop,
              built.scene.lighting->Groups().Layers()) {
     const RenderSettings& s = built.settings;
-    if (withTechniques) techniques.emplace(s.width, s.height, s.crop, s.MaxDepth(), s.imagingRatio);
+    if (withTechniques) techniques.emplace(s.width, s.height, s.crop, s.MaxDepth(), s.sensor);
     render.emplace(built.scene, *integrator, s, 2, film, techniques ? &*techniques : nullptr);
   }
   std::unique_ptr<Integrator> integrator;

@@ -1,9 +1,9 @@
 // The head of the page: scene, verdict, how the reference came about, what was set, hints.
 import {element} from './dom.mjs';
-import {formatCount, formatPercent, formatSeconds, isNumber} from './numbers.mjs';
+import {formatCount, formatNumber, formatPercent, formatSeconds, isNumber} from './numbers.mjs';
 import {verdictOf} from './verdict.mjs';
 
-function referenceSentence({origin, file, integrator, samplesPerPixel, seconds, relativeError, noiseIsLimit}) {
+function referenceSentence({origin, file, integrator, samplesPerPixel, seconds, relMse, noiseIsLimit}) {
   const how = [];
   if (integrator) how.push(`by ${integrator}`);
   if (isNumber(samplesPerPixel)) how.push(`with ${formatCount(samplesPerPixel)} samples per pixel`);
@@ -12,8 +12,9 @@ function referenceSentence({origin, file, integrator, samplesPerPixel, seconds, 
     cached: 'The reference was rendered for an earlier comparison of this scene',
     given: `The reference, ${file}, was given`}[origin] ?? 'The reference';
   const made = how.length === 0 ? '' : origin === 'given' ? `; it was rendered ${how.join(' ')}` : ` ${how.join(' ')}`;
-  const error = isNumber(relativeError)
-    ? ` Its own noise is ${noiseIsLimit ? 'at most ' : '± '}${formatPercent(relativeError)} of the mean (RMS over the pixels).`
+  const error = isNumber(relMse)
+    ? ` Its own noise is a relMSE of ${noiseIsLimit ? 'at most ' : ''}${formatNumber(relMse)}, ` +
+      `an error of ${formatPercent(Math.sqrt(relMse))}.`
     : ' It has no variance layers, and is taken as exact.';
   return `${begin}${made}.${error}`;
 }

@@ -12,9 +12,22 @@ function joinWords(words) {
 
 function singleSentence(integrator, snapshot, at) {
   if (!snapshot?.relMse) {
-    return `At ${at}, the error of ${integrator.name} cannot be told apart from the reference’s own noise.`;
+    return `At ${at}, the relMSE of ${integrator.name} cannot be told apart from the reference’s own noise.`;
   }
   return `At ${at}, ${integrator.name} has a relMSE of ${formatInterval(snapshot.relMse)}.`;
+}
+
+// What MSE shows and relMSE does not, or shows the other way round: the rows below say so, and so must the verdict.
+function mseSentences(results, ratios, kind, budget) {
+  return ratios.flatMap((ratio) => {
+    const inMse = ratioOf(results, ratio.integrator, ratio.against, kind, budget, 'mse');
+    if (inMse === null || includesOne(inMse)) return [];
+    const isBetter = inMse.value > 1;
+    if (isBetter && !includesOne(ratio)) return [];
+    const better = isBetter ? inMse
+      : ratioOf(results, ratio.against, ratio.integrator, kind, budget, 'mse');
+    return [`In MSE, ${better.integrator} has ${times(better)} the efficiency of ${better.against}.`];
+  });
 }
 
 function ratioSentence(results, {kind, budget}, at) {
@@ -37,9 +50,10 @@ function ratioSentence(results, {kind, budget}, at) {
     }
     for (const ratio of open) {
       const begin = shown.length > 0 ? 'Between' : `At ${at}, between`;
-      sentences.push(`${begin} ${best} and ${ratio.against} no difference was shown: the ratio of their efficiencies ` +
-        `is ${times(ratio)}${isNumber(ratio.high) ? '' : ', of a single repeat and so without an interval'}.`);
+      sentences.push(`${begin} ${best} and ${ratio.against} no difference was shown in relMSE: the ratio of their ` +
+        `efficiencies is ${times(ratio)}${isNumber(ratio.high) ? '' : ', of a single repeat and so without an interval'}.`);
     }
+    sentences.push(...mseSentences(results, ratios, kind, budget));
     if (ratios.length === 0) {
       sentences.push(singleSentence(measured[0].integrator,
         snapshotAt(measured[0].integrator, kind, budget), at));
@@ -50,7 +64,7 @@ function ratioSentence(results, {kind, budget}, at) {
     return snapshot && !snapshot.relMse;
   });
   if (unresolved.length > 0) {
-    const begin = sentences.length > 0 ? 'The error' : `At ${at}, the error`;
+    const begin = sentences.length > 0 ? 'The relMSE' : `At ${at}, the relMSE`;
     sentences.push(`${begin} of ${joinWords(unresolved.map(({name}) => name))} cannot be told apart from the ` +
       'reference’s own noise.');
   }

@@ -30,6 +30,27 @@ TEST(Diagnostics, ReportsEachWarningOnce) {
             (std::vector<std::string>{"a.pbrt:1:2: warning: first", "a.pbrt:2:2: warning: first"}));
 }
 
+// Texts that differ in numbers and quoted names are of one kind: three are printed, the rest is counted.
+TEST(Diagnostics, PrintsFewOfAKindAndCountsTheRest) {
+  testing::internal::CaptureStderr();
+  {
+    Diagnostics diagnostics;
+    for (int line = 1; line <= 40; ++line) diagnostics.Warn(At(line, 1), "TransformBegin is deprecated");
+    for (int i = 0; i < 5; ++i)
+      diagnostics.Warn(At(50, i), "there is no \"" + std::to_string(i) + "\" of " + std::to_string(i));
+    diagnostics.Warn(At(50, 0), "there is no \"0\" of 0");  // said already
+    diagnostics.Warn("another");
+  }
+  EXPECT_EQ(testing::internal::GetCapturedStderr(),
+            "a.pbrt:1:1: warning: TransformBegin is deprecated\n"
+            "a.pbrt:50:0: warning: there is no \"0\" of 0\n"
+            "a.pbrt:50:1: warning: there is no \"1\" of 1\n"
+            "a.pbrt:50:2: warning: there is no \"2\" of 2\n"
+            "warning: another\n"
+            "warning: 39 more like this: TransformBegin is deprecated\n"
+            "warning: 2 more like this: there is no \"0\" of 0\n");
+}
+
 TEST(Diagnostics, StrictThrows) {
   Diagnostics diagnostics(Diagnostics::Mode::Strict);
   EXPECT_THROW(diagnostics.Warn(At(1, 2), "odd"), Error);

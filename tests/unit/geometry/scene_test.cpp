@@ -305,7 +305,7 @@ TEST(Instances, EqualTheBakedShapes) {
 class ConstantAlpha : public AlphaSource {
  public:
   explicit ConstantAlpha(float alpha) : alpha_(alpha) {}
-  float Alpha(const Point2&, const Point3&) const override { return alpha_; }
+  float Alpha(const Point2&, const Point3&, const Normal3&) const override { return alpha_; }
 
  private:
   float alpha_;
@@ -315,7 +315,7 @@ class ConstantAlpha : public AlphaSource {
 class HalfAlpha : public AlphaSource {
  public:
   explicit HalfAlpha(bool byPosition) : byPosition_(byPosition) {}
-  float Alpha(const Point2& uv, const Point3& p) const override {
+  float Alpha(const Point2& uv, const Point3& p, const Normal3&) const override {
     return (byPosition_ ? p.x > 1 : uv.x > 0.5f) ? 1.0f : 0.0f;
   }
 
@@ -348,8 +348,8 @@ TEST(CutOut, FrequencyIsTheOpacity) {
         const Ray ray{{random.Uniform(-0.9f, 0.9f), random.Uniform(-0.9f, 0.9f), 0.5f}, {0, 0, -1}};
         RayHit hit;
         const bool found = scene.Intersect(ray, visibility::kAll, hit);
-        ASSERT_NEAR(scene.Transmission(ray, visibility::kAll).g, 1 - alpha, 1e-6f);  // the mean
-        ASSERT_EQ(found, scene.Intersect(ray, visibility::kAll, hit));               // the same ray, the same answer
+        ASSERT_NEAR(scene.Transmittance(ray, visibility::kAll).g, 1 - alpha, 1e-6f);  // the mean
+        ASSERT_EQ(found, scene.Intersect(ray, visibility::kAll, hit));                // the same ray, the same answer
         stopped += found;
       }
       const double expected = static_cast<double>(alpha), sigma = std::sqrt(expected * (1 - expected) / kCount);
@@ -385,7 +385,7 @@ TEST(CutOut, BothSidesOfAShapeAreIndependent) {
         const Ray ray{{random.Uniform(-0.9f, 0.9f), random.Uniform(-0.9f, 0.9f), 5}, {0, 0, -1}};
         RayHit hit;
         const bool found = scene.Intersect(ray, visibility::kAll, hit);
-        ASSERT_NEAR(scene.Transmission(ray, visibility::kAll).g, (1 - alpha) * (1 - alpha), 1e-6f);
+        ASSERT_NEAR(scene.Transmittance(ray, visibility::kAll).g, (1 - alpha) * (1 - alpha), 1e-6f);
         stopped += found;
       }
       const double expected = 1 - std::pow(1 - static_cast<double>(alpha), 2);
@@ -411,17 +411,17 @@ TEST(CutOut, LayersAreIndependent) {
     const Ray ray{{random.Uniform(0, 0.5f), random.Uniform(0, 0.5f), 1}, {0, 0, -1}};
     RayHit hit;
     stopped += scene.Intersect(ray, visibility::kAll, hit);
-    ASSERT_EQ(scene.Transmission(ray, visibility::kAll), Color(0.125f));
+    ASSERT_EQ(scene.Transmittance(ray, visibility::kAll), Color(0.125f));
   }
   EXPECT_NEAR(static_cast<double>(stopped) / kCount, 0.875, 5 * std::sqrt(0.875 * 0.125 / kCount));
 }
 
 // Sheets by the angle, and in colours: those in front of what is hit, and only those, whatever order they are met in.
-class Pane : public SheetSource {
+class Pane : public ThinSurface {
  public:
   Pane(float part, const Color& tint) : part_(part), tint_(tint) {}
-  float PassingPart(float cosTheta) const override { return part_ * cosTheta; }
-  Color Tint(const Point2&, const Point3&) const override { return tint_; }
+  float StraightPart(float cosTheta) const override { return part_ * cosTheta; }
+  Color Tint(const Point2&, const Point3&, const Normal3&) const override { return tint_; }
   bool IsClear() const override { return tint_ == Color(1.0f); }
 
  private:
@@ -431,11 +431,11 @@ class Pane : public SheetSource {
 
 TEST(Sheets, PassInProportionAndColour) {
   GeometryDescription description;
-  const auto add = [&](float z, std::shared_ptr<const SheetSource> sheet) {
+  const auto add = [&](float z, std::shared_ptr<const ThinSurface> sheet) {
     TriangleMesh mesh = UnitTriangle();
     for (Point3& p : mesh.positions) p = Point3(p.x * 8 - 2, p.y * 8 - 2, z);
     description.entries.push_back(Entry(MeshShape(mesh), nullptr));
-    description.entries.back().attributes.sheet = std::move(sheet);
+    description.entries.back().attributes.thin = std::move(sheet);
   };
   add(0, std::make_shared<Pane>(0.8f, Color(1, 0.5f, 0.25f)));
   add(-3, std::make_shared<Pane>(0.8f, Color(0.0f)));  // behind the wall
@@ -457,15 +457,71 @@ TEST(Sheets, PassInProportionAndColour) {
     ASSERT_NEAR(passed.r, expected.r, 1e-6f) << hit.primitive;
     ASSERT_NEAR(passed.g, expected.g, 1e-6f) << hit.primitive;
     ASSERT_NEAR(passed.b, expected.b, 1e-6f) << hit.primitive;
-    ASSERT_TRUE(scene.GetSurfacePoint(ray, hit).isSheet == !isWall);
-    EXPECT_TRUE(scene.Transmission(ray, visibility::kAll).IsBlack());
+    ASSERT_TRUE(scene.GetSurfacePoint(ray, hit).isThin == !isWall);
+    EXPECT_TRUE(scene.Transmittance(ray, visibility::kAll).IsBlack());
     ray.tMax = 3.6f;  // in front of the wall
-    const Color left = scene.Transmission(ray, visibility::kAll);
+    const Color left = scene.Transmittance(ray, visibility::kAll);
     ASSERT_NEAR(left.r, 0.64f * 0.4f * 0.5f, 1e-6f);
     ASSERT_NEAR(left.b, 0.64f * 0.4f * 0.25f, 1e-6f);
   }
   const double expected = 0.64 * 0.4;
   EXPECT_NEAR(static_cast<double>(reached) / kCount, expected, 5 * std::sqrt(expected * (1 - expected) / kCount));
+}
+
+// Twenty tinted panes in random order, a tinted sphere, and panes of a mirrored instance: `Trace` reports those before
+// the hit by increasing distance, with the side that each is met from.
+TEST(Crossings, AreInOrderWithTheirSides) {
+  GeometryDescription description;
+  const auto tinted = std::make_shared<Pane>(1.0f, Color(0.9f, 0.8f, 0.7f));
+  Random random(45);
+  const auto pane = [](float z, bool facesUp) {
+    TriangleMesh mesh = UnitTriangle();
+    for (Point3& p : mesh.positions) p = Point3(p.x * 8 - 2, p.y * 8 - 2, z);
+    if (!facesUp) std::swap(mesh.triangles[0][0], mesh.triangles[0][1]);
+    return MeshShape(mesh);
+  };
+  std::vector<std::pair<float, bool>> expected;  // height and whether the pane faces up
+  for (int i = 0; i < 20; ++i) {
+    expected.push_back({random.Uniform(-9, 9), random.Uniform(0, 1) < 0.5f});
+    description.entries.push_back(Entry(pane(expected.back().first, expected.back().second), nullptr));
+    description.entries.back().attributes.thin = tinted;
+  }
+  description.entries.push_back(Entry(Sphere(0.5f), nullptr));
+  description.entries.back().attributes.thin = tinted;
+  expected.push_back({0.5f, true});
+  expected.push_back({-0.5f, false});
+  description.entries.push_back(Entry(pane(-10, true), nullptr));  // the wall
+  const uint32_t wall = static_cast<uint32_t>(description.entries.size()) - 1;
+  GeometryObject object;
+  object.entries.push_back(Entry(pane(1, true), nullptr));
+  object.entries.back().attributes.thin = tinted;
+  description.objects.push_back(object);
+  const Transform mirrored = Transform::Scale({1, 1, -2});  // at a height of -2, facing down
+  description.instances.push_back({0, mirrored.ToAffine(), mirrored.Inverse().ToAffine()});
+  expected.push_back({-2, false});
+  std::sort(expected.begin(), expected.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  const GeometryScene scene(std::move(description));
+  std::vector<Crossing> crossings;
+  for (const bool fromAbove : {true, false}) {
+    const Ray ray{{0, 0, fromAbove ? 10.0f : -9.9f}, {0, 0, fromAbove ? -1.0f : 1.0f}};
+    RayHit hit;
+    ASSERT_EQ(scene.Trace(ray, visibility::kAll, hit, crossings), fromAbove);
+    if (fromAbove) {
+      EXPECT_EQ(hit.primitive, wall);
+    }
+    ASSERT_EQ(crossings.size(), expected.size());
+    Color product(1.0f);
+    for (size_t i = 0; i < crossings.size(); ++i) {
+      const auto& [height, facesUp] = expected[fromAbove ? i : expected.size() - 1 - i];
+      EXPECT_NEAR(crossings[i].t, std::abs(height - ray.origin.z), 1e-5f) << i;
+      EXPECT_EQ(crossings[i].entering, facesUp == fromAbove) << i;
+      EXPECT_EQ(crossings[i].instance, height == -2 ? 0 : kNoIndex) << i;
+      product *= crossings[i].transmittance;
+    }
+    Color tint;
+    scene.Intersect(ray, visibility::kAll, hit, tint);
+    EXPECT_EQ(tint, product);
+  }
 }
 
 TEST(CutOut, SeesTextureCoordinatesAndRenderSpacePositions) {

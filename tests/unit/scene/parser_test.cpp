@@ -262,6 +262,33 @@ TEST(Parser, MediaReachShapesAndLights) {
   EXPECT_EQ(scene.shapes.at(1).outsideMedium, "b");
 }
 
+// What is scaled to nothing is left out with a warning; the scope, Identity or Transform ends it.
+TEST(Parser, ShapesWithoutExtentAreLeftOut) {
+  Diagnostics diagnostics(Diagnostics::Mode::Collect);
+  const SceneDescription scene = ParseScene(InWorld(R"(
+    ObjectBegin "o" Shape "sphere" Scale 1 1 0 Shape "sphere" ObjectEnd
+    AttributeBegin
+      ConcatTransform [ 1 2 3 0  2 4 6 0  0 0 1 0  0 0 0 1 ]
+      Translate 1 0 0
+      Shape "sphere"
+      ObjectInstance "o"
+      Identity
+      Shape "disk"
+    AttributeEnd
+    Shape "cylinder"
+    ObjectInstance "o")"),
+                                            "scene.pbrt", diagnostics);
+  ASSERT_EQ(scene.shapes.size(), 2u);
+  EXPECT_EQ(scene.shapes[0].shape.type, "disk");
+  EXPECT_EQ(scene.shapes[1].shape.type, "cylinder");
+  EXPECT_EQ(scene.objects.at(0).shapes.size(), 1u);
+  EXPECT_EQ(scene.instances.size(), 1u);
+  EXPECT_TRUE(scene.shapes[1].placement.start.IsIdentity());
+  ASSERT_EQ(diagnostics.Warnings().size(), 3u);
+  EXPECT_THAT(diagnostics.Warnings()[0], HasSubstr("this Shape is left out: Scale at scene.pbrt:"));
+  EXPECT_THAT(diagnostics.Warnings()[2], HasSubstr("this ObjectInstance is left out: ConcatTransform at scene.pbrt:"));
+}
+
 TEST(Parser, DeepNestingIsNoProblem) {
   std::string text = "WorldBegin\n";
   for (int i = 0; i < 20000; ++i) text += "AttributeBegin ";

@@ -89,25 +89,43 @@ TEST(TextureLibrary, BadStatements) {
 TEST(TextureLibrary, WhatIsNotSupportedWarns) {
   const TextureScene scene(
       {MakeTexture("a", true, "ptex", {StringValue("filename", "a.ptx")}, 1),
-       MakeTexture("b", false, "directionmix", {VectorValue("dir", 0, 1, 0)}, 2),
        MakeTexture("c", false, "dots", {StringValue("mapping", "spherical"), FloatValue("uscale", 2)}, 3)});
   const auto warnings = scene.diagnostics.Warnings();
-  ASSERT_EQ(warnings.size(), 3u);
+  ASSERT_EQ(warnings.size(), 2u);
   EXPECT_THAT(warnings[0], StartsWith("test.pbrt:1:1: warning: texture type \"ptex\" is not supported"));
-  EXPECT_THAT(warnings[1], StartsWith("test.pbrt:2:1: warning"));
-  EXPECT_THAT(warnings[2], HasSubstr("uscale"));
+  EXPECT_THAT(warnings[1], HasSubstr("uscale"));
+}
+
+// By the cosine between the surface's normal, of either side, and `dir` in the texture's own space.
+TEST(TextureLibrary, DirectionMixFollowsTheNormal) {
+  const std::vector<Parameter> values = {FloatValue("tex1", 4), FloatValue("tex2", 1)};
+  const auto valueAt = [](const TextureScene& scene, const Normal3& normal) {
+    return scene.Float().Evaluate({{}, {}, normal});
+  };
+  const TextureScene byDefault({MakeTexture("t", false, "directionmix", values)});
+  EXPECT_FLOAT_EQ(valueAt(byDefault, {0, 1, 0}), 4);
+  EXPECT_FLOAT_EQ(valueAt(byDefault, {0, -1, 0}), 4);
+  EXPECT_FLOAT_EQ(valueAt(byDefault, {1, 0, 0}), 1);
+  EXPECT_FLOAT_EQ(valueAt(byDefault, {0.8f, 0.6f, 0}), 0.6f * 4 + 0.4f);
+  std::vector<Parameter> turned = values;
+  turned.push_back(VectorValue("dir", 3, 0, 0));
+  const TextureScene scene({MakeTexture("t", false, "directionmix", turned, 1, Transform::Rotate(90, {0, 0, 1}))});
+  EXPECT_NEAR(valueAt(scene, {0, 1, 0}), 4, 1e-6f);
+  EXPECT_NEAR(valueAt(scene, {1, 0, 0}), 1, 1e-6f);
+  EXPECT_THAT(ErrorOf({MakeTexture("a", false, "directionmix", {VectorValue("dir", 0, 0, 0)}, 3)}),
+              HasSubstr("no direction"));
 }
 
 TEST(Alpha, ConstantsAndTextures) {
   EXPECT_EQ(MakeAlphaSource(FloatParameter(1.0f)), nullptr);
   EXPECT_EQ(MakeAlphaSource(FloatParameter(2.0f)), nullptr);
-  EXPECT_FLOAT_EQ(MakeAlphaSource(FloatParameter(0.25f))->Alpha({0, 0}, Point3(0.0f)), 0.25f);
-  EXPECT_EQ(MakeAlphaSource(FloatParameter(-3.0f))->Alpha({0, 0}, Point3(0.0f)), 0.0f);
+  EXPECT_FLOAT_EQ(MakeAlphaSource(FloatParameter(0.25f))->Alpha({0, 0}, Point3(0.0f), {}), 0.25f);
+  EXPECT_EQ(MakeAlphaSource(FloatParameter(-3.0f))->Alpha({0, 0}, Point3(0.0f), {}), 0.0f);
   const TextureScene scene("checkerboard", false, {});
   const auto alpha = MakeAlphaSource(scene.Float());
   ASSERT_NE(alpha, nullptr);
-  EXPECT_EQ(alpha->Alpha({0.5f, 0.5f}, Point3(0.0f)), 1.0f);
-  EXPECT_EQ(alpha->Alpha({1.5f, 0.5f}, Point3(0.0f)), 0.0f);
+  EXPECT_EQ(alpha->Alpha({0.5f, 0.5f}, Point3(0.0f), {}), 1.0f);
+  EXPECT_EQ(alpha->Alpha({1.5f, 0.5f}, Point3(0.0f), {}), 0.0f);
 }
 
 }  // namespace

@@ -1,0 +1,52 @@
+// From radiance to what the film records: exposure, the limit on a sample's brightness, and white balance.
+#pragma once
+
+#include <glm/mat3x3.hpp>
+
+#include "math/vec.h"
+
+namespace lampyr {
+
+class SensorResponse {
+ public:
+  // `imagingRatio`: film value of radiance 1, exposure time · ISO / 100.
+  SensorResponse(float imagingRatio = 1) : imagingRatio_(imagingRatio) {}  // NOLINT: a ratio is a response
+  // `balance`: linear Rec. 709 before and after white balance. `maxComponent` > 0: samples whose largest component, in
+  // the columns of `limited` (Rec. 709 to the sensor's own channels), exceeds it are scaled down to it.
+  SensorResponse(float imagingRatio, const glm::mat3& balance, const glm::mat3& limited, float maxComponent)
+      : imagingRatio_(imagingRatio),
+        maxComponent_(maxComponent),
+        balances_(balance != glm::mat3(1.0f)),
+        balance_(balance),
+        limited_(limited) {}
+
+  float ImagingRatio() const { return imagingRatio_; }
+  bool Limits() const { return maxComponent_ < kInfinity; }
+
+  // Factor on a sample of `radiance`: exposure, and the limit where the sample is brighter.
+  float Scale(const Color& radiance) const {
+    if (!Limits()) [[likely]]
+      return imagingRatio_;
+    const Vector3 channels = limited_ * Vector3(radiance.r, radiance.g, radiance.b) * imagingRatio_;
+    const float largest = std::max({channels.x, channels.y, channels.z});
+    return largest > maxComponent_ ? imagingRatio_ * (maxComponent_ / largest) : imagingRatio_;
+  }
+  // The white balance. Saturated colours may come out with negative components.
+  Color Balance(const Color& value) const {
+    if (!balances_) [[likely]]
+      return value;
+    const Vector3 balanced = balance_ * Vector3(value.r, value.g, value.b);
+    return {balanced.x, balanced.y, balanced.z};
+  }
+  bool Balances() const { return balances_; }
+  const glm::mat3& BalanceMatrix() const { return balance_; }
+  float MaxComponent() const { return maxComponent_; }
+
+ private:
+  float imagingRatio_;
+  float maxComponent_ = kInfinity;
+  bool balances_ = false;
+  glm::mat3 balance_{1.0f}, limited_{1.0f};
+};
+
+}  // namespace lampyr
