@@ -161,12 +161,14 @@ void PointChecker::CheckReceiver(const Receiver& receiver) {
   report_.AddError(subject_.name, "irradiance", where, largest > 0 ? error / largest : 0.0, 5e-3);
 }
 
-// What the light sends the photon's way. Where the intensity jumps (on the edge of a texel) the two roundings of the
-// direction may fall on either side: of the ways within rounding, the one that is like the photon.
+// The light's sample in the direction of the photon. Where its intensity or its density jumps (on the edge of a texel)
+// the two roundings of the direction may fall on either side: of the directions within rounding, the most similar one.
 std::optional<LightSample> PointChecker::SampleOnPhotonsWay(const EmissionSample& photon) const {
   const Point3 P = position_ + distance_ * photon.direction;
   const auto difference = [&](const std::optional<LightSample>& sample) {
-    return sample ? RelativeDifference(Emitted(subject_, photon), Intensity(sample)) : 2.0;
+    if (!sample) return 2.0;
+    return std::max(RelativeDifference(Emitted(subject_, photon), Intensity(sample)),
+                    RelativeDifference(Value(photon.pdfEmitDirection), Value(sample->pdfEmitDirection)));
   };
   std::optional<LightSample> best = light_.GenerateSamples(subject_.context, P);
   if (!best || difference(best) < 1e-2) return best;

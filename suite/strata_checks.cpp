@@ -55,6 +55,9 @@ class StrataChecker {
   // ∫ pdfDirect over the directions of two strata.
   void Integrate(const Point3& P, int first, const Shares& seen, Shares& promised);
   int StratumOfSample(const LightSample& sample, const Point3& P) const;
+  double DensityOf(const LightHit& hit, const Point3& P) const;
+  // The same of one stratum by random points of the surface.
+  Estimate IntegrateSurface(const Point3& P, int stratum, int times);
   std::string Words(const Receiver& receiver, int stratum, const Estimate& promised, const Shares& seen) const;
 
   const SuiteSubject& subject_;
@@ -135,9 +138,7 @@ void StrataChecker::Integrate(const Point3& P, int first, const Shares& seen, Sh
   const auto density = [&](const LightHit& hit, double cosine) -> Integrands {
     const int stratum = StratumOf(cosine);
     if (stratum != first && stratum != first + 1) return {};
-    const auto e = light_.EvaluateSamples(subject_.context, hit, P);
-    if (!e || IsBlack(*e)) return {};
-    const double pdf = Value(e->pdfDirect);
+    const double pdf = DensityOf(hit, P);
     return stratum == first ? Integrands{pdf, 0} : Integrands{0, pdf};
   };
   const auto [one, other] = surface_.IntegrateDirections(P, hints, density, rng_, effort_ * kBudget);
@@ -148,14 +149,30 @@ void StrataChecker::Integrate(const Point3& P, int first, const Shares& seen, Sh
   if (subject_.model) return;
   for (const int stratum : {first, first + 1}) {
     if (stratum >= kStrata || (stratum > 0 && promised.of[stratum].value > 0)) continue;
-    promised.of[stratum] = surface_.IntegrateSurface(
+    promised.of[stratum] = IntegrateSurface(P, stratum, 1);
+  }
+}
+
+Estimate StrataChecker::IntegrateSurface(const Point3& P, int stratum, int times) {
+  RunningMean values;
+  double variance = 0;
+  for (int i = 0; i < times; ++i) {
+    const Estimate one = surface_.IntegrateSurface(
         P,
         [&](const LightHit& hit, double cosine) -> Integrands {
-          const Integrands both = density(hit, cosine);
-          return {stratum == first ? both.density : both.radiance, 0};
+          return {StratumOf(cosine) == stratum ? DensityOf(hit, P) : 0.0, 0};
         },
         rng_);
+    values.Add(one.value);
+    variance += one.error * one.error;
   }
+  return {EstimateOf(values).value, std::sqrt(variance) / times};
+}
+
+// pdfDirect, where light arrives.
+double StrataChecker::DensityOf(const LightHit& hit, const Point3& P) const {
+  const auto e = light_.EvaluateSamples(subject_.context, hit, P);
+  return !e || IsBlack(*e) ? 0.0 : Value(e->pdfDirect);
 }
 
 std::string StrataChecker::Words(const Receiver& receiver, int i, const Estimate& promised, const Shares& seen) const {
@@ -185,8 +202,16 @@ void StrataChecker::CheckReceiver(const Receiver& receiver) {
     if (seen.hits[i] < kEnough || (isFar && seen.of[i].value < kStrip)) continue;
     char where[96];
     std::snprintf(where, sizeof(where), " %s, cosine from %g", receiver.name.c_str(), kEdges[i]);
-    report_.AddProbability(subject_.name, "strata", subject_.caseName + where,
-                           EqualMeans(promised.of[i], seen.of[i], kTolerance),
+    double p = EqualMeans(promised.of[i], seen.of[i], kTolerance);
+    // The strip of such cosines beside a silhouette is thin among directions, and the quadrature's own estimate of its
+    // error is then too small. On the surface it is not thin.
+    constexpr double kDoubtful = 1e-4;
+    constexpr int kThinStrata = 2, kTimes = 16;
+    if (i < kThinStrata && p < kDoubtful && !subject_.model) {
+      promised.of[i] = IntegrateSurface(receiver.position, i, kTimes);
+      p = EqualMeans(promised.of[i], seen.of[i], kTolerance);
+    }
+    report_.AddProbability(subject_.name, "strata", subject_.caseName + where, p,
                            Words(receiver, i, promised.of[i], seen));
   }
 }
