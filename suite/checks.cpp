@@ -15,7 +15,7 @@ Rng MakeRngOfPlaces(const SuiteSubject& subject, const SuiteOptions& options) {
 
 Rng MakeRng(const SuiteSubject& subject, const SuiteOptions& options) {
   SuiteOptions seeded = options;
-  seeded.seed = Hash(options.seed, static_cast<uint64_t>(options.look));
+  seeded.seed = Hash(options.seed, 0);
   return MakeRngOfPlaces(subject, seeded);
 }
 
@@ -137,7 +137,8 @@ std::optional<FixedStart> FindFixedStart(const SuiteSubject& subject, FixedPart 
     const Vector3 difference = part == FixedPart::Position ? a.position - b.position : a.direction - b.direction;
     return static_cast<double>(glm::length(difference)) > tolerance;
   };
-  for (int attempt = 0; attempt < 200; ++attempt) {
+  constexpr int kAttempts = 20000;  // a narrow beam leaves from few places of a surface
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
     FixedStart start;
     start.context = RandomContext(subject, rng);
     const auto photon = subject.light->GenerateEmission(start.context);

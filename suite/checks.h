@@ -36,8 +36,7 @@ SuiteReport RunCases(size_t count, const SuiteOptions& options,
 
 // A generator of the case's own: results do not depend on what ran before, or on which thread.
 Rng MakeRng(const SuiteSubject& subject, const SuiteOptions& options);
-// A generator that does not depend on SuiteOptions::look, for receivers and fixed starts: both looks test the same
-// places with independent samples.
+// Another one, for receivers and fixed starts.
 Rng MakeRngOfPlaces(const SuiteSubject& subject, const SuiteOptions& options);
 LightContext RandomContext(const SuiteSubject& subject, Rng& rng);
 

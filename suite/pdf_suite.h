@@ -59,11 +59,12 @@ class SuiteReport {
   void AddError(const std::string& light, const std::string& property, const std::string& caseName, double error,
                 double tolerance, const std::string& words = "");
   void Add(const SuiteReport& other);
-  // The number of p-values below `p`.
-  size_t CountBelow(double p) const;
-  // A second look at the same light, by other random numbers: each p-value below `doubtful` becomes the larger of the
-  // two. A fault is found in both; a quadrature that has missed a narrow feature, and knows nothing of its error, is
-  // not wrong at the same place again.
+  // The number of errors that are not allowed, and of p-values below `p`.
+  size_t CountDoubtful(double p) const;
+  // Another look at the same light, from other places and by other random numbers: of each error that is not allowed,
+  // and each p-value below `doubtful`, the better of the two is kept. A fault is found in both. A sample that happens to
+  // lie on the edge of a texel, or a quadrature that misses a narrow feature and underestimates its error, is not met
+  // in the same case again.
   void Confirm(const SuiteReport& again, double doubtful);
   // Judges the p-values at a family-wise level over all that were added.
   std::vector<SuiteResult> Finish(double familyWise);
@@ -90,7 +91,6 @@ struct SuiteOptions {
   uint64_t seed = 1;
   int threads = 1;  // of RunPdfSuite; the results are the same with any number
   unsigned parts = kAllParts;
-  int look = 0;           // which of several at the same places, by other random numbers
   int effort = 1;         // multiplies the number of points that a quadrature may take
   int caseEvery = 1;      // of RunPdfSuite: each n-th of the placed lights
   int thoroughEvery = 1;  // of RunPdfSuite: each n-th of the cases that would be looked at thoroughly
