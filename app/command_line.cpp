@@ -16,6 +16,7 @@
 
 #include "app/command_support.h"
 #include "app/commands.h"
+#include "app/help_formatter.h"
 #include "base/version.h"
 #include "integrators/registry.h"
 
@@ -82,15 +83,21 @@ std::string HelpOf(const Setting& setting) {
 }
 
 // An option for each setting of an integrator: --name VALUE, of switches --name and --no-name.
+// Of numbers "N" and "X", of words "WORD".
+const char* KindOf(const SettingValue& value) {
+  return std::holds_alternative<int64_t>(value) ? "N" : std::holds_alternative<double>(value) ? "X" : "WORD";
+}
+
 void DefineSettings(CLI::App& app, std::map<std::string, SettingValue>& values) {
   const Settings all = IntegratorSettings();
   for (const auto& [declared, fallback] : all.All()) {
     const Setting* setting = declared;
     const std::string name = "--" + setting->name, help = HelpOf(*setting);
-    if (std::holds_alternative<bool>(fallback)) {
+    if (const bool* isOn = std::get_if<bool>(&fallback)) {
+      const std::string off = "!--no-" + setting->name;
       app.add_flag(
-          name + ",!--no-" + setting->name, [&values, setting](int64_t times) { values[setting->name] = times > 0; },
-          help);
+          *isOn ? off + "," + name : name + "," + off,
+          [&values, setting](int64_t times) { values[setting->name] = times > 0; }, help);
       continue;
     }
     app.add_option_function<std::string>(
@@ -104,7 +111,8 @@ void DefineSettings(CLI::App& app, std::map<std::string, SettingValue>& values) 
                 return error.Text();
               }
             },
-            ""));
+            ""))
+        ->type_name(KindOf(fallback));
   }
 }
 
@@ -112,6 +120,7 @@ void DefinePluginOption(CLI::App& app, PluginOptions& plugins, bool readsScenes 
   app.add_option("--plugin", plugins.files,
                  "A plugin with types of lights and filters, e.g. ring.so; may be given several times. Those in the "
                  "folders of LAMPYR_PLUGIN_PATH are loaded, too")
+      ->type_name("FILE")
       ->allow_extra_args(false);
   if (!readsScenes) return;
   app.add_flag("--allow-scene-plugins", plugins.allowsScenePlugins,
@@ -122,9 +131,10 @@ void DefinePluginOption(CLI::App& app, PluginOptions& plugins, bool readsScenes 
 void DefineSceneOptions(CLI::App& app, RenderOverrides& overrides, std::string& resolution, int& threads) {
   app.add_option("--seed", overrides.seed, "Seed of the random numbers (0)");
   app.add_option("--threads", threads, "Threads (all)")->check(CLI::Range(1, 4096));
-  app.add_option("--resolution", resolution, "Size of the image, e.g. 640x360");
-  app.add_option("--crop", overrides.crop, "x0,x1,y0,y1: the part to render, in fractions of the image or in pixels");
-  app.add_option("--sampler", overrides.sampler, "sobol | independent");
+  app.add_option("--resolution", resolution, "Size of the image, e.g. 640x360")->type_name("WxH");
+  app.add_option("--crop", overrides.crop, "x0,x1,y0,y1: the part to render, in fractions of the image or in pixels")
+      ->type_name("X0,X1,Y0,Y1");
+  app.add_option("--sampler", overrides.sampler, "sobol | independent")->type_name("NAME");
   DefineSettings(app, overrides.values);
 }
 
@@ -149,31 +159,37 @@ struct RenderCommand {
 
   void Define(CLI::App& app) {
     RenderOverrides& overrides = options.overrides;
-    app.add_option("scene", options.scene, "The scene: a pbrt-v4 file (.pbrt, .pbrt.gz)")->required();
-    app.add_option("-o,--output", options.output, "The image to write (.exr); default: the name in the scene");
+    app.add_option("scene", options.scene, "The scene: a pbrt-v4 file (.pbrt, .pbrt.gz)")
+        ->type_name("FILE")
+        ->required();
+    app.add_option("-o,--output", options.output, "The image to write (.exr); default: the name in the scene")
+        ->type_name("FILE");
     app.add_flag("--png", options.png, "Also write a tone-mapped PNG beside it");
     app.add_option("--exposure", options.exposure, "Exposure of the PNG in stops (0)")->check(CheckFinite, "");
     app.add_flag("--clip", options.clipPng, "Clip the PNG at white instead of rolling highlights off");
     std::string names;
     for (const IntegratorType& type : IntegratorRegistry()) names += (names.empty() ? "" : " | ") + type.name;
-    app.add_option("--integrator", overrides.integrator, names + ", or auto: as `lampyr plan` says");
+    app.add_option("--integrator", overrides.integrator, names + ", or auto: as `lampyr plan` says")->type_name("NAME");
     app.add_option("--spp", overrides.samplesPerPixel, "Stop after this many samples per pixel")
         ->check(CLI::Range(1, 1 << 30));
-    app.add_option("--time", time, "Stop after this time: 90s, 5m, 2h");
+    app.add_option("--time", time, "Stop after this time: 90s, 5m, 2h")->type_name("DURATION");
     app.add_option("--target-error", options.targetError,
                    "Stop when the estimated relative error (95 % confidence) is below this, e.g. 0.02")
         ->check(CheckPositive, "POSITIVE");
     DefineSceneOptions(app, overrides, resolution, options.threads);
     DefinePluginOption(app, options.plugins);
     app.add_option("--checkpoint", checkpoint,
-                   "Write the image and what it takes to go on (OUT.checkpoint) this often: 30s, 5m. It stays there");
+                   "Write the image and what it takes to go on (OUT.checkpoint) this often: 30s, 5m. It stays there")
+        ->type_name("DURATION");
     app.add_flag("--resume", options.resume,
                  "Go on where OUT.checkpoint ends, if there is one, and write more of them (every minute)");
     app.add_option("--shard", shard,
-                   "Render one part of the samples, e.g. 2/8, for `lampyr merge`; default of --output: OUT.2-of-8.exr");
-    app.add_option("--stats", options.stats, "Write statistics to this JSON file");
+                   "Render one part of the samples, e.g. 2/8, for `lampyr merge`; default of --output: OUT.2-of-8.exr")
+        ->type_name("I/N");
+    app.add_option("--stats", options.stats, "Write statistics to this JSON file")->type_name("FILE");
     app.add_option("--strategy-images", options.strategyImages,
-                   "Write what each technique of bdpt contributes, weighted and not, to this folder");
+                   "Write what each technique of bdpt contributes, weighted and not, to this folder")
+        ->type_name("FOLDER");
     app.add_flag("--quiet", options.quiet, "No progress and no summary");
     app.add_flag("--strict", options.strict, "Warnings about the scene are errors");
     app.add_flag("--fast-intersection", fast,
@@ -195,8 +211,8 @@ struct MergeCommand {
   MergeOptions options;
 
   void Define(CLI::App& app) {
-    app.add_option("parts", options.parts, "Images of `lampyr render --shard`")->required();
-    app.add_option("-o,--output", options.output, "The image to write (.exr)")->required();
+    app.add_option("parts", options.parts, "Images of `lampyr render --shard`")->type_name("FILE")->required();
+    app.add_option("-o,--output", options.output, "The image to write (.exr)")->type_name("FILE")->required();
     app.add_flag("--partial", options.partial, "Merge what there is, even if parts are missing or not finished");
     app.add_flag("--png", options.png, "Also write a tone-mapped PNG beside it");
     app.add_option("--exposure", options.exposure, "Exposure of the PNG in stops (0)")->check(CheckFinite, "");
@@ -210,8 +226,11 @@ struct PngCommand {
   PngOptions options;
 
   void Define(CLI::App& app) {
-    app.add_option("image", options.input, "The image: an EXR, or another format that textures may have")->required();
-    app.add_option("-o,--output", options.output, "The PNG to write; default: beside the image, with its name");
+    app.add_option("image", options.input, "The image: an EXR, or another format that textures may have")
+        ->type_name("FILE")
+        ->required();
+    app.add_option("-o,--output", options.output, "The PNG to write; default: beside the image, with its name")
+        ->type_name("FILE");
     app.add_option("--exposure", options.exposure, "Exposure in stops (0)")->check(CheckFinite, "");
     app.add_flag("--clip", options.clip, "Clip at white instead of rolling highlights off");
     app.add_flag("--quiet", options.quiet, "No summary");
@@ -224,8 +243,11 @@ struct PlanCommand {
 
   void Define(CLI::App& app) {
     options.overrides.integrator = "auto";
-    app.add_option("scene", options.scene, "The scene: a pbrt-v4 file (.pbrt, .pbrt.gz)")->required();
-    app.add_option("--integrator", options.overrides.integrator, "Instead of the one that suits the scene");
+    app.add_option("scene", options.scene, "The scene: a pbrt-v4 file (.pbrt, .pbrt.gz)")
+        ->type_name("FILE")
+        ->required();
+    app.add_option("--integrator", options.overrides.integrator, "Instead of the one that suits the scene")
+        ->type_name("NAME");
     app.add_flag("--strict", options.strict, "Warnings about the scene are errors");
     DefinePluginOption(app, options.plugins);
   }
@@ -236,14 +258,15 @@ struct DiffCommand {
   DiffOptions options;
 
   void Define(CLI::App& app) {
-    app.add_option("a", options.a, "The image that is judged")->required();
-    app.add_option("b", options.b, "The reference")->required();
+    app.add_option("a", options.a, "The image that is judged")->type_name("FILE")->required();
+    app.add_option("b", options.b, "The reference")->type_name("FILE")->required();
     app.add_option("--block", options.blockSize, "Side of the z-test's blocks in pixels (8)")
         ->check(CLI::Range(1, 4096));
     app.add_flag("--json", options.json, "Print JSON");
     app.add_flag("--fail", options.fail, "Exit with 1 unless the images are equal or agree");
     app.add_option("-o,--output", options.output,
-                   "Write the error image (.exr): the absolute difference of each pixel, and its relative error");
+                   "Write the error image (.exr): the absolute difference of each pixel, and its relative error")
+        ->type_name("FILE");
   }
   int Run() { return RunDiff(options); }
 };
@@ -252,8 +275,8 @@ struct CheckLightsCommand {
   CheckLightsOptions options;
 
   void Define(CLI::App& app) {
-    app.add_option("scene", options.scene, "A scene, whose lights are checked as they are placed");
-    app.add_option("--type", options.type, "Only this type of light or of light filter");
+    app.add_option("scene", options.scene, "A scene, whose lights are checked as they are placed")->type_name("FILE");
+    app.add_option("--type", options.type, "Only this type of light or of light filter")->type_name("NAME");
     DefinePluginOption(app, options.plugins);
     app.add_flag("--json", options.json, "Print JSON");
     app.add_option("--seed", options.seed, "Seed of the samples (1)");
@@ -266,7 +289,7 @@ struct LightsCommand {
   LightsOptions options;
 
   void Define(CLI::App& app) {
-    app.add_option("type", options.type, "Only this type");
+    app.add_option("type", options.type, "Only this type")->type_name("NAME");
     DefinePluginOption(app, options.plugins, false);
   }
   int Run() { return RunLights(options); }
@@ -279,27 +302,35 @@ struct CompareCommand {
   bool fast = false;
 
   void Define(CLI::App& app) {
-    app.add_option("scene", options.scene, "The scene: a pbrt-v4 file (.pbrt, .pbrt.gz)")->required();
+    app.add_option("scene", options.scene, "The scene: a pbrt-v4 file (.pbrt, .pbrt.gz)")
+        ->type_name("FILE")
+        ->required();
     app.add_option("-o,--output", options.output,
-                   "The folder for results.csv, results.json, report.html and the reference; default: SCENE-compare");
+                   "The folder for results.csv, results.json, report.html and the reference; default: SCENE-compare")
+        ->type_name("FOLDER");
     app.add_option(
            "--integrators", options.integrators,
            "Which to compare, e.g. path,bdpt (path,bdpt); path:shadow-threshold=0.01 is one with a setting changed")
+        ->type_name("NAME,…")
         ->delimiter(',')
         ->allow_extra_args(false);
     app.add_option("--budget", times, "Times to compare at, e.g. 5s,20s,80s (1s,4s,16s)")
+        ->type_name("DURATION,…")
         ->delimiter(',')
         ->allow_extra_args(false);
     app.add_option("--spp", options.sampleCounts, "Samples per pixel to compare at, e.g. 4,16,64")
+        ->type_name("N,…")
         ->delimiter(',')
         ->allow_extra_args(false)
         ->check(CLI::Range(1, 1 << 30));
     app.add_option("--repeat", options.repeats, "Renders with other seeds that the intervals come from (5)")
         ->check(CLI::Range(2, 1000));
     app.add_option("--reference", options.reference,
-                   "An image to measure against; default: made, and kept in the folder");
+                   "An image to measure against; default: made, and kept in the folder")
+        ->type_name("FILE");
     app.add_option("--reference-time", referenceTime,
-                   "Time to make the reference in; default: ten times the longest render");
+                   "Time to make the reference in; default: ten times the longest render")
+        ->type_name("DURATION");
     app.add_option("--exposure", options.exposure, "Exposure of the pictures in stops (0)")->check(CheckFinite, "");
     DefineSceneOptions(app, options.overrides, resolution, options.threads);
     DefinePluginOption(app, options.plugins);
@@ -426,6 +457,11 @@ int ParseAndRun(int argc, char** argv) {
   CLI::App app("lampyr: a renderer whose subject is the light", "lampyr");
   app.set_version_flag("--version", std::string("lampyr ") + kVersion);
   app.require_subcommand(1);
+  const auto formatter = std::make_shared<HelpFormatter>();
+  for (const auto& [name, shown] :
+       {std::pair("INT", "N"), std::pair("UINT", "N"), std::pair("FLOAT", "X"), std::pair("TEXT", "NAME")})
+    formatter->label(name, shown);
+  app.formatter(formatter);
   Commands commands(app, argc, argv);
   try {
     std::vector<std::string> words = CommandWords(app, argc, argv);

@@ -193,9 +193,9 @@ namespace {
 // Merging radius of the first pass by default, in pixel footprints: a blur no wider than that of most pixel filters.
 constexpr double kRadiusInPixels = 1;
 
-const Setting kMerge{.name = "merge", .help = "Merge with photons", .fallback = true, .without = "it is bdpt"};
+const Setting kMerge{.name = "merge", .help = "Merge camera vertices with photons nearby", .fallback = true, .without = "it is bdpt"};
 const Setting kConnect{
-    .name = "connect", .help = "Connect vertices", .fallback = true, .without = "it is bidirectional photon mapping"};
+    .name = "connect", .help = "Connect vertices of camera and light paths", .fallback = true, .without = "it is bidirectional photon mapping"};
 
 BidirectionalSettings SettingsOf(const IntegratorInput& input) {
   BidirectionalSettings settings;
@@ -233,7 +233,7 @@ std::vector<std::string> BdptHints(const RenderScene& scene) {
 IntegratorType BdptIntegratorType() {
   IntegratorType type;
   type.name = "bdpt";
-  type.help = "paths from both sides, each vertex of one connected to each of the other";
+  type.help = "paths from the camera and the lights, each vertex of one connected to each of the other";
   type.settings = common_settings::kOfNextEvent;
   type.create = [](const IntegratorInput& input) { return MakeBidirectionalIntegrator(SettingsOf(input)); };
   type.hasTechniques = true;
@@ -244,7 +244,7 @@ IntegratorType BdptIntegratorType() {
 IntegratorType VcmIntegratorType() {
   IntegratorType type;
   type.name = "vcm";
-  type.help = "the same, and photons of other light paths near each vertex of the camera's";
+  type.help = "bdpt, and merging with photons near camera vertices";
   type.settings = common_settings::kOfNextEvent;
   type.settings.insert(type.settings.end(), photon_settings::kAll.begin(), photon_settings::kAll.end());
   type.settings.insert(type.settings.end(), {&kMerge, &kConnect});

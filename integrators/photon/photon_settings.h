@@ -18,15 +18,15 @@ inline const Setting kPhotons{.name = "photons",
 // Which light paths are left out at the memory limit affects the picture, so the limit is the same on all machines.
 inline const Setting kPhotonMemory{.name = "photon-memory",
                                    .help =
-                                       "Memory for the photons of a pass, e.g. 512M; fewer light paths where it does "
-                                       "not do. The same on any machine: the picture depends on it",
+                                       "Memory for the photons of a pass, e.g. 512M; fewer light paths if it is used "
+                                       "up. The picture depends on it",
                                    .fallback = int64_t{4} << 30,
                                    .least = 1,
                                    .most = 1e15,
                                    .unit = "bytes",
                                    .isInScenes = false};
 inline const Setting kRadius{.name = "radius",
-                             .help = "Where photons are gathered in the first pass",
+                             .help = "Gather radius of the first pass",
                              .fallback = 0.0,
                              .least = std::numeric_limits<float>::min(),
                              .most = std::numeric_limits<float>::max(),
@@ -34,12 +34,13 @@ inline const Setting kRadius{.name = "radius",
                              .unit = "scene units",
                              .fallbackText = "from the size of pixels"};
 inline const Setting kAlpha{.name = "alpha",
-                            .help = "How fast that radius shrinks, as pass^((alpha - 1) / 2)",
+                            .help = "How fast the gather radius shrinks, as pass^((alpha - 1) / 2)",
                             .fallback = 2. / 3,
                             .least = 0,
                             .most = 1};
-inline const Setting kGuidePhotons{
-    .name = "guide-photons", .help = "Learn where photons are of use, and aim them there if it pays", .fallback = true};
+inline const Setting kGuidePhotons{.name = "guide-photons",
+                                   .help = "Guide photons to where they contribute, if that reduces the noise",
+                                   .fallback = true};
 
 inline const std::vector<const Setting*> kAll = {&kPhotons, &kPhotonMemory, &kRadius, &kAlpha, &kGuidePhotons};
 

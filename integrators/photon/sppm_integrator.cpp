@@ -162,7 +162,7 @@ Color SppmIntegrator::Sample(const Ray* ray, const SampleContext& context) const
 IntegratorType SppmIntegratorType() {
   IntegratorType type;
   type.name = "sppm";
-  type.help = "direct light as path finds it, all other light from photons where it is scattered widely";
+  type.help = "direct light as path finds it, all other light from photons at the first diffuse or glossy vertices";
   type.settings = common_settings::kOfNextEvent;
   type.settings.insert(type.settings.end(), photon_settings::kAll.begin(), photon_settings::kAll.end());
   type.settings.push_back(&kDirectPhotons);

@@ -52,7 +52,7 @@ inline const Setting kLightSampler{.name = "light-sampler",
                                    .fallback = std::string("tree"),
                                    .choices = {"uniform", "power", "tree", "exhaustive", "bvh"}};
 inline const Setting kLightSamples{.name = "light-samples",
-                                   .help = "Lights to choose at each vertex, at most; fewer where few matter",
+                                   .help = "Most lights to choose at each vertex; fewer where few matter",
                                    .fallback = int64_t{1},
                                    .least = 1,
                                    .most = LightChoices::kMost};
@@ -61,14 +61,14 @@ inline const Setting kLearnLights{
 inline const Setting kShadowRoulette{
     .name = "shadow-roulette",
     .help =
-        "Trace shadow rays by chance whose light is below this part of what their sample has gathered: the mean "
-        "stays; 0: trace all",
+        "Russian roulette for shadow rays whose light is below this fraction of what their sample has gathered; "
+        "unbiased; 0: off",
     .fallback = 0.05,
     .least = 0,
     .most = 1};
 inline const Setting kShadowThreshold{
     .name = "shadow-threshold",
-    .help = "Leave out light that is below this, in the image's units, without a shadow ray: faster, and biased",
+    .help = "Drop light below this value, in the image's units, without a shadow ray: faster, and biased",
     .fallback = 0.0,
     .least = 0,
     .most = std::numeric_limits<float>::max(),
