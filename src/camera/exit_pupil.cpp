@@ -1,0 +1,121 @@
+#include "camera/exit_pupil.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace lampyr {
+
+namespace {
+
+constexpr int kRings = 128;
+constexpr int kAcross = 48;  // cells of a grid over the bounds; half as many from y = 0 on
+constexpr int kMostGrids = 40;
+constexpr double kSettled = 0.6;  // the next grid would not cover much less than the last one
+constexpr int kBisections = 20;
+
+using Bounds = std::optional<PupilBounds>;
+
+// What a grid of rays through `region` has met: the bounds of those that pass, with a cell around them; or else where
+// a ray came nearest to passing.
+struct Met {
+  Bounds passed;
+  double nearestX = 0, nearestY = 0;
+  bool hasNearest = false;
+};
+
+Met Look(const LensSystem& lens, double filmRadius, const PupilBounds& region) {
+  const double cellX = (region.xMax - region.xMin) / kAcross, cellY = region.yMax / (kAcross / 2);
+  Met met;
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i <= kAcross; ++i) {
+    for (int k = 0; k <= kAcross / 2; ++k) {
+      const double x = region.xMin + i * cellX, y = k * cellY;
+      const Vector3d way(x - filmRadius, y, lens.RearZ());
+      const double clearance = lens.Clearance({{filmRadius, 0, 0}, glm::normalize(way)});
+      if (clearance <= 1) {
+        PupilBounds& all = met.passed ? *met.passed : met.passed.emplace(PupilBounds{x, x, y});
+        all = {std::min(all.xMin, x), std::max(all.xMax, x), std::max(all.yMax, y)};
+      } else if (clearance < least) {
+        least = clearance;
+        met.nearestX = x;
+        met.nearestY = y;
+        met.hasNearest = true;
+      }
+    }
+  }
+  if (met.passed) {
+    const PupilBounds& all = *met.passed;
+    met.passed = PupilBounds{all.xMin - cellX, all.xMax + cellX, all.yMax + cellY};
+  }
+  return met;
+}
+
+// The bounds for a film point at `filmRadius`: a grid over all of the rear surface, then finer ones where rays pass, or
+// nearly pass, which finds pupils of any size. The pupil is symmetric in y.
+Bounds Find(const LensSystem& lens, double filmRadius) {
+  const double reach = lens.RearReach(filmRadius);
+  PupilBounds region{-reach, reach, reach};
+  for (int grid = 0; grid < kMostGrids; ++grid) {
+    const Met met = Look(lens, filmRadius, region);
+    if (met.passed) {
+      const bool isSettled = met.passed->Area() > kSettled * region.Area();
+      region = *met.passed;
+      if (isSettled) return region;
+      continue;
+    }
+    if (!met.hasNearest) return std::nullopt;
+    const double cellX = (region.xMax - region.xMin) / kAcross, cellY = region.yMax / (kAcross / 2);
+    if (cellX < 1e-12 * reach) return std::nullopt;
+    region = {met.nearestX - 3 * cellX, met.nearestX + 3 * cellX, met.nearestY + 3 * cellY};
+  }
+  return std::nullopt;
+}
+
+void Join(Bounds& all, const Bounds& more) {
+  if (!more) return;
+  all = all ? PupilBounds{std::min(all->xMin, more->xMin), std::max(all->xMax, more->xMax),
+                          std::max(all->yMax, more->yMax)}
+            : *more;
+}
+
+// The bounds at the last radius with light, between one with light and one without.
+Bounds FindLast(const LensSystem& lens, double light, double dark) {
+  Bounds last;
+  for (int i = 0; i < kBisections; ++i) {
+    const double middle = 0.5 * (light + dark);
+    if (const Bounds found = Find(lens, middle)) {
+      Join(last, found);
+      light = middle;
+    } else {
+      dark = middle;
+    }
+  }
+  return last;
+}
+
+}  // namespace
+
+// The pupil moves over a ring by more than its size where it is small: a ring holds the bounds at both of its ends and
+// between them. A pupil that ends within a ring is followed to its end.
+ExitPupil::ExitPupil(const LensSystem& lens, double filmRadius) : ringsPerLength_(kRings / filmRadius), rings_(kRings) {
+  const double half = 0.5 * filmRadius / kRings;
+  std::vector<Bounds> found;
+  for (int i = 0; i <= 2 * kRings; ++i) found.push_back(Find(lens, i * half));
+  for (size_t i = 0; i + 1 < found.size(); ++i) {
+    Bounds& ring = rings_[i / 2];
+    Join(ring, found[i]);
+    Join(ring, found[i + 1]);
+    if (found[i].has_value() == found[i + 1].has_value()) continue;
+    const double first = static_cast<double>(i) * half, second = first + half;
+    Join(ring, found[i] ? FindLast(lens, first, second) : FindLast(lens, second, first));
+  }
+}
+
+const PupilBounds* ExitPupil::At(double radius) const {
+  const double ring = std::min(radius * ringsPerLength_, static_cast<double>(rings_.size() - 1));
+  const std::optional<PupilBounds>& bounds = rings_[static_cast<size_t>(ring)];
+  return bounds ? &*bounds : nullptr;
+}
+
+}  // namespace lampyr
