@@ -8,8 +8,8 @@ namespace lampyr {
 
 namespace {
 
-constexpr int kRings = 128;
-constexpr int kAcross = 48;  // cells of a grid over the bounds; half as many from y = 0 on
+constexpr int kRings = 64;
+constexpr int kAcross = 32;  // cells of a grid over the bounds; half as many from y = 0 on
 constexpr int kMostGrids = 40;
 constexpr double kSettled = 0.6;  // the next grid would not cover much less than the last one
 constexpr int kBisections = 20;
@@ -94,28 +94,43 @@ Bounds FindLast(const LensSystem& lens, double light, double dark) {
   return last;
 }
 
+PupilBounds Moved(const PupilBounds& bounds, double by) {
+  return {bounds.xMin + by, bounds.xMax + by, bounds.yMax};
+}
+
 }  // namespace
 
-// The pupil moves over a ring by more than its size where it is small: a ring holds the bounds at both of its ends and
-// between them. A pupil that ends within a ring is followed to its end.
-ExitPupil::ExitPupil(const LensSystem& lens, double filmRadius) : ringsPerLength_(kRings / filmRadius), rings_(kRings) {
-  const double half = 0.5 * filmRadius / kRings;
-  std::vector<Bounds> found;
-  for (int i = 0; i <= 2 * kRings; ++i) found.push_back(Find(lens, i * half));
-  for (size_t i = 0; i + 1 < found.size(); ++i) {
-    Bounds& ring = rings_[i / 2];
-    Join(ring, found[i]);
-    Join(ring, found[i + 1]);
-    if (found[i].has_value() == found[i + 1].has_value()) continue;
-    const double first = static_cast<double>(i) * half, second = first + half;
-    Join(ring, found[i] ? FindLast(lens, first, second) : FindLast(lens, second, first));
+// A small pupil moves over a ring by more than its size: the bounds move with it, and hold what is found at both ends
+// of the ring and in its middle. A pupil that ends within a ring is followed to its end.
+ExitPupil::ExitPupil(const LensSystem& lens, double filmRadius) : ringWidth_(filmRadius / kRings), rings_(kRings) {
+  Bounds first = Find(lens, 0);
+  for (size_t i = 0; i < rings_.size(); ++i) {
+    const double inner = static_cast<double>(i) * ringWidth_, half = 0.5 * ringWidth_;
+    const Bounds middle = Find(lens, inner + half), last = Find(lens, inner + ringWidth_);
+    Ring& ring = rings_[i];
+    ring.bounds = first;
+    if (first && middle && last) {
+      ring.shift = 0.5 * (last->xMin + last->xMax - first->xMin - first->xMax) / ringWidth_;
+      Join(ring.bounds, Moved(*middle, -ring.shift * half));
+      Join(ring.bounds, Moved(*last, -ring.shift * ringWidth_));
+    } else {
+      Join(ring.bounds, middle);
+      Join(ring.bounds, last);
+      if (first.has_value() != middle.has_value())
+        Join(ring.bounds, first ? FindLast(lens, inner, inner + half) : FindLast(lens, inner + half, inner));
+      if (middle.has_value() != last.has_value())
+        Join(ring.bounds, middle ? FindLast(lens, inner + half, inner + ringWidth_)
+                                 : FindLast(lens, inner + ringWidth_, inner + half));
+    }
+    first = last;
   }
 }
 
-const PupilBounds* ExitPupil::At(double radius) const {
-  const double ring = std::min(radius * ringsPerLength_, static_cast<double>(rings_.size() - 1));
-  const std::optional<PupilBounds>& bounds = rings_[static_cast<size_t>(ring)];
-  return bounds ? &*bounds : nullptr;
+std::optional<PupilBounds> ExitPupil::At(double radius) const {
+  const size_t index = static_cast<size_t>(std::min(radius / ringWidth_, static_cast<double>(rings_.size() - 1)));
+  const Ring& ring = rings_[index];
+  if (!ring.bounds) return std::nullopt;
+  return Moved(*ring.bounds, ring.shift * (radius - static_cast<double>(index) * ringWidth_));
 }
 
 }  // namespace lampyr

@@ -21,12 +21,18 @@ class ExitPupil {
   // Of film points up to `filmRadius` (mm, > 0) from the axis. `lens` is in focus.
   ExitPupil(const LensSystem& lens, double filmRadius);
 
-  // Bounds of all that a film point at `radius` receives; null: nothing.
-  const PupilBounds* At(double radius) const;
+  // Bounds of all that a film point at `radius` receives; nullopt: nothing.
+  std::optional<PupilBounds> At(double radius) const;
 
  private:
-  double ringsPerLength_;
-  std::vector<std::optional<PupilBounds>> rings_;
+  // The bounds at the ring's inner radius, and how far along x they move per length of the radius.
+  struct Ring {
+    std::optional<PupilBounds> bounds;
+    double shift = 0;
+  };
+
+  double ringWidth_;
+  std::vector<Ring> rings_;
 };
 
 }  // namespace lampyr

@@ -49,7 +49,7 @@ class RealisticCamera final : public Camera {
     const double radius = glm::length(onFilm);
     std::optional<LensSystem::Passed> passed;
     LensRay ray{{onFilm.x, onFilm.y, 0}, {0, 0, 1}};
-    if (const PupilBounds* bounds = pupil_.At(radius)) {
+    if (const std::optional<PupilBounds> bounds = pupil_.At(radius)) {
       const Point2d u(lens), turn = radius > 0 ? onFilm / radius : Point2d(1, 0);
       const double x = bounds->xMin + u.x * (bounds->xMax - bounds->xMin), y = (2 * u.y - 1) * bounds->yMax;
       const Point3d onRear(turn.x * x - turn.y * y, turn.y * x + turn.x * y, lens_.RearZ());

