@@ -11,7 +11,8 @@ namespace {
 constexpr int kRings = 64;
 constexpr int kAcross = 32;  // cells of a grid over the bounds; half as many from y = 0 on
 constexpr int kMostGrids = 40;
-constexpr double kSettled = 0.6;  // the next grid would not cover much less than the last one
+constexpr double kSettled = 0.6;    // the next grid would not cover much less than the last one
+constexpr double kImproved = 1e-6;  // relative, by a finer grid; else no ray comes nearer
 constexpr int kBisections = 20;
 
 using Bounds = std::optional<PupilBounds>;
@@ -21,13 +22,12 @@ using Bounds = std::optional<PupilBounds>;
 struct Met {
   Bounds passed;
   double nearestX = 0, nearestY = 0;
-  bool hasNearest = false;
+  double least = std::numeric_limits<double>::infinity();  // clearance of the nearest
 };
 
 Met Look(const LensSystem& lens, double filmRadius, const PupilBounds& region) {
   const double cellX = (region.xMax - region.xMin) / kAcross, cellY = region.yMax / (kAcross / 2);
   Met met;
-  double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i <= kAcross; ++i) {
     for (int k = 0; k <= kAcross / 2; ++k) {
       const double x = region.xMin + i * cellX, y = k * cellY;
@@ -36,11 +36,10 @@ Met Look(const LensSystem& lens, double filmRadius, const PupilBounds& region) {
       if (clearance <= 1) {
         PupilBounds& all = met.passed ? *met.passed : met.passed.emplace(PupilBounds{x, x, y});
         all = {std::min(all.xMin, x), std::max(all.xMax, x), std::max(all.yMax, y)};
-      } else if (clearance < least) {
-        least = clearance;
+      } else if (clearance < met.least) {
+        met.least = clearance;
         met.nearestX = x;
         met.nearestY = y;
-        met.hasNearest = true;
       }
     }
   }
@@ -56,6 +55,7 @@ Met Look(const LensSystem& lens, double filmRadius, const PupilBounds& region) {
 Bounds Find(const LensSystem& lens, double filmRadius) {
   const double reach = lens.RearReach(filmRadius);
   PupilBounds region{-reach, reach, reach};
+  double least = std::numeric_limits<double>::infinity();
   for (int grid = 0; grid < kMostGrids; ++grid) {
     const Met met = Look(lens, filmRadius, region);
     if (met.passed) {
@@ -64,9 +64,10 @@ Bounds Find(const LensSystem& lens, double filmRadius) {
       if (isSettled) return region;
       continue;
     }
-    if (!met.hasNearest) return std::nullopt;
+    // The nearest of the grid before is one of this grid's points.
+    if (!(met.least < (1 - kImproved) * least)) return std::nullopt;
+    least = met.least;
     const double cellX = (region.xMax - region.xMin) / kAcross, cellY = region.yMax / (kAcross / 2);
-    if (cellX < 1e-12 * reach) return std::nullopt;
     region = {met.nearestX - 3 * cellX, met.nearestX + 3 * cellX, met.nearestY + 3 * cellY};
   }
   return std::nullopt;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iomanip>
 #include <sstream>
 #include <string_view>
 
@@ -22,7 +23,7 @@ constexpr const char* kWhatIsASurface =
 
 std::string Shown(double value) {
   std::ostringstream text;
-  text << value;
+  text << std::setprecision(9) << value;
   return text.str();
 }
 
@@ -73,7 +74,8 @@ class Lines {
 
 double NumberOf(const Word& word, const char* what) {
   if (IsNonFinite(word.text)) throw Error(word.where, std::string(what) + " is not finite: " + ShownWord(word.text));
-  if (word.text.size() > kLongestNumber || !LooksLikeNumber(word.text))
+  if (word.text.size() > kLongestNumber || !LooksLikeNumber(word.text) ||
+      word.text.find_first_not_of("0123456789+-.eE") != std::string_view::npos)
     throw Error(word.where, "expected " + std::string(what) + ", a number, found " + ShownWord(word.text));
   return ParseNumber(word.text, word.where);
 }
@@ -121,7 +123,8 @@ void CheckOverlap(const Row& front, const Row& rear) {
   throw Error(front.where[1], "the surface overlaps the next one (line " + std::to_string(rear.where[0].line) +
                                   "): " + Shown(height) + " mm from the axis they are " + Shown(-gap) +
                                   " mm inside one another. The thickness would have to be at least " +
-                                  Shown(front.surface.thickness - gap) + " mm, or the apertures smaller");
+                                  Shown(std::ceil(1e3 * (front.surface.thickness - gap)) / 1e3) +
+                                  " mm, or the apertures smaller");
 }
 
 void CheckStops(const std::vector<Row>& rows, const FileLocation& end) {

@@ -27,7 +27,7 @@ struct LensPrescription {
   const LensSurface& Stop() const;
 };
 
-inline constexpr size_t kMostLensSurfaces = 256;
+inline constexpr size_t kMostLensSurfaces = 128;
 
 // Distance (mm, towards the film) of a surface's point at `height` from the plane of its vertex; |height| must not be
 // above |curvatureRadius|.
