@@ -56,4 +56,9 @@ std::vector<std::string> IntegratorHints(const RenderScene& scene, const std::st
   return type && type->hints ? type->hints(scene) : std::vector<std::string>();
 }
 
+std::string IntegratorRefusal(const RenderScene& scene, const std::string& integrator) {
+  const IntegratorType* type = FindIntegrator(integrator);
+  return type && type->refusal ? type->refusal(scene) : std::string();
+}
+
 }  // namespace lampyr

@@ -24,5 +24,7 @@ bool GathersPhotons(const std::string& integrator, const Settings& settings);
 
 // IntegratorType::hints of the integrator of that name; empty for an unknown name.
 std::vector<std::string> IntegratorHints(const RenderScene& scene, const std::string& integrator);
+// IntegratorType::refusal of the integrator of that name; "" for an unknown name.
+std::string IntegratorRefusal(const RenderScene& scene, const std::string& integrator);
 
 }  // namespace lampyr

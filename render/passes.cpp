@@ -50,6 +50,13 @@ PixelRay MakePixelRay(const RenderScene& scene, const PixelFilter& filter, int x
   return {scene.camera->GenerateRay(film, lens, time), offset.weight};
 }
 
+// Radiance along the ray; of one that is vignetted nothing but the sample's light path is traced.
+Color Radiance(const Integrator& integrator, const PixelRay& ray, const SampleContext& context) {
+  if (ray.camera.weight != 0) return integrator.Sample(&ray.camera.ray, context);
+  if (integrator.Paths() == TracedPaths::Both) integrator.Sample(nullptr, context);
+  return Color(0.0f);
+}
+
 // Adds the samples of one thread to the film.
 struct SampleAdder {
   SampleAdder(const RenderSettings& settings, Film& aFilm, RenderCounts& someCounts)
@@ -121,7 +128,7 @@ RenderCounts TraceCameraPaths(const Pass& pass) {
           const float time = SampleTime(pass.scene, sampler);
           const PixelRay ray = MakePixelRay(pass.scene, pass.filter, x, y, time, sampler);
           const SampleContext context{pass.scene, sampler, time, counts, adder.StartLayers()};
-          adder.Add(x, y, ray, pass.integrator.Sample(&ray.camera.ray, context), sums);
+          adder.Add(x, y, ray, Radiance(pass.integrator, ray, context), sums);
         }
         pass.film.Pixel(x, y) = sums;
       }
@@ -294,7 +301,7 @@ void BothPaths::TraceChunk(size_t chunk, uint64_t begin, uint64_t end, uint32_t 
     const PixelRay ray = MakePixelRay(pass_.scene, pass_.filter, x, y, time, sampler);
     if (recorder) recorder->StartSample(x, y, ray.camera.weight * settings.sensor.ImagingRatio() * ray.filterWeight);
     adder.StartLayers();
-    const Color radiance = pass_.integrator.Sample(&ray.camera.ray, context);
+    const Color radiance = Radiance(pass_.integrator, ray, context);
     adder.Add(x, y, ray, radiance, pass_.film.Pixel(x, y));
   }
 }

@@ -206,6 +206,10 @@ ComparisonResults Describe(const CompareOptions& options, const LoadedScene& loa
 
 int CompareLoaded(const CompareOptions& options, const ComparisonPlan& plan, const LoadedScene& loaded) {
   const RenderSettings& settings = loaded.built.settings;
+  for (const std::string& name : plan.integrators) {
+    const std::string refusal = IntegratorRefusal(loaded.built.scene, VariantOf({}, name).integrator);
+    if (!refusal.empty()) throw UsageError("--integrators: " + name + ": " + refusal);
+  }
   const std::filesystem::path folder =
       options.output.empty() ? std::filesystem::path(options.scene.stem().string() + "-compare") : options.output;
   CheckMemory(settings, plan);

@@ -237,6 +237,7 @@ std::vector<Pilot> FlyPilots(const ComparedScene& scene, double seconds, const R
   // is.
   const bool needsPhotons = !IntegratorHints(scene.Built().scene, "bdpt").empty();
   for (const std::string& name : IntegratorNames()) {
+    if (!IntegratorRefusal(scene.Built().scene, name).empty()) continue;
     if (GathersPhotons(name, scene.Built().settings.values) && !(needsPhotons && name == "vcm")) continue;
     PilotRun run;
     run.isBlurred = GathersPhotons(name, scene.Built().settings.values);

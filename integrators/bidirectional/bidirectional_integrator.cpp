@@ -57,7 +57,8 @@ class LightSide final : public WeighedLightPath {
   explicit LightSide(BidirectionalSample& sample)
       : WeighedLightPath(sample.context, sample.settings.connects),
         sample_(sample),
-        isConnected_(sample.settings.connects && !sample.context.isForPhotonsAlone) {}
+        isConnected_(sample.settings.connects && !sample.context.isForPhotonsAlone &&
+                     sample.context.scene.camera->ConnectsLightPaths()) {}
 
   void Emitted(const EmittedPhoton& photon) override {
     if (isConnected_) SplatLight(sample_, photon);
@@ -133,8 +134,10 @@ class CameraSide final : public PathVisitor {
     vertex.pdfForward = DensityAtLens(*sample_.context.scene.camera, state.ray, vertex.GeometryTerm(vertex.toPrevious),
                                       Sqr(static_cast<double>(state.length)));
     vertex.previousSolidAnglePerArea = {0};  // the lens is not hit
-    // Light paths reach the vertex unless its surface is invisible to them.
-    const bool isSplatted = vertex.pdfForward.value > 0 && vertex.isSeenByIndirect;
+    // Light paths reach the vertex unless its surface is invisible to them, and are connected to the lens unless the
+    // camera's densities are unknown, which leaves pdfForward at 0.
+    const bool isSplatted =
+        sample_.context.scene.camera->ConnectsLightPaths() && vertex.pdfForward.value > 0 && vertex.isSeenByIndirect;
     vertex.weight = PartialWeight::AtLens(vertex.pdfForward, isSplatted && sample_.settings.connects);
   }
 
@@ -222,6 +225,11 @@ std::unique_ptr<Integrator> CreateVcm(const IntegratorInput& input) {
 std::vector<std::string> BdptHints(const RenderScene& scene) {
   const std::string lights = DeltaLightsOfCaustics(scene);
   if (lights.empty()) return {};
+  if (!scene.camera->ConnectsLightPaths()) {
+    return {"light without extent (" + lights +
+            " lights) that comes through smooth glass or off mirrors cannot be found, because no light path can be "
+            "connected to the elements of this camera's lens; --integrator vcm and sppm find it"};
+  }
   return {
       "light without extent (" + lights +
       " lights) that comes through smooth glass or off mirrors and is seen through or in them again cannot be found "

@@ -16,7 +16,8 @@ struct ConnectedPath {
   std::span<const PathVertex> light, camera;
   LightEnd end;
   Vector3 toLight{0.0f}, toLens{0.0f};  // unit; from the first surface vertex, and from the one that the camera sees
-  AreaDensity atLens;  // density of the vertex that the camera sees, by a camera ray, over that of the lens point
+  // Density of the vertex that the camera sees, by a camera ray, over that of the lens point; 0: t = 1 does not exist.
+  AreaDensity atLens;
   bool isMerged = false;
   double mergesPerDensity = 0;                 // N π r² of the merging that the weight accounts for; 0: no merging
   const FilmConnection* connection = nullptr;  // of t = 1; null: the path contributes to the sample's own pixel

@@ -40,9 +40,13 @@ FullPath Unfold(const ConnectedPath& path) {
   full.fromLight.assign(n + 2, AreaDensity());
   full.fromCamera.assign(n + 2, AreaDensity());
   full.isDelta.assign(n + 2, false);
-  full.fromCamera[n] = path.atLens;
+  // All techniques but t = 1 have this density as a factor: where that one does not exist, any will do.
+  const bool isConnected = path.atLens.value > 0;
+  full.fromCamera[n] = isConnected ? path.atLens : AreaDensity(1);
+  full.lensSeesIt = isConnected;
   if (n == 0) return full;
-  full.lensSeesIt = vertices[n]->isSeenByIndirect && path.atLens.value > 0;
+  full.mergesAtLens = vertices[n]->isSeenByIndirect;
+  full.lensSeesIt = isConnected && vertices[n]->isSeenByIndirect;
   for (size_t i = 1; i <= n; ++i) {
     const PathVertex& vertex = *vertices[i];
     // Directions of the rays that were traced; for the connecting edge, from vertex to vertex.
@@ -146,6 +150,7 @@ std::vector<double> WeightsByRecursion(const FullPath& path) {
   const LightEnd& end = path.end;
   const double merge = Mis(path.mergesPerDensity);
   const auto mergeAt = [&](int i) { return path.CanMerge(i) ? merge : 0.0; };
+  if (n == 0 && !path.lensSeesIt) return {1, 0};
   if (n == 0) return {SeenLightWeight(end.position, B(0)), SplatLightWeight(end.position, B(0))};
   std::vector<double> weights(static_cast<size_t>(path.TechniqueCount()), 0.0);
   const Carried carried = Carry(path);

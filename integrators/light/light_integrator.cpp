@@ -4,7 +4,8 @@
 // Finds what path tracing cannot: caustics of point, spot and distant lights on anything that is not perfectly smooth.
 // Cannot find: what the camera sees in or through something perfectly smooth (a mirror, a pane, glass), because delta
 // vertices cannot be connected; lights at infinity seen directly (the background), which have no point to connect; and
-// light of lights with traceLightPaths off, which start no paths. These parts of the image are black; all others are
+// light of lights with traceLightPaths off, which start no paths. It refuses cameras that no path can be connected to
+// (Camera::ConnectsLightPaths). These parts of the image are black; all others are
 // unbiased. Objects that are small or far from the camera receive few paths, because paths follow the light and not the
 // camera.
 //
@@ -76,6 +77,12 @@ std::vector<std::string> Hints(const RenderScene& scene) {
   return hints;
 }
 
+std::string Refusal(const RenderScene& scene) {
+  if (scene.camera->ConnectsLightPaths()) return "";
+  return "light tracing cannot see through the elements of this camera's lens: the density with which a path leaves a "
+         "light for one film point is not known there; path, bdpt, vcm and sppm can";
+}
+
 }  // namespace
 
 IntegratorType LightIntegratorType() {
@@ -87,6 +94,7 @@ IntegratorType LightIntegratorType() {
     return std::make_unique<LightIntegrator>(MaxDepthOf(input.settings));
   };
   type.hints = Hints;
+  type.refusal = Refusal;
   return type;
 }
 

@@ -34,7 +34,8 @@ std::vector<std::string> Hints(const RenderScene& scene) {
   if (lights.empty()) return {};
   return {"no path from the camera can hit a light without extent (" + lights +
           " lights: point, spot, distant and the like), so what they send through smooth glass or off mirrors is "
-          "missing; --integrator bdpt finds it"};
+          "missing; --integrator " +
+          std::string(scene.camera->ConnectsLightPaths() ? "bdpt finds it" : "vcm and sppm find it")};
 }
 
 }  // namespace

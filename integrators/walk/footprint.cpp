@@ -35,7 +35,7 @@ constexpr int kMostDeltas = 16;
 double PixelArea(const Camera& camera, const Ray& ray, double filmPixels, double distance) {
   Point2 film;
   const auto densities = camera.EvaluateRay(ray, &film);
-  if (!densities) return 0;
+  if (!densities) return distance * distance * camera.PixelSolidAngle(ray);
   // Both densities are for film points chosen uniformly in the full image.
   if (camera.ConnectsByDirection()) return 1 / (static_cast<double>(densities->pdfPosition.value) * filmPixels);
   return distance * distance / (static_cast<double>(densities->pdfDirection.value) * filmPixels);
@@ -61,7 +61,9 @@ void SceneProbe::ForSeen(int width, int height, int across, const Visit& visit) 
     const Point2 film((static_cast<float>(i % across) + 0.5f) / cells * static_cast<float>(width),
                       (static_cast<float>(i / across) + 0.5f) / cells * static_cast<float>(height));
     PathState state;
-    state.ray = scene_.camera->GenerateRay(film, Point2(0.5f), 0).ray;
+    const CameraRay cameraRay = scene_.camera->GenerateRay(film, Point2(0.5f), 0);
+    if (cameraRay.weight == 0) continue;
+    state.ray = cameraRay.ray;
     state.specular = Color(1.0f);
     const Ray ray = state.ray;
     path_.Clear();

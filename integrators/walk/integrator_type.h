@@ -36,6 +36,8 @@ struct IntegratorType {
   // One line for each kind of light path that the scene may have and this integrator cannot find, with the integrator
   // that can. Judged by lights and materials alone, without testing that such a path exists. Empty: it finds all light.
   std::function<std::vector<std::string>(const RenderScene&)> hints;
+  // Why it cannot render the scene at all, and which integrators can; "": it can. Empty: it always can.
+  std::function<std::string(const RenderScene&)> refusal;
 };
 
 // Settings shared by several integrators.

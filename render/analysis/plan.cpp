@@ -220,9 +220,11 @@ ScenePlan PlanFor(const RenderScene& scene, const RenderSettings& settings) {
   plan.decisions.push_back(ChooseLayers(scene));
   plan.decisions.push_back(scene.hasMotion ? PlanDecision{"motion", "on", "something moves while the shutter is open"}
                                            : PlanDecision{"motion", "off", "nothing moves: rays have no time"});
-  plan.decisions.push_back(scene.camera->HasPinhole()
-                               ? PlanDecision{"lens", "pinhole", "the camera has no lens: nothing is drawn for it"}
-                               : PlanDecision{"lens", "sampled", "the camera has a lens"});
+  plan.decisions.push_back(
+      scene.camera->HasPinhole() ? PlanDecision{"lens", "pinhole", "the camera has no lens: nothing is drawn for it"}
+      : scene.camera->ConnectsLightPaths()
+          ? PlanDecision{"lens", "sampled", "the camera has a lens"}
+          : PlanDecision{"lens", "traced", "the camera has a lens of elements: light paths are not connected to it"});
   plan.decisions.push_back(
       settings.LearnsLights()
           ? PlanDecision{"learning", "on", "--learn-lights"}

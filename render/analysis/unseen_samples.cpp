@@ -93,7 +93,10 @@ class BrightVertices final : public PathVisitor {
   const SampleContext& context_;
 };
 
-float BrightestFromCamera(const RenderScene& scene, const RenderSettings& settings) {
+struct SeenByCamera {
+  float brightest = 0, largestWeight = 0;  // of rays
+};
+SeenByCamera LookFromCamera(const RenderScene& scene, const RenderSettings& settings) {
   constexpr uint32_t paths = 4096;
   constexpr int vertices = 3;
   Sampler sampler(SamplerKind::Sobol, 0);
@@ -101,24 +104,29 @@ float BrightestFromCamera(const RenderScene& scene, const RenderSettings& settin
   const SampleContext context{scene, sampler, 0, counts};
   BrightVertices visitor(context);
   Subpath path(false);
+  float largestWeight = 0;
   const Point2 corner(settings.crop.x0, settings.crop.y0), size(settings.crop.Width(), settings.crop.Height());
   for (uint32_t i = 0; i < paths; ++i) {
     sampler.StartPixelSample(1, 0, i);
     const Point2 film = corner + sampler.Get2D() * size;
     PathState state;
-    state.ray = scene.camera->GenerateRay(film, sampler.Get2D(), 0).ray;
+    const CameraRay ray = scene.camera->GenerateRay(film, sampler.Get2D(), 0);
+    largestWeight = std::max(largestWeight, ray.weight);
+    if (ray.weight == 0) continue;
+    state.ray = ray.ray;
     state.specular = Color(1.0f);
     path.Clear();
     Walk(context, {TransportMode::Radiance, vertices, {}, false}, state, path, visitor);
   }
-  return visitor.brightest;
+  return {visitor.brightest, largestWeight};
 }
 
 }  // namespace
 
 double LargestUnseenSample(const RenderScene& scene, const RenderSettings& settings) {
   if (!scene.lighting->HasLightThatCanBeHit()) return 0;
-  const float brightest = std::max(BrightestPhoton(scene), BrightestFromCamera(scene, settings));
+  const SeenByCamera seen = LookFromCamera(scene, settings);
+  const float brightest = std::max(BrightestPhoton(scene), seen.brightest) * seen.largestWeight;
   return static_cast<double>(brightest) * static_cast<double>(settings.sensor.ImagingRatio());
 }
 

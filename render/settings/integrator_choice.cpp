@@ -39,6 +39,8 @@ void Change(const std::string& variant, const IntegratorType& type, const std::s
 }  // namespace
 
 std::unique_ptr<Integrator> MakeIntegrator(const RenderScene& scene, const RenderSettings& settings) {
+  const std::string refusal = IntegratorRefusal(scene, settings.integrator);
+  if (!refusal.empty()) throw UsageError("integrator " + settings.integrator + ": " + refusal);
   return IntegratorOf(settings.integrator)
       .create({scene, settings.width, settings.height, settings.sensor.ImagingRatio(), settings.values});
 }

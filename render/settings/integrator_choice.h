@@ -8,7 +8,7 @@
 
 namespace lampyr {
 
-// The integrator of the settings, for `scene`.
+// The integrator of the settings, for `scene`. Throws a UsageError if it cannot render the scene.
 std::unique_ptr<Integrator> MakeIntegrator(const RenderScene& scene, const RenderSettings& settings);
 
 // The settings with another integrator, by a name such as "path", or with some of its settings changed, too:

@@ -6,6 +6,8 @@
 #include <map>
 #include <sstream>
 
+#include "render/settings/realistic_lens.h"
+
 namespace lampyr {
 
 namespace {
@@ -127,7 +129,7 @@ void ReadFilm(const SceneDescription& scene, const RenderOverrides& overrides, R
                        std::to_string(settings.height) + " image");
     throw Error(film.Where(), "the crop leaves no pixel of the image");
   }
-  film.Find("diagonal");  // the film's size in mm: of use to "realistic" cameras only
+  film.Find("diagonal");  // the film's size in mm: read for "realistic" cameras only
   film.CheckAllUsed({"coordinatesystem", "nbuckets", "lambdamin", "lambdamax"},
                     {"xresolution", "yresolution", "filename", "savefp16", "sensor", "iso", "whitebalance",
                      "maxcomponentvalue", "cropwindow", "pixelbounds", "diagonal"},
@@ -350,6 +352,8 @@ std::unique_ptr<Camera> BuildCamera(const SceneDescription& description, const R
   frame.width = settings.width;
   frame.height = settings.height;
   frame.filmMargin = {settings.filter.radiusX, settings.filter.radiusY};
+  const std::string type = statement.type.empty() ? "perspective" : statement.type;
+  if (type == "realistic") return BuildRealisticCamera(description, frame, diagnostics);
   const double aspect = parameters.GetFloat("frameaspectratio", double(frame.width) / frame.height);
   if (!(aspect > 0)) throw Error(parameters.WhereOf("frameaspectratio"), "\"frameaspectratio\" must be above 0");
   SetDefaultScreenWindow(frame, static_cast<float>(aspect));
@@ -367,11 +371,6 @@ std::unique_ptr<Camera> BuildCamera(const SceneDescription& description, const R
   if (!(focalDistance > 0)) throw Error(parameters.WhereOf("focaldistance"), "\"focaldistance\" must be above 0");
   Names known = {"frameaspectratio", "screenwindow", "shutteropen", "shutterclose", "lensradius", "focaldistance"};
 
-  std::string type = statement.type.empty() ? "perspective" : statement.type;
-  if (type == "realistic") {
-    diagnostics.Warn(statement.where, "Camera \"realistic\" is not supported; \"perspective\" is used");
-    return MakePerspectiveCamera(frame, PerspectiveSettings{Degrees(90), 0, 1e6f});
-  }
   std::unique_ptr<Camera> camera;
   if (type == "perspective") {
     const double fov = parameters.GetFloat("fov", 90);

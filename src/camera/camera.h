@@ -15,6 +15,8 @@
 #include <memory>
 #include <optional>
 
+#include "camera/aperture.h"
+#include "camera/lens_file.h"
 #include "geometry/ray.h"
 #include "math/angle.h"
 #include "math/density.h"
@@ -24,7 +26,7 @@ namespace lampyr {
 
 struct CameraRay {
   Ray ray;
-  float weight = 1;  // multiplies the radiance found (1 for all cameras with exact sampling)
+  float weight = 1;  // multiplies the radiance found; 0: vignetted, and the ray, though valid, is not to be traced
 };
 
 // What a light subpath needs to connect to the camera, and a camera path to weigh that connection.
@@ -59,13 +61,21 @@ class Camera {
   virtual ~Camera() = default;
   // The ray through a film point; `lens` in [0,1)², `time` in [0,1].
   virtual CameraRay GenerateRay(const Point2& film, const Point2& lens, float time) const = 0;
-  // Film point, importance and densities of a ray that starts on the lens; nullopt when outside of the image.
+  // Film point, importance and densities of a ray that starts on the lens; nullopt when outside of the image, or
+  // without ConnectsLightPaths.
   virtual std::optional<CameraDensities> EvaluateRay(const Ray& ray, Point2* film) const = 0;
-  // Connects `point` to a point of the lens; nullopt when it is not seen by the film.
+  // Connects `point` to a point of the lens; nullopt when it is not seen by the film, or without ConnectsLightPaths.
   virtual std::optional<CameraConnection> Connect(const Point3& point, const Point2& lens) const = 0;
-  // A spherical image goes on beyond its edges, with what lies at another edge: where else, within the film's margin, the
-  // direction that `film` sees is seen. A connection lands there, too, with the same weight.
+  // A spherical image goes on beyond its edges, with what lies at another edge: where else, within the film's margin,
+  // the direction that `film` sees is seen. A connection lands there, too, with the same weight.
   virtual FilmCopies CopiesOf(const Point2& /*film*/) const { return {}; }
+  // False: the densities with which rays leave the lens are not known, because they have come through many surfaces.
+  // Then no light path is connected to the camera (t = 1), no weight may count that technique, and rays have weights of
+  // their own.
+  virtual bool ConnectsLightPaths() const { return true; }
+  // Solid angle that a pixel sees around `ray`, steradian, about: without ConnectsLightPaths, for footprints. 0:
+  // unknown.
+  virtual double PixelSolidAngle(const Ray& /*ray*/) const { return 0; }
   virtual bool HasPinhole() const = 0;                    // the lens is a point: a delta position
   virtual bool HasParallelRays() const { return false; }  // orthographic without a lens: a delta direction
   // Connect chooses its direction, and the position follows (orthographic); elsewhere it chooses the position. A ray's
@@ -85,6 +95,13 @@ struct OrthographicSettings {
   float lensRadius = 0;
   float focalDistance = 1e6f;
 };
+struct RealisticSettings {
+  LensPrescription lens;
+  double apertureDiameter = 1;  // mm; the lens's own stop limits it
+  double focusDistance = 10;    // from the film, camera-space units, which are metres
+  double filmDiagonal = 35;     // mm
+  Aperture aperture;            // shape of the stop
+};
 enum class SphericalMapping { EqualArea, EquiRectangular };
 
 struct CameraFrame {
@@ -103,6 +120,9 @@ void SetDefaultScreenWindow(CameraFrame& frame, float frameAspectRatio);
 
 std::unique_ptr<Camera> MakePerspectiveCamera(const CameraFrame& frame, const PerspectiveSettings& settings);
 std::unique_ptr<Camera> MakeOrthographicCamera(const CameraFrame& frame, const OrthographicSettings& settings);
+// The screen window has no meaning here. Throws an Error also for a lens that makes no image of what is at the focus
+// distance, or lets no light through.
+std::unique_ptr<Camera> MakeRealisticCamera(const CameraFrame& frame, const RealisticSettings& settings);
 std::unique_ptr<Camera> MakeSphericalCamera(const CameraFrame& frame, SphericalMapping mapping);
 
 }  // namespace lampyr

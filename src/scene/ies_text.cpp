@@ -18,14 +18,6 @@ constexpr double kLargestCandela = 1e30;  // products of it with what lights mul
 constexpr double kSmallestStep = 1e-6;    // degrees
 constexpr std::string_view kSeparators = " \t\r\n\f\v,";
 
-std::string Shown(std::string_view word) {
-  std::string text(word.substr(0, 32));
-  for (char& c : text) {
-    if (c < ' ' || c > '~') c = '?';
-  }
-  return "\"" + text + (word.size() > 32 ? "…\"" : "\"");
-}
-
 std::string Shown(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.10g", value);
@@ -73,9 +65,9 @@ class IesText {
     if (AtEnd()) throw Error(Here(), "the file ends where " + what + " should be");
     const size_t end = std::min(text_.find_first_of(kSeparators, position_), text_.size());
     const std::string_view word = text_.substr(position_, end - position_);
-    if (IsNonFinite(word)) throw Error(Here(), what + " is not a finite number: " + Shown(word));
+    if (IsNonFinite(word)) throw Error(Here(), what + " is not a finite number: " + ShownWord(word));
     if (word.size() > 64 || !LooksLikeNumber(word))
-      throw Error(Here(), "expected " + what + ", a number, found " + Shown(word));
+      throw Error(Here(), "expected " + what + ", a number, found " + ShownWord(word));
     const double value = ParseNumber(word, Here());
     position_ = end;
     return value;

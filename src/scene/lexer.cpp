@@ -74,6 +74,14 @@ bool LooksLikeNumber(std::string_view word) {
   return word.find_first_of("0123456789") != std::string_view::npos;
 }
 
+std::string ShownWord(std::string_view word) {
+  std::string text(word.substr(0, 32));
+  for (char& c : text) {
+    if (c < ' ' || c > '~') c = '?';
+  }
+  return "\"" + text + (word.size() > 32 ? "…\"" : "\"");
+}
+
 double ParseNumber(std::string_view word, const FileLocation& where) {
   if (IsNonFinite(word)) throw Error(where, Quoted(word) + " is not a finite number");
   std::string_view digits = word;

@@ -1,4 +1,5 @@
-// Tokens of a scene file: words, quoted strings, brackets and, on a fast path, numbers. Internal to scene/.
+// Tokens of a scene file: words, quoted strings, brackets and, on a fast path, numbers. Internal to scene/, but for
+// what reads a number, which readers of other text files use.
 //
 // Lines end with LF or CR LF; columns count bytes from 1. A `#` starts a comment. Strings know the escapes
 // \" \\ \' \n \t \r \b \f and end on the line they start on.
@@ -31,6 +32,8 @@ int64_t ParseInteger(std::string_view word, const FileLocation& where);
 bool LooksLikeNumber(std::string_view word);
 // "nan", "-inf" and the like.
 bool IsNonFinite(std::string_view word);
+// A word of a text file for messages: quoted, printable, not longer than a line.
+std::string ShownWord(std::string_view word);
 
 class Lexer {
  public:

@@ -1,4 +1,4 @@
-// Reading a whole text file, plain or gzipped. Internal to scene/.
+// Reading a whole text file, plain or gzipped.
 #pragma once
 
 #include <filesystem>

@@ -280,6 +280,7 @@ WeightErrors CheckWeights(const std::string& sceneText, const WeightProof& proof
     const float time = scene.hasMotion ? sampler.Get1D() : 0.0f;
     const Point2 film(u.x * static_cast<float>(width), u.y * static_cast<float>(height));
     const CameraRay ray = scene.camera->GenerateRay(film, lens, time);
+    if (ray.weight == 0) continue;
     checker.StartSample(ray.ray, time);
     SampleContext context{scene, sampler, time, counts};
     context.splats = &splats;

@@ -23,6 +23,8 @@ bool ReadPlyFile(std::string_view bytes);
 bool ReadImageFile(std::string_view bytes);
 // An IES file: read, then asked for intensities.
 bool ReadIesFile(std::string_view bytes);
+// A lens file: read, then a few rays through the lens.
+bool ReadLens(std::string_view bytes);
 // One byte that says what the rest is of (part.cpp), then a saved render: read, and gone on with or added.
 bool ReadSavedPart(std::string_view bytes);
 
@@ -35,7 +37,7 @@ struct Target {
 };
 
 inline constexpr Target kTargets[] = {{"scene", ReadSceneText}, {"build", BuildSceneText}, {"graph", BuildSceneGraph}, {"ply", ReadPlyFile},
-                                      {"image", ReadImageFile}, {"ies", ReadIesFile},      {"part", ReadSavedPart}};
+                                      {"image", ReadImageFile}, {"ies", ReadIesFile},      {"lens", ReadLens}, {"part", ReadSavedPart}};
 
 // Thrown by a target that was given an answer that cannot be right.
 [[noreturn]] void Fail(const std::string& what);

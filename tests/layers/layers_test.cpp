@@ -60,7 +60,7 @@ const std::map<std::string, std::set<std::string>> kMayKnow = {
     {"film", {"base", "math"}},
     {"textures", {"base", "math", "sampling", "scene", "geometry", "film"}},
     {"materials", {"base", "math", "sampling", "scene", "geometry", "film", "textures"}},
-    {"camera", {"base", "math", "sampling", "geometry"}},
+    {"camera", {"base", "math", "sampling", "scene", "geometry"}},
     {"lights", kCore},
     {"suite", With(kCore, {"lights"})},
     {"integrators", With(kCore, {"camera", "lights"})},

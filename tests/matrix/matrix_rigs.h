@@ -16,6 +16,8 @@ struct Rig {
   std::vector<std::string> covers;
   // Light tracing connects every vertex to the camera: it is blind to what the camera sees of deltas.
   bool cameraSeesDeltas = false;
+  // Light tracing refuses the camera; what is bidirectional makes do without connections to it.
+  bool refusesLightPaths = false;
   std::string kind = "";  // "materials", "lights", "filters", "motion", "cameras"
 };
 

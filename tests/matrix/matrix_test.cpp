@@ -52,7 +52,7 @@ const std::vector<Rig>& Rigs() {
 }
 
 bool Sees(const Rig& rig, const Mode& mode) {
-  return mode.integrator != "light" || !rig.cameraSeesDeltas;
+  return mode.integrator != "light" || !(rig.cameraSeesDeltas || rig.refusesLightPaths);
 }
 
 int Cells() {
@@ -200,6 +200,19 @@ Verdict Measure(BuiltScene& built, const Mode& mode, double error, uint64_t seed
   return verdict;
 }
 
+// Light tracing renders what it can, or says that it cannot, and what can.
+void ExpectRefusal(BuiltScene& built, const Rig& rig) {
+  built.settings.integrator = "light";
+  std::string said = "nothing";
+  try {
+    MakeIntegrator(built.scene, built.settings);
+  } catch (const UsageError& error) {
+    said = error.what();
+  }
+  EXPECT_EQ(said.find("bdpt, vcm and sppm can") != std::string::npos, rig.refusesLightPaths)
+      << rig.name << ": " << said;
+}
+
 class Matrix : public testing::TestWithParam<Rig> {};
 
 TEST_P(Matrix, Agrees) {
@@ -210,6 +223,7 @@ TEST_P(Matrix, Agrees) {
   const Cell reference = RenderReference(built, errors.reference, 1);
   EXPECT_EQ(reference.replicas.faults, 0u);
   EXPECT_TRUE(IsLit(reference.replicas)) << rig.name;
+  ExpectRefusal(built, rig);
   uint64_t seed = 1;
   const char* only = std::getenv("LAMPYR_MATRIX_MODE");
   for (const Mode& mode : Modes()) {
@@ -265,7 +279,7 @@ TEST(MatrixIsWhole, EveryRegisteredTypeHasARig) {
   for (const FilterType* type : TypeRegistry::BuiltIn().Filters()) {
     EXPECT_TRUE(IsCovered("filter " + type->name)) << type->name;
   }
-  for (const char* camera : {"perspective", "orthographic", "spherical"})
+  for (const char* camera : {"perspective", "orthographic", "spherical", "realistic"})
     EXPECT_TRUE(IsCovered(std::string("camera ") + camera)) << camera;
   std::printf("[   info   ] %zu rigs, %zu modes, %d cells\n", Rigs().size(), Modes().size(), Cells());
 }

@@ -50,6 +50,8 @@ void AddMotionRigs(std::vector<Rig>& rigs) {
 }
 
 void AddCameraRigs(std::vector<Rig>& rigs) {
+  // A strong lens in a small room: out of focus beside the axis, and dark towards the corners.
+  const std::string lens = "\"string lensfile\" \"" LAMPYR_SOURCE_DIR "/scenes/data/singlet.dat\" ";
   const auto add = [&](const std::string& name, const std::string& type, const std::string& parameters) {
     rigs.push_back(
         {"camera_" + name, Room(kMatte, Lamp(), "Camera \"" + type + "\" " + parameters + "\n"), {"camera " + type}});
@@ -61,6 +63,12 @@ void AddCameraRigs(std::vector<Rig>& rigs) {
       "\"float screenwindow\" [ -0.4 0.4 -0.4 0.4 ] \"float lensradius\" 0.1 \"float focaldistance\" 0.5");
   add("spherical", "spherical", "");
   add("spherical_by_angles", "spherical", "\"string mapping\" \"equirectangular\"");
+  const auto addLens = [&](const std::string& name, const std::string& parameters) {
+    add(name, "realistic", lens + parameters);
+    rigs.back().refusesLightPaths = true;
+  };
+  addLens("with_a_lens_of_glass", "\"float aperturediameter\" 10 \"float focusdistance\" 0.8");
+  addLens("with_a_star", "\"float aperturediameter\" 14 \"float focusdistance\" 0.5 \"string aperture\" \"star\"");
 }
 
 }  // namespace lampyr::test

@@ -75,6 +75,27 @@ TEST_F(Resume, TheMemoryForPhotonsIsPartOfTheRender) {
   EXPECT_TRUE(Bytes("whole.exr") == Bytes("out.exr"));
 }
 
+// What a lens file holds is part of what a render is.
+TEST_F(Resume, ALensIsPartOfTheRender) {
+  const auto write = [&](const char* thickness) {
+    WriteBytes(folder_ / "lens.dat", std::string("0 2 0 10\n50 ") + thickness + " 1.5 20\n-50 40 1 20\n");
+  };
+  std::string scene = kScene;
+  const std::string pinhole = "\"perspective\" \"float fov\" 40";
+  scene.replace(scene.find(pinhole), pinhole.size(),
+                "\"realistic\" \"string lensfile\" \"lens.dat\" \"float aperturediameter\" 5");
+  WriteBytes(folder_ / "scene.pbrt", scene);
+  write("4");
+  Do(kRender + "--spp 2");
+  write("5");
+  ExpectRefused(kRender + "--spp 4", 2, "what the files of the scene hold");
+  write("4");
+  Do(kRender + "--spp 4");
+  Do("render scene.pbrt --quiet -o whole.exr --spp 4");
+  EXPECT_TRUE(Bytes("whole.exr") == Bytes("out.exr"));
+  ExpectRefused("render scene.pbrt --quiet -o other.exr --integrator light", 2, "path, bdpt, vcm and sppm can");
+}
+
 TEST_F(Resume, WhatIsOfAnotherRenderIsRefused) {
   Do(kRender + "--spp 4");
   const std::string image = Bytes("out.exr"), checkpoint = Bytes("out.checkpoint");
