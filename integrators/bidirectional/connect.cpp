@@ -6,6 +6,21 @@
 
 namespace lampyr {
 
+namespace {
+
+// A fibre is met on its far side, too, as seen along the ray: it must not hide itself.
+Ray RayBetween(const PathVertex& from, const PathVertex& to, float time) {
+  Ray ray = SpawnRayTo(from.point, to.point.position, to.point.positionError, to.point.Ng, time);
+  if (to.bsdf.IsFibre()) {
+    constexpr float kMargin = 1.01f;
+    const float through = glm::length(to.point.dpdv) / to.GeometryTerm(ray.direction);
+    ray.tMax = std::max(ray.tMax - kMargin * through, 0.0f);
+  }
+  return ray;
+}
+
+}  // namespace
+
 Color Connect(const BidirectionalSample& sample, size_t lightCount) {
   const SampleContext& context = sample.context;
   const PathVertex &y = sample.light.vertices[lightCount - 1], &z = sample.camera.Last();
@@ -37,7 +52,7 @@ Color Connect(const BidirectionalSample& sample, size_t lightCount) {
                                                       ShadowRays::DeciderOf(toCamera.x, toCamera.y));
   if (worth == 0) return Color(0.0f);
   ++context.counts.shadowRays;
-  const Ray ray = SpawnRayTo(z.point, y.point.position, y.point.positionError, y.point.Ng, context.time);
+  const Ray ray = RayBetween(z, y, context.time);
   path.value *= context.scene.geometry->Transmittance(ray, visibility::kIndirect);
   if (path.value.IsBlack()) return path.value;
   return sample.Found(path, worth);

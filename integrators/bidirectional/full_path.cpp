@@ -11,8 +11,13 @@ struct DirectionDensities {
   SolidAngleDensity toLight, toCamera;
 };
 
-// Densities from the BSDF. Delta events have none; their coefficients are in the vertex.
-DirectionDensities At(const PathVertex& vertex, const Vector3& toLight, const Vector3& toCamera) {
+// Densities from the BSDF, as the subpath that the vertex is of has them. Delta events have none; their coefficients
+// are in the vertex.
+DirectionDensities At(const PathVertex& vertex, bool isLight, const Vector3& toLight, const Vector3& toCamera) {
+  if (isLight) {
+    const BsdfEvaluation f = vertex.bsdf.Evaluate(toLight, toCamera, TransportMode::Importance);
+    return {SolidAngleDensity(f.pdfReverse), SolidAngleDensity(f.pdfForward)};
+  }
   const BsdfEvaluation f = vertex.bsdf.Evaluate(toCamera, toLight, TransportMode::Radiance);
   return {SolidAngleDensity(f.pdfForward), SolidAngleDensity(f.pdfReverse)};
 }
@@ -44,11 +49,13 @@ FullPath Unfold(const ConnectedPath& path) {
   const bool isConnected = path.atLens.value > 0;
   full.fromCamera[n] = isConnected ? path.atLens : AreaDensity(1);
   full.lensSeesIt = isConnected;
+  full.gathers.assign(n + 2, true);
   if (n == 0) return full;
   full.mergesAtLens = vertices[n]->isSeenByIndirect;
   full.lensSeesIt = isConnected && vertices[n]->isSeenByIndirect;
   for (size_t i = 1; i <= n; ++i) {
     const PathVertex& vertex = *vertices[i];
+    full.gathers[i] = vertex.GathersPhotons();
     // Directions of the rays that were traced; for the connecting edge, from vertex to vertex.
     const auto directionTo = [&](size_t other) {
       if (photon && i == ofLight + 1 && other == ofLight) return photon->toPrevious;
@@ -69,7 +76,7 @@ FullPath Unfold(const ConnectedPath& path) {
       densities.toLight = isLight ? vertex.eventReverse : vertex.eventForward;
       densities.toCamera = isLight ? vertex.eventForward : vertex.eventReverse;
     } else {
-      densities = At(vertex, toLight, toCamera);
+      densities = At(vertex, isLight, toLight, toCamera);
     }
     full.fromCamera[i - 1] =
         densities.toLight * (i == 1 ? path.end.solidAnglePerArea : EdgeBetween(vertex, *vertices[i - 1], toLight));
@@ -149,7 +156,7 @@ std::vector<double> WeightsByRecursion(const FullPath& path) {
   const auto isDelta = [&](int i) { return static_cast<bool>(path.isDelta[static_cast<size_t>(i)]); };
   const LightEnd& end = path.end;
   const double merge = Mis(path.mergesPerDensity);
-  const auto mergeAt = [&](int i) { return path.CanMerge(i) ? merge : 0.0; };
+  const auto mergeAt = [&](int i) { return Merging{path.CanMerge(i) ? merge : 0.0, merge}; };
   if (n == 0 && !path.lensSeesIt) return {1, 0};
   if (n == 0) return {SeenLightWeight(end.position, B(0)), SplatLightWeight(end.position, B(0))};
   std::vector<double> weights(static_cast<size_t>(path.TechniqueCount()), 0.0);

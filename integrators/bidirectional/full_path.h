@@ -15,6 +15,7 @@ struct FullPath {
   std::vector<AreaDensity> fromLight;   // [i]: of vertex i, sampled from i - 1; [1] is not used (LightEnd::emission)
   std::vector<AreaDensity> fromCamera;  // [i]: of vertex i, sampled from i + 1
   std::vector<bool> isDelta;            // [i]: the event at vertex i is one
+  std::vector<bool> gathers;            // [i]: photons may be gathered at vertex i
   bool lensSeesIt = true;               // a light path may reach vertex n and be connected to the lens
   bool mergesAtLens = true;             // photons may be merged at vertex n
   double mergesPerDensity = 0;          // N π r²; 0: no merging
@@ -24,7 +25,8 @@ struct FullPath {
   // Techniques are s = 0 … n + 1, and merging at vertex i = 1 … n, which is technique n + 1 + i.
   int TechniqueCount() const { return 2 * SurfaceCount() + 2; }
   bool CanMerge(int i) const {
-    return mergesPerDensity > 0 && !isDelta[static_cast<size_t>(i)] && (i < SurfaceCount() || mergesAtLens);
+    const auto vertex = static_cast<size_t>(i);
+    return mergesPerDensity > 0 && !isDelta[vertex] && gathers[vertex] && (i < SurfaceCount() || mergesAtLens);
   }
 };
 

@@ -27,7 +27,7 @@ struct BidirectionalSample {
 
   const LightingServices& Lighting() const { return *context.scene.lighting; }
   // `merge` if photons can be merged at `vertex`, 0 otherwise.
-  double MergeAt(const PathVertex& vertex) const { return vertex.CanMerge() ? merge : 0.0; }
+  Merging MergeAt(const PathVertex& vertex) const { return {vertex.CanMerge() ? merge : 0.0, merge}; }
   bool IsObserved() const { return context.observer != nullptr; }
   // Roulette of shadow rays; off with an observer, which receives all paths.
   ShadowRays WantedShadowRays() const { return IsObserved() ? ShadowRays{0, 0} : settings.shadowRays; }

@@ -2,7 +2,7 @@
 // both subpaths ([Veach97 §10.2], [Georgiev12 §4]; the departures from both are in walk/partial_weight.h). The
 // integrator calls these functions, and so does the test against explicit densities (full_path.h).
 //
-// `merge`: (N π r²)^β at the vertex in question; 0 if photons are not merged there.
+// `merge`: (N π r²)^β.
 #pragma once
 
 #include "integrators/walk/vertex.h"
@@ -41,19 +41,20 @@ inline double HitWeight(const LightEnd& end, const PartialWeight& camera, const 
 // density with which scattering there would find the light's point; 0: it cannot. `previousReverse`: reverse density of
 // the vertex before.
 inline double NextEventWeight(const LightEnd& end, const PartialWeight& camera, AreaDensity hit,
-                              AreaDensity previousReverse, double merge) {
+                              AreaDensity previousReverse, const Merging& merge) {
   return WeightAgainst(Mis(hit / end.direct) + camera.Sum({end.emission / end.direct, previousReverse}, merge));
 }
 
 // s > 1, t > 1: the last vertices of both subpaths are connected ([Georgiev12 eqs. 40, 41]).
-inline double ConnectWeight(const PartialWeight& light, const ReverseDensities& ofLight, double mergeAtLight,
-                            const PartialWeight& camera, const ReverseDensities& ofCamera, double mergeAtCamera) {
+inline double ConnectWeight(const PartialWeight& light, const ReverseDensities& ofLight, const Merging& mergeAtLight,
+                            const PartialWeight& camera, const ReverseDensities& ofCamera,
+                            const Merging& mergeAtCamera) {
   return WeightAgainst(light.Sum(ofLight, mergeAtLight) + camera.Sum(ofCamera, mergeAtCamera));
 }
 
 // s > 1, t = 1: the last vertex of the light subpath is connected to the lens ([Georgiev12 eq. 46]). `reverse`: reverse
 // densities of that vertex, by a camera ray, and of the one before.
-inline double SplatWeight(const PartialWeight& light, const ReverseDensities& reverse, double merge) {
+inline double SplatWeight(const PartialWeight& light, const ReverseDensities& reverse, const Merging& merge) {
   return WeightAgainst(light.Sum(reverse, merge));
 }
 

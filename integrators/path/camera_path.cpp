@@ -47,26 +47,29 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
     const PathVertex& vertex = path.Last();
     if (vertex.isDelta) return true;
     const auto events = static_cast<int>(path.Count());
-    if (settings_.samplesLights)
+    if (SamplesLights(vertex))
       radiance_ += SampleDirectLight(context_, nextEvent_, vertex, events - 1, radiance_, *this);
-    if (gatherer_) radiance_ += gatherer_->Gather(vertex, events, state.length);
+    if (gatherer_ && vertex.GathersPhotons()) radiance_ += gatherer_->Gather(vertex, events, state.length);
     return true;
   }
 
   // Directions from which photons are gathered are still traced for the emission of the surface they hit: next-event
   // estimation alone would miss a panel that touches the floor.
   bool Scattered(const Subpath& path, const PathState& state) override {
-    isLook_ = !path.Last().scatteredDelta && state.pdfDirection.value <= static_cast<double>(settings_.gatherBelow);
+    isLook_ = !path.Last().scatteredDelta && path.Last().GathersPhotons() &&
+              state.pdfDirection.value <= static_cast<double>(settings_.gatherBelow);
     return !isLook_ || (settings_.samplesLights && lighting_.HasLightThatCanBeHit());
   }
 
   const Color& Radiance() const { return radiance_; }
 
  private:
+  bool SamplesLights(const PathVertex& vertex) const { return settings_.samplesLights || !vertex.GathersPhotons(); }
+
   // A light found by BSDF sampling, weighted against next-event estimation.
   void AddFound(const PathVertex& last, const PathState& state, const FoundLight& found) {
     Color radiance = state.diffuse * found.evaluation.diffuse + state.specular * found.evaluation.specular;
-    if (!last.scatteredDelta && settings_.samplesLights) {
+    if (!last.scatteredDelta && SamplesLights(last)) {
       const PdfSolidAngle direction(static_cast<float>(state.pdfDirection.value));
       radiance *= PowerHeuristic(direction, found.selection * found.evaluation.pdfDirect);
     }

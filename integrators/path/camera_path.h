@@ -22,7 +22,9 @@ struct CameraPathSettings {
   // 1/sr. A sampled direction whose density is not higher ends the path: of the surface that it hits only the emission
   // is used, all other light from there is gathered. 0: all directions are followed.
   float gatherBelow = 0;
-  bool samplesLights = true;  // next-event estimation; without it, lights are found by BSDF sampling alone
+  // Next-event estimation; without it, lights are found by BSDF sampling alone, except at vertices that gather no
+  // photons.
+  bool samplesLights = true;
   ShadowRays shadowRays;
 };
 

@@ -51,6 +51,11 @@ struct ReverseDensities {
   AreaDensity last, previous;
 };
 
+// `merge` at the last vertex of a subpath, 0 if photons are not merged there, and at the vertices before it.
+struct Merging {
+  double here = 0, before = 0;
+};
+
 struct PartialWeight {
   double connect = 0, earlier = 0;
   double merging = 0;  // coefficient of `merge` beside `earlier`: merging at the vertices before this one
@@ -70,8 +75,8 @@ struct PartialWeight {
   }
 
   // Σ (p_i / p)^β over the techniques with fewer vertices on this side, merging at this vertex included.
-  double Sum(const ReverseDensities& reverse, double merge) const {
-    return Mis(reverse.last) * (merge + BeforeReverse(reverse.previous, merge));
+  double Sum(const ReverseDensities& reverse, const Merging& merge) const {
+    return Mis(reverse.last) * (merge.here + BeforeReverse(reverse.previous, merge.before));
   }
   // The sum without the factor of this vertex's own reverse density, and without merging at it.
   double BeforeReverse(AreaDensity previousReverse, double merge) const {

@@ -32,10 +32,12 @@ struct Vertex {
   std::optional<BsdfSample> Sample(float uLobe, const Point2& u, TransportMode mode) const {
     return bsdf.Sample(toPrevious, uLobe, u, mode);
   }
-  // |cosθ| to the shading normal, as in the scattering integral.
-  float ScatteringCosine(const Vector3& direction) const { return AbsDot(direction, bsdf.ShadingFrame().z); }
-  // Geometry term of an edge along `direction`: |cosθ| to the geometric normal.
-  float GeometryTerm(const Vector3& direction) const { return AbsDot(direction, bsdf.Ng()); }
+  // |cosθ| to the shading normal, as in the scattering integral; of a fibre, to the plane across it.
+  float ScatteringCosine(const Vector3& direction) const { return bsdf.ScatteringCosine(direction); }
+  // Geometry term of an edge along `direction`: |cosθ| to the geometric normal; of a fibre, as above.
+  float GeometryTerm(const Vector3& direction) const { return bsdf.GeometricCosine(direction); }
+  // False where photons have no area to be gathered from: a fibre is narrower than the radius.
+  bool GathersPhotons() const { return !bsdf.IsFibre(); }
 
   // With shading normals importance scatters differently from radiance ([Veach97 §5.3]). Radiance that arrives from wl,
   // towards the light, is scattered by f · |wl·Ns|, whatever the direction wc towards the camera. From the light's side
@@ -89,7 +91,7 @@ struct PathVertex : Vertex {
 
   Color Throughput() const { return diffuse + specular; }
   // True if photons can be merged here.
-  bool CanMerge() const { return !isDelta && isSeenByIndirect; }
+  bool CanMerge() const { return !isDelta && isSeenByIndirect && GathersPhotons(); }
   // Reverse density of the previous vertex, for an event here whose density towards it is `pdfReverse`.
   AreaDensity PreviousReverse(SolidAngleDensity pdfReverse) const { return pdfReverse * previousSolidAnglePerArea; }
   AreaDensity PreviousReverse(PdfSolidAngle pdfReverse) const { return PreviousReverse(SolidAngleDensity(pdfReverse)); }

@@ -345,6 +345,7 @@ void Builder::PlaceEntry(const ReadEntry& entry, const Transform& toRender, std:
     result.attributes.link = link;
     result.attributes.alpha = alpha;
     result.attributes.thin = thin;
+    result.attributes.isFibrous = material->IsFibrous();
     result.shape = std::move(placed);
     const bool isCurve = std::holds_alternative<std::shared_ptr<const CurveSet>>(result.shape);
     if (shape.areaLight >= 0 && isCurve) {

@@ -1,5 +1,6 @@
-// Values as bytes and back, for files that are read again on the machine that wrote them, or on one like it: byte order
-// and floating point are the processor's. What is read is not trusted: nothing is taken that is not there.
+// Binary serialization of trivially copyable values, in the byte order and floating-point format of the processor: for
+// files that are read back on the machine that wrote them, or on a similar one. Input is untrusted: every read is
+// checked against the bytes that are left.
 #pragma once
 
 #include <cstddef>
@@ -23,13 +24,13 @@ class ByteWriter {
     static_assert(std::is_trivially_copyable_v<T>);
     Bytes(&value, sizeof value);
   }
-  // The values alone: their number is known to who reads them.
+  // Writes the values without their count, which the reader has to know.
   template <class T>
   void Values(std::span<const T> values) {
     static_assert(std::is_trivially_copyable_v<T>);
     Bytes(values.data(), values.size_bytes());
   }
-  // With their number.
+  // Writes the count (uint64), then the values.
   template <class T>
   void List(std::span<const T> values) {
     Value<uint64_t>(values.size());
@@ -38,7 +39,7 @@ class ByteWriter {
   void Text(std::string_view text) { List(std::span<const char>(text)); }
 
   uint64_t Written() const { return written_; }
-  // Of all bytes so far.
+  // CRC-32 of all bytes written so far.
   uint32_t Checksum() const { return checksum_; }
 
  private:
@@ -49,7 +50,7 @@ class ByteWriter {
   uint32_t checksum_ = 0;
 };
 
-// Throws an Error where less is left than is asked for.
+// Every read throws an Error if fewer bytes are left than it needs.
 class ByteReader {
  public:
   explicit ByteReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
@@ -66,7 +67,7 @@ class ByteReader {
     static_assert(std::is_trivially_copyable_v<T>);
     Take(values.data(), values.size_bytes());
   }
-  // Not more than `most`: an Error.
+  // Reads a count and that many values. Throws an Error if the count exceeds `most`.
   template <class T>
   std::vector<T> List(uint64_t most) {
     const auto count = Value<uint64_t>();
@@ -76,11 +77,11 @@ class ByteReader {
     return values;
   }
   std::string Text(uint64_t most = 1 << 16);
-  // A bool that is neither 0 nor 1 is none.
+  // Reads a bool. Throws an Error if the byte is neither 0 nor 1.
   bool Flag();
 
   uint64_t Left() const { return bytes_.size(); }
-  // Throws an Error where bytes are left that nobody has asked for.
+  // Throws an Error if unread bytes are left.
   void CheckEnd() const;
 
  private:
@@ -90,7 +91,7 @@ class ByteReader {
   std::span<const std::byte> bytes_;
 };
 
-// As ByteWriter::Checksum.
+// CRC-32 of `bytes`; equal to ByteWriter::Checksum of the same bytes.
 uint32_t ChecksumOf(std::span<const std::byte> bytes);
 
 }  // namespace lampyr

@@ -52,7 +52,7 @@ Error::Error(const FileLocation& where, const std::string& text)
 
 namespace {
 
-// The text without its quoted names and its numbers.
+// The text without quoted names and digits: equal for warnings of the same kind.
 std::string KindOf(const std::string& text) {
   std::string kind;
   bool isQuoted = false;
@@ -104,7 +104,8 @@ std::string NearestName(std::string_view given, const std::vector<std::string>& 
   int best = limit + 1;
   std::string nearest;
   for (const std::string& name : known) {
-    // The distance is at least what the lengths differ by: a word of megabytes is near none.
+    // The difference in length bounds the distance from below; this skips the quadratic algorithm for words of
+    // megabytes.
     const size_t longer = std::max(given.size(), name.size()), shorter = std::min(given.size(), name.size());
     if (longer - shorter > static_cast<size_t>(limit)) continue;
     const int distance = EditDistance(given, name);

@@ -1,7 +1,7 @@
-// Errors and warnings that name the place in the user's file they are about.
+// Errors and warnings that name the place in the user's file at which they occurred.
 //
-// A bad scene throws Error; what is tolerable goes to a Diagnostics object that the caller owns
-// (nothing here is global). Both print as `file:line:col: error: what, and what would be right`.
+// An invalid scene throws an Error. Tolerable defects go to a Diagnostics object that the caller owns (nothing here is
+// global). Both print as `file:line:col: error: what is wrong, and what would be right`.
 #pragma once
 
 #include <map>
@@ -15,17 +15,17 @@
 
 namespace lampyr {
 
-// A place in a text file. Lines and columns count from 1; line 0 means "no particular place in the file".
+// A place in a text file. Lines and columns count from 1; line 0 means the file as a whole.
 struct FileLocation {
   std::shared_ptr<const std::string> file;  // null: no file at all
   int line = 0;
   int column = 0;
 
-  // "file:12:3", "file", or "" when nothing is known.
+  // "file:12:3"; "file" without a line; "" without a file.
   std::string ToString() const;
 };
 
-// A scene, a file or a setting that cannot be used. What() is complete: "file:line:col: error: text".
+// A scene, a file or a setting that cannot be used. what() is the complete message: "file:line:col: error: text".
 class Error : public std::runtime_error {
  public:
   explicit Error(const std::string& text);
@@ -39,14 +39,14 @@ class Error : public std::runtime_error {
   std::string text_;
 };
 
-// Wrong usage of the command line: like Error, but about no file.
+// Wrong usage of the command line. Names no file.
 class UsageError : public Error {
  public:
   using Error::Error;
 };
 
-// What `work` gives. An Error that names no place becomes one at `where`: for what is checked by code that knows
-// nothing of files.
+// Returns work(). An Error without a place is rethrown with the place `where`: for checks in code that knows nothing of
+// files. A UsageError passes unchanged.
 template <class Work>
 auto LocateErrors(const FileLocation& where, const Work& work) {
   try {
@@ -59,8 +59,9 @@ auto LocateErrors(const FileLocation& where, const Work& work) {
   }
 }
 
-// Collects warnings. Each distinct (place, text) is reported once. Print: of warnings that differ in their numbers and
-// quoted names alone, the first few texts are printed, and the rest is counted when the object goes. Thread-safe.
+// Receives warnings and reports each distinct pair of place and text once. In Print mode, warnings that differ only in
+// numbers and quoted names form a kind: the first three texts of a kind are printed, the others are counted, and the
+// destructor prints the count. Thread-safe.
 class Diagnostics {
  public:
   enum class Mode { Print, Collect, Strict };  // Strict: the first warning is thrown as an Error
@@ -72,13 +73,13 @@ class Diagnostics {
   void Warn(const FileLocation& where, const std::string& text);
   void Warn(const std::string& text) { Warn({}, text); }
 
-  // All warnings so far, formatted, in the order they came. Not of Print, which keeps none.
+  // All warnings so far, formatted, in the order of arrival. Empty in Print mode, which keeps none.
   std::vector<std::string> Warnings() const;
 
  private:
   struct Kind {
     std::set<std::string> printed;  // texts
-    size_t further = 0;             // warnings that were not printed
+    size_t further = 0;             // count of warnings not printed
   };
   void Print(const FileLocation& where, const std::string& text);
 
@@ -86,16 +87,16 @@ class Diagnostics {
   mutable std::mutex mutex_;
   std::set<std::string> seen_;
   std::vector<std::string> warnings_;
-  // Of Print: of messages that may be millions, the hashes alone.
+  // Print mode keeps hashes only: there may be millions of messages.
   std::set<size_t> seenHashes_;
   std::map<std::string, Kind> kinds_;
 };
 
-// The entry of `known` that a person most likely meant by `given`, or "" when none is near
-// (edit distance, transpositions counted as one, at most a third of the word's length and 1 at least).
+// The entry of `known` that is nearest to `given`, or "" if none is near. Distance: number of edits, case ignored, a
+// transposition counted as one; near is at most a third of the length of `given`, and at least 1.
 std::string NearestName(std::string_view given, const std::vector<std::string>& known);
 
-// " (did you mean \"sphere\"?)", or "" when no name is near. To be appended to a message.
+// " (did you mean \"sphere\"?)", or "" if no name is near. To be appended to a message.
 std::string DidYouMean(std::string_view given, const std::vector<std::string>& known);
 
 }  // namespace lampyr

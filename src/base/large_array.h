@@ -1,4 +1,4 @@
-// An array for tables of many megabytes that are read at random places.
+// Arrays for tables of many megabytes with random access.
 #pragma once
 
 #include <algorithm>
@@ -13,8 +13,8 @@
 
 namespace lampyr {
 
-// `count` values of all bits 0, on large pages where the system has them: a read at a random place then hardly ever
-// waits for page tables, which is a tenth of its time. Movable, not copyable.
+// `count` values, zero-initialized, on large pages if the system has them. Random reads then rarely miss the TLB, which
+// saves a tenth of their time. Movable, not copyable.
 template <class T>
 class LargeArray {
   static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
@@ -36,7 +36,7 @@ class LargeArray {
  private:
   static void* TakeAligned(size_t bytes) {
     constexpr size_t unit = std::max(alignof(T), alignof(std::max_align_t));
-    void* memory = std::aligned_alloc(unit, (bytes + unit - 1) / unit * unit);  // takes whole multiples only
+    void* memory = std::aligned_alloc(unit, (bytes + unit - 1) / unit * unit);  // the size must be a multiple of `unit`
     if (!memory) throw std::bad_alloc();
     return memory;
   }
@@ -47,7 +47,7 @@ class LargeArray {
   size_t size_ = 0;
 };
 
-// `count` values of all bits 0, whose memory the system provides as it is touched. `count` is not 0. Not copyable.
+// `count` > 0 values, zero-initialized, whose pages the system allocates on first access. Not copyable.
 template <class T>
 class SparseArray {
   static_assert(std::is_trivially_destructible_v<T>);

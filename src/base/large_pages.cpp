@@ -14,7 +14,7 @@ void* TakeLargePages(size_t bytes) {
   void* memory = std::aligned_alloc(kLargePage, whole);
   if (!memory) throw std::bad_alloc();
 #if defined(__linux__)
-  madvise(memory, whole, MADV_HUGEPAGE);  // advice only: the memory is there without it
+  madvise(memory, whole, MADV_HUGEPAGE);  // advice only: failure is harmless
 #endif
   return memory;
 }

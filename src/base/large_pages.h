@@ -1,4 +1,4 @@
-// Memory on large pages, where the system has them: reads at random places of it hardly ever wait for page tables.
+// Allocation of large pages (random reads rarely miss the TLB) and of pages on demand.
 #pragma once
 
 #include <cstddef>
@@ -7,12 +7,12 @@ namespace lampyr {
 
 constexpr size_t kLargePage = size_t{2} << 20;
 
-// At least `bytes`, from the beginning of a large page to the end of one; given back with std::free. Throws
-// std::bad_alloc. A system without such pages gives ordinary ones.
+// Allocates at least `bytes`, aligned to a large page and rounded up to whole ones; to be released with std::free.
+// Throws std::bad_alloc. A system without large pages gives ordinary ones.
 void* TakeLargePages(size_t bytes);
 
-// `bytes` of zeros that the system provides page by page, when they are first touched: a large table of which little is
-// used costs little. Given back with GiveBackPages, of the same size. Throws std::bad_alloc.
+// Allocates `bytes` of zeros, which the system provides page by page on first access: a large table costs memory only
+// where it is used. To be released with GiveBackPages and the same size. Throws std::bad_alloc.
 void* TakePagesOnDemand(size_t bytes);
 void GiveBackPages(void* memory, size_t bytes);
 

@@ -15,7 +15,7 @@ namespace lampyr {
 MappedFile::MappedFile(const std::filesystem::path& path) {
   const auto fail = [&path](const std::string& what) { throw Error("cannot read \"" + path.string() + "\": " + what); };
   const auto reason = [] { return std::generic_category().message(errno); };
-  // A pipe without a writer must not be waited for.
+  // O_NONBLOCK: opening a pipe without a writer must not block.
   const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (file < 0) fail(reason());
   struct stat status {};

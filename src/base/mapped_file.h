@@ -1,4 +1,4 @@
-// A file's bytes, read where they are asked for.
+// A read-only memory mapping of a file.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@ namespace lampyr {
 
 class MappedFile {
  public:
-  // Throws an Error with the system's reason.
+  // Throws an Error with the system's reason if `path` cannot be mapped or is not a regular file.
   explicit MappedFile(const std::filesystem::path& path);
   ~MappedFile();
   MappedFile(const MappedFile&) = delete;

@@ -11,13 +11,13 @@ namespace lampyr {
 
 namespace {
 
-// What the control group of this process may use, where the system has such groups (version 2).
+// Memory limit of the control group (version 2) of this process in bytes; UINT64_MAX if there is none.
 uint64_t GroupMemory() {
   uint64_t least = UINT64_MAX;
   std::ifstream groups("/proc/self/cgroup");
   for (std::string line; std::getline(groups, line);) {
     if (!line.starts_with("0::")) continue;
-    // Each group above may say less.
+    // A parent group may have a lower limit.
     for (std::string group = line.substr(3);; group.resize(std::min(group.rfind('/'), group.size()))) {
       uint64_t bytes = 0;
       if (std::ifstream("/sys/fs/cgroup" + group + "/memory.max") >> bytes) least = std::min(least, bytes);

@@ -1,5 +1,5 @@
-// How much memory there is, and counting what a scene asks for before it is taken: a file of a few lines can ask for
-// more than any machine has, and the system would end the process for it without a word.
+// Available memory, and a budget that is checked before allocation: a scene file of a few lines can ask for more memory
+// than any machine has, and the system would then kill the process without a message.
 #pragma once
 
 #include <cstdint>
@@ -9,17 +9,18 @@
 
 namespace lampyr {
 
-// Of this machine, or less where the process was given less (ulimit -v, a container). Bytes.
+// Bytes of physical memory of this machine, or the limit of the process if that is lower (ulimit -v, a container).
 uint64_t AvailableMemory();
 
-// "3.2 GiB", "512 MiB": of two digits at least.
+// "3.2 GiB", "512 MiB", "7 bytes": at least two digits from 1 KiB on.
 std::string FormatBytes(double bytes);
 
 class MemoryBudget {
  public:
   explicit MemoryBudget(uint64_t bytes) : bytes_(static_cast<double>(bytes)) {}
 
-  // Throws an Error at `where` when these bytes are more than what is left. `what`: who takes them, plural.
+  // Throws an Error at `where` if `bytes` exceeds what is left of the budget. `what`: the objects that need the memory,
+  // plural.
   void Take(double bytes, const FileLocation& where, const std::string& what);
 
  private:

@@ -25,12 +25,12 @@ void FlushDenormalsToZero() {
 #endif
 }
 
-// parallel_threads.cpp has them for ThreadSanitizer.
+// parallel_threads.cpp has the implementation for ThreadSanitizer.
 #if !defined(__SANITIZE_THREAD__)
 
 namespace {
 
-// The calling thread's floating-point setting is the same after the loop as before.
+// Restores the floating-point control register of the calling thread after a loop.
 class KeptFloatSetting {
  public:
 #if defined(__x86_64__)
@@ -54,7 +54,7 @@ void ParallelFor(int count, int threads, const std::function<void(int)>& body) {
     for (int i = 0; i < count; ++i) body(i);
     return;
   }
-  // As many as asked for, also beyond the machine's own number.
+  // `threads` may exceed the number of hardware threads.
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                   static_cast<size_t>(std::max(threads, HardwareThreads())));
   tbb::task_arena arena(threads);

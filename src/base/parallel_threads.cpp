@@ -1,5 +1,5 @@
-// The loops of parallel.h on plain threads, for ThreadSanitizer: it does not see into TBB, which is built without it, and
-// takes all that TBB's own waiting orders for races.
+// The loops of parallel.h on plain threads, for ThreadSanitizer: TBB is built without it, so that ThreadSanitizer does
+// not see TBB's own synchronization and reports false races.
 #if defined(__SANITIZE_THREAD__)
 
 #include <algorithm>

@@ -1,9 +1,9 @@
-// What this process has used so far.
+// Resource usage of this process so far.
 #pragma once
 
 namespace lampyr {
 
-// Largest resident set, MiB.
+// Peak resident set size, MiB.
 double PeakMemoryMiB();
 // CPU time, user and system, seconds.
 double CpuSeconds();

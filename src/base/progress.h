@@ -1,4 +1,4 @@
-// Progress of long work: a bar on a terminal, a plain line every few seconds elsewhere.
+// Progress of long work on stderr: a bar on a terminal, otherwise a plain line every few seconds.
 #pragma once
 
 #include <chrono>
@@ -8,13 +8,14 @@ namespace lampyr {
 
 class Progress {
  public:
-  // `quiet`: prints nothing at all.
+  // `quiet`: prints nothing.
   explicit Progress(bool quiet);
   ~Progress();
 
-  // `fraction` done in [0,1]; `note` follows it ("64 spp, error 2.1 %"). Prints at most a few times a second.
+  // `fraction` done, in [0,1], followed by `note` ("64 spp, error 2.1 %"). Prints at most every 0.1 s on a terminal,
+  // and every 5 s elsewhere.
   void Update(double fraction, const std::string& note);
-  // Clears the bar, so that other lines can be printed.
+  // Clears the bar, so that other output can be printed.
   void Clear();
 
   double Seconds() const;  // since construction
@@ -28,15 +29,15 @@ class Progress {
   double lastPrinted_ = -1e9;
 };
 
-// The bar of a terminal with `columns` columns, on one line that is shorter than they are: at 40 columns without a bar
-// ("50 %, 3 min 20 s left, 64 spp"), the note cut off where it does not fit.
+// One line of progress for a terminal with `columns` columns, always shorter than that. If a bar does not fit (at 40
+// columns, say) it is left out ("50 %, 3 min 20 s left, 64 spp"); what is still too long is cut off at the end.
 std::string ProgressLine(double fraction, const std::string& left, const std::string& note, int columns);
 
 // "1 h 02 min", "3 min 20 s", "4.2 s", "37 ms".
 std::string FormatDuration(double seconds);
 
-// A fraction in percent with two significant digits and without an exponent: "0.12 %", "5 %", "190 %"; "unknown" where
-// it is not finite.
+// A fraction in percent, rounded to two significant digits, without an exponent and without trailing zeros: "0.12 %",
+// "5 %", "190 %"; "unknown" if it is not finite.
 std::string FormatPercent(double fraction);
 
 }  // namespace lampyr

@@ -21,7 +21,7 @@ std::string FormatNumber(double value, int digits) {
   return text;
 }
 
-// The number that the whole text is; NaN where it is none.
+// The finite number that the whole text denotes; NaN for any other text.
 double ParseNumber(const std::string& text) {
   char* end = nullptr;
   const double number = std::strtod(text.c_str(), &end);

@@ -11,7 +11,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// A signal handler cannot wake anybody without further ado, and a request need not: who waits looks now and then.
+// Polling interval: a signal handler cannot notify a condition variable, and a stop need not be faster.
 constexpr std::chrono::milliseconds kLook(50);
 
 std::atomic<bool> hasGivenUp{false};
@@ -24,7 +24,7 @@ Clock::time_point After(double seconds) {
 
 namespace stop {
 
-// On a cache line that nobody writes to.
+// On a cache line of its own: neighbouring writes must not slow down the polling loops.
 alignas(64) std::atomic<bool> requested{false};
 
 void Throw() {

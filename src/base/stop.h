@@ -1,6 +1,6 @@
-// A request to end a pass of rendering before it is done, seen within the loops of its paths.
+// A request to end a rendering pass early, which the loops that trace paths poll.
 //
-// There is one request for the process: a path may have any length, and is followed far below whoever knows why the
+// The request is global to the process: a path may have any length, and is traced far below the code that knows why the
 // pass has to end.
 #pragma once
 
@@ -13,7 +13,7 @@
 
 namespace lampyr {
 
-// Thrown by CheckStop. The work that it ends is half done: whoever catches it restores what was there before.
+// Thrown by CheckStop. The interrupted work is incomplete: the code that catches this restores the state from before.
 struct Stopped {};
 
 namespace stop {
@@ -21,33 +21,35 @@ extern std::atomic<bool> requested;
 [[noreturn]] void Throw();
 }  // namespace stop
 
-// From any thread.
+// Both may be called from any thread.
 void RequestStop();
 void WithdrawStop();
 
-// To be called at each turn of a loop that may take long.
+// Throws Stopped if a stop is requested. To be called in each iteration of a loop that may take long.
 inline void CheckStop() {
   if (stop::requested.load(std::memory_order_relaxed)) [[unlikely]]
     stop::Throw();
 }
 
-// Runs `work` on a thread of its own, and waits for its end. Stopped: it has thrown Stopped. GivenUp: it has not ended
-// `kPatience` after the request, as it may be in code that does not ask (a library, a plugin, the system). It goes on
-// then: what it refers to must stay until the process ends, and the request with it. What else it throws is thrown
-// here.
+// Runs `work` on a separate thread and waits for it. Rethrows its exceptions other than Stopped.
+// - Done: `work` has returned.
+// - Stopped: `work` has thrown Stopped.
+// - GivenUp: `work` has not ended within `kPatience` of the request, since it may be in code that does not poll (a
+//   library, a plugin, the system). It keeps running: everything it refers to must stay alive until the process ends,
+//   and the request stays set.
 enum class WorkEnd { Done, Stopped, GivenUp };
 WorkEnd RunUntilStopped(std::function<void()> work);
 bool HasGivenUpWork();
 inline constexpr double kPatience = 0.5;  // seconds
 
-// Requests a stop when an interrupt or the end of the time has been there for `kGrace` and the work is still under way,
-// from a thread of its own. Withdraws the request when it is destroyed, unless work was given up.
+// Requests a stop, from a separate thread, if the work is still running `kGrace` after an interrupt or after its time
+// has run out. The destructor withdraws the request unless work was given up.
 class StopWatch {
  public:
-  // Seconds: passes that end soon are worth waiting for.
+  // Seconds. A pass that is about to end is worth waiting for.
   static constexpr double kGrace = 0.5;
 
-  // `interrupted`: set by a signal handler; null: nobody interrupts. `seconds` from now on; absent: without end.
+  // `interrupted`: set by a signal handler; null: no interrupts. `seconds`: the time from now on; absent: unlimited.
   StopWatch(const std::atomic<bool>* interrupted, std::optional<double> seconds);
   ~StopWatch();
   StopWatch(const StopWatch&) = delete;

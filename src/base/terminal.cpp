@@ -26,7 +26,7 @@ int TerminalColumns(int fd, int otherwise) {
 }
 
 int ColumnsOf(const std::string& text) {
-  // All bytes but the continuation bytes of UTF-8.
+  // Counts all bytes except UTF-8 continuation bytes.
   return static_cast<int>(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xc0) != 0x80; }));
 }
 

@@ -6,17 +6,18 @@
 
 namespace lampyr {
 
-// Columns of the terminal that file descriptor `fd` leads to; else those of the environment variable COLUMNS; else
-// `otherwise`. At least 20.
+// Columns of the terminal that file descriptor `fd` refers to; if it is none, the environment variable COLUMNS; if that
+// is not set, `otherwise`. At least 20.
 int TerminalColumns(int fd, int otherwise);
 
-// Columns that UTF-8 text takes: one for each code point.
+// Columns of UTF-8 text: one for each code point.
 int ColumnsOf(const std::string& text);
 
-// Lines of at most `columns` columns, broken at spaces; a longer word has a line of its own. At least one line.
+// Lines of at most `columns` columns, broken at spaces; a word longer than that has a line of its own. At least one
+// line.
 std::vector<std::string> WrapText(const std::string& text, int columns);
 
-// `text` wrapped behind `first`; further lines are indented by as many columns as `first` has. Ends with a newline.
+// `first` followed by `text`, wrapped; further lines are indented by the width of `first`. Ends with a newline.
 std::string Indented(const std::string& first, const std::string& text, int columns);
 
 }  // namespace lampyr

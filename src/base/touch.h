@@ -1,10 +1,11 @@
-// Memory that will be read soon: asked for while other work goes on.
+// Software prefetch by a read.
 #pragma once
 
 namespace lampyr {
 
-// A read whose value nobody waits for. Unlike a prefetch instruction it is not dropped where the address is not in the
-// processor's page tables, which for tables of many megabytes is the usual case. `p` has to be readable.
+// Reads *p and discards the value, so that the processor fetches its cache line while other work goes on. Unlike a
+// prefetch instruction the read is not dropped on a TLB miss, which is the usual case for tables of many megabytes. `p`
+// must be readable.
 inline void Touch(const float* p) {
   const volatile float* watched = p;
   (void)*watched;

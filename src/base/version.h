@@ -1,4 +1,4 @@
-// The version, as images and `lampyr --version` carry it.
+// The version that images and `lampyr --version` state.
 #pragma once
 
 namespace lampyr {

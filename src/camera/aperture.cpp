@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kPiDouble = 3.14159265358979323846;
 
-// Corners at equal angles, with radii that alternate.
+// Corners at equal angular steps from the angle `first` on, at alternating radii.
 std::vector<Point2d> Star(int count, double first, double even, double odd) {
   std::vector<Point2d> corners;
   for (int i = 0; i < count; ++i) {
@@ -25,7 +25,7 @@ double Cross(const Point2d& a, const Point2d& b) {
   return a.x * b.y - a.y * b.x;
 }
 
-// By the parity of the edges to the right.
+// True if `p` is inside of the polygon: the number of edges to its right is odd.
 bool IsInside(const std::vector<Point2d>& corners, const Point2d& p) {
   bool inside = false;
   for (size_t i = 0; i < corners.size(); ++i) {

@@ -1,4 +1,4 @@
-// The shape of an aperture stop: a disk, or one of pbrt-v4's other shapes, or an image.
+// The shape of an aperture stop: a disk, one of the other shapes of pbrt-v4, or an image.
 #pragma once
 
 #include <string>
@@ -8,26 +8,27 @@
 
 namespace lampyr {
 
-// Rows of numbers from the top, as it is seen from the film with the camera's y up.
+// An image of an aperture, row by row from the top, as seen from the film with the camera's y axis up.
 struct ApertureImage {
   int width = 0, height = 0;
   std::vector<float> values;
 };
 
-// What passes at each point of the stop, in radii of the stop from its middle. All shapes let through as much as the
-// disk: the integral is π. Smaller shapes therefore pass more than all, which the exposure would make up for.
+// Transmission over the area of the stop. Positions are relative to its centre, in units of its radius. All shapes are
+// normalised to transmit as much as the disk (an integral of π): a smaller shape therefore has a transmission above 1,
+// which stands for a longer exposure.
 class Aperture {
  public:
   Aperture() = default;  // the disk
-  // One of Names(). Throws an Error for another name.
+  // The shape `name`, one of Names(). Throws an Error for any other name.
   static Aperture Named(const std::string& name);
   static const std::vector<std::string>& Names();
-  // The image over [-1,1]², bilinear between the middles of its pixels, black outside; negative values count as 0.
-  // Throws an Error for an image that is black or not finite.
+  // The image over [-1,1]², bilinear between the centres of its pixels, 0 outside; negative values count as 0. Throws
+  // an Error for an image that is black or not finite.
   static Aperture OfImage(ApertureImage image);
 
   double Transmission(const Point2d& p) const;
-  // Radius of a disk around the middle beyond which nothing passes.
+  // Radius around the centre beyond which the transmission is 0.
   double Extent() const { return extent_; }
 
  private:
@@ -38,7 +39,7 @@ class Aperture {
 
   Kind kind_ = Kind::Disk;
   double extent_ = 1, scale_ = 1;
-  std::vector<Point2d> corners_;  // in order around it
+  std::vector<Point2d> corners_;  // in order around the polygon
   ApertureImage image_;
 };
 

@@ -9,20 +9,20 @@ namespace lampyr {
 namespace {
 
 constexpr int kRings = 64;
-constexpr int kAcross = 32;  // cells of a grid over the bounds; half as many from y = 0 on
+constexpr int kAcross = 32;  // grid cells over the bounds in x; half as many in y, from 0 on
 constexpr int kMostGrids = 40;
-constexpr double kSettled = 0.6;    // the next grid would not cover much less than the last one
-constexpr double kImproved = 1e-6;  // relative, by a finer grid; else no ray comes nearer
+constexpr double kSettled = 0.6;    // stop when the bounds have at least this part of the area of the last grid
+constexpr double kImproved = 1e-6;  // relative improvement required of a finer grid
 constexpr int kBisections = 20;
 
 using Bounds = std::optional<PupilBounds>;
 
-// What a grid of rays through `region` has met: the bounds of those that pass, with a cell around them; or else where
-// a ray came nearest to passing.
+// Result of tracing a grid of rays through a region: the bounds of the rays that pass, enlarged by one cell, or else
+// the point of the ray that came nearest to passing.
 struct Met {
   Bounds passed;
   double nearestX = 0, nearestY = 0;
-  double least = std::numeric_limits<double>::infinity();  // clearance of the nearest
+  double least = std::numeric_limits<double>::infinity();  // clearance of the nearest ray
 };
 
 Met Look(const LensSystem& lens, double filmRadius, const PupilBounds& region) {
@@ -50,8 +50,8 @@ Met Look(const LensSystem& lens, double filmRadius, const PupilBounds& region) {
   return met;
 }
 
-// The bounds for a film point at `filmRadius`: a grid over all of the rear surface, then finer ones where rays pass, or
-// nearly pass, which finds pupils of any size. The pupil is symmetric in y.
+// The bounds for a film point at `filmRadius`: a grid over the whole rear surface, then finer ones over the part where
+// rays pass or nearly pass. Finds pupils of any size. The pupil is symmetric in y.
 Bounds Find(const LensSystem& lens, double filmRadius) {
   const double reach = lens.RearReach(filmRadius);
   PupilBounds region{-reach, reach, reach};
@@ -64,7 +64,7 @@ Bounds Find(const LensSystem& lens, double filmRadius) {
       if (isSettled) return region;
       continue;
     }
-    // The nearest of the grid before is one of this grid's points.
+    // The nearest point of the previous grid is one of the points of this grid.
     if (!(met.least < (1 - kImproved) * least)) return std::nullopt;
     least = met.least;
     const double cellX = (region.xMax - region.xMin) / kAcross, cellY = region.yMax / (kAcross / 2);
@@ -80,7 +80,7 @@ void Join(Bounds& all, const Bounds& more) {
             : *more;
 }
 
-// The bounds at the last radius with light, between one with light and one without.
+// Bounds over the radii with light between `light`, a radius with light, and `dark`, one without; by bisection.
 Bounds FindLast(const LensSystem& lens, double light, double dark) {
   Bounds last;
   for (int i = 0; i < kBisections; ++i) {
@@ -101,8 +101,8 @@ PupilBounds Moved(const PupilBounds& bounds, double by) {
 
 }  // namespace
 
-// A small pupil moves over a ring by more than its size: the bounds move with it, and hold what is found at both ends
-// of the ring and in its middle. A pupil that ends within a ring is followed to its end.
+// A small pupil may move by more than its size across a ring: the bounds move with it, and enclose what is found at
+// both ends and in the middle of the ring. A pupil that ends within a ring is followed to its end.
 ExitPupil::ExitPupil(const LensSystem& lens, double filmRadius) : ringWidth_(filmRadius / kRings), rings_(kRings) {
   Bounds first = Find(lens, 0);
   for (size_t i = 0; i < rings_.size(); ++i) {

@@ -1,5 +1,5 @@
-// Where light leaves a lens towards a film point: bounds of the exit pupil in the plane of the rear vertex, for rings
-// of film points around the axis ([Steinert11]; [Pharr23 §5.4.5]).
+// Bounds of the exit pupil in the plane of the rear vertex, for rings of film points around the axis ([Steinert11];
+// [Pharr23 §5.4.5]).
 #pragma once
 
 #include <optional>
@@ -9,7 +9,8 @@
 
 namespace lampyr {
 
-// A rectangle of the plane, mm: for film points at (radius, 0). For others it is turned with them around the axis.
+// A rectangle in the plane of the rear vertex, mm, for film points at (radius, 0). For other film points it is rotated
+// around the axis with them.
 struct PupilBounds {
   double xMin = 0, xMax = 0, yMax = 0;  // y from -yMax to yMax
 
@@ -18,14 +19,14 @@ struct PupilBounds {
 
 class ExitPupil {
  public:
-  // Of film points up to `filmRadius` (mm, > 0) from the axis. `lens` is in focus.
+  // Exit pupils of film points up to `filmRadius` (mm, > 0) from the axis. `lens` is in focus.
   ExitPupil(const LensSystem& lens, double filmRadius);
 
-  // Bounds of all that a film point at `radius` receives; nullopt: nothing.
+  // Bounds of the exit pupil for a film point at `radius` (mm); nullopt if no light reaches it.
   std::optional<PupilBounds> At(double radius) const;
 
  private:
-  // The bounds at the ring's inner radius, and how far along x they move per length of the radius.
+  // The bounds at the inner radius of a ring, and their displacement along x per radius.
   struct Ring {
     std::optional<PupilBounds> bounds;
     double shift = 0;

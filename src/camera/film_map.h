@@ -1,4 +1,4 @@
-// What the cameras share: checks of the frame, and the affine map from film to render space, in double precision.
+// Shared by the cameras: checks of the frame, and the affine map from film to render space in double precision.
 #pragma once
 
 #include "camera/camera.h"
@@ -18,25 +18,25 @@ inline double ImageArea(const CameraFrame& frame) {
 void CheckFrame(const CameraFrame& frame);
 void CheckLens(float lensRadius, float focalDistance);
 
-// The plane z = distance of camera space as pixels see it, in render space: film point (x, y) is at
-// center + (x - centerFilm.x)·dx + (y - centerFilm.y)·dy, relative to the camera's origin.
+// The plane z = distance of camera space in render space, in film coordinates: film point (x, y) is at center + (x -
+// centerFilm.x)·dx + (y - centerFilm.y)·dy, relative to the camera's origin.
 struct FilmPlane {
   Vector3d center, dx, dy;
   Point2d centerFilm;
-  Vector3d normal;        // dx × dy, turned to point away from the camera; its length is the area of a pixel
+  Vector3d normal;        // ±dx × dy, pointing away from the camera; its length is the area of a pixel
   Vector3d dualX, dualY;  // dot(p, dualX) is the coordinate along dx of a point p of the plane through 0
 
-  // `screenScale` turns screen coordinates into camera-space units.
+  // `screenScale` converts screen coordinates to camera-space units.
   FilmPlane(const CameraFrame& frame, double screenScale, double distance);
 
-  // The film point of p, which lies in the plane.
+  // The film point of `p`, a point of the plane relative to the camera's origin.
   Point2d FilmPoint(const Vector3d& p) const {
     const Vector3d d = p - center;
     return {centerFilm.x + glm::dot(d, dualX), centerFilm.y + glm::dot(d, dualY)};
   }
 };
 
-// Columns of cameraToRender: where the camera's axes and origin are.
+// Columns of cameraToRender: the camera's axes and origin in render space.
 struct CameraAxes {
   Vector3d x, y, z;
   Point3d origin;

@@ -14,9 +14,9 @@ namespace lampyr {
 
 namespace {
 
-constexpr double kLargest = 1e9;       // mm: a kilometre of curvature is flat
-constexpr double kLargestIndex = 10;   // no glass comes near
-constexpr double kFlush = 1e-6;        // mm by which rims may run into one another: they are rounded
+constexpr double kLargest = 1e9;       // mm: a radius of a kilometre is flat
+constexpr double kLargestIndex = 10;   // far above any glass
+constexpr double kFlush = 1e-6;        // mm by which rims may overlap: the numbers of a file are rounded
 constexpr size_t kLongestNumber = 64;  // characters
 constexpr const char* kWhatIsASurface =
     "a surface has four: radius of curvature, thickness, index of refraction and diameter of the aperture";
@@ -37,7 +37,7 @@ struct Row {
   std::array<FileLocation, 4> where;
 };
 
-// The lines of the text, without comments and line ends, each as its words.
+// Splits a text into lines, without comments, and lines into words.
 class Lines {
  public:
   Lines(std::string_view text, const std::string& name)
@@ -53,7 +53,7 @@ class Lines {
     for (size_t at = line.find_first_not_of(kBlanks); at != std::string_view::npos;) {
       const size_t until = std::min(line.find_first_of(kBlanks, at), line.size());
       words.push_back({line.substr(at, until - at), {name_, line_, static_cast<int>(at) + 1}});
-      // More would be refused anyway, and are not kept.
+      // Further words would be rejected anyway.
       if (words.size() > kMostWords) break;
       at = line.find_first_not_of(kBlanks, until);
     }
@@ -114,8 +114,8 @@ Row RowOf(const std::vector<Word>& words) {
   return row;
 }
 
-// The distance between two spheres changes with the height one way only, so that it is least on the axis or at the rim
-// that both have.
+// The distance between two spheres is monotonic in the height, so that it is smallest on the axis or at the rim of the
+// smaller aperture.
 void CheckOverlap(const Row& front, const Row& rear) {
   const double height = std::min(front.surface.apertureRadius, rear.surface.apertureRadius);
   const double gap = front.surface.thickness + Sag(rear.surface, height) - Sag(front.surface, height);

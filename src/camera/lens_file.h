@@ -1,7 +1,10 @@
-// Lenses as pbrt-v4 writes them: a text file with one surface a line, from the scene to the film, of four numbers:
-// radius of curvature (mm; positive: the centre lies towards the film; 0: the aperture stop), thickness (mm along the
-// axis to the next surface; of the last one to the film), index of refraction behind the surface (0 stands for 1), and
-// diameter of the aperture (mm). `#` starts a comment.
+// Lens files of pbrt-v4: text with one surface per line, from the scene to the film, with four numbers each:
+// - radius of curvature (mm; positive: the centre lies towards the film; 0: the aperture stop),
+// - thickness (mm along the axis to the next surface; of the last surface to the film),
+// - index of refraction behind the surface (0 stands for 1),
+// - diameter of the aperture (mm).
+//
+// `#` starts a comment.
 #pragma once
 
 #include <string>
@@ -20,7 +23,7 @@ struct LensSurface {
   bool IsStop() const { return curvatureRadius == 0; }
 };
 
-// From the scene to the film: exactly one stop, no surfaces that run through one another, air at both ends.
+// Surfaces from the scene to the film: exactly one stop, no overlapping surfaces, air at both ends.
 struct LensPrescription {
   std::vector<LensSurface> surfaces;
 
@@ -29,11 +32,11 @@ struct LensPrescription {
 
 inline constexpr size_t kMostLensSurfaces = 128;
 
-// Distance (mm, towards the film) of a surface's point at `height` from the plane of its vertex; |height| must not be
-// above |curvatureRadius|.
+// Distance (mm, towards the film) of a point of a surface at `height` from the plane of its vertex; |height| must not
+// exceed |curvatureRadius|.
 double Sag(const LensSurface& surface, double height);
 
-// Throws an Error located in the file (file:line:column) for what is no lens, and at `where` for a file that cannot be
+// Throws an Error located in the file (file:line:column) for an invalid lens, and at `where` for a file that cannot be
 // read.
 LensPrescription ReadLensFile(const std::string& file, const FileLocation& where);
 // The same for text in memory; `name` stands for the file in messages.

@@ -9,8 +9,8 @@ namespace lampyr {
 
 namespace {
 
-constexpr double kTouch = 1e-9;     // mm that a ray may step back between surfaces that touch
-constexpr double kNoPower = 1e-12;  // 1/mm: a focal length beyond all scenes
+constexpr double kTouch = 1e-9;     // mm that a ray may step backwards between touching surfaces
+constexpr double kNoPower = 1e-12;  // 1/mm: a focal length longer than any scene
 
 std::string Millimetres(double value) {
   std::ostringstream text;
@@ -50,9 +50,9 @@ double LensSystem::StopZ() const {
   return std::find_if(surfaces_.begin(), surfaces_.end(), [](const Surface& s) { return s.isStop; })->z;
 }
 
-// Moves the ray to the surface; false if it misses the sphere's cap around the vertex. From the plane of the vertex on,
-// with p the point there and c the curvature, c t² + 2 (c (p.x d.x + p.y d.y) + d.z) t + c (p.x² + p.y²) = 0, of which
-// the solution that leads to the cap stays exact for c = 0.
+// Moves the ray to the surface; false if it misses the cap of the sphere around the vertex. With p the intersection
+// with the plane of the vertex and c the curvature, the distance t from there solves c t² + 2 (c (p.x d.x + p.y d.y) +
+// d.z) t + c (p.x² + p.y²) = 0; the form of the solution used here, the one on the cap, remains exact for c = 0.
 bool LensSystem::Meet(const Surface& surface, LensRay& ray, Vector3d& normal) {
   if (!(ray.direction.z > 0)) return false;
   const double toPlane = (surface.z - ray.origin.z) / ray.direction.z, c = surface.curvature;
@@ -105,7 +105,7 @@ double LensSystem::Clearance(LensRay ray) const {
   return ray.direction.z > 0 ? largest : infinite;
 }
 
-// The system matrix of height and angle times index, from the scene to the film: [a b; c d], of determinant 1.
+// System matrix [a b; c d] (determinant 1) of height and of angle times index, from the scene to the film.
 std::optional<ThickLens> LensSystem::Approximation() const {
   double a = 1, b = 0, c = 0, d = 1, index = 1;
   for (size_t i = 0; i < lens_.surfaces.size(); ++i) {
@@ -129,7 +129,7 @@ double LensSystem::RearZInFocus(double distance) const {
   if (!thick) return RearZ();
   const double f = thick->focalLength;
   if (f < 0) throw Error("the lens spreads light (focal length " + Millimetres(f) + "): it makes no image on a film");
-  // Of the distance from film to object, what is not between the principal planes is s + s' with 1/s + 1/s' = 1/f.
+  // The distance from film to object without that between the principal planes is s + s', with 1/s + 1/s' = 1/f.
   const double apart = thick->frontPrincipal - thick->rearPrincipal, both = distance - apart;
   if (!(both >= 4 * f))
     throw Error("the lens, with a focal length of " + Millimetres(f) + ", cannot be focused on what is " +
@@ -149,7 +149,7 @@ void LensSystem::Focus(double distance) {
 double LensSystem::RearReach(double filmRadius) const {
   const LensSurface& rear = lens_.surfaces.back();
   const double radius = surfaces_.front().radius;
-  // The line from a film point to the rim crosses the plane at the film point plus this multiple of the way.
+  // The line from a film point to the rim crosses the plane of the vertex at this fraction of its length.
   const double toPlane = RearZ() / (RearZ() - Sag(rear, rear.apertureRadius));
   return std::max(radius, filmRadius * std::abs(1 - toPlane) + radius * toPlane);
 }

@@ -1,7 +1,7 @@
-// A lens of spherical surfaces around an axis: rays through it, its thick-lens approximation, and focusing
-// ([Kolb95]; [Pharr23 §5.4]).
+// A lens of spherical surfaces around an axis: tracing of rays, thick-lens approximation and focusing ([Kolb95];
+// [Pharr23 §5.4]).
 //
-// Lens space: millimetres, the film at z = 0, the scene towards +z; x and y are the camera's.
+// Lens space: millimetres, the film at z = 0, the scene towards +z; x and y are those of the camera.
 #pragma once
 
 #include <optional>
@@ -24,36 +24,36 @@ struct ThickLens {
 
 class LensSystem {
  public:
-  // `stopRadius`: mm; not above that of the prescription.
+  // `stopRadius`: mm; at most that of the prescription.
   LensSystem(const LensPrescription& lens, double stopRadius, Aperture aperture = {});
 
   struct Passed {
-    LensRay ray;              // from the front surface on
+    LensRay ray;              // behind the front surface
     double transmission = 1;  // of the aperture
   };
-  // A ray from the film through all surfaces; nullopt if it is vignetted or reflected totally.
+  // Traces a ray from the film through all surfaces; nullopt if it is vignetted or totally reflected.
   std::optional<Passed> Trace(LensRay ray) const;
-  // Largest of (distance from the axis / radius of the aperture)² over all surfaces: up to 1 if the ray passes them.
-  // Infinite for a ray that misses a sphere or is reflected totally.
+  // Maximum over all surfaces of (distance from the axis / radius of the aperture)²: at most 1 if the ray passes.
+  // Infinite for a ray that misses a sphere or is totally reflected.
   double Clearance(LensRay ray) const;
 
-  // Of rays near the axis; nullopt if the lens has no power.
+  // Paraxial approximation; nullopt if the lens has no power.
   std::optional<ThickLens> Approximation() const;
-  // Moves the lens along the axis until what is `distance` (mm) from the film is in focus by the thick-lens
-  // approximation; a lens without power stays where it is. Throws an Error if it cannot be focused there.
+  // Moves the lens along the axis so that objects at `distance` (mm) from the film are in focus by the thick-lens
+  // approximation; a lens without power stays where it is. Throws an Error if the lens cannot be focused there.
   void Focus(double distance);
 
   double RearZ() const { return surfaces_.front().z; }  // of the rear vertex
   double StopZ() const;
-  // Radius around the axis, in the plane of the rear vertex, of all that rays from film points up to `filmRadius` away
-  // from the axis may cross on their way to the rear surface.
+  // Radius around the axis, in the plane of the rear vertex, that contains all rays from film points up to `filmRadius`
+  // from the axis to the rear surface.
   double RearReach(double filmRadius) const;
 
  private:
   struct Surface {
-    double z = 0, curvature = 0;  // of the vertex; 1/mm, positive: the centre lies towards the film; 0: the stop
+    double z = 0, curvature = 0;  // of the vertex; 1/mm, positive: centre towards the film, 0: the stop
     double radius = 0;            // of the aperture
-    double eta = 1;               // index on the film's side over that on the scene's
+    double eta = 1;               // index on the side of the film over that on the side of the scene
     bool isStop = false;
   };
 

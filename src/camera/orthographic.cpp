@@ -1,10 +1,11 @@
-// Orthographic camera, with parallel rays or a thin lens around every film point (an object-space telecentric lens).
+// Orthographic camera with parallel rays, or with a thin lens around each film point (an object-space telecentric
+// lens).
 //
-// Film points lie on the plane z = 0 of camera space, a render-space area `a` per pixel. Without a lens the direction ω
-// is a delta whose coefficient in We is 1/(a cosθ). With one, a ray starts at film point + l, l uniform over the lens
-// of area A, and goes through film point + focalDistance·z. At a given position dω = cos³θ/h² dl, h being the height of
-// the plane of focus, hence We = h²/(a A cos⁴θ). The density of positions is that of film points: at the image's
-// border, where lenses overlap fewer film points, only the product with pdfDirection is exact.
+// Film points lie on the plane z = 0 of camera space, with a render-space area `a` per pixel. Without a lens, the
+// direction ω is a delta whose coefficient in We is 1/(a cosθ). With a lens, a ray starts at film point + l, l uniform
+// over the lens of area A, and goes through film point + focalDistance·z. At a given position dω = cos³θ/h² dl, with h
+// the height of the plane of focus, hence We = h²/(a A cos⁴θ). The density of positions is that of film points: at the
+// border of the image, where fewer lenses overlap, only its product with pdfDirection is exact.
 #include "base/error.h"
 #include "camera/film_map.h"
 #include "sampling/warp.h"
@@ -110,14 +111,13 @@ class OrthographicCamera final : public Camera {
     return disk.x * lensXFloat_ + disk.y * lensYFloat_;
   }
 
-  // 1/sr at a given position, 1 with parallel rays. It equals the density with which a connection chooses its
-  // direction.
+  // 1/sr given the position; 1 with parallel rays. Equals the density with which Connect chooses its direction.
   double PdfDirection(double cosTheta) const {
     return hasLens_ ? inverseLensArea_ * focalHeight_ * focalHeight_ / (cosTheta * cosTheta * cosTheta) : 1;
   }
 
   bool IsOnLens(const Vector3d& offset) const {
-    // The film axes may be sheared: coordinates along them are those of the film plane's dual basis.
+    // The film axes may be sheared: the coordinates along them use the dual basis of the film plane.
     const double x = glm::dot(offset, plane_.dualX) * glm::dot(plane_.dx, lensX_) * inverseLensRadii_.x;
     const double y = glm::dot(offset, plane_.dualY) * glm::dot(plane_.dy, lensY_) * inverseLensRadii_.y;
     return x * x + y * y <= lensLimit_;
@@ -132,8 +132,8 @@ class OrthographicCamera final : public Camera {
   Vector3d unitNormal_;
   double pixelArea_, focalHeight_, inverseLensArea_;
   Point2d inverseLensRadii_;  // squared, along lensX_ and lensY_
-  double lensLimit_ = 1;      // square of what still counts as the lens: a ray's direction is rounded
-  // Of the above, in the precision of rays.
+  double lensLimit_ = 1;      // squared radius limit of the lens, with tolerance for rounded directions
+  // The same in single precision, for rays.
   Point3 center_;
   Vector3 direction_, dx_, dy_, toFocusFloat_, lensXFloat_, lensYFloat_;
   Point2 centerFilm_;

@@ -1,9 +1,9 @@
 // Perspective camera, pinhole or thin lens ([Pharr23 §5.2.3]; We as in [Veach97 §8.3.2.2]).
 //
-// Everything is written in render space for an arbitrary affine cameraToRender. With D(x,y) the point of the plane z =
-// 1 that film point (x,y) looks through, relative to the camera's origin, N = ∂D/∂x × ∂D/∂y and det = N·D (a constant),
-// a ray of unit direction ω covers dx dy / dω = det² / (N·ω)³ pixels per steradian. The same holds for a ray that
-// starts at a lens point l and goes through focalDistance·D, because l is perpendicular to N.
+// All formulas hold in render space for an arbitrary affine cameraToRender. Let D(x,y) be the point of the plane z = 1
+// that film point (x,y) sees, relative to the camera's origin, N = ∂D/∂x × ∂D/∂y and det = N·D (a constant). A ray of
+// unit direction ω then covers dx dy / dω = det² / (N·ω)³ pixels per steradian. The same holds for a ray that starts at
+// a lens point l and goes through focalDistance·D, because l is perpendicular to N.
 #include "base/error.h"
 #include "camera/film_map.h"
 #include "sampling/warp.h"
@@ -93,7 +93,7 @@ class PerspectiveCamera final : public Camera {
     return disk.x * lensX_ + disk.y * lensY_;
   }
 
-  // The film point of the ray that starts at `offset` from the camera's origin, along `direction` of any length.
+  // The film point of the ray from `offset`, relative to the camera's origin, along `direction` (of any length).
   Point2d FilmPoint(const Vector3d& offset, const Vector3d& direction, double normalDotDirection) const {
     return plane_.FilmPoint(direction * (determinant_ / normalDotDirection) + offset / focalDistance_);
   }
@@ -111,7 +111,7 @@ class PerspectiveCamera final : public Camera {
   double pdfLensArea_;    // 1 for a pinhole
   double determinant_;
   Vector3d unitNormal_;
-  // Of the above, in the precision of rays.
+  // The same in single precision, for rays.
   Vector3 center_, dx_, dy_, lensX_, lensY_;
   Point2 centerFilm_;
   float inverseFocalDistance_;

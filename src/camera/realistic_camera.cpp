@@ -1,8 +1,8 @@
 // The camera of pbrt-v4 with a lens of spherical elements ([Kolb95]; [Pharr23 §5.4]).
 //
-// The film lies at the camera's origin, the lens in front of it; a unit of camera space is a metre. A film point
-// measures ∫ L cosθ cosθ' / r² dA over the plane of the rear vertex, at the distance z: cos⁴θ / z² times the area of
-// the pupil's bounds, for points drawn uniformly from these. Rays that do not pass the lens have the weight 0.
+// The film lies at the camera's origin, the lens in front of it; the unit of camera space is a metre. A film point
+// measures ∫ L cosθ cosθ' / r² dA over the plane of the rear vertex at distance z. With points drawn uniformly from the
+// bounds of the exit pupil, the weight is cos⁴θ / z² times their area. Rays that do not pass the lens have weight 0.
 #include <cmath>
 
 #include "base/error.h"
@@ -14,14 +14,14 @@ namespace {
 
 constexpr double kMetresPerMillimetre = 1e-3;
 
-// Extent of the film, mm.
+// Width and height of the film, mm.
 Point2d FilmSize(const CameraFrame& frame, double diagonal) {
   const double aspect = static_cast<double>(frame.height) / frame.width;
   const double width = diagonal / std::sqrt(1 + aspect * aspect);
   return {width, aspect * width};
 }
 
-// From the middle to the farthest point that the pixel filter may ask for, mm.
+// Distance from the centre of the film to the farthest point that the pixel filter may sample, mm.
 double FilmRadius(const CameraFrame& frame, const Point2d& size) {
   const Point2d margin(frame.filmMargin), pixels(frame.width, frame.height);
   return glm::length(size * (0.5 + margin / pixels));
@@ -73,7 +73,7 @@ class RealisticCamera final : public Camera {
   bool ConnectsLightPaths() const override { return false; }
   bool HasPinhole() const override { return false; }
 
-  // As a thin lens at the rear principal plane has it.
+  // That of a thin lens at the rear principal plane.
   double PixelSolidAngle(const Ray& ray) const override {
     const double cosine = std::abs(glm::dot(axis_, Vector3d(ray.direction)));
     const double pixelArea = filmSize_.x * filmSize_.y / (pixels_.x * pixels_.y);

@@ -1,7 +1,8 @@
 // Spherical camera: all directions around a point, by the equal-area octahedral map or by latitude and longitude,
-// oriented as in pbrt-v4: the maps' +z is the camera's up (y).
+// oriented as in pbrt-v4: +z of the maps is the camera's up (y).
 //
-// A camera direction c becomes Mc/|Mc|, which scales solid angles by |det M|/|Mc|³.
+// A camera direction c becomes Mc/|Mc|, with M the linear part of cameraToRender, which scales solid angles by |det
+// M|/|Mc|³.
 #include "camera/film_map.h"
 #include "sampling/equal_area.h"
 
@@ -62,13 +63,13 @@ class SphericalCamera final : public Camera {
     const auto add = [&](float x, float y) {
       if (IsOnFilm(frame_, {x, y})) copies.points[static_cast<size_t>(copies.count++)] = {x, y};
     };
-    if (mapping_ == SphericalMapping::EqualArea) {  // the points that WrapEqualAreaSquare takes here
+    if (mapping_ == SphericalMapping::EqualArea) {  // the points that WrapEqualAreaSquare maps to `film`
       for (const float x : {-film.x, 2 * w - film.x}) add(x, h - film.y);
       for (const float y : {-film.y, 2 * h - film.y}) add(w - film.x, y);
       for (const float x : {film.x - w, film.x + w}) {
         for (const float y : {film.y - h, film.y + h}) add(x, y);
       }
-    } else {  // around, and over the poles to the other side
+    } else {  // around the equator, and across the poles to the opposite longitude
       for (const float x : {film.x - w, film.x + w}) add(x, film.y);
       const float across = film.x < 0.5f * w ? film.x + 0.5f * w : film.x - 0.5f * w;
       for (const float y : {-film.y, 2 * h - film.y}) {
@@ -90,7 +91,7 @@ class SphericalCamera final : public Camera {
     const bool isEqualArea = mapping_ == SphericalMapping::EqualArea;
     *film = (isEqualArea ? EqualAreaSphereToSquare(mapped) : LatLongSphereToSquare(mapped)) / toUnit_;
     const float sinTheta = std::sqrt(mapped.x * mapped.x + mapped.y * mapped.y);
-    // At the poles of latitude and longitude a solid angle covers a whole row of the image: bounded.
+    // At the poles of the latitude-longitude map a solid angle covers a whole row of the image: bounded.
     const float jacobian = isEqualArea ? kEqualAreaJacobian : LatLongJacobian(std::max(sinTheta, 1e-6f));
     const double pixelsPerCameraSolidAngle = ImageArea(frame_) / static_cast<double>(jacobian);
     return pixelsPerCameraSolidAngle * inverseLength * inverseLength * inverseLength / determinant_;

@@ -156,6 +156,7 @@ void EvaluateCurve(const CurveSet& curves, uint32_t segment, float u, const Poin
   point.uv = {range[0] + (range[1] - range[0]) * u, std::clamp(0.5f + 0.5f * side, 0.0f, 1.0f)};
   point.dpdu = tangent / std::max(range[1] - range[0], 1e-6f);
   point.dpdv = across * (2 * radius);
+  point.strand = isRibbon ? Strand::Ribbon : Strand::Fibre;
 }
 
 }  // namespace lampyr

@@ -274,6 +274,10 @@ void Filter(const RTCFilterFunctionNArguments* arguments, bool isShadow) {
   // A round curve is entered and left: the normal tells which.
   const bool leaves = hit.Ng_x * ray.dir_x + hit.Ng_y * ray.dir_y + hit.Ng_z * ray.dir_z > 0;
   const Meeting at{Record(arguments->geometryUserPtr), hit.geomID, hit.primID, hit.instID[0], leaves ? 1u : 0u};
+  if (at.record.hasNoInside) {
+    if (leaves) arguments->valid[0] = 0;
+    if (leaves || !at.record.alpha) return;
+  }
   if (PassesThrough(at, ray, rayHit, Trace(arguments->context), isShadow)) arguments->valid[0] = 0;
 }
 

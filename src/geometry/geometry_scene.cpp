@@ -206,6 +206,8 @@ void GeometryScene::Implementation::AddEntries(const std::vector<GeometryEntry>&
     std::visit([](const auto* shape) { CheckShape(*shape); }, record.shape);
     record.alpha = entry.attributes.alpha.get();
     record.thin = entry.attributes.thin.get();
+    const CurveSet* curves = record.As<CurveSet>();
+    record.hasNoInside = entry.attributes.isFibrous && curves && curves->kind == CurveSet::Kind::Cylinder;
     hasTints = hasTints || (record.thin && !record.thin->IsClear());
     record.tables = &tables;
     tables.primitives.push_back(record);

@@ -37,11 +37,11 @@ inline constexpr uint32_t kNoIndex = 0xffffffffu;
 
 // The nearest hit along a ray: indices and parametric coordinates.
 struct RayHit {
-  float t = kInfinity;             // ray parameter
-  uint32_t primitive = kNoIndex;   // index of the shape, over all shapes of the scene
-  uint32_t patch = 0;              // triangle, bilinear patch or curve within the shape
-  uint32_t instance = kNoIndex;    // index of the instance, kNoIndex for shapes outside of instances
-  float u = 0, v = 0;              // barycentric (triangles), parametric otherwise
+  float t = kInfinity;            // ray parameter
+  uint32_t primitive = kNoIndex;  // index of the shape, over all shapes of the scene
+  uint32_t patch = 0;             // triangle, bilinear patch or curve within the shape
+  uint32_t instance = kNoIndex;   // index of the instance, kNoIndex for shapes outside of instances
+  float u = 0, v = 0;             // barycentric (triangles), parametric otherwise
 };
 
 // A surface that a ray went straight through: a thin surface, or a cut-out in part (GeometryScene::Trace).
@@ -61,6 +61,10 @@ inline Color Transmittance(std::span<const Crossing> crossings) {
   return product;
 }
 
+// Points of curves, where v is counted as the arriving ray sees it. A ribbon has a surface; a fibre's is what faces the
+// ray, or is round.
+enum class Strand : uint8_t { None, Ribbon, Fibre };
+
 // A point on a surface. Everything is in render space.
 struct SurfacePoint {
   Point3 position{0.0f};
@@ -72,6 +76,7 @@ struct SurfacePoint {
   uint32_t primitive = kNoIndex;
   uint32_t patch = 0;
   uint32_t instance = kNoIndex;
+  Strand strand = Strand::None;
   bool isThin = false;  // light that goes straight on is not the surface's to scatter (ThinSurface)
 };
 

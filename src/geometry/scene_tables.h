@@ -18,7 +18,9 @@ struct PrimitiveRecord {
   const AlphaSource* alpha = nullptr;  // null: opaque
   const ThinSurface* thin = nullptr;   // null: none
 
-  bool LetsPass() const { return alpha || thin; }
+  bool hasNoInside = false;  // a round curve that rays from inside do not meet
+
+  bool LetsPass() const { return alpha || thin || hasNoInside; }
   // The shape if it is of this kind, or null.
   template <class Kind>
   const Kind* As() const {

@@ -6,7 +6,8 @@
 // - wo and wi are unit vectors in render space, both pointing away from the surface.
 // - wo is where the path came from, wi where it goes on; for TransportMode::Radiance wo points towards the camera.
 // - f is the BSDF value (1/sr) without the cosine. Refraction scales radiance by 1/η² (Radiance), not importance.
-// - Densities are in solid angle; pdfReverse is the density of sampling wo when coming from wi.
+// - Densities are in solid angle; pdfReverse is the density of sampling wo when coming from wi,
+//   by a path of the other mode.
 // - Delta lobes have value and density 0 in Evaluate; Sample says so with isDelta.
 // - Everything happens in the shading frame: a direction's side is its side of Ns, as in pbrt-v4. Ng is kept for the
 //   adjoint correction, which is the integrator's.
@@ -37,6 +38,20 @@ class Bsdf {
   bool IsDelta() const;
   // Light may come from the other side: light selection looks at both.
   bool IsTransmissive() const;
+
+  // The cosine that f is multiplied by in the scattering integral: |w·Ns|; of a fibre, that of the angle to the plane
+  // across it.
+  float ScatteringCosine(const Vector3& w) const {
+    return IsFibre() ? std::get_if<HairBsdf>(&model_)->ScatteringCosine(frame_.ToLocal(w)) : AbsDot(w, frame_.z);
+  }
+  // The cosine by which area is seen from w: |w·Ng|; of a fibre, which faces every direction, as above.
+  float GeometricCosine(const Vector3& w) const { return IsFibre() ? ScatteringCosine(w) : AbsDot(w, Ng_); }
+  // A fibre is narrower than what can be told apart: light that meets it anywhere leaves it from there, whatever side
+  // it leaves to.
+  bool IsFibre() const {
+    const auto* hair = std::get_if<HairBsdf>(&model_);
+    return hair && hair->isFibre;
+  }
 
   const Frame& ShadingFrame() const { return frame_; }
   const Normal3& Ng() const { return Ng_; }

@@ -13,6 +13,7 @@
 #include "materials/conductor.h"
 #include "materials/dielectric.h"
 #include "materials/diffuse.h"
+#include "materials/hair.h"
 #include "materials/scattering.h"
 
 namespace lampyr {
@@ -26,7 +27,7 @@ struct AbsorbingBsdf {
 };
 
 using BsdfModel = std::variant<AbsorbingBsdf, DiffuseBsdf, DiffuseTransmissionBsdf, ConductorBsdf, DielectricBsdf,
-                               ThinDielectricBsdf, CoatedDiffuseBsdf, CoatedConductorBsdf>;
+                               ThinDielectricBsdf, CoatedDiffuseBsdf, CoatedConductorBsdf, HairBsdf>;
 static_assert(std::is_trivially_copyable_v<BsdfModel> && sizeof(BsdfModel) <= 96);
 
 }  // namespace lampyr

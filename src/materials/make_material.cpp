@@ -18,11 +18,11 @@ constexpr MaterialType kTypes[] = {
     {"thindielectric", MakeThinDielectric},
     {"coateddiffuse", MakeCoatedDiffuse},
     {"coatedconductor", MakeCoatedConductor},
+    {"hair", MakeHair},
     {"mix", MakeMix},
     {"interface", MakeInterface},
     {"none", MakeInterface},
     {"", MakeInterface},
-    {"hair", nullptr},
     {"measured", nullptr},
     {"subsurface", nullptr},
 };

@@ -24,7 +24,9 @@ class MixMaterial final : public Material {
         isInterface_(materials_[0]->IsInterface() && materials_[1]->IsInterface()),
         mayTransmit_(materials_[0]->MayTransmit() || materials_[1]->MayTransmit()),
         hasDelta_(materials_[0]->HasDelta() || materials_[1]->HasDelta()),
-        isAlwaysDelta_(materials_[0]->IsAlwaysDelta() && materials_[1]->IsAlwaysDelta()) {}
+        isAlwaysDelta_(materials_[0]->IsAlwaysDelta() && materials_[1]->IsAlwaysDelta()),
+        isFibrous_(materials_[0]->IsFibrous() || materials_[1]->IsFibrous()),
+        isAlwaysFibrous_(materials_[0]->IsAlwaysFibrous() && materials_[1]->IsAlwaysFibrous()) {}
 
   Bsdf GetBsdf(const SurfacePoint& point, const Vector3& wo) const override {
     return Choose(point, wo).GetBsdf(point, wo);
@@ -33,6 +35,8 @@ class MixMaterial final : public Material {
   bool MayTransmit() const override { return mayTransmit_; }
   bool HasDelta() const override { return hasDelta_; }
   bool IsAlwaysDelta() const override { return isAlwaysDelta_; }
+  bool IsFibrous() const override { return isFibrous_; }
+  bool IsAlwaysFibrous() const override { return isAlwaysFibrous_; }
 
  private:
   const Material& Choose(const SurfacePoint& point, const Vector3& wo) const {
@@ -47,7 +51,7 @@ class MixMaterial final : public Material {
   FloatParameter amount_;
   uint64_t salt_;  // of the names: mixes of mixes choose independently
   // Of both, asked once: mixes of mixes that name a material twice would ask it 2^depth times.
-  bool isInterface_, mayTransmit_, hasDelta_, isAlwaysDelta_;
+  bool isInterface_, mayTransmit_, hasDelta_, isAlwaysDelta_, isFibrous_, isAlwaysFibrous_;
 };
 
 class InterfaceMaterial final : public Material {

@@ -1,4 +1,4 @@
-// Angles that know their unit: a number of degrees cannot be passed where radians are meant.
+// Angles whose unit is part of the type: degrees cannot be passed where radians are expected.
 #pragma once
 
 #include "math/vec.h"

@@ -5,7 +5,7 @@
 
 namespace lampyr {
 
-// A box; empty (min > max) until something is added.
+// An axis-aligned box; empty (min > max) until a point or box is added.
 template <class PointType>
 struct BoundsOf {
   using Scalar = typename PointType::value_type;
@@ -30,7 +30,7 @@ struct BoundsOf {
 using Bounds3 = BoundsOf<Point3>;
 using Bounds3d = BoundsOf<Point3d>;
 
-// What lights at infinity need to know of the scene.
+// Bounding sphere of a scene, for lights at infinity.
 struct BoundingSphere {
   Point3 center{0.0f};
   float radius = 1;  // > 0, also for an empty scene

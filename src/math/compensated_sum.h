@@ -1,5 +1,6 @@
-// A sum in two doubles, so that neither the number of its terms nor their order shows in it: of terms that differ by
-// less than 2^50 in size, millions are summed to the last bit of a double. [Neumaier74; Ogita05 algorithm 4.4].
+// A compensated sum in two doubles, which does not depend on the number or the order of its terms: with terms whose
+// magnitudes differ by a factor of less than 2^50, the sum of millions is exact to the last bit of a double
+// ([Neumaier74]; [Ogita05 algorithm 4.4]).
 #pragma once
 
 #include <cmath>
@@ -11,22 +12,22 @@ class CompensatedSum {
   void Add(double term) {
     const double sum = high_ + term;
     const double added = sum - high_;
-    low_ += (high_ - (sum - added)) + (term - added);  // what rounding has taken from `sum`, exactly
+    low_ += (high_ - (sum - added)) + (term - added);  // the exact rounding error of `sum`
     high_ = sum;
   }
-  // All terms of another sum.
+  // Adds all terms of another sum.
   void Add(const CompensatedSum& other) {
     Add(other.high_);
     low_ += other.low_;
   }
   double Value() const { return high_ + low_; }
-  // With one more term.
+  // The value with one more term.
   double ValueWith(double term) const {
     CompensatedSum sum = *this;
     sum.Add(term);
     return sum.Value();
   }
-  // And stays so when a million like it are added.
+  // True if the sum is finite, and remains so when a million sums like it are added.
   bool IsFinite() const { return std::abs(high_) < 1e300 && std::abs(low_) < 1e300; }
 
  private:

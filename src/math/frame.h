@@ -8,7 +8,7 @@ namespace lampyr {
 struct Frame {
   Vector3 x, y, z;
 
-  // Any frame around the unit normal `n`, without a branch and continuous but for n.z = -0 ([Duff17]).
+  // A frame around the unit normal `n`, without a branch; continuous except across n.z = 0 ([Duff17]).
   static Frame FromNormal(const Normal3& n) {
     const float sign = std::copysign(1.0f, n.z);
     const float a = -1.0f / (sign + n.z);
@@ -16,7 +16,8 @@ struct Frame {
     return {{1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}, n};
   }
 
-  // The frame around `n` whose x is as near to `tangent` as can be; any frame when the tangent is along n or 0.
+  // The frame around `n` whose x is the direction of `tangent` projected onto the tangent plane; FromNormal(n) if
+  // `tangent` is parallel to n or 0.
   static Frame FromNormalAndTangent(const Normal3& n, const Vector3& tangent) {
     const Vector3 projected = tangent - n * glm::dot(n, tangent);
     const float lengthSquared = LengthSquared(projected);

@@ -16,8 +16,8 @@ double LargestElement(const glm::dmat3& m) {
   return largest;
 }
 
-// The orthogonal factor of a polar decomposition, by Newton's iteration ([Higham86]): the mean of a matrix and its
-// inverse transpose until that changes nothing.
+// The orthogonal factor of the polar decomposition by Newton's iteration ([Higham86]): the matrix is replaced by the
+// mean of itself and its inverse transpose until it no longer changes.
 glm::dmat3 NearestOrthogonal(const glm::dmat3& m) {
   constexpr int mostSteps = 100;
   constexpr double small = 1e-15;
@@ -31,7 +31,7 @@ glm::dmat3 NearestOrthogonal(const glm::dmat3& m) {
   return q;
 }
 
-// Along the shorter arc.
+// Spherical linear interpolation along the shorter arc.
 glm::dquat Slerp(const glm::dquat& a, const glm::dquat& b, double x) {
   const double cosine = glm::dot(a, b);
   const glm::dquat nearer = cosine < 0 ? -b : b;
@@ -50,12 +50,12 @@ double Determinant(const Affine& m) {
   return glm::determinant(linear * (1 / LargestElement(linear)));
 }
 
-// A point of the box that a motion is measured by.
+// Corner i of the box at which a motion is measured: ±1 if `box` is empty.
 Point3d CornerOf(const Bounds3& box, int i) {
   return box.IsEmpty() ? Point3d(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1) : Point3d(box.Corner(i));
 }
 
-// Sampled motion of the corners of a box, by the fraction of it.
+// Motion of the corners of a box over a part [first, last] of a chain's motion, sampled by the fraction of that part.
 class CornerPaths {
  public:
   CornerPaths(const MotionChain& chain, double first, double last, const Bounds3& box)
@@ -69,8 +69,8 @@ class CornerPaths {
 
   Transform Place(double x) const { return chain_.At(first_ + (last_ - first_) * x); }
 
-  // Whether `segments` linear pieces follow the motion, and none is so long that what is rounded at its ends is much
-  // more than what is rounded where the thing passes the origin.
+  // True if `segments` linear pieces follow the motion, and each is short enough in units of the box: the rounding of
+  // its ends then adds little to the rounding at the moment when the box passes the origin.
   bool Follow(int segments) const {
     constexpr double largestDeviation = 2e-5, longestInSizes = 8;
     for (int s = 0; s < segments; ++s) {
@@ -94,7 +94,8 @@ class CornerPaths {
   double size_ = 0;
 };
 
-// In range, and invertible at the keys and, unless the motion `jumps` from one to the next, between them.
+// Throws an Error unless all keys are within range and invertible, also between the keys unless the motion `jumps` from
+// one to the next.
 void CheckKeys(const std::vector<Affine>& keys, bool jumps, const char* what, const FileLocation& where) {
   constexpr float largest = 1e18f;
   const bool mirrors = Determinant(keys.front()) < 0;
@@ -135,7 +136,7 @@ AnimatedTransform::Parts AnimatedTransform::Decompose(const Transform& transform
   const glm::dmat3 linear(transform.Matrix());
   parts.translation = Vector3d(transform.Matrix()[3]);
   glm::dmat3 orthogonal = NearestOrthogonal(linear);
-  if (glm::determinant(orthogonal) < 0) orthogonal = -orthogonal;  // the mirror goes into the stretch
+  if (glm::determinant(orthogonal) < 0) orthogonal = -orthogonal;  // a mirroring becomes part of the stretch
   parts.rotation = glm::normalize(glm::quat_cast(orthogonal));
   parts.stretch = glm::transpose(orthogonal) * linear;
   return parts;
@@ -191,7 +192,7 @@ Motion::Motion(float begin, float end, std::vector<Affine> keys) : begin_(begin)
 Affine Motion::At(float time) const {
   if (time <= begin_) return keys_.front();
   if (time >= end_) return keys_.back();
-  // The operations are Embree's, so that the result is the same to the last bit.
+  // The same operations as Embree's: the result is equal to the last bit.
   const auto segments = static_cast<float>(keys_.size() - 1);
   const float position = (time - begin_) / (end_ - begin_) * segments;
   const float segment = std::min(std::floor(position), segments - 1);
@@ -203,7 +204,7 @@ std::shared_ptr<const Motion> MakeMotion(const MotionChain& chain, const MotionT
                                          const char* what, const FileLocation& where) {
   if (!chain.IsAnimated() || !times.MovesInShutter()) return nullptr;
   const double begin = std::max(times.begin, 0.0), end = std::min(times.end, 1.0);
-  // A motion that takes no time is a jump: the placements before and after it.
+  // A motion of no duration is a jump from the placement before to the one after.
   const bool jumps = !(begin < end);
   const CornerPaths paths(chain, jumps ? 0 : times.FractionAt(begin), jumps ? 1 : times.FractionAt(end), moved);
   int segments = 1;

@@ -1,9 +1,9 @@
-// Things that move while the shutter is open.
+// Motion while the shutter is open.
 //
 // A scene file gives two placements, at the start and the end of the transform times; between them translation,
-// rotation and scale are interpolated each on its own, as pbrt-v4 does it ([Shoemake92], [Shoemake85]). What rendering
-// uses is that motion as keys, linear in the matrix in between: rays (Embree interpolates instances in this way) and
-// lights read the very same keys, so that they agree to rounding.
+// rotation and scale are interpolated separately, as in pbrt-v4 ([Shoemake92], [Shoemake85]). Rendering uses keys of
+// that motion and interpolates the matrix linearly in between: ray tracing (Embree interpolates instances in this way)
+// and lights use the same keys, so that they agree to rounding.
 #pragma once
 
 #include <memory>
@@ -22,8 +22,8 @@ namespace lampyr {
 class AnimatedTransform {
  public:
   explicit AnimatedTransform(const Transform& fixed) : start_(fixed), end_(fixed) {}
-  // Throws an Error at `where` that names `what` ("a shape") when there is no motion between the two: one of them
-  // mirrors and the other does not, or one has a perspective part.
+  // Throws an Error at `where` that names `what` ("a shape") if the two cannot be interpolated: exactly one of them
+  // mirrors, or one has a perspective part.
   AnimatedTransform(const Transform& start, const Transform& end, const char* what, const FileLocation& where);
 
   bool IsAnimated() const { return isAnimated_; }
@@ -43,7 +43,7 @@ class AnimatedTransform {
   Parts startParts_, endParts_;
 };
 
-// Animated transforms one within the other, the outermost first: instances of instances of moving shapes.
+// A product of animated transforms, the outermost first: instances of instances of moving shapes.
 class MotionChain {
  public:
   MotionChain() : parts_{AnimatedTransform(Transform())} {}
@@ -57,19 +57,20 @@ class MotionChain {
   size_t Length() const { return parts_.size(); }
 
  private:
-  std::vector<AnimatedTransform> parts_;  // neighbours that stay are multiplied into one
+  std::vector<AnimatedTransform> parts_;  // adjacent constant transforms are multiplied into one
 };
 
-// Where in the shutter, which is open during [0,1], the motion begins and ends. It may lie partly or wholly outside.
+// Begin and end of the motion in shutter time, in which the shutter is open during [0,1]. The interval may lie partly
+// or wholly outside.
 struct MotionTimes {
   double begin = 0, end = 1;
 
-  // How far the motion has come: 0 before its beginning, 1 after its end.
+  // Fraction of the motion that is done: 0 before its beginning, 1 after its end.
   double FractionAt(double time) const;
   bool MovesInShutter() const { return begin < 1 && end > 0; }
 };
 
-// The placement of something that moves, over the shutter.
+// A placement that changes over the shutter interval.
 class Motion {
  public:
   // At least 2 keys, evenly spaced over [begin, end] within [0,1].
@@ -90,10 +91,11 @@ class Motion {
 // Embree's limit.
 inline constexpr int kMaxMotionKeys = 129;
 
-// Keys for a chain; null when it does not move while the shutter is open, and chain.At(times.FractionAt(0)) is its
-// place. Points of `moved` (local space; a box of ±1 when empty) deviate from the chain's motion by less than 2e-5 of
-// the box's size, or by what the most keys allow (4 · 10^-5 … 8 · 10^-5 for rotations of 130° to 180°). Throws an Error
-// at `where` for a motion that leaves the range of floats or becomes singular on its way.
+// Keys for a chain. Null if it does not move while the shutter is open; its placement is then
+// chain.At(times.FractionAt(0)). Points of `moved` (local space; a box of ±1 if empty) deviate from the motion of the
+// chain by less than 2e-5 of the size of the box, or by what kMaxMotionKeys keys allow (4e-5 to 8e-5 for rotations of
+// 130° to 180°). Throws an Error at `where` for a motion that leaves the range of floats or becomes singular on its
+// way.
 std::shared_ptr<const Motion> MakeMotion(const MotionChain& chain, const MotionTimes& times, const Bounds3& moved,
                                          const char* what, const FileLocation& where);
 

@@ -18,7 +18,7 @@ bool AllFinite(const glm::dmat4& m) {
 }  // namespace
 
 Vector3 Affine::PointError(const Point3& p, const Vector3& error) const {
-  // Three products and three sums per component: gamma(3), doubled for what is rounded in `linear` itself.
+  // Three products and three sums per component: gamma(3), doubled for the rounding of `linear` itself.
   constexpr float gamma = 6.0f * 0x1p-24f;
   Vector3 bound;
   for (int i = 0; i < 3; ++i) {

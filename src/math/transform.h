@@ -1,5 +1,5 @@
-// Transforms. Scene files are placed in double precision (Transform); what rendering needs of that is kept as a
-// float affine map (Affine). Points, vectors and normals transform differently: each has its own method.
+// Transforms. Scene construction uses double precision (Transform); rendering uses a float affine map (Affine). Points,
+// vectors and normals transform differently: each has its own method.
 #pragma once
 
 #include <glm/mat3x3.hpp>
@@ -9,19 +9,20 @@
 
 namespace lampyr {
 
-// An affine map p -> linear·p + translation, float, for use while rendering. Invertible by construction of the scene.
+// An affine map p -> linear·p + translation in float, for use while rendering. Scene construction guarantees that it is
+// invertible.
 struct Affine {
   glm::mat3 linear{1.0f};
   Vector3 translation{0.0f};
 
   Point3 Point(const Point3& p) const { return linear * p + translation; }
   Vector3 Vector(const Vector3& v) const { return linear * v; }
-  // A normal through the map whose inverse is *this*: n·linear, not normalised.
+  // Transforms a normal by the map whose inverse *this is: n·linear, not normalised.
   Normal3 NormalByInverse(const Normal3& n) const { return n * linear; }
-  // Bound on the absolute rounding error of Point(p) when p itself is off by at most `error` per component.
+  // Bound on the absolute rounding error of Point(p) if p itself is off by at most `error` per component.
   Vector3 PointError(const Point3& p, const Vector3& error) const;
   bool SwapsHandedness() const { return glm::determinant(linear) < 0; }
-  // Made in double and rounded.
+  // Computed in double and rounded.
   Affine Inverse() const;
 };
 
@@ -29,7 +30,7 @@ struct Affine {
 class Transform {
  public:
   Transform() = default;
-  explicit Transform(const glm::dmat4& m);  // the inverse is computed; IsSingular() tells when there is none
+  explicit Transform(const glm::dmat4& m);  // computes the inverse; IsSingular() if there is none
   Transform(const glm::dmat4& m, const glm::dmat4& inverse) : m_(m), inverse_(inverse) {}
 
   static Transform Translate(const Vector3d& offset);

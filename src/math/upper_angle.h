@@ -1,5 +1,5 @@
-// Angles of the upper half plane and their sines and cosines: the functions of the standard library to a few ulps in
-// about half of their time. The lights' solid angles and arcs are made of them, one after the other.
+// Angles of the upper half plane with their sines and cosines: accurate to a few ulps, in about half of the time of the
+// standard library's functions. Solid angles and arcs of lights are sequences of these operations.
 #pragma once
 
 #include <cmath>
@@ -32,10 +32,10 @@ inline constexpr Turn<Real> kTurns[9] = {
 // std::atan2(y, x) in [0, π] for y >= 0 and (x, y) not (0, 0), both finite and far from the ends of Real's range.
 template <class Real>
 inline Real UpperAngle(Real y, Real x) {
-  // Turned into the first quadrant.
+  // Rotated into the first quadrant.
   const bool isLeft = x < 0;
   const Real right = isLeft ? y : x, up = isLeft ? -x : y;
-  // Turned back by the nearest multiple of π/8, up to rounding: what is left is at most π/16.
+  // Rotated back by the nearest multiple of π/8 (up to rounding), which leaves at most π/16.
   const int k = (up > Real(0.19891236737965800691) * right) + (up > Real(0.66817863791929891999) * right) +
                 (up > Real(1.49660576266548901760) * right) + (up > Real(5.02733949212584810451) * right);
   const auto& turn = upper_angle_internal::kTurns<Real>[k];
@@ -55,11 +55,11 @@ struct SineCosine {
   double sine, cosine;
 };
 
-// Of an angle in [0, π]; the sine of a small one keeps its digits.
+// Sine and cosine of an angle in [0, π]. The relative precision of the sine is kept for small angles.
 inline SineCosine SineCosineOfUpper(double angle) {
   const int k = static_cast<int>(angle * 2.54647908947032537230 + 0.5);
   const auto& turn = upper_angle_internal::kTurns<double>[k];
-  // π/8 in two parts, the first of which has few digits.
+  // π/8 in two parts, the first short enough that its multiples are exact.
   constexpr double kHigh = 0x1.921fb54p-2, kLow = 0x1.10b4611a62633p-32;
   const double rest = (angle - k * kHigh) - k * kLow, r2 = rest * rest, r4 = r2 * r2;
   // The series up to rest^11 and rest^12: rest² < 0.04.

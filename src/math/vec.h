@@ -1,7 +1,7 @@
-// Points, vectors and normals (GLM, under names that say what they are) and linear RGB colours.
+// Points, vectors and normals (GLM types under their own names) and linear RGB colours.
 //
-// Point3, Vector3 and Normal3 are the same GLM type: the name is documentation, and GLM's functions apply.
-// Color is a type of its own, so that a colour is never added to a direction.
+// Point3, Vector3 and Normal3 are the same GLM type: the name is documentation, and GLM's functions apply. Color is a
+// separate type, so that a colour is never added to a direction.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@ using Vector2 = glm::vec2;
 using Point3 = glm::vec3;
 using Vector3 = glm::vec3;
 using Normal3 = glm::vec3;
-// Scene files are read and placed in double; rendering is in float (scene/scene_description.h).
+// Scene construction is in double, rendering in float (scene/scene_description.h).
 using Point2d = glm::dvec2;
 using Point3d = glm::dvec3;
 using Vector3d = glm::dvec3;
@@ -54,7 +54,7 @@ inline bool IsFinite(const Vector3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-// Linear RGB: Rec. 709 primaries, D65 white. Radiance in W/(m² sr) per channel where it is light.
+// Linear RGB: Rec. 709 primaries, D65 white. Radiance is in W/(m² sr) per channel.
 struct Color {
   float r = 0, g = 0, b = 0;
 
@@ -86,8 +86,8 @@ struct Color {
   float Max() const { return std::max(r, std::max(g, b)); }
   float Average() const { return (r + g + b) * (1.0f / 3.0f); }
   float Luminance() const { return 0.2126390f * r + 0.7151687f * g + 0.0721923f * b; }
-  static constexpr double kLuminance[3] = {0.2126390, 0.7151687, 0.0721923};  // the same, of sums in double
-  // Neither NaN, nor infinite, nor negative.
+  static constexpr double kLuminance[3] = {0.2126390, 0.7151687, 0.0721923};  // weights for sums in double
+  // True if no component is NaN, infinite or negative.
   bool IsValid() const { return r >= 0 && g >= 0 && b >= 0 && r + g + b < kInfinity; }
 
   friend bool operator==(const Color&, const Color&) = default;
@@ -102,8 +102,8 @@ inline Color operator-(const Color& a, const Color& b) {
 inline Color operator*(const Color& a, const Color& b) {
   return {a.r * b.r, a.g * b.g, a.b * b.b};
 }
-// a · b · scale, in double: two small throughputs and a large unit of flux may have a product that float holds, while
-// the product of the first two is below its range.
+// a · b · scale in double: the product of two small throughputs may underflow in float while its product with a large
+// unit of flux does not.
 inline Color Product(const Color& a, const Color& b, double scale) {
   const auto channel = [scale](float x, float y) {
     return static_cast<float>(static_cast<double>(x) * static_cast<double>(y) * scale);

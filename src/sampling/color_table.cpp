@@ -59,7 +59,8 @@ ColorTable::Cell ColorTable::Sample(const Point2& u) const {
   const Distribution1D::Choice row = rows_.Choose(u.y);
   const size_t steps = GuideSteps(columns);
   const Range range = GuidedRange(&guide_[row.index * (steps + 1)], steps, columns, ux, guideShift_);
-  // All lines that the search may look at, at once: one after the other they would take as long each.
+  // Fetches all cache lines that the search may read at once; one after the other, each would cost a full memory
+  // latency.
   const int y = static_cast<int>(row.index);
   const Entry* entries = Row(y);
   constexpr uint32_t kMostLines = 8;

@@ -1,6 +1,6 @@
-// An image that is sampled in proportion to weights of its texels: a Distribution2D whose cells hold their colours too.
-// Both lie together in memory. For an image that no cache holds a sample is one way to memory, and so is a look at a
-// point: that is most of what they cost.
+// An image that is importance-sampled by weights of its texels: a Distribution2D whose cells also hold their colours.
+// CDF and colour of a cell are adjacent in memory. If the image does not fit the cache, a sample or a lookup takes one
+// memory access, which is most of its cost.
 #pragma once
 
 #include <cstdint>
@@ -17,12 +17,13 @@ namespace lampyr {
 class ColorTable {
  public:
   ColorTable() = default;
-  // Weights and colours of the texels, rows in y. Weights that are negative, NaN or infinite count as 0.
+  // Weights (width · height, row by row) and colours of the texels. Weights that are negative, NaN or infinite count as
+  // 0.
   ColorTable(std::span<const float> weights, const std::function<Color(int x, int y)>& color, int width, int height);
 
   int Width() const { return width_; }
   int Height() const { return height_; }
-  bool IsZero() const { return rows_.IsZero(); }  // no weight above 0
+  bool IsZero() const { return rows_.IsZero(); }  // no positive weight
 
   struct Cell {
     int x, y;
@@ -31,7 +32,7 @@ class ColorTable {
     Color color;
   };
   Cell Sample(const Point2& u) const;  // requires !IsZero()
-  // The point of [0,1]², as float rounds it: at the very edge of the cell Look may find the next.
+  // The point of a cell in [0,1]², rounded to float: at the very edge of the cell, Look may find the next cell.
   Point2 At(const Cell& cell) const {
     return {(static_cast<float>(cell.x) + cell.t.x) * inverseWidth_,
             (static_cast<float>(cell.y) + cell.t.y) * inverseHeight_};
@@ -45,7 +46,7 @@ class ColorTable {
   Color ColorAt(int x, int y) const;
 
  private:
-  // Of cell x: where it begins in the cumulative distribution of its row, and its colour. One more ends the row.
+  // Cell x of a row: the CDF at its beginning, and its colour. One more entry ends the row.
   struct Entry {
     float cdf;
     Color color;
@@ -58,7 +59,7 @@ class ColorTable {
   float inverseWidth_ = 0, inverseHeight_ = 0;
   size_t stride_ = 0;
   LargeArray<Entry> entries_;
-  std::vector<uint16_t> guide_;  // of each row, of columns >> guideShift_
+  std::vector<uint16_t> guide_;  // per row, of columns >> guideShift_
   int guideShift_ = 0;
   Distribution1D rows_;
 };

@@ -1,9 +1,9 @@
-// Cumulative tables, for the distributions of this room: how they are written, searched and inverted. A Cdf is a
-// pointer to floats or anything else with operator[], of n + 1 entries for n intervals.
+// Cumulative tables of the distributions in sampling/: construction, search and inversion. A Cdf is a pointer to
+// floats, or anything else with operator[], of n + 1 entries for n intervals.
 //
-// They count in units of 2^-24, the step of a random float: an interval is chosen exactly as often as its density says,
-// and every interval that is not 0 can be chosen, however dark beside the others. The search starts from a guide table
-// ([Chen74]): a table of the intervals in which equal steps of u fall.
+// The tables count in units of 2^-24, the step of a random float: an interval is chosen exactly as often as its density
+// says, and every nonzero interval can be chosen, however small beside the others. The search starts from a guide table
+// ([Chen74]), which holds the intervals that contain equal steps of u.
 #pragma once
 
 #include <algorithm>
@@ -28,7 +28,7 @@ inline float ClampedUnit(float u) {
   return u > 0 ? std::min(u, kOneMinusEpsilon) : 0.0f;
 }
 
-// The interval of [0,1] in n equal ones that x is in.
+// Index of the interval that contains x, of n equal intervals of [0,1].
 inline int IntervalAt(float x, int n) {
   return std::min(static_cast<int>(static_cast<double>(ClampedUnit(x)) * n), n - 1);
 }
@@ -41,19 +41,20 @@ inline float PointInInterval(int interval, float t, int n) {
   return std::nextafter(x, found < interval ? 1.0f : 0.0f);
 }
 
-// For a table that is in no cache: the guide has to be, and the intervals between two of its steps are in a few lines.
+// For a table that does not fit the cache: the guide has to fit, and the intervals between two of its steps have to lie
+// in a few cache lines.
 inline size_t GuideSteps(size_t n) {
   return std::max<size_t>(1, n / kIntervalsPerGuideStep);
 }
-// For a small table: hardly anything is left to search.
+// For a small table: hardly any search is left.
 inline size_t FineGuideSteps(size_t n) {
   return 2 * n;
 }
 
-// Writes n + 1 entries of the cumulative distribution of `values`, whose sum (as Cleaned) is `sum` > 0.
+// Writes the n + 1 entries of the CDF of `values`, whose sum (after Cleaned) is `sum` > 0.
 template <class Cdf>
 void WriteCdf(std::span<const float> values, double sum, Cdf cdf) {
-  int64_t remaining = 0;  // intervals that are not 0 and still need a unit
+  int64_t remaining = 0;  // nonzero intervals that still need a unit
   for (const float v : values) remaining += Cleaned(v) > 0;
   const double scale = static_cast<double>(kUnits) / sum;
   double cumulative = 0;
@@ -71,7 +72,8 @@ void WriteCdf(std::span<const float> values, double sum, Cdf cdf) {
   }
 }
 
-// guide[k] is the interval that contains u = k/steps, shifted right; the last entry is the last that is not empty.
+// guide[k] is the interval that contains u = k/steps, shifted right by `shift`; the last entry is the last nonempty
+// interval.
 template <class Cdf, class Entry>
 void WriteGuide(Cdf cdf, size_t n, size_t steps, Entry* guide, int shift = 0) {
   uint32_t interval = 0;
@@ -83,10 +85,10 @@ void WriteGuide(Cdf cdf, size_t n, size_t steps, Entry* guide, int shift = 0) {
 }
 
 struct Range {
-  uint32_t low, high;  // both may be the interval that is looked for
+  uint32_t low, high;  // inclusive
 };
 
-// What the guide leaves of n intervals for u.
+// The range of intervals that the guide leaves to be searched for u, of n.
 template <class Entry>
 Range GuidedRange(const Entry* guide, size_t steps, size_t n, float u, int shift = 0) {
   const size_t k = std::min(static_cast<size_t>(u * static_cast<float>(steps)), steps - 1);
@@ -95,14 +97,15 @@ Range GuidedRange(const Entry* guide, size_t steps, size_t n, float u, int shift
   return {low, std::min(high, static_cast<uint32_t>(n) - 1)};
 }
 
-// The interval with cdf[i] <= u < cdf[i + 1], which is never one of width 0.
+// The interval with cdf[i] <= u < cdf[i + 1], which is never an empty one.
 template <class Cdf>
 uint32_t FindInterval(Cdf cdf, Range range, size_t n, float u) {
   auto [low, high] = range;
-  // The guide's step was found with a rounded product: widen in the rare case that u is just outside of it.
+  // The step of the guide follows from a rounded product: widen in the rare case that u is just outside of the range.
   if (cdf[low] > u) low = 0;
   if (cdf[high + 1] <= u) high = static_cast<uint32_t>(n) - 1;
-  // The last interval that starts at or below u; without a branch on the data, which would be mispredicted.
+  // The last interval that starts at or below u, by a search without data-dependent branches, which would be
+  // mispredicted.
   uint32_t count = high - low + 1;
   while (count > 1) {
     const uint32_t half = count / 2;
@@ -135,7 +138,7 @@ float InvertCdf(Cdf cdf, int n, float x) {
   return ClampedUnit(cdf[i] + t * (cdf[i + 1] - cdf[i]));
 }
 
-// Sums that may leave the range of float, scaled into it; a dark one beside the largest stays above 0.
+// Sums that may exceed the range of float, scaled by their largest; positive ones stay above 0.
 inline std::vector<float> InRangeOfFloat(std::span<const double> sums) {
   const double largest = sums.empty() ? 0 : *std::max_element(sums.begin(), sums.end());
   std::vector<float> scaled;
@@ -144,7 +147,7 @@ inline std::vector<float> InRangeOfFloat(std::span<const double> sums) {
   return scaled;
 }
 
-// Narrow entries of a guide: the shift that makes n intervals fit.
+// The shift that makes n intervals fit the 16-bit entries of a guide.
 inline int GuideShift(size_t n) {
   int shift = 0;
   while ((n - 1) >> shift > 0xffff) ++shift;

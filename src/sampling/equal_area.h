@@ -1,7 +1,8 @@
-// Square to sphere and back, for environment images and the spherical camera.
+// Maps between square and sphere, for environment images and the spherical camera.
 //
-// Equal-area octahedral map ([Clarberg08]), oriented as in pbrt-v4: the centre of the square is +z, its corners -z, and
-// the right edge's midpoint +x, the lower edge's (v = 1) +y. Latitude-longitude: u = φ/2π from +x, v = θ/π from +z.
+// Equal-area octahedral map ([Clarberg08]), oriented as in pbrt-v4: the centre of the square is +z, its corners are -z,
+// the midpoint of the right edge is +x, and the midpoint of the lower edge (v = 1) is +y. Latitude-longitude map: u =
+// φ/2π from +x, v = θ/π from +z.
 #pragma once
 
 #include "math/vec.h"
@@ -21,7 +22,7 @@ inline Vector3 EqualAreaSquareToSphere(const Point2& p) {
           std::copysign(1 - r * r, toEquator)};
 }
 
-// The inverse; `direction` is of unit length.
+// The inverse map; `direction` is of unit length.
 inline Point2 EqualAreaSphereToSquare(const Vector3& direction) {
   const float x = std::abs(direction.x), y = std::abs(direction.y), z = std::abs(direction.z);
   const float r = SafeSqrt(z > 0.5f ? (x * x + y * y) / (1 + z) : 1 - z);
@@ -37,7 +38,8 @@ inline Point2 EqualAreaSphereToSquare(const Vector3& direction) {
           warp_internal::ClampUnit(0.5f * (std::copysign(v, direction.y) + 1))};
 }
 
-// Where a point less than a whole image outside of the square lies in it: the map folds along the edges' midpoints.
+// Wraps a point that lies less than one image outside of the square into it: the map folds about the midpoints of its
+// edges.
 inline Point2 WrapEqualAreaSquare(Point2 p) {
   if (p.x < 0) p = {-p.x, 1 - p.y};
   if (p.x > 1) p = {2 - p.x, 1 - p.y};
@@ -57,8 +59,8 @@ inline Point2 LatLongSphereToSquare(const Vector3& direction) {
           warp_internal::ClampUnit(std::atan2(sinTheta, direction.z) * kInvPi)};
 }
 
-// |dω/dA| of the latitude-longitude map: a density over the square divided by this is one over solid angle.
-// 0 at the poles: no density is finite there.
+// |dω/dA| of the latitude-longitude map: a density over the square divided by it is a density in solid angle. 0 at the
+// poles, where no density is finite.
 inline float LatLongJacobian(float sinTheta) {
   return 2 * kPi * kPi * sinTheta;
 }

@@ -1,5 +1,5 @@
-// Random numbers that are pure functions of integers: a mixing hash, and a small generator for what is not a pixel
-// sample (building tables, tests, photon emission).
+// Random numbers that are pure functions of integers: a mixing hash, and a small generator for everything but pixel
+// samples (tables, tests, photon emission).
 #pragma once
 
 #include <bit>
@@ -9,15 +9,15 @@
 
 namespace lampyr {
 
-// A bijection of 64-bit numbers in which every input bit flips every output bit with probability near 1/2
-// (the finaliser of SplitMix64 with the constants of [Stafford11], variant 13).
+// A bijection of 64-bit numbers in which each input bit flips each output bit with a probability near 1/2 (the
+// finaliser of SplitMix64 with the constants of [Stafford11], variant 13).
 constexpr uint64_t MixBits(uint64_t v) {
   v = (v ^ (v >> 30)) * 0xbf58476d1ce4e5b9ull;
   v = (v ^ (v >> 27)) * 0x94d049bb133111ebull;
   return v ^ (v >> 31);
 }
 
-// Hash of a few integers; their order matters.
+// Hash of a sequence of integers.
 template <class... Integers>
 constexpr uint64_t Hash(Integers... values) {
   uint64_t hash = 0x9e3779b97f4a7c15ull * (sizeof...(values) + 1);
@@ -25,13 +25,13 @@ constexpr uint64_t Hash(Integers... values) {
   return MixBits(hash);
 }
 
-// The upper 24 bits as a float in [0,1): every value is exact, so that 1 never appears by rounding.
+// The upper 24 bits as a float in [0,1). Every value is exact: no rounding up to 1.
 constexpr float UnitFloat(uint32_t bits) {
   return static_cast<float>(bits >> 8) * 0x1p-24f;
 }
 
-// A float in [0,1) has 24 random bits, and a choice among a million takes 20 of them. This appends 28 more that are made
-// of it and of three other numbers of the sample: equal for equal arguments, in [0,1).
+// Extends a random float to 52 bits: a float in [0,1) has 24, and a choice among a million uses 20 of them. The 28 new
+// bits are a hash of u and of three other numbers of the sample. The result is in [0,1), equal for equal arguments.
 inline double WithMoreBits(float u, float a, float b, float c) {
   const auto pair = [](float high, float low) {
     return static_cast<uint64_t>(std::bit_cast<uint32_t>(high)) << 32 | std::bit_cast<uint32_t>(low);

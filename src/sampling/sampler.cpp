@@ -1,5 +1,5 @@
-// The Sobol sampler's block of points. Written as one loop without branches over the block's dimensions, which the
-// compiler turns into vector instructions: eight points cost little more than two made one by one.
+// The Sobol sampler computes points in blocks: one loop over the dimensions of a block, without branches, which the
+// compiler vectorizes. Eight points cost little more than two computed one by one.
 #include "sampling/sampler.h"
 
 #include "sampling/sobol.h"
@@ -21,7 +21,7 @@ void Sampler::FillBlock(uint32_t block) {
     const uint32_t seed = sobol::MixBits32(low + 0x9e3779b9u * (block * kBlockSize + i));
     const uint32_t seedX = sobol::MixBits32(seed ^ high);
     const uint32_t seedY = sobol::MixBits32(seedX + 0x85ebca6bu);
-    // The order of the points is shuffled anew for every pair, or pairs would be correlated with each other.
+    // Each pair of dimensions shuffles the order of the points anew; otherwise the pairs would be correlated.
     const uint32_t shuffled = sobol::ReverseBits(sobol::ScrambleUpwards(reversedIndex, seed));
     const uint32_t x = sobol::ReverseBits(sobol::ScrambleUpwards(shuffled, seedX));
     const uint32_t y = sobol::ReverseBits(sobol::ScrambleUpwards(sobol::PascalTimes(shuffled), seedY));

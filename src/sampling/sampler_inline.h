@@ -1,4 +1,4 @@
-// The sampler's hot functions.
+// Inline members of Sampler on the hot path.
 #pragma once
 
 #include "sampling/rng.h"

@@ -1,7 +1,7 @@
-// Owen-scrambled Sobol points of two dimensions, in bit-reversed order throughout: digit 1 of a coordinate (the half of
-// the unit interval it is in) is bit 0. A nested uniform ("Owen") scramble then is a hash in which bits act upwards
-// only
-// ([Burley20 §3], after [Laine11]), and the first two Sobol matrices are the identity and Pascal's triangle mod 2.
+// Owen-scrambled Sobol points in two dimensions, in bit-reversed order throughout: the first binary digit of a
+// coordinate (its half of the unit interval) is bit 0. A nested uniform ("Owen") scramble is then a hash in which bits
+// affect higher bits only ([Burley20 §3], after [Laine11]), and the first two Sobol matrices are the identity and
+// Pascal's triangle mod 2.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +16,8 @@ constexpr uint32_t ReverseBits(uint32_t v) {
   return ((v >> 1) & 0x55555555u) | ((v & 0x55555555u) << 1);
 }
 
-// A random permutation, chosen by `seed`, in which bit k of the result is bit k of v, flipped or not depending on the
-// bits below k alone. Constants of [Vegdahl21]: even factors, and an odd one that depends on the seed.
+// A random permutation selected by `seed`, in which bit k of the result is bit k of v, flipped or not depending only on
+// the bits below k. Constants of [Vegdahl21]: even factors, and an odd one that depends on the seed.
 constexpr uint32_t ScrambleUpwards(uint32_t v, uint32_t seed) {
   v ^= v * 0x3d20adeau;
   v += seed;

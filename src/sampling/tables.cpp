@@ -18,14 +18,14 @@ AliasTable::AliasTable(std::span<const float> weights) : bins_(weights.size()), 
   for (const float w : weights) total_ += Cleaned(w);
   if (IsZero()) return;
 
-  // Vose's method: every bin gets one item that has less than its share and is filled up by one that has more.
+  // Vose's method: each bin holds one item with less than its share, and is filled up with part of an item with more.
   std::vector<double> share(n);
   std::vector<uint32_t> under, over;
   uint32_t largest = 0;
   for (uint32_t i = 0; i < n; ++i) {
     const double probability = Cleaned(weights[i]) / total_;
     probabilities_[i] = static_cast<float>(probability);
-    if (probabilities_[i] < std::numeric_limits<float>::min()) probabilities_[i] = 0;  // 1/p would be infinite
+    if (probabilities_[i] < std::numeric_limits<float>::min()) probabilities_[i] = 0;  // 1/p would overflow
     share[i] = probabilities_[i] > 0 ? probability * static_cast<double>(n) : 0.0;
     if (share[i] > share[largest]) largest = i;
     (share[i] < 1 ? under : over).push_back(i);
@@ -40,7 +40,7 @@ AliasTable::AliasTable(std::span<const float> weights) : bins_(weights.size()), 
       under.push_back(large);
     }
   }
-  // What rounding left over is full, but for an item of weight 0: that bin goes to the likeliest item.
+  // Bins left over by rounding are full, except those of items of weight 0, which go to the likeliest item.
   for (const auto* rest : {&under, &over}) {
     for (const uint32_t i : *rest) bins_[i] = {probabilities_[i] > 0 ? 1.0f : 0.0f, largest};
   }
@@ -135,7 +135,7 @@ Distribution2D::Result Distribution2D::Sample(const Point2& u) const {
   const size_t steps = GuideSteps(columns);
   const Range range = GuidedRange(&conditionalGuide_[row.index * (steps + 1)], steps, columns, ux, guideShift_);
   const float* cdf = &conditionalCdf_[row.index * (columns + 1)];
-  // One after the other the two would take twice as long.
+  // Fetches both cache lines at once; one after the other, they would take twice as long.
   Touch(cdf + range.low);
   Touch(cdf + range.high + 1);
   const Found column = SampleCdf(cdf, range, columns, ux);

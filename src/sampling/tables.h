@@ -1,10 +1,10 @@
-// Tabulated distributions: piecewise constant in one and two dimensions, and alias tables over discrete items.
-// Negative, NaN and infinite entries count as 0 (and are reported by the caller, who knows where they came from);
-// a table of zeros cannot be sampled and says so.
+// Tabulated distributions: piecewise constant in one and two dimensions, and alias tables over discrete items. Entries
+// that are negative, NaN or infinite count as 0 (the caller, who knows their origin, reports them). A table of zeros
+// cannot be sampled: IsZero().
 //
 // Cumulative tables count in units of 2^-24, the step of a random float: an interval is chosen exactly as often as its
-// density says, and every interval that is not 0 can be chosen, however dark beside the others. So densities are those
-// of the values up to a few 2^-24 in probability, and a table has at most 2^24 intervals a side that are not 0.
+// density says, and every nonzero interval can be chosen, however small beside the others. Densities therefore deviate
+// from the given values by a few 2^-24 in probability, and a table has at most 2^24 nonzero intervals per side.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ class AliasTable {
   struct Result {
     uint32_t index;
     PdfDiscrete probability;
-    float u;  // the random number, stretched again over [0,1): fit for another decision
+    float u;  // the random number, rescaled to [0,1) for reuse
   };
   // Requires !IsZero().
   Result Sample(double u) const;
@@ -37,7 +37,7 @@ class AliasTable {
 
  private:
   struct Bin {
-    float threshold;  // below it the bin's own index, above it the alias
+    float threshold;  // below: the bin's own index; above: the alias
     uint32_t alias;
   };
   std::vector<Bin> bins_;
@@ -57,14 +57,14 @@ class Distribution1D {
     uint32_t index;  // interval
   };
   Result Sample(float u) const;  // requires !IsZero()
-  // The interval alone, and the position within it, [0,1).
+  // An interval, and the position t within it, [0,1).
   struct Choice {
     uint32_t index;
     float t;
   };
   Choice Choose(float u) const;           // requires !IsZero()
   float DensityOf(uint32_t index) const;  // of an interval, over [0,1]
-  float Density(float x) const;           // x outside of [0,1] counts as the nearest end
+  float Density(float x) const;           // x is clamped to [0,1]
   float Invert(float x) const;            // the u that Sample turns into x
   float Integral() const { return static_cast<float>(integral_); }
   bool IsZero() const { return integral_ <= 0; }
@@ -72,7 +72,7 @@ class Distribution1D {
 
  private:
   std::vector<float> cdf_;       // n + 1 entries
-  std::vector<uint32_t> guide_;  // where to look for u in cdf_
+  std::vector<uint32_t> guide_;  // guide table into cdf_
   double integral_ = 0;
 };
 
@@ -97,7 +97,7 @@ class Distribution2D {
 
   int width_ = 0, height_ = 0;
   std::vector<float> conditionalCdf_;       // (width + 1) × height
-  std::vector<uint16_t> conditionalGuide_;  // height guides, of columns >> guideShift_
+  std::vector<uint16_t> conditionalGuide_;  // one guide per row, of columns >> guideShift_
   int guideShift_ = 0;                      // 0 up to 65536 columns
   Distribution1D rows_;
   double integral_ = 0;

@@ -1,5 +1,5 @@
 // Maps from the unit square to disks, spheres, hemispheres, cones and triangles: sample, density, and the inverse of
-// the sample. Directions are about +z; u is in [0,1)²; Invert returns a point of [0,1)².
+// the sample. Directions are about +z; u is in [0,1)²; Invert… returns a point of [0,1)².
 #pragma once
 
 #include "math/density.h"
@@ -9,7 +9,7 @@ namespace lampyr {
 
 namespace warp_internal {
 
-// sin and cos of an angle in [-π/4, π/4] by their series, to float precision.
+// (cos, sin) of an angle in [-π/4, π/4] by their series, to float precision.
 inline Vector2 CosSinOctant(float angle) {
   const float s = angle * angle;
   const float cosine =
@@ -45,12 +45,12 @@ inline Vector2 CosSinTurns(float turns) {
   return {k == 1 || k == 2 ? -a : a, k >= 2 ? -b : b};
 }
 
-// 1 - cosθ from sin²θ, θ in [0, π/2], exact also for angles far below float's resolution of cosθ.
+// 1 - cosθ from sin²θ, θ in [0, π/2]; exact also for angles far below the resolution of cosθ in float.
 inline float OneMinusCosFromSinSquared(float sinSquared) {
   return sinSquared / (1 + SafeSqrt(1 - sinSquared));
 }
 
-// --- Unit disk, uniform; squares map to squares of rings, neighbours stay neighbours ([Shirley97]).
+// --- Unit disk, uniform; concentric squares map to concentric circles, and neighbours stay neighbours ([Shirley97]).
 inline Point2 SampleConcentricDisk(const Point2& u) {
   const float a = 2 * u.x - 1, b = 2 * u.y - 1;
   const bool horizontal = std::abs(a) > std::abs(b);

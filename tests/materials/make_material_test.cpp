@@ -93,7 +93,7 @@ TEST_F(MakeMaterialTest, EveryTypeHasDefaults) {
   named_["a"] = Create("diffuse", {});
   named_["b"] = Create("dielectric", {});
   for (const char* type : {"diffuse", "diffusetransmission", "conductor", "dielectric", "thindielectric",
-                           "coateddiffuse", "coatedconductor"}) {
+                           "coateddiffuse", "coatedconductor", "hair"}) {
     const auto material = Create(type, {});
     const Bsdf bsdf = At(*material);
     EXPECT_FALSE(ScatteredBy(bsdf).IsBlack()) << type;
@@ -181,6 +181,58 @@ TEST_F(MakeMaterialTest, TexturedRoughnessInterpolatesTables) {
   EXPECT_NEAR(varying.g, constant.g, 0.01f * constant.g);
 }
 
+// What hair absorbs, by the first of the ways of saying so that is given: seen by what passes straight through.
+TEST_F(MakeMaterialTest, HairAbsorbsAsItIsSaid) {
+  point_.uv = {0, 0.5f};
+  const auto density = [&](std::vector<Parameter> parameters) {
+    return At(*Create("hair", std::move(parameters))).Evaluate(kUp, -kTilted, TransportMode::Radiance).specular;
+  };
+  const Color brown = density({});
+  EXPECT_GT(brown.r, 1.5f * brown.b);
+  EXPECT_EQ(brown, density({Float("eumelanin", 1.3)}));
+  EXPECT_EQ(brown, density({Float("beta_m", 0.3), Float("beta_n", 0.3), Float("alpha", 2), Float("eta", 1.55)}));
+  const Color sigma = density({Rgb("sigma_a", 0.5447, 0.9061, 1.781)});
+  EXPECT_NEAR(sigma.g, brown.g, 1e-5f * brown.g);
+  EXPECT_NEAR(density({Float("eumelanin", 0.3), Float("pheomelanin", 2)}).g,
+              density({Rgb("sigma_a", 0.4997, 1.0091, 2.511)}).g, 1e-5f);
+  const Color gray = density({Rgb("reflectance", 0.5, 0.5, 0.5)});
+  EXPECT_EQ(gray, density({Rgb("color", 0.5, 0.5, 0.5)}));
+  EXPECT_NEAR(gray.g, density({Rgb("sigma_a", 0.0138565, 0.0138565, 0.0138565)}).g, 1e-4f);
+  EXPECT_TRUE(diagnostics_.Warnings().empty());
+  // What else is given is ignored, and said to be.
+  EXPECT_EQ(sigma,
+            density({Rgb("sigma_a", 0.5447, 0.9061, 1.781), Rgb("reflectance", 1, 0, 0), Float("eumelanin", 8)}));
+  EXPECT_EQ(diagnostics_.Warnings().size(), 2u);
+  EXPECT_EQ(gray, density({Rgb("reflectance", 0.5, 0.5, 0.5), Rgb("color", 1, 0, 0), Float("pheomelanin", 8)}));
+  EXPECT_EQ(diagnostics_.Warnings().size(), 4u);
+  EXPECT_THROW(density({Float("beta_m", 1.5)}), Error);
+  EXPECT_THROW(density({Float("beta_n", -0.1)}), Error);
+  EXPECT_THROW(density({Float("eta", 0)}), Error);
+  EXPECT_THROW(density({Float("eumelanin", -1)}), Error);
+  EXPECT_THROW(density({Float("betam", 0.3)}), Error);
+}
+
+// The offset is v across, wherever the point is; on curves it is to the side to which v grows.
+TEST_F(MakeMaterialTest, HairReflectsToTheSideOfItsOffset) {
+  const auto material = Create("hair", {Rgb("sigma_a", 1e6, 1e6, 1e6), Float("beta_m", 0.05), Float("beta_n", 0.05)});
+  point_.dpdu = {1, 0, 0};
+  point_.uv = {0, 0.75f};
+  const auto sideOf = [&] {
+    const auto sample = At(*material).Sample(kUp, 0.5f, {0.5f, 0.5f}, TransportMode::Radiance);
+    return sample ? sample->wi.y : 0.0f;
+  };
+  for (const float across : {1.0f, -1.0f}) {
+    point_.dpdv = {0, across, 0};
+    point_.strand = Strand::None;
+    EXPECT_GT(sideOf(), 0.5f);
+    for (const Strand strand : {Strand::Ribbon, Strand::Fibre}) {
+      point_.strand = strand;
+      EXPECT_GT(sideOf() * across, 0.5f);
+      EXPECT_EQ(At(*material).IsFibre(), strand == Strand::Fibre);
+    }
+  }
+}
+
 TEST_F(MakeMaterialTest, WrongInputIsNamed) {
   try {
     Create("difuse", {});
@@ -191,9 +243,9 @@ TEST_F(MakeMaterialTest, WrongInputIsNamed) {
   EXPECT_THROW(Create("diffuse", {Rgb("reflectence", 1, 1, 1)}), Error);
   EXPECT_THROW(Create("coateddiffuse", {Float("thickness", -1)}), Error);
   EXPECT_TRUE(diagnostics_.Warnings().empty());
-  EXPECT_NEAR(ScatteredBy(At(*Create("hair", {Float("beta_m", 0.3)}))).g, 0.5f, 1e-6f);
+  EXPECT_NEAR(ScatteredBy(At(*Create("subsurface", {Float("scale", 2)}))).g, 0.5f, 1e-6f);
   ASSERT_EQ(diagnostics_.Warnings().size(), 1u);
-  EXPECT_THAT(diagnostics_.Warnings()[0], HasSubstr("hair"));
+  EXPECT_THAT(diagnostics_.Warnings()[0], HasSubstr("subsurface"));
   Create("coateddiffuse", {Rgb("albedo", 0.5, 0.5, 0.5)});
   EXPECT_EQ(diagnostics_.Warnings().size(), 2u);
 }

@@ -15,7 +15,17 @@ struct TestModel {
   BsdfModel model;
   float tolerance = 1e-3f;  // relative, of densities recomputed from a rounded direction
   bool lossless = false;    // nothing absorbs (single scattering at microfacets may still lose)
+  // Of a fibre: not symmetric, and without a surface that the flux through it could be held against.
+  bool isHair = false;
 };
+
+// Hair on a surface, h as given. A fibre's h is what the arriving path sees (tests/materials/hair_test.cpp).
+inline TestModel Hair(const std::string& name, const Color& sigmaA, float eta, float betaM, float betaN, float alpha,
+                      float h, float tolerance = 2e-3f) {
+  HairBsdf hair(sigmaA, eta, betaM, betaN, alpha);
+  hair.offset = h;
+  return {name, hair, tolerance, sigmaA.IsBlack(), true};
+}
 
 // Tables that models point into.
 struct ModelTables {
@@ -80,6 +90,16 @@ inline std::vector<TestModel> AllModels(ModelTables& tables) {
       {"coated metal 0.1, 0.3", MakeCoatedMetal(tables, ggx(0.1f, 0.1f), ggx(0.3f, 0.3f), 1.5f, copperEta, copperK)},
       {"coated metal lossless",
        MakeCoatedMetal(tables, ggx(0, 0), ggx(0.3f, 0.3f), 1.5f, Color(1.0f), mirrorK, 0, 1000), 1e-3f, true},
+      Hair("hair brown", Color(0.54f, 0.91f, 1.78f), 1.55f, 0.3f, 0.3f, 2, 0.3f),
+      Hair("hair white", Color(0.0f), 1.55f, 0.3f, 0.3f, 2, -0.7f),
+      Hair("hair smooth", Color(0.1f, 0.2f, 0.4f), 1.55f, 0.08f, 0.1f, 3, 0.5f, 1e-2f),
+      Hair("hair smooth along", Color(0.0f), 1.55f, 0.05f, 0.9f, 0, 0.9f, 1e-2f),
+      Hair("hair smooth around", Color(0.05f), 1.7f, 0.9f, 0.05f, 5, -0.2f, 1e-2f),
+      Hair("hair rough", Color(0.3f, 0.1f, 0), 1.2f, 1, 1, -3, 0),
+      Hair("hair black", Color(1e6f), 1.55f, 0.3f, 0.3f, 2, 0.3f),
+      Hair("hair at the rim", Color(0.2f), 1.55f, 0.3f, 0.3f, 2, 1),
+      Hair("hair eta 1", Color(0.2f, 0, 0), 1, 0.3f, 0.3f, 2, -1),
+      Hair("hair eta 0.8", Color(0.2f), 0.8f, 0.3f, 0.3f, 2, 0.6f),
   };
 }
 

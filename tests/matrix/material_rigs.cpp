@@ -1,6 +1,8 @@
 // Materials, every one of them mixed with a matte one as well; maps of normals and heights, sheets, cut-outs. A closed
 // room shows a material to photons and paths at every bounce. What is smooth stands in the room as an object that the
 // camera does not see, too: light tracing has its part in those.
+#include <cmath>
+
 #include "matrix/matrix_rigs.h"
 
 namespace lampyr::test {
@@ -50,6 +52,22 @@ std::string Object(const std::string& material) {
   return Scope(material + " Translate -0.15 0.5 0.55 Shape \"sphere\" \"float radius\" 0.25");
 }
 
+// Strands over the floor, side by side and crossing: light that meets the floor has passed some, and they light one
+// another. They are thin: a fibre scatters light from wherever it meets it.
+std::string Strands(const std::string& material, const std::string& type) {
+  std::string curves;
+  for (int i = 0; i < 40; ++i) {
+    const double t = i / 40.0, x = -0.75 + 1.1 * t, bend = 0.1 * std::sin(40 * t), height = 0.12 + 0.1 * (i % 4);
+    const auto at = [](double a, double b, double c) {
+      return std::to_string(a) + " " + std::to_string(b) + " " + std::to_string(c) + " ";
+    };
+    curves += "Shape \"curve\" \"string type\" \"" + type + "\" \"float width\" 0.014 \"point3 P\" [ " +
+              at(x, height, -0.5) + at(x + bend, height + 0.1, -0.1) + at(x - bend, height, 0.3) +
+              at(x + 2 * bend, height + 0.05, 0.8) + "]\n";
+  }
+  return Scope(material + curves);
+}
+
 const std::string kMatteNamed =
     "MakeNamedMaterial \"white\" \"string type\" \"diffuse\" \"rgb reflectance\" [0.7 0.6 0.5]\n";
 
@@ -89,6 +107,19 @@ void AddMaterialRigs(std::vector<Rig>& rigs) {
                   Room("NamedMaterial \"d\"", rough + Lamp()),
                   {"material diffuse in mix", "material diffusetransmission in mix", "material conductor in mix",
                    "material dielectric in mix", "material coateddiffuse in mix"}});
+  // Hair on walls scatters by their coordinates; strands are fibres.
+  const Sample hair{"hair", "hair",
+                    "\"rgb sigma_a\" [0.1 0.3 0.6] \"float beta_m\" 0.5 \"float beta_n\" 0.6 \"float alpha\" 5"};
+  const std::string hairMix = kMatteNamed + Named(hair) + Mix("both", "white", "hair", 0.5);
+  rigs.push_back({"hair_walls", Room(Statement(hair), Lamp()), {"material hair"}});
+  rigs.push_back({"mix_with_hair_walls",
+                  Room("NamedMaterial \"both\"", hairMix + Lamp()),
+                  {"material hair in mix", "material mix"}});
+  for (const char* type : {"cylinder", "flat"}) {
+    rigs.push_back({std::string("hair_strands_") + type,
+                    Floor(Lamp("-0.2 1 0.3", 0.2) + Strands(Statement(hair), type)),
+                    {"material hair"}});
+  }
   const Sample mirror = MaterialSamples()[3], glass = MaterialSamples()[5];
   const std::string nested = kMatteNamed + Named(mirror) + Named(glass) + Mix("inner", "white", "mirror", 0.4) +
                              Mix("outer", "glass", "inner", 0.7);

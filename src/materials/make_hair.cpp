@@ -1,0 +1,130 @@
+// "hair": absorption by sigma_a, or by reflectance or color, or by eumelanin and pheomelanin, the first of them that is
+// given (eumelanin 1.3); eta (1.55), beta_m (0.3), beta_n (0.3), alpha (2 degrees).
+#include "materials/hair.h"
+#include "materials/material_makers.h"
+
+namespace lampyr {
+
+namespace {
+
+// What the fibre absorbs, as the scene says it.
+struct Pigment {
+  std::optional<ColorParameter> sigmaA, reflectance;
+  FloatParameter eumelanin = 1.3f, pheomelanin = 0.0f;
+
+  Color Evaluate(const TextureContext& where, float betaN) const {
+    if (sigmaA) return sigmaA->Evaluate(where);
+    if (reflectance) return HairAbsorption(reflectance->Evaluate(where), betaN);
+    return HairAbsorption(eumelanin.Evaluate(where), pheomelanin.Evaluate(where));
+  }
+  bool IsConstant() const {
+    if (sigmaA) return sigmaA->IsConstant();
+    if (reflectance) return reflectance->IsConstant();
+    return eumelanin.IsConstant() && pheomelanin.IsConstant();
+  }
+};
+
+struct HairParameters {
+  Pigment pigment;
+  FloatParameter eta, betaM, betaN, alpha;
+
+  HairBsdf Make(const TextureContext& where) const {
+    const float n = betaN.Evaluate(where);
+    const float index = eta.Evaluate(where), tilt = alpha.Evaluate(where);
+    return HairBsdf(pigment.Evaluate(where, n), std::min(std::max(1e-2f, index), 1e2f), betaM.Evaluate(where), n,
+                    std::min(std::max(-90.0f, tilt), 90.0f));
+  }
+  bool IsConstant() const {
+    return pigment.IsConstant() && eta.IsConstant() && betaM.IsConstant() && betaN.IsConstant() && alpha.IsConstant();
+  }
+};
+
+// The offset from the middle of the fibre: v runs across it from -1 to 1. On a curve it runs as the arriving ray sees
+// it, and the fibre's wall leans to the side where it grows.
+float OffsetAt(const SurfacePoint& point, const Vector3& wo) {
+  const float v = std::min(std::max(-1.0f, 2 * point.uv.y - 1), 1.0f);
+  if (point.strand == Strand::None) return v;
+  return glm::dot(glm::cross(wo, point.dpdu), point.dpdv) < 0 ? -v : v;
+}
+
+class HairMaterial final : public Material {
+ public:
+  HairMaterial(HairParameters parameters, ShadingNormal shadingNormal)
+      : parameters_(std::move(parameters)), shadingNormal_(std::move(shadingNormal)) {
+    if (parameters_.IsConstant()) constant_ = parameters_.Make({});
+  }
+
+  Bsdf GetBsdf(const SurfacePoint& point, const Vector3& wo) const override {
+    const bool isFibre = point.strand == Strand::Fibre;
+    const Frame frame = shadingNormal_.IsPlain() || isFibre ? Frame::FromNormalAndTangent(point.Ns, point.dpdu)
+                                                            : shadingNormal_.GetFrame(point);
+    HairBsdf hair = constant_ ? *constant_ : parameters_.Make({point.uv, point.position, point.Ng});
+    hair.offset = OffsetAt(point, wo);
+    hair.followsRay = point.strand != Strand::None;
+    hair.isFibre = isFibre;
+    return Bsdf(frame, point.Ng, hair);
+  }
+  bool MayTransmit() const override { return true; }
+  bool IsFibrous() const override { return true; }
+  bool IsAlwaysFibrous() const override { return true; }
+
+ private:
+  HairParameters parameters_;
+  ShadingNormal shadingNormal_;
+  std::optional<HairBsdf> constant_;
+};
+
+FloatParameter InRange(const MaterialInput& input, const std::string& name, float fallback, float least, float most,
+                       const std::string& what) {
+  const FloatParameter value = input.textures.GetFloat(input.parameters, name, fallback);
+  if (!value.IsConstant()) return value;
+  const float constant = value.Evaluate({});
+  if (!(constant >= least && constant <= most)) {
+    throw Error(input.parameters.WhereOf(name), "\"" + name + "\" must be " + what);
+  }
+  return value;
+}
+
+Pigment ReadPigment(const MaterialInput& input) {
+  Pigment pigment;
+  pigment.sigmaA = input.textures.FindColor(input.parameters, "sigma_a", SpectrumRole::Unbounded);
+  const char* used = pigment.sigmaA ? "sigma_a" : nullptr;
+  const auto isTaken = [&](const char* name) {
+    if (!input.parameters.Find(name)) return false;
+    if (used) {
+      input.diagnostics.Warn(input.parameters.WhereOf(name),
+                             std::string("\"") + name + "\" is ignored: \"" + used + "\" is given, too");
+      return false;
+    }
+    return true;
+  };
+  for (const char* name : {"reflectance", "color"}) {
+    if (!isTaken(name)) continue;
+    pigment.reflectance = input.textures.FindColor(input.parameters, name, SpectrumRole::Albedo);
+    used = name;
+  }
+  const bool hasEumelanin = isTaken("eumelanin"), hasPheomelanin = isTaken("pheomelanin");
+  constexpr float kMost = 1e6f;
+  const std::string range = "a concentration between 0 and 1000000";
+  if (hasEumelanin || hasPheomelanin) {
+    pigment.eumelanin = InRange(input, "eumelanin", 0, 0, kMost, range);
+    pigment.pheomelanin = InRange(input, "pheomelanin", 0, 0, kMost, range);
+  }
+  return pigment;
+}
+
+}  // namespace
+
+std::shared_ptr<const Material> MakeHair(const MaterialInput& input) {
+  const std::string roughness = "a roughness between 0 and 1";
+  HairParameters parameters{
+      ReadPigment(input), InRange(input, "eta", 1.55f, 1e-2f, 1e2f, "an index of refraction between 0.01 and 100"),
+      InRange(input, "beta_m", 0.3f, 0, 1, roughness), InRange(input, "beta_n", 0.3f, 0, 1, roughness),
+      InRange(input, "alpha", 2, -90, 90, "an angle between -90 and 90 degrees")};
+  ShadingNormal shadingNormal(input.parameters, input.textures, input.diagnostics);
+  CheckMaterialParameters(
+      input, {"sigma_a", "reflectance", "color", "eumelanin", "pheomelanin", "eta", "beta_m", "beta_n", "alpha"});
+  return std::make_shared<HairMaterial>(std::move(parameters), std::move(shadingNormal));
+}
+
+}  // namespace lampyr
