@@ -137,7 +137,7 @@ std::optional<FixedStart> FindFixedStart(const SuiteSubject& subject, FixedPart 
     const Vector3 difference = part == FixedPart::Position ? a.position - b.position : a.direction - b.direction;
     return static_cast<double>(glm::length(difference)) > tolerance;
   };
-  constexpr int kAttempts = 20000;  // a narrow beam leaves from few places of a surface
+  constexpr int kAttempts = 1000;  // a narrow beam leaves from few places of a surface
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     FixedStart start;
     start.context = RandomContext(subject, rng);

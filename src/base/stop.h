@@ -46,7 +46,7 @@ inline constexpr double kPatience = 0.5;  // seconds
 // has run out. The destructor withdraws the request unless work was given up.
 class StopWatch {
  public:
-  // Seconds. A pass that is about to end is worth waiting for.
+  // Seconds. A pass that is about to end gets the time to do so.
   static constexpr double kGrace = 0.5;
 
   // `interrupted`: set by a signal handler; null: no interrupts. `seconds`: the time from now on; absent: unlimited.

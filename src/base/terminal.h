@@ -6,8 +6,8 @@
 
 namespace lampyr {
 
-// Columns of the terminal that file descriptor `fd` refers to; if it is none, the environment variable COLUMNS; if that
-// is not set, `otherwise`. At least 20.
+// Columns of the terminal that file descriptor `fd` refers to; if it is not a terminal, the environment variable
+// COLUMNS; if that is not set, `otherwise`. At least 20.
 int TerminalColumns(int fd, int otherwise);
 
 // Columns of UTF-8 text: one for each code point.

@@ -3,8 +3,8 @@
 // Film coordinates are in pixels, with (0,0) the upper left corner of the full image. The importance We is normalised
 // so that ∫∫ We cosθ dω dA over lens and full image equals the area of the image in pixels: the value of a pixel is the
 // mean radiance over that pixel with the reconstruction filter, whichever technique estimates it. In particular
-// - a ray through a uniformly chosen film point has the density We cosθ / (width · height) = pdfPosition ·
-//   pdfDirection;
+// - the density of a ray through a uniformly chosen film point is We cosθ / (width · height), the product of
+//   pdfPosition and pdfDirection;
 // - a connection from a surface point to the camera adds β · f · |cosθ at the point| · importance / pdfLensSolidAngle
 //   per pixel² at its film point, with β the throughput of the light subpath.
 //
@@ -44,11 +44,11 @@ struct CameraConnection {
 };
 
 struct CameraDensities {
-  PdfArea pdfPosition;         // on the lens; 1 (discrete) for a pinhole
+  PdfArea pdfPosition;  // on the lens; 1 (discrete) for a pinhole
   // Of the direction given the position, for a uniformly chosen film point of the full image; 1 (discrete) for parallel
   // rays.
   PdfSolidAngle pdfDirection;
-  float importance = 0;        // We
+  float importance = 0;  // We
 };
 
 // Film points with the same ray as another film point.
@@ -109,8 +109,7 @@ struct CameraFrame {
   Transform cameraToRender;                   // camera space: x right, y up, z forward (left-handed, as pbrt)
   int width = 1, height = 1;                  // of the full image, pixels
   Point2 screenMin{-1, -1}, screenMax{1, 1};  // screen window
-  Vector2 filmMargin{
-      0, 0};  // pixels by which the film sees beyond the image: the radius of a filter that splats are weighed with
+  Vector2 filmMargin{0, 0};  // pixels of film beyond the image: the radius of the filter that weights splats
 };
 
 // The factories throw an Error for unusable settings: an empty image or screen window, a singular transform, a field of

@@ -18,8 +18,9 @@ inline double ImageArea(const CameraFrame& frame) {
 void CheckFrame(const CameraFrame& frame);
 void CheckLens(float lensRadius, float focalDistance);
 
-// The plane z = distance of camera space in render space, in film coordinates: film point (x, y) is at center + (x -
-// centerFilm.x)·dx + (y - centerFilm.y)·dy, relative to the camera's origin.
+// The plane z = distance of camera space in render space, in film coordinates. Relative to the camera's origin, film
+// point (x, y) is at
+//   center + (x - centerFilm.x)·dx + (y - centerFilm.y)·dy
 struct FilmPlane {
   Vector3d center, dx, dy;
   Point2d centerFilm;

@@ -51,8 +51,9 @@ double LensSystem::StopZ() const {
 }
 
 // Moves the ray to the surface; false if it misses the cap of the sphere around the vertex. With p the intersection
-// with the plane of the vertex and c the curvature, the distance t from there solves c t² + 2 (c (p.x d.x + p.y d.y) +
-// d.z) t + c (p.x² + p.y²) = 0; the form of the solution used here, the one on the cap, remains exact for c = 0.
+// with the plane of the vertex and c the curvature, the distance t from there solves
+//   c t² + 2 (c (p.x d.x + p.y d.y) + d.z) t + c (p.x² + p.y²) = 0
+// The form of the solution used here, the one on the cap, remains exact for c = 0.
 bool LensSystem::Meet(const Surface& surface, LensRay& ray, Vector3d& normal) {
   if (!(ray.direction.z > 0)) return false;
   const double toPlane = (surface.z - ray.origin.z) / ray.direction.z, c = surface.curvature;

@@ -1,8 +1,8 @@
 // Spherical camera: all directions around a point, by the equal-area octahedral map or by latitude and longitude,
 // oriented as in pbrt-v4: +z of the maps is the camera's up (y).
 //
-// A camera direction c becomes Mc/|Mc|, with M the linear part of cameraToRender, which scales solid angles by |det
-// M|/|Mc|³.
+// With M the linear part of cameraToRender, a camera direction c becomes Mc/|Mc|. This scales solid angles by
+//   |det M| / |Mc|³
 #include "camera/film_map.h"
 #include "sampling/equal_area.h"
 

@@ -1,4 +1,4 @@
-// Temporary names hold the process id: two processes that write the same file do not share one.
+// Temporary names contain the process id: two processes that write the same file do not share one.
 #include "film/atomic_file.h"
 
 #include <unistd.h>
@@ -28,7 +28,7 @@ AtomicFile::AtomicFile(const std::filesystem::path& path) : path_(path) {
   std::error_code ignored;
   const std::filesystem::file_status there = std::filesystem::status(target_, ignored);
   if (std::filesystem::is_directory(there)) Fail(EISDIR);
-  // The new name would take the place of the device itself.
+  // Renaming would replace the device itself.
   if (std::filesystem::exists(there) && !std::filesystem::is_regular_file(there))
     throw Error("cannot write \"" + path.string() + "\": it is a device or a pipe, not a file");
   temporary_ = target_;
@@ -76,7 +76,7 @@ void AtomicFile::ThrowIfFailed() {
 void AtomicFile::Commit() {
   ThrowIfFailed();
   if (std::fflush(file_) != 0) Fail(errno);
-  // Not every file system can; that it is asked for is what matters: the name must not come before the bytes.
+  // Syncs the bytes before the rename, so that the name never precedes them. Not every file system supports it.
   if (fsync(fileno(file_)) != 0 && errno != EINVAL && errno != ENOTSUP) Fail(errno);
   std::FILE* file = file_;
   file_ = nullptr;
@@ -102,12 +102,12 @@ void AtomicFile::RemoveLeftovers(const std::filesystem::path& path) {
 }
 
 std::filesystem::path WriteTarget(const std::filesystem::path& path) {
-  constexpr int mostLinks = 40;  // as the system follows
+  constexpr int mostLinks = 40;  // the system's own limit
   std::filesystem::path target = path;
   for (int i = 0; i < mostLinks; ++i) {
     std::error_code code;
     const std::filesystem::path next = std::filesystem::read_symlink(target, code);
-    if (code) return target;  // it is none
+    if (code) return target;  // not a link
     target = next.is_absolute() ? next : FolderOf(target) / next;
   }
   throw Error("cannot write \"" + path.string() + "\": " + std::generic_category().message(ELOOP));

@@ -1,6 +1,6 @@
-// A file that is written whole or not at all: bytes go to a temporary name in the same folder, which takes the final
-// name when all are written. A link stays one: what it leads to is written. Every failure is an Error with the system's
-// reason; the old file stays as it was.
+// A file that is written completely or not at all: bytes go to a temporary name in the same folder, which is renamed
+// when all are written. A symbolic link is kept, and its target written. Every failure is an Error with the system's
+// reason, and leaves the old file as it was.
 #pragma once
 
 #include <cstddef>
@@ -22,12 +22,13 @@ class AtomicFile {
   void Seek(uint64_t position);
   void SeekToEnd();
 
-  // Throws when an earlier Write failed and its Error was lost on the way here (in a destructor, say).
+  // Throws if an earlier Write failed and its Error did not arrive here (it was thrown in a destructor, say).
   void ThrowIfFailed();
-  // Gives the file its name, once its bytes are on the disk. Throws as ThrowIfFailed does, too.
+  // Renames the file, once its bytes are on disk. Also throws as ThrowIfFailed does.
   void Commit();
 
-  // Removes what processes that were ended while they wrote this file have left beside it. While nobody writes it.
+  // Removes temporary files of `path` left behind by processes that were killed while they wrote it. No process may be
+  // writing it.
   static void RemoveLeftovers(const std::filesystem::path& path);
 
  private:
@@ -38,11 +39,11 @@ class AtomicFile {
   int firstError_ = 0;
 };
 
-// The file that is written when `path` is: where links lead, also where there is nothing yet. Throws an Error where they
-// lead in a circle.
+// The target of `path`: links are followed, also to a file that does not exist yet. Throws an Error for a cycle of
+// links.
 std::filesystem::path WriteTarget(const std::filesystem::path& path);
 
-// Of a file's name; "." where it names none.
+// The folder of a file name; "." if the name has none.
 std::filesystem::path FolderOf(const std::filesystem::path& path);
 
 }  // namespace lampyr

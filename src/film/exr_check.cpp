@@ -1,6 +1,6 @@
-// OpenEXR takes memory for an attribute of the header as large as it says that it is, and then finds that the file is
-// shorter. So the header is walked first: attributes of a name, a type, a size and so many bytes, up to an empty name
-// (OpenEXR File Layout; of files of several parts: one header after the other, up to an empty one).
+// OpenEXR allocates the announced size of a header attribute before it notices that the file is shorter. The header is
+// therefore walked first: attributes with a name, a type, a size and that many bytes, up to an empty name (OpenEXR File
+// Layout; a file of several parts has one header after the other, up to an empty one).
 #include <cstdint>
 #include <fstream>
 #include <string>
@@ -12,14 +12,14 @@ namespace lampyr {
 
 namespace {
 
-// Little-endian, as all of the format.
+// Little-endian, as everything in the format.
 uint32_t ReadNumber(std::istream& file) {
   uint32_t number = 0;
   for (int i = 0; i < 4; ++i) number |= static_cast<uint32_t>(file.get() & 0xff) << (8 * i);
   return number;
 }
 
-// Up to a NUL; what is longer than any name is a matter for the library. False: the file ends, or it is such a one.
+// Reads up to a NUL. False at the end of the file, or for a text longer than any name, which is left to the library.
 bool ReadName(std::istream& file, std::string& name) {
   constexpr size_t longest = 256;
   name.clear();
@@ -37,7 +37,7 @@ void CheckExrHeader(const std::filesystem::path& path) {
   constexpr uint32_t severalParts = 0x1000;
   const bool hasParts = (ReadNumber(file) & severalParts) != 0;
   std::string name, type;
-  bool isEmpty = true;  // the header so far
+  bool isEmpty = true;  // nothing in this header yet
   while (ReadName(file, name)) {
     if (name.empty() && (!hasParts || isEmpty)) return;
     isEmpty = name.empty();

@@ -1,4 +1,4 @@
-// Sums per pixel and the image made of them. Radiance in W/(m² sr); a million samples do not drift.
+// Sums per pixel, and the image developed from them. Radiance in W/(m² sr); the sums of a million samples do not drift.
 #include "film/film.h"
 
 #include <algorithm>
@@ -17,34 +17,35 @@ namespace lampyr {
 
 namespace {
 
-// What a pixel's sums are divided by. Filter weights have mean 1, so Σw is near n; filters with negative lobes can
-// cancel it when there are few samples, and then n itself is used, which keeps the pixel finite and unbiased.
+// Divisor of the sums of a pixel. Filter weights have mean 1, so that Σw is near n; those of filters with negative
+// lobes may cancel while there are few samples. The divisor is then n, which keeps the pixel finite and unbiased.
 double Divisor(const PixelSums& pixel) {
   const double n = static_cast<double>(pixel.count);
   const double weight = pixel.weight.Value();
   return weight > 0.1 * n ? weight : n;
 }
 
-// Variance of the mean of n samples from their sums. 0 below 2 samples.
+// Variance of the mean of n samples from their sums; 0 for fewer than 2 samples.
 double MeanVariance(double sum, double sumOfSquares, double n) {
   if (n < 2) return 0;
   const double mean = sum / n;
   return std::max(0.0, sumOfSquares / n - mean * mean) / (n - 1);
 }
 
-// The value that a sum of rare contributions of differing sizes does not exceed with 95 % confidence, from the sum and
-// the sum of the contributions' squares: a gamma distribution of the same moments to which one more contribution was
-// added, as large as any may be ([Fay97 eq. 4]). It is what keeps an estimate from being believed while its bright
-// samples can be counted, or while the brightest have not come: three times `largest` remain of a sum of nothing.
+// Upper 95 % confidence bound of a sum of rare contributions of different sizes, from the sum and the sum of squares of
+// the contributions: the quantile of a gamma distribution with the same moments, to which one more contribution of the
+// largest possible size was added ([Fay97 eq. 4]). It prevents trust in an estimate that rests on a few bright samples,
+// or whose brightest samples have not occurred yet: the bound of an empty sum is three times `largest`.
 double UpperBound(double sum, double sumOfSquares, double largest) {
-  largest = std::max(largest, std::sqrt(sumOfSquares));  // none that was met is larger than that
-  constexpr double certain = 1e-3;                       // so small, and the bound is the sum
+  largest = std::max(largest, std::sqrt(sumOfSquares));  // no contribution exceeds this
+  constexpr double certain = 1e-3;                       // relative size of `largest` below which the bound is the sum
   if (!(largest > certain * sum)) return sum;
   const double mean = sum + largest, variance = sumOfSquares + largest * largest;
   return variance / (2 * mean) * ChiSquaredQuantile(0.05, 2 * mean * mean / variance);
 }
 
-// (Σ f²)² / Σ f⁴ over the pixels that a splat in the middle of one reaches.
+// Effective number of pixels of a splat at a pixel centre: (Σ f²)² / Σ f⁴ over the pixels within the radius of the
+// filter.
 double SplatSpread(const PixelFilter& filter) {
   double squares[2] = {0, 0}, fourths[2] = {0, 0};
   for (int axis = 0; axis < 2; ++axis) {
@@ -59,7 +60,7 @@ double SplatSpread(const PixelFilter& filter) {
   return std::pow(squares[0] * squares[1], 2) / (fourths[0] * fourths[1]);
 }
 
-// Intensities of 1e30 have variances that leave float: the largest float stands for them.
+// Intensities of 1e30 have variances beyond the range of float: clamped to the largest float.
 float ToFiniteFloat(double value) {
   constexpr double largest = std::numeric_limits<float>::max();
   return static_cast<float>(std::clamp(value, -largest, largest));
@@ -78,7 +79,7 @@ void AddAll(std::vector<Sums>& to, const std::vector<Sums>& from) {
   }
 }
 
-// In bands, one for each thread: the speed of memory is more than one thread can use.
+// Copies in bands, one per thread: one thread cannot saturate the memory bandwidth.
 template <class Sums>
 void Copy(std::vector<Sums>& to, const std::vector<Sums>& from, int threads) {
   static_assert(std::is_trivially_copyable_v<Sums>);
@@ -181,7 +182,7 @@ double Film::VarianceOfMean(size_t pixel, int channel) const {
   const PixelSums& samples = pixels_[pixel];
   const double n = static_cast<double>(samples.count);
   double variance = 0;
-  if (samples.count >= 2) {  // w·L in units of the mean weight
+  if (samples.count >= 2) {  // w·L relative to the mean weight
     variance = MeanVariance(samples.sum[channel].Value(), samples.sumOfSquares[channel].Value(), n) *
                std::pow(n / Divisor(samples), 2);
   }
@@ -192,8 +193,8 @@ double Film::VarianceOfMean(size_t pixel, int channel) const {
   return variance;
 }
 
-// Sum of the squares of what each sample contributes to the variance of the image. A splat contributes to that of all
-// pixels under the filter at once, and the square of their sum is larger than the sum of their squares.
+// Sum of squares of the contributions of all samples to the variance of the image. A splat contributes to all pixels
+// under the filter at once, and the square of that sum exceeds the sum of its squares by the factor splatSpread_.
 double Film::FourthOfMean(size_t pixel) const {
   const PixelSums& samples = pixels_[pixel];
   double fourth = 0;
@@ -204,7 +205,7 @@ double Film::FourthOfMean(size_t pixel) const {
 }
 
 SplatList Film::MakeSplatList(const PixelFilter& filter, const SensorResponse& sensor) const {
-  const Vector2 radius = filter.Radius() - Vector2(0.5f);  // beyond the pixels' centres
+  const Vector2 radius = filter.Radius() - Vector2(0.5f);  // beyond the pixel centres
   return {Point2(crop_.x0, crop_.y0) + Vector2(0.5f) - filter.Radius(), Point2(crop_.x1, crop_.y1) + radius, sensor,
           HasLayers()};
 }
@@ -222,7 +223,7 @@ void Film::AddSplats(const PixelFilter& filter, std::span<const SplatList> lists
   for (const SplatList& list : lists) lightPaths_ += list.Paths();
 }
 
-// The rows of one band: groups of rows in turn, so that a bright spot is shared among the threads.
+// Adds to the rows of one band. Groups of rows are dealt to the bands in turn, so that the threads share a bright spot.
 void Film::AddToRows(const PixelFilter& filter, std::span<const SplatList> lists, int band, int bands) {
   constexpr int kGroup = 4;
   const Vector2 radius = filter.Radius();
@@ -230,7 +231,7 @@ void Film::AddToRows(const PixelFilter& filter, std::span<const SplatList> lists
   const auto lastPixel = [](float p, float r) { return static_cast<int>(std::ceil(p - 0.5f + r)); };
   std::vector<float> weightsX(static_cast<size_t>(2 * radius.x) + 4);
   const bool hasLayers = HasLayers();
-  uint64_t firstPath = lightPaths_ + 1;  // 0 is the path of pixels that have met none
+  uint64_t firstPath = lightPaths_ + 1;  // 0 denotes no path
   for (const SplatList& list : lists) {
     const uint32_t* layer = hasLayers ? list.Layers().data() : nullptr;  // of the splat
     for (const Splat& splat : list.Splats()) {
@@ -346,7 +347,8 @@ double Film::RelativeError(double largestSample) const {
   for (size_t i = 0; i < pixels_.size(); ++i) {
     const bool tooFew = lightPaths_ > 0 ? lightPaths_ < 2 || pixels_[i].count == 1 : pixels_[i].count < 2;
     if (tooFew) return std::numeric_limits<double>::infinity();
-    // The channels of a sample share its path: taken as fully correlated, which bounds the variance from above.
+    // The channels of a sample share its path: they are taken as fully correlated, which bounds the variance from
+    // above.
     double deviation = 0, value = 0;
     for (int c = 0; c < 3; ++c) {
       deviation += Color::kLuminance[c] * std::sqrt(VarianceOfMean(i, c));
@@ -360,9 +362,9 @@ double Film::RelativeError(double largestSample) const {
   const double n = static_cast<double>(pixels_.size());
   const double largest = samples > 0 ? std::pow(largestSample * n / samples, 2) : 0;
   const double bound = UpperBound(varianceSum, fourthSum, largest);
-  if (bound == 0) return 0;  // black or constant: nothing left to improve
+  if (bound == 0) return 0;  // black or constant
   const double meanLuminance = luminanceSum / n;
-  // What stayed black for so long is taken for black.
+  // An image that is black after this many samples per pixel counts as converged.
   constexpr double kLong = 4096;
   if (varianceSum == 0 && meanLuminance == 0 && samples / n >= kLong) return 0;
   if (!(meanLuminance > 0)) return std::numeric_limits<double>::infinity();

@@ -1,13 +1,13 @@
-// The film: sums of samples per pixel, their variance, and the image made of them.
+// The film: sums of samples per pixel, their variance, and the image developed from them.
 //
-// A pixel is what its camera samples say plus what light paths have splatted on it. The two are different techniques of
-// one estimate, or one of them is absent: a pure path tracer makes no splats, and a pure light tracer no samples.
+// A pixel is the sum of two techniques: the mean of its camera samples, and the splats of light paths. Either may be
+// absent: a pure path tracer has no splats, a pure light tracer no camera samples.
 //
-// A film may have layers, which split the picture: each part of a sample or splat belongs to one of them. They are
-// summed and normalised as the picture is, so they add up to it but for rounding.
+// A film may have layers, which split the image: each part of a sample or splat belongs to one of them. They are summed
+// and normalised like the image, so that they add up to it except for rounding.
 //
-// The order of samples does not show in the image: sums are compensated (math/compensated_sum.h), so that the films of
-// parts of the samples add up to that of all of them.
+// The image does not depend on the order of the samples: sums are compensated (math/compensated_sum.h). The films of
+// parts of the samples add up to the film of all samples.
 #pragma once
 
 #include <array>
@@ -31,16 +31,16 @@ struct PixelRect {
   int Height() const { return y1 - y0; }
 };
 
-// Sums of one pixel. A sample with filter weight w and value L adds w·L; the pixel is Σ wL / Σ w.
+// Sums over the samples of one pixel. A sample with filter weight w and value L adds w·L; the pixel is Σ wL / Σ w.
 struct PixelSums {
   CompensatedSum sum[3];
   CompensatedSum sumOfSquares[3];  // of w·L
   CompensatedSum weight;
-  double sumOfFourths = 0;  // of the luminance's deviations from the mean before each sample: the error's own error
+  double sumOfFourths = 0;  // of deviations of the luminance from the running mean: precision of the variance
   uint64_t count = 0;
 
   void Add(const Color& value, float filterWeight);
-  // All samples of another one.
+  // Adds all samples of `other`.
   void Add(const PixelSums& other);
   bool IsFinite() const;
 };
@@ -50,7 +50,8 @@ class ByteWriter;
 
 class Film {
  public:
-  // `crop` in pixels of the full image. `layers`: their names.
+  // `crop`: in pixels of the full image. `layers`: names of the layers. Throws an Error if the crop is empty or reaches
+  // beyond the image.
   Film(int fullWidth, int fullHeight, const PixelRect& crop, std::vector<std::string> layers = {});
 
   const PixelRect& Crop() const { return crop_; }
@@ -60,44 +61,45 @@ class Film {
 
   const std::vector<std::string>& Layers() const { return layers_; }
   bool HasLayers() const { return !layers_.empty(); }
-  // The parts of a sample whose value is added to the pixel itself: `scale` times them, weighted by the filter.
+  // Adds the layer parts of a sample whose value is added to the pixel itself, scaled by `scale` and weighted by the
+  // filter.
   void AddToLayers(int x, int y, const LayerSample& sample, float scale, float filterWeight,
                    const SensorResponse& sensor = {});
-  // Memory that `layers` of them take for each pixel.
+  // Bytes per pixel of a film with `layers` layers.
   static uint64_t BytesPerPixel(size_t layers, bool withSplats);
 
-  // An empty list for splats on this film.
+  // An empty list for splats onto this film.
   SplatList MakeSplatList(const PixelFilter& filter, const SensorResponse& sensor) const;
-  // Adds the paths of the lists, in their order. What is made of a sequence of paths does not depend on how it is cut
-  // into lists and calls, nor on the number of threads.
+  // Adds the paths of the lists, in order. The result does not depend on how a sequence of paths is divided into lists
+  // and calls, nor on the number of threads.
   void AddSplats(const PixelFilter& filter, std::span<const SplatList> lists, int threads);
-  // Light paths so far, those that were never seen included.
+  // Number of light paths so far, including those without a splat.
   uint64_t LightPaths() const { return lightPaths_; }
 
-  // All samples and light paths of another film, of the same size, crop and layers.
+  // Adds all samples and light paths of another film of the same size, crop and layers.
   void Add(const Film& other);
-  // The same samples and light paths as another film, of the same size, crop and layers. Reuses its memory.
+  // Copies the samples and light paths of another film of the same size, crop and layers. Reuses memory.
   void CopyFrom(const Film& other, int threads);
-  // Without samples and light paths, of the same size, crop and layers.
+  // An empty film of the same size, crop and layers.
   Film EmptyCopy() const { return {fullWidth_, fullHeight_, crop_, layers_}; }
-  // The fraction of the pixels that have a sample.
+  // Fraction of the pixels with at least one sample.
   double SampledFraction() const;
-  // Everything but size, crop and layers.
+  // Writes everything except size, crop and layers.
   void Save(ByteWriter& bytes) const;
-  // Into an empty film of the same size, crop and layers. Throws an Error, and leaves the film as it was, where this is
-  // not what has been saved.
+  // Reads what Save has written, into an empty film of the same size, crop and layers. Throws an Error for anything
+  // else, and then leaves the film as it was.
   void Load(ByteReader& bytes);
 
-  // R, G, B and variance.R, .G, .B: the variance of the pixel's mean (sample variance / n; an upper bound for
-  // stratified samplers). Samples and splats count as independent: a sample that also splats does so on all pixels
-  // alike, and its share in its own is small. Then NAME.R, .G, .B of each layer.
+  // The image: R, G, B and variance.R, .G, .B, the variance of the mean of a pixel (sample variance / n; an upper bound
+  // for stratified samplers), then NAME.R, .G, .B of each layer. Camera samples and splats are taken as independent:
+  // the splats of a camera sample go to all pixels alike, and their share in its own pixel is small.
   Image Develop() const;
 
-  // Estimated relative error of the image at 95 % confidence: 1.96 · sqrt(mean variance of the pixels' means) over
-  // mean luminance, where the mean variance is the upper end of its own confidence interval ([Fay97], see film.cpp): a
-  // few bright samples that make up most of it say that it is not known well. `largestSample` is the luminance of the
-  // brightest sample that may not have been met yet. Infinite while there are fewer than 2 samples per pixel, or 2
-  // light paths.
+  // Estimated relative error of the image at 95 % confidence: 1.96 · sqrt(mean variance of the pixel means) / mean
+  // luminance. The mean variance is the upper end of its own confidence interval ([Fay97], see film.cpp), since it is
+  // not known well if a few bright samples make up most of it. `largestSample`: luminance of the brightest sample that
+  // may not have occurred yet. Infinite with fewer than 2 samples per pixel, or fewer than 2 light paths. 0 without
+  // variance if `largestSample` is 0, and for an image that is still black after 4096 samples per pixel.
   double RelativeError(double largestSample = 0) const;
 
  private:
@@ -114,11 +116,11 @@ class Film {
   int fullWidth_, fullHeight_;
   PixelRect crop_;
   std::vector<PixelSums> pixels_;
-  std::vector<SplatSums> splats_;  // empty while there are none
+  std::vector<SplatSums> splats_;  // empty without splats
   std::vector<std::string> layers_;
-  std::vector<LayerSum> layerSums_, layerSplats_;  // of each layer of each pixel; splats: empty while there are none
+  std::vector<LayerSum> layerSums_, layerSplats_;  // per layer and pixel; layerSplats_: empty without splats
   uint64_t lightPaths_ = 0;
-  double splatSpread_ = 0;  // how many pixels a splat is worth (film.cpp)
+  double splatSpread_ = 0;  // effective number of pixels of a splat (film.cpp)
 };
 
 }  // namespace lampyr

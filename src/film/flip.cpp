@@ -1,7 +1,7 @@
-// FLIP in two pipelines ([Andersson20 §4]). Colour: opponent space YCxCz, blurred by the eye's contrast sensitivity
-// (sums of Gaussians), CIELab with Hunt's adjustment, HyAB distance, redistributed to [0,1]. Features: edges and
+// FLIP in two pipelines ([Andersson20 §4]). Colour: opponent space YCxCz, blurred by the contrast sensitivity of the
+// eye (sums of Gaussians), CIELab with Hunt's adjustment, HyAB distance, redistributed to [0,1]. Features: edges and
 // points by derivatives of a Gaussian on the luminance. The result is colour^(1 - feature). All kernels are sums of
-// products of 1-D kernels; borders repeat.
+// products of 1-D kernels; borders are replicated.
 #include "film/flip.h"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ struct Triple {
   float x = 0, y = 0, z = 0;
 };
 
-// Linear Rec. 709 to XYZ relative to the white D65, whose XYZ is (1,1,1) then: each row sums to 1.
+// Linear Rec. 709 to XYZ relative to the white point D65, whose XYZ is then (1,1,1): each row sums to 1.
 constexpr float kToXyz[3][3] = {{0.43389539f, 0.37624237f, 0.18986224f},
                                 {0.21263682f, 0.71518298f, 0.07218020f},
                                 {0.01775242f, 0.10946563f, 0.87278195f}};
@@ -31,7 +31,7 @@ Triple ToRelativeXyz(const Triple& rgb) {
   return {row(0), row(1), row(2)};
 }
 
-// Inverse of kToXyz, computed: no second table that could disagree.
+// Inverse of kToXyz, computed, since a second table could disagree.
 std::array<std::array<float, 3>, 3> FromXyzMatrix() {
   const auto m = [](int i, int j) { return static_cast<double>(kToXyz[i % 3][j % 3]); };
   std::array<std::array<float, 3>, 3> inverse{};
@@ -73,7 +73,7 @@ float HyAb(const Triple& a, const Triple& b) {
 using Kernel = std::vector<float>;  // of odd length, centre in the middle
 using Plane = std::vector<float>;
 
-// One plane filtered along x by `horizontal`, then along y by `vertical`; borders repeat.
+// Filters a plane along x by `horizontal`, then along y by `vertical`; borders are replicated.
 Plane Filter(const Plane& in, int width, int height, const Kernel& horizontal, const Kernel& vertical) {
   const int radius = static_cast<int>(horizontal.size() / 2);
   Plane rows(in.size()), out(in.size(), 0.0f);
@@ -100,14 +100,14 @@ Plane Filter(const Plane& in, int width, int height, const Kernel& horizontal, c
   return out;
 }
 
-// A term a·sqrt(π/b)·exp(-π²x²/b) of a contrast sensitivity ([Andersson20 table 1]), as a 1-D kernel to be applied
-// along both axes; `amplitude` is that of the product.
+// A term a·sqrt(π/b)·exp(-π²x²/b) of a contrast sensitivity function ([Andersson20 table 1]), as a 1-D kernel to be
+// applied along both axes; `amplitude` is that of the product.
 struct SensitivityTerm {
   double amplitude = 0;
   Kernel kernel;
 };
 
-// Terms of one channel; together they sum to 1 over the plane.
+// The terms of one channel, normalised so that together they sum to 1 over the plane.
 std::vector<SensitivityTerm> SensitivityKernels(const std::vector<std::array<double, 2>>& terms, double pixelsPerDegree) {
   constexpr double widest = 0.04;  // the largest b of all channels sets the radius of all
   const int radius = static_cast<int>(std::ceil(3 * std::sqrt(widest / (2 * kPiDouble * kPiDouble)) * pixelsPerDegree));
@@ -142,7 +142,7 @@ Plane FilterBySensitivity(const Plane& plane, int width, int height, const std::
 }
 
 struct FeatureKernels {
-  Kernel gaussian, edge, point;  // edge and point: first and second derivative, positive and negative parts of sum 1
+  Kernel gaussian, edge, point;  // edge, point: 1st, 2nd derivative; positive and negative parts sum to 1
 };
 
 FeatureKernels MakeFeatureKernels(double pixelsPerDegree) {
@@ -165,7 +165,7 @@ FeatureKernels MakeFeatureKernels(double pixelsPerDegree) {
   return {normalise(gaussian), normalise(edge), normalise(point)};
 }
 
-// Lengths of the edge and of the point response, per pixel.
+// Magnitudes of the edge response and of the point response, per pixel.
 struct Features {
   Plane edge, point;
 };
@@ -176,7 +176,7 @@ Plane Lengths(const Plane& x, const Plane& y) {
   return lengths;
 }
 
-// What the two pipelines need of one image.
+// Input of the final comparison from one image: filtered colours and features.
 struct Perceived {
   std::vector<Triple> lab;
   Features features;
@@ -221,7 +221,7 @@ Perceived Perceive(const std::vector<Color>& image, int width, int height, const
   return perceived;
 }
 
-// HyAB^0.7 to [0,1]: linear up to 0.95 at 40 % of the largest, then linear to 1 ([Andersson20 eq. 7]).
+// Maps HyAB^0.7 to [0,1]: linear up to 0.95 at 40 % of the largest distance, then linear to 1 ([Andersson20 eq. 7]).
 float Redistribute(float distance, float largest) {
   const float knee = kKneePosition * largest;
   if (distance < knee) return kKneeValue * distance / knee;
@@ -233,7 +233,7 @@ float Redistribute(float distance, float largest) {
 std::vector<float> FlipMap(const std::vector<Color>& a, const std::vector<Color>& b, int width, int height,
                            const FlipSettings& settings) {
   const Perceived first = Perceive(a, width, height, settings), second = Perceive(b, width, height, settings);
-  // The largest distance in the gamut is that of green and blue.
+  // The largest distance in the gamut is that between green and blue.
   const float largest = std::pow(HyAb(ToHuntLab(ToRelativeXyz({0, 1, 0})), ToHuntLab(ToRelativeXyz({0, 0, 1}))),
                                  kColorExponent);
   std::vector<float> map(a.size());

@@ -1,5 +1,5 @@
-// LDR-FLIP: the difference that a person sees who flips between two images ([Andersson20]). Private to metrics.cpp and
-// its test.
+// LDR-FLIP: the difference visible when flipping between two images ([Andersson20]). Private to metrics.cpp and its
+// test.
 #pragma once
 
 #include <vector>
@@ -9,11 +9,11 @@
 namespace lampyr {
 
 struct FlipSettings {
-  double pixelsPerDegree = 67;  // 0.7 m in front of a display of 3840 pixels and 0.7 m
+  double pixelsPerDegree = 67;  // a display 3840 pixels and 0.7 m wide, seen from 0.7 m
 };
 
-// FLIP per pixel, in [0,1]. Both images are linear RGB with `width`·`height` pixels; they are clipped to [0,1] first,
-// which is what a display without tone mapping shows. Symmetric in its images.
+// FLIP per pixel, in [0,1]. Both images are linear RGB with `width`·`height` pixels, and are first clipped to [0,1],
+// which is what a display without tone mapping shows. Symmetric in the two images.
 std::vector<float> FlipMap(const std::vector<Color>& a, const std::vector<Color>& b, int width, int height,
                            const FlipSettings& settings = {});
 

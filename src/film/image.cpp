@@ -1,4 +1,4 @@
-// Images in memory, the choice of reader by file name, and pictures to look at.
+// Images in memory, the choice of a reader by content, and display images.
 #include "film/image.h"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::string_view kOpenExr = "openexr";
 
-// Applies `decode` to all channels but alpha. 8-bit values go through a table: a texture has millions of them.
+// Applies `decode` to all channels except alpha. 8-bit values use a table: a texture has millions of them.
 template <class Decode>
 void DecodeChannels(EncodedImage& encoded, Decode decode) {
   Image& image = encoded.image;
@@ -51,8 +51,9 @@ void CheckReadable(const std::filesystem::path& path) {
   }
 }
 
-// Identity up to kShoulderStart, then an exponential that meets it with the same slope and nears 1:
-// s + (1-s)·(1 - exp(-(x-s)/(1-s))). Per channel, so that very bright colours fade to white. No toe.
+// Identity up to s = kShoulderStart, then an exponential that continues it with the same slope and tends to 1:
+//   s + (1-s)·(1 - exp(-(x-s)/(1-s)))
+// Applied per channel, so that very bright colours fade to white. No toe.
 float FilmicShoulder(float x) {
   constexpr float kShoulderStart = 0.6f;
   if (x <= kShoulderStart) return x;
@@ -62,7 +63,7 @@ float FilmicShoulder(float x) {
 
 unsigned char ToDisplay(float linear, float exposure, ToneMap toneMap) {
   float x = linear * exposure;
-  if (!(x > 0)) return 0;  // NaN, too
+  if (!(x > 0)) return 0;  // also for NaN
   if (toneMap == ToneMap::Filmic) x = FilmicShoulder(x);
   return static_cast<unsigned char>(std::lround(255.0f * LinearToSrgb(std::min(x, 1.0f))));
 }

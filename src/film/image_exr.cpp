@@ -1,5 +1,5 @@
-// OpenEXR files: every channel of a flat scan-line or tiled image as float (of the first part when there are several),
-// data and display window, string attributes as metadata. The only file that includes OpenEXR.
+// OpenEXR files: all channels of a flat scan-line or tiled image as float (of the first part if there are several),
+// data and display window, and string attributes as metadata. The only file that includes OpenEXR.
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
@@ -22,8 +22,7 @@ namespace lampyr {
 
 namespace {
 
-// Lets OpenEXR write through AtomicFile. A failure in OpenEXR's destructor (which swallows exceptions) is found by
-// AtomicFile::Commit.
+// Lets OpenEXR write through AtomicFile. OpenEXR's destructor swallows exceptions; AtomicFile::Commit reports them.
 class AtomicStream : public Imf::OStream {
  public:
   AtomicStream(AtomicFile& file, const std::string& name) : Imf::OStream(name.c_str()), file_(file) {}
@@ -39,7 +38,7 @@ int BytesOf(Imf::PixelType type) {
   return type == Imf::HALF ? 2 : 4;
 }
 
-// Names of all channels in our order. Throws on channels that are not stored at every pixel.
+// Names of all channels, ordered by ChannelOrder. Throws an Error for subsampled channels.
 std::vector<std::string> ListChannels(const std::filesystem::path& path, const Imf::Header& header,
                                       int& bytesPerPixel) {
   std::vector<std::string> names;
@@ -102,7 +101,7 @@ Imf::Header MakeHeader(const Image& image, Imf::PixelType type) {
   return header;
 }
 
-// The image in half, values beyond its range at its ends: an image of large radiance has no infinities in it.
+// Converts to half; finite values beyond its range are clamped, so that an image of large radiance has no infinities.
 std::vector<half> ToHalf(const std::vector<float>& values) {
   constexpr float largest = 65504.0f;
   std::vector<half> result(values.size());

@@ -1,4 +1,4 @@
-// Private to the film room: the readers behind ReadImage, and what they check alike.
+// Private to film/: the readers behind ReadImage, and their common checks.
 #pragma once
 
 #include <cstdint>
@@ -13,29 +13,31 @@ namespace lampyr {
 
 Image ReadExr(const std::filesystem::path& path);
 
-// An image as OpenImageIO gives it: values as encoded in the file.
+// An image read through OpenImageIO, with values as encoded in the file.
 struct EncodedImage {
   Image image;
   int integerBits = 0;     // 8, 16, …; 0 for floating point
-  bool saysSrgb = false;   // the file (or its format's rule) says that it is sRGB
+  bool saysSrgb = false;   // declared by the file or implied by its format
 };
 EncodedImage ReadThroughModule(const std::filesystem::path& path, const ImageKind& kind);
 
 struct JpegSize {
   int64_t width = 0, height = 0;
 };
-// Of the frame header. Throws Error when the file ends before its end marker or has no frame.
+// Image size from the frame header. Throws an Error if the file ends before its end marker or has no frame.
 JpegSize ReadJpegSize(const std::filesystem::path& path);
 
-// Throws Error when an attribute of an OpenEXR file's header is longer than the file.
+// Throws an Error if an attribute in the header of an OpenEXR file claims to be longer than the file.
 void CheckExrHeader(const std::filesystem::path& path);
 
-// Throws Error when the size is absurd: more than 2^30 values, or more than 2^27 and far more than the file could hold
-// compressed (a corrupt header must not claim the machine's memory). `bytesPerPixel` in the file, uncompressed.
+// Throws an Error for an image without pixels, or of an absurd size: more than 2^30 values, more than the available
+// memory, or more than 2^27 values and far more than the file could hold compressed (a corrupt header must not claim
+// the machine's memory). `bytesPerPixel`: in the file, uncompressed.
 void CheckImageSize(const std::filesystem::path& path, int64_t width, int64_t height, int64_t channels,
                     int64_t bytesPerPixel);
 
-// R, G, B, A first, then the other layers, each in the order R, G, B, A, rest. Returns the new order as indices.
+// The order of channels as indices into `names`: R, G, B, A and the rest without a layer, then each layer,
+// alphabetically, in the order R, G, B, A, rest.
 std::vector<size_t> ChannelOrder(const std::vector<std::string>& names);
 
 }  // namespace lampyr

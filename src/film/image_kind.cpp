@@ -20,14 +20,14 @@ constexpr Mark kMarks[] = {{"\x89PNG\r\n\x1a\n", "png"},
                            {"\xff\xd8\xff", "jpeg"},
                            {{"II*\0", 4}, "tiff"},
                            {{"MM\0*", 4}, "tiff"},
-                           {{"II+\0", 4}, "tiff"},  // of more than 4 GB
+                           {{"II+\0", 4}, "tiff"},  // BigTIFF: more than 4 GB
                            {{"MM\0+", 4}, "tiff"},
                            {"#?", "hdr"},
                            {"BM", "bmp"},
                            {"GIF8", "gif"},
                            {"\x76\x2f\x31\x01", "openexr"}};
 
-// P1 … P6 and Pf, PF, then a blank.
+// P1 … P6, Pf or PF, followed by a blank.
 bool IsPortableMap(std::string_view head) {
   constexpr std::string_view kinds = "123456fF", blanks = " \t\r\n";
   return head.size() > 2 && head[0] == 'P' && kinds.find(head[1]) != kinds.npos && blanks.find(head[2]) != blanks.npos;
@@ -44,7 +44,7 @@ const char* FormatOf(std::string_view head, const std::filesystem::path& path) {
   }
   if (head.starts_with("RIFF") && head.size() >= 12 && head.substr(8, 4) == "WEBP") return "webp";
   if (IsPortableMap(head)) return "pnm";
-  if (IsNamedTarga(path)) return "targa";  // has no mark at its start
+  if (IsNamedTarga(path)) return "targa";  // without a magic number
   throw Error("cannot read image \"" + path.string() +
               "\": its content is of none of the formats that are read: OpenEXR, PNG, JPEG, TIFF, Radiance (hdr), PFM, "
               "PPM, PGM, PBM, BMP, GIF, WebP, Targa (named .tga)");
@@ -59,14 +59,14 @@ int64_t NumberAt(std::string_view head, size_t position, size_t count) {
 }
 
 void ReadBmpSize(std::string_view head, ImageKind& kind) {
-  constexpr int64_t kOldHeader = 12;  // of OS/2: sizes of two bytes
+  constexpr int64_t kOldHeader = 12;  // OS/2: sizes have two bytes
   const size_t bytes = NumberAt(head, 14, 4) == kOldHeader ? 2 : 4;
   const auto absolute = [&](int64_t n) { return bytes == 4 && n > 0x7fffffff ? (int64_t{1} << 32) - n : n; };
   kind.width = absolute(NumberAt(head, 18, bytes));
-  kind.height = absolute(NumberAt(head, 18 + bytes, bytes));  // negative: from the top
+  kind.height = absolute(NumberAt(head, 18 + bytes, bytes));  // negative: rows from the top
 }
 
-// Of the first chunk: lossy, lossless, or with the size of the whole canvas.
+// The size in the first chunk: lossy, lossless, or the extended header with the size of the canvas.
 void ReadWebpSize(std::string_view head, ImageKind& kind) {
   constexpr size_t chunk = 12;
   const std::string_view name = head.substr(chunk, 4);

@@ -1,4 +1,4 @@
-// What an image file is by its content, whatever its name says. Private to the film room.
+// The format of an image file by its content, independent of its name. Private to film/.
 #pragma once
 
 #include <cstdint>
@@ -9,11 +9,11 @@ namespace lampyr {
 struct ImageKind {
   const char* format = "";  // OpenImageIO's name
   int64_t width = 0,
-          height = 0;  // as the header has them, of formats whose readers take memory before they tell; 0: later
+          height = 0;  // from the header, for formats whose readers allocate before they report a size; 0: unknown
 };
 
-// Throws an Error that names the formats that are read when the file is of none of them. The rest of what the image
-// library knows is not offered: each reader is one more that has to stand damaged files.
+// Throws an Error that lists the supported formats if the file is of none of them. Other formats of the image library
+// are not offered: each further reader would have to withstand damaged files.
 ImageKind FindImageKind(const std::filesystem::path& path);
 
 }  // namespace lampyr

@@ -1,4 +1,4 @@
-// The image module: all formats that OpenImageIO reads, and PNG encoding. It is a shared library of its own because
+// The image module: the formats read through OpenImageIO, and PNG encoding. It is a separate shared library because
 // OpenImageIO costs every process that links it 0.3 s and 127 MiB at start. No exception leaves it.
 #include "film/image_module.h"
 
@@ -26,12 +26,12 @@ void SetError(char* error, size_t errorSize, std::string text) {
   error[length] = '\0';
 }
 
-// While there is one, what is printed to stderr by C's streams is not seen: libpng says what is wrong there, too, which
-// comes back as an error's text. Sanitizers and crash handlers write to the descriptor itself.
+// Redirects stderr (the C stream) while an object exists: libpng prints errors there that it also returns as text.
+// Sanitizers and crash handlers write to the descriptor itself and are not affected.
 class SilentStderr {
  public:
   SilentStderr() : lock_(Mutex()), before_(stderr) {
-    static std::FILE* const nowhere = std::fopen("/dev/null", "w");  // never closed: somebody may still hold it
+    static std::FILE* const nowhere = std::fopen("/dev/null", "w");  // never closed: another thread may still hold it
     if (nowhere) stderr = nowhere;
   }
   ~SilentStderr() { stderr = before_; }
@@ -58,9 +58,9 @@ std::string ErrorOf(const OIIO::ImageInput& input) {
   return text.empty() ? "it is damaged" : text;
 }
 
-// "" when all went well.
+// Returns "" on success, otherwise the error.
 std::string Read(const char* path, const char* format, lampyr::ImageModuleAllocate allocate, void* context) {
-  OIIO::attribute("limits:imagesize_MB", 1 << 30);  // what is too large is told by `allocate`
+  OIIO::attribute("limits:imagesize_MB", 1 << 30);  // `allocate` decides what is too large
   std::optional<SilentStderr> silent;
   if (std::strcmp(format, "png") == 0) silent.emplace();
   OIIO::ImageSpec configuration, opened;
@@ -70,7 +70,7 @@ std::string Read(const char* path, const char* format, lampyr::ImageModuleAlloca
   if (!input->open(path, opened, configuration)) return ErrorOf(*input);
   const OIIO::ImageSpec& spec = input->spec();
   if (spec.depth > 1) return "it is a volume";
-  // A reader takes memory for a whole tile.
+  // A reader allocates a whole tile.
   constexpr auto largestTile = OIIO::imagesize_t{1} << 24;
   if (spec.tile_width > 0 && spec.tile_pixels() > std::max(largestTile, spec.image_pixels())) {
     return "its tiles are larger than the image";

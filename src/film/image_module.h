@@ -1,5 +1,5 @@
 // The C interface of the image module, a shared library that is loaded when an image needs OpenImageIO
-// (image_module.cpp is the module, image_module_loader.cpp loads it). Private to the film room.
+// (image_module.cpp: the module; image_module_loader.cpp: loading it). Private to film/.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@ namespace lampyr {
 
 inline constexpr int kImageModuleVersion = 2;
 
-// What the module tells about an image before it reads the pixels.
+// Properties of an image, known before its pixels are read.
 struct ImageModuleInfo {
   int width, height, channels;
   const char* const* channelNames;
@@ -17,12 +17,12 @@ struct ImageModuleInfo {
   long long bytesPerPixel;  // uncompressed, in the file
 };
 
-// Gives the place for width·height·channels floats, or null to stop.
+// Returns memory for width·height·channels floats, or null to stop.
 using ImageModuleAllocate = float* (*)(void* context, const ImageModuleInfo* info);
 using ImageModuleSink = void (*)(void* context, const void* bytes, size_t count);
 
-// Both return 0, or 1 with a text in `error` (of `errorSize` characters, 0 at the end). `format`: the only reader to be
-// tried.
+// Both return 0 on success, or 1 with a text in `error` (of `errorSize` characters, terminated by 0). `format`: the
+// only reader to be tried.
 using ImageModuleRead = int (*)(const char* path, const char* format, ImageModuleAllocate allocate, void* context,
                                 char* error, size_t errorSize);
 using ImageModuleEncodePng = int (*)(int width, int height, const unsigned char* rgb, ImageModuleSink sink,

@@ -1,5 +1,5 @@
-// Loads the image module on first use: from the folder of the executable, from ../lib/lampyr beside it, or from where
-// it was built. It stays loaded until the process ends.
+// Loads the image module on first use: from the folder of the executable, from ../lib/lampyr relative to it, or from
+// the build folder. It stays loaded until the process ends.
 #include <dlfcn.h>
 
 #include <algorithm>
@@ -59,11 +59,11 @@ ImageModule LoadImageModule() {
 }
 
 const ImageModule& GetImageModule() {
-  static const ImageModule module = LoadImageModule();  // tried again at the next call when it throws
+  static const ImageModule module = LoadImageModule();  // retried at the next call if it throws
   return module;
 }
 
-// What ReadThroughModule hands through the module's C interface.
+// State that ReadThroughModule passes through the C interface of the module.
 struct ReadContext {
   const std::filesystem::path& path;
   EncodedImage encoded;
@@ -93,13 +93,13 @@ void AppendBytes(void* opaque, const void* bytes, size_t count) {
 }  // namespace
 
 EncodedImage ReadThroughModule(const std::filesystem::path& path, const ImageKind& kind) {
-  constexpr int64_t channels = 4, bytesPerPixel = 4;  // what readers take that take all of it at once
+  constexpr int64_t channels = 4, bytesPerPixel = 4;  // memory of readers that allocate the whole image
   if (kind.width > 0 && kind.height > 0) CheckImageSize(path, kind.width, kind.height, channels, bytesPerPixel);
   std::array<char, 512> error{};
   ReadContext context{path, {}, nullptr};
   if (GetImageModule().read(path.c_str(), kind.format, AllocateImage, &context, error.data(), error.size()) != 0) {
     if (!context.failure) {
-      std::string text = error.data();  // of several lines when several things went wrong
+      std::string text = error.data();  // several lines for several errors
       std::replace(text.begin(), text.end(), '\n', ' ');
       throw Error("cannot read image \"" + path.string() + "\": " + text);
     }

@@ -1,6 +1,6 @@
-// JPEG readers fill what a truncated file lacks with gray and call it read. So the file's markers are walked first: it
-// is whole when they end with EOI (ITU T.81 annex B). The frame's size is met on the way, before any reader takes
-// memory for it.
+// JPEG readers fill the missing part of a truncated file with gray and report success. The markers of the file are
+// therefore walked first: it is complete if they end with EOI (ITU T.81 annex B). This also yields the frame size
+// before any reader allocates memory for it.
 #include <fstream>
 #include <iterator>
 #include <string>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr unsigned kStartOfImage = 0xd8, kEndOfImage = 0xd9, kStartOfScan = 0xda;
 
-// Within entropy-coded data, 0xff is followed by 0 or by a restart marker. Gives the place of the next other marker.
+// In entropy-coded data, 0xff is followed by 0 or by a restart marker. Returns the position of the next other marker.
 size_t SkipScan(const std::string& bytes, size_t position) {
   for (; position + 1 < bytes.size(); ++position) {
     if (static_cast<unsigned char>(bytes[position]) != 0xff) continue;
@@ -28,7 +28,7 @@ bool StartsFrame(unsigned marker) {
   return marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
 }
 
-// Whether the file is whole; `size`: of its first frame.
+// True if the file is complete. `size` becomes that of its first frame.
 bool WalkMarkers(const std::string& bytes, JpegSize& size) {
   const auto at = [&](size_t i) { return i < bytes.size() ? static_cast<unsigned char>(bytes[i]) : 0u; };
   const auto numberAt = [&](size_t i) { return 256 * at(i) + at(i + 1); };

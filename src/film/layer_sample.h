@@ -1,4 +1,4 @@
-// What one sample says to each layer of the film: the parts that add up to the value of the sample.
+// The contributions of one sample to the layers of the film, which add up to the value of the sample.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,8 @@
 
 namespace lampyr {
 
-// Kept by a thread from sample to sample; costs what the layers that a sample meets cost, however many there are.
+// Reused by a thread from sample to sample. The cost is proportional to the layers with a contribution, not to all
+// layers.
 class LayerSample {
  public:
   explicit LayerSample(size_t layers) : parts_(layers) { met_.reserve(layers); }
@@ -27,7 +28,7 @@ class LayerSample {
     part.sum[1] += static_cast<double>(value.g);
     part.sum[2] += static_cast<double>(value.b);
   }
-  // Layers with a part in the sample, in the order in which they were met.
+  // Layers with a contribution, in the order of the first one.
   const std::vector<uint32_t>& Met() const { return met_; }
   double Sum(uint32_t layer, int channel) const { return parts_[layer].sum[channel]; }
 

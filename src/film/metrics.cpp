@@ -1,4 +1,4 @@
-// Differences of two images: sums in double over pixels and the channels R, G, B.
+// Differences of two images: sums in double over all pixels and the channels R, G, B.
 #include "film/metrics.h"
 
 #include <algorithm>
@@ -17,12 +17,12 @@ namespace {
 
 using Planes = std::array<std::vector<double>, 3>;  // R, G, B
 
-// An image as the metrics see it.
+// An image with the data that the metrics need.
 struct Measured {
   std::vector<Color> colors;
   std::optional<Planes> variance;  // of the pixels' means
-  bool isOfOneSample = false;      // its variances are 0 because one sample has none
-  float relativeRounding = 0;      // of what is stored: half or float
+  bool isOfOneSample = false;      // its variances are 0, because one sample has none
+  float relativeRounding = 0;      // of the stored format, half or float
 };
 
 std::vector<Color> ReadColors(const Image& image, const char* which) {
@@ -44,7 +44,7 @@ std::vector<Color> ReadColors(const Image& image, const char* which) {
   return colors;
 }
 
-// "variance.R" … (variance of the pixel's mean) or "stderr.R" … (its square root).
+// Variances of the pixel means: from "variance.R" … or, squared, from "stderr.R" …
 std::optional<Planes> ReadVariance(const Image& image, const char* which) {
   Planes planes;
   for (const bool isVariance : {true, false}) {
@@ -68,8 +68,8 @@ std::optional<Planes> ReadVariance(const Image& image, const char* which) {
   return std::nullopt;
 }
 
-// Images stored in half have values whose last 13 bits are 0. Their rounding does not average out where a region is
-// constant, so the block test allows for it.
+// Relative rounding error of the stored values. In images stored as half, the last 13 bits are 0. The rounding of a
+// constant region does not average out, so that the block test has to allow for it.
 float RelativeRounding(const std::vector<Color>& colors) {
   const auto isHalf = [](float v) { return (std::bit_cast<uint32_t>(v) & 0x1fffu) == 0; };
   const bool allHalf = std::all_of(colors.begin(), colors.end(),
@@ -77,7 +77,8 @@ float RelativeRounding(const std::vector<Color>& colors) {
   return allHalf ? 0x1p-11f : 0x1p-22f;
 }
 
-// Light paths are as many as pixels: a sample of "light" is many, and has a variance.
+// True if the variance is unknown because there is at most one sample per pixel. The integrator "light" traces as many
+// light paths per sample as the image has pixels, and has a variance even then.
 bool IsOfOneSample(const Image& image) {
   const auto text = [&](const char* name) {
     const auto found = image.metadata.find(name);
@@ -96,7 +97,7 @@ Measured Measure(const Image& image, const char* which) {
   return measured;
 }
 
-// Two values may differ by that much because of how they were added up and stored.
+// Largest difference between two equal values that were summed in another order and stored.
 double RoundingOf(double a, double b, const Measured& first, const Measured& second) {
   return std::abs(a) * static_cast<double>(first.relativeRounding) +
          std::abs(b) * static_cast<double>(second.relativeRounding) +
@@ -107,7 +108,7 @@ std::array<double, 3> Channels(const Color& c) {
   return {static_cast<double>(c.r), static_cast<double>(c.g), static_cast<double>(c.b)};
 }
 
-// 0/0 is 0: nothing relative to nothing. Infinite when only the divisor is 0.
+// value / divisor with 0/0 = 0; infinite if only the divisor is 0.
 double Ratio(double value, double divisor) {
   if (value == 0) return 0;
   return divisor == 0 ? std::copysign(std::numeric_limits<double>::infinity(), value) : value / divisor;
@@ -137,7 +138,7 @@ void MeasureErrors(const Measured& a, const Measured& b, ImageDifference& differ
 }
 
 // Variance of the difference of the means of a pixel, averaged over its channels. The channels share the paths of the
-// pixel, so they are taken as fully correlated, which is exact for gray and an upper bound else.
+// pixel and are taken as fully correlated: exact for gray, an upper bound otherwise.
 double VarianceOfGray(const Measured& a, const Measured& b, size_t i) {
   double deviation = 0;
   for (int c = 0; c < 3; ++c) {
@@ -163,8 +164,8 @@ void MeasureBias(const Measured& a, const Measured& b, ImageDifference& differen
   difference.biasInterval = Ratio(1.959963984540054 * std::sqrt(varianceOfMean), std::abs(difference.meanB));
 }
 
-// z of one block and channel: difference of the block's means over its standard error; 0 for what is no more than
-// rounding. Empty when there is neither a difference nor a variance.
+// z of one block and channel: difference of the block means over its standard error; 0 for a difference within
+// rounding. Empty if there is neither a difference nor a variance.
 std::optional<double> BlockZ(const Measured& a, const Measured& b, int channel, int width, const int (&block)[4]) {
   double sumA = 0, sumB = 0, variance = 0;
   for (int y = block[1]; y < block[3]; ++y) {
@@ -175,15 +176,15 @@ std::optional<double> BlockZ(const Measured& a, const Measured& b, int channel, 
       variance += (*a.variance)[channel][i] + (*b.variance)[channel][i];
     }
   }
-  // The rounding of a constant region is the same at all its pixels: it adds up like the values.
+  // The rounding of a constant region is the same in all its pixels: it adds up like the values.
   const double rounding = RoundingOf(sumA, sumB, a, b);
   const bool isRounding = std::abs(sumA - sumB) <= rounding;
   if (variance == 0 && isRounding) return std::nullopt;
   return isRounding ? 0 : (sumA - sumB) / std::sqrt(variance + rounding * rounding / 3);
 }
 
-// Half of the family-wise rate goes to the largest z, half to the sum of squares; each is divided among the channels.
-// chiSquared is that of the worst channel: one channel that is off must not drown in two that are not.
+// Half of the family-wise rate goes to the largest z, half to the sum of squares; both are divided among the channels.
+// chiSquared is that of the worst channel: two channels that agree must not hide one that does not.
 BlockTest TestBlocks(const Measured& a, const Measured& b, int width, int height, int blockSize, double rate) {
   BlockTest test;
   test.blockSize = blockSize;
@@ -228,7 +229,7 @@ void CheckSameSize(const Image& a, const Image& b) {
   if (a.offsetX != b.offsetX || a.offsetY != b.offsetY) throw Error("the images are different crops");
 }
 
-// Calls visit(pixel, reference value, its variance, divisor of relMse) for all pixels and channels.
+// Calls visit(pixel, channel, reference value, its variance, divisor of relMse) for all pixels and channels.
 template <class Visit>
 void VisitReference(const Measured& reference, Visit visit) {
   const size_t pixels = reference.colors.size();
@@ -328,7 +329,7 @@ std::optional<ImageNoise> NoiseOf(const Image& reference, int parts) {
     varianceOfRelMse += relMseDeviation * relMseDeviation;
     deviation = mseDeviation = relMseDeviation = 0;
   });
-  // e² - v̂ of a normal e with variance v: 2 v² and, v̂ from so many parts, 2 v²/(parts - 1).
+  // Variance of e² - v̂ for a normal e with variance v: 2 v², plus that of v̂ from `parts` parts: 2 v²/(parts - 1).
   const double factor = 2 + 2 / std::max(1.0, static_cast<double>(parts) - 1);
   noise.mseError = std::sqrt(factor * varianceOfMse) / n;
   noise.relMseError = std::sqrt(factor * varianceOfRelMse) / n;
@@ -376,7 +377,7 @@ bool IsEqual(const Measured& a, const Measured& b) {
   return true;
 }
 
-// What cannot be said, and why; "": something can be.
+// The reason why the block test is impossible; "" if it is possible.
 std::string ReasonForSilence(const Measured& a, const Measured& b) {
   if (!a.variance || !b.variance) return "both images need variance layers";
   if (a.isOfOneSample || b.isOfOneSample) {

@@ -1,4 +1,4 @@
-// How far two images are apart: MSE, relMSE, FLIP, mean bias with its confidence interval, z-tests by pixel blocks.
+// Differences between two images: MSE, relMSE, FLIP, mean bias with its confidence interval, z-tests of pixel blocks.
 #pragma once
 
 #include <optional>
@@ -12,15 +12,15 @@ namespace lampyr {
 
 struct BlockTest {
   int blockSize = 8;
-  int blocks = 0;         // that carry information (variance > 0 or a difference)
-  double largestZ = 0;    // of |mean difference| / combined standard error
+  int blocks = 0;         // with information (variance > 0 or a difference)
+  double largestZ = 0;    // largest |mean difference| / combined standard error
   double threshold = 0;   // Šidák-corrected two-sided threshold for the family-wise rate
   double chiSquared = 0;  // Σ z², against `blocks` degrees of freedom
   double chiSquaredThreshold = 0;
   bool Agrees() const { return largestZ <= threshold && chiSquared <= chiSquaredThreshold; }
 };
 
-// What can be said of two images. CannotSay is no agreement: nothing was tested.
+// Result of a comparison. CannotSay is no agreement: nothing was tested.
 enum class Verdict { Equal, Agree, Differ, CannotSay };
 const char* NameOf(Verdict verdict);  // "equal", "agree", "differ", "cannot say"
 
@@ -35,65 +35,67 @@ struct ImageDifference {
       0;  // half width of its 95 % confidence interval, relative to meanB; from variance layers, else from the pixels
   bool hasBlockTest = false;  // both images have variance (or standard error) layers, of two samples or more
   BlockTest blockTest;
-  // Equal: no value differs by more than rounding. Agree, Differ: by the block test.
+  // Equal: no value differs by more than rounding. Agree, Differ: result of the block test.
   Verdict verdict = Verdict::CannotSay;
-  std::string reason;  // why it cannot be said
+  std::string reason;  // of CannotSay, in words
 };
 
-// Throws Error when the images have different sizes, crops, no R, G, B (nor gray), or values that are not finite.
-// `familyWiseRate` is for the block test as a whole: it tests each of R, G and B in each block (largestZ is over all of
-// them) and the sum of squares of each channel (blocks and chiSquared are those of the worst channel). The variance
-// layers are "variance.R" … (of the pixel's mean) or "stderr.R" … (its standard error).
+// Compares two images. Throws an Error if they differ in size or crop, have no R, G, B (nor gray), or contain values
+// that are not finite, or if `blockSize` < 1. `familyWiseRate`: false-alarm rate of the block test as a whole, which
+// tests R, G and B of each block (largestZ is over all of them) and the sum of squares of each channel (blocks and
+// chiSquared are those of the worst channel). Variance layers are "variance.R" … (of the mean of a pixel) or "stderr.R"
+// … (its standard error).
 ImageDifference CompareImages(const Image& a, const Image& b, int blockSize = 8, double familyWiseRate = 1e-3);
 
-// The errors of an image whose reference is itself a measurement: the variance of the reference's pixels (its variance
-// layers) is part of every square of a difference, and is subtracted. Where the reference is as noisy as the image,
-// what is left may be below 0. FLIP is of the images as shown with `exposureStops`; the part that the reference's noise
-// has in it is not known.
+// Errors of an image against a reference that is itself noisy: the variance of the reference (its variance layers) is
+// part of every squared difference, and is subtracted. The result may be negative if the reference is as noisy as the
+// image. FLIP compares the images as displayed with `exposureStops`; the contribution of the reference's noise to it is
+// unknown.
 struct ImageError {
   double mse = 0, relMse = 0, flip = 0;
   double bias = 0;  // mean difference over the reference's mean
 };
 ImageError MeasureError(const Image& image, const Image& reference, float exposureStops = 0);
 
-// What is wrong in all of some independent images alike, as relMSE: the mean over their pairs of one's difference times
-// the other's, in which the noise of neither is left, nor the reference's. `without`: the same without each of them.
+// Error common to several independent images, as relMSE: the mean over all pairs of the product of their differences
+// from the reference. The noise of the images cancels; that of the reference is subtracted. `without`: leave-one-out
+// estimates, for the jackknife.
 struct CommonError {
   double relMse = 0;
   std::vector<double> without;  // empty for two images
 };
 CommonError MeasureCommonError(std::span<const Image* const> images, const Image& reference);
 
-// The reference's own noise. Absent without variance layers.
+// Noise of the reference itself. Absent without variance layers.
 struct ImageNoise {
   double mse = 0, relMse = 0;
   double relativeError = 0;  // root of mse over the mean
-  double meanError = 0;      // standard error of the image's mean, relative to it; pixels taken as independent
-  // Standard errors of what subtracting the noise leaves: squares of normal deviates less their variance, which is
-  // known from `parts` independent images. Channels taken as fully correlated.
+  double meanError = 0;      // standard error of the image mean, relative to it; pixels taken as independent
+  // Standard errors of the result of subtracting the noise: squares of normal deviates minus their variance, which is
+  // estimated from `parts` independent images. Channels are taken as fully correlated.
   double mseError = 0, relMseError = 0;
 };
 std::optional<ImageNoise> NoiseOf(const Image& reference, int parts);
 
-// Mean over pixels and R, G, B.
+// Mean over all pixels and R, G, B.
 double MeanValue(const Image& image);
 
-// What is to be looked at: R, G and B are the absolute differences, "relative.Y" is RelativeErrorMap. Throws as
+// An image of the differences: R, G and B are absolute differences, "relative.Y" is RelativeErrorMap. Throws as
 // CompareImages does.
 Image DifferenceImage(const Image& image, const Image& reference);
 
-// Each pixel's share of relMse, its root: the relative error of the pixel. The reference's noise is in it.
+// Relative error per pixel: the square root of the pixel's term of relMse. Includes the noise of the reference.
 std::vector<float> RelativeErrorMap(const Image& image, const Image& reference);
 
-// Two-sided normal quantile: |z| that is exceeded with probability `p`.
+// Two-sided normal quantile: the |z| that is exceeded with probability `p`.
 double NormalQuantileTwoSided(double p);
-// |t| that a Student variable with `degrees` of freedom (above 0) exceeds with probability `p`.
+// The |t| that a Student variable with `degrees` > 0 degrees of freedom exceeds with probability `p`.
 double StudentQuantileTwoSided(double p, double degrees);
-// The value that a χ² variable with `degrees` of freedom exceeds with probability `p`; and that probability for a
-// value.
+// The value that a χ² variable with `degrees` degrees of freedom exceeds with probability `p`; and the probability of
+// exceeding `value`.
 double ChiSquaredQuantile(double p, double degrees);
 double ChiSquaredTail(double value, double degrees);
-// Šidák: per-test rate so that `tests` independent tests have the family-wise rate.
+// Rate per test for which `tests` independent tests have the family-wise rate [Sidak67].
 double SidakRate(double familyWiseRate, int tests);
 
 }  // namespace lampyr

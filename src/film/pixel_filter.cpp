@@ -1,6 +1,6 @@
-// Reconstruction filters with pbrt-v4's parameters and shapes. Box and triangle are sampled in closed form; Gaussian,
-// Mitchell–Netravali ([Mitchell88]) and windowed sinc from quantiles of |f|, whose parts are weighted with the integral
-// of f over them, so that the weights' mean is 1.
+// Reconstruction filters with the parameters and shapes of pbrt-v4. Box and triangle are sampled in closed form;
+// Gaussian, Mitchell–Netravali ([Mitchell88]) and windowed sinc from quantiles of |f|, whose parts are weighted with
+// the integral of f over them, so that the weights have mean 1.
 #include "film/pixel_filter.h"
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace {
 
 using Kind = PixelFilterSettings::Kind;
 
-constexpr int kParts = 2048;         // of equal |f|, an even number: 0 lies between two
+constexpr int kParts = 2048;         // of equal ∫|f|; even, so that 0 is an edge
 constexpr int kSteps = 16 * kParts;  // of the quadrature (midpoint rule)
 
 double Sinc(double x) {
@@ -31,7 +31,7 @@ double Mitchell(double x, double b, double c) {
 
 // The filter along one axis, not normalised.
 double AxisValue(const PixelFilterSettings& settings, double radius, double x) {
-  if (!(x >= -radius && x < radius)) return 0;  // half open: a splat on the border of two boxes belongs to one
+  if (!(x >= -radius && x < radius)) return 0;  // half open: a splat on the border of two boxes counts once
   switch (settings.kind) {
     case Kind::Box:
       return 1;
@@ -39,7 +39,7 @@ double AxisValue(const PixelFilterSettings& settings, double radius, double x) {
       return radius - std::abs(x);
     case Kind::Gaussian: {
       const double scale = -0.5 / (static_cast<double>(settings.sigma) * static_cast<double>(settings.sigma));
-      // exp(sx²) - exp(sr²), without cancellation when σ is large.
+      // exp(sx²) - exp(sr²), without cancellation for large σ.
       return std::exp(scale * radius * radius) * std::expm1(scale * (x * x - radius * radius));
     }
     case Kind::Mitchell:
@@ -77,7 +77,7 @@ PixelFilter::Axis PixelFilter::MakeAxis(const PixelFilterSettings& settings, flo
   if (!(axis.integral > 0) || !(absoluteSum < 1e3 * sum)) {
     throw Error("the pixel filter has no positive integral over its radius");
   }
-  if (settings.kind == Kind::Gaussian && radius > 2 * settings.sigma) {  // else the difference of exponentials cancels
+  if (settings.kind == Kind::Gaussian && radius > 2 * settings.sigma) {  // otherwise the exponentials cancel
     axis.edge = std::exp(-0.5f * Sqr(radius / settings.sigma)) / axis.integral;
   }
   double sumBefore = 0;
@@ -122,7 +122,7 @@ PixelFilter::Offset PixelFilter::Sample(const Point2& u) const {
 }
 
 float PixelFilter::EvaluateAxis(const Axis& axis, float offset) const {
-  if (axis.edge > 0) {  // as AxisValue has it, at a fraction of the price: splats ask for it a lot
+  if (axis.edge > 0) {  // AxisValue at a fraction of its cost: splats evaluate it often
     if (!(offset >= -axis.radius && offset < axis.radius)) return 0;
     return std::max(std::exp(-0.5f * Sqr(offset / settings_.sigma)) / axis.integral - axis.edge, 0.0f);
   }

@@ -1,6 +1,6 @@
-// Reconstruction filters. Samples of the camera use filter importance sampling ([Ernst06]): a sample belongs to one
-// pixel only, so that pixels are independent, a crop of a render equals a cropped render, and threads never share a
-// pixel. Splats, whose place on the film is not chosen, are weighed with the filter's value.
+// Reconstruction filters. Camera samples use filter importance sampling ([Ernst06]): a sample belongs to one pixel
+// only, so that pixels are independent, a crop of a render equals a cropped render, and threads never share a pixel.
+// Splats, whose film point is not chosen, are weighted with the value of the filter.
 #pragma once
 
 #include <memory>
@@ -19,36 +19,35 @@ struct PixelFilterSettings {
   float tau = 3;                         // sinc
 };
 
-// All kinds are products of a function of x and one of y; each is sampled on its own axis.
+// A reconstruction filter. All kinds are separable; each axis is sampled on its own.
 class PixelFilter {
  public:
-  // Throws an Error when a radius is not positive or the filter has no positive integral.
+  // Throws an Error if a radius is not positive, or if the filter has no positive integral.
   explicit PixelFilter(const PixelFilterSettings& settings);
 
   struct Offset {
-    Vector2 offset;  // from the pixel's centre, pixels
-    float weight =
-        1;  // of mean 1: exactly 1 for filters that are nowhere negative, else ±∫|f|/∫f but where f changes sign
+    Vector2 offset;    // from the pixel's centre, pixels
+    float weight = 1;  // mean 1: exactly 1 if f >= 0 everywhere, otherwise ±∫|f|/∫f except at sign changes
   };
   // u in [0,1)².
   Offset Sample(const Point2& u) const;
-  // The filter's value at an offset, normalised to ∫ = 1 (for splats); 0 outside of the radius.
+  // Value at an offset, normalised to ∫ = 1 (for splats); 0 outside of the radius.
   float Evaluate(const Vector2& offset) const { return EvaluateX(offset.x) * EvaluateY(offset.y); }
-  // Its factors along either axis, each normalised to ∫ = 1.
+  // The factors along each axis, each normalised to ∫ = 1.
   float EvaluateX(float offset) const { return EvaluateAxis(*x_, offset); }
   float EvaluateY(float offset) const { return EvaluateAxis(*y_, offset); }
   // Half the extent of the filter, pixels.
   Vector2 Radius() const { return {settings_.radiusX, settings_.radiusY}; }
 
  private:
-  // The filter along one axis. For kinds that have no closed inversion, [-radius, radius] is cut at `edges` into parts
-  // with equal shares of ∫|f|: one look-up turns a random number into a place.
+  // The filter along one axis. For kinds without closed-form inversion, [-radius, radius] is divided at `edges` into
+  // parts with equal shares of ∫|f|: one look-up maps a random number to an offset.
   struct Axis {
     float radius = 0;
     float integral = 1;  // of f
-    float edge = 0;      // narrow gaussian: exp(-r²/2σ²) over the integral
+    float edge = 0;      // narrow Gaussian: exp(-r²/2σ²) over the integral
     std::vector<float> edges;
-    std::vector<float> weights;  // per part: its share of ∫f over its share of ∫|f|; empty where f is nowhere negative
+    std::vector<float> weights;  // per part: its share of ∫f over its share of ∫|f|; empty if f >= 0
   };
   static Axis MakeAxis(const PixelFilterSettings& settings, float radius);
   float SampleAxis(const Axis& axis, float u, float* weight) const;

@@ -1,4 +1,5 @@
-// From radiance to what the film records: exposure, the limit on a sample's brightness, and white balance.
+// The response of the sensor, from radiance to film values: exposure, limit on the brightness of a sample, white
+// balance.
 #pragma once
 
 #include <glm/mat3x3.hpp>
@@ -9,10 +10,10 @@ namespace lampyr {
 
 class SensorResponse {
  public:
-  // `imagingRatio`: film value of radiance 1, exposure time · ISO / 100.
+  // `imagingRatio`: film value of radiance 1, which is exposure time · ISO / 100.
   SensorResponse(float imagingRatio = 1) : imagingRatio_(imagingRatio) {}  // NOLINT: a ratio is a response
-  // `balance`: linear Rec. 709 before and after white balance. `maxComponent` > 0: samples whose largest component, in
-  // the columns of `limited` (Rec. 709 to the sensor's own channels), exceeds it are scaled down to it.
+  // `balance`: white balance, from linear Rec. 709 to linear Rec. 709. `limited`: Rec. 709 to the channels of the
+  // sensor. If `maxComponent` > 0, samples whose largest component in these channels exceeds it are scaled down to it.
   SensorResponse(float imagingRatio, const glm::mat3& balance, const glm::mat3& limited, float maxComponent)
       : imagingRatio_(imagingRatio),
         maxComponent_(maxComponent),
@@ -23,7 +24,7 @@ class SensorResponse {
   float ImagingRatio() const { return imagingRatio_; }
   bool Limits() const { return maxComponent_ < kInfinity; }
 
-  // Factor on a sample of `radiance`: exposure, and the limit where the sample is brighter.
+  // Factor on a sample of `radiance`: exposure, and the limit if the sample exceeds it.
   float Scale(const Color& radiance) const {
     if (!Limits()) [[likely]]
       return imagingRatio_;
@@ -31,7 +32,7 @@ class SensorResponse {
     const float largest = std::max({channels.x, channels.y, channels.z});
     return largest > maxComponent_ ? imagingRatio_ * (maxComponent_ / largest) : imagingRatio_;
   }
-  // The white balance. Saturated colours may come out with negative components.
+  // Applies the white balance. Saturated colours may get negative components.
   Color Balance(const Color& value) const {
     if (!balances_) [[likely]]
       return value;

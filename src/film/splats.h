@@ -1,9 +1,9 @@
-// Splats: what light paths contribute to wherever on the film they are seen ([Veach97 §10.3.4.1]).
+// Splats: contributions of light paths to the pixels that see them ([Veach97 §10.3.4.1]).
 //
 // A splat of value v (radiance times pixels², see camera/camera.h) at film point p adds f(p - centre)·v to every pixel
-// within the filter's radius; a pixel is the mean of that over all light paths. Paths are traced in chunks, each into a
-// list of its own; lists are added to the film in the order of their paths, so that every pixel sums in the same order
-// whoever traced them.
+// within the radius of the filter; a pixel is the mean of that over all light paths. Paths are traced in chunks, each
+// into a list of its own. The lists are added to the film in the order of their paths, so that the order of summation
+// in a pixel does not depend on the threads.
 #pragma once
 
 #include <cmath>
@@ -17,17 +17,16 @@
 namespace lampyr {
 
 struct Splat {
-  Point2 film;  // pixels of the full image; may lie beyond it by the filter's radius
+  Point2 film;  // pixels of the full image; may be beyond it by the filter radius
   Color value;
-  uint32_t path = 0;  // within its list
+  uint32_t path = 0;  // index within the list
 };
 
-// The splats of consecutive paths. Keeps its memory when it is emptied.
+// The splats of consecutive light paths. Clear keeps the memory.
 class SplatList {
  public:
-  // Film points that reach a pixel of the crop: all others need not be added. `sensor` is applied to every
-  // value.
-  // `hasLayers`: the layer of each splat is wanted.
+  // `reachMin`, `reachMax`: bounds of the film points that contribute to a pixel of the crop; other splats are not
+  // stored. `sensor` is applied to every value. `hasLayers`: the layer of each splat is recorded.
   SplatList(const Point2& reachMin, const Point2& reachMax, const SensorResponse& sensor, bool hasLayers = false)
       : reachMin_(reachMin), reachMax_(reachMax), sensor_(sensor), hasLayers_(hasLayers) {}
 
@@ -36,13 +35,13 @@ class SplatList {
     layers_.clear();
     paths_ = 0;
   }
-  // What is added from now on belongs to the next path.
+  // Splats added from now on belong to the next path.
   void StartPath() { ++paths_; }
 
   bool Reaches(const Point2& film) const {
     return film.x >= reachMin_.x && film.x < reachMax_.x && film.y >= reachMin_.y && film.y < reachMax_.y;
   }
-  // False: the value is not finite or negative, and left out.
+  // False if the value is negative or not finite; it is then left out.
   bool Add(const Point2& film, const Color& value, uint32_t layer = 0) {
     if (!Reaches(film)) return true;
     const Color scaled = value * sensor_.Scale(value);
@@ -53,7 +52,7 @@ class SplatList {
   }
 
   const std::vector<Splat>& Splats() const { return splats_; }
-  // One for each splat, or none at all.
+  // The layer of each splat; empty without layers.
   const std::vector<uint32_t>& Layers() const { return layers_; }
   uint32_t Paths() const { return paths_; }
 
@@ -66,8 +65,8 @@ class SplatList {
   std::vector<uint32_t> layers_;
 };
 
-// Sums of one pixel over light paths. The contributions of one path are added up before they are squared: they are one
-// sample of the pixel.
+// Sums of one pixel over light paths. The contributions of one path are added before they are squared: together they
+// are one sample of the pixel.
 class SplatSums {
  public:
   void Add(uint64_t path, double weight, const Color& value) {
@@ -76,7 +75,7 @@ class SplatSums {
     latest_[1] += weight * static_cast<double>(value.g);
     latest_[2] += weight * static_cast<double>(value.b);
   }
-  // All paths of other sums; those of the two are not the same.
+  // Adds all paths of `other`; the two have no path in common.
   void Add(const SplatSums& other) {
     EndPath(0);
     SplatSums ended = other;
@@ -98,7 +97,7 @@ class SplatSums {
   double SumOfSquares(int channel) const {
     return sumOfSquares_[channel].ValueWith(latest_[channel] * latest_[channel]);
   }
-  // Of the paths' luminances.
+  // Sum of the fourth powers of the luminances of the paths.
   double SumOfFourths() const {
     double luminance = 0;
     for (int c = 0; c < 3; ++c) luminance += Color::kLuminance[c] * latest_[c];
@@ -119,7 +118,7 @@ class SplatSums {
   CompensatedSum sum_[3];
   CompensatedSum sumOfSquares_[3];
   double sumOfFourths_ = 0;
-  double latest_[3] = {0, 0, 0};  // of path_, not in the sums yet
+  double latest_[3] = {0, 0, 0};  // of path_, not yet in the sums
   uint64_t path_ = 0;
 };
 

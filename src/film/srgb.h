@@ -1,4 +1,4 @@
-// The sRGB transfer curve (IEC 61966-2-1), both ways, on [0,1]; outside of it the curve is continued.
+// The sRGB transfer function (IEC 61966-2-1) and its inverse on [0,1]; extended beyond by the same formulas.
 #pragma once
 
 #include <cmath>

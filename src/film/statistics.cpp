@@ -1,6 +1,6 @@
-// Quantiles of the normal, the χ² and Student's distribution, accurate in the far tails where corrections for many
-// tests live. The regularised incomplete gamma function Q(a, x) by its series (x < a + 1) and by Lentz's evaluation of
-// its continued fraction (else); inverses by safeguarded Newton steps on the tail itself.
+// Quantiles of the normal, the χ² and Student's distribution, accurate in the far tails, where corrections for many
+// tests need them. The regularised incomplete gamma function Q(a, x) by its series (x < a + 1), or else by Lentz's
+// evaluation of its continued fraction; inverses by safeguarded Newton steps on the tail.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,7 +12,7 @@ namespace lampyr {
 namespace {
 
 constexpr double kTiny = std::numeric_limits<double>::min() / std::numeric_limits<double>::epsilon();
-constexpr int kMaxIterations = 1000000;  // the series takes some √a terms
+constexpr int kMaxIterations = 1000000;  // the series needs on the order of √a terms
 
 // x^a e^-x / Γ(a+1)
 double GammaTerm(double a, double x) {
@@ -75,8 +75,8 @@ double RegularisedBeta(double a, double b, double x) {
   return 1 - factor * BetaByFraction(b, a, 1 - x) / b;
 }
 
-// Finds where a falling `tail` equals p, starting at `guess` within (0, ∞): Newton where it stays in the bracket,
-// bisection where it does not. Steps are taken on log(tail), which is nearly quadratic in the far tail.
+// Solves tail(x) = p for a decreasing `tail`, starting at `guess` in (0, ∞): Newton steps that stay in the bracket,
+// bisection otherwise. Steps are taken on log(tail), which is nearly quadratic in the far tail.
 template <class Tail, class Density>
 double InvertTail(double p, double guess, Tail tail, Density density) {
   double low = 0, high = std::max(guess, 1.0);
@@ -117,7 +117,7 @@ double ChiSquaredTail(double value, double degrees) {
 double ChiSquaredQuantile(double p, double degrees) {
   if (p >= 1 || !(degrees > 0)) return 0;
   p = std::max(p, std::numeric_limits<double>::min());
-  // Wilson and Hilferty: (χ²/k)^(1/3) is nearly normal.
+  // Wilson and Hilferty: (χ²/k)^(1/3) is approximately normal.
   const double z = NormalQuantileTwoSided(2 * std::min(p, 1 - p)) * (p < 0.5 ? 1 : -1);
   const double spread = 2 / (9 * degrees);
   const double root = std::max(0.01, 1 - spread + z * std::sqrt(spread));

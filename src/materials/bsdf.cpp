@@ -4,8 +4,8 @@ namespace lampyr {
 
 namespace {
 
-// A length off by ε becomes one off by ε²: the frame and the models keep it unit but for rounding, which a long path
-// would add up.
+// Reduces an error ε of the length to ε². The frame and the models preserve unit length only up to rounding, which
+// would accumulate along a path.
 Vector3 Renormalize(const Vector3& v) {
   return v * (1.5f - 0.5f * LengthSquared(v));
 }

@@ -1,16 +1,16 @@
-// The scattering of light at a surface point: value, densities in both directions and the diffuse/specular split, in
-// one call. Which models there are is behind this door: a Bsdf is a small value on the stack, no allocation, no virtual
-// call.
+// Scattering at a surface point: value, densities in both directions and the split into diffuse and specular, in one
+// call. A Bsdf is a small value on the stack that hides the scattering model, without allocation or virtual calls.
 //
-// Conventions ([Veach97 §5.3], light-transport conventions of this project)
+// Conventions ([Veach97 §5.3])
 // - wo and wi are unit vectors in render space, both pointing away from the surface.
-// - wo is where the path came from, wi where it goes on; for TransportMode::Radiance wo points towards the camera.
-// - f is the BSDF value (1/sr) without the cosine. Refraction scales radiance by 1/η² (Radiance), not importance.
-// - Densities are in solid angle; pdfReverse is the density of sampling wo when coming from wi,
-//   by a path of the other mode.
-// - Delta lobes have value and density 0 in Evaluate; Sample says so with isDelta.
-// - Everything happens in the shading frame: a direction's side is its side of Ns, as in pbrt-v4. Ng is kept for the
-//   adjoint correction, which is the integrator's.
+// - wo is the direction that the path came from, wi the one in which it continues; for TransportMode::Radiance, wo
+//   points towards the camera.
+// - f is the BSDF (1/sr) without the cosine. Refraction scales radiance by 1/η² (Radiance), but not importance.
+// - Densities are in solid angle; pdfReverse is the density of sampling wo when coming from wi, by a path of the other
+//   mode.
+// - Delta lobes have value and density 0 in Evaluate; Sample marks them by isDelta.
+// - Everything is in the shading frame: as in pbrt-v4, the side of a direction is that of Ns. Ng is kept for the
+//   adjoint correction, which integrators apply.
 #pragma once
 
 #include <optional>
@@ -28,26 +28,25 @@ class Bsdf {
   Bsdf(const Frame& shadingFrame, const Normal3& Ng, const BsdfModel& model)
       : frame_(shadingFrame), Ng_(Ng), model_(model) {}
 
-  // f and both densities. Zero for deltas.
+  // f and both densities; 0 for delta lobes.
   BsdfEvaluation Evaluate(const Vector3& wo, const Vector3& wi, TransportMode mode) const;
 
-  // uLobe chooses a lobe, u a direction; both in [0,1). nullopt: absorbed.
+  // Samples wi: `uLobe` chooses a lobe, `u` a direction; both in [0,1). nullopt: absorbed.
   std::optional<BsdfSample> Sample(const Vector3& wo, float uLobe, const Point2& u, TransportMode mode) const;
 
-  // Only delta lobes (or none at all): light sampling cannot find anything.
+  // True if all lobes are delta lobes (or there are none): next-event estimation contributes nothing.
   bool IsDelta() const;
-  // Light may come from the other side: light selection looks at both.
+  // True if light from the other side may contribute; light selection then considers both sides.
   bool IsTransmissive() const;
 
-  // The cosine that f is multiplied by in the scattering integral: |w·Ns|; of a fibre, that of the angle to the plane
-  // across it.
+  // Cosine of the scattering integral: |w·Ns|; for a fibre, the cosine of the angle to the plane across it.
   float ScatteringCosine(const Vector3& w) const {
     return IsFibre() ? std::get_if<HairBsdf>(&model_)->ScatteringCosine(frame_.ToLocal(w)) : AbsDot(w, frame_.z);
   }
-  // The cosine by which area is seen from w: |w·Ng|; of a fibre, which faces every direction, as above.
+  // Cosine of the geometry term: |w·Ng|; for a fibre, which faces every direction, ScatteringCosine.
   float GeometricCosine(const Vector3& w) const { return IsFibre() ? ScatteringCosine(w) : AbsDot(w, Ng_); }
-  // A fibre is narrower than what can be told apart: light that meets it anywhere leaves it from there, whatever side
-  // it leaves to.
+  // True for a fibre, which is too narrow to be resolved: light that enters anywhere leaves at the same point, to any
+  // side.
   bool IsFibre() const {
     const auto* hair = std::get_if<HairBsdf>(&model_);
     return hair && hair->isFibre;

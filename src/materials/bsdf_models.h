@@ -1,5 +1,5 @@
 // The scattering models that a Bsdf may hold: small, trivially copyable values. Each works in its local frame (z is the
-// shading normal, unit directions away from the surface, nothing exactly in the plane z = 0) and has
+// shading normal, unit directions pointing away from the surface, none exactly in the plane z = 0) and has
 //   Evaluate(wo, wi, mode), Sample(wo, uLobe, u, mode), IsDelta(), IsTransmissive()
 // with the meaning of the same methods of Bsdf.
 #pragma once

@@ -1,4 +1,4 @@
-// The reflection of a coat's own boundary, seen from outside: shared by the coated models. wo.z > 0.
+// Reflection at the outer boundary of a coat, seen from outside: shared by the coated models. wo.z > 0.
 #pragma once
 
 #include <optional>
@@ -9,22 +9,22 @@
 
 namespace lampyr {
 
-// Probability of sampling the coat's lobe from what the coat and the base reflect, roughly. Within [0.1, 0.95] for a
-// rough coat: its Fresnel factor varies over the lobe, and where either estimate is far too low a sample would weigh
-// 1/probability.
+// Probability of sampling the lobe of the coat, from rough estimates of what coat and base reflect. It is at least 0.1
+// and at most 0.95 for a rough coat, whose Fresnel factor varies over the lobe: if either estimate were far too low,
+// the weight of a sample would be 1/probability.
 inline float CoatLobeProbability(float coat, float base, bool coatIsDelta) {
   if (!(base > 0)) return 1;
   const float probability = coat / (coat + base);
   return coatIsDelta ? probability : std::min(std::max(probability, 0.1f), 0.95f);
 }
 
-// A value with both densities.
+// Value and densities of a lobe.
 struct LobeValue {
   float f = 0, pdfForward = 0, pdfReverse = 0;
 };
 
-// Rough boundaries only. Densities are those of sampling a visible microfacet and mirroring at it, whatever Fresnel
-// says.
+// Rough boundaries only. The densities are those of sampling a visible microfacet and reflecting at it, without the
+// Fresnel factor.
 inline LobeValue EvaluateCoatLobe(const TrowbridgeReitz& microfacets, float eta, const Vector3& wo, const Vector3& wi) {
   const HalfVector half = HalfVectorOf(wo, wi);
   if (!(half.cosine > 0)) return {};
@@ -36,7 +36,7 @@ inline LobeValue EvaluateCoatLobe(const TrowbridgeReitz& microfacets, float eta,
           quarterD * TrowbridgeReitz::VisibleFactor(wi.z, stretchI)};
 }
 
-// The mirror direction at a visible microfacet, or nothing when it points into the surface.
+// The mirror direction at a sampled visible microfacet; nullopt if it points into the surface.
 inline std::optional<Vector3> SampleMicrofacetMirror(const TrowbridgeReitz& microfacets, const Vector3& wo,
                                                      const Point2& u) {
   const Vector3 m = microfacets.SampleVisibleNormal(wo, u);

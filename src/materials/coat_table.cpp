@@ -11,14 +11,14 @@ float GapTransmittance(float thickness, float cosine) {
   return thickness > 0 ? std::exp(-thickness / std::max(cosine, 1e-6f)) : 1.0f;
 }
 
-// Fractions of light from direction θ that are reflected and that cross, by microfacets; the gap's factor included
-// where the ray ends inside the coat. `eta` is relative to the side the light comes from.
+// Fractions of the light from direction θ that microfacets reflect and transmit, including the gap if the ray ends
+// inside of the coat. `eta` is relative to the side the light comes from.
 struct Split {
   double reflected = 0, transmitted = 0;
 };
 
-// How the gap enters: behind the boundary for light from outside; before and, for what is reflected, behind it for
-// light from inside, of which the caller does the part before.
+// Where the absorption of the gap applies. Outside: after transmission. Inside: after reflection; the caller applies
+// the absorption before the boundary.
 enum class Side { Outside, Inside };
 
 Split ScatterAtMicrofacet(const Vector3& wo, const Vector3& m, float stretchO, const TrowbridgeReitz& microfacets,
@@ -43,7 +43,7 @@ Split ScatterAtMicrofacet(const Vector3& wo, const Vector3& m, float stretchO, c
   return split;
 }
 
-// Midpoint quadrature over the square that SampleVisibleNormal maps to microfacets; half of it, by symmetry.
+// Midpoint quadrature over the unit square that SampleVisibleNormal maps to microfacets; by symmetry, over half of it.
 Split ScatterAtBoundary(float cosTheta, float alpha, float eta, float thickness, Side side) {
   const Vector3 wo(SafeSqrt(1 - cosTheta * cosTheta), 0, cosTheta);
   const TrowbridgeReitz microfacets(alpha, alpha);
@@ -65,7 +65,7 @@ Split ScatterAtBoundary(float cosTheta, float alpha, float eta, float thickness,
   return {sum.reflected / (kCaps * kAzimuths), sum.transmitted / (kCaps * kAzimuths)};
 }
 
-// Position of x in [0,1] among `nodes` evenly spaced ones.
+// Linear interpolation at x in [0,1] between `count` evenly spaced nodes.
 float Interpolate(const float* nodes, int count, float x) {
   const float position = std::min(std::max(x, 0.0f), 1.0f) * static_cast<float>(count - 1);
   const int first = std::min(static_cast<int>(position), count - 2);
@@ -103,7 +103,7 @@ CoatTable::Curves CoatTable::MakeCurves(const CoatDescription& description, floa
     curves.pairTransmittance[i] = static_cast<float>(std::sqrt(
         split.transmitted * out.transmitted * static_cast<double>(GapTransmittance(description.thickness, cosInside))));
   }
-  // Cosine-weighted means: the midpoint rule in sin²θ.
+  // Cosine-weighted means by the midpoint rule in sin²θ.
   constexpr int kAngles = 512;
   double mean = 0, internal = 0;
   const bool smooth = TrowbridgeReitz(alpha, alpha).IsSmooth();
@@ -156,7 +156,7 @@ float CoatTable::InternalReflectance(Slice slice) const {
 
 CoatBounceTable::CoatBounceTable(const CoatDescription& coat, const std::vector<float>& baseAlphas)
     : alphas_(baseAlphas) {
-  // Of light that leaves the base at an angle: what gets out, and what comes back to the base.
+  // Fractions of the light leaving the base at an angle that leave the coat, and that return to the base.
   Nodes leaving{}, returning{};
   const float coatAlpha = coat.alphas[coat.alphas.size() / 2];
   for (int i = 0; i < kNodes; ++i) {
@@ -199,8 +199,8 @@ CoatBounceTable::Curves CoatBounceTable::MakeCurves(const Nodes& leaving, const 
   };
   const Nodes first = scatter(leaving), second = scatter(times(first, returning)),
               third = scatter(times(second, returning));
-  // Where nothing leaves after one bounce there is nothing to scale: directions beyond total reflection, which nobody
-  // asks for.
+  // Where nothing leaves after one bounce there is nothing to scale: directions beyond total reflection, which are
+  // never queried.
   Curves curves;
   for (int i = 0; i < kNodes; ++i) {
     curves.second[i] = first[i] > 1e-3f ? second[i] / first[i] : 0.0f;

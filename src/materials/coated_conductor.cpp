@@ -6,12 +6,12 @@ namespace lampyr {
 
 namespace {
 
-// A direction above the coat as it is inside of it, refracted at the mean surface; z = 0 if it does not get in (η < 1).
+// Refracts a direction above the coat into it, at the mean surface; z = 0 if it does not enter (η < 1).
 Vector3 IntoCoat(const Vector3& w, float eta) {
   return {w.x / eta, w.y / eta, RefractedCosine(w.z, eta)};
 }
 
-// The base's lobe together with what refraction at a rough coat adds to its width, there and back.
+// The lobe of the base, widened by the two refractions at a rough coat.
 TrowbridgeReitz Widen(const TrowbridgeReitz& base, const TrowbridgeReitz& coat, float eta) {
   if (coat.IsSmooth() || eta == 1) return base;
   const float share = 0.5f * Sqr(1 - 1 / eta);
@@ -73,7 +73,7 @@ CoatedConductorBsdf::Base CoatedConductorBsdf::EvaluateBase(const Vector3& wo, c
           quarterD * TrowbridgeReitz::VisibleFactor(i.z, stretchI) * wo.z / o.z};
 }
 
-// Refracted in, mirrored at a microfacet of the base, refracted out; nothing where that is totally reflected.
+// Refraction into the coat, reflection at a microfacet of the base, refraction out; nullopt for total reflection.
 std::optional<Vector3> CoatedConductorBsdf::SampleBase(const Vector3& wo, const Point2& u) const {
   const float eta = settings_->eta;
   const Vector3 o = IntoCoat(wo, eta);
@@ -108,7 +108,7 @@ BsdfEvaluation CoatedConductorBsdf::Evaluate(const Vector3& wo, const Vector3& w
   return wo.z < 0 ? EvaluateUpper(-wo, -wi) : EvaluateUpper(wo, wi);
 }
 
-// The mirror direction when it is a delta: the coat's reflection, and with a smooth base all orders between the two.
+// The mirror direction as a delta: the reflection of the coat and, with a smooth base, all orders between the two.
 BsdfSample CoatedConductorBsdf::SampleMirror(const Vector3& wo) const {
   BsdfSample sample;
   const float cosO = std::abs(wo.z), cosT = RefractedCosine(cosO, settings_->eta);

@@ -1,15 +1,25 @@
-// A metal under a dielectric coat, after pbrt-v4's "coatedconductor", which walks at random between the two. Here:
+// A metal under a dielectric coat, after "coatedconductor" of pbrt-v4, which evaluates random walks between the two.
+// Here:
 //   f(wo,wi) = f_coat(wo,wi) + P(wo) P(wi) f_base(wo',wi') S / η²
-// with wo', wi' refracted into the coat (the mean surface), P a transmittance and S the sum over
-// bounces at the base ([Weidlich07], with transmittances that account for all that is not reflected).
+// with wo', wi' refracted into the coat (at the mean surface), P a transmittance and S the sum over bounces at the base
+// ([Weidlich07], with transmittances that account for everything that is not reflected).
 // - Both smooth: one delta whose weight is the exact sum.
-// - Smooth coat, rough base: the first bounce is exact. Later ones have their energy and the shape of the first.
-// - Rough coat: the base's lobe is widened by what the two refractions scatter: α² = α_base² + 2 (α_coat (1 - 1/η)/2)².
-//   P goes from coat_table.h's P (a base that keeps directions) half-way to T (one that forgets them) as the base's
-//   roughness reaches the coat's: an empirical choice.
-// Directional albedo against the random walk, copper, η 1.5, as tested: both smooth 0.5 %, smooth coat 3 %, coat and
-// base with α up to 0.3 8 %, coat 0.3 over base 0.6 11 %, both 0.5 14 %. The shape of a rough coat's base lobe is not
-// tested. Deterministic, reciprocal, exact densities. All of it counts as specular.
+// - Smooth coat, rough base: the first bounce is exact. Later bounces have the right energy, with the shape of the
+//   first.
+// - Rough coat: the lobe of the base is widened by the two refractions: α² = α_base² + 2 (α_coat (1 - 1/η)/2)². P goes
+//   from P of coat_table.h (a base that preserves directions) half-way to T (one that does not) as the roughness of the
+//   base reaches that of the coat: an empirical choice.
+//
+// Error of the directional albedo against the random walk, for copper and η 1.5, as tested. The shape of the base lobe
+// under a rough coat is not tested.
+//   coat     base         error
+//   smooth   smooth       0.5 %
+//   smooth   rough        3 %
+//   α ≤ 0.3  α ≤ 0.3      8 %
+//   α = 0.3  α = 0.6     11 %
+//   α = 0.5  α = 0.5     14 %
+//
+// Deterministic and reciprocal, with exact densities. All of it counts as specular.
 #pragma once
 
 #include <optional>
@@ -21,7 +31,7 @@
 
 namespace lampyr {
 
-// What does not vary over the surface.
+// Parameters that do not vary over the surface.
 struct CoatedConductorSettings {
   float eta = 1.5f;
   float thickness = 0.01f;
@@ -32,13 +42,13 @@ struct CoatedConductorSettings {
 
 class CoatedConductorBsdf {
  public:
-  // `eta` and `k` of the metal relative to the coat.
+  // `eta`, `k`: of the metal, relative to the coat.
   CoatedConductorBsdf(const TrowbridgeReitz& coat, const TrowbridgeReitz& base, const Color& eta, const Color& k,
                       const CoatedConductorSettings& settings);
 
   BsdfEvaluation Evaluate(const Vector3& wo, const Vector3& wi, TransportMode mode) const;
   std::optional<BsdfSample> Sample(const Vector3& wo, float uLobe, const Point2& u, TransportMode mode) const;
-  bool IsDelta() const { return base_.IsSmooth(); }  // only when both are
+  bool IsDelta() const { return base_.IsSmooth(); }  // implies a delta coat (Widen)
   bool IsTransmissive() const { return false; }
 
  private:

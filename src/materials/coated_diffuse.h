@@ -1,12 +1,14 @@
-// A Lambertian base under a dielectric coat, after pbrt-v4's "coateddiffuse". Where that walks at random between the
-// two boundaries, this evaluates the sum of all walks, which is exact because a diffuse base forgets directions:
+// A Lambertian base under a dielectric coat, after "coateddiffuse" of pbrt-v4. pbrt-v4 evaluates random walks between
+// the two boundaries; this is the sum over all walks, which is exact because a diffuse base does not preserve
+// directions:
 //   f(wo,wi) = f_coat(wo,wi) + T(wo) T(wi) ρ (1 + ρF + (ρF)² + …) / (π η²)        (T, F: materials/coat_table.h)
-// Deterministic, reciprocal, with exact densities. The base counts as diffuse, the coat as specular. Both sides alike.
-// An anisotropic coat has an exact f_coat, but T and F of the isotropic coat with α = sqrt(αx·αy).
-// Against pbrt-v4: its base under a rough coat is brighter, by our computation 3-19 % for α = 0.16 and 7-14 % for α =
-// 0.39 (light from above - grazing at cosθ = 0.15): its evaluation weighs two ways of leaving the coat against each
-// other with a density of the reversed direction, so that the weights sum to more than 1. Smooth coats have no such
-// weights.
+// Deterministic and reciprocal, with exact densities. The base counts as diffuse, the coat as specular. Both sides are
+// alike. An anisotropic coat has an exact f_coat, but T and F of the isotropic coat with α = sqrt(αx·αy).
+//
+// Compared with pbrt-v4: its base under a rough coat is brighter, by our computation 3-19 % for α = 0.16 and 7-14 % for
+// α = 0.39 (light from above - grazing at cosθ = 0.15): its evaluation weights two techniques of leaving the coat
+// against each other with a density of the reversed direction, so that the weights sum to more than 1. Smooth coats
+// have no such weights.
 #pragma once
 
 #include <optional>

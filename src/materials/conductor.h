@@ -1,5 +1,5 @@
-// Metal, smooth (a delta) or rough by single scattering at Trowbridge-Reitz microfacets ([Walter07]). One-sided
-// physics, both sides alike.
+// Metal, smooth (a delta) or rough by single scattering at Trowbridge-Reitz microfacets ([Walter07]). Both sides are
+// alike.
 #pragma once
 
 #include <optional>

@@ -1,5 +1,5 @@
-// In all of this file directions are turned so that wo is in the upper hemisphere, and η is relative to wo's side.
-// w -> -w leaves the microfacets as they are: their distribution is symmetric.
+// Throughout this file, directions are flipped so that wo is in the upper hemisphere, and η is relative to the side of
+// wo. w -> -w leaves the distribution of microfacets unchanged, since it is symmetric.
 #include "materials/dielectric.h"
 
 #include "materials/fresnel.h"
@@ -8,13 +8,13 @@ namespace lampyr {
 
 namespace {
 
-// A refraction at microfacet m, by its cosines (both positive).
+// Refraction at a microfacet m, given by its cosines (both positive).
 struct Refraction {
   float cosO, cosI;  // |dot(wo,m)|, |dot(wi,m)|
   float eta;
 
-  // |dω_m/dω_i|·|dot(wo,m)| = |dot(wo,m) dot(wi,m)| / (dot(wi,m) + dot(wo,m)/η)², symmetric but for η² ([Walter07 eq.
-  // 17]).
+  // Symmetric except for η² ([Walter07 eq. 17]):
+  //   |dω_m/dω_i|·|dot(wo,m)| = |dot(wo,m) dot(wi,m)| / (dot(wi,m) + dot(wo,m)/η)²
   float Jacobian() const { return cosO * cosI / Sqr(RefractionShift(cosO, cosI, eta)); }
 };
 

@@ -1,5 +1,5 @@
-// Glass and the like: reflection and refraction at a boundary, smooth (deltas) or rough by single scattering at
-// Trowbridge-Reitz microfacets ([Walter07]); and a thin sheet, whose two boundaries are one.
+// Dielectrics: reflection and refraction at a boundary, smooth (deltas) or rough by single scattering at
+// Trowbridge-Reitz microfacets ([Walter07]); and a thin surface, which combines two parallel boundaries.
 #pragma once
 
 #include <optional>
@@ -9,7 +9,7 @@
 
 namespace lampyr {
 
-// Outside (z > 0) has index 1, inside η. η = 1 lets everything through without a deflection: a delta, whatever the
+// Outside (z > 0) has index 1, inside η. With η = 1 everything is transmitted without deflection: a delta, whatever the
 // roughness.
 struct DielectricBsdf {
   TrowbridgeReitz microfacets;
@@ -21,11 +21,11 @@ struct DielectricBsdf {
   bool IsTransmissive() const { return true; }
 };
 
-// The part of light that a sheet with parallel sides reflects: all orders of reflection between the two are summed.
+// Reflectance of a thin surface with parallel sides, summed over all orders of interreflection.
 float ThinReflectance(float cosTheta, float eta);
 
-// Such a sheet. Light leaves undeflected, coloured by `transmittance`; unless the tracing of rays has seen to that
-// already (SurfacePoint::isThin): then there is only the reflection left.
+// A thin surface. Transmitted light is not deflected, and tinted by `transmittance`. isReflectionOnly: ray tracing
+// already accounts for the transmission (SurfacePoint::isThin), and only the reflection remains.
 struct ThinDielectricBsdf {
   float eta = 1;
   Color transmittance{1.0f};

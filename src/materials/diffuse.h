@@ -8,7 +8,7 @@
 
 namespace lampyr {
 
-// Reflects diffusely, on either side.
+// Diffuse reflection, on either side.
 struct DiffuseBsdf {
   Color reflectance;
 
@@ -32,7 +32,7 @@ struct DiffuseBsdf {
   bool IsTransmissive() const { return false; }
 };
 
-// Reflects and transmits diffusely; the lobe is chosen by the larger component of either colour.
+// Diffuse reflection and transmission; a lobe is chosen in proportion to the largest component of its colour.
 struct DiffuseTransmissionBsdf {
   Color reflectance, transmittance;
 

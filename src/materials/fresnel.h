@@ -1,4 +1,5 @@
-// Fresnel reflectances for unpolarised light. η is relative: the far side's over that of the side the light comes from.
+// Fresnel reflectances for unpolarised light. η is relative: the index of the far side over that of the side of
+// incidence.
 #pragma once
 
 #include "math/vec.h"
@@ -10,7 +11,7 @@ inline float RefractedCosine(float cosThetaI, float eta) {
   return SafeSqrt(1 - (1 - cosThetaI * cosThetaI) / (eta * eta));
 }
 
-// Dielectric, cosθi in [0,1] and the refracted cosine that belongs to it ([Pharr23 §9.3.5]). 1 for total reflection.
+// Dielectric; cosθi in [0,1] and the corresponding refracted cosine ([Pharr23 §9.3.5]). 1 for total reflection.
 inline float FresnelDielectric(float cosThetaI, float cosThetaT, float eta) {
   if (eta == 1) return 0;
   if (cosThetaT == 0) return 1;
@@ -22,8 +23,8 @@ inline float FresnelDielectric(float cosThetaI, float eta) {
   return FresnelDielectric(cosThetaI, RefractedCosine(cosThetaI, eta), eta);
 }
 
-// The part cosθi/η - cosθt of the refracted direction -wo/η + (cosθi/η - cosθt) m, without the cancellation at η ≈ 1:
-// the difference of the squares is 1/η² - 1.
+// The coefficient cosθi/η - cosθt in the refracted direction -wo/η + (cosθi/η - cosθt) m, without its cancellation near
+// η = 1: the difference of the squares is 1/η² - 1.
 inline float RefractionShift(float cosThetaI, float cosThetaT, float eta) {
   const float sum = cosThetaI / eta + cosThetaT;
   return sum > 0 ? (1 - eta) * (1 + eta) / (eta * eta * sum) : 0.0f;

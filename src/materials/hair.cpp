@@ -24,7 +24,7 @@ float CosTheta(const Vector3& w) {
   return std::sqrt(w.y * w.y + w.z * w.z);
 }
 
-// A_p of the four lobes in one channel: F at the wall, T through the fibre.
+// Attenuation A_p of the four lobes in one channel. F: Fresnel reflectance of the wall; T: transmittance of the fibre.
 void Attenuate(float F, float T, float attenuation[HairBsdf::kLobes]) {
   attenuation[0] = F;
   attenuation[1] = Sqr(1 - F) * T;
@@ -33,8 +33,8 @@ void Attenuate(float F, float T, float attenuation[HairBsdf::kLobes]) {
   attenuation[3] = stays > 0 ? attenuation[2] * T * F / stays : 0.0f;
 }
 
-// A number of the logistic distribution of scale s, trimmed to [-π,π]. The ends of u's range stand for the parts of the
-// tails that a float reaches, not for their ends, where a narrow lobe has no density.
+// Samples the logistic distribution of scale s, trimmed to [-π,π]. The ends of the range of u map to the parts of the
+// tails that a float can represent instead of to their ends, where a narrow lobe has no density.
 float SampleTrimmedLogistic(float u, float s) {
   const float y = ClampTo(std::tanh(0.5f * kPi / s) * (2 * u - 1), -kOneMinusEpsilon, kOneMinusEpsilon);
   return ClampTo(s * (std::log1p(y) - std::log1p(-y)), -kPi, kPi);
@@ -42,15 +42,15 @@ float SampleTrimmedLogistic(float u, float s) {
 
 }  // namespace
 
-// Everything of S that depends on one of the two directions alone.
+// All factors of S that depend on only one of the two directions.
 struct HairBsdf::Lobes {
-  float sinTheta[kLobes], cosTheta[kLobes];  // of the direction, tilted for each lobe
-  float exit[3];                             // φi - φo at the middle of R, TT, TRT
+  float sinTheta[kLobes], cosTheta[kLobes];  // of the direction, tilted per lobe
+  float exit[3];                             // φi - φo at the centre of R, TT, TRT
   Color attenuation[kLobes];
-  float probability[kLobes];  // of sampling; 0 all of them where nothing is scattered
+  float probability[kLobes];  // of sampling; all 0 if nothing is scattered
   float cosPhi, sinPhi;
 
-  // The lobe that u chooses; u becomes a uniform number of its own.
+  // Chooses a lobe by u, and rescales u for reuse.
   int Choose(float& u) const;
 };
 
@@ -87,8 +87,8 @@ float HairBsdf::ScatteringCosine(const Vector3& w) const {
   return std::max(isFibre ? CosTheta(w) : std::abs(w.z), kSmallestCosine);
 }
 
-// exp(-sinθi sinθo / v) I0(cosθi cosθo / v) / (2v sinh(1/v)): the exponents, up to some 1e5 for smooth fibres, are
-// cancelled before they are rounded.
+// exp(-sinθi sinθo / v) I0(cosθi cosθo / v) / (2v sinh(1/v)). The exponents, up to about 1e5 for smooth fibres, are
+// combined before rounding.
 float HairBsdf::Longitudinal::Density(float sinO, float cosO, float sinI, float cosI) const {
   const float exponent = (Sqr(sinO + sinI) + Sqr(cosO - cosI)) / (2 * variance);
   return norm * std::exp(-exponent) * ScaledBesselI0(cosO * cosI / variance);
@@ -104,7 +104,7 @@ HairBsdf::Lobes HairBsdf::LobesFrom(const Vector3& w, float h) const {
     lobes.sinTheta[p] = sinTheta * tilt.x + cosTheta * tilt.y;
     lobes.cosTheta[p] = std::abs(cosTheta * tilt.x - sinTheta * tilt.y);
   }
-  // Inside: η² - sin²θ = (η cosθt)², of which cosθo sinγo = η cosθt sinγt.
+  // Inside: η² - sin²θ = (η cosθt)², and cosθo sinγo = η cosθt sinγt.
   const float inside = SafeSqrt((eta_ - 1) * (eta_ + 1) + cosTheta * cosTheta);
   const float sinGammaT = ClampTo(inside > 0 ? h * cosTheta / inside : h, -1, 1);
   const float gammaO = std::asin(h), gammaT = std::asin(sinGammaT);
@@ -167,8 +167,8 @@ std::optional<BsdfSample> HairBsdf::Sample(const Vector3& wo, float uLobe, const
   float uAround = uLobe;
   const int p = lobes.Choose(uAround);
   if (!(lobes.probability[p] > 0)) return std::nullopt;
-  // M_p is what a von Mises-Fisher distribution around the tilted -θ has in θ: 1 - cos of the angle to its axis, and
-  // the azimuth around the axis.
+  // M_p is the marginal in θ of a von Mises-Fisher distribution around the tilted -θ, which is sampled by 1 - cos of
+  // the angle to its axis and the azimuth around the axis.
   const float v = along_[std::min(p, 2)].variance;
   const float away = std::min(-v * std::log1p(std::max((1 - u.x) * std::expm1(-2 / v), -kOneMinusEpsilon)), 2.0f);
   const float cosine = 1 - away, sine = SafeSqrt(away * (2 - away));
@@ -211,7 +211,7 @@ float ScaledBesselI0(float x) {
 Color HairAbsorption(const Color& reflectance, float betaN) {
   const float b = ClampTo(betaN, HairBsdf::kLeastBeta, 1);
   const float slope = 5.969f + b * (-0.215f + b * (2.532f + b * (-10.73f + b * (5.574f + b * 0.245f))));
-  // A block that is black would absorb without bound.
+  // The absorption of a black block would be unbounded.
   const auto absorption = [slope](float c) { return Sqr(std::log(ClampTo(c, 1e-30f, 1)) / slope); };
   return {absorption(reflectance.r), absorption(reflectance.g), absorption(reflectance.b)};
 }

@@ -1,8 +1,8 @@
 // "coateddiffuse": reflectance (0.5), roughness (0), uroughness, vroughness, remaproughness, eta (1.5), thickness
-// (0.01), maxdepth (10). "coatedconductor": the same for the coat with the prefix "interface.", the metal's with
-// "conductor.". The medium between the layers ("albedo", "g") does not scatter here: a warning. "nsamples" has no
-// meaning: nothing is sampled inside. "maxdepth" counts crossings of the gap, so that its half is the number of bounces
-// at the base.
+// (0.01), maxdepth (10). "coatedconductor": the same parameters for the coat with the prefix "interface.", those of the
+// metal with "conductor.". The medium between the layers ("albedo", "g") does not scatter here: a warning. "nsamples"
+// has no meaning, since nothing is sampled inside. "maxdepth" counts crossings of the gap: half of it, rounded up, is
+// the number of bounces at the base.
 #include "materials/material_makers.h"
 #include "materials/recipe_material.h"
 

@@ -1,5 +1,5 @@
 // "dielectric": eta (1.5), roughness (0), uroughness, vroughness, remaproughness (true). "thindielectric": eta (1.5),
-// transmittance (1), which is lampyr's own: the colour of what passes.
+// transmittance (1), an extension of lampyr: the tint of transmitted light.
 #include "materials/material_makers.h"
 #include "materials/recipe_material.h"
 

@@ -1,5 +1,5 @@
-// "hair": absorption by sigma_a, or by reflectance or color, or by eumelanin and pheomelanin, the first of them that is
-// given (eumelanin 1.3); eta (1.55), beta_m (0.3), beta_n (0.3), alpha (2 degrees).
+// "hair": absorption by the first of these that is given: sigma_a, reflectance, color, eumelanin and pheomelanin
+// (eumelanin 1.3); eta (1.55), beta_m (0.3), beta_n (0.3), alpha (2 degrees).
 #include "materials/hair.h"
 #include "materials/material_makers.h"
 
@@ -7,7 +7,7 @@ namespace lampyr {
 
 namespace {
 
-// What the fibre absorbs, as the scene says it.
+// The absorption of the fibre, as the scene specifies it.
 struct Pigment {
   std::optional<ColorParameter> sigmaA, reflectance;
   FloatParameter eumelanin = 1.3f, pheomelanin = 0.0f;
@@ -39,8 +39,8 @@ struct HairParameters {
   }
 };
 
-// The offset from the middle of the fibre: v runs across it from -1 to 1. On a curve it runs as the arriving ray sees
-// it, and the fibre's wall leans to the side where it grows.
+// Offset h of a path from the centre of the fibre: v runs across the fibre, mapped to [-1,1]. On a curve it runs as the
+// arriving ray sees it, and the normal of the fibre's wall leans towards growing v.
 float OffsetAt(const SurfacePoint& point, const Vector3& wo) {
   const float v = std::min(std::max(-1.0f, 2 * point.uv.y - 1), 1.0f);
   if (point.strand == Strand::None) return v;

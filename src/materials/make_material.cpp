@@ -1,4 +1,4 @@
-// Material types by name: one row each.
+// The table of material types.
 #include "materials/material_makers.h"
 
 namespace lampyr {
@@ -7,7 +7,7 @@ namespace {
 
 struct MaterialType {
   const char* name;
-  std::shared_ptr<const Material> (*make)(const MaterialInput&);  // null: known to pbrt-v4 and not supported here
+  std::shared_ptr<const Material> (*make)(const MaterialInput&);  // null: a type of pbrt-v4 that is not supported
 };
 
 constexpr MaterialType kTypes[] = {

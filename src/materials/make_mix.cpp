@@ -1,5 +1,5 @@
 // "mix": materials (two names), amount (0.5; of the second). At each point one of the two is chosen by a hash of
-// position and direction, so that the picture does not depend on the order of work. "interface": no scattering at all.
+// position and direction, so that the image does not depend on the order of work. "interface": no scattering.
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -49,14 +49,15 @@ class MixMaterial final : public Material {
 
   std::array<std::shared_ptr<const Material>, 2> materials_;
   FloatParameter amount_;
-  uint64_t salt_;  // of the names: mixes of mixes choose independently
-  // Of both, asked once: mixes of mixes that name a material twice would ask it 2^depth times.
+  uint64_t salt_;  // from the names: nested mixes choose independently
+  // Properties of both materials, cached: nested mixes that name a material twice would otherwise query it 2^depth
+  // times.
   bool isInterface_, mayTransmit_, hasDelta_, isAlwaysDelta_, isFibrous_, isAlwaysFibrous_;
 };
 
 class InterfaceMaterial final : public Material {
  public:
-  // For whoever does not ask IsInterface: straight through.
+  // For code that does not check IsInterface: transmission without deflection.
   Bsdf GetBsdf(const SurfacePoint& point, const Vector3&) const override {
     return Bsdf(Frame::FromNormal(point.Ns), point.Ng, DielectricBsdf{});
   }

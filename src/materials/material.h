@@ -1,4 +1,4 @@
-// A material: turns a surface point into a Bsdf. Textures, normal and bump maps are evaluated here.
+// A material: makes the Bsdf at a surface point. Textures, normal maps and bump maps are evaluated here.
 #pragma once
 
 #include <functional>
@@ -19,37 +19,39 @@ class Material {
  public:
   virtual ~Material() = default;
 
-  // The scattering at `point`; `wo` decides which of mixed materials is chosen (by hash) and orients bumps.
+  // The scattering at `point`. `wo` enters the hash that chooses between mixed materials, and orients bumps.
   virtual Bsdf GetBsdf(const SurfacePoint& point, const Vector3& wo) const = 0;
 
-  // pbrt's "interface": a boundary without scattering; rays pass straight through.
+  // True for "interface" of pbrt: a boundary without scattering, which rays pass straight through.
   virtual bool IsInterface() const { return false; }
-  // Whether some point of it may scatter by deltas only, or may transmit: what the scene has to be modelled for.
+  // True if the material may transmit at some point; true if it may scatter by deltas at some point.
   virtual bool MayTransmit() const { return false; }
   virtual bool HasDelta() const { return false; }
-  // True if it scatters by deltas only, everywhere and in every draw: no photon can be gathered there. A mix is drawn
-  // anew by each path that meets it, so that a draw of it that is a delta says nothing of the draws of other paths.
+  // True if it scatters by deltas only, at every point and in every draw: no photons can be gathered there. A mix is
+  // drawn anew for each path, so that a draw that is a delta says nothing about the draws of other paths.
   virtual bool IsAlwaysDelta() const { return false; }
-  // True if curves of it may be fibres (Bsdf::IsFibre), and if they are in every draw.
+  // IsFibrous: true if curves of this material may be fibres (Bsdf::IsFibre). IsAlwaysFibrous: true if they are in
+  // every draw.
   virtual bool IsFibrous() const { return false; }
   virtual bool IsAlwaysFibrous() const { return false; }
-  // Of a sheet without thickness: what of the light goes straight on without meeting it. Null: not one. Whoever traces
-  // rays must see to it where SurfacePoint::isThin says so.
+  // The transmission of a thin surface, which ray tracing has to account for if SurfacePoint::isThin is set. Null: not
+  // a thin surface.
   virtual const ThinSurface* Thin() const { return nullptr; }
-  // Mirrors and clear glass: what shows light sharply.
+  // True if reflections or refractions may be sharp, as in mirrors and clear glass.
   bool IsSmooth() const { return HasDelta() && !IsInterface(); }
 };
 
-// Finds materials by name while a "mix" is being made; throws an Error when there is none.
+// Finds materials by name for a "mix"; throws an Error if there is none.
 using MaterialLookup = std::function<std::shared_ptr<const Material>(const std::string& name)>;
 
 // Makes the material `type` ("diffuse", "conductor", …) from its parameters. Throws an Error that names the parameter
-// at fault and warns about the ones it does not know. `textures` resolves "texture" parameters and images.
+// if one is wrong or unknown, and warns about those without effect. `textures` resolves "texture" parameters and
+// images. An unsupported type of pbrt-v4 becomes gray diffuse, with a warning.
 std::shared_ptr<const Material> MakeMaterial(const std::string& type, const ParameterList& parameters,
                                              const TextureLibrary& textures, const MaterialLookup& namedMaterials,
                                              Diagnostics& diagnostics);
 
-// The types that are supported, as scenes name them.
+// Names of the supported types in scene files.
 std::vector<std::string> MaterialTypeNames();
 
 }  // namespace lampyr

@@ -1,4 +1,4 @@
-// The makers behind MakeMaterial, one per family of materials, and what they share.
+// The factories behind MakeMaterial, one per family of materials, and their common parameters.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,7 @@
 
 namespace lampyr {
 
-// What a maker reads from.
+// Input of a factory.
 struct MaterialInput {
   const ParameterList& parameters;
   const TextureLibrary& textures;
@@ -22,7 +22,7 @@ struct MaterialInput {
 
 std::shared_ptr<const Material> MakeDiffuse(const MaterialInput& input);
 std::shared_ptr<const Material> MakeDiffuseTransmission(const MaterialInput& input);
-std::shared_ptr<const Material> MakeGray();  // diffuse 0.5, for what is not supported
+std::shared_ptr<const Material> MakeGray();  // diffuse 0.5, for unsupported types
 std::shared_ptr<const Material> MakeConductor(const MaterialInput& input);
 std::shared_ptr<const Material> MakeDielectric(const MaterialInput& input);
 std::shared_ptr<const Material> MakeThinDielectric(const MaterialInput& input);
@@ -32,7 +32,7 @@ std::shared_ptr<const Material> MakeHair(const MaterialInput& input);
 std::shared_ptr<const Material> MakeMix(const MaterialInput& input);
 std::shared_ptr<const Material> MakeInterface(const MaterialInput& input);
 
-// CheckAllUsed with the names that every material has.
+// ParameterList::CheckAllUsed, with the parameters common to all materials added.
 void CheckMaterialParameters(const MaterialInput& input, std::vector<std::string> known,
                              const std::vector<std::string>& alsoInPbrt = {});
 
@@ -46,7 +46,7 @@ class RoughnessParameters {
   bool IsConstant() const { return u_.IsConstant() && v_.IsConstant(); }
   bool IsAnisotropic() const { return isAnisotropic_; }
   bool MayBeSmooth() const { return !IsConstant() || Evaluate({}).IsSmooth(); }
-  // α values for a table: the constant one, or a range.
+  // α values for a table: the constant one, or TexturedAlphas().
   std::vector<float> TableAlphas() const;
 
  private:
@@ -55,7 +55,7 @@ class RoughnessParameters {
   bool remap_ = true;
 };
 
-// "PREFIXeta", "PREFIXk" and "reflectance" of a metal; copper when nothing is given.
+// "PREFIXeta", "PREFIXk" and "reflectance" of a metal; copper if none is given.
 class MetalParameters {
  public:
   MetalParameters(const MaterialInput& input, const std::string& prefix);
@@ -71,10 +71,10 @@ class MetalParameters {
   ColorParameter eta_, k_;
 };
 
-// Index of refraction `name`: a number, or a spectrum, of which the mean over the channels is taken.
+// Index of refraction `name`: a number, or the mean over the channels of a spectrum.
 float GetEta(const MaterialInput& input, const std::string& name, float defaultValue);
 
-// Reflectances and transmittances are held within [0,1]; NaN counts as 0.
+// Clamps a reflectance or transmittance to [0,1]; NaN counts as 0.
 Color ClampToUnit(const Color& c);
 
 }  // namespace lampyr

@@ -18,7 +18,7 @@ FloatParameter GetRoughness(const MaterialInput& input, const std::string& name,
   return *given;
 }
 
-// A colour from a spectrum that is known by name.
+// The colour of a named spectrum.
 Color NamedSpectrum(const std::string& name) {
   Parameter parameter;
   parameter.type = ParameterType::Spectrum;
@@ -35,7 +35,7 @@ Color ClampToUnit(const Color& c) {
 
 void CheckMaterialParameters(const MaterialInput& input, std::vector<std::string> known,
                              const std::vector<std::string>& alsoInPbrt) {
-  input.parameters.Find("type");  // of named materials; whoever dispatched has read it
+  input.parameters.Find("type");  // of named materials; already used for the dispatch
   known.insert(known.end(), {"displacement", "normalmap", "type"});
   input.parameters.CheckAllUsed(alsoInPbrt, known, input.diagnostics);
 }
@@ -100,7 +100,7 @@ float GetEta(const MaterialInput& input, const std::string& name, float defaultV
   const float eta = given->type == ParameterType::Float
                         ? static_cast<float>(input.parameters.GetFloat(name, static_cast<double>(defaultValue)))
                         : input.parameters.GetColor(name, Color(defaultValue), SpectrumRole::Unbounded).Average();
-  if (eta == 0) {  // pbrt-v4's way of writing "no boundary"
+  if (eta == 0) {  // pbrt-v4: "no boundary"
     input.diagnostics.Warn(input.parameters.WhereOf(name), "\"" + name + "\" 0 is taken as 1");
     return 1;
   }

@@ -1,8 +1,8 @@
 // The Trowbridge-Reitz (GGX) distribution of microfacets with height-correlated Smith shadowing ([Walter07],
 // [Heitz14]).
 //
-// All directions here are in the upper hemisphere (z ≥ 0). Shadowing is never computed alone but as the ratios in which
-// it is needed: with s(w) = sqrt(z² + (αx·x)² + (αy·y)²), Λ = (s/z - 1)/2, and no cosine is ever a divisor:
+// All directions here are in the upper hemisphere (z ≥ 0). Shadowing is never computed on its own, but in the ratios in
+// which it occurs, in which no cosine is a divisor. With s(w) = sqrt(z² + (αx·x)² + (αy·y)²), Λ = (s/z - 1)/2:
 //   G1(wo)/cosθo = 2 / (cosθo + so),   G2/(cosθo·cosθi) = 2 / (so·cosθi + si·cosθo).
 #pragma once
 
@@ -15,36 +15,37 @@ struct TrowbridgeReitz {
   float alphaX = 0, alphaY = 0;
 
   TrowbridgeReitz() = default;
-  // Both at least 1e-4, unless the surface counts as smooth anyway.
+  // Both are at least 1e-4, unless the surface counts as smooth.
   TrowbridgeReitz(float x, float y) : alphaX(x), alphaY(y) {
     if (!IsSmooth()) alphaX = std::max(alphaX, 1e-4f), alphaY = std::max(alphaY, 1e-4f);
   }
 
-  // Below this the surface is treated as a perfect mirror, a delta (the limit that pbrt-v4 has).
+  // True if the surface is treated as a perfect mirror, a delta (the threshold of pbrt-v4).
   bool IsSmooth() const { return std::max(alphaX, alphaY) < 1e-3f; }
 
-  // Density of microfacet normals, 1/sr, m.z ≥ 0.
+  // Distribution of microfacet normals, 1/sr, m.z ≥ 0.
   float D(const Vector3& m) const {
     const float x = m.x / alphaX, y = m.y / alphaY;
     const float e = x * x + y * y + m.z * m.z;
     return 1 / (kPi * alphaX * alphaY * e * e);
   }
 
-  // s(w) of the file's comment.
+  // s(w), see above.
   float Stretch(const Vector3& w) const { return std::sqrt(w.z * w.z + Sqr(alphaX * w.x) + Sqr(alphaY * w.y)); }
 
-  // Density of SampleVisibleNormal divided by dot(wo, m): D·G1(wo)/cosθo.
+  // G1(wo)/cosθo: the density of SampleVisibleNormal divided by D(m)·dot(wo, m).
   static float VisibleFactor(float cosO, float stretchO) { return 2 / (cosO + stretchO); }
   // G2/(cosθo·cosθi).
   static float ShadowingFactor(float cosO, float stretchO, float cosI, float stretchI) {
     return 2 / (stretchO * cosI + stretchI * cosO);
   }
-  // G2/G1(wo): the weight of a microfacet sampled by visibility.
+  // G2/G1(wo): the weight of a sampled visible microfacet.
   static float ShadowingRatio(float cosO, float stretchO, float cosI, float stretchI) {
     return cosI * (cosO + stretchO) / (stretchO * cosI + stretchI * cosO);
   }
 
-  // A microfacet normal seen from wo (z > 0), by spherical caps ([Dupuy23]). Density D·G1(wo)·dot(wo,m)/cosθo.
+  // Samples a microfacet normal visible from wo (z > 0), by spherical caps ([Dupuy23]). Density
+  // D·G1(wo)·dot(wo,m)/cosθo.
   Vector3 SampleVisibleNormal(const Vector3& wo, const Point2& u) const {
     const Vector3 stretched(alphaX * wo.x, alphaY * wo.y, wo.z);
     const Vector3 standard = stretched / std::sqrt(LengthSquared(stretched));
@@ -58,8 +59,8 @@ struct TrowbridgeReitz {
   }
 };
 
-// The microfacet that mirrors wo into wi (both with z > 0), and the cosine at it: |wo + wi|/2, which rounding near
-// grazing angles cannot make negative. A cosine of 0: there is none.
+// The microfacet that reflects wo into wi (both with z > 0), and the cosine at it, |wo + wi|/2, which rounding near
+// grazing angles cannot make negative. A cosine of 0: no such microfacet.
 struct HalfVector {
   Vector3 m;
   float cosine;

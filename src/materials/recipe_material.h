@@ -1,5 +1,5 @@
-// A material that is a recipe: parameters that may be textures, turned into a model at a point. A recipe without
-// textures is cooked once. A recipe has
+// A material defined by a recipe: parameters, possibly textures, from which a scattering model is made at each point.
+// The model of a recipe without textures is made once. A recipe has
 //   BsdfModel Make(const TextureContext&) const;   bool IsConstant() const;   bool IsAnisotropic() const;
 //   bool MayTransmit() const;   bool HasDelta() const;
 #pragma once

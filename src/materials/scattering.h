@@ -1,4 +1,4 @@
-// What a BSDF answers: a value with its densities, and a sampled direction. Conventions: materials/bsdf.h.
+// Results of a BSDF: a value with its densities, and a sampled direction. Conventions: materials/bsdf.h.
 #pragma once
 
 #include "math/density.h"
@@ -6,11 +6,11 @@
 
 namespace lampyr {
 
-// What travels along the path: radiance (paths from the camera) or importance (paths from the lights).
+// The transported quantity: radiance (paths from the camera) or importance (paths from the lights).
 enum class TransportMode { Radiance, Importance };
 
 struct BsdfEvaluation {
-  Color diffuse, specular;  // f, split by lobe: lights may send different radiance to either
+  Color diffuse, specular;  // f, split by lobe: a light may send different radiance to each
   PdfSolidAngle pdfForward, pdfReverse;
 
   Color Sum() const { return diffuse + specular; }
@@ -18,8 +18,8 @@ struct BsdfEvaluation {
 
 struct BsdfSample {
   Vector3 wi{0.0f};
-  Color weightDiffuse,
-      weightSpecular;  // f · |cosθi| / pdf, split by lobe; computed without the division where it cancels
+  // f · |cosθi| / pdf, split by lobe; computed without the division where it cancels.
+  Color weightDiffuse, weightSpecular;
   PdfSolidAngle pdfForward, pdfReverse;  // for a delta: discrete probabilities of the lobe
   bool isDelta = false;
   bool isTransmission = false;

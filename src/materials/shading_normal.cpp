@@ -26,7 +26,8 @@ Color LookUp(const Image& image, const Point2& uv) {
               Lerp(image.RgbAt(ix, jy), image.RgbAt(jx, jy), x - x0), y - y0);
 }
 
-// The frame around n (any length, NaN or 0 allowed), turned to Ng's side; the surface's own when n is unusable.
+// The frame around n (any length, NaN or 0 allowed), flipped to the side of Ng; the surface's own frame if n is
+// unusable.
 Frame FrameAround(const Vector3& n, const SurfacePoint& point, const Vector3& tangent) {
   const float lengthSquared = LengthSquared(n);
   if (!(lengthSquared > 0) || !(lengthSquared < kInfinity)) return Frame::FromNormalAndTangent(point.Ns, point.dpdu);

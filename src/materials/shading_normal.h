@@ -1,10 +1,12 @@
-// Normal and bump maps: a shading normal other than the surface's own.
+// Normal and bump maps: a shading normal other than that of the surface.
 //
-// Normal map: RGB in tangent space, linear encoding, n = 2·rgb - 1, x along dpdu, z along Ns; v = 0 at the bottom row,
-// the image repeats, bilinear ([Pharr23 §10.5.3]). Displacement: a height d over the surface, in scene units, by finite
-// differences of the texture along dpdu and dpdv
-// ([Blinn78]; the derivatives of Ns are left out).
-// The result is on Ng's side, as Ns is.
+// Normal map: RGB in tangent space, linear encoding, n = 2·rgb - 1, x along dpdu, z along Ns; v = 0 is the bottom row;
+// the image repeats and is interpolated bilinearly ([Pharr23 §10.5.3]).
+//
+// Displacement: a height d above the surface, in scene units, by finite differences of the texture along dpdu and dpdv
+// ([Blinn78]; the derivatives of Ns are neglected).
+//
+// The result is on the side of Ng, as Ns is.
 #pragma once
 
 #include <memory>
@@ -24,11 +26,12 @@ class TextureLibrary;
 class ShadingNormal {
  public:
   ShadingNormal() = default;
-  // Reads "normalmap" and "displacement"; the first wins, with a warning. Throws when the image cannot be read.
+  // Reads "normalmap" and "displacement"; the first takes precedence, with a warning. Throws an Error if the image
+  // cannot be read.
   ShadingNormal(const ParameterList& parameters, const TextureLibrary& textures, Diagnostics& diagnostics);
 
   bool IsPlain() const { return !normalMap_ && !displacement_; }
-  // Shading frame at a point; x along dpdu. Only for !IsPlain().
+  // Shading frame at a point; x along dpdu. Requires !IsPlain().
   Frame GetFrame(const SurfacePoint& point) const;
 
  private:

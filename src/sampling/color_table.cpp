@@ -12,7 +12,7 @@ namespace {
 
 constexpr size_t kEntriesPerLine = 4;
 
-// The cumulative part of a row of entries.
+// A view of the CDF in a row of entries.
 template <class Entry>
 struct RowCdf {
   Entry* entries;

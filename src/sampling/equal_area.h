@@ -1,8 +1,9 @@
 // Maps between square and sphere, for environment images and the spherical camera.
 //
 // Equal-area octahedral map ([Clarberg08]), oriented as in pbrt-v4: the centre of the square is +z, its corners are -z,
-// the midpoint of the right edge is +x, and the midpoint of the lower edge (v = 1) is +y. Latitude-longitude map: u =
-// φ/2π from +x, v = θ/π from +z.
+// the midpoint of the right edge is +x, and the midpoint of the lower edge (v = 1) is +y.
+//
+// Latitude-longitude map: u = φ/2π from +x, v = θ/π from +z.
 #pragma once
 
 #include "math/vec.h"

@@ -65,7 +65,7 @@ class Distribution1D {
   Choice Choose(float u) const;           // requires !IsZero()
   float DensityOf(uint32_t index) const;  // of an interval, over [0,1]
   float Density(float x) const;           // x is clamped to [0,1]
-  float Invert(float x) const;            // the u that Sample turns into x
+  float Invert(float x) const;            // the u for which Sample returns x
   float Integral() const { return static_cast<float>(integral_); }
   bool IsZero() const { return integral_ <= 0; }
   size_t Size() const { return cdf_.empty() ? 0 : cdf_.size() - 1; }

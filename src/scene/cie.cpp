@@ -53,7 +53,8 @@ double DaylightD65(double lambda) {
 
 double Blackbody(double lambda, double kelvin) {
   constexpr double kSecondRadiation = 1.438776877e7;  // c2 = hc/k in nm·K
-  // Relative to the exponential at the long end: a cold body's light would otherwise be 0 at all wavelengths.
+  // Relative to the exponential at the longest wavelength: the light of a cold body would otherwise underflow to 0 at
+  // all wavelengths.
   const double x = kSecondRadiation / (lambda * kelvin);
   const double xLong = kSecondRadiation / (kLambdaMax * kelvin);
   const double boson = -std::expm1(-x);  // 1 - e^-x

@@ -1,4 +1,4 @@
-// The CIE 1931 standard observer and daylight, by formula. Internal to scene/.
+// The CIE 1931 standard observer, daylight and black bodies, by formula. Internal to scene/.
 #pragma once
 
 #include "math/vec.h"
@@ -10,10 +10,11 @@ inline constexpr double kLambdaMin = 360, kLambdaMax = 830;  // nm
 // Colour matching functions x̄, ȳ, z̄ at a wavelength in nm, by the multi-lobe fit of [Wyman13].
 Vector3d ColorMatching(double lambda);
 
-// Relative spectral power of CIE daylight D65 (100 at 560 nm): mean and two variations, tabulated every 10 nm [CIE15].
+// Relative spectral power of CIE daylight D65 (100 at 560 nm): the mean and two characteristic vectors, tabulated every
+// 10 nm [CIE15].
 double DaylightD65(double lambda);
 
-// Planck's law at `kelvin`, relative to an arbitrary constant that keeps it within range for every temperature above 0.
+// Planck's law at `kelvin`, up to a factor that keeps it in range for every temperature above 0.
 double Blackbody(double lambda, double kelvin);
 
 }  // namespace lampyr

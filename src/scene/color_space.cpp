@@ -30,8 +30,8 @@ Vector3d ToXyz(const Chromaticity& c) {
   return XyzOfChromaticity(c.x, c.y);
 }
 
-// Columns are the primaries, scaled so that their sum is the white. A primary is scaled without dividing by its y
-// (ACES's blue has a negative one): the white fixes the scale.
+// Columns are the primaries, scaled so that their sum is the white. The white fixes the scale, without a division by
+// the y of a primary (that of ACES blue is negative).
 glm::dmat3 RgbToXyz(const Primaries& space) {
   const auto direction = [](const Chromaticity& c) { return Vector3d(c.x, c.y, 1 - c.x - c.y); };
   const glm::dmat3 directions(direction(space.red), direction(space.green), direction(space.blue));
@@ -100,7 +100,7 @@ Chromaticity ChromaticityOfBlackbody(double kelvin) {
 }
 
 Chromaticity ChromaticityOfDaylight(double kelvin) {
-  constexpr double kNewOverOldRadiation = 1.4388 / 1.4380;  // of the constant that the temperatures are named by
+  constexpr double kNewOverOldRadiation = 1.4388 / 1.4380;  // nominal temperatures use the old constant
   const double t = kelvin * kNewOverOldRadiation, per = 1e3 / t;
   const double x = t <= 7000 ? ((-4.6070 * per + 2.9678) * per + 0.09911) * per + 0.244063
                              : ((-2.0064 * per + 1.9018) * per + 0.24748) * per + 0.237040;

@@ -1,4 +1,4 @@
-// The RGB colour spaces of scene files and the way from each to ours, linear Rec. 709 with a D65 white.
+// The RGB colour spaces of scene files, and their conversion to the working space, linear Rec. 709 with a D65 white.
 #pragma once
 
 #include <optional>
@@ -13,34 +13,34 @@ namespace lampyr {
 
 enum class RgbColorSpace { Srgb, DciP3, Rec2020, Aces2065 };
 
-// The names of pbrt-v4: "srgb", "dci-p3", "rec2020", "aces2065-1". Upper and lower case are the same.
+// By the names of pbrt-v4: "srgb", "dci-p3", "rec2020", "aces2065-1", case ignored.
 std::optional<RgbColorSpace> FindColorSpace(const std::string& name);
 const std::vector<std::string>& ColorSpaceNames();
 
-// What becomes of another white point than ours.
+// Treatment of a white point other than D65.
 enum class WhiteHandling {
-  Keep,   // light: the other space's white keeps its chromaticity, as a camera sees it
+  Keep,   // light: the white keeps its chromaticity, as a camera sees it
   Adapt,  // reflectances and coefficients: (1,1,1) stays (1,1,1); Bradford adaptation
 };
 
-// Linear RGB of `from` as linear Rec. 709; components outside the gamut come out negative or above 1.
+// Converts linear RGB of `from` to linear Rec. 709. Colours outside of the gamut get components below 0 or above 1.
 Vector3d ToRec709(const Vector3d& rgb, RgbColorSpace from, WhiteHandling white);
 
-// CIE 1931 XYZ (the white has Y = 1) as linear Rec. 709.
+// Converts CIE 1931 XYZ (Y = 1 for white) to linear Rec. 709.
 Vector3d XyzToRec709(const Vector3d& xyz);
 
 // XYZ of a chromaticity at luminance 1.
 Vector3d XyzOfChromaticity(double x, double y);
 
-// Linear Rec. 709 as CIE 1931 XYZ: a matrix.
+// The matrix from linear Rec. 709 to CIE 1931 XYZ.
 const glm::dmat3& Rec709ToXyz();
 
 // White balance of linear Rec. 709: light of the given temperature becomes white (Bradford adaptation, [Lam85]). The
-// light is CIE daylight ([CIE15]) from 4000 to 25000 K, and a black body ([Kim02]) from 1667 K to there. Throws an
-// Error for a temperature beyond.
+// light is CIE daylight ([CIE15]) from 4000 to 25000 K, and a black body ([Kim02]) from 1667 to 4000 K. Throws an Error
+// for temperatures outside of that.
 glm::dmat3 WhiteBalance(double kelvin);
 
-// Negative components become 0 and the rest is scaled so that the luminance stays.
+// Sets negative components to 0 and rescales the others, so that the luminance is unchanged.
 Color ClampToGamut(const Vector3d& rgb);
 
 }  // namespace lampyr

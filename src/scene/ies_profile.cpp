@@ -1,4 +1,5 @@
-// From the angles that an IES file measures to candela over the whole sphere: symmetry, types A and B, power.
+// Converts the candela over the measured angles of an IES file to a profile over the whole sphere: symmetry, types A
+// and B, power.
 #include "scene/ies_profile.h"
 
 #include <algorithm>
@@ -22,7 +23,7 @@ bool Near(double a, double b) {
   return std::abs(a - b) < 0.01;
 }
 
-// The interval of `knots` that contains x, and where in it.
+// The interval of `knots` that contains x, and the position t of x in it.
 struct Place {
   size_t index;
   double t;
@@ -39,7 +40,7 @@ double Bilinear(const std::vector<double>& values, size_t stride, const Place& f
   return low + slow.t * (high - low);
 }
 
-// A plane of the full circle: its angle, and the planes of the file that its values lie between.
+// A plane of the full circle: its angle, and the planes of the file between which its values are interpolated.
 struct Plane {
   double degrees;
   size_t source;
@@ -47,8 +48,8 @@ struct Plane {
   double t = 0;  // 0 at `source`, 1 at `other`
 };
 
-// The planes of a type C file over [0°, 360°] ([LM-63-02 §5.13]): one plane stands for all; 0°-90° and 0°-180° are
-// mirrored; 90°-270° (1995 on) is mirrored at the 90°-270° plane; 0°-360° is all there is.
+// The planes of a type C file over [0°, 360°] ([LM-63-02 §5.13]): a single plane stands for all; 0°-90° and 0°-180° are
+// mirrored; 90°-270° (since 1995) is mirrored at the 90°-270° plane; 0°-360° is complete.
 std::vector<Plane> FullCircle(const IesFile& file) {
   const std::vector<double>& h = file.horizontal;
   const size_t last = h.size() - 1;
@@ -80,7 +81,7 @@ std::vector<Plane> FullCircle(const IesFile& file) {
   if (Near(h[last], 90)) mirrorAt(90);
   if (Near(planes.back().degrees, 180)) mirrorAt(180);
   if (!Near(planes.back().degrees, 360)) {
-    // Some programs leave out the plane at 360°, which is that at 0°.
+    // Some programs omit the plane at 360°, which equals that at 0°.
     if (!(h[last] > 180) || 360 - h[last] > 1.01 * std::max(h[last] - h[last - 1], h[1] - h[0])) {
       throw Error(file.horizontalWhere,
                   "the horizontal angles of type C photometry have to end at 0 (one plane), 90, "
@@ -92,9 +93,9 @@ std::vector<Plane> FullCircle(const IesFile& file) {
   return planes;
 }
 
-// Candela of a type A or B file in a direction given by its forward, right and up parts. Type A has its poles above and
-// below: vertical angles are elevations. Type B has them left and right: horizontal angles are counted from the
-// forward-up plane. What starts at 0° is symmetric.
+// Candela of a type A or B file in a direction given by its forward, right and up components. Type A has its poles
+// above and below: vertical angles are elevations. Type B has them left and right: horizontal angles are measured from
+// the forward-up plane. Angles that start at 0° are symmetric.
 double SideIntensity(const IesFile& file, double forward, double right, double up) {
   const bool typeA = file.type == IesPhotometry::TypeA;
   double h = typeA ? std::atan2(right, forward) : std::asin(std::clamp(right, -1.0, 1.0));
@@ -117,8 +118,8 @@ double SmallestStep(const std::vector<double>& angles) {
   return step;
 }
 
-// ∫ (a + t (b - a)) sinθ dθ over [low, high], t from 0 to 1: Gauss-Legendre with 4 points in pieces of at most 0.2,
-// exact to rounding, and without the cancellation of the closed form near the poles.
+// ∫ (a + t (b - a)) sinθ dθ over [low, high], with t from 0 to 1: Gauss-Legendre quadrature with 4 points in pieces of
+// at most 0.2, exact to rounding, and without the cancellation of the closed form near the poles.
 double IntegrateRow(double low, double high, double a, double b) {
   constexpr double kNode[2] = {0.8611363115940526, 0.3399810435848563};
   constexpr double kWeight[2] = {0.3478548451374538, 0.6521451548625461};
@@ -167,8 +168,8 @@ class IesReader {
     }
   }
 
-  // Types A and B have the luminaire face forward; their axis of 0°, 0° is turned down to the nadir, by the turn that
-  // takes what was up to φ = 0. The grid has half the file's finest step, a quarter of a degree at least.
+  // Types A and B have the luminaire face forward. Their axis at 0°, 0° is rotated to the nadir, by the rotation that
+  // takes up to φ = 0. The grid has half the smallest step of the file, but at least a quarter of a degree.
   static void Resample(const IesFile& file, IesProfile& profile) {
     if (file.horizontal.size() < 2) {
       throw Error(file.horizontalWhere, "photometry of types A and B has to have at least 2 horizontal angles");
@@ -189,7 +190,7 @@ class IesReader {
   static void Finish(IesProfile& profile) {
     const size_t count = profile.thetas_.size();
     profile.largest_ = *std::max_element(profile.candela_.begin(), profile.candela_.end());
-    std::vector<double> lowWeights, highWeights;  // of each row's two ends: the same in all planes
+    std::vector<double> lowWeights, highWeights;  // of the two ends of each row; equal in all planes
     for (size_t i = 0; i + 1 < count; ++i) {
       lowWeights.push_back(IntegrateRow(profile.thetas_[i], profile.thetas_[i + 1], 1, 0));
       highWeights.push_back(IntegrateRow(profile.thetas_[i], profile.thetas_[i + 1], 0, 1));

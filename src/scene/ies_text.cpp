@@ -14,7 +14,7 @@ namespace lampyr {
 
 namespace {
 
-constexpr double kLargestCandela = 1e30;  // products of it with what lights multiply stay within float
+constexpr double kLargestCandela = 1e30;  // products with the factors of lights stay within float
 constexpr double kSmallestStep = 1e-6;    // degrees
 constexpr std::string_view kSeparators = " \t\r\n\f\v,";
 
@@ -34,7 +34,7 @@ std::string Upper(std::string text) {
   return text;
 }
 
-// The text with a cursor that knows its line.
+// The text with a cursor that tracks lines.
 class IesText {
  public:
   IesText(const std::string& text, const std::string& name)
@@ -47,7 +47,7 @@ class IesText {
   FileLocation Here() const { return {name_, line_, static_cast<int>(position_ - lineStart_) + 1}; }
   const std::string& Name() const { return *name_; }
 
-  // The rest of the line, without blanks around it.
+  // The rest of the line, without surrounding blanks.
   std::string NextLine() {
     const size_t end = std::min(text_.find_first_of("\r\n", position_), text_.size());
     const std::string line = Trimmed(text_.substr(position_, end - position_));
@@ -81,7 +81,7 @@ class IesText {
     return value;
   }
 
-  // How many of something follow: at least `least`, and not more than the rest of the file has room for.
+  // Reads a count: at least `least`, and not more than the rest of the file has room for.
   size_t Count(const std::string& what, size_t least) {
     SkipSeparators();
     const FileLocation where = Here();
@@ -93,7 +93,8 @@ class IesText {
     return static_cast<size_t>(value);
   }
 
-  // Nothing is allocated for numbers that cannot be there: each takes a digit and a separator.
+  // Throws an Error if the file is too short for `count` numbers, of which each needs a digit and a separator. Called
+  // before any allocation.
   void CheckRoom(double count, const std::string& what, const FileLocation& where) const {
     const double room = std::floor((static_cast<double>(Remaining()) + 1) / 2);
     if (count > room) {
@@ -124,7 +125,7 @@ class IesText {
   size_t position_ = 0, lineStart_ = 0;
   int line_ = 1;
 
-  // Over one character; CR LF and a lone CR end a line like LF does.
+  // Advances by one character. CR LF and a lone CR end a line like LF.
   void Advance() {
     const char c = text_[position_++];
     const bool pair = c == '\r' && position_ < text_.size() && text_[position_] == '\n';
@@ -136,11 +137,11 @@ class IesText {
   }
 };
 
-// The lamp's output over the angle by which the *luminaire* is tilted out of the position it was measured in, for lamps
-// that dislike burning at a slant: a factor on the whole distribution, not one over its directions. The
-// lamp-to-luminaire geometry says which tilts count: 1, the lamp stands vertically and all do; 2 and 3, it lies in the
-// 0°-180° or the 90°-270° plane and tilting across the lamp changes nothing. A scene knows no gravity, so that the
-// luminaire burns as measured, at a tilt of 0, whatever the geometry.
+// The factor on the output of the lamp at tilt 0. A tilt table gives the output over the angle by which the luminaire
+// is tilted out of the position in which it was measured, for lamps whose output depends on it: a factor on the whole
+// distribution, not one over its directions. The lamp-to-luminaire geometry says which tilts count: 1, the lamp is
+// vertical and all do; 2 and 3, it lies in the 0°-180° or the 90°-270° plane, and tilting across the lamp changes
+// nothing. A scene has no gravity: the luminaire burns as measured, at a tilt of 0, whatever the geometry.
 double ReadTiltFactor(IesText& text) {
   text.NumberInRange("the lamp-to-luminaire geometry", 1, 3, "1, 2 or 3");
   const size_t count = text.Count("tilt angles and factors", 1);
@@ -166,8 +167,8 @@ double TiltFactor(IesText& text, const std::string& setting, const FileLocation&
   return ReadTiltFactor(tilt);
 }
 
-// Label lines up to TILT=; whether the file is of an edition that has the ballast-lamp photometric factor, a number
-// that later is unused (1995) or says how the file was made (2002, 2019).
+// The label lines up to TILT=. hasBallastLampFactor: true for editions with the ballast-lamp photometric factor, a
+// number that is unused in 1995 and describes how the file was made in 2002 and 2019.
 struct Labels {
   std::string tilt;
   FileLocation tiltWhere;
@@ -200,7 +201,7 @@ IesFile ParseIesFile(const std::string& source, const std::string& name) {
   const Labels labels = ReadLabels(text);
   double factor = TiltFactor(text, labels.tilt, labels.tiltWhere);
   text.Number("the number of lamps");
-  text.Number("the lumens of a lamp");  // the candela are for that many; -1 for absolute photometry
+  text.Number("the lumens of a lamp");  // the candela refer to it; -1: absolute photometry
   factor *= text.NumberInRange("the candela multiplier", 0, kLargestCandela, "between 0 and 1e30");
   const size_t vertical = text.Count("vertical angles", 2);
   text.SkipSeparators();

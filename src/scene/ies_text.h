@@ -1,7 +1,7 @@
-// What an LM-63 file says, as numbers: the header, and candela over the angles that it measures. Internal to scene/.
+// Parser of LM-63 files: the header, and candela over the measured angles. Internal to scene/.
 //
-// A file is label lines up to the line TILT=…, then numbers in a fixed order, separated by blanks, commas and line ends
-// ([LM-63-02], [LM-63-19]; older editions differ in the first line and in the meaning of one number).
+// A file has label lines up to the line TILT=…, then numbers in a fixed order, separated by blanks, commas and line
+// ends ([LM-63-02], [LM-63-19]; older editions differ in the first line and in the meaning of one number).
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@ enum class IesPhotometry { TypeC = 1, TypeB = 2, TypeA = 3 };
 struct IesFile {
   IesPhotometry type = IesPhotometry::TypeC;
   std::vector<double> vertical, horizontal;  // degrees, ascending
-  // With all multipliers, never negative; vertical angles fastest.
+  // Including all multipliers; never negative; vertical angles fastest.
   std::vector<double> candela;
   FileLocation verticalWhere, horizontalWhere;  // of the first angle
 };

@@ -20,7 +20,7 @@ bool StartsNumber(char c) {
   return (c >= '0' && c <= '9') || c == '-' || c == '+' || c == '.';
 }
 
-// Length of the UTF-8 sequence at the start of `s`, 0 when it is none (overlong forms and surrogates included).
+// Length of the UTF-8 sequence at the start of `s`; 0 if it is invalid (including overlong forms and surrogates).
 size_t Utf8Length(std::string_view s) {
   const auto byte = [&](size_t i) { return i < s.size() ? static_cast<unsigned char>(s[i]) : 0u; };
   const auto continues = [&](size_t i) { return (byte(i) & 0xc0u) == 0x80u; };
@@ -92,7 +92,7 @@ double ParseNumber(std::string_view word, const FileLocation& where) {
   if (signTwice || error == std::errc::invalid_argument || end != digits.data() + digits.size()) {
     throw Error(where, "expected a number, found " + Quoted(word));
   }
-  // from_chars reports too small and too large alike; too small is 0.
+  // from_chars reports underflow and overflow alike; underflow becomes 0.
   if (error == std::errc::result_out_of_range) value = std::strtod(std::string(digits).c_str(), nullptr);
   if (!(std::abs(value) <= static_cast<double>(std::numeric_limits<float>::max()))) {
     throw Error(where, "the number " + std::string(word) + " is too large (at most 3.4e38)");

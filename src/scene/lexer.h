@@ -1,8 +1,9 @@
-// Tokens of a scene file: words, quoted strings, brackets and, on a fast path, numbers. Internal to scene/, but for
-// what reads a number, which readers of other text files use.
+// Tokens of a scene file: words, quoted strings, brackets and, on a fast path, numbers. Internal to scene/, except for
+// the functions that read a number, which readers of other text files use.
 //
-// Lines end with LF or CR LF; columns count bytes from 1. A `#` starts a comment. Strings know the escapes
-// \" \\ \' \n \t \r \b \f and end on the line they start on.
+// Lines end with LF or CR LF; columns count bytes from 1. `#` starts a comment. Strings end on the line on which they
+// start and know the escapes
+//   \" \\ \' \n \t \r \b \f
 #pragma once
 
 #include <cstdint>
@@ -18,21 +19,22 @@ enum class TokenKind { End, Word, String, Open, Close };  // Word: a statement, 
 
 struct Token {
   TokenKind kind = TokenKind::End;
-  std::string text;  // of a string: without quotes, escapes resolved
+  std::string text;  // strings: without quotes, escapes resolved
   FileLocation where;
 };
 
 // For messages: `the string "x"`, `"Shape"`, `"["`, `the end of the file`.
 std::string Describe(const Token& token);
 
-// The number that `word` is. Throws Errors for what is none, is not finite, or is beyond the range of a float.
+// The number that `word` denotes. Throws an Error if it is not a number, not finite, or beyond the range of a float.
 double ParseNumber(std::string_view word, const FileLocation& where);
-// The same for a whole number that fits 32 bits.
+// The same for an integer of 32 bits.
 int64_t ParseInteger(std::string_view word, const FileLocation& where);
 bool LooksLikeNumber(std::string_view word);
-// "nan", "-inf" and the like.
+// True for "nan", "-inf" and similar words.
 bool IsNonFinite(std::string_view word);
-// A word of a text file for messages: quoted, printable, not longer than a line.
+// A word of a text file for messages: quoted, cut to 32 characters, with a question mark for everything but printable
+// ASCII.
 std::string ShownWord(std::string_view word);
 
 class Lexer {
@@ -42,7 +44,8 @@ class Lexer {
 
   Token Next();
 
-  // For lists of numbers: reads one when that is what comes next; otherwise false, and nothing but space is consumed.
+  // For lists of numbers: reads a number if one follows. Otherwise returns false, and only white space and comments are
+  // consumed.
   bool TryNumber(double& number);
   bool TryInteger(int64_t& number);
 

@@ -1,10 +1,9 @@
-// The spectra that pbrt-v4 knows by name, as RGB: η and k of metals and oxides, indices of glasses, and CIE
-// illuminants.
+// The named spectra of pbrt-v4 as RGB: η and k of metals and oxides, indices of glasses, and CIE illuminants.
 //
-// Metals and oxides: values at 630, 532 and 465 nm, within 0.5 % of pbrt-v4's tables: Ag, Al, Au and Cu, which are
-// those collected in [Palik85], MgO by the formula of [Stephens52], TiO2 by that of [Devore51] for the
-// extraordinary ray of rutile. CuZn (brass, 70 % Cu): [Querry85]. Glasses: n_d of the maker's data sheet, without
-// dispersion. Illuminants: their chromaticities for the observer of 1931 [CIE15].
+// Metals and oxides: values at 630, 532 and 465 nm, within 0.5 % of the tables of pbrt-v4. Ag, Al, Au and Cu are those
+// collected in [Palik85]; MgO is by the formula of [Stephens52], TiO2 by that of [Devore51] for the extraordinary ray
+// of rutile; CuZn (brass, 70 % Cu): [Querry85]. Glasses: n_d of the manufacturer's data sheet, without dispersion.
+// Illuminants: their chromaticities for the 1931 observer [CIE15].
 #include <algorithm>
 #include <array>
 
@@ -40,7 +39,7 @@ constexpr NamedColor kCoefficients[] = {
     {"glass-FK51A", {1.4866, 1.4866, 1.4866}},
     {"glass-LASF9", {1.8503, 1.8503, 1.8503}},
     {"glass-F5", {1.6727, 1.6727, 1.6727}},
-    {"glass-F10", {1.7283, 1.7283, 1.7283}},  // pbrt-v4's F5, F10, F11 are SF5 …
+    {"glass-F10", {1.7283, 1.7283, 1.7283}},  // F5, F10, F11 of pbrt-v4 are SF5 …
     {"glass-F11", {1.7847, 1.7847, 1.7847}},
 };
 

@@ -1,6 +1,6 @@
-// Named things that are made of other named things: textures of textures, materials of materials, filters of filters.
-// Asking one asks those within it, recursively, and each as often as it is named: a few lines can describe more
-// evaluations than a machine can make. Counted while the things are made, in the order in which they name one another.
+// Nesting of named objects: textures of textures, materials of materials, filters of filters. Evaluating one evaluates
+// those within it, recursively, each as often as it is named: a few lines can describe more evaluations than a machine
+// can execute. Counted while the objects are made, each after the objects that it names.
 #pragma once
 
 #include <algorithm>
@@ -14,20 +14,20 @@ namespace lampyr {
 
 class Nesting {
  public:
-  // A thing that names nothing.
+  // An object that names no other.
   Nesting() = default;
 
-  // What is asked of `part` is asked whenever this is asked.
+  // Adds a part that is evaluated whenever this object is.
   void Add(const Nesting& part) {
     depth_ = std::max(depth_, part.depth_ + 1);
     evaluations_ += part.evaluations_;
   }
 
-  size_t Depth() const { return depth_; }              // things within one another
-  double Evaluations() const { return evaluations_; }  // of one that is asked once
+  size_t Depth() const { return depth_; }              // nesting depth
+  double Evaluations() const { return evaluations_; }  // per evaluation of this object
 
-  // Throws an Error at `where`. `what`: what they are, plural; `defined`: how many of them the scene has, which may
-  // all be asked once.
+  // Throws an Error at `where` if the depth or the number of evaluations is too large. `what`: the kind of objects,
+  // plural. `defined`: their number in the scene; that many evaluations are always allowed.
   void Check(const char* what, size_t defined, const FileLocation& where) const {
     if (depth_ > limits::kNestedNames) throw Error(where, std::string(what) + " are nested more than 256 deep");
     const size_t most = std::max(limits::kEvaluations, defined);

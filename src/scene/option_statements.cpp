@@ -1,4 +1,4 @@
-// Statements that come before WorldBegin, and ColorSpace and Option, which may come anywhere.
+// Statements before WorldBegin, and ColorSpace and Option, which are allowed anywhere.
 #include <algorithm>
 
 #include "scene/scene_parser.h"
@@ -7,7 +7,7 @@ namespace lampyr {
 
 namespace {
 
-// pbrt-v4's options and our own "plugins", spelt as they are compared: lower case, without "-" and "_".
+// The options of pbrt-v4 and "plugins" of lampyr, in normalised spelling: lower case, without "-" and "_".
 const std::vector<std::string>& OptionNames() {
   static const std::vector<std::string> names = {"disablepixeljitter",
                                                  "disabletexturefiltering",
@@ -34,7 +34,7 @@ std::string Normalized(const std::string& name) {
 
 }  // namespace
 
-// A statement of which a scene has one.
+// A statement that a scene has once.
 void SceneParser::ReadOnly(const Token& statement, StatementDescription& into) {
   if (into.where.file) {
     diagnostics_.Warn(statement.where,
@@ -85,7 +85,7 @@ void SceneParser::ReadPlugins() {
   for (value = tokens_.Next(); value.kind != TokenKind::Close; value = tokens_.Next()) add(std::move(value));
 }
 
-// Option "name" value. The value tells its type: true, false, a number or a string.
+// Option "name" value. The type follows from the value: true, false, a number or a string.
 void SceneParser::Option(const Token& statement) {
   Token name = tokens_.Next();
   if (name.kind != TokenKind::String) {

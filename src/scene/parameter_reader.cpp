@@ -18,7 +18,7 @@ const std::vector<std::string>& TypeNames() {
   return names;
 }
 
-// What pbrt-v3 and others say for a type of pbrt-v4.
+// The pbrt-v4 name of a parameter type as pbrt-v3 and others call it; null if unknown.
 const char* ModernName(const std::string& type) {
   constexpr const char* kOld[][2] = {
       {"color", "rgb"},    {"point", "point3"}, {"vector", "vector3"}, {"normal3", "normal"}, {"int", "integer"},
@@ -107,7 +107,7 @@ void AddValue(Parameter& parameter, ValueKind kind, Token token) {
   }
 }
 
-// A spectrum is numbers or names: the first value decides.
+// A spectrum is a list of numbers or of names: the first value decides.
 ValueKind KindOfValue(const Parameter& parameter, const Token& token) {
   if (parameter.type != ParameterType::Spectrum) return KindOf(parameter.type);
   if (!parameter.strings.empty()) return ValueKind::String;
@@ -123,7 +123,7 @@ void GiveBackSpareMemory(std::vector<T>& values) {
 void ReadList(Lexer& lexer, Parameter& parameter, const FileLocation& open) {
   const bool numbers = KindOf(parameter.type) == ValueKind::Number;
   while (true) {
-    // The fast paths for what is most of a large scene's text.
+    // Fast paths for numbers, which are most of the text of a large scene.
     if (numbers && parameter.strings.empty()) {
       for (double value = 0; lexer.TryNumber(value);) parameter.numbers.push_back(value);
     } else if (parameter.type == ParameterType::Integer) {

@@ -1,4 +1,4 @@
-// Reads the parameters of a statement: "type name" value, or "type name" [ values … ]. Internal to scene/.
+// Reader for the parameters of a statement: "type name" value, or "type name" [ values … ]. Internal to scene/.
 #pragma once
 
 #include <vector>
@@ -8,8 +8,8 @@
 
 namespace lampyr {
 
-// All parameters up to the next token that is no string. rgb values are taken to be in `colorSpace`.
-// Throws located Errors: unknown types, values of another type, lists without an end, the same name twice.
+// Reads parameters up to the next token that is not a string. rgb values are interpreted in `colorSpace`. Throws
+// located Errors for unknown types, values of the wrong type, unterminated lists and duplicate names.
 std::vector<Parameter> ReadParameters(TokenStream& tokens, RgbColorSpace colorSpace);
 
 }  // namespace lampyr

@@ -1,5 +1,5 @@
-// Parameters of a scene statement: typed, with the place of each in the file, and a record of which were used, so that
-// a misspelt one is found. The numbers are double, as read.
+// Parameters of a scene statement: typed, with their places in the file, and a record of which were used, by which
+// misspelt ones are found. Numbers are double, as read.
 #pragma once
 
 #include <cstdint>
@@ -43,16 +43,16 @@ struct Parameter {
   std::vector<int64_t> integers;
   std::vector<std::string> strings;  // string, texture name, spectrum name or file (made relative to the scene file)
   std::vector<bool> bools;
-  RgbColorSpace colorSpace = RgbColorSpace::Srgb;  // of `numbers` when the type is Rgb; ParameterList's getters convert
-  bool mayBeUnused = false;                        // a default that an Attribute statement gave
-  mutable bool used = false;  // asked for by whoever reads the list; single-threaded, while the scene is built
+  RgbColorSpace colorSpace = RgbColorSpace::Srgb;  // of `numbers`, for type Rgb; getters of ParameterList convert
+  bool mayBeUnused = false;                        // a default from an Attribute statement
+  mutable bool used = false;                       // read by a getter; single-threaded, while the scene is built
 
   size_t ValueCount() const { return numbers.size() + integers.size() + strings.size() + bools.size(); }
 };
 
-// What a colour stands for decides how a spectrum becomes RGB ([Pharr23 §4.6]).
+// The meaning of a colour, which determines how a spectrum becomes RGB ([Pharr23 §4.6]).
 enum class SpectrumRole {
-  Albedo,      // a reflectance: seen under the white of the colour space
+  Albedo,      // reflectance: its colour under the white of the colour space
   Unbounded,   // η, k, σ: averaged per channel
   Illuminant,  // light: the colour at luminance 1 of spectra and blackbodies (pbrt-v4's unit rule); rgb as given
 };
@@ -60,7 +60,7 @@ enum class SpectrumRole {
 class ParameterList {
  public:
   ParameterList() = default;
-  // `sceneFile`: the file that the scene was read from, when the statement may be in an included one (GetFile).
+  // `sceneFile`: the main scene file, if the statement may be in an included one (GetFile).
   ParameterList(FileLocation statement, std::string statementName, std::vector<Parameter> parameters,
                 std::shared_ptr<const std::string> sceneFile = nullptr)
       : where_(std::move(statement)),
@@ -68,7 +68,7 @@ class ParameterList {
         parameters_(std::move(parameters)),
         sceneFile_(std::move(sceneFile)) {}
 
-  // Each getter gives the default when there is no such parameter, and throws a located Error when it has another type,
+  // Each getter returns the default if there is no such parameter, and throws a located Error if it has another type,
   // the wrong number of values, or a number that is not finite.
   double GetFloat(const std::string& name, double defaultValue) const;
   int GetInteger(const std::string& name, int defaultValue) const;
@@ -88,24 +88,24 @@ class ParameterList {
   std::vector<Point3d> GetPoint3s(const std::string& name) const;  // also accepts vector3 and normal
   std::vector<Color> GetColors(const std::string& name, SpectrumRole role) const;
 
-  // A file name made absolute: against the folder of the scene (as pbrt-v4 does) when it is there, else against the
-  // folder of the file that wrote it (an included one may lie elsewhere). "" when absent.
+  // An absolute file name: relative to the folder of the scene (as in pbrt-v4) if the file exists there, otherwise
+  // relative to the folder of the file that contains the statement (an included one may be elsewhere). "" if absent.
   std::string GetFile(const std::string& name) const;
-  // The same for a name that is at hand. "" for "".
+  // The same for a given name. "" for "".
   std::string ResolveFile(const std::string& name, const FileLocation& writtenAt) const;
 
-  // The texture's name when the parameter `name` is of type "texture".
+  // The name of the texture if the parameter `name` is of type "texture".
   std::optional<std::string> GetTextureName(const std::string& name) const;
-  // The parameter whatever its type, or null. Marks it as used.
+  // The parameter of any type, or null. Marks it as used.
   const Parameter* Find(const std::string& name) const;
 
   const FileLocation& Where() const { return where_; }  // of the statement
-  FileLocation WhereOf(const std::string& name) const;  // of the parameter, or of the statement when it is absent
+  FileLocation WhereOf(const std::string& name) const;  // of the parameter; of the statement if absent
   const std::string& Owner() const { return owner_; }   // "Shape \"sphere\"", for messages
   const std::vector<Parameter>& All() const { return parameters_; }
 
-  // Warns about (`alsoInPbrt`) or throws for each parameter that nobody asked for, with the nearest of `known`.
-  // `alsoInPbrt`: names that pbrt-v4 has here and lampyr does not use.
+  // For each parameter that was not used: warns if its name is in `alsoInPbrt` (parameters of pbrt-v4 that lampyr does
+  // not support) or in `known` (no effect here); otherwise throws an Error that suggests the nearest name.
   void CheckAllUsed(const std::vector<std::string>& alsoInPbrt, const std::vector<std::string>& known,
                     Diagnostics& diagnostics) const;
 
@@ -116,7 +116,7 @@ class ParameterList {
   std::shared_ptr<const std::string> sceneFile_;
 
   const Parameter* FindTyped(const std::string& name, std::initializer_list<ParameterType> types) const;
-  // The values of a parameter of one of `types`, `perItem` numbers each, or null; exactly one item when `single`.
+  // The parameter, of one of `types`, with `perItem` numbers per item, or null if absent; exactly one item if `single`.
   const Parameter* FindNumbers(const std::string& name, std::initializer_list<ParameterType> types, size_t perItem,
                                bool single) const;
   std::vector<Color> ColorsOf(const Parameter& parameter, SpectrumRole role) const;

@@ -1,4 +1,4 @@
-// The files that a scene names: meshes, textures, spectra, profiles.
+// The files that a scene refers to: meshes, textures, spectra, profiles.
 #pragma once
 
 #include <string>
@@ -8,11 +8,11 @@
 
 namespace lampyr {
 
-// Absolute paths of all files that parameters name, sorted, each once: every text of a parameter that is the name of a
-// file that is there. Not that of the film, which names the file to be written.
+// Absolute paths of all existing files named by string values of parameters, sorted, without duplicates. Parameters of
+// the film are excluded, since they name the file to be written.
 std::vector<std::string> ReferencedFiles(const SceneDescription& scene);
 
-// A fingerprint of what is in the files, hexadecimal; what cannot be read counts as empty.
+// Hexadecimal hash of the contents of the files; an unreadable file counts as empty.
 std::string HashOfFiles(const std::vector<std::string>& files);
 
 }  // namespace lampyr

@@ -1,5 +1,4 @@
-// What can only be checked when the whole scene is read: names that are used are defined somewhere, and no object
-// contains itself.
+// Checks that need the whole scene: every name that is used is defined, and no object contains itself.
 #include "scene/scene_parser.h"
 
 namespace lampyr {
@@ -32,12 +31,12 @@ void SceneParser::CheckReferences() const {
   }
 }
 
-// Depth first without recursion: objects may be nested as deep as a file is long. And as they multiply, a few lines can
-// ask for more than any memory holds.
+// Depth-first search without recursion: objects may be nested as deep as a file is long. Nested instances multiply, so
+// that a few lines can ask for more than any memory holds.
 void SceneParser::CountInstances() {
   enum class Mark { New, Open, Done };
   std::vector<Mark> marks(scene_.objects.size(), Mark::New);
-  std::vector<double> within(scene_.objects.size(), 0);  // instances that one of the object brings along
+  std::vector<double> within(scene_.objects.size(), 0);  // nested instances per instance of the object
   const auto count = [&](const std::vector<InstanceDescription>& list) {
     constexpr double most = 1e7;
     double sum = 0;

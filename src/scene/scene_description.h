@@ -1,5 +1,5 @@
-// A scene as its file describes it: plain data, double precision, nothing built and no file but the scene's own
-// (and its includes) opened. Every part knows the place it was written at.
+// A scene as described by its file: plain data in double precision. Nothing is built, and no file but the scene's own
+// (and its includes) is opened. Every part holds its place in the file.
 #pragma once
 
 #include <filesystem>
@@ -13,13 +13,14 @@
 
 namespace lampyr {
 
-// A placed thing: transforms at shutter open and close (equal when nothing moves). Local space to world space.
+// Transforms from local to world space at shutter open and close, equal without motion.
 struct Placement {
   Transform start, end;
   bool IsAnimated() const { return !(start == end); }
 };
 
-// A statement such as `Camera "perspective" …`: its type and parameters. An empty type: the statement was not given.
+// A statement such as `Camera "perspective" …`: its type and parameters. The type is empty if the statement was not
+// given.
 struct StatementDescription {
   std::string type;
   ParameterList parameters;
@@ -33,14 +34,14 @@ struct NamedMaterialDescription {
 
 struct TextureDescription {
   std::string name;
-  bool isSpectrum = false;       // a colour, not a float
+  bool isSpectrum = false;       // colour, not float
   StatementDescription texture;  // type: "imagemap", "scale", …
   Placement placement;
 };
 
 struct LightFilterDescription {
   StatementDescription filter;
-  Placement placement;  // of its own coordinate system, or of the one it names
+  Placement placement;  // of its own coordinate system, or of the named one
 };
 
 struct LightDescription {
@@ -54,7 +55,7 @@ struct AreaLightDescription : StatementDescription {
   int filter = -1;  // index into lightFilters, -1 none
 };
 
-// A material by reference: index into `materials`, or a name among `namedMaterials`.
+// Reference to a material: an index into `materials`, or a name among `namedMaterials`.
 struct MaterialReference {
   int index = -1;
   std::string name;
@@ -68,8 +69,7 @@ struct ShapeDescription {
   MaterialReference material;
   int areaLight = -1;  // index into areaLights, -1 none
   std::string insideMedium, outsideMedium;
-  // Attributes by target ("shape", "lightfilter", "lighting", …) that are in force and not parameters of the shape
-  // itself.
+  // Attributes in force by target ("shape", "lightfilter", "lighting", …) that are not parameters of the shape itself.
   std::map<std::string, ParameterList> attributes;
 };
 
@@ -77,7 +77,7 @@ struct ObjectDescription {
   std::string name;
   FileLocation where;
   std::vector<ShapeDescription> shapes;
-  std::vector<struct InstanceDescription> instances;  // of other objects, within this one
+  std::vector<struct InstanceDescription> instances;  // of other objects, in this one
 };
 
 struct InstanceDescription {
@@ -86,7 +86,7 @@ struct InstanceDescription {
   Placement placement;
 };
 
-// A shared library with types that the scene names: a file beside the scene's, or a name to look for.
+// A shared library with types that the scene uses: a file relative to the scene, or a name to be searched for.
 struct PluginReference {
   std::string name;
   FileLocation where;
@@ -94,8 +94,8 @@ struct PluginReference {
 
 struct SceneDescription {
   std::filesystem::path file;
-  std::string contentHash;         // of all the text that was read, hexadecimal
-  std::vector<std::string> files;  // the scene's own and those that it includes
+  std::string contentHash;         // of all text read, hexadecimal
+  std::vector<std::string> files;  // the main file and those it includes
 
   StatementDescription camera, film, pixelFilter, sampler, integrator, accelerator;
   Placement cameraToWorld;
@@ -106,20 +106,21 @@ struct SceneDescription {
   std::vector<StatementDescription> materials;
   std::vector<NamedMaterialDescription> namedMaterials;
   std::vector<TextureDescription> textures;
-  std::vector<LightFilterDescription> lightFilters;  // without those of type "none"
+  std::vector<LightFilterDescription> lightFilters;  // except those of type "none"
   std::vector<AreaLightDescription> areaLights;
   std::vector<LightDescription> lights;
   std::vector<ShapeDescription> shapes;
   std::vector<ObjectDescription> objects;
   std::vector<InstanceDescription> instances;
-  double instanceCount = 0;  // with those that objects bring along
+  double instanceCount = 0;  // including those nested in objects
 };
 
-// Reads a scene file (plain or gzipped) and its includes. Throws Error with file, line and column; warns through
+// Reads a scene file (plain or gzipped) and its includes. Throws an Error with file, line and column; warnings go to
 // `diagnostics`.
 SceneDescription ReadScene(const std::filesystem::path& file, Diagnostics& diagnostics);
 
-// The same for text in memory; `name` stands for the file in messages, relative files are looked for beside it.
+// The same for text in memory. `name` stands for the file in messages; relative file names are resolved against its
+// folder.
 SceneDescription ParseScene(const std::string& text, const std::filesystem::path& name, Diagnostics& diagnostics);
 
 }  // namespace lampyr

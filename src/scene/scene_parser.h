@@ -1,8 +1,8 @@
-// The parser of scene files: statements change a graphics state, or add to the scene with the state that is in force.
-// Internal to scene/; the semantics are pbrt-v4's (file format documentation, [Pharr23 appendix C]).
+// The parser of scene files: statements change a graphics state, or add to the scene with the current state. Internal
+// to scene/; the semantics are those of pbrt-v4 (file format documentation, [Pharr23 appendix C]).
 //
 // statements.cpp has the table of all statements; transform_statements.cpp, option_statements.cpp and
-// world_statements.cpp carry them out; scene_checks.cpp looks at references when all is read.
+// world_statements.cpp execute them; scene_checks.cpp checks references at the end.
 #pragma once
 
 #include <array>
@@ -24,11 +24,11 @@ namespace lampyr {
 // Transforms at shutter open and close.
 using TransformPair = std::array<Transform, 2>;
 
-// What AttributeBegin saves and AttributeEnd brings back.
+// The state that AttributeBegin saves and AttributeEnd restores.
 struct GraphicsState {
   TransformPair ctm;  // current transformation matrix: local to world
   std::array<bool, 2> active = {true, true};
-  // The statement that made the CTM singular, and its place: `ctm` is what it was before. Absent: it is not singular.
+  // The statement that made the CTM singular; `ctm` is then the matrix before it. Absent: not singular.
   std::optional<Token> singular;
   bool reverseOrientation = false;
   RgbColorSpace colorSpace = RgbColorSpace::Srgb;
@@ -36,7 +36,7 @@ struct GraphicsState {
   int areaLight = -1;
   int lightFilter = -1;
   std::string insideMedium, outsideMedium;
-  // By target; shared, so that scopes are cheap to save.
+  // By target; shared, so that saving a scope is cheap.
   std::map<std::string, std::shared_ptr<const std::vector<Parameter>>> attributes;
 };
 
@@ -74,18 +74,18 @@ class SceneParser {
   SceneDescription scene_;
   GraphicsState state_;
   std::vector<Scope> scopes_;
-  size_t lowestScope_ = 0;  // scopes below this were opened by the file that imports the current one
+  size_t lowestScope_ = 0;  // scopes below this belong to the file that imports the current one
   bool inWorld_ = false;
   int currentObject_ = -1;
   std::map<std::string, TransformPair> coordinateSystems_;
-  // What an Import has to put back: the names that were set since, and what they were before, if anything.
+  // Coordinate systems to be restored at the end of an Import: the names set since, and their previous values, if any.
   std::vector<std::pair<std::string, std::optional<TransformPair>>> changedSystems_;
-  size_t imports_ = 0;  // within one another, at this place
+  size_t imports_ = 0;  // current nesting depth
   std::set<std::pair<std::string, bool>> textureNames_;
   std::map<std::string, FileLocation> namedMaterials_, media_;
   std::map<std::string, int> objects_;
   std::vector<NameUse> mediumUses_, materialUses_;
-  Token previous_;  // the statement before, for messages
+  Token previous_;  // the previous statement, for messages
 
   // statements.cpp
   static const std::vector<Statement>& Statements();
@@ -94,7 +94,7 @@ class SceneParser {
   [[noreturn]] void UnknownStatement(const Token& word) const;
   void CheckScopesClosed(size_t lowest) const;
 
-  // Reading what a statement takes.
+  // Reading the arguments of a statement.
   std::string ReadString(const Token& statement, const char* what);
   template <size_t N>
   std::array<double, N> ReadNumbers(const Token& statement);
@@ -104,12 +104,12 @@ class SceneParser {
   ParameterList ReadList(const Token& statement, const std::string& owner, const char* attributeTarget);
   // Throws an Error if the CTM is singular.
   Placement PlacementOf(const Token& statement) const;
-  // True if the CTM is singular. Then what `statement` places has no extent: it is left out, with a warning.
+  // True if the CTM is singular. The object that `statement` places then has no extent, and is left out with a warning.
   bool IsSquashed(const Token& statement) const;
 
   // transform_statements.cpp
   void Concat(const Token& statement, const Transform& transform);
-  // False: it is singular. Throws an Error for what leaves the range of floats.
+  // False if `transform` is singular. Throws an Error if it leaves the range of floats.
   static bool IsInvertible(const Token& statement, const Transform& transform);
   void Identity(const Token&);
   void Translate(const Token&);

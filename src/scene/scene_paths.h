@@ -1,4 +1,4 @@
-// Where the files are that a scene file names.
+// Resolution of the file names in scene files.
 #pragma once
 
 #include <filesystem>
@@ -6,10 +6,10 @@
 
 namespace lampyr {
 
-// `name` as written in the file `writer` of the scene `sceneFile`. pbrt-v4 looks beside the scene's file, also for
-// names in included files; when nothing is there, the folder of the file that wrote the name is tried. Absolute names
-// stay. When neither exists: the path beside the scene's file, so that the message of whoever opens it says where to
-// put it.
+// Resolves `name`, which occurs in the file `writer` of the scene `sceneFile`. As in pbrt-v4, relative to the folder of
+// the scene file, also for names in included files; if nothing exists there, relative to the folder of `writer`.
+// Absolute names are unchanged. If neither exists: the path in the folder of the scene file, so that the message of a
+// failed open says where the file should be.
 std::filesystem::path FindSceneFile(const std::string& name, const std::string& writer, const std::string& sceneFile);
 
 }  // namespace lampyr

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kGrid = 1;  // nm
 
-// A piecewise linear spectrum at `lambda`; `outside` continues the ends.
+// A piecewise linear spectrum at `lambda`. Beyond its ends it is 0, or constant if `continueEnds`.
 double Evaluate(const std::vector<SpectrumSample>& spectrum, double lambda, bool continueEnds) {
   const auto above = std::lower_bound(spectrum.begin(), spectrum.end(), lambda,
                                       [](const SpectrumSample& s, double l) { return s.wavelength < l; });
@@ -25,8 +25,8 @@ double Evaluate(const std::vector<SpectrumSample>& spectrum, double lambda, bool
   return std::lerp(a.value, b.value, (lambda - a.wavelength) / (b.wavelength - a.wavelength));
 }
 
-// Wavelengths to integrate over: every nanometre of the visible, and around each of the spectrum's own samples, so that
-// a narrow line is not stepped over and a jump at its end is one.
+// Wavelengths to integrate over: every nanometre of the visible range, and around each sample of the spectrum, so that
+// narrow lines are not missed and jumps at the ends remain jumps.
 std::vector<double> Wavelengths(const std::vector<SpectrumSample>& spectrum) {
   std::vector<double> list;
   for (double lambda = kLambdaMin; lambda <= kLambdaMax; lambda += kGrid) list.push_back(lambda);
@@ -50,14 +50,14 @@ Vector3d Integrate(const std::vector<double>& wavelengths, const std::function<V
   return sum;
 }
 
-// Integrals over D65: they calibrate the fitted matching functions, so that D65 is exactly white.
+// Integrals over D65, which calibrate the fitted matching functions so that D65 is exactly white.
 const Vector3d& WhiteIntegral() {
   static const Vector3d white =
       Integrate(Wavelengths({}), [](double lambda) { return ColorMatching(lambda) * DaylightD65(lambda); });
   return white;
 }
 
-// XYZ with the white's Y = 1, from integrals over the matching functions.
+// XYZ (Y = 1 for white) from integrals over the matching functions.
 Vector3d CalibratedXyz(const Vector3d& integrals) {
   return integrals / WhiteIntegral() * XyzOfChromaticity(0.3127, 0.3290);
 }
@@ -80,7 +80,7 @@ Color FunctionToColor(const std::function<double(double)>& f, const std::vector<
   if (role == SpectrumRole::Albedo) {
     const auto reflected = [&](double l) { return ColorMatching(l) * (DaylightD65(l) * f(l)); };
     const auto white = [](double l) { return ColorMatching(l) * DaylightD65(l); };
-    // Both on the same grid: a reflectance of 1 is white to the last bit.
+    // Both integrals on the same grid: a reflectance of 1 is white to the last bit.
     const Vector3d xyz =
         Integrate(wavelengths, reflected) / Integrate(wavelengths, white) * XyzOfChromaticity(0.3127, 0.3290);
     const Color color = ClampToGamut(XyzToRec709(xyz));
@@ -98,7 +98,7 @@ Color SpectrumToColor(const std::vector<SpectrumSample>& spectrum, SpectrumRole 
   double largest = 0;
   for (const SpectrumSample& sample : spectrum) largest = std::max(largest, sample.value);
   if (largest == 0) return Color(0.0f);
-  // Scaled to 1 while it is integrated: no over- or underflow, whatever the unit.
+  // Scaled to a maximum of 1 for the integration: no overflow or underflow, whatever the unit.
   const auto f = [&](double lambda) { return Evaluate(spectrum, lambda, continueEnds) / largest; };
   const std::vector<double> wavelengths = Wavelengths(spectrum);
   if (role == SpectrumRole::Illuminant) return FunctionToColor(f, wavelengths, role);

@@ -1,11 +1,12 @@
-// From spectra to linear RGB: pairs of wavelength and value, blackbodies, and the spectra that pbrt-v4 knows by name.
+// Conversion of spectra to linear RGB: pairs of wavelength and value, blackbodies, and the named spectra of pbrt-v4.
 //
-// How each role is computed:
-//  - Illuminant: the colour of the light at luminance (Y) 1; a colour outside the gamut loses its negative components
-//    and keeps its luminance.
-//  - Albedo: the colour of the surface under D65, in [0,1]. A value of 1 at all wavelengths is exactly white.
-//  - Unbounded (η, k, σ): per channel an average, weighted by the positive part of the channel's matching function
-//    times D65. A constant spectrum gives that constant.
+// By role:
+// - Illuminant: the colour of the light at luminance (Y) 1. A colour outside of the gamut loses its negative components
+//   and keeps its luminance.
+// - Albedo: the colour of the surface under D65, in [0,1]. A value of 1 at all wavelengths is exactly white.
+// - Unbounded (η, k, σ): per channel, an average weighted by the positive part of the channel's matching function times
+//   D65. A constant spectrum gives that constant.
+//
 // Wavelengths are in nanometres, temperatures in kelvin.
 #pragma once
 
@@ -23,21 +24,21 @@ struct SpectrumSample {
   double value = 0;
 };
 
-// Linear between the samples, zero outside them, as in pbrt-v4; for the role Unbounded the ends are continued instead.
-// Wavelengths increase and values are not negative (SpectrumFromPairs sees to it).
+// Interpolates linearly between the samples. Outside of them the spectrum is 0, as in pbrt-v4; for the role Unbounded,
+// the ends are continued. Wavelengths have to increase and values must not be negative (SpectrumFromPairs checks this).
 Color SpectrumToColor(const std::vector<SpectrumSample>& spectrum, SpectrumRole role);
 
-// A blackbody of `kelvin` > 0; roles other than Illuminant see it scaled to a maximum of 1.
+// The colour of a blackbody of `kelvin` > 0; for roles other than Illuminant, of its spectrum scaled to a maximum of 1.
 Color BlackbodyToColor(double kelvin, SpectrumRole role);
 
-// Checks a list λ0 v0 λ1 v1 …: at least two pairs, increasing wavelengths, nothing negative. Throws an Error at
-// `where`.
+// Converts a list λ0 v0 λ1 v1 …. Throws an Error at `where` unless it has at least two pairs, increasing wavelengths
+// and no negative values.
 std::vector<SpectrumSample> SpectrumFromPairs(const std::vector<double>& numbers, const FileLocation& where);
 
-// A text file of such pairs, `#` starting a comment. Throws Errors that name the file.
+// Reads a text file of such pairs; `#` starts a comment. Throws Errors that name the file.
 std::vector<SpectrumSample> ReadSpectrumFile(const std::filesystem::path& file, const FileLocation& where);
 
-// "metal-Au-eta", "glass-BK7", "stdillum-D65", …; nothing when there is no such spectrum.
+// "metal-Au-eta", "glass-BK7", "stdillum-D65", …; nullopt for other names.
 std::optional<Color> FindNamedSpectrum(const std::string& name, SpectrumRole role);
 const std::vector<std::string>& SpectrumNames();
 

@@ -1,4 +1,4 @@
-// The table of all statements, and what their readers share.
+// The table of all statements, and shared functions for reading them.
 #include <unordered_map>
 
 #include "scene/scene_parser.h"
@@ -102,7 +102,7 @@ void SceneParser::UnknownStatement(const Token& word) const {
     const std::string after = previous_.text.empty() ? "" : "; " + previous_.text + " takes no more";
     throw Error(word.where, "expected a statement, found " + Describe(word) + after);
   }
-  // Of pbrt-v3 and before, with what it became.
+  // Statements of pbrt-v3 and earlier, with their successors.
   constexpr const char* kFormer[][2] = {{"Filter", "PixelFilter"},          {"SurfaceIntegrator", "Integrator"},
                                         {"VolumeIntegrator", "Integrator"}, {"Renderer", "Integrator"},
                                         {"Volume", "MakeNamedMedium"},      {"Surface", "Material"}};

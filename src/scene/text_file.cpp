@@ -24,7 +24,7 @@ std::string ReadBytes(const std::filesystem::path& file, const FileLocation& whe
   std::error_code ignored;
   const std::filesystem::file_status status = std::filesystem::status(file, ignored);
   if (std::filesystem::is_directory(status)) Fail(file, where, "is a folder, not a scene file");
-  // A scene may come through a pipe; a file that it names may not: nobody might ever write to it.
+  // A scene may come through a pipe, but a file that it names may not: a pipe without a writer would block.
   const bool isPipe = std::filesystem::is_fifo(status) && !where.file;
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) && !isPipe) {
     Fail(file, where, "is not a regular file");
@@ -47,7 +47,7 @@ struct Inflater {
   ~Inflater() { inflateEnd(&stream); }
 };
 
-// All members of a gzip file, one after the other.
+// Decompresses all members of a gzip file.
 std::string Decompress(const std::string& bytes, const std::filesystem::path& file, const FileLocation& where) {
   Inflater inflater;
   z_stream& stream = inflater.stream;
@@ -97,7 +97,7 @@ std::string ReadTextFile(const std::filesystem::path& file, const FileLocation& 
 }
 
 void ContentHash::Add(std::string_view text) {
-  // Eight bytes at a time, little-endian by construction; the length goes in too, so that texts do not run together.
+  // Eight bytes at a time, explicitly little-endian. The length is hashed too, so that the boundaries of texts count.
   const auto take = [this](uint64_t word) {
     low_ = (low_ ^ word) * 0x9e3779b97f4a7c15u;
     low_ ^= low_ >> 29;

@@ -8,11 +8,12 @@
 
 namespace lampyr {
 
-// The file's bytes, decompressed when they are gzip (by content, whatever the name). Throws an Error at `where` when
-// the file is missing, unreadable, not a file, or cut off; without a `where`, the Error is about the file itself.
+// The bytes of the file, decompressed if they are gzip (by content, whatever the name). Throws an Error at `where` if
+// the file is missing, unreadable, not a regular file, or truncated, or if it grows out of proportion when
+// decompressed. Without `where`, the Error is located in the file itself.
 std::string ReadTextFile(const std::filesystem::path& file, const FileLocation& where);
 
-// A 128-bit fingerprint of texts, in hexadecimal: not cryptographic, independent of the platform.
+// A 128-bit hash of texts, in hexadecimal: not cryptographic, independent of the platform.
 class ContentHash {
  public:
   void Add(std::string_view text);

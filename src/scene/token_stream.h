@@ -1,4 +1,4 @@
-// The tokens of a scene file and of the files that it includes, as one stream. Internal to scene/.
+// The tokens of a scene file and of the files that it includes as a single stream. Internal to scene/.
 #pragma once
 
 #include <filesystem>
@@ -15,26 +15,26 @@ class TokenStream {
  public:
   explicit TokenStream(const std::filesystem::path& sceneFile);
 
-  // Opens a text; its tokens come before what is left of the file that is read now.
+  // Opens a text, whose tokens come before the rest of the current file.
   void OpenText(const std::filesystem::path& file, std::string text);
-  // The same for a file that the string `name` asks for: looked for beside the scene's file, then beside the one that
-  // asks. Throws when it cannot be read or is being read already. Gives its canonical path.
+  // The same for the file that the string token `name` gives: relative to the scene file, or else to the file that
+  // contains `name`. Throws an Error if it cannot be read, or is already open (a cycle). Returns its canonical path.
   std::filesystem::path OpenFile(const Token& name);
 
-  // End: the bottom of the stack is reached; an included file's end is passed over.
+  // The next token. End only at the bottom of the stack: the end of an included file is skipped.
   Token Next();
   void PutBack(Token token) { waiting_ = std::move(token); }
 
-  // Below this nothing is read until the mark is lifted: an imported file stands for itself.
+  // Makes the current file the bottom of the stack until RestoreBottom: an imported file is parsed on its own.
   size_t SetBottom();
   void RestoreBottom(size_t bottom);
 
-  // The lexer of the file that is read now, for lists of numbers. Nothing may have been put back.
+  // The lexer of the current file, for lists of numbers. No token may have been put back.
   Lexer& Current() { return files_.back().lexer; }
 
   const std::shared_ptr<const std::string>& SceneFile() const { return sceneFile_; }
   std::string HashOfAll() const { return hash_.Hex(); }
-  // The scene's file and those that it included or imported, each once.
+  // The scene file and those that it included or imported, without duplicates.
   std::vector<std::string> Files() const;
 
  private:
@@ -47,9 +47,9 @@ class TokenStream {
   size_t bottom_ = 0;
   std::optional<Token> waiting_;
   ContentHash hash_;
-  size_t named_ = 0;                      // files, by Include and Import
-  std::set<std::filesystem::path> seen_;  // of those, canonical
-  uint64_t repeated_ = 0;                 // bytes of files that were seen before
+  size_t named_ = 0;                      // number of files opened by Include and Import
+  std::set<std::filesystem::path> seen_;  // their canonical paths
+  uint64_t repeated_ = 0;                 // bytes of files opened repeatedly
 
   void CheckNotOpen(const std::filesystem::path& file, const std::filesystem::path& canonical,
                     const FileLocation& where) const;

@@ -1,5 +1,5 @@
-// Statements about the current transformation matrix (CTM). Each multiplies from the right: the last one written is the
-// first applied to a point.
+// Statements that change the current transformation matrix (CTM). Each multiplies from the right: the last statement is
+// applied to a point first.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -14,14 +14,14 @@ namespace lampyr {
 
 namespace {
 
-// A matrix whose determinant is lost in rounding: far below the product of its columns' lengths [Hadamard93].
+// True if the determinant is lost in rounding: far below the product of the lengths of the columns [Hadamard93].
 bool IsNearlySingular(const glm::dmat4& m) {
   const glm::dmat3 linear(m);
   const double volume = glm::length(linear[0]) * glm::length(linear[1]) * glm::length(linear[2]);
   return !(std::abs(glm::determinant(linear)) > 1e-14 * volume);
 }
 
-// Rendering keeps matrices and their inverses as floats.
+// True if all elements fit floats, in which rendering keeps matrices and their inverses.
 bool FitsFloat(const glm::dmat4& m) {
   for (int column = 0; column < 4; ++column) {
     for (int row = 0; row < 4; ++row) {
@@ -59,7 +59,7 @@ bool SceneParser::IsSquashed(const Token& statement) const {
 }
 
 void SceneParser::Concat(const Token& statement, const Transform& transform) {
-  if (state_.singular) return;  // and stays so
+  if (state_.singular) return;  // remains singular
   if (IsNearlySingular(transform.Matrix()) || !IsInvertible(statement, transform)) {
     state_.singular = statement;
     return;
@@ -129,9 +129,9 @@ std::array<double, 16> SceneParser::ReadMatrix(const Token& statement) {
 
 namespace {
 
-// Numbers come column by column, as GLM has them: 12, 13, 14 are the translation.
+// Numbers are in column-major order, as in GLM: 12, 13, 14 are the translation.
 Transform MatrixTransform(const std::array<double, 16>& n, const Token& statement) {
-  // Exporters that invert matrices leave rounding in the last row.
+  // Exporters that invert matrices leave rounding errors in the last row.
   constexpr double kRounding = 1e-5;
   const double largest = std::max({std::abs(n[3]), std::abs(n[7]), std::abs(n[11])});
   if (!(largest <= kRounding * std::abs(n[15])) || n[15] == 0) {
@@ -163,7 +163,7 @@ void SceneParser::ConcatTransform(const Token& statement) {
   Concat(statement, MatrixTransform(ReadMatrix(statement), statement));
 }
 
-// A file may be imported as often as there are coordinate systems: only what changes is kept to be put back.
+// Only changes are recorded for Import to restore: copying all coordinate systems for each Import would be quadratic.
 void SceneParser::SetCoordinateSystem(const std::string& name, const TransformPair& transforms) {
   const auto [entry, isNew] = coordinateSystems_.emplace(name, transforms);
   if (imports_ > 0) changedSystems_.emplace_back(name, isNew ? std::nullopt : std::optional(entry->second));
@@ -195,7 +195,7 @@ void SceneParser::CoordSysTransform(const Token& statement) {
     state_.ctm = found->second;
     return;
   }
-  // As in pbrt-v4 the transform stays as it is; it is likely not what was meant.
+  // As in pbrt-v4, the transform is unchanged, although that is unlikely to be intended.
   std::vector<std::string> names;
   if (coordinateSystems_.size() <= limits::kSuggestedNames) {
     for (const auto& entry : coordinateSystems_) names.push_back(entry.first);

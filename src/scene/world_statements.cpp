@@ -50,7 +50,8 @@ void SceneParser::CloseScope(const Token& statement, bool isObject) {
 
 namespace {
 
-// Attributes of lighting and lightfilter are not defaults of other statements: their names are known.
+// Attributes of the targets "lighting" and "lightfilter" are not defaults of other statements: their parameters are
+// known here.
 void CheckLinking(const std::string& target, const Parameter& parameter) {
   std::vector<std::string> names = {"subset"};
   if (target == "lighting") names.emplace_back("excludesubset");
@@ -271,8 +272,8 @@ bool IsWithin(const std::filesystem::path& file, const std::filesystem::path& fo
 
 }  // namespace
 
-// Scenes share files beside their folder. What lies farther off is read, too, and told: it may be a file that was not
-// meant to be.
+// Scenes share files beside their folder. A file farther away is read as well, but with a warning: it may be
+// unintended.
 void SceneParser::OpenNamedFile(const Token& statement) {
   const Token name = tokens_.Next();
   if (name.kind != TokenKind::String)
@@ -290,7 +291,7 @@ void SceneParser::Include(const Token& statement) {
   OpenNamedFile(statement);
 }
 
-// Like Include, but the graphics state and the coordinate systems are afterwards what they were before.
+// Like Include, but restores the graphics state and the coordinate systems afterwards.
 void SceneParser::Import(const Token& statement) {
   const GraphicsState state = state_;
   const size_t changedSystems = changedSystems_.size();

@@ -1,4 +1,4 @@
-// A float parameter seen as opacity, clamped to [0,1].
+// A float parameter as opacity, clamped to [0,1].
 #include "textures/alpha.h"
 
 #include <algorithm>

@@ -8,7 +8,7 @@
 
 namespace lampyr {
 
-// Null when the parameter is a constant of at least 1: opaque, and costs nothing.
+// Null if the parameter is a constant of at least 1: opaque surfaces cost nothing.
 std::shared_ptr<const AlphaSource> MakeAlphaSource(const FloatParameter& parameter);
 
 }  // namespace lampyr

@@ -1,11 +1,11 @@
-// Textures made of others: scale, mix, directionmix.
+// Textures that combine others: scale, mix, directionmix.
 #include "textures/texture_families.h"
 
 namespace lampyr {
 
 namespace {
 
-// (1-t)·a + t·b, without evaluating what has no weight.
+// (1-t)·a + t·b; a texture of weight 0 is not evaluated.
 template <class Value>
 Value Blend(const ParameterOf<Value>& a, const ParameterOf<Value>& b, float t, const TextureContext& where) {
   if (t == 0) return a.Evaluate(where);
@@ -53,8 +53,8 @@ ParameterOf<Value> Mixed(ParameterOf<Value> first, ParameterOf<Value> second, Fl
       std::make_shared<MixTexture<Value>>(std::move(first), std::move(second), std::move(amount)));
 }
 
-// The first texture where the surface faces along a direction or against it, the second where it runs along it, and
-// by the cosine between the two.
+// Interpolates by |cosθ| between the surface normal and a direction: `along` where they are parallel, `across` where
+// they are perpendicular.
 template <class Value>
 class DirectionMixTexture : public Texture<Value> {
  public:

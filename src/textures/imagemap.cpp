@@ -1,4 +1,4 @@
-// The imagemap texture: an image file, looked up by a 2-D mapping. value = scale · texel, then 1 - value when inverted.
+// The imagemap texture: an image file, looked up by a 2-D mapping. value = scale · texel; 1 - value if inverted.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -27,7 +27,8 @@ class FloatImageTexture : public FloatTexture {
   bool invert_;
 };
 
-// Never negative, and an albedo never above 1: images may hold anything, a surface must not create light.
+// Values are never negative, and never above 1 for an albedo: an image may contain anything, but a surface must not
+// create energy.
 class ColorImageTexture : public ColorTexture {
  public:
   ColorImageTexture(const TextureMapping2D& mapping, TexelLookup texels, float scale, bool invert, bool isAlbedo)
@@ -49,7 +50,8 @@ class ColorImageTexture : public ColorTexture {
   float largest_;
 };
 
-// The entry of `names` that the string parameter names; throws with the nearest when there is none.
+// Index of the entry of `names` that the string parameter gives; throws an Error with the nearest entry if there is
+// none.
 size_t ReadChoice(const ParameterList& parameters, const std::string& name, const std::vector<std::string>& names) {
   const std::string value = parameters.GetString(name, names[0]);
   const auto found = std::find(names.begin(), names.end(), value);
@@ -59,7 +61,7 @@ size_t ReadChoice(const ParameterList& parameters, const std::string& name, cons
   return static_cast<size_t>(found - names.begin());
 }
 
-// "gamma 2.2": its exponent; 0 for anything else.
+// The exponent of "gamma 2.2"; 0 for any other text.
 float ReadGamma(const std::string& encoding) {
   const std::string prefix = "gamma ";
   if (encoding.rfind(prefix, 0) != 0) return 0;

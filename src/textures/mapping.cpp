@@ -1,4 +1,4 @@
-// Angles are those of the texture's own space: θ from +z, φ from +x towards +y. A point on the axis has φ = 0.
+// Angles in texture space: θ from +z, φ from +x towards +y. A point on the axis has φ = 0.
 #include "textures/mapping.h"
 
 namespace lampyr {

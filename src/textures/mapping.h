@@ -1,6 +1,7 @@
-// Where a texture is looked up: from the surface to the texture's own coordinates, with pbrt-v4's meanings
-// ([Pharr23 §10.3]): uv, spherical (s = θ/π, t = φ/2π), cylindrical (s = (π+φ)/2π, t = z), planar, and the 3-D mapping by
-// the texture's transform. Passed by value and without virtual calls.
+// Texture mappings: from a surface point to texture coordinates, as in pbrt-v4 ([Pharr23 §10.3]). Passed by value,
+// without virtual calls.
+// - 2-D: uv; spherical, s = θ/π, t = φ/2π; cylindrical, s = (π+φ)/2π, t = z; planar.
+// - 3-D: by the transform of the texture.
 #pragma once
 
 #include "math/transform.h"
@@ -12,7 +13,7 @@ struct TextureMapping2D {
   enum class Kind { Uv, Spherical, Cylindrical, Planar };
   Kind kind = Kind::Uv;
   Vector2 scale{1.0f}, delta{0.0f};  // uv: scale and delta; planar: delta
-  Affine renderToTexture;            // all but uv
+  Affine renderToTexture;            // all kinds except uv
   Vector3 axisS{1, 0, 0}, axisT{0, 1, 0};  // planar
 
   Point2 Map(const TextureContext& where) const {

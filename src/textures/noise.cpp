@@ -1,4 +1,4 @@
-// Lattice coordinates are kept in float until they are hashed, so that positions of any size are legal.
+// Lattice coordinates stay in float until they are hashed, so that positions of any size are valid.
 #include "textures/noise.h"
 
 #include <cstdint>
@@ -7,9 +7,9 @@ namespace lampyr {
 
 namespace {
 
-// Positions beyond this have no fraction left in float: the lattice wraps there.
+// Positions beyond this have no fractional part in float: the lattice wraps there.
 constexpr float kLargestCoordinate = 0x1p30f;
-constexpr float kOctaveScale = 1.99f;  // just below 2, so that lattices of octaves do not coincide
+constexpr float kOctaveScale = 1.99f;  // just below 2, so that the lattices of octaves do not coincide
 
 uint32_t HashLattice(int32_t x, int32_t y, int32_t z) {
   uint32_t h = static_cast<uint32_t>(x) * 0x9e3779b1u ^ static_cast<uint32_t>(y) * 0x85ebca77u ^
@@ -21,7 +21,7 @@ uint32_t HashLattice(int32_t x, int32_t y, int32_t z) {
   return h ^ (h >> 15);
 }
 
-// Dot product of the offset with one of the 12 directions to the edges of a cube (four of them twice).
+// Dot product of the offset with one of the 12 directions to the midpoints of the edges of a cube (four of them twice).
 float GradientDot(int32_t x, int32_t y, int32_t z, float dx, float dy, float dz) {
   const uint32_t h = HashLattice(x, y, z) >> 28;
   const float u = h < 8 || h == 12 || h == 13 ? dx : dy;

@@ -1,4 +1,4 @@
-// Textures of noise: fbm, wrinkled, windy (floats) and marble (a colour).
+// Noise textures: fbm, wrinkled, windy (float) and marble (colour).
 #include <array>
 #include <cmath>
 
@@ -37,7 +37,7 @@ class WrinkledTexture : public FloatTexture {
   NoiseSettings settings_;
 };
 
-// Waves whose height follows the strength of a slowly varying wind.
+// Waves whose amplitude follows a slowly varying wind strength.
 class WindyTexture : public FloatTexture {
  public:
   explicit WindyTexture(const TextureMapping3D& mapping) : mapping_(mapping) {}
@@ -50,7 +50,7 @@ class WindyTexture : public FloatTexture {
   TextureMapping3D mapping_;
 };
 
-// Layers along y, disturbed by noise, coloured by a chain of cubic Bézier segments.
+// Layers along y, perturbed by noise, coloured by a chain of cubic Bézier segments.
 class MarbleTexture : public ColorTexture {
  public:
   MarbleTexture(const NoiseSettings& settings, float scale, float variation)

@@ -53,7 +53,7 @@ class CheckerboardTexture : public Texture<Value> {
   ParameterOf<Value> even_, odd_;
 };
 
-// One dot of radius 0.35 in about half of the unit cells, moved about within its cell.
+// One dot of radius 0.35 in about half of the unit cells, shifted at random within its cell.
 template <class Value>
 class DotsTexture : public Texture<Value> {
  public:

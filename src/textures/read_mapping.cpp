@@ -1,4 +1,4 @@
-// The mapping parameters that 2-D textures share.
+// Mapping parameters common to all 2-D textures.
 #include "textures/texture_families.h"
 
 namespace lampyr {

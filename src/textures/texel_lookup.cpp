@@ -1,5 +1,5 @@
-// Wrap modes; the octahedral one continues over the edges of the equal-area square map of the sphere ([Clarberg08]):
-// beyond an edge the image goes on mirrored about the edge's middle.
+// Wrap modes. The octahedral mode continues across the edges of the equal-area square map of the sphere ([Clarberg08]):
+// beyond an edge, the image is mirrored about the midpoint of the edge.
 #include "textures/texel_lookup.h"
 
 #include <algorithm>
@@ -35,7 +35,7 @@ bool TexelLookup::WrapInside(int& x, int& y) const {
       y = std::clamp(y, 0, height_ - 1);
       return true;
     case WrapMode::OctahedralSphere: {
-      // Whole turns first (two images along an axis are one turn), so that coordinates of any size end inside.
+      // Whole periods first (a period is two images along an axis), so that coordinates of any size end inside.
       x = Modulo(x, 2 * width_);
       y = Modulo(y, 2 * height_);
       if (x >= width_) {

@@ -1,5 +1,5 @@
-// Lookups in an image by texture coordinates: (0,0) is the lower left corner, texel centres lie at half texels.
-// No MIP maps: many samples per pixel do the filtering.
+// Image lookups by texture coordinates: (0,0) is the lower left corner, texel centres are at half-integer texel
+// positions. No MIP maps: the samples of a pixel do the filtering.
 #pragma once
 
 #include <algorithm>
@@ -18,12 +18,13 @@ class TexelLookup {
  public:
   TexelLookup(std::shared_ptr<const Image> image, WrapMode wrap, bool bilinear);
 
-  // Gray is the mean of R, G and B. Coordinates that are not finite give the texel at 0.
+  // A float is the mean of R, G and B. Coordinates that are huge or not finite are clamped to ±2^30 texels (NaN to
+  // -2^30) before wrapping.
   Color LookupColor(const Point2& st) const { return Lookup<Color>(st); }
   float LookupFloat(const Point2& st) const { return Lookup<float>(st); }
 
  private:
-  // Whole texel and fraction along one axis; coordinates beyond any use are clamped, so that the cast is defined.
+  // Integer texel and fraction along one axis. Extreme coordinates are clamped, so that the cast is defined.
   struct Texel {
     int index;
     float fraction;
@@ -36,7 +37,7 @@ class TexelLookup {
 
   template <class Value>
   Value Lookup(Point2 st) const {
-    // Repetitions are taken off first: only the border then needs the slower WrapInside.
+    // Whole repetitions are removed first, so that only the border needs the slower WrapInside.
     if (wrap_ == WrapMode::Repeat) st -= Point2(std::floor(st.x), std::floor(st.y));
     const float x = st.x * static_cast<float>(width_), y = (1 - st.y) * static_cast<float>(height_);
     if (!bilinear_) return At<Value>(Split(x).index, Split(y).index);
@@ -60,7 +61,7 @@ class TexelLookup {
     }
   }
 
-  // Moves a texel into the image by the wrap mode; false: it is black.
+  // Maps a texel outside of the image into it by the wrap mode; false if it is black.
   bool WrapInside(int& x, int& y) const;
 
   std::shared_ptr<const Image> image_;  // owns what data_ points to

@@ -1,5 +1,5 @@
-// Textures: values that vary over a surface. A material's parameter is either a constant or a texture; constants cost
-// nothing (FloatParameter, ColorParameter).
+// Textures: values that vary over a surface. A parameter of a material is either a constant or a texture; constants
+// cost nothing (FloatParameter, ColorParameter).
 #pragma once
 
 #include <memory>
@@ -8,12 +8,12 @@
 
 namespace lampyr {
 
-// Where a texture is evaluated. `position` and the geometric `normal` are in render space; textures that depend on them
-// hold their own transform.
+// The point at which a texture is evaluated. `position` and the geometric `normal` are in render space; textures that
+// depend on them hold their own transform.
 struct TextureContext {
   Point2 uv{0.0f};
   Point3 position{0.0f};
-  Normal3 normal{0.0f};  // unit, of either side
+  Normal3 normal{0.0f};  // unit, on either side
 };
 
 template <class Value>

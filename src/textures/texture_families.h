@@ -1,4 +1,4 @@
-// Private to the textures room: the families of textures, one file each, and what their makers are given.
+// Private to textures/: the families of textures, one file each, and the input of their factories.
 #pragma once
 
 #include <memory>
@@ -12,10 +12,10 @@
 
 namespace lampyr {
 
-// Everything a maker needs of one Texture statement. `role` decides how spectra among the parameters become RGB.
+// Input of a factory: one Texture statement. `role` determines how spectra among the parameters become RGB.
 struct TextureRequest {
   const TextureDescription& description;
-  const TextureLibrary& library;  // holds the textures before this one
+  const TextureLibrary& library;  // contains the preceding textures
   Affine renderToTexture;
   SpectrumRole role = SpectrumRole::Albedo;
   Diagnostics& diagnostics;
@@ -23,7 +23,7 @@ struct TextureRequest {
   const ParameterList& Parameters() const { return description.texture.parameters; }
 };
 
-// A parameter of the texture's own kind, itself perhaps a texture.
+// A parameter of the texture's own value type, possibly a texture itself.
 template <class Value>
 ParameterOf<Value> GetValue(const TextureRequest& request, const std::string& name, float defaultGray) {
   if constexpr (std::is_same_v<Value, float>) {
@@ -33,7 +33,7 @@ ParameterOf<Value> GetValue(const TextureRequest& request, const std::string& na
   }
 }
 
-// The same where pbrt takes no texture.
+// The same for parameters that cannot be textures in pbrt.
 template <class Value>
 Value GetConstant(const TextureRequest& request, const std::string& name, float defaultGray) {
   if constexpr (std::is_same_v<Value, float>) {
@@ -45,7 +45,7 @@ Value GetConstant(const TextureRequest& request, const std::string& name, float 
 
 TextureMapping2D ReadMapping2D(const TextureRequest& request);
 
-// Each throws located Errors. A result that does not vary is a constant.
+// Factories, which throw located Errors. A texture that does not vary becomes a constant.
 template <class Value>
 ParameterOf<Value> MakeScale(const TextureRequest& request);
 template <class Value>

@@ -1,4 +1,4 @@
-// Textures are made in the order of the file: one may refer to those before it, so there are no circles.
+// Textures are made in the order of the file. A texture may refer only to preceding ones, so that there are no cycles.
 #include "textures/texture_library.h"
 
 #include <algorithm>
@@ -145,7 +145,7 @@ ColorParameter TextureLibrary::GetColor(const ParameterList& parameters, const s
 
 namespace {
 
-// The image of `key`, by `read` when it is met first; read errors get the place in the scene file.
+// The image cached under `key`; calls read() at the first use. Errors of read() get the place in the scene file.
 template <class Read>
 std::shared_ptr<const Image> GetCached(std::map<std::string, std::shared_ptr<const Image>>& images,
                                        const std::string& key, const FileLocation& where, Read read) {

@@ -1,4 +1,4 @@
-// The textures and images of a scene, by name, and the parameters of materials and lights that may use them.
+// The textures and images of a scene by name, and the parameters of materials and lights that may refer to them.
 #pragma once
 
 #include <array>
@@ -17,24 +17,24 @@
 
 namespace lampyr {
 
-// Made and asked while the scene is built, by one thread. What it hands out may be used by any.
+// Used by one thread while the scene is built. Its results may be used by any thread.
 class TextureLibrary {
  public:
-  // Makes all textures of the scene. `worldToRender` places those with 3-D mappings. Throws located Errors.
+  // Makes all textures of the scene. `worldToRender` places textures with 3-D mappings. Throws located Errors.
   TextureLibrary(const std::vector<TextureDescription>& textures, const Transform& worldToRender,
                  Diagnostics& diagnostics);
   ~TextureLibrary();
 
-  // A parameter that is a number, a colour or the name of a texture. Throws when the texture does not exist.
+  // A parameter that is a number, a colour or the name of a texture. Throws an Error if the texture does not exist.
   FloatParameter GetFloat(const ParameterList& parameters, const std::string& name, float defaultValue) const;
   ColorParameter GetColor(const ParameterList& parameters, const std::string& name, const Color& defaultValue,
                           SpectrumRole role) const;
-  // The same, but absent when the parameter was not given.
+  // The same; absent if the parameter is not given.
   std::optional<FloatParameter> FindFloat(const ParameterList& parameters, const std::string& name) const;
   std::optional<ColorParameter> FindColor(const ParameterList& parameters, const std::string& name,
                                           SpectrumRole role) const;
 
-  // An image file, read once and shared. Throws an Error at `where` when it cannot be read.
+  // An image file, read once and shared. Throws an Error at `where` if it cannot be read.
   std::shared_ptr<const Image> GetImage(const std::filesystem::path& file, ImageEncoding encoding,
                                         const FileLocation& where) const;
   // The same with a power law for integer formats: linear = encoded^gamma.
@@ -42,12 +42,12 @@ class TextureLibrary {
                                                  const FileLocation& where) const;
 
  private:
-  // A colour texture as albedo, unbounded and illuminant: what it is used for decides how its spectra become RGB.
+  // A colour texture for the roles albedo, unbounded and illuminant, which determine how its spectra become RGB.
   using ColorVariants = std::array<ColorParameter, 3>;
   template <class Value>
   struct Named {
     Value value;
-    Nesting nesting;  // of textures that vary: constants are not asked
+    Nesting nesting;  // of textures that vary: constants need no evaluation
   };
 
   void Add(const TextureDescription& description, const Transform& worldToRender, Diagnostics& diagnostics);
@@ -56,8 +56,8 @@ class TextureLibrary {
 
   std::map<std::string, Named<FloatParameter>> floatTextures_;  // textures that do not vary are constants
   std::map<std::string, Named<ColorVariants>> colorTextures_;
-  Nesting* beingMade_ = nullptr;       // of the texture that is being made
-  std::vector<std::string> allNames_;  // of textures that come later, too: for messages
+  Nesting* beingMade_ = nullptr;       // of the texture being made
+  std::vector<std::string> allNames_;  // of all textures of the scene, for messages
   mutable std::map<std::string, std::shared_ptr<const Image>> images_;
 };
 

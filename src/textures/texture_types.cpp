@@ -10,7 +10,7 @@ ParameterOf<Value> MakeConstant(const TextureRequest& request) {
   return GetConstant<Value>(request, "value", 1);
 }
 
-// A middle gray stands for what cannot be read, so that the surface is seen.
+// Middle gray replaces a texture that cannot be read, so that the surface remains visible.
 template <class Value>
 ParameterOf<Value> MakePtex(const TextureRequest& request) {
   request.diagnostics.Warn(request.description.texture.where,
@@ -27,7 +27,7 @@ std::vector<std::string> With2DMapping(std::vector<std::string> names) {
 }  // namespace
 
 const std::vector<TextureType>& TextureTypes() {
-  // Mapping parameters that the chosen mapping does not use are known, and warned about.
+  // Mapping parameters without effect on the chosen mapping are accepted, with a warning.
   static const std::vector<std::string> mapping = With2DMapping({});
   static const std::vector<TextureType> types = {
       {"constant", MakeConstant<float>, MakeConstant<Color>, {"value"}, {}},

@@ -1,4 +1,4 @@
-// Private to the textures room: the table of texture types.
+// Private to textures/: the table of texture types.
 #pragma once
 
 #include <string>
@@ -8,13 +8,13 @@
 
 namespace lampyr {
 
-// A row: what makes the type as float and as colour (null: pbrt-v4 has no such texture), and its parameters.
+// A texture type: its factories as float and as colour (null: pbrt-v4 has no such texture), and its parameters.
 struct TextureType {
   const char* name;
   FloatParameter (*makeFloat)(const TextureRequest&);
   ColorParameter (*makeColor)(const TextureRequest&);
   std::vector<std::string> parameters;  // for suggestions
-  std::vector<std::string> alsoInPbrt;  // known there, without effect here
+  std::vector<std::string> alsoInPbrt;  // accepted for compatibility, without effect
 };
 
 const std::vector<TextureType>& TextureTypes();
