@@ -30,9 +30,10 @@ class Material {
   // True if it scatters by deltas only, everywhere and in every draw: no photon can be gathered there. A mix is drawn
   // anew by each path that meets it, so that a draw of it that is a delta says nothing of the draws of other paths.
   virtual bool IsAlwaysDelta() const { return false; }
-  // True if curves of it may be fibres (Bsdf::IsFibre), and if they are in every draw.
+  // True if curves of it may be fibres (Bsdf::IsFibre).
   virtual bool IsFibrous() const { return false; }
-  virtual bool IsAlwaysFibrous() const { return false; }
+  // False if it gathers photons in no draw (Bsdf::GathersPhotons).
+  virtual bool MayGatherPhotons() const { return true; }
   // Of a sheet without thickness: what of the light goes straight on without meeting it. Null: not one. Whoever traces
   // rays must see to it where SurfacePoint::isThin says so.
   virtual const ThinSurface* Thin() const { return nullptr; }

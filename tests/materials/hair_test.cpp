@@ -72,7 +72,7 @@ TEST(Hair, WhiteFurnace) {
       for (const float h : {-1.0f, -0.8f, 0.0f, 0.3f, 0.99f}) {
         for (const double theta : {-0.9, 0.2}) {
           const Bsdf bsdf = InAxes(Fibre{Color(0.0f), 1.55f, betaM, betaN, 2, h}.Make());
-          const int along = betaM < 0.2f ? 900 : 200, around = betaN < 0.2f ? 700 : 100;
+          const int along = betaM < 0.2f ? 400 : 120, around = betaN < 0.2f ? 400 : 60;
           const Integral integral = Integrate(bsdf, At(theta, 1.1), along, around);
           EXPECT_NEAR(integral.scattered, 1, 1e-3) << betaM << " " << betaN << " " << h << " " << theta;
           EXPECT_NEAR(integral.density, 1, 1e-3) << betaM << " " << betaN << " " << h << " " << theta;
@@ -142,6 +142,21 @@ TEST(Hair, GoesStraightOnWithoutABoundaryAndTiltsByItsScales) {
     // TT: θ turned by α, then mirrored.
     const Vector3 expected = At(-(0.4 + static_cast<double>(alpha) * 3.14159265358979 / 180), 0.9 + 3.14159265358979);
     EXPECT_LT(glm::length(glm::normalize(sum) - expected), 1e-3f) << alpha;
+  }
+}
+
+// R, TT and TRT through the middle of a fibre lie where the scales turn them, by -2α, α and 4α.
+TEST(Hair, LobesLieWhereTheScalesTurnThem) {
+  const double degree = 3.14159265358979 / 180, theta = 12 * degree, alpha = 5 * degree;
+  const Bsdf bsdf = InAxes(Fibre{Color(0.0f), 1.55f, 0.02f, 0.05f, 5, 0}.Make());
+  const auto density = [&](double thetaI, double turn) {
+    return bsdf.Evaluate(At(theta, 0.8), At(thetaI, 0.8 + turn), kRadiance).pdfForward.value;
+  };
+  const double turns[3] = {0, 3.14159265358979, 0}, tilts[3] = {-2, 1, 4};
+  for (int p = 0; p < 3; ++p) {
+    const double peak = -(theta + tilts[p] * alpha);
+    EXPECT_GT(density(peak, turns[p]), 5 * density(peak - 4 * degree, turns[p])) << p;
+    EXPECT_GT(density(peak, turns[p]), 5 * density(peak + 4 * degree, turns[p])) << p;
   }
 }
 
