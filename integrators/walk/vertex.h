@@ -36,8 +36,8 @@ struct Vertex {
   float ScatteringCosine(const Vector3& direction) const { return bsdf.ScatteringCosine(direction); }
   // Geometry term of an edge along `direction`: |cosθ| to the geometric normal; of a fibre, as above.
   float GeometryTerm(const Vector3& direction) const { return bsdf.GeometricCosine(direction); }
-  // False where photons have no area to be gathered from: a fibre is narrower than the radius.
-  bool GathersPhotons() const { return !bsdf.IsFibre(); }
+  // False where photons would not tell how much light there is.
+  bool GathersPhotons() const { return bsdf.GathersPhotons(); }
 
   // With shading normals importance scatters differently from radiance ([Veach97 §5.3]). Radiance that arrives from wl,
   // towards the light, is scattered by f · |wl·Ns|, whatever the direction wc towards the camera. From the light's side

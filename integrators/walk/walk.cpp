@@ -43,8 +43,7 @@ bool MakeVertex(const RenderScene& scene, const Ray& ray, const RayHit& hit, con
                      attributes.link};
   vertex.coverage = attributes.alpha ? attributes.alpha->Alpha(point.uv, point.position, point.Ng) : 1.0f;
   vertex.isDelta = vertex.bsdf.IsDelta();
-  vertex.storesPhotons =
-      (!vertex.isDelta || !material->IsAlwaysDelta()) && (vertex.GathersPhotons() || !material->IsAlwaysFibrous());
+  vertex.storesPhotons = (!vertex.isDelta || !material->IsAlwaysDelta()) && material->MayGatherPhotons();
   vertex.isSeenByCamera = (attributes.visibility & visibility::kCamera) != 0;
   vertex.isSeenByIndirect = (attributes.visibility & visibility::kIndirect) != 0;
   return true;

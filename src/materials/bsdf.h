@@ -52,6 +52,10 @@ class Bsdf {
     return hair && hair->isFibre;
   }
 
+  // False for hair: a fibre has no area within the radius that photons could be counted over, and on a surface, where
+  // hair scatters grazing light as much as any, a photon would have the weight 1 / cosθ, of unbounded variance.
+  bool GathersPhotons() const { return !std::holds_alternative<HairBsdf>(model_); }
+
   const Frame& ShadingFrame() const { return frame_; }
   const Normal3& Ng() const { return Ng_; }
 

@@ -66,7 +66,7 @@ class HairMaterial final : public Material {
   }
   bool MayTransmit() const override { return true; }
   bool IsFibrous() const override { return true; }
-  bool IsAlwaysFibrous() const override { return true; }
+  bool MayGatherPhotons() const override { return false; }
 
  private:
   HairParameters parameters_;

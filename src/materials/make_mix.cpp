@@ -26,7 +26,7 @@ class MixMaterial final : public Material {
         hasDelta_(materials_[0]->HasDelta() || materials_[1]->HasDelta()),
         isAlwaysDelta_(materials_[0]->IsAlwaysDelta() && materials_[1]->IsAlwaysDelta()),
         isFibrous_(materials_[0]->IsFibrous() || materials_[1]->IsFibrous()),
-        isAlwaysFibrous_(materials_[0]->IsAlwaysFibrous() && materials_[1]->IsAlwaysFibrous()) {}
+        mayGatherPhotons_(materials_[0]->MayGatherPhotons() || materials_[1]->MayGatherPhotons()) {}
 
   Bsdf GetBsdf(const SurfacePoint& point, const Vector3& wo) const override {
     return Choose(point, wo).GetBsdf(point, wo);
@@ -36,7 +36,7 @@ class MixMaterial final : public Material {
   bool HasDelta() const override { return hasDelta_; }
   bool IsAlwaysDelta() const override { return isAlwaysDelta_; }
   bool IsFibrous() const override { return isFibrous_; }
-  bool IsAlwaysFibrous() const override { return isAlwaysFibrous_; }
+  bool MayGatherPhotons() const override { return mayGatherPhotons_; }
 
  private:
   const Material& Choose(const SurfacePoint& point, const Vector3& wo) const {
@@ -52,7 +52,7 @@ class MixMaterial final : public Material {
   uint64_t salt_;  // from the names: nested mixes choose independently
   // Properties of both materials, cached: nested mixes that name a material twice would otherwise query it 2^depth
   // times.
-  bool isInterface_, mayTransmit_, hasDelta_, isAlwaysDelta_, isFibrous_, isAlwaysFibrous_;
+  bool isInterface_, mayTransmit_, hasDelta_, isAlwaysDelta_, isFibrous_, mayGatherPhotons_;
 };
 
 class InterfaceMaterial final : public Material {

@@ -30,10 +30,10 @@ class Material {
   // True if it scatters by deltas only, at every point and in every draw: no photons can be gathered there. A mix is
   // drawn anew for each path, so that a draw that is a delta says nothing about the draws of other paths.
   virtual bool IsAlwaysDelta() const { return false; }
-  // IsFibrous: true if curves of this material may be fibres (Bsdf::IsFibre). IsAlwaysFibrous: true if they are in
-  // every draw.
+  // True if curves of this material may be fibres (Bsdf::IsFibre).
   virtual bool IsFibrous() const { return false; }
-  virtual bool IsAlwaysFibrous() const { return false; }
+  // False if it gathers photons in no draw (Bsdf::GathersPhotons).
+  virtual bool MayGatherPhotons() const { return true; }
   // The transmission of a thin surface, which ray tracing has to account for if SurfacePoint::isThin is set. Null: not
   // a thin surface.
   virtual const ThinSurface* Thin() const { return nullptr; }

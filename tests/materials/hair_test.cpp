@@ -72,7 +72,7 @@ TEST(Hair, WhiteFurnace) {
       for (const float h : {-1.0f, -0.8f, 0.0f, 0.3f, 0.99f}) {
         for (const double theta : {-0.9, 0.2}) {
           const Bsdf bsdf = InAxes(Fibre{Color(0.0f), 1.55f, betaM, betaN, 2, h}.Make());
-          const int along = betaM < 0.2f ? 900 : 200, around = betaN < 0.2f ? 700 : 100;
+          const int along = betaM < 0.2f ? 400 : 120, around = betaN < 0.2f ? 400 : 60;
           const Integral integral = Integrate(bsdf, At(theta, 1.1), along, around);
           EXPECT_NEAR(integral.scattered, 1, 1e-3) << betaM << " " << betaN << " " << h << " " << theta;
           EXPECT_NEAR(integral.density, 1, 1e-3) << betaM << " " << betaN << " " << h << " " << theta;
@@ -145,6 +145,21 @@ TEST(Hair, GoesStraightOnWithoutABoundaryAndTiltsByItsScales) {
   }
 }
 
+// R, TT and TRT through the middle of a fibre lie where the scales turn them, by -2α, α and 4α.
+TEST(Hair, LobesLieWhereTheScalesTurnThem) {
+  const double degree = 3.14159265358979 / 180, theta = 12 * degree, alpha = 5 * degree;
+  const Bsdf bsdf = InAxes(Fibre{Color(0.0f), 1.55f, 0.02f, 0.05f, 5, 0}.Make());
+  const auto density = [&](double thetaI, double turn) {
+    return bsdf.Evaluate(At(theta, 0.8), At(thetaI, 0.8 + turn), kRadiance).pdfForward.value;
+  };
+  const double turns[3] = {0, 3.14159265358979, 0}, tilts[3] = {-2, 1, 4};
+  for (int p = 0; p < 3; ++p) {
+    const double peak = -(theta + tilts[p] * alpha);
+    EXPECT_GT(density(peak, turns[p]), 5 * density(peak - 4 * degree, turns[p])) << p;
+    EXPECT_GT(density(peak, turns[p]), 5 * density(peak + 4 * degree, turns[p])) << p;
+  }
+}
+
 TEST(Hair, PigmentsAndReflectances) {
   const Color brown = HairAbsorption(1.3f, 0.0f), both = HairAbsorption(0.3f, 2.0f);
   EXPECT_NEAR(brown.r, 0.5447f, 1e-5f);
@@ -206,10 +221,11 @@ TEST(Hair, LightPathsAreSampledByTheAdjoint) {
   }
 }
 
+// The axis of the fibre is the pole of the bins: narrow lobes lie along their borders.
 TEST(Hair, FibresAreSampledByTheirDensity) {
   const Fibre fibres[] = {{Color(0.2f, 0.4f, 0.8f), 1.55f, 0.3f, 0.3f, 2, 0.5f},
-                          {Color(0.0f), 1.55f, 0.02f, 0.05f, 2, -0.3f},
-                          {Color(0.0f), 1.55f, 1, 0.02f, 4, 0.95f}};
+                          {Color(0.0f), 1.55f, 0.1f, 0.05f, 2, -0.3f},
+                          {Color(0.0f), 1.55f, 1, 0.05f, 4, 0.95f}};
   const double level = SidakLevel(3 * 2 * 3);
   for (const Fibre& fibre : fibres) {
     const Bsdf bsdf = InAxes(fibre.Make());
@@ -221,11 +237,14 @@ TEST(Hair, FibresAreSampledByTheirDensity) {
               const float uLobe = rng.NextFloat();
               const auto sample = bsdf.Sample(wo, uLobe, rng.NextPoint2(), mode);
               if (!sample) return std::nullopt;
-              return sample->wi;
+              return Vector3(sample->wi.y, sample->wi.z, sample->wi.x);
             },
-            [&](const Vector3& wi) { return static_cast<double>(bsdf.Evaluate(wo, wi, mode).pdfForward.value); });
+            [&](const Vector3& w) {
+              return static_cast<double>(bsdf.Evaluate(wo, {w.z, w.x, w.y}, mode).pdfForward.value);
+            });
         EXPECT_GT(result.pValue, level) << fibre.betaM << " " << fibre.betaN << " from x = " << wo.x << ": integral "
                                         << result.integral;
+        EXPECT_NEAR(result.integral, 1, 1e-3);
       }
     }
   }

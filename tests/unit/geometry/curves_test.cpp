@@ -104,6 +104,25 @@ TEST(Curves, NoSelfIntersection) {
   }
 }
 
+// Fibrous round curves are met from outside alone: what leaves one through its other side does not meet it.
+TEST(Curves, FibresAreNotMetFromInside) {
+  for (const bool isFibrous : {false, true}) {
+    GeometryDescription description = SceneOf(ToShape(MakeCurves(Straight(CurveSet::Kind::Cylinder))));
+    description.entries[0].attributes.isFibrous = isFibrous;
+    const GeometryScene scene(std::move(description));
+    Random random(63);
+    for (int i = 0; i < 2000; ++i) {
+      const Ray ray{{5, random.Uniform(-0.19f, 0.19f), random.Uniform(0.5f, 2.5f)}, {-1, 0, 0}};
+      RayHit hit;
+      ASSERT_TRUE(scene.Intersect(ray, visibility::kAll, hit));
+      const SurfacePoint p = scene.GetSurfacePoint(ray, hit);
+      ASSERT_GT(p.Ng.x, 0);
+      ASSERT_EQ(p.strand, Strand::Fibre);
+      ASSERT_EQ(scene.Occluded(SpawnRay(p, ray.direction, 0), visibility::kAll), !isFibrous) << ray.origin.y;
+    }
+  }
+}
+
 TEST(Curves, BadParametersAreErrors) {
   CurveParameters p = Straight(CurveSet::Kind::Flat);
   p.points.pop_back();
