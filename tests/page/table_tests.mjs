@@ -60,7 +60,13 @@ export function testTables(pageTest, results) {
       }
       for (const hint of hints) assert.ok(head.includes(hint), hint);
     }
-    if (results.reference.relativeError !== null) assert.match(head, /± [\d.]+/);
+    const {relMse} = results.reference;
+    const noise = /Its own noise is a relMSE of (?:at most )?(.*?), an error of (.*?) %\./.exec(head);
+    assert.equal(noise !== null, relMse !== null, head);
+    if (noise) {
+      assertClose(readNumber(noise[1]), relMse, head, 0.006);
+      assertClose(readNumber(noise[2]) / 100, Math.sqrt(relMse), head, 0.06);
+    }
     assert.ok(head.includes(results.command));
     const longest = results.integrators[0].snapshots.filter(({kind}) => kind === 'time').map(({budget}) => budget);
     const ratio = results.ratios.find(({metric, kind, budget, low, high}) => metric === 'relMse' && kind === 'time' &&
