@@ -9,7 +9,6 @@
 #include "app/command_line.h"
 #include "app/commands.h"
 #include "render/output_files.h"
-#include "render/output_lock.h"
 #include "render/render_part.h"
 #include "render/sample_image.h"
 

@@ -20,7 +20,6 @@
 #include "render/checkpoints.h"
 #include "render/load_scene.h"
 #include "render/output_files.h"
-#include "render/output_lock.h"
 #include "render/progressive_render.h"
 #include "render/render_part.h"
 #include "render/sample_image.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "base/process_usage.h"
+#include "base/memory.h"
 #include "base/version.h"
 #include "suite/properties.h"
 
@@ -78,7 +78,7 @@ std::string ToJson(const RenderReport& report) {
                        {"nanosecondsPerLookup",
                         1e9 * counts.lookupSeconds / static_cast<double>(std::max<uint64_t>(counts.timedLookups, 1))},
                        {"guideGain", photons->guideGain},
-                       {"guideTargets", photons->guideTargets},
+                       {"guideComponents", photons->guideComponents},
                        {"firstRadius", photons->firstRadius},
                        {"lastRadius", photons->lastRadius}};
   }

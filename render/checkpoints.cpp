@@ -76,7 +76,7 @@ void ResumeFrom(const std::filesystem::path& path, const PartHeader& header, Pro
   part.Load([&](ByteReader& bytes) {
     render.Load(bytes);
     if (static_cast<uint32_t>(render.Outcome().samplesPerPixel) != part.Header().samples)
-      throw Error("it holds a number that cannot be");
+      throw Error("it holds a number out of range");
   });
 }
 

@@ -16,4 +16,18 @@ void WriteText(const std::filesystem::path& path, const std::string& text);
 // True if both paths exist and lead to the same file, also through links.
 bool IsSameFile(const std::filesystem::path& a, const std::filesystem::path& b);
 
+class OutputLock {
+ public:
+  // Takes the lock, which is held until the end of the process at the latest, however it ends. Throws an Error if
+  // another process holds it. Without effect on file systems that have no locks.
+  explicit OutputLock(const std::filesystem::path& output);
+  ~OutputLock();
+  OutputLock(const OutputLock&) = delete;
+  OutputLock& operator=(const OutputLock&) = delete;
+
+ private:
+  std::filesystem::path path_;
+  int file_ = -1;
+};
+
 }  // namespace lampyr

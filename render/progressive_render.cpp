@@ -139,7 +139,7 @@ void ProgressiveRender::AddWholePass(int count) {
   if (photons_) outcome_.photons = photons_->Statistics();
   if (guiding_) {
     outcome_.photons->guideGain = guiding_->Gain();
-    outcome_.photons->guideTargets = guiding_->Targets();
+    outcome_.photons->guideComponents = guiding_->Components();
   }
   outcome_.counts += std::exchange(counts_, RenderCounts());
   outcome_.samplesPerPixel += count;
@@ -187,7 +187,7 @@ void ProgressiveRender::Save(ByteWriter& bytes) const {
 void ProgressiveRender::Load(ByteReader& bytes) {
   outcome_.samplesPerPixel = static_cast<int>(bytes.Value<uint32_t>());
   outcome_.seconds = bytes.Value<double>();
-  if (outcome_.samplesPerPixel < 0 || !(outcome_.seconds >= 0)) throw Error("it holds a number that cannot be");
+  if (outcome_.samplesPerPixel < 0 || !(outcome_.seconds >= 0)) throw Error("it holds a number out of range");
   outcome_.counts = bytes.Value<RenderCounts>();
   if (photons_) outcome_.photons = photons_->Continue(bytes.Value<PhotonStatistics>());
   if (learning_) learning_->Load(bytes);

@@ -21,17 +21,17 @@ constexpr uint64_t kMostEntries = 1 << 16;
 constexpr int kMostPixels = 1 << 16;  // across
 
 // Decimal digits that restore the exact value.
-std::string Exactly(double value) {
+std::string ToExactString(double value) {
   char text[40];
   std::snprintf(text, sizeof text, "%.17g", value);
   return text;
 }
 
-std::string Exactly(const glm::mat3& matrix) {
+std::string ToExactString(const glm::mat3& matrix) {
   std::string text;
   for (int column = 0; column < 3; ++column) {
     for (int row = 0; row < 3; ++row)
-      text += (text.empty() ? "" : " ") + Exactly(static_cast<double>(matrix[column][row]));
+      text += (text.empty() ? "" : " ") + ToExactString(static_cast<double>(matrix[column][row]));
   }
   return text;
 }
@@ -52,7 +52,7 @@ void SavePairs(ByteWriter& bytes, const List& pairs) {
 RenderIdentity LoadPairs(ByteReader& bytes) {
   RenderIdentity pairs;
   const auto count = bytes.Value<uint64_t>();
-  if (count > kMostEntries) throw Error("it holds a number that cannot be");
+  if (count > kMostEntries) throw Error("it holds a number out of range");
   for (uint64_t i = 0; i < count; ++i) {
     std::string name = bytes.Text();
     pairs.emplace_back(std::move(name), bytes.Text());
@@ -83,10 +83,10 @@ void CheckHeader(const PartHeader& header, uint64_t bytesLeft) {
                        crop.y1 > crop.y0 && crop.x1 <= header.width && crop.y1 <= header.height;
   const bool isShard = shard.count >= 1 && shard.index >= 1 && shard.index <= shard.count && shard.first < shard.end &&
                        shard.end <= shard.whole && shard.whole <= (1u << 30) && header.samples <= (1u << 30);
-  if (!isSized || !isShard) throw Error("it holds a number that cannot be");
+  if (!isSized || !isShard) throw Error("it holds a number out of range");
   // The film alone would be larger than the rest of the file: checked before its memory is allocated.
   const uint64_t pixels = static_cast<uint64_t>(crop.Width()) * static_cast<uint64_t>(crop.Height());
-  if (bytesLeft / Film::BytesPerPixel(header.layers.size(), false) < pixels) throw Error("it ends too early");
+  if (bytesLeft / Film::BytesPerPixel(header.layers.size(), false) < pixels) throw Error("unexpected end of data");
 }
 
 PartHeader LoadHeader(ByteReader& bytes, PartKind kind) {
@@ -103,7 +103,7 @@ PartHeader LoadHeader(ByteReader& bytes, PartKind kind) {
   header.height = bytes.Value<int>();
   header.crop = bytes.Value<PixelRect>();
   const auto layers = bytes.Value<uint64_t>();
-  if (layers > kMostEntries) throw Error("it holds a number that cannot be");
+  if (layers > kMostEntries) throw Error("it holds a number out of range");
   for (uint64_t i = 0; i < layers; ++i) header.layers.push_back(bytes.Text());
   header.halfPrecision = bytes.Flag();
   for (auto& [name, value] : LoadPairs(bytes)) header.metadata[name] = std::move(value);
@@ -124,7 +124,7 @@ std::span<const std::byte> FindState(std::span<const std::byte> file) {
   ByteReader tail(end);
   const auto size = tail.Value<uint64_t>();
   const auto checksum = tail.Value<uint32_t>();
-  if (size > file.size() - kEndBytes) throw Error("it ends too early");
+  if (size > file.size() - kEndBytes) throw Error("unexpected end of data");
   const std::span<const std::byte> state = file.subspan(file.size() - kEndBytes - size, size);
   if (ChecksumOf(state) != checksum) throw Error("it is damaged: its checksum is another one");
   return state;
@@ -146,20 +146,20 @@ RenderIdentity IdentityOf(const LoadedScene& loaded, bool robustIntersection) {
       {"the seed", integer(s.seed)},
       {"the resolution", integer(s.width) + "x" + integer(s.height)},
       {"the crop", integer(crop.x0) + "," + integer(crop.x1) + "," + integer(crop.y0) + "," + integer(crop.y1)},
-      {"the exposure", Exactly(static_cast<double>(s.sensor.ImagingRatio()))},
-      {"the white balance", Exactly(s.sensor.BalanceMatrix())},
-      {"the limit on samples", Exactly(static_cast<double>(s.sensor.MaxComponent()))},
+      {"the exposure", ToExactString(static_cast<double>(s.sensor.ImagingRatio()))},
+      {"the white balance", ToExactString(s.sensor.BalanceMatrix())},
+      {"the limit on samples", ToExactString(static_cast<double>(s.sensor.MaxComponent()))},
       {"half precision", YesOrNo(s.halfPrecision)},
       {"the kind of pixel filter", integer(static_cast<int>(f.kind))},
       {"the pixel filter's settings",
-       Exactly(static_cast<double>(f.radiusX)) + " " + Exactly(static_cast<double>(f.radiusY)) + " " +
-           Exactly(static_cast<double>(f.sigma)) + " " + Exactly(static_cast<double>(f.b)) + " " +
-           Exactly(static_cast<double>(f.c)) + " " + Exactly(static_cast<double>(f.tau))},
+       ToExactString(static_cast<double>(f.radiusX)) + " " + ToExactString(static_cast<double>(f.radiusY)) + " " +
+           ToExactString(static_cast<double>(f.sigma)) + " " + ToExactString(static_cast<double>(f.b)) + " " +
+           ToExactString(static_cast<double>(f.c)) + " " + ToExactString(static_cast<double>(f.tau))},
       {"the sampler", s.sampler == SamplerKind::Sobol ? "sobol" : "independent"},
       {"watertight intersection", YesOrNo(robustIntersection)}};
   for (const Setting* setting : IntegratorOf(s.integrator).settings) {
     if (setting->changesPicture)
-      identity.emplace_back("--" + setting->name, Setting::Exactly(s.values.Value(setting->name)));
+      identity.emplace_back("--" + setting->name, Setting::ToExactString(s.values.Value(setting->name)));
   }
   return identity;
 }

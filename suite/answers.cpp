@@ -174,10 +174,10 @@ std::vector<Question> MakeQuestions(const SuiteSubject& subject, const Light& li
     const float away = scene.radius * std::exp2(8 * (2 * rng.NextFloat() - 1));
     if (const auto photon = light.GenerateEmission(question.context)) {
       const float distance = isAtInfinity ? 2 * scene.radius : away;
-      question.landing = HitOf(*photon, isAtInfinity ? kInfinity : distance);
-      question.landingAt = photon->position + distance * photon->direction;
-      if (isAtInfinity) question.landing->position = question.landingAt;
-      if (i % 2 == 1) question.P = question.landingAt;
+      question.firstHit = HitOf(*photon, isAtInfinity ? kInfinity : distance);
+      question.firstHitAt = photon->position + distance * photon->direction;
+      if (isAtInfinity) question.firstHit->position = question.firstHitAt;
+      if (i % 2 == 1) question.P = question.firstHitAt;
     }
     if (const auto sample = light.GenerateSamples(question.context, question.P)) {
       question.hit = HitOf(*sample, question.P);
@@ -194,7 +194,7 @@ Answer Ask(const Light& light, const Question& q, const LightContext& context, C
       [&] { answer.evaluation = q.hit ? light.EvaluateSamples(context, *q.hit, q.P) : std::nullopt; },
       [&] { answer.camera = q.hit ? light.EvaluateEmissionForCamera(context, *q.hit) : Color(0.0f); },
       [&] { answer.photon = light.GenerateEmission(context); },
-      [&] { answer.landing = q.landing ? light.EvaluateSamples(context, *q.landing, q.landingAt) : std::nullopt; },
+      [&] { answer.firstHit = q.firstHit ? light.EvaluateSamples(context, *q.firstHit, q.firstHitAt) : std::nullopt; },
       [&] { answer.estimate = light.GetIncidentRadianceEstimate(context, q.P); },
       [&] { answer.segment = light.GetIncidentRadianceEstimate(context, q.P, q.along, q.reach); },
   };
@@ -210,7 +210,7 @@ std::string Difference(const Answer& wanted, const Answer& got, Compare compare)
         DifferenceOf("evaluations", wanted.evaluation, got.evaluation, compare),
         DifferenceOf("what the camera sees", FieldsOf(wanted.camera), FieldsOf(got.camera), all),
         DifferenceOf("photons", wanted.photon, got.photon, compare),
-        DifferenceOf("evaluations where photons land", wanted.landing, got.landing, compare),
+        DifferenceOf("evaluations where photons land", wanted.firstHit, got.firstHit, compare),
         DifferenceOf("estimates", FieldsOf(wanted.estimate), FieldsOf(got.estimate), all),
         DifferenceOf("estimates of segments", wanted.segment, got.segment, all)}) {
     if (!difference.empty()) return difference;

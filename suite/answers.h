@@ -13,13 +13,13 @@ struct Question {
   Vector3 along{0, 0, 1};  // of a segment from P
   float reach = 1;
   // What a ray found, and where a photon went: of the light when the question was made.
-  std::optional<LightHit> hit, landing;
-  Point3 landingAt{0.0f};
+  std::optional<LightHit> hit, firstHit;
+  Point3 firstHitAt{0.0f};
 };
 
 struct Answer {
   std::optional<LightSample> sample;
-  std::optional<LightEvaluation> evaluation, landing;
+  std::optional<LightEvaluation> evaluation, firstHit;
   Color camera{0.0f};
   std::optional<EmissionSample> photon;
   float estimate = 0;

@@ -110,7 +110,7 @@ std::string CommonParameters::Difference(const Light& changed, const Effect& eff
     const Answer &from = answers_[i], got = Ask(changed, questions_[i]);
     std::string difference = DifferenceOfParts("evaluations", from.evaluation, got.evaluation, effect);
     if (difference.empty()) {
-      difference = DifferenceOfParts("evaluations where photons land", from.landing, got.landing, effect);
+      difference = DifferenceOfParts("evaluations where photons land", from.firstHit, got.firstHit, effect);
     }
     if (difference.empty() && !subject_.light->Settings().cameraVisible) {
       difference = from.camera.IsBlack() ? "" : "the camera sees a light that is invisible";

@@ -34,8 +34,8 @@ Color BidirectionalSample::Report(ConnectedPath& path) const {
   return path.value * static_cast<float>(path.weight);
 }
 
-Color BidirectionalSample::Found(ConnectedPath& path, float worth) const {
-  const Color contribution = Report(path) * worth;
+Color BidirectionalSample::AddToPixel(ConnectedPath& path, float survivalWeight) const {
+  const Color contribution = Report(path) * survivalWeight;
   if (context.layers) context.layers->Add(Lighting().GroupOf(path.end.light), contribution);
   return contribution;
 }
@@ -52,10 +52,10 @@ AreaDensity DensityAtLens(const Camera& camera, const Ray& ray, float geometryTe
 namespace {
 
 // Visitor of the light subpath.
-class LightSide final : public WeighedLightPath {
+class LightSide final : public WeightedLightPath {
  public:
   explicit LightSide(BidirectionalSample& sample)
-      : WeighedLightPath(sample.context, sample.settings.connects),
+      : WeightedLightPath(sample.context, sample.settings.connects),
         sample_(sample),
         isConnected_(sample.settings.connects && !sample.context.isForPhotonsAlone &&
                      sample.context.scene.camera->ConnectsLightPaths()) {}
@@ -63,15 +63,15 @@ class LightSide final : public WeighedLightPath {
   void Emitted(const EmittedPhoton& photon) override {
     if (isConnected_) SplatLight(sample_, photon);
   }
-  bool Landed(const EmittedPhoton& photon, PathVertex& first) override {
-    if (!WeighedLightPath::Landed(photon, first)) return false;
+  bool FirstHit(const EmittedPhoton& photon, PathVertex& first) override {
+    if (!WeightedLightPath::FirstHit(photon, first)) return false;
     sample_.lightEnd = End();
     if (context_.withOrigin) context_.photons->SetOrigin(OriginOf(sample_.Lighting(), photon, first));
     return true;
   }
 
  private:
-  void Weighed(const LightPath& path) override {
+  void OnWeighted(const LightPath& path) override {
     if (isConnected_) SplatVertex(sample_);
     const PathVertex& vertex = path.vertices.Last();
     if (context_.photons && vertex.storesPhotons)
@@ -174,14 +174,14 @@ Color BidirectionalIntegrator::Sample(const Ray* ray, const SampleContext& conte
   if (context.gather) sample.merge = Mis(context.gather->MergesPerDensity());
   if (settings_.connects || context.photons) {
     LightSide visitor(sample);
-    TraceLightPath(context, settings_.maxDepth, kOfLight, workspace.light, visitor);
+    TraceLightPath(context, settings_.maxDepth, kLightDimensions, workspace.light, visitor);
   }
   if (!ray) return Color(0.0f);
   PathState state;
   state.ray = *ray;
   state.specular = Color(1.0f);
   CameraSide visitor(sample);
-  Walk(context, {TransportMode::Radiance, settings_.maxDepth, kOfCamera}, state, workspace.camera, visitor);
+  Walk(context, {TransportMode::Radiance, settings_.maxDepth, kCameraDimensions}, state, workspace.camera, visitor);
   return sample.radiance;
 }
 
@@ -196,9 +196,12 @@ namespace {
 // Merging radius of the first pass by default, in pixel footprints: a blur no wider than that of most pixel filters.
 constexpr double kRadiusInPixels = 1;
 
-const Setting kMerge{.name = "merge", .help = "Merge camera vertices with photons nearby", .fallback = true, .without = "it is bdpt"};
-const Setting kConnect{
-    .name = "connect", .help = "Connect vertices of camera and light paths", .fallback = true, .without = "it is bidirectional photon mapping"};
+const Setting kMerge{
+    .name = "merge", .help = "Merge camera vertices with photons nearby", .fallback = true, .without = "it is bdpt"};
+const Setting kConnect{.name = "connect",
+                       .help = "Connect vertices of camera and light paths",
+                       .fallback = true,
+                       .without = "it is bidirectional photon mapping"};
 
 BidirectionalSettings SettingsOf(const IntegratorInput& input) {
   BidirectionalSettings settings;

@@ -48,14 +48,14 @@ Color Connect(const BidirectionalSample& sample, size_t lightCount) {
       sample.MergeAt(y), z.weight,
       {SolidAngleDensity(fy.pdfForward) * EdgeDensity(z, toCamera, squared), z.PreviousReverse(fz.pdfReverse)},
       sample.MergeAt(z));
-  const float worth = sample.WantedShadowRays().Worth(path.value * static_cast<float>(path.weight), sample.radiance,
-                                                      ShadowRays::DeciderOf(toCamera.x, toCamera.y));
-  if (worth == 0) return Color(0.0f);
+  const float survivalWeight = sample.WantedShadowRays().SurvivalWeight(
+      path.value * static_cast<float>(path.weight), sample.radiance, ShadowRays::DeciderOf(toCamera.x, toCamera.y));
+  if (survivalWeight == 0) return Color(0.0f);
   ++context.counts.shadowRays;
   const Ray ray = RayBetween(z, y, context.time);
   path.value *= context.scene.geometry->Transmittance(ray, visibility::kIndirect);
   if (path.value.IsBlack()) return path.value;
-  return sample.Found(path, worth);
+  return sample.AddToPixel(path, survivalWeight);
 }
 
 }  // namespace lampyr

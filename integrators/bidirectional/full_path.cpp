@@ -134,7 +134,7 @@ Carried Carry(const FullPath& path) {
   const auto isDelta = [&](int i) { return static_cast<bool>(path.isDelta[static_cast<size_t>(i)]); };
   const auto size = static_cast<size_t>(n) + 1;
   Carried carried{std::vector<PartialWeight>(size), std::vector<PartialWeight>(size)};
-  carried.light[1] = PartialWeight::AtLanding(path.end, true);
+  carried.light[1] = PartialWeight::AtFirstHit(path.end, true);
   for (int i = 2; i <= n; ++i) {
     const auto at = static_cast<size_t>(i);
     carried.light[at] = carried.light[at - 1].Next(isDelta(i - 1), path.CanMerge(i - 1), F(i), B(i - 2));

@@ -6,26 +6,26 @@ namespace lampyr {
 
 namespace {
 
-// `landing`: LandingEdge from the light that was found to the camera subpath's last vertex.
+// `edge`: FirstEdgeDensity from the light that was found to the camera subpath's last vertex.
 Color HitLight(const BidirectionalSample& sample, const PathState& state, const FoundLight& found,
-               SolidAnglePerArea landing) {
+               SolidAnglePerArea edge) {
   const LightEvaluation& e = found.evaluation;
   ConnectedPath path;
   path.value = state.diffuse * e.diffuse + state.specular * e.specular;
   if (path.value.IsBlack()) return path.value;
   path.s = 0;
-  path.end = EndOf(sample.Lighting(), found, true, landing);
+  path.end = EndOf(sample.Lighting(), found, true, edge);
   sample.SetCamera(path);
   path.t = static_cast<int>(sample.camera.Count()) + 2;
   if (!sample.settings.connects && path.end.emission.value > 0) {
     if (sample.couldMerge) return Color(0.0f);
-    return sample.Found(path);
+    return sample.AddToPixel(path);
   }
   path.toLight = state.ray.direction;
   const PathVertex& last = sample.camera.Last();
   const LastEvent event{last.scatteredDelta, last.CanMerge(), last.PreviousReverse(last.eventReverse)};
   path.weight = HitWeight(path.end, last.weight, event, state.pdfDirection * path.end.solidAnglePerArea, sample.merge);
-  return sample.Found(path);
+  return sample.AddToPixel(path);
 }
 
 }  // namespace
@@ -72,9 +72,9 @@ Color HitLightAt(const BidirectionalSample& sample, const PathState& state, cons
   const auto found =
       lighting.EvaluateSamples(last.receiver, state.ray.direction, distance, point, sample.context.time, true);
   if (!found) return Color(0.0f);
-  return HitLight(
-      sample, state, *found,
-      LandingEdge(lighting, found->light, last.GeometryTerm(state.ray.direction), Sqr(static_cast<double>(distance))));
+  return HitLight(sample, state, *found,
+                  FirstEdgeDensity(lighting, found->light, last.GeometryTerm(state.ray.direction),
+                                   Sqr(static_cast<double>(distance))));
 }
 
 Color HitInfiniteLights(const BidirectionalSample& sample, const PathState& state) {
@@ -84,8 +84,8 @@ Color HitInfiniteLights(const BidirectionalSample& sample, const PathState& stat
   for (size_t i = 0; i < lighting.InfiniteCount(); ++i) {
     const auto found = lighting.EvaluateEscaped(i, last.receiver, state.ray.direction, sample.context.time, true);
     if (!found) continue;
-    sum +=
-        HitLight(sample, state, *found, LandingEdge(lighting, found->light, last.GeometryTerm(state.ray.direction), 1));
+    sum += HitLight(sample, state, *found,
+                    FirstEdgeDensity(lighting, found->light, last.GeometryTerm(state.ray.direction), 1));
   }
   return sum;
 }

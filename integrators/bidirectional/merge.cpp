@@ -3,7 +3,6 @@
 
 #include "integrators/bidirectional/techniques.h"
 #include "integrators/bidirectional/weights.h"
-#include "integrators/photon/find_photons.h"
 #include "integrators/photon/photon_pass.h"
 
 namespace lampyr {

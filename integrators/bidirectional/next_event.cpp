@@ -6,9 +6,9 @@ namespace lampyr {
 
 namespace {
 
-class Weighed final : public NextEventVisitor {
+class NextEventTechnique final : public NextEventVisitor {
  public:
-  explicit Weighed(const BidirectionalSample& sample) : sample_(sample), vertex_(sample.camera.Last()) {
+  explicit NextEventTechnique(const BidirectionalSample& sample) : sample_(sample), vertex_(sample.camera.Last()) {
     sample_.SetCamera(path_);
     path_.s = 1;
   }
@@ -28,9 +28,9 @@ class Weighed final : public NextEventVisitor {
     found.evaluation.pdfEmit = sample.pdfEmit;
     found.evaluation.pdfEmitDirection = sample.pdfEmitDirection;
     found.evaluation.solidAngleToArea = sample.solidAngleToArea;
-    const SolidAnglePerArea landing = LandingEdge(lighting, direct.light, vertex_.GeometryTerm(sample.direction),
-                                                  Sqr(static_cast<double>(sample.distance)));
-    path_.end = EndOf(lighting, found, !direct.isDelta && lighting.CanBeHit(direct.light), landing);
+    const SolidAnglePerArea edge = FirstEdgeDensity(lighting, direct.light, vertex_.GeometryTerm(sample.direction),
+                                                    Sqr(static_cast<double>(sample.distance)));
+    path_.end = EndOf(lighting, found, !direct.isDelta && lighting.CanBeHit(direct.light), edge);
     path_.toLight = sample.direction;
     const AreaDensity hit =
         path_.end.canBeHit ? SolidAngleDensity(light.f.pdfForward) * path_.end.solidAnglePerArea : AreaDensity(0);
@@ -56,8 +56,8 @@ class Weighed final : public NextEventVisitor {
 }  // namespace
 
 Color EstimateDirectLight(const BidirectionalSample& sample) {
-  Weighed visitor(sample);
-  return SampleDirectLight(sample.context, {kOfCamera, true, sample.WantedShadowRays()}, sample.camera.Last(),
+  NextEventTechnique visitor(sample);
+  return SampleDirectLight(sample.context, {kCameraDimensions, true, sample.WantedShadowRays()}, sample.camera.Last(),
                            static_cast<int>(sample.camera.Count()) - 1, sample.radiance, visitor);
 }
 

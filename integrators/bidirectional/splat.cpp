@@ -23,7 +23,7 @@ void SetLens(const BidirectionalSample& sample, const SeenFromLens& seen, Connec
 }  // namespace
 
 void SplatLight(const BidirectionalSample& sample, const EmittedPhoton& photon) {
-  const auto seen = SeeLight(sample.context, photon, kOfLight.Of(0, dimensions::kRoulette));
+  const auto seen = SeeLight(sample.context, photon, kLightDimensions.Of(0, dimensions::kRoulette));
   if (!seen) return;
   ConnectedPath path;
   path.s = 1;
@@ -38,7 +38,8 @@ void SplatLight(const BidirectionalSample& sample, const EmittedPhoton& photon) 
 void SplatVertex(const BidirectionalSample& sample) {
   const Subpath& light = sample.light.vertices;
   const PathVertex& vertex = light.Last();
-  const auto seen = SeeVertex(sample.context, vertex, kOfLight.Of(static_cast<int>(light.Count()), dimensions::kLight));
+  const auto seen =
+      SeeVertex(sample.context, vertex, kLightDimensions.Of(static_cast<int>(light.Count()), dimensions::kLight));
   if (!seen) return;
   ConnectedPath path;
   sample.SetLight(path, light.Count());

@@ -11,12 +11,12 @@ void SetWeights(const PathVertex& previous, const PathState& state, bool connect
   if (!connects) vertex.weight.connect = 0;
 }
 
-SolidAnglePerArea LandingEdge(const LightingServices& lighting, uint32_t light, float geometryTerm,
-                              double distanceSquared) {
+SolidAnglePerArea FirstEdgeDensity(const LightingServices& lighting, uint32_t light, float geometryTerm,
+                                   double distanceSquared) {
   return EdgeDensity(geometryTerm, lighting.IsAtInfinity(light) ? 1 : distanceSquared);
 }
 
-LightEnd EndOf(const LightingServices& lighting, const FoundLight& found, bool canBeHit, SolidAnglePerArea landing) {
+LightEnd EndOf(const LightingServices& lighting, const FoundLight& found, bool canBeHit, SolidAnglePerArea firstHit) {
   const LightEvaluation& e = found.evaluation;
   const auto selection = static_cast<double>(found.selection.value);
   LightEnd end;
@@ -25,7 +25,7 @@ LightEnd EndOf(const LightingServices& lighting, const FoundLight& found, bool c
   end.direct = selection * SolidAngleDensity(e.pdfDirect) * end.solidAnglePerArea;
   const auto emissionSelection = static_cast<double>(lighting.EmissionSelectionProbability(found.light).value);
   const AreaDensity position = emissionSelection * AreaDensity(e.pdfEmit);
-  end.emission = position * (SolidAngleDensity(e.pdfEmitDirection) * landing);
+  end.emission = position * (SolidAngleDensity(e.pdfEmitDirection) * firstHit);
   end.canBeHit = canBeHit;
   if (canBeHit && !lighting.IsAtInfinity(found.light)) end.position = position;
   return end;
@@ -33,23 +33,24 @@ LightEnd EndOf(const LightingServices& lighting, const FoundLight& found, bool c
 
 // The partial weight of the first vertex depends on light selection there: on the probability with which next-event
 // estimation from it would have chosen this light. False: the light does not send anything there.
-bool WeighedLightPath::Landed(const EmittedPhoton& photon, PathVertex& first) {
+bool WeightedLightPath::FirstHit(const EmittedPhoton& photon, PathVertex& first) {
   const LightingServices& lighting = *context_.scene.lighting;
-  const std::optional<FoundLight> found = lighting.EvaluateLanding(photon, first.receiver);
+  const std::optional<FoundLight> found = lighting.EvaluateFirstHit(photon, first.receiver);
   if (!found) return false;
   const double squared = LengthSquared(Vector3d(first.point.position) - Vector3d(photon.emission.position));
-  const SolidAnglePerArea landing = LandingEdge(lighting, found->light, first.GeometryTerm(first.toPrevious), squared);
-  end_ = EndOf(lighting, *found, lighting.CanBeHit(found->light), landing);
+  const SolidAnglePerArea firstHit =
+      FirstEdgeDensity(lighting, found->light, first.GeometryTerm(first.toPrevious), squared);
+  end_ = EndOf(lighting, *found, lighting.CanBeHit(found->light), firstHit);
   if (!(end_.emission.value > 0)) return false;
   first.previousSolidAnglePerArea = end_.solidAnglePerArea;
-  first.weight = PartialWeight::AtLanding(end_, connects_);
+  first.weight = PartialWeight::AtFirstHit(end_, connects_);
   return true;
 }
 
-void WeighedLightPath::Arrived(LightPath& path, const PathState& state) {
+void WeightedLightPath::Arrived(LightPath& path, const PathState& state) {
   const size_t count = path.vertices.Count();
   if (count > 1) SetWeights(path.vertices[count - 2], state, connects_, path.vertices.Last());
-  Weighed(path);
+  OnWeighted(path);
 }
 
 }  // namespace lampyr

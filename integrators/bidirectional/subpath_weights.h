@@ -10,23 +10,23 @@ namespace lampyr {
 void SetWeights(const PathVertex& previous, const PathState& state, bool connects, PathVertex& vertex);
 
 // dω/dA at the first hit of an emitted path: EdgeDensity, for a light at infinity without the squared distance.
-SolidAnglePerArea LandingEdge(const LightingServices& lighting, uint32_t light, float geometryTerm,
-                              double distanceSquared);
+SolidAnglePerArea FirstEdgeDensity(const LightingServices& lighting, uint32_t light, float geometryTerm,
+                                   double distanceSquared);
 
-// The light's end of a path, for a light found from its first surface vertex. `landing`: LandingEdge at that vertex.
-LightEnd EndOf(const LightingServices& lighting, const FoundLight& found, bool canBeHit, SolidAnglePerArea landing);
+// The light's end of a path, for a light found from its first surface vertex. `edge`: FirstEdgeDensity at that vertex.
+LightEnd EndOf(const LightingServices& lighting, const FoundLight& found, bool canBeHit, SolidAnglePerArea edge);
 
 // Sets densities and partial weights of a light path while it grows; base of visitors that need them.
-class WeighedLightPath : public LightPathVisitor {
+class WeightedLightPath : public LightPathVisitor {
  public:
-  WeighedLightPath(const SampleContext& context, bool connects) : context_(context), connects_(connects) {}
+  WeightedLightPath(const SampleContext& context, bool connects) : context_(context), connects_(connects) {}
 
-  bool Landed(const EmittedPhoton& photon, PathVertex& first) override;
+  bool FirstHit(const EmittedPhoton& photon, PathVertex& first) override;
   void Arrived(LightPath& path, const PathState& state) final;
 
  protected:
   // A vertex was added to the path, and its weights are set.
-  virtual void Weighed(const LightPath& path) = 0;
+  virtual void OnWeighted(const LightPath& path) = 0;
   const LightEnd& End() const { return end_; }
 
   const SampleContext& context_;

@@ -11,7 +11,7 @@
 namespace lampyr {
 
 // The two subpaths of a sample use alternating blocks of sampler dimensions, so that neither uses the other's.
-inline constexpr PathDimensions kOfCamera{2, 0}, kOfLight{2, 1};
+inline constexpr PathDimensions kCameraDimensions{2, 0}, kLightDimensions{2, 1};
 
 // State of a sample: both subpaths, and the radiance that the camera subpath has gathered so far.
 struct BidirectionalSample {
@@ -39,8 +39,8 @@ struct BidirectionalSample {
   // The weighted contribution of a path. The observer, if any, receives the path.
   Color Report(ConnectedPath& path) const;
   // Report for a path that contributes to the sample's own pixel: scales the contribution by the survival weight
-  // `worth` (ShadowRays::Worth) and adds it to the layer of the light.
-  Color Found(ConnectedPath& path, float worth = 1) const;
+  // `survivalWeight` (ShadowRays::SurvivalWeight) and adds it to the layer of the light.
+  Color AddToPixel(ConnectedPath& path, float survivalWeight = 1) const;
 };
 
 // Area density of the vertex that a camera ray hits, over the density of the lens point: the factor of t = 2 that t = 1

@@ -21,9 +21,9 @@ namespace lampyr {
 namespace {
 
 // Connects the light, and each vertex, to the camera.
-class Seen final : public LightPathVisitor {
+class LensConnector final : public LightPathVisitor {
  public:
-  explicit Seen(const SampleContext& context) : context_(context) {}
+  explicit LensConnector(const SampleContext& context) : context_(context) {}
   void Emitted(const EmittedPhoton& photon) override {
     Add(SeeLight(context_, photon, dimensions::kLens), photon.light);
   }
@@ -49,7 +49,7 @@ class LightIntegrator final : public Integrator {
   TracedPaths Paths() const override { return TracedPaths::Light; }
   Color Sample(const Ray*, const SampleContext& context) const override {
     thread_local LightPath path(false);
-    Seen visitor(context);
+    LensConnector visitor(context);
     TraceLightPath(context, maxDepth_, {}, path, visitor);
     return Color(0.0f);
   }

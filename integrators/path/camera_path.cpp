@@ -1,7 +1,7 @@
 #include "integrators/path/camera_path.h"
 
 #include "integrators/walk/lens.h"
-#include "integrators/walk/mis.h"
+#include "integrators/walk/partial_weight.h"
 
 namespace lampyr {
 
@@ -40,7 +40,7 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
           lighting_.EvaluateSamples(receiver, state.ray.direction, distance, point, context_.time, false);
       if (found) AddFound(path.Last(), state, *found);
     }
-    return !isLook_;
+    return !emissionOnly_;
   }
 
   bool Arrived(Subpath& path, const PathState& state) override {
@@ -56,9 +56,9 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
   // Directions from which photons are gathered are still traced for the emission of the surface they hit: next-event
   // estimation alone would miss a panel that touches the floor.
   bool Scattered(const Subpath& path, const PathState& state) override {
-    isLook_ = !path.Last().scatteredDelta && path.Last().GathersPhotons() &&
-              state.pdfDirection.value <= static_cast<double>(settings_.gatherBelow);
-    return !isLook_ || (settings_.samplesLights && lighting_.HasLightThatCanBeHit());
+    emissionOnly_ = !path.Last().scatteredDelta && path.Last().GathersPhotons() &&
+                    state.pdfDirection.value <= static_cast<double>(settings_.gatherBelow);
+    return !emissionOnly_ || (settings_.samplesLights && lighting_.HasLightThatCanBeHit());
   }
 
   const Color& Radiance() const { return radiance_; }
@@ -90,7 +90,7 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
   const CameraPathSettings& settings_;
   const NextEventSettings nextEvent_;
   const PhotonGatherer* gatherer_;
-  bool isLook_ = false;  // the ray is traced for emission alone: other light from there is gathered
+  bool emissionOnly_ = false;  // the ray is traced for emission alone: other light from there is gathered
   Color radiance_;
 };
 

@@ -49,7 +49,7 @@ std::shared_ptr<const EmissionGuide> EmissionLearning::MakeGuide(std::span<const
 void EmissionLearning::Guess(const RenderScene& scene, int width, int height) {
   std::vector<Point3> seen;
   SceneProbe probe(scene);
-  probe.ForSeen(width, height, kSeenAcross, [&](const Ray&, SeenVertex& first) {
+  probe.ForEachVisible(width, height, kSeenAcross, [&](const Ray&, SeenVertex& first) {
     seen.push_back(first.vertex.point.position);
     PathState state;
     SeenVertex next;
@@ -97,15 +97,15 @@ std::vector<UsefulPhoton> EmissionLearning::Evidence() const {
   if (guessed_.empty()) return evidence;
   struct Known {
     uint64_t count = 0;
-    double worth = 0, squared = 0;
+    double contribution = 0, secondMoment = 0;
   };
   std::vector<Known> known(lighting_.Lights().size());
   Known all;
   for (const UsefulPhoton& photon : useful_) {
     for (Known* one : {&known[photon.light], &all}) {
       ++one->count;
-      one->worth += photon.worth;
-      one->squared += photon.squared;
+      one->contribution += photon.contribution;
+      one->secondMoment += photon.secondMoment;
     }
   }
   for (const UsefulPhoton& photon : guessed_) {
@@ -115,8 +115,8 @@ std::vector<UsefulPhoton> EmissionLearning::Evidence() const {
     const Known& like = of.count > 0 || all.count == 0 ? of : all;
     evidence.push_back(photon);
     if (all.count == 0) continue;
-    evidence.back().worth *= like.worth;
-    evidence.back().squared *= like.squared;
+    evidence.back().contribution *= like.contribution;
+    evidence.back().secondMoment *= like.secondMoment;
   }
   return evidence;
 }
@@ -135,14 +135,14 @@ void EmissionLearning::Learn(const PhotonUse& use) {
     const double brought = use.Sum(ofUse[k]) * static_cast<double>(origin.flux);
     // The density of the photon was `gain` times the unguided one.
     const double squared = share * brought * brought * static_cast<double>(origin.gain);
-    const Vector3 way = origin.landing - origin.start;
+    const Vector3 way = origin.firstHit - origin.start;
     const bool isAtInfinity = lighting_.IsAtInfinity(origin.light);
     const double across = static_cast<double>(isAtInfinity ? 1.0f : LengthSquared(way));
     const double own = across > 0 ? static_cast<double>(origin.pdfUnguided) / across : 0.0;
-    useful_.push_back({origin.light, origin.landing, share * brought, squared, own});
+    useful_.push_back({origin.light, origin.firstHit, share * brought, squared, own});
     if (!tried_) continue;
     const Vector3 direction = SafeNormalize(way, Vector3(0.0f));
-    const Point3& on = isAtInfinity ? origin.landing : origin.start;
+    const Point3& on = isAtInfinity ? origin.firstHit : origin.start;
     unguided_.Add(squared);
     aimed_.Add(squared / tried_->Gain(origin.light, on, direction, static_cast<double>(origin.pdfUnguided)));
   }
@@ -153,18 +153,18 @@ void EmissionLearning::Learn(const PhotonUse& use) {
 void EmissionLearning::Thin() {
   if (useful_.size() <= 2 * kMostUseful) return;
   double total = 0;
-  for (const UsefulPhoton& photon : useful_) total += photon.worth;
+  for (const UsefulPhoton& photon : useful_) total += photon.contribution;
   const double step = total / static_cast<double>(kMostUseful);
   std::vector<UsefulPhoton> kept;
   double at = 0, next = 0.5 * step;
   for (const UsefulPhoton& photon : useful_) {
-    at += photon.worth;
+    at += photon.contribution;
     int times = 0;
     for (; next < at; next += step) ++times;
     if (times == 0) continue;
     kept.push_back(photon);
-    kept.back().worth = times * step;
-    kept.back().squared *= times * step / photon.worth;
+    kept.back().contribution = times * step;
+    kept.back().secondMoment *= times * step / photon.contribution;
   }
   useful_ = std::move(kept);
 }
@@ -223,8 +223,9 @@ void EmissionLearning::Load(ByteReader& bytes) {
   evidence_ = bytes.List<UsefulPhoton>(kMostRemembered + guessed_.size());
   for (const std::vector<UsefulPhoton>* photons : {&useful_, &evidence_}) {
     for (const UsefulPhoton& photon : *photons) {
-      const bool isOne = photon.light < lighting_.Lights().size() && IsFinite(photon.landing) &&
-                         IsSensible(photon.worth) && IsSensible(photon.squared) && IsSensible(photon.own);
+      const bool isOne = photon.light < lighting_.Lights().size() && IsFinite(photon.firstHit) &&
+                         IsSensible(photon.contribution) && IsSensible(photon.secondMoment) &&
+                         IsSensible(photon.unguidedDensity);
       if (!isOne) throw Error("it holds a photon that cannot be");
     }
   }

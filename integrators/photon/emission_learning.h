@@ -38,7 +38,7 @@ class EmissionLearning {
 
   // Squared error of the photons' sums without a guide, over that with the candidate, as estimated by the last verdict.
   double Gain() const { return gain_; }
-  int Targets() const { return guide_ ? guide_->TargetCount() : 0; }
+  int Components() const { return guide_ ? guide_->ComponentCount() : 0; }
 
   // Saves all that was learned. To be called between passes.
   void Save(ByteWriter& bytes) const;

@@ -1,10 +1,14 @@
-// The photons that a pass gathers, from the light paths of the pass before, and the radius to gather them with.
+// The photons that a pass gathers, from the light paths of the pass before, the radius to gather them with, and counted
+// lookups among them.
 #pragma once
 
+#include <chrono>
 #include <cmath>
 #include <memory>
+#include <span>
 
 #include "integrators/photon/photon_map.h"
+#include "integrators/walk/integrator.h"
 
 namespace lampyr {
 
@@ -27,5 +31,20 @@ struct PhotonPass {
     return lightPaths * pi * static_cast<double>(radius) * static_cast<double>(radius);
   }
 };
+
+// PhotonMap::Find, counted in `counts`. One lookup in 256 is timed, because reading the clock takes as long as a small
+// lookup.
+inline std::span<const uint32_t> FindPhotons(const PhotonMap& map, const Point3& position, float radius,
+                                             PhotonLookup& lookup, RenderCounts& counts) {
+  const bool isTimed = counts.lookups++ % 256 == 0;
+  const auto start = isTimed ? std::chrono::steady_clock::now() : std::chrono::steady_clock::time_point();
+  const std::span<const uint32_t> found = map.Find(position, radius, lookup);
+  if (isTimed) {
+    ++counts.timedLookups;
+    counts.lookupSeconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  }
+  counts.foundPhotons += found.size();
+  return found;
+}
 
 }  // namespace lampyr

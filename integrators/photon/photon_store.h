@@ -18,7 +18,7 @@ struct PhotonStatistics {
   uint64_t rejected = 0;                   // not finite
   double buildSeconds = 0;                 // of all maps
   double guideGain = 1;                    // EmissionLearning::Gain
-  int64_t guideTargets = 0;                // components of the guiding mixture; 0: photons are not guided
+  int64_t guideComponents = 0;             // components of the guiding mixture; 0: photons are not guided
   double firstRadius = 0, lastRadius = 0;  // scene units; 0: derived from the pixel footprint at each vertex
 };
 

@@ -14,7 +14,7 @@ namespace lampyr {
 // Emission and first hit of a light path.
 struct PathOrigin {
   uint32_t light = 0;
-  Point3 start{0.0f}, landing{0.0f};
+  Point3 start{0.0f}, firstHit{0.0f};
   // Emitted flux over the density of its emission, mean of the channels; in LightingServices::FluxUnit.
   float flux = 0;
   float pdfUnguided = 0;  // EmittedPhoton::pdfUnguided
@@ -26,7 +26,7 @@ inline PathOrigin OriginOf(const LightingServices& lighting, const EmittedPhoton
   PathOrigin origin;
   origin.light = photon.light;
   origin.start = photon.emission.position;
-  origin.landing = first.point.position;
+  origin.firstHit = first.point.position;
   // Both parts hold the light's radiance; a multiplier may have set one of them to 0.
   origin.flux = std::max(first.diffuse.Average(), first.specular.Average());
   origin.pdfUnguided = photon.pdfUnguided;

@@ -13,7 +13,6 @@
 #include <cmath>
 
 #include "integrators/path/camera_path.h"
-#include "integrators/photon/find_photons.h"
 #include "integrators/photon/photon_pass.h"
 #include "integrators/photon/photon_settings.h"
 #include "integrators/walk/footprint.h"
@@ -23,7 +22,7 @@ namespace lampyr {
 
 namespace {
 
-constexpr PathDimensions kOfCamera{2, 0}, kOfLight{2, 1};
+constexpr PathDimensions kCameraDimensions{2, 0}, kLightDimensions{2, 1};
 
 // 1/sr. Photons are gathered for lobes wider than about a quarter of a steradian; a narrower lobe would find few of
 // them.
@@ -49,7 +48,7 @@ class SppmIntegrator final : public Integrator {
  public:
   explicit SppmIntegrator(const SppmSettings& settings)
       : settings_(settings),
-        path_{settings.maxDepth, kOfCamera, kWide, !settings.directFromPhotons, settings.shadowRays} {}
+        path_{settings.maxDepth, kCameraDimensions, kWide, !settings.directFromPhotons, settings.shadowRays} {}
 
   TracedPaths Paths() const override { return TracedPaths::Both; }
   Color Sample(const Ray* ray, const SampleContext& context) const override;
@@ -61,11 +60,11 @@ class SppmIntegrator final : public Integrator {
 };
 
 // Stores the photons of a light path from its vertex `firstDepth` on.
-class Kept final : public LightPathVisitor {
+class PhotonRecorder final : public LightPathVisitor {
  public:
-  Kept(const SampleContext& context, size_t firstDepth) : context_(context), firstDepth_(firstDepth) {}
+  PhotonRecorder(const SampleContext& context, size_t firstDepth) : context_(context), firstDepth_(firstDepth) {}
 
-  bool Landed(const EmittedPhoton& photon, PathVertex& first) override {
+  bool FirstHit(const EmittedPhoton& photon, PathVertex& first) override {
     if (context_.withOrigin) context_.photons->SetOrigin(OriginOf(*context_.scene.lighting, photon, first));
     return true;
   }
@@ -81,9 +80,9 @@ class Kept final : public LightPathVisitor {
 };
 
 // Gathers the photons of the pass along one camera path.
-class Gathered final : public PhotonGatherer {
+class RadianceEstimate final : public PhotonGatherer {
  public:
-  Gathered(const SppmSettings& settings, const SampleContext& context, const Ray& ray)
+  RadianceEstimate(const SppmSettings& settings, const SampleContext& context, const Ray& ray)
       : settings_(settings), context_(context), pass_(*context.gather) {
     if (settings.photons.radius > 0) return;
     const double area = PixelArea(*context.scene.camera, ray, settings.filmPixels, 1);
@@ -149,12 +148,12 @@ class Gathered final : public PhotonGatherer {
 Color SppmIntegrator::Sample(const Ray* ray, const SampleContext& context) const {
   if (context.photons) {
     thread_local LightPath path(false);
-    Kept kept(context, settings_.directFromPhotons ? 1 : 2);
-    TraceLightPath(context, settings_.maxDepth, kOfLight, path, kept);
+    PhotonRecorder recorder(context, settings_.directFromPhotons ? 1 : 2);
+    TraceLightPath(context, settings_.maxDepth, kLightDimensions, path, recorder);
   }
   if (!ray || !context.gather) return Color(0.0f);
-  const Gathered gathered(settings_, context, *ray);
-  return TraceCameraPath(context, path_, *ray, &gathered);
+  const RadianceEstimate estimate(settings_, context, *ray);
+  return TraceCameraPath(context, path_, *ray, &estimate);
 }
 
 }  // namespace

@@ -9,7 +9,7 @@ namespace lampyr {
 namespace {
 
 // Follows a path over delta vertices to the first vertex that is not a delta.
-class PastDeltas final : public PathVisitor {
+class SkipDeltas final : public PathVisitor {
  public:
   bool Arrived(Subpath& path, const PathState& state) override {
     PathVertex& vertex = path.Last();
@@ -42,7 +42,7 @@ double PixelArea(const Camera& camera, const Ray& ray, double filmPixels, double
 }
 
 bool SceneProbe::Find(PathState& state, Subpath& path, SeenVertex& seen) {
-  PastDeltas visitor;
+  SkipDeltas visitor;
   const int before = static_cast<int>(path.Count());
   Walk(Context(), {TransportMode::Radiance, before + kMostDeltas, {}, false}, state, path, visitor);
   if (!visitor.Distance()) return false;
@@ -53,7 +53,7 @@ bool SceneProbe::Find(PathState& state, Subpath& path, SeenVertex& seen) {
   return true;
 }
 
-void SceneProbe::ForSeen(int width, int height, int across, const Visit& visit) {
+void SceneProbe::ForEachVisible(int width, int height, int across, const Visit& visit) {
   SeenVertex seen;
   const auto cells = static_cast<float>(across);
   for (int i = 0; i < across * across; ++i) {
@@ -86,7 +86,7 @@ double TypicalFootprint(const RenderScene& scene, int width, int height) {
   const double filmPixels = static_cast<double>(width) * static_cast<double>(height);
   std::vector<double> areas;
   SceneProbe probe(scene);
-  probe.ForSeen(width, height, 24, [&](const Ray& ray, const SeenVertex& seen) {
+  probe.ForEachVisible(width, height, 24, [&](const Ray& ray, const SeenVertex& seen) {
     const double area = PixelArea(*scene.camera, ray, filmPixels, static_cast<double>(seen.distance));
     if (area > 0 && std::isfinite(area)) areas.push_back(area);
   });

@@ -27,7 +27,7 @@ class SceneProbe {
   using Visit = std::function<void(const Ray& ray, SeenVertex& seen)>;
   // Calls `visit` with the first non-delta vertex of each of across² camera rays on a grid over an image of width ×
   // height pixels. Rays that reach no such vertex are skipped.
-  void ForSeen(int width, int height, int across, const Visit& visit);
+  void ForEachVisible(int width, int height, int across, const Visit& visit);
 
   // Samples the scattering at `from` and finds the first non-delta vertex in that direction. `state`: path state after
   // the scattering, with its throughput. `block`: the vertex block of sampler dimensions to draw from; each block has

@@ -8,10 +8,10 @@ namespace {
 
 // Adds what applies to the first segment alone: the light filter, and the distance within which a surface blocks the
 // emission without being lit (EmissionSample::shinesFrom). All other segments are those of any path.
-class Grown final : public PathVisitor {
+class LightWalkVisitor final : public PathVisitor {
  public:
-  Grown(const SampleContext& context, const EmittedPhoton& photon, const PathState& start, int maxDepth,
-        LightPath& path, LightPathVisitor& visitor)
+  LightWalkVisitor(const SampleContext& context, const EmittedPhoton& photon, const PathState& start, int maxDepth,
+                   LightPath& path, LightPathVisitor& visitor)
       : context_(context),
         photon_(photon),
         diffuse_(start.diffuse),
@@ -24,7 +24,7 @@ class Grown final : public PathVisitor {
     return path.Count() > 0 || hit.t >= photon_.emission.shinesFrom;
   }
   bool Arrived(Subpath& path, const PathState& state) override {
-    if (path.Count() == 1 && !Lands(path.Last(), state)) {
+    if (path.Count() == 1 && !SetFirst(path.Last(), state)) {
       path.Clear();
       return false;
     }
@@ -34,13 +34,13 @@ class Grown final : public PathVisitor {
 
  private:
   // Filters act on the emitted radiance, before the transmittance of thin surfaces, as in next-event estimation.
-  bool Lands(PathVertex& first, const PathState& state) {
+  bool SetFirst(PathVertex& first, const PathState& state) {
     first.diffuse = diffuse_;
     first.specular = specular_;
-    if (!context_.scene.lighting->FilterLanding(photon_, first.receiver, first.diffuse, first.specular)) return false;
+    if (!context_.scene.lighting->FilterFirstHit(photon_, first.receiver, first.diffuse, first.specular)) return false;
     first.diffuse *= state.passed;
     first.specular *= state.passed;
-    return visitor_.Landed(photon_, first);
+    return visitor_.FirstHit(photon_, first);
   }
 
   const SampleContext& context_;
@@ -87,8 +87,8 @@ void TraceLightPath(const SampleContext& context, int maxDepth, const PathDimens
   if (photon->fromSurface) visitor.Emitted(*photon);
   PathState state;
   if (maxDepth < 1 || photon->IsDark() || !Emit(context, *photon, state)) return;
-  Grown grown(context, *photon, state, maxDepth, path, visitor);
-  Walk(context, {TransportMode::Importance, maxDepth, dimensions}, state, path.vertices, grown);
+  LightWalkVisitor walkVisitor(context, *photon, state, maxDepth, path, visitor);
+  Walk(context, {TransportMode::Importance, maxDepth, dimensions}, state, path.vertices, walkVisitor);
 }
 
 }  // namespace lampyr

@@ -20,7 +20,7 @@ class LightPathVisitor {
   // The path starts on a surface that camera rays can hit.
   virtual void Emitted(const EmittedPhoton&) {}
   // First hit of the path, before Arrived is called for it. False: the path ends without a vertex.
-  virtual bool Landed(const EmittedPhoton&, PathVertex&) { return true; }
+  virtual bool FirstHit(const EmittedPhoton&, PathVertex&) { return true; }
   // A vertex was added to the path: the last one.
   virtual void Arrived(LightPath& path, const PathState& state) = 0;
 };

@@ -24,14 +24,15 @@ Color SampleLight(const SampleContext& context, const NextEventSettings& setting
       direct, f, vertex.Throughput() * scattered * (vertex.ScatteringCosine(sample.direction) / pdf.value)};
   if (connection.value.IsBlack()) return Color(0.0f);
   const float weight = visitor.Weigh(connection);
-  const float worth = settings.shadowRays.Worth(connection.value * weight, soFar, ShadowRays::DeciderOf(u.x, u.y));
-  if (worth == 0) return Color(0.0f);
+  const float survivalWeight =
+      settings.shadowRays.SurvivalWeight(connection.value * weight, soFar, ShadowRays::DeciderOf(u.x, u.y));
+  if (survivalWeight == 0) return Color(0.0f);
   ++context.counts.shadowRays;
   const Color transmitted = lighting.Transmittance(vertex.point, direct, context.time);
   lighting.UpdateWithResults(vertex.receiver, direct, transmitted);
   const Color value = connection.value * transmitted;
   if (value.IsBlack()) return value;
-  const Color contribution = value * (weight * worth);
+  const Color contribution = value * (weight * survivalWeight);
   visitor.Arrived(connection, value, contribution);
   return contribution;
 }

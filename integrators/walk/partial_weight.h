@@ -15,7 +15,7 @@
 // which the recursion carries on like the others.
 //
 // Departures from [Georgiev12]: β is 2, not 1. Selection of lights may depend on the receiver and is weighted exactly:
-// the first partial weight of a light subpath is made at its first hit (AtLanding), which is the receiver. The terms
+// the first partial weight of a light subpath is made at its first hit (AtFirstHit), which is the receiver. The terms
 // with a factor `merge` are kept apart, because photons are gathered in a later pass than they are traced in, with
 // another radius.
 //
@@ -30,10 +30,28 @@
 
 #include <cstdint>
 
-#include "integrators/walk/mis.h"
 #include "materials/scattering.h"
+#include "math/density.h"
 
 namespace lampyr {
+
+// (p_i / p)^β, the term of technique i in the denominator of a weight, for the ratio p_i / p of its density to that of
+// the technique being weighted. Of a density: its factor of such a term.
+inline double Mis(double ratio) {
+  return ratio * ratio;
+}
+template <class Measure>
+double Mis(Density<Measure> density) {
+  return density.value * density.value;
+}
+
+// Weight of a sample drawn with density `own`, against one other technique. Computed from the ratio, because densities
+// of tiny lights leave the range of float when squared.
+inline float PowerHeuristic(PdfSolidAngle own, PdfSolidAngle other) {
+  if (own.value <= 0) return 0;
+  const float ratio = other.value / own.value;
+  return 1.0f / (1.0f + ratio * ratio);
+}
 
 // Densities at the light's end of a path, for its first surface vertex as receiver. They include the selection
 // probability of the light.
@@ -62,7 +80,7 @@ struct PartialWeight {
 
   // Partial weight at the first hit of a light subpath ([Georgiev12 eqs. 31–33]). Without `connects`: for merging
   // alone.
-  static PartialWeight AtLanding(const LightEnd& end, bool connects) {
+  static PartialWeight AtFirstHit(const LightEnd& end, bool connects) {
     if (!connects) return {};
     const double perEmission = 1 / Mis(end.emission);
     return {Mis(end.direct) * perEmission, end.canBeHit ? perEmission : 0.0, 0.0};

@@ -25,7 +25,7 @@ struct ShadowRays {
   // Survival weight of a contribution: 1 over the probability with which its shadow ray is traced; 0: the ray is not
   // traced. `decider`: random bits of the connection, such as those of its random numbers or its direction, that decide
   // nothing else.
-  float Worth(const Color& contribution, const Color& soFar, uint64_t decider) const {
+  float SurvivalWeight(const Color& contribution, const Color& soFar, uint64_t decider) const {
     const float value = contribution.Max();
     if (value < threshold) return 0;
     const float enough = roulette * soFar.Max();

@@ -22,15 +22,16 @@ constexpr float kSmallestSine = 0x1p-13f;
 // Photons in a row, to be divided.
 struct Cell {
   size_t first = 0, count = 0;
-  double worth = 0, squared = 0, own = 0;  // own: the mean
+  double contribution = 0, secondMoment = 0;
+  double unguidedDensity = 0;  // mean over the photons
   Bounds3 box;
   Point3 center{0.0f};
   float radius = 0;
 
-  // How often it is to be aimed at.
+  // Relative probability of aiming at this cell.
   double Weight() const {
-    return std::sqrt(own * static_cast<double>(kPi) * static_cast<double>(radius) * static_cast<double>(radius) *
-                     squared);
+    return std::sqrt(unguidedDensity * static_cast<double>(kPi) * static_cast<double>(radius) *
+                     static_cast<double>(radius) * secondMoment);
   }
 };
 
@@ -40,30 +41,31 @@ Cell CellOf(std::span<const UsefulPhoton> photons, size_t first, size_t count, f
   cell.count = count;
   const std::span<const UsefulPhoton> inside = photons.subspan(first, count);
   for (const UsefulPhoton& photon : inside) {
-    cell.worth += photon.worth;
-    cell.squared += photon.squared;
-    cell.own += photon.own / static_cast<double>(count);
-    cell.box.Add(photon.landing);
+    cell.contribution += photon.contribution;
+    cell.secondMoment += photon.secondMoment;
+    cell.unguidedDensity += photon.unguidedDensity / static_cast<double>(count);
+    cell.box.Add(photon.firstHit);
   }
   cell.center = cell.box.Center();
   float squared = 0;
-  for (const UsefulPhoton& photon : inside) squared = std::max(squared, LengthSquared(photon.landing - cell.center));
+  for (const UsefulPhoton& photon : inside) squared = std::max(squared, LengthSquared(photon.firstHit - cell.center));
   // Of n photons the outermost are some way within the region that they come from.
   const float margin = 1 + 2 / static_cast<float>(count);
   cell.radius = std::max(margin * std::sqrt(squared), smallest);
   return cell;
 }
 
-// Divides at half the worth across the longest side: the number of photons on the first side.
+// Divides at half the contribution across the longest side: the number of photons on the first side.
 size_t DivideCell(std::span<UsefulPhoton> photons, const Cell& cell) {
   const Vector3 extent = cell.box.Diagonal();
   const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
   const std::span<UsefulPhoton> own = photons.subspan(cell.first, cell.count);
-  std::stable_sort(own.begin(), own.end(),
-                   [axis](const UsefulPhoton& a, const UsefulPhoton& b) { return a.landing[axis] < b.landing[axis]; });
+  std::stable_sort(own.begin(), own.end(), [axis](const UsefulPhoton& a, const UsefulPhoton& b) {
+    return a.firstHit[axis] < b.firstHit[axis];
+  });
   double sum = 0;
   size_t count = 0;
-  while (count < own.size() && sum < 0.5 * cell.worth) sum += own[count++].worth;
+  while (count < own.size() && sum < 0.5 * cell.contribution) sum += own[count++].contribution;
   return std::clamp(count, kFewest, cell.count - kFewest);
 }
 
@@ -77,7 +79,7 @@ EmissionGuide::EmissionGuide(std::span<const UsefulPhoton> photons, std::span<co
   };
   std::vector<UsefulPhoton> sorted;
   for (const UsefulPhoton& photon : photons) {
-    if (photon.worth > 0 && photon.squared > 0 && unguidedOf(photon.light) > 0) sorted.push_back(photon);
+    if (photon.contribution > 0 && photon.secondMoment > 0 && unguidedOf(photon.light) > 0) sorted.push_back(photon);
   }
   std::stable_sort(sorted.begin(), sorted.end(),
                    [](const UsefulPhoton& a, const UsefulPhoton& b) { return a.light < b.light; });
@@ -88,7 +90,7 @@ EmissionGuide::EmissionGuide(std::span<const UsefulPhoton> photons, std::span<co
     entry.light = sorted[first].light;
     double squared = 0;
     size_t end = first;
-    while (end < sorted.size() && sorted[end].light == entry.light) squared += sorted[end++].squared;
+    while (end < sorted.size() && sorted[end].light == entry.light) squared += sorted[end++].secondMoment;
     double weight = std::sqrt(squared);
     if (end - first >= kFewestOfLight && lights[entry.light].light->CanBeAimed()) {
       const std::span<UsefulPhoton> own = std::span(sorted).subspan(first, end - first);
@@ -113,7 +115,7 @@ EmissionGuide::EmissionGuide(std::span<const UsefulPhoton> photons, std::span<co
 // The cell that is aimed at most is divided first. Returns the sum of the weights.
 double EmissionGuide::AddTargets(std::span<UsefulPhoton> photons, float smallest, Entry& entry) {
   std::vector<Cell> cells{CellOf(photons, 0, photons.size(), smallest)};
-  while (cells.size() < kMostTargets) {
+  while (cells.size() < kMaxComponents) {
     size_t widest = cells.size();
     for (size_t i = 0; i < cells.size(); ++i) {
       if (cells[i].count < 2 * kFewest || !(cells[i].radius > smallest)) continue;
@@ -276,7 +278,7 @@ double EmissionGuide::Gain(uint32_t light, const Point3& on, const Vector3& dire
   return 1 - kGuided + kGuided * LearnedProbability(light) / unguided * aimed;
 }
 
-int EmissionGuide::TargetCount() const {
+int EmissionGuide::ComponentCount() const {
   int count = 0;
   for (const Entry& entry : entries_) count += entry.targets;
   return count;

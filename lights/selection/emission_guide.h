@@ -1,17 +1,17 @@
-// Where photons are worth sending: learned from those that reached what the camera sees, and part of every density.
+// Guiding of photon emission, learned from photons that reached what the camera sees, and part of every density.
 //
-// A guide is targets: spheres around the places where such photons landed first, with weights, light by light. A light
-// with a place sends a photon into the cone that a target fills, a light at infinity through the disk that it shows to
-// the photon's direction; so one description serves every kind, whatever the light is and wherever on it the photon
-// starts, and its density can be asked for any photon. With probability kGuided the light is chosen by what its photons
-// brought and the photon is aimed; otherwise it is what it would be without a guide, so that no place is lost and no
-// photon carries more than 1/(1 - kGuided) of what it would have carried.
+// The guide is a mixture, per light, of components ("targets"): spheres around the first hits of such photons. A light
+// with a position samples the cone that a sphere subtends; a light at infinity samples the disk that the sphere shows
+// to the photon's direction. The description does not depend on the type of light or on where on it the photon starts,
+// and the density of any photon can be evaluated. With probability kGuided the light is chosen by the contributions of
+// its photons and the photon is aimed at a component; otherwise the unguided emission is sampled (defensive sampling),
+// so that the weight of a photon is at most 1/(1 - kGuided) of its unguided weight.
 //
-// Weights are those that make the sum of all photons least noisy: in proportion to the root of (how likely a photon
-// comes to the target without a guide · the mean square of what those bring). A place that few photons leave for where
-// they are of use, with much each, is worth more of them than what it brings on the whole.
+// The weights of components minimise the variance of the sum over photons: each is proportional to the root of (the
+// unguided probability of hitting the sphere · the second moment of the contribution of such photons).
 //
-// Among all photons of light l the part that is aimed is Share(l): their density is (1 - share) · own + share · aimed.
+// Share(l): probability that a photon of light l is aimed. The density of its photons is
+// (1 - share) · unguided + share · aimed.
 #pragma once
 
 #include <cstdint>
@@ -26,19 +26,19 @@ namespace lampyr {
 class LightSelector;
 struct PlacedLight;
 
-// A photon that was of use.
+// A photon that contributed to the image.
 struct UsefulPhoton {
   uint32_t light = 0;
-  Point3 landing{0.0f};  // where it first met a surface
-  double worth = 0;      // what the camera got by it, over its density; any unit
-  double squared = 0;    // the mean square of that without a guide, as far as this one tells
-  double own = 0;        // density of such a photon of this light without a guide, 1/m² across its way where it lands
+  Point3 firstHit{0.0f};
+  double contribution = 0;     // to the image, over the density of the photon; any unit
+  double secondMoment = 0;     // this photon's part of the mean square of contributions without a guide
+  double unguidedDensity = 0;  // of this light's photons at the first hit, 1/m² perpendicular to the photon
 };
 
 class EmissionGuide {
  public:
   static constexpr double kGuided = 0.6;
-  static constexpr int kMostTargets = 64;  // of a light
+  static constexpr int kMaxComponents = 64;  // of a light
 
   // `unguided` chooses lights otherwise and must outlive the guide, like `lights`. Without useful photons the guide
   // never aims.
@@ -76,7 +76,7 @@ class EmissionGuide {
   // direction or 1/m² of its line (whichever is aimed).
   double Gain(uint32_t light, const Point3& on, const Vector3& direction, double own) const;
 
-  int TargetCount() const;
+  int ComponentCount() const;
   size_t LightCount() const { return entries_.size(); }
 
  private:

@@ -42,8 +42,8 @@ void EmitterList::Look(const TreeReceiver& receiver, Cut& cut) const {
   if (!(cut.sum > 0)) cut = {intensity_, 0, true};
 }
 
-EmitterChoice EmitterList::Select(const TreeReceiver& receiver, const Cut& cut, double u, bool blindly) const {
-  const bool byIntensity = blindly || cut.byIntensity;
+EmitterChoice EmitterList::Select(const TreeReceiver& receiver, const Cut& cut, double u, bool defensive) const {
+  const bool byIntensity = defensive || cut.byIntensity;
   double left = u * (byIntensity ? intensity_ : cut.sum);
   EmitterChoice choice;
   for (uint32_t i = 0; i < blocks_.size(); ++i) {

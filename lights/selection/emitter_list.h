@@ -21,7 +21,7 @@ class EmitterList {
     static double Concentration() { return 0; }  // unknown: as many samples as there may be
   };
   void Look(const TreeReceiver& receiver, Cut& cut) const;
-  EmitterChoice Select(const TreeReceiver& receiver, const Cut& cut, double u, bool blindly) const;
+  EmitterChoice Select(const TreeReceiver& receiver, const Cut& cut, double u, bool defensive) const;
   EmitterProbability ProbabilityOf(const TreeReceiver& receiver, const Cut& cut, uint32_t emitter) const;
 
   bool IsEmpty() const { return !(intensity_ > 0); }

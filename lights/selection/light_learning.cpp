@@ -124,12 +124,12 @@ void LightLearning::Save(ByteWriter& bytes) const {
 void LightLearning::Load(ByteReader& bytes) {
   isRecording_ = bytes.Flag();
   for (const SavedRow& saved : bytes.List<SavedRow>(kRows)) {
-    if (saved.index >= kRows) throw Error("it holds a number that cannot be");
+    if (saved.index >= kRows) throw Error("it holds a number out of range");
     used_[saved.index / 64].fetch_or(uint64_t{1} << saved.index % 64, std::memory_order_relaxed);
     for (size_t child = 0; child < kWidth; ++child) {
       const size_t i = saved.index * kWidth + child;
       if (!(saved.known[child] >= 0) || !(saved.learned[child] >= 0 && saved.learned[child] <= 1))
-        throw Error("it holds a number that cannot be");
+        throw Error("it holds a number out of range");
       counts_[i].store(saved.counts[child], std::memory_order_relaxed);
       squares_[i].store(saved.squares[child], std::memory_order_relaxed);
       rows_[saved.index].known[child] = saved.known[child];

@@ -262,17 +262,17 @@ LightTree::Found LightTree::Descend(const TreeReceiver& receiver, const Cut& cut
   }
 }
 
-EmitterChoice LightTree::Select(const TreeReceiver& receiver, const Cut& cut, double u, bool blindly) const {
+EmitterChoice LightTree::Select(const TreeReceiver& receiver, const Cut& cut, double u, bool defensive) const {
   EmitterChoice choice;
   choice.u = u;
   Found found;
-  if (blindly) {
+  if (defensive) {
     found = FindByIntensity(0, Trend(), choice.u);
-    choice.probability.seen = SeenProbability(receiver, cut, slots_[found.emitter]);
+    choice.probability.byImportance = ImportanceProbability(receiver, cut, slots_[found.emitter]);
   } else {
-    found = Descend(receiver, cut, choice.u, choice.probability.seen);
+    found = Descend(receiver, cut, choice.u, choice.probability.byImportance);
   }
-  choice.probability.blind = BlindProbability(found.intensity);
+  choice.probability.defensive = DefensiveProbability(found.intensity);
   choice.emitter = found.emitter;
   return choice;
 }
@@ -290,7 +290,7 @@ constexpr size_t kLongestWay = 128;
 }  // namespace
 
 // From the cut down, as an emitter is chosen: products of the same numbers in the same order.
-double LightTree::SeenProbability(const TreeReceiver& receiver, const Cut& cut, uint32_t slot) const {
+double LightTree::ImportanceProbability(const TreeReceiver& receiver, const Cut& cut, uint32_t slot) const {
   std::array<uint32_t, kLongestWay> way;
   size_t length = 0;
   int at;
@@ -329,12 +329,12 @@ double LightTree::SeenThrough(const Cut& cut, uint32_t node) const {
 }
 
 void LightTree::Record(LightLearning& learning, const TreeReceiver& receiver, const Cut& cut, uint32_t emitter,
-                       double blindShare, double importance) const {
+                       double defensiveShare, double importance) const {
   const uint32_t own = slots_[emitter];
   const auto mix = [&](double seen, uint32_t slot) {
-    return (1 - blindShare) * seen + blindShare * BlindProbability(IntensityOf(slot));
+    return (1 - defensiveShare) * seen + defensiveShare * DefensiveProbability(IntensityOf(slot));
   };
-  const double chosen = mix(SeenProbability(receiver, cut, own), own);
+  const double chosen = mix(ImportanceProbability(receiver, cut, own), own);
   for (uint32_t slot = own; slot != kNone; slot = parents_[slot / kWidth]) {
     const uint32_t node = slot / kWidth, child = nodes_[node].child[slot % kWidth];
     alignas(64) float unlearned[kWidth];
@@ -346,7 +346,7 @@ void LightTree::Record(LightLearning& learning, const TreeReceiver& receiver, co
       seen = chosen;
     } else {
       const bool isOpened = IndexIn(cut, child) >= 0;
-      seen = mix(isOpened ? SeenThrough(cut, child) : SeenProbability(receiver, cut, slot), slot);
+      seen = mix(isOpened ? SeenThrough(cut, child) : ImportanceProbability(receiver, cut, slot), slot);
     }
     // Of the cluster: the sample, over the probability of this emitter within it.
     learning.Record(receiver.region, node, static_cast<int>(slot % kWidth), importance * seen / chosen / estimate);
@@ -356,7 +356,7 @@ void LightTree::Record(LightLearning& learning, const TreeReceiver& receiver, co
 EmitterProbability LightTree::ProbabilityOf(const TreeReceiver& receiver, const Cut& cut, uint32_t emitter) const {
   if (emitter >= slots_.size() || slots_[emitter] == kNone) return {0, 0};
   const uint32_t slot = slots_[emitter];
-  return {SeenProbability(receiver, cut, slot), BlindProbability(IntensityOf(slot))};
+  return {ImportanceProbability(receiver, cut, slot), DefensiveProbability(IntensityOf(slot))};
 }
 
 size_t LightTree::Bytes() const {

@@ -20,8 +20,9 @@ namespace lampyr {
 
 // Of a choice, or of a given emitter.
 struct EmitterProbability {
-  double seen = 1;   // by importance
-  double blind = 1;  // by intensity, whatever the receiver: what the estimate overlooks keeps a chance
+  double byImportance = 1;
+  double defensive =
+      1;  // by intensity, whatever the receiver: a light whose importance is estimated too low keeps a chance
 };
 struct EmitterChoice {
   uint32_t emitter = 0;
@@ -55,15 +56,16 @@ class LightTree {
   };
   void Look(const TreeReceiver& receiver, Cut& cut) const;
 
-  // u in [0,1). By importance, or blindly. `cut` is what Look gave for this receiver. Requires !IsEmpty().
-  EmitterChoice Select(const TreeReceiver& receiver, const Cut& cut, double u, bool blindly) const;
+  // u in [0,1). `defensive`: by intensity instead of importance. `cut` is what Look gave for this receiver. Requires
+  // !IsEmpty().
+  EmitterChoice Select(const TreeReceiver& receiver, const Cut& cut, double u, bool defensive) const;
   // 0 for emitters that are never chosen.
   EmitterProbability ProbabilityOf(const TreeReceiver& receiver, const Cut& cut, uint32_t emitter) const;
 
-  // A sample of `emitter`, chosen blindly with probability `blindShare`, brought the irradiance of `importance`: what
-  // that says of each cluster it is in. `emitter` can be chosen.
+  // A sample of `emitter`, chosen by defensive sampling with probability `defensiveShare`, brought the irradiance of
+  // `importance`. Records it for each cluster that holds `emitter`, which can be chosen.
   void Record(LightLearning& learning, const TreeReceiver& receiver, const Cut& cut, uint32_t emitter,
-              double blindShare, double importance) const;
+              double defensiveShare, double importance) const;
 
   bool IsEmpty() const { return nodes_.Size() == 0; }
   size_t Bytes() const;
@@ -109,13 +111,13 @@ class LightTree {
   };
   Found Descend(const TreeReceiver& receiver, const Cut& cut, double& u, double& probability) const;
   Found FindByIntensity(uint32_t node, const Trend& trend, double& u) const;
-  double SeenProbability(const TreeReceiver& receiver, const Cut& cut, uint32_t slot) const;
+  double ImportanceProbability(const TreeReceiver& receiver, const Cut& cut, uint32_t slot) const;
   float IntensityOf(uint32_t slot) const { return nodes_[slot / kWidth].lobes.intensity[slot % kWidth]; }
   Point3 PositionOf(uint32_t slot) const {
     const LobeBlock& lobes = nodes_[slot / kWidth].lobes;
     return {lobes.meanX[slot % kWidth], lobes.meanY[slot % kWidth], lobes.meanZ[slot % kWidth]};
   }
-  double BlindProbability(float intensity) const { return static_cast<double>(intensity) / below_[0].intensity; }
+  double DefensiveProbability(float intensity) const { return static_cast<double>(intensity) / below_[0].intensity; }
 
   // Emitters in the order of the tree, so that those below a node are one after the other. Intensity and position are
   // those of the emitter's slot, to the bit.

@@ -15,7 +15,7 @@ namespace {
 
 // Chosen without a look at the receiver ([Hesterberg95] calls it defensive): what the estimate overlooks, or takes for
 // much less than it is, is chosen at least this part as often as by intensity.
-constexpr double kBlind = 0.05;
+constexpr double kDefensiveShare = 0.05;
 // Of the lights at infinity, and of those with a place, where there are both.
 constexpr double kSmallestGroup = 0.05;
 constexpr float kLargest = 1e30f;
@@ -80,7 +80,7 @@ class TreeSelector final : public LightSelector {
       if (!emitter) return;
       LightTree::Cut cut;
       search_.Look(place, cut);
-      search_.Record(learning, place, cut, *emitter, kBlind, emitters_.ImportanceOf(irradiance));
+      search_.Record(learning, place, cut, *emitter, kDefensiveShare, emitters_.ImportanceOf(irradiance));
     }
   }
 
@@ -114,17 +114,17 @@ class TreeSelector final : public LightSelector {
       return {emitters_.far[choice.index], kAnyPatch, FarExpected(choice.probability, far, count), choice.u};
     }
     double x = (u - far) / (1 - far);
-    const bool blindly = x < kBlind;
-    x = blindly ? x / kBlind : (x - kBlind) / (1 - kBlind);
-    const EmitterChoice choice = search_.Select(place, cut, std::min(x, 0x1.fffffffffffffp-1), blindly);
+    const bool defensive = x < kDefensiveShare;
+    x = defensive ? x / kDefensiveShare : (x - kDefensiveShare) / (1 - kDefensiveShare);
+    const EmitterChoice choice = search_.Select(place, cut, std::min(x, 0x1.fffffffffffffp-1), defensive);
     const Emitters::Patch own = emitters_.PatchOf(choice.emitter);
     return {own.light, own.patch, Expected(choice.probability, far, count),
             static_cast<float>(std::min(choice.u, 0x1.fffffep-1))};
   }
 
   static PdfDiscrete Expected(const EmitterProbability& probability, double far, int count) {
-    return PdfDiscrete(
-        static_cast<float>(count * ((1 - far) * (kBlind * probability.blind + (1 - kBlind) * probability.seen))));
+    return PdfDiscrete(static_cast<float>(count * ((1 - far) * (kDefensiveShare * probability.defensive +
+                                                                (1 - kDefensiveShare) * probability.byImportance))));
   }
   static PdfDiscrete FarExpected(PdfDiscrete within, double far, int count) {
     return PdfDiscrete(static_cast<float>(count * (far * static_cast<double>(within.value))));

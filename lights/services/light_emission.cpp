@@ -8,7 +8,7 @@ namespace {
 
 // What next-event estimation says of a delta light that a photon came from: the photon's own numbers, with the falloff
 // of the distance that the light's samples have.
-LightEvaluation DeltaLanding(const EmissionSample& emission, LightKind kind, float distanceSquared) {
+LightEvaluation DeltaFirstHit(const EmissionSample& emission, LightKind kind, float distanceSquared) {
   LightEvaluation evaluation;
   const float falloff = kind == LightKind::DeltaPosition ? 1 / distanceSquared : 1.0f;
   evaluation.normal = kind == LightKind::DeltaPosition ? Normal3(0.0f) : emission.direction;
@@ -166,8 +166,8 @@ bool LightingServices::IsOrigin(const EmittedPhoton& photon, const SurfacePoint&
   return glm::distance(point.position, emission.position) * std::abs(cosine) <= 8 * error;
 }
 
-std::optional<FoundLight> LightingServices::EvaluateLanding(const EmittedPhoton& photon,
-                                                            const Receiver& receiver) const {
+std::optional<FoundLight> LightingServices::EvaluateFirstHit(const EmittedPhoton& photon,
+                                                             const Receiver& receiver) const {
   const EmissionSample& emission = photon.emission;
   const LightKind kind = scene_->fronts[photon.light].kind;
   std::optional<LightTransform> moved;
@@ -177,7 +177,7 @@ std::optional<FoundLight> LightingServices::EvaluateLanding(const EmittedPhoton&
   const Vector3 way = receiver.position - emission.position;
   if (IsDelta(kind)) {
     if (!(LengthSquared(way) > 0)) return std::nullopt;
-    return FoundLight{photon.light, selection, DeltaLanding(emission, kind, LengthSquared(way))};
+    return FoundLight{photon.light, selection, DeltaFirstHit(emission, kind, LengthSquared(way))};
   }
   const LightHit hit = HitOf(emission, kind, emission.direction, receiver.position);
   auto evaluation = scene_->fronts[photon.light].light->EvaluateSamples(context, hit, receiver.position);
@@ -191,7 +191,7 @@ bool LightingServices::LandsFiltered(const EmittedPhoton& photon, const Receiver
                                      Color& specular) const {
   if (!Reaches(photon.light, receiver)) return false;
   if (scene_->lights[photon.light].filter < 0) return true;
-  const std::optional<FoundLight> found = EvaluateLanding(photon, receiver);
+  const std::optional<FoundLight> found = EvaluateFirstHit(photon, receiver);
   if (!found) return false;
   const Point3& start = photon.emission.position;
   const float distance = IsAtInfinity(photon.light) ? kInfinity : glm::distance(receiver.position, start);

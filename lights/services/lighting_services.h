@@ -118,12 +118,12 @@ class LightingServices {
   float EmissionGain(const EmittedPhoton& photon) const;
   // The light vertex of a photon that landed at `receiver`, as next-event estimation from there sees it: densities
   // without the selection. Delta lights too, which it finds with the discrete density 1.
-  std::optional<FoundLight> EvaluateLanding(const EmittedPhoton& photon, const Receiver& receiver) const;
+  std::optional<FoundLight> EvaluateFirstHit(const EmittedPhoton& photon, const Receiver& receiver) const;
 
   // What a photon brings to the receiver that it has landed on: its light's filter changes it, and where the light is
   // not linked to the receiver it brings nothing. False: nothing is left. The light as it was sent: what it passed on
   // its way comes after the filter.
-  bool FilterLanding(const EmittedPhoton& photon, const Receiver& receiver, Color& diffuse, Color& specular) const {
+  bool FilterFirstHit(const EmittedPhoton& photon, const Receiver& receiver, Color& diffuse, Color& specular) const {
     return !scene_->isLinked || LandsFiltered(photon, receiver, diffuse, specular);
   }
 
@@ -175,7 +175,7 @@ class LightingServices {
   void Aim(uint32_t light, const Point3& from, const Vector3& direction, Record& record) const;
 
   // An edge between a light and a receiver, with what the light sends along it: linking and filters act on it. False:
-  // nothing is left. Each technique that makes such an edge comes here, or to FilterLanding.
+  // nothing is left. Each technique that makes such an edge comes here, or to FilterFirstHit.
   bool Reaches(uint32_t light, const Receiver& receiver) const {
     return !scene_->isLinked || receiver.link == Receiver::kCamera || scene_->linking.IsLit(receiver.link, light);
   }

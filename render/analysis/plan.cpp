@@ -20,7 +20,7 @@ struct Facts {
   // Unevenness of that light over BSDF samples: the mean square over the square of the mean. 1: even.
   double concentration = 1;
 
-  double SecondHandNoise() const { return indirect * indirect * concentration; }
+  double IndirectNoise() const { return indirect * indirect * concentration; }
 };
 
 // Next-event estimation at a vertex, before and after occlusion.
@@ -51,7 +51,7 @@ void MeasureLight(const RenderScene& scene, const RenderSettings& settings, Fact
   double sent = 0, arrived = 0, indirect = 0, squares = 0;
   int rays = 0;
   SceneProbe probe(scene);
-  probe.ForSeen(settings.width, settings.height, across, [&](const Ray&, SeenVertex& seen) {
+  probe.ForEachVisible(settings.width, settings.height, across, [&](const Ray&, SeenVertex& seen) {
     const SampledLight first = SampleLightAt(scene, seen.vertex, 40, probe.Numbers());
     sent += first.sent;
     arrived += first.arrived;
@@ -102,7 +102,7 @@ std::string Percent(double part) {
 // If less than this fraction of sampled light is unoccluded, most light is indirect, and light paths find it by
 // themselves.
 constexpr double kMostlyHidden = 0.25;
-// Threshold of Facts::SecondHandNoise, the squared relative noise of a sample of indirect light. Rooms with lamps on
+// Threshold of Facts::IndirectNoise, the squared relative noise of a sample of indirect light. Rooms with lamps on
 // their ceilings have 0.1 to 0.5, the lampshade of scenes/lamp has 3.
 constexpr double kNoisy = 1.5;
 
@@ -110,34 +110,28 @@ PlanDecision ChooseIntegrator(const Facts& facts) {
   if (facts.lights == 0) return {"integrator", "path", "nothing emits"};
   if (facts.tracing == 0) return {"integrator", "path", "no light traces light paths"};
   if (facts.smooth > 0 && facts.deltas > 0) {
-    return {
-        "integrator", "vcm",
-        Count(facts.deltas, "light") + " without extent and " + Count(facts.smooth, "smooth material") +
-            ": caustics that no path from the camera finds, and that only photons show in mirrors and through glass"};
+    return {"integrator", "vcm",
+            Count(facts.deltas, "light") + " without extent and " + Count(facts.smooth, "smooth material") +
+                ": no camera path finds their caustics, and only photons show these in mirrors and through glass"};
   }
   if (facts.smooth > 0 && facts.finite > 0) {
     return {"integrator", "vcm",
             Count(facts.finite, "area light") + " and " + Count(facts.smooth, "smooth material") +
-                ": caustics, which paths from the camera find by chance, in mirrors and through glass as well"};
+                ": camera paths find their caustics by chance, also in mirrors and through glass"};
   }
   if (facts.hasSeen && facts.arriving < kMostlyHidden && facts.deltas + facts.finite > 0) {
     return {"integrator", "bdpt",
-            Percent(facts.arriving) +
-                " of the light that is sampled arrives where the camera looks: it comes at second hand"};
+            Percent(facts.arriving) + " of the light that is sampled arrives unoccluded: most light is indirect"};
   }
-  if (facts.SecondHandNoise() > kNoisy && facts.deltas + facts.finite > 0) {
-    return {
-        "integrator", "bdpt",
-        Percent(facts.indirect) +
-            " of the light comes by way of another surface, most of it from small places that paths from the camera "
-            "find by chance"};
+  if (facts.IndirectNoise() > kNoisy && facts.deltas + facts.finite > 0) {
+    return {"integrator", "bdpt",
+            Percent(facts.indirect) +
+                " of the light is indirect, most of it from small areas that camera paths find by chance"};
   }
   if (facts.smooth > 0)
-    return {"integrator", "path",
-            "smooth surfaces under lights at infinity, which paths from the camera find as they escape"};
+    return {"integrator", "path", "smooth surfaces under lights at infinity, which camera paths find as they escape"};
   return {"integrator", "path",
-          "nothing is smooth and " + Percent(facts.arriving) +
-              " of the light that is sampled arrives where the camera looks"};
+          "nothing is smooth and " + Percent(facts.arriving) + " of the sampled direct light arrives unoccluded"};
 }
 
 PlanDecision ChooseSelection(const Facts& facts, const RenderSettings& settings) {
@@ -156,18 +150,18 @@ PlanDecision ChooseMerging(const Facts& facts, const std::optional<PhotonSetting
     return {"photons", "none",
             facts.smooth == 0 ? "nothing is smooth: other techniques find all light" : "the integrator has none"};
   }
-  if (hasOwnRadius) return {"photons", "gathered", "within the radius that is set"};
-  if (photons->radius == 0) return {"photons", "gathered", "within two pixels, as they are seen there, at first"};
+  if (hasOwnRadius) return {"photons", "gathered", "with the radius that is set"};
+  if (photons->radius == 0) return {"photons", "gathered", "initial radius: two pixel footprints"};
   char text[96];
-  std::snprintf(text, sizeof text, "within %.3g of a vertex at first, a pixel as it is seen", photons->radius);
+  std::snprintf(text, sizeof text, "initial radius %.3g, the footprint of a pixel", photons->radius);
   return {"photons", "gathered", text};
 }
 
 PlanDecision ChooseFilters(const LightingServices& lighting) {
   size_t filtered = 0;
   for (const PlacedLight& placed : lighting.Lights()) filtered += placed.filter >= 0 ? 1 : 0;
-  if (filtered == 0) return {"light filters", "off", "no light has one: nothing is called"};
-  return {"light filters", "on", Count(filtered, "light") + " with a filter, on every edge from there to a surface"};
+  if (filtered == 0) return {"light filters", "off", "no light has one"};
+  return {"light filters", "on", Count(filtered, "light") + " with a filter, applied to every connection"};
 }
 
 PlanDecision ChooseLinking(const LightingServices& lighting) {
@@ -178,13 +172,13 @@ PlanDecision ChooseLinking(const LightingServices& lighting) {
 
 PlanDecision ChooseGuiding(const RenderSettings& settings, const PhotonSettings& photons) {
   if (!settings.values.IsOn("guide-photons")) return {"guiding", "off", "--no-guide-photons"};
-  if (!photons.guided) return {"guiding", "off", "nothing is smooth: photons are little of the light"};
-  return {"guiding", "if it pays", "learned from the first samples"};
+  if (!photons.guided) return {"guiding", "off", "nothing is smooth: photons carry little of the light"};
+  return {"guiding", "if helpful", "learned from the first samples"};
 }
 
 PlanDecision ChooseLayers(const RenderScene& scene) {
   const std::vector<std::string>& layers = scene.lighting->Groups().Layers();
-  if (layers.empty()) return {"light groups", "none", "no light names one: the picture has no layers"};
+  if (layers.empty()) return {"light groups", "none", "no light names one: the image has no layers"};
   constexpr size_t most = 8;  // names that are listed
   std::string names;
   for (size_t i = 0; i < std::min(most, layers.size()); ++i) names += (i > 0 ? ", " : "") + layers[i];
@@ -206,7 +200,7 @@ ScenePlan PlanFor(const RenderScene& scene, const RenderSettings& settings) {
   if (settings.integrator.empty() || settings.integrator == "auto") {
     plan.decisions.push_back(chosen);
   } else {
-    plan.decisions.push_back({"integrator", settings.integrator, "as it is set; \"auto\" would be " + chosen.choice});
+    plan.decisions.push_back({"integrator", settings.integrator, "as set; \"auto\" would choose " + chosen.choice});
     if (settings.integrator != chosen.choice) plan.decisions.back().reason += ": " + chosen.reason;
   }
   RenderSettings chosenSettings = settings;
@@ -221,14 +215,14 @@ ScenePlan PlanFor(const RenderScene& scene, const RenderSettings& settings) {
   plan.decisions.push_back(scene.hasMotion ? PlanDecision{"motion", "on", "something moves while the shutter is open"}
                                            : PlanDecision{"motion", "off", "nothing moves: rays have no time"});
   plan.decisions.push_back(
-      scene.camera->HasPinhole() ? PlanDecision{"lens", "pinhole", "the camera has no lens: nothing is drawn for it"}
+      scene.camera->HasPinhole() ? PlanDecision{"lens", "pinhole", "the camera has no lens"}
       : scene.camera->ConnectsLightPaths()
           ? PlanDecision{"lens", "sampled", "the camera has a lens"}
           : PlanDecision{"lens", "traced", "the camera has a lens of elements: light paths are not connected to it"});
   plan.decisions.push_back(
       settings.LearnsLights()
           ? PlanDecision{"learning", "on", "--learn-lights"}
-          : PlanDecision{"learning", "off", "it pays where what is near is behind walls: --learn-lights"});
+          : PlanDecision{"learning", "off", "useful where nearby lights are occluded: --learn-lights"});
   return plan;
 }
 

@@ -1,6 +1,7 @@
 #include "render/analysis/unseen_samples.h"
 
 #include <algorithm>
+#include <sstream>
 
 #include "integrators/walk/light_path.h"
 #include "integrators/walk/next_event.h"
@@ -31,7 +32,7 @@ class BrightPhotons final : public LightPathVisitor {
  public:
   explicit BrightPhotons(const SampleContext& context) : context_(context) {}
 
-  bool Landed(const EmittedPhoton& photon, PathVertex& first) override {
+  bool FirstHit(const EmittedPhoton& photon, PathVertex& first) override {
     const float radiance = Brighter(photon.emission.diffuse, photon.emission.specular);
     if (context_.scene.lighting->CanBeHit(photon.light) && radiance > brightest &&
         IsSmooth(context_.scene, first, context_.sampler))
@@ -128,6 +129,30 @@ double LargestUnseenSample(const RenderScene& scene, const RenderSettings& setti
   const SeenByCamera seen = LookFromCamera(scene, settings);
   const float brightest = std::max(BrightestPhoton(scene), seen.brightest) * seen.largestWeight;
   return static_cast<double>(brightest) * static_cast<double>(settings.sensor.ImagingRatio());
+}
+
+void WarnOfCoarsePlaces(const RenderScene& scene, const RenderSettings& settings, Diagnostics& diagnostics) {
+  const Point2 middle(0.5f * static_cast<float>(settings.width), 0.5f * static_cast<float>(settings.height));
+  const Ray ray = scene.camera->GenerateRay(middle, Point2(0.5f), 0).ray;
+  const Ray beside = scene.camera->GenerateRay(middle + Point2(1, 0), Point2(0.5f), 0).ray;
+  float error = 0, distance = 0;
+  try {
+    RayHit hit;
+    Color passed;
+    if (!scene.geometry->Intersect(ray, visibility::kCamera, hit, passed)) return;
+    error = MaxComponent(scene.geometry->GetSurfacePoint(ray, hit).positionError);
+    distance = hit.t;
+  } catch (...) {
+    return;  // a plugin's surface may throw anything; the render will report it
+  }
+  const float pixel = glm::distance(ray.origin + distance * ray.direction, beside.origin + distance * beside.direction);
+  constexpr float kCoarse = 0.1f;
+  if (!(error > kCoarse * distance && error > pixel)) return;
+  std::ostringstream text;
+  text << "the surface in the middle of the picture is so large that points on it are rounded to " << error
+       << " scene units, and the camera is " << distance
+       << " away: finer detail is lost. Divide it into smaller surfaces";
+  diagnostics.Warn(text.str());
 }
 
 }  // namespace lampyr

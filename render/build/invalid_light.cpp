@@ -24,8 +24,8 @@ bool IsInvalid(const Record& record) {
 std::vector<Receiver> ReceiversOf(const BuiltScene& built) {
   std::vector<Receiver> receivers;
   SceneProbe probe(built.scene);
-  probe.ForSeen(built.settings.width, built.settings.height, kAcross,
-                [&](const Ray&, const SeenVertex& seen) { receivers.push_back(seen.vertex.receiver); });
+  probe.ForEachVisible(built.settings.width, built.settings.height, kAcross,
+                       [&](const Ray&, const SeenVertex& seen) { receivers.push_back(seen.vertex.receiver); });
   if (receivers.empty()) receivers.push_back({built.scene.lighting->SceneSphere().center, Normal3(0.0f), true, 0});
   return receivers;
 }

@@ -10,13 +10,13 @@
 #include "lights/light_type.h"
 #include "lights/services/light_surface.h"
 #include "math/motion.h"
-#include "render/analysis/coarse_places.h"
 #include "render/analysis/plan.h"
+#include "render/analysis/unseen_samples.h"
 #include "render/build/material_table.h"
 #include "render/build/shape_builder.h"
 #include "scene/limits.h"
 #include "scene/nesting.h"
-#include "textures/alpha.h"
+#include "textures/texture_library.h"
 
 namespace lampyr {
 

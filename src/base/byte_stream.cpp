@@ -32,13 +32,13 @@ void ByteWriter::Bytes(const void* bytes, size_t count) {
 }
 
 void ByteReader::Take(void* to, size_t count) {
-  if (count > bytes_.size()) throw Error("it ends too early");
+  if (count > bytes_.size()) throw Error("unexpected end of data");
   if (count > 0) std::memcpy(to, bytes_.data(), count);
   bytes_ = bytes_.subspan(count);
 }
 
 void ByteReader::CheckCount(uint64_t count, uint64_t most, size_t size) const {
-  if (count > most || count > bytes_.size() / size) throw Error("it holds a number that cannot be");
+  if (count > most || count > bytes_.size() / size) throw Error("it holds a number out of range");
 }
 
 std::string ByteReader::Text(uint64_t most) {
@@ -48,12 +48,12 @@ std::string ByteReader::Text(uint64_t most) {
 
 bool ByteReader::Flag() {
   const auto value = Value<uint8_t>();
-  if (value > 1) throw Error("it holds a number that cannot be");
+  if (value > 1) throw Error("it holds a number out of range");
   return value == 1;
 }
 
 void ByteReader::CheckEnd() const {
-  if (!bytes_.empty()) throw Error("it holds more than it should");
+  if (!bytes_.empty()) throw Error("it goes on after its end");
 }
 
 uint32_t ChecksumOf(std::span<const std::byte> bytes) {

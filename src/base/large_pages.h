@@ -1,4 +1,5 @@
-// Allocation of large pages (random reads rarely miss the TLB) and of pages on demand.
+// Memory of large tables that are read at random: large pages, so that reads rarely miss the TLB; pages on demand; and
+// a prefetch that a TLB miss does not drop.
 #pragma once
 
 #include <cstddef>
@@ -15,5 +16,13 @@ void* TakeLargePages(size_t bytes);
 // where it is used. To be released with GiveBackPages and the same size. Throws std::bad_alloc.
 void* TakePagesOnDemand(size_t bytes);
 void GiveBackPages(void* memory, size_t bytes);
+
+// Reads *p and discards the value, so that the processor fetches its cache line while other work goes on. Unlike a
+// prefetch instruction the read is not dropped on a TLB miss, which is the usual case for tables of many megabytes. `p`
+// must be readable.
+inline void Touch(const float* p) {
+  const volatile float* watched = p;
+  (void)*watched;
+}
 
 }  // namespace lampyr

@@ -27,4 +27,9 @@ class MemoryBudget {
   double bytes_, taken_ = 0;
 };
 
+// Peak resident set size, MiB.
+double PeakMemoryMiB();
+// CPU time, user and system, seconds.
+double CpuSeconds();
+
 }  // namespace lampyr

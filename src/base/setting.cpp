@@ -69,7 +69,7 @@ std::string Setting::Format(const SettingValue& value) const {
   return std::get<std::string>(value);
 }
 
-std::string Setting::Exactly(const SettingValue& value) {
+std::string Setting::ToExactString(const SettingValue& value) {
   if (const bool* isOn = std::get_if<bool>(&value)) return *isOn ? "on" : "off";
   if (const auto* integer = std::get_if<int64_t>(&value)) return std::to_string(*integer);
   if (const double* number = std::get_if<double>(&value)) {

@@ -39,7 +39,7 @@ struct Setting {
   // A value for display: "0.05", "on", "4 GiB". Numbers are rounded to three digits.
   std::string Format(const SettingValue& value) const;
   // A value as text without rounding: different values have different texts.
-  static std::string Exactly(const SettingValue& value);
+  static std::string ToExactString(const SettingValue& value);
   // The value of a command-line argument. Throws an Error that says what would be right if the text is malformed or the
   // number is out of range.
   SettingValue Parse(const std::string& text) const;

@@ -12,7 +12,6 @@
 #include "base/memory.h"
 #include "film/atomic_file.h"
 #include "film/image_formats.h"
-#include "film/image_kind.h"
 #include "film/srgb.h"
 
 namespace lampyr {

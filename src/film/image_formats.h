@@ -7,17 +7,26 @@
 #include <vector>
 
 #include "film/image.h"
-#include "film/image_kind.h"
 
 namespace lampyr {
+
+struct ImageKind {
+  const char* format = "";  // OpenImageIO's name
+  int64_t width = 0,
+          height = 0;  // from the header, for formats whose readers allocate before they report a size; 0: unknown
+};
+
+// Throws an Error that lists the supported formats if the file is of none of them. Other formats of the image library
+// are not offered: each further reader would have to withstand damaged files.
+ImageKind FindImageKind(const std::filesystem::path& path);
 
 Image ReadExr(const std::filesystem::path& path);
 
 // An image read through OpenImageIO, with values as encoded in the file.
 struct EncodedImage {
   Image image;
-  int integerBits = 0;     // 8, 16, …; 0 for floating point
-  bool saysSrgb = false;   // declared by the file or implied by its format
+  int integerBits = 0;    // 8, 16, …; 0 for floating point
+  bool saysSrgb = false;  // declared by the file or implied by its format
 };
 EncodedImage ReadThroughModule(const std::filesystem::path& path, const ImageKind& kind);
 

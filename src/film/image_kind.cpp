@@ -1,5 +1,3 @@
-#include "film/image_kind.h"
-
 #include <fstream>
 #include <string>
 #include <string_view>

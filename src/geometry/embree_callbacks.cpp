@@ -76,7 +76,7 @@ Passage PassageAt(const Meeting& at, const RTCRay& ray, const RayHit& hit) {
   // Embree's normal tells the sides of a curve apart; that of a flat curve's point faces the ray.
   const bool entering = record.As<CurveSet>() ? at.side == 0 : glm::dot(direction, point.Ng) < 0;
   if (!record.thin) return {alpha, Color(1.0f), entering};
-  const float passes = record.thin->StraightPart(std::abs(glm::dot(glm::normalize(direction), point.Ns)));
+  const float passes = record.thin->TransmittedFraction(std::abs(glm::dot(glm::normalize(direction), point.Ns)));
   Passage passage{alpha * (1 - passes), Color(1.0f), entering};
   // Through the hole of the cut-out without a tint, through the surface with it.
   if (!record.thin->IsClear() && passage.stopped < 1) {

@@ -26,7 +26,7 @@ class ThinSurface {
  public:
   virtual ~ThinSurface() = default;
   // Part of the rays that goes straight on, in [0,1], at the cosine `cosTheta` > 0 to the shading normal.
-  virtual float StraightPart(float cosTheta) const = 0;
+  virtual float TransmittedFraction(float cosTheta) const = 0;
   // Factor on that part, in [0,1] a channel.
   virtual Color Tint(const Point2& uv, const Point3& position, const Normal3& Ng) const = 0;
   // True if the tint is white everywhere.

@@ -4,7 +4,7 @@
 #include <glm/matrix.hpp>
 
 #include "geometry/curves.h"
-#include "geometry/ellipsoid_area.h"
+#include "geometry/mapped_area.h"
 
 namespace lampyr {
 

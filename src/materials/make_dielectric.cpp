@@ -32,7 +32,7 @@ class ThinDielectric final : public Material, public ThinSurface {
   bool IsAlwaysDelta() const override { return true; }
   const ThinSurface* Thin() const override { return this; }
 
-  float StraightPart(float cosTheta) const override { return 1 - ThinReflectance(cosTheta, eta_); }
+  float TransmittedFraction(float cosTheta) const override { return 1 - ThinReflectance(cosTheta, eta_); }
   Color Tint(const Point2& uv, const Point3& position, const Normal3& Ng) const override {
     return ClampToUnit(transmittance_.Evaluate({uv, position, Ng}));
   }

@@ -1,7 +1,7 @@
 #include "sampling/color_table.h"
 
+#include "base/large_pages.h"
 #include "base/parallel.h"
-#include "base/touch.h"
 #include "sampling/cumulative.h"
 
 namespace lampyr {

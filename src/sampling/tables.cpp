@@ -1,7 +1,7 @@
 // Piecewise constant distributions.
 #include "sampling/tables.h"
 
-#include "base/touch.h"
+#include "base/large_pages.h"
 #include "sampling/cumulative.h"
 
 namespace lampyr {

@@ -105,7 +105,7 @@ class SceneParser {
   // Throws an Error if the CTM is singular.
   Placement PlacementOf(const Token& statement) const;
   // True if the CTM is singular. The object that `statement` places then has no extent, and is left out with a warning.
-  bool IsSquashed(const Token& statement) const;
+  bool LeavesOutSingular(const Token& statement) const;
 
   // transform_statements.cpp
   void Concat(const Token& statement, const Transform& transform);

@@ -50,7 +50,7 @@ Placement SceneParser::PlacementOf(const Token& statement) const {
   return {state_.ctm[0], state_.ctm[1]};
 }
 
-bool SceneParser::IsSquashed(const Token& statement) const {
+bool SceneParser::LeavesOutSingular(const Token& statement) const {
   if (!state_.singular) return false;
   diagnostics_.Warn(statement.where, "this " + statement.text + " is left out: " + state_.singular->text + " at " +
                                          state_.singular->where.ToString() +

@@ -123,7 +123,7 @@ void SceneParser::ObjectEnd(const Token& statement) {
 
 void SceneParser::ObjectInstance(const Token& statement) {
   const std::string name = ReadString(statement, "an object's name");
-  if (IsSquashed(statement)) return;
+  if (LeavesOutSingular(statement)) return;
   InstanceDescription instance{name, statement.where, PlacementOf(statement)};
   auto& list = currentObject_ >= 0 ? scene_.objects[currentObject_].instances : scene_.instances;
   list.push_back(std::move(instance));
@@ -132,7 +132,7 @@ void SceneParser::ObjectInstance(const Token& statement) {
 void SceneParser::Shape(const Token& statement) {
   ShapeDescription shape;
   shape.shape = ReadTyped(statement, "shape");
-  if (IsSquashed(statement)) return;
+  if (LeavesOutSingular(statement)) return;
   shape.placement = PlacementOf(statement);
   shape.reverseOrientation = state_.reverseOrientation;
   shape.material = state_.material;

@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 #include "scene/scene_description.h"
 #include "textures/mapping.h"
@@ -64,5 +65,16 @@ FloatParameter MakeFbm(const TextureRequest& request);
 FloatParameter MakeWrinkled(const TextureRequest& request);
 FloatParameter MakeWindy(const TextureRequest& request);
 ColorParameter MakeMarble(const TextureRequest& request);
+
+// A texture type: its factories as float and as colour (null: pbrt-v4 has no such texture), and its parameters.
+struct TextureType {
+  const char* name;
+  FloatParameter (*makeFloat)(const TextureRequest&);
+  ColorParameter (*makeColor)(const TextureRequest&);
+  std::vector<std::string> parameters;  // for suggestions
+  std::vector<std::string> alsoInPbrt;  // accepted for compatibility, without effect
+};
+
+const std::vector<TextureType>& TextureTypes();
 
 }  // namespace lampyr

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "textures/texture_types.h"
+#include "textures/texture_families.h"
 
 namespace lampyr {
 
@@ -35,7 +35,8 @@ const TextureType& FindType(const TextureDescription& description) {
 Affine RenderToTexture(const TextureDescription& description, const Transform& worldToRender,
                        Diagnostics& diagnostics) {
   if (description.placement.IsAnimated()) {
-    diagnostics.Warn(description.texture.where, "moving textures are not supported: the placement at shutter open is used");
+    diagnostics.Warn(description.texture.where,
+                     "moving textures are not supported: the placement at shutter open is used");
   }
   const Transform textureToRender = worldToRender * description.placement.start;
   if (textureToRender.IsSingular()) throw Error(description.texture.where, "the texture's transform is singular");
@@ -56,8 +57,8 @@ TextureLibrary::~TextureLibrary() = default;
 
 void TextureLibrary::Add(const TextureDescription& description, const Transform& worldToRender,
                          Diagnostics& diagnostics) {
-  const bool exists = description.isSpectrum ? colorTextures_.count(description.name) > 0
-                                             : floatTextures_.count(description.name) > 0;
+  const bool exists =
+      description.isSpectrum ? colorTextures_.count(description.name) > 0 : floatTextures_.count(description.name) > 0;
   const std::string kind = description.isSpectrum ? "spectrum" : "float";
   if (exists) {
     throw Error(description.texture.where, "there is a " + kind + " texture \"" + description.name + "\" already");
@@ -107,7 +108,8 @@ void TextureLibrary::ThrowUnknownTexture(const ParameterList& parameters, const 
   throw Error(where, "there is no " + kind + " texture \"" + texture + "\"" + DidYouMean(texture, names));
 }
 
-std::optional<FloatParameter> TextureLibrary::FindFloat(const ParameterList& parameters, const std::string& name) const {
+std::optional<FloatParameter> TextureLibrary::FindFloat(const ParameterList& parameters,
+                                                        const std::string& name) const {
   if (const auto texture = parameters.GetTextureName(name)) {
     const auto found = floatTextures_.find(*texture);
     if (found == floatTextures_.end()) ThrowUnknownTexture(parameters, name, *texture, false);
@@ -170,6 +172,27 @@ std::shared_ptr<const Image> TextureLibrary::GetImageWithGamma(const std::filesy
                                                                const FileLocation& where) const {
   const std::string key = file.string() + "\ngamma " + std::to_string(gamma);
   return GetCached(images_, key, where, [&] { return ReadImageWithGamma(file, gamma); });
+}
+
+namespace {
+
+class ParameterAlpha : public AlphaSource {
+ public:
+  explicit ParameterAlpha(FloatParameter parameter) : parameter_(std::move(parameter)) {}
+
+  float Alpha(const Point2& uv, const Point3& position, const Normal3& Ng) const override {
+    return std::clamp(parameter_.Evaluate({uv, position, Ng}), 0.0f, 1.0f);
+  }
+
+ private:
+  FloatParameter parameter_;
+};
+
+}  // namespace
+
+std::shared_ptr<const AlphaSource> MakeAlphaSource(const FloatParameter& parameter) {
+  if (parameter.IsConstant() && parameter.Evaluate({}) >= 1) return nullptr;
+  return std::make_shared<ParameterAlpha>(parameter);
 }
 
 }  // namespace lampyr

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "film/image.h"
+#include "geometry/geometry_scene.h"
 #include "scene/nesting.h"
 #include "scene/parameters.h"
 #include "scene/scene_description.h"
@@ -60,5 +61,8 @@ class TextureLibrary {
   std::vector<std::string> allNames_;  // of all textures of the scene, for messages
   mutable std::map<std::string, std::shared_ptr<const Image>> images_;
 };
+
+// Null if the parameter is a constant of at least 1: opaque surfaces cost nothing.
+std::shared_ptr<const AlphaSource> MakeAlphaSource(const FloatParameter& parameter);
 
 }  // namespace lampyr

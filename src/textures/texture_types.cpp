@@ -1,5 +1,5 @@
 // One row per texture type of pbrt-v4.
-#include "textures/texture_types.h"
+#include "textures/texture_families.h"
 
 namespace lampyr {
 

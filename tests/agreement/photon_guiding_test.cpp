@@ -68,7 +68,7 @@ TEST(PhotonGuiding, AgreesWithPathTracing) {
     RenderOverrides overrides = Small(integrator, true);
     overrides.values["radius"] = 0.02;
     overrides.values["photons"] = 10000;
-    EXPECT_GT(RenderText(text, 32, overrides).outcome.photons->guideTargets, 0u) << integrator;
+    EXPECT_GT(RenderText(text, 32, overrides).outcome.photons->guideComponents, 0u) << integrator;
     const Replicas guided = RenderReplicas(text, integrator, 16, 32, overrides);
     const Agreement result = CompareReplicas(guided, path, 9, 5e-4);
     std::printf("%s: %d blocks, largest |z| %.2f (threshold %.2f), chi2 %.1f (%.1f), bias %+.3f %% +- %.3f %%\n",
@@ -80,18 +80,18 @@ TEST(PhotonGuiding, AgreesWithPathTracing) {
   }
 }
 
-struct Worth {
+struct SurvivalWeight {
   double squaredError = 0, seconds = 0;
 };
 
-Worth Measure(const std::string& text, const char* integrator, bool guides, const Image& reference) {
-  Worth worth;
+SurvivalWeight Measure(const std::string& text, const char* integrator, bool guides, const Image& reference) {
+  SurvivalWeight worth;
   constexpr int seeds = 2;
   for (uint64_t seed = 1; seed <= seeds; ++seed) {
     const std::clock_t start = std::clock();
     const Rendered rendered = RenderText(text, 128, Small(integrator, guides, seed, reference.width));
     worth.seconds += static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC / seeds;
-    EXPECT_EQ(rendered.outcome.photons->guideTargets > 0, guides);
+    EXPECT_EQ(rendered.outcome.photons->guideComponents > 0, guides);
     for (int y = 0; y < reference.height; ++y) {
       for (int x = 0; x < reference.width; ++x) {
         for (size_t c = 0; c < 3; ++c) {
@@ -107,7 +107,8 @@ Worth Measure(const std::string& text, const char* integrator, bool guides, cons
 }
 
 double GainOf(const std::string& text, const char* integrator, const Image& reference) {
-  const Worth without = Measure(text, integrator, false, reference), with = Measure(text, integrator, true, reference);
+  const SurvivalWeight without = Measure(text, integrator, false, reference),
+                       with = Measure(text, integrator, true, reference);
   const double gain = without.squaredError * without.seconds / (with.squaredError * with.seconds);
   std::printf("%s: relative squared error %.3g without, %.3g with guiding; time x %.2f; efficiency x %.1f\n",
               integrator, without.squaredError, with.squaredError, with.seconds / without.seconds, gain);
@@ -130,7 +131,7 @@ TEST(PhotonGuiding, TheSameForAnyThreadsAndPasses) {
   const BuiltScene built =
       BuildScene(ParseScene(WindowScene(), "test.pbrt", diagnostics), Small("sppm", true), true, diagnostics);
   const Rendered one = RenderBuilt(built, 20, 1), two = RenderBuilt(built, 20, 2);
-  EXPECT_GT(one.outcome.photons->guideTargets, 0);
+  EXPECT_GT(one.outcome.photons->guideComponents, 0);
   EXPECT_TRUE(IsSame(one.image, two.image));
   const std::unique_ptr<Integrator> integrator = MakeIntegrator(built.scene, built.settings);
   Film film(built.settings.width, built.settings.height, built.settings.crop);
@@ -146,7 +147,7 @@ TEST(PhotonGuiding, NothingIsAimedWhereEverythingIsOfUse) {
     return RenderText(kBox, 32, overrides);
   };
   const Rendered with = render(true), without = render(false);
-  EXPECT_EQ(with.outcome.photons->guideTargets, 0);
+  EXPECT_EQ(with.outcome.photons->guideComponents, 0);
   std::printf("closed box: guiding promised x %.2f\n", with.outcome.photons->guideGain);
   EXPECT_TRUE(IsSame(with.image, without.image));
 }

@@ -67,12 +67,12 @@ class KeptLightPaths {
   std::map<Key, KeptPath> paths_;
 };
 
-class KeepsPaths final : public WeighedLightPath {
+class KeepsPaths final : public WeightedLightPath {
  public:
-  KeepsPaths(const SampleContext& context, KeptLightPaths& kept) : WeighedLightPath(context, true), kept_(kept) {}
+  KeepsPaths(const SampleContext& context, KeptLightPaths& kept) : WeightedLightPath(context, true), kept_(kept) {}
 
  private:
-  void Weighed(const LightPath& path) override {
+  void OnWeighted(const LightPath& path) override {
     if (path.vertices.Last().storesPhotons) kept_.Keep(path, End());
   }
   KeptLightPaths& kept_;

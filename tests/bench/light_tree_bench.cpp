@@ -36,10 +36,10 @@ std::vector<TreeReceiver> Receivers() {
   return receivers;
 }
 
-EmitterChoice Select(const LightTree& tree, const TreeReceiver& receiver, double u, bool blindly) {
+EmitterChoice Select(const LightTree& tree, const TreeReceiver& receiver, double u, bool defensive) {
   LightTree::Cut cut;
   tree.Look(receiver, cut);
-  return tree.Select(receiver, cut, u, blindly);
+  return tree.Select(receiver, cut, u, defensive);
 }
 EmitterProbability ProbabilityOf(const LightTree& tree, const TreeReceiver& receiver, uint32_t emitter) {
   LightTree::Cut cut;

@@ -4,8 +4,8 @@
 
 #include <filesystem>
 
+#include "base/memory.h"
 #include "base/parallel.h"
-#include "base/process_usage.h"
 #include "sampling/rng.h"
 #include "sampling/warp.h"
 #include "support/render_scene.h"

@@ -308,7 +308,7 @@ TEST_F(Cli, PlanSaysWhatIsModelledAndWhy) {
   EXPECT_NE(planOf("sky.pbrt").find("path     smooth surfaces under lights at infinity"), std::string::npos)
       << planOf("sky.pbrt");
   EXPECT_NE(planOf("dark.pbrt").find("nothing emits"), std::string::npos);
-  EXPECT_NE(planOf("scene.pbrt --integrator sppm").find("as it is set; \"auto\" would be path"), std::string::npos);
+  EXPECT_NE(planOf("scene.pbrt --integrator sppm").find("as set; \"auto\" would choose path"), std::string::npos);
   EXPECT_EQ(Run("plan absent.pbrt").exitCode, 2);
 }
 

@@ -25,7 +25,7 @@ double UnderSquare(const FloorRig& rig, double height, double width, double dept
 // Corners a million away are rounded to a sixteenth: turned, the floor is not where it should be.
 void Limit(double extent, double turn, ExtremeCase& extreme) {
   if (extent < 1e6) return;
-  extreme.warning = "places on it are known to";
+  extreme.warning = "points on it are rounded to";
   if (turn == 0) return;
   extreme.limit = "corners at 1e6 are rounded to 0.06";
   extreme.bias = 0.06;

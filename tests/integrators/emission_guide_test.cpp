@@ -97,7 +97,7 @@ TEST(EmissionGuide, LightsAreChosenAsOftenAsItSays) {
   for (int i = 0; i < 100; ++i) useful.push_back({0, Point3(rng.NextFloat(), 0, 0), 1, 1, 0.1});
   for (int i = 0; i < 3; ++i) useful.push_back({2, Point3(0, rng.NextFloat(), 0), 2, 4, 0.1});  // too few to aim at
   const EmissionGuide guide(useful, lighting.Lights(), lighting.EmissionSelector(), lighting.SceneSphere());
-  EXPECT_GT(guide.TargetCount(), 1);
+  EXPECT_GT(guide.ComponentCount(), 1);
   int chosen[3] = {}, aimed[3] = {};
   constexpr int count = 400000;
   for (int i = 0; i < count; ++i) {
@@ -141,7 +141,7 @@ TEST(EmissionGuide, WithoutUsefulPhotonsNothingIsAimed) {
   const BuiltScene built = Build(kLamps);
   const LightingServices& lighting = *built.scene.lighting;
   const EmissionGuide guide({}, lighting.Lights(), lighting.EmissionSelector(), lighting.SceneSphere());
-  EXPECT_EQ(guide.TargetCount(), 0);
+  EXPECT_EQ(guide.ComponentCount(), 0);
   for (uint32_t light = 0; light < 3; ++light) {
     EXPECT_EQ(guide.Share(light), 0);
     EXPECT_EQ(guide.Probability(light).value, lighting.EmissionSelector().Probability({}, light, kAnyPatch).value);

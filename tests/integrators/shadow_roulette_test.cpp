@@ -103,11 +103,12 @@ TEST(ShadowRoulette, WorthIsOneInTheMean) {
   for (const float value : {0.01f, 0.1f, 0.3f, 0.49f, 0.5f, 3.0f}) {
     double sum = 0;
     constexpr int count = 200000;
-    for (uint64_t i = 0; i < count; ++i) sum += static_cast<double>(rays.Worth(Color(value), Color(1.0f), i)) / count;
+    for (uint64_t i = 0; i < count; ++i)
+      sum += static_cast<double>(rays.SurvivalWeight(Color(value), Color(1.0f), i)) / count;
     const double p = std::min(static_cast<double>(value) / 0.5, 1.0);
     EXPECT_NEAR(sum, 1, 4.5 * std::sqrt((1 / p - 1) / count) + 1e-6) << value;
   }
-  EXPECT_EQ(rays.Worth(Color(1e-9f), Color(0.0f), 3), 1) << "nothing has been gathered to compare with";
+  EXPECT_EQ(rays.SurvivalWeight(Color(1e-9f), Color(0.0f), 3), 1) << "nothing has been gathered to compare with";
 }
 
 }  // namespace

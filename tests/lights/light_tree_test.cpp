@@ -69,8 +69,8 @@ LightTree::Cut Look(const LightTree& tree, const TreeReceiver& receiver) {
 EmitterProbability ProbabilityOf(const LightTree& tree, const TreeReceiver& receiver, uint32_t emitter) {
   return tree.ProbabilityOf(receiver, Look(tree, receiver), emitter);
 }
-EmitterChoice Select(const LightTree& tree, const TreeReceiver& receiver, double u, bool blindly) {
-  return tree.Select(receiver, Look(tree, receiver), u, blindly);
+EmitterChoice Select(const LightTree& tree, const TreeReceiver& receiver, double u, bool defensive) {
+  return tree.Select(receiver, Look(tree, receiver), u, defensive);
 }
 
 // As the tree keeps it.
@@ -122,8 +122,8 @@ TEST(LightTree, ProbabilitiesSumToOne) {
       double seen = 0, blind = 0;
       for (uint32_t e = 0; e < count; ++e) {
         const EmitterProbability probability = ProbabilityOf(tree, receiver, e);
-        seen += probability.seen;
-        blind += probability.blind;
+        seen += probability.byImportance;
+        blind += probability.defensive;
       }
       EXPECT_NEAR(seen, 1, 1e-5);
       EXPECT_NEAR(blind, 1, 1e-5);
@@ -138,23 +138,23 @@ TEST(LightTree, ChoosesAsOftenAsItSays) {
   const LightTree tree(RandomEmitters(count, rng), 1);
   for (int r = 0; r < receivers; ++r) {
     const TreeReceiver receiver = RandomReceiver(rng);
-    for (const bool blindly : {false, true}) {
+    for (const bool defensive : {false, true}) {
       std::vector<int> counts(count, 0);
       for (int i = 0; i < draws; ++i) {
         const double u = (i + static_cast<double>(rng.NextFloat())) / draws;
-        const EmitterChoice choice = Select(tree, receiver, u, blindly);
+        const EmitterChoice choice = Select(tree, receiver, u, defensive);
         ++counts[choice.emitter];
         ASSERT_GE(choice.u, 0);
         ASSERT_LT(choice.u, 1);
         if (i % 100 != 0) continue;
         const EmitterProbability again = ProbabilityOf(tree, receiver, choice.emitter);
-        ASSERT_EQ(again.seen, choice.probability.seen);
-        ASSERT_EQ(again.blind, choice.probability.blind);
+        ASSERT_EQ(again.byImportance, choice.probability.byImportance);
+        ASSERT_EQ(again.defensive, choice.probability.defensive);
       }
       // The draws are stratified: counts are off by no more than the borders of their share.
       for (uint32_t e = 0; e < count; ++e) {
         const EmitterProbability probability = ProbabilityOf(tree, receiver, e);
-        EXPECT_NEAR(counts[e], draws * (blindly ? probability.blind : probability.seen), 6) << e;
+        EXPECT_NEAR(counts[e], draws * (defensive ? probability.defensive : probability.byImportance), 6) << e;
       }
     }
   }
@@ -201,8 +201,8 @@ TEST(LightTree, NothingThatContributesIsRuledOut) {
     ++contributing;
     EXPECT_GT(Importance(LobeOf(emitter), receiver), 0);
     const EmitterProbability probability = ProbabilityOf(tree, receiver, e);
-    EXPECT_GT(probability.seen, 0) << trial;
-    EXPECT_GT(probability.blind, 0) << trial;
+    EXPECT_GT(probability.byImportance, 0) << trial;
+    EXPECT_GT(probability.defensive, 0) << trial;
   }
   EXPECT_GT(contributing, 10000);
 }
@@ -218,10 +218,10 @@ TEST(LightTree, NearerAndFacingEmittersAreLikelier) {
   const LightTree tree(emitters, 1);
   const TreeReceiver below{{0, 0, 0}, {0, 0, 1}, false};
   // 1 against cos/d² of 45°.
-  const double near = ProbabilityOf(tree, below, 0).seen;
+  const double near = ProbabilityOf(tree, below, 0).byImportance;
   EXPECT_NEAR(near, 1 / (1 + std::sqrt(0.5) / 2), 1e-5);
   const TreeReceiver turned{{0, 0, 0}, {-1, 0, 0}, false};
-  EXPECT_LT(ProbabilityOf(tree, turned, 1).seen, 1e-3);
+  EXPECT_LT(ProbabilityOf(tree, turned, 1).byImportance, 1e-3);
 }
 
 TEST(LightTree, CoincidentAndEmptyEmitters) {
@@ -235,10 +235,10 @@ TEST(LightTree, CoincidentAndEmptyEmitters) {
   const LightTree tree(emitters, 2);
   EXPECT_LE(tree.Depth(), 8);
   const TreeReceiver receiver{Point3(0.0f), Normal3(0, 0, 1), false};
-  EXPECT_NEAR(ProbabilityOf(tree, receiver, 4000).seen, 2e-5, 1e-9);
-  EXPECT_EQ(ProbabilityOf(tree, receiver, 4001).seen, 0);
+  EXPECT_NEAR(ProbabilityOf(tree, receiver, 4000).byImportance, 2e-5, 1e-9);
+  EXPECT_EQ(ProbabilityOf(tree, receiver, 4001).byImportance, 0);
   const TreeReceiver there{Point3(0.3f), Normal3(0, 0, 1), false};  // at the very place
-  EXPECT_GT(ProbabilityOf(tree, there, 4000).seen, 0);
+  EXPECT_GT(ProbabilityOf(tree, there, 4000).byImportance, 0);
   EXPECT_TRUE(LightTree(std::vector<ClusterBounds>(3), 1).IsEmpty());
   EXPECT_TRUE(LightTree(std::vector<ClusterBounds>(), 1).IsEmpty());
 }
@@ -294,7 +294,7 @@ TEST(LightTree, LikeEmittersAreChosenByIntensityAndTrendFromAfar) {
       double sum = 0, squares = 0, sumSeen = 0;
       for (uint32_t e = 0; e < count; ++e) {
         importances.push_back(static_cast<double>(Importance(LobeOf(emitters[e]), receiver)));
-        seen.push_back(ProbabilityOf(tree, receiver, e).seen);
+        seen.push_back(ProbabilityOf(tree, receiver, e).byImportance);
         sum += importances[e];
         sumSeen += seen[e];
       }
@@ -306,7 +306,7 @@ TEST(LightTree, LikeEmittersAreChosenByIntensityAndTrendFromAfar) {
       for (int i = 0; i < draws; ++i) {
         const EmitterChoice choice = Select(tree, receiver, (i + static_cast<double>(rng.NextFloat())) / draws, false);
         ++counts[choice.emitter];
-        ASSERT_EQ(choice.probability.seen, seen[choice.emitter]);
+        ASSERT_EQ(choice.probability.byImportance, seen[choice.emitter]);
         ASSERT_GE(choice.u, 0);
         ASSERT_LT(choice.u, 1);
       }
@@ -331,7 +331,7 @@ TEST(LightTree, ATinyFarClusterHasProbabilitiesThatSumToOne) {
       const Vector3 direction = RandomDirection(rng);
       const TreeReceiver receiver{Point3(0.4f, 0.3f, 0.2f) + distance * size * direction, -direction, false};
       double sum = 0;
-      for (uint32_t e = 0; e < emitters.size(); ++e) sum += ProbabilityOf(tree, receiver, e).seen;
+      for (uint32_t e = 0; e < emitters.size(); ++e) sum += ProbabilityOf(tree, receiver, e).byImportance;
       EXPECT_NEAR(sum, 1, 1e-6) << size << " " << distance;
     }
   }
@@ -365,7 +365,7 @@ TEST(LightTree, AWeakEmitterNearbyIsNotHiddenByItsCluster) {
   const LightTree tree(emitters, 1);
   const TreeReceiver receiver{Point3(0, 0, 10.01f), Normal3(0, 0, -1), false};
   // 1e-3/0.01² = 10 beside 999/10² = 10.
-  EXPECT_NEAR(ProbabilityOf(tree, receiver, 0).seen, 0.5, 0.05);
+  EXPECT_NEAR(ProbabilityOf(tree, receiver, 0).byImportance, 0.5, 0.05);
 }
 
 TEST(Emitters, AnEmitterIsAPatchOfItsLight) {
@@ -395,7 +395,7 @@ TEST(LightTree, IsTheSameForAnyNumberOfThreads) {
   const LightTree one(emitters, 1), four(emitters, 4);
   for (uint32_t e = 0; e < emitters.size(); e += 97) {
     const TreeReceiver receiver = RandomReceiver(rng);
-    EXPECT_EQ(ProbabilityOf(one, receiver, e).seen, ProbabilityOf(four, receiver, e).seen);
+    EXPECT_EQ(ProbabilityOf(one, receiver, e).byImportance, ProbabilityOf(four, receiver, e).byImportance);
   }
 }
 

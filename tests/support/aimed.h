@@ -19,9 +19,9 @@ inline std::shared_ptr<const EmissionGuide> AimAt(const LightingServices& lighti
     for (int i = 0; i < 200; ++i) {
       UsefulPhoton photon;
       photon.light = light;
-      photon.landing = center + radius * SampleUniformSphere(rng.NextPoint2());
-      if (i % 4 == 0) photon.landing += Vector3(1.5f * radius, 0, 0);
-      photon.worth = photon.squared = photon.own = 1;
+      photon.firstHit = center + radius * SampleUniformSphere(rng.NextPoint2());
+      if (i % 4 == 0) photon.firstHit += Vector3(1.5f * radius, 0, 0);
+      photon.contribution = photon.secondMoment = photon.unguidedDensity = 1;
       useful.push_back(photon);
     }
   }

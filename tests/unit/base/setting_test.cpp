@@ -59,10 +59,10 @@ TEST(Setting, IsCalledInScenesAsPbrtCallsThings) {
 
 // An identity tells any two values apart, and reads well.
 TEST(Setting, IsWrittenExactly) {
-  EXPECT_EQ(Setting::Exactly(0.05), "0.05");
-  EXPECT_NE(Setting::Exactly(0.1 + 0.2), Setting::Exactly(0.3));
-  EXPECT_EQ(Setting::Exactly(int64_t{4} << 30), "4294967296");
-  EXPECT_EQ(Setting::Exactly(true), "on");
+  EXPECT_EQ(Setting::ToExactString(0.05), "0.05");
+  EXPECT_NE(Setting::ToExactString(0.1 + 0.2), Setting::ToExactString(0.3));
+  EXPECT_EQ(Setting::ToExactString(int64_t{4} << 30), "4294967296");
+  EXPECT_EQ(Setting::ToExactString(true), "on");
   EXPECT_EQ(kSize.Format(kSize.fallback), "4.0 GiB");
 }
 

@@ -1,5 +1,5 @@
 // Carlson's R_G against the values that he printed, and the areas that are made from it against quadrature.
-#include "geometry/ellipsoid_area.h"
+#include "geometry/mapped_area.h"
 
 #include <gtest/gtest.h>
 

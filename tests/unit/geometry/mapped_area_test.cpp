@@ -7,8 +7,6 @@
 
 #include <glm/geometric.hpp>
 
-#include "geometry/ellipsoid_area.h"
-
 namespace lampyr {
 namespace {
 

@@ -420,7 +420,7 @@ TEST(CutOut, LayersAreIndependent) {
 class Pane : public ThinSurface {
  public:
   Pane(float part, const Color& tint) : part_(part), tint_(tint) {}
-  float StraightPart(float cosTheta) const override { return part_ * cosTheta; }
+  float TransmittedFraction(float cosTheta) const override { return part_ * cosTheta; }
   Color Tint(const Point2&, const Point3&, const Normal3&) const override { return tint_; }
   bool IsClear() const override { return tint_ == Color(1.0f); }
 

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "texture_scene.h"
-#include "textures/alpha.h"
+#include "textures/texture_library.h"
 
 namespace lampyr {
 namespace {

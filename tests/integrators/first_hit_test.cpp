@@ -1,5 +1,5 @@
 // Photons through the lighting services: what lands on a receiver is what next-event estimation finds there, and the
-// densities of a landing are those that the other techniques report of the same light vertex.
+// densities of a firstHit are those that the other techniques report of the same light vertex.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -58,7 +58,7 @@ SurfacePoint ReceiverAt(const GeometryScene& geometry, const Point3& position) {
 }
 
 // Where a photon meets the first surface that it lights.
-std::optional<RayHit> LandingOf(const GeometryScene& geometry, const EmittedPhoton& photon) {
+std::optional<RayHit> FirstHitOf(const GeometryScene& geometry, const EmittedPhoton& photon) {
   RayHit hit;
   const bool isLit = !photon.IsDark() && geometry.Intersect(photon.ray, visibility::kIndirect, hit) &&
                      hit.t >= photon.emission.shinesFrom;
@@ -74,8 +74,8 @@ Estimate ByPhotons(const BuiltScene& built, const LightingServices& lighting, in
     const Point2 u = rng.NextPoint2();
     const auto photon = lighting.GenerateEmission(uSelect, u, rng.NextPoint2(), 0);
     double flux = 0;
-    const auto landing = photon ? LandingOf(*built.scene.geometry, *photon) : std::nullopt;
-    if (landing && landing->primitive == 0 && photon->ray.direction.y < 0) {
+    const auto firstHit = photon ? FirstHitOf(*built.scene.geometry, *photon) : std::nullopt;
+    if (firstHit && firstHit->primitive == 0 && photon->ray.direction.y < 0) {
       const EmissionSample& e = photon->emission;
       flux = static_cast<double>(e.diffuse.g * e.emissionCosine / e.pdfEmit.value / e.pdfEmitDirection.value /
                                  photon->emissionSelection.value);
@@ -129,13 +129,13 @@ void ExpectSame(float a, float b, const char* what, const char* light) {
   EXPECT_NEAR(a, b, 2e-3f * std::max(std::abs(a), std::abs(b))) << what << " of " << light;
 }
 
-void ExpectSame(const LightEvaluation& landing, const LightEvaluation& other, const char* light) {
-  ExpectSame(landing.diffuse.g, other.diffuse.g, "radiance", light);
-  ExpectSame(landing.specular.g, other.specular.g, "specular radiance", light);
-  ExpectSame(landing.pdfDirect.value, other.pdfDirect.value, "pdfDirect", light);
-  ExpectSame(landing.pdfEmit.value, other.pdfEmit.value, "pdfEmit", light);
-  ExpectSame(landing.pdfEmitDirection.value, other.pdfEmitDirection.value, "pdfEmitDirection", light);
-  ExpectSame(landing.solidAngleToArea, other.solidAngleToArea, "solidAngleToArea", light);
+void ExpectSame(const LightEvaluation& firstHit, const LightEvaluation& other, const char* light) {
+  ExpectSame(firstHit.diffuse.g, other.diffuse.g, "radiance", light);
+  ExpectSame(firstHit.specular.g, other.specular.g, "specular radiance", light);
+  ExpectSame(firstHit.pdfDirect.value, other.pdfDirect.value, "pdfDirect", light);
+  ExpectSame(firstHit.pdfEmit.value, other.pdfEmit.value, "pdfEmit", light);
+  ExpectSame(firstHit.pdfEmitDirection.value, other.pdfEmitDirection.value, "pdfEmitDirection", light);
+  ExpectSame(firstHit.solidAngleToArea, other.solidAngleToArea, "solidAngleToArea", light);
 }
 
 // The light vertex of a photon again, as a ray from the receiver finds it, or as the only sample of a delta light.
@@ -165,9 +165,9 @@ std::optional<FoundLight> FindAgain(const BuiltScene& built, const LightingServi
   return std::nullopt;
 }
 
-class Landings : public testing::TestWithParam<bool> {};  // aimed
+class FirstHits : public testing::TestWithParam<bool> {};  // aimed
 
-TEST_P(Landings, HaveTheDensitiesOfTheOtherTechniques) {
+TEST_P(FirstHits, HaveTheDensitiesOfTheOtherTechniques) {
   for (const NamedLight& light : Lights()) {
     const BuiltScene built = Build(light.text);
     const auto guide = AimAt(*built.scene.lighting, Point3(0.3f, 0, -0.2f), 0.2f);
@@ -178,22 +178,22 @@ TEST_P(Landings, HaveTheDensitiesOfTheOtherTechniques) {
       const float uSelect = rng.NextFloat();
       const Point2 u = rng.NextPoint2();
       const auto photon = lighting.GenerateEmission(uSelect, u, rng.NextPoint2(), 0);
-      const auto hit = photon ? LandingOf(*built.scene.geometry, *photon) : std::nullopt;
+      const auto hit = photon ? FirstHitOf(*built.scene.geometry, *photon) : std::nullopt;
       if (!hit || hit->primitive != 0) continue;
       const SurfacePoint point = built.scene.geometry->GetSurfacePoint(photon->ray, *hit);
       const Receiver receiver{point.position, point.Ns, false};
-      const auto landing = lighting.EvaluateLanding(*photon, receiver);
-      ASSERT_TRUE(landing) << light.name;
+      const auto firstHit = lighting.EvaluateFirstHit(*photon, receiver);
+      ASSERT_TRUE(firstHit) << light.name;
       const auto again = FindAgain(built, lighting, *photon, point, receiver);
-      if (!again || again->light != landing->light) {  // the rim of a light, missed by a rounding
+      if (!again || again->light != firstHit->light) {  // the rim of a light, missed by a rounding
         ++missed;
         continue;
       }
       ++compared;
-      EXPECT_EQ(landing->selection.value, again->selection.value) << light.name;
+      EXPECT_EQ(firstHit->selection.value, again->selection.value) << light.name;
       // A grazing photon's cosine has few digits.
       if (std::abs(photon->emission.emissionCosine) > 0.05f && std::abs(photon->ray.direction.y) > 0.05f) {
-        ExpectSame(landing->evaluation, again->evaluation, light.name);
+        ExpectSame(firstHit->evaluation, again->evaluation, light.name);
       }
     }
     EXPECT_GE(compared, 300) << light.name;
@@ -201,7 +201,7 @@ TEST_P(Landings, HaveTheDensitiesOfTheOtherTechniques) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Photons, Landings, testing::Bool(),
+INSTANTIATE_TEST_SUITE_P(Photons, FirstHits, testing::Bool(),
                          [](const auto& tested) { return tested.param ? "Aimed" : "Unaimed"; });
 
 // A shadow ray stops short of the sample, also where the light is turned and far from the origin.
