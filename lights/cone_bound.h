@@ -7,15 +7,15 @@
 
 namespace lampyr {
 
-// Sets axis and angles of the bounds; beyond 90° nothing is promised under transforms that do not keep angles.
+// Sets axis and angles of the bounds. Unspecified beyond 90° under transforms that do not preserve angles.
 void SetConeBounds(const LightTransform& transform, const Vector3& axis, float w, EmissionBounds& bounds);
 
-// Cuts [minT, maxT] to what is within the cone at the local point `from`, widened a little against rounding; false when
-// that is nothing.
+// Clips [minT, maxT] to the cone with its apex at the local point `from`, slightly widened against rounding. False:
+// empty.
 bool ClipToCone(const LightTransform& transform, const Point3& from, const Vector3& axis, float w, const Point3& origin,
                 const Vector3& direction, float& minT, float& maxT);
 
-// The angle between two unit vectors, exact for small ones too.
+// Angle between two unit vectors, accurate for small angles.
 inline float AngleBetween(const Vector3& a, const Vector3& b) {
   return 2 * std::asin(std::min(0.5f * glm::length(a - b), 1.0f));
 }

@@ -1,4 +1,4 @@
-// Directions between a light's local space and render space, and what that does to densities.
+// Maps directions and their densities between a light's local space and render space.
 //
 // A linear map M carries local directions to render space: ω = M l / |M l|. With A = M⁻¹ the solid angles are related
 // by dω_local / dω = |det A| / |A ω|³, which is 1 for rotations, mirrors and uniform scales. A light whose distribution
@@ -29,7 +29,7 @@ inline float LocalSolidAngleFactor(const LightTransform& transform, const Vector
   return std::abs(glm::determinant(transform.toLocal.linear * (1.0f / length)));
 }
 
-// Whether the linear map is a rotation or mirror times one scale, to float precision.
+// True if the linear map is a rotation or reflection times a uniform scale, to float precision.
 inline bool IsSimilarity(const glm::mat3& m) {
   const float xx = glm::dot(m[0], m[0]), yy = glm::dot(m[1], m[1]), zz = glm::dot(m[2], m[2]);
   const float tolerance = 4e-6f * xx;
@@ -38,15 +38,15 @@ inline bool IsSimilarity(const glm::mat3& m) {
          std::abs(glm::dot(m[1], m[2])) <= tolerance;
 }
 
-// Whether a light's placement is the one it was built with, so that what was computed then holds. Bit by bit, which is
-// quick; where that errs, it errs towards computing anew.
+// True if a light's placement is the one that it was built with, so that precomputed values are valid. Compares bits:
+// fast, and conservative.
 inline bool SamePlacement(const LightTransform& a, const LightTransform& b) {
   static_assert(sizeof(Affine) == 12 * sizeof(float), "no padding to compare");
   return std::memcmp(&a.toRender, &b.toRender, sizeof(Affine)) == 0;
 }
 
-// The square of the scale when `now` is `built` followed by a rotation or mirror and one scale: then all angles between
-// what the light has are kept, and areas grow by this.
+// If `now` is `built` followed by a rotation or reflection and a uniform scale: the square of that scale, by which
+// areas grow while angles are preserved.
 inline std::optional<float> RelativeScaleSquared(const LightTransform& built, const LightTransform& now) {
   const glm::mat3 change = now.toRender.linear * built.toLocal.linear;
   if (!IsSimilarity(change)) return std::nullopt;

@@ -1,5 +1,6 @@
-// Cheap estimates of what an emitter sends to a point or along a ray segment, from its emission bounds alone. They are
-// never 0 where the light can contribute: angles are widened by what the box subtends ([Conty18 §4.2]).
+// Cheap estimates of the irradiance by an emitter at a point or along a ray segment, from its emission bounds alone.
+// They are positive wherever the light can contribute: angles are widened by the angle that the box subtends ([Conty18
+// §4.2]).
 #pragma once
 
 #include <optional>
@@ -17,7 +18,7 @@ float SurfaceIrradianceEstimate(const EmissionBounds& bounds, float power, const
 std::optional<SegmentEstimate> SurfaceSegmentEstimate(const EmissionBounds& bounds, float power, const Point3& origin,
                                                       const Vector3& direction, float length);
 
-// The parameter in [minT, maxT] at which the segment comes nearest to `point`.
+// The parameter in [minT, maxT] of the point of the segment nearest to `point`.
 inline float NearestOnSegment(const Point3& origin, const Vector3& direction, float minT, float maxT,
                               const Point3& point) {
   return std::min(std::max(glm::dot(point - origin, direction), minT), maxT);

@@ -1,6 +1,5 @@
-// Everything that is special about infinity, once: photons of lights at infinity start on a disk of the radius of the
-// scene's bounding sphere, perpendicular to their direction and touching the sphere on the light's side ([Veach97
-// §8.3.2]).
+// Emission from infinity: photons start on a disk of the radius of the scene's bounding sphere, perpendicular to their
+// direction and touching the sphere on the light's side ([Veach97 §8.3.2]).
 #pragma once
 
 #include "lights/light.h"
@@ -9,21 +8,21 @@
 
 namespace lampyr {
 
-// What a sky is in one direction: its radiance and the density of having sampled that direction.
+// Radiance of a sky in a direction, and the density of sampling that direction.
 struct SkyPoint {
   Color radiance;
   PdfSolidAngle density;
 };
 
-// A direction that a sky has chosen, in its own space. `isInside`: what is seen there is the same for any direction as
-// near to it as float computes directions, so that nobody needs to look again; only then is `seen` of use.
+// A direction sampled by a sky, in its local space. `isInside`: radiance and density are constant within the rounding
+// of the direction, so that `seen` is valid and no second lookup is needed.
 struct SkySample {
   Vector3 local{0.0f};
   SkyPoint seen{Color(0.0f), PdfSolidAngle(0)};
   bool isInside = false;
 };
 
-// 1/m²: uniform on the disk.
+// 1/m²; uniform on the disk.
 inline PdfArea EmissionDiskDensity(const BoundingSphere& scene) {
   return PdfArea(1 / (kPi * Sqr(scene.radius)));
 }
@@ -45,8 +44,7 @@ inline Vector3 EmissionDiskError(const BoundingSphere& scene) {
   return kRelativeError * (glm::abs(scene.center) + Vector3(2 * scene.radius));
 }
 
-// A photon that travels away from the light in direction -toLight; colours and the direction's density are the
-// caller's.
+// A photon in direction -toLight. The caller sets colours and the density of the direction.
 inline EmissionSample EmitFromInfinity(const BoundingSphere& scene, const Vector3& toLight, const Point2& u) {
   EmissionSample sample;
   sample.position = SampleEmissionDisk(scene, toLight, u);

@@ -1,10 +1,10 @@
-// Light from all around: radiance over directions, the same for every receiver. Photons, estimates and transforms are
-// here, once; what differs is the sky. A template, so that the sky is inlined.
+// Base of infinite lights: radiance over directions, the same for every receiver. Photons, estimates and transforms are
+// common; the sky differs by type. A template, so that the sky is inlined.
 //
 // A Sky has (directions are unit, in the light's local space, towards the light):
 //   Color Radiance(local)
-//   SkySample Sample(u)             a direction; if it `isInside`, what Look says of it
-//   SkyPoint Look(local)            radiance and density together; the density is never 0 where the radiance is not
+//   SkySample Sample(u)             a direction, with the result of Look if `isInside`
+//   SkyPoint Look(local)            radiance and density; the density is positive wherever the radiance is
 //   Color Mean()                    of the radiance over the sphere
 //   float FacingIrradiance()        estimate for a surface that faces the light, mean of the channels
 #pragma once
@@ -87,8 +87,7 @@ class InfiniteLightWith final : public LightBase {
   }
 
  private:
-  // A direction of render space. What is reported belongs to it as it is rounded: the same as when another technique
-  // finds it.
+  // For a direction of render space as rounded to float, so that every technique evaluates the same values.
   SkyPoint Sample(const LightContext& context, Vector3& direction) const {
     const SkySample sample = sky_.Sample(context.u);
     direction = ToRenderDirection(*context.transform, sample.local);
@@ -96,7 +95,7 @@ class InfiniteLightWith final : public LightBase {
     return isSame && sample.seen.density.value < kInfinity ? sample.seen : Look(context, direction);
   }
 
-  // Radiance, and the density in 1/sr of render space: the one place where it is written.
+  // Radiance, and the density in 1/sr of render space.
   SkyPoint Look(const LightContext& context, const Vector3& direction) const {
     if (isBlack_) return {Color(0.0f), PdfSolidAngle(0)};
     SkyPoint seen = sky_.Look(ToLocalDirection(*context.transform, direction));
@@ -105,7 +104,7 @@ class InfiniteLightWith final : public LightBase {
     return seen;
   }
 
-  Sky sky_;  // its radiance is what a camera sees: with the tint's colour, without its multipliers
+  Sky sky_;  // its radiance is that seen by the camera: with the colour of the tint, without its multipliers
   LightTint tint_;
   bool isBlack_;
 };

@@ -1,5 +1,5 @@
-// What all lights share besides their physics: the settings every light has, and editing. A light keeps the parameters
-// it was made from; an edited light is made anew from those and the changes, so no table can be stale.
+// Base of lights: common settings and editing. A light keeps its parameters; an edited light is created from these and
+// the changes, so that no table is stale.
 #pragma once
 
 #include <memory>
@@ -14,14 +14,13 @@ namespace lampyr {
 // The function that describes a type: name, parameter table, factory.
 using LightTypeFunction = LightType (*)();
 
-// What the parameters of UsdLux's LightAPI make of a light, whatever its type: they multiply its own radiance,
-// intensity or irradiance.
+// The multipliers of UsdLux's LightAPI, which apply to the radiance, intensity or irradiance of every type.
 struct LightTint {
   Color color{1.0f};                // intensity · 2^exposure · color · blackbody(colorTemperature)
-  float diffuse = 1, specular = 1;  // of what diffuse and specular lobes receive; a camera sees the light without them
+  float diffuse = 1, specular = 1;  // multipliers for diffuse and specular lobes; not for what the camera sees
   bool normalize = false;           // divide by the world-space area (areas) or by the projected solid angle (distant)
 
-  // Sets both parts of a sample, an evaluation or a photon from what the light emits; false when both are black.
+  // Sets both parts of a sample, evaluation or photon from the emission. False: both are black.
   template <class Sample>
   bool Split(const Color& emitted, Sample& sample) const {
     sample.diffuse = emitted * diffuse;
@@ -44,7 +43,7 @@ class LightBase : public Light {
   std::unique_ptr<Light> Edit(const ParameterList& changes, const LightBuildContext& build) const final;
 
  private:
-  // Hardly ever read while rendering: kept apart, so that a light itself is small.
+  // Rarely read while rendering; a separate allocation keeps the light small.
   struct Made {
     LightTypeFunction type;
     ParameterList parameters;
@@ -53,14 +52,14 @@ class LightBase : public Light {
   std::unique_ptr<const Made> made_;
 };
 
-// The rows that every light's parameter table ends with: name, lightGroup, cameraVisible, …
+// Common last rows of every light's parameter table: name, lightGroup, cameraVisible, …
 std::vector<ParameterInfo> WithCommonParameters(std::vector<ParameterInfo> parameters);
 LightSettings ReadLightSettings(const ParameterList& parameters);
 
-// `base` with the parameters of `changes` in place of those of the same name, or added.
+// `base` with parameters replaced by those of the same name in `changes`, or added.
 ParameterList MergeParameters(const ParameterList& base, const ParameterList& changes);
 
-// A colour of light; an Error where a channel is negative.
+// A colour of light. Throws an Error if a channel is negative.
 Color ReadEmissionColor(const ParameterList& parameters, const std::string& name,
                         const Color& defaultValue = Color(1.0f));
 

@@ -1,5 +1,4 @@
-// Light groups: lights that share a "lightGroup", whose light a render sums up in a layer of its own beside the
-// picture.
+// Light groups: lights with the same "lightGroup". Their contribution is written to a separate layer of the image.
 #pragma once
 
 #include <cstdint>
@@ -10,27 +9,27 @@ namespace lampyr {
 
 struct PlacedLight;
 
-// The layer of a group: what is no letter, digit, '-', '_' or part of a character beyond ASCII becomes '_', because
-// layers are told from channels by dots and are parts of file names elsewhere. Throws Error where the name is one that
-// images have a use for, or longer than their channels' names may be.
+// Layer name of a group: characters other than letters, digits, '-', '_' and non-ASCII ones become '_', because dots
+// separate layers from channels and layer names occur in file names. Throws an Error if the name is reserved in images,
+// or longer than channel names may be.
 std::string LayerOfLightGroup(const std::string& group);
 
 class LightGroups {
  public:
-  // Throws Error where two groups would share a layer, or where there are more than 65535 of them.
+  // Throws an Error if two groups would share a layer, or if there are more than 65535.
   explicit LightGroups(const std::vector<PlacedLight>& lights);
 
-  // The name of each group's layer, in alphabetical order; then "rest", if there are lights that name no group. None
-  // where no light names one.
+  // Names of the layers in alphabetical order, followed by "rest" if some lights name no group. Empty if no light names
+  // a group.
   const std::vector<std::string>& Layers() const { return layers_; }
-  // The group of lights[light], an index into Layers(); 0 where there are none.
+  // Group of lights[light] as an index into Layers(); 0 without groups.
   uint32_t Of(uint32_t light) const { return ofLight_.empty() ? 0 : ofLight_[light]; }
 
   static constexpr size_t kMost = 65535;
 
  private:
   std::vector<std::string> layers_;
-  std::vector<uint16_t> ofLight_;  // empty while there are no groups
+  std::vector<uint16_t> ofLight_;  // empty without groups
 };
 
 }  // namespace lampyr

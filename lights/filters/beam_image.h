@@ -1,4 +1,4 @@
-// An image in a light's beam: what "gobo" and "cookie" are. The image lies on a rectangle in a plane across the beam;
+// An image in a light's beam: base of "gobo" and "cookie". The image lies on a rectangle in a plane across the beam;
 // seen along the beam, with +y up, its left is at −x and it is upright.
 #pragma once
 

@@ -1,7 +1,7 @@
-// What the shipped filters share: the parameters that each of them has, its place, and the loop over a batch.
+// Base of the built-in filters: common parameters, placement, and the loop over a batch.
 //
-// A filter is a factor F of the light; what is applied is 1 + strength · (F' − 1), where F' is F, or 1 − F (not below
-// 0) where `invert` is set, and the strength is density times that for diffuse or specular lobes.
+// With the factor F of a filter, the light is scaled by 1 + strength · (F' − 1). F' is F, or max(0, 1 − F) with
+// `invert`; the strength is the density times the value for diffuse or specular lobes.
 #pragma once
 
 #include <algorithm>
@@ -18,13 +18,13 @@ struct FilterSettings {
 
 // density, invert, diffuse, specular, linkingGroups.
 FilterSettings ReadFilterSettings(const ParameterList& parameters);
-// Which of `choices` a parameter names, `missing` where there is no such parameter; an Error for anything else.
+// Index in `choices` of a parameter's value; `missing` if it is not given. Throws an Error for other values.
 int ReadChoice(const ParameterList& parameters, const std::string& name, const std::vector<std::string>& choices,
                int missing = 0);
-// multiply (also where there is none), max, min or screen.
+// multiply (the default), max, min or screen.
 CombineMode ReadCombineMode(const ParameterList& parameters, const std::string& name);
 
-// The rows that every shipped filter's table ends with: the above, name and coordsys.
+// Common last rows of every built-in filter's parameter table: the above, name and coordsys.
 std::vector<ParameterInfo> WithCommonFilterParameters(std::vector<ParameterInfo> parameters);
 
 // The names in "a, b" and [ "a" "b" ].
@@ -42,10 +42,10 @@ class FilterBase : public LightFilter {
   const FilterSettings& Settings() const { return settings_; }
 
  protected:
-  // Render space to the filter's own, at a time of the shutter.
+  // From render space to the filter's local space, at a time of the shutter.
   Affine ToLocal(float time) const { return motion_ ? motion_->At(time).Inverse() : transform_.toLocal; }
 
-  // One factor F for an edge, as it is applied.
+  // The scale 1 + strength · (F' − 1) for the factor F of an edge.
   Color Applied(const Color& factor, float strength) const {
     if (strength == 1 && !settings_.invert) return factor;
     Color f = factor;
@@ -67,14 +67,14 @@ inline float SoftEdge(float x, float width) {
   return 1 - t * t * (3 - 2 * t);
 }
 
-// An edge in the filter's own space. `towards` is not unit length where its transform scales.
+// An edge in the filter's local space. `towards` has the length that the transform gives it.
 struct FilterEdge {
   Point3 receiver;
   Vector3 towards;  // the light
   float distance;   // in lengths of `towards`; infinite
 };
 
-// A filter from its factor: `Model` has `Color Factor(const FilterEdge&) const`.
+// A filter of the given factor: `Model` has `Color Factor(const FilterEdge&) const`.
 template <class Model>
 class FilterWith final : public FilterBase {
  public:

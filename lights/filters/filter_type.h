@@ -15,12 +15,12 @@ namespace lampyr {
 
 class TextureLibrary;
 
-// Everything besides its parameters that a filter is made from.
+// Arguments of a filter's factory besides its parameters.
 struct FilterBuildContext {
   LightTransform transform;                  // the filter's own space, at shutter open
   std::shared_ptr<const Motion> motion;      // null: stays
   const TextureLibrary* textures = nullptr;  // images; null in tests that use none
-  // A filter that was named before, for those that run others; throws an Error at `where` that names the nearest.
+  // A filter with a name defined before, for combiners. Throws an Error at `where` that suggests the nearest name.
   std::function<FilterInstance(const std::string& name, const FileLocation& where)> find;
   Diagnostics* diagnostics = nullptr;
 };

@@ -1,15 +1,15 @@
-// The filter interface: what changes a light's colour after the light was sampled.
+// The filter interface: a filter scales the light on an edge between a light and a surface.
 //
-// A filter is a factor on the edge between a place on a light and the surface that it shines on, whichever technique
-// made that edge: next-event estimation, a direction of the BSDF that met the light, or a photon where it lands. It
-// must therefore be a function of the edge alone (receiver, direction, distance), and not of what was sampled or how:
-// all techniques then estimate the same light. (RenderMan's photons, as documented, ignore filters.)
+// A filter is a factor on the edge between a point on a light and the surface that it lights, whichever technique found
+// the edge: next-event estimation, BSDF sampling, or the first hit of a photon. It must therefore be a function of the
+// edge alone (receiver, direction, distance), so that all techniques estimate the same light. (RenderMan's photons, as
+// documented, ignore filters.)
 //
 // There are two classes of filters: functions of the emitted ray (gobo, a physical barn, intmult) and functions of the
 // receiver (rod, blocker, ramp, analytic barns and cookies).
 //
-// Everything is in render space. A filter is immutable once made, and is used by many threads at once: what its
-// parameters mean is digested when it is made, because it is asked billions of times.
+// Everything is in render space. A filter is immutable and is used by many threads at once. Precompute what its
+// parameters imply in the factory: it is evaluated billions of times.
 #pragma once
 
 #include <cstdint>
@@ -30,7 +30,7 @@ struct FilterSamples {
   const Vector3* toLight = nullptr;          // unit
   const float* distance = nullptr;           // to the light; infinite for lights at infinity
   const PdfSolidAngle* pdfDirect = nullptr;  // of the light's own sampling, without its selection; 1 for deltas
-  // In and out: what the light sends to diffuse and specular lobes there.
+  // In and out: the light for diffuse and specular lobes.
   Color* diffuse = nullptr;
   Color* specular = nullptr;
 
@@ -42,51 +42,50 @@ struct FilterSamples {
 
 class LightFilter;
 
-// How a filter's factor meets those of the others in a combiner: the product, the largest, the smallest, or 1 less the
-// product of what each takes away.
+// How a combiner merges the factors f_i of its filters: product, maximum, minimum, or screen, 1 - Π (1 - f_i).
 enum class CombineMode { Multiply, Max, Min, Screen };
 
-// A filter as the scene holds it.
+// A filter in the scene.
 struct FilterInstance {
-  std::shared_ptr<const LightFilter> filter;  // null: it never changes anything
+  std::shared_ptr<const LightFilter> filter;  // null: it has no effect
   std::string name;
   CombineMode combineMode = CombineMode::Multiply;
-  uint32_t linking = 0;  // its groups, as a number that a context can look up; 0: none, it is enabled everywhere
+  uint32_t linking =
+      0;  // key of its linking groups, an index of FilterContext::enabled; 0: none, it is enabled everywhere
 };
 
-// What a filter is given beside the samples.
+// Arguments of a filter besides the samples.
 struct FilterContext {
   float time = 0;                    // in [0,1] over the shutter
   const uint8_t* enabled = nullptr;  // by FilterInstance::linking, for the receivers of this batch; null: all but 0 off
 
-  // Whether a filter is enabled on the receivers. Who runs other filters asks this for each of them.
+  // True if a filter is enabled on the receivers. A filter that applies others tests this for each of them.
   bool IsEnabled(const FilterInstance& instance) const {
     return instance.linking == 0 || (enabled && enabled[instance.linking] != 0);
   }
 };
 
-// What may be asked of a filter.
+// Properties that a filter may report.
 enum class FilterProperty {
-  LinkingGroups,  // the groups that it belongs to: it is then off, except for receivers that subscribe to one
+  LinkingGroups,  // its linking groups: it is enabled only on receivers that subscribe to one of them
 };
 
 class LightFilter {
  public:
   virtual ~LightFilter() = default;
 
-  // Changes samples.diffuse and samples.specular, which stay as they are where the filter does nothing.
+  // Scales samples.diffuse and samples.specular in place.
   virtual void Filter(const FilterContext& context, const FilterSamples& samples) const = 0;
 
-  // The answer to a question, or null where the filter has none.
+  // The value of a property; null: not available.
   virtual const std::vector<std::string>* GetProperty(FilterProperty) const { return nullptr; }
 
-  // The approximate transmittance for white light: a hint for selecting lights, which scales the light's estimate.
-  // Finite. At least a tenth of the transmittance of any edge, since a light is selected in proportion to it; 0 only if
-  // no edge transmits anything, since the light may then never be selected. nullopt: unknown, and the light is selected
-  // as if it had no filter.
+  // Approximate transmittance for white light, which scales the light's estimate in light selection. Finite; at least a
+  // tenth of the transmittance of any edge, because lights are selected in proportion to it; 0 only if no edge
+  // transmits anything, because the light may then never be selected. nullopt: unknown; selection ignores the filter.
   virtual std::optional<float> GetRadianceModifier() const { return std::nullopt; }
 
-  // Whether it never changes anything, as with a density of 0: it is then not called.
+  // True if it has no effect, as with a density of 0; it is then not called.
   virtual bool IsIdentity() const { return false; }
 };
 

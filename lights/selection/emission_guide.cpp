@@ -12,14 +12,14 @@ namespace lampyr {
 
 namespace {
 
-// Photons that a target is made of, at least: fewer say little of where others will land.
+// Minimum number of photons of a component: fewer do not determine where further photons arrive.
 constexpr size_t kFewest = 16;
-constexpr size_t kFewestOfLight = 4;  // of a light's only one
-// A float's direction, and the distance of a line from a point, are known to this part of the way: a target that seems
-// smaller is taken for this large.
+constexpr size_t kFewestOfLight = 4;  // for the only component of a light
+// Smallest sine of the angle that a component subtends: relative precision of a direction in float and of the distance
+// of a line from a point. Smaller components are enlarged to it.
 constexpr float kSmallestSine = 0x1p-13f;
 
-// Photons in a row, to be divided.
+// A contiguous range of photons, to be divided.
 struct Cell {
   size_t first = 0, count = 0;
   double contribution = 0, secondMoment = 0;
@@ -49,13 +49,13 @@ Cell CellOf(std::span<const UsefulPhoton> photons, size_t first, size_t count, f
   cell.center = cell.box.Center();
   float squared = 0;
   for (const UsefulPhoton& photon : inside) squared = std::max(squared, LengthSquared(photon.firstHit - cell.center));
-  // Of n photons the outermost are some way within the region that they come from.
+  // The outermost of n samples lie inside the region that they sample.
   const float margin = 1 + 2 / static_cast<float>(count);
   cell.radius = std::max(margin * std::sqrt(squared), smallest);
   return cell;
 }
 
-// Divides at half the contribution across the longest side: the number of photons on the first side.
+// Splits at half the contribution along the longest axis; returns the number of photons on the first side.
 size_t DivideCell(std::span<UsefulPhoton> photons, const Cell& cell) {
   const Vector3 extent = cell.box.Diagonal();
   const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
@@ -112,7 +112,7 @@ EmissionGuide::EmissionGuide(std::span<const UsefulPhoton> photons, std::span<co
   }
 }
 
-// The cell that is aimed at most is divided first. Returns the sum of the weights.
+// Divides the cell of largest weight first. Returns the sum of weights.
 double EmissionGuide::AddTargets(std::span<UsefulPhoton> photons, float smallest, Entry& entry) {
   std::vector<Cell> cells{CellOf(photons, 0, photons.size(), smallest)};
   while (cells.size() < kMaxComponents) {
@@ -199,7 +199,7 @@ EmissionGuide::Target EmissionGuide::TargetOf(const Choice& choice) const {
   return {Point3(block.x[lane], block.y[lane], block.z[lane]), block.radius[lane]};
 }
 
-// One compiled function: a photon's density is that of its sampling, to the last bit.
+// Not inlined, so that the density of a photon has the same bits in every technique.
 [[gnu::noinline]] PdfSolidAngle EmissionGuide::DirectionDensity(uint32_t light, const Point3& from,
                                                                 const Vector3& direction) const {
   const Entry* entry = EntryOf(light);

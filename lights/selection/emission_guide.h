@@ -57,23 +57,23 @@ class EmissionGuide {
   PdfDiscrete Probability(uint32_t light) const;
   float Share(uint32_t light) const;
 
-  // From a place of the light along a unit direction, in 1/sr; of lights with a place.
+  // For lights with a position: density of the unit `direction` from the point `from`, 1/sr.
   PdfSolidAngle DirectionDensity(uint32_t light, const Point3& from, const Vector3& direction) const;
   Vector3 SampleDirection(const Choice& choice, const Point3& from, const Point2& u) const;
-  // How far a target's middle is, at least its radius: a distance that the photon may well travel.
+  // Distance to the centre of the component, at least its radius: a typical length of the photon's first segment.
   float Reach(const Choice& choice, const Point3& from) const;
-  // Of the line through `on` along the unit `direction` among all parallel ones, in 1/m² across them; of lights at
-  // infinity.
+  // For lights at infinity: density of the line through `on` along the unit `direction` among parallel lines, 1/m²
+  // perpendicular to them.
   PdfArea LineDensity(uint32_t light, const Point3& on, const Vector3& direction) const;
-  // A point on the line.
+  // Samples a line; returns a point on it.
   Point3 SampleLine(const Choice& choice, const Vector3& direction, const Point2& u) const;
 
-  // Whether photons like this one are aimed.
+  // True if the aimed density of such a photon is positive.
   bool Aims(uint32_t light, const Point3& on, const Vector3& direction) const {
     return Share(light) > 0 && AimedDensity(light, on, direction) > 0;
   }
-  // Against photons without a guide: how much more often one like this is sent. `own`: its density then, 1/sr of its
-  // direction or 1/m² of its line (whichever is aimed).
+  // Density of such a photon over its density without a guide. `own`: that density, 1/sr for its direction or 1/m² for
+  // its line, whichever is aimed.
   double Gain(uint32_t light, const Point3& on, const Vector3& direction, double own) const;
 
   int ComponentCount() const;

@@ -15,7 +15,7 @@ struct Weights {
   double sum = 0;
 };
 
-// One compiled function: the same receiver gives the same bits, whoever asks.
+// Not inlined, so that the same receiver always gives the same bits.
 [[gnu::noinline]] Weights WeightsOf(const LobeBlock& block, const TreeReceiver& receiver, bool byIntensity) {
   Weights weights;
   const Lanes lanes = byIntensity ? Load(block.intensity) : Evaluate(block, receiver).importance;
@@ -53,7 +53,7 @@ EmitterChoice EmitterList::Select(const TreeReceiver& receiver, const Cut& cut, 
     for (uint32_t slot = 0; slot < kWidth; ++slot) {
       const auto weight = static_cast<double>(weights.of[slot]);
       if (!(weight > 0)) continue;
-      choice.emitter = i * kWidth + slot;  // the last one that can be, should rounding leave none
+      choice.emitter = i * kWidth + slot;  // the last with importance, in case rounding selects none
       choice.u = std::clamp(left / weight, 0.0, 0x1.fffffffffffffp-1);
       if (isHere && left < weight) {
         choice.probability = ProbabilityOf(receiver, cut, choice.emitter);

@@ -1,5 +1,5 @@
-// Every emitter's importance, one after the other: what the light tree comes near to, in O(n). The same questions as
-// LightTree answers.
+// Selection among emitters by the importance of each one, in O(n): the reference that the light tree approximates. Same
+// interface as LightTree.
 #pragma once
 
 #include <span>
@@ -16,9 +16,9 @@ class EmitterList {
   struct Cut {
     double sum = 0;
     double irradiance = 0;     // as LightTree::Cut
-    bool byIntensity = false;  // nothing seems to contribute
+    bool byIntensity = false;  // no emitter has importance
 
-    static double Concentration() { return 0; }  // unknown: as many samples as there may be
+    static double Concentration() { return 0; }  // unknown: the largest number of samples is taken
   };
   void Look(const TreeReceiver& receiver, Cut& cut) const;
   EmitterChoice Select(const TreeReceiver& receiver, const Cut& cut, double u, bool defensive) const;

@@ -19,7 +19,7 @@ ClusterLobe LobeOf(const ClusterBounds& bounds) {
   const Vector3 reach = glm::max(bounds.box.max - bounds.mean, bounds.mean - bounds.box.min);
   lobe.radius = rounding * glm::length(glm::max(reach, Vector3(0.0f)));
 
-  // The cone of all light, about the mean normal instead of the bounds' axis.
+  // The cone of emission, around the mean normal instead of the axis of the bounds.
   constexpr double pi = 3.14159265358979323846;
   const double length = static_cast<double>(glm::length(bounds.meanNormal));
   if (!(length > 1e-6)) return lobe;
@@ -29,9 +29,9 @@ ClusterLobe LobeOf(const ClusterBounds& bounds) {
   const double widest = angle(between) + angle(static_cast<double>(bounds.cosThetaO)) +
                         angle(static_cast<double>(bounds.cosThetaE)) + 1e-3;
   if (widest >= pi) return lobe;
-  // A place at distance d is dark when its direction is farther from the axis than the cone's angle and that under
-  // which the sphere is seen, θ + σ. Of cos(θ + σ) = cosθ cosσ - sinθ sinσ a lower bound will do that needs no root:
-  // cosσ is between 1 - sinσ and 1, and d sinσ is the radius.
+  // A point at distance d is dark if its direction is farther from the axis than θ + σ, the angle of the cone plus the
+  // angular radius of the sphere. A lower bound of cos(θ + σ) = cosθ cosσ - sinθ sinσ needs no square root, because cosσ
+  // is between 1 - sinσ and 1, and d sinσ is the radius.
   const double cosine = std::cos(widest), sine = std::sin(widest);
   lobe.coneCosine = static_cast<float>(length * cosine);
   lobe.coneReach = static_cast<float>(length * (sine + std::max(cosine, 0.0))) * lobe.radius;
@@ -55,7 +55,7 @@ float Importance(const ClusterLobe& lobe, const TreeReceiver& receiver) {
   const float emittedCosine = along * inverse;
   const float emittedRoot =
       std::sqrt(emittedCosine * emittedCosine + kSpread * std::min(std::max(unevenness, 0.0f) + spread, 1.0f));
-  // Of both sides together every place sees one.
+  // Every point sees one side of a two-sided emitter.
   const float emitted = 0.5f * (lobe.twoSided ? emittedRoot : emittedRoot + emittedCosine);
 
   float received = 1;

@@ -1,9 +1,10 @@
-// How much a cluster of emitters is estimated to send to a receiver: what the light tree chooses by.
+// Importance: an estimate of the irradiance that a cluster of emitters causes at a receiver. The light tree selects in
+// proportion to it.
 //
-// The estimate is an expectation, not a bound: of patches around a mean place, with a mean normal, the cosines at both
-// ends are taken as means of max(0, c) over a spread that the variances tell. It never vanishes because of an average
-// (a part f of the patches that faces the receiver while the others look away counts f/4 at least), so that bounds are
-// needed only for telling what is surely dark.
+// The estimate is an expectation, not a bound. A cluster is described by the mean and the variance of its positions and
+// normals; the cosines at emitter and receiver are replaced by the mean of max(0, cosθ) over that spread. Averaging
+// never makes it 0: if a fraction f of the patches faces the receiver and the others face away, it is at least f/4 of
+// the value for all. Bounds are needed only to recognise clusters that are certainly dark.
 #pragma once
 
 #include <bit>
@@ -15,54 +16,57 @@ namespace lampyr {
 
 class LightLearning;
 
-// A receiver as importance needs it, in the tree's coordinates.
+// A receiver in the tree's coordinates.
 struct TreeReceiver {
   Point3 position{0.0f};
   Normal3 normal{0.0f};  // 0 in a volume
   bool isTransmissive = false;
-  const LightLearning* learning = nullptr;  // what is known of its region, where something is to be learned
+  const LightLearning* learning = nullptr;  // learned factors of its region; may be null
   uint32_t region = 0;
 };
 
-// What importance needs of a cluster, digested. A node of the tree keeps the same numbers for each of its children.
+// A cluster, precomputed for the evaluation of importance. A node of the tree holds these numbers for each child.
 struct ClusterLobe {
   Point3 mean{0.0f};
   float variance = 0;
   Vector3 meanNormal{0.0f};
   float intensity = 0;
-  float radius = 0;       // of a sphere about the mean that all of the cluster is in
-  float coneCosine = -1;  // all light leaves within this angle of the mean normal, times its length; -1: to all sides
-  float coneReach = 0;    // how much nearer to the cone a place may be for the sphere, times that length
+  float radius = 0;  // of a sphere around the mean that contains the cluster
+  // Light leaves within a cone around the mean normal: cosine of its angle times the length of the mean normal; -1: in
+  // all directions. `coneReach`: margin for the radius of the sphere, times the same length.
+  float coneCosine = -1;
+  float coneReach = 0;
   bool twoSided = false;
 };
 ClusterLobe LobeOf(const ClusterBounds& bounds);
 
-// An estimate of the irradiance at the receiver, 0 only where nothing of the cluster contributes. For one cluster,
-// written to be read.
+// Estimated irradiance at the receiver; 0 only if no part of the cluster contributes. The readable version, for one
+// cluster; importance_lanes.h evaluates eight at a time.
 float Importance(const ClusterLobe& lobe, const TreeReceiver& receiver);
 
 namespace importance {
 
-constexpr float kNearest2 = 1e-20f;  // squared distances are no less
-// How much of the variance a squared distance is at least: the mean of 1/d² at the middle of a ball is 1.8/variance.
+constexpr float kNearest2 = 1e-20f;  // lower bound of squared distances
+// Lower bound of the squared distance in units of the variance: the mean of 1/d² at the centre of a ball
+// is 1.8/variance.
 constexpr float kInside = 0.55f;
-constexpr float kSlack = 1e-4f;  // of cosines, for rounding
-constexpr float kLeast = 1e-4f;  // grazing light is little, and not nothing
-// The mean of max(0, c) over normals of all directions is 1/4 = √s²/2: what s² is then.
+constexpr float kSlack = 1e-4f;  // tolerance of cosines, for rounding
+constexpr float kLeast = 1e-4f;  // lower bound of cosines: grazing light is weak but not 0
+// s² of a cluster with normals in all directions: the mean of max(0, cosθ) is then 1/4 = √s²/2.
 constexpr float kSpread = 0.25f;
 
 }  // namespace importance
 
-// Eight lobes, number by number: what is evaluated at once (importance_lanes.h). A choice among many reads a dozen of
-// these, so what is only a bound, or a direction, is kept in 16 bits, rounded so that nothing more is ruled out.
+// Eight lobes as a structure of arrays, evaluated together (importance_lanes.h). A selection reads about a dozen of
+// these, so bounds and directions take 16 bits, rounded conservatively: no lobe becomes dark by rounding.
 struct alignas(64) LobeBlock {
   static constexpr int kWidth = 8;
 
-  float intensity[kWidth];  // 0: nothing there
+  float intensity[kWidth];  // 0: the slot is empty
   float meanX[kWidth], meanY[kWidth], meanZ[kWidth], variance[kWidth];
   int16_t normalX[kWidth], normalY[kWidth], normalZ[kWidth];  // in 1/kUnit
-  int16_t coneCosine[kWidth];                                 // in 1/kUnit, or a little less
-  uint16_t radius[kWidth], coneReach[kWidth];                 // the upper half of a float, or a little more
+  int16_t coneCosine[kWidth];                                 // in 1/kUnit, rounded down
+  uint16_t radius[kWidth], coneReach[kWidth];                 // bfloat16, rounded up
   uint16_t oneSided[kWidth];                                  // 1, or 0
 
   static constexpr float kUnit = 32767;
@@ -71,7 +75,7 @@ struct alignas(64) LobeBlock {
   ClusterLobe Get(int slot) const;
 };
 
-// A float that is not negative in its upper 16 bits (bfloat16), rounded up; and as a float again.
+// Conversion of a non-negative float to bfloat16, rounded up, and back.
 uint16_t RoundUpToBfloat16(float value);
 inline float FromBfloat16(uint16_t bits) {
   return std::bit_cast<float>(static_cast<uint32_t>(bits) << 16);

@@ -1,7 +1,7 @@
-// Importance() of eight lobes at once: the same steps, with choices instead of branches; a test holds the two equal.
+// Importance() of eight lobes at a time, without branches. A test checks that both agree.
 //
-// Code that is compiled into different functions may round differently: who needs the same bits again must come through
-// one function that is not inlined.
+// The compiler may round differently in each function that this is inlined into. A caller that needs the same bits
+// again must go through one function that is not inlined.
 #pragma once
 
 #include <experimental/simd>
@@ -33,8 +33,8 @@ inline Lanes LoadFraction(const int16_t* values) {
 
 struct LaneImportances {
   Lanes importance;
-  Lanes spread;      // the variance of a cluster's places over the squared distance, at most 1
-  Lanes unevenness;  // the variance of its normals, but for rounding
+  Lanes spread;      // variance of positions over squared distance, at most 1
+  Lanes unevenness;  // variance of normals, up to rounding
 };
 
 inline LaneImportances Evaluate(const LobeBlock& block, const TreeReceiver& receiver) {

@@ -15,16 +15,15 @@ namespace lampyr {
 namespace {
 
 constexpr size_t kRows = size_t{1} << 17;
-// A grid of this many cells across the scene's radius.
+// Cells of the grid per radius of the scene.
 constexpr float kCells = 16;
-// As many observations as the parent's factor weighs: a cluster of which these many samples saw nothing is chosen half
-// as often.
+// Weight of the parent's factor, in observations: after so many occluded samples a cluster is selected half as often.
 constexpr double kPrior = 4;
-// A sample that is larger by chance is no better known than this.
+// Upper bound of a recorded ratio, against outliers.
 constexpr double kLargestRatio = 8;
 constexpr double kUnit = 0x1p24;
 
-// A row of which something is known, as it is saved.
+// A row with records, as saved.
 struct SavedRow {
   uint64_t index = 0;
   std::array<uint32_t, LightLearning::kWidth> counts{};
@@ -97,13 +96,13 @@ void LightLearning::CopyFrom(const LightLearning& other) {
       counts_[i].store(other.counts_[i].load(std::memory_order_relaxed), std::memory_order_relaxed);
     }
   };
-  ForUsedRows(copy);  // those that the other one has not used become 0
+  ForUsedRows(copy);  // rows that the other one has not used become 0
   other.ForUsedRows(copy);
   for (size_t word = 0; word < kRows / 64; ++word)
     used_[word].store(other.used_[word].load(std::memory_order_relaxed), std::memory_order_relaxed);
 }
 
-// What counts was frozen earlier than the newest records: both are saved.
+// The factors in effect are older than the newest records: both are saved.
 void LightLearning::Save(ByteWriter& bytes) const {
   std::vector<SavedRow> rows;
   ForUsedRows([&](size_t row) {

@@ -1,14 +1,14 @@
-// What shadow rays find out, region by region: which clusters of emitters are occluded there, and which matter more
-// than was estimated. The light tree multiplies its importances by it.
+// Learned light selection: factors for the importances of the light tree, from the results of shadow rays. They lower
+// clusters that are occluded in a region and raise those that were underestimated there.
 //
-// A region is a cell of a grid and a main direction of the normal. For each node of the tree that is looked at from it,
-// the mean square of (what a child really sends ÷ its importance) is learned: choosing by its root minimises variance
-// ([Rath20 eq. 10]), and a cluster of which a part can be seen is chosen more often than by the mean. What is not known
-// yet of a child is taken from its parent.
+// A region is a cell of a grid and a main direction of the normal. For each node of the tree that is visited from it,
+// the mean square of (irradiance caused by a child ÷ importance of the child) is learned. Selection by its root
+// minimises the variance ([Rath20 eq. 10]); a partly visible cluster is selected more often than by the mean. A child
+// without observations takes the factor of its parent.
 //
-// Rows are found by a hash, and rows that meet share what they learn: memory is bounded, and nothing depends on who
-// comes first. Sums are integers, so that they do not depend on the order of threads. What was recorded counts from the
-// next Freeze on: between two of them, selection is one distribution, whose probabilities are known exactly.
+// Rows are addressed by a hash, and rows that collide share their observations: memory is bounded, and the result does
+// not depend on the order of insertion. Sums are integers, so that they do not depend on the order of threads. Records
+// take effect at the next Freeze: between two of them, selection is one fixed distribution with known probabilities.
 #pragma once
 
 #include <atomic>
@@ -31,44 +31,44 @@ class LightLearning {
 
   uint32_t RegionOf(const Receiver& receiver) const;
 
-  // The factor of a child's importance is the root of known + (1 - learned) · (the parent's factor)². All 0: nothing is
-  // known.
+  // The factor of a child's importance is √(known + (1 - learned) · (factor of the parent)²). All 0: no observations.
   struct alignas(64) Row {
     float known[kWidth], learned[kWidth];
   };
   const Row& RowOf(uint32_t region, uint32_t node) const { return rows_[IndexOf(region, node)]; }
 
-  // A child of a node sent `ratio` times its importance. From any thread.
+  // Records that a child of a node caused `ratio` times its importance. May be called from any thread.
   void Record(uint32_t region, uint32_t node, int child, double ratio);
-  // All that was recorded counts from now on. While nobody selects or records.
+  // Puts all records into effect. Not concurrently with selection or recording.
   void Freeze();
-  // Once enough is known, the time that recording takes is saved.
+  // Ends recording, to save its time.
   void StopRecording() { isRecording_ = false; }
   bool IsRecording() const { return isRecording_; }
 
-  // All that another one of the same scene has learned and recorded. While nobody selects or records with either.
+  // Copies the state of another one of the same scene. Not concurrently with the use of either.
   void CopyFrom(const LightLearning& other);
 
-  // All that was learned and recorded. While nobody selects or records.
+  // Saves factors and records. Not concurrently with selection or recording.
   void Save(ByteWriter& bytes) const;
-  // Into one that has learned nothing, of the same scene. Throws an Error where this is not what has been saved.
+  // Restores what Save has written, for the same scene. Requires that nothing is recorded yet. Throws an Error if the
+  // data do not fit.
   void Load(ByteReader& bytes);
 
  private:
   static size_t IndexOf(uint32_t region, uint32_t node);
 
-  // Calls visit(row) for all rows that something was recorded in.
+  // Calls visit(row) for all rows with records.
   template <class Visit>
   void ForUsedRows(const Visit& visit) const;
 
   bool isRecording_ = true;
   Point3 center_;
   float cellsPerUnit_;
-  // Most rows of most scenes are never touched, and take no memory then.
+  // Rows that are never accessed, which are most, take no memory.
   SparseArray<Row> rows_;
   SparseArray<std::atomic<uint64_t>> squares_;  // in units of 2^-24
   SparseArray<std::atomic<uint32_t>> counts_;
-  SparseArray<std::atomic<uint64_t>> used_;  // a bit for each row
+  SparseArray<std::atomic<uint64_t>> used_;  // one bit per row
 };
 
 }  // namespace lampyr

@@ -1,4 +1,4 @@
-// Selection that does not look at the receiver: uniform and by power. See the header.
+// Selection independent of the receiver: uniform and by power.
 #include "lights/selection/light_selector.h"
 
 #include <array>
@@ -43,7 +43,7 @@ class TableSelector final : public LightSelector {
   AliasTable table_;
 };
 
-// Over the shutter, where the light moves.
+// Mean over the shutter if the light moves.
 float MeanPower(const PlacedLight& placed, const BoundingSphere& scene) {
   LightContext context;
   context.transform = &placed.transform;
@@ -65,14 +65,14 @@ std::vector<float> PowerWeights(std::span<const PlacedLight> lights, const Bound
   for (const PlacedLight& placed : lights) {
     const float power =
         MeanPower(placed, scene) * placed.light->Settings().importanceMultiplier * placed.radianceModifier;
-    // A power beyond float is the largest one; NaN compares false.
+    // Power is clamped to the range of float; NaN compares false.
     weights.push_back(power > 0 ? std::min(power, std::numeric_limits<float>::max()) : 0.0f);
   }
   return weights;
 }
 
-// Power is an estimate: a light whose estimate is far too low must not become impossible. Every light gets at least
-// this part of an equal share; a light that truly emits nothing costs next to nothing.
+// Power is an estimate and may be far too low. Every light has at least this fraction of the uniform probability; lights
+// that emit nothing cost little by it.
 constexpr float kFloorOfEqualShare = 1e-3f;
 
 }  // namespace
@@ -100,7 +100,7 @@ std::unique_ptr<LightSelector> MakeTableSelector(std::span<const float> weights)
 
 std::unique_ptr<LightSelector> MakeLightSelector(LightSelection selection, std::span<const PlacedLight> lights,
                                                  const BoundingSphere& scene) {
-  // Of one light, or of the halves of one rectangle, there is no choice that is worth a look at the receiver.
+  // For one light, or the two halves of one rectangle, importance is not worth its time.
   const bool hasChoice = lights.size() > 1 || (lights.size() == 1 && lights[0].light->PatchCount() > 2);
   if (hasChoice && selection == LightSelection::Tree)
     return MakeTreeSelector(EmitterSearch::Tree, lights, scene, HardwareThreads());

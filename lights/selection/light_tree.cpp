@@ -14,14 +14,14 @@ namespace {
 
 constexpr int kWidth = LightTree::kWidth;
 
-// A cluster is opened when its importance times its doubt is more than this part of all: lights600 has 0.85 × the
-// variance by it, rooms 0.5 ×, for a fifth more time.
+// A cluster is replaced by its children if its importance times its uncertainty exceeds this fraction of the total:
+// 0.85 × the variance on lights600, 0.5 × on rooms, for a fifth more time.
 constexpr float kNegligible = 1.0f / 32;
-// Doubt for being near: of clusters that are seen under more than 60° or so, nothing is sure. And for normals that
-// differ: the more, the less their mean says. Nothing is to be opened of an emitter.
+// Uncertainty, from 0 to 1: by spread, 1 for clusters that subtend more than about 60°; and by the variance of normals.
+// Emitters have no children.
 constexpr float kDoubtOfSpread = 4, kDoubtOfUnevenness = 0.3f, kNoDoubt = -16;
-// What choosing by intensity and trend within a cluster may add to the variance of its light, relative to the square of
-// that. And the trend's largest change from the middle outwards, so that most trials of emitters are the last.
+// kAlike: variance that sampling a cluster by intensity and trend may add, relative to the square of its contribution.
+// kSteepest: largest relative change of the trend over the radius, so that few proposals are rejected.
 constexpr float kAlike = 0.004f, kSteepest = 0.75f;
 
 double SumOf(const float* weights) {
@@ -30,7 +30,7 @@ double SumOf(const float* weights) {
   return sum;
 }
 
-// The child at u in [0,1) of all weights one after the other, and u within its share. No branch hangs on u.
+// Samples a child in proportion to the weights and rescales u. No branch depends on u.
 uint32_t Choose(const float* weights, double sum, double& u) {
   const double x = u * sum;
   double before[kWidth + 1];
@@ -47,7 +47,7 @@ uint32_t Choose(const float* weights, double sum, double& u) {
   return static_cast<uint32_t>(slot);
 }
 
-// What was learned of the children of a node, whose own factor is `parentFactor`.
+// Learned factors of the children of a node whose own factor is `parentFactor`.
 Lanes Learned(const TreeReceiver& receiver, uint32_t node, float parentFactor) {
   const LightLearning::Row& row = receiver.learning->RowOf(receiver.region, node);
   return simd::sqrt(Load(row.known) + parentFactor * parentFactor * (1 - Load(row.learned)));
@@ -59,7 +59,7 @@ LightTree::LightTree(std::span<const ClusterBounds> emitters, int threads) {
   LightTreeBuilder(emitters, threads).BuildInto(*this);
 }
 
-// One compiled function: the same receiver gives the same bits, whoever asks.
+// Not inlined, so that the same receiver always gives the same bits.
 [[gnu::noinline]] void LightTree::Look(const TreeReceiver& receiver, Cut& cut) const {
   cut.count = 0;
   cut.total = cut.irradiance = 0;
@@ -75,7 +75,7 @@ LightTree::LightTree(std::span<const ClusterBounds> emitters, int threads) {
     }
     here.importance.copy_to(cut.importance[cut.count], simd::vector_aligned);
     const Lanes variety = importance::LoadBfloat16(nodes_[node].variety);
-    // Points have no normals, and yet do not differ by them: unevenness is more than the variety of the parts.
+    // A cluster of points has no mean normal although its normals do not vary: its unevenness exceeds its variety.
     Lanes doubt = kDoubtOfUnevenness * simd::min(here.unevenness, variety);
     where(variety < 0.0f, doubt) = kNoDoubt;
     doubtful[cut.count] = here.importance * simd::min(kDoubtOfSpread * here.spread + doubt, Lanes(1.0f));
@@ -84,7 +84,7 @@ LightTree::LightTree(std::span<const ClusterBounds> emitters, int threads) {
   };
   open(0, 1);
   for (int i = 0; i < cut.count; ++i) {
-    auto isToOpen = doubtful[i] > kNegligible * std::max(total, 0.0f);  // what is left after rounding
+    auto isToOpen = doubtful[i] > kNegligible * std::max(total, 0.0f);  // can be negative by rounding
     while (simd::any_of(isToOpen) && cut.count < Cut::kRoom) {
       const int slot = simd::find_first_set(isToOpen);
       isToOpen[static_cast<size_t>(slot)] = false;
@@ -97,7 +97,7 @@ LightTree::LightTree(std::span<const ClusterBounds> emitters, int threads) {
   cut.irradiance = cut.total;
   if (cut.total > 0) [[likely]]
     return;
-  // Nothing seems to contribute: by intensity.
+  // No emitter has importance: selection by intensity.
   cut.count = 1;
   std::copy_n(nodes_[0].lobes.intensity, kWidth, cut.importance[0]);
   cut.total = cut.sum[0] = SumOf(cut.importance[0]);
@@ -109,7 +109,7 @@ double LightTree::Cut::Concentration() const {
   return total > 0 ? static_cast<double>(simd::reduce(squares)) / (total * total) : 1;
 }
 
-// One compiled function, too.
+// Not inlined, as above.
 [[gnu::noinline]] void LightTree::LookAt(uint32_t node, const TreeReceiver& receiver, float parentFactor,
                                          View& view) const {
   Lanes importance = Evaluate(nodes_[node].lobes, receiver).importance;
@@ -122,32 +122,32 @@ double LightTree::Cut::Concentration() const {
   view.sum = SumOf(view.importance);
   if (view.sum > 0) [[likely]]
     return;
-  // A cluster may look as if it contributed while none of its parts does.
+  // A cluster can have importance while none of its children has: by intensity then.
   std::copy_n(nodes_[node].lobes.intensity, kWidth, view.importance);
   view.sum = SumOf(view.importance);
 }
 
-// One compiled function, too.
+// Not inlined, as above.
 [[gnu::noinline]] double LightTree::Trend::At(const Point3& position) const {
   return static_cast<double>(base + glm::dot(gradient, position - middle));
 }
 
-// Whether the parts of a cluster send a receiver light in proportion to their intensities and a trend, but for a
-// variance of kAlike. For a part at x from the middle, w from the receiver, with normals n there and m of the light,
-// the cosines and 1/d² are (n·w')(m·w')/|w'|^k, w' = w + x: its gradient is taken, and its second order, of places that
-// fill a cube evenly, is what is left. The cube is in the sphere that all are in, and not in that of the moments, in
-// which a weak emitter that is near does not show. One compiled function, too.
+// True if the contributions of a cluster's emitters to a receiver are proportional to intensity and trend, up to a
+// variance of kAlike. For an emitter at offset x from the mean, with w from the receiver to the mean and normals n at the
+// receiver and m at the light, cosines and 1/d² give (n·w')(m·w')/|w'|^k with w' = w + x. The trend is its gradient; the
+// second-order term, for positions evenly distributed in a cube, is the error. The cube is inscribed in the bounding
+// sphere rather than derived from the variance, which does not show a weak emitter that is near. Not inlined, as above.
 [[gnu::noinline]] bool LightTree::IsAlike(uint32_t node, uint32_t child, const TreeReceiver& receiver,
                                           Trend& trend) const {
   using namespace importance;
-  if (receiver.learning) return false;  // what is in the way of some is not in the way of others
+  if (receiver.learning) return false;  // occlusion differs within the cluster
   const float variety = FromBfloat16(nodes_[node].variety[child]);
   const ClusterLobe cluster = nodes_[node].lobes.Get(static_cast<int>(child));
   const Vector3 way = cluster.mean - receiver.position;
   const float inverse2 = 1 / std::max(glm::dot(way, way), kNearest2);
   const float away2 = cluster.radius * cluster.radius * inverse2;
-  if (!(away2 < 0.1f && variety < kAlike)) return false;  // what follows would say the same of most, later
-  // How much each factor changes over the radius, and the power of the distance.
+  if (!(away2 < 0.1f && variety < kAlike)) return false;  // early rejection of most clusters
+  // Relative change of each factor over the radius, and the power of the distance.
   float power = 2, received = 0, emitted = 0, unevenness = 0;
   trend.gradient = Vector3(0.0f);
   if (LengthSquared(receiver.normal) > 0) {
@@ -159,7 +159,7 @@ double LightTree::Cut::Concentration() const {
     ++power;
   }
   const float length2 = glm::dot(cluster.meanNormal, cluster.meanNormal);
-  if (length2 > 0) {  // points shine alike to all sides
+  if (length2 > 0) {  // isotropic points have no mean normal
     float height = -glm::dot(cluster.meanNormal, way);
     trend.gradient -= cluster.meanNormal / height;
     if (cluster.twoSided) height = std::abs(height);
@@ -168,7 +168,7 @@ double LightTree::Cut::Concentration() const {
     unevenness = variety / (height * height * inverse2);
     ++power;
   }
-  constexpr float kFill = 0.11f;  // of two coordinates x, y in a cube, √ of the mean of x²y², over the radius² about it
+  constexpr float kFill = 0.11f;  // √(mean of x²y²) in a cube, over the squared radius of its sphere
   const float away = std::sqrt(away2);
   const float left =
       kFill * (received * emitted + power * away * (received + emitted) + 0.5f * power * (power + 2) * away2);
@@ -182,11 +182,11 @@ double LightTree::Cut::Concentration() const {
   return true;
 }
 
-// u in [0,1), stretched again, chooses among the emitters below a node by intensity. Of like ones, the first guess is
-// right.
+// Samples an emitter below a node by intensity and rescales u. Starts from the place that equal intensities would give,
+// and searches from there by doubling steps and bisection.
 size_t LightTree::PlaceAt(const Below& below, double& u) const {
   const double x = below.before + u * below.intensity;
-  size_t from = below.first, to = from + below.count;  // it is in [from, to)
+  size_t from = below.first, to = from + below.count;  // the result is in [from, to)
   size_t at = GuessAt(below, u);
   if (places_[at].before <= x) {
     for (size_t step = 1; from = at, at + step < to; step *= 2) {
@@ -209,16 +209,16 @@ size_t LightTree::PlaceAt(const Below& below, double& u) const {
     const size_t middle = from + (to - from) / 2;
     (places_[middle].before <= x ? from : to) = middle;
   }
-  // x was rounded to the end, where there may be what has no intensity.
+  // Rounding may lead to a last place without intensity.
   while (from > below.first && !(IntensityAt(from) > 0)) --from;
   u = std::clamp((x - places_[from].before) / static_cast<double>(IntensityAt(from)), 0.0, 0x1.fffffffffffffp-1);
   return from;
 }
 
-// By intensity and trend: of those that intensity chooses, some are sent back. The next trial's place is asked for
-// while this one's is waited for.
+// Samples by intensity and trend: proposals by intensity, accepted in proportion to the trend. The place of the next
+// proposal is prefetched.
 LightTree::Found LightTree::FindByIntensity(uint32_t node, const Trend& trend, double& u) const {
-  constexpr uint64_t trials = 64;  // all in vain: at most once in 10^15
+  constexpr uint64_t trials = 64;  // all rejected with a probability of at most 1e-15
   const uint64_t bits = std::bit_cast<uint64_t>(u);
   const Below& below = below_[node];
   for (uint64_t trial = 1;; ++trial) {
@@ -239,7 +239,7 @@ LightTree::Found LightTree::Descend(const TreeReceiver& receiver, const Cut& cut
   double x = u * cut.total;
   int at = 0;
   while (at + 1 < cut.count && x >= cut.sum[at]) x -= cut.sum[at++];
-  while (!(cut.sum[at] > 0)) --at;  // x was rounded beyond the last that counts
+  while (!(cut.sum[at] > 0)) --at;  // rounding led beyond the last node with importance
   u = std::min(x / cut.sum[at], 0x1.fffffffffffffp-1);
   uint32_t node = cut.node[at];
   uint32_t slot = Choose(cut.importance[at], cut.sum[at], u);
@@ -284,12 +284,12 @@ int IndexIn(const LightTree::Cut& cut, uint32_t node) {
   return at == cut.node + cut.count ? -1 : static_cast<int>(at - cut.node);
 }
 
-// The slots from an emitter's up; the builder divides into halves from its 40th level on, and there are 2^31 emitters.
+// Bound of the depth: the builder halves from level 40 on, and there are at most 2^31 emitters.
 constexpr size_t kLongestWay = 128;
 
 }  // namespace
 
-// From the cut down, as an emitter is chosen: products of the same numbers in the same order.
+// From the cut downwards, with the same products in the same order as the selection.
 double LightTree::ImportanceProbability(const TreeReceiver& receiver, const Cut& cut, uint32_t slot) const {
   std::array<uint32_t, kLongestWay> way;
   size_t length = 0;
@@ -316,7 +316,7 @@ double LightTree::ImportanceProbability(const TreeReceiver& receiver, const Cut&
   return probability;
 }
 
-// How often the cut leads to something below this node of it.
+// Sum of the importances in the cut below this node.
 double LightTree::SeenThrough(const Cut& cut, uint32_t node) const {
   double sum = 0;
   for (int i = 0; i < cut.count; ++i) {
@@ -348,7 +348,7 @@ void LightTree::Record(LightLearning& learning, const TreeReceiver& receiver, co
       const bool isOpened = IndexIn(cut, child) >= 0;
       seen = mix(isOpened ? SeenThrough(cut, child) : ImportanceProbability(receiver, cut, slot), slot);
     }
-    // Of the cluster: the sample, over the probability of this emitter within it.
+    // Estimate for the cluster: the sample over the probability of this emitter within it.
     learning.Record(receiver.region, node, static_cast<int>(slot % kWidth), importance * seen / chosen / estimate);
   }
 }

@@ -1,11 +1,11 @@
 // A tree over emitters that chooses one of them for a receiver, in proportion to an estimate of what it sends there
 // ([Conty18 §4, §5]; the estimate: importance.h). Nodes have eight children, whose importances are evaluated together.
 //
-// A cluster that is so far that its parts can only differ in their intensities, and a little by a trend over their
-// places, is not looked into: an emitter is found by these among all of the cluster's at once.
+// A cluster so distant that its emitters differ only by intensity, and to first order by position, is not descended
+// into: one of its emitters is sampled directly by these two.
 //
-// The probability of a given emitter is the product of its shares on the way from the root, which it knows the nodes
-// of: O(depth), the same operations in the same order as when it was chosen, and so the same bits.
+// The probability of a given emitter is the product of the shares on its way from the root, O(depth): the same
+// operations in the same order as in the selection, and therefore the same bits.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@
 
 namespace lampyr {
 
-// Of a choice, or of a given emitter.
+// Selection probabilities of an emitter by the two strategies.
 struct EmitterProbability {
   double byImportance = 1;
   double defensive =
@@ -27,39 +27,39 @@ struct EmitterProbability {
 struct EmitterChoice {
   uint32_t emitter = 0;
   EmitterProbability probability;
-  double u = 0;  // the random number, stretched over [0,1) again
+  double u = 0;  // the random number, rescaled to [0,1)
 };
 
 class LightTree {
  public:
   LightTree() = default;
-  // Emitters with empty bounds are never chosen. Builds on `threads`; the tree is the same for any number of them.
+  // Emitters with empty bounds are never selected. The tree does not depend on the number of threads that build it.
   LightTree(std::span<const ClusterBounds> emitters, int threads);
 
   static constexpr int kWidth = LobeBlock::kWidth;
   static constexpr uint32_t kNone = 0xffffffffu;
 
-  // What every question about a receiver begins with: clusters that seem to send it much, and whose importance by
-  // itself is doubtful, are opened, so that theirs is the sum of their parts'. Not initialised: it is large.
+  // A cut through the tree for one receiver: clusters with a large and uncertain importance are replaced by their
+  // children, so that their importance is the sum over these. Not initialised, because it is large.
   struct Cut {
     static constexpr int kRoom = 16;
-    int count;  // nodes: the root, and some whose parents are in the cut, in any order
+    int count;  // nodes: the root, and nodes whose parents are in the cut, in any order
     uint32_t node[kRoom];
-    double sum[kRoom];                            // of a node's importances
-    alignas(64) float importance[kRoom][kWidth];  // of the children; 0 of those that are in the cut themselves
-    alignas(64) float factor[kRoom][kWidth];      // that was learned of the children; only where something is learned
+    double sum[kRoom];                            // of the importances of a node's children
+    alignas(64) float importance[kRoom][kWidth];  // of the children; 0 for those that are in the cut
+    alignas(64) float factor[kRoom][kWidth];      // learned factors of the children; set only with learning
     double total;
-    double irradiance;  // an estimate of that from all emitters: the total, or 0 where none seems to contribute
+    double irradiance;  // estimate of the irradiance by all emitters: the total, or 0 if none has importance
 
-    // The sum of the squares of the children's shares: 1 when a single one matters, 1/n when n matter alike.
+    // Sum of the squared shares of the children: 1 if only one contributes, 1/n if n contribute equally.
     double Concentration() const;
   };
   void Look(const TreeReceiver& receiver, Cut& cut) const;
 
-  // u in [0,1). `defensive`: by intensity instead of importance. `cut` is what Look gave for this receiver. Requires
+  // `u`: in [0,1). `defensive`: by intensity instead of importance. `cut`: by Look for this receiver. Requires
   // !IsEmpty().
   EmitterChoice Select(const TreeReceiver& receiver, const Cut& cut, double u, bool defensive) const;
-  // 0 for emitters that are never chosen.
+  // 0 for emitters that are never selected.
   EmitterProbability ProbabilityOf(const TreeReceiver& receiver, const Cut& cut, uint32_t emitter) const;
 
   // A sample of `emitter`, chosen by defensive sampling with probability `defensiveShare`, brought the irradiance of
@@ -73,9 +73,9 @@ class LightTree {
 
   struct Node {
     LobeBlock lobes;
-    uint32_t child[kWidth];  // a node, or an emitter: see kEmitter
-    // The variance of the normals of a cluster's parts, kUnlike where their light ends at an edge: the upper half of a
-    // float, or a little more. Below 0: an emitter.
+    uint32_t child[kWidth];  // index of a node, or with the bit kEmitter of an emitter
+    // Variance of the normals within a child cluster, as bfloat16 rounded up; kUnlike if its emission ends at a cone.
+    // Negative: the child is an emitter.
     uint16_t variety[kWidth];
   };
   static constexpr float kUnlike = 1e6f;
@@ -85,7 +85,7 @@ class LightTree {
 
   friend class LightTreeBuilder;
 
-  // What is seen of a node's children, below the cut. The factors: as in the cut.
+  // Importances and factors of a node's children, for nodes below the cut.
   struct View {
     alignas(64) float importance[kWidth];
     alignas(64) float factor[kWidth];
@@ -93,8 +93,8 @@ class LightTree {
   };
   void LookAt(uint32_t node, const TreeReceiver& receiver, float parentFactor, View& view) const;
   double SeenThrough(const Cut& cut, uint32_t node) const;
-  // What a part of a cluster sends beside one of the same intensity in its middle, to first order: of all parts by
-  // intensity, the mean is 1.
+  // First-order variation over a cluster: the contribution of an emitter relative to one of the same intensity at the
+  // centre. Its mean, weighted by intensity, is 1.
   struct Trend {
     Vector3 gradient{0.0f};
     Point3 middle{0.0f};
@@ -107,7 +107,7 @@ class LightTree {
   struct Found {
     uint32_t emitter;
     float intensity;
-    double ofTrend;  // what the trend says of it
+    double ofTrend;  // value of the trend there
   };
   Found Descend(const TreeReceiver& receiver, const Cut& cut, double& u, double& probability) const;
   Found FindByIntensity(uint32_t node, const Trend& trend, double& u) const;
@@ -119,8 +119,8 @@ class LightTree {
   }
   double DefensiveProbability(float intensity) const { return static_cast<double>(intensity) / below_[0].intensity; }
 
-  // Emitters in the order of the tree, so that those below a node are one after the other. Intensity and position are
-  // those of the emitter's slot, to the bit.
+  // Emitters in the order of the tree, so that those below a node are contiguous. Intensity and position have the bits
+  // of the emitter's slot.
   struct Place {
     double before;  // sum of the intensities of all places before this one
     uint32_t emitter;
@@ -129,10 +129,10 @@ class LightTree {
   struct Below {
     double before, intensity;  // sums: up to its first place, and of its places
     uint32_t first, count;     // places
-    Vector3 offset;  // what rounding left between the places' mean by intensity and what the node above has for it
+    Vector3 offset;            // rounding error of the mean position in the node above
   };
   size_t PlaceAt(const Below& below, double& u) const;
-  // Where it is when all have the same intensity.
+  // The place, if all have the same intensity.
   static size_t GuessAt(const Below& below, double u) {
     return below.first + std::min(static_cast<size_t>(u * below.count), static_cast<size_t>(below.count) - 1);
   }

@@ -12,10 +12,10 @@ namespace {
 
 constexpr int kBins = 16;
 constexpr size_t kLeaf = LightTree::kWidth;
-// From here on halves: the depth stays bounded however unequal the splits were.
+// From this depth on, nodes are halved, so that the depth is bounded whatever the splits were.
 constexpr int kDepthOfHalves = 40;
 
-// How much of all directions a cone of normals with emission beyond it fills ([Conty18 eq. 1]).
+// Orientation measure: solid angle of a cone of normals with the emission beyond it ([Conty18 eq. 1]).
 float OrientationMeasure(float thetaO, float thetaE) {
   const float thetaW = std::min(thetaO + thetaE, kPi);
   const float sinO = std::sin(thetaO), cosO = std::cos(thetaO);
@@ -23,13 +23,13 @@ float OrientationMeasure(float thetaO, float thetaE) {
          0.5f * kPi * (2 * thetaW * sinO - std::cos(thetaO - 2 * thetaW) - 2 * thetaO * sinO + cosO);
 }
 
-// Surface, and a little of the diagonal: a row of points has no surface and is to be divided all the same.
+// Surface area plus a small part of the diagonal, because the bounds of collinear points have no area.
 float SpatialMeasure(const Bounds3& box) {
   const Vector3 d = box.Diagonal();
   return 2 * (d.x * d.y + d.y * d.z + d.z * d.x) + 0.05f * glm::dot(d, d);
 }
 
-// A bin's contents, gathered cheaply: the cone is guessed from how much of the axes' sum is left.
+// Contents of a bin. Its cone is approximated from the length of the sum of axes.
 struct Bin {
   Bounds3 box;
   Vector3 axes{0.0f};
@@ -81,7 +81,7 @@ void LightTreeBuilder::Bound(Branch& branch) const {
   }
 }
 
-// The bins of a branch's items along each axis of the bounds of their centres.
+// Bins of a branch's items along each axis of the bounds of their centroids.
 struct LightTreeBuilder::Binning {
   using Row = std::array<Bin, kBins>;
   Bounds3 centers;
@@ -113,7 +113,7 @@ void LightTreeBuilder::FillBins(const Branch& branch, Binning& binning) const {
   }
 }
 
-// The division between two bins of least cost ([Conty18 §4.3]); no axis: none has items on both sides.
+// The split of least cost ([Conty18 §4.3]); no axis: no split has items on both sides.
 LightTreeBuilder::Split LightTreeBuilder::CheapestSplit(const Binning& binning) {
   const Vector3& extent = binning.extent;
   const float longest = std::max({extent.x, extent.y, extent.z});
@@ -134,7 +134,7 @@ LightTreeBuilder::Split LightTreeBuilder::CheapestSplit(const Binning& binning) 
     for (size_t b = 1; b < kBins; ++b) {
       sum.Add(row[b - 1]);
       if (sum.count == 0 || countAbove[b] == 0) continue;
-      // Thin boxes are not divided lengthwise.
+      // Regularisation against splits of thin boxes along their short axes.
       const float cost = (sum.Cost() + above[b]) * longest / extent[axis];
       if (cost < leastCost) {
         leastCost = cost;
@@ -145,7 +145,7 @@ LightTreeBuilder::Split LightTreeBuilder::CheapestSplit(const Binning& binning) 
   return best;
 }
 
-// Sorts the items of a branch to two sides; returns the number on the first.
+// Partitions the items of a branch; returns the number on the first side.
 size_t LightTreeBuilder::Partition(const Branch& branch, int depth) {
   const auto begin = items_.begin() + static_cast<std::ptrdiff_t>(branch.first);
   const auto end = begin + static_cast<std::ptrdiff_t>(branch.count);
@@ -154,7 +154,7 @@ size_t LightTreeBuilder::Partition(const Branch& branch, int depth) {
   for (auto item = begin; item != end; ++item) binning.centers.Add(item->center);
   const Vector3 extent = binning.extent = binning.centers.Diagonal();
   const float longest = std::max({extent.x, extent.y, extent.z});
-  if (!(longest > 0)) return half;  // all in one place
+  if (!(longest > 0)) return half;  // all at one position
   if (depth >= kDepthOfHalves) {
     const int axis = extent.x == longest ? 0 : extent.y == longest ? 1 : 2;
     std::nth_element(begin, begin + static_cast<std::ptrdiff_t>(half), end, [axis](const Item& a, const Item& b) {
@@ -191,10 +191,9 @@ void LightTreeBuilder::Grow(Branch& branch, int depth) {
   Bound(branch);
 }
 
-// The uppermost branches one after the other, those below on all threads: which are which depends on nothing but
-// counts.
+// Divides the upper branches serially and those below in parallel. The boundary depends on counts alone, not on threads.
 void LightTreeBuilder::GrowInParallel(Branch& root) {
-  constexpr size_t kAlone = 16384;  // items that one thread divides
+  constexpr size_t kAlone = 16384;  // items of a task
   struct Open {
     Branch* branch;
     int depth;
@@ -226,7 +225,7 @@ void LightTreeBuilder::PutChild(LightTree::Node& node, int slot, const ClusterBo
   node.child[slot] = child;
 }
 
-// Keeps what its probability is made of as it is found again, from the difference of two sums.
+// Stores the intensity as it is read again, as the difference of two sums, so that probabilities have the same bits.
 void LightTreeBuilder::PutPlace(uint32_t emitter) {
   places_.push_back({intensity_, emitter, emitters_[emitter].mean});
   intensity_ += static_cast<double>(emitters_[emitter].intensity);
@@ -242,8 +241,8 @@ Vector3 LightTreeBuilder::OffsetOfMean(const LightTree::Below& below, const Poin
   return below.intensity > 0 ? Vector3(sum / below.intensity) : Vector3(0.0f);
 }
 
-// A node of a branch: its largest children are opened until there are eight, and what is left of the room is filled
-// with the emitters of small ones.
+// Makes a node of eight children: opens the largest child until there are eight, and fills remaining slots with the
+// emitters of small leaves.
 void LightTreeBuilder::Emit(const Branch& branch, uint32_t parent, int depth, LightTree& tree) {
   constexpr auto width = static_cast<size_t>(LightTree::kWidth);
   tree.depth_ = std::max(tree.depth_, depth);

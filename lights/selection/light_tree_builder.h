@@ -1,5 +1,5 @@
-// Builds light trees: a binary tree by the surface area orientation heuristic ([Conty18 §4.3]), whose nodes are then
-// gathered eight by eight. Private to light_tree.cpp.
+// Builds light trees: a binary tree by the surface area orientation heuristic ([Conty18 §4.3]), which is then collapsed
+// to nodes of eight children. Private to light_tree.cpp.
 #pragma once
 
 #include <memory>
@@ -19,11 +19,11 @@ class LightTreeBuilder {
     Point3 center;
     uint32_t emitter;
   };
-  // Of [first, first + count) items; a leaf when both children are null.
+  // A node of the binary tree, of items [first, first + count). A leaf if both children are null.
   struct Branch {
     ClusterBounds bounds;
-    float normals2 = 0;    // the mean squared length of its emitters' normals, weighted by intensity
-    bool hasEdge = false;  // the light of some ends at an edge
+    float normals2 = 0;    // mean squared length of the emitters' mean normals, weighted by intensity
+    bool hasEdge = false;  // some emit within a cone narrower than a hemisphere
     size_t first = 0, count = 0;
     std::unique_ptr<Branch> left, right;
   };
@@ -32,7 +32,7 @@ class LightTreeBuilder {
   void GrowInParallel(Branch& root);
   bool Divide(Branch& branch, int depth);
   struct Binning;
-  // Between the bins `bin` - 1 and `bin` along `axis`; -1: none.
+  // Position between bins `bin` - 1 and `bin` along `axis`; -1: no split.
   struct Split {
     int axis = -1, bin = 0;
   };

@@ -16,7 +16,7 @@ class LinkedSelector final : public LightSelector {
       : setOfClass_(sets.ofClass), all_(MakeLightSelector(selection, lights, scene)) {
     size_t room = 1000000;
     for (const PlacedLight& placed : lights) room += 4 * static_cast<size_t>(placed.light->PatchCount());
-    std::vector<uint32_t> place;  // of each set among those that have a selector
+    std::vector<uint32_t> place;  // for each set, its index among those with a selector
     for (const std::vector<uint32_t>& members : sets.lights) {
       size_t emitters = 0;
       for (const uint32_t light : members) emitters += static_cast<size_t>(lights[light].light->PatchCount());
@@ -33,7 +33,7 @@ class LinkedSelector final : public LightSelector {
     for (uint32_t& set : setOfClass_) set = place[set];
   }
 
-  // What is learned is of one tree: that of all lights.
+  // Learned factors belong to one tree, that of all lights.
   void Select(const Receiver& receiver, const LightLearning* learned, double u, LightChoices& choices) const override {
     const Part* part = PartOf(receiver);
     if (!part) return all_->Select(receiver, learned, u, choices);

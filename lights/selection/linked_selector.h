@@ -1,5 +1,5 @@
-// Selection where some lights do not shine on some receivers: one selector for each set of lights that shine together,
-// so that no sample is spent on a light that is not linked.
+// Selection with light linking: one selector for each set of lights that illuminate the same receivers, so that no
+// sample is spent on a light that is not linked.
 #pragma once
 
 #include <memory>
@@ -9,8 +9,8 @@
 
 namespace lampyr {
 
-// `sets` as many as there are lights for: those that take more than four times the emitters of the scene, and a
-// million, fall back on all lights, where a light that is not linked is chosen in vain.
+// Memory is bounded: sets beyond four times the emitters of the scene plus a million use the selector of all lights,
+// and the choice of a light that is not linked contributes nothing.
 std::unique_ptr<LightSelector> MakeLinkedSelector(LightSelection selection, std::span<const PlacedLight> lights,
                                                   const BoundingSphere& scene, const LightSets& sets);
 

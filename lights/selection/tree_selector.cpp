@@ -13,10 +13,10 @@ namespace lampyr {
 
 namespace {
 
-// Chosen without a look at the receiver ([Hesterberg95] calls it defensive): what the estimate overlooks, or takes for
-// much less than it is, is chosen at least this part as often as by intensity.
+// Fraction of choices by intensity alone (defensive sampling, [Hesterberg95]): bounds the weight of emitters whose
+// importance is estimated too low.
 constexpr double kDefensiveShare = 0.05;
-// Of the lights at infinity, and of those with a place, where there are both.
+// Lower bound of the fractions of lights at infinity and of lights with a position, if there are both.
 constexpr double kSmallestGroup = 0.05;
 constexpr float kLargest = 1e30f;
 
@@ -29,7 +29,7 @@ class TreeSelector final : public LightSelector {
     std::vector<float> weights;
     for (const uint32_t light : emitters_.far) weights.push_back(FarIrradiance(lights[light], scene));
     for (const float weight : weights) farIrradiance_ += static_cast<double>(weight);
-    // One whose estimate at the scene's middle is nothing may shine elsewhere, as through a window.
+    // A light without irradiance at the centre of the scene may illuminate other places, as through a window.
     constexpr double floor = 1e-3;
     const double mean = weights.empty() ? 0 : farIrradiance_ / static_cast<double>(weights.size());
     for (float& weight : weights) weight = mean > 0 ? std::max(weight, static_cast<float>(floor * mean)) : 1.0f;
@@ -85,7 +85,7 @@ class TreeSelector final : public LightSelector {
   }
 
  private:
-  // In emitters_.far, which is in the lights' order.
+  // Index in emitters_.far, which is in the order of lights.
   std::optional<uint32_t> FarIndexOf(uint32_t light) const {
     const auto at = std::lower_bound(emitters_.far.begin(), emitters_.far.end(), light);
     if (at == emitters_.far.end() || *at != light) return std::nullopt;
@@ -130,8 +130,8 @@ class TreeSelector final : public LightSelector {
     return PdfDiscrete(static_cast<float>(count * (far * static_cast<double>(within.value))));
   }
 
-  // As many samples as there are clusters and lights at infinity that matter, as it seems from here: where one makes
-  // nearly all of the light, a second sample says little.
+  // As many samples as the effective number of clusters and lights at infinity at this receiver: if one of them causes
+  // nearly all of the irradiance, a second sample reduces little variance.
   [[gnu::noinline]] int CountFor(const typename Search::Cut& cut, double far) const {
     if (MostSamples() == 1) return 1;
     const double ofFar = farTable_.IsZero() ? 0 : far * far / static_cast<double>(farTable_.Size());
@@ -148,8 +148,8 @@ class TreeSelector final : public LightSelector {
     return irradiance > 0 ? std::min(irradiance, kLargest) * factor : 0.0f;
   }
 
-  // How often the lights at infinity are chosen: by their irradiance against what the others are estimated to send
-  // here. One compiled function: the same bits, whoever asks.
+  // Probability of selecting a light at infinity: its share of the estimated irradiance here. Not inlined, so that the
+  // same receiver always gives the same bits.
   [[gnu::noinline]] double FarShare(const TreeReceiver& place, double importance) const {
     if (farTable_.IsZero()) return 0;
     if (search_.IsEmpty()) return 1;

@@ -1,12 +1,12 @@
-// Selection by what lights send to the receiver: emitters with a place by the light tree, those at infinity beside it.
+// Selection by importance at the receiver: emitters with a position by the light tree, lights at infinity beside it.
 #pragma once
 
 #include "lights/selection/light_selector.h"
 
 namespace lampyr {
 
-// How emitters with a place are chosen among: by the tree, or by the importance of each of them, O(n): the limit that a
-// tree comes near to.
+// Search among emitters with a position: by the tree, or exhaustively by the importance of each of them, in O(n), which
+// is the limit of what a tree can reach.
 enum class EmitterSearch { Tree, Exhaustive };
 
 std::unique_ptr<LightSelector> MakeTreeSelector(EmitterSearch search, std::span<const PlacedLight> lights,

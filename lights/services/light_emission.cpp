@@ -1,13 +1,12 @@
-// The lights' part of light subpaths: photons, aimed by a guide or not, and what next-event estimation says of them
-// where they land.
+// Emission of photons, guided or not, and the evaluation of their origin for next-event estimation at their first hit.
 #include "lights/services/lighting_services.h"
 
 namespace lampyr {
 
 namespace {
 
-// What next-event estimation says of a delta light that a photon came from: the photon's own numbers, with the falloff
-// of the distance that the light's samples have.
+// The evaluation of a photon's origin on a delta light: the values of the photon, with the inverse-square falloff of the
+// light's samples.
 LightEvaluation DeltaFirstHit(const EmissionSample& emission, LightKind kind, float distanceSquared) {
   LightEvaluation evaluation;
   const float falloff = kind == LightKind::DeltaPosition ? 1 / distanceSquared : 1.0f;
@@ -34,7 +33,7 @@ LightHit HitOf(const EmissionSample& emission, LightKind kind, const Vector3& di
   return hit;
 }
 
-// The intensity of a point and its densities, from a sample of it seen from P.
+// Intensity and densities of a point light, from its sample seen from P.
 std::optional<EmissionSample> EmissionOfPoint(const LightSample& seen) {
   EmissionSample sample;
   const float squared = Sqr(seen.distance);
@@ -47,20 +46,20 @@ std::optional<EmissionSample> EmissionOfPoint(const LightSample& seen) {
   return sample;
 }
 
-// Beyond the surface that the photon leaves. A point leaves behind it what it touches but for rounding, as shadow rays
-// to it do: a point in the plane of a floor does not light it.
+// Offsets the origin from the surface that the photon leaves. A point light is offset from surfaces that it touches up to
+// rounding, as shadow rays are: a point in the plane of a floor does not light it.
 Point3 OriginOf(const EmissionSample& emission, LightKind kind) {
   if (IsAtInfinity(kind)) return emission.position;
   if (kind == LightKind::Area)
     return OffsetRayOrigin(emission.position, emission.positionError, emission.normal, emission.direction);
-  constexpr float kLeast = 1e-30f;  // a point at the origin is exact
+  constexpr float kLeast = 1e-30f;  // a point light at the coordinate origin has no rounding error
   return OffsetRayOrigin(emission.position, emission.positionError + Vector3(kLeast), emission.direction,
                          emission.direction);
 }
 
 }  // namespace
 
-// The light's own place or direction, and the other of the two towards a target.
+// Keeps the sampled position, or direction of a light at infinity, and aims the other at a component of the guide.
 std::optional<EmissionSample> LightingServices::EmitAimed(const LightContext& context,
                                                           const EmissionGuide::Choice& choice) const {
   const Light& light = *scene_->fronts[choice.light].light;
@@ -76,14 +75,14 @@ std::optional<EmissionSample> LightingServices::EmitAimed(const LightContext& co
     return emission;
   }
   if (kind == LightKind::DeltaPosition && !emission) {
-    // The direction it would have chosen is dark.
+    // The unguided direction was dark.
     const auto bounds = light.GetEmissionBounds(context);
     if (!bounds) return std::nullopt;
     emission.emplace().position = bounds->box.Center();
   }
   if (!emission) return std::nullopt;
   const Vector3 direction = guide_->SampleDirection(choice, emission->position, context.uDirection);
-  // A direction on a target's rim may be rounded past it, where its density would not be that of its sampling.
+  // A direction at the rim of a component may be rounded past it, where the aimed density is 0.
   const bool isMissed = guide_->DirectionDensity(choice.light, emission->position, direction).IsZero();
   const Point3 P = emission->position + guide_->Reach(choice, emission->position) * direction;
   if (kind == LightKind::DeltaPosition) {
@@ -157,8 +156,8 @@ bool LightingServices::IsOrigin(const EmittedPhoton& photon, const SurfacePoint&
                                 float distance) const {
   if (scene_->geometry.LightAt(point.primitive, point.instance) != static_cast<int32_t>(photon.light)) return false;
   const EmissionSample& emission = photon.emission;
-  // The same side of the surface, and as near as rounding allows: a unit direction is off by 2^-22, along a grazing
-  // surface by more.
+  // On the same side of the surface, within rounding: a unit direction has an error of 2^-22, which grows along grazing
+  // surfaces.
   const float cosine = glm::dot(point.Ng, toRay);
   if (cosine * glm::dot(emission.normal, toRay) < 0) return false;
   const float error =

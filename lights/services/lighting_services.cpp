@@ -28,7 +28,7 @@ LightHit EscapedHit(const Point3& origin, const Vector3& direction) {
   return hit;
 }
 
-// Estimates that left float are its ends.
+// Clamps estimates to the range of float.
 float FluxUnitOf(const std::vector<PlacedLight>& lights, const BoundingSphere& sphere) {
   double power = 0;
   for (const PlacedLight& placed : lights) {
@@ -126,14 +126,14 @@ void LightingServices::RecordResult(const Receiver& receiver, const DirectSample
     const LightSample& sample = *direct.sample;
     const bool hasNormal = LengthSquared(receiver.normal) > 0;
     const float cosine = hasNormal ? AbsDot(sample.direction, receiver.normal) : 1.0f;
-    // A light carries its radiance in both; a multiplier may have put out one of them.
+    // Both parts hold the radiance of a light; a multiplier may have set one of them to 0.
     const float radiance = std::max((sample.diffuse * arrived).Average(), (sample.specular * arrived).Average());
     irradiance = static_cast<double>(radiance * cosine / sample.pdfDirect.value);
   }
   scene_->selector->Record(*learning_, receiver, direct.light, direct.patch, irradiance);
 }
 
-// How far in front of a sample its own surface may be met by a ray from `from`.
+// Distance before a sample within which a ray from `from` may hit the sample's own surface.
 Vector3 LightingServices::ErrorOfEnd(const SurfacePoint& from, const DirectSample& direct, float time) const {
   const LightSample& sample = *direct.sample;
   if (!scene_->fronts[direct.light].isInstance) [[likely]]

@@ -1,10 +1,10 @@
-// The one door between integrators and lights: selection, sampling, shadows and emission. An integrator never calls a
-// light itself, so whatever happens on the edge between a light and the first surface happens here, once, and alike for
+// The interface between integrators and lights: selection, sampling, shadow rays and emission. Integrators never call a
+// light directly, so that filters, linking and rounding on the edge between a light and a surface are the same for
 // every technique.
 //
-// A LightingServices is a view of the scene's lights that never changes. What is learned while an image is rendered
-// (which lights are occluded where, where photons are of use) makes another view of the same lights: `With`. A pass is
-// given one view, and so has one distribution, whose densities are known exactly.
+// A LightingServices is an immutable view of the scene's lights. Learned distributions (light selection, guided
+// emission) make another view of the same lights, by `With`. A pass uses one view, and so has one distribution with
+// exact densities.
 #pragma once
 
 #include <algorithm>
@@ -25,121 +25,118 @@
 
 namespace lampyr {
 
-// Next-event estimation: a light's sample with the probability of having chosen that light. False: nothing comes from
-// there. The light's result is a member as it was returned, never copied: copies of a struct that was written just
-// before, field by field, cost more than the sampling.
+// A sample of next-event estimation with the selection probability of its light. False: no contribution. The light's
+// result is kept as returned and never copied, because copying a struct that was just written field by field costs more
+// than the sampling (store forwarding).
 struct DirectSample {
   uint32_t light = 0;
   bool isDelta = false;               // the light has no surface or directions that a BSDF ray could find
   bool isInfinite = false;            // no end of the shadow ray
   int patch = kAnyPatch;              // that was selected
   PdfDiscrete selection;              // at the receiver, times the number of its samples
-  std::optional<LightSample> sample;  // densities without the selection
+  std::optional<LightSample> sample;  // densities without the selection probability
 
   explicit operator bool() const { return sample && !sample->pdfDirect.IsZero(); }
 };
 
-// A light that a ray found.
+// A light that a ray hit.
 struct FoundLight {
   uint32_t light = 0;
-  PdfDiscrete selection;  // next-event selection at the receiver that the ray left
+  PdfDiscrete selection;  // selection probability of next-event estimation at the origin of the ray
   LightEvaluation evaluation;
 };
 
-// A photon as it leaves its light.
+// An emitted photon.
 struct EmittedPhoton {
   uint32_t light = 0;
   PdfDiscrete emissionSelection;
   EmissionSample emission;
-  float pdfUnguided = 0;  // of the density that a guide has a part in, what it would be without: 1/m² of lights at
-                          // infinity, 1/sr of others
+  float pdfUnguided =
+      0;  // without a guide, the density that guiding changes: 1/m² for lights at infinity, 1/sr for others
   Ray ray;
-  bool fromSurface = false;  // it started on a surface that camera rays can hit
+  bool fromSurface = false;  // starts on a surface that camera rays can hit
 
-  // A place on a light whose direction carries nothing, and may have no density.
+  // True if only its position is valid: the sampled direction carries nothing, and may have no density.
   bool IsDark() const { return emission.diffuse.IsBlack() && emission.specular.IsBlack(); }
 };
 
 class LightingServices {
  public:
-  // `geometry` must outlive the services. At most `mostSamples` lights are chosen for a receiver, in
-  // [1, LightChoices::kMost]. Each sample divides by the number that is expected of its light, so that their
-  // contributions add up; densities of next-event estimation count them all.
+  // `geometry` must outlive the services. `mostSamples`: the largest number of lights selected for a receiver, in
+  // [1, LightChoices::kMost]. Each sample is divided by the expected number of samples of its light; densities of
+  // next-event estimation include that number.
   LightingServices(const GeometryScene& geometry, std::vector<PlacedLight> lights, LightSelection selection,
                    LightLinking linking = {}, int mostSamples = 1);
 
-  // The same lights, where next-event estimation selects by what `learning` knows, too, and records its results there
-  // while that is recording, and where photons are aimed by `guide`. Both must outlive the view, and what they know
-  // stays the same while it is used; null: without.
+  // A view of the same lights with learned selection, which also records results in `learning` while that is recording,
+  // and with photons guided by `guide`. Both may be null, must outlive the view, and must not change while it is used.
   LightingServices With(LightLearning* learning, const EmissionGuide* guide) const;
 
-  // Chooses lights for the receiver.
+  // Selects lights for the receiver.
   void SelectLights(const Receiver& receiver, float uSelect, LightChoices& choices) const {
     scene_->selector->Select(receiver, learning_, MoreBits(uSelect, receiver.position), choices);
   }
-  // A sample on a chosen light.
+  // Samples a selected light.
   DirectSample GenerateSamples(const Receiver& receiver, const SelectedLight& selected, const Point2& u, float time,
                                bool bidirectional) const;
 
-  // What of a sample's light arrives: 0 behind something opaque, 1 where nothing is in the way, and a colour behind
-  // cut-outs and thin glass. Traces a shadow ray.
+  // Transmittance between the receiver and a sample: 0 if occluded, 1 if unoccluded, a colour behind cut-outs and thin
+  // glass. Traces a shadow ray.
   Color Transmittance(const SurfacePoint& from, const DirectSample& direct, float time) const;
 
-  // What became of a sample: the part of it that arrived at the receiver, 0 too where it was not worth a shadow ray.
-  // From any thread; does nothing unless something is recorded.
+  // Records the result of a sample for learned selection: the fraction that arrived at the receiver, 0 also if its
+  // shadow ray was not traced. May be called from any thread; without effect unless recording.
   void UpdateWithResults(const Receiver& receiver, const DirectSample& direct, const Color& arrived) const {
     if (learning_ && learning_->IsRecording()) RecordResult(receiver, direct, arrived);
   }
-  // How lights are chosen for emission without a guide.
+  // Selection for emission without a guide.
   const LightSelector& EmissionSelector() const { return *scene_->emissionSelector; }
 
-  // The area light at a surface point that a ray from `receiver` along the unit `direction` hit; nullopt when that
-  // surface emits nothing that way.
+  // Evaluates the area light at a surface point that a ray from `receiver` along the unit `direction` hit. nullopt: the
+  // surface emits nothing in that direction.
   std::optional<FoundLight> EvaluateSamples(const Receiver& receiver, const Vector3& direction, float distance,
                                             const SurfacePoint& point, float time, bool bidirectional) const;
 
-  // The lights at infinity, each as seen by a ray from `receiver` that escapes along `direction`: i in [0,
-  // InfiniteCount()).
+  // Evaluates the light at infinity `i`, in [0, InfiniteCount()), for a ray from `receiver` that escapes along
+  // `direction`.
   size_t InfiniteCount() const { return scene_->infinite.size(); }
   std::optional<FoundLight> EvaluateEscaped(size_t i, const Receiver& receiver, const Vector3& direction, float time,
                                             bool bidirectional) const;
 
-  // What a camera ray sees of a light it hit, or of a light at infinity when it escapes: i in [0, InfiniteCount()).
+  // Radiance seen by a camera ray that hit a light, or that escaped to the light at infinity `i`, in
+  // [0, InfiniteCount()).
   Color EmissionForCamera(const Vector3& direction, float distance, const SurfacePoint& point, float time) const;
   Color EscapedEmissionForCamera(size_t i, const Ray& ray) const;
-  // Whether a ray that hit `point` from the direction of the unit vector `toRay` met the very place that the photon
-  // left.
+  // True if a ray that arrived at `point` from the unit direction `toRay` hit the origin of the photon.
   bool IsOrigin(const EmittedPhoton& photon, const SurfacePoint& point, const Vector3& toRay, float distance) const;
 
-  // Chooses a light for emission, and emits. Surfaces nearer than EmissionSample::shinesFrom stop the photon.
+  // Selects a light for emission and samples a photon. Surfaces nearer than EmissionSample::shinesFrom block it.
   std::optional<EmittedPhoton> GenerateEmission(float uSelect, const Point2& u, const Point2& uDirection,
                                                 float time) const;
-  // How much more often this photon is sent than it would be without a guide.
+  // Density of this photon over its density without a guide.
   float EmissionGain(const EmittedPhoton& photon) const;
-  // The light vertex of a photon that landed at `receiver`, as next-event estimation from there sees it: densities
-  // without the selection. Delta lights too, which it finds with the discrete density 1.
+  // Evaluates the origin of a photon for next-event estimation from its first hit `receiver`. Densities do not include
+  // the selection. Also for delta lights, with the discrete density 1.
   std::optional<FoundLight> EvaluateFirstHit(const EmittedPhoton& photon, const Receiver& receiver) const;
 
-  // What a photon brings to the receiver that it has landed on: its light's filter changes it, and where the light is
-  // not linked to the receiver it brings nothing. False: nothing is left. The light as it was sent: what it passed on
-  // its way comes after the filter.
+  // Applies light filters and linking to a photon at its first hit `receiver`. `diffuse`, `specular`: as emitted,
+  // before the transmittance of the segment. False: nothing remains.
   bool FilterFirstHit(const EmittedPhoton& photon, const Receiver& receiver, Color& diffuse, Color& specular) const {
     return !scene_->isLinked || LandsFiltered(photon, receiver, diffuse, specular);
   }
 
-  // Whether next-event estimation at a receiver selects patch by patch; otherwise a light's patches have the light's
-  // probability.
+  // True if next-event estimation at a receiver selects patches individually; otherwise patches have the probability of
+  // their light.
   bool SelectsPatches(const Receiver& receiver) const { return scene_->selector->SelectsPatches(receiver); }
   PdfDiscrete SelectionProbability(const Receiver& receiver, uint32_t light, int patch) const;
   PdfDiscrete EmissionSelectionProbability(uint32_t light) const;
-  // Whether a light has a direction only (infinite and distant lights), and whether a direction that a surface samples
-  // can find it.
+  // IsAtInfinity: the light is infinite or distant. CanBeHit: BSDF sampling can find it.
   bool IsAtInfinity(uint32_t light) const { return lampyr::IsAtInfinity(scene_->fronts[light].kind); }
   bool CanBeHit(uint32_t light) const { return scene_->CanBeHit(light); }
-  // Whether there is one that can: a direction that a surface samples may find light.
+  // True if BSDF sampling can find any light.
   bool HasLightThatCanBeHit() const { return scene_->hasLightThatCanBeHit; }
 
-  // The groups that lights are in, and that of the light at infinity `i` and of the area light at a surface point.
+  // Light groups; the group of the light at infinity `i`, and of the area light at a surface point.
   const LightGroups& Groups() const { return scene_->groups; }
   uint32_t GroupOf(uint32_t light) const { return scene_->groups.Of(light); }
   uint32_t GroupOfInfinite(size_t i) const { return scene_->groups.Of(scene_->infinite[i]); }
@@ -149,8 +146,9 @@ class LightingServices {
   }
 
   bool HasLights() const { return !scene_->lights.empty(); }
-  // W: what light paths carry is in parts of this, a power of two near the power of all lights. A lamp of 1e30 that is
-  // a kilometre wide, or of 1e-30 and a micrometre, has a power that no float holds; what arrives of it fits again.
+  // Unit of the flux of light paths, W: a power of two near the power of all lights. The power of a lamp of radiance
+  // 1e30 and a kilometre in size, or of 1e-30 and a micrometre, exceeds the range of float, while its irradiance does
+  // not.
   float FluxUnit() const { return scene_->fluxUnit; }
   const std::vector<PlacedLight>& Lights() const { return scene_->lights; }
   const LightLinking& Linking() const { return scene_->linking; }
@@ -158,10 +156,10 @@ class LightingServices {
 
  private:
   static double MoreBits(float u, const Point3& of) { return WithMoreBits(u, of.x, of.y, of.z); }
-  // `moved` keeps the place of a light that moves, and must live as long as the context.
+  // `moved`: storage for the placement of a moving light; must live as long as the context.
   LightContext Context(uint32_t light, float time, bool bidirectional, std::optional<LightTransform>& moved) const;
 
-  // What chooses a light and makes its photon, without the guide's part in the densities.
+  // Selects a light and samples a photon, with densities without a guide.
   struct Emission {
     PdfDiscrete selection;
     uint32_t light = 0;
@@ -169,13 +167,13 @@ class LightingServices {
   };
   std::optional<Emission> Emit(double uSelect, const Point2& u, const Point2& uDirection, float time) const;
   std::optional<EmissionSample> EmitAimed(const LightContext& context, const EmissionGuide::Choice& choice) const;
-  // The guide's part in the density of an emission from `from` along `direction`; at infinity, of any point on the
-  // line.
+  // Combines the density of an emission from `from` along `direction` with that of the guide; at infinity, `from` is
+  // any point on the line.
   template <class Record>
   void Aim(uint32_t light, const Point3& from, const Vector3& direction, Record& record) const;
 
-  // An edge between a light and a receiver, with what the light sends along it: linking and filters act on it. False:
-  // nothing is left. Each technique that makes such an edge comes here, or to FilterFirstHit.
+  // Applies linking and filters to the light on an edge between a light and a receiver. False: nothing remains. Every
+  // technique that forms such an edge calls this, or FilterFirstHit.
   bool Reaches(uint32_t light, const Receiver& receiver) const {
     return !scene_->isLinked || receiver.link == Receiver::kCamera || scene_->linking.IsLit(receiver.link, light);
   }
@@ -189,12 +187,12 @@ class LightingServices {
                  PdfSolidAngle pdfDirect, Color& diffuse, Color& specular) const;
   bool LandsFiltered(const EmittedPhoton& photon, const Receiver& receiver, Color& diffuse, Color& specular) const;
 
-  // Emission chooses a light as a whole: of densities given a patch, that of emission becomes the whole light's.
+  // Emission selects whole lights: converts a density of emission given a patch to that of the whole light.
   PdfArea EmissionDensity(const LightContext& context, uint32_t light, int patch, PdfArea given) const;
   void RecordResult(const Receiver& receiver, const DirectSample& direct, const Color& arrived) const;
   Vector3 ErrorOfEnd(const SurfacePoint& from, const DirectSample& direct, float time) const;
 
-  // What all views of a scene share.
+  // Shared by all views of a scene.
   struct SceneLights {
     SceneLights(const GeometryScene& geometry, std::vector<PlacedLight> lights, LightSelection selection,
                 LightLinking linking, int mostSamples);
@@ -212,7 +210,7 @@ class LightingServices {
     BoundingSphere sphere;
     float fluxUnit = 1;
     LightLinking linking;
-    bool isLinked = false;  // some light has a filter, or does not shine on everything
+    bool isLinked = false;  // some light has a filter, or does not illuminate everything
     std::unique_ptr<LightSelector> selector, emissionSelector;
   };
 

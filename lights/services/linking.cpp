@@ -24,7 +24,7 @@ bool Has(const std::vector<std::string>& sorted, const std::string& name) {
 
 void WarnOfUnknown(const std::vector<std::string>& names, const FileLocation& where, const std::string& what,
                    const std::set<std::string>& known, Diagnostics& diagnostics) {
-  // Each name may be wrong, and each is compared with all.
+  // Every unknown name is compared with all known ones, in quadratic time.
   const bool suggests = known.size() <= limits::kSuggestedNames;
   for (const std::string& name : names) {
     if (known.contains(name)) continue;
@@ -33,8 +33,7 @@ void WarnOfUnknown(const std::vector<std::string>& names, const FileLocation& wh
   }
 }
 
-// The size of a linking table, which is the product of its rows and columns, is limited: files that are short can ask
-// for a table that no memory holds.
+// Limit of the size of a linking table, rows times columns: a short file can ask for a table that exceeds any memory.
 void CheckTable(size_t rows, size_t columns, const FileLocation& where) {
   if (rows <= limits::kLinks / std::max(columns, size_t{1})) return;
   throw Error(where, "the attributes \"lighting\" and \"lightfilter\" make " + std::to_string(rows) +
@@ -74,7 +73,7 @@ int32_t LightLinking::Add(FilterInstance filter) {
   return static_cast<int32_t>(filters_.size()) - 1;
 }
 
-// Lights are told apart by those of their names that some class mentions: the table stays small, however many they are.
+// Lights are distinguished only by names that some class mentions, so that the table is small for any number of lights.
 void LightLinking::FinishLights(std::span<const PlacedLight> lights, Diagnostics& diagnostics) {
   std::set<std::string> mentioned, known;
   for (const Class& c : classes_) {

@@ -1,7 +1,7 @@
-// Which lights shine on which surfaces, and through which filters.
+// Light linking: the lights that illuminate a surface, and the filters that act there.
 //
-// Surfaces with the same Attribute "lighting" and "lightfilter" are of one class, a small number that a receiver
-// carries. Names are looked up while the scene is built: rendering reads one byte of a table.
+// Surfaces with the same Attribute "lighting" and "lightfilter" form a class, whose index a receiver carries. Names are
+// resolved while the scene is built; rendering reads one byte of a table.
 #pragma once
 
 #include <array>
@@ -24,7 +24,7 @@ class LightLinking {
   LightLinking();
 
   // The class of surfaces with these attributes, either of which may be null: "subset" and "excludesubset" of lighting,
-  // names of lights or light groups; "subset" of lightfilter, names of filter groups. 0: neither says anything.
+  // names of lights or light groups; "subset" of lightfilter, names of filter groups. 0: no restriction.
   uint32_t ClassOf(const ParameterList* lighting, const ParameterList* lightFilter);
   // FilterInstance::linking of a filter in these groups.
   uint32_t FilterKey(const std::vector<std::string>& groups);
@@ -32,12 +32,12 @@ class LightLinking {
   int32_t Add(FilterInstance filter);
   const std::vector<FilterInstance>& Filters() const { return filters_; }
 
-  // When all classes, filters and lights are known. Warns of names that are of nothing.
+  // To be called when all classes, filters and lights are known. Warns of unknown names.
   void Finish(std::span<const PlacedLight> lights, Diagnostics& diagnostics);
 
-  // Whether some light does not shine on some surface.
+  // True if some light does not illuminate some surface.
   bool Excludes() const { return excludes_; }
-  // Whether some light has a filter.
+  // True if some light has a filter.
   bool HasFilters() const { return hasFilters_; }
   bool IsLit(uint32_t receiverClass, uint32_t light) const {
     return !excludes_ || lit_[receiverClass * lightKeys_ + lightKey_[light]] != 0;
@@ -45,7 +45,7 @@ class LightLinking {
   const uint8_t* EnabledFilters(uint32_t receiverClass) const {
     return enabled_.data() + receiverClass * filterGroups_.size();
   }
-  // The lights that shine on each class, as one of few sets.
+  // For each class, the set of lights that illuminate it.
   LightSets Sets() const;
 
   size_t ClassCount() const { return classes_.size(); }
@@ -60,7 +60,7 @@ class LightLinking {
   void FinishLights(std::span<const PlacedLight> lights, Diagnostics& diagnostics);
   void FinishFilters(Diagnostics& diagnostics);
 
-  std::vector<Class> classes_;  // 0: says nothing
+  std::vector<Class> classes_;  // 0: no restriction
   std::map<ClassNames, uint32_t> classIndex_;
   std::vector<std::vector<std::string>> filterGroups_;  // by FilterKey; 0: none
   std::map<std::vector<std::string>, uint32_t> filterKeys_;

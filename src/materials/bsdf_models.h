@@ -14,6 +14,7 @@
 #include "materials/dielectric.h"
 #include "materials/diffuse.h"
 #include "materials/hair.h"
+#include "materials/measured.h"
 #include "materials/scattering.h"
 
 namespace lampyr {
@@ -27,7 +28,7 @@ struct AbsorbingBsdf {
 };
 
 using BsdfModel = std::variant<AbsorbingBsdf, DiffuseBsdf, DiffuseTransmissionBsdf, ConductorBsdf, DielectricBsdf,
-                               ThinDielectricBsdf, CoatedDiffuseBsdf, CoatedConductorBsdf, HairBsdf>;
+                               ThinDielectricBsdf, CoatedDiffuseBsdf, CoatedConductorBsdf, HairBsdf, MeasuredBsdf>;
 static_assert(std::is_trivially_copyable_v<BsdfModel> && sizeof(BsdfModel) <= 96);
 
 }  // namespace lampyr

@@ -19,11 +19,11 @@ constexpr MaterialType kTypes[] = {
     {"coateddiffuse", MakeCoatedDiffuse},
     {"coatedconductor", MakeCoatedConductor},
     {"hair", MakeHair},
+    {"measured", MakeMeasured},
     {"mix", MakeMix},
     {"interface", MakeInterface},
     {"none", MakeInterface},
     {"", MakeInterface},
-    {"measured", nullptr},
     {"subsurface", nullptr},
 };
 
@@ -45,7 +45,9 @@ std::shared_ptr<const Material> MakeMaterial(const std::string& type, const Para
     if (type == known.name) {
       if (known.make) return known.make({parameters, textures, namedMaterials, diagnostics});
       diagnostics.Warn(parameters.Where(),
-                       "material \"" + type + "\" is not supported: a gray diffuse one replaces it");
+                       "material \"" + type +
+                           "\" is not modelled: a gray diffuse one replaces it, so that its colour, its gloss and the "
+                           "light inside it are wrong");
       return MakeGray();
     }
     if (*known.name) names.emplace_back(known.name);

@@ -29,6 +29,7 @@ std::shared_ptr<const Material> MakeThinDielectric(const MaterialInput& input);
 std::shared_ptr<const Material> MakeCoatedDiffuse(const MaterialInput& input);
 std::shared_ptr<const Material> MakeCoatedConductor(const MaterialInput& input);
 std::shared_ptr<const Material> MakeHair(const MaterialInput& input);
+std::shared_ptr<const Material> MakeMeasured(const MaterialInput& input);
 std::shared_ptr<const Material> MakeMix(const MaterialInput& input);
 std::shared_ptr<const Material> MakeInterface(const MaterialInput& input);
 

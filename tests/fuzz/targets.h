@@ -25,6 +25,8 @@ bool ReadImageFile(std::string_view bytes);
 bool ReadIesFile(std::string_view bytes);
 // A lens file: read, then a few rays through the lens.
 bool ReadLens(std::string_view bytes);
+// A measured material: read, then sampled and evaluated.
+bool ReadMeasuredFile(std::string_view bytes);
 // One byte that says what the rest is of (part.cpp), then a saved render: read, and gone on with or added.
 bool ReadSavedPart(std::string_view bytes);
 
@@ -36,8 +38,10 @@ struct Target {
   bool (*run)(std::string_view bytes);
 };
 
-inline constexpr Target kTargets[] = {{"scene", ReadSceneText}, {"build", BuildSceneText}, {"graph", BuildSceneGraph}, {"ply", ReadPlyFile},
-                                      {"image", ReadImageFile}, {"ies", ReadIesFile},      {"lens", ReadLens}, {"part", ReadSavedPart}};
+inline constexpr Target kTargets[] = {
+    {"scene", ReadSceneText}, {"build", BuildSceneText},      {"graph", BuildSceneGraph},
+    {"ply", ReadPlyFile},     {"image", ReadImageFile},       {"ies", ReadIesFile},
+    {"lens", ReadLens},       {"measured", ReadMeasuredFile}, {"part", ReadSavedPart}};
 
 // Thrown by a target that was given an answer that cannot be right.
 [[noreturn]] void Fail(const std::string& what);

@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "materials/bsdf.h"
+#include "materials/measured_file.h"
 #include "sampling/rng.h"
+#include "support/measured_writer.h"
 
 namespace lampyr::testing {
 
@@ -32,7 +34,18 @@ struct ModelTables {
   std::vector<std::shared_ptr<const CoatTable>> coats;
   std::vector<std::shared_ptr<const CoatBounceTable>> bounces;
   std::vector<std::shared_ptr<const CoatedConductorSettings>> settings;
+  std::vector<std::shared_ptr<const MeasuredData>> measured;
 };
+
+inline MeasuredBsdf MakeMeasuredBsdf(ModelTables& tables, float alphaX, float alphaY) {
+  test::MeasuredMetal metal;
+  metal.microfacets = TrowbridgeReitz(alphaX, alphaY);
+  metal.phiCount = alphaX == alphaY ? 1 : 17;
+  metal.side = 24;
+  const std::string bytes = test::TensorFile(test::MeasuredFieldsOf(metal));
+  tables.measured.push_back(std::make_shared<MeasuredData>(ParseMeasured(std::as_bytes(std::span(bytes)))));
+  return {tables.measured.back().get()};
+}
 
 inline CoatedDiffuseBsdf MakeCoated(ModelTables& tables, TrowbridgeReitz coat, float eta, const Color& reflectance,
                                     float thickness = 0.01f, int bounces = 5) {
@@ -100,6 +113,9 @@ inline std::vector<TestModel> AllModels(ModelTables& tables) {
       Hair("hair at the rim", Color(0.2f), 1.55f, 0.3f, 0.3f, 2, 1),
       Hair("hair eta 1", Color(0.2f, 0, 0), 1, 0.3f, 0.3f, 2, -1),
       Hair("hair eta 0.8", Color(0.2f), 0.8f, 0.3f, 0.3f, 2, 0.6f),
+      {"measured 0.4", MakeMeasuredBsdf(tables, 0.4f, 0.4f), 5e-3f},
+      {"measured 0.1", MakeMeasuredBsdf(tables, 0.1f, 0.1f), 2e-2f},
+      {"measured 0.3 x 0.6", MakeMeasuredBsdf(tables, 0.3f, 0.6f), 5e-3f},
   };
 }
 

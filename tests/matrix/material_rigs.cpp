@@ -3,7 +3,11 @@
 // camera does not see, too: light tracing has its part in those.
 #include <cmath>
 
+#include <fstream>
+
 #include "matrix/matrix_rigs.h"
+#include "support/measured_writer.h"
+#include "support/temporary_folder.h"
 
 namespace lampyr::test {
 
@@ -16,6 +20,20 @@ struct Sample {
   bool isSmooth = false;  // deltas alone
   bool hasDelta = false;  // beside others
 };
+
+// A brushed metal as a file, which is there until the process ends.
+std::string MeasuredFile() {
+  static const TemporaryFolder folder;
+  const std::filesystem::path file = folder / "brushed.bsdf";
+  MeasuredMetal metal;
+  metal.microfacets = TrowbridgeReitz(0.4f, 0.6f);
+  metal.phiCount = 13;
+  metal.thetaCount = 8;
+  metal.side = 24;
+  const std::string bytes = TensorFile(MeasuredFieldsOf(metal));
+  std::ofstream(file, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  return file.string();
+}
 
 const std::vector<Sample>& MaterialSamples() {
   static const std::vector<Sample> samples = {
@@ -30,6 +48,7 @@ const std::vector<Sample>& MaterialSamples() {
       {"coateddiffuse", "satin", "\"rgb reflectance\" [0.6 0.5 0.4] \"float roughness\" 0.4"},
       {"coatedconductor", "lacquer", "\"float conductor.roughness\" 0.5 \"float interface.roughness\" 0", false, true},
       {"coatedconductor", "smooth_lacquer", "\"float conductor.roughness\" 0 \"float interface.roughness\" 0", true},
+      {"measured", "measured_metal", "\"string filename\" \"" + MeasuredFile() + "\""},
       {"interface", "boundary", "", true},
   };
   return samples;
@@ -102,11 +121,11 @@ void AddMaterialRigs(std::vector<Rig>& rigs) {
     if (!sample.isSmooth && !sample.hasDelta) rough += Named(sample);
   }
   rough += Mix("a", "matte", "leaf", 0.5) + Mix("b", "rough_metal", "rough_glass", 0.3) + Mix("c", "a", "b", 0.4) +
-           Mix("d", "c", "satin", 0.3);
+           Mix("e", "c", "satin", 0.3) + Mix("d", "e", "measured_metal", 0.2);
   rigs.push_back({"mix_of_what_is_rough",
                   Room("NamedMaterial \"d\"", rough + Lamp()),
                   {"material diffuse in mix", "material diffusetransmission in mix", "material conductor in mix",
-                   "material dielectric in mix", "material coateddiffuse in mix"}});
+                   "material dielectric in mix", "material coateddiffuse in mix", "material measured in mix"}});
   // Hair on walls scatters by their coordinates; strands are fibres.
   const Sample hair{"hair", "hair",
                     "\"rgb sigma_a\" [0.1 0.3 0.6] \"float beta_m\" 0.5 \"float beta_n\" 0.6 \"float alpha\" 5"};

@@ -1,0 +1,234 @@
+#include "materials/measured_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "base/mapped_file.h"
+#include "scene/spectrum.h"
+
+namespace lampyr {
+
+namespace {
+
+// Types of values, by their number in the file.
+constexpr uint8_t kByte = 1, kFloat = 10;
+
+struct Tensor {
+  std::vector<size_t> shape;
+  std::vector<float> values;  // empty for bytes
+};
+
+using Tensors = std::map<std::string, Tensor>;
+
+// Little-endian, like the processors that this runs on.
+class TensorReader {
+ public:
+  explicit TensorReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
+
+  Tensors Read() {
+    constexpr std::string_view magic("tensor_file\0\1\0", 14);
+    if (bytes_.size() < magic.size() || std::memcmp(bytes_.data(), magic.data(), magic.size()) != 0)
+      throw Error("it is no tensor file of version 1.0, as the RGL material database has them");
+    at_ = magic.size();
+    const auto count = Take<uint32_t>();
+    constexpr uint32_t kMostFields = 64;
+    if (count > kMostFields) throw Error("it claims to have " + std::to_string(count) + " fields");
+    Tensors tensors;
+    for (uint32_t i = 0; i < count; ++i) {
+      const std::string name = TakeName();
+      if (!tensors.emplace(name, TakeTensor(name)).second) throw Error("its field \"" + name + "\" occurs twice");
+    }
+    return tensors;
+  }
+
+ private:
+  template <class T>
+  T Take() {
+    if (bytes_.size() - at_ < sizeof(T)) throw Error("unexpected end of the header");
+    T value;
+    std::memcpy(&value, bytes_.data() + at_, sizeof value);
+    at_ += sizeof value;
+    return value;
+  }
+  std::string TakeName() {
+    const auto length = Take<uint16_t>();
+    if (bytes_.size() - at_ < length) throw Error("unexpected end of the header");
+    std::string name(reinterpret_cast<const char*>(bytes_.data()) + at_, length);
+    at_ += length;
+    return name;
+  }
+  Tensor TakeTensor(const std::string& name) {
+    const auto dimensions = Take<uint16_t>();
+    const auto type = Take<uint8_t>();
+    const auto offset = Take<uint64_t>();
+    constexpr uint16_t kMostDimensions = 8;
+    if (dimensions > kMostDimensions) throw Error("its field \"" + name + "\" has too many dimensions");
+    Tensor tensor;
+    uint64_t size = 1;
+    for (uint16_t i = 0; i < dimensions; ++i) {
+      const auto extent = Take<uint64_t>();
+      if (extent > bytes_.size()) throw Error("its field \"" + name + "\" is larger than the file");
+      tensor.shape.push_back(extent);
+      if (extent > 0 && size > bytes_.size() / extent)
+        throw Error("its field \"" + name + "\" is larger than the file");
+      size *= extent;
+    }
+    if (type == kByte) return tensor;
+    if (type != kFloat) throw Error("its field \"" + name + "\" does not hold 32-bit numbers");
+    if (offset > bytes_.size() || size > (bytes_.size() - offset) / sizeof(float))
+      throw Error("its field \"" + name + "\" goes beyond the end of the file");
+    tensor.values.resize(size);
+    if (size > 0) std::memcpy(tensor.values.data(), bytes_.data() + offset, size * sizeof(float));
+    // No measurement comes near the limit, and products of values within it stay in the range of float.
+    constexpr float kLargest = 1e15f;
+    for (const float value : tensor.values) {
+      if (!(std::abs(value) <= kLargest))
+        throw Error("its field \"" + name + "\" holds a number that is not finite, or beyond 1e15");
+    }
+    return tensor;
+  }
+
+  std::span<const std::byte> bytes_;
+  size_t at_ = 0;
+};
+
+const Tensor& Get(const Tensors& tensors, const char* name, size_t dimensions) {
+  const auto found = tensors.find(name);
+  if (found == tensors.end()) throw Error(std::string("it has no field \"") + name + "\"");
+  if (found->second.shape.size() != dimensions || found->second.values.empty()) {
+    throw Error(std::string("its field \"") + name + "\" has " + std::to_string(found->second.shape.size()) +
+                " dimensions and not " + std::to_string(dimensions) + ", or no values");
+  }
+  return found->second;
+}
+
+void CheckNotNegative(const Tensor& tensor, const char* name) {
+  for (const float value : tensor.values) {
+    if (value < 0) throw Error(std::string("its field \"") + name + "\" holds a negative number");
+  }
+}
+
+std::vector<float> AscendingAngles(const Tensors& tensors, const char* name, double least, double most) {
+  const Tensor& tensor = Get(tensors, name, 1);
+  constexpr double kRounding = 1e-3;
+  for (size_t i = 0; i < tensor.values.size(); ++i) {
+    const auto angle = static_cast<double>(tensor.values[i]);
+    if (angle < least - kRounding || angle > most + kRounding || (i > 0 && !(tensor.values[i] > tensor.values[i - 1])))
+      throw Error(std::string("the angles of its field \"") + name + "\" do not ascend within their range");
+  }
+  return tensor.values;
+}
+
+// Checks the shape of a table of nodes for each direction of incidence: (φ, θ, …, rows, columns).
+void CheckShape(const Tensor& tensor, const char* name, const MeasuredData& data) {
+  const size_t n = tensor.shape.size();
+  const bool hasNodes = tensor.shape[n - 1] >= 2 && tensor.shape[n - 2] >= 2;
+  const bool fits = n == 2 || (tensor.shape[0] == data.phi.size() && tensor.shape[1] == data.theta.size());
+  if (!hasNodes || !fits) throw Error(std::string("the size of its field \"") + name + "\" does not fit the others");
+  CheckNotNegative(tensor, name);
+}
+
+MeasuredTable<float> TableOf(const Tensors& tensors, const char* name, const MeasuredData& data) {
+  const Tensor& tensor = Get(tensors, name, 2);
+  CheckShape(tensor, name, data);
+  return {tensor.values, tensor.shape[1], tensor.shape[0]};
+}
+
+MeasuredWarp WarpOf(const Tensors& tensors, const char* name, const MeasuredData& data) {
+  const Tensor& tensor = Get(tensors, name, 4);
+  CheckShape(tensor, name, data);
+  try {
+    return {tensor.values, tensor.shape[3], tensor.shape[2]};
+  } catch (const Error&) {
+    throw Error(std::string("a table of its field \"") + name + "\" is 0 everywhere");
+  }
+}
+
+// Colour of a reflectance that may exceed 1.
+Color ColorOf(const std::vector<SpectrumSample>& spectrum) {
+  double largest = 0;
+  for (const SpectrumSample& sample : spectrum) largest = std::max(largest, sample.value);
+  if (!(largest > 0)) return Color(0.0f);
+  std::vector<SpectrumSample> scaled = spectrum;
+  for (SpectrumSample& sample : scaled) sample.value /= largest;
+  return SpectrumToColor(scaled, SpectrumRole::Albedo) * static_cast<float>(largest);
+}
+
+MeasuredTable<Color> ReflectanceOf(const Tensors& tensors, const MeasuredData& data) {
+  const bool isRgb = tensors.count("rgb") > 0;
+  const char* name = isRgb ? "rgb" : "spectra";
+  const Tensor& tensor = Get(tensors, name, 5);
+  CheckShape(tensor, name, data);
+  const size_t channels = tensor.shape[2], nodes = tensor.shape[3] * tensor.shape[4];
+  std::vector<SpectrumSample> spectrum;
+  if (isRgb) {
+    if (channels != 3) throw Error("its field \"rgb\" does not have three channels");
+  } else {
+    const Tensor& wavelengths = Get(tensors, "wavelengths", 1);
+    if (wavelengths.values.size() != channels) throw Error("its field \"wavelengths\" does not fit \"spectra\"");
+    for (size_t c = 0; c < channels; ++c) {
+      spectrum.push_back({static_cast<double>(wavelengths.values[c]), 0});
+      if (!(spectrum[c].wavelength > (c > 0 ? spectrum[c - 1].wavelength : 0)))
+        throw Error("its field \"wavelengths\" does not ascend");
+    }
+  }
+  const size_t tables = data.phi.size() * data.theta.size();
+  std::vector<Color> colors(tables * nodes);
+  for (size_t table = 0; table < tables; ++table) {
+    for (size_t node = 0; node < nodes; ++node) {
+      const auto value = [&](size_t c) { return tensor.values[(table * channels + c) * nodes + node]; };
+      Color& color = colors[table * nodes + node];
+      if (isRgb) {
+        color = Color(value(0), value(1), value(2));
+        continue;
+      }
+      for (size_t c = 0; c < channels; ++c) spectrum[c].value = static_cast<double>(value(c));
+      color = ColorOf(spectrum);
+    }
+  }
+  return {std::move(colors), tensor.shape[4], tensor.shape[3]};
+}
+
+void SetSymmetry(MeasuredData& data) {
+  constexpr double kPiExact = 3.14159265358979323846;
+  data.isIsotropic = data.phi.size() <= 2;
+  if (data.isIsotropic) return;
+  const auto first = static_cast<double>(data.phi.front()), last = static_cast<double>(data.phi.back());
+  data.symmetry = static_cast<int>(std::lround(2 * kPiExact / (last - first)));
+  if (data.symmetry != 1 && data.symmetry != 2 && data.symmetry != 4)
+    throw Error("its azimuths cover neither a turn, nor a half, nor a quarter of one");
+  data.partX = std::cos(0.5 * (first + last)) < 0 ? -1.0f : 1.0f;
+  data.partY = std::sin(0.5 * (first + last)) < 0 ? -1.0f : 1.0f;
+}
+
+}  // namespace
+
+MeasuredData ParseMeasured(std::span<const std::byte> bytes) {
+  const Tensors tensors = TensorReader(bytes).Read();
+  constexpr double kPiExact = 3.14159265358979323846;
+  MeasuredData data;
+  data.theta = AscendingAngles(tensors, "theta_i", 0, 0.5 * kPiExact);
+  data.phi = AscendingAngles(tensors, "phi_i", -kPiExact, kPiExact);
+  SetSymmetry(data);
+  data.normals = TableOf(tensors, "ndf", data);
+  data.projected = TableOf(tensors, "sigma", data);
+  data.visible = WarpOf(tensors, "vndf", data);
+  data.luminance = WarpOf(tensors, "luminance", data);
+  data.reflectance = ReflectanceOf(tensors, data);
+  return data;
+}
+
+MeasuredData ReadMeasured(const std::filesystem::path& file, const FileLocation& where) {
+  try {
+    return ParseMeasured(MappedFile(file).Bytes());
+  } catch (const Error& error) {
+    throw Error(where, "\"" + file.string() + "\" cannot be used as a measured material: " + error.Text());
+  }
+}
+
+}  // namespace lampyr

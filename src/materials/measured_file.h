@@ -1,0 +1,19 @@
+// Reader of measured materials: the tensor files of the RGL material database ([Dupuy18]), with spectra or with RGB.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+
+#include "base/error.h"
+#include "materials/measured.h"
+
+namespace lampyr {
+
+// Throws an Error at `where` that names the file if it cannot be read, is no such file, or holds tables that do not fit
+// together or whose values are negative or not finite.
+MeasuredData ReadMeasured(const std::filesystem::path& file, const FileLocation& where);
+// The same for the bytes of a file; errors have no place.
+MeasuredData ParseMeasured(std::span<const std::byte> bytes);
+
+}  // namespace lampyr
