@@ -162,6 +162,7 @@ Color ColorOf(const std::vector<SpectrumSample>& spectrum) {
 MeasuredTable<Color> ReflectanceOf(const Tensors& tensors, const MeasuredData& data) {
   const bool isRgb = tensors.count("rgb") > 0;
   const char* name = isRgb ? "rgb" : "spectra";
+  if (!isRgb && tensors.count(name) == 0) throw Error("it has neither a field \"rgb\" nor a field \"spectra\"");
   const Tensor& tensor = Get(tensors, name, 5);
   CheckShape(tensor, name, data);
   const size_t channels = tensor.shape[2], nodes = tensor.shape[3] * tensor.shape[4];

@@ -23,6 +23,9 @@ struct PeerScene {
   bool connects = true;
   const char* reference = "";  // added to the name
 };
+void PrintTo(const PeerScene& scene, std::ostream* out) {
+  *out << scene.name << ", " << scene.integrator;
+}
 
 class Peer : public testing::TestWithParam<PeerScene> {};
 

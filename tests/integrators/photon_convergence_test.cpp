@@ -55,6 +55,9 @@ struct Convergence {
   const char* integrator;
   double steepest, flattest;  // slope of the squared error over passes
 };
+void PrintTo(const Convergence& convergence, std::ostream* out) {
+  *out << convergence.integrator;
+}
 
 class PhotonConvergence : public testing::TestWithParam<Convergence> {};
 

@@ -19,6 +19,7 @@ struct TestModel {
   bool lossless = false;    // nothing absorbs (single scattering at microfacets may still lose)
   // Of a fibre: not symmetric, and without a surface that the flux through it could be held against.
   bool isHair = false;
+  bool isReciprocal = true;  // false: tabulated, and equal in both directions up to the tables' resolution
 };
 
 // Hair on a surface, h as given. A fibre's h is what the arriving path sees (tests/materials/hair_test.cpp).
@@ -113,9 +114,9 @@ inline std::vector<TestModel> AllModels(ModelTables& tables) {
       Hair("hair at the rim", Color(0.2f), 1.55f, 0.3f, 0.3f, 2, 1),
       Hair("hair eta 1", Color(0.2f, 0, 0), 1, 0.3f, 0.3f, 2, -1),
       Hair("hair eta 0.8", Color(0.2f), 0.8f, 0.3f, 0.3f, 2, 0.6f),
-      {"measured 0.4", MakeMeasuredBsdf(tables, 0.4f, 0.4f), 5e-3f},
-      {"measured 0.1", MakeMeasuredBsdf(tables, 0.1f, 0.1f), 2e-2f},
-      {"measured 0.3 x 0.6", MakeMeasuredBsdf(tables, 0.3f, 0.6f), 5e-3f},
+      {"measured 0.4", MakeMeasuredBsdf(tables, 0.4f, 0.4f), 5e-3f, false, false, false},
+      {"measured 0.1", MakeMeasuredBsdf(tables, 0.1f, 0.1f), 2e-2f, false, false, false},
+      {"measured 0.3 x 0.6", MakeMeasuredBsdf(tables, 0.3f, 0.6f), 5e-3f, false, false, false},
   };
 }
 

@@ -14,7 +14,8 @@ struct Mode {
   bool directFromPhotons = false;       // sppm
   bool guides = false;                  // photons
   bool learns = false;                  // the selection of lights
-  int samples = 6;                      // per pixel of a trial replica; at least that many in each
+  // Per pixel of a trial replica; at least that many in each. What is learned takes effect from pass to pass.
+  int Samples() const { return guides || learns ? 6 : 4; }
 
   bool GathersPhotons() const {
     RenderSettings settings;

@@ -25,7 +25,7 @@ namespace lampyr::test {
 namespace {
 
 constexpr double kFamilyWise = 1e-3;
-constexpr int kReplicas = 48, kTrials = 12;
+constexpr int kReplicas = 32, kTrials = 8;
 // Seeds that a cell may use: its first half for replicas, the other for the trial.
 constexpr uint64_t kSeedsOfACell = uint64_t{1} << 24;
 constexpr int kMostRounds = 20;
@@ -114,10 +114,10 @@ struct Cell {
 
 // As many samples as make the standard error of the mean of all replicas `error`, told by a trial.
 Cell RenderTo(BuiltScene& built, const Mode& mode, double error, uint64_t seed) {
-  const double noise = NoiseOf(RenderMode(built, mode, kTrials, mode.samples, seed + kSeedsOfACell / 2));
-  const double wanted = mode.samples * Sqr(noise / error) / kReplicas;
+  const double noise = NoiseOf(RenderMode(built, mode, kTrials, mode.Samples(), seed + kSeedsOfACell / 2));
+  const double wanted = mode.Samples() * Sqr(noise / error) / kReplicas;
   Cell cell;
-  cell.samples = static_cast<int>(std::clamp(std::ceil(wanted), double(mode.samples), kMostSamples / kReplicas));
+  cell.samples = static_cast<int>(std::clamp(std::ceil(wanted), double(mode.Samples()), kMostSamples / kReplicas));
   cell.replicas = RenderMode(built, mode, kReplicas, cell.samples, seed);
   return cell;
 }
