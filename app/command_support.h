@@ -1,4 +1,4 @@
-// Signals, and the exit of a process that has given up work: common to the commands that render.
+// Signals, and the end of an interrupted process, for the commands that render.
 #pragma once
 
 #include <atomic>
@@ -8,16 +8,15 @@
 
 namespace lampyr {
 
-// A reader of the messages who has gone away is no reason to end, and a file that may not grow is an error of writing.
+// Ignores SIGPIPE and SIGXFSZ: a closed pipe does not end a render, and a file size limit is an error of writing.
 void OutliveSurroundings();
-// From now on SIGINT, SIGTERM (batch systems ask with it) and SIGHUP (a connection is lost) set the flag that is
-// returned, once: a second SIGINT or SIGTERM ends the process. Until then, each of them ends it. A signal that the
-// process was started to ignore (nohup) stays ignored.
+// Installs handlers: the first SIGINT, SIGTERM (sent by batch systems) or SIGHUP (connection lost) sets the returned
+// flag, a second SIGINT or SIGTERM ends the process. Signals ignored at start (nohup) stay ignored.
 const std::atomic<bool>& FinishOnInterrupt();
-// Runs `finish`, what is left to do after rendering, and returns its exit code. Where work was given up (base/stop.h),
-// ends the process with that code: threads still use what the caller is about to destroy.
+// Runs `finish`, the work after rendering, and returns its exit code. If passes were abandoned (base/stop.h), ends the
+// process with that code, because threads still use objects that the caller would destroy.
 int FinishRendering(const std::function<int()>& finish);
-// Exit code of a command that was interrupted: 128 and the number of the signal.
+// Exit code of an interrupted command: 128 plus the signal's number.
 int InterruptExitCode();
 
 std::string Joined(const std::vector<std::string>& names, const char* separator);

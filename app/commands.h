@@ -1,4 +1,4 @@
-// What each command does, with its options as plain data: no command line here.
+// The commands, with their options as plain data, independent of the command line.
 #pragma once
 
 #include <filesystem>

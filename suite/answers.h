@@ -29,7 +29,7 @@ struct Answer {
 // `count` questions: receivers all over the scene, and on the ways of photons, from very near to far.
 std::vector<Question> MakeQuestions(const SuiteSubject& subject, const Light& light, int count, Rng& rng);
 
-// In which order the methods are called: what one of them remembers of another shows when it is turned.
+// Order in which the methods are called: state kept between calls shows when it is reversed.
 enum class CallOrder { Forwards, Backwards };
 Answer Ask(const Light& light, const Question& question, const LightContext& context,
            CallOrder order = CallOrder::Forwards);

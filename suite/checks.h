@@ -19,7 +19,7 @@ void CheckInfiniteLight(const SuiteSubject& subject, const SuiteOptions& options
 // patches, shines-from, position-error, energy, uvw.
 void CheckAttributes(const SuiteSubject& subject, const SuiteOptions& options, SuiteReport& report);
 
-// Where few samples go.
+// Strata that few samples reach.
 void CheckStrata(const SuiteSubject& subject, const SuiteOptions& options, SuiteReport& report);
 
 // An edited light is the light made afresh, bit by bit.

@@ -1,4 +1,4 @@
-// What a light may depend on, and on nothing else.
+// Checks that a light depends only on its documented inputs.
 //
 //   bidirectional   asking for densities of emission changes nothing but them
 //   time            the placement is all that a light knows of the time

@@ -1,4 +1,4 @@
-// A scene that is rendered again and again: with each integrator, with many seeds.
+// A scene to be rendered repeatedly, with each integrator and many seeds.
 #pragma once
 
 #include <atomic>
@@ -11,7 +11,7 @@
 
 namespace lampyr {
 
-// Thrown where an interrupt has ended what was under way.
+// Thrown after an interrupt.
 struct ComparisonInterrupted {};
 
 class ComparedScene {
@@ -23,7 +23,7 @@ class ComparedScene {
   const BuiltScene& Built() const { return built_; }
   int Threads() const { return threads_; }
 
-  // What one render has come to: after `seconds` of rendering with `samplesPerPixel`.
+  // State of a render after `seconds` with `samplesPerPixel`.
   struct Milestone {
     double seconds = 0;
     int samplesPerPixel = 0;
@@ -33,8 +33,8 @@ class ComparedScene {
   // Called after each pass with the seconds of rendering so far.
   using AfterPass = std::function<void(double seconds)>;
 
-  // One render, which goes on until the last of `times` (seconds) and of `sampleCounts`, both rising, and is looked at
-  // on its way. Looking takes no time that counts. Throws ComparisonInterrupted.
+  // Renders until the last of `times` (seconds) and `sampleCounts`, both ascending, and takes a snapshot at each. The
+  // time of snapshots is not counted. Throws ComparisonInterrupted.
   void Render(const std::string& integrator, uint64_t seed, const std::vector<double>& times,
               const std::vector<int>& sampleCounts, const AtMilestone& atMilestone, const AfterPass& afterPass) const;
 

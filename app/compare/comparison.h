@@ -1,5 +1,5 @@
-// Integrators measured side by side: each renders the scene with several seeds, is looked at when it has had so much
-// time and so many samples, and what these pictures are off by says how fast it is.
+// Comparison of integrators: each renders the scene with several seeds; snapshots at given times and sample counts are
+// compared with a reference, which gives errors and efficiencies.
 #pragma once
 
 #include "app/compare/compared_scene.h"
@@ -17,11 +17,11 @@ struct ComparisonPlan {
   float exposure = 0;             // of the pictures, stops
 };
 
-// `fraction` of the renders that is done.
+// `fraction`: of the renders done.
 using ComparisonProgress = std::function<void(double fraction, const std::string& note)>;
 
-// Fills integrators, ratios, pictures and repeats of the results. An interrupt ends it after the repeats that are
-// whole; throws ComparisonInterrupted when these are fewer than two.
+// Fills integrators, ratios, pictures and repeats of the results. After an interrupt the results are those of the
+// complete repeats; throws ComparisonInterrupted if there are fewer than two.
 void Compare(const ComparedScene& scene, const ComparisonPlan& plan, const Reference& reference,
              const ComparisonProgress& progress, ComparisonResults& results);
 

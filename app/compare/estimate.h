@@ -1,5 +1,5 @@
-// Confidence intervals from independent repeats. A picture's pixels share paths, filters and Sobol points, so nothing
-// within one picture says how far off its error is; other seeds do.
+// Confidence intervals from independent repeats. Pixels of one image are correlated (light paths, filters, Sobol
+// points), so the uncertainty of its error can only be estimated from renders with other seeds.
 #pragma once
 
 #include <optional>

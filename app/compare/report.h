@@ -1,4 +1,4 @@
-// What `lampyr compare` writes and prints.
+// Output of `lampyr compare`.
 #pragma once
 
 #include <filesystem>
@@ -11,7 +11,7 @@ namespace lampyr {
 // results.json: everything but the pictures.
 std::string ToJson(const ComparisonResults& results);
 
-// results.csv: a line for each integrator and budget, empty fields for what is not known.
+// results.csv: a line for each integrator and budget; unknown values are empty fields.
 std::string ToCsv(const ComparisonResults& results);
 
 // report.html: the page with results and pictures in it. Empty when this build has no page (npm was not there).

@@ -1,4 +1,4 @@
-// What `lampyr compare` finds out, as plain data. Times in seconds; errors as in film/metrics.h.
+// Results of `lampyr compare`, as plain data. Times in seconds; errors as in film/metrics.h.
 #pragma once
 
 #include <cstdint>
@@ -57,7 +57,7 @@ struct ComparedIntegrator {
   std::vector<ComparedSnapshot> snapshots;
 };
 
-// How many times as efficient one integrator is as another, in MSE or relMSE.
+// Ratio of the efficiencies of two integrators, in MSE or relMSE.
 struct EfficiencyRatio {
   std::string integrator, against;
   bool byTime = true;

@@ -8,7 +8,7 @@
 
 namespace lampyr {
 
-// The light on the shape of `build`. Throws a located Error where there is none, or one that cannot emit.
+// The light on the shape of `build`. Throws a located Error without a shape, or if it cannot emit.
 std::unique_ptr<Light> MakeShapeLight(LightTypeFunction type, const ParameterList& parameters,
                                       const LightBuildContext& build, const EmissionReader& readEmission);
 

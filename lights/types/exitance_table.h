@@ -1,5 +1,5 @@
-// W/m² of an even surface of radiance 1 as a function of its normal, where shaping makes it one: a table over normals,
-// interpolated, to about 1 %.
+// Radiant exitance (W/m²) of a shaped surface of uniform radiance 1, as a function of its normal: an interpolated table
+// over normals, accurate to about 1 %.
 #pragma once
 
 #include <type_traits>
@@ -11,10 +11,10 @@ namespace lampyr {
 
 class ExitanceTable {
  public:
-  // Without shaping the table is one number.
+  // Without shaping the table has one entry.
   ExitanceTable(const SurfaceEmission& emission, const LightTransform& transform);
   Color operator()(const Normal3& normal) const { return values_.size() == 1 ? values_[0] : Interpolate(normal); }
-  // The same for a normal that `getNormal()` computes, which without shaping nobody needs.
+  // The same for the normal computed by `getNormal()`, which is not called without shaping.
   template <class GetNormal>
   requires std::is_invocable_v<GetNormal> Color operator()(const GetNormal& getNormal) const {
     return values_.size() == 1 ? values_[0] : Interpolate(getNormal());

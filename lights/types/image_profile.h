@@ -1,4 +1,4 @@
-// What lights share whose intensity over directions is an image: weights for sampling its texels, and a coarse copy for
+// Common parts of lights whose intensity over directions is an image: sampling weights of texels, and a coarse copy for
 // quadrature.
 #pragma once
 
@@ -8,8 +8,8 @@
 
 namespace lampyr {
 
-// Lifts weights that are not 0 to 1e-6 of the mean: a dim texel beside one of 1e9 keeps a density that a float can
-// hold.
+// Raises positive weights to at least 1e-6 of the mean, so that the density of a dim texel beside one of 1e9 is within
+// the range of float.
 inline void LiftDimWeights(std::vector<float>& weights) {
   double sum = 0;
   for (const float weight : weights) sum += static_cast<double>(weight);
@@ -17,7 +17,7 @@ inline void LiftDimWeights(std::vector<float>& weights) {
   for (float& weight : weights) weight = weight > 0 ? std::max(weight, least) : 0.0f;
 }
 
-// An image in about 64 × 64 parts, texels of small images divided, those of large ones averaged.
+// An image resampled to about 64 × 64 parts: texels of small images are subdivided, those of large images averaged.
 class ImageParts {
  public:
   ImageParts() = default;

@@ -1,6 +1,6 @@
 // A sky from an image: square and equal-area as in pbrt-v4 ([Clarberg08]), or latitude-longitude with twice the width.
-// The radiance of a direction is its texel's, without interpolation (pbrt-v4's rule), so a table that is constant over
-// each texel is proportional to it: no texel that shines has a density of 0.
+// Radiance is not interpolated (pbrt-v4's rule), so that a table that is constant over each texel is proportional to
+// it. Every texel that emits has a positive density.
 #pragma once
 
 #include "lights/emission_image.h"
@@ -14,11 +14,11 @@ enum class SkyMap { EqualArea, LatLong };
 
 class ImageSky {
  public:
-  // The file that the parameter `name` gives, which map it is by its aspect; any other aspect is a located Error.
+  // Reads the file given by the parameter `name`. Its aspect determines the map; other aspects are located Errors.
   ImageSky(const ParameterList& parameters, const std::string& name, const LightBuildContext& build);
 
-  // How the sky is turned: `toImage` is orthogonal and leads from the directions that the other methods speak of to
-  // those of the map (sampling/equal_area.h, +z in the middle of a square or at the top of a latitude-longitude image).
+  // Sets the orientation: `toImage` is orthogonal and maps local directions to those of the image
+  // (sampling/equal_area.h; +z in the centre of a square or at the top of a latitude-longitude image).
   void Turn(const glm::mat3& toImage) { toImage_ = toImage; }
   void Scale(const Color& factor) {
     scale_ *= factor;
@@ -59,8 +59,8 @@ class ImageSky {
     const float jacobian = LatLongJacobian(std::sqrt(Sqr(w.x) + Sqr(w.y)));
     return PdfSolidAngle(jacobian > 0 ? density / jacobian : 0.0f);
   }
-  // Whether the map's direction w, in the cell, is farther from the cell's edges than rounding carries it, and far
-  // enough from the poles for the density.
+  // True if the distance of the map's direction w from the edges of its cell exceeds the rounding of directions, and it
+  // is far enough from the poles for the density to be accurate.
   bool IsInside(const ColorTable::Cell& cell, const Vector3& w) const {
     constexpr float kRounding = 2e-6f;  // on the unit sphere
     float x = kRounding * static_cast<float>(table_.Width()), y = kRounding * static_cast<float>(table_.Height());

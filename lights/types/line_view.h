@@ -1,8 +1,7 @@
-// A straight line as a point sees it: places on it with a density that is even in the angle at the point ([Kulla12]
-// equi-angular sampling), along a lamp as along a ray.
+// Equi-angular sampling of points on a line segment from a point ([Kulla12]), for a linear lamp or along a ray.
 //
-// With the line at distance h, z0 the foot of the perpendicular and tanθ = (z - z0) / h, θ is uniform. A line that is
-// short or far away has angles that differ in their last digits: it is counted from its lower end,
+// With the line at distance h, z0 the foot of the perpendicular and tanθ = (z - z0) / h, θ is uniform. To avoid
+// cancellation for short or distant segments, positions are relative to the lower end,
 //   z - z_low = h t (1 + a²) / (1 - a t),  a = tanθ_low, t = tan(θ - θ_low).
 #pragma once
 

@@ -1,8 +1,9 @@
-// An area light made of patches: triangles (mesh.cpp), bilinear patches (bilinear.cpp). A patch is chosen in proportion
-// to its area, times the mean of the image over it where there is one; how a point is chosen in it is the patches' own.
+// An area light of patches: triangles (mesh.cpp) or bilinear patches (bilinear.cpp). A patch is selected in proportion
+// to its area, times the mean of the image over it if there is one. The kind of patch determines how a point in it is
+// sampled.
 //
-// The patches lie in render space, or in an object's space when it is instanced or moves: then the placement is applied
-// on the fly, and a density of 1/m² is that of the object's space over the area's stretch at that point.
+// Patches are in render space, or in object space if the object is instanced or moves. The placement is then applied to
+// each sample, and a density (1/m²) is that in object space over the local stretch of area.
 //
 // Patches have, all in their own space:
 //   Count(), CanBeSampled(patch)
@@ -96,7 +97,7 @@ class PatchLight final : public LightBase {
   bool IsAsBuilt(const LightContext& context) const { return SamePlacement(*context.transform, built_); }
   bool IsInPlace(const LightContext& context) const { return isInPlace_ && IsAsBuilt(context); }
 
-  // 1/m² in render space at parameters p, where the normal is `normal`: the one place where it is written.
+  // 1/m² in render space at parameters p, with the normal `normal`.
   PdfArea AreaDensity(const LightContext& context, bool isInPlace, uint32_t patch, const Point2& p,
                       const Normal3& normal) const {
     if (table_.IsZero()) return PdfArea(0);
@@ -108,7 +109,7 @@ class PatchLight final : public LightBase {
     return placed.value < kInfinity ? placed : PdfArea(0);
   }
 
-  // False when there is nothing to sample.
+  // False if nothing can be sampled.
   bool SamplePoint(const LightContext& context, EmittingPoint& point) const;
   void BuildTable();
   double TotalArea(const LightTransform& transform) const;
@@ -116,16 +117,16 @@ class PatchLight final : public LightBase {
   Color PowerOfOne(uint32_t patch, const LightTransform& transform, const ExitanceTable& exitance) const;
   Color PowerOfAll(const LightTransform& transform, const ExitanceTable& exitance) const;
   Color PowerFor(const LightContext& context) const;
-  // Mean of the channels, as if there were no shaping and the image were even: quick.
+  // Mean of the channels, ignoring shaping and the variation of the image.
   float UnshapedPowerFor(const LightContext& context) const;
   EmissionBounds BoundsOfAll(const LightTransform& transform) const;
-  // The emission bounds but for the energy.
+  // The emission bounds without the energy.
   EmissionBounds ReachFor(const LightContext& context) const;
   EmissionBounds MovedBounds(const LightContext& context) const;
 
   Patches patches_;
   LightTransform built_;
-  bool isInPlace_;  // the patches lie in render space, while the placement is the one they were built with
+  bool isInPlace_;  // the patches are in render space, as long as the placement is the one they were built with
   MappedArea mappedArea_;
   double builtArea_ = 0;
   SurfaceEmission emission_;
@@ -184,12 +185,12 @@ template <class Patches>
 void PatchLight<Patches>::BuildTable() {
   const glm::dmat3 linear(built_.toRender.linear);
   const EmissionImage* image = emission_.HasImage() ? &emission_.EmittedImage() : nullptr;
-  // The points that estimate a mean may miss a bright texel: a part of the whole image's mean is everywhere.
+  // The points that estimate a mean may miss a bright texel, so a fraction of the mean of the whole image is added.
   const double floor = image ? 0.01 * static_cast<double>(image->Mean().Average()) : 0.0;
   std::vector<float> weights(patches_.Count());
   for (uint32_t i = 0; i < patches_.Count(); ++i) {
     if (!patches_.CanBeSampled(i)) continue;
-    // Without an image the area alone: a light that is switched off can be sampled all the same.
+    // Without an image, by area alone, so that a light with radiance 0 can be sampled.
     double weight = 0;
     if (image) {
       patches_.ForElements(i, linear, image, [&](double area, const Point2& uv, const Normal3&) {

@@ -1,4 +1,4 @@
-// A surface of its own space as it lies in render space at one instant.
+// A surface of local space, placed in render space at one instant.
 #pragma once
 
 #include "geometry/rounding.h"
@@ -10,7 +10,7 @@ namespace lampyr {
 
 struct PlacedSurface {
   Affine toRender, toOwn;
-  bool isSimilar = false;  // angles are kept on the way to render space
+  bool isSimilar = false;  // the map to render space preserves angles
   bool isFlat = false;
   float scale = 1;           // if similar: how lengths grow
   float evenStretch = 0;     // how areas grow, where that is the same for the whole surface; 0 otherwise
@@ -32,7 +32,8 @@ struct PlacedSurface {
     evenStretch = AreaStretch(toRender, flatNormal);
   }
 
-  // In the surface's space, by way of its origin: nothing cancels where the light is small and far from the origin.
+  // In the surface's space, relative to its origin, to avoid cancellation for small lights far from the origin of
+  // render space.
   Point3 ToOwn(const Point3& P) const { return toOwn.linear * (P - toRender.translation); }
   // dA in render space over dA in the surface's own, where the normal is `normal`.
   float StretchAt(const Normal3& normal) const { return evenStretch > 0 ? evenStretch : AreaStretch(toRender, normal); }
@@ -41,12 +42,12 @@ struct PlacedSurface {
   }
 };
 
-// A point of a surface that a receiver sees.
+// A point of a surface, seen from a receiver.
 struct SeenPoint {
   Point2 uv{0.0f};
-  float outwardCosine = 0;  // of the normal and the way to the receiver
+  float outwardCosine = 0;  // between the normal and the direction to the receiver
   float distanceSquared = 0;
-  PdfArea evenDensity;  // 1/m² when the whole surface is sampled evenly
+  PdfArea evenDensity;  // 1/m², of uniform sampling of the whole surface
 };
 
 }  // namespace lampyr

@@ -1,5 +1,5 @@
-// A portal where it stands in render space: a rectangle, or the parallelogram that a shear makes of it; and how a point
-// sees it. In double: a portal may be tiny and far away, or touched.
+// A portal in render space, a rectangle or under shear a parallelogram, and its view from a point. In double, because a
+// portal may be tiny and distant, or very close.
 #pragma once
 
 #include <optional>
@@ -8,7 +8,7 @@
 
 namespace lampyr {
 
-// corner + u·edgeX + v·edgeY, in the space that it is given in; edgeX × edgeY points outwards, where the sky is.
+// corner + u·edgeX + v·edgeY, in the space of the scene file; edgeX × edgeY points outwards, towards the sky.
 struct PortalShape {
   Point3d corner{0.0};
   Vector3d edgeX{1, 0, 0}, edgeY{0, 1, 0};
@@ -30,7 +30,7 @@ struct PortalPlace {
     shape.corner = linear * local.corner + Vector3d(toRender.translation);
     shape.edgeX = linear * local.edgeX;
     shape.edgeY = linear * local.edgeY;
-    // A mirror turns the product of the edges inwards.
+    // A reflection flips the product of the edges.
     if (glm::determinant(linear) < 0) std::swap(shape.edgeX, shape.edgeY);
     const Vector3d product = glm::cross(shape.edgeX, shape.edgeY);
     area = glm::length(product);
@@ -81,12 +81,12 @@ struct PortalView {
 
   PortalView(const PortalPlace& seen, const Point3& P)
       : place(seen), toCorner(seen.shape.corner - Point3d(P)), height(glm::dot(toCorner, seen.outward)) {
-    // A point is known to its own rounding: within that it lies in the plane, where nothing arrives.
+    // A point within its rounding of the plane counts as in the plane, where nothing arrives.
     const double rounding = 0x1p-22 * (static_cast<double>(MaxAbsComponent(P)));
     if (!(height > rounding)) height = 0;
   }
 
-  // Where a direction towards the sky goes through the portal.
+  // Intersection of a direction towards the sky with the portal.
   std::optional<Point2d> Meet(const Vector3d& direction) const {
     const double slope = glm::dot(direction, place.outward);
     if (!(height > 0 && slope > 0)) return std::nullopt;
@@ -96,8 +96,8 @@ struct PortalView {
     return uv;
   }
 
-  // The direction through uv, rounded. It is taken so far from the portal's edge that it still goes through once it is
-  // rounded, where the portal is wider than the steps of such directions.
+  // The direction through uv, rounded to float. It is kept away from the portal's edge so that the rounded direction
+  // still passes through it, if the portal is wider than the spacing of directions.
   Vector3 Through(Point2d& uv) const {
     const Vector3d way = toCorner + uv.x * place.shape.edgeX + uv.y * place.shape.edgeY;
     const double step = 2.5e-7 * glm::dot(way, way) / height;

@@ -1,6 +1,6 @@
-// What of a sky can be seen through a portal, tabulated in coordinates in which the portal is a window with straight
-// sides from everywhere ([Bitterli15] Portal-masked environment map sampling): with x and y along the portal's edges
-// and z outwards, u = 1/2 + atan(x/z)/π and v = 1/2 + atan(y/z)/π, the square being the hemisphere of the sky.
+// Sampling of the part of a sky that is visible through a portal, by tables in coordinates in which the portal is an
+// axis-aligned window from every point ([Bitterli15]): with x and y along the portal's edges and z outwards,
+// u = 1/2 + atan(x/z)/π and v = 1/2 + atan(y/z)/π; the unit square is the hemisphere of the sky.
 #pragma once
 
 #include <functional>
@@ -16,11 +16,11 @@ class PortalTables {
   using Radiance = std::function<Color(const Vector3&)>;  // of a unit direction in render space
 
   PortalTables() = default;
-  // `height`: rows of the sky's image, which say how finely to look. `mean`: of the radiance over the sphere, mean of
+  // `height`: rows of the sky's image, which determine the resolution. `mean`: of the radiance over the sphere, mean of
   // the channels, above 0.
   PortalTables(const PortalPlace& place, const Radiance& radiance, float mean, int height);
 
-  // What a point sees of the sky; `share` is 0 where it is too little for differences of sums.
+  // The window of the sky visible from a point; `share` is 0 if it is too small for differences of sums.
   struct Seen {
     WindowedTable::Window window;
     double share = 0;
@@ -35,7 +35,7 @@ class PortalTables {
   Vector3d SampleEmission(const Point2& u) const { return FromSquare(Point2d(emission_.Sample(u).uv)); }
   PdfSolidAngle EmissionDensity(const Vector3d& inAxes) const;
 
-  // W/m²: what comes through the portal.
+  // Irradiance through the portal, W/m².
   Color Flux() const { return flux_; }
 
   static Vector3d ToAxes(const PortalPlace& place, const Vector3d& v) {

@@ -1,7 +1,7 @@
-// Spheres, disks and cylinders, partial ones included, as surfaces that emit: points by area, and what part of them a
-// receiver sees.
+// Spheres, disks and cylinders, also partial ones, as emitting surfaces: sampling by area, and of the part visible from
+// a receiver.
 //
-// A point is chosen in the unit square, uniform in the quadric's own area:
+// A point is sampled from the unit square, uniformly in the area in local space:
 //   sphere, cylinder   (height along z, φ)           partial disk   (radius², φ)
 //   whole disk         concentric
 // Texture coordinates are those of the geometry (u along φ; v from the lower to the upper end, and from the rim to the
@@ -29,21 +29,21 @@ class QuadricSurface {
   using Placed = PlacedSurface;
   PlacedSurface Place(const LightTransform& transform) const;
   double AreaOf(const PlacedSurface& placed) const { return GetArea(lampyr::Shape(In(placed))); }
-  // Within a thousandth, but quick where AreaOf integrates.
+  // Accurate to 1e-3, and fast where AreaOf integrates.
   double QuickAreaOf(const PlacedSurface& placed) const {
     return mappedArea_ ? mappedArea_->Under(glm::dmat3(placed.toRender.linear)) : AreaOf(placed);
   }
   Bounds3 BoundsOf(const PlacedSurface& placed) const { return GetBounds(lampyr::Shape(In(placed))); }
 
   bool IsFlat() const { return quadric_.kind == Quadric::Kind::Disk; }
-  // Whether the mean over the surface is that over all normals.
+  // True if the mean over the surface is the mean over all normals.
   bool HasAllNormals(const PlacedSurface& placed) const { return quadric_.IsFullSphere() && placed.isSimilar; }
   bool FirstIsV() const { return !IsConcentric(); }
-  // Whether dA / (du dv) is the same everywhere, and every uv of the square is on the surface.
+  // True if dA / (du dv) is constant and every uv of the square is on the surface.
   bool IsEvenOverUv(const PlacedSurface& placed) const {
     return quadric_.kind == Quadric::Kind::Cylinder && placed.isSimilar;
   }
-  // Whether there may be a View.
+  // True if View may exist.
   bool HasViews() const { return isFullSphere_ || quadric_.kind == Quadric::Kind::Cylinder; }
   // The arc's density is a function of uv.
   bool ViewNeedsUv() const { return quadric_.kind == Quadric::Kind::Cylinder; }
@@ -56,8 +56,8 @@ class QuadricSurface {
   Point2 UvOf(const Point3& p) const;
   Point2 SquareAt(const Point2& uv) const;
 
-  // The part of the surface that P sees, where it can be sampled: the cone that a sphere fills from outside, or the arc
-  // of a cylinder that faces P.
+  // The part of the surface visible from P, if it can be sampled: the cone that a sphere subtends from outside, or the
+  // arc of a cylinder that faces P.
   struct Arc {
     bool isThere = false;
     Vector2 towards{1, 0};  // unit, from the axis to P, in the quadric's own space
@@ -66,7 +66,7 @@ class QuadricSurface {
     float distance = 0, along = 0;  // of P from the axis, and its z
   };
   struct View {
-    float weight = 0;  // of sampling by it: 1, or 0 when there is none
+    float weight = 0;  // probability of sampling by it: 1, or 0 without a view
     bool isCone = false;
     SphereCone cone;
     Arc arc;
@@ -88,7 +88,7 @@ class QuadricSurface {
   // 1/sr of a point on an emitting side.
   PdfSolidAngle ViewDensity(const View& view, const SeenPoint& seen) const {
     if (!view.isCone) return ArcDensity(view.arc, seen);
-    // The cone's samples lie on the near side, which is the inner one of a sphere that is turned inside out.
+    // The cone's samples are on the near side, which is the inner side of a sphere with reversed orientation.
     return seen.outwardCosine * normalSign_ > 0 ? view.cone.Density() : PdfSolidAngle(0);
   }
   static bool NeedsEvenDensity(const View& view) { return !view.isCone; }
@@ -133,7 +133,7 @@ class QuadricSurface {
   bool planarUv_;
   bool isFullSphere_;
   bool textured_ = false;
-  float normalSign_;  // of the outer side against the quadric's own normal
+  float normalSign_;  // of the outer side relative to the quadric's normal
   float low_, high_;  // along z
   float ownDensity_;
   std::shared_ptr<const MappedArea> mappedArea_;  // null: there is a closed form

@@ -1,7 +1,6 @@
-// A rectangle width × height at z = 0 that emits along -z, centred at the origin: uniform points, and uniform
-// directions of its solid angle where it is a rectangle in render space too (spherical_rectangle.h); a parallelogram is
-// sampled by area. The unit square it is sampled from is its texture: seen from where it shines, the image is upright,
-// its left side at +x and its upper side at +y (UsdLux).
+// A rectangle width × height at z = 0, centred at the origin, that emits along -z. Sampled uniformly in solid angle if
+// it is a rectangle in render space (spherical_rectangle.h), and by area as a parallelogram. The unit square that it is
+// sampled from is its texture: seen from the lit side the image is upright, its left at +x and its top at +y (UsdLux).
 #pragma once
 
 #include <optional>
@@ -18,7 +17,7 @@ class RectSurface {
 
   float Width() const { return width_; }
   float Height() const { return height_; }
-  // Where the edges are orthogonal in render space, their frame there, in double.
+  // If the edges are orthogonal in render space: their frame, in double.
   struct Placed : PlacedSurface {
     bool isRectangle = false;
     Vector3d x{0.0}, y{0.0}, z{0.0};  // unit: along rising u, along rising v, their cross product

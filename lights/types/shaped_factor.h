@@ -1,8 +1,8 @@
 // The factor of shaping.h as a function of direction: cone, focus and IES profile. Internal to shaping.cpp and
 // shaped_table.cpp.
 //
-// A direction is given by its AxisAngle, 1 - cos of the angle from -z and the same from +z, in double: neither a beam
-// of 0.01° nor one about the zenith cancels.
+// A direction is given by its AxisAngle: 1 - cos of the angle from -z and from +z, in double, to avoid cancellation for
+// narrow beams around either pole.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 
 namespace lampyr {
 
-// Beside a largest value of 1 this is none: tables of floats can hold all that is more.
+// Values below this count as 0, relative to a maximum of 1: tables of floats can represent all larger ones.
 inline constexpr float kDark = 1e-30f;
 inline constexpr double kPiExact = 3.14159265358979323846;
 
@@ -45,7 +45,7 @@ inline float TurnsOf(const Vector3& d) {
   return turns < 0 ? turns + 1 : turns;
 }
 
-// Knots with a table of where to look for a number among them.
+// Knots with a guide table for the search among them.
 class KnotFinder {
  public:
   KnotFinder() = default;
@@ -66,16 +66,16 @@ class KnotFinder {
 
  private:
   std::vector<float> knots_;
-  std::vector<uint32_t> first_;  // of each bin: an interval that begins at or before it
+  std::vector<uint32_t> first_;  // for each bin: an interval that begins at or before it
   float binsPerUnit_ = 0, lastBin_ = 0;
 };
 
-// A profile as it is evaluated while rendering.
+// A profile, prepared for evaluation.
 class ShapedProfile {
  public:
   ShapedProfile(const IesProfile& profile, double angleScale, bool normalize);
 
-  // θ from both poles; within the ends of LightThetas, which the caller knows.
+  // θ from both poles. Requires θ within the ends of LightThetas.
   float Value(float fromAxis, float fromZenith, float turns) const {
     float theta = fromAxis;
     if (scale_ > 0) theta = fromAxis / scale_;
@@ -94,7 +94,7 @@ class ShapedProfile {
   bool IsSymmetric() const { return symmetric_; }
   float Largest() const { return largest_; }
   const std::vector<float>& TurnsKnots() const { return turns_.Knots(); }
-  // The light's θ at which the profile has its knots: first and last are where it begins and ends.
+  // Knots of the profile in the light's θ; the first and last are its ends.
   const std::vector<double>& LightThetas() const { return lightThetas_; }
 
  private:
@@ -121,7 +121,7 @@ class ShapedFactor {
  public:
   ShapedFactor(const ConeSetting& cone, const FocusSetting& focus, std::unique_ptr<const ShapedProfile> profile);
 
-  // `turns()` gives φ, only when it is needed.
+  // `turns()`: returns φ; called only if needed.
   template <class Turns>
   Color At(const AxisAngle& angle, const Turns& turns) const {
     if (angle.fromAxis < first_ || angle.fromAxis > last_) return Color(0.0f);
@@ -143,8 +143,8 @@ class ShapedFactor {
   float Largest() const;
   const ShapedProfile* Profile() const { return profile_.get(); }
   bool HasFocus() const { return focus_.inForce; }
-  // Where the factor has kinks or ends, θ ascending: at least the first and the last angle of emission; empty when it
-  // is 0 everywhere.
+  // Kinks and ends of the factor, θ ascending: at least the first and the last angle of emission; empty if it is 0
+  // everywhere.
   std::vector<double> ThetaKnots() const;
 
  private:

@@ -1,7 +1,7 @@
 // A point light's profile times a shaping (UsdLux's ShapingAPI: cone, focus, IES profile) about an axis of the light.
 //
-// The product is sampled by one of its factors or by half of each: whichever has the smallest second moment, measured
-// once. Each is a safe choice, for the density of a factor is never 0 where the product is not.
+// The product is sampled by one of its factors or by half of each: whichever has the smallest second moment, estimated
+// once. Each is valid, because the density of a factor is positive wherever the product is.
 #pragma once
 
 #include <type_traits>
@@ -18,7 +18,7 @@ namespace lampyr {
 template <class Base>
 class ShapedPointProfile {
  public:
-  // The shaping's own axis, -z, is turned to the local `axis`, its φ = 0 as near to the light's +x as can be.
+  // The axis of shaping, -z, is rotated to the local `axis`, with φ = 0 as near to the light's +x as possible.
   ShapedPointProfile(Base base, std::shared_ptr<const Shaping> shaping, const Vector3& axis)
       : base_(std::move(base)),
         shaping_(std::move(shaping)),
@@ -49,7 +49,7 @@ class ShapedPointProfile {
     return ToRenderDirection(transform, frame_.ToWorld(shaping_->SampleDirection({x, u.y})));
   }
 
-  // Of both techniques together: written here only.
+  // Density of the mixture of both techniques.
   PdfSolidAngle Density(const LightTransform& transform, const Vector3& direction) const {
     PdfSolidAngle density(0);
     if (baseShare_ > 0) density = baseShare_ * base_.Density(transform, direction);
@@ -64,7 +64,7 @@ class ShapedPointProfile {
     return IsSimilarity(transform.toRender.linear) ? solidAngle_ : Integrate(transform, 1 << 13);
   }
 
-  // Both factors bound the product: the narrower cone is taken.
+  // Each factor bounds the product; the narrower cone is used.
   void SetCones(const LightTransform& transform, EmissionBounds& bounds) const {
     base_.SetCones(transform, bounds);
     EmissionBounds ours;
@@ -115,7 +115,7 @@ class ShapedPointProfile {
     return {static_cast<float>(sum[0]), static_cast<float>(sum[1]), static_cast<float>(sum[2])};
   }
 
-  // Of 0, 1/2 and 1 the share of photons by the base for which ∫ Shape²/density is smallest.
+  // The fraction of photons sampled by the base, of 0, 1/2 and 1: the one with the smallest ∫ Shape²/density.
   float BestShare() {
     const LightTransform identity;
     double moments[3] = {0, 0, 0};
@@ -140,7 +140,7 @@ class ShapedPointProfile {
   Color solidAngle_;  // ∫ Shape dω, untransformed
 };
 
-// A point with this profile, shaped about the local `axis` where the parameters ask for it; one without is not slowed.
+// A point light with this profile, shaped around the local `axis` if the parameters ask for it.
 template <class Profile>
 std::unique_ptr<Light> MakePointLight(LightTypeFunction type, const ParameterList& parameters,
                                       const LightBuildContext& build, Profile profile, const PointSource& source,
@@ -151,7 +151,7 @@ std::unique_ptr<Light> MakePointLight(LightTypeFunction type, const ParameterLis
       type, parameters, ShapedPointProfile<Profile>(std::move(profile), shaping, axis), source);
 }
 
-// A type's own rows, those of its shaping and those of all lights.
+// Parameter rows of a type, of shaping and of all lights.
 inline std::vector<ParameterInfo> WithShapingParameters(std::vector<ParameterInfo> parameters) {
   const std::vector<ParameterInfo> shaping = ShapingParameters();
   parameters.insert(parameters.end(), shaping.begin(), shaping.end());

@@ -1,9 +1,9 @@
 // Sampling of a ShapedFactor, and its integrals. Internal to shaping.cpp.
 //
-// The sphere is cut into rows between angles from the axis and columns between φ, at all kinks of the factor and finer
-// where it changes; a cell is chosen by its exact mass and filled evenly in (m, φ), where m is the measure that the
-// emitter's photons are even in: w = 1 - cosθ, and for flat emitters sin²θ/2, dm = cosθ dw. A cone with a hard edge, on
-// a point or a flat emitter, is one cell: it is sampled exactly in proportion.
+// The sphere is divided into rows in θ and columns in φ, at all kinks of the factor and more finely where it varies. A
+// cell is selected by its exact integral and sampled uniformly in (m, φ), where m is the measure of the emitter's
+// photons: w = 1 - cosθ, and for flat emitters sin²θ/2, dm = cosθ dw. A cone with a hard edge, on a point or a flat
+// emitter, is one cell and is sampled exactly in proportion.
 #pragma once
 
 #include <functional>
@@ -23,7 +23,7 @@ class ShapedTable {
   Vector3 Sample(const Point2& u) const;  // requires !IsDark()
   float Density(const Vector3& local) const;
   double WidestTheta() const { return rows_.empty() ? 0 : rows_.back().theta; }
-  // The solid angle (or projected solid angle) that would take the same light at an even factor.
+  // Solid angle (or projected solid angle) with the same integral at a constant factor.
   double EffectiveMeasure() const { return effectiveMeasure_; }
 
   // ∫ factor · weight dω over the emitting side; without a weight, of the cosine for flat emitters.
@@ -37,7 +37,7 @@ class ShapedTable {
   std::vector<float> columns_;  // turns, one more than there are columns
   Distribution2D distribution_;
   std::vector<double> rowW_;     // of each row, close together for the search
-  std::vector<uint16_t> guide_;  // where to look for w: the row at each of equal steps, and the last
+  std::vector<uint16_t> guide_;  // guide table for w: the row at each of equal steps, and the last
   double stepsPerW_ = 0;
   std::vector<float> densities_;  // of each cell, per measure
   bool flat_ = false;

@@ -1,5 +1,5 @@
-// Angular shaping of what a light emits (UsdLux's ShapingAPI): cone, focus and IES profile, one factor over directions
-// with its own sampling, shared by all lights that have it.
+// Angular shaping of emission (UsdLux's ShapingAPI): cone, focus and IES profile as one factor over directions, with
+// its sampling, for all lights that support it.
 //
 // Directions are unit, in the light's local space and point away from the light; the primary axis is -z. θ is the angle
 // from it, φ goes from +x towards +y (counterclockwise seen from +z, the luminaire's zenith).
@@ -8,7 +8,7 @@
 //           and cylinders shine backwards too
 //   IES     the profile's candela at (θ', φ), over its mean over the sphere when normalised. With s = angleScale:
 //           θ' = θ/s for s > 0, π - (π - θ)/-s for s < 0, θ for s = 0; clamped to [0, π]
-// A part is in force when one of its parameters is given. Values that UsdLux clamps or ignores (softness outside of
+// A part applies if one of its parameters is given. Values that UsdLux clamps or ignores (softness outside of
 // [0, 1], a negative focus) are clamped and ignored, with a warning.
 //
 // Where UsdLux's text leaves a choice: φ = 0 is the emission direction's +x (hdEmbree takes φ of the reversed
@@ -31,20 +31,20 @@ class ShapedTable;
 
 class Shaping {
  public:
-  // What the light's normals are, which decides what its photons are sampled in proportion to.
+  // Kind of the light's normals, which determines the measure in which photons are sampled.
   enum class Emitter {
     Point,  // no surface: the factor alone
     Flat,   // the normal is -z everywhere: factor · cosθ, on that side
     Round,  // normals of all directions: the factor alone
   };
 
-  // nullptr when no shaping parameter is given. Throws located Errors.
+  // Null if no shaping parameter is given. Throws located Errors.
   static std::shared_ptr<const Shaping> Read(const ParameterList& parameters, const LightBuildContext& build,
                                              Emitter emitter);
 
   // Factor of the emitted radiance (or intensity) in the direction `local`.
   Color Factor(const Vector3& local) const;
-  // The largest that a channel of the factor can be.
+  // Upper bound of the channels of the factor.
   float Largest() const { return largest_; }
 
   // A direction of emission; the density is 1/sr in local space, never 0 where the factor (on the emitting side) is
