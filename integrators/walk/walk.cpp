@@ -1,6 +1,7 @@
 #include "integrators/walk/walk.h"
 
 #include <cmath>
+#include <new>
 
 #include "base/stop.h"
 
@@ -37,7 +38,8 @@ bool MakeVertex(const RenderScene& scene, const Ray& ray, const RayHit& hit, con
   if (!material) return false;
   vertex.point = point;
   vertex.toPrevious = -ray.direction;
-  vertex.bsdf = material->GetBsdf(point, vertex.toPrevious);
+  // Constructed in place: a copy of what was just written field by field stalls on store forwarding.
+  ::new (static_cast<void*>(&vertex.bsdf)) Bsdf(material->GetBsdf(point, vertex.toPrevious));
   const Normal3 Ns = vertex.bsdf.ShadingFrame().z;
   vertex.receiver = {point.position, glm::dot(Ns, vertex.toPrevious) < 0 ? -Ns : Ns, vertex.bsdf.IsTransmissive(),
                      attributes.link};
