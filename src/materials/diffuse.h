@@ -20,12 +20,16 @@ struct DiffuseBsdf {
 
   std::optional<BsdfSample> Sample(const Vector3& wo, float, const Point2& u, TransportMode) const {
     BsdfSample sample;
+    Sample(wo.z, u, sample);
+    return sample;
+  }
+  // The same, written to a new `sample`.
+  void Sample(float cosO, const Point2& u, BsdfSample& sample) const {
     sample.wi = SampleCosineHemisphere(u);
     sample.pdfForward = PdfSolidAngle(sample.wi.z * kInvPi);
-    sample.pdfReverse = PdfSolidAngle(std::abs(wo.z) * kInvPi);
+    sample.pdfReverse = PdfSolidAngle(std::abs(cosO) * kInvPi);
     sample.weightDiffuse = reflectance;
-    if (wo.z < 0) sample.wi.z = -sample.wi.z;
-    return sample;
+    if (cosO < 0) sample.wi.z = -sample.wi.z;
   }
 
   bool IsDelta() const { return false; }
