@@ -16,7 +16,7 @@ SolidAnglePerArea FirstEdgeDensity(const LightingServices& lighting, uint32_t li
   return EdgeDensity(geometryTerm, lighting.IsAtInfinity(light) ? 1 : distanceSquared);
 }
 
-LightEnd EndOf(const LightingServices& lighting, const FoundLight& found, bool canBeHit, SolidAnglePerArea firstHit) {
+LightEnd EndOf(const LightingServices& lighting, const FoundLight& found, bool canBeHit, SolidAnglePerArea edge) {
   const LightEvaluation& e = found.evaluation;
   const auto selection = static_cast<double>(found.selection.value);
   LightEnd end;
@@ -25,7 +25,7 @@ LightEnd EndOf(const LightingServices& lighting, const FoundLight& found, bool c
   end.direct = selection * SolidAngleDensity(e.pdfDirect) * end.solidAnglePerArea;
   const auto emissionSelection = static_cast<double>(lighting.EmissionSelectionProbability(found.light).value);
   const AreaDensity position = emissionSelection * AreaDensity(e.pdfEmit);
-  end.emission = position * (SolidAngleDensity(e.pdfEmitDirection) * firstHit);
+  end.emission = position * (SolidAngleDensity(e.pdfEmitDirection) * edge);
   end.canBeHit = canBeHit;
   if (canBeHit && !lighting.IsAtInfinity(found.light)) end.position = position;
   return end;
@@ -38,9 +38,9 @@ bool WeightedLightPath::FirstHit(const EmittedPhoton& photon, PathVertex& first)
   const std::optional<FoundLight> found = lighting.EvaluateFirstHit(photon, first.receiver);
   if (!found) return false;
   const double squared = LengthSquared(Vector3d(first.point.position) - Vector3d(photon.emission.position));
-  const SolidAnglePerArea firstHit =
+  const SolidAnglePerArea edge =
       FirstEdgeDensity(lighting, found->light, first.GeometryTerm(first.toPrevious), squared);
-  end_ = EndOf(lighting, *found, lighting.CanBeHit(found->light), firstHit);
+  end_ = EndOf(lighting, *found, lighting.CanBeHit(found->light), edge);
   if (!(end_.emission.value > 0)) return false;
   first.previousSolidAnglePerArea = end_.solidAnglePerArea;
   first.weight = PartialWeight::AtFirstHit(end_, connects_);

@@ -42,7 +42,7 @@ struct FilterSamples {
 
 class LightFilter;
 
-// How a combiner merges the factors f_i of its filters: product, maximum, minimum, or screen, 1 - Π (1 - f_i).
+// Operation by which a combiner merges the factors f_i of its filters: Π f_i, max f_i, min f_i, or 1 - Π (1 - f_i).
 enum class CombineMode { Multiply, Max, Min, Screen };
 
 // A filter in the scene.
@@ -50,8 +50,8 @@ struct FilterInstance {
   std::shared_ptr<const LightFilter> filter;  // null: it has no effect
   std::string name;
   CombineMode combineMode = CombineMode::Multiply;
-  uint32_t linking =
-      0;  // key of its linking groups, an index of FilterContext::enabled; 0: none, it is enabled everywhere
+  // Key of its linking groups, an index of FilterContext::enabled. 0: none; it is enabled everywhere.
+  uint32_t linking = 0;
 };
 
 // Arguments of a filter besides the samples.

@@ -54,7 +54,7 @@ class LightSelector {
   // choices.
   virtual PdfDiscrete Probability(const Receiver& receiver, const LightLearning* learned, uint32_t light,
                                   int patch) const = 0;
-  // The same without learned factors.
+  // Overloads without learned factors.
   void Select(const Receiver& receiver, double u, LightChoices& choices) const {
     Select(receiver, nullptr, u, choices);
   }
@@ -79,7 +79,7 @@ class LightSelector {
 
 enum class LightSelection { Uniform, Power, Tree, Exhaustive };
 
-// By its name on the command line, or "bvh", the name of pbrt-v4's tree; nullopt: unknown.
+// Parses the name on the command line. "bvh", the name of pbrt-v4's tree, is accepted. nullopt: unknown name.
 std::optional<LightSelection> ParseLightSelection(const std::string& name);
 std::string NameOf(LightSelection selection);
 

@@ -14,7 +14,7 @@ class ExitanceTable {
   // Without shaping the table has one entry.
   ExitanceTable(const SurfaceEmission& emission, const LightTransform& transform);
   Color operator()(const Normal3& normal) const { return values_.size() == 1 ? values_[0] : Interpolate(normal); }
-  // The same for the normal computed by `getNormal()`, which is not called without shaping.
+  // Exitance for the normal computed by `getNormal()`. Without shaping `getNormal` is not called.
   template <class GetNormal>
   requires std::is_invocable_v<GetNormal> Color operator()(const GetNormal& getNormal) const {
     return values_.size() == 1 ? values_[0] : Interpolate(getNormal());

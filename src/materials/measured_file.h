@@ -13,7 +13,7 @@ namespace lampyr {
 // Throws an Error at `where` that names the file if it cannot be read, is no such file, or holds tables that do not fit
 // together or whose values are negative or not finite.
 MeasuredData ReadMeasured(const std::filesystem::path& file, const FileLocation& where);
-// The same for the bytes of a file; errors have no place.
+// Parses the bytes of a file. Throws the same Errors, without a location.
 MeasuredData ParseMeasured(std::span<const std::byte> bytes);
 
 }  // namespace lampyr

@@ -80,35 +80,35 @@ TEST(PhotonGuiding, AgreesWithPathTracing) {
   }
 }
 
-struct SurvivalWeight {
+struct GuidingEfficiency {
   double squaredError = 0, seconds = 0;
 };
 
-SurvivalWeight Measure(const std::string& text, const char* integrator, bool guides, const Image& reference) {
-  SurvivalWeight worth;
+GuidingEfficiency Measure(const std::string& text, const char* integrator, bool guides, const Image& reference) {
+  GuidingEfficiency measured;
   constexpr int seeds = 2;
   for (uint64_t seed = 1; seed <= seeds; ++seed) {
     const std::clock_t start = std::clock();
     const Rendered rendered = RenderText(text, 128, Small(integrator, guides, seed, reference.width));
-    worth.seconds += static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC / seeds;
+    measured.seconds += static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC / seeds;
     EXPECT_EQ(rendered.outcome.photons->guideComponents > 0, guides);
     for (int y = 0; y < reference.height; ++y) {
       for (int x = 0; x < reference.width; ++x) {
         for (size_t c = 0; c < 3; ++c) {
           const auto difference = static_cast<double>(rendered.image.At(x, y, c) - reference.At(x, y, c));
           const double scale = static_cast<double>(reference.At(x, y, c)) + 1e-2;
-          worth.squaredError +=
+          measured.squaredError +=
               difference * difference / (scale * scale * seeds * 3 * reference.width * reference.height);
         }
       }
     }
   }
-  return worth;
+  return measured;
 }
 
 double GainOf(const std::string& text, const char* integrator, const Image& reference) {
-  const SurvivalWeight without = Measure(text, integrator, false, reference),
-                       with = Measure(text, integrator, true, reference);
+  const GuidingEfficiency without = Measure(text, integrator, false, reference),
+                          with = Measure(text, integrator, true, reference);
   const double gain = without.squaredError * without.seconds / (with.squaredError * with.seconds);
   std::printf("%s: relative squared error %.3g without, %.3g with guiding; time x %.2f; efficiency x %.1f\n",
               integrator, without.squaredError, with.squaredError, with.seconds / without.seconds, gain);
