@@ -114,10 +114,13 @@ Look LookFrom(const MeasuredData& data, const Vector3& direction, const Vector3d
   const Incidence incidence(data, direction);
   const Point2d place = incidence.PlaceOfHalf(half);
   const double measure = SolidAnglePerSquare(place.x, cosine);
-  const MeasuredWarp::Result inverse = data.visible.Invert(incidence.Blend(), place);
+  const Point2d warped = data.visible.Invert(incidence.Blend(), place);
   Look look;
-  if (measure > 0) look.density = inverse.density * data.luminance.Density(incidence.Blend(), inverse.u) / measure;
-  if (wantsValue) look.reflected = Reflected(data, incidence, place, inverse.u);
+  if (measure > 0) {
+    look.density =
+        data.visible.Density(incidence.Blend(), place) * data.luminance.Density(incidence.Blend(), warped) / measure;
+  }
+  if (wantsValue) look.reflected = Reflected(data, incidence, place, warped);
   return look;
 }
 
@@ -143,9 +146,9 @@ BsdfEvaluation MeasuredBsdf::Evaluate(const Vector3& wo, const Vector3& wi, Tran
 std::optional<BsdfSample> MeasuredBsdf::Sample(const Vector3& wo, float, const Point2& u, TransportMode mode) const {
   const Vector3 o = wo.z < 0 ? -wo : wo;
   const Incidence incidence(*data, o);
-  const MeasuredWarp::Result onLuminance = data->luminance.Sample(incidence.Blend(), Point2d(u.x, u.y));
-  const MeasuredWarp::Result onNormals = data->visible.Sample(incidence.Blend(), onLuminance.u);
-  const Vector3d half = incidence.HalfAt(onNormals.u), towards(o);
+  const Point2d onLuminance = data->luminance.Sample(incidence.Blend(), Point2d(u.x, u.y));
+  const Point2d onNormals = data->visible.Sample(incidence.Blend(), onLuminance);
+  const Vector3d half = incidence.HalfAt(onNormals), towards(o);
   const double cosine = glm::dot(half, towards);
   const Vector3d reflected = 2 * cosine * half - towards;
   if (!(cosine > 0) || !(reflected.z > 0)) return std::nullopt;

@@ -92,7 +92,7 @@ double MeasuredWarp::ValueAt(const TableBlend& blend, size_t row, size_t column)
   return sum;
 }
 
-MeasuredWarp::Result MeasuredWarp::Sample(const TableBlend& blend, const Point2d& u) const {
+Point2d MeasuredWarp::Sample(const TableBlend& blend, const Point2d& u) const {
   const double rows = static_cast<double>(height_ - 1), columns = static_cast<double>(width_ - 1);
   double target = u.y * RowsBefore(blend, height_ - 1);
   const size_t row = FindInterval(height_ - 1, target, [&](size_t i) { return RowsBefore(blend, i); });
@@ -108,11 +108,10 @@ MeasuredWarp::Result MeasuredWarp::Sample(const TableBlend& blend, const Point2d
   const double left = across(ValueAt(blend, row, column), ValueAt(blend, row + 1, column));
   const double right = across(ValueAt(blend, row, column + 1), ValueAt(blend, row + 1, column + 1));
   const double x = SolveLinear(left, right, target);
-  return {Point2d((static_cast<double>(column) + x) / columns, (static_cast<double>(row) + y) / rows),
-          left + x * (right - left)};
+  return {(static_cast<double>(column) + x) / columns, (static_cast<double>(row) + y) / rows};
 }
 
-MeasuredWarp::Result MeasuredWarp::Invert(const TableBlend& blend, const Point2d& u) const {
+Point2d MeasuredWarp::Invert(const TableBlend& blend, const Point2d& u) const {
   const double atX = std::clamp(u.x, 0.0, 1.0) * static_cast<double>(width_ - 1);
   const double atY = std::clamp(u.y, 0.0, 1.0) * static_cast<double>(height_ - 1);
   const size_t column = std::min(static_cast<size_t>(atX), width_ - 2);
@@ -128,8 +127,7 @@ MeasuredWarp::Result MeasuredWarp::Invert(const TableBlend& blend, const Point2d
   const double inAll = RowsBefore(blend, row) + LinearIntegral(low, high, y);
   const double all = RowsBefore(blend, height_ - 1);
   constexpr double kLast = 0x1.fffffffffffffp-1;
-  return {Point2d(whole > 0 ? std::min(inRow / whole, kLast) : 0.0, std::min(inAll / all, kLast)),
-          left + x * (right - left)};
+  return {whole > 0 ? std::min(inRow / whole, kLast) : 0.0, std::min(inAll / all, kLast)};
 }
 
 double MeasuredWarp::Density(const TableBlend& blend, const Point2d& u) const {

@@ -65,14 +65,10 @@ class MeasuredWarp {
   // `values` as of MeasuredTable, 0 or more and finite. Throws an Error if a table is 0 everywhere.
   MeasuredWarp(const std::vector<float>& values, size_t width, size_t height);
 
-  struct Result {
-    Point2d u{0.0};
-    double density = 0;
-  };
-  // From uniform numbers in [0,1)² to a point with its density.
-  Result Sample(const TableBlend& blend, const Point2d& u) const;
-  // The inverse of Sample: the numbers that give the point `u`, and the density there.
-  Result Invert(const TableBlend& blend, const Point2d& u) const;
+  // From uniform numbers in [0,1)² to a point.
+  Point2d Sample(const TableBlend& blend, const Point2d& u) const;
+  // The inverse of Sample: the numbers that give the point `u`.
+  Point2d Invert(const TableBlend& blend, const Point2d& u) const;
   // The density over [0,1]².
   double Density(const TableBlend& blend, const Point2d& u) const;
 

@@ -110,7 +110,7 @@ inline std::vector<MeasuredField> MeasuredFieldsOf(const MeasuredMetal& metal) {
         for (uint64_t column = 0; column < n; ++column) {
           const Point2d node(static_cast<double>(column) / static_cast<double>(n - 1),
                              static_cast<double>(row) / static_cast<double>(n - 1));
-          const Point2d place = warp.Sample(blend, node).u;
+          const Point2d place = warp.Sample(blend, node);
           const Vector3 m = direction(place.x * place.x * (0.5 * kPiExact), (2 * place.y - 1) * kPiExact + turn);
           const Vector3 out = Reflect(incident, m, glm::dot(incident, m));
           const float ratio = out.z > 0 ? TrowbridgeReitz::ShadowingRatio(incident.z, microfacets.Stretch(incident),
