@@ -16,12 +16,11 @@ Color SampleLight(const SampleContext& context, const NextEventSettings& setting
   };
   if (!direct) return nothingArrives();
   const LightSample& sample = *direct.sample;
-  const BsdfEvaluation f = vertex.Evaluate(sample.direction, TransportMode::Radiance);
-  const Color scattered = f.diffuse * sample.diffuse + f.specular * sample.specular;
+  LightConnection connection{direct, vertex.Evaluate(sample.direction, TransportMode::Radiance), Color()};
+  const Color scattered = connection.f.diffuse * sample.diffuse + connection.f.specular * sample.specular;
   if (scattered.IsBlack()) return nothingArrives();
   const PdfSolidAngle pdf = direct.selection * sample.pdfDirect;
-  const LightConnection connection{
-      direct, f, vertex.Throughput() * scattered * (vertex.ScatteringCosine(sample.direction) / pdf.value)};
+  connection.value = vertex.Throughput() * scattered * (vertex.ScatteringCosine(sample.direction) / pdf.value);
   if (connection.value.IsBlack()) return Color(0.0f);
   const float weight = visitor.Weigh(connection);
   const float survivalWeight =

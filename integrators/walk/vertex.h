@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "integrators/walk/partial_weight.h"
 #include "integrators/walk/render_scene.h"
@@ -29,7 +28,7 @@ struct Vertex {
   BsdfEvaluation Evaluate(const Vector3& direction, TransportMode mode) const {
     return bsdf.Evaluate(toPrevious, direction, mode);
   }
-  std::optional<BsdfSample> Sample(float uLobe, const Point2& u, TransportMode mode) const {
+  BsdfSample Sample(float uLobe, const Point2& u, TransportMode mode) const {
     return bsdf.Sample(toPrevious, uLobe, u, mode);
   }
   // |cosθ| to the shading normal, as in the scattering integral; of a fibre, to the plane across it.

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <new>
+#include <type_traits>
 
 #include "base/stop.h"
 
@@ -29,17 +30,22 @@ bool Survives(const SampleContext& context, uint32_t dimension, float survival, 
   return true;
 }
 
-}  // namespace
+// value = make(), constructed in its place: a copy of what was just written field by field stalls on store forwarding.
+template <class T, class Make>
+void MakeInPlace(T& value, const Make& make) {
+  static_assert(std::is_trivially_destructible_v<T>);
+  ::new (static_cast<void*>(&value)) T(make());
+}
 
-bool MakeVertex(const RenderScene& scene, const Ray& ray, const RayHit& hit, const SurfacePoint& point,
-                Vertex& vertex) {
+// Makes a vertex of a hit whose point is set: BSDF, receiver, visibility. False: the surface has no material and is
+// black, and paths end there.
+bool MakeVertex(const RenderScene& scene, const Ray& ray, const RayHit& hit, Vertex& vertex) {
   const GeometryAttributes& attributes = scene.geometry->Attributes(hit.primitive);
   const Material* material = attributes.material >= 0 ? scene.materials[attributes.material].get() : nullptr;
   if (!material) return false;
-  vertex.point = point;
+  const SurfacePoint& point = vertex.point;
   vertex.toPrevious = -ray.direction;
-  // Constructed in place: a copy of what was just written field by field stalls on store forwarding.
-  ::new (static_cast<void*>(&vertex.bsdf)) Bsdf(material->GetBsdf(point, vertex.toPrevious));
+  MakeInPlace(vertex.bsdf, [&] { return material->GetBsdf(point, vertex.toPrevious); });
   const Normal3 Ns = vertex.bsdf.ShadingFrame().z;
   vertex.receiver = {point.position, glm::dot(Ns, vertex.toPrevious) < 0 ? -Ns : Ns, vertex.bsdf.IsTransmissive(),
                      attributes.link};
@@ -51,6 +57,8 @@ bool MakeVertex(const RenderScene& scene, const Ray& ray, const RayHit& hit, con
   return true;
 }
 
+}  // namespace
+
 bool Scatter(const SampleContext& context, const WalkSettings& settings, int index, PathVertex& vertex,
              PathState& state) {
   const bool isFromLight = settings.mode == TransportMode::Importance;
@@ -58,26 +66,28 @@ bool Scatter(const SampleContext& context, const WalkSettings& settings, int ind
   Sampler& sampler = context.sampler;
   sampler.SetDimension(settings.dimensions.Of(block, dimensions::kLobe));
   const float uLobe = sampler.Get1D();
-  const auto sample = vertex.Sample(uLobe, sampler.Get2D(), settings.mode);
+  const BsdfSample sample = vertex.Sample(uLobe, sampler.Get2D(), settings.mode);
   if (!sample) return false;
   if (isFromLight) {
-    const float correction = vertex.ArrivalCorrection(vertex.toPrevious) * vertex.DepartureCorrection(sample->wi);
-    state.diffuse = (vertex.diffuse * sample->weightDiffuse + vertex.specular * sample->weightSpecular) * correction;
+    const float correction = vertex.ArrivalCorrection(vertex.toPrevious) * vertex.DepartureCorrection(sample.wi);
+    state.diffuse = (vertex.diffuse * sample.weightDiffuse + vertex.specular * sample.weightSpecular) * correction;
     state.specular = state.diffuse;
   } else {
     const Color throughput = vertex.Throughput();
-    state.diffuse = throughput * sample->weightDiffuse;
-    state.specular = throughput * sample->weightSpecular;
-    if (sample->isTransmission) state.etaScale *= Sqr(sample->eta);
+    state.diffuse = throughput * sample.weightDiffuse;
+    state.specular = throughput * sample.weightSpecular;
+    if (sample.isTransmission) state.etaScale *= Sqr(sample.eta);
   }
-  const EventDensities densities = DensitiesOf(*sample, vertex.ScatteringCosine(vertex.toPrevious),
-                                               vertex.ScatteringCosine(sample->wi), settings.mode);
-  vertex.scatteredDelta = sample->isDelta;
+  const EventDensities densities = DensitiesOf(sample, vertex.ScatteringCosine(vertex.toPrevious),
+                                               vertex.ScatteringCosine(sample.wi), settings.mode);
+  vertex.scatteredDelta = sample.isDelta;
   vertex.eventForward = densities.forward;
   vertex.eventReverse = densities.reverse;
   state.pdfDirection = densities.forward;
   if (!(state.pdfDirection.value > 0)) return false;
-  state.ray = SpawnRay(vertex.point, sample->wi, state.ray.time);
+  state.ray.origin = OffsetRayOrigin(vertex.point.position, vertex.point.positionError, vertex.point.Ng, sample.wi);
+  state.ray.direction = sample.wi;
+  state.ray.tMax = kInfinity;
   if (!settings.hasRoulette) return true;
   const Color carried = isFromLight ? state.diffuse : state.Throughput();
   const float survival = SurvivalProbability(carried / state.emitted, state.etaScale, index + 1);
@@ -98,12 +108,12 @@ void Walk(const SampleContext& context, const WalkSettings& settings, PathState&
     state.specular *= state.passed;
     if (!isHit) return visitor.Escaped(path, state);
     state.length += hit.t;
-    const SurfacePoint point = geometry.GetSurfacePoint(state.ray, hit);
-    if (!visitor.Met(path, state, hit, point, geometry.Attributes(hit.primitive).light >= 0)) return;
+    PathVertex& vertex = path.Next();
+    MakeInPlace(vertex.point, [&] { return geometry.GetSurfacePoint(state.ray, hit); });
+    if (!visitor.Met(path, state, hit, vertex.point, geometry.Attributes(hit.primitive).light >= 0)) return;
     const auto index = static_cast<int>(path.Count());
     if (index >= settings.maxDepth) return;
-    PathVertex& vertex = path.Next();
-    if (!MakeVertex(context.scene, state.ray, hit, point, vertex)) return;
+    if (!MakeVertex(context.scene, state.ray, hit, vertex)) return;
     vertex.diffuse = state.diffuse;
     vertex.specular = state.specular;
     path.Add();

@@ -29,22 +29,22 @@ struct PathState {
 // The vertices of a path so far. Reused from path to path, because vertices are large.
 class Subpath {
  public:
-  // Without `keepsAll` only the last vertex is kept.
+  // Without `keepsAll` only the last vertex is kept, and the next one while it is made.
   explicit Subpath(bool keepsAll = true) : keepsAll_(keepsAll) {}
 
   void Clear() { count_ = 0; }
   size_t Count() const { return count_; }
-  const PathVertex& operator[](size_t index) const { return vertices_[keepsAll_ ? index : 0]; }
-  PathVertex& operator[](size_t index) { return vertices_[keepsAll_ ? index : 0]; }
+  const PathVertex& operator[](size_t index) const { return vertices_[keepsAll_ ? index : index % 2]; }
+  PathVertex& operator[](size_t index) { return vertices_[keepsAll_ ? index : index % 2]; }
   const PathVertex& Last() const { return (*this)[count_ - 1]; }
   PathVertex& Last() { return (*this)[count_ - 1]; }
   std::span<const PathVertex> First(size_t count) const { return {vertices_.data(), count}; }
 
   // Storage of the next vertex, which counts only after Add(). May reallocate, which moves the other vertices.
   PathVertex& Next() {
-    const size_t index = keepsAll_ ? count_ : 0;
-    if (index >= vertices_.size()) vertices_.resize(keepsAll_ ? std::max<size_t>(8, 2 * index) : 1);
-    return vertices_[index];
+    if (keepsAll_ ? count_ >= vertices_.size() : vertices_.empty())
+      vertices_.resize(keepsAll_ ? std::max<size_t>(8, 2 * count_) : 2);
+    return (*this)[count_];
   }
   void Add() { ++count_; }
 
@@ -87,9 +87,5 @@ void Walk(const SampleContext& context, const WalkSettings& settings, PathState&
 // and the next ray of `state`. `index`: of the vertex, from 0. False: the path ends.
 bool Scatter(const SampleContext& context, const WalkSettings& settings, int index, PathVertex& vertex,
              PathState& state);
-
-// Makes a vertex of a hit: point, BSDF, receiver, visibility. False: the surface has no material and is black, and
-// paths end there.
-bool MakeVertex(const RenderScene& scene, const Ray& ray, const RayHit& hit, const SurfacePoint& point, Vertex& vertex);
 
 }  // namespace lampyr

@@ -63,8 +63,8 @@ struct Passage {
 Passage PassageAt(const Meeting& at, const RTCRay& ray, const RayHit& hit) {
   const PrimitiveRecord& record = at.record;
   Vector3 direction(ray.dir_x, ray.dir_y, ray.dir_z);
-  SurfacePoint point =
-      EvaluatePrimitive(record, {{ray.org_x, ray.org_y, ray.org_z}, direction, kInfinity, ray.time}, hit);
+  SurfacePoint point;
+  EvaluatePrimitive(record, {{ray.org_x, ray.org_y, ray.org_z}, direction, kInfinity, ray.time}, hit, point);
   // To render space: positions of textures are there, and instances may be stretched.
   if (at.instanceId != RTC_INVALID_GEOMETRY_ID) {
     const InstanceRecord& instance = record.tables->instances[at.instanceId - record.tables->firstInstanceId];

@@ -564,7 +564,7 @@ SurfacePoint GeometryScene::GetSurfacePoint(const Ray& ray, const RayHit& hit) c
   const PrimitiveRecord& record = tables.primitives[hit.primitive];
   SurfacePoint point;
   if (hit.instance == kNoIndex) [[likely]] {
-    point = EvaluatePrimitive(record, ray, hit);
+    EvaluatePrimitive(record, ray, hit, point);
   } else {
     const InstanceRecord& instance = tables.instances[hit.instance];
     std::optional<InstancePlacement> moved;
@@ -572,8 +572,8 @@ SurfacePoint GeometryScene::GetSurfacePoint(const Ray& ray, const RayHit& hit) c
       moved = PlacementAt(*instance.motion, ray.time);
     const InstancePlacement& placement = moved ? *moved : instance.placement;
     const Affine& toObject = placement.toObject;
-    point =
-        EvaluatePrimitive(record, {toObject.Point(ray.origin), toObject.Vector(ray.direction), hit.t, ray.time}, hit);
+    const Ray local{toObject.Point(ray.origin), toObject.Vector(ray.direction), hit.t, ray.time};
+    EvaluatePrimitive(record, local, hit, point);
     ApplyInstance(placement, point);
   }
   point.primitive = hit.primitive;

@@ -72,8 +72,7 @@ struct Evaluate {
 
 }  // namespace
 
-SurfacePoint EvaluatePrimitive(const PrimitiveRecord& record, const Ray& ray, const RayHit& hit) {
-  SurfacePoint point;
+void EvaluatePrimitive(const PrimitiveRecord& record, const Ray& ray, const RayHit& hit, SurfacePoint& point) {
   std::visit(Evaluate{ray, hit, point}, record.shape);
   point.isThin = record.thin != nullptr;
   // A surface in a coordinate plane has no error across it, and a ray that starts exactly on it would hit it again: the
@@ -84,7 +83,6 @@ SurfacePoint EvaluatePrimitive(const PrimitiveRecord& record, const Ray& ray, co
   if (coarse > kCoarse * hit.t * MaxAbsComponent(ray.direction)) [[unlikely]] {
     if (record.As<TriangleMesh>() || record.As<BilinearMesh>()) MoveOntoRay(record, ray, hit, point);
   }
-  return point;
 }
 
 InstancePlacement PlacementAt(const Motion& motion, float time) {

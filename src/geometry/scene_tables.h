@@ -55,7 +55,8 @@ struct SceneTables {
 };
 
 // Point of a hit in the space of the primitive, which `ray` is in too. `hit` needs t, patch, u and v.
-SurfacePoint EvaluatePrimitive(const PrimitiveRecord& record, const Ray& ray, const RayHit& hit);
+// `point`: a new one, to which it is written.
+void EvaluatePrimitive(const PrimitiveRecord& record, const Ray& ray, const RayHit& hit, SurfacePoint& point);
 
 // Transforms a point of an instanced object to render space.
 void ApplyInstance(const InstancePlacement& instance, SurfacePoint& point);

@@ -21,17 +21,15 @@ BsdfEvaluation Bsdf::Evaluate(const Vector3& wo, const Vector3& wi, TransportMod
   return std::visit([&](const auto& model) { return model.Evaluate(o, i, mode); }, model_);
 }
 
-std::optional<BsdfSample> Bsdf::Sample(const Vector3& wo, float uLobe, const Point2& u, TransportMode mode) const {
-  // The only variable that is returned: made in the caller's place, because a copy of what was just written field by
-  // field stalls on store forwarding.
-  std::optional<BsdfSample> sample;
-  if (const auto* diffuse = std::get_if<DiffuseBsdf>(&model_)) {
-    const float cosO = glm::dot(wo, frame_.z);
-    if (cosO != 0) diffuse->Sample(cosO, u, sample.emplace());
-  } else if (const Vector3 o = frame_.ToLocal(wo); o.z != 0) {
-    sample = std::visit([&](const auto& model) { return model.Sample(o, uLobe, u, mode); }, model_);
-  }
-  if (sample) sample->wi = Renormalize(frame_.ToWorld(sample->wi));
+BsdfSample Bsdf::SampleLocal(const Vector3& wo, float uLobe, const Point2& u, TransportMode mode) const {
+  if (wo.z == 0) return {};
+  if (const auto* diffuse = std::get_if<DiffuseBsdf>(&model_)) return diffuse->Sample(wo, uLobe, u, mode);
+  return std::visit([&](const auto& model) { return model.Sample(wo, uLobe, u, mode); }, model_);
+}
+
+BsdfSample Bsdf::Sample(const Vector3& wo, float uLobe, const Point2& u, TransportMode mode) const {
+  BsdfSample sample = SampleLocal(frame_.ToLocal(wo), uLobe, u, mode);
+  if (sample) sample.wi = Renormalize(frame_.ToWorld(sample.wi));
   return sample;
 }
 

@@ -13,7 +13,6 @@
 //   adjoint correction, which integrators apply.
 #pragma once
 
-#include <optional>
 #include <variant>
 
 #include "materials/bsdf_models.h"
@@ -31,8 +30,8 @@ class Bsdf {
   // f and both densities; 0 for delta lobes.
   BsdfEvaluation Evaluate(const Vector3& wo, const Vector3& wi, TransportMode mode) const;
 
-  // Samples wi: `uLobe` chooses a lobe, `u` a direction; both in [0,1). nullopt: absorbed.
-  std::optional<BsdfSample> Sample(const Vector3& wo, float uLobe, const Point2& u, TransportMode mode) const;
+  // Samples wi: `uLobe` chooses a lobe, `u` a direction; both in [0,1). False: absorbed.
+  BsdfSample Sample(const Vector3& wo, float uLobe, const Point2& u, TransportMode mode) const;
 
   // True if all lobes are delta lobes (or there are none): next-event estimation contributes nothing.
   bool IsDelta() const;
@@ -60,6 +59,8 @@ class Bsdf {
   const Normal3& Ng() const { return Ng_; }
 
  private:
+  BsdfSample SampleLocal(const Vector3& wo, float uLobe, const Point2& u, TransportMode mode) const;
+
   Frame frame_{};
   Normal3 Ng_{0, 0, 1};
   BsdfModel model_;

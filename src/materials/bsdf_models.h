@@ -4,7 +4,6 @@
 // with the meaning of the same methods of Bsdf.
 #pragma once
 
-#include <optional>
 #include <type_traits>
 #include <variant>
 
@@ -22,7 +21,7 @@ namespace lampyr {
 // Absorbs everything.
 struct AbsorbingBsdf {
   BsdfEvaluation Evaluate(const Vector3&, const Vector3&, TransportMode) const { return {}; }
-  std::optional<BsdfSample> Sample(const Vector3&, float, const Point2&, TransportMode) const { return std::nullopt; }
+  BsdfSample Sample(const Vector3&, float, const Point2&, TransportMode) const { return {}; }
   bool IsDelta() const { return true; }
   bool IsTransmissive() const { return false; }
 };

@@ -109,8 +109,7 @@ BsdfEvaluation CoatedConductorBsdf::Evaluate(const Vector3& wo, const Vector3& w
 }
 
 // The mirror direction as a delta: the reflection of the coat and, with a smooth base, all orders between the two.
-BsdfSample CoatedConductorBsdf::SampleMirror(const Vector3& wo) const {
-  BsdfSample sample;
+void CoatedConductorBsdf::SampleMirror(const Vector3& wo, BsdfSample& sample) const {
   const float cosO = std::abs(wo.z), cosT = RefractedCosine(cosO, settings_->eta);
   const float R = FresnelDielectric(cosO, cosT, settings_->eta);
   sample.wi = {-wo.x, -wo.y, wo.z};
@@ -121,26 +120,27 @@ BsdfSample CoatedConductorBsdf::SampleMirror(const Vector3& wo) const {
     const Color base = FresnelConductor(cosT, eta_, k_) * std::exp(-2 * settings_->thickness / cosT);
     sample.weightSpecular += base * SumBounces(base, R, R, settings_->bounces) * Sqr(1 - R);
   }
-  return sample;
 }
 
-std::optional<BsdfSample> CoatedConductorBsdf::Sample(const Vector3& wo, float uLobe, const Point2& u,
-                                                      TransportMode) const {
-  if (IsDelta()) return SampleMirror(wo);
+BsdfSample CoatedConductorBsdf::Sample(const Vector3& wo, float uLobe, const Point2& u, TransportMode) const {
+  BsdfSample sample;
+  if (IsDelta()) {
+    SampleMirror(wo, sample);
+    return sample;
+  }
   const Vector3 o = wo.z < 0 ? -wo : wo;
   const float coatO = CoatProbability(o.z);
   const bool takeCoat = uLobe < coatO;
   if (takeCoat && CoatIsDelta()) {
-    BsdfSample sample = SampleMirror(wo);
+    SampleMirror(wo, sample);
     sample.weightSpecular = sample.weightSpecular / coatO;
     sample.pdfForward = sample.pdfReverse = PdfSolidAngle(coatO);
     return sample;
   }
   const auto wi = takeCoat ? SampleMicrofacetMirror(coat_, o, u) : SampleBase(o, u);
-  if (!wi) return std::nullopt;
+  if (!wi) return sample;
   const BsdfEvaluation value = EvaluateUpper(o, *wi);
-  if (!(value.pdfForward.value > 0)) return std::nullopt;
-  BsdfSample sample;
+  if (!(value.pdfForward.value > 0)) return sample;
   sample.wi = wo.z < 0 ? -*wi : *wi;
   sample.weightSpecular = value.specular * (wi->z / value.pdfForward.value);
   sample.pdfForward = value.pdfForward;

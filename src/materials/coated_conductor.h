@@ -47,7 +47,7 @@ class CoatedConductorBsdf {
                       const CoatedConductorSettings& settings);
 
   BsdfEvaluation Evaluate(const Vector3& wo, const Vector3& wi, TransportMode mode) const;
-  std::optional<BsdfSample> Sample(const Vector3& wo, float uLobe, const Point2& u, TransportMode mode) const;
+  BsdfSample Sample(const Vector3& wo, float uLobe, const Point2& u, TransportMode mode) const;
   bool IsDelta() const { return base_.IsSmooth(); }  // implies a delta coat (Widen)
   bool IsTransmissive() const { return false; }
 
@@ -62,7 +62,7 @@ class CoatedConductorBsdf {
   Base EvaluateBase(const Vector3& wo, const Vector3& wi) const;
   std::optional<Vector3> SampleBase(const Vector3& wo, const Point2& u) const;
   BsdfEvaluation EvaluateUpper(const Vector3& wo, const Vector3& wi) const;
-  BsdfSample SampleMirror(const Vector3& wo) const;
+  void SampleMirror(const Vector3& wo, BsdfSample& sample) const;
 
   TrowbridgeReitz coat_, base_;  // base_ is widened
   Color eta_, k_;

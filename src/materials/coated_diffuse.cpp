@@ -45,8 +45,7 @@ BsdfEvaluation CoatedDiffuseBsdf::Evaluate(const Vector3& wo, const Vector3& wi,
   return result;
 }
 
-std::optional<BsdfSample> CoatedDiffuseBsdf::Sample(const Vector3& wo, float uLobe, const Point2& u,
-                                                    TransportMode mode) const {
+BsdfSample CoatedDiffuseBsdf::Sample(const Vector3& wo, float uLobe, const Point2& u, TransportMode mode) const {
   const Vector3 o = wo.z < 0 ? -wo : wo;
   const float coatO = CoatProbability(o.z, table_->Transmittance(o.z, slice_));
   const bool takeCoat = uLobe < coatO;
@@ -58,11 +57,11 @@ std::optional<BsdfSample> CoatedDiffuseBsdf::Sample(const Vector3& wo, float uLo
     sample.isDelta = true;
     return sample;
   }
-  if (!takeCoat && base_.IsBlack()) return std::nullopt;
+  if (!takeCoat && base_.IsBlack()) return sample;
   const auto wi = takeCoat ? SampleMicrofacetMirror(microfacets_, o, u) : SampleCosineHemisphere(u);
-  if (!wi) return std::nullopt;
+  if (!wi) return sample;
   const BsdfEvaluation value = Evaluate(o, *wi, mode);
-  if (!(value.pdfForward.value > 0)) return std::nullopt;
+  if (!(value.pdfForward.value > 0)) return sample;
   sample.wi = wo.z < 0 ? -*wi : *wi;
   const float scale = wi->z / value.pdfForward.value;
   sample.weightDiffuse = value.diffuse * scale;

@@ -11,8 +11,6 @@
 // have no such weights.
 #pragma once
 
-#include <optional>
-
 #include "materials/coat_table.h"
 #include "materials/microfacet.h"
 #include "materials/scattering.h"
@@ -26,7 +24,7 @@ class CoatedDiffuseBsdf {
                     const CoatTable& table);
 
   BsdfEvaluation Evaluate(const Vector3& wo, const Vector3& wi, TransportMode mode) const;
-  std::optional<BsdfSample> Sample(const Vector3& wo, float uLobe, const Point2& u, TransportMode mode) const;
+  BsdfSample Sample(const Vector3& wo, float uLobe, const Point2& u, TransportMode mode) const;
   bool IsDelta() const { return CoatIsDelta() && base_.IsBlack(); }
   bool IsTransmissive() const { return false; }
 

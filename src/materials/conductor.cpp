@@ -19,7 +19,7 @@ BsdfEvaluation ConductorBsdf::Evaluate(const Vector3& wo, const Vector3& wi, Tra
   return result;
 }
 
-std::optional<BsdfSample> ConductorBsdf::Sample(const Vector3& wo, float, const Point2& u, TransportMode) const {
+BsdfSample ConductorBsdf::Sample(const Vector3& wo, float, const Point2& u, TransportMode) const {
   BsdfSample sample;
   if (microfacets.IsSmooth()) {
     sample.wi = {-wo.x, -wo.y, wo.z};
@@ -32,7 +32,7 @@ std::optional<BsdfSample> ConductorBsdf::Sample(const Vector3& wo, float, const 
   const Vector3 m = microfacets.SampleVisibleNormal(up, u);
   const float cosine = glm::dot(up, m);
   const Vector3 wi = Reflect(up, m, cosine);
-  if (!(wi.z > 0)) return std::nullopt;
+  if (!(wi.z > 0)) return sample;
   const float D = microfacets.D(m);
   const float stretchO = microfacets.Stretch(up), stretchI = microfacets.Stretch(wi);
   sample.wi = wo.z < 0 ? -wi : wi;

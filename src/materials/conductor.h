@@ -2,8 +2,6 @@
 // alike.
 #pragma once
 
-#include <optional>
-
 #include "materials/microfacet.h"
 #include "materials/scattering.h"
 
@@ -14,7 +12,7 @@ struct ConductorBsdf {
   Color eta, k;  // complex index of refraction, relative to the outside
 
   BsdfEvaluation Evaluate(const Vector3& wo, const Vector3& wi, TransportMode mode) const;
-  std::optional<BsdfSample> Sample(const Vector3& wo, float uLobe, const Point2& u, TransportMode mode) const;
+  BsdfSample Sample(const Vector3& wo, float uLobe, const Point2& u, TransportMode mode) const;
   bool IsDelta() const { return microfacets.IsSmooth(); }
   bool IsTransmissive() const { return false; }
 };

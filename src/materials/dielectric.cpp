@@ -51,48 +51,45 @@ BsdfEvaluation EvaluateTransmission(const TrowbridgeReitz& microfacets, float et
   return result;
 }
 
-std::optional<BsdfSample> SampleSmooth(float eta, const Vector3& wo, float uLobe, TransportMode mode) {
+void SampleSmooth(float eta, const Vector3& wo, float uLobe, TransportMode mode, BsdfSample& sample) {
   const float cosT = RefractedCosine(wo.z, eta);
   const float F = FresnelDielectric(wo.z, cosT, eta);
-  BsdfSample sample;
   sample.isDelta = true;
   if (uLobe < F) {
     sample.wi = {-wo.x, -wo.y, wo.z};
     sample.weightSpecular = Color(1.0f);
     sample.pdfForward = sample.pdfReverse = PdfSolidAngle(F);
-    return sample;
+    return;
   }
   sample.wi = {-wo.x / eta, -wo.y / eta, eta == 1 ? -wo.z : -cosT};
-  if (!(sample.wi.z < 0)) return std::nullopt;
+  if (!(sample.wi.z < 0)) return;
   sample.weightSpecular = Color(mode == TransportMode::Radiance ? 1 / (eta * eta) : 1.0f);
   sample.pdfForward = sample.pdfReverse = PdfSolidAngle(1 - F);
   sample.isTransmission = true;
   sample.eta = eta;
-  return sample;
 }
 
-std::optional<BsdfSample> SampleRough(const TrowbridgeReitz& microfacets, float eta, const Vector3& wo, float uLobe,
-                                      const Point2& u, TransportMode mode) {
+void SampleRough(const TrowbridgeReitz& microfacets, float eta, const Vector3& wo, float uLobe, const Point2& u,
+                 TransportMode mode, BsdfSample& sample) {
   const Vector3 m = microfacets.SampleVisibleNormal(wo, u);
   const float cosO = std::min(glm::dot(wo, m), 1.0f);
-  if (!(cosO > 0)) return std::nullopt;
+  if (!(cosO > 0)) return;
   const float cosT = RefractedCosine(cosO, eta);
   const float F = FresnelDielectric(cosO, cosT, eta);
   const float stretchO = microfacets.Stretch(wo);
   const float D = microfacets.D(m);
-  BsdfSample sample;
   if (uLobe < F) {
     sample.wi = Reflect(wo, m, cosO);
-    if (!(sample.wi.z > 0)) return std::nullopt;
+    if (!(sample.wi.z > 0)) return;
     const float stretchI = microfacets.Stretch(sample.wi);
     sample.weightSpecular = Color(TrowbridgeReitz::ShadowingRatio(wo.z, stretchO, sample.wi.z, stretchI));
     sample.pdfForward = PdfSolidAngle(0.25f * F * D * TrowbridgeReitz::VisibleFactor(wo.z, stretchO));
     sample.pdfReverse = PdfSolidAngle(0.25f * F * D * TrowbridgeReitz::VisibleFactor(sample.wi.z, stretchI));
-    return sample;
+    return;
   }
-  if (!(cosT > 0)) return std::nullopt;
+  if (!(cosT > 0)) return;
   sample.wi = wo * (-1 / eta) + RefractionShift(cosO, cosT, eta) * m;
-  if (!(sample.wi.z < 0)) return std::nullopt;
+  if (!(sample.wi.z < 0)) return;
   const float stretchI = microfacets.Stretch(sample.wi);
   const float invEtaSquared = 1 / (eta * eta);
   const float ratio = TrowbridgeReitz::ShadowingRatio(wo.z, stretchO, -sample.wi.z, stretchI);
@@ -102,7 +99,6 @@ std::optional<BsdfSample> SampleRough(const TrowbridgeReitz& microfacets, float 
   sample.pdfReverse = PdfSolidAngle(value * invEtaSquared * TrowbridgeReitz::VisibleFactor(-sample.wi.z, stretchI));
   sample.isTransmission = true;
   sample.eta = eta;
-  return sample;
 }
 
 }  // namespace
@@ -116,14 +112,17 @@ BsdfEvaluation DielectricBsdf::Evaluate(const Vector3& wo, const Vector3& wi, Tr
                  : EvaluateTransmission(microfacets, relative, o, i, mode);
 }
 
-std::optional<BsdfSample> DielectricBsdf::Sample(const Vector3& wo, float uLobe, const Point2& u,
-                                                 TransportMode mode) const {
+BsdfSample DielectricBsdf::Sample(const Vector3& wo, float uLobe, const Point2& u, TransportMode mode) const {
   const bool inside = wo.z < 0;
   const Vector3 o = inside ? -wo : wo;
   const float relative = inside ? 1 / eta : eta;
-  auto sample =
-      IsDelta() ? SampleSmooth(relative, o, uLobe, mode) : SampleRough(microfacets, relative, o, uLobe, u, mode);
-  if (sample && inside) sample->wi = -sample->wi;
+  BsdfSample sample;
+  if (IsDelta()) {
+    SampleSmooth(relative, o, uLobe, mode, sample);
+  } else {
+    SampleRough(microfacets, relative, o, uLobe, u, mode, sample);
+  }
+  if (inside) sample.wi = -sample.wi;
   return sample;
 }
 
@@ -132,8 +131,7 @@ float ThinReflectance(float cosTheta, float eta) {
   return R < 1 ? R + Sqr(1 - R) * R / (1 - R * R) : 1.0f;
 }
 
-std::optional<BsdfSample> ThinDielectricBsdf::Sample(const Vector3& wo, float uLobe, const Point2&,
-                                                     TransportMode) const {
+BsdfSample ThinDielectricBsdf::Sample(const Vector3& wo, float uLobe, const Point2&, TransportMode) const {
   const float R = isReflectionOnly ? 1.0f : ThinReflectance(std::abs(wo.z), eta);
   const bool reflects = uLobe < R;
   BsdfSample sample;

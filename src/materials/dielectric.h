@@ -2,8 +2,6 @@
 // Trowbridge-Reitz microfacets ([Walter07]); and a thin surface, which combines two parallel boundaries.
 #pragma once
 
-#include <optional>
-
 #include "materials/microfacet.h"
 #include "materials/scattering.h"
 
@@ -16,7 +14,7 @@ struct DielectricBsdf {
   float eta = 1;
 
   BsdfEvaluation Evaluate(const Vector3& wo, const Vector3& wi, TransportMode mode) const;
-  std::optional<BsdfSample> Sample(const Vector3& wo, float uLobe, const Point2& u, TransportMode mode) const;
+  BsdfSample Sample(const Vector3& wo, float uLobe, const Point2& u, TransportMode mode) const;
   bool IsDelta() const { return eta == 1 || microfacets.IsSmooth(); }
   bool IsTransmissive() const { return true; }
 };
@@ -32,7 +30,7 @@ struct ThinDielectricBsdf {
   bool isReflectionOnly = false;
 
   BsdfEvaluation Evaluate(const Vector3&, const Vector3&, TransportMode) const { return {}; }
-  std::optional<BsdfSample> Sample(const Vector3& wo, float uLobe, const Point2& u, TransportMode mode) const;
+  BsdfSample Sample(const Vector3& wo, float uLobe, const Point2& u, TransportMode mode) const;
   bool IsDelta() const { return true; }
   bool IsTransmissive() const { return true; }
 };

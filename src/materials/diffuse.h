@@ -1,8 +1,6 @@
 // Lambertian reflection and transmission: f = ρ/π, sampled by the cosine. Units 1/sr.
 #pragma once
 
-#include <optional>
-
 #include "materials/scattering.h"
 #include "sampling/warp.h"
 
@@ -18,18 +16,14 @@ struct DiffuseBsdf {
             PdfSolidAngle(std::abs(wo.z) * kInvPi)};
   }
 
-  std::optional<BsdfSample> Sample(const Vector3& wo, float, const Point2& u, TransportMode) const {
+  BsdfSample Sample(const Vector3& wo, float, const Point2& u, TransportMode) const {
     BsdfSample sample;
-    Sample(wo.z, u, sample);
-    return sample;
-  }
-  // The same, written to a new `sample`.
-  void Sample(float cosO, const Point2& u, BsdfSample& sample) const {
     sample.wi = SampleCosineHemisphere(u);
     sample.pdfForward = PdfSolidAngle(sample.wi.z * kInvPi);
-    sample.pdfReverse = PdfSolidAngle(std::abs(cosO) * kInvPi);
+    sample.pdfReverse = PdfSolidAngle(std::abs(wo.z) * kInvPi);
     sample.weightDiffuse = reflectance;
-    if (cosO < 0) sample.wi.z = -sample.wi.z;
+    if (wo.z < 0) sample.wi.z = -sample.wi.z;
+    return sample;
   }
 
   bool IsDelta() const { return false; }
@@ -52,12 +46,12 @@ struct DiffuseTransmissionBsdf {
             PdfSolidAngle(probability * std::abs(wi.z) * kInvPi), PdfSolidAngle(probability * std::abs(wo.z) * kInvPi)};
   }
 
-  std::optional<BsdfSample> Sample(const Vector3& wo, float uLobe, const Point2& u, TransportMode) const {
+  BsdfSample Sample(const Vector3& wo, float uLobe, const Point2& u, TransportMode) const {
     const float reflection = ReflectionProbability();
     const bool reflects = uLobe < reflection;
     const float probability = reflects ? reflection : 1 - reflection;
-    if (!(probability > 0)) return std::nullopt;
     BsdfSample sample;
+    if (!(probability > 0)) return sample;
     sample.wi = SampleCosineHemisphere(u);
     sample.pdfForward = PdfSolidAngle(probability * sample.wi.z * kInvPi);
     sample.pdfReverse = PdfSolidAngle(probability * std::abs(wo.z) * kInvPi);

@@ -162,11 +162,12 @@ BsdfEvaluation HairBsdf::Evaluate(const Vector3& wo, const Vector3& wi, Transpor
   return Scatter(wo, wi, LobesFrom(wo, OffsetFrom(mode)), mode);
 }
 
-std::optional<BsdfSample> HairBsdf::Sample(const Vector3& wo, float uLobe, const Point2& u, TransportMode mode) const {
+BsdfSample HairBsdf::Sample(const Vector3& wo, float uLobe, const Point2& u, TransportMode mode) const {
+  BsdfSample sample;
   const Lobes lobes = LobesFrom(wo, OffsetFrom(mode));
   float uAround = uLobe;
   const int p = lobes.Choose(uAround);
-  if (!(lobes.probability[p] > 0)) return std::nullopt;
+  if (!(lobes.probability[p] > 0)) return sample;
   // M_p is the marginal in θ of a von Mises-Fisher distribution around the tilted -θ, which is sampled by 1 - cos of
   // the angle to its axis and the azimuth around the axis.
   const float v = along_[std::min(p, 2)].variance;
@@ -178,11 +179,10 @@ std::optional<BsdfSample> HairBsdf::Sample(const Vector3& wo, float uLobe, const
   const float cosTheta = std::sqrt(Sqr(inPlane) + Sqr(sine * around.y));
   const float phi = p < 3 ? lobes.exit[p] + SampleTrimmedLogistic(u.y, scale_) : 2 * kPi * u.y;
   const float c = std::cos(phi), s = std::sin(phi);
-  BsdfSample sample;
   sample.wi = glm::normalize(Vector3(sinTheta, cosTheta * (lobes.cosPhi * c - lobes.sinPhi * s),
                                      cosTheta * (lobes.sinPhi * c + lobes.cosPhi * s)));
   const BsdfEvaluation value = Scatter(wo, sample.wi, lobes, mode);
-  if (!(value.pdfForward.value > 0)) return std::nullopt;
+  if (!(value.pdfForward.value > 0)) return sample;
   sample.weightSpecular = value.specular * (ScatteringCosine(sample.wi) / value.pdfForward.value);
   sample.pdfForward = value.pdfForward;
   sample.pdfReverse = value.pdfReverse;

@@ -14,8 +14,6 @@
 // path is -h, by which light paths are sampled. All lobes count as specular.
 #pragma once
 
-#include <optional>
-
 #include "materials/scattering.h"
 
 namespace lampyr {
@@ -33,7 +31,7 @@ struct HairBsdf {
   HairBsdf(const Color& sigmaA, float eta, float betaM, float betaN, float alpha);
 
   BsdfEvaluation Evaluate(const Vector3& wo, const Vector3& wi, TransportMode mode) const;
-  std::optional<BsdfSample> Sample(const Vector3& wo, float uLobe, const Point2& u, TransportMode mode) const;
+  BsdfSample Sample(const Vector3& wo, float uLobe, const Point2& u, TransportMode mode) const;
   bool IsDelta() const { return false; }
   bool IsTransmissive() const { return true; }
   // C(w), positive.

@@ -143,7 +143,8 @@ BsdfEvaluation MeasuredBsdf::Evaluate(const Vector3& wo, const Vector3& wi, Tran
   return result;
 }
 
-std::optional<BsdfSample> MeasuredBsdf::Sample(const Vector3& wo, float, const Point2& u, TransportMode mode) const {
+BsdfSample MeasuredBsdf::Sample(const Vector3& wo, float, const Point2& u, TransportMode mode) const {
+  BsdfSample sample;
   const Vector3 o = wo.z < 0 ? -wo : wo;
   const Incidence incidence(*data, o);
   const Point2d onLuminance = data->luminance.Sample(incidence.Blend(), Point2d(u.x, u.y));
@@ -151,13 +152,12 @@ std::optional<BsdfSample> MeasuredBsdf::Sample(const Vector3& wo, float, const P
   const Vector3d half = incidence.HalfAt(onNormals), towards(o);
   const double cosine = glm::dot(half, towards);
   const Vector3d reflected = 2 * cosine * half - towards;
-  if (!(cosine > 0) || !(reflected.z > 0)) return std::nullopt;
+  if (!(cosine > 0) || !(reflected.z > 0)) return sample;
   const Vector3 i(reflected / glm::length(reflected));
-  if (!(i.z > 0)) return std::nullopt;
+  if (!(i.z > 0)) return sample;
   // The densities are those of the direction as it is rounded.
   const BsdfEvaluation value = Evaluate(o, i, mode);
-  if (!(value.pdfForward.value > 0)) return std::nullopt;
-  BsdfSample sample;
+  if (!(value.pdfForward.value > 0)) return sample;
   sample.wi = wo.z < 0 ? -i : i;
   sample.weightSpecular = value.specular * (i.z / value.pdfForward.value);
   sample.pdfForward = value.pdfForward;

@@ -5,7 +5,6 @@
 // both transport modes, because measured tables are not exactly reciprocal. Both sides are alike.
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "materials/measured_table.h"
@@ -35,7 +34,7 @@ struct MeasuredBsdf {
   const MeasuredData* data = nullptr;
 
   BsdfEvaluation Evaluate(const Vector3& wo, const Vector3& wi, TransportMode mode) const;
-  std::optional<BsdfSample> Sample(const Vector3& wo, float uLobe, const Point2& u, TransportMode mode) const;
+  BsdfSample Sample(const Vector3& wo, float uLobe, const Point2& u, TransportMode mode) const;
   bool IsDelta() const { return false; }
   bool IsTransmissive() const { return false; }
 };

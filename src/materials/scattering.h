@@ -16,6 +16,8 @@ struct BsdfEvaluation {
   Color Sum() const { return diffuse + specular; }
 };
 
+// False if the path is absorbed. Functions that make one return the same variable everywhere: it is then made in the
+// caller's place, and a copy of what was just written field by field stalls on store forwarding.
 struct BsdfSample {
   Vector3 wi{0.0f};
   // f · |cosθi| / pdf, split by lobe; computed without the division where it cancels.
@@ -26,6 +28,7 @@ struct BsdfSample {
   float eta = 1;  // η on wi's side over η on wo's side for transmission; 1 otherwise
 
   Color Weight() const { return weightDiffuse + weightSpecular; }
+  explicit operator bool() const { return pdfForward.value > 0; }
 };
 
 }  // namespace lampyr

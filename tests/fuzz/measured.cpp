@@ -20,9 +20,9 @@ bool ReadMeasuredFile(std::string_view bytes) {
       const Vector3 wo(across * std::cos(phi), across * std::sin(phi), z);
       const auto sample = bsdf.Sample(wo, part, {part, 1 - part}, TransportMode::Radiance);
       if (!sample) continue;
-      if (!(std::abs(glm::length(sample->wi) - 1) < 1e-5f)) Fail("a sample without a direction");
-      if (!(sample->pdfForward.value > 0) || !(sample->pdfReverse.value >= 0)) Fail("a sample without a density");
-      const BsdfEvaluation value = bsdf.Evaluate(wo, sample->wi, TransportMode::Importance);
+      if (!(std::abs(glm::length(sample.wi) - 1) < 1e-5f)) Fail("a sample without a direction");
+      if (!(sample.pdfForward.value > 0) || !(sample.pdfReverse.value >= 0)) Fail("a sample without a density");
+      const BsdfEvaluation value = bsdf.Evaluate(wo, sample.wi, TransportMode::Importance);
       if (!(value.specular.Max() >= 0)) Fail("a value that is no number");
     }
   });

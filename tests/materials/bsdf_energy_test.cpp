@@ -26,7 +26,7 @@ Mean Albedo(const Bsdf& bsdf, const Vector3& wo, int samples, uint64_t seed,
   for (int i = 0; i < samples; ++i) {
     const float uLobe = rng.NextFloat();
     const auto sample = bsdf.Sample(wo, uLobe, rng.NextPoint2(), mode);
-    mean.Add(sample ? static_cast<double>(sample->Weight().Max()) : 0.0);
+    mean.Add(sample ? static_cast<double>(sample.Weight().Max()) : 0.0);
   }
   return mean;
 }
@@ -43,8 +43,8 @@ TEST(BsdfEnergy, ReciprocityAndAdjoint) {
       const Vector3 wo = SampleUniformSphere(rng.NextPoint2());
       const float uLobe = rng.NextFloat();
       const auto sample = bsdf.Sample(wo, uLobe, rng.NextPoint2(), TransportMode::Radiance);
-      if (!sample || sample->isDelta) continue;
-      const Vector3 wi = sample->wi;
+      if (!sample || sample.isDelta) continue;
+      const Vector3 wi = sample.wi;
       if (AbsDot(wi, bsdf.ShadingFrame().z) < 1e-3f || AbsDot(wo, bsdf.ShadingFrame().z) < 1e-3f) continue;
       const Color radiance = bsdf.Evaluate(wo, wi, TransportMode::Radiance).Sum();
       const Color importance = bsdf.Evaluate(wo, wi, TransportMode::Importance).Sum();
@@ -52,7 +52,7 @@ TEST(BsdfEnergy, ReciprocityAndAdjoint) {
       EXPECT_NEAR(adjoint.g, radiance.g, model.tolerance * radiance.g) << model.name;
       ++compared;
       if (model.isHair || !model.isReciprocal) continue;
-      const float etaSquared = sample->eta * sample->eta;
+      const float etaSquared = sample.eta * sample.eta;
       EXPECT_NEAR(importance.g, radiance.g * etaSquared, 1e-4f * importance.g) << model.name;
     }
   }
@@ -86,9 +86,9 @@ TEST(BsdfEnergy, SmoothGlassLosesNothing) {
         const auto importance = bsdf.Sample(wo, uLobe, u, TransportMode::Importance);
         const auto radiance = bsdf.Sample(wo, uLobe, u, TransportMode::Radiance);
         ASSERT_TRUE(importance && radiance);
-        EXPECT_EQ(importance->Weight(), Color(1.0f));
-        EXPECT_NEAR(radiance->Weight().g * radiance->eta * radiance->eta, 1, 1e-6f);
-        EXPECT_TRUE(eta != 1 || glm::length(importance->wi + wo) < 1e-6f);
+        EXPECT_EQ(importance.Weight(), Color(1.0f));
+        EXPECT_NEAR(radiance.Weight().g * radiance.eta * radiance.eta, 1, 1e-6f);
+        EXPECT_TRUE(eta != 1 || glm::length(importance.wi + wo) < 1e-6f);
       }
     }
   }
@@ -103,8 +103,7 @@ TEST(BsdfEnergy, LosslessCoatOverWhite) {
       const Vector3 wo = diffuse.ShadingFrame().ToWorld(local);
       const Mean albedo = Albedo(diffuse, wo, 20000, 13);
       EXPECT_NEAR(albedo.Value(), 1, 3e-3 + 4 * albedo.Error()) << "eta " << eta << ", z = " << local.z;
-      EXPECT_NEAR(metal.Sample(wo, 0.5f, {0.5f, 0.5f}, TransportMode::Importance)->Weight().g, 1, 2e-3)
-          << "eta " << eta;
+      EXPECT_NEAR(metal.Sample(wo, 0.5f, {0.5f, 0.5f}, TransportMode::Importance).Weight().g, 1, 2e-3) << "eta " << eta;
     }
   }
 }
@@ -130,18 +129,17 @@ TEST(BsdfExtremes, EverythingIsFinite) {
       if (i % 5 == 0) u = {i % 2 ? 0.0f : kOneMinusEpsilon, i % 4 < 2 ? 0.0f : kOneMinusEpsilon};
       const float uLobe = i % 13 == 0 ? 0.0f : i % 17 == 0 ? kOneMinusEpsilon : rng.NextFloat();
       const auto sample = bsdf.Sample(wo, uLobe, u, mode);
-      const Vector3 wi = sample && i % 2 ? sample->wi : i % 3 ? SampleUniformSphere(rng.NextPoint2()) : -wo;
+      const Vector3 wi = sample && i % 2 ? sample.wi : i % 3 ? SampleUniformSphere(rng.NextPoint2()) : -wo;
       const BsdfEvaluation value = bsdf.Evaluate(wo, wi, mode);
       ASSERT_TRUE(value.diffuse.IsValid() && value.specular.IsValid() && finite(value.pdfForward.value) &&
                   finite(value.pdfReverse.value))
           << name << ", wo z " << local.z << ", f " << value.specular.g << ", pdf " << value.pdfForward.value
           << ", reverse " << value.pdfReverse.value;
       if (!sample) continue;
-      ASSERT_TRUE(IsFinite(sample->wi) && sample->Weight().IsValid() && finite(sample->pdfForward.value) &&
-                  finite(sample->pdfReverse.value))
-          << name << ", wo z " << local.z << ", weight " << sample->Weight().g;
-      ASSERT_LT(sample->Weight().Max() * std::min(1.0f, sample->eta * sample->eta), 1000)
-          << name << ", wo z " << local.z;
+      ASSERT_TRUE(IsFinite(sample.wi) && sample.Weight().IsValid() && finite(sample.pdfForward.value) &&
+                  finite(sample.pdfReverse.value))
+          << name << ", wo z " << local.z << ", weight " << sample.Weight().g;
+      ASSERT_LT(sample.Weight().Max() * std::min(1.0f, sample.eta * sample.eta), 1000) << name << ", wo z " << local.z;
       ++samples;
     }
   };

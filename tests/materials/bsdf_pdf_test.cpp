@@ -49,8 +49,8 @@ TEST(BsdfPdf, SampledDirectionsFollowTheDensity) {
           [&]() -> std::optional<Vector3> {
             const float uLobe = rng.NextFloat();
             const auto sample = bsdf.Sample(wo, uLobe, rng.NextPoint2(), TransportMode::Radiance);
-            if (!sample || sample->isDelta) return std::nullopt;
-            return frame.ToLocal(sample->wi);
+            if (!sample || sample.isDelta) return std::nullopt;
+            return frame.ToLocal(sample.wi);
           },
           [&](const Vector3& wi) {
             return static_cast<double>(bsdf.Evaluate(wo, frame.ToWorld(wi), TransportMode::Radiance).pdfForward.value);
@@ -78,24 +78,24 @@ TEST(BsdfPdf, SampleReportsWhatEvaluateSays) {
         const float uLobe = rng.NextFloat();
         const auto sample = bsdf.Sample(wo, uLobe, rng.NextPoint2(), mode);
         if (!sample) continue;
-        EXPECT_NEAR(glm::length(sample->wi), 1, 1e-6f) << model.name;
-        EXPECT_EQ(sample->isTransmission, glm::dot(sample->wi, bsdf.ShadingFrame().z) * local.z < 0) << model.name;
-        const BsdfEvaluation value = bsdf.Evaluate(wo, sample->wi, mode);
-        if (sample->isDelta) {
-          EXPECT_GT(sample->pdfForward.value, 0) << model.name;
-          EXPECT_LE(sample->pdfForward.value, 1) << model.name;
+        EXPECT_NEAR(glm::length(sample.wi), 1, 1e-6f) << model.name;
+        EXPECT_EQ(sample.isTransmission, glm::dot(sample.wi, bsdf.ShadingFrame().z) * local.z < 0) << model.name;
+        const BsdfEvaluation value = bsdf.Evaluate(wo, sample.wi, mode);
+        if (sample.isDelta) {
+          EXPECT_GT(sample.pdfForward.value, 0) << model.name;
+          EXPECT_LE(sample.pdfForward.value, 1) << model.name;
           continue;
         }
-        const float cosine = bsdf.ScatteringCosine(sample->wi);
+        const float cosine = bsdf.ScatteringCosine(sample.wi);
         if (cosine < 1e-3f) continue;  // a rounded direction says little about so small a cosine
         const float tolerance = model.tolerance;
-        EXPECT_TRUE(Near(value.pdfForward.value, sample->pdfForward.value, tolerance))
-            << model.name << ": " << value.pdfForward.value << " against " << sample->pdfForward.value;
-        EXPECT_TRUE(Near(value.pdfReverse.value, sample->pdfReverse.value, tolerance)) << model.name;
+        EXPECT_TRUE(Near(value.pdfForward.value, sample.pdfForward.value, tolerance))
+            << model.name << ": " << value.pdfForward.value << " against " << sample.pdfForward.value;
+        EXPECT_TRUE(Near(value.pdfReverse.value, sample.pdfReverse.value, tolerance)) << model.name;
         const float scale = cosine / value.pdfForward.value;
-        EXPECT_TRUE(Near(value.diffuse * scale, sample->weightDiffuse, tolerance)) << model.name;
-        EXPECT_TRUE(Near(value.specular * scale, sample->weightSpecular, tolerance))
-            << model.name << ": " << value.specular.g * scale << " against " << sample->weightSpecular.g;
+        EXPECT_TRUE(Near(value.diffuse * scale, sample.weightDiffuse, tolerance)) << model.name;
+        EXPECT_TRUE(Near(value.specular * scale, sample.weightSpecular, tolerance))
+            << model.name << ": " << value.specular.g * scale << " against " << sample.weightSpecular.g;
         ++compared;
       }
     }
@@ -114,18 +114,18 @@ TEST(BsdfPdf, ReverseIsForwardExchanged) {
       const float uLobe = rng.NextFloat();
       const Point2 u = rng.NextPoint2();
       const auto sample = bsdf.Sample(wo, uLobe, u, TransportMode::Radiance);
-      const Vector3 wi = sample && i % 2 ? sample->wi : SampleUniformSphere(rng.NextPoint2());
+      const Vector3 wi = sample && i % 2 ? sample.wi : SampleUniformSphere(rng.NextPoint2());
       if (AbsDot(wi, bsdf.ShadingFrame().z) < 1e-3f || AbsDot(wo, bsdf.ShadingFrame().z) < 1e-3f) continue;
       const auto there = bsdf.Evaluate(wo, wi, TransportMode::Radiance);
       const auto back = bsdf.Evaluate(wi, wo, TransportMode::Importance);
       EXPECT_TRUE(Near(there.pdfReverse.value, back.pdfForward.value, model.tolerance)) << model.name;
       EXPECT_TRUE(Near(there.pdfForward.value, back.pdfReverse.value, model.tolerance)) << model.name;
-      if (!sample || !sample->isDelta) continue;
-      const float reverseLobe = sample->isTransmission ? kOneMinusEpsilon : 0.0f;
-      const auto reverse = bsdf.Sample(sample->wi, reverseLobe, u, TransportMode::Radiance);
-      ASSERT_TRUE(reverse && reverse->isDelta) << model.name;
-      EXPECT_LT(glm::length(reverse->wi - wo), 2e-3f) << model.name;
-      EXPECT_TRUE(Near(reverse->pdfForward.value, sample->pdfReverse.value, 2e-2f)) << model.name;
+      if (!sample || !sample.isDelta) continue;
+      const float reverseLobe = sample.isTransmission ? kOneMinusEpsilon : 0.0f;
+      const auto reverse = bsdf.Sample(sample.wi, reverseLobe, u, TransportMode::Radiance);
+      ASSERT_TRUE(reverse && reverse.isDelta) << model.name;
+      EXPECT_LT(glm::length(reverse.wi - wo), 2e-3f) << model.name;
+      EXPECT_TRUE(Near(reverse.pdfForward.value, sample.pdfReverse.value, 2e-2f)) << model.name;
     }
   }
 }

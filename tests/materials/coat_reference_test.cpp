@@ -45,21 +45,21 @@ void Walk(const Layers& layers, const Base& base, const Vector3& wo, Rng& rng, O
   };
   auto sample = next(layers.coat, wo);
   if (!sample) return;
-  double weight = static_cast<double>(sample->Weight().g);
-  if (!sample->isTransmission) return outflow.Add(sample->wi, weight);
-  Vector3 w = sample->wi;  // downwards
+  double weight = static_cast<double>(sample.Weight().g);
+  if (!sample.isTransmission) return outflow.Add(sample.wi, weight);
+  Vector3 w = sample.wi;  // downwards
   for (int bounce = 0; bounce < 5; ++bounce) {
     weight *= std::exp(static_cast<double>(layers.thickness / w.z));
     sample = next(base, -w);
-    if (!sample || !(sample->wi.z > 0)) return;
-    weight *= static_cast<double>(sample->Weight().g);
-    w = sample->wi;
+    if (!sample || !(sample.wi.z > 0)) return;
+    weight *= static_cast<double>(sample.Weight().g);
+    w = sample.wi;
     weight *= std::exp(static_cast<double>(-layers.thickness / w.z));
     sample = next(layers.coat, -w);
     if (!sample) return;
-    weight *= static_cast<double>(sample->Weight().g);
-    w = sample->wi;
-    if (sample->isTransmission) return outflow.Add(w, weight);
+    weight *= static_cast<double>(sample.Weight().g);
+    w = sample.wi;
+    if (sample.isTransmission) return outflow.Add(w, weight);
   }
 }
 
@@ -80,7 +80,7 @@ Outflow Sampled(const BsdfModel& model, const Vector3& wo, int samples) {
     ++outflow.count;
     const float uLobe = rng.NextFloat();
     const auto sample = bsdf.Sample(wo, uLobe, rng.NextPoint2(), TransportMode::Importance);
-    if (sample) outflow.Add(sample->wi, static_cast<double>(sample->Weight().g));
+    if (sample) outflow.Add(sample.wi, static_cast<double>(sample.Weight().g));
   }
   return outflow;
 }

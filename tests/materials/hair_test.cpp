@@ -119,8 +119,8 @@ TEST(Hair, ReflectsAtItsWall) {
       const float uLobe = rng.NextFloat();
       const auto sample = bsdf.Sample(wo, uLobe, rng.NextPoint2(), kRadiance);
       ASSERT_TRUE(sample);
-      EXPECT_LE(sample->pdfForward.value, 1.03f * peak);
-      sum += sample->wi;
+      EXPECT_LE(sample.pdfForward.value, 1.03f * peak);
+      sum += sample.wi;
     }
     EXPECT_LT(glm::length(glm::normalize(sum) - mirrored), 2e-3f) << h;
   }
@@ -137,7 +137,7 @@ TEST(Hair, GoesStraightOnWithoutABoundaryAndTiltsByItsScales) {
       const float uLobe = rng.NextFloat();
       const auto sample = bsdf.Sample(wo, uLobe, rng.NextPoint2(), kRadiance);
       ASSERT_TRUE(sample);
-      sum += sample->wi;
+      sum += sample.wi;
     }
     // TT: θ turned by α, then mirrored.
     const Vector3 expected = At(-(0.4 + static_cast<double>(alpha) * 3.14159265358979 / 180), 0.9 + 3.14159265358979);
@@ -211,7 +211,7 @@ TEST(Hair, LightPathsAreSampledByTheAdjoint) {
       const Vector3 wo = At(0.6, 6 * static_cast<double>(rng.NextFloat()));
       const float uLobe = rng.NextFloat();
       const auto sample = bsdf.Sample(wo, uLobe, rng.NextPoint2(), kImportance);
-      const double weight = sample ? static_cast<double>(sample->Weight().g) : 0;
+      const double weight = sample ? static_cast<double>(sample.Weight().g) : 0;
       sum += weight;
       squares += weight * weight;
     }
@@ -237,7 +237,7 @@ TEST(Hair, FibresAreSampledByTheirDensity) {
               const float uLobe = rng.NextFloat();
               const auto sample = bsdf.Sample(wo, uLobe, rng.NextPoint2(), mode);
               if (!sample) return std::nullopt;
-              return Vector3(sample->wi.y, sample->wi.z, sample->wi.x);
+              return Vector3(sample.wi.y, sample.wi.z, sample.wi.x);
             },
             [&](const Vector3& w) {
               return static_cast<double>(bsdf.Evaluate(wo, {w.z, w.x, w.y}, mode).pdfForward.value);
@@ -269,17 +269,17 @@ TEST(Hair, ExtremesAreFinite) {
       if (i % 5 == 0) u = {i % 2 ? 0.0f : kOneMinusEpsilon, i % 4 < 2 ? 0.0f : kOneMinusEpsilon};
       const float uLobe = i % 13 == 0 ? 0.0f : i % 17 == 0 ? kOneMinusEpsilon : rng.NextFloat();
       const auto sample = bsdf.Sample(wo, uLobe, u, mode);
-      const Vector3 wi = sample && i % 2 ? sample->wi : i % 3 ? SampleUniformSphere(rng.NextPoint2()) : -wo;
+      const Vector3 wi = sample && i % 2 ? sample.wi : i % 3 ? SampleUniformSphere(rng.NextPoint2()) : -wo;
       const BsdfEvaluation value = bsdf.Evaluate(wo, wi, mode);
       ASSERT_TRUE(value.specular.IsValid() && finite(value.pdfForward.value) && finite(value.pdfReverse.value))
           << wo.x << " " << wo.y << " " << wo.z << ", f " << value.specular.g << ", pdf " << value.pdfForward.value;
       if (!sample) continue;
-      ASSERT_TRUE(IsFinite(sample->wi) && sample->Weight().IsValid() && finite(sample->pdfForward.value) &&
-                  finite(sample->pdfReverse.value))
-          << wo.x << " " << wo.y << " " << wo.z << " to " << sample->wi.x << " " << sample->wi.y << " " << sample->wi.z
-          << ", weight " << sample->Weight().g << ", pdf " << sample->pdfForward.value;
-      ASSERT_NEAR(glm::length(sample->wi), 1, 1e-6f);
-      ASSERT_LE(mode == kRadiance ? sample->Weight().Max() : 0.0f, 3.01f);
+      ASSERT_TRUE(IsFinite(sample.wi) && sample.Weight().IsValid() && finite(sample.pdfForward.value) &&
+                  finite(sample.pdfReverse.value))
+          << wo.x << " " << wo.y << " " << wo.z << " to " << sample.wi.x << " " << sample.wi.y << " " << sample.wi.z
+          << ", weight " << sample.Weight().g << ", pdf " << sample.pdfForward.value;
+      ASSERT_NEAR(glm::length(sample.wi), 1, 1e-6f);
+      ASSERT_LE(mode == kRadiance ? sample.Weight().Max() : 0.0f, 3.01f);
       ++samples;
     }
   };

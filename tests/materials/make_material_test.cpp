@@ -86,7 +86,7 @@ const Vector3 kUp(0, 0, 1), kTilted(0.6f, 0, 0.8f);
 // What is scattered of light from above, by one lobe: all of it where there is but one.
 Color ScatteredBy(const Bsdf& bsdf) {
   const auto sample = bsdf.Sample(kUp, 0.5f, {0.5f, 0.5f}, TransportMode::Importance);
-  return sample ? sample->Weight() : Color(0.0f);
+  return sample ? sample.Weight() : Color(0.0f);
 }
 
 TEST_F(MakeMaterialTest, EveryTypeHasDefaults) {
@@ -110,9 +110,9 @@ TEST_F(MakeMaterialTest, GlassHasTheIndexGiven) {
   for (const auto& parameters : {std::vector<Parameter>{Float("eta", 1.5)}, {}, {Spectrum("eta", "glass-BK7")}}) {
     const auto glass = Create("dielectric", parameters);
     const auto sample = At(*glass).Sample(kTilted, kOneMinusEpsilon, {0.5f, 0.5f}, TransportMode::Radiance);
-    ASSERT_TRUE(sample && sample->isTransmission);
-    EXPECT_NEAR(sample->eta, 1.51f, 0.02f);
-    EXPECT_NEAR(-sample->wi.x, 0.6f / sample->eta, 1e-5f);
+    ASSERT_TRUE(sample && sample.isTransmission);
+    EXPECT_NEAR(sample.eta, 1.51f, 0.02f);
+    EXPECT_NEAR(-sample.wi.x, 0.6f / sample.eta, 1e-5f);
   }
   EXPECT_THROW(Create("dielectric", {Float("eta", -1)}), Error);
 }
@@ -219,7 +219,7 @@ TEST_F(MakeMaterialTest, HairReflectsToTheSideOfItsOffset) {
   point_.uv = {0, 0.75f};
   const auto sideOf = [&] {
     const auto sample = At(*material).Sample(kUp, 0.5f, {0.5f, 0.5f}, TransportMode::Radiance);
-    return sample ? sample->wi.y : 0.0f;
+    return sample ? sample.wi.y : 0.0f;
   };
   for (const float across : {1.0f, -1.0f}) {
     point_.dpdv = {0, across, 0};
