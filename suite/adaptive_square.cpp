@@ -195,9 +195,14 @@ size_t AdaptiveSquare::LeafAt(double x, double y) const {
 // What is divided has neighbours of its own size at least: an edge that leaves through a corner which no point hit is
 // followed there. The second coordinate is a full turn of something and runs in a circle.
 void AdaptiveSquare::Refine(const Function& function, Rng& rng, int budget) {
+  // A cell that holds much is divided although its points agree: the few there are may all have missed a strip along
+  // its edge.
+  constexpr double kUnseen = 0.03;
+  const auto doubt = [](const Estimate& of, double total) {
+    return std::max(of.error, kUnseen * of.value) / (total > 0 ? total : 1.0);
+  };
   const auto spread = [&](const Node& node) {
-    return (totalDensity_ > 0 ? node.density.error / totalDensity_ : node.density.error) +
-           (totalRadiance_ > 0 ? node.radiance.error / totalRadiance_ : node.radiance.error);
+    return doubt(node.density, totalDensity_) + doubt(node.radiance, totalRadiance_);
   };
   std::priority_queue<std::pair<double, size_t>> open;
   const auto add = [&](size_t index) {

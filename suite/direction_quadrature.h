@@ -20,7 +20,7 @@ struct Cap {
   bool IsSphere() const { return wMax >= 2; }
 };
 
-// The smallest cap around the mean of `directions` that holds them all, a little widened; the sphere beyond 60°.
+// A cap around the mean of `directions`, of twice the solid angle that holds them all; the sphere beyond 60°.
 Cap CapAround(std::span<const Vector3d> directions);
 
 // Over the whole sphere: of the cap, where the light is, and of all that is outside of it.
