@@ -8,9 +8,10 @@ target_compile_features(lampyr_settings INTERFACE cxx_std_20)
 target_link_libraries(lampyr_settings INTERFACE glm::glm)
 
 # Not exported: how we build our own code. -fno-math-errno and -fno-trapping-math change no result.
+# -fno-semantic-interposition: nothing replaces our functions at run time, so they may be inlined within their file.
 add_library(lampyr_warnings INTERFACE)
 target_compile_options(lampyr_warnings INTERFACE
-  -Wall -Wextra -Wdouble-promotion -fno-math-errno -fno-trapping-math)
+  -Wall -Wextra -Wdouble-promotion -fno-math-errno -fno-trapping-math -fno-semantic-interposition)
 # What another compiler warns of besides stops no build with it.
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   target_compile_options(lampyr_warnings INTERFACE -Werror)

@@ -41,7 +41,7 @@ inline Point3 SampleEmissionDisk(const BoundingSphere& scene, const Vector3& toL
 
 inline Vector3 EmissionDiskError(const BoundingSphere& scene) {
   constexpr float kRelativeError = 8 * 0x1p-24f;
-  return kRelativeError * (glm::abs(scene.center) + Vector3(2 * scene.radius));
+  return kRelativeError * (Abs(scene.center) + Vector3(2 * scene.radius));
 }
 
 // A photon in direction -toLight. The caller sets colours and the density of the direction.

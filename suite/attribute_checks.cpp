@@ -150,14 +150,14 @@ void AttributeChecker::CheckPlace(const char* what, const Point3& position, cons
   const auto exact = surface_->At(position, normal, patch);
   if (!exact) return;
   const double off = std::abs(glm::dot(p - exact->position, exact->normal));
-  const double bound = glm::dot(glm::abs(exact->normal), Vector3d(error)), least = 1e-11 * size;
+  const double bound = glm::dot(Abs(exact->normal), Vector3d(error)), least = 1e-11 * size;
   tooSmall_.Note(off > least ? off / std::max(bound, 1e-300) : 0.0, [&] {
     return Text((std::string(what) + " lies %.3g off the surface, its positionError allows for %.3g").c_str(), off,
                 bound);
   });
   ++points_;
   if (uvw.x == 0 && uvw.y == 0) ++unsetUv_;
-  const Vector2 difference = glm::abs(Point2(uvw.x, uvw.y) - exact->uv);
+  const Vector2 difference = Abs(Point2(uvw.x, uvw.y) - exact->uv);
   // Around a seam or a pole, where all turns are one.
   const float across = std::min(difference.x, std::abs(1 - difference.x));
   if (std::max(across, difference.y) > 2e-3f) {
@@ -174,7 +174,7 @@ void AttributeChecker::CheckStart(const EmissionSample& photon) {
   const Vector3d direction = glm::normalize(Vector3d(photon.direction));
   const auto radius = static_cast<double>(subject_.context.scene.radius);
   const double off = std::abs(glm::dot(p - center, direction) + radius), least = 1e-11 * radius;
-  const double bound = glm::dot(glm::abs(direction), Vector3d(photon.positionError));
+  const double bound = glm::dot(Abs(direction), Vector3d(photon.positionError));
   tooSmall_.Note(off > least ? off / std::max(bound, 1e-300) : 0.0, [&] {
     return Text("a photon starts %.3g off the plane before the scene, its positionError allows for %.3g", off, bound);
   });

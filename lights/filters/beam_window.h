@@ -34,7 +34,7 @@ BeamWindow ReadBeamWindow(const ParameterList& parameters, const char* mode);
 // Signed distance to the rim of a rectangle of half extents `half` about the origin, its corners rounded by `radius`:
 // negative within. Not a number where the rectangle is empty.
 inline float RoundedRectangle(const Point2& p, const Vector2& half, float radius) {
-  const Vector2 q = glm::abs(p) - half + radius;
+  const Vector2 q = Abs(p) - half + radius;
   return glm::length(glm::max(q, 0.0f)) + std::min(std::max(q.x, q.y), 0.0f) - radius;
 }
 

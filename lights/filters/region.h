@@ -14,7 +14,7 @@ struct FilterRegion {
   Color color{0.0f};   // the factor within
 
   Color Factor(const FilterEdge& light) const {
-    const Vector3 q = glm::abs(light.receiver - center) - half;
+    const Vector3 q = Abs(light.receiver - center) - half;
     const float outside = glm::length(glm::max(q, 0.0f)) + std::min(std::max(q.x, std::max(q.y, q.z)), 0.0f) - radius;
     float within = SoftEdge(outside, edge);
     if (falloff != 1) within = std::pow(within, falloff);

@@ -24,7 +24,7 @@ ClusterBounds BoundsWhileMoving(const PlacedLight& placed, LightContext context)
     const ClusterBounds now = BoundsOfEmitter(*bounds, placed.light->Kind());
     if (now.IsEmpty()) continue;
     if (!before.IsEmpty()) {
-      farthest = glm::max(farthest, glm::max(glm::abs(now.box.min - before.min), glm::abs(now.box.max - before.max)));
+      farthest = glm::max(farthest, glm::max(Abs(now.box.min - before.min), Abs(now.box.max - before.max)));
     }
     before = now.box;
     all.box.Add(now.box);

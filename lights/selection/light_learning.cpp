@@ -54,7 +54,7 @@ uint32_t LightLearning::RegionOf(const Receiver& receiver) const {
     return static_cast<uint32_t>(static_cast<int32_t>(std::clamp(x, -1e6f, 1e6f) + 2e6f));
   };
   const Vector3 p = (receiver.position - center_) * cellsPerUnit_;
-  const Vector3 n = glm::abs(receiver.normal);
+  const Vector3 n = Abs(receiver.normal);
   const int axis = n.x >= n.y && n.x >= n.z ? 0 : n.y >= n.z ? 1 : 2;
   const uint32_t side = 2 * static_cast<uint32_t>(axis) + (receiver.normal[axis] < 0 ? 1 : 0);
   return static_cast<uint32_t>(MixBits(cell(p.x) ^ static_cast<uint64_t>(cell(p.y)) << 21 ^

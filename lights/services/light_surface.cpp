@@ -53,8 +53,8 @@ void LightSurface::Map::SetPoint(const LocalHit& hit, const RayDouble& ray, Surf
   point.position = Point3(position);
   // Rounded once to float; and what intersection in double loses over the way from the origin.
   constexpr double roundingOfFloat = 0x1p-24, roundingOfDouble = 64 * 0x1p-53;
-  const Vector3d way = glm::abs(ray.origin) + std::abs(hit.t) * glm::abs(ray.direction) + glm::abs(translation);
-  point.positionError = Vector3(roundingOfFloat * glm::abs(position) + roundingOfDouble * way) * 2.0f;
+  const Vector3d way = Abs(ray.origin) + std::abs(hit.t) * Abs(ray.direction) + Abs(translation);
+  point.positionError = Vector3(roundingOfFloat * Abs(position) + roundingOfDouble * way) * 2.0f;
   point.Ng = Normal3(glm::normalize(hit.normal * inverse));
   point.Ns = point.Ng;
   point.uv = hit.uv;

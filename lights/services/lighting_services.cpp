@@ -140,7 +140,7 @@ Vector3 LightingServices::ErrorOfEnd(const SurfacePoint& from, const DirectSampl
     return sample.positionError;
   const PlacedLight& placed = scene_->lights[direct.light];
   const LightTransform transform = placed.motion ? placed.At(time) : placed.transform;
-  const Point3 reach = glm::max(glm::abs(from.position), glm::abs(sample.position));
+  const Point3 reach = glm::max(Abs(from.position), Abs(sample.position));
   return sample.positionError + InstanceRayError(transform.toRender, transform.toLocal, reach);
 }
 

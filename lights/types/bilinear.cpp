@@ -97,8 +97,8 @@ Point2 BilinearPatches::Sample(uint32_t patch, const Point2& u) const {
 void BilinearPatches::SetPoint(uint32_t patch, const Point2& p, bool, EmittingPoint& point) const {
   const PatchGeometry geometry(*mesh_, patch);
   point.position = geometry.At(p);
-  point.positionError = Gamma(6) * glm::max(glm::max(glm::abs(geometry.p00), glm::abs(geometry.p10)),
-                                            glm::max(glm::abs(geometry.p01), glm::abs(geometry.p11)));
+  point.positionError = Gamma(6) * glm::max(glm::max(Abs(geometry.p00), Abs(geometry.p10)),
+                                            glm::max(Abs(geometry.p01), Abs(geometry.p11)));
   point.normal = OutwardNormal(*mesh_, patch, p);
   point.uv = PatchUv(*mesh_, patch, p);  // a hit finds its parameters by them
 }

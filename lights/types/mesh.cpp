@@ -76,7 +76,7 @@ void TrianglePatches::SetPoint(uint32_t triangle, const Point2& p, bool needsUv,
   const auto& t = mesh_->triangles[triangle];
   const Vector3 q0 = b.x * mesh_->positions[t[0]], q1 = b.y * mesh_->positions[t[1]], q2 = b.z * mesh_->positions[t[2]];
   point.position = q0 + q1 + q2;
-  point.positionError = Gamma(7) * (glm::abs(q0) + glm::abs(q1) + glm::abs(q2));
+  point.positionError = Gamma(7) * (Abs(q0) + Abs(q1) + Abs(q2));
   point.normal = OutwardNormal(*mesh_, triangle, b);
   if (needsUv) point.uv = TriangleUv(*mesh_, triangle, p);
 }

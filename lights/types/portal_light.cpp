@@ -170,7 +170,7 @@ class PortalLight final : public LightBase {
     const double back = radius - glm::dot(offset, way);
     const Vector3 start(offset + way * back);
     sample.position = context.scene.center + start;
-    sample.positionError = EmissionDiskError(context.scene) + 0x1p-21f * glm::abs(start);
+    sample.positionError = EmissionDiskError(context.scene) + 0x1p-21f * Abs(start);
     sample.direction = sample.normal = -toLight;
     sample.shinesFrom = static_cast<float>(std::max(back, 0.0));
     return sample;

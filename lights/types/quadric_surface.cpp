@@ -175,7 +175,7 @@ void QuadricSurface::SampleArc(Arc arc, const PlacedSurface& placed, const Point
                        arc.towards.x * turn.y + arc.towards.y * turn.x);
   const Point3 p(quadric_.radius * around.x, quadric_.radius * around.y, LineOf(arc, turn.x).Sample(u.x));
   sample.position = placed.toRender.Point(p);
-  sample.positionError = placed.toRender.PointError(p, Gamma(8) * glm::abs(p));
+  sample.positionError = placed.toRender.PointError(p, Gamma(8) * Abs(p));
   sample.normal = placed.NormalAt(OutwardNormal(p));
   const float phi = arc.turns + turns;
   sample.uvw = {warp_internal::ClampUnit(phi - std::floor(phi)), (p.z - low_) / (high_ - low_), 0};

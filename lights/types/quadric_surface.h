@@ -119,7 +119,7 @@ class QuadricSurface {
     sample.direction = hit.direction;
     sample.distance = hit.distance;
     sample.position = placed.toRender.translation + radius * hit.normal;
-    sample.positionError = Gamma(16) * (glm::abs(placed.toRender.translation) + Vector3(radius));
+    sample.positionError = Gamma(16) * (Abs(placed.toRender.translation) + Vector3(radius));
     sample.normal = hit.normal * normalSign_;
     if (needsUv) sample.uvw = Point3(UvOf(placed.toOwn.linear * (radius * hit.normal)), 0.0f);
   }

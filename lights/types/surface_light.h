@@ -155,7 +155,7 @@ EmittingPoint SurfaceLight<Geometry>::SamplePoint(const Point2& u, const Placed&
   const Point2 square = table_ ? table_->Sample(u).uv : u;
   const Point3 p = surface_.At(square);
   point.position = placed.toRender.Point(p);
-  point.positionError = placed.toRender.PointError(p, Gamma(8) * glm::abs(p));
+  point.positionError = placed.toRender.PointError(p, Gamma(8) * Abs(p));
   point.normal = placed.NormalAt(surface_.OutwardNormal(p));
   // Nobody looks at the coordinates of an even light, unless its own view does.
   if (emission_.NeedsUv() || surface_.ViewNeedsUv()) point.uv = surface_.UvAt(square, p);

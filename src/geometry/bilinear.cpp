@@ -103,7 +103,7 @@ void EvaluatePatch(const BilinearMesh& mesh, uint32_t patch, const Point2& p, co
   const Point3 &p00 = x[q[0]], &p10 = x[q[1]], &p01 = x[q[2]], &p11 = x[q[3]];
   point.position = Interpolate(p00, p10, p01, p11, p);
   point.positionError =
-      glm::max(glm::max(glm::abs(p00), glm::abs(p10)), glm::max(glm::abs(p01), glm::abs(p11))) * Gamma(6);
+      glm::max(glm::max(Abs(p00), Abs(p10)), glm::max(Abs(p01), Abs(p11))) * Gamma(6);
   point.dpdu = (p10 - p00) * (1 - p.y) + (p11 - p01) * p.y;
   point.dpdv = (p01 - p00) * (1 - p.x) + (p11 - p10) * p.x;
   point.Ng = SafeNormalize(glm::cross(point.dpdu, point.dpdv) * (mesh.flipNormals ? -1.0f : 1.0f), towards);

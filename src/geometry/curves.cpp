@@ -143,7 +143,7 @@ void EvaluateCurve(const CurveSet& curves, uint32_t segment, float u, const Poin
   const Vector3 travelled = direction * t;
   point.position = origin + travelled;
   // Embree finds curve hits by iteration, to some thousandths of the radius.
-  point.positionError = (glm::abs(origin) + glm::abs(travelled)) * Gamma(4) + Vector3(4e-3f * radius);
+  point.positionError = (Abs(origin) + Abs(travelled)) * Gamma(4) + Vector3(4e-3f * radius);
   const Vector3 offset = point.position - axis;
   point.Ng = point.Ns = CurveNormal(curves, segment, u, along, offset, direction);
 

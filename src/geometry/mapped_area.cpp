@@ -15,7 +15,7 @@ constexpr int kSide = 12;
 constexpr int kCells = 3 * kSide * kSide;
 
 size_t CellOf(const Vector3d& n) {
-  const Vector3d size = glm::abs(n);
+  const Vector3d size = Abs(n);
   const int face = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
   // Equal angles, more or less.
   const auto along = [&](int axis) {

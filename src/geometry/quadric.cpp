@@ -183,7 +183,7 @@ void PreparedQuadric::Evaluate(const Point2& coordinates, SurfacePoint& point) c
   const float phi = p.x == 0 && p.y == 0 ? 0.0f : PositivePhi(p.x, p.y);
   const float u = std::min(phi / phiMax, 1.0f);
   Vector3 dpdu = Vector3(-p.y, p.x, 0.0f) * phiMax, dpdv, normal;
-  Vector3 error = glm::abs(p) * Gamma(5);
+  Vector3 error = Abs(p) * Gamma(5);
   float v = 0;
   switch (quadric_.kind) {
     case Quadric::Kind::Sphere: {

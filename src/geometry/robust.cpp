@@ -3,7 +3,6 @@
 
 #include <bit>
 #include <cstdint>
-#include <limits>
 
 #include "geometry/rounding.h"
 
@@ -11,28 +10,31 @@ namespace lampyr {
 
 namespace {
 
-// The next representable value away from `value` in the direction of `offset`. By the bits: a call of std::nextafter
-// costs more than all the rest of spawning a ray.
+// The next representable value away from `value` in the direction of `offset`; `value` itself if the offset is 0 or the
+// value is not finite. By the bits and without a branch: the signs of coordinates are not predictable, and a call of
+// std::nextafter would cost more than all the rest of spawning a ray.
 float RoundAway(float value, float offset) {
-  if (offset == 0 || !std::isfinite(value)) return value;
-  if (value == 0) return std::copysign(std::numeric_limits<float>::min(), offset);  // denormals are flushed
-  const auto bits = std::bit_cast<uint32_t>(value);
-  return std::bit_cast<float>((value > 0) == (offset > 0) ? bits + 1 : bits - 1);
+  constexpr uint32_t kSign = 0x80000000u, kExponent = 0x7f800000u, kSmallest = 0x00800000u;  // denormals are flushed
+  const auto bits = std::bit_cast<uint32_t>(value), direction = std::bit_cast<uint32_t>(offset);
+  const uint32_t step = (bits ^ direction) & kSign ? ~0u : 1u;
+  const uint32_t away = (bits & ~kSign) == 0 ? (direction & kSign) | kSmallest : bits + step;
+  const bool stays = (direction & ~kSign) == 0 || (bits & kExponent) == kExponent;
+  return std::bit_cast<float>(stays ? bits : away);
 }
 
 }  // namespace
 
 Point3 OffsetRayOrigin(const Point3& position, const Vector3& positionError, const Normal3& Ng,
                        const Vector3& direction) {
-  const float distance = glm::dot(glm::abs(Ng), positionError);
+  const float distance = glm::dot(Abs(Ng), positionError);
   const Vector3 offset = Ng * (glm::dot(direction, Ng) < 0 ? -distance : distance);
   const Point3 moved = position + offset;
   return {RoundAway(moved.x, offset.x), RoundAway(moved.y, offset.y), RoundAway(moved.z, offset.z)};
 }
 
 Vector3 InstanceRayError(const Affine& toRender, const Affine& toObject, const Point3& origin) {
-  const auto absolute = [](const glm::mat3& m) { return glm::mat3(glm::abs(m[0]), glm::abs(m[1]), glm::abs(m[2])); };
-  const Vector3 inObject = Gamma(4) * (absolute(toObject.linear) * glm::abs(origin) + glm::abs(toObject.translation));
+  const auto absolute = [](const glm::mat3& m) { return glm::mat3(Abs(m[0]), Abs(m[1]), Abs(m[2])); };
+  const Vector3 inObject = Gamma(4) * (absolute(toObject.linear) * Abs(origin) + Abs(toObject.translation));
   return absolute(toRender.linear) * inObject;
 }
 

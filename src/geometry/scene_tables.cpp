@@ -19,7 +19,7 @@ void EvaluateCustom(const CustomSurface& surface, const Ray& ray, float t, Surfa
                         std::numeric_limits<double>::infinity()};
   if (surface.Intersect(again, ray.time, &point)) return;
   point.position = ray.origin + t * ray.direction;
-  point.positionError = Gamma(4) * (glm::abs(ray.origin) + std::abs(t) * glm::abs(ray.direction));
+  point.positionError = Gamma(4) * (Abs(ray.origin) + std::abs(t) * Abs(ray.direction));
   point.Ng = point.Ns = -ray.direction;
 }
 
@@ -49,7 +49,7 @@ void MoveOntoRay(const PrimitiveRecord& record, const Ray& ray, const RayHit& hi
   constexpr double kGrazing = 1e-3;
   if (!(std::abs(slope) > kGrazing * glm::length(direction))) return;
   const Point3 moved(origin + direction * (glm::dot(onSurface - origin, normal) / slope));
-  const Vector3 way = glm::abs(moved - point.position);
+  const Vector3 way = Abs(moved - point.position);
   if (way.x <= 4 * point.positionError.x && way.y <= 4 * point.positionError.y && way.z <= 4 * point.positionError.z)
     point.position = moved;
 }

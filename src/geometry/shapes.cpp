@@ -37,7 +37,7 @@ Bounds3 BoundsOf(const Quadric& q) {
     for (int i = 0; i < 8; ++i) bounds.Add(q.toRender.Point(local.Corner(i)));
   }
   // Padded: the box must hold the points that intersection in double finds, not their rounded positions.
-  const Point3 reach = glm::max(glm::abs(local.min), glm::abs(local.max));
+  const Point3 reach = glm::max(Abs(local.min), Abs(local.max));
   const Vector3 error = q.toRender.PointError(reach, Vector3(0.0f)) * 2.0f;
   return {bounds.min - error, bounds.max + error};
 }

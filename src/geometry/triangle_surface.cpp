@@ -49,7 +49,7 @@ void EvaluateTriangle(const TriangleMesh& mesh, uint32_t triangle, const Point2&
   const float b0 = 1.0f - b.x - b.y;
   const Vector3 q0 = p0 * b0, q1 = p1 * b.x, q2 = p2 * b.y;
   point.position = q0 + q1 + q2;
-  point.positionError = (glm::abs(q0) + glm::abs(q1) + glm::abs(q2)) * Gamma(7);
+  point.positionError = (Abs(q0) + Abs(q1) + Abs(q2)) * Gamma(7);
 
   const Vector3 edge02 = p0 - p2, edge12 = p1 - p2;
   const Vector3 winding = glm::cross(edge02, edge12);

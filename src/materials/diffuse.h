@@ -22,7 +22,7 @@ struct DiffuseBsdf {
     sample.pdfForward = PdfSolidAngle(sample.wi.z * kInvPi);
     sample.pdfReverse = PdfSolidAngle(std::abs(wo.z) * kInvPi);
     sample.weightDiffuse = reflectance;
-    if (wo.z < 0) sample.wi.z = -sample.wi.z;
+    sample.wi.z = std::copysign(sample.wi.z, wo.z);
     return sample;
   }
 

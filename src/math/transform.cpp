@@ -23,7 +23,7 @@ Vector3 Affine::PointError(const Point3& p, const Vector3& error) const {
   Vector3 bound;
   for (int i = 0; i < 3; ++i) {
     const Vector3 row(std::abs(linear[0][i]), std::abs(linear[1][i]), std::abs(linear[2][i]));
-    bound[i] = gamma * (glm::dot(row, glm::abs(p)) + std::abs(translation[i])) + (1.0f + gamma) * glm::dot(row, error);
+    bound[i] = gamma * (glm::dot(row, Abs(p)) + std::abs(translation[i])) + (1.0f + gamma) * glm::dot(row, error);
   }
   return bound;
 }

@@ -50,6 +50,16 @@ inline float MaxComponent(const Vector3& v) {
 inline float MaxAbsComponent(const Vector3& v) {
   return std::max(std::abs(v.x), std::max(std::abs(v.y), std::abs(v.z)));
 }
+// Absolute values without a branch. glm::abs compares with 0, which the branch predictor cannot guess.
+inline Vector3 Abs(const Vector3& v) {
+  return {std::abs(v.x), std::abs(v.y), std::abs(v.z)};
+}
+inline Vector3d Abs(const Vector3d& v) {
+  return {std::abs(v.x), std::abs(v.y), std::abs(v.z)};
+}
+inline Vector2 Abs(const Vector2& v) {
+  return {std::abs(v.x), std::abs(v.y)};
+}
 inline bool IsFinite(const Vector3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }

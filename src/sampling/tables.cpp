@@ -54,7 +54,7 @@ AliasTable::Result AliasTable::Sample(double u) const {
   const float threshold = bins_[bin].threshold;
   const bool own = fraction < threshold;
   const uint32_t index = own ? bin : bins_[bin].alias;
-  const float rest = own ? fraction / threshold : (fraction - threshold) / (1 - threshold);
+  const float rest = (fraction - (own ? 0 : threshold)) / (own ? threshold : 1 - threshold);
   return {index, PdfDiscrete(probabilities_[index]), std::min(rest, kOneMinusEpsilon)};
 }
 

@@ -57,7 +57,8 @@ inline Point2 SampleConcentricDisk(const Point2& u) {
   const float r = horizontal ? a : b;
   const float other = horizontal ? b : a;
   const Vector2 direction = warp_internal::CosSinOctant(r != 0 ? (0.25f * kPi) * (other / r) : 0.0f);
-  return horizontal ? Point2(r * direction.x, r * direction.y) : Point2(r * direction.y, r * direction.x);
+  const float along = r * direction.x, across = r * direction.y;
+  return {horizontal ? along : across, horizontal ? across : along};
 }
 inline PdfArea ConcentricDiskPdf() {
   return PdfArea(kInvPi);
@@ -128,8 +129,7 @@ inline Point2 InvertUniformHemisphere(const Vector3& v) {
 // --- Triangle, uniform: barycentric coordinates, none negative, with little distortion ([Heitz19]).
 inline Vector3 SampleUniformTriangle(const Point2& u) {
   const float half = 0.5f * std::min(u.x, u.y);
-  const Point2 b = u.y > u.x ? Point2(half, u.y - half) : Point2(u.x - half, half);
-  return {b.x, b.y, 1 - std::max(u.x, u.y)};
+  return {u.x - half, u.y - half, 1 - std::max(u.x, u.y)};
 }
 inline PdfArea UniformTrianglePdf(float area) {
   return PdfArea(area > 0 ? 1 / area : 0.0f);
