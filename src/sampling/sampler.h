@@ -28,20 +28,27 @@ class Sampler {
   SamplerKind Kind() const { return kind_; }
 
  private:
-  static constexpr uint32_t kBlockSize = 8;
+  static constexpr uint32_t kBlockSize = 8, kBlocks = 8;
   static constexpr uint32_t kNoBlock = 0xffffffffu;
 
-  // Computes the Sobol points of dimensions [block, block + 1) · kBlockSize.
-  void FillBlock(uint32_t block);
+  // Sobol points of kBlockSize dimensions, from index · kBlockSize on.
+  struct Block {
+    alignas(32) float x[kBlockSize], y[kBlockSize];
+  };
+
+  // Computes the points of a block.
+  void FillBlock(uint32_t index, Block& block) const;
 
   SamplerKind kind_;
   uint64_t seed_;
   uint32_t reversedIndex_ = 0;  // sample index, bits reversed
   uint32_t dimension_ = 0;
-  uint64_t pixelHash_ = 0;     // of pixel and seed; for independent samples, also of the index
-  uint32_t block_ = kNoBlock;  // the block in blockX_ and blockY_
-  float blockX_[kBlockSize] = {};
-  float blockY_[kBlockSize] = {};
+  uint64_t pixelHash_ = 0;  // of pixel and seed; for independent samples, also of the index
+  // Blocks computed for this sample, block i at i mod kBlocks: the two subpaths of a bidirectional sample take turns in
+  // the dimensions. `indices_`: which block is there.
+  Block blocks_[kBlocks] = {};
+  alignas(32) uint32_t indices_[kBlocks] = {kNoBlock, kNoBlock, kNoBlock, kNoBlock,
+                                            kNoBlock, kNoBlock, kNoBlock, kNoBlock};
 };
 
 }  // namespace lampyr

@@ -11,8 +11,13 @@ inline Point2 Sampler::Get2D() {
     const uint64_t hash = MixBits(pixelHash_ + 0x9e3779b97f4a7c15ull * (dimension + 1ull));
     return {UnitFloat(static_cast<uint32_t>(hash)), UnitFloat(static_cast<uint32_t>(hash >> 32))};
   }
-  if (dimension / kBlockSize != block_) FillBlock(dimension / kBlockSize);
-  return {blockX_[dimension % kBlockSize], blockY_[dimension % kBlockSize]};
+  const uint32_t index = dimension / kBlockSize, place = index % kBlocks, i = dimension % kBlockSize;
+  Block& block = blocks_[place];
+  if (indices_[place] != index) {
+    FillBlock(index, block);
+    indices_[place] = index;
+  }
+  return {block.x[i], block.y[i]};
 }
 
 inline float Sampler::Get1D() {
