@@ -361,6 +361,8 @@ void Builder::PlaceEntry(const ReadEntry& entry, const Transform& toRender, std:
       const bool cameraVisible = description_.areaLights[shape.areaLight].parameters.GetBool("cameraVisible", true);
       if (!cameraVisible) result.attributes.visibility &= ~visibility::kCamera;
     }
+    result.attributes.isParametrized =
+        alpha || thin || result.attributes.light >= 0 || material->NeedsParametrization();
     entries.push_back(std::move(result));
   }
 }

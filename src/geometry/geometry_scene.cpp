@@ -209,6 +209,7 @@ void GeometryScene::Implementation::AddEntries(const std::vector<GeometryEntry>&
     const CurveSet* curves = record.As<CurveSet>();
     record.hasNoInside = entry.attributes.isFibrous && curves && curves->kind == CurveSet::Kind::Cylinder;
     hasTints = hasTints || (record.thin && !record.thin->IsClear());
+    record.isParametrized = entry.attributes.isParametrized;
     record.tables = &tables;
     tables.primitives.push_back(record);
     tables.attributes.push_back(entry.attributes);

@@ -177,45 +177,47 @@ Point3 PreparedQuadric::Decode(const Point2& c) const {
   return {direction.x * r, direction.y * r, quadric_.zMin + c.y * (quadric_.zMax - quadric_.zMin)};
 }
 
-void PreparedQuadric::Evaluate(const Point2& coordinates, SurfacePoint& point) const {
-  const Point3 p = Decode(coordinates);
+void PreparedQuadric::Parametrize(const Point3& p, float v, SurfacePoint& point) const {
   const float r = quadric_.radius, phiMax = quadric_.phiMax;
   const float phi = p.x == 0 && p.y == 0 ? 0.0f : PositivePhi(p.x, p.y);
-  const float u = std::min(phi / phiMax, 1.0f);
-  Vector3 dpdu = Vector3(-p.y, p.x, 0.0f) * phiMax, dpdv, normal;
-  Vector3 error = Abs(p) * Gamma(5);
-  float v = 0;
+  const float rho = std::sqrt(p.x * p.x + p.y * p.y);
+  Vector3 dpdv;
   switch (quadric_.kind) {
     case Quadric::Kind::Sphere: {
       const float thetaRange = thetaZMax_ - thetaZMin_, cosTheta = std::clamp(p.z / r, -1.0f, 1.0f);
-      const float rho = std::sqrt(p.x * p.x + p.y * p.y);
       const Vector2 around = rho > 0 ? Vector2(p.x / rho, p.y / rho) : Vector2(1, 0);
       v = thetaRange != 0 ? std::clamp((std::acos(cosTheta) - thetaZMin_) / thetaRange, 0.0f, 1.0f) : 0.0f;
       dpdv = Vector3(p.z * around.x, p.z * around.y, -rho) * thetaRange;
-      normal = p / r;
       break;
     }
-    case Quadric::Kind::Disk: {
-      const float rho = std::sqrt(p.x * p.x + p.y * p.y);
+    case Quadric::Kind::Disk:
       v = (r - rho) / (r - quadric_.innerRadius);
       dpdv = rho > 0 ? Vector3(p.x, p.y, 0.0f) * ((quadric_.innerRadius - r) / rho) : Vector3(0.0f);
+      break;
+    case Quadric::Kind::Cylinder: dpdv = {0, 0, quadric_.zMax - quadric_.zMin}; break;
+  }
+  point.uv = {std::min(phi / phiMax, 1.0f), v};
+  point.dpdu = quadric_.toRender.Vector(Vector3(-p.y, p.x, 0.0f) * phiMax);
+  point.dpdv = quadric_.toRender.Vector(dpdv);
+}
+
+void PreparedQuadric::Evaluate(const Point2& coordinates, bool isParametrized, SurfacePoint& point) const {
+  const Point3 p = Decode(coordinates);
+  const float r = quadric_.radius;
+  Vector3 normal, error = Abs(p) * Gamma(5);
+  switch (quadric_.kind) {
+    case Quadric::Kind::Sphere: normal = p / r; break;
+    case Quadric::Kind::Disk:
       normal = {0, 0, 1};
-      error = Vector3(error.x, error.y, 0.0f);  // p.z is the height itself
+      error.z = 0;  // p.z is the height itself
       break;
-    }
-    case Quadric::Kind::Cylinder:
-      v = coordinates.y;
-      dpdv = {0, 0, quadric_.zMax - quadric_.zMin};
-      normal = {p.x / r, p.y / r, 0};
-      break;
+    case Quadric::Kind::Cylinder: normal = {p.x / r, p.y / r, 0}; break;
   }
   point.position = quadric_.toRender.Point(p);
   point.positionError = quadric_.toRender.PointError(p, error);
   point.Ng = SafeNormalize(quadric_.toObject.NormalByInverse(normal) * normalSign_, Normal3(0, 0, 1));
   point.Ns = point.Ng;
-  point.uv = {u, v};
-  point.dpdu = quadric_.toRender.Vector(dpdu);
-  point.dpdv = quadric_.toRender.Vector(dpdv);
+  if (isParametrized) Parametrize(p, coordinates.y, point);
 }
 
 }  // namespace lampyr

@@ -28,8 +28,9 @@ class PreparedQuadric {
   // The hits with t in (tMin, tMax], nearest first; returns how many. The ray is in render space (the target of `toRender`).
   int Intersect(const RayDouble& ray, QuadricHit hits[2]) const;
 
-  // Position, error, normals, uv and tangents, in the target space of `toRender`. The indices are left alone.
-  void Evaluate(const Point2& coordinates, SurfacePoint& point) const;
+  // Position, error, normals and, with `isParametrized`, uv and tangents, in the target space of `toRender`. The indices
+  // are left alone.
+  void Evaluate(const Point2& coordinates, bool isParametrized, SurfacePoint& point) const;
 
   const Quadric& Shape() const { return quadric_; }
 
@@ -39,6 +40,8 @@ class PreparedQuadric {
   bool Accept(const Point3d& p) const;
   Point2 Encode(const Point3d& p) const;
   Point3 Decode(const Point2& coordinates) const;
+  // Sets uv and tangents at p, in object space. `v`: of a cylinder.
+  void Parametrize(const Point3& p, float v, SurfacePoint& point) const;
 
   Quadric quadric_;
   glm::dmat3 toObject_{1.0};

@@ -59,11 +59,14 @@ struct Evaluate {
   const Ray& ray;
   const RayHit& hit;
   SurfacePoint& point;
+  bool isParametrized;
   Point2 uv{hit.u, hit.v};
 
-  void operator()(const TriangleMesh* mesh) const { EvaluateTriangle(*mesh, hit.patch, uv, -ray.direction, point); }
+  void operator()(const TriangleMesh* mesh) const {
+    EvaluateTriangle(*mesh, hit.patch, uv, -ray.direction, isParametrized, point);
+  }
   void operator()(const BilinearMesh* mesh) const { EvaluatePatch(*mesh, hit.patch, uv, -ray.direction, point); }
-  void operator()(const PreparedQuadric* quadric) const { quadric->Evaluate(uv, point); }
+  void operator()(const PreparedQuadric* quadric) const { quadric->Evaluate(uv, isParametrized, point); }
   void operator()(const CurveSet* curves) const {
     EvaluateCurve(*curves, hit.patch, hit.u, ray.origin, ray.direction, hit.t, point);
   }
@@ -73,7 +76,7 @@ struct Evaluate {
 }  // namespace
 
 void EvaluatePrimitive(const PrimitiveRecord& record, const Ray& ray, const RayHit& hit, SurfacePoint& point) {
-  std::visit(Evaluate{ray, hit, point}, record.shape);
+  std::visit(Evaluate{ray, hit, point, record.isParametrized}, record.shape);
   point.isThin = record.thin != nullptr;
   // A surface in a coordinate plane has no error across it, and a ray that starts exactly on it would hit it again: the
   // error of each component is at least a millionth of the largest.

@@ -18,7 +18,8 @@ struct PrimitiveRecord {
   const AlphaSource* alpha = nullptr;  // null: opaque
   const ThinSurface* thin = nullptr;   // null: none
 
-  bool hasNoInside = false;  // a round curve that rays from inside do not meet
+  bool hasNoInside = false;    // a round curve that rays from inside do not meet
+  bool isParametrized = true;  // GeometryAttributes::isParametrized
 
   bool LetsPass() const { return alpha || thin || hasNoInside; }
   // The shape if it is of this kind, or null.

@@ -43,7 +43,7 @@ Point2 TriangleUv(const TriangleMesh& mesh, uint32_t triangle, const Point2& b) 
 }
 
 void EvaluateTriangle(const TriangleMesh& mesh, uint32_t triangle, const Point2& b, const Vector3& towards,
-                      SurfacePoint& point) {
+                      bool isParametrized, SurfacePoint& point) {
   const auto& t = mesh.triangles[triangle];
   const Point3 &p0 = mesh.positions[t[0]], &p1 = mesh.positions[t[1]], &p2 = mesh.positions[t[2]];
   const float b0 = 1.0f - b.x - b.y;
@@ -64,6 +64,7 @@ void EvaluateTriangle(const TriangleMesh& mesh, uint32_t triangle, const Point2&
     if (glm::dot(point.Ng, point.Ns) < 0) point.Ng = -point.Ng;
   }
 
+  if (!isParametrized) return;
   if (mesh.uvs.empty()) {
     point.uv = {b.x + b.y, b.y};
     point.dpdu = edge12 - edge02;

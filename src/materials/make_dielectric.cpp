@@ -30,6 +30,7 @@ class ThinDielectric final : public Material, public ThinSurface {
   bool MayTransmit() const override { return true; }
   bool HasDelta() const override { return true; }
   bool IsAlwaysDelta() const override { return true; }
+  bool NeedsParametrization() const override { return !transmittance_.IsConstant() || !shadingNormal_.IsPlain(); }
   const ThinSurface* Thin() const override { return this; }
 
   float TransmittedFraction(float cosTheta) const override { return 1 - ThinReflectance(cosTheta, eta_); }

@@ -26,7 +26,9 @@ class MixMaterial final : public Material {
         hasDelta_(materials_[0]->HasDelta() || materials_[1]->HasDelta()),
         isAlwaysDelta_(materials_[0]->IsAlwaysDelta() && materials_[1]->IsAlwaysDelta()),
         isFibrous_(materials_[0]->IsFibrous() || materials_[1]->IsFibrous()),
-        mayGatherPhotons_(materials_[0]->MayGatherPhotons() || materials_[1]->MayGatherPhotons()) {}
+        mayGatherPhotons_(materials_[0]->MayGatherPhotons() || materials_[1]->MayGatherPhotons()),
+        needsParametrization_(!amount_.IsConstant() || materials_[0]->NeedsParametrization() ||
+                              materials_[1]->NeedsParametrization()) {}
 
   Bsdf GetBsdf(const SurfacePoint& point, const Vector3& wo) const override {
     return Choose(point, wo).GetBsdf(point, wo);
@@ -37,6 +39,7 @@ class MixMaterial final : public Material {
   bool IsAlwaysDelta() const override { return isAlwaysDelta_; }
   bool IsFibrous() const override { return isFibrous_; }
   bool MayGatherPhotons() const override { return mayGatherPhotons_; }
+  bool NeedsParametrization() const override { return needsParametrization_; }
 
  private:
   const Material& Choose(const SurfacePoint& point, const Vector3& wo) const {
@@ -52,7 +55,7 @@ class MixMaterial final : public Material {
   uint64_t salt_;  // from the names: nested mixes choose independently
   // Properties of both materials, cached: nested mixes that name a material twice would otherwise query it 2^depth
   // times.
-  bool isInterface_, mayTransmit_, hasDelta_, isAlwaysDelta_, isFibrous_, mayGatherPhotons_;
+  bool isInterface_, mayTransmit_, hasDelta_, isAlwaysDelta_, isFibrous_, mayGatherPhotons_, needsParametrization_;
 };
 
 class InterfaceMaterial final : public Material {

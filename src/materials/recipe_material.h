@@ -29,6 +29,7 @@ class RecipeMaterial final : public Material {
   }
   bool MayTransmit() const override { return recipe_.MayTransmit(); }
   bool HasDelta() const override { return recipe_.HasDelta(); }
+  bool NeedsParametrization() const override { return !isConstant_ || needsTangent_ || !shadingNormal_.IsPlain(); }
   bool IsAlwaysDelta() const override { return isConstant_ && Bsdf(Frame(), Normal3(0, 0, 1), model_).IsDelta(); }
 
  private:

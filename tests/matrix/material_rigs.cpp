@@ -136,7 +136,7 @@ void AddMaterialRigs(std::vector<Rig>& rigs) {
                   {"material hair in mix", "material mix"}});
   for (const char* type : {"cylinder", "flat"}) {
     rigs.push_back({std::string("hair_strands_") + type,
-                    Floor(Lamp("-0.2 1 0.3", 0.2) + Strands(Statement(hair), type)),
+                    Floor(Lamp("-0.2 1 0.3", 0.2) + Strands(Statement(hair), type), "", 0.014),
                     {"material hair"}});
   }
   const Sample mirror = MaterialSamples()[3], glass = MaterialSamples()[5];

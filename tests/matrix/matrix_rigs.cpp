@@ -23,8 +23,8 @@ std::string Room(const std::string& material, const std::string& inside, const s
          Scope(material + " Shape \"sphere\" \"float radius\" 1");
 }
 
-std::string Floor(const std::string& above, const std::string& ball, int depth) {
-  return Head(depth, 0.04) +
+std::string Floor(const std::string& above, const std::string& ball, double photonRadius) {
+  return Head(3, photonRadius) +
          "LookAt -0.6 1.6 1.2  -0.25 0 0.2  0 1 0\nCamera \"perspective\" \"float fov\" 26\nWorldBegin\n" + above +
          Scope(kMatte + "Rotate -90 1 0 0 Shape \"disk\" \"float radius\" 1") +
          Scope((ball.empty() ? "Material \"diffuse\" \"rgb reflectance\" [0.3 0.5 0.7]" : ball) +

@@ -44,8 +44,10 @@ std::string Room(const std::string& material, const std::string& inside, const s
                  int depth = 3);
 
 // A floor of radius 1 under the sky with a ball over it; its middle is seen. The ball does not touch the floor: photons
-// on the lower side of the floor would be merged with what the ball receives from below.
-std::string Floor(const std::string& above, const std::string& ball = "", int depth = 3);
+// on the lower side of the floor would be merged with what the ball receives from below. `photonRadius`: small against
+// the width of penumbras. Blur over them moves light between what is seen and what is hidden, in proportion to its
+// square.
+std::string Floor(const std::string& above, const std::string& ball = "", double photonRadius = 0.04);
 
 // A glowing ball of radius `radius`.
 std::string Lamp(const std::string& place = "0.25 0.4 0.1", double radius = 0.25, const std::string& more = "");

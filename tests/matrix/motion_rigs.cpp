@@ -26,7 +26,7 @@ void AddMotionRigs(std::vector<Rig>& rigs) {
                                               "\"float radius\" 0.2")));
   add("occluder", Floor(Scope(lamp + bulb) + Scope(Moving(left, right) + shade)));
   add("area_light", Floor(Scope(Moving(left, right) + lamp + bulb)));
-  add("light_and_occluder", Floor(Scope(Moving(left, right) + Scope(lamp + bulb) + Scope(shade))));
+  add("light_and_occluder", Floor(Scope(Moving(left, right) + Scope(lamp + bulb) + Scope(shade)), "", 0.02));
   add("point_light", Floor(Scope(Moving(left, right) + "Translate -0.1 1 0.2 LightSource \"point\" \"rgb I\" [2 2 2]") +
                            Scope(shade)));
   add("own_surface_light", Floor(Scope(Moving("Rotate -50 0 0 1 ", "Rotate 50 0 0 1 ") +

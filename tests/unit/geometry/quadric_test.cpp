@@ -119,7 +119,7 @@ TEST(Quadric, ParametersAndTangentsAreConsistent) {
       if (prepared.Intersect({Point3d(ray.origin), Vector3d(ray.direction), 0, 1e30}, hits) == 0) continue;
       ++found;
       SurfacePoint point;
-      prepared.Evaluate(hits[0].coordinates, point);
+      prepared.Evaluate(hits[0].coordinates, true, point);
       ASSERT_GE(point.uv.x, 0);
       ASSERT_LE(point.uv.x, 1);
       ASSERT_GE(point.uv.y, 0);
