@@ -35,6 +35,7 @@ T Interpolate(const std::vector<T>& values, const std::array<uint32_t, 4>& q, co
 // Roots of a u² + b u + c, those that leave [0,1] or do not exist as NaN.
 std::pair<double, double> Roots(double a, double b, double c) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  if (a == 0) return {none, -c / b};  // a parallelogram, or seen along a plane that divides it evenly
   const double discriminant = b * b - 4 * a * c;
   if (!(discriminant >= 0)) return {none, none};
   const double q = -0.5 * (b + std::copysign(std::sqrt(discriminant), b));
@@ -61,9 +62,9 @@ int IntersectPatch(const BilinearMesh& mesh, uint32_t patch, const RayDouble& ra
     const Vector3d along = k.p01 + (k.p11 - k.p01) * u - start;
     const Vector3d toStart = start - ray.origin;
     const Vector3d perpendicular = glm::cross(d, along);
-    const double squared = glm::dot(perpendicular, perpendicular);
-    const double v = glm::dot(glm::cross(toStart, d), perpendicular) / squared;
-    const double t = glm::dot(glm::cross(toStart, along), perpendicular) / squared;
+    const double inverse = 1 / glm::dot(perpendicular, perpendicular);
+    const double v = glm::dot(glm::cross(toStart, d), perpendicular) * inverse;
+    const double t = glm::dot(glm::cross(toStart, along), perpendicular) * inverse;
     if (!IsParameter(v) || !(t > ray.tMin && t <= ray.tMax)) continue;
     hits[found].t = t;
     hits[found++].uv = {static_cast<float>(std::clamp(u, 0.0, 1.0)), static_cast<float>(std::clamp(v, 0.0, 1.0))};

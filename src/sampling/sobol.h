@@ -9,8 +9,7 @@
 namespace lampyr::sobol {
 
 constexpr uint32_t ReverseBits(uint32_t v) {
-  v = (v >> 16) | (v << 16);
-  v = ((v >> 8) & 0x00ff00ffu) | ((v & 0x00ff00ffu) << 8);
+  v = __builtin_bswap32(v);
   v = ((v >> 4) & 0x0f0f0f0fu) | ((v & 0x0f0f0f0fu) << 4);
   v = ((v >> 2) & 0x33333333u) | ((v & 0x33333333u) << 2);
   return ((v >> 1) & 0x55555555u) | ((v & 0x55555555u) << 1);
