@@ -95,7 +95,8 @@ class PerspectiveCamera final : public Camera {
 
   // The film point of the ray from `offset`, relative to the camera's origin, along `direction` (of any length).
   Point2d FilmPoint(const Vector3d& offset, const Vector3d& direction, double normalDotDirection) const {
-    return plane_.FilmPoint(direction * (determinant_ / normalDotDirection) + offset / focalDistance_);
+    const Vector3d onPlane = direction * (determinant_ / normalDotDirection);
+    return plane_.FilmPoint(hasLens_ ? onPlane + offset / focalDistance_ : onPlane);
   }
 
   double PixelsPerSolidAngle(double normalDotDirection) const {
