@@ -112,10 +112,17 @@ struct Cell {
   }
 };
 
-// As many samples as make the standard error of the mean of all replicas `error`, told by a trial.
+// As many samples as make the standard error of the mean of all replicas `error`, told by trials. Sobol points converge
+// faster than independent ones: a trial predicts no more than four times its own samples. A cell that is far surer than
+// it says would find the blur of merging, which it is not about.
 Cell RenderTo(BuiltScene& built, const Mode& mode, double error, uint64_t seed) {
-  const double noise = NoiseOf(RenderMode(built, mode, kTrials, mode.Samples(), seed + kSeedsOfACell / 2));
-  const double wanted = mode.Samples() * Sqr(noise / error) / kReplicas;
+  int samples = mode.Samples();
+  double wanted = 0;
+  for (;; samples *= 4) {
+    const double noise = NoiseOf(RenderMode(built, mode, kTrials, samples, seed + kSeedsOfACell / 2));
+    wanted = samples * Sqr(noise / error) / kReplicas;
+    if (wanted <= 4.0 * samples || samples >= kMostSamples / kReplicas) break;
+  }
   Cell cell;
   cell.samples = static_cast<int>(std::clamp(std::ceil(wanted), double(mode.Samples()), kMostSamples / kReplicas));
   cell.replicas = RenderMode(built, mode, kReplicas, cell.samples, seed);
