@@ -12,7 +12,7 @@ namespace {
 constexpr int kFirstLevels = 5;  // 32×32 cells to begin with
 constexpr int kFirstSide = 1 << kFirstLevels;
 constexpr double kSmallest = 0x1p-20;  // side of a cell
-constexpr int kLooks = 12;             // at a cell that may hold more than meets the eye, of four points each
+constexpr int kLooks = 12;             // probes, of four points each, of a dark cell beside a lit one
 
 // Mean and variance of four values.
 struct Four {
@@ -28,7 +28,7 @@ Estimate operator+(const Estimate& a, const Estimate& b) {
   return {a.value + b.value, std::hypot(a.error, b.error)};
 }
 
-// One point in each quarter.
+// Evaluates one point in each quarter of a cell.
 template <class Function>
 static void SampleQuarters(double x, double y, double size, const Function& function, Rng& rng, double (&density)[4],
                            double (&radiance)[4]) {
@@ -65,7 +65,7 @@ AdaptiveSquare::AdaptiveSquare(double measure, std::span<const Point2d> hints, c
   }
   LookAgainBesideTheLit(function, rng);
   Refine(function, rng, budget / 2);
-  // Children come after their parents: from the end, every node's own are known.
+  // Children come after their parents: a reverse pass has the values of all children before it sums them.
   for (size_t i = nodes_.size(); i-- > 0;) {
     Node& node = nodes_[i];
     if (node.firstChild < 0) {
@@ -80,7 +80,8 @@ AdaptiveSquare::AdaptiveSquare(double measure, std::span<const Point2d> hints, c
   }
 }
 
-// Until no cell holds many hints, or any whose share of the density its points do not see: that is in a corner.
+// Splits cells until none holds many hints, or hints whose share of the density its probe points miss because it lies
+// in a corner.
 void AdaptiveSquare::SplitWhereHinted(std::span<const Point2d> hints, const Function& function, Rng& rng) {
   constexpr size_t kMost = 8;
   const double each = 1.0 / static_cast<double>(hints.size());
@@ -119,7 +120,7 @@ void AdaptiveSquare::Probe(Node& node, const Function& function, Rng& rng) {
   node.radiance = {r.mean * area, std::sqrt(r.variance) * area};
 }
 
-// Two points in each quarter: what they differ by is the error of their mean, without bias.
+// Two points in each quarter: their difference gives an unbiased estimate of the error of their mean.
 void AdaptiveSquare::Measure(Node& node, const Function& function, Rng& rng) const {
   double density[2][4], radiance[2][4];
   for (int i = 0; i < 2; ++i) {
@@ -150,9 +151,9 @@ void AdaptiveSquare::Split(size_t index) {
   }
 }
 
-// A cell that looks dark beside one that is not may hold a corner of what is there: it is looked at again.
+// A dark cell beside a lit one may contain a corner of the lit region: it is probed again.
 void AdaptiveSquare::LookAgainBesideTheLit(const Function& function, Rng& rng) {
-  constexpr double kDark = 1e-2;  // of what is beside it
+  constexpr double kDark = 1e-2;  // relative to its neighbours
   std::vector<size_t> at(static_cast<size_t>(kFirstSide * kFirstSide));
   const auto cell = [&](int i, int j) -> size_t& {
     return at[static_cast<size_t>(((j + kFirstSide) % kFirstSide) * kFirstSide + (i + kFirstSide) % kFirstSide)];
@@ -161,7 +162,7 @@ void AdaptiveSquare::LookAgainBesideTheLit(const Function& function, Rng& rng) {
     if (nodes_[i].size != 1.0 / kFirstSide) continue;
     cell(static_cast<int>(nodes_[i].x * kFirstSide), static_cast<int>(nodes_[i].y * kFirstSide)) = i;
   }
-  std::vector<std::pair<size_t, Integrands>> again;  // and how bright it is there
+  std::vector<std::pair<size_t, Integrands>> again;  // cell, and the largest values around it
   for (int j = 0; j < kFirstSide; ++j) {
     for (int i = 0; i < kFirstSide; ++i) {
       Integrands beside;
@@ -192,11 +193,11 @@ size_t AdaptiveSquare::LeafAt(double x, double y) const {
   return index;
 }
 
-// What is divided has neighbours of its own size at least: an edge that leaves through a corner which no point hit is
-// followed there. The second coordinate is a full turn of something and runs in a circle.
+// The neighbours of a split cell are split down to its own size: an edge that leaves the cell through a corner that no
+// point hit is followed there. The second coordinate is a full turn and wraps around.
 void AdaptiveSquare::Refine(const Function& function, Rng& rng, int budget) {
-  // A cell that holds much is divided although its points agree: the few there are may all have missed a strip along
-  // its edge.
+  // A cell of large value is split even if its points agree: all of its few points may have missed a strip along its
+  // edge.
   constexpr double kUnseen = 0.03;
   const auto doubt = [](const Estimate& of, double total) {
     return std::max(of.error, kUnseen * of.value) / (total > 0 ? total : 1.0);

@@ -1,9 +1,9 @@
-// An integral over the unit square that finds the places where it varies, with its standard error, and the cells of a
-// χ² test against it. Whatever is to be tested is mapped to the square so that equal areas are equal measures:
-// directions of a cap, positions on a disk.
+// Adaptive quadrature over the unit square with its standard error, and the cells of a χ² test against it. The domain
+// under test (directions of a cap, positions on a disk) is mapped to the square so that equal areas are equal measures.
 //
-// A quadtree is refined where its points differ most; the leaves are then sampled anew. Given the tree, those points
-// are independent of it: the estimate is unbiased and its error is known, so that no tolerance has to be guessed.
+// A quadtree is refined where its probe points differ most; the leaves are then sampled anew. Given the tree, the new
+// points are independent of it. The estimate is therefore unbiased and its error is known, so that no tolerance has to
+// be guessed.
 #pragma once
 
 #include <functional>
@@ -15,7 +15,7 @@
 
 namespace lampyr::suite {
 
-// Two integrands over the same domain: a density, and what arrives.
+// Two integrands over the same domain: a density and the incident radiance.
 struct Integrands {
   double density = 0, radiance = 0;
 };
@@ -30,20 +30,20 @@ class AdaptiveSquare {
  public:
   using Function = std::function<Integrands(double x, double y)>;  // x, y in (0,1)
 
-  // `measure`: what the whole square stands for. `hints`: where there is much, to be looked at closely from the start,
-  // so that what is too small for the first points to meet is found; they must not be the points that are tested.
-  // At most about `budget` evaluations.
+  // `measure`: measure of the domain that is mapped to the square. `hints`: points where the integrand is large. Cells
+  // around them are split from the start, so that features too small for the first probes are found. Hints must be
+  // independent of the points under test. At most about `budget` evaluations.
   AdaptiveSquare(double measure, std::span<const Point2d> hints, const Function& function, Rng& rng, int budget);
 
   Estimate Density() const { return nodes_[0].density; }
   Estimate Radiance() const { return nodes_[0].radiance; }
 
-  // Disjoint cells that fill the square, none with more than a `parts`-th of the density unless it cannot be divided.
+  // Makes disjoint cells that cover the square. Each holds at most 1/`parts` of the density, unless it cannot be split.
   size_t MakeCells(int parts);
   const std::vector<Estimate>& Cells() const { return cells_; }
   size_t CellOf(double x, double y) const;
 
-  // The integrals of `count` functions that share their points, by new points in the same leaves.
+  // Integrals of `count` functions evaluated at shared points: new points in the same leaves.
   using Functions = std::function<void(double x, double y, std::span<double> values)>;
   std::vector<Estimate> Integrate(size_t count, const Functions& f, Rng& rng) const;
 
@@ -68,7 +68,7 @@ class AdaptiveSquare {
   void LookAgainBesideTheLit(const Function& function, Rng& rng);
 
   double measure_;
-  double totalDensity_ = 0, totalRadiance_ = 0;  // of the probes: what errors are relative to
+  double totalDensity_ = 0, totalRadiance_ = 0;  // sums over the probes, to which errors are relative
   std::vector<Node> nodes_;
   std::vector<Estimate> cells_;
 };

@@ -10,9 +10,10 @@ namespace lampyr::suite {
 struct Question {
   LightContext context;
   Point3 P{0.0f};
-  Vector3 along{0, 0, 1};  // of a segment from P
+  Vector3 along{0, 0, 1};  // direction of a segment from P
   float reach = 1;
-  // What a ray found, and where a photon went: of the light when the question was made.
+  // `hit`: the light's sample at P. `firstHit`: a photon's start, seen from firstHitAt on the photon's path. Both come
+  // from the light for which the question was made.
   std::optional<LightHit> hit, firstHit;
   Point3 firstHitAt{0.0f};
 };
@@ -26,10 +27,10 @@ struct Answer {
   std::optional<SegmentEstimate> segment;
 };
 
-// `count` questions: receivers all over the scene, and on the ways of photons, from very near to far.
+// `count` questions. Receivers lie throughout the scene and on photon paths, from very near the light to far away.
 std::vector<Question> MakeQuestions(const SuiteSubject& subject, const Light& light, int count, Rng& rng);
 
-// Order in which the methods are called: state kept between calls shows when it is reversed.
+// Order in which the methods are called. Reversing it reveals state kept between calls.
 enum class CallOrder { Forwards, Backwards };
 Answer Ask(const Light& light, const Question& question, const LightContext& context,
            CallOrder order = CallOrder::Forwards);
@@ -37,12 +38,13 @@ inline Answer Ask(const Light& light, const Question& question) {
   return Ask(light, question, question.context);
 }
 
-// Densities that are only asked for by bidirectional techniques: where they are not, they may be 0.
+// Values to compare. Densities that only bidirectional techniques ask for may be 0 in AllButBidirectional.
 enum class Compare { Everything, AllButBidirectional };
 
-// What differs first, in words: "radiance of samples: 1 0.5 0.2 instead of 2 1 0.4"; "" when nothing does.
+// The first difference as text, such as "radiance of samples: 1 0.5 0.2 instead of 2 1 0.4"; empty if there is none.
 std::string Difference(const Answer& wanted, const Answer& got, Compare compare = Compare::Everything);
-// Of what does not depend on a question: kind, settings, power, bounds, patches; and of the light's own surface.
+// The first difference, as text, of values that no question affects: kind, settings, power, bounds, patches, and the
+// light's own surface. Empty if there is none.
 std::string DifferenceAsWhole(const SuiteSubject& subject, const Light& wanted, const Light& got);
 
 // The power, bounds and choice of patches of a light, for comparing it with itself.

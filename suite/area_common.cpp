@@ -60,7 +60,7 @@ void CheckAreaPower(const SuiteSubject& subject, const Enclosure& enclosure, con
     return context;
   };
   bool stopsSome = false;
-  double stopped = 0;  // the most that a photon carried that the light itself stopped
+  double stopped = 0;  // largest flux of a photon that the light itself blocked
   const Estimate escaping = SharpMean(rng, subject.powerError, [&](const float(&x)[4]) {
     const auto photon = light.GenerateEmission(contextFor(x));
     if (!photon) return 0.0;
@@ -79,11 +79,11 @@ void CheckAreaPower(const SuiteSubject& subject, const Enclosure& enclosure, con
     return -glm::dot(outward, Vector3d(sample->direction)) * area * Emitted(subject, *sample) /
            Value(sample->pdfDirect);
   });
-  // Some slip through the light's seams, by rounding.
+  // By rounding, some photons slip through the light's seams.
   constexpr double kSeams = 1e-4;
   report.AddProbability(subject.name, "power", subject.caseName, EqualMeans(escaping, direct, 1e-3, kSeams * stopped),
                         InWords("the power that photons carry away, in W,", escaping, direct));
-  // The estimate is of all that the surface emits, whether it gets away or not.
+  // GetPowerEstimate covers all photons that the surface emits, including those that it blocks itself.
   const Estimate emitted = !stopsSome ? escaping : SharpMean(rng, subject.powerError, [&](const float(&x)[4]) {
     const auto photon = light.GenerateEmission(contextFor(x));
     return photon ? Flux(subject, *photon) : 0.0;
@@ -135,7 +135,7 @@ bool LeavesBounds(const EmissionBounds& bounds, const Enclosure& enclosure, cons
   float cosine = glm::dot(photon.normal, bounds.axis);
   if (bounds.twoSided) cosine = std::abs(cosine);
   if (!inBox || cosine < bounds.cosThetaO - 1e-3f) return true;
-  if (IsBlack(photon)) return false;  // a direction that was tried and is dark
+  if (IsBlack(photon)) return false;  // a sampled direction without emission
   // Within θe of the normal on its emitting side.
   float emission = glm::dot(photon.normal, photon.direction);
   if (bounds.twoSided) emission = std::abs(emission);

@@ -1,4 +1,5 @@
-// What the two ways of checking lights with a surface share: by a model of the shape, and by the light's own Surface().
+// Code shared by the two ways of checking lights with a surface: by a model of the shape, and by the light's own
+// Surface().
 #pragma once
 
 #include "suite/checks.h"
@@ -10,36 +11,38 @@ struct Enclosure {
   double radius = 0;
 };
 
-// Nine places around a surface, of which `position` and `normal` are one point.
+// Nine receivers around a surface; `position` and `normal` are those of one point on it.
 std::vector<Receiver> ReceiversAround(const Enclosure& enclosure, const Point3d& position, const Vector3d& normal);
 
-// "receiver "near", 0.3 sizes from the light's middle: "
+// Description of a receiver, such as: receiver "near", 0.3 sizes from the light's middle:
 std::string InWords(const Enclosure& enclosure, const Receiver& receiver);
 
-// Given a position, the directions of photons: integral and χ² of pdfEmitDirection.
+// Checks the directions of photons from fixed positions: the integral of pdfEmitDirection and the χ² test against it.
 void CheckAreaEmissionDirections(const SuiteSubject& subject, const SuiteOptions& options, const Enclosure& enclosure,
                                  Rng& rng, SuiteReport& report);
 
-// What photons carry away = what is measured on a sphere around the light by sampling it there.
+// Checks that the power carried by escaping photons equals the power measured by light sampling on a sphere around the
+// light.
 struct Visibility {
-  std::function<bool(const EmissionSample&)> escapes;             // the light itself does not stop the photon
-  std::function<bool(const LightSample&, const Point3& P)> sees;  // nor what comes from there to P
+  std::function<bool(const EmissionSample&)> escapes;             // true if the light itself does not block the photon
+  std::function<bool(const LightSample&, const Point3& P)> sees;  // true if it does not block the way from there to P
 };
 void CheckAreaPower(const SuiteSubject& subject, const Enclosure& enclosure, const Visibility& visibility, Rng& rng,
                     SuiteReport& report);
 
-// Of a light of several patches: how far what is found on `hit` given its patch, times the probability that the light
-// chooses that patch, is from what is found of the whole light; 1 when another patch claims it.
+// Largest relative difference between the densities of the whole light at `hit` and those given its patch times the
+// patch's selection probability; 1 if another patch claims the hit. 0 for lights of a single patch.
 double PatchMismatch(const SuiteSubject& subject, const LightHit& hit, const Point3& P);
 
-// How far a sample's solidAngleToArea is from the cosθ / d² of what it says of itself. Not for those seen edge-on.
+// Relative difference between a sample's solidAngleToArea and cosθ / d² of its own normal, direction and distance. Not
+// for samples seen edge-on.
 double SolidAngleToAreaMismatch(const LightSample& sample);
 
-// Estimates at P and along segments through it, where light arrives.
+// Checks the radiance estimates at a receiver that light reaches, and along segments through it.
 void CheckAreaEstimates(const SuiteSubject& subject, const Enclosure& enclosure, const Receiver& receiver, Rng& rng,
                         SuiteReport& report);
 
-// Whether a photon leaves outside of the light's emission bounds.
+// True if a photon leaves outside the light's emission bounds.
 bool LeavesBounds(const EmissionBounds& bounds, const Enclosure& enclosure, const EmissionSample& photon);
 
 }  // namespace lampyr::suite

@@ -1,5 +1,5 @@
-// What goes with samples and photons besides radiance and densities, and what integrators rely on all the same:
-// position errors, coordinates, shinesFrom, the energy of the bounds, patches.
+// Attributes of samples and photons besides radiance and densities, on which integrators rely too: position errors,
+// coordinates, shinesFrom, the energy of the bounds, patches.
 #include "suite/exact_surface.h"
 
 namespace lampyr::suite {
@@ -12,7 +12,7 @@ std::string Text(const char* format, double a, double b, double c = 0) {
   return text;
 }
 
-// The largest of some errors, in words.
+// The largest error noted, with its description.
 struct Worst {
   double error = 0;
   std::string words;
@@ -39,7 +39,7 @@ class AttributeChecker {
       CheckShinesFrom(*photon);
       CheckPlace("a photon", photon->position, photon->normal, photon->positionError, photon->patchIndex, photon->uvw);
       if (IsAtInfinity(light_.Kind())) CheckStart(*photon);
-      // A receiver on its way.
+      // A receiver on the photon's path.
       const LightContext context = RandomContext(subject_, rng_);
       const float distance = subject_.context.scene.radius * std::exp2(8 * (rng_.NextFloat() - 0.75f));
       if (IsAtInfinity(light_.Kind())) continue;
@@ -55,8 +55,8 @@ class AttributeChecker {
 
  private:
   static constexpr int kDraws = 512;
-  // Beyond that a bound says nothing: rays would start in the midst of something else.
-  static constexpr double kLargestError = 1e-4;  // of the light's size and distance from the origin
+  // A larger bound is useless: rays would start inside other geometry.
+  static constexpr double kLargestError = 1e-4;  // relative to the light's size and distance from the origin
 
   void CheckShinesFrom(const EmissionSample& photon);
   bool IsLit(const EmissionSample& photon, const Point3& P, double t) const;
@@ -81,7 +81,7 @@ class AttributeChecker {
   Worst shinesFrom_, tooSmall_, tooLarge_;
 };
 
-// True if a receiver at P, which is `t` along the photon's way, is lit from where the photon starts.
+// True if the photon's origin lights a receiver at P, which is at distance `t` along the photon's path.
 bool AttributeChecker::IsLit(const EmissionSample& photon, const Point3& P, double t) const {
   if (light_.Kind() == LightKind::DeltaPosition || light_.Kind() == LightKind::DeltaDirection) {
     return light_.GenerateSamples(subject_.context, P).has_value();
@@ -95,8 +95,9 @@ bool AttributeChecker::IsLit(const EmissionSample& photon, const Point3& P, doub
   return e && !IsBlack(*e);
 }
 
-// True if it is lit, or not, as expected: there, or within the rounding of positions. A photon that comes through a
-// window at a grazing angle is within rounding of the window's plane for a while.
+// True if the point at distance `t` along the photon's path is lit, or not, as `isLit` says, there or within the
+// rounding of positions. A photon that comes through a window at a grazing angle stays within rounding of the window's
+// plane for a while.
 bool AttributeChecker::IsAsExpected(const EmissionSample& photon, double t, bool isLit) const {
   const Point3d P = Point3d(photon.position) + t * Vector3d(photon.direction);
   if (IsLit(photon, Point3(P), t) == isLit) return true;
@@ -123,7 +124,7 @@ void AttributeChecker::CheckShinesFrom(const EmissionSample& photon) {
   if (IsBlack(photon) || photon.pdfEmitDirection.IsZero() || !IsAtInfinity(light_.Kind())) return;
   const auto radius = static_cast<double>(subject_.context.scene.radius), slack = 2e-3 * radius;
   for (const double t : {from - slack, from + slack, 2 * radius * static_cast<double>(rng_.NextFloat())}) {
-    // No photon gets farther than through the scene.
+    // Photon paths end where they leave the scene.
     if (t < 0 || t > 2 * radius + slack || std::abs(t - from) < 0.5 * slack || IsAsExpected(photon, t, t > from))
       continue;
     shinesFrom_.Note(1, [&] {
@@ -134,7 +135,7 @@ void AttributeChecker::CheckShinesFrom(const EmissionSample& photon) {
   }
 }
 
-// A place on the light's surface, or the point itself.
+// Checks a position on the light's surface, or that of a point light.
 void AttributeChecker::CheckPlace(const char* what, const Point3& position, const Normal3& normal, const Vector3& error,
                                   int patch, const Point3& uvw) {
   if (IsAtInfinity(light_.Kind())) return;
@@ -158,7 +159,7 @@ void AttributeChecker::CheckPlace(const char* what, const Point3& position, cons
   ++points_;
   if (uvw.x == 0 && uvw.y == 0) ++unsetUv_;
   const Vector2 difference = Abs(Point2(uvw.x, uvw.y) - exact->uv);
-  // Around a seam or a pole, where all turns are one.
+  // u wraps around at a seam or a pole, where a full turn equals none.
   const float across = std::min(difference.x, std::abs(1 - difference.x));
   if (std::max(across, difference.y) > 2e-3f) {
     ++otherUv_;
@@ -168,7 +169,7 @@ void AttributeChecker::CheckPlace(const char* what, const Point3& position, cons
   }
 }
 
-// On the plane that touches the scene's sphere on the light's side.
+// Checks that a photon starts on the plane that touches the scene's sphere on the light's side.
 void AttributeChecker::CheckStart(const EmissionSample& photon) {
   const Point3d center(subject_.context.scene.center), p(photon.position);
   const Vector3d direction = glm::normalize(Vector3d(photon.direction));
@@ -185,7 +186,7 @@ void AttributeChecker::CheckStart(const EmissionSample& photon) {
   });
 }
 
-// What light selection goes by.
+// Checks the energy of the bounds, on which light selection is based.
 void AttributeChecker::CheckEnergy() {
   const auto energyOf = [&](int patch) {
     LightContext context = subject_.context;
@@ -234,7 +235,7 @@ void AttributeChecker::Report() {
   if (surface_ || IsAtInfinity(light_.Kind())) Add("position-error", tooSmall_, 1);
   Add("position-error", tooLarge_, kLargestError);
   if (!surface_) return;
-  // A light that is the same all over may leave them at 0.
+  // A uniform light may leave the coordinates at 0.
   Worst uv;
   if (points_ > 0 && unsetUv_ < points_) {
     uv.Note(static_cast<double>(otherUv_) / points_, [&] { return uvWords_; });

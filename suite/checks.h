@@ -1,4 +1,4 @@
-// The parts of the suite: by kind of light, and what they share. Private to the suite.
+// The checks of the suite by kind of light, and the code they share. Private to the suite.
 #pragma once
 
 #include <optional>
@@ -16,13 +16,13 @@ void CheckSurfaceLight(const SuiteSubject& subject, const SuiteOptions& options,
 void CheckPointLight(const SuiteSubject& subject, const SuiteOptions& options, SuiteReport& report);
 void CheckInfiniteLight(const SuiteSubject& subject, const SuiteOptions& options, SuiteReport& report);  // deltas too
 
-// patches, shines-from, position-error, energy, uvw.
+// Properties patches, shines-from, position-error, energy, uvw.
 void CheckAttributes(const SuiteSubject& subject, const SuiteOptions& options, SuiteReport& report);
 
-// Strata that few samples reach.
+// Checks the densities in strata that few samples reach.
 void CheckStrata(const SuiteSubject& subject, const SuiteOptions& options, SuiteReport& report);
 
-// An edited light is the light made afresh, bit by bit.
+// Checks that an edited light equals, bit by bit, the light made afresh.
 void CheckEdit(const SuiteSubject& subject, const SuiteOrigin& origin, SuiteReport& report);
 
 struct Receiver {
@@ -30,20 +30,20 @@ struct Receiver {
   Point3 position;
 };
 
-// Checks `count` cases beside each other.
+// Checks `count` cases in parallel.
 SuiteReport RunCases(size_t count, const SuiteOptions& options,
                      const std::function<void(size_t index, SuiteReport& report)>& check);
 
-// A generator of the case's own: results do not depend on what ran before, or on which thread.
+// Random number generator of one case: results depend neither on what ran before nor on the thread.
 Rng MakeRng(const SuiteSubject& subject, const SuiteOptions& options);
-// Another one, for receivers and fixed starts.
+// Second generator of the case, for receivers and fixed starts.
 Rng MakeRngOfPlaces(const SuiteSubject& subject, const SuiteOptions& options);
 LightContext RandomContext(const SuiteSubject& subject, Rng& rng);
 
 // A uniform direction.
 Vector3d RandomDirection(Rng& rng);
 
-// Directions of `count` draws; those that give none are left out.
+// Unit directions of `count` draws; draws without a direction are left out.
 inline constexpr int kHints = 2048;
 template <class Function>
 std::vector<Vector3d> DrawDirections(Rng& rng, int count, const Function& draw) {
@@ -54,8 +54,8 @@ std::vector<Vector3d> DrawDirections(Rng& rng, int count, const Function& draw) 
   return directions;
 }
 
-// What is emitted by a sample, an evaluation or a photon: mean of the channels, the light's diffuse and specular
-// multipliers taken out.
+// Emission of a sample, an evaluation or a photon: mean of the channels, divided by the sum of the light's diffuse and
+// specular multipliers.
 template <class Result>
 double Emitted(const SuiteSubject& subject, const Result& result) {
   const double multipliers = subject.diffuseMultiplier + subject.specularMultiplier;
@@ -78,38 +78,40 @@ inline double Value(PdfArea pdf) {
 double RelativeDifference(double a, double b);
 double RelativeDifference(const Color& a, const Color& b);
 
-// Largest relative difference between what a sample, or a photon, reports and what EvaluateSamples says of it.
+// Largest relative difference between the values of a sample, or a photon, and those of EvaluateSamples for it.
 double Mismatch(const LightSample& sample, const LightEvaluation& evaluation);
 double Mismatch(const EmissionSample& photon, const LightEvaluation& evaluation);
 LightHit HitOf(const LightSample& sample, const Point3& P);
 LightHit HitOf(const EmissionSample& photon, float distance);
 
-// How far the two parts of a result are from the light's diffuse and specular multipliers of one emission.
+// Relative deviation of a result's diffuse and specular parts from one emission times the light's two multipliers.
 template <class Result>
 double MultiplierMismatch(const SuiteSubject& subject, const Result& result) {
   return RelativeDifference(result.diffuse * static_cast<float>(subject.specularMultiplier),
                             result.specular * static_cast<float>(subject.diffuseMultiplier));
 }
-// What the camera sees of a hit against the evaluation of it. nullopt: nothing is reflected that could be compared.
+// Relative difference between the radiance that a camera sees at a hit and the evaluation of the hit. nullopt: both
+// multipliers are 0, so that nothing can be compared.
 std::optional<double> CameraMismatch(const SuiteSubject& subject, const LightHit& hit,
                                      const std::optional<LightEvaluation>& evaluation);
 
-// p-value of two means being equal up to a relative error of `tolerance`, or one of `absolute`.
+// p-value of two means being equal up to a relative error of `tolerance` plus an absolute error of `absolute`.
 double EqualMeans(const Estimate& a, const Estimate& b, double tolerance, double absolute = 0);
 inline Estimate EstimateOf(const RunningMean& mean) {
   return {mean.Mean(), mean.StandardError()};
 }
 
-// Two means in words: "light sampling gives 0.51 ± 1e-4, expected 0.5 ± 1e-5".
+// Description of two means, such as "light sampling is 0.51 ± 1e-4; expected 0.5 ± 1e-5".
 std::string InWords(const std::string& what, const Estimate& got, const Estimate& expected);
 
-// Flux of a photon; a light's power is its mean, those that were not emitted as 0.
+// Flux of a photon. A light's power is the mean flux over all draws; draws without a photon count as 0.
 double Flux(const SuiteSubject& subject, const EmissionSample& photon);
 
 void CheckPowerEstimate(const SuiteSubject& subject, const Estimate& emitted, SuiteReport& report);
 
-// Directions of emission for photons that start at one place (a fixed context.u, or a fixed context.uDirection where
-// that is what decides on the place); `subject` must emit there. Fails as `property` where neither fixes it.
+// A photon of which one part, position or direction, stays fixed: one of context.u and context.uDirection determines
+// that part and is kept, the other is redrawn. FindFixedStart returns nullopt if nothing is emitted, or if neither of
+// the two alone determines the part.
 struct FixedStart {
   LightContext context;
   bool byDirection = false;  // uDirection is fixed, u varies
@@ -147,7 +149,7 @@ Estimate LatticeMean(Rng& rng, int lattices, int points, const Function& functio
   return EstimateOf(means);
 }
 
-// The same with more and more points until the error is below `relative` times the mean.
+// LatticeMean with more and more points until the error is below `relative` times the mean.
 template <class Function>
 Estimate SharpMean(Rng& rng, double relative, const Function& function) {
   constexpr int kLattices = 128, kMost = 4096;
@@ -158,8 +160,8 @@ Estimate SharpMean(Rng& rng, double relative, const Function& function) {
   }
   return estimate;
 }
-// Adds the check that pdfDirect integrates to at most 1 over all directions of `cap`: `emitting` is its integral where
-// light comes from, and `dark(direction)` the density where none does, 0 elsewhere.
+// Adds the check that pdfDirect integrates to at most 1 over all directions of `cap`. `emitting` is its integral over
+// the directions from which light comes; `dark(direction)` is the density where none comes, 0 elsewhere.
 template <class Function>
 void CheckDarkDensity(const SuiteSubject& subject, const std::string& where, const Estimate& emitting, const Cap& cap,
                       const Function& dark, Rng& rng, SuiteReport& report) {
@@ -174,10 +176,10 @@ void CheckDarkDensity(const SuiteSubject& subject, const std::string& where, con
                         all.value <= 1 ? 1.0 : EqualMeans(all, {1, 0}, 1e-3),
                         InWords("the integral of pdfDirect, dark directions included,", all, {1, 0}));
 }
-// How often something that happens in few of the draws happens, and what it adds up to: as many draws as it takes to
-// see it some hundred times.
+// Probability of a rare event and the mean of its values. As many draws are taken as it needs to observe the event some
+// hundred times.
 struct Counted {
-  Estimate share, sum;  // of the draws that count; mean of their values over all draws
+  Estimate share, sum;  // fraction of draws that count; mean of their values over all draws
 };
 template <class Function>  // std::optional<double>(x): the value of a draw that counts
 Counted CountedMean(Rng& rng, const Function& function) {
@@ -201,7 +203,8 @@ Counted CountedMean(Rng& rng, const Function& function) {
     }
     counted = {EstimateOf(shares), EstimateOf(sums)};
     if (found >= kEnough) break;
-    // What was not seen may happen all the same: at least the error of a count of one.
+    // An event that was not observed may still have a positive probability: the error is at least that of a count of
+    // one.
     const double draws = static_cast<double>(kLattices) * points, least = std::sqrt(std::max(found, 1.0)) / draws;
     counted.share.error = std::max(counted.share.error, least);
     const double each = found > 0 ? counted.sum.value / counted.share.value : 0.0;
@@ -210,7 +213,7 @@ Counted CountedMean(Rng& rng, const Function& function) {
   return counted;
 }
 
-// 1 where the place of a photon, or whether there is one, depends on the random numbers of its direction; else 0.
+// 1 if the position of a photon, or its existence, depends on the random numbers of its direction; else 0.
 double WorstPhotonOrigin(const SuiteSubject& subject, Rng& rng);
 
 }  // namespace lampyr::suite

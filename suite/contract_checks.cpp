@@ -25,7 +25,7 @@ std::string ContractChecker::FirstDifference(const Change& change, Compare compa
   return Difference(whole_, AskWhole(light_, context));
 }
 
-// Each question twice in a row, the last one first.
+// Questions in reverse order, each several times in a row.
 std::string ContractChecker::FirstDifferenceBackwards() const {
   for (size_t i = questions_.size(); i-- > 0;) {
     for (const CallOrder order : {CallOrder::Backwards, CallOrder::Forwards, CallOrder::Forwards}) {

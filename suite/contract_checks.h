@@ -1,8 +1,8 @@
 // Checks that a light depends only on its documented inputs.
 //
 //   bidirectional   asking for densities of emission changes nothing but them
-//   time            the placement is all that a light knows of the time
-//   repeat          the same question has the same answer: in another order, on another thread, after all else
+//   time            the shutter time affects a light only through its placement
+//   repeat          the same query gives the same result: in another order, on another thread, after all else
 #pragma once
 
 #include "suite/answers.h"
@@ -11,16 +11,16 @@ namespace lampyr::suite {
 
 class ContractChecker {
  public:
-  // Asks the light at once; the checks compare with that.
+  // Records the light's answers; the checks compare with them.
   ContractChecker(const SuiteSubject& subject, const SuiteOptions& options);
 
   void CheckBidirectional(SuiteReport& report) const;
   void CheckTime(SuiteReport& report) const;
-  // To be called last: what has worn out by then shows.
+  // Must be called last, so that state changed by the other checks shows.
   void CheckRepeat(SuiteReport& report) const;
 
  private:
-  // Of all questions, asked in contexts that `change` makes of theirs.
+  // The first difference over all questions when `change` is applied to their contexts; empty if there is none.
   using Change = std::function<void(LightContext&)>;
   std::string FirstDifference(const Change& change, Compare compare) const;
   std::string FirstDifferenceBackwards() const;

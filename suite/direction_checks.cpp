@@ -1,6 +1,6 @@
-// Directions of photons against their density: the integral, χ² in cells, and moments. A tilt moves the mean, a
-// stretch the second moments. A ripple that is finer than the cells shows in how far the density lies above that of
-// directions beside, where photons go: less than the density itself promises, for they do not follow the ripple.
+// Directions of photons against their density: the integral, χ² in cells, and moments. A tilt moves the mean, a stretch
+// the second moments. A ripple finer than the cells shows in the mean ratio of the density to that of adjacent
+// directions: if photons do not follow the ripple, the ratio is lower than the density promises.
 #include "suite/area_common.h"
 #include "suite/direction_source.h"
 #include "suite/exact_surface.h"
@@ -9,8 +9,8 @@ namespace lampyr::suite {
 
 namespace {
 
-// Of a direction d: d brought to mean 0 and variance 1, its products, and how far the density is above that beside it,
-// on two scales.
+// Statistics of a direction d: d normalised to mean 0 and variance 1, products of its components, and the ratio of the
+// density to that of adjacent directions at two scales.
 class Moments {
  public:
   static constexpr size_t kCount = 11;
@@ -40,7 +40,7 @@ class Moments {
     std::copy(std::begin(all), std::end(all), values.begin());
   }
 
-  // A direction is known to its rounding: what that does to the function on the average is far less than this.
+  // Allows for the rounding of directions, whose effect on the mean of a statistic is far less than this.
   double Tolerance(size_t i) const {
     constexpr double kLeast = 2e-4, kRounding = 1e-6;
     constexpr int axes[9][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {2, 0}};
@@ -57,7 +57,7 @@ class Moments {
   }
 
  private:
-  // The density over the mean of four beside it; 1 where they differ by so much that there is an edge.
+  // The density divided by the mean of four adjacent ones; 1 if the ratio is so far from 1 that there is an edge.
   double AboveBeside(const Vector3d& d, double density, double step) const {
     const Vector3d x = glm::normalize(glm::cross(d, std::abs(d.x) < 0.7 ? Vector3d(1, 0, 0) : Vector3d(0, 1, 0)));
     const Vector3d y = glm::cross(d, x);
@@ -156,7 +156,7 @@ void CheckDirectionsFinely(const SuiteSubject& subject, const SuiteOptions& opti
   if (light.Kind() == LightKind::Area && (subject.model || light.Surface())) {
     const double radius = ExactSurface(subject).Around().radius;
     const auto start = FindFixedStart(subject, FixedPart::Position, 1e-5 * radius, places);
-    if (!start) return;  // the ordinary test says so
+    if (!start) return;  // the ordinary test reports it
     CheckDirectionsOf(subject, DirectionsFrom(subject, *start, static_cast<float>(2 * radius)), where, effort, rng,
                       report);
   } else if (light.Kind() == LightKind::DeltaPosition) {

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kTwoPi = 2 * 3.14159265358979323846;
 
-// A frame around the axis.
+// Two unit vectors that complete the axis to an orthonormal frame.
 struct Around {
   Vector3d x, y;
   explicit Around(const Vector3d& axis) {
@@ -52,10 +52,10 @@ Cap CapAround(std::span<const Vector3d> directions) {
     const Vector3d chord = d - cap.axis;
     widest = std::max(widest, 0.5 * glm::dot(chord, chord));
   }
-  // Of a few hundred directions the widest leaves out some thousandths of a soft edge: the cap is twice as wide. What
-  // is beyond that is smaller than the tests can see.
+  // The widest of a few hundred directions leaves out some thousandths of a soft edge, so the cap is twice as wide. The
+  // rest is smaller than the tests can detect.
   cap.wMax = widest < 0.5 ? std::max(2 * widest, 1e-14) : 2.0;
-  // What is bright is kept away from the poles: around them, small things are slivers of the square.
+  // Bright directions are kept away from the poles, around which small features map to slivers of the square.
   if (cap.IsSphere()) cap.axis = Around(cap.axis).x;
   return cap;
 }
@@ -89,7 +89,7 @@ Estimate DirectionQuadrature::Radiance() const {
   return sum;
 }
 
-// Part of the draws that rounding may carry over the edge of what is lit, into a cell where nothing is expected.
+// Fraction of the draws that rounding may carry over the edge of the lit region, into a cell where none are expected.
 static constexpr double kRoundings = 5e-5;
 
 double DirectionQuadrature::Test(std::span<const Vector3d> directions, double draws, int cells, std::string* worst) {

@@ -20,25 +20,26 @@ struct Cap {
   bool IsSphere() const { return wMax >= 2; }
 };
 
-// A cap around the mean of `directions`, of twice the solid angle that holds them all; the sphere beyond 60°.
+// A cap around the mean of `directions`, of twice the solid angle that holds them all; the sphere if they extend beyond
+// 60°.
 Cap CapAround(std::span<const Vector3d> directions);
 
-// Over the whole sphere: of the cap, where the light is, and of all that is outside of it.
+// Quadrature over the whole sphere in two parts: the cap that holds the light, and its complement.
 class DirectionQuadrature {
  public:
   using Function = std::function<Integrands(const Vector3d&)>;  // of a unit direction, per sr
   static constexpr int kBudget = 48000;
-  // `hints`: directions in which there is much; not those that are tested.
+  // `hints`: directions where the integrand is large; they must be independent of the directions under test.
   DirectionQuadrature(const Cap& cap, std::span<const Vector3d> hints, const Function& function, Rng& rng,
                       int budget = kBudget);
 
   Estimate Density() const;
   Estimate Radiance() const;
-  // p-value of `directions`, and draws - directions.size() draws that gave none, against the density.
-  // `worst`, if wanted: the cell that differs most, in words.
+  // p-value of the χ² test of `directions` against the density; draws - directions.size() draws gave no direction.
+  // `worst`, unless null, receives a description of the cell that differs most.
   double Test(std::span<const Vector3d> directions, double draws, int cells = 48, std::string* worst = nullptr);
 
-  // ∫ f dω of `count` functions that share their points, which are distributed like those of Density().
+  // ∫ f dω of `count` functions evaluated at shared points, which are distributed like those of Density().
   using Functions = std::function<void(const Vector3d&, std::span<double> values)>;
   std::vector<Estimate> Integrate(size_t count, const Functions& f, Rng& rng) const;
 

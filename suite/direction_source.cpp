@@ -20,7 +20,7 @@ DirectionSource DirectionsFrom(const SuiteSubject& subject, const FixedStart& st
   DirectionSource source;
   source.draw = [&light, start](const float(&x)[4]) -> std::optional<Vector3> {
     const auto photon = light.GenerateEmission(start.Draw({x[0], x[1]}));
-    if (!photon || photon->pdfEmitDirection.IsZero()) return std::nullopt;  // a place without a direction
+    if (!photon || photon->pdfEmitDirection.IsZero()) return std::nullopt;  // a position without a direction
     return photon->direction;
   };
   source.density = [&light, context = subject.context, hit = HitOf(start.photon, distance),
@@ -51,7 +51,7 @@ DirectionSource DirectionsFromInfinity(const SuiteSubject& subject, int photons,
   const Light& light = *subject.light;
   const Point3d center(subject.context.scene.center);
   const auto radius = static_cast<double>(subject.context.scene.radius);
-  std::vector<std::pair<Vector3d, Vector3d>> lines;  // where they start, in radii from the centre, and where to
+  std::vector<std::pair<Vector3d, Vector3d>> lines;  // origin, in radii from the centre, and direction
   glm::dmat3 sum(1e-12);
   Vector3d right(0.0);
   for (int i = 0; i < photons; ++i) {

@@ -1,4 +1,4 @@
-// Directions of photons, as a light draws them and as it says that they are distributed.
+// Directions of photons: the light's sampling of them and the density it reports.
 #pragma once
 
 #include "suite/checks.h"
@@ -6,29 +6,30 @@
 namespace lampyr::suite {
 
 struct DirectionSource {
-  // A direction by four random numbers; nullopt: none is drawn by them.
+  // The direction drawn by four random numbers; nullopt if none is drawn.
   std::function<std::optional<Vector3>(const float (&x)[4])> draw;
   std::function<double(const Vector3d&)> density;  // pdfEmitDirection of a unit direction
 };
 
-// For photons that start at one place of a light with a surface, `distance` long.
+// For photons from one point of a light with a surface. The density is evaluated on edges of length `distance`.
 DirectionSource DirectionsFrom(const SuiteSubject& subject, const FixedStart& start, float distance);
 DirectionSource DirectionsOfPoint(const SuiteSubject& subject, const Point3& position);
-// Towards the light. What is emitted in a direction is asked for at the end of a line on which photons do travel: one
-// through the point that is nearest to all photons' lines, or through one of those where each comes nearest to it.
+// Directions toward the light. The density of a direction is evaluated at the far end of a line in that direction that
+// photons do take: the line through the point nearest to all photons' lines, or through the point of one of those lines
+// that is nearest to it.
 DirectionSource DirectionsFromInfinity(const SuiteSubject& subject, int photons, Rng& rng);
 
 struct DirectionEffort {
-  int draws = 4000, cells = 48, points = 32;  // of χ²; of each of 128 lattices
+  int draws = 4000, cells = 48, points = 32;  // of the χ² test: draws, cells; of each of 128 lattices: points
   int budget = DirectionQuadrature::kBudget;
-  bool moments = false;  // tilts and ripples, which a χ² of few cells cannot see
+  bool moments = false;  // test moments too: a χ² test of few cells detects no tilts or ripples
 };
 
-// emission-integral and emission-directions.
+// Checks emission-integral and emission-directions.
 void CheckDirectionsOf(const SuiteSubject& subject, const DirectionSource& source, const std::string& where,
                        const DirectionEffort& effort, Rng& rng, SuiteReport& report);
 
-// With so many photons that a tilt of a hundredth shows.
+// Checks the directions with enough photons to detect a tilt of a hundredth.
 void CheckDirectionsFinely(const SuiteSubject& subject, const SuiteOptions& options, SuiteReport& report);
 
 }  // namespace lampyr::suite

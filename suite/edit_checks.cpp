@@ -1,5 +1,5 @@
-// Editing a light: the edited one is, bit by bit, the one that is made afresh from the merged parameters. Whatever was
-// computed from the old parameters and not anew shows.
+// Editing a light: the edited light must equal, bit by bit, the light made afresh from the merged parameters. Values
+// that were computed from the old parameters and not updated show as a difference.
 #include "lights/light_base.h"
 #include "suite/answers.h"
 
@@ -7,7 +7,7 @@ namespace lampyr::suite {
 
 namespace {
 
-// What differs between two lights, "" when nothing does.
+// The first difference between two lights as text; empty if there is none.
 std::string Difference(const SuiteSubject& subject, const Light& fresh, const Light& edited) {
   const std::string difference = DifferenceAsWhole(subject, fresh, edited);
   if (!difference.empty()) return difference;
@@ -27,14 +27,14 @@ std::string NameOf(const ParameterList& changes) {
   return changes.All().empty() ? "nothing" : changes.All()[0].name;
 }
 
-// `edit` makes the light that is to be what the merged parameters make afresh.
+// `edit` returns the edited light, which must equal the light made afresh from the merged parameters.
 void CompareEdit(const SuiteSubject& subject, const SuiteOrigin& origin, const ParameterList& merged,
                  const std::string& by, const std::function<std::unique_ptr<Light>()>& edit, SuiteReport& report) {
   std::unique_ptr<Light> fresh, edited;
   try {
     fresh = MakeLight(*origin.type, merged, *origin.build);
   } catch (const Error&) {
-    // The two do not go together: editing must say so too.
+    // The parameters are not compatible: editing must fail too.
   }
   try {
     edited = edit();
@@ -58,7 +58,7 @@ void CheckEdit(const SuiteSubject& subject, const SuiteOrigin& origin, SuiteRepo
         [&] { return subject.light->Edit(change, *origin.build); }, report);
   }
   if (changes.size() < 2) return;
-  // One after the other: an edited light knows all that it was made of.
+  // Two edits in sequence: an edited light must know all parameters from which it was made.
   const ParameterList both = MergeParameters(MergeParameters(*origin.parameters, changes[0]), changes[1]);
   CompareEdit(
       subject, origin, both, NameOf(changes[0]) + " and then " + NameOf(changes[1]),

@@ -17,7 +17,7 @@ T Mix4(const T& a00, const T& a10, const T& a01, const T& a11, double u, double 
   return (a00 * (1 - s) + a10 * s) * (1 - t) + (a01 * (1 - s) + a11 * s) * t;
 }
 
-// A normal of the shape's space in render space.
+// Unit normal in render space of a normal in the shape's space; 0 if that has no length.
 Vector3d PlacedNormal(const Transform& placement, const Vector3d& local) {
   const Vector3d n = placement.Normal(local);
   const double length = glm::length(n);
@@ -137,7 +137,7 @@ class QuadricModel final : public EmitterModel {
     m[3] = glm::dvec4(Vector3d(quadric.toRender.translation), 1.0);
     const Transform own(m);
     placement_ = placement * own;
-    // flipNormals says ReverseOrientation xor mirrored: only the former turns the outside.
+    // flipNormals is ReverseOrientation xor mirrored; only the former flips the outer side.
     reversed_ = quadric.flipNormals != own.SwapsHandedness();
     radius_ = static_cast<double>(q_.radius);
     phiMax_ = std::min(static_cast<double>(q_.phiMax), 2 * kPiDouble);

@@ -1,5 +1,5 @@
-// A shape's surface, written a second time: parametrised, in double, sharing no code with the lights. The suite
-// integrates the lights' densities over it and puts their samples into its cells.
+// Reference model of a shape's surface: parametrised, in double, sharing no code with the lights. The suite integrates
+// the lights' densities over it and bins their samples into its cells.
 #pragma once
 
 #include <memory>
@@ -24,10 +24,10 @@ class EmitterModel {
   virtual SurfaceElement At(int patch, double u, double v) const = 0;
   // The parameters of a point on the patch.
   virtual Point2d Invert(int patch, const Point3d& position) const = 0;
-  // A closed convex surface hides its far side from receivers outside of it.
+  // True for a closed convex surface, which hides its far side from receivers outside of it.
   virtual bool IsClosedConvex() const { return false; }
 
-  // Middle and radius of a sphere around the surface, area: by sampling the parameters.
+  // Bounding sphere and area of the surface, estimated by sampling the parameters.
   struct Extent {
     Point3d middle{0.0};
     double radius = 0, area = 0;

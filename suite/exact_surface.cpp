@@ -25,7 +25,7 @@ std::optional<ExactPoint> ExactSurface::At(const Point3& position, const Normal3
   return ExactPoint{found->hit.position, found->hit.normal, found->hit.uv};
 }
 
-// By a closed convex shape itself.
+// True if a closed convex shape hides its own point from P.
 bool ExactSurface::IsHidden(const Point3d& position, const Vector3d& normal, const Point3& P) const {
   if (!model_->IsClosedConvex()) return false;
   const double outward = glm::dot(normal, position - around_.middle) > 0 ? 1 : -1;
@@ -46,7 +46,7 @@ std::pair<Estimate, Estimate> ExactSurface::IntegrateDirections(const Point3& P,
   return model_ ? IntegrateModel(P, hints, f, rng, budget) : IntegrateTraced(P, hints, f, rng, budget);
 }
 
-// Over the parameters of each patch.
+// Integrates over the parameters of each patch.
 std::pair<Estimate, Estimate> ExactSurface::IntegrateModel(const Point3& P, std::span<const LightSample> hints,
                                                            const Integrand& f, Rng& rng, int budget) const {
   std::pair<Estimate, Estimate> sum;

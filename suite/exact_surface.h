@@ -1,5 +1,5 @@
-// The point of a light's surface, in double, that a sample or a photon stands for: by the shape's model, or by tracing
-// the light's own surface.
+// The exact surface point, in double, of a sample or a photon: by the shape's model, or by tracing the light's own
+// surface.
 #pragma once
 
 #include <utility>
@@ -16,21 +16,21 @@ struct ExactPoint {
 
 class ExactSurface {
  public:
-  // Of an area light. `subject` must outlive this.
+  // `subject` must be an area light and outlive this object.
   explicit ExactSurface(const SuiteSubject& subject);
 
-  // nullopt: there is none along the normal.
+  // The surface point of a sample or photon at `position`; nullopt if there is none along the normal.
   std::optional<ExactPoint> At(const Point3& position, const Normal3& normal, int patch) const;
   const Enclosure& Around() const { return around_; }
 
-  // Whether no other part of the surface hides a sample from P.
+  // True if no other part of the surface hides the sample from P.
   bool Sees(const Point3& P, const LightSample& sample) const;
-  // ∫ f dω over the directions in which P sees the surface; f is given what a ray finds there and its cosine. `hints`:
-  // samples that go where much is.
+  // ∫ f dω over the directions in which P sees the surface. f gets the hit of a ray and its cosine at the light.
+  // `hints`: samples drawn where the integrand is large.
   using Integrand = std::function<Integrands(const LightHit& hit, double cosine)>;
   std::pair<Estimate, Estimate> IntegrateDirections(const Point3& P, std::span<const LightSample> hints,
                                                     const Integrand& f, Rng& rng, int budget) const;
-  // The same by random points of the surface, for strips that are too thin to be found among directions.
+  // The same integral by random points on the traced surface, for strips too thin to be found among directions.
   Estimate IntegrateSurface(const Point3& P, const Integrand& f, Rng& rng) const;
 
  private:

@@ -1,4 +1,4 @@
-// A filter as a function: of the edge and of nothing else, and a factor.
+// Checks that a filter is a function of the edge and of nothing else, and a factor.
 #include "suite/filter_checks.h"
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace lampyr::suite {
 namespace {
 
 constexpr int kEdgesPerKind = 8;
-// Of what is computed twice in float, in another order.
+// Relative tolerance for the same result computed twice in float, in different order.
 constexpr double kRounding = 1e-5;
 
 double ChannelDifference(float a, float b) {
@@ -30,7 +30,7 @@ void Shuffle(std::vector<size_t>& indices, Rng& rng) {
   for (size_t i = indices.size(); i > 1; --i) std::swap(indices[i - 1], indices[rng.NextUint32() % i]);
 }
 
-// One filter and what it made of white light when it was asked first.
+// One filter, and its results for white light from the first query.
 class FunctionCheck {
  public:
   FunctionCheck(const FilterCase& filterCase, SuiteReport& report)
@@ -54,10 +54,10 @@ class FunctionCheck {
   }
 
  private:
-  // Bits that have to be those of the first time.
+  // Requires the same bits as in the first query.
   void ExpectFirst(size_t edge, const Filtered& found, const std::string& how, WorstEdge& worst) const {
     if (IsSame(found, first_[edge])) return;
-    // Equal bits are asked for: what differs in them alone is an error, too.
+    // Equal bits are required: a difference in the bits alone is an error too.
     worst.Note(std::max(Difference(found, first_[edge]), 1e-9),
                [&] { return how + ", " + edges_.Say(edge) + ": " + SayDifference(found, first_[edge]); });
   }
@@ -154,7 +154,7 @@ void FunctionCheck::CheckLightPdf() {
   worst.Report(case_, "light-pdf", report_);
 }
 
-// White light, and coloured light of any strength.
+// Checks white light, and coloured light of any strength.
 void FunctionCheck::CheckValid() {
   WorstEdge worst(0);
   const auto error = [](const Color& color) {
@@ -194,7 +194,7 @@ void FunctionCheck::CheckLight() {
   const auto compare = [&](const EdgeBatch& changed, float diffuse, float specular, const std::string& how) {
     const std::vector<Filtered> found = changed.Filter(*filter_, ContextAt(0));
     for (size_t i = 0; i < found.size(); ++i) {
-      // Brought back to the size of the first, so that dim light counts.
+      // Scaled back to the original strength, so that differences in dim light count.
       const Filtered scaled{diffuse > 0 ? found[i].diffuse / diffuse : found[i].diffuse,
                             specular > 0 ? found[i].specular / specular : found[i].specular};
       const Filtered right{diffuse > 0 ? left[i].diffuse : Color(0.0f), specular > 0 ? left[i].specular : Color(0.0f)};
@@ -228,7 +228,7 @@ void FunctionCheck::CheckIdentity() {
   worst.Report(case_, "identity", report_);
 }
 
-// By how many powers of ten more gets through than the filter says.
+// The error is the number of powers of ten by which the transmitted light exceeds GetRadianceModifier.
 void FunctionCheck::CheckModifier() {
   const std::optional<float> modifier = filter_->GetRadianceModifier();
   if (!modifier) return;

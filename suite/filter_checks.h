@@ -1,4 +1,4 @@
-// The parts of the filter suite. Private to it.
+// The checks of the filter suite. Private to it.
 #pragma once
 
 #include <cmath>
@@ -15,34 +15,34 @@ struct FilterCase {
   const FilterMaker* maker = nullptr;
   std::string name;      // of the results
   std::string caseName;  // the place, and what is changed in the block
-  std::string changes;   // parameters that are laid over the block
+  std::string changes;   // parameters that override those of the block
   Transform placement;
   uint64_t seed = 1;
 
   Rng MakeRng() const { return Rng(seed); }
-  // Its edges, as they are placed.
+  // Test edges, transformed by the filter's placement.
   EdgeBatch Edges(Rng& rng) const;
 };
 
-// All filters are asked as for a receiver that subscribes to group 1.
+// Every filter is queried for a receiver that subscribes to group 1.
 inline constexpr uint8_t kEnabled[] = {1, 1};
 inline FilterContext ContextAt(float time) {
   return {time, kEnabled};
 }
 
-// What an error is where a number is none.
+// Error value for results that are not finite numbers.
 inline constexpr double kNoNumber = 1e9;
 
-// The largest relative difference of a channel, of colours that are not small against 1; 0 for equal bits.
+// The largest channel difference relative to max(1, |a|, |b|); 0 for equal values.
 double Difference(const Color& a, const Color& b);
 double Difference(const Filtered& a, const Filtered& b);
 
-// The worst of what a check finds: the largest error, and where it is.
+// Keeps the largest error of a check and its location.
 class WorstEdge {
  public:
   explicit WorstEdge(double tolerance) : tolerance_(tolerance) {}
 
-  // `words` is a function that says where; it is called for what is worse than all before.
+  // `words()` describes the location; it is called only if the error exceeds all earlier ones.
   template <class Words>
   void Note(double error, const Words& words) {
     if (!(error < kNoNumber)) error = kNoNumber;
@@ -58,7 +58,7 @@ class WorstEdge {
   std::string words_;
 };
 
-// "diffuse is (…), right is (…)", of the kind of lobe that is farther from it.
+// Description such as "diffuse light is (…), right is (…)", for the lobe type with the larger difference.
 std::string SayDifference(const Filtered& found, const Filtered& right);
 
 // repeat, batch, threads, time, light-pdf, valid, light, identity, modifier: of any filter.

@@ -1,4 +1,4 @@
-// A filter among others in a combiner, against the arithmetic of each mode, written a second time.
+// A filter combined with others, against a second implementation of the arithmetic of each combine mode.
 #include <algorithm>
 #include <array>
 
@@ -32,7 +32,7 @@ std::string Quoted(const char* type, const char* name, const std::string& value)
   return std::string("\"") + type + " " + name + "\" \"" + value + "\" ";
 }
 
-// The filter under test, with one or two constants beside it.
+// Combines the filter under test with one or two constant filters.
 class CombinedCheck {
  public:
   CombinedCheck(const FilterCase& filterCase, SuiteReport& report)
@@ -64,7 +64,7 @@ class CombinedCheck {
   FilterInstance Constant(const char* name, const char* tint, const std::string& mode) const {
     return Named(tint_.MakeInstance(tint + (" " + Quoted("string", "combineMode", mode)), Transform()), name);
   }
-  // A combiner of these, in this order.
+  // Light filtered by a combiner of `filters`, in this order.
   std::vector<Filtered> Run(const std::vector<FilterInstance>& filters, const std::string& parameters,
                             const FilterContext& context) const;
   void Expect(const std::vector<Filtered>& found, const std::string& how,
@@ -119,7 +119,7 @@ void CombinedCheck::Run() {
     Expect(
         Run({Tested(mode)}, "", ContextAt(0)), "alone by " + mode, [](const Filtered& factor) { return factor; },
         worst);
-    // The combiner's own mode goes before those of what it runs.
+    // The combiner's own mode overrides those of the filters that it runs.
     const std::string other = mode == "max" ? "min" : "max";
     if (combinerMaker_.Has("mode")) {
       Expect(

@@ -7,7 +7,7 @@ namespace lampyr::suite {
 
 namespace {
 
-// Neighbours are so far away, in parts of the edge's own size: some hundred times the rounding of float.
+// Distance of neighbours, relative to the edge's own size: some hundred times the rounding of float.
 constexpr double kNeighbour = 1e-5;
 
 double Between(Rng& rng, double low, double high) {

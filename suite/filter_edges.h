@@ -1,5 +1,5 @@
-// The edges that filters are asked for: between receivers and places on a light, spread over all the ways in which an
-// edge can meet a filter.
+// Test edges for filters, between receivers and points on a light. They cover all the ways in which an edge can meet a
+// filter.
 #pragma once
 
 #include <span>
@@ -12,39 +12,39 @@
 
 namespace lampyr::suite {
 
-// In the filter's own space, in double. Filters are about a unit large and look along -z.
+// An edge in the filter's own space, in double. Filters are about a unit large and look along -z.
 struct SuiteEdge {
   const char* kind;
   Point3d receiver;
-  Vector3d toLight;  // to the place on the light; of a light at infinity, the direction alone
+  Vector3d toLight;  // to the point on the light; only a direction for a light at infinity
   bool isInfinite = false;
   bool isDelta = false;  // of a light without a density
 };
 
 // `perKind` edges of each kind.
 std::vector<SuiteEdge> SuiteEdges(Rng& rng, int perKind);
-// The edge with its neighbours, which are farther from it than rounding may move it.
+// The edge and its neighbours, which are farther away than rounding may move an edge.
 std::vector<SuiteEdge> Neighbours(const SuiteEdge& edge, Rng& rng);
 
-// What is left of light.
+// Filtered light, by lobe type.
 struct Filtered {
   Color diffuse, specular;
 };
 bool IsSame(const Filtered& a, const Filtered& b);  // bit by bit
 
-// Edges as filters get them, with the light that they carry: white at first.
+// Edges in the form that filters take, with the light that they carry, initially white.
 class EdgeBatch {
  public:
   EdgeBatch() = default;
   EdgeBatch(std::span<const SuiteEdge> edges, const Transform& placement, Rng& rng);
 
   size_t Size() const { return receivers.size(); }
-  // Those of these indices, in that order.
+  // The edges at `indices`, in that order.
   EdgeBatch Pick(std::span<const size_t> indices) const;
-  // What the filter leaves of the light, asked in one call, and in a call for each edge.
+  // Filtered light: of all edges by one call (Filter), or of a single edge by its own call (FilterOne).
   std::vector<Filtered> Filter(const LightFilter& filter, const FilterContext& context) const;
   Filtered FilterOne(size_t index, const LightFilter& filter, const FilterContext& context) const;
-  // The edge in words.
+  // Description of an edge.
   std::string Say(size_t index) const;
 
   std::vector<const char*> kinds;

@@ -32,7 +32,7 @@ std::string Statement(const std::string& type, const std::string& parameters) {
   return "LightFilter \"" + type + "\" " + parameters;
 }
 
-// As Transform statements take it: column by column.
+// A Transform statement, which takes the matrix column by column.
 std::string Write(const Transform& transform) {
   std::string text = "Transform [";
   for (int column = 0; column < 4; ++column) {

@@ -1,5 +1,5 @@
-// Makes the filters that the suite asks: a sample block with changes laid over it, at any place. What a sample block
-// may name beside the images of suite_inputs.h are these filters, for those that run others:
+// Makes the filters under test: a sample block with overriding parameters, at any placement. Besides the images of
+// suite_inputs.h a sample block of a filter that runs others may name these filters:
 //
 //   suite-slot   barn, taken as maximum     suite-ball   blocker, taken as screen
 //   suite-fade   ramp, taken as minimum     suite-tint   intmult, multiplied
@@ -15,31 +15,31 @@
 
 namespace lampyr::suite {
 
-// The filter of that name, of those above. Throws an Error at `where` for any other.
+// The filter `name` of the list above. Throws an Error at `where` for any other name.
 FilterInstance FindSuiteFilter(const std::string& name, const FilterBuildContext& build, const FileLocation& where);
 
-// All of them as a scene has them: statements, with their names.
+// Scene statements that declare all of them by name.
 std::string SuiteFilterStatements();
 
-// Of one sample block. For one thread.
+// Makes filters from one sample block. For use by one thread.
 class FilterMaker {
  public:
   FilterMaker(const FilterType& type, std::string block, const std::filesystem::path& folder)
       : type_(type), block_(std::move(block)), folder_(folder) {}
 
   const FilterType& Type() const { return type_; }
-  // Whether the type's table has a parameter of that name, as all built-in filters have it.
+  // True if the type's parameter table has `parameter`. All built-in filters have the common ones.
   bool Has(const std::string& parameter) const;
-  // The block's parameters with `changes` laid over them, line by line: a later one goes before those above it.
+  // The block's parameters overridden by `changes`, line by line; a later line takes precedence over those above it.
   ParameterList Parameters(const std::string& changes) const;
 
   std::shared_ptr<const LightFilter> Make(const std::string& changes, const Transform& placement) const;
-  // One that moves; its place at shutter open is the motion's first.
+  // A moving filter; its placement at shutter open is the first of the motion.
   std::shared_ptr<const LightFilter> MakeMoving(const std::string& changes,
                                                 const std::shared_ptr<const Motion>& motion) const;
-  // As a scene holds it: with how combiners take it.
+  // The filter with its combineMode, as a scene holds it.
   FilterInstance MakeInstance(const std::string& changes, const Transform& placement) const;
-  // Placed by a scene's text, in which it stands elsewhere and names `placement` as its coordinate system.
+  // Placed by scene text: the statement stands elsewhere and names `placement` as its coordinate system.
   std::shared_ptr<const LightFilter> MakeByName(const std::string& changes, const Transform& placement) const;
 
  private:

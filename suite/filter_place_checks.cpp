@@ -1,8 +1,10 @@
-// Where a filter is: its factor is that of the same edge in its own space, wherever it is placed, and by whichever way.
+// Placement of a filter: wherever it is placed, and in whichever way, its factor equals that of the same edge in its
+// own space.
 //
-// A factor may have steps, and an edge that is placed is rounded: where it comes to lie beside a step, what it would be
-// on the other side is right, too. So a factor is compared with the range of those of the edge's neighbours, made wider
-// by as much as it is wide: a few neighbours do not find the ends of what changes many times among them.
+// A factor may have steps, and rounding may move a placed edge across a step: the value on the other side is correct
+// too. A factor is therefore compared with the range of the factors of the edge's neighbours. The range is widened by
+// its own width at both ends, because a few neighbours do not find the extremes of a factor that changes many times
+// among them.
 #include <algorithm>
 
 #include "math/motion.h"
@@ -19,7 +21,7 @@ constexpr double kAtOrigin = 1e-4;
 struct FactorRange {
   Filtered low, high;
 
-  // The nearest that is right.
+  // The correct value nearest to `left`.
   Filtered Nearest(const Filtered& left) const {
     const auto clamp = [](const Color& c, const Color& least, const Color& most) {
       return Color(std::clamp(c.r, least.r, most.r), std::clamp(c.g, least.g, most.g),
@@ -54,7 +56,7 @@ class PlaceCheck {
  public:
   PlaceCheck(const FilterCase& filterCase, SuiteReport& report)
       : case_(filterCase), report_(report), rng_(filterCase.MakeRng()), edges_(SuiteEdges(rng_, kEdgesPerKind)) {
-    // Seen from the origin, the origin lies nowhere: what is applied there depends on rounding alone.
+    // From a receiver at the filter's origin, the origin has no direction: the factor there depends on rounding alone.
     std::erase_if(edges_, [](const SuiteEdge& edge) { return glm::length(edge.receiver) < kAtOrigin; });
     const auto inPlace = filterCase.maker->Make(filterCase.changes, Transform());
     for (const SuiteEdge& edge : edges_) {
@@ -78,7 +80,7 @@ class PlaceCheck {
   }
 
  private:
-  // The edges are placed as the filter is: the factors are those in its own space.
+  // Edges are transformed as the filter is, so the factors must be those in the filter's own space.
   void Expect(const LightFilter& filter, const Transform& placement, float time, const std::string& how,
               WorstEdge& worst) {
     const EdgeBatch placed(edges_, placement, rng_);
@@ -90,7 +92,7 @@ class PlaceCheck {
     }
   }
 
-  // From its place to another, turning on its way.
+  // The filter moves from its placement to another and rotates on its way.
   void CheckMotion(WorstEdge& worst) {
     const FileLocation nowhere;
     const Transform end =

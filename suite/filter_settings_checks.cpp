@@ -1,4 +1,4 @@
-// What the parameters mean that filters have in common: density, invert, diffuse, specular, linkingGroups.
+// Effects of the parameters common to filters: density, invert, diffuse, specular, linkingGroups.
 #include <algorithm>
 
 #include "suite/filter_checks.h"
@@ -7,10 +7,10 @@ namespace lampyr::suite {
 
 namespace {
 
-// Of float, a few times over.
+// Tolerance for a few roundings of float.
 constexpr double kRounding = 2e-5;
 
-// What a block is made neutral by: its factor alone is left.
+// Parameters that neutralise the common parameters of a block, so that its factor alone is left.
 std::string Neutral(const FilterMaker& maker) {
   std::string text;
   for (const char* strength : {"density", "diffuse", "specular"}) {
@@ -35,7 +35,8 @@ struct Setting {
     }
     return text;
   }
-  // What is applied where the factor is `factor`: double for a reference that does not round as the filter does.
+  // The factor applied by a filter of factor `factor`. In double, so that the reference does not round as the filter
+  // does.
   Color Applied(const Color& factor, float ofLobe) const {
     const double strength = static_cast<double>(density) * static_cast<double>(ofLobe);
     const auto channel = [&](float value) {

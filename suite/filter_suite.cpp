@@ -1,4 +1,4 @@
-// What the filter suite runs over, and what its properties mean.
+// Cases of the filter suite, and the meanings of its properties.
 #include "suite/filter_suite.h"
 
 #include <array>
@@ -36,7 +36,7 @@ constexpr PropertyMeaning kMeanings[] = {
     {"motion", "a filter that moves is, at each time, one that stays where it is then"},
 };
 
-// Common parameters that change what a filter is asked: each block is a function of the edge with them, too.
+// Variations of the common parameters. With each of them, a block must still be a function of the edge.
 struct Variation {
   const char *name, *needs, *parameters;
 };

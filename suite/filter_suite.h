@@ -6,27 +6,26 @@
 // Properties, by their names in the results. FilterPropertyMeaning says each in one line.
 //
 //   samples      the type has sample blocks, and each changes some light
-//   repeat       asked again, the filter answers with the same bits, whatever it was asked between
+//   repeat       repeated queries give the same bits, whatever was queried in between
 //   batch        an edge alone, in batches of any size and in any order gives the same bits
-//   threads      so it does on any thread
-//   time         a filter that stays gives the same bits at any time of the shutter
-//   light-pdf    the density of the light's own sampling changes no bit
-//   valid        what is left of light is finite and not negative
-//   light        twice the light gives twice what is left; each kind of lobe is changed by itself
-//   identity     a filter that says it never changes anything does not
-//   modifier     GetRadianceModifier: 0 only where nothing gets through, and no less than a tenth of what does
-//   density      what is applied is 1 + density · (factor − 1); a density of 0 is no filter
+//   threads      an edge gives the same bits on any thread
+//   time         a static filter gives the same bits at any time of the shutter
+//   light-pdf    the pdf of the light's own sampling changes no bit
+//   valid        filtered light is finite and not negative
+//   light        twice the light gives twice the filtered light; each lobe type is filtered independently
+//   identity     a filter that reports IsIdentity changes nothing
+//   modifier     GetRadianceModifier is 0 only if nothing is transmitted, and at least a tenth of what is
+//   density      the applied factor is 1 + density · (factor − 1); a density of 0 is no filter
 //   invert       1 less the factor, not below 0
 //   lobes        diffuse and specular scale the effect for their kind of lobe, and for no other
 //   groups       the filter names the groups that it was given, and does not look at them itself
-//   combine      a combiner takes it by its combineMode: as product, maximum, minimum or screen; and leaves it out
-//   where
+//   combine      a combiner applies it by its combineMode (product, maximum, minimum or screen), and skips it where
 //                it is not enabled
-//   placement    a filter and an edge that are moved alike give the same factor
-//   coordsys     a filter in a named coordinate system is a filter that is placed there
-//   motion       a filter that moves is, at each time, one that stays where it is then
+//   placement    a filter and an edge transformed alike give the same factor
+//   coordsys     a filter in a named coordinate system equals one placed there
+//   motion       a moving filter equals, at each time, a static one at the placement of that time
 //
-// What the common parameters mean (density … motion) is checked for types whose table has them.
+// Properties of the common parameters (density … motion) are checked for types whose table has them.
 #pragma once
 
 #include <filesystem>
@@ -43,7 +42,7 @@ namespace lampyr {
 std::vector<SuiteResult> RunFilterSuite(const std::vector<FilterType>& types, const std::filesystem::path& scratch,
                                         const SuiteOptions& options);
 
-// What holds of a filter that passes, in one line; "" for what is no property of filters.
+// Meaning of a property, in one line, as it holds for a filter that passes; empty if it is no property of filters.
 std::string FilterPropertyMeaning(const std::string& property);
 
 }  // namespace lampyr

@@ -1,5 +1,5 @@
-// The suite's properties of lights from infinity. What they send may differ from place to place (a window does that):
-// densities of directions are tested at several receivers, those of emission along the lines that photons take.
+// Properties of infinite lights. Their radiance may differ from place to place (a window does that): densities of
+// directions are tested at several receivers, those of emission along the lines that photons take.
 #include "math/frame.h"
 #include "suite/checks.h"
 #include "suite/direction_source.h"
@@ -43,7 +43,7 @@ class InfiniteChecker {
   void CheckEmissionDirections();
   void CheckPower();
   double SampleMismatch(const LightSample& sample, const Point3& P) const;
-  // Where the photon's line leaves the scene: every surface that it may meet lies before.
+  // The point where the photon's line leaves the scene: every surface that it may meet lies before it.
   Point3 FarEnd(const EmissionSample& photon) const { return photon.position + 2 * scene_.radius * photon.direction; }
   static LightHit HitAlong(const Vector3& toLight, const Point3& P) {
     LightHit hit;
@@ -63,7 +63,7 @@ class InfiniteChecker {
   Rng rng_, places_;
 };
 
-// All over the scene: a window has receivers before and behind it, near its plane and far from it.
+// Receivers throughout the scene: before and behind a window, near its plane and far from it.
 std::vector<Receiver> InfiniteChecker::Receivers() const {
   const auto at = [&](double x, double y, double z) {
     return Point3(Point3d(scene_.center) + radius_ * Vector3d(x, y, z));
@@ -165,7 +165,7 @@ void InfiniteChecker::CheckEstimates(const Receiver& receiver, bool arrives) {
   report_.AddError(subject_.name, "estimate", Case(" " + receiver.name), missed, 0.5);
 }
 
-// Each photon's densities are those of the edge from where it started to where it may land.
+// Checks that each photon's densities are those of the edge from its origin to where it may land.
 void InfiniteChecker::CheckPhotons() {
   double edge = 0, multipliers = 0, plane = 0;
   for (int i = 0; i < options_.photons; ++i) {
@@ -189,11 +189,11 @@ void InfiniteChecker::CheckPhotons() {
   }
   report_.AddError(subject_.name, "emission-edge", subject_.caseName, edge, 1e-4);
   report_.AddError(subject_.name, "multipliers", Case(" photons"), multipliers, 1e-5);
-  // They start on the plane that touches the scene's sphere on the light's side.
+  // Photons start on the plane that touches the scene's sphere on the light's side.
   report_.AddError(subject_.name, "emission-positions", Case(" start plane"), plane, 1e-4);
 }
 
-// Positions on the scene's disk, given a direction.
+// Checks positions on the scene's disk, given a direction.
 void InfiniteChecker::CheckStartsGivenDirection(int index) {
   const auto start = FindFixedStart(subject_, FixedPart::Direction, 1e-5, places_);
   const std::string where = Case(" disk " + std::to_string(index));
@@ -220,7 +220,7 @@ void InfiniteChecker::CheckStartsGivenDirection(int index) {
     if (!photon) return std::nullopt;
     const Vector3d offset = (Vector3d(photon->position) - Vector3d(scene_.center)) / radius_;
     const double a = glm::dot(offset, x), b = glm::dot(offset, y), turns = std::atan2(b, a) / (2 * kPiDouble);
-    // Those that start outside of the disk meet nothing. The rim itself is rounding.
+    // Photons that start outside the disk meet nothing. The tolerance at the rim is for rounding.
     if (a * a + b * b > 1.0001) return std::nullopt;
     return Point2d(std::min(a * a + b * b, 0x1.fffffep-1), turns < 0 ? turns + 1 : turns);
   };
@@ -257,7 +257,8 @@ void InfiniteChecker::CheckEmissionDirections() {
                     rng_, report_);
 }
 
-// By emission, and what leaves the scene's sphere by direct sampling at its points.
+// Checks the power of emission against the power that leaves the scene's sphere, by direct sampling at points of the
+// sphere.
 void InfiniteChecker::CheckPower() {
   const auto contextFor = [&](const float(&x)[4]) {
     LightContext context = subject_.context;

@@ -9,7 +9,8 @@ namespace lampyr::suite {
 
 namespace {
 
-// What a change should do: factors on what is emitted and on its parts, and on the bounds' energy besides that.
+// Expected effect of a change: factors on the emission and on its diffuse and specular parts, and a further factor on
+// the bounds' energy.
 struct Effect {
   Color emitted{1.0f};
   float diffuse = 1, specular = 1, energy = 1;
@@ -97,7 +98,8 @@ std::string CommonParameters::DifferenceOfParts(const char* what, const std::opt
                             effect.emitted * effect.specular, got->specular, effect.tolerance);
 }
 
-// Of the same edges. Samples and photons may be others where the light looks at its colour to choose them.
+// The first difference on the same edges. Samples and photons may differ if the light's sampling depends on its colour;
+// they are compared only where they coincide.
 std::string CommonParameters::Difference(const Light& changed, const Effect& effect,
                                          const LightSettings& settings) const {
   const LightSettings& s = changed.Settings();
@@ -188,7 +190,8 @@ void CommonParameters::CheckColors() {
   }
 }
 
-// By the area in render space where there is one; points have no size. What it is at infinity is the type's affair.
+// Normalisation is by the area in render space where there is one; points have no size. At infinity its meaning is up
+// to the type.
 void CommonParameters::CheckNormalize() {
   const Light& light = *subject_.light;
   if (!Has("normalize", ParameterType::Bool) || IsAtInfinity(light.Kind())) return;
@@ -214,7 +217,7 @@ void CommonParameters::CheckNormalize() {
   Check({Bool("normalize", !isNormalized)}, effect, light.Settings());
 }
 
-// Divided by an area of 1, a light is what it was: it is made anew, 1.7 times as large.
+// Normalisation by an area of 1 changes nothing, so the light is made anew, 1.7 times as large.
 void CommonParameters::CheckNormalizeOfLarger(double area) {
   if (subject_.context.transform->toRender.linear != origin_.build->transform.toRender.linear) return;
   constexpr double kScale = 1.7;
@@ -319,7 +322,7 @@ std::vector<std::string> CandidatesOf(const ParameterInfo& row, const ParameterL
     default:
       break;
   }
-  // What has an effect together with another only.
+  // Parameters that have an effect only together with another.
   const size_t alone = texts.size();
   for (size_t i = 0; i < alone; ++i) {
     if (row.name == "colorTemperature") texts.push_back(texts[i] + "\"bool enableColorTemperature\" true");

@@ -1,5 +1,5 @@
-// What the parameters that all lights have do to a light, and editing by each parameter of its type. Neither relies on
-// what the author's sample blocks happen to set.
+// Checks of the parameters common to all lights, and edits by each parameter of a type. Neither relies on what the
+// author's sample blocks happen to set.
 #pragma once
 
 #include <filesystem>
@@ -8,12 +8,13 @@
 
 namespace lampyr::suite {
 
-// parameters: a light that is made with one common parameter changed differs from the subject by what that parameter
-// says, and by nothing else.
+// Property parameters: a light made with one common parameter changed differs from the subject by the documented effect
+// of that parameter, and by nothing else.
 void CheckCommonParameters(const SuiteSubject& subject, const SuiteOrigin& origin, SuiteReport& report);
 
-// Texts of parameters that change one parameter of the type each, with others that it needs to have an effect: of the
-// values that are tried, the first that the type accepts and that makes another light. `folder` has the suite's inputs.
+// Parameter lists that each change one parameter of the type, with others that it needs to have an effect. Of the
+// candidate values, the first is taken that the type accepts and that makes a different light. `parse` must find the
+// suite's input files.
 using ParseParameters = std::function<ParameterList(const std::string& text)>;
 std::vector<ParameterList> ChangesOfEach(const SuiteSubject& subject, const SuiteOrigin& origin,
                                          const ParseParameters& parse);

@@ -43,7 +43,7 @@ void SuiteReport::Confirm(const SuiteReport& again, double doubtful) {
   const auto keyOf = [](const SuiteResult& result) {
     return Key(result.light, result.property, result.caseName, result.isProbability);
   };
-  // Several results may have one name: the n-th belongs to the n-th.
+  // Several results may have the same key: the n-th of one run is paired with the n-th of the other.
   std::map<Key, std::vector<const SuiteResult*>> second;
   for (const SuiteResult& result : again.results_) second[keyOf(result)].push_back(&result);
   std::map<Key, size_t> seen;
@@ -79,7 +79,7 @@ void CheckDensities(const SuiteSubject& subject, const SuiteOptions& options, Su
       } else if (subject.light->Surface()) {
         suite::CheckSurfaceLight(subject, options, report);
       } else {
-        // A light that no ray can find: nothing of it can be proved.
+        // No ray can find this light: none of its properties can be checked.
         report.AddError(subject.name, "surface", subject.caseName, 1, 0.5);
       }
       break;
@@ -95,7 +95,7 @@ void CheckDensities(const SuiteSubject& subject, const SuiteOptions& options, Su
 
 }  // namespace
 
-// All that depends on places and samples, which may be looked at again.
+// Checks that depend on receivers and random samples, and that may be repeated.
 static void CheckSamples(const SuiteSubject& subject, const SuiteOptions& options, SuiteReport& report) {
   if (options.parts & kAttributePart) suite::CheckAttributes(subject, options, report);
   if (options.parts & kDensityPart) CheckDensities(subject, options, report);
@@ -103,8 +103,8 @@ static void CheckSamples(const SuiteSubject& subject, const SuiteOptions& option
   if (subject.isThorough && (options.parts & kDirectionPart)) suite::CheckDirectionsFinely(subject, options, report);
 }
 
-// A light that is in doubt is looked at again, twice at most: a sound light has one p-value in ten thousand below the
-// first threshold, and one error in some ten thousand that is not allowed. One that has several doubtful results is
+// A doubtful light is checked again, at most twice: a correct light has one p-value in ten thousand below the first
+// threshold, and one error in some ten thousand above its tolerance. A light with several clearly failed results is
 // wrong beyond doubt.
 static void CheckSamplesAgain(const SuiteSubject& subject, const SuiteOptions& options, SuiteReport& report) {
   constexpr double kDoubtful = 1e-4, kSure = 1e-9;

@@ -14,11 +14,11 @@
 //   irradiance           by light sampling = by quadrature over the surface
 //   patches              each is chosen as PatchProbability says; a light that is its own surface has one
 //   position-error       bounds how far a position is off the surface, and is no more than rounding can be
-//   uvw                  what a ray finds there; a light that is the same all over may leave it at 0
+//   uvw                  the coordinates that a ray finds there; a uniform light may leave them at 0
 //   emission-integral    the densities of emission integrate to 1
 //   emission-positions   χ² of photons against pdfEmit; emission-directions: against pdfEmitDirection, and moments
 //   emission-edge        a photon's densities are those that EvaluateSamples gives for that edge
-//   emission-origin      a photon's place does not depend on its direction, be that dark
+//   emission-origin      a photon's place does not depend on its direction, even on a dark one
 //   shines-from          a photon lights what is beyond shinesFrom, nothing before; it is 0 where CanBeAimed is true
 //   power                by emission = by direct sampling on an enclosing sphere
 //   power-estimate       GetPowerEstimate: exact where it is a closed form, near otherwise
@@ -27,11 +27,11 @@
 //   estimate             no estimate is 0 where a sample arrives
 //   multipliers          diffuse and specular parts are one emission, each times the light's multiplier
 //   camera               a camera sees what receivers see, and nothing of a delta
-//   bidirectional        without it nothing is missing but the densities of emission: the bits are compared
-//   time                 nothing depends on it but the placement, which is given
-//   repeat               the same question has the same answer: in another order, on another thread, at the end
-//   parameters           what all lights have (intensity, exposure, …, cameraVisible) does what it says
-//   edit                 an edited light is the one that is made afresh, bit by bit, by each parameter of its type
+//   bidirectional        without it only the densities of emission are missing: all else is compared bit by bit
+//   time                 nothing depends on it except the placement, which is given
+//   repeat               the same query gives the same result: in another order, on another thread, at the end
+//   parameters           those of all lights (intensity, exposure, …, cameraVisible) have their documented effect
+//   edit                 an edited light equals one made afresh, bit by bit, for each parameter of its type
 #pragma once
 
 #include <filesystem>
@@ -49,7 +49,7 @@ struct SuiteResult {
   bool isProbability = false;  // statistic is a p-value that must exceed the threshold; else an error that must not
   double statistic = 0, threshold = 0;
   bool passed = false;
-  std::string words;  // where it was worst, what was expected there and what was found; may be empty
+  std::string words;  // worst location, expected and found values there; may be empty
 };
 
 class SuiteReport {
@@ -59,21 +59,21 @@ class SuiteReport {
   void AddError(const std::string& light, const std::string& property, const std::string& caseName, double error,
                 double tolerance, const std::string& words = "");
   void Add(const SuiteReport& other);
-  // The number of errors that are not allowed, and of p-values below `p`.
+  // Number of errors above their tolerance plus number of p-values below `p`.
   size_t CountDoubtful(double p) const;
-  // Another look at the same light, from other places and by other random numbers: of each error that is not allowed,
-  // and each p-value below `doubtful`, the better of the two is kept. A fault is found in both. A sample that happens to
-  // lie on the edge of a texel, or a quadrature that misses a narrow feature and underestimates its error, is not met
-  // in the same case again.
+  // Merges a second run on the same light, from other receivers and with other random numbers. For each error above its
+  // tolerance, and each p-value below `doubtful`, the better of the two results is kept. A fault shows in both runs. A
+  // sample that happens to lie on the edge of a texel, or a quadrature that misses a narrow feature and underestimates
+  // its error, does not recur in the same case.
   void Confirm(const SuiteReport& again, double doubtful);
-  // Judges the p-values at a family-wise level over all that were added.
+  // Judges the p-values at a family-wise level over all results that were added.
   std::vector<SuiteResult> Finish(double familyWise);
 
  private:
   std::vector<SuiteResult> results_;
 };
 
-// What CheckLight looks at.
+// Groups of properties that CheckLight checks.
 enum SuiteParts : unsigned {
   kContractPart = 1,    // bidirectional, time, repeat
   kAttributePart = 2,   // patches, shines-from, position-error, energy, uvw
@@ -92,35 +92,36 @@ struct SuiteOptions {
   int threads = 1;  // of RunPdfSuite; the results are the same with any number
   unsigned parts = kAllParts;
   int effort = 1;         // multiplies the number of points that a quadrature may take
-  int caseEvery = 1;      // of RunPdfSuite: each n-th of the placed lights
-  int thoroughEvery = 1;  // of RunPdfSuite: each n-th of the cases that would be looked at thoroughly
-  // Called now and then with the part that is done, one call at a time. May be empty.
+  int caseEvery = 1;      // of RunPdfSuite: every n-th placed light
+  int thoroughEvery = 1;  // of RunPdfSuite: every n-th of the thorough cases
+  // Called repeatedly with the fraction that is done, one call at a time. May be empty.
   std::function<void(double fraction)> progress;
 };
 
-// A light under test, as it is placed.
+// A light under test at its placement.
 struct SuiteSubject {
   const Light* light = nullptr;
   LightContext context;                 // transform and scene; bidirectional
   const EmitterModel* model = nullptr;  // area lights on a shape; those that are their own surface have none
   bool isPowerExact = true;             // GetPowerEstimate is a closed form here
-  // The light's parameters of these names: what samples, evaluations and photons carry is what is emitted times them.
+  // The light's parameters "diffuse" and "specular": samples, evaluations and photons carry the emission times them.
   double diffuseMultiplier = 1, specularMultiplier = 1;
-  // Where few samples go, and photons' directions finely: the strata and direction parts, some seconds.
+  // True to run the strata and direction parts as well, which takes some seconds: densities where few samples go, and
+  // the directions of photons at fine resolution.
   bool isThorough = true;
-  double powerError = 6e-4;  // relative standard error that power is known to: five of it are below half a per cent
+  double powerError = 6e-4;  // relative standard error of the power; five times that is below half a per cent
   std::string name, caseName;
 };
 
-// What a light was made from: editing it is compared with making it afresh.
+// Inputs from which a light was made. Editing it is compared with making it afresh.
 struct SuiteOrigin {
   const LightType* type = nullptr;
   const ParameterList* parameters = nullptr;
   const LightBuildContext* build = nullptr;
-  std::vector<ParameterList> changes;  // each is laid over the parameters
+  std::vector<ParameterList> changes;  // each is merged over the parameters
 };
 
-// All properties of one placed light.
+// Checks all properties of one placed light.
 void CheckLight(const SuiteSubject& subject, const SuiteOptions& options, SuiteReport& report);
 
 // All sample blocks of the types × shapes × transforms × receivers. `scratch` is an existing folder for images.

@@ -1,4 +1,4 @@
-// The suite's properties of lights that are a point.
+// Properties of point lights.
 #include "math/frame.h"
 #include "suite/checks.h"
 
@@ -77,7 +77,7 @@ class PointChecker {
   Point3 position_{0.0f};
 };
 
-// Seen from the light: the mean direction of its photons is the axis of its beam.
+// Receivers around the light. The mean direction of its photons is taken as the axis of its beam.
 std::vector<Receiver> PointChecker::Receivers() {
   Vector3d mean(0.0);
   for (const EmissionSample& photon : photons_) mean += Vector3d(photon.direction);
@@ -104,8 +104,8 @@ void PointChecker::CheckEstimatesAt(const Point3& P, double& missed) {
     missed = 1;
 }
 
-// How far `intensity` is from those that the light sends along `outward`, or along directions that rounding does not
-// tell from it: a beam may end within less than that.
+// Deviation of `intensity` from the intensities that the light emits along `outward`, or along directions that rounding
+// does not distinguish from it: a beam may end within less than that.
 double PointChecker::IntensityError(double intensity, const Vector3d& outward, double rounding) const {
   const double there = Intensity(SampleAt(outward));
   double least = there, most = there;
@@ -122,7 +122,7 @@ double PointChecker::IntensityError(double intensity, const Vector3d& outward, d
   return std::max({least - intensity, intensity - most, 0.0});
 }
 
-// The sample's geometry, discrete densities, and the law of the inverse square: along one direction the intensity is
+// Checks the sample's geometry, its discrete densities and the inverse-square law: along one direction the intensity is
 // the same at every distance.
 void PointChecker::CheckReceiver(const Receiver& receiver) {
   const Point3& P = receiver.position;
@@ -153,7 +153,7 @@ void PointChecker::CheckReceiver(const Receiver& receiver) {
   report_.AddError(subject_.name, "camera", where, CameraMismatch(subject_, hit, found).value_or(0.0), 1e-4);
   report_.AddError(subject_.name, "multipliers", where, multipliers, 1e-5);
   report_.AddError(subject_.name, "estimate", where, missed, 0.5);
-  // The same direction from another distance.
+  // Intensity in the same direction, measured at another distance.
   const Vector3d outward = glm::normalize(-toLight);
   const double here = Intensity(sample), error = IntensityError(here, outward, 4e-7 * scale / distance);
   double largest = std::max(here, Intensity(SampleAt(outward)));
@@ -161,8 +161,8 @@ void PointChecker::CheckReceiver(const Receiver& receiver) {
   report_.AddError(subject_.name, "irradiance", where, largest > 0 ? error / largest : 0.0, 5e-3);
 }
 
-// The light's sample in the direction of the photon. Where its intensity or its density jumps (on the edge of a texel)
-// the two roundings of the direction may fall on either side: of the directions within rounding, the most similar one.
+// The light's sample in the direction of the photon. Where its intensity or its density jumps (on the edge of a texel),
+// the two roundings of the direction may fall on either side: the most similar sample within rounding is returned.
 std::optional<LightSample> PointChecker::SampleOnPhotonsWay(const EmissionSample& photon) const {
   const Point3 P = position_ + distance_ * photon.direction;
   const auto difference = [&](const std::optional<LightSample>& sample) {

@@ -1,4 +1,4 @@
-// What each property of the suite means, in a line: for those whose light fails it.
+// One-line meaning of each property of the suite, for authors whose light fails it.
 #pragma once
 
 #include <string>
@@ -10,9 +10,9 @@ struct PropertyMeaning {
   std::string name, meaning;
 };
 
-// All of the suite's, in the order in which pdf_suite.h lists them.
+// All properties of the suite, in the order in which pdf_suite.h lists them.
 const std::vector<PropertyMeaning>& PropertyMeanings();
-// "" for what is none.
+// Meaning of a property; empty if there is none of that name.
 std::string MeaningOf(const std::string& property);
 
 }  // namespace lampyr

@@ -10,7 +10,8 @@ namespace lampyr {
 
 namespace {
 
-// A second or two each: in a scene of more lights than that, types are for checking them thoroughly.
+// Largest number of lights that are checked thoroughly, at a second or two each. For more lights, thorough checks are
+// left to the suite on their types.
 constexpr size_t kThoroughLights = 16;
 
 // One light at one time of the shutter.
@@ -38,7 +39,7 @@ void CheckPlaced(const PlacedLight& placed, const SceneLight& scene, const Bound
   CheckLight(subject, options, report);
 }
 
-// All over the scene, and on its rim.
+// Receivers throughout the scene's sphere, the first at its centre.
 std::vector<Receiver> SceneReceivers(const BoundingSphere& sphere, Rng& rng) {
   std::vector<Receiver> receivers(64);
   for (size_t i = 0; i < receivers.size(); ++i) {

@@ -14,7 +14,7 @@ namespace lampyr {
 std::vector<SuiteResult> RunPdfSuiteOnScene(const LightingServices& services, const std::vector<SceneLight>& lights,
                                             const SuiteOptions& options);
 
-// Parameters that name images or profiles, or shape what is emitted: the power has no closed form.
+// True if parameters name images or profiles, or shape the emission: the power has no closed form then.
 bool IsUneven(const ParameterList& parameters);
 
 }  // namespace lampyr

@@ -1,5 +1,5 @@
-// The suite's properties of lights on a shape, which a model knows. Integrals run over the surface's own parameters:
-// every point that a direction meets counts, the hidden ones of a closed convex shape excepted.
+// Properties of lights on a shape, for which there is a model. Integrals run over the surface's own parameters: every
+// point that a direction meets counts, except the hidden ones of a closed convex shape.
 #include "suite/area_common.h"
 
 namespace lampyr::suite {
@@ -8,7 +8,7 @@ namespace {
 
 using Element = EmitterModel::SurfaceElement;
 
-// Cells of the surface: `side`² per patch, and a last one for what is not sampled at all.
+// Cells of the surface: `side`² per patch, and a last one for draws without a counted sample.
 struct Cells {
   int patches, side;
 
@@ -42,12 +42,12 @@ struct Cells {
 struct Quadrature {
   std::vector<double> cells;  // ∫ pdfDirect dω, where light arrives
   double integral = 0, fluence = 0;
-  double dark = 0;    // ∫ pdfDirect dω, where none does
+  double dark = 0;    // ∫ pdfDirect dω, where no light arrives
   double leak = 0;    // radiance behind a one-sided surface
-  double camera = 0;  // what a camera sees of it that is not what is evaluated
+  double camera = 0;  // largest difference between a camera's radiance and the evaluation
 };
 
-// Seen from nearer to its plane than this, a surface's cosine is rounding: such points count as not sampled.
+// Below this value, a surface's cosine is dominated by rounding: such points count as not sampled.
 constexpr double kEdgeOn = 1e-4;
 
 class ShapeChecker {
@@ -87,7 +87,7 @@ class ShapeChecker {
   Quadrature Integrate(const Point3& P, int subdivisions) const;
   bool IsHidden(const Element& element, const Point3& P, bool inside) const;
   bool IsInside(const Point3& P) const;
-  // Neither hidden nor edge-on: one of the points that Integrate counts.
+  // True if the sample is neither hidden nor edge-on: one of the points that Integrate counts.
   bool Arrives(const LightSample& sample, const Point3& P, bool inside) const {
     if (static_cast<double>(AbsDot(sample.normal, sample.direction)) < kEdgeOn) return false;
     Element element;
@@ -155,8 +155,8 @@ Quadrature ShapeChecker::Integrate(const Point3& P, int subdivisions) const {
   return result;
 }
 
-// Largest relative differences of a sample against EvaluateSamples for the very same point, and for the same point as
-// the shape itself has it.
+// Largest relative differences between a sample and EvaluateSamples: for the sample's own point (`consistency`), and
+// for the same point on the shape's model (`surface`).
 void ShapeChecker::CheckSample(const LightSample& sample, const Point3& P, double& consistency, double& surface) const {
   const auto e = light_.EvaluateSamples(subject_.context, HitOf(sample, P), P);
   consistency = std::max(consistency, e ? Mismatch(sample, *e) : 1.0);
@@ -168,14 +168,15 @@ void ShapeChecker::CheckSample(const LightSample& sample, const Point3& P, doubl
   surface = std::max(surface, glm::length(element.position - Point3d(sample.position)) / scale);
   surface = std::max(surface, glm::length(element.normal - Vector3d(sample.normal)));
   const LightHit own = model_.HitFrom(sample.patchIndex, element, P);
-  // Where the light is seen edge-on, rounding of the position turns the cosine.
+  // Seen edge-on, the cosine is too sensitive to rounding of the position.
   if (std::abs(glm::dot(own.normal, own.direction)) < 0.02f) return;
   surface = std::max(surface, SolidAngleToAreaMismatch(sample));
   surface = std::max(surface, DensityMismatch(sample, P, p));
 }
 
-// A tenth of the relative difference of a sample's pdfDirect to that of the surface point at parameters p. Where the
-// density jumps (on the edge of a texel) roundings may fall on either side: the least of those within rounding.
+// A tenth of the relative difference between a sample's pdfDirect and that of the surface point at parameters p. Where
+// the density jumps (on the edge of a texel), roundings may fall on either side: the least difference within rounding
+// is taken.
 double ShapeChecker::DensityMismatch(const LightSample& sample, const Point3& P, const Point2d& p) const {
   const auto mismatchAt = [&](const Point2d& q) {
     const LightHit own = model_.HitFrom(sample.patchIndex, model_.At(sample.patchIndex, q.x, q.y), P);
@@ -224,7 +225,7 @@ void ShapeChecker::CheckReceiver(const Receiver& receiver) {
   const Estimate fluence =
       meanOf([&](const LightSample& sample) { return Emitted(subject_, sample) / Value(sample.pdfDirect); });
   const std::string where = Case(" " + receiver.name), words = InWords(enclosure_, receiver);
-  // The quadrature's error is bounded, not random: it comes on top of what is random in the share.
+  // The quadrature's error is bounded, not random: it is added to the statistical error of the share.
   report_.AddError(subject_.name, "integral", where, std::abs(fine.integral - share.value),
                    2e-3 + 2 * error + 5.5 * share.error,
                    InWords(words + "the integral of pdfDirect", {fine.integral, error}, share));
@@ -233,7 +234,7 @@ void ShapeChecker::CheckReceiver(const Receiver& receiver) {
                    InWords(words + "the integral of pdfDirect, dark directions included,", {all, allError}, {1, 0}));
   for (size_t i = 0; i < count; ++i) {
     expected[i] = options_.samples * fine.cells[i];
-    // The last term: a cell that the horizon touches between the quadrature's points.
+    // The last term covers cells that the horizon touches between the quadrature's points.
     errors[i] = options_.samples * (2 * std::abs(fine.cells[i] - coarse.cells[i]) + 1e-3 * fine.cells[i] + 2e-4);
   }
   expected[count] = options_.samples * std::max(1 - fine.integral, 0.0);

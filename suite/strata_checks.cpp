@@ -1,15 +1,16 @@
-// Densities where few samples go: receivers from very near to very far and at the light's edge, and what they see of it
-// by classes of the light's cosine. A density that is wrong in one class only is lost in the integral of all.
+// Densities where few samples go: receivers from very near to very far and at the light's edge, with directions in
+// strata of the cosine at the light. A density that is wrong in one stratum only is lost in the integral over all.
 //
-// In each class the share of the samples must be the integral of the density. Deltas have no classes: of them the
-// discrete density and the law of distance are looked at, near and far.
+// In each stratum the share of the samples must equal the integral of the density. Delta lights have no strata: their
+// discrete density and the law of distance are checked, near and far.
 #include "suite/exact_surface.h"
 
 namespace lampyr::suite {
 
 namespace {
 
-// Cosines at the light. Below the first of them, what rounding does to a cosine is more than what is tested.
+// Edges of the strata: cosines at the light. Below the first, the effect of rounding on a cosine exceeds what is
+// tested.
 constexpr double kEdges[] = {1e-3, 0.01, 0.05, 0.2, 0.5, 1.01};
 constexpr int kStrata = static_cast<int>(std::size(kEdges)) - 1;
 
@@ -24,7 +25,7 @@ int StratumOf(double cosine) {
 struct Shares {
   Estimate of[kStrata];
   double hits[kStrata] = {};
-  std::vector<LightSample> some[kStrata];  // of what was drawn
+  std::vector<LightSample> some[kStrata];  // samples drawn in the stratum
 };
 
 class StrataChecker {
@@ -43,7 +44,7 @@ class StrataChecker {
   }
 
  private:
-  static constexpr double kTolerance = 2e-3;  // relative, of what the quadrature may be off by
+  static constexpr double kTolerance = 2e-3;  // relative error allowed for the quadrature
   static constexpr int kLattices = 128, kFewest = 128, kMost = 2048;
   static constexpr double kEnough = 400;
   static constexpr double kFar = 100, kStrip = 0.03;  // sizes of the light; share of the samples
@@ -52,11 +53,11 @@ class StrataChecker {
   std::vector<Receiver> Receivers();
   void CheckReceiver(const Receiver& receiver);
   Shares Draw(const Point3& P);
-  // ∫ pdfDirect over the directions of two strata.
+  // ∫ pdfDirect dω over the two strata from `first` on, written to `promised`.
   void Integrate(const Point3& P, int first, const Shares& seen, Shares& promised);
   int StratumOfSample(const LightSample& sample, const Point3& P) const;
   double DensityOf(const LightHit& hit, const Point3& P) const;
-  // The same of one stratum by random points of the surface.
+  // The integral of one stratum by random points of the surface, averaged over `times` runs.
   Estimate IntegrateSurface(const Point3& P, int stratum, int times);
   std::string Words(const Receiver& receiver, int stratum, const Estimate& promised, const Shares& seen) const;
 
@@ -69,7 +70,7 @@ class StrataChecker {
 };
 
 std::vector<Receiver> StrataChecker::Receivers() {
-  // Where it emits: some photon's place, on its side.
+  // A point that emits: the origin of some photon, on the side to which it leaves.
   std::optional<EmissionSample> photon;
   for (int i = 0; i < 256 && !photon; ++i) {
     photon = light_.GenerateEmission(RandomContext(subject_, places_));
@@ -97,7 +98,7 @@ int StrataChecker::StratumOfSample(const LightSample& sample, const Point3& P) c
   return stratum >= 0 && surface_.Sees(P, sample) ? stratum : -1;
 }
 
-// More and more points until all that can be seen is known well.
+// Draws more and more points until the shares of all strata that can be seen are well known.
 Shares StrataChecker::Draw(const Point3& P) {
   Shares shares;
   for (int points = kFewest; points <= kMost; points *= 4) {
@@ -144,8 +145,8 @@ void StrataChecker::Integrate(const Point3& P, int first, const Shares& seen, Sh
   const auto [one, other] = surface_.IntegrateDirections(P, hints, density, rng_, effort_ * kBudget);
   promised.of[first] = one;
   if (first + 1 < kStrata) promised.of[first + 1] = other;
-  // A strip, as there is around whatever is round, or in a corner, may not be found among directions: then it is on the
-  // surface.
+  // A strip, as there is around anything round, or in a corner, may not be found among directions: it is then
+  // integrated over the surface.
   if (subject_.model) return;
   for (const int stratum : {first, first + 1}) {
     if (stratum >= kStrata || (stratum > 0 && promised.of[stratum].value > 0)) continue;
@@ -169,7 +170,7 @@ Estimate StrataChecker::IntegrateSurface(const Point3& P, int stratum, int times
   return {EstimateOf(values).value, std::sqrt(variance) / times};
 }
 
-// pdfDirect, where light arrives.
+// pdfDirect if light arrives, else 0.
 double StrataChecker::DensityOf(const LightHit& hit, const Point3& P) const {
   const auto e = light_.EvaluateSamples(subject_.context, hit, P);
   return !e || IsBlack(*e) ? 0.0 : Value(e->pdfDirect);
@@ -191,20 +192,20 @@ void StrataChecker::CheckReceiver(const Receiver& receiver) {
   Shares promised;
   for (int first = 0; first < kStrata; first += 2) {
     const double hits = seen.hits[first] + (first + 1 < kStrata ? seen.hits[first + 1] : 0.0);
-    // Where no sample goes at all, "irradiance" says whether one should.
+    // If no sample goes into these strata at all, property "irradiance" detects whether one should.
     if (hits >= kEnough) Integrate(receiver.position, first, seen, promised);
   }
   const bool isFar =
       glm::length(Point3d(receiver.position) - surface_.Around().middle) > kFar * surface_.Around().radius;
   for (int i = 0; i < kStrata; ++i) {
-    // A strip that few samples meet is too thin for the quadrature, too. From afar a flat part has one cosine: where an
-    // edge of the classes runs across it, a strip of it is left.
+    // A strip that few samples meet is too thin for the quadrature too. From afar a flat part has a single cosine: if
+    // an edge between strata crosses it, only a strip of it lies in one of them.
     if (seen.hits[i] < kEnough || (isFar && seen.of[i].value < kStrip)) continue;
     char where[96];
     std::snprintf(where, sizeof(where), " %s, cosine from %g", receiver.name.c_str(), kEdges[i]);
     double p = EqualMeans(promised.of[i], seen.of[i], kTolerance);
-    // The strip of such cosines beside a silhouette is thin among directions, and the quadrature's own estimate of its
-    // error is then too small. On the surface it is not thin.
+    // The strip of such cosines beside a silhouette is thin among directions, and the quadrature then underestimates
+    // its own error. On the surface the strip is not thin.
     constexpr double kDoubtful = 1e-4;
     constexpr int kThinStrata = 2, kTimes = 16;
     if (i < kThinStrata && p < kDoubtful && !subject_.model) {
@@ -216,7 +217,8 @@ void StrataChecker::CheckReceiver(const Receiver& receiver) {
   }
 }
 
-// Of a delta: pdfDirect is 1, and its radiance follows the law of distance, from 1e-4 to 1e4 sizes of the scene.
+// Checks of a delta light that pdfDirect is 1, and that its radiance follows the law of distance, from 1e-4 to 1e4
+// sizes of the scene.
 void CheckDistances(const SuiteSubject& subject, const SuiteOptions& options, SuiteReport& report) {
   const Light& light = *subject.light;
   const bool isPoint = light.Kind() == LightKind::DeltaPosition;
@@ -244,7 +246,7 @@ void CheckDistances(const SuiteSubject& subject, const SuiteOptions& options, Su
     const double fall = isPoint ? Sqr(static_cast<double>(other->distance) / static_cast<double>(sample->distance)) : 1;
     const double expected = Emitted(subject, *other) * fall,
                  difference = RelativeDifference(Emitted(subject, *sample), expected);
-    // On the edge of a texel, or of a beam, roundings of a direction may fall on either side.
+    // On the edge of a texel, or of a beam, rounded directions may fall on either side.
     if (difference < 2e-2) continue;
     law += 1.0 / 512;
     std::snprintf(text, sizeof(text), "receiver %.3g scene sizes away gets %.6g; expected %.6g by the law of distance",

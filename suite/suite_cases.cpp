@@ -1,5 +1,5 @@
-// What the suite runs over: every sample block of every type, on every shape for area lights, under every transform,
-// and moved away from where it was built.
+// Cases of the suite: every sample block of every type, on every shape for area lights, under every transform, and
+// moved away from where it was built.
 #include <set>
 
 #include "scene/scene_description.h"
@@ -31,7 +31,8 @@ bool HasParameter(const LightType& type, const std::string& name) {
                      [&](const ParameterInfo& info) { return info.name == name; });
 }
 
-// The same parameters with each file of the suite's replaced by another of its kind.
+// The parameters that name input files of the suite, with each file replaced by another of its kind; nullopt if none
+// does.
 std::optional<ParameterList> WithOtherFiles(const ParameterList& parameters) {
   std::vector<Parameter> changed;
   for (Parameter parameter : parameters.All()) {
@@ -49,18 +50,18 @@ std::optional<ParameterList> WithOtherFiles(const ParameterList& parameters) {
   return ParameterList(parameters.Where(), parameters.Owner(), changed);
 }
 
-// One light at one place. `parameters` and `type` belong to the run and are shared by cases.
+// One light at one placement. `parameters` and `type` belong to the run and are shared by cases.
 struct SuiteCase {
   const LightType* type = nullptr;
   const ParameterList* parameters = nullptr;
-  const std::vector<ParameterList>* changes = nullptr;  // to edit it by; null: not here
+  const std::vector<ParameterList>* changes = nullptr;  // edits to check; null: none in this case
   std::string name, caseName;
   std::optional<Shape> shape;
   Transform builtAt, placedAt;
   bool keepsAngles = true;
   bool isSharp = true;  // power to half a per cent; two per cent otherwise
   bool isThorough = false;
-  bool looksClosely = false;   // isThorough, and each n-th of those as the options say
+  bool looksClosely = false;   // every n-th of the thorough cases, as the options say
   bool isEditedByAll = false;  // by each parameter of its type
 };
 
@@ -88,7 +89,7 @@ class SuiteRun {
   int thorough_ = 0;
 };
 
-// A colour, an intensity, other files, and whatever the next sample block says.
+// Edits to check: an intensity, a colour, a scale, the parameters of the next sample block, and other files.
 std::vector<ParameterList> SuiteRun::ChangesOf(const LightType& type, size_t index) {
   std::vector<std::string> texts;
   if (HasParameter(type, "intensity")) texts.push_back("\"float intensity\" 2.5");
@@ -140,7 +141,7 @@ void SuiteRun::AddCases(const SuiteCase& light, int which, size_t block) {
     const size_t place = k++;
     if (block > 0 && (place + turn) % 5 > 1) return;
     placed.isSharp = block == 0 ? place == 0 || place == transforms.size() - 1 || isMoved : kept == 0;
-    // One placement of each block on each shape, another one in turn.
+    // One placement of each block on each shape, in rotation.
     placed.isThorough = block == 0 ? place == turn % transforms.size() : kept == 0;
     placed.looksClosely = placed.isThorough && thorough_++ % std::max(options_.thoroughEvery, 1) == 0;
     placed.isEditedByAll = placed.isThorough && edited_.insert(light.name).second;
@@ -148,7 +149,7 @@ void SuiteRun::AddCases(const SuiteCase& light, int which, size_t block) {
     cases_.push_back(std::move(placed));
   };
   for (const NamedTransform& transform : transforms) {
-    // In turn: the shape where it belongs, and an instance of it.
+    // Alternately the shape baked into its placement, and an instance of it.
     const bool isBaked = light.shape && which++ % 2 == 0;
     SuiteCase placed = light;
     placed.caseName += transform.name + (light.shape && !isBaked ? " instance" : "");
@@ -161,7 +162,7 @@ void SuiteRun::AddCases(const SuiteCase& light, int which, size_t block) {
     if (transform.name != "rotated" && block == 0) placed.changes = nullptr;
     add(std::move(placed));
   }
-  // As at another time of the shutter: not where it was built.
+  // Placed elsewhere than where it was built, as at another time of the shutter.
   for (const auto& [from, to] : {std::pair(0, 1), std::pair(1, 4), std::pair(5, 2)}) {
     SuiteCase moved = light;
     moved.caseName += "moved from " + transforms[from].name + " to " + transforms[to].name;
@@ -192,7 +193,7 @@ void SuiteRun::CheckParametersOf(const SuiteCase& suiteCase, const SuiteSubject&
 }
 
 SuiteReport SuiteRun::Check(const SuiteCase& suiteCase) const {
-  // Of its own: these note their use, and cases run beside each other.
+  // Each case has its own, because these record their use and cases run in parallel.
   Diagnostics diagnostics(Diagnostics::Mode::Collect);
   const TextureLibrary textures({}, Transform(), diagnostics);
   const ParameterList parameters = *suiteCase.parameters;
@@ -205,7 +206,7 @@ SuiteReport SuiteRun::Check(const SuiteCase& suiteCase) const {
   if (suiteCase.shape) build.shape = &*suiteCase.shape;
   const LightTransform placed = ToLightTransform(suiteCase.placedAt);
   std::unique_ptr<EmitterModel> model;
-  // By the very numbers that the light is given: what differs is its own rounding.
+  // The model uses the same numbers as the light: the remaining difference is the light's own rounding.
   if (suiteCase.shape) model = MakeEmitterModel(*suiteCase.shape, suite::ToTransform(placed.toRender));
 
   SuiteReport report;
@@ -217,7 +218,7 @@ SuiteReport SuiteRun::Check(const SuiteCase& suiteCase) const {
   subject.model = model.get();
   subject.context.transform = &placed;
   subject.context.scene = {placed.toRender.translation, 3 * MaxAbsComponent(placed.toRender.linear[0])};
-  // What stands in world space is as large as it is, wherever the light is placed.
+  // A portal stands in world space: its size is the same wherever the light is placed.
   if (parameters.Find("portal")) subject.context.scene.radius = std::max(subject.context.scene.radius, 4.0f);
   subject.context.bidirectional = true;
   const std::unique_ptr<Light> light = MakeLight(*suiteCase.type, parameters, build);
@@ -234,7 +235,7 @@ SuiteReport SuiteRun::Check(const SuiteCase& suiteCase) const {
 }
 
 std::vector<SuiteResult> SuiteRun::Run() {
-  // Those that are edited by each parameter are the only ones of their block.
+  // Cases that are edited by each parameter are always kept: they are the only ones of their block.
   std::vector<SuiteCase> chosen;
   for (size_t i = 0; i < cases_.size(); ++i) {
     if (i % static_cast<size_t>(std::max(options_.caseEvery, 1)) == 0 || cases_[i].isEditedByAll)

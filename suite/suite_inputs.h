@@ -16,7 +16,7 @@ namespace lampyr::suite {
 
 void WriteSuiteInputs(const std::filesystem::path& folder);
 
-// The input of the same kind and another content; "" for what has none.
+// The input file of the same kind with other content; empty if there is none.
 std::string OtherSuiteInput(const std::string& name);
 
 }  // namespace lampyr::suite

@@ -22,13 +22,13 @@ std::vector<NamedTransform> Transforms() {
 
 namespace {
 
-// Five triangles that are not flat, of different sizes, one without area.
+// Five triangles that are not coplanar, of different sizes, one without area.
 std::shared_ptr<const TriangleMesh> SuiteMesh(bool withNormals) {
   auto mesh = std::make_shared<TriangleMesh>();
   mesh->positions = {{-1, -1, 0}, {1, -1, 0.1f}, {1, 1, 0}, {-1, 1, 0.3f}, {2, 0, -0.4f}, {2.5f, 1.5f, -1}};
   mesh->triangles = {{0, 1, 2}, {0, 2, 3}, {1, 4, 2}, {0, 0, 1}, {4, 5, 2}};
   mesh->uvs = {{0, 0}, {0.6f, 0}, {0.6f, 0.8f}, {0, 0.8f}, {0.9f, 0.3f}, {1, 1}};
-  // The vertex normals decide: these turn all of the surface over.
+  // Vertex normals decide the outer side: these flip all of the surface.
   if (withNormals) mesh->normals.assign(6, Normal3(0.1f, 0, -0.9949874f));
   return mesh;
 }

@@ -1,4 +1,4 @@
-// Where the suite places lights, and the shapes that it puts area lights on.
+// Placements of lights in the suite, and the shapes of its area lights.
 #pragma once
 
 #include <string>
@@ -22,10 +22,10 @@ struct NamedShape {
 };
 std::vector<NamedShape> Shapes();
 
-// The shape as a scene without instances holds it: already where the transform leads.
+// The shape with `transform` baked in, as a scene without instances holds it.
 Shape Bake(const Shape& shape, const Transform& transform);
 
-// The same map in double.
+// `affine` in double.
 Transform ToTransform(const Affine& affine);
 
 }  // namespace lampyr::suite

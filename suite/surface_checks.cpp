@@ -1,14 +1,14 @@
-// The suite's properties of lights that are their own surface, as receivers see them: rays are traced to it.
+// Properties of lights that are their own surface, as receivers see them: rays are traced to it.
 #include "suite/surface_checks.h"
 
 namespace lampyr::suite {
 
 namespace {
 
-// Seen from nearer to its plane than this, what rounding does to a cosine is more than the test can bear: such points
-// count as not sampled, and the quadrature leaves them out too.
+// Below this cosine, the effect of rounding exceeds what the test tolerates: such points count as not sampled, and the
+// quadrature leaves them out too.
 constexpr double kEdgeOn = 0.01;
-constexpr double kFlat = 0.03;  // as inclined as that, the densities of one point are compared
+constexpr double kFlat = 0.03;  // smallest cosine at which the densities of one point are compared
 
 class SurfaceReceiverChecker {
  public:
@@ -22,11 +22,11 @@ class SurfaceReceiverChecker {
   void Check(const Receiver& receiver);
 
  private:
-  // The generated sample as its ray finds it; nullopt: it is hidden, edge-on, or does not lie on the surface.
   struct SampleErrors {
     double consistency = 0, surface = 0, multipliers = 0;
     int compared = 0, differing = 0;
   };
+  // The hit of the ray to a sample; nullopt: it is hidden, edge-on, or does not lie on the surface.
   std::optional<SurfaceHit> Seen(const LightSample& sample, const Point3& P) const;
   bool IsFoundBeside(const LightSample& sample, const Point3& P, const Vector3d& direction) const;
   void Compare(const LightSample& sample, const Point3& P, SampleErrors& errors) const;
@@ -42,7 +42,7 @@ class SurfaceReceiverChecker {
   Rng& rng_;
   SuiteReport& report_;
   bool oneSided_ = false;
-  double leak_ = 0, compared_ = 0, cameraDiffers_ = 0;  // on the edge of a beam, roundings may
+  double leak_ = 0, compared_ = 0, cameraDiffers_ = 0;  // by rounding, on the edge of a beam
   // Largest contributions, radiance over pdfDirect: of the directions of the quadrature, and of the samples.
   double brightest_ = 0, brightestMet_ = 0;
 };
@@ -67,13 +67,14 @@ std::optional<SurfaceHit> SurfaceReceiverChecker::Seen(const LightSample& sample
   const Vector3d direction = glm::normalize(Vector3d(sample.direction));
   const auto found = tracer_.Find(Point3d(P), direction, Point3d(sample.position));
   if (!found || !found->isFirst || std::abs(glm::dot(found->hit.normal, direction)) < kEdgeOn) return std::nullopt;
-  // Another part of the surface, where the ray passes along that of the sample.
+  // Another part of the surface, beside which the ray passes the sample.
   const double scale = tracer_.Around().radius + 1e-2 * glm::length(Point3d(sample.position) - Point3d(P));
   if (glm::length(found->hit.position - Point3d(sample.position)) > 1e-2 * scale) return std::nullopt;
   return found->hit;
 }
 
-// A ray to a sample on the very rim may pass it: the direction is rounded to 6e-8.
+// True if a ray beside `direction` finds the sample. A ray to a sample on the very rim may miss it: the direction is
+// rounded to 6e-8.
 bool SurfaceReceiverChecker::IsFoundBeside(const LightSample& sample, const Point3& P,
                                            const Vector3d& direction) const {
   constexpr int kWays = 8;
@@ -104,7 +105,7 @@ void SurfaceReceiverChecker::Compare(const LightSample& sample, const Point3& P,
   const double scale = tracer_.Around().radius + 1e-2 * (distance + glm::length(hit.position));
   errors.surface = std::max(errors.surface, glm::length(hit.position - Point3d(sample.position)) * cosine / scale);
   errors.surface = std::max(errors.surface, std::abs(hit.distance - distance) * cosine / scale);
-  // The ray meets the surface where rounding has it slide, by 1 / cosine: there the normal is another too.
+  // Rounding shifts the hit along the surface by 1 / cosine, where the normal differs too.
   errors.surface = std::max(errors.surface, glm::length(hit.normal - Vector3d(sample.normal)) * cosine);
   // The edge of a texel, or of a beam, may lie between the two: a few samples may differ.
   ++errors.compared;
@@ -112,7 +113,7 @@ void SurfaceReceiverChecker::Compare(const LightSample& sample, const Point3& P,
   if (!e || Mismatch(sample, *e) > 2e-2) ++errors.differing;
 }
 
-// The light's own samples: compared with the surface that is traced. Directions of those that are seen.
+// Compares the light's own samples with the traced surface. Returns the directions of the visible ones.
 std::vector<Vector3d> SurfaceReceiverChecker::CompareSamples(const Point3& P, SampleErrors& errors) {
   std::vector<Vector3d> directions;
   for (int i = 0; i < options_.samples; ++i) {
@@ -124,8 +125,8 @@ std::vector<Vector3d> SurfaceReceiverChecker::CompareSamples(const Point3& P, Sa
   return directions;
 }
 
-// Irradiance, without the cosine, by light sampling. `hidden`: the most that a sample would bring that the light itself
-// hides.
+// Irradiance, without the cosine, by light sampling. `hidden`: the largest contribution of a sample that the light
+// itself hides.
 Counted SurfaceReceiverChecker::CountSamples(const Point3& P, double& hidden) {
   return CountedMean(rng_, [&](const float(&x)[4]) -> std::optional<double> {
     LightContext context = subject_.context;
@@ -141,7 +142,7 @@ Counted SurfaceReceiverChecker::CountSamples(const Point3& P, double& hidden) {
   });
 }
 
-// pdfDirect of the directions from which the light is black.
+// pdfDirect in directions from which the light is black, else 0.
 double SurfaceReceiverChecker::DarkDensity(const Point3& P, const Vector3d& direction) const {
   const auto found = tracer_.Trace(Point3d(P), direction);
   if (!found || std::abs(glm::dot(found->normal, direction)) < kEdgeOn) return 0;
@@ -173,7 +174,7 @@ void SurfaceReceiverChecker::Check(const Receiver& receiver) {
     report_.AddError(subject_.name, property, where, e, tolerance,
                      words + "the largest error is above what is allowed");
   };
-  // A ray may slip through a seam that the light has: by rounding, less than one in ten thousand.
+  // By rounding, less than one ray in ten thousand may slip through a seam of the light.
   constexpr double kSeams = 1e-4;
   probability("integral", EqualMeans(quadrature.Density(), counted.share, 1e-3, kSeams),
               InWords("the integral of pdfDirect", quadrature.Density(), counted.share));
@@ -183,8 +184,8 @@ void SurfaceReceiverChecker::Check(const Receiver& receiver) {
   std::string worst;
   const double p = quadrature.Test(directions, options_.samples, 48, &worst);
   probability("directions", p, worst);
-  // Next to a surface, where it is near, most of the light may come from places that the samples have not met: then
-  // their mean says nothing, nor does its error.
+  // Close to a surface, most of the light may come from points that no sample has met. Neither the samples' mean nor
+  // its error estimate is meaningful then.
   constexpr double kUnmet = 8;
   if (brightest_ <= kUnmet * brightestMet_) {
     probability("irradiance", EqualMeans(quadrature.Radiance(), counted.sum, 1e-3, kSeams * hidden),

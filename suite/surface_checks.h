@@ -1,4 +1,4 @@
-// The parts of checking a light that is its own surface.
+// Checks of lights that are their own surface.
 #pragma once
 
 #include "suite/surface_tracer.h"

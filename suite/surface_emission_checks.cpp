@@ -1,11 +1,11 @@
-// The suite's properties of the photons of lights that are their own surface.
+// Properties of the photons of lights that are their own surface.
 #include "suite/surface_checks.h"
 
 namespace lampyr::suite {
 
 namespace {
 
-// Cells of the light's box in its own space: 8×8 where it is flat, 4×4×4 else.
+// Cells of the light's box in its own space: 8×8 if it is flat, otherwise 4×4×4.
 class BoxCells {
  public:
   explicit BoxCells(const Bounds3d& box) : box_(box), size_(box.Diagonal()) {
@@ -37,7 +37,7 @@ class BoxCells {
   int count_[3];
 };
 
-// pdfEmit at a point, which is asked for in directions on either side of it and in those of photons.
+// pdfEmit at a point, evaluated in directions on either side of the surface and in those of photons.
 double EmitDensityAt(const SuiteSubject& subject, const SurfaceTracer& tracer, const SurfaceHit& point,
                      const std::vector<Vector3d>& tried) {
   const auto distance = static_cast<float>(2 * tracer.Around().radius);
@@ -79,7 +79,7 @@ struct PhotonErrors {
   double edge = 0, surface = 0, outside = 0, multipliers = 0;
 };
 
-// The edge to where the photon may land, and the surface where it starts.
+// Compares a photon with the edge to where it may land, and with the surface where it starts.
 void ComparePhoton(const SuiteSubject& subject, const SurfaceTracer& tracer, const BoxCells& cells,
                    const EmissionSample& photon, PhotonErrors& errors) {
   const auto reach = static_cast<float>(2 * tracer.Around().radius);
@@ -94,7 +94,7 @@ void ComparePhoton(const SuiteSubject& subject, const SurfaceTracer& tracer, con
                                           static_cast<double>(photon.emissionCosine));
   errors.multipliers = std::max(errors.multipliers, MultiplierMismatch(subject, photon));
   if (!cells.Holds(tracer.ToLocal(Point3d(photon.position)))) errors.outside = 1;
-  // Along the normal, from outside: the point that is found there is the photon's own.
+  // A ray along the normal, from outside, must find the photon's own point.
   const Vector3d normal(photon.normal);
   const Point3d from = Point3d(photon.position) + normal * tracer.Around().radius;
   const auto found = tracer.Find(from, -normal, Point3d(photon.position));

@@ -1,4 +1,4 @@
-// A light's own surface in render space, by tracing rays: the suite knows nothing else of its shape. In double.
+// A light's own surface in render space, by ray tracing, in double. The suite knows nothing else of its shape.
 #pragma once
 
 #include <glm/mat3x3.hpp>
@@ -23,7 +23,7 @@ class SurfaceTracer {
   // Nearest hit beyond `from`, at most `to` away.
   std::optional<SurfaceHit> Trace(const Point3d& origin, const Vector3d& direction, double from = 0,
                                   double to = std::numeric_limits<double>::infinity()) const;
-  // Of all hits of the ray, that which is nearest to `position`, and whether it is the first.
+  // The hit of the ray nearest to `position`, and whether it is the first hit along the ray.
   struct Found {
     SurfaceHit hit;
     bool isFirst = true;
@@ -53,9 +53,9 @@ class SurfaceTracer {
   Enclosure enclosure_;
 };
 
-// What a ray in this direction tells the light of what it found.
+// The LightHit of a surface hit on a ray in `direction`.
 LightHit HitFrom(const SurfaceHit& found, const Vector3d& direction);
-// Where a ray from P may find the light at all.
+// Cap of all directions from P in which a ray may hit the light.
 Cap CapTowards(const Enclosure& around, const Point3& P);
 
 }  // namespace lampyr::suite

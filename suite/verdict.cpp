@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kHopeless = std::numeric_limits<double>::max();
 
-// How near to failing: above 1 fails. Statistics of one property compare by it.
+// Measure of failure, comparable among the statistics of one property: above 1 fails.
 double Badness(const SuiteResult& result) {
   if (result.isProbability) return result.statistic > 0 ? result.threshold / result.statistic : kHopeless;
   return result.threshold > 0 ? result.statistic / result.threshold : (result.statistic > 0 ? kHopeless : 0.0);

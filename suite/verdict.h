@@ -15,7 +15,7 @@ struct LightVerdict {
   SuiteResult worst;   // the case that is nearest to failing, or failed by most
 };
 
-// In the order in which the results first name them.
+// One verdict for each light and property, in the order of their first results.
 std::vector<LightVerdict> SummariseByProperty(const std::vector<SuiteResult>& results);
 
 }  // namespace lampyr
