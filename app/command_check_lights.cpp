@@ -1,5 +1,6 @@
-// The pdf consistency suite on every type of light and the filter suite on every type of light filter, on those of a
-// plugin, or the former on the lights of a scene: a line for each light or filter and property, and a verdict.
+// Runs the pdf consistency suite on every type of light and the filter suite on every type of light filter, on those of
+// a plugin, or the pdf suite on the lights of a scene. Prints a line for each light or filter and property, and a
+// verdict.
 #include <unistd.h>
 
 #include <cstdio>
@@ -19,7 +20,7 @@ namespace lampyr {
 
 namespace {
 
-// A folder of its own for the images that textured lights are tested with; gone when this is.
+// A temporary folder for the images of textured test lights; deleted by the destructor.
 class ScratchFolder {
  public:
   ScratchFolder()
@@ -45,7 +46,7 @@ struct ChosenTypes {
   bool IsEmpty() const { return lights.empty() && filters.empty(); }
 };
 
-// Those of the name that is asked for; else those of the plugins that are asked for; else all.
+// The types with the requested name; otherwise those of the requested plugins; otherwise all.
 ChosenTypes ChooseTypes(const CheckLightsOptions& options, const TypeRegistry& registry) {
   ChosenTypes types;
   if (options.type.empty() && !options.plugins.files.empty()) {
@@ -68,7 +69,7 @@ ChosenTypes ChooseTypes(const CheckLightsOptions& options, const TypeRegistry& r
   return types;
 }
 
-// What was not looked at must not pass.
+// Throws a UsageError for a type without sample blocks: a type that was not tested must not pass.
 template <class Type>
 void RequireSamples(const std::vector<Type>& types, const char* what) {
   for (const Type& type : types) {
@@ -98,7 +99,7 @@ std::vector<SuiteResult> CheckTypes(const CheckLightsOptions& options, const Sui
   return results;
 }
 
-// Errors of the scene are errors of usage, as when it is rendered.
+// Checks the lights of a scene. Errors of the scene are usage errors, as in rendering.
 std::vector<SuiteResult> CheckScene(const CheckLightsOptions& options, const SuiteOptions& suite) {
   Diagnostics diagnostics;
   TypeRegistry types;
@@ -118,7 +119,7 @@ std::vector<SuiteResult> CheckScene(const CheckLightsOptions& options, const Sui
   return results;
 }
 
-// What failed is explained: what the property means, and where it was worst.
+// Prints a verdict. For a failure, also the meaning of the property and the worst case.
 void Print(const LightVerdict& verdict) {
   std::printf("%-6s %-34s %-20s %5zu cases, worst %s %.3g (threshold %.3g)%s%s\n", verdict.passed ? "ok" : "FAILED",
               verdict.light.c_str(), verdict.property.c_str(), verdict.cases,

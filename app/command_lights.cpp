@@ -19,7 +19,7 @@ std::string Padded(std::string text, int columns) {
   return text + " ";
 }
 
-// One parameter: a row of a table where the terminal is wide enough, else its help below it.
+// Prints a parameter: a table row if the terminal is wide enough, otherwise with the help below it.
 void PrintParameter(const ParameterInfo& parameter, int columns) {
   constexpr int kWideEnough = 100, kName = 30, kValue = 14, kRange = 12;
   const std::string name = "  " + std::string(ToString(parameter.type)) + " " + parameter.name;
@@ -41,14 +41,14 @@ void PrintParameters(const Rows& rows, bool areCommon, int columns) {
   }
 }
 
-// A type and its own parameters. `plugin`: the one that it is from; null for built-in types.
+// Prints a type and its own parameters. `plugin`: the plugin that defines it; null for built-in types.
 void PrintType(const char* statement, const TypeDescription& type, const Plugin* plugin, int columns) {
   std::printf("%s \"%s\"\n%s", statement, type.name.c_str(), Indented("  ", type.help, columns).c_str());
   if (plugin) std::printf("  from the plugin \"%s\"\n", plugin->file.c_str());
   PrintParameters(type.parameters, false, columns);
 }
 
-// The common parameters of a list of types: each once, by the first type that has it.
+// The parameters that are common to a list of types, each once, from the first type that has it.
 Rows CommonRows(const std::vector<const TypeDescription*>& types) {
   Rows common;
   for (const TypeDescription* type : types) {
@@ -61,7 +61,7 @@ Rows CommonRows(const std::vector<const TypeDescription*>& types) {
   return common;
 }
 
-// A type with the statement that names it and the plugin that it is from.
+// A type, the statement that names it and the plugin that defines it.
 struct Entry {
   std::string statement;
   const TypeDescription* type;

@@ -44,7 +44,7 @@ void ParseResolution(const std::string& text, RenderOverrides& overrides) {
   overrides.height = height;
 }
 
-// The number that the whole text is; NaN where it is none. CLI11's own checks let NaN through.
+// Parses the whole text as a number; NaN if it is none. CLI11's own checks accept NaN.
 double ParseFinite(const std::string& text) {
   char* end = nullptr;
   const double number = std::strtod(text.c_str(), &end);
@@ -53,7 +53,7 @@ double ParseFinite(const std::string& text) {
 
 constexpr double kSmallestFloat = std::numeric_limits<float>::min(), kLargestFloat = std::numeric_limits<float>::max();
 
-// Of numbers that become floats: less is 0 there, and more is infinite.
+// For options stored as float: smaller numbers would become 0, larger ones infinite.
 std::string CheckPositive(const std::string& text) {
   const double number = ParseFinite(text);
   if (number >= kSmallestFloat && number <= kLargestFloat) return "";
@@ -65,7 +65,7 @@ std::string CheckFinite(const std::string& text) {
   return std::abs(ParseFinite(text)) <= kLargestFloat ? "" : "\"" + text + "\" is not a finite number";
 }
 
-// The help of a setting: with its default, and which integrators have it where not all do.
+// Help text of a setting with its default, and with the integrators that have it unless nearly all do.
 std::string HelpOf(const Setting& setting) {
   std::string owners;
   size_t count = 0;
@@ -74,7 +74,7 @@ std::string HelpOf(const Setting& setting) {
     owners += (count > 0 ? ", " : "") + type.name;
     ++count;
   }
-  // Most have it: it is nobody's own.
+  // A setting that at most one integrator lacks is not attributed to particular integrators.
   std::string help = count + 1 >= IntegratorRegistry().size() ? "" : owners + ": ";
   help +=
       setting.help + " (" + (setting.fallbackText.empty() ? setting.Format(setting.fallback) : setting.fallbackText);
@@ -82,12 +82,12 @@ std::string HelpOf(const Setting& setting) {
   return help + ")";
 }
 
-// An option for each setting of an integrator: --name VALUE, of switches --name and --no-name.
-// Of numbers "N" and "X", of words "WORD".
+// Placeholder for a value in the help: "N" for integers, "X" for reals, "WORD" for text.
 const char* KindOf(const SettingValue& value) {
   return std::holds_alternative<int64_t>(value) ? "N" : std::holds_alternative<double>(value) ? "X" : "WORD";
 }
 
+// Defines an option for each setting of an integrator: --name VALUE, for switches --name and --no-name.
 void DefineSettings(CLI::App& app, std::map<std::string, SettingValue>& values) {
   const Settings all = IntegratorSettings();
   for (const auto& [declared, fallback] : all.All()) {
@@ -127,7 +127,7 @@ void DefinePluginOption(CLI::App& app, PluginOptions& plugins, bool readsScenes 
                "Load the plugins that the scene names (Option \"plugins\"), wherever they lie: they are native code");
 }
 
-// What render and compare are told alike.
+// Options that render and compare have in common.
 void DefineSceneOptions(CLI::App& app, RenderOverrides& overrides, std::string& resolution, int& threads) {
   app.add_option("--seed", overrides.seed, "Seed of the random numbers (0)");
   app.add_option("--threads", threads, "Threads (all)")->check(CLI::Range(1, 4096));
@@ -149,7 +149,7 @@ std::pair<int, int> ParseShard(const std::string& text) {
   return {index, count};
 }
 
-// How often --resume goes on writing checkpoints, where nothing is said.
+// Default interval of checkpoints with --resume, seconds.
 constexpr double kCheckpointSeconds = 60;
 
 struct RenderCommand {
@@ -358,8 +358,8 @@ struct CompareCommand {
 
 namespace {
 
-// The words of the command line, as CLI11 takes them: "lampyr SCENE.pbrt …" renders, and "lampyr help COMMAND" is the
-// help of the command. Throws a UsageError for a command that there is not.
+// The arguments in the form that CLI11 expects: "lampyr SCENE.pbrt …" renders, and "lampyr help COMMAND" prints the
+// help of the command. Throws a UsageError for an unknown command.
 std::vector<std::string> CommandWords(const CLI::App& app, int argc, char** argv) {
   std::vector<std::string> words(argv + 1, argv + argc);
   if (words.empty()) return {"--help"};
@@ -409,7 +409,7 @@ int ReportParseError(const CLI::App& app, const CLI::ParseError& error) {
   return kExitUsage;
 }
 
-// The commands, each with what its options are read into.
+// The commands and the options that each one parses.
 class Commands {
  public:
   Commands(CLI::App& app, int argc, char** argv) : app_(app) {

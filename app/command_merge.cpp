@@ -1,4 +1,4 @@
-// lampyr merge: one picture from parts that were rendered apart.
+// lampyr merge: one picture from parts that were rendered separately.
 #include <algorithm>
 #include <cstdio>
 #include <memory>
@@ -32,7 +32,7 @@ std::string DivisionOf(const Shard& shard) {
   return std::to_string(shard.whole) + " samples in " + std::to_string(shard.count) + " parts";
 }
 
-// In the order of their samples. Throws where they are of different renders or hold the same samples.
+// Opens the parts, sorted by their samples. Throws if they are from different renders or contain the same samples.
 std::vector<Part> OpenParts(const std::vector<std::filesystem::path>& paths) {
   std::vector<Part> parts;
   for (const std::filesystem::path& path : paths)
@@ -57,7 +57,7 @@ std::vector<Part> OpenParts(const std::vector<std::filesystem::path>& paths) {
   return parts;
 }
 
-// What is missing of the whole picture, for people; "": nothing.
+// Readable list of missing parts and samples; "" if the picture is complete.
 std::string MissingOf(const std::vector<Part>& parts) {
   std::string missing;
   const auto add = [&](const std::string& what) { missing += (missing.empty() ? "" : ", ") + what; };
@@ -77,7 +77,7 @@ std::string MissingOf(const std::vector<Part>& parts) {
   return missing;
 }
 
-// A part is what hours of rendering have made.
+// Throws a UsageError if an output would overwrite one of the parts, which may have taken hours to render.
 void CheckPartsStay(const MergeOptions& options) {
   std::vector<std::pair<std::filesystem::path, const char*>> written = {{options.output, "--output"}};
   if (options.png) written.emplace_back(std::filesystem::path(options.output).replace_extension(".png"), "--png");

@@ -86,7 +86,7 @@ void CheckMemory(const RenderSettings& settings, TracedPaths paths, size_t layer
                    " of memory and there are " + gibibytes(available) + ": render it in parts with --crop");
 }
 
-// The limit is the same on all machines, and what is kept of a pass of photons may be more than this one has.
+// The memory limit of photons is the same on all machines, so a pass of photons may need more than this machine has.
 void WarnOfPhotonMemory(const RenderSettings& settings, const PhotonSettings& photons) {
   const double paths = photons.lightPaths > 0
                            ? static_cast<double>(photons.lightPaths)
@@ -101,12 +101,12 @@ void WarnOfPhotonMemory(const RenderSettings& settings, const PhotonSettings& ph
                FormatBytes(needed).c_str(), FormatBytes(available).c_str());
 }
 
-// For another process: it must be told which render it is of.
+// True if the render's state is written for another process, which needs to identify the render.
 bool KeepsState(const RenderOptions& options) {
   return options.shard || options.resume || options.checkpointSeconds;
 }
 
-// Of the picture that all samples of a part make, but for their number.
+// Header of the picture with all samples of the part; the number of samples is not set.
 PartHeader MakeHeader(const RenderOptions& options, const LoadedScene& loaded, const Shard& shard) {
   const RenderSettings& settings = loaded.built.settings;
   PartHeader header;
@@ -138,7 +138,7 @@ void PrintSummary(const RenderReport& report, const std::filesystem::path& path)
   }
 }
 
-// Samples, and photons, that were left out.
+// Report of dropped samples and photons.
 struct DroppedReport {
   FileLocation where;
   std::string text;  // "": none
@@ -161,7 +161,7 @@ DroppedReport DescribeDropped(const RenderOutcome& outcome, const BuiltScene& bu
   return report;
 }
 
-// Of a picture without a whole sample of each pixel: how much of the first one is there.
+// Describes a picture that has less than one sample per pixel: the completed fraction of the first sample.
 std::string DescribePartialPicture(const RenderOptions& options, const Film& film, const RenderSettings& settings,
                                    TracedPaths paths) {
   if (options.shard) return "the part holds no samples";
@@ -176,9 +176,9 @@ std::string DescribePartialPicture(const RenderOptions& options, const Film& fil
 
 constexpr int kOpenEnd = 1 << 30;
 
-// Of the whole picture.
+// Samples per pixel of the whole picture, over all parts.
 int SamplesWanted(const RenderOptions& options, const RenderSettings& settings) {
-  // Asked to stop by time or error only: the scene's own sample count does not matter.
+  // With a stop by time or error alone, the scene's own sample count is ignored.
   const bool isOpen = (options.seconds || options.targetError) && !options.overrides.samplesPerPixel;
   return isOpen ? kOpenEnd : settings.samplesPerPixel;
 }
@@ -192,7 +192,7 @@ StopConditions MakeStopConditions(const RenderOptions& options, const Shard& sha
   return stop;
 }
 
-// weighted-s2-t3.exr, unweighted-s2-t3.exr, … in the folder, which is made.
+// Writes weighted-s2-t3.exr, unweighted-s2-t3.exr, … to the folder, which is created.
 void WriteTechniques(const RenderOptions& options, const std::vector<TechniqueImages::Picture>& pictures) {
   const std::filesystem::path& folder = *options.strategyImages;
   for (const TechniqueImages::Picture& picture : pictures) {
@@ -205,7 +205,7 @@ void WriteTechniques(const RenderOptions& options, const std::vector<TechniqueIm
   }
 }
 
-// The picture so far. One part of a picture carries its sums.
+// Writes the picture so far. The file of one part (--shard) also carries its sums.
 void WriteImage(const std::filesystem::path& path, const RenderOptions& options, const PartHeader& ofAll,
                 const Film& film, const RenderOutcome& outcome) {
   PartHeader header = ofAll;
@@ -221,7 +221,8 @@ void WriteImage(const std::filesystem::path& path, const RenderOptions& options,
   });
 }
 
-// What hours were spent on is not lost because its folder is full or gone: it is kept where temporary files are.
+// Writes the picture; if its folder is full or gone, writes it to the folder of temporary files and throws an Error
+// that names that file, so that a long render is not lost.
 void WriteImageOrKeepIt(const std::filesystem::path& path, const RenderOptions& options, const PartHeader& header,
                         const Film& film, const RenderOutcome& outcome) {
   try {
@@ -387,7 +388,7 @@ int RenderJob::Run() {
   });
 }
 
-// Writes what the render has come to.
+// Writes the results of the render.
 int RenderJob::Finish(ProgressiveRender& render, Checkpoints* checkpoints) {
   const Progress clock(true);
   const Film& film = render.Picture();
@@ -407,7 +408,7 @@ int RenderJob::Finish(ProgressiveRender& render, Checkpoints* checkpoints) {
   return ExitCode(partialPicture);
 }
 
-// `partialPicture`: of a picture without a whole sample of each pixel, how much is there.
+// `partialPicture`: description of a picture with less than one sample per pixel.
 int RenderJob::ExitCode(const std::string& partialPicture) const {
   const RenderOutcome& outcome = report_.outcome;
   const DroppedReport dropped = DescribeDropped(outcome, built_);

@@ -14,13 +14,13 @@ namespace lampyr {
 
 namespace {
 
-// A signal handler has no argument to be handed this through.
+// Global because a signal handler takes no further arguments.
 std::atomic<bool> interruptRequested{false};
 std::atomic<int> interruptSignal{SIGINT};
 
 constexpr int kInterrupts[] = {SIGINT, SIGTERM, SIGHUP};
 
-// A second one ends the process, but for SIGHUP: of a connection that is lost, the system and the shell both send one.
+// A second signal ends the process, except SIGHUP: the system and the shell both send one when a connection is lost.
 void OnInterrupt(int signal) {
   interruptSignal.store(signal);
   interruptRequested.store(true);

@@ -25,7 +25,7 @@ class HelpFormatter final : public CLI::Formatter {
     return names;
   }
 
-  // The kind of value, without its range: what is out of range is told then.
+  // The kind of value without its range; a value out of range is reported when it is given.
   std::string make_option_opts(const CLI::Option* option) const override {
     std::string kind = option->get_type_name();
     kind = kind.substr(0, kind.find(':'));

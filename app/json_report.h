@@ -9,7 +9,7 @@
 
 namespace lampyr {
 
-// Everything `--stats` holds. Times in seconds, memory in MiB.
+// Contents of the file written by `--stats`. Times in seconds, memory in MiB.
 struct RenderReport {
   std::string scene, sceneHash, integrator;
   std::vector<std::pair<std::string, SettingValue>> settings;  // of the integrator

@@ -10,8 +10,8 @@
 
 namespace {
 
-// Where no caller can catch what is thrown: in a thread of a library, in a function that must not throw, or by a
-// library that cannot clean up after what went wrong. Embree ends in this way where it gets no threads.
+// Terminate handler, for exceptions that no caller can catch: thrown in a thread of a library, in a function that must
+// not throw, or by a library that cannot clean up after an error. Embree ends this way if it gets no threads.
 [[noreturn]] void EndWithMessage() {
   try {
     if (std::current_exception()) std::rethrow_exception(std::current_exception());

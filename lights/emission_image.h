@@ -25,7 +25,7 @@ class EmissionImage {
   int Height() const { return image_->height; }
 
   Color Texel(int x, int y) const { return TexelAt(data_ + (static_cast<size_t>(y) * width_ + x) * stride_); }
-  // Of the texel that holds uv in [0,1)²; v counts down from the image's top row.
+  // Radiance of the texel that contains uv in [0,1)²; v counts down from the image's top row.
   Color Nearest(const Point2& uv) const { return TexelAt(NearestTexel(uv)); }
   // Bilinear between texel middles, clamped at the edges; v counts up from the image's lowest row, as on surfaces.
   Color OnSurface(const Point2& uv) const;
@@ -34,14 +34,14 @@ class EmissionImage {
 
  private:
   const float* NearestTexel(const Point2& uv) const {
-    // In double, as the sampling table finds its cell: both must be the same texel.
+    // In double, like the lookup of a cell in the sampling table: both must find the same texel.
     const int x = std::clamp(static_cast<int>(static_cast<double>(uv.x) * width_), 0, width_ - 1);
     const int y = std::clamp(static_cast<int>(static_cast<double>(uv.y) * height_), 0, height_ - 1);
     return data_ + (static_cast<size_t>(y) * width_ + x) * stride_;
   }
   Color TexelAt(const float* texel) const { return {Clean(texel[r_]), Clean(texel[g_]), Clean(texel[b_])}; }
 
-  // Scales and sums of a few texels stay finite.
+  // Texels from this value on are read as 0, so that scaled texels and sums of a few texels stay finite.
   static constexpr float kBrightestTexel = 1e37f;
   static float Clean(float value) { return value > 0 && value < kBrightestTexel ? value : 0.0f; }
 

@@ -13,8 +13,8 @@ namespace lampyr {
 // by the cosine law.
 float SurfaceIrradianceEstimate(const EmissionBounds& bounds, float power, const Point3& P);
 
-// The same for a segment, evaluated at its point nearest to the box's middle. The segment is clipped where the emitter
-// is flat, one-sided and seen from behind.
+// Irradiance along a segment, evaluated at its point nearest to the centre of the box. The segment is clipped where the
+// emitter is flat, one-sided and seen from behind.
 std::optional<SegmentEstimate> SurfaceSegmentEstimate(const EmissionBounds& bounds, float power, const Point3& origin,
                                                       const Vector3& direction, float length);
 

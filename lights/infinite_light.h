@@ -34,13 +34,14 @@ class InfiniteLightWith final : public LightBase {
     if (isBlack_) return std::nullopt;
     return SegmentEstimate{GetIncidentRadianceEstimate(context, origin), 0, length};
   }
-  // Through the scene's bounding sphere. The mean is over local directions: exact under rotations and uniform scales.
+  // Power through the scene's bounding sphere. The mean is over local directions: exact under rotations and uniform
+  // scales.
   Color GetPowerEstimate(const LightContext& context) const override {
     return sky_.Mean() * (4 * kPi * EmissionDiskArea(context.scene));
   }
   std::optional<EmissionBounds> GetEmissionBounds(const LightContext&) const override { return std::nullopt; }
 
-  // One variable for all returns: it is made where the caller wants it.
+  // A single return variable, so that it is constructed in the caller's storage (NRVO).
   std::optional<LightSample> GenerateSamples(const LightContext& context, const Point3&) const override {
     std::optional<LightSample> sample;
     if (isBlack_) return sample;
@@ -87,7 +88,7 @@ class InfiniteLightWith final : public LightBase {
   }
 
  private:
-  // For a direction of render space as rounded to float, so that every technique evaluates the same values.
+  // Evaluated for the render-space direction as rounded to float, so that every technique evaluates the same values.
   SkyPoint Sample(const LightContext& context, Vector3& direction) const {
     const SkySample sample = sky_.Sample(context.u);
     direction = ToRenderDirection(*context.transform, sample.local);

@@ -7,7 +7,7 @@
 // Their densities must agree with each other, because bidirectional weights are ratios of them. The pdf suite checks
 // this for every registered light.
 //
-// What each density means ([Veach97 §8.3.2], conventions of this project)
+// Measures of the densities ([Veach97 §8.3.2], with the conventions of this project)
 //
 //   kind            pdfEmit                          pdfEmitDirection   pdfDirect at P   solidAngleToArea
 //   Area            1/m², world-space surface        1/sr given position    1/sr         cosθ_light / d²
@@ -87,7 +87,7 @@ struct LightSample {
   Point3 position{0.0f};        // on the light; unset for lights at infinity
   Vector3 positionError{0.0f};  // bound on its rounding error, by which rays are offset from the surface
   Normal3 normal{0.0f};         // unit, of the light at `position`; 0 for points; -direction at infinity
-  Point3 uvw{0.0f};             // as a hit there has it; a light that never looks at it may leave it at 0
+  Point3 uvw{0.0f};             // as of a hit at `position`; may stay 0 if the light does not use it
   int patchIndex = 0;
   Color diffuse, specular;  // incident radiance for diffuse and specular lobes; deltas: intensity/d² or irradiance
   PdfSolidAngle pdfDirect;
@@ -180,7 +180,7 @@ struct LightSettings {
   bool cameraVisible = true;
   bool traceLightPaths = true;     // may emit photons
   float importanceMultiplier = 1;  // > 0, scales the light's selection probability
-  int fixedSampleCount = 0;        // 0: whatever the integrator does
+  int fixedSampleCount = 0;        // 0: chosen by the integrator
   std::string lightGroup;
   std::string name;
 };
@@ -206,15 +206,15 @@ class Light {
   // light can contribute.
   virtual float GetIncidentRadianceEstimate(const LightContext& context, const Point3& P) const = 0;
 
-  // The same for the ray segment from `origin` along the unit `direction`, with the part of [0, length] that the light
-  // can reach. nullopt: none.
+  // Estimated irradiance along the ray segment from `origin` along the unit `direction`, and the part of [0, length]
+  // that the light can reach. nullopt: none.
   virtual std::optional<SegmentEstimate> GetIncidentRadianceEstimate(const LightContext& context, const Point3& origin,
                                                                      const Vector3& direction, float length) const = 0;
 
   // Emitted power in W per channel: exact if there is a closed form, an estimate otherwise.
   virtual Color GetPowerEstimate(const LightContext& context) const = 0;
 
-  // Of one patch, or of the whole light (kAnyPatch in the context). nullopt for lights at infinity.
+  // Emission bounds of context.patch, or of the whole light if that is kAnyPatch. nullopt for lights at infinity.
   virtual std::optional<EmissionBounds> GetEmissionBounds(const LightContext& context) const = 0;
 
   // Samples the light from P by context.u. nullopt: the sample contributes nothing.

@@ -13,7 +13,7 @@ namespace {
 
 constexpr size_t kLine = 64;
 
-// At the beginning of a page: what is taken of it, and how many lights are still there.
+// Header of a page: bytes taken from it, and number of lights that are still allocated in it.
 struct Page {
   size_t taken = kLine;
   size_t lights = 0;
@@ -26,7 +26,7 @@ Page* open = nullptr;  // the page that lights are put on
 size_t Rounded(size_t bytes) {
   return (bytes + kLine - 1) / kLine * kLine;
 }
-// What is larger than a part of a page has one of its own elsewhere.
+// True for allocations too large to share a page; they are made separately.
 bool HasOwn(size_t bytes) {
   return bytes > kLargePage / 16;
 }

@@ -21,7 +21,7 @@ struct LightBuildContext {
   Transform placement;           // the same in double, local to render space
   Transform worldToRender;       // for points that pbrt gives in the light's space it is part of `placement`
   const Shape* shape = nullptr;  // area lights: the shape that emits, in render space
-  // Area lights: from the shape's own axes to those of the space that its points are given in. Shaping is about them.
+  // Area lights: maps the shape's own axes, about which shaping is defined, to the space in which its points are given.
   Transform shapePlacement;
   const TextureLibrary* textures = nullptr;  // images; null in tests that use none
   std::shared_ptr<const AlphaSource> alpha;  // cut-outs of the shape

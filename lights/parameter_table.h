@@ -20,7 +20,7 @@ struct ParameterInfo {
   bool isCommon = false;     // of all lights, or of all light filters
 };
 
-// What a type is called, and what may be said of it.
+// Name, help, parameters and samples of a type that scenes can name.
 struct TypeDescription {
   std::string name;
   std::string help;  // one line

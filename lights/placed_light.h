@@ -12,14 +12,14 @@ struct PlacedLight {
   std::shared_ptr<const Light> light;
   LightTransform transform;
   bool canBeHit = true;  // false: an area light whose surface lets every ray through; only light sampling finds it
-  std::shared_ptr<const Motion> motion = nullptr;  // null: stays. Otherwise `transform` is the place at shutter open
+  std::shared_ptr<const Motion> motion = nullptr;  // null: static. Otherwise `transform` is that at shutter open
 
   bool isInstance = false;  // its shape is traced within an instance, placed as the light is
 
   int32_t filter = -1;         // index of its light filter, -1: none
-  float radianceModifier = 1;  // the part of it that the filter lets through, as light selection is to take it
+  float radianceModifier = 1;  // fraction that the filter transmits, as light selection assumes it
 
-  // Of a light that moves.
+  // Placement of a moving light at `time`. Requires `motion`.
   LightTransform At(float time) const {
     const Affine toRender = motion->At(time);
     return {toRender, toRender.Inverse()};

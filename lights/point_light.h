@@ -19,7 +19,7 @@
 
 namespace lampyr {
 
-// What a point is before its profile: intensity and place.
+// Intensity and position of a point light, without its profile.
 struct PointSource {
   Color intensity{1.0f};  // W/sr where the profile is 1
   Point3 from{0.0f};      // local space
@@ -33,7 +33,7 @@ struct PointSource {
 template <class Profile>
 class PointLightWith final : public LightBase {
  public:
-  // Reads scale and power; the colour's own magnitude is kept, the profile's is what `power` makes up for.
+  // Reads scale and power. `power` compensates for the magnitude of the profile; that of the colour is kept.
   PointLightWith(LightTypeFunction type, const ParameterList& parameters, Profile profile, const PointSource& source)
       : LightBase(type, parameters),
         profile_(std::move(profile)),
@@ -69,7 +69,8 @@ class PointLightWith final : public LightBase {
         !profile_.Clip(*context.transform, from_, origin, direction, estimate.minT, estimate.maxT)) {
       return std::nullopt;
     }
-    // The intensity where the segment comes nearest may be 0 while it is not elsewhere: the largest one is taken.
+    // The intensity towards the nearest point of the segment may be 0 although it is positive elsewhere, so the largest
+    // intensity is used.
     const Point3 position = Position(context);
     const float t = NearestOnSegment(origin, direction, estimate.minT, estimate.maxT, position);
     const float squared = std::max(LengthSquared(origin + t * direction - position), kSmallest);
@@ -98,7 +99,7 @@ class PointLightWith final : public LightBase {
     sample->distance = std::sqrt(squared);
     sample->direction = toLight / sample->distance;
     const Color radiance = intensity_ * (profile_.Shape(*context.transform, -sample->direction) / squared);
-    // An infinite one is left to be dropped and counted: it is more than nothing.
+    // An infinite sample is returned, so that it is dropped and counted: its contribution is not 0.
     if (!tint_.Split(radiance, *sample)) return std::nullopt;
     sample->position = position;
     sample->positionError = PositionError(context);
@@ -144,7 +145,7 @@ class PointLightWith final : public LightBase {
   static float ToFactor(double value) { return static_cast<float>(value); }
   static const Color& ToFactor(const Color& value) { return value; }
 
-  [[no_unique_address]] Profile profile_;  // one that keeps nothing takes no room
+  [[no_unique_address]] Profile profile_;  // an empty profile takes no space
   Color intensity_;                        // W/sr where the profile's shape is 1, with the tint's colour
   Point3 from_;                            // local space
   LightTint tint_;

@@ -1,4 +1,4 @@
-// A light of a scene, as who checks it needs it.
+// A light of a scene, with the data that are needed to check it.
 #pragma once
 
 #include <memory>
@@ -11,12 +11,12 @@
 
 namespace lampyr {
 
-// Besides the light itself.
+// The data besides the light itself.
 struct SceneLight {
   std::string name;            // its own, or its type, and where it was written
   std::optional<Shape> shape;  // that it is on, in the space that its placement leads from
-  // Cut-outs let rays pass that the suite does not trace: such a light is checked as it is without them. Null: as it
-  // is.
+  // The light without its cut-outs, which let rays pass and are not traced by the suite: this one is checked instead.
+  // Null: the light is checked as it is.
   std::shared_ptr<const Light> withoutCutOuts;
   ParameterList parameters;
 };

@@ -100,7 +100,7 @@ bool ProgressiveRender::AddSamples(int count) {
   if (isGivenUp) LeaveToGivenUpPass();
   backup_.Restore(State(), threads_, isGivenUp);
   counts_ = RenderCounts();
-  // As after loading, photons are traced again.
+  // Photons are traced again, as after loading a checkpoint.
   MakePhotonStore();
   if (photons_) photons_->Continue(statistics);
   outcome_.isPartial = isFirst;

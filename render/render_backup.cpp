@@ -9,7 +9,7 @@ void RenderBackup::Take(const PassState& state, bool withFilm, int threads) {
     film_->CopyFrom(state.film, threads);
   }
   if (state.techniques) techniques_ = *state.techniques;
-  // What has stopped recording does not change any more.
+  // State that no longer records does not change, so it is not copied again.
   const LightLearning* learning = state.learning ? state.learning->get() : nullptr;
   if (learning && (learning->IsRecording() || (learning_ && learning_->IsRecording()))) {
     if (!learning_) learning_ = std::make_unique<LightLearning>(scene_);

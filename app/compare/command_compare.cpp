@@ -41,7 +41,7 @@ ComparisonPlan MakePlan(const CompareOptions& options) {
   return plan;
 }
 
-// How long the longest of the compared renders of an integrator is going to take.
+// Expected time of the longest of the compared renders of an integrator, seconds.
 double LongestRender(const ComparisonPlan& plan, const Pilot& pilot) {
   const double ofTimes = plan.times.empty() ? 0 : plan.times.back();
   const double ofSamples =
@@ -61,8 +61,8 @@ double LongestRender(const ComparisonPlan& plan, const std::vector<Pilot>& pilot
   return longest;
 }
 
-// A reference that is noisier than what is measured against it says nothing: told before the work where first looks
-// know it already. One that misses light has an error beside its noise.
+// Throws a UsageError if the reference is noisier than all renders that would be measured against it, when the pilots
+// show this already, before the work. A reference that misses light has an error in addition to its noise.
 void CheckReferenceIsFinerThanRenders(const Reference& reference, const ComparisonPlan& plan,
                                       const std::vector<Pilot>& pilots) {
   bool anyComplete = false;
@@ -78,7 +78,7 @@ void CheckReferenceIsFinerThanRenders(const Reference& reference, const Comparis
                    "option out to have one made");
 }
 
-// The bar of a stage of the work; stages before and after it are known by their share only.
+// Progress bar over stages of the work. Of the stages before and after the current one only their share is known.
 class Stages {
  public:
   explicit Stages(bool quiet) : progress_(quiet) {}
@@ -114,7 +114,7 @@ Reference ObtainReference(const CompareOptions& options, const ComparedScene& sc
   const std::filesystem::path file = folder / "reference.exr";
   const std::string key = ReferenceKey(scene, sceneHash);
   const auto wanted = [&](double longest) { return options.referenceSeconds.value_or(10 * longest); };
-  if (options.referenceSeconds || plan.sampleCounts.empty()) {  // the time is known without a first look
+  if (options.referenceSeconds || plan.sampleCounts.empty()) {  // the time is known without pilots
     if (auto kept = FindKeptReference(file, key, wanted(time))) {
       kept->facts.file = file.string();
       return *kept;
@@ -142,7 +142,7 @@ Reference ObtainReference(const CompareOptions& options, const ComparedScene& sc
   return reference;
 }
 
-// A picture in memory for each milestone, and the last of each repeat.
+// Checks the memory for a picture per milestone, and the last picture of each repeat.
 void CheckMemory(const RenderSettings& settings, const ComparisonPlan& plan) {
   const double milestones = static_cast<double>(plan.times.size() + plan.sampleCounts.size());
   const double images = static_cast<double>(plan.integrators.size()) * (milestones + plan.repeats) + 8;
@@ -155,7 +155,7 @@ void CheckMemory(const RenderSettings& settings, const ComparisonPlan& plan) {
 
 void WritePictures(const std::filesystem::path& folder, const ComparisonResults& results) {
   for (const auto& [key, png] : results.pictures) {
-    if (key.rfind("error-", 0) == 0) continue;  // levels, which the page colours
+    if (key.rfind("error-", 0) == 0) continue;  // gray levels, coloured by the page
     AtomicFile file(folder / (key + ".png"));
     file.Write(png.data(), png.size());
     file.Commit();
@@ -190,7 +190,7 @@ void WriteResults(const CompareOptions& options, const std::filesystem::path& fo
   }
 }
 
-// What the run is known by before anything is measured.
+// The description of the run that is known before anything is measured.
 ComparisonResults Describe(const CompareOptions& options, const LoadedScene& loaded) {
   const RenderSettings& settings = loaded.built.settings;
   ComparisonResults results;

@@ -11,7 +11,7 @@ namespace lampyr {
 void ComparedScene::Render(const std::string& integrator, uint64_t seed, const std::vector<double>& times,
                            const std::vector<int>& sampleCounts, const AtMilestone& atMilestone,
                            const AfterPass& afterPass) const {
-  // Kept for good where a pass had to be given up: its threads use it.
+  // Never destroyed if a pass was abandoned, because its threads still use it.
   struct Run {
     RenderSettings settings;
     std::unique_ptr<Integrator> integrator;
@@ -39,7 +39,7 @@ void ComparedScene::Render(const std::string& integrator, uint64_t seed, const s
     if (isWhole) afterPass(outcome.seconds);
     if (HasGivenUpWork()) (void)run.release();
     if (!isWhole || interrupted_.load()) throw ComparisonInterrupted{};
-    // The sample that would take the render beyond its time is left out when it would by more than half.
+    // A sample that would exceed the time is omitted if it would exceed it by more than half of its duration.
     const double perSample = outcome.seconds / outcome.samplesPerPixel;
     while (nextTime < times.size() && outcome.seconds + 0.5 * perSample >= times[nextTime]) {
       atMilestone(nextTime, {outcome.seconds, outcome.samplesPerPixel}, film.Develop());

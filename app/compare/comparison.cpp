@@ -43,7 +43,7 @@ std::optional<Estimate> Inverse(const std::optional<Estimate>& cost) {
                   cost->low > 0 ? 1 / cost->low : std::numeric_limits<double>::infinity()};
 }
 
-// Errors that are not above the reference's own noise are not told apart from it.
+// Mean error with its interval; absent if it does not exceed the reference's own noise.
 std::optional<Estimate> Resolved(const std::vector<double>& errors, std::optional<double> noise, double noiseError) {
   auto estimate = MeanOnLogScale(errors, noiseError);
   if (estimate && noise && estimate->value < *noise) estimate.reset();
@@ -65,11 +65,11 @@ std::vector<unsigned char> ErrorPicture(const Image& image, const Reference& ref
   return EncodePng(image.width, image.height, rgb);
 }
 
-// Of rounding, which is the same in all repeats: not to be taken for a flaw of an integrator.
+// Rounding errors, which are the same in all repeats and must not count as a systematic error of an integrator.
 constexpr double kRoundingOfMean = 1e-5, kRoundingOfRelMse = 1e-10;
 
-// The part of relMSE that is common to all repeats, its error by leaving each repeat out in turn (the jackknife). What
-// is below the reference's own noise cannot be told from that.
+// The part of relMSE that is common to all repeats; its error by the jackknife (each repeat left out in turn). A part
+// below the reference's own noise is indistinguishable from it.
 SignificantEstimate SystematicPart(const std::vector<Repeat>& repeats, const Reference& reference) {
   std::vector<const Image*> images;
   for (const Repeat& repeat : repeats) images.push_back(&repeat.last);
@@ -77,7 +77,7 @@ SignificantEstimate SystematicPart(const std::vector<Repeat>& repeats, const Ref
   const double n = static_cast<double>(repeats.size());
   std::vector<double> pseudoValues;  // their mean's error is the jackknife's
   for (const double without : common.without) pseudoValues.push_back(n * common.relMse - (n - 1) * without);
-  if (pseudoValues.empty()) pseudoValues.push_back(common.relMse);  // one pair: its error is not known
+  if (pseudoValues.empty()) pseudoValues.push_back(common.relMse);  // a single pair, whose error is unknown
   SignificantEstimate estimate = MeanOf(pseudoValues, reference.noise.relMseError);
   estimate.value = common.relMse;
   if (common.relMse < std::max(reference.facts.relMse.value_or(0), kRoundingOfRelMse)) estimate.significant = false;
@@ -118,8 +118,9 @@ struct CurvePoint {
   Estimate relMse;
 };
 
-// On the measured curve where it passes the error; beyond it by the law of independent samples, relMSE - systematic
-// part ~ 1/time, from the nearest point. Of the systematic part, only what is sure counts.
+// Time to reach an error: interpolated on the measured curve; beyond it, extrapolated from the nearest point by the law
+// of independent samples, relMSE - systematic part ~ 1/time. Only the significant lower bound of the systematic part
+// counts.
 TimeToError FindTime(const std::vector<CurvePoint>& curve, const SignificantEstimate& systematic, double error) {
   TimeToError result;
   result.error = error;
@@ -144,7 +145,7 @@ TimeToError FindTime(const std::vector<CurvePoint>& curve, const SignificantEsti
   const double floor = systematic.significant ? std::max(systematic.low, 0.0) : 0.0;
   if (target <= floor) return result;
   result.kind = TimeToError::Kind::Extrapolated;
-  // No picture takes less than a sample per pixel, nor one that is worse than what was measured more than that.
+  // Lower bound of the time: one sample per pixel, or the longest measured time if the error was not reached there.
   const double least = isBefore ? nearest.secondsPerSample : nearest.seconds;
   const auto timeFrom = [&](double relMse) {
     return std::max(nearest.seconds * std::max(relMse - floor, 0.0) / (target - floor), least);
@@ -181,7 +182,7 @@ ComparedIntegrator Describe(const Run& run, const ComparedScene& scene, const Co
   return described;
 }
 
-// Each integrator against the first.
+// Ratios of each integrator to the first.
 void AddRatios(const std::vector<Run>& runs, ComparisonResults& results) {
   for (size_t i = 1; i < runs.size(); ++i) {
     for (size_t milestone = 0; milestone < results.integrators[i].snapshots.size(); ++milestone) {
@@ -212,7 +213,7 @@ void Compare(const ComparedScene& scene, const ComparisonPlan& plan, const Refer
   int whole = 0;
   try {
     for (; whole < plan.repeats; ++whole) {
-      // In turn, so that whatever else the machine does meets all of them.
+      // Integrators render in turn, so that other load of the machine affects all of them.
       for (size_t i = 0; i < runs.size(); ++i) {
         Run& run = runs[i];
         Repeat repeat;

@@ -20,7 +20,7 @@ constexpr int kPilotParts = 4;
 // Standard errors have the range of the values; variances of very bright or dim pictures leave that of floats.
 const std::vector<std::string> kLayers = {"R", "G", "B", "stderr.R", "stderr.G", "stderr.B"};
 
-// Mean of pictures, with the standard error of the mean by their spread.
+// Mean of pictures, with its standard error estimated from their spread.
 class MeanOfImages {
  public:
   void Add(const Image& image) {
@@ -65,7 +65,7 @@ class MeanOfImages {
   int images_ = 0;
 };
 
-// What is known of a reference by looking at it.
+// Fills in the facts that follow from the image of the reference.
 void Describe(Reference& reference) {
   ComparisonReference& facts = reference.facts;
   facts.mean = MeanValue(reference.image);
@@ -82,13 +82,13 @@ std::string MetadataOf(const Image& image, const char* name) {
   return found == image.metadata.end() ? std::string() : found->second;
 }
 
-// Means of the whole picture and of the blocks of a grid over it, by part of a pilot.
+// Means of the whole picture and of the blocks of a grid over it, for each part of a pilot.
 struct PilotRun {
   Pilot pilot;
   std::vector<double> means;
   std::vector<std::vector<double>> blocks;
   bool isHinted = false;
-  bool isBlurred = false;  // by photons: chosen where the others miss light, and only there
+  bool isBlurred = false;  // by photons: chosen only where the others miss light
 };
 
 constexpr int kGrid = 16;
@@ -106,8 +106,8 @@ std::vector<double> BlockMeans(const Image& image) {
   return sums;
 }
 
-// Whether `a` is brighter than `b`, with a probability `byChance` of being wrong. `scale`: what differences below a
-// hundred thousandth of it are rounding.
+// True if `a` is significantly brighter than `b`, with an error probability `byChance`. Differences below 1e-5 of
+// `scale` count as rounding.
 bool IsBrighter(std::span<const double> a, std::span<const double> b, double byChance, double scale) {
   const Moments first = MomentsOf(a), second = MomentsOf(b);
   constexpr double rounding = 1e-5;
@@ -116,12 +116,12 @@ bool IsBrighter(std::span<const double> a, std::span<const double> b, double byC
   return first.mean - second.mean > std::max(t * error, rounding * scale);
 }
 
-// Whether `other` finds significantly more light than `run`, in the whole picture or in a part of it.
+// True if `other` finds significantly more light than `run`, in the whole picture or in a block of it.
 bool FindsMore(const PilotRun& other, const PilotRun& run) {
   constexpr double byChance = 0.01;
   const double scale = MomentsOf(other.means).mean;
   if (IsBrighter(other.means, run.means, byChance, scale)) return true;
-  // What is blurred is brighter beside what is bright: larger blocks do not see that.
+  // A blurred picture is brighter next to bright areas; larger blocks average this out.
   const int side = other.isBlurred ? 4 : 1, across = kGrid / side;
   for (int block = 0; block < across * across; ++block) {
     const auto of = [=](const PilotRun& one) {
@@ -193,7 +193,7 @@ Reference ReadReference(const std::filesystem::path& file, const RenderSettings&
                      std::to_string(image.height) + " pixels, and the scene is rendered with " +
                      std::to_string(settings.crop.Width()) + "×" + std::to_string(settings.crop.Height()));
   }
-  // Of the same full image, it is to be the same part; programs differ in how they store a crop alone.
+  // With the same full image, the crop must be the same. Programs differ only in how they store a crop alone.
   const bool isOfSameImage = image.fullWidth == settings.width && image.fullHeight == settings.height;
   if (isOfSameImage && (image.offsetX != settings.crop.x0 || image.offsetY != settings.crop.y0)) {
     throw UsageError("--reference: \"" + file.string() + "\" is another part of the image: its corner is at " +
@@ -211,7 +211,8 @@ Reference ReadReference(const std::filesystem::path& file, const RenderSettings&
     throw UsageError("--reference: " + error.Text());
   }
   if (!(reference.facts.mean > 0)) throw UsageError("--reference: \"" + file.string() + "\" is black");
-  // Only what compare made itself has the spread of independent renders; variances of samples are an upper bound.
+  // Only references made by compare have standard errors from the spread of independent renders. Variances of samples
+  // are an upper bound.
   if (reference.facts.relMse && MetadataOf(image, "lampyr.compare.key").empty()) {
     reference.facts.noiseIsLimit = true;
     Image& plain = reference.image;
@@ -227,14 +228,14 @@ Reference ReadReference(const std::filesystem::path& file, const RenderSettings&
 }
 
 uint64_t SeedOf(SeedUse use, uint64_t index) {
-  constexpr int bits = 52;  // a number that JSON keeps, and JavaScript
+  constexpr int bits = 52;  // exactly representable in JSON and JavaScript
   return Hash(static_cast<uint64_t>(use), index) >> (64 - bits);
 }
 
 std::vector<Pilot> FlyPilots(const ComparedScene& scene, double seconds, const ReferenceProgress& progress) {
   std::vector<PilotRun> runs;
-  // A reference should not be blurred. What joins paths misses some light in some scenes; then photons are all there
-  // is.
+  // A reference should not be blurred, so photons are used only in scenes where the techniques that connect paths miss
+  // light.
   const bool needsPhotons = !IntegratorHints(scene.Built().scene, "bdpt").empty();
   for (const std::string& name : IntegratorNames()) {
     if (!IntegratorRefusal(scene.Built().scene, name).empty()) continue;
@@ -276,7 +277,7 @@ std::vector<Pilot> FlyPilots(const ComparedScene& scene, double seconds, const R
 
 Reference MakeReference(const ComparedScene& scene, const std::string& integrator, double secondsPerSample,
                         double seconds, const ReferenceProgress& progress) {
-  // A power of two: Sobol points are at their best there.
+  // A power of two, for which Sobol points are most uniform.
   const double affordable = std::max(1.0, seconds / kReferenceParts / std::max(secondsPerSample, 1e-9));
   const int samples = 1 << static_cast<int>(std::clamp(std::round(std::log2(affordable)), 0.0, 27.0));
   Reference reference;
@@ -343,7 +344,7 @@ std::optional<Reference> FindKeptReference(const std::filesystem::path& file, co
   try {
     reference.image = ReadImage(file);
   } catch (const Error&) {
-    return std::nullopt;  // of another program, or damaged: made anew
+    return std::nullopt;  // from another program, or damaged: rendered again
   }
   const auto text = [&](const char* name) { return MetadataOf(reference.image, name); };
   constexpr double rounding = 1e-6;

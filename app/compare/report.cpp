@@ -49,7 +49,7 @@ std::string Base64(const std::vector<unsigned char>& bytes) {
   return text;
 }
 
-// Text that ends no script element.
+// Escapes JSON so that it does not end a script element.
 std::string Escaped(const std::string& json) {
   std::string text;
   text.reserve(json.size());
@@ -57,7 +57,7 @@ std::string Escaped(const std::string& json) {
   return text;
 }
 
-// The page as it was built: beside the executable, in ../lib/lampyr, or where it was built.
+// Reads the built page: beside the executable, in ../lib/lampyr, or in the build folder.
 std::string ReadTemplate() {
   std::error_code code;
   std::vector<std::filesystem::path> places;

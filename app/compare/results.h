@@ -22,12 +22,12 @@ struct ComparedRun {
   double mse = 0, relMse = 0, flip = 0, bias = 0;  // the reference's noise subtracted from mse and relMse
 };
 
-// One integrator at one budget: means over the repeats. An error that is not told apart from the reference's own noise
-// is absent.
+// One integrator at one budget: means over the repeats. An error that does not exceed the reference's own noise is
+// absent.
 struct ComparedSnapshot {
   bool byTime = true;  // what the budget is of: seconds, or samples per pixel
   double budget = 0;
-  double seconds = 0;  // that it really took: a pass is not cut short
+  double seconds = 0;  // actual time: passes are not cut short
   double samplesPerPixel = 0, samplesPerSecond = 0;
   std::optional<Estimate> mse, relMse, efficiency, relEfficiency;  // efficiency: 1/(MSE · seconds)
   Estimate flip;
@@ -35,7 +35,7 @@ struct ComparedSnapshot {
   std::string picture, errorPicture;  // keys of ComparisonResults::pictures, "" none
 };
 
-// When the error is reached: the root of relMSE at `error`.
+// Time at which the root of relMSE reaches `error`.
 struct TimeToError {
   // Never: the systematic part alone is larger. Unresolved: no error was above the reference's own noise.
   enum class Kind { Measured, Extrapolated, Never, Unresolved };
@@ -73,14 +73,14 @@ struct ComparisonReference {
   int samplesPerPixel = 0;  // of all its parts, 0 unknown
   double seconds = 0;       // 0 unknown
   double mean = 0;          // over pixels and channels
-  // Its own noise: absent for a given image without variance layers, which is taken as exact.
+  // Noise of the reference itself: absent for a given image without variance layers, which is taken as exact.
   std::optional<double> relativeError, mse, relMse;
-  // What is known of the noise is a limit (renderers that stratify their samples give the variance of independent
-  // ones): it is not subtracted from what is measured.
+  // The known noise is only an upper bound (renderers that stratify their samples report the variance of independent
+  // ones) and is not subtracted from measured errors.
   bool noiseIsLimit = false;
 };
 
-// A first look at an integrator, to choose the one that makes the reference.
+// A trial render by an integrator, to choose the one that renders the reference.
 struct Pilot {
   std::string integrator;
   double seconds = 0;

@@ -147,7 +147,7 @@ std::string ToJson(const ComparisonResults& results) {
     row.update(Interval(ratio.ratio));
     json["ratios"].push_back(row);
   }
-  // Names of files may be no UTF-8.
+  // File names may not be valid UTF-8.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -1,5 +1,5 @@
-// A window across a light's beam: the plane z = −distance of the filter's own space, seen through by the light, which
-// shines along −z as lights of UsdLux do.
+// A window in a light's beam: the plane z = −distance of the filter's own space. As lights of UsdLux do, the light
+// emits along −z.
 #pragma once
 
 #include <optional>
@@ -12,7 +12,7 @@ struct BeamWindow {
   float distance = 1;      // > 0
   bool isPhysical = true;  // crossed by the ray itself, from its place on the light; else by the line from the origin
 
-  // Where the light of an edge crosses the plane along −z; nullopt: it does not.
+  // Intersection of the light along an edge with the plane, seen along −z; nullopt if there is none.
   std::optional<Point2> Crossing(const FilterEdge& edge) const {
     const Point3& P = edge.receiver;
     if (!isPhysical) {
@@ -27,12 +27,12 @@ struct BeamWindow {
   }
 };
 
-// distance, mode: the rows of the table, and their values. `mode` is the default.
+// Table rows of the parameters distance and mode, and their values. `mode` is the default.
 std::vector<ParameterInfo> WithBeamParameters(const char* mode, std::vector<ParameterInfo> parameters);
 BeamWindow ReadBeamWindow(const ParameterList& parameters, const char* mode);
 
-// Signed distance to the rim of a rectangle of half extents `half` about the origin, its corners rounded by `radius`:
-// negative within. Not a number where the rectangle is empty.
+// Signed distance to the boundary of a rectangle with half extents `half`, centred at the origin, with corners rounded
+// by `radius`; negative inside. NaN if the rectangle is empty.
 inline float RoundedRectangle(const Point2& p, const Vector2& half, float radius) {
   const Vector2 q = Abs(p) - half + radius;
   return glm::length(glm::max(q, 0.0f)) + std::min(std::max(q.x, q.y), 0.0f) - radius;

@@ -1,4 +1,4 @@
-// What a plugin includes: a shared library that brings types of lights and of light filters.
+// The header that a plugin includes. A plugin is a shared library that adds types of lights and of light filters.
 //
 //   plugin.cpp                                         CMakeLists.txt
 //     #include "lights/plugin/plugin_api.h"              find_package(lampyr REQUIRED)
@@ -8,12 +8,12 @@
 // The macro defines the plugin's stamp (plugin_stamp.h) and its one C entry point: with the light itself, that is all.
 // tests/plugins/example is a whole plugin.
 //
-// Where a plugin's symbols come from: it links no lampyr library. The lampyr that loads it exports all of its own core
-// and lights, also what it does not use itself, and the loader resolves the plugin against that. There is thus one copy
-// of each function, of each type and of each table in the process: what one side throws the other catches, what one
-// side allocates the other frees, and no registry or cache is there twice. (A plugin with its own copy of the libraries
-// would have a second image module, second tables, and whatever code they had on the day when it was built.) The price
-// is that a plugin belongs to one version of lampyr, which the stamp makes a message.
+// Symbol resolution: a plugin links no lampyr library. The lampyr that loads it exports all symbols of its core and
+// lights, including those it does not use itself, and the dynamic loader resolves the plugin against them. The process
+// thus has one copy of each function, type and table: exceptions and allocations can cross the boundary, and no
+// registry or cache is duplicated. (A plugin with its own copy of the libraries would have a second image module,
+// second tables, and the code of the day on which it was built.) The price is that a plugin belongs to one version of
+// lampyr; the stamp turns a mismatch into a message.
 #pragma once
 
 #include <vector>
@@ -24,7 +24,7 @@
 
 namespace lampyr {
 
-// What a plugin brings. Names are new ones; `create` is there, and gives an object or throws.
+// The types that a plugin adds. Their names must be new. `create` must be set, and returns an object or throws.
 struct PluginTypes {
   std::vector<LightType> lights;
   std::vector<FilterType> filters;

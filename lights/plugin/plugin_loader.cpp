@@ -39,10 +39,11 @@ class PluginLoader {
     if (*stamp != kPluginStamp.text) Fail(expected + "\"" + *stamp + "\": build it against this lampyr");
   }
 
-  // All symbols now: one that is missing is a message here, and not the end of the process when it is first called.
+  // Resolves all symbols now, so that a missing one is reported here instead of ending the process at its first call.
   void* Open() const {
-    // By a pointer that the compiler knows nothing of: dlopen is declared to throw nothing, and what its callees throw
-    // would end the process here. An absolute path: a bare name would be looked for among the system's libraries.
+    // Called through a volatile pointer: dlopen is declared not to throw, and without it an exception of a static
+    // constructor would end the process here. The path is absolute, because a bare name would be searched among the
+    // system libraries.
     void* (*const volatile open)(const char*, int) = dlopen;
     void* library = nullptr;
     try {

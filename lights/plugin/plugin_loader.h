@@ -1,4 +1,4 @@
-// Loads plugins: shared libraries that bring types of lights and of light filters (plugin_api.h). The only place in the
+// Loads plugins: shared libraries that add types of lights and of light filters (plugin_api.h). The only place in the
 // lights that opens shared libraries.
 #pragma once
 

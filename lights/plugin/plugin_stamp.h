@@ -1,5 +1,6 @@
-// What a plugin was compiled against, as a line of text that it carries: the version, the compiler's and the standard
-// library's ABI, and the layout of all that crosses the boundary. A plugin is loaded by a lampyr of the same line only.
+// The ABI that a plugin was compiled against, as a line of text in the plugin: the version, the ABI of the compiler and
+// of the standard library, and the layout of all types that cross the boundary. lampyr loads only plugins with its own
+// line.
 //
 // The line lies in the file as an ELF note (owner "lampyr", type 1): it is read from there before any code of the
 // plugin runs and before any of its symbols is looked up (plugin_file.h). A plugin that belongs to another lampyr is
@@ -21,11 +22,11 @@
 
 namespace lampyr {
 
-// To be raised with every change of the interface that no size shows: a virtual function added or moved, a number that
-// means something else.
+// Must be incremented with every change of the interface that changes no size: a virtual function added or moved, a
+// number with a new meaning.
 inline constexpr int kPluginInterface = 1;
 
-// Text that is put together while compiling; zeros after its end.
+// Text assembled at compile time, padded with zeros.
 struct PluginStamp {
   static constexpr uint32_t kSize = 256;
   char text[kSize] = {};
@@ -89,7 +90,7 @@ constexpr PluginStamp MakeStamp() {
 
 inline constexpr PluginStamp kPluginStamp = plugin_internal::MakeStamp();
 
-// As it lies in the file.
+// The ELF note, in its layout in the file.
 struct PluginNote {
   static constexpr char kOwner[8] = "lampyr";
   static constexpr uint32_t kType = 1;

@@ -9,7 +9,8 @@ namespace lampyr {
 
 namespace {
 
-// Of a light that moves: all places of the shutter, with what lies between two of them, and all directions.
+// Bounds of a moving light over the shutter: all positions, including those between the sampled times, and all
+// directions.
 ClusterBounds BoundsWhileMoving(const PlacedLight& placed, LightContext context) {
   constexpr int steps = 64;
   ClusterBounds all;
@@ -53,7 +54,7 @@ ClusterBounds BoundsOfPatch(const PlacedLight& placed, int patch, const Bounding
   return result;
 }
 
-// Makes the numbers relative: see light_bounds.h.
+// Makes positions and intensities relative (light_bounds.h).
 void Normalise(Emitters& emitters) {
   Bounds3 all;
   for (const ClusterBounds& bounds : emitters.bounds) {
@@ -62,10 +63,11 @@ void Normalise(Emitters& emitters) {
   }
   if (all.IsEmpty()) return;
   emitters.center = all.Center();
-  // Lights all in one place have the size of that place's distance from the origin, whatever it is.
+  // Lights that share one position have no extent; their size is arbitrary and set to 1.
   emitters.size = 0.5f * glm::length(all.Diagonal());
   if (!(emitters.size > std::numeric_limits<float>::min())) emitters.size = 1;
-  // Energies are estimates: what is taken for black, or for next to nothing, keeps a chance.
+  // Energies are estimates, so an emitter whose estimate is 0 or negligible keeps a minimum intensity and can be
+  // selected.
   const double floor = 1e-3 / static_cast<double>(emitters.bounds.size());
   if (!(emitters.intensity > 0)) emitters.intensity = 1;
   for (ClusterBounds& bounds : emitters.bounds) {
@@ -89,8 +91,8 @@ void Emitters::IndexLights() {
   }
 }
 
-// The light is that of the emitter's step, or one of as many as have emitters before the next: a short search, in
-// what is a few bytes of each light, whatever the patches.
+// The light is that at the start of the step of the emitter, or one of those up to the start of the next step. The
+// search is short and reads a few bytes per light, independent of the number of patches.
 Emitters::Patch Emitters::FindPatch(uint32_t emitter) const {
   const auto from = first.begin() + lightAt[emitter / kStep], to = first.begin() + lightAt[emitter / kStep + 1] + 1;
   const auto next = std::upper_bound(from, to, emitter);

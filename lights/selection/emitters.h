@@ -1,4 +1,4 @@
-// The emitters of a scene as selection by importance knows them: all lights with a place, meshes triangle by triangle.
+// The emitters for selection by importance: all lights with a position, and each triangle of a mesh light.
 #pragma once
 
 #include <cstdint>
@@ -10,28 +10,28 @@
 namespace lampyr {
 
 struct Emitters {
-  // What selection gives for an emitter.
+  // The light and patch of an emitter, as returned by selection.
   struct Patch {
     uint32_t light;
     int patch;  // kAnyPatch: the light has only one
   };
   std::vector<ClusterBounds> bounds;  // relative to center, size and intensity below; empty of those that emit nothing
   std::vector<uint32_t> first;        // by light: its first emitter; patches follow each other. One more at the end
-  std::vector<uint32_t> lightAt;      // of every kStep-th emitter: where to look in `first`
-  std::vector<uint32_t> far;          // lights without a place: emitters, too, but empty ones
+  std::vector<uint32_t> lightAt;      // for every kStep-th emitter: index into `first`, where a search starts
+  std::vector<uint32_t> far;          // lights without a position; they are emitters with empty bounds
   Point3 center{0.0f};
   float size = 1;           // render space units
-  double intensity = 0;     // W/sr, of all
+  double intensity = 0;     // W/sr, sum over all emitters
   bool hasPatches = false;  // some light has more than one emitter
 
   Patch PatchOf(uint32_t emitter) const { return hasPatches ? FindPatch(emitter) : Patch{emitter, kAnyPatch}; }
   static constexpr uint32_t kStep = 32;
-  // Makes lightAt of `first`.
+  // Computes lightAt from `first`.
   void IndexLights();
 
   Patch FindPatch(uint32_t emitter) const;
 
-  // An importance as irradiance, W/m².
+  // Converts an importance to irradiance, W/m².
   double Irradiance(double importance) const {
     return importance * intensity / (static_cast<double>(size) * static_cast<double>(size));
   }

@@ -32,7 +32,7 @@ void UniteCones(const Vector3& axisA, float cosA, const Vector3& axisB, float co
   constexpr double pi = 3.14159265358979323846;
   const Vector3 side = axisB - glm::dot(axisA, axisB) * axisA;
   const double length = static_cast<double>(glm::length(side));
-  if (angle >= pi || !(length > 1e-12)) {  // of opposite axes, the way to turn is open: all directions
+  if (angle >= pi || !(length > 1e-12)) {  // opposite axes leave the rotation undetermined: all directions
     cosine = -1;
     return;
   }
@@ -43,12 +43,12 @@ void UniteCones(const Vector3& axisA, float cosA, const Vector3& axisB, float co
   cosine = static_cast<float>(std::cos(std::min(angle + rounding, pi)));
 }
 
-// The normals of what shines to both sides, seen from a cluster that has a side: no direction is the main one.
+// Mean normal of a part of a cluster. A two-sided part in a one-sided cluster has no main direction: 0.
 Vector3 NormalIn(const ClusterBounds& part, bool twoSided) {
   return part.twoSided == twoSided ? part.meanNormal : Vector3(0.0f);
 }
 
-// Means and variances of two groups together ([Chan83 eq. 1.5]): no differences of large numbers.
+// Merges means and variances of two groups ([Chan83 eq. 1.5]) without differences of large numbers.
 void AddMoments(ClusterBounds& cluster, const ClusterBounds& other) {
   const float sum = cluster.intensity + other.intensity;
   const float share = sum > 0 ? other.intensity / sum : 0.5f;
@@ -57,7 +57,7 @@ void AddMoments(ClusterBounds& cluster, const ClusterBounds& other) {
   cluster.variance += share * (other.variance - cluster.variance) + share * (1 - share) * glm::dot(between, between);
   const bool twoSided = cluster.twoSided && other.twoSided;
   const Vector3 a = NormalIn(cluster, twoSided), b = NormalIn(other, twoSided);
-  // Either side of what shines to both may be meant.
+  // The normal of a two-sided emitter has no sign: the one nearer to the other normal is used.
   cluster.meanNormal = a + share * ((twoSided && glm::dot(a, b) < 0 ? -b : b) - a);
 }
 
@@ -76,7 +76,7 @@ void ClusterBounds::Add(const ClusterBounds& other) {
   }
   AddMoments(*this, other);
   box.Add(other.box);
-  // The axis of what shines to both sides may as well be the opposite one.
+  // The axis of a two-sided emitter has no sign either.
   const bool flip = other.twoSided && glm::dot(axis, other.axis) < 0;
   const Vector3 otherAxis = flip ? -other.axis : other.axis;
   UniteCones(axis, cosThetaO, otherAxis, other.cosThetaO, axis, cosThetaO);
@@ -98,20 +98,21 @@ ClusterBounds BoundsOfEmitter(const EmissionBounds& bounds, LightKind kind) {
   const double energy = bounds.energy > 0 ? static_cast<double>(bounds.energy) : 0.0;
   double intensity = 0;
   if (kind == LightKind::DeltaPosition) {
-    // All of its directions are main ones: both angles together, and none beyond.
+    // All directions of emission of a point count as main directions: both angles are added, and nothing is emitted
+    // beyond.
     const double widest = std::min(Angle(bounds.cosThetaO) + Angle(bounds.cosThetaE), pi);
     cluster.cosThetaO = static_cast<float>(std::cos(widest));
     cluster.cosThetaE = 1;
     const double solidAngle = 2 * pi * std::max(1 - std::cos(widest), 1e-9);
     intensity = 4 * energy / solidAngle;
-    // Alike within its cone; which way that points is still to be known.
+    // Uniform intensity within the cone; a short mean normal only preserves the direction of the cone.
     constexpr float little = 1e-2f;
     if (widest < pi) cluster.meanNormal = little * cluster.axis;
   } else {
-    // ∫ cosθ dω up to the end is π sin².
+    // ∫ cosθ dω up to the angle thetaE is π sin²(thetaE).
     const double sine2 = std::max(1 - std::pow(static_cast<double>(cluster.cosThetaE), 2), 1e-9);
     intensity = energy / (pi * sine2);
-    // Of a cone that is filled evenly.
+    // Mean of normals that fill the cone evenly.
     cluster.meanNormal = 0.5f * (1 + cluster.cosThetaO) * cluster.axis;
   }
   cluster.intensity = static_cast<float>(std::min(intensity, static_cast<double>(std::numeric_limits<float>::max())));

@@ -84,7 +84,7 @@ class ParallelLight final : public LightBase {
   LightTint tint_;
 };
 
-// The same radiance within a cone of directions.
+// A sky of constant radiance within a cone of directions.
 class ConeSky {
  public:
   ConeSky(const Vector3& axis, double halfAngle, const Color& radiance)
@@ -92,8 +92,8 @@ class ConeSky {
     const double chord = 2 * std::sin(0.5 * halfAngle);
     w_ = 0.5 * chord * chord;
     isSphere_ = halfAngle >= kPiDouble;
-    // Samples keep away from the rim by what their direction is rounded: each lies in the cone as well when it is
-    // found.
+    // Samples keep a margin to the rim, the rounding error of directions, so that each is also found inside the cone
+    // when it is evaluated.
     const double inner = isSphere_ ? chord : std::max(chord - 3e-7, 0.0);
     wSampled_ = static_cast<float>(0.5 * inner * inner);
     const double sine = std::sin(halfAngle);
@@ -129,7 +129,7 @@ std::unique_ptr<Light> CreateDistant(const ParameterList& parameters, const Ligh
   const bool isWide = angle > 180;
   double scale = parameters.GetFloat("scale", 1);
   const double illuminance = parameters.GetFloat("illuminance", -1);
-  // From L to the irradiance that a facing surface receives, for parallel light and disks alike.
+  // Factor from L to the irradiance of a facing surface, for parallel light and for disks.
   const double facing = isWide ? kPiDouble : kPiDouble * sineSquared;
   const double normalized = isWide ? 1 / (2 - sineSquared) : 1;  // facing / size factor
   double toIrradiance = scale;

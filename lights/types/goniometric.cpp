@@ -42,7 +42,7 @@ class GoniometricProfile {
     return ToRenderDirection(transform, {map.x, map.z, map.y});
   }
 
-  // In proportion to the texels, times the change of solid angle: written here only.
+  // Density proportional to the texels, times the change of solid angle. All methods that report it call this.
   PdfSolidAngle Density(const LightTransform& transform, const Vector3& direction) const {
     if (table_.IsZero()) return PdfSolidAngle(0);
     const float density = table_.Density(ToSquare(transform, direction)) / kEqualAreaJacobian;

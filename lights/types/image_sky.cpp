@@ -47,12 +47,12 @@ ImageSky::ImageSky(const ParameterList& parameters, const std::string& name, con
   for (const RowSum& row : rows) all.r += row.r, all.g += row.g, all.b += row.b;
   mean_ = {static_cast<float>(all.r / kSphere), static_cast<float>(all.g / kSphere),
            static_cast<float>(all.b / kSphere)};
-  // A dim texel beside one of 1e9 keeps a density that a float can hold.
+  // Lower bound of positive weights, so that the density of a dim texel beside one of 1e9 is within the range of float.
   const auto floor = static_cast<float>(1e-6 * (all.r + all.g + all.b) / 3 / static_cast<double>(weights.size()));
   for (float& weight : weights) weight = weight > 0 ? std::max(weight, floor) : 0.0f;
   table_ = ColorTable(
       weights, [&](int x, int y) { return image.Texel(x, y); }, width, height);
-  // What shines below the smallest numbers does not shine.
+  // A sky whose weights all vanish in float is black.
   if (table_.IsZero()) mean_ = Color(0.0f);
 }
 

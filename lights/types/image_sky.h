@@ -30,7 +30,7 @@ class ImageSky {
 
   Color Radiance(const Vector3& local) const { return scale_ * table_.Look(ToSquare(toImage_ * local)).color; }
   Color Mean() const { return mean_; }
-  // Of a surface under a hemisphere of mean radiance.
+  // Irradiance of a surface under a hemisphere of the mean radiance, mean of the channels.
   float FacingIrradiance() const { return kPi * mean_.Average(); }
 
   SkySample Sample(const Point2& u) const {
@@ -53,7 +53,7 @@ class ImageSky {
   Point2 ToSquare(const Vector3& w) const {
     return map_ == SkyMap::EqualArea ? EqualAreaSphereToSquare(w) : LatLongSphereToSquare(w);
   }
-  // From the density over the square, at the map's direction w.
+  // Converts a density over the square to solid angle, at the map's direction w.
   PdfSolidAngle ToSolidAngle(float density, const Vector3& w) const {
     if (map_ == SkyMap::EqualArea) return PdfSolidAngle(density / kEqualAreaJacobian);
     const float jacobian = LatLongJacobian(std::sqrt(Sqr(w.x) + Sqr(w.y)));
@@ -72,7 +72,7 @@ class ImageSky {
     }
     return cell.t.x > x && cell.t.x < 1 - x && cell.t.y > y && cell.t.y < 1 - y;
   }
-  // sr of one texel in row y of a map of that size, exact.
+  // Solid angle in sr of one texel in row y of a map of that size; exact.
   float RowSolidAngle(int y, int columns, int rows) const;
 
   SkyMap map_ = SkyMap::EqualArea;

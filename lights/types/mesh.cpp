@@ -22,7 +22,7 @@ Normal3 OutwardNormal(const TriangleMesh& mesh, uint32_t triangle, const Vector3
   return mesh.flipNormals ? -winding : winding;
 }
 
-// Whether all of the triangle has its outside on the same side: vertex normals may disagree.
+// True if the whole triangle has the same outer side; vertex normals may disagree about it.
 bool HasOneOutside(const TriangleMesh& mesh, uint32_t triangle) {
   if (mesh.normals.empty()) return true;
   const Normal3 n = OutwardNormal(mesh, triangle, Vector3(1.0f / 3));

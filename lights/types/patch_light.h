@@ -10,7 +10,7 @@
 //   Sample(patch, u)                      parameters of a point
 //   SetPoint(patch, p, needsUv, point)    its position, error, normal, uv
 //   Density(patch, p)                     1/m², given the patch
-//   ParametersOf(patch, uv, position)     of a hit; kParametersNeedPosition where the position is looked at
+//   ParametersOf(patch, uv, position)     of a hit; kParametersNeedPosition: true if the position is used
 //   Area(patch, linear)                   under a linear map, as if mapped by it
 //   ForElements(patch, linear, image, f)  f(dA, uv, normal) over the patch, whose areas add up to Area
 //   Bounds(patch, transform)              box, cone of normals, and whether both sides may be the outer one
@@ -148,7 +148,7 @@ bool PatchLight<Patches>::SamplePoint(const LightContext& context, EmittingPoint
   }
   if (patch >= patches_.Count() || !patches_.CanBeSampled(patch)) return false;
   const Point2 p = patches_.Sample(patch, u);
-  // Nobody looks at the coordinates of an even light.
+  // uv is only needed for an image or for cut-outs.
   patches_.SetPoint(patch, p, emission_.NeedsUv(), point);
   point.patch = static_cast<int>(patch);
   const bool isInPlace = IsInPlace(context);
@@ -288,7 +288,7 @@ EmissionBounds PatchLight<Patches>::BoundsOfAll(const LightTransform& transform)
   return whole;
 }
 
-// The bounds of the placement it was built with, carried along, where angles are kept; from the patches otherwise.
+// The bounds as built, transformed, if the placement preserves angles; otherwise computed from the patches.
 template <class Patches>
 EmissionBounds PatchLight<Patches>::MovedBounds(const LightContext& context) const {
   const LightTransform& now = *context.transform;

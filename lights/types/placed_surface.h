@@ -12,11 +12,11 @@ struct PlacedSurface {
   Affine toRender, toOwn;
   bool isSimilar = false;  // the map to render space preserves angles
   bool isFlat = false;
-  float scale = 1;           // if similar: how lengths grow
-  float evenStretch = 0;     // how areas grow, where that is the same for the whole surface; 0 otherwise
+  float scale = 1;           // if similar: factor of lengths
+  float evenStretch = 0;     // factor of areas if it is constant over the surface; 0 otherwise
   Normal3 flatNormal{0.0f};  // of a flat surface, unit, on the outer side
 
-  // `own` leads from the surface's space to that which `placement` starts from, `ownInverse` back.
+  // `own` maps the surface's space to the space that `placement` starts from; `ownInverse` is its inverse.
   static PlacedSurface From(const Affine& own, const Affine& ownInverse, const LightTransform& placement) {
     PlacedSurface placed;
     placed.toRender = {placement.toRender.linear * own.linear, placement.toRender.Point(own.translation)};
@@ -35,7 +35,7 @@ struct PlacedSurface {
   // In the surface's space, relative to its origin, to avoid cancellation for small lights far from the origin of
   // render space.
   Point3 ToOwn(const Point3& P) const { return toOwn.linear * (P - toRender.translation); }
-  // dA in render space over dA in the surface's own, where the normal is `normal`.
+  // Ratio of dA in render space to dA in the surface's own space at the normal `normal`.
   float StretchAt(const Normal3& normal) const { return evenStretch > 0 ? evenStretch : AreaStretch(toRender, normal); }
   Normal3 NormalAt(const Normal3& own) const {
     return isFlat ? flatNormal : SafeNormalize(toOwn.NormalByInverse(own), Normal3(0.0f));

@@ -1,15 +1,15 @@
-// The sky through a window: light at infinity that arrives only by directions that go through a rectangle, from its
-// outer side. What stands before the portal or behind it shades like anything else; the portal itself is nothing that a
-// ray could hit.
+// A sky seen through a portal: light at infinity that arrives only along directions that pass through a rectangle from
+// its outer side. Geometry in front of the portal or behind it occludes as usual; rays cannot hit the portal itself.
 //
 // Next-event estimation samples, as seen from P,
-// - the even sky: uniformly in the portal's solid angle (spherical_rectangle.h);
-// - an image: in proportion to what P sees of it (portal_tables.h), and uniformly where that is next to nothing;
-// - a portal that a shear has made a parallelogram: uniformly in the solid angle that it has where the shear is undone,
-//   with the density that this has here;
-// - an image on such a portal, or under a placement that its tables were not made for: as an even sky.
-// Photons start uniformly on the portal's shadow on the plane that touches the scene's sphere on the light's side: that
-// has the area A cosθ. Their directions follow radiance times cosine.
+// - a constant sky: uniformly in the portal's solid angle (spherical_rectangle.h);
+// - an image: in proportion to the part that is visible from P (portal_tables.h), and uniformly where that part is
+//   negligible;
+// - a portal that a shear has made a parallelogram: uniformly in the solid angle of the unsheared portal, with the
+//   density transformed accordingly;
+// - an image on such a portal, or under a placement that its tables were not built for: as a constant sky.
+// Photons start uniformly on the projection of the portal, of area A cosθ, onto the plane that touches the scene's
+// bounding sphere on the light's side. Their directions are sampled in proportion to radiance times cosine.
 #include "lights/types/portal_light.h"
 
 #include "lights/direction_map.h"
@@ -22,7 +22,7 @@ namespace lampyr {
 
 namespace {
 
-// How one point samples the portal: both the samples and their density.
+// Sampling of the portal from one point, and its density.
 class PortalSampler {
  public:
   // `tables` may be null.
@@ -37,7 +37,7 @@ class PortalSampler {
 
   bool IsZero() const { return rectangle_ && !(rectangle_->SolidAngle() > 0); }
 
-  // A point of the portal.
+  // Samples a point of the portal, in its (u,v).
   Point2d Sample(const Point2& u) const {
     if (!tables_) return rectangle_->Sample(u).uv;
     const Vector3d way = PortalTables::FromAxes(view_.place, tables_->Sample(seen_, u));
@@ -45,9 +45,9 @@ class PortalSampler {
     return {glm::dot(offset, view_.place.dualX), glm::dot(offset, view_.place.dualY)};
   }
 
-  // Whether Density looks at uv.
+  // True if Density depends on `uv`.
   bool DependsOnPlace() const { return rectangle_ && !rectangle_->IsUniform(); }
-  // 1/sr of `direction`, which goes through `uv`.
+  // Density of `direction`, which passes through `uv`, in 1/sr.
   PdfSolidAngle Density(const Vector3& direction, const Point2d& uv) const {
     if (tables_) return tables_->Density(seen_, PortalTables::ToAxes(view_.place, Vector3d(direction)));
     const PdfSolidAngle density = rectangle_->Density(uv) * view_.place.UprightSolidAngleFactor(Vector3d(direction));
@@ -90,7 +90,8 @@ class PortalLight final : public LightBase {
     const PortalPlace& place = Place(context, scratch);
     return SurfaceSegmentEstimate(Bounds(place), QuickPower(context, place), origin, direction, length);
   }
-  // All that comes through: exact for the even sky, a sum over the tables' cells or over some directions for images.
+  // Power through the portal: exact for a constant sky; for images a sum over the cells of the tables, or over a set of
+  // directions without tables.
   Color GetPowerEstimate(const LightContext& context) const override {
     PortalPlace scratch;
     const PortalPlace& place = Place(context, scratch);
@@ -118,9 +119,9 @@ class PortalLight final : public LightBase {
     std::optional<LightSample> sample(std::in_place);
     sample->direction = view.Through(uv);
     if (!(glm::dot(Vector3d(sample->direction), view.place.outward) > 0))
-      return std::nullopt;  // along it, once rounded
-    // What is reported belongs to the direction as rounded. Only a portal narrower than the steps of directions is
-    // missed by it.
+      return std::nullopt;  // parallel to the portal after rounding
+    // uv and density are those of the direction as rounded to float. It misses only a portal narrower than the spacing
+    // of directions.
     if (sampler.DependsOnPlace()) uv = view.Meet(Vector3d(sample->direction)).value_or(uv);
     sample->pdfDirect = sampler.Density(sample->direction, uv);
     if (sample->pdfDirect.IsZero()) return std::nullopt;
@@ -161,11 +162,13 @@ class PortalLight final : public LightBase {
     const double radius = static_cast<double>(context.scene.radius);
     const Point3d center(context.scene.center), middle = place.At({0.5, 0.5});
     const Vector3d way(toLight);
-    // As far from the portal's edge as positions along the ray are rounded, so that each knows that it came through.
+    // Keeps a margin to the portal's edge, the rounding error of positions along the ray, so that each of them sees the
+    // ray pass through the portal.
     const double rounding =
         0x1p-21 * (glm::length(center) + glm::length(middle - center) + 4 * radius + place.lengthX + place.lengthY);
     const Point2d uv = place.Inside(Point2d(context.uDirection), rounding / glm::dot(way, place.outward));
-    // From a point of the portal along the ray, to the plane before or behind it.
+    // Moves from a point of the portal along the ray to the tangent plane of the sphere, in front of the portal or
+    // behind it.
     const Vector3d offset = place.At(uv) - center;
     const double back = radius - glm::dot(offset, way);
     const Vector3 start(offset + way * back);
@@ -206,7 +209,7 @@ class PortalLight final : public LightBase {
     return scratch;
   }
 
-  // As for a flat surface of the same size that sends out what comes through.
+  // Bounds of a flat surface of the same size that emits the light that passes through.
   static EmissionBounds Bounds(const PortalPlace& place) {
     EmissionBounds bounds;
     for (int i = 0; i < 4; ++i) bounds.box.Add(Point3(place.At({i & 1 ? 1 : 0, i & 2 ? 1 : 0})));
@@ -218,7 +221,7 @@ class PortalLight final : public LightBase {
   float QuickPower(const LightContext& context, const PortalPlace& place) const {
     const PortalTables* tables = Tables(context);
     const float power = tables ? tables->Flux().Average() : kPi * description_.sky.Mean().Average();
-    // Never 0 where a sky shines at all: what the tables did not meet of it may still come through.
+    // Positive for any sky that is not black: the tables may have missed light that passes through the portal.
     return (isBlack_ ? 0.0f : std::max(power, 1e-3f * description_.sky.Mean().Average())) *
            static_cast<float>(place.area);
   }
@@ -229,7 +232,7 @@ class PortalLight final : public LightBase {
     return Vector3(glm::normalize(PortalTables::FromAxes(place, inAxes)));
   }
 
-  // The densities of a photon that comes from `toLight`: the one place where they are written.
+  // Densities of a photon that arrives from `toLight`. All methods that report them call this.
   template <class Result>
   void SetEmission(const LightContext& context, const PortalPlace& place, const Vector3& toLight,
                    Result& result) const {

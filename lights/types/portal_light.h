@@ -1,4 +1,4 @@
-// The sky through a window. Made by "portal" (portal.cpp) and by "infinite" with a portal (dome.cpp).
+// A sky seen through a portal. Made by "portal" (portal.cpp) and by "infinite" with a portal (dome.cpp).
 #pragma once
 
 #include "lights/types/portal_place.h"
@@ -9,7 +9,7 @@ namespace lampyr {
 struct PortalDescription {
   PortalShape shape;
   SkyChoice sky;
-  // Of the portal and of the sky: one of them stands in world space, the other moves with the light.
+  // True: the portal moves with the light and the sky is fixed in world space. False: the other way round.
   bool portalMoves = true;
   LightTransform worldToRender;
 };

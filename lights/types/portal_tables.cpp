@@ -7,10 +7,11 @@ namespace lampyr {
 namespace {
 
 constexpr double kPiDouble = 3.14159265358979323846;
-// A cell is as likely as its mean radiance, a tenth of the largest around it, and a hundredth of the sky's mean say:
-// the table is coarser than the image or cuts its texels otherwise, and must be high wherever the image is.
+// Weight of a cell: 0.9 of its mean radiance plus a tenth of the largest radiance around it, but at least a hundredth
+// of the sky's mean. The table is coarser than the image or divides its texels differently, and must be high wherever
+// the image is.
 constexpr float kLargestShare = 0.1f, kFloorShare = 0.01f;
-// Below it the differences of sums in double lose their digits.
+// Smallest share of a window: below it, differences of sums in double lose their digits.
 constexpr double kSmallestShare = 1e-9;
 
 struct Cells {
@@ -19,7 +20,7 @@ struct Cells {
   std::vector<Color> color;
 };
 
-// The radiance of points on a grid of `steps` × `steps` in each cell.
+// Radiance sampled on a grid of `steps` × `steps` points in each cell.
 Cells LookAround(const PortalPlace& place, const PortalTables::Radiance& radiance, int size, int steps) {
   Cells cells;
   cells.size = size;
@@ -93,7 +94,7 @@ PortalTables::PortalTables(const PortalPlace& place, const Radiance& radiance, f
 }
 
 Vector3d PortalTables::FromSquare(const Point2d& uv) {
-  // Short of the square's edge, where the tangent has no end.
+  // Clamped short of the square's edges, where the tangent is infinite.
   const auto tangent = [](double t) { return std::tan(kPiDouble * (std::clamp(t, 1e-12, 1 - 1e-12) - 0.5)); };
   return {tangent(uv.x), tangent(uv.y), 1};
 }

@@ -41,8 +41,8 @@ class ProjectionProfile {
     return ToRenderDirection(transform, FromUv(table_.Sample(u).uv));
   }
 
-  // In proportion to the intensity over local solid angle (dA = dω / cos³θ on the plane z = 1), times the change of
-  // solid angle: written here only.
+  // Density proportional to the intensity over local solid angle (dA = dω / cos³θ on the plane z = 1), times the change
+  // of solid angle. All methods that report it call this.
   PdfSolidAngle Density(const LightTransform& transform, const Vector3& direction) const {
     const Vector3 local = ToLocalDirection(transform, direction);
     Point2 uv;
@@ -59,7 +59,7 @@ class ProjectionProfile {
 
  private:
   void MakeTable();
-  // Of a rectangle of the image, v down.
+  // Solid angle of a rectangle of the image; v points down.
   double SolidAngleOf(const Point2d& low, const Point2d& high) const {
     const double x0 = halfX_ * (2 * low.x - 1), x1 = halfX_ * (2 * high.x - 1);
     const double y0 = halfY_ * (2 * low.y - 1), y1 = halfY_ * (2 * high.y - 1);
@@ -98,7 +98,7 @@ void ProjectionProfile::MakeTable() {
       const Color texel = image_.Texel(x / parts, y / parts);
       const Point2d low(static_cast<double>(x) / width, static_cast<double>(y) / height);
       const double solidAngle = SolidAngleOf(low, {(x + 1.0) / width, (y + 1.0) / height});
-      // In units of the mean cell, for weights that a float holds at any field of view.
+      // In units of the mean cell, so that the weights fit in a float at any field of view.
       weights[static_cast<size_t>(y) * width + x] = texel.Average() * static_cast<float>(solidAngle * width * height);
       sum[0] += static_cast<double>(texel.r) * solidAngle;
       sum[1] += static_cast<double>(texel.g) * solidAngle;
@@ -139,7 +139,7 @@ void ProjectionProfile::SetCones(const LightTransform& transform, EmissionBounds
   bounds.cosThetaE = std::cos(std::min(widest, kPi));
 }
 
-// By the frustum's four planes, in local space and widened a little against rounding.
+// Clips by the four planes of the frustum, in local space, widened slightly for rounding.
 bool ProjectionProfile::Clip(const LightTransform& transform, const Point3& from, const Point3& origin,
                              const Vector3& direction, float& minT, float& maxT) const {
   const Vector3d o(transform.toLocal.Point(origin) - from), d(transform.toLocal.Vector(direction));

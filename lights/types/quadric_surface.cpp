@@ -150,8 +150,9 @@ QuadricSurface::Arc QuadricSurface::ArcFrom(const PlacedSurface& placed, const P
   return arc;
 }
 
-// Over the arc the density falls to its ends like a cosine, as the arc's share of P's view does from afar; along the
-// axis it is even in the angle at P, so that a long cylinder is sampled where it is near.
+// Over the arc the density falls off like a cosine towards its ends, as the projected size of the arc does when seen
+// from afar. Along the axis it is uniform in the angle at P, so that a long cylinder is sampled mostly where it is
+// near.
 PdfSolidAngle QuadricSurface::ArcDensity(Arc arc, SeenPoint seen) const {
   float turns = seen.uv.x - arc.turns;
   turns = std::abs(turns - std::round(turns));

@@ -85,7 +85,7 @@ class QuadricSurface {
     }
     return view;
   }
-  // 1/sr of a point on an emitting side.
+  // Density in 1/sr of a point on an emitting side.
   PdfSolidAngle ViewDensity(const View& view, const SeenPoint& seen) const {
     if (!view.isCone) return ArcDensity(view.arc, seen);
     // The cone's samples are on the near side, which is the inner side of a sphere with reversed orientation.
@@ -103,7 +103,8 @@ class QuadricSurface {
   }
 
  private:
-  // The line of a cylinder at an angle (cosine against `towards`), as P sees it: by angle, evenly.
+  // The line of a cylinder at an angle from `towards`, given by its cosine, as seen from P; for sampling uniformly in
+  // angle.
   LineView LineOf(const Arc& arc, float cosine) const {
     const float height = std::sqrt(Sqr(arc.distance - quadric_.radius) +
                                    2 * arc.distance * quadric_.radius * std::max(1 - cosine, 0.0f));

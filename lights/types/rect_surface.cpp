@@ -11,7 +11,7 @@ RectSurface::Placed RectSurface::Place(const LightTransform& transform) const {
   placed.x = edgeX / placed.width;
   placed.height = glm::length(edgeY);
   placed.y = edgeY / placed.height;
-  // Orthogonal but for the rounding of the transform.
+  // Orthogonal up to rounding of the transform.
   const double across = glm::dot(placed.x, placed.y);
   placed.isRectangle = std::abs(across) <= 4e-6;
   placed.y = glm::normalize(placed.y - across * placed.x);
@@ -37,7 +37,7 @@ Bounds3 RectSurface::BoundsOf(const PlacedSurface& placed) const {
 RectSurface::View RectSurface::ViewFrom(const Placed& placed, const Point3& P, bool twoSided) const {
   View view;
   if (!placed.isRectangle) return view;
-  // From P, by way of the middle, whose distance keeps its digits however far both are from the origin.
+  // Relative to P, by way of the centre: its offset keeps its digits however far both are from the origin.
   const Vector3 toMiddle = placed.toRender.translation - P;
   if (!twoSided && !(glm::dot(toMiddle, placed.flatNormal) < 0)) return view;
   const Vector3d middle(toMiddle);

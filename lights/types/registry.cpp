@@ -42,8 +42,8 @@ void CheckParameters(const LightType& type, const ParameterList& parameters) {
 
 namespace {
 
-// "power" and its like count above 0, and are -1 where they are not given (pbrt-v4's rule): another number is likely
-// meant as one.
+// "power" and similar parameters have an effect only above 0, and are -1 if absent (pbrt-v4's rule). Any other number
+// without effect is likely a mistake, hence the warning.
 void WarnOfIgnoredNumbers(const LightType& type, const ParameterList& parameters, Diagnostics& diagnostics) {
   for (const ParameterInfo& row : type.parameters) {
     if (row.type != ParameterType::Float || row.defaultValue != "-1") continue;

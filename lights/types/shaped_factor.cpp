@@ -9,14 +9,14 @@ KnotFinder::KnotFinder(std::vector<float> knots) : knots_(std::move(knots)) {
   lastBin_ = static_cast<float>(bins - 1);
   uint32_t interval = 0;
   for (size_t bin = 0; bin < bins; ++bin) {
-    // A bin's number is found with rounding: half a bin earlier is safe.
+    // The index of a bin is subject to rounding; starting half a bin earlier is safe.
     const float begin = knots_.front() + (static_cast<float>(bin) - 0.5f) / binsPerUnit_;
     while (interval + 2 < knots_.size() && knots_[interval + 1] <= begin) ++interval;
     first_.push_back(interval);
   }
 }
 
-// Rows of zeros at both ends are cut off but for one, so that the ends are where the light is.
+// All but one of the rows of zeros at each end are removed, so that the ends are those of the emission.
 ShapedProfile::ShapedProfile(const IesProfile& profile, double angleScale, bool normalize)
     : scale_(static_cast<float>(angleScale)), symmetric_(profile.Phis().size() == 2) {
   // φ = 2π is the last plane, which need not be the first.
@@ -69,7 +69,7 @@ ShapedFactor::ShapedFactor(const ConeSetting& cone, const FocusSetting& focus,
     startTheta_ = cone.angle * (1 - cone.softness);
     coneEnd_ = static_cast<float>(cone.angle);
     const float width = static_cast<float>(cone.angle * cone.softness);
-    // No division by an edge that has no width.
+    // Avoids division by an edge of zero width.
     if (width > std::numeric_limits<float>::min()) inverseWidth_ = 1 / width;
     if (!(inverseWidth_ > 0)) startTheta_ = lastTheta_;
   }
@@ -88,8 +88,8 @@ float ShapedFactor::Largest() const {
   return profile_ ? tint * profile_->Largest() : tint;
 }
 
-// Where |cosθ|^exponent is e^-c, from both poles: a lobe, however narrow and however weak beside others, is never lost
-// within a row, down to where it counts as none (e^-69 = 1e-30).
+// Knots at the angles where |cosθ|^exponent is e^-c, from both poles. No lobe, however narrow or weak beside others, is
+// lost within a row, down to the value that counts as 0 (e^-69 = 1e-30).
 void ShapedFactor::AddFocusKnots(std::vector<double>& knots) const {
   knots.push_back(0.5 * kPiExact);
   for (const double c : {0.1, 0.3, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 69.0}) {

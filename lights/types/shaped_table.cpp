@@ -58,7 +58,7 @@ ShapedTable::ShapedTable(const ShapedFactor& factor, bool flat) : flat_(flat) {
   }
   if (!(sum > 0)) return;
   effectiveMeasure_ = 2 * kPiExact * sum * sum / squares;
-  // From the mean of a cell to its mass, scaled into the range of float; what emits at all stays above 0.
+  // From the mean of a cell to its integral, scaled into the range of float. Any cell that emits stays above 0.
   const double whole = static_cast<double>(factor.Largest()) * (rows_.back().m - rows_.front().m);
   for (size_t j = 0; j < rows; ++j) {
     const double scale = (rows_[j + 1].m - rows_[j].m) / whole;
@@ -73,7 +73,8 @@ ShapedTable::ShapedTable(const ShapedFactor& factor, bool flat) : flat_(flat) {
   SetGuide();
 }
 
-// Halves the rows in which the factor changes most, until it changes little or there are many.
+// Halves the rows in which the factor varies most, until the variation is small or the maximum number of rows is
+// reached.
 void ShapedTable::CutRows(const ShapedFactor& factor) {
   std::vector<double> knots = factor.ThetaKnots();
   if (flat_) {
@@ -127,7 +128,7 @@ void ShapedTable::CutRows(const ShapedFactor& factor) {
   for (const double theta : bounds) {
     const AxisAngle angle = AxisAngle::Of(theta);
     const Row row{theta, angle.fromAxis, Measure(angle)};
-    // Rows too narrow for their measure are none.
+    // Rows too narrow to have a positive measure are dropped.
     if (rows_.empty() || row.m > rows_.back().m) rows_.push_back(row);
   }
   if (rows_.size() < 2) rows_.clear();
@@ -165,8 +166,8 @@ void ShapedTable::CutColumns(const ShapedFactor& factor) {
   }
 }
 
-// A direction on the border of two cells may be found in either, by rounding: beside a cell that emits there is none
-// that is never sampled.
+// Rounding may find a direction on the border of two cells in either of them, so cells next to one that emits get a
+// positive density.
 void ShapedTable::SpreadToNeighbours(std::vector<float>& cells) const {
   const size_t rows = RowCount(), columns = ColumnCount();
   const std::vector<float> before = cells;
@@ -213,7 +214,7 @@ void ShapedTable::SetGuide() {
 // The last row that begins at or below w.
 size_t ShapedTable::RowAt(double w) const {
   const auto step = static_cast<size_t>((w - rowW_.front()) * stepsPerW_);
-  // A step more on either side, for the rounding of its number.
+  // One step more on either side, for rounding of the index of the step.
   const size_t last = guide_.size() - 1;
   size_t j = guide_[std::min(step > 0 ? step - 1 : 0, last)];
   for (size_t count = guide_[std::min(step + 2, last)] + 1 - j; count > 1;) {

@@ -27,7 +27,7 @@ ConeSetting ReadCone(const ParameterList& parameters, const LightBuildContext& b
     throw Error(parameters.WhereOf("shaping:cone:angle"),
                 parameters.Owner() + ": \"shaping:cone:angle\" is out of range: (0,180] degrees are allowed");
   }
-  // A beam of less has a density beyond float.
+  // The density of a narrower beam exceeds the range of float.
   cone.angle = std::max(degrees / 180 * kPiExact, 1e-12);
   const double softness = parameters.GetFloat("shaping:cone:softness", 0);
   cone.softness = std::clamp(softness, 0.0, 1.0);
@@ -67,7 +67,7 @@ std::unique_ptr<const ShapedProfile> ReadProfile(const ParameterList& parameters
   return std::make_unique<ShapedProfile>(*profile, scale, normalize);
 }
 
-// The cosine rounded down: promises nothing that float cannot keep.
+// Cosine of theta, rounded down, so that the bound holds in float.
 float CosineBelow(double theta) {
   return theta < kPiExact ? std::max(std::nextafter(static_cast<float>(std::cos(theta)), -2.0f), -1.0f) : -1.0f;
 }
@@ -91,7 +91,7 @@ Shaping::Shaping(std::shared_ptr<const ShapedFactor> factor, Emitter emitter)
       cosWidest_(CosineBelow(table_->WidestTheta())),
       guidesEmission_(emitter != Emitter::Round || table_->EffectiveMeasure() <= 2 * kPiExact),
       integral_(table_->Integrate(*factor_, nullptr)) {
-  // A direction makes a cosine of 1/4, on the average over all normals, those that face away counted as 0.
+  // The mean of max(0, cosθ) over all normals is 1/4 for any direction.
   if (emitter == Emitter::Round) integral_ *= 0.25f;
 }
 

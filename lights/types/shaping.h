@@ -11,7 +11,7 @@
 // A part applies if one of its parameters is given. Values that UsdLux clamps or ignores (softness outside of
 // [0, 1], a negative focus) are clamped and ignored, with a warning.
 //
-// Where UsdLux's text leaves a choice: φ = 0 is the emission direction's +x (hdEmbree takes φ of the reversed
+// Choices that UsdLux's text leaves open: φ = 0 is the emission direction's +x (hdEmbree takes φ of the reversed
 // direction, which is half a turn away). `normalize` divides by the power of the profile as it is in the file over 4π,
 // also when it covers a hemisphere only, where hdEmbree divides by power over 2π: a normalised point light thus emits
 // what it would without a profile.
@@ -51,8 +51,8 @@ class Shaping {
   // not. A factor that is 0 everywhere gives the axis, with density 0; so may a direction on the very rim.
   Vector3 SampleDirection(const Point2& u) const;
   PdfSolidAngle Density(const Vector3& local) const;
-  // Whether sampling by this is better than by the cosine law around the normal: false for Round emitters whose factor
-  // fills more than a hemisphere.
+  // True if sampling by the shaping is better than by the cosine law around the normal: false for Round emitters whose
+  // factor fills more than a hemisphere.
   bool GuidesEmission() const { return guidesEmission_; }
 
   // ∫ Factor dω over the sphere for points, ∫ Factor cosθ dω over the emitting hemisphere for flat emitters: exact to

@@ -4,7 +4,7 @@ namespace lampyr {
 
 namespace {
 
-// Throws unless the radiance stays in the range of numbers.
+// Throws an Error if the radiance is not finite.
 Color CheckedScale(const ParameterList& parameters, double scale) {
   const Color factor = ReadLightTint(parameters).color * static_cast<float>(scale);
   if (!factor.IsValid()) throw Error(parameters.Where(), parameters.Owner() + ": the radiance is not finite");

@@ -1,5 +1,4 @@
-// What the lights that are a sky read from their parameters: "infinite" and "dome", and the portals through which one
-// shines.
+// Parameters of lights that are a sky: "infinite" and "dome", and the portals through which a sky is seen.
 #pragma once
 
 #include <optional>
@@ -10,7 +9,7 @@
 
 namespace lampyr {
 
-// The same radiance everywhere.
+// A sky of constant radiance.
 struct EvenSky {
   Color radiance;
 
@@ -21,7 +20,7 @@ struct EvenSky {
   float FacingIrradiance() const { return kPi * radiance.Average(); }
 };
 
-// An image, or else the even radiance. Both with scale, illuminance and the tint's colour.
+// The sky as read: an image, or otherwise a constant radiance. Both include scale, illuminance and the tint's colour.
 struct SkyChoice {
   std::optional<ImageSky> image;
   EvenSky even;
@@ -30,10 +29,10 @@ struct SkyChoice {
   Color Radiance(const Vector3& local) const { return image ? image->Radiance(local) : even.radiance; }
 };
 
-// L, filename, scale and illuminance, as "infinite" has them; pbrt-v4's orientation.
+// Reads L, filename, scale and illuminance, the parameters of "infinite"; pbrt-v4's orientation.
 SkyChoice ReadInfiniteSky(const ParameterList& parameters, const LightBuildContext& build);
 
-// texture:file, texture:format and poleAxis, as "dome" has them.
+// Reads texture:file, texture:format and poleAxis, the parameters of "dome".
 SkyChoice ReadDomeSky(const ParameterList& parameters, const LightBuildContext& build);
 std::vector<ParameterInfo> DomeSkyParameters();
 

@@ -61,7 +61,7 @@ class SphericalRectangle {
     return {{(x - x0_) / width_, (y - y0_) / height_}, x_ * x + y_ * y + normal_ * signedZ_, distance};
   }
 
-  // 1/sr of the direction towards uv in [0,1]².
+  // Density in 1/sr of the direction towards uv in [0,1]².
   PdfSolidAngle Density(const Point2d& uv) const {
     if (!(solidAngle_ > 0)) return PdfSolidAngle(0);
     double density = (1 - areaShare_) / solidAngle_;
@@ -73,10 +73,10 @@ class SphericalRectangle {
     return PdfSolidAngle(density < 3e38 ? static_cast<float>(density) : 0.0f);
   }
 
-  // Whether Density is the same everywhere.
+  // True if Density is constant.
   bool IsUniform() const { return areaShare_ == 0; }
 
-  // Where the ray from P along `direction` (any length) meets the rectangle.
+  // Intersection of the ray from P along `direction` (of any length) with the rectangle, as uv.
   std::optional<Point2d> Meet(const Vector3d& direction) const {
     const double slope = glm::dot(direction, normal_);
     if (!(slope * signedZ_ > 0 && solidAngle_ > 0)) return std::nullopt;
@@ -86,7 +86,7 @@ class SphericalRectangle {
     return uv;
   }
 
-  // The way from P to a point of the rectangle.
+  // Offset from P to a point of the rectangle.
   Result At(const Point2d& uv) const {
     const double x = x0_ + uv.x * width_, y = y0_ + uv.y * height_;
     return {uv, x_ * x + y_ * y + normal_ * signedZ_, std::sqrt(x * x + y * y + z_ * z_)};
@@ -114,7 +114,7 @@ class SphericalRectangle {
   }
 
   double ComputeSolidAngle() const {
-    // In the plane but for rounding: on a diagonal of the rectangle no sign of D could be trusted.
+    // P is in the plane up to rounding: on a diagonal of the rectangle the sign of D is unreliable.
     if (!(z_ > 1e-11 * std::max(std::max(r00_, r01_), std::max(r10_, r11_)))) return 0;
     // D of the triangles (00,10,11) and (00,11,01); both have the determinant z·width·height.
     const double z2 = z_ * z_, det = z_ * width_ * height_;
@@ -127,12 +127,13 @@ class SphericalRectangle {
     return solidAngle > 0 ? solidAngle : 0.0;
   }
 
-  // Which side is counted from changes from sample to sample: chosen by index, for no branch could be predicted.
+  // The side to count from varies from sample to sample and is selected by index, because a branch would be
+  // mispredicted.
   double SampleX(double u) const {
     const int mirrored = static_cast<int>(x1_ <= 0) | (static_cast<int>(x0_ < 0) & static_cast<int>(u < 0.5));
     const double sign = 1 - 2 * mirrored;
-    // The solid angle of all that lies beyond x (farther right, or farther left where mirrored), twice the angle of
-    // (a, b), and the part of the rectangle that is counted from there: half of their sum, by its sine and cosine.
+    // Solid angle beyond x (to the right, or to the left if mirrored), twice the angle of (a, b), and the part of the
+    // rectangle that is counted from there: half of their sum, by its sine and cosine.
     const double ends[2] = {x1_, -x0_}, r0s[2] = {r10_, r00_}, r1s[2] = {r11_, r01_};
     const double end = ends[mirrored], r0 = r0s[mirrored], r1 = r1s[mirrored];
     const double a = r0 * r1 + end * end + y0_ * y1_ + z_ * z_ + end * (r0 + r1), b = z_ * height_;
@@ -144,12 +145,12 @@ class SphericalRectangle {
     const double sinRest = sinDelta * c - cosDelta * s, cosRest = cosDelta * c + sinDelta * s;
     const double numerator = sinRest * c - cosRest * s;  // sin(δ - e)
     const double root = sinRest * s * (z_ * c + y1_ * s) * (z_ * c - y0_ * s);
-    // Beyond the end by rounding: the end itself.
+    // The end itself, if rounding leads beyond it.
     const double x = root > 0 ? 0.5 * z_ * numerator / std::sqrt(root) : end;
     return std::clamp(sign * x, x0_, x1_);
   }
 
-  // And the distance of the point from P.
+  // Samples y given x; also returns the distance of the point from P.
   std::pair<double, double> SampleY(double x, double v) const {
     const double d2 = x * x + z_ * z_;
     // 1 - y/r for both ends, seen from above or from below.
@@ -165,7 +166,7 @@ class SphericalRectangle {
     return {std::clamp(sign * (distance * (1 - m)), y0_, y1_), distance};
   }
   static double OneMinusSine(double y, double d2) {
-    // One quotient for both signs of y: which it is nobody can predict.
+    // One quotient for both signs of y, because a branch on the sign would be mispredicted.
     const double r = std::sqrt(d2 + y * y), sum = r + std::abs(y);
     const double numerator = y > 0 ? d2 : sum, denominator = y > 0 ? r * sum : r;
     return numerator / denominator;

@@ -56,7 +56,8 @@ class ConeProfile {
     return ToRenderDirection(transform, frame_.ToWorld({r * around.x, r * around.y, 1 - w}));
   }
 
-  // In proportion to the intensity in local directions, times the change of solid angle: written here only.
+  // Density proportional to the intensity in local directions, times the change of solid angle. All methods that report
+  // it call this.
   PdfSolidAngle Density(const LightTransform& transform, const Vector3& direction) const {
     const float density = LocalShape(ToLocalDirection(transform, direction)) / LocalSolidAngle();
     return PdfSolidAngle(density * LocalSolidAngleFactor(transform, direction));

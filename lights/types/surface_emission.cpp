@@ -12,7 +12,7 @@ SurfaceEmission::SurfaceEmission(const ParameterList& parameters, const LightBui
       area_(area),
       quickBuilt_(normalize_ ? area.quick(build.transform) : 0) {}
 
-// Tinted, and divided by the area where that is asked for. A surface without area emits nothing.
+// Sets the radiance: tinted, and divided by the area if it is normalised. A surface without area emits nothing.
 void SurfaceEmission::SetRadiance(const ParameterList& parameters, const Color& radiance) {
   const double divisor = normalize_ ? area_.built : 1.0;
   const Color tinted = radiance * tint_.color;
@@ -35,7 +35,7 @@ SurfaceEmission SurfaceEmission::ReadDiffuse(const ParameterList& parameters, co
   double scale = parameters.GetFloat("scale", 1);
   const double power = parameters.GetFloat("power", -1);
   if (power > 0) {
-    // The colour keeps its own magnitude: `power` is what a surface of radiance 1, or of the image, would emit.
+    // `power` scales for the power of a surface of radiance 1, or of the image; the magnitude of the colour is kept.
     const double mean = emission.HasImage() ? static_cast<double>(emission.image_.Mean().Luminance()) : 1.0;
     const double emitted = mean * emission.area_.built * static_cast<double>(kPi) * (emission.twoSided_ ? 2 : 1);
     scale = emitted > 0 ? scale * power / emitted : 0.0;
@@ -95,7 +95,7 @@ float SurfaceEmission::ApparentPower(const LightContext& context, const Emission
   const float squared = LengthSquared(toPoint);
   if (!(squared > 0.25f * LengthSquared(bounds.box.Diagonal()))) return unshaped * largest;
   const Vector3 outgoing = toPoint / std::sqrt(squared);
-  // Other points than the middle may be brighter.
+  // Points of the light other than its centre may be brighter.
   const float towards = shaped_->Factor(*context.transform, outgoing).Average();
   return unshaped * std::max(towards, 0.02f * largest);
 }
@@ -103,7 +103,7 @@ float SurfaceEmission::ApparentPower(const LightContext& context, const Emission
 void SurfaceEmission::NarrowFlat(const LightTransform& transform, EmissionBounds& bounds) const {
   if (!shaped_) return;
   if (shaped_->IsBackDark()) bounds.twoSided = false;
-  // A hair wider than the cone, for the rounding of directions; under shear the angles are not the cone's.
+  // Slightly wider than the cone, for the rounding of directions. Under shear the angles are not those of the cone.
   if (shaped_->KeepsAngles(transform)) {
     const float widest = std::acos(std::clamp(shaped_->Parts().CosWidest(), -1.0f, 1.0f)) + 1e-3f;
     bounds.cosThetaE = std::max(std::cos(std::min(widest, kPi)), 0.0f);
@@ -199,7 +199,7 @@ std::optional<EmissionSample> SurfaceEmission::Emit(const LightContext& context,
   sample->pdfEmit = point.density;
   sample->direction = SampleEmissionDirection(*context.transform, point.normal, context.uDirection);
   sample->emissionCosine = EmittedCosine(glm::dot(point.normal, sample->direction));
-  // Dark in this direction: black, but the place stands.
+  // No emission in this direction: a black sample with a valid position.
   if (!(sample->emissionCosine > 0)) return sample;
   Leaving leaving = Leave(context, point.uv, point.normal, sample->direction, sample->emissionCosine);
   sample->pdfEmitDirection = leaving.density;

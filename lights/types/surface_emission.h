@@ -1,6 +1,6 @@
-// What all area lights share, whatever their shape: radiance over the surface, its sides, its shaping, and how a chosen
-// point of the surface becomes a sample, an evaluation or a photon. The shape gives the point and its density; the
-// densities of direction are written here, once.
+// Common part of all area lights, independent of the shape: radiance over the surface, sides, shaping, and the
+// conversion of a chosen point of the surface to a sample, an evaluation or a photon. The shape gives the point and its
+// density; the densities of direction are computed here.
 //
 // The surface emits on the side that its normal points to, or on both. Radiance in W/(m² sr) is a constant or a factor
 // times an image over the surface's uv, tinted and shaped (light_base.h, shaping.h). A ray that finds the light has
@@ -20,7 +20,7 @@
 
 namespace lampyr {
 
-// A point that a shape's sampling chose.
+// A point of the surface, sampled by the shape.
 struct EmittingPoint {
   Point3 position{0.0f};
   Vector3 positionError{0.0f};
@@ -51,25 +51,24 @@ class SurfaceEmission {
   const EmissionImage& EmittedImage() const { return image_; }
   const ShapedDirections* Shaped() const { return shaped_.get(); }
 
-  // On an emitting side under the placement that the light was built with, shaping and cut-outs apart.
+  // Radiance on an emitting side under the placement that the light was built with, without shaping and cut-outs.
   Color Radiance(const Point2& uv) const { return image_.IsEmpty() ? radiance_ : radiance_ * image_.OnSurface(uv); }
   Color MeanRadiance() const { return image_.IsEmpty() ? radiance_ : radiance_ * image_.Mean(); }
-  // What Radiance is multiplied by under another placement: 1 unless it is normalised by the area.
+  // Factor of Radiance under another placement: 1 unless the light is normalised by its area.
   float Strength(const LightTransform& transform) const { return normalize_ ? NormalizedStrength(transform) : 1.0f; }
-  // The factor of the power when the surface, with all that it emits, is carried to another place by a similarity whose
-  // square of the scale this is.
+  // Factor of the power under a similarity with this squared scale.
   float PowerScale(float scaleSquared) const { return normalize_ ? 1.0f : scaleSquared; }
   float SideCount() const { return twoSided_ ? 2.0f : 1.0f; }
 
-  // W/m² of a point with this normal and radiance 1, all its sides counted: ∫ factor · |cosθ| dω. Exact without
-  // shaping; by quadrature over the photons' directions with it.
+  // Radiant exitance in W/m² of a point with this normal at radiance 1, summed over its sides: ∫ factor · |cosθ| dω.
+  // Exact without shaping; with it, by quadrature over the photons' directions.
   Color Exitance(const LightTransform& transform, const Normal3& normal) const;
 
-  // The power, as SurfaceIrradianceEstimate takes it, that stands for what P receives: that of an unshaped light as
-  // bright as this one towards P. Never 0 for a light that shines.
+  // Power for SurfaceIrradianceEstimate that represents the light towards P: that of an unshaped light as bright as
+  // this one in the direction of P. Positive for any light that emits.
   float ApparentPower(const LightContext& context, const EmissionBounds& bounds, float unshaped, const Point3& P) const;
   float LargestPower(float unshaped) const { return shaped_ ? unshaped * shaped_->Largest() : unshaped; }
-  // What a cone makes of the bounds of a flat light: its angle, and a far side that is dark.
+  // Narrows the bounds of a flat light by the shaping cone: by its angle, and to one side if the far side is dark.
   void NarrowFlat(const LightTransform& transform, EmissionBounds& bounds) const;
 
   // The cosine towards the receiver if that side emits, 0 otherwise.
@@ -80,22 +79,22 @@ class SurfaceEmission {
     const PdfSolidAngle pdf = ToSolidAngle(density, distanceSquared, emittedCosine);
     return pdf.value < kInfinity ? pdf : PdfSolidAngle(0);
   }
-  // The point as a sample for P; nullopt when it sends nothing there.
+  // Makes a sample of the point for P; nullopt if it emits nothing towards P.
   std::optional<LightSample> Sample(const LightContext& context, const Point3& P, const EmittingPoint& point) const;
 
-  // Fills colours and bidirectional densities of a sample whose direction, distance, position, normal, uvw and
-  // pdfDirect are there; false when it sends nothing. `density` is that of its position by GenerateEmission.
+  // Completes a sample whose direction, distance, position, normal, uvw and pdfDirect are set: colours and
+  // bidirectional densities. False if it contributes nothing. `density`: that of its position by GenerateEmission.
   bool Complete(const LightContext& context, PdfArea density, LightSample& sample) const;
 
-  // For a hit whose density over the surface is `density` and over directions `pdfDirect`.
+  // Evaluates a hit. `density`: of its position over the surface; `pdfDirect`: of its direction.
   std::optional<LightEvaluation> Evaluate(const LightContext& context, const LightHit& hit, PdfArea density,
                                           PdfSolidAngle pdfDirect) const;
-  // The same where pdfDirect follows from `density`.
+  // Evaluates a hit whose pdfDirect follows from `density`.
   std::optional<LightEvaluation> Evaluate(const LightContext& context, const LightHit& hit, PdfArea density) const;
 
   std::optional<EmissionSample> Emit(const LightContext& context, const EmittingPoint& point) const;
 
-  // Without the diffuse and specular multipliers.
+  // Radiance seen by the camera, without the diffuse and specular multipliers.
   Color ForCamera(const LightContext& context, const LightHit& hit, bool cameraVisible) const;
 
  private:
@@ -105,15 +104,15 @@ class SurfaceEmission {
   float Opacity(const Point2& uv, const Point3& position, const Normal3& normal) const {
     return alpha_ ? std::clamp(alpha_->Alpha(uv, position, normal), 0.0f, 1.0f) : 1.0f;
   }
-  // Radiance with all its factors, cut-outs apart.
+  // Radiance with all factors except cut-outs.
   Color Emitted(const LightContext& context, const Point2& uv, const Vector3& outgoing) const {
     Color radiance = Radiance(uv);
     if (normalize_) radiance *= NormalizedStrength(*context.transform);
     if (shaped_) radiance *= shaped_->Factor(*context.transform, outgoing);
     return radiance;
   }
-  // The same, and pdfEmitDirection on an emitting side, whose cosine is `emittedCosine`: the shaping's own density, or
-  // the cosine law on each side. No photon is made where the shaping is dark.
+  // Radiance as from Emitted, and pdfEmitDirection on an emitting side with the cosine `emittedCosine`: the density of
+  // the shaping, or the cosine law on each side. No photon is emitted where the shaping is black.
   struct Leaving {
     Color radiance;
     PdfSolidAngle density;
@@ -132,7 +131,7 @@ class SurfaceEmission {
   PdfSolidAngle CosineLaw(float emittedCosine) const {
     return PdfSolidAngle(emittedCosine * (twoSided_ ? 0.5f * kInvPi : kInvPi));
   }
-  // By the cosine law; two-sided: the first random number chooses the side, and is stretched again.
+  // Samples the cosine law. For two-sided lights the first random number also chooses the side and is rescaled.
   Vector3 SampleCosineLaw(const Normal3& normal, Point2 u) const;
   Vector3 SampleEmissionDirection(const LightTransform& transform, const Normal3& normal, const Point2& u) const;
 
@@ -149,7 +148,7 @@ class SurfaceEmission {
   double quickBuilt_ = 0;
 };
 
-// How a type of light reads its emission.
+// Reads the emission parameters of a type of light.
 using EmissionReader =
     std::function<SurfaceEmission(const ParameterList&, const LightBuildContext&, const SurfaceEmission::Area&)>;
 

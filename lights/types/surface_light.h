@@ -78,7 +78,7 @@ class SurfaceLight : public LightBase {
     return scratch;
   }
 
-  // 1/m² in render space of a photon's start where the normal is `normal`: the one place where it is written.
+  // Density in 1/m², render space, of a photon's origin with the normal `normal`. All methods that report it call this.
   PdfArea AreaDensity(const Placed& placed, const Point2& uv, const Normal3& normal) const {
     if (!emission_.HasImage()) return EvenDensity(placed, normal);
     return table_ ? EvenDensity(placed, normal) * table_->Density(surface_.SquareAt(uv)) : PdfArea(0);
@@ -87,10 +87,10 @@ class SurfaceLight : public LightBase {
     const PdfArea density(surface_.OwnDensity() / placed.StretchAt(normal));
     return density.value < kInfinity ? density : PdfArea(0);
   }
-  // Share of the samples that are taken by the view.
+  // Fraction of the samples that are taken by the view.
   float ViewShare(const View& view) const { return emission_.HasImage() ? 0.5f * view.weight : view.weight; }
 
-  // 1/sr at P of a point on the light: the one place where it is written.
+  // Density in 1/sr at P of a point on the light. All methods that report it call this.
   PdfSolidAngle DirectDensity(const Placed& placed, const View& view, const Vector3& direction, float distance,
                               const Normal3& normal, const Point2& uv) const {
     const float outward = -glm::dot(normal, direction), emitted = emission_.EmittedCosine(outward);
@@ -114,13 +114,13 @@ class SurfaceLight : public LightBase {
   Color PowerOf(const Placed& placed, const LightTransform& transform) const;
   Color MeanOverSurface(const Placed& placed, const LightTransform& transform) const;
   Color PowerFor(const LightContext& context) const;
-  // Mean of the channels, as if there were no shaping: quick under any placement.
+  // Power without shaping, mean of the channels. Fast under any placement.
   float UnshapedPowerOf(const Placed& placed, const LightTransform& transform) const {
     return emission_.MeanRadiance().Average() * static_cast<float>(surface_.QuickAreaOf(placed)) *
            emission_.Strength(transform) * kPi * emission_.SideCount();
   }
   float UnshapedPowerFor(const LightContext& context) const;
-  // The emission bounds but for the energy.
+  // Emission bounds without the energy.
   EmissionBounds ReachOf(const Placed& placed, const LightTransform& transform) const;
   EmissionBounds ReachFor(const LightContext& context) const {
     return IsAsBuilt(context) ? reach_ : ReachOf(surface_.Place(*context.transform), *context.transform);
@@ -130,7 +130,7 @@ class SurfaceLight : public LightBase {
   LightTransform built_;
   Placed placed_;
   SurfaceEmission emission_;
-  std::unique_ptr<const Distribution2D> table_;  // null: even, or black
+  std::unique_ptr<const Distribution2D> table_;  // null: no image, or a black one
   Color power_;
   float unshapedPower_ = 0;
   EmissionBounds reach_;
@@ -157,9 +157,9 @@ EmittingPoint SurfaceLight<Geometry>::SamplePoint(const Point2& u, const Placed&
   point.position = placed.toRender.Point(p);
   point.positionError = placed.toRender.PointError(p, Gamma(8) * Abs(p));
   point.normal = placed.NormalAt(surface_.OutwardNormal(p));
-  // Nobody looks at the coordinates of an even light, unless its own view does.
+  // uv is only needed for an image, for cut-outs, or by the surface's own view.
   if (emission_.NeedsUv() || surface_.ViewNeedsUv()) point.uv = surface_.UvAt(square, p);
-  // By its coordinates, so that a hit there is told the same.
+  // Evaluated from uv, so that a hit at this point gets the same density.
   point.density = AreaDensity(placed, point.uv, point.normal);
   return point;
 }
@@ -172,7 +172,7 @@ std::optional<LightSample> SurfaceLight<Geometry>::GenerateSamples(const LightCo
   return SampleWithView(context, placed, P);
 }
 
-// One variable for all returns: it is made where the caller wants it.
+// A single return variable, so that it is constructed in the caller's storage (NRVO).
 template <class Geometry>
 std::optional<LightSample> SurfaceLight<Geometry>::SampleWithView(const LightContext& context, const Placed& placed,
                                                                   const Point3& P) const {
@@ -221,7 +221,7 @@ template <class Geometry>
 Color SurfaceLight<Geometry>::MeanOverSurface(const Placed& placed, const LightTransform& transform) const {
   const ShapedDirections* shaped = emission_.Shaped();
   if (!shaped || placed.isFlat) {
-    // The same for all points; of the image the mean is known where the area is even over its coordinates.
+    // The exitance is the same at all points. The mean of the image is known where the area is even over uv.
     Color exitance = emission_.Exitance(transform, placed.flatNormal);
     if (shaped && !emission_.IsTwoSided() && shaped->KeepsAngles(transform)) exitance = shaped->Parts().Integral();
     if (!emission_.HasImage() || surface_.IsEvenOverUv(placed)) return emission_.MeanRadiance() * exitance;
@@ -230,7 +230,7 @@ Color SurfaceLight<Geometry>::MeanOverSurface(const Placed& placed, const LightT
     return emission_.MeanRadiance() * shaped->Parts().Integral() * emission_.SideCount();
   }
   const ExitanceTable exitance(emission_, transform);
-  // Even points of the surface's own space, weighted by the stretch.
+  // Evenly distributed points of the surface's own space, weighted by the stretch.
   const int n = emission_.HasImage() ? std::clamp(2 * emission_.EmittedImage().Height(), 64, 512) : 64;
   Color sum;
   float stretches = 0;

@@ -38,7 +38,7 @@ std::unique_ptr<const Distribution2D> MakeSurfaceTable(const EmissionImage& imag
   const int across = surface.firstIsV ? image.Height() : image.Width();
   const int along = surface.firstIsV ? image.Width() : image.Height();
   const int width = CellsFor(across), height = CellsFor(along);
-  // Points a side within a cell: about one per texel.
+  // Points per side of a cell: about one per texel.
   const int n = std::clamp((std::max(across / width, along / height)) + 2, 3, 9);
   std::vector<float> weights(static_cast<size_t>(width) * height);
   for (int cell = 0; cell < width * height; ++cell) {
@@ -56,7 +56,8 @@ std::unique_ptr<const Distribution2D> MakeSurfaceTable(const EmissionImage& imag
     }
     const Point2 middle((static_cast<float>(cell % width) + 0.5f) / static_cast<float>(width),
                         (static_cast<float>(cell / width) + 0.5f) / static_cast<float>(height));
-    // Points miss a bright texel between them, or one whose light ends at the cell's border: the texels do not.
+    // The points may miss a bright texel between them, or one whose light ends at the border of the cell; the mean of
+    // the texels does not.
     const float mean = std::max(static_cast<float>(sum / (n * n)), MeanOfTexels(image, low, high));
     weights[static_cast<size_t>(cell)] = mean * surface.element(middle);
   }

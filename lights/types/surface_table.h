@@ -1,5 +1,5 @@
-// Importance of the points of a textured surface: a table over the unit square that the surface is sampled from, in
-// proportion to radiance times area element. No point where the image shines has density 0.
+// Importance of the points of a textured surface: a table over the unit square from which the surface is sampled,
+// proportional to radiance times area element. Its density is positive wherever the image emits.
 #pragma once
 
 #include <functional>
@@ -10,7 +10,7 @@
 
 namespace lampyr {
 
-// What the table has to know of a surface: its texture coordinates, and dA per area of the square up to a constant.
+// Description of a surface for the table: texture coordinates, and dA per area of the square up to a constant.
 struct SurfaceTableInput {
   std::function<Point2(const Point2& square)> uv;
   std::function<float(const Point2& square)> element;

@@ -11,7 +11,7 @@ std::string Quoted(const std::filesystem::path& file) {
   return "the plugin \"" + file.string() + "\"";
 }
 
-// The types of one kind: a light and an area light of one name are two types.
+// Key of a type. A light and an area light with the same name are different types.
 using TypeKey = std::pair<std::string, std::string>;
 TypeKey KeyOf(const LightType& type) {
   return {type.Statement(), type.name};
@@ -28,10 +28,10 @@ bool Has(const std::vector<Type>& types, const TypeKey& key) {
   return false;
 }
 
-// Who brings the type; "" for nobody.
+// Owner of the type, for messages: lampyr itself or the file of a plugin; "" if there is no such type.
 std::string OwnerOf(const TypeKey& key, const std::vector<Plugin>& plugins) {
   if (Has(LightRegistry(), key) || Has(FilterRegistry(), key)) return "lampyr itself";
-  if (key == TypeKey{"LightFilter", "none"}) return "lampyr itself";  // what ends a binding
+  if (key == TypeKey{"LightFilter", "none"}) return "lampyr itself";  // ends the binding of a filter
   for (const Plugin& plugin : plugins) {
     if (Has(plugin.lights, key) || Has(plugin.filters, key)) return Quoted(plugin.file);
   }

@@ -1,5 +1,5 @@
-// The types of light and of light filter that a scene may name: the built-in ones and those of plugins. Filled before a
-// scene is built, and read only from then on: an argument, nothing global.
+// The types of lights and of light filters that a scene may name: the built-in ones and those of plugins. Filled before
+// a scene is built and read-only from then on; passed as an argument rather than global.
 #pragma once
 
 #include <filesystem>
@@ -11,7 +11,7 @@
 
 namespace lampyr {
 
-// What a shared library brings (plugin/plugin_loader.h). Its code stays loaded until the process ends.
+// The types of a shared library (plugin/plugin_loader.h). Its code stays loaded until the process ends.
 struct Plugin {
   std::filesystem::path file;
   std::vector<LightType> lights;
@@ -24,7 +24,8 @@ class TypeRegistry {
   TypeRegistry() = default;
   static const TypeRegistry& BuiltIn();
 
-  // Throws an Error where a name is taken, which names both owners; the registry is then as it was.
+  // Adds the types of a plugin. If a name is taken, throws an Error that names both owners, and the registry is
+  // unchanged.
   void Add(Plugin plugin);
 
   // The type, or null.

@@ -20,7 +20,7 @@ class WindowedTable {
   // Rows in y. The values are positive and finite; they need no particular scale.
   WindowedTable(std::span<const float> values, int width, int height);
 
-  // The share of the whole that lies in the window.
+  // Fraction of the total integral that lies in the window.
   double Integral(const Window& window) const;
   // A point of the window, in proportion to the density; requires an integral above 0.
   Point2d Sample(const Window& window, const Point2& u) const;

@@ -45,8 +45,8 @@ struct CameraConnection {
 
 struct CameraDensities {
   PdfArea pdfPosition;  // on the lens; 1 (discrete) for a pinhole
-  // Of the direction given the position, for a uniformly chosen film point of the full image; 1 (discrete) for parallel
-  // rays.
+  // Density of the direction given the position, for a uniformly chosen film point of the full image; 1 (discrete) for
+  // parallel rays.
   PdfSolidAngle pdfDirection;
   float importance = 0;  // We
 };

@@ -39,7 +39,7 @@ double Sag(const LensSurface& surface, double height);
 // Throws an Error located in the file (file:line:column) for an invalid lens, and at `where` for a file that cannot be
 // read.
 LensPrescription ReadLensFile(const std::string& file, const FileLocation& where);
-// The same for text in memory; `name` stands for the file in messages.
+// Parses text in memory; `name` stands for the file in messages.
 LensPrescription ParseLensFile(const std::string& text, const std::string& name);
 
 }  // namespace lampyr

@@ -133,7 +133,7 @@ class OrthographicCamera final : public Camera {
   double pixelArea_, focalHeight_, inverseLensArea_;
   Point2d inverseLensRadii_;  // squared, along lensX_ and lensY_
   double lensLimit_ = 1;      // squared radius limit of the lens, with tolerance for rounded directions
-  // The same in single precision, for rays.
+  // Copies in single precision, for rays.
   Point3 center_;
   Vector3 direction_, dx_, dy_, toFocusFloat_, lensXFloat_, lensYFloat_;
   Point2 centerFilm_;

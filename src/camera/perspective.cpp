@@ -112,7 +112,7 @@ class PerspectiveCamera final : public Camera {
   double pdfLensArea_;    // 1 for a pinhole
   double determinant_;
   Vector3d unitNormal_;
-  // The same in single precision, for rays.
+  // Copies in single precision, for rays.
   Vector3 center_, dx_, dy_, lensX_, lensY_;
   Point2 centerFilm_;
   float inverseFocalDistance_;

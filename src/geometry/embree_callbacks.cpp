@@ -44,7 +44,7 @@ TraceContext& Trace(RTCIntersectContext* context) {
   return *reinterpret_cast<TraceContext*>(context);
 }
 
-// Where a ray meets a surface that may let it pass.
+// An intersection of a ray with a surface that may let it pass.
 struct Meeting {
   const PrimitiveRecord& record;
   uint32_t geometryId, patch, instanceId;

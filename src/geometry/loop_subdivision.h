@@ -11,7 +11,8 @@ namespace lampyr {
 
 struct SubdividedMesh {
   std::vector<Point3> positions;  // on the limit surface (boundaries: nearly); the control vertices that faces use come first
-  // Of the limit surface, unit. As in pbrt-v4 they point *against* the winding: with counter-clockwise faces, inwards.
+  // Unit normals of the limit surface. As in pbrt-v4 they point *against* the winding: with counter-clockwise faces,
+  // inwards.
   std::vector<Normal3> normals;
   std::vector<std::array<uint32_t, 3>> triangles;  // wound like the control faces
 };

@@ -27,7 +27,7 @@ struct PlyMesh {
 // Throws Error that names the file and what is wrong with it; `where` is the statement that asks for the file.
 PlyMesh ReadPly(const std::filesystem::path& path, const FileLocation& where = {});
 
-// The same from memory; `name` stands for the file in messages.
+// Parses a file in memory; `name` stands for the file in messages.
 PlyMesh ParsePly(const std::string& content, const std::string& name, const FileLocation& where = {});
 
 }  // namespace lampyr

@@ -12,7 +12,7 @@
 
 namespace lampyr {
 
-// Where a ray meets a quadric. `coordinates` are precise to an ulp of the radius and cheap to make, no angles:
+// Intersection of a ray with a quadric. `coordinates` are accurate to an ulp of the radius and cheap, without angles:
 // sphere: its unit normal, octahedrally mapped; disk: (x, y) / radius; cylinder: diamond angle of φ in [0,4) and v.
 struct QuadricHit {
   double t = 0;

@@ -97,7 +97,7 @@ double SphereArea(const Quadric& q, const AreaStretch& stretch) {
                high = std::min(static_cast<double>(q.zMax) / r, 1.0);
   if (const double uniform = stretch.Uniform(); uniform > 0) return r * r * (high - low) * phiMax * uniform;
   if (q.IsFullSphere()) return 4 * static_cast<double>(kPi) * r * r * MeanStretchOverSphere(stretch.cofactors);
-  // By θ rather than by z: smooth at the poles.
+  // Integrated over θ rather than z: smooth at the poles.
   return r * r *
          Integrate(
              std::acos(high), std::acos(low),

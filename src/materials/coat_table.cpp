@@ -199,8 +199,8 @@ CoatBounceTable::Curves CoatBounceTable::MakeCurves(const Nodes& leaving, const 
   };
   const Nodes first = scatter(leaving), second = scatter(times(first, returning)),
               third = scatter(times(second, returning));
-  // Where nothing leaves after one bounce there is nothing to scale: directions beyond total reflection, which are
-  // never queried.
+  // If nothing leaves after one bounce, there is nothing to scale: directions beyond total reflection, which are never
+  // queried.
   Curves curves;
   for (int i = 0; i < kNodes; ++i) {
     curves.second[i] = first[i] > 1e-3f ? second[i] / first[i] : 0.0f;

@@ -32,7 +32,7 @@ class MeasuredTable {
     for (int i = 0; i < blend.count; ++i) sum += blend.weight[i] * ValueAt(blend.table[i], place);
     return sum;
   }
-  // Of the only table.
+  // Value at u of the only table.
   Value Evaluate(const Point2d& u) const { return ValueAt(0, PlaceOf(u)); }
 
  private:

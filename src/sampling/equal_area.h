@@ -65,7 +65,7 @@ inline Point2 LatLongSphereToSquare(const Vector3& direction) {
 inline float LatLongJacobian(float sinTheta) {
   return 2 * kPi * kPi * sinTheta;
 }
-// The same for the equal-area map.
+// |dω/dA| of the equal-area map, constant.
 inline constexpr float kEqualAreaJacobian = 4 * kPi;
 
 }  // namespace lampyr

@@ -13,7 +13,7 @@ namespace lampyr {
 
 enum class RgbColorSpace { Srgb, DciP3, Rec2020, Aces2065 };
 
-// By the names of pbrt-v4: "srgb", "dci-p3", "rec2020", "aces2065-1", case ignored.
+// Finds a colour space by its name in pbrt-v4: "srgb", "dci-p3", "rec2020", "aces2065-1", case ignored.
 std::optional<RgbColorSpace> FindColorSpace(const std::string& name);
 const std::vector<std::string>& ColorSpaceNames();
 

@@ -36,7 +36,7 @@ class IesProfile {
 // Throws an Error located in the IES file (file:line) if it is not valid LM-63, and at `where` if it cannot be opened.
 std::shared_ptr<const IesProfile> ReadIes(const std::string& file, const FileLocation& where);
 
-// The same for text in memory; `name` stands for the file in messages.
+// Parses text in memory; `name` stands for the file in messages.
 std::shared_ptr<const IesProfile> ParseIes(const std::string& text, const std::string& name);
 
 }  // namespace lampyr

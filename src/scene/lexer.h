@@ -28,7 +28,7 @@ std::string Describe(const Token& token);
 
 // The number that `word` denotes. Throws an Error if it is not a number, not finite, or beyond the range of a float.
 double ParseNumber(std::string_view word, const FileLocation& where);
-// The same for an integer of 32 bits.
+// The 32-bit integer that `word` denotes. Throws an Error as ParseNumber does.
 int64_t ParseInteger(std::string_view word, const FileLocation& where);
 bool LooksLikeNumber(std::string_view word);
 // True for "nan", "-inf" and similar words.

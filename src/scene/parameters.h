@@ -91,7 +91,7 @@ class ParameterList {
   // An absolute file name: relative to the folder of the scene (as in pbrt-v4) if the file exists there, otherwise
   // relative to the folder of the file that contains the statement (an included one may be elsewhere). "" if absent.
   std::string GetFile(const std::string& name) const;
-  // The same for a given name. "" for "".
+  // Resolves a given file name by the rule of GetFile. "" for "".
   std::string ResolveFile(const std::string& name, const FileLocation& writtenAt) const;
 
   // The name of the texture if the parameter `name` is of type "texture".

@@ -119,8 +119,8 @@ struct SceneDescription {
 // `diagnostics`.
 SceneDescription ReadScene(const std::filesystem::path& file, Diagnostics& diagnostics);
 
-// The same for text in memory. `name` stands for the file in messages; relative file names are resolved against its
-// folder.
+// Reads a scene from text in memory. `name` stands for the file in messages; relative file names are resolved against
+// its folder.
 SceneDescription ParseScene(const std::string& text, const std::filesystem::path& name, Diagnostics& diagnostics);
 
 }  // namespace lampyr

@@ -36,7 +36,7 @@ struct GraphicsState {
   int areaLight = -1;
   int lightFilter = -1;
   std::string insideMedium, outsideMedium;
-  // By target; shared, so that saving a scope is cheap.
+  // Keyed by target; shared, so that saving a scope is cheap.
   std::map<std::string, std::shared_ptr<const std::vector<Parameter>>> attributes;
 };
 

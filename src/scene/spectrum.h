@@ -1,6 +1,6 @@
 // Conversion of spectra to linear RGB: pairs of wavelength and value, blackbodies, and the named spectra of pbrt-v4.
 //
-// By role:
+// Conversion by role:
 // - Illuminant: the colour of the light at luminance (Y) 1. A colour outside of the gamut loses its negative components
 //   and keeps its luminance.
 // - Albedo: the colour of the surface under D65, in [0,1]. A value of 1 at all wavelengths is exactly white.

@@ -17,7 +17,7 @@ class TokenStream {
 
   // Opens a text, whose tokens come before the rest of the current file.
   void OpenText(const std::filesystem::path& file, std::string text);
-  // The same for the file that the string token `name` gives: relative to the scene file, or else to the file that
+  // Opens the file that the string token `name` names: relative to the scene file, or otherwise to the file that
   // contains `name`. Throws an Error if it cannot be read, or is already open (a cycle). Returns its canonical path.
   std::filesystem::path OpenFile(const Token& name);
 

@@ -12,7 +12,7 @@ float Noise(const Point3& p);
 // Σ roughness^i · Noise(1.99^i p) over `octaves` ([Pharr23 §10.6]).
 float FractalNoise(const Point3& p, float roughness, int octaves);
 
-// The same sum of |Noise|, which has creases.
+// The sum of FractalNoise with |Noise| in place of Noise, which has creases.
 float Turbulence(const Point3& p, float roughness, int octaves);
 
 }  // namespace lampyr

@@ -34,7 +34,7 @@ ParameterOf<Value> GetValue(const TextureRequest& request, const std::string& na
   }
 }
 
-// The same for parameters that cannot be textures in pbrt.
+// Reads a parameter that cannot be a texture in pbrt.
 template <class Value>
 Value GetConstant(const TextureRequest& request, const std::string& name, float defaultGray) {
   if constexpr (std::is_same_v<Value, float>) {
