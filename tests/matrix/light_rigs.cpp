@@ -56,8 +56,8 @@ std::string Statement(const LightType& type, const std::string& block, size_t k,
 
 // The whole room is seen: what a light projects has edges, and photons blur one that is the border of the picture out
 // of it, or into it.
-std::string Lit(const LightType& type, const std::string& lights) {
-  return IsAtInfinity(type.name) ? Floor(lights) : Room(kMatte, lights, "Camera \"spherical\"\n");
+std::string Lit(const LightType& type, const std::string& lights, double photonRadius = 0.08) {
+  return IsAtInfinity(type.name) ? Floor(lights) : Room(kMatte, lights, "Camera \"spherical\"\n", 3, photonRadius);
 }
 
 }  // namespace
@@ -77,7 +77,9 @@ void AddLightRigs(std::vector<Rig>& rigs) {
       }
       ++count;
     }
-    if (count > 1) rigs.push_back({"light_" + name + "_others", Lit(*type, others), covers});
+    // The narrow cones of spots have edges near the borders of the picture's quarters, across which photons are blurred.
+    const double photonRadius = type->name == "spot" ? 0.02 : 0.08;
+    if (count > 1) rigs.push_back({"light_" + name + "_others", Lit(*type, others, photonRadius), covers});
   }
   // What lights have in common: seen by the camera or not, sending paths or not, groups, importance.
   const std::string bulb = "LightSource \"point\" \"rgb I\" [0.5 0.5 1] \"point3 from\" [0.4 -0.3 0.2] ";

@@ -18,8 +18,9 @@ std::string Head(int depth, double radius) {
 
 }  // namespace
 
-std::string Room(const std::string& material, const std::string& inside, const std::string& camera, int depth) {
-  return Head(depth, 0.08) + "LookAt -0.2 -0.15 0  -1 -0.6 0.5  0 1 0\n" + camera + "WorldBegin\n" + inside +
+std::string Room(const std::string& material, const std::string& inside, const std::string& camera, int depth,
+                 double photonRadius) {
+  return Head(depth, photonRadius) + "LookAt -0.2 -0.15 0  -1 -0.6 0.5  0 1 0\n" + camera + "WorldBegin\n" + inside +
          Scope(material + " Shape \"sphere\" \"float radius\" 1");
 }
 

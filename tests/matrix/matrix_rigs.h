@@ -41,7 +41,7 @@ namespace rigs {
 // radius: a ball around a point of a sphere cuts a cap of exactly π r² from it, and there are no edges.
 inline const std::string kCamera = "Camera \"perspective\" \"float fov\" 80\n";
 std::string Room(const std::string& material, const std::string& inside, const std::string& camera = kCamera,
-                 int depth = 3);
+                 int depth = 3, double photonRadius = 0.08);
 
 // A floor of radius 1 under the sky with a ball over it; its middle is seen. The ball does not touch the floor: photons
 // on the lower side of the floor would be merged with what the ball receives from below. `photonRadius`: small against
