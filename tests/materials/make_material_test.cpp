@@ -233,6 +233,51 @@ TEST_F(MakeMaterialTest, HairReflectsToTheSideOfItsOffset) {
   }
 }
 
+// Ray tracing leaves uv and tangents at 0 where no material asks for them.
+TEST_F(MakeMaterialTest, UvAndTangentsAreLookedAtWhereItSaysSo) {
+  named_["a"] = Create("diffuse", {});
+  named_["b"] = Create("conductor", {Float("roughness", 0.3)});
+  const auto slope = [](const std::string& name) {
+    Parameter parameter = Make(ParameterType::Texture, name);
+    parameter.strings = {"slope"};
+    return parameter;
+  };
+  const Parameter both = Strings("materials", {"a", "b"});
+  const struct {
+    const char* type;
+    std::vector<Parameter> parameters;
+    bool needs;
+  } cases[] = {{"diffuse", {}, false},
+               {"diffuse", {slope("displacement")}, true},
+               {"diffusetransmission", {}, false},
+               {"conductor", {Float("roughness", 0.4)}, false},
+               {"conductor", {slope("roughness")}, true},
+               {"conductor", {Float("uroughness", 0.1), Float("vroughness", 0.6)}, true},
+               {"dielectric", {Float("roughness", 0.4)}, false},
+               {"thindielectric", {}, false},
+               {"thindielectric", {slope("displacement")}, true},
+               {"coateddiffuse", {Float("roughness", 0.4)}, false},
+               {"coatedconductor", {}, false},
+               {"hair", {}, true},
+               {"mix", {both, Float("amount", 0.5)}, false},
+               {"mix", {both, slope("amount")}, true}};
+  for (const auto& [type, parameters, needs] : cases) {
+    const auto material = Create(type, parameters);
+    EXPECT_EQ(material->NeedsParametrization(), needs) << type;
+    const auto scattered = [&](const SurfacePoint& point) {
+      return material->GetBsdf(point, kTilted).Evaluate(kTilted, {0, 0.28f, 0.96f}, TransportMode::Radiance);
+    };
+    SurfacePoint parametrized = point_, bare = point_;
+    parametrized.uv = {0.9f, 0.2f};
+    parametrized.dpdu = {1, 2, 0};
+    bare.uv = Point2(0.0f);
+    bare.dpdu = bare.dpdv = Vector3(0.0f);
+    const BsdfEvaluation with = scattered(parametrized), without = scattered(bare);
+    const bool isSame = with.Sum() == without.Sum() && with.pdfForward.value == without.pdfForward.value;
+    EXPECT_TRUE(isSame || needs) << type;
+  }
+}
+
 TEST_F(MakeMaterialTest, WrongInputIsNamed) {
   try {
     Create("difuse", {});
