@@ -79,7 +79,7 @@ void CheckAreaPower(const SuiteSubject& subject, const Enclosure& enclosure, con
     return -glm::dot(outward, Vector3d(sample->direction)) * area * Emitted(subject, *sample) /
            Value(sample->pdfDirect);
   });
-  // By rounding, some photons slip through the light's seams.
+  // Rounding lets some photons slip through the light's seams.
   constexpr double kSeams = 1e-4;
   report.AddProbability(subject.name, "power", subject.caseName, EqualMeans(escaping, direct, 1e-3, kSeams * stopped),
                         InWords("the power that photons carry away, in W,", escaping, direct));

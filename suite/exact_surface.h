@@ -30,7 +30,7 @@ class ExactSurface {
   using Integrand = std::function<Integrands(const LightHit& hit, double cosine)>;
   std::pair<Estimate, Estimate> IntegrateDirections(const Point3& P, std::span<const LightSample> hints,
                                                     const Integrand& f, Rng& rng, int budget) const;
-  // The same integral by random points on the traced surface, for strips too thin to be found among directions.
+  // Integral by random points on the traced surface, for strips too thin to be found among directions.
   Estimate IntegrateSurface(const Point3& P, const Integrand& f, Rng& rng) const;
 
  private:

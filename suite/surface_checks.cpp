@@ -174,7 +174,7 @@ void SurfaceReceiverChecker::Check(const Receiver& receiver) {
     report_.AddError(subject_.name, property, where, e, tolerance,
                      words + "the largest error is above what is allowed");
   };
-  // By rounding, less than one ray in ten thousand may slip through a seam of the light.
+  // Rounding lets less than one ray in ten thousand slip through a seam of the light.
   constexpr double kSeams = 1e-4;
   probability("integral", EqualMeans(quadrature.Density(), counted.share, 1e-3, kSeams),
               InWords("the integral of pdfDirect", quadrature.Density(), counted.share));

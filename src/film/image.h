@@ -62,7 +62,7 @@ enum class ImageEncoding { Automatic, Linear, Srgb };
 // only to integer formats (floating-point files are linear), and never to alpha, which is channel "A" and not
 // multiplied into the colour. Channels are in the order R, G, B, A, then the layers in alphabetical order.
 Image ReadImage(const std::filesystem::path& path, ImageEncoding encoding = ImageEncoding::Automatic);
-// As ReadImage, with a power law for integer formats: linear = encoded^gamma.
+// Variant of ReadImage with a power law for integer formats: linear = encoded^gamma.
 Image ReadImageWithGamma(const std::filesystem::path& path, float gamma);
 
 }  // namespace lampyr

@@ -192,7 +192,7 @@ Motion::Motion(float begin, float end, std::vector<Affine> keys) : begin_(begin)
 Affine Motion::At(float time) const {
   if (time <= begin_) return keys_.front();
   if (time >= end_) return keys_.back();
-  // The same operations as Embree's, so that the results are bitwise equal.
+  // Embree's operations in Embree's order, so that the results are bitwise equal.
   const auto segments = static_cast<float>(keys_.size() - 1);
   const float position = (time - begin_) / (end_ - begin_) * segments;
   const float segment = std::min(std::floor(position), segments - 1);

@@ -38,7 +38,7 @@ class TextureLibrary {
   // An image file, read once and shared. Throws an Error at `where` if it cannot be read.
   std::shared_ptr<const Image> GetImage(const std::filesystem::path& file, ImageEncoding encoding,
                                         const FileLocation& where) const;
-  // As GetImage, with a power law for integer formats: linear = encoded^gamma.
+  // Variant of GetImage with a power law for integer formats: linear = encoded^gamma.
   std::shared_ptr<const Image> GetImageWithGamma(const std::filesystem::path& file, float gamma,
                                                  const FileLocation& where) const;
 

@@ -112,7 +112,7 @@ struct Cell {
   }
 };
 
-// As many samples as make the standard error of the mean of all replicas `error`, told by trials. Sobol points converge
+// Renders the samples that bring the standard error of the mean to `error`, as trials predict. Sobol points converge
 // faster than independent ones: a trial predicts no more than four times its own samples. A cell that is far surer than
 // it says would find the blur of merging, which it is not about.
 Cell RenderTo(BuiltScene& built, const Mode& mode, double error, uint64_t seed) {
