@@ -64,6 +64,28 @@ void AddNormals(const CurveParameters& p, size_t segments, CurveSet& curves) {
   for (size_t i = 0; i < segments; ++i) curves.segmentNormals.push_back({normals[i], normals[i + 1]});
 }
 
+// In how many segments of straight lines a flat curve runs within a hundredth of `radius`: n lines are off by no more
+// than max |B''| / (8 n²).
+int PartsOfFlat(const Segment& b, double radius) {
+  constexpr double kTolerance = 0.01;
+  constexpr int kMostParts = 16;
+  const double second =
+      6 * std::max(glm::length(b[0] - 2.0 * b[1] + b[2]), glm::length(b[1] - 2.0 * b[2] + b[3]));
+  if (!(second > 0)) return 1;
+  const double lines = std::sqrt(second / (8 * kTolerance * radius));
+  return static_cast<int>(std::clamp(std::ceil(lines / CurveSet::kLinesPerFlatSegment), 1.0, double(kMostParts)));
+}
+
+// The part [u0,u1] of a segment, by blossoming.
+Segment PartOf(const Segment& b, double u0, double u1) {
+  const auto blossom = [&](double r, double s, double t) {
+    const auto mix = [](const Point3d& p, const Point3d& q, double u) { return p * (1 - u) + q * u; };
+    const Point3d p01 = mix(b[0], b[1], r), p12 = mix(b[1], b[2], r), p23 = mix(b[2], b[3], r);
+    return mix(mix(p01, p12, s), mix(p12, p23, s), t);
+  };
+  return {blossom(u0, u0, u0), blossom(u0, u0, u1), blossom(u0, u1, u1), blossom(u1, u1, u1)};
+}
+
 }  // namespace
 
 CurveSet MakeCurves(const CurveParameters& p) {
@@ -78,18 +100,24 @@ CurveSet MakeCurves(const CurveParameters& p) {
   for (size_t i = 0; i < count; ++i) {
     const bool bezier = p.basis == CurveParameters::Basis::Bezier;
     const Segment segment = bezier ? BezierSegment(points, i, p.degree) : BSplineSegment(points, i, p.degree);
-    std::array<Point3, 4> controls;
-    std::array<float, 4> radii;
-    for (size_t k = 0; k < 4; ++k) {
-      controls[k] = Point3(segment[k]);
-      // Control values in equal steps interpolate linearly.
-      const double along = (static_cast<double>(i) + static_cast<double>(k) / 3) / static_cast<double>(count);
-      const double width = static_cast<double>(p.width0) * (1 - along) + static_cast<double>(p.width1) * along;
-      radii[k] = static_cast<float>(0.5 * scale * width);
+    // Half width at u of segment i. Control values in equal steps interpolate linearly.
+    const auto radiusAt = [&](double u) {
+      const double along = (static_cast<double>(i) + u) / static_cast<double>(count);
+      return 0.5 * scale * (static_cast<double>(p.width0) * (1 - along) + static_cast<double>(p.width1) * along);
+    };
+    const int parts =
+        p.kind == CurveSet::Kind::Flat ? PartsOfFlat(segment, std::min(radiusAt(0), radiusAt(1))) : 1;
+    for (int part = 0; part < parts; ++part) {
+      const double u0 = static_cast<double>(part) / parts, u1 = static_cast<double>(part + 1) / parts;
+      const Segment controls = parts > 1 ? PartOf(segment, u0, u1) : segment;
+      auto& points = curves.segments.emplace_back();
+      auto& radii = curves.radii.emplace_back();
+      for (size_t k = 0; k < 4; ++k) {
+        points[k] = Point3(controls[k]);
+        radii[k] = static_cast<float>(radiusAt(u0 + (u1 - u0) * static_cast<double>(k) / 3));
+      }
+      curves.uRange.push_back({static_cast<float>(u0), static_cast<float>(u1)});
     }
-    curves.segments.push_back(controls);
-    curves.radii.push_back(radii);
-    curves.vRange.push_back({0, 1});
   }
   if (p.kind == CurveSet::Kind::Ribbon) AddNormals(p, count, curves);
   return curves;
@@ -151,7 +179,7 @@ void EvaluateCurve(const CurveSet& curves, uint32_t segment, float u, const Poin
   const bool isRibbon = curves.kind == CurveSet::Kind::Ribbon;
   const Vector3 view = !isRibbon ? direction : glm::dot(point.Ng, direction) > 0 ? point.Ng : -point.Ng;
   const Vector3 across = SafeNormalize(glm::cross(view, along), Frame::FromNormal(along).x);
-  const auto& range = curves.vRange[segment];
+  const auto& range = curves.uRange[segment];
   const float side = radius > 0 ? glm::dot(offset, across) / radius : 0.0f;
   point.uv = {range[0] + (range[1] - range[0]) * u, std::clamp(0.5f + 0.5f * side, 0.0f, 1.0f)};
   point.dpdu = tangent / std::max(range[1] - range[0], 1e-6f);

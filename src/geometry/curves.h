@@ -2,6 +2,10 @@
 //
 // Embree traces them: Flat turns towards the ray, Cylinder is a swept round tube, Ribbon follows given normals. Texture
 // coordinates are pbrt-v4's: u along each segment, v across the width.
+//
+// Embree draws a flat segment as CurveSet::kLinesPerFlatSegment straight lines. Bent segments are divided until the lines stay
+// within a hundredth of the half width of the curve: where on its width a ray meets a fibre decides how the fibre
+// scatters.
 #pragma once
 
 #include "base/error.h"

@@ -100,7 +100,7 @@ void CheckShape(const PreparedQuadric& q) {
   }
 }
 void CheckShape(const CurveSet& c) {
-  if (c.radii.size() != c.segments.size() || c.vRange.size() != c.segments.size() ||
+  if (c.radii.size() != c.segments.size() || c.uRange.size() != c.segments.size() ||
       (c.kind == CurveSet::Kind::Ribbon && c.segmentNormals.size() != c.segments.size())) {
     throw Error("curves: there must be as many radii, ranges and normals as segments");
   }
@@ -377,6 +377,7 @@ RTCGeometry NewGeometry(RTCDevice device, const CurveSet& curves) {
                                                                          RTC_FORMAT_FLOAT3, sizeof(Normal3), 4 * count))
                          : nullptr;
   if (!vertices || !indices || (ribbon && !normals)) return geometry;  // the device's error says it
+  if (curves.kind == CurveSet::Kind::Flat) rtcSetGeometryTessellationRate(geometry, CurveSet::kLinesPerFlatSegment);
   for (size_t i = 0; i < count; ++i) {
     indices[i] = static_cast<uint32_t>(4 * i);
     for (size_t k = 0; k < 4; ++k) {

@@ -57,11 +57,12 @@ struct Quadric {
 // Cubic Bézier curves in render space, with a width at either end.
 struct CurveSet {
   enum class Kind { Flat, Cylinder, Ribbon };
+  static constexpr int kLinesPerFlatSegment = 16;  // as which Embree draws it: its maximum
   Kind kind = Kind::Flat;
   std::vector<std::array<Point3, 4>> segments;
   std::vector<std::array<float, 4>> radii;             // half widths at the control points, render space
   std::vector<std::array<Normal3, 2>> segmentNormals;  // ribbons only: normal at either end
-  std::vector<std::array<float, 2>> vRange;            // part of the whole curve's [0,1] that the segment covers
+  std::vector<std::array<float, 2>> uRange;            // the part of u, in [0,1], that the segment covers
 };
 
 using Shape = std::variant<std::shared_ptr<const TriangleMesh>, std::shared_ptr<const BilinearMesh>, Quadric,

@@ -72,11 +72,13 @@ std::string Object(const std::string& material) {
 }
 
 // Strands over the floor, side by side and crossing: light that meets the floor has passed some, and they light one
-// another. They are thin: a fibre scatters light from wherever it meets it.
+// another. They are thin: a fibre scatters light from wherever it meets it. They are so high over the floor that their
+// shadows run together: merging blurs a pattern of shadows as fine as its radius, and the camera, which stands near the
+// lamp, sees more of the lit parts than of the shadows.
 std::string Strands(const std::string& material, const std::string& type) {
   std::string curves;
   for (int i = 0; i < 40; ++i) {
-    const double t = i / 40.0, x = -0.75 + 1.1 * t, bend = 0.1 * std::sin(40 * t), height = 0.12 + 0.1 * (i % 4);
+    const double t = i / 40.0, x = -0.75 + 1.1 * t, bend = 0.1 * std::sin(40 * t), height = 0.32 + 0.08 * (i % 4);
     const auto at = [](double a, double b, double c) {
       return std::to_string(a) + " " + std::to_string(b) + " " + std::to_string(c) + " ";
     };

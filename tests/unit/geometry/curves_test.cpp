@@ -54,6 +54,34 @@ TEST(Curves, WidthsInterpolateAndScale) {
   EXPECT_NEAR(GetArea(ToShape(MakeCurves(Straight(CurveSet::Kind::Flat)))), 3 * 0.4, 1e-5);
 }
 
+// Flat curves are drawn as straight lines: a bent one is hit across its whole width, at the offset that the axis gives.
+TEST(Curves, BentFlatOnesKeepTheirWidth) {
+  CurveParameters p;
+  p.points = {{0, 0, 0}, {0, 0.3f, 0.4f}, {0, -0.3f, 0.8f}, {0, 0.1f, 1.3f}};
+  p.width0 = 0.004f;
+  p.width1 = 0.008f;
+  const CurveSet whole = [&] {
+    CurveParameters tube = p;
+    tube.kind = CurveSet::Kind::Cylinder;
+    return MakeCurves(tube);
+  }();
+  ASSERT_EQ(whole.segments.size(), 1u);
+  const GeometryScene scene(SceneOf(ToShape(MakeCurves(p))));
+  Random random(62);
+  for (int i = 0; i < 5000; ++i) {
+    const float u = random.Uniform(0.001f, 0.999f), side = random.Uniform(-0.95f, 0.95f);
+    const Vector3 along = glm::normalize(CurveTangent(whole, 0, u));
+    const Vector3 across = glm::cross(Vector3(-1, 0, 0), along);
+    const Point3 target = CurveAxis(whole, 0, u) + across * (side * CurveRadius(whole, 0, u));
+    const Ray ray{target + Vector3(3, 0, 0), {-1, 0, 0}};
+    RayHit hit;
+    ASSERT_TRUE(scene.Intersect(ray, visibility::kAll, hit)) << "u " << u << ", side " << side;
+    const SurfacePoint point = scene.GetSurfacePoint(ray, hit);
+    ASSERT_NEAR(2 * point.uv.y - 1, side, 0.03f) << "u " << u;
+    ASSERT_NEAR(point.uv.x, u, 0.01f) << "u " << u;
+  }
+}
+
 TEST(Curves, StraightOnesAreHitWhereTheyAre) {
   for (const auto kind : {CurveSet::Kind::Flat, CurveSet::Kind::Cylinder, CurveSet::Kind::Ribbon}) {
     const GeometryScene scene(SceneOf(ToShape(MakeCurves(Straight(kind)))));

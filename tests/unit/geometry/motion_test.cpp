@@ -35,7 +35,7 @@ GeometryObject AllShapes() {
   curves.kind = CurveSet::Kind::Cylinder;
   curves.segments = {{Point3(-1, 0.5f, 0), Point3(-0.8f, 0.9f, 0.2f), Point3(-0.6f, 0.4f, 0), Point3(-0.4f, 0.8f, 0)}};
   curves.radii = {{0.08f, 0.08f, 0.08f, 0.08f}};
-  curves.vRange = {{0, 1}};
+  curves.uRange = {{0, 1}};
   object.entries.push_back(Entry(std::make_shared<const CurveSet>(curves)));
   return object;
 }

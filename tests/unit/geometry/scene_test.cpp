@@ -372,7 +372,7 @@ TEST(CutOut, BothSidesOfAShapeAreIndependent) {
   curve.kind = CurveSet::Kind::Cylinder;
   curve.segments = {{Point3(-3, 0, 0), Point3(-1, 0, 0), Point3(1, 0, 0), Point3(3, 0, 0)}};
   curve.radii = {{2, 2, 2, 2}};
-  curve.vRange = {{0, 1}};
+  curve.uRange = {{0, 1}};
   for (const Shape& shape : {Shape(Sphere(2)), Shape(tube), Shape(std::make_shared<const CurveSet>(curve))}) {
     for (const float alpha : {0.1f, 0.5f, 0.8f}) {
       GeometryDescription description;
