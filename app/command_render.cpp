@@ -351,6 +351,9 @@ void RenderJob::Trace(ProgressiveRender& render, Checkpoints* checkpoints) {
 void RenderJob::PrintHints() const {
   for (const std::string& hint : IntegratorHints(built_.scene, settings_.integrator))
     std::fprintf(stderr, "hint: %s\n", hint.c_str());
+  for (const std::string& name : UnreadBias(settings_.integrator, settings_.values))
+    std::fprintf(stderr, "hint: %s does not know the setting \"%s\", and renders without its bias\n",
+                 settings_.integrator.c_str(), name.c_str());
   if (options_.overrides.integrator || settings_.namedIntegrator.empty()) return;
   PlanDecision suits;
   RunForeignCode(loaded_.types, [&] { suits = ChooseIntegrator(built_.scene, settings_); });

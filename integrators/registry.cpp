@@ -1,6 +1,8 @@
 // The list of all integrators. A new one is a file that defines `IntegratorType …IntegratorType()`, and one row here.
 #include "integrators/registry.h"
 
+#include <algorithm>
+
 #include "base/error.h"
 
 namespace lampyr {
@@ -54,6 +56,16 @@ bool GathersPhotons(const std::string& integrator, const Settings& settings) {
 std::vector<std::string> IntegratorHints(const RenderScene& scene, const std::string& integrator) {
   const IntegratorType* type = FindIntegrator(integrator);
   return type && type->hints ? type->hints(scene) : std::vector<std::string>();
+}
+
+std::vector<std::string> UnreadBias(const std::string& integrator, const Settings& settings) {
+  std::vector<std::string> unread;
+  const std::vector<const Setting*>& read = IntegratorOf(integrator).settings;
+  for (const auto& [setting, value] : settings.All()) {
+    if (setting->isBiased && value != setting->fallback && std::find(read.begin(), read.end(), setting) == read.end())
+      unread.push_back(setting->name);
+  }
+  return unread;
 }
 
 std::string IntegratorRefusal(const RenderScene& scene, const std::string& integrator) {

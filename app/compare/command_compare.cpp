@@ -225,11 +225,15 @@ int CompareLoaded(const CompareOptions& options, const ComparisonPlan& plan, con
       }
     }
   }
+  // What all are compared to is right, whatever bias the scene or the command line asks for.
+  BuiltScene unbiased = loaded.built;
+  unbiased.settings.values.RemoveBias();
+  const ComparedScene referenceScene(unbiased, results.threads, FinishOnInterrupt());
   bool interrupted = false;
   {
     Stages stages(options.quiet);
     try {
-      const Reference reference = ObtainReference(options, scene, plan, loaded.hash, folder, stages, results);
+      const Reference reference = ObtainReference(options, referenceScene, plan, loaded.hash, folder, stages, results);
       results.reference = reference.facts;
       const double longest = std::max(LongestRender(plan, results.pilots), 1e-3);
       const double compared = longest * plan.repeats * static_cast<double>(plan.integrators.size());

@@ -104,7 +104,8 @@ Color TraceCameraPath(const SampleContext& context, const CameraPathSettings& se
   state.ray = ray;
   state.specular = Color(1.0f);
   CameraPath visitor(context, settings, gatherer);
-  Walk(context, {TransportMode::Radiance, settings.maxDepth, settings.dimensions}, state, path, visitor);
+  Walk(context, {TransportMode::Radiance, settings.maxDepth, settings.dimensions, true, settings.materialsAfterWide},
+       state, path, visitor);
   return visitor.Radiance();
 }
 

@@ -26,6 +26,7 @@ struct CameraPathSettings {
   // photons.
   bool samplesLights = true;
   ShadowRays shadowRays;
+  const std::vector<std::shared_ptr<const Material>>* materialsAfterWide = nullptr;  // as in WalkSettings
 };
 
 // Estimates the radiance arriving along `ray`. `gatherer` may be null if gatherBelow is 0; it adds to

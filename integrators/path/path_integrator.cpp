@@ -9,9 +9,18 @@ namespace lampyr {
 
 namespace {
 
+const Setting kRegularize{.name = "regularize",
+                          .help = "Roughen mirrors, glass and gloss behind a wide bounce: less noise, and biased",
+                          .fallback = false,
+                          .isBiased = true};
+
 class PathIntegrator final : public Integrator {
  public:
-  explicit PathIntegrator(const CameraPathSettings& settings) : settings_(settings) {}
+  // `afterWide`: the materials behind a wide scattering; empty: those of the scene.
+  PathIntegrator(const CameraPathSettings& settings, std::vector<std::shared_ptr<const Material>> afterWide)
+      : settings_(settings), afterWide_(std::move(afterWide)) {
+    if (!afterWide_.empty()) settings_.materialsAfterWide = &afterWide_;
+  }
 
   TracedPaths Paths() const override { return TracedPaths::Camera; }
   Color Sample(const Ray* ray, const SampleContext& context) const override {
@@ -20,13 +29,18 @@ class PathIntegrator final : public Integrator {
 
  private:
   CameraPathSettings settings_;
+  const std::vector<std::shared_ptr<const Material>> afterWide_;
 };
 
 std::unique_ptr<Integrator> Create(const IntegratorInput& input) {
   CameraPathSettings settings;
   settings.maxDepth = MaxDepthOf(input.settings);
   settings.shadowRays = ShadowRaysOf(input);
-  return std::make_unique<PathIntegrator>(settings);
+  // Both techniques of a vertex see the same material there, so that their weights sum to 1. A vertex of a
+  // bidirectional path would be another one for each technique.
+  const bool regularizes = input.settings.IsOn(kRegularize.name);
+  return std::make_unique<PathIntegrator>(settings, regularizes ? RoughenedMaterials(input.scene.materials)
+                                                                : std::vector<std::shared_ptr<const Material>>());
 }
 
 std::vector<std::string> Hints(const RenderScene& scene) {
@@ -45,6 +59,7 @@ IntegratorType PathIntegratorType() {
   type.name = "path";
   type.help = "paths from the camera, with next-event estimation";
   type.settings = common_settings::kOfNextEvent;
+  type.settings.push_back(&kRegularize);
   type.create = Create;
   type.hints = Hints;
   return type;

@@ -74,7 +74,8 @@ inline const Setting kShadowThreshold{
     .fallback = 0.0,
     .least = 0,
     .most = std::numeric_limits<float>::max(),
-    .range = "0 or more"};
+    .range = "0 or more",
+    .isBiased = true};
 
 // Settings of integrators with next-event estimation.
 inline const std::vector<const Setting*> kOfNextEvent = {&kMaxDepth,    &kLightSampler,   &kLightSamples,

@@ -39,9 +39,10 @@ void MakeInPlace(T& value, const Make& make) {
 
 // Makes a vertex of a hit whose point is set: BSDF, receiver, visibility. False: the surface has no material and is
 // black, and paths end there.
-bool MakeVertex(const RenderScene& scene, const Ray& ray, const RayHit& hit, Vertex& vertex) {
+bool MakeVertex(const RenderScene& scene, const std::vector<std::shared_ptr<const Material>>& materials, const Ray& ray,
+                const RayHit& hit, Vertex& vertex) {
   const GeometryAttributes& attributes = scene.geometry->Attributes(hit.primitive);
-  const Material* material = attributes.material >= 0 ? scene.materials[attributes.material].get() : nullptr;
+  const Material* material = attributes.material >= 0 ? materials[attributes.material].get() : nullptr;
   if (!material) return false;
   const SurfacePoint& point = vertex.point;
   vertex.toPrevious = -ray.direction;
@@ -81,6 +82,7 @@ bool Scatter(const SampleContext& context, const WalkSettings& settings, int ind
   const EventDensities densities = DensitiesOf(sample, vertex.ScatteringCosine(vertex.toPrevious),
                                                vertex.ScatteringCosine(sample.wi), settings.mode);
   vertex.scatteredDelta = sample.isDelta;
+  state.hasScatteredWidely |= !sample.isDelta;
   vertex.eventForward = densities.forward;
   vertex.eventReverse = densities.reverse;
   state.pdfDirection = densities.forward;
@@ -113,7 +115,10 @@ void Walk(const SampleContext& context, const WalkSettings& settings, PathState&
     if (!visitor.Met(path, state, hit, vertex.point, geometry.Attributes(hit.primitive).light >= 0)) return;
     const auto index = static_cast<int>(path.Count());
     if (index >= settings.maxDepth) return;
-    if (!MakeVertex(context.scene, state.ray, hit, vertex)) return;
+    const bool areOthers = settings.materialsAfterWide && state.hasScatteredWidely;
+    if (!MakeVertex(context.scene, areOthers ? *settings.materialsAfterWide : context.scene.materials, state.ray, hit,
+                    vertex))
+      return;
     vertex.diffuse = state.diffuse;
     vertex.specular = state.specular;
     path.Add();

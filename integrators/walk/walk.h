@@ -17,11 +17,12 @@ struct PathState {
   // paths: by the kind of lobe that scattered at the last vertex. On light paths: for either kind of lobe at the next
   // vertex; equal from the first vertex on.
   Color diffuse, specular;
-  SolidAngleDensity pdfDirection;  // density of the ray's direction at the last vertex (DensitiesOf)
-  Color passed{1.0f};              // transmittance of what the last ray crossed; already a factor of β
-  float length = 0;                // of the whole path so far
-  float etaScale = 1;              // undoes the scaling of radiance by η² in refraction, for Russian roulette
-  float emitted = 1;               // initial throughput, to which Russian roulette compares
+  SolidAngleDensity pdfDirection;   // density of the ray's direction at the last vertex (DensitiesOf)
+  Color passed{1.0f};               // transmittance of what the last ray crossed; already a factor of β
+  float length = 0;                 // of the whole path so far
+  float etaScale = 1;               // undoes the scaling of radiance by η² in refraction, for Russian roulette
+  bool hasScatteredWidely = false;  // at a vertex behind, by a lobe that is no delta
+  float emitted = 1;                // initial throughput, to which Russian roulette compares
 
   Color Throughput() const { return diffuse + specular; }
 };
@@ -75,6 +76,8 @@ struct WalkSettings {
   int maxDepth = 5;  // maximum number of vertices
   PathDimensions dimensions{};
   bool hasRoulette = true;
+  // Materials of the vertices behind a wide scattering; null: those of the scene.
+  const std::vector<std::shared_ptr<const Material>>* materialsAfterWide = nullptr;
 };
 
 // Extends a path from `state` until it escapes or is absorbed, the visitor ends it, or it has hit a surface with

@@ -311,7 +311,7 @@ void ReadIntegrator(const SceneDescription& scene, const RenderOverrides& overri
   for (const auto& [setting, value] : settings.values.All()) {
     if (setting->isInScenes) known.push_back(setting->NameInScenes());
   }
-  parameters.CheckAllUsed({"regularize", "options"}, known, diagnostics);
+  parameters.CheckAllUsed({"options"}, known, diagnostics);
 }
 
 // Embree replaces all accelerators of pbrt-v4. They do not change the image, so there is no warning.

@@ -151,6 +151,12 @@ const SettingValue& Settings::Get(const std::string& name) const {
   throw Error("there is no setting \"" + name + "\"" + DidYouMean(name, Names()));
 }
 
+void Settings::RemoveBias() {
+  for (auto& [setting, value] : values_) {
+    if (setting->isBiased) value = setting->fallback;
+  }
+}
+
 void Settings::Set(const std::string& name, const SettingValue& value) {
   for (auto& [setting, own] : values_) {
     if (setting->name != name) continue;

@@ -31,6 +31,7 @@ struct Setting {
 
   std::string sceneName{};     // name in scene files; "": `name` without hyphens
   bool isInScenes = true;      // false: command line only
+  bool isBiased = false;       // true: any other value than the fallback makes the picture wrong, for speed
   bool changesPicture = true;  // true: part of the identity of a checkpoint
 
   std::string NameInScenes() const;
@@ -68,6 +69,8 @@ class Settings {
   // Throws an Error if there is no such setting, or if it rejects the value (Setting::Check).
   void Set(const std::string& name, const SettingValue& value);
   const Setting* Find(const std::string& name) const;
+  // Biased settings get their fallbacks.
+  void RemoveBias();
   // In the order of declaration.
   const std::vector<std::pair<const Setting*, SettingValue>>& All() const { return values_; }
   std::vector<std::string> Names() const;

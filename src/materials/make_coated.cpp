@@ -40,9 +40,17 @@ void CheckMedium(const MaterialInput& input) {
 struct CoatedDiffuseRecipe {
   RoughnessParameters roughness;
   ColorParameter reflectance;
-  float eta;
+  float eta, thickness;
   int bounces;
-  std::shared_ptr<const CoatTable> table;
+  std::shared_ptr<const CoatTable> table = MakeTable();
+
+  std::shared_ptr<const CoatTable> MakeTable() const {
+    return std::make_shared<CoatTable>(CoatDescription{eta, thickness, roughness.TableAlphas()});
+  }
+  void Roughen() {
+    roughness.Roughen();
+    table = MakeTable();
+  }
 
   BsdfModel Make(const TextureContext& where) const {
     return CoatedDiffuseBsdf(roughness.Evaluate(where), eta, ClampToUnit(reflectance.Evaluate(where)), bounces, *table);
@@ -54,16 +62,37 @@ struct CoatedDiffuseRecipe {
 };
 
 struct CoatedConductorRecipe {
+  // The tables, and the settings that point to them.
+  struct Tables {
+    CoatTable coat;
+    CoatBounceTable bounceRatios;
+    CoatedConductorSettings settings;
+  };
+
   RoughnessParameters coat, base;
   MetalParameters metal;
-  std::shared_ptr<const CoatTable> table;
-  std::shared_ptr<const CoatBounceTable> bounceRatios;
-  std::shared_ptr<const CoatedConductorSettings> settings;
+  float eta, thickness;
+  int bounces;
+  std::shared_ptr<const Tables> tables = MakeTables();
+
+  std::shared_ptr<const Tables> MakeTables() const {
+    const CoatDescription description{eta, thickness, coat.TableAlphas()};
+    const auto made = std::make_shared<Tables>(
+        Tables{CoatTable(description), CoatBounceTable(description, base.TableAlphas()), {eta, thickness, bounces}});
+    made->settings.coat = &made->coat;
+    made->settings.bounceRatios = &made->bounceRatios;
+    return made;
+  }
+  void Roughen() {
+    coat.Roughen();
+    base.Roughen();
+    tables = MakeTables();
+  }
 
   BsdfModel Make(const TextureContext& where) const {
     const auto index = metal.Evaluate(where);
-    return CoatedConductorBsdf(coat.Evaluate(where), base.Evaluate(where), index.eta / settings->eta,
-                               index.k / settings->eta, *settings);
+    return CoatedConductorBsdf(coat.Evaluate(where), base.Evaluate(where), index.eta / eta, index.k / eta,
+                               tables->settings);
   }
   bool IsConstant() const { return coat.IsConstant() && base.IsConstant() && metal.IsConstant(); }
   bool IsAnisotropic() const { return coat.IsAnisotropic() || base.IsAnisotropic(); }
@@ -75,11 +104,9 @@ struct CoatedConductorRecipe {
 
 std::shared_ptr<const Material> MakeCoatedDiffuse(const MaterialInput& input) {
   const RoughnessParameters roughness(input, "");
-  const float eta = GetEta(input, "eta", 1.5f);
-  const auto table = std::make_shared<CoatTable>(CoatDescription{eta, GetThickness(input), roughness.TableAlphas()});
   CoatedDiffuseRecipe recipe{
-      roughness, input.textures.GetColor(input.parameters, "reflectance", Color(0.5f), SpectrumRole::Albedo), eta,
-      GetBounces(input), table};
+      roughness, input.textures.GetColor(input.parameters, "reflectance", Color(0.5f), SpectrumRole::Albedo),
+      GetEta(input, "eta", 1.5f), GetThickness(input), GetBounces(input)};
   ShadingNormal shadingNormal(input.parameters, input.textures, input.diagnostics);
   CheckMedium(input);
   CheckMaterialParameters(input, {"reflectance", "roughness", "uroughness", "vroughness", "remaproughness", "eta",
@@ -89,14 +116,12 @@ std::shared_ptr<const Material> MakeCoatedDiffuse(const MaterialInput& input) {
 
 std::shared_ptr<const Material> MakeCoatedConductor(const MaterialInput& input) {
   const RoughnessParameters coat(input, "interface."), base(input, "conductor.");
-  const MetalParameters metal(input, "conductor.");
-  const float eta = GetEta(input, "interface.eta", 1.5f), thickness = GetThickness(input);
-  const CoatDescription description{eta, thickness, coat.TableAlphas()};
-  const auto table = std::make_shared<CoatTable>(description);
-  const auto bounceRatios = std::make_shared<CoatBounceTable>(description, base.TableAlphas());
-  const auto settings = std::make_shared<CoatedConductorSettings>(
-      CoatedConductorSettings{eta, thickness, GetBounces(input), table.get(), bounceRatios.get()});
-  CoatedConductorRecipe recipe{coat, base, metal, table, bounceRatios, settings};
+  CoatedConductorRecipe recipe{coat,
+                               base,
+                               MetalParameters(input, "conductor."),
+                               GetEta(input, "interface.eta", 1.5f),
+                               GetThickness(input),
+                               GetBounces(input)};
   ShadingNormal shadingNormal(input.parameters, input.textures, input.diagnostics);
   CheckMedium(input);
   CheckMaterialParameters(

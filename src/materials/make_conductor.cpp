@@ -14,6 +14,7 @@ struct ConductorRecipe {
     const auto index = metal.Evaluate(where);
     return ConductorBsdf{roughness.Evaluate(where), index.eta, index.k};
   }
+  void Roughen() { roughness.Roughen(); }
   bool IsConstant() const { return roughness.IsConstant() && metal.IsConstant(); }
   bool IsAnisotropic() const { return roughness.IsAnisotropic(); }
   bool MayTransmit() const { return false; }

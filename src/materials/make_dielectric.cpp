@@ -12,6 +12,7 @@ struct DielectricRecipe {
   float eta;
 
   BsdfModel Make(const TextureContext& where) const { return DielectricBsdf{roughness.Evaluate(where), eta}; }
+  void Roughen() { roughness.Roughen(); }
   bool IsConstant() const { return roughness.IsConstant(); }
   bool IsAnisotropic() const { return roughness.IsAnisotropic(); }
   bool MayTransmit() const { return true; }

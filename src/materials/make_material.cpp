@@ -1,4 +1,6 @@
 // The table of material types.
+#include <map>
+
 #include "materials/material_makers.h"
 
 namespace lampyr {
@@ -28,6 +30,20 @@ constexpr MaterialType kTypes[] = {
 };
 
 }  // namespace
+
+std::vector<std::shared_ptr<const Material>> RoughenedMaterials(
+    const std::vector<std::shared_ptr<const Material>>& materials) {
+  std::map<const Material*, std::shared_ptr<const Material>> made;  // mixes may name a material any number of times
+  const Material::Roughener roughened = [&](const std::shared_ptr<const Material>& material) {
+    if (!material) return material;
+    if (const auto known = made.find(material.get()); known != made.end()) return known->second;
+    std::shared_ptr<const Material> rougher = material->Roughened(roughened);
+    return made[material.get()] = rougher ? rougher : material;
+  };
+  std::vector<std::shared_ptr<const Material>> all;
+  for (const auto& material : materials) all.push_back(roughened(material));
+  return all;
+}
 
 std::vector<std::string> MaterialTypeNames() {
   std::vector<std::string> names;

@@ -33,6 +33,10 @@ class MixMaterial final : public Material {
   Bsdf GetBsdf(const SurfacePoint& point, const Vector3& wo) const override {
     return Choose(point, wo).GetBsdf(point, wo);
   }
+  std::shared_ptr<const Material> Roughened(const Roughener& roughened) const override {
+    std::array<std::shared_ptr<const Material>, 2> rougher{roughened(materials_[0]), roughened(materials_[1])};
+    return std::make_shared<MixMaterial>(std::move(rougher), amount_, salt_);
+  }
   bool IsInterface() const override { return isInterface_; }
   bool MayTransmit() const override { return mayTransmit_; }
   bool HasDelta() const override { return hasDelta_; }

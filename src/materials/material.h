@@ -39,9 +39,17 @@ class Material {
   // The transmission of a thin surface, which ray tracing has to account for if SurfacePoint::isThin is set. Null: not
   // a thin surface.
   virtual const ThinSurface* Thin() const { return nullptr; }
+  // This material with rougher microfacets (TrowbridgeReitz::Roughened), or null if it has none. A material that is
+  // made of others asks `roughened` for theirs.
+  using Roughener = std::function<std::shared_ptr<const Material>(const std::shared_ptr<const Material>&)>;
+  virtual std::shared_ptr<const Material> Roughened(const Roughener& /*roughened*/) const { return nullptr; }
   // True if reflections or refractions may be sharp, as in mirrors and clear glass.
   bool IsSmooth() const { return HasDelta() && !IsInterface(); }
 };
+
+// The materials with rougher microfacets, in the same order; those without microfacets, and null, are shared.
+std::vector<std::shared_ptr<const Material>> RoughenedMaterials(
+    const std::vector<std::shared_ptr<const Material>>& materials);
 
 // Finds materials by name for a "mix"; throws an Error if there is none.
 using MaterialLookup = std::function<std::shared_ptr<const Material>(const std::string& name)>;

@@ -46,7 +46,9 @@ class RoughnessParameters {
   TrowbridgeReitz Evaluate(const TextureContext& where) const;
   bool IsConstant() const { return u_.IsConstant() && v_.IsConstant(); }
   bool IsAnisotropic() const { return isAnisotropic_; }
-  bool MayBeSmooth() const { return !IsConstant() || Evaluate({}).IsSmooth(); }
+  bool MayBeSmooth() const { return !isRoughened_ && (!IsConstant() || Evaluate({}).IsSmooth()); }
+  // From now on Evaluate gives rougher microfacets (TrowbridgeReitz::Roughened).
+  void Roughen() { isRoughened_ = true; }
   // α values for a table: the constant one, or TexturedAlphas().
   std::vector<float> TableAlphas() const;
 
@@ -54,6 +56,7 @@ class RoughnessParameters {
   FloatParameter u_, v_;
   bool isAnisotropic_ = false;
   bool remap_ = true;
+  bool isRoughened_ = false;
 };
 
 // "PREFIXeta", "PREFIXk" and "reflectance" of a metal; copper if none is given.

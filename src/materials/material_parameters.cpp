@@ -53,7 +53,8 @@ TrowbridgeReitz RoughnessParameters::Evaluate(const TextureContext& where) const
   constexpr float kMax = 1e3f;
   const float u = Clamp(u_.Evaluate(where), 0, kMax);
   const float v = isAnisotropic_ ? Clamp(v_.Evaluate(where), 0, kMax) : u;
-  return remap_ ? TrowbridgeReitz(std::sqrt(u), std::sqrt(v)) : TrowbridgeReitz(u, v);
+  const TrowbridgeReitz microfacets = remap_ ? TrowbridgeReitz(std::sqrt(u), std::sqrt(v)) : TrowbridgeReitz(u, v);
+  return isRoughened_ ? microfacets.Roughened() : microfacets;
 }
 
 std::vector<float> RoughnessParameters::TableAlphas() const {

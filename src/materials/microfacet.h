@@ -23,6 +23,12 @@ struct TrowbridgeReitz {
   // True if the surface is treated as a perfect mirror, a delta (the threshold of pbrt-v4).
   bool IsSmooth() const { return std::max(alphaX, alphaY) < 1e-3f; }
 
+  // The rougher microfacets of pbrt-v4's "regularize": α below 0.3 is doubled, to between 0.1 and 0.3.
+  TrowbridgeReitz Roughened() const {
+    const auto roughen = [](float alpha) { return alpha < 0.3f ? std::min(std::max(2 * alpha, 0.1f), 0.3f) : alpha; };
+    return {roughen(alphaX), roughen(alphaY)};
+  }
+
   // Distribution of microfacet normals, 1/sr, m.z ≥ 0.
   float D(const Vector3& m) const {
     const float x = m.x / alphaX, y = m.y / alphaY;

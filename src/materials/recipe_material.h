@@ -2,6 +2,7 @@
 // The model of a recipe without textures is made once. A recipe has
 //   BsdfModel Make(const TextureContext&) const;   bool IsConstant() const;   bool IsAnisotropic() const;
 //   bool MayTransmit() const;   bool HasDelta() const;
+// and, if it has microfacets, `void Roughen()` (Material::Roughened).
 #pragma once
 
 #include "materials/material.h"
@@ -30,6 +31,15 @@ class RecipeMaterial final : public Material {
   bool MayTransmit() const override { return recipe_.MayTransmit(); }
   bool HasDelta() const override { return recipe_.HasDelta(); }
   bool NeedsParametrization() const override { return !isConstant_ || needsTangent_ || !shadingNormal_.IsPlain(); }
+  std::shared_ptr<const Material> Roughened(const Roughener&) const override {
+    if constexpr (requires(Recipe recipe) { recipe.Roughen(); }) {
+      Recipe rougher = recipe_;
+      rougher.Roughen();
+      return std::make_shared<RecipeMaterial>(std::move(rougher), shadingNormal_);
+    } else {
+      return nullptr;
+    }
+  }
   bool IsAlwaysDelta() const override { return isConstant_ && Bsdf(Frame(), Normal3(0, 0, 1), model_).IsDelta(); }
 
  private:
