@@ -8,6 +8,7 @@
 
 #include "app/command_line.h"
 #include "app/commands.h"
+#include "render/first_hit_layers.h"
 #include "render/output_files.h"
 #include "render/render_part.h"
 #include "render/sample_image.h"
@@ -111,7 +112,8 @@ int RunMerge(const MergeOptions& options) {
     film.Add(own);
     whole.samples += part.Header().samples;
   }
-  WriteSamples(options.output, whole, film);
+  // All parts have the same layers of what is seen first, if any.
+  WriteSamples(options.output, whole, film, FirstHitChannelsOf(ReadImage(options.parts.front())));
   if (options.png) WritePngBeside(options.output, film.Develop(), options.exposure, options.clipPng);
   if (!missing.empty()) std::fprintf(stderr, "warning: the picture is not whole: without %s\n", missing.c_str());
   if (!options.quiet) {

@@ -18,6 +18,7 @@
 #include "render/analysis/unseen_samples.h"
 #include "render/build/invalid_light.h"
 #include "render/checkpoints.h"
+#include "render/first_hit_layers.h"
 #include "render/load_scene.h"
 #include "render/output_files.h"
 #include "render/progressive_render.h"
@@ -207,16 +208,16 @@ void WriteTechniques(const RenderOptions& options, const std::vector<TechniqueIm
 
 // Writes the picture so far. The file of one part (--shard) also carries its sums.
 void WriteImage(const std::filesystem::path& path, const RenderOptions& options, const PartHeader& ofAll,
-                const Film& film, const RenderOutcome& outcome) {
+                const Film& film, const Image& layers, const RenderOutcome& outcome) {
   PartHeader header = ofAll;
   header.samples = static_cast<uint32_t>(outcome.samplesPerPixel);
   const bool wasCut = outcome.interrupted || outcome.isPartial;
   header.isFinished = !wasCut || header.samples == header.shard.end - header.shard.first;
   if (!options.shard) {
-    WriteSamples(path, header, film);
+    WriteSamples(path, header, film, layers);
     return;
   }
-  WriteSamples(path, header, film, [&](AtomicFile& file) {
+  WriteSamples(path, header, film, layers, [&](AtomicFile& file) {
     AppendPart(file, PartKind::Picture, header, [&film](ByteWriter& bytes) { film.Save(bytes); });
   });
 }
@@ -224,15 +225,15 @@ void WriteImage(const std::filesystem::path& path, const RenderOptions& options,
 // Writes the picture; if its folder is full or gone, writes it to the folder of temporary files and throws an Error
 // that names that file, so that a long render is not lost.
 void WriteImageOrKeepIt(const std::filesystem::path& path, const RenderOptions& options, const PartHeader& header,
-                        const Film& film, const RenderOutcome& outcome) {
+                        const Film& film, const Image& layers, const RenderOutcome& outcome) {
   try {
-    WriteImage(path, options, header, film, outcome);
+    WriteImage(path, options, header, film, layers, outcome);
   } catch (const Error& error) {
     const std::filesystem::path refuge =
         std::filesystem::temp_directory_path() /
         (path.stem().string() + "-" + std::to_string(getpid()) + path.extension().string());
     try {
-      WriteImage(refuge, options, header, film, outcome);
+      WriteImage(refuge, options, header, film, layers, outcome);
     } catch (const Error&) {
       throw error;
     }
@@ -285,6 +286,7 @@ class RenderJob {
   std::unique_ptr<Integrator> integrator_;
   Shard shard_;
   PartHeader header_;
+  Image firstHit_;  // layers of what is seen first; without channels: not wanted
   RenderReport report_;
 };
 
@@ -371,6 +373,8 @@ int RenderJob::Run() {
                                                    settings_.MaxDepth(), settings_.sensor);
   }
   if (!options_.quiet) PrintHints();
+  if (settings_.firstHit)
+    RunForeignCode(loaded_.types, [&] { firstHit_ = FirstHitLayers(built_, report_.threads, FinishOnInterrupt()); });
   ProgressiveRender render(built_.scene, *integrator_, settings_, report_.threads, film, techniques.get(),
                            shard_.first);
   if (options_.resume) GoOn(render);
@@ -379,7 +383,7 @@ int RenderJob::Run() {
     checkpoints.emplace(checkpointPath_, *options_.checkpointSeconds, header_, render, [&](const RenderOutcome& soFar) {
       RenderOutcome unfinished = soFar;
       unfinished.interrupted = true;
-      WriteImage(path_, options_, header_, film, unfinished);
+      WriteImage(path_, options_, header_, film, firstHit_, unfinished);
     });
   }
   Checkpoints* const written = checkpoints ? &*checkpoints : nullptr;
@@ -401,7 +405,7 @@ int RenderJob::Finish(ProgressiveRender& render, Checkpoints* checkpoints) {
   // The sums in a part's image are of whole samples.
   if (options_.shard) render.DropPartialPass();
   if (render.Techniques()) WriteTechniques(options_, render.Techniques()->Develop(film));
-  WriteImageOrKeepIt(path_, options_, header_, film, report_.outcome);
+  WriteImageOrKeepIt(path_, options_, header_, film, firstHit_, report_.outcome);
   if (options_.png) WritePngBeside(path_, film.Develop(), options_.exposure, options_.clipPng);
   render.DropPartialPass();
   if (checkpoints) checkpoints->Finish(report_.outcome);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "render/pixel_ray.h"
 #include "sampling/rng.h"
 
 namespace lampyr {
@@ -17,13 +18,6 @@ constexpr uint64_t kBeforeTheFirst = 0x6a09e667f3bcc908;  // changes the seed fo
 // In the place of the pixel row, for samples that belong to no pixel:
 constexpr int kLightPaths = -1, kPassTimes = -2;
 
-// Shutter time of a sample, the same for all of its path.
-float SampleTime(const RenderScene& scene, Sampler& sampler) {
-  if (!scene.hasMotion) return 0;
-  sampler.SetDimension(dimensions::kTime);
-  return sampler.Get1D();
-}
-
 // Shutter time of all paths of a pass with photons, in scenes with motion: a photon lies where the surface was at the
 // time of its path, so only paths of the same time may gather it. Times of consecutive passes are stratified.
 float PassTime(const RenderSettings& settings, uint32_t pass) {
@@ -31,23 +25,6 @@ float PassTime(const RenderSettings& settings, uint32_t pass) {
   sampler.StartPixelSample(0, kPassTimes, pass);
   sampler.SetDimension(dimensions::kTime);
   return sampler.Get1D();
-}
-
-// A camera ray through a pixel, with the weight of the pixel filter.
-struct PixelRay {
-  CameraRay camera;
-  float filterWeight = 1;
-};
-PixelRay MakePixelRay(const RenderScene& scene, const PixelFilter& filter, int x, int y, float time, Sampler& sampler) {
-  sampler.SetDimension(dimensions::kFilm);
-  const PixelFilter::Offset offset = filter.Sample(sampler.Get2D());
-  const Point2 film(static_cast<float>(x) + 0.5f + offset.offset.x, static_cast<float>(y) + 0.5f + offset.offset.y);
-  Point2 lens(0.5f);
-  if (!scene.camera->HasPinhole()) {
-    sampler.SetDimension(dimensions::kLens);
-    lens = sampler.Get2D();
-  }
-  return {scene.camera->GenerateRay(film, lens, time), offset.weight};
 }
 
 // Radiance along the ray; of one that is vignetted nothing but the sample's light path is traced.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "render/first_hit_layers.h"
 #include "render/output_files.h"
 
 namespace lampyr {
@@ -27,9 +28,10 @@ void CheckImageOutput(const std::filesystem::path& path, const char* option, boo
   if (withPng) CheckWritable(std::filesystem::path(path).replace_extension(".png"), "--png");
 }
 
-void WriteSamples(const std::filesystem::path& path, const PartHeader& header, const Film& film,
+void WriteSamples(const std::filesystem::path& path, const PartHeader& header, const Film& film, const Image& layers,
                   const std::function<void(AtomicFile&)>& append) {
   Image image = film.Develop();
+  if (!layers.channels.empty()) AppendChannels(image, layers);
   image.metadata = header.metadata;
   image.metadata["lampyr.samplesPerPixel"] = std::to_string(header.samples);
   const bool asHalves = header.halfPrecision && FitsHalves(image);

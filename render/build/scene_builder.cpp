@@ -362,7 +362,7 @@ void Builder::PlaceEntry(const ReadEntry& entry, const Transform& toRender, std:
       if (!cameraVisible) result.attributes.visibility &= ~visibility::kCamera;
     }
     result.attributes.isParametrized =
-        alpha || thin || result.attributes.light >= 0 || material->NeedsParametrization();
+        built_.settings.firstHit || alpha || thin || result.attributes.light >= 0 || material->NeedsParametrization();
     entries.push_back(std::move(result));
   }
 }
@@ -588,6 +588,11 @@ BuiltScene Builder::Build() {
   scene.materials = materials_->Materials();
   scene.camera = LocateErrors(description_.camera.where,
                               [&] { return BuildCamera(description_, built_.settings, worldToRender_, diagnostics_); });
+  if (built_.settings.firstHit) {
+    const bool isWorld = *built_.settings.firstHit == FirstHitSpace::World;
+    const Transform toRender = isWorld ? worldToRender_ : worldToRender_ * description_.cameraToWorld.start;
+    built_.renderToLayers = toRender.Inverse().ToAffine();
+  }
   scene.geometry = std::make_shared<const GeometryScene>(std::move(geometry_));
   linking_.Finish(lights_, diagnostics_);
   scene.lighting = std::make_shared<const LightingServices>(

@@ -11,6 +11,8 @@ namespace lampyr {
 struct BuiltScene {
   RenderSettings settings;
   RenderScene scene;
+  Affine
+      renderToLayers;  // from render space to the space of the layers of what is seen first (RenderSettings::firstHit)
   // Locations of the lights and the light filters in the scene file, by their indices.
   std::vector<FileLocation> lightPlaces, filterPlaces;
 };

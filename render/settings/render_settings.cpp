@@ -83,7 +83,14 @@ void ReadFilm(const SceneDescription& scene, const RenderOverrides& overrides, R
               Diagnostics& diagnostics) {
   const ParameterList& film = scene.film.parameters;
   const std::string& type = scene.film.type;
-  if (type == "gbuffer" || type == "spectral") {
+  if (type == "gbuffer") {
+    const std::string space = film.GetString("coordinatesystem", "camera");
+    if (space != "camera" && space != "world") {
+      throw Error(film.WhereOf("coordinatesystem"), "\"coordinatesystem\" is \"camera\" or \"world\", not \"" + space +
+                                                        "\"" + DidYouMean(space, {"camera", "world"}));
+    }
+    settings.firstHit = space == "world" ? FirstHitSpace::World : FirstHitSpace::Camera;
+  } else if (type == "spectral") {
     diagnostics.Warn(scene.film.where, "Film \"" + type + "\" is not supported yet; \"rgb\" is used");
   } else if (!type.empty() && type != "rgb") {
     throw Error(scene.film.where,

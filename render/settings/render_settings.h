@@ -27,6 +27,9 @@ struct RenderOverrides {
   uint64_t seed = 0;
 };
 
+// The space of the layers of Film "gbuffer".
+enum class FirstHitSpace { Camera, World };
+
 struct RenderSettings {
   std::string integrator = "path";
   std::string namedIntegrator;             // named by the scene, as lampyr calls it; "" if it names none or "auto"
@@ -38,8 +41,9 @@ struct RenderSettings {
   int samplesPerPixel = 16;
   uint64_t seed = 0;
   bool halfPrecision = false;
-  SensorResponse sensor;   // exposure, white balance, limit on samples
-  std::string outputFile;  // named by the scene
+  SensorResponse sensor;                  // exposure, white balance, limit on samples
+  std::string outputFile;                 // named by the scene
+  std::optional<FirstHitSpace> firstHit;  // absent: no such layers
 
   int MaxDepth() const { return MaxDepthOf(values); }
   bool LearnsLights() const { return values.IsOn("learn-lights"); }

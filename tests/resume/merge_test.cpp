@@ -60,6 +60,16 @@ TEST_F(Merge, PartsThatLearnAgreeWithOneRender) {
   }
 }
 
+// The layers of what is seen first are in the parts, in their whole, and in what is resumed.
+TEST_F(Merge, LayersOfTheFirstHitAreKept) {
+  std::string text = kScene;
+  text.replace(text.find("\"rgb\""), 5, "\"gbuffer\"");
+  WriteBytes(folder_ / "scene.pbrt", text);
+  ExpectWhole("--spp 8 --integrator path", 2);
+  ExpectWhole("--spp 8 --integrator light", 3);
+  EXPECT_GE(ReadImage(folder_ / "merged.exr").ChannelIndex("Ns.X"), 0);
+}
+
 TEST_F(Merge, HalvesStayHalves) {
   std::string text = kScene;
   text.replace(text.find("\"rgb\""), 5, "\"rgb\" \"bool savefp16\" true");
