@@ -113,7 +113,7 @@ int RunMerge(const MergeOptions& options) {
     whole.samples += part.Header().samples;
   }
   // All parts have the same layers of what is seen first, if any.
-  WriteSamples(options.output, whole, film, FirstHitChannelsOf(ReadImage(options.parts.front())));
+  WriteSamples(options.output, whole, film, ChannelsOf(ReadImage(options.parts.front()), FirstHitChannels()));
   if (options.png) WritePngBeside(options.output, film.Develop(), options.exposure, options.clipPng);
   if (!missing.empty()) std::fprintf(stderr, "warning: the picture is not whole: without %s\n", missing.c_str());
   if (!options.quiet) {

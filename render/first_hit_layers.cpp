@@ -143,30 +143,4 @@ Image FirstHitLayers(const BuiltScene& built, int threads, const std::atomic<boo
   return image;
 }
 
-void AppendChannels(Image& image, const Image& layers) {
-  Image both(image.width, image.height, image.channels);
-  both.channels.insert(both.channels.end(), layers.channels.begin(), layers.channels.end());
-  both.data.clear();
-  const size_t own = image.channels.size(), more = layers.channels.size();
-  both.data.reserve(image.data.size() + layers.data.size());
-  for (size_t i = 0; i < image.data.size() / own; ++i) {
-    both.data.insert(both.data.end(), image.data.begin() + long(i * own), image.data.begin() + long((i + 1) * own));
-    both.data.insert(both.data.end(), layers.data.begin() + long(i * more), layers.data.begin() + long((i + 1) * more));
-  }
-  image.channels = std::move(both.channels);
-  image.data = std::move(both.data);
-}
-
-Image FirstHitChannelsOf(const Image& image) {
-  Image found(image.width, image.height, FirstHitChannels());
-  for (size_t c = 0; c < found.channels.size(); ++c) {
-    const int from = image.ChannelIndex(found.channels[c]);
-    if (from < 0) return {};
-    for (int y = 0; y < image.height; ++y) {
-      for (int x = 0; x < image.width; ++x) found.At(x, y, c) = image.At(x, y, static_cast<size_t>(from));
-    }
-  }
-  return found;
-}
-
 }  // namespace lampyr

@@ -25,9 +25,4 @@ const std::vector<std::string>& FirstHitChannels();
 // is then 0.
 Image FirstHitLayers(const BuiltScene& built, int threads, const std::atomic<bool>& interrupted);
 
-// Adds all channels of `layers` to an image of the same size.
-void AppendChannels(Image& image, const Image& layers);
-// Those channels of an image that are FirstHitChannels(); an image without channels if it does not have all of them.
-Image FirstHitChannelsOf(const Image& image);
-
 }  // namespace lampyr

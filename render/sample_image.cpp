@@ -4,7 +4,6 @@
 #include <cmath>
 #include <string>
 
-#include "render/first_hit_layers.h"
 #include "render/output_files.h"
 
 namespace lampyr {

@@ -75,6 +75,30 @@ Image::Image(int w, int h, std::vector<std::string> channelNames)
       channels(std::move(channelNames)),
       data(static_cast<size_t>(w) * static_cast<size_t>(h) * channels.size(), 0.0f) {}
 
+void AppendChannels(Image& image, const Image& more) {
+  const size_t own = image.channels.size(), added = more.channels.size();
+  std::vector<float> data;
+  data.reserve(image.data.size() + more.data.size());
+  for (size_t a = 0, b = 0; a < image.data.size(); a += own, b += added) {
+    data.insert(data.end(), &image.data[a], &image.data[a] + own);
+    data.insert(data.end(), &more.data[b], &more.data[b] + added);
+  }
+  image.data = std::move(data);
+  image.channels.insert(image.channels.end(), more.channels.begin(), more.channels.end());
+}
+
+Image ChannelsOf(const Image& image, const std::vector<std::string>& names) {
+  Image found(image.width, image.height, names);
+  for (size_t c = 0; c < names.size(); ++c) {
+    const int from = image.ChannelIndex(names[c]);
+    if (from < 0) return {};
+    for (size_t to = c, at = static_cast<size_t>(from); to < found.data.size();
+         to += names.size(), at += image.channels.size())
+      found.data[to] = image.data[at];
+  }
+  return found;
+}
+
 int Image::ChannelIndex(const std::string& name) const {
   const auto found = std::find(channels.begin(), channels.end(), name);
   return found == channels.end() ? -1 : static_cast<int>(found - channels.begin());

@@ -39,6 +39,11 @@ struct Image {
   bool HasRgb() const;  // or gray: RgbAt is meaningful
 };
 
+// Adds all channels of `more`, an image of the same size.
+void AppendChannels(Image& image, const Image& more);
+// The channels of those names; an image without channels if it does not have all of them.
+Image ChannelsOf(const Image& image, const std::vector<std::string>& names);
+
 enum class ExrPrecision { Half, Float };
 
 // Writes an OpenEXR file atomically (AtomicFile). Throws an Error (unwritable folder, full disk). `append`, if given,
