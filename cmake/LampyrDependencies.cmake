@@ -8,6 +8,7 @@ find_package(TBB REQUIRED)
 find_package(fmt REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(nlohmann_json REQUIRED)
+find_package(PNG REQUIRED)
 find_package(ZLIB REQUIRED)
 
 # Debian's OpenImageIO package file demands the command-line tools and an OpenCV folder that its library does not need:

@@ -18,7 +18,7 @@ namespace lampyr {
 
 namespace {
 
-constexpr std::string_view kOpenExr = "openexr";
+constexpr std::string_view kOpenExr = "openexr", kPng = "png";
 
 // Applies `decode` to all channels except alpha. 8-bit values use a table: a texture has millions of them.
 template <class Decode>
@@ -48,6 +48,10 @@ void CheckReadable(const std::filesystem::path& path) {
   if (!std::filesystem::is_regular_file(status)) {
     throw Error("cannot read image \"" + path.string() + "\": it is not a regular file");
   }
+}
+
+EncodedImage ReadEncoded(const std::filesystem::path& path, const ImageKind& kind) {
+  return kind.format == kPng ? ReadPng(path) : ReadThroughModule(path, kind);
 }
 
 // Identity up to s = kShoulderStart, then an exponential that continues it with the same slope and tends to 1:
@@ -171,7 +175,7 @@ Image ReadImage(const std::filesystem::path& path, ImageEncoding encoding) {
   CheckReadable(path);
   const ImageKind kind = FindImageKind(path);
   if (kind.format == kOpenExr) return ReadExr(path);
-  EncodedImage encoded = ReadThroughModule(path, kind);
+  EncodedImage encoded = ReadEncoded(path, kind);
   const bool automatic = encoded.integerBits == 8 || (encoded.integerBits > 0 && encoded.saysSrgb);
   const bool decode = encoding == ImageEncoding::Automatic ? automatic : encoding == ImageEncoding::Srgb;
   if (decode && encoded.integerBits > 0) DecodeChannels(encoded, SrgbToLinear);
@@ -182,7 +186,7 @@ Image ReadImageWithGamma(const std::filesystem::path& path, float gamma) {
   CheckReadable(path);
   const ImageKind kind = FindImageKind(path);
   if (kind.format == kOpenExr) return ReadExr(path);
-  EncodedImage encoded = ReadThroughModule(path, kind);
+  EncodedImage encoded = ReadEncoded(path, kind);
   if (encoded.integerBits > 0) {
     DecodeChannels(encoded, [gamma](float value) { return std::pow(std::max(value, 0.0f), gamma); });
   }

@@ -22,12 +22,14 @@ ImageKind FindImageKind(const std::filesystem::path& path);
 
 Image ReadExr(const std::filesystem::path& path);
 
-// An image read through OpenImageIO, with values as encoded in the file.
+// An image with values as encoded in the file.
 struct EncodedImage {
   Image image;
   int integerBits = 0;    // 8, 16, …; 0 for floating point
   bool saysSrgb = false;  // declared by the file or implied by its format
 };
+// PNG files, without the module.
+EncodedImage ReadPng(const std::filesystem::path& path);
 EncodedImage ReadThroughModule(const std::filesystem::path& path, const ImageKind& kind);
 
 struct JpegSize {

@@ -1,18 +1,14 @@
-// The image module: the formats read through OpenImageIO, and PNG encoding. It is a separate shared library because
+// The image module: the formats read through OpenImageIO. It is a separate shared library because
 // OpenImageIO costs every process that links it 0.3 s and 127 MiB at start. No exception leaves it.
 #include "film/image_module.h"
 
-#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <cstring>
 #include <exception>
 #include <memory>
-#include <mutex>
 #include <new>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,27 +21,6 @@ void SetError(char* error, size_t errorSize, std::string text) {
   std::memcpy(error, text.data(), length);
   error[length] = '\0';
 }
-
-// Redirects stderr (the C stream) while an object exists: libpng prints errors there that it also returns as text.
-// Sanitizers and crash handlers write to the descriptor itself and are not affected.
-class SilentStderr {
- public:
-  SilentStderr() : lock_(Mutex()), before_(stderr) {
-    static std::FILE* const nowhere = std::fopen("/dev/null", "w");  // never closed: another thread may still hold it
-    if (nowhere) stderr = nowhere;
-  }
-  ~SilentStderr() { stderr = before_; }
-  SilentStderr(const SilentStderr&) = delete;
-  SilentStderr& operator=(const SilentStderr&) = delete;
-
- private:
-  static std::mutex& Mutex() {
-    static std::mutex mutex;
-    return mutex;
-  }
-  const std::lock_guard<std::mutex> lock_;
-  std::FILE* const before_;
-};
 
 int IntegerBits(const OIIO::TypeDesc& format) {
   const bool isFloat = format.basetype == OIIO::TypeDesc::HALF || format.basetype == OIIO::TypeDesc::FLOAT ||
@@ -61,8 +36,6 @@ std::string ErrorOf(const OIIO::ImageInput& input) {
 // Returns "" on success, otherwise the error.
 std::string Read(const char* path, const char* format, lampyr::ImageModuleAllocate allocate, void* context) {
   OIIO::attribute("limits:imagesize_MB", 1 << 30);  // `allocate` decides what is too large
-  std::optional<SilentStderr> silent;
-  if (std::strcmp(format, "png") == 0) silent.emplace();
   OIIO::ImageSpec configuration, opened;
   configuration.attribute("oiio:UnassociatedAlpha", 1);  // colours as stored, not multiplied by alpha
   const auto input = OIIO::ImageInput::create(format);
@@ -94,21 +67,6 @@ std::string Read(const char* path, const char* format, lampyr::ImageModuleAlloca
   return "";
 }
 
-std::string EncodePng(int width, int height, const unsigned char* rgb, lampyr::ImageModuleSink sink, void* context) {
-  std::vector<unsigned char> bytes;
-  OIIO::Filesystem::IOVecOutput memory(bytes);
-  const auto output = OIIO::ImageOutput::create("png");
-  if (!output) return OIIO::geterror();
-  OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
-  spec.attribute("oiio:ColorSpace", "sRGB");
-  output->set_ioproxy(&memory);
-  const bool done =
-      output->open("picture.png", spec) && output->write_image(OIIO::TypeDesc::UINT8, rgb) && output->close();
-  if (!done) return output->geterror();
-  sink(context, bytes.data(), bytes.size());
-  return "";
-}
-
 template <class Work>
 int Guarded(char* error, size_t errorSize, Work work) {
   std::string text;
@@ -137,11 +95,6 @@ int lampyr_image_module_version() {
 int lampyr_read_image(const char* path, const char* format, lampyr::ImageModuleAllocate allocate, void* context,
                       char* error, size_t errorSize) {
   return Guarded(error, errorSize, [&] { return Read(path, format, allocate, context); });
-}
-
-int lampyr_encode_png(int width, int height, const unsigned char* rgb, lampyr::ImageModuleSink sink, void* context,
-                      char* error, size_t errorSize) {
-  return Guarded(error, errorSize, [&] { return EncodePng(width, height, rgb, sink, context); });
 }
 
 }  // extern "C"

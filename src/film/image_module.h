@@ -6,7 +6,7 @@
 
 namespace lampyr {
 
-inline constexpr int kImageModuleVersion = 2;
+inline constexpr int kImageModuleVersion = 3;
 
 // Properties of an image, known before its pixels are read.
 struct ImageModuleInfo {
@@ -19,14 +19,11 @@ struct ImageModuleInfo {
 
 // Returns memory for width·height·channels floats, or null to stop.
 using ImageModuleAllocate = float* (*)(void* context, const ImageModuleInfo* info);
-using ImageModuleSink = void (*)(void* context, const void* bytes, size_t count);
 
-// Both return 0 on success, or 1 with a text in `error` (of `errorSize` characters, terminated by 0). `format`: the
+// Returns 0 on success, or 1 with a text in `error` (of `errorSize` characters, terminated by 0). `format`: the
 // only reader to be tried.
 using ImageModuleRead = int (*)(const char* path, const char* format, ImageModuleAllocate allocate, void* context,
                                 char* error, size_t errorSize);
-using ImageModuleEncodePng = int (*)(int width, int height, const unsigned char* rgb, ImageModuleSink sink,
-                                     void* context, char* error, size_t errorSize);
 using ImageModuleVersion = int (*)();
 
 }  // namespace lampyr

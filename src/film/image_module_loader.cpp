@@ -17,7 +17,6 @@ namespace {
 
 struct ImageModule {
   ImageModuleRead read = nullptr;
-  ImageModuleEncodePng encodePng = nullptr;
 };
 
 std::vector<std::filesystem::path> ModulePlaces() {
@@ -51,11 +50,10 @@ ImageModule LoadImageModule() {
     if (Symbol<ImageModuleVersion>(library, place, "lampyr_image_module_version")() != kImageModuleVersion) {
       throw Error("the image module " + place.string() + " is of another version of lampyr");
     }
-    return {Symbol<ImageModuleRead>(library, place, "lampyr_read_image"),
-            Symbol<ImageModuleEncodePng>(library, place, "lampyr_encode_png")};
+    return {Symbol<ImageModuleRead>(library, place, "lampyr_read_image")};
   }
   throw Error("this image format needs the image module, which was not found (looked for " + tried +
-              "); OpenEXR files need no module");
+              "); OpenEXR and PNG files need no module");
 }
 
 const ImageModule& GetImageModule() {
@@ -85,11 +83,6 @@ float* AllocateImage(void* opaque, const ImageModuleInfo* info) {
   }
 }
 
-void AppendBytes(void* opaque, const void* bytes, size_t count) {
-  const auto* first = static_cast<const unsigned char*>(bytes);
-  static_cast<std::vector<unsigned char>*>(opaque)->assign(first, first + count);
-}
-
 }  // namespace
 
 EncodedImage ReadThroughModule(const std::filesystem::path& path, const ImageKind& kind) {
@@ -114,15 +107,6 @@ EncodedImage ReadThroughModule(const std::filesystem::path& path, const ImageKin
     }
   }
   return std::move(context.encoded);
-}
-
-std::vector<unsigned char> EncodePng(int width, int height, const std::vector<unsigned char>& rgb) {
-  std::array<char, 512> error{};
-  std::vector<unsigned char> bytes;
-  if (GetImageModule().encodePng(width, height, rgb.data(), AppendBytes, &bytes, error.data(), error.size()) != 0) {
-    throw Error(std::string("cannot encode PNG: ") + error.data());
-  }
-  return bytes;
 }
 
 }  // namespace lampyr

@@ -12,12 +12,6 @@
 #include "film/image.h"
 #include "support/temporary_folder.h"
 
-// OpenImageIO leaks its message when libpng jumps out of a damaged PNG: not ours, and not to fail a sanitizer run.
-extern "C" const char* __lsan_default_suppressions();
-extern "C" const char* __lsan_default_suppressions() {
-  return "leak:OpenImageIO\n";
-}
-
 namespace lampyr {
 namespace {
 
