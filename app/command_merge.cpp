@@ -91,6 +91,19 @@ void CheckPartsStay(const MergeOptions& options) {
   }
 }
 
+// The layers of what is seen first, which are the same in all parts that have them; without channels if the picture has
+// none, or no part was given the time for them.
+Image FirstHitLayersOf(const std::vector<Part>& parts, const PartHeader& whole, bool quiet) {
+  if (!whole.metadata.contains(kFirstHitMetadata)) return {};
+  for (const Part& part : parts) {
+    Image layers = ChannelsOf(ReadImage(part.path), FirstHitChannels());
+    if (!layers.channels.empty()) return layers;
+  }
+  if (!quiet)
+    std::fprintf(stderr, "warning: no part has the layers of Film \"gbuffer\": the picture is without them\n");
+  return {};
+}
+
 }  // namespace
 
 int RunMerge(const MergeOptions& options) {
@@ -112,8 +125,7 @@ int RunMerge(const MergeOptions& options) {
     film.Add(own);
     whole.samples += part.Header().samples;
   }
-  // All parts have the same layers of what is seen first, if any.
-  WriteSamples(options.output, whole, film, ChannelsOf(ReadImage(options.parts.front()), FirstHitChannels()));
+  WriteSamples(options.output, whole, film, FirstHitLayersOf(parts, whole, options.quiet));
   if (options.png) WritePngBeside(options.output, film.Develop(), options.exposure, options.clipPng);
   if (!missing.empty()) std::fprintf(stderr, "warning: the picture is not whole: without %s\n", missing.c_str());
   if (!options.quiet) {

@@ -74,7 +74,9 @@ void CheckSceneStays(const RenderOptions& options, const SceneDescription& scene
 // An image too large for the machine is told before the system ends the process for it. The film is kept twice
 // (render_backup.h).
 void CheckMemory(const RenderSettings& settings, TracedPaths paths, size_t layers, bool hasTechniques) {
-  const uint64_t channels = 6 + 3 * layers;  // of the developed image: colour, variance and layers
+  // Of the developed image: colour, variance and layers; those of what is seen first are kept during the render, too.
+  const uint64_t firstHit = settings.firstHit ? FirstHitChannels().size() : 0;
+  const uint64_t channels = 6 + 3 * layers + 2 * firstHit;
   const uint64_t techniques = hasTechniques ? TechniqueImages::BytesPerPixel(settings.MaxDepth()) : 0;
   const uint64_t perPixel =
       2 * (Film::BytesPerPixel(layers, paths != TracedPaths::Camera) + techniques) + 2 * channels * sizeof(float);
@@ -122,6 +124,8 @@ PartHeader MakeHeader(const RenderOptions& options, const LoadedScene& loaded, c
                      {"lampyr.integrator", settings.integrator},
                      {"lampyr.seed", std::to_string(settings.seed)}};
   if (!header.layers.empty()) header.metadata["lampyr.lightGroups"] = Joined(header.layers, ",");
+  if (settings.firstHit)
+    header.metadata[kFirstHitMetadata] = *settings.firstHit == FirstHitSpace::World ? "world" : "camera";
   if (options.shard || options.resume || options.checkpointSeconds)
     header.identity = IdentityOf(loaded, options.robust);
   return header;
@@ -273,6 +277,7 @@ class RenderJob {
  private:
   void Describe();
   void PrintHints() const;
+  void MakeFirstHitLayers();
   void GoOn(ProgressiveRender& render);
   void Trace(ProgressiveRender& render, Checkpoints* checkpoints);
   int Finish(ProgressiveRender& render, Checkpoints* checkpoints);
@@ -353,15 +358,19 @@ void RenderJob::Trace(ProgressiveRender& render, Checkpoints* checkpoints) {
 void RenderJob::PrintHints() const {
   for (const std::string& hint : IntegratorHints(built_.scene, settings_.integrator))
     std::fprintf(stderr, "hint: %s\n", hint.c_str());
-  for (const std::string& name : UnreadBias(settings_.integrator, settings_.values))
-    std::fprintf(stderr, "hint: %s does not know the setting \"%s\", and renders without its bias\n",
-                 settings_.integrator.c_str(), name.c_str());
   if (options_.overrides.integrator || settings_.namedIntegrator.empty()) return;
   PlanDecision suits;
   RunForeignCode(loaded_.types, [&] { suits = ChooseIntegrator(built_.scene, settings_); });
   if (suits.choice == settings_.namedIntegrator) return;
   std::fprintf(stderr, "hint: the scene names %s; --integrator auto would render with %s: %s\n",
                settings_.namedIntegrator.c_str(), suits.choice.c_str(), suits.reason.c_str());
+}
+
+void RenderJob::MakeFirstHitLayers() {
+  RunForeignCode(loaded_.types, [&] { firstHit_ = FirstHitLayers(built_, report_.threads, FinishOnInterrupt()); });
+  if (firstHit_.channels.empty())
+    std::fprintf(stderr,
+                 "warning: stopped before the layers of Film \"gbuffer\" were made: the picture is without them\n");
 }
 
 int RenderJob::Run() {
@@ -373,8 +382,7 @@ int RenderJob::Run() {
                                                    settings_.MaxDepth(), settings_.sensor);
   }
   if (!options_.quiet) PrintHints();
-  if (settings_.firstHit)
-    RunForeignCode(loaded_.types, [&] { firstHit_ = FirstHitLayers(built_, report_.threads, FinishOnInterrupt()); });
+  if (settings_.firstHit) MakeFirstHitLayers();
   ProgressiveRender render(built_.scene, *integrator_, settings_, report_.threads, film, techniques.get(),
                            shard_.first);
   if (options_.resume) GoOn(render);

@@ -24,8 +24,8 @@ bool GathersPhotons(const std::string& integrator, const Settings& settings);
 
 // IntegratorType::hints of the integrator of that name; empty for an unknown name.
 std::vector<std::string> IntegratorHints(const RenderScene& scene, const std::string& integrator);
-// Names of the biased settings that are not at their fallback and that the integrator of that name does not read: its
-// picture is right where another was asked for.
+// Names of the biased settings that were changed, but that the integrator of that name does not read. Its picture does
+// not have the bias that was asked for.
 std::vector<std::string> UnreadBias(const std::string& integrator, const Settings& settings);
 // IntegratorType::refusal of the integrator of that name; "" for an unknown name.
 std::string IntegratorRefusal(const RenderScene& scene, const std::string& integrator);

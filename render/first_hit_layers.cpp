@@ -12,6 +12,7 @@ namespace lampyr {
 namespace {
 
 constexpr int kMostSamples = 16, kSamplesOfAlbedo = 4;
+constexpr size_t kNg = 8, kNs = 11;  // the normals among FirstHit::Values
 
 struct FirstHit {
   Color albedo;
@@ -46,13 +47,19 @@ class FirstHitTracer {
       FirstHit hit;
       if (ray.camera.weight == 0 || !Trace(ray, x, y, sampler, hit)) continue;
       const std::array<float, 16> values = hit.Values();
-      for (size_t c = 0; c < values.size(); ++c)
-        sums[c] += static_cast<double>(values[c]) * static_cast<double>(ray.filterWeight);
-      weights += static_cast<double>(ray.filterWeight);
+      if (!std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); })) continue;
+      // A filter with negative lobes would divide by a sum near 0 at the edge of a surface.
+      const double weight = std::abs(static_cast<double>(ray.filterWeight));
+      for (size_t c = 0; c < values.size(); ++c) sums[c] += static_cast<double>(values[c]) * weight;
+      weights += weight;
     }
     std::array<float, 16> means{};
-    if (weights != 0)
-      std::transform(sums.begin(), sums.end(), means.begin(), [&](double s) { return float(s / weights); });
+    if (!(weights > 0)) return means;
+    std::transform(sums.begin(), sums.end(), means.begin(), [&](double s) { return float(s / weights); });
+    for (const size_t first : {kNg, kNs}) {
+      const float length = std::hypot(means[first], means[first + 1], means[first + 2]);
+      for (size_t c = first; c < first + 3; ++c) means[c] = length > 0 ? means[c] / length : 0.0f;
+    }
     return means;
   }
 
@@ -96,8 +103,8 @@ class FirstHitTracer {
     return sum / float(kSamplesOfAlbedo);
   }
 
-  // Change of z in the plane of the surface between what the pixel's middle sees of it and what the middle of the pixel
-  // `step` away does; 0 if one of them does not meet that plane.
+  // Magnitude of the change of z in the plane of the surface between what the pixel's middle sees of it and what the
+  // middle of the pixel `step` away does; 0 if one of them does not meet that plane.
   float DepthChange(const SurfacePoint& point, int x, int y, const Point2& step) const {
     const Point2 middle(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
     const auto pointOf = [&](const Ray& through, float& z) {
@@ -108,9 +115,10 @@ class FirstHitTracer {
       return std::isfinite(z);
     };
     float here = 0, there = 0;
-    const Ray a = scene_.camera->GenerateRay(middle, Point2(0.5f), 0).ray;
-    const Ray b = scene_.camera->GenerateRay(middle + step, Point2(0.5f), 0).ray;
-    return pointOf(a, here) && pointOf(b, there) ? there - here : 0.0f;
+    const CameraRay a = scene_.camera->GenerateRay(middle, Point2(0.5f), 0);
+    const CameraRay b = scene_.camera->GenerateRay(middle + step, Point2(0.5f), 0);
+    if (a.weight == 0 || b.weight == 0 || !pointOf(a.ray, here) || !pointOf(b.ray, there)) return 0;
+    return std::abs(there - here);
   }
 
   const RenderScene& scene_;
@@ -140,7 +148,7 @@ Image FirstHitLayers(const BuiltScene& built, int threads, const std::atomic<boo
       std::copy(values.begin(), values.end(), &image.At(column, row, 0));
     }
   });
-  return image;
+  return interrupted.load() ? Image() : image;
 }
 
 }  // namespace lampyr

@@ -225,7 +225,7 @@ int CompareLoaded(const CompareOptions& options, const ComparisonPlan& plan, con
       }
     }
   }
-  // What all are compared to is right, whatever bias the scene or the command line asks for.
+  // The reference has no bias, whatever the scene or the command line asks for.
   BuiltScene unbiased = loaded.built;
   unbiased.settings.values.RemoveBias();
   const ComparedScene referenceScene(unbiased, results.threads, FinishOnInterrupt());

@@ -36,8 +36,8 @@ std::unique_ptr<Integrator> Create(const IntegratorInput& input) {
   CameraPathSettings settings;
   settings.maxDepth = MaxDepthOf(input.settings);
   settings.shadowRays = ShadowRaysOf(input);
-  // Both techniques of a vertex see the same material there, so that their weights sum to 1. A vertex of a
-  // bidirectional path would be another one for each technique.
+  // Next-event estimation and BSDF sampling at a vertex use the same roughened material, so that their weights sum
+  // to 1. In a bidirectional path the material of a vertex would differ between techniques.
   const bool regularizes = input.settings.IsOn(kRegularize.name);
   return std::make_unique<PathIntegrator>(settings, regularizes ? RoughenedMaterials(input.scene.materials)
                                                                 : std::vector<std::shared_ptr<const Material>>());

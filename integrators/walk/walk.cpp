@@ -115,9 +115,9 @@ void Walk(const SampleContext& context, const WalkSettings& settings, PathState&
     if (!visitor.Met(path, state, hit, vertex.point, geometry.Attributes(hit.primitive).light >= 0)) return;
     const auto index = static_cast<int>(path.Count());
     if (index >= settings.maxDepth) return;
-    const bool areOthers = settings.materialsAfterWide && state.hasScatteredWidely;
-    if (!MakeVertex(context.scene, areOthers ? *settings.materialsAfterWide : context.scene.materials, state.ray, hit,
-                    vertex))
+    const bool isBehindWide = settings.materialsAfterWide && state.hasScatteredWidely;
+    if (!MakeVertex(context.scene, isBehindWide ? *settings.materialsAfterWide : context.scene.materials, state.ray,
+                    hit, vertex))
       return;
     vertex.diffuse = state.diffuse;
     vertex.specular = state.specular;

@@ -21,7 +21,7 @@ struct PathState {
   Color passed{1.0f};               // transmittance of what the last ray crossed; already a factor of β
   float length = 0;                 // of the whole path so far
   float etaScale = 1;               // undoes the scaling of radiance by η² in refraction, for Russian roulette
-  bool hasScatteredWidely = false;  // at a vertex behind, by a lobe that is no delta
+  bool hasScatteredWidely = false;  // an earlier vertex scattered by a lobe that is no delta
   float emitted = 1;                // initial throughput, to which Russian roulette compares
 
   Color Throughput() const { return diffuse + specular; }

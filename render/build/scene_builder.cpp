@@ -600,6 +600,10 @@ BuiltScene Builder::Build() {
       static_cast<int>(built_.settings.values.Integer("light-samples")));
   if (built_.settings.integrator == "auto")
     built_.settings.integrator = ChooseIntegrator(scene, built_.settings).choice;
+  for (const std::string& name : UnreadBias(built_.settings.integrator, built_.settings.values)) {
+    diagnostics_.Warn("\"" + name + "\" is ignored: " + built_.settings.integrator +
+                      " does not support it, and renders the picture without that bias");
+  }
   const auto& lights = scene.lighting->Lights();
   const bool hasSky = std::any_of(lights.begin(), lights.end(), [](const PlacedLight& placed) {
     return placed.light->Kind() == LightKind::Infinite;

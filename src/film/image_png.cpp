@@ -2,10 +2,13 @@
 // longjmp: between setjmp and the calls that may jump there is no object with a destructor.
 #include <png.h>
 
+#include <cmath>
 #include <csetjmp>
+#include <cstdint>
 #include <cstdio>
-#include <memory>
+#include <new>
 #include <string>
+#include <vector>
 
 #include "base/error.h"
 #include "film/image_formats.h"
@@ -39,6 +42,7 @@ void Ignore(png_structp, png_const_charp) {}
 struct PngLayout {
   uint32_t width = 0, height = 0;
   int channels = 0, bits = 0, passes = 1;
+  int storedBytesPerPixel = 1;  // in the file, rounded
   bool saysSrgb = false;
 };
 
@@ -46,7 +50,10 @@ struct PngLayout {
 bool BeginReading(PngFile& file, PngLayout& layout) {
   if (setjmp(png_jmpbuf(file.png))) return false;
   png_init_io(file.png, file.file);
+  png_set_chunk_cache_max(file.png, 1);  // keeps no texts, which may unpack to gigabytes
   png_read_info(file.png, file.info);
+  const int storedBits = png_get_channels(file.png, file.info) * png_get_bit_depth(file.png, file.info);
+  layout.storedBytesPerPixel = std::max(storedBits / 8, 1);
   png_set_expand(file.png);
   layout.passes = png_set_interlace_handling(file.png);
   png_read_update_info(file.png, file.info);
@@ -54,10 +61,11 @@ bool BeginReading(PngFile& file, PngLayout& layout) {
   layout.height = png_get_image_height(file.png, file.info);
   layout.channels = png_get_channels(file.png, file.info);
   layout.bits = png_get_bit_depth(file.png, file.info);
-  // Without a chunk that says otherwise a PNG is sRGB.
-  double gamma = 0;
-  layout.saysSrgb =
-      png_get_valid(file.png, file.info, PNG_INFO_sRGB) != 0 || png_get_gAMA(file.png, file.info, &gamma) == 0;
+  // A PNG is sRGB if it says so, or has a gamma near that of sRGB, or says nothing.
+  constexpr double kOfSrgb = 1 / 2.2, kTolerance = 0.01;
+  double gamma = kOfSrgb;
+  png_get_gAMA(file.png, file.info, &gamma);
+  layout.saysSrgb = png_get_valid(file.png, file.info, PNG_INFO_sRGB) != 0 || std::abs(gamma - kOfSrgb) < kTolerance;
   return true;
 }
 
@@ -78,7 +86,9 @@ void Decode(const std::vector<unsigned char>& row, int bits, float* values, size
 
 }  // namespace
 
-EncodedImage ReadPng(const std::filesystem::path& path) {
+namespace {
+
+EncodedImage ReadOrThrow(const std::filesystem::path& path) {
   const auto fail = [&path](const std::string& why) -> EncodedImage {
     throw Error("cannot read image \"" + path.string() + "\": " + (why.empty() ? "it is damaged" : why));
   };
@@ -90,7 +100,9 @@ EncodedImage ReadPng(const std::filesystem::path& path) {
   if (!file.info) return fail("there is not enough memory for it");
   PngLayout layout;
   if (!BeginReading(file, layout)) return fail(file.error);
-  CheckImageSize(path, layout.width, layout.height, layout.channels, layout.channels * layout.bits / 8);
+  // The rows of an interlaced picture are kept besides the values.
+  CheckImageSize(path, layout.width, layout.height, (layout.passes > 1 ? 2 : 1) * layout.channels,
+                 layout.storedBytesPerPixel);
 
   static const std::vector<std::string> kNames[] = {{"Y"}, {"Y", "A"}, {"R", "G", "B"}, {"R", "G", "B", "A"}};
   EncodedImage encoded;
@@ -110,6 +122,16 @@ EncodedImage ReadPng(const std::filesystem::path& path) {
     }
   }
   return encoded;
+}
+
+}  // namespace
+
+EncodedImage ReadPng(const std::filesystem::path& path) {
+  try {
+    return ReadOrThrow(path);
+  } catch (const std::bad_alloc&) {
+    throw Error("cannot read image \"" + path.string() + "\": there is not enough memory for it");
+  }
 }
 
 std::vector<unsigned char> EncodePng(int width, int height, const std::vector<unsigned char>& rgb) {

@@ -64,16 +64,21 @@ void AddNormals(const CurveParameters& p, size_t segments, CurveSet& curves) {
   for (size_t i = 0; i < segments; ++i) curves.segmentNormals.push_back({normals[i], normals[i + 1]});
 }
 
-// In how many segments of straight lines a flat curve runs within a hundredth of `radius`: n lines are off by no more
-// than max |B''| / (8 n²).
+// Number of parts of a flat segment for which Embree's lines deviate by at most 1 % of `radius`: n lines deviate by at
+// most max |B''| / (8 n²).
 int PartsOfFlat(const Segment& b, double radius) {
   constexpr double kTolerance = 0.01;
   constexpr int kMostParts = 16;
-  const double second =
-      6 * std::max(glm::length(b[0] - 2.0 * b[1] + b[2]), glm::length(b[1] - 2.0 * b[2] + b[3]));
-  if (!(second > 0)) return 1;
+  const double second = 6 * std::max(glm::length(b[0] - 2.0 * b[1] + b[2]), glm::length(b[1] - 2.0 * b[2] + b[3]));
+  constexpr double kRounding = 1e-6;  // control points are floats
+  if (!(second > kRounding * (glm::length(b[3] - b[0]) + glm::length(b[2] - b[1])))) return 1;
   const double lines = std::sqrt(second / (8 * kTolerance * radius));
   return static_cast<int>(std::clamp(std::ceil(lines / CurveSet::kLinesPerFlatSegment), 1.0, double(kMostParts)));
+}
+
+// The radius that a segment is to be accurate to: of a pointed one, a tenth of the wide end's.
+double ThinnestOf(double a, double b) {
+  return std::max(std::min(a, b), 0.1 * std::max(a, b));
 }
 
 // The part [u0,u1] of a segment, by blossoming.
@@ -105,15 +110,14 @@ CurveSet MakeCurves(const CurveParameters& p) {
       const double along = (static_cast<double>(i) + u) / static_cast<double>(count);
       return 0.5 * scale * (static_cast<double>(p.width0) * (1 - along) + static_cast<double>(p.width1) * along);
     };
-    const int parts =
-        p.kind == CurveSet::Kind::Flat ? PartsOfFlat(segment, std::min(radiusAt(0), radiusAt(1))) : 1;
+    const int parts = p.kind == CurveSet::Kind::Flat ? PartsOfFlat(segment, ThinnestOf(radiusAt(0), radiusAt(1))) : 1;
     for (int part = 0; part < parts; ++part) {
       const double u0 = static_cast<double>(part) / parts, u1 = static_cast<double>(part + 1) / parts;
       const Segment controls = parts > 1 ? PartOf(segment, u0, u1) : segment;
-      auto& points = curves.segments.emplace_back();
+      auto& placed = curves.segments.emplace_back();
       auto& radii = curves.radii.emplace_back();
       for (size_t k = 0; k < 4; ++k) {
-        points[k] = Point3(controls[k]);
+        placed[k] = Point3(controls[k]);
         radii[k] = static_cast<float>(radiusAt(u0 + (u1 - u0) * static_cast<double>(k) / 3));
       }
       curves.uRange.push_back({static_cast<float>(u0), static_cast<float>(u1)});
@@ -144,16 +148,21 @@ float CurveRadius(const CurveSet& curves, uint32_t segment, float u) {
 
 namespace {
 
-Vector3 Perpendicular(const Vector3& v, const Vector3& axis) { return v - axis * glm::dot(v, axis); }
+Vector3 Perpendicular(const Vector3& v, const Vector3& axis) {
+  return v - axis * glm::dot(v, axis);
+}
 
 // The unit normal at a point `offset` from the axis that runs along the unit `along`.
 Normal3 CurveNormal(const CurveSet& curves, uint32_t segment, float u, const Vector3& along, const Vector3& offset,
                     const Vector3& direction) {
   const Normal3 fallback = Frame::FromNormal(along).x;
   switch (curves.kind) {
-    case CurveSet::Kind::Flat: return SafeNormalize(Perpendicular(-direction, along), fallback);
-    case CurveSet::Kind::Cylinder: return SafeNormalize(Perpendicular(offset, along), fallback);
-    case CurveSet::Kind::Ribbon: break;
+    case CurveSet::Kind::Flat:
+      return SafeNormalize(Perpendicular(-direction, along), fallback);
+    case CurveSet::Kind::Cylinder:
+      return SafeNormalize(Perpendicular(offset, along), fallback);
+    case CurveSet::Kind::Ribbon:
+      break;
   }
   const auto& n = curves.segmentNormals[segment];
   return SafeNormalize(Perpendicular(n[0] * (1 - u) + n[1] * u, along), fallback);

@@ -42,22 +42,20 @@ struct Quadric {
   enum class Kind { Sphere, Disk, Cylinder };
   Kind kind = Kind::Sphere;
   float radius = 1;
-  float zMin = -1, zMax = 1;   // sphere (within [-radius, radius]) and cylinder; the disk's height is zMin
-  float innerRadius = 0;       // disk
-  float phiMax = 2 * kPi;      // radians, (0, 2π]
-  Affine toRender;             // object to render space
+  float zMin = -1, zMax = 1;  // sphere (within [-radius, radius]) and cylinder; the disk's height is zMin
+  float innerRadius = 0;      // disk
+  float phiMax = 2 * kPi;     // radians, (0, 2π]
+  Affine toRender;            // object to render space
   Affine toObject;
   bool flipNormals = false;
 
-  bool IsFullSphere() const {
-    return kind == Kind::Sphere && zMin <= -radius && zMax >= radius && phiMax >= 2 * kPi;
-  }
+  bool IsFullSphere() const { return kind == Kind::Sphere && zMin <= -radius && zMax >= radius && phiMax >= 2 * kPi; }
 };
 
 // Cubic Bézier curves in render space, with a width at either end.
 struct CurveSet {
   enum class Kind { Flat, Cylinder, Ribbon };
-  static constexpr int kLinesPerFlatSegment = 16;  // as which Embree draws it: its maximum
+  static constexpr int kLinesPerFlatSegment = 16;  // straight lines, Embree's maximum
   Kind kind = Kind::Flat;
   std::vector<std::array<Point3, 4>> segments;
   std::vector<std::array<float, 4>> radii;             // half widths at the control points, render space

@@ -72,7 +72,7 @@ TEST(FirstHitLayers, OfATiltedSquareInBothSpaces) {
         EXPECT_NEAR(layers.At("v", x, y), 0.5 + height / std::cos(30 * M_PI / 180) / 20, 2e-3);
         EXPECT_NEAR(layers.At("dzdx", x, y), 0, 1e-4);
         const double below = -Slope(y + 1);
-        EXPECT_NEAR(layers.At("dzdy", x, y), 3 / (1 - below * tilt) - depth, 1e-3);
+        EXPECT_NEAR(layers.At("dzdy", x, y), std::abs(3 / (1 - below * tilt) - depth), 1e-3);
         EXPECT_NEAR(layers.At("Albedo.R", x, y), 0.2, 1e-4);
         EXPECT_NEAR(layers.At("Albedo.B", x, y), 0.6, 1e-4);
       }

@@ -29,7 +29,7 @@ std::string Chunk(const std::string& type, const std::string& data) {
 
 // Colour types of the format.
 enum ColorType { kGray = 0, kRgb = 2, kPalette = 3, kGrayAlpha = 4, kRgba = 6 };
-int ChannelsOf(ColorType type) {
+int ChannelCount(ColorType type) {
   return type == kRgb ? 3 : type == kGrayAlpha ? 2 : type == kRgba ? 4 : 1;
 }
 
@@ -43,7 +43,7 @@ std::string Row(int y, int x0, int step, ColorType type, int bits) {
   uint32_t pending = 0;
   int used = 0;
   for (int x = x0; x < kWidth; x += step) {
-    for (int c = 0; c < ChannelsOf(type); ++c) {
+    for (int c = 0; c < ChannelCount(type); ++c) {
       if (bits >= 8) {
         row += Big(Stored(x, y, c, bits), bits / 8);
         continue;
@@ -99,7 +99,7 @@ TEST(PngKinds, AllDepthsChannelsAndInterlacing) {
       for (const bool isInterlaced : {false, true}) {
         SCOPED_TRACE("type " + std::to_string(type) + ", " + std::to_string(bits) + " bits");
         WriteBytes(folder / "a.png", Png(type, bits, isInterlaced));
-        ExpectPixels(ReadImage(folder / "a.png", ImageEncoding::Linear), ChannelsOf(type), [&](int x, int y, int c) {
+        ExpectPixels(ReadImage(folder / "a.png", ImageEncoding::Linear), ChannelCount(type), [&](int x, int y, int c) {
           return static_cast<double>(Stored(x, y, c, bits)) / ((1 << bits) - 1);
         });
       }
@@ -132,20 +132,22 @@ TEST(PngKinds, SixteenBitsAreAsTheFileSays) {
   const TemporaryFolder folder;
   const std::string linear = Chunk("gAMA", Big(100000, 4));
   WriteBytes(folder / "srgb.png", Png(kGray, 16, false));
+  WriteBytes(folder / "gamma.png", Png(kGray, 16, false, Chunk("gAMA", Big(45455, 4))));
   WriteBytes(folder / "linear.png", Png(kGray, 16, false, linear));
   WriteBytes(folder / "eight.png", Png(kGray, 8, false, linear));
   const auto stored = [](int x, int y, int bits) {
     return static_cast<float>(Stored(x, y, 0, bits)) / static_cast<float>((1 << bits) - 1);
   };
-  ExpectPixels(ReadImage(folder / "srgb.png"), 1,
-               [&](int x, int y, int) { return static_cast<double>(SrgbToLinear(stored(x, y, 16))); });
+  for (const char* name : {"srgb.png", "gamma.png"})
+    ExpectPixels(ReadImage(folder / name), 1,
+                 [&](int x, int y, int) { return static_cast<double>(SrgbToLinear(stored(x, y, 16))); });
   ExpectPixels(ReadImage(folder / "linear.png"), 1,
                [&](int x, int y, int) { return static_cast<double>(stored(x, y, 16)); });
   ExpectPixels(ReadImage(folder / "eight.png"), 1,
                [&](int x, int y, int) { return static_cast<double>(SrgbToLinear(stored(x, y, 8))); });
 }
 
-// Cut anywhere, or with a byte changed that a checksum covers: an error that names the file.
+// Cut anywhere, or with a byte of the header changed: an error that names the file.
 TEST(PngKinds, DamagedFilesAreErrors) {
   const TemporaryFolder folder;
   const std::string whole = Png(kRgb, 8, false);
