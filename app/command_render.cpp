@@ -74,7 +74,7 @@ void CheckSceneStays(const RenderOptions& options, const SceneDescription& scene
 // An image too large for the machine is told before the system ends the process for it. The film is kept twice
 // (render_backup.h).
 void CheckMemory(const RenderSettings& settings, TracedPaths paths, size_t layers, bool hasTechniques) {
-  // Of the developed image: colour, variance and layers; those of what is seen first are kept during the render, too.
+  // Developed image: colour, variance, light groups and first-hit layers. The latter are also kept during the render.
   const uint64_t firstHit = settings.firstHit ? FirstHitChannels().size() : 0;
   const uint64_t channels = 6 + 3 * layers + 2 * firstHit;
   const uint64_t techniques = hasTechniques ? TechniqueImages::BytesPerPixel(settings.MaxDepth()) : 0;

@@ -49,7 +49,7 @@ class Layers {
   Image image_;
 };
 
-// What the middle of a pixel sees at distance 1 before the camera, to the side and up.
+// Offset, per distance in front of the camera, of the point that the centre of a pixel sees.
 double Slope(int pixel) {
   return std::tan(20 * M_PI / 180) * ((pixel + 0.5) / (0.5 * kSize) - 1);
 }

@@ -33,7 +33,7 @@ int ChannelCount(ColorType type) {
   return type == kRgb ? 3 : type == kGrayAlpha ? 2 : type == kRgba ? 4 : 1;
 }
 
-// What is stored in a channel of a pixel.
+// The value stored in a channel of a pixel.
 uint32_t Stored(int x, int y, int channel, int bits) {
   return (static_cast<uint32_t>(x * 7 + y * 31 + channel * 101) * 2654435761u >> 8) & ((1u << bits) - 1);
 }
