@@ -84,10 +84,6 @@ void Decode(const std::vector<unsigned char>& row, int bits, float* values, size
   }
 }
 
-}  // namespace
-
-namespace {
-
 EncodedImage ReadOrThrow(const std::filesystem::path& path) {
   const auto fail = [&path](const std::string& why) -> EncodedImage {
     throw Error("cannot read image \"" + path.string() + "\": " + (why.empty() ? "it is damaged" : why));

@@ -35,6 +35,7 @@ class MixMaterial final : public Material {
   }
   std::shared_ptr<const Material> Roughened(const Roughener& roughened) const override {
     std::array<std::shared_ptr<const Material>, 2> rougher{roughened(materials_[0]), roughened(materials_[1])};
+    if (rougher == materials_) return nullptr;
     return std::make_shared<MixMaterial>(std::move(rougher), amount_, salt_);
   }
   bool IsInterface() const override { return isInterface_; }
