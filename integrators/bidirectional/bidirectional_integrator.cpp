@@ -28,7 +28,8 @@ void BidirectionalSample::SetLight(ConnectedPath& path, size_t count) const {
 
 Color BidirectionalSample::Report(ConnectedPath& path) const {
   if (context.observer) {
-    path.mergesPerDensity = std::sqrt(merge);
+    if (path.t > 1) path.merging = merging;
+    path.seenDensity = path.t > 1 ? seenDensity : path.atLens.value;
     context.observer->Observe(path);
   }
   return path.value * static_cast<float>(path.weight);
@@ -38,6 +39,29 @@ Color BidirectionalSample::AddToPixel(ConnectedPath& path, float survivalWeight)
   const Color contribution = Report(path) * survivalWeight;
   if (context.layers) context.layers->Add(Lighting().GroupOf(path.end.light), contribution);
   return contribution;
+}
+
+namespace {
+
+// Merging radius of the first pass by default, in pixel footprints: a blur no wider than that of most pixel filters.
+constexpr double kRadiusInPixels = 1;
+// Its bounds, in radii of the scene: less than the rounding of positions finds nothing, more finds everything.
+constexpr double kLeastRadius = 1e-7, kMostRadius = 2;
+
+}  // namespace
+
+// A pixel sees the area |cosθ| / (atLens · pixels) of the first hit's plane turned towards it.
+float BidirectionalSample::MergeRadiusAt(float cosTheta, AreaDensity atLens) const {
+  const PhotonPass& pass = *context.gather;
+  if (settings.photons.radius > 0) return pass.radius;
+  const double seen = EdgeDensity(cosTheta, 1).value / (atLens.value * settings.filmPixels);
+  const auto size = static_cast<double>(Lighting().SceneSphere().radius);
+  const double radius = kRadiusInPixels * std::sqrt(seen) * static_cast<double>(pass.radiusScale);
+  return static_cast<float>(std::clamp(radius, kLeastRadius * size, kMostRadius * size));
+}
+
+Merging BidirectionalSample::MergingAt(double distance, float cosTheta, AreaDensity atLens) const {
+  return Merging::At(static_cast<double>(MergeRadiusAt(cosTheta, atLens)), distance, context.gather->lightPaths);
 }
 
 AreaDensity DensityAtLens(const Camera& camera, const Ray& ray, float geometryTerm, double distanceSquared) {
@@ -72,6 +96,11 @@ class LightSide final : public WeightedLightPath {
 
  private:
   void OnWeighted(const LightPath& path) override {
+    if (sample_.settings.merges) {
+      AddDensities(path.vertices, sample_.lightDensities);
+      if (path.vertices.Count() == 1)
+        sample_.lightDensities[0] = {.forward = End().emission.value, .extent = End().extent};
+    }
     if (isConnected_) SplatVertex(sample_);
     const PathVertex& vertex = path.vertices.Last();
     if (context_.photons && vertex.storesPhotons)
@@ -108,6 +137,10 @@ class CameraSide final : public PathVisitor {
     } else {
       SetWeights(path[depth - 2], state, sample_.settings.connects, vertex);
     }
+    if (sample_.merging) {
+      AddDensities(path, sample_.cameraDensities);
+      if (depth == 1) sample_.cameraDensities[0].forward = sample_.seenDensity;
+    }
     if (vertex.isDelta) return true;
     sample_.radiance += EstimateDirectLight(sample_);
     if (sample_.settings.connects) {
@@ -119,7 +152,7 @@ class CameraSide final : public PathVisitor {
         sample_.radiance += Connect(sample_, i);
       }
     }
-    if (sample_.merge > 0 && vertex.CanMerge()) sample_.radiance += Merge(sample_);
+    if (sample_.merging && vertex.CanMerge()) sample_.radiance += Merge(sample_);
     return true;
   }
 
@@ -139,6 +172,20 @@ class CameraSide final : public PathVisitor {
     const bool isSplatted =
         sample_.context.scene.camera->ConnectsLightPaths() && vertex.pdfForward.value > 0 && vertex.isSeenByIndirect;
     vertex.weight = PartialWeight::AtLens(vertex.pdfForward, isSplatted && sample_.settings.connects);
+    if (sample_.context.gather) SetMerging(vertex, state);
+  }
+  void SetMerging(const PathVertex& vertex, const PathState& state) const {
+    const float cosTheta = vertex.GeometryTerm(vertex.toPrevious);
+    const auto distance = static_cast<double>(state.length);
+    AreaDensity seen = vertex.pdfForward;
+    if (!sample_.context.scene.camera->ConnectsLightPaths()) {
+      const double area = PixelArea(*sample_.context.scene.camera, state.ray, sample_.settings.filmPixels, distance);
+      seen = AreaDensity(area > 0 ? EdgeDensity(cosTheta, area * sample_.settings.filmPixels).value : 0);
+    }
+    if (!(seen.value > 0)) return;
+    sample_.seenDensity = seen.value;
+    sample_.mergeRadius = sample_.MergeRadiusAt(cosTheta, seen);
+    sample_.merging = sample_.MergingAt(distance, cosTheta, seen);
   }
 
   BidirectionalSample& sample_;
@@ -163,18 +210,27 @@ struct Workspace {
   LightPath light;
   Subpath camera;
   PhotonLookup lookup;
+  PathDensities whole;
+  std::vector<SubpathDensities> lightDensities, cameraDensities;
 };
 
 Color BidirectionalIntegrator::Sample(const Ray* ray, const SampleContext& context) const {
   thread_local Workspace workspace;
   workspace.light.vertices.Clear();
   workspace.camera.Clear();
-  BidirectionalSample sample{context,          settings_, workspace.light, {},     workspace.camera,
-                             workspace.lookup, 0,         false,           Color()};
-  if (context.gather) sample.merge = Mis(context.gather->MergesPerDensity());
+  BidirectionalSample sample{.context = context,
+                             .settings = settings_,
+                             .light = workspace.light,
+                             .camera = workspace.camera,
+                             .lookup = workspace.lookup,
+                             .whole = workspace.whole,
+                             .lightDensities = workspace.lightDensities,
+                             .cameraDensities = workspace.cameraDensities};
   if (settings_.connects || context.photons) {
     LightSide visitor(sample);
     TraceLightPath(context, settings_.maxDepth, kLightDimensions, workspace.light, visitor);
+    if (context.photons && workspace.light.vertices.Count() > 0)
+      context.photons->KeepDensities(workspace.lightDensities);
   }
   if (!ray) return Color(0.0f);
   PathState state;
@@ -192,9 +248,6 @@ std::unique_ptr<Integrator> MakeBidirectionalIntegrator(const BidirectionalSetti
 }
 
 namespace {
-
-// Merging radius of the first pass by default, in pixel footprints: a blur no wider than that of most pixel filters.
-constexpr double kRadiusInPixels = 1;
 
 const Setting kMerge{
     .name = "merge", .help = "Merge camera vertices with photons nearby", .fallback = true, .without = "it is bdpt"};
@@ -218,8 +271,6 @@ std::unique_ptr<Integrator> CreateVcm(const IntegratorInput& input) {
   if (!settings.merges && !settings.connects)
     throw UsageError("--no-merge and --no-connect: vcm has nothing left to find light by");
   settings.photons = PhotonSettingsOf(input);
-  if (settings.merges && settings.photons.radius == 0)
-    settings.photons.radius = kRadiusInPixels * TypicalFootprint(input.scene, input.width, input.height);
   // Without smooth materials connections find all light, and guided photons would add next to nothing.
   settings.photons.guided = settings.photons.guided && (!settings.connects || HasSmoothMaterial(input.scene));
   return MakeBidirectionalIntegrator(settings);

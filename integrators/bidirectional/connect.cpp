@@ -42,12 +42,13 @@ Color Connect(const BidirectionalSample& sample, size_t lightCount) {
   if (path.value.IsBlack()) return path.value;
   sample.SetLight(path, lightCount);
   sample.SetCamera(path);
-  path.weight = ConnectWeight(
-      y.weight,
+  const Joint joint{
       {SolidAngleDensity(fz.pdfForward) * EdgeDensity(y, toCamera, squared), y.PreviousReverse(fy.pdfReverse)},
-      sample.MergeAt(y), z.weight,
       {SolidAngleDensity(fy.pdfForward) * EdgeDensity(z, toCamera, squared), z.PreviousReverse(fz.pdfReverse)},
-      sample.MergeAt(z));
+      y.CanMerge(),
+      z.CanMerge()};
+  path.weight =
+      ConnectWeight(y.weight, joint.light, z.weight, joint.camera, sample.MergingOfConnection(lightCount, joint));
   const float survivalWeight = sample.WantedShadowRays().SurvivalWeight(
       path.value * static_cast<float>(path.weight), sample.radiance, ShadowRays::DeciderOf(toCamera.x, toCamera.y));
   if (survivalWeight == 0) return Color(0.0f);

@@ -3,6 +3,7 @@
 
 #include <span>
 
+#include "integrators/bidirectional/path_densities.h"
 #include "integrators/photon/photon.h"
 #include "integrators/walk/lens.h"
 
@@ -19,7 +20,8 @@ struct ConnectedPath {
   // Density of the vertex that the camera sees, by a camera ray, over that of the lens point; 0: t = 1 does not exist.
   AreaDensity atLens;
   bool isMerged = false;
-  double mergesPerDensity = 0;                 // N π r² of the merging that the weight accounts for; 0: no merging
+  Merging merging;                             // that the weight accounts for
+  double seenDensity = 0;                      // of the vertex that the camera sees, as in P_C (path_densities.h)
   const FilmConnection* connection = nullptr;  // of t = 1; null: the path contributes to the sample's own pixel
   Color value;                                 // contribution before the weight
   double weight = 1;

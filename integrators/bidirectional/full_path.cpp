@@ -1,5 +1,8 @@
 #include "integrators/bidirectional/full_path.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "integrators/bidirectional/weights.h"
 
 namespace lampyr {
@@ -41,7 +44,8 @@ FullPath Unfold(const ConnectedPath& path) {
   FullPath full;
   full.end = path.end;
   full.technique = path.isMerged ? static_cast<int>(n + 1 + ofLight + 1) : path.s;
-  full.mergesPerDensity = path.mergesPerDensity;
+  full.merging = path.merging;
+  full.seenDensity = path.seenDensity;
   full.fromLight.assign(n + 2, AreaDensity());
   full.fromCamera.assign(n + 2, AreaDensity());
   full.isDelta.assign(n + 2, false);
@@ -87,6 +91,25 @@ FullPath Unfold(const ConnectedPath& path) {
   return full;
 }
 
+double CorrelationAt(const FullPath& path, int i) {
+  const int n = path.SurfaceCount();
+  if (i == n) return 1;
+  const auto isDelta = [&](int k) { return k >= 1 && k <= n && path.isDelta[static_cast<size_t>(k)]; };
+  const double area = path.merging.area, degree = std::tan(3.14159265358979323846 / 180);
+  double again = path.end.emission.value * area;
+  if (path.end.extent == LightEnd::Extent::Surface) again *= area;
+  if (path.end.extent == LightEnd::Extent::Sky) again *= 3.14159265358979323846 * degree * degree;
+  double light = std::min(1.0, again), camera = 1;
+  for (int k = 2; k <= i; ++k)
+    light *= isDelta(k - 1) ? 1.0 : std::min(1.0, path.fromLight[static_cast<size_t>(k)].value * area);
+  for (int k = i; k <= n; ++k) {
+    const double density = k == n ? path.seenDensity : path.fromCamera[static_cast<size_t>(k)].value;
+    camera *= isDelta(k + 1) ? 1.0 : std::min(1.0, density * area);
+  }
+  const double either = camera + light - camera * light;
+  return either > 0 ? std::max(camera / either, 1 / path.merging.lightPaths) : 1;
+}
+
 std::vector<double> WeightsByDensities(const FullPath& path) {
   const int n = path.SurfaceCount();
   std::vector<long double> densities(static_cast<size_t>(path.TechniqueCount()), 0.0L);
@@ -108,7 +131,7 @@ std::vector<double> WeightsByDensities(const FullPath& path) {
   }
   for (int i = 1; i <= n; ++i) {
     if (!path.CanMerge(i)) continue;
-    long double density = path.end.emission.value * path.mergesPerDensity;
+    long double density = path.end.emission.value * path.merging.perDensity * CorrelationAt(path, i);
     for (int k = 2; k <= i; ++k) density *= fromLight(k);
     for (int k = i; k <= n; ++k) density *= fromCamera(k);
     densities[static_cast<size_t>(n + 1 + i)] = density;
@@ -137,14 +160,33 @@ Carried Carry(const FullPath& path) {
   carried.light[1] = PartialWeight::AtFirstHit(path.end, true);
   for (int i = 2; i <= n; ++i) {
     const auto at = static_cast<size_t>(i);
-    carried.light[at] = carried.light[at - 1].Next(isDelta(i - 1), path.CanMerge(i - 1), F(i), B(i - 2));
+    carried.light[at] = carried.light[at - 1].Next(isDelta(i - 1), F(i), B(i - 2));
   }
   carried.camera[size - 1] = PartialWeight::AtLens(B(n), path.lensSeesIt);
   for (int i = n - 1; i >= 1; --i) {
     const auto at = static_cast<size_t>(i);
-    carried.camera[at] = carried.camera[at + 1].Next(isDelta(i + 1), path.CanMerge(i + 1), B(i), F(i + 2));
+    carried.camera[at] = carried.camera[at + 1].Next(isDelta(i + 1), B(i), F(i + 2));
   }
   return carried;
+}
+
+// The densities of the whole path, as those of a camera subpath.
+PathDensities DensitiesOf(const FullPath& path) {
+  const int n = path.SurfaceCount();
+  const auto isDelta = [&](int i) { return i >= 1 && i <= n && path.isDelta[static_cast<size_t>(i)]; };
+  std::vector<SubpathDensities> camera;
+  for (int i = n; i >= 1; --i) {
+    const auto at = static_cast<size_t>(i);
+    camera.push_back({i == n ? path.seenDensity : path.fromCamera[at].value, path.fromLight[at].value, isDelta(i + 1),
+                      isDelta(i - 1), path.CanMerge(i)});
+  }
+  Joint joint;
+  joint.camera = {path.fromLight[1], n > 1 ? path.fromLight[2] : AreaDensity()};
+  joint.mergesAtCamera = path.CanMerge(1);
+  joint.previousCameraIsDelta = isDelta(1);
+  PathDensities densities;
+  densities.Set({}, camera, joint, path.end.emission.value, path.end.extent, path.merging);
+  return densities;
 }
 
 }  // namespace
@@ -155,19 +197,23 @@ std::vector<double> WeightsByRecursion(const FullPath& path) {
   const auto B = [&](int i) { return path.fromCamera[static_cast<size_t>(i)]; };
   const auto isDelta = [&](int i) { return static_cast<bool>(path.isDelta[static_cast<size_t>(i)]); };
   const LightEnd& end = path.end;
-  const double merge = Mis(path.mergesPerDensity);
-  const auto mergeAt = [&](int i) { return Merging{path.CanMerge(i) ? merge : 0.0, merge}; };
   if (n == 0 && !path.lensSeesIt) return {1, 0};
   if (n == 0) return {SeenLightWeight(end.position, B(0)), SplatLightWeight(end.position, B(0))};
   std::vector<double> weights(static_cast<size_t>(path.TechniqueCount()), 0.0);
   const Carried carried = Carry(path);
   const auto light = [&](int i) -> const PartialWeight& { return carried.light[static_cast<size_t>(i)]; };
   const auto camera = [&](int i) -> const PartialWeight& { return carried.camera[static_cast<size_t>(i)]; };
+  const PathDensities whole = DensitiesOf(path);
+  const auto of = [&](double merging) { return path.merging ? merging : 0.0; };
   const auto weigh = [&](int s) {
-    if (s == 0) return HitWeight(end, camera(1), {isDelta(1), path.CanMerge(1), F(2)}, B(0), merge);
-    if (s == 1) return NextEventWeight(end, camera(1), end.canBeHit ? B(0) : AreaDensity(), F(2), mergeAt(1));
-    if (s == n + 1) return SplatWeight(light(n), {B(n), B(n - 1)}, mergeAt(n));
-    return ConnectWeight(light(s - 1), {B(s - 1), B(s - 2)}, mergeAt(s - 1), camera(s), {F(s), F(s + 1)}, mergeAt(s));
+    if (s == 0) return HitWeight(end, camera(1), {isDelta(1), F(2)}, B(0), of(whole.ForLight(B(0).value)));
+    if (s == 1) {
+      return NextEventWeight(end, camera(1), end.canBeHit ? B(0) : AreaDensity(), F(2),
+                             of(whole.ForLight(end.direct.value)));
+    }
+    const double merging = of(whole.ForConnection(static_cast<size_t>(s - 1)));
+    if (s == n + 1) return SplatWeight(light(n), {B(n), B(n - 1)}, merging);
+    return ConnectWeight(light(s - 1), {B(s - 1), B(s - 2)}, camera(s), {F(s), F(s + 1)}, merging);
   };
   for (int s = 0; s <= n + 1; ++s) {
     if (s == 0 && !end.canBeHit) continue;
@@ -176,8 +222,10 @@ std::vector<double> WeightsByRecursion(const FullPath& path) {
   }
   for (int i = 1; i <= n; ++i) {
     if (!path.CanMerge(i)) continue;
+    const auto at = static_cast<size_t>(i);
     weights[static_cast<size_t>(n + 1 + i)] =
-        MergeWeight(light(i).BeforeReverse(B(i - 1), merge), camera(i).BeforeReverse(F(i + 1), merge), merge);
+        MergeWeight(light(i).BeforeReverse(B(i - 1)), camera(i).BeforeReverse(F(i + 1)), whole.PerDensityAt(at),
+                    whole.ForMerging(at));
   }
   return weights;
 }

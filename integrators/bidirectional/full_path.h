@@ -18,20 +18,23 @@ struct FullPath {
   std::vector<bool> gathers;            // [i]: photons may be gathered at vertex i
   bool lensSeesIt = true;               // a light path may reach vertex n and be connected to the lens
   bool mergesAtLens = true;             // photons may be merged at vertex n
-  double mergesPerDensity = 0;          // N π r²; 0: no merging
-  int technique = 0;                    // that made the path
+  Merging merging;
+  double seenDensity = 0;  // of vertex n by a camera ray, also where the lens is not connected
+  int technique = 0;       // that made the path
 
   int SurfaceCount() const { return static_cast<int>(isDelta.size()) - 2; }
   // Techniques are s = 0 … n + 1, and merging at vertex i = 1 … n, which is technique n + 1 + i.
   int TechniqueCount() const { return 2 * SurfaceCount() + 2; }
   bool CanMerge(int i) const {
     const auto vertex = static_cast<size_t>(i);
-    return mergesPerDensity > 0 && !isDelta[vertex] && gathers[vertex] && (i < SurfaceCount() || mergesAtLens);
+    return merging && !isDelta[vertex] && gathers[vertex] && (i < SurfaceCount() || mergesAtLens);
   }
 };
 
 FullPath Unfold(const ConnectedPath& path);
 
+// c of vertex `i` (path_densities.h), from explicit products.
+double CorrelationAt(const FullPath& path, int i);
 // Weights of all techniques from explicit densities; 0 for techniques that cannot make the path.
 std::vector<double> WeightsByDensities(const FullPath& path);
 // Weights of all techniques by partial weights, from the functions that the integrator calls (weights.h).

@@ -23,8 +23,13 @@ Color HitLight(const BidirectionalSample& sample, const PathState& state, const 
   }
   path.toLight = state.ray.direction;
   const PathVertex& last = sample.camera.Last();
-  const LastEvent event{last.scatteredDelta, last.CanMerge(), last.PreviousReverse(last.eventReverse)};
-  path.weight = HitWeight(path.end, last.weight, event, state.pdfDirection * path.end.solidAnglePerArea, sample.merge);
+  const LastEvent event{last.scatteredDelta, last.PreviousReverse(last.eventReverse)};
+  const AreaDensity hit = state.pdfDirection * path.end.solidAnglePerArea;
+  Joint joint;
+  joint.camera.previous = event.previousReverse;
+  joint.previousCameraIsDelta = event.isDelta;
+  joint.mergesAtCamera = last.CanMerge() && !event.isDelta;
+  path.weight = HitWeight(path.end, last.weight, event, hit, sample.MergingOfLight(path.end, joint, hit));
   return sample.AddToPixel(path);
 }
 

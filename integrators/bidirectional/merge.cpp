@@ -15,7 +15,8 @@ void ReportMerge(const BidirectionalSample& sample, const Photon& photon, const 
   path.isMerged = true;
   path.s = static_cast<int>(photon.depth) + 1;
   path.toLight = photon.toPrevious;
-  path.mergesPerDensity = std::sqrt(sample.merge);
+  path.merging = sample.merging;
+  path.seenDensity = sample.seenDensity;
   path.value = value;
   path.weight = weight;
   sample.context.observer->ObserveMerge(path, photon);
@@ -28,9 +29,12 @@ Color Merge(const BidirectionalSample& sample) {
   const PhotonPass& pass = *context.gather;
   const PathVertex& vertex = sample.camera.Last();
   const auto most = static_cast<size_t>(sample.settings.maxDepth) + 1;
-  const double perDensity = static_cast<double>(sample.Lighting().FluxUnit()) / std::sqrt(sample.merge);
+  const double perDensity = static_cast<double>(sample.Lighting().FluxUnit()) / sample.merging.perDensity;
   const std::span<const uint32_t> found =
-      FindPhotons(*pass.map, vertex.point.position, pass.radius, sample.lookup, context.counts);
+      FindPhotons(*pass.map, vertex.point.position, sample.mergeRadius, sample.lookup, context.counts);
+  Joint joint;
+  joint.isMerged = true;
+  joint.mergesAtCamera = true;
   Color sum;
   for (const uint32_t index : found) {
     const Photon& photon = (*pass.map)[index];
@@ -39,9 +43,15 @@ Color Merge(const BidirectionalSample& sample) {
     const BsdfEvaluation f = vertex.Evaluate(toLight, TransportMode::Radiance);
     const Color scattered = f.diffuse * photon.flux + f.specular * pass.map->SpecularFlux(photon);
     if (scattered.IsBlack()) continue;
+    const std::span<const SubpathDensities> light = pass.map->PathOf(photon);
+    joint.light.last = photon.PreviousReverse(SolidAngleDensity(f.pdfForward));
+    joint.camera = {AreaDensity(light.back().forward), vertex.PreviousReverse(f.pdfReverse)};
+    joint.lastCameraIsDelta = light.back().forwardIsDelta;
+    sample.whole.Set(light.first(light.size() - 1), sample.cameraDensities, joint, light.front().forward,
+                     light.front().extent, sample.merging);
     const double weight =
-        MergeWeight(photon.BeforeReverse(SolidAngleDensity(f.pdfForward)),
-                    vertex.weight.BeforeReverse(vertex.PreviousReverse(f.pdfReverse), sample.merge), sample.merge);
+        MergeWeight(photon.weight.BeforeReverse(joint.light.last), vertex.weight.BeforeReverse(joint.camera.previous),
+                    sample.whole.PerDensityAt(light.size()), sample.whole.ForMerging(light.size()));
     const Color value = scattered * vertex.ArrivalCorrection(toLight);
     sum += value * static_cast<float>(weight);
     // Multiplied in another order than the sum: a shared product would be rounded differently than without layers.

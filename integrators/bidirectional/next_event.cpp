@@ -34,8 +34,11 @@ class NextEventTechnique final : public NextEventVisitor {
     path_.toLight = sample.direction;
     const AreaDensity hit =
         path_.end.canBeHit ? SolidAngleDensity(light.f.pdfForward) * path_.end.solidAnglePerArea : AreaDensity(0);
-    path_.weight = NextEventWeight(path_.end, vertex_.weight, hit, vertex_.PreviousReverse(light.f.pdfReverse),
-                                   sample_.MergeAt(vertex_));
+    Joint joint;
+    joint.camera.previous = vertex_.PreviousReverse(light.f.pdfReverse);
+    joint.mergesAtCamera = vertex_.CanMerge();
+    path_.weight = NextEventWeight(path_.end, vertex_.weight, hit, joint.camera.previous,
+                                   sample_.MergingOfLight(path_.end, joint, path_.end.direct));
     return static_cast<float>(path_.weight);
   }
 

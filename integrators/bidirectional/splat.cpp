@@ -44,8 +44,18 @@ void SplatVertex(const BidirectionalSample& sample) {
   ConnectedPath path;
   sample.SetLight(path, light.Count());
   SetLens(sample, *seen, path);
-  path.weight =
-      SplatWeight(vertex.weight, {path.atLens, vertex.PreviousReverse(seen->f.pdfReverse)}, sample.MergeAt(vertex));
+  Joint joint;
+  joint.light = {path.atLens, vertex.PreviousReverse(seen->f.pdfReverse)};
+  joint.mergesAtLight = vertex.CanMerge();
+  double merging = 0;
+  if (sample.context.gather) {
+    const auto distance = static_cast<double>(glm::distance(seen->connection.camera.position, vertex.point.position));
+    path.merging = sample.MergingAt(distance, seen->geometryTerm, path.atLens);
+    sample.whole.Set(sample.lightDensities, {}, joint, sample.lightEnd.emission.value, sample.lightEnd.extent,
+                     path.merging);
+    merging = sample.whole.ForConnection(light.Count());
+  }
+  path.weight = SplatWeight(vertex.weight, joint.light, merging);
   AddSplat(sample, path);
 }
 

@@ -6,15 +6,39 @@ void SetWeights(const PathVertex& previous, const PathState& state, bool connect
   const double squared = LengthSquared(Vector3d(vertex.point.position) - Vector3d(previous.point.position));
   vertex.pdfForward = state.pdfDirection * EdgeDensity(vertex, state.ray.direction, squared);
   vertex.previousSolidAnglePerArea = EdgeDensity(previous, state.ray.direction, squared);
-  vertex.weight = previous.weight.Next(previous.scatteredDelta, previous.CanMerge(), vertex.pdfForward,
-                                       previous.PreviousReverse(previous.eventReverse));
+  vertex.weight =
+      previous.weight.Next(previous.scatteredDelta, vertex.pdfForward, previous.PreviousReverse(previous.eventReverse));
   if (!connects) vertex.weight.connect = 0;
+}
+
+void AddDensities(const Subpath& path, std::vector<SubpathDensities>& densities) {
+  const size_t count = path.Count();
+  densities.resize(count);
+  SubpathDensities& last = densities[count - 1];
+  last = {path.Last().pdfForward.value};
+  if (count < 2) return;
+  const PathVertex& previous = path[count - 2];
+  last.forwardIsDelta = previous.scatteredDelta;
+  densities[count - 2].canMerge = previous.CanMerge() && !previous.scatteredDelta;
+  if (count < 3) return;
+  densities[count - 3].reverse = previous.PreviousReverse(previous.eventReverse).value;
+  densities[count - 3].reverseIsDelta = previous.scatteredDelta;
 }
 
 SolidAnglePerArea FirstEdgeDensity(const LightingServices& lighting, uint32_t light, float geometryTerm,
                                    double distanceSquared) {
   return EdgeDensity(geometryTerm, lighting.IsAtInfinity(light) ? 1 : distanceSquared);
 }
+
+namespace {
+
+LightEnd::Extent ExtentOf(LightKind kind) {
+  return kind == LightKind::Area       ? LightEnd::Extent::Surface
+         : kind == LightKind::Infinite ? LightEnd::Extent::Sky
+                                       : LightEnd::Extent::Point;
+}
+
+}  // namespace
 
 LightEnd EndOf(const LightingServices& lighting, const FoundLight& found, bool canBeHit, SolidAnglePerArea edge) {
   const LightEvaluation& e = found.evaluation;
@@ -28,6 +52,7 @@ LightEnd EndOf(const LightingServices& lighting, const FoundLight& found, bool c
   end.emission = position * (SolidAngleDensity(e.pdfEmitDirection) * edge);
   end.canBeHit = canBeHit;
   if (canBeHit && !lighting.IsAtInfinity(found.light)) end.position = position;
+  end.extent = ExtentOf(lighting.KindOf(found.light));
   return end;
 }
 

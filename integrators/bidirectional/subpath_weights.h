@@ -9,6 +9,9 @@ namespace lampyr {
 // Without `connects`: the weight for merging alone.
 void SetWeights(const PathVertex& previous, const PathState& state, bool connects, PathVertex& vertex);
 
+// The densities of the last vertex of a subpath, and what is known of those before it once that one is there.
+void AddDensities(const Subpath& path, std::vector<SubpathDensities>& densities);
+
 // dω/dA at the first hit of an emitted path: EdgeDensity, for a light at infinity without the squared distance.
 SolidAnglePerArea FirstEdgeDensity(const LightingServices& lighting, uint32_t light, float geometryTerm,
                                    double distanceSquared);

@@ -4,6 +4,7 @@
 
 #include "integrators/bidirectional/bidirectional_integrator.h"
 #include "integrators/bidirectional/connected_path.h"
+#include "integrators/bidirectional/path_densities.h"
 #include "integrators/bidirectional/subpath_weights.h"
 #include "integrators/photon/photon_map.h"
 #include "integrators/walk/next_event.h"
@@ -18,16 +19,34 @@ struct BidirectionalSample {
   const SampleContext& context;
   const BidirectionalSettings& settings;
   const LightPath& light;
-  LightEnd lightEnd;  // of `light`
+  LightEnd lightEnd{};  // of `light`
   Subpath& camera;
   PhotonLookup& lookup;
-  double merge = 0;         // (N π r²)^β; 0: no merging
+  PathDensities& whole;  // of the path that is weighted
+  std::vector<SubpathDensities>&lightDensities, &cameraDensities;
+  Merging merging{};        // of what the camera subpath sees
+  float mergeRadius = 0;    // scene units
+  double seenDensity = 0;   // of the first vertex of the camera subpath, as in P_C
   bool couldMerge = false;  // merging was possible at a vertex of the camera subpath
-  Color radiance;
+  Color radiance{};
 
   const LightingServices& Lighting() const { return *context.scene.lighting; }
-  // `merge` if photons can be merged at `vertex`, 0 otherwise.
-  Merging MergeAt(const PathVertex& vertex) const { return {vertex.CanMerge() ? merge : 0.0, merge}; }
+  // Merging on paths whose first hit, seen at `cosTheta` to its geometric normal, has the density `atLens` by a camera
+  // ray (DensityAtLens).
+  Merging MergingAt(double distance, float cosTheta, AreaDensity atLens) const;
+  float MergeRadiusAt(float cosTheta, AreaDensity atLens) const;
+  // Σ (p_i / p)^β over the techniques that merge, for s = 0 or 1 of the density `technique`, and for a connection.
+  double MergingOfLight(const LightEnd& end, const Joint& joint, AreaDensity technique) const {
+    if (!merging) return 0;
+    whole.Set({}, cameraDensities, joint, end.emission.value, end.extent, merging);
+    return whole.ForLight(technique.value);
+  }
+  double MergingOfConnection(size_t lightCount, const Joint& joint) const {
+    if (!merging) return 0;
+    whole.Set(std::span(lightDensities).first(lightCount), cameraDensities, joint, lightEnd.emission.value,
+              lightEnd.extent, merging);
+    return whole.ForConnection(lightCount);
+  }
   bool IsObserved() const { return context.observer != nullptr; }
   // Roulette of shadow rays; off with an observer, which receives all paths.
   ShadowRays WantedShadowRays() const { return IsObserved() ? ShadowRays{0, 0} : settings.shadowRays; }

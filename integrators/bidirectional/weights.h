@@ -2,7 +2,7 @@
 // both subpaths ([Veach97 §10.2], [Georgiev12 §4]; the departures from both are in walk/partial_weight.h). The
 // integrator calls these functions, and so does the test against explicit densities (full_path.h).
 //
-// `merge`: (N π r²)^β.
+// `merging`: Σ (p_i / p)^β over the techniques that merge (PathDensities).
 #pragma once
 
 #include "integrators/walk/vertex.h"
@@ -26,42 +26,41 @@ inline double SplatLightWeight(AreaDensity position, AreaDensity camera) {
 
 // The scattering event at the last vertex of a camera subpath that hit a light.
 struct LastEvent {
-  bool isDelta = false, canMerge = false;
+  bool isDelta = false;
   AreaDensity previousReverse;  // reverse density of the vertex before
 };
 // s = 0, t > 2: the camera subpath hits the light, whose point has the density `hit` ([Georgiev12 eq. 43]).
 inline double HitWeight(const LightEnd& end, const PartialWeight& camera, const LastEvent& event, AreaDensity hit,
-                        double merge) {
-  const PartialWeight atLight = camera.Next(event.isDelta, event.canMerge, AreaDensity(1), event.previousReverse);
+                        double merging) {
+  const PartialWeight atLight = camera.Next(event.isDelta, AreaDensity(1), event.previousReverse);
   const double direct = event.isDelta ? 0.0 : Mis(end.direct / hit);
-  return WeightAgainst(direct + Mis(end.emission / hit) * (atLight.earlier + merge * atLight.merging));
+  return WeightAgainst(direct + Mis(end.emission / hit) * atLight.earlier + merging);
 }
 
 // s = 1, t > 1: the light is sampled at the last vertex of the camera subpath ([Georgiev12 eqs. 44, 45]). `hit`:
 // density with which scattering there would find the light's point; 0: it cannot. `previousReverse`: reverse density of
 // the vertex before.
 inline double NextEventWeight(const LightEnd& end, const PartialWeight& camera, AreaDensity hit,
-                              AreaDensity previousReverse, const Merging& merge) {
-  return WeightAgainst(Mis(hit / end.direct) + camera.Sum({end.emission / end.direct, previousReverse}, merge));
+                              AreaDensity previousReverse, double merging) {
+  return WeightAgainst(Mis(hit / end.direct) + camera.Sum({end.emission / end.direct, previousReverse}) + merging);
 }
 
 // s > 1, t > 1: the last vertices of both subpaths are connected ([Georgiev12 eqs. 40, 41]).
-inline double ConnectWeight(const PartialWeight& light, const ReverseDensities& ofLight, const Merging& mergeAtLight,
-                            const PartialWeight& camera, const ReverseDensities& ofCamera,
-                            const Merging& mergeAtCamera) {
-  return WeightAgainst(light.Sum(ofLight, mergeAtLight) + camera.Sum(ofCamera, mergeAtCamera));
+inline double ConnectWeight(const PartialWeight& light, const ReverseDensities& ofLight, const PartialWeight& camera,
+                            const ReverseDensities& ofCamera, double merging) {
+  return WeightAgainst(light.Sum(ofLight) + camera.Sum(ofCamera) + merging);
 }
 
 // s > 1, t = 1: the last vertex of the light subpath is connected to the lens ([Georgiev12 eq. 46]). `reverse`: reverse
 // densities of that vertex, by a camera ray, and of the one before.
-inline double SplatWeight(const PartialWeight& light, const ReverseDensities& reverse, const Merging& merge) {
-  return WeightAgainst(light.Sum(reverse, merge));
+inline double SplatWeight(const PartialWeight& light, const ReverseDensities& reverse, double merging) {
+  return WeightAgainst(light.Sum(reverse) + merging);
 }
 
 // The last vertices of both subpaths are merged ([Georgiev12 eqs. 38, 39]). `light`, `camera`: BeforeReverse of the two
-// subpaths.
-inline double MergeWeight(double light, double camera, double merge) {
-  return WeightAgainst((light + camera) / merge);
+// subpaths. `perDensity`: N π r² c at the vertex. `merging`: of merging at the other vertices.
+inline double MergeWeight(double light, double camera, double perDensity, double merging) {
+  return WeightAgainst((light + camera) / Mis(perDensity) + merging);
 }
 
 }  // namespace lampyr

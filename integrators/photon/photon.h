@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "integrators/photon/photon_use.h"
@@ -51,6 +52,7 @@ struct TracedPhoton {
   uint16_t depth;   // 1: first hit of its path
   uint16_t group;   // of the light
   uint32_t origin;  // index of its path's origin in the list
+  uint32_t path;    // index of its path's first vertex in the densities of the list, if they are kept
 };
 
 // The photons of consecutive light paths. Keeps its memory when it is emptied.
@@ -60,6 +62,7 @@ class PhotonList {
     photons_.clear();
     starts_.clear();
     origins_.clear();
+    densities_.clear();
   }
   // What is added from now on belongs to the next path.
   void StartPath() { starts_.push_back(static_cast<uint32_t>(photons_.size())); }
@@ -77,7 +80,12 @@ class PhotonList {
     photons_.push_back({vertex.point.position, vertex.toPrevious, vertex.diffuse * passed, vertex.specular * passed,
                         vertex.weight, static_cast<float>(vertex.previousSolidAnglePerArea.value),
                         PackedNormal(vertex.bsdf.Ng()), static_cast<uint16_t>(std::min(depth, kDeepest)),
-                        static_cast<uint16_t>(group), origin});
+                        static_cast<uint16_t>(group), origin, static_cast<uint32_t>(densities_.size())});
+  }
+  // Keeps the densities of the current path's vertices, up to its last photon at least. To be called when the path is
+  // complete, or not at all.
+  void KeepDensities(std::span<const SubpathDensities> densities) {
+    if (photons_.size() > starts_.back()) densities_.insert(densities_.end(), densities.begin(), densities.end());
   }
   static constexpr size_t kDeepest = 65535;
   size_t Paths() const { return starts_.size(); }
@@ -92,6 +100,7 @@ class PhotonList {
   }
   const std::vector<TracedPhoton>& Photons() const { return photons_; }
   const std::vector<PathOrigin>& Origins() const { return origins_; }
+  const std::vector<SubpathDensities>& Densities() const { return densities_; }
 
  private:
   // Number of origins whose paths stored photons; 0 if no origin was set.
@@ -100,26 +109,27 @@ class PhotonList {
   std::vector<TracedPhoton> photons_;
   std::vector<uint32_t> starts_;  // index of the first photon of each path
   std::vector<PathOrigin> origins_;
+  std::vector<SubpathDensities> densities_;
 };
 
 // A photon in a map, without its position.
 struct Photon {
   Vector3 toPrevious{0.0f};  // unit
   Color flux;  // LightingServices::FluxUnit over the path's density, for diffuse lobes; for specular ones see PhotonMap
-  double connect = 0, earlier = 0;  // PartialWeight, with the terms of merging added to `earlier`
+  PartialWeight weight;
   float previousSolidAnglePerArea = 0;
   PackedNormal normal;  // of the surface
   uint32_t specular = kSame;
   uint16_t depth = 0;
   uint16_t group = 0;  // of the light that it comes from
+  uint32_t path = 0;   // PhotonMap::PathOf
 
   static constexpr uint32_t kSame = 0xffffffffu;
 
-  // PartialWeight::BeforeReverse. `towardsLight`: density with which the camera path would sample the direction that
-  // the photon came from.
-  double BeforeReverse(SolidAngleDensity towardsLight) const {
-    const SolidAnglePerArea edge{static_cast<double>(previousSolidAnglePerArea)};
-    return connect + Mis(towardsLight * edge) * earlier;
+  // Reverse density of the vertex before, or of the light's point. `towardsLight`: density with which the camera path
+  // would sample the direction that the photon came from.
+  AreaDensity PreviousReverse(SolidAngleDensity towardsLight) const {
+    return towardsLight * SolidAnglePerArea{static_cast<double>(previousSolidAnglePerArea)};
   }
   // True if the photon may lie on a surface with normal `Ng`, and not around a corner from it. A photon on the other
   // side of a thin wall passes this test, but the BSDF scatters nothing of it.
@@ -128,6 +138,6 @@ struct Photon {
     return std::abs(glm::dot(normal.Unpack(), Ng)) > cosine;
   }
 };
-static_assert(sizeof(Photon) == 56, "photons are counted in millions");
+static_assert(sizeof(Photon) == 64, "photons are counted in millions");
 
 }  // namespace lampyr

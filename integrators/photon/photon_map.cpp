@@ -65,14 +65,19 @@ PhotonMap& PhotonMap::operator=(PhotonMap&&) noexcept = default;
 struct PhotonMap::Traced {
   std::vector<const TracedPhoton*> photons;
   std::vector<uint32_t> origins;  // empty unless wanted
+  std::vector<uint32_t> paths;    // TracedPhoton::path, in the concatenated densities; empty if they were not kept
   Point3 least{std::numeric_limits<float>::infinity()}, most{-std::numeric_limits<float>::infinity()};
 };
 
 PhotonMap::Traced PhotonMap::Collect(std::span<const PhotonList> lists, bool wantsOrigins) {
   Traced traced;
   uint32_t firstOrigin = 0;
-  size_t count = 0;
-  for (const PhotonList& list : lists) count += list.Photons().size();
+  size_t count = 0, densities = 0;
+  for (const PhotonList& list : lists) {
+    count += list.Photons().size();
+    densities += list.Densities().size();
+  }
+  densities_.reserve(densities);
   traced.photons.reserve(count);
   for (const PhotonList& list : lists) {
     for (const TracedPhoton& photon : list.Photons()) {
@@ -85,7 +90,9 @@ PhotonMap::Traced PhotonMap::Collect(std::span<const PhotonList> lists, bool wan
       traced.most = glm::max(traced.most, photon.position);
       traced.photons.push_back(&photon);
       if (wantsOrigins) traced.origins.push_back(firstOrigin + photon.origin);
+      if (densities > 0) traced.paths.push_back(static_cast<uint32_t>(densities_.size()) + photon.path);
     }
+    densities_.insert(densities_.end(), list.Densities().begin(), list.Densities().end());
     firstOrigin += static_cast<uint32_t>(list.Origins().size());
   }
   return traced;
@@ -121,7 +128,7 @@ std::vector<SortItem> MortonOrder(const std::vector<const TracedPhoton*>& photon
 
 }  // namespace
 
-PhotonMap::PhotonMap(std::span<const PhotonList> lists, double merge, int threads, std::vector<uint32_t>* origins) {
+PhotonMap::PhotonMap(std::span<const PhotonList> lists, int threads, std::vector<uint32_t>* origins) {
   const auto start = std::chrono::steady_clock::now();
   const Traced traced = Collect(lists, origins != nullptr);
   const size_t count = traced.photons.size();
@@ -142,8 +149,8 @@ PhotonMap::PhotonMap(std::span<const PhotonList> lists, double merge, int thread
     Photon& photon = photons_[i];
     photon.toPrevious = source.toPrevious;
     photon.flux = source.diffuse;
-    photon.connect = source.weight.connect;
-    photon.earlier = source.weight.earlier + merge * source.weight.merging;
+    photon.weight = source.weight;
+    if (!traced.paths.empty()) photon.path = traced.paths[order[i].item];
     photon.previousSolidAnglePerArea = source.previousSolidAnglePerArea;
     photon.normal = source.normal;
     photon.depth = source.depth;
@@ -172,7 +179,8 @@ std::span<const uint32_t> PhotonMap::Find(const Point3& position, float radius, 
 size_t PhotonMap::Bytes() const {
   constexpr size_t node = 48;
   const size_t perPhoton = sizeof(Photon) + 3 * sizeof(float) + sizeof(float*) + sizeof(int);
-  return photons_.size() * perPhoton + photons_.size() / (kLeaf / 2) * 2 * node + specular_.size() * sizeof(Color);
+  return photons_.size() * perPhoton + photons_.size() / (kLeaf / 2) * 2 * node + specular_.size() * sizeof(Color) +
+         densities_.size() * sizeof(SubpathDensities);
 }
 
 }  // namespace lampyr

@@ -26,10 +26,10 @@ class PhotonMap {
   PhotonMap(PhotonMap&&) noexcept;
   PhotonMap& operator=(PhotonMap&&) noexcept;
 
-  // Builds the map of the concatenated lists. `merge`: (N π r²)^β for the radius with which photons will be gathered
-  // (PartialWeight). Photons whose position or flux is not finite are left out and counted. `origins`, if not null,
-  // receives for each photon the index of its path's origin in the concatenated origins of the lists.
-  PhotonMap(std::span<const PhotonList> lists, double merge, int threads, std::vector<uint32_t>* origins = nullptr);
+  // Builds the map of the concatenated lists. Photons whose position or flux is not finite are left out and counted.
+  // `origins`, if not null, receives for each photon the index of its path's origin in the concatenated origins of the
+  // lists.
+  PhotonMap(std::span<const PhotonList> lists, int threads, std::vector<uint32_t>* origins = nullptr);
 
   // Indices of all photons nearer than `radius` (scene units), in an order that depends on the photons alone. Valid
   // until the next lookup. A radius of 0 finds nothing.
@@ -39,6 +39,11 @@ class PhotonMap {
   // Flux of a photon for specular lobes; a light may send them other radiance than diffuse lobes.
   const Color& SpecularFlux(const Photon& photon) const {
     return photon.specular == Photon::kSame ? photon.flux : specular_[photon.specular];
+  }
+
+  // Densities of the vertices of a photon's path, up to its own; empty if they were not kept.
+  std::span<const SubpathDensities> PathOf(const Photon& photon) const {
+    return densities_.empty() ? std::span<const SubpathDensities>() : std::span(&densities_[photon.path], photon.depth);
   }
 
   size_t Size() const { return photons_.size(); }
@@ -56,6 +61,7 @@ class PhotonMap {
   Point3 center_{0.0f};  // positions are kept relative to it
   std::vector<Photon> photons_;
   std::vector<Color> specular_;
+  std::vector<SubpathDensities> densities_;
   std::unique_ptr<Search> search_;
   size_t rejected_ = 0;
   double buildSeconds_ = 0;

@@ -11,7 +11,8 @@ namespace lampyr {
 uint64_t PhotonStore::BytesPerPhoton(bool withUse) {
   constexpr uint64_t pointer = sizeof(void*), position = 3 * sizeof(float), tree = 2 * position + pointer + 16;
   const uint64_t use = withUse ? PhotonUse::kMostBytesPerPhoton + sizeof(PathOrigin) + sizeof(uint32_t) : 0;
-  return sizeof(TracedPhoton) + sizeof(Photon) + sizeof(SortItem) + pointer + tree + use;
+  // Two copies of the densities, of which there are about as many as photons.
+  return 2 * sizeof(SubpathDensities) + sizeof(TracedPhoton) + sizeof(Photon) + sizeof(SortItem) + pointer + tree + use;
 }
 
 PhotonStore::PhotonStore(const PhotonSettings& settings, uint64_t pixels, EmissionLearning* learning)
@@ -61,8 +62,7 @@ const PhotonPass& PhotonStore::Open(uint32_t pass, int threads) {
   open_.radius = static_cast<float>(settings_.radius * scale);
   std::vector<uint32_t> origins;
   const bool wantsUse = WantsOrigins();
-  open_.map =
-      std::make_shared<PhotonMap>(waiting_, Mis(open_.MergesPerDensity()), threads, wantsUse ? &origins : nullptr);
+  open_.map = std::make_shared<PhotonMap>(waiting_, threads, wantsUse ? &origins : nullptr);
   if (wantsUse) open_.use = MakeUse(std::move(origins));
   Clear();
   const PhotonMap& map = *open_.map;

@@ -10,14 +10,10 @@
 //   Σ_(i≤j) (p_i / p_(j+1))^β = B_j^β · (connect + B_(j-1)^β · earlier).
 // The same holds from the camera's side with F and B exchanged.
 //
-// Merging at x_j joins the camera's vertex with a photon of any of the N light paths within the radius r. Its density
-// is p_(j+1) · B_j · N π r². With merge = (N π r²)^β, each vertex that can be merged at adds the term B_j^β · merge,
-// which the recursion carries on like the others.
+// Merging is not carried: its terms depend on the whole path (bidirectional/path_densities.h).
 //
 // Departures from [Georgiev12]: β is 2, not 1. Selection of lights may depend on the receiver and is weighted exactly:
-// the first partial weight of a light subpath is made at its first hit (AtFirstHit), which is the receiver. The terms
-// with a factor `merge` are kept apart, because photons are gathered in a later pass than they are traced in, with
-// another radius.
+// the first partial weight of a light subpath is made at its first hit (AtFirstHit), which is the receiver.
 //
 // Survival probabilities of Russian roulette enter the throughput of both subpaths and no density, so that weights do
 // not depend on them.
@@ -62,6 +58,19 @@ struct LightEnd {
   AreaDensity direct;                   // of the light's point, by next-event estimation
   SolidAnglePerArea solidAnglePerArea;  // dω/dA from the first surface vertex to the light's point
   bool canBeHit = false;                // rays that surfaces scatter can hit the light
+  // What `emission` is a density of, besides the area of the first surface vertex.
+  enum class Extent : uint8_t { Point, Surface, Sky };  // nothing, the area of the light's point, its direction
+  Extent extent = Extent::Point;
+};
+
+// Densities of a vertex of a subpath, for weights that need all vertices of a path.
+struct SubpathDensities {
+  double forward = 0;  // by its own subpath, 1/m²; of the first vertex of a light path: LightEnd::emission
+  double reverse = 0;  // by the other one; valid once the next vertex has scattered
+  // A delta event finds the vertex, forward or reverse: the density is a coefficient.
+  bool forwardIsDelta = false, reverseIsDelta = false;
+  bool canMerge = false;  // with the event by which the subpath goes on; valid once there is a next vertex
+  LightEnd::Extent extent = LightEnd::Extent::Point;  // of the first vertex of a light path
 };
 
 // The last two reverse densities of a subpath: of its last vertex and of the one before.
@@ -69,46 +78,32 @@ struct ReverseDensities {
   AreaDensity last, previous;
 };
 
-// `merge` at the last vertex of a subpath, 0 if photons are not merged there, and at the vertices before it.
-struct Merging {
-  double here = 0, before = 0;
-};
-
 struct PartialWeight {
   double connect = 0, earlier = 0;
-  double merging = 0;  // coefficient of `merge` beside `earlier`: merging at the vertices before this one
 
   // Partial weight at the first hit of a light subpath ([Georgiev12 eqs. 31–33]). Without `connects`: for merging
   // alone.
   static PartialWeight AtFirstHit(const LightEnd& end, bool connects) {
     if (!connects) return {};
     const double perEmission = 1 / Mis(end.emission);
-    return {Mis(end.direct) * perEmission, end.canBeHit ? perEmission : 0.0, 0.0};
+    return {Mis(end.direct) * perEmission, end.canBeHit ? perEmission : 0.0};
   }
   // Partial weight at the first vertex of a camera subpath. `camera`: density of the vertex by a camera ray, over that
   // of the lens point (DensityAtLens). `isSplatted`: true if light paths that reach the vertex are connected to the
   // lens.
-  static PartialWeight AtLens(AreaDensity camera, bool isSplatted) {
-    return {isSplatted ? 1 / Mis(camera) : 0.0, 0.0, 0.0};
-  }
+  static PartialWeight AtLens(AreaDensity camera, bool isSplatted) { return {isSplatted ? 1 / Mis(camera) : 0.0, 0.0}; }
 
-  // Σ (p_i / p)^β over the techniques with fewer vertices on this side, merging at this vertex included.
-  double Sum(const ReverseDensities& reverse, const Merging& merge) const {
-    return Mis(reverse.last) * (merge.here + BeforeReverse(reverse.previous, merge.before));
-  }
-  // The sum without the factor of this vertex's own reverse density, and without merging at it.
-  double BeforeReverse(AreaDensity previousReverse, double merge) const {
-    return connect + Mis(previousReverse) * (earlier + merge * merging);
-  }
+  // Σ (p_i / p)^β over the techniques with fewer vertices on this side, merging left out.
+  double Sum(const ReverseDensities& reverse) const { return Mis(reverse.last) * BeforeReverse(reverse.previous); }
+  // The sum without the factor of this vertex's own reverse density.
+  double BeforeReverse(AreaDensity previousReverse) const { return connect + Mis(previousReverse) * earlier; }
 
   // Partial weight at the next vertex ([Georgiev12 eqs. 34–36]). `forward`: density of the next vertex.
   // `previousReverse`: reverse density of the previous vertex, by the event at this one. A delta event rules out
-  // connections at this vertex and over the edge to the next one, and merging at this vertex. `canMerge`: false rules
-  // out the merging alone.
-  PartialWeight Next(bool isDelta, bool canMerge, AreaDensity forward, AreaDensity previousReverse) const {
+  // connections at this vertex and over the edge to the next one.
+  PartialWeight Next(bool isDelta, AreaDensity forward, AreaDensity previousReverse) const {
     const double inverse = 1 / Mis(forward), reverse = Mis(previousReverse);
-    return {isDelta ? 0.0 : inverse, ((isDelta ? 0.0 : connect) + reverse * earlier) * inverse,
-            ((isDelta || !canMerge ? 0.0 : 1.0) + reverse * merging) * inverse};
+    return {isDelta ? 0.0 : inverse, ((isDelta ? 0.0 : connect) + reverse * earlier) * inverse};
   }
 };
 

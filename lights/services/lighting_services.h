@@ -132,6 +132,7 @@ class LightingServices {
   PdfDiscrete EmissionSelectionProbability(uint32_t light) const;
   // IsAtInfinity: the light is infinite or distant. CanBeHit: BSDF sampling can find it.
   bool IsAtInfinity(uint32_t light) const { return lampyr::IsAtInfinity(scene_->fronts[light].kind); }
+  LightKind KindOf(uint32_t light) const { return scene_->fronts[light].kind; }
   bool CanBeHit(uint32_t light) const { return scene_->CanBeHit(light); }
   // True if BSDF sampling can find any light.
   bool HasLightThatCanBeHit() const { return scene_->hasLightThatCanBeHit; }

@@ -54,10 +54,11 @@ class KeptLightPaths {
   }
   const KeptPath& PathOf(const Photon& photon) const {
     return paths_.at(
-        KeyOf(photon.toPrevious, photon.flux, photon.connect, photon.previousSolidAnglePerArea, photon.depth));
+        KeyOf(photon.toPrevious, photon.flux, photon.weight.connect, photon.previousSolidAnglePerArea, photon.depth));
   }
 
   PhotonList photons;
+  std::vector<SubpathDensities> densities;  // of the current path
 
  private:
   using Key = std::array<double, 9>;
@@ -73,6 +74,8 @@ class KeepsPaths final : public WeightedLightPath {
 
  private:
   void OnWeighted(const LightPath& path) override {
+    AddDensities(path.vertices, kept_.densities);
+    if (path.vertices.Count() == 1) kept_.densities[0] = {.forward = End().emission.value, .extent = End().extent};
     if (path.vertices.Last().storesPhotons) kept_.Keep(path, End());
   }
   KeptLightPaths& kept_;
@@ -121,7 +124,7 @@ class WeightChecker final : public PathObserver {
  private:
   void CheckInputs(const ConnectedPath& path) {
     if (path.light.empty() && path.camera.empty()) return;
-    if (path.s + path.t > 2) worst_.mergesPerDensity.Note(path.mergesPerDensity, mergesPerDensity_);
+    if (path.s + path.t > 2) worst_.mergesPerDensity.Note(path.merging.perDensity, mergesPerDensity_);
     CheckLens(path);
     if (!path.isMerged) CheckLightEnd(path);
     for (size_t i = 0; i + 1 < path.camera.size(); ++i) {
@@ -237,10 +240,12 @@ void TracePhotons(const RenderScene& scene, int maxDepth, float radius, Sampler&
   KeepsPaths visitor(context, photons.kept);
   for (uint32_t i = 0; i < kLightPaths; ++i) {
     sampler.StartPixelSample(1, 0, i);
+    photons.kept.photons.StartPath();
+    photons.kept.densities.clear();
     TraceLightPath(context, maxDepth, {2, 1}, path, visitor);
+    photons.kept.photons.KeepDensities(photons.kept.densities);
   }
-  photons.gather.map =
-      std::make_shared<PhotonMap>(std::span(&photons.kept.photons, 1), Mis(photons.gather.MergesPerDensity()), 1);
+  photons.gather.map = std::make_shared<PhotonMap>(std::span(&photons.kept.photons, 1), 1);
 }
 
 }  // namespace
@@ -259,6 +264,7 @@ WeightErrors CheckWeights(const std::string& sceneText, const WeightProof& proof
   const int width = built.settings.width, height = built.settings.height;
   settings.filmPixels = static_cast<double>(width) * static_cast<double>(height);
   settings.merges = proof.radius > 0;
+  settings.photons.radius = static_cast<double>(proof.radius * sphere.radius);
   const auto integrator = MakeBidirectionalIntegrator(settings);
   Sampler sampler(SamplerKind::Independent, 5);
   Photons photons;

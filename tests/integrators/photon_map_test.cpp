@@ -32,7 +32,7 @@ PhotonList ListOf(const std::vector<Point3>& positions) {
 
 PhotonMap MapOf(const std::vector<Point3>& positions, int threads = 2) {
   const PhotonList list = ListOf(positions);
-  return {std::span(&list, 1), 0, threads};
+  return {std::span(&list, 1), threads};
 }
 
 std::set<size_t> NumbersOf(const PhotonMap& map, std::span<const uint32_t> found) {
@@ -148,7 +148,7 @@ TEST(PhotonMap, ThreadsAndListsDoNotMatter) {
   const PhotonList whole = ListOf(positions);
   std::vector<PhotonList> parts(7);
   for (size_t i = 0; i < positions.size(); ++i) AddPhoton(parts[i * 7 / positions.size()], positions[i], i);
-  const PhotonMap one(std::span(&whole, 1), 0.5, 1), many(parts, 0.5, 4);
+  const PhotonMap one(std::span(&whole, 1), 1), many(parts, 4);
   PhotonLookup a, b;
   Rng rng(14);
   for (int i = 0; i < 200; ++i) {
@@ -164,13 +164,13 @@ TEST(PhotonMap, MergingIsInTheWeights) {
   vertex.toPrevious = Vector3(0, 0, 1);
   vertex.diffuse = Color(1, 2, 3);
   vertex.specular = Color(4, 5, 6);
-  vertex.weight = {2, 3, 5};
+  vertex.weight = {2, 3};
   vertex.previousSolidAnglePerArea = {0.5};
   PhotonList list;
   list.StartPath();
   list.Add(vertex, 3);
-  const PhotonMap map(std::span(&list, 1), 7, 1);
-  EXPECT_DOUBLE_EQ(vertex.weight.BeforeReverse(AreaDensity(0.5 * 11), 7), map[0].BeforeReverse(SolidAngleDensity(11)));
+  const PhotonMap map(std::span(&list, 1), 1);
+  EXPECT_DOUBLE_EQ(vertex.weight.BeforeReverse(AreaDensity(0.5 * 11)), map[0].weight.BeforeReverse(map[0].PreviousReverse(SolidAngleDensity(11))));
   EXPECT_EQ(Color(1, 2, 3), map[0].flux);
   EXPECT_EQ(Color(4, 5, 6), map.SpecularFlux(map[0]));
   EXPECT_EQ(3u, map[0].depth);

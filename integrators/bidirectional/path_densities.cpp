@@ -1,0 +1,121 @@
+#include "integrators/bidirectional/path_densities.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lampyr {
+
+namespace {
+
+constexpr double kPiDouble = 3.14159265358979323846;
+const double kReach = std::tan(kPiDouble / 180);  // ρ over the distance of the first hit
+
+}  // namespace
+
+Merging Merging::At(double radius, double distance, double lightPaths) {
+  return {lightPaths * kPiDouble * radius * radius, kPiDouble * kReach * kReach * distance * distance, lightPaths};
+}
+
+void PathDensities::Set(std::span<const SubpathDensities> light, std::span<const SubpathDensities> camera,
+                        const Joint& joint, double emission, LightEnd::Extent extent, const Merging& merging) {
+  const size_t n = light.size() + camera.size();
+  vertices_.resize(n + 1);
+  for (size_t i = 0; i < light.size(); ++i) {
+    const SubpathDensities& v = light[i];
+    vertices_[i + 1] = {v.forward, v.reverse, v.forwardIsDelta, v.reverseIsDelta, v.canMerge};
+  }
+  for (size_t i = 0; i < camera.size(); ++i) {
+    const SubpathDensities& v = camera[i];
+    vertices_[n - i] = {v.reverse, v.forward, v.reverseIsDelta, v.forwardIsDelta, v.canMerge};
+  }
+  if (const size_t j = light.size(); j > 0) {
+    Vertex& last = vertices_[j];
+    last.fromCamera = joint.light.last.value;
+    last.cameraIsDelta = false;
+    if (!joint.isMerged) last.canMerge = joint.mergesAtLight;
+    if (!joint.isMerged && j > 1) {
+      vertices_[j - 1].fromCamera = joint.light.previous.value;
+      vertices_[j - 1].cameraIsDelta = false;
+    }
+  }
+  if (const size_t j = light.size() + 1; j <= n) {
+    Vertex& last = vertices_[j];
+    last.fromLight = joint.camera.last.value;
+    last.lightIsDelta = joint.lastCameraIsDelta;
+    last.canMerge = joint.mergesAtCamera;
+    if (j < n) {
+      vertices_[j + 1].fromLight = joint.camera.previous.value;
+      vertices_[j + 1].lightIsDelta = joint.previousCameraIsDelta;
+    }
+  }
+  emission_ = emission;
+  extent_ = extent;
+  merging_ = merging;
+  Correlate();
+}
+
+void PathDensities::Correlate() {
+  const size_t n = Count();
+  vertices_[n].correlation = 1;
+  if (n < 2) return;
+  const double area = merging_.area;
+  const auto probability = [area](bool isDelta, double density) {
+    return isDelta ? 1.0 : std::min(1.0, density * area);
+  };
+  // The direction of a light at infinity is found again within a degree.
+  const double ofLight = extent_ == LightEnd::Extent::Surface ? area
+                         : extent_ == LightEnd::Extent::Sky   ? kPiDouble * kReach * kReach
+                                                              : 1.0;
+  // P_L first, in the place of c.
+  double light = std::min(1.0, emission_ * area * ofLight);
+  vertices_[1].correlation = light;
+  for (size_t i = 2; i < n; ++i) {
+    light *= probability(vertices_[i].lightIsDelta, vertices_[i].fromLight);
+    vertices_[i].correlation = light;
+  }
+  double camera = probability(vertices_[n].cameraIsDelta, vertices_[n].fromCamera);
+  for (size_t i = n - 1; i >= 1; --i) {
+    camera *= probability(vertices_[i].cameraIsDelta, vertices_[i].fromCamera);
+    light = vertices_[i].correlation;
+    const double either = camera + light - camera * light;
+    vertices_[i].correlation = either > 0 ? std::max(camera / either, 1 / merging_.lightPaths) : 1.0;
+  }
+}
+
+double PathDensities::TowardsCamera(size_t i, double ratio) const {
+  double sum = 0;
+  for (;; ++i) {
+    if (vertices_[i].canMerge) sum += Mis(ratio * vertices_[i].correlation);
+    if (i == Count()) return sum;
+    ratio *= vertices_[i + 1].fromLight / vertices_[i].fromCamera;
+  }
+}
+
+double PathDensities::TowardsLight(size_t i, double ratio) const {
+  double sum = 0;
+  for (;; --i) {
+    if (vertices_[i].canMerge) sum += Mis(ratio * vertices_[i].correlation);
+    if (i == 1) return sum;
+    ratio *= vertices_[i - 1].fromCamera / vertices_[i].fromLight;
+  }
+}
+
+double PathDensities::ForLight(double technique) const {
+  return TowardsCamera(1, emission_ / technique * merging_.perDensity);
+}
+
+double PathDensities::ForConnection(size_t lightCount) const {
+  double sum = TowardsLight(lightCount, vertices_[lightCount].fromCamera * merging_.perDensity);
+  if (lightCount < Count())
+    sum += TowardsCamera(lightCount + 1, vertices_[lightCount + 1].fromLight * merging_.perDensity);
+  return sum;
+}
+
+double PathDensities::ForMerging(size_t i) const {
+  double sum = 0;
+  if (i > 1) sum += TowardsLight(i - 1, vertices_[i - 1].fromCamera / vertices_[i].fromLight);
+  if (i < Count()) sum += TowardsCamera(i + 1, vertices_[i + 1].fromLight / vertices_[i].fromCamera);
+  return sum / Mis(vertices_[i].correlation);
+}
+
+}  // namespace lampyr

@@ -1,0 +1,78 @@
+// Densities of all surface vertices of a path, and the terms of merging that follow from them.
+//
+// A path with the surface vertices 1 … n, from the light on, may be merged at any of them, whichever technique made it:
+// with a photon of any of N light paths within the radius r. The density is p_(i+1) · B_i · N π r² (walk/
+// partial_weight.h). But photons that are gathered together are worth N independent ones only as far as their paths
+// differ: where a narrow beginning leads all of them to the same place, they are worth one. So the density is
+// multiplied by ([Grittmann21 §5])
+//   c_i = max(P_C / (P_C + P_L - P_C P_L), 1/N),   P_L(i) = Π_(k≤i) f_k,   P_C(i) = Π_(k≥i) b_k
+// with f_k the probability that another light path has its vertex k within ρ of this path's, and b_k the same for
+// another camera path. c is 1 at the vertex that the camera sees. It has the same value in the weight of every
+// technique, so that weights sum to 1, and depends on both ends of the path, so that no recursion along a subpath can
+// carry it.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "integrators/walk/partial_weight.h"
+
+namespace lampyr {
+
+// Merging on the paths that the camera sees at one place: all techniques of a path share its first hit, and so these.
+struct Merging {
+  double perDensity = 0;  // N π r²; 0: no merging
+  double area = 0;        // π ρ²
+  double lightPaths = 1;  // N
+
+  explicit operator bool() const { return perDensity > 0; }
+  // `radius`: r. `distance`: of the first hit from the camera; ρ is what a degree spans there.
+  static Merging At(double radius, double distance, double lightPaths);
+};
+
+// Where two subpaths meet: the last two reverse densities of each, and merging at the last vertices.
+struct Joint {
+  ReverseDensities light, camera;
+  bool mergesAtLight = false, mergesAtCamera = false;
+  bool lastCameraIsDelta = false, previousCameraIsDelta = false;  // the reverse density is a coefficient
+  // The camera's last vertex is a photon's, and `light` holds the photon's path without it: of the light's last vertex
+  // only light.last is set.
+  bool isMerged = false;
+};
+
+class PathDensities {
+ public:
+  // A path of the vertices of both subpaths, each from its own end on. `end`: of its light.
+  void Set(std::span<const SubpathDensities> light, std::span<const SubpathDensities> camera, const Joint& joint,
+           double emission, LightEnd::Extent extent, const Merging& merging);
+
+  // Σ (p_i / p)^β over the techniques that merge, for the technique p:
+  // - the light's end with s = 0 or 1, of the density `technique`;
+  // - a connection of the last vertex of the light subpath, to the camera subpath or to the lens;
+  // - merging at vertex `i`, itself left out.
+  double ForLight(double technique) const;
+  double ForConnection(size_t lightCount) const;
+  double ForMerging(size_t i) const;
+  // N π r² c at vertex `i`.
+  double PerDensityAt(size_t i) const { return merging_.perDensity * vertices_[i].correlation; }
+
+  size_t Count() const { return vertices_.size() - 1; }
+
+ private:
+  struct Vertex {
+    double fromLight = 0, fromCamera = 0;
+    bool lightIsDelta = false, cameraIsDelta = false, canMerge = false;
+    double correlation = 1;  // c
+  };
+  void Correlate();
+  // The terms at the vertices from `i` on. `ratio`: p_i / p, without c.
+  double TowardsCamera(size_t i, double ratio) const;
+  double TowardsLight(size_t i, double ratio) const;
+
+  std::vector<Vertex> vertices_;  // [0] is not used
+  double emission_ = 0;
+  LightEnd::Extent extent_ = LightEnd::Extent::Point;
+  Merging merging_;
+};
+
+}  // namespace lampyr
