@@ -88,6 +88,20 @@ TEST(BdptWeights, WithMergingInEveryAgreementScene) {
   EXPECT_GT(merges, 20000);
 }
 
+// The radius is a number of pixels as the camera sees the path's first hit.
+TEST(BdptWeights, WithARadiusPerPath) {
+  int merges = 0, asked = 0;
+  for (const AgreementScene& scene : AgreementScenes()) {
+    const WeightErrors worst = CheckWeights(scene.text, {.paths = 4000, .pixels = 2});
+    ExpectExact(scene.name, worst);
+    asked += worst.mergesPerDensity.asked;
+    merges += worst.merges;
+    Print(scene.name, worst);
+  }
+  EXPECT_GT(merges, 10000);
+  EXPECT_GT(asked, 100000);
+}
+
 // Mirrors, smooth glass, what only passes through, and mixes that are now matte and now a mirror: deltas in all places
 // of a path.
 TEST(BdptWeights, WithDeltas) {

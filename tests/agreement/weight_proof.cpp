@@ -87,8 +87,9 @@ double CosineAtGeometry(const PathVertex& vertex, const Vector3& direction) {
 
 class WeightChecker final : public PathObserver {
  public:
-  WeightChecker(const RenderScene& scene, const KeptLightPaths& kept, double mergesPerDensity)
-      : scene_(scene), kept_(kept), mergesPerDensity_(mergesPerDensity) {}
+  // `pixels`: WeightProof.
+  WeightChecker(const RenderScene& scene, const KeptLightPaths& kept, double mergesPerDensity, double pixels)
+      : scene_(scene), kept_(kept), mergesPerDensity_(mergesPerDensity), pixels_(pixels) {}
 
   // Of the sample that makes the paths that follow.
   void StartSample(const Ray& cameraRay, float time) {
@@ -124,7 +125,7 @@ class WeightChecker final : public PathObserver {
  private:
   void CheckInputs(const ConnectedPath& path) {
     if (path.light.empty() && path.camera.empty()) return;
-    if (path.s + path.t > 2) worst_.mergesPerDensity.Note(path.merging.perDensity, mergesPerDensity_);
+    if (path.s + path.t > 2) CheckMerging(path);
     CheckLens(path);
     if (!path.isMerged) CheckLightEnd(path);
     for (size_t i = 0; i + 1 < path.camera.size(); ++i) {
@@ -137,6 +138,40 @@ class WeightChecker final : public PathObserver {
       CheckRefraction(vertex, vertex.toPrevious, -path.light[i + 1].toPrevious, vertex.eventReverse,
                       vertex.eventForward);
     }
+  }
+
+  // Whichever technique made the path, the radius is that of its first hit.
+  void CheckMerging(const ConnectedPath& path) {
+    if (pixels_ == 0) {
+      worst_.mergesPerDensity.Note(path.merging.perDensity, mergesPerDensity_);
+      return;
+    }
+    const PathVertex& vertex = path.camera.empty() ? path.light.back() : path.camera.front();
+    const Point3 lens = path.camera.empty() ? path.connection->camera.position : cameraRay_.origin;
+    if (!scene_.camera->EvaluateRay({lens, -path.toLens}, &film_)) return;
+    const double area = SeenArea(vertex, path.toLens);
+    if (area > 0) worst_.mergesPerDensity.Note(path.merging.perDensity, mergesPerDensity_ * pixels_ * pixels_ * area);
+  }
+  // Area of a pixel around film_ on the plane of a vertex, turned towards the camera, by rays through the corners of a
+  // square. 0: unknown.
+  double SeenArea(const PathVertex& vertex, const Vector3& toLens) const {
+    constexpr float kSide = 0.01f;  // pixels
+    const Vector3d n(vertex.bsdf.Ng());
+    Vector3d corners[3];
+    // Of a camera with a lens the path's point on it is not known.
+    const CameraRay center = scene_.camera->GenerateRay(film_, Point2(0.5f), time_);
+    if (glm::distance(center.ray.direction, -toLens) > 1e-4f) return 0;
+    for (int i = 0; i < 3; ++i) {
+      const Point2 film = film_ + kSide * Point2(i == 1 ? 0.5f : -0.5f, i == 2 ? 0.5f : -0.5f);
+      const CameraRay ray = scene_.camera->GenerateRay(film, Point2(0.5f), time_);
+      const double cosine = glm::dot(n, Vector3d(ray.ray.direction));
+      if (ray.weight == 0 || std::abs(cosine) < 0.2) return 0;
+      const Vector3d origin(ray.ray.origin);
+      corners[i] = origin + Vector3d(ray.ray.direction) *
+                                (glm::dot(Vector3d(vertex.point.position) - origin, n) / cosine);
+    }
+    const double area = glm::length(glm::cross(corners[1] - corners[0], corners[2] - corners[0]));
+    return area * CosineAtGeometry(vertex, toLens) / (static_cast<double>(kSide) * static_cast<double>(kSide));
   }
 
   // The density (area) with which the camera finds its first vertex, from where the path meets the lens.
@@ -214,7 +249,7 @@ class WeightChecker final : public PathObserver {
 
   const RenderScene& scene_;
   const KeptLightPaths& kept_;
-  const double mergesPerDensity_;
+  const double mergesPerDensity_, pixels_;
   Ray cameraRay_;
   float time_ = 0;
   Point2 film_;
@@ -263,18 +298,19 @@ WeightErrors CheckWeights(const std::string& sceneText, const WeightProof& proof
   settings.maxDepth = built.settings.MaxDepth();
   const int width = built.settings.width, height = built.settings.height;
   settings.filmPixels = static_cast<double>(width) * static_cast<double>(height);
-  settings.merges = proof.radius > 0;
+  settings.merges = proof.radius > 0 || proof.pixels > 0;
   settings.photons.radius = static_cast<double>(proof.radius * sphere.radius);
   const auto integrator = MakeBidirectionalIntegrator(settings);
   Sampler sampler(SamplerKind::Independent, 5);
   Photons photons;
   double mergesPerDensity = 0;
-  if (proof.radius > 0) {
+  if (settings.merges) {
     TracePhotons(scene, settings.maxDepth, proof.radius * sphere.radius, sampler, photons);
-    const auto radius = static_cast<double>(photons.gather.radius);
+    photons.gather.radiusScale = proof.pixels;
+    const double radius = proof.radius > 0 ? static_cast<double>(photons.gather.radius) : 1.0;
     mergesPerDensity = kLightPaths * 3.14159265358979323846 * radius * radius;
   }
-  WeightChecker checker(scene, photons.kept, mergesPerDensity);
+  WeightChecker checker(scene, photons.kept, mergesPerDensity, static_cast<double>(proof.pixels));
   RenderCounts counts;
   SplatList splats({0, 0}, {static_cast<float>(width), static_cast<float>(height)}, 1);
   for (uint32_t index = 0; checker.Result().paths < proof.paths && index < 100000; ++index) {
@@ -291,7 +327,7 @@ WeightErrors CheckWeights(const std::string& sceneText, const WeightProof& proof
     SampleContext context{scene, sampler, time, counts};
     context.splats = &splats;
     context.observer = &checker;
-    context.gather = proof.radius > 0 ? &photons.gather : nullptr;
+    context.gather = settings.merges ? &photons.gather : nullptr;
     integrator->Sample(&ray.ray, context);
     if (proof.stopsAtFirst && !checker.Result().WhatIsWrong().empty()) break;
   }

@@ -38,6 +38,7 @@ struct WeightProof {
   int paths = 4000;
   float radius = 0;    // that photons are gathered within, in parts of the scene's; 0: none
   bool aimed = false;  // photons: at two balls in the scene's middle
+  float pixels = 0;    // if `radius` is 0: photons are gathered within so many pixels, seen at the first hit
   bool stopsAtFirst = false;
 };
 WeightErrors CheckWeights(const std::string& sceneText, const WeightProof& proof);

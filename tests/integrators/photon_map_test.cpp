@@ -159,7 +159,7 @@ TEST(PhotonMap, ThreadsAndListsDoNotMatter) {
   }
 }
 
-TEST(PhotonMap, MergingIsInTheWeights) {
+TEST(PhotonMap, KeepsWhatAPhotonCarries) {
   PathVertex vertex;
   vertex.toPrevious = Vector3(0, 0, 1);
   vertex.diffuse = Color(1, 2, 3);
@@ -170,11 +170,51 @@ TEST(PhotonMap, MergingIsInTheWeights) {
   list.StartPath();
   list.Add(vertex, 3);
   const PhotonMap map(std::span(&list, 1), 1);
-  EXPECT_DOUBLE_EQ(vertex.weight.BeforeReverse(AreaDensity(0.5 * 11)), map[0].weight.BeforeReverse(map[0].PreviousReverse(SolidAngleDensity(11))));
+  EXPECT_EQ(2, map[0].weight.connect);
+  EXPECT_EQ(3, map[0].weight.earlier);
+  EXPECT_DOUBLE_EQ(0.5 * 11, map[0].PreviousReverse(SolidAngleDensity(11)).value);
   EXPECT_EQ(Color(1, 2, 3), map[0].flux);
   EXPECT_EQ(Color(4, 5, 6), map.SpecularFlux(map[0]));
   EXPECT_EQ(3u, map[0].depth);
   EXPECT_EQ(0u, map[0].group);
+  EXPECT_TRUE(map.PathOf(map[0]).empty()) << "densities were not kept";
+}
+
+// Of its own path, from the light on, up to the photon: also where a path left none, or not at each vertex.
+TEST(PhotonMap, KeepsTheDensitiesOfPaths) {
+  std::vector<PhotonList> lists(3);
+  PathVertex vertex;
+  vertex.toPrevious = Vector3(0, 0, 1);
+  int path = 0;
+  for (PhotonList& list : lists) {
+    for (const size_t vertices : {2, 5, 3}) {
+      std::vector<SubpathDensities> densities(vertices);
+      for (size_t i = 0; i < vertices; ++i) densities[i].forward = 10 * path + static_cast<double>(i);
+      list.StartPath();
+      for (size_t depth = 1; depth <= vertices && vertices != 3; depth += 2) {
+        vertex.point.position = Point3(static_cast<float>(path), static_cast<float>(depth), 0);
+        list.Add(vertex, depth);
+      }
+      list.KeepDensities(densities);
+      ++path;
+    }
+  }
+  const PhotonMap map(lists, 2);
+  ASSERT_EQ(12u, map.Size());
+  PhotonLookup lookup;
+  for (int of = 0; of < path; ++of) {
+    for (int depth = 1; depth <= 5; depth += 2) {
+      const auto found = map.Find(Point3(static_cast<float>(of), static_cast<float>(depth), 0), 0.4f, lookup);
+      if (of % 3 == 2 || (of % 3 == 0 && depth > 1)) {
+        EXPECT_TRUE(found.empty());
+        continue;
+      }
+      ASSERT_EQ(1u, found.size());
+      const auto densities = map.PathOf(map[found[0]]);
+      ASSERT_EQ(static_cast<size_t>(depth), densities.size());
+      for (int i = 0; i < depth; ++i) EXPECT_EQ(10 * of + i, densities[static_cast<size_t>(i)].forward);
+    }
+  }
 }
 
 TEST(PhotonMap, KeepsTheGroupAndAsMuchOfTheDepthAsItCan) {
@@ -187,7 +227,7 @@ TEST(PhotonMap, KeepsTheGroupAndAsMuchOfTheDepthAsItCan) {
     vertex.point.position.x = static_cast<float>(group);
     list.Add(vertex, depth, group);
   }
-  const PhotonMap map(std::span(&list, 1), 0, 1);
+  const PhotonMap map(std::span(&list, 1), 1);
   for (const auto& [depth, group] : photons) {
     PhotonLookup lookup;
     const auto found = map.Find(Point3(static_cast<float>(group), 0, 0), 0.4f, lookup);
