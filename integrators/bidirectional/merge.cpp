@@ -52,7 +52,7 @@ Color Merge(const BidirectionalSample& sample) {
     const double weight =
         MergeWeight(photon.weight.BeforeReverse(joint.light.last), vertex.weight.BeforeReverse(joint.camera.previous),
                     sample.whole.PerDensityAt(light.size()), sample.whole.ForMerging(light.size()));
-    const Color value = scattered * vertex.ArrivalCorrection(toLight);
+    const Color value = scattered * vertex.ArrivalCorrection(toLight, photon.normal.Unpack());
     sum += value * static_cast<float>(weight);
     // Multiplied in another order than the sum: a shared product would be rounded differently than without layers.
     if (context.layers) [[unlikely]]

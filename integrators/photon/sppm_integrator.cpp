@@ -103,7 +103,7 @@ class RadianceEstimate final : public PhotonGatherer {
       const BsdfEvaluation f = vertex.Evaluate(photon.toPrevious, TransportMode::Radiance);
       if (f.pdfForward.value > kWide) continue;
       sum += (f.diffuse * photon.flux + f.specular * pass_.map->SpecularFlux(photon)) *
-             vertex.ArrivalCorrection(photon.toPrevious);
+             vertex.ArrivalCorrection(photon.toPrevious, photon.normal.Unpack());
       if (context_.layers) [[unlikely]]
         AddToLayers(photon, vertex, f, PerArea(radius));
       if (pass_.use) [[unlikely]]
@@ -135,8 +135,8 @@ class RadianceEstimate final : public PhotonGatherer {
   [[gnu::noinline]] void AddToLayers(const Photon& photon, const PathVertex& vertex, const BsdfEvaluation& f,
                                      double perArea) const {
     const Color scattered = f.diffuse * photon.flux + f.specular * pass_.map->SpecularFlux(photon);
-    context_.layers->Add(
-        photon.group, Product(vertex.Throughput(), scattered * vertex.ArrivalCorrection(photon.toPrevious), perArea));
+    const float correction = vertex.ArrivalCorrection(photon.toPrevious, photon.normal.Unpack());
+    context_.layers->Add(photon.group, Product(vertex.Throughput(), scattered * correction, perArea));
   }
 
   const SppmSettings& settings_;

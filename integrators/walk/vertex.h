@@ -48,6 +48,13 @@ struct Vertex {
     if (bsdf.ShadingFrame().z == bsdf.Ng()) return 1;
     return ScatteringCosine(toLight) / std::max(GeometryTerm(toLight), kSmallestGeometricCosine);
   }
+  // ArrivalCorrection of a photon that arrived at a surface with the normal `Ng`. On a mesh that may be another facet
+  // than the vertex's: photons are as dense as |wl·Ng| there, so that dividing by that is safe at any angle, and by the
+  // vertex's own is not.
+  float ArrivalCorrection(const Vector3& toLight, const Normal3& Ng) const {
+    if (bsdf.ShadingFrame().z == bsdf.Ng()) return 1;
+    return ScatteringCosine(toLight) / std::max(AbsDot(toLight, Ng), kSmallestGeometricCosine);
+  }
   // |w·Ng| / |w·Ns|: correction of a sampled direction, whose sample weight is f · |w·Ns| / pdf.
   float DepartureCorrection(const Vector3& direction) const {
     if (bsdf.ShadingFrame().z == bsdf.Ng()) return 1;
