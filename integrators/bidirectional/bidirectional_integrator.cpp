@@ -61,7 +61,8 @@ float BidirectionalSample::MergeRadiusAt(float cosTheta, AreaDensity atLens) con
 }
 
 Merging BidirectionalSample::MergingAt(double distance, float cosTheta, AreaDensity atLens) const {
-  return Merging::At(static_cast<double>(MergeRadiusAt(cosTheta, atLens)), distance, context.gather->lightPaths);
+  return Merging::At(static_cast<double>(MergeRadiusAt(cosTheta, atLens)), distance, context.gather->lightPaths,
+                     settings.filmPixels);
 }
 
 AreaDensity DensityAtLens(const Camera& camera, const Ray& ray, float geometryTerm, double distanceSquared) {

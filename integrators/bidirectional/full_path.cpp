@@ -103,7 +103,8 @@ double CorrelationAt(const FullPath& path, int i) {
   for (int k = 2; k <= i; ++k)
     light *= isDelta(k - 1) ? 1.0 : std::min(1.0, path.fromLight[static_cast<size_t>(k)].value * area);
   for (int k = i; k <= n; ++k) {
-    const double density = k == n ? path.seenDensity : path.fromCamera[static_cast<size_t>(k)].value;
+    const double density =
+        k == n ? path.seenDensity * path.merging.filmPixels : path.fromCamera[static_cast<size_t>(k)].value;
     camera *= isDelta(k + 1) ? 1.0 : std::min(1.0, density * area);
   }
   const double either = camera + light - camera * light;

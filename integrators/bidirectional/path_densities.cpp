@@ -12,8 +12,9 @@ const double kReach = std::tan(kPiDouble / 180);  // ρ over the distance of the
 
 }  // namespace
 
-Merging Merging::At(double radius, double distance, double lightPaths) {
-  return {lightPaths * kPiDouble * radius * radius, kPiDouble * kReach * kReach * distance * distance, lightPaths};
+Merging Merging::At(double radius, double distance, double lightPaths, double filmPixels) {
+  return {lightPaths * kPiDouble * radius * radius, kPiDouble * kReach * kReach * distance * distance, lightPaths,
+          filmPixels};
 }
 
 void PathDensities::Set(std::span<const SubpathDensities> light, std::span<const SubpathDensities> camera,
@@ -73,7 +74,7 @@ void PathDensities::Correlate() {
     light *= probability(vertices_[i].lightIsDelta, vertices_[i].fromLight);
     vertices_[i].correlation = light;
   }
-  double camera = probability(vertices_[n].cameraIsDelta, vertices_[n].fromCamera);
+  double camera = probability(vertices_[n].cameraIsDelta, vertices_[n].fromCamera * merging_.filmPixels);
   for (size_t i = n - 1; i >= 1; --i) {
     camera *= probability(vertices_[i].cameraIsDelta, vertices_[i].fromCamera);
     light = vertices_[i].correlation;

@@ -7,7 +7,7 @@
 // multiplied by ([Grittmann21 §5])
 //   c_i = max(P_C / (P_C + P_L - P_C P_L), 1/N),   P_L(i) = Π_(k≤i) f_k,   P_C(i) = Π_(k≥i) b_k
 // with f_k the probability that another light path has its vertex k within ρ of this path's, and b_k the same for
-// another camera path. c is 1 at the vertex that the camera sees. It has the same value in the weight of every
+// another camera path of the pixel. c is 1 at the vertex that the camera sees. It has the same value in the weight of every
 // technique, so that weights sum to 1, and depends on both ends of the path, so that no recursion along a subpath can
 // carry it.
 #pragma once
@@ -24,10 +24,11 @@ struct Merging {
   double perDensity = 0;  // N π r²; 0: no merging
   double area = 0;        // π ρ²
   double lightPaths = 1;  // N
+  double filmPixels = 1;  // the density of the first hit by a ray through its pixel is so many times that by any
 
   explicit operator bool() const { return perDensity > 0; }
   // `radius`: r. `distance`: of the first hit from the camera; ρ is what a degree spans there.
-  static Merging At(double radius, double distance, double lightPaths);
+  static Merging At(double radius, double distance, double lightPaths, double filmPixels);
 };
 
 // Where two subpaths meet: the last two reverse densities of each, and merging at the last vertices.
