@@ -35,6 +35,16 @@ Color BidirectionalSample::Report(ConnectedPath& path) const {
   return path.value * static_cast<float>(path.weight);
 }
 
+TechniqueSums BidirectionalSample::SumsOfConnection(size_t lightCount, const ReverseDensities& reverse,
+                                                    bool isSplat) const {
+  const PathVertex& first = light.vertices[0];
+  const bool goesOn = lightCount > 1;
+  const AreaDensity hit = goesOn ? first.PreviousReverse(first.eventReverse) : reverse.previous;
+  const PathEnds ends{lightEnd.direct.value, lightEnd.canBeHit ? hit.value : 0.0, goesOn && first.scatteredDelta,
+                      isSplat || lensSeesIt};
+  return whole.Sums(ends, lightCount + 1, 0);
+}
+
 Color BidirectionalSample::AddToPixel(ConnectedPath& path, float survivalWeight) const {
   const Color contribution = Report(path) * survivalWeight;
   if (context.layers) context.layers->Add(Lighting().GroupOf(path.end.light), contribution);
@@ -173,6 +183,7 @@ class CameraSide final : public PathVisitor {
     const bool isSplatted =
         sample_.context.scene.camera->ConnectsLightPaths() && vertex.pdfForward.value > 0 && vertex.isSeenByIndirect;
     vertex.weight = PartialWeight::AtLens(vertex.pdfForward, isSplatted && sample_.settings.connects);
+    sample_.lensSeesIt = isSplatted;
     if (sample_.context.gather) SetMerging(vertex, state);
   }
   void SetMerging(const PathVertex& vertex, const PathState& state) const {
@@ -215,6 +226,14 @@ struct Workspace {
   std::vector<SubpathDensities> lightDensities, cameraDensities;
 };
 
+// The light's end of the sample's light path.
+PathEnds EndsOf(const BidirectionalSample& sample) {
+  const PathVertex& first = sample.light.vertices[0];
+  const bool goesOn = sample.light.vertices.Count() > 1;
+  const double hit = goesOn ? first.PreviousReverse(first.eventReverse).value : 1.0;
+  return {sample.lightEnd.direct.value, sample.lightEnd.canBeHit ? hit : 0.0, goesOn && first.scatteredDelta};
+}
+
 Color BidirectionalIntegrator::Sample(const Ray* ray, const SampleContext& context) const {
   thread_local Workspace workspace;
   workspace.light.vertices.Clear();
@@ -231,7 +250,7 @@ Color BidirectionalIntegrator::Sample(const Ray* ray, const SampleContext& conte
     LightSide visitor(sample);
     TraceLightPath(context, settings_.maxDepth, kLightDimensions, workspace.light, visitor);
     if (context.photons && workspace.light.vertices.Count() > 0)
-      context.photons->KeepDensities(workspace.lightDensities);
+      context.photons->KeepDensities(EndsOf(sample), workspace.lightDensities);
   }
   if (!ray) return Color(0.0f);
   PathState state;

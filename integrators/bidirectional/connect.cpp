@@ -49,6 +49,8 @@ Color Connect(const BidirectionalSample& sample, size_t lightCount) {
       z.CanMerge()};
   path.weight =
       ConnectWeight(y.weight, joint.light, z.weight, joint.camera, sample.MergingOfConnection(lightCount, joint));
+  if (sample.WantsSums()) [[unlikely]]
+    path.sums = sample.SumsOfConnection(lightCount, joint.light, false);
   const float survivalWeight = sample.WantedShadowRays().SurvivalWeight(
       path.value * static_cast<float>(path.weight), sample.radiance, ShadowRays::DeciderOf(toCamera.x, toCamera.y));
   if (survivalWeight == 0) return Color(0.0f);

@@ -25,12 +25,15 @@ struct ConnectedPath {
   const FilmConnection* connection = nullptr;  // of t = 1; null: the path contributes to the sample's own pixel
   Color value;                                 // contribution before the weight
   double weight = 1;
+  TechniqueSums sums;  // if the observer wants them
 };
 
 // Receives every path that contributes to a sample.
 class PathObserver {
  public:
   virtual ~PathObserver() = default;
+  // True if ConnectedPath::sums are to be computed, of paths with merging.
+  virtual bool WantsSums() const { return false; }
   virtual void Observe(const ConnectedPath& path) = 0;
   // The camera subpath's last vertex was merged with `photon`. Of the photon's path only the photon is known: `path`
   // has no light subpath and no `end`.

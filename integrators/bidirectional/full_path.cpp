@@ -111,7 +111,7 @@ double CorrelationAt(const FullPath& path, int i) {
   return either > 0 ? std::max(camera / either, 1 / path.merging.lightPaths) : 1;
 }
 
-std::vector<double> WeightsByDensities(const FullPath& path) {
+std::vector<long double> ExplicitDensities(const FullPath& path) {
   const int n = path.SurfaceCount();
   std::vector<long double> densities(static_cast<size_t>(path.TechniqueCount()), 0.0L);
   const auto isDelta = [&](int i) { return static_cast<bool>(path.isDelta[static_cast<size_t>(i)]); };
@@ -137,11 +137,32 @@ std::vector<double> WeightsByDensities(const FullPath& path) {
     for (int k = i; k <= n; ++k) density *= fromCamera(k);
     densities[static_cast<size_t>(n + 1 + i)] = density;
   }
+  return densities;
+}
+
+std::vector<double> WeightsByDensities(const FullPath& path) {
+  const std::vector<long double> densities = ExplicitDensities(path);
   long double sum = 0;
   for (const long double density : densities) sum += density * density;
   std::vector<double> weights;
   for (const long double density : densities) weights.push_back(static_cast<double>(density * density / sum));
   return weights;
+}
+
+TechniqueSums SumsByDensities(const FullPath& path) {
+  const int n = path.SurfaceCount();
+  const std::vector<long double> densities = ExplicitDensities(path);
+  long double own = densities[static_cast<size_t>(path.technique)];
+  if (path.technique > n + 1) own /= CorrelationAt(path, path.technique - n - 1);
+  TechniqueSums sums;
+  for (int i = 0; i < path.TechniqueCount(); ++i) {
+    const TechniqueGroup group = i <= 1       ? TechniqueGroup::Path
+                                 : i <= n     ? TechniqueGroup::Connect
+                                 : i == n + 1 ? TechniqueGroup::Light
+                                              : TechniqueGroup::Merge;
+    sums.Of(group).Add(static_cast<double>(densities[static_cast<size_t>(i)] / own));
+  }
+  return sums;
 }
 
 namespace {

@@ -37,6 +37,8 @@ FullPath Unfold(const ConnectedPath& path);
 double CorrelationAt(const FullPath& path, int i);
 // Weights of all techniques from explicit densities; 0 for techniques that cannot make the path.
 std::vector<double> WeightsByDensities(const FullPath& path);
+// TechniqueSums from explicit densities, with merging.
+TechniqueSums SumsByDensities(const FullPath& path);
 // Weights of all techniques by partial weights, from the functions that the integrator calls (weights.h).
 std::vector<double> WeightsByRecursion(const FullPath& path);
 

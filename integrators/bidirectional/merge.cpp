@@ -9,7 +9,9 @@ namespace lampyr {
 
 namespace {
 
-void ReportMerge(const BidirectionalSample& sample, const Photon& photon, const Color& value, double weight) {
+// `reverse`: density of the photon's previous vertex, or of the light's point.
+void ReportMerge(const BidirectionalSample& sample, const Photon& photon, AreaDensity reverse, const Color& value,
+                 double weight) {
   ConnectedPath path;
   sample.SetCamera(path);
   path.isMerged = true;
@@ -19,6 +21,12 @@ void ReportMerge(const BidirectionalSample& sample, const Photon& photon, const 
   path.seenDensity = sample.seenDensity;
   path.value = value;
   path.weight = weight;
+  if (sample.WantsSums()) {
+    const PathEnds kept = sample.context.gather->map->EndsOf(photon);
+    const double hit = photon.depth > 1 ? kept.hit : kept.hit > 0 ? reverse.value : 0.0;
+    path.sums = sample.whole.Sums({kept.direct, hit, kept.firstIsDelta && photon.depth > 1, sample.lensSeesIt}, 0,
+                                  photon.depth);
+  }
   sample.context.observer->ObserveMerge(path, photon);
 }
 
@@ -60,7 +68,7 @@ Color Merge(const BidirectionalSample& sample) {
     if (pass.use) [[unlikely]]
       pass.use->Add(index, (vertex.Throughput() * f.Sum()).Average() * static_cast<float>(weight));
     if (sample.IsObserved()) [[unlikely]]
-      ReportMerge(sample, photon, Product(vertex.Throughput(), value, perDensity), weight);
+      ReportMerge(sample, photon, joint.light.last, Product(vertex.Throughput(), value, perDensity), weight);
   }
   return Product(vertex.Throughput(), sum, perDensity);
 }

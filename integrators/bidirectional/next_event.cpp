@@ -39,6 +39,8 @@ class NextEventTechnique final : public NextEventVisitor {
     joint.mergesAtCamera = vertex_.CanMerge();
     path_.weight = NextEventWeight(path_.end, vertex_.weight, hit, joint.camera.previous,
                                    sample_.MergingOfLight(path_.end, joint, path_.end.direct));
+    if (sample_.WantsSums()) [[unlikely]]
+      path_.sums = sample_.Sums(path_.end, hit, false, 1);
     return static_cast<float>(path_.weight);
   }
 

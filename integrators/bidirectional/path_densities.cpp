@@ -101,6 +101,40 @@ double PathDensities::TowardsLight(size_t i, double ratio) const {
   }
 }
 
+// All densities over Π_(i≥1) B_i: those of s = 0 and s = 1 are the ends', that of s > 1 is emission · F_2 … F_(s-1) /
+// (B_1 … B_(s-1)), and that of merging at vertex i the one of s = i + 1 times B_i N π r² c.
+TechniqueSums PathDensities::Sums(const PathEnds& ends, size_t s, size_t mergedAt) const {
+  const size_t n = Count();
+  const auto isDelta = [&](size_t i) {
+    return (i == 1 && ends.firstIsDelta) || (i < n && vertices_[i + 1].lightIsDelta) ||
+           (i > 1 && vertices_[i - 1].cameraIsDelta);
+  };
+  // As far as the path's own technique the densities are absolute, then they are over that one's.
+  double own = s == 0 ? ends.hit : s == 1 ? ends.direct : 0.0;
+  double density = emission_ / vertices_[1].fromCamera;  // of s = 2
+  for (size_t k = 2; k <= n + 1; ++k) {
+    if (mergedAt > 0 ? k == mergedAt + 1 : k == s) {
+      own = density * (mergedAt > 0 ? vertices_[mergedAt].fromCamera * merging_.perDensity : 1.0);
+      break;
+    }
+    if (k <= n) density *= vertices_[k].fromLight / vertices_[k].fromCamera;
+  }
+  if (!(own > 0) || !std::isfinite(own)) return {};
+  TechniqueSums sums;
+  sums.Of(TechniqueGroup::Path).Add(ends.hit / own);
+  if (!isDelta(1)) sums.Of(TechniqueGroup::Path).Add(ends.direct / own);
+  double ratio = emission_ / vertices_[1].fromCamera / own;
+  for (size_t k = 2; k <= n + 1; ++k) {
+    const Vertex& last = vertices_[k - 1];
+    const bool exists = !isDelta(k - 1) && (k <= n ? !isDelta(k) : ends.lensSeesIt);
+    if (exists) sums.Of(k <= n ? TechniqueGroup::Connect : TechniqueGroup::Light).Add(ratio);
+    if (last.canMerge)
+      sums.Of(TechniqueGroup::Merge).Add(ratio * last.fromCamera * merging_.perDensity * last.correlation);
+    if (k <= n) ratio *= vertices_[k].fromLight / vertices_[k].fromCamera;
+  }
+  return sums;
+}
+
 double PathDensities::ForLight(double technique) const {
   return TowardsCamera(1, emission_ / technique * merging_.perDensity);
 }

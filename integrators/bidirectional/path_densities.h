@@ -12,6 +12,8 @@
 // carry it.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -41,6 +43,29 @@ struct Joint {
   bool isMerged = false;
 };
 
+// The techniques of a path in four groups, each of which an integrator may have or leave out.
+enum class TechniqueGroup : uint8_t {
+  Path,     // s = 0 and s = 1: path tracing
+  Light,    // t = 1: light tracing
+  Connect,  // connections of two subpaths
+  Merge,
+};
+inline constexpr size_t kTechniqueGroups = 4;
+
+// Σ r^2 and Σ r^3 over the techniques of each group: r is a technique's density over that with which the path was
+// sampled. Of merging r is the density times c.
+struct TechniqueSums {
+  struct Group {
+    double squares = 0, cubes = 0;
+    void Add(double ratio) {
+      squares += ratio * ratio;
+      cubes += ratio * ratio * ratio;
+    }
+  };
+  std::array<Group, kTechniqueGroups> groups;
+  Group& Of(TechniqueGroup group) { return groups[static_cast<size_t>(group)]; }
+};
+
 class PathDensities {
  public:
   // A path of the vertices of both subpaths, each from its own end on. `end`: of its light.
@@ -56,6 +81,10 @@ class PathDensities {
   double ForMerging(size_t i) const;
   // N π r² c at vertex `i`.
   double PerDensityAt(size_t i) const { return merging_.perDensity * vertices_[i].correlation; }
+
+  // The sums over all techniques, for a path that technique `s` has made, or merging at vertex `mergedAt` if that is
+  // not 0. All 0 where the camera could not have made the path.
+  TechniqueSums Sums(const PathEnds& ends, size_t s, size_t mergedAt) const;
 
   size_t Count() const { return vertices_.size() - 1; }
 

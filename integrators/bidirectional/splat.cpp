@@ -54,6 +54,8 @@ void SplatVertex(const BidirectionalSample& sample) {
     sample.whole.Set(sample.lightDensities, {}, joint, sample.lightEnd.emission.value, sample.lightEnd.extent,
                      path.merging);
     merging = sample.whole.ForConnection(light.Count());
+    if (sample.context.observer && sample.context.observer->WantsSums()) [[unlikely]]
+      path.sums = sample.SumsOfConnection(light.Count(), joint.light, true);
   }
   path.weight = SplatWeight(vertex.weight, joint.light, merging);
   AddSplat(sample, path);

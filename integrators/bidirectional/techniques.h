@@ -27,6 +27,7 @@ struct BidirectionalSample {
   Merging merging{};        // of what the camera subpath sees
   float mergeRadius = 0;    // scene units
   double seenDensity = 0;   // of the first vertex of the camera subpath, as in P_C
+  bool lensSeesIt = false;  // light paths that reach the first vertex of the camera subpath are connected to the lens
   bool couldMerge = false;  // merging was possible at a vertex of the camera subpath
   Color radiance{};
 
@@ -47,6 +48,14 @@ struct BidirectionalSample {
               lightEnd.extent, merging);
     return whole.ForConnection(lightCount);
   }
+  // TechniqueSums of the path that was weighted last. `end`, `hit`: the light's end of it, and the density with which a
+  // camera path hits the light.
+  bool WantsSums() const { return merging && context.observer && context.observer->WantsSums(); }
+  TechniqueSums Sums(const LightEnd& end, AreaDensity hit, bool firstIsDelta, size_t s) const {
+    return whole.Sums({end.direct.value, end.canBeHit ? hit.value : 0.0, firstIsDelta, lensSeesIt}, s, 0);
+  }
+  // The same of a connection, to the lens if `isSplat`. `reverse`: of the last vertices of the light subpath.
+  TechniqueSums SumsOfConnection(size_t lightCount, const ReverseDensities& reverse, bool isSplat) const;
   bool IsObserved() const { return context.observer != nullptr; }
   // Roulette of shadow rays; off with an observer, which receives all paths.
   ShadowRays WantedShadowRays() const { return IsObserved() ? ShadowRays{0, 0} : settings.shadowRays; }

@@ -80,12 +80,14 @@ class PhotonList {
     photons_.push_back({vertex.point.position, vertex.toPrevious, vertex.diffuse * passed, vertex.specular * passed,
                         vertex.weight, static_cast<float>(vertex.previousSolidAnglePerArea.value),
                         PackedNormal(vertex.bsdf.Ng()), static_cast<uint16_t>(std::min(depth, kDeepest)),
-                        static_cast<uint16_t>(group), origin, static_cast<uint32_t>(densities_.size())});
+                        static_cast<uint16_t>(group), origin, static_cast<uint32_t>(densities_.size() + 1)});
   }
-  // Keeps the densities of the current path's vertices, up to its last photon at least. To be called when the path is
-  // complete, or not at all.
-  void KeepDensities(std::span<const SubpathDensities> densities) {
-    if (photons_.size() > starts_.back()) densities_.insert(densities_.end(), densities.begin(), densities.end());
+  // Keeps the densities of the current path's vertices, up to its last photon at least, and before them those of its
+  // light's end. To be called when the path is complete, or not at all.
+  void KeepDensities(const PathEnds& ends, std::span<const SubpathDensities> densities) {
+    if (photons_.size() == starts_.back()) return;
+    densities_.push_back({ends.direct, ends.hit, ends.firstIsDelta});
+    densities_.insert(densities_.end(), densities.begin(), densities.end());
   }
   static constexpr size_t kDeepest = 65535;
   size_t Paths() const { return starts_.size(); }

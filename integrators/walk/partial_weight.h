@@ -73,6 +73,13 @@ struct SubpathDensities {
   LightEnd::Extent extent = LightEnd::Extent::Point;  // of the first vertex of a light path
 };
 
+// What the sums over all techniques of a path need besides the densities of its surface vertices.
+struct PathEnds {
+  double direct = 0, hit = 0;  // of the light's point: by next-event estimation, and by a camera path; 0: impossible
+  bool firstIsDelta = false;   // the event at vertex 1
+  bool lensSeesIt = false;     // t = 1 exists
+};
+
 // The last two reverse densities of a subpath: of its last vertex and of the one before.
 struct ReverseDensities {
   AreaDensity last, previous;

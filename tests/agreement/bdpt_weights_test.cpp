@@ -19,10 +19,10 @@ std::string Say(const InputCheck& check) {
 }
 void Print(const char* name, const WeightErrors& errors) {
   std::printf(
-      "%-20s %d paths, %d merged, sums off by %.1e, recursion %.1e, reported %.1e; off by 1 %%: direct %s, emission "
+      "%-20s %d paths, %d merged, sums off by %.1e, recursion %.1e, reported %.1e, groups %.1e of %d; off by 1 %%: direct %s, emission "
       "%s, "
       "lens %s, merges %s, refraction %s\n",
-      name, errors.paths, errors.merges, errors.sum, errors.recursion, errors.reported, Say(errors.direct).c_str(),
+      name, errors.paths, errors.merges, errors.sum, errors.recursion, errors.reported, errors.groups, errors.sums, Say(errors.direct).c_str(),
       Say(errors.emission).c_str(), Say(errors.lens).c_str(), Say(errors.mergesPerDensity).c_str(),
       Say(errors.refraction).c_str());
 }

@@ -24,6 +24,7 @@ std::string WeightErrors::WhatIsWrong() const {
   // Densities are floats, here of the event as seen from the other end: narrow lobes amplify how directions are
   // rounded.
   if (!(reported < 5e-5)) return "reported";
+  if (!(groups < 2e-4)) return "groups";
   if (!direct.Passes()) return "direct";
   if (!emission.Passes()) return "emission";
   if (!lens.Passes()) return "lens";
@@ -59,6 +60,7 @@ class KeptLightPaths {
 
   PhotonList photons;
   std::vector<SubpathDensities> densities;  // of the current path
+  PathEnds ends;
 
  private:
   using Key = std::array<double, 9>;
@@ -75,7 +77,14 @@ class KeepsPaths final : public WeightedLightPath {
  private:
   void OnWeighted(const LightPath& path) override {
     AddDensities(path.vertices, kept_.densities);
-    if (path.vertices.Count() == 1) kept_.densities[0] = {.forward = End().emission.value, .extent = End().extent};
+    const PathVertex& first = path.vertices[0];
+    if (path.vertices.Count() == 1) {
+      kept_.densities[0] = {.forward = End().emission.value, .extent = End().extent};
+      kept_.ends = {End().direct.value, End().canBeHit ? 1.0 : 0.0};
+    } else if (path.vertices.Count() == 2) {
+      kept_.ends.firstIsDelta = first.scatteredDelta;
+      kept_.ends.hit *= first.PreviousReverse(first.eventReverse).value;
+    }
     if (path.vertices.Last().storesPhotons) kept_.Keep(path, End());
   }
   KeptLightPaths& kept_;
@@ -106,6 +115,7 @@ class WeightChecker final : public PathObserver {
     ++worst_.merges;
     Observe(merged);
   }
+  bool WantsSums() const override { return true; }
   void Observe(const ConnectedPath& path) override {
     const FullPath full = Unfold(path);
     const std::vector<double> expected = WeightsByDensities(full), recursive = WeightsByRecursion(full);
@@ -118,11 +128,27 @@ class WeightChecker final : public PathObserver {
     }
     worst_.sum = std::max(worst_.sum, std::abs(sum - 1));
     worst_.reported = std::max(worst_.reported, std::abs(path.weight - expected[static_cast<size_t>(full.technique)]));
+    if (path.merging && full.SurfaceCount() > 0) CompareSums(path.sums, SumsByDensities(full));
     CheckInputs(path);
   }
   const WeightErrors& Result() const { return worst_; }
 
  private:
+  // What the groups weigh, by the power heuristic, and the same of the third powers.
+  void CompareSums(TechniqueSums sums, TechniqueSums expected) {
+    double all = 0, allExpected = 0;
+    for (size_t i = 0; i < kTechniqueGroups; ++i) {
+      all += sums.groups[i].squares;
+      allExpected += expected.groups[i].squares;
+    }
+    ++worst_.sums;
+    for (size_t i = 0; i < kTechniqueGroups; ++i) {
+      const TechniqueSums::Group &a = sums.groups[i], &b = expected.groups[i];
+      worst_.groups = std::max({worst_.groups, std::abs(a.squares / all - b.squares / allExpected),
+                                std::abs(a.cubes / std::pow(all, 1.5) - b.cubes / std::pow(allExpected, 1.5))});
+      if (!(worst_.groups >= 0)) worst_.groups = 1;
+    }
+  }
   void CheckInputs(const ConnectedPath& path) {
     if (path.light.empty() && path.camera.empty()) return;
     if (path.s + path.t > 2) CheckMerging(path);
@@ -278,7 +304,7 @@ void TracePhotons(const RenderScene& scene, int maxDepth, float radius, Sampler&
     photons.kept.photons.StartPath();
     photons.kept.densities.clear();
     TraceLightPath(context, maxDepth, {2, 1}, path, visitor);
-    photons.kept.photons.KeepDensities(photons.kept.densities);
+    photons.kept.photons.KeepDensities(photons.kept.ends, photons.kept.densities);
   }
   photons.gather.map = std::make_shared<PhotonMap>(std::span(&photons.kept.photons, 1), 1);
 }

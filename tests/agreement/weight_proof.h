@@ -25,6 +25,8 @@ struct WeightErrors {
   double sum = 0;        // |Σ weights - 1|
   double recursion = 0;  // between the two ways of weighing the same densities
   double reported = 0;   // between the integrator's weight and that of the densities asked for anew
+  double groups = 0;     // between the integrator's sums over groups of techniques and those of explicit densities
+  int sums = 0;          // compared
   int merges = 0;
   InputCheck direct, emission, lens, mergesPerDensity, refraction;
 

@@ -195,7 +195,7 @@ TEST(PhotonMap, KeepsTheDensitiesOfPaths) {
         vertex.point.position = Point3(static_cast<float>(path), static_cast<float>(depth), 0);
         list.Add(vertex, depth);
       }
-      list.KeepDensities(densities);
+      list.KeepDensities({}, densities);
       ++path;
     }
   }
