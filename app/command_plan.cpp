@@ -11,6 +11,23 @@
 
 namespace lampyr {
 
+namespace {
+
+// What the pilot estimated of each candidate.
+void PrintPilot(const Pilot& pilot) {
+  if (pilot.candidates.empty()) return;
+  std::printf("\nA pilot's estimates, for one sample per pixel:\n%-10s %8s %12s %16s  %s\n", "", "relMSE", "cost (µs)",
+              "relMSE × cost", "misses");
+  for (const PilotCandidate& candidate : pilot.candidates) {
+    char missing[32] = "–";
+    if (candidate.missing > kNegligibleLight) std::snprintf(missing, sizeof missing, "%.2g %%", 100 * candidate.missing);
+    std::printf("%-10s %8.3g %11.2f %15.3g  %s\n", candidate.integrator.c_str(), candidate.error, candidate.cost * 1e-3,
+                candidate.error * candidate.cost * 1e-3, missing);
+  }
+}
+
+}  // namespace
+
 int RunPlan(const PlanOptions& options) {
   const LoadedScene loaded = LoadScene(options.scene, options.plugins, options.overrides, options.strict, true);
   RenderSettings settings = loaded.built.settings;
@@ -31,6 +48,7 @@ int RunPlan(const PlanOptions& options) {
     const std::string row = padded(decision.subject, subject) + padded(decision.choice, choice);
     std::printf("%s", Indented(row, decision.reason, columns).c_str());
   }
+  PrintPilot(plan.pilot);
   const std::string& named = loaded.built.settings.namedIntegrator;
   if (settings.integrator == "auto" && !named.empty() && named != plan.integrator) {
     const std::string note = "The scene names " + named + ": `lampyr render` renders with " + named + ", and with " +

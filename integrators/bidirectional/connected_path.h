@@ -25,7 +25,7 @@ struct ConnectedPath {
   const FilmConnection* connection = nullptr;  // of t = 1; null: the path contributes to the sample's own pixel
   Color value;                                 // contribution before the weight
   double weight = 1;
-  TechniqueSums sums;  // if the observer wants them
+  TechniqueSums sums;  // if the observer wants them; of lights that the camera sees, always
 };
 
 // Receives every path that contributes to a sample.

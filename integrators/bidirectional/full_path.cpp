@@ -156,7 +156,8 @@ TechniqueSums SumsByDensities(const FullPath& path) {
   if (path.technique > n + 1) own /= CorrelationAt(path, path.technique - n - 1);
   TechniqueSums sums;
   for (int i = 0; i < path.TechniqueCount(); ++i) {
-    const TechniqueGroup group = i <= 1       ? TechniqueGroup::Path
+    const TechniqueGroup group = i == 0       ? TechniqueGroup::Hit
+                                 : i == 1     ? TechniqueGroup::Next
                                  : i <= n     ? TechniqueGroup::Connect
                                  : i == n + 1 ? TechniqueGroup::Light
                                               : TechniqueGroup::Merge;

@@ -121,8 +121,8 @@ TechniqueSums PathDensities::Sums(const PathEnds& ends, size_t s, size_t mergedA
   }
   if (!(own > 0) || !std::isfinite(own)) return {};
   TechniqueSums sums;
-  sums.Of(TechniqueGroup::Path).Add(ends.hit / own);
-  if (!isDelta(1)) sums.Of(TechniqueGroup::Path).Add(ends.direct / own);
+  sums.Of(TechniqueGroup::Hit).Add(ends.hit / own);
+  if (!isDelta(1)) sums.Of(TechniqueGroup::Next).Add(ends.direct / own);
   double ratio = emission_ / vertices_[1].fromCamera / own;
   for (size_t k = 2; k <= n + 1; ++k) {
     const Vertex& last = vertices_[k - 1];

@@ -43,14 +43,15 @@ struct Joint {
   bool isMerged = false;
 };
 
-// The techniques of a path in four groups, each of which an integrator may have or leave out.
+// The techniques of a path in groups, each of which an integrator may have or leave out.
 enum class TechniqueGroup : uint8_t {
-  Path,     // s = 0 and s = 1: path tracing
-  Light,    // t = 1: light tracing
+  Hit,      // s = 0
+  Next,     // s = 1
+  Light,    // t = 1
   Connect,  // connections of two subpaths
   Merge,
 };
-inline constexpr size_t kTechniqueGroups = 4;
+inline constexpr size_t kTechniqueGroups = 5;
 
 // Σ r^2 and Σ r^3 over the techniques of each group: r is a technique's density over that with which the path was
 // sampled. Of merging r is the density times c.

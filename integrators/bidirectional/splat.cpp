@@ -32,6 +32,8 @@ void SplatLight(const BidirectionalSample& sample, const EmittedPhoton& photon) 
   path.end.position = static_cast<double>(photon.emissionSelection.value) * AreaDensity(photon.emission.pdfEmit);
   path.end.canBeHit = true;
   path.weight = SplatLightWeight(path.end.position, path.atLens);
+  path.sums.Of(TechniqueGroup::Light).Add(1);
+  path.sums.Of(TechniqueGroup::Hit).Add(path.atLens / path.end.position);
   AddSplat(sample, path);
 }
 

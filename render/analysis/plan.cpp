@@ -3,8 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "integrators/walk/footprint.h"
-#include "integrators/walk/next_event.h"
+#include "base/parallel.h"
 #include "render/settings/integrator_choice.h"
 
 namespace lampyr {
@@ -14,68 +13,9 @@ namespace {
 struct Facts {
   size_t lights = 0, deltas = 0, finite = 0, infinite = 0, patches = 0, tracing = 0;
   size_t smooth = 0;     // materials with a delta lobe other than passing straight through
-  double arriving = 1;   // fraction of sampled light that is unoccluded where the camera looks
-  bool hasSeen = false;  // light was sampled at something that the camera sees
-  double indirect = 0;   // fraction of the light there that arrives over one other surface
-  // Unevenness of that light over BSDF samples: the mean square over the square of the mean. 1: even.
-  double concentration = 1;
-
-  double IndirectNoise() const { return indirect * indirect * concentration; }
 };
 
-// Next-event estimation at a vertex, before and after occlusion.
-struct SampledLight final : NextEventVisitor {
-  double sent = 0, arrived = 0;
-
-  float Weigh(const LightConnection& light) override {
-    sent += static_cast<double>(light.value.Average());
-    return 1;
-  }
-  void Arrived(const LightConnection& light, const Color&, const Color&) override {
-    arrived += static_cast<double>(light.value.Average());
-  }
-};
-
-// `block`: vertex block of sampler dimensions to draw from.
-SampledLight SampleLightAt(const RenderScene& scene, const PathVertex& vertex, int block, Sampler& sampler) {
-  SampledLight sampled;
-  RenderCounts counts;
-  const SampleContext context{scene, sampler, 0, counts};
-  SampleDirectLight(context, {{}, false, {0, 0}}, vertex, block, Color(0.0f), sampled);
-  return sampled;
-}
-
-// Measures direct light, and indirect light after one bounce, at what the camera sees.
-void MeasureLight(const RenderScene& scene, const RenderSettings& settings, Facts& facts) {
-  constexpr int across = 32, bounces = 4;
-  double sent = 0, arrived = 0, indirect = 0, squares = 0;
-  int rays = 0;
-  SceneProbe probe(scene);
-  probe.ForEachVisible(settings.width, settings.height, across, [&](const Ray&, SeenVertex& seen) {
-    const SampledLight first = SampleLightAt(scene, seen.vertex, 40, probe.Numbers());
-    sent += first.sent;
-    arrived += first.arrived;
-    for (int i = 0; i < bounces; ++i) {
-      ++rays;
-      PathState state;
-      SeenVertex next;
-      // Another block of dimensions for each bounce: other numbers.
-      if (!probe.Bounce(seen, 20 + i, state, next)) continue;
-      const double value = SampleLightAt(scene, next.vertex, 41 + i, probe.Numbers()).arrived *
-                           static_cast<double>(state.Throughput().Average());
-      indirect += value / bounces;
-      squares += value * value;
-    }
-  });
-  facts.hasSeen = sent > 0;
-  if (sent > 0) facts.arriving = arrived / sent;
-  if (!(indirect > 0)) return;
-  facts.indirect = indirect / (indirect + arrived);
-  const double sum = bounces * indirect;
-  facts.concentration = squares * rays / (sum * sum);
-}
-
-Facts FactsOf(const RenderScene& scene, const RenderSettings& settings) {
+Facts FactsOf(const RenderScene& scene) {
   Facts facts;
   for (const PlacedLight& placed : scene.lighting->Lights()) {
     const LightKind kind = placed.light->Kind();
@@ -87,7 +27,6 @@ Facts FactsOf(const RenderScene& scene, const RenderSettings& settings) {
     facts.tracing += placed.light->Settings().traceLightPaths ? 1 : 0;
   }
   for (const auto& material : scene.materials) facts.smooth += material && material->IsSmooth() ? 1 : 0;
-  MeasureLight(scene, settings, facts);
   return facts;
 }
 
@@ -99,39 +38,32 @@ std::string Percent(double part) {
   return std::to_string(std::lround(100 * part)) + " %";
 }
 
-// If less than this fraction of sampled light is unoccluded, most light is indirect, and light paths find it by
-// themselves.
-constexpr double kMostlyHidden = 0.25;
-// Threshold of Facts::IndirectNoise, the squared relative noise of a sample of indirect light. Rooms with lamps on
-// their ceilings have 0.1 to 0.5, the lampshade of scenes/lamp has 3.
-constexpr double kNoisy = 1.5;
+// A number with two digits.
+std::string Short(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2g", value);
+  return text;
+}
 
-PlanDecision ChooseIntegrator(const Facts& facts) {
+// `pilot`: receives its estimates, if one was needed.
+PlanDecision ChooseIntegrator(const RenderScene& scene, const RenderSettings& settings, const Facts& facts,
+                              Pilot& pilot) {
   if (facts.lights == 0) return {"integrator", "path", "nothing emits"};
   if (facts.tracing == 0) return {"integrator", "path", "no light traces light paths"};
-  if (facts.smooth > 0 && facts.deltas > 0) {
-    return {"integrator", "vcm",
-            Count(facts.deltas, "light") + " without extent and " + Count(facts.smooth, "smooth material") +
-                ": no camera path finds their caustics, and only photons show these in mirrors and through glass"};
+  pilot = RunPilot(scene, settings, HardwareThreads());
+  const PilotCandidate* best = pilot.Best();
+  if (!best) return {"integrator", "vcm", "a first look found no light: vcm has the most techniques to find it by"};
+  std::string reason = "least error in equal time, as a pilot estimates it:";
+  const char* separator = " ";
+  for (const PilotCandidate& other : pilot.candidates) {
+    if (&other == best) continue;
+    const double ratio = other.ErrorTimesCost() / best->ErrorTimesCost();
+    reason += separator + other.integrator +
+              (other.missing > kNegligibleLight ? " misses " + Percent(other.missing) + " of the light"
+                                                : " has " + Short(ratio) + " × its relMSE");
+    separator = ", ";
   }
-  if (facts.smooth > 0 && facts.finite > 0) {
-    return {"integrator", "vcm",
-            Count(facts.finite, "area light") + " and " + Count(facts.smooth, "smooth material") +
-                ": camera paths find their caustics by chance, also in mirrors and through glass"};
-  }
-  if (facts.hasSeen && facts.arriving < kMostlyHidden && facts.deltas + facts.finite > 0) {
-    return {"integrator", "bdpt",
-            Percent(facts.arriving) + " of the light that is sampled arrives unoccluded: most light is indirect"};
-  }
-  if (facts.IndirectNoise() > kNoisy && facts.deltas + facts.finite > 0) {
-    return {"integrator", "bdpt",
-            Percent(facts.indirect) +
-                " of the light is indirect, most of it from small areas that camera paths find by chance"};
-  }
-  if (facts.smooth > 0)
-    return {"integrator", "path", "smooth surfaces under lights at infinity, which camera paths find as they escape"};
-  return {"integrator", "path",
-          "nothing is smooth and " + Percent(facts.arriving) + " of the sampled direct light arrives unoccluded"};
+  return {"integrator", best->integrator, reason};
 }
 
 PlanDecision ChooseSelection(const Facts& facts, const RenderSettings& settings) {
@@ -189,13 +121,14 @@ PlanDecision ChooseLayers(const RenderScene& scene) {
 }  // namespace
 
 PlanDecision ChooseIntegrator(const RenderScene& scene, const RenderSettings& settings) {
-  return ChooseIntegrator(FactsOf(scene, settings));
+  Pilot pilot;
+  return ChooseIntegrator(scene, settings, FactsOf(scene), pilot);
 }
 
 ScenePlan PlanFor(const RenderScene& scene, const RenderSettings& settings) {
-  const Facts facts = FactsOf(scene, settings);
+  const Facts facts = FactsOf(scene);
   ScenePlan plan;
-  const PlanDecision chosen = ChooseIntegrator(facts);
+  const PlanDecision chosen = ChooseIntegrator(scene, settings, facts, plan.pilot);
   plan.integrator = chosen.choice;
   if (settings.integrator.empty() || settings.integrator == "auto") {
     plan.decisions.push_back(chosen);

@@ -1,11 +1,11 @@
 // The plan of a render: which features the scene requires, each decision with its reason. Derived from facts about the
-// scene and a few thousand rays, without images.
+// scene and a pilot.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "integrators/walk/integrator.h"
+#include "render/analysis/pilot.h"
 #include "render/settings/render_settings.h"
 
 namespace lampyr {
@@ -17,9 +17,10 @@ struct PlanDecision {
 struct ScenePlan {
   std::string integrator;  // that suits the scene; "auto" selects it
   std::vector<PlanDecision> decisions;
+  Pilot pilot;  // of the choice of the integrator; empty where none was needed
 };
 
-// The integrator that suits the scene. Deterministic for a scene and its size; a few thousand rays.
+// The integrator that suits the scene, by a pilot. Deterministic for a scene, its size and its settings.
 PlanDecision ChooseIntegrator(const RenderScene& scene, const RenderSettings& settings);
 
 // Deterministic for a scene and its settings.

@@ -1,0 +1,448 @@
+#include "render/analysis/pilot.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "integrators/bidirectional/connected_path.h"
+#include "integrators/photon/emission_learning.h"
+#include "integrators/photon/photon_pass.h"
+#include "integrators/photon/photon_store.h"
+#include "integrators/registry.h"
+
+namespace lampyr {
+
+namespace {
+
+constexpr int kTile = kPilotTile, kChunks = 8;
+// Longer paths hold little of the light, and without a limit a closed box of mirrors would keep the pilot for hours.
+constexpr int64_t kMostEvents = 20;
+// The radius is that of the average pass of so many.
+constexpr double kTypicalPasses = 64;
+constexpr uint64_t kSeed = 0x9e3779b97f4a7c15;
+
+struct Candidate {
+  const char* name;
+  std::array<bool, kTechniqueGroups> has;  // TechniqueGroup
+};
+constexpr size_t kCandidates = 3;
+constexpr std::array<Candidate, kCandidates> kTechniquesOf = {{
+    {"path", {true, true, false, false, false}},
+    {"bdpt", {true, true, true, true, false}},
+    {"vcm", {true, true, true, true, true}},
+}};
+
+// A hit from one vertex is one sample, and so are next-event estimation and a connection of two vertices: the variance of
+// each is its second moment without the square of its mean. Beyond these lengths the means are small. Splats and photons
+// are many samples of small means.
+constexpr size_t kLengths = 5;  // 0: the light is seen itself
+constexpr std::array<TechniqueGroup, 3> kSingle = {TechniqueGroup::Hit, TechniqueGroup::Next, TechniqueGroup::Connect};
+
+// Sums over the samples of a pixel.
+struct Moments {
+  double seen = 0, mean = 0;  // light that is seen itself, and all other
+  std::array<double, kCandidates> square{}, missing{};
+
+  void operator+=(const Moments& other) {
+    seen += other.seen;
+    mean += other.mean;
+    for (size_t k = 0; k < kCandidates; ++k) {
+      square[k] += other.square[k];
+      missing[k] += other.missing[k];
+    }
+  }
+};
+
+// What each candidate's techniques of single samples find in one pass, by pixel.
+struct Means {
+  std::array<std::array<float, kLengths * kSingle.size()>, kCandidates> values{};
+
+  void operator+=(const Means& other) {
+    for (size_t k = 0; k < kCandidates; ++k) {
+      for (size_t i = 0; i < values[k].size(); ++i) values[k][i] += other.values[k][i];
+    }
+  }
+};
+
+// The pilot's pixels, and where they are on the film.
+struct Grid {
+  int width, height, tilesX, tilesY;
+  Point2 pixel;  // size of a pixel on the film
+
+  explicit Grid(const RenderSettings& settings) {
+    const double scale = std::min(1.0, std::sqrt(kMostPilotPixels / (static_cast<double>(settings.width) *
+                                                                     static_cast<double>(settings.height))));
+    const auto side = [scale](int full, int most) {
+      return static_cast<int>(std::clamp(std::lround(scale * full), 1L, static_cast<long>(most)));
+    };
+    width = side(settings.width, kMostPilotPixels);
+    height = side(settings.height, kMostPilotPixels / width);
+    tilesX = (width + kTile - 1) / kTile;
+    tilesY = (height + kTile - 1) / kTile;
+    pixel = {static_cast<float>(settings.width) / static_cast<float>(width),
+             static_cast<float>(settings.height) / static_cast<float>(height)};
+  }
+  int Pixels() const { return width * height; }
+  size_t Tiles() const { return static_cast<size_t>(tilesX) * static_cast<size_t>(tilesY); }
+  size_t PixelOf(int x, int y) const {
+    return static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x);
+  }
+  size_t TileOf(int x, int y) const {
+    return static_cast<size_t>(y / kTile) * static_cast<size_t>(tilesX) + static_cast<size_t>(x / kTile);
+  }
+  int PixelsOf(size_t tile) const {
+    const int x = static_cast<int>(tile) % tilesX * kTile, y = static_cast<int>(tile) / tilesX * kTile;
+    return std::min(kTile, width - x) * std::min(kTile, height - y);
+  }
+};
+
+// Adds up the moments of the paths of one chunk.
+class Recorder final : public PathObserver {
+ public:
+  Recorder(const Grid& grid, double filmPixels)
+      : moments(static_cast<size_t>(grid.Pixels())),
+        means(static_cast<size_t>(grid.Pixels())),
+        grid_(grid),
+        filmPixels_(filmPixels) {}
+
+  void StartSample(int x, int y, float weight) {
+    pixel_ = grid_.PixelOf(x, y);
+    weight_ = static_cast<double>(weight);
+  }
+  bool WantsSums() const override { return true; }
+  void Observe(const ConnectedPath& path) override {
+    size_t pixel = pixel_;
+    double scale = weight_;
+    if (path.connection) {
+      const Point2& film = path.connection->camera.film;
+      const int x = static_cast<int>(std::floor(film.x / grid_.pixel.x)),
+                y = static_cast<int>(std::floor(film.y / grid_.pixel.y));
+      if (x < 0 || y < 0 || x >= grid_.width || y >= grid_.height) return;
+      pixel = grid_.PixelOf(x, y);
+      scale = 1 / filmPixels_;
+    }
+    Add(path, static_cast<double>(path.value.Average()) * scale, moments[pixel], means[pixel]);
+  }
+  void ObserveMerge(const ConnectedPath& path, const Photon&) override { Observe(path); }
+
+  // By pixel. `means`: of the current pass.
+  std::vector<Moments> moments;
+  std::vector<Means> means;
+
+ private:
+  static void Add(const ConnectedPath& path, double value, Moments& moments, Means& means) {
+    const double weighted = path.weight * value;
+    if (!std::isfinite(weighted)) return;
+    (path.s + path.t == 2 ? moments.seen : moments.mean) += weighted;
+    double known = 0;
+    for (const TechniqueSums::Group& group : path.sums.groups) known += group.squares;
+    if (!(known > 0)) {
+      for (double& square : moments.square) square += weighted * value;
+      return;
+    }
+    for (size_t k = 0; k < kCandidates; ++k) {
+      double squares = 0, cubes = 0;
+      for (size_t g = 0; g < kTechniqueGroups; ++g) {
+        if (!kTechniquesOf[k].has[g]) continue;
+        squares += path.sums.groups[g].squares;
+        cubes += path.sums.groups[g].cubes;
+      }
+      const double factor = cubes / (squares * squares);
+      if (!std::isfinite(factor) || !(squares > 0)) {
+        moments.missing[k] += weighted;
+        continue;
+      }
+      moments.square[k] += weighted * value * factor;
+      const auto length = static_cast<size_t>(path.s + path.t - (path.isMerged ? 3 : 2));
+      for (size_t i = 0; i < kSingle.size() && length < kLengths; ++i) {
+        const auto group = static_cast<size_t>(kSingle[i]);
+        if (kTechniquesOf[k].has[group])
+          means.values[k][kSingle.size() * length + i] +=
+              static_cast<float>(weighted * path.sums.groups[group].squares / squares);
+      }
+    }
+  }
+
+  const Grid& grid_;
+  double filmPixels_, weight_ = 1;
+  size_t pixel_ = 0;
+};
+
+// Passes of an integrator over the pilot's pixels.
+class PilotPasses {
+ public:
+  PilotPasses(const RenderScene& scene, const RenderSettings& settings, const Grid& grid, int threads,
+              uint32_t passes)
+      : scene_(scene),
+        settings_(settings),
+        grid_(grid),
+        threads_(threads),
+        passes_(passes),
+        photons_(kChunks) {}
+
+  // Traces the photons of a pass; where the integrator gathers none, it has none.
+  void TracePhotons(const Integrator& integrator, PhotonStore& store, uint32_t pass) {
+    ForEachPixel([&](size_t chunk, int x, int y, Sampler& sampler, RenderCounts& counts, SplatList& splats) {
+      sampler.StartPixelSample(x, y, pass + passes_);
+      photons_[chunk].StartPath();
+      SampleContext context{scene_, sampler, Time(pass), counts};
+      context.splats = &splats;
+      context.photons = &photons_[chunk];
+      context.isForPhotonsAlone = true;
+      integrator.Sample(nullptr, context);
+    });
+    store.Take(photons_);
+    store.Finish(pass);
+  }
+  // One sample of every pixel; `recorders`, one for each chunk, may be empty.
+  RenderCounts Trace(const Integrator& integrator, uint32_t pass, const PhotonPass* gather,
+                     std::vector<Recorder>& recorders) {
+    return ForEachPixel([&](size_t chunk, int x, int y, Sampler& sampler, RenderCounts& counts, SplatList& splats) {
+      // Two passes have the same point of the film: what a pixel of the pilot holds of texture and edges is not noise.
+      sampler.StartPixelSample(x, y, pass / 2);
+      sampler.SetDimension(dimensions::kFilm);
+      const Point2 u = sampler.Get2D();
+      sampler.StartPixelSample(x, y, pass);
+      SampleContext context{scene_, sampler, Time(pass), counts};
+      context.splats = integrator.Paths() == TracedPaths::Camera ? nullptr : &splats;
+      context.gather = gather;
+      const Point2 film((static_cast<float>(x) + u.x) * grid_.pixel.x, (static_cast<float>(y) + u.y) * grid_.pixel.y);
+      sampler.SetDimension(dimensions::kLens);
+      const CameraRay ray = scene_.camera->GenerateRay(film, sampler.Get2D(), context.time);
+      if (!recorders.empty()) {
+        context.observer = &recorders[chunk];
+        recorders[chunk].StartSample(x, y, ray.weight);
+      }
+      integrator.Sample(ray.weight != 0 ? &ray.ray : nullptr, context);
+    });
+  }
+
+ private:
+  float Time(uint32_t pass) const {
+    return scene_.hasMotion ? (static_cast<float>(pass) + 0.5f) / static_cast<float>(passes_) : 0.0f;
+  }
+  template <class Body>
+  RenderCounts ForEachPixel(const Body& body) {
+    std::vector<RenderCounts> counts(kChunks);
+    ParallelFor(kChunks, threads_, [&](int chunk) {
+      const auto index = static_cast<size_t>(chunk);
+      Sampler sampler(settings_.sampler, kSeed);
+      // Splats are not kept, but connections that reach no pixel are not made.
+      SplatList splats({0, 0}, {static_cast<float>(settings_.width), static_cast<float>(settings_.height)}, 1);
+      for (int i = grid_.Pixels() * chunk / kChunks; i < grid_.Pixels() * (chunk + 1) / kChunks; ++i) {
+        splats.Clear();
+        splats.StartPath();
+        body(index, i % grid_.width, i / grid_.width, sampler, counts[index], splats);
+      }
+    });
+    RenderCounts total;
+    for (const RenderCounts& part : counts) total += part;
+    return total;
+  }
+
+  const RenderScene& scene_;
+  const RenderSettings& settings_;
+  const Grid& grid_;
+  int threads_;
+  uint32_t passes_;
+  std::vector<PhotonList> photons_;
+};
+
+// Nanoseconds for each thing that is counted, fitted to the times of path, bdpt, vcm and sppm in the scenes of scenes/
+// (scripts/fit_costs.py). What they say of two integrators in one scene is off by 15 % or less.
+struct Costs {
+  double ray = 260, shadowRay = 350, connection = 530, lookup = 250, found = 200, stored = 340;
+};
+
+struct Counted {
+  RenderCounts path, bdpt, vcm;
+  uint64_t stored = 0;  // photons of a pass of vcm
+};
+
+std::array<double, kCandidates> CostsOf(const Counted& counted, double samples) {
+  constexpr Costs costs;
+  const auto rays = [](const RenderCounts& counts) { return static_cast<double>(counts.cameraRays + counts.indirectRays); };
+  const double direct = static_cast<double>(counted.path.shadowRays);
+  const double path = costs.ray * rays(counted.path) + costs.shadowRay * direct;
+  const double more = std::max(static_cast<double>(counted.bdpt.shadowRays) - direct, 0.0);
+  const double bdpt = costs.ray * rays(counted.bdpt) + costs.shadowRay * direct + costs.connection * more;
+  const double merging = costs.lookup * static_cast<double>(counted.vcm.lookups) +
+                         costs.found * static_cast<double>(counted.vcm.foundPhotons) +
+                         costs.stored * static_cast<double>(counted.stored);
+  return {path / samples, bdpt / samples, (bdpt + merging) / samples};
+}
+
+// What all chunks have recorded.
+class Records {
+ public:
+  Records(const Grid& grid, std::vector<Recorder>& recorders)
+      : grid_(grid), recorders_(recorders), squaredMeans_(kCandidates * static_cast<size_t>(grid.Pixels())),
+        squaresOfSeen_(squaredMeans_.size()) {}
+
+  // After each pass. The square of a mean is estimated by the product of what two passes have found, which are
+  // independent.
+  void EndPass(uint32_t pass) {
+    std::vector<Means> means(recorders_[0].means.size());
+    for (Recorder& recorder : recorders_) {
+      for (size_t i = 0; i < means.size(); ++i) means[i] += std::exchange(recorder.means[i], Means());
+    }
+    if (pass % 2 == 0) {
+      first_ = std::move(means);
+      return;
+    }
+    for (size_t i = 0; i < means.size(); ++i) {
+      for (size_t k = 0; k < kCandidates; ++k)
+        squaredMeans_[kCandidates * i + k] += 2 * SumOfProducts(first_[i].values[k], means[i].values[k]);
+    }
+    // Lights that a pixel sees itself, at another point of the film.
+    if (pass > 1) {
+      for (size_t i = 0; i < squaresOfSeen_.size(); ++i)
+        squaresOfSeen_[i] += static_cast<double>(SeenOf(means, i)) * static_cast<double>(seen_[i]);
+      ++seenPairs_;
+    }
+    seen_.resize(squaresOfSeen_.size());
+    for (size_t i = 0; i < seen_.size(); ++i) seen_[i] = SeenOf(means, i);
+  }
+
+  // The sum over all passes. False: no light was found.
+  bool SetErrors(int passes, std::vector<PilotCandidate>& candidates) const {
+    std::vector<Moments> pixels(squaredMeans_.size() / kCandidates);
+    for (const Recorder& recorder : recorders_) {
+      for (size_t i = 0; i < pixels.size(); ++i) pixels[i] += recorder.moments[i];
+    }
+    // The brightness of a pixel is that of its tile, and of the light that it sees itself.
+    std::vector<double> tiles(grid_.Tiles());
+    double mean = 0, seen = 0;
+    ForEachPixel([&](size_t pixel, size_t tile) {
+      tiles[tile] += pixels[pixel].mean / (passes * grid_.PixelsOf(tile));
+      mean += pixels[pixel].mean / (passes * grid_.Pixels());
+      seen += pixels[pixel].seen / (passes * grid_.Pixels());
+    });
+    if (!(mean + seen > 0)) return false;
+    for (size_t k = 0; k < candidates.size(); ++k) {
+      PilotCandidate& candidate = candidates[k];
+      candidate.secondMoments.resize(grid_.Tiles());
+      double squares = 0, squaredMeans = 0;
+      ForEachPixel([&](size_t pixel, size_t tile) {
+        const Moments& here = pixels[pixel];
+        const double brightness = tiles[tile] + here.seen / passes;
+        const double scale = 1 / ((brightness * brightness + 0.01 * (mean + seen) * (mean + seen)) * passes);
+        squares += scale * here.square[k];
+        squaredMeans += scale * squaredMeans_[kCandidates * pixel + k];
+        if (seenPairs_ > 0)
+          squaredMeans += scale * squaresOfSeen_[kCandidates * pixel + k] * passes / seenPairs_;
+        candidate.secondMoments[tile] += here.square[k] / (passes * grid_.PixelsOf(tile));
+        candidate.missing += here.missing[k] / (passes * grid_.Pixels() * (mean + seen));
+      });
+      candidate.error = std::max(squares - squaredMeans, 0.01 * squares) / grid_.Pixels();
+    }
+    return true;
+  }
+
+ private:
+  // By pixel and candidate: hits of the camera ray itself.
+  static float SeenOf(const std::vector<Means>& means, size_t i) {
+    return means[i / kCandidates].values[i % kCandidates][0];
+  }
+  // Connections of a length are as many techniques as that; their means are taken to be equal.
+  template <class Values>
+  static double SumOfProducts(const Values& a, const Values& b) {
+    double sum = 0;
+    for (size_t i = kSingle.size(); i < a.size(); ++i) {
+      const bool isConnection = kSingle[i % kSingle.size()] == TechniqueGroup::Connect;
+      const double techniques = isConnection ? std::max(static_cast<double>(i / kSingle.size()) - 1, 1.0) : 1.0;
+      sum += static_cast<double>(a[i]) * static_cast<double>(b[i]) / techniques;
+    }
+    return sum;
+  }
+  template <class Body>
+  void ForEachPixel(const Body& body) const {
+    for (int y = 0; y < grid_.height; ++y) {
+      for (int x = 0; x < grid_.width; ++x) body(grid_.PixelOf(x, y), grid_.TileOf(x, y));
+    }
+  }
+
+  const Grid& grid_;
+  std::vector<Recorder>& recorders_;
+  std::vector<Means> first_;
+  std::vector<double> squaredMeans_;  // Σ over the passes, by pixel and candidate
+  std::vector<double> squaresOfSeen_;
+  std::vector<float> seen_;  // by the last second pass
+  int seenPairs_ = 0;
+};
+
+// For the pilot.
+RenderSettings WithAllTechniques(const RenderSettings& settings) {
+  RenderSettings all = settings;
+  all.integrator = "vcm";
+  all.values.Set("merge", true);
+  all.values.Set("connect", true);
+  all.values.Set("max-depth", std::min<int64_t>(all.values.Integer("max-depth"), kMostEvents));
+  return all;
+}
+
+std::unique_ptr<Integrator> Make(const char* name, const RenderScene& scene, const RenderSettings& settings) {
+  return IntegratorOf(name).create(
+      {scene, settings.width, settings.height, settings.sensor.ImagingRatio(), settings.values});
+}
+
+}  // namespace
+
+const PilotCandidate* Pilot::Best() const {
+  const PilotCandidate* best = nullptr;
+  for (const PilotCandidate& candidate : candidates) {
+    if (candidate.missing > kNegligibleLight) continue;
+    if (!best || candidate.ErrorTimesCost() < best->ErrorTimesCost()) best = &candidate;
+  }
+  return best;
+}
+
+Pilot RunPilot(const RenderScene& scene, const RenderSettings& settings, int threads, int passCount) {
+  const RenderSettings combined = WithAllTechniques(settings);
+  const Grid grid(settings);
+  const double filmPixels = static_cast<double>(settings.width) * static_cast<double>(settings.height);
+  const double fewer = filmPixels / grid.Pixels();
+  const auto path = Make("path", scene, combined), bdpt = Make("bdpt", scene, combined),
+             vcm = Make("vcm", scene, combined);
+  PhotonSettings photons = vcm->Photons().value();
+  // If light paths hardly come near to what is seen, vcm guides them from the start. Those of bdpt are hopeless then.
+  RenderScene view = scene;
+  std::optional<EmissionLearning> guiding;
+  if (photons.guided) guiding.emplace(scene, settings.width, settings.height);
+  const bool isGuided = guiding && guiding->Guide();
+  if (isGuided)
+    view.lighting = std::make_shared<const LightingServices>(scene.lighting->With(nullptr, guiding->Guide()));
+  if (photons.lightPaths > 0)
+    photons.lightPaths = std::max<uint64_t>(1, static_cast<uint64_t>(static_cast<double>(photons.lightPaths) / fewer));
+  // With fewer light paths the same number of photons is found within a larger radius.
+  const double shrunk = std::pow(kTypicalPasses, photons.alpha - 1) / photons.alpha;
+  const auto wider = static_cast<float>(std::sqrt(fewer * std::min(shrunk, 1.0)));
+  PhotonStore store(photons, static_cast<uint64_t>(grid.Pixels()), nullptr);
+  PilotPasses passes(view, combined, grid, threads, static_cast<uint32_t>(passCount));
+  std::vector<Recorder> recorders(kChunks, Recorder(grid, filmPixels)), none;
+  Records records(grid, recorders);
+  Counted counted;
+  for (uint32_t pass = 0; pass < static_cast<uint32_t>(passCount); ++pass) {
+    passes.TracePhotons(*vcm, store, pass);
+    PhotonPass gather = store.Open(pass, threads);
+    gather.radiusScale = wider;
+    gather.radius = static_cast<float>(photons.radius) * wider;
+    counted.stored += gather.map->Size();
+    counted.vcm += passes.Trace(*vcm, pass, &gather, recorders);
+    records.EndPass(pass);
+  }
+  counted.stored /= static_cast<uint64_t>(passCount);
+  counted.vcm.lookups /= static_cast<uint64_t>(passCount);
+  counted.vcm.foundPhotons /= static_cast<uint64_t>(passCount);
+  counted.path = passes.Trace(*path, 0, nullptr, none);
+  counted.bdpt = passes.Trace(*bdpt, 0, nullptr, none);
+  Pilot pilot;
+  const auto costs = CostsOf(counted, grid.Pixels());
+  for (size_t k = 0; k < kCandidates; ++k) pilot.candidates.push_back({kTechniquesOf[k].name, 0, costs[k], 0, {}});
+  if (!records.SetErrors(passCount, pilot.candidates)) return {};
+  if (isGuided) pilot.candidates.erase(pilot.candidates.begin() + 1);
+  return pilot;
+}
+
+}  // namespace lampyr

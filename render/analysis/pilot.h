@@ -1,0 +1,48 @@
+// The pilot of a render: a few thousand samples by all bidirectional techniques, at a low resolution, from which the
+// error and the cost of integrators with fewer techniques are estimated ([Grittmann22]).
+//
+// A sample x of the technique t, with the contribution v = f / p_t before its weight w, estimates the second moment of
+// an integrator that has only the techniques of some groups, weighted by the power heuristic: it adds
+//   w v² Σ r³ / (Σ r²)²,   r = p / p_t over the techniques of those groups (bidirectional/path_densities.h).
+// So light that path tracing finds once in a million samples counts as its noise as soon as another technique finds it.
+//
+// Cost is counted, not timed, so that the choice is the same on every machine.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "render/settings/render_settings.h"
+
+namespace lampyr {
+
+struct PilotCandidate {
+  std::string integrator;
+  double error = 0;    // squared error relative to the picture (relMSE), of one sample per pixel
+  double cost = 0;     // of a sample, nanoseconds of a typical machine
+  double missing = 0;  // part of the light that it cannot find
+  // Of each tile of the image, row by row: the mean over its pixels of Σ E[(w v)²] over the paths of a sample, by all
+  // techniques.
+  std::vector<double> secondMoments;
+
+  // Error of a picture that takes a second.
+  double ErrorTimesCost() const { return error * cost * 1e-9; }
+};
+
+struct Pilot {
+  std::vector<PilotCandidate> candidates;  // empty: the pilot saw no light
+  // The candidate with the least error in equal time, of those that find all light; null if there is none.
+  const PilotCandidate* Best() const;
+};
+
+// Pixels of the pilot on a side of a tile; the pilot has all pixels of an image with at most kMostPilotPixels.
+inline constexpr int kPilotTile = 4, kMostPilotPixels = 4096;
+
+// A part of the light that is too small to be looked for.
+inline constexpr double kNegligibleLight = 1e-4;
+
+// Deterministic for a scene, its size and its settings; not dependent on the seed and on the number of threads.
+// `passes`: samples of every pixel.
+Pilot RunPilot(const RenderScene& scene, const RenderSettings& settings, int threads, int passes = 4);
+
+}  // namespace lampyr

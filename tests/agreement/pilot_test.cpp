@@ -1,0 +1,172 @@
+// The pilot's estimates against brute force: second moments of integrators with fewer techniques than were sampled.
+#include "render/analysis/pilot.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "agreement/agreement_scenes.h"
+#include "integrators/bidirectional/connected_path.h"
+#include "render/build/scene_builder.h"
+#include "render/settings/integrator_choice.h"
+#include "scene/scene_description.h"
+#include "support/render_scene.h"
+
+namespace lampyr::test {
+namespace {
+
+constexpr int kSide = 16, kTiles = kSide / kPilotTile;
+
+// Σ (w v)² of all paths, by tile.
+class SquareSums final : public PathObserver {
+ public:
+  void StartSample(int x, int y, float weight) {
+    tile_ = TileOf(x, y);
+    weight_ = static_cast<double>(weight);
+  }
+  void Observe(const ConnectedPath& path) override {
+    size_t tile = tile_;
+    double value = path.weight * static_cast<double>(path.value.Average());
+    if (path.connection) {
+      const Point2& film = path.connection->camera.film;
+      if (film.x < 0 || film.y < 0 || film.x >= kSide || film.y >= kSide) return;
+      tile = TileOf(static_cast<int>(film.x), static_cast<int>(film.y));
+      value /= kSide * kSide;
+    } else {
+      value *= weight_;
+    }
+    tiles[tile] += value * value;
+  }
+  std::vector<double> tiles = std::vector<double>(kTiles * kTiles, 0.0);
+
+ private:
+  static size_t TileOf(int x, int y) { return static_cast<size_t>(y / kPilotTile * kTiles + x / kPilotTile); }
+  size_t tile_ = 0;
+  double weight_ = 1;
+};
+
+struct Estimate {
+  double sum = 0, squares = 0;
+  int count = 0;
+  void Add(double value) {
+    sum += value;
+    squares += value * value;
+    ++count;
+  }
+  double Mean() const { return sum / count; }
+  double Error() const { return std::sqrt(std::max(squares / count - Mean() * Mean(), 0.0) / (count - 1)); }
+};
+
+// The second moments of `integrator`, each in `renders` independent renders of 16 samples per pixel.
+std::vector<Estimate> Measure(const BuiltScene& built, const std::string& integrator, int renders) {
+  RenderSettings settings = built.settings;
+  settings.integrator = integrator;
+  const auto made = MakeIntegrator(built.scene, settings);
+  constexpr int kSamples = 16;
+  std::vector<Estimate> estimates(kTiles * kTiles);
+  Sampler sampler(SamplerKind::Independent, 77);
+  SplatList splats({0, 0}, {kSide, kSide}, 1);
+  RenderCounts counts;
+  for (int render = 0; render < renders; ++render) {
+    SquareSums sums;
+    for (int i = 0; i < kSide * kSide * kSamples; ++i) {
+      const int x = i % kSide, y = i / kSide % kSide;
+      sampler.StartPixelSample(x, y, static_cast<uint32_t>(render * kSamples + i / (kSide * kSide)));
+      splats.Clear();
+      splats.StartPath();
+      sampler.SetDimension(dimensions::kFilm);
+      const Point2 u = sampler.Get2D(), lens = sampler.Get2D();
+      const CameraRay ray =
+          built.scene.camera->GenerateRay(Point2(static_cast<float>(x) + u.x, static_cast<float>(y) + u.y), lens, 0);
+      sums.StartSample(x, y, ray.weight);
+      SampleContext context{built.scene, sampler, 0, counts};
+      context.splats = &splats;
+      context.observer = &sums;
+      const Color radiance = made->Sample(ray.weight != 0 ? &ray.ray : nullptr, context);
+      // Path tracing has no techniques to observe; with one scattering event and lights without extent a sample is one
+      // path.
+      if (integrator == "path") {
+        const double value = static_cast<double>((radiance * ray.weight).Average());
+        sums.tiles[static_cast<size_t>(y / kPilotTile * kTiles + x / kPilotTile)] += value * value;
+      }
+    }
+    for (size_t i = 0; i < sums.tiles.size(); ++i)
+      estimates[i].Add(sums.tiles[i] / (kSamples * kPilotTile * kPilotTile));
+  }
+  return estimates;
+}
+
+// The pilot's estimates are noisy as well: repeated with other sampling by jittered resolutions is not possible, so its
+// own noise is that of halves: estimates with n and 4 n passes differ by their noise.
+void ExpectMoments(const std::string& text, const std::string& integrator, double tolerance) {
+  Diagnostics diagnostics(Diagnostics::Mode::Collect);
+  const std::filesystem::path file = std::filesystem::path(LAMPYR_SOURCE_DIR) / "scenes" / "test.pbrt";
+  const BuiltScene built = BuildScene(ParseScene(text, file, diagnostics), {}, true, diagnostics);
+  ASSERT_EQ(built.settings.width, kSide);
+  ASSERT_EQ(built.settings.height, kSide);
+  const std::vector<Estimate> measured = Measure(built, integrator, 60);
+  const Pilot pilot = RunPilot(built.scene, built.settings, 1, 400);
+  const PilotCandidate* candidate = nullptr;
+  for (const PilotCandidate& each : pilot.candidates) {
+    if (each.integrator == integrator) candidate = &each;
+  }
+  ASSERT_TRUE(candidate);
+  double sum = 0, expected = 0, variance = 0;
+  int compared = 0;
+  for (size_t i = 0; i < measured.size(); ++i) {
+    sum += candidate->secondMoments[i];
+    expected += measured[i].Mean();
+    variance += measured[i].Error() * measured[i].Error();
+    if (!(measured[i].Mean() > 0)) continue;
+    ++compared;
+    // Of a tile: the tolerance, and what it was measured with.
+    EXPECT_NEAR(candidate->secondMoments[i], measured[i].Mean(),
+                5 * measured[i].Error() + 3 * tolerance * measured[i].Mean())
+        << integrator << ", tile " << i;
+  }
+  EXPECT_GT(compared, kTiles);
+  EXPECT_NEAR(sum, expected, 4 * std::sqrt(variance) + tolerance * expected) << integrator;
+  std::printf("[   info   ] %-5s second moment %.4g, measured %.4g +- %.2g\n", integrator.c_str(), sum, expected,
+              std::sqrt(variance));
+}
+
+std::string Scene(const std::string& integrator, const std::string& rest) {
+  return "Film \"rgb\" \"integer xresolution\" 16 \"integer yresolution\" 16\nPixelFilter \"box\"\nSampler \"independent\"\n"
+         "Integrator \"" +
+         integrator +
+         "\"\nLookAt 0 1 -3  0 0.8 0  0 1 0\nCamera \"perspective\" \"float fov\" 40\nWorldBegin\n"
+         "Material \"diffuse\" \"rgb reflectance\" [ 0.6 0.5 0.4 ]\n"
+         "Shape \"bilinearmesh\" \"point3 P\" [ -1 0 -1  1 0 -1  -1 0 1  1 0 1 ]\n"
+         "Shape \"bilinearmesh\" \"point3 P\" [ -1 0 1  1 0 1  -1 2 1  1 2 1 ]\n"
+         "Shape \"bilinearmesh\" \"point3 P\" [ 1 0 -1  1 0 1  1 2 -1  1 2 1 ]\n" +
+         rest;
+}
+const std::string kBall =
+    "AttributeBegin Material \"conductor\" \"float roughness\" 0.3 Translate -0.4 0.3 0.2 Shape \"sphere\" \"float "
+    "radius\" 0.3 AttributeEnd\n";
+const std::string kGlass =
+    "AttributeBegin Material \"dielectric\" Translate 0.3 0.5 0 Shape \"sphere\" \"float radius\" 0.35 AttributeEnd\n";
+const std::string kAreaLight =
+    "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [ 8 7 6 ] Shape \"bilinearmesh\" \"point3 P\" [ -0.4 1.9 -0.4  "
+    "0.4 1.9 -0.4  -0.4 1.9 0.4  0.4 1.9 0.4 ] AttributeEnd\n";
+
+TEST(Pilot, KnowsTheMomentsOfPathTracing) {
+  ExpectMoments(Scene("path\" \"integer maxdepth\" [ 1 ] \"string lightsampler\" \"power",
+                      "LightSource \"point\" \"rgb I\" [ 3 2 1 ] \"point3 from\" [ 0 1.8 0 ]\n" + kBall),
+                "path", 0.02);
+}
+
+TEST(Pilot, KnowsTheMomentsOfBidirectionalPathTracing) {
+  const std::string head = "path\" \"integer maxdepth\" [ 3 ] \"string lightsampler\" \"power";
+  const std::string lights[] = {
+      kAreaLight,
+      "LightSource \"spot\" \"rgb I\" [ 3 2 1 ] \"point3 from\" [ 0 1.8 0 ] \"point3 to\" [ 0.2 0.2 0.4 ]\n",
+      "LightSource \"infinite\" \"rgb L\" [ 0.5 0.6 0.8 ]\n",
+  };
+  for (const std::string& light : lights) ExpectMoments(Scene(head, light + kBall), "bdpt", 0.05);
+  ExpectMoments(Scene(head, lights[1] + kGlass), "bdpt", 0.05);
+}
+
+}  // namespace
+}  // namespace lampyr::test
