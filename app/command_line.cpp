@@ -310,7 +310,7 @@ struct CompareCommand {
         ->type_name("FOLDER");
     app.add_option(
            "--integrators", options.integrators,
-           "Which to compare, e.g. path,bdpt (path,bdpt); path:shadow-threshold=0.01 is one with a setting changed")
+           "Which to compare, e.g. path,auto (path,bdpt); path:shadow-threshold=0.01 is one with a setting changed")
         ->type_name("NAME,…")
         ->delimiter(',')
         ->allow_extra_args(false);

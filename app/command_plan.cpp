@@ -14,7 +14,7 @@ namespace lampyr {
 namespace {
 
 // What the pilot estimated of each candidate.
-void PrintPilot(const Pilot& pilot) {
+void PrintPilot(const RenderPilot& pilot) {
   if (pilot.candidates.empty()) return;
   std::printf("\nA pilot's estimates, for one sample per pixel:\n%-10s %8s %12s %16s  %s\n", "", "relMSE", "cost (µs)",
               "relMSE × cost", "misses");

@@ -19,10 +19,12 @@ namespace lampyr {
 
 namespace {
 
+constexpr const char* kAuto = "auto";
+
 ComparisonPlan MakePlan(const CompareOptions& options) {
   ComparisonPlan plan;
   for (const std::string& name : options.integrators) {
-    VariantOf({}, name);
+    if (name != kAuto) VariantOf({}, name);
     if (std::find(plan.integrators.begin(), plan.integrators.end(), name) != plan.integrators.end()) {
       throw UsageError("--integrators: " + name + " is named twice");
     }
@@ -204,8 +206,24 @@ ComparisonResults Describe(const CompareOptions& options, const LoadedScene& loa
   return results;
 }
 
-int CompareLoaded(const CompareOptions& options, const ComparisonPlan& plan, const LoadedScene& loaded) {
+// "auto" becomes the integrator that it chooses for the scene, once.
+void ResolveAuto(const RenderSettings& settings, bool quiet, ComparisonPlan& plan) {
+  const auto found = std::find(plan.integrators.begin(), plan.integrators.end(), kAuto);
+  if (found == plan.integrators.end()) return;
+  if (!quiet) std::printf("auto is %s here\n", settings.integrator.c_str());
+  *found = settings.integrator;
+  const auto same = std::find(plan.integrators.begin(), plan.integrators.end(), settings.integrator);
+  if (same != found) {
+    plan.integrators.erase(found);
+  } else if (const auto again = std::find(found + 1, plan.integrators.end(), settings.integrator);
+             again != plan.integrators.end()) {
+    plan.integrators.erase(again);
+  }
+}
+
+int CompareLoaded(const CompareOptions& options, ComparisonPlan plan, const LoadedScene& loaded) {
   const RenderSettings& settings = loaded.built.settings;
+  ResolveAuto(settings, options.quiet, plan);
   for (const std::string& name : plan.integrators) {
     const std::string refusal = IntegratorRefusal(loaded.built.scene, VariantOf({}, name).integrator);
     if (!refusal.empty()) throw UsageError("--integrators: " + name + ": " + refusal);
@@ -262,8 +280,10 @@ int CompareLoaded(const CompareOptions& options, const ComparisonPlan& plan, con
 int RunCompare(const CompareOptions& options) {
   const ComparisonPlan plan = MakePlan(options);
   OutliveSurroundings();
-  const LoadedScene loaded =
-      LoadScene(options.scene, options.plugins, options.overrides, options.strict, options.robust);
+  RenderOverrides overrides = options.overrides;
+  const bool hasAuto = std::find(plan.integrators.begin(), plan.integrators.end(), kAuto) != plan.integrators.end();
+  overrides.integrator = hasAuto ? kAuto : VariantOf({}, plan.integrators.front()).integrator;
+  const LoadedScene loaded = LoadScene(options.scene, options.plugins, overrides, options.strict, options.robust);
   int exitCode = kExitFailed;
   RunForeignCode(loaded.types, [&] { exitCode = CompareLoaded(options, plan, loaded); });
   return exitCode;

@@ -389,7 +389,7 @@ std::unique_ptr<Integrator> Make(const char* name, const RenderScene& scene, con
 
 }  // namespace
 
-const PilotCandidate* Pilot::Best() const {
+const PilotCandidate* RenderPilot::Best() const {
   const PilotCandidate* best = nullptr;
   for (const PilotCandidate& candidate : candidates) {
     if (candidate.missing > kNegligibleLight) continue;
@@ -398,7 +398,7 @@ const PilotCandidate* Pilot::Best() const {
   return best;
 }
 
-Pilot RunPilot(const RenderScene& scene, const RenderSettings& settings, int threads, int passCount) {
+RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, int threads, int passCount) {
   const RenderSettings combined = WithAllTechniques(settings);
   const Grid grid(settings);
   const double filmPixels = static_cast<double>(settings.width) * static_cast<double>(settings.height);
@@ -437,7 +437,7 @@ Pilot RunPilot(const RenderScene& scene, const RenderSettings& settings, int thr
   counted.vcm.foundPhotons /= static_cast<uint64_t>(passCount);
   counted.path = passes.Trace(*path, 0, nullptr, none);
   counted.bdpt = passes.Trace(*bdpt, 0, nullptr, none);
-  Pilot pilot;
+  RenderPilot pilot;
   const auto costs = CostsOf(counted, grid.Pixels());
   for (size_t k = 0; k < kCandidates; ++k) pilot.candidates.push_back({kTechniquesOf[k].name, 0, costs[k], 0, {}});
   if (!records.SetErrors(passCount, pilot.candidates)) return {};

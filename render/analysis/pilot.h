@@ -29,7 +29,7 @@ struct PilotCandidate {
   double ErrorTimesCost() const { return error * cost * 1e-9; }
 };
 
-struct Pilot {
+struct RenderPilot {
   std::vector<PilotCandidate> candidates;  // empty: the pilot saw no light
   // The candidate with the least error in equal time, of those that find all light; null if there is none.
   const PilotCandidate* Best() const;
@@ -43,6 +43,6 @@ inline constexpr double kNegligibleLight = 1e-4;
 
 // Deterministic for a scene, its size and its settings; not dependent on the seed and on the number of threads.
 // `passes`: samples of every pixel.
-Pilot RunPilot(const RenderScene& scene, const RenderSettings& settings, int threads, int passes = 4);
+RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, int threads, int passes = 4);
 
 }  // namespace lampyr

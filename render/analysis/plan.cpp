@@ -47,7 +47,7 @@ std::string Short(double value) {
 
 // `pilot`: receives its estimates, if one was needed.
 PlanDecision ChooseIntegrator(const RenderScene& scene, const RenderSettings& settings, const Facts& facts,
-                              Pilot& pilot) {
+                              RenderPilot& pilot) {
   if (facts.lights == 0) return {"integrator", "path", "nothing emits"};
   if (facts.tracing == 0) return {"integrator", "path", "no light traces light paths"};
   pilot = RunPilot(scene, settings, HardwareThreads());
@@ -121,7 +121,7 @@ PlanDecision ChooseLayers(const RenderScene& scene) {
 }  // namespace
 
 PlanDecision ChooseIntegrator(const RenderScene& scene, const RenderSettings& settings) {
-  Pilot pilot;
+  RenderPilot pilot;
   return ChooseIntegrator(scene, settings, FactsOf(scene), pilot);
 }
 

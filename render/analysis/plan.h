@@ -17,7 +17,7 @@ struct PlanDecision {
 struct ScenePlan {
   std::string integrator;  // that suits the scene; "auto" selects it
   std::vector<PlanDecision> decisions;
-  Pilot pilot;  // of the choice of the integrator; empty where none was needed
+  RenderPilot pilot;  // of the choice of the integrator; empty where none was needed
 };
 
 // The integrator that suits the scene, by a pilot. Deterministic for a scene, its size and its settings.

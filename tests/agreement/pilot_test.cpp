@@ -106,7 +106,7 @@ void ExpectMoments(const std::string& text, const std::string& integrator, doubl
   ASSERT_EQ(built.settings.width, kSide);
   ASSERT_EQ(built.settings.height, kSide);
   const std::vector<Estimate> measured = Measure(built, integrator, 60);
-  const Pilot pilot = RunPilot(built.scene, built.settings, 1, 400);
+  const RenderPilot pilot = RunPilot(built.scene, built.settings, 1, 400);
   const PilotCandidate* candidate = nullptr;
   for (const PilotCandidate& each : pilot.candidates) {
     if (each.integrator == integrator) candidate = &each;

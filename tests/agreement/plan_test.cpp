@@ -114,7 +114,7 @@ std::string ChoiceOf(const ScenePlan& plan, const std::string& subject) {
 TEST(Plan, IsWhatASceneNeeds) {
   const std::string plain = kHead + std::string(kCamera) + kThings;
   EXPECT_EQ(PlanOf(plain).integrator, "path");
-  EXPECT_EQ(PlanOf(plain + kGlass).integrator, "vcm");
+  EXPECT_EQ(PlanOf(plain + kGlass).integrator, "bdpt");
   EXPECT_EQ(ChoiceOf(PlanOf(plain), "lens"), "pinhole");
   EXPECT_EQ(ChoiceOf(PlanOf(plain), "motion"), "off");
   EXPECT_EQ(ChoiceOf(PlanOf(plain), "light selection"), "tree");
@@ -135,6 +135,31 @@ TEST(Plan, IsWhatASceneNeeds) {
                            "Shape \"bilinearmesh\" \"point3 P\" [ -1 0 -1  1 0 -1  -1 0 1  1 0 1 ]\n";
   EXPECT_EQ(PlanOf(room + lamp).integrator, "path");
   EXPECT_EQ(PlanOf(room + lamp + screen).integrator, "bdpt");
+  // A caustic of a point that is seen in a mirror.
+  const std::string mirror =
+      "AttributeBegin Material \"conductor\" \"float roughness\" 0\n"
+      "Shape \"bilinearmesh\" \"point3 P\" [ -1 0 0.9  1 0 0.9  -1 2 0.9  1 2 0.9 ] AttributeEnd\n";
+  const std::string point = "LightSource \"point\" \"rgb I\" [ 3 3 3 ] \"point3 from\" [ 0.2 3.2 -0.1 ]\n";
+  EXPECT_EQ(PlanOf(room + point + kGlass + mirror).integrator, "vcm");
+}
+
+TEST(Plan, DoesNotDependOnThreadsOrTheSeed) {
+  const auto pilotOf = [](uint64_t seed, int threads) {
+    Diagnostics diagnostics(Diagnostics::Mode::Collect);
+    RenderOverrides overrides;
+    overrides.seed = seed;
+    const BuiltScene built = BuildScene(ParseScene(kHead + std::string(kCamera) + kThings + kGlass,
+                                                   std::string(LAMPYR_SOURCE_DIR) + "/scenes/test.pbrt", diagnostics),
+                                        overrides, true, diagnostics);
+    return RunPilot(built.scene, built.settings, threads);
+  };
+  const RenderPilot one = pilotOf(0, 1), other = pilotOf(7, 3);
+  ASSERT_EQ(one.candidates.size(), 3u);
+  for (size_t i = 0; i < one.candidates.size(); ++i) {
+    EXPECT_EQ(one.candidates[i].error, other.candidates[i].error);
+    EXPECT_EQ(one.candidates[i].cost, other.candidates[i].cost);
+    EXPECT_EQ(one.candidates[i].missing, other.candidates[i].missing);
+  }
 }
 
 }  // namespace
