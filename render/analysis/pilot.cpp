@@ -33,37 +33,41 @@ constexpr std::array<Candidate, kCandidates> kTechniquesOf = {{
     {"vcm", {true, true, true, true, true}},
 }};
 
-// A hit from one vertex is one sample, and so are next-event estimation and a connection of two vertices: the variance of
-// each is its second moment without the square of its mean. Beyond these lengths the means are small. Splats and photons
-// are many samples of small means.
-constexpr size_t kLengths = 5;  // 0: the light is seen itself
-constexpr std::array<TechniqueGroup, 3> kSingle = {TechniqueGroup::Hit, TechniqueGroup::Next, TechniqueGroup::Connect};
-
 // Sums over the samples of a pixel.
 struct Moments {
   double seen = 0, mean = 0;  // light that is seen itself, and all other
-  std::array<double, kCandidates> square{}, missing{};
+  std::array<double, kCandidates> square{};    // second moments of single paths
+  std::array<double, kCandidates> products{};  // of different paths of one sample
+  std::array<double, kCandidates> missing{};
 
   void operator+=(const Moments& other) {
     seen += other.seen;
     mean += other.mean;
     for (size_t k = 0; k < kCandidates; ++k) {
       square[k] += other.square[k];
+      products[k] += other.products[k];
       missing[k] += other.missing[k];
     }
   }
 };
 
-// What each candidate's techniques of single samples find in one pass, by pixel.
-struct Means {
-  std::array<std::array<float, kLengths * kSingle.size()>, kCandidates> values{};
+// What the camera path of a candidate finds in one pass, by pixel.
+struct Found {
+  std::array<float, kCandidates> seen{}, other{};  // a light that the pixel sees itself; all other light
 
-  void operator+=(const Means& other) {
+  void operator+=(const Found& more) {
     for (size_t k = 0; k < kCandidates; ++k) {
-      for (size_t i = 0; i < values[k].size(); ++i) values[k][i] += other.values[k][i];
+      seen[k] += more.seen[k];
+      other[k] += more.other[k];
     }
   }
 };
+
+TechniqueGroup GroupOf(const ConnectedPath& path) {
+  if (path.isMerged) return TechniqueGroup::Merge;
+  if (path.connection) return TechniqueGroup::Light;
+  return path.s == 0 ? TechniqueGroup::Hit : path.s == 1 ? TechniqueGroup::Next : TechniqueGroup::Connect;
+}
 
 // The pilot's pixels, and where they are on the film.
 struct Grid {
@@ -102,13 +106,21 @@ class Recorder final : public PathObserver {
  public:
   Recorder(const Grid& grid, double filmPixels)
       : moments(static_cast<size_t>(grid.Pixels())),
-        means(static_cast<size_t>(grid.Pixels())),
+        found(static_cast<size_t>(grid.Pixels())),
         grid_(grid),
         filmPixels_(filmPixels) {}
 
   void StartSample(int x, int y, float weight) {
     pixel_ = grid_.PixelOf(x, y);
     weight_ = static_cast<double>(weight);
+    sums_ = {};
+  }
+  // What one camera path finds is one sample: its square has the products of different paths, besides their squares.
+  void EndSample() {
+    for (size_t k = 0; k < kCandidates; ++k) {
+      moments[pixel_].products[k] += sums_[k].value * sums_[k].value - sums_[k].squares;
+      found[pixel_].other[k] += static_cast<float>(sums_[k].value);
+    }
   }
   bool WantsSums() const override { return true; }
   void Observe(const ConnectedPath& path) override {
@@ -122,23 +134,25 @@ class Recorder final : public PathObserver {
       pixel = grid_.PixelOf(x, y);
       scale = 1 / filmPixels_;
     }
-    Add(path, static_cast<double>(path.value.Average()) * scale, moments[pixel], means[pixel]);
+    Add(path, static_cast<double>(path.value.Average()) * scale, pixel);
   }
   void ObserveMerge(const ConnectedPath& path, const Photon&) override { Observe(path); }
 
-  // By pixel. `means`: of the current pass.
+  // By pixel. `found`: in the current pass.
   std::vector<Moments> moments;
-  std::vector<Means> means;
+  std::vector<Found> found;
 
  private:
-  static void Add(const ConnectedPath& path, double value, Moments& moments, Means& means) {
+  void Add(const ConnectedPath& path, double value, size_t pixel) {
+    Moments& here = moments[pixel];
+    const bool isSeen = path.s + path.t == 2;
     const double weighted = path.weight * value;
     if (!std::isfinite(weighted)) return;
-    (path.s + path.t == 2 ? moments.seen : moments.mean) += weighted;
+    (isSeen ? here.seen : here.mean) += weighted;
     double known = 0;
     for (const TechniqueSums::Group& group : path.sums.groups) known += group.squares;
     if (!(known > 0)) {
-      for (double& square : moments.square) square += weighted * value;
+      for (double& square : here.square) square += weighted * value;
       return;
     }
     for (size_t k = 0; k < kCandidates; ++k) {
@@ -150,16 +164,17 @@ class Recorder final : public PathObserver {
       }
       const double factor = cubes / (squares * squares);
       if (!std::isfinite(factor) || !(squares > 0)) {
-        moments.missing[k] += weighted;
+        here.missing[k] += weighted;
         continue;
       }
-      moments.square[k] += weighted * value * factor;
-      const auto length = static_cast<size_t>(path.s + path.t - (path.isMerged ? 3 : 2));
-      for (size_t i = 0; i < kSingle.size() && length < kLengths; ++i) {
-        const auto group = static_cast<size_t>(kSingle[i]);
-        if (kTechniquesOf[k].has[group])
-          means.values[k][kSingle.size() * length + i] +=
-              static_cast<float>(weighted * path.sums.groups[group].squares / squares);
+      here.square[k] += weighted * value * factor;
+      if (path.connection || !kTechniquesOf[k].has[static_cast<size_t>(GroupOf(path))]) continue;
+      const double reweighted = weighted * known / squares;  // w = r² / Σ r²
+      if (isSeen) {
+        found[pixel].seen[k] += static_cast<float>(reweighted);
+      } else {
+        sums_[k].value += reweighted;
+        sums_[k].squares += reweighted * reweighted;
       }
     }
   }
@@ -167,6 +182,10 @@ class Recorder final : public PathObserver {
   const Grid& grid_;
   double filmPixels_, weight_ = 1;
   size_t pixel_ = 0;
+  struct Sums {
+    double value = 0, squares = 0;
+  };
+  std::array<Sums, kCandidates> sums_;  // of the current camera path
 };
 
 // Passes of an integrator over the pilot's pixels.
@@ -215,6 +234,7 @@ class PilotPasses {
         recorders[chunk].StartSample(x, y, ray.weight);
       }
       integrator.Sample(ray.weight != 0 ? &ray.ray : nullptr, context);
+      if (!recorders.empty()) recorders[chunk].EndSample();
     });
   }
 
@@ -277,32 +297,25 @@ std::array<double, kCandidates> CostsOf(const Counted& counted, double samples) 
 class Records {
  public:
   Records(const Grid& grid, std::vector<Recorder>& recorders)
-      : grid_(grid), recorders_(recorders), squaredMeans_(kCandidates * static_cast<size_t>(grid.Pixels())),
-        squaresOfSeen_(squaredMeans_.size()) {}
+      : grid_(grid), recorders_(recorders), squaredMeans_(kCandidates * static_cast<size_t>(grid.Pixels())) {}
 
   // After each pass. The square of a mean is estimated by the product of what two passes have found, which are
-  // independent.
+  // independent: of lights that a pixel sees itself at different points of the film, of all other light at the same.
   void EndPass(uint32_t pass) {
-    std::vector<Means> means(recorders_[0].means.size());
+    std::vector<Found> found(recorders_[0].found.size());
     for (Recorder& recorder : recorders_) {
-      for (size_t i = 0; i < means.size(); ++i) means[i] += std::exchange(recorder.means[i], Means());
+      for (size_t i = 0; i < found.size(); ++i) found[i] += std::exchange(recorder.found[i], Found());
     }
-    if (pass % 2 == 0) {
-      first_ = std::move(means);
-      return;
+    for (size_t i = 0; i < found.size(); ++i) {
+      for (size_t k = 0; k < kCandidates; ++k) {
+        const auto product = [](float a, float b) { return static_cast<double>(a) * static_cast<double>(b); };
+        SquaredMeans& means = squaredMeans_[kCandidates * i + k];
+        if (pass % 2 == 1) means.other += 2 * product(last_[i].other[k], found[i].other[k]);
+        if (pass > 1) means.seen += product(beforeLast_[i].seen[k], found[i].seen[k]);
+      }
     }
-    for (size_t i = 0; i < means.size(); ++i) {
-      for (size_t k = 0; k < kCandidates; ++k)
-        squaredMeans_[kCandidates * i + k] += 2 * SumOfProducts(first_[i].values[k], means[i].values[k]);
-    }
-    // Lights that a pixel sees itself, at another point of the film.
-    if (pass > 1) {
-      for (size_t i = 0; i < squaresOfSeen_.size(); ++i)
-        squaresOfSeen_[i] += static_cast<double>(SeenOf(means, i)) * static_cast<double>(seen_[i]);
-      ++seenPairs_;
-    }
-    seen_.resize(squaresOfSeen_.size());
-    for (size_t i = 0; i < seen_.size(); ++i) seen_[i] = SeenOf(means, i);
+    if (pass > 1) ++seenPairs_;
+    beforeLast_ = std::exchange(last_, std::move(found));
   }
 
   // The sum over all passes. False: no light was found.
@@ -328,10 +341,9 @@ class Records {
         const Moments& here = pixels[pixel];
         const double brightness = tiles[tile] + here.seen / passes;
         const double scale = 1 / ((brightness * brightness + 0.01 * (mean + seen) * (mean + seen)) * passes);
-        squares += scale * here.square[k];
-        squaredMeans += scale * squaredMeans_[kCandidates * pixel + k];
-        if (seenPairs_ > 0)
-          squaredMeans += scale * squaresOfSeen_[kCandidates * pixel + k] * passes / seenPairs_;
+        squares += scale * (here.square[k] + here.products[k]);
+        const SquaredMeans& means = squaredMeans_[kCandidates * pixel + k];
+        squaredMeans += scale * (means.other + (seenPairs_ > 0 ? means.seen * passes / seenPairs_ : 0.0));
         candidate.secondMoments[tile] += here.square[k] / (passes * grid_.PixelsOf(tile));
         candidate.missing += here.missing[k] / (passes * grid_.Pixels() * (mean + seen));
       });
@@ -341,21 +353,6 @@ class Records {
   }
 
  private:
-  // By pixel and candidate: hits of the camera ray itself.
-  static float SeenOf(const std::vector<Means>& means, size_t i) {
-    return means[i / kCandidates].values[i % kCandidates][0];
-  }
-  // Connections of a length are as many techniques as that; their means are taken to be equal.
-  template <class Values>
-  static double SumOfProducts(const Values& a, const Values& b) {
-    double sum = 0;
-    for (size_t i = kSingle.size(); i < a.size(); ++i) {
-      const bool isConnection = kSingle[i % kSingle.size()] == TechniqueGroup::Connect;
-      const double techniques = isConnection ? std::max(static_cast<double>(i / kSingle.size()) - 1, 1.0) : 1.0;
-      sum += static_cast<double>(a[i]) * static_cast<double>(b[i]) / techniques;
-    }
-    return sum;
-  }
   template <class Body>
   void ForEachPixel(const Body& body) const {
     for (int y = 0; y < grid_.height; ++y) {
@@ -365,10 +362,11 @@ class Records {
 
   const Grid& grid_;
   std::vector<Recorder>& recorders_;
-  std::vector<Means> first_;
-  std::vector<double> squaredMeans_;  // Σ over the passes, by pixel and candidate
-  std::vector<double> squaresOfSeen_;
-  std::vector<float> seen_;  // by the last second pass
+  std::vector<Found> last_, beforeLast_;  // in the passes before
+  struct SquaredMeans {
+    double other = 0, seen = 0;
+  };
+  std::vector<SquaredMeans> squaredMeans_;  // Σ over the passes, by pixel and candidate
   int seenPairs_ = 0;
 };
 
