@@ -13,15 +13,15 @@ namespace lampyr {
 
 namespace {
 
-// What the pilot estimated of each candidate.
+// What the pilot estimated of each candidate, per sample.
 void PrintPilot(const RenderPilot& pilot) {
   if (pilot.candidates.empty()) return;
-  std::printf("\nA pilot's estimates, for one sample per pixel:\n%-10s %8s %12s %16s  %s\n", "", "relMSE", "cost (µs)",
-              "relMSE × cost", "misses");
+  std::printf("\n%-6s %8s %8s %9s  %s\n", "pilot", "relMSE", "µs", "product", "misses");
   for (const PilotCandidate& candidate : pilot.candidates) {
-    char missing[32] = "–";
-    if (candidate.missing > kNegligibleLight) std::snprintf(missing, sizeof missing, "%.2g %%", 100 * candidate.missing);
-    std::printf("%-10s %8.3g %11.2f %15.3g  %s\n", candidate.integrator.c_str(), candidate.error, candidate.cost * 1e-3,
+    char missing[32] = "";
+    if (candidate.missing > kNegligibleLight)
+      std::snprintf(missing, sizeof missing, "  %.2g %%", 100 * candidate.missing);
+    std::printf("%-6s %8.3g %7.2f %9.3g%s\n", candidate.integrator.c_str(), candidate.error, candidate.cost * 1e-3,
                 candidate.error * candidate.cost * 1e-3, missing);
   }
 }
@@ -29,7 +29,10 @@ void PrintPilot(const RenderPilot& pilot) {
 }  // namespace
 
 int RunPlan(const PlanOptions& options) {
-  const LoadedScene loaded = LoadScene(options.scene, options.plugins, options.overrides, options.strict, true);
+  // The choice is the plan's own.
+  RenderOverrides overrides = options.overrides;
+  overrides.integrator = "path";
+  const LoadedScene loaded = LoadScene(options.scene, options.plugins, overrides, options.strict, true);
   RenderSettings settings = loaded.built.settings;
   if (options.overrides.integrator) settings.integrator = *options.overrides.integrator;
   ScenePlan plan;

@@ -94,7 +94,8 @@ void WarnOfPhotonMemory(const RenderSettings& settings, const PhotonSettings& ph
   const double paths = photons.lightPaths > 0
                            ? static_cast<double>(photons.lightPaths)
                            : static_cast<double>(settings.width) * static_cast<double>(settings.height);
-  const double most = paths * settings.MaxDepth() * static_cast<double>(PhotonStore::BytesPerPhoton(true));
+  const double most = paths * settings.MaxDepth() *
+                      static_cast<double>(PhotonStore::BytesPerPhoton(true) + 2 * sizeof(SubpathDensities));
   const double needed = std::min(most, static_cast<double>(photons.mostBytes));
   const auto available = static_cast<double>(AvailableMemory());
   if (needed <= available) return;
@@ -359,8 +360,13 @@ void RenderJob::PrintHints() const {
   for (const std::string& hint : IntegratorHints(built_.scene, settings_.integrator))
     std::fprintf(stderr, "hint: %s\n", hint.c_str());
   if (options_.overrides.integrator || settings_.namedIntegrator.empty()) return;
+  if (options_.shard || options_.resume) return;
   PlanDecision suits;
-  RunForeignCode(loaded_.types, [&] { suits = ChooseIntegrator(built_.scene, settings_); });
+  try {
+    RunForeignCode(loaded_.types, [&] { suits = ChooseIntegrator(built_.scene, settings_, report_.threads); });
+  } catch (const Error&) {
+    return;  // of a light that the render may not even use
+  }
   if (suits.choice == settings_.namedIntegrator) return;
   std::fprintf(stderr, "hint: the scene names %s; --integrator auto would render with %s: %s\n",
                settings_.namedIntegrator.c_str(), suits.choice.c_str(), suits.reason.c_str());
@@ -446,8 +452,10 @@ int RenderJob::ExitCode(const std::string& partialPicture) const {
 
 int RunRender(const RenderOptions& options) {
   OutliveSurroundings();
+  RenderOverrides overrides = options.overrides;
+  overrides.threads = options.threads;
   const LoadedScene loaded =
-      LoadScene(options.scene, options.plugins, options.overrides, options.strict, options.robust, KeepsState(options),
+      LoadScene(options.scene, options.plugins, overrides, options.strict, options.robust, KeepsState(options),
                 [&](const SceneDescription& scene, const RenderSettings& settings) {
                   CheckSceneStays(options, scene, settings);
                 });

@@ -60,18 +60,18 @@ constexpr double kLeastRadius = 1e-7, kMostRadius = 2;
 
 }  // namespace
 
-// A pixel sees the area |cosθ| / (atLens · pixels) of the first hit's plane turned towards it.
-float BidirectionalSample::MergeRadiusAt(float cosTheta, AreaDensity atLens) const {
+float BidirectionalSample::MergeRadiusAt(double footprint) const {
   const PhotonPass& pass = *context.gather;
   if (settings.photons.radius > 0) return pass.radius;
-  const double seen = EdgeDensity(cosTheta, 1).value / (atLens.value * settings.filmPixels);
   const auto size = static_cast<double>(Lighting().SceneSphere().radius);
-  const double radius = kRadiusInPixels * std::sqrt(seen) * static_cast<double>(pass.radiusScale);
+  const double radius = kRadiusInPixels * std::sqrt(footprint) * static_cast<double>(pass.radiusScale);
   return static_cast<float>(std::clamp(radius, kLeastRadius * size, kMostRadius * size));
 }
 
-Merging BidirectionalSample::MergingAt(double distance, float cosTheta, AreaDensity atLens) const {
-  return Merging::At(static_cast<double>(MergeRadiusAt(cosTheta, atLens)), distance, context.gather->lightPaths,
+Merging BidirectionalSample::MergingAt(double distance, double footprint) const {
+  // Parallel rays have no angle: what a camera with a field of view of 53 degrees has where the image is as wide.
+  if (context.scene.camera->ConnectsByDirection()) distance = std::sqrt(footprint * settings.filmPixels);
+  return Merging::At(static_cast<double>(MergeRadiusAt(footprint)), distance, context.gather->lightPaths,
                      settings.filmPixels);
 }
 
@@ -114,7 +114,7 @@ class LightSide final : public WeightedLightPath {
     }
     if (isConnected_) SplatVertex(sample_);
     const PathVertex& vertex = path.vertices.Last();
-    if (context_.photons && vertex.storesPhotons)
+    if (context_.photons && vertex.storesPhotons && path.vertices.Count() <= PhotonList::kDeepest)
       context_.photons->Add(vertex, path.vertices.Count(), sample_.Lighting().GroupOf(path.light));
   }
 
@@ -148,6 +148,7 @@ class CameraSide final : public PathVisitor {
     } else {
       SetWeights(path[depth - 2], state, sample_.settings.connects, vertex);
     }
+    if (sample_.seenDensity > 0 && !state.hasScatteredWidely) SetMerging(static_cast<double>(state.length));
     if (sample_.merging) {
       AddDensities(path, sample_.cameraDensities);
       if (depth == 1) sample_.cameraDensities[0].forward = sample_.seenDensity;
@@ -174,7 +175,7 @@ class CameraSide final : public PathVisitor {
   }
 
  private:
-  void SetFirst(PathVertex& vertex, const PathState& state) const {
+  void SetFirst(PathVertex& vertex, const PathState& state) {
     vertex.pdfForward = DensityAtLens(*sample_.context.scene.camera, state.ray, vertex.GeometryTerm(vertex.toPrevious),
                                       Sqr(static_cast<double>(state.length)));
     vertex.previousSolidAnglePerArea = {0};  // the lens is not hit
@@ -184,23 +185,36 @@ class CameraSide final : public PathVisitor {
         sample_.context.scene.camera->ConnectsLightPaths() && vertex.pdfForward.value > 0 && vertex.isSeenByIndirect;
     vertex.weight = PartialWeight::AtLens(vertex.pdfForward, isSplatted && sample_.settings.connects);
     sample_.lensSeesIt = isSplatted;
-    if (sample_.context.gather) SetMerging(vertex, state);
+    if (sample_.context.gather) SetFootprint(vertex, state.ray, static_cast<double>(state.length));
   }
-  void SetMerging(const PathVertex& vertex, const PathState& state) const {
+  void SetFootprint(const PathVertex& vertex, const Ray& ray, double distance) {
     const float cosTheta = vertex.GeometryTerm(vertex.toPrevious);
-    const auto distance = static_cast<double>(state.length);
     AreaDensity seen = vertex.pdfForward;
     if (!sample_.context.scene.camera->ConnectsLightPaths()) {
-      const double area = PixelArea(*sample_.context.scene.camera, state.ray, sample_.settings.filmPixels, distance);
+      const double area = PixelArea(*sample_.context.scene.camera, ray, sample_.settings.filmPixels, distance);
       seen = AreaDensity(area > 0 ? EdgeDensity(cosTheta, area * sample_.settings.filmPixels).value : 0);
     }
     if (!(seen.value > 0)) return;
     sample_.seenDensity = seen.value;
-    sample_.mergeRadius = sample_.MergeRadiusAt(cosTheta, seen);
-    sample_.merging = sample_.MergingAt(distance, cosTheta, seen);
+    firstFootprint_ = sample_.FootprintAt(cosTheta, seen);
+    firstDistance_ = distance;
+  }
+  // At a vertex before which there are deltas only, taken as flat.
+  void SetMerging(double distance) {
+    double footprint = firstFootprint_;
+    if (!sample_.context.scene.camera->ConnectsByDirection())
+      footprint *= distance / firstDistance_ * (distance / firstDistance_);
+    sample_.mergeRadius = sample_.MergeRadiusAt(footprint);
+    if (sample_.settings.photons.radius == 0) {
+      const auto size = static_cast<double>(sample_.Lighting().SceneSphere().radius);
+      sample_.perArea =
+          static_cast<float>(firstFootprint_ / (firstDistance_ * firstDistance_) * size * size / footprint);
+    }
+    sample_.merging = sample_.MergingAt(distance, footprint);
   }
 
   BidirectionalSample& sample_;
+  double firstFootprint_ = 0, firstDistance_ = 1;  // of the first hit
 };
 
 class BidirectionalIntegrator final : public Integrator {
@@ -230,8 +244,12 @@ struct Workspace {
 PathEnds EndsOf(const BidirectionalSample& sample) {
   const PathVertex& first = sample.light.vertices[0];
   const bool goesOn = sample.light.vertices.Count() > 1;
-  const double hit = goesOn ? first.PreviousReverse(first.eventReverse).value : 1.0;
-  return {sample.lightEnd.direct.value, sample.lightEnd.canBeHit ? hit : 0.0, goesOn && first.scatteredDelta};
+  PathEnds ends;
+  ends.direct = sample.lightEnd.direct.value;
+  ends.canBeHit = sample.lightEnd.canBeHit;
+  if (ends.canBeHit && goesOn) ends.hit = first.PreviousReverse(first.eventReverse).value;
+  ends.firstIsDelta = goesOn && first.scatteredDelta;
+  return ends;
 }
 
 Color BidirectionalIntegrator::Sample(const Ray* ray, const SampleContext& context) const {

@@ -54,9 +54,9 @@ Color SeeLightAt(const BidirectionalSample& sample, const PathState& state, cons
         DensityAtLens(*context.scene.camera, ray, AbsDot(ray.direction, point.Ng), Sqr(static_cast<double>(hit.t)));
     if (path.atLens.value > 0 && sample.settings.connects)
       path.weight = SeenLightWeight(path.end.position, path.atLens);
-    path.sums.Of(TechniqueGroup::Hit).Add(1);
     if (path.atLens.value > 0) path.sums.Of(TechniqueGroup::Light).Add(path.end.position / path.atLens);
   }
+  path.sums.Of(TechniqueGroup::Hit).Add(1);
   const Color contribution = sample.Report(path);
   // The group is that of the surface, because path.end may be unset: a light that emits from one side only may have no
   // density here.
@@ -70,6 +70,7 @@ Color SeeBackground(const BidirectionalSample& sample, const PathState& state) {
   path.t = 2;
   path.end.canBeHit = true;
   path.atLens = AreaDensity(1);
+  path.sums.Of(TechniqueGroup::Hit).Add(1);
   path.value = EscapedEmissionForCamera(sample.context, state.ray, state.specular);
   return sample.Report(path);
 }

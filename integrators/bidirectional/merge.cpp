@@ -23,7 +23,7 @@ void ReportMerge(const BidirectionalSample& sample, const Photon& photon, AreaDe
   path.weight = weight;
   if (sample.WantsSums()) {
     const PathEnds kept = sample.context.gather->map->EndsOf(photon);
-    const double hit = photon.depth > 1 ? kept.hit : kept.hit > 0 ? reverse.value : 0.0;
+    const double hit = !kept.canBeHit ? 0.0 : photon.depth > 1 ? kept.hit : reverse.value;
     path.sums = sample.whole.Sums({kept.direct, hit, kept.firstIsDelta && photon.depth > 1, sample.lensSeesIt}, 0,
                                   photon.depth);
   }
@@ -66,7 +66,7 @@ Color Merge(const BidirectionalSample& sample) {
     if (context.layers) [[unlikely]]
       context.layers->Add(photon.group, Product(vertex.Throughput(), value, perDensity * weight));
     if (pass.use) [[unlikely]]
-      pass.use->Add(index, (vertex.Throughput() * f.Sum()).Average() * static_cast<float>(weight));
+      pass.use->Add(index, (vertex.Throughput() * f.Sum()).Average() * static_cast<float>(weight) * sample.perArea);
     if (sample.IsObserved()) [[unlikely]]
       ReportMerge(sample, photon, joint.light.last, Product(vertex.Throughput(), value, perDensity), weight);
   }

@@ -7,9 +7,9 @@
 // multiplied by ([Grittmann21 §5])
 //   c_i = max(P_C / (P_C + P_L - P_C P_L), 1/N),   P_L(i) = Π_(k≤i) f_k,   P_C(i) = Π_(k≥i) b_k
 // with f_k the probability that another light path has its vertex k within ρ of this path's, and b_k the same for
-// another camera path of the pixel. c is 1 at the vertex that the camera sees. It has the same value in the weight of every
-// technique, so that weights sum to 1, and depends on both ends of the path, so that no recursion along a subpath can
-// carry it.
+// another camera path of the pixel. c is 1 at the vertex that the camera sees. It has the same value in the weight of
+// every technique, so that weights sum to 1, and depends on both ends of the path, so that no recursion along a subpath
+// can carry it.
 #pragma once
 
 #include <array>

@@ -52,7 +52,7 @@ void SplatVertex(const BidirectionalSample& sample) {
   double merging = 0;
   if (sample.context.gather) {
     const auto distance = static_cast<double>(glm::distance(seen->connection.camera.position, vertex.point.position));
-    path.merging = sample.MergingAt(distance, seen->geometryTerm, path.atLens);
+    path.merging = sample.MergingAt(distance, sample.FootprintAt(seen->geometryTerm, path.atLens));
     sample.whole.Set(sample.lightDensities, {}, joint, sample.lightEnd.emission.value, sample.lightEnd.extent,
                      path.merging);
     merging = sample.whole.ForConnection(light.Count());

@@ -26,16 +26,23 @@ struct BidirectionalSample {
   std::vector<SubpathDensities>&lightDensities, &cameraDensities;
   Merging merging{};        // of what the camera subpath sees
   float mergeRadius = 0;    // scene units
+  float perArea = 1;        // proportional to 1 / mergeRadius², where radii differ: that of the scene's radius is 1
   double seenDensity = 0;   // of the first vertex of the camera subpath, as in P_C
   bool lensSeesIt = false;  // light paths that reach the first vertex of the camera subpath are connected to the lens
   bool couldMerge = false;  // merging was possible at a vertex of the camera subpath
   Color radiance{};
 
   const LightingServices& Lighting() const { return *context.scene.lighting; }
-  // Merging on paths whose first hit, seen at `cosTheta` to its geometric normal, has the density `atLens` by a camera
-  // ray (DensityAtLens).
-  Merging MergingAt(double distance, float cosTheta, AreaDensity atLens) const;
-  float MergeRadiusAt(float cosTheta, AreaDensity atLens) const;
+  // Merging on the paths that a pixel sees at a path length of `distance`, where its footprint has the area
+  // `footprint`, perpendicular to the path. Both are those of the first vertex from the camera that scatters by another
+  // event than a delta: all techniques of a path share it, and before it nothing can be merged.
+  Merging MergingAt(double distance, double footprint) const;
+  float MergeRadiusAt(double footprint) const;
+  // Footprint at a first hit that is seen at `cosTheta` to its geometric normal and has the density `atLens` by a
+  // camera ray (DensityAtLens).
+  double FootprintAt(float cosTheta, AreaDensity atLens) const {
+    return EdgeDensity(cosTheta, 1).value / (atLens.value * settings.filmPixels);
+  }
   // Σ (p_i / p)^β over the techniques that merge, for s = 0 or 1 of the density `technique`, and for a connection.
   double MergingOfLight(const LightEnd& end, const Joint& joint, AreaDensity technique) const {
     if (!merging) return 0;

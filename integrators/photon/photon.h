@@ -41,7 +41,7 @@ class PackedNormal {
   int16_t x_ = 0, y_ = 0;
 };
 
-// A photon as its light path stored it. It becomes a Photon once the radius of the pass that gathers it is known.
+// A photon as its light path stored it, in the order of paths. The map sorts photons by place.
 struct TracedPhoton {
   Point3 position;
   Vector3 toPrevious;
@@ -65,7 +65,9 @@ class PhotonList {
     densities_.clear();
   }
   // What is added from now on belongs to the next path.
-  void StartPath() { starts_.push_back(static_cast<uint32_t>(photons_.size())); }
+  void StartPath() {
+    starts_.push_back({static_cast<uint32_t>(photons_.size()), static_cast<uint32_t>(densities_.size())});
+  }
   // Sets the origin of the current path, for emission guiding. Before its first photon, or not at all.
   void SetOrigin(const PathOrigin& origin) {
     origins_.resize(KeptOrigins());  // drops origins of paths that stored no photon
@@ -82,19 +84,25 @@ class PhotonList {
                         PackedNormal(vertex.bsdf.Ng()), static_cast<uint16_t>(std::min(depth, kDeepest)),
                         static_cast<uint16_t>(group), origin, static_cast<uint32_t>(densities_.size() + 1)});
   }
-  // Keeps the densities of the current path's vertices, up to its last photon at least, and before them those of its
-  // light's end. To be called when the path is complete, or not at all.
+  // Keeps the densities of the current path's vertices up to its last photon, which is not deeper than kDeepest, and
+  // before them those of its light's end. To be called when the path is complete, or not at all.
   void KeepDensities(const PathEnds& ends, std::span<const SubpathDensities> densities) {
-    if (photons_.size() == starts_.back()) return;
-    densities_.push_back({ends.direct, ends.hit, ends.firstIsDelta});
-    densities_.insert(densities_.end(), densities.begin(), densities.end());
+    if (photons_.size() == starts_.back().photon) return;
+    densities_.push_back(ends.Packed());
+    const std::span<const SubpathDensities> kept = densities.first(photons_.back().depth);
+    densities_.insert(densities_.end(), kept.begin(), kept.end());
   }
   static constexpr size_t kDeepest = 65535;
   size_t Paths() const { return starts_.size(); }
-  // Removes whole paths from the end until there are no more than `most` photons; returns the number of paths left.
-  size_t KeepPaths(size_t most) {
-    while (photons_.size() > most && !starts_.empty()) {
-      photons_.resize(starts_.back());
+  // Memory while the map is built, of which there are two copies of the densities.
+  uint64_t Bytes(uint64_t perPhoton) const {
+    return photons_.size() * perPhoton + 2 * sizeof(SubpathDensities) * densities_.size();
+  }
+  // Removes whole paths from the end until Bytes is no more than `most`; returns the number of paths left.
+  size_t KeepPaths(uint64_t most, uint64_t perPhoton) {
+    while (Bytes(perPhoton) > most && !starts_.empty()) {
+      photons_.resize(starts_.back().photon);
+      densities_.resize(starts_.back().density);
       starts_.pop_back();
     }
     origins_.resize(KeptOrigins());
@@ -109,7 +117,10 @@ class PhotonList {
   size_t KeptOrigins() const { return photons_.empty() ? 0 : static_cast<size_t>(photons_.back().origin + 1); }
 
   std::vector<TracedPhoton> photons_;
-  std::vector<uint32_t> starts_;  // index of the first photon of each path
+  struct Start {
+    uint32_t photon, density;
+  };
+  std::vector<Start> starts_;  // indices of the first photon of each path, and of its densities
   std::vector<PathOrigin> origins_;
   std::vector<SubpathDensities> densities_;
 };

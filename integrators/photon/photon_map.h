@@ -46,12 +46,9 @@ class PhotonMap {
     return densities_.empty() ? std::span<const SubpathDensities>() : std::span(&densities_[photon.path], photon.depth);
   }
 
-  // The light's end of a photon's path, if its densities were kept. Of a path that ends at the photon `hit` only says
-  // whether the light can be hit.
-  PathEnds EndsOf(const Photon& photon) const {
-    const SubpathDensities& ends = densities_[photon.path - 1];
-    return {ends.forward, ends.reverse, ends.forwardIsDelta};
-  }
+  // The light's end of a photon's path, if its densities were kept. Of a path that ends at its first hit `hit` is
+  // unknown.
+  PathEnds EndsOf(const Photon& photon) const { return PathEnds::Unpacked(densities_[photon.path - 1]); }
 
   size_t Size() const { return photons_.size(); }
   bool IsEmpty() const { return photons_.empty(); }

@@ -11,28 +11,30 @@ namespace lampyr {
 uint64_t PhotonStore::BytesPerPhoton(bool withUse) {
   constexpr uint64_t pointer = sizeof(void*), position = 3 * sizeof(float), tree = 2 * position + pointer + 16;
   const uint64_t use = withUse ? PhotonUse::kMostBytesPerPhoton + sizeof(PathOrigin) + sizeof(uint32_t) : 0;
-  // Two copies of the densities, of which there are about as many as photons.
-  return 2 * sizeof(SubpathDensities) + sizeof(TracedPhoton) + sizeof(Photon) + sizeof(SortItem) + pointer + tree + use;
+  return sizeof(TracedPhoton) + sizeof(Photon) + sizeof(SortItem) + pointer + tree + use;
 }
 
 PhotonStore::PhotonStore(const PhotonSettings& settings, uint64_t pixels, EmissionLearning* learning)
     : settings_(settings),
       learning_(learning),
       lightPaths_(settings.lightPaths > 0 ? settings.lightPaths : pixels),
-      most_(settings.mostBytes > 0 ? std::max<uint64_t>(settings.mostBytes / BytesPerPhoton(learning != nullptr), 1)
-                                   : std::numeric_limits<uint32_t>::max() / 2) {}
+      perPhoton_(BytesPerPhoton(learning != nullptr)),
+      // Photons and densities are counted in 32 bits.
+      most_(std::min(
+          settings.mostBytes > 0 ? std::max(settings.mostBytes, perPhoton_) : std::numeric_limits<uint64_t>::max(),
+          sizeof(SubpathDensities) * std::numeric_limits<uint32_t>::max())) {}
 
 void PhotonStore::Take(std::vector<PhotonList>& lists) {
   for (PhotonList& list : lists) {
-    if (hasRoom_ && photons_ + list.Photons().size() <= most_) {
-      photons_ += list.Photons().size();
+    if (hasRoom_ && bytes_ + list.Bytes(perPhoton_) <= most_) {
+      bytes_ += list.Bytes(perPhoton_);
       paths_ += list.Paths();
       waiting_.push_back(std::exchange(list, PhotonList()));
       continue;
     }
     if (hasRoom_) {
-      paths_ += list.KeepPaths(most_ - photons_);
-      photons_ += list.Photons().size();
+      paths_ += list.KeepPaths(most_ - bytes_, perPhoton_);
+      bytes_ += list.Bytes(perPhoton_);
       waiting_.push_back(std::exchange(list, PhotonList()));
       hasRoom_ = false;
     }
@@ -86,7 +88,7 @@ std::shared_ptr<PhotonUse> PhotonStore::MakeUse(std::vector<uint32_t> origins) c
 
 void PhotonStore::Clear() {
   waiting_.clear();
-  photons_ = paths_ = 0;
+  bytes_ = paths_ = 0;
   hasRoom_ = true;
   isTaken_ = false;
 }

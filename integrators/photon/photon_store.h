@@ -52,7 +52,7 @@ class PhotonStore {
   const PhotonStatistics& Statistics() const { return statistics_; }
   // Continues the counts of an earlier store.
   const PhotonStatistics& Continue(const PhotonStatistics& before) { return statistics_ = before; }
-  // Memory per photon while the map is built, everything included. `withUse`: with PhotonUse.
+  // Memory per photon while the map is built, everything included but densities. `withUse`: with PhotonUse.
   static uint64_t BytesPerPhoton(bool withUse = false);
 
  private:
@@ -61,9 +61,9 @@ class PhotonStore {
   PhotonSettings settings_;
   EmissionLearning* learning_;
   uint64_t lightPaths_;
-  uint64_t most_;  // photons of a pass
+  uint64_t perPhoton_, most_;  // bytes of a photon and of a pass
   std::vector<PhotonList> waiting_;
-  uint64_t photons_ = 0, paths_ = 0;  // in waiting_
+  uint64_t bytes_ = 0, paths_ = 0;  // in waiting_
   bool hasRoom_ = true;
   bool isTaken_ = false;
   uint32_t pass_ = 0;

@@ -1,5 +1,5 @@
 // Partial weights of bidirectional techniques. They are carried along subpaths, so that weighting a connection takes
-// constant time, whatever the length of the path ([Georgiev12 §4]; dVCM, dVC and dVM there).
+// constant time, whatever the length of the path ([Georgiev12 §4]; dVCM and dVC there).
 //
 // A path x_0 … x_k, ordered from the light, is made by technique s if its first s vertices are sampled from the light
 // and the rest from the camera. With p_s the density of technique s, F_i the area density of vertex i when it is
@@ -10,7 +10,8 @@
 //   Σ_(i≤j) (p_i / p_(j+1))^β = B_j^β · (connect + B_(j-1)^β · earlier).
 // The same holds from the camera's side with F and B exchanged.
 //
-// Merging is not carried: its terms depend on the whole path (bidirectional/path_densities.h).
+// Merging is not carried: its terms depend on the whole path, and take time in proportion to its length
+// (bidirectional/path_densities.h).
 //
 // Departures from [Georgiev12]: β is 2, not 1. Selection of lights may depend on the receiver and is weighted exactly:
 // the first partial weight of a light subpath is made at its first hit (AtFirstHit), which is the receiver.
@@ -78,6 +79,13 @@ struct PathEnds {
   double direct = 0, hit = 0;  // of the light's point: by next-event estimation, and by a camera path; 0: impossible
   bool firstIsDelta = false;   // the event at vertex 1
   bool lensSeesIt = false;     // t = 1 exists
+  bool canBeHit = false;       // the light; `hit` may be unknown yet
+
+  // As a record before those of the path's vertices, which saves an index per photon.
+  SubpathDensities Packed() const { return {direct, hit, firstIsDelta, false, canBeHit}; }
+  static PathEnds Unpacked(const SubpathDensities& packed) {
+    return {packed.forward, packed.reverse, packed.forwardIsDelta, false, packed.canMerge};
+  }
 };
 
 // The last two reverse densities of a subpath: of its last vertex and of the one before.

@@ -18,6 +18,7 @@ namespace {
 constexpr int kTile = kPilotTile, kChunks = 8;
 // Longer paths hold little of the light, and without a limit a closed box of mirrors would keep the pilot for hours.
 constexpr int64_t kMostEvents = 20;
+constexpr uint64_t kMostLightPaths = 4 * kMostPilotPixels;
 // The radius is that of the average pass of so many.
 constexpr double kTypicalPasses = 64;
 constexpr uint64_t kSeed = 0x9e3779b97f4a7c15;
@@ -25,8 +26,8 @@ constexpr uint64_t kSeed = 0x9e3779b97f4a7c15;
 struct Candidate {
   const char* name;
   std::array<bool, kTechniqueGroups> has;  // TechniqueGroup
-  // Squared error of independent samples over that of Sobol points, the geometric mean over the scenes of scenes/ with 32
-  // samples per pixel. More techniques make smoother integrands.
+  // Squared error of independent samples over that of Sobol points, the geometric mean over the scenes of scenes/ with
+  // 32 samples per pixel. More techniques make smoother integrands.
   double gainOfSobol;
 };
 constexpr size_t kCandidates = 3;
@@ -38,7 +39,7 @@ constexpr std::array<Candidate, kCandidates> kTechniquesOf = {{
 
 // Sums over the samples of a pixel.
 struct Moments {
-  double seen = 0, mean = 0;  // light that is seen itself, and all other
+  double seen = 0, mean = 0;                   // light that is seen itself, and all other
   std::array<double, kCandidates> square{};    // second moments of single paths
   std::array<double, kCandidates> products{};  // of different paths of one sample
   std::array<double, kCandidates> missing{};
@@ -155,7 +156,14 @@ class Recorder final : public PathObserver {
     double known = 0;
     for (const TechniqueSums::Group& group : path.sums.groups) known += group.squares;
     if (!(known > 0)) {
-      for (double& square : here.square) square += weighted * value;
+      // Not known how else it could be found: as if all candidates did it like this.
+      for (size_t k = 0; k < kCandidates; ++k) {
+        here.square[k] += weighted * value;
+        if (!path.connection) {
+          sums_[k].value += weighted;
+          sums_[k].squares += weighted * weighted;
+        }
+      }
       return;
     }
     for (size_t k = 0; k < kCandidates; ++k) {
@@ -194,18 +202,13 @@ class Recorder final : public PathObserver {
 // Passes of an integrator over the pilot's pixels.
 class PilotPasses {
  public:
-  PilotPasses(const RenderScene& scene, const RenderSettings& settings, const Grid& grid, int threads,
-              uint32_t passes)
-      : scene_(scene),
-        settings_(settings),
-        grid_(grid),
-        threads_(threads),
-        passes_(passes),
-        photons_(kChunks) {}
+  PilotPasses(const RenderScene& scene, const RenderSettings& settings, const Grid& grid, int threads, uint32_t passes)
+      : scene_(scene), settings_(settings), grid_(grid), threads_(threads), passes_(passes), photons_(kChunks) {}
 
   // Traces the photons of a pass; where the integrator gathers none, it has none.
   void TracePhotons(const Integrator& integrator, PhotonStore& store, uint32_t pass) {
-    ForEachPixel([&](size_t chunk, int x, int y, Sampler& sampler, RenderCounts& counts, SplatList& splats) {
+    const auto paths = static_cast<int>(std::min<uint64_t>(store.LightPaths(), kMostLightPaths));
+    ForEachPixel(paths, [&](size_t chunk, int x, int y, Sampler& sampler, RenderCounts& counts, SplatList& splats) {
       sampler.StartPixelSample(x, y, pass + passes_);
       photons_[chunk].StartPath();
       SampleContext context{scene_, sampler, Time(pass), counts};
@@ -220,7 +223,8 @@ class PilotPasses {
   // One sample of every pixel; `recorders`, one for each chunk, may be empty.
   RenderCounts Trace(const Integrator& integrator, uint32_t pass, const PhotonPass* gather,
                      std::vector<Recorder>& recorders) {
-    return ForEachPixel([&](size_t chunk, int x, int y, Sampler& sampler, RenderCounts& counts, SplatList& splats) {
+    return ForEachPixel(grid_.Pixels(), [&](size_t chunk, int x, int y, Sampler& sampler, RenderCounts& counts,
+                                            SplatList& splats) {
       // Two passes have the same point of the film: what a pixel of the pilot holds of texture and edges is not noise.
       sampler.StartPixelSample(x, y, pass / 2);
       sampler.SetDimension(dimensions::kFilm);
@@ -236,7 +240,9 @@ class PilotPasses {
         context.observer = &recorders[chunk];
         recorders[chunk].StartSample(x, y, ray.weight);
       }
-      integrator.Sample(ray.weight != 0 ? &ray.ray : nullptr, context);
+      const bool isVignetted = ray.weight == 0;
+      if (!isVignetted || integrator.Paths() != TracedPaths::Camera)
+        integrator.Sample(isVignetted ? nullptr : &ray.ray, context);
       if (!recorders.empty()) recorders[chunk].EndSample();
     });
   }
@@ -245,15 +251,17 @@ class PilotPasses {
   float Time(uint32_t pass) const {
     return scene_.hasMotion ? (static_cast<float>(pass) + 0.5f) / static_cast<float>(passes_) : 0.0f;
   }
+  // `count`: of the pixels, or more, with further rows.
   template <class Body>
-  RenderCounts ForEachPixel(const Body& body) {
+  RenderCounts ForEachPixel(int count, const Body& body) {
     std::vector<RenderCounts> counts(kChunks);
     ParallelFor(kChunks, threads_, [&](int chunk) {
       const auto index = static_cast<size_t>(chunk);
       Sampler sampler(settings_.sampler, kSeed);
       // Splats are not kept, but connections that reach no pixel are not made.
       SplatList splats({0, 0}, {static_cast<float>(settings_.width), static_cast<float>(settings_.height)}, 1);
-      for (int i = grid_.Pixels() * chunk / kChunks; i < grid_.Pixels() * (chunk + 1) / kChunks; ++i) {
+      const auto begin = [&](int of) { return static_cast<int>(int64_t{count} * of / kChunks); };
+      for (int i = begin(chunk); i < begin(chunk + 1); ++i) {
         splats.Clear();
         splats.StartPath();
         body(index, i % grid_.width, i / grid_.width, sampler, counts[index], splats);
@@ -285,7 +293,9 @@ struct Counted {
 
 std::array<double, kCandidates> CostsOf(const Counted& counted, double samples) {
   constexpr Costs costs;
-  const auto rays = [](const RenderCounts& counts) { return static_cast<double>(counts.cameraRays + counts.indirectRays); };
+  const auto rays = [](const RenderCounts& counts) {
+    return static_cast<double>(counts.cameraRays + counts.indirectRays);
+  };
   const double direct = static_cast<double>(counted.path.shadowRays);
   const double path = costs.ray * rays(counted.path) + costs.shadowRay * direct;
   const double more = std::max(static_cast<double>(counted.bdpt.shadowRays) - direct, 0.0);
@@ -445,7 +455,10 @@ RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, i
   if (settings.sampler == SamplerKind::Sobol) {
     for (size_t k = 0; k < kCandidates; ++k) pilot.candidates[k].error /= kTechniquesOf[k].gainOfSobol;
   }
-  if (isGuided) pilot.candidates.erase(pilot.candidates.begin() + 1);
+  const bool hasAll = settings.values.IsOn("merge") && settings.values.IsOn("connect");
+  std::erase_if(pilot.candidates, [&](const PilotCandidate& candidate) {
+    return (isGuided && candidate.integrator == "bdpt") || (!hasAll && candidate.integrator == "vcm");
+  });
   return pilot;
 }
 

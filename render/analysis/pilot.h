@@ -6,7 +6,8 @@
 //   w v² Σ r³ / (Σ r²)²,   r = p / p_t over the techniques of those groups (bidirectional/path_densities.h).
 // So light that path tracing finds once in a million samples counts as its noise as soon as another technique finds it.
 //
-// Cost is counted, not timed, so that the choice is the same on every machine.
+// Cost is counted, not timed, so that the choice does not depend on how fast or busy a machine is. It is that of the
+// whole image: a part of it (--crop) is rendered by the same integrator.
 #pragma once
 
 #include <string>
@@ -18,14 +19,16 @@ namespace lampyr {
 
 struct PilotCandidate {
   std::string integrator;
-  double error = 0;    // squared error relative to the picture (relMSE), of one sample per pixel
+  // Squared error relative to the picture (relMSE) per sample of a pixel, where samples are as well distributed as in a
+  // render.
+  double error = 0;
   double cost = 0;     // of a sample, nanoseconds of a typical machine
   double missing = 0;  // part of the light that it cannot find
   // Of each tile of the image, row by row: the mean over its pixels of Σ E[(w v)²] over the paths of a sample, by all
   // techniques.
   std::vector<double> secondMoments;
 
-  // Error of a picture that takes a second.
+  // Error of a picture that takes a second per pixel.
   double ErrorTimesCost() const { return error * cost * 1e-9; }
 };
 

@@ -1,6 +1,5 @@
 #include "render/analysis/plan.h"
 
-#include <cmath>
 #include <cstdio>
 
 #include "base/parallel.h"
@@ -11,8 +10,8 @@ namespace lampyr {
 namespace {
 
 struct Facts {
-  size_t lights = 0, deltas = 0, finite = 0, infinite = 0, patches = 0, tracing = 0;
-  size_t smooth = 0;     // materials with a delta lobe other than passing straight through
+  size_t lights = 0, infinite = 0, patches = 0, tracing = 0;
+  size_t smooth = 0;  // materials with a delta lobe other than passing straight through
 };
 
 Facts FactsOf(const RenderScene& scene) {
@@ -21,9 +20,7 @@ Facts FactsOf(const RenderScene& scene) {
     const LightKind kind = placed.light->Kind();
     ++facts.lights;
     facts.patches += static_cast<size_t>(placed.light->PatchCount());
-    facts.deltas += IsDelta(kind) ? 1 : 0;
     facts.infinite += kind == LightKind::Infinite ? 1 : 0;
-    facts.finite += kind == LightKind::Area ? 1 : 0;
     facts.tracing += placed.light->Settings().traceLightPaths ? 1 : 0;
   }
   for (const auto& material : scene.materials) facts.smooth += material && material->IsSmooth() ? 1 : 0;
@@ -34,10 +31,6 @@ std::string Count(size_t count, const std::string& what) {
   return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
 
-std::string Percent(double part) {
-  return std::to_string(std::lround(100 * part)) + " %";
-}
-
 // A number with two digits.
 std::string Short(double value) {
   char text[32];
@@ -46,20 +39,25 @@ std::string Short(double value) {
 }
 
 // `pilot`: receives its estimates, if one was needed.
-PlanDecision ChooseIntegrator(const RenderScene& scene, const RenderSettings& settings, const Facts& facts,
+PlanDecision ChooseIntegrator(const RenderScene& scene, const RenderSettings& settings, const Facts& facts, int threads,
                               RenderPilot& pilot) {
   if (facts.lights == 0) return {"integrator", "path", "nothing emits"};
   if (facts.tracing == 0) return {"integrator", "path", "no light traces light paths"};
-  pilot = RunPilot(scene, settings, HardwareThreads());
+  pilot = RunPilot(scene, settings, threads);
   const PilotCandidate* best = pilot.Best();
-  if (!best) return {"integrator", "vcm", "a first look found no light: vcm has the most techniques to find it by"};
+  if (!best) {
+    const bool foundLight = !pilot.candidates.empty();
+    return {"integrator", "vcm",
+            std::string(foundLight ? "a pilot found light that no other" : "a pilot found no light: vcm") +
+                (foundLight ? " integrator finds" : " has the most techniques to find it by")};
+  }
   std::string reason = "least error in equal time, as a pilot estimates it:";
   const char* separator = " ";
   for (const PilotCandidate& other : pilot.candidates) {
     if (&other == best) continue;
     const double ratio = other.ErrorTimesCost() / best->ErrorTimesCost();
     reason += separator + other.integrator +
-              (other.missing > kNegligibleLight ? " misses " + Percent(other.missing) + " of the light"
+              (other.missing > kNegligibleLight ? " misses " + Short(100 * other.missing) + " % of the light"
                                                 : " has " + Short(ratio) + " × its relMSE");
     separator = ", ";
   }
@@ -77,16 +75,15 @@ PlanDecision ChooseSelection(const Facts& facts, const RenderSettings& settings)
   return {"light selection", name, of};
 }
 
-PlanDecision ChooseMerging(const Facts& facts, const std::optional<PhotonSettings>& photons, bool hasOwnRadius) {
+PlanDecision ChooseMerging(const Facts& facts, const std::string& integrator,
+                           const std::optional<PhotonSettings>& photons, bool hasOwnRadius) {
   if (!photons) {
     return {"photons", "none",
             facts.smooth == 0 ? "nothing is smooth: other techniques find all light" : "the integrator has none"};
   }
   if (hasOwnRadius) return {"photons", "gathered", "with the radius that is set"};
-  if (photons->radius == 0) return {"photons", "gathered", "initial radius: two pixel footprints"};
-  char text[96];
-  std::snprintf(text, sizeof text, "initial radius %.3g, the footprint of a pixel", photons->radius);
-  return {"photons", "gathered", text};
+  return {"photons", "gathered",
+          integrator == "sppm" ? "initial radius: two pixel footprints" : "initial radius: the footprint of a pixel"};
 }
 
 PlanDecision ChooseFilters(const LightingServices& lighting) {
@@ -120,15 +117,15 @@ PlanDecision ChooseLayers(const RenderScene& scene) {
 
 }  // namespace
 
-PlanDecision ChooseIntegrator(const RenderScene& scene, const RenderSettings& settings) {
+PlanDecision ChooseIntegrator(const RenderScene& scene, const RenderSettings& settings, int threads) {
   RenderPilot pilot;
-  return ChooseIntegrator(scene, settings, FactsOf(scene), pilot);
+  return ChooseIntegrator(scene, settings, FactsOf(scene), threads > 0 ? threads : HardwareThreads(), pilot);
 }
 
 ScenePlan PlanFor(const RenderScene& scene, const RenderSettings& settings) {
   const Facts facts = FactsOf(scene);
   ScenePlan plan;
-  const PlanDecision chosen = ChooseIntegrator(scene, settings, facts, plan.pilot);
+  const PlanDecision chosen = ChooseIntegrator(scene, settings, facts, HardwareThreads(), plan.pilot);
   plan.integrator = chosen.choice;
   if (settings.integrator.empty() || settings.integrator == "auto") {
     plan.decisions.push_back(chosen);
@@ -142,7 +139,8 @@ ScenePlan PlanFor(const RenderScene& scene, const RenderSettings& settings) {
   plan.decisions.push_back(ChooseSelection(facts, settings));
   plan.decisions.push_back(ChooseLinking(*scene.lighting));
   plan.decisions.push_back(ChooseFilters(*scene.lighting));
-  plan.decisions.push_back(ChooseMerging(facts, photons, settings.values.Number("radius") > 0));
+  plan.decisions.push_back(
+      ChooseMerging(facts, chosenSettings.integrator, photons, settings.values.Number("radius") > 0));
   if (photons) plan.decisions.push_back(ChooseGuiding(settings, *photons));
   plan.decisions.push_back(ChooseLayers(scene));
   plan.decisions.push_back(scene.hasMotion ? PlanDecision{"motion", "on", "something moves while the shutter is open"}

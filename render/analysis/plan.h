@@ -21,7 +21,8 @@ struct ScenePlan {
 };
 
 // The integrator that suits the scene, by a pilot. Deterministic for a scene, its size and its settings.
-PlanDecision ChooseIntegrator(const RenderScene& scene, const RenderSettings& settings);
+// `threads`: 0: all.
+PlanDecision ChooseIntegrator(const RenderScene& scene, const RenderSettings& settings, int threads = 0);
 
 // Deterministic for a scene and its settings.
 ScenePlan PlanFor(const RenderScene& scene, const RenderSettings& settings);

@@ -96,7 +96,8 @@ class Builder {
       : description_(description),
         diagnostics_(diagnostics),
         types_(types),
-        memory_(overrides.memory.value_or(AvailableMemory())) {
+        memory_(overrides.memory.value_or(AvailableMemory())),
+        threads_(overrides.threads) {
     built_.settings = ReadRenderSettings(description, overrides, diagnostics);
     geometry_.robust = robust;
   }
@@ -141,6 +142,7 @@ class Builder {
   Diagnostics& diagnostics_;
   const TypeRegistry& types_;
   MemoryBudget memory_;
+  int threads_;
   BuiltScene built_;
   std::vector<SceneLight>* described_ = nullptr;  // null: not wanted
   GeometryDescription geometry_;
@@ -599,7 +601,7 @@ BuiltScene Builder::Build() {
       *scene.geometry, std::move(lights_), built_.settings.LightSampler(), std::move(linking_),
       static_cast<int>(built_.settings.values.Integer("light-samples")));
   if (built_.settings.integrator == "auto")
-    built_.settings.integrator = ChooseIntegrator(scene, built_.settings).choice;
+    built_.settings.integrator = ChooseIntegrator(scene, built_.settings, threads_).choice;
   for (const std::string& name : UnreadBias(built_.settings.integrator, built_.settings.values)) {
     diagnostics_.Warn("\"" + name + "\" is ignored: " + built_.settings.integrator +
                       " does not support it, and renders the picture without that bias");
@@ -625,7 +627,9 @@ BuiltScene BuildScene(const SceneDescription& description, const RenderOverrides
 
 BuiltScene BuildScene(const SceneDescription& description, bool robust, Diagnostics& diagnostics,
                       std::vector<SceneLight>& lights, const TypeRegistry& types) {
-  Builder builder(description, {}, robust, diagnostics, types);
+  RenderOverrides overrides;
+  overrides.integrator = "path";  // nothing is rendered: a pilot would be for nothing
+  Builder builder(description, overrides, robust, diagnostics, types);
   builder.DescribeLightsIn(&lights);
   return builder.Build();
 }

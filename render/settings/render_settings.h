@@ -25,6 +25,7 @@ struct RenderOverrides {
   std::optional<std::string> sampler;
   std::optional<uint64_t> memory;  // limit on the scene's memory, bytes; absent: all available memory
   uint64_t seed = 0;
+  int threads = 0;  // of what is done before rendering; 0: all
 };
 
 // The space of the layers of Film "gbuffer".

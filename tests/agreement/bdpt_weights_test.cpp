@@ -19,12 +19,13 @@ std::string Say(const InputCheck& check) {
 }
 void Print(const char* name, const WeightErrors& errors) {
   std::printf(
-      "%-20s %d paths, %d merged, sums off by %.1e, recursion %.1e, reported %.1e, groups %.1e of %d; off by 1 %%: direct %s, emission "
+      "%-20s %d paths, %d merged, sums off by %.1e, recursion %.1e, reported %.1e, groups %.1e of %d; off by 1 %%: "
+      "direct %s, emission "
       "%s, "
       "lens %s, merges %s, refraction %s\n",
-      name, errors.paths, errors.merges, errors.sum, errors.recursion, errors.reported, errors.groups, errors.sums, Say(errors.direct).c_str(),
-      Say(errors.emission).c_str(), Say(errors.lens).c_str(), Say(errors.mergesPerDensity).c_str(),
-      Say(errors.refraction).c_str());
+      name, errors.paths, errors.merges, errors.sum, errors.recursion, errors.reported, errors.groups, errors.sums,
+      Say(errors.direct).c_str(), Say(errors.emission).c_str(), Say(errors.lens).c_str(),
+      Say(errors.mergesPerDensity).c_str(), Say(errors.refraction).c_str());
 }
 
 TEST(BdptWeights, InEveryAgreementScene) {
@@ -88,7 +89,7 @@ TEST(BdptWeights, WithMergingInEveryAgreementScene) {
   EXPECT_GT(merges, 20000);
 }
 
-// The radius is a number of pixels as the camera sees the path's first hit.
+// The radius is a number of pixels as the camera sees them.
 TEST(BdptWeights, WithARadiusPerPath) {
   int merges = 0, asked = 0;
   for (const AgreementScene& scene : AgreementScenes()) {
@@ -140,6 +141,10 @@ AttributeEnd
     EXPECT_GT(merging.refraction.asked, 100);
     ExpectExact(lamp.c_str(), merging);
     Print("merging", merging);
+    const WeightErrors perPath = CheckWeights(scene, {.paths = 20000, .pixels = 2});
+    EXPECT_GT(perPath.merges, 1000);
+    ExpectExact(lamp.c_str(), perPath);
+    Print("radius per path", perPath);
   }
 }
 

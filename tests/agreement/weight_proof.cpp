@@ -80,10 +80,10 @@ class KeepsPaths final : public WeightedLightPath {
     const PathVertex& first = path.vertices[0];
     if (path.vertices.Count() == 1) {
       kept_.densities[0] = {.forward = End().emission.value, .extent = End().extent};
-      kept_.ends = {End().direct.value, End().canBeHit ? 1.0 : 0.0};
+      kept_.ends = {.direct = End().direct.value, .canBeHit = End().canBeHit};
     } else if (path.vertices.Count() == 2) {
       kept_.ends.firstIsDelta = first.scatteredDelta;
-      kept_.ends.hit *= first.PreviousReverse(first.eventReverse).value;
+      if (kept_.ends.canBeHit) kept_.ends.hit = first.PreviousReverse(first.eventReverse).value;
     }
     if (path.vertices.Last().storesPhotons) kept_.Keep(path, End());
   }
@@ -142,11 +142,14 @@ class WeightChecker final : public PathObserver {
       allExpected += expected.groups[i].squares;
     }
     ++worst_.sums;
+    if (!(all > 0) || !std::isfinite(all) || !(allExpected > 0)) {
+      worst_.groups = 1;
+      return;
+    }
     for (size_t i = 0; i < kTechniqueGroups; ++i) {
       const TechniqueSums::Group &a = sums.groups[i], &b = expected.groups[i];
       worst_.groups = std::max({worst_.groups, std::abs(a.squares / all - b.squares / allExpected),
                                 std::abs(a.cubes / std::pow(all, 1.5) - b.cubes / std::pow(allExpected, 1.5))});
-      if (!(worst_.groups >= 0)) worst_.groups = 1;
     }
   }
   void CheckInputs(const ConnectedPath& path) {
@@ -166,7 +169,7 @@ class WeightChecker final : public PathObserver {
     }
   }
 
-  // Whichever technique made the path, the radius is that of its first hit.
+  // Whichever technique made the path, the radius is that of its first vertex from the camera without a delta.
   void CheckMerging(const ConnectedPath& path) {
     if (pixels_ == 0) {
       worst_.mergesPerDensity.Note(path.merging.perDensity, mergesPerDensity_);
@@ -175,7 +178,14 @@ class WeightChecker final : public PathObserver {
     const PathVertex& vertex = path.camera.empty() ? path.light.back() : path.camera.front();
     const Point3 lens = path.camera.empty() ? path.connection->camera.position : cameraRay_.origin;
     if (!scene_.camera->EvaluateRay({lens, -path.toLens}, &film_)) return;
-    const double area = SeenArea(vertex, path.toLens);
+    double area = SeenArea(vertex, path.toLens);
+    if (!path.camera.empty() && !scene_.camera->ConnectsByDirection()) {
+      double length = glm::distance(Vector3d(lens), Vector3d(vertex.point.position));
+      const double first = length;
+      for (size_t i = 0; i + 1 < path.camera.size() && path.camera[i].scatteredDelta; ++i)
+        length += glm::distance(Vector3d(path.camera[i].point.position), Vector3d(path.camera[i + 1].point.position));
+      area *= length / first * length / first;
+    }
     if (area > 0) worst_.mergesPerDensity.Note(path.merging.perDensity, mergesPerDensity_ * pixels_ * pixels_ * area);
   }
   // Area of a pixel around film_ on the plane of a vertex, turned towards the camera, by rays through the corners of a
@@ -193,8 +203,8 @@ class WeightChecker final : public PathObserver {
       const double cosine = glm::dot(n, Vector3d(ray.ray.direction));
       if (ray.weight == 0 || std::abs(cosine) < 0.2) return 0;
       const Vector3d origin(ray.ray.origin);
-      corners[i] = origin + Vector3d(ray.ray.direction) *
-                                (glm::dot(Vector3d(vertex.point.position) - origin, n) / cosine);
+      corners[i] =
+          origin + Vector3d(ray.ray.direction) * (glm::dot(Vector3d(vertex.point.position) - origin, n) / cosine);
     }
     const double area = glm::length(glm::cross(corners[1] - corners[0], corners[2] - corners[0]));
     return area * CosineAtGeometry(vertex, toLens) / (static_cast<double>(kSide) * static_cast<double>(kSide));

@@ -307,7 +307,7 @@ TEST_F(Cli, PlanSaysWhatIsModelledAndWhy) {
   for (const char* row : {"\npath ", "\nbdpt ", "\nvcm "})
     EXPECT_NE(planOf("scene.pbrt").find(row), std::string::npos) << planOf("scene.pbrt");
   EXPECT_NE(planOf("scene.pbrt").find("photons          none"), std::string::npos);
-  EXPECT_NE(planOf("sky.pbrt").find("a first look found no light"), std::string::npos) << planOf("sky.pbrt");
+  EXPECT_NE(planOf("sky.pbrt").find("a pilot found no light"), std::string::npos) << planOf("sky.pbrt");
   EXPECT_NE(planOf("dark.pbrt").find("nothing emits"), std::string::npos);
   EXPECT_NE(planOf("scene.pbrt --integrator sppm").find("as set; \"auto\" would choose path"), std::string::npos);
   EXPECT_EQ(Run("plan absent.pbrt").exitCode, 2);
@@ -774,15 +774,15 @@ TEST_F(Cli, MakesAPngOfAnImage) {
 TEST_F(Cli, SaysWhenAnotherIntegratorSuitsTheScene) {
   const std::string mirror = "Material \"conductor\" \"float roughness\" 0\nShape \"sphere\" \"float radius\" 0.3\n";
   Write("named.pbrt", std::string("Integrator \"volpath\"\n") + kScene + mirror);
-  Write("suited.pbrt", std::string("Integrator \"vcm\"\n") + kScene + mirror);
+  Write("suited.pbrt", std::string("Integrator \"bdpt\"\n") + kScene + mirror);
   Write("open.pbrt", kScene + mirror);
-  const std::string hint = "hint: the scene names path; --integrator auto would render with vcm: 1 light";
+  const std::string hint = "hint: the scene names path; --integrator auto would render with bdpt: least error in";
   EXPECT_NE(Run("render named.pbrt -o a.exr").output.find(hint), std::string::npos);
   for (const std::string arguments : {"named.pbrt --quiet", "named.pbrt --integrator path", "suited.pbrt", "open.pbrt"})
     EXPECT_EQ(Run("render " + arguments + " -o a.exr").output.find("would render with"), std::string::npos)
         << arguments;
   const std::string note =
-      "The scene names path: `lampyr render` renders with path, and with vcm by --integrator auto.";
+      "The scene names path: `lampyr render` renders with path, and with bdpt by --integrator auto.";
   EXPECT_NE(Run("plan named.pbrt").output.find(note), std::string::npos) << Run("plan named.pbrt").output;
   EXPECT_EQ(Run("plan suited.pbrt").output.find("The scene names"), std::string::npos);
 }
