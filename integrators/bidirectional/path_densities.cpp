@@ -8,7 +8,7 @@ namespace lampyr {
 namespace {
 
 constexpr double kPiDouble = 3.14159265358979323846;
-const double kReach = std::tan(kPiDouble / 180);  // ρ over the distance of the first hit
+const double kReach = std::tan(kPiDouble / 180);  // ρ over the distance
 
 }  // namespace
 

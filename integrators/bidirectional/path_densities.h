@@ -21,7 +21,8 @@
 
 namespace lampyr {
 
-// Merging on the paths that the camera sees at one place: all techniques of a path share its first hit, and so these.
+// Merging on one path. All techniques of the path share it: it follows from the first vertex from the camera that scatters
+// by another event than a delta.
 struct Merging {
   double perDensity = 0;  // N π r²; 0: no merging
   double area = 0;        // π ρ²
@@ -29,7 +30,7 @@ struct Merging {
   double filmPixels = 1;  // the density of the first hit by a ray through its pixel is so many times that by any
 
   explicit operator bool() const { return perDensity > 0; }
-  // `radius`: r. `distance`: of the first hit from the camera; ρ is what a degree spans there.
+  // `radius`: r. `distance`: path length from the camera; ρ is what a degree spans there.
   static Merging At(double radius, double distance, double lightPaths, double filmPixels);
 };
 

@@ -24,12 +24,6 @@ struct PhotonPass {
   float radiusScale = 1;           // RadiusScale of the pass, for radii derived from pixel footprints
   double lightPaths = 1;           // number of light paths that the photons come from
   uint32_t pass = 0;
-
-  // N π r²: expected number of photons merged with a vertex, per unit of the area density (1/m²) of one path's photons.
-  double MergesPerDensity() const {
-    constexpr double pi = 3.14159265358979323846;
-    return lightPaths * pi * static_cast<double>(radius) * static_cast<double>(radius);
-  }
 };
 
 // PhotonMap::Find, counted in `counts`. One lookup in 256 is timed, because reading the clock takes as long as a small

@@ -1,6 +1,5 @@
 #include "integrators/walk/footprint.h"
 
-#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -80,20 +79,6 @@ bool SceneProbe::Bounce(SeenVertex& from, int block, PathState& state, SeenVerte
   path_.Next() = from.vertex;
   path_.Add();
   return Find(onward, path_, seen);
-}
-
-double TypicalFootprint(const RenderScene& scene, int width, int height) {
-  const double filmPixels = static_cast<double>(width) * static_cast<double>(height);
-  std::vector<double> areas;
-  SceneProbe probe(scene);
-  probe.ForEachVisible(width, height, 24, [&](const Ray& ray, const SeenVertex& seen) {
-    const double area = PixelArea(*scene.camera, ray, filmPixels, static_cast<double>(seen.distance));
-    if (area > 0 && std::isfinite(area)) areas.push_back(area);
-  });
-  if (areas.empty()) return 1e-3 * static_cast<double>(scene.lighting->SceneSphere().radius);
-  const auto middle = areas.begin() + static_cast<std::ptrdiff_t>(areas.size() / 2);
-  std::nth_element(areas.begin(), middle, areas.end());
-  return std::sqrt(*middle);
 }
 
 }  // namespace lampyr

@@ -34,8 +34,6 @@ class SceneProbe {
   // other numbers. False: no vertex was found.
   bool Bounce(SeenVertex& from, int block, PathState& state, SeenVertex& seen);
 
-  Sampler& Numbers() { return sampler_; }
-
  private:
   bool Find(PathState& state, Subpath& path, SeenVertex& seen);
   SampleContext Context() { return {scene_, sampler_, 0, counts_}; }
@@ -45,9 +43,5 @@ class SceneProbe {
   RenderCounts counts_;
   Subpath path_{false};
 };
-
-// Median side length of the pixel footprints at the first non-delta vertices, over a grid of camera rays, in scene
-// units. A thousandth of the scene's radius if no ray reaches such a vertex. Deterministic.
-double TypicalFootprint(const RenderScene& scene, int width, int height);
 
 }  // namespace lampyr

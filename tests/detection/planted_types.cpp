@@ -20,7 +20,7 @@ ParameterList Without(const ParameterList& parameters, const std::string& name) 
 const std::vector<PatchFault>& PatchFaults() {
   static const std::vector<PatchFault> faults = {
       {"beta-exponent", "along subpaths a forward density enters with the power 1, the rest with 2"},
-      {"merge-term", "a connection leaves out merging at its light vertex"},
+      {"merge-term", "a connection leaves out merging"},
       {"delta-flag", "a connection at a delta counts as a technique"},
       {"landing-selection", "where a photon lands, next-event estimation counts without its selection"},
       {"emission-selection", "densities of emission lack the selection of the light, in all techniques alike"},
