@@ -21,8 +21,8 @@
 
 namespace lampyr {
 
-// Merging on one path. All techniques of the path share it: it follows from the first vertex from the camera that scatters
-// by another event than a delta.
+// Merging on one path. All techniques of the path share it: it follows from the first vertex from the camera that
+// scatters by another event than a delta.
 struct Merging {
   double perDensity = 0;  // N π r²; 0: no merging
   double area = 0;        // π ρ²
