@@ -23,8 +23,8 @@ namespace lampyr {
 
 namespace {
 
-// The functions by which Embree is entered are compiled for SSE. They wait for the upper halves of vector registers that
-// are in use: up to a fifth of the time of a render.
+// The functions by which Embree is entered are compiled for SSE. They wait for the upper halves of vector registers
+// that are in use: up to a fifth of the time of a render.
 inline void ClearUpperHalves() {
 #if defined(__AVX__)
   _mm256_zeroupper();
