@@ -13,7 +13,7 @@ namespace lampyr {
 
 namespace {
 
-// What the pilot estimated of each candidate, per sample.
+// Table of the pilot's estimates, a row for each candidate; all figures are per sample.
 void PrintPilot(const RenderPilot& pilot) {
   if (pilot.candidates.empty()) return;
   std::printf("\n%-6s %8s %8s %9s  %s\n", "pilot", "relMSE", "µs", "product", "misses");

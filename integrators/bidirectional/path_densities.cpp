@@ -109,7 +109,7 @@ TechniqueSums PathDensities::Sums(const PathEnds& ends, size_t s, size_t mergedA
     return (i == 1 && ends.firstIsDelta) || (i < n && vertices_[i + 1].lightIsDelta) ||
            (i > 1 && vertices_[i - 1].cameraIsDelta);
   };
-  // As far as the path's own technique the densities are absolute, then they are over that one's.
+  // First the density of the path's own technique, then the ratios of all others to it.
   double own = s == 0 ? ends.hit : s == 1 ? ends.direct : 0.0;
   double density = emission_ / vertices_[1].fromCamera;  // of s = 2
   for (size_t k = 2; k <= n + 1; ++k) {

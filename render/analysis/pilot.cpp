@@ -26,8 +26,8 @@ constexpr uint64_t kSeed = 0x9e3779b97f4a7c15;
 struct Candidate {
   const char* name;
   std::array<bool, kTechniqueGroups> has;  // TechniqueGroup
-  // Squared error of independent samples over that of Sobol points, the geometric mean over the scenes of scenes/ with
-  // 32 samples per pixel. More techniques make smoother integrands.
+  // Squared error of independent samples over that of Sobol points: the geometric mean over eight scenes of scenes/,
+  // with 32 samples per pixel. More techniques make smoother integrands.
   double gainOfSobol;
 };
 constexpr size_t kCandidates = 3;
@@ -55,7 +55,7 @@ struct Moments {
   }
 };
 
-// What the camera path of a candidate finds in one pass, by pixel.
+// Contributions of the camera path of one pixel in one pass, for each candidate.
 struct Found {
   std::array<float, kCandidates> seen{}, other{};  // a light that the pixel sees itself; all other light
 

@@ -11,6 +11,7 @@
 #include "render/build/scene_builder.h"
 #include "render/settings/integrator_choice.h"
 #include "scene/scene_description.h"
+#include "support/estimate.h"
 #include "support/render_scene.h"
 
 namespace lampyr::test {
@@ -44,18 +45,6 @@ class SquareSums final : public PathObserver {
   static size_t TileOf(int x, int y) { return static_cast<size_t>(y / kPilotTile * kTiles + x / kPilotTile); }
   size_t tile_ = 0;
   double weight_ = 1;
-};
-
-struct Estimate {
-  double sum = 0, squares = 0;
-  int count = 0;
-  void Add(double value) {
-    sum += value;
-    squares += value * value;
-    ++count;
-  }
-  double Mean() const { return sum / count; }
-  double Error() const { return std::sqrt(std::max(squares / count - Mean() * Mean(), 0.0) / (count - 1)); }
 };
 
 // The second moments of `integrator`, each in `renders` independent renders of 16 samples per pixel.
@@ -119,12 +108,12 @@ void ExpectMoments(const std::string& text, const std::string& integrator, doubl
   for (size_t i = 0; i < measured.size(); ++i) {
     sum += candidate->secondMoments[i];
     expected += measured[i].Mean();
-    variance += measured[i].Error() * measured[i].Error();
+    variance += measured[i].Variance();
     if (!(measured[i].Mean() > 0)) continue;
     ++compared;
     // Of a tile: the tolerance, and what it was measured with.
     EXPECT_NEAR(candidate->secondMoments[i], measured[i].Mean(),
-                5 * measured[i].Error() + 3 * tolerance * measured[i].Mean())
+                5 * std::sqrt(measured[i].Variance()) + 3 * tolerance * measured[i].Mean())
         << integrator << ", tile " << i;
   }
   EXPECT_GT(compared, kTiles);
