@@ -211,13 +211,10 @@ void ResolveAuto(const RenderSettings& settings, bool quiet, ComparisonPlan& pla
   const auto found = std::find(plan.integrators.begin(), plan.integrators.end(), kAuto);
   if (found == plan.integrators.end()) return;
   if (!quiet) std::printf("auto is %s here\n", settings.integrator.c_str());
-  *found = settings.integrator;
-  const auto same = std::find(plan.integrators.begin(), plan.integrators.end(), settings.integrator);
-  if (same != found) {
+  if (std::count(plan.integrators.begin(), plan.integrators.end(), settings.integrator) > 0) {
     plan.integrators.erase(found);
-  } else if (const auto again = std::find(found + 1, plan.integrators.end(), settings.integrator);
-             again != plan.integrators.end()) {
-    plan.integrators.erase(again);
+  } else {
+    *found = settings.integrator;
   }
 }
 

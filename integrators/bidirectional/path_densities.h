@@ -34,7 +34,7 @@ struct Merging {
   static Merging At(double radius, double distance, double lightPaths, double filmPixels);
 };
 
-// Where two subpaths meet: the last two reverse densities of each, and merging at the last vertices.
+// The connection of two subpaths: the last two reverse densities of each, and whether the last vertices can be merged.
 struct Joint {
   ReverseDensities light, camera;
   bool mergesAtLight = false, mergesAtCamera = false;

@@ -61,7 +61,8 @@ struct BidirectionalSample {
   TechniqueSums Sums(const LightEnd& end, AreaDensity hit, bool firstIsDelta, size_t s) const {
     return whole.Sums({end.direct.value, end.canBeHit ? hit.value : 0.0, firstIsDelta, lensSeesIt}, s, 0);
   }
-  // The same of a connection, to the lens if `isSplat`. `reverse`: of the last vertices of the light subpath.
+  // TechniqueSums of a connection; of one to the lens if `isSplat`. `reverse`: densities of the light subpath's last
+  // vertices.
   TechniqueSums SumsOfConnection(size_t lightCount, const ReverseDensities& reverse, bool isSplat) const;
   bool IsObserved() const { return context.observer != nullptr; }
   // Roulette of shadow rays; off with an observer, which receives all paths.

@@ -59,7 +59,7 @@ struct LightEnd {
   AreaDensity direct;                   // of the light's point, by next-event estimation
   SolidAnglePerArea solidAnglePerArea;  // dω/dA from the first surface vertex to the light's point
   bool canBeHit = false;                // rays that surfaces scatter can hit the light
-  // What `emission` is a density of, besides the area of the first surface vertex.
+  // The measure of `emission`, besides the area of the first surface vertex.
   enum class Extent : uint8_t { Point, Surface, Sky };  // nothing, the area of the light's point, its direction
   Extent extent = Extent::Point;
 };
@@ -74,14 +74,14 @@ struct SubpathDensities {
   LightEnd::Extent extent = LightEnd::Extent::Point;  // of the first vertex of a light path
 };
 
-// What the sums over all techniques of a path need besides the densities of its surface vertices.
+// Densities and flags of the two ends of a path, for sums over all its techniques (TechniqueSums).
 struct PathEnds {
   double direct = 0, hit = 0;  // of the light's point: by next-event estimation, and by a camera path; 0: impossible
   bool firstIsDelta = false;   // the event at vertex 1
   bool lensSeesIt = false;     // t = 1 exists
   bool canBeHit = false;       // the light; `hit` may be unknown yet
 
-  // As a record before those of the path's vertices, which saves an index per photon.
+  // Stored as the record before those of the path's vertices: one index per photon finds both.
   SubpathDensities Packed() const { return {direct, hit, firstIsDelta, false, canBeHit}; }
   static PathEnds Unpacked(const SubpathDensities& packed) {
     return {packed.forward, packed.reverse, packed.forwardIsDelta, false, packed.canMerge};
