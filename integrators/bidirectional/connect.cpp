@@ -36,28 +36,37 @@ Color Connect(const BidirectionalSample& sample, size_t lightCount) {
   const double geometric =
       static_cast<double>(y.GeometryTerm(toCamera) * z.ScatteringCosine(toCamera) * y.ArrivalCorrection(y.toPrevious)) /
       squared;
-  ConnectedPath path;
-  path.value =
+  const Color value =
       Product(z.Throughput() * fz.Sum(), leaving, geometric * static_cast<double>(sample.Lighting().FluxUnit()));
-  if (path.value.IsBlack()) return path.value;
-  sample.SetLight(path, lightCount);
-  sample.SetCamera(path);
+  if (value.IsBlack()) return value;
   const Joint joint{
       {SolidAngleDensity(fz.pdfForward) * EdgeDensity(y, toCamera, squared), y.PreviousReverse(fy.pdfReverse)},
       {SolidAngleDensity(fy.pdfForward) * EdgeDensity(z, toCamera, squared), z.PreviousReverse(fz.pdfReverse)},
       y.CanMerge(),
       z.CanMerge()};
-  path.weight =
-      ConnectWeight(y.weight, joint.light, z.weight, joint.camera, sample.MergingOfConnection(lightCount, joint));
-  if (sample.WantsSums()) [[unlikely]]
-    path.sums = sample.SumsOfConnection(lightCount, joint.light, false);
-  const float survivalWeight = sample.WantedShadowRays().SurvivalWeight(
-      path.value * static_cast<float>(path.weight), sample.radiance, ShadowRays::DeciderOf(toCamera.x, toCamera.y));
+  const auto weightWith = [&](double merging) {
+    return ConnectWeight(y.weight, joint.light, z.weight, joint.camera, merging);
+  };
+  const ShadowRays shadowRays = sample.WantedShadowRays();
+  const auto survivalWeightOf = [&](double weight) {
+    return shadowRays.SurvivalWeight(value * static_cast<float>(weight), sample.radiance,
+                                     ShadowRays::DeciderOf(toCamera.x, toCamera.y));
+  };
+  // Merging only lowers the weight: what is dropped without it is dropped with it, before its terms are computed.
+  if (sample.merging && survivalWeightOf(weightWith(0)) == 0) return Color(0.0f);
+  const double weight = weightWith(sample.MergingOfConnection(lightCount, joint));
+  const float survivalWeight = survivalWeightOf(weight);
   if (survivalWeight == 0) return Color(0.0f);
   ++context.counts.shadowRays;
   const Ray ray = RayBetween(z, y, context.time);
-  path.value *= context.scene.geometry->Transmittance(ray, visibility::kIndirect);
+  ConnectedPath path;
+  path.value = value * context.scene.geometry->Transmittance(ray, visibility::kIndirect);
   if (path.value.IsBlack()) return path.value;
+  path.weight = weight;
+  sample.SetLight(path, lightCount);
+  sample.SetCamera(path);
+  if (sample.WantsSums()) [[unlikely]]
+    path.sums = sample.SumsOfConnection(lightCount, joint.light, false);
   return sample.AddToPixel(path, survivalWeight);
 }
 

@@ -44,8 +44,11 @@ Color Merge(const BidirectionalSample& sample) {
   joint.isMerged = true;
   joint.mergesAtCamera = true;
   Color sum;
-  for (const uint32_t index : found) {
+  for (size_t i = 0; i < found.size(); ++i) {
+    const uint32_t index = found[i];
     const Photon& photon = (*pass.map)[index];
+    constexpr size_t kAhead = 2;
+    if (i + kAhead < found.size()) pass.map->PrefetchPathOf((*pass.map)[found[i + kAhead]]);
     if (photon.depth + sample.camera.Count() > most || !photon.IsOnSurface(vertex.bsdf.Ng())) continue;
     const Vector3& toLight = photon.toPrevious;
     const BsdfEvaluation f = vertex.Evaluate(toLight, TransportMode::Radiance);

@@ -125,8 +125,13 @@ class PhotonList {
   std::vector<SubpathDensities> densities_;
 };
 
-// A photon in a map, without its position.
-struct Photon {
+// A photon while a map is sorted by cells.
+struct SortItem {
+  uint32_t cell, item;
+};
+
+// A photon in a map, without its position. One line of the cache.
+struct alignas(64) Photon {
   Vector3 toPrevious{0.0f};  // unit
   Color flux;  // LightingServices::FluxUnit over the path's density, for diffuse lobes; for specular ones see PhotonMap
   PartialWeight weight;

@@ -46,6 +46,13 @@ class PhotonMap {
     return densities_.empty() ? std::span<const SubpathDensities>() : std::span(&densities_[photon.path], photon.depth);
   }
 
+  // Fetches what PathOf gives into the cache.
+  void PrefetchPathOf(const Photon& photon) const {
+    if (densities_.empty()) return;
+    __builtin_prefetch(&densities_[photon.path]);
+    __builtin_prefetch(&densities_[photon.path + photon.depth - 1u].extent);
+  }
+
   // The light's end of a photon's path, if its densities were kept. Of a path that ends at its first hit `hit` is
   // unknown.
   PathEnds EndsOf(const Photon& photon) const { return PathEnds::Unpacked(densities_[photon.path - 1]); }

@@ -2,7 +2,6 @@
 
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_sort.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -43,13 +42,6 @@ class KeptFloatSetting {
 #endif
 };
 
-// A type and not a function, so that sorting inlines it.
-struct IsBefore {
-  bool operator()(const SortItem& a, const SortItem& b) const {
-    return a.key != b.key ? a.key < b.key : a.item < b.item;
-  }
-};
-
 }  // namespace
 
 void ParallelFor(int count, int threads, const std::function<void(int)>& body) {
@@ -72,15 +64,6 @@ void ParallelFor(int count, int threads, const std::function<void(int)>& body) {
         },
         tbb::simple_partitioner());
   });
-}
-
-void ParallelSort(std::span<SortItem> items, int threads) {
-  if (threads <= 1) return std::sort(items.begin(), items.end(), IsBefore());
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
-                                  static_cast<size_t>(std::max(threads, HardwareThreads())));
-  tbb::task_arena arena(threads);
-  [[maybe_unused]] const KeptFloatSetting kept;
-  arena.execute([&] { tbb::parallel_sort(items.begin(), items.end(), IsBefore()); });
 }
 
 #endif

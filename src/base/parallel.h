@@ -2,9 +2,7 @@
 // the order.
 #pragma once
 
-#include <cstdint>
 #include <functional>
-#include <span>
 
 namespace lampyr {
 
@@ -17,12 +15,5 @@ void FlushDenormalsToZero();
 
 // Calls body(0) … body(count - 1) on at most `threads` threads. Rethrows an exception of a body.
 void ParallelFor(int count, int threads, const std::function<void(int)>& body);
-
-// Sorts by key, ties by item. If all items are distinct, the order does not depend on `threads`.
-struct SortItem {
-  uint64_t key = 0;
-  uint32_t item = 0;
-};
-void ParallelSort(std::span<SortItem> items, int threads);
 
 }  // namespace lampyr

@@ -37,11 +37,6 @@ void ParallelFor(int count, int threads, const std::function<void(int)>& body) {
   if (first) std::rethrow_exception(first);
 }
 
-void ParallelSort(std::span<SortItem> items, int) {
-  std::sort(items.begin(), items.end(),
-            [](const SortItem& a, const SortItem& b) { return a.key != b.key ? a.key < b.key : a.item < b.item; });
-}
-
 }  // namespace lampyr
 
 #endif
