@@ -20,33 +20,35 @@ Merging Merging::At(double radius, double distance, double lightPaths, double fi
 void PathDensities::Set(std::span<const SubpathDensities> light, std::span<const SubpathDensities> camera,
                         const Joint& joint, double emission, LightEnd::Extent extent, const Merging& merging) {
   const size_t n = light.size() + camera.size();
-  vertices_.resize(n + 1);
+  if (vertices_.size() <= n) vertices_.resize(2 * n + 1);
+  count_ = n;
+  Vertex* const vertices = vertices_.data();
   for (size_t i = 0; i < light.size(); ++i) {
     const SubpathDensities& v = light[i];
-    vertices_[i + 1] = {v.forward, v.reverse, v.forwardIsDelta, v.reverseIsDelta, v.canMerge};
+    vertices[i + 1] = {v.forward, v.reverse, 1, v.forwardIsDelta, v.reverseIsDelta, v.canMerge};
   }
   for (size_t i = 0; i < camera.size(); ++i) {
     const SubpathDensities& v = camera[i];
-    vertices_[n - i] = {v.reverse, v.forward, v.reverseIsDelta, v.forwardIsDelta, v.canMerge};
+    vertices[n - i] = {v.reverse, v.forward, 1, v.reverseIsDelta, v.forwardIsDelta, v.canMerge};
   }
   if (const size_t j = light.size(); j > 0) {
-    Vertex& last = vertices_[j];
+    Vertex& last = vertices[j];
     last.fromCamera = joint.light.last.value;
     last.cameraIsDelta = false;
     if (!joint.isMerged) last.canMerge = joint.mergesAtLight;
     if (!joint.isMerged && j > 1) {
-      vertices_[j - 1].fromCamera = joint.light.previous.value;
-      vertices_[j - 1].cameraIsDelta = false;
+      vertices[j - 1].fromCamera = joint.light.previous.value;
+      vertices[j - 1].cameraIsDelta = false;
     }
   }
   if (const size_t j = light.size() + 1; j <= n) {
-    Vertex& last = vertices_[j];
+    Vertex& last = vertices[j];
     last.fromLight = joint.camera.last.value;
     last.lightIsDelta = joint.lastCameraIsDelta;
     last.canMerge = joint.mergesAtCamera;
     if (j < n) {
-      vertices_[j + 1].fromLight = joint.camera.previous.value;
-      vertices_[j + 1].lightIsDelta = joint.previousCameraIsDelta;
+      vertices[j + 1].fromLight = joint.camera.previous.value;
+      vertices[j + 1].lightIsDelta = joint.previousCameraIsDelta;
     }
   }
   emission_ = emission;
@@ -56,10 +58,10 @@ void PathDensities::Set(std::span<const SubpathDensities> light, std::span<const
 }
 
 void PathDensities::Correlate() {
-  const size_t n = Count();
-  vertices_[n].correlation = 1;
+  const size_t n = count_;
+  Vertex* const vertices = vertices_.data();
   if (n < 2) return;
-  const double area = merging_.area;
+  const double area = merging_.area, least = 1 / merging_.lightPaths;
   const auto probability = [area](bool isDelta, double density) {
     return isDelta ? 1.0 : std::min(1.0, density * area);
   };
@@ -69,17 +71,17 @@ void PathDensities::Correlate() {
                                                               : 1.0;
   // P_L first, in the place of c.
   double light = std::min(1.0, emission_ * area * ofLight);
-  vertices_[1].correlation = light;
+  vertices[1].correlation = light;
   for (size_t i = 2; i < n; ++i) {
-    light *= probability(vertices_[i].lightIsDelta, vertices_[i].fromLight);
-    vertices_[i].correlation = light;
+    light *= probability(vertices[i].lightIsDelta, vertices[i].fromLight);
+    vertices[i].correlation = light;
   }
-  double camera = probability(vertices_[n].cameraIsDelta, vertices_[n].fromCamera * merging_.filmPixels);
+  double camera = probability(vertices[n].cameraIsDelta, vertices[n].fromCamera * merging_.filmPixels);
   for (size_t i = n - 1; i >= 1; --i) {
-    camera *= probability(vertices_[i].cameraIsDelta, vertices_[i].fromCamera);
-    light = vertices_[i].correlation;
+    camera *= probability(vertices[i].cameraIsDelta, vertices[i].fromCamera);
+    light = vertices[i].correlation;
     const double either = camera + light - camera * light;
-    vertices_[i].correlation = either > 0 ? std::max(camera / either, 1 / merging_.lightPaths) : 1.0;
+    vertices[i].correlation = either > 0 ? std::max(camera / either, least) : 1.0;
   }
 }
 
@@ -87,7 +89,7 @@ double PathDensities::TowardsCamera(size_t i, double ratio) const {
   double sum = 0;
   for (;; ++i) {
     if (vertices_[i].canMerge) sum += Mis(ratio * vertices_[i].correlation);
-    if (i == Count()) return sum;
+    if (i == count_) return sum;
     ratio *= vertices_[i + 1].fromLight / vertices_[i].fromCamera;
   }
 }
@@ -104,7 +106,7 @@ double PathDensities::TowardsLight(size_t i, double ratio) const {
 // All densities over Π_(i≥1) B_i: those of s = 0 and s = 1 are the ends', that of s > 1 is emission · F_2 … F_(s-1) /
 // (B_1 … B_(s-1)), and that of merging at vertex i the one of s = i + 1 times B_i N π r² c.
 TechniqueSums PathDensities::Sums(const PathEnds& ends, size_t s, size_t mergedAt) const {
-  const size_t n = Count();
+  const size_t n = count_;
   const auto isDelta = [&](size_t i) {
     return (i == 1 && ends.firstIsDelta) || (i < n && vertices_[i + 1].lightIsDelta) ||
            (i > 1 && vertices_[i - 1].cameraIsDelta);
@@ -141,7 +143,7 @@ double PathDensities::ForLight(double technique) const {
 
 double PathDensities::ForConnection(size_t lightCount) const {
   double sum = TowardsLight(lightCount, vertices_[lightCount].fromCamera * merging_.perDensity);
-  if (lightCount < Count())
+  if (lightCount < count_)
     sum += TowardsCamera(lightCount + 1, vertices_[lightCount + 1].fromLight * merging_.perDensity);
   return sum;
 }
@@ -149,7 +151,7 @@ double PathDensities::ForConnection(size_t lightCount) const {
 double PathDensities::ForMerging(size_t i) const {
   double sum = 0;
   if (i > 1) sum += TowardsLight(i - 1, vertices_[i - 1].fromCamera / vertices_[i].fromLight);
-  if (i < Count()) sum += TowardsCamera(i + 1, vertices_[i + 1].fromLight / vertices_[i].fromCamera);
+  if (i < count_) sum += TowardsCamera(i + 1, vertices_[i + 1].fromLight / vertices_[i].fromCamera);
   return sum / Mis(vertices_[i].correlation);
 }
 

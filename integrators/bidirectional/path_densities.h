@@ -88,20 +88,21 @@ class PathDensities {
   // not 0. All 0 where the camera could not have made the path.
   TechniqueSums Sums(const PathEnds& ends, size_t s, size_t mergedAt) const;
 
-  size_t Count() const { return vertices_.size() - 1; }
+  size_t Count() const { return count_; }
 
  private:
   struct Vertex {
     double fromLight = 0, fromCamera = 0;
-    bool lightIsDelta = false, cameraIsDelta = false, canMerge = false;
     double correlation = 1;  // c
+    bool lightIsDelta = false, cameraIsDelta = false, canMerge = false;
   };
   void Correlate();
   // The terms at the vertices from `i` on. `ratio`: p_i / p, without c.
   double TowardsCamera(size_t i, double ratio) const;
   double TowardsLight(size_t i, double ratio) const;
 
-  std::vector<Vertex> vertices_;  // [0] is not used
+  std::vector<Vertex> vertices_;  // [0] is not used; more than `count_`
+  size_t count_ = 0;
   double emission_ = 0;
   LightEnd::Extent extent_ = LightEnd::Extent::Point;
   Merging merging_;
