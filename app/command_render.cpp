@@ -363,7 +363,7 @@ void RenderJob::PrintHints() const {
   if (options_.shard || options_.resume) return;
   PlanDecision suits;
   try {
-    RunForeignCode(loaded_.types, [&] { suits = ChooseIntegrator(built_.scene, settings_, report_.threads); });
+    RunForeignCode(loaded_.types, [&] { suits = ChooseIntegrator(built_.scene, settings_, report_.threads).decision; });
   } catch (const Error&) {
     return;  // of a light that the render may not even use
   }

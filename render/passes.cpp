@@ -15,6 +15,7 @@ namespace {
 constexpr int kTileSize = 16;
 constexpr uint64_t kChunkPaths = 4096;  // light paths that one thread traces before their splats are added
 constexpr uint64_t kBeforeTheFirst = 0x6a09e667f3bcc908;  // changes the seed for the photons of the first pass
+constexpr uint64_t kSecondPath = 0xbb67ae8584caa73b;      // changes the seed for the second light path of a sample
 // In the place of the pixel row, for samples that belong to no pixel:
 constexpr int kLightPaths = -1, kPassTimes = -2;
 
@@ -151,6 +152,7 @@ class BothPaths {
         own_(wanted_.value_or(PhotonSettings()), pass.Pixels()),
         store_(kept ? *kept : own_),
         lightPaths_(wanted_ ? store_.LightPaths() : pass.Pixels()),
+        log2LightPaths_(pass.integrator.Log2LightPaths()),
         hasTimes_(wanted_ && pass.scene.hasMotion),
         chunks_(4 * std::max(pass.threads, 1)),
         // Smaller chunks for small images, so that all threads have work.
@@ -218,6 +220,8 @@ class BothPaths {
                  passTime);
     });
   }
+  // The light paths of a sample of a pixel: none, one or two. `index`: of the sample, becomes that of the light path.
+  int LightPathsOf(int x, int y, uint32_t& index) const;
   void TraceChunk(size_t chunk, uint64_t begin, uint64_t end, uint32_t index, uint64_t seed, bool withCamera,
                   float passTime);
 
@@ -226,7 +230,8 @@ class BothPaths {
   const std::optional<PhotonSettings> wanted_;
   PhotonStore own_;
   PhotonStore& store_;
-  const uint64_t lightPaths_;
+  const uint64_t lightPaths_;  // of a pass, but for log2LightPaths_
+  const int log2LightPaths_;
   // True if photons come from light paths traced for each sample at its time, because things move. Otherwise they are
   // those that the light paths of the sample before have left.
   const bool hasTimes_;
@@ -240,6 +245,17 @@ class BothPaths {
   std::vector<TechniqueImages::Recorder> recorders_;
 };
 
+// With one light path in n samples the pixels of a block take turns.
+int BothPaths::LightPathsOf(int x, int y, uint32_t& index) const {
+  if (log2LightPaths_ >= 0) return 1 << log2LightPaths_;
+  const auto turn = static_cast<uint32_t>(((x ^ y) & 1) | (y & 1) << 1 | (x >> 1 & 1) << 2);
+  const auto samples = 1u << -log2LightPaths_;
+  const auto shift = static_cast<uint32_t>(MixBits(pass_.settings.seed));
+  const uint32_t moved = index + (turn + shift) % samples;
+  index = moved / samples;
+  return moved % samples == 0 ? 1 : 0;
+}
+
 void BothPaths::TraceChunk(size_t chunk, uint64_t begin, uint64_t end, uint32_t index, uint64_t seed, bool withCamera,
                            float passTime) {
   const RenderSettings& settings = pass_.settings;
@@ -250,36 +266,50 @@ void BothPaths::TraceChunk(size_t chunk, uint64_t begin, uint64_t end, uint32_t 
   TechniqueImages::Recorder* recorder = techniques_ && withCamera ? &recorders_[chunk] : nullptr;
   SampleAdder adder(settings, pass_.film, counts_[chunk]);
   LayerSample* layers = adder.StartLayers();
-  Sampler sampler(settings.sampler, seed);
+  Sampler sampler(settings.sampler, seed), lightSampler(settings.sampler, seed),
+      secondSampler(settings.sampler, MixBits(seed + kSecondPath));
   for (uint64_t i = begin; i < end; ++i) {
-    const int x = static_cast<int>(i % width), y = static_cast<int>(i / width);
-    sampler.StartPixelSample(x, y, index);
-    splats.StartPath();
     const bool keepsPhotons = wanted_ && i < lightPaths_ && store_.HasRoom() && !(hasTimes_ && withCamera);
     if (!keepsPhotons && !withCamera) break;
-    if (keepsPhotons) photons_[chunk].StartPath();
+    const int x = static_cast<int>(i % width), y = static_cast<int>(i / width);
+    uint32_t lightIndex = index;
+    const int lightPaths = LightPathsOf(x, y, lightIndex);
+    sampler.StartPixelSample(x, y, index);
     const float time = hasTimes_ ? passTime : SampleTime(pass_.scene, sampler);
-    const SampleContext context{pass_.scene,
-                                sampler,
-                                time,
-                                counts_[chunk],
-                                layers,
-                                &splats,
-                                recorder,
-                                withCamera ? gather_ : nullptr,
-                                keepsPhotons ? &photons_[chunk] : nullptr,
-                                keepsPhotons && store_.WantsOrigins(),
-                                !withCamera};
+    SampleContext context{pass_.scene, sampler, time, counts_[chunk], layers};
+    context.observer = recorder;
+    context.gather = withCamera ? gather_ : nullptr;
+    context.isForPhotonsAlone = !withCamera;
+    context.tracesLight = lightPaths > 0;
+    const auto startLightPath = [&] {
+      splats.StartPath();
+      context.splats = &splats;
+      if (!keepsPhotons) return;
+      photons_[chunk].StartPath();
+      context.photons = &photons_[chunk];
+      context.withOrigin = store_.WantsOrigins();
+    };
+    if (lightPaths > 0) startLightPath();
+    if (log2LightPaths_ < 0) {
+      lightSampler.StartPixelSample(x, y, lightIndex);
+      context.lightSampler = &lightSampler;
+    }
     if (!withCamera || x < crop.x0 || x >= crop.x1 || y < crop.y0 || y >= crop.y1) {
       if (recorder) recorder->StartSample(x, y, 0);
-      pass_.integrator.Sample(nullptr, context);
-      continue;
+      if (lightPaths > 0) pass_.integrator.Sample(nullptr, context);
+    } else {
+      const PixelRay ray = MakePixelRay(pass_.scene, pass_.filter, x, y, time, sampler);
+      if (recorder) recorder->StartSample(x, y, ray.camera.weight * settings.sensor.ImagingRatio() * ray.filterWeight);
+      context.film = ray.film;
+      adder.StartLayers();
+      const Color radiance = Radiance(pass_.integrator, ray, context);
+      adder.Add(x, y, ray, radiance, pass_.film.Pixel(x, y));
     }
-    const PixelRay ray = MakePixelRay(pass_.scene, pass_.filter, x, y, time, sampler);
-    if (recorder) recorder->StartSample(x, y, ray.camera.weight * settings.sensor.ImagingRatio() * ray.filterWeight);
-    adder.StartLayers();
-    const Color radiance = Radiance(pass_.integrator, ray, context);
-    adder.Add(x, y, ray, radiance, pass_.film.Pixel(x, y));
+    for (int k = 1; k < lightPaths; ++k) {
+      startLightPath();
+      secondSampler.StartPixelSample(x, y, index);
+      pass_.integrator.Sample(nullptr, context.With(secondSampler));
+    }
   }
 }
 

@@ -11,6 +11,7 @@ namespace lampyr {
 struct PixelRay {
   CameraRay camera;
   float filterWeight = 1;
+  Point2 film{0.0f};  // where it starts, pixels
 };
 
 // Shutter time of the sample that `sampler` has started, the same for all of its path.
@@ -30,7 +31,7 @@ inline PixelRay MakePixelRay(const RenderScene& scene, const PixelFilter& filter
     sampler.SetDimension(dimensions::kLens);
     lens = sampler.Get2D();
   }
-  return {scene.camera->GenerateRay(film, lens, time), offset.weight};
+  return {scene.camera->GenerateRay(film, lens, time), offset.weight, film};
 }
 
 }  // namespace lampyr

@@ -28,7 +28,10 @@ void BidirectionalSample::SetLight(ConnectedPath& path, size_t count) const {
 
 Color BidirectionalSample::Report(ConnectedPath& path) const {
   if (context.observer) {
-    if (path.t > 1) path.merging = merging;
+    if (path.t > 1) {
+      path.merging = merging;
+      path.connectionCount = connectionCount;
+    }
     path.seenDensity = path.t > 1 ? seenDensity : path.atLens.value;
     context.observer->Observe(path);
   }
@@ -68,11 +71,13 @@ float BidirectionalSample::MergeRadiusAt(double footprint) const {
   return static_cast<float>(std::clamp(radius, kLeastRadius * size, kMostRadius * size));
 }
 
-Merging BidirectionalSample::MergingAt(double distance, double footprint) const {
+Merging BidirectionalSample::MergingAt(double distance, double footprint, const Point2& film) const {
+  const auto probability = static_cast<double>(settings.counts.merging.At(film));
+  if (!(probability > 0)) return {};
   // Parallel rays have no angle: what a camera with a field of view of 53 degrees has where the image is as wide.
   if (context.scene.camera->ConnectsByDirection()) distance = std::sqrt(footprint * settings.filmPixels);
   return Merging::At(static_cast<double>(MergeRadiusAt(footprint)), distance, context.gather->lightPaths,
-                     settings.filmPixels);
+                     lightPaths, settings.filmPixels, probability);
 }
 
 AreaDensity DensityAtLens(const Camera& camera, const Ray& ray, float geometryTerm, double distanceSquared) {
@@ -90,7 +95,7 @@ namespace {
 class LightSide final : public WeightedLightPath {
  public:
   explicit LightSide(BidirectionalSample& sample)
-      : WeightedLightPath(sample.context, sample.settings.connects),
+      : WeightedLightPath(sample.context, sample.settings.connects, sample.lightPaths),
         sample_(sample),
         isConnected_(sample.settings.connects && !sample.context.isForPhotonsAlone &&
                      sample.context.scene.camera->ConnectsLightPaths()) {}
@@ -155,7 +160,7 @@ class CameraSide final : public PathVisitor {
     }
     if (vertex.isDelta) return true;
     sample_.radiance += EstimateDirectLight(sample_);
-    if (sample_.settings.connects) {
+    if (sample_.isConnected) {
       // The two subpaths together have at most maxDepth scattering events.
       const size_t most =
           std::min(sample_.light.vertices.Count(), static_cast<size_t>(sample_.settings.maxDepth) - depth);
@@ -164,7 +169,7 @@ class CameraSide final : public PathVisitor {
         sample_.radiance += Connect(sample_, i);
       }
     }
-    if (sample_.merging && vertex.CanMerge()) sample_.radiance += Merge(sample_);
+    if (sample_.merging && sample_.isMerged && vertex.CanMerge()) sample_.radiance += Merge(sample_);
     return true;
   }
 
@@ -210,7 +215,7 @@ class CameraSide final : public PathVisitor {
       sample_.perArea =
           static_cast<float>(firstFootprint_ / (firstDistance_ * firstDistance_) * size * size / footprint);
     }
-    sample_.merging = sample_.MergingAt(distance, footprint);
+    sample_.merging = sample_.MergingAt(distance, footprint, sample_.context.film);
   }
 
   BidirectionalSample& sample_;
@@ -219,16 +224,21 @@ class CameraSide final : public PathVisitor {
 
 class BidirectionalIntegrator final : public Integrator {
  public:
-  explicit BidirectionalIntegrator(const BidirectionalSettings& settings) : settings_(settings) {}
+  explicit BidirectionalIntegrator(const BidirectionalSettings& settings)
+      : settings_(settings), lightPaths_(settings.counts.LightPaths()) {}
 
   TracedPaths Paths() const override { return TracedPaths::Both; }
   std::optional<PhotonSettings> Photons() const override {
     return settings_.merges ? std::optional(settings_.photons) : std::nullopt;
   }
+  int Log2LightPaths() const override { return settings_.counts.log2LightPaths; }
   Color Sample(const Ray* ray, const SampleContext& context) const override;
 
  private:
+  void Decide(BidirectionalSample& sample) const;
+
   BidirectionalSettings settings_;
+  double lightPaths_;
 };
 
 // Reused by each thread, because vertices are large.
@@ -252,6 +262,17 @@ PathEnds EndsOf(const BidirectionalSample& sample) {
   return ends;
 }
 
+// The film point is random within the pixel, and its bits decide nothing else.
+void BidirectionalIntegrator::Decide(BidirectionalSample& sample) const {
+  const Point2& film = sample.context.film;
+  sample.connectionCount = sample.ConnectionCountAt(film);
+  sample.connectionsPerSample = lightPaths_ * std::sqrt(sample.connectionCount);
+  const uint64_t bits = MixBits(ShadowRays::DeciderOf(film.x, film.y));
+  sample.isConnected =
+      settings_.connects && UnitFloat(static_cast<uint32_t>(bits)) < settings_.counts.connecting.At(film);
+  sample.isMerged = UnitFloat(static_cast<uint32_t>(bits >> 32)) < settings_.counts.merging.At(film);
+}
+
 Color BidirectionalIntegrator::Sample(const Ray* ray, const SampleContext& context) const {
   thread_local Workspace workspace;
   workspace.light.vertices.Clear();
@@ -263,14 +284,17 @@ Color BidirectionalIntegrator::Sample(const Ray* ray, const SampleContext& conte
                              .lookup = workspace.lookup,
                              .whole = workspace.whole,
                              .lightDensities = workspace.lightDensities,
-                             .cameraDensities = workspace.cameraDensities};
-  if (settings_.connects || context.photons) {
+                             .cameraDensities = workspace.cameraDensities,
+                             .lightPaths = lightPaths_};
+  if (context.tracesLight && (settings_.connects || context.photons)) {
     LightSide visitor(sample);
-    TraceLightPath(context, settings_.maxDepth, kLightDimensions, workspace.light, visitor);
+    const SampleContext own = context.With(context.lightSampler ? *context.lightSampler : context.sampler);
+    TraceLightPath(own, settings_.maxDepth, kLightDimensions, workspace.light, visitor);
     if (context.photons && workspace.light.vertices.Count() > 0)
       context.photons->KeepDensities(EndsOf(sample), workspace.lightDensities);
   }
   if (!ray) return Color(0.0f);
+  Decide(sample);
   PathState state;
   state.ray = *ray;
   state.specular = Color(1.0f);
@@ -299,6 +323,7 @@ BidirectionalSettings SettingsOf(const IntegratorInput& input) {
   settings.maxDepth = MaxDepthOf(input.settings);
   settings.filmPixels = input.FilmPixels();
   settings.shadowRays = ShadowRaysOf(input);
+  if (input.counts) settings.counts = *input.counts;
   return settings;
 }
 

@@ -14,6 +14,7 @@
 
 #include <memory>
 
+#include "integrators/walk/technique_counts.h"
 #include "integrators/walk/integrator.h"
 #include "integrators/walk/shadow_roulette.h"
 
@@ -28,6 +29,7 @@ struct BidirectionalSettings {
   // merged. If false, `merges` is required.
   bool connects = true;
   PhotonSettings photons;
+  TechniqueCounts counts;
   ShadowRays shadowRays;
 };
 

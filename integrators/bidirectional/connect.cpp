@@ -37,7 +37,8 @@ Color Connect(const BidirectionalSample& sample, size_t lightCount) {
       static_cast<double>(y.GeometryTerm(toCamera) * z.ScatteringCosine(toCamera) * y.ArrivalCorrection(y.toPrevious)) /
       squared;
   const Color value =
-      Product(z.Throughput() * fz.Sum(), leaving, geometric * static_cast<double>(sample.Lighting().FluxUnit()));
+      Product(z.Throughput() * fz.Sum(), leaving,
+              geometric * static_cast<double>(sample.Lighting().FluxUnit()) / sample.connectionsPerSample);
   if (value.IsBlack()) return value;
   const Joint joint{
       {SolidAngleDensity(fz.pdfForward) * EdgeDensity(y, toCamera, squared), y.PreviousReverse(fy.pdfReverse)},
@@ -45,7 +46,7 @@ Color Connect(const BidirectionalSample& sample, size_t lightCount) {
       y.CanMerge(),
       z.CanMerge()};
   const auto weightWith = [&](double merging) {
-    return ConnectWeight(y.weight, joint.light, z.weight, joint.camera, merging);
+    return ConnectWeight(y.weight, joint.light, z.weight, joint.camera, sample.connectionCount, merging);
   };
   const ShadowRays shadowRays = sample.WantedShadowRays();
   const auto survivalWeightOf = [&](double weight) {

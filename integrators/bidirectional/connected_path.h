@@ -21,6 +21,7 @@ struct ConnectedPath {
   AreaDensity atLens;
   bool isMerged = false;
   Merging merging;                             // that the weight accounts for
+  double connectionCount = 1;                  // connections per light path that the weight accounts for, squared
   double seenDensity = 0;                      // of the vertex that the camera sees, as in P_C (path_densities.h)
   const FilmConnection* connection = nullptr;  // of t = 1; null: the path contributes to the sample's own pixel
   Color value;                                 // contribution before the weight

@@ -45,6 +45,7 @@ FullPath Unfold(const ConnectedPath& path) {
   full.end = path.end;
   full.technique = path.isMerged ? static_cast<int>(n + 1 + ofLight + 1) : path.s;
   full.merging = path.merging;
+  full.connectionCount = path.connectionCount;
   full.seenDensity = path.seenDensity;
   full.fromLight.assign(n + 2, AreaDensity());
   full.fromCamera.assign(n + 2, AreaDensity());
@@ -96,7 +97,7 @@ double CorrelationAt(const FullPath& path, int i) {
   if (i == n) return 1;
   const auto isDelta = [&](int k) { return k >= 1 && k <= n && path.isDelta[static_cast<size_t>(k)]; };
   const double area = path.merging.area, degree = std::tan(3.14159265358979323846 / 180);
-  double again = path.end.emission.value * area;
+  double again = path.end.emission.value / path.merging.lightPathsPerSample * area;
   if (path.end.extent == LightEnd::Extent::Surface) again *= area;
   if (path.end.extent == LightEnd::Extent::Sky) again *= 3.14159265358979323846 * degree * degree;
   double light = std::min(1.0, again), camera = 1;
@@ -128,6 +129,7 @@ std::vector<long double> ExplicitDensities(const FullPath& path) {
     if (s > 1) density = path.end.emission.value;
     for (int i = 2; i < s; ++i) density *= fromLight(i);
     for (int i = s; i <= n; ++i) density *= fromCamera(i);
+    if (s > 1 && s <= n) density *= std::sqrt(path.connectionCount);
     densities[static_cast<size_t>(s)] = density;
   }
   for (int i = 1; i <= n; ++i) {
@@ -220,6 +222,7 @@ std::vector<double> WeightsByRecursion(const FullPath& path) {
   const auto B = [&](int i) { return path.fromCamera[static_cast<size_t>(i)]; };
   const auto isDelta = [&](int i) { return static_cast<bool>(path.isDelta[static_cast<size_t>(i)]); };
   const LightEnd& end = path.end;
+  const double connections = path.connectionCount;
   if (n == 0 && !path.lensSeesIt) return {1, 0};
   if (n == 0) return {SeenLightWeight(end.position, B(0)), SplatLightWeight(end.position, B(0))};
   std::vector<double> weights(static_cast<size_t>(path.TechniqueCount()), 0.0);
@@ -229,17 +232,19 @@ std::vector<double> WeightsByRecursion(const FullPath& path) {
   const PathDensities whole = DensitiesOf(path);
   const auto of = [&](double merging) { return path.merging ? merging : 0.0; };
   const auto weigh = [&](int s) {
-    if (s == 0) return HitWeight(end, camera(1), {isDelta(1), F(2)}, B(0), of(whole.ForLight(B(0).value)));
+    if (s == 0) return HitWeight(end, camera(1), {isDelta(1), F(2)}, B(0), connections,
+                       of(whole.ForLight(B(0).value)));
     if (s == 1) {
-      return NextEventWeight(end, camera(1), end.canBeHit ? B(0) : AreaDensity(), F(2),
+      return NextEventWeight(end, camera(1), end.canBeHit ? B(0) : AreaDensity(), F(2), connections,
                              of(whole.ForLight(end.direct.value)));
     }
     const double merging = of(whole.ForConnection(static_cast<size_t>(s - 1)));
-    if (s == n + 1) return SplatWeight(light(n), {B(n), B(n - 1)}, merging);
-    return ConnectWeight(light(s - 1), {B(s - 1), B(s - 2)}, camera(s), {F(s), F(s + 1)}, merging);
+    if (s == n + 1) return SplatWeight(light(n), {B(n), B(n - 1)}, connections, merging);
+    return ConnectWeight(light(s - 1), {B(s - 1), B(s - 2)}, camera(s), {F(s), F(s + 1)}, connections, merging);
   };
   for (int s = 0; s <= n + 1; ++s) {
     if (s == 0 && !end.canBeHit) continue;
+    if (s > 1 && s <= n && connections == 0) continue;
     if ((s > 1 && isDelta(s - 1)) || (s > 0 && s <= n && isDelta(s)) || (s == n + 1 && !path.lensSeesIt)) continue;
     weights[static_cast<size_t>(s)] = weigh(s);
   }
@@ -248,7 +253,7 @@ std::vector<double> WeightsByRecursion(const FullPath& path) {
     const auto at = static_cast<size_t>(i);
     weights[static_cast<size_t>(n + 1 + i)] =
         MergeWeight(light(i).BeforeReverse(B(i - 1)), camera(i).BeforeReverse(F(i + 1)), whole.PerDensityAt(at),
-                    whole.ForMerging(at));
+                    connections, whole.ForMerging(at));
   }
   return weights;
 }

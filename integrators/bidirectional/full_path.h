@@ -19,6 +19,7 @@ struct FullPath {
   bool lensSeesIt = true;               // a light path may reach vertex n and be connected to the lens
   bool mergesAtLens = true;             // photons may be merged at vertex n
   Merging merging;
+  double connectionCount = 1;  // connections per light path, squared
   double seenDensity = 0;  // of vertex n by a camera ray, also where the lens is not connected
   int technique = 0;       // that made the path
 

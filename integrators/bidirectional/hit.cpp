@@ -14,7 +14,7 @@ Color HitLight(const BidirectionalSample& sample, const PathState& state, const 
   path.value = state.diffuse * e.diffuse + state.specular * e.specular;
   if (path.value.IsBlack()) return path.value;
   path.s = 0;
-  path.end = EndOf(sample.Lighting(), found, true, edge);
+  path.end = EndOf(sample.Lighting(), found, true, edge, sample.lightPaths);
   sample.SetCamera(path);
   path.t = static_cast<int>(sample.camera.Count()) + 2;
   if (!sample.settings.connects && path.end.emission.value > 0) {
@@ -29,7 +29,8 @@ Color HitLight(const BidirectionalSample& sample, const PathState& state, const 
   joint.camera.previous = event.previousReverse;
   joint.previousCameraIsDelta = event.isDelta;
   joint.mergesAtCamera = last.CanMerge() && !event.isDelta;
-  path.weight = HitWeight(path.end, last.weight, event, hit, sample.MergingOfLight(path.end, joint, hit));
+  path.weight = HitWeight(path.end, last.weight, event, hit, sample.connectionCount,
+                          sample.MergingOfLight(path.end, joint, hit));
   if (sample.WantsSums()) [[unlikely]]
     path.sums = sample.Sums(path.end, hit, event.isDelta, 0);
   return sample.AddToPixel(path);
@@ -49,7 +50,7 @@ Color SeeLightAt(const BidirectionalSample& sample, const PathState& state, cons
   path.t = 2;
   const Receiver lens{ray.origin, Normal3(0.0f), false, Receiver::kCamera};
   if (const auto found = lighting.EvaluateSamples(lens, ray.direction, hit.t, point, context.time, true)) {
-    path.end = EndOf(lighting, *found, lighting.CanBeHit(found->light), {0});
+    path.end = EndOf(lighting, *found, lighting.CanBeHit(found->light), {0}, sample.lightPaths);
     path.atLens =
         DensityAtLens(*context.scene.camera, ray, AbsDot(ray.direction, point.Ng), Sqr(static_cast<double>(hit.t)));
     if (path.atLens.value > 0 && sample.settings.connects)

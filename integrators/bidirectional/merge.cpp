@@ -18,6 +18,7 @@ void ReportMerge(const BidirectionalSample& sample, const Photon& photon, AreaDe
   path.s = static_cast<int>(photon.depth) + 1;
   path.toLight = photon.toPrevious;
   path.merging = sample.merging;
+  path.connectionCount = sample.connectionCount;
   path.seenDensity = sample.seenDensity;
   path.value = value;
   path.weight = weight;
@@ -37,7 +38,8 @@ Color Merge(const BidirectionalSample& sample) {
   const PhotonPass& pass = *context.gather;
   const PathVertex& vertex = sample.camera.Last();
   const auto most = static_cast<size_t>(sample.settings.maxDepth) + 1;
-  const double perDensity = static_cast<double>(sample.Lighting().FluxUnit()) / sample.merging.perDensity;
+  const double perDensity =
+      static_cast<double>(sample.Lighting().FluxUnit()) / (sample.merging.perDensity * sample.lightPaths);
   const std::span<const uint32_t> found =
       FindPhotons(*pass.map, vertex.point.position, sample.mergeRadius, sample.lookup, context.counts);
   Joint joint;
@@ -61,8 +63,9 @@ Color Merge(const BidirectionalSample& sample) {
     sample.whole.Set(light.first(light.size() - 1), sample.cameraDensities, joint, light.front().forward,
                      light.front().extent, sample.merging);
     const double weight =
-        MergeWeight(photon.weight.BeforeReverse(joint.light.last), vertex.weight.BeforeReverse(joint.camera.previous),
-                    sample.whole.PerDensityAt(light.size()), sample.whole.ForMerging(light.size()));
+        MergeWeight(photon.weight.At(light.back(), photon.depth).BeforeReverse(joint.light.last),
+                    vertex.weight.BeforeReverse(joint.camera.previous), sample.whole.PerDensityAt(light.size()),
+                    sample.connectionCount, sample.whole.ForMerging(light.size()));
     const Color value = scattered * vertex.ArrivalCorrection(toLight, photon.normal.Unpack());
     sum += value * static_cast<float>(weight);
     // Multiplied in another order than the sum: a shared product would be rounded differently than without layers.

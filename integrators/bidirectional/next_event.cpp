@@ -30,14 +30,14 @@ class NextEventTechnique final : public NextEventVisitor {
     found.evaluation.solidAngleToArea = sample.solidAngleToArea;
     const SolidAnglePerArea edge = FirstEdgeDensity(lighting, direct.light, vertex_.GeometryTerm(sample.direction),
                                                     Sqr(static_cast<double>(sample.distance)));
-    path_.end = EndOf(lighting, found, !direct.isDelta && lighting.CanBeHit(direct.light), edge);
+    path_.end = EndOf(lighting, found, !direct.isDelta && lighting.CanBeHit(direct.light), edge, sample_.lightPaths);
     path_.toLight = sample.direction;
     const AreaDensity hit =
         path_.end.canBeHit ? SolidAngleDensity(light.f.pdfForward) * path_.end.solidAnglePerArea : AreaDensity(0);
     Joint joint;
     joint.camera.previous = vertex_.PreviousReverse(light.f.pdfReverse);
     joint.mergesAtCamera = vertex_.CanMerge();
-    path_.weight = NextEventWeight(path_.end, vertex_.weight, hit, joint.camera.previous,
+    path_.weight = NextEventWeight(path_.end, vertex_.weight, hit, joint.camera.previous, sample_.connectionCount,
                                    sample_.MergingOfLight(path_.end, joint, path_.end.direct));
     if (sample_.WantsSums()) [[unlikely]]
       path_.sums = sample_.Sums(path_.end, hit, false, 1);

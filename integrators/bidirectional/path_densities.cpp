@@ -12,9 +12,10 @@ const double kReach = std::tan(kPiDouble / 180);  // ρ over the distance
 
 }  // namespace
 
-Merging Merging::At(double radius, double distance, double lightPaths, double filmPixels) {
-  return {lightPaths * kPiDouble * radius * radius, kPiDouble * kReach * kReach * distance * distance, lightPaths,
-          filmPixels};
+Merging Merging::At(double radius, double distance, double lightPaths, double lightPathsPerSample, double filmPixels,
+                    double probability) {
+  return {probability * lightPaths / lightPathsPerSample * kPiDouble * radius * radius,
+          kPiDouble * kReach * kReach * distance * distance, lightPaths, lightPathsPerSample, filmPixels};
 }
 
 void PathDensities::Set(std::span<const SubpathDensities> light, std::span<const SubpathDensities> camera,
@@ -70,7 +71,7 @@ void PathDensities::Correlate() {
                          : extent_ == LightEnd::Extent::Sky   ? kPiDouble * kReach * kReach
                                                               : 1.0;
   // P_L first, in the place of c.
-  double light = std::min(1.0, emission_ * area * ofLight);
+  double light = std::min(1.0, emission_ / merging_.lightPathsPerSample * area * ofLight);
   vertices[1].correlation = light;
   for (size_t i = 2; i < n; ++i) {
     light *= probability(vertices[i].lightIsDelta, vertices[i].fromLight);

@@ -24,14 +24,17 @@ namespace lampyr {
 // Merging on one path. All techniques of the path share it: it follows from the first vertex from the camera that
 // scatters by another event than a delta.
 struct Merging {
-  double perDensity = 0;  // N π r²; 0: no merging
+  // N π r² times the probability of merging, for each of the light paths per sample; 0: no merging.
+  double perDensity = 0;
   double area = 0;        // π ρ²
   double lightPaths = 1;  // N
+  double lightPathsPerSample = 1;  // LightEnd::emission is so many times that of one light path
   double filmPixels = 1;  // the density of the first hit by a ray through its pixel is so many times that by any
 
   explicit operator bool() const { return perDensity > 0; }
   // `radius`: r. `distance`: path length from the camera; ρ is what a degree spans there.
-  static Merging At(double radius, double distance, double lightPaths, double filmPixels);
+  static Merging At(double radius, double distance, double lightPaths, double lightPathsPerSample, double filmPixels,
+                    double probability);
 };
 
 // The connection of two subpaths: the last two reverse densities of each, and whether the last vertices can be merged.

@@ -29,7 +29,8 @@ void SplatLight(const BidirectionalSample& sample, const EmittedPhoton& photon) 
   path.s = 1;
   SetLens(sample, *seen, path);
   path.end.light = photon.light;
-  path.end.position = static_cast<double>(photon.emissionSelection.value) * AreaDensity(photon.emission.pdfEmit);
+  path.end.position =
+      sample.lightPaths * static_cast<double>(photon.emissionSelection.value) * AreaDensity(photon.emission.pdfEmit);
   path.end.canBeHit = true;
   path.weight = SplatLightWeight(path.end.position, path.atLens);
   path.sums.Of(TechniqueGroup::Light).Add(1);
@@ -50,16 +51,20 @@ void SplatVertex(const BidirectionalSample& sample) {
   joint.light = {path.atLens, vertex.PreviousReverse(seen->f.pdfReverse)};
   joint.mergesAtLight = vertex.CanMerge();
   double merging = 0;
+  const Point2& film = seen->connection.camera.film;
   if (sample.context.gather) {
     const auto distance = static_cast<double>(glm::distance(seen->connection.camera.position, vertex.point.position));
-    path.merging = sample.MergingAt(distance, sample.FootprintAt(seen->geometryTerm, path.atLens));
+    path.merging = sample.MergingAt(distance, sample.FootprintAt(seen->geometryTerm, path.atLens), film);
+  }
+  if (path.merging) {
     sample.whole.Set(sample.lightDensities, {}, joint, sample.lightEnd.emission.value, sample.lightEnd.extent,
                      path.merging);
     merging = sample.whole.ForConnection(light.Count());
     if (sample.context.observer && sample.context.observer->WantsSums()) [[unlikely]]
       path.sums = sample.SumsOfConnection(light.Count(), joint.light, true);
   }
-  path.weight = SplatWeight(vertex.weight, joint.light, merging);
+  path.connectionCount = sample.ConnectionCountAt(film);
+  path.weight = SplatWeight(vertex.weight, joint.light, path.connectionCount, merging);
   AddSplat(sample, path);
 }
 

@@ -8,7 +8,7 @@ void SetWeights(const PathVertex& previous, const PathState& state, bool connect
   vertex.previousSolidAnglePerArea = EdgeDensity(previous, state.ray.direction, squared);
   vertex.weight =
       previous.weight.Next(previous.scatteredDelta, vertex.pdfForward, previous.PreviousReverse(previous.eventReverse));
-  if (!connects) vertex.weight.connect = 0;
+  if (!connects) vertex.weight.connections.last = 0;
 }
 
 void AddDensities(const Subpath& path, std::vector<SubpathDensities>& densities) {
@@ -40,7 +40,8 @@ LightEnd::Extent ExtentOf(LightKind kind) {
 
 }  // namespace
 
-LightEnd EndOf(const LightingServices& lighting, const FoundLight& found, bool canBeHit, SolidAnglePerArea edge) {
+LightEnd EndOf(const LightingServices& lighting, const FoundLight& found, bool canBeHit, SolidAnglePerArea edge,
+               double lightPaths) {
   const LightEvaluation& e = found.evaluation;
   const auto selection = static_cast<double>(found.selection.value);
   LightEnd end;
@@ -48,7 +49,7 @@ LightEnd EndOf(const LightingServices& lighting, const FoundLight& found, bool c
   end.solidAnglePerArea = {static_cast<double>(e.solidAngleToArea)};
   end.direct = selection * SolidAngleDensity(e.pdfDirect) * end.solidAnglePerArea;
   const auto emissionSelection = static_cast<double>(lighting.EmissionSelectionProbability(found.light).value);
-  const AreaDensity position = emissionSelection * AreaDensity(e.pdfEmit);
+  const AreaDensity position = lightPaths * emissionSelection * AreaDensity(e.pdfEmit);
   end.emission = position * (SolidAngleDensity(e.pdfEmitDirection) * edge);
   end.canBeHit = canBeHit;
   if (canBeHit && !lighting.IsAtInfinity(found.light)) end.position = position;
@@ -65,7 +66,7 @@ bool WeightedLightPath::FirstHit(const EmittedPhoton& photon, PathVertex& first)
   const double squared = LengthSquared(Vector3d(first.point.position) - Vector3d(photon.emission.position));
   const SolidAnglePerArea edge =
       FirstEdgeDensity(lighting, found->light, first.GeometryTerm(first.toPrevious), squared);
-  end_ = EndOf(lighting, *found, lighting.CanBeHit(found->light), edge);
+  end_ = EndOf(lighting, *found, lighting.CanBeHit(found->light), edge, lightPaths_);
   if (!(end_.emission.value > 0)) return false;
   first.previousSolidAnglePerArea = end_.solidAnglePerArea;
   first.weight = PartialWeight::AtFirstHit(end_, connects_);

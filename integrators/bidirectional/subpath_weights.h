@@ -17,12 +17,16 @@ SolidAnglePerArea FirstEdgeDensity(const LightingServices& lighting, uint32_t li
                                    double distanceSquared);
 
 // The light's end of a path, for a light found from its first surface vertex. `edge`: FirstEdgeDensity at that vertex.
-LightEnd EndOf(const LightingServices& lighting, const FoundLight& found, bool canBeHit, SolidAnglePerArea edge);
+// `lightPaths`: for each camera path.
+LightEnd EndOf(const LightingServices& lighting, const FoundLight& found, bool canBeHit, SolidAnglePerArea edge,
+               double lightPaths);
 
 // Sets densities and partial weights of a light path while it grows; base of visitors that need them.
 class WeightedLightPath : public LightPathVisitor {
  public:
-  WeightedLightPath(const SampleContext& context, bool connects) : context_(context), connects_(connects) {}
+  // `lightPaths`: for each camera path.
+  WeightedLightPath(const SampleContext& context, bool connects, double lightPaths = 1)
+      : context_(context), connects_(connects), lightPaths_(lightPaths) {}
 
   bool FirstHit(const EmittedPhoton& photon, PathVertex& first) override;
   void Arrived(LightPath& path, const PathState& state) final;
@@ -34,6 +38,7 @@ class WeightedLightPath : public LightPathVisitor {
 
   const SampleContext& context_;
   const bool connects_;
+  const double lightPaths_;
 
  private:
   LightEnd end_;

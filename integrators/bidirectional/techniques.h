@@ -25,6 +25,11 @@ struct BidirectionalSample {
   PathDensities& whole;  // of the path that is weighted
   std::vector<SubpathDensities>&lightDensities, &cameraDensities;
   Merging merging{};        // of what the camera subpath sees
+  // TechniqueCounts where the camera path starts: light paths for each camera path; connections for each light path,
+  // squared; whether this camera path is connected, and merged where it can be.
+  double lightPaths = 1, connectionCount = 1;
+  double connectionsPerSample = 1;  // of a camera vertex to the same vertex of a light path, on average
+  bool isConnected = true, isMerged = true;
   float mergeRadius = 0;    // scene units
   float perArea = 1;        // proportional to 1 / mergeRadius², where radii differ: that of the scene's radius is 1
   double seenDensity = 0;   // of the first vertex of the camera subpath, as in P_C
@@ -36,8 +41,15 @@ struct BidirectionalSample {
   // Merging on the paths that a pixel sees at a path length of `distance`, where its footprint has the area
   // `footprint`, perpendicular to the path. Both are those of the first vertex from the camera that scatters by another
   // event than a delta: all techniques of a path share it, and before it nothing can be merged.
-  Merging MergingAt(double distance, double footprint) const;
+  // `film`: where it is on the film.
+  Merging MergingAt(double distance, double footprint, const Point2& film) const;
   float MergeRadiusAt(double footprint) const;
+  // Connections for each light path in a pixel, squared.
+  double ConnectionCountAt(const Point2& film) const {
+    if (!settings.connects) return 0;
+    const double connections = settings.counts.ConnectionsPerLightPath(film);
+    return connections * connections;
+  }
   // Footprint at a first hit that is seen at `cosTheta` to its geometric normal and has the density `atLens` by a
   // camera ray (DensityAtLens).
   double FootprintAt(float cosTheta, AreaDensity atLens) const {

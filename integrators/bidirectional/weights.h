@@ -2,7 +2,8 @@
 // both subpaths ([Veach97 §10.2], [Georgiev12 §4]; the departures from both are in walk/partial_weight.h). The
 // integrator calls these functions, and so does the test against explicit densities (full_path.h).
 //
-// `merging`: Σ (p_i / p)^β over the techniques that merge (PathDensities).
+// `merging`: Σ (p_i / p)^β over the techniques that merge (PathDensities). `connectionCount`: connections per light path
+// in the pixel, squared.
 #pragma once
 
 #include "integrators/walk/vertex.h"
@@ -31,36 +32,40 @@ struct LastEvent {
 };
 // s = 0, t > 2: the camera subpath hits the light, whose point has the density `hit` ([Georgiev12 eq. 43]).
 inline double HitWeight(const LightEnd& end, const PartialWeight& camera, const LastEvent& event, AreaDensity hit,
-                        double merging) {
+                        double connectionCount, double merging) {
   const PartialWeight atLight = camera.Next(event.isDelta, AreaDensity(1), event.previousReverse);
+  const TechniqueTerms others{atLight.ends.earlier, atLight.connections.earlier};
   const double direct = event.isDelta ? 0.0 : Mis(end.direct / hit);
-  return WeightAgainst(direct + Mis(end.emission / hit) * atLight.earlier + merging);
+  return WeightAgainst(direct + Mis(end.emission / hit) * others.ForEnds(connectionCount) + merging);
 }
 
 // s = 1, t > 1: the light is sampled at the last vertex of the camera subpath ([Georgiev12 eqs. 44, 45]). `hit`:
 // density with which scattering there would find the light's point; 0: it cannot. `previousReverse`: reverse density of
 // the vertex before.
 inline double NextEventWeight(const LightEnd& end, const PartialWeight& camera, AreaDensity hit,
-                              AreaDensity previousReverse, double merging) {
-  return WeightAgainst(Mis(hit / end.direct) + camera.Sum({end.emission / end.direct, previousReverse}) + merging);
+                              AreaDensity previousReverse, double connectionCount, double merging) {
+  const TechniqueTerms others = camera.Sum({end.emission / end.direct, previousReverse});
+  return WeightAgainst(Mis(hit / end.direct) + others.ForEnds(connectionCount) + merging);
 }
 
 // s > 1, t > 1: the last vertices of both subpaths are connected ([Georgiev12 eqs. 40, 41]).
 inline double ConnectWeight(const PartialWeight& light, const ReverseDensities& ofLight, const PartialWeight& camera,
-                            const ReverseDensities& ofCamera, double merging) {
-  return WeightAgainst(light.Sum(ofLight) + camera.Sum(ofCamera) + merging);
+                            const ReverseDensities& ofCamera, double connectionCount, double merging) {
+  return WeightAgainst((light.Sum(ofLight) + camera.Sum(ofCamera)).ForConnection(connectionCount, merging));
 }
 
 // s > 1, t = 1: the last vertex of the light subpath is connected to the lens ([Georgiev12 eq. 46]). `reverse`: reverse
 // densities of that vertex, by a camera ray, and of the one before.
-inline double SplatWeight(const PartialWeight& light, const ReverseDensities& reverse, double merging) {
-  return WeightAgainst(light.Sum(reverse) + merging);
+inline double SplatWeight(const PartialWeight& light, const ReverseDensities& reverse, double connectionCount,
+                          double merging) {
+  return WeightAgainst(light.Sum(reverse).ForEnds(connectionCount) + merging);
 }
 
 // The last vertices of both subpaths are merged ([Georgiev12 eqs. 38, 39]). `light`, `camera`: BeforeReverse of the two
-// subpaths. `perDensity`: N π r² c at the vertex. `merging`: of merging at the other vertices.
-inline double MergeWeight(double light, double camera, double perDensity, double merging) {
-  return WeightAgainst((light + camera) / Mis(perDensity) + merging);
+// subpaths. `perDensity`: Merging::perDensity · c at the vertex. `merging`: of merging at the other vertices.
+inline double MergeWeight(const TechniqueTerms& light, const TechniqueTerms& camera, double perDensity,
+                          double connectionCount, double merging) {
+  return WeightAgainst((light + camera).ForEnds(connectionCount) / Mis(perDensity) + merging);
 }
 
 }  // namespace lampyr

@@ -41,12 +41,27 @@ class PackedNormal {
   int16_t x_ = 0, y_ = 0;
 };
 
+// The partial weight of a photon's vertex, without what follows from the densities of the vertex, which are kept apart.
+struct PhotonWeight {
+  double endsEarlier = 0;
+  double second = 0;  // of the first hit of a path: ends.last; of others: connections.earlier
+
+  static PhotonWeight Of(const PartialWeight& weight, size_t depth) {
+    return {weight.ends.earlier, depth > 1 ? weight.connections.earlier : weight.ends.last};
+  }
+  PartialWeight At(const SubpathDensities& vertex, size_t depth) const {
+    if (depth <= 1) return {{second, endsEarlier}, {}};
+    const double connected = vertex.forwardIsDelta ? 0.0 : 1 / Mis(AreaDensity(vertex.forward));
+    return {{0, endsEarlier}, {connected, second}};
+  }
+};
+
 // A photon as its light path stored it, in the order of paths. The map sorts photons by place.
 struct TracedPhoton {
   Point3 position;
   Vector3 toPrevious;
   Color diffuse, specular;  // flux (LightingServices::FluxUnit) over the path's density, for either kind of lobe
-  PartialWeight weight;
+  PhotonWeight weight;
   float previousSolidAnglePerArea;
   PackedNormal normal;
   uint16_t depth;   // 1: first hit of its path
@@ -80,7 +95,7 @@ class PhotonList {
     const float passed = vertex.coverage > 0 ? 1 / vertex.coverage : 0.0f;
     const auto origin = static_cast<uint32_t>(origins_.size()) - 1;
     photons_.push_back({vertex.point.position, vertex.toPrevious, vertex.diffuse * passed, vertex.specular * passed,
-                        vertex.weight, static_cast<float>(vertex.previousSolidAnglePerArea.value),
+                        PhotonWeight::Of(vertex.weight, depth), static_cast<float>(vertex.previousSolidAnglePerArea.value),
                         PackedNormal(vertex.bsdf.Ng()), static_cast<uint16_t>(std::min(depth, kDeepest)),
                         static_cast<uint16_t>(group), origin, static_cast<uint32_t>(densities_.size() + 1)});
   }
@@ -134,7 +149,7 @@ struct SortItem {
 struct alignas(64) Photon {
   Vector3 toPrevious{0.0f};  // unit
   Color flux;  // LightingServices::FluxUnit over the path's density, for diffuse lobes; for specular ones see PhotonMap
-  PartialWeight weight;
+  PhotonWeight weight;
   float previousSolidAnglePerArea = 0;
   PackedNormal normal;  // of the surface
   uint32_t specular = kSame;
@@ -143,6 +158,7 @@ struct alignas(64) Photon {
   uint32_t path = 0;   // PhotonMap::PathOf
 
   static constexpr uint32_t kSame = 0xffffffffu;
+
 
   // Reverse density of the vertex before, or of the light's point. `towardsLight`: density with which the camera path
   // would sample the direction that the photon came from.

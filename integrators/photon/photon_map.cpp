@@ -165,10 +165,10 @@ PhotonMap::PhotonMap(std::span<const PhotonList> lists, int threads, std::vector
     Photon& photon = photons_[i];
     photon.toPrevious = source.toPrevious;
     photon.flux = source.diffuse;
-    photon.weight = source.weight;
     if (!traced.paths.empty()) photon.path = traced.paths[order[i]];
     photon.previousSolidAnglePerArea = source.previousSolidAnglePerArea;
     photon.normal = source.normal;
+    photon.weight = source.weight;
     photon.depth = source.depth;
     photon.group = source.group;
   });

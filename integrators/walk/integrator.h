@@ -48,6 +48,16 @@ struct SampleContext {
   PhotonList* photons = nullptr;       // receives the photons of the light path; null: not wanted
   bool withOrigin = false;             // `photons` also receives the origin of the path
   bool isForPhotonsAlone = false;      // only photons of the light path are wanted: it is not connected to the camera
+  Point2 film{0.0f};                   // where the ray starts on the film, pixels
+  // Of integrators with fewer light paths than camera paths: false if this sample has none, and the sampler of the
+  // light path, because it has an index of its own; null: `sampler`.
+  bool tracesLight = true;
+  Sampler* lightSampler = nullptr;
+
+  SampleContext With(Sampler& other) const {
+    return {scene,      other,             time, counts,      layers, splats, observer, gather, photons,
+            withOrigin, isForPhotonsAlone, film, tracesLight, nullptr};
+  }
 };
 
 // Stateless: any thread may call it.
@@ -60,6 +70,8 @@ class Integrator {
   // (the pixel is not wanted, or the integrator traces light paths only) it records those only and returns black. Light
   // paths: as many as the full image has pixels are one sample per pixel.
   virtual Color Sample(const Ray* ray, const SampleContext& context) const = 0;
+  // Light paths for each camera path, as a power of two; of TracedPaths::Both.
+  virtual int Log2LightPaths() const { return 0; }
   // Photon settings; nullopt if the integrator does not gather photons.
   virtual std::optional<PhotonSettings> Photons() const { return std::nullopt; }
 };

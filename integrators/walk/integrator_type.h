@@ -9,6 +9,7 @@
 
 #include "base/setting.h"
 #include "integrators/walk/integrator.h"
+#include "integrators/walk/technique_counts.h"
 #include "integrators/walk/shadow_roulette.h"
 
 namespace lampyr {
@@ -19,6 +20,7 @@ struct IntegratorInput {
   int width = 1, height = 1;  // of the full image, pixels
   float imagingRatio = 1;     // film value of radiance 1
   const Settings& settings;
+  const TechniqueCounts* counts = nullptr;  // of bidirectional integrators; null: all techniques once
 
   double FilmPixels() const { return static_cast<double>(width) * static_cast<double>(height); }
 };

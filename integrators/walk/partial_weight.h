@@ -7,8 +7,12 @@
 //   p_s / p_(s+1) = B_s / F_s                                    (1)
 // and the weight of s is 1 / (1 + Σ_(i≠s) (p_i / p_s)^β) ([Georgiev12 eq. 37]). A vertex x_j of a light subpath knows
 // all of this but the last two reverse densities B_j and B_(j-1), which depend on the vertex that it is connected to:
-//   Σ_(i≤j) (p_i / p_(j+1))^β = B_j^β · (connect + B_(j-1)^β · earlier).
-// The same holds from the camera's side with F and B exchanged.
+//   Σ_(i≤j) (p_i / p_(j+1))^β = B_j^β · (last + B_(j-1)^β · earlier).
+// The same holds from the camera's side with F and B exchanged. The sum has two parts, which are carried apart: the
+// techniques at the ends of the path (s = 0, s = 1, t = 1), and the connections of two subpaths, which a pixel may make
+// more rarely than there are light paths (technique_counts.h).
+//
+// With n light paths for each camera path, LightEnd::emission is n times the density of one.
 //
 // Merging is not carried: its terms depend on the whole path, and take time in proportion to its length
 // (bidirectional/path_densities.h).
@@ -93,32 +97,67 @@ struct ReverseDensities {
   AreaDensity last, previous;
 };
 
+// A sum over techniques, for the vertex that it is carried to.
+struct PartialSum {
+  double last = 0, earlier = 0;
+
+  double Before(AreaDensity previousReverse) const { return last + Mis(previousReverse) * earlier; }
+  // The terms of `this` at the next vertex, and `nextLast` of the technique that ends here.
+  PartialSum Next(bool isDelta, double nextLast, double inverse, double reverse) const {
+    return {nextLast, ((isDelta ? 0.0 : last) + reverse * earlier) * inverse};
+  }
+};
+
+// Sums over the techniques with fewer vertices on one side: those at the path's ends, and connections.
+struct TechniqueTerms {
+  double ends = 0, connections = 0;
+
+  // All terms, for a technique at the ends or merging. `connectionCount`: connections per light path, squared.
+  double ForEnds(double connectionCount) const { return ends + connectionCount * connections; }
+  // For a connection. `merging`: the terms of merging, relative to one connection per light path.
+  double ForConnection(double connectionCount, double merging) const {
+    return connections + (ends + merging) / connectionCount;
+  }
+  TechniqueTerms operator+(const TechniqueTerms& other) const {
+    return {ends + other.ends, connections + other.connections};
+  }
+};
+
 struct PartialWeight {
-  double connect = 0, earlier = 0;
+  PartialSum ends, connections;
 
   // Partial weight at the first hit of a light subpath ([Georgiev12 eqs. 31–33]). Without `connects`: for merging
   // alone.
   static PartialWeight AtFirstHit(const LightEnd& end, bool connects) {
     if (!connects) return {};
     const double perEmission = 1 / Mis(end.emission);
-    return {Mis(end.direct) * perEmission, end.canBeHit ? perEmission : 0.0};
+    return {{Mis(end.direct) * perEmission, end.canBeHit ? perEmission : 0.0}, {}};
   }
   // Partial weight at the first vertex of a camera subpath. `camera`: density of the vertex by a camera ray, over that
   // of the lens point (DensityAtLens). `isSplatted`: true if light paths that reach the vertex are connected to the
   // lens.
-  static PartialWeight AtLens(AreaDensity camera, bool isSplatted) { return {isSplatted ? 1 / Mis(camera) : 0.0, 0.0}; }
+  static PartialWeight AtLens(AreaDensity camera, bool isSplatted) {
+    return {{isSplatted ? 1 / Mis(camera) : 0.0, 0.0}, {}};
+  }
 
   // Σ (p_i / p)^β over the techniques with fewer vertices on this side, merging left out.
-  double Sum(const ReverseDensities& reverse) const { return Mis(reverse.last) * BeforeReverse(reverse.previous); }
+  TechniqueTerms Sum(const ReverseDensities& reverse) const {
+    const TechniqueTerms before = BeforeReverse(reverse.previous);
+    const double last = Mis(reverse.last);
+    return {last * before.ends, last * before.connections};
+  }
   // The sum without the factor of this vertex's own reverse density.
-  double BeforeReverse(AreaDensity previousReverse) const { return connect + Mis(previousReverse) * earlier; }
+  TechniqueTerms BeforeReverse(AreaDensity previousReverse) const {
+    return {ends.Before(previousReverse), connections.Before(previousReverse)};
+  }
 
   // Partial weight at the next vertex ([Georgiev12 eqs. 34–36]). `forward`: density of the next vertex.
   // `previousReverse`: reverse density of the previous vertex, by the event at this one. A delta event rules out
   // connections at this vertex and over the edge to the next one.
   PartialWeight Next(bool isDelta, AreaDensity forward, AreaDensity previousReverse) const {
     const double inverse = 1 / Mis(forward), reverse = Mis(previousReverse);
-    return {isDelta ? 0.0 : inverse, ((isDelta ? 0.0 : connect) + reverse * earlier) * inverse};
+    return {ends.Next(isDelta, 0, inverse, reverse),
+            connections.Next(isDelta, isDelta ? 0.0 : inverse, inverse, reverse)};
   }
 };
 

@@ -24,17 +24,36 @@ constexpr double kTypicalPasses = 64;
 constexpr uint64_t kSeed = 0x9e3779b97f4a7c15;
 
 struct Candidate {
-  const char* name;
-  std::array<bool, kTechniqueGroups> has;  // TechniqueGroup
-  // Squared error of independent samples over that of Sobol points: the geometric mean over eight scenes of scenes/,
-  // with 32 samples per pixel. More techniques make smoother integrands.
+  const char* integrator;
+  int log2LightPaths;
+  // Samples of each TechniqueGroup per camera path, relative to those of the pilot.
+  std::array<double, kTechniqueGroups> counts;
+  // Squared error of independent samples over that of Sobol points, as measured in scenes of scenes/ with 64 samples per
+  // pixel. More techniques make smoother integrands, and fewer light paths leave fewer points to be well distributed.
   double gainOfSobol;
 };
-constexpr size_t kCandidates = 3;
-constexpr std::array<Candidate, kCandidates> kTechniquesOf = {{
-    {"path", {true, true, false, false, false}, 1.4},
-    {"bdpt", {true, true, true, true, false}, 2.0},
-    {"vcm", {true, true, true, true, true}, 2.0},
+constexpr Candidate Bidirectional(bool merges, int log2LightPaths) {
+  const double n = log2LightPaths < 0 ? 1.0 / (1 << -log2LightPaths) : 1 << log2LightPaths;
+  constexpr std::array<double, 5> gains = {1.8, 1.87, 1.95, 2.0, 1.95};
+  return {merges ? "vcm" : "bdpt",
+          log2LightPaths,
+          {1, 1, n, std::min(n, 1.0), merges ? n : 0.0},
+          gains[static_cast<size_t>(log2LightPaths + 3)]};
+}
+constexpr size_t kCandidates = 11, kFirstOfVcm = 6;
+constexpr double kFewestLightPaths = 1.0 / 8;
+constexpr std::array<Candidate, kCandidates> kCandidateOf = {{
+    {"path", 0, {1, 1, 0, 0, 0}, 1.7},
+    Bidirectional(false, -3),
+    Bidirectional(false, -2),
+    Bidirectional(false, -1),
+    Bidirectional(false, 0),
+    Bidirectional(false, 1),
+    Bidirectional(true, -3),
+    Bidirectional(true, -2),
+    Bidirectional(true, -1),
+    Bidirectional(true, 0),
+    Bidirectional(true, 1),
 }};
 
 // Sums over the samples of a pixel.
@@ -123,8 +142,11 @@ class Recorder final : public PathObserver {
   // besides the squares of each.
   void EndSample() {
     for (size_t k = 0; k < kCandidates; ++k) {
-      moments[pixel_].products[k] += sums_[k].value * sums_[k].value - sums_[k].squares;
-      found[pixel_].other[k] += static_cast<float>(sums_[k].value);
+      const Sums& sums = sums_[k];
+      moments[pixel_].products[k] +=
+          sums.value * sums.value - sums.squares + 2 * sums.value * sums.connected +
+          (sums.connected * sums.connected - sums.connectedSquares) / std::max(kCandidateOf[k].counts[3], kFewestLightPaths);
+      found[pixel_].other[k] += static_cast<float>(sums.value + sums.connected);
     }
   }
   bool WantsSums() const override { return true; }
@@ -167,12 +189,14 @@ class Recorder final : public PathObserver {
       }
       return;
     }
+    const auto own = static_cast<size_t>(GroupOf(path));
     for (size_t k = 0; k < kCandidates; ++k) {
+      const auto& counts = kCandidateOf[k].counts;
       double squares = 0, cubes = 0;
       for (size_t g = 0; g < kTechniqueGroups; ++g) {
-        if (!kTechniquesOf[k].has[g]) continue;
-        squares += path.sums.groups[g].squares;
-        cubes += path.sums.groups[g].cubes;
+        const double squared = counts[g] * counts[g];
+        squares += squared * path.sums.groups[g].squares;
+        cubes += squared * counts[g] * path.sums.groups[g].cubes;
       }
       const double factor = cubes / (squares * squares);
       if (!std::isfinite(factor) || !(squares > 0)) {
@@ -180,22 +204,24 @@ class Recorder final : public PathObserver {
         continue;
       }
       here.square[k] += weighted * value * factor;
-      if (path.connection || !kTechniquesOf[k].has[static_cast<size_t>(GroupOf(path))]) continue;
-      const double reweighted = weighted * known / squares;  // w = r² / Σ r²
+      if (path.connection || counts[own] == 0) continue;
+      const double reweighted = weighted * known * counts[own] * counts[own] / squares;  // w = r² / Σ r²
       if (isSeen) {
         found[pixel].seen[k] += static_cast<float>(reweighted);
-      } else {
-        sums_[k].value += reweighted;
-        sums_[k].squares += reweighted * reweighted;
+        continue;
       }
+      const bool isConnected = GroupOf(path) == TechniqueGroup::Connect;
+      (isConnected ? sums_[k].connected : sums_[k].value) += reweighted;
+      (isConnected ? sums_[k].connectedSquares : sums_[k].squares) += reweighted * reweighted;
     }
   }
 
   const Grid& grid_;
   double filmPixels_, weight_ = 1;
   size_t pixel_ = 0;
+  // Of connections apart, which a sample has only if it has a light path.
   struct Sums {
-    double value = 0, squares = 0;
+    double value = 0, squares = 0, connected = 0, connectedSquares = 0;
   };
   std::array<Sums, kCandidates> sums_;  // of the current camera path
 };
@@ -292,19 +318,42 @@ struct Counted {
   uint64_t stored = 0;  // photons of a pass of vcm
 };
 
-std::array<double, kCandidates> CostsOf(const Counted& counted, double samples) {
+// The costs of a sample of a candidate, in two parts.
+struct CandidateCost {
+  double paths = 0, merging = 0;  // merging in all of the picture; what storing photons costs is in `paths`
+};
+
+// Measured with 1/8 to 2 light paths for each camera path, in six scenes: the weights of bidirectional techniques make a
+// camera path so many times as costly, and the rest of a light path and its connections costs so much of what rays cost
+// on their own.
+constexpr double kCameraPathWithWeights = 1.12, kSideBySide = 0.75;
+
+std::array<CandidateCost, kCandidates> CostsOf(const Counted& counted, double samples) {
   constexpr Costs costs;
   const auto rays = [](const RenderCounts& counts) {
     return static_cast<double>(counts.cameraRays + counts.indirectRays);
   };
   const double direct = static_cast<double>(counted.path.shadowRays);
   const double path = costs.ray * rays(counted.path) + costs.shadowRay * direct;
+  const double lightRays = std::max(rays(counted.bdpt) - rays(counted.path), 0.0);
   const double more = std::max(static_cast<double>(counted.bdpt.shadowRays) - direct, 0.0);
-  const double bdpt = costs.ray * rays(counted.bdpt) + costs.shadowRay * direct + costs.connection * more;
-  const double merging = costs.lookup * static_cast<double>(counted.vcm.lookups) +
-                         costs.found * static_cast<double>(counted.vcm.foundPhotons) +
-                         costs.stored * static_cast<double>(counted.stored);
-  return {path / samples, bdpt / samples, (bdpt + merging) / samples};
+  // Nearly each ray of a light path ends at a vertex that is connected to the lens.
+  const double splats = std::min(more, lightRays);
+  const double light = costs.ray * lightRays + costs.connection * splats;
+  const double connections = costs.connection * (more - splats);
+  std::array<CandidateCost, kCandidates> all{};
+  for (size_t k = 0; k < kCandidates; ++k) {
+    const Candidate& candidate = kCandidateOf[k];
+    const double n = candidate.counts[static_cast<size_t>(TechniqueGroup::Light)];
+    all[k].paths = (n > 0 ? kCameraPathWithWeights * path : path) / samples;
+    all[k].paths += kSideBySide * (n * light + std::min(n, 1.0) * connections) / samples;
+    if (candidate.counts[static_cast<size_t>(TechniqueGroup::Merge)] == 0) continue;
+    all[k].paths += costs.stored * n * static_cast<double>(counted.stored) / samples;
+    all[k].merging = (costs.lookup * static_cast<double>(counted.vcm.lookups) +
+                      costs.found * n * static_cast<double>(counted.vcm.foundPhotons)) /
+                     samples;
+  }
+  return all;
 }
 
 // Combines the records of all chunks into the errors of the candidates.
@@ -350,14 +399,18 @@ class Records {
     for (size_t k = 0; k < candidates.size(); ++k) {
       PilotCandidate& candidate = candidates[k];
       candidate.secondMoments.resize(grid_.Tiles());
+      candidate.tileErrors.resize(grid_.Tiles());
       double squares = 0, squaredMeans = 0;
       ForEachPixel([&](size_t pixel, size_t tile) {
         const Moments& here = pixels[pixel];
         const double brightness = tiles[tile] + here.seen / passes;
         const double scale = 1 / ((brightness * brightness + 0.01 * (mean + seen) * (mean + seen)) * passes);
-        squares += scale * (here.square[k] + here.products[k]);
+        const double square = scale * (here.square[k] + here.products[k]);
         const SquaredMeans& means = squaredMeans_[kCandidates * pixel + k];
-        squaredMeans += scale * (means.other + (seenPairs_ > 0 ? means.seen * passes / seenPairs_ : 0.0));
+        const double squaredMean = scale * (means.other + (seenPairs_ > 0 ? means.seen * passes / seenPairs_ : 0.0));
+        squares += square;
+        squaredMeans += squaredMean;
+        candidate.tileErrors[tile] += (square - squaredMean) / grid_.Pixels();
         candidate.secondMoments[tile] += here.square[k] / (passes * grid_.PixelsOf(tile));
         candidate.missing += here.missing[k] / (passes * grid_.Pixels() * (mean + seen));
       });
@@ -394,12 +447,95 @@ RenderSettings WithAllTechniques(const RenderSettings& settings) {
   return all;
 }
 
+// The mean over the 3 × 3 tiles around each, `times` times.
+std::vector<double> Blurred(std::vector<double> values, const Grid& grid, int times) {
+  for (int i = 0; i < times; ++i) {
+    std::vector<double> blurred(values.size());
+    for (int y = 0; y < grid.tilesY; ++y) {
+      for (int x = 0; x < grid.tilesX; ++x) {
+        double sum = 0;
+        int count = 0;
+        for (int v = std::max(y - 1, 0); v <= std::min(y + 1, grid.tilesY - 1); ++v) {
+          for (int u = std::max(x - 1, 0); u <= std::min(x + 1, grid.tilesX - 1); ++u, ++count)
+            sum += values[static_cast<size_t>(v) * static_cast<size_t>(grid.tilesX) + static_cast<size_t>(u)];
+        }
+        blurred[static_cast<size_t>(y) * static_cast<size_t>(grid.tilesX) + static_cast<size_t>(x)] = sum / count;
+      }
+    }
+    values = std::move(blurred);
+  }
+  return values;
+}
+
+// Where to merge. Σ error · Σ cost is least where in each tile that choice is made which has the least e/E + c/C, with
+// E and C the sums of all choices.
+//
+// `none`, `all`: the same light paths without merging and with it everywhere. Null: everywhere or nowhere is better.
+std::optional<PilotCandidate> MergingInParts(const PilotCandidate& none, const PilotCandidate& all,
+                                             const CandidateCost& cost, const Grid& grid,
+                                             const RenderSettings& settings) {
+  constexpr int kBlurs = 2, kRounds = 8;
+  constexpr double kWorthIt = 0.97;
+  const std::vector<double> without = Blurred(none.tileErrors, grid, kBlurs),
+                            with = Blurred(all.tileErrors, grid, kBlurs);
+  const auto tiles = static_cast<double>(grid.Tiles());
+  double error = all.error, part = 1;
+  std::vector<double> merges(grid.Tiles());
+  for (int round = 0; round < kRounds; ++round) {
+    const double perError = 1 / error, perCost = cost.merging / (cost.paths + part * cost.merging) / tiles;
+    error = part = 0;
+    for (size_t i = 0; i < grid.Tiles(); ++i) {
+      merges[i] = (without[i] - with[i]) * perError > perCost ? 1.0 : 0.0;
+      error += merges[i] > 0 ? with[i] : without[i];
+      part += merges[i] / tiles;
+    }
+    if (!(error > 0)) return std::nullopt;
+  }
+  // Wider by a tile, with a soft edge: the pilot sees a tile by a few samples.
+  for (double& value : merges = Blurred(std::move(merges), grid, 1)) value = std::min(1.0, 3 * value);
+  PilotCandidate mixed = all;
+  mixed.error = part = 0;
+  std::vector<float> mask;
+  for (size_t i = 0; i < grid.Tiles(); ++i) {
+    mixed.tileErrors[i] = merges[i] * all.tileErrors[i] + (1 - merges[i]) * none.tileErrors[i];
+    mixed.error += mixed.tileErrors[i];
+    part += merges[i] / tiles;
+    mask.push_back(static_cast<float>(merges[i]));
+  }
+  if (!(part > 0 && mixed.error > 0)) return std::nullopt;
+  mixed.cost = cost.paths + part * cost.merging;
+  mixed.counts.merging =
+      FilmMask(grid.tilesX, grid.tilesY, {static_cast<float>(settings.width), static_cast<float>(settings.height)},
+               std::move(mask));
+  if (mixed.ErrorTimesCost() > kWorthIt * std::min(none.ErrorTimesCost(), all.ErrorTimesCost())) return std::nullopt;
+  return mixed;
+}
+
 std::unique_ptr<Integrator> Make(const char* name, const RenderScene& scene, const RenderSettings& settings) {
   return IntegratorOf(name).create(
       {scene, settings.width, settings.height, settings.sensor.ImagingRatio(), settings.values});
 }
 
 }  // namespace
+
+std::string PilotCandidate::Describe() const {
+  std::string text = integrator;
+  const int log2 = counts.log2LightPaths;
+  if (log2 > 0) text += ", " + std::to_string(1 << log2) + " light paths for each camera path";
+  if (log2 < 0) text += ", a light path for " + std::to_string(1 << -log2) + " camera paths";
+  const double part = counts.merging.Mean();
+  if (part < 1) text += ", merging in " + std::to_string(std::lround(100 * part)) + " % of the picture";
+  return text;
+}
+
+const PilotCandidate* RenderPilot::Find(const std::string& integrator, int log2LightPaths) const {
+  for (const PilotCandidate& candidate : candidates) {
+    if (candidate.integrator == integrator && candidate.counts.log2LightPaths == log2LightPaths &&
+        candidate.counts.merging.Mean() == 1)
+      return &candidate;
+  }
+  return nullptr;
+}
 
 const PilotCandidate* RenderPilot::Best() const {
   const PilotCandidate* best = nullptr;
@@ -451,14 +587,32 @@ RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, i
   counted.bdpt = passes.Trace(*bdpt, 0, nullptr, none);
   RenderPilot pilot;
   const auto costs = CostsOf(counted, grid.Pixels());
-  for (size_t k = 0; k < kCandidates; ++k) pilot.candidates.push_back({kTechniquesOf[k].name, 0, costs[k], 0, {}});
+  for (size_t k = 0; k < kCandidates; ++k) {
+    PilotCandidate candidate;
+    candidate.integrator = kCandidateOf[k].integrator;
+    candidate.counts.log2LightPaths = kCandidateOf[k].log2LightPaths;
+    candidate.cost = costs[k].paths + costs[k].merging;
+    pilot.candidates.push_back(std::move(candidate));
+  }
   if (!records.SetErrors(passCount, pilot.candidates)) return {};
   if (settings.sampler == SamplerKind::Sobol) {
-    for (size_t k = 0; k < kCandidates; ++k) pilot.candidates[k].error /= kTechniquesOf[k].gainOfSobol;
+    for (size_t k = 0; k < kCandidates; ++k) {
+      pilot.candidates[k].error /= kCandidateOf[k].gainOfSobol;
+      for (double& error : pilot.candidates[k].tileErrors) error /= kCandidateOf[k].gainOfSobol;
+    }
+  }
+  for (size_t k = kFirstOfVcm; k < kCandidates; ++k) {
+    const PilotCandidate& none = pilot.candidates[k - kFirstOfVcm + 1];
+    if (none.missing > kNegligibleLight) continue;
+    if (auto mixed = MergingInParts(none, pilot.candidates[k], costs[k], grid, settings))
+      pilot.candidates.push_back(std::move(*mixed));
   }
   const bool hasAll = settings.values.IsOn("merge") && settings.values.IsOn("connect");
+  // Light paths that are guided, or as many as the settings say, are those of vcm.
+  const bool hasOwnPaths = settings.values.Integer("photons") >= 0;
   std::erase_if(pilot.candidates, [&](const PilotCandidate& candidate) {
-    return (isGuided && candidate.integrator == "bdpt") || (!hasAll && candidate.integrator == "vcm");
+    return (isGuided && candidate.integrator == "bdpt") || (!hasAll && candidate.integrator == "vcm") ||
+           (hasOwnPaths && candidate.integrator == "vcm" && candidate.counts.log2LightPaths != 0);
   });
   return pilot;
 }

@@ -19,6 +19,7 @@ namespace lampyr {
 
 struct PilotCandidate {
   std::string integrator;
+  TechniqueCounts counts;  // of bdpt and vcm
   // Squared error relative to the picture (relMSE) per sample of a pixel, where samples are as well distributed as in a
   // render.
   double error = 0;
@@ -27,6 +28,10 @@ struct PilotCandidate {
   // Of each tile of the image, row by row: the mean over its pixels of Σ E[(w v)²] over the paths of a sample, by all
   // techniques.
   std::vector<double> secondMoments;
+  std::vector<double> tileErrors;  // of each tile: its part of `error`
+
+  // "vcm, a light path for 4 camera paths, merging in 30 % of the picture".
+  std::string Describe() const;
 
   // Error of a picture that takes a second per pixel.
   double ErrorTimesCost() const { return error * cost * 1e-9; }
@@ -36,6 +41,8 @@ struct RenderPilot {
   std::vector<PilotCandidate> candidates;  // empty: the pilot saw no light
   // The candidate with the least error in equal time, of those that find all light; null if there is none.
   const PilotCandidate* Best() const;
+  // The candidate with these light paths that merges everywhere or nowhere; null: none.
+  const PilotCandidate* Find(const std::string& integrator, int log2LightPaths = 0) const;
 };
 
 // Pixels of the pilot on a side of a tile; the pilot has all pixels of an image with at most kMostPilotPixels.

@@ -39,29 +39,31 @@ std::string Short(double value) {
 }
 
 // `pilot`: receives its estimates, if one was needed.
-PlanDecision ChooseIntegrator(const RenderScene& scene, const RenderSettings& settings, const Facts& facts, int threads,
-                              RenderPilot& pilot) {
-  if (facts.lights == 0) return {"integrator", "path", "nothing emits"};
-  if (facts.tracing == 0) return {"integrator", "path", "no light traces light paths"};
+IntegratorChoice ChooseIntegrator(const RenderScene& scene, const RenderSettings& settings, const Facts& facts,
+                                  int threads, RenderPilot& pilot) {
+  if (facts.lights == 0) return {{"integrator", "path", "nothing emits"}, nullptr};
+  if (facts.tracing == 0) return {{"integrator", "path", "no light traces light paths"}, nullptr};
   pilot = RunPilot(scene, settings, threads);
   const PilotCandidate* best = pilot.Best();
   if (!best) {
     const bool foundLight = !pilot.candidates.empty();
-    return {"integrator", "vcm",
-            std::string(foundLight ? "a pilot found light that no other" : "a pilot found no light: vcm") +
-                (foundLight ? " integrator finds" : " has the most techniques to find it by")};
+    return {{"integrator", "vcm",
+             std::string(foundLight ? "a pilot found light that no other" : "a pilot found no light: vcm") +
+                 (foundLight ? " integrator finds" : " has the most techniques to find it by")},
+            nullptr};
   }
-  std::string reason = "least error in equal time, as a pilot estimates it:";
+  std::string reason = best->Describe() + ": least error in equal time, as a pilot estimates it;";
   const char* separator = " ";
   for (const PilotCandidate& other : pilot.candidates) {
-    if (&other == best) continue;
+    // Of all the variants those that have a name.
+    if (&other == best || &other != pilot.Find(other.integrator)) continue;
     const double ratio = other.ErrorTimesCost() / best->ErrorTimesCost();
     reason += separator + other.integrator +
               (other.missing > kNegligibleLight ? " misses " + Short(100 * other.missing) + " % of the light"
-                                                : " has " + Short(ratio) + " × its relMSE");
+                                                : " has " + Short(ratio) + " × the relMSE");
     separator = ", ";
   }
-  return {"integrator", best->integrator, reason};
+  return {{"integrator", best->integrator, reason}, std::make_shared<TechniqueCounts>(best->counts)};
 }
 
 PlanDecision ChooseSelection(const Facts& facts, const RenderSettings& settings) {
@@ -117,7 +119,12 @@ PlanDecision ChooseLayers(const RenderScene& scene) {
 
 }  // namespace
 
-PlanDecision ChooseIntegrator(const RenderScene& scene, const RenderSettings& settings, int threads) {
+void IntegratorChoice::Apply(RenderSettings& settings) const {
+  settings.integrator = decision.choice;
+  settings.counts = counts;
+}
+
+IntegratorChoice ChooseIntegrator(const RenderScene& scene, const RenderSettings& settings, int threads) {
   RenderPilot pilot;
   return ChooseIntegrator(scene, settings, FactsOf(scene), threads > 0 ? threads : HardwareThreads(), pilot);
 }
@@ -125,7 +132,7 @@ PlanDecision ChooseIntegrator(const RenderScene& scene, const RenderSettings& se
 ScenePlan PlanFor(const RenderScene& scene, const RenderSettings& settings) {
   const Facts facts = FactsOf(scene);
   ScenePlan plan;
-  const PlanDecision chosen = ChooseIntegrator(scene, settings, facts, HardwareThreads(), plan.pilot);
+  const PlanDecision chosen = ChooseIntegrator(scene, settings, facts, HardwareThreads(), plan.pilot).decision;
   plan.integrator = chosen.choice;
   if (settings.integrator.empty() || settings.integrator == "auto") {
     plan.decisions.push_back(chosen);

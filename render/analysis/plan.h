@@ -2,6 +2,7 @@
 // scene and a pilot.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,14 @@ struct PlanDecision {
   std::string subject, choice, reason;
 };
 
+struct IntegratorChoice {
+  PlanDecision decision;
+  std::shared_ptr<const TechniqueCounts> counts;  // of bdpt and vcm; null: all techniques once
+
+  // The settings with this integrator.
+  void Apply(RenderSettings& settings) const;
+};
+
 struct ScenePlan {
   std::string integrator;  // that suits the scene; "auto" selects it
   std::vector<PlanDecision> decisions;
@@ -22,7 +31,7 @@ struct ScenePlan {
 
 // The integrator that suits the scene, by a pilot. Deterministic for a scene, its size and its settings.
 // `threads`: 0: all.
-PlanDecision ChooseIntegrator(const RenderScene& scene, const RenderSettings& settings, int threads = 0);
+IntegratorChoice ChooseIntegrator(const RenderScene& scene, const RenderSettings& settings, int threads = 0);
 
 // Deterministic for a scene and its settings.
 ScenePlan PlanFor(const RenderScene& scene, const RenderSettings& settings);

@@ -103,6 +103,31 @@ TEST(BdptWeights, WithARadiusPerPath) {
   EXPECT_GT(asked, 100000);
 }
 
+// Fewer light paths than camera paths, or more; connections and merging left out, always made, or now and then,
+// depending on the place on the film.
+TEST(BdptWeights, WithCounts) {
+  const auto maskOf = [](std::vector<float> values) { return FilmMask(2, 2, {30, 20}, std::move(values)); };
+  const std::vector<TechniqueCounts> all = {
+      {-2, {}, {}},
+      {1, {}, {}},
+      {0, maskOf({0, 1, 0.3f, 0.8f}), maskOf({1, 0.2f, 0, 0.5f})},
+      {-1, maskOf({0.5f, 0.5f, 0.5f, 0.5f}), maskOf({0, 0, 0, 1})},
+      {1, maskOf({0, 0, 0, 0}), maskOf({0.3f, 0.3f, 1, 1})},
+      {-3, maskOf({1, 0, 1, 0}), maskOf({0, 0, 0, 0})},
+  };
+  int merges = 0;
+  for (const AgreementScene& scene : AgreementScenes()) {
+    for (size_t i = 0; i < all.size(); ++i) {
+      const WeightErrors worst = CheckWeights(
+          scene.text, {.paths = 2000, .radius = i % 2 == 0 ? 0.01f : 0.0f, .pixels = i % 2 == 0 ? 0.0f : 2.0f, .counts = all[i]});
+      EXPECT_GE(worst.paths, 2000) << scene.name;
+      ExpectExact((std::string(scene.name) + " with counts " + std::to_string(i)).c_str(), worst);
+      merges += worst.merges;
+    }
+  }
+  EXPECT_GT(merges, 10000);
+}
+
 // Mirrors, smooth glass, what only passes through, and mixes that are now matte and now a mirror: deltas in all places
 // of a path.
 TEST(BdptWeights, WithDeltas) {

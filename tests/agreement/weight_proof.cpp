@@ -29,6 +29,7 @@ std::string WeightErrors::WhatIsWrong() const {
   if (!emission.Passes()) return "emission";
   if (!lens.Passes()) return "lens";
   if (!mergesPerDensity.Passes()) return "merges";
+  if (!connections.Passes()) return "connections";
   if (!refraction.Passes()) return "refraction";
   return "";
 }
@@ -49,13 +50,13 @@ class KeptLightPaths {
     const size_t count = path.vertices.Count();
     photons.Add(last, count);
     const auto vertices = path.vertices.First(count);
-    paths_[KeyOf(last.toPrevious, photons.Photons().back().diffuse, last.weight.connect,
+    paths_[KeyOf(last.toPrevious, photons.Photons().back().diffuse, photons.Photons().back().weight,
                  static_cast<float>(last.previousSolidAnglePerArea.value), count)] = {
         {vertices.begin(), vertices.end()}, end};
   }
   const KeptPath& PathOf(const Photon& photon) const {
     return paths_.at(
-        KeyOf(photon.toPrevious, photon.flux, photon.weight.connect, photon.previousSolidAnglePerArea, photon.depth));
+        KeyOf(photon.toPrevious, photon.flux, photon.weight, photon.previousSolidAnglePerArea, photon.depth));
   }
 
   PhotonList photons;
@@ -63,16 +64,17 @@ class KeptLightPaths {
   PathEnds ends;
 
  private:
-  using Key = std::array<double, 9>;
-  static Key KeyOf(const Vector3& d, const Color& c, double connect, float edge, size_t depth) {
-    return {d.x, d.y, d.z, c.r, c.g, c.b, connect, edge, static_cast<double>(depth)};
+  using Key = std::array<double, 10>;
+  static Key KeyOf(const Vector3& d, const Color& c, const PhotonWeight& weight, float edge, size_t depth) {
+    return {d.x, d.y, d.z, c.r, c.g, c.b, weight.endsEarlier, weight.second, edge, static_cast<double>(depth)};
   }
   std::map<Key, KeptPath> paths_;
 };
 
 class KeepsPaths final : public WeightedLightPath {
  public:
-  KeepsPaths(const SampleContext& context, KeptLightPaths& kept) : WeightedLightPath(context, true), kept_(kept) {}
+  KeepsPaths(const SampleContext& context, double lightPaths, KeptLightPaths& kept)
+      : WeightedLightPath(context, true, lightPaths), kept_(kept) {}
 
  private:
   void OnWeighted(const LightPath& path) override {
@@ -97,12 +99,18 @@ double CosineAtGeometry(const PathVertex& vertex, const Vector3& direction) {
 class WeightChecker final : public PathObserver {
  public:
   // `pixels`: WeightProof.
-  WeightChecker(const RenderScene& scene, const KeptLightPaths& kept, double mergesPerDensity, double pixels)
-      : scene_(scene), kept_(kept), mergesPerDensity_(mergesPerDensity), pixels_(pixels) {}
+  WeightChecker(const RenderScene& scene, const KeptLightPaths& kept, double mergesPerDensity, const WeightProof& proof)
+      : scene_(scene),
+        kept_(kept),
+        mergesPerDensity_(mergesPerDensity),
+        pixels_(static_cast<double>(proof.pixels)),
+        counts_(proof.counts),
+        isCounted_(counts_.log2LightPaths != 0 || counts_.connecting.Mean() < 1 || counts_.merging.Mean() < 1) {}
 
   // Of the sample that makes the paths that follow.
-  void StartSample(const Ray& cameraRay, float time) {
+  void StartSample(const Ray& cameraRay, const Point2& film, float time) {
     cameraRay_ = cameraRay;
+    start_ = film;
     time_ = time;
   }
   void ObserveMerge(const ConnectedPath& path, const Photon& photon) override {
@@ -115,7 +123,7 @@ class WeightChecker final : public PathObserver {
     ++worst_.merges;
     Observe(merged);
   }
-  bool WantsSums() const override { return true; }
+  bool WantsSums() const override { return !isCounted_; }
   void Observe(const ConnectedPath& path) override {
     const FullPath full = Unfold(path);
     const std::vector<double> expected = WeightsByDensities(full), recursive = WeightsByRecursion(full);
@@ -128,7 +136,7 @@ class WeightChecker final : public PathObserver {
     }
     worst_.sum = std::max(worst_.sum, std::abs(sum - 1));
     worst_.reported = std::max(worst_.reported, std::abs(path.weight - expected[static_cast<size_t>(full.technique)]));
-    if (path.merging && full.SurfaceCount() > 0) CompareSums(path.sums, SumsByDensities(full));
+    if (!isCounted_ && path.merging && full.SurfaceCount() > 0) CompareSums(path.sums, SumsByDensities(full));
     CheckInputs(path);
   }
   const WeightErrors& Result() const { return worst_; }
@@ -154,7 +162,12 @@ class WeightChecker final : public PathObserver {
   }
   void CheckInputs(const ConnectedPath& path) {
     if (path.light.empty() && path.camera.empty()) return;
-    if (path.s + path.t > 2) CheckMerging(path);
+    if (path.s + path.t > 2) {
+      CheckMerging(path);
+      const auto connections = static_cast<double>(counts_.connecting.At(FilmOf(path)));
+      const double lightPaths = counts_.LightPaths();
+      worst_.connections.Note(path.connectionCount, Sqr(lightPaths > 1 ? connections / lightPaths : connections));
+    }
     CheckLens(path);
     if (!path.isMerged) CheckLightEnd(path);
     for (size_t i = 0; i + 1 < path.camera.size(); ++i) {
@@ -169,10 +182,16 @@ class WeightChecker final : public PathObserver {
     }
   }
 
+  const Point2& FilmOf(const ConnectedPath& path) const {
+    return path.connection ? path.connection->camera.film : start_;
+  }
+
   // Whichever technique made the path, the radius is that of its first vertex from the camera without a delta.
   void CheckMerging(const ConnectedPath& path) {
+    const double expected = mergesPerDensity_ * static_cast<double>(counts_.merging.At(FilmOf(path))) /
+                            counts_.LightPaths();
     if (pixels_ == 0) {
-      worst_.mergesPerDensity.Note(path.merging.perDensity, mergesPerDensity_);
+      worst_.mergesPerDensity.Note(path.merging.perDensity, expected);
       return;
     }
     const PathVertex& vertex = path.camera.empty() ? path.light.back() : path.camera.front();
@@ -186,7 +205,7 @@ class WeightChecker final : public PathObserver {
         length += glm::distance(Vector3d(path.camera[i].point.position), Vector3d(path.camera[i + 1].point.position));
       area *= length / first * length / first;
     }
-    if (area > 0) worst_.mergesPerDensity.Note(path.merging.perDensity, mergesPerDensity_ * pixels_ * pixels_ * area);
+    if (area > 0) worst_.mergesPerDensity.Note(path.merging.perDensity, expected * pixels_ * pixels_ * area);
   }
   // Area of a pixel around film_ on the plane of a vertex, turned towards the camera, by rays through the corners of a
   // square. 0: unknown.
@@ -264,7 +283,7 @@ class WeightChecker final : public PathObserver {
                                                   static_cast<double>(e.pdfDirect.value) *
                                                   static_cast<double>(e.solidAngleToArea));
     const double chosen = static_cast<double>(lighting.EmissionSelectionProbability(path.end.light).value);
-    worst_.emission.Note(path.end.emission.value, chosen * static_cast<double>(e.pdfEmit.value) *
+    worst_.emission.Note(path.end.emission.value, counts_.LightPaths() * chosen * static_cast<double>(e.pdfEmit.value) *
                                                       static_cast<double>(e.pdfEmitDirection.value) * cosine /
                                                       (distance * distance));
   }
@@ -286,6 +305,9 @@ class WeightChecker final : public PathObserver {
   const RenderScene& scene_;
   const KeptLightPaths& kept_;
   const double mergesPerDensity_, pixels_;
+  const TechniqueCounts counts_;
+  const bool isCounted_;
+  Point2 start_;
   Ray cameraRay_;
   float time_ = 0;
   Point2 film_;
@@ -302,13 +324,14 @@ struct Photons {
   PhotonPass gather;
 };
 
-void TracePhotons(const RenderScene& scene, int maxDepth, float radius, Sampler& sampler, Photons& photons) {
+void TracePhotons(const RenderScene& scene, int maxDepth, float radius, double lightPaths, Sampler& sampler,
+                  Photons& photons) {
   photons.gather.lightPaths = kLightPaths;
   photons.gather.radius = radius;
   RenderCounts counts;
   LightPath path;
   const SampleContext context{scene, sampler, 0.5f, counts};
-  KeepsPaths visitor(context, photons.kept);
+  KeepsPaths visitor(context, lightPaths, photons.kept);
   for (uint32_t i = 0; i < kLightPaths; ++i) {
     sampler.StartPixelSample(1, 0, i);
     photons.kept.photons.StartPath();
@@ -335,18 +358,20 @@ WeightErrors CheckWeights(const std::string& sceneText, const WeightProof& proof
   const int width = built.settings.width, height = built.settings.height;
   settings.filmPixels = static_cast<double>(width) * static_cast<double>(height);
   settings.merges = proof.radius > 0 || proof.pixels > 0;
+  settings.counts = proof.counts;
   settings.photons.radius = static_cast<double>(proof.radius * sphere.radius);
   const auto integrator = MakeBidirectionalIntegrator(settings);
   Sampler sampler(SamplerKind::Independent, 5);
   Photons photons;
   double mergesPerDensity = 0;
   if (settings.merges) {
-    TracePhotons(scene, settings.maxDepth, proof.radius * sphere.radius, sampler, photons);
+    TracePhotons(scene, settings.maxDepth, proof.radius * sphere.radius, proof.counts.LightPaths(),
+                 sampler, photons);
     photons.gather.radiusScale = proof.pixels;
     const double radius = proof.radius > 0 ? static_cast<double>(photons.gather.radius) : 1.0;
     mergesPerDensity = kLightPaths * 3.14159265358979323846 * radius * radius;
   }
-  WeightChecker checker(scene, photons.kept, mergesPerDensity, static_cast<double>(proof.pixels));
+  WeightChecker checker(scene, photons.kept, mergesPerDensity, proof);
   RenderCounts counts;
   SplatList splats({0, 0}, {static_cast<float>(width), static_cast<float>(height)}, 1);
   for (uint32_t index = 0; checker.Result().paths < proof.paths && index < 100000; ++index) {
@@ -359,8 +384,9 @@ WeightErrors CheckWeights(const std::string& sceneText, const WeightProof& proof
     const Point2 film(u.x * static_cast<float>(width), u.y * static_cast<float>(height));
     const CameraRay ray = scene.camera->GenerateRay(film, lens, time);
     if (ray.weight == 0) continue;
-    checker.StartSample(ray.ray, time);
+    checker.StartSample(ray.ray, film, time);
     SampleContext context{scene, sampler, time, counts};
+    context.film = film;
     context.splats = &splats;
     context.observer = &checker;
     context.gather = settings.merges ? &photons.gather : nullptr;

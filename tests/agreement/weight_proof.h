@@ -8,6 +8,8 @@
 #include <string>
 #include <utility>
 
+#include "integrators/walk/technique_counts.h"
+
 namespace lampyr::test {
 
 // Of one kind of input: how many were asked for anew, and how many of them are off by more than 1 %.
@@ -28,7 +30,7 @@ struct WeightErrors {
   double groups = 0;     // between the integrator's sums over groups of techniques and those of explicit densities
   int sums = 0;          // compared
   int merges = 0;
-  InputCheck direct, emission, lens, mergesPerDensity, refraction;
+  InputCheck direct, emission, lens, mergesPerDensity, connections, refraction;
 
   // "": the weights are exact. Else what is not.
   std::string WhatIsWrong() const;
@@ -42,6 +44,7 @@ struct WeightProof {
   bool aimed = false;  // photons: at two balls in the scene's middle
   float pixels = 0;    // if `radius` is 0: photons are gathered within so many pixels, seen at the first hit
   bool stopsAtFirst = false;
+  TechniqueCounts counts{};
 };
 WeightErrors CheckWeights(const std::string& sceneText, const WeightProof& proof);
 

@@ -164,14 +164,18 @@ TEST(PhotonMap, KeepsWhatAPhotonCarries) {
   vertex.toPrevious = Vector3(0, 0, 1);
   vertex.diffuse = Color(1, 2, 3);
   vertex.specular = Color(4, 5, 6);
-  vertex.weight = {2, 3};
+  vertex.weight = {{0, 3}, {0.25, 2}};
+  const SubpathDensities densities{2, 0};  // of the vertex: 1/2² = 0.25
   vertex.previousSolidAnglePerArea = {0.5};
   PhotonList list;
   list.StartPath();
   list.Add(vertex, 3);
   const PhotonMap map(std::span(&list, 1), 1);
-  EXPECT_EQ(2, map[0].weight.connect);
-  EXPECT_EQ(3, map[0].weight.earlier);
+  const PartialWeight weight = map[0].weight.At(densities, map[0].depth);
+  EXPECT_EQ(0, weight.ends.last);
+  EXPECT_EQ(3, weight.ends.earlier);
+  EXPECT_EQ(0.25, weight.connections.last);
+  EXPECT_EQ(2, weight.connections.earlier);
   EXPECT_DOUBLE_EQ(0.5 * 11, map[0].PreviousReverse(SolidAngleDensity(11)).value);
   EXPECT_EQ(Color(1, 2, 3), map[0].flux);
   EXPECT_EQ(Color(4, 5, 6), map.SpecularFlux(map[0]));

@@ -1,0 +1,31 @@
+#include "integrators/walk/technique_counts.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace lampyr {
+
+FilmMask::FilmMask(int width, int height, const Point2& film, std::vector<float> values)
+    : width_(width),
+      height_(height),
+      cellsPerPixel_(static_cast<float>(width) / film.x, static_cast<float>(height) / film.y),
+      values_(std::move(values)) {}
+
+double FilmMask::Mean() const {
+  if (values_.empty()) return 1;
+  return std::accumulate(values_.begin(), values_.end(), 0.0) / static_cast<double>(values_.size());
+}
+
+float FilmMask::Interpolate(const Point2& film) const {
+  const float x = std::clamp(film.x * cellsPerPixel_.x - 0.5f, 0.0f, static_cast<float>(width_ - 1));
+  const float y = std::clamp(film.y * cellsPerPixel_.y - 0.5f, 0.0f, static_cast<float>(height_ - 1));
+  const int x0 = std::min(static_cast<int>(x), std::max(width_ - 2, 0)),
+            y0 = std::min(static_cast<int>(y), std::max(height_ - 2, 0));
+  const int x1 = std::min(x0 + 1, width_ - 1), y1 = std::min(y0 + 1, height_ - 1);
+  const auto at = [this](int i, int j) { return values_[static_cast<size_t>(j) * static_cast<size_t>(width_) + i]; };
+  const float u = x - static_cast<float>(x0), v = y - static_cast<float>(y0);
+  return std::clamp(std::lerp(std::lerp(at(x0, y0), at(x1, y0), u), std::lerp(at(x0, y1), at(x1, y1), u), v), 0.0f,
+                    1.0f);
+}
+
+}  // namespace lampyr

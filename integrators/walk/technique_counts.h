@@ -1,0 +1,48 @@
+// How often a bidirectional integrator uses its techniques: anything from bdpt with few light paths to vcm
+// ([Grittmann22]). A technique that is used n times for each camera path counts n times in all weights, and each use
+// contributes 1/n.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "math/vec.h"
+
+namespace lampyr {
+
+// A probability by place on the film, interpolated between the centres of the cells of a grid.
+class FilmMask {
+ public:
+  // 1 everywhere.
+  FilmMask() = default;
+  // `film`: size of the film, pixels; `values`: width · height of them, row by row, in [0,1].
+  FilmMask(int width, int height, const Point2& film, std::vector<float> values);
+
+  float At(const Point2& film) const { return values_.empty() ? 1.0f : Interpolate(film); }
+  // Of cells that are not 0 and not 1 the value counts as a part.
+  double Mean() const;
+
+ private:
+  float Interpolate(const Point2& film) const;
+
+  int width_ = 0, height_ = 0;
+  Vector2 cellsPerPixel_{0.0f};
+  std::vector<float> values_;
+};
+
+struct TechniqueCounts {
+  // Light paths for each camera path, as a power of two: -3 … 1. Of fewer than one, every pixel has one in
+  // 1/LightPaths() of its samples.
+  int log2LightPaths = 0;
+  // Probabilities with which the vertices of a camera path are connected to a light path, if the sample has one, and
+  // merged with photons.
+  FilmMask connecting, merging;
+
+  double LightPaths() const { return log2LightPaths < 0 ? 1.0 / (1 << -log2LightPaths) : 1 << log2LightPaths; }
+  // Connections of a camera path to each light path, on average: with one of two.
+  double ConnectionsPerLightPath(const Point2& film) const {
+    return static_cast<double>(connecting.At(film)) / std::max(1.0, LightPaths());
+  }
+};
+
+}  // namespace lampyr
