@@ -543,7 +543,12 @@ const PilotCandidate* RenderPilot::Best() const {
     if (candidate.missing > kNegligibleLight) continue;
     if (!best || candidate.ErrorTimesCost() < best->ErrorTimesCost()) best = &candidate;
   }
-  return best;
+  // Path tracing is the plainest, and the estimates are no better than this.
+  constexpr double kMargin = 1.05;
+  const PilotCandidate* path = Find("path");
+  const bool isClose = best && path && path->missing <= kNegligibleLight &&
+                       path->ErrorTimesCost() < kMargin * best->ErrorTimesCost();
+  return isClose ? path : best;
 }
 
 RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, int threads, int passCount) {

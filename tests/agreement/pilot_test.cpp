@@ -141,37 +141,45 @@ const std::string kAreaLight =
     "-0.4  "
     "0.4 1.9 -0.4  -0.4 1.9 0.4  0.4 1.9 0.4 ] AttributeEnd\n";
 
-// relMSE of one sample per pixel, measured over renders, with the mean brightness of each tile as the pilot has it.
-double MeasureError(const BuiltScene& built, const PilotCandidate& candidate) {
+// Pixels of a candidate, with one sample each, over many renders.
+std::vector<Estimate> Render(const BuiltScene& built, const PilotCandidate& candidate, int renders) {
   RenderSettings settings = built.settings;
   settings.integrator = candidate.integrator;
   settings.counts = std::make_shared<TechniqueCounts>(candidate.counts);
   const auto made = MakeIntegrator(built.scene, settings);
-  constexpr int kRenders = 400;
   std::vector<Estimate> pixels(kSide * kSide);
-  for (int render = 0; render < kRenders; ++render) {
+  for (int render = 0; render < renders; ++render) {
     settings.seed = static_cast<uint64_t>(render + 1);
     Film film(kSide, kSide, settings.crop);
     StopConditions stop;
     stop.samplesPerPixel = 1;
-    Render(built.scene, *made, settings, stop, 1, film, [](const RenderOutcome&, double) {});
+    lampyr::Render(built.scene, *made, settings, stop, 1, film, [](const RenderOutcome&, double) {});
     const Image image = film.Develop();
     for (size_t i = 0; i < pixels.size(); ++i) {
       const int x = static_cast<int>(i) % kSide, y = static_cast<int>(i) / kSide;
       pixels[i].Add(static_cast<double>(image.At(x, y, 0) + image.At(x, y, 1) + image.At(x, y, 2)) / 3);
     }
   }
-  const auto tileOf = [](size_t i) { return i / kSide / kPilotTile * kTiles + i % kSide / kPilotTile; };
+  return pixels;
+}
+
+size_t TileOf(size_t pixel) {
+  return pixel / kSide / kPilotTile * kTiles + pixel % kSide / kPilotTile;
+}
+
+// relMSE of one sample per pixel, with the mean brightness of each tile as the pilot has it.
+double MeasureError(const BuiltScene& built, const PilotCandidate& candidate) {
+  const std::vector<Estimate> pixels = Render(built, candidate, 400);
   std::vector<double> tiles(kTiles * kTiles);
   double mean = 0, error = 0;
   for (size_t i = 0; i < pixels.size(); ++i) {
     mean += pixels[i].Mean() / static_cast<double>(pixels.size());
-    tiles[tileOf(i)] += pixels[i].Mean() / (kPilotTile * kPilotTile);
+    tiles[TileOf(i)] += pixels[i].Mean() / (kPilotTile * kPilotTile);
   }
   for (size_t i = 0; i < pixels.size(); ++i) {
     const Estimate& pixel = pixels[i];
-    const double variance = (pixel.squares / kRenders - pixel.Mean() * pixel.Mean()) * kRenders / (kRenders - 1);
-    error += variance / (tiles[tileOf(i)] * tiles[tileOf(i)] + 0.01 * mean * mean) / static_cast<double>(pixels.size());
+    const double variance = pixel.Variance() * pixel.count * pixel.count / (pixel.count - 1);
+    error += variance / (tiles[TileOf(i)] * tiles[TileOf(i)] + 0.01 * mean * mean) / static_cast<double>(pixels.size());
   }
   return error;
 }
@@ -196,6 +204,71 @@ TEST(Pilot, KnowsTheErrors) {
                   measured);
       EXPECT_NEAR(candidate.error / measured, 1, 0.35) << candidate.Describe();
       EXPECT_EQ(candidate.missing, 0) << candidate.Describe();
+    }
+  }
+}
+
+// Whatever the counts, the mean is that of bdpt; with splats that the pixel filter carries over the borders of
+// a mask, motion, and a camera with a lens.
+TEST(Pilot, CountsDoNotChangeTheMean) {
+  const auto maskOf = [](std::vector<float> values) { return FilmMask(2, 2, {kSide, kSide}, std::move(values)); };
+  const std::vector<TechniqueCounts> all = {
+      {0, {}, {}},
+      {-3, {}, {}},
+      {-1, {}, {}},
+      {1, {}, {}},
+      {0, maskOf({0, 1, 0.3f, 0.8f}), maskOf({1, 0.2f, 0, 0.5f})},
+      {-2, maskOf({0.5f, 0, 1, 0.5f}), maskOf({0, 0, 0.4f, 1})},
+      {1, maskOf({0, 0.5f, 0, 0}), maskOf({0.3f, 0.3f, 1, 1})},
+  };
+  const std::string head = "path\" \"integer maxdepth\" [ 3 ] \"float unused\" [ 0 ] \"string lightsampler\" \"power";
+  const std::string moving =
+      "AttributeBegin ActiveTransform EndTime Translate 0.3 0 0 ActiveTransform All " + kBall + "AttributeEnd\n";
+  const std::string above = "AttributeBegin Translate 0 0.6 0\n" + kAreaLight + "AttributeEnd\n";  // not seen itself
+  struct Case {
+    const char* name;
+    std::string filter, camera, things;
+  };
+  const std::vector<Case> cases = {
+      {"still", "PixelFilter \"gaussian\"\n", "", above + kBall},
+      {"moving", "", "", above + moving},
+      {"lens", "PixelFilter \"triangle\"\n", "\"float lensradius\" 0.05 \"float focaldistance\" 3 ", above + kBall},
+  };
+  for (const Case& c : cases) {
+    std::string text = Scene(head, c.things);
+    text.replace(text.find(" \"float unused\" [ 0 ]"), 21, "");
+    text.insert(text.find("Camera \"perspective\" ") + 21, " " + c.camera);
+    const std::string view = "LookAt 0 1 -3  0 0.8 0  0 1 0";  // not of corners, where merging blurs
+    text.replace(text.find(view), view.size(), "LookAt 0.3 1.5 0  0.3 0 0  0 0 1");
+    const BuiltScene built = Build(c.filter + text);
+    constexpr int kRenders = 300;
+    PilotCandidate candidate;
+    candidate.integrator = "bdpt";
+    const std::vector<Estimate> reference = Render(built, candidate, 6 * kRenders);
+    for (const char* integrator : {"bdpt", "vcm"}) {
+      for (size_t i = 0; i < all.size(); ++i) {
+        candidate.integrator = integrator;
+        candidate.counts = all[i];
+        const std::vector<Estimate> pixels = Render(built, candidate, kRenders);
+        std::vector<double> difference(kTiles * kTiles), variance(kTiles * kTiles), mean(kTiles * kTiles);
+        for (size_t k = 0; k < pixels.size(); ++k) {
+          difference[TileOf(k)] += pixels[k].Mean() - reference[k].Mean();
+          variance[TileOf(k)] += pixels[k].Variance() + reference[k].Variance();
+          mean[TileOf(k)] += reference[k].Mean();
+        }
+        double sum = 0, sumVariance = 0, sumMean = 0;
+        for (size_t t = 0; t < mean.size(); ++t) {
+          EXPECT_LT(std::abs(difference[t]), 5 * std::sqrt(variance[t]) + 0.01 * mean[t])
+              << c.name << ", " << integrator << ", counts " << i << ", tile " << t;
+          sum += difference[t];
+          sumVariance += variance[t];
+          sumMean += mean[t];
+        }
+        EXPECT_LT(std::abs(sum), 4.5 * std::sqrt(sumVariance) + 0.002 * sumMean)
+            << c.name << ", " << integrator << ", counts " << i;
+        std::printf("[   info   ] %-6s %-5s counts %zu: mean %+.2f +- %.2f %%\n", c.name, integrator, i,
+                    100 * sum / sumMean, 100 * std::sqrt(sumVariance) / sumMean);
+      }
     }
   }
 }
