@@ -187,6 +187,8 @@ struct RenderCommand {
                    "Render one part of the samples, e.g. 2/8, for `lampyr merge`; default of --output: OUT.2-of-8.exr")
         ->type_name("I/N");
     app.add_option("--stats", options.stats, "Write statistics to this JSON file")->type_name("FILE");
+    app.add_flag("--auto-layers", options.autoLayers,
+                 "Add layers of what --integrator auto decided: auto.lightPaths, auto.connecting, auto.merging");
     app.add_option("--strategy-images", options.strategyImages,
                    "Write what each technique of bdpt contributes, weighted and not, to this folder")
         ->type_name("FOLDER");

@@ -268,6 +268,28 @@ void CheckOptions(const RenderOptions& options, const RenderSettings& settings,
   MakeFolder(*options.strategyImages, "--strategy-images");
 }
 
+// What auto decided, for each pixel of the crop: light paths for each camera path, and the probabilities with which it
+// is connected to them and merged with photons.
+Image AutoLayers(const RenderSettings& settings) {
+  if (!settings.counts) {
+    throw UsageError("--auto-layers: the integrator is named, " + settings.integrator +
+                     ": auto decides nothing; --integrator auto lets it decide");
+  }
+  const TechniqueCounts& counts = *settings.counts;
+  const bool connects = settings.integrator != "path", merges = settings.integrator == "vcm";
+  const PixelRect& crop = settings.crop;
+  Image image(crop.Width(), crop.Height(), {"auto.lightPaths", "auto.connecting", "auto.merging"});
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const Point2 center(static_cast<float>(crop.x0 + x) + 0.5f, static_cast<float>(crop.y0 + y) + 0.5f);
+      image.At(x, y, 0) = connects ? static_cast<float>(counts.LightPaths()) : 0.0f;
+      image.At(x, y, 1) = connects ? counts.connecting.At(center) : 0.0f;
+      image.At(x, y, 2) = merges ? counts.merging.At(center) : 0.0f;
+    }
+  }
+  return image;
+}
+
 // One render, from the scene to its files.
 class RenderJob {
  public:
@@ -292,7 +314,7 @@ class RenderJob {
   std::unique_ptr<Integrator> integrator_;
   Shard shard_;
   PartHeader header_;
-  Image firstHit_;  // layers of what is seen first; without channels: not wanted
+  Image firstHit_;  // layers of what is seen first, and of what auto decided; without channels: not wanted
   RenderReport report_;
 };
 
@@ -320,6 +342,7 @@ void RenderJob::Describe() {
   report_.parseSeconds = loaded_.parseSeconds;
   report_.buildSeconds = loaded_.buildSeconds;
   report_.integrator = settings_.integrator;
+  report_.counts = settings_.counts;
   for (const Setting* setting : IntegratorOf(settings_.integrator).settings)
     report_.settings.emplace_back(setting->name, settings_.values.Value(setting->name));
   report_.seed = settings_.seed;
@@ -389,6 +412,14 @@ int RenderJob::Run() {
   }
   if (!options_.quiet) PrintHints();
   if (settings_.firstHit) MakeFirstHitLayers();
+  if (options_.autoLayers) {
+    Image decided = AutoLayers(settings_);
+    if (firstHit_.channels.empty()) {
+      firstHit_ = std::move(decided);
+    } else {
+      AppendChannels(firstHit_, decided);
+    }
+  }
   ProgressiveRender render(built_.scene, *integrator_, settings_, report_.threads, film, techniques.get(),
                            shard_.first);
   if (options_.resume) GoOn(render);

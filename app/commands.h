@@ -26,6 +26,7 @@ struct RenderOptions {
   int threads = 0;                    // 0: all
   std::optional<std::filesystem::path> stats;
   std::optional<std::filesystem::path> strategyImages;  // a folder
+  bool autoLayers = false;                              // layers of what auto decided
   std::optional<double> checkpointSeconds;              // --checkpoint
   bool resume = false;
   std::optional<std::pair<int, int>> shard;  // which of how many, from 1

@@ -66,6 +66,11 @@ std::string ToJson(const RenderReport& report) {
         {"cpu", CpuSeconds()}}},
       {"peakMemoryMiB", PeakMemoryMiB()},
   };
+  if (report.counts) {
+    json["auto"] = {{"lightPaths", report.integrator == "path" ? 0.0 : report.counts->LightPaths()},
+                    {"connecting", report.counts->connecting.Mean()},
+                    {"merging", report.counts->merging.Mean()}};
+  }
   if (const std::optional<PhotonStatistics>& photons = outcome.photons) {
     json["photons"] = {{"passes", photons->passes},
                        {"stored", photons->photons},

@@ -13,6 +13,7 @@ namespace lampyr {
 struct RenderReport {
   std::string scene, sceneHash, integrator;
   std::vector<std::pair<std::string, SettingValue>> settings;  // of the integrator
+  std::shared_ptr<const TechniqueCounts> counts;  // that auto decided; null: it did not
   uint64_t seed = 0;
   int threads = 1, width = 0, height = 0;
   int64_t pixels = 0;

@@ -19,12 +19,10 @@ namespace lampyr {
 
 namespace {
 
-constexpr const char* kAuto = "auto";
-
 ComparisonPlan MakePlan(const CompareOptions& options) {
   ComparisonPlan plan;
   for (const std::string& name : options.integrators) {
-    if (name != kAuto) VariantOf({}, name);
+    VariantOf({}, name);
     if (std::find(plan.integrators.begin(), plan.integrators.end(), name) != plan.integrators.end()) {
       throw UsageError("--integrators: " + name + " is named twice");
     }
@@ -206,23 +204,12 @@ ComparisonResults Describe(const CompareOptions& options, const LoadedScene& loa
   return results;
 }
 
-// "auto" becomes the integrator that it chooses for the scene, once.
-void ResolveAuto(const RenderSettings& settings, bool quiet, ComparisonPlan& plan) {
-  const auto found = std::find(plan.integrators.begin(), plan.integrators.end(), kAuto);
-  if (found == plan.integrators.end()) return;
-  if (!quiet) std::printf("auto is %s here\n", settings.integrator.c_str());
-  if (std::count(plan.integrators.begin(), plan.integrators.end(), settings.integrator) > 0) {
-    plan.integrators.erase(found);
-  } else {
-    *found = settings.integrator;
-  }
-}
-
 int CompareLoaded(const CompareOptions& options, ComparisonPlan plan, const LoadedScene& loaded) {
   const RenderSettings& settings = loaded.built.settings;
-  ResolveAuto(settings, options.quiet, plan);
+  const bool hasAuto = std::find(plan.integrators.begin(), plan.integrators.end(), kAuto) != plan.integrators.end();
+  if (hasAuto && !options.quiet) std::printf("auto: %s\n", settings.counts->Describe(settings.integrator).c_str());
   for (const std::string& name : plan.integrators) {
-    const std::string refusal = IntegratorRefusal(loaded.built.scene, VariantOf({}, name).integrator);
+    const std::string refusal = IntegratorRefusal(loaded.built.scene, VariantOf(settings, name).integrator);
     if (!refusal.empty()) throw UsageError("--integrators: " + name + ": " + refusal);
   }
   const std::filesystem::path folder =
@@ -235,7 +222,7 @@ int CompareLoaded(const CompareOptions& options, ComparisonPlan plan, const Load
   const ComparedScene scene(loaded.built, results.threads, FinishOnInterrupt());
   if (!options.quiet) {
     for (const std::string& name : plan.integrators) {
-      for (const std::string& hint : IntegratorHints(loaded.built.scene, name)) {
+      for (const std::string& hint : IntegratorHints(loaded.built.scene, VariantOf(settings, name).integrator)) {
         std::fprintf(stderr, "hint: %s: %s\n", name.c_str(), hint.c_str());
       }
     }

@@ -6,6 +6,7 @@
 
 #include "app/compare/estimate.h"
 #include "film/metrics.h"
+#include "render/settings/integrator_choice.h"
 
 namespace lampyr {
 
@@ -158,7 +159,7 @@ ComparedIntegrator Describe(const Run& run, const ComparedScene& scene, const Co
                             const Reference& reference, ComparisonResults& results) {
   ComparedIntegrator described;
   described.name = run.integrator;
-  described.hints = IntegratorHints(scene.Built().scene, run.integrator);
+  described.hints = IntegratorHints(scene.Built().scene, VariantOf(scene.Built().settings, run.integrator).integrator);
   std::vector<double> biases;
   for (const Repeat& repeat : run.repeats) biases.push_back(MeanValue(repeat.last) / reference.facts.mean - 1);
   described.bias = MeanOf(biases, reference.noise.meanError);

@@ -76,8 +76,8 @@ Merging BidirectionalSample::MergingAt(double distance, double footprint, const 
   if (!(probability > 0)) return {};
   // Parallel rays have no angle: what a camera with a field of view of 53 degrees has where the image is as wide.
   if (context.scene.camera->ConnectsByDirection()) distance = std::sqrt(footprint * settings.filmPixels);
-  return Merging::At(static_cast<double>(MergeRadiusAt(footprint)), distance, context.gather->lightPaths,
-                     lightPaths, settings.filmPixels, probability);
+  return Merging::At(static_cast<double>(MergeRadiusAt(footprint)), distance, context.gather->lightPaths, lightPaths,
+                     settings.filmPixels, probability);
 }
 
 AreaDensity DensityAtLens(const Camera& camera, const Ray& ray, float geometryTerm, double distanceSquared) {

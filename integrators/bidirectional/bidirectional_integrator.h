@@ -14,9 +14,9 @@
 
 #include <memory>
 
-#include "integrators/walk/technique_counts.h"
 #include "integrators/walk/integrator.h"
 #include "integrators/walk/shadow_roulette.h"
+#include "integrators/walk/technique_counts.h"
 
 namespace lampyr {
 

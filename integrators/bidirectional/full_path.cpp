@@ -232,8 +232,7 @@ std::vector<double> WeightsByRecursion(const FullPath& path) {
   const PathDensities whole = DensitiesOf(path);
   const auto of = [&](double merging) { return path.merging ? merging : 0.0; };
   const auto weigh = [&](int s) {
-    if (s == 0) return HitWeight(end, camera(1), {isDelta(1), F(2)}, B(0), connections,
-                       of(whole.ForLight(B(0).value)));
+    if (s == 0) return HitWeight(end, camera(1), {isDelta(1), F(2)}, B(0), connections, of(whole.ForLight(B(0).value)));
     if (s == 1) {
       return NextEventWeight(end, camera(1), end.canBeHit ? B(0) : AreaDensity(), F(2), connections,
                              of(whole.ForLight(end.direct.value)));

@@ -20,8 +20,8 @@ struct FullPath {
   bool mergesAtLens = true;             // photons may be merged at vertex n
   Merging merging;
   double connectionCount = 1;  // connections per light path, squared
-  double seenDensity = 0;  // of vertex n by a camera ray, also where the lens is not connected
-  int technique = 0;       // that made the path
+  double seenDensity = 0;      // of vertex n by a camera ray, also where the lens is not connected
+  int technique = 0;           // that made the path
 
   int SurfaceCount() const { return static_cast<int>(isDelta.size()) - 2; }
   // Techniques are s = 0 … n + 1, and merging at vertex i = 1 … n, which is technique n + 1 + i.

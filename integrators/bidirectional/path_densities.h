@@ -26,8 +26,8 @@ namespace lampyr {
 struct Merging {
   // N π r² times the probability of merging, for each of the light paths per sample; 0: no merging.
   double perDensity = 0;
-  double area = 0;        // π ρ²
-  double lightPaths = 1;  // N
+  double area = 0;                 // π ρ²
+  double lightPaths = 1;           // N
   double lightPathsPerSample = 1;  // LightEnd::emission is so many times that of one light path
   double filmPixels = 1;  // the density of the first hit by a ray through its pixel is so many times that by any
 

@@ -24,7 +24,7 @@ struct BidirectionalSample {
   PhotonLookup& lookup;
   PathDensities& whole;  // of the path that is weighted
   std::vector<SubpathDensities>&lightDensities, &cameraDensities;
-  Merging merging{};        // of what the camera subpath sees
+  Merging merging{};  // of what the camera subpath sees
   // TechniqueCounts where the camera path starts: light paths for each camera path; connections for each light path,
   // squared; whether this camera path is connected, and merged where it can be.
   double lightPaths = 1, connectionCount = 1;

@@ -2,8 +2,8 @@
 // both subpaths ([Veach97 §10.2], [Georgiev12 §4]; the departures from both are in walk/partial_weight.h). The
 // integrator calls these functions, and so does the test against explicit densities (full_path.h).
 //
-// `merging`: Σ (p_i / p)^β over the techniques that merge (PathDensities). `connectionCount`: connections per light path
-// in the pixel, squared.
+// `merging`: Σ (p_i / p)^β over the techniques that merge (PathDensities). `connectionCount`: connections per light
+// path in the pixel, squared.
 #pragma once
 
 #include "integrators/walk/vertex.h"

@@ -95,9 +95,10 @@ class PhotonList {
     const float passed = vertex.coverage > 0 ? 1 / vertex.coverage : 0.0f;
     const auto origin = static_cast<uint32_t>(origins_.size()) - 1;
     photons_.push_back({vertex.point.position, vertex.toPrevious, vertex.diffuse * passed, vertex.specular * passed,
-                        PhotonWeight::Of(vertex.weight, depth), static_cast<float>(vertex.previousSolidAnglePerArea.value),
-                        PackedNormal(vertex.bsdf.Ng()), static_cast<uint16_t>(std::min(depth, kDeepest)),
-                        static_cast<uint16_t>(group), origin, static_cast<uint32_t>(densities_.size() + 1)});
+                        PhotonWeight::Of(vertex.weight, depth),
+                        static_cast<float>(vertex.previousSolidAnglePerArea.value), PackedNormal(vertex.bsdf.Ng()),
+                        static_cast<uint16_t>(std::min(depth, kDeepest)), static_cast<uint16_t>(group), origin,
+                        static_cast<uint32_t>(densities_.size() + 1)});
   }
   // Keeps the densities of the current path's vertices up to its last photon, which is not deeper than kDeepest, and
   // before them those of its light's end. To be called when the path is complete, or not at all.
@@ -158,7 +159,6 @@ struct alignas(64) Photon {
   uint32_t path = 0;   // PhotonMap::PathOf
 
   static constexpr uint32_t kSame = 0xffffffffu;
-
 
   // Reverse density of the vertex before, or of the light's point. `towardsLight`: density with which the camera path
   // would sample the direction that the photon came from.

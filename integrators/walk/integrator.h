@@ -55,8 +55,9 @@ struct SampleContext {
   Sampler* lightSampler = nullptr;
 
   SampleContext With(Sampler& other) const {
-    return {scene,      other,             time, counts,      layers, splats, observer, gather, photons,
-            withOrigin, isForPhotonsAlone, film, tracesLight, nullptr};
+    return {
+        scene, other,       time,   counts, layers, splats, observer, gather, photons, withOrigin, isForPhotonsAlone,
+        film,  tracesLight, nullptr};
   }
 };
 

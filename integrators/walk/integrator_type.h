@@ -9,8 +9,8 @@
 
 #include "base/setting.h"
 #include "integrators/walk/integrator.h"
-#include "integrators/walk/technique_counts.h"
 #include "integrators/walk/shadow_roulette.h"
+#include "integrators/walk/technique_counts.h"
 
 namespace lampyr {
 

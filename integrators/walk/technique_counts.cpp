@@ -1,6 +1,10 @@
 #include "integrators/walk/technique_counts.h"
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
 #include <numeric>
 
 namespace lampyr {
@@ -14,6 +18,29 @@ FilmMask::FilmMask(int width, int height, const Point2& film, std::vector<float>
 double FilmMask::Mean() const {
   if (values_.empty()) return 1;
   return std::accumulate(values_.begin(), values_.end(), 0.0) / static_cast<double>(values_.size());
+}
+
+std::string TechniqueCounts::Describe(const std::string& integrator) const {
+  std::string text = integrator;
+  if (log2LightPaths > 0) text += ", " + std::to_string(1 << log2LightPaths) + " light paths for each camera path";
+  if (log2LightPaths < 0) text += ", a light path for " + std::to_string(1 << -log2LightPaths) + " camera paths";
+  const double part = merging.Mean();
+  if (part < 1) text += ", merging in " + std::to_string(std::lround(100 * part)) + " % of the picture";
+  return text;
+}
+
+// FNV-1a.
+std::string TechniqueCounts::Fingerprint() const {
+  uint64_t hash = 0xcbf29ce484222325u;
+  const auto add = [&hash](uint32_t bits) { hash = (hash ^ bits) * 0x100000001b3u; };
+  add(static_cast<uint32_t>(log2LightPaths));
+  for (const FilmMask* mask : {&connecting, &merging}) {
+    add(static_cast<uint32_t>(mask->Values().size()));
+    for (const float value : mask->Values()) add(std::bit_cast<uint32_t>(value));
+  }
+  char text[17];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
+  return text;
 }
 
 float FilmMask::Interpolate(const Point2& film) const {

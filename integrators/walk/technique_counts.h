@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <string>
 #include <vector>
 
 #include "math/vec.h"
@@ -19,8 +20,10 @@ class FilmMask {
   FilmMask(int width, int height, const Point2& film, std::vector<float> values);
 
   float At(const Point2& film) const { return values_.empty() ? 1.0f : Interpolate(film); }
-  // Of cells that are not 0 and not 1 the value counts as a part.
+  // 1: everywhere.
   double Mean() const;
+  // The values of all cells; none if it is 1 everywhere.
+  const std::vector<float>& Values() const { return values_; }
 
  private:
   float Interpolate(const Point2& film) const;
@@ -38,6 +41,10 @@ struct TechniqueCounts {
   // merged with photons.
   FilmMask connecting, merging;
 
+  // "vcm, a light path for 4 camera paths, merging in 30 % of the picture".
+  std::string Describe(const std::string& integrator) const;
+  // Hash of all counts.
+  std::string Fingerprint() const;
   double LightPaths() const { return log2LightPaths < 0 ? 1.0 / (1 << -log2LightPaths) : 1 << log2LightPaths; }
   // Connections of a camera path to each light path, on average: with one of two.
   double ConnectionsPerLightPath(const Point2& film) const {

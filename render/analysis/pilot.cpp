@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include "base/parallel.h"
 #include "integrators/bidirectional/connected_path.h"
@@ -28,8 +29,9 @@ struct Candidate {
   int log2LightPaths;
   // Samples of each TechniqueGroup per camera path, relative to those of the pilot.
   std::array<double, kTechniqueGroups> counts;
-  // Squared error of independent samples over that of Sobol points, as measured in scenes of scenes/ with 64 samples per
-  // pixel. More techniques make smoother integrands, and fewer light paths leave fewer points to be well distributed.
+  // Squared error of independent samples over that of Sobol points, as measured in scenes of scenes/ with 64 samples
+  // per pixel. More techniques make smoother integrands, and fewer light paths leave fewer points to be well
+  // distributed.
   double gainOfSobol;
 };
 constexpr Candidate Bidirectional(bool merges, int log2LightPaths) {
@@ -42,6 +44,9 @@ constexpr Candidate Bidirectional(bool merges, int log2LightPaths) {
 }
 constexpr size_t kCandidates = 11, kFirstOfVcm = 6;
 constexpr double kFewestLightPaths = 1.0 / 8;
+// The least variance that is told apart, in parts of the second moment: both moments are estimated from a few thousand
+// samples. Candidates with less are equally good, and the cheapest of them is chosen.
+constexpr double kLeastVariance = 0.04;
 constexpr std::array<Candidate, kCandidates> kCandidateOf = {{
     {"path", 0, {1, 1, 0, 0, 0}, 1.7},
     Bidirectional(false, -3),
@@ -143,9 +148,9 @@ class Recorder final : public PathObserver {
   void EndSample() {
     for (size_t k = 0; k < kCandidates; ++k) {
       const Sums& sums = sums_[k];
-      moments[pixel_].products[k] +=
-          sums.value * sums.value - sums.squares + 2 * sums.value * sums.connected +
-          (sums.connected * sums.connected - sums.connectedSquares) / std::max(kCandidateOf[k].counts[3], kFewestLightPaths);
+      moments[pixel_].products[k] += sums.value * sums.value - sums.squares + 2 * sums.value * sums.connected +
+                                     (sums.connected * sums.connected - sums.connectedSquares) /
+                                         std::max(kCandidateOf[k].counts[3], kFewestLightPaths);
       found[pixel_].other[k] += static_cast<float>(sums.value + sums.connected);
     }
   }
@@ -323,9 +328,9 @@ struct CandidateCost {
   double paths = 0, merging = 0;  // merging in all of the picture; what storing photons costs is in `paths`
 };
 
-// Measured with 1/8 to 2 light paths for each camera path, in six scenes: the weights of bidirectional techniques make a
-// camera path so many times as costly, and the rest of a light path and its connections costs so much of what rays cost
-// on their own.
+// Measured with 1/8 to 2 light paths for each camera path, in six scenes: the weights of bidirectional techniques make
+// a camera path so many times as costly, and the rest of a light path and its connections costs so much of what rays
+// cost on their own.
 constexpr double kCameraPathWithWeights = 1.12, kSideBySide = 0.75;
 
 std::array<CandidateCost, kCandidates> CostsOf(const Counted& counted, double samples) {
@@ -414,7 +419,7 @@ class Records {
         candidate.secondMoments[tile] += here.square[k] / (passes * grid_.PixelsOf(tile));
         candidate.missing += here.missing[k] / (passes * grid_.Pixels() * (mean + seen));
       });
-      candidate.error = std::max(squares - squaredMeans, 0.01 * squares) / grid_.Pixels();
+      candidate.error = std::max(squares - squaredMeans, kLeastVariance * squares) / grid_.Pixels();
     }
     return true;
   }
@@ -479,6 +484,10 @@ std::optional<PilotCandidate> MergingInParts(const PilotCandidate& none, const P
   const std::vector<double> without = Blurred(none.tileErrors, grid, kBlurs),
                             with = Blurred(all.tileErrors, grid, kBlurs);
   const auto tiles = static_cast<double>(grid.Tiles());
+  for (const PilotCandidate* candidate : {&none, &all}) {
+    const double sum = std::accumulate(candidate->tileErrors.begin(), candidate->tileErrors.end(), 0.0);
+    if (sum < 0.999 * candidate->error) return std::nullopt;  // less than kLeastVariance
+  }
   double error = all.error, part = 1;
   std::vector<double> merges(grid.Tiles());
   for (int round = 0; round < kRounds; ++round) {
@@ -518,16 +527,6 @@ std::unique_ptr<Integrator> Make(const char* name, const RenderScene& scene, con
 
 }  // namespace
 
-std::string PilotCandidate::Describe() const {
-  std::string text = integrator;
-  const int log2 = counts.log2LightPaths;
-  if (log2 > 0) text += ", " + std::to_string(1 << log2) + " light paths for each camera path";
-  if (log2 < 0) text += ", a light path for " + std::to_string(1 << -log2) + " camera paths";
-  const double part = counts.merging.Mean();
-  if (part < 1) text += ", merging in " + std::to_string(std::lround(100 * part)) + " % of the picture";
-  return text;
-}
-
 const PilotCandidate* RenderPilot::Find(const std::string& integrator, int log2LightPaths) const {
   for (const PilotCandidate& candidate : candidates) {
     if (candidate.integrator == integrator && candidate.counts.log2LightPaths == log2LightPaths &&
@@ -546,8 +545,8 @@ const PilotCandidate* RenderPilot::Best() const {
   // Path tracing is the plainest, and the estimates are no better than this.
   constexpr double kMargin = 1.05;
   const PilotCandidate* path = Find("path");
-  const bool isClose = best && path && path->missing <= kNegligibleLight &&
-                       path->ErrorTimesCost() < kMargin * best->ErrorTimesCost();
+  const bool isClose =
+      best && path && path->missing <= kNegligibleLight && path->ErrorTimesCost() < kMargin * best->ErrorTimesCost();
   return isClose ? path : best;
 }
 

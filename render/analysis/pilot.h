@@ -30,8 +30,7 @@ struct PilotCandidate {
   std::vector<double> secondMoments;
   std::vector<double> tileErrors;  // of each tile: its part of `error`
 
-  // "vcm, a light path for 4 camera paths, merging in 30 % of the picture".
-  std::string Describe() const;
+  std::string Describe() const { return counts.Describe(integrator); }
 
   // Error of a picture that takes a second per pixel.
   double ErrorTimesCost() const { return error * cost * 1e-9; }

@@ -41,8 +41,9 @@ std::string Short(double value) {
 // `pilot`: receives its estimates, if one was needed.
 IntegratorChoice ChooseIntegrator(const RenderScene& scene, const RenderSettings& settings, const Facts& facts,
                                   int threads, RenderPilot& pilot) {
-  if (facts.lights == 0) return {{"integrator", "path", "nothing emits"}, nullptr};
-  if (facts.tracing == 0) return {{"integrator", "path", "no light traces light paths"}, nullptr};
+  const auto once = std::make_shared<const TechniqueCounts>();
+  if (facts.lights == 0) return {{"integrator", "path", "nothing emits"}, once};
+  if (facts.tracing == 0) return {{"integrator", "path", "no light traces light paths"}, once};
   pilot = RunPilot(scene, settings, threads);
   const PilotCandidate* best = pilot.Best();
   if (!best) {
@@ -50,7 +51,7 @@ IntegratorChoice ChooseIntegrator(const RenderScene& scene, const RenderSettings
     return {{"integrator", "vcm",
              std::string(foundLight ? "a pilot found light that no other" : "a pilot found no light: vcm") +
                  (foundLight ? " integrator finds" : " has the most techniques to find it by")},
-            nullptr};
+            once};
   }
   std::string reason = best->Describe() + ": least error in equal time, as a pilot estimates it;";
   const char* separator = " ";

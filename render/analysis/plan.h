@@ -17,7 +17,7 @@ struct PlanDecision {
 
 struct IntegratorChoice {
   PlanDecision decision;
-  std::shared_ptr<const TechniqueCounts> counts;  // of bdpt and vcm; null: all techniques once
+  std::shared_ptr<const TechniqueCounts> counts;  // of bdpt and vcm
 
   // The settings with this integrator.
   void Apply(RenderSettings& settings) const;

@@ -600,8 +600,7 @@ BuiltScene Builder::Build() {
   scene.lighting = std::make_shared<const LightingServices>(
       *scene.geometry, std::move(lights_), built_.settings.LightSampler(), std::move(linking_),
       static_cast<int>(built_.settings.values.Integer("light-samples")));
-  if (built_.settings.integrator == "auto")
-    ChooseIntegrator(scene, built_.settings, threads_).Apply(built_.settings);
+  if (built_.settings.integrator == "auto") ChooseIntegrator(scene, built_.settings, threads_).Apply(built_.settings);
   for (const std::string& name : UnreadBias(built_.settings.integrator, built_.settings.values)) {
     diagnostics_.Warn("\"" + name + "\" is ignored: " + built_.settings.integrator +
                       " does not support it, and renders the picture without that bias");

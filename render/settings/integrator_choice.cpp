@@ -42,11 +42,13 @@ std::unique_ptr<Integrator> MakeIntegrator(const RenderScene& scene, const Rende
   const std::string refusal = IntegratorRefusal(scene, settings.integrator);
   if (!refusal.empty()) throw UsageError("integrator " + settings.integrator + ": " + refusal);
   return IntegratorOf(settings.integrator)
-      .create({scene, settings.width, settings.height, settings.sensor.ImagingRatio(), settings.values, settings.counts.get()});
+      .create({scene, settings.width, settings.height, settings.sensor.ImagingRatio(), settings.values,
+               settings.counts.get()});
 }
 
 RenderSettings VariantOf(const RenderSettings& settings, const std::string& name) {
   RenderSettings variant = settings;
+  if (name == kAuto) return variant;
   size_t colon = name.find(':');
   variant.integrator = name.substr(0, colon);
   variant.counts.reset();

@@ -13,7 +13,9 @@ std::unique_ptr<Integrator> MakeIntegrator(const RenderScene& scene, const Rende
 
 // The settings with another integrator, by a name such as "path", or with some of its settings changed, too:
 // "path:shadow-threshold=0.01:light-samples=4". Throws a UsageError that lists the valid names.
+// "auto": the settings as they are, whose integrator and counts auto has chosen.
 RenderSettings VariantOf(const RenderSettings& settings, const std::string& name);
+inline constexpr const char* kAuto = "auto";
 
 bool GathersPhotons(const RenderSettings& settings);
 

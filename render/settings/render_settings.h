@@ -33,7 +33,7 @@ enum class FirstHitSpace { Camera, World };
 
 struct RenderSettings {
   std::string integrator = "path";
-  std::shared_ptr<const TechniqueCounts> counts;  // that "auto" has chosen for the integrator; null: all techniques once
+  std::shared_ptr<const TechniqueCounts> counts;  // of the integrator, if "auto" has chosen it
   std::string namedIntegrator;             // named by the scene, as lampyr calls it; "" if it names none or "auto"
   Settings values = IntegratorSettings();  // of all integrators
   int width = 1280, height = 720;

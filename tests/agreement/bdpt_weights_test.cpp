@@ -119,7 +119,8 @@ TEST(BdptWeights, WithCounts) {
   for (const AgreementScene& scene : AgreementScenes()) {
     for (size_t i = 0; i < all.size(); ++i) {
       const WeightErrors worst = CheckWeights(
-          scene.text, {.paths = 2000, .radius = i % 2 == 0 ? 0.01f : 0.0f, .pixels = i % 2 == 0 ? 0.0f : 2.0f, .counts = all[i]});
+          scene.text,
+          {.paths = 2000, .radius = i % 2 == 0 ? 0.01f : 0.0f, .pixels = i % 2 == 0 ? 0.0f : 2.0f, .counts = all[i]});
       EXPECT_GE(worst.paths, 2000) << scene.name;
       ExpectExact((std::string(scene.name) + " with counts " + std::to_string(i)).c_str(), worst);
       merges += worst.merges;

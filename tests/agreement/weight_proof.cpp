@@ -188,8 +188,8 @@ class WeightChecker final : public PathObserver {
 
   // Whichever technique made the path, the radius is that of its first vertex from the camera without a delta.
   void CheckMerging(const ConnectedPath& path) {
-    const double expected = mergesPerDensity_ * static_cast<double>(counts_.merging.At(FilmOf(path))) /
-                            counts_.LightPaths();
+    const double expected =
+        mergesPerDensity_ * static_cast<double>(counts_.merging.At(FilmOf(path))) / counts_.LightPaths();
     if (pixels_ == 0) {
       worst_.mergesPerDensity.Note(path.merging.perDensity, expected);
       return;
@@ -365,8 +365,7 @@ WeightErrors CheckWeights(const std::string& sceneText, const WeightProof& proof
   Photons photons;
   double mergesPerDensity = 0;
   if (settings.merges) {
-    TracePhotons(scene, settings.maxDepth, proof.radius * sphere.radius, proof.counts.LightPaths(),
-                 sampler, photons);
+    TracePhotons(scene, settings.maxDepth, proof.radius * sphere.radius, proof.counts.LightPaths(), sampler, photons);
     photons.gather.radiusScale = proof.pixels;
     const double radius = proof.radius > 0 ? static_cast<double>(photons.gather.radius) : 1.0;
     mergesPerDensity = kLightPaths * 3.14159265358979323846 * radius * radius;
