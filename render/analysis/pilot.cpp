@@ -44,9 +44,11 @@ constexpr Candidate Bidirectional(bool merges, int log2LightPaths) {
 }
 constexpr size_t kCandidates = 11, kFirstOfVcm = 6;
 constexpr double kFewestLightPaths = 1.0 / 8;
-// The least variance that is told apart, in parts of the second moment: both moments are estimated from a few thousand
-// samples. Candidates with less are equally good, and the cheapest of them is chosen.
-constexpr double kLeastVariance = 0.04;
+// The least variance that is told apart, in parts of the squared mean, for n samples: second moment and mean are both
+// estimated from them. Candidates with less are equally good, and the cheapest of them is chosen.
+double LeastVariance(double samples) {
+  return 2.2 / std::sqrt(samples);
+}
 constexpr std::array<Candidate, kCandidates> kCandidateOf = {{
     {"path", 0, {1, 1, 0, 0, 0}, 1.7},
     Bidirectional(false, -3),
@@ -405,7 +407,7 @@ class Records {
       PilotCandidate& candidate = candidates[k];
       candidate.secondMoments.resize(grid_.Tiles());
       candidate.tileErrors.resize(grid_.Tiles());
-      double squares = 0, squaredMeans = 0;
+      double squares = 0, squaredMeans = 0, squaredBrightness = 0;
       ForEachPixel([&](size_t pixel, size_t tile) {
         const Moments& here = pixels[pixel];
         const double brightness = tiles[tile] + here.seen / passes;
@@ -414,12 +416,14 @@ class Records {
         const SquaredMeans& means = squaredMeans_[kCandidates * pixel + k];
         const double squaredMean = scale * (means.other + (seenPairs_ > 0 ? means.seen * passes / seenPairs_ : 0.0));
         squares += square;
+        squaredBrightness += scale * passes * brightness * brightness;
         squaredMeans += squaredMean;
         candidate.tileErrors[tile] += (square - squaredMean) / grid_.Pixels();
         candidate.secondMoments[tile] += here.square[k] / (passes * grid_.PixelsOf(tile));
         candidate.missing += here.missing[k] / (passes * grid_.Pixels() * (mean + seen));
       });
-      candidate.error = std::max(squares - squaredMeans, kLeastVariance * squares) / grid_.Pixels();
+      candidate.error =
+          std::max(squares - squaredMeans, LeastVariance(passes * grid_.Pixels()) * squaredBrightness) / grid_.Pixels();
     }
     return true;
   }
@@ -486,7 +490,7 @@ std::optional<PilotCandidate> MergingInParts(const PilotCandidate& none, const P
   const auto tiles = static_cast<double>(grid.Tiles());
   for (const PilotCandidate* candidate : {&none, &all}) {
     const double sum = std::accumulate(candidate->tileErrors.begin(), candidate->tileErrors.end(), 0.0);
-    if (sum < 0.999 * candidate->error) return std::nullopt;  // less than kLeastVariance
+    if (sum < 0.999 * candidate->error) return std::nullopt;  // by LeastVariance
   }
   double error = all.error, part = 1;
   std::vector<double> merges(grid.Tiles());
