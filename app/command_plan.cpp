@@ -16,14 +16,13 @@ namespace {
 // Table of the pilot's estimates, a row for each candidate; all figures are per sample.
 void PrintPilot(const RenderPilot& pilot) {
   if (pilot.candidates.empty()) return;
-  std::printf("\n%-6s %11s %8s %8s %8s %9s  %s\n", "pilot", "light paths", "merging", "relMSE", "µs", "product",
-              "misses");
+  std::printf("\n%-5s %5s %5s %8s %6s %8s  %s\n", "pilot", "paths", "merge", "relMSE", "µs", "product", "misses");
   for (const PilotCandidate& candidate : pilot.candidates) {
     char missing[32] = "";
     if (candidate.missing > kNegligibleLight)
       std::snprintf(missing, sizeof missing, "  %.2g %%", 100 * candidate.missing);
     const bool hasLightPaths = candidate.integrator != "path", merges = candidate.integrator == "vcm";
-    std::printf("%-6s %11g %7.0f%% %8.3g %7.2f %9.3g%s%s\n", candidate.integrator.c_str(),
+    std::printf("%-5s %5g %4.0f%% %8.3g %5.2f %8.3g%s%s\n", candidate.integrator.c_str(),
                 hasLightPaths ? candidate.counts.LightPaths() : 0.0,
                 merges ? 100 * candidate.counts.merging.Mean() : 0.0, candidate.error, candidate.cost * 1e-3,
                 candidate.error * candidate.cost * 1e-3, missing, &candidate == pilot.Best() ? "  <" : "");

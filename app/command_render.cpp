@@ -93,7 +93,8 @@ void CheckMemory(const RenderSettings& settings, TracedPaths paths, size_t layer
 void WarnOfPhotonMemory(const RenderSettings& settings, const PhotonSettings& photons) {
   const double paths = photons.lightPaths > 0
                            ? static_cast<double>(photons.lightPaths)
-                           : static_cast<double>(settings.width) * static_cast<double>(settings.height);
+                           : static_cast<double>(settings.width) * static_cast<double>(settings.height) *
+                                 (settings.counts ? settings.counts->LightPaths() : 1.0);
   const double most = paths * settings.MaxDepth() *
                       static_cast<double>(PhotonStore::BytesPerPhoton(true) + 2 * sizeof(SubpathDensities));
   const double needed = std::min(most, static_cast<double>(photons.mostBytes));
@@ -254,6 +255,16 @@ void CheckOptions(const RenderOptions& options, const RenderSettings& settings,
     throw UsageError("--shard with " + settings.integrator +
                      " needs --spp: each part has the radii of its own samples, whose numbers must be known");
   }
+  if (options.autoLayers && options.strategyImages) {
+    throw UsageError(
+        "--auto-layers goes without --strategy-images: those are of all techniques, once for each sample, whatever "
+        "auto "
+        "decides");
+  }
+  if (options.autoLayers && !settings.counts) {
+    throw UsageError("--auto-layers: the integrator is named, " + settings.integrator +
+                     ": auto decides nothing; --integrator auto lets it decide");
+  }
   if (!options.strategyImages) return;
   if (!IntegratorOf(settings.integrator).hasTechniques) {
     std::vector<std::string> names;
@@ -271,10 +282,6 @@ void CheckOptions(const RenderOptions& options, const RenderSettings& settings,
 // What auto decided, for each pixel of the crop: light paths for each camera path, and the probabilities with which it
 // is connected to them and merged with photons.
 Image AutoLayers(const RenderSettings& settings) {
-  if (!settings.counts) {
-    throw UsageError("--auto-layers: the integrator is named, " + settings.integrator +
-                     ": auto decides nothing; --integrator auto lets it decide");
-  }
   const TechniqueCounts& counts = *settings.counts;
   const bool connects = settings.integrator != "path", merges = settings.integrator == "vcm";
   const PixelRect& crop = settings.crop;
@@ -288,6 +295,12 @@ Image AutoLayers(const RenderSettings& settings) {
     }
   }
   return image;
+}
+
+// Images of strategies are of all techniques, once for each sample.
+RenderSettings SettingsFor(const RenderOptions& options, RenderSettings settings) {
+  if (options.strategyImages) settings.counts.reset();
+  return settings;
 }
 
 // One render, from the scene to its files.
@@ -309,7 +322,7 @@ class RenderJob {
   const RenderOptions& options_;
   const LoadedScene& loaded_;
   const BuiltScene& built_;
-  const RenderSettings& settings_;
+  const RenderSettings settings_;
   const std::filesystem::path path_, checkpointPath_;
   std::unique_ptr<Integrator> integrator_;
   Shard shard_;
@@ -322,7 +335,7 @@ RenderJob::RenderJob(const RenderOptions& options, const LoadedScene& loaded)
     : options_(options),
       loaded_(loaded),
       built_(loaded.built),
-      settings_(built_.settings),
+      settings_(SettingsFor(options, built_.settings)),
       path_(OutputPath(options, settings_)),
       checkpointPath_(CheckpointPath(path_)) {
   CheckOptions(options, settings_, checkpointPath_);

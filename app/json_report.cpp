@@ -67,9 +67,10 @@ std::string ToJson(const RenderReport& report) {
       {"peakMemoryMiB", PeakMemoryMiB()},
   };
   if (report.counts) {
-    json["auto"] = {{"lightPaths", report.integrator == "path" ? 0.0 : report.counts->LightPaths()},
-                    {"connecting", report.counts->connecting.Mean()},
-                    {"merging", report.counts->merging.Mean()}};
+    const bool connects = report.integrator != "path", merges = report.integrator == "vcm";
+    json["auto"] = {{"lightPaths", connects ? report.counts->LightPaths() : 0.0},
+                    {"connecting", connects ? report.counts->connecting.Mean() : 0.0},
+                    {"merging", merges ? report.counts->merging.Mean() : 0.0}};
   }
   if (const std::optional<PhotonStatistics>& photons = outcome.photons) {
     json["photons"] = {{"passes", photons->passes},

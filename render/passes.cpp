@@ -245,10 +245,10 @@ class BothPaths {
   std::vector<TechniqueImages::Recorder> recorders_;
 };
 
-// With one light path in n samples the pixels of a block take turns.
+// With one light path in n samples the pixels of a row, and of a column, take turns.
 int BothPaths::LightPathsOf(int x, int y, uint32_t& index) const {
   if (log2LightPaths_ >= 0) return 1 << log2LightPaths_;
-  const auto turn = static_cast<uint32_t>(((x ^ y) & 1) | (y & 1) << 1 | (x >> 1 & 1) << 2);
+  const auto turn = static_cast<uint32_t>(x + 3 * y);
   const auto samples = 1u << -log2LightPaths_;
   const auto shift = static_cast<uint32_t>(MixBits(pass_.settings.seed));
   const uint32_t moved = index + (turn + shift) % samples;

@@ -157,7 +157,8 @@ RenderIdentity IdentityOf(const LoadedScene& loaded, bool robustIntersection) {
            ToExactString(static_cast<double>(f.c)) + " " + ToExactString(static_cast<double>(f.tau))},
       {"the sampler", s.sampler == SamplerKind::Sobol ? "sobol" : "independent"},
       {"watertight intersection", YesOrNo(robustIntersection)}};
-  if (s.counts) identity.emplace_back("what auto decided (its fingerprint)", s.counts->Fingerprint());
+  if (s.counts && !s.counts->IsDefault())
+    identity.emplace_back("what auto decided (its fingerprint)", s.counts->Fingerprint());
   for (const Setting* setting : IntegratorOf(s.integrator).settings) {
     if (setting->changesPicture)
       identity.emplace_back("--" + setting->name, Setting::ToExactString(s.values.Value(setting->name)));

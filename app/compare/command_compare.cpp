@@ -50,7 +50,9 @@ double LongestRender(const ComparisonPlan& plan, const Pilot& pilot) {
 }
 
 bool IsCompared(const ComparisonPlan& plan, const Pilot& pilot) {
-  return std::find(plan.integrators.begin(), plan.integrators.end(), pilot.integrator) != plan.integrators.end();
+  return std::any_of(plan.integrators.begin(), plan.integrators.end(), [&](const std::string& name) {
+    return pilot.integrator == (name == kAuto ? plan.autoIntegrator : name.substr(0, name.find(':')));
+  });
 }
 
 double LongestRender(const ComparisonPlan& plan, const std::vector<Pilot>& pilots) {
@@ -58,6 +60,9 @@ double LongestRender(const ComparisonPlan& plan, const std::vector<Pilot>& pilot
   for (const Pilot& pilot : pilots) {
     if (IsCompared(plan, pilot)) longest = std::max(longest, LongestRender(plan, pilot));
   }
+  if (longest > 0) return longest;
+  // None of those that were tried.
+  for (const Pilot& pilot : pilots) longest = std::max(longest, LongestRender(plan, pilot));
   return longest;
 }
 
@@ -207,6 +212,7 @@ ComparisonResults Describe(const CompareOptions& options, const LoadedScene& loa
 int CompareLoaded(const CompareOptions& options, ComparisonPlan plan, const LoadedScene& loaded) {
   const RenderSettings& settings = loaded.built.settings;
   const bool hasAuto = std::find(plan.integrators.begin(), plan.integrators.end(), kAuto) != plan.integrators.end();
+  plan.autoIntegrator = settings.integrator;
   if (hasAuto && !options.quiet) std::printf("auto: %s\n", settings.counts->Describe(settings.integrator).c_str());
   for (const std::string& name : plan.integrators) {
     const std::string refusal = IntegratorRefusal(loaded.built.scene, VariantOf(settings, name).integrator);

@@ -215,7 +215,7 @@ class CameraSide final : public PathVisitor {
       sample_.perArea =
           static_cast<float>(firstFootprint_ / (firstDistance_ * firstDistance_) * size * size / footprint);
     }
-    sample_.merging = sample_.MergingAt(distance, footprint, sample_.context.film);
+    sample_.merging = sample_.MergingAt(distance, footprint, sample_.film);
   }
 
   BidirectionalSample& sample_;
@@ -235,7 +235,7 @@ class BidirectionalIntegrator final : public Integrator {
   Color Sample(const Ray* ray, const SampleContext& context) const override;
 
  private:
-  void Decide(BidirectionalSample& sample) const;
+  void Decide(const Ray& ray, BidirectionalSample& sample) const;
 
   BidirectionalSettings settings_;
   double lightPaths_;
@@ -263,8 +263,11 @@ PathEnds EndsOf(const BidirectionalSample& sample) {
 }
 
 // The film point is random within the pixel, and its bits decide nothing else.
-void BidirectionalIntegrator::Decide(BidirectionalSample& sample) const {
-  const Point2& film = sample.context.film;
+void BidirectionalIntegrator::Decide(const Ray& ray, BidirectionalSample& sample) const {
+  Point2& film = sample.film;
+  film = sample.context.film;
+  // Beyond the edge of a film that goes all around, the point is one near the opposite edge.
+  if (settings_.counts.HasMasks()) sample.context.scene.camera->EvaluateRay(ray, &film);
   sample.connectionCount = sample.ConnectionCountAt(film);
   sample.connectionsPerSample = lightPaths_ * std::sqrt(sample.connectionCount);
   const uint64_t bits = MixBits(ShadowRays::DeciderOf(film.x, film.y));
@@ -294,7 +297,7 @@ Color BidirectionalIntegrator::Sample(const Ray* ray, const SampleContext& conte
       context.photons->KeepDensities(EndsOf(sample), workspace.lightDensities);
   }
   if (!ray) return Color(0.0f);
-  Decide(sample);
+  Decide(*ray, sample);
   PathState state;
   state.ray = *ray;
   state.specular = Color(1.0f);

@@ -45,6 +45,7 @@ Color Merge(const BidirectionalSample& sample) {
   Joint joint;
   joint.isMerged = true;
   joint.mergesAtCamera = true;
+  const float probability = sample.settings.counts.merging.At(sample.film);
   Color sum;
   for (size_t i = 0; i < found.size(); ++i) {
     const uint32_t index = found[i];
@@ -72,7 +73,8 @@ Color Merge(const BidirectionalSample& sample) {
     if (context.layers) [[unlikely]]
       context.layers->Add(photon.group, Product(vertex.Throughput(), value, perDensity * weight));
     if (pass.use) [[unlikely]]
-      pass.use->Add(index, (vertex.Throughput() * f.Sum()).Average() * static_cast<float>(weight) * sample.perArea);
+      pass.use->Add(
+          index, (vertex.Throughput() * f.Sum()).Average() * static_cast<float>(weight) * sample.perArea / probability);
     if (sample.IsObserved()) [[unlikely]]
       ReportMerge(sample, photon, joint.light.last, Product(vertex.Throughput(), value, perDensity), weight);
   }

@@ -30,6 +30,7 @@ struct BidirectionalSample {
   double lightPaths = 1, connectionCount = 1;
   double connectionsPerSample = 1;  // of a camera vertex to the same vertex of a light path, on average
   bool isConnected = true, isMerged = true;
+  Point2 film{0.0f};        // where it starts, as a connection to the lens finds it: pixels
   float mergeRadius = 0;    // scene units
   float perArea = 1;        // proportional to 1 / mergeRadius², where radii differ: that of the scene's radius is 1
   double seenDensity = 0;   // of the first vertex of the camera subpath, as in P_C

@@ -24,8 +24,8 @@ struct PhotonStatistics {
 
 class PhotonStore {
  public:
-  // A pass traces `pixels` light paths unless the settings say otherwise. `learning` receives the per-photon
-  // contributions of each pass as long as it records; may be null.
+  // A pass traces `pixels` light paths, times those of a camera path, unless the settings say otherwise. `learning`
+  // receives the per-photon contributions of each pass as long as it records; may be null.
   PhotonStore(const PhotonSettings& settings, uint64_t pixels, EmissionLearning* learning = nullptr);
 
   // Number of light paths per pass whose photons are wanted.

@@ -25,11 +25,12 @@ enum class TracedPaths {
 
 // Settings of an integrator that gathers photons.
 struct PhotonSettings {
-  double radius = 0;        // gather radius of the first pass, scene units; 0: chosen by the integrator
-  double alpha = 2. / 3;    // the radius shrinks as pass^((alpha - 1) / 2); 1: constant
-  uint64_t lightPaths = 0;  // light paths traced per pass; 0: one for each pixel of the full image
-  uint64_t mostBytes = 0;   // limit on the memory of photons while their map is built; 0: none
-  bool guided = true;       // emission guiding, if it reduces the noise enough (emission_learning.h)
+  double radius = 0;      // gather radius of the first pass, scene units; 0: chosen by the integrator
+  double alpha = 2. / 3;  // the radius shrinks as pass^((alpha - 1) / 2); 1: constant
+  uint64_t lightPaths =
+      0;  // light paths traced per pass; 0: one for each pixel of the full image, times 2^Log2LightPaths()
+  uint64_t mostBytes = 0;  // limit on the memory of photons while their map is built; 0: none
+  bool guided = true;      // emission guiding, if it reduces the noise enough (emission_learning.h)
 };
 
 // Inputs and outputs of one sample, besides the radiance that it returns.
@@ -69,7 +70,7 @@ class Integrator {
   virtual TracedPaths Paths() const = 0;
   // Estimates the radiance arriving along `ray`, and records the splats and photons of the light path. With a null ray
   // (the pixel is not wanted, or the integrator traces light paths only) it records those only and returns black. Light
-  // paths: as many as the full image has pixels are one sample per pixel.
+  // paths: as many as the full image has pixels, times 2^Log2LightPaths(), are one sample per pixel.
   virtual Color Sample(const Ray* ray, const SampleContext& context) const = 0;
   // Light paths for each camera path, as a power of two; of TracedPaths::Both.
   virtual int Log2LightPaths() const { return 0; }

@@ -41,6 +41,8 @@ struct TechniqueCounts {
   // merged with photons.
   FilmMask connecting, merging;
 
+  bool HasMasks() const { return !connecting.Values().empty() || !merging.Values().empty(); }
+  bool IsDefault() const { return log2LightPaths == 0 && !HasMasks(); }
   // "vcm, a light path for 4 camera paths, merging in 30 % of the picture".
   std::string Describe(const std::string& integrator) const;
   // Hash of all counts.

@@ -125,6 +125,11 @@ struct Grid {
   size_t TileOf(int x, int y) const {
     return static_cast<size_t>(y / kTile) * static_cast<size_t>(tilesX) + static_cast<size_t>(x / kTile);
   }
+  // All tiles are of one size on the film; the last may reach beyond its edge.
+  Point2 FilmOfTiles() const {
+    return {static_cast<float>(tilesX * kTile) * pixel.x, static_cast<float>(tilesY * kTile) * pixel.y};
+  }
+  double PartOf(size_t tile) const { return static_cast<double>(PixelsOf(tile)) / Pixels(); }
   int PixelsOf(size_t tile) const {
     const int x = static_cast<int>(tile) % tilesX * kTile, y = static_cast<int>(tile) / tilesX * kTile;
     return std::min(kTile, width - x) * std::min(kTile, height - y);
@@ -389,7 +394,7 @@ class Records {
   }
 
   // The sum over all passes. False: no light was found.
-  bool SetErrors(int passes, std::vector<PilotCandidate>& candidates) const {
+  bool SetErrors(int passes, bool isSobol, std::vector<PilotCandidate>& candidates, double& least) const {
     std::vector<Moments> pixels(squaredMeans_.size() / kCandidates);
     for (const Recorder& recorder : recorders_) {
       for (size_t i = 0; i < pixels.size(); ++i) pixels[i] += recorder.moments[i];
@@ -422,8 +427,10 @@ class Records {
         candidate.secondMoments[tile] += here.square[k] / (passes * grid_.PixelsOf(tile));
         candidate.missing += here.missing[k] / (passes * grid_.Pixels() * (mean + seen));
       });
-      candidate.error =
-          std::max(squares - squaredMeans, LeastVariance(passes * grid_.Pixels()) * squaredBrightness) / grid_.Pixels();
+      const double gain = isSobol ? kCandidateOf[k].gainOfSobol : 1.0;
+      for (double& error : candidate.tileErrors) error /= gain;
+      least = LeastVariance(passes * grid_.Pixels()) * squaredBrightness / grid_.Pixels();
+      candidate.error = std::max((squares - squaredMeans) / (gain * grid_.Pixels()), least);
     }
     return true;
   }
@@ -481,26 +488,21 @@ std::vector<double> Blurred(std::vector<double> values, const Grid& grid, int ti
 //
 // `none`, `all`: the same light paths without merging and with it everywhere. Null: everywhere or nowhere is better.
 std::optional<PilotCandidate> MergingInParts(const PilotCandidate& none, const PilotCandidate& all,
-                                             const CandidateCost& cost, const Grid& grid,
-                                             const RenderSettings& settings) {
+                                             const CandidateCost& cost, const Grid& grid, double least) {
   constexpr int kBlurs = 2, kRounds = 8;
   constexpr double kWorthIt = 0.97;
   const std::vector<double> without = Blurred(none.tileErrors, grid, kBlurs),
                             with = Blurred(all.tileErrors, grid, kBlurs);
-  const auto tiles = static_cast<double>(grid.Tiles());
-  for (const PilotCandidate* candidate : {&none, &all}) {
-    const double sum = std::accumulate(candidate->tileErrors.begin(), candidate->tileErrors.end(), 0.0);
-    if (sum < 0.999 * candidate->error) return std::nullopt;  // by LeastVariance
-  }
+  if (none.error <= least || all.error <= least) return std::nullopt;
   double error = all.error, part = 1;
   std::vector<double> merges(grid.Tiles());
   for (int round = 0; round < kRounds; ++round) {
-    const double perError = 1 / error, perCost = cost.merging / (cost.paths + part * cost.merging) / tiles;
+    const double perError = 1 / error, perCost = cost.merging / (cost.paths + part * cost.merging);
     error = part = 0;
     for (size_t i = 0; i < grid.Tiles(); ++i) {
-      merges[i] = (without[i] - with[i]) * perError > perCost ? 1.0 : 0.0;
+      merges[i] = (without[i] - with[i]) * perError > perCost * grid.PartOf(i) ? 1.0 : 0.0;
       error += merges[i] > 0 ? with[i] : without[i];
-      part += merges[i] / tiles;
+      part += merges[i] * grid.PartOf(i);
     }
     if (!(error > 0)) return std::nullopt;
   }
@@ -512,14 +514,13 @@ std::optional<PilotCandidate> MergingInParts(const PilotCandidate& none, const P
   for (size_t i = 0; i < grid.Tiles(); ++i) {
     mixed.tileErrors[i] = merges[i] * all.tileErrors[i] + (1 - merges[i]) * none.tileErrors[i];
     mixed.error += mixed.tileErrors[i];
-    part += merges[i] / tiles;
+    part += merges[i] * grid.PartOf(i);
     mask.push_back(static_cast<float>(merges[i]));
   }
-  if (!(part > 0 && mixed.error > 0)) return std::nullopt;
+  if (!(part > 0)) return std::nullopt;
+  mixed.error = std::max(mixed.error, least);
   mixed.cost = cost.paths + part * cost.merging;
-  mixed.counts.merging =
-      FilmMask(grid.tilesX, grid.tilesY, {static_cast<float>(settings.width), static_cast<float>(settings.height)},
-               std::move(mask));
+  mixed.counts.merging = FilmMask(grid.tilesX, grid.tilesY, grid.FilmOfTiles(), std::move(mask));
   if (mixed.ErrorTimesCost() > kWorthIt * std::min(none.ErrorTimesCost(), all.ErrorTimesCost())) return std::nullopt;
   return mixed;
 }
@@ -602,24 +603,22 @@ RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, i
     candidate.cost = costs[k].paths + costs[k].merging;
     pilot.candidates.push_back(std::move(candidate));
   }
-  if (!records.SetErrors(passCount, pilot.candidates)) return {};
-  if (settings.sampler == SamplerKind::Sobol) {
-    for (size_t k = 0; k < kCandidates; ++k) {
-      pilot.candidates[k].error /= kCandidateOf[k].gainOfSobol;
-      for (double& error : pilot.candidates[k].tileErrors) error /= kCandidateOf[k].gainOfSobol;
-    }
-  }
+  double least = 0;  // error that is told apart
+  if (!records.SetErrors(passCount, settings.sampler == SamplerKind::Sobol, pilot.candidates, least)) return {};
   for (size_t k = kFirstOfVcm; k < kCandidates; ++k) {
     const PilotCandidate& none = pilot.candidates[k - kFirstOfVcm + 1];
     if (none.missing > kNegligibleLight) continue;
-    if (auto mixed = MergingInParts(none, pilot.candidates[k], costs[k], grid, settings))
+    if (auto mixed = MergingInParts(none, pilot.candidates[k], costs[k], grid, least))
       pilot.candidates.push_back(std::move(*mixed));
   }
   const bool hasAll = settings.values.IsOn("merge") && settings.values.IsOn("connect");
   // Light paths that are guided, or as many as the settings say, are those of vcm.
   const bool hasOwnPaths = settings.values.Integer("photons") >= 0;
+  // Pixels take turns; of a few pixels some passes would have no light path.
+  const bool isTiny = std::max(settings.width, settings.height) < static_cast<int>(1 / kFewestLightPaths);
   std::erase_if(pilot.candidates, [&](const PilotCandidate& candidate) {
-    return (isGuided && candidate.integrator == "bdpt") || (!hasAll && candidate.integrator == "vcm") ||
+    return (isTiny && candidate.counts.log2LightPaths < 0) || (isGuided && candidate.integrator == "bdpt") ||
+           (!hasAll && candidate.integrator == "vcm") ||
            (hasOwnPaths && candidate.integrator == "vcm" && candidate.counts.log2LightPaths != 0);
   });
   return pilot;

@@ -53,7 +53,7 @@ IntegratorChoice ChooseIntegrator(const RenderScene& scene, const RenderSettings
                  (foundLight ? " integrator finds" : " has the most techniques to find it by")},
             once};
   }
-  std::string reason = best->Describe() + ": least error in equal time, as a pilot estimates it;";
+  std::string reason = "least error in equal time, as a pilot estimates it:";
   const char* separator = " ";
   for (const PilotCandidate& other : pilot.candidates) {
     // Of all the variants those that have a name.
@@ -61,9 +61,11 @@ IntegratorChoice ChooseIntegrator(const RenderScene& scene, const RenderSettings
     const double ratio = other.ErrorTimesCost() / best->ErrorTimesCost();
     reason += separator + other.integrator +
               (other.missing > kNegligibleLight ? " misses " + Short(100 * other.missing) + " % of the light"
-                                                : " has " + Short(ratio) + " × the relMSE");
+                                                : " has " + Short(ratio) + " × its relMSE");
     separator = ", ";
   }
+  const std::string described = best->Describe();
+  if (described != best->integrator) reason += "; with" + described.substr(best->integrator.size() + 1);
   return {{"integrator", best->integrator, reason}, std::make_shared<TechniqueCounts>(best->counts)};
 }
 
