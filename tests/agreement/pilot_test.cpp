@@ -279,9 +279,9 @@ TEST(Pilot, ASkyHasNoError) {
       "Film \"rgb\" \"integer xresolution\" 16 \"integer yresolution\" 16\nCamera \"perspective\"\nWorldBegin\n"
       "LightSource \"infinite\" \"rgb L\" [ 1 2 3 ]\nTranslate 0 0 -5 Shape \"sphere\" \"float radius\" 0.1\n";
   const BuiltScene built = Build(sky);
-  const RenderPilot pilot = RunPilot(built.scene, built.settings, 2);
+  const RenderPilot pilot = RunPilot(built.scene, built.settings, 2, 100);
   ASSERT_GE(pilot.candidates.size(), 11u);
-  for (const PilotCandidate& candidate : pilot.candidates) EXPECT_LT(candidate.error, 0.041) << candidate.integrator;
+  for (const PilotCandidate& candidate : pilot.candidates) EXPECT_LT(candidate.error, 0.015) << candidate.integrator;
 }
 
 // A lens that stops most rays, and connects no light paths.
