@@ -266,10 +266,13 @@ PathEnds EndsOf(const BidirectionalSample& sample) {
 void BidirectionalIntegrator::Decide(const Ray& ray, BidirectionalSample& sample) const {
   Point2& film = sample.film;
   film = sample.context.film;
+  const bool hasMasks = settings_.counts.HasMasks();
   // Beyond the edge of a film that goes all around, the point is one near the opposite edge.
-  if (settings_.counts.HasMasks()) sample.context.scene.camera->EvaluateRay(ray, &film);
+  if (hasMasks) sample.context.scene.camera->EvaluateRay(ray, &film);
   sample.connectionCount = sample.ConnectionCountAt(film);
   sample.connectionsPerSample = lightPaths_ * std::sqrt(sample.connectionCount);
+  sample.isConnected = settings_.connects;
+  if (!hasMasks) return;
   const uint64_t bits = MixBits(ShadowRays::DeciderOf(film.x, film.y));
   sample.isConnected =
       settings_.connects && UnitFloat(static_cast<uint32_t>(bits)) < settings_.counts.connecting.At(film);
@@ -291,8 +294,14 @@ Color BidirectionalIntegrator::Sample(const Ray* ray, const SampleContext& conte
                              .lightPaths = lightPaths_};
   if (context.tracesLight && (settings_.connects || context.photons)) {
     LightSide visitor(sample);
-    const SampleContext own = context.With(context.lightSampler ? *context.lightSampler : context.sampler);
-    TraceLightPath(own, settings_.maxDepth, kLightDimensions, workspace.light, visitor);
+    const auto trace = [&](const SampleContext& own) {
+      TraceLightPath(own, settings_.maxDepth, kLightDimensions, workspace.light, visitor);
+    };
+    if (context.lightSampler) {
+      trace(context.With(*context.lightSampler));
+    } else {
+      trace(context);
+    }
     if (context.photons && workspace.light.vertices.Count() > 0)
       context.photons->KeepDensities(EndsOf(sample), workspace.lightDensities);
   }
