@@ -257,9 +257,7 @@ void CheckOptions(const RenderOptions& options, const RenderSettings& settings,
   }
   if (options.autoLayers && options.strategyImages) {
     throw UsageError(
-        "--auto-layers goes without --strategy-images: those are of all techniques, once for each sample, whatever "
-        "auto "
-        "decides");
+        "--auto-layers goes without --strategy-images: those are of all techniques, once for each sample");
   }
   if (options.autoLayers && !settings.counts) {
     throw UsageError("--auto-layers: the integrator is named, " + settings.integrator +
@@ -279,8 +277,8 @@ void CheckOptions(const RenderOptions& options, const RenderSettings& settings,
   MakeFolder(*options.strategyImages, "--strategy-images");
 }
 
-// What auto decided, for each pixel of the crop: light paths for each camera path, and the probabilities with which it
-// is connected to them and merged with photons.
+// Layers of the decisions of auto over the crop: light paths per camera path, probability of connections, probability of
+// merging.
 Image AutoLayers(const RenderSettings& settings) {
   const TechniqueCounts& counts = *settings.counts;
   const bool connects = settings.integrator != "path", merges = settings.integrator == "vcm";

@@ -29,7 +29,7 @@ std::string TechniqueCounts::Describe(const std::string& integrator) const {
   return text;
 }
 
-// As FNV-1a, of 32-bit words.
+// The hash FNV-1a over 32-bit words instead of bytes.
 std::string TechniqueCounts::Fingerprint() const {
   uint64_t hash = 0xcbf29ce484222325u;
   const auto add = [&hash](uint32_t bits) { hash = (hash ^ bits) * 0x100000001b3u; };

@@ -1,5 +1,4 @@
-// How often a bidirectional integrator uses its techniques: anything from bdpt with few light paths to vcm
-// ([Grittmann22]). A technique that is used n times for each camera path counts n times in all weights, and each use
+// Sample counts of the techniques of a bidirectional integrator: light paths, connections, merging ([Grittmann22]). A technique that is used n times for each camera path counts n times in all weights, and each use
 // contributes 1/n.
 #pragma once
 

@@ -231,7 +231,7 @@ class Recorder final : public PathObserver {
   const Grid& grid_;
   double filmPixels_, weight_ = 1;
   size_t pixel_ = 0;
-  // Of connections apart, which a sample has only if it has a light path.
+  // Connections have their own sums, because only samples with a light path make them.
   struct Sums {
     double value = 0, squares = 0, connected = 0, connectedSquares = 0;
   };

@@ -56,7 +56,7 @@ IntegratorChoice ChooseIntegrator(const RenderScene& scene, const RenderSettings
   std::string reason = "least error in equal time, as a pilot estimates it:";
   const char* separator = " ";
   for (const PilotCandidate& other : pilot.candidates) {
-    // Of all the variants those that have a name.
+    // Only integrators as the command line names them: one light path per camera path, merging everywhere or nowhere.
     if (&other == best || &other != pilot.Find(other.integrator)) continue;
     const double ratio = other.ErrorTimesCost() / best->ErrorTimesCost();
     reason += separator + other.integrator +
