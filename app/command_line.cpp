@@ -127,7 +127,7 @@ void DefinePluginOption(CLI::App& app, PluginOptions& plugins, bool readsScenes 
                "Load the plugins that the scene names (Option \"plugins\"), wherever they lie: they are native code");
 }
 
-// Options that render and compare have in common.
+// Options that plan, render and compare have in common.
 void DefineSceneOptions(CLI::App& app, RenderOverrides& overrides, std::string& resolution, int& threads) {
   app.add_option("--seed", overrides.seed, "Seed of the random numbers (0)");
   app.add_option("--threads", threads, "Threads (all)")->check(CLI::Range(1, 4096));
@@ -242,6 +242,7 @@ struct PngCommand {
 
 struct PlanCommand {
   PlanOptions options;
+  std::string resolution;
 
   void Define(CLI::App& app) {
     options.overrides.integrator = "auto";
@@ -250,10 +251,14 @@ struct PlanCommand {
         ->required();
     app.add_option("--integrator", options.overrides.integrator, "Instead of the one that suits the scene")
         ->type_name("NAME");
+    DefineSceneOptions(app, options.overrides, resolution, options.threads);
     app.add_flag("--strict", options.strict, "Warnings about the scene are errors");
     DefinePluginOption(app, options.plugins);
   }
-  int Run() { return RunPlan(options); }
+  int Run() {
+    if (!resolution.empty()) ParseResolution(resolution, options.overrides);
+    return RunPlan(options);
+  }
 };
 
 struct DiffCommand {

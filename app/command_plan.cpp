@@ -35,11 +35,12 @@ int RunPlan(const PlanOptions& options) {
   // The choice is the plan's own.
   RenderOverrides overrides = options.overrides;
   overrides.integrator = "path";
+  overrides.threads = options.threads;
   const LoadedScene loaded = LoadScene(options.scene, options.plugins, overrides, options.strict, true);
   RenderSettings settings = loaded.built.settings;
   if (options.overrides.integrator) settings.integrator = *options.overrides.integrator;
   ScenePlan plan;
-  RunForeignCode(loaded.types, [&] { plan = PlanFor(loaded.built.scene, settings); });
+  RunForeignCode(loaded.types, [&] { plan = PlanFor(loaded.built.scene, settings, options.threads); });
   size_t subject = 0, choice = 0;
   for (const PlanDecision& decision : plan.decisions) {
     subject = std::max(subject, decision.subject.size());

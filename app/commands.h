@@ -68,6 +68,7 @@ struct PlanOptions {
   std::filesystem::path scene;
   PluginOptions plugins;
   RenderOverrides overrides;
+  int threads = 0;  // 0: all
   bool strict = false;
 };
 

@@ -33,6 +33,7 @@ Color BidirectionalSample::Report(ConnectedPath& path) const {
       path.connectionCount = connectionCount;
     }
     path.seenDensity = path.t > 1 ? seenDensity : path.atLens.value;
+    path.splatCount = settings.splatCount;
     context.observer->Observe(path);
   }
   return path.value * static_cast<float>(path.weight);
@@ -44,7 +45,7 @@ TechniqueSums BidirectionalSample::SumsOfConnection(size_t lightCount, const Rev
   const bool goesOn = lightCount > 1;
   const AreaDensity hit = goesOn ? first.PreviousReverse(first.eventReverse) : reverse.previous;
   const PathEnds ends{lightEnd.direct.value, lightEnd.canBeHit ? hit.value : 0.0, goesOn && first.scatteredDelta,
-                      isSplat || lensSeesIt};
+                      isSplat || lensSeesIt ? settings.splatCount : 0.0};
   return whole.Sums(ends, lightCount + 1, 0);
 }
 
@@ -188,7 +189,8 @@ class CameraSide final : public PathVisitor {
     // camera's densities are unknown, which leaves pdfForward at 0.
     const bool isSplatted =
         sample_.context.scene.camera->ConnectsLightPaths() && vertex.pdfForward.value > 0 && vertex.isSeenByIndirect;
-    vertex.weight = PartialWeight::AtLens(vertex.pdfForward, isSplatted && sample_.settings.connects);
+    vertex.weight = PartialWeight::AtLens(vertex.pdfForward,
+                                          isSplatted && sample_.settings.connects ? sample_.settings.splatCount : 0.0);
     sample_.lensSeesIt = isSplatted;
     if (sample_.context.gather) SetFootprint(vertex, state.ray, static_cast<double>(state.length));
   }
@@ -334,6 +336,7 @@ BidirectionalSettings SettingsOf(const IntegratorInput& input) {
   BidirectionalSettings settings;
   settings.maxDepth = MaxDepthOf(input.settings);
   settings.filmPixels = input.FilmPixels();
+  settings.splatCount = input.splatCount;
   settings.shadowRays = ShadowRaysOf(input);
   if (input.counts) settings.counts = *input.counts;
   return settings;

@@ -46,6 +46,7 @@ FullPath Unfold(const ConnectedPath& path) {
   full.technique = path.isMerged ? static_cast<int>(n + 1 + ofLight + 1) : path.s;
   full.merging = path.merging;
   full.connectionCount = path.connectionCount;
+  full.splatCount = path.splatCount;
   full.seenDensity = path.seenDensity;
   full.fromLight.assign(n + 2, AreaDensity());
   full.fromCamera.assign(n + 2, AreaDensity());
@@ -130,6 +131,7 @@ std::vector<long double> ExplicitDensities(const FullPath& path) {
     for (int i = 2; i < s; ++i) density *= fromLight(i);
     for (int i = s; i <= n; ++i) density *= fromCamera(i);
     if (s > 1 && s <= n) density *= std::sqrt(path.connectionCount);
+    if (s == n + 1) density *= path.splatCount;
     densities[static_cast<size_t>(s)] = density;
   }
   for (int i = 1; i <= n; ++i) {
@@ -187,7 +189,7 @@ Carried Carry(const FullPath& path) {
     const auto at = static_cast<size_t>(i);
     carried.light[at] = carried.light[at - 1].Next(isDelta(i - 1), F(i), B(i - 2));
   }
-  carried.camera[size - 1] = PartialWeight::AtLens(B(n), path.lensSeesIt);
+  carried.camera[size - 1] = PartialWeight::AtLens(B(n), path.lensSeesIt ? path.splatCount : 0.0);
   for (int i = n - 1; i >= 1; --i) {
     const auto at = static_cast<size_t>(i);
     carried.camera[at] = carried.camera[at + 1].Next(isDelta(i + 1), B(i), F(i + 2));
@@ -224,7 +226,10 @@ std::vector<double> WeightsByRecursion(const FullPath& path) {
   const LightEnd& end = path.end;
   const double connections = path.connectionCount;
   if (n == 0 && !path.lensSeesIt) return {1, 0};
-  if (n == 0) return {SeenLightWeight(end.position, B(0)), SplatLightWeight(end.position, B(0))};
+  if (n == 0) {
+    return {SeenLightWeight(end.position, B(0), path.splatCount),
+            SplatLightWeight(end.position, B(0), path.splatCount)};
+  }
   std::vector<double> weights(static_cast<size_t>(path.TechniqueCount()), 0.0);
   const Carried carried = Carry(path);
   const auto light = [&](int i) -> const PartialWeight& { return carried.light[static_cast<size_t>(i)]; };
@@ -238,7 +243,7 @@ std::vector<double> WeightsByRecursion(const FullPath& path) {
                              of(whole.ForLight(end.direct.value)));
     }
     const double merging = of(whole.ForConnection(static_cast<size_t>(s - 1)));
-    if (s == n + 1) return SplatWeight(light(n), {B(n), B(n - 1)}, connections, merging);
+    if (s == n + 1) return SplatWeight(light(n), {B(n), B(n - 1)}, connections, path.splatCount, merging);
     return ConnectWeight(light(s - 1), {B(s - 1), B(s - 2)}, camera(s), {F(s), F(s + 1)}, connections, merging);
   };
   for (int s = 0; s <= n + 1; ++s) {

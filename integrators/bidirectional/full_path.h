@@ -20,6 +20,7 @@ struct FullPath {
   bool mergesAtLens = true;             // photons may be merged at vertex n
   Merging merging;
   double connectionCount = 1;  // connections per light path, squared
+  double splatCount = 1;       // of t = 1
   double seenDensity = 0;      // of vertex n by a camera ray, also where the lens is not connected
   int technique = 0;           // that made the path
 

@@ -54,8 +54,9 @@ Color SeeLightAt(const BidirectionalSample& sample, const PathState& state, cons
     path.atLens =
         DensityAtLens(*context.scene.camera, ray, AbsDot(ray.direction, point.Ng), Sqr(static_cast<double>(hit.t)));
     if (path.atLens.value > 0 && sample.settings.connects)
-      path.weight = SeenLightWeight(path.end.position, path.atLens);
-    if (path.atLens.value > 0) path.sums.Of(TechniqueGroup::Light).Add(path.end.position / path.atLens);
+      path.weight = SeenLightWeight(path.end.position, path.atLens, sample.settings.splatCount);
+    if (path.atLens.value > 0)
+      path.sums.Of(TechniqueGroup::Light).Add(sample.settings.splatCount * (path.end.position / path.atLens));
   }
   path.sums.Of(TechniqueGroup::Hit).Add(1);
   const Color contribution = sample.Report(path);

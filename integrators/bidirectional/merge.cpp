@@ -19,14 +19,16 @@ void ReportMerge(const BidirectionalSample& sample, const Photon& photon, AreaDe
   path.toLight = photon.toPrevious;
   path.merging = sample.merging;
   path.connectionCount = sample.connectionCount;
+  path.splatCount = sample.settings.splatCount;
   path.seenDensity = sample.seenDensity;
   path.value = value;
   path.weight = weight;
   if (sample.WantsSums()) {
     const PathEnds kept = sample.context.gather->map->EndsOf(photon);
     const double hit = !kept.canBeHit ? 0.0 : photon.depth > 1 ? kept.hit : reverse.value;
-    path.sums = sample.whole.Sums({kept.direct, hit, kept.firstIsDelta && photon.depth > 1, sample.lensSeesIt}, 0,
-                                  photon.depth);
+    path.sums = sample.whole.Sums(
+        {kept.direct, hit, kept.firstIsDelta && photon.depth > 1, sample.lensSeesIt ? sample.settings.splatCount : 0.0},
+        0, photon.depth);
   }
   sample.context.observer->ObserveMerge(path, photon);
 }

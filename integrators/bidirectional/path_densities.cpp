@@ -117,7 +117,9 @@ TechniqueSums PathDensities::Sums(const PathEnds& ends, size_t s, size_t mergedA
   double density = emission_ / vertices_[1].fromCamera;  // of s = 2
   for (size_t k = 2; k <= n + 1; ++k) {
     if (mergedAt > 0 ? k == mergedAt + 1 : k == s) {
-      own = density * (mergedAt > 0 ? vertices_[mergedAt].fromCamera * merging_.perDensity : 1.0);
+      own = density * (mergedAt > 0 ? vertices_[mergedAt].fromCamera * merging_.perDensity
+                       : k == n + 1 ? ends.splatCount
+                                    : 1.0);
       break;
     }
     if (k <= n) density *= vertices_[k].fromLight / vertices_[k].fromCamera;
@@ -129,8 +131,8 @@ TechniqueSums PathDensities::Sums(const PathEnds& ends, size_t s, size_t mergedA
   double ratio = emission_ / vertices_[1].fromCamera / own;
   for (size_t k = 2; k <= n + 1; ++k) {
     const Vertex& last = vertices_[k - 1];
-    const bool exists = !isDelta(k - 1) && (k <= n ? !isDelta(k) : ends.lensSeesIt);
-    if (exists) sums.Of(k <= n ? TechniqueGroup::Connect : TechniqueGroup::Light).Add(ratio);
+    if (!isDelta(k - 1) && k <= n && !isDelta(k)) sums.Of(TechniqueGroup::Connect).Add(ratio);
+    if (!isDelta(k - 1) && k == n + 1) sums.Of(TechniqueGroup::Light).Add(ratio * ends.splatCount);
     if (last.canMerge)
       sums.Of(TechniqueGroup::Merge).Add(ratio * last.fromCamera * merging_.perDensity * last.correlation);
     if (k <= n) ratio *= vertices_[k].fromLight / vertices_[k].fromCamera;

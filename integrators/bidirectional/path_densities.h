@@ -69,6 +69,7 @@ struct TechniqueSums {
   };
   std::array<Group, kTechniqueGroups> groups;
   Group& Of(TechniqueGroup group) { return groups[static_cast<size_t>(group)]; }
+  const Group& Of(TechniqueGroup group) const { return groups[static_cast<size_t>(group)]; }
 };
 
 class PathDensities {

@@ -32,9 +32,9 @@ void SplatLight(const BidirectionalSample& sample, const EmittedPhoton& photon) 
   path.end.position =
       sample.lightPaths * static_cast<double>(photon.emissionSelection.value) * AreaDensity(photon.emission.pdfEmit);
   path.end.canBeHit = true;
-  path.weight = SplatLightWeight(path.end.position, path.atLens);
+  path.weight = SplatLightWeight(path.end.position, path.atLens, sample.settings.splatCount);
   path.sums.Of(TechniqueGroup::Light).Add(1);
-  path.sums.Of(TechniqueGroup::Hit).Add(path.atLens / path.end.position);
+  path.sums.Of(TechniqueGroup::Hit).Add(path.atLens / path.end.position / sample.settings.splatCount);
   AddSplat(sample, path);
 }
 
@@ -64,7 +64,7 @@ void SplatVertex(const BidirectionalSample& sample) {
       path.sums = sample.SumsOfConnection(light.Count(), joint.light, true);
   }
   path.connectionCount = sample.ConnectionCountAt(film);
-  path.weight = SplatWeight(vertex.weight, joint.light, path.connectionCount, merging);
+  path.weight = SplatWeight(vertex.weight, joint.light, path.connectionCount, sample.settings.splatCount, merging);
   AddSplat(sample, path);
 }
 

@@ -72,7 +72,8 @@ struct BidirectionalSample {
   // camera path hits the light.
   bool WantsSums() const { return merging && context.observer && context.observer->WantsSums(); }
   TechniqueSums Sums(const LightEnd& end, AreaDensity hit, bool firstIsDelta, size_t s) const {
-    return whole.Sums({end.direct.value, end.canBeHit ? hit.value : 0.0, firstIsDelta, lensSeesIt}, s, 0);
+    return whole.Sums(
+        {end.direct.value, end.canBeHit ? hit.value : 0.0, firstIsDelta, lensSeesIt ? settings.splatCount : 0.0}, s, 0);
   }
   // TechniqueSums of a connection; of one to the lens if `isSplat`. `reverse`: densities of the light subpath's last
   // vertices.

@@ -3,7 +3,7 @@
 // integrator calls these functions, and so does the test against explicit densities (full_path.h).
 //
 // `merging`: Σ (p_i / p)^β over the techniques that merge (PathDensities). `connectionCount`: connections per light
-// path in the pixel, squared.
+// path in the pixel, squared. `splatCount`: samples of a pixel that a splat is worth.
 #pragma once
 
 #include "integrators/walk/vertex.h"
@@ -17,12 +17,12 @@ inline double WeightAgainst(double others) {
 
 // (0,2): the camera hits a point of a light, which (1,1) also finds. Densities of the point: `position` by emission,
 // `camera` by the camera ray.
-inline double SeenLightWeight(AreaDensity position, AreaDensity camera) {
-  return WeightAgainst(Mis(position / camera));
+inline double SeenLightWeight(AreaDensity position, AreaDensity camera, double splatCount) {
+  return WeightAgainst(Mis(splatCount * (position / camera)));
 }
 // (1,1): a point of a light is connected to the lens.
-inline double SplatLightWeight(AreaDensity position, AreaDensity camera) {
-  return WeightAgainst(Mis(camera / position));
+inline double SplatLightWeight(AreaDensity position, AreaDensity camera, double splatCount) {
+  return WeightAgainst(Mis(camera / position / splatCount));
 }
 
 // The scattering event at the last vertex of a camera subpath that hit a light.
@@ -57,8 +57,8 @@ inline double ConnectWeight(const PartialWeight& light, const ReverseDensities& 
 // s > 1, t = 1: the last vertex of the light subpath is connected to the lens ([Georgiev12 eq. 46]). `reverse`: reverse
 // densities of that vertex, by a camera ray, and of the one before.
 inline double SplatWeight(const PartialWeight& light, const ReverseDensities& reverse, double connectionCount,
-                          double merging) {
-  return WeightAgainst(light.Sum(reverse).ForEnds(connectionCount) + merging);
+                          double splatCount, double merging) {
+  return WeightAgainst((light.Sum(reverse).ForEnds(connectionCount) + merging) / Mis(splatCount));
 }
 
 // The last vertices of both subpaths are merged ([Georgiev12 eqs. 38, 39]). `light`, `camera`: BeforeReverse of the two

@@ -21,6 +21,7 @@ struct IntegratorInput {
   float imagingRatio = 1;     // film value of radiance 1
   const Settings& settings;
   const TechniqueCounts* counts = nullptr;  // of bidirectional integrators; null: all techniques once
+  double splatCount = 1;                    // samples of a pixel that a splat is worth
 
   double FilmPixels() const { return static_cast<double>(width) * static_cast<double>(height); }
 };

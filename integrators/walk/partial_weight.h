@@ -12,7 +12,8 @@
 // techniques at the ends of the path (s = 0, s = 1, t = 1), and the connections of two subpaths, which a pixel may make
 // more rarely than there are light paths (technique_counts.h).
 //
-// With n light paths for each camera path, LightEnd::emission is n times the density of one.
+// With n light paths for each camera path, LightEnd::emission is n times the density of one. A splat (t = 1) counts for
+// as many samples of a pixel as it is worth: it is spread over all pixels in whose filter it is.
 //
 // Merging is not carried: its terms depend on the whole path, and take time in proportion to its length
 // (bidirectional/path_densities.h).
@@ -82,13 +83,13 @@ struct SubpathDensities {
 struct PathEnds {
   double direct = 0, hit = 0;  // of the light's point: by next-event estimation, and by a camera path; 0: impossible
   bool firstIsDelta = false;   // the event at vertex 1
-  bool lensSeesIt = false;     // t = 1 exists
+  double splatCount = 0;       // of t = 1; 0: it does not exist
   bool canBeHit = false;       // the light; `hit` may be unknown yet
 
   // Stored as the record before those of the path's vertices: one index per photon finds both.
   SubpathDensities Packed() const { return {direct, hit, firstIsDelta, false, canBeHit}; }
   static PathEnds Unpacked(const SubpathDensities& packed) {
-    return {packed.forward, packed.reverse, packed.forwardIsDelta, false, packed.canMerge};
+    return {packed.forward, packed.reverse, packed.forwardIsDelta, 0, packed.canMerge};
   }
 };
 
@@ -134,10 +135,10 @@ struct PartialWeight {
     return {{Mis(end.direct) * perEmission, end.canBeHit ? perEmission : 0.0}, {}};
   }
   // Partial weight at the first vertex of a camera subpath. `camera`: density of the vertex by a camera ray, over that
-  // of the lens point (DensityAtLens). `isSplatted`: true if light paths that reach the vertex are connected to the
+  // of the lens point (DensityAtLens). `splatCount`: 0 if light paths that reach the vertex are not connected to the
   // lens.
-  static PartialWeight AtLens(AreaDensity camera, bool isSplatted) {
-    return {{isSplatted ? 1 / Mis(camera) : 0.0, 0.0}, {}};
+  static PartialWeight AtLens(AreaDensity camera, double splatCount) {
+    return {{splatCount > 0 ? Mis(splatCount / camera.value) : 0.0, 0.0}, {}};
   }
 
   // Σ (p_i / p)^β over the techniques with fewer vertices on this side, merging left out.

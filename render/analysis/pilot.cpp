@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <tuple>
 
 #include "base/parallel.h"
 #include "integrators/bidirectional/connected_path.h"
@@ -11,6 +12,7 @@
 #include "integrators/photon/photon_pass.h"
 #include "integrators/photon/photon_store.h"
 #include "integrators/registry.h"
+#include "render/settings/integrator_choice.h"
 
 namespace lampyr {
 
@@ -62,6 +64,20 @@ constexpr std::array<Candidate, kCandidates> kCandidateOf = {{
     Bidirectional(true, 0),
     Bidirectional(true, 1),
 }};
+
+// Light that a candidate finds rarely, and bright.
+struct RareEvent {
+  uint32_t pixel;
+  float value;     // of one occurrence
+  float expected;  // occurrences in a typical render
+  float light;     // what it adds to the mean of the pixel, summed over the pilot's samples
+  float square;    // to its second moment
+};
+// A candidate finds it less often than the pilot by this factor.
+constexpr double kRare = 16;
+// Of a typical render. Events that it is expected to hold less than once are not in its error, but light that is
+// missing.
+constexpr double kTypicalSamples = 1 << 21;
 
 // Sums over the samples of a pixel.
 struct Moments {
@@ -139,11 +155,15 @@ struct Grid {
 // Adds up the moments of the paths of one chunk.
 class Recorder final : public PathObserver {
  public:
-  Recorder(const Grid& grid, double filmPixels)
+  // `spread`: pixels among which a splat is divided (PixelFilter::SplatCount). `splatCount`: that of the weights.
+  Recorder(const Grid& grid, double filmPixels, double spread, double splatCount, int passes)
       : moments(static_cast<size_t>(grid.Pixels())),
         found(static_cast<size_t>(grid.Pixels())),
         grid_(grid),
-        filmPixels_(filmPixels) {}
+        filmPixels_(filmPixels),
+        spread_(spread),
+        splatCount_(splatCount),
+        renders_(kTypicalSamples / (static_cast<double>(passes) * grid.Pixels())) {}
 
   void StartSample(int x, int y, float weight) {
     pixel_ = grid_.PixelOf(x, y);
@@ -180,6 +200,7 @@ class Recorder final : public PathObserver {
   // One entry for each pixel; `found` is of the current pass.
   std::vector<Moments> moments;
   std::vector<Found> found;
+  std::array<std::vector<RareEvent>, kCandidates> rare;
 
  private:
   void Add(const ConnectedPath& path, double value, size_t pixel) {
@@ -188,12 +209,13 @@ class Recorder final : public PathObserver {
     const double weighted = path.weight * value;
     if (!std::isfinite(weighted)) return;
     (isSeen ? here.seen : here.mean) += weighted;
+    const double spread = path.connection ? spread_ : 1.0;
     double known = 0;
     for (const TechniqueSums::Group& group : path.sums.groups) known += group.squares;
     if (!(known > 0)) {
       // Not known how else it could be found: as if all candidates did it like this.
       for (size_t k = 0; k < kCandidates; ++k) {
-        here.square[k] += weighted * value;
+        here.square[k] += weighted * value / spread;
         if (!path.connection) {
           sums_[k].value += weighted;
           sums_[k].squares += weighted * weighted;
@@ -210,26 +232,44 @@ class Recorder final : public PathObserver {
         squares += squared * path.sums.groups[g].squares;
         cubes += squared * counts[g] * path.sums.groups[g].cubes;
       }
-      const double factor = cubes / (squares * squares);
+      const double factor = cubes / (squares * squares * (path.connection ? splatCount_ : 1.0));
       if (!std::isfinite(factor) || !(squares > 0)) {
         here.missing[k] += weighted;
         continue;
       }
       here.square[k] += weighted * value * factor;
+      if (factor > kRare)
+        rare[k].push_back({static_cast<uint32_t>(pixel), static_cast<float>(value * factor),
+                           static_cast<float>(renders_ * path.weight / factor), static_cast<float>(weighted),
+                           static_cast<float>(weighted * value * factor)});
       if (path.connection || counts[own] == 0) continue;
       const double reweighted = weighted * known * counts[own] * counts[own] / squares;  // w = r² / Σ r²
       if (isSeen) {
         found[pixel].seen[k] += static_cast<float>(reweighted);
         continue;
       }
+      if (path.isMerged && path.t == 2)
+        here.products[k] += 2 * reweighted * SplatOf(path, value, counts[own], squares) / counts[own];
       const bool isConnected = GroupOf(path) == TechniqueGroup::Connect;
       (isConnected ? sums_[k].connected : sums_[k].value) += reweighted;
       (isConnected ? sums_[k].connectedSquares : sums_[k].squares) += reweighted * reweighted;
     }
   }
 
+  // What the light path of a photon that is merged at a first hit adds to the same pixel by its connection to the lens,
+  // on average: the same light path, counted twice. `squares`: Σ (n r)².
+  double SplatOf(const ConnectedPath& path, double value, double lightPaths, double squares) const {
+    const double splatSquare = path.sums.Of(TechniqueGroup::Light).squares;
+    if (!(splatSquare > 0)) return 0;
+    const double pixels = std::sqrt(splatSquare) / splatCount_;  // area of a pixel in that of the disc of merging
+    const double overlap = 1 / (spread_ + 1 / pixels);           // exact for discs far smaller or larger than a pixel
+    return overlap * lightPaths * lightPaths * splatSquare / squares * value / pixels;
+  }
+
   const Grid& grid_;
   double filmPixels_, weight_ = 1;
+  double spread_, splatCount_;
+  double renders_;  // typical renders for each of the pilot's samples
   size_t pixel_ = 0;
   // Connections have their own sums, because only samples with a light path make them.
   struct Sums {
@@ -408,7 +448,13 @@ class Records {
       seen += pixels[pixel].seen / (passes * grid_.Pixels());
     });
     if (!(mean + seen > 0)) return false;
+    std::vector<double> scales(pixels.size());
+    ForEachPixel([&](size_t pixel, size_t tile) {
+      const double brightness = tiles[tile] + pixels[pixel].seen / passes;
+      scales[pixel] = 1 / ((brightness * brightness + 0.01 * (mean + seen) * (mean + seen)) * passes);
+    });
     for (size_t k = 0; k < candidates.size(); ++k) {
+      LeaveOutRare(k, passes, mean + seen, scales, pixels);
       PilotCandidate& candidate = candidates[k];
       candidate.secondMoments.resize(grid_.Tiles());
       candidate.tileErrors.resize(grid_.Tiles());
@@ -416,7 +462,7 @@ class Records {
       ForEachPixel([&](size_t pixel, size_t tile) {
         const Moments& here = pixels[pixel];
         const double brightness = tiles[tile] + here.seen / passes;
-        const double scale = 1 / ((brightness * brightness + 0.01 * (mean + seen) * (mean + seen)) * passes);
+        const double scale = scales[pixel];
         const double square = scale * (here.square[k] + here.products[k]);
         const SquaredMeans& means = squaredMeans_[kCandidates * pixel + k];
         const double squaredMean = scale * (means.other + (seenPairs_ > 0 ? means.seen * passes / seenPairs_ : 0.0));
@@ -436,6 +482,29 @@ class Records {
   }
 
  private:
+  // Moves the brightest events of candidate `k` out of its second moments, as far as a typical render is expected to
+  // hold less than one of them and they are a negligible part of the light.
+  void LeaveOutRare(size_t k, int passes, double mean, const std::vector<double>& scales,
+                    std::vector<Moments>& pixels) const {
+    std::vector<RareEvent> events;
+    for (const Recorder& recorder : recorders_)
+      events.insert(events.end(), recorder.rare[k].begin(), recorder.rare[k].end());
+    const auto relative = [&](const RareEvent& event) {
+      return static_cast<double>(event.value) * static_cast<double>(event.value) * scales[event.pixel];
+    };
+    std::sort(events.begin(), events.end(), [&](const RareEvent& a, const RareEvent& b) {
+      const double first = relative(a), second = relative(b);
+      return first != second ? first > second : std::tie(a.pixel, a.light) < std::tie(b.pixel, b.light);
+    });
+    double expected = 0, light = 0;
+    for (const RareEvent& event : events) {
+      expected += static_cast<double>(event.expected);
+      light += static_cast<double>(event.light) / (passes * grid_.Pixels() * mean);
+      if (expected > 1 || light > 0.5 * kNegligibleLight) return;
+      pixels[event.pixel].square[k] -= static_cast<double>(event.square);
+      pixels[event.pixel].missing[k] += static_cast<double>(event.light);
+    }
+  }
   template <class Body>
   void ForEachPixel(const Body& body) const {
     for (int y = 0; y < grid_.height; ++y) {
@@ -526,8 +595,8 @@ std::optional<PilotCandidate> MergingInParts(const PilotCandidate& none, const P
 }
 
 std::unique_ptr<Integrator> Make(const char* name, const RenderScene& scene, const RenderSettings& settings) {
-  return IntegratorOf(name).create(
-      {scene, settings.width, settings.height, settings.sensor.ImagingRatio(), settings.values});
+  return IntegratorOf(name).create({scene, settings.width, settings.height, settings.sensor.ImagingRatio(),
+                                    settings.values, nullptr, SplatCount(settings)});
 }
 
 }  // namespace
@@ -577,7 +646,8 @@ RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, i
   const auto wider = static_cast<float>(std::sqrt(fewer * std::min(shrunk, 1.0)));
   PhotonStore store(photons, static_cast<uint64_t>(grid.Pixels()), nullptr);
   PilotPasses passes(view, combined, grid, threads, static_cast<uint32_t>(passCount));
-  std::vector<Recorder> recorders(kChunks, Recorder(grid, filmPixels)), none;
+  const double spread = PixelFilter(settings.filter).SplatCount();
+  std::vector<Recorder> recorders(kChunks, Recorder(grid, filmPixels, spread, SplatCount(settings), passCount)), none;
   Records records(grid, recorders);
   Counted counted;
   for (uint32_t pass = 0; pass < static_cast<uint32_t>(passCount); ++pass) {

@@ -132,10 +132,11 @@ IntegratorChoice ChooseIntegrator(const RenderScene& scene, const RenderSettings
   return ChooseIntegrator(scene, settings, FactsOf(scene), threads > 0 ? threads : HardwareThreads(), pilot);
 }
 
-ScenePlan PlanFor(const RenderScene& scene, const RenderSettings& settings) {
+ScenePlan PlanFor(const RenderScene& scene, const RenderSettings& settings, int threads) {
   const Facts facts = FactsOf(scene);
   ScenePlan plan;
-  const PlanDecision chosen = ChooseIntegrator(scene, settings, facts, HardwareThreads(), plan.pilot).decision;
+  const PlanDecision chosen =
+      ChooseIntegrator(scene, settings, facts, threads > 0 ? threads : HardwareThreads(), plan.pilot).decision;
   plan.integrator = chosen.choice;
   if (settings.integrator.empty() || settings.integrator == "auto") {
     plan.decisions.push_back(chosen);

@@ -33,7 +33,7 @@ struct ScenePlan {
 // `threads`: 0: all.
 IntegratorChoice ChooseIntegrator(const RenderScene& scene, const RenderSettings& settings, int threads = 0);
 
-// Deterministic for a scene and its settings.
-ScenePlan PlanFor(const RenderScene& scene, const RenderSettings& settings);
+// Deterministic for a scene and its settings. `threads`: 0: all.
+ScenePlan PlanFor(const RenderScene& scene, const RenderSettings& settings, int threads = 0);
 
 }  // namespace lampyr

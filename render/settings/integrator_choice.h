@@ -8,6 +8,9 @@
 
 namespace lampyr {
 
+// Samples of a pixel that a splat is worth, in the weights of bidirectional techniques.
+double SplatCount(const RenderSettings& settings);
+
 // The integrator of the settings, for `scene`. Throws a UsageError if it cannot render the scene.
 std::unique_ptr<Integrator> MakeIntegrator(const RenderScene& scene, const RenderSettings& settings);
 

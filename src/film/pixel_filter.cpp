@@ -63,20 +63,24 @@ PixelFilter::Axis PixelFilter::MakeAxis(const PixelFilterSettings& settings, flo
   const double r = static_cast<double>(radius);
   if (IsClosed(settings.kind)) {
     axis.integral = settings.kind == Kind::Box ? 2 * radius : radius * radius;
+    axis.splatCount = settings.kind == Kind::Box ? 2 * r : 1.5 * r;
     return axis;
   }
   const double step = 2 * r / kSteps;
   std::vector<double> sums(kSteps + 1, 0.0), absoluteSums(kSteps + 1, 0.0);  // of f and |f| up to each step
+  double squares = 0;
   for (size_t i = 0; i < kSteps; ++i) {
     const double value = AxisValue(settings, r, -r + (static_cast<double>(i) + 0.5) * step);
     sums[i + 1] = sums[i] + value;
     absoluteSums[i + 1] = absoluteSums[i] + std::abs(value);
+    squares += value * value;
   }
   const double sum = sums.back(), absoluteSum = absoluteSums.back();
   axis.integral = static_cast<float>(sum * step);
   if (!(axis.integral > 0) || !(absoluteSum < 1e3 * sum)) {
     throw Error("the pixel filter has no positive integral over its radius");
   }
+  axis.splatCount = absoluteSum * absoluteSum * step / squares;
   if (settings.kind == Kind::Gaussian && radius > 2 * settings.sigma) {  // otherwise the exponentials cancel
     axis.edge = std::exp(-0.5f * Sqr(radius / settings.sigma)) / axis.integral;
   }

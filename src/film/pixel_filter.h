@@ -36,6 +36,10 @@ class PixelFilter {
   // The factors along each axis, each normalised to ∫ = 1.
   float EvaluateX(float offset) const { return EvaluateAxis(*x_, offset); }
   float EvaluateY(float offset) const { return EvaluateAxis(*y_, offset); }
+  // Number of samples with weights as of Sample, one per pixel, whose mean has the variance of one splat: a splat is
+  // spread over all pixels in whose filter it is, (∫|f|)² / ∫f² of them on average (∫f = 1). Box of a pixel's width: 1;
+  // Gaussian of σ = 0.5: 3.
+  double SplatCount() const { return x_->splatCount * y_->splatCount; }
   // Half the extent of the filter, pixels.
   Vector2 Radius() const { return {settings_.radiusX, settings_.radiusY}; }
 
@@ -44,8 +48,9 @@ class PixelFilter {
   // parts with equal shares of ∫|f|: one look-up maps a random number to an offset.
   struct Axis {
     float radius = 0;
-    float integral = 1;  // of f
-    float edge = 0;      // narrow Gaussian: exp(-r²/2σ²) over the integral
+    float integral = 1;     // of f
+    double splatCount = 1;  // (∫|f|)² / ∫f²
+    float edge = 0;         // narrow Gaussian: exp(-r²/2σ²) over the integral
     std::vector<float> edges;
     std::vector<float> weights;  // per part: its share of ∫f over its share of ∫|f|; empty if f >= 0
   };

@@ -104,7 +104,7 @@ TEST(BdptWeights, WithARadiusPerPath) {
 }
 
 // Fewer light paths than camera paths, or more; connections and merging left out, always made, or now and then,
-// depending on the place on the film.
+// depending on the place on the film; splats by filters of other widths.
 TEST(BdptWeights, WithCounts) {
   const auto maskOf = [](std::vector<float> values) { return FilmMask(2, 2, {30, 20}, std::move(values)); };
   const std::vector<TechniqueCounts> all = {
@@ -118,9 +118,11 @@ TEST(BdptWeights, WithCounts) {
   int merges = 0;
   for (const AgreementScene& scene : AgreementScenes()) {
     for (size_t i = 0; i < all.size(); ++i) {
-      const WeightErrors worst = CheckWeights(
-          scene.text,
-          {.paths = 2000, .radius = i % 2 == 0 ? 0.01f : 0.0f, .pixels = i % 2 == 0 ? 0.0f : 2.0f, .counts = all[i]});
+      const WeightErrors worst = CheckWeights(scene.text, {.paths = 2000,
+                                                           .radius = i % 2 == 0 ? 0.01f : 0.0f,
+                                                           .pixels = i % 2 == 0 ? 0.0f : 2.0f,
+                                                           .counts = all[i],
+                                                           .splatCount = 0.1 * std::pow(3, i)});
       EXPECT_GE(worst.paths, 2000) << scene.name;
       ExpectExact((std::string(scene.name) + " with counts " + std::to_string(i)).c_str(), worst);
       merges += worst.merges;

@@ -357,6 +357,7 @@ WeightErrors CheckWeights(const std::string& sceneText, const WeightProof& proof
   settings.maxDepth = built.settings.MaxDepth();
   const int width = built.settings.width, height = built.settings.height;
   settings.filmPixels = static_cast<double>(width) * static_cast<double>(height);
+  settings.splatCount = proof.splatCount;
   settings.merges = proof.radius > 0 || proof.pixels > 0;
   settings.counts = proof.counts;
   settings.photons.radius = static_cast<double>(proof.radius * sphere.radius);

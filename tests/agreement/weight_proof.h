@@ -45,6 +45,7 @@ struct WeightProof {
   float pixels = 0;    // if `radius` is 0: photons are gathered within so many pixels, seen at the first hit
   bool stopsAtFirst = false;
   TechniqueCounts counts{};
+  double splatCount = 1.8;  // samples of a pixel that a splat is worth; that of a Gaussian filter
 };
 WeightErrors CheckWeights(const std::string& sceneText, const WeightProof& proof);
 

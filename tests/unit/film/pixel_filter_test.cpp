@@ -47,6 +47,27 @@ TEST(PixelFilter, ValuesIntegrateToOne) {
   }
 }
 
+// A splat of value 1 at a random place adds the filter's value there to a pixel; so many samples, of which each has
+// its weight alone, have the same variance.
+TEST(PixelFilter, SplatsAreWorthTheirSquares) {
+  for (const PixelFilterSettings& settings : AllSettings()) {
+    const PixelFilter filter(settings);
+    constexpr uint32_t kCount = 1u << 18;
+    Sampler sampler(SamplerKind::Sobol, 1);
+    double splats = 0, samples = 0;
+    for (uint32_t i = 0; i < kCount; ++i) {
+      sampler.StartPixelSample(0, 0, i);
+      const Point2 u = sampler.Get2D();
+      const float value = filter.Evaluate({settings.radiusX * (2 * u.x - 1), settings.radiusY * (2 * u.y - 1)});
+      splats += Double(value) * Double(value) / kCount;
+      const float weight = filter.Sample(u).weight;
+      samples += Double(weight) * Double(weight) / kCount;
+    }
+    splats *= 4 * Double(settings.radiusX) * Double(settings.radiusY);
+    EXPECT_NEAR(filter.SplatCount() * splats / samples, 1, 5e-3) << static_cast<int>(settings.kind);
+  }
+}
+
 // Weighted samples reproduce integrals against the filter: weight's mean, moments, and a block histogram.
 TEST(PixelFilter, SamplesFollowTheFilter) {
   constexpr uint32_t kCount = 1u << 18;
