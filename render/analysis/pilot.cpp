@@ -458,6 +458,7 @@ class Records {
       PilotCandidate& candidate = candidates[k];
       candidate.secondMoments.resize(grid_.Tiles());
       candidate.tileErrors.resize(grid_.Tiles());
+      candidate.tileMissing.resize(grid_.Tiles());
       double squares = 0, squaredMeans = 0, squaredBrightness = 0;
       ForEachPixel([&](size_t pixel, size_t tile) {
         const Moments& here = pixels[pixel];
@@ -471,8 +472,9 @@ class Records {
         squaredMeans += squaredMean;
         candidate.tileErrors[tile] += (square - squaredMean) / grid_.Pixels();
         candidate.secondMoments[tile] += here.square[k] / (passes * grid_.PixelsOf(tile));
-        candidate.missing += here.missing[k] / (passes * grid_.Pixels() * (mean + seen));
+        candidate.tileMissing[tile] += here.missing[k] / (passes * grid_.Pixels() * (mean + seen));
       });
+      for (const double missing : candidate.tileMissing) candidate.missing += missing;
       const double gain = isSobol ? kCandidateOf[k].gainOfSobol : 1.0;
       for (double& error : candidate.tileErrors) error /= gain;
       least = LeastVariance(passes * grid_.Pixels()) * squaredBrightness / grid_.Pixels();
@@ -555,11 +557,16 @@ std::vector<double> Blurred(std::vector<double> values, const Grid& grid, int ti
 // Where to merge. Σ error · Σ cost is least where in each tile that choice is made which has the least e/E + c/C, with
 // E and C the sums of all choices.
 //
+// Where only merging finds some of the light, it merges always, and now and then everywhere else, so that the mean is
+// right wherever the pilot has seen nothing of that light.
+//
 // `none`, `all`: the same light paths without merging and with it everywhere. Null: everywhere or nowhere is better.
 std::optional<PilotCandidate> MergingInParts(const PilotCandidate& none, const PilotCandidate& all,
                                              const CandidateCost& cost, const Grid& grid, double least) {
   constexpr int kBlurs = 2, kRounds = 8;
-  constexpr double kWorthIt = 0.97;
+  constexpr double kWorthIt = 0.97, kNowAndThen = 1.0 / 16;
+  const bool mustMerge = none.missing > kNegligibleLight;
+  const std::vector<double> missing = Blurred(none.tileMissing, grid, 1);
   const std::vector<double> without = Blurred(none.tileErrors, grid, kBlurs),
                             with = Blurred(all.tileErrors, grid, kBlurs);
   if (none.error <= least || all.error <= least) return std::nullopt;
@@ -569,14 +576,16 @@ std::optional<PilotCandidate> MergingInParts(const PilotCandidate& none, const P
     const double perError = 1 / error, perCost = cost.merging / (cost.paths + part * cost.merging);
     error = part = 0;
     for (size_t i = 0; i < grid.Tiles(); ++i) {
-      merges[i] = (without[i] - with[i]) * perError > perCost * grid.PartOf(i) ? 1.0 : 0.0;
+      const bool isWorthIt = (without[i] - with[i]) * perError > perCost * grid.PartOf(i);
+      merges[i] = isWorthIt || (mustMerge && missing[i] > 0) ? 1.0 : 0.0;
       error += merges[i] > 0 ? with[i] : without[i];
       part += merges[i] * grid.PartOf(i);
     }
     if (!(error > 0)) return std::nullopt;
   }
   // Wider by a tile, with a soft edge: the pilot sees a tile by a few samples.
-  for (double& value : merges = Blurred(std::move(merges), grid, 1)) value = std::min(1.0, 3 * value);
+  for (double& value : merges = Blurred(std::move(merges), grid, 1))
+    value = std::clamp(3 * value, mustMerge ? kNowAndThen : 0.0, 1.0);
   PilotCandidate mixed = all;
   mixed.error = part = 0;
   std::vector<float> mask;
@@ -590,7 +599,8 @@ std::optional<PilotCandidate> MergingInParts(const PilotCandidate& none, const P
   mixed.error = std::max(mixed.error, least);
   mixed.cost = cost.paths + part * cost.merging;
   mixed.counts.merging = FilmMask(grid.tilesX, grid.tilesY, grid.FilmOfTiles(), std::move(mask));
-  if (mixed.ErrorTimesCost() > kWorthIt * std::min(none.ErrorTimesCost(), all.ErrorTimesCost())) return std::nullopt;
+  const double best = mustMerge ? all.ErrorTimesCost() : std::min(none.ErrorTimesCost(), all.ErrorTimesCost());
+  if (mixed.ErrorTimesCost() > kWorthIt * best) return std::nullopt;
   return mixed;
 }
 
@@ -677,7 +687,6 @@ RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, i
   if (!records.SetErrors(passCount, settings.sampler == SamplerKind::Sobol, pilot.candidates, least)) return {};
   for (size_t k = kFirstOfVcm; k < kCandidates; ++k) {
     const PilotCandidate& none = pilot.candidates[k - kFirstOfVcm + 1];
-    if (none.missing > kNegligibleLight) continue;
     if (auto mixed = MergingInParts(none, pilot.candidates[k], costs[k], grid, least))
       pilot.candidates.push_back(std::move(*mixed));
   }

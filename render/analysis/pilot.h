@@ -28,7 +28,8 @@ struct PilotCandidate {
   // Of each tile of the image, row by row: the mean over its pixels of Σ E[(w v)²] over the paths of a sample, by all
   // techniques.
   std::vector<double> secondMoments;
-  std::vector<double> tileErrors;  // of each tile: its part of `error`
+  std::vector<double> tileErrors;   // of each tile: its part of `error`
+  std::vector<double> tileMissing;  // of each tile: its part of `missing`
 
   std::string Describe() const { return counts.Describe(integrator); }
 
