@@ -15,7 +15,7 @@ namespace {
 constexpr int kTileSize = 16;
 constexpr uint64_t kChunkPaths = 4096;  // light paths that one thread traces before their splats are added
 constexpr uint64_t kBeforeTheFirst = 0x6a09e667f3bcc908;  // changes the seed for the photons of the first pass
-constexpr uint64_t kSecondPath = 0xbb67ae8584caa73b;      // changes the seed for the second light path of a sample
+constexpr uint64_t kMorePaths = 0xbb67ae8584caa73b;       // changes the seed for the second light path of a sample
 // In the place of the pixel row, for samples that belong to no pixel:
 constexpr int kLightPaths = -1, kPassTimes = -2;
 
@@ -220,7 +220,7 @@ class BothPaths {
                  passTime);
     });
   }
-  // The light paths of a sample of a pixel: none, one or two. `index`: of the sample, becomes that of the light path.
+  // The light paths of a sample of a pixel: none, or some. `index`: of the sample, becomes that of the light path.
   int LightPathsOf(int x, int y, uint32_t& index) const;
   void TraceChunk(size_t chunk, uint64_t begin, uint64_t end, uint32_t index, uint64_t seed, bool withCamera,
                   float passTime);
@@ -267,7 +267,7 @@ void BothPaths::TraceChunk(size_t chunk, uint64_t begin, uint64_t end, uint32_t 
   SampleAdder adder(settings, pass_.film, counts_[chunk]);
   LayerSample* layers = adder.StartLayers();
   Sampler sampler(settings.sampler, seed), lightSampler(settings.sampler, seed),
-      secondSampler(settings.sampler, MixBits(seed + kSecondPath));
+      moreSampler(settings.sampler, MixBits(seed + kMorePaths));
   for (uint64_t i = begin; i < end; ++i) {
     const bool keepsPhotons = wanted_ && i < lightPaths_ && store_.HasRoom() && !(hasTimes_ && withCamera);
     if (!keepsPhotons && !withCamera) break;
@@ -307,8 +307,8 @@ void BothPaths::TraceChunk(size_t chunk, uint64_t begin, uint64_t end, uint32_t 
     }
     for (int k = 1; k < lightPaths; ++k) {
       startLightPath();
-      secondSampler.StartPixelSample(x, y, index);
-      pass_.integrator.Sample(nullptr, context.With(secondSampler));
+      moreSampler.StartPixelSample(x, y, index * static_cast<uint32_t>(lightPaths - 1) + static_cast<uint32_t>(k - 1));
+      pass_.integrator.Sample(nullptr, context.With(moreSampler));
     }
   }
 }

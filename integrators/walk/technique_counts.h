@@ -33,7 +33,7 @@ class FilmMask {
 };
 
 struct TechniqueCounts {
-  // Light paths for each camera path, as a power of two: -3 … 1. Of fewer than one, every pixel has one in
+  // Light paths for each camera path, as a power of two: -3 … 2. Of fewer than one, every pixel has one in
   // 1/LightPaths() of its samples.
   int log2LightPaths = 0;
   // Probabilities with which the vertices of a camera path are connected to a light path, if the sample has one, and

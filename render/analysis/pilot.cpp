@@ -38,13 +38,13 @@ struct Candidate {
 };
 constexpr Candidate Bidirectional(bool merges, int log2LightPaths) {
   const double n = log2LightPaths < 0 ? 1.0 / (1 << -log2LightPaths) : 1 << log2LightPaths;
-  constexpr std::array<double, 5> gains = {1.8, 1.87, 1.95, 2.0, 1.95};
+  constexpr std::array<double, 6> gains = {1.8, 1.87, 1.95, 2.0, 1.95, 1.9};
   return {merges ? "vcm" : "bdpt",
           log2LightPaths,
           {1, 1, n, std::min(n, 1.0), merges ? n : 0.0},
           gains[static_cast<size_t>(log2LightPaths + 3)]};
 }
-constexpr size_t kCandidates = 11, kFirstOfVcm = 6;
+constexpr size_t kCandidates = 13, kFirstOfVcm = 7;
 constexpr double kFewestLightPaths = 1.0 / 8;
 // The least variance that is told apart, in parts of the squared mean, for n samples: second moment and mean are both
 // estimated from them. Candidates with less are equally good, and the cheapest of them is chosen.
@@ -58,11 +58,13 @@ constexpr std::array<Candidate, kCandidates> kCandidateOf = {{
     Bidirectional(false, -1),
     Bidirectional(false, 0),
     Bidirectional(false, 1),
+    Bidirectional(false, 2),
     Bidirectional(true, -3),
     Bidirectional(true, -2),
     Bidirectional(true, -1),
     Bidirectional(true, 0),
     Bidirectional(true, 1),
+    Bidirectional(true, 2),
 }};
 
 // Light that a candidate finds rarely, and bright.

@@ -114,6 +114,7 @@ TEST(BdptWeights, WithCounts) {
       {-1, maskOf({0.5f, 0.5f, 0.5f, 0.5f}), maskOf({0, 0, 0, 1})},
       {1, maskOf({0, 0, 0, 0}), maskOf({0.3f, 0.3f, 1, 1})},
       {-3, maskOf({1, 0, 1, 0}), maskOf({0, 0, 0, 0})},
+      {2, {}, maskOf({0, 1, 0.5f, 0.5f})},
   };
   int merges = 0;
   for (const AgreementScene& scene : AgreementScenes()) {

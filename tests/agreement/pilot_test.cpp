@@ -208,7 +208,7 @@ TEST(Pilot, KnowsTheErrors) {
     BuiltScene built = Build(text);
     built.settings.values.Set("alpha", 1.0);  // the radius of the first pass
     const RenderPilot pilot = RunPilot(built.scene, built.settings, 1, 200);
-    ASSERT_GE(pilot.candidates.size(), 11u);
+    ASSERT_GE(pilot.candidates.size(), 13u);
     for (const PilotCandidate& candidate : pilot.candidates) {
       const double measured = MeasureError(built, candidate);
       std::printf("[   info   ] %-80s relMSE %.4g, measured %.4g\n", candidate.Describe().c_str(), candidate.error,
@@ -231,6 +231,7 @@ TEST(Pilot, CountsDoNotChangeTheMean) {
       {0, maskOf({0, 1, 0.3f, 0.8f}), maskOf({1, 0.2f, 0, 0.5f})},
       {-2, maskOf({0.5f, 0, 1, 0.5f}), maskOf({0, 0, 0.4f, 1})},
       {1, maskOf({0, 0.5f, 0, 0}), maskOf({0.3f, 0.3f, 1, 1})},
+      {2, {}, {}},
   };
   const std::string head = "path\" \"integer maxdepth\" [ 3 ] \"float unused\" [ 0 ] \"string lightsampler\" \"power";
   const std::string moving =
