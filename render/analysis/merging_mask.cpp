@@ -1,0 +1,74 @@
+#include "render/analysis/merging_mask.h"
+
+#include <algorithm>
+
+namespace lampyr::pilot {
+
+namespace {
+
+// The mean over the 3 × 3 tiles around each, `times` times.
+std::vector<double> Blurred(std::vector<double> values, const Grid& grid, int times) {
+  for (int i = 0; i < times; ++i) {
+    std::vector<double> blurred(values.size());
+    for (int y = 0; y < grid.tilesY; ++y) {
+      for (int x = 0; x < grid.tilesX; ++x) {
+        double sum = 0;
+        int count = 0;
+        for (int v = std::max(y - 1, 0); v <= std::min(y + 1, grid.tilesY - 1); ++v) {
+          for (int u = std::max(x - 1, 0); u <= std::min(x + 1, grid.tilesX - 1); ++u, ++count)
+            sum += values[static_cast<size_t>(v) * static_cast<size_t>(grid.tilesX) + static_cast<size_t>(u)];
+        }
+        blurred[static_cast<size_t>(y) * static_cast<size_t>(grid.tilesX) + static_cast<size_t>(x)] = sum / count;
+      }
+    }
+    values = std::move(blurred);
+  }
+  return values;
+}
+
+}  // namespace
+
+std::optional<PilotCandidate> MergingInParts(const PilotCandidate& none, const PilotCandidate& all,
+                                             const CandidateCost& cost, const Grid& grid, double least) {
+  constexpr int kBlurs = 2, kRounds = 8;
+  constexpr double kWorthIt = 0.97, kNowAndThen = 1.0 / 16;
+  const bool mustMerge = none.missing > kNegligibleLight;
+  const std::vector<double> missing = Blurred(none.tileMissing, grid, 1);
+  const std::vector<double> without = Blurred(none.tileErrors, grid, kBlurs),
+                            with = Blurred(all.tileErrors, grid, kBlurs);
+  if (none.error <= least || all.error <= least) return std::nullopt;
+  double error = all.error, part = 1;
+  std::vector<double> merges(grid.Tiles());
+  for (int round = 0; round < kRounds; ++round) {
+    const double perError = 1 / error, perCost = cost.merging / (cost.paths + part * cost.merging);
+    error = part = 0;
+    for (size_t i = 0; i < grid.Tiles(); ++i) {
+      const bool isWorthIt = (without[i] - with[i]) * perError > perCost * grid.PartOf(i);
+      merges[i] = isWorthIt || (mustMerge && missing[i] > 0) ? 1.0 : 0.0;
+      error += merges[i] > 0 ? with[i] : without[i];
+      part += merges[i] * grid.PartOf(i);
+    }
+    if (!(error > 0)) return std::nullopt;
+  }
+  // Wider by a tile, with a soft edge: the pilot sees a tile by a few samples.
+  for (double& value : merges = Blurred(std::move(merges), grid, 1))
+    value = std::clamp(3 * value, mustMerge ? kNowAndThen : 0.0, 1.0);
+  PilotCandidate mixed = all;
+  mixed.error = part = 0;
+  std::vector<float> mask;
+  for (size_t i = 0; i < grid.Tiles(); ++i) {
+    mixed.tileErrors[i] = merges[i] * all.tileErrors[i] + (1 - merges[i]) * none.tileErrors[i];
+    mixed.error += mixed.tileErrors[i];
+    part += merges[i] * grid.PartOf(i);
+    mask.push_back(static_cast<float>(merges[i]));
+  }
+  if (!(part > 0)) return std::nullopt;
+  mixed.error = std::max(mixed.error, least);
+  mixed.cost = cost.paths + part * cost.merging;
+  mixed.counts.merging = FilmMask(grid.tilesX, grid.tilesY, grid.FilmOfTiles(), std::move(mask));
+  const double best = mustMerge ? all.ErrorTimesCost() : std::min(none.ErrorTimesCost(), all.ErrorTimesCost());
+  if (mixed.ErrorTimesCost() > kWorthIt * best) return std::nullopt;
+  return mixed;
+}
+
+}  // namespace lampyr::pilot

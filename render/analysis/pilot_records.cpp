@@ -1,0 +1,205 @@
+#include "render/analysis/pilot_records.h"
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+namespace lampyr::pilot {
+
+namespace {
+
+// A candidate finds it less often than the pilot by this factor.
+constexpr double kRare = 16;
+
+// Events that a typical render is expected to hold less than once are not in its error, but light that is
+// missing.
+constexpr double kTypicalSamples = 1 << 21;
+
+TechniqueGroup GroupOf(const ConnectedPath& path) {
+  if (path.isMerged) return TechniqueGroup::Merge;
+  if (path.connection) return TechniqueGroup::Light;
+  return path.s == 0 ? TechniqueGroup::Hit : path.s == 1 ? TechniqueGroup::Next : TechniqueGroup::Connect;
+}
+
+// The least variance that is told apart, in parts of the squared mean, for n samples: second moment and mean are both
+// estimated from them. Candidates with less are equally good, and the cheapest of them is chosen.
+double LeastVariance(double samples) {
+  return 2.2 / std::sqrt(samples);
+}
+
+}  // namespace
+
+void Recorder::EndSample() {
+  for (size_t k = 0; k < kCandidates; ++k) {
+    const Sums& sums = sums_[k];
+    moments[pixel_].products[k] += sums.value * sums.value - sums.squares + 2 * sums.value * sums.connected +
+                                   (sums.connected * sums.connected - sums.connectedSquares) /
+                                       std::max(kCandidateOf[k].counts[3], kFewestLightPaths);
+    found[pixel_].other[k] += static_cast<float>(sums.value + sums.connected);
+  }
+}
+
+void Recorder::Observe(const ConnectedPath& path) {
+  size_t pixel = pixel_;
+  double scale = weight_;
+  if (path.connection) {
+    const Point2& film = path.connection->camera.film;
+    const int x = static_cast<int>(std::floor(film.x / grid_.pixel.x)),
+              y = static_cast<int>(std::floor(film.y / grid_.pixel.y));
+    if (x < 0 || y < 0 || x >= grid_.width || y >= grid_.height) return;
+    pixel = grid_.PixelOf(x, y);
+    scale = 1 / filmPixels_;
+  }
+  Add(path, static_cast<double>(path.value.Average()) * scale, pixel);
+}
+
+void Recorder::Add(const ConnectedPath& path, double value, size_t pixel) {
+  Moments& here = moments[pixel];
+  const bool isSeen = path.s + path.t == 2;
+  const double weighted = path.weight * value;
+  if (!std::isfinite(weighted)) return;
+  (isSeen ? here.seen : here.mean) += weighted;
+  const double spread = path.connection ? spread_ : 1.0;
+  double known = 0;
+  for (const TechniqueSums::Group& group : path.sums.groups) known += group.squares;
+  if (!(known > 0)) {
+    // Not known how else it could be found: as if all candidates did it like this.
+    for (size_t k = 0; k < kCandidates; ++k) {
+      here.square[k] += weighted * value / spread;
+      if (!path.connection) {
+        sums_[k].value += weighted;
+        sums_[k].squares += weighted * weighted;
+      }
+    }
+    return;
+  }
+  const auto own = static_cast<size_t>(GroupOf(path));
+  for (size_t k = 0; k < kCandidates; ++k) {
+    const auto& counts = kCandidateOf[k].counts;
+    double squares = 0, cubes = 0;
+    for (size_t g = 0; g < kTechniqueGroups; ++g) {
+      const double squared = counts[g] * counts[g];
+      squares += squared * path.sums.groups[g].squares;
+      cubes += squared * counts[g] * path.sums.groups[g].cubes;
+    }
+    const double factor = cubes / (squares * squares * (path.connection ? splatCount_ : 1.0));
+    if (!std::isfinite(factor) || !(squares > 0)) {
+      here.missing[k] += weighted;
+      continue;
+    }
+    here.square[k] += weighted * value * factor;
+    if (factor > kRare)
+      rare[k].push_back({static_cast<uint32_t>(pixel), static_cast<float>(value * factor),
+                         static_cast<float>(renders_ * path.weight / factor), static_cast<float>(weighted),
+                         static_cast<float>(weighted * value * factor)});
+    if (path.connection || counts[own] == 0) continue;
+    const double reweighted = weighted * known * counts[own] * counts[own] / squares;  // w = r² / Σ r²
+    if (isSeen) {
+      found[pixel].seen[k] += static_cast<float>(reweighted);
+      continue;
+    }
+    if (path.isMerged && path.t == 2)
+      here.products[k] += 2 * reweighted * SplatOf(path, value, counts[own], squares) / counts[own];
+    const bool isConnected = GroupOf(path) == TechniqueGroup::Connect;
+    (isConnected ? sums_[k].connected : sums_[k].value) += reweighted;
+    (isConnected ? sums_[k].connectedSquares : sums_[k].squares) += reweighted * reweighted;
+  }
+}
+
+double Recorder::SplatOf(const ConnectedPath& path, double value, double lightPaths, double squares) const {
+  const double splatSquare = path.sums.Of(TechniqueGroup::Light).squares;
+  if (!(splatSquare > 0)) return 0;
+  const double pixels = std::sqrt(splatSquare) / splatCount_;  // area of a pixel in that of the disc of merging
+  const double overlap = 1 / (spread_ + 1 / pixels);           // exact for discs far smaller or larger than a pixel
+  return overlap * lightPaths * lightPaths * splatSquare / squares * value / pixels;
+}
+
+void Records::EndPass(uint32_t pass) {
+  std::vector<Found> found(recorders_[0].found.size());
+  for (Recorder& recorder : recorders_) {
+    for (size_t i = 0; i < found.size(); ++i) found[i] += std::exchange(recorder.found[i], Found());
+  }
+  for (size_t i = 0; i < found.size(); ++i) {
+    for (size_t k = 0; k < kCandidates; ++k) {
+      const auto product = [](float a, float b) { return static_cast<double>(a) * static_cast<double>(b); };
+      SquaredMeans& means = squaredMeans_[kCandidates * i + k];
+      if (pass % 2 == 1) means.other += 2 * product(last_[i].other[k], found[i].other[k]);
+      if (pass > 1) means.seen += product(beforeLast_[i].seen[k], found[i].seen[k]);
+    }
+  }
+  if (pass > 1) ++seenPairs_;
+  beforeLast_ = std::exchange(last_, std::move(found));
+}
+
+bool Records::SetErrors(int passes, bool isSobol, std::vector<PilotCandidate>& candidates, double& least) const {
+  std::vector<Moments> pixels(squaredMeans_.size() / kCandidates);
+  for (const Recorder& recorder : recorders_) {
+    for (size_t i = 0; i < pixels.size(); ++i) pixels[i] += recorder.moments[i];
+  }
+  // The brightness of a pixel is that of its tile, and of the light that it sees itself.
+  std::vector<double> tiles(grid_.Tiles());
+  double mean = 0, seen = 0;
+  ForEachPixel([&](size_t pixel, size_t tile) {
+    tiles[tile] += pixels[pixel].mean / (passes * grid_.PixelsOf(tile));
+    mean += pixels[pixel].mean / (passes * grid_.Pixels());
+    seen += pixels[pixel].seen / (passes * grid_.Pixels());
+  });
+  if (!(mean + seen > 0)) return false;
+  std::vector<double> scales(pixels.size());
+  ForEachPixel([&](size_t pixel, size_t tile) {
+    const double brightness = tiles[tile] + pixels[pixel].seen / passes;
+    scales[pixel] = 1 / ((brightness * brightness + 0.01 * (mean + seen) * (mean + seen)) * passes);
+  });
+  for (size_t k = 0; k < candidates.size(); ++k) {
+    LeaveOutRare(k, passes, mean + seen, scales, pixels);
+    PilotCandidate& candidate = candidates[k];
+    candidate.secondMoments.resize(grid_.Tiles());
+    candidate.tileErrors.resize(grid_.Tiles());
+    candidate.tileMissing.resize(grid_.Tiles());
+    double squares = 0, squaredMeans = 0, squaredBrightness = 0;
+    ForEachPixel([&](size_t pixel, size_t tile) {
+      const Moments& here = pixels[pixel];
+      const double brightness = tiles[tile] + here.seen / passes;
+      const double scale = scales[pixel];
+      const double square = scale * (here.square[k] + here.products[k]);
+      const SquaredMeans& means = squaredMeans_[kCandidates * pixel + k];
+      const double squaredMean = scale * (means.other + (seenPairs_ > 0 ? means.seen * passes / seenPairs_ : 0.0));
+      squares += square;
+      squaredBrightness += scale * passes * brightness * brightness;
+      squaredMeans += squaredMean;
+      candidate.tileErrors[tile] += (square - squaredMean) / grid_.Pixels();
+      candidate.secondMoments[tile] += here.square[k] / (passes * grid_.PixelsOf(tile));
+      candidate.tileMissing[tile] += here.missing[k] / (passes * grid_.Pixels() * (mean + seen));
+    });
+    for (const double missing : candidate.tileMissing) candidate.missing += missing;
+    const double gain = isSobol ? kCandidateOf[k].gainOfSobol : 1.0;
+    for (double& error : candidate.tileErrors) error /= gain;
+    least = LeastVariance(passes * grid_.Pixels()) * squaredBrightness / grid_.Pixels();
+    candidate.error = std::max((squares - squaredMeans) / (gain * grid_.Pixels()), least);
+  }
+  return true;
+}
+
+void Records::LeaveOutRare(size_t k, int passes, double mean, const std::vector<double>& scales,
+                           std::vector<Moments>& pixels) const {
+  std::vector<RareEvent> events;
+  for (const Recorder& recorder : recorders_)
+    events.insert(events.end(), recorder.rare[k].begin(), recorder.rare[k].end());
+  const auto relative = [&](const RareEvent& event) {
+    return static_cast<double>(event.value) * static_cast<double>(event.value) * scales[event.pixel];
+  };
+  std::sort(events.begin(), events.end(), [&](const RareEvent& a, const RareEvent& b) {
+    const double first = relative(a), second = relative(b);
+    return first != second ? first > second : std::tie(a.pixel, a.light) < std::tie(b.pixel, b.light);
+  });
+  double expected = 0, light = 0;
+  for (const RareEvent& event : events) {
+    expected += static_cast<double>(event.expected);
+    light += static_cast<double>(event.light) / (passes * grid_.Pixels() * mean);
+    if (expected > 1 || light > 0.5 * kNegligibleLight) return;
+    pixels[event.pixel].square[k] -= static_cast<double>(event.square);
+    pixels[event.pixel].missing[k] += static_cast<double>(event.light);
+  }
+}
+
+}  // namespace lampyr::pilot

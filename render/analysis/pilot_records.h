@@ -1,0 +1,177 @@
+// What the pilot sees, and the errors of the candidates that follow from it.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "integrators/bidirectional/connected_path.h"
+#include "render/analysis/pilot.h"
+#include "render/analysis/pilot_candidates.h"
+
+namespace lampyr::pilot {
+
+// The pilot's pixels, and where they are on the film.
+struct Grid {
+  int width, height, tilesX, tilesY;
+  Point2 pixel;  // size of a pixel on the film
+
+  explicit Grid(const RenderSettings& settings) {
+    const double scale = std::min(1.0, std::sqrt(kMostPilotPixels / (static_cast<double>(settings.width) *
+                                                                     static_cast<double>(settings.height))));
+    const auto side = [scale](int full, int most) {
+      return static_cast<int>(std::clamp(std::lround(scale * full), 1L, static_cast<long>(most)));
+    };
+    width = side(settings.width, kMostPilotPixels);
+    height = side(settings.height, kMostPilotPixels / width);
+    tilesX = (width + kPilotTile - 1) / kPilotTile;
+    tilesY = (height + kPilotTile - 1) / kPilotTile;
+    pixel = {static_cast<float>(settings.width) / static_cast<float>(width),
+             static_cast<float>(settings.height) / static_cast<float>(height)};
+  }
+  int Pixels() const { return width * height; }
+  size_t Tiles() const { return static_cast<size_t>(tilesX) * static_cast<size_t>(tilesY); }
+  size_t PixelOf(int x, int y) const {
+    return static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x);
+  }
+  size_t TileOf(int x, int y) const {
+    return static_cast<size_t>(y / kPilotTile) * static_cast<size_t>(tilesX) + static_cast<size_t>(x / kPilotTile);
+  }
+  // All tiles are of one size on the film; the last may reach beyond its edge.
+  Point2 FilmOfTiles() const {
+    return {static_cast<float>(tilesX * kPilotTile) * pixel.x, static_cast<float>(tilesY * kPilotTile) * pixel.y};
+  }
+  double PartOf(size_t tile) const { return static_cast<double>(PixelsOf(tile)) / Pixels(); }
+  int PixelsOf(size_t tile) const {
+    const int x = static_cast<int>(tile) % tilesX * kPilotTile, y = static_cast<int>(tile) / tilesX * kPilotTile;
+    return std::min(kPilotTile, width - x) * std::min(kPilotTile, height - y);
+  }
+};
+
+// Light that a candidate finds rarely, and bright.
+struct RareEvent {
+  uint32_t pixel;
+  float value;     // of one occurrence
+  float expected;  // occurrences in a typical render
+  float light;     // what it adds to the mean of the pixel, summed over the pilot's samples
+  float square;    // to its second moment
+};
+// Samples of a typical render.
+inline constexpr double kTypicalSamples = 1 << 21;
+
+// Sums over the samples of a pixel.
+struct Moments {
+  double seen = 0, mean = 0;                   // light that is seen itself, and all other
+  std::array<double, kCandidates> square{};    // second moments of single paths
+  std::array<double, kCandidates> products{};  // of different paths of one sample
+  std::array<double, kCandidates> missing{};
+
+  void operator+=(const Moments& other) {
+    seen += other.seen;
+    mean += other.mean;
+    for (size_t k = 0; k < kCandidates; ++k) {
+      square[k] += other.square[k];
+      products[k] += other.products[k];
+      missing[k] += other.missing[k];
+    }
+  }
+};
+
+// Contributions of the camera path of one pixel in one pass, for each candidate.
+struct Found {
+  std::array<float, kCandidates> seen{}, other{};  // a light that the pixel sees itself; all other light
+
+  void operator+=(const Found& more) {
+    for (size_t k = 0; k < kCandidates; ++k) {
+      seen[k] += more.seen[k];
+      other[k] += more.other[k];
+    }
+  }
+};
+
+// Adds up the moments of the paths of one chunk.
+class Recorder final : public PathObserver {
+ public:
+  // `spread`: pixels among which a splat is divided (PixelFilter::SplatCount). `splatCount`: that of the weights.
+  Recorder(const Grid& grid, double filmPixels, double spread, double splatCount, int passes)
+      : moments(static_cast<size_t>(grid.Pixels())),
+        found(static_cast<size_t>(grid.Pixels())),
+        grid_(grid),
+        filmPixels_(filmPixels),
+        spread_(spread),
+        splatCount_(splatCount),
+        renders_(kTypicalSamples / (static_cast<double>(passes) * grid.Pixels())) {}
+
+  void StartSample(int x, int y, float weight) {
+    pixel_ = grid_.PixelOf(x, y);
+    weight_ = static_cast<double>(weight);
+    sums_ = {};
+  }
+  // A sample is the sum of all paths that one camera path makes. Its square has the products of different paths,
+  // besides the squares of each.
+  void EndSample();
+  bool WantsSums() const override { return true; }
+  void Observe(const ConnectedPath& path) override;
+  void ObserveMerge(const ConnectedPath& path, const Photon&) override { Observe(path); }
+
+  // One entry for each pixel; `found` is of the current pass.
+  std::vector<Moments> moments;
+  std::vector<Found> found;
+  std::array<std::vector<RareEvent>, kCandidates> rare;
+
+ private:
+  void Add(const ConnectedPath& path, double value, size_t pixel);
+
+  // What the light path of a photon that is merged at a first hit adds to the same pixel by its connection to the lens,
+  // on average: the same light path, counted twice. `squares`: Σ (n r)².
+  double SplatOf(const ConnectedPath& path, double value, double lightPaths, double squares) const;
+
+  const Grid& grid_;
+  double filmPixels_, weight_ = 1;
+  double spread_, splatCount_;
+  double renders_;  // typical renders for each of the pilot's samples
+  size_t pixel_ = 0;
+  // Connections have their own sums, because only samples with a light path make them.
+  struct Sums {
+    double value = 0, squares = 0, connected = 0, connectedSquares = 0;
+  };
+  std::array<Sums, kCandidates> sums_;  // of the current camera path
+};
+
+// Combines the records of all chunks into the errors of the candidates.
+class Records {
+ public:
+  Records(const Grid& grid, std::vector<Recorder>& recorders)
+      : grid_(grid), recorders_(recorders), squaredMeans_(kCandidates * static_cast<size_t>(grid.Pixels())) {}
+
+  // After each pass. The square of a mean is estimated by the product of what two passes have found, which are
+  // independent: of lights that a pixel sees itself at different points of the film, of all other light at the same.
+  void EndPass(uint32_t pass);
+
+  // The sum over all passes. False: no light was found.
+  bool SetErrors(int passes, bool isSobol, std::vector<PilotCandidate>& candidates, double& least) const;
+
+ private:
+  // Moves the brightest events of candidate `k` out of its second moments, as far as a typical render is expected to
+  // hold less than one of them and they are a negligible part of the light.
+  void LeaveOutRare(size_t k, int passes, double mean, const std::vector<double>& scales,
+                    std::vector<Moments>& pixels) const;
+  template <class Body>
+  void ForEachPixel(const Body& body) const {
+    for (int y = 0; y < grid_.height; ++y) {
+      for (int x = 0; x < grid_.width; ++x) body(grid_.PixelOf(x, y), grid_.TileOf(x, y));
+    }
+  }
+
+  const Grid& grid_;
+  std::vector<Recorder>& recorders_;
+  std::vector<Found> last_, beforeLast_;  // in the passes before
+  struct SquaredMeans {
+    double other = 0, seen = 0;
+  };
+  std::vector<SquaredMeans> squaredMeans_;  // Σ over the passes, by pixel and candidate
+  int seenPairs_ = 0;
+};
+
+}  // namespace lampyr::pilot
