@@ -9,6 +9,7 @@
 #include "integrators/photon/photon_store.h"
 #include "integrators/registry.h"
 #include "render/analysis/merging_mask.h"
+#include "render/pixel_ray.h"
 #include "render/settings/integrator_choice.h"
 
 namespace lampyr {
@@ -29,7 +30,13 @@ constexpr uint64_t kSeed = 0x9e3779b97f4a7c15;
 class PilotPasses {
  public:
   PilotPasses(const RenderScene& scene, const RenderSettings& settings, const Grid& grid, int threads, uint32_t passes)
-      : scene_(scene), settings_(settings), grid_(grid), threads_(threads), passes_(passes), photons_(kChunks) {}
+      : scene_(scene),
+        settings_(settings),
+        grid_(grid),
+        threads_(threads),
+        passes_(passes),
+        filter_(settings.filter),
+        photons_(kChunks) {}
 
   // Traces the photons of a pass; where the integrator gathers none, it has none.
   void TracePhotons(const Integrator& integrator, PhotonStore& store, uint32_t pass) {
@@ -51,20 +58,22 @@ class PilotPasses {
                      std::vector<Recorder>& recorders) {
     return ForEachPixel(grid_.Pixels(), [&](size_t chunk, int x, int y, Sampler& sampler, RenderCounts& counts,
                                             SplatList& splats) {
-      // Two passes have the same point of the film: what a pixel of the pilot holds of texture and edges is not noise.
-      sampler.StartPixelSample(x, y, pass / 2);
+      // Two passes have the same pixel of the image, of those that a pixel of the pilot holds: what differs between
+      // pixels is not noise, and what is within one is.
+      sampler.StartPixelSample(x, y, 2 * passes_ + pass / 2);
       sampler.SetDimension(dimensions::kFilm);
       const Point2 u = sampler.Get2D();
+      const int column = std::min(static_cast<int>((static_cast<float>(x) + u.x) * grid_.pixel.x), settings_.width - 1),
+                row = std::min(static_cast<int>((static_cast<float>(y) + u.y) * grid_.pixel.y), settings_.height - 1);
       sampler.StartPixelSample(x, y, pass);
       SampleContext context{scene_, sampler, Time(pass), counts};
       context.splats = integrator.Paths() == TracedPaths::Camera ? nullptr : &splats;
       context.gather = gather;
-      const Point2 film((static_cast<float>(x) + u.x) * grid_.pixel.x, (static_cast<float>(y) + u.y) * grid_.pixel.y);
-      sampler.SetDimension(dimensions::kLens);
-      const CameraRay ray = scene_.camera->GenerateRay(film, sampler.Get2D(), context.time);
+      const PixelRay pixel = MakePixelRay(scene_, filter_, column, row, context.time, sampler);
+      const CameraRay& ray = pixel.camera;
       if (!recorders.empty()) {
         context.observer = &recorders[chunk];
-        recorders[chunk].StartSample(x, y, ray.weight);
+        recorders[chunk].StartSample(x, y, ray.weight * pixel.filterWeight);
       }
       const bool isVignetted = ray.weight == 0;
       if (!isVignetted || integrator.Paths() != TracedPaths::Camera)
@@ -83,7 +92,8 @@ class PilotPasses {
     std::vector<RenderCounts> counts(kChunks);
     ParallelFor(kChunks, threads_, [&](int chunk) {
       const auto index = static_cast<size_t>(chunk);
-      Sampler sampler(settings_.sampler, kSeed);
+      // A variance is estimated by independent samples.
+      Sampler sampler(SamplerKind::Independent, kSeed);
       // Splats are not kept, but connections that reach no pixel are not made.
       SplatList splats({0, 0}, {static_cast<float>(settings_.width), static_cast<float>(settings_.height)}, 1);
       const auto begin = [&](int of) { return static_cast<int>(int64_t{count} * of / kChunks); };
@@ -103,6 +113,7 @@ class PilotPasses {
   const Grid& grid_;
   int threads_;
   uint32_t passes_;
+  PixelFilter filter_;
   std::vector<PhotonList> photons_;
 };
 

@@ -35,7 +35,6 @@ void Recorder::EndSample() {
     moments[pixel_].products[k] += sums.value * sums.value - sums.squares + 2 * sums.value * sums.connected +
                                    (sums.connected * sums.connected - sums.connectedSquares) /
                                        std::max(kCandidateOf[k].counts[3], kFewestLightPaths);
-    found[pixel_].other[k] += static_cast<float>(sums.value + sums.connected);
   }
 }
 
@@ -67,6 +66,7 @@ void Recorder::Add(const ConnectedPath& path, double value, size_t pixel) {
     for (size_t k = 0; k < kCandidates; ++k) {
       here.square[k] += weighted * value / spread;
       if (!path.connection) {
+        found[pixel].value[k] += static_cast<float>(weighted);
         sums_[k].value += weighted;
         sums_[k].squares += weighted * weighted;
       }
@@ -92,12 +92,11 @@ void Recorder::Add(const ConnectedPath& path, double value, size_t pixel) {
       rare[k].push_back({static_cast<uint32_t>(pixel), static_cast<float>(value * factor),
                          static_cast<float>(renders_ * path.weight / factor), static_cast<float>(weighted),
                          static_cast<float>(weighted * value * factor)});
+    constexpr auto splat = static_cast<size_t>(TechniqueGroup::Light);
+    const double bySplats = counts[splat] * counts[splat] * path.sums.groups[splat].squares / squares;
+    found[pixel].value[k] += static_cast<float>(weighted * (1 - bySplats));
     if (path.connection || counts[own] == 0) continue;
     const double reweighted = weighted * known * counts[own] * counts[own] / squares;  // w = r² / Σ r²
-    if (isSeen) {
-      found[pixel].seen[k] += static_cast<float>(reweighted);
-      continue;
-    }
     if (path.isMerged && path.t == 2)
       here.products[k] += 2 * reweighted * SplatOf(path, value, counts[own], squares) / counts[own];
     const bool isConnected = GroupOf(path) == TechniqueGroup::Connect;
@@ -119,16 +118,12 @@ void Records::EndPass(uint32_t pass) {
   for (Recorder& recorder : recorders_) {
     for (size_t i = 0; i < found.size(); ++i) found[i] += std::exchange(recorder.found[i], Found());
   }
-  for (size_t i = 0; i < found.size(); ++i) {
-    for (size_t k = 0; k < kCandidates; ++k) {
-      const auto product = [](float a, float b) { return static_cast<double>(a) * static_cast<double>(b); };
-      SquaredMeans& means = squaredMeans_[kCandidates * i + k];
-      if (pass % 2 == 1) means.other += 2 * product(last_[i].other[k], found[i].other[k]);
-      if (pass > 1) means.seen += product(beforeLast_[i].seen[k], found[i].seen[k]);
-    }
+  for (size_t i = 0; i < found.size() && pass % 2 == 1; ++i) {
+    for (size_t k = 0; k < kCandidates; ++k)
+      squaredMeans_[kCandidates * i + k] +=
+          2 * static_cast<double>(last_[i].value[k]) * static_cast<double>(found[i].value[k]);
   }
-  if (pass > 1) ++seenPairs_;
-  beforeLast_ = std::exchange(last_, std::move(found));
+  last_ = std::move(found);
 }
 
 bool Records::SetErrors(int passes, bool isSobol, std::vector<PilotCandidate>& candidates, double& least) const {
@@ -162,8 +157,7 @@ bool Records::SetErrors(int passes, bool isSobol, std::vector<PilotCandidate>& c
       const double brightness = tiles[tile] + here.seen / passes;
       const double scale = scales[pixel];
       const double square = scale * (here.square[k] + here.products[k]);
-      const SquaredMeans& means = squaredMeans_[kCandidates * pixel + k];
-      const double squaredMean = scale * (means.other + (seenPairs_ > 0 ? means.seen * passes / seenPairs_ : 0.0));
+      const double squaredMean = scale * squaredMeans_[kCandidates * pixel + k];
       squares += square;
       squaredBrightness += scale * passes * brightness * brightness;
       squaredMeans += squaredMean;

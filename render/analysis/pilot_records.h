@@ -66,7 +66,6 @@ struct Moments {
   std::array<double, kCandidates> square{};    // second moments of single paths
   std::array<double, kCandidates> products{};  // of different paths of one sample
   std::array<double, kCandidates> missing{};
-
   void operator+=(const Moments& other) {
     seen += other.seen;
     mean += other.mean;
@@ -78,14 +77,13 @@ struct Moments {
   }
 };
 
-// Contributions of the camera path of one pixel in one pass, for each candidate.
+// What the camera path of one pixel adds to it in one pass, for each candidate; expected values over its techniques.
 struct Found {
-  std::array<float, kCandidates> seen{}, other{};  // a light that the pixel sees itself; all other light
+  std::array<float, kCandidates> value{};
 
   void operator+=(const Found& more) {
     for (size_t k = 0; k < kCandidates; ++k) {
-      seen[k] += more.seen[k];
-      other[k] += more.other[k];
+      value[k] += more.value[k];
     }
   }
 };
@@ -145,8 +143,8 @@ class Records {
   Records(const Grid& grid, std::vector<Recorder>& recorders)
       : grid_(grid), recorders_(recorders), squaredMeans_(kCandidates * static_cast<size_t>(grid.Pixels())) {}
 
-  // After each pass. The square of a mean is estimated by the product of what two passes have found, which are
-  // independent: of lights that a pixel sees itself at different points of the film, of all other light at the same.
+  // After each pass. The square of a pixel's mean is estimated by the product of what two passes have found in it,
+  // which are independent.
   void EndPass(uint32_t pass);
 
   // The sum over all passes. False: no light was found.
@@ -166,12 +164,8 @@ class Records {
 
   const Grid& grid_;
   std::vector<Recorder>& recorders_;
-  std::vector<Found> last_, beforeLast_;  // in the passes before
-  struct SquaredMeans {
-    double other = 0, seen = 0;
-  };
-  std::vector<SquaredMeans> squaredMeans_;  // Σ over the passes, by pixel and candidate
-  int seenPairs_ = 0;
+  std::vector<Found> last_;           // in the pass before
+  std::vector<double> squaredMeans_;  // Σ over the passes, by pixel and candidate
 };
 
 }  // namespace lampyr::pilot
