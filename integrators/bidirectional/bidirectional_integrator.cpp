@@ -373,6 +373,7 @@ IntegratorType BdptIntegratorType() {
   type.help = "paths from the camera and the lights, each vertex of one connected to each of the other";
   type.settings = common_settings::kOfNextEvent;
   type.create = [](const IntegratorInput& input) { return MakeBidirectionalIntegrator(SettingsOf(input)); };
+  type.counted = [](const Settings&) { return CountedTechniques{.lightPaths = true, .connections = true}; };
   type.hasTechniques = true;
   type.hints = BdptHints;
   return type;
@@ -387,6 +388,10 @@ IntegratorType VcmIntegratorType() {
   type.settings.insert(type.settings.end(), {&kMerge, &kConnect});
   type.create = CreateVcm;
   type.gathersPhotons = [](const Settings& settings) { return settings.IsOn(kMerge.name); };
+  type.counted = [](const Settings& settings) {
+    return CountedTechniques{
+        .lightPaths = true, .connections = settings.IsOn(kConnect.name), .merging = settings.IsOn(kMerge.name)};
+  };
   return type;
 }
 

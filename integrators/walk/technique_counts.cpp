@@ -9,6 +9,15 @@
 
 namespace lampyr {
 
+namespace {
+
+UsedCounts Used(const TechniqueCounts& counts, const CountedTechniques& techniques, double connecting, double merging) {
+  return {techniques.lightPaths ? counts.LightPaths() : 0.0, techniques.connections ? connecting : 0.0,
+          techniques.merging ? merging : 0.0};
+}
+
+}  // namespace
+
 FilmMask::FilmMask(int width, int height, const Point2& film, std::vector<float> values)
     : width_(width),
       height_(height),
@@ -27,6 +36,14 @@ std::string TechniqueCounts::Describe(const std::string& integrator) const {
   const double part = merging.Mean();
   if (part < 1) text += ", merging in " + std::to_string(std::lround(100 * part)) + " % of the picture";
   return text;
+}
+
+UsedCounts TechniqueCounts::At(const Point2& film, const CountedTechniques& techniques) const {
+  return Used(*this, techniques, static_cast<double>(connecting.At(film)), static_cast<double>(merging.At(film)));
+}
+
+UsedCounts TechniqueCounts::Mean(const CountedTechniques& techniques) const {
+  return Used(*this, techniques, connecting.Mean(), merging.Mean());
 }
 
 // The hash FNV-1a over 32-bit words instead of bytes.
