@@ -269,8 +269,9 @@ void BidirectionalIntegrator::Decide(const Ray& ray, BidirectionalSample& sample
   const bool hasMasks = settings_.counts.HasMasks();
   // Beyond the edge of a film that goes all around, the point is one near the opposite edge.
   if (hasMasks) sample.context.scene.camera->EvaluateRay(ray, &film);
-  sample.connectionCount = sample.ConnectionCountAt(film);
-  sample.connectionsPerSample = lightPaths_ * std::sqrt(sample.connectionCount);
+  const double connections = sample.ConnectionsPerLightPathAt(film);
+  sample.connectionCount = connections * connections;
+  sample.connectionsPerSample = lightPaths_ * connections;
   sample.isConnected = settings_.connects;
   if (!hasMasks) return;
   const uint64_t bits = MixBits(ShadowRays::DeciderOf(film.x, film.y));
