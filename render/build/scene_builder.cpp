@@ -340,7 +340,7 @@ void Builder::PlaceEntry(const ReadEntry& entry, const Transform& toRender, std:
   const std::shared_ptr<const Material>& material = materials_->Materials()[entry.material];
   std::shared_ptr<const ThinSurface> thin;
   if (shape.areaLight < 0 && material->Thin()) thin = {material, material->Thin()};
-  for (Shape& placed : PlaceShape(entry.local, toRender)) {
+  for (Shape& placed : PlaceShape(entry.local, toRender, memory_)) {
     LocateErrors(shape.shape.where, [&] { CheckShape(placed); });
     GeometryEntry result;
     result.attributes.material = entry.material;
