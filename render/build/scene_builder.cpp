@@ -6,6 +6,7 @@
 #include <unordered_map>
 
 #include "base/memory.h"
+#include "geometry/shape_checks.h"
 #include "lights/filters/filter_base.h"
 #include "lights/light_type.h"
 #include "lights/services/light_surface.h"
