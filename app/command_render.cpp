@@ -395,15 +395,16 @@ void RenderJob::PrintHints() const {
     std::fprintf(stderr, "hint: %s\n", hint.c_str());
   if (options_.overrides.integrator || settings_.namedIntegrator.empty()) return;
   if (options_.shard || options_.resume) return;
-  PlanDecision suits;
+  IntegratorChoice suits;
   try {
-    RunForeignCode(loaded_.types, [&] { suits = ChooseIntegrator(built_.scene, settings_, report_.threads).decision; });
+    RunForeignCode(loaded_.types, [&] { suits = ChooseIntegrator(built_.scene, settings_, report_.threads); });
   } catch (const Error&) {
     return;  // of a light that the render may not even use
   }
-  if (suits.choice == settings_.namedIntegrator) return;
+  constexpr double kWorthTelling = 1.1;
+  if (suits.decision.choice == settings_.namedIntegrator && suits.gainOfCounts < kWorthTelling) return;
   std::fprintf(stderr, "hint: the scene names %s; --integrator auto would render with %s: %s\n",
-               settings_.namedIntegrator.c_str(), suits.choice.c_str(), suits.reason.c_str());
+               settings_.namedIntegrator.c_str(), suits.decision.choice.c_str(), suits.decision.reason.c_str());
 }
 
 void RenderJob::MakeFirstHitLayers() {
