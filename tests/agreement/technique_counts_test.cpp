@@ -179,5 +179,56 @@ Shape "trianglemesh" "point3 P" [ -1 -1 -1  1 -1 -1  -1 1 -1  1 1 -1  -1 -1 1  1
   }
 }
 
+// Sum over the pixels of the variance of a picture of 256 samples per pixel.
+double VarianceOf(const std::string& text, const std::string& integrator, int log2LightPaths, int renders) {
+  RenderOverrides overrides;
+  overrides.integrator = integrator;
+  BuiltScene built = Build(text, overrides);
+  TechniqueCounts counts;
+  counts.log2LightPaths = log2LightPaths;
+  built.settings.counts = std::make_shared<TechniqueCounts>(counts);
+  std::vector<Estimate> pixels;
+  for (int i = 0; i < renders; ++i) {
+    built.settings.seed = static_cast<uint64_t>(i) + 1;
+    const Image image = RenderBuilt(built, 256, 1).image;
+    pixels.resize(static_cast<size_t>(image.width) * static_cast<size_t>(image.height));
+    for (size_t k = 0; k < pixels.size(); ++k)
+      pixels[k].Add(static_cast<double>(image.data[k * image.channels.size() + 1]));
+  }
+  double variance = 0;
+  for (const Estimate& pixel : pixels) variance += pixel.Variance();
+  return variance;
+}
+
+// A thin beam that a mirror sends to one point of the floor, far out of focus: nothing but the point of the lens
+// decides where a splat falls. Light paths that are fewer have points of the lens that are as well distributed among
+// themselves.
+TEST(TechniqueCounts, PointsOfTheLensAreStratifiedAmongLightPaths) {
+  const auto scene = [](const std::string& sampler) {
+    return R"(Film "rgb" "integer xresolution" 8 "integer yresolution" 8
+PixelFilter "box"
+Sampler ")" +
+           sampler +
+           R"("
+LookAt 0 1 -1  0 0 0  0 1 0
+Camera "perspective" "float fov" 40 "float lensradius" 0.2 "float focaldistance" 0.6
+WorldBegin
+LightSource "spot" "rgb I" [ 9 9 9 ] "point3 from" [ -1 1 0 ] "point3 to" [ 0 1 0 ] "float coneangle" 0.2
+AttributeBegin Material "conductor" "float roughness" 0 Translate 0 1 0 Rotate -45 0 0 1
+Shape "bilinearmesh" "point3 P" [ -0.1 0 -0.1  0.1 0 -0.1  -0.1 0 0.1  0.1 0 0.1 ] AttributeEnd
+Material "diffuse" "rgb reflectance" [ 0.6 0.6 0.6 ]
+Shape "bilinearmesh" "point3 P" [ -2 0 -2  2 0 -2  -2 0 2  2 0 2 ]
+)";
+  };
+  for (const int log2LightPaths : {0, -2, -3}) {
+    const double independent = VarianceOf(scene("independent"), "bdpt", log2LightPaths, 40);
+    const double sobol = VarianceOf(scene("sobol"), "bdpt", log2LightPaths, 40);
+    std::printf("[   info   ] 2^%d light paths: variance %.3g by Sobol points, %.3g by independent ones\n",
+                log2LightPaths, sobol, independent);
+    ASSERT_GT(independent, 0);
+    EXPECT_LT(sobol, 0.6 * independent) << "2^" << log2LightPaths << " light paths";
+  }
+}
+
 }  // namespace
 }  // namespace lampyr::test
