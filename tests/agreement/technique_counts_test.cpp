@@ -113,8 +113,7 @@ TEST(TechniqueCounts, NoLightPathIsLostOrDoubledInNarrowFilms) {
 }
 
 // The caustic is as bright with fewer light paths as with one for each camera path. bdpt: it is seen from the lens.
-// vcm without connections: as photons, of which a pass has too few if light paths are lost, and is divided by too few
-// if they are counted twice.
+// vcm without connections: as photons, of which passes have none if the pixels do not take turns.
 TEST(TechniqueCounts, NarrowFilmsHaveTheMeanOfAll) {
   for (const char* integrator : {"bdpt", "vcm"}) {
     const bool merges = integrator == std::string("vcm");
