@@ -13,19 +13,19 @@ namespace lampyr {
 
 namespace {
 
-// Table of the pilot's estimates, a row for each candidate; all figures are per sample.
-void PrintPilot(const RenderPilot& pilot) {
+// Table of the pilot's estimates, a row for each candidate; all figures are per sample. `values`: settings of the
+// integrators.
+void PrintPilot(const RenderPilot& pilot, const Settings& values) {
   if (pilot.candidates.empty()) return;
   std::printf("\n%-5s %5s %5s %8s %6s %8s  %s\n", "pilot", "paths", "merge", "relMSE", "µs", "product", "misses");
   for (const PilotCandidate& candidate : pilot.candidates) {
     char missing[32] = "";
     if (candidate.missing > kNegligibleLight)
       std::snprintf(missing, sizeof missing, "  %.2g %%", 100 * candidate.missing);
-    const bool hasLightPaths = candidate.integrator != "path", merges = candidate.integrator == "vcm";
-    std::printf("%-5s %5g %4.0f%% %8.3g %5.2f %8.3g%s%s\n", candidate.integrator.c_str(),
-                hasLightPaths ? candidate.counts.LightPaths() : 0.0,
-                merges ? 100 * candidate.counts.merging.Mean() : 0.0, candidate.error, candidate.cost * 1e-3,
-                candidate.error * candidate.cost * 1e-3, missing, &candidate == pilot.Best() ? "  <" : "");
+    const UsedCounts used = candidate.counts.Mean(CountedTechniquesOf(candidate.integrator, values));
+    std::printf("%-5s %5g %4.0f%% %8.3g %5.2f %8.3g%s%s\n", candidate.integrator.c_str(), used.lightPaths,
+                100 * used.merging, candidate.error, candidate.cost * 1e-3, candidate.error * candidate.cost * 1e-3,
+                missing, &candidate == pilot.Best() ? "  <" : "");
   }
 }
 
@@ -55,7 +55,7 @@ int RunPlan(const PlanOptions& options) {
     const std::string row = padded(decision.subject, subject) + padded(decision.choice, choice);
     std::printf("%s", Indented(row, decision.reason, columns).c_str());
   }
-  PrintPilot(plan.pilot);
+  PrintPilot(plan.pilot, settings.values);
   const std::string& named = loaded.built.settings.namedIntegrator;
   if (settings.integrator == "auto" && !named.empty() && named != plan.integrator) {
     const std::string note = "The scene names " + named + ": `lampyr render` renders with " + named + ", and with " +

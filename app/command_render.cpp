@@ -256,8 +256,7 @@ void CheckOptions(const RenderOptions& options, const RenderSettings& settings,
                      " needs --spp: each part has the radii of its own samples, whose numbers must be known");
   }
   if (options.autoLayers && options.strategyImages) {
-    throw UsageError(
-        "--auto-layers goes without --strategy-images: those are of all techniques, once for each sample");
+    throw UsageError("--auto-layers goes without --strategy-images: those are of all techniques, once for each sample");
   }
   if (options.autoLayers && !settings.counts) {
     throw UsageError("--auto-layers: the integrator is named, " + settings.integrator +
@@ -277,19 +276,19 @@ void CheckOptions(const RenderOptions& options, const RenderSettings& settings,
   MakeFolder(*options.strategyImages, "--strategy-images");
 }
 
-// Layers of the decisions of auto over the crop: light paths per camera path, probability of connections, probability of
-// merging.
+// Layers of the decisions of auto over the crop: those of UsedCounts.
 Image AutoLayers(const RenderSettings& settings) {
   const TechniqueCounts& counts = *settings.counts;
-  const bool connects = settings.integrator != "path", merges = settings.integrator == "vcm";
+  const CountedTechniques techniques = CountedTechniquesOf(settings.integrator, settings.values);
   const PixelRect& crop = settings.crop;
   Image image(crop.Width(), crop.Height(), {"auto.lightPaths", "auto.connecting", "auto.merging"});
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x) {
       const Point2 center(static_cast<float>(crop.x0 + x) + 0.5f, static_cast<float>(crop.y0 + y) + 0.5f);
-      image.At(x, y, 0) = connects ? static_cast<float>(counts.LightPaths()) : 0.0f;
-      image.At(x, y, 1) = connects ? counts.connecting.At(center) : 0.0f;
-      image.At(x, y, 2) = merges ? counts.merging.At(center) : 0.0f;
+      const UsedCounts used = counts.At(center, techniques);
+      image.At(x, y, 0) = static_cast<float>(used.lightPaths);
+      image.At(x, y, 1) = static_cast<float>(used.connecting);
+      image.At(x, y, 2) = static_cast<float>(used.merging);
     }
   }
   return image;
@@ -353,7 +352,8 @@ void RenderJob::Describe() {
   report_.parseSeconds = loaded_.parseSeconds;
   report_.buildSeconds = loaded_.buildSeconds;
   report_.integrator = settings_.integrator;
-  report_.counts = settings_.counts;
+  if (settings_.counts)
+    report_.decided = settings_.counts->Mean(CountedTechniquesOf(settings_.integrator, settings_.values));
   for (const Setting* setting : IntegratorOf(settings_.integrator).settings)
     report_.settings.emplace_back(setting->name, settings_.values.Value(setting->name));
   report_.seed = settings_.seed;
@@ -395,15 +395,16 @@ void RenderJob::PrintHints() const {
     std::fprintf(stderr, "hint: %s\n", hint.c_str());
   if (options_.overrides.integrator || settings_.namedIntegrator.empty()) return;
   if (options_.shard || options_.resume) return;
-  PlanDecision suits;
+  IntegratorChoice suits;
   try {
-    RunForeignCode(loaded_.types, [&] { suits = ChooseIntegrator(built_.scene, settings_, report_.threads).decision; });
+    RunForeignCode(loaded_.types, [&] { suits = ChooseIntegrator(built_.scene, settings_, report_.threads); });
   } catch (const Error&) {
     return;  // of a light that the render may not even use
   }
-  if (suits.choice == settings_.namedIntegrator) return;
+  constexpr double kWorthTelling = 1.1;
+  if (suits.decision.choice == settings_.namedIntegrator && suits.gainOfCounts < kWorthTelling) return;
   std::fprintf(stderr, "hint: the scene names %s; --integrator auto would render with %s: %s\n",
-               settings_.namedIntegrator.c_str(), suits.choice.c_str(), suits.reason.c_str());
+               settings_.namedIntegrator.c_str(), suits.decision.choice.c_str(), suits.decision.reason.c_str());
 }
 
 void RenderJob::MakeFirstHitLayers() {

@@ -66,11 +66,9 @@ std::string ToJson(const RenderReport& report) {
         {"cpu", CpuSeconds()}}},
       {"peakMemoryMiB", PeakMemoryMiB()},
   };
-  if (report.counts) {
-    const bool connects = report.integrator != "path", merges = report.integrator == "vcm";
-    json["auto"] = {{"lightPaths", connects ? report.counts->LightPaths() : 0.0},
-                    {"connecting", connects ? report.counts->connecting.Mean() : 0.0},
-                    {"merging", merges ? report.counts->merging.Mean() : 0.0}};
+  if (const std::optional<UsedCounts>& decided = report.decided) {
+    json["auto"] = {
+        {"lightPaths", decided->lightPaths}, {"connecting", decided->connecting}, {"merging", decided->merging}};
   }
   if (const std::optional<PhotonStatistics>& photons = outcome.photons) {
     json["photons"] = {{"passes", photons->passes},

@@ -13,7 +13,7 @@ namespace lampyr {
 struct RenderReport {
   std::string scene, sceneHash, integrator;
   std::vector<std::pair<std::string, SettingValue>> settings;  // of the integrator
-  std::shared_ptr<const TechniqueCounts> counts;  // that auto decided; null: it did not
+  std::optional<UsedCounts> decided;  // by auto, on average over the film; nullopt: the integrator was named
   uint64_t seed = 0;
   int threads = 1, width = 0, height = 0;
   int64_t pixels = 0;

@@ -53,6 +53,11 @@ bool GathersPhotons(const std::string& integrator, const Settings& settings) {
   return type && type->gathersPhotons && type->gathersPhotons(settings);
 }
 
+CountedTechniques CountedTechniquesOf(const std::string& integrator, const Settings& settings) {
+  const IntegratorType* type = FindIntegrator(integrator);
+  return type && type->counted ? type->counted(settings) : CountedTechniques();
+}
+
 std::vector<std::string> IntegratorHints(const RenderScene& scene, const std::string& integrator) {
   const IntegratorType* type = FindIntegrator(integrator);
   return type && type->hints ? type->hints(scene) : std::vector<std::string>();

@@ -21,6 +21,8 @@ Settings IntegratorSettings();
 
 // True if the integrator of that name gathers photons with these settings; false for an unknown name.
 bool GathersPhotons(const std::string& integrator, const Settings& settings);
+// IntegratorType::counted of the integrator of that name; none for an unknown name.
+CountedTechniques CountedTechniquesOf(const std::string& integrator, const Settings& settings);
 
 // IntegratorType::hints of the integrator of that name; empty for an unknown name.
 std::vector<std::string> IntegratorHints(const RenderScene& scene, const std::string& integrator);

@@ -271,8 +271,9 @@ void BidirectionalIntegrator::Decide(const Ray& ray, BidirectionalSample& sample
   const bool hasMasks = settings_.counts.HasMasks();
   // Beyond the edge of a film that goes all around, the point is one near the opposite edge.
   if (hasMasks) sample.context.scene.camera->EvaluateRay(ray, &film);
-  sample.connectionCount = sample.ConnectionCountAt(film);
-  sample.connectionsPerSample = lightPaths_ * std::sqrt(sample.connectionCount);
+  const double connections = sample.ConnectionsPerLightPathAt(film);
+  sample.connectionCount = connections * connections;
+  sample.connectionsPerSample = lightPaths_ * connections;
   sample.isConnected = settings_.connects;
   if (!hasMasks) return;
   const uint64_t bits = MixBits(ShadowRays::DeciderOf(film.x, film.y));
@@ -376,6 +377,7 @@ IntegratorType BdptIntegratorType() {
   type.help = "paths from the camera and the lights, each vertex of one connected to each of the other";
   type.settings = common_settings::kOfNextEvent;
   type.create = [](const IntegratorInput& input) { return MakeBidirectionalIntegrator(SettingsOf(input)); };
+  type.counted = [](const Settings&) { return CountedTechniques{.lightPaths = true, .connections = true}; };
   type.hasTechniques = true;
   type.hints = BdptHints;
   return type;
@@ -390,6 +392,10 @@ IntegratorType VcmIntegratorType() {
   type.settings.insert(type.settings.end(), {&kMerge, &kConnect});
   type.create = CreateVcm;
   type.gathersPhotons = [](const Settings& settings) { return settings.IsOn(kMerge.name); };
+  type.counted = [](const Settings& settings) {
+    return CountedTechniques{
+        .lightPaths = true, .connections = settings.IsOn(kConnect.name), .merging = settings.IsOn(kMerge.name)};
+  };
   return type;
 }
 

@@ -63,7 +63,7 @@ void SplatVertex(const BidirectionalSample& sample) {
     if (sample.context.observer && sample.context.observer->WantsSums()) [[unlikely]]
       path.sums = sample.SumsOfConnection(light.Count(), joint.light, true);
   }
-  path.connectionCount = sample.ConnectionCountAt(film);
+  path.connectionCount = Sqr(sample.ConnectionsPerLightPathAt(film));
   path.weight = SplatWeight(vertex.weight, joint.light, path.connectionCount, sample.settings.splatCount, merging);
   AddSplat(sample, path);
 }

@@ -45,11 +45,9 @@ struct BidirectionalSample {
   // `film`: where it is on the film.
   Merging MergingAt(double distance, double footprint, const Point2& film) const;
   float MergeRadiusAt(double footprint) const;
-  // Connections for each light path in a pixel, squared.
-  double ConnectionCountAt(const Point2& film) const {
-    if (!settings.connects) return 0;
-    const double connections = settings.counts.ConnectionsPerLightPath(film);
-    return connections * connections;
+  // Connections for each light path in a pixel.
+  double ConnectionsPerLightPathAt(const Point2& film) const {
+    return settings.connects ? settings.counts.ConnectionsPerLightPath(film) : 0.0;
   }
   // Footprint at a first hit that is seen at `cosTheta` to its geometric normal and has the density `atLens` by a
   // camera ray (DensityAtLens).

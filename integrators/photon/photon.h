@@ -114,9 +114,10 @@ class PhotonList {
   uint64_t Bytes(uint64_t perPhoton) const {
     return photons_.size() * perPhoton + 2 * sizeof(SubpathDensities) * densities_.size();
   }
-  // Removes whole paths from the end until Bytes is no more than `most`; returns the number of paths left.
-  size_t KeepPaths(uint64_t most, uint64_t perPhoton) {
-    while (Bytes(perPhoton) > most && !starts_.empty()) {
+  // Removes whole paths from the end until Bytes is no more than `most`, or `least` paths are left; returns the number
+  // of paths left.
+  size_t KeepPaths(uint64_t most, uint64_t perPhoton, size_t least = 0) {
+    while (Bytes(perPhoton) > most && starts_.size() > least) {
       photons_.resize(starts_.back().photon);
       densities_.resize(starts_.back().density);
       starts_.pop_back();

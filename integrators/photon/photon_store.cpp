@@ -18,9 +18,8 @@ PhotonStore::PhotonStore(const PhotonSettings& settings, uint64_t pixels, Emissi
       lightPaths_(settings.lightPaths > 0 ? settings.lightPaths : pixels),
       perPhoton_(BytesPerPhoton(learning != nullptr)),
       // Photons and densities are counted in 32 bits.
-      most_(std::min(
-          settings.mostBytes > 0 ? std::max(settings.mostBytes, perPhoton_) : std::numeric_limits<uint64_t>::max(),
-          sizeof(SubpathDensities) * std::numeric_limits<uint32_t>::max())) {}
+      most_(std::min(settings.mostBytes > 0 ? settings.mostBytes : std::numeric_limits<uint64_t>::max(),
+                     sizeof(SubpathDensities) * std::numeric_limits<uint32_t>::max())) {}
 
 void PhotonStore::Take(std::vector<PhotonList>& lists) {
   for (PhotonList& list : lists) {
@@ -31,7 +30,7 @@ void PhotonStore::Take(std::vector<PhotonList>& lists) {
       continue;
     }
     if (hasRoom_) {
-      paths_ += list.KeepPaths(most_ - bytes_, perPhoton_);
+      paths_ += list.KeepPaths(most_ - bytes_, perPhoton_, paths_ == 0 ? 1 : 0);
       bytes_ += list.Bytes(perPhoton_);
       waiting_.push_back(std::exchange(list, PhotonList()));
       hasRoom_ = false;

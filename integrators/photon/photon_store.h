@@ -35,7 +35,13 @@ class PhotonStore {
   // True as long as photons of the pass being traced fit into memory.
   bool HasRoom() const { return hasRoom_; }
   // Takes the photons of the next paths of the same pass, in order. When memory is used up, all paths from the first
-  // that does not fit are left out: the pass has fewer light paths, the same ones for any number of threads.
+  // that does not fit are left out: the pass has fewer light paths, the same ones for any number of threads. The first
+  // path of a pass is kept, whatever it takes.
+  //
+  // The mean over the paths of a pass is unbiased then, although their number depends on them. Given the number and the
+  // first path that does not fit, those before it are exchangeable, so their mean is the expectation of the first path.
+  // Where the first itself does not fit, it is that expectation alone.
+  // (Weights that depend on the number, those of vcm, leave a bias of the order of 1 / paths.)
   void Take(std::vector<PhotonList>& lists);
 
   // True if the photons that were taken are for this pass.

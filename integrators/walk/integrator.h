@@ -50,8 +50,8 @@ struct SampleContext {
   bool withOrigin = false;             // `photons` also receives the origin of the path
   bool isForPhotonsAlone = false;      // only photons of the light path are wanted: it is not connected to the camera
   Point2 film{0.0f};                   // where the ray starts on the film, pixels
-  // False if this sample has no light path (Log2LightPaths() < 0). The sampler of the light path, whose index counts
-  // light paths; null: `sampler`.
+  // False if this sample has no light path (Log2LightPaths() < 0). The sampler of the light path and of its points on
+  // the lens, whose index counts light paths; null: `sampler`.
   bool tracesLight = true;
   Sampler* lightSampler = nullptr;
 

@@ -34,6 +34,8 @@ struct IntegratorType {
   std::function<std::unique_ptr<Integrator>(const IntegratorInput&)> create;
   // True if it gathers photons, which blurs light, with these settings. Empty: never.
   std::function<bool(const Settings&)> gathersPhotons;
+  // Its techniques that have counts, with these settings. Empty: none.
+  std::function<CountedTechniques(const Settings&)> counted;
   // True if it reports each path with its technique to SampleContext::observer, for --strategy-images.
   bool hasTechniques = false;
   // One line for each kind of light path that the scene may have and this integrator cannot find, with the integrator

@@ -12,8 +12,10 @@ std::optional<FilmConnection> ConnectToCamera(const SampleContext& context, cons
   const SplatList& splats = *context.splats;
   Point2 lens(0.5f);
   if (!camera.HasPinhole()) {
-    context.sampler.SetDimension(dimension);
-    lens = context.sampler.Get2D();
+    // Points of the lens are stratified among those of light paths.
+    Sampler& sampler = context.lightSampler ? *context.lightSampler : context.sampler;
+    sampler.SetDimension(dimension);
+    lens = sampler.Get2D();
   }
   const auto connection = camera.Connect(position, lens);
   if (!connection) return std::nullopt;

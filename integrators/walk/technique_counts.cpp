@@ -4,10 +4,20 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <numeric>
 
+#include "scene/text_file.h"
+
 namespace lampyr {
+
+namespace {
+
+UsedCounts Used(const TechniqueCounts& counts, const CountedTechniques& techniques, double connecting, double merging) {
+  return {techniques.lightPaths ? counts.LightPaths() : 0.0, techniques.connections ? connecting : 0.0,
+          techniques.merging ? merging : 0.0};
+}
+
+}  // namespace
 
 FilmMask::FilmMask(int width, int height, const Point2& film, std::vector<float> values)
     : width_(width),
@@ -29,18 +39,26 @@ std::string TechniqueCounts::Describe(const std::string& integrator) const {
   return text;
 }
 
-// The hash FNV-1a over 32-bit words instead of bytes.
+UsedCounts TechniqueCounts::At(const Point2& film, const CountedTechniques& techniques) const {
+  return Used(*this, techniques, static_cast<double>(connecting.At(film)), static_cast<double>(merging.At(film)));
+}
+
+UsedCounts TechniqueCounts::Mean(const CountedTechniques& techniques) const {
+  return Used(*this, techniques, connecting.Mean(), merging.Mean());
+}
+
 std::string TechniqueCounts::Fingerprint() const {
-  uint64_t hash = 0xcbf29ce484222325u;
-  const auto add = [&hash](uint32_t bits) { hash = (hash ^ bits) * 0x100000001b3u; };
-  add(static_cast<uint32_t>(log2LightPaths));
+  ContentHash hash;
+  hash.Add(std::to_string(log2LightPaths));
   for (const FilmMask* mask : {&connecting, &merging}) {
-    add(static_cast<uint32_t>(mask->Values().size()));
-    for (const float value : mask->Values()) add(std::bit_cast<uint32_t>(value));
+    std::string bytes;  // of the values, little-endian
+    for (const float value : mask->Values()) {
+      const auto bits = std::bit_cast<uint32_t>(value);
+      for (int byte = 0; byte < 4; ++byte) bytes += static_cast<char>(bits >> (8 * byte) & 0xff);
+    }
+    hash.Add(bytes);
   }
-  char text[17];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
-  return text;
+  return hash.Hex();
 }
 
 float FilmMask::Interpolate(const Point2& film) const {

@@ -1,5 +1,5 @@
-// Sample counts of the techniques of a bidirectional integrator: light paths, connections, merging ([Grittmann22]). A technique that is used n times for each camera path counts n times in all weights, and each use
-// contributes 1/n.
+// Sample counts of the techniques of a bidirectional integrator: light paths, connections, merging ([Grittmann22]). A
+// technique that is used n times for each camera path counts n times in all weights, and each use contributes 1/n.
 #pragma once
 
 #include <algorithm>
@@ -32,6 +32,18 @@ class FilmMask {
   std::vector<float> values_;
 };
 
+// The techniques of an integrator that have counts (IntegratorType::counted).
+struct CountedTechniques {
+  bool lightPaths = false, connections = false, merging = false;
+};
+
+// Counts of an integrator's techniques, at a place on the film or on average; 0 for techniques that it does not have.
+struct UsedCounts {
+  double lightPaths = 0;  // for each camera path
+  double connecting = 0;  // probability that a camera path is connected to the light path of its sample
+  double merging = 0;     // probability that a camera path is merged with photons
+};
+
 struct TechniqueCounts {
   // Light paths for each camera path, as a power of two: -3 … 2. Of fewer than one, every pixel has one in
   // 1/LightPaths() of its samples.
@@ -44,7 +56,10 @@ struct TechniqueCounts {
   bool IsDefault() const { return log2LightPaths == 0 && !HasMasks(); }
   // "vcm, a light path for 4 camera paths, merging in 30 % of the picture".
   std::string Describe(const std::string& integrator) const;
-  // Hash of all counts.
+  UsedCounts At(const Point2& film, const CountedTechniques& techniques) const;
+  // On average over the film.
+  UsedCounts Mean(const CountedTechniques& techniques) const;
+  // Hash of all counts, the same on all machines.
   std::string Fingerprint() const;
   double LightPaths() const { return log2LightPaths < 0 ? 1.0 / (1 << -log2LightPaths) : 1 << log2LightPaths; }
   // Connections of a camera path to each light path, on average: with one of two.

@@ -30,8 +30,8 @@ ClusterLobe LobeOf(const ClusterBounds& bounds) {
                         angle(static_cast<double>(bounds.cosThetaE)) + 1e-3;
   if (widest >= pi) return lobe;
   // A point at distance d is dark if its direction is farther from the axis than θ + σ, the angle of the cone plus the
-  // angular radius of the sphere. A lower bound of cos(θ + σ) = cosθ cosσ - sinθ sinσ needs no square root, because cosσ
-  // is between 1 - sinσ and 1, and d sinσ is the radius.
+  // angular radius of the sphere. A lower bound of cos(θ + σ) = cosθ cosσ - sinθ sinσ needs no square root, because
+  // cosσ is between 1 - sinσ and 1, and d sinσ is the radius.
   const double cosine = std::cos(widest), sine = std::sin(widest);
   lobe.coneCosine = static_cast<float>(length * cosine);
   lobe.coneReach = static_cast<float>(length * (sine + std::max(cosine, 0.0))) * lobe.radius;

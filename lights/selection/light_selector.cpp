@@ -71,8 +71,8 @@ std::vector<float> PowerWeights(std::span<const PlacedLight> lights, const Bound
   return weights;
 }
 
-// Power is an estimate and may be far too low. Every light has at least this fraction of the uniform probability; lights
-// that emit nothing cost little by it.
+// Power is an estimate and may be far too low. Every light has at least this fraction of the uniform probability;
+// lights that emit nothing cost little by it.
 constexpr float kFloorOfEqualShare = 1e-3f;
 
 }  // namespace

@@ -133,10 +133,11 @@ double LightTree::Cut::Concentration() const {
 }
 
 // True if the contributions of a cluster's emitters to a receiver are proportional to intensity and trend, up to a
-// variance of kAlike. For an emitter at offset x from the mean, with w from the receiver to the mean and normals n at the
-// receiver and m at the light, cosines and 1/d² give (n·w')(m·w')/|w'|^k with w' = w + x. The trend is its gradient; the
-// second-order term, for positions evenly distributed in a cube, is the error. The cube is inscribed in the bounding
-// sphere rather than derived from the variance, which does not show a weak emitter that is near. Not inlined, as above.
+// variance of kAlike. For an emitter at offset x from the mean, with w from the receiver to the mean and normals n at
+// the receiver and m at the light, cosines and 1/d² give (n·w')(m·w')/|w'|^k with w' = w + x. The trend is its
+// gradient; the second-order term, for positions evenly distributed in a cube, is the error. The cube is inscribed in
+// the bounding sphere rather than derived from the variance, which does not show a weak emitter that is near. Not
+// inlined, as above.
 [[gnu::noinline]] bool LightTree::IsAlike(uint32_t node, uint32_t child, const TreeReceiver& receiver,
                                           Trend& trend) const {
   using namespace importance;

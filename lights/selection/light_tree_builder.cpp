@@ -191,7 +191,8 @@ void LightTreeBuilder::Grow(Branch& branch, int depth) {
   Bound(branch);
 }
 
-// Divides the upper branches serially and those below in parallel. The boundary depends on counts alone, not on threads.
+// Divides the upper branches serially and those below in parallel. The boundary depends on counts alone, not on
+// threads.
 void LightTreeBuilder::GrowInParallel(Branch& root) {
   constexpr size_t kAlone = 16384;  // items of a task
   struct Open {

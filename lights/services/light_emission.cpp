@@ -5,8 +5,8 @@ namespace lampyr {
 
 namespace {
 
-// The evaluation of a photon's origin on a delta light: the values of the photon, with the inverse-square falloff of the
-// light's samples.
+// The evaluation of a photon's origin on a delta light: the values of the photon, with the inverse-square falloff of
+// the light's samples.
 LightEvaluation DeltaFirstHit(const EmissionSample& emission, LightKind kind, float distanceSquared) {
   LightEvaluation evaluation;
   const float falloff = kind == LightKind::DeltaPosition ? 1 / distanceSquared : 1.0f;
@@ -46,8 +46,8 @@ std::optional<EmissionSample> EmissionOfPoint(const LightSample& seen) {
   return sample;
 }
 
-// Offsets the origin from the surface that the photon leaves. A point light is offset from surfaces that it touches up to
-// rounding, as shadow rays are: a point in the plane of a floor does not light it.
+// Offsets the origin from the surface that the photon leaves. A point light is offset from surfaces that it touches up
+// to rounding, as shadow rays are: a point in the plane of a floor does not light it.
 Point3 OriginOf(const EmissionSample& emission, LightKind kind) {
   if (IsAtInfinity(kind)) return emission.position;
   if (kind == LightKind::Area)

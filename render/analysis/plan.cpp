@@ -66,7 +66,10 @@ IntegratorChoice ChooseIntegrator(const RenderScene& scene, const RenderSettings
   }
   const std::string described = best->Describe();
   if (described != best->integrator) reason += "; with" + described.substr(best->integrator.size() + 1);
-  return {{"integrator", best->integrator, reason}, std::make_shared<TechniqueCounts>(best->counts)};
+  const PilotCandidate* named = pilot.Find(best->integrator);
+  return {{"integrator", best->integrator, reason},
+          std::make_shared<TechniqueCounts>(best->counts),
+          named ? named->ErrorTimesCost() / best->ErrorTimesCost() : 1.0};
 }
 
 PlanDecision ChooseSelection(const Facts& facts, const RenderSettings& settings) {

@@ -18,6 +18,8 @@ struct PlanDecision {
 struct IntegratorChoice {
   PlanDecision decision;
   std::shared_ptr<const TechniqueCounts> counts;  // of bdpt and vcm
+  // relMSE in equal time of the integrator as the command line names it, over that with these counts.
+  double gainOfCounts = 1;
 
   // The settings with this integrator.
   void Apply(RenderSettings& settings) const;

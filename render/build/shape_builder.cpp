@@ -88,6 +88,9 @@ LocalMesh ReadBilinearMesh(const ParameterList& parameters, Diagnostics& diagnos
 // Memory of a triangle or patch as read, as placed, and in the intersector: a round number below the measured one.
 constexpr double kBytesPerFace = 128;
 
+// Memory of a segment of a curve as divided, here and in the intersector: a round number below the measured one.
+constexpr double kBytesPerSegment = 256;
+
 LocalMesh ReadSubdivision(const ParameterList& parameters, MemoryBudget& memory, Diagnostics& diagnostics) {
   const std::vector<Point3d> controlPoints = parameters.GetPoint3s("P");
   if (controlPoints.empty()) throw Error(parameters.Where(), parameters.Owner() + " needs vertices: \"point3 P\"");
@@ -316,7 +319,7 @@ Bounds3d GetBounds(const LocalShape& shape, const Transform& toWorld) {
   return bounds;
 }
 
-std::vector<Shape> PlaceShape(const LocalShape& shape, const Transform& toRender) {
+std::vector<Shape> PlaceShape(const LocalShape& shape, const Transform& toRender, MemoryBudget& memory) {
   const ShapeDescription& description = *shape.description;
   if (const LocalMesh* mesh = std::get_if<LocalMesh>(&shape.shape)) return PlaceMesh(*mesh, description, toRender);
   if (!toRender.IsAffine())
@@ -332,6 +335,9 @@ std::vector<Shape> PlaceShape(const LocalShape& shape, const Transform& toRender
   }
   CurveParameters curve = std::get<CurveParameters>(shape.shape);
   curve.toRender = toRender;
+  const size_t segments = CountDividedSegments(curve);
+  memory.Take(static_cast<double>(segments) * kBytesPerSegment, description.shape.where,
+              "the segments of this curve, " + Count(segments) + " where bent ones are divided,");
   return {std::make_shared<const CurveSet>(MakeCurves(curve))};
 }
 

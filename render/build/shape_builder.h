@@ -38,7 +38,8 @@ std::optional<LocalShape> ReadShape(const ShapeDescription& description, MemoryB
 Bounds3d GetBounds(const LocalShape& shape, const Transform& toWorld);
 
 // The shape in render space: one shape, or two when a mesh has both triangles and patches. Throws an Error when the
-// transform cannot place it or coordinates leave the range of floats.
-std::vector<Shape> PlaceShape(const LocalShape& shape, const Transform& toRender);
+// transform cannot place it or coordinates leave the range of floats, and where the segments that a curve is divided
+// into take more than is left of `memory`.
+std::vector<Shape> PlaceShape(const LocalShape& shape, const Transform& toRender, MemoryBudget& memory);
 
 }  // namespace lampyr

@@ -58,9 +58,7 @@ Triple YCxCzToXyz(const Triple& c) {
 // CIELab with a and b scaled by lightness (Hunt: colours look less colourful in the dark).
 Triple ToHuntLab(const Triple& xyz) {
   constexpr float delta = 6.0f / 29;
-  const auto f = [](float t) {
-    return t > delta * delta * delta ? std::cbrt(t) : t / (3 * delta * delta) + 4.0f / 29;
-  };
+  const auto f = [](float t) { return t > delta * delta * delta ? std::cbrt(t) : t / (3 * delta * delta) + 4.0f / 29; };
   const float fx = f(xyz.x), fy = f(xyz.y), fz = f(xyz.z);
   const float lightness = 116 * fy - 16;
   return {lightness, 0.01f * lightness * 500 * (fx - fy), 0.01f * lightness * 200 * (fy - fz)};
@@ -108,7 +106,8 @@ struct SensitivityTerm {
 };
 
 // The terms of one channel, normalised so that together they sum to 1 over the plane.
-std::vector<SensitivityTerm> SensitivityKernels(const std::vector<std::array<double, 2>>& terms, double pixelsPerDegree) {
+std::vector<SensitivityTerm> SensitivityKernels(const std::vector<std::array<double, 2>>& terms,
+                                                double pixelsPerDegree) {
   constexpr double widest = 0.04;  // the largest b of all channels sets the radius of all
   const int radius = static_cast<int>(std::ceil(3 * std::sqrt(widest / (2 * kPiDouble * kPiDouble)) * pixelsPerDegree));
   std::vector<SensitivityTerm> kernels;
@@ -208,8 +207,8 @@ Perceived Perceive(const std::vector<Color>& image, int width, int height, const
   const std::vector<std::array<double, 2>> sensitivities[3] = {
       {{1, 0.0047}}, {{1, 0.0053}}, {{34.1, 0.04}, {13.5, 0.025}}};
   for (int c = 0; c < 3; ++c) {
-    opponent[c] = FilterBySensitivity(opponent[c], width, height,
-                                      SensitivityKernels(sensitivities[c], settings.pixelsPerDegree));
+    opponent[c] =
+        FilterBySensitivity(opponent[c], width, height, SensitivityKernels(sensitivities[c], settings.pixelsPerDegree));
   }
   const auto fromXyz = FromXyzMatrix();
   perceived.lab.resize(image.size());
@@ -234,8 +233,8 @@ std::vector<float> FlipMap(const std::vector<Color>& a, const std::vector<Color>
                            const FlipSettings& settings) {
   const Perceived first = Perceive(a, width, height, settings), second = Perceive(b, width, height, settings);
   // The largest distance in the gamut is that between green and blue.
-  const float largest = std::pow(HyAb(ToHuntLab(ToRelativeXyz({0, 1, 0})), ToHuntLab(ToRelativeXyz({0, 0, 1}))),
-                                 kColorExponent);
+  const float largest =
+      std::pow(HyAb(ToHuntLab(ToRelativeXyz({0, 1, 0})), ToHuntLab(ToRelativeXyz({0, 0, 1}))), kColorExponent);
   std::vector<float> map(a.size());
   for (size_t i = 0; i < map.size(); ++i) {
     const float color = Redistribute(std::pow(HyAb(first.lab[i], second.lab[i]), kColorExponent), largest);

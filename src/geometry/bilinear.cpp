@@ -43,14 +43,17 @@ std::pair<double, double> Roots(double a, double b, double c) {
   return {a != 0 ? q / a : none, c / q};
 }
 
-bool IsParameter(double x) { return x >= -kOverlap && x <= 1 + kOverlap; }
+bool IsParameter(double x) {
+  return x >= -kOverlap && x <= 1 + kOverlap;
+}
 
 }  // namespace
 
 int IntersectPatch(const BilinearMesh& mesh, uint32_t patch, const RayDouble& ray, PatchHit hits[2]) {
   const Corners k = GetCorners(mesh, patch);
   const Vector3d& d = ray.direction;
-  // The line p(u, ·) meets the ray where the triple product of their difference and both directions is 0: quadratic in u.
+  // The line p(u, ·) meets the ray where the triple product of their difference and both directions is 0: quadratic in
+  // u.
   const double a = glm::dot(glm::cross(k.p10 - k.p00, k.p01 - k.p11), d);
   const double c = glm::dot(glm::cross(k.p00 - ray.origin, d), k.p01 - k.p00);
   const double b = glm::dot(glm::cross(k.p10 - ray.origin, d), k.p11 - k.p10) - (a + c);
@@ -80,7 +83,8 @@ Point2 PatchUv(const BilinearMesh& mesh, uint32_t patch, const Point2& parameter
 namespace {
 
 // Tangents by the patch's own uv: the chain rule through the inverse of d(s,t)/d(u,v). Zero where that is singular.
-void ToTextureTangents(const BilinearMesh& mesh, const std::array<uint32_t, 4>& q, const Point2& p, SurfacePoint& point) {
+void ToTextureTangents(const BilinearMesh& mesh, const std::array<uint32_t, 4>& q, const Point2& p,
+                       SurfacePoint& point) {
   const auto& uv = mesh.uvs;
   const Vector2 dsdu = (uv[q[1]] - uv[q[0]]) * (1 - p.y) + (uv[q[3]] - uv[q[2]]) * p.y;
   const Vector2 dsdv = (uv[q[2]] - uv[q[0]]) * (1 - p.x) + (uv[q[3]] - uv[q[1]]) * p.x;
@@ -103,8 +107,7 @@ void EvaluatePatch(const BilinearMesh& mesh, uint32_t patch, const Point2& p, co
   const auto& x = mesh.positions;
   const Point3 &p00 = x[q[0]], &p10 = x[q[1]], &p01 = x[q[2]], &p11 = x[q[3]];
   point.position = Interpolate(p00, p10, p01, p11, p);
-  point.positionError =
-      glm::max(glm::max(Abs(p00), Abs(p10)), glm::max(Abs(p01), Abs(p11))) * Gamma(6);
+  point.positionError = glm::max(glm::max(Abs(p00), Abs(p10)), glm::max(Abs(p01), Abs(p11))) * Gamma(6);
   point.dpdu = (p10 - p00) * (1 - p.y) + (p11 - p01) * p.y;
   point.dpdv = (p01 - p00) * (1 - p.x) + (p11 - p10) * p.x;
   point.Ng = SafeNormalize(glm::cross(point.dpdu, point.dpdv) * (mesh.flipNormals ? -1.0f : 1.0f), towards);

@@ -18,8 +18,8 @@ int IntersectPatch(const BilinearMesh& mesh, uint32_t patch, const RayDouble& ra
 // uv of the patch's own vertices where it has some, the parameters themselves otherwise.
 Point2 PatchUv(const BilinearMesh& mesh, uint32_t patch, const Point2& parameters);
 
-// Position, error, normals, uv and tangents. `towards` is the fallback normal of a degenerate patch. The indices are left
-// alone.
+// Position, error, normals, uv and tangents. `towards` is the fallback normal of a degenerate patch. The indices are
+// left alone.
 void EvaluatePatch(const BilinearMesh& mesh, uint32_t patch, const Point2& parameters, const Vector3& towards,
                    SurfacePoint& point);
 

@@ -27,7 +27,18 @@ Segment BSplineSegment(const std::vector<Point3d>& p, size_t i, int degree) {
   return {(a + b * 4.0 + c) / 6.0, (b * 2.0 + c) / 3.0, (b + c * 2.0) / 3.0, (b + c * 4.0 + d) / 6.0};
 }
 
+void Check(const CurveParameters& p) {
+  if (p.degree != 2 && p.degree != 3) throw Error(p.where, "curve: the degree must be 2 or 3");
+  for (const Point3& point : p.points) {
+    if (!IsFinite(point)) throw Error(p.where, "curve: a control point is not finite");
+  }
+  for (const float width : {p.width0, p.width1}) {
+    if (!(width >= 0) || !std::isfinite(width)) throw Error(p.where, "curve: a width is negative or not finite");
+  }
+}
+
 size_t CountSegments(const CurveParameters& p) {
+  Check(p);
   const size_t degree = static_cast<size_t>(p.degree), count = p.points.size();
   if (p.basis == CurveParameters::Basis::BSpline) {
     if (count >= degree + 1) return count - degree;
@@ -37,16 +48,6 @@ size_t CountSegments(const CurveParameters& p) {
   throw Error(p.where, "curve: " + std::to_string(count) + " control points do not make " +
                            (p.basis == CurveParameters::Basis::BSpline ? "a B-spline" : "Bézier segments") +
                            " of degree " + std::to_string(p.degree));
-}
-
-void Check(const CurveParameters& p) {
-  if (p.degree != 2 && p.degree != 3) throw Error(p.where, "curve: the degree must be 2 or 3");
-  for (const Point3& point : p.points) {
-    if (!IsFinite(point)) throw Error(p.where, "curve: a control point is not finite");
-  }
-  for (const float width : {p.width0, p.width1}) {
-    if (!(width >= 0) || !std::isfinite(width)) throw Error(p.where, "curve: a width is negative or not finite");
-  }
 }
 
 void AddNormals(const CurveParameters& p, size_t segments, CurveSet& curves) {
@@ -91,26 +92,56 @@ Segment PartOf(const Segment& b, double u0, double u1) {
   return {blossom(u0, u0, u0), blossom(u0, u0, u1), blossom(u0, u1, u1), blossom(u1, u1, u1)};
 }
 
+// The segments of a curve in render space, before they are divided. Throws Error.
+class PlacedCurve {
+ public:
+  explicit PlacedCurve(const CurveParameters& p)
+      : parameters_(p),
+        count_(CountSegments(p)),
+        scale_(std::cbrt(std::abs(glm::determinant(glm::dmat3(p.toRender.Matrix()))))) {
+    for (const Point3& point : p.points) points_.push_back(p.toRender.Point(Point3d(point)));
+  }
+
+  size_t Count() const { return count_; }
+  Segment At(size_t i) const {
+    const bool bezier = parameters_.basis == CurveParameters::Basis::Bezier;
+    return bezier ? BezierSegment(points_, i, parameters_.degree) : BSplineSegment(points_, i, parameters_.degree);
+  }
+  // Half width at u of segment i. Control values in equal steps interpolate linearly.
+  double RadiusAt(size_t i, double u) const {
+    const double along = (static_cast<double>(i) + u) / static_cast<double>(count_);
+    return 0.5 * scale_ *
+           (static_cast<double>(parameters_.width0) * (1 - along) + static_cast<double>(parameters_.width1) * along);
+  }
+  // The number of parts that a segment is divided into.
+  int PartsOf(size_t i, const Segment& segment) const {
+    if (parameters_.kind != CurveSet::Kind::Flat) return 1;
+    return PartsOfFlat(segment, ThinnestOf(RadiusAt(i, 0), RadiusAt(i, 1)));
+  }
+
+ private:
+  const CurveParameters& parameters_;
+  const size_t count_;
+  const double scale_;  // of widths
+  std::vector<Point3d> points_;
+};
+
 }  // namespace
 
-CurveSet MakeCurves(const CurveParameters& p) {
-  Check(p);
-  const size_t count = CountSegments(p);
-  std::vector<Point3d> points;
-  for (const Point3& point : p.points) points.push_back(p.toRender.Point(Point3d(point)));
-  const double scale = std::cbrt(std::abs(glm::determinant(glm::dmat3(p.toRender.Matrix()))));
+size_t CountDividedSegments(const CurveParameters& p) {
+  const PlacedCurve curve(p);
+  size_t count = 0;
+  for (size_t i = 0; i < curve.Count(); ++i) count += static_cast<size_t>(curve.PartsOf(i, curve.At(i)));
+  return count;
+}
 
+CurveSet MakeCurves(const CurveParameters& p) {
+  const PlacedCurve curve(p);
   CurveSet curves;
   curves.kind = p.kind;
-  for (size_t i = 0; i < count; ++i) {
-    const bool bezier = p.basis == CurveParameters::Basis::Bezier;
-    const Segment segment = bezier ? BezierSegment(points, i, p.degree) : BSplineSegment(points, i, p.degree);
-    // Half width at u of segment i. Control values in equal steps interpolate linearly.
-    const auto radiusAt = [&](double u) {
-      const double along = (static_cast<double>(i) + u) / static_cast<double>(count);
-      return 0.5 * scale * (static_cast<double>(p.width0) * (1 - along) + static_cast<double>(p.width1) * along);
-    };
-    const int parts = p.kind == CurveSet::Kind::Flat ? PartsOfFlat(segment, ThinnestOf(radiusAt(0), radiusAt(1))) : 1;
+  for (size_t i = 0; i < curve.Count(); ++i) {
+    const Segment segment = curve.At(i);
+    const int parts = curve.PartsOf(i, segment);
     for (int part = 0; part < parts; ++part) {
       const double u0 = static_cast<double>(part) / parts, u1 = static_cast<double>(part + 1) / parts;
       const Segment controls = parts > 1 ? PartOf(segment, u0, u1) : segment;
@@ -118,12 +149,12 @@ CurveSet MakeCurves(const CurveParameters& p) {
       auto& radii = curves.radii.emplace_back();
       for (size_t k = 0; k < 4; ++k) {
         placed[k] = Point3(controls[k]);
-        radii[k] = static_cast<float>(radiusAt(u0 + (u1 - u0) * static_cast<double>(k) / 3));
+        radii[k] = static_cast<float>(curve.RadiusAt(i, u0 + (u1 - u0) * static_cast<double>(k) / 3));
       }
       curves.uRange.push_back({static_cast<float>(u0), static_cast<float>(u1)});
     }
   }
-  if (p.kind == CurveSet::Kind::Ribbon) AddNormals(p, count, curves);
+  if (p.kind == CurveSet::Kind::Ribbon) AddNormals(p, curve.Count(), curves);
   return curves;
 }
 

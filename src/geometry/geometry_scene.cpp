@@ -12,8 +12,10 @@
 
 #include "base/error.h"
 #include "geometry/embree_callbacks.h"
+#include "geometry/embree_geometries.h"
 #include "geometry/rounding.h"
 #include "geometry/scene_tables.h"
+#include "geometry/shape_checks.h"
 
 #if defined(__AVX__)
 #include <immintrin.h>
@@ -37,9 +39,6 @@ constexpr const char* kDeviceSettings = "frequency_level=simd256,threads=1";
 #else
 constexpr const char* kDeviceSettings = "frequency_level=simd256";
 #endif
-
-// Embree aborts the process on rays beyond this, and skips primitives.
-constexpr float kLargest = 1e18f;
 
 struct DeviceDeleter {
   void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
@@ -72,96 +71,7 @@ void ThrowOnError(RTCDevice device, const char* doing) {
   if (error != RTC_ERROR_NONE) throw Error(std::string("Embree, ") + doing + ": " + ErrorName(error));
 }
 
-bool IsUsable(const Point3& p) {
-  return MaxAbsComponent(p) <= kLargest && IsFinite(p);
-}
-
-template <size_t N>
-void CheckMesh(const char* what, const std::vector<Point3>& positions,
-               const std::vector<std::array<uint32_t, N>>& faces, size_t normals, size_t uvs) {
-  const std::string name = what;
-  for (size_t i = 0; i < positions.size(); ++i) {
-    if (!IsUsable(positions[i])) {
-      throw Error(name + ": vertex " + std::to_string(i) + " is not finite, or farther out than 1e18");
-    }
-  }
-  for (size_t i = 0; i < faces.size(); ++i) {
-    for (const uint32_t index : faces[i]) {
-      if (index >= positions.size()) {
-        throw Error(name + ": face " + std::to_string(i) + " has index " + std::to_string(index) + " of only " +
-                    std::to_string(positions.size()) + " vertices");
-      }
-    }
-  }
-  if (normals != 0 && normals != positions.size()) throw Error(name + ": there must be as many normals as vertices");
-  if (uvs != 0 && uvs != positions.size()) throw Error(name + ": there must be as many uv as vertices");
-}
-
-void CheckShape(const TriangleMesh& m) {
-  CheckMesh("triangle mesh", m.positions, m.triangles, m.normals.size(), m.uvs.size());
-}
-void CheckShape(const BilinearMesh& m) {
-  CheckMesh("bilinear mesh", m.positions, m.patches, m.normals.size(), m.uvs.size());
-}
-void CheckShape(const PreparedQuadric& q) {
-  const Bounds3 bounds = GetBounds(q.Shape());
-  const Affine& inverse = q.Shape().toObject;
-  if (!(q.Shape().radius > 0) || !IsUsable(bounds.min) || !IsUsable(bounds.max) || !IsUsable(inverse.linear[0]) ||
-      !IsUsable(inverse.linear[1]) || !IsUsable(inverse.linear[2])) {
-    throw Error("quadric: the radius is not positive, or the transform is singular or not finite");
-  }
-}
-void CheckShape(const CurveSet& c) {
-  if (c.radii.size() != c.segments.size() || c.uRange.size() != c.segments.size() ||
-      (c.kind == CurveSet::Kind::Ribbon && c.segmentNormals.size() != c.segments.size())) {
-    throw Error("curves: there must be as many radii, ranges and normals as segments");
-  }
-  for (size_t i = 0; i < c.segments.size(); ++i) {
-    for (size_t k = 0; k < 4; ++k) {
-      if (!IsUsable(c.segments[i][k]) || !(c.radii[i][k] >= 0) || !(c.radii[i][k] <= kLargest)) {
-        throw Error("curves: segment " + std::to_string(i) + " is not finite");
-      }
-    }
-  }
-}
-
-void CheckShape(const CustomSurface& surface) {
-  const Bounds3 bounds = surface.GetBounds(0, 1);
-  if (!IsUsable(bounds.min) || !IsUsable(bounds.max)) {
-    throw Error("surface of a light: it is not finite, or reaches farther than 1e18");
-  }
-}
-
-void CheckPlacement(const Affine& m) {
-  if (IsUsable(m.translation) && IsUsable(m.linear[0]) && IsUsable(m.linear[1]) && IsUsable(m.linear[2])) return;
-  throw Error("instance: the transform is not finite, or reaches farther than 1e18");
-}
-
-// The largest origin or direction that an instance's object space still takes.
-float LargestThrough(const Affine& toObject) {
-  float stretch = 1;
-  for (int row = 0; row < 3; ++row) {
-    const float sum =
-        std::abs(toObject.linear[0][row]) + std::abs(toObject.linear[1][row]) + std::abs(toObject.linear[2][row]);
-    stretch = std::max({stretch, 2 * sum, 2 * std::abs(toObject.translation[row])});
-    if (!(stretch <= 1e15f)) throw Error("instance: the transform is singular, or scales by more than 1e15");
-  }
-  return kLargest / stretch;
-}
-
-struct ShapeCheck {
-  template <class T>
-  void operator()(const std::shared_ptr<const T>& shape) const {
-    CheckShape(*shape);
-  }
-  void operator()(const Quadric& quadric) const { CheckShape(PreparedQuadric(quadric)); }
-};
-
 }  // namespace
-
-void CheckShape(const Shape& shape) {
-  std::visit(ShapeCheck{}, shape);
-}
 
 struct GeometryScene::Implementation {
   GeometryDescription description;
@@ -171,7 +81,7 @@ struct GeometryScene::Implementation {
   std::vector<SceneHandle> objectScenes;
   SceneHandle scene;
   Bounds3 bounds;
-  float largest = kLargest;
+  float largest = kFarthest;
   bool hasTints = false;  // some thin surface is not clear
   mutable std::atomic<uint64_t> rejected{0};
 
@@ -205,6 +115,7 @@ struct GeometryScene::Implementation {
 
 void GeometryScene::Implementation::AddEntries(const std::vector<GeometryEntry>& entries) {
   for (const GeometryEntry& entry : entries) {
+    CheckShape(entry.shape);
     PrimitiveRecord record;
     if (const Quadric* quadric = std::get_if<Quadric>(&entry.shape)) {
       record.shape = &quadrics.emplace_back(*quadric);
@@ -215,7 +126,6 @@ void GeometryScene::Implementation::AddEntries(const std::vector<GeometryEntry>&
           },
           entry.shape);
     }
-    std::visit([](const auto* shape) { CheckShape(*shape); }, record.shape);
     record.alpha = entry.attributes.alpha.get();
     record.thin = entry.attributes.thin.get();
     const CurveSet* curves = record.As<CurveSet>();
@@ -318,124 +228,19 @@ SceneHandle GeometryScene::Implementation::NewScene() const {
 
 namespace {
 
-// Embree loads vertices 16 bytes at a time: shared where the vector owns memory past its end, copied otherwise.
-void SetVertices(RTCGeometry geometry, const std::vector<Point3>& positions) {
-  if (positions.capacity() > positions.size()) {
-    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, positions.data(), 0,
-                               sizeof(Point3), positions.size());
-    return;
-  }
-  void* buffer =
-      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Point3), positions.size());
-  if (buffer) std::copy(positions.begin(), positions.end(), static_cast<Point3*>(buffer));
-}
-
-RTCGeometry NewGeometry(RTCDevice device, const TriangleMesh& mesh) {
-  if (mesh.triangles.empty()) return nullptr;
-  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  SetVertices(geometry, mesh.positions);
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.triangles.data(), 0,
-                             sizeof(mesh.triangles[0]), mesh.triangles.size());
-  return geometry;
-}
-
-RTCGeometry NewUserGeometry(RTCDevice device, size_t count, RTCBoundsFunction bounds, RTCIntersectFunctionN intersect,
-                            RTCOccludedFunctionN occluded) {
-  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
-  rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(count));
-  rtcSetGeometryBoundsFunction(geometry, bounds, nullptr);
-  rtcSetGeometryIntersectFunction(geometry, intersect);
-  rtcSetGeometryOccludedFunction(geometry, occluded);
-  return geometry;
-}
-
-RTCGeometry NewGeometry(RTCDevice device, const BilinearMesh& mesh) {
-  if (mesh.patches.empty()) return nullptr;
-  return NewUserGeometry(device, mesh.patches.size(), PatchBounds, PatchIntersect, PatchOccluded);
-}
-
-RTCGeometry NewGeometry(RTCDevice device, const PreparedQuadric&) {
-  return NewUserGeometry(device, 1, QuadricBounds, QuadricIntersect, QuadricOccluded);
-}
-
-RTCGeometry NewGeometry(RTCDevice device, const CustomSurface& surface) {
-  RTCGeometry geometry = NewUserGeometry(device, 1, CustomBounds, CustomIntersect, CustomOccluded);
-  if (surface.Moves()) rtcSetGeometryTimeStepCount(geometry, kCustomTimeSteps);
-  return geometry;
-}
-
-RTCGeometryType CurveType(CurveSet::Kind kind) {
-  switch (kind) {
-    case CurveSet::Kind::Flat:
-      return RTC_GEOMETRY_TYPE_FLAT_BEZIER_CURVE;
-    case CurveSet::Kind::Cylinder:
-      return RTC_GEOMETRY_TYPE_ROUND_BEZIER_CURVE;
-    case CurveSet::Kind::Ribbon:
-      break;
-  }
-  return RTC_GEOMETRY_TYPE_NORMAL_ORIENTED_BEZIER_CURVE;
-}
-
-RTCGeometry NewGeometry(RTCDevice device, const CurveSet& curves) {
-  const size_t count = curves.segments.size();
-  if (count == 0) return nullptr;
-  RTCGeometry geometry = rtcNewGeometry(device, CurveType(curves.kind));
-  auto* vertices = static_cast<glm::vec4*>(
-      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, sizeof(glm::vec4), 4 * count));
-  auto* indices = static_cast<uint32_t*>(
-      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, sizeof(uint32_t), count));
-  const bool ribbon = curves.kind == CurveSet::Kind::Ribbon;
-  auto* normals = ribbon ? static_cast<Normal3*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_NORMAL, 0,
-                                                                         RTC_FORMAT_FLOAT3, sizeof(Normal3), 4 * count))
-                         : nullptr;
-  if (!vertices || !indices || (ribbon && !normals)) return geometry;  // the device's error says it
-  if (curves.kind == CurveSet::Kind::Flat) rtcSetGeometryTessellationRate(geometry, CurveSet::kLinesPerFlatSegment);
-  for (size_t i = 0; i < count; ++i) {
-    indices[i] = static_cast<uint32_t>(4 * i);
-    for (size_t k = 0; k < 4; ++k) {
-      vertices[4 * i + k] = glm::vec4(curves.segments[i][k], curves.radii[i][k]);
-      const float along = static_cast<float>(k) / 3.0f;
-      if (ribbon) normals[4 * i + k] = glm::mix(curves.segmentNormals[i][0], curves.segmentNormals[i][1], along);
-    }
-  }
-  return geometry;
-}
-
 void Attach(RTCScene scene, RTCGeometry geometry, uint32_t id) {
   rtcCommitGeometry(geometry);
   rtcAttachGeometryByID(scene, geometry, id);
   rtcReleaseGeometry(geometry);
 }
 
-void SetTransforms(RTCGeometry geometry, const InstanceRecord& instance) {
-  const auto set = [&](unsigned step, const Affine& m) {
-    const Vector3 columns[4] = {m.linear[0], m.linear[1], m.linear[2], m.translation};
-    rtcSetGeometryTransform(geometry, step, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns);
-  };
-  const bool comesOrGoes = instance.begin > 0 || instance.end < 1;
-  if (!instance.motion && !comesOrGoes) return set(0, instance.placement.toRender);
-  const std::vector<Affine> stays(2, instance.placement.toRender);
-  const std::vector<Affine>& keys = instance.motion ? instance.motion->Keys() : stays;
-  rtcSetGeometryTimeStepCount(geometry, static_cast<unsigned>(keys.size()));
-  rtcSetGeometryTimeRange(geometry, instance.begin, instance.end);
-  for (size_t i = 0; i < keys.size(); ++i) set(static_cast<unsigned>(i), keys[i]);
-}
-
 }  // namespace
 
 void GeometryScene::Implementation::AttachEntries(RTCScene target, size_t first, size_t count) {
   for (size_t i = 0; i < count; ++i) {
-    const PrimitiveRecord& record = tables.primitives[first + i];
     RTCGeometry geometry =
-        std::visit([&](const auto* shape) { return NewGeometry(device.get(), *shape); }, record.shape);
+        NewGeometry(device.get(), tables.primitives[first + i], tables.attributes[first + i].visibility);
     if (!geometry) continue;
-    rtcSetGeometryMask(geometry, tables.attributes[first + i].visibility);
-    rtcSetGeometryUserData(geometry, const_cast<PrimitiveRecord*>(&record));
-    // User geometry decides in its own callbacks what passes.
-    if (record.LetsPass() && (record.As<TriangleMesh>() || record.As<CurveSet>())) {
-      rtcSetGeometryIntersectFilterFunction(geometry, PassFilter);
-      rtcSetGeometryOccludedFilterFunction(geometry, TransmitFilter);
-    }
     Attach(target, geometry, static_cast<uint32_t>(i));
   }
 }
@@ -452,10 +257,7 @@ void GeometryScene::Implementation::BuildScenes() {
       AttachEntries(objectScenes[object].get(), instance.firstPrimitive, description.objects[object].entries.size());
       rtcCommitScene(objectScenes[object].get());
     }
-    RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_INSTANCE);
-    rtcSetGeometryInstancedScene(geometry, objectScenes[object].get());
-    SetTransforms(geometry, instance);
-    rtcSetGeometryMask(geometry, 0xffffffffu);
+    RTCGeometry geometry = NewInstance(device.get(), instance, objectScenes[object].get());
     Attach(scene.get(), geometry, tables.firstInstanceId + static_cast<uint32_t>(i));
   }
   rtcCommitScene(scene.get());

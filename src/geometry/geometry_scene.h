@@ -72,9 +72,6 @@ struct GeometryDescription {
   bool robust = true;  // Embree's robust mode: no leaks along shared edges, 20-25 % slower
 };
 
-// Throws an Error for a shape that cannot be traced: what is not finite, or too far out.
-void CheckShape(const Shape& shape);
-
 // Immutable after construction; all methods may be called from any thread.
 //
 // A ray that Embree would not survive (NaN, infinite or huge origin or direction, negative or NaN tMax) is counted and

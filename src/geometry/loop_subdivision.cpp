@@ -1,5 +1,5 @@
-// See loop_subdivision.h. A half-edge h = 3·face + k runs from the face's corner k to the next; its twin runs back in the
-// neighbouring face. Refinement knows the twins of the children without searching.
+// See loop_subdivision.h. A half-edge h = 3·face + k runs from the face's corner k to the next; its twin runs back in
+// the neighbouring face. Refinement knows the twins of the children without searching.
 #include "geometry/loop_subdivision.h"
 
 #include <numeric>
@@ -14,8 +14,12 @@ using Face = std::array<uint32_t, 3>;
 constexpr uint32_t kNone = 0xffffffffu;
 constexpr double kTwoPi = 2 * 3.14159265358979323846;
 
-uint32_t Next(uint32_t h) { return h % 3 == 2 ? h - 2 : h + 1; }
-uint32_t Previous(uint32_t h) { return h % 3 == 0 ? h + 2 : h - 1; }
+uint32_t Next(uint32_t h) {
+  return h % 3 == 2 ? h - 2 : h + 1;
+}
+uint32_t Previous(uint32_t h) {
+  return h % 3 == 0 ? h + 2 : h - 1;
+}
 
 struct Mesh {
   std::vector<Point3d> positions;
@@ -50,8 +54,8 @@ void CheckInput(const std::vector<Point3>& positions, const std::vector<Face>& f
   }
 }
 
-// Joins the half edges of one edge. Where more than two faces meet, each is joined to the first free one before it that runs
-// the other way, in the order of the faces: published meshes have such edges, and renderers take them.
+// Joins the half edges of one edge. Where more than two faces meet, each is joined to the first free one before it that
+// runs the other way, in the order of the faces: published meshes have such edges, and renderers take them.
 void PairHalfEdges(Mesh& mesh, std::span<const std::pair<uint64_t, uint32_t>> halfEdges, const FileLocation& where) {
   for (size_t i = 1; i < halfEdges.size(); ++i) {
     const uint32_t b = halfEdges[i].second;
@@ -65,8 +69,8 @@ void PairHalfEdges(Mesh& mesh, std::span<const std::pair<uint64_t, uint32_t>> ha
   }
   const uint32_t first = halfEdges[0].second;
   if (halfEdges.size() == 2 && mesh.twins[first] == kNone) {
-    throw Error(where, "loopsubdiv: the faces at the edge between vertices " + std::to_string(mesh.From(first)) + " and " +
-                           std::to_string(mesh.To(first)) + " are wound in opposite directions");
+    throw Error(where, "loopsubdiv: the faces at the edge between vertices " + std::to_string(mesh.From(first)) +
+                           " and " + std::to_string(mesh.To(first)) + " are wound in opposite directions");
   }
 }
 
@@ -118,7 +122,9 @@ void SeparateFans(Mesh& mesh) {
 }
 
 // Weight of each neighbour of an interior vertex ([Warren95]).
-double RingWeight(uint32_t valence) { return valence == 3 ? 3.0 / 16 : 3.0 / (8.0 * valence); }
+double RingWeight(uint32_t valence) {
+  return valence == 3 ? 3.0 / 16 : 3.0 / (8.0 * valence);
+}
 
 // Sums over all neighbours of a vertex, and over those along the boundary.
 struct Neighbourhood {

@@ -32,11 +32,15 @@ struct Element {
 size_t SizeOf(Type type) {
   switch (type) {
     case Type::Int8:
-    case Type::UInt8: return 1;
+    case Type::UInt8:
+      return 1;
     case Type::Int16:
-    case Type::UInt16: return 2;
-    case Type::Float64: return 8;
-    default: return 4;
+    case Type::UInt16:
+      return 2;
+    case Type::Float64:
+      return 8;
+    default:
+      return 4;
   }
 }
 
@@ -59,16 +63,25 @@ class ValueReader {
     char bytes[8];
     std::memcpy(bytes, body_.data() + position_, size);
     position_ += size;
-    if ((format_ == Format::BigEndian) == (std::endian::native == std::endian::little)) std::reverse(bytes, bytes + size);
+    if ((format_ == Format::BigEndian) == (std::endian::native == std::endian::little))
+      std::reverse(bytes, bytes + size);
     switch (type) {
-      case Type::Int8: return As<int8_t>(bytes);
-      case Type::UInt8: return As<uint8_t>(bytes);
-      case Type::Int16: return As<int16_t>(bytes);
-      case Type::UInt16: return As<uint16_t>(bytes);
-      case Type::Int32: return As<int32_t>(bytes);
-      case Type::UInt32: return As<uint32_t>(bytes);
-      case Type::Float32: return static_cast<double>(As<float>(bytes));
-      case Type::Float64: break;
+      case Type::Int8:
+        return As<int8_t>(bytes);
+      case Type::UInt8:
+        return As<uint8_t>(bytes);
+      case Type::Int16:
+        return As<int16_t>(bytes);
+      case Type::UInt16:
+        return As<uint16_t>(bytes);
+      case Type::Int32:
+        return As<int32_t>(bytes);
+      case Type::UInt32:
+        return As<uint32_t>(bytes);
+      case Type::Float32:
+        return static_cast<double>(As<float>(bytes));
+      case Type::Float64:
+        break;
     }
     return As<double>(bytes);
   }
@@ -138,7 +151,8 @@ class HeaderReader {
       std::vector<std::string> words = Split(content_.substr(position_, end - position_));
       position_ = std::min(end + 1, content_.size());
       // \r\n is one line end: data of a binary file starts right after it.
-      if (end < content_.size() && content_[end] == '\r' && position_ < content_.size() && content_[position_] == '\n') {
+      if (end < content_.size() && content_[end] == '\r' && position_ < content_.size() &&
+          content_[position_] == '\n') {
         ++position_;
       }
       if (!words.empty() && words[0] != "comment" && words[0] != "obj_info") return words;
@@ -166,9 +180,9 @@ class HeaderReader {
 
 Type ParseType(const std::string& word, const Failure& fail) {
   static constexpr std::pair<std::string_view, Type> names[] = {
-      {"char", Type::Int8},     {"int8", Type::Int8},       {"uchar", Type::UInt8},   {"uint8", Type::UInt8},
-      {"short", Type::Int16},   {"int16", Type::Int16},     {"ushort", Type::UInt16}, {"uint16", Type::UInt16},
-      {"int", Type::Int32},     {"int32", Type::Int32},     {"uint", Type::UInt32},   {"uint32", Type::UInt32},
+      {"char", Type::Int8},     {"int8", Type::Int8},       {"uchar", Type::UInt8},    {"uint8", Type::UInt8},
+      {"short", Type::Int16},   {"int16", Type::Int16},     {"ushort", Type::UInt16},  {"uint16", Type::UInt16},
+      {"int", Type::Int32},     {"int32", Type::Int32},     {"uint", Type::UInt32},    {"uint32", Type::UInt32},
       {"float", Type::Float32}, {"float32", Type::Float32}, {"double", Type::Float64}, {"float64", Type::Float64}};
   for (const auto& [name, type] : names) {
     if (name == word) return type;
@@ -247,8 +261,8 @@ void SkipValue(const Property& property, ValueReader& reader) {
 // Slot of a vertex property: 0-2 position, 3-5 normal, 6-7 texture coordinates; -1 if it has none.
 int VertexSlot(const std::string& name) {
   static constexpr std::pair<std::string_view, int> names[] = {
-      {"x", 0},  {"y", 1},  {"z", 2},  {"nx", 3},        {"ny", 4},        {"nz", 5},        {"u", 6},        {"v", 7},
-      {"s", 6},  {"t", 7},  {"texture_u", 6}, {"texture_v", 7}, {"texture_s", 6}, {"texture_t", 7}};
+      {"x", 0}, {"y", 1}, {"z", 2}, {"nx", 3},        {"ny", 4},        {"nz", 5},        {"u", 6},
+      {"v", 7}, {"s", 6}, {"t", 7}, {"texture_u", 6}, {"texture_v", 7}, {"texture_s", 6}, {"texture_t", 7}};
   for (const auto& [known, slot] : names) {
     if (known == name) return slot;
   }

@@ -7,8 +7,8 @@ namespace lampyr {
 
 namespace {
 
-// References, here and below: a copy on the stack is stored in smaller pieces than it is loaded in, and store forwarding
-// stalls.
+// References, here and below: a copy on the stack is stored in smaller pieces than it is loaded in, and store
+// forwarding stalls.
 struct UvCorners {
   const Point2 &uv0, &uv1, &uv2;
 };
@@ -54,8 +54,8 @@ void EvaluateTriangle(const TriangleMesh& mesh, uint32_t triangle, const Point2&
   const Vector3 edge02 = p0 - p2, edge12 = p1 - p2;
   const Vector3 winding = glm::cross(edge02, edge12);
   const float squared = LengthSquared(winding);
-  point.Ng = squared > 1e-28f && squared < 1e28f ? winding * (1.0f / std::sqrt(squared))
-                                                 : PreciseNormal(p0, p1, p2, towards);
+  point.Ng =
+      squared > 1e-28f && squared < 1e28f ? winding * (1.0f / std::sqrt(squared)) : PreciseNormal(p0, p1, p2, towards);
   if (mesh.flipNormals) point.Ng = -point.Ng;
   point.Ns = point.Ng;
   if (!mesh.normals.empty()) {

@@ -53,7 +53,8 @@ class TexelLookup {
     const bool inside = static_cast<unsigned>(x) < static_cast<unsigned>(width_) &&
                         static_cast<unsigned>(y) < static_cast<unsigned>(height_);
     if (!inside && !WrapInside(x, y)) return Value{};
-    const float* texel = data_ + (static_cast<size_t>(y) * static_cast<size_t>(width_) + static_cast<size_t>(x)) * stride_;
+    const float* texel =
+        data_ + (static_cast<size_t>(y) * static_cast<size_t>(width_) + static_cast<size_t>(x)) * stride_;
     if constexpr (std::is_same_v<Value, float>) {
       return red_ == green_ ? texel[red_] : (texel[red_] + texel[green_] + texel[blue_]) * (1.0f / 3);
     } else {

@@ -1,13 +1,14 @@
 // Images whose headers announce more than they hold: refused before a reader, ours or the library's, takes the memory.
 #include <gmock/gmock.h>
-#include <zlib.h>
 
 #include "badinput/hostile_support.h"
 #include "film/image.h"
+#include "support/png_file.h"
 
 namespace lampyr {
 namespace {
 
+using test::BigEndian;
 using testing::AnyOf;
 using testing::HasSubstr;
 
@@ -17,27 +18,9 @@ std::string Little(uint64_t n, int bytes) {
   for (int i = 0; i < bytes; ++i) text += static_cast<char>(n >> (8 * i));
   return text;
 }
-std::string Big(uint64_t n, int bytes) {
-  const std::string little = Little(n, bytes);
-  return {little.rbegin(), little.rend()};
-}
-
-std::string PngChunk(const std::string& type, const std::string& data) {
-  const std::string body = type + data;
-  const auto sum = crc32(0, reinterpret_cast<const Bytef*>(body.data()), static_cast<uInt>(body.size()));
-  return Big(data.size(), 4) + body + Big(sum, 4);
-}
-
 // Bytes that compress to nothing, as a PNG of 8-bit gray.
 std::string Png(uint32_t width, uint32_t height, size_t bytesOfPixels) {
-  const std::string pixels(bytesOfPixels, '\0');
-  std::string packed(compressBound(pixels.size()), '\0');
-  uLongf size = packed.size();
-  compress(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(pixels.data()),
-           pixels.size());
-  packed.resize(size);
-  return "\x89PNG\r\n\x1a\n" + PngChunk("IHDR", Big(width, 4) + Big(height, 4) + std::string("\x08\0\0\0\0", 5)) +
-         PngChunk("IDAT", packed) + PngChunk("IEND", "");
+  return test::PngFile({width, height}, std::string(bytesOfPixels, '\0'));
 }
 
 std::string Bmp(uint32_t width, uint32_t height, uint32_t compression) {
@@ -60,8 +43,8 @@ std::string Webp(const std::string& chunk, const std::string& data) {
 
 // Progressive: its reader keeps all coefficients of the picture.
 std::string Jpeg(uint32_t width, uint32_t height) {
-  return std::string("\xff\xd8\xff\xc2\0\x0b\x08", 7) + Big(height, 2) + Big(width, 2) + std::string("\1\1\x11\0", 4) +
-         std::string("\xff\xda\0\x08\1\1\0\0\0\0", 10) + "\xff\xd9";
+  return std::string("\xff\xd8\xff\xc2\0\x0b\x08", 7) + BigEndian(height, 2) + BigEndian(width, 2) +
+         std::string("\1\1\x11\0", 4) + std::string("\xff\xda\0\x08\1\1\0\0\0\0", 10) + "\xff\xd9";
 }
 
 std::string Tiff(uint32_t width, uint32_t height) {
@@ -82,6 +65,18 @@ std::string Tiff(uint32_t width, uint32_t height) {
   add(279, 4);
   return std::string("II*\0", 4) + Little(8, 4) + Little(static_cast<uint64_t>(count), 2) + entries + Little(0, 4) +
          "....";
+}
+
+// Texts that unpack to 700 MB, in a file of as many kilobytes.
+TEST(HostileImages, TextsOfPngFilesAreNotUnpacked) {
+  const TemporaryFolder folder;
+  const std::string text = std::string("Comment\0\0", 9) + test::Deflated(std::string(7000000, 'a'));
+  std::string all;
+  for (int i = 0; i < 100; ++i) all += test::PngChunk("zTXt", text);
+  WriteBytes(folder / "a.png", test::PngFile({1, 1}, std::string("\0\xff", 2), all));
+  const PeakMemory peak;
+  EXPECT_EQ(ReadImage(folder / "a.png").At(0, 0, 0), 1.0f);
+  EXPECT_LT(peak.GrownBy(), 16);
 }
 
 TEST(HostileImages, HeadersThatAnnounceMoreThanTheFileHoldsTakeNoMemory) {

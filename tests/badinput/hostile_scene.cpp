@@ -127,6 +127,34 @@ TEST(HostileScene, SubdivisionIsCountedBeforeItIsMade) {
                 "besides the 96 MiB of the scene before them"));
 }
 
+// One flat curve of `segments` wild bends, each of which is divided into 16.
+std::string BentCurve(int segments, const std::string& type) {
+  return "Shape \"curve\" \"string type\" \"" + type + "\" \"float width\" 1e-6 \"point3 P\" [ 0 0 0 " +
+         Repeated("0 9 0  0 -9 1  0 0 0  ", static_cast<size_t>(segments)) + "]\n";
+}
+
+TEST(HostileScene, CurvesAreCountedBeforeTheyAreDivided) {
+  EXPECT_EQ(BuildError("WorldBegin\n" + BentCurve(1000, "flat"), {}, 8 * kMebibyte), "no error");
+  const std::string text = "WorldBegin\n" + BentCurve(10000, "flat");
+  EXPECT_EQ(BuildError("WorldBegin\n" + BentCurve(10000, "cylinder"), {}, 8 * kMebibyte), "no error");
+  const PeakMemory peak;
+  EXPECT_THAT(
+      BuildError(text, {}, 8 * kMebibyte),
+      HasSubstr("scene.pbrt:2:1: error: the segments of this curve, 160000 where bent ones are divided, take 39 "
+                "MiB of memory, and there are 8.0 MiB in all"));
+  EXPECT_LT(peak.GrownBy(), 16);
+  // Each would fit.
+  EXPECT_THAT(
+      BuildError("WorldBegin\n" + Repeated(BentCurve(1000, "flat"), 3), {}, 8 * kMebibyte),
+      HasSubstr("scene.pbrt:4:1: error: the segments of this curve, 16000 where bent ones are divided, take 3.9 "
+                "MiB of memory besides the 7.8 MiB of the scene before them"));
+  // An object's curves are made once, however often it is there.
+  EXPECT_EQ(BuildError("WorldBegin\nObjectBegin \"o\"\n" + BentCurve(1000, "flat") + "ObjectEnd\n" +
+                           Repeated("ObjectInstance \"o\"\n", 3),
+                       {}, 8 * kMebibyte),
+            "no error");
+}
+
 TEST(HostileScene, OneMeshThatIsNamedAgainAndAgainIsCounted) {
   const TemporaryFolder folder;
   constexpr size_t faces = 20000;

@@ -37,7 +37,9 @@ std::string Ascii(const std::string& declarations, const std::string& body) {
   return "ply\nformat ascii 1.0\n" + declarations + "end_header\n" + body;
 }
 
-TEST(PlyErrors, TheGoodOneIsGood) { EXPECT_EQ(MessageOf(Ascii(kVertex + kFace, kBody)), "no error"); }
+TEST(PlyErrors, TheGoodOneIsGood) {
+  EXPECT_EQ(MessageOf(Ascii(kVertex + kFace, kBody)), "no error");
+}
 
 TEST(PlyErrors, NameTheFileAndTheFault) {
   const std::pair<std::string, std::string> cases[] = {
@@ -85,12 +87,14 @@ TEST(PlyErrors, NameTheFileAndTheFault) {
 TEST(PlyErrors, AbsurdCountsAskForNoMemory) {
   for (const std::string count : {"1000000000", "4294967295", "18446744073709551615", "4611686018427387905"}) {
     for (const std::string format : {"ascii", "binary_little_endian"}) {
-      EXPECT_THAT(MessageOf("ply\nformat " + format + " 1.0\nelement vertex " + count +
-                            "\nproperty float x\nproperty float y\nproperty float z\n" + kFace + "end_header\n" + kBody),
-                  HasSubstr("more than the file holds"));
-      EXPECT_THAT(MessageOf("ply\nformat " + format + " 1.0\nelement vertex 0\nproperty float x\nproperty float y\n"
-                            "property float z\nelement face " + count +
-                            "\nproperty list uchar int vertex_indices\nend_header\n" + kBody),
+      EXPECT_THAT(
+          MessageOf("ply\nformat " + format + " 1.0\nelement vertex " + count +
+                    "\nproperty float x\nproperty float y\nproperty float z\n" + kFace + "end_header\n" + kBody),
+          HasSubstr("more than the file holds"));
+      EXPECT_THAT(MessageOf("ply\nformat " + format +
+                            " 1.0\nelement vertex 0\nproperty float x\nproperty float y\n"
+                            "property float z\nelement face " +
+                            count + "\nproperty list uchar int vertex_indices\nend_header\n" + kBody),
                   HasSubstr("more than the file holds"));
     }
   }
@@ -114,9 +118,10 @@ TEST(PlyErrors, FilesThatCannotBeRead) {
 
 // Mutated files either parse to a mesh whose indices and vertices are sound, or are Errors; nothing else is thrown.
 TEST(PlyErrors, MutationsNeverCrash) {
-  std::string binary = "ply\nformat binary_little_endian 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
-                       "property float z\nproperty float u\nproperty float v\nelement face 2\n"
-                       "property list uchar int vertex_indices\nproperty int face_indices\nend_header\n";
+  std::string binary =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+      "property float z\nproperty float u\nproperty float v\nelement face 2\n"
+      "property list uchar int vertex_indices\nproperty int face_indices\nend_header\n";
   const float values[20] = {0, 0, 0, 0, 0, 1, 0, 0, 1, 0, 1, 1, 0, 1, 1, 0, 1, 0, 0, 1};
   binary.append(reinterpret_cast<const char*>(values), sizeof(values));
   for (int face = 0; face < 2; ++face) {
@@ -136,11 +141,21 @@ TEST(PlyErrors, MutationsNeverCrash) {
     for (int k = 0; k < changes && !content.empty(); ++k) {
       const size_t at = random() % content.size();
       switch (random() % 5) {
-        case 0: content[at] = static_cast<char>(random()); break;
-        case 1: content.erase(at, 1 + random() % 8); break;
-        case 2: content.insert(at, 1 + random() % 3, static_cast<char>(random())); break;
-        case 3: content[at] = static_cast<char>('0' + random() % 10); break;
-        default: content.resize(std::max<size_t>(at, 1)); break;
+        case 0:
+          content[at] = static_cast<char>(random());
+          break;
+        case 1:
+          content.erase(at, 1 + random() % 8);
+          break;
+        case 2:
+          content.insert(at, 1 + random() % 3, static_cast<char>(random()));
+          break;
+        case 3:
+          content[at] = static_cast<char>('0' + random() % 10);
+          break;
+        default:
+          content.resize(std::max<size_t>(at, 1));
+          break;
       }
     }
     try {

@@ -286,6 +286,25 @@ TEST(PhotonStore, KeepsToItsMemory) {
   }
 }
 
+TEST(PhotonStore, KeepsItsFirstPathWhateverItTakes) {
+  for (const uint64_t bytes : {uint64_t{1}, 6 * PhotonStore::BytesPerPhoton()}) {
+    PhotonSettings settings;
+    settings.radius = 1;
+    settings.mostBytes = bytes;
+    PhotonStore store(settings, 30);
+    std::vector<PhotonList> taken = PathsOf(3, 10, 7);
+    taken.insert(taken.begin(), PhotonList());
+    store.Take(taken);
+    EXPECT_FALSE(store.HasRoom());
+    taken = PathsOf(1, 10, 7);
+    store.Take(taken);
+    store.Finish(0);
+    const PhotonPass& pass = store.Open(0, 2);
+    EXPECT_EQ(1, pass.lightPaths);
+    EXPECT_EQ(7u, pass.map->Size());
+  }
+}
+
 TEST(PhotonStore, PassesFollowEachOther) {
   PhotonSettings settings;
   settings.radius = 2;

@@ -384,7 +384,8 @@ TEST(Shaping, StrangeProfilesStayFinite) {
           ASSERT_TRUE(IsFinite(d) && factor.IsValid() && density >= 0 && density < kInfinity) << text << more;
           ASSERT_LE(factor.Max(), shaping->Largest() * 1.00001f) << text << more;
           if (Target(*shaping, emitter, d) > 0) {
-            ASSERT_GT(density, 0) << text << more << " " << name << " z " << d.z << " x " << d.x << " y " << d.y << " F " << factor.r << " T " << Target(*shaping, emitter, d);
+            ASSERT_GT(density, 0) << text << more << " " << name << " z " << d.z << " x " << d.x << " y " << d.y
+                                  << " F " << factor.r << " T " << Target(*shaping, emitter, d);
           }
         }
       }

@@ -77,7 +77,8 @@ void AddLightRigs(std::vector<Rig>& rigs) {
       }
       ++count;
     }
-    // The narrow cones of spots have edges near the borders of the picture's quarters, across which photons are blurred.
+    // The narrow cones of spots have edges near the borders of the picture's quarters, across which photons are
+    // blurred.
     const double photonRadius = type->name == "spot" ? 0.02 : 0.08;
     if (count > 1) rigs.push_back({"light_" + name + "_others", Lit(*type, others, photonRadius), covers});
   }

@@ -1,6 +1,5 @@
 // PNG files of every kind of pixel, made here byte by byte; and damaged ones.
 #include <gtest/gtest.h>
-#include <zlib.h>
 
 #include <functional>
 #include <string>
@@ -8,28 +7,17 @@
 #include "base/error.h"
 #include "film/image.h"
 #include "film/srgb.h"
+#include "support/png_file.h"
 #include "support/temporary_folder.h"
 
 namespace lampyr {
 namespace {
 
+using namespace test;  // kGray, kRgb, …
+
 constexpr int kWidth = 13, kHeight = 11;
 
-std::string Big(uint32_t number, int bytes) {
-  std::string text;
-  for (int i = bytes; i-- > 0;) text += static_cast<char>(number >> (8 * i) & 255);
-  return text;
-}
-
-std::string Chunk(const std::string& type, const std::string& data) {
-  const std::string body = type + data;
-  const auto sum = crc32(0, reinterpret_cast<const Bytef*>(body.data()), static_cast<uInt>(body.size()));
-  return Big(static_cast<uint32_t>(data.size()), 4) + body + Big(static_cast<uint32_t>(sum), 4);
-}
-
-// Colour types of the format.
-enum ColorType { kGray = 0, kRgb = 2, kPalette = 3, kGrayAlpha = 4, kRgba = 6 };
-int ChannelCount(ColorType type) {
+int ChannelCount(PngColorType type) {
   return type == kRgb ? 3 : type == kGrayAlpha ? 2 : type == kRgba ? 4 : 1;
 }
 
@@ -38,14 +26,14 @@ uint32_t Stored(int x, int y, int channel, int bits) {
   return (static_cast<uint32_t>(x * 7 + y * 31 + channel * 101) * 2654435761u >> 8) & ((1u << bits) - 1);
 }
 
-std::string Row(int y, int x0, int step, ColorType type, int bits) {
+std::string Row(int y, int x0, int step, PngColorType type, int bits) {
   std::string row(1, '\0');  // no filter
   uint32_t pending = 0;
   int used = 0;
   for (int x = x0; x < kWidth; x += step) {
     for (int c = 0; c < ChannelCount(type); ++c) {
       if (bits >= 8) {
-        row += Big(Stored(x, y, c, bits), bits / 8);
+        row += BigEndian(Stored(x, y, c, bits), bits / 8);
         continue;
       }
       pending = pending << bits | Stored(x, y, c, bits);
@@ -58,7 +46,7 @@ std::string Row(int y, int x0, int step, ColorType type, int bits) {
 }
 
 // `extra`: chunks before the pixels.
-std::string Png(ColorType type, int bits, bool isInterlaced, const std::string& extra = "") {
+std::string Png(PngColorType type, int bits, bool isInterlaced, const std::string& extra = "") {
   struct Pass {
     int x, y, stepX, stepY;
   };
@@ -68,14 +56,7 @@ std::string Png(ColorType type, int bits, bool isInterlaced, const std::string& 
   for (const Pass& pass : isInterlaced ? adam7 : std::vector<Pass>{{0, 0, 1, 1}}) {
     for (int y = pass.y; y < kHeight; y += pass.stepY) pixels += Row(y, pass.x, pass.stepX, type, bits);
   }
-  std::string packed(compressBound(pixels.size()), '\0');
-  uLongf size = packed.size();
-  compress(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(pixels.data()),
-           pixels.size());
-  packed.resize(size);
-  const std::string header = Big(kWidth, 4) + Big(kHeight, 4) + static_cast<char>(bits) + static_cast<char>(type) +
-                             std::string("\0\0", 2) + static_cast<char>(isInterlaced);
-  return "\x89PNG\r\n\x1a\n" + Chunk("IHDR", header) + extra + Chunk("IDAT", packed) + Chunk("IEND", "");
+  return test::PngFile({kWidth, kHeight, bits, type, isInterlaced}, pixels, extra);
 }
 
 void ExpectPixels(const Image& image, int channels, const std::function<double(int x, int y, int c)>& expected) {
@@ -92,7 +73,7 @@ void ExpectPixels(const Image& image, int channels, const std::function<double(i
 
 TEST(PngKinds, AllDepthsChannelsAndInterlacing) {
   const TemporaryFolder folder;
-  const std::pair<ColorType, std::vector<int>> kinds[] = {
+  const std::pair<PngColorType, std::vector<int>> kinds[] = {
       {kGray, {1, 2, 4, 8, 16}}, {kRgb, {8, 16}}, {kGrayAlpha, {8, 16}}, {kRgba, {8, 16}}};
   for (const auto& [type, depths] : kinds) {
     for (const int bits : depths) {
@@ -110,17 +91,17 @@ TEST(PngKinds, AllDepthsChannelsAndInterlacing) {
 TEST(PngKinds, PalettesAndTransparentColours) {
   const TemporaryFolder folder;
   std::string palette;
-  for (int i = 0; i < 16; ++i) palette += Big(static_cast<uint32_t>(i * 17 << 16 | i << 8 | (255 - i)), 3);
+  for (int i = 0; i < 16; ++i) palette += BigEndian(static_cast<uint32_t>(i * 17 << 16 | i << 8 | (255 - i)), 3);
   // The first two entries are transparent and half transparent.
   WriteBytes(folder / "a.png",
-             Png(kPalette, 4, true, Chunk("PLTE", palette) + Chunk("tRNS", std::string("\0\x80", 2))));
+             Png(kPalette, 4, true, PngChunk("PLTE", palette) + PngChunk("tRNS", std::string("\0\x80", 2))));
   ExpectPixels(ReadImage(folder / "a.png", ImageEncoding::Linear), 4, [](int x, int y, int c) {
     const int i = static_cast<int>(Stored(x, y, 0, 4));
     const int values[] = {i * 17, i, 255 - i, i == 0 ? 0 : i == 1 ? 128 : 255};
     return values[c] / 255.0;
   });
   // One gray is transparent.
-  WriteBytes(folder / "b.png", Png(kGray, 4, false, Chunk("tRNS", Big(5, 2))));
+  WriteBytes(folder / "b.png", Png(kGray, 4, false, PngChunk("tRNS", BigEndian(5, 2))));
   ExpectPixels(ReadImage(folder / "b.png", ImageEncoding::Linear), 2, [](int x, int y, int c) {
     const double value = Stored(x, y, 0, 4);
     return c == 0 ? value / 15 : value == 5 ? 0 : 1;
@@ -130,9 +111,9 @@ TEST(PngKinds, PalettesAndTransparentColours) {
 // Eight bits are sRGB whatever the file says; sixteen are, unless it says otherwise.
 TEST(PngKinds, SixteenBitsAreAsTheFileSays) {
   const TemporaryFolder folder;
-  const std::string linear = Chunk("gAMA", Big(100000, 4));
+  const std::string linear = PngChunk("gAMA", BigEndian(100000, 4));
   WriteBytes(folder / "srgb.png", Png(kGray, 16, false));
-  WriteBytes(folder / "gamma.png", Png(kGray, 16, false, Chunk("gAMA", Big(45455, 4))));
+  WriteBytes(folder / "gamma.png", Png(kGray, 16, false, PngChunk("gAMA", BigEndian(45455, 4))));
   WriteBytes(folder / "linear.png", Png(kGray, 16, false, linear));
   WriteBytes(folder / "eight.png", Png(kGray, 8, false, linear));
   const auto stored = [](int x, int y, int bits) {
@@ -145,6 +126,35 @@ TEST(PngKinds, SixteenBitsAreAsTheFileSays) {
                [&](int x, int y, int) { return static_cast<double>(stored(x, y, 16)); });
   ExpectPixels(ReadImage(folder / "eight.png"), 1,
                [&](int x, int y, int) { return static_cast<double>(SrgbToLinear(stored(x, y, 8))); });
+}
+
+// What a file says about itself is not read, packed or not, before the pixels or damaged.
+TEST(PngKinds, TextsAreSkipped) {
+  const TemporaryFolder folder;
+  const std::string none(1, '\0'), packed = Deflated("a comment, packed");
+  std::string wrong = packed;
+  wrong[wrong.size() / 2] ^= 0x55;
+  const std::pair<const char*, std::string> texts[] = {
+      {"software", PngChunk("tEXt", "Software" + none + "a renderer")},
+      {"empty", PngChunk("tEXt", "")},
+      {"without a key", PngChunk("tEXt", none + "text")},
+      {"long key", PngChunk("tEXt", std::string(300, 'k') + none + "text")},
+      {"packed", PngChunk("zTXt", "Comment" + none + none + packed)},
+      {"packed and damaged", PngChunk("zTXt", "Comment" + none + none + wrong)},
+      {"international", PngChunk("iTXt", "Title" + none + "\x01" + none + "de" + none + "Titel" + none + packed)},
+      {"many",
+       [&] {
+         std::string all;
+         for (int i = 0; i < 2000; ++i) all += PngChunk("tEXt", "Comment" + none + std::to_string(i));
+         return all;
+       }()},
+  };
+  for (const auto& [name, chunk] : texts) {
+    SCOPED_TRACE(name);
+    WriteBytes(folder / "a.png", Png(kRgb, 8, false, chunk));
+    ExpectPixels(ReadImage(folder / "a.png", ImageEncoding::Linear), 3,
+                 [](int x, int y, int c) { return Stored(x, y, c, 8) / 255.0; });
+  }
 }
 
 // Cut anywhere, or with a byte of the header changed: an error that names the file.

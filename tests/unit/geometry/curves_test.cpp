@@ -54,6 +54,26 @@ TEST(Curves, WidthsInterpolateAndScale) {
   EXPECT_NEAR(GetArea(ToShape(MakeCurves(Straight(CurveSet::Kind::Flat)))), 3 * 0.4, 1e-5);
 }
 
+TEST(Curves, DividedSegmentsAreCountedAsTheyAreMade) {
+  CurveParameters p;
+  p.points = {{0, 0, 0}, {0, 0.3f, 0.4f}, {0, -0.3f, 0.8f}, {0, 0.1f, 1.3f}, {0, 0, 2}, {0, 0, 2.5f}, {0, 0, 3}};
+  p.width1 = 0;
+  for (const float width : {1.0f, 0.1f, 0.001f}) {
+    p.width0 = width;
+    for (const float stretch : {1.0f, 10.0f}) {
+      p.toRender = Transform::Scale({1, stretch, 1});  // a bend that grows more than the width
+      for (const CurveSet::Kind kind : {CurveSet::Kind::Flat, CurveSet::Kind::Cylinder}) {
+        p.kind = kind;
+        EXPECT_EQ(CountDividedSegments(p), MakeCurves(p).segments.size()) << width << " " << stretch;
+      }
+    }
+  }
+  p.kind = CurveSet::Kind::Flat;
+  EXPECT_EQ(CountDividedSegments(p), 2 * 16u);
+  p.points.pop_back();
+  EXPECT_THROW(CountDividedSegments(p), Error);
+}
+
 // Flat curves are drawn as straight lines: a bent one is hit across its whole width, at the offset that the axis gives.
 TEST(Curves, BentFlatOnesKeepTheirWidth) {
   CurveParameters p;

@@ -44,13 +44,14 @@ inline TriangleMesh NoisySphere(uint32_t rings, float radius, const Point3& cent
   const uint32_t around = 2 * rings;
   const auto add = [&](float theta, float phi) {
     const float r = radius * (1 + noise * random.Uniform(-1, 1));
-    mesh.positions.push_back(center + Vector3(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
-                                              std::cos(theta)) * r);
+    mesh.positions.push_back(
+        center + Vector3(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)) * r);
   };
   add(0, 0);
   for (uint32_t i = 1; i < rings; ++i) {
     for (uint32_t j = 0; j < around; ++j) {
-      add(kPi * static_cast<float>(i) / static_cast<float>(rings), 2 * kPi * static_cast<float>(j) / static_cast<float>(around));
+      add(kPi * static_cast<float>(i) / static_cast<float>(rings),
+          2 * kPi * static_cast<float>(j) / static_cast<float>(around));
     }
   }
   add(kPi, 0);
@@ -67,7 +68,9 @@ inline TriangleMesh NoisySphere(uint32_t rings, float radius, const Point3& cent
   return mesh;
 }
 
-inline Shape MeshShape(TriangleMesh mesh) { return std::make_shared<const TriangleMesh>(std::move(mesh)); }
+inline Shape MeshShape(TriangleMesh mesh) {
+  return std::make_shared<const TriangleMesh>(std::move(mesh));
+}
 
 // With both directions of the transform and the flip that the scene builder sets.
 inline Quadric Place(Quadric quadric, const Transform& toRender, bool reverseOrientation = false) {

@@ -70,7 +70,8 @@ inline ParameterList MakeParameters(std::vector<Parameter> parameters, int line 
 }
 
 inline TextureDescription MakeTexture(const std::string& name, bool isSpectrum, const std::string& type,
-                                      std::vector<Parameter> parameters, int line = 1, const Transform& transform = {}) {
+                                      std::vector<Parameter> parameters, int line = 1,
+                                      const Transform& transform = {}) {
   TextureDescription description;
   description.name = name;
   description.isSpectrum = isSpectrum;

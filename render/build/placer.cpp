@@ -1,0 +1,49 @@
+#include "render/build/placer.h"
+
+#include <string>
+
+namespace lampyr {
+
+namespace {
+
+// The transform times, as fractions of the time that the camera's shutter is open.
+MotionTimes ReadMotionTimes(const SceneDescription& description) {
+  const StatementDescription& camera = description.camera;
+  const double open = camera.parameters.GetFloat("shutteropen", 0),
+               close = camera.parameters.GetFloat("shutterclose", 1);
+  if (!(close > open)) throw Error(camera.where, "\"shutterclose\" must be after \"shutteropen\"");
+  return {(description.shutterOpen - open) / (close - open), (description.shutterClose - open) / (close - open)};
+}
+
+}  // namespace
+
+AnimatedTransform ToAnimated(const Placement& placement, const char* what, const FileLocation& where) {
+  return AnimatedTransform(placement.start, placement.end, what, where);
+}
+
+void Placer::ReadTimes(const SceneDescription& description) {
+  times_ = ReadMotionTimes(description);
+}
+
+Transform Placer::StillPlacement(const ShapeDescription& shape) const {
+  if (!shape.placement.IsAnimated()) return shape.placement.start;
+  return ToAnimated(shape.placement, "a shape", shape.shape.where).At(times_.FractionAt(0));
+}
+
+RenderPlacement Placer::PlaceMoving(const MotionChain& toRender, const Bounds3& moved, const char* what,
+                                    const FileLocation& where) {
+  RenderPlacement placement{toRender.At(times_.FractionAt(0)), MakeMotion(toRender, times_, moved, what, where)};
+  if (!placement.toRender.IsAffine()) throw Error(where, std::string(what) + " cannot have a perspective transform");
+  if (placement.motion) hasMotion_ = true;
+  return placement;
+}
+
+RenderPlacement Placer::PlaceInWorld(const Placement& placement, const char* what, const FileLocation& where) {
+  RenderPlacement placed{worldToRender_ * placement.start, nullptr};
+  if (placement.IsAnimated())
+    placed = PlaceMoving(MotionChain(worldToRender_) * ToAnimated(placement, what, where), {}, what, where);
+  if (!placed.toRender.IsAffine()) throw Error(where, std::string(what) + " cannot have a perspective transform");
+  return placed;
+}
+
+}  // namespace lampyr

@@ -1,0 +1,16 @@
+// Private to the geometry: primitives and instances as geometries of Embree, not yet committed. What Embree could not
+// allocate is an error of the device.
+#pragma once
+
+#include <embree3/rtcore.h>
+
+#include "geometry/scene_tables.h"
+
+namespace lampyr {
+
+// Refers to the record, which has to outlive it. Null for a shape without primitives.
+RTCGeometry NewGeometry(RTCDevice device, const PrimitiveRecord& record, uint32_t visibility);
+
+RTCGeometry NewInstance(RTCDevice device, const InstanceRecord& instance, RTCScene object);
+
+}  // namespace lampyr

@@ -1,0 +1,22 @@
+// What can be traced: shapes and placements that are finite and near enough to the origin for Embree.
+#pragma once
+
+#include "geometry/shapes.h"
+
+namespace lampyr {
+
+// Embree aborts the process on rays beyond this, and skips primitives.
+inline constexpr float kFarthest = 1e18f;
+
+// Throws an Error for a shape that cannot be traced: what is not finite, or farther out than kFarthest; indices and
+// attributes of vertices that do not fit to one another.
+void CheckShape(const Shape& shape);
+
+// Throws an Error for the placement of an instance that is not finite, or reaches farther than kFarthest.
+void CheckPlacement(const Affine& toRender);
+
+// The largest origin or direction of a ray that is still traceable in an instance's object space. Throws an Error where
+// the transform is singular, or scales too much.
+float LargestThrough(const Affine& toObject);
+
+}  // namespace lampyr
