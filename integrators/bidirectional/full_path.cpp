@@ -126,7 +126,8 @@ std::vector<long double> ExplicitDensities(const FullPath& path) {
     if (s > 0 && s <= n && isDelta(s)) continue;
     if (s == n + 1 && !path.lensSeesIt) continue;
     long double density = 1;
-    if (s == 1) density = n == 0 ? path.end.position.value : path.end.direct.value;
+    if (s == 1)
+      density = n == 0 ? path.end.position.value : path.end.direct.value * NextEventCount(static_cast<size_t>(n));
     if (s > 1) density = path.end.emission.value;
     for (int i = 2; i < s; ++i) density *= fromLight(i);
     for (int i = s; i <= n; ++i) density *= fromCamera(i);
@@ -158,6 +159,8 @@ TechniqueSums SumsByDensities(const FullPath& path) {
   const std::vector<long double> densities = ExplicitDensities(path);
   long double own = densities[static_cast<size_t>(path.technique)];
   if (path.technique > n + 1) own /= CorrelationAt(path, path.technique - n - 1);
+  const double nextCount = n > 0 ? NextEventCount(static_cast<size_t>(n)) : 1.0;
+  if (path.technique == 1) own /= nextCount;
   TechniqueSums sums;
   for (int i = 0; i < path.TechniqueCount(); ++i) {
     const TechniqueGroup group = i == 0       ? TechniqueGroup::Hit
@@ -165,7 +168,8 @@ TechniqueSums SumsByDensities(const FullPath& path) {
                                  : i <= n     ? TechniqueGroup::Connect
                                  : i == n + 1 ? TechniqueGroup::Light
                                               : TechniqueGroup::Merge;
-    sums.Of(group).Add(static_cast<double>(densities[static_cast<size_t>(i)] / own));
+    const double count = i == 1 ? nextCount : 1.0;
+    sums.Of(group).Add(static_cast<double>(densities[static_cast<size_t>(i)] / own) / count, count);
   }
   return sums;
 }
@@ -235,11 +239,14 @@ std::vector<double> WeightsByRecursion(const FullPath& path) {
   const auto light = [&](int i) -> const PartialWeight& { return carried.light[static_cast<size_t>(i)]; };
   const auto camera = [&](int i) -> const PartialWeight& { return carried.camera[static_cast<size_t>(i)]; };
   const PathDensities whole = DensitiesOf(path);
+  const double nextCount = NextEventCount(static_cast<size_t>(n));
   const auto of = [&](double merging) { return path.merging ? merging : 0.0; };
   const auto weigh = [&](int s) {
-    if (s == 0) return HitWeight(end, camera(1), {isDelta(1), F(2)}, B(0), connections, of(whole.ForLight(B(0).value)));
+    if (s == 0)
+      return HitWeight(end, camera(1), {isDelta(1), F(2)}, B(0), connections, nextCount,
+                       of(whole.ForLight(B(0).value)));
     if (s == 1) {
-      return NextEventWeight(end, camera(1), end.canBeHit ? B(0) : AreaDensity(), F(2), connections,
+      return NextEventWeight(end, camera(1), end.canBeHit ? B(0) : AreaDensity(), F(2), connections, nextCount,
                              of(whole.ForLight(end.direct.value)));
     }
     const double merging = of(whole.ForConnection(static_cast<size_t>(s - 1)));
@@ -256,8 +263,8 @@ std::vector<double> WeightsByRecursion(const FullPath& path) {
     if (!path.CanMerge(i)) continue;
     const auto at = static_cast<size_t>(i);
     weights[static_cast<size_t>(n + 1 + i)] =
-        MergeWeight(light(i).BeforeReverse(B(i - 1)), camera(i).BeforeReverse(F(i + 1)), whole.PerDensityAt(at),
-                    connections, whole.ForMerging(at));
+        MergeWeight(light(i).BeforeOthers(static_cast<size_t>(n - 1)).BeforeReverse(B(i - 1)),
+                    camera(i).BeforeReverse(F(i + 1)), whole.PerDensityAt(at), connections, whole.ForMerging(at));
   }
   return weights;
 }

@@ -29,8 +29,8 @@ Color HitLight(const BidirectionalSample& sample, const PathState& state, const 
   joint.camera.previous = event.previousReverse;
   joint.previousCameraIsDelta = event.isDelta;
   joint.mergesAtCamera = last.CanMerge() && !event.isDelta;
-  path.weight =
-      HitWeight(path.end, last.weight, event, hit, sample.connectionCount, sample.MergingOfLight(path.end, joint, hit));
+  path.weight = HitWeight(path.end, last.weight, event, hit, sample.connectionCount,
+                          NextEventCount(sample.camera.Count()), sample.MergingOfLight(path.end, joint, hit));
   if (sample.WantsSums()) [[unlikely]]
     path.sums = sample.Sums(path.end, hit, event.isDelta, 0);
   return sample.AddToPixel(path);

@@ -66,7 +66,9 @@ Color Merge(const BidirectionalSample& sample) {
     sample.whole.Set(light.first(light.size() - 1), sample.cameraDensities, joint, light.front().forward,
                      light.front().extent, sample.merging);
     const double weight =
-        MergeWeight(photon.weight.At(light.back(), photon.depth).BeforeReverse(joint.light.last),
+        MergeWeight(photon.weight.At(light.back(), photon.depth)
+                        .BeforeOthers(photon.depth + sample.camera.Count() - 2)
+                        .BeforeReverse(joint.light.last),
                     vertex.weight.BeforeReverse(joint.camera.previous), sample.whole.PerDensityAt(light.size()),
                     sample.connectionCount, sample.whole.ForMerging(light.size()));
     const Color value = scattered * vertex.ArrivalCorrection(toLight, photon.normal.Unpack());

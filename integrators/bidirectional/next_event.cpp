@@ -38,6 +38,7 @@ class NextEventTechnique final : public NextEventVisitor {
     joint.camera.previous = vertex_.PreviousReverse(light.f.pdfReverse);
     joint.mergesAtCamera = vertex_.CanMerge();
     path_.weight = NextEventWeight(path_.end, vertex_.weight, hit, joint.camera.previous, sample_.connectionCount,
+                                   NextEventCount(sample_.camera.Count()),
                                    sample_.MergingOfLight(path_.end, joint, path_.end.direct));
     if (sample_.WantsSums()) [[unlikely]]
       path_.sums = sample_.Sums(path_.end, hit, false, 1);

@@ -127,7 +127,7 @@ TechniqueSums PathDensities::Sums(const PathEnds& ends, size_t s, size_t mergedA
   if (!(own > 0) || !std::isfinite(own)) return {};
   TechniqueSums sums;
   sums.Of(TechniqueGroup::Hit).Add(ends.hit / own);
-  if (!isDelta(1)) sums.Of(TechniqueGroup::Next).Add(ends.direct / own);
+  if (!isDelta(1)) sums.Of(TechniqueGroup::Next).Add(ends.direct / own, NextEventCount(n));
   double ratio = emission_ / vertices_[1].fromCamera / own;
   for (size_t k = 2; k <= n + 1; ++k) {
     const Vertex& last = vertices_[k - 1];

@@ -57,14 +57,15 @@ enum class TechniqueGroup : uint8_t {
 };
 inline constexpr size_t kTechniqueGroups = 5;
 
-// Σ r^2 and Σ r^3 over the techniques of each group: r is a technique's density over that with which the path was
-// sampled. Of merging r is the density times c.
+// Σ (n r)^2 and Σ (n r)^4 / r over the techniques of each group: r is a technique's density over that with which the
+// path was sampled, n the times that it counts in weights. Of merging r is the density times c, of splats (t = 1) times
+// splatCount; n is 1 but for NextEventCount.
 struct TechniqueSums {
   struct Group {
     double squares = 0, cubes = 0;
-    void Add(double ratio) {
-      squares += ratio * ratio;
-      cubes += ratio * ratio * ratio;
+    void Add(double ratio, double count = 1) {
+      squares += Mis(count * ratio);
+      cubes += Mis(Mis(count)) * Mis(ratio) * ratio;
     }
   };
   std::array<Group, kTechniqueGroups> groups;

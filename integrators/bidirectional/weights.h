@@ -3,7 +3,8 @@
 // integrator calls these functions, and so does the test against explicit densities (full_path.h).
 //
 // `merging`: Σ (p_i / p)^β over the techniques that merge (PathDensities). `connectionCount`: connections per light
-// path in the pixel, squared. `splatCount`: samples of a pixel that a splat is worth.
+// path in the pixel, squared. `splatCount`: samples of a pixel that a splat is worth. `nextCount`: NextEventCount of
+// the path.
 #pragma once
 
 #include "integrators/walk/vertex.h"
@@ -32,10 +33,10 @@ struct LastEvent {
 };
 // s = 0, t > 2: the camera subpath hits the light, whose point has the density `hit` ([Georgiev12 eq. 43]).
 inline double HitWeight(const LightEnd& end, const PartialWeight& camera, const LastEvent& event, AreaDensity hit,
-                        double connectionCount, double merging) {
+                        double connectionCount, double nextCount, double merging) {
   const PartialWeight atLight = camera.Next(event.isDelta, AreaDensity(1), event.previousReverse);
   const TechniqueTerms others{atLight.ends.earlier, atLight.connections.earlier};
-  const double direct = event.isDelta ? 0.0 : Mis(end.direct / hit);
+  const double direct = event.isDelta ? 0.0 : Mis(nextCount * (end.direct / hit));
   return WeightAgainst(direct + Mis(end.emission / hit) * others.ForEnds(connectionCount) + merging);
 }
 
@@ -43,9 +44,9 @@ inline double HitWeight(const LightEnd& end, const PartialWeight& camera, const 
 // density with which scattering there would find the light's point; 0: it cannot. `previousReverse`: reverse density of
 // the vertex before.
 inline double NextEventWeight(const LightEnd& end, const PartialWeight& camera, AreaDensity hit,
-                              AreaDensity previousReverse, double connectionCount, double merging) {
+                              AreaDensity previousReverse, double connectionCount, double nextCount, double merging) {
   const TechniqueTerms others = camera.Sum({end.emission / end.direct, previousReverse});
-  return WeightAgainst(Mis(hit / end.direct) + others.ForEnds(connectionCount) + merging);
+  return WeightAgainst((Mis(hit / end.direct) + others.ForEnds(connectionCount) + merging) / Mis(nextCount));
 }
 
 // s > 1, t > 1: the last vertices of both subpaths are connected ([Georgiev12 eqs. 40, 41]).
@@ -58,7 +59,7 @@ inline double ConnectWeight(const PartialWeight& light, const ReverseDensities& 
 // densities of that vertex, by a camera ray, and of the one before.
 inline double SplatWeight(const PartialWeight& light, const ReverseDensities& reverse, double connectionCount,
                           double splatCount, double merging) {
-  return WeightAgainst((light.Sum(reverse).ForEnds(connectionCount) + merging) / Mis(splatCount));
+  return WeightAgainst((light.BeforeOthers(0).Sum(reverse).ForEnds(connectionCount) + merging) / Mis(splatCount));
 }
 
 // The last vertices of both subpaths are merged ([Georgiev12 eqs. 38, 39]). `light`, `camera`: BeforeReverse of the two
