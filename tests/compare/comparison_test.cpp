@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "app/compare/comparison.h"
+#include "app/compare/first_look.h"
 #include "app/compare/report.h"
 #include "app/json_report.h"
 #include "film/metrics.h"
@@ -210,8 +211,8 @@ TEST_F(Compared, ErrorsFallAndEfficienciesArePerTime) {
     EXPECT_GT(few.flip.value, many.flip.value);
   }
   for (const ComparedIntegrator& integrator : results.integrators) {
-    EXPECT_FALSE(integrator.bias.significant) << integrator.name << " " << integrator.bias.value;
-    EXPECT_LT(std::abs(integrator.bias.value), 0.01);
+    EXPECT_FALSE(integrator.meanBias.significant) << integrator.name << " " << integrator.meanBias.value;
+    EXPECT_LT(std::abs(integrator.meanBias.value), 0.01);
     EXPECT_FALSE(integrator.systematic.significant) << integrator.name << " " << integrator.systematic.value;
     ASSERT_EQ(integrator.timeToError.size(), 3u);
     EXPECT_LT(integrator.timeToError[0].seconds.value, integrator.timeToError[2].seconds.value);
@@ -233,12 +234,12 @@ TEST_F(Compared, AnIntegratorThatMissesLightIsFoundOut) {
   plan.sampleCounts = {64};
   const ComparisonResults results = Run(kCamera + kCaustic, plan, 512);
   const ComparedIntegrator &path = results.integrators[0], &bdpt = results.integrators[1];
-  EXPECT_TRUE(path.bias.significant);
-  EXPECT_LT(path.bias.value, -0.02);
+  EXPECT_TRUE(path.meanBias.significant);
+  EXPECT_LT(path.meanBias.value, -0.02);
   EXPECT_TRUE(path.systematic.significant);
   EXPECT_EQ(path.timeToError[2].kind, TimeToError::Kind::Never);
   EXPECT_FALSE(path.hints.empty());
-  EXPECT_FALSE(bdpt.bias.significant) << bdpt.bias.value;
+  EXPECT_FALSE(bdpt.meanBias.significant) << bdpt.meanBias.value;
   EXPECT_NE(bdpt.timeToError[2].kind, TimeToError::Kind::Never);
   const std::string text = ToText(results);
   EXPECT_NE(text.find("path is darker than the reference"), std::string::npos) << text;
