@@ -15,7 +15,7 @@ namespace lampyr {
 // An amount of blur.
 struct Blur {
   double relMse = 0;       // estimate of what is above noise, at least 0
-  double relMseLimit = 0;  // upper bounds at 95 % confidence
+  double relMseLimit = 0;  // upper bounds at 95 % confidence, one-sided
   double mseLimit = 0;
   double meanLimit = 0;     // of the absolute difference of the picture's mean, relative to it
   bool isFromZero = false;  // the estimate is significantly above 0, p < 0.01

@@ -20,7 +20,7 @@ namespace {
 
 constexpr int kReferenceParts = 8;
 // Of an integrator that merges photons: parts of one radius that are rendered at a time, and all parts.
-constexpr int kGroup = 4, kMergedParts = 16;
+constexpr int kGroup = 8, kMergedParts = 32;
 
 // Fills in the facts that follow from the image of the reference.
 void Describe(Reference& reference) {

@@ -88,7 +88,7 @@ struct ComparisonReference {
   // ones) and is not subtracted from measured errors.
   bool noiseIsLimit = false;
   // Relative error (root of relMSE) by the blur of merged photons; 0 for integrators that merge none, absent if
-  // unknown. `biasIsLimit`: it is not told from noise, and this is the upper bound of its 95 % interval.
+  // unknown. `biasIsLimit`: it is not told from noise, and this is its upper bound at 95 % confidence, one-sided.
   std::optional<double> bias;
   bool biasIsLimit = false;
   // Radius of merging in the samples that are most of the reference, relative to that of an integrator's first sample;

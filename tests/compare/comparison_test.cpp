@@ -124,7 +124,7 @@ TEST(Reference, WhatMergingBlursIsBoundedAndBelowTheNoise) {
   EXPECT_EQ(*sharp.facts.bias, 0);
   EXPECT_EQ(*sharp.facts.radius, 0);
   EXPECT_EQ(sharp.blur.relMseLimit, 0);
-  const Reference merged = MakeReference(scene, "vcm", 1, 16 * 64, kQuiet);
+  const Reference merged = MakeReference(scene, "vcm", 1, 32 * 32, kQuiet);
   EXPECT_LT(*merged.facts.radius, 0.5);
   EXPECT_LT(merged.blur.relMse, *merged.facts.relMse);
   EXPECT_LE(merged.blur.relMse, merged.blur.relMseLimit);
@@ -209,7 +209,7 @@ TEST(Reference, KeepsWhatItKnowsOfItsBlur) {
   const TemporaryFolder folder;
   const std::filesystem::path file = folder.Path() / "reference.exr";
   const BuiltScene built = Build(kCamera + kCaustic);
-  const Reference made = MakeReference(ComparedScene(built, 2, kNever), "vcm", 1, 16 * 8, kQuiet);
+  const Reference made = MakeReference(ComparedScene(built, 2, kNever), "vcm", 1, 32 * 4, kQuiet);
   KeepReference(made, "key", 5, file);
   const auto kept = FindKeptReference(file, "key", 5);
   ASSERT_TRUE(kept);
