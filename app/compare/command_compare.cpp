@@ -6,6 +6,7 @@
 #include "app/command_support.h"
 #include "app/commands.h"
 #include "app/compare/comparison.h"
+#include "app/compare/first_look.h"
 #include "app/compare/report.h"
 #include "base/memory.h"
 #include "base/parallel.h"
@@ -147,12 +148,12 @@ Reference ObtainReference(const CompareOptions& options, const ComparedScene& sc
   return reference;
 }
 
-// Checks the memory for a picture per milestone, and the last picture of each repeat.
+// Checks the memory for a picture per milestone of each repeat, with R, G and B, and for work on a few of them.
 void CheckMemory(const RenderSettings& settings, const ComparisonPlan& plan) {
   const double milestones = static_cast<double>(plan.times.size() + plan.sampleCounts.size());
-  const double images = static_cast<double>(plan.integrators.size()) * (milestones + plan.repeats) + 8;
+  const double images = static_cast<double>(plan.integrators.size()) * milestones * plan.repeats;
   const double pixels = static_cast<double>(settings.crop.Width()) * settings.crop.Height();
-  const double bytes = images * pixels * 6 * sizeof(float) + 400 * pixels;
+  const double bytes = images * pixels * 3 * sizeof(float) + 700 * pixels;
   if (bytes <= static_cast<double>(AvailableMemory())) return;
   throw UsageError("comparing takes " + std::to_string(static_cast<int64_t>(bytes / (1 << 30)) + 1) +
                    " GiB of memory, more than there is: use fewer budgets or repeats, --crop or --resolution");
@@ -235,7 +236,7 @@ int CompareLoaded(const CompareOptions& options, ComparisonPlan plan, const Load
   }
   // The reference has no bias, whatever the scene or the command line asks for.
   BuiltScene unbiased = loaded.built;
-  unbiased.settings.values.RemoveBias();
+  MakeConsistent(unbiased.settings.values);
   const ComparedScene referenceScene(unbiased, results.threads, FinishOnInterrupt());
   bool interrupted = false;
   {

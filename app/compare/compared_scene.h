@@ -34,9 +34,12 @@ class ComparedScene {
   using AfterPass = std::function<void(double seconds)>;
 
   // Renders until the last of `times` (seconds) and `sampleCounts`, both ascending, and takes a snapshot at each. The
-  // time of snapshots is not counted. Throws ComparisonInterrupted.
+  // time of snapshots is not counted; that in which "auto" chose its integrator is part of every render by "auto".
+  // `firstSample`: index of the first sample of a pixel; merging radii are those of a render that has come so far.
+  // Throws ComparisonInterrupted.
   void Render(const std::string& integrator, uint64_t seed, const std::vector<double>& times,
-              const std::vector<int>& sampleCounts, const AtMilestone& atMilestone, const AfterPass& afterPass) const;
+              const std::vector<int>& sampleCounts, const AtMilestone& atMilestone, const AfterPass& afterPass,
+              uint32_t firstSample = 0) const;
 
  private:
   const BuiltScene& built_;

@@ -16,13 +16,19 @@ constexpr double kErrors[] = {0.1, 0.05, 0.01};
 
 struct Repeat {
   std::vector<ComparedRun> looks;  // by milestone
-  Image last;
+  std::vector<Image> pictures;     // likewise; R, G, B
+  size_t last = 0;                 // milestone that was reached last: the largest budget
 };
 
 struct Run {
   std::string integrator;
   std::vector<Repeat> repeats;
-  std::vector<Image> pictures;  // of the first repeat, by milestone
+
+  std::vector<const Image*> Pictures(size_t milestone) const {
+    std::vector<const Image*> pictures;
+    for (const Repeat& repeat : repeats) pictures.push_back(&repeat.pictures[milestone]);
+    return pictures;
+  }
 };
 
 template <class Value>
@@ -44,12 +50,39 @@ std::optional<Estimate> Inverse(const std::optional<Estimate>& cost) {
                   cost->low > 0 ? 1 / cost->low : std::numeric_limits<double>::infinity()};
 }
 
-// Mean error with its interval; absent if it does not exceed the reference's own noise.
-std::optional<Estimate> Resolved(const std::vector<double>& errors, std::optional<double> noise, double noiseError) {
+// Mean error with its interval; absent if it does not exceed `limit`, the reference's own noise and blur.
+std::optional<Estimate> Resolved(const std::vector<double>& errors, std::optional<double> limit, double noiseError) {
   auto estimate = MeanOnLogScale(errors, noiseError);
-  if (estimate && noise && estimate->value < *noise) estimate.reset();
+  if (estimate && limit && estimate->value < *limit) estimate.reset();
   return estimate;
 }
+
+// What is not known of an error because the reference is blurred, as factors of it.
+//
+// An integrator's own bias B and the blur b of the reference make up the part of the error that all repeats have in
+// common, s² = |B - b|², so that B is within s - b … s + b.
+struct Doubt {
+  double down = 1, up = 1;
+
+  Doubt() = default;
+  Doubt(double error, double common, double blur) {
+    if (!(error > 0) || blur == 0) return;
+    const double s = std::sqrt(std::max(common, 0.0)), b = std::sqrt(blur);
+    down = std::max(0.0, error - s * s + Square(std::max(0.0, s - b))) / error;
+    up = (error - s * s + Square(s + b)) / error;
+  }
+  Estimate Of(const Estimate& estimate) const { return {estimate.value, estimate.low * down, estimate.high * up}; }
+
+ private:
+  static double Square(double x) { return x * x; }
+};
+
+// The measured errors of an integrator at one budget, in their parts.
+struct Parts {
+  CommonError error;
+  SignificantEstimate common;  // relMSE; noise of the reference subtracted, its blur in the interval
+  Doubt ofMse, ofRelMse;
+};
 
 // Gray levels by the logarithm of each pixel's relative error.
 std::vector<unsigned char> ErrorPicture(const Image& image, const Reference& reference,
@@ -70,23 +103,46 @@ std::vector<unsigned char> ErrorPicture(const Image& image, const Reference& ref
 constexpr double kRoundingOfMean = 1e-5, kRoundingOfRelMse = 1e-10;
 
 // The part of relMSE that is common to all repeats; its error by the jackknife (each repeat left out in turn). A part
-// below the reference's own noise is indistinguishable from it.
-SignificantEstimate SystematicPart(const std::vector<Repeat>& repeats, const Reference& reference) {
-  std::vector<const Image*> images;
-  for (const Repeat& repeat : repeats) images.push_back(&repeat.last);
-  const CommonError common = MeasureCommonError(images, reference.image);
-  const double n = static_cast<double>(repeats.size());
-  std::vector<double> pseudoValues;  // their mean's error is the jackknife's
-  for (const double without : common.without) pseudoValues.push_back(n * common.relMse - (n - 1) * without);
-  if (pseudoValues.empty()) pseudoValues.push_back(common.relMse);  // a single pair, whose error is unknown
-  SignificantEstimate estimate = MeanOf(pseudoValues, reference.noise.relMseError);
-  estimate.value = common.relMse;
-  if (common.relMse < std::max(reference.facts.relMse.value_or(0), kRoundingOfRelMse)) estimate.significant = false;
+// below the reference's own noise or blur is indistinguishable from it.
+SignificantEstimate CommonPart(const CommonError& error, const Reference& reference) {
+  SignificantEstimate estimate = JackknifeOf(error.relMse, error.without, reference.noise.relMseError);
+  if (error.relMse < std::max(reference.facts.relMse.value_or(0), kRoundingOfRelMse)) estimate.significant = false;
+  const double blur = std::sqrt(reference.blur.relMseLimit);
+  if (blur == 0) return estimate;
+  if (estimate.low > 0) estimate.low = std::pow(std::max(0.0, std::sqrt(estimate.low) - blur), 2);
+  estimate.high = std::pow(std::sqrt(std::max(0.0, estimate.high)) + blur, 2);
+  estimate.significant &= estimate.low > 0;
   return estimate;
 }
 
-ComparedSnapshot Summarise(const Run& run, size_t milestone, const ComparisonPlan& plan, const Reference& reference,
-                           const RenderSettings& settings) {
+Parts PartsOf(const Run& run, size_t milestone, const Reference& reference) {
+  Parts parts;
+  parts.error = MeasureCommonError(run.Pictures(milestone), reference.image);
+  parts.common = CommonPart(parts.error, reference);
+  const auto mean = [&](auto value) { return MomentsOf(Collect(run.repeats, milestone, value)).mean; };
+  parts.ofMse = Doubt(mean([](const ComparedRun& one) { return one.mse; }), parts.error.mse, reference.blur.mseLimit);
+  parts.ofRelMse =
+      Doubt(mean([](const ComparedRun& one) { return one.relMse; }), parts.error.relMse, reference.blur.relMseLimit);
+  return parts;
+}
+
+// Roots of squares of relative errors.
+template <class OfSquares>
+OfSquares Root(const OfSquares& squares) {
+  OfSquares root = squares;
+  for (double* value : {&root.value, &root.low, &root.high}) *value = std::sqrt(std::max(*value, 0.0));
+  return root;
+}
+
+std::optional<Estimate> NoiseOfParts(const CommonError& error) {
+  if (!(error.varying > 0)) return std::nullopt;
+  if (error.varyingWithout.empty())
+    return Estimate{std::sqrt(error.varying), 0, std::numeric_limits<double>::infinity()};
+  return Root(static_cast<const Estimate&>(JackknifeOf(error.varying, error.varyingWithout)));
+}
+
+ComparedSnapshot Summarise(const Run& run, size_t milestone, const Parts& parts, const ComparisonPlan& plan,
+                           const Reference& reference, const RenderSettings& settings) {
   ComparedSnapshot snapshot;
   snapshot.byTime = milestone < plan.times.size();
   snapshot.budget = snapshot.byTime ? plan.times[milestone] : plan.sampleCounts[milestone - plan.times.size()];
@@ -98,17 +154,31 @@ ComparedSnapshot Summarise(const Run& run, size_t milestone, const ComparisonPla
   snapshot.samplesPerSecond = pixels * snapshot.samplesPerPixel / std::max(snapshot.seconds, 1e-9);
   const ComparisonReference& facts = reference.facts;
   const ImageNoise& noise = reference.noise;
-  snapshot.mse = Resolved(values([](const ComparedRun& one) { return one.mse; }), facts.mse, noise.mseError);
-  snapshot.relMse =
-      Resolved(values([](const ComparedRun& one) { return one.relMse; }), facts.relMse, noise.relMseError);
+  const auto limit = [](std::optional<double> ofNoise, double ofBlur) {
+    return ofNoise || ofBlur > 0 ? std::optional(ofNoise.value_or(0) + ofBlur) : std::nullopt;
+  };
+  snapshot.mse = Resolved(values([](const ComparedRun& one) { return one.mse; }),
+                          limit(facts.mse, reference.blur.mseLimit), noise.mseError);
+  snapshot.relMse = Resolved(values([](const ComparedRun& one) { return one.relMse; }),
+                             limit(facts.relMse, reference.blur.relMseLimit), noise.relMseError);
+  // Error times seconds, whose inverse is the efficiency.
+  const auto cost = [&](auto error, double noiseError, const Doubt& doubt) {
+    auto estimate = MeanOnLogScale(values([&](const ComparedRun& one) { return error(one) * one.seconds; }),
+                                   noiseError * snapshot.seconds);
+    if (estimate) estimate = doubt.Of(*estimate);
+    return estimate;
+  };
   if (snapshot.mse) {
-    snapshot.efficiency = Inverse(MeanOnLogScale(values([](const ComparedRun& one) { return one.mse * one.seconds; }),
-                                                 noise.mseError * snapshot.seconds));
+    snapshot.mse = parts.ofMse.Of(*snapshot.mse);
+    snapshot.efficiency = Inverse(cost([](const ComparedRun& one) { return one.mse; }, noise.mseError, parts.ofMse));
   }
   if (snapshot.relMse) {
-    snapshot.relEfficiency = Inverse(MeanOnLogScale(
-        values([](const ComparedRun& one) { return one.relMse * one.seconds; }), noise.relMseError * snapshot.seconds));
+    snapshot.relMse = parts.ofRelMse.Of(*snapshot.relMse);
+    snapshot.relEfficiency =
+        Inverse(cost([](const ComparedRun& one) { return one.relMse; }, noise.relMseError, parts.ofRelMse));
   }
+  snapshot.bias = Root(parts.common);
+  snapshot.noise = NoiseOfParts(parts.error);
   for (const Repeat& repeat : run.repeats) snapshot.runs.push_back(repeat.looks[milestone]);
   snapshot.flip = MeanOnLogScale(values([](const ComparedRun& one) { return one.flip; })).value_or(Estimate{});
   return snapshot;
@@ -155,25 +225,39 @@ TimeToError FindTime(const std::vector<CurvePoint>& curve, const SignificantEsti
   return result;
 }
 
-ComparedIntegrator Describe(const Run& run, const ComparedScene& scene, const ComparisonPlan& plan,
-                            const Reference& reference, ComparisonResults& results) {
+SignificantEstimate MeanBias(const Run& run, size_t milestone, const Reference& reference) {
+  std::vector<double> biases;
+  for (const Image* picture : run.Pictures(milestone)) biases.push_back(MeanValue(*picture) / reference.facts.mean - 1);
+  SignificantEstimate bias = MeanOf(biases, reference.noise.meanError);
+  if (std::abs(bias.value) < std::max(kRoundingOfMean, reference.blur.meanLimit)) bias.significant = false;
+  bias.low -= reference.blur.meanLimit;
+  bias.high += reference.blur.meanLimit;
+  bias.significant &= bias.low > 0 || bias.high < 0;
+  return bias;
+}
+
+ComparedIntegrator Describe(const Run& run, const std::vector<Parts>& parts, const ComparedScene& scene,
+                            const ComparisonPlan& plan, const Reference& reference, ComparisonResults& results) {
+  const RenderSettings settings = VariantOf(scene.Built().settings, run.integrator);
+  const size_t last = run.repeats.front().last;
   ComparedIntegrator described;
   described.name = run.integrator;
-  described.hints = IntegratorHints(scene.Built().scene, VariantOf(scene.Built().settings, run.integrator).integrator);
-  std::vector<double> biases;
-  for (const Repeat& repeat : run.repeats) biases.push_back(MeanValue(repeat.last) / reference.facts.mean - 1);
-  described.bias = MeanOf(biases, reference.noise.meanError);
-  if (std::abs(described.bias.value) < kRoundingOfMean) described.bias.significant = false;
-  described.systematic = SystematicPart(run.repeats, reference);
+  described.blurs = GathersPhotons(settings);
+  described.hints = IntegratorHints(scene.Built().scene, settings.integrator);
+  described.meanBias = MeanBias(run, last, reference);
+  described.systematic = parts[last].common;
+  const auto subtracted = NoiseOf(reference.image, reference.parts);  // as measured errors have it subtracted
+  described.spectrum =
+      ErrorSpectrum(run.Pictures(last), reference.image, subtracted ? subtracted->relMse : 0, scene.Threads());
   std::vector<CurvePoint> curve;
-  for (size_t milestone = 0; milestone < plan.times.size() + plan.sampleCounts.size(); ++milestone) {
-    ComparedSnapshot snapshot = Summarise(run, milestone, plan, reference, scene.Built().settings);
+  for (size_t milestone = 0; milestone < parts.size(); ++milestone) {
+    ComparedSnapshot snapshot = Summarise(run, milestone, parts[milestone], plan, reference, scene.Built().settings);
     if (snapshot.relMse) {
       curve.push_back({snapshot.seconds, snapshot.seconds / snapshot.samplesPerPixel, *snapshot.relMse});
     }
     snapshot.picture = run.integrator + "-" + BudgetName(snapshot.byTime, snapshot.budget);
     snapshot.errorPicture = "error-" + snapshot.picture;
-    const Image& picture = run.pictures[milestone];
+    const Image& picture = run.repeats.front().pictures[milestone];
     results.pictures.emplace_back(snapshot.picture, EncodeForDisplay(picture, plan.exposure, ToneMap::Filmic));
     results.pictures.emplace_back(snapshot.errorPicture, ErrorPicture(picture, reference, results));
     described.snapshots.push_back(std::move(snapshot));
@@ -183,21 +267,27 @@ ComparedIntegrator Describe(const Run& run, const ComparedScene& scene, const Co
   return described;
 }
 
-// Ratios of each integrator to the first.
-void AddRatios(const std::vector<Run>& runs, ComparisonResults& results) {
-  for (size_t i = 1; i < runs.size(); ++i) {
-    for (size_t milestone = 0; milestone < results.integrators[i].snapshots.size(); ++milestone) {
-      const ComparedSnapshot &own = results.integrators[i].snapshots[milestone],
-                             &first = results.integrators[0].snapshots[milestone];
-      for (const bool relative : {true, false}) {
-        const bool resolved = relative ? own.relMse && first.relMse : own.mse && first.mse;
-        if (!resolved) continue;
-        const auto cost = [&](const ComparedRun& run) { return (relative ? run.relMse : run.mse) * run.seconds; };
-        const auto ratio =
-            RatioOfMeans(Collect(runs[0].repeats, milestone, cost), Collect(runs[i].repeats, milestone, cost));
-        if (!ratio) continue;
-        results.ratios.push_back({runs[i].integrator, runs[0].integrator, own.byTime, own.budget, relative, *ratio});
-      }
+// Ratios of the efficiencies of two integrators, at every budget.
+void AddRatios(const std::vector<Run>& runs, const std::vector<std::vector<Parts>>& parts, size_t i, size_t against,
+               ComparisonResults& results) {
+  for (size_t milestone = 0; milestone < results.integrators[i].snapshots.size(); ++milestone) {
+    const ComparedSnapshot &own = results.integrators[i].snapshots[milestone],
+                           &first = results.integrators[against].snapshots[milestone];
+    for (const bool relative : {true, false}) {
+      const bool resolved = relative ? own.relMse && first.relMse : own.mse && first.mse;
+      if (!resolved) continue;
+      const auto cost = [&](const ComparedRun& run) { return (relative ? run.relMse : run.mse) * run.seconds; };
+      auto ratio =
+          RatioOfMeans(Collect(runs[against].repeats, milestone, cost), Collect(runs[i].repeats, milestone, cost));
+      if (!ratio) continue;
+      const auto doubt = [&](size_t run) {
+        return relative ? parts[run][milestone].ofRelMse : parts[run][milestone].ofMse;
+      };
+      ratio->low *= doubt(against).down / doubt(i).up;
+      ratio->high =
+          doubt(i).down > 0 ? ratio->high * doubt(against).up / doubt(i).down : std::numeric_limits<double>::infinity();
+      results.ratios.push_back(
+          {runs[i].integrator, runs[against].integrator, own.byTime, own.budget, relative, *ratio});
     }
   }
 }
@@ -207,7 +297,7 @@ void AddRatios(const std::vector<Run>& runs, ComparisonResults& results) {
 void Compare(const ComparedScene& scene, const ComparisonPlan& plan, const Reference& reference,
              const ComparisonProgress& progress, ComparisonResults& results) {
   std::vector<Run> runs;
-  for (const std::string& name : plan.integrators) runs.push_back({name, {}, {}});
+  for (const std::string& name : plan.integrators) runs.push_back({name, {}});
   const size_t milestones = plan.times.size() + plan.sampleCounts.size();
   const double steps = static_cast<double>(plan.repeats) * static_cast<double>(runs.size());
   double lastSeconds = plan.times.empty() ? 0 : plan.times.back();  // of one render, learnt when samples are counted
@@ -219,17 +309,15 @@ void Compare(const ComparedScene& scene, const ComparisonPlan& plan, const Refer
         Run& run = runs[i];
         Repeat repeat;
         repeat.looks.resize(milestones);
+        repeat.pictures.resize(milestones);
         double seconds = 0;
         const uint64_t seed = SeedOf(SeedUse::Compared, plan.seed + static_cast<uint64_t>(whole));
         const auto look = [&](size_t milestone, const ComparedScene::Milestone& reached, const Image& image) {
           const ImageError error = MeasureError(image, reference.image, plan.exposure);
           repeat.looks[milestone] = {seed,       reached.seconds, reached.samplesPerPixel, error.mse, error.relMse,
                                      error.flip, error.bias};
-          repeat.last = image;
-          if (whole == 0) {
-            run.pictures.resize(milestones);
-            run.pictures[milestone] = image;
-          }
+          repeat.pictures[milestone] = ChannelsOf(image, {"R", "G", "B"});
+          repeat.last = milestone;
         };
         const double before = whole * static_cast<double>(runs.size()) + static_cast<double>(i);
         scene.Render(run.integrator, seed, plan.times, plan.sampleCounts, look, [&](double now) {
@@ -248,8 +336,14 @@ void Compare(const ComparedScene& scene, const ComparisonPlan& plan, const Refer
   }
   results.repeats = whole;
   results.pictures.emplace_back("reference", EncodeForDisplay(reference.image, plan.exposure, ToneMap::Filmic));
-  for (const Run& run : runs) results.integrators.push_back(Describe(run, scene, plan, reference, results));
-  AddRatios(runs, results);
+  std::vector<std::vector<Parts>> parts;
+  for (const Run& run : runs) {
+    parts.emplace_back();
+    for (size_t milestone = 0; milestone < milestones; ++milestone)
+      parts.back().push_back(PartsOf(run, milestone, reference));
+    results.integrators.push_back(Describe(run, parts.back(), scene, plan, reference, results));
+  }
+  for (size_t i = 1; i < runs.size(); ++i) AddRatios(runs, parts, i, 0, results);
 }
 
 }  // namespace lampyr

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "film/metrics.h"
 
@@ -48,6 +49,16 @@ std::optional<Estimate> RatioOfMeans(std::span<const double> a, std::span<const 
   double degrees = std::min(na, nb);
   if (degrees > 0 && va + vb > 0) degrees = (va + vb) * (va + vb) / (va * va / na + vb * vb / nb);
   return OnLogScale(first.mean / second.mean, std::sqrt(va + vb), degrees);
+}
+
+SignificantEstimate JackknifeOf(double value, std::span<const double> without, double otherError) {
+  const double n = static_cast<double>(without.size());
+  std::vector<double> pseudoValues;  // the error of their mean is the jackknife's
+  for (const double one : without) pseudoValues.push_back(n * value - (n - 1) * one);
+  if (pseudoValues.empty()) pseudoValues.push_back(value);
+  SignificantEstimate estimate = MeanOf(pseudoValues, otherError);
+  estimate.value = value;
+  return estimate;
 }
 
 SignificantEstimate MeanOf(std::span<const double> values, double otherError) {

@@ -20,6 +20,10 @@ std::optional<Estimate> RatioOfMeans(std::span<const double> a, std::span<const 
 // The mean and its interval by Student's t. `otherError`: the standard error of what was subtracted from every value.
 SignificantEstimate MeanOf(std::span<const double> values, double otherError = 0);
 
+// A statistic of several independent data and its interval by the jackknife: `without` are its values with each datum
+// left out in turn, and its interval is infinite if there are none. `otherError`: as above.
+SignificantEstimate JackknifeOf(double value, std::span<const double> without, double otherError = 0);
+
 // Mean and variance of the mean (0 for a single value).
 struct Moments {
   double mean = 0, varianceOfMean = 0;

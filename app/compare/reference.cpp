@@ -1,13 +1,16 @@
 #include "app/compare/reference.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdio>
+#include <sstream>
 
-#include "app/compare/estimate.h"
-#include "base/progress.h"
+#include "app/compare/mean_of_images.h"
+#include "app/compare/neighbourhood.h"
 #include "base/version.h"
+#include "integrators/photon/photon_settings.h"
 #include "render/settings/integrator_choice.h"
 #include "sampling/rng.h"
 
@@ -16,60 +19,14 @@ namespace lampyr {
 namespace {
 
 constexpr int kReferenceParts = 8;
-constexpr int kPilotParts = 4;
-// Standard errors have the range of the values; variances of very bright or dim pictures leave that of floats.
-const std::vector<std::string> kLayers = {"R", "G", "B", "stderr.R", "stderr.G", "stderr.B"};
-
-// Mean of pictures, with its standard error estimated from their spread.
-class MeanOfImages {
- public:
-  void Add(const Image& image) {
-    if (images_ == 0) {
-      first_ = image;
-      sums_.assign(3 * Pixels(), 0.0);
-      squares_.assign(3 * Pixels(), 0.0);
-    }
-    ++images_;
-    for (size_t i = 0; i < Pixels(); ++i) {
-      for (size_t c = 0; c < 3; ++c) {
-        const double v = static_cast<double>(image.data[i * image.channels.size() + c]);
-        const double shifted = v - First(i, c);  // squares of what is left cancel less
-        sums_[3 * i + c] += shifted;
-        squares_[3 * i + c] += shifted * shifted;
-      }
-    }
-  }
-  Image Mean() const {
-    Image mean = first_;
-    mean.channels = kLayers;
-    mean.data.assign(6 * Pixels(), 0.0f);
-    const double n = images_;
-    for (size_t k = 0; k < 3 * Pixels(); ++k) {
-      const double shift = sums_[k] / n;
-      mean.data[k / 3 * 6 + k % 3] = static_cast<float>(First(k / 3, k % 3) + shift);
-      if (images_ < 2) continue;
-      mean.data[k / 3 * 6 + k % 3 + 3] =
-          static_cast<float>(std::sqrt(std::max(0.0, squares_[k] / n - shift * shift) / (n - 1)));
-    }
-    return mean;
-  }
-
- private:
-  size_t Pixels() const { return static_cast<size_t>(first_.width) * static_cast<size_t>(first_.height); }
-  double First(size_t pixel, size_t channel) const {
-    return static_cast<double>(first_.data[pixel * first_.channels.size() + channel]);
-  }
-
-  Image first_;
-  std::vector<double> sums_, squares_;
-  int images_ = 0;
-};
+// Of an integrator that merges photons: parts of one radius that are rendered at a time, and all parts.
+constexpr int kGroup = 8, kMergedParts = 32;
 
 // Fills in the facts that follow from the image of the reference.
 void Describe(Reference& reference) {
   ComparisonReference& facts = reference.facts;
   facts.mean = MeanValue(reference.image);
-  if (const auto noise = NoiseOf(reference.image, kReferenceParts)) {
+  if (const auto noise = NoiseOf(reference.image, reference.parts)) {
     reference.noise = *noise;
     facts.mse = noise->mse;
     facts.relMse = noise->relMse;
@@ -82,100 +39,16 @@ std::string MetadataOf(const Image& image, const char* name) {
   return found == image.metadata.end() ? std::string() : found->second;
 }
 
-// Means of the whole picture and of the blocks of a grid over it, for each part of a pilot.
-struct PilotRun {
-  Pilot pilot;
-  std::vector<double> means;
-  std::vector<std::vector<double>> blocks;
-  bool isHinted = false;
-  bool isBlurred = false;  // by photons: chosen only where the others miss light
-};
-
-constexpr int kGrid = 16;
-
-std::vector<double> BlockMeans(const Image& image) {
-  std::vector<double> sums(kGrid * kGrid, 0.0), counts(kGrid * kGrid, 0.0);
-  for (int y = 0; y < image.height; ++y) {
-    for (int x = 0; x < image.width; ++x) {
-      const auto block = static_cast<size_t>(y * kGrid / image.height * kGrid + x * kGrid / image.width);
-      sums[block] += static_cast<double>(image.RgbAt(x, y).Average());
-      ++counts[block];
-    }
-  }
-  for (size_t i = 0; i < sums.size(); ++i) sums[i] /= std::max(counts[i], 1.0);
-  return sums;
-}
-
-// True if `a` is significantly brighter than `b`, with an error probability `byChance`. Differences below 1e-5 of
-// `scale` count as rounding.
-bool IsBrighter(std::span<const double> a, std::span<const double> b, double byChance, double scale) {
-  const Moments first = MomentsOf(a), second = MomentsOf(b);
-  constexpr double rounding = 1e-5;
-  const double error = std::sqrt(first.varianceOfMean + second.varianceOfMean);
-  const double t = StudentQuantileTwoSided(byChance, static_cast<double>(a.size()) - 1);
-  return first.mean - second.mean > std::max(t * error, rounding * scale);
-}
-
-// True if `other` finds significantly more light than `run`, in the whole picture or in a block of it.
-bool FindsMore(const PilotRun& other, const PilotRun& run) {
-  constexpr double byChance = 0.01;
-  const double scale = MomentsOf(other.means).mean;
-  if (IsBrighter(other.means, run.means, byChance, scale)) return true;
-  // A blurred picture is brighter next to bright areas; larger blocks average this out.
-  const int side = other.isBlurred ? 4 : 1, across = kGrid / side;
-  for (int block = 0; block < across * across; ++block) {
-    const auto of = [=](const PilotRun& one) {
-      std::vector<double> values;
-      for (const std::vector<double>& part : one.blocks) {
-        double sum = 0;
-        for (int i = 0; i < side * side; ++i) {
-          const int x = block % across * side + i % side, y = block / across * side + i / side;
-          sum += part[static_cast<size_t>(y * kGrid + x)];
-        }
-        values.push_back(sum / (side * side));
-      }
-      return values;
-    };
-    if (IsBrighter(of(other), of(run), SidakRate(byChance, across * across), scale)) return true;
-  }
-  return false;
-}
-
-void Choose(std::vector<PilotRun>& runs) {
-  std::sort(runs.begin(), runs.end(),
-            [](const PilotRun& a, const PilotRun& b) { return a.pilot.relMse < b.pilot.relMse; });
-  const bool allHinted =
-      std::all_of(runs.begin(), runs.end(), [](const PilotRun& run) { return run.isHinted || run.isBlurred; });
-  const bool allBlack = std::none_of(runs.begin(), runs.end(), [](const PilotRun& run) { return run.pilot.mean > 0; });
-  PilotRun* chosen = nullptr;
-  for (PilotRun& run : runs) {
-    if (!(run.pilot.mean > 0) && !allBlack) {
-      run.pilot.note = "finds no light";
-      continue;
-    }
-    auto more = runs.end();  // the brightest of those that find more
-    for (auto other = runs.begin(); other != runs.end(); ++other) {
-      const bool isBrightest = more == runs.end() || other->pilot.mean > more->pilot.mean;
-      if (isBrightest && FindsMore(*other, run)) more = other;
-    }
-    if (more != runs.end()) {
-      const double share = MomentsOf(run.means).mean / MomentsOf(more->means).mean;
-      run.pilot.note = "finds less light than " + more->pilot.integrator +
-                       ", in some part of the picture or in all of it (" + FormatPercent(share) + ")";
-    } else if (run.isHinted && !allHinted) {
-      run.pilot.note = "cannot find all of the light";
-    } else if (run.isBlurred) {
-      run.pilot.note = "blurs, and finds no more light than others";
-    } else if (!chosen) {
-      chosen = &run;
-    }
-  }
-  const auto brightest = std::max_element(
-      runs.begin(), runs.end(), [](const PilotRun& a, const PilotRun& b) { return a.pilot.mean < b.pilot.mean; });
-  if (!chosen) chosen = &*brightest;
-  if (chosen->isBlurred)
-    chosen->pilot.note = "finds light that the others miss; blurs it by a pixel at first, then less";
-  chosen->pilot.chosen = true;
+// Reads what KeepReference has written of parts and blur.
+void ReadBlur(Reference& reference) {
+  const std::string text = MetadataOf(reference.image, "lampyr.compare.blur");
+  if (text.empty()) return;
+  Blur& blur = reference.blur;
+  std::istringstream(text) >> blur.relMse >> blur.relMseLimit >> blur.mseLimit >> blur.meanLimit >> blur.isFromZero;
+  reference.parts = std::max(2, std::atoi(MetadataOf(reference.image, "lampyr.compare.parts").c_str()));
+  reference.facts.bias = blur.RelativeError();
+  reference.facts.radius = std::atof(MetadataOf(reference.image, "lampyr.compare.radius").c_str());
+  reference.facts.biasIsLimit = !blur.isFromZero && *reference.facts.radius > 0;
 }
 
 }  // namespace
@@ -205,6 +78,7 @@ Reference ReadReference(const std::filesystem::path& file, const RenderSettings&
   reference.facts.origin = ComparisonReference::Origin::Given;
   reference.facts.file = file.string();
   reference.facts.integrator = MetadataOf(image, "lampyr.integrator");
+  ReadBlur(reference);
   try {
     Describe(reference);
   } catch (const Error& error) {
@@ -232,74 +106,203 @@ uint64_t SeedOf(SeedUse use, uint64_t index) {
   return Hash(static_cast<uint64_t>(use), index) >> (64 - bits);
 }
 
-std::vector<Pilot> FlyPilots(const ComparedScene& scene, double seconds, const ReferenceProgress& progress) {
-  std::vector<PilotRun> runs;
-  // A reference should not be blurred, so photons are used only in scenes where the techniques that connect paths miss
-  // light.
-  const bool needsPhotons = !IntegratorHints(scene.Built().scene, "bdpt").empty();
-  for (const std::string& name : IntegratorNames()) {
-    if (!IntegratorRefusal(scene.Built().scene, name).empty()) continue;
-    if (GathersPhotons(name, scene.Built().settings.values) && !(needsPhotons && name == "vcm")) continue;
-    PilotRun run;
-    run.isBlurred = GathersPhotons(name, scene.Built().settings.values);
-    run.pilot.integrator = name;
-    run.isHinted = !IntegratorHints(scene.Built().scene, name).empty();
-    runs.push_back(run);
+void MakeConsistent(Settings& values) {
+  values.RemoveBias();
+  for (const Setting* setting : {&photon_settings::kRadius, &photon_settings::kAlpha})
+    values.Set(setting->name, setting->fallback);
+}
+
+namespace {
+
+// Renders independent parts of a reference, all with the same number of samples.
+class PartRenderer {
+ public:
+  PartRenderer(const ComparedScene& scene, const std::string& integrator, double secondsPerSample, double seconds,
+               int parts, const ReferenceProgress& progress)
+      : scene_(scene), integrator_(integrator), progress_(progress), parts_(parts) {
+    // A power of two, for which Sobol points are most uniform.
+    const double affordable = std::max(1.0, seconds / parts / std::max(secondsPerSample, 1e-9));
+    samples_ = 1 << static_cast<int>(std::clamp(std::round(std::log2(affordable)), 0.0, 27.0));
+    secondsPerPart_ = std::max(secondsPerSample * samples_, 1e-9);
   }
-  std::vector<MeanOfImages> images(runs.size());
-  const double steps = static_cast<double>(kPilotParts) * static_cast<double>(runs.size());
-  for (int part = 0; part < kPilotParts; ++part) {
-    for (size_t i = 0; i < runs.size(); ++i) {
-      Pilot& pilot = runs[i].pilot;
-      const auto keep = [&](size_t, const ComparedScene::Milestone& reached, const Image& image) {
-        pilot.seconds += reached.seconds;
-        pilot.samplesPerPixel += reached.samplesPerPixel;
-        runs[i].means.push_back(MeanValue(image));
-        runs[i].blocks.push_back(BlockMeans(image));
-        images[i].Add(image);
-      };
-      scene.Render(pilot.integrator, SeedOf(SeedUse::Pilot, static_cast<uint64_t>(part)), {seconds / kPilotParts}, {},
-                   keep, [](double) {});
-      progress((part * static_cast<double>(runs.size()) + static_cast<double>(i) + 1) / steps,
-               "first look, " + pilot.integrator);
+
+  Image Render(uint32_t firstSample) {
+    Image part;
+    const auto keep = [&](size_t, const ComparedScene::Milestone& reached, const Image& image) {
+      seconds_ += reached.seconds;
+      part = ChannelsOf(image, {"R", "G", "B"});
+    };
+    const auto tell = [&](double now) {
+      progress_((done_ + std::min(now / secondsPerPart_, 1.0)) / parts_, "reference by " + integrator_);
+    };
+    const uint64_t seed = SeedOf(SeedUse::Reference, static_cast<uint64_t>(done_));
+    scene_.Render(integrator_, seed, {}, {samples_}, keep, tell, firstSample);
+    ++done_;
+    return part;
+  }
+  int Samples() const { return samples_; }
+
+  // The reference of that image.
+  Reference Finish(const Image& image) const {
+    Reference reference;
+    reference.image = image;
+    reference.facts.origin = ComparisonReference::Origin::Made;
+    reference.facts.integrator = integrator_;
+    reference.facts.samplesPerPixel = samples_ * done_;
+    reference.facts.seconds = seconds_;
+    return reference;
+  }
+
+ private:
+  const ComparedScene& scene_;
+  std::string integrator_;
+  const ReferenceProgress& progress_;
+  int parts_, samples_ = 1, done_ = 0;
+  double secondsPerPart_ = 0, seconds_ = 0;
+};
+
+// Parts of a reference with the same merging radii.
+class Level {
+ public:
+  Level(uint32_t firstSample, int samples)
+      : firstSample_(firstSample), radius_(RadiusOfSamples(firstSample, samples)) {}
+
+  void Add(PartRenderer& renderer) {
+    for (MeanOfImages& fold : folds_) {
+      const Image part = renderer.Render(firstSample_);
+      fold.Add(part);
+      all_.Add(part);
+    }
+    mean_ = all_.Mean();
+    noise_ = RelativeNoise(mean_);
+  }
+
+  uint32_t FirstSample() const { return firstSample_; }
+  int Parts() const { return all_.Count(); }
+  double Radius() const { return radius_; }
+  const Image& Mean() const { return mean_; }
+  // relMSE of the noise of the mean of that many parts, relative to neighbourhoods as the blur is.
+  double NoiseOfParts(int parts) const { return noise_ * Parts() / parts; }
+
+  // Difference from the level of a smaller radius.
+  Blur DifferenceFrom(const Level& narrow) const {
+    std::vector<Image> own, other;
+    std::vector<const Image*> first, second;
+    for (const MeanOfImages& fold : folds_) own.push_back(fold.Mean());
+    for (const MeanOfImages& fold : narrow.folds_) other.push_back(fold.Mean());
+    for (int k = 0; k < kGroup; ++k) {
+      first.push_back(&own[static_cast<size_t>(k)]);
+      second.push_back(&other[static_cast<size_t>(k)]);
+    }
+    return DifferenceOfRadii(first, second);
+  }
+
+ private:
+  uint32_t firstSample_;
+  double radius_;
+  std::array<MeanOfImages, kGroup> folds_;
+  MeanOfImages all_;
+  Image mean_;
+  double noise_ = 0;
+};
+
+// The bias of a level, from the two that are nearest (blur.h).
+Blur BlurOfLevel(const std::vector<Level>& levels, size_t index) {
+  const size_t wide = std::min(index, levels.size() - 2);
+  const double q = levels[wide + 1].Radius() / levels[wide].Radius();
+  return levels[wide].DifferenceFrom(levels[wide + 1]).Times((index == wide ? 1 : q) / (1 - q));
+}
+
+// The mean of the levels from `first` on, by their parts.
+struct Combination {
+  std::vector<double> weights;
+  double noise = 0;  // relMSE
+  Blur blur;
+
+  Combination(const std::vector<Level>& levels, const std::vector<Blur>& blurs, size_t first) {
+    int parts = 0;
+    for (size_t i = first; i < levels.size(); ++i) parts += levels[i].Parts();
+    for (size_t i = 0; i < levels.size(); ++i) {
+      const double weight = i < first ? 0.0 : static_cast<double>(levels[i].Parts()) / parts;
+      weights.push_back(weight);
+      noise += weight * weight * levels[i].NoiseOfParts(levels[i].Parts());
+      if (i >= first) blur.Add(blurs[i], weight);
     }
   }
-  for (size_t i = 0; i < runs.size(); ++i) {
-    const Image mean = images[i].Mean();
-    runs[i].pilot.mean = MeanValue(mean);
-    runs[i].pilot.relMse = NoiseOf(mean, kPilotParts)->relMse;
+  double TotalError() const { return noise + blur.relMse; }
+};
+
+// All that is rendered is kept if its blur allows it: the radii that give the least error, noise and blur.
+Reference CombineLevels(const std::vector<Level>& levels, const PartRenderer& renderer) {
+  std::vector<Blur> blurs;
+  std::vector<Image> means;
+  for (size_t i = 0; i < levels.size(); ++i) {
+    blurs.push_back(BlurOfLevel(levels, i));
+    means.push_back(levels[i].Mean());
   }
-  Choose(runs);
-  std::vector<Pilot> pilots;
-  for (const PilotRun& run : runs) pilots.push_back(run.pilot);
-  return pilots;
+  size_t first = levels.size() - 1;
+  Combination best(levels, blurs, first);
+  for (size_t i = first; i-- > 0;) {
+    Combination other(levels, blurs, i);
+    if (other.TotalError() >= best.TotalError()) continue;
+    best = std::move(other);
+    first = i;
+  }
+  Reference reference = renderer.Finish(WeightedSum(means, best.weights));
+  reference.parts = 1;
+  reference.facts.samplesPerPixel = 0;
+  for (size_t i = first; i < levels.size(); ++i) {
+    reference.parts += levels[i].Parts() - 1;  // degrees of freedom of its noise
+    reference.facts.samplesPerPixel += levels[i].Parts() * renderer.Samples();
+  }
+  reference.blur = best.blur;
+  reference.facts.radius = levels.back().Radius();
+  return reference;
 }
+
+Reference MakeMerged(PartRenderer& renderer) {
+  // Radii that change little within a part, and that can be halved three times before samples are out of 32 bits.
+  constexpr uint32_t most = 1u << 12;
+  const uint32_t first = std::clamp(static_cast<uint32_t>(renderer.Samples()), kSamplesToHalfRadius, most);
+  std::vector<Level> levels;
+  levels.reserve(kMergedParts / kGroup);
+  levels.emplace_back(first, renderer.Samples()).Add(renderer);
+  const auto halve = [&] {
+    levels.emplace_back(levels.back().FirstSample() * kSamplesToHalfRadius, renderer.Samples()).Add(renderer);
+  };
+  halve();
+  for (int left = kMergedParts - 2 * kGroup; left > 0; left -= kGroup) {
+    const Level& finest = levels.back();
+    const bool isBelowNoise =
+        BlurOfLevel(levels, levels.size() - 1).relMse <= finest.NoiseOfParts(finest.Parts() + left);
+    if (isBelowNoise) {
+      levels.back().Add(renderer);
+    } else {
+      halve();
+    }
+  }
+  return CombineLevels(levels, renderer);
+}
+
+}  // namespace
 
 Reference MakeReference(const ComparedScene& scene, const std::string& integrator, double secondsPerSample,
                         double seconds, const ReferenceProgress& progress) {
-  // A power of two, for which Sobol points are most uniform.
-  const double affordable = std::max(1.0, seconds / kReferenceParts / std::max(secondsPerSample, 1e-9));
-  const int samples = 1 << static_cast<int>(std::clamp(std::round(std::log2(affordable)), 0.0, 27.0));
+  const bool merges = GathersPhotons(VariantOf(scene.Built().settings, integrator));
+  PartRenderer renderer(scene, integrator, secondsPerSample, seconds, merges ? kMergedParts : kReferenceParts,
+                        progress);
   Reference reference;
-  MeanOfImages mean;
-  double done = 0;
-  for (int part = 0; part < kReferenceParts; ++part) {
-    const auto keep = [&](size_t, const ComparedScene::Milestone& reached, const Image& image) {
-      done += reached.seconds;
-      mean.Add(image);
-    };
-    const double expected = secondsPerSample * samples;
-    scene.Render(integrator, SeedOf(SeedUse::Reference, static_cast<uint64_t>(part)), {}, {samples}, keep,
-                 [&](double now) {
-                   const double ofPart = std::min(now / std::max(expected, 1e-9), 1.0);
-                   progress((part + ofPart) / kReferenceParts, "reference by " + integrator);
-                 });
+  if (merges) {
+    reference = MakeMerged(renderer);
+  } else {
+    MeanOfImages mean;
+    for (int part = 0; part < kReferenceParts; ++part) mean.Add(renderer.Render(0));
+    reference = renderer.Finish(mean.Mean());
+    reference.parts = kReferenceParts;
+    reference.facts.radius = 0;
   }
-  reference.image = mean.Mean();
-  reference.facts.origin = ComparisonReference::Origin::Made;
-  reference.facts.integrator = integrator;
-  reference.facts.samplesPerPixel = samples * kReferenceParts;
-  reference.facts.seconds = done;
+  reference.facts.bias = reference.blur.RelativeError();
+  reference.facts.biasIsLimit = merges && !reference.blur.isFromZero;
   Describe(reference);
   return reference;
 }
@@ -312,7 +315,8 @@ std::string ReferenceKey(const ComparedScene& scene, const std::string& sceneHas
   };
   scene.Render("bdpt", SeedOf(SeedUse::Key, 0), {}, {1}, add, [](double) {});
   const PixelRect& crop = settings.crop;
-  std::string key = std::string(kVersion) + " " + sceneHash + " depth " + std::to_string(settings.MaxDepth()) + " crop";
+  std::string key =
+      std::string(kVersion) + " blur " + sceneHash + " depth " + std::to_string(settings.MaxDepth()) + " crop";
   for (const int side : {settings.width, settings.height, crop.x0, crop.y0, crop.x1, crop.y1})
     key += " " + std::to_string(side);
   char text[32];
@@ -334,6 +338,14 @@ void KeepReference(const Reference& reference, const std::string& key, double se
                     {"lampyr.compare.key", key},
                     {"lampyr.compare.seconds", number(reference.facts.seconds)},
                     {"lampyr.compare.secondsAskedFor", number(seconds)}};
+  if (reference.facts.bias) {
+    const Blur& blur = reference.blur;
+    image.metadata["lampyr.compare.parts"] = std::to_string(reference.parts);
+    image.metadata["lampyr.compare.radius"] = number(*reference.facts.radius);
+    image.metadata["lampyr.compare.blur"] = number(blur.relMse) + " " + number(blur.relMseLimit) + " " +
+                                            number(blur.mseLimit) + " " + number(blur.meanLimit) + " " +
+                                            (blur.isFromZero ? "1" : "0");
+  }
   WriteExr(file, image, ExrPrecision::Float);
 }
 
@@ -354,6 +366,7 @@ std::optional<Reference> FindKeptReference(const std::filesystem::path& file, co
   reference.facts.integrator = text("lampyr.integrator");
   reference.facts.samplesPerPixel = std::atoi(text("lampyr.samplesPerPixel").c_str());
   reference.facts.seconds = std::atof(text("lampyr.compare.seconds").c_str());
+  ReadBlur(reference);
   Describe(reference);
   return reference;
 }

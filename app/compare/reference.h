@@ -1,13 +1,15 @@
 // The reference image of a comparison.
 //
-// It is the mean of independent renders by the integrator that is most efficient in a short trial. The variance over
-// these renders is its noise, which is subtracted from measured errors. It is cached beside the report and reused as
-// long as scene, size and depth are the same.
+// It is the mean of independent renders by the integrator that the first look chooses. The variance over these renders
+// is its noise, which is subtracted from measured errors. If the integrator merges photons, the renders have radii so
+// small that the bias is below the noise, as far as the time allows; both are told. It is cached beside the report and
+// reused as long as scene, size and depth are the same.
 #pragma once
 
 #include <filesystem>
 #include <functional>
 
+#include "app/compare/blur.h"
 #include "app/compare/compared_scene.h"
 #include "app/compare/results.h"
 #include "film/metrics.h"
@@ -18,7 +20,13 @@ struct Reference {
   Image image;  // with its standard errors, if they are known and not only bounded
   ComparisonReference facts;
   ImageNoise noise;  // as far as known
+  int parts = 2;     // independent renders that the noise is estimated from
+  Blur blur;         // 0 if it is unknown
 };
+
+// Settings without bias: those of an integrator that converges to the picture, whatever the scene or the command line
+// asks for, with merging radii of its own choice, which shrink.
+void MakeConsistent(Settings& values);
 
 // Loads an image given by the user. Throws a UsageError if its size or crop differs from the scene's.
 Reference ReadReference(const std::filesystem::path& file, const RenderSettings& settings);
@@ -30,11 +38,9 @@ uint64_t SeedOf(SeedUse use, uint64_t index);
 // `fraction`: of the reference done.
 using ReferenceProgress = std::function<void(double fraction, const std::string& note)>;
 
-// Trial renders by all integrators, about `seconds` each. Chooses the one with the lowest error among those that find
-// all light: an integrator whose mean is significantly below another's is excluded.
-std::vector<Pilot> FlyPilots(const ComparedScene& scene, double seconds, const ReferenceProgress& progress);
-
-// Renders the mean of some renders of `integrator`, about `seconds` in all.
+// Renders the mean of some renders of `integrator`, about `seconds` in all. By an integrator that merges photons, the
+// renders are at two radii, one half of the other, whose difference tells the bias (Blur); as long as that is above the
+// noise, renders at half the radius are added.
 Reference MakeReference(const ComparedScene& scene, const std::string& integrator, double secondsPerSample,
                         double seconds, const ReferenceProgress& progress);
 

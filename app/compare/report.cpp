@@ -105,6 +105,13 @@ const char* OriginText(ComparisonReference::Origin origin) {
   return "made";
 }
 
+// What merging of photons blurs in the reference.
+void PrintBlur(const ComparisonReference& reference, std::string& text) {
+  if (!reference.bias || reference.radius.value_or(0) == 0) return;
+  text += Format("  photons are merged within %.2g of the first radius; the bias of this is an error of %s%s\n",
+                 *reference.radius, reference.biasIsLimit ? "at most " : "", FormatPercent(*reference.bias).c_str());
+}
+
 void PrintReference(const ComparisonResults& results, std::string& text) {
   const ComparisonReference& reference = results.reference;
   text += "reference: " + reference.file + ", " + OriginText(reference.origin);
@@ -118,9 +125,11 @@ void PrintReference(const ComparisonResults& results, std::string& text) {
   } else {
     text += "; its error is not known, and taken as none\n";
   }
+  PrintBlur(reference, text);
   for (const Pilot& pilot : results.pilots) {
     text += Format("  first look: %-6s relMSE %.3g in %.2g s", pilot.integrator.c_str(), pilot.relMse, pilot.seconds);
-    text += pilot.chosen ? ", chosen\n" : pilot.note.empty() ? "\n" : ", " + pilot.note + "\n";
+    if (pilot.bias > 0) text += ", bias " + FormatPercent(pilot.bias);
+    text += std::string(pilot.chosen ? ", chosen" : "") + (pilot.note.empty() ? "" : ", " + pilot.note) + "\n";
   }
 }
 
@@ -131,6 +140,33 @@ void PrintSnapshots(const ComparisonResults& results, std::string& text) {
       text += Format("%-6s %9s %8.0f  %-30s %-30s %.3f\n", integrator.name.c_str(),
                      FormatDuration(snapshot.seconds).c_str(), snapshot.samplesPerPixel,
                      WithInterval(snapshot.mse).c_str(), WithInterval(snapshot.relMse).c_str(), snapshot.flip.value);
+    }
+  }
+}
+
+// "1.2 % (1.1 % to 1.4 %)", or with the upper bound alone if the value is not told from 0.
+std::string PercentWithInterval(const Estimate& estimate, bool isTold) {
+  const auto percent = [](double value) { return Format("%.2g %%", 100 * value); };
+  if (!isTold)
+    return std::isfinite(estimate.high) ? "not told from 0 (up to " + percent(estimate.high) + ")" : "not known";
+  std::string text = percent(estimate.value);
+  if (std::isfinite(estimate.high)) text += " (" + percent(estimate.low) + " to " + percent(estimate.high) + ")";
+  return text;
+}
+
+// The relative error in its parts.
+void PrintParts(const ComparisonResults& results, std::string& text) {
+  std::string blurs;
+  for (const ComparedIntegrator& integrator : results.integrators) {
+    if (integrator.blurs) blurs += (blurs.empty() ? "" : ", ") + integrator.name;
+  }
+  const std::string heading = "bias" + (blurs.empty() ? "" : " (with blur: " + blurs + ")");
+  text += Format("\n%-6s %9s  %-32s %s\n", "", "time", "noise (95 %)", heading.c_str());
+  for (const ComparedIntegrator& integrator : results.integrators) {
+    for (const ComparedSnapshot& snapshot : integrator.snapshots) {
+      const std::string noise = snapshot.noise ? PercentWithInterval(*snapshot.noise, true) : "0 %";
+      text += Format("%-6s %9s  %-32s %s\n", integrator.name.c_str(), FormatDuration(snapshot.seconds).c_str(),
+                     noise.c_str(), PercentWithInterval(snapshot.bias, snapshot.bias.significant).c_str());
     }
   }
 }
@@ -159,11 +195,11 @@ void PrintTimes(const ComparisonResults& results, std::string& text) {
 void PrintVerdicts(const ComparisonResults& results, std::string& text) {
   text += "\n";
   for (const ComparedIntegrator& integrator : results.integrators) {
-    const double bias = integrator.bias.value;
-    if (integrator.bias.significant) {
+    const double bias = integrator.meanBias.value;
+    if (integrator.meanBias.significant) {
       text += Format("%s is %s than the reference: its mean is off by %+.2g %% (%+.2g to %+.2g %%)\n",
-                     integrator.name.c_str(), bias < 0 ? "darker" : "brighter", 100 * bias, 100 * integrator.bias.low,
-                     100 * integrator.bias.high);
+                     integrator.name.c_str(), bias < 0 ? "darker" : "brighter", 100 * bias,
+                     100 * integrator.meanBias.low, 100 * integrator.meanBias.high);
     }
     if (integrator.systematic.significant && integrator.systematic.value > 0) {
       text += Format("%s differs from the reference by %.2g %% that more samples do not remove\n",
@@ -213,6 +249,7 @@ std::string ToText(const ComparisonResults& results) {
   std::string text;
   PrintReference(results, text);
   PrintSnapshots(results, text);
+  PrintParts(results, text);
   PrintTimes(results, text);
   PrintVerdicts(results, text);
   return text;

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "app/compare/spectrum.h"
+
 namespace lampyr {
 
 // A value with its 95 % confidence interval.
@@ -14,16 +16,21 @@ struct Estimate {
   double value = 0, low = 0, high = 0;
 };
 
+struct SignificantEstimate : Estimate {
+  bool significant = false;  // 0 is improbable, p < 0.01
+};
+
 // One render at one budget.
 struct ComparedRun {
   uint64_t seed = 0;
   double seconds = 0;
   int samplesPerPixel = 0;
-  double mse = 0, relMse = 0, flip = 0, bias = 0;  // the reference's noise subtracted from mse and relMse
+  double mse = 0, relMse = 0, flip = 0;  // the reference's noise subtracted from mse and relMse
+  double meanBias = 0;                   // of the image's mean, relative to the reference's
 };
 
-// One integrator at one budget: means over the repeats. An error that does not exceed the reference's own noise is
-// absent.
+// One integrator at one budget: means over the repeats. An error that does not exceed the reference's own noise and
+// blur is absent.
 struct ComparedSnapshot {
   bool byTime = true;  // what the budget is of: seconds, or samples per pixel
   double budget = 0;
@@ -31,6 +38,10 @@ struct ComparedSnapshot {
   double samplesPerPixel = 0, samplesPerSecond = 0;
   std::optional<Estimate> mse, relMse, efficiency, relEfficiency;  // efficiency: 1/(MSE · seconds)
   Estimate flip;
+  // The relative error (root of relMSE) in two parts, whose squares add up to relMSE: what all repeats have in common,
+  // and what differs between them. Absent if it is not above 0.
+  SignificantEstimate bias;
+  std::optional<Estimate> noise;
   std::vector<ComparedRun> runs;      // a repeat each
   std::string picture, errorPicture;  // keys of ComparisonResults::pictures, "" none
 };
@@ -44,15 +55,13 @@ struct TimeToError {
   Estimate seconds;
 };
 
-struct SignificantEstimate : Estimate {
-  bool significant = false;  // 0 is improbable, p < 0.01
-};
-
 struct ComparedIntegrator {
   std::string name;
   std::vector<std::string> hints;
-  SignificantEstimate bias;        // of the image's mean, relative to the reference's
-  SignificantEstimate systematic;  // the part of relMSE that more samples do not remove
+  bool blurs = false;                  // merges photons: its bias falls with more samples
+  SignificantEstimate meanBias;        // of the image's mean, relative to the reference's
+  SignificantEstimate systematic;      // the part of relMSE that all repeats have in common, at the largest budget
+  std::vector<SpectrumRing> spectrum;  // at the largest budget
   std::vector<TimeToError> timeToError;
   std::vector<ComparedSnapshot> snapshots;
 };
@@ -78,6 +87,13 @@ struct ComparisonReference {
   // The known noise is only an upper bound (renderers that stratify their samples report the variance of independent
   // ones) and is not subtracted from measured errors.
   bool noiseIsLimit = false;
+  // Relative error (root of relMSE) by the blur of merged photons; 0 for integrators that merge none, absent if
+  // unknown. `biasIsLimit`: it is not told from noise, and this is its upper bound at 95 % confidence, one-sided.
+  std::optional<double> bias;
+  bool biasIsLimit = false;
+  // Radius of merging in the samples that are most of the reference, relative to that of an integrator's first sample;
+  // 0 for integrators that merge none, absent if unknown.
+  std::optional<double> radius;
 };
 
 // A trial render by an integrator, to choose the one that renders the reference.
@@ -86,6 +102,7 @@ struct Pilot {
   double seconds = 0;
   int samplesPerPixel = 0;
   double mean = 0, relMse = 0;  // relMse of `seconds` of rendering
+  double bias = 0;              // relative error (root of relMSE) by what it blurs, as far as it is above noise
   bool chosen = false;
   std::string note;
 };

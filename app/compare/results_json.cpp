@@ -56,7 +56,10 @@ Json ToTree(const ComparisonReference& reference) {
           {"relativeError", OrNull(reference.relativeError)},
           {"mse", OrNull(reference.mse)},
           {"relMse", OrNull(reference.relMse)},
-          {"noiseIsLimit", reference.noiseIsLimit}};
+          {"noiseIsLimit", reference.noiseIsLimit},
+          {"bias", OrNull(reference.bias)},
+          {"biasIsLimit", reference.biasIsLimit},
+          {"radius", OrNull(reference.radius)}};
 }
 
 Json ToTree(const TimeToError& time) {
@@ -80,7 +83,7 @@ Json ToTree(const std::vector<ComparedRun>& runs) {
                     {"mse", Number(run.mse)},
                     {"relMse", Number(run.relMse)},
                     {"flip", Number(run.flip)},
-                    {"bias", Number(run.bias)}});
+                    {"meanBias", Number(run.meanBias)}});
   }
   return rows;
 }
@@ -94,6 +97,8 @@ Json ToTree(const ComparedSnapshot& snapshot) {
           {"mse", OrNull(snapshot.mse)},
           {"relMse", OrNull(snapshot.relMse)},
           {"flip", Interval(snapshot.flip)},
+          {"bias", Interval(snapshot.bias)},
+          {"noise", OrNull(snapshot.noise)},
           {"efficiency", OrNull(snapshot.efficiency)},
           {"relEfficiency", OrNull(snapshot.relEfficiency)},
           {"picture", OrNull(snapshot.picture)},
@@ -101,10 +106,29 @@ Json ToTree(const ComparedSnapshot& snapshot) {
           {"runs", ToTree(snapshot.runs)}};
 }
 
+Json ToTree(const std::vector<SpectrumRing>& spectrum) {
+  Json rings = Json::array();
+  for (const SpectrumRing& ring : spectrum) {
+    rings.push_back({{"frequency", ring.frequency},
+                     {"share", Number(ring.share)},
+                     {"density", Number(ring.density)},
+                     {"low", Number(ring.low)},
+                     {"high", Number(ring.high)},
+                     {"deviation", Number(ring.deviation)},
+                     {"common", Number(ring.common)}});
+  }
+  return rings;
+}
+
 Json ToTree(const ComparedIntegrator& integrator) {
-  Json json = {{"name", integrator.name},           {"hints", integrator.hints},
-               {"bias", Interval(integrator.bias)}, {"systematic", Interval(integrator.systematic)},
-               {"timeToError", Json::array()},      {"snapshots", Json::array()}};
+  Json json = {{"name", integrator.name},
+               {"hints", integrator.hints},
+               {"blurs", integrator.blurs},
+               {"meanBias", Interval(integrator.meanBias)},
+               {"systematic", Interval(integrator.systematic)},
+               {"timeToError", Json::array()},
+               {"snapshots", Json::array()},
+               {"spectrum", ToTree(integrator.spectrum)}};
   for (const TimeToError& time : integrator.timeToError) json["timeToError"].push_back(ToTree(time));
   for (const ComparedSnapshot& snapshot : integrator.snapshots) json["snapshots"].push_back(ToTree(snapshot));
   return json;
@@ -134,6 +158,7 @@ std::string ToJson(const ComparisonResults& results) {
                               {"samplesPerPixel", pilot.samplesPerPixel},
                               {"mean", Number(pilot.mean)},
                               {"relMse", Number(pilot.relMse)},
+                              {"bias", Number(pilot.bias)},
                               {"chosen", pilot.chosen},
                               {"note", pilot.note}});
   }

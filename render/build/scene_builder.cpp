@@ -1,6 +1,7 @@
 #include "render/build/scene_builder.h"
 
 #include <algorithm>
+#include <chrono>
 
 #include "base/memory.h"
 #include "geometry/shape_checks.h"
@@ -306,7 +307,11 @@ BuiltScene Builder::Build() {
   scene.lighting = std::make_shared<const LightingServices>(
       *scene.geometry, std::move(lights_->Lights()), built_.settings.LightSampler(), std::move(lights_->Linking()),
       static_cast<int>(built_.settings.values.Integer("light-samples")));
-  if (built_.settings.integrator == "auto") ChooseIntegrator(scene, built_.settings, threads_).Apply(built_.settings);
+  if (built_.settings.integrator == "auto") {
+    const auto start = std::chrono::steady_clock::now();
+    ChooseIntegrator(scene, built_.settings, threads_).Apply(built_.settings);
+    built_.choiceSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  }
   for (const std::string& name : UnreadBias(built_.settings.integrator, built_.settings.values)) {
     diagnostics_.Warn("\"" + name + "\" is ignored: " + built_.settings.integrator +
                       " does not support it, and renders the picture without that bias");

@@ -15,6 +15,7 @@ struct BuiltScene {
       renderToLayers;  // from render space to the space of the layers of what is seen first (RenderSettings::firstHit)
   // Locations of the lights and the light filters in the scene file, by their indices.
   std::vector<FileLocation> lightPlaces, filterPlaces;
+  double choiceSeconds = 0;  // that "auto" took to choose the integrator; 0 if it was set
 };
 
 // Throws located Errors for what cannot be rendered. `robust`: watertight intersection. `types`: the types of lights

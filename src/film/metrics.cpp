@@ -285,9 +285,12 @@ CommonError MeasureCommonError(std::span<const Image* const> images, const Image
     CheckSameSize(*image, reference);
     colors.push_back(ReadColors(*image, "compared"));
   }
+  const size_t left = images.size() < 3 ? 0 : images.size();
   const double count = static_cast<double>(images.size());
-  double sum = 0;  // over pairs
-  std::vector<double> sumWith(images.size(), 0.0);
+  const double n = 3.0 * static_cast<double>(truth.colors.size());
+  CommonError error;
+  error.without.assign(left, 0.0);
+  error.varyingWithout.assign(left, 0.0);
   std::vector<double> differences(images.size());
   VisitReference(truth, [&](size_t i, size_t c, double value, double variance, double divisor) {
     double total = 0, squares = 0;
@@ -296,17 +299,27 @@ CommonError MeasureCommonError(std::span<const Image* const> images, const Image
       total += differences[k];
       squares += differences[k] * differences[k];
     }
-    sum += Ratio(0.5 * (total * total - squares) - 0.5 * count * (count - 1) * variance, divisor);
-    for (size_t k = 0; k < colors.size(); ++k) {
-      sumWith[k] += Ratio(differences[k] * (total - differences[k]) - (count - 1) * variance, divisor);
+    const double product = (total * total - squares) / (count * (count - 1));  // mean over pairs
+    error.mse += (product - variance) / n;
+    error.relMse += Ratio(product - variance, divisor) / n;
+    error.varying += Ratio(squares / count - product, divisor) / n;
+    for (size_t k = 0; k < left; ++k) {
+      const double own = differences[k], others = total - own, squaresOfOthers = squares - own * own;
+      const double without = (others * others - squaresOfOthers) / ((count - 1) * (count - 2));
+      error.without[k] += Ratio(without - variance, divisor) / n;
+      error.varyingWithout[k] += Ratio(squaresOfOthers / (count - 1) - without, divisor) / n;
     }
   });
-  const double n = 3.0 * static_cast<double>(truth.colors.size());
-  CommonError error;
-  error.relMse = sum / (0.5 * count * (count - 1)) / n;
-  if (images.size() < 3) return error;
-  for (const double with : sumWith) error.without.push_back((sum - with) / (0.5 * (count - 1) * (count - 2)) / n);
   return error;
+}
+
+std::vector<Color> RelativeErrorDivisors(const Image& reference) {
+  const Measured truth = Measure(reference, "reference");
+  std::vector<Color> roots(truth.colors.size());
+  VisitReference(truth, [&](size_t i, size_t c, double, double, double divisor) {
+    (c == 0 ? roots[i].r : c == 1 ? roots[i].g : roots[i].b) = static_cast<float>(std::sqrt(divisor));
+  });
+  return roots;
 }
 
 std::optional<ImageNoise> NoiseOf(const Image& reference, int parts) {

@@ -57,14 +57,20 @@ struct ImageError {
 };
 ImageError MeasureError(const Image& image, const Image& reference, float exposureStops = 0);
 
-// Error common to several independent images, as relMSE: the mean over all pairs of the product of their differences
-// from the reference. The noise of the images cancels; that of the reference is subtracted. `without`: leave-one-out
-// estimates, for the jackknife.
+// Error common to several independent images, as MSE and relMSE: the mean over all pairs of the product of their
+// differences from the reference, in which the noise of the images cancels and that of the reference is subtracted; and
+// the relMSE of one image that differs between them: their variance. Both together are the mean of MeasureError.
+// `without`, `varyingWithout`: leave-one-out estimates of `relMse` and `varying`, for the jackknife; empty for two
+// images.
 struct CommonError {
-  double relMse = 0;
-  std::vector<double> without;  // empty for two images
+  double mse = 0, relMse = 0;
+  double varying = 0;
+  std::vector<double> without, varyingWithout;
 };
 CommonError MeasureCommonError(std::span<const Image* const> images, const Image& reference);
+
+// The root of the divisor of relMSE, pixel by pixel, R, G, B: sqrt(b² + 1 % of the mean of b²).
+std::vector<Color> RelativeErrorDivisors(const Image& reference);
 
 // Noise of the reference itself. Absent without variance layers.
 struct ImageNoise {

@@ -546,14 +546,15 @@ TEST_F(Cli, ComparesIntegrators) {
       "report";
   const Outcome outcome = Run(command);
   ASSERT_EQ(outcome.exitCode, 0) << outcome.output;
-  for (const char* text : {"reference: report/reference.exr, made", "chosen", "relMSE (95 %)", "time to an error",
-                           "the efficiency of path in relMSE"}) {
+  for (const char* text : {"reference: report/reference.exr, made", "chosen", "relMSE (95 %)", "noise (95 %)", "bias\n",
+                           "time to an error", "the efficiency of path in relMSE"}) {
     EXPECT_NE(outcome.output.find(text), std::string::npos) << text << " in " << outcome.output;
   }
   const std::string csv = Read("report/results.csv");
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 2 * 4) << csv;
   EXPECT_NE(csv.find("\nscene.pbrt,bdpt,samples,8,2,"), std::string::npos) << csv;
-  for (const char* key : {"\"origin\": \"made\"", "\"timeToError\"", "\"relEfficiency\"", "\"repeats\": 2"}) {
+  for (const char* key : {"\"origin\": \"made\"", "\"noise\"", "\"spectrum\"", "\"biasIsLimit\": false",
+                          "\"timeToError\"", "\"relEfficiency\"", "\"repeats\": 2"}) {
     EXPECT_NE(Read("report/results.json").find(key), std::string::npos) << key;
   }
   EXPECT_EQ(ReadImage(folder_ / "report/path-0.2s.png").width, 32);
@@ -569,6 +570,32 @@ TEST_F(Cli, ComparesIntegrators) {
   EXPECT_EQ(given.exitCode, 0) << given.output;
   EXPECT_NE(given.output.find("given.exr, given"), std::string::npos) << given.output;
   EXPECT_FALSE(fs::exists(folder_ / "other/reference.exr"));
+}
+
+// Only merged photons find the caustic in the mirror: the reference says what that blurs, and keeps it.
+TEST_F(Cli, TellsTheBlurOfTheReference) {
+  Write("mirror.pbrt", R"(LookAt 0 1.2 -1  0 0.2 1.5  0 1 0
+Film "rgb" "integer xresolution" 24 "integer yresolution" 24
+Camera "perspective" "float fov" 42
+Integrator "path" "integer maxdepth" 5
+WorldBegin
+LightSource "point" "rgb I" [9 9 9] "point3 from" [0.4 2.5 0]
+Material "diffuse"
+Shape "trianglemesh" "point3 P" [-2.5 0 -2.5  -2.5 0 2.5  2.5 0 2.5  2.5 0 -2.5] "integer indices" [0 1 2 0 2 3]
+Material "conductor" "rgb reflectance" [ 0.9 0.9 0.9 ]
+Shape "bilinearmesh" "point3 P" [ -2 0 1.5  2 0 1.5  -2 3 1.5  2 3 1.5 ]
+Material "dielectric" "float eta" 1.5
+Translate 0 0.6 0 Shape "sphere" "float radius" 0.5
+)");
+  const std::string command =
+      "compare mirror.pbrt --integrators path,vcm --budget 0.5s --repeat 2 --reference-time 2s -o mirror";
+  for (const char* origin : {"made", "kept from before"}) {
+    const Outcome outcome = Run(command);
+    ASSERT_EQ(outcome.exitCode, 0) << outcome.output;
+    for (const char* text : {origin, "photons are merged within", "the bias of this is an error of", "with blur: vcm"})
+      EXPECT_NE(outcome.output.find(text), std::string::npos) << text << " in " << outcome.output;
+    EXPECT_EQ(Read("mirror/results.json").find("\"bias\": 0.0,\n    \"biasIsLimit\""), std::string::npos);
+  }
 }
 
 TEST_F(Cli, RefusesToCompareWhatCannotBe) {

@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "app/compare/comparison.h"
+#include "app/compare/first_look.h"
 #include "app/compare/report.h"
 #include "app/json_report.h"
 #include "film/metrics.h"
@@ -79,7 +80,10 @@ TEST(Reference, IsMadeByWhatFindsAllTheLight) {
   const ComparedScene scene(built, 2, kNever);
   for (const Pilot& pilot : FlyPilots(scene, 0.3, kQuiet)) {
     // path's picture has no noise to speak of, and no caustic.
-    EXPECT_EQ(pilot.chosen, pilot.integrator == "bdpt") << pilot.integrator;
+    EXPECT_EQ(pilot.chosen, pilot.integrator == "bdpt") << pilot.integrator << ": " << pilot.note;
+    if (pilot.integrator == "vcm") {
+      EXPECT_NE(pilot.note.find("of that of bdpt in the same time"), std::string::npos) << pilot.note;
+    }
     if (pilot.integrator == "path") {
       EXPECT_NE(pilot.note.find("finds less light than "), std::string::npos) << pilot.note;
     }
@@ -109,6 +113,36 @@ TEST(Reference, ItsErrorIsWhatItSays) {
   const double error = CompareImages(coarse.image, fine.image).mse;
   EXPECT_NEAR(error / *coarse.facts.mse, 1, 0.25);
   EXPECT_NEAR(coarse.facts.mean / fine.facts.mean, 1, 4 * coarse.noise.meanError);
+}
+
+// Its distance from the picture of an integrator that blurs nothing is no larger than it says, and radii are so small
+// that what is told of a bias is below the noise.
+TEST(Reference, WhatMergingBlursIsBoundedAndBelowTheNoise) {
+  const BuiltScene built = Build(kCamera + kCaustic);
+  const ComparedScene scene(built, 2, kNever);
+  const Reference sharp = MakeReference(scene, "bdpt", 1, 8 * 512, kQuiet);
+  EXPECT_EQ(*sharp.facts.bias, 0);
+  EXPECT_EQ(*sharp.facts.radius, 0);
+  EXPECT_EQ(sharp.blur.relMseLimit, 0);
+  const Reference merged = MakeReference(scene, "vcm", 1, 32 * 32, kQuiet);
+  EXPECT_LT(*merged.facts.radius, 0.5);
+  EXPECT_LT(merged.blur.relMse, *merged.facts.relMse);
+  EXPECT_LE(merged.blur.relMse, merged.blur.relMseLimit);
+  // The squared distance is that of the blur and of both noises.
+  Image plain = ChannelsOf(merged.image, {"R", "G", "B"});
+  const double distance = MeasureError(plain, sharp.image).relMse;
+  EXPECT_LT(distance, *merged.facts.relMse + merged.blur.relMseLimit + 4 * merged.noise.relMseError);
+  EXPECT_LT(std::abs(merged.facts.mean / sharp.facts.mean - 1),
+            merged.blur.meanLimit + 4 * (merged.noise.meanError + sharp.noise.meanError));
+}
+
+TEST(Reference, SettingsOfTheSceneDoNotBiasIt) {
+  BuiltScene built = Build(kCamera + kLamp);
+  built.settings.values.Set("alpha", 1.0);
+  built.settings.values.Set("radius", 0.5);
+  MakeConsistent(built.settings.values);
+  EXPECT_EQ(built.settings.values.Number("alpha"), 2. / 3);
+  EXPECT_EQ(built.settings.values.Number("radius"), 0);
 }
 
 TEST(Reference, BlackPicturesAndExtremesOfRadiance) {
@@ -164,10 +198,52 @@ TEST(Reference, IsKeptWhileItIsOfTheSamePicture) {
   EXPECT_EQ(kept->facts.origin, ComparisonReference::Origin::Cached);
   EXPECT_EQ(*kept->facts.relMse, *made.facts.relMse);
   EXPECT_EQ(kept->noise.meanError, made.noise.meanError);
+  EXPECT_EQ(*kept->facts.bias, 0);
   EXPECT_FALSE(FindKeptReference(file, key + "x", 0));
   EXPECT_FALSE(FindKeptReference(file, key, 5.1));
   std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);
   EXPECT_FALSE(FindKeptReference(file, key, 0));
+}
+
+TEST(Reference, KeepsWhatItKnowsOfItsBlur) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder.Path() / "reference.exr";
+  const BuiltScene built = Build(kCamera + kCaustic);
+  const Reference made = MakeReference(ComparedScene(built, 2, kNever), "vcm", 1, 32 * 4, kQuiet);
+  KeepReference(made, "key", 5, file);
+  const auto kept = FindKeptReference(file, "key", 5);
+  ASSERT_TRUE(kept);
+  EXPECT_EQ(kept->parts, made.parts);
+  EXPECT_EQ(*kept->facts.bias, *made.facts.bias);
+  EXPECT_EQ(kept->facts.biasIsLimit, made.facts.biasIsLimit);
+  EXPECT_EQ(kept->facts.radius, made.facts.radius);
+  EXPECT_EQ(kept->blur.relMseLimit, made.blur.relMseLimit);
+  EXPECT_EQ(kept->blur.mseLimit, made.blur.mseLimit);
+  EXPECT_EQ(kept->blur.meanLimit, made.blur.meanLimit);
+  EXPECT_EQ(kept->noise.relMseError, made.noise.relMseError);
+  const Reference given = ReadReference(file, built.settings);
+  EXPECT_EQ(given.blur.relMseLimit, made.blur.relMseLimit);
+}
+
+TEST(ComparedScene, TimeOfTheChoiceIsPartOfAuto) {
+  BuiltScene built = Build(kCamera + kLamp);
+  built.choiceSeconds = 0.2;
+  const ComparedScene scene(built, 1, kNever);
+  for (const char* name : {"auto", "path"}) {
+    std::vector<ComparedScene::Milestone> reached;
+    const auto keep = [&](size_t, const ComparedScene::Milestone& milestone, const Image&) {
+      reached.push_back(milestone);
+    };
+    scene.Render(name, 7, {0.1, 0.4}, {}, keep, [](double) {});
+    ASSERT_EQ(reached.size(), 2u);
+    if (name == std::string("auto")) {
+      EXPECT_EQ(reached[0].samplesPerPixel, 1);  // the time is over, but there must be a picture
+      EXPECT_GT(reached[0].seconds, 0.2);
+    } else {
+      EXPECT_LT(reached[0].seconds, 0.2);
+    }
+    EXPECT_NEAR(reached[1].seconds, 0.4, 0.1);
+  }
 }
 
 class Compared : public testing::Test {
@@ -210,8 +286,8 @@ TEST_F(Compared, ErrorsFallAndEfficienciesArePerTime) {
     EXPECT_GT(few.flip.value, many.flip.value);
   }
   for (const ComparedIntegrator& integrator : results.integrators) {
-    EXPECT_FALSE(integrator.bias.significant) << integrator.name << " " << integrator.bias.value;
-    EXPECT_LT(std::abs(integrator.bias.value), 0.01);
+    EXPECT_FALSE(integrator.meanBias.significant) << integrator.name << " " << integrator.meanBias.value;
+    EXPECT_LT(std::abs(integrator.meanBias.value), 0.01);
     EXPECT_FALSE(integrator.systematic.significant) << integrator.name << " " << integrator.systematic.value;
     ASSERT_EQ(integrator.timeToError.size(), 3u);
     EXPECT_LT(integrator.timeToError[0].seconds.value, integrator.timeToError[2].seconds.value);
@@ -233,16 +309,93 @@ TEST_F(Compared, AnIntegratorThatMissesLightIsFoundOut) {
   plan.sampleCounts = {64};
   const ComparisonResults results = Run(kCamera + kCaustic, plan, 512);
   const ComparedIntegrator &path = results.integrators[0], &bdpt = results.integrators[1];
-  EXPECT_TRUE(path.bias.significant);
-  EXPECT_LT(path.bias.value, -0.02);
+  EXPECT_TRUE(path.meanBias.significant);
+  EXPECT_LT(path.meanBias.value, -0.02);
   EXPECT_TRUE(path.systematic.significant);
   EXPECT_EQ(path.timeToError[2].kind, TimeToError::Kind::Never);
   EXPECT_FALSE(path.hints.empty());
-  EXPECT_FALSE(bdpt.bias.significant) << bdpt.bias.value;
+  EXPECT_FALSE(bdpt.meanBias.significant) << bdpt.meanBias.value;
   EXPECT_NE(bdpt.timeToError[2].kind, TimeToError::Kind::Never);
   const std::string text = ToText(results);
   EXPECT_NE(text.find("path is darker than the reference"), std::string::npos) << text;
   EXPECT_NE(text.find("never"), std::string::npos) << text;
+}
+
+TEST_F(Compared, ErrorsAreBiasAndNoise) {
+  ComparisonPlan plan;
+  plan.integrators = {"path", "bdpt", "vcm"};
+  plan.sampleCounts = {4, 64};
+  const ComparisonResults results = Run(kCamera + kCaustic, plan, 512);
+  for (const ComparedIntegrator& integrator : results.integrators) {
+    EXPECT_EQ(integrator.blurs, integrator.name == "vcm");
+    for (const ComparedSnapshot& snapshot : integrator.snapshots) {
+      ASSERT_TRUE(snapshot.noise) << integrator.name;
+      double relMse = 0;
+      for (const ComparedRun& run : snapshot.runs) relMse += run.relMse / static_cast<double>(snapshot.runs.size());
+      const double ofBias = snapshot.bias.value * snapshot.bias.value;
+      // A part below 0, by chance, has no root.
+      const double slack = snapshot.bias.value > 0 ? 1e-6 : std::max(0.02 * relMse, 1e-5);
+      EXPECT_NEAR(ofBias + snapshot.noise->value * snapshot.noise->value, relMse, slack) << integrator.name;
+      EXPECT_LE(snapshot.noise->low, snapshot.noise->value);
+      EXPECT_GE(snapshot.noise->high, snapshot.noise->value);
+    }
+    if (integrator.name != "vcm") {
+      EXPECT_EQ(integrator.snapshots[1].bias.significant, integrator.name == "path") << integrator.name;
+    }
+    const ComparedSnapshot &few = integrator.snapshots[0], &many = integrator.snapshots[1];
+    EXPECT_GT(few.noise->value / many.noise->value, 2.8);  // 4, and more by stratification
+    double shares = 0;
+    for (const SpectrumRing& ring : integrator.spectrum) shares += ring.share;
+    double relMse = 0;
+    for (const ComparedRun& run : many.runs) relMse += run.relMse / static_cast<double>(many.runs.size());
+    EXPECT_NEAR(shares / relMse, 1, 1e-3) << integrator.name;
+  }
+  const ComparedSnapshot& path = Find(results, "path", 64);
+  EXPECT_NEAR(path.bias.value / Find(results, "path", 4).bias.value, 1, 0.1);  // what it misses stays
+  EXPECT_NEAR(path.bias.value * path.bias.value, results.integrators[0].systematic.value, 1e-9);
+  EXPECT_NE(ToText(results).find("bias (with blur: vcm)"), std::string::npos) << ToText(results);
+}
+
+// A reference that is blurred by more than an error bounds it, and the verdicts too.
+TEST_F(Compared, NothingIsSaidBelowTheBlurOfTheReference) {
+  const BuiltScene built = Build(kCamera + kCaustic);
+  const ComparedScene scene(built, 2, kNever);
+  ComparisonPlan plan;
+  plan.integrators = {"path", "bdpt"};
+  plan.sampleCounts = {64};
+  Reference reference = MakeReference(scene, "bdpt", 1, 8 * 512, kQuiet);
+  ComparisonResults sharp;
+  sharp.reference = reference.facts;
+  Compare(scene, plan, reference, kQuiet, sharp);
+  const ComparedSnapshot& path = sharp.integrators[0].snapshots[0];
+  ASSERT_TRUE(path.relMse);
+  const double common = sharp.integrators[0].systematic.value;
+
+  // Half of what path misses: its error stays resolved and its interval gets wider, by a bias that may be half or one
+  // and a half times as large.
+  reference.blur = {.relMseLimit = 0.25 * common, .mseLimit = 0, .meanLimit = 0};
+  ComparisonResults blurred;
+  blurred.reference = reference.facts;
+  Compare(scene, plan, reference, kQuiet, blurred);
+  ASSERT_TRUE(blurred.integrators[0].snapshots[0].relMse);
+  const Estimate &before = *path.relMse, &after = *blurred.integrators[0].snapshots[0].relMse;
+  EXPECT_NEAR(after.high / before.high, 1 + 1.25 * common / path.relMse->value, 0.01);
+  EXPECT_NEAR(after.low / before.low, 1 - 0.75 * common / path.relMse->value, 0.01);
+  EXPECT_TRUE(blurred.integrators[0].systematic.significant);
+  // bdpt is as near to the truth as path to the reference: that cannot be said any more.
+  EXPECT_FALSE(blurred.integrators[1].snapshots[0].relMse &&
+               blurred.integrators[1].snapshots[0].relMse->value < 0.25 * common);
+
+  reference.blur = {.relMseLimit = 4 * path.relMse->value, .mseLimit = 4 * path.mse->value, .meanLimit = 1};
+  ComparisonResults hidden;
+  hidden.reference = reference.facts;
+  Compare(scene, plan, reference, kQuiet, hidden);
+  EXPECT_FALSE(hidden.integrators[0].snapshots[0].relMse);
+  EXPECT_FALSE(hidden.integrators[0].snapshots[0].relEfficiency);
+  EXPECT_FALSE(hidden.integrators[0].snapshots[0].mse);
+  EXPECT_FALSE(hidden.integrators[0].systematic.significant);
+  EXPECT_FALSE(hidden.integrators[0].meanBias.significant);
+  EXPECT_TRUE(hidden.ratios.empty());
 }
 
 TEST_F(Compared, NothingIsSaidBelowTheNoiseOfTheReference) {

@@ -82,7 +82,35 @@ TEST(Estimate, SignificanceIsRareWhereThereIsNothing) {
   EXPECT_FALSE(MeanOf(std::vector<double>{1, 1.01, 0.99, 1}, 1).significant);  // known no better than by 1
 }
 
+// Of variances, which are no means.
+TEST(Estimate, IntervalOfTheJackknifeCoversAVariance) {
+  std::mt19937 generator(5);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  const auto variance = [](const std::vector<double>& values, size_t without) {
+    double sum = 0, squares = 0, n = 0;
+    for (size_t i = 0; i < values.size(); ++i) {
+      if (i == without) continue;
+      sum += values[i];
+      squares += values[i] * values[i];
+      ++n;
+    }
+    return (squares - sum * sum / n) / (n - 1);
+  };
+  int covered = 0;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    std::vector<double> values(20), without;
+    for (double& v : values) v = uniform(generator);
+    for (size_t i = 0; i < values.size(); ++i) without.push_back(variance(values, i));
+    const double value = variance(values, values.size());
+    const SignificantEstimate estimate = JackknifeOf(value, without);
+    EXPECT_EQ(estimate.value, value);
+    covered += estimate.low <= 1. / 12 && estimate.high >= 1. / 12;
+  }
+  EXPECT_NEAR(covered / double{kTrials}, 0.95, 2 * kSlack);
+}
+
 TEST(Estimate, WhatIsNotKnownIsSaid) {
+  EXPECT_TRUE(std::isinf(JackknifeOf(1, {}).high));
   EXPECT_FALSE(MeanOnLogScale(std::vector<double>{-1, -2, 0.5}));
   EXPECT_FALSE(RatioOfMeans(std::vector<double>{1, 2}, std::vector<double>{0, 0}));
   const Estimate single = *MeanOnLogScale(std::vector<double>{3});

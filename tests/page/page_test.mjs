@@ -10,6 +10,7 @@ import {openBrowser, openPage} from './browser.mjs';
 import {testLook} from './look_tests.mjs';
 import {testPictures} from './picture_tests.mjs';
 import {testPlots} from './plot_tests.mjs';
+import {testSpectrum} from './spectrum_tests.mjs';
 import {testTables} from './table_tests.mjs';
 
 const file = process.env.LAMPYR_PAGE;
@@ -51,6 +52,7 @@ test('the file refers to nothing outside itself', () => {
 });
 
 testPlots(pageTest, results);
+testSpectrum(pageTest, results);
 testPictures(pageTest, results, pictures);
 testTables(pageTest, results);
 testLook(pageTest, results, process.env.LAMPYR_SCREENSHOT);

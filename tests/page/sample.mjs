@@ -54,7 +54,25 @@ function snapshotOf(variant, integrator, kind, budget, random, pictures) {
     flip: interval(Math.min(0.9, 0.3 * relMse ** 0.35), 0.04 + 0.05 * random()),
     efficiency: isResolved ? interval(1 / (0.12 * relMse * variant.unit * seconds), share) : null,
     relEfficiency: isResolved ? interval(1 / (relMse * seconds), share) : null,
+    noise: rootOf(interval(relMse - integrator.floor, share)),
+    bias: {...rootOf(interval(integrator.floor || 1e-6, share)), significant: integrator.floor > 0},
     picture: key, errorPicture: `error-${key}`};
+}
+
+function rootOf({value, low, high}) {
+  return {value: Math.sqrt(value), low: Math.sqrt(low), high: Math.sqrt(high)};
+}
+
+// Noise that is level, and a bias at low frequencies.
+function spectrumOf({relMse, floor}, width) {
+  const rings = [{frequency: 0, share: 1e-6, density: relMse, low: 0, high: 2 * relMse, deviation: relMse, common: 0}];
+  for (let frequency = 1 / width; frequency < 0.7; frequency *= 1.2) {
+    const common = 50 * floor * Math.exp(-((frequency / 0.05) ** 2));
+    const density = 0.1 * relMse + common;
+    rings.push({frequency, share: density * frequency ** 2, density, low: 0.8 * density, high: 1.25 * density,
+      deviation: 0.2 * density, common});
+  }
+  return rings;
 }
 
 function timeToError({relMse, floor}, longest) {
@@ -90,8 +108,9 @@ function makeSample(variant) {
   const longest = Math.max(...variant.times, 0);
   const integrators = variant.integrators.map((integrator) => {
     const bias = integrator.gain - 1;
-    return {name: integrator.name, hints: integrator.hints,
-      bias: {value: bias + 0.0004, low: bias - 0.002, high: bias + 0.0021, significant: bias < -0.003},
+    return {name: integrator.name, hints: integrator.hints, blurs: integrator.name === 'vcm',
+      spectrum: spectrumOf(integrator, variant.width),
+      meanBias: {value: bias + 0.0004, low: bias - 0.002, high: bias + 0.0021, significant: bias < -0.003},
       systematic: {value: integrator.floor || 1e-5, low: integrator.floor ? 0.9 * integrator.floor : -1e-5,
         high: integrator.floor ? 1.1 * integrator.floor : 3e-5, significant: integrator.floor > 0},
       timeToError: timeToError(integrator, longest),
@@ -106,11 +125,12 @@ function makeSample(variant) {
     maxDepth: 10, threads: 2, repeats: 5, confidence: 0.95,
     command: `lampyr compare ${variant.scene} --integrators ${names}${budgets}${samples} -o out`,
     reference: {origin: 'made', file: 'reference.exr', integrator: 'bdpt', samplesPerPixel: 4096, seconds: 805.2,
-      mean: 0.31, relativeError: 0.0021, mse: 0.12 * variant.noise * variant.unit, relMse: variant.noise},
+      mean: 0.31, relativeError: 0.0021, mse: 0.12 * variant.noise * variant.unit, relMse: variant.noise,
+      bias: 0.0031, biasIsLimit: true, radius: 0.25},
     pilots: [
-      {integrator: 'path', seconds: 2, samplesPerPixel: 40, mean: 0.3, relMse: 0.01, chosen: false,
+      {integrator: 'path', seconds: 2, samplesPerPixel: 40, mean: 0.3, relMse: 0.01, bias: 0, chosen: false,
         note: 'finds less light than bdpt: 94.1 % ± 0.4 %'},
-      {integrator: 'bdpt', seconds: 2.04, samplesPerPixel: 18, mean: 0.319, relMse: 0.0042, chosen: true, note: ''},
+      {integrator: 'bdpt', seconds: 2.04, samplesPerPixel: 18, mean: 0.319, relMse: 0.0042, bias: 0.021, chosen: true, note: ''},
     ],
     errorScale: kScale, integrators, ratios: ratiosOf(integrators),
   }};
@@ -119,15 +139,16 @@ function makeSample(variant) {
 // Nothing resolved, a given reference of which nothing is known, no pictures, no pilots, no ratios.
 function strip({results}) {
   for (const integrator of results.integrators) {
-    integrator.bias = {...integrator.bias, low: null, high: null, significant: false};
+    integrator.spectrum = [];
+    integrator.meanBias = {...integrator.meanBias, low: null, high: null, significant: false};
     integrator.systematic = {value: null, low: null, high: null, significant: false};
     integrator.timeToError = integrator.timeToError.map(({error}) =>
       ({error, seconds: null, low: null, high: null, kind: 'unresolved'}));
     integrator.snapshots = integrator.snapshots.map((snapshot) => ({...snapshot, mse: null, relMse: null, flip: null,
-      efficiency: null, relEfficiency: null, picture: null, errorPicture: null}));
+      efficiency: null, relEfficiency: null, noise: null, bias: null, picture: null, errorPicture: null}));
   }
   const reference = {origin: 'given', file: 'kept/lamp.exr', integrator: null, samplesPerPixel: null, seconds: null,
-    mean: 0.31, relativeError: null, mse: null, relMse: null};
+    mean: 0.31, relativeError: null, mse: null, relMse: null, bias: null, biasIsLimit: false, radius: null};
   return {results: {...results, reference, pilots: [], ratios: []}, pictures: {}};
 }
 
@@ -137,7 +158,8 @@ function withoutIntervals({results, pictures}) {
   for (const integrator of results.integrators) {
     integrator.timeToError = integrator.timeToError.map((time) => time.kind === 'never' ? time : open(time));
     for (const snapshot of integrator.snapshots) {
-      for (const key of ['mse', 'relMse', 'flip', 'efficiency', 'relEfficiency']) {
+      snapshot.bias = {...snapshot.bias, low: 0, high: null, significant: false};
+      for (const key of ['noise', 'mse', 'relMse', 'flip', 'efficiency', 'relEfficiency']) {
         snapshot[key] &&= open(snapshot[key]);
       }
     }

@@ -48,7 +48,7 @@ export function testTables(pageTest, results) {
     const head = (await page.locator('#head').innerText()).replaceAll('\u00a0', ' ');
     const verdict = (await page.locator('.verdict').innerText()).replaceAll('\u00a0', ' ');
     assert.ok(results.integrators.some(({name}) => verdict.includes(name)), verdict);
-    for (const {name, bias, systematic, hints} of results.integrators) {
+    for (const {name, meanBias: bias, systematic, hints} of results.integrators) {
       const flaws = await page.locator('.flaw').allInnerTexts();
       const isFlawed = bias?.significant || (systematic?.significant && systematic.value > 0);
       assert.equal(flaws.some((flaw) => flaw.replace(/^▲\s*/u, '').startsWith(`${name} `)), Boolean(isFlawed),
@@ -66,6 +66,13 @@ export function testTables(pageTest, results) {
     if (noise) {
       assertClose(readNumber(noise[1]), relMse, head, 0.006);
       assertClose(readNumber(noise[2]) / 100, Math.sqrt(relMse), head, 0.06);
+    }
+    const {bias, biasIsLimit, radius} = results.reference;
+    const blur = /a bias of (at most )?(.*?) %\./.exec(head);
+    assert.equal(blur !== null, radius > 0 && bias !== null, head);
+    if (blur) {
+      assertClose(readNumber(blur[2]) / 100, bias, head, 0.06);
+      assert.equal(Boolean(blur[1]), biasIsLimit, head);
     }
     assert.ok(head.includes(results.command));
     const longest = results.integrators[0].snapshots.filter(({kind}) => kind === 'time').map(({budget}) => budget);
@@ -103,6 +110,42 @@ export function testTables(pageTest, results) {
     });
   }
 
+  pageTest('the table of noise and bias', {}, async (page) => {
+    const has = results.integrators.some(({snapshots}) => snapshots.some(({noise, bias}) => noise || bias));
+    assert.equal(await page.locator('#parts').count(), has ? 1 : 0);
+    if (!has) return;
+    const heading = await page.locator('#parts thead').innerText();
+    for (const {name, blurs} of results.integrators) {
+      assert.equal(/blur: (.*)\)/.exec(heading)?.[1].split(', ').includes(name) ?? false, blurs, heading);
+    }
+    const expected = ['time', 'samples'].flatMap((kind) => {
+      const of = ({snapshots}) => snapshots.filter((snapshot) => snapshot.kind === kind);
+      const budgets = [...new Set(results.integrators.flatMap(of).map(({budget}) => budget))].sort((a, b) => a - b);
+      return budgets.flatMap((budget) => results.integrators.flatMap((integrator) =>
+        of(integrator).filter((snapshot) => snapshot.budget === budget)
+          .map((snapshot) => ({name: integrator.name, snapshot}))));
+    });
+    const rows = await rowsOf(page, 'parts');
+    assert.equal(rows.length, expected.length);
+    for (const [i, {name, snapshot: {noise, bias, kind, budget}}] of expected.entries()) {
+      const what = `${name}, ${kind} ${budget}`;
+      assert.equal(rows[i][0], name, what);
+      if (noise) assertInterval(rows[i][1], inPercent(noise), `${what}, noise`);
+      else assert.equal(rows[i][1], '–', what);
+      const text = rows[i][2].replaceAll('\u00a0', ' ');
+      if (!bias) {
+        assert.equal(text, '–', what);
+      } else if (bias.significant) {
+        assertInterval(text, inPercent(bias), `${what}, bias`);
+      } else {
+        assert.match(text, /^not told from 0/, what);
+        const bound = /up to (.*) %/.exec(text);
+        assert.equal(bound !== null, bias.high !== null, what);
+        if (bound) assertClose(readNumber(bound[1]) / 100, bias.high, what, 0.006);
+      }
+    }
+  });
+
   pageTest('the table of times to an error', {}, async (page) => {
     const rows = await rowsOf(page, 'time-to-error');
     for (const [i, {name, timeToError}] of results.integrators.entries()) {
@@ -139,7 +182,7 @@ export function testTables(pageTest, results) {
 
   pageTest('the table of what more samples do not remove', {}, async (page) => {
     const rows = await rowsOf(page, 'systematic');
-    for (const [i, {name, bias, systematic}] of results.integrators.entries()) {
+    for (const [i, {name, meanBias: bias, systematic}] of results.integrators.entries()) {
       assert.equal(rows[i][0], name);
       assertInterval(rows[i][1], inPercent(bias), `bias of ${name}`);
       assert.equal(rows[i][2].includes('yes'), bias.significant);
@@ -151,12 +194,13 @@ export function testTables(pageTest, results) {
   pageTest('the table of pilots', {}, async (page) => {
     const rows = results.pilots.length > 0 ? await rowsOf(page, 'pilots') : [];
     assert.equal(rows.length, results.pilots.length);
-    for (const [i, {integrator, mean, relMse, chosen, note}] of results.pilots.entries()) {
+    for (const [i, {integrator, mean, relMse, bias, chosen, note}] of results.pilots.entries()) {
       assert.equal(rows[i][0], integrator);
       assertClose(readNumber(rows[i][3]), mean, `mean of ${integrator}`, 0.006);
+      if (bias > 0) assertClose(readNumber(rows[i][5]) / 100, bias, `blur of ${integrator}`, 0.006);
       if (relMse !== null) assertClose(readNumber(rows[i][4]), relMse, `relMSE of ${integrator}`, 0.006);
-      assert.equal(rows[i][5].includes('chosen'), chosen);
-      assert.ok(rows[i][5].includes(note ?? ''));
+      assert.equal(rows[i][6].includes('chosen'), chosen);
+      assert.ok(rows[i][6].includes(note ?? ''));
     }
   });
 
@@ -165,7 +209,7 @@ export function testTables(pageTest, results) {
     assert.equal(await definitions.isVisible(), false);
     await page.locator('.reading summary').click();
     assert.equal(await definitions.isVisible(), true);
-    for (const word of ['MSE', 'relMSE', 'FLIP', 'Efficiency', 'intervals']) {
+    for (const word of ['MSE', 'relMSE', 'FLIP', 'Efficiency', 'intervals', 'Noise and bias', 'frequencies']) {
       assert.ok((await definitions.innerText()).includes(word), word);
     }
   });

@@ -3,7 +3,15 @@ import {element} from './dom.mjs';
 import {formatCount, formatNumber, formatPercent, formatSeconds, isNumber} from './numbers.mjs';
 import {verdictOf} from './verdict.mjs';
 
-function referenceSentence({origin, file, integrator, samplesPerPixel, seconds, relMse, noiseIsLimit}) {
+// What the merging of photons has blurred in the reference.
+function blurSentence({bias, biasIsLimit, radius}) {
+  if (!isNumber(bias) || !(radius > 0)) return '';
+  return ` It is blurred by the merging of photons within ${formatNumber(radius)} of the usual radius at first: ` +
+    `${biasIsLimit ? 'not told from noise, ' : ''}a bias of ${biasIsLimit ? 'at most ' : ''}${formatPercent(bias)}.`;
+}
+
+function referenceSentence(reference) {
+  const {origin, file, integrator, samplesPerPixel, seconds, relMse, noiseIsLimit} = reference;
   const how = [];
   if (integrator) how.push(`by ${integrator}`);
   if (isNumber(samplesPerPixel)) how.push(`with ${formatCount(samplesPerPixel)} samples per pixel`);
@@ -16,7 +24,7 @@ function referenceSentence({origin, file, integrator, samplesPerPixel, seconds, 
     ? ` Its own noise is a relMSE of ${noiseIsLimit ? 'at most ' : ''}${formatNumber(relMse)}, ` +
       `an error of ${formatPercent(Math.sqrt(relMse))}.`
     : ' It has no variance layers, and is taken as exact.';
-  return `${begin}${made}.${error}`;
+  return `${begin}${made}.${error}${blurSentence(reference)}`;
 }
 
 function facts(results) {

@@ -5,6 +5,7 @@ import {showHead} from './head.mjs';
 import {showPictures} from './picture_section.mjs';
 import {showReading} from './reading.mjs';
 import {readEmbedded} from './results.mjs';
+import {showSpectrum} from './spectrum_plot.mjs';
 import {showTables} from './tables.mjs';
 
 function section(id) {
@@ -39,6 +40,7 @@ function show() {
   showHead(section('head'), results);
   showConvergence(section('convergence'), results);
   showPictures(section('pictures-section'), results, pictures);
+  showSpectrum(section('spectrum'), results);
   showTables(section('numbers'), results);
   showReading(section('reading'), results);
   unfoldForPrint();

@@ -21,8 +21,17 @@ export function showReading(section, {confidence, repeats}) {
       'difference.'],
     ['The reference’s own noise', 'The reference was rendered too. Where its variance is known, it is subtracted from ' +
       'MSE and relMSE; what does not stand out from it is called not resolved. From FLIP it cannot be subtracted.'],
-    ['Bias and systematic part', 'Noise averages out, these do not. Bias compares the mean of the whole picture with ' +
-      'the reference’s; the systematic part is the relMSE that all repeats have in common at the largest budget.'],
+    ['Noise and bias', 'Noise averages out, bias does not. The noise is what differs between the repeats, the bias what they ' +
+      'have in common, both as roots of their part of relMSE. The bias of integrators that merge photons is their blur, ' +
+      'which falls with more samples. The mean against the reference compares whole pictures; the systematic part is ' +
+      'the square of the bias at the largest budget.'],
+    ['The reference’s own bias', 'Where all integrators without blur miss light, the reference is rendered by one that ' +
+      'merges photons, within radii so small that the bias should be below the noise. It is estimated from renders at ' +
+      'two radii, one half of the other. Errors below it are not resolved, and it widens intervals.'],
+    ['Error over frequencies', 'The power spectrum of the error, relative to the reference as in relMSE, averaged over ' +
+      'rings of equal frequency and over repeats. Its integral over all frequencies is relMSE; noise that is independent ' +
+      'from pixel to pixel is a level line at relMSE. What falls to the right is correlated between pixels, such as ' +
+      'light from shared photons or blur.'],
   ];
   section.append(element('details', {class: 'reading'}, element('summary', {}, 'How to read this page'),
     element('dl', {}, entries.map(([term, text]) => [element('dt', {}, term), element('dd', {}, text)]))));

@@ -77,6 +77,37 @@ function snapshotTable(results, kind) {
   return table(`snapshots-${kind}`, title, columns, bodies, notes.length > 0 ? notes.join(' ') : null);
 }
 
+// "bias", with the names of those that blur.
+function biasHeading(results) {
+  const blurring = results.integrators.filter(({blurs}) => blurs).map(({name}) => name);
+  return blurring.length > 0 ? `Bias (with blur: ${blurring.join(', ')})` : 'Bias';
+}
+
+// An error that is not told from 0 is known by its upper bound.
+function biasCell(bias) {
+  if (!bias || !isNumber(bias.value)) return numberCell('–');
+  if (bias.significant) return intervalCell(inPercent(bias), '\u00a0%');
+  const bound = isNumber(bias.high) ? `, up to ${formatPercent(bias.high)}` : '';
+  return element('td', {class: 'number unresolved'}, `not told from 0${bound}`);
+}
+
+// The relative error of every snapshot in its parts.
+function partsTable(results) {
+  if (!snapshotsOf(results).some(({snapshot}) => snapshot.noise || snapshot.bias)) return null;
+  const bodies = ['time', 'samples'].flatMap((kind) => budgetsOf(results, kind).map((budget) => {
+    const rows = results.integrators.map((integrator) => ({integrator, snapshot: snapshotAt(integrator, kind, budget)}))
+      .filter(({snapshot}) => snapshot !== null);
+    return element('tbody', {}, rows.map(({integrator, snapshot}, i) => element('tr', {},
+      i === 0 ? budgetCell(kind, budget, rows.length) : null,
+      integratorCell(results, integrator.name),
+      snapshot.noise ? intervalCell(inPercent(snapshot.noise), '\u00a0%') : numberCell('–'),
+      biasCell(snapshot.bias))));
+  }));
+  return table('parts', 'Noise and bias', [{text: 'Budget'}, {text: 'Integrator'}, {text: 'Noise', number: true},
+    {text: biasHeading(results), number: true}], bodies,
+  'Relative errors, whose squares add up to relMSE: noise differs between repeats, bias is common to all of them.');
+}
+
 // Why an integrator does not get to an error.
 function neverText(integrator) {
   const {systematic} = integrator;
@@ -152,7 +183,7 @@ function ratioTable(results) {
 function systematicTable(results) {
   const verdict = (isShown) => isShown ? element('td', {class: 'significant'}, '▲ yes')
     : element('td', {}, 'not shown');
-  const rows = results.integrators.map(({name, bias, systematic}) => element('tr', {}, integratorCell(results, name),
+  const rows = results.integrators.map(({name, meanBias: bias, systematic}) => element('tr', {}, integratorCell(results, name),
     intervalCell(inPercent(bias), '\u00a0%'), verdict(bias?.significant), intervalCell(systematic),
     verdict(systematic?.significant && systematic.value > 0)));
   return table('systematic', 'What more samples do not remove', [{text: 'Integrator'},
@@ -165,14 +196,15 @@ function pilotTable(results) {
   const rows = results.pilots.map((pilot) => element('tr', {}, integratorCell(results, pilot.integrator),
     numberCell(formatSeconds(pilot.seconds)), numberCell(formatNumber(pilot.samplesPerPixel)),
     numberCell(formatNumber(pilot.mean)), numberCell(formatNumber(pilot.relMse)),
+    numberCell(formatPercent(pilot.bias)),
     element('td', {}, [pilot.chosen ? 'chosen' : '', pilot.note ?? ''].filter(Boolean).join('; '))));
   return table('pilots', 'Pilots: which integrator makes the reference', [{text: 'Integrator'},
-    ...['Time', 'Spp', 'Mean', 'relMSE'].map((text) => ({text, number: true})), {text: 'Outcome'}],
+    ...['Time', 'Spp', 'Mean', 'relMSE', 'Blur'].map((text) => ({text, number: true})), {text: 'Outcome'}],
   element('tbody', {}, rows));
 }
 
 export function showTables(section, results) {
-  for (const part of [snapshotTable(results, 'time'), snapshotTable(results, 'samples'), timeToErrorTable(results),
+  for (const part of [snapshotTable(results, 'time'), snapshotTable(results, 'samples'), partsTable(results), timeToErrorTable(results),
     ratioTable(results), systematicTable(results), pilotTable(results)]) {
     if (part) section.append(part);
   }

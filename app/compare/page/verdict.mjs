@@ -73,14 +73,15 @@ function ratioSentence(results, {kind, budget}, at) {
 
 // What keeps an integrator from ever reaching the reference.
 export function flawOf(integrator) {
-  const {name, bias, systematic} = integrator;
+  const {name, meanBias: bias, systematic, blurs} = integrator;
   if (bias?.significant && isNumber(bias.value)) {
     const [finds, side] = bias.value < 0 ? ['misses light', 'below'] : ['finds too much light', 'above'];
     return `${name} ${finds}: its mean is ${formatPercent(Math.abs(bias.value))} ${side} the reference.`;
   }
   if (systematic?.significant && isNumber(systematic.value) && systematic.value > 0) {
-    return `${name} does not converge to the reference: an error of ${formatPercent(Math.sqrt(systematic.value))} ` +
-      'remains however many samples it takes.';
+    const error = formatPercent(Math.sqrt(systematic.value));
+    return blurs ? `${name} blurs: an error of ${error} is common to all repeats, and falls slowly with more samples.`
+      : `${name} does not converge to the reference: an error of ${error} remains however many samples it takes.`;
   }
   return null;
 }

@@ -76,6 +76,11 @@ TEST(ImageError, WhatTwoImagesHaveInCommonIsTheirBias) {
       mean += all.without[k] / 3;
     }
     EXPECT_NEAR(all.relMse, mean, 1e-9);  // of all pairs
+    double measured = 0;
+    for (const Image& image : images) measured += MeasureError(image, reference).relMse / 3;
+    EXPECT_NEAR(all.relMse + all.varying, measured, 1e-9);
+    EXPECT_NEAR(all.varying / MeasureError(Noisy(0.05, 9, scale), Noisy(0, 9, scale)).relMse, 1, 0.2);
+    EXPECT_NEAR((all.varyingWithout[0] + all.varyingWithout[1] + all.varyingWithout[2]) / 3, all.varying, 1e-9);
     return all.relMse;
   };
   EXPECT_NEAR(common(1), 0, 2e-4);

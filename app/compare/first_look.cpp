@@ -1,0 +1,237 @@
+#include "app/compare/first_look.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/compare/blur.h"
+#include "app/compare/estimate.h"
+#include "app/compare/mean_of_images.h"
+#include "app/compare/neighbourhood.h"
+#include "app/compare/reference.h"
+#include "base/progress.h"
+#include "film/metrics.h"
+#include "render/settings/integrator_choice.h"
+
+namespace lampyr {
+
+namespace {
+
+constexpr int kPilotParts = 4;
+
+// Means of the whole picture and of the blocks of a grid over it, for each part of a pilot.
+struct PilotRun {
+  Pilot pilot;
+  std::vector<double> means;
+  std::vector<std::vector<double>> blocks;
+  bool isHinted = false;
+  bool isBlurred = false;           // by photons
+  std::vector<Image> wide, narrow;  // of the parts, if it is blurred: at two radii
+  double ratioOfRadii = 0.5;
+
+  // relMSE of noise and blur.
+  double TotalError() const { return pilot.relMse + pilot.bias * pilot.bias; }
+};
+
+constexpr int kGrid = 16;
+
+std::vector<double> BlockMeans(const Image& image) {
+  std::vector<double> sums(kGrid * kGrid, 0.0), counts(kGrid * kGrid, 0.0);
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const auto block = static_cast<size_t>(y * kGrid / image.height * kGrid + x * kGrid / image.width);
+      sums[block] += static_cast<double>(image.RgbAt(x, y).Average());
+      ++counts[block];
+    }
+  }
+  for (size_t i = 0; i < sums.size(); ++i) sums[i] /= std::max(counts[i], 1.0);
+  return sums;
+}
+
+// True if `a` is significantly brighter than `b`, with an error probability `byChance`. Differences below 1e-5 of
+// `scale` count as rounding.
+bool IsBrighter(std::span<const double> a, std::span<const double> b, double byChance, double scale) {
+  const Moments first = MomentsOf(a), second = MomentsOf(b);
+  constexpr double rounding = 1e-5;
+  const double error = std::sqrt(first.varianceOfMean + second.varianceOfMean);
+  const double t = StudentQuantileTwoSided(byChance, static_cast<double>(a.size()) - 1);
+  return first.mean - second.mean > std::max(t * error, rounding * scale);
+}
+
+// True if `other` finds significantly more light than `run`, in the whole picture or in a block of it.
+bool FindsMore(const PilotRun& other, const PilotRun& run) {
+  constexpr double byChance = 0.01;
+  const double scale = MomentsOf(other.means).mean;
+  if (IsBrighter(other.means, run.means, byChance, scale)) return true;
+  // A blurred picture is brighter next to bright areas; larger blocks average this out.
+  const int side = other.isBlurred || run.isBlurred ? 4 : 1, across = kGrid / side;
+  for (int block = 0; block < across * across; ++block) {
+    const auto of = [=](const PilotRun& one) {
+      std::vector<double> values;
+      for (const std::vector<double>& part : one.blocks) {
+        double sum = 0;
+        for (int i = 0; i < side * side; ++i) {
+          const int x = block % across * side + i % side, y = block / across * side + i / side;
+          sum += part[static_cast<size_t>(y * kGrid + x)];
+        }
+        values.push_back(sum / (side * side));
+      }
+      return values;
+    };
+    if (IsBrighter(of(other), of(run), SidakRate(byChance, across * across), scale)) return true;
+  }
+  return false;
+}
+
+// Notes why a pilot is not to be trusted. Returns false if there is nothing to note.
+bool NoteFlaw(PilotRun& run, const std::vector<PilotRun>& runs, bool allBlack, bool allHinted) {
+  if (!(run.pilot.mean > 0) && !allBlack) {
+    run.pilot.note = "finds no light";
+    return true;
+  }
+  const PilotRun* more = nullptr;  // the brightest of those that find more
+  for (const PilotRun& other : runs) {
+    if ((!more || other.pilot.mean > more->pilot.mean) && FindsMore(other, run)) more = &other;
+  }
+  if (more) {
+    const double share = MomentsOf(run.means).mean / MomentsOf(more->means).mean;
+    run.pilot.note = "finds less light than " + more->pilot.integrator +
+                     ", in some part of the picture or in all of it (" + FormatPercent(share) + ")";
+    return true;
+  }
+  if (run.isHinted && !allHinted) {
+    run.pilot.note = "cannot find all of the light";
+    return true;
+  }
+  return false;
+}
+
+// The least advantage, as a ratio of relative errors, for which blur is accepted.
+constexpr double kWorthBlur = 3;
+
+// The better of the best that does not blur and the best that does; null: none. Notes why.
+PilotRun* ChooseBetween(PilotRun* sharp, PilotRun* blurred) {
+  if (!blurred) return sharp;
+  if (!sharp) {
+    blurred->pilot.note = "finds light that the others miss; what it blurs is measured";
+    return blurred;
+  }
+  const double ratio = std::sqrt(blurred->TotalError() / sharp->TotalError());
+  const std::string error = "its error, noise and blur, is " + FormatPercent(ratio) + " of that of " +
+                            sharp->pilot.integrator + " in the same time";
+  if (kWorthBlur * ratio < 1) {
+    sharp->pilot.note = "finds all light, with more noise than " + blurred->pilot.integrator + " has noise and blur";
+    blurred->pilot.note = error;
+    return blurred;
+  }
+  blurred->pilot.note = "blurs: " + error;
+  return sharp;
+}
+
+void Choose(std::vector<PilotRun>& runs) {
+  std::sort(runs.begin(), runs.end(),
+            [](const PilotRun& a, const PilotRun& b) { return a.TotalError() < b.TotalError(); });
+  const bool allHinted =
+      std::all_of(runs.begin(), runs.end(), [](const PilotRun& run) { return run.isHinted || run.isBlurred; });
+  const bool allBlack = std::none_of(runs.begin(), runs.end(), [](const PilotRun& run) { return run.pilot.mean > 0; });
+  PilotRun *sharp = nullptr, *blurred = nullptr;
+  for (PilotRun& run : runs) {
+    if (NoteFlaw(run, runs, allBlack, allHinted)) continue;
+    PilotRun*& best = run.isBlurred ? blurred : sharp;
+    if (!best) best = &run;
+  }
+  PilotRun* chosen = ChooseBetween(sharp, blurred);
+  if (!chosen) {
+    chosen = &*std::max_element(runs.begin(), runs.end(),
+                                [](const PilotRun& a, const PilotRun& b) { return a.pilot.mean < b.pilot.mean; });
+  }
+  chosen->pilot.chosen = true;
+}
+
+std::vector<PilotRun> Candidates(const BuiltScene& built) {
+  std::vector<PilotRun> runs;
+  const auto add = [&](const std::string& name) {
+    const RenderSettings settings = VariantOf(built.settings, name);
+    if (!IntegratorRefusal(built.scene, settings.integrator).empty()) return;
+    PilotRun run;
+    run.pilot.integrator = name;
+    run.isBlurred = GathersPhotons(settings);
+    run.isHinted = !IntegratorHints(built.scene, settings.integrator).empty();
+    runs.push_back(run);
+  };
+  // Of those that gather photons, vcm has all techniques, and "auto" may have found which of them are worth their time.
+  for (const std::string& name : IntegratorNames()) {
+    if (name == "vcm" || !GathersPhotons(name, built.settings.values)) add(name);
+  }
+  if (built.settings.counts && GathersPhotons(built.settings)) add(kAuto);
+  return runs;
+}
+
+// Renders a part of a pilot: by an integrator that blurs, half of it at half the radius.
+Image RenderPart(const ComparedScene& scene, PilotRun& run, int part, double seconds) {
+  Image image;
+  const auto render = [&](double time, uint32_t firstSample, uint64_t seed) {
+    double radius = 1;
+    const auto keep = [&](size_t, const ComparedScene::Milestone& reached, const Image& reachedImage) {
+      run.pilot.seconds += reached.seconds;
+      run.pilot.samplesPerPixel += reached.samplesPerPixel;
+      radius = RadiusOfSamples(firstSample, reached.samplesPerPixel);
+      image = ChannelsOf(reachedImage, {"R", "G", "B"});
+    };
+    scene.Render(
+        run.pilot.integrator, SeedOf(SeedUse::Pilot, seed), {time}, {}, keep, [](double) {}, firstSample);
+    return radius;
+  };
+  const auto index = static_cast<uint64_t>(part);
+  if (!run.isBlurred) {
+    render(seconds, 0, index);
+    return image;
+  }
+  const double wide = render(seconds / 2, kSamplesToHalfRadius, index);
+  run.wide.push_back(image);
+  const double narrow = render(seconds / 2, kSamplesToHalfRadius * kSamplesToHalfRadius, kPilotParts + index);
+  run.narrow.push_back(image);
+  run.ratioOfRadii = narrow / wide;
+  MeanOfImages both;
+  both.Add(run.wide.back());
+  both.Add(run.narrow.back());
+  return both.Mean();
+}
+
+// The blur of the mean of pictures at both radii.
+double BlurOfBoth(const PilotRun& run) {
+  std::vector<const Image*> wide, narrow;
+  for (const Image& image : run.wide) wide.push_back(&image);
+  for (const Image& image : run.narrow) narrow.push_back(&image);
+  const double q = run.ratioOfRadii;
+  return std::sqrt(DifferenceOfRadii(wide, narrow).Times(0.5 * (1 + q) / (1 - q)).relMse);
+}
+
+}  // namespace
+
+std::vector<Pilot> FlyPilots(const ComparedScene& scene, double seconds, const ReferenceProgress& progress) {
+  std::vector<PilotRun> runs = Candidates(scene.Built());
+  std::vector<MeanOfImages> images(runs.size());
+  const double steps = static_cast<double>(kPilotParts) * static_cast<double>(runs.size());
+  for (int part = 0; part < kPilotParts; ++part) {
+    for (size_t i = 0; i < runs.size(); ++i) {
+      const Image image = RenderPart(scene, runs[i], part, seconds / kPilotParts);
+      runs[i].means.push_back(MeanValue(image));
+      runs[i].blocks.push_back(BlockMeans(image));
+      images[i].Add(image);
+      progress((part * static_cast<double>(runs.size()) + static_cast<double>(i) + 1) / steps,
+               "first look, " + runs[i].pilot.integrator);
+    }
+  }
+  for (size_t i = 0; i < runs.size(); ++i) {
+    const Image mean = images[i].Mean();
+    runs[i].pilot.mean = MeanValue(mean);
+    runs[i].pilot.relMse = RelativeNoise(mean);
+    if (runs[i].isBlurred && runs[i].pilot.mean > 0) runs[i].pilot.bias = BlurOfBoth(runs[i]);
+  }
+  Choose(runs);
+  std::vector<Pilot> pilots;
+  for (const PilotRun& run : runs) pilots.push_back(run.pilot);
+  return pilots;
+}
+
+}  // namespace lampyr

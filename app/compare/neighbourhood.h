@@ -1,0 +1,21 @@
+// Relative errors of noisy pictures without a reference: relative to the mean of a neighbourhood of the pixel.
+//
+// A pixel that has caught no light yet would otherwise count as a dark one, and what another render finds there as an
+// error of any size.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "film/image.h"
+
+namespace lampyr {
+
+// Of each pixel, R, G, B: the square of the mean over a square of 7 × 7 pixels around it, plus 1 % of the mean of these
+// squares over the picture.
+std::vector<std::array<double, 3>> NeighbourhoodSquares(const Image& image);
+
+// relMSE of the noise of a picture with standard errors (MeanOfImages), relative to its neighbourhoods.
+double RelativeNoise(const Image& mean);
+
+}  // namespace lampyr
