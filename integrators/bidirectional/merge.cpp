@@ -46,6 +46,7 @@ Color Merge(const BidirectionalSample& sample) {
   joint.isMerged = true;
   joint.mergesAtCamera = true;
   const float probability = sample.settings.counts.merging.At(sample.film);
+  sample.lookup.used.clear();
   Color sum;
   for (size_t i = 0; i < found.size(); ++i) {
     const uint32_t index = found[i];
@@ -72,12 +73,14 @@ Color Merge(const BidirectionalSample& sample) {
     // Multiplied in another order than the sum: a shared product would be rounded differently than without layers.
     if (context.layers) [[unlikely]]
       context.layers->Add(photon.group, Product(vertex.Throughput(), value, perDensity * weight));
-    if (pass.use) [[unlikely]]
-      pass.use->Add(
-          index, (vertex.Throughput() * f.Sum()).Average() * static_cast<float>(weight) * sample.perArea / probability);
+    if (pass.use) {
+      sample.lookup.used.push_back({index, (vertex.Throughput() * f.Sum()).Average() * static_cast<float>(weight) *
+                                               sample.perArea / probability});
+    }
     if (sample.IsObserved()) [[unlikely]]
       ReportMerge(sample, photon, joint.light.last, Product(vertex.Throughput(), value, perDensity), weight);
   }
+  if (pass.use) pass.use->Add(sample.lookup.used);
   return Product(vertex.Throughput(), sum, perDensity);
 }
 
