@@ -47,11 +47,12 @@ Color Merge(const BidirectionalSample& sample) {
   joint.mergesAtCamera = true;
   const float probability = sample.settings.counts.merging.At(sample.film);
   sample.lookup.used.clear();
+  constexpr size_t kAhead = 8;
+  for (size_t i = 0; i < std::min(kAhead, found.size()); ++i) pass.map->PrefetchPathOf((*pass.map)[found[i]]);
   Color sum;
   for (size_t i = 0; i < found.size(); ++i) {
     const uint32_t index = found[i];
     const Photon& photon = (*pass.map)[index];
-    constexpr size_t kAhead = 2;
     if (i + kAhead < found.size()) pass.map->PrefetchPathOf((*pass.map)[found[i + kAhead]]);
     if (photon.depth + sample.camera.Count() > most || !photon.IsOnSurface(vertex.bsdf.Ng())) continue;
     const Vector3& toLight = photon.toPrevious;
