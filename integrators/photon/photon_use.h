@@ -46,9 +46,10 @@ class PhotonUse {
     uint32_t photon;
     float part;
   };
-  // Adds the contributions of a lookup's photons, and overwrites them. May be called from any thread: sums are integers,
-  // independent of the order. All at once, because an atomic addition waits for the reads before it, and reads after it
-  // wait for the addition: between photons it would keep the processor from reading several of them at a time.
+  // Adds the contributions of a lookup's photons, and overwrites them. May be called from any thread: sums are
+  // integers, independent of the order. All at once, because an atomic addition waits for the reads before it, and
+  // reads after it wait for the addition: between photons it would keep the processor from reading several of them at a
+  // time.
   void Add(std::span<Contribution> contributions) {
     for (Contribution& contribution : contributions) {
       contribution.photon = paths_[contribution.photon];

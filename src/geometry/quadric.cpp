@@ -132,9 +132,12 @@ bool PreparedQuadric::Accept(const Point3d& p) const {
 Point2 PreparedQuadric::Encode(const Point3d& p) const {
   const double r = static_cast<double>(quadric_.radius);
   switch (quadric_.kind) {
-    case Quadric::Kind::Sphere: return OctahedralEncode(p);
-    case Quadric::Kind::Disk: return {static_cast<float>(p.x / r), static_cast<float>(p.y / r)};
-    case Quadric::Kind::Cylinder: break;
+    case Quadric::Kind::Sphere:
+      return OctahedralEncode(p);
+    case Quadric::Kind::Disk:
+      return {static_cast<float>(p.x / r), static_cast<float>(p.y / r)};
+    case Quadric::Kind::Cylinder:
+      break;
   }
   const double zMin = static_cast<double>(quadric_.zMin), zMax = static_cast<double>(quadric_.zMax);
   return {DiamondAngle(p.x, p.y), static_cast<float>((p.z - zMin) / (zMax - zMin))};
@@ -146,8 +149,12 @@ int PreparedQuadric::Intersect(const RayDouble& ray, QuadricHit hits[2], int mos
   double roots[2];
   int count = 0;
   switch (quadric_.kind) {
-    case Quadric::Kind::Sphere: count = IntersectSphere(o, d, ray.tMax, roots); break;
-    case Quadric::Kind::Cylinder: count = IntersectCylinder(o, d, roots); break;
+    case Quadric::Kind::Sphere:
+      count = IntersectSphere(o, d, ray.tMax, roots);
+      break;
+    case Quadric::Kind::Cylinder:
+      count = IntersectCylinder(o, d, roots);
+      break;
     case Quadric::Kind::Disk:
       if (d.z == 0) return 0;
       roots[0] = (static_cast<double>(quadric_.zMin) - o.z) / d.z;
@@ -169,9 +176,12 @@ int PreparedQuadric::Intersect(const RayDouble& ray, QuadricHit hits[2], int mos
 Point3 PreparedQuadric::Decode(const Point2& c) const {
   const float r = quadric_.radius;
   switch (quadric_.kind) {
-    case Quadric::Kind::Sphere: return OctahedralDecode(c) * r;
-    case Quadric::Kind::Disk: return {c.x * r, c.y * r, quadric_.zMin};
-    case Quadric::Kind::Cylinder: break;
+    case Quadric::Kind::Sphere:
+      return OctahedralDecode(c) * r;
+    case Quadric::Kind::Disk:
+      return {c.x * r, c.y * r, quadric_.zMin};
+    case Quadric::Kind::Cylinder:
+      break;
   }
   const Vector2 direction = DiamondDirection(c.x);
   return {direction.x * r, direction.y * r, quadric_.zMin + c.y * (quadric_.zMax - quadric_.zMin)};
@@ -194,7 +204,9 @@ void PreparedQuadric::Parametrize(const Point3& p, float v, SurfacePoint& point)
       v = (r - rho) / (r - quadric_.innerRadius);
       dpdv = rho > 0 ? Vector3(p.x, p.y, 0.0f) * ((quadric_.innerRadius - r) / rho) : Vector3(0.0f);
       break;
-    case Quadric::Kind::Cylinder: dpdv = {0, 0, quadric_.zMax - quadric_.zMin}; break;
+    case Quadric::Kind::Cylinder:
+      dpdv = {0, 0, quadric_.zMax - quadric_.zMin};
+      break;
   }
   point.uv = {std::min(phi / phiMax, 1.0f), v};
   point.dpdu = quadric_.toRender.Vector(Vector3(-p.y, p.x, 0.0f) * phiMax);
@@ -206,12 +218,16 @@ void PreparedQuadric::Evaluate(const Point2& coordinates, bool isParametrized, S
   const float r = quadric_.radius;
   Vector3 normal, error = Abs(p) * Gamma(5);
   switch (quadric_.kind) {
-    case Quadric::Kind::Sphere: normal = p / r; break;
+    case Quadric::Kind::Sphere:
+      normal = p / r;
+      break;
     case Quadric::Kind::Disk:
       normal = {0, 0, 1};
       error.z = 0;  // p.z is the height itself
       break;
-    case Quadric::Kind::Cylinder: normal = {p.x / r, p.y / r, 0}; break;
+    case Quadric::Kind::Cylinder:
+      normal = {p.x / r, p.y / r, 0};
+      break;
   }
   point.position = quadric_.toRender.Point(p);
   point.positionError = quadric_.toRender.PointError(p, error);

@@ -1,6 +1,6 @@
 // Spheres, disks and cylinders, whole or partial: intersection and surface parametrisation in the conventions of
-// pbrt-v4 (u along φ from 0 to phiMax; v from the lower to the upper end of sphere and cylinder, and from the rim to the
-// inner radius of the disk).
+// pbrt-v4 (u along φ from 0 to phiMax; v from the lower to the upper end of sphere and cylinder, and from the rim to
+// the inner radius of the disk).
 #pragma once
 
 #include <optional>
@@ -25,12 +25,12 @@ class PreparedQuadric {
  public:
   explicit PreparedQuadric(const Quadric& quadric);
 
-  // The hits with t in (tMin, tMax], nearest first, `most` of them at most; returns how many. The ray is in render space
-  // (the target of `toRender`).
+  // The hits with t in (tMin, tMax], nearest first, `most` of them at most; returns how many. The ray is in render
+  // space (the target of `toRender`).
   int Intersect(const RayDouble& ray, QuadricHit hits[2], int most = 2) const;
 
-  // Position, error, normals and, with `isParametrized`, uv and tangents, in the target space of `toRender`. The indices
-  // are left alone.
+  // Position, error, normals and, with `isParametrized`, uv and tangents, in the target space of `toRender`. The
+  // indices are left alone.
   void Evaluate(const Point2& coordinates, bool isParametrized, SurfacePoint& point) const;
 
   const Quadric& Shape() const { return quadric_; }
