@@ -25,10 +25,11 @@ Color Connect(const BidirectionalSample& sample, size_t lightCount) {
   const SampleContext& context = sample.context;
   const PathVertex &y = sample.light.vertices[lightCount - 1], &z = sample.camera.Last();
   if (y.isDelta) return Color(0.0f);
-  const Vector3d difference = Vector3d(z.point.position) - Vector3d(y.point.position);
-  const double squared = LengthSquared(difference);
-  if (!(squared > 0)) return Color(0.0f);
-  const Vector3 toCamera(difference / std::sqrt(squared));
+  const Vector3 difference = z.point.position - y.point.position;
+  const float squaredFloat = LengthSquared(difference);
+  if (!(squaredFloat > 0)) return Color(0.0f);
+  const Vector3 toCamera = difference / std::sqrt(squaredFloat);
+  const auto squared = static_cast<double>(squaredFloat);
   const BsdfEvaluation fy = y.Evaluate(toCamera, TransportMode::Importance);
   const Color leaving = y.diffuse * fy.diffuse + y.specular * fy.specular;
   if (leaving.IsBlack()) return leaving;

@@ -48,11 +48,13 @@ Color Merge(const BidirectionalSample& sample) {
   joint.isMerged = true;
   joint.mergesAtCamera = true;
   const float probability = sample.settings.counts.merging.At(sample.film);
+  sample.lookup.used.clear();
+  constexpr size_t kAhead = 8;
+  for (size_t i = 0; i < std::min(kAhead, found.size()); ++i) pass.map->PrefetchPathOf((*pass.map)[found[i]]);
   Color sum;
   for (size_t i = 0; i < found.size(); ++i) {
     const uint32_t index = found[i];
     const Photon& photon = (*pass.map)[index];
-    constexpr size_t kAhead = 2;
     if (i + kAhead < found.size()) pass.map->PrefetchPathOf((*pass.map)[found[i + kAhead]]);
     if (photon.depth + sample.camera.Count() > most || !photon.IsOnSurface(vertex.bsdf.Ng())) continue;
     const Vector3& toLight = photon.toPrevious;
@@ -76,12 +78,14 @@ Color Merge(const BidirectionalSample& sample) {
     // Multiplied in another order than the sum: a shared product would be rounded differently than without layers.
     if (context.layers) [[unlikely]]
       context.layers->Add(photon.group, Product(vertex.Throughput(), value, perDensity * weight));
-    if (pass.use) [[unlikely]]
-      pass.use->Add(
-          index, (vertex.Throughput() * f.Sum()).Average() * static_cast<float>(weight) * sample.perArea / probability);
+    if (pass.use) {
+      sample.lookup.used.push_back({index, (vertex.Throughput() * f.Sum()).Average() * static_cast<float>(weight) *
+                                               sample.perArea / probability});
+    }
     if (sample.IsObserved()) [[unlikely]]
       ReportMerge(sample, photon, joint.light.last, Product(vertex.Throughput(), value, perDensity), weight);
   }
+  if (pass.use) pass.use->Add(sample.lookup.used);
   return Product(vertex.Throughput(), sum, perDensity);
 }
 

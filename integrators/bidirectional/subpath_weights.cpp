@@ -3,7 +3,7 @@
 namespace lampyr {
 
 void SetWeights(const PathVertex& previous, const PathState& state, bool connects, PathVertex& vertex) {
-  const double squared = LengthSquared(Vector3d(vertex.point.position) - Vector3d(previous.point.position));
+  const auto squared = static_cast<double>(LengthSquared(vertex.point.position - previous.point.position));
   vertex.pdfForward = state.pdfDirection * EdgeDensity(vertex, state.ray.direction, squared);
   vertex.previousSolidAnglePerArea = EdgeDensity(previous, state.ray.direction, squared);
   vertex.weight =
@@ -63,7 +63,7 @@ bool WeightedLightPath::FirstHit(const EmittedPhoton& photon, PathVertex& first)
   const LightingServices& lighting = *context_.scene.lighting;
   const std::optional<FoundLight> found = lighting.EvaluateFirstHit(photon, first.receiver);
   if (!found) return false;
-  const double squared = LengthSquared(Vector3d(first.point.position) - Vector3d(photon.emission.position));
+  const auto squared = static_cast<double>(LengthSquared(first.point.position - photon.emission.position));
   const SolidAnglePerArea edge =
       FirstEdgeDensity(lighting, found->light, first.GeometryTerm(first.toPrevious), squared);
   end_ = EndOf(lighting, *found, lighting.CanBeHit(found->light), edge, lightPaths_);

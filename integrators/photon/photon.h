@@ -27,13 +27,15 @@ class PackedNormal {
     x_ = static_cast<int16_t>(std::lround(x * kScale));
     y_ = static_cast<int16_t>(std::lround(y * kScale));
   }
-  Normal3 Unpack() const {
-    Normal3 n(x_ / kScale, y_ / kScale, 0);
+  Normal3 Unpack() const { return glm::normalize(Direction()); }
+  // Unpack times a length of 0.57 to 1.
+  Vector3 Direction() const {
+    Vector3 n(x_ / kScale, y_ / kScale, 0);
     n.z = 1 - std::abs(n.x) - std::abs(n.y);
     const float t = std::max(-n.z, 0.0f);
     n.x += n.x >= 0 ? -t : t;
     n.y += n.y >= 0 ? -t : t;
-    return glm::normalize(n);
+    return n;
   }
 
  private:
@@ -94,11 +96,12 @@ class PhotonList {
   void Add(const PathVertex& vertex, size_t depth, uint32_t group = 0) {
     const float passed = vertex.coverage > 0 ? 1 / vertex.coverage : 0.0f;
     const auto origin = static_cast<uint32_t>(origins_.size()) - 1;
-    photons_.push_back({vertex.point.position, vertex.toPrevious, vertex.diffuse * passed, vertex.specular * passed,
-                        PhotonWeight::Of(vertex.weight, depth),
-                        static_cast<float>(vertex.previousSolidAnglePerArea.value), PackedNormal(vertex.bsdf.Ng()),
-                        static_cast<uint16_t>(std::min(depth, kDeepest)), static_cast<uint16_t>(group), origin,
-                        static_cast<uint32_t>(densities_.size() + 1)});
+    // In place: a copy of what was just written field by field stalls on store forwarding.
+    photons_.emplace_back(vertex.point.position, vertex.toPrevious, vertex.diffuse * passed, vertex.specular * passed,
+                          PhotonWeight::Of(vertex.weight, depth),
+                          static_cast<float>(vertex.previousSolidAnglePerArea.value), PackedNormal(vertex.bsdf.Ng()),
+                          static_cast<uint16_t>(std::min(depth, kDeepest)), static_cast<uint16_t>(group), origin,
+                          static_cast<uint32_t>(densities_.size() + 1));
   }
   // Keeps the densities of the current path's vertices up to its last photon, which is not deeper than kDeepest, and
   // before them those of its light's end. To be called when the path is complete, or not at all.
@@ -170,7 +173,8 @@ struct alignas(64) Photon {
   // side of a thin wall passes this test, but the BSDF scatters nothing of it.
   bool IsOnSurface(const Normal3& Ng) const {
     constexpr float cosine = 0.8f;
-    return std::abs(glm::dot(normal.Unpack(), Ng)) > cosine;
+    const Vector3 direction = normal.Direction();
+    return Sqr(glm::dot(direction, Ng)) > cosine * cosine * LengthSquared(direction);
   }
 };
 static_assert(sizeof(Photon) == 64, "photons are counted in millions");

@@ -159,6 +159,13 @@ PhotonMap::PhotonMap(std::span<const PhotonList> lists, int threads, std::vector
   photons_.resize(count);
   std::vector<float> positions(3 * count);
   ForAll(count, threads, [&](size_t i) {
+    // In the order of places the photons are read at random.
+    constexpr size_t kAhead = 16;
+    if (i + kAhead < count) {
+      const TracedPhoton* next = traced.photons[order[i + kAhead]];
+      __builtin_prefetch(next);
+      __builtin_prefetch(&next->path);
+    }
     const TracedPhoton& source = *traced.photons[order[i]];
     const Vector3 relative = source.position - center_;
     for (int axis = 0; axis < 3; ++axis) positions[3 * i + static_cast<size_t>(axis)] = relative[axis];

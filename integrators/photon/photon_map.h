@@ -14,9 +14,10 @@
 
 namespace lampyr {
 
-// Buffer of a thread, reused from lookup to lookup.
+// Buffers of a thread, reused from lookup to lookup.
 struct PhotonLookup {
   std::vector<uint32_t> found;
+  std::vector<PhotonUse::Contribution> used;  // of the photons found, for emission guiding
 };
 
 class PhotonMap {

@@ -24,19 +24,27 @@ PhotonStore::PhotonStore(const PhotonSettings& settings, uint64_t pixels, Emissi
 void PhotonStore::Take(std::vector<PhotonList>& lists) {
   for (PhotonList& list : lists) {
     if (hasRoom_ && bytes_ + list.Bytes(perPhoton_) <= most_) {
-      bytes_ += list.Bytes(perPhoton_);
       paths_ += list.Paths();
-      waiting_.push_back(std::exchange(list, PhotonList()));
+      Keep(list);
       continue;
     }
     if (hasRoom_) {
       paths_ += list.KeepPaths(most_ - bytes_, perPhoton_, paths_ == 0 ? 1 : 0);
-      bytes_ += list.Bytes(perPhoton_);
-      waiting_.push_back(std::exchange(list, PhotonList()));
+      Keep(list);
       hasRoom_ = false;
     }
     list.Clear();
   }
+}
+
+void PhotonStore::Keep(PhotonList& list) {
+  bytes_ += list.Bytes(perPhoton_);
+  PhotonList empty;
+  if (!spare_.empty()) {
+    empty = std::move(spare_.back());
+    spare_.pop_back();
+  }
+  waiting_.push_back(std::exchange(list, std::move(empty)));
 }
 
 void PhotonStore::EndGathering() {
@@ -84,6 +92,10 @@ std::shared_ptr<PhotonUse> PhotonStore::MakeUse(std::vector<uint32_t> origins) c
 }
 
 void PhotonStore::Clear() {
+  for (PhotonList& list : waiting_) {
+    list.Clear();
+    spare_.push_back(std::move(list));
+  }
   waiting_.clear();
   bytes_ = paths_ = 0;
   hasRoom_ = true;

@@ -63,6 +63,8 @@ class PhotonStore {
 
  private:
   std::shared_ptr<PhotonUse> MakeUse(std::vector<uint32_t> origins) const;
+  // Moves `list` to waiting_, and leaves an empty one in its place.
+  void Keep(PhotonList& list);
 
   PhotonSettings settings_;
   EmissionLearning* learning_;
@@ -70,6 +72,7 @@ class PhotonStore {
   uint64_t perPhoton_, most_;  // bytes of a photon and of a pass
   std::vector<PhotonList> waiting_;
   uint64_t bytes_ = 0, paths_ = 0;  // in waiting_
+  std::vector<PhotonList> spare_;   // empty, with memory that the system need not provide again for every pass
   bool hasRoom_ = true;
   bool isTaken_ = false;
   uint32_t pass_ = 0;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -40,11 +41,24 @@ class PhotonUse {
   PhotonUse(std::vector<uint32_t> paths, std::vector<PathOrigin> origins)
       : paths_(std::move(paths)), origins_(std::move(origins)), sums_(origins_.size()) {}
 
-  // Adds a contribution. `part`: fraction of the photon's flux that reached the camera, per density of photons; 0 or
-  // more. May be called from any thread: sums are integers, independent of the order.
-  void Add(uint32_t photon, float part) {
+  // `part`: fraction of the photon's flux that reached the camera, per density of photons; 0 or more.
+  struct Contribution {
+    uint32_t photon;
+    float part;
+  };
+  // Adds the contributions of a lookup's photons, and overwrites them. May be called from any thread: sums are
+  // integers, independent of the order. All at once, because an atomic addition waits for the reads before it, and
+  // reads after it wait for the addition: between photons it would keep the processor from reading several of them at a
+  // time.
+  void Add(std::span<Contribution> contributions) {
+    for (Contribution& contribution : contributions) {
+      contribution.photon = paths_[contribution.photon];
+      __builtin_prefetch(&sums_[contribution.photon]);
+    }
     constexpr float most = 0x1p16f;
-    sums_[paths_[photon]].fetch_add(static_cast<uint64_t>(std::min(part, most) * kUnit), std::memory_order_relaxed);
+    for (const auto& [path, part] : contributions) {
+      sums_[path].fetch_add(static_cast<uint64_t>(std::min(part, most) * kUnit), std::memory_order_relaxed);
+    }
   }
   const std::vector<PathOrigin>& Origins() const { return origins_; }
   // Sum over all photons of a path.

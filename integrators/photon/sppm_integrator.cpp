@@ -94,6 +94,7 @@ class RadianceEstimate final : public PhotonGatherer {
     const float radius = RadiusAt(length);
     const std::span<const uint32_t> found =
         FindPhotons(*pass_.map, vertex.point.position, radius, lookup, context_.counts);
+    lookup.used.clear();
     Color sum;
     for (const uint32_t index : found) {
       const Photon& photon = (*pass_.map)[index];
@@ -106,9 +107,9 @@ class RadianceEstimate final : public PhotonGatherer {
              vertex.ArrivalCorrection(photon.toPrevious, photon.normal.Unpack());
       if (context_.layers) [[unlikely]]
         AddToLayers(photon, vertex, f, PerArea(radius));
-      if (pass_.use) [[unlikely]]
-        pass_.use->Add(index, (vertex.Throughput() * f.Sum()).Average() * Importance(length));
+      if (pass_.use) lookup.used.push_back({index, (vertex.Throughput() * f.Sum()).Average() * Importance(length)});
     }
+    if (pass_.use) pass_.use->Add(lookup.used);
     if (sum.IsBlack()) return sum;
     return Product(vertex.Throughput(), sum, PerArea(radius));
   }

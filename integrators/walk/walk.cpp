@@ -47,7 +47,7 @@ bool MakeVertex(const RenderScene& scene, const std::vector<std::shared_ptr<cons
   const SurfacePoint& point = vertex.point;
   vertex.toPrevious = -ray.direction;
   MakeInPlace(vertex.bsdf, [&] { return material->GetBsdf(point, vertex.toPrevious); });
-  const Normal3 Ns = vertex.bsdf.ShadingFrame().z;
+  const Normal3& Ns = vertex.bsdf.ShadingFrame().z;  // by reference: a copy of what was just written stalls
   vertex.receiver = {point.position, glm::dot(Ns, vertex.toPrevious) < 0 ? -Ns : Ns, vertex.bsdf.IsTransmissive(),
                      attributes.link};
   vertex.coverage = attributes.alpha ? attributes.alpha->Alpha(point.uv, point.position, point.Ng) : 1.0f;

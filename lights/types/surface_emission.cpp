@@ -110,13 +110,16 @@ void SurfaceEmission::NarrowFlat(const LightTransform& transform, EmissionBounds
   }
 }
 
+// Here and below the same variable is returned everywhere: it is then made in the caller's place, and a copy of what
+// was just written field by field stalls on store forwarding.
 std::optional<LightSample> SurfaceEmission::Sample(const LightContext& context, const Point3& P,
                                                    const EmittingPoint& point) const {
-  if (point.density.IsZero()) return std::nullopt;
+  std::optional<LightSample> sample;
+  if (point.density.IsZero()) return sample;
   const Vector3 toLight = point.position - P;
   const float squared = LengthSquared(toLight);
-  if (!(squared > 0)) return std::nullopt;
-  std::optional<LightSample> sample(std::in_place);
+  if (!(squared > 0)) return sample;
+  sample.emplace();
   sample->distance = std::sqrt(squared);
   sample->direction = toLight / sample->distance;
   sample->position = point.position;
@@ -149,9 +152,10 @@ bool SurfaceEmission::Complete(const LightContext& context, PdfArea density, Lig
 
 std::optional<LightEvaluation> SurfaceEmission::Evaluate(const LightContext& context, const LightHit& hit,
                                                          PdfArea density, PdfSolidAngle pdfDirect) const {
+  std::optional<LightEvaluation> evaluation;
   const float cosine = EmittedCosine(-glm::dot(hit.normal, hit.direction));
-  if (!(cosine > 0)) return std::nullopt;
-  std::optional<LightEvaluation> evaluation(std::in_place);
+  if (!(cosine > 0)) return evaluation;
+  evaluation.emplace();
   evaluation->normal = hit.normal;
   evaluation->pdfDirect = pdfDirect;
   Color radiance;
@@ -189,8 +193,9 @@ Vector3 SurfaceEmission::SampleEmissionDirection(const LightTransform& transform
 }
 
 std::optional<EmissionSample> SurfaceEmission::Emit(const LightContext& context, const EmittingPoint& point) const {
-  if (point.density.IsZero()) return std::nullopt;
-  std::optional<EmissionSample> sample(std::in_place);
+  std::optional<EmissionSample> sample;
+  if (point.density.IsZero()) return sample;
+  sample.emplace();
   sample->position = point.position;
   sample->positionError = point.positionError;
   sample->normal = point.normal;

@@ -223,6 +223,15 @@ void Film::AddSplats(const PixelFilter& filter, std::span<const SplatList> lists
   for (const SplatList& list : lists) lightPaths_ += list.Paths();
 }
 
+// Fetches the splats of the pixel at `film` into the cache.
+void Film::PrefetchSplats(const Point2& film) const {
+  const int x = std::clamp(static_cast<int>(film.x), crop_.x0, crop_.x1 - 1);
+  const int y = std::clamp(static_cast<int>(film.y), crop_.y0, crop_.y1 - 1);
+  const char* sums = reinterpret_cast<const char*>(&splats_[Index(x, y)]);
+  constexpr size_t kLine = 64;
+  for (size_t offset = 0; offset < sizeof(SplatSums); offset += kLine) __builtin_prefetch(sums + offset, 1);
+}
+
 // Adds to the rows of one band. Groups of rows are dealt to the bands in turn, so that the threads share a bright spot.
 void Film::AddToRows(const PixelFilter& filter, std::span<const SplatList> lists, int band, int bands) {
   constexpr int kGroup = 4;
@@ -235,6 +244,9 @@ void Film::AddToRows(const PixelFilter& filter, std::span<const SplatList> lists
   for (const SplatList& list : lists) {
     const uint32_t* layer = hasLayers ? list.Layers().data() : nullptr;  // of the splat
     for (const Splat& splat : list.Splats()) {
+      // Splats fall anywhere on the film.
+      constexpr ptrdiff_t kAhead = 4;
+      if (&list.Splats().back() - &splat >= kAhead) PrefetchSplats((&splat)[kAhead].film);
       const int y0 = std::max(firstPixel(splat.film.y, radius.y), crop_.y0);
       const int y1 = std::min(lastPixel(splat.film.y, radius.y), crop_.y1 - 1);
       const int x0 = std::max(firstPixel(splat.film.x, radius.x), crop_.x0);

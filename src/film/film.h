@@ -106,6 +106,7 @@ class Film {
   using LayerSum = std::array<CompensatedSum, 3>;
 
   size_t Index(int x, int y) const { return static_cast<size_t>(y - crop_.y0) * crop_.Width() + (x - crop_.x0); }
+  void PrefetchSplats(const Point2& film) const;
   void AddToRows(const PixelFilter& filter, std::span<const SplatList> lists, int band, int bands);
   double Value(size_t pixel, int channel) const;
   double LayerValue(size_t pixel, size_t layer, size_t channel) const;

@@ -142,7 +142,8 @@ int FirstStop(Meeting at, const RTCRay& ray, const Candidate* candidates, int co
 
 int FindQuadric(const PrimitiveRecord& record, uint32_t, const RTCRay& ray, Candidate candidates[2]) {
   QuadricHit hits[2];
-  const int count = record.As<PreparedQuadric>()->Intersect(ToDouble(ray), hits);
+  const int most = record.LetsPass() ? 2 : 1;
+  const int count = record.As<PreparedQuadric>()->Intersect(ToDouble(ray), hits, most);
   for (int i = 0; i < count; ++i) candidates[i] = {hits[i].t, hits[i].coordinates.x, hits[i].coordinates.y};
   return count;
 }

@@ -91,10 +91,10 @@ int PreparedQuadric::IntersectSphere(const Point3d& o, const Vector3d& d, double
     const Point3d end = o + d * tMax;
     if (glm::dot(end, end) > r * r * (1 + kBeyondRounding) && tMax < std::numeric_limits<double>::max()) return 0;
   }
+  // r² less the squared distance of the nearest point: exact to the rounding of r², and so is `outside` to that of o².
+  // Factors (r - |o|)(r + |o|) would need roots and be no more exact, because the roots are rounded.
   const Vector3d nearest = o + d * (b / a);
-  const double distance = glm::length(o);
-  const double nearestDistance = glm::length(nearest);
-  return StableRoots(a, b, (distance - r) * (distance + r), (r - nearestDistance) * (r + nearestDistance), roots);
+  return StableRoots(a, b, outside, r * r - glm::dot(nearest, nearest), roots);
 }
 
 int PreparedQuadric::IntersectCylinder(const Point3d& o, const Vector3d& d, double roots[2]) const {
@@ -143,7 +143,7 @@ Point2 PreparedQuadric::Encode(const Point3d& p) const {
   return {DiamondAngle(p.x, p.y), static_cast<float>((p.z - zMin) / (zMax - zMin))};
 }
 
-int PreparedQuadric::Intersect(const RayDouble& ray, QuadricHit hits[2]) const {
+int PreparedQuadric::Intersect(const RayDouble& ray, QuadricHit hits[2], int most) const {
   const Point3d o = toObject_ * ray.origin + toObjectTranslation_;
   const Vector3d d = toObject_ * ray.direction;
   double roots[2];
@@ -162,7 +162,7 @@ int PreparedQuadric::Intersect(const RayDouble& ray, QuadricHit hits[2]) const {
       break;
   }
   int found = 0;
-  for (int i = 0; i < count; ++i) {
+  for (int i = 0; i < count && found < most; ++i) {
     const double t = roots[i];
     if (!(t > ray.tMin && t <= ray.tMax)) continue;
     const Point3d p = o + d * t;

@@ -25,9 +25,9 @@ class PreparedQuadric {
  public:
   explicit PreparedQuadric(const Quadric& quadric);
 
-  // The hits with t in (tMin, tMax], nearest first; returns how many. The ray is in render space (the target of
-  // `toRender`).
-  int Intersect(const RayDouble& ray, QuadricHit hits[2]) const;
+  // The hits with t in (tMin, tMax], nearest first, `most` of them at most; returns how many. The ray is in render
+  // space (the target of `toRender`).
+  int Intersect(const RayDouble& ray, QuadricHit hits[2], int most = 2) const;
 
   // Position, error, normals and, with `isParametrized`, uv and tangents, in the target space of `toRender`. The
   // indices are left alone.

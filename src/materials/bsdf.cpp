@@ -12,10 +12,7 @@ Vector3 Renormalize(const Vector3& v) {
 
 }  // namespace
 
-BsdfEvaluation Bsdf::Evaluate(const Vector3& wo, const Vector3& wi, TransportMode mode) const {
-  if (const auto* diffuse = std::get_if<DiffuseBsdf>(&model_)) {  // needs no tangents
-    return diffuse->Evaluate({0, 0, glm::dot(wo, frame_.z)}, {0, 0, glm::dot(wi, frame_.z)}, mode);
-  }
+BsdfEvaluation Bsdf::EvaluateInFrame(const Vector3& wo, const Vector3& wi, TransportMode mode) const {
   const Vector3 o = frame_.ToLocal(wo), i = frame_.ToLocal(wi);
   if (o.z == 0 || i.z == 0) return {};
   return std::visit([&](const auto& model) { return model.Evaluate(o, i, mode); }, model_);

@@ -27,8 +27,14 @@ class Bsdf {
   Bsdf(const Frame& shadingFrame, const Normal3& Ng, const BsdfModel& model)
       : frame_(shadingFrame), Ng_(Ng), model_(model) {}
 
-  // f and both densities; 0 for delta lobes.
-  BsdfEvaluation Evaluate(const Vector3& wo, const Vector3& wi, TransportMode mode) const;
+  // f and both densities; 0 for delta lobes. Of the commonest model, which is short, inline: called, it would take as
+  // long again to return the result.
+  BsdfEvaluation Evaluate(const Vector3& wo, const Vector3& wi, TransportMode mode) const {
+    const auto* diffuse = std::get_if<DiffuseBsdf>(&model_);
+    if (!diffuse) return EvaluateInFrame(wo, wi, mode);
+    // It needs no tangents.
+    return diffuse->Evaluate({0, 0, glm::dot(wo, frame_.z)}, {0, 0, glm::dot(wi, frame_.z)}, mode);
+  }
 
   // Samples wi: `uLobe` chooses a lobe, `u` a direction; both in [0,1). False: absorbed.
   BsdfSample Sample(const Vector3& wo, float uLobe, const Point2& u, TransportMode mode) const;
@@ -59,6 +65,7 @@ class Bsdf {
   const Normal3& Ng() const { return Ng_; }
 
  private:
+  BsdfEvaluation EvaluateInFrame(const Vector3& wo, const Vector3& wi, TransportMode mode) const;
   BsdfSample SampleLocal(const Vector3& wo, float uLobe, const Point2& u, TransportMode mode) const;
 
   Frame frame_{};

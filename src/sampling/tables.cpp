@@ -55,7 +55,7 @@ AliasTable::Result AliasTable::Sample(double u) const {
   const bool own = fraction < threshold;
   const uint32_t index = own ? bin : bins_[bin].alias;
   const float rest = (fraction - (own ? 0 : threshold)) / (own ? threshold : 1 - threshold);
-  return {index, PdfDiscrete(probabilities_[index]), std::min(rest, kOneMinusEpsilon)};
+  return {PdfDiscrete(probabilities_[index]), std::min(rest, kOneMinusEpsilon), index};
 }
 
 // --- Distribution1D

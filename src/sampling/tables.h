@@ -22,10 +22,11 @@ class AliasTable {
   AliasTable() = default;
   explicit AliasTable(std::span<const float> weights);
 
+  // The two floats first: beside an integer they would be returned by way of memory, where store forwarding stalls.
   struct Result {
-    uint32_t index;
     PdfDiscrete probability;
     float u;  // the random number, rescaled to [0,1) for reuse
+    uint32_t index;
   };
   // Requires !IsZero().
   Result Sample(double u) const;

@@ -269,6 +269,37 @@ std::vector<PhotonList> PathsOf(size_t lists, size_t pathsInEach, size_t photons
   return result;
 }
 
+// By the angle of the normals, which are stored without their lengths.
+TEST(Photon, LiesOnASurfaceByItsNormal) {
+  Rng rng(12);
+  int on = 0, decided = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const Normal3 a = SampleUniformSphere({rng.NextFloat(), rng.NextFloat()});
+    const Normal3 b = SampleUniformSphere({rng.NextFloat(), rng.NextFloat()});
+    Photon photon;
+    photon.normal = PackedNormal(a);
+    const float cosine = std::abs(glm::dot(a, b));
+    if (std::abs(cosine - 0.8f) < 2e-4f) continue;  // as exact as the stored normal
+    ++decided;
+    on += photon.IsOnSurface(b);
+    ASSERT_EQ(cosine > 0.8f, photon.IsOnSurface(b)) << cosine;
+  }
+  EXPECT_GT(decided, 19900);
+  EXPECT_NEAR(0.2, static_cast<double>(on) / decided, 0.015) << "the cosine is uniform";
+}
+
+TEST(PhotonUse, AddsTheContributionsOfAPath) {
+  PhotonUse use({2, 0, 2, 1}, std::vector<PathOrigin>(3));
+  std::vector<PhotonUse::Contribution> first = {{0, 0.5f}, {1, 4.0f}, {2, 0.25f}};
+  use.Add(first);
+  std::vector<PhotonUse::Contribution> second = {{2, 1.0f}, {3, 0.0f}, {1, 1e30f}};
+  use.Add(second);
+  use.Add({});
+  EXPECT_EQ(4.0 + 0x1p16, use.Sum(0)) << "a contribution without bounds is clamped";
+  EXPECT_EQ(0.0, use.Sum(1));
+  EXPECT_EQ(1.75, use.Sum(2));
+}
+
 TEST(PhotonStore, KeepsToItsMemory) {
   for (const size_t lists : {1, 3, 8}) {
     PhotonSettings settings;
@@ -323,6 +354,31 @@ TEST(PhotonStore, PassesFollowEachOther) {
   EXPECT_EQ(&pass, &store.Open(15, 1)) << "it is made once";
   EXPECT_EQ(1u, store.Statistics().passes);
   EXPECT_FALSE(store.IsFor(16));
+}
+
+// Lists whose memory is used again hold nothing of the pass before.
+TEST(PhotonStore, EveryPassHasItsOwnPhotons) {
+  PhotonSettings settings;
+  settings.radius = 1;
+  PhotonStore store(settings, 100);
+  std::vector<PhotonList> lists;
+  for (const size_t photons : {7, 2, 5}) {
+    const uint32_t next = static_cast<uint32_t>(photons);
+    for (int part = 0; part < 2; ++part) {
+      lists.resize(4);
+      std::vector<PhotonList> traced = PathsOf(4, 5, photons);
+      for (size_t i = 0; i < traced.size(); ++i) {
+        ASSERT_EQ(0u, lists[i].Paths());
+        ASSERT_TRUE(lists[i].Photons().empty());
+        lists[i] = std::move(traced[i]);
+      }
+      store.Take(lists);
+    }
+    store.Finish(next);
+    const PhotonPass& pass = store.Open(next, 1);
+    EXPECT_EQ(40, pass.lightPaths);
+    EXPECT_EQ(40 * photons, pass.map->Size());
+  }
 }
 
 }  // namespace

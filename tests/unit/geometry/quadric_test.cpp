@@ -108,6 +108,27 @@ TEST(Quadric, HitsWhatTheReferenceHits) {
   EXPECT_GT(hits, 15000);
 }
 
+// Where the nearest hit is enough, it is the same as the first of both.
+TEST(Quadric, TheFirstHitAlone) {
+  Random random(6);
+  int both = 0;
+  for (const Quadric& q : {Sphere(1.3f), PartialSphere(), PartialDisk(), PartialCylinder()}) {
+    const PreparedQuadric prepared(q);
+    for (int i = 0; i < 20000; ++i) {
+      const Ray ray{random.InBox(3), random.Direction()};
+      const RayDouble precise{Point3d(ray.origin), Vector3d(ray.direction), 0, 1e30};
+      QuadricHit hits[2], first[2];
+      const int count = prepared.Intersect(precise, hits);
+      both += count == 2;
+      ASSERT_EQ(std::min(count, 1), prepared.Intersect(precise, first, 1));
+      if (count == 0) continue;
+      ASSERT_EQ(hits[0].t, first[0].t);
+      ASSERT_EQ(hits[0].coordinates, first[0].coordinates);
+    }
+  }
+  EXPECT_GT(both, 500);
+}
+
 TEST(Quadric, ParametersAndTangentsAreConsistent) {
   Random random(2);
   for (const Quadric& q : {Sphere(1.3f), PartialSphere(), PartialDisk(), PartialCylinder()}) {
