@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/parallel.h"
-#include "render/pixel_ray.h"
+#include "integrators/walk/pixel_ray.h"
 #include "sampling/rng.h"
 
 namespace lampyr {

@@ -8,8 +8,8 @@
 #include "integrators/photon/photon_pass.h"
 #include "integrators/photon/photon_store.h"
 #include "integrators/registry.h"
+#include "integrators/walk/pixel_ray.h"
 #include "render/analysis/merging_mask.h"
-#include "render/pixel_ray.h"
 #include "render/settings/integrator_choice.h"
 
 namespace lampyr {
