@@ -62,7 +62,7 @@ struct TechniqueCounts {
   // Hash of all counts, the same on all machines.
   std::string Fingerprint() const;
   double LightPaths() const { return log2LightPaths < 0 ? 1.0 / (1 << -log2LightPaths) : 1 << log2LightPaths; }
-  // Connections of a camera path to each light path, on average: with one of two.
+  // Connections of a camera path to each light path, on average: of several light paths one is connected.
   double ConnectionsPerLightPath(const Point2& film) const {
     return static_cast<double>(connecting.At(film)) / std::max(1.0, LightPaths());
   }
