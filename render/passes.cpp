@@ -15,7 +15,7 @@ namespace {
 constexpr int kTileSize = 16;
 constexpr uint64_t kChunkPaths = 4096;  // light paths that one thread traces before their splats are added
 constexpr uint64_t kBeforeTheFirst = 0x6a09e667f3bcc908;  // changes the seed for the photons of the first pass
-constexpr uint64_t kMorePaths = 0xbb67ae8584caa73b;       // changes the seed for the second light path of a sample
+constexpr uint64_t kMorePaths = 0xbb67ae8584caa73b;       // changes the seed for further light paths of a sample
 // In the place of the pixel row, for samples that belong to no pixel:
 constexpr int kLightPaths = -1, kPassTimes = -2;
 

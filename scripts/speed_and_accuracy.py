@@ -6,7 +6,7 @@
                                                                 tables of these scenes, on the terminal
 
 Comparisons run side by side, each with a single thread, so that seconds are of one core. Reports that are in the work
-folder already, by the same binary and of the same settings, are not made again; their report.html are there to be
+folder already, by the same binary, of the same files and settings, are not made again; their report.html are there to be
 looked at.
 """
 import argparse
@@ -35,6 +35,15 @@ RESAMPLINGS = 2000
 
 # --- running ---------------------------------------------------------------------------------------------------------
 
+def hash_of_files(folders):
+    """Of the names and contents of all files in these folders."""
+    total = hashlib.sha256()
+    for folder in folders:
+        for file in sorted(file for file in folder.rglob('*') if file.is_file()):
+            total.update(f'{file.relative_to(folder)} {hashlib.sha256(file.read_bytes()).hexdigest()}\n'.encode())
+    return total.hexdigest()
+
+
 class Job:
     """The comparison of one scene. `table`: own or peer."""
 
@@ -52,10 +61,12 @@ class Job:
                 *self.options, '-o', str(self.folder)]
 
     def key(self):
-        """What the report depends on: binary, scene and settings."""
+        """What the report depends on: binary, scene, the files that scenes read, and settings. All files that any scene of
+        the table may read count, which is simpler than to follow those of one."""
         binary = hashlib.sha256(LAMPYR.read_bytes()).hexdigest()
         scene = hashlib.sha256(self.file.read_bytes()).hexdigest()
-        return ' '.join([binary, scene, ','.join(self.integrators), *self.options])
+        folders = [ROOT / 'scenes/data', ROOT / 'scenes/profiles'] if self.table == 'own' else [PEER]
+        return ' '.join([binary, scene, hash_of_files(folders), ','.join(self.integrators), *self.options])
 
     def refused(self, message):
         """The integrator that cannot render the scene, by the message of the command; None: another error."""
@@ -63,9 +74,12 @@ class Job:
         return match.group(1) if match and match.group(1) in self.integrators else None
 
     def run(self):
-        results, key = self.folder / 'results.json', self.folder / 'key.txt'
-        if results.exists() and key.exists() and key.read_text() == self.key():
+        results, kept = self.folder / 'results.json', self.folder / 'key.txt'
+        key = self.key()
+        if results.exists() and kept.exists() and kept.read_text() == key:
             return json.loads(results.read_text())
+        # Results of an attempt that is cut short, or of another binary, must not pass for those of the old key.
+        kept.unlink(missing_ok=True)
         integrators = list(self.integrators)
         while True:
             done = subprocess.run(self.command(integrators), cwd=ROOT, capture_output=True, text=True)
@@ -75,7 +89,8 @@ class Job:
             if refused not in integrators:
                 raise RuntimeError(f'{self.scene}: {done.stderr.strip()}')
             integrators.remove(refused)
-        key.write_text(self.key())
+        if self.key() == key:  # nothing was built or edited meanwhile
+            kept.write_text(key)
         return json.loads(results.read_text())
 
 
@@ -284,7 +299,8 @@ def missing_notes(integrator):
     name, notes = integrator['name'], []
     if integrator['meanBias']['significant']:
         bias = integrator['meanBias']['value']
-        notes.append(f'{name} is {percent(abs(bias))} too {"dark" if bias < 0 else "bright"}')
+        so_far = ' so far' if integrator['blurs'] else ''
+        notes.append(f'{name} is {percent(abs(bias))} too {"dark" if bias < 0 else "bright"}{so_far}')
     systematic = integrator['systematic']
     if systematic['significant'] and systematic['value'] > 0:
         error = percent(systematic['value'] ** 0.5)
@@ -369,8 +385,8 @@ def section(title, rows, integrators, budget):
         'Best of the fixed integrators that converge, and its efficiency over the next best:', '',
         *winners(rows), '',
         '### Time to an error of 10 %', '',
-        '~ is beyond what was measured: relMSE is then taken to fall as 1/time. "never": what is missing is more than that.',
-        '"unresolved": all errors were within that of the reference.', '',
+        '~ is beyond what was measured: relMSE is then taken to fall as 1/time; blur falls more slowly.',
+        '"never": what is missing is more than that. "unresolved": all errors were within noise and blur of the reference.', '',
         *time_table(rows, integrators, 0.1), '',
         '### Time to an error of 1 %', '',
         *time_table(rows, integrators, 0.01), '',

@@ -50,16 +50,21 @@ double LongestRender(const ComparisonPlan& plan, const Pilot& pilot) {
   return std::max(ofTimes, ofSamples);
 }
 
-bool IsCompared(const ComparisonPlan& plan, const Pilot& pilot) {
-  return std::any_of(plan.integrators.begin(), plan.integrators.end(), [&](const std::string& name) {
-    return pilot.integrator == (name == kAuto ? plan.autoIntegrator : name.substr(0, name.find(':')));
-  });
+// The pilot of a compared integrator, or of the integrator that it is a variant of; null: it was not tried.
+const Pilot* PilotOf(const ComparisonPlan& plan, const std::vector<Pilot>& pilots, const std::string& name) {
+  const auto find = [&](const std::string& integrator) -> const Pilot* {
+    const auto found =
+        std::find_if(pilots.begin(), pilots.end(), [&](const Pilot& pilot) { return pilot.integrator == integrator; });
+    return found == pilots.end() ? nullptr : &*found;
+  };
+  const Pilot* own = find(name.substr(0, name.find(':')));
+  return !own && name == kAuto ? find(plan.autoIntegrator) : own;
 }
 
 double LongestRender(const ComparisonPlan& plan, const std::vector<Pilot>& pilots) {
   double longest = plan.times.empty() ? 0 : plan.times.back();
-  for (const Pilot& pilot : pilots) {
-    if (IsCompared(plan, pilot)) longest = std::max(longest, LongestRender(plan, pilot));
+  for (const std::string& name : plan.integrators) {
+    if (const Pilot* pilot = PilotOf(plan, pilots, name)) longest = std::max(longest, LongestRender(plan, *pilot));
   }
   if (longest > 0) return longest;
   // None of those that were tried.
@@ -67,18 +72,17 @@ double LongestRender(const ComparisonPlan& plan, const std::vector<Pilot>& pilot
   return longest;
 }
 
-// Throws a UsageError if the reference is noisier than all renders that would be measured against it, when the pilots
-// show this already, before the work. A reference that misses light has an error in addition to its noise.
+// Throws a UsageError if the reference, whose noise is known, is noisier than all renders that would be measured
+// against it, when the pilots show this already, before the work. A render that misses light has an error in addition
+// to its noise, and one that blurs that of its blur; what has no pilot may have any error.
 void CheckReferenceIsFinerThanRenders(const Reference& reference, const ComparisonPlan& plan,
                                       const std::vector<Pilot>& pilots) {
-  bool anyComplete = false;
-  for (const Pilot& pilot : pilots) {
-    if (!IsCompared(plan, pilot)) continue;
-    if (!pilot.note.empty() || !(pilot.mean > 0)) return;
-    anyComplete = true;
-    if (pilot.relMse * pilot.seconds / LongestRender(plan, pilot) >= *reference.facts.relMse) return;
+  for (const std::string& name : plan.integrators) {
+    const Pilot* pilot = PilotOf(plan, pilots, name);
+    if (!pilot || pilot->isFlawed || !(pilot->mean > 0)) return;
+    const double noise = pilot->relMse * pilot->seconds / LongestRender(plan, *pilot);
+    if (noise + pilot->bias * pilot->bias >= *reference.noiseOfNeighbourhoods) return;
   }
-  if (!anyComplete) return;
   throw UsageError("--reference: \"" + reference.facts.file +
                    "\" is noisier than all that would be measured against it; use one of more samples, or leave the "
                    "option out to have one made");
@@ -111,7 +115,7 @@ Reference ObtainReference(const CompareOptions& options, const ComparedScene& sc
   };
   if (options.reference) {
     Reference reference = ReadReference(*options.reference, scene.Built().settings);
-    if (reference.facts.relMse) {
+    if (reference.noiseOfNeighbourhoods) {
       flyPilots();
       CheckReferenceIsFinerThanRenders(reference, plan, results.pilots);
     }
@@ -148,12 +152,15 @@ Reference ObtainReference(const CompareOptions& options, const ComparedScene& sc
   return reference;
 }
 
-// Checks the memory for a picture per milestone of each repeat, with R, G and B, and for work on a few of them.
-void CheckMemory(const RenderSettings& settings, const ComparisonPlan& plan) {
+// Checks the memory for a picture per milestone of each repeat, with R, G and B, and for work on a few of them; before
+// there are such pictures, for the reference. `mayMerge`: one that merges photons may be made, of up to four radii.
+void CheckMemory(const RenderSettings& settings, const ComparisonPlan& plan, bool mayMerge) {
   const double milestones = static_cast<double>(plan.times.size() + plan.sampleCounts.size());
   const double images = static_cast<double>(plan.integrators.size()) * milestones * plan.repeats;
   const double pixels = static_cast<double>(settings.crop.Width()) * settings.crop.Height();
-  const double bytes = images * pixels * 3 * sizeof(float) + 700 * pixels;
+  // Of each radius 180 bytes per pixel (Level), its mean again with the result, and sums for their differences.
+  const double ofReference = mayMerge ? pixels * (4 * 180 + 4 * 24 + 24 + 100) : 0;
+  const double bytes = std::max(images * pixels * 3 * sizeof(float), ofReference) + 700 * pixels;
   if (bytes <= static_cast<double>(AvailableMemory())) return;
   throw UsageError("comparing takes " + std::to_string(static_cast<int64_t>(bytes / (1 << 30)) + 1) +
                    " GiB of memory, more than there is: use fewer budgets or repeats, --crop or --resolution");
@@ -191,7 +198,8 @@ void WriteResults(const CompareOptions& options, const std::filesystem::path& fo
                            [](const auto& s) { return !s.relMse; });
       });
   if (unresolved) {
-    std::fprintf(stderr, "warning: some renders are within the reference's own noise and have no figure; %s\n",
+    std::fprintf(stderr, "warning: some renders are within the reference's own noise%s and have no figure; %s\n",
+                 results.reference.IsBlurred() ? " and blur" : "",
                  options.reference ? "use a reference of more samples" : "give it more time with --reference-time");
   }
 }
@@ -221,7 +229,7 @@ int CompareLoaded(const CompareOptions& options, ComparisonPlan plan, const Load
   }
   const std::filesystem::path folder =
       options.output.empty() ? std::filesystem::path(options.scene.stem().string() + "-compare") : options.output;
-  CheckMemory(settings, plan);
+  CheckMemory(settings, plan, !options.reference && IntegratorRefusal(loaded.built.scene, "vcm").empty());
   MakeFolder(folder, "--output");
   CheckWritable(folder / "report.html", "--output");
 

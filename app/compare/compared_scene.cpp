@@ -10,7 +10,7 @@ namespace lampyr {
 
 void ComparedScene::Render(const std::string& integrator, uint64_t seed, const std::vector<double>& times,
                            const std::vector<int>& sampleCounts, const AtMilestone& atMilestone,
-                           const AfterPass& afterPass, uint32_t firstSample) const {
+                           const AfterPass& afterPass, uint32_t firstSample, double secondsBefore) const {
   // Never destroyed if a pass was abandoned, because its threads still use it.
   struct Run {
     RenderSettings settings;
@@ -30,27 +30,30 @@ void ComparedScene::Render(const std::string& integrator, uint64_t seed, const s
   const Film& film = run->film;
   const RenderOutcome& outcome = render.Outcome();
   const StopWatch watch(&interrupted_, std::nullopt);
-  const double before = integrator == kAuto ? built_.choiceSeconds : 0;
   size_t nextTime = 0, nextCount = 0;
   while (nextTime < times.size() || nextCount < sampleCounts.size()) {
     std::optional<double> left;
-    if (nextTime < times.size()) left = std::max(times[nextTime] - before - outcome.seconds, 0.0);
+    if (nextTime < times.size()) left = std::max(times[nextTime] - secondsBefore - outcome.seconds, 0.0);
     const int most = nextCount < sampleCounts.size() ? sampleCounts[nextCount] : 1 << 30;
     const bool isWhole = render.AddSamples(render.NextPassSamples(most, left));
-    if (isWhole) afterPass(before + outcome.seconds);
+    if (isWhole) afterPass(secondsBefore + outcome.seconds);
     if (HasGivenUpWork()) (void)run.release();
     if (!isWhole || interrupted_.load()) throw ComparisonInterrupted{};
     // A sample that would exceed the time is omitted if it would exceed it by more than half of its duration.
     const double perSample = outcome.seconds / outcome.samplesPerPixel;
-    while (nextTime < times.size() && before + outcome.seconds + 0.5 * perSample >= times[nextTime]) {
-      atMilestone(nextTime, {before + outcome.seconds, outcome.samplesPerPixel}, film.Develop());
+    while (nextTime < times.size() && secondsBefore + outcome.seconds + 0.5 * perSample >= times[nextTime]) {
+      atMilestone(nextTime, {secondsBefore + outcome.seconds, outcome.samplesPerPixel}, film.Develop());
       ++nextTime;
     }
     while (nextCount < sampleCounts.size() && outcome.samplesPerPixel >= sampleCounts[nextCount]) {
-      atMilestone(times.size() + nextCount, {before + outcome.seconds, outcome.samplesPerPixel}, film.Develop());
+      atMilestone(times.size() + nextCount, {secondsBefore + outcome.seconds, outcome.samplesPerPixel}, film.Develop());
       ++nextCount;
     }
   }
+}
+
+double ComparedScene::ChoiceSeconds(const std::string& integrator) const {
+  return integrator == kAuto ? built_.choiceSeconds : 0;
 }
 
 }  // namespace lampyr

@@ -34,12 +34,15 @@ class ComparedScene {
   using AfterPass = std::function<void(double seconds)>;
 
   // Renders until the last of `times` (seconds) and `sampleCounts`, both ascending, and takes a snapshot at each. The
-  // time of snapshots is not counted; that in which "auto" chose its integrator is part of every render by "auto".
+  // time of snapshots is not counted.
   // `firstSample`: index of the first sample of a pixel; merging radii are those of a render that has come so far.
+  // `secondsBefore`: counts as passed when the render begins; ChoiceSeconds where the time of a user is measured.
   // Throws ComparisonInterrupted.
   void Render(const std::string& integrator, uint64_t seed, const std::vector<double>& times,
               const std::vector<int>& sampleCounts, const AtMilestone& atMilestone, const AfterPass& afterPass,
-              uint32_t firstSample = 0) const;
+              uint32_t firstSample = 0, double secondsBefore = 0) const;
+  // The time in which "auto" chose its integrator, which everybody who renders with it pays; 0 for other integrators.
+  double ChoiceSeconds(const std::string& integrator) const;
 
  private:
   const BuiltScene& built_;

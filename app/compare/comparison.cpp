@@ -190,9 +190,9 @@ struct CurvePoint {
 };
 
 // Time to reach an error: interpolated on the measured curve; beyond it, extrapolated from the nearest point by the law
-// of independent samples, relMSE - systematic part ~ 1/time. Only the significant lower bound of the systematic part
-// counts.
-TimeToError FindTime(const std::vector<CurvePoint>& curve, const SignificantEstimate& systematic, double error) {
+// of independent samples, relMSE - floor ~ 1/time. `floor`: the part of relMSE that stays however many samples are
+// taken. Blur is no such part, it falls too, but more slowly than 1/time: extrapolated times of what blurs are rough.
+TimeToError FindTime(const std::vector<CurvePoint>& curve, double floor, double error) {
   TimeToError result;
   result.error = error;
   if (curve.empty()) {
@@ -213,7 +213,6 @@ TimeToError FindTime(const std::vector<CurvePoint>& curve, const SignificantEsti
   }
   const bool isBefore = curve.front().relMse.value <= target;
   const CurvePoint& nearest = isBefore ? curve.front() : curve.back();
-  const double floor = systematic.significant ? std::max(systematic.low, 0.0) : 0.0;
   if (target <= floor) return result;
   result.kind = TimeToError::Kind::Extrapolated;
   // Lower bound of the time: one sample per pixel, or the longest measured time if the error was not reached there.
@@ -263,7 +262,10 @@ ComparedIntegrator Describe(const Run& run, const std::vector<Parts>& parts, con
     described.snapshots.push_back(std::move(snapshot));
   }
   std::sort(curve.begin(), curve.end(), [](const CurvePoint& a, const CurvePoint& b) { return a.seconds < b.seconds; });
-  for (const double error : kErrors) described.timeToError.push_back(FindTime(curve, described.systematic, error));
+  // Only the significant lower bound of the systematic part counts, and not that of an integrator that blurs.
+  const SignificantEstimate& systematic = described.systematic;
+  const double floor = systematic.significant && !described.blurs ? std::max(systematic.low, 0.0) : 0.0;
+  for (const double error : kErrors) described.timeToError.push_back(FindTime(curve, floor, error));
   return described;
 }
 
@@ -320,12 +322,14 @@ void Compare(const ComparedScene& scene, const ComparisonPlan& plan, const Refer
           repeat.last = milestone;
         };
         const double before = whole * static_cast<double>(runs.size()) + static_cast<double>(i);
-        scene.Render(run.integrator, seed, plan.times, plan.sampleCounts, look, [&](double now) {
+        const auto tell = [&](double now) {
           seconds = now;
           const double ofRender = lastSeconds > 0 ? std::min(now / lastSeconds, 1.0) : 0;
           progress((before + ofRender) / steps,
                    run.integrator + ", " + std::to_string(whole + 1) + " of " + std::to_string(plan.repeats));
-        });
+        };
+        scene.Render(run.integrator, seed, plan.times, plan.sampleCounts, look, tell, 0,
+                     scene.ChoiceSeconds(run.integrator));
         lastSeconds = std::max(lastSeconds, seconds);
         run.repeats.push_back(std::move(repeat));
       }

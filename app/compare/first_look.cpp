@@ -82,8 +82,9 @@ bool FindsMore(const PilotRun& other, const PilotRun& run) {
   return false;
 }
 
-// Notes why a pilot is not to be trusted. Returns false if there is nothing to note.
+// Notes that a pilot misses light, or may miss some. Returns false if there is nothing to note.
 bool NoteFlaw(PilotRun& run, const std::vector<PilotRun>& runs, bool allBlack, bool allHinted) {
+  run.pilot.isFlawed = true;
   if (!(run.pilot.mean > 0) && !allBlack) {
     run.pilot.note = "finds no light";
     return true;
@@ -102,6 +103,7 @@ bool NoteFlaw(PilotRun& run, const std::vector<PilotRun>& runs, bool allBlack, b
     run.pilot.note = "cannot find all of the light";
     return true;
   }
+  run.pilot.isFlawed = false;
   return false;
 }
 

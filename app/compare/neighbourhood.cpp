@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/error.h"
+
 namespace lampyr {
 
 namespace {
@@ -56,13 +58,17 @@ std::vector<std::array<double, 3>> NeighbourhoodSquares(const Image& image) {
 double RelativeNoise(const Image& mean) {
   const std::vector<Sums> squares = NeighbourhoodSquares(mean);
   const size_t channels = mean.channels.size();
+  const char* names[] = {"R", "G", "B"};
+  bool hasVariance = true;
+  for (const char* name : names) hasVariance &= mean.ChannelIndex(std::string("variance.") + name) >= 0;
+  const std::string layer = hasVariance ? "variance." : "stderr.";
   double noise = 0;
   for (size_t c = 0; c < 3; ++c) {
-    const char* names[] = {"stderr.R", "stderr.G", "stderr.B"};
-    const auto channel = static_cast<size_t>(mean.ChannelIndex(names[c]));
+    const int channel = mean.ChannelIndex(layer + names[c]);
+    if (channel < 0) throw Error("the noise of a picture without variances or standard errors is not known");
     for (size_t i = 0; i < squares.size(); ++i) {
-      const auto error = static_cast<double>(mean.data[i * channels + channel]);
-      if (squares[i][c] > 0) noise += error * error / squares[i][c];
+      const auto value = static_cast<double>(mean.data[i * channels + static_cast<size_t>(channel)]);
+      if (squares[i][c] > 0) noise += (hasVariance ? value : value * value) / squares[i][c];
     }
   }
   return noise / (3 * static_cast<double>(squares.size()));

@@ -15,7 +15,8 @@ namespace lampyr {
 // squares over the picture.
 std::vector<std::array<double, 3>> NeighbourhoodSquares(const Image& image);
 
-// relMSE of the noise of a picture with standard errors (MeanOfImages), relative to its neighbourhoods.
+// relMSE of the noise of a picture, relative to its neighbourhoods. It has standard errors (MeanOfImages), or variances
+// as those of renders; else an Error.
 double RelativeNoise(const Image& mean);
 
 }  // namespace lampyr

@@ -81,6 +81,7 @@ Reference ReadReference(const std::filesystem::path& file, const RenderSettings&
   ReadBlur(reference);
   try {
     Describe(reference);
+    if (reference.facts.relMse) reference.noiseOfNeighbourhoods = RelativeNoise(reference.image);
   } catch (const Error& error) {
     throw UsageError("--reference: " + error.Text());
   }
@@ -120,9 +121,11 @@ class PartRenderer {
   PartRenderer(const ComparedScene& scene, const std::string& integrator, double secondsPerSample, double seconds,
                int parts, const ReferenceProgress& progress)
       : scene_(scene), integrator_(integrator), progress_(progress), parts_(parts) {
-    // A power of two, for which Sobol points are most uniform.
+    // A power of two, for which Sobol points are most uniform. The samples of all parts must not exceed an int.
+    constexpr int mostBits = 25;
+    static_assert((int64_t{1} << mostBits) * std::max(kReferenceParts, kMergedParts) <= (int64_t{1} << 30));
     const double affordable = std::max(1.0, seconds / parts / std::max(secondsPerSample, 1e-9));
-    samples_ = 1 << static_cast<int>(std::clamp(std::round(std::log2(affordable)), 0.0, 27.0));
+    samples_ = 1 << static_cast<int>(std::clamp(std::round(std::log2(affordable)), 0.0, double{mostBits}));
     secondsPerPart_ = std::max(secondsPerSample * samples_, 1e-9);
   }
 
@@ -168,10 +171,16 @@ class Level {
       : firstSample_(firstSample), radius_(RadiusOfSamples(firstSample, samples)) {}
 
   void Add(PartRenderer& renderer) {
-    for (MeanOfImages& fold : folds_) {
+    ++partsOfFold_;
+    for (Image& fold : folds_) {
       const Image part = renderer.Render(firstSample_);
-      fold.Add(part);
       all_.Add(part);
+      if (partsOfFold_ == 1) {
+        fold = part;
+        continue;
+      }
+      for (size_t i = 0; i < fold.data.size(); ++i)
+        fold.data[i] += (part.data[i] - fold.data[i]) / static_cast<float>(partsOfFold_);
     }
     mean_ = all_.Mean();
     noise_ = RelativeNoise(mean_);
@@ -186,21 +195,18 @@ class Level {
 
   // Difference from the level of a smaller radius.
   Blur DifferenceFrom(const Level& narrow) const {
-    std::vector<Image> own, other;
     std::vector<const Image*> first, second;
-    for (const MeanOfImages& fold : folds_) own.push_back(fold.Mean());
-    for (const MeanOfImages& fold : narrow.folds_) other.push_back(fold.Mean());
-    for (int k = 0; k < kGroup; ++k) {
-      first.push_back(&own[static_cast<size_t>(k)]);
-      second.push_back(&other[static_cast<size_t>(k)]);
-    }
+    for (const Image& fold : folds_) first.push_back(&fold);
+    for (const Image& fold : narrow.folds_) second.push_back(&fold);
     return DifferenceOfRadii(first, second);
   }
 
  private:
   uint32_t firstSample_;
   double radius_;
-  std::array<MeanOfImages, kGroup> folds_;
+  // Means without standard errors: these many pictures are most of the memory.
+  std::array<Image, kGroup> folds_;
+  int partsOfFold_ = 0;
   MeanOfImages all_;
   Image mean_;
   double noise_ = 0;

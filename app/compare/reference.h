@@ -22,6 +22,9 @@ struct Reference {
   ImageNoise noise;  // as far as known
   int parts = 2;     // independent renders that the noise is estimated from
   Blur blur;         // 0 if it is unknown
+  // relMSE of the noise relative to neighbourhoods, as that of trial renders (Pilot); of a given reference whose noise
+  // is known.
+  std::optional<double> noiseOfNeighbourhoods;
 };
 
 // Settings without bias: those of an integrator that converges to the picture, whatever the scene or the command line

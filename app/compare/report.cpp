@@ -87,9 +87,15 @@ std::string Budget(bool byTime, double budget) {
   return byTime ? FormatDuration(budget) : Format("%.0f spp", budget);
 }
 
+// What errors are not resolved below.
+const char* LimitOf(const ComparisonReference& reference) {
+  return reference.IsBlurred() ? "noise and blur" : "noise";
+}
+
 // "1.23e-03 (1.1e-03 to 1.4e-03)".
-std::string WithInterval(const std::optional<Estimate>& estimate) {
-  if (!estimate) return "within the reference's noise";
+std::string WithInterval(const std::optional<Estimate>& estimate, const ComparisonReference& reference) {
+  // As much as the column holds; below the table it says more.
+  if (!estimate) return reference.IsBlurred() ? "within the reference's error" : "within the reference's noise";
   return Format("%.3g (%.2g to %.2g)", estimate->value, estimate->low, estimate->high);
 }
 
@@ -135,12 +141,18 @@ void PrintReference(const ComparisonResults& results, std::string& text) {
 
 void PrintSnapshots(const ComparisonResults& results, std::string& text) {
   text += Format("\n%-6s %9s %8s  %-30s %-30s %s\n", "", "time", "spp", "MSE (95 %)", "relMSE (95 %)", "FLIP");
+  bool anyOpen = false;
   for (const ComparedIntegrator& integrator : results.integrators) {
     for (const ComparedSnapshot& snapshot : integrator.snapshots) {
       text += Format("%-6s %9s %8.0f  %-30s %-30s %.3f\n", integrator.name.c_str(),
                      FormatDuration(snapshot.seconds).c_str(), snapshot.samplesPerPixel,
-                     WithInterval(snapshot.mse).c_str(), WithInterval(snapshot.relMse).c_str(), snapshot.flip.value);
+                     WithInterval(snapshot.mse, results.reference).c_str(),
+                     WithInterval(snapshot.relMse, results.reference).c_str(), snapshot.flip.value);
+      anyOpen |= !snapshot.mse || !snapshot.relMse;
     }
+  }
+  if (anyOpen && results.reference.IsBlurred()) {
+    text += "  within the reference's error: not told apart from its own noise and blur\n";
   }
 }
 
@@ -173,7 +185,7 @@ void PrintParts(const ComparisonResults& results, std::string& text) {
 
 void PrintTimes(const ComparisonResults& results, std::string& text) {
   text += "\ntime to an error (root of relMSE) of";
-  bool extrapolated = false;
+  bool extrapolated = false, blurs = false, unresolved = false;
   for (const TimeToError& time : results.integrators.front().timeToError) text += Format("%12.0f %%", 100 * time.error);
   text += "\n";
   for (const ComparedIntegrator& integrator : results.integrators) {
@@ -181,15 +193,21 @@ void PrintTimes(const ComparisonResults& results, std::string& text) {
     for (const TimeToError& time : integrator.timeToError) {
       if (time.kind == TimeToError::Kind::Never || time.kind == TimeToError::Kind::Unresolved) {
         text += Format("%14s", time.kind == TimeToError::Kind::Never ? "never" : "unresolved");
+        unresolved |= time.kind == TimeToError::Kind::Unresolved;
         continue;
       }
       const bool guessed = time.kind == TimeToError::Kind::Extrapolated;
       extrapolated |= guessed;
+      blurs |= guessed && integrator.blurs;
       text += Format("%14s", ((guessed ? "~" : "") + FormatDuration(time.seconds.value)).c_str());
     }
     text += "\n";
   }
-  if (extrapolated) text += "  ~ beyond what was measured: relMSE taken to fall as 1/time\n";
+  if (extrapolated) {
+    text += std::string("  ~ beyond what was measured: relMSE taken to fall as 1/time") +
+            (blurs ? "; blur falls more slowly\n" : "\n");
+  }
+  if (unresolved) text += Format("  unresolved: within the reference's own %s\n", LimitOf(results.reference));
 }
 
 void PrintVerdicts(const ComparisonResults& results, std::string& text) {
@@ -202,8 +220,11 @@ void PrintVerdicts(const ComparisonResults& results, std::string& text) {
                      100 * integrator.meanBias.low, 100 * integrator.meanBias.high);
     }
     if (integrator.systematic.significant && integrator.systematic.value > 0) {
-      text += Format("%s differs from the reference by %.2g %% that more samples do not remove\n",
-                     integrator.name.c_str(), 100 * std::sqrt(integrator.systematic.value));
+      const double error = 100 * std::sqrt(integrator.systematic.value);
+      const char* sentence = integrator.blurs
+                                 ? "%s blurs by %.2g %% so far, which falls slowly with more samples\n"
+                                 : "%s differs from the reference by %.2g %% that more samples do not remove\n";
+      text += Format(sentence, integrator.name.c_str(), error);
     }
   }
   for (const EfficiencyRatio& ratio : results.ratios) {

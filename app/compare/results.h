@@ -48,7 +48,9 @@ struct ComparedSnapshot {
 
 // Time at which the root of relMSE reaches `error`.
 struct TimeToError {
-  // Never: the systematic part alone is larger. Unresolved: no error was above the reference's own noise.
+  // Extrapolated: beyond what was measured, as if relMSE fell as 1/time; blur falls more slowly. Never: the systematic
+  // part alone is larger, of an integrator that does not blur. Unresolved: no error was above the reference's own noise
+  // and blur.
   enum class Kind { Measured, Extrapolated, Never, Unresolved };
   double error = 0;
   Kind kind = Kind::Never;
@@ -94,6 +96,9 @@ struct ComparisonReference {
   // Radius of merging in the samples that are most of the reference, relative to that of an integrator's first sample;
   // 0 for integrators that merge none, absent if unknown.
   std::optional<double> radius;
+
+  // It has blur, so that errors are not resolved below its noise and blur.
+  bool IsBlurred() const { return bias.value_or(0) > 0; }
 };
 
 // A trial render by an integrator, to choose the one that renders the reference.
@@ -101,10 +106,11 @@ struct Pilot {
   std::string integrator;
   double seconds = 0;
   int samplesPerPixel = 0;
-  double mean = 0, relMse = 0;  // relMse of `seconds` of rendering
+  double mean = 0, relMse = 0;  // relMse of `seconds` of rendering, relative to neighbourhoods
   double bias = 0;              // relative error (root of relMSE) by what it blurs, as far as it is above noise
+  bool isFlawed = false;        // it misses light, or its picture may: its noise is not all of its error
   bool chosen = false;
-  std::string note;
+  std::string note;  // in words, of any kind
 };
 
 struct ComparisonResults {

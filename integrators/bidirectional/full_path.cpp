@@ -263,7 +263,7 @@ std::vector<double> WeightsByRecursion(const FullPath& path) {
     if (!path.CanMerge(i)) continue;
     const auto at = static_cast<size_t>(i);
     weights[static_cast<size_t>(n + 1 + i)] =
-        MergeWeight(light(i).BeforeOthers(static_cast<size_t>(n - 1)).BeforeReverse(B(i - 1)),
+        MergeWeight(light(i).WithNextEvents(static_cast<size_t>(n)).BeforeReverse(B(i - 1)),
                     camera(i).BeforeReverse(F(i + 1)), whole.PerDensityAt(at), connections, whole.ForMerging(at));
   }
   return weights;

@@ -69,7 +69,7 @@ Color Merge(const BidirectionalSample& sample) {
                      light.front().extent, sample.merging);
     const double weight =
         MergeWeight(photon.weight.At(light.back(), photon.depth)
-                        .BeforeOthers(photon.depth + sample.camera.Count() - 2)
+                        .WithNextEvents(photon.depth + sample.camera.Count() - 1)
                         .BeforeReverse(joint.light.last),
                     vertex.weight.BeforeReverse(joint.camera.previous), sample.whole.PerDensityAt(light.size()),
                     sample.connectionCount, sample.whole.ForMerging(light.size()));

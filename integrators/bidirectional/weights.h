@@ -56,10 +56,11 @@ inline double ConnectWeight(const PartialWeight& light, const ReverseDensities& 
 }
 
 // s > 1, t = 1: the last vertex of the light subpath is connected to the lens ([Georgiev12 eq. 46]). `reverse`: reverse
-// densities of that vertex, by a camera ray, and of the one before.
+// densities of that vertex, by a camera ray, and of the one before. If it is the first vertex, the path is of direct
+// light; further on there is no term of next-event estimation to count.
 inline double SplatWeight(const PartialWeight& light, const ReverseDensities& reverse, double connectionCount,
                           double splatCount, double merging) {
-  return WeightAgainst((light.BeforeOthers(0).Sum(reverse).ForEnds(connectionCount) + merging) / Mis(splatCount));
+  return WeightAgainst((light.WithNextEvents(1).Sum(reverse).ForEnds(connectionCount) + merging) / Mis(splatCount));
 }
 
 // The last vertices of both subpaths are merged ([Georgiev12 eqs. 38, 39]). `light`, `camera`: BeforeReverse of the two

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/parallel.h"
 #include "integrators/photon/emission_learning.h"
@@ -73,7 +74,7 @@ class PilotPasses {
       const CameraRay& ray = pixel.camera;
       if (!recorders.empty()) {
         context.observer = &recorders[chunk];
-        recorders[chunk].StartSample(x, y, ray.weight * pixel.filterWeight);
+        recorders[chunk].StartSample(x, y, ray.weight);
       }
       const bool isVignetted = ray.weight == 0;
       if (!isVignetted || integrator.Paths() != TracedPaths::Camera)
@@ -144,17 +145,20 @@ const PilotCandidate* RenderPilot::Find(const std::string& integrator, int log2L
 }
 
 const PilotCandidate* RenderPilot::Best() const {
+  const auto product = [](const PilotCandidate& candidate) {
+    return candidate.missing > kNegligibleLight ? std::numeric_limits<double>::infinity() : candidate.ErrorTimesCost();
+  };
+  double least = std::numeric_limits<double>::infinity();
+  for (const PilotCandidate& candidate : candidates) least = std::min(least, product(candidate));
+  // The estimates are no better than this. Of equals the least noisy is taken: the noisier one is more often
+  // underestimated, because a pilot does not meet its brightest samples.
+  constexpr double kMargin = 1.05;
   const PilotCandidate* best = nullptr;
   for (const PilotCandidate& candidate : candidates) {
-    if (candidate.missing > kNegligibleLight) continue;
-    if (!best || candidate.ErrorTimesCost() < best->ErrorTimesCost()) best = &candidate;
+    const double its = product(candidate);
+    if (std::isfinite(its) && its <= kMargin * least && (!best || candidate.error < best->error)) best = &candidate;
   }
-  // Path tracing is the plainest, and the estimates are no better than this.
-  constexpr double kMargin = 1.05;
-  const PilotCandidate* path = Find("path");
-  const bool isClose =
-      best && path && path->missing <= kNegligibleLight && path->ErrorTimesCost() < kMargin * best->ErrorTimesCost();
-  return isClose ? path : best;
+  return best;
 }
 
 RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, int threads, int passCount) {
@@ -179,8 +183,8 @@ RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, i
   const auto wider = static_cast<float>(std::sqrt(fewer * std::min(shrunk, 1.0)));
   PhotonStore store(photons, static_cast<uint64_t>(grid.Pixels()), nullptr);
   PilotPasses passes(view, combined, grid, threads, static_cast<uint32_t>(passCount));
-  const double spread = PixelFilter(settings.filter).SplatCount();
-  std::vector<Recorder> recorders(kChunks, Recorder(grid, filmPixels, spread, SplatCount(settings), passCount)), none;
+  const PixelFilter filter(settings.filter);
+  std::vector<Recorder> recorders(kChunks, Recorder(grid, filmPixels, filter, SplatCount(settings), passCount)), none;
   Records records(grid, recorders);
   Counted counted;
   for (uint32_t pass = 0; pass < static_cast<uint32_t>(passCount); ++pass) {
@@ -207,7 +211,9 @@ RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, i
     pilot.candidates.push_back(std::move(candidate));
   }
   double least = 0;  // error that is told apart
-  if (!records.SetErrors(passCount, settings.sampler == SamplerKind::Sobol, pilot.candidates, least)) return {};
+  if (!records.SetErrors(passCount, filter.SquaredWeight(), settings.sampler == SamplerKind::Sobol, pilot.candidates,
+                         least))
+    return {};
   for (size_t k = kFirstOfVcm; k < kCandidates; ++k) {
     const PilotCandidate& none = pilot.candidates[k - kFirstOfVcm + 1];
     if (auto mixed = MergingInParts(none, pilot.candidates[k], costs[k], grid, least))

@@ -3,8 +3,10 @@
 //
 // A sample x of the technique t, with the contribution v = f / p_t before its weight w, estimates the second moment of
 // an integrator that has only the techniques of some groups, weighted by the power heuristic: it adds
-//   w v² Σ r³ / (Σ r²)²,   r = p / p_t over the techniques of those groups (bidirectional/path_densities.h).
-// So light that path tracing finds once in a million samples counts as its noise as soon as another technique finds it.
+//   w v² Σ (n r)⁴/r / (Σ (n r)²)²,   r = p / p_t over the techniques of those groups, n the times that each counts
+// (bidirectional/path_densities.h).
+// So light that path tracing finds once in a million samples counts as its noise as soon as another technique finds it,
+// unless a typical render is not expected to hold one such sample: then it is light that path tracing does not find.
 //
 // Cost is counted, not timed, so that the choice does not depend on how fast or busy a machine is. It is that of the
 // whole image: a part of it (--crop) is rendered by the same integrator.
@@ -52,7 +54,7 @@ inline constexpr int kPilotTile = 4, kMostPilotPixels = 4096;
 inline constexpr double kNegligibleLight = 1e-4;
 
 // Deterministic for a scene, its size and its settings; not dependent on the seed and on the number of threads.
-// `passes`: samples of every pixel.
+// `passes`: samples of every pixel; even, because squares of means are products of two.
 RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, int threads, int passes = 4);
 
 }  // namespace lampyr

@@ -18,23 +18,15 @@ struct Candidate {
   int log2LightPaths;
   // Samples of each TechniqueGroup per camera path, relative to those of the pilot.
   std::array<double, kTechniqueGroups> counts;
-  // Squared error of independent samples over that of Sobol points, as measured in scenes of scenes/ with 64 samples
-  // per pixel. More techniques make smoother integrands, and fewer light paths leave fewer points to be well
-  // distributed.
-  double gainOfSobol;
 };
 constexpr Candidate Bidirectional(bool merges, int log2LightPaths) {
   const double n = log2LightPaths < 0 ? 1.0 / (1 << -log2LightPaths) : 1 << log2LightPaths;
-  constexpr std::array<double, 6> gains = {1.8, 1.87, 1.95, 2.0, 1.95, 1.9};
-  return {merges ? "vcm" : "bdpt",
-          log2LightPaths,
-          {1, 1, n, std::min(n, 1.0), merges ? n : 0.0},
-          gains[static_cast<size_t>(log2LightPaths + 3)]};
+  return {merges ? "vcm" : "bdpt", log2LightPaths, {1, 1, n, std::min(n, 1.0), merges ? n : 0.0}};
 }
 inline constexpr size_t kCandidates = 13, kFirstOfVcm = 7;
 inline constexpr double kFewestLightPaths = 1.0 / 8;
 inline constexpr std::array<Candidate, kCandidates> kCandidateOf = {{
-    {"path", 0, {1, 1, 0, 0, 0}, 1.7},
+    {"path", 0, {1, 1, 0, 0, 0}},
     Bidirectional(false, -3),
     Bidirectional(false, -2),
     Bidirectional(false, -1),

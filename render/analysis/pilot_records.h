@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "film/pixel_filter.h"
 #include "integrators/bidirectional/connected_path.h"
 #include "render/analysis/pilot.h"
 #include "render/analysis/pilot_candidates.h"
@@ -51,13 +52,14 @@ struct Grid {
 
 // Light that a candidate finds rarely, and bright.
 struct RareEvent {
-  uint32_t pixel;
-  float value;     // of one occurrence
-  float expected;  // occurrences in a typical render
-  float light;     // what it adds to the mean of the pixel, summed over the pilot's samples
-  float square;    // to its second moment
+  size_t pixel;
+  double value;     // of one occurrence
+  double expected;  // occurrences in a typical render
+  double light;     // what it adds to the mean of the pixel, summed over the pilot's samples
+  double square;    // to its second moment
 };
-// Samples of a typical render.
+// Samples of a typical render. Events that it is expected to hold less than once are not in a candidate's error, but
+// light that it does not find.
 inline constexpr double kTypicalSamples = 1 << 21;
 
 // Sums over the samples of a pixel.
@@ -91,13 +93,13 @@ struct Found {
 // Adds up the moments of the paths of one chunk.
 class Recorder final : public PathObserver {
  public:
-  // `spread`: pixels among which a splat is divided (PixelFilter::SplatCount). `splatCount`: that of the weights.
-  Recorder(const Grid& grid, double filmPixels, double spread, double splatCount, int passes)
+  // `splatCount`: that of the weights. `passes`: of the pilot.
+  Recorder(const Grid& grid, double filmPixels, const PixelFilter& filter, double splatCount, int passes)
       : moments(static_cast<size_t>(grid.Pixels())),
         found(static_cast<size_t>(grid.Pixels())),
         grid_(grid),
         filmPixels_(filmPixels),
-        spread_(spread),
+        spread_(filter.SplatCount()),
         splatCount_(splatCount),
         renders_(kTypicalSamples / (static_cast<double>(passes) * grid.Pixels())) {}
 
@@ -113,13 +115,16 @@ class Recorder final : public PathObserver {
   void Observe(const ConnectedPath& path) override;
   void ObserveMerge(const ConnectedPath& path, const Photon&) override { Observe(path); }
 
-  // One entry for each pixel; `found` is of the current pass.
+  // One entry for each pixel; `found` is of the current pass, and of camera paths alone: they are in one pixel of the
+  // image, and splats anywhere in the pilot's.
   std::vector<Moments> moments;
   std::vector<Found> found;
   std::array<std::vector<RareEvent>, kCandidates> rare;
 
  private:
   void Add(const ConnectedPath& path, double value, size_t pixel);
+  // Keeps the brightest of a candidate's events.
+  static void Keep(const RareEvent& event, std::vector<RareEvent>& brightest);
 
   // What the light path of a photon that is merged at a first hit adds to the same pixel by its connection to the lens,
   // on average: the same light path, counted twice. `squares`: Σ (n r)².
@@ -127,8 +132,9 @@ class Recorder final : public PathObserver {
 
   const Grid& grid_;
   double filmPixels_, weight_ = 1;
-  double spread_, splatCount_;
-  double renders_;  // typical renders for each of the pilot's samples
+  double spread_;      // pixels among which a splat is divided
+  double splatCount_;  // of the weights
+  double renders_;     // typical renders for each of the pilot's samples
   size_t pixel_ = 0;
   // Connections have their own sums, because only samples with a light path make them.
   struct Sums {
@@ -147,8 +153,10 @@ class Records {
   // which are independent.
   void EndPass(uint32_t pass);
 
-  // The sum over all passes. False: no light was found.
-  bool SetErrors(int passes, bool isSobol, std::vector<PilotCandidate>& candidates, double& least) const;
+  // The sum over all passes. False: no light was found. `squaredWeight`: PixelFilter::SquaredWeight. A pixel is Σ wL /
+  // Σ w over its samples, so that weights of either sign scale its variance and do not add to it.
+  bool SetErrors(int passes, double squaredWeight, bool isSobol, std::vector<PilotCandidate>& candidates,
+                 double& least) const;
 
  private:
   // Moves the brightest events of candidate `k` out of its second moments, as far as a typical render is expected to

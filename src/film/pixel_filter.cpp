@@ -81,6 +81,7 @@ PixelFilter::Axis PixelFilter::MakeAxis(const PixelFilterSettings& settings, flo
     throw Error("the pixel filter has no positive integral over its radius");
   }
   axis.splatCount = absoluteSum * absoluteSum * step / squares;
+  axis.squaredWeight = absoluteSum * absoluteSum / (sum * sum);
   if (settings.kind == Kind::Gaussian && radius > 2 * settings.sigma) {  // otherwise the exponentials cancel
     axis.edge = std::exp(-0.5f * Sqr(radius / settings.sigma)) / axis.integral;
   }

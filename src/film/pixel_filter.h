@@ -40,6 +40,8 @@ class PixelFilter {
   // spread over all pixels in whose filter it is, (∫|f|)² / ∫f² of them on average (∫f = 1). Box of a pixel's width: 1;
   // Gaussian of σ = 0.5: 3.
   double SplatCount() const { return x_->splatCount * y_->splatCount; }
+  // The mean of Offset::weight²: (∫|f|)², 1 if f >= 0 everywhere.
+  double SquaredWeight() const { return x_->squaredWeight * y_->squaredWeight; }
   // Half the extent of the filter, pixels.
   Vector2 Radius() const { return {settings_.radiusX, settings_.radiusY}; }
 
@@ -48,9 +50,10 @@ class PixelFilter {
   // parts with equal shares of ∫|f|: one look-up maps a random number to an offset.
   struct Axis {
     float radius = 0;
-    float integral = 1;     // of f
-    double splatCount = 1;  // (∫|f|)² / ∫f²
-    float edge = 0;         // narrow Gaussian: exp(-r²/2σ²) over the integral
+    float integral = 1;        // of f
+    double splatCount = 1;     // (∫|f|)² / ∫f²
+    double squaredWeight = 1;  // (∫|f|)² / (∫f)²
+    float edge = 0;            // narrow Gaussian: exp(-r²/2σ²) over the integral
     std::vector<float> edges;
     std::vector<float> weights;  // per part: its share of ∫f over its share of ∫|f|; empty if f >= 0
   };

@@ -168,10 +168,12 @@ size_t TileOf(size_t pixel) {
 }
 
 // relMSE of one sample per pixel, with the mean brightness of each tile as the pilot has it. Measured with several
-// passes, because photons come from the light paths of the pass before.
+// passes, because photons come from the light paths of the pass before, and more where samples have weights: a pixel is
+// the ratio of their sums.
 double MeasureError(const BuiltScene& built, const PilotCandidate& candidate) {
-  constexpr int kPasses = 8;
-  const std::vector<Estimate> pixels = Render(built, candidate, 100, kPasses);
+  const bool isWeighted = built.settings.filter.kind == PixelFilterSettings::Kind::Mitchell;
+  const int passes = isWeighted ? 48 : 8;
+  const std::vector<Estimate> pixels = Render(built, candidate, isWeighted ? 50 : 100, passes);
   std::vector<double> tiles(kTiles * kTiles);
   double mean = 0, error = 0;
   for (size_t i = 0; i < pixels.size(); ++i) {
@@ -180,7 +182,7 @@ double MeasureError(const BuiltScene& built, const PilotCandidate& candidate) {
   }
   for (size_t i = 0; i < pixels.size(); ++i) {
     const Estimate& pixel = pixels[i];
-    const double variance = kPasses * pixel.Variance() * pixel.count * pixel.count / (pixel.count - 1);
+    const double variance = passes * pixel.Variance() * pixel.count * pixel.count / (pixel.count - 1);
     error += variance / (tiles[TileOf(i)] * tiles[TileOf(i)] + 0.01 * mean * mean) / static_cast<double>(pixels.size());
   }
   return error;
@@ -198,7 +200,8 @@ TEST(Pilot, KnowsTheErrors) {
     std::string rest, filter;
   };
   const std::vector<Case> cases = {
-      {above, "box"}, {spot, "box"}, {above + kBall, "box"}, {spot, "gaussian"}, {above + kBall, "gaussian"}};
+      {above, "box"},     {spot, "box"}, {above + kBall, "box"}, {spot, "gaussian"}, {above + kBall, "gaussian"},
+      {above, "mitchell"}};
   for (const Case& c : cases) {
     std::string text = Scene(head, c.rest);
     const std::string box = "PixelFilter \"box\"";
@@ -214,8 +217,60 @@ TEST(Pilot, KnowsTheErrors) {
       std::printf("[   info   ] %-80s relMSE %.4g, measured %.4g\n", candidate.Describe().c_str(), candidate.error,
                   measured);
       EXPECT_NEAR(candidate.error / measured, 1, 0.15) << candidate.Describe();
-      EXPECT_EQ(candidate.missing, 0) << candidate.Describe();
+      EXPECT_LT(candidate.missing, kNegligibleLight) << candidate.Describe();
     }
+  }
+}
+
+// What differs between pixels of the image that one pixel of the pilot holds is not noise, and what is within them is.
+TEST(Pilot, KnowsNoiseFromTexture) {
+  constexpr int kWide = 192, kRenders = 24, kTileOfImage = kPilotTile * kWide / 64;
+  std::string text = Scene("path\" \"integer maxdepth\" [ 1 ] \"string lightsampler\" \"power",
+                           "AttributeBegin Translate 0 0.6 0\n" + kAreaLight + "AttributeEnd\n");
+  const auto replace = [&](const std::string& old, const std::string& with) {
+    text.replace(text.find(old), old.size(), with);
+  };
+  replace("\"integer xresolution\" 16 \"integer yresolution\" 16",
+          "\"integer xresolution\" 192 \"integer yresolution\" 192");
+  replace("LookAt 0 1 -3  0 0.8 0  0 1 0", "LookAt 0.3 1.5 0  0.3 0 0  0 0 1");
+  replace(
+      "Material \"diffuse\" \"rgb reflectance\" [ 0.6 0.5 0.4 ]",
+      "Texture \"checks\" \"spectrum\" \"checkerboard\" \"float uscale\" 120 \"float vscale\" 120 \"rgb tex1\" [ 0.1 "
+      "0.1 0.1 ] \"rgb tex2\" [ 0.8 0.8 0.8 ] Material \"diffuse\" \"texture reflectance\" \"checks\"");
+  const BuiltScene built = Build(text);
+  ASSERT_EQ(built.settings.width, kWide);
+  const RenderPilot pilot = RunPilot(built.scene, built.settings, 2, 32);
+  for (const char* integrator : {"path", "bdpt", "vcm"}) {
+    RenderSettings settings = built.settings;
+    settings.integrator = integrator;
+    const auto made = MakeIntegrator(built.scene, settings);
+    std::vector<Estimate> pixels(kWide * kWide);
+    for (int render = 0; render < kRenders; ++render) {
+      settings.seed = static_cast<uint64_t>(render + 1);
+      Film film(kWide, kWide, settings.crop);
+      StopConditions stop;
+      stop.samplesPerPixel = 1;
+      lampyr::Render(built.scene, *made, settings, stop, 2, film, [](const RenderOutcome&, double) {});
+      const Image image = film.Develop();
+      for (size_t i = 0; i < pixels.size(); ++i)
+        pixels[i].Add(static_cast<double>(image.At(static_cast<int>(i) % kWide, static_cast<int>(i) / kWide, 0)));
+    }
+    const auto tileOf = [](size_t i) { return i / kWide / kTileOfImage * kWide + i % kWide / kTileOfImage; };
+    std::vector<double> tiles(kWide * kWide);
+    double mean = 0, measured = 0;
+    for (size_t i = 0; i < pixels.size(); ++i) {
+      mean += pixels[i].Mean() / static_cast<double>(pixels.size());
+      tiles[tileOf(i)] += pixels[i].Mean() / (kTileOfImage * kTileOfImage);
+    }
+    for (size_t i = 0; i < pixels.size(); ++i) {
+      const double variance = pixels[i].Variance() * kRenders * kRenders / (kRenders - 1);
+      measured += variance / (tiles[tileOf(i)] * tiles[tileOf(i)] + 0.01 * mean * mean);
+    }
+    measured /= static_cast<double>(pixels.size());
+    const PilotCandidate* candidate = pilot.Find(integrator);
+    ASSERT_TRUE(candidate);
+    std::printf("[   info   ] checks: %-5s relMSE %.4g, measured %.4g\n", integrator, candidate->error, measured);
+    EXPECT_NEAR(candidate->error / measured, 1, 0.15) << integrator;
   }
 }
 
@@ -242,11 +297,11 @@ TEST(Pilot, CountsDoNotChangeTheMean) {
     std::string filter, camera, things;
   };
   const std::vector<Case> cases = {
-      {"still", "PixelFilter \"gaussian\"\n", "", above + kBall},
-      {"moving", "", "", above + moving},
-      {"lens", "PixelFilter \"triangle\"\n", "\"float lensradius\" 0.05 \"float focaldistance\" 3 ", above + kBall},
+      {"still", "\"gaussian\"", "", above + kBall},
+      {"moving", "\"box\"", "", above + moving},
+      {"lens", "\"triangle\"", "\"float lensradius\" 0.05 \"float focaldistance\" 3 ", above + kBall},
       // The film goes all around, and so do splats near its edges.
-      {"around", "PixelFilter \"gaussian\" \"float xradius\" 2\n", "around", above + kBall},
+      {"around", "\"gaussian\" \"float xradius\" 2.25", "around", above + kBall},
   };
   for (const Case& c : cases) {
     std::string text = Scene(head, c.things);
@@ -256,7 +311,11 @@ TEST(Pilot, CountsDoNotChangeTheMean) {
     text.replace(text.find(camera), camera.size(), isAround ? "Camera \"spherical\"" : camera + " " + c.camera);
     const std::string view = "LookAt 0 1 -3  0 0.8 0  0 1 0";  // not of corners, where merging blurs
     text.replace(text.find(view), view.size(), "LookAt 0.3 1.5 0  0.3 0 0  0 0 1");
-    const BuiltScene built = Build(c.filter + text);
+    const std::string box = "PixelFilter \"box\"";
+    text.replace(text.find(box), box.size(), "PixelFilter " + c.filter);
+    const BuiltScene built = Build(text);
+    EXPECT_EQ(built.settings.filter.kind == PixelFilterSettings::Kind::Box, c.filter == "\"box\"");
+    EXPECT_EQ(built.settings.filter.radiusX == 2.25f, isAround);
     constexpr int kRenders = 300;
     PilotCandidate candidate;
     candidate.integrator = "bdpt";
@@ -297,7 +356,7 @@ TEST(Pilot, ASkyHasNoError) {
       "LightSource \"infinite\" \"rgb L\" [ 1 2 3 ]\nTranslate 0 0 -5 Shape \"sphere\" \"float radius\" 0.1\n";
   const BuiltScene built = Build(sky);
   const RenderPilot pilot = RunPilot(built.scene, built.settings, 2, 100);
-  ASSERT_GE(pilot.candidates.size(), 11u);
+  ASSERT_GE(pilot.candidates.size(), 13u);
   for (const PilotCandidate& candidate : pilot.candidates) EXPECT_LT(candidate.error, 0.015) << candidate.integrator;
 }
 

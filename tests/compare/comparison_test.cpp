@@ -6,6 +6,7 @@
 
 #include "app/compare/comparison.h"
 #include "app/compare/first_look.h"
+#include "app/compare/neighbourhood.h"
 #include "app/compare/report.h"
 #include "app/json_report.h"
 #include "film/metrics.h"
@@ -83,8 +84,10 @@ TEST(Reference, IsMadeByWhatFindsAllTheLight) {
     EXPECT_EQ(pilot.chosen, pilot.integrator == "bdpt") << pilot.integrator << ": " << pilot.note;
     if (pilot.integrator == "vcm") {
       EXPECT_NE(pilot.note.find("of that of bdpt in the same time"), std::string::npos) << pilot.note;
+      EXPECT_FALSE(pilot.isFlawed);
     }
     if (pilot.integrator == "path") {
+      EXPECT_TRUE(pilot.isFlawed);
       EXPECT_NE(pilot.note.find("finds less light than "), std::string::npos) << pilot.note;
     }
     EXPECT_GT(pilot.samplesPerPixel, 0);
@@ -225,6 +228,17 @@ TEST(Reference, KeepsWhatItKnowsOfItsBlur) {
   EXPECT_EQ(given.blur.relMseLimit, made.blur.relMseLimit);
 }
 
+TEST(Neighbourhood, NoiseIsThatOfVariancesOrStandardErrors) {
+  Image errors(4, 4, {"R", "G", "B", "stderr.R", "stderr.G", "stderr.B"});
+  for (size_t i = 0; i < errors.data.size(); ++i) errors.data[i] = i % 6 < 3 ? 2.0f : 0.5f;
+  Image variances = errors;
+  variances.channels = {"R", "G", "B", "variance.R", "variance.G", "variance.B"};
+  for (size_t i = 0; i < variances.data.size(); ++i) variances.data[i] = i % 6 < 3 ? 2.0f : 0.25f;
+  EXPECT_NEAR(RelativeNoise(errors), 0.25 / 4.04, 1e-9);
+  EXPECT_NEAR(RelativeNoise(variances), 0.25 / 4.04, 1e-9);
+  EXPECT_THROW(RelativeNoise(ChannelsOf(errors, {"R", "G", "B"})), Error);
+}
+
 TEST(ComparedScene, TimeOfTheChoiceIsPartOfAuto) {
   BuiltScene built = Build(kCamera + kLamp);
   built.choiceSeconds = 0.2;
@@ -234,7 +248,8 @@ TEST(ComparedScene, TimeOfTheChoiceIsPartOfAuto) {
     const auto keep = [&](size_t, const ComparedScene::Milestone& milestone, const Image&) {
       reached.push_back(milestone);
     };
-    scene.Render(name, 7, {0.1, 0.4}, {}, keep, [](double) {});
+    scene.Render(
+        name, 7, {0.1, 0.4}, {}, keep, [](double) {}, 0, scene.ChoiceSeconds(name));
     ASSERT_EQ(reached.size(), 2u);
     if (name == std::string("auto")) {
       EXPECT_EQ(reached[0].samplesPerPixel, 1);  // the time is over, but there must be a picture
@@ -244,6 +259,24 @@ TEST(ComparedScene, TimeOfTheChoiceIsPartOfAuto) {
     }
     EXPECT_NEAR(reached[1].seconds, 0.4, 0.1);
   }
+}
+
+// Trial renders and references are made when the choice is.
+TEST(ComparedScene, TimeOfTheChoiceIsPartOfComparedRendersAlone) {
+  BuiltScene built = Build(kCamera + kLamp);
+  built.choiceSeconds = 1000;
+  const ComparedScene scene(built, 2, kNever);
+  const Reference reference = MakeReference(scene, "auto", 1, 8 * 4, kQuiet);
+  EXPECT_LT(reference.facts.seconds, 500);
+  ComparisonPlan plan;
+  plan.integrators = {"path", "auto"};
+  plan.autoIntegrator = "path";
+  plan.sampleCounts = {2};
+  plan.repeats = 2;
+  ComparisonResults results;
+  Compare(scene, plan, reference, kQuiet, results);
+  EXPECT_LT(results.integrators[0].snapshots[0].seconds, 500);
+  EXPECT_GT(results.integrators[1].snapshots[0].seconds, 1000);
 }
 
 class Compared : public testing::Test {
@@ -356,6 +389,32 @@ TEST_F(Compared, ErrorsAreBiasAndNoise) {
   EXPECT_NE(ToText(results).find("bias (with blur: vcm)"), std::string::npos) << ToText(results);
 }
 
+// The radius shrinks: no error is out of reach, even if all of what is measured is above it.
+TEST_F(Compared, BlurIsNotSaidToStay) {
+  BuiltScene built = Build(kCamera + kCaustic);
+  built.settings.values.Set("radius", 0.5);
+  const ComparedScene scene(built, 2, kNever);
+  const Reference reference = MakeReference(scene, "bdpt", 1, 8 * 512, kQuiet);
+  ComparisonPlan plan;
+  plan.integrators = {"sppm"};
+  plan.sampleCounts = {16};
+  ComparisonResults results;
+  results.reference = reference.facts;
+  Compare(scene, plan, reference, kQuiet, results);
+  const ComparedIntegrator& sppm = results.integrators[0];
+  EXPECT_TRUE(sppm.blurs);
+  ASSERT_TRUE(sppm.systematic.significant);
+  const TimeToError& last = sppm.timeToError[2];
+  ASSERT_GT(sppm.systematic.low, last.error * last.error);
+  EXPECT_EQ(last.kind, TimeToError::Kind::Extrapolated);
+  EXPECT_GT(last.seconds.value, sppm.snapshots[0].seconds);
+  const std::string text = ToText(results);
+  EXPECT_NE(text.find("sppm blurs by "), std::string::npos) << text;
+  EXPECT_NE(text.find("blur falls more slowly"), std::string::npos) << text;
+  EXPECT_EQ(text.find("never"), std::string::npos) << text;
+  EXPECT_EQ(text.find("do not remove"), std::string::npos) << text;
+}
+
 // A reference that is blurred by more than an error bounds it, and the verdicts too.
 TEST_F(Compared, NothingIsSaidBelowTheBlurOfTheReference) {
   const BuiltScene built = Build(kCamera + kCaustic);
@@ -396,6 +455,11 @@ TEST_F(Compared, NothingIsSaidBelowTheBlurOfTheReference) {
   EXPECT_FALSE(hidden.integrators[0].systematic.significant);
   EXPECT_FALSE(hidden.integrators[0].meanBias.significant);
   EXPECT_TRUE(hidden.ratios.empty());
+  EXPECT_EQ(hidden.integrators[0].timeToError[0].kind, TimeToError::Kind::Unresolved);
+  hidden.reference.bias = 2 * std::sqrt(path.relMse->value);
+  const std::string text = ToText(hidden);
+  EXPECT_NE(text.find("within the reference's own noise and blur"), std::string::npos) << text;
+  EXPECT_NE(text.find("within the reference's error"), std::string::npos) << text;
 }
 
 TEST_F(Compared, NothingIsSaidBelowTheNoiseOfTheReference) {

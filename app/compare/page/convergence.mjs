@@ -2,7 +2,7 @@
 import {convergencePlot} from './convergence_plot.mjs';
 import {choiceRow, element, svgElement} from './dom.mjs';
 import {formatNumber} from './numbers.mjs';
-import {kMetrics, kSymbols, metricName, positive, seriesColor, snapshotsOf} from './results.mjs';
+import {kMetrics, kSymbols, limitOf, metricName, positive, seriesColor, snapshotsOf} from './results.mjs';
 import {symbolPath} from './symbols.mjs';
 
 const kNarrow = 760;  // below this the plots stand under each other
@@ -33,7 +33,7 @@ function captionText(results, metric) {
     if (noise) sentences.push(`The reference’s own noise is a ${metricName(metric)} of ${formatNumber(noise.value)}.`);
   }
   if (snapshotsOf(results).some(({snapshot}) => snapshot[metric] === null)) {
-    sentences.push('Hollow points with an arrow could not be told apart from the reference’s own noise.');
+    sentences.push(`Hollow points with an arrow could not be told apart from the reference’s own ${limitOf(results)}.`);
   }
   return sentences.join(' ');
 }

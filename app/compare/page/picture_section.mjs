@@ -4,7 +4,7 @@ import {ErrorScale} from './error_scale.mjs';
 import {formatBudget, formatCount, formatInterval, formatNumber, formatSeconds, isNumber} from './numbers.mjs';
 import {PictureStore} from './picture_store.mjs';
 import {kZooms, PictureView} from './picture_view.mjs';
-import {mainBudget, snapshotName, snapshotsOf} from './results.mjs';
+import {limitOf, mainBudget, snapshotName, snapshotsOf} from './results.mjs';
 
 const kSides = ['left', 'right'];
 
@@ -20,7 +20,8 @@ function entriesOf(results, store) {
   for (const {integrator, snapshot} of snapshotsOf(results)) {
     if (!store.has(snapshot.picture)) continue;
     const parts = [formatSeconds(snapshot.seconds), `${formatNumber(snapshot.samplesPerPixel)} spp`,
-      snapshot.relMse ? `relMSE ${formatInterval(snapshot.relMse)}` : 'error within the reference’s own noise'];
+      snapshot.relMse ? `relMSE ${formatInterval(snapshot.relMse)}`
+        : `error within the reference’s own ${limitOf(results)}`];
     entries.push({id: snapshot.picture, name: snapshotName(integrator, snapshot), group: integrator.name,
       caption: parts.join(' · '), picture: snapshot.picture, integrator: integrator.name,
       budget: `${snapshot.kind} ${snapshot.budget}`, budgetText: formatBudget(snapshot.kind, snapshot.budget),

@@ -72,6 +72,11 @@ export function ratioOf(results, name, against, kind, budget, metric) {
     low: inverse(backward.high), high: inverse(backward.low)};
 }
 
+// What errors are not told apart from: a reference that merges photons has blur, too.
+export function limitOf(results) {
+  return results.reference.bias > 0 ? 'noise and blur' : 'noise';
+}
+
 export function includesOne(ratio) {
   return !isNumber(ratio.low) || !isNumber(ratio.high) || (ratio.low <= 1 && ratio.high >= 1);
 }

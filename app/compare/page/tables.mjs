@@ -1,11 +1,11 @@
-// The tables: every snapshot, time to an error, ratios, what does not converge, pilots.
+// The tables: every snapshot, time to an error, ratios, what repeats have in common, pilots.
 import {legendSymbol} from './convergence.mjs';
 import {element} from './dom.mjs';
 import {
   formatBudget, formatNumber, formatPercent, formatSeconds, inPercent, intervalParts, isNumber,
 } from './numbers.mjs';
 import {furthestOf, ratioFigure} from './ratio_figure.mjs';
-import {budgetsOf, includesOne, kMetrics, metricName, snapshotAt, snapshotsOf} from './results.mjs';
+import {budgetsOf, includesOne, kMetrics, limitOf, metricName, snapshotAt, snapshotsOf} from './results.mjs';
 
 const kUnresolved = 'not resolved';
 
@@ -71,15 +71,19 @@ function snapshotTable(results, kind) {
     .map(({integrator, snapshot: {seconds, budget}}) =>
       `${integrator.name} took ${formatSeconds(seconds)} for ${formatSeconds(budget)}.`);
   const notes = [
-    ...someOpen ? [`“${kUnresolved}”: the error could not be told apart from the reference’s own noise.`] : [],
+    ...someOpen ? [`“${kUnresolved}”: the error could not be told apart from the reference’s own ${limitOf(results)}.`] : [],
     ...late.length > 0 ? [`Not all renders could be stopped in time: ${late.join(' ')}`] : [],
   ];
   return table(`snapshots-${kind}`, title, columns, bodies, notes.length > 0 ? notes.join(' ') : null);
 }
 
+function namesOfBlurring(results) {
+  return results.integrators.filter(({blurs}) => blurs).map(({name}) => name);
+}
+
 // "bias", with the names of those that blur.
 function biasHeading(results) {
-  const blurring = results.integrators.filter(({blurs}) => blurs).map(({name}) => name);
+  const blurring = namesOfBlurring(results);
   return blurring.length > 0 ? `Bias (with blur: ${blurring.join(', ')})` : 'Bias';
 }
 
@@ -108,7 +112,7 @@ function partsTable(results) {
   'Relative errors, whose squares add up to relMSE: noise differs between repeats, bias is common to all of them.');
 }
 
-// Why an integrator does not get to an error.
+// Why an integrator that does not blur does not get to an error.
 function neverText(integrator) {
   const {systematic} = integrator;
   if (systematic?.significant && systematic.value > 0) {
@@ -119,7 +123,7 @@ function neverText(integrator) {
 
 function timeCell(integrator, entry) {
   if (!entry) return numberCell('–');
-  if (entry.kind === 'unresolved') return element('td', {class: 'number never'}, 'never resolved');
+  if (entry.kind === 'unresolved') return element('td', {class: 'number never'}, kUnresolved);
   if (entry.kind === 'never') return element('td', {class: 'number never'}, neverText(integrator));
   const range = isNumber(entry.low) && isNumber(entry.high)
     ? ` (${formatSeconds(entry.low)} to ${formatSeconds(entry.high)})` : '';
@@ -136,13 +140,16 @@ function timeToErrorTable(results) {
   const kinds = results.integrators.flatMap(({timeToError}) => timeToError.map(({kind}) => kind));
   const notes = ['The relative error is the square root of relMSE.'];
   if (kinds.includes('extrapolated')) {
-    notes.push('~ marks times outside what was rendered: relMSE is taken to fall as one over time.');
+    const blurs = results.integrators.some((integrator) => integrator.blurs &&
+      integrator.timeToError.some(({kind}) => kind === 'extrapolated'));
+    notes.push('~ marks times outside what was rendered: relMSE is taken to fall as one over time' +
+      `${blurs ? '; blur falls more slowly' : ''}.`);
   }
   if (kinds.includes('never')) {
     notes.push('“never”: a part of the error stays however many samples are taken.');
   }
-  if (results.integrators.some(({snapshots}) => !snapshots.some(({relMse}) => relMse))) {
-    notes.push('“never resolved”: the error was within the reference’s own noise from the beginning.');
+  if (kinds.includes('unresolved')) {
+    notes.push(`“${kUnresolved}”: the error was within the reference’s own ${limitOf(results)} from the beginning.`);
   }
   return table('time-to-error', 'Time to an error',
     [{text: 'Integrator'}, ...errors.map((error) => ({text: `to ${formatPercent(error)}`, number: true}))],
@@ -186,9 +193,14 @@ function systematicTable(results) {
   const rows = results.integrators.map(({name, meanBias: bias, systematic}) => element('tr', {}, integratorCell(results, name),
     intervalCell(inPercent(bias), '\u00a0%'), verdict(bias?.significant), intervalCell(systematic),
     verdict(systematic?.significant && systematic.value > 0)));
-  return table('systematic', 'What more samples do not remove', [{text: 'Integrator'},
+  // Blur falls, if slowly; all else stays.
+  const blurring = namesOfBlurring(results);
+  const note = blurring.length === 0 ? 'It stays however many samples are taken.'
+    : blurring.length === results.integrators.length ? 'What is blurred falls slowly with more samples.'
+      : `What is blurred (by ${blurring.join(', ')}) falls slowly with more samples; all else stays.`;
+  return table('systematic', 'What all repeats have in common', [{text: 'Integrator'},
     {text: 'Mean against the reference', number: true}, {text: 'Significant'},
-    {text: 'Systematic relMSE', number: true}, {text: 'Significant'}], element('tbody', {}, rows));
+    {text: 'Systematic relMSE', number: true}, {text: 'Significant'}], element('tbody', {}, rows), note);
 }
 
 function pilotTable(results) {

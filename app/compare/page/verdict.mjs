@@ -1,6 +1,6 @@
 // The comparison in plain sentences, each of which the numbers further down carry.
 import {formatBudget, formatInterval, formatPercent, isNumber} from './numbers.mjs';
-import {includesOne, mainBudget, ratioOf, snapshotAt} from './results.mjs';
+import {includesOne, limitOf, mainBudget, ratioOf, snapshotAt} from './results.mjs';
 
 function times(ratio) {
   return formatInterval(ratio, '\u00a0×');
@@ -10,9 +10,9 @@ function joinWords(words) {
   return words.length < 2 ? words.join('') : `${words.slice(0, -1).join(', ')} and ${words[words.length - 1]}`;
 }
 
-function singleSentence(integrator, snapshot, at) {
+function singleSentence(results, integrator, snapshot, at) {
   if (!snapshot?.relMse) {
-    return `At ${at}, the relMSE of ${integrator.name} cannot be told apart from the reference’s own noise.`;
+    return `At ${at}, the relMSE of ${integrator.name} cannot be told apart from the reference’s own ${limitOf(results)}.`;
   }
   return `At ${at}, ${integrator.name} has a relMSE of ${formatInterval(snapshot.relMse)}.`;
 }
@@ -55,7 +55,7 @@ function ratioSentence(results, {kind, budget}, at) {
     }
     sentences.push(...mseSentences(results, ratios, kind, budget));
     if (ratios.length === 0) {
-      sentences.push(singleSentence(measured[0].integrator,
+      sentences.push(singleSentence(results, measured[0].integrator,
         snapshotAt(measured[0].integrator, kind, budget), at));
     }
   }
@@ -66,16 +66,20 @@ function ratioSentence(results, {kind, budget}, at) {
   if (unresolved.length > 0) {
     const begin = sentences.length > 0 ? 'The relMSE' : `At ${at}, the relMSE`;
     sentences.push(`${begin} of ${joinWords(unresolved.map(({name}) => name))} cannot be told apart from the ` +
-      'reference’s own noise.');
+      `reference’s own ${limitOf(results)}.`);
   }
   return sentences;
 }
 
-// What keeps an integrator from ever reaching the reference.
+// What keeps an integrator from reaching the reference, for ever or, where it blurs, for long.
 export function flawOf(integrator) {
   const {name, meanBias: bias, systematic, blurs} = integrator;
   if (bias?.significant && isNumber(bias.value)) {
     const [finds, side] = bias.value < 0 ? ['misses light', 'below'] : ['finds too much light', 'above'];
+    if (blurs) {
+      return `${name} blurs: its mean is ${formatPercent(Math.abs(bias.value))} ${side} the reference; as far as that ` +
+        'comes from blur, it falls slowly with more samples.';
+    }
     return `${name} ${finds}: its mean is ${formatPercent(Math.abs(bias.value))} ${side} the reference.`;
   }
   if (systematic?.significant && isNumber(systematic.value) && systematic.value > 0) {
@@ -91,7 +95,7 @@ export function verdictOf(results) {
   if (main === null) return {sentences: ['No budget was rendered.'], flaws: []};
   const at = formatBudget(main.kind, main.budget);
   const sentences = results.integrators.length === 1
-    ? [singleSentence(results.integrators[0], snapshotAt(results.integrators[0], main.kind, main.budget), at)]
+    ? [singleSentence(results, results.integrators[0], snapshotAt(results.integrators[0], main.kind, main.budget), at)]
     : ratioSentence(results, main, at);
   return {sentences, flaws: results.integrators.map(flawOf).filter((flaw) => flaw !== null)};
 }

@@ -65,6 +65,7 @@ TEST(PixelFilter, SplatsAreWorthTheirSquares) {
     }
     splats *= 4 * Double(settings.radiusX) * Double(settings.radiusY);
     EXPECT_NEAR(filter.SplatCount() * splats / samples, 1, 5e-3) << static_cast<int>(settings.kind);
+    EXPECT_NEAR(filter.SquaredWeight() / samples, 1, 5e-3) << static_cast<int>(settings.kind);
   }
 }
 
