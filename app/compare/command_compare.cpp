@@ -158,7 +158,7 @@ void CheckMemory(const RenderSettings& settings, const ComparisonPlan& plan, boo
   const double milestones = static_cast<double>(plan.times.size() + plan.sampleCounts.size());
   const double images = static_cast<double>(plan.integrators.size()) * milestones * plan.repeats;
   const double pixels = static_cast<double>(settings.crop.Width()) * settings.crop.Height();
-  // Of each radius 180 bytes per pixel (Level), its mean again with the result, and sums for their differences.
+  // A Level has 180 bytes per pixel for each radius; its mean comes again with the result, and sums with differences.
   const double ofReference = mayMerge ? pixels * (4 * 180 + 4 * 24 + 24 + 100) : 0;
   const double bytes = std::max(images * pixels * 3 * sizeof(float), ofReference) + 700 * pixels;
   if (bytes <= static_cast<double>(AvailableMemory())) return;

@@ -57,7 +57,7 @@ std::optional<Estimate> Resolved(const std::vector<double>& errors, std::optiona
   return estimate;
 }
 
-// What is not known of an error because the reference is blurred, as factors of it.
+// Factors of an error that bound what the blur of the reference leaves unknown.
 //
 // An integrator's own bias B and the blur b of the reference make up the part of the error that all repeats have in
 // common, s² = |B - b|², so that B is within s - b … s + b.

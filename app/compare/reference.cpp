@@ -19,7 +19,7 @@ namespace lampyr {
 namespace {
 
 constexpr int kReferenceParts = 8;
-// Of an integrator that merges photons: parts of one radius that are rendered at a time, and all parts.
+// Parts of one radius that are rendered at a time, and all parts, of an integrator that merges photons.
 constexpr int kGroup = 8, kMergedParts = 32;
 
 // Fills in the facts that follow from the image of the reference.

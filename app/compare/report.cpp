@@ -87,7 +87,7 @@ std::string Budget(bool byTime, double budget) {
   return byTime ? FormatDuration(budget) : Format("%.0f spp", budget);
 }
 
-// What errors are not resolved below.
+// The limit below which errors are not resolved: noise of the reference, or noise and blur.
 const char* LimitOf(const ComparisonReference& reference) {
   return reference.IsBlurred() ? "noise and blur" : "noise";
 }
