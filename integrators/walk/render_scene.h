@@ -9,6 +9,7 @@
 #include "geometry/geometry_scene.h"
 #include "lights/services/lighting_services.h"
 #include "materials/material.h"
+#include "media/medium.h"
 
 namespace lampyr {
 
@@ -19,6 +20,9 @@ struct RenderScene {
   std::vector<std::shared_ptr<const Material>> materials;  // by GeometryAttributes::material
   std::shared_ptr<const LightingServices> lighting;
   std::shared_ptr<const Camera> camera;
+  std::vector<std::shared_ptr<const Medium>> media;  // by GeometryAttributes::insideMedium and outsideMedium
+  int32_t cameraMedium = kVacuum;                    // where camera rays start
+  std::vector<int32_t> lightMedia;                   // by light: around it, or in front of it; empty: vacuum
   bool hasMotion = false;  // something moves while the shutter is open; otherwise all rays have time 0
 };
 

@@ -41,10 +41,17 @@ struct GeometryAttributes {
   uint32_t link = 0;                         // class of light linking and light filters
   std::shared_ptr<const AlphaSource> alpha;  // null: opaque
   std::shared_ptr<const ThinSurface> thin;   // null: no light goes straight on through the surface
+  // Participating media inside and outside (the side of Ng); both are kSameMedium where the surface separates none.
+  int32_t insideMedium = kSameMedium, outsideMedium = kSameMedium;
+  bool isBoundary = false;  // between media alone: all rays pass straight through
   // False: nobody looks at the uv and tangents of its points, and they are left at 0 where they cost something.
   bool isParametrized = true;
   bool isFibrous = false;  // a curve that is met from outside alone: its inside is a part of its scattering
 };
+
+inline bool SeparatesMedia(const GeometryAttributes& attributes) {
+  return attributes.insideMedium != kSameMedium || attributes.outsideMedium != kSameMedium;
+}
 
 struct GeometryEntry {
   Shape shape;

@@ -35,6 +35,10 @@ inline constexpr float kNearestHit = 1e-25f;
 
 inline constexpr uint32_t kNoIndex = 0xffffffffu;
 
+// Indices of participating media (RenderScene::media) that are none.
+inline constexpr int32_t kVacuum = -1;
+inline constexpr int32_t kSameMedium = -2;  // of a surface's side: the medium that the path is in
+
 // The nearest hit along a ray: indices and parametric coordinates.
 struct RayHit {
   float t = kInfinity;            // ray parameter

@@ -39,6 +39,13 @@ struct TextureDescription {
   Placement placement;
 };
 
+// A named participating medium. The type is that of its parameter "type".
+struct MediumDescription {
+  std::string name;
+  StatementDescription medium;
+  Placement placement;  // from the medium's space to world space
+};
+
 struct LightFilterDescription {
   StatementDescription filter;
   Placement placement;  // of its own coordinate system, or of the named one
@@ -99,6 +106,7 @@ struct SceneDescription {
 
   StatementDescription camera, film, pixelFilter, sampler, integrator, accelerator;
   Placement cameraToWorld;
+  std::string cameraMedium;  // name of the medium around the camera; "": none
   double shutterOpen = 0, shutterClose = 1;  // TransformTimes
   std::map<std::string, Parameter> options;
   std::vector<PluginReference> plugins;  // Option "plugins"
@@ -106,6 +114,7 @@ struct SceneDescription {
   std::vector<StatementDescription> materials;
   std::vector<NamedMaterialDescription> namedMaterials;
   std::vector<TextureDescription> textures;
+  std::vector<MediumDescription> media;
   std::vector<LightFilterDescription> lightFilters;  // except those of type "none"
   std::vector<AreaLightDescription> areaLights;
   std::vector<LightDescription> lights;

@@ -1,0 +1,52 @@
+// Participating media: what a point of a medium scatters, absorbs and emits, and bounds along rays by which distances
+// are sampled. Lengths are in scene units, and coefficients per scene unit, in render space.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "math/transform.h"
+#include "math/vec.h"
+#include "media/majorant_grid.h"
+
+namespace lampyr {
+
+struct MediumCoefficients {
+  Color absorption, scattering;  // σ_a, σ_s
+  Color emission;                // σ_a L_e: radiance emitted per length, W/(m² sr)
+
+  Color Extinction() const { return absorption + scattering; }  // σ_t
+};
+
+// Immutable; any thread may call it.
+class Medium {
+ public:
+  virtual ~Medium() = default;
+
+  // Coefficients at a point of render space; of a grid, 0 outside of its box.
+  virtual MediumCoefficients At(const Point3& position) const = 0;
+  // Upper bounds of the extinction, the largest of its channels; null: the medium is homogeneous, and At is the same
+  // everywhere.
+  virtual const MajorantGrid* Majorants() const { return nullptr; }
+  // Memory of its grids.
+  virtual size_t Bytes() const { return 0; }
+
+  bool IsHomogeneous() const { return Majorants() == nullptr; }
+  // Asymmetry g of the Henyey–Greenstein phase function, in (-1,1): the mean cosine between the directions before and
+  // after scattering.
+  float Asymmetry() const { return asymmetry_; }
+  bool IsEmissive() const { return isEmissive_; }
+  const std::string& Name() const { return name_; }
+
+ protected:
+  Medium(std::string name, float asymmetry, bool isEmissive)
+      : name_(std::move(name)), asymmetry_(asymmetry), isEmissive_(isEmissive) {}
+
+ private:
+  std::string name_;
+  float asymmetry_;
+  bool isEmissive_;
+};
+
+}  // namespace lampyr
