@@ -60,6 +60,7 @@ bool Emit(const SampleContext& context, const EmittedPhoton& photon, PathState& 
       static_cast<double>(photon.emissionSelection.value) * static_cast<double>(context.scene.lighting->FluxUnit());
   const auto inverse = static_cast<float>(static_cast<double>(emission.emissionCosine) / density);
   state.ray = photon.ray;
+  state.medium = context.scene.MediumOfLight(photon.light);
   state.diffuse = emission.diffuse * inverse;
   state.specular = emission.specular * inverse;
   state.emitted = std::max(state.diffuse.Max(), state.specular.Max());

@@ -144,12 +144,14 @@ Vector3 LightingServices::ErrorOfEnd(const SurfacePoint& from, const DirectSampl
   return sample.positionError + InstanceRayError(transform.toRender, transform.toLocal, reach);
 }
 
-Color LightingServices::Transmittance(const SurfacePoint& from, const DirectSample& direct, float time) const {
+Ray LightingServices::ShadowRay(const SurfacePoint& from, const DirectSample& direct, float time) const {
   const LightSample& sample = *direct.sample;
-  const Ray ray = direct.isInfinite
-                      ? SpawnRay(from, sample.direction, time)
-                      : SpawnRayTo(from, sample.position, ErrorOfEnd(from, direct, time), sample.normal, time);
-  return scene_->geometry.Transmittance(ray, visibility::kShadow);
+  return direct.isInfinite ? SpawnRay(from, sample.direction, time)
+                           : SpawnRayTo(from, sample.position, ErrorOfEnd(from, direct, time), sample.normal, time);
+}
+
+Color LightingServices::Transmittance(const SurfacePoint& from, const DirectSample& direct, float time) const {
+  return scene_->geometry.Transmittance(ShadowRay(from, direct, time), visibility::kShadow);
 }
 
 std::optional<FoundLight> LightingServices::EvaluateSamples(const Receiver& receiver, const Vector3& direction,

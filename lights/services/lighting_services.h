@@ -83,6 +83,8 @@ class LightingServices {
   // Transmittance between the receiver and a sample: 0 if occluded, 1 if unoccluded, a colour behind cut-outs and thin
   // glass. Traces a shadow ray.
   Color Transmittance(const SurfacePoint& from, const DirectSample& direct, float time) const;
+  // The shadow ray that Transmittance traces.
+  Ray ShadowRay(const SurfacePoint& from, const DirectSample& direct, float time) const;
 
   // Records the result of a sample for learned selection: the fraction that arrived at the receiver, 0 also if its
   // shadow ray was not traced. May be called from any thread; without effect unless recording.
