@@ -107,10 +107,11 @@ void SetTransforms(RTCGeometry geometry, const InstanceRecord& instance) {
 
 }  // namespace
 
-RTCGeometry NewGeometry(RTCDevice device, const PrimitiveRecord& record, uint32_t visibility) {
+RTCGeometry NewGeometry(RTCDevice device, const PrimitiveRecord& record, uint32_t visibleTo) {
   RTCGeometry geometry = std::visit([&](const auto* shape) { return NewGeometry(device, *shape); }, record.shape);
   if (!geometry) return nullptr;
-  rtcSetGeometryMask(geometry, visibility);
+  // A boundary between media is there for all rays.
+  rtcSetGeometryMask(geometry, record.stops == visibility::kAll ? visibleTo : visibility::kAll);
   rtcSetGeometryUserData(geometry, const_cast<PrimitiveRecord*>(&record));
   // User geometry decides in its own callbacks what passes.
   if (record.LetsPass() && (record.As<TriangleMesh>() || record.As<CurveSet>())) {

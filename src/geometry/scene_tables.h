@@ -1,6 +1,7 @@
 // Private to the geometry: tables of primitives and instances, by the indices of a hit. Flat arrays, no virtual calls.
 #pragma once
 
+#include <cstdint>
 #include <variant>
 #include <vector>
 
@@ -21,7 +22,13 @@ struct PrimitiveRecord {
   bool hasNoInside = false;    // a round curve that rays from inside do not meet
   bool isParametrized = true;  // GeometryAttributes::isParametrized
 
-  bool LetsPass() const { return alpha || thin || hasNoInside; }
+  // Kinds of rays that the surface stops. To the others it is a boundary between media alone, which they pass. All
+  // kinds, if Embree's mask excludes the rays that do not see the surface.
+  uint32_t stops = visibility::kAll;
+  int32_t insideMedium = kSameMedium, outsideMedium = kSameMedium;
+
+  bool Stops(uint32_t kinds) const { return (stops & kinds) != 0; }
+  bool LetsPass() const { return alpha || thin || hasNoInside || stops != visibility::kAll; }
   // The shape if it is of this kind, or null.
   template <class Kind>
   const Kind* As() const {
