@@ -12,7 +12,8 @@ struct MediumType {
   std::shared_ptr<const Medium> (*make)(const MediumInput&);
 };
 
-constexpr MediumType kTypes[] = {{"homogeneous", MakeHomogeneous}};
+constexpr MediumType kTypes[] = {
+    {"homogeneous", MakeHomogeneous}, {"uniformgrid", MakeUniformGrid}, {"rgbgrid", MakeRgbGrid}, {"cloud", MakeCloud}};
 
 std::shared_ptr<const Medium> MakeMedium(const MediumDescription& description, const Transform& renderFromWorld,
                                          MemoryBudget& memory, Diagnostics& diagnostics) {

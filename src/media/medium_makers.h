@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/memory.h"
+#include "media/blackbody_table.h"
 #include "media/medium.h"
 #include "scene/scene_description.h"
 
@@ -43,8 +44,17 @@ struct ScatteringParameters {
 // "sigma_a", "sigma_s" and "g"; "preset" and "scale" as far as the type has them.
 ScatteringParameters GetScattering(const ParameterList& parameters, bool hasPreset, bool hasScale);
 
+// "temperaturescale", and "temperatureoffset" or by its older name "temperaturecutoff".
+TemperatureScale GetTemperatureScale(const ParameterList& parameters);
+
+// Throws an Error at `where` if the temperature exceeds kHottestGas.
+void CheckTemperature(float kelvin, const FileLocation& where);
+
 // "Le", black by default.
 Color GetEmittedRadiance(const ParameterList& parameters);
+
+// The box between "p0" and "p1", (0,0,0) and (1,1,1) by default.
+Bounds3d GetBox(const ParameterList& parameters);
 
 // Throws an Error at `where` if a component of `color` has left the range of floats.
 void CheckRange(const Color& color, const char* what, const FileLocation& where);

@@ -47,6 +47,32 @@ ScatteringParameters GetScattering(const ParameterList& parameters, bool hasPres
   return result;
 }
 
+TemperatureScale GetTemperatureScale(const ParameterList& parameters) {
+  const double older = parameters.GetFloat("temperaturecutoff", 0);
+  return {static_cast<float>(parameters.GetFloat("temperatureoffset", older)),
+          GetNonNegative(parameters, "temperaturescale", 1)};
+}
+
+void CheckTemperature(float kelvin, const FileLocation& where) {
+  if (kelvin <= kHottestGas) return;
+  throw Error(where,
+              "the temperatures of this medium reach more than 1e6 K: give them in kelvin, or a "
+              "\"temperaturescale\"");
+}
+
+Bounds3d GetBox(const ParameterList& parameters) {
+  Bounds3d box;
+  box.Add(parameters.GetPoint3("p0", Point3d(0.0)));
+  box.Add(parameters.GetPoint3("p1", Point3d(1.0)));
+  for (int axis = 0; axis < 3; ++axis) {
+    if (static_cast<float>(box.min[axis]) == static_cast<float>(box.max[axis])) {
+      throw Error(parameters.WhereOf("p1"),
+                  std::string("\"p0\" and \"p1\" have the same ") + "xyz"[axis] + ": the box of this medium is empty");
+    }
+  }
+  return box;
+}
+
 Color GetEmittedRadiance(const ParameterList& parameters) {
   const Color radiance = parameters.GetColor("Le", Color(0.0f), SpectrumRole::Illuminant);
   CheckRange(radiance, "\"Le\"", parameters.WhereOf("Le"));
