@@ -23,8 +23,14 @@ struct RenderScene {
   std::vector<std::shared_ptr<const Medium>> media;  // by GeometryAttributes::insideMedium and outsideMedium
   int32_t cameraMedium = kVacuum;                    // where camera rays start
   std::vector<int32_t> lightMedia;                   // by light: around it, or in front of it; empty: vacuum
-  int32_t MediumOfLight(uint32_t light) const { return lightMedia.empty() ? kVacuum : lightMedia[light]; }
+  std::vector<int32_t> lightBackMedia;  // by light: behind its surface, where a two-sided light shines, too; empty: vacuum
   bool hasMotion = false;  // something moves while the shutter is open; otherwise all rays have time 0
+
+  // Medium in which light of `light` starts; `fromBehind`: of a surface that shines to both sides.
+  int32_t MediumOfLight(uint32_t light, bool fromBehind) const {
+    const std::vector<int32_t>& around = fromBehind ? lightBackMedia : lightMedia;
+    return around.empty() ? kVacuum : around[light];
+  }
 };
 
 // Counted per tile of work and summed afterwards; never shared between threads.

@@ -79,7 +79,7 @@ Passage PassageAt(const Meeting& at, const RTCRay& ray, const RayHit& hit) {
   const bool entering = record.As<CurveSet>() ? at.side == 0 : glm::dot(direction, point.Ng) < 0;
   // Through the hole of a cut-out a ray stays in its medium.
   const int32_t medium = alpha > 0 ? (entering ? record.insideMedium : record.outsideMedium) : kSameMedium;
-  if (!record.Stops(ray.mask)) return {0, Color(1.0f), entering, medium};
+  if (record.PassedAsBoundary(ray.mask)) return {0, Color(1.0f), entering, medium};
   if (!record.thin) return {alpha, Color(1.0f), entering};
   const float passes = record.thin->TransmittedFraction(std::abs(glm::dot(glm::normalize(direction), point.Ns)));
   Passage passage{alpha * (1 - passes), Color(1.0f), entering, medium};
@@ -126,10 +126,11 @@ void PassBoundary(const Meeting& at, const RTCRay& ray, const RayHit& hit, Trace
 
 // True if the ray goes on. Of Intersect by chance, in proportion; of Transmittance as long as something is left.
 bool PassesThrough(const Meeting& at, const RTCRay& ray, const RayHit& hit, TraceContext& trace, bool isShadow) {
-  if (!at.record.Stops(ray.mask)) {
+  if (at.record.PassedAsBoundary(ray.mask)) {
     PassBoundary(at, ray, hit, trace);
     return true;
   }
+  if (!at.record.alpha && !at.record.thin) return false;
   const Passage passage = PassageAt(at, ray, hit);
   if (passage.stopped >= 1) return false;
   if (isShadow) {

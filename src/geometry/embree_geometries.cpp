@@ -110,8 +110,7 @@ void SetTransforms(RTCGeometry geometry, const InstanceRecord& instance) {
 RTCGeometry NewGeometry(RTCDevice device, const PrimitiveRecord& record, uint32_t visibleTo) {
   RTCGeometry geometry = std::visit([&](const auto* shape) { return NewGeometry(device, *shape); }, record.shape);
   if (!geometry) return nullptr;
-  // A boundary between media is there for all rays.
-  rtcSetGeometryMask(geometry, record.stops == visibility::kAll ? visibleTo : visibility::kAll);
+  rtcSetGeometryMask(geometry, record.separatesMedia ? visibility::kAll | visibility::kMedia : visibleTo);
   rtcSetGeometryUserData(geometry, const_cast<PrimitiveRecord*>(&record));
   // User geometry decides in its own callbacks what passes.
   if (record.LetsPass() && (record.As<TriangleMesh>() || record.As<CurveSet>())) {

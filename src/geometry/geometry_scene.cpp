@@ -8,9 +8,9 @@
 #include <deque>
 #include <optional>
 #include <string>
-#include <tuple>
 
 #include "base/error.h"
+#include "geometry/crossing_order.h"
 #include "geometry/embree_callbacks.h"
 #include "geometry/embree_geometries.h"
 #include "geometry/rounding.h"
@@ -147,13 +147,10 @@ void GeometryScene::Implementation::AddEntries(const std::vector<GeometryEntry>&
 void GeometryScene::Implementation::SetMedia(const GeometryAttributes& attributes, PrimitiveRecord& record) {
   if (record.As<CurveSet>() || record.As<CustomSurface>())
     throw Error("curves and custom surfaces cannot separate participating media");
+  record.separatesMedia = true;
   record.insideMedium = attributes.insideMedium;
   record.outsideMedium = attributes.outsideMedium;
-  if (attributes.isBoundary) {
-    record.stops = 0;
-  } else if (SeparatesMedia(attributes)) {
-    record.stops = attributes.visibility;
-  }
+  record.stops = attributes.isBoundary ? 0 : attributes.visibility;
   hasBoundaries = hasBoundaries || SeparatesMedia(attributes);
 }
 
@@ -312,15 +309,6 @@ std::vector<Crossing>& ThreadCrossings() {
   return crossings;
 }
 
-// At equal distances a ray leaves one medium before it enters the next. Then by primitive, so that a product does not
-// depend on the order of traversal.
-void SortByDistance(std::vector<Crossing>& crossings) {
-  std::sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) {
-    return std::tie(a.t, a.entering, a.instance, a.primitive, a.patch) <
-           std::tie(b.t, b.entering, b.instance, b.primitive, b.patch);
-  });
-}
-
 }  // namespace
 
 // The ray is accepted. The crossings of `trace`, where they are wanted, are empty before and become what the ray passed
@@ -338,6 +326,7 @@ bool GeometryScene::Implementation::Trace(const Ray& ray, uint32_t kinds, RayHit
     // Embree visits what lies behind the hit, too.
     std::erase_if(*trace.crossings, [&](const Crossing& crossing) { return !(crossing.t < rayHit.ray.tfar); });
     SortByDistance(*trace.crossings);
+    if (trace.recordsBoundaries) OrderCoincident(tables, MaxAbsComponent(ray.origin), *trace.crossings);
   }
   if (rayHit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
   hit.t = rayHit.ray.tfar;
@@ -393,6 +382,7 @@ Color GeometryScene::Implementation::Transmittance(const Ray& ray, uint32_t kind
   if (trace.crossings->empty()) [[likely]]
     return Color(1.0f);
   SortByDistance(*trace.crossings);
+  if (trace.recordsBoundaries) OrderCoincident(tables, MaxAbsComponent(ray.origin), *trace.crossings);
   return lampyr::Transmittance(*trace.crossings);
 }
 

@@ -97,9 +97,10 @@ class GeometryScene {
   // always. `crossings` becomes what it passed before the hit, in order: boundaries, and thin surfaces with their tints
   // as transmittances. Empty in scenes whose thin surfaces are all clear and that have no boundaries.
   //
-  // The medium changes from crossing to crossing (Crossing::medium), by increasing t; at equal t a ray leaves one
-  // medium before it enters another. An edge that two triangles or patches share may be reported twice, on the same
-  // side: a crossing sets the medium and counts nothing.
+  // The medium changes from crossing to crossing (Crossing::medium), by increasing t. Boundaries at equal t, up to
+  // rounding, are ordered such that the ray passes from medium to medium; where that leaves a choice, it leaves one
+  // before it enters another. A crossing sets the medium and counts nothing: the edge of a thin surface may be reported
+  // twice.
   bool Trace(const Ray& ray, uint32_t kinds, RayHit& hit, std::vector<Crossing>& crossings) const;
 
   // The same, where the crossings matter by their product alone: `tint`. A ray that is rejected (RejectedRays) hits

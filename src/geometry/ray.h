@@ -14,6 +14,8 @@ inline constexpr uint32_t kCamera = 1;    // from the camera, or after only pass
 inline constexpr uint32_t kIndirect = 2;  // scattered by a surface, or emitted by a light
 inline constexpr uint32_t kShadow = 4;    // between a surface point and a light
 inline constexpr uint32_t kAll = 7;
+// Passes everything, and crosses all surfaces that separate media: it finds the medium at a point (FindMedium).
+inline constexpr uint32_t kMedia = 8;
 }  // namespace visibility
 
 struct Ray {

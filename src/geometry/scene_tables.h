@@ -22,13 +22,15 @@ struct PrimitiveRecord {
   bool hasNoInside = false;    // a round curve that rays from inside do not meet
   bool isParametrized = true;  // GeometryAttributes::isParametrized
 
-  // Kinds of rays that the surface stops. To the others it is a boundary between media alone, which they pass. All
-  // kinds, if Embree's mask excludes the rays that do not see the surface.
-  uint32_t stops = visibility::kAll;
+  // A surface that separates media, or is a boundary. It is met by all rays, and those that it does not stop pass it as
+  // a boundary.
+  bool separatesMedia = false;
+  uint32_t stops = visibility::kAll;  // kinds of rays, if it separates media
   int32_t insideMedium = kSameMedium, outsideMedium = kSameMedium;
 
-  bool Stops(uint32_t kinds) const { return (stops & kinds) != 0; }
-  bool LetsPass() const { return alpha || thin || hasNoInside || stops != visibility::kAll; }
+  bool PassedAsBoundary(uint32_t kinds) const { return separatesMedia && (stops & kinds) == 0; }
+  // False: every ray that meets the surface is stopped.
+  bool LetsPass() const { return alpha || thin || hasNoInside || separatesMedia; }
   // The shape if it is of this kind, or null.
   template <class Kind>
   const Kind* As() const {
