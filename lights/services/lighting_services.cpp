@@ -151,8 +151,7 @@ void LightingServices::RecordResult(const Receiver& receiver, const DirectSample
   double irradiance = 0;
   if (direct && !arrived.IsBlack()) {
     const LightSample& sample = *direct.sample;
-    const bool hasNormal = LengthSquared(receiver.normal) > 0;
-    const float cosine = hasNormal ? AbsDot(sample.direction, receiver.normal) : 1.0f;
+    const float cosine = receiver.HasNormal() ? AbsDot(sample.direction, receiver.normal) : 1.0f;
     // Both parts hold the radiance of a light; a multiplier may have set one of them to 0.
     const float radiance = std::max((sample.diffuse * arrived).Average(), (sample.specular * arrived).Average());
     irradiance = static_cast<double>(radiance * cosine / sample.pdfDirect.value);
