@@ -11,6 +11,7 @@
 #include "render/build/light_table.h"
 #include "render/build/material_table.h"
 #include "render/build/placer.h"
+#include "media/make_media.h"
 #include "render/build/scene_media.h"
 #include "render/build/shape_builder.h"
 #include "textures/texture_library.h"
@@ -65,6 +66,7 @@ class Builder {
   bool Moves(const ReadEntry& entry) const { return placer_.Moves(entry.local.description->placement); }
   Transform StillPlacement(const ReadEntry& entry) const { return placer_.StillPlacement(*entry.local.description); }
   void PlaceEntries();
+  MediaAround MediaAroundLights() const;
   std::vector<Part> MovingParts(const std::vector<ReadEntry>& entries);
   void BuildPart(Part& part);
   void PlacePart(const Part& part, const RenderPlacement& placement);
@@ -292,6 +294,19 @@ void Builder::PlaceEntries() {
   for (const FlatInstance& instance : instances_) PlaceInstance(instance, parts[instance.object]);
 }
 
+// To be called when camera and media are made.
+MediaAround Builder::MediaAroundLights() const {
+  const RenderScene& scene = built_.scene;
+  MediaAround around;
+  for (const auto& medium : scene.media) around.glow = around.glow || medium->IsEmissive();
+  if (!description_.cameraMedium.empty()) {
+    const Point2 middle(0.5f * static_cast<float>(built_.settings.width),
+                        0.5f * static_cast<float>(built_.settings.height));
+    around.unboundedAt = scene.camera->GenerateRay(middle, Point2(0.5f), 0).ray.origin;
+  }
+  return around;
+}
+
 BuiltScene Builder::Build() {
   placer_.ReadTimes(description_);
   entries_ = ReadShapes(description_.shapes);
@@ -331,12 +346,13 @@ BuiltScene Builder::Build() {
         isWorld ? placer_.WorldToRender() : placer_.WorldToRender() * description_.cameraToWorld.start;
     built_.renderToLayers = toRender.Inverse().ToAffine();
   }
+  scene.media = MakeMedia(description_, placer_.WorldToRender(), memory_, diagnostics_);
   media_->NumberPlaces(geometry_);
   scene.geometry = std::make_shared<const GeometryScene>(std::move(geometry_));
   lights_->Linking().Finish(lights_->Lights(), diagnostics_);
   scene.lighting = std::make_shared<const LightingServices>(
       *scene.geometry, std::move(lights_->Lights()), built_.settings.LightSampler(), std::move(lights_->Linking()),
-      static_cast<int>(built_.settings.values.Integer("light-samples")));
+      static_cast<int>(built_.settings.values.Integer("light-samples")), MediaAroundLights());
   const Point2 middle(0.5f * static_cast<float>(built_.settings.width),
                       0.5f * static_cast<float>(built_.settings.height));
   media_->Locate(middle, built_.lightPlaces, scene);
