@@ -41,51 +41,64 @@ VoxelStencil StencilAt(const GridResolution& resolution, const Point3& point) {
 
 GridResolution MajorantResolution(const GridResolution& voxels) {
   GridResolution cells;
-  for (int axis = 0; axis < 3; ++axis) cells[axis] = std::clamp(voxels[axis] / 8, 16, 64);
+  for (int axis = 0; axis < 3; ++axis) cells[axis] = std::clamp(voxels[axis] / 8, std::min(voxels[axis], 16), 64);
   return cells;
 }
 
 namespace {
 
-struct Range {
-  int first = 0, last = 0;  // both included
+// A line of voxels, `stride` apart.
+struct Line {
+  const float* first;
+  size_t stride;
+  int count;
+
+  float Value(int i) const { return i >= 0 && i < count ? first[static_cast<size_t>(i) * stride] : 0.0f; }
+  // Between the centres of voxels, which have whole numbers.
+  float Interpolate(double x) const {
+    const int i = static_cast<int>(std::floor(x));
+    const auto part = static_cast<float>(x - i);
+    return Value(i) * (1 - part) + Value(i + 1) * part;
+  }
 };
 
-// The voxels that the values in a cell are interpolated from.
-Range VoxelsOf(int cell, int cells, int voxels) {
-  const double low = (cell - kCellMargin) / cells * voxels - 0.5,
-               high = (cell + 1 + kCellMargin) / cells * voxels - 0.5;
-  return {std::clamp(static_cast<int>(std::floor(low)), 0, voxels - 1),
-          std::clamp(static_cast<int>(std::floor(high)) + 1, 0, voxels - 1)};
+// The largest interpolated value of the line within a cell: that of a voxel, or at an end.
+float MaximumWithin(const Line& line, int cell, int cells) {
+  const double low = (cell - kCellMargin) / cells * line.count - 0.5;
+  const double high = (cell + 1 + kCellMargin) / cells * line.count - 0.5;
+  float most = std::max(line.Interpolate(low), line.Interpolate(high));
+  for (int i = static_cast<int>(std::ceil(low)); i <= high; ++i) most = std::max(most, line.Value(i));
+  return most;
 }
 
-float MaximumOf(std::span<const float> values, const GridResolution& voxels, Range x, Range y, Range z) {
-  const auto nx = static_cast<size_t>(voxels[0]), ny = static_cast<size_t>(voxels[1]);
-  float most = 0;
-  for (int plane = z.first; plane <= z.last; ++plane) {
-    for (int row = y.first; row <= y.last; ++row) {
-      const float* line = &values[(static_cast<size_t>(plane) * ny + static_cast<size_t>(row)) * nx];
-      for (int column = x.first; column <= x.last; ++column) most = std::max(most, line[column]);
+// Of all lines along an axis, the maxima within cells: a grid of another resolution along that axis.
+std::vector<float> MaximaAlong(int axis, std::span<const float> values, const GridResolution& resolution, int cells) {
+  size_t stride = 1;  // from voxel to voxel of a line; as many lines start side by side
+  for (int i = 0; i < axis; ++i) stride *= static_cast<size_t>(resolution[i]);
+  const auto count = static_cast<size_t>(resolution[axis]);
+  const size_t slabs = values.size() / (stride * count);
+  std::vector<float> maxima(slabs * static_cast<size_t>(cells) * stride);
+  for (size_t outer = 0; outer < slabs; ++outer) {
+    for (int cell = 0; cell < cells; ++cell) {
+      float* out = &maxima[(outer * static_cast<size_t>(cells) + static_cast<size_t>(cell)) * stride];
+      for (size_t inner = 0; inner < stride; ++inner)
+        out[inner] = MaximumWithin({&values[outer * count * stride + inner], stride, resolution[axis]}, cell, cells);
     }
   }
-  return most;
+  return maxima;
 }
 
 }  // namespace
 
+// Axis by axis: f(x, y, z) is interpolated in y from f(x, j, z), each of which is at most its maximum over the cell's
+// x.
 std::vector<float> MajorantsOf(std::span<const float> values, const GridResolution& voxels, const GridResolution& cells,
                                float factor) {
-  std::vector<float> bounds;
-  for (int z = 0; z < cells[2]; ++z) {
-    for (int y = 0; y < cells[1]; ++y) {
-      for (int x = 0; x < cells[0]; ++x) {
-        const float most = MaximumOf(values, voxels, VoxelsOf(x, cells[0], voxels[0]), VoxelsOf(y, cells[1], voxels[1]),
-                                     VoxelsOf(z, cells[2], voxels[2]));
-        bounds.push_back(most * factor * kMajorantMargin);
-      }
-    }
-  }
-  return bounds;
+  std::vector<float> majorants = MaximaAlong(0, values, voxels, cells[0]);
+  majorants = MaximaAlong(1, majorants, {cells[0], voxels[1], voxels[2]}, cells[1]);
+  majorants = MaximaAlong(2, majorants, {cells[0], cells[1], voxels[2]}, cells[2]);
+  for (float& majorant : majorants) majorant *= factor * kMajorantMargin;
+  return majorants;
 }
 
 }  // namespace lampyr

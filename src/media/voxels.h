@@ -25,12 +25,12 @@ struct VoxelStencil {
 // `point`: in the unit cube.
 VoxelStencil StencilAt(const GridResolution& resolution, const Point3& point);
 
-// Resolution of a grid of majorants over a grid of voxels: 16 cells per axis, and about one per 8 voxels, up to 64, of
-// grids that are finer than that.
+// Resolution of a grid of majorants over a grid of voxels: one cell per voxel up to 16 cells per axis, and about one
+// per 8 voxels, up to 64, of grids with more than 128.
 GridResolution MajorantResolution(const GridResolution& voxels);
 
-// Bounds of the interpolated values in the cells of a coarser (or finer) grid, multiplied by `factor` ≥ 0. A bound
-// holds a little beyond its cell, and for values that are rounded up: points are in float.
+// Bounds of the interpolated values in the cells of a grid that is not finer than the voxels, times `factor` ≥ 0. A
+// bound holds a little beyond its cell, and for values that are rounded up: points are in float.
 std::vector<float> MajorantsOf(std::span<const float> values, const GridResolution& voxels, const GridResolution& cells,
                                float factor);
 
