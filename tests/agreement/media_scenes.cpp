@@ -58,7 +58,8 @@ std::vector<MediaScene> MediaScenes() {
     return scenes.emplace_back(scene);
   };
   add("fog", FilmWith("gaussian") + kInRoom + kFog + "MediumInterface \"\" \"fog\"\n" + kView + World(4) + kRoom +
-                 kBulb + kPoint);
+                 kBulb + kPoint)
+      .isCameraInMedium = true;
   add("ball_of_colours",
       Room("box", 4) + Homogeneous("jelly", "3 1 0.4", "0.1 0.6 1.5", -0.4) + BallOf("jelly") + kBulb + kPoint);
   add("absorbing", Room("gaussian", 3) + Homogeneous("ink", "0 0 0", "0.4 1 2.5", 0) + BallOf("ink") + kBulb);
@@ -69,7 +70,8 @@ std::vector<MediaScene> MediaScenes() {
                            " \"float scale\" 4 \"rgb sigma_s\" [" + Densities(3) + "] \"rgb sigma_a\" [" +
                            Densities(3) + "]\n" + BoxOf("smoke") + kBulb);
   add("ball_in_fog", FilmWith("box") + kInRoom + kFog + Homogeneous("milk", "5 5 5", "0 0.1 0.3", 0.6) +
-                         "MediumInterface \"\" \"fog\"\n" + kView + World(4) + kRoom + BallOf("milk", "fog") + kBulb);
+                         "MediumInterface \"\" \"fog\"\n" + kView + World(4) + kRoom + BallOf("milk", "fog") + kBulb)
+      .isCameraInMedium = true;
   add("rough_glass_of_juice", Room("gaussian", 5) + Homogeneous("juice", "0.5 0.5 0.5", "0.2 1 2", 0.2) +
                                   BallOf("juice", "", "\"dielectric\" \"float eta\" 1.33 \"float roughness\" 0.3") +
                                   kBulb);
@@ -79,7 +81,8 @@ std::vector<MediaScene> MediaScenes() {
   add("spot_in_fog",
       FilmWith("gaussian") + kInRoom + kFog + "MediumInterface \"\" \"fog\"\n" + kView + World(3) + kRoom +
           "LightSource \"spot\" \"rgb I\" [4 4 4] \"point3 from\" [0.6 0.8 -0.2] \"point3 to\" [-0.2 -0.8 -0.4] "
-          "\"float coneangle\" 30 \"float conedeltaangle\" 10\n");
+          "\"float coneangle\" 30 \"float conedeltaangle\" 10\n")
+      .isCameraInMedium = true;
   add("sun_on_cloud", FilmWith("box") + kDown + World(4) + Homogeneous("cloud", "3 3 3", "0.05 0.05 0.05", 0.7) +
                           kThings +
                           "LightSource \"distant\" \"rgb L\" [2 2 2] \"point3 from\" [1 2 0.5]\n"
@@ -89,12 +92,13 @@ std::vector<MediaScene> MediaScenes() {
   add("orthographic_fog",
       FilmWith("gaussian") + "LookAt 0 0 0.9  0 -0.2 -1  0 1 0\n" + kFog +
           "MediumInterface \"\" \"fog\"\nCamera \"orthographic\" \"float screenwindow\" [-0.8 0.8 -0.8 0.8]\n" +
-          World(3) + kRoom + kBulb);
+          World(3) + kRoom + kBulb)
+      .isCameraInMedium = true;
   add("glow", Room("box", 4) +
                   "MakeNamedMedium \"fire\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [1 1 1] \"rgb sigma_a\" "
                   "[2 2 2] \"rgb Le\" [1 0.6 0.3]\n" +
                   BallOf("fire"))
-      .lightTracerSeesAll = false;
+      .hasLights = false;
   add("smooth_glass_of_juice", Room("box", 5) + Homogeneous("juice", "0.5 0.5 0.5", "0.2 1 2", 0.2) +
                                    BallOf("juice", "", "\"dielectric\" \"float eta\" 1.33") + kBulb)
       .lightTracerSeesAll = false;

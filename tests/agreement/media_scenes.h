@@ -6,7 +6,11 @@
 namespace lampyr::test {
 
 struct MediaScene : AgreementScene {
-  bool lightTracerSeesAll = true;  // nothing glows, and nothing smooth is in front of the camera
+  bool hasLights = true;           // besides media that glow
+  bool lightTracerSeesAll = true;  // nothing smooth is in front of the camera
+  // The camera is within a medium that scatters, where connections to the lens have a variance without bound: 1 / d² of
+  // points at any distance.
+  bool isCameraInMedium = false;
 };
 
 std::vector<MediaScene> MediaScenes();
