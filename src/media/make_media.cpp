@@ -12,8 +12,11 @@ struct MediumType {
   std::shared_ptr<const Medium> (*make)(const MediumInput&);
 };
 
-constexpr MediumType kTypes[] = {
-    {"homogeneous", MakeHomogeneous}, {"uniformgrid", MakeUniformGrid}, {"rgbgrid", MakeRgbGrid}, {"cloud", MakeCloud}};
+constexpr MediumType kTypes[] = {{"homogeneous", MakeHomogeneous},
+                                 {"uniformgrid", MakeUniformGrid},
+                                 {"rgbgrid", MakeRgbGrid},
+                                 {"cloud", MakeCloud},
+                                 {"nanovdb", MakeNanoVdb}};
 
 std::shared_ptr<const Medium> MakeMedium(const MediumDescription& description, const Transform& renderFromWorld,
                                          MemoryBudget& memory, Diagnostics& diagnostics) {
