@@ -243,9 +243,12 @@ TEST(SceneMedia, OfPeerScenes) {
     const char* name;
     int32_t camera;
     std::vector<int32_t> lights;
-  } scenes[] = {{"media-fog", 0, {0}},           {"media-spot", 0, {0}},
-                {"media-ball", kVacuum, {kVacuum}}, {"media-glass", kVacuum, {kVacuum}},
-                {"media-grid", kVacuum, {kVacuum}}, {"media-glow", kVacuum, {}},
+  } scenes[] = {{"media-fog", 0, {0}},
+                {"media-spot", 0, {0}},
+                {"media-ball", kVacuum, {kVacuum}},
+                {"media-glass", kVacuum, {kVacuum}},
+                {"media-grid", kVacuum, {kVacuum}},
+                {"media-glow", kVacuum, {}},
                 {"media-inside", kVacuum, {0}}};
   for (const auto& expected : scenes) {
     Diagnostics diagnostics(Diagnostics::Mode::Collect);
