@@ -43,10 +43,9 @@ int32_t FindSpans(const RenderScene& scene, const Ray& ray, float tMax, int32_t 
     from = to;
   };
   for (const Crossing& crossing : crossings) {
-    const GeometryAttributes& attributes = scene.geometry->Attributes(crossing.primitive);
-    if (!SeparatesMedia(attributes)) continue;
+    if (crossing.medium == kSameMedium) continue;
     add(crossing.t);
-    medium = crossing.entering ? attributes.insideMedium : attributes.outsideMedium;
+    medium = crossing.medium;
   }
   add(tMax);
   return medium;

@@ -5,13 +5,13 @@
 
 #include "base/memory.h"
 #include "geometry/shape_checks.h"
+#include "media/make_media.h"
 #include "render/analysis/plan.h"
 #include "render/analysis/unseen_samples.h"
 #include "render/build/flat_instances.h"
 #include "render/build/light_table.h"
 #include "render/build/material_table.h"
 #include "render/build/placer.h"
-#include "media/make_media.h"
 #include "render/build/scene_media.h"
 #include "render/build/shape_builder.h"
 #include "textures/texture_library.h"
@@ -66,6 +66,10 @@ class Builder {
   bool Moves(const ReadEntry& entry) const { return placer_.Moves(entry.local.description->placement); }
   Transform StillPlacement(const ReadEntry& entry) const { return placer_.StillPlacement(*entry.local.description); }
   void PlaceEntries();
+  Point2 MiddleOfFilm() const {
+    return 0.5f * Point2(static_cast<float>(built_.settings.width), static_cast<float>(built_.settings.height));
+  }
+  void WarnOfBlackImage(const RenderScene& scene) const;
   MediaAround MediaAroundLights() const;
   std::vector<Part> MovingParts(const std::vector<ReadEntry>& entries);
   void BuildPart(Part& part);
@@ -300,11 +304,21 @@ MediaAround Builder::MediaAroundLights() const {
   MediaAround around;
   for (const auto& medium : scene.media) around.glow = around.glow || medium->IsEmissive();
   if (!description_.cameraMedium.empty()) {
-    const Point2 middle(0.5f * static_cast<float>(built_.settings.width),
-                        0.5f * static_cast<float>(built_.settings.height));
-    around.unboundedAt = scene.camera->GenerateRay(middle, Point2(0.5f), 0).ray.origin;
+    around.unboundedAt = scene.camera->GenerateRay(MiddleOfFilm(), Point2(0.5f), 0).ray.origin;
   }
   return around;
+}
+
+void Builder::WarnOfBlackImage(const RenderScene& scene) const {
+  const auto& lights = scene.lighting->Lights();
+  const bool hasSky = std::any_of(lights.begin(), lights.end(), [](const PlacedLight& placed) {
+    return placed.light->Kind() == LightKind::Infinite;
+  });
+  const bool hasGlow =
+      std::any_of(scene.media.begin(), scene.media.end(), [](const auto& medium) { return medium->IsEmissive(); });
+  if (scene.geometry->PrimitiveCount() == 0 && !hasSky && scene.lighting->HasLights() && scene.media.empty())
+    diagnostics_.Warn("the scene has no shape for light to fall on: the image will be black");
+  if (!scene.lighting->HasLights() && !hasGlow) diagnostics_.Warn("the scene has no light: the image will be black");
 }
 
 BuiltScene Builder::Build() {
@@ -353,9 +367,7 @@ BuiltScene Builder::Build() {
   scene.lighting = std::make_shared<const LightingServices>(
       *scene.geometry, std::move(lights_->Lights()), built_.settings.LightSampler(), std::move(lights_->Linking()),
       static_cast<int>(built_.settings.values.Integer("light-samples")), MediaAroundLights());
-  const Point2 middle(0.5f * static_cast<float>(built_.settings.width),
-                      0.5f * static_cast<float>(built_.settings.height));
-  media_->Locate(middle, built_.lightPlaces, scene);
+  media_->Locate(MiddleOfFilm(), built_.lightPlaces, scene);
   if (built_.settings.integrator == "auto") {
     const auto start = std::chrono::steady_clock::now();
     ChooseIntegrator(scene, built_.settings, threads_).Apply(built_.settings);
@@ -365,13 +377,7 @@ BuiltScene Builder::Build() {
     diagnostics_.Warn("\"" + name + "\" is ignored: " + built_.settings.integrator +
                       " does not support it, and renders the picture without that bias");
   }
-  const auto& lights = scene.lighting->Lights();
-  const bool hasSky = std::any_of(lights.begin(), lights.end(), [](const PlacedLight& placed) {
-    return placed.light->Kind() == LightKind::Infinite;
-  });
-  if (scene.geometry->PrimitiveCount() == 0 && !hasSky && scene.lighting->HasLights())
-    diagnostics_.Warn("the scene has no shape for light to fall on: the image will be black");
-  if (!scene.lighting->HasLights()) diagnostics_.Warn("the scene has no light: the image will be black");
+  WarnOfBlackImage(scene);
   WarnOfCoarsePlaces(scene, built_.settings, diagnostics_);
   return std::move(built_);
 }

@@ -98,21 +98,24 @@ SceneMedia::Sides SceneMedia::MediaOfLight(const RenderScene& scene, size_t ligh
   const PlacedLight& placed = scene.lighting->Lights()[light];
   if (IsAtInfinity(placed.light->Kind())) return {exterior, exterior};
   const std::string name = light < description_.lights.size() ? description_.lights[light].mediumName : "";
+  const int32_t otherwise = name.empty() ? exterior : IndexOf(name, where);
+  if (!scene.geometry->HasBoundaries()) return {otherwise, otherwise};
   std::optional<int32_t> medium;
   for (const Point2& u : kLightPoints) {
     const auto point = PointOf(placed, scene.lighting->SceneSphere(), u);
     if (!point) continue;
     const FoundMedium found = FindMedium(*scene.geometry, point->position, 0, point->normal);
+    const int32_t here = found.medium.value_or(otherwise);
     if (!medium) {
       medium = Choose("the light", where, name, found, exterior);
       if (placed.light->Kind() != LightKind::Area) break;
-    } else if (found.medium.value_or(exterior) != *medium) {
-      diagnostics_.Warn(where, "the light reaches from " + NameOf(*medium) + " into " +
-                                   NameOf(found.medium.value_or(exterior)) + ": it is taken to be in the first");
+    } else if (here != *medium) {
+      diagnostics_.Warn(where, "the light reaches from " + NameOf(*medium) + " into " + NameOf(here) +
+                                   ": it is taken to be in the first");
       break;
     }
   }
-  const int32_t chosen = medium.value_or(name.empty() ? exterior : IndexOf(name, where));
+  const int32_t chosen = medium.value_or(otherwise);
   return {chosen, chosen};
 }
 

@@ -234,7 +234,7 @@ const Transform kPlacements[] = {
     Transform::Translate({1, 0, 2}) * Transform::Scale({1, -1, 1}) * Transform::Rotate(20, {1, 0, 1}),
     Transform(glm::dmat4(1, 0.3, 0, 0, -0.4, 1, 0.1, 0, 0.2, 0, -1, 0, 1, 1, 1, 1))};  // sheared and mirrored
 
-// A boundary that is seen by no ray is crossed by all.
+// Rays of all kinds cross a boundary, although its shape is visible to the camera alone.
 GeometryEntry Unseen(const Subject& subject) {
   GeometryEntry entry = Boundary(subject.shape);
   entry.attributes.visibility = visibility::kCamera;
