@@ -16,6 +16,7 @@ void BidirectionalSample::SetCamera(ConnectedPath& path) const {
   path.t = static_cast<int>(camera.Count()) + 1;
   path.camera = camera.First(camera.Count());
   path.toLens = camera[0].toPrevious;
+  path.lensFactors = camera[0].factors;
   path.atLens = camera[0].pdfForward;
 }
 
@@ -34,6 +35,7 @@ Color BidirectionalSample::Report(ConnectedPath& path) const {
     }
     path.seenDensity = path.t > 1 ? seenDensity : path.atLens.value;
     path.splatCount = settings.splatCount;
+    path.volume = settings.photons.volume;
     context.observer->Observe(path);
   }
   return path.value * static_cast<float>(path.weight);
@@ -78,7 +80,7 @@ Merging BidirectionalSample::MergingAt(double distance, double footprint, const 
   // Parallel rays have no angle: what a camera with a field of view of 53 degrees has where the image is as wide.
   if (context.scene.camera->ConnectsByDirection()) distance = std::sqrt(footprint * settings.filmPixels);
   return Merging::At(static_cast<double>(MergeRadiusAt(footprint)), distance, context.gather->lightPaths, lightPaths,
-                     settings.filmPixels, probability);
+                     settings.filmPixels, probability, static_cast<double>(context.gather->radiusScale));
 }
 
 AreaDensity DensityAtLens(const Camera& camera, const Ray& ray, float geometryTerm, double distanceSquared) {
@@ -114,7 +116,7 @@ class LightSide final : public WeightedLightPath {
  private:
   void OnWeighted(const LightPath& path) override {
     if (sample_.settings.merges) {
-      AddDensities(path.vertices, sample_.lightDensities);
+      AddDensities(path.vertices, &sample_.settings.photons.volume, true, sample_.lightDensities);
       if (path.vertices.Count() == 1)
         sample_.lightDensities[0] = {
             .forward = End().emission.value, .isInMedium = path.vertices.Last().IsInMedium(), .extent = End().extent};
@@ -147,6 +149,38 @@ class CameraSide final : public PathVisitor {
     return true;
   }
 
+  // Photons in media along the ray. Each makes a vertex of the camera subpath for itself, as if the ray had collided
+  // there, but for the density of that.
+  void Flew(Subpath& path, const PathState& state, const Flight& flight) override {
+    const SampleContext& context = sample_.context;
+    if (!context.gather || !context.gather->map->HasVolume() || !sample_.isMerged) return;
+    if (static_cast<int>(path.Count()) >= sample_.settings.maxDepth) return;
+    const std::span<const BeamHit> hits = context.gather->map->FindAlong(state.ray, flight.t, sample_.lookup);
+    context.counts.foundPhotons += hits.size();
+    ++context.counts.lookups;
+    if (hits.empty()) return;
+    const Merging merging = sample_.merging;
+    const double seenDensity = sample_.seenDensity;
+    const bool lensSeesIt = sample_.lensSeesIt;
+    sample_.cameraDensities.reserve(path.Count() + 1);
+    const std::vector<SubpathDensities> kept = sample_.cameraDensities;
+    for (const BeamHit& hit : hits) {
+      BeamMerge merge;
+      if (!SetBeamVertex(context, state, flight, hit, path.Next(), merge)) continue;
+      path.Add();
+      PathState arrived = state;
+      arrived.length += hit.t;
+      arrived.factors = path.Last().factors;
+      Weigh(path, arrived);
+      if (sample_.merging) sample_.radiance += MergeWithBeam(sample_, merge);
+      path.Drop();
+      sample_.merging = merging;
+      sample_.seenDensity = seenDensity;
+      sample_.lensSeesIt = lensSeesIt;
+      sample_.cameraDensities = kept;
+    }
+  }
+
   void Glowed(const Subpath&, const Color& throughput, const Color& radiance) override {
     const Color seen = throughput * radiance;
     if (sample_.context.layers) sample_.context.layers->Add(sample_.Lighting().Groups().OfMedia(), seen);
@@ -156,16 +190,7 @@ class CameraSide final : public PathVisitor {
   bool Arrived(Subpath& path, const PathState& state) override {
     PathVertex& vertex = path.Last();
     const size_t depth = path.Count();
-    if (depth == 1) {
-      SetFirst(vertex, state);
-    } else {
-      SetWeights(path[depth - 2], state, sample_.settings.connects, vertex);
-    }
-    if (sample_.seenDensity > 0 && !state.hasScatteredWidely) SetMerging(static_cast<double>(state.length));
-    if (sample_.merging) {
-      AddDensities(path, sample_.cameraDensities);
-      if (depth == 1) sample_.cameraDensities[0].forward = sample_.seenDensity;
-    }
+    Weigh(path, state);
     if (vertex.isDelta) return true;
     sample_.radiance += EstimateDirectLight(sample_);
     if (sample_.isConnected) {
@@ -177,7 +202,8 @@ class CameraSide final : public PathVisitor {
         sample_.radiance += Connect(sample_, i);
       }
     }
-    if (sample_.merging && sample_.isMerged && vertex.CanMerge()) sample_.radiance += Merge(sample_);
+    if (sample_.merging && sample_.isMerged && vertex.GathersPhotons() && vertex.CanMerge())
+      sample_.radiance += Merge(sample_);
     return true;
   }
 
@@ -188,6 +214,21 @@ class CameraSide final : public PathVisitor {
   }
 
  private:
+  // Densities and weights of the last vertex, which the ray of `state` has found.
+  void Weigh(Subpath& path, const PathState& state) {
+    PathVertex& vertex = path.Last();
+    const size_t depth = path.Count();
+    if (depth == 1) {
+      SetFirst(vertex, state);
+    } else {
+      SetWeights(path[depth - 2], state, sample_.settings.connects, vertex);
+    }
+    if (sample_.seenDensity > 0 && !state.hasScatteredWidely) SetMerging(static_cast<double>(state.length));
+    if (sample_.merging) {
+      AddDensities(path, &sample_.settings.photons.volume, false, sample_.cameraDensities);
+      if (depth == 1) sample_.cameraDensities[0].forward = sample_.seenDensity;
+    }
+  }
   void SetFirst(PathVertex& vertex, const PathState& state) {
     const AreaDensity atLens =
         DensityAtLens(*sample_.context.scene.camera, state.ray, vertex.GeometryTerm(vertex.toPrevious),
@@ -324,7 +365,11 @@ Color BidirectionalIntegrator::Sample(const Ray* ray, const SampleContext& conte
   state.medium = context.scene.cameraMedium;
   state.specular = Color(1.0f);
   CameraSide visitor(sample);
-  Walk(context, {TransportMode::Radiance, settings_.maxDepth, kCameraDimensions}, state, workspace.camera, visitor);
+  const WalkSettings walk{.mode = TransportMode::Radiance,
+                          .maxDepth = settings_.maxDepth,
+                          .dimensions = kCameraDimensions,
+                          .wantsBeams = settings_.merges};
+  Walk(context, walk, state, workspace.camera, visitor);
   return sample.radiance;
 }
 

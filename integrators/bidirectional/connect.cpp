@@ -74,7 +74,8 @@ Color Connect(const BidirectionalSample& sample, size_t lightCount) {
                     {SolidAngleDensity(fy.pdfForward) * (factors.reverse * EdgeDensity(z, toCamera, squared)),
                      z.PreviousReverse(fz.pdfReverse)},
                     y.CanMerge(),
-                    z.CanMerge()};
+                    z.CanMerge(),
+                    MergeVolume(y, factors, sample.settings.photons.volume)};
   const auto weightWith = [&](double merging) {
     return ConnectWeight(y.weight, joint.light, z.weight, joint.camera, sample.connectionCount, merging);
   };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "integrators/bidirectional/subpath_weights.h"
 #include "integrators/bidirectional/weights.h"
 
 namespace lampyr {
@@ -57,12 +58,13 @@ FullPath Unfold(const ConnectedPath& path) {
   full.lensSeesIt = isConnected;
   full.gathers.assign(n + 2, true);
   full.isInMedium.assign(n + 2, false);
+  full.mergeVolume.assign(n + 2, 0);
   if (n == 0) return full;
   full.mergesAtLens = vertices[n]->isSeenByIndirect;
   full.lensSeesIt = isConnected && vertices[n]->isSeenByIndirect;
   for (size_t i = 1; i <= n; ++i) {
     const PathVertex& vertex = *vertices[i];
-    full.gathers[i] = vertex.GathersPhotons();
+    full.gathers[i] = vertex.GathersPhotons() || vertex.IsInMedium();
     full.isInMedium[i] = vertex.IsInMedium();
     // Directions of the rays that were traced; for the connecting edge, from vertex to vertex.
     const auto directionTo = [&](size_t other) {
@@ -79,6 +81,14 @@ FullPath Unfold(const ConnectedPath& path) {
       const bool isAhead = here == (to > i);  // on the way of the subpath of both
       return isAhead ? vertices[to]->factors.forward : vertex.factors.reverse;
     };
+    // The edge from the camera's side.
+    EdgeFactors arrival = path.lensFactors;
+    if (i < n && (i <= ofLight) == (i + 1 <= ofLight)) {
+      arrival = i <= ofLight ? vertices[i + 1]->factors.Reversed() : vertex.factors;
+    } else if (i < n) {
+      arrival = photon ? photon->factors.Reversed() : path.factors;
+    }
+    full.mergeVolume[i] = static_cast<double>(MergeVolume(vertex, arrival, path.volume));
     const Vector3 toLight = i == 1 ? path.toLight : directionTo(i - 1);
     const Vector3 toCamera = i == n ? path.toLens : directionTo(i + 1);
     // The last vertex of a subpath is connected and has no event on the path, except where the camera's has hit the
@@ -103,6 +113,11 @@ FullPath Unfold(const ConnectedPath& path) {
   }
   if (photon && ofLight > 0) full.fromLight[ofLight + 1] = photon->pdfForward;
   return full;
+}
+
+double PerDensityAt(const FullPath& path, int i) {
+  const auto at = static_cast<size_t>(i);
+  return path.isInMedium[at] ? path.merging.perVolumeDensity * path.mergeVolume[at] : path.merging.perDensity;
 }
 
 double CorrelationAt(const FullPath& path, int i) {
@@ -152,7 +167,7 @@ std::vector<long double> ExplicitDensities(const FullPath& path) {
   }
   for (int i = 1; i <= n; ++i) {
     if (!path.CanMerge(i)) continue;
-    long double density = path.end.emission.value * path.merging.perDensity * CorrelationAt(path, i);
+    long double density = path.end.emission.value * PerDensityAt(path, i) * CorrelationAt(path, i);
     for (int k = 2; k <= i; ++k) density *= fromLight(k);
     for (int k = i; k <= n; ++k) density *= fromCamera(k);
     densities[static_cast<size_t>(n + 1 + i)] = density;
@@ -224,7 +239,8 @@ PathDensities DensitiesOf(const FullPath& path) {
   for (int i = n; i >= 1; --i) {
     const auto at = static_cast<size_t>(i);
     camera.push_back({i == n ? path.seenDensity : path.fromCamera[at].value, path.fromLight[at].value, isDelta(i + 1),
-                      isDelta(i - 1), static_cast<bool>(path.isInMedium[at]), path.CanMerge(i)});
+                      isDelta(i - 1), static_cast<bool>(path.isInMedium[at]), static_cast<float>(path.mergeVolume[at]),
+                      path.CanMerge(i)});
   }
   Joint joint;
   joint.camera = {path.fromLight[1], n > 1 ? path.fromLight[2] : AreaDensity()};

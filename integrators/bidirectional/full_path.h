@@ -16,6 +16,7 @@ struct FullPath {
   std::vector<AreaDensity> fromCamera;  // [i]: of vertex i, sampled from i + 1
   std::vector<bool> isDelta;            // [i]: the event at vertex i is one
   std::vector<bool> isInMedium;         // [i]: densities of vertex i are per volume
+  std::vector<double> mergeVolume;      // [i]: SubpathDensities::mergeVolume of vertex i
   std::vector<bool> gathers;            // [i]: photons may be gathered at vertex i
   bool lensSeesIt = true;               // a light path may reach vertex n and be connected to the lens
   bool mergesAtLens = true;             // photons may be merged at vertex n
@@ -33,6 +34,9 @@ struct FullPath {
     return merging && !isDelta[vertex] && gathers[vertex] && (i < SurfaceCount() || mergesAtLens);
   }
 };
+
+// N π r² at vertex `i`, with the probability of merging, without c.
+double PerDensityAt(const FullPath& path, int i);
 
 FullPath Unfold(const ConnectedPath& path);
 

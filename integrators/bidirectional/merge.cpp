@@ -20,6 +20,7 @@ void ReportMerge(const BidirectionalSample& sample, const Photon& photon, AreaDe
   path.merging = sample.merging;
   path.connectionCount = sample.connectionCount;
   path.splatCount = sample.settings.splatCount;
+  path.volume = sample.settings.photons.volume;
   path.seenDensity = sample.seenDensity;
   path.value = value;
   path.weight = weight;
@@ -33,7 +34,72 @@ void ReportMerge(const BidirectionalSample& sample, const Photon& photon, AreaDe
   sample.context.observer->ObserveMerge(path, photon);
 }
 
+// The weight of merging the camera subpath's last vertex with a photon. `f`: of the vertex, towards where the photon
+// came from. Sets the densities of the whole path.
+double WeightOf(const BidirectionalSample& sample, const Photon& photon, const BsdfEvaluation& f, Joint& joint) {
+  const PathVertex& vertex = sample.camera.Last();
+  const std::span<const SubpathDensities> light = sample.context.gather->map->PathOf(photon);
+  joint.light.last = photon.PreviousReverse(SolidAngleDensity(f.pdfForward));
+  joint.camera = {AreaDensity(light.back().forward), vertex.PreviousReverse(f.pdfReverse)};
+  joint.lastCameraIsDelta = light.back().forwardIsDelta;
+  sample.whole.Set(light.first(light.size() - 1), sample.cameraDensities, joint, light.front().forward,
+                   light.front().extent, sample.merging);
+  return MergeWeight(photon.weight.At(light.back(), photon.depth)
+                         .WithNextEvents(photon.depth + sample.camera.Count() - 1)
+                         .BeforeReverse(joint.light.last),
+                     vertex.weight.BeforeReverse(joint.camera.previous), sample.whole.PerDensityAt(light.size()),
+                     sample.connectionCount, sample.whole.ForMerging(light.size()));
+}
+
 }  // namespace
+
+bool SetBeamVertex(const SampleContext& context, const PathState& state, const Flight& flight, const BeamHit& hit,
+                   PathVertex& vertex, BeamMerge& merge) {
+  const PhotonMap& map = *context.gather->map;
+  const VolumePhoton& photon = map.VolumeOf(hit.index);
+  const std::optional<BeamPoint> point = flight.PointAt(hit.t, photon.medium);
+  if (!point) return false;
+  merge.photon = hit.index;
+  merge.throughput = state.Throughput() * point->passed;
+  vertex = PathVertex();
+  vertex.point.position = state.ray.origin + hit.t * state.ray.direction;
+  vertex.point.Ng = vertex.point.Ns = Normal3(0.0f);
+  vertex.toPrevious = -state.ray.direction;
+  vertex.bsdf = Bsdf(Frame::FromNormal(vertex.toPrevious), vertex.toPrevious, photon.phase);
+  vertex.insideMedium = vertex.outsideMedium = photon.medium;
+  vertex.extinction = photon.extinction;
+  vertex.factors = {MeanOf(point->density * photon.extinction), MeanOf(point->density * flight.startExtinction),
+                    point->through};
+  return true;
+}
+
+Color MergeWithBeam(const BidirectionalSample& sample, const BeamMerge& merge) {
+  const SampleContext& context = sample.context;
+  const PhotonPass& pass = *context.gather;
+  const PathVertex& vertex = sample.camera.Last();
+  const Photon& photon = (*pass.map)[merge.photon];
+  if (photon.depth + sample.camera.Count() > static_cast<size_t>(sample.settings.maxDepth) + 1) return Color(0.0f);
+  const BsdfEvaluation f = vertex.Evaluate(photon.toPrevious, TransportMode::Radiance);
+  const Color value = f.diffuse * photon.flux;
+  if (value.IsBlack()) return value;
+  Joint joint;
+  joint.isMerged = true;
+  joint.mergesAtCamera = true;
+  const double weight = WeightOf(sample, photon, f, joint);
+  const auto radius = static_cast<double>(pass.map->VolumeOf(merge.photon).radius);
+  const double probability = static_cast<double>(sample.settings.counts.merging.At(sample.film));
+  const double perDensity = static_cast<double>(sample.Lighting().FluxUnit()) /
+                            (probability * pass.lightPaths * static_cast<double>(kPi) * radius * radius);
+  if (context.layers) context.layers->Add(photon.group, Product(merge.throughput, value, perDensity * weight));
+  if (pass.use) {
+    PhotonUse::Contribution used[1] = {
+        {merge.photon, (merge.throughput * f.diffuse).Average() * static_cast<float>(weight) * sample.perArea}};
+    pass.use->Add(used);
+  }
+  if (sample.IsObserved()) [[unlikely]]
+    ReportMerge(sample, photon, joint.light.last, Product(merge.throughput, value, perDensity), weight);
+  return Product(merge.throughput, value, perDensity * weight);
+}
 
 Color Merge(const BidirectionalSample& sample) {
   const SampleContext& context = sample.context;
@@ -61,18 +127,7 @@ Color Merge(const BidirectionalSample& sample) {
     const BsdfEvaluation f = vertex.Evaluate(toLight, TransportMode::Radiance);
     const Color scattered = f.diffuse * photon.flux + f.specular * pass.map->SpecularFlux(photon);
     if (scattered.IsBlack()) continue;
-    const std::span<const SubpathDensities> light = pass.map->PathOf(photon);
-    joint.light.last = photon.PreviousReverse(SolidAngleDensity(f.pdfForward));
-    joint.camera = {AreaDensity(light.back().forward), vertex.PreviousReverse(f.pdfReverse)};
-    joint.lastCameraIsDelta = light.back().forwardIsDelta;
-    sample.whole.Set(light.first(light.size() - 1), sample.cameraDensities, joint, light.front().forward,
-                     light.front().extent, sample.merging);
-    const double weight =
-        MergeWeight(photon.weight.At(light.back(), photon.depth)
-                        .WithNextEvents(photon.depth + sample.camera.Count() - 1)
-                        .BeforeReverse(joint.light.last),
-                    vertex.weight.BeforeReverse(joint.camera.previous), sample.whole.PerDensityAt(light.size()),
-                    sample.connectionCount, sample.whole.ForMerging(light.size()));
+    const double weight = WeightOf(sample, photon, f, joint);
     const Color value = scattered * vertex.ArrivalCorrection(toLight, photon.normal.Unpack());
     sum += value * static_cast<float>(weight);
     // Multiplied in another order than the sum: a shared product would be rounded differently than without layers.

@@ -10,11 +10,18 @@ namespace {
 constexpr double kPiDouble = 3.14159265358979323846;
 const double kReach = std::tan(kPiDouble / 180);  // ρ over the distance
 
+// N π r² at a vertex.
+double PerDensityOf(const SubpathDensities& vertex, const Merging& merging) {
+  return vertex.isInMedium ? merging.perVolumeDensity * static_cast<double>(vertex.mergeVolume) : merging.perDensity;
+}
+
 }  // namespace
 
 Merging Merging::At(double radius, double distance, double lightPaths, double lightPathsPerSample, double filmPixels,
-                    double probability) {
-  return {probability * lightPaths / lightPathsPerSample * kPiDouble * radius * radius,
+                    double probability, double radiusScale) {
+  const double paths = probability * lightPaths / lightPathsPerSample;
+  return {paths * kPiDouble * radius * radius,
+          paths * radiusScale * radiusScale,
           kPiDouble * kReach * kReach * distance * distance,
           kReach * distance,
           lightPaths,
@@ -30,17 +37,34 @@ void PathDensities::Set(std::span<const SubpathDensities> light, std::span<const
   Vertex* const vertices = vertices_.data();
   for (size_t i = 0; i < light.size(); ++i) {
     const SubpathDensities& v = light[i];
-    vertices[i + 1] = {v.forward, v.reverse, 1, v.forwardIsDelta, v.reverseIsDelta, v.canMerge, v.isInMedium};
+    vertices[i + 1] = {v.forward,
+                       v.reverse,
+                       1,
+                       v.forwardIsDelta,
+                       v.reverseIsDelta,
+                       v.canMerge,
+                       v.isInMedium,
+                       PerDensityOf(v, merging)};
   }
   for (size_t i = 0; i < camera.size(); ++i) {
     const SubpathDensities& v = camera[i];
-    vertices[n - i] = {v.reverse, v.forward, 1, v.reverseIsDelta, v.forwardIsDelta, v.canMerge, v.isInMedium};
+    vertices[n - i] = {v.reverse,
+                       v.forward,
+                       1,
+                       v.reverseIsDelta,
+                       v.forwardIsDelta,
+                       v.canMerge,
+                       v.isInMedium,
+                       PerDensityOf(v, merging)};
   }
   if (const size_t j = light.size(); j > 0) {
     Vertex& last = vertices[j];
     last.fromCamera = joint.light.last.value;
     last.cameraIsDelta = false;
-    if (!joint.isMerged) last.canMerge = joint.mergesAtLight;
+    if (!joint.isMerged) {
+      last.canMerge = joint.mergesAtLight;
+      if (last.isInMedium) last.perDensity = merging.perVolumeDensity * static_cast<double>(joint.lightMergeVolume);
+    }
     if (!joint.isMerged && j > 1) {
       vertices[j - 1].fromCamera = joint.light.previous.value;
       vertices[j - 1].cameraIsDelta = false;
@@ -95,7 +119,7 @@ void PathDensities::Correlate() {
 double PathDensities::TowardsCamera(size_t i, double ratio) const {
   double sum = 0;
   for (;; ++i) {
-    if (vertices_[i].canMerge) sum += Mis(ratio * vertices_[i].correlation);
+    if (vertices_[i].canMerge) sum += Mis(ratio * PerDensityAt(i));
     if (i == count_) return sum;
     ratio *= vertices_[i + 1].fromLight / vertices_[i].fromCamera;
   }
@@ -104,7 +128,7 @@ double PathDensities::TowardsCamera(size_t i, double ratio) const {
 double PathDensities::TowardsLight(size_t i, double ratio) const {
   double sum = 0;
   for (;; --i) {
-    if (vertices_[i].canMerge) sum += Mis(ratio * vertices_[i].correlation);
+    if (vertices_[i].canMerge) sum += Mis(ratio * PerDensityAt(i));
     if (i == 1) return sum;
     ratio *= vertices_[i - 1].fromCamera / vertices_[i].fromLight;
   }
@@ -123,7 +147,7 @@ TechniqueSums PathDensities::Sums(const PathEnds& ends, size_t s, size_t mergedA
   double density = emission_ / vertices_[1].fromCamera;  // of s = 2
   for (size_t k = 2; k <= n + 1; ++k) {
     if (mergedAt > 0 ? k == mergedAt + 1 : k == s) {
-      own = density * (mergedAt > 0 ? vertices_[mergedAt].fromCamera * merging_.perDensity
+      own = density * (mergedAt > 0 ? vertices_[mergedAt].fromCamera * vertices_[mergedAt].perDensity
                        : k == n + 1 ? ends.splatCount
                                     : 1.0);
       break;
@@ -139,21 +163,19 @@ TechniqueSums PathDensities::Sums(const PathEnds& ends, size_t s, size_t mergedA
     const Vertex& last = vertices_[k - 1];
     if (!isDelta(k - 1) && k <= n && !isDelta(k)) sums.Of(TechniqueGroup::Connect).Add(ratio);
     if (!isDelta(k - 1) && k == n + 1) sums.Of(TechniqueGroup::Light).Add(ratio * ends.splatCount);
-    if (last.canMerge)
-      sums.Of(TechniqueGroup::Merge).Add(ratio * last.fromCamera * merging_.perDensity * last.correlation);
+    if (last.canMerge) sums.Of(TechniqueGroup::Merge).Add(ratio * last.fromCamera * last.perDensity * last.correlation);
     if (k <= n) ratio *= vertices_[k].fromLight / vertices_[k].fromCamera;
   }
   return sums;
 }
 
 double PathDensities::ForLight(double technique) const {
-  return TowardsCamera(1, emission_ / technique * merging_.perDensity);
+  return TowardsCamera(1, emission_ / technique);
 }
 
 double PathDensities::ForConnection(size_t lightCount) const {
-  double sum = TowardsLight(lightCount, vertices_[lightCount].fromCamera * merging_.perDensity);
-  if (lightCount < count_)
-    sum += TowardsCamera(lightCount + 1, vertices_[lightCount + 1].fromLight * merging_.perDensity);
+  double sum = TowardsLight(lightCount, vertices_[lightCount].fromCamera);
+  if (lightCount < count_) sum += TowardsCamera(lightCount + 1, vertices_[lightCount + 1].fromLight);
   return sum;
 }
 
@@ -161,7 +183,7 @@ double PathDensities::ForMerging(size_t i) const {
   double sum = 0;
   if (i > 1) sum += TowardsLight(i - 1, vertices_[i - 1].fromCamera / vertices_[i].fromLight);
   if (i < count_) sum += TowardsCamera(i + 1, vertices_[i + 1].fromLight / vertices_[i].fromCamera);
-  return sum / Mis(vertices_[i].correlation);
+  return sum / Mis(PerDensityAt(i));
 }
 
 }  // namespace lampyr

@@ -26,6 +26,7 @@ namespace lampyr {
 struct Merging {
   // N π r² times the probability of merging, for each of the light paths per sample; 0: no merging.
   double perDensity = 0;
+  double perVolumeDensity = 0;     // in media: N times the square of the radius's scale, with that probability
   double area = 0;                 // π ρ²
   double radius = 0;               // ρ, scene units
   double lightPaths = 1;           // N
@@ -34,14 +35,16 @@ struct Merging {
 
   explicit operator bool() const { return perDensity > 0; }
   // `radius`: r. `distance`: path length from the camera; ρ is what a degree spans there.
+  // `radiusScale`: of the pass, for photons in media.
   static Merging At(double radius, double distance, double lightPaths, double lightPathsPerSample, double filmPixels,
-                    double probability);
+                    double probability, double radiusScale);
 };
 
 // The connection of two subpaths: the last two reverse densities of each, and whether the last vertices can be merged.
 struct Joint {
   ReverseDensities light, camera;
   bool mergesAtLight = false, mergesAtCamera = false;
+  float lightMergeVolume = 0;  // SubpathDensities::mergeVolume of the light's last vertex
   bool lastCameraIsDelta = false, previousCameraIsDelta = false;  // the reverse density is a coefficient
   // The camera's last vertex is a photon's, and `light` holds the photon's path without it: of the light's last vertex
   // only light.last is set.
@@ -88,7 +91,7 @@ class PathDensities {
   double ForConnection(size_t lightCount) const;
   double ForMerging(size_t i) const;
   // N π r² c at vertex `i`.
-  double PerDensityAt(size_t i) const { return merging_.perDensity * vertices_[i].correlation; }
+  double PerDensityAt(size_t i) const { return vertices_[i].perDensity * vertices_[i].correlation; }
 
   // The sums over all techniques, for a path that technique `s` has made, or merging at vertex `mergedAt` if that is
   // not 0. All 0 where the camera could not have made the path.
@@ -102,6 +105,7 @@ class PathDensities {
     double correlation = 1;  // c
     bool lightIsDelta = false, cameraIsDelta = false, canMerge = false;
     bool isInMedium = false;
+    double perDensity = 0;  // of merging there, without c
   };
   void Correlate();
   // The terms at the vertices from `i` on. `ratio`: p_i / p, without c.

@@ -19,6 +19,7 @@ AreaDensity DensityWithoutMedia(const BidirectionalSample& sample, const SeenFro
 void SetLens(const BidirectionalSample& sample, const SeenFromLens& seen, ConnectedPath& path) {
   path.t = 1;
   path.toLens = seen.toCamera;
+  path.lensFactors = seen.factors;
   path.atLens = seen.factors.forward * DensityWithoutMedia(sample, seen);
   path.connection = &seen.connection;
   path.value = seen.value;
@@ -54,6 +55,7 @@ void SplatVertex(const BidirectionalSample& sample) {
   Joint joint;
   joint.light = {path.atLens, vertex.PreviousReverse(seen->f.pdfReverse)};
   joint.mergesAtLight = vertex.CanMerge();
+  joint.lightMergeVolume = MergeVolume(vertex, seen->factors, sample.settings.photons.volume);
   double merging = 0;
   const Point2& film = seen->connection.camera.film;
   if (sample.context.gather) {

@@ -10,7 +10,12 @@ namespace lampyr {
 void SetWeights(const PathVertex& previous, const PathState& state, bool connects, PathVertex& vertex);
 
 // The densities of the last vertex of a subpath, and what is known of those before it once that one is there.
-void AddDensities(const Subpath& path, std::vector<SubpathDensities>& densities);
+// `radius`: of photons in media; null: no merging there. `isFromLight`: the camera's side is that of later vertices.
+void AddDensities(const Subpath& path, const VolumeRadius* radius, bool isFromLight,
+                  std::vector<SubpathDensities>& densities);
+
+// SubpathDensities::mergeVolume of a vertex. `factors`: of the edge towards it from the camera's side.
+float MergeVolume(const Vertex& vertex, const EdgeFactors& factors, const VolumeRadius& radius);
 
 // dω/dA at the first hit of an emitted path: EdgeDensity, for a light at infinity without the squared distance.
 SolidAnglePerArea FirstEdgeDensity(const LightingServices& lighting, uint32_t light, float geometryTerm,

@@ -113,6 +113,19 @@ Color Connect(const BidirectionalSample& sample, size_t lightCount);
 void SplatLight(const BidirectionalSample& sample, const EmittedPhoton& photon);
 void SplatVertex(const BidirectionalSample& sample);
 
+// A photon that a camera ray passes in a medium.
+struct BeamMerge {
+  uint32_t photon = 0;  // index in the map
+  // Throughput of the camera path at the photon, over the probability of passing there; without scattering.
+  Color throughput;
+};
+// Makes the vertex at which the ray of `state` passes a photon. False: none, because another medium is there.
+bool SetBeamVertex(const SampleContext& context, const PathState& state, const Flight& flight, const BeamHit& hit,
+                   PathVertex& vertex, BeamMerge& merge);
+// Merging of the camera subpath's last vertex, made by SetBeamVertex, with its photon ([Křivánek14], point–beam in two
+// dimensions; the kernel is constant).
+Color MergeWithBeam(const BidirectionalSample& sample, const BeamMerge& merge);
+
 // Vertex merging: photons near the camera subpath's last vertex ([Georgiev12 §3]).
 Color Merge(const BidirectionalSample& sample);
 

@@ -43,6 +43,11 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
     return !emissionOnly_;
   }
 
+  void Flew(Subpath& path, const PathState& state, const Flight& flight) override {
+    const auto events = static_cast<int>(path.Count()) + 1;
+    if (!emissionOnly_ && events <= settings_.maxDepth) radiance_ += gatherer_->GatherAlong(state, flight, events);
+  }
+
   void Glowed(const Subpath&, const Color& throughput, const Color& radiance) override {
     const Color seen = throughput * radiance;
     if (context_.layers) context_.layers->Add(lighting_.Groups().OfMedia(), seen);
@@ -65,7 +70,7 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
   // Directions from which photons are gathered are still traced for the emission of the surface they hit: next-event
   // estimation alone would miss a panel that touches the floor.
   bool Scattered(const Subpath& path, const PathState& state) override {
-    emissionOnly_ = !path.Last().scatteredDelta && path.Last().GathersPhotons() &&
+    emissionOnly_ = !path.Last().scatteredDelta && Gathers(path.Last()) &&
                     state.pdfDirection.value <= static_cast<double>(settings_.gatherBelow);
     return !emissionOnly_ || (settings_.samplesLights && lighting_.HasLightThatCanBeHit());
   }
@@ -73,7 +78,8 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
   const Color& Radiance() const { return radiance_; }
 
  private:
-  bool SamplesLights(const PathVertex& vertex) const { return settings_.samplesLights || !vertex.GathersPhotons(); }
+  static bool Gathers(const PathVertex& vertex) { return vertex.GathersPhotons() || vertex.IsInMedium(); }
+  bool SamplesLights(const PathVertex& vertex) const { return settings_.samplesLights || !Gathers(vertex); }
 
   // A light found by BSDF sampling, weighted against next-event estimation.
   void AddFound(const PathVertex& last, const PathState& state, const FoundLight& found) {
@@ -115,8 +121,9 @@ Color TraceCameraPath(const SampleContext& context, const CameraPathSettings& se
   state.medium = context.scene.cameraMedium;
   state.specular = Color(1.0f);
   CameraPath visitor(context, settings, gatherer);
-  Walk(context, {TransportMode::Radiance, settings.maxDepth, settings.dimensions, true, settings.materialsAfterWide},
-       state, path, visitor);
+  const WalkSettings walk{TransportMode::Radiance,     settings.maxDepth,  settings.dimensions, true,
+                          settings.materialsAfterWide, gatherer != nullptr};
+  Walk(context, walk, state, path, visitor);
   return visitor.Radiance();
 }
 

@@ -66,10 +66,22 @@ struct TracedPhoton {
   PhotonWeight weight;
   float previousSolidAnglePerArea;
   PackedNormal normal;
-  uint16_t depth;   // 1: first hit of its path
-  uint16_t group;   // of the light
-  uint32_t origin;  // index of its path's origin in the list
-  uint32_t path;    // index of its path's first vertex in the densities of the list, if they are kept
+  uint16_t depth;                // 1: first hit of its path
+  uint16_t group;                // of the light
+  uint32_t origin;               // index of its path's origin in the list
+  uint32_t path;                 // index of its path's first vertex in the densities of the list, if they are kept
+  uint32_t volume = kOnSurface;  // index in the volume photons of the list
+
+  static constexpr uint32_t kOnSurface = 0xffffffffu;
+};
+
+// What a photon in a medium has besides.
+struct VolumePhoton {
+  Point3 position{0.0f};
+  float radius = 0;  // of the ball in which a beam finds it, scene units
+  PhaseBsdf phase;
+  Color extinction;  // σ_t there
+  int32_t medium = kVacuum;
 };
 
 // The photons of consecutive light paths. Keeps its memory when it is emptied.
@@ -80,10 +92,12 @@ class PhotonList {
     starts_.clear();
     origins_.clear();
     densities_.clear();
+    volume_.clear();
   }
   // What is added from now on belongs to the next path.
   void StartPath() {
-    starts_.push_back({static_cast<uint32_t>(photons_.size()), static_cast<uint32_t>(densities_.size())});
+    starts_.push_back({static_cast<uint32_t>(photons_.size()), static_cast<uint32_t>(densities_.size()),
+                       static_cast<uint32_t>(volume_.size())});
   }
   // Sets the origin of the current path, for emission guiding. Before its first photon, or not at all.
   void SetOrigin(const PathOrigin& origin) {
@@ -102,6 +116,10 @@ class PhotonList {
                           static_cast<float>(vertex.previousSolidAnglePerArea.value), PackedNormal(vertex.bsdf.Ng()),
                           static_cast<uint16_t>(std::min(depth, kDeepest)), static_cast<uint16_t>(group), origin,
                           static_cast<uint32_t>(densities_.size() + 1));
+    if (const PhaseBsdf* phase = vertex.bsdf.Phase()) {
+      photons_.back().volume = static_cast<uint32_t>(volume_.size());
+      volume_.push_back({vertex.point.position, 0, *phase, vertex.extinction, vertex.insideMedium});
+    }
   }
   // Keeps the densities of the current path's vertices up to its last photon, which is not deeper than kDeepest, and
   // before them those of its light's end. To be called when the path is complete, or not at all.
@@ -115,7 +133,8 @@ class PhotonList {
   size_t Paths() const { return starts_.size(); }
   // Memory while the map is built, of which there are two copies of the densities.
   uint64_t Bytes(uint64_t perPhoton) const {
-    return photons_.size() * perPhoton + 2 * sizeof(SubpathDensities) * densities_.size();
+    return photons_.size() * perPhoton + 2 * sizeof(SubpathDensities) * densities_.size() +
+           3 * sizeof(VolumePhoton) * volume_.size();
   }
   // Removes whole paths from the end until Bytes is no more than `most`, or `least` paths are left; returns the number
   // of paths left.
@@ -123,6 +142,7 @@ class PhotonList {
     while (Bytes(perPhoton) > most && starts_.size() > least) {
       photons_.resize(starts_.back().photon);
       densities_.resize(starts_.back().density);
+      volume_.resize(starts_.back().volume);
       starts_.pop_back();
     }
     origins_.resize(KeptOrigins());
@@ -131,6 +151,7 @@ class PhotonList {
   const std::vector<TracedPhoton>& Photons() const { return photons_; }
   const std::vector<PathOrigin>& Origins() const { return origins_; }
   const std::vector<SubpathDensities>& Densities() const { return densities_; }
+  const std::vector<VolumePhoton>& Volume() const { return volume_; }
 
  private:
   // Number of origins whose paths stored photons; 0 if no origin was set.
@@ -138,11 +159,12 @@ class PhotonList {
 
   std::vector<TracedPhoton> photons_;
   struct Start {
-    uint32_t photon, density;
+    uint32_t photon, density, volume;
   };
   std::vector<Start> starts_;  // indices of the first photon of each path, and of its densities
   std::vector<PathOrigin> origins_;
   std::vector<SubpathDensities> densities_;
+  std::vector<VolumePhoton> volume_;
 };
 
 // A photon while a map is sorted by cells.

@@ -68,18 +68,20 @@ PhotonMap& PhotonMap::operator=(PhotonMap&&) noexcept = default;
 // Photons as they were traced, the unusable ones left out, with their bounds and origins.
 struct PhotonMap::Traced {
   std::vector<const TracedPhoton*> photons;
-  std::vector<uint32_t> origins;  // empty unless wanted
-  std::vector<uint32_t> paths;    // TracedPhoton::path, in the concatenated densities; empty if they were not kept
-  bool hasSpecular = false;       // flux for specular lobes differs from that for diffuse ones
+  std::vector<uint32_t> origins;            // empty unless wanted
+  std::vector<const VolumePhoton*> volume;  // by photon; null on a surface. Empty if all are
+  std::vector<uint32_t> paths;  // TracedPhoton::path, in the concatenated densities; empty if they were not kept
+  bool hasSpecular = false;     // flux for specular lobes differs from that for diffuse ones
   Point3 least{std::numeric_limits<float>::infinity()}, most{-std::numeric_limits<float>::infinity()};
 };
 
 PhotonMap::Traced PhotonMap::Collect(std::span<const PhotonList> lists, bool wantsOrigins) {
   Traced traced;
   uint32_t firstOrigin = 0;
-  size_t count = 0, densities = 0;
+  size_t count = 0, densities = 0, volume = 0;
   for (const PhotonList& list : lists) {
     count += list.Photons().size();
+    volume += list.Volume().size();
     densities += list.Densities().size();
   }
   densities_.reserve(densities);
@@ -94,6 +96,10 @@ PhotonMap::Traced PhotonMap::Collect(std::span<const PhotonList> lists, bool wan
       traced.least = glm::min(traced.least, photon.position);
       traced.most = glm::max(traced.most, photon.position);
       traced.photons.push_back(&photon);
+      if (volume > 0) {
+        const bool isInMedium = photon.volume != TracedPhoton::kOnSurface;
+        traced.volume.push_back(isInMedium ? &list.Volume()[photon.volume] : nullptr);
+      }
       traced.hasSpecular |= photon.specular != photon.diffuse;
       if (wantsOrigins) traced.origins.push_back(firstOrigin + photon.origin);
       if (densities > 0) traced.paths.push_back(static_cast<uint32_t>(densities_.size()) + photon.path);
@@ -144,20 +150,32 @@ std::vector<uint32_t> MortonOrder(const std::vector<const TracedPhoton*>& photon
 
 }  // namespace
 
-PhotonMap::PhotonMap(std::span<const PhotonList> lists, int threads, std::vector<uint32_t>* origins) {
+PhotonMap::PhotonMap(std::span<const PhotonList> lists, int threads, std::vector<uint32_t>* origins,
+                     const VolumeRadius& radius) {
   const auto start = std::chrono::steady_clock::now();
   const Traced traced = Collect(lists, origins != nullptr);
   const size_t count = traced.photons.size();
   if (count == 0) return;
   const Vector3 extent = traced.most - traced.least;
   center_ = traced.least + 0.5f * extent;
-  const std::vector<uint32_t> order = MortonOrder(traced.photons, traced.least, extent, threads);
+  std::vector<uint32_t> order = MortonOrder(traced.photons, traced.least, extent, threads);
+  firstVolume_ = static_cast<uint32_t>(count);
+  if (!traced.volume.empty()) {
+    const auto first =
+        std::stable_partition(order.begin(), order.end(), [&](uint32_t i) { return traced.volume[i] == nullptr; });
+    firstVolume_ = static_cast<uint32_t>(first - order.begin());
+    for (auto i = first; i != order.end(); ++i) {
+      volume_.push_back(*traced.volume[*i]);
+      volume_.back().radius = radius.At(volume_.back().position);
+    }
+    beamSearch_ = BeamSearch(volume_);
+  }
   if (origins) {
     origins->resize(count);
     ForAll(count, threads, [&](size_t i) { (*origins)[i] = traced.origins[order[i]]; });
   }
   photons_.resize(count);
-  std::vector<float> positions(3 * count);
+  std::vector<float> positions(3 * static_cast<size_t>(firstVolume_));
   ForAll(count, threads, [&](size_t i) {
     // In the order of places the photons are read at random.
     constexpr size_t kAhead = 16;
@@ -168,7 +186,8 @@ PhotonMap::PhotonMap(std::span<const PhotonList> lists, int threads, std::vector
     }
     const TracedPhoton& source = *traced.photons[order[i]];
     const Vector3 relative = source.position - center_;
-    for (int axis = 0; axis < 3; ++axis) positions[3 * i + static_cast<size_t>(axis)] = relative[axis];
+    for (int axis = 0; axis < 3 && i < firstVolume_; ++axis)
+      positions[3 * i + static_cast<size_t>(axis)] = relative[axis];
     Photon& photon = photons_[i];
     photon.toPrevious = source.toPrevious;
     photon.flux = source.diffuse;
@@ -185,7 +204,7 @@ PhotonMap::PhotonMap(std::span<const PhotonList> lists, int threads, std::vector
     photons_[i].specular = static_cast<uint32_t>(specular_.size());
     specular_.push_back(source.specular);
   }
-  search_ = std::make_unique<Search>(positions);
+  if (firstVolume_ > 0) search_ = std::make_unique<Search>(positions);
   buildSeconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
@@ -197,13 +216,19 @@ std::span<const uint32_t> PhotonMap::Find(const Point3& position, float radius, 
   return lookup.found;
 }
 
+std::span<const BeamHit> PhotonMap::FindAlong(const Ray& ray, float tMax, PhotonLookup& lookup) const {
+  lookup.beamHits.clear();
+  beamSearch_.Find(volume_, ray, tMax, firstVolume_, lookup.beamHits);
+  return lookup.beamHits;
+}
+
 // Memory of the tree: a copy of the positions in the tree's order; one row pointer and one index per photon; and two
 // nodes for each leaf, which is at least half full on average.
 size_t PhotonMap::Bytes() const {
   constexpr size_t node = 48;
   const size_t perPhoton = sizeof(Photon) + 3 * sizeof(float) + sizeof(float*) + sizeof(int);
   return photons_.size() * perPhoton + photons_.size() / (kLeaf / 2) * 2 * node + specular_.size() * sizeof(Color) +
-         densities_.size() * sizeof(SubpathDensities);
+         densities_.size() * sizeof(SubpathDensities) + volume_.size() * sizeof(VolumePhoton) + beamSearch_.Bytes();
 }
 
 }  // namespace lampyr

@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "integrators/photon/beam_search.h"
 #include "integrators/photon/photon.h"
 
 namespace lampyr {
@@ -17,6 +18,7 @@ namespace lampyr {
 // Buffers of a thread, reused from lookup to lookup.
 struct PhotonLookup {
   std::vector<uint32_t> found;
+  std::vector<BeamHit> beamHits;
   std::vector<PhotonUse::Contribution> used;  // of the photons found, for emission guiding
 };
 
@@ -30,11 +32,20 @@ class PhotonMap {
   // Builds the map of the concatenated lists. Photons whose position or flux is not finite are left out and counted.
   // `origins`, if not null, receives for each photon the index of its path's origin in the concatenated origins of the
   // lists.
-  PhotonMap(std::span<const PhotonList> lists, int threads, std::vector<uint32_t>* origins = nullptr);
+  // `radius`: of the balls of photons in media.
+  PhotonMap(std::span<const PhotonList> lists, int threads, std::vector<uint32_t>* origins = nullptr,
+            const VolumeRadius& radius = {});
 
   // Indices of all photons nearer than `radius` (scene units), in an order that depends on the photons alone. Valid
   // until the next lookup. A radius of 0 finds nothing.
   std::span<const uint32_t> Find(const Point3& position, float radius, PhotonLookup& lookup) const;
+
+  // The photons in media whose balls a ray passes on [0, tMax), in an order that depends on the photons alone. Valid
+  // until the next search. [Jensen98]'s photons, seen by beams ([Jarosz08]).
+  std::span<const BeamHit> FindAlong(const Ray& ray, float tMax, PhotonLookup& lookup) const;
+  bool HasVolume() const { return !volume_.empty(); }
+  // Of a photon that FindAlong found.
+  const VolumePhoton& VolumeOf(uint32_t index) const { return volume_[index - firstVolume_]; }
 
   const Photon& operator[](uint32_t index) const { return photons_[index]; }
   // Flux of a photon for specular lobes; a light may send them other radiance than diffuse lobes.
@@ -74,6 +85,10 @@ class PhotonMap {
   std::vector<Photon> photons_;
   std::vector<Color> specular_;
   std::vector<SubpathDensities> densities_;
+  // Photons in media are those from firstVolume_ on.
+  uint32_t firstVolume_ = 0;
+  std::vector<VolumePhoton> volume_;
+  BeamSearch beamSearch_;
   std::unique_ptr<Search> search_;
   size_t rejected_ = 0;
   double buildSeconds_ = 0;

@@ -21,6 +21,7 @@ struct PhotonPass {
   std::shared_ptr<const PhotonMap> map;
   std::shared_ptr<PhotonUse> use;  // per-photon contributions; null: not recorded
   float radius = 0;                // scene units
+  VolumeRadius volume;             // of photons in media
   float radiusScale = 1;           // RadiusScale of the pass, for radii derived from pixel footprints
   double lightPaths = 1;           // number of light paths that the photons come from
   uint32_t pass = 0;

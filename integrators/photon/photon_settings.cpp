@@ -1,8 +1,34 @@
 #include "integrators/photon/photon_settings.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include "integrators/walk/footprint.h"
 
 namespace lampyr {
+
+namespace {
+
+// Radius of photons in media in the first pass by default, in pixel footprints.
+constexpr double kVolumeRadiusInPixels = 2;
+
+VolumeRadius VolumeRadiusOf(const IntegratorInput& input, double radius) {
+  VolumeRadius volume;
+  volume.constant = radius;
+  if (radius > 0 || input.scene.media.empty()) return volume;
+  const Camera& camera = *input.scene.camera;
+  const Point2 middle(0.5f * static_cast<float>(input.width), 0.5f * static_cast<float>(input.height));
+  const Ray ray = camera.GenerateRay(middle, Point2(0.5f), 0).ray;
+  volume.eye = ray.origin;
+  const double area = PixelArea(camera, ray, input.FilmPixels(), 1);
+  double& width = camera.ConnectsByDirection() ? volume.constant : volume.perLength;
+  if (area > 0) width = kVolumeRadiusInPixels * std::sqrt(area);
+  // Of a camera whose densities are unknown: a pixel of an angle of view of 53 degrees.
+  if (!(area > 0)) width = kVolumeRadiusInPixels / std::sqrt(input.FilmPixels());
+  return volume;
+}
+
+}  // namespace
 
 PhotonSettings PhotonSettingsOf(const IntegratorInput& input) {
   const Settings& settings = input.settings;
@@ -11,6 +37,7 @@ PhotonSettings PhotonSettingsOf(const IntegratorInput& input) {
   // Twice the scene's radius finds all photons; less than the rounding of positions finds none.
   const auto size = static_cast<double>(input.scene.lighting->SceneSphere().radius);
   if (photons.radius > 0 && size > 0) photons.radius = std::clamp(photons.radius, 1e-7 * size, 2 * size);
+  photons.volume = VolumeRadiusOf(input, photons.radius);
   photons.alpha = settings.Number("alpha");
   photons.lightPaths = static_cast<uint64_t>(std::max<int64_t>(settings.Integer("photons"), 0));
   photons.mostBytes = static_cast<uint64_t>(settings.Integer("photon-memory"));

@@ -69,7 +69,8 @@ const PhotonPass& PhotonStore::Open(uint32_t pass, int threads) {
   open_.radius = static_cast<float>(settings_.radius * scale);
   std::vector<uint32_t> origins;
   const bool wantsUse = WantsOrigins();
-  open_.map = std::make_shared<PhotonMap>(waiting_, threads, wantsUse ? &origins : nullptr);
+  open_.volume = settings_.volume.Scaled(scale);
+  open_.map = std::make_shared<PhotonMap>(waiting_, threads, wantsUse ? &origins : nullptr, open_.volume);
   if (wantsUse) open_.use = MakeUse(std::move(origins));
   Clear();
   const PhotonMap& map = *open_.map;

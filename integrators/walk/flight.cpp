@@ -56,10 +56,6 @@ Color Transmittance(const Color& extinction, float distance) {
   return {std::exp(-extinction.r * distance), std::exp(-extinction.g * distance), std::exp(-extinction.b * distance)};
 }
 
-double Mean(const Color& a) {
-  return (static_cast<double>(a.r) + static_cast<double>(a.g) + static_cast<double>(a.b)) / 3;
-}
-
 // Whether walks may collide with the medium.
 bool Scatters(const Medium& medium) {
   return !medium.IsHomogeneous() || !medium.At(Point3(0.0f)).scattering.IsBlack();
@@ -79,11 +75,13 @@ float PathLength(float extinction, float distance) {
 // State of a walk, or of the estimate of a connection, along a ray.
 class Tracker {
  public:
-  Tracker(const Ray& ray, int channel, float uDistance, uint64_t seed)
-      : ray_(ray), channel_(channel), depth_(DepthOf(uDistance)), rng_(seed) {}
+  // `steps`: receives the parts of the ray; null: not wanted.
+  Tracker(const Ray& ray, int channel, float uDistance, uint64_t seed, std::vector<BeamStep>* steps)
+      : ray_(ray), channel_(channel), depth_(DepthOf(uDistance)), rng_(seed), steps_(steps) {}
 
   // Follows a span. `collides`: stops at a collision, and returns true.
-  bool Follow(const Medium& medium, float tMin, float tMax, bool collides) {
+  bool Follow(const Medium& medium, int32_t index, float tMin, float tMax, bool collides) {
+    index_ = index;
     const bool scatters = Scatters(medium);
     if (medium.IsHomogeneous()) return FollowHomogeneous(medium, tMin, tMax, scatters, collides);
     return FollowGrid(medium, tMin, tMax, collides);
@@ -106,7 +104,7 @@ class Tracker {
       const float length = tMax - tMin;
       const Color reach(PathLength(extinction.r, length), PathLength(extinction.g, length),
                         PathLength(extinction.b, length));
-      emission += value * here.emission * reach / static_cast<float>(Mean(density));
+      emission += value * here.emission * reach / static_cast<float>(MeanOf(density));
     }
     float length = tMax - tMin;
     const float sampled = ChannelOf(extinction, channel_);
@@ -122,6 +120,7 @@ class Tracker {
         depth_ -= depth;
       }
     }
+    if (steps_) steps_->push_back({tMin, tMin + length, index_, value, density, extinction, scatters});
     const Color transmittance = Transmittance(extinction, length);
     value *= transmittance;
     if (scatters) density *= transmittance;
@@ -139,10 +138,17 @@ class Tracker {
 
   // Tentative collisions in a cell. Without `collides` all of them are null.
   bool FollowSegment(const Medium& medium, const MajorantSegment& segment, bool collides) {
-    if (!(segment.majorant > 0)) return false;
     float from = segment.tMin;
+    const auto keep = [&](float to) {
+      if (steps_) steps_->push_back({from, to, index_, value, density, Color(0.0f), true});
+    };
+    if (!(segment.majorant > 0)) {
+      keep(segment.tMax);
+      return false;
+    }
     for (;;) {
       const float step = depth_ / segment.majorant;
+      keep(std::min(from + step, segment.tMax));
       if (!(from + step < segment.tMax)) {
         depth_ = std::max(depth_ - segment.majorant * (segment.tMax - from), 0.0f);
         return false;
@@ -152,7 +158,7 @@ class Tracker {
       const MediumCoefficients here = medium.At(ray_.origin + from * ray_.direction);
       const Color extinction = here.Extinction();
       if (wantsEmission && !here.emission.IsBlack())
-        emission += value * here.emission / (segment.majorant * static_cast<float>(Mean(density)));
+        emission += value * here.emission / (segment.majorant * static_cast<float>(MeanOf(density)));
       if (collides && rng_.NextFloat() * segment.majorant < ChannelOf(extinction, channel_)) {
         at = here;
         t = from;
@@ -173,11 +179,18 @@ class Tracker {
   const int channel_;
   float depth_;  // optical depth to the next tentative collision
   Rng rng_;
+  std::vector<BeamStep>* const steps_;
+  int32_t index_ = kVacuum;
 };
 
 std::vector<MediumSpan>& ThreadSpans() {
   thread_local std::vector<MediumSpan> spans;
   return spans;
+}
+
+std::vector<BeamStep>& ThreadSteps() {
+  thread_local std::vector<BeamStep> steps;
+  return steps;
 }
 
 std::vector<Crossing>& ThreadCrossings() {
@@ -187,25 +200,38 @@ std::vector<Crossing>& ThreadCrossings() {
 
 }  // namespace
 
+Color BeamStep::TransmittanceAt(float t) const {
+  return transmittance * Transmittance(extinction, t - tMin);
+}
+
+Color BeamStep::DensityAt(float t) const {
+  return scatters ? density * Transmittance(extinction, t - tMin) : density;
+}
+
 void Fly(const SampleContext& context, const Ray& ray, uint32_t kinds, int32_t medium, const Color& extinction,
-         uint32_t dimension, Flight& flight) {
+         uint32_t dimension, bool wantsBeam, Flight& flight) {
   const RenderScene& scene = context.scene;
   std::vector<Crossing>& crossings = ThreadCrossings();
   std::vector<MediumSpan>& spans = ThreadSpans();
   flight.isHit = scene.geometry->Trace(ray, kinds, flight.hit, crossings);
   flight.t = flight.isHit ? flight.hit.t : kInfinity;
-  flight.factors = {1, Mean(extinction)};
+  flight.factors = {1, MeanOf(extinction), 1};
+  flight.beam = {};
+  flight.crossings = crossings;
+  flight.startExtinction = extinction;
   flight.medium = FindSpans(scene, ray, flight.t, medium, crossings, spans);
   if (!spans.empty()) {
     context.sampler.SetDimension(dimension);
     const Point2 u = context.sampler.Get2D();
     const uint64_t seed =
         MixBits(static_cast<uint64_t>(std::bit_cast<uint32_t>(u.x)) << 32 | std::bit_cast<uint32_t>(u.y));
-    Tracker tracker(ray, std::min(static_cast<int>(3 * u.y), 2), u.x, seed);
+    std::vector<BeamStep>& steps = ThreadSteps();
+    steps.clear();
+    Tracker tracker(ray, std::min(static_cast<int>(3 * u.y), 2), u.x, seed, wantsBeam ? &steps : nullptr);
     tracker.wantsEmission = true;
     for (const MediumSpan& span : spans) {
       const Medium& passed = *scene.media[static_cast<size_t>(span.medium)];
-      if (!tracker.Follow(passed, span.tMin, span.tMax, true)) continue;
+      if (!tracker.Follow(passed, span.medium, span.tMin, span.tMax, true)) continue;
       flight.collidesWith = &passed;
       flight.medium = span.medium;
       flight.t = tracker.t;
@@ -213,13 +239,34 @@ void Fly(const SampleContext& context, const Ray& ray, uint32_t kinds, int32_t m
       break;
     }
     const Color end = flight.collidesWith ? tracker.at.Extinction() : Color(1.0f);
-    flight.factors = {Mean(tracker.density * end), Mean(tracker.density * extinction)};
+    flight.factors = {MeanOf(tracker.density * end), MeanOf(tracker.density * extinction), MeanOf(tracker.density)};
+    flight.beam = steps;
     flight.passed = tracker.value / static_cast<float>(flight.factors.forward);
     flight.emission = tracker.emission;
   }
-  for (const Crossing& crossing : crossings) {
-    if (crossing.t < flight.t) flight.passed *= crossing.transmittance;
+  flight.passed *= flight.TintBefore(flight.t);
+}
+
+std::optional<BeamPoint> Flight::PointAt(float at, int32_t inMedium) const {
+  for (const BeamStep& step : beam) {
+    if (!(at < step.tMax)) continue;
+    if (at < step.tMin || step.medium != inMedium) return std::nullopt;
+    BeamPoint point;
+    point.density = step.DensityAt(at);
+    point.through = MeanOf(point.density);
+    if (!(point.through > 0)) return std::nullopt;
+    point.passed = TintBefore(at) * step.TransmittanceAt(at) / static_cast<float>(point.through);
+    return point;
   }
+  return std::nullopt;
+}
+
+Color Flight::TintBefore(float end) const {
+  Color tint(1.0f);
+  for (const Crossing& crossing : crossings) {
+    if (crossing.t < end) tint *= crossing.transmittance;
+  }
+  return tint;
 }
 
 namespace {
@@ -227,9 +274,9 @@ namespace {
 // Ratio tracking over all spans.
 Tracker Estimate(const RenderScene& scene, const Ray& ray, std::span<const MediumSpan> spans, uint64_t decider) {
   Rng first(decider);
-  Tracker tracker(ray, 0, first.NextFloat(), MixBits(decider + 1));
+  Tracker tracker(ray, 0, first.NextFloat(), MixBits(decider + 1), nullptr);
   for (const MediumSpan& span : spans) {
-    tracker.Follow(*scene.media[static_cast<size_t>(span.medium)], span.tMin, span.tMax, false);
+    tracker.Follow(*scene.media[static_cast<size_t>(span.medium)], span.medium, span.tMin, span.tMax, false);
     if (tracker.value.IsBlack()) break;
   }
   return tracker;
@@ -248,10 +295,11 @@ Color TransmittanceOf(const SampleContext& context, const Ray& ray, uint32_t kin
   FindSpans(scene, ray, ray.tMax, start.medium, crossings, spans);
   if (!spans.empty()) {
     const Tracker tracker = Estimate(scene, ray, spans, decider);
-    factors = {Mean(tracker.density * endExtinction), Mean(tracker.density * start.extinction)};
+    factors = {MeanOf(tracker.density * endExtinction), MeanOf(tracker.density * start.extinction),
+               MeanOf(tracker.density)};
     return surfaces * tracker.value;
   }
-  factors = {Mean(endExtinction), Mean(start.extinction)};
+  factors = {MeanOf(endExtinction), MeanOf(start.extinction), 1};
   return surfaces;
 }
 

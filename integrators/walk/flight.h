@@ -14,16 +14,44 @@
 // A medium without scattering makes no collisions: its transmittance is a factor of the value alone.
 #pragma once
 
+#include <optional>
+#include <span>
+
 #include "integrators/walk/integrator.h"
 
 namespace lampyr {
+
+inline double MeanOf(const Color& a) {
+  return (static_cast<double>(a.r) + static_cast<double>(a.g) + static_cast<double>(a.b)) / 3;
+}
 
 // Factors of an edge on area densities (EdgeDensity), by what a walk along it collides with.
 struct EdgeFactors {
   double forward = 1;  // of the edge's end, by a walk from its start
   double reverse = 1;  // of its start, by a walk from its end
+  double through = 1;  // probability that a walk does not collide in between
 
-  EdgeFactors Reversed() const { return {reverse, forward}; }
+  EdgeFactors Reversed() const { return {reverse, forward, through}; }
+};
+
+// A part of a ray in one medium, with one extinction or up to the next null collision of a grid.
+struct BeamStep {
+  float tMin = 0, tMax = 0;
+  int32_t medium = kVacuum;
+  Color transmittance, density;  // at tMin: factor on the value of a path, and per channel on the density of a walk
+  Color extinction;              // of a homogeneous medium, 1/scene unit; 0 in a grid
+  bool scatters = true;
+
+  // Both at t, in [tMin, tMax].
+  Color TransmittanceAt(float t) const;
+  Color DensityAt(float t) const;
+};
+
+// A point of a beam.
+struct BeamPoint {
+  Color passed;        // factor on the throughput up to there, over the probability that a walk gets there
+  Color density;       // that probability, by the channel that samples the distance
+  double through = 1;  // their mean
 };
 
 // What a walk meets along a ray.
@@ -37,12 +65,21 @@ struct Flight {
   Color passed{1.0f};                    // factor on the throughput: tints, and transmittance over its density
   EdgeFactors factors;
   Color emission;  // radiance of media on the way, at the start of the ray; an estimate
+  // The parts of the ray up to t that are in media, in order; valid until the next flight of the thread.
+  std::span<const BeamStep> beam;
+  std::span<const Crossing> crossings;  // valid as long
+  Color startExtinction{1.0f};          // of the vertex at which the ray starts
+
+  // Factor of the surfaces that the ray has passed before `end`.
+  Color TintBefore(float end) const;
+  // The point of the beam at `at`; nullopt: it is not in `inMedium`.
+  std::optional<BeamPoint> PointAt(float at, int32_t inMedium) const;
 };
 
 // Traces a ray that starts in `medium` from a vertex of the extinction `extinction` (1 of what is not in a medium).
-// `dimension`: of the sampler, of a pair for the distance and the channel.
+// `dimension`: of the sampler, of a pair for the distance and the channel. `wantsBeam`: Flight::beam is wanted.
 void Fly(const SampleContext& context, const Ray& ray, uint32_t kinds, int32_t medium, const Color& extinction,
-         uint32_t dimension, Flight& flight);
+         uint32_t dimension, bool wantsBeam, Flight& flight);
 
 // The end of a connection.
 struct EdgeEnd {

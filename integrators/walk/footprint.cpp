@@ -60,6 +60,7 @@ void SceneProbe::ForEachVisible(int width, int height, int across, const Visit& 
     const Point2 film((static_cast<float>(i % across) + 0.5f) / cells * static_cast<float>(width),
                       (static_cast<float>(i / across) + 0.5f) / cells * static_cast<float>(height));
     PathState state;
+    state.medium = scene_.cameraMedium;
     const CameraRay cameraRay = scene_.camera->GenerateRay(film, Point2(0.5f), 0);
     if (cameraRay.weight == 0) continue;
     state.ray = cameraRay.ray;

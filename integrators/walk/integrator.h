@@ -23,6 +23,17 @@ enum class TracedPaths {
   Both,    // one of each
 };
 
+// The radius of photons in media, by place: a number of pixels as the camera sees them there, or the same everywhere.
+struct VolumeRadius {
+  Point3 eye{0.0f};
+  double constant = 0, perLength = 0;  // scene units; per scene unit of distance from `eye`
+
+  float At(const Point3& position) const {
+    return static_cast<float>(constant + perLength * static_cast<double>(glm::distance(position, eye)));
+  }
+  VolumeRadius Scaled(double scale) const { return {eye, scale * constant, scale * perLength}; }
+};
+
 // Settings of an integrator that gathers photons.
 struct PhotonSettings {
   double radius = 0;      // gather radius of the first pass, scene units; 0: chosen by the integrator
@@ -30,6 +41,7 @@ struct PhotonSettings {
   uint64_t lightPaths =
       0;  // light paths traced per pass; 0: one for each pixel of the full image, times 2^Log2LightPaths()
   uint64_t mostBytes = 0;  // limit on the memory of photons while their map is built; 0: none
+  VolumeRadius volume;     // of the first pass
   bool guided = true;      // emission guiding, if it reduces the noise enough (emission_learning.h)
 };
 
@@ -41,8 +53,9 @@ struct SampleContext {
   RenderCounts& counts;
   // The returned radiance, split by light group (LightingServices::GroupOf). Cleared by the caller. Null: not wanted.
   LayerSample* layers = nullptr;
-  // Splats of the light path; the caller has started the path. A splat holds the contribution of this one path, because
-  // the film divides by the number of paths, and the layer of its light's group. Null if no light path is traced.
+  // Splats of the light path; the caller has started the path. A splat holds the contribution of this one path,
+  // because the film divides by the number of paths, and the layer of its light's group. Null if no light path is
+  // traced.
   SplatList* splats = nullptr;
   PathObserver* observer = nullptr;    // receives every path that contributes; may be null
   const PhotonPass* gather = nullptr;  // photons to gather; null: none yet
@@ -68,9 +81,9 @@ class Integrator {
   virtual ~Integrator() = default;
 
   virtual TracedPaths Paths() const = 0;
-  // Estimates the radiance arriving along `ray`, and records the splats and photons of the light path. With a null ray
-  // (the pixel is not wanted, or the integrator traces light paths only) it records those only and returns black. Light
-  // paths: as many as the full image has pixels, times 2^Log2LightPaths(), are one sample per pixel.
+  // Estimates the radiance arriving along `ray`, and records the splats and photons of the light path. With a null
+  // ray (the pixel is not wanted, or the integrator traces light paths only) it records those only and returns black.
+  // Light paths: as many as the full image has pixels, times 2^Log2LightPaths(), are one sample per pixel.
   virtual Color Sample(const Ray* ray, const SampleContext& context) const = 0;
   // Light paths for each camera path, as a power of two; of TracedPaths::Both.
   virtual int Log2LightPaths() const { return 0; }

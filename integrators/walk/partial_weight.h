@@ -87,7 +87,11 @@ struct SubpathDensities {
   // A delta event finds the vertex, forward or reverse: the density is a coefficient.
   bool forwardIsDelta = false, reverseIsDelta = false;
   bool isInMedium = false;  // densities are per volume
-  bool canMerge = false;    // with the event by which the subpath goes on; valid once there is a next vertex
+  // In a medium: area of the disk in which beams of the first pass find photons there, times the probability with which
+  // a camera path passes the vertex over the density with which it collides, scene units³. Of a light path valid once
+  // there is a next vertex.
+  float mergeVolume = 0;
+  bool canMerge = false;  // with the event by which the subpath goes on; valid once there is a next vertex
   LightEnd::Extent extent = LightEnd::Extent::Point;  // of the first vertex of a light path
 };
 

@@ -23,7 +23,8 @@ struct RenderScene {
   std::vector<std::shared_ptr<const Medium>> media;  // by GeometryAttributes::insideMedium and outsideMedium
   int32_t cameraMedium = kVacuum;                    // where camera rays start
   std::vector<int32_t> lightMedia;                   // by light: around it, or in front of it; empty: vacuum
-  std::vector<int32_t> lightBackMedia;  // by light: behind its surface, where a two-sided light shines, too; empty: vacuum
+  std::vector<int32_t>
+      lightBackMedia;      // by light: behind its surface, where a two-sided light shines, too; empty: vacuum
   bool hasMotion = false;  // something moves while the shutter is open; otherwise all rays have time 0
 
   // Medium in which light of `light` starts; `fromBehind`: of a surface that shines to both sides.

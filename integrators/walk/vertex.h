@@ -114,7 +114,7 @@ struct PathVertex : Vertex {
 
   Color Throughput() const { return diffuse + specular; }
   // True if photons can be merged here.
-  bool CanMerge() const { return !isDelta && isSeenByIndirect && GathersPhotons(); }
+  bool CanMerge() const { return !isDelta && isSeenByIndirect && (GathersPhotons() || IsInMedium()); }
   // Reverse density of the previous vertex, for an event here whose density towards it is `pdfReverse`.
   AreaDensity PreviousReverse(SolidAngleDensity pdfReverse) const { return pdfReverse * previousSolidAnglePerArea; }
   AreaDensity PreviousReverse(PdfSolidAngle pdfReverse) const { return PreviousReverse(SolidAngleDensity(pdfReverse)); }

@@ -83,7 +83,7 @@ void MakeVertex(const Ray& ray, const Flight& flight, Vertex& vertex) {
   vertex.insideMedium = vertex.outsideMedium = flight.medium;
   vertex.extinction = here.Extinction();
   vertex.isDelta = here.scattering.IsBlack();
-  vertex.storesPhotons = false;
+  vertex.storesPhotons = !vertex.isDelta;
   vertex.isSeenByCamera = vertex.isSeenByIndirect = true;
 }
 
@@ -129,13 +129,14 @@ bool Scatter(const SampleContext& context, const WalkSettings& settings, int ind
 namespace {
 
 // Traces the ray of `state` through participating media.
-void FlyOn(const SampleContext& context, const WalkSettings& settings, uint32_t kinds, PathState& state,
-           const Subpath& path, PathVisitor& visitor, Flight& flight) {
+void FlyOn(const SampleContext& context, const WalkSettings& settings, uint32_t kinds, PathState& state, Subpath& path,
+           PathVisitor& visitor, Flight& flight) {
   const bool isFromLight = settings.mode == TransportMode::Importance;
   const auto count = static_cast<int>(path.Count());
   const Color extinction = count > 0 ? path.Last().extinction : Color(1.0f);
   Fly(context, state.ray, kinds, state.medium, extinction,
-      settings.dimensions.OfFlight(isFromLight ? count + 1 : count), flight);
+      settings.dimensions.OfFlight(isFromLight ? count + 1 : count), settings.wantsBeams, flight);
+  if (!flight.beam.empty()) visitor.Flew(path, state, flight);
   if (!flight.emission.IsBlack()) visitor.Glowed(path, state.Throughput(), flight.emission);
   state.passed = flight.passed;
   state.factors = flight.factors;

@@ -52,6 +52,7 @@ class Subpath {
     return (*this)[count_];
   }
   void Add() { ++count_; }
+  void Drop() { --count_; }  // the last vertex
 
  private:
   bool keepsAll_;
@@ -71,6 +72,9 @@ class PathVisitor {
   }
   // Media have emitted `radiance` along the last ray, towards its start; `throughput`: β there.
   virtual void Glowed(const Subpath& /*path*/, const Color& /*throughput*/, const Color& /*radiance*/) {}
+  // The ray of `state` has been traced through media. Called before β and the vertices know of it, if the settings ask
+  // for beams.
+  virtual void Flew(Subpath& /*path*/, const PathState&, const Flight&) {}
   // The ray has collided with a participating medium, before a surface or an escape. False: the path ends there.
   virtual bool Collided(const Subpath& /*path*/, const PathState&) { return true; }
   // A vertex was added to the path: the last one. False: the path ends there.
@@ -86,6 +90,7 @@ struct WalkSettings {
   bool hasRoulette = true;
   // Materials of the vertices behind a wide scattering; null: those of the scene.
   const std::vector<std::shared_ptr<const Material>>* materialsAfterWide = nullptr;
+  bool wantsBeams = false;  // PathVisitor::Flew, in scenes with media
 };
 
 // Extends a path from `state` until it escapes or is absorbed, the visitor ends it, or it has hit a surface with

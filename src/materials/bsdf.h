@@ -57,6 +57,8 @@ class Bsdf {
   }
   // True for a point within a medium: there is no surface, f is σ_s (or the albedo) times the phase function, all of it
   // `diffuse`, and the frame has no meaning.
+  // The phase function of a medium; null on a surface.
+  const PhaseBsdf* Phase() const { return std::get_if<PhaseBsdf>(&model_); }
   bool IsMedium() const { return std::holds_alternative<PhaseBsdf>(model_); }
   // True for a fibre, which is too narrow to be resolved: light that enters anywhere leaves at the same point, to any
   // side.

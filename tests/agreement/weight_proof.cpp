@@ -62,6 +62,7 @@ class KeptLightPaths {
   PhotonList photons;
   std::vector<SubpathDensities> densities;  // of the current path
   PathEnds ends;
+  VolumeRadius volume;
 
  private:
   using Key = std::array<double, 10>;
@@ -78,7 +79,7 @@ class KeepsPaths final : public WeightedLightPath {
 
  private:
   void OnWeighted(const LightPath& path) override {
-    AddDensities(path.vertices, kept_.densities);
+    AddDensities(path.vertices, &kept_.volume, true, kept_.densities);
     const PathVertex& first = path.vertices[0];
     if (path.vertices.Count() == 1) {
       kept_.densities[0] = {.forward = End().emission.value, .isInMedium = first.IsInMedium(), .extent = End().extent};
@@ -341,7 +342,8 @@ void TracePhotons(const RenderScene& scene, int maxDepth, float radius, double l
     TraceLightPath(context, maxDepth, {2, 1}, path, visitor);
     photons.kept.photons.KeepDensities(photons.kept.ends, photons.kept.densities);
   }
-  photons.gather.map = std::make_shared<PhotonMap>(std::span(&photons.kept.photons, 1), 1);
+  photons.gather.map =
+      std::make_shared<PhotonMap>(std::span(&photons.kept.photons, 1), 1, nullptr, photons.gather.volume);
 }
 
 }  // namespace
@@ -363,13 +365,16 @@ WeightErrors CheckWeights(const std::string& sceneText, const WeightProof& proof
   settings.merges = proof.radius > 0 || proof.pixels > 0;
   settings.counts = proof.counts;
   settings.photons.radius = static_cast<double>(proof.radius * sphere.radius);
+  settings.photons.volume.constant = 0.02 * static_cast<double>(sphere.radius);
   const auto integrator = MakeBidirectionalIntegrator(settings);
   Sampler sampler(SamplerKind::Independent, 5);
   Photons photons;
   double mergesPerDensity = 0;
   if (settings.merges) {
+    photons.kept.volume = settings.photons.volume;
+    photons.gather.radiusScale = proof.pixels > 0 ? proof.pixels : 1;
+    photons.gather.volume = settings.photons.volume.Scaled(static_cast<double>(photons.gather.radiusScale));
     TracePhotons(scene, settings.maxDepth, proof.radius * sphere.radius, proof.counts.LightPaths(), sampler, photons);
-    photons.gather.radiusScale = proof.pixels;
     const double radius = proof.radius > 0 ? static_cast<double>(photons.gather.radius) : 1.0;
     mergesPerDensity = kLightPaths * 3.14159265358979323846 * radius * radius;
   }
