@@ -10,7 +10,7 @@ namespace lampyr {
 namespace {
 
 // Radius of photons in media in the first pass by default, in pixel footprints.
-constexpr double kVolumeRadiusInPixels = 2;
+constexpr double kVolumeRadiusInPixels = 1;
 
 VolumeRadius VolumeRadiusOf(const IntegratorInput& input, double radius) {
   VolumeRadius volume;
