@@ -40,12 +40,19 @@ void SparseVoxels::PlaceConstant(const std::array<int, 3>& position, float value
   table_[TableIndex(position)] = static_cast<uint32_t>(brickCount_ + constants_.size() - 1);
 }
 
-float SparseVoxels::Value(int x, int y, int z) const {
+size_t SparseVoxels::OffsetInBrick(int x, int y, int z) {
+  return static_cast<size_t>((x & 7) << 6 | (y & 7) << 3 | (z & 7));
+}
+
+uint32_t SparseVoxels::EntryAt(int x, int y, int z) const {
   const std::array<int, 3> position = {Floor8(x), Floor8(y), Floor8(z)};
-  if (!IsInRange(position)) return constants_[0];
-  const uint32_t entry = table_[TableIndex(position)];
+  return IsInRange(position) ? table_[TableIndex(position)] : static_cast<uint32_t>(brickCount_);
+}
+
+float SparseVoxels::Value(int x, int y, int z) const {
+  const uint32_t entry = EntryAt(x, y, z);
   if (entry >= brickCount_) return constants_[entry - brickCount_];
-  return values_[size_t{entry} * kBrickVoxels + static_cast<size_t>((x & 7) << 6 | (y & 7) << 3 | (z & 7))];
+  return values_[size_t{entry} * kBrickVoxels + OffsetInBrick(x, y, z)];
 }
 
 float SparseVoxels::Interpolate(const Point3& index) const {
@@ -57,12 +64,23 @@ float SparseVoxels::Interpolate(const Point3& index) const {
     low[axis] = static_cast<int>(floor);
     part[axis] = index[axis] - floor;
   }
+  const auto weight = [&part](int x, int y, int z) {
+    return (x ? part[0] : 1 - part[0]) * (y ? part[1] : 1 - part[1]) * (z ? part[2] : 1 - part[2]);
+  };
   float sum = 0;
+  if ((low[0] & 7) < 7 && (low[1] & 7) < 7 && (low[2] & 7) < 7) {  // all in one brick
+    const uint32_t entry = EntryAt(low[0], low[1], low[2]);
+    if (entry >= brickCount_) return constants_[entry - brickCount_];
+    const float* voxel = &values_[size_t{entry} * kBrickVoxels + OffsetInBrick(low[0], low[1], low[2])];
+    for (int corner = 0; corner < 8; ++corner) {
+      const int x = corner & 1, y = corner >> 1 & 1, z = corner >> 2;
+      sum += weight(x, y, z) * voxel[x * 64 + y * 8 + z];
+    }
+    return sum;
+  }
   for (int corner = 0; corner < 8; ++corner) {
     const int x = corner & 1, y = corner >> 1 & 1, z = corner >> 2;
-    const float weight = (x ? part[0] : 1 - part[0]) * (y ? part[1] : 1 - part[1]) * (z ? part[2] : 1 - part[2]);
-    // A voxel beside the point may have any value, and be beyond the box.
-    if (weight != 0) sum += weight * Value(low[0] + x, low[1] + y, low[2] + z);
+    sum += weight(x, y, z) * Value(low[0] + x, low[1] + y, low[2] + z);
   }
   return sum;
 }
@@ -73,7 +91,7 @@ float SparseVoxels::MaximumOfBrick(uint32_t entry, const IndexBox& within) const
   float most = 0;
   for (int x = within.min[0]; x <= within.max[0]; ++x) {
     for (int y = within.min[1]; y <= within.max[1]; ++y) {
-      const float* line = brick + ((x & 7) << 6 | (y & 7) << 3);
+      const float* line = brick + OffsetInBrick(x, y, 0);
       for (int z = within.min[2]; z <= within.max[2]; ++z) most = std::max(most, line[z & 7]);
     }
   }

@@ -52,6 +52,9 @@ class SparseVoxels {
 
  private:
   static constexpr int Floor8(int x) { return x >> 3; }
+  static size_t OffsetInBrick(int x, int y, int z);
+  // Of the table, by a voxel; that of the background outside of it.
+  uint32_t EntryAt(int x, int y, int z) const;
   bool IsInRange(const std::array<int, 3>& position) const;
   size_t TableIndex(const std::array<int, 3>& position) const;
   float MaximumOfBrick(uint32_t entry, const IndexBox& within) const;

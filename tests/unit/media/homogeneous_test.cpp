@@ -1,6 +1,9 @@
 // Homogeneous media, and the parameters that all types share.
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <fstream>
+
 #include "media/presets.h"
 #include "scene/spectrum.h"
 #include "unit/media/medium_scene.h"
@@ -101,6 +104,25 @@ TEST(MediumWarnings, TellOfWhatHasNoEffect) {
               ElementsAre("scene.pbrt:3:1: warning: media do not move, as in pbrt-v4: this one stays where it is when "
                           "the shutter opens",
                           "scene.pbrt:3:73: warning: \"sigma_a\" of MakeNamedMedium \"m\" has no effect here"));
+}
+
+// The page says what is so: its example is a scene, and its presets are all there are.
+TEST(Media, PageOfParameters) {
+  std::ifstream file(LAMPYR_SOURCE_DIR "/docs/media.md");
+  std::string line, example, page;
+  while (std::getline(file, line)) {
+    (line.starts_with("    ") ? example : page) += line + "\n";
+  }
+  Diagnostics strict(Diagnostics::Mode::Strict);
+  const SceneDescription scene = ParseScene(example, "media.md", strict);
+  EXPECT_EQ(scene.cameraMedium, "mist");
+  EXPECT_EQ(scene.shapes.at(0).insideMedium, "milk");
+  EXPECT_EQ(scene.shapes.at(0).outsideMedium, "mist");
+  MemoryBudget memory(0);
+  EXPECT_EQ(MakeMedia(scene, Transform(), memory, strict).size(), 2u);
+  std::replace(page.begin(), page.end(), '\n', ' ');
+  for (const std::string& name : ScatteringPresetNames()) EXPECT_THAT(page, HasSubstr("`" + name + "`"));
+  for (const std::string& name : MediumTypeNames()) EXPECT_THAT(page, HasSubstr("## `" + name + "`"));
 }
 
 TEST(Media, AreInTheOrderOfTheScene) {
