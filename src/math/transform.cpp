@@ -33,7 +33,12 @@ Affine Affine::Inverse() const {
   return {glm::mat3(inverse), Vector3(-(inverse * Vector3d(translation)))};
 }
 
-Transform::Transform(const glm::dmat4& m) : m_(m), inverse_(glm::inverse(m)) {}
+Transform::Transform(const glm::dmat4& m) : m_(m), inverse_(glm::inverse(m)) {
+  if (!IsAffine() || IsSingular()) return;
+  // The inverse is affine as well, and has to be so to the last bit.
+  for (int column = 0; column < 3; ++column) inverse_[column][3] = 0;
+  inverse_[3][3] = 1;
+}
 
 Transform Transform::Translate(const Vector3d& offset) {
   glm::dmat4 m(1.0), inverse(1.0);

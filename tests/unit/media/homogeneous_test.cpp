@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 
 #include "media/presets.h"
@@ -123,6 +124,23 @@ TEST(Media, PageOfParameters) {
   std::replace(page.begin(), page.end(), '\n', ' ');
   for (const std::string& name : ScatteringPresetNames()) EXPECT_THAT(page, HasSubstr("`" + name + "`"));
   for (const std::string& name : MediumTypeNames()) EXPECT_THAT(page, HasSubstr("## `" + name + "`"));
+}
+
+TEST(Media, OfPublishedScenes) {
+  int count = 0;
+  std::error_code absent;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(std::filesystem::path(LAMPYR_SHARED_DATA) / "peer", absent)) {
+    if (entry.path().extension() != ".pbrt" || !entry.path().filename().string().starts_with("media-")) continue;
+    Diagnostics strict(Diagnostics::Mode::Strict);
+    MemoryBudget memory(uint64_t{1} << 30);
+    for (const auto& medium : MakeMedia(ReadScene(entry.path(), strict), Transform(), memory, strict)) {
+      EXPECT_TRUE(medium->IsHomogeneous() != (medium->Majorants() != nullptr)) << entry.path();
+      ++count;
+    }
+  }
+  if (count == 0) GTEST_SKIP() << "no scenes at " << LAMPYR_SHARED_DATA;
+  EXPECT_GE(count, 7);
 }
 
 TEST(Media, AreInTheOrderOfTheScene) {
