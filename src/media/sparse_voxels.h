@@ -38,7 +38,8 @@ class SparseVoxels {
 
   // Active voxels. Beyond them, values may be interpolated towards the next voxel's.
   const IndexBox& Box() const { return box_; }
-  // `background` outside of the bricks.
+  float Background() const { return constants_[0]; }
+  // The background outside of the bricks.
   float Value(int x, int y, int z) const;
   // Trilinear, with values at whole indices; `index` is within Box(), one more at the upper ends.
   float Interpolate(const Point3& index) const;
