@@ -39,13 +39,14 @@ void CheckPlaced(const PlacedLight& placed, const SceneLight& scene, const Bound
   CheckLight(subject, options, report);
 }
 
-// Receivers throughout the scene's sphere, the first at its centre.
+// Receivers throughout the scene's sphere, the first at its centre; every second one in a medium.
 std::vector<Receiver> SceneReceivers(const BoundingSphere& sphere, Rng& rng) {
   std::vector<Receiver> receivers(64);
   for (size_t i = 0; i < receivers.size(); ++i) {
     const float reach = i == 0 ? 0.0f : sphere.radius * std::cbrt(rng.NextFloat());
     receivers[i].position = sphere.center + reach * Vector3(suite::RandomDirection(rng));
-    receivers[i].normal = Normal3(suite::RandomDirection(rng));
+    const Normal3 normal(suite::RandomDirection(rng));
+    if (i % 2 == 0) receivers[i].normal = normal;
   }
   return receivers;
 }

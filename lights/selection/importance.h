@@ -19,7 +19,7 @@ class LightLearning;
 // A receiver in the tree's coordinates.
 struct TreeReceiver {
   Point3 position{0.0f};
-  Normal3 normal{0.0f};  // 0 in a volume
+  Normal3 normal{0.0f};  // 0: no cosine at the receiver (Receiver)
   bool isTransmissive = false;
   const LightLearning* learning = nullptr;  // learned factors of its region; may be null
   uint32_t region = 0;

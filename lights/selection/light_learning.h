@@ -1,10 +1,10 @@
 // Learned light selection: factors for the importances of the light tree, from the results of shadow rays. They lower
 // clusters that are occluded in a region and raise those that were underestimated there.
 //
-// A region is a cell of a grid and a main direction of the normal. For each node of the tree that is visited from it,
-// the mean square of (irradiance caused by a child ÷ importance of the child) is learned. Selection by its root
-// minimises the variance ([Rath20 eq. 10]); a partly visible cluster is selected more often than by the mean. A child
-// without observations takes the factor of its parent.
+// A region is a cell of a grid and a main direction of the normal; receivers without a normal have regions of their
+// own. For each node of the tree that is visited from it, the mean square of (irradiance caused by a child ÷ importance
+// of the child) is learned. Selection by its root minimises the variance ([Rath20 eq. 10]); a partly visible cluster is
+// selected more often than by the mean. A child without observations takes the factor of its parent.
 //
 // Rows are addressed by a hash, and rows that collide share their observations: memory is bounded, and the result does
 // not depend on the order of insertion. Sums are integers, so that they do not depend on the order of threads. Records

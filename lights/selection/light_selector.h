@@ -16,14 +16,21 @@
 namespace lampyr {
 
 // The point that is lit. Part of a path vertex.
+//
+// A normal of 0 says that there is no surface: the receiver is in a medium, or is a lens. Light then counts from all
+// directions alike, without a cosine, and isTransmissive has no effect.
 struct Receiver {
   Point3 position{0.0f};
-  Normal3 normal{0.0f};         // shading normal, on the side of the path's previous vertex; 0 in a volume
+  Normal3 normal{0.0f};         // shading normal, on the side of the path's previous vertex; 0 without a surface
   bool isTransmissive = false;  // light from the other side contributes, too
   uint32_t link = 0;            // class of light linking and light filters (services/linking.h)
 
   // `link` of the camera: lights that it sees are neither linked nor filtered.
   static constexpr uint32_t kCamera = 0xffffffffu;
+
+  // A point in a medium. `link`: class of the medium; 0 is lit by all lights.
+  static Receiver InMedium(const Point3& position, uint32_t link = 0) { return {position, Normal3(0.0f), false, link}; }
+  bool HasNormal() const { return LengthSquared(normal) > 0; }
 };
 
 struct SelectedLight {

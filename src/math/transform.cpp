@@ -34,10 +34,9 @@ Affine Affine::Inverse() const {
 }
 
 Transform::Transform(const glm::dmat4& m) : m_(m), inverse_(glm::inverse(m)) {
-  if (!IsAffine() || IsSingular()) return;
-  // The inverse is affine as well, and has to be so to the last bit.
-  for (int column = 0; column < 3; ++column) inverse_[column][3] = 0;
-  inverse_[3][3] = 1;
+  // The inverse of an affine map is one, too: without what rounding leaves in its last row.
+  if (!IsAffine() || !AllFinite(inverse_)) return;
+  for (int column = 0; column < 4; ++column) inverse_[column][3] = column == 3 ? 1.0 : 0.0;
 }
 
 Transform Transform::Translate(const Vector3d& offset) {

@@ -90,6 +90,9 @@ TEST(LightLearning, RegionsArePlacesAndSides) {
   EXPECT_NE(floor, learning.RegionOf(At({1, 2, 3}, {0, -1, 0})));
   EXPECT_NE(floor, learning.RegionOf(At({1, 2, 3}, {1, 0, 0})));
   EXPECT_NE(floor, learning.RegionOf(At({4, 2, 3}, {0, 1, 0})));
+  for (const Normal3& normal :
+       {Normal3(1, 0, 0), Normal3(-1, 0, 0), Normal3(0, 1, 0), Normal3(0, -1, 0), Normal3(0, 0, 1), Normal3(0, 0, -1)})
+    EXPECT_NE(learning.RegionOf(Receiver::InMedium({1, 2, 3})), learning.RegionOf(At({1, 2, 3}, normal)));
   // Far outside the scene, too.
   learning.RegionOf(At({1e30f, -1e30f, 1e30f}, {0, 1, 0}));
 }
