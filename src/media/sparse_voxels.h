@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <vector>
 
@@ -45,6 +46,12 @@ class SparseVoxels {
   float Interpolate(const Point3& index) const;
   // The largest value of the voxels from `box.min` to `box.max`.
   float Maximum(const IndexBox& box) const;
+  // Calls visit(box, entry) for bricks in turn, and for runs of bricks that have the same constant; not for constants
+  // up to 0. `entry` is for the two methods below.
+  void ForRuns(const std::function<void(const IndexBox&, uint32_t)>& visit) const;
+  // The largest value, at least 0, of a brick, and of the part of it that is within a box of voxels it has.
+  float MaximumOfEntry(uint32_t entry) const;
+  float MaximumOfBrick(uint32_t entry, const IndexBox& within) const;
   // Throws an Error without a place if a voxel of a brick or a constant is not finite, or negative and not
   // `mayBeNegative`.
   void CheckValues(bool mayBeNegative) const;
@@ -58,7 +65,6 @@ class SparseVoxels {
   uint32_t EntryAt(int x, int y, int z) const;
   bool IsInRange(const std::array<int, 3>& position) const;
   size_t TableIndex(const std::array<int, 3>& position) const;
-  float MaximumOfBrick(uint32_t entry, const IndexBox& within) const;
 
   IndexBox box_, bricks_;
   std::array<size_t, 3> brickCounts_{};
