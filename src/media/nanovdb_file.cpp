@@ -78,6 +78,7 @@ class GridTree {
     uppers_ = At<Upper>(offsets_[2], counts_[2]);
     root_ = At<Root>(offsets_[3], 1);
     tiles_ = At<Root::Tile>(offsets_[3] + sizeof(Root), root_->mTableSize);
+    for (size_t level = 0; level < 3; ++level) isTaken_[level].resize(counts_[level]);
   }
 
   const nanovdb::GridData& Grid() const { return *reinterpret_cast<const nanovdb::GridData*>(bytes_.data()); }
@@ -86,12 +87,13 @@ class GridTree {
   size_t LeafCount() const { return counts_[0]; }
   const Leaf& LeafNode(size_t i) const { return leaves_[i]; }
 
-  // Children, by what a parent has stored: the offset from itself.
-  const Upper& UpperOf(int64_t offset) const { return uppers_[ChildIndex(root_, offset, 2, sizeof(Upper))]; }
-  const Lower& LowerOf(const Upper& parent, int64_t offset) const {
+  // Children, by what a parent has stored: the offset from itself. Each may be asked for once: shared nodes would make
+  // a tree larger than its file.
+  const Upper& UpperOf(int64_t offset) { return uppers_[ChildIndex(root_, offset, 2, sizeof(Upper))]; }
+  const Lower& LowerOf(const Upper& parent, int64_t offset) {
     return lowers_[ChildIndex(&parent, offset, 1, sizeof(Lower))];
   }
-  size_t LeafIndexOf(const Lower& parent, int64_t offset) const { return ChildIndex(&parent, offset, 0, sizeof(Leaf)); }
+  size_t LeafIndexOf(const Lower& parent, int64_t offset) { return ChildIndex(&parent, offset, 0, sizeof(Leaf)); }
 
  private:
   template <class T>
@@ -101,7 +103,7 @@ class GridTree {
     return reinterpret_cast<const T*>(bytes_.data() + offset);
   }
 
-  size_t ChildIndex(const void* parent, int64_t offset, size_t level, size_t size) const {
+  size_t ChildIndex(const void* parent, int64_t offset, size_t level, size_t size) {
     const auto from = static_cast<int64_t>(static_cast<const std::byte*>(parent) - bytes_.data());
     const auto size64 = static_cast<int64_t>(bytes_.size());
     // Neither sum overflows: all of these are below the size of memory.
@@ -110,12 +112,16 @@ class GridTree {
     const auto count = static_cast<int64_t>(counts_[level]);
     if (within < 0 || within % static_cast<int64_t>(size) != 0 || within / static_cast<int64_t>(size) >= count)
       Damaged("a node refers to none of the next level");
-    return static_cast<size_t>(within / static_cast<int64_t>(size));
+    const auto index = static_cast<size_t>(within / static_cast<int64_t>(size));
+    if (isTaken_[level][index]) Damaged("two nodes refer to the same one");
+    isTaken_[level][index] = true;
+    return index;
   }
 
   std::span<const std::byte> bytes_;
   std::array<uint64_t, 4> offsets_{};
   std::array<uint64_t, 3> counts_{};
+  std::array<std::vector<bool>, 3> isTaken_;
   const Leaf* leaves_ = nullptr;
   const Lower* lowers_ = nullptr;
   const Upper* uppers_ = nullptr;
@@ -126,7 +132,7 @@ class GridTree {
 // Copies the part of a tree that lies in the bricks of `voxels`.
 class TreeCopier {
  public:
-  TreeCopier(const GridTree& tree, SparseVoxels& voxels) : tree_(tree), voxels_(voxels) {}
+  TreeCopier(GridTree& tree, SparseVoxels& voxels) : tree_(tree), voxels_(voxels) {}
 
   void Copy() {
     for (size_t i = 0; i < tree_.LeafCount(); ++i)
@@ -205,7 +211,7 @@ class TreeCopier {
     }
   }
 
-  const GridTree& tree_;
+  GridTree& tree_;
   SparseVoxels& voxels_;
 };
 
@@ -314,7 +320,7 @@ std::optional<NanoVdbGrid> NanoVdbReader::Read(const std::string& name, bool may
   } else {
     std::memcpy(grid.data(), found->bytes.data(), grid.size());
   }
-  const GridTree tree(grid);
+  GridTree tree(grid);
   const nanovdb::GridData& data = tree.Grid();
   if (!IsMagic(data.mMagic) || data.mGridType != nanovdb::GridType::Float) Damaged("a grid has another type inside");
   if (data.mGridClass != nanovdb::GridClass::FogVolume && data.mGridClass != nanovdb::GridClass::Unknown)

@@ -47,27 +47,23 @@ class NanoVdbMedium : public BoxMedium {
   NanoVdbData data_;
 };
 
+// Of all values that may be interpolated, the background's among them; at least 0.
 float LargestOf(const SparseVoxels& voxels) {
   IndexBox box = voxels.Box();
   for (int& upper : box.max) ++upper;
-  return voxels.Maximum(box);
-}
-
-// Adds the place and the file to what is wrong with the file.
-template <class Work>
-auto NameFile(const std::string& file, const FileLocation& where, const Work& work) {
-  try {
-    return work();
-  } catch (const Error& error) {
-    if (error.Where().file) throw;
-    throw Error(where, "\"" + file + "\" cannot be used as a volume: " + error.Text());
-  }
+  return std::max(voxels.Maximum(box), voxels.Background());
 }
 
 struct NanoVdbGrids {
   NanoVdbGrid density;
   std::optional<NanoVdbGrid> temperature;
 };
+
+Error MissingGrid(const NanoVdbReader& reader, const std::string& name) {
+  std::string names;
+  for (const std::string& known : reader.Names()) names += (names.empty() ? "\"" : ", \"") + known + "\"";
+  return Error("it has no grid \"" + name + "\"" + DidYouMean(name, reader.Names()) + "; there is: " + names);
+}
 
 NanoVdbGrids ReadGrids(const MediumInput& input) {
   const ParameterList& parameters = input.Parameters();
@@ -76,20 +72,18 @@ NanoVdbGrids ReadGrids(const MediumInput& input) {
   const FileLocation where = parameters.WhereOf("filename");
   const std::string densityName = parameters.GetString("gridname", "density");
   const std::string temperatureName = parameters.GetString("temperaturename", "temperature");
-  return NameFile(file, where, [&] {
+  try {
     const MappedFile mapped(file);
     const NanoVdbReader reader(mapped.Bytes());
-    const auto missing = [&](const std::string& name) {
-      std::string names;
-      for (const std::string& known : reader.Names()) names += (names.empty() ? "\"" : ", \"") + known + "\"";
-      return Error("it has no grid \"" + name + "\"" + DidYouMean(name, reader.Names()) + "; there is: " + names);
-    };
     auto density = reader.Read(densityName, false, input.memory, where);
-    if (!density) throw missing(densityName);
+    if (!density) throw MissingGrid(reader, densityName);
     auto temperature = reader.Read(temperatureName, true, input.memory, where);
-    if (!temperature && parameters.Find("temperaturename")) throw missing(temperatureName);
-    return NanoVdbGrids{std::move(*density), std::move(temperature)};
-  });
+    if (!temperature && parameters.Find("temperaturename")) throw MissingGrid(reader, temperatureName);
+    return {std::move(*density), std::move(temperature)};
+  } catch (const Error& error) {
+    if (error.Where().file) throw;  // of memory, not of the file
+    throw Error(where, "\"" + file + "\" cannot be used as a volume: " + error.Text());
+  }
 }
 
 // The light of the temperatures, which the file may have or not.

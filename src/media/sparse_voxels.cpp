@@ -40,12 +40,19 @@ void SparseVoxels::PlaceConstant(const std::array<int, 3>& position, float value
   table_[TableIndex(position)] = static_cast<uint32_t>(brickCount_ + constants_.size() - 1);
 }
 
-float SparseVoxels::Value(int x, int y, int z) const {
+size_t SparseVoxels::OffsetInBrick(int x, int y, int z) {
+  return static_cast<size_t>((x & 7) << 6 | (y & 7) << 3 | (z & 7));
+}
+
+uint32_t SparseVoxels::EntryAt(int x, int y, int z) const {
   const std::array<int, 3> position = {Floor8(x), Floor8(y), Floor8(z)};
-  if (!IsInRange(position)) return constants_[0];
-  const uint32_t entry = table_[TableIndex(position)];
+  return IsInRange(position) ? table_[TableIndex(position)] : static_cast<uint32_t>(brickCount_);
+}
+
+float SparseVoxels::Value(int x, int y, int z) const {
+  const uint32_t entry = EntryAt(x, y, z);
   if (entry >= brickCount_) return constants_[entry - brickCount_];
-  return values_[size_t{entry} * kBrickVoxels + static_cast<size_t>((x & 7) << 6 | (y & 7) << 3 | (z & 7))];
+  return values_[size_t{entry} * kBrickVoxels + OffsetInBrick(x, y, z)];
 }
 
 float SparseVoxels::Interpolate(const Point3& index) const {
@@ -57,12 +64,23 @@ float SparseVoxels::Interpolate(const Point3& index) const {
     low[axis] = static_cast<int>(floor);
     part[axis] = index[axis] - floor;
   }
+  const auto weight = [&part](int x, int y, int z) {
+    return (x ? part[0] : 1 - part[0]) * (y ? part[1] : 1 - part[1]) * (z ? part[2] : 1 - part[2]);
+  };
   float sum = 0;
+  if ((low[0] & 7) < 7 && (low[1] & 7) < 7 && (low[2] & 7) < 7) {  // all in one brick
+    const uint32_t entry = EntryAt(low[0], low[1], low[2]);
+    if (entry >= brickCount_) return constants_[entry - brickCount_];
+    const float* voxel = &values_[size_t{entry} * kBrickVoxels + OffsetInBrick(low[0], low[1], low[2])];
+    for (int corner = 0; corner < 8; ++corner) {
+      const int x = corner & 1, y = corner >> 1 & 1, z = corner >> 2;
+      sum += weight(x, y, z) * voxel[x * 64 + y * 8 + z];
+    }
+    return sum;
+  }
   for (int corner = 0; corner < 8; ++corner) {
     const int x = corner & 1, y = corner >> 1 & 1, z = corner >> 2;
-    const float weight = (x ? part[0] : 1 - part[0]) * (y ? part[1] : 1 - part[1]) * (z ? part[2] : 1 - part[2]);
-    // A voxel beside the point may have any value, and be beyond the box.
-    if (weight != 0) sum += weight * Value(low[0] + x, low[1] + y, low[2] + z);
+    sum += weight(x, y, z) * Value(low[0] + x, low[1] + y, low[2] + z);
   }
   return sum;
 }
@@ -73,7 +91,7 @@ float SparseVoxels::MaximumOfBrick(uint32_t entry, const IndexBox& within) const
   float most = 0;
   for (int x = within.min[0]; x <= within.max[0]; ++x) {
     for (int y = within.min[1]; y <= within.max[1]; ++y) {
-      const float* line = brick + ((x & 7) << 6 | (y & 7) << 3);
+      const float* line = brick + OffsetInBrick(x, y, 0);
       for (int z = within.min[2]; z <= within.max[2]; ++z) most = std::max(most, line[z & 7]);
     }
   }
@@ -103,6 +121,28 @@ float SparseVoxels::Maximum(const IndexBox& box) const {
   return most;
 }
 
+float SparseVoxels::MaximumOfEntry(uint32_t entry) const {
+  return MaximumOfBrick(entry, {{0, 0, 0}, {kSide - 1, kSide - 1, kSide - 1}});
+}
+
+void SparseVoxels::ForRuns(const std::function<void(const IndexBox&, uint32_t)>& visit) const {
+  std::array<int, 3> at;
+  size_t i = 0;
+  for (at[0] = bricks_.min[0]; at[0] <= bricks_.max[0]; ++at[0]) {
+    for (at[1] = bricks_.min[1]; at[1] <= bricks_.max[1]; ++at[1]) {
+      for (at[2] = bricks_.min[2]; at[2] <= bricks_.max[2]; ++at[2]) {
+        const uint32_t entry = table_[i++];
+        IndexBox box;
+        for (int axis = 0; axis < 3; ++axis) box.min[axis] = at[axis] * kSide;
+        for (; entry >= brickCount_ && at[2] < bricks_.max[2] && table_[i] == entry; ++i) ++at[2];
+        if (entry >= brickCount_ && constants_[entry - brickCount_] <= 0) continue;
+        for (int axis = 0; axis < 3; ++axis) box.max[axis] = at[axis] * kSide + kSide - 1;
+        visit(box, entry);
+      }
+    }
+  }
+}
+
 void SparseVoxels::CheckValues(bool mayBeNegative) const {
   const auto isBad = [mayBeNegative](float value) { return !std::isfinite(value) || (value < 0 && !mayBeNegative); };
   if (std::none_of(values_.begin(), values_.end(), isBad) && std::none_of(constants_.begin(), constants_.end(), isBad))
@@ -121,27 +161,65 @@ GridResolution MajorantResolution(const SparseVoxels& voxels) {
   return MajorantResolution(extents);
 }
 
+namespace {
+
+struct Range {
+  int first = 0, last = 0;  // both included
+};
+
+// For each cell along an axis, the voxels that values within it are interpolated from; both ends ascend.
+std::vector<Range> VoxelRanges(const IndexBox& box, int axis, int cells) {
+  const double side = static_cast<double>(box.Extent(axis)) / cells;
+  const double first = box.min[axis], last = static_cast<double>(box.max[axis]) + 1;
+  std::vector<Range> ranges;
+  for (int cell = 0; cell < cells; ++cell) {
+    ranges.push_back({static_cast<int>(std::max(std::floor(first + (cell - kCellMargin) * side), first)),
+                      static_cast<int>(std::min(std::floor(first + (cell + 1 + kCellMargin) * side) + 1, last))});
+  }
+  return ranges;
+}
+
+// The cells that voxels of `voxels` take part in.
+Range CellsOf(const std::vector<Range>& ranges, Range voxels) {
+  const auto first =
+      std::partition_point(ranges.begin(), ranges.end(), [&](const Range& range) { return range.last < voxels.first; });
+  const auto last =
+      std::partition_point(first, ranges.end(), [&](const Range& range) { return range.first <= voxels.last; });
+  return {static_cast<int>(first - ranges.begin()), static_cast<int>(last - ranges.begin()) - 1};
+}
+
+}  // namespace
+
+// Bricks are gone through once, and runs of equal constants as one: most of a large box is empty.
 std::vector<float> MajorantsOf(const SparseVoxels& voxels, const GridResolution& cells, float factor) {
-  // The voxels that values within a cell are interpolated from.
-  const auto range = [&](int axis, int cell, IndexBox& box) {
-    const double side = static_cast<double>(voxels.Box().Extent(axis)) / cells[axis];
-    const double first = voxels.Box().min[axis];
-    box.min[axis] = static_cast<int>(std::max(std::floor(first + (cell - kCellMargin) * side), first - 1));
-    const double last = static_cast<double>(voxels.Box().max[axis]) + 1;
-    box.max[axis] = static_cast<int>(std::min(std::floor(first + (cell + 1 + kCellMargin) * side) + 1, last));
-  };
-  std::vector<float> majorants;
-  IndexBox box;
-  for (int z = 0; z < cells[2]; ++z) {
-    range(2, z, box);
-    for (int y = 0; y < cells[1]; ++y) {
-      range(1, y, box);
-      for (int x = 0; x < cells[0]; ++x) {
-        range(0, x, box);
-        majorants.push_back(voxels.Maximum(box) * factor * kMajorantMargin);
+  const size_t count = static_cast<size_t>(cells[0]) * static_cast<size_t>(cells[1]) * static_cast<size_t>(cells[2]);
+  std::vector<float> majorants(count, std::max(voxels.Background(), 0.0f));
+  std::array<std::vector<Range>, 3> ranges;
+  for (int axis = 0; axis < 3; ++axis) ranges[axis] = VoxelRanges(voxels.Box(), axis, cells[axis]);
+  voxels.ForRuns([&](const IndexBox& box, uint32_t entry) {
+    const float most = voxels.MaximumOfEntry(entry);
+    std::array<Range, 3> touched;
+    for (int axis = 0; axis < 3; ++axis) touched[axis] = CellsOf(ranges[axis], {box.min[axis], box.max[axis]});
+    IndexBox within;
+    const auto clip = [&](int axis, int cell) {
+      const Range& range = ranges[axis][static_cast<size_t>(cell)];
+      within.min[axis] = std::max(box.min[axis], range.first);
+      within.max[axis] = std::min(box.max[axis], range.last);
+    };
+    for (int z = touched[2].first; z <= touched[2].last; ++z) {
+      clip(2, z);
+      for (int y = touched[1].first; y <= touched[1].last; ++y) {
+        clip(1, y);
+        for (int x = touched[0].first; x <= touched[0].last; ++x) {
+          float& majorant = majorants[static_cast<size_t>((z * cells[1] + y) * cells[0] + x)];
+          if (most <= majorant) continue;
+          clip(0, x);
+          majorant = std::max(majorant, voxels.MaximumOfBrick(entry, within));
+        }
       }
     }
-  }
+  });
+  for (float& majorant : majorants) majorant *= factor * kMajorantMargin;
   return majorants;
 }
 

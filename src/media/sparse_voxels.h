@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <vector>
 
@@ -38,12 +39,19 @@ class SparseVoxels {
 
   // Active voxels. Beyond them, values may be interpolated towards the next voxel's.
   const IndexBox& Box() const { return box_; }
-  // `background` outside of the bricks.
+  float Background() const { return constants_[0]; }
+  // The background outside of the bricks.
   float Value(int x, int y, int z) const;
   // Trilinear, with values at whole indices; `index` is within Box(), one more at the upper ends.
   float Interpolate(const Point3& index) const;
   // The largest value of the voxels from `box.min` to `box.max`.
   float Maximum(const IndexBox& box) const;
+  // Calls visit(box, entry) for bricks in turn, and for runs of bricks that have the same constant; not for constants
+  // up to 0. `entry` is for the two methods below.
+  void ForRuns(const std::function<void(const IndexBox&, uint32_t)>& visit) const;
+  // The largest value, at least 0, of a brick, and of the part of it that is within a box of voxels it has.
+  float MaximumOfEntry(uint32_t entry) const;
+  float MaximumOfBrick(uint32_t entry, const IndexBox& within) const;
   // Throws an Error without a place if a voxel of a brick or a constant is not finite, or negative and not
   // `mayBeNegative`.
   void CheckValues(bool mayBeNegative) const;
@@ -52,9 +60,11 @@ class SparseVoxels {
 
  private:
   static constexpr int Floor8(int x) { return x >> 3; }
+  static size_t OffsetInBrick(int x, int y, int z);
+  // Of the table, by a voxel; that of the background outside of it.
+  uint32_t EntryAt(int x, int y, int z) const;
   bool IsInRange(const std::array<int, 3>& position) const;
   size_t TableIndex(const std::array<int, 3>& position) const;
-  float MaximumOfBrick(uint32_t entry, const IndexBox& within) const;
 
   IndexBox box_, bricks_;
   std::array<size_t, 3> brickCounts_{};

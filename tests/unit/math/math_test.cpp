@@ -45,6 +45,15 @@ TEST(Transform, InverseUndoes) {
   EXPECT_NEAR(glm::distance(Point3d(t.ToAffine().Point(Point3(p))), t.Point(p)), 0, 1e-5);
 }
 
+// An affine map has an affine inverse, to the last bit: of matrices that are inverted by elimination too.
+TEST(Transform, InversesOfAffineMapsAreAffine) {
+  for (int i = 0; i < 200; ++i) {
+    const Transform look = Transform::LookAt({0.1 * i, 0.9, 0.97 - i}, {3.3, 0.7 * i, -1}, {0.1, 1, 0.01 * i});
+    EXPECT_TRUE(look.IsAffine() && look.Inverse().IsAffine()) << i;
+    EXPECT_NEAR(glm::distance(look.Inverse().Point(look.Point({1, 2, 3})), Point3d(1, 2, 3)), 0, 1e-9);
+  }
+}
+
 TEST(Transform, NormalsStayPerpendicular) {
   const Transform t = Transform::Rotate(40, {1, 2, -1}) * Transform::Scale({2, -3, 0.5});
   const Vector3d tangent(1, 2, 3), normal = glm::cross(tangent, Vector3d(0, 1, 1));

@@ -1,6 +1,10 @@
 // Homogeneous media, and the parameters that all types share.
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
 #include "media/presets.h"
 #include "scene/spectrum.h"
 #include "unit/media/medium_scene.h"
@@ -101,6 +105,42 @@ TEST(MediumWarnings, TellOfWhatHasNoEffect) {
               ElementsAre("scene.pbrt:3:1: warning: media do not move, as in pbrt-v4: this one stays where it is when "
                           "the shutter opens",
                           "scene.pbrt:3:73: warning: \"sigma_a\" of MakeNamedMedium \"m\" has no effect here"));
+}
+
+// The page says what is so: its example is a scene, and its presets are all there are.
+TEST(Media, PageOfParameters) {
+  std::ifstream file(LAMPYR_SOURCE_DIR "/docs/media.md");
+  std::string line, example, page;
+  while (std::getline(file, line)) {
+    (line.starts_with("    ") ? example : page) += line + "\n";
+  }
+  Diagnostics strict(Diagnostics::Mode::Strict);
+  const SceneDescription scene = ParseScene(example, "media.md", strict);
+  EXPECT_EQ(scene.cameraMedium, "mist");
+  EXPECT_EQ(scene.shapes.at(0).insideMedium, "milk");
+  EXPECT_EQ(scene.shapes.at(0).outsideMedium, "mist");
+  MemoryBudget memory(0);
+  EXPECT_EQ(MakeMedia(scene, Transform(), memory, strict).size(), 2u);
+  std::replace(page.begin(), page.end(), '\n', ' ');
+  for (const std::string& name : ScatteringPresetNames()) EXPECT_THAT(page, HasSubstr("`" + name + "`"));
+  for (const std::string& name : MediumTypeNames()) EXPECT_THAT(page, HasSubstr("## `" + name + "`"));
+}
+
+TEST(Media, OfPublishedScenes) {
+  int count = 0;
+  std::error_code absent;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(std::filesystem::path(LAMPYR_SHARED_DATA) / "peer", absent)) {
+    if (entry.path().extension() != ".pbrt" || !entry.path().filename().string().starts_with("media-")) continue;
+    Diagnostics strict(Diagnostics::Mode::Strict);
+    MemoryBudget memory(uint64_t{1} << 30);
+    for (const auto& medium : MakeMedia(ReadScene(entry.path(), strict), Transform(), memory, strict)) {
+      EXPECT_TRUE(medium->IsHomogeneous() != (medium->Majorants() != nullptr)) << entry.path();
+      ++count;
+    }
+  }
+  if (count == 0) GTEST_SKIP() << "no scenes at " << LAMPYR_SHARED_DATA;
+  EXPECT_GE(count, 7);
 }
 
 TEST(Media, AreInTheOrderOfTheScene) {
