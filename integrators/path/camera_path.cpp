@@ -1,5 +1,7 @@
 #include "integrators/path/camera_path.h"
 
+#include <algorithm>
+
 #include "integrators/walk/lens.h"
 #include "integrators/walk/partial_weight.h"
 
@@ -62,18 +64,24 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
     return true;
   }
 
-  // Directions from which photons are gathered are still traced for the emission of the surface they hit: next-event
-  // estimation alone would miss a panel that touches the floor.
+  // Directions from which photons are gathered are still traced for the emission of the surface they hit, and of the
+  // media on the way: next-event estimation alone would miss a panel that touches the floor, and misses all media.
   bool Scattered(const Subpath& path, const PathState& state) override {
     emissionOnly_ = !path.Last().scatteredDelta && path.Last().GathersPhotons() &&
                     state.pdfDirection.value <= static_cast<double>(settings_.gatherBelow);
-    return !emissionOnly_ || (settings_.samplesLights && lighting_.HasLightThatCanBeHit());
+    return !emissionOnly_ || (settings_.samplesLights && HasEmissionToFind());
   }
 
   const Color& Radiance() const { return radiance_; }
 
  private:
   bool SamplesLights(const PathVertex& vertex) const { return settings_.samplesLights || !vertex.GathersPhotons(); }
+
+  bool HasEmissionToFind() const {
+    const auto& media = context_.scene.media;
+    return lighting_.HasLightThatCanBeHit() ||
+           std::any_of(media.begin(), media.end(), [](const auto& medium) { return medium->IsEmissive(); });
+  }
 
   // A light found by BSDF sampling, weighted against next-event estimation.
   void AddFound(const PathVertex& last, const PathState& state, const FoundLight& found) {
