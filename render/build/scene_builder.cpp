@@ -371,7 +371,8 @@ BuiltScene Builder::Build() {
   });
   if (scene.geometry->PrimitiveCount() == 0 && !hasSky && scene.lighting->HasLights())
     diagnostics_.Warn("the scene has no shape for light to fall on: the image will be black");
-  if (!scene.lighting->HasLights()) diagnostics_.Warn("the scene has no light: the image will be black");
+  if (!scene.lighting->HasLights() && !MediaAroundLights().glow)
+    diagnostics_.Warn("the scene has no light: the image will be black");
   WarnOfCoarsePlaces(scene, built_.settings, diagnostics_);
   return std::move(built_);
 }
