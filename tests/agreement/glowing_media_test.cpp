@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "agreement/agreement_scenes.h"
-#include "agreement/media_scenes.h"
 #include "support/replicas.h"
 
 namespace lampyr::test {
@@ -75,6 +74,7 @@ TEST_P(GlowingMediaScenes, AreTheSameFromBothEnds) {
   overrides.seed = 2000;
   ExpectAgreement("sppm", RenderReplicas(scene.text, "sppm", kReplicas, 160, overrides), path);
   overrides.seed = 3000;
+  overrides.values["radius"] = 0.02;
   overrides.values["direct-photons"] = true;
   ExpectAgreement("sppm, direct photons", RenderReplicas(scene.text, "sppm", kReplicas, 256, overrides), path);
 }
@@ -84,7 +84,7 @@ INSTANTIATE_TEST_SUITE_P(Media, GlowingMediaScenes, testing::ValuesIn(GlowingSce
 
 // In an enclosure of radiance 1, filled with a medium of the same radiance, all is of radiance 1.
 TEST(GlowingMedia, FurnaceOfPhotonMapping) {
-  const std::string scene = FilmWith("box", 16, 16) + kView + World(40) +
+  const std::string scene = FilmWith("box", 24, 24) + kView + World(40) +
                             Homogeneous("hot",
                                         "\"rgb sigma_s\" [0.3 0.6 0] \"rgb sigma_a\" [0.4 0.2 0.7] \"rgb Le\" "
                                         "[1 1 1]") +
@@ -94,11 +94,11 @@ TEST(GlowingMedia, FurnaceOfPhotonMapping) {
                             "Material \"diffuse\" \"rgb reflectance\" [0.4 0.4 0.4]\n" +
                             kRoom.substr(kRoom.find("Shape"));
   RenderOverrides overrides;
-  overrides.values["radius"] = 0.01;
-  const Replicas sppm = RenderReplicas(scene, "sppm", kReplicas, 128, overrides);
+  overrides.values["radius"] = 0.02;
+  const Replicas sppm = RenderReplicas(scene, "sppm", kReplicas, 288, overrides);
   EXPECT_EQ(sppm.faults, 0u);
   for (size_t c = 0; c < 3; ++c) {
-    const auto moments = replicas_internal::MomentsOf(replicas_internal::Means(sppm, c, 0, 0, 16, 16));
+    const auto moments = replicas_internal::MomentsOf(replicas_internal::Means(sppm, c, 0, 0, 24, 24));
     const double error = std::sqrt(moments.variance);
     std::printf("furnace: %.5f +- %.5f\n", moments.mean, error);
     EXPECT_LT(error, 0.003) << "too noisy to say anything";

@@ -93,8 +93,7 @@ std::vector<MediaScene> MediaScenes() {
   add("glow", Room("box", 4) +
                   "MakeNamedMedium \"fire\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [1 1 1] \"rgb sigma_a\" "
                   "[2 2 2] \"rgb Le\" [1 0.6 0.3]\n" +
-                  BallOf("fire"))
-      .lightTracerSeesAll = false;
+                  BallOf("fire"));
   add("smooth_glass_of_juice", Room("box", 5) + Homogeneous("juice", "0.5 0.5 0.5", "0.2 1 2", 0.2) +
                                    BallOf("juice", "", "\"dielectric\" \"float eta\" 1.33") + kBulb)
       .lightTracerSeesAll = false;

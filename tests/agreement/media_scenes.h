@@ -6,7 +6,7 @@
 namespace lampyr::test {
 
 struct MediaScene : AgreementScene {
-  bool lightTracerSeesAll = true;  // nothing glows, and nothing smooth is in front of the camera
+  bool lightTracerSeesAll = true;  // nothing smooth is in front of the camera
 };
 
 std::vector<MediaScene> MediaScenes();
