@@ -82,6 +82,32 @@ TEST_P(GlowingMediaScenes, AreTheSameFromBothEnds) {
 INSTANTIATE_TEST_SUITE_P(Media, GlowingMediaScenes, testing::ValuesIn(GlowingScenes()),
                          [](const auto& info) { return std::string(info.param.name); });
 
+// The glow is in the layer of what is in no light group, and the lamp's light in its own.
+TEST(GlowingMedia, IsInNoLightGroup) {
+  const std::string lamp = "AttributeBegin AreaLightSource \"diffuse\" \"string lightGroup\" \"lamp\"";
+  const std::string scene = FilmWith("box", 24, 24) + kView + World(3) + kRoom + kGrid + kBall + lamp +
+                            kLamp.substr(kLamp.find(" \"rgb L\""));
+  const Replicas path = RenderReplicas(scene, "path", kReplicas, 64);
+  for (const char* integrator : {"light", "sppm"}) {
+    RenderOverrides overrides;
+    overrides.seed = 1000;
+    overrides.values["radius"] = 0.02;
+    const Replicas other = RenderReplicas(scene, integrator, kReplicas, 128, overrides);
+    for (const char* layer : {"rest.G", "lamp.G"}) {
+      const int channel = path.images[0].ChannelIndex(layer);
+      ASSERT_GE(channel, 0) << layer;
+      const auto momentsOf = [&](const Replicas& replicas) {
+        return replicas_internal::MomentsOf(
+            replicas_internal::Means(replicas, static_cast<size_t>(channel), 0, 0, 24, 24));
+      };
+      const auto a = momentsOf(other), b = momentsOf(path);
+      std::printf("%s %s: %.4f and %.4f\n", integrator, layer, a.mean, b.mean);
+      EXPECT_LT(std::abs(replicas_internal::Deviate(a, b, kReplicas)), 4) << integrator << " " << layer;
+      EXPECT_LT(std::sqrt(a.variance + b.variance), 0.02 * b.mean) << "too noisy to say anything";
+    }
+  }
+}
+
 // In an enclosure of radiance 1, filled with a medium of the same radiance, all is of radiance 1.
 TEST(GlowingMedia, FurnaceOfPhotonMapping) {
   const std::string scene = FilmWith("box", 24, 24) + kView + World(40) +
