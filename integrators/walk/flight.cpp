@@ -14,6 +14,7 @@ namespace {
 struct MediumSpan {
   float tMin, tMax;
   int32_t medium;
+  Color tint{1.0f};  // of the surfaces before it
 };
 
 // The part of a ray within the scene's sphere, beyond which there is vacuum: with some margin, because the surfaces of
@@ -31,21 +32,25 @@ std::pair<float, float> WithinScene(const BoundingSphere& sphere, const Ray& ray
   return {static_cast<float>(along - chord), static_cast<float>(along + chord)};
 }
 
-// Splits a ray at the surfaces that separate media. Returns the medium at its end.
+// Splits a ray at the surfaces that separate media or have a tint. Returns the medium at its end.
 int32_t FindSpans(const RenderScene& scene, const Ray& ray, float tMax, int32_t medium,
                   std::span<const Crossing> crossings, std::vector<MediumSpan>& spans) {
   spans.clear();
   const auto [enters, leaves] = WithinScene(scene.lighting->SceneSphere(), ray);
   float from = 0;
+  Color tint(1.0f);
   const auto add = [&](float to) {
     const float tMin = std::max(from, enters), tEnd = std::min(to, leaves);
-    if (medium >= 0 && tEnd > tMin) spans.push_back({tMin, tEnd, medium});
+    if (medium >= 0 && tEnd > tMin) spans.push_back({tMin, tEnd, medium, tint});
     from = to;
   };
   for (const Crossing& crossing : crossings) {
     const GeometryAttributes& attributes = scene.geometry->Attributes(crossing.primitive);
-    if (!SeparatesMedia(attributes)) continue;
+    const bool separates = SeparatesMedia(attributes);
+    if (!separates && crossing.transmittance == Color(1.0f)) continue;
     add(crossing.t);
+    tint *= crossing.transmittance;
+    if (!separates) continue;
     medium = crossing.entering ? attributes.insideMedium : attributes.outsideMedium;
   }
   add(tMax);
@@ -92,7 +97,7 @@ class Tracker {
 
   Color value{1.0f};      // Π σ_n / σ̄: transmittance
   Color density{1.0f};    // the same, of the media that walks collide with
-  Color emission;         // of what was followed, over the density
+  Color emission;         // of what was followed since it was reset, over the density
   MediumCoefficients at;  // of the collision
   float t = 0;            // of the collision
   bool wantsEmission = false;
@@ -206,7 +211,10 @@ void Fly(const SampleContext& context, const Ray& ray, uint32_t kinds, int32_t m
     tracker.wantsEmission = true;
     for (const MediumSpan& span : spans) {
       const Medium& passed = *scene.media[static_cast<size_t>(span.medium)];
-      if (!tracker.Follow(passed, span.tMin, span.tMax, true)) continue;
+      tracker.emission = Color();
+      const bool collides = tracker.Follow(passed, span.tMin, span.tMax, true);
+      flight.emission += span.tint * tracker.emission;
+      if (!collides) continue;
       flight.collidesWith = &passed;
       flight.medium = span.medium;
       flight.t = tracker.t;
@@ -216,7 +224,6 @@ void Fly(const SampleContext& context, const Ray& ray, uint32_t kinds, int32_t m
     const Color end = flight.collidesWith ? tracker.at.Extinction() : Color(1.0f);
     flight.factors = {Mean(tracker.density * end), Mean(tracker.density * extinction)};
     flight.passed = tracker.value / static_cast<float>(flight.factors.forward);
-    flight.emission = tracker.emission;
   }
   for (const Crossing& crossing : crossings) {
     if (crossing.t < flight.t) flight.passed *= crossing.transmittance;

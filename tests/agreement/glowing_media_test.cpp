@@ -48,6 +48,14 @@ std::vector<AgreementScene> GlowingScenes() {
                           "AttributeBegin Material \"interface\" MediumInterface \"haze\" \"\" Translate -0.5 0.4 -0.5 "
                           "Shape \"sphere\" \"float radius\" 0.35 AttributeEnd\n"
                           "LightSource \"point\" \"rgb I\" [0.2 0.2 0.4] \"point3 from\" [0.4 0.7 0.3]\n"});
+  // Seen through a pane of coloured glass.
+  scenes.push_back(
+      {"behind_coloured_glass",
+       FilmWith("box") + kView + World(3) +
+           Homogeneous("fire", "\"rgb sigma_s\" [0.5 0.5 0.5] \"rgb sigma_a\" [0.5 1 2] \"rgb Le\" [3 2 1]") + kRoom +
+           kBall +
+           "Material \"thindielectric\" \"rgb transmittance\" [0.9 0.2 0.5] Shape \"trianglemesh\" \"point3 P\" [-0.9 "
+           "-0.9 0.4  0.9 -0.9 0.4  0.9 0.9 0.4  -0.9 0.9 0.4] \"integer indices\" [0 1 2 0 2 3]\n"});
   return scenes;
 }
 
