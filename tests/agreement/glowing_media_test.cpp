@@ -21,6 +21,12 @@ const std::string kMetal =
     "AttributeBegin Material \"conductor\" \"rgb reflectance\" [0.8 0.8 0.8] \"float roughness\" 0.3 Translate -0.6 "
     "-0.7 -0.2 Shape \"sphere\" \"float radius\" 0.25 AttributeEnd\n";
 
+// Behind the ball.
+const std::string kWall =
+    "Material \"diffuse\" \"rgb reflectance\" [0.6 0.6 0.5] Shape \"trianglemesh\" \"point3 P\" [-3 -3 -1  3 -3 -1  3 "
+    "3 "
+    "-1  -3 3 -1] \"integer indices\" [0 1 2 0 2 3]\n";
+
 std::string Homogeneous(const std::string& name, const std::string& coefficients) {
   return "MakeNamedMedium \"" + name + "\" \"string type\" \"homogeneous\" " + coefficients + "\n";
 }
@@ -48,11 +54,11 @@ std::vector<AgreementScene> GlowingScenes() {
                           "AttributeBegin Material \"interface\" MediumInterface \"haze\" \"\" Translate -0.5 0.4 -0.5 "
                           "Shape \"sphere\" \"float radius\" 0.35 AttributeEnd\n"
                           "LightSource \"point\" \"rgb I\" [0.2 0.2 0.4] \"point3 from\" [0.4 0.7 0.3]\n"});
-  // Seen through a pane of coloured glass.
+  // Seen through a pane of coloured glass, in which nothing is mirrored towards the camera.
   scenes.push_back(
       {"behind_coloured_glass",
        FilmWith("box") + kView + World(3) +
-           Homogeneous("fire", "\"rgb sigma_s\" [0.5 0.5 0.5] \"rgb sigma_a\" [0.5 1 2] \"rgb Le\" [3 2 1]") + kRoom +
+           Homogeneous("fire", "\"rgb sigma_s\" [0.5 0.5 0.5] \"rgb sigma_a\" [0.5 1 2] \"rgb Le\" [3 2 1]") + kWall +
            kBall +
            "Material \"thindielectric\" \"rgb transmittance\" [0.9 0.2 0.5] Shape \"trianglemesh\" \"point3 P\" [-0.9 "
            "-0.9 0.4  0.9 -0.9 0.4  0.9 0.9 0.4  -0.9 0.9 0.4] \"integer indices\" [0 1 2 0 2 3]\n"});
