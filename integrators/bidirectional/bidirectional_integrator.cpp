@@ -124,7 +124,7 @@ class LightSide final : public WeightedLightPath {
     if (isConnected_) SplatVertex(sample_);
     const PathVertex& vertex = path.vertices.Last();
     if (context_.photons && vertex.storesPhotons && path.vertices.Count() <= PhotonList::kDeepest)
-      context_.photons->Add(vertex, path.vertices.Count(), sample_.Lighting().GroupOf(path.light));
+      context_.photons->Add(vertex, path.vertices.Count(), path.group);
   }
 
   BidirectionalSample& sample_;

@@ -1,5 +1,5 @@
-// Light tracing: paths start at the lights, and each of their vertices is connected to the camera ([Veach97 §10.3.1],
-// the techniques with t = 1; particle tracing of [Dutré93]).
+// Light tracing: paths start at the lights and in media that glow, and each of their vertices is connected to the
+// camera ([Veach97 §10.3.1], the techniques with t = 1; particle tracing of [Dutré93]).
 //
 // Finds what path tracing cannot: caustics of point, spot and distant lights on anything that is not perfectly smooth.
 // Cannot find: what the camera sees in or through something perfectly smooth (a mirror, a pane, glass), because delta
@@ -20,23 +20,24 @@ namespace lampyr {
 
 namespace {
 
-// Connects the light, and each vertex, to the camera.
+// Connects where the path starts, and each vertex, to the camera.
 class LensConnector final : public LightPathVisitor {
  public:
   explicit LensConnector(const SampleContext& context) : context_(context) {}
   void Emitted(const EmittedPhoton& photon) override {
-    Add(SeeLight(context_, photon, dimensions::kLens), photon.light);
+    Add(SeeLight(context_, photon, dimensions::kLens), context_.scene.lighting->GroupOf(photon.light));
+  }
+  void Glowed(LightPath& path, const EmittedInMedium& emitted) override {
+    Add(SeeGlow(context_, emitted, dimensions::kLens), path.group);
   }
   void Arrived(LightPath& path, const PathState&) override {
     const uint32_t lens = PathDimensions().Of(static_cast<int>(path.vertices.Count()), dimensions::kLight);
-    Add(SeeVertex(context_, path.vertices.Last(), lens), path.light);
+    Add(SeeVertex(context_, path.vertices.Last(), lens), path.group);
   }
 
  private:
-  void Add(const std::optional<SeenFromLens>& seen, uint32_t light) {
-    if (!seen) return;
-    AddSplats(seen->connection, seen->value, context_.scene.lighting->GroupOf(light), *context_.splats,
-              context_.counts);
+  void Add(const std::optional<SeenFromLens>& seen, uint32_t group) {
+    if (seen) AddSplats(seen->connection, seen->value, group, *context_.splats, context_.counts);
   }
 
   const SampleContext& context_;
@@ -44,18 +45,20 @@ class LensConnector final : public LightPathVisitor {
 
 class LightIntegrator final : public Integrator {
  public:
-  explicit LightIntegrator(int maxDepth) : maxDepth_(maxDepth) {}
+  LightIntegrator(int maxDepth, std::unique_ptr<const GlowingMedia> glowing)
+      : maxDepth_(maxDepth), glowing_(std::move(glowing)) {}
 
   TracedPaths Paths() const override { return TracedPaths::Light; }
   Color Sample(const Ray*, const SampleContext& context) const override {
     thread_local LightPath path(false);
     LensConnector visitor(context);
-    TraceLightPath(context, maxDepth_, {}, path, visitor);
+    TraceLightPath(context, maxDepth_, {}, path, visitor, glowing_.get());
     return Color(0.0f);
   }
 
  private:
   int maxDepth_;
+  std::unique_ptr<const GlowingMedia> glowing_;
 };
 
 std::vector<std::string> Hints(const RenderScene& scene) {
@@ -91,7 +94,7 @@ IntegratorType LightIntegratorType() {
   type.help = "paths from the lights, each vertex connected to the camera";
   type.settings = {&common_settings::kMaxDepth};
   type.create = [](const IntegratorInput& input) {
-    return std::make_unique<LightIntegrator>(MaxDepthOf(input.settings));
+    return std::make_unique<LightIntegrator>(MaxDepthOf(input.settings), GlowingMediaOf(input));
   };
   type.hints = Hints;
   type.refusal = Refusal;

@@ -1,5 +1,7 @@
 #include "integrators/path/camera_path.h"
 
+#include <algorithm>
+
 #include "integrators/walk/lens.h"
 #include "integrators/walk/partial_weight.h"
 
@@ -67,12 +69,12 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
     return true;
   }
 
-  // Directions from which photons are gathered are still traced for the emission of the surface they hit: next-event
-  // estimation alone would miss a panel that touches the floor.
+  // Directions from which photons are gathered are still traced for the emission of the surface they hit, and of the
+  // media on the way: next-event estimation alone would miss a panel that touches the floor, and misses all media.
   bool Scattered(const Subpath& path, const PathState& state) override {
     emissionOnly_ = !path.Last().scatteredDelta && Gathers(path.Last()) &&
                     state.pdfDirection.value <= static_cast<double>(settings_.gatherBelow);
-    return !emissionOnly_ || (settings_.samplesLights && lighting_.HasLightThatCanBeHit());
+    return !emissionOnly_ || (settings_.samplesLights && HasEmissionToFind());
   }
 
   const Color& Radiance() const { return radiance_; }
@@ -80,6 +82,12 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
  private:
   static bool Gathers(const PathVertex& vertex) { return vertex.GathersPhotons() || vertex.IsInMedium(); }
   bool SamplesLights(const PathVertex& vertex) const { return settings_.samplesLights || !Gathers(vertex); }
+
+  bool HasEmissionToFind() const {
+    const auto& media = context_.scene.media;
+    return lighting_.HasLightThatCanBeHit() ||
+           std::any_of(media.begin(), media.end(), [](const auto& medium) { return medium->IsEmissive(); });
+  }
 
   // A light found by BSDF sampling, weighted against next-event estimation.
   void AddFound(const PathVertex& last, const PathState& state, const FoundLight& found) {

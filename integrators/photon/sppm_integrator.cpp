@@ -46,9 +46,10 @@ struct SppmSettings {
 
 class SppmIntegrator final : public Integrator {
  public:
-  explicit SppmIntegrator(const SppmSettings& settings)
+  SppmIntegrator(const SppmSettings& settings, std::unique_ptr<const GlowingMedia> glowing)
       : settings_(settings),
-        path_{settings.maxDepth, kCameraDimensions, kWide, !settings.directFromPhotons, settings.shadowRays} {}
+        path_{settings.maxDepth, kCameraDimensions, kWide, !settings.directFromPhotons, settings.shadowRays},
+        glowing_(std::move(glowing)) {}
 
   TracedPaths Paths() const override { return TracedPaths::Both; }
   Color Sample(const Ray* ray, const SampleContext& context) const override;
@@ -57,13 +58,19 @@ class SppmIntegrator final : public Integrator {
  private:
   SppmSettings settings_;
   CameraPathSettings path_;
+  std::unique_ptr<const GlowingMedia> glowing_;
 };
 
-// Stores the photons of a light path from its vertex `firstDepth` on.
+// Stores the photons of a light path from its vertex `firstDepth` on. Photons of glowing media, too, are direct light
+// at their first vertex: the rays that camera paths trace for emission find it.
 class PhotonRecorder final : public LightPathVisitor {
  public:
   PhotonRecorder(const SampleContext& context, size_t firstDepth) : context_(context), firstDepth_(firstDepth) {}
 
+  // Where photons start in media is not learned: an origin without flux.
+  void Glowed(LightPath&, const EmittedInMedium&) override {
+    if (context_.withOrigin) context_.photons->SetOrigin(PathOrigin());
+  }
   bool FirstHit(const EmittedPhoton& photon, PathVertex& first) override {
     if (context_.withOrigin) context_.photons->SetOrigin(OriginOf(*context_.scene.lighting, photon, first));
     return true;
@@ -71,7 +78,7 @@ class PhotonRecorder final : public LightPathVisitor {
   void Arrived(LightPath& path, const PathState&) override {
     const PathVertex& vertex = path.vertices.Last();
     if (path.vertices.Count() >= firstDepth_ && vertex.storesPhotons)
-      context_.photons->Add(vertex, path.vertices.Count(), context_.scene.lighting->GroupOf(path.light));
+      context_.photons->Add(vertex, path.vertices.Count(), path.group);
   }
 
  private:
@@ -184,7 +191,7 @@ Color SppmIntegrator::Sample(const Ray* ray, const SampleContext& context) const
   if (context.photons) {
     thread_local LightPath path(false);
     PhotonRecorder recorder(context, settings_.directFromPhotons ? 1 : 2);
-    TraceLightPath(context, settings_.maxDepth, kLightDimensions, path, recorder);
+    TraceLightPath(context, settings_.maxDepth, kLightDimensions, path, recorder, glowing_.get());
   }
   if (!ray || !context.gather) return Color(0.0f);
   const RadianceEstimate estimate(settings_, context, *ray);
@@ -207,7 +214,7 @@ IntegratorType SppmIntegratorType() {
     settings.photons = PhotonSettingsOf(input);
     settings.directFromPhotons = input.settings.IsOn(kDirectPhotons.name);
     settings.shadowRays = ShadowRaysOf(input);
-    return std::make_unique<SppmIntegrator>(settings);
+    return std::make_unique<SppmIntegrator>(settings, GlowingMediaOf(input));
   };
   type.gathersPhotons = [](const Settings&) { return true; };
   return type;

@@ -14,6 +14,7 @@ namespace {
 struct MediumSpan {
   float tMin, tMax;
   int32_t medium;
+  Color tint{1.0f};  // of the surfaces before it
 };
 
 // The part of a ray within the scene's sphere, beyond which there is vacuum: with some margin, because the surfaces of
@@ -31,21 +32,23 @@ std::pair<float, float> WithinScene(const BoundingSphere& sphere, const Ray& ray
   return {static_cast<float>(along - chord), static_cast<float>(along + chord)};
 }
 
-// Splits a ray at the surfaces that separate media. Returns the medium at its end.
+// Splits a ray at the surfaces that separate media or have a tint. Returns the medium at its end.
 int32_t FindSpans(const RenderScene& scene, const Ray& ray, float tMax, int32_t medium,
                   std::span<const Crossing> crossings, std::vector<MediumSpan>& spans) {
   spans.clear();
   const auto [enters, leaves] = WithinScene(scene.lighting->SceneSphere(), ray);
   float from = 0;
+  Color tint(1.0f);
   const auto add = [&](float to) {
     const float tMin = std::max(from, enters), tEnd = std::min(to, leaves);
-    if (medium >= 0 && tEnd > tMin) spans.push_back({tMin, tEnd, medium});
+    if (medium >= 0 && tEnd > tMin) spans.push_back({tMin, tEnd, medium, tint});
     from = to;
   };
   for (const Crossing& crossing : crossings) {
-    if (crossing.medium == kSameMedium) continue;
+    if (crossing.medium == kSameMedium && crossing.transmittance == Color(1.0f)) continue;
     add(crossing.t);
-    medium = crossing.medium;
+    tint *= crossing.transmittance;
+    if (crossing.medium != kSameMedium) medium = crossing.medium;
   }
   add(tMax);
   return medium;
@@ -89,7 +92,7 @@ class Tracker {
 
   Color value{1.0f};      // Π σ_n / σ̄: transmittance
   Color density{1.0f};    // the same, of the media that walks collide with
-  Color emission;         // of what was followed, over the density
+  Color emission;         // of what was followed since it was reset, over the density
   MediumCoefficients at;  // of the collision
   float t = 0;            // of the collision
   bool wantsEmission = false;
@@ -231,7 +234,10 @@ void Fly(const SampleContext& context, const Ray& ray, uint32_t kinds, int32_t m
     tracker.wantsEmission = true;
     for (const MediumSpan& span : spans) {
       const Medium& passed = *scene.media[static_cast<size_t>(span.medium)];
-      if (!tracker.Follow(passed, span.medium, span.tMin, span.tMax, true)) continue;
+      tracker.emission = Color();
+      const bool collides = tracker.Follow(passed, span.medium, span.tMin, span.tMax, true);
+      flight.emission += span.tint * tracker.emission;
+      if (!collides) continue;
       flight.collidesWith = &passed;
       flight.medium = span.medium;
       flight.t = tracker.t;
@@ -242,7 +248,6 @@ void Fly(const SampleContext& context, const Ray& ray, uint32_t kinds, int32_t m
     flight.factors = {MeanOf(tracker.density * end), MeanOf(tracker.density * extinction), MeanOf(tracker.density)};
     flight.beam = steps;
     flight.passed = tracker.value / static_cast<float>(flight.factors.forward);
-    flight.emission = tracker.emission;
   }
   flight.passed *= flight.TintBefore(flight.t);
 }

@@ -73,6 +73,29 @@ std::optional<SeenFromLens> SeeLight(const SampleContext& context, const Emitted
   return seen;
 }
 
+std::optional<SeenFromLens> SeeGlow(const SampleContext& context, const EmittedInMedium& emitted,
+                                    uint32_t lensDimension) {
+  const auto connection = ConnectToCamera(context, emitted.position, lensDimension);
+  if (!connection) return std::nullopt;
+  const Vector3 difference = connection->camera.position - emitted.position;
+  const float squared = LengthSquared(difference);
+  if (!(squared > 0)) return std::nullopt;
+  SeenFromLens seen{*connection, difference / std::sqrt(squared), Color(), 1, {}, {}};
+  ++context.counts.shadowRays;
+  SurfacePoint point;  // no surface: no normal, no error
+  point.position = emitted.position;
+  point.Ng = point.Ns = Normal3(0.0f);
+  const Ray ray = SpawnRayTo(point, connection->camera.position, Vector3(0.0f), Normal3(0.0f), context.time);
+  EdgeFactors factors;
+  const uint64_t decider = Hash(std::bit_cast<uint32_t>(ray.direction.x), std::bit_cast<uint32_t>(ray.direction.y));
+  const Color arriving =
+      TransmittanceOf(context, ray, visibility::kCamera, {emitted.medium, Color(1.0f)}, Color(1.0f), decider, factors);
+  if (arriving.IsBlack()) return std::nullopt;
+  seen.factors = factors.Reversed();
+  seen.value = Product(emitted.emission, arriving, static_cast<double>(connection->Weight()) / emitted.density);
+  return seen;
+}
+
 std::optional<SeenFromLens> SeeVertex(const SampleContext& context, const PathVertex& vertex, uint32_t lensDimension) {
   if (!vertex.isSeenByCamera || vertex.isDelta) return std::nullopt;
   const RenderScene& scene = context.scene;

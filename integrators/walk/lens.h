@@ -1,4 +1,5 @@
-// Connections of light paths to the lens (t = 1), from their vertices and from their starting point on a light
+// Connections of light paths to the lens (t = 1), from their vertices and from their starting point on a light or in a
+// participating medium
 // ([Veach97 §10.3.4.1]; the weight of a connection is in camera/camera.h). And emission of lights at infinity, which
 // the camera sees without a connection.
 #pragma once
@@ -6,6 +7,7 @@
 #include <optional>
 
 #include "integrators/walk/integrator.h"
+#include "integrators/walk/light_path.h"
 #include "integrators/walk/vertex.h"
 
 namespace lampyr {
@@ -36,6 +38,11 @@ std::optional<SeenFromLens> SeeLight(const SampleContext& context, const Emitted
 
 // Connects a vertex of a light path to the lens; nullopt if it is a delta, or the camera does not see it.
 std::optional<SeenFromLens> SeeVertex(const SampleContext& context, const PathVertex& vertex, uint32_t lensDimension);
+
+// Connects a point of a participating medium that emits to the lens: the glow that the camera sees. nullopt if it does
+// not see the point.
+std::optional<SeenFromLens> SeeGlow(const SampleContext& context, const EmittedInMedium& emitted,
+                                    uint32_t lensDimension);
 
 // Adds `value`, from a light of `group`, at all film points of the connection. A value that is negative or not finite
 // is dropped and counted.

@@ -1,6 +1,11 @@
 #include "integrators/walk/light_path.h"
 
 #include <algorithm>
+#include <limits>
+
+#include "geometry/medium_at.h"
+#include "integrators/walk/integrator_type.h"
+#include "sampling/warp.h"
 
 namespace lampyr {
 
@@ -72,25 +77,157 @@ bool Emit(const SampleContext& context, const EmittedPhoton& photon, PathState& 
   return state.emitted > 0;  // 0 also if the flux underflows float
 }
 
+// Passes on the vertices of a path that starts in a medium.
+class MediumWalkVisitor final : public PathVisitor {
+ public:
+  MediumWalkVisitor(int maxDepth, LightPath& path, LightPathVisitor& visitor)
+      : maxDepth_(maxDepth), path_(path), visitor_(visitor) {}
+
+  bool Arrived(Subpath& path, const PathState& state) override {
+    visitor_.Arrived(path_, state);
+    return static_cast<int>(path.Count()) < maxDepth_;
+  }
+
+ private:
+  const int maxDepth_;
+  LightPath& path_;
+  LightPathVisitor& visitor_;
+};
+
+// Sets the path state of an emission in a medium: its flux is 4π times what a direction receives. False as in Emit.
+bool EmitInMedium(const SampleContext& context, const EmittedInMedium& emitted, const Point2& uDirection,
+                  PathState& state) {
+  const double inverse =
+      4 * static_cast<double>(kPi) / (emitted.density * static_cast<double>(context.scene.lighting->FluxUnit()));
+  state.ray = {emitted.position, SampleUniformSphere(uDirection), kInfinity, context.time};
+  state.medium = emitted.medium;
+  state.diffuse = state.specular = emitted.emission * static_cast<float>(inverse);
+  state.emitted = state.diffuse.Max();
+  if (!state.diffuse.IsValid()) {
+    ++context.counts.droppedSamples;
+    return false;
+  }
+  return state.emitted > 0;
+}
+
+// What TraceLightPath is asked for, with the random point of the start.
+struct PathRequest {
+  const SampleContext& context;
+  const int maxDepth;
+  const PathDimensions& dimensions;
+  const Point2 place;
+  LightPath& path;
+  LightPathVisitor& visitor;
+};
+
+void TraceFromMedium(const PathRequest& request, double uSelect, const GlowingMedia& glowing) {
+  const SampleContext& context = request.context;
+  Sampler& sampler = context.sampler;
+  sampler.SetDimension(request.dimensions.Of(0, dimensions::kLobe));
+  const Vector3 u(request.place.x, request.place.y, sampler.Get1D());
+  const auto point = glowing.Emission().Sample(uSelect, u, context.time);
+  if (!point) return;
+  request.path.group = context.scene.lighting->Groups().OfMedia();
+  const EmittedInMedium emitted{point->position, point->medium, point->emission,
+                                point->density * glowing.Probability()};
+  request.visitor.Glowed(request.path, emitted);
+  if (request.maxDepth < 1) return;
+  sampler.SetDimension(request.dimensions.Of(0, dimensions::kDirection));
+  PathState state;
+  if (!EmitInMedium(context, emitted, sampler.Get2D(), state)) return;
+  MediumWalkVisitor visitor(request.maxDepth, request.path, request.visitor);
+  Walk(context, {TransportMode::Importance, request.maxDepth, request.dimensions}, state, request.path.vertices,
+       visitor);
+}
+
+// `probability`: of starting a path at a light.
+void TraceFromLight(const PathRequest& request, float uSelect, double probability) {
+  const SampleContext& context = request.context;
+  const LightingServices& lighting = *context.scene.lighting;
+  context.sampler.SetDimension(request.dimensions.Of(0, dimensions::kDirection));
+  std::optional<EmittedPhoton> photon =
+      lighting.GenerateEmission(uSelect, request.place, context.sampler.Get2D(), context.time);
+  if (!photon) return;
+  if (probability < 1) {
+    const double selection = static_cast<double>(photon->emissionSelection.value) * probability;
+    photon->emissionSelection = PdfDiscrete(static_cast<float>(selection));
+  }
+  request.path.group = lighting.GroupOf(photon->light);
+  if (photon->fromSurface) request.visitor.Emitted(*photon);
+  PathState state;
+  if (request.maxDepth < 1 || photon->IsDark() || !Emit(context, *photon, state)) return;
+  LightWalkVisitor visitor(context, *photon, state, request.maxDepth, request.path, request.visitor);
+  Walk(context, {TransportMode::Importance, request.maxDepth, request.dimensions}, state, request.path.vertices,
+       visitor);
+}
+
+// The sphere within which flights pass through media, with their margin.
+BoundingSphere SphereOfMedia(const RenderScene& scene) {
+  BoundingSphere sphere = scene.lighting->SceneSphere();
+  sphere.radius *= 1 + 1e-4f;
+  return sphere;
+}
+
+// The medium at points from where no boundary is seen, as that of the camera and of lights.
+int32_t ExteriorOf(const RenderScene& scene, const Point2& middle) {
+  const Point3 eye = scene.camera->GenerateRay(middle, Point2(0.5f), 0).ray.origin;
+  const FoundMedium around = FindMedium(*scene.geometry, eye, 0);
+  return around.medium ? around.exterior.value_or(kVacuum) : scene.cameraMedium;
+}
+
+// Power of the lights that start paths, W: the mean of the channels.
+double PowerOfLights(const RenderScene& scene) {
+  double power = 0;
+  const std::vector<PlacedLight>& lights = scene.lighting->Lights();
+  for (size_t i = 0; i < lights.size(); ++i) {
+    if (scene.lighting->EmissionSelectionProbability(static_cast<uint32_t>(i)).IsZero()) continue;
+    LightContext light;
+    light.transform = &lights[i].transform;
+    light.scene = scene.lighting->SceneSphere();
+    const double estimate = static_cast<double>(lights[i].light->GetPowerEstimate(light).Average());
+    // Lights that start paths have a part of them, whatever they estimate.
+    if (estimate > 0) power += std::min(estimate, static_cast<double>(std::numeric_limits<float>::max()));
+    power = std::max(power, static_cast<double>(std::numeric_limits<float>::min()));
+  }
+  return power;
+}
+
 }  // namespace
 
+GlowingMedia::GlowingMedia(const RenderScene& scene, const Point2& middle)
+    : emission_(scene.media, *scene.geometry, SphereOfMedia(scene), ExteriorOf(scene, middle)) {
+  // The least share of either, so that a weak glow is seen beside the sun, and a weak light beside a fire.
+  constexpr double kLeast = 1.0 / 16;
+  const double glow = emission_.Power(), lights = PowerOfLights(scene);
+  if (!(glow > 0)) return;
+  probability_ = lights > 0 ? std::clamp(glow / (glow + lights), kLeast, 1 - kLeast) : 1.0;
+}
+
+std::unique_ptr<const GlowingMedia> GlowingMediaOf(const IntegratorInput& input) {
+  const auto& media = input.scene.media;
+  if (std::none_of(media.begin(), media.end(), [](const auto& medium) { return medium->IsEmissive(); })) return nullptr;
+  const Point2 middle(0.5f * static_cast<float>(input.width), 0.5f * static_cast<float>(input.height));
+  return std::make_unique<const GlowingMedia>(input.scene, middle);
+}
+
 void TraceLightPath(const SampleContext& context, int maxDepth, const PathDimensions& dimensions, LightPath& path,
-                    LightPathVisitor& visitor) {
+                    LightPathVisitor& visitor, const GlowingMedia* glowing) {
   path.vertices.Clear();
-  Sampler& sampler = context.sampler;
-  sampler.SetDimension(dimensions.Of(0, dimensions::kLightSelection));
-  const float uSelect = sampler.Get1D();
-  const Point2 u = sampler.Get2D();
-  sampler.SetDimension(dimensions.Of(0, dimensions::kDirection));
-  const std::optional<EmittedPhoton> photon =
-      context.scene.lighting->GenerateEmission(uSelect, u, sampler.Get2D(), context.time);
-  if (!photon) return;
-  path.light = photon->light;
-  if (photon->fromSurface) visitor.Emitted(*photon);
-  PathState state;
-  if (maxDepth < 1 || photon->IsDark() || !Emit(context, *photon, state)) return;
-  LightWalkVisitor walkVisitor(context, *photon, state, maxDepth, path, visitor);
-  Walk(context, {TransportMode::Importance, maxDepth, dimensions}, state, path.vertices, walkVisitor);
+  context.sampler.SetDimension(dimensions.Of(0, dimensions::kLightSelection));
+  const float uSelect = context.sampler.Get1D();
+  const PathRequest request{context, maxDepth, dimensions, context.sampler.Get2D(), path, visitor};
+  const double ofMedia = glowing ? glowing->Probability() : 0;
+  if (!(ofMedia > 0)) {
+    TraceFromLight(request, uSelect, 1);
+    return;
+  }
+  const double u = WithMoreBits(uSelect, request.place.x, request.place.y, context.time);
+  if (u < ofMedia) {
+    TraceFromMedium(request, u / ofMedia, *glowing);
+    return;
+  }
+  const double rest = (u - ofMedia) / (1 - ofMedia);
+  TraceFromLight(request, std::min(static_cast<float>(rest), kOneMinusEpsilon), 1 - ofMedia);
 }
 
 }  // namespace lampyr

@@ -18,6 +18,8 @@ class BoxMedium : public Medium {
     return AtInside(p);
   }
   const MajorantGrid* Majorants() const final { return &majorants_; }
+  // From render space to the space of the box.
+  const Affine& ToSpace() const { return toSpace_; }
 
  protected:
   // The box is that of `majorants`, and `toSpace` leads from render space to the box's.

@@ -83,6 +83,7 @@ INSTANTIATE_TEST_SUITE_P(
                     PeerScene{"mixed-lights", "bdpt", 256}, PeerScene{"sky-spheres", "bdpt", 1024},
                     PeerScene{"lights600", "bdpt", 512, 16}, PeerScene{"spot-lens", "bdpt", 512},
                     PeerScene{"area-box", "light", 512}, PeerScene{"mixed-lights", "light", 512},
+                    PeerScene{"media-glow", "light", 256}, PeerScene{"media-glow", "sppm", 512, 8, 0.01},
                     PeerScene{"area-box", "vcm", 192, 8, 0.01}, PeerScene{"mixed-lights", "vcm", 192, 8, 0.01},
                     PeerScene{"sky-spheres", "vcm", 1024, 8, 0.02}, PeerScene{"glass-caustic", "vcm", 512, 32, 0.01},
                     PeerScene{"area-box", "vcm", 768, 16, 0.02, false},

@@ -1,0 +1,92 @@
+#include "media/medium_emission.h"
+
+#include <algorithm>
+
+#include "geometry/medium_at.h"
+
+namespace lampyr {
+
+namespace {
+
+// Probability with which a point of a medium without a box of its own is sampled evenly within the scene's sphere:
+// rays that find the medium may miss a part of it.
+constexpr double kEverywhere = 1.0 / 16;
+
+Bounds3 BoxAround(const BoundingSphere& sphere) {
+  return {sphere.center - Vector3(sphere.radius), sphere.center + Vector3(sphere.radius)};
+}
+
+}  // namespace
+
+MediumEmission::MediumEmission(std::vector<std::shared_ptr<const Medium>> media, const GeometryScene& geometry,
+                               const BoundingSphere& within, int32_t exterior)
+    : media_(std::move(media)), geometry_(geometry), within_(within), exterior_(exterior) {
+  for (size_t i = 0; i < media_.size(); ++i) {
+    if (media_[i]->IsEmissive()) Add(static_cast<int32_t>(i));
+  }
+  for (const Source& source : sources_) power_ += source.power;
+}
+
+void MediumEmission::Add(int32_t index) {
+  const Medium& medium = *media_[static_cast<size_t>(index)];
+  constexpr double kSphere = 4 * static_cast<double>(kPi);
+  if (medium.IsHomogeneous()) {
+    double volume = 0;
+    sources_.push_back(BoundedSource(index, volume));
+    sources_.back().power = kSphere * static_cast<double>(medium.At(Point3(0.0f)).emission.Average()) * volume;
+  } else {
+    double emission = 0;
+    sources_.push_back({index, {RegionOfGrid(medium, emission)}, {1.0}});
+    sources_.back().power = kSphere * emission;
+  }
+}
+
+MediumEmission::Source MediumEmission::BoundedSource(int32_t index, double& volume) const {
+  const Bounds3 within = BoxAround(within_);
+  const float all[] = {1.0f};
+  Source source{index, {EmissionRegion(within, {1, 1, 1}, all, Affine())}, {1.0}};
+  const FoundPlace place = FindPlaceOf(geometry_, within, exterior_, index);
+  if (place.box.IsEmpty()) {
+    // Smaller than rays find.
+    const double side = static_cast<double>(within_.radius) / 64;
+    volume = side * side * side;
+    return source;
+  }
+  volume = place.volume;
+  source.regions.emplace_back(place.box, place.resolution, place.weights, Affine());
+  source.shares = {kEverywhere, 1 - kEverywhere};
+  return source;
+}
+
+bool MediumEmission::IsThere(int32_t medium, const Point3& position, float time) const {
+  if (glm::distance(position, within_.center) > within_.radius) return false;
+  return FindMedium(geometry_, position, time).medium.value_or(exterior_) == medium;
+}
+
+std::optional<EmissionPoint> MediumEmission::Sample(double uSelect, const Vector3& u, float time) const {
+  // In double, because the random number goes on to choose among many cells.
+  double rest = uSelect * power_;
+  size_t index = 0;
+  while (index + 1 < sources_.size() && rest >= sources_[index].power) rest -= sources_[index++].power;
+  const Source& source = sources_[index];
+  rest = std::clamp(rest / source.power, 0.0, 1.0);
+  size_t region = 0;
+  if (source.regions.size() > 1) {
+    region = rest < source.shares[0] ? 0 : 1;
+    rest = region == 0 ? rest / source.shares[0] : (rest - source.shares[0]) / source.shares[1];
+  }
+  const EmissionRegion::Point point = source.regions[region].Sample(rest, u);
+  EmissionPoint result;
+  result.position = point.position;
+  result.medium = source.medium;
+  result.emission = media_[static_cast<size_t>(source.medium)]->At(point.position).emission;
+  if (result.emission.IsBlack() || !IsThere(source.medium, point.position, time)) return std::nullopt;
+  for (size_t i = 0; i < source.regions.size(); ++i) {
+    const double density = i == region ? point.density : source.regions[i].Density(point.position);
+    result.density += source.shares[i] * density;
+  }
+  result.density *= source.power / power_;
+  return result;
+}
+
+}  // namespace lampyr

@@ -1,0 +1,59 @@
+// Points at which participating media emit light, for paths that start there.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "geometry/geometry_scene.h"
+#include "media/emission_region.h"
+#include "media/medium.h"
+
+namespace lampyr {
+
+// A point that emits, evenly in all directions.
+struct EmissionPoint {
+  Point3 position{0.0f};
+  int32_t medium = kVacuum;
+  Color emission;      // radiance per length (MediumCoefficients::emission)
+  double density = 0;  // of the point, per volume (scene units); that of choosing the medium is a factor
+};
+
+class MediumEmission {
+ public:
+  // `geometry` has to outlive it. `within`: beyond this sphere there is vacuum. `exterior`: the medium at points from
+  // where no surface that separates media is seen.
+  MediumEmission(std::vector<std::shared_ptr<const Medium>> media, const GeometryScene& geometry,
+                 const BoundingSphere& within, int32_t exterior);
+
+  // Estimate of the emitted power, W: the mean of the channels. Larger than 0 if a medium may emit.
+  double Power() const { return power_; }
+
+  // Samples a point in proportion to the emitted power, as far as that is known: the density is exact. nullopt: the
+  // point is not in the chosen medium (FindMedium), or emits nothing; its sample is worth 0. `u`: three random numbers
+  // in [0,1) for the place, and `uSelect` for choices. Requires Power() > 0.
+  std::optional<EmissionPoint> Sample(double uSelect, const Vector3& u, float time) const;
+
+ private:
+  struct Source {
+    int32_t medium;
+    std::vector<EmissionRegion> regions;
+    std::vector<double> shares;  // probabilities of the regions
+    double power = 0;
+  };
+
+  void Add(int32_t index);
+  Source BoundedSource(int32_t index, double& volume) const;
+  bool IsThere(int32_t medium, const Point3& position, float time) const;
+
+  std::vector<std::shared_ptr<const Medium>> media_;
+  const GeometryScene& geometry_;
+  BoundingSphere within_;
+  int32_t exterior_;
+  std::vector<Source> sources_;
+  double power_ = 0;
+};
+
+}  // namespace lampyr
