@@ -74,4 +74,45 @@ EmitterProbability EmitterList::ProbabilityOf(const TreeReceiver& receiver, cons
   return {weight(cut.byIntensity) / cut.sum, weight(true) / intensity_};
 }
 
+// Not inlined, as above.
+[[gnu::noinline]] double EmitterList::WeightAlong(const TreeSegment& segment, const SegmentEmitters& emitters,
+                                                  uint32_t emitter, bool byIntensity) const {
+  const ClusterLobe lobe = blocks_[emitter / kWidth].Get(static_cast<int>(emitter % kWidth));
+  if (byIntensity) return static_cast<double>(lobe.intensity);
+  return SegmentImportance(lobe, segment) > 0 ? emitters.ImportanceOf(emitter, lobe) : 0.0;
+}
+
+double EmitterList::ImportanceAlong(const TreeSegment& segment, const SegmentEmitters& emitters) const {
+  double sum = 0;
+  for (uint32_t i = 0; i < blocks_.size() * kWidth; ++i) sum += WeightAlong(segment, emitters, i, false);
+  return sum;
+}
+
+EmitterChoice EmitterList::SelectAlong(const TreeSegment& segment, const SegmentEmitters& emitters, double u,
+                                       bool defensive) const {
+  const double sum = ImportanceAlong(segment, emitters);
+  const bool byIntensity = defensive || !(sum > 0);
+  double left = u * (byIntensity ? intensity_ : sum);
+  EmitterChoice choice;
+  for (uint32_t i = 0; i < blocks_.size() * kWidth; ++i) {
+    const double weight = WeightAlong(segment, emitters, i, byIntensity);
+    if (!(weight > 0)) continue;
+    choice.emitter = i;  // the last with importance, in case rounding selects none
+    choice.u = std::clamp(left / weight, 0.0, 0x1.fffffffffffffp-1);
+    if (left < weight) break;
+    left -= weight;
+  }
+  choice.probability = ProbabilityAlong(segment, emitters, choice.emitter);
+  return choice;
+}
+
+EmitterProbability EmitterList::ProbabilityAlong(const TreeSegment& segment, const SegmentEmitters& emitters,
+                                                 uint32_t emitter) const {
+  if (emitter >= blocks_.size() * kWidth) return {0, 0};
+  const double sum = ImportanceAlong(segment, emitters);
+  const bool byIntensity = !(sum > 0);
+  return {WeightAlong(segment, emitters, emitter, byIntensity) / (byIntensity ? intensity_ : sum),
+          WeightAlong(segment, emitters, emitter, true) / intensity_};
+}
+
 }  // namespace lampyr

@@ -24,9 +24,19 @@ class EmitterList {
   EmitterChoice Select(const TreeReceiver& receiver, const Cut& cut, double u, bool defensive) const;
   EmitterProbability ProbabilityOf(const TreeReceiver& receiver, const Cut& cut, uint32_t emitter) const;
 
+  // As LightTree.
+  EmitterChoice SelectAlong(const TreeSegment& segment, const SegmentEmitters& emitters, double u,
+                            bool defensive) const;
+  EmitterProbability ProbabilityAlong(const TreeSegment& segment, const SegmentEmitters& emitters,
+                                      uint32_t emitter) const;
+  double ImportanceAlong(const TreeSegment& segment, const SegmentEmitters& emitters) const;
+
   bool IsEmpty() const { return !(intensity_ > 0); }
 
  private:
+  double WeightAlong(const TreeSegment& segment, const SegmentEmitters& emitters, uint32_t emitter,
+                     bool byIntensity) const;
+
   std::vector<LobeBlock> blocks_;
   double intensity_ = 0;
 };

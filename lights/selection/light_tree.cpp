@@ -285,9 +285,6 @@ int IndexIn(const LightTree::Cut& cut, uint32_t node) {
   return at == cut.node + cut.count ? -1 : static_cast<int>(at - cut.node);
 }
 
-// Bound of the depth: the builder halves from level 40 on, and there are at most 2^31 emitters.
-constexpr size_t kLongestWay = 128;
-
 }  // namespace
 
 // From the cut downwards, with the same products in the same order as the selection.

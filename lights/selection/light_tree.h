@@ -15,6 +15,7 @@
 
 #include "base/large_array.h"
 #include "lights/selection/importance.h"
+#include "lights/selection/segment_importance.h"
 
 namespace lampyr {
 
@@ -67,6 +68,15 @@ class LightTree {
   void Record(LightLearning& learning, const TreeReceiver& receiver, const Cut& cut, uint32_t emitter,
               double defensiveShare, double importance) const;
 
+  // The same for a segment, without a cut: by the importances of clusters, and by those that emitters have of their
+  // own.
+  EmitterChoice SelectAlong(const TreeSegment& segment, const SegmentEmitters& emitters, double u,
+                            bool defensive) const;
+  EmitterProbability ProbabilityAlong(const TreeSegment& segment, const SegmentEmitters& emitters,
+                                      uint32_t emitter) const;
+  // Estimate of ∫ irradiance dt along the segment by all emitters, in units of Importance(); 0 if none has importance.
+  double ImportanceAlong(const TreeSegment& segment, const SegmentEmitters& emitters) const;
+
   bool IsEmpty() const { return nodes_.Size() == 0; }
   size_t Bytes() const;
   int Depth() const { return depth_; }
@@ -82,6 +92,8 @@ class LightTree {
 
  private:
   static constexpr uint32_t kEmitter = 0x80000000u;
+  // Bound of the depth: the builder halves from level 40 on, and there are at most 2^31 emitters.
+  static constexpr size_t kLongestWay = 128;
 
   friend class LightTreeBuilder;
 
@@ -92,6 +104,16 @@ class LightTree {
     double sum;
   };
   void LookAt(uint32_t node, const TreeReceiver& receiver, float parentFactor, View& view) const;
+  // Importances of a node's children for a segment; by intensity if none has importance.
+  struct SegmentView {
+    double importance[kWidth];
+    double sum;
+    bool byIntensity;
+
+    // Samples a child in proportion to its importance and rescales u.
+    uint32_t Choose(double& u) const;
+  };
+  void LookAlong(uint32_t node, const TreeSegment& segment, const SegmentEmitters& emitters, SegmentView& view) const;
   double SeenThrough(const Cut& cut, uint32_t node) const;
   // First-order variation over a cluster: the contribution of an emitter relative to one of the same intensity at the
   // centre. Its mean, weighted by intensity, is 1.

@@ -1,0 +1,38 @@
+// Importance of a cluster of emitters for a segment of a ray in a medium: an estimate of what light it scatters into
+// the ray there. The light tree selects in proportion to it.
+//
+// It is ∫ I/d² dt over the segment, which is the angle under which the cluster sees the segment, over its distance from
+// the line, times the largest cosine that the cluster has towards any point of the segment. Equiangular sampling leaves
+// just this integral as the weight of a sample ([Kulla12]). Dark are only clusters from which no point of the segment
+// receives light.
+#pragma once
+
+#include "lights/selection/importance.h"
+
+namespace lampyr {
+
+// A segment in the tree's coordinates. `direction` is unit; `length` may be infinite.
+struct TreeSegment {
+  Point3 origin{0.0f};
+  Vector3 direction{0, 0, 1};
+  float length = 0;
+};
+
+// At least half of the integral of Importance() along the segment, at a receiver without a normal; 0 only if that is 0
+// everywhere.
+double SegmentImportance(const ClusterLobe& lobe, const TreeSegment& segment);
+
+// Importance of one emitter by the estimate of its light: `irradiance` in units of Importance(), at the point of
+// [minT, maxT] nearest to the lobe's mean.
+double OwnSegmentImportance(const ClusterLobe& lobe, const TreeSegment& segment, double irradiance, double minT,
+                            double maxT);
+
+// The emitters of a tree, as seen from one segment.
+class SegmentEmitters {
+ public:
+  virtual ~SegmentEmitters() = default;
+  // OwnSegmentImportance of an emitter; 0: its light does not reach the segment.
+  virtual double ImportanceOf(uint32_t emitter, const ClusterLobe& lobe) const = 0;
+};
+
+}  // namespace lampyr
