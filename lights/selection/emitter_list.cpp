@@ -79,20 +79,20 @@ EmitterProbability EmitterList::ProbabilityOf(const TreeReceiver& receiver, cons
                                                   uint32_t emitter, bool byIntensity) const {
   const ClusterLobe lobe = blocks_[emitter / kWidth].Get(static_cast<int>(emitter % kWidth));
   if (byIntensity) return static_cast<double>(lobe.intensity);
-  return SegmentImportance(lobe, segment) > 0 ? emitters.ImportanceOf(emitter, lobe) : 0.0;
+  return ImportanceAlong(lobe, segment).value > 0 ? emitters.ImportanceOf(emitter, lobe) : 0.0;
 }
 
-double EmitterList::ImportanceAlong(const TreeSegment& segment, const SegmentEmitters& emitters) const {
-  double sum = 0;
-  for (uint32_t i = 0; i < blocks_.size() * kWidth; ++i) sum += WeightAlong(segment, emitters, i, false);
-  return sum;
+void EmitterList::LookAlong(const TreeSegment& segment, const SegmentEmitters& emitters, SegmentCut& cut) const {
+  cut = {};
+  for (uint32_t i = 0; i < blocks_.size() * kWidth; ++i) cut.sum += WeightAlong(segment, emitters, i, false);
+  cut.fluence = cut.sum;
+  if (!(cut.sum > 0)) cut = {intensity_, 0, true};
 }
 
-EmitterChoice EmitterList::SelectAlong(const TreeSegment& segment, const SegmentEmitters& emitters, double u,
-                                       bool defensive) const {
-  const double sum = ImportanceAlong(segment, emitters);
-  const bool byIntensity = defensive || !(sum > 0);
-  double left = u * (byIntensity ? intensity_ : sum);
+EmitterChoice EmitterList::SelectAlong(const TreeSegment& segment, const SegmentEmitters& emitters,
+                                       const SegmentCut& cut, double u, bool defensive) const {
+  const bool byIntensity = defensive || cut.byIntensity;
+  double left = u * (byIntensity ? intensity_ : cut.sum);
   EmitterChoice choice;
   for (uint32_t i = 0; i < blocks_.size() * kWidth; ++i) {
     const double weight = WeightAlong(segment, emitters, i, byIntensity);
@@ -102,16 +102,14 @@ EmitterChoice EmitterList::SelectAlong(const TreeSegment& segment, const Segment
     if (left < weight) break;
     left -= weight;
   }
-  choice.probability = ProbabilityAlong(segment, emitters, choice.emitter);
+  choice.probability = ProbabilityAlong(segment, emitters, cut, choice.emitter);
   return choice;
 }
 
 EmitterProbability EmitterList::ProbabilityAlong(const TreeSegment& segment, const SegmentEmitters& emitters,
-                                                 uint32_t emitter) const {
+                                                 const SegmentCut& cut, uint32_t emitter) const {
   if (emitter >= blocks_.size() * kWidth) return {0, 0};
-  const double sum = ImportanceAlong(segment, emitters);
-  const bool byIntensity = !(sum > 0);
-  return {WeightAlong(segment, emitters, emitter, byIntensity) / (byIntensity ? intensity_ : sum),
+  return {WeightAlong(segment, emitters, emitter, cut.byIntensity) / cut.sum,
           WeightAlong(segment, emitters, emitter, true) / intensity_};
 }
 

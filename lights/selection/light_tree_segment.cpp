@@ -6,25 +6,12 @@
 
 namespace lampyr {
 
-// Not inlined, so that the same segment always gives the same bits.
-[[gnu::noinline]] void LightTree::LookAlong(uint32_t node, const TreeSegment& segment, const SegmentEmitters& emitters,
-                                            SegmentView& view) const {
-  view.sum = 0;
-  view.byIntensity = false;
-  for (int slot = 0; slot < kWidth; ++slot) {
-    const ClusterLobe lobe = nodes_[node].lobes.Get(slot);
-    const uint32_t child = nodes_[node].child[slot];
-    double importance = SegmentImportance(lobe, segment);
-    if (importance > 0 && (child & kEmitter)) importance = emitters.ImportanceOf(child & ~kEmitter, lobe);
-    view.sum += view.importance[slot] = importance;
-  }
-  if (view.sum > 0) return;
-  view.byIntensity = true;
-  for (int slot = 0; slot < kWidth; ++slot)
-    view.sum += view.importance[slot] = static_cast<double>(nodes_[node].lobes.intensity[slot]);
-}
+namespace {
 
-uint32_t LightTree::SegmentView::Choose(double& u) const {
+constexpr int kWidth = LightTree::kWidth;
+
+// Samples a child in proportion to the importances and rescales u.
+uint32_t Choose(const double* importance, double sum, double& u) {
   double left = u * sum;
   uint32_t chosen = 0;
   for (uint32_t slot = 0; slot < kWidth; ++slot) {
@@ -37,52 +24,121 @@ uint32_t LightTree::SegmentView::Choose(double& u) const {
   return chosen;
 }
 
-EmitterChoice LightTree::SelectAlong(const TreeSegment& segment, const SegmentEmitters& emitters, double u,
-                                     bool defensive) const {
+}  // namespace
+
+// Not inlined, so that the same segment always gives the same bits.
+[[gnu::noinline]] void LightTree::EvaluateAlong(uint32_t node, const TreeSegment& segment,
+                                                const SegmentEmitters& emitters, SegmentView& view) const {
+  view.sum = 0;
+  for (int slot = 0; slot < kWidth; ++slot) {
+    const ClusterLobe lobe = nodes_[node].lobes.Get(slot);
+    const uint32_t child = nodes_[node].child[slot];
+    const SegmentImportance along = ImportanceAlong(lobe, segment);
+    const bool isEmitter = (child & kEmitter) != 0;
+    view.importance[slot] = isEmitter && along.value > 0 ? emitters.ImportanceOf(child & ~kEmitter, lobe) : along.value;
+    view.sum += view.importance[slot];
+    const float variety = FromBfloat16(nodes_[node].variety[slot]);
+    const float unevenness = 1 - glm::dot(lobe.meanNormal, lobe.meanNormal);
+    const auto doubt = static_cast<double>(kDoubtOfUnevenness * std::min(unevenness, variety));
+    view.doubt[slot] = isEmitter ? 0 : std::min(static_cast<double>(kDoubtOfSpread) * along.spread + doubt, 1.0);
+  }
+}
+
+// Not inlined, as above.
+[[gnu::noinline]] void LightTree::LookBelow(uint32_t node, const TreeSegment& segment, const SegmentEmitters& emitters,
+                                            SegmentView& view) const {
+  EvaluateAlong(node, segment, emitters, view);
+  if (view.sum > 0) return;
+  for (int slot = 0; slot < kWidth; ++slot)
+    view.sum += view.importance[slot] = static_cast<double>(nodes_[node].lobes.intensity[slot]);
+}
+
+// As Look. Not inlined, as above.
+[[gnu::noinline]] void LightTree::LookAlong(const TreeSegment& segment, const SegmentEmitters& emitters,
+                                            SegmentCut& cut) const {
+  cut.count = 0;
+  cut.total = cut.fluence = 0;
+  if (IsEmpty()) return;
+  double doubtful[SegmentCut::kRoom][kWidth], total = 0;
+  const auto open = [&](uint32_t node) {
+    SegmentView view;
+    EvaluateAlong(node, segment, emitters, view);
+    for (int slot = 0; slot < kWidth; ++slot) doubtful[cut.count][slot] = view.importance[slot] * view.doubt[slot];
+    std::copy_n(view.importance, kWidth, cut.importance[cut.count]);
+    total += view.sum;
+    cut.node[cut.count++] = node;
+  };
+  open(0);
+  for (int i = 0; i < cut.count; ++i) {
+    for (int slot = 0; slot < kWidth && cut.count < SegmentCut::kRoom; ++slot) {
+      if (!(doubtful[i][slot] > static_cast<double>(kNegligible) * std::max(total, 0.0))) continue;
+      total -= cut.importance[i][slot];
+      cut.importance[i][slot] = 0;
+      open(nodes_[cut.node[i]].child[slot]);
+    }
+  }
+  for (int i = 0; i < cut.count; ++i) {
+    cut.sum[i] = 0;
+    for (const double importance : cut.importance[i]) cut.sum[i] += importance;
+    cut.total += cut.sum[i];
+  }
+  cut.fluence = cut.total;
+  if (cut.total > 0) return;
+  // No emitter has importance: selection by intensity.
+  cut.count = 1;
+  SegmentView view;
+  LookBelow(0, segment, emitters, view);
+  std::copy_n(view.importance, kWidth, cut.importance[0]);
+  cut.total = cut.sum[0] = view.sum;
+}
+
+EmitterChoice LightTree::SelectAlong(const TreeSegment& segment, const SegmentEmitters& emitters, const SegmentCut& cut,
+                                     double u, bool defensive) const {
   EmitterChoice choice;
   choice.u = u;
   if (defensive) {
     choice.emitter = FindByIntensity(0, Trend(), choice.u).emitter;
-    choice.probability = ProbabilityAlong(segment, emitters, choice.emitter);
+    choice.probability = ProbabilityAlong(segment, emitters, cut, choice.emitter);
     return choice;
   }
-  double probability = 1;
-  for (uint32_t node = 0;;) {
-    SegmentView view;
-    LookAlong(node, segment, emitters, view);
-    const uint32_t slot = view.Choose(choice.u), child = nodes_[node].child[slot];
-    probability *= view.importance[slot] / view.sum;
-    if (child & kEmitter) {
-      choice.emitter = child & ~kEmitter;
-      choice.probability = {probability, DefensiveProbability(nodes_[node].lobes.intensity[slot])};
-      return choice;
-    }
+  double x = u * cut.total;
+  int at = 0;
+  while (at + 1 < cut.count && x >= cut.sum[at]) x -= cut.sum[at++];
+  while (!(cut.sum[at] > 0)) --at;  // rounding led beyond the last node with importance
+  choice.u = std::min(x / cut.sum[at], 0x1.fffffffffffffp-1);
+  uint32_t node = cut.node[at], slot = Choose(cut.importance[at], cut.sum[at], choice.u);
+  double probability = cut.importance[at][slot] / cut.total;
+  for (uint32_t child; !((child = nodes_[node].child[slot]) & kEmitter);) {
     node = child;
+    SegmentView view;
+    LookBelow(node, segment, emitters, view);
+    slot = Choose(view.importance, view.sum, choice.u);
+    probability *= view.importance[slot] / view.sum;
   }
+  choice.emitter = nodes_[node].child[slot] & ~kEmitter;
+  choice.probability = {probability, DefensiveProbability(nodes_[node].lobes.intensity[slot])};
+  return choice;
 }
 
-// From the root downwards, with the same products in the same order as the selection.
+// From the cut downwards, with the same products in the same order as the selection.
 EmitterProbability LightTree::ProbabilityAlong(const TreeSegment& segment, const SegmentEmitters& emitters,
-                                               uint32_t emitter) const {
+                                               const SegmentCut& cut, uint32_t emitter) const {
   if (emitter >= slots_.size() || slots_[emitter] == kNone) return {0, 0};
   std::array<uint32_t, kLongestWay> way;
   size_t length = 0;
-  for (uint32_t slot = slots_[emitter]; slot != kNone; slot = parents_[slot / kWidth]) way[length++] = slot;
-  double probability = 1;
+  int at = cut.count;
+  for (uint32_t slot = slots_[emitter]; at == cut.count; slot = parents_[slot / kWidth]) {
+    way[length++] = slot;
+    at = static_cast<int>(std::find(cut.node, cut.node + cut.count, slot / kWidth) - cut.node);
+  }
+  double probability = cut.importance[at][way[--length] % kWidth] / cut.total;
   while (length > 0) {
     const uint32_t slot = way[--length];
     SegmentView view;
-    LookAlong(slot / kWidth, segment, emitters, view);
+    LookBelow(slot / kWidth, segment, emitters, view);
     probability *= view.importance[slot % kWidth] / view.sum;
   }
   return {probability, DefensiveProbability(IntensityOf(slots_[emitter]))};
-}
-
-double LightTree::ImportanceAlong(const TreeSegment& segment, const SegmentEmitters& emitters) const {
-  if (IsEmpty()) return 0;
-  SegmentView view;
-  LookAlong(0, segment, emitters, view);
-  return view.byIntensity ? 0 : view.sum;
 }
 
 }  // namespace lampyr

@@ -38,8 +38,8 @@ struct View {
 
 }  // namespace
 
-double SegmentImportance(const ClusterLobe& lobe, const TreeSegment& segment) {
-  if (!(lobe.intensity > 0) || !(segment.length > 0)) return 0;
+SegmentImportance ImportanceAlong(const ClusterLobe& lobe, const TreeSegment& segment) {
+  if (!(lobe.intensity > 0) || !(segment.length > 0)) return {};
   const View view(lobe, segment, 0, static_cast<double>(segment.length));
   const Vector3d normal(lobe.meanNormal);
   double cosine = LargestCosine(normal, view.from, view.along, view.length);
@@ -48,7 +48,7 @@ double SegmentImportance(const ClusterLobe& lobe, const TreeSegment& segment) {
   constexpr double kSlackOfBoth = 2 * static_cast<double>(kSlack);  // this cosine is rounded otherwise than a point's
   if (least > radius &&
       cosine < static_cast<double>(lobe.coneCosine) - static_cast<double>(lobe.coneReach) / least - kSlackOfBoth) {
-    return 0;
+    return {};
   }
   const auto variance = static_cast<double>(lobe.variance);
   const double floor = std::max(static_cast<double>(kInside) * variance, static_cast<double>(kNearest2));
@@ -57,11 +57,11 @@ double SegmentImportance(const ClusterLobe& lobe, const TreeSegment& segment) {
   const double unevenness = std::max(1 - glm::dot(normal, normal), 0.0);
   const double root = std::sqrt(cosine * cosine + static_cast<double>(kSpread) * std::min(unevenness + spread, 1.0));
   const double emitted = std::max(0.5 * (lobe.twoSided ? root : root + cosine), static_cast<double>(kLeast));
-  return static_cast<double>(lobe.intensity) * emitted * view.InverseSquares(floor);
+  return {static_cast<double>(lobe.intensity) * emitted * view.InverseSquares(floor), spread};
 }
 
-double OwnSegmentImportance(const ClusterLobe& lobe, const TreeSegment& segment, double irradiance, double minT,
-                            double maxT) {
+double OwnImportanceAlong(const ClusterLobe& lobe, const TreeSegment& segment, double irradiance, double minT,
+                          double maxT) {
   if (!(irradiance > 0) || !(minT < maxT)) return 0;
   const View view(lobe, segment, minT, maxT);
   const auto radius = static_cast<double>(lobe.radius);

@@ -18,20 +18,24 @@ struct TreeSegment {
   float length = 0;
 };
 
-// At least half of the integral of Importance() along the segment, at a receiver without a normal; 0 only if that is 0
-// everywhere.
-double SegmentImportance(const ClusterLobe& lobe, const TreeSegment& segment);
+struct SegmentImportance {
+  // At least half of the integral of Importance() along the segment, at receivers without a normal; 0 only if that is 0
+  // everywhere.
+  double value = 0;
+  double spread = 0;  // variance of positions over the least squared distance, at most 1
+};
+SegmentImportance ImportanceAlong(const ClusterLobe& lobe, const TreeSegment& segment);
 
 // Importance of one emitter by the estimate of its light: `irradiance` in units of Importance(), at the point of
 // [minT, maxT] nearest to the lobe's mean.
-double OwnSegmentImportance(const ClusterLobe& lobe, const TreeSegment& segment, double irradiance, double minT,
-                            double maxT);
+double OwnImportanceAlong(const ClusterLobe& lobe, const TreeSegment& segment, double irradiance, double minT,
+                          double maxT);
 
 // The emitters of a tree, as seen from one segment.
 class SegmentEmitters {
  public:
   virtual ~SegmentEmitters() = default;
-  // OwnSegmentImportance of an emitter; 0: its light does not reach the segment.
+  // OwnImportanceAlong of an emitter; 0: its light does not reach the segment.
   virtual double ImportanceOf(uint32_t emitter, const ClusterLobe& lobe) const = 0;
 };
 

@@ -72,22 +72,25 @@ class TreeSelector final : public LightSelector {
                                                 double u) const override {
     if (search_.IsEmpty() && farTable_.IsZero()) return std::nullopt;
     const TreeSegment place = Place(segment);
-    const EmittersOfLights emitters{emitters_, lights, place};
-    const double far = FarShareAlong(segment, place, emitters);
-    const auto select = [&](double x, bool defensive) { return search_.SelectAlong(place, emitters, x, defensive); };
-    return SelectOne(far, u, 1, select);
+    const EmittersOfLights emitters(emitters_, lights, place);
+    typename Search::SegmentCut cut;
+    search_.LookAlong(place, emitters, cut);
+    return SelectOne(FarShareAlong(segment, cut.fluence), u, 1,
+                     [&](double x, bool defensive) { return search_.SelectAlong(place, emitters, cut, x, defensive); });
   }
 
   PdfDiscrete SegmentProbability(const RaySegment& segment, const SegmentLights& lights, uint32_t light,
                                  int patch) const override {
     const TreeSegment place = Place(segment);
-    const EmittersOfLights emitters{emitters_, lights, place};
-    const double far = FarShareAlong(segment, place, emitters);
+    const EmittersOfLights emitters(emitters_, lights, place);
+    typename Search::SegmentCut cut;
+    search_.LookAlong(place, emitters, cut);
+    const double far = FarShareAlong(segment, cut.fluence);
     const std::optional<uint32_t> at = FarIndexOf(light);
     if (at) return farTable_.IsZero() ? PdfDiscrete(0) : FarExpected(farTable_.Probability(*at), far, 1);
     if (search_.IsEmpty()) return PdfDiscrete(0);
     const std::optional<uint32_t> emitter = EmitterOf(light, patch);
-    return emitter ? Expected(search_.ProbabilityAlong(place, emitters, *emitter), far, 1) : PdfDiscrete(0);
+    return emitter ? Expected(search_.ProbabilityAlong(place, emitters, cut, *emitter), far, 1) : PdfDiscrete(0);
   }
 
   void Record(LightLearning& learning, const Receiver& receiver, uint32_t light, int patch,
@@ -150,9 +153,9 @@ class TreeSelector final : public LightSelector {
       const std::optional<SegmentEstimate> estimate = lights.EstimateOf(own.light, own.patch);
       if (!estimate) return 0;
       const double scale = 1 / static_cast<double>(emitters.size);
-      return OwnSegmentImportance(lobe, segment, emitters.ImportanceOf(static_cast<double>(estimate->radiance)),
-                                  static_cast<double>(estimate->minT) * scale,
-                                  static_cast<double>(estimate->maxT) * scale);
+      return OwnImportanceAlong(lobe, segment, emitters.ImportanceOf(static_cast<double>(estimate->radiance)),
+                                static_cast<double>(estimate->minT) * scale,
+                                static_cast<double>(estimate->maxT) * scale);
     }
   };
 
@@ -213,14 +216,12 @@ class TreeSelector final : public LightSelector {
     return std::clamp(share, kSmallestGroup, 1 - kSmallestGroup);
   }
 
-  // The same for a segment: irradiance from infinity is the same all along it, within the scene.
-  [[gnu::noinline]] double FarShareAlong(const RaySegment& segment, const TreeSegment& place,
-                                         const SegmentEmitters& emitters) const {
+  // The same for a segment, along which irradiance from infinity is constant. `fluence`: by the emitters.
+  [[gnu::noinline]] double FarShareAlong(const RaySegment& segment, double fluence) const {
     if (farTable_.IsZero()) return 0;
     if (search_.IsEmpty()) return 1;
+    const double near = emitters_.Irradiance(fluence) * static_cast<double>(emitters_.size);
     const double far = farIrradiance_ * std::min(static_cast<double>(segment.length), diameter_);
-    const double near =
-        emitters_.Irradiance(search_.ImportanceAlong(place, emitters)) * static_cast<double>(emitters_.size);
     return far > 0 ? std::clamp(far / (far + near), kSmallestGroup, 1 - kSmallestGroup) : kSmallestGroup;
   }
 
