@@ -157,10 +157,7 @@ TEST_F(WrongTypes, AreCaughtEstimating) {
       {Fault::EstimateIsZero, kAll, {"estimate"}, {}},
       {Fault::SegmentIsMissed, kAll, {"estimate", "segment"}, {}},
       {Fault::SegmentEndsEarly, kAll, {"estimate", "segment"}, {}},
-      {Fault::SegmentCutTooShort,
-       {"square", "rect", "disk", "spot", "projection", "portal"},
-       {"segment"},
-       {"estimate"}},
+      {Fault::SegmentCutTooShort, {"spot", "projection"}, {"segment"}, {"estimate"}},
       {Fault::SegmentWithoutEndIsMissed, kAll, {"segment"}, {}},
   });
 }
