@@ -83,17 +83,20 @@ std::optional<SegmentEstimate> SurfaceSegmentEstimate(const EmissionBounds& boun
   return estimate;
 }
 
-// n · p / |p| has one extremum on the line, where its derivative is 0.
+// With x along the line from the foot of the origin at distance D, it is (a + b x)/√(D² + x²): the maximum over the
+// line is at x = b D²/a, if a is positive.
 double LargestCosine(const Vector3d& n, const Vector3d& from, const Vector3d& along, double length) {
-  const double a = glm::dot(n, from), b = glm::dot(n, along), c = glm::dot(from, from), e = glm::dot(from, along);
-  const auto at = [&](double t) {
-    const double squared = c + t * (2 * e + t);
-    return squared > 0 ? std::min((a + t * b) / std::sqrt(squared), glm::length(n)) : glm::length(n);
+  const double start = glm::dot(from, along);
+  const Vector3d across = from - start * along;
+  const double a = glm::dot(n, across), b = glm::dot(n, along), distance2 = glm::dot(across, across);
+  const auto at = [&](double x) {
+    const double squared = distance2 + x * x;
+    return squared > 0 ? (a + b * x) / std::sqrt(squared) : glm::length(n);
   };
-  double largest = std::max(at(0), std::isinf(length) ? b : at(length));
-  const double slope = a - b * e, extremum = slope != 0 ? (b * c - a * e) / slope : 0.0;
-  if (extremum > 0 && extremum < length) largest = std::max(largest, at(extremum));
-  return largest;
+  double largest = std::max(at(start), std::isinf(length) ? b : at(start + length));
+  const double best = a > 0 ? b * distance2 / a : start;
+  if (best > start && best < start + length) largest = std::max(largest, at(best));
+  return std::min(largest, glm::length(n));
 }
 
 // The angle between the vectors (start, distance) and (start + length, distance); for an infinite length, its limit.

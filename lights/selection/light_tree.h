@@ -122,12 +122,14 @@ class LightTree {
   void LookAt(uint32_t node, const TreeReceiver& receiver, float parentFactor, View& view) const;
   // Importances of a node's children for a segment, and the uncertainties of clusters among them, from 0 to 1.
   struct SegmentView {
-    double importance[kWidth], doubt[kWidth];
+    double importance[kWidth];
     double sum;
+    alignas(64) float doubt[kWidth];
   };
-  void EvaluateAlong(uint32_t node, const TreeSegment& segment, const SegmentEmitters& emitters,
-                     SegmentView& view) const;
-  // The same, by intensity if no child has importance.
+  void EvaluateNode(uint32_t node, const TreeSegment& segment, SegmentView& view) const;
+  // Replaces the importances of emitters by their own where they are more than a small part of `total`.
+  void AskEmitters(uint32_t node, const SegmentEmitters& emitters, double total, double* importance) const;
+  // Of a node below the cut, with those of emitters; by intensity if no child has importance.
   void LookBelow(uint32_t node, const TreeSegment& segment, const SegmentEmitters& emitters, SegmentView& view) const;
   double SeenThrough(const Cut& cut, uint32_t node) const;
   // First-order variation over a cluster: the contribution of an emitter relative to one of the same intensity at the

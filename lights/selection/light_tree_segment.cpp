@@ -3,6 +3,7 @@
 #include <array>
 
 #include "lights/selection/light_tree.h"
+#include "lights/selection/segment_importance_lanes.h"
 
 namespace lampyr {
 
@@ -27,27 +28,38 @@ uint32_t Choose(const double* importance, double sum, double& u) {
 }  // namespace
 
 // Not inlined, so that the same segment always gives the same bits.
-[[gnu::noinline]] void LightTree::EvaluateAlong(uint32_t node, const TreeSegment& segment,
-                                                const SegmentEmitters& emitters, SegmentView& view) const {
+[[gnu::noinline]] void LightTree::EvaluateNode(uint32_t node, const TreeSegment& segment, SegmentView& view) const {
+  const LaneSegmentImportances lanes = EvaluateAlong(nodes_[node].lobes, segment);
+  alignas(64) float importance[kWidth];
+  lanes.importance.copy_to(importance, simd::vector_aligned);
+  const Lanes variety = importance::LoadBfloat16(nodes_[node].variety);
+  Lanes doubt = kDoubtOfUnevenness * simd::min(lanes.unevenness, variety);
+  where(variety < 0.0f, doubt) = kNoDoubt;
+  doubt = simd::min(kDoubtOfSpread * lanes.spread + doubt, Lanes(1.0f));
+  doubt.copy_to(view.doubt, simd::vector_aligned);
   view.sum = 0;
+  for (int slot = 0; slot < kWidth; ++slot)
+    view.sum += view.importance[slot] = segment.length > 0 ? static_cast<double>(importance[slot]) : 0.0;
+}
+
+// Not inlined, as above.
+[[gnu::noinline]] void LightTree::AskEmitters(uint32_t node, const SegmentEmitters& emitters, double total,
+                                              double* importance) const {
+  constexpr double kAsked = 1.0 / 64;
   for (int slot = 0; slot < kWidth; ++slot) {
-    const ClusterLobe lobe = nodes_[node].lobes.Get(slot);
     const uint32_t child = nodes_[node].child[slot];
-    const SegmentImportance along = ImportanceAlong(lobe, segment);
-    const bool isEmitter = (child & kEmitter) != 0;
-    view.importance[slot] = isEmitter && along.value > 0 ? emitters.ImportanceOf(child & ~kEmitter, lobe) : along.value;
-    view.sum += view.importance[slot];
-    const float variety = FromBfloat16(nodes_[node].variety[slot]);
-    const float unevenness = 1 - glm::dot(lobe.meanNormal, lobe.meanNormal);
-    const auto doubt = static_cast<double>(kDoubtOfUnevenness * std::min(unevenness, variety));
-    view.doubt[slot] = isEmitter ? 0 : std::min(static_cast<double>(kDoubtOfSpread) * along.spread + doubt, 1.0);
+    if (!(child & kEmitter) || !(importance[slot] > kAsked * total)) continue;
+    importance[slot] = emitters.ImportanceOf(child & ~kEmitter, nodes_[node].lobes.Get(slot));
   }
 }
 
 // Not inlined, as above.
 [[gnu::noinline]] void LightTree::LookBelow(uint32_t node, const TreeSegment& segment, const SegmentEmitters& emitters,
                                             SegmentView& view) const {
-  EvaluateAlong(node, segment, emitters, view);
+  EvaluateNode(node, segment, view);
+  AskEmitters(node, emitters, view.sum, view.importance);
+  view.sum = 0;
+  for (const double importance : view.importance) view.sum += importance;
   if (view.sum > 0) return;
   for (int slot = 0; slot < kWidth; ++slot)
     view.sum += view.importance[slot] = static_cast<double>(nodes_[node].lobes.intensity[slot]);
@@ -62,8 +74,9 @@ uint32_t Choose(const double* importance, double sum, double& u) {
   double doubtful[SegmentCut::kRoom][kWidth], total = 0;
   const auto open = [&](uint32_t node) {
     SegmentView view;
-    EvaluateAlong(node, segment, emitters, view);
-    for (int slot = 0; slot < kWidth; ++slot) doubtful[cut.count][slot] = view.importance[slot] * view.doubt[slot];
+    EvaluateNode(node, segment, view);
+    for (int slot = 0; slot < kWidth; ++slot)
+      doubtful[cut.count][slot] = view.importance[slot] * static_cast<double>(view.doubt[slot]);
     std::copy_n(view.importance, kWidth, cut.importance[cut.count]);
     total += view.sum;
     cut.node[cut.count++] = node;
@@ -78,6 +91,7 @@ uint32_t Choose(const double* importance, double sum, double& u) {
     }
   }
   for (int i = 0; i < cut.count; ++i) {
+    AskEmitters(cut.node[i], emitters, total, cut.importance[i]);
     cut.sum[i] = 0;
     for (const double importance : cut.importance[i]) cut.sum[i] += importance;
     cut.total += cut.sum[i];
@@ -86,10 +100,10 @@ uint32_t Choose(const double* importance, double sum, double& u) {
   if (cut.total > 0) return;
   // No emitter has importance: selection by intensity.
   cut.count = 1;
-  SegmentView view;
-  LookBelow(0, segment, emitters, view);
-  std::copy_n(view.importance, kWidth, cut.importance[0]);
-  cut.total = cut.sum[0] = view.sum;
+  cut.sum[0] = 0;
+  for (int slot = 0; slot < kWidth; ++slot)
+    cut.sum[0] += cut.importance[0][slot] = static_cast<double>(nodes_[0].lobes.intensity[slot]);
+  cut.total = cut.sum[0];
 }
 
 EmitterChoice LightTree::SelectAlong(const TreeSegment& segment, const SegmentEmitters& emitters, const SegmentCut& cut,

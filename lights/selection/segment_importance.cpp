@@ -19,7 +19,7 @@ struct View {
   double nearest, least2;  // coordinate of the nearest point, relative to the foot; its squared distance
 
   View(const ClusterLobe& lobe, const TreeSegment& segment, double minT, double maxT)
-      : from(Point3d(segment.origin) - Point3d(lobe.mean) + minT * Vector3d(segment.direction)),
+      : from(Point3d(segment.base) - Point3d(lobe.mean) + (segment.start + minT) * segment.direction),
         along(segment.direction),
         start(glm::dot(from, along)),
         length(maxT - minT) {
@@ -40,7 +40,7 @@ struct View {
 
 SegmentImportance ImportanceAlong(const ClusterLobe& lobe, const TreeSegment& segment) {
   if (!(lobe.intensity > 0) || !(segment.length > 0)) return {};
-  const View view(lobe, segment, 0, static_cast<double>(segment.length));
+  const View view(lobe, segment, 0, segment.length);
   const Vector3d normal(lobe.meanNormal);
   double cosine = LargestCosine(normal, view.from, view.along, view.length);
   if (lobe.twoSided) cosine = std::max(cosine, LargestCosine(-normal, view.from, view.along, view.length));

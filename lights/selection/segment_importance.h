@@ -11,11 +11,20 @@
 
 namespace lampyr {
 
-// A segment in the tree's coordinates. `direction` is unit; `length` may be infinite.
+// A segment in the tree's coordinates: base + x direction, with x in [start, start + length]. The base is the point of
+// the line nearest to the tree's centre, so that a segment from far away is known accurately among the emitters.
 struct TreeSegment {
-  Point3 origin{0.0f};
-  Vector3 direction{0, 0, 1};
-  float length = 0;
+  Point3 base{0.0f};
+  Vector3d direction{0, 0, 1};  // unit to double precision
+  double start = 0;             // x of the segment's origin
+  double length = 0;            // may be infinite
+
+  TreeSegment(const Point3d& origin, const Vector3& along, double distance)
+      : direction(Vector3d(along) / glm::length(Vector3d(along))),
+        start(glm::dot(origin, direction)),
+        length(distance) {
+    base = Point3(origin - start * direction);
+  }
 };
 
 struct SegmentImportance {
@@ -24,6 +33,7 @@ struct SegmentImportance {
   double value = 0;
   double spread = 0;  // variance of positions over the least squared distance, at most 1
 };
+// The readable version, for one cluster; segment_importance_lanes.h evaluates eight at a time.
 SegmentImportance ImportanceAlong(const ClusterLobe& lobe, const TreeSegment& segment);
 
 // Importance of one emitter by the estimate of its light: `irradiance` in units of Importance(), at the point of

@@ -136,8 +136,9 @@ class TreeSelector final : public LightSelector {
   }
 
   TreeSegment Place(const RaySegment& segment) const {
-    const float scale = 1 / emitters_.size;
-    return {(segment.origin - emitters_.center) * scale, segment.direction, segment.length * scale};
+    const double scale = 1 / static_cast<double>(emitters_.size);
+    return {(Point3d(segment.origin) - Point3d(emitters_.center)) * scale, segment.direction,
+            static_cast<double>(segment.length) * scale};
   }
 
   // The emitters of the search for one segment, by what their lights say.

@@ -2,7 +2,7 @@
 // arrives, and with equiangular distances sums up what the lights send to the segment.
 #include <gtest/gtest.h>
 
-#include "lights/selection/segment_importance.h"
+#include "lights/selection/segment_importance_lanes.h"
 #include "lit_scene.h"
 #include "random_emitters.h"
 #include "suite/statistics.h"
@@ -236,27 +236,60 @@ TEST(SegmentImportances, BoundsWhatItsPointsReceive) {
     for (const ClusterBounds& part : parts) cluster.Add(part);
     const ClusterLobe lobe = LobeOf(cluster);
     constexpr float sizes[] = {1, 3, 100};
-    TreeSegment segment{test::RandomPoint(rng, sizes[rng.NextUint32() % 3]), test::RandomDirection(rng), 0};
-    segment.length = rng.NextFloat() * glm::length(segment.origin) * 2;
+    const Point3 origin = test::RandomPoint(rng, sizes[rng.NextUint32() % 3]);
+    const float length = rng.NextFloat() * glm::length(origin) * 2;
+    TreeSegment segment(Point3d(origin), test::RandomDirection(rng), static_cast<double>(length));
     constexpr int points = 256;
     double integral = 0;
     for (int i = 0; i < points; ++i) {
       const TreeReceiver receiver{
-          segment.origin + segment.length * (static_cast<float>(i) + 0.5f) / points * segment.direction, Normal3(0.0f),
-          false};
-      integral += static_cast<double>(Importance(lobe, receiver)) * static_cast<double>(segment.length) / points;
+          origin + length * (static_cast<float>(i) + 0.5f) / points * Vector3(segment.direction), Normal3(0.0f), false};
+      integral += static_cast<double>(Importance(lobe, receiver)) * segment.length / points;
     }
     const double importance = ImportanceAlong(lobe, segment).value;
     ++(importance > 0 ? lit : dark);
     // The sum over points may miss or hit a narrow peak.
-    if (!(cluster.variance > 1e-4f) && glm::length(segment.origin - cluster.mean) < 2) continue;
+    if (!(cluster.variance > 1e-4f) && glm::length(origin - cluster.mean) < 2) continue;
     EXPECT_GE(importance, 0.49 * integral) << trial;
-    segment.length = kInfinity;
+    segment.length = HUGE_VAL;
     EXPECT_GE(ImportanceAlong(lobe, segment).value, importance * (1 - 1e-6)) << trial;
     EXPECT_TRUE(std::isfinite(ImportanceAlong(lobe, segment).value));
   }
   EXPECT_GT(dark, 300);
   EXPECT_GT(lit, 5000);
+}
+
+// As the selector makes it: not inlined, because GCC 12 merges the conversions of direction between float and double
+// where both versions of importance are inlined.
+[[gnu::noinline]] TreeSegment SegmentFrom(const Point3& origin, const Vector3& direction, double length) {
+  return TreeSegment(Point3d(origin), direction, length);
+}
+
+TEST(SegmentImportances, EightAtOnceAreEightOneByOne) {
+  Rng rng(7);
+  double sum = 0;
+  for (int trial = 0; trial < 20000; ++trial) {
+    const auto emitters = test::RandomEmitters(LobeBlock::kWidth, rng);
+    LobeBlock block;
+    for (int i = 0; i < LobeBlock::kWidth; ++i) block.Set(i, LobeOf(emitters[static_cast<size_t>(i)]));
+    constexpr double sizes[] = {1, 3, 1000, 1e6};
+    const double size = sizes[rng.NextUint32() % 4];
+    const Point3 origin = static_cast<float>(size) * test::RandomPoint(rng, 1);
+    // Through the emitters, also from far away.
+    const Vector3 direction = glm::normalize(test::RandomPoint(rng, 1) - origin);
+    const double length = trial % 3 ? 3 * size * static_cast<double>(rng.NextFloat()) : HUGE_VAL;
+    const TreeSegment segment = SegmentFrom(origin, direction, length);
+    const LaneSegmentImportances lanes = EvaluateAlong(block, segment);
+    for (int i = 0; i < LobeBlock::kWidth; ++i) {
+      const SegmentImportance one = ImportanceAlong(block.Get(i), segment);
+      const auto lane = static_cast<double>(lanes.importance[static_cast<size_t>(i)]);
+      EXPECT_NEAR(lane, one.value, 2e-3 * one.value) << trial;
+      if (!(one.value > 0)) continue;
+      EXPECT_NEAR(static_cast<double>(lanes.spread[static_cast<size_t>(i)]), one.spread, 2e-3 * one.spread) << trial;
+      sum += one.value;
+    }
+  }
+  EXPECT_GT(sum, 0);
 }
 
 }  // namespace
