@@ -40,9 +40,9 @@ std::string LayerOfLightGroup(const std::string& group) {
   return layer;
 }
 
-LightGroups::LightGroups(const std::vector<PlacedLight>& lights) {
+LightGroups::LightGroups(const std::vector<PlacedLight>& lights, bool hasGlowingMedia) {
   std::map<std::string, std::string> groups;  // by their layers
-  bool hasRest = false;
+  bool hasRest = hasGlowingMedia;
   for (const PlacedLight& placed : lights) {
     const std::string& group = placed.light->Settings().lightGroup;
     if (group.empty()) {

@@ -116,7 +116,8 @@ class LightSide final : public WeightedLightPath {
     if (sample_.settings.merges) {
       AddDensities(path.vertices, sample_.lightDensities);
       if (path.vertices.Count() == 1)
-        sample_.lightDensities[0] = {.forward = End().emission.value, .extent = End().extent};
+        sample_.lightDensities[0] = {
+            .forward = End().emission.value, .isInMedium = path.vertices.Last().IsInMedium(), .extent = End().extent};
     }
     if (isConnected_) SplatVertex(sample_);
     const PathVertex& vertex = path.vertices.Last();
@@ -144,6 +145,12 @@ class CameraSide final : public PathVisitor {
           path.Count() == 0 ? SeeLightAt(sample_, state, hit, point) : HitLightAt(sample_, state, point);
     }
     return true;
+  }
+
+  void Glowed(const Subpath&, const Color& throughput, const Color& radiance) override {
+    const Color seen = throughput * radiance;
+    if (sample_.context.layers) sample_.context.layers->Add(sample_.Lighting().Groups().OfMedia(), seen);
+    sample_.radiance += seen;
   }
 
   bool Arrived(Subpath& path, const PathState& state) override {
@@ -182,8 +189,10 @@ class CameraSide final : public PathVisitor {
 
  private:
   void SetFirst(PathVertex& vertex, const PathState& state) {
-    vertex.pdfForward = DensityAtLens(*sample_.context.scene.camera, state.ray, vertex.GeometryTerm(vertex.toPrevious),
-                                      Sqr(static_cast<double>(state.length)));
+    const AreaDensity atLens =
+        DensityAtLens(*sample_.context.scene.camera, state.ray, vertex.GeometryTerm(vertex.toPrevious),
+                      Sqr(static_cast<double>(state.length)));
+    vertex.pdfForward = state.factors.forward * atLens;
     vertex.previousSolidAnglePerArea = {0};  // the lens is not hit
     // Light paths reach the vertex unless its surface is invisible to them, and are connected to the lens unless the
     // camera's densities are unknown, which leaves pdfForward at 0.
@@ -192,17 +201,17 @@ class CameraSide final : public PathVisitor {
     vertex.weight = PartialWeight::AtLens(vertex.pdfForward,
                                           isSplatted && sample_.settings.connects ? sample_.settings.splatCount : 0.0);
     sample_.lensSeesIt = isSplatted;
-    if (sample_.context.gather) SetFootprint(vertex, state.ray, static_cast<double>(state.length));
+    if (sample_.context.gather) SetFootprint(vertex, state.ray, static_cast<double>(state.length), atLens);
   }
-  void SetFootprint(const PathVertex& vertex, const Ray& ray, double distance) {
+  // `seen`: density at the lens, without media.
+  void SetFootprint(const PathVertex& vertex, const Ray& ray, double distance, AreaDensity seen) {
     const float cosTheta = vertex.GeometryTerm(vertex.toPrevious);
-    AreaDensity seen = vertex.pdfForward;
     if (!sample_.context.scene.camera->ConnectsLightPaths()) {
       const double area = PixelArea(*sample_.context.scene.camera, ray, sample_.settings.filmPixels, distance);
       seen = AreaDensity(area > 0 ? EdgeDensity(cosTheta, area * sample_.settings.filmPixels).value : 0);
     }
     if (!(seen.value > 0)) return;
-    sample_.seenDensity = seen.value;
+    sample_.seenDensity = vertex.factors.forward * seen.value;
     firstFootprint_ = sample_.FootprintAt(cosTheta, seen);
     firstDistance_ = distance;
   }
@@ -312,6 +321,7 @@ Color BidirectionalIntegrator::Sample(const Ray* ray, const SampleContext& conte
   Decide(*ray, sample);
   PathState state;
   state.ray = *ray;
+  state.medium = context.scene.cameraMedium;
   state.specular = Color(1.0f);
   CameraSide visitor(sample);
   Walk(context, {TransportMode::Radiance, settings_.maxDepth, kCameraDimensions}, state, workspace.camera, visitor);

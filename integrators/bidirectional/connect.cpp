@@ -1,4 +1,5 @@
 // s > 1, t > 1: a vertex of the light subpath is connected to one of the camera subpath.
+#include <bit>
 #include <cmath>
 
 #include "integrators/bidirectional/techniques.h"
@@ -17,6 +18,18 @@ Ray RayBetween(const PathVertex& from, const PathVertex& to, float time) {
     ray.tMax = std::max(ray.tMax - kMargin * through, 0.0f);
   }
   return ray;
+}
+
+// Transmittance from a vertex of the camera subpath to one of the light subpath, and the factors of media between them.
+Color TraceConnection(const SampleContext& context, const PathVertex& z, const PathVertex& y, EdgeFactors& factors) {
+  ++context.counts.shadowRays;
+  const Ray ray = RayBetween(z, y, context.time);
+  if (context.scene.media.empty()) [[likely]]
+    return context.scene.geometry->Transmittance(ray, visibility::kIndirect);
+  const uint64_t decider = Hash(std::bit_cast<uint32_t>(ray.direction.x), std::bit_cast<uint32_t>(ray.direction.y),
+                                std::bit_cast<uint32_t>(ray.tMax));
+  return TransmittanceOf(context, ray, visibility::kIndirect, z.EndTowards(ray.direction), y.extinction, decider,
+                         factors);
 }
 
 }  // namespace
@@ -41,30 +54,40 @@ Color Connect(const BidirectionalSample& sample, size_t lightCount) {
       Product(z.Throughput() * fz.Sum(), leaving,
               geometric * static_cast<double>(sample.Lighting().FluxUnit()) / sample.connectionsPerSample);
   if (value.IsBlack()) return value;
-  const Joint joint{
-      {SolidAngleDensity(fz.pdfForward) * EdgeDensity(y, toCamera, squared), y.PreviousReverse(fy.pdfReverse)},
-      {SolidAngleDensity(fy.pdfForward) * EdgeDensity(z, toCamera, squared), z.PreviousReverse(fz.pdfReverse)},
-      y.CanMerge(),
-      z.CanMerge()};
-  const auto weightWith = [&](double merging) {
-    return ConnectWeight(y.weight, joint.light, z.weight, joint.camera, sample.connectionCount, merging);
-  };
+  const bool hasMedia = !context.scene.media.empty();
   const ShadowRays shadowRays = sample.WantedShadowRays();
   const auto survivalWeightOf = [&](double weight) {
     return shadowRays.SurvivalWeight(value * static_cast<float>(weight), sample.radiance,
                                      ShadowRays::DeciderOf(toCamera.x, toCamera.y));
   };
+  EdgeFactors factors;  // from the camera's vertex on
+  Color transmitted(1.0f);
+  // Media on the way are a part of the weight: survival is decided without it, and the shadow ray comes first.
+  const float survivalInMedia = hasMedia ? survivalWeightOf(1) : 1.0f;
+  if (hasMedia) [[unlikely]] {
+    if (survivalInMedia == 0) return Color(0.0f);
+    transmitted = TraceConnection(context, z, y, factors);
+    if (transmitted.IsBlack()) return transmitted;
+  }
+  const Joint joint{{SolidAngleDensity(fz.pdfForward) * (factors.forward * EdgeDensity(y, toCamera, squared)),
+                     y.PreviousReverse(fy.pdfReverse)},
+                    {SolidAngleDensity(fy.pdfForward) * (factors.reverse * EdgeDensity(z, toCamera, squared)),
+                     z.PreviousReverse(fz.pdfReverse)},
+                    y.CanMerge(),
+                    z.CanMerge()};
+  const auto weightWith = [&](double merging) {
+    return ConnectWeight(y.weight, joint.light, z.weight, joint.camera, sample.connectionCount, merging);
+  };
   // Merging only lowers the weight: what is dropped without it is dropped with it, before its terms are computed.
-  if (sample.merging && survivalWeightOf(weightWith(0)) == 0) return Color(0.0f);
+  if (!hasMedia && sample.merging && survivalWeightOf(weightWith(0)) == 0) return Color(0.0f);
   const double weight = weightWith(sample.MergingOfConnection(lightCount, joint));
-  const float survivalWeight = survivalWeightOf(weight);
+  const float survivalWeight = hasMedia ? survivalInMedia : survivalWeightOf(weight);
   if (survivalWeight == 0) return Color(0.0f);
-  ++context.counts.shadowRays;
-  const Ray ray = RayBetween(z, y, context.time);
   ConnectedPath path;
-  path.value = value * context.scene.geometry->Transmittance(ray, visibility::kIndirect);
+  path.value = value * (hasMedia ? transmitted : TraceConnection(context, z, y, factors));
   if (path.value.IsBlack()) return path.value;
   path.weight = weight;
+  path.factors = factors;
   sample.SetLight(path, lightCount);
   sample.SetCamera(path);
   if (sample.WantsSums()) [[unlikely]]

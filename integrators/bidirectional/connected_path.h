@@ -19,6 +19,7 @@ struct ConnectedPath {
   Vector3 toLight{0.0f}, toLens{0.0f};  // unit; from the first surface vertex, and from the one that the camera sees
   // Density of the vertex that the camera sees, by a camera ray, over that of the lens point; 0: t = 1 does not exist.
   AreaDensity atLens;
+  EdgeFactors factors;  // of media on a connecting edge (s > 1, t > 1), from the camera's vertex to the light's
   bool isMerged = false;
   Merging merging;                             // that the weight accounts for
   double connectionCount = 1;                  // connections per light path that the weight accounts for, squared

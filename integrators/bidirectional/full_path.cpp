@@ -56,12 +56,14 @@ FullPath Unfold(const ConnectedPath& path) {
   full.fromCamera[n] = isConnected ? path.atLens : AreaDensity(1);
   full.lensSeesIt = isConnected;
   full.gathers.assign(n + 2, true);
+  full.isInMedium.assign(n + 2, false);
   if (n == 0) return full;
   full.mergesAtLens = vertices[n]->isSeenByIndirect;
   full.lensSeesIt = isConnected && vertices[n]->isSeenByIndirect;
   for (size_t i = 1; i <= n; ++i) {
     const PathVertex& vertex = *vertices[i];
     full.gathers[i] = vertex.GathersPhotons();
+    full.isInMedium[i] = vertex.IsInMedium();
     // Directions of the rays that were traced; for the connecting edge, from vertex to vertex.
     const auto directionTo = [&](size_t other) {
       if (photon && i == ofLight + 1 && other == ofLight) return photon->toPrevious;
@@ -69,6 +71,13 @@ FullPath Unfold(const ConnectedPath& path) {
       if (i <= ofLight && other <= ofLight) return other < i ? vertex.toPrevious : -vertices[other]->toPrevious;
       if (i > ofLight && other > ofLight) return other > i ? vertex.toPrevious : -vertices[other]->toPrevious;
       return glm::normalize(Vector3(Vector3d(vertices[other]->point.position) - Vector3d(vertex.point.position)));
+    };
+    // Factor of media on the density of vertex `to`, one of the two neighbours, by a walk from here.
+    const auto factorTo = [&](size_t to) {
+      const bool here = i <= ofLight, there = to <= ofLight;
+      if (here != there) return to < i ? path.factors.forward : path.factors.reverse;
+      const bool isAhead = here == (to > i);  // on the way of the subpath of both
+      return isAhead ? vertices[to]->factors.forward : vertex.factors.reverse;
     };
     const Vector3 toLight = i == 1 ? path.toLight : directionTo(i - 1);
     const Vector3 toCamera = i == n ? path.toLens : directionTo(i + 1);
@@ -85,8 +94,11 @@ FullPath Unfold(const ConnectedPath& path) {
       densities = At(vertex, isLight, toLight, toCamera);
     }
     full.fromCamera[i - 1] =
-        densities.toLight * (i == 1 ? path.end.solidAnglePerArea : EdgeBetween(vertex, *vertices[i - 1], toLight));
-    if (i < n) full.fromLight[i + 1] = densities.toCamera * EdgeBetween(vertex, *vertices[i + 1], toCamera);
+        densities.toLight *
+        (i == 1 ? path.end.solidAnglePerArea : factorTo(i - 1) * EdgeBetween(vertex, *vertices[i - 1], toLight));
+    if (i < n) {
+      full.fromLight[i + 1] = densities.toCamera * (factorTo(i + 1) * EdgeBetween(vertex, *vertices[i + 1], toCamera));
+    }
     if (photon && i == ofLight + 1) full.fromCamera[i - 1] = densities.toLight * photon->previousSolidAnglePerArea;
   }
   if (photon && ofLight > 0) full.fromLight[ofLight + 1] = photon->pdfForward;
@@ -98,16 +110,19 @@ double CorrelationAt(const FullPath& path, int i) {
   if (i == n) return 1;
   const auto isDelta = [&](int k) { return k >= 1 && k <= n && path.isDelta[static_cast<size_t>(k)]; };
   const double area = path.merging.area, degree = std::tan(3.14159265358979323846 / 180);
-  double again = path.end.emission.value / path.merging.lightPathsPerSample * area;
+  const auto around = [&](int k) {
+    return path.isInMedium[static_cast<size_t>(k)] ? 4. / 3 * area * path.merging.radius : area;
+  };
+  double again = path.end.emission.value / path.merging.lightPathsPerSample * around(1);
   if (path.end.extent == LightEnd::Extent::Surface) again *= area;
   if (path.end.extent == LightEnd::Extent::Sky) again *= 3.14159265358979323846 * degree * degree;
   double light = std::min(1.0, again), camera = 1;
   for (int k = 2; k <= i; ++k)
-    light *= isDelta(k - 1) ? 1.0 : std::min(1.0, path.fromLight[static_cast<size_t>(k)].value * area);
+    light *= isDelta(k - 1) ? 1.0 : std::min(1.0, path.fromLight[static_cast<size_t>(k)].value * around(k));
   for (int k = i; k <= n; ++k) {
     const double density =
         k == n ? path.seenDensity * path.merging.filmPixels : path.fromCamera[static_cast<size_t>(k)].value;
-    camera *= isDelta(k + 1) ? 1.0 : std::min(1.0, density * area);
+    camera *= isDelta(k + 1) ? 1.0 : std::min(1.0, density * around(k));
   }
   const double either = camera + light - camera * light;
   return either > 0 ? std::max(camera / either, 1 / path.merging.lightPaths) : 1;
@@ -209,7 +224,7 @@ PathDensities DensitiesOf(const FullPath& path) {
   for (int i = n; i >= 1; --i) {
     const auto at = static_cast<size_t>(i);
     camera.push_back({i == n ? path.seenDensity : path.fromCamera[at].value, path.fromLight[at].value, isDelta(i + 1),
-                      isDelta(i - 1), path.CanMerge(i)});
+                      isDelta(i - 1), static_cast<bool>(path.isInMedium[at]), path.CanMerge(i)});
   }
   Joint joint;
   joint.camera = {path.fromLight[1], n > 1 ? path.fromLight[2] : AreaDensity()};

@@ -15,6 +15,7 @@ struct FullPath {
   std::vector<AreaDensity> fromLight;   // [i]: of vertex i, sampled from i - 1; [1] is not used (LightEnd::emission)
   std::vector<AreaDensity> fromCamera;  // [i]: of vertex i, sampled from i + 1
   std::vector<bool> isDelta;            // [i]: the event at vertex i is one
+  std::vector<bool> isInMedium;         // [i]: densities of vertex i are per volume
   std::vector<bool> gathers;            // [i]: photons may be gathered at vertex i
   bool lensSeesIt = true;               // a light path may reach vertex n and be connected to the lens
   bool mergesAtLens = true;             // photons may be merged at vertex n

@@ -14,7 +14,7 @@ Color HitLight(const BidirectionalSample& sample, const PathState& state, const 
   path.value = state.diffuse * e.diffuse + state.specular * e.specular;
   if (path.value.IsBlack()) return path.value;
   path.s = 0;
-  path.end = EndOf(sample.Lighting(), found, true, edge, sample.lightPaths);
+  path.end = EndOf(sample.Lighting(), found, true, edge, state.factors.Reversed(), sample.lightPaths);
   sample.SetCamera(path);
   path.t = static_cast<int>(sample.camera.Count()) + 2;
   if (!sample.settings.connects && path.end.emission.value > 0) {
@@ -50,9 +50,9 @@ Color SeeLightAt(const BidirectionalSample& sample, const PathState& state, cons
   path.t = 2;
   const Receiver lens{ray.origin, Normal3(0.0f), false, Receiver::kCamera};
   if (const auto found = lighting.EvaluateSamples(lens, ray.direction, hit.t, point, context.time, true)) {
-    path.end = EndOf(lighting, *found, lighting.CanBeHit(found->light), {0}, sample.lightPaths);
-    path.atLens =
-        DensityAtLens(*context.scene.camera, ray, AbsDot(ray.direction, point.Ng), Sqr(static_cast<double>(hit.t)));
+    path.end = EndOf(lighting, *found, lighting.CanBeHit(found->light), {0}, {}, sample.lightPaths);
+    path.atLens = state.factors.forward * DensityAtLens(*context.scene.camera, ray, AbsDot(ray.direction, point.Ng),
+                                                        Sqr(static_cast<double>(hit.t)));
     if (path.atLens.value > 0 && sample.settings.connects)
       path.weight = SeenLightWeight(path.end.position, path.atLens, sample.settings.splatCount);
     if (path.atLens.value > 0)

@@ -30,7 +30,8 @@ class NextEventTechnique final : public NextEventVisitor {
     found.evaluation.solidAngleToArea = sample.solidAngleToArea;
     const SolidAnglePerArea edge = FirstEdgeDensity(lighting, direct.light, vertex_.GeometryTerm(sample.direction),
                                                     Sqr(static_cast<double>(sample.distance)));
-    path_.end = EndOf(lighting, found, !direct.isDelta && lighting.CanBeHit(direct.light), edge, sample_.lightPaths);
+    path_.end = EndOf(lighting, found, !direct.isDelta && lighting.CanBeHit(direct.light), edge,
+                      light.factors.Reversed(), sample_.lightPaths);
     path_.toLight = sample.direction;
     const AreaDensity hit =
         path_.end.canBeHit ? SolidAngleDensity(light.f.pdfForward) * path_.end.solidAnglePerArea : AreaDensity(0);

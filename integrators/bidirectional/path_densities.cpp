@@ -15,7 +15,11 @@ const double kReach = std::tan(kPiDouble / 180);  // ρ over the distance
 Merging Merging::At(double radius, double distance, double lightPaths, double lightPathsPerSample, double filmPixels,
                     double probability) {
   return {probability * lightPaths / lightPathsPerSample * kPiDouble * radius * radius,
-          kPiDouble * kReach * kReach * distance * distance, lightPaths, lightPathsPerSample, filmPixels};
+          kPiDouble * kReach * kReach * distance * distance,
+          kReach * distance,
+          lightPaths,
+          lightPathsPerSample,
+          filmPixels};
 }
 
 void PathDensities::Set(std::span<const SubpathDensities> light, std::span<const SubpathDensities> camera,
@@ -26,11 +30,11 @@ void PathDensities::Set(std::span<const SubpathDensities> light, std::span<const
   Vertex* const vertices = vertices_.data();
   for (size_t i = 0; i < light.size(); ++i) {
     const SubpathDensities& v = light[i];
-    vertices[i + 1] = {v.forward, v.reverse, 1, v.forwardIsDelta, v.reverseIsDelta, v.canMerge};
+    vertices[i + 1] = {v.forward, v.reverse, 1, v.forwardIsDelta, v.reverseIsDelta, v.canMerge, v.isInMedium};
   }
   for (size_t i = 0; i < camera.size(); ++i) {
     const SubpathDensities& v = camera[i];
-    vertices[n - i] = {v.reverse, v.forward, 1, v.reverseIsDelta, v.forwardIsDelta, v.canMerge};
+    vertices[n - i] = {v.reverse, v.forward, 1, v.reverseIsDelta, v.forwardIsDelta, v.canMerge, v.isInMedium};
   }
   if (const size_t j = light.size(); j > 0) {
     Vertex& last = vertices[j];
@@ -63,23 +67,25 @@ void PathDensities::Correlate() {
   Vertex* const vertices = vertices_.data();
   if (n < 2) return;
   const double area = merging_.area, least = 1 / merging_.lightPaths;
-  const auto probability = [area](bool isDelta, double density) {
-    return isDelta ? 1.0 : std::min(1.0, density * area);
+  const double ball = 4. / 3 * area * merging_.radius;
+  const auto probability = [area, ball](bool isDelta, bool isInMedium, double density) {
+    return isDelta ? 1.0 : std::min(1.0, density * (isInMedium ? ball : area));
   };
   // The direction of a light at infinity is found again within a degree.
   const double ofLight = extent_ == LightEnd::Extent::Surface ? area
                          : extent_ == LightEnd::Extent::Sky   ? kPiDouble * kReach * kReach
                                                               : 1.0;
   // P_L first, in the place of c.
-  double light = std::min(1.0, emission_ / merging_.lightPathsPerSample * area * ofLight);
+  double light = probability(false, vertices[1].isInMedium, emission_ / merging_.lightPathsPerSample * ofLight);
   vertices[1].correlation = light;
   for (size_t i = 2; i < n; ++i) {
-    light *= probability(vertices[i].lightIsDelta, vertices[i].fromLight);
+    light *= probability(vertices[i].lightIsDelta, vertices[i].isInMedium, vertices[i].fromLight);
     vertices[i].correlation = light;
   }
-  double camera = probability(vertices[n].cameraIsDelta, vertices[n].fromCamera * merging_.filmPixels);
+  double camera =
+      probability(vertices[n].cameraIsDelta, vertices[n].isInMedium, vertices[n].fromCamera * merging_.filmPixels);
   for (size_t i = n - 1; i >= 1; --i) {
-    camera *= probability(vertices[i].cameraIsDelta, vertices[i].fromCamera);
+    camera *= probability(vertices[i].cameraIsDelta, vertices[i].isInMedium, vertices[i].fromCamera);
     light = vertices[i].correlation;
     const double either = camera + light - camera * light;
     vertices[i].correlation = either > 0 ? std::max(camera / either, least) : 1.0;

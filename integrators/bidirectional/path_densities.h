@@ -7,9 +7,9 @@
 // multiplied by ([Grittmann21 §5])
 //   c_i = max(P_C / (P_C + P_L - P_C P_L), 1/N),   P_L(i) = Π_(k≤i) f_k,   P_C(i) = Π_(k≥i) b_k
 // with f_k the probability that another light path has its vertex k within ρ of this path's, and b_k the same for
-// another camera path of the pixel. c is 1 at the vertex that the camera sees. It has the same value in the weight of
-// every technique, so that weights sum to 1, and depends on both ends of the path, so that no recursion along a subpath
-// can carry it.
+// another camera path of the pixel; of a vertex in a medium, within the ball of the radius ρ. c is 1 at the vertex that
+// the camera sees. It has the same value in the weight of every technique, so that weights sum to 1, and depends on
+// both ends of the path, so that no recursion along a subpath can carry it.
 #pragma once
 
 #include <array>
@@ -27,6 +27,7 @@ struct Merging {
   // N π r² times the probability of merging, for each of the light paths per sample; 0: no merging.
   double perDensity = 0;
   double area = 0;                 // π ρ²
+  double radius = 0;               // ρ, scene units
   double lightPaths = 1;           // N
   double lightPathsPerSample = 1;  // LightEnd::emission is so many times that of one light path
   double filmPixels = 1;  // the density of the first hit by a ray through its pixel is so many times that by any
@@ -100,6 +101,7 @@ class PathDensities {
     double fromLight = 0, fromCamera = 0;
     double correlation = 1;  // c
     bool lightIsDelta = false, cameraIsDelta = false, canMerge = false;
+    bool isInMedium = false;
   };
   void Correlate();
   // The terms at the vertices from `i` on. `ratio`: p_i / p, without c.

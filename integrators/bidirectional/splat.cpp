@@ -11,11 +11,15 @@ void AddSplat(const BidirectionalSample& sample, ConnectedPath& path) {
             sample.context.counts);
 }
 
+AreaDensity DensityWithoutMedia(const BidirectionalSample& sample, const SeenFromLens& seen) {
+  return AreaDensity(static_cast<double>(seen.connection.Weight()) * EdgeDensity(seen.geometryTerm, 1).value /
+                     sample.settings.filmPixels);
+}
+
 void SetLens(const BidirectionalSample& sample, const SeenFromLens& seen, ConnectedPath& path) {
   path.t = 1;
   path.toLens = seen.toCamera;
-  path.atLens = AreaDensity(static_cast<double>(seen.connection.Weight()) * EdgeDensity(seen.geometryTerm, 1).value /
-                            sample.settings.filmPixels);
+  path.atLens = seen.factors.forward * DensityWithoutMedia(sample, seen);
   path.connection = &seen.connection;
   path.value = seen.value;
 }
@@ -54,7 +58,8 @@ void SplatVertex(const BidirectionalSample& sample) {
   const Point2& film = seen->connection.camera.film;
   if (sample.context.gather) {
     const auto distance = static_cast<double>(glm::distance(seen->connection.camera.position, vertex.point.position));
-    path.merging = sample.MergingAt(distance, sample.FootprintAt(seen->geometryTerm, path.atLens), film);
+    path.merging =
+        sample.MergingAt(distance, sample.FootprintAt(seen->geometryTerm, DensityWithoutMedia(sample, *seen)), film);
   }
   if (path.merging) {
     sample.whole.Set(sample.lightDensities, {}, joint, sample.lightEnd.emission.value, sample.lightEnd.extent,

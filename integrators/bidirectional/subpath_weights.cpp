@@ -4,8 +4,8 @@ namespace lampyr {
 
 void SetWeights(const PathVertex& previous, const PathState& state, bool connects, PathVertex& vertex) {
   const auto squared = static_cast<double>(LengthSquared(vertex.point.position - previous.point.position));
-  vertex.pdfForward = state.pdfDirection * EdgeDensity(vertex, state.ray.direction, squared);
-  vertex.previousSolidAnglePerArea = EdgeDensity(previous, state.ray.direction, squared);
+  vertex.pdfForward = state.pdfDirection * (state.factors.forward * EdgeDensity(vertex, state.ray.direction, squared));
+  vertex.previousSolidAnglePerArea = state.factors.reverse * EdgeDensity(previous, state.ray.direction, squared);
   vertex.weight =
       previous.weight.Next(previous.scatteredDelta, vertex.pdfForward, previous.PreviousReverse(previous.eventReverse));
   if (!connects) vertex.weight.connections.last = 0;
@@ -15,7 +15,7 @@ void AddDensities(const Subpath& path, std::vector<SubpathDensities>& densities)
   const size_t count = path.Count();
   densities.resize(count);
   SubpathDensities& last = densities[count - 1];
-  last = {path.Last().pdfForward.value};
+  last = {.forward = path.Last().pdfForward.value, .isInMedium = path.Last().IsInMedium()};
   if (count < 2) return;
   const PathVertex& previous = path[count - 2];
   last.forwardIsDelta = previous.scatteredDelta;
@@ -41,16 +41,17 @@ LightEnd::Extent ExtentOf(LightKind kind) {
 }  // namespace
 
 LightEnd EndOf(const LightingServices& lighting, const FoundLight& found, bool canBeHit, SolidAnglePerArea edge,
-               double lightPaths) {
+               const EdgeFactors& factors, double lightPaths) {
   const LightEvaluation& e = found.evaluation;
   const auto selection = static_cast<double>(found.selection.value);
   LightEnd end;
   end.light = found.light;
   end.solidAnglePerArea = {static_cast<double>(e.solidAngleToArea)};
   end.direct = selection * SolidAngleDensity(e.pdfDirect) * end.solidAnglePerArea;
+  end.solidAnglePerArea = factors.reverse * end.solidAnglePerArea;
   const auto emissionSelection = static_cast<double>(lighting.EmissionSelectionProbability(found.light).value);
   const AreaDensity position = lightPaths * emissionSelection * AreaDensity(e.pdfEmit);
-  end.emission = position * (SolidAngleDensity(e.pdfEmitDirection) * edge);
+  end.emission = position * (SolidAngleDensity(e.pdfEmitDirection) * (factors.forward * edge));
   end.canBeHit = canBeHit;
   if (canBeHit && !lighting.IsAtInfinity(found.light)) end.position = position;
   end.extent = ExtentOf(lighting.KindOf(found.light));
@@ -66,7 +67,7 @@ bool WeightedLightPath::FirstHit(const EmittedPhoton& photon, PathVertex& first)
   const auto squared = static_cast<double>(LengthSquared(first.point.position - photon.emission.position));
   const SolidAnglePerArea edge =
       FirstEdgeDensity(lighting, found->light, first.GeometryTerm(first.toPrevious), squared);
-  end_ = EndOf(lighting, *found, lighting.CanBeHit(found->light), edge, lightPaths_);
+  end_ = EndOf(lighting, *found, lighting.CanBeHit(found->light), edge, first.factors, lightPaths_);
   if (!(end_.emission.value > 0)) return false;
   first.previousSolidAnglePerArea = end_.solidAnglePerArea;
   first.weight = PartialWeight::AtFirstHit(end_, connects_);

@@ -17,9 +17,9 @@ SolidAnglePerArea FirstEdgeDensity(const LightingServices& lighting, uint32_t li
                                    double distanceSquared);
 
 // The light's end of a path, for a light found from its first surface vertex. `edge`: FirstEdgeDensity at that vertex.
-// `lightPaths`: for each camera path.
+// `factors`: of media on the edge, from the light to that vertex. `lightPaths`: for each camera path.
 LightEnd EndOf(const LightingServices& lighting, const FoundLight& found, bool canBeHit, SolidAnglePerArea edge,
-               double lightPaths);
+               const EdgeFactors& factors, double lightPaths);
 
 // Sets densities and partial weights of a light path while it grows; base of visitors that need them.
 class WeightedLightPath : public LightPathVisitor {

@@ -43,6 +43,15 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
     return !emissionOnly_;
   }
 
+  void Glowed(const Subpath&, const Color& throughput, const Color& radiance) override {
+    const Color seen = throughput * radiance;
+    if (context_.layers) context_.layers->Add(lighting_.Groups().OfMedia(), seen);
+    radiance_ += seen;
+  }
+
+  // Light that is scattered on the way to a surface whose emission alone is wanted is gathered.
+  bool Collided(const Subpath&, const PathState&) override { return !emissionOnly_; }
+
   bool Arrived(Subpath& path, const PathState& state) override {
     const PathVertex& vertex = path.Last();
     if (vertex.isDelta) return true;
@@ -70,7 +79,7 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
   void AddFound(const PathVertex& last, const PathState& state, const FoundLight& found) {
     Color radiance = state.diffuse * found.evaluation.diffuse + state.specular * found.evaluation.specular;
     if (!last.scatteredDelta && SamplesLights(last)) {
-      const PdfSolidAngle direction(static_cast<float>(state.pdfDirection.value));
+      const PdfSolidAngle direction(static_cast<float>(state.pdfDirection.value * state.factors.forward));
       radiance *= PowerHeuristic(direction, found.selection * found.evaluation.pdfDirect);
     }
     if (context_.layers) context_.layers->Add(lighting_.GroupOf(found.light), radiance);
@@ -79,7 +88,8 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
 
   float Weigh(const LightConnection& light) override {
     if (light.direct.isDelta) return 1;
-    return PowerHeuristic(light.direct.selection * light.direct.sample->pdfDirect, light.f.pdfForward);
+    return PowerHeuristic(light.direct.selection * light.direct.sample->pdfDirect,
+                          static_cast<float>(light.factors.forward) * light.f.pdfForward);
   }
   void Arrived(const LightConnection& light, const Color&, const Color& contribution) override {
     if (context_.layers) context_.layers->Add(lighting_.GroupOf(light.direct.light), contribution);
@@ -102,6 +112,7 @@ Color TraceCameraPath(const SampleContext& context, const CameraPathSettings& se
   path.Clear();
   PathState state;
   state.ray = ray;
+  state.medium = context.scene.cameraMedium;
   state.specular = Color(1.0f);
   CameraPath visitor(context, settings, gatherer);
   Walk(context, {TransportMode::Radiance, settings.maxDepth, settings.dimensions, true, settings.materialsAfterWide},

@@ -1,6 +1,9 @@
 #include "integrators/walk/lens.h"
 
+#include <bit>
 #include <cmath>
+
+#include "sampling/rng.h"
 
 namespace lampyr {
 
@@ -28,11 +31,31 @@ std::optional<FilmConnection> ConnectToCamera(const SampleContext& context, cons
   return result;
 }
 
+// True if the camera sees along `ray` the point of a light that `photon` started from. Sets the radiance that arrives,
+// and the factors of the edge.
+bool SeesOrigin(const SampleContext& context, const EmittedPhoton& photon, const Ray& ray, float distance,
+                SeenFromLens& seen, Color& radiance) {
+  const RenderScene& scene = context.scene;
+  RayHit hit;
+  Color passed;
+  if (!scene.geometry->Intersect(ray, visibility::kCamera, hit, passed)) return false;
+  const SurfacePoint point = scene.geometry->GetSurfacePoint(ray, hit);
+  if (!scene.lighting->IsOrigin(photon, point, -ray.direction, distance)) return false;
+  if (!scene.media.empty()) {
+    Ray before = ray;
+    before.tMax = hit.t;
+    const uint64_t decider = Hash(std::bit_cast<uint32_t>(ray.direction.x), std::bit_cast<uint32_t>(ray.direction.y));
+    passed = TransmittanceOf(context, before, visibility::kCamera, {scene.cameraMedium, Color(1.0f)}, Color(1.0f),
+                             decider, seen.factors);
+  }
+  radiance = passed * scene.lighting->EmissionForCamera(ray.direction, hit.t, point, context.time);
+  return !radiance.IsBlack();
+}
+
 }  // namespace
 
 std::optional<SeenFromLens> SeeLight(const SampleContext& context, const EmittedPhoton& photon,
                                      uint32_t lensDimension) {
-  const RenderScene& scene = context.scene;
   const Point3& position = photon.emission.position;
   const auto connection = ConnectToCamera(context, position, lensDimension);
   if (!connection) return std::nullopt;
@@ -41,16 +64,11 @@ std::optional<SeenFromLens> SeeLight(const SampleContext& context, const Emitted
   if (!(distance > 0)) return std::nullopt;
   const Ray ray{connection->camera.position, fromLens / distance, kInfinity, context.time};
   ++context.counts.cameraRays;
-  RayHit hit;
-  Color passed;
-  if (!scene.geometry->Intersect(ray, visibility::kCamera, hit, passed)) return std::nullopt;
-  const SurfacePoint point = scene.geometry->GetSurfacePoint(ray, hit);
-  if (!scene.lighting->IsOrigin(photon, point, -ray.direction, distance)) return std::nullopt;
-  const Color radiance = passed * scene.lighting->EmissionForCamera(ray.direction, hit.t, point, context.time);
-  if (radiance.IsBlack()) return std::nullopt;
+  SeenFromLens seen{*connection, -ray.direction, Color(), AbsDot(ray.direction, photon.emission.normal), {}};
+  Color radiance;
+  if (!SeesOrigin(context, photon, ray, distance, seen, radiance)) return std::nullopt;
   const double density =
       static_cast<double>(photon.emissionSelection.value) * static_cast<double>(photon.emission.pdfEmit.value);
-  SeenFromLens seen{*connection, -ray.direction, Color(), AbsDot(ray.direction, photon.emission.normal), {}};
   seen.value = radiance * static_cast<float>(static_cast<double>(seen.geometryTerm * connection->Weight()) / density);
   return seen;
 }
@@ -70,7 +88,16 @@ std::optional<SeenFromLens> SeeVertex(const SampleContext& context, const PathVe
   if (scattered.IsBlack()) return std::nullopt;
   ++context.counts.shadowRays;
   const Ray ray = SpawnRayTo(vertex.point, connection->camera.position, Vector3(0.0f), Normal3(0.0f), context.time);
-  const Color arriving = scene.geometry->Transmittance(ray, visibility::kCamera);
+  Color arriving;
+  if (scene.media.empty()) [[likely]] {
+    arriving = scene.geometry->Transmittance(ray, visibility::kCamera);
+  } else {
+    EdgeFactors fromVertex;
+    const uint64_t decider = Hash(std::bit_cast<uint32_t>(ray.direction.x), std::bit_cast<uint32_t>(ray.direction.y));
+    arriving = TransmittanceOf(context, ray, visibility::kCamera, vertex.EndTowards(ray.direction), Color(1.0f),
+                               decider, fromVertex);
+    seen.factors = fromVertex.Reversed();
+  }
   if (arriving.IsBlack()) return std::nullopt;
   seen.geometryTerm = vertex.GeometryTerm(seen.toCamera);
   const float importance = seen.geometryTerm * vertex.ArrivalCorrection(vertex.toPrevious) * connection->Weight();

@@ -25,7 +25,8 @@ struct SeenFromLens {
   Vector3 toCamera{0.0f};  // unit
   Color value;             // contribution of the whole path, before its MIS weight
   float geometryTerm = 0;  // at the connected point, towards the camera
-  BsdfEvaluation f;        // BSDF of a surface vertex, towards the camera
+  BsdfEvaluation f;        // scattering at the vertex, towards the camera
+  EdgeFactors factors{};   // of the edge from the lens to the point, by participating media
 };
 
 // Connects the starting point of an emitted path on an area light to the lens; nullopt if the camera does not see it.

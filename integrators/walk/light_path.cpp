@@ -60,6 +60,8 @@ bool Emit(const SampleContext& context, const EmittedPhoton& photon, PathState& 
       static_cast<double>(photon.emissionSelection.value) * static_cast<double>(context.scene.lighting->FluxUnit());
   const auto inverse = static_cast<float>(static_cast<double>(emission.emissionCosine) / density);
   state.ray = photon.ray;
+  state.medium =
+      context.scene.MediumOfLight(photon.light, glm::dot(photon.emission.normal, photon.emission.direction) < 0);
   state.diffuse = emission.diffuse * inverse;
   state.specular = emission.specular * inverse;
   state.emitted = std::max(state.diffuse.Max(), state.specular.Max());

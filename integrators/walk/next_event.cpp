@@ -4,6 +4,18 @@ namespace lampyr {
 
 namespace {
 
+// Transmittance of the shadow ray, and the factors of media on it.
+Color TraceShadowRay(const SampleContext& context, const PathVertex& vertex, const DirectSample& direct,
+                     uint64_t decider, EdgeFactors& factors) {
+  const LightingServices& lighting = *context.scene.lighting;
+  ++context.counts.shadowRays;
+  if (context.scene.media.empty()) [[likely]]
+    return lighting.Transmittance(vertex.point, direct, context.time);
+  const Ray ray = lighting.ShadowRay(vertex.point, direct, context.time);
+  return TransmittanceOf(context, ray, visibility::kShadow, vertex.EndTowards(ray.direction), Color(1.0f),
+                         MixBits(decider), factors);
+}
+
 // Contribution of one selected light.
 Color SampleLight(const SampleContext& context, const NextEventSettings& settings, const PathVertex& vertex,
                   const SelectedLight& light, const Point2& u, const Color& soFar, NextEventVisitor& visitor) {
@@ -22,15 +34,17 @@ Color SampleLight(const SampleContext& context, const NextEventSettings& setting
   const PdfSolidAngle pdf = direct.selection * sample.pdfDirect;
   connection.value = vertex.Throughput() * scattered * (vertex.ScatteringCosine(sample.direction) / pdf.value);
   if (connection.value.IsBlack()) return Color(0.0f);
-  const float weight = visitor.Weigh(connection);
-  const float survivalWeight =
-      settings.shadowRays.SurvivalWeight(connection.value * weight, soFar, ShadowRays::DeciderOf(u.x, u.y));
+  // Media on the way are a part of the weight, so that their shadow rays are traced before it is known.
+  const bool hasMedia = !context.scene.media.empty();
+  float weight = hasMedia ? 1.0f : visitor.Weigh(connection);
+  const uint64_t decider = ShadowRays::DeciderOf(u.x, u.y);
+  const float survivalWeight = settings.shadowRays.SurvivalWeight(connection.value * weight, soFar, decider);
   if (survivalWeight == 0) return Color(0.0f);
-  ++context.counts.shadowRays;
-  const Color transmitted = lighting.Transmittance(vertex.point, direct, context.time);
+  const Color transmitted = TraceShadowRay(context, vertex, direct, decider, connection.factors);
   lighting.UpdateWithResults(vertex.receiver, direct, transmitted);
   const Color value = connection.value * transmitted;
   if (value.IsBlack()) return value;
+  if (hasMedia) weight = visitor.Weigh(connection);
   const Color contribution = value * (weight * survivalWeight);
   visitor.Arrived(connection, value, contribution);
   return contribution;

@@ -10,8 +10,9 @@ namespace lampyr {
 // A sample of a light at a vertex, before its shadow ray.
 struct LightConnection {
   const DirectSample& direct;
-  BsdfEvaluation f;  // BSDF of the vertex, towards the light
-  Color value;       // contribution of the path, before MIS weight and transmittance
+  BsdfEvaluation f;       // BSDF of the vertex, towards the light
+  Color value;            // contribution of the path, before MIS weight and transmittance
+  EdgeFactors factors{};  // of the edge from the vertex to the light, by participating media
 };
 
 class NextEventVisitor {

@@ -69,11 +69,12 @@ static_assert(NextEventCount(2) == 1 && NextEventCount(3) == 1);
 // probability of the light.
 struct LightEnd {
   uint32_t light = 0;
-  AreaPairDensity emission;             // of the light's point and the first surface vertex, by emission
-  AreaDensity position;                 // of the light's point alone, by emission; 0: not on a surface that can be hit
-  AreaDensity direct;                   // of the light's point, by next-event estimation
-  SolidAnglePerArea solidAnglePerArea;  // dω/dA from the first surface vertex to the light's point
-  bool canBeHit = false;                // rays that surfaces scatter can hit the light
+  AreaPairDensity emission;  // of the light's point and the first surface vertex, by emission
+  AreaDensity position;      // of the light's point alone, by emission; 0: not on a surface that can be hit
+  AreaDensity direct;        // of the light's point, by next-event estimation
+  // dω/dA from the first vertex to the light's point, times the factor of media on the way (EdgeFactors).
+  SolidAnglePerArea solidAnglePerArea;
+  bool canBeHit = false;  // rays that surfaces scatter can hit the light
   // The measure of `emission`, besides the area of the first surface vertex.
   enum class Extent : uint8_t { Point, Surface, Sky };  // nothing, the area of the light's point, its direction
   Extent extent = Extent::Point;
@@ -85,7 +86,8 @@ struct SubpathDensities {
   double reverse = 0;  // by the other one; valid once the next vertex has scattered
   // A delta event finds the vertex, forward or reverse: the density is a coefficient.
   bool forwardIsDelta = false, reverseIsDelta = false;
-  bool canMerge = false;  // with the event by which the subpath goes on; valid once there is a next vertex
+  bool isInMedium = false;  // densities are per volume
+  bool canMerge = false;    // with the event by which the subpath goes on; valid once there is a next vertex
   LightEnd::Extent extent = LightEnd::Extent::Point;  // of the first vertex of a light path
 };
 
@@ -97,7 +99,9 @@ struct PathEnds {
   bool canBeHit = false;       // the light; `hit` may be unknown yet
 
   // Stored as the record before those of the path's vertices: one index per photon finds both.
-  SubpathDensities Packed() const { return {direct, hit, firstIsDelta, false, canBeHit}; }
+  SubpathDensities Packed() const {
+    return {.forward = direct, .reverse = hit, .forwardIsDelta = firstIsDelta, .canMerge = canBeHit};
+  }
   static PathEnds Unpacked(const SubpathDensities& packed) {
     return {packed.forward, packed.reverse, packed.forwardIsDelta, 0, packed.canMerge};
   }

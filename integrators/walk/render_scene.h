@@ -23,7 +23,14 @@ struct RenderScene {
   std::vector<std::shared_ptr<const Medium>> media;  // by GeometryAttributes::insideMedium and outsideMedium
   int32_t cameraMedium = kVacuum;                    // where camera rays start
   std::vector<int32_t> lightMedia;                   // by light: around it, or in front of it; empty: vacuum
+  std::vector<int32_t> lightBackMedia;  // by light: behind its surface, where a two-sided light shines, too; empty: vacuum
   bool hasMotion = false;  // something moves while the shutter is open; otherwise all rays have time 0
+
+  // Medium in which light of `light` starts; `fromBehind`: of a surface that shines to both sides.
+  int32_t MediumOfLight(uint32_t light, bool fromBehind) const {
+    const std::vector<int32_t>& around = fromBehind ? lightBackMedia : lightMedia;
+    return around.empty() ? kVacuum : around[light];
+  }
 };
 
 // Counted per tile of work and summed afterwards; never shared between threads.
@@ -55,6 +62,8 @@ inline constexpr uint32_t kLobe = 2;
 inline constexpr uint32_t kDirection = 3;
 inline constexpr uint32_t kRoulette = 4;
 inline constexpr uint32_t kPerVertex = 5;
+// Beyond the blocks of all vertices: one pair for each edge of a path.
+inline constexpr uint32_t kFirstFlight = 1u << 24;
 }  // namespace dimensions
 
 // The blocks of dimensions of a path: vertex v has the block step · v + first. The two subpaths of a bidirectional
@@ -68,6 +77,10 @@ struct PathDimensions {
   int step = 1, first = 0;
   constexpr uint32_t Of(int vertex, uint32_t which) const {
     return dimensions::kFirstVertex + static_cast<uint32_t>(step * vertex + first) * dimensions::kPerVertex + which;
+  }
+  // Of a pair for the flight through participating media to vertex v.
+  constexpr uint32_t OfFlight(int vertex) const {
+    return dimensions::kFirstFlight + static_cast<uint32_t>(step * vertex + first);
   }
 };
 

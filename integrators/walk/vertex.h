@@ -4,21 +4,26 @@
 #include <algorithm>
 #include <cmath>
 
+#include "integrators/walk/flight.h"
 #include "integrators/walk/partial_weight.h"
 #include "integrators/walk/render_scene.h"
 #include "materials/bsdf.h"
 
 namespace lampyr {
 
-// A surface point as seen by the path that arrived there. Directions are unit vectors that point away from it.
+// A point where light scatters, as seen by the path that arrived there: on a surface, or in a participating medium.
+// Directions are unit vectors that point away from it.
 struct Vertex {
-  SurfacePoint point;
+  SurfacePoint point;  // in a medium: the position alone; normals are 0
   Bsdf bsdf;
   Vector3 toPrevious{0.0f};
   Receiver receiver;
   // Probability that a ray meets the surface here: less than 1 on cut-outs. The density of the path that arrived here
   // has it as a factor once.
   float coverage = 1;
+  // Participating media on the sides of the surface, the outside being that of Ng; in a medium both are that one.
+  int32_t insideMedium = kVacuum, outsideMedium = kVacuum;
+  Color extinction{1.0f};        // σ_t in a medium, 1/scene unit; 1 on a surface
   bool isDelta = false;          // only delta lobes: cannot be connected
   bool storesPhotons = true;     // by material, not by the component drawn from a mix: gathering paths draw anew
   bool isSeenByCamera = true;    // camera rays meet it
@@ -35,6 +40,13 @@ struct Vertex {
   float ScatteringCosine(const Vector3& direction) const { return bsdf.ScatteringCosine(direction); }
   // Geometry term of an edge along `direction`: |cosθ| to the geometric normal; of a fibre, as above.
   float GeometryTerm(const Vector3& direction) const { return bsdf.GeometricCosine(direction); }
+  // In a medium, not on a surface. Scattering and geometry have no cosines there.
+  bool IsInMedium() const { return bsdf.IsMedium(); }
+  // The medium in which a ray along `direction` starts.
+  int32_t MediumTowards(const Vector3& direction) const {
+    return glm::dot(direction, point.Ng) > 0 ? outsideMedium : insideMedium;
+  }
+  EdgeEnd EndTowards(const Vector3& direction) const { return {MediumTowards(direction), extinction}; }
   // False where photons would not tell how much light there is.
   bool GathersPhotons() const { return bsdf.GathersPhotons(); }
 
@@ -78,6 +90,10 @@ inline SolidAnglePerArea EdgeDensity(float geometryTerm, double distanceSquared)
 inline SolidAnglePerArea EdgeDensity(const Vertex& to, const Vector3& direction, double distanceSquared) {
   return EdgeDensity(to.GeometryTerm(direction), distanceSquared);
 }
+// The same, through participating media: times the factor of a walk that reaches that end (EdgeFactors).
+inline SolidAnglePerArea operator*(double factor, SolidAnglePerArea edge) {
+  return {factor * edge.value};
+}
 
 // A vertex of a camera or light subpath, with the throughput that arrives there. Constructed in place in an array
 // (Subpath).
@@ -90,6 +106,7 @@ struct PathVertex : Vertex {
   // The scattering event at this vertex; set only if the subpath continues.
   bool scatteredDelta = false;
   SolidAngleDensity eventForward, eventReverse;  // DensitiesOf
+  EdgeFactors factors;  // of the edge from the previous vertex, or from the light's point or the lens
   // Bidirectional paths only:
   SolidAnglePerArea previousSolidAnglePerArea;  // dω/dA from this vertex to the previous one, or to the light's point
   AreaDensity pdfForward;                       // density of this vertex by its own subpath

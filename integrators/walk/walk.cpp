@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <new>
+#include <optional>
 #include <type_traits>
 
 #include "base/stop.h"
@@ -39,8 +40,9 @@ void MakeInPlace(T& value, const Make& make) {
 
 // Makes a vertex of a hit whose point is set: BSDF, receiver, visibility. False: the surface has no material and is
 // black, and paths end there.
+// `medium`: in which the ray arrives.
 bool MakeVertex(const RenderScene& scene, const std::vector<std::shared_ptr<const Material>>& materials, const Ray& ray,
-                const RayHit& hit, Vertex& vertex) {
+                const RayHit& hit, int32_t medium, Vertex& vertex) {
   const GeometryAttributes& attributes = scene.geometry->Attributes(hit.primitive);
   const Material* material = attributes.material >= 0 ? materials[attributes.material].get() : nullptr;
   if (!material) return false;
@@ -52,10 +54,37 @@ bool MakeVertex(const RenderScene& scene, const std::vector<std::shared_ptr<cons
                      attributes.link};
   vertex.coverage = attributes.alpha ? attributes.alpha->Alpha(point.uv, point.position, point.Ng) : 1.0f;
   vertex.isDelta = vertex.bsdf.IsDelta();
+  const bool separates = SeparatesMedia(attributes);
+  vertex.insideMedium = separates ? attributes.insideMedium : medium;
+  vertex.outsideMedium = separates ? attributes.outsideMedium : medium;
+  vertex.extinction = Color(1.0f);
   vertex.storesPhotons = (!vertex.isDelta || !material->IsAlwaysDelta()) && material->MayGatherPhotons();
   vertex.isSeenByCamera = (attributes.visibility & visibility::kCamera) != 0;
   vertex.isSeenByIndirect = (attributes.visibility & visibility::kIndirect) != 0;
   return true;
+}
+
+// Makes a vertex of a collision.
+void MakeVertex(const Ray& ray, const Flight& flight, Vertex& vertex) {
+  MakeInPlace(vertex.point, [&] {
+    SurfacePoint point;
+    point.position = ray.origin + flight.t * ray.direction;
+    point.Ng = point.Ns = Normal3(0.0f);
+    return point;
+  });
+  vertex.toPrevious = -ray.direction;
+  const MediumCoefficients& here = flight.coefficients;
+  MakeInPlace(vertex.bsdf, [&] {
+    return Bsdf(Frame::FromNormal(vertex.toPrevious), vertex.toPrevious,
+                PhaseBsdf{here.scattering, flight.collidesWith->Asymmetry()});
+  });
+  vertex.receiver = {vertex.point.position, Normal3(0.0f), true, 0};
+  vertex.coverage = 1;
+  vertex.insideMedium = vertex.outsideMedium = flight.medium;
+  vertex.extinction = here.Extinction();
+  vertex.isDelta = here.scattering.IsBlack();
+  vertex.storesPhotons = false;
+  vertex.isSeenByCamera = vertex.isSeenByIndirect = true;
 }
 
 }  // namespace
@@ -90,35 +119,73 @@ bool Scatter(const SampleContext& context, const WalkSettings& settings, int ind
   state.ray.origin = OffsetRayOrigin(vertex.point.position, vertex.point.positionError, vertex.point.Ng, sample.wi);
   state.ray.direction = sample.wi;
   state.ray.tMax = kInfinity;
+  state.medium = vertex.MediumTowards(sample.wi);
   if (!settings.hasRoulette) return true;
   const Color carried = isFromLight ? state.diffuse : state.Throughput();
   const float survival = SurvivalProbability(carried / state.emitted, state.etaScale, index + 1);
   return Survives(context, settings.dimensions.Of(block, dimensions::kRoulette), survival, state);
 }
 
+namespace {
+
+// Traces the ray of `state` through participating media.
+void FlyOn(const SampleContext& context, const WalkSettings& settings, uint32_t kinds, PathState& state,
+           const Subpath& path, PathVisitor& visitor, Flight& flight) {
+  const bool isFromLight = settings.mode == TransportMode::Importance;
+  const auto count = static_cast<int>(path.Count());
+  const Color extinction = count > 0 ? path.Last().extinction : Color(1.0f);
+  Fly(context, state.ray, kinds, state.medium, extinction,
+      settings.dimensions.OfFlight(isFromLight ? count + 1 : count), flight);
+  if (!flight.emission.IsBlack()) visitor.Glowed(path, state.Throughput(), flight.emission);
+  state.passed = flight.passed;
+  state.factors = flight.factors;
+  state.medium = flight.medium;
+}
+
+}  // namespace
+
 void Walk(const SampleContext& context, const WalkSettings& settings, PathState& state, Subpath& path,
           PathVisitor& visitor) {
   const GeometryScene& geometry = *context.scene.geometry;
+  const bool hasMedia = !context.scene.media.empty();
   for (;;) {
     CheckStop();
     const bool isCameraRay = settings.mode == TransportMode::Radiance && path.Count() == 0;
     ++(isCameraRay ? context.counts.cameraRays : context.counts.indirectRays);
+    const uint32_t kinds = isCameraRay ? visibility::kCamera : visibility::kIndirect;
     RayHit hit;
-    const bool isHit =
-        geometry.Intersect(state.ray, isCameraRay ? visibility::kCamera : visibility::kIndirect, hit, state.passed);
+    bool isHit;
+    std::optional<Flight> flight;
+    if (!hasMedia) [[likely]] {
+      isHit = geometry.Intersect(state.ray, kinds, hit, state.passed);
+    } else {
+      FlyOn(context, settings, kinds, state, path, visitor, flight.emplace());
+      hit = flight->hit;
+      isHit = flight->isHit;
+    }
     state.diffuse *= state.passed;
     state.specular *= state.passed;
-    if (!isHit) return visitor.Escaped(path, state);
-    state.length += hit.t;
+    const bool collides = flight && flight->collidesWith;
+    if (!isHit && !collides) return visitor.Escaped(path, state);
+    state.length += collides ? flight->t : hit.t;
     PathVertex& vertex = path.Next();
-    MakeInPlace(vertex.point, [&] { return geometry.GetSurfacePoint(state.ray, hit); });
-    if (!visitor.Met(path, state, hit, vertex.point, geometry.Attributes(hit.primitive).light >= 0)) return;
+    if (!collides) [[likely]] {
+      MakeInPlace(vertex.point, [&] { return geometry.GetSurfacePoint(state.ray, hit); });
+      if (!visitor.Met(path, state, hit, vertex.point, geometry.Attributes(hit.primitive).light >= 0)) return;
+    } else if (!visitor.Collided(path, state)) {
+      return;
+    }
     const auto index = static_cast<int>(path.Count());
     if (index >= settings.maxDepth) return;
-    const bool isBehindWide = settings.materialsAfterWide && state.hasScatteredWidely;
-    if (!MakeVertex(context.scene, isBehindWide ? *settings.materialsAfterWide : context.scene.materials, state.ray,
-                    hit, vertex))
-      return;
+    if (collides) {
+      MakeVertex(state.ray, *flight, vertex);
+    } else {
+      const bool isBehindWide = settings.materialsAfterWide && state.hasScatteredWidely;
+      if (!MakeVertex(context.scene, isBehindWide ? *settings.materialsAfterWide : context.scene.materials, state.ray,
+                      hit, state.medium, vertex))
+        return;
+    }
+    vertex.factors = state.factors;
     vertex.diffuse = state.diffuse;
     vertex.specular = state.specular;
     path.Add();

@@ -17,8 +17,12 @@ struct PathState {
   // paths: by the kind of lobe that scattered at the last vertex. On light paths: for either kind of lobe at the next
   // vertex; equal from the first vertex on.
   Color diffuse, specular;
-  SolidAngleDensity pdfDirection;   // density of the ray's direction at the last vertex (DensitiesOf)
-  Color passed{1.0f};               // transmittance of what the last ray crossed; already a factor of β
+  SolidAngleDensity pdfDirection;  // density of the ray's direction at the last vertex (DensitiesOf)
+  int32_t medium = kVacuum;        // participating medium in which the ray starts
+  // Transmittance of what the last ray crossed; in media that scatter, over the density of getting through. Already a
+  // factor of β.
+  Color passed{1.0f};
+  EdgeFactors factors;              // of the last ray, by participating media
   float length = 0;                 // of the whole path so far
   float etaScale = 1;               // undoes the scaling of radiance by η² in refraction, for Russian roulette
   bool hasScatteredWidely = false;  // an earlier vertex scattered by a lobe that is no delta
@@ -65,6 +69,10 @@ class PathVisitor {
   virtual bool Met(const Subpath& /*path*/, const PathState&, const RayHit&, const SurfacePoint&, bool /*isLight*/) {
     return true;
   }
+  // Media have emitted `radiance` along the last ray, towards its start; `throughput`: β there.
+  virtual void Glowed(const Subpath& /*path*/, const Color& /*throughput*/, const Color& /*radiance*/) {}
+  // The ray has collided with a participating medium, before a surface or an escape. False: the path ends there.
+  virtual bool Collided(const Subpath& /*path*/, const PathState&) { return true; }
   // A vertex was added to the path: the last one. False: the path ends there.
   virtual bool Arrived(Subpath& path, const PathState&) = 0;
   // The last vertex has scattered into the next ray, which is not traced yet. False: the path ends there.

@@ -28,6 +28,31 @@ LightHit EscapedHit(const Point3& origin, const Vector3& direction) {
   return hit;
 }
 
+// The scene's sphere. Within an unbounded medium it holds what light travels between.
+BoundingSphere SphereAround(const GeometryScene& geometry, const std::vector<PlacedLight>& lights,
+                            const MediaAround& media) {
+  BoundingSphere sphere = geometry.GetBoundingSphere();
+  if (!media.unboundedAt) return sphere;
+  constexpr float kMargin = 1.001f;
+  const auto hold = [&sphere](const Point3& point) {
+    sphere.radius = std::max(sphere.radius, kMargin * glm::distance(point, sphere.center));
+  };
+  hold(*media.unboundedAt);
+  for (const PlacedLight& placed : lights) {
+    for (const float time : {0.0f, 1.0f}) {
+      const LightTransform transform = placed.motion ? placed.At(time) : placed.transform;
+      LightContext context;
+      context.transform = &transform;
+      context.scene = geometry.GetBoundingSphere();
+      const auto bounds = placed.light->GetEmissionBounds(context);
+      if (!bounds || bounds->box.IsEmpty()) continue;
+      hold(bounds->box.min);
+      hold(bounds->box.max);
+    }
+  }
+  return sphere;
+}
+
 // Clamps estimates to the range of float.
 float FluxUnitOf(const std::vector<PlacedLight>& lights, const BoundingSphere& sphere) {
   double power = 0;
@@ -45,12 +70,13 @@ float FluxUnitOf(const std::vector<PlacedLight>& lights, const BoundingSphere& s
 }  // namespace
 
 LightingServices::SceneLights::SceneLights(const GeometryScene& traced, std::vector<PlacedLight> placed,
-                                           LightSelection selection, LightLinking links, int mostSamples)
+                                           LightSelection selection, LightLinking links, int mostSamples,
+                                           const MediaAround& media)
     : geometry(traced),
       lights(std::move(placed)),
       fronts(lights),
-      groups(lights),
-      sphere(geometry.GetBoundingSphere()),
+      groups(lights, media.glow),
+      sphere(SphereAround(geometry, lights, media)),
       fluxUnit(FluxUnitOf(lights, sphere)),
       linking(std::move(links)),
       isLinked(linking.Excludes() || linking.HasFilters()) {
@@ -65,9 +91,10 @@ LightingServices::SceneLights::SceneLights(const GeometryScene& traced, std::vec
 }
 
 LightingServices::LightingServices(const GeometryScene& geometry, std::vector<PlacedLight> lights,
-                                   LightSelection selection, LightLinking linking, int mostSamples)
+                                   LightSelection selection, LightLinking linking, int mostSamples,
+                                   const MediaAround& media)
     : scene_(std::make_shared<const SceneLights>(geometry, std::move(lights), selection, std::move(linking),
-                                                 mostSamples)) {}
+                                                 mostSamples, media)) {}
 
 LightingServices LightingServices::With(LightLearning* learning, const EmissionGuide* guide) const {
   LightingServices view = *this;
@@ -143,12 +170,14 @@ Vector3 LightingServices::ErrorOfEnd(const SurfacePoint& from, const DirectSampl
   return sample.positionError + InstanceRayError(transform.toRender, transform.toLocal, reach);
 }
 
-Color LightingServices::Transmittance(const SurfacePoint& from, const DirectSample& direct, float time) const {
+Ray LightingServices::ShadowRay(const SurfacePoint& from, const DirectSample& direct, float time) const {
   const LightSample& sample = *direct.sample;
-  const Ray ray = direct.isInfinite
-                      ? SpawnRay(from, sample.direction, time)
-                      : SpawnRayTo(from, sample.position, ErrorOfEnd(from, direct, time), sample.normal, time);
-  return scene_->geometry.Transmittance(ray, visibility::kShadow);
+  return direct.isInfinite ? SpawnRay(from, sample.direction, time)
+                           : SpawnRayTo(from, sample.position, ErrorOfEnd(from, direct, time), sample.normal, time);
+}
+
+Color LightingServices::Transmittance(const SurfacePoint& from, const DirectSample& direct, float time) const {
+  return scene_->geometry.Transmittance(ShadowRay(from, direct, time), visibility::kShadow);
 }
 
 std::optional<FoundLight> LightingServices::EvaluateSamples(const Receiver& receiver, const Vector3& direction,

@@ -80,13 +80,21 @@ struct SegmentSample {
   }
 };
 
+// What lights need to know of participating media.
+struct MediaAround {
+  bool glow = false;  // some emit light
+  // A medium without a boundary is around the scene. It fills the scene's sphere, which then holds this point (the
+  // camera) and all lights that are somewhere.
+  std::optional<Point3> unboundedAt;
+};
+
 class LightingServices {
  public:
   // `geometry` must outlive the services. `mostSamples`: the largest number of lights selected for a receiver, in
   // [1, LightChoices::kMost]. Each sample is divided by the expected number of samples of its light; densities of
   // next-event estimation include that number.
   LightingServices(const GeometryScene& geometry, std::vector<PlacedLight> lights, LightSelection selection,
-                   LightLinking linking = {}, int mostSamples = 1);
+                   LightLinking linking = {}, int mostSamples = 1, const MediaAround& media = {});
 
   // A view of the same lights with learned selection, which also records results in `learning` while that is recording,
   // and with photons guided by `guide`. Both may be null, must outlive the view, and must not change while it is used.
@@ -103,6 +111,8 @@ class LightingServices {
   // Transmittance between the receiver and a sample: 0 if occluded, 1 if unoccluded, a colour behind cut-outs and thin
   // glass. Traces a shadow ray.
   Color Transmittance(const SurfacePoint& from, const DirectSample& direct, float time) const;
+  // The shadow ray that Transmittance traces.
+  Ray ShadowRay(const SurfacePoint& from, const DirectSample& direct, float time) const;
 
   // Records the result of a sample for learned selection: the fraction that arrived at the receiver, 0 also if its
   // shadow ray was not traced. May be called from any thread; without effect unless recording.
@@ -234,7 +244,7 @@ class LightingServices {
   // Shared by all views of a scene.
   struct SceneLights {
     SceneLights(const GeometryScene& geometry, std::vector<PlacedLight> lights, LightSelection selection,
-                LightLinking linking, int mostSamples);
+                LightLinking linking, int mostSamples, const MediaAround& media);
     bool CanBeHit(uint32_t light) const {
       const LightFront& front = fronts[light];
       return front.kind == LightKind::Infinite || (front.kind == LightKind::Area && front.canBeHit);

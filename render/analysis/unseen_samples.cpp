@@ -20,6 +20,7 @@ float Brighter(const Color& diffuse, const Color& specular) {
 
 // True if one random sample of the vertex's scattering shows a sharp image of a light.
 bool IsSmooth(const RenderScene& scene, const Vertex& vertex, Sampler& sampler) {
+  if (vertex.IsInMedium()) return false;
   const int index = scene.geometry->Attributes(vertex.point.primitive).material;
   if (scene.materials[static_cast<size_t>(index)]->IsInterface()) return false;
   const float uLobe = sampler.Get1D();

@@ -5,12 +5,14 @@
 
 #include "base/memory.h"
 #include "geometry/shape_checks.h"
+#include "media/make_media.h"
 #include "render/analysis/plan.h"
 #include "render/analysis/unseen_samples.h"
 #include "render/build/flat_instances.h"
 #include "render/build/light_table.h"
 #include "render/build/material_table.h"
 #include "render/build/placer.h"
+#include "render/build/scene_media.h"
 #include "render/build/shape_builder.h"
 #include "textures/texture_library.h"
 
@@ -64,13 +66,21 @@ class Builder {
   bool Moves(const ReadEntry& entry) const { return placer_.Moves(entry.local.description->placement); }
   Transform StillPlacement(const ReadEntry& entry) const { return placer_.StillPlacement(*entry.local.description); }
   void PlaceEntries();
+  Point2 MiddleOfFilm() const {
+    return 0.5f * Point2(static_cast<float>(built_.settings.width), static_cast<float>(built_.settings.height));
+  }
+  void WarnOfBlackImage(const RenderScene& scene) const;
+  MediaAround MediaAroundLights() const;
   std::vector<Part> MovingParts(const std::vector<ReadEntry>& entries);
   void BuildPart(Part& part);
   void PlacePart(const Part& part, const RenderPlacement& placement);
   void PlaceMovingPart(const Part& part, const MotionChain& parentToRender);
   void PlaceInstance(const FlatInstance& instance, const std::vector<Part>& parts);
+  std::optional<GeometryAttributes> AttributesOf(const ReadEntry& entry) const;
   void PlaceEntry(const ReadEntry& entry, const Transform& toRender, std::vector<GeometryEntry>& entries,
                   std::vector<const ReadEntry*>* lightEntries);
+  void MakeEmissive(const ReadEntry& entry, const Transform& toRender, std::vector<const ReadEntry*>* lightEntries,
+                    GeometryEntry& placed);
 
   const SceneDescription& description_;
   Diagnostics& diagnostics_;
@@ -82,6 +92,7 @@ class Builder {
   GeometryDescription geometry_;
   std::unique_ptr<TextureLibrary> textures_;
   std::unique_ptr<MaterialTable> materials_;
+  std::unique_ptr<SceneMedia> media_;
   Placer placer_;
   std::unique_ptr<LightTable> lights_;
   std::vector<ReadEntry> entries_;
@@ -126,53 +137,75 @@ Transform Builder::ChooseRenderSpace() const {
   return Transform::Translate(-center);
 }
 
+// The attributes that all parts of a shape have; nullopt: rays only pass it, and it is left out.
+std::optional<GeometryAttributes> Builder::AttributesOf(const ReadEntry& entry) const {
+  const ShapeDescription& shape = *entry.local.description;
+  const std::shared_ptr<const Material>& material = materials_->Materials()[entry.material];
+  const bool isInterface = material->IsInterface();
+  if (isInterface && shape.areaLight >= 0) {
+    diagnostics_.Warn(shape.shape.where, "a shape of material \"interface\" emits no light, as in pbrt-v4");
+  }
+  GeometryAttributes attributes;
+  attributes.material = entry.material;
+  const auto opacity = textures_->FindFloat(shape.shape.parameters, "alpha");
+  // A shape that is nowhere opaque separates nothing.
+  if (!opacity || !opacity->IsConstant() || opacity->Evaluate({}) > 0) media_->SetSides(shape, attributes);
+  if (SeparatesMedia(attributes) && std::holds_alternative<CurveParameters>(entry.local.shape)) {
+    diagnostics_.Warn(shape.shape.where, "curves do not separate participating media: the MediumInterface is ignored");
+    attributes.insideMedium = attributes.outsideMedium = kSameMedium;
+  }
+  attributes.isBoundary = isInterface;
+  if (isInterface && !SeparatesMedia(attributes)) return std::nullopt;
+  if (opacity) {
+    WarnOfAlpha(*opacity, shape.shape.parameters, diagnostics_);
+    attributes.alpha = MakeAlphaSource(*opacity);
+  }
+  attributes.isParametrized = attributes.alpha != nullptr;
+  if (isInterface) return attributes;
+  attributes.link = lights_->LinkOf(shape);
+  // Surfaces that emit are never thin: every ray hits them.
+  if (shape.areaLight < 0 && material->Thin()) attributes.thin = {material, material->Thin()};
+  attributes.isFibrous = material->IsFibrous();
+  attributes.isParametrized |= built_.settings.firstHit || attributes.thin || material->NeedsParametrization();
+  return attributes;
+}
+
 void Builder::PlaceEntry(const ReadEntry& entry, const Transform& toRender, std::vector<GeometryEntry>& entries,
                          std::vector<const ReadEntry*>* lightEntries) {
   const ShapeDescription& shape = *entry.local.description;
-  if (materials_->Materials()[entry.material]->IsInterface()) {  // rays would only pass
-    if (shape.areaLight >= 0) {
-      diagnostics_.Warn(shape.shape.where, "a shape of material \"interface\" emits no light, as in pbrt-v4");
-    }
-    return;
-  }
-  std::shared_ptr<const AlphaSource> alpha;
-  if (const auto parameter = textures_->FindFloat(shape.shape.parameters, "alpha")) {
-    WarnOfAlpha(*parameter, shape.shape.parameters, diagnostics_);
-    alpha = MakeAlphaSource(*parameter);
-  }
-
-  const uint32_t link = lights_->LinkOf(shape);
-  // Surfaces that emit are never thin: every ray hits them.
-  const std::shared_ptr<const Material>& material = materials_->Materials()[entry.material];
-  std::shared_ptr<const ThinSurface> thin;
-  if (shape.areaLight < 0 && material->Thin()) thin = {material, material->Thin()};
+  const std::optional<GeometryAttributes> attributes = AttributesOf(entry);
+  if (!attributes) return;
   for (Shape& placed : PlaceShape(entry.local, toRender, memory_)) {
     LocateErrors(shape.shape.where, [&] { CheckShape(placed); });
-    GeometryEntry result;
-    result.attributes.material = entry.material;
-    result.attributes.link = link;
-    result.attributes.alpha = alpha;
-    result.attributes.thin = thin;
-    result.attributes.isFibrous = material->IsFibrous();
-    result.shape = std::move(placed);
-    const bool isCurve = std::holds_alternative<std::shared_ptr<const CurveSet>>(result.shape);
-    if (shape.areaLight >= 0 && isCurve) {
-      diagnostics_.Warn(shape.shape.where, "curves cannot emit light; these are rendered dark");
-    } else if (shape.areaLight >= 0) {
-      if (lightEntries) {
-        result.attributes.light = static_cast<int32_t>(lightEntries->size());
-        lightEntries->push_back(&entry);
-      } else {
-        result.attributes.light = lights_->NextIndex();
-        lights_->AddAreaLight(shape, result.shape, {}, toRender, alpha);
-      }
-      const bool cameraVisible = description_.areaLights[shape.areaLight].parameters.GetBool("cameraVisible", true);
-      if (!cameraVisible) result.attributes.visibility &= ~visibility::kCamera;
+    GeometryEntry result{std::move(placed), *attributes};
+    if (shape.areaLight >= 0 && !attributes->isBoundary) MakeEmissive(entry, toRender, lightEntries, result);
+    if (SeparatesMedia(*attributes)) {
+      media_->AddPlace(lightEntries ? static_cast<int>(geometry_.objects.size()) : -1, entries.size(),
+                       shape.shape.where);
     }
-    result.attributes.isParametrized =
-        built_.settings.firstHit || alpha || thin || result.attributes.light >= 0 || material->NeedsParametrization();
     entries.push_back(std::move(result));
   }
+}
+
+// `lightEntries`: of the object that the shape is part of; null: of none.
+void Builder::MakeEmissive(const ReadEntry& entry, const Transform& toRender,
+                           std::vector<const ReadEntry*>* lightEntries, GeometryEntry& placed) {
+  const ShapeDescription& shape = *entry.local.description;
+  if (std::holds_alternative<std::shared_ptr<const CurveSet>>(placed.shape)) {
+    diagnostics_.Warn(shape.shape.where, "curves cannot emit light; these are rendered dark");
+    return;
+  }
+  if (lightEntries) {
+    placed.attributes.light = static_cast<int32_t>(lightEntries->size());
+    lightEntries->push_back(&entry);
+  } else {
+    placed.attributes.light = lights_->NextIndex();
+    media_->AddAreaLight(lights_->NextIndex(), placed.attributes);
+    lights_->AddAreaLight(shape, placed.shape, {}, toRender, placed.attributes.alpha);
+  }
+  const bool cameraVisible = description_.areaLights[shape.areaLight].parameters.GetBool("cameraVisible", true);
+  if (!cameraVisible) placed.attributes.visibility &= ~visibility::kCamera;
+  placed.attributes.isParametrized = true;
 }
 
 // The shapes that move; consecutive shapes with the same motion are one part.
@@ -215,6 +248,7 @@ void Builder::PlacePart(const Part& part, const RenderPlacement& placement) {
   for (const GeometryEntry& entry : entries) {
     if (entry.attributes.light < 0) continue;
     const ReadEntry& source = *part.lightEntries[entry.attributes.light];
+    media_->AddAreaLight(lights_->NextIndex(), entry.attributes);
     lights_->AddAreaLight(*source.local.description, entry.shape, placement,
                           part.placement ? Transform() : StillPlacement(source), entry.attributes.alpha);
     lights_->MarkLastAsInstance();
@@ -264,6 +298,29 @@ void Builder::PlaceEntries() {
   for (const FlatInstance& instance : instances_) PlaceInstance(instance, parts[instance.object]);
 }
 
+// To be called when camera and media are made.
+MediaAround Builder::MediaAroundLights() const {
+  const RenderScene& scene = built_.scene;
+  MediaAround around;
+  for (const auto& medium : scene.media) around.glow = around.glow || medium->IsEmissive();
+  if (!description_.cameraMedium.empty()) {
+    around.unboundedAt = scene.camera->GenerateRay(MiddleOfFilm(), Point2(0.5f), 0).ray.origin;
+  }
+  return around;
+}
+
+void Builder::WarnOfBlackImage(const RenderScene& scene) const {
+  const auto& lights = scene.lighting->Lights();
+  const bool hasSky = std::any_of(lights.begin(), lights.end(), [](const PlacedLight& placed) {
+    return placed.light->Kind() == LightKind::Infinite;
+  });
+  const bool hasGlow =
+      std::any_of(scene.media.begin(), scene.media.end(), [](const auto& medium) { return medium->IsEmissive(); });
+  if (scene.geometry->PrimitiveCount() == 0 && !hasSky && scene.lighting->HasLights() && scene.media.empty())
+    diagnostics_.Warn("the scene has no shape for light to fall on: the image will be black");
+  if (!scene.lighting->HasLights() && !hasGlow) diagnostics_.Warn("the scene has no light: the image will be black");
+}
+
 BuiltScene Builder::Build() {
   placer_.ReadTimes(description_);
   entries_ = ReadShapes(description_.shapes);
@@ -276,6 +333,7 @@ BuiltScene Builder::Build() {
   textures_ = std::make_unique<TextureLibrary>(description_.textures, placer_.WorldToRender(), diagnostics_);
   materials_ = std::make_unique<MaterialTable>(description_, *textures_, diagnostics_);
   materials_->MakeAll();
+  media_ = std::make_unique<SceneMedia>(description_, diagnostics_);
   const auto resolve = [&](std::vector<ReadEntry>& entries) {
     for (ReadEntry& entry : entries) entry.material = materials_->IndexOf(entry.local.description->material);
   };
@@ -302,11 +360,14 @@ BuiltScene Builder::Build() {
         isWorld ? placer_.WorldToRender() : placer_.WorldToRender() * description_.cameraToWorld.start;
     built_.renderToLayers = toRender.Inverse().ToAffine();
   }
+  scene.media = MakeMedia(description_, placer_.WorldToRender(), memory_, diagnostics_);
+  media_->NumberPlaces(geometry_);
   scene.geometry = std::make_shared<const GeometryScene>(std::move(geometry_));
   lights_->Linking().Finish(lights_->Lights(), diagnostics_);
   scene.lighting = std::make_shared<const LightingServices>(
       *scene.geometry, std::move(lights_->Lights()), built_.settings.LightSampler(), std::move(lights_->Linking()),
-      static_cast<int>(built_.settings.values.Integer("light-samples")));
+      static_cast<int>(built_.settings.values.Integer("light-samples")), MediaAroundLights());
+  media_->Locate(MiddleOfFilm(), built_.lightPlaces, scene);
   if (built_.settings.integrator == "auto") {
     const auto start = std::chrono::steady_clock::now();
     ChooseIntegrator(scene, built_.settings, threads_).Apply(built_.settings);
@@ -316,13 +377,7 @@ BuiltScene Builder::Build() {
     diagnostics_.Warn("\"" + name + "\" is ignored: " + built_.settings.integrator +
                       " does not support it, and renders the picture without that bias");
   }
-  const auto& lights = scene.lighting->Lights();
-  const bool hasSky = std::any_of(lights.begin(), lights.end(), [](const PlacedLight& placed) {
-    return placed.light->Kind() == LightKind::Infinite;
-  });
-  if (scene.geometry->PrimitiveCount() == 0 && !hasSky && scene.lighting->HasLights())
-    diagnostics_.Warn("the scene has no shape for light to fall on: the image will be black");
-  if (!scene.lighting->HasLights()) diagnostics_.Warn("the scene has no light: the image will be black");
+  WarnOfBlackImage(scene);
   WarnOfCoarsePlaces(scene, built_.settings, diagnostics_);
   return std::move(built_);
 }

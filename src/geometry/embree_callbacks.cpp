@@ -55,7 +55,8 @@ struct Meeting {
 struct Passage {
   float stopped = 1;
   Color tint{1.0f};
-  bool entering = false;  // goes from the outside (the side of Ng) to the inside
+  bool entering = false;         // goes from the outside (the side of Ng) to the inside
+  int32_t medium = kSameMedium;  // as in Crossing
 
   Color Transmittance() const { return tint * (1 - stopped); }
 };
@@ -66,7 +67,8 @@ Passage PassageAt(const Meeting& at, const RTCRay& ray, const RayHit& hit) {
   SurfacePoint point;
   EvaluatePrimitive(record, {{ray.org_x, ray.org_y, ray.org_z}, direction, kInfinity, ray.time}, hit, point);
   // To render space: positions of textures are there, and instances may be stretched.
-  if (at.instanceId != RTC_INVALID_GEOMETRY_ID) {
+  // Of a boundary without cut-outs only the side counts, which is the same in every space.
+  if (at.instanceId != RTC_INVALID_GEOMETRY_ID && (record.alpha || record.thin)) {
     const InstanceRecord& instance = record.tables->instances[at.instanceId - record.tables->firstInstanceId];
     const InstancePlacement placement = instance.motion ? PlacementAt(*instance.motion, ray.time) : instance.placement;
     ApplyInstance(placement, point);
@@ -75,9 +77,12 @@ Passage PassageAt(const Meeting& at, const RTCRay& ray, const RayHit& hit) {
   const float alpha = record.alpha ? record.alpha->Alpha(point.uv, point.position, point.Ng) : 1.0f;
   // Embree's normal tells the sides of a curve apart; that of a flat curve's point faces the ray.
   const bool entering = record.As<CurveSet>() ? at.side == 0 : glm::dot(direction, point.Ng) < 0;
+  // Through the hole of a cut-out a ray stays in its medium.
+  const int32_t medium = alpha > 0 ? (entering ? record.insideMedium : record.outsideMedium) : kSameMedium;
+  if (record.PassedAsBoundary(ray.mask)) return {0, Color(1.0f), entering, medium};
   if (!record.thin) return {alpha, Color(1.0f), entering};
   const float passes = record.thin->TransmittedFraction(std::abs(glm::dot(glm::normalize(direction), point.Ns)));
-  Passage passage{alpha * (1 - passes), Color(1.0f), entering};
+  Passage passage{alpha * (1 - passes), Color(1.0f), entering, medium};
   // Through the hole of the cut-out without a tint, through the surface with it.
   if (!record.thin->IsClear() && passage.stopped < 1) {
     const Color through = Color(1 - alpha) + record.thin->Tint(point.uv, point.position, point.Ng) * (alpha * passes);
@@ -99,17 +104,33 @@ bool IsCrossedAlready(const Crossing& crossing, const std::vector<Crossing>& cro
 void AddCrossing(const Meeting& at, const RayHit& hit, const Passage& passage, const Color& transmittance,
                  TraceContext& trace) {
   const SceneTables& tables = *at.record.tables;
-  Crossing crossing{
-      hit.t,        static_cast<uint32_t>(&at.record - tables.primitives.data()), at.patch, kNoIndex, passage.entering,
-      transmittance};
+  Crossing crossing{hit.t,
+                    static_cast<uint32_t>(&at.record - tables.primitives.data()),
+                    at.patch,
+                    kNoIndex,
+                    passage.entering,
+                    transmittance,
+                    passage.medium};
   if (at.instanceId != RTC_INVALID_GEOMETRY_ID) crossing.instance = at.instanceId - tables.firstInstanceId;
   if (at.record.As<CurveSet>() && IsCrossedAlready(crossing, *trace.crossings)) return;
   trace.crossings->push_back(crossing);
   trace.transmittance *= transmittance;
 }
 
+// A boundary between media alone. Where its opacity is 0 there is none.
+void PassBoundary(const Meeting& at, const RTCRay& ray, const RayHit& hit, TraceContext& trace) {
+  if (!trace.recordsBoundaries) return;
+  const Passage passage = PassageAt(at, ray, hit);
+  if (passage.medium != kSameMedium) AddCrossing(at, hit, passage, Color(1.0f), trace);
+}
+
 // True if the ray goes on. Of Intersect by chance, in proportion; of Transmittance as long as something is left.
 bool PassesThrough(const Meeting& at, const RTCRay& ray, const RayHit& hit, TraceContext& trace, bool isShadow) {
+  if (at.record.PassedAsBoundary(ray.mask)) {
+    PassBoundary(at, ray, hit, trace);
+    return true;
+  }
+  if (!at.record.alpha && !at.record.thin) return false;
   const Passage passage = PassageAt(at, ray, hit);
   if (passage.stopped >= 1) return false;
   if (isShadow) {

@@ -14,9 +14,10 @@ namespace lampyr {
 // State of one query. Embree hands the address of its first member to every callback.
 struct TraceContext {
   RTCIntersectContext context;
-  // Surfaces that let the ray pass, in the order in which Embree visits them: of Intersect, the thin surfaces with a
-  // tint, whether or not a nearer hit is found later; of Transmittance, cut-outs and thin surfaces. Null: not recorded.
+  // Surfaces that let the ray pass, in the order in which Embree visits them: of Trace, thin surfaces and boundaries,
+  // whether or not a nearer hit is found later; of Transmittance, cut-outs, too. Null: not recorded.
   std::vector<Crossing>* crossings = nullptr;
+  bool recordsBoundaries = false;  // false: `crossings` lacks the boundaries between media
   Color transmittance{1.0f};  // of Transmittance: product over the crossings so far; the query ends when it is black
   // Thrown by a custom surface, which counts as missed: no exception may pass through Embree. Rethrown by
   // ThrowFailure after Embree has returned.

@@ -107,10 +107,10 @@ void SetTransforms(RTCGeometry geometry, const InstanceRecord& instance) {
 
 }  // namespace
 
-RTCGeometry NewGeometry(RTCDevice device, const PrimitiveRecord& record, uint32_t visibility) {
+RTCGeometry NewGeometry(RTCDevice device, const PrimitiveRecord& record, uint32_t visibleTo) {
   RTCGeometry geometry = std::visit([&](const auto* shape) { return NewGeometry(device, *shape); }, record.shape);
   if (!geometry) return nullptr;
-  rtcSetGeometryMask(geometry, visibility);
+  rtcSetGeometryMask(geometry, record.separatesMedia ? visibility::kAll | visibility::kMedia : visibleTo);
   rtcSetGeometryUserData(geometry, const_cast<PrimitiveRecord*>(&record));
   // User geometry decides in its own callbacks what passes.
   if (record.LetsPass() && (record.As<TriangleMesh>() || record.As<CurveSet>())) {

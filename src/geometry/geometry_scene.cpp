@@ -8,9 +8,9 @@
 #include <deque>
 #include <optional>
 #include <string>
-#include <tuple>
 
 #include "base/error.h"
+#include "geometry/crossing_order.h"
 #include "geometry/embree_callbacks.h"
 #include "geometry/embree_geometries.h"
 #include "geometry/rounding.h"
@@ -82,7 +82,8 @@ struct GeometryScene::Implementation {
   SceneHandle scene;
   Bounds3 bounds;
   float largest = kFarthest;
-  bool hasTints = false;  // some thin surface is not clear
+  bool hasTints = false;       // some thin surface is not clear
+  bool hasBoundaries = false;  // some surface separates media
   mutable std::atomic<uint64_t> rejected{0};
 
   explicit Implementation(GeometryDescription given) : description(std::move(given)) {
@@ -94,13 +95,15 @@ struct GeometryScene::Implementation {
   }
 
   void AddEntries(const std::vector<GeometryEntry>& entries);
+  void SetMedia(const GeometryAttributes& attributes, PrimitiveRecord& record);
   void FillTables();
   void AddInstance(const GeometryInstance& instance, uint32_t firstPrimitive);
   void ComputeBounds();
   SceneHandle NewScene() const;
   void AttachEntries(RTCScene target, size_t first, size_t count);
   void BuildScenes();
-  bool Trace(const Ray& ray, uint32_t kinds, RayHit& hit, std::vector<Crossing>* crossings) const;
+  bool Trace(const Ray& ray, uint32_t kinds, RayHit& hit, TraceContext& trace) const;
+  Color Transmittance(const Ray& ray, uint32_t kinds, TraceContext& trace) const;
 
   // True if Embree survives the ray. A NaN anywhere makes a comparison false.
   bool Accept(const Ray& ray) const {
@@ -132,10 +135,23 @@ void GeometryScene::Implementation::AddEntries(const std::vector<GeometryEntry>&
     record.hasNoInside = entry.attributes.isFibrous && curves && curves->kind == CurveSet::Kind::Cylinder;
     hasTints = hasTints || (record.thin && !record.thin->IsClear());
     record.isParametrized = entry.attributes.isParametrized;
+    if (entry.attributes.isBoundary || SeparatesMedia(entry.attributes)) SetMedia(entry.attributes, record);
     record.tables = &tables;
     tables.primitives.push_back(record);
     tables.attributes.push_back(entry.attributes);
   }
+}
+
+// A surface that separates media does so for all rays. To those that do not see it, it is a boundary alone: the medium
+// at a point is then the same on every path.
+void GeometryScene::Implementation::SetMedia(const GeometryAttributes& attributes, PrimitiveRecord& record) {
+  if (record.As<CurveSet>() || record.As<CustomSurface>())
+    throw Error("curves and custom surfaces cannot separate participating media");
+  record.separatesMedia = true;
+  record.insideMedium = attributes.insideMedium;
+  record.outsideMedium = attributes.outsideMedium;
+  record.stops = attributes.isBoundary ? 0 : attributes.visibility;
+  hasBoundaries = hasBoundaries || SeparatesMedia(attributes);
 }
 
 void GeometryScene::Implementation::FillTables() {
@@ -293,22 +309,12 @@ std::vector<Crossing>& ThreadCrossings() {
   return crossings;
 }
 
-// Equal distances by primitive, so that a product does not depend on the order of traversal.
-void SortByDistance(std::vector<Crossing>& crossings) {
-  std::sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) {
-    return std::tie(a.t, a.instance, a.primitive, a.patch, a.entering) <
-           std::tie(b.t, b.instance, b.primitive, b.patch, b.entering);
-  });
-}
-
 }  // namespace
 
-// The ray is accepted. `crossings`, which is empty, becomes what the ray passed before the hit; null: not wanted.
-bool GeometryScene::Implementation::Trace(const Ray& ray, uint32_t kinds, RayHit& hit,
-                                          std::vector<Crossing>* crossings) const {
-  TraceContext trace;
+// The ray is accepted. The crossings of `trace`, where they are wanted, are empty before and become what the ray passed
+// before the hit.
+bool GeometryScene::Implementation::Trace(const Ray& ray, uint32_t kinds, RayHit& hit, TraceContext& trace) const {
   rtcInitIntersectContext(&trace.context);
-  trace.crossings = crossings;
   RTCRayHit rayHit;
   FillRay(ray, kinds, ray.tMax, rayHit.ray);
   rayHit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
@@ -316,10 +322,11 @@ bool GeometryScene::Implementation::Trace(const Ray& ray, uint32_t kinds, RayHit
   ClearUpperHalves();
   rtcIntersect1(scene.get(), &trace.context, &rayHit);
   trace.ThrowFailure();
-  if (crossings && !crossings->empty()) {
+  if (trace.crossings && !trace.crossings->empty()) {
     // Embree visits what lies behind the hit, too.
-    std::erase_if(*crossings, [&](const Crossing& crossing) { return !(crossing.t < rayHit.ray.tfar); });
-    SortByDistance(*crossings);
+    std::erase_if(*trace.crossings, [&](const Crossing& crossing) { return !(crossing.t < rayHit.ray.tfar); });
+    SortByDistance(*trace.crossings);
+    if (trace.recordsBoundaries) OrderCoincident(tables, MaxAbsComponent(ray.origin), *trace.crossings);
   }
   if (rayHit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
   hit.t = rayHit.ray.tfar;
@@ -340,7 +347,10 @@ bool GeometryScene::Trace(const Ray& ray, uint32_t kinds, RayHit& hit, std::vect
   const Implementation& scene = *implementation_;
   crossings.clear();
   if (!scene.Accept(ray)) return false;
-  return scene.Trace(ray, kinds, hit, scene.hasTints ? &crossings : nullptr);
+  TraceContext trace;
+  if (scene.hasTints || scene.hasBoundaries) trace.crossings = &crossings;
+  trace.recordsBoundaries = scene.hasBoundaries;
+  return scene.Trace(ray, kinds, hit, trace);
 }
 
 bool GeometryScene::Intersect(const Ray& ray, uint32_t kinds, RayHit& hit, Color& tint) const {
@@ -350,31 +360,57 @@ bool GeometryScene::Intersect(const Ray& ray, uint32_t kinds, RayHit& hit, Color
     return false;
   }
   tint = Color(1.0f);
+  TraceContext trace;
   if (!scene.hasTints) [[likely]]
-    return scene.Trace(ray, kinds, hit, nullptr);
-  std::vector<Crossing>& crossings = ThreadCrossings();
-  const bool isHit = scene.Trace(ray, kinds, hit, &crossings);
-  tint = lampyr::Transmittance(crossings);
+    return scene.Trace(ray, kinds, hit, trace);
+  trace.crossings = &ThreadCrossings();
+  const bool isHit = scene.Trace(ray, kinds, hit, trace);
+  tint = lampyr::Transmittance(*trace.crossings);
   return isHit;
+}
+
+// The ray is accepted. The crossings of `trace` are empty before; afterwards they are in order, unless the result is 0.
+Color GeometryScene::Implementation::Transmittance(const Ray& ray, uint32_t kinds, TraceContext& trace) const {
+  rtcInitIntersectContext(&trace.context);
+  RTCRay shadowRay;
+  // Embree's interval is closed above; ours is open.
+  FillRay(ray, kinds, ray.tMax * kOneMinusEpsilon, shadowRay);
+  ClearUpperHalves();
+  rtcOccluded1(scene.get(), &trace.context, &shadowRay);
+  trace.ThrowFailure();
+  if (shadowRay.tfar < 0) return Color(0.0f);
+  if (trace.crossings->empty()) [[likely]]
+    return Color(1.0f);
+  SortByDistance(*trace.crossings);
+  if (trace.recordsBoundaries) OrderCoincident(tables, MaxAbsComponent(ray.origin), *trace.crossings);
+  return lampyr::Transmittance(*trace.crossings);
 }
 
 Color GeometryScene::Transmittance(const Ray& ray, uint32_t kinds) const {
   const Implementation& scene = *implementation_;
   if (!scene.Accept(ray)) return Color(0.0f);
   TraceContext trace;
-  rtcInitIntersectContext(&trace.context);
   trace.crossings = &ThreadCrossings();
-  RTCRay shadowRay;
-  // Embree's interval is closed above; ours is open.
-  FillRay(ray, kinds, ray.tMax * kOneMinusEpsilon, shadowRay);
-  ClearUpperHalves();
-  rtcOccluded1(scene.scene.get(), &trace.context, &shadowRay);
-  trace.ThrowFailure();
-  if (shadowRay.tfar < 0) return Color(0.0f);
-  if (trace.crossings->empty()) [[likely]]
-    return Color(1.0f);
-  SortByDistance(*trace.crossings);
-  return lampyr::Transmittance(*trace.crossings);
+  return scene.Transmittance(ray, kinds, trace);
+}
+
+Color GeometryScene::Transmittance(const Ray& ray, uint32_t kinds, std::vector<Crossing>& crossings) const {
+  const Implementation& scene = *implementation_;
+  crossings.clear();
+  if (!scene.Accept(ray)) return Color(0.0f);
+  TraceContext trace;
+  trace.crossings = &crossings;
+  trace.recordsBoundaries = scene.hasBoundaries;
+  const Color transmittance = scene.Transmittance(ray, kinds, trace);
+  if (transmittance.IsBlack()) {
+    crossings.clear();
+    return transmittance;
+  }
+  // Cut-outs are factors of the transmittance alone.
+  std::erase_if(crossings, [&](const Crossing& crossing) {
+    return crossing.medium == kSameMedium && !scene.tables.primitives[crossing.primitive].thin;
+  });
+  return transmittance;
 }
 
 SurfacePoint GeometryScene::GetSurfacePoint(const Ray& ray, const RayHit& hit) const {
@@ -408,6 +444,10 @@ int32_t GeometryScene::LightAt(uint32_t primitive, uint32_t instance) const {
   const SceneTables& tables = implementation_->tables;
   const int32_t light = tables.attributes[primitive].light;
   return light < 0 || instance == kNoIndex ? light : light + tables.instances[instance].firstLight;
+}
+
+bool GeometryScene::HasBoundaries() const {
+  return implementation_->hasBoundaries;
 }
 
 size_t GeometryScene::PrimitiveCount() const {

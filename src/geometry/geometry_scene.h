@@ -43,7 +43,9 @@ struct GeometryAttributes {
   std::shared_ptr<const ThinSurface> thin;   // null: no light goes straight on through the surface
   // Participating media inside and outside (the side of Ng); both are kSameMedium where the surface separates none.
   int32_t insideMedium = kSameMedium, outsideMedium = kSameMedium;
-  bool isBoundary = false;  // between media alone: all rays pass straight through
+  // Between media alone: rays of all kinds pass straight through. A surface that separates media and is not visible to
+  // all kinds is that to the others. Where `alpha` is 0 there is no boundary. No curves and no custom surfaces.
+  bool isBoundary = false;
   // False: nobody looks at the uv and tangents of its points, and they are left at 0 where they cost something.
   bool isParametrized = true;
   bool isFibrous = false;  // a curve that is met from outside alone: its inside is a part of its scattering
@@ -91,9 +93,14 @@ class GeometryScene {
   GeometryScene& operator=(const GeometryScene&) = delete;
 
   // Nearest hit with t in (0, ray.tMax] on a primitive visible to one of `kinds`. False: nothing, `hit` is untouched.
-  // A ray passes cut-outs and thin surfaces with the probability of their transmittance. `crossings` becomes the thin
-  // surfaces that it passed before the hit, by increasing t, with their tints as transmittances; empty in scenes whose
-  // thin surfaces are all clear.
+  // A ray passes cut-outs and thin surfaces with the probability of their transmittance, and boundaries between media
+  // always. `crossings` becomes what it passed before the hit, in order: boundaries, and thin surfaces with their tints
+  // as transmittances. Empty in scenes whose thin surfaces are all clear and that have no boundaries.
+  //
+  // The medium changes from crossing to crossing (Crossing::medium), by increasing t. Boundaries at equal t, up to
+  // rounding, are ordered such that the ray passes from medium to medium; where that leaves a choice, it leaves one
+  // before it enters another. A crossing sets the medium and counts nothing: the edge of a thin surface may be reported
+  // twice.
   bool Trace(const Ray& ray, uint32_t kinds, RayHit& hit, std::vector<Crossing>& crossings) const;
 
   // The same, where the crossings matter by their product alone: `tint`. A ray that is rejected (RejectedRays) hits
@@ -107,6 +114,9 @@ class GeometryScene {
   // Transmittance of (0, ray.tMax): 0 behind an opaque surface; otherwise the product over all cut-outs and thin
   // surfaces, by increasing t. It is the expected value of Intersect's outcome. 0 for a ray that is rejected.
   Color Transmittance(const Ray& ray, uint32_t kinds) const;
+  // The same with the crossings that Trace lists. Cut-outs are factors of the result, not crossings. Empty if the
+  // result is 0.
+  Color Transmittance(const Ray& ray, uint32_t kinds, std::vector<Crossing>& crossings) const;
   bool Occluded(const Ray& ray, uint32_t kinds) const { return Transmittance(ray, kinds).IsBlack(); }
 
   // Position with error bound, normals, uv and tangents of a hit that `ray` made.
@@ -116,6 +126,8 @@ class GeometryScene {
   // Index of the light at a hit, instances resolved; -1 for none.
   int32_t LightAt(uint32_t primitive, uint32_t instance) const;
 
+  // True if some surface separates participating media (SeparatesMedia).
+  bool HasBoundaries() const;
   size_t PrimitiveCount() const;             // shapes, instanced ones once
   const Bounds3& GetBounds() const;          // empty for an empty scene
   BoundingSphere GetBoundingSphere() const;  // radius 1 around 0 for an empty scene

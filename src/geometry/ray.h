@@ -14,6 +14,8 @@ inline constexpr uint32_t kCamera = 1;    // from the camera, or after only pass
 inline constexpr uint32_t kIndirect = 2;  // scattered by a surface, or emitted by a light
 inline constexpr uint32_t kShadow = 4;    // between a surface point and a light
 inline constexpr uint32_t kAll = 7;
+// Passes everything, and crosses all surfaces that separate media: it finds the medium at a point (FindMedium).
+inline constexpr uint32_t kMedia = 8;
 }  // namespace visibility
 
 struct Ray {
@@ -48,7 +50,7 @@ struct RayHit {
   float u = 0, v = 0;             // barycentric (triangles), parametric otherwise
 };
 
-// A surface that a ray went straight through: a thin surface, or a cut-out in part (GeometryScene::Trace).
+// A surface that a ray went straight through: a thin surface or a boundary between media (GeometryScene::Trace).
 struct Crossing {
   float t = 0;                    // ray parameter
   uint32_t primitive = kNoIndex;  // as in RayHit
@@ -56,6 +58,7 @@ struct Crossing {
   uint32_t instance = kNoIndex;
   bool entering = false;  // from the outside, which is the side that Ng points to
   Color transmittance{1.0f};
+  int32_t medium = kSameMedium;  // that the ray is in behind the surface; kSameMedium: the one in front
 };
 
 // Product of the crossings' transmittances.

@@ -1,6 +1,7 @@
 // Private to the geometry: tables of primitives and instances, by the indices of a hit. Flat arrays, no virtual calls.
 #pragma once
 
+#include <cstdint>
 #include <variant>
 #include <vector>
 
@@ -21,7 +22,15 @@ struct PrimitiveRecord {
   bool hasNoInside = false;    // a round curve that rays from inside do not meet
   bool isParametrized = true;  // GeometryAttributes::isParametrized
 
-  bool LetsPass() const { return alpha || thin || hasNoInside; }
+  // A surface that separates media, or is a boundary. It is met by all rays, and those that it does not stop pass it as
+  // a boundary.
+  bool separatesMedia = false;
+  uint32_t stops = visibility::kAll;  // kinds of rays, if it separates media
+  int32_t insideMedium = kSameMedium, outsideMedium = kSameMedium;
+
+  bool PassedAsBoundary(uint32_t kinds) const { return separatesMedia && (stops & kinds) == 0; }
+  // False: every ray that meets the surface is stopped.
+  bool LetsPass() const { return alpha || thin || hasNoInside || separatesMedia; }
   // The shape if it is of this kind, or null.
   template <class Kind>
   const Kind* As() const {

@@ -13,6 +13,7 @@ Vector3 Renormalize(const Vector3& v) {
 }  // namespace
 
 BsdfEvaluation Bsdf::EvaluateInFrame(const Vector3& wo, const Vector3& wi, TransportMode mode) const {
+  if (const auto* phase = std::get_if<PhaseBsdf>(&model_)) return phase->Evaluate(wo, wi, mode);
   const Vector3 o = frame_.ToLocal(wo), i = frame_.ToLocal(wi);
   if (o.z == 0 || i.z == 0) return {};
   return std::visit([&](const auto& model) { return model.Evaluate(o, i, mode); }, model_);
@@ -25,8 +26,9 @@ BsdfSample Bsdf::SampleLocal(const Vector3& wo, float uLobe, const Point2& u, Tr
 }
 
 BsdfSample Bsdf::Sample(const Vector3& wo, float uLobe, const Point2& u, TransportMode mode) const {
-  BsdfSample sample = SampleLocal(frame_.ToLocal(wo), uLobe, u, mode);
-  if (sample) sample.wi = Renormalize(frame_.ToWorld(sample.wi));
+  const auto* phase = std::get_if<PhaseBsdf>(&model_);
+  BsdfSample sample = phase ? phase->Sample(wo, uLobe, u, mode) : SampleLocal(frame_.ToLocal(wo), uLobe, u, mode);
+  if (sample) sample.wi = Renormalize(phase ? sample.wi : frame_.ToWorld(sample.wi));
   return sample;
 }
 

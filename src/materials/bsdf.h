@@ -1,5 +1,6 @@
-// Scattering at a surface point: value, densities in both directions and the split into diffuse and specular, in one
-// call. A Bsdf is a small value on the stack that hides the scattering model, without allocation or virtual calls.
+// Scattering at a surface point or within a medium: value, densities in both directions and the split into diffuse and
+// specular, in one call. A Bsdf is a small value on the stack that hides the scattering model, without allocation or
+// virtual calls.
 //
 // Conventions ([Veach97 §5.3])
 // - wo and wi are unit vectors in render space, both pointing away from the surface.
@@ -44,12 +45,19 @@ class Bsdf {
   // True if light from the other side may contribute; light selection then considers both sides.
   bool IsTransmissive() const;
 
-  // Cosine of the scattering integral: |w·Ns|; for a fibre, the cosine of the angle to the plane across it.
+  // Cosine of the scattering integral: |w·Ns|; for a fibre, the cosine of the angle to the plane across it; 1 in a
+  // medium.
   float ScatteringCosine(const Vector3& w) const {
+    if (IsMedium()) return 1;
     return IsFibre() ? std::get_if<HairBsdf>(&model_)->ScatteringCosine(frame_.ToLocal(w)) : AbsDot(w, frame_.z);
   }
-  // Cosine of the geometry term: |w·Ng|; for a fibre, which faces every direction, ScatteringCosine.
-  float GeometricCosine(const Vector3& w) const { return IsFibre() ? ScatteringCosine(w) : AbsDot(w, Ng_); }
+  // Cosine of the geometry term: |w·Ng|; for a fibre, which faces every direction, and in a medium, ScatteringCosine.
+  float GeometricCosine(const Vector3& w) const {
+    return IsFibre() || IsMedium() ? ScatteringCosine(w) : AbsDot(w, Ng_);
+  }
+  // True for a point within a medium: there is no surface, f is σ_s (or the albedo) times the phase function, all of it
+  // `diffuse`, and the frame has no meaning.
+  bool IsMedium() const { return std::holds_alternative<PhaseBsdf>(model_); }
   // True for a fibre, which is too narrow to be resolved: light that enters anywhere leaves at the same point, to any
   // side.
   bool IsFibre() const {
@@ -58,8 +66,9 @@ class Bsdf {
   }
 
   // False for hair: a fibre has no area within the radius that photons could be counted over, and on a surface, where
-  // hair scatters grazing light as much as any, a photon would have the weight 1 / cosθ, of unbounded variance.
-  bool GathersPhotons() const { return !std::holds_alternative<HairBsdf>(model_); }
+  // hair scatters grazing light as much as any, a photon would have the weight 1 / cosθ, of unbounded variance. False
+  // in a medium: these are photons of surfaces.
+  bool GathersPhotons() const { return !std::holds_alternative<HairBsdf>(model_) && !IsMedium(); }
 
   const Frame& ShadingFrame() const { return frame_; }
   const Normal3& Ng() const { return Ng_; }

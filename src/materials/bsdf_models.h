@@ -1,7 +1,7 @@
 // The scattering models that a Bsdf may hold: small, trivially copyable values. Each works in its local frame (z is the
 // shading normal, unit directions pointing away from the surface, none exactly in the plane z = 0) and has
 //   Evaluate(wo, wi, mode), Sample(wo, uLobe, u, mode), IsDelta(), IsTransmissive()
-// with the meaning of the same methods of Bsdf.
+// with the meaning of the same methods of Bsdf. PhaseBsdf, of a medium, takes directions in any frame, and all of them.
 #pragma once
 
 #include <type_traits>
@@ -14,6 +14,7 @@
 #include "materials/diffuse.h"
 #include "materials/hair.h"
 #include "materials/measured.h"
+#include "materials/phase.h"
 #include "materials/scattering.h"
 
 namespace lampyr {
@@ -26,8 +27,9 @@ struct AbsorbingBsdf {
   bool IsTransmissive() const { return false; }
 };
 
-using BsdfModel = std::variant<AbsorbingBsdf, DiffuseBsdf, DiffuseTransmissionBsdf, ConductorBsdf, DielectricBsdf,
-                               ThinDielectricBsdf, CoatedDiffuseBsdf, CoatedConductorBsdf, HairBsdf, MeasuredBsdf>;
+using BsdfModel =
+    std::variant<AbsorbingBsdf, DiffuseBsdf, DiffuseTransmissionBsdf, ConductorBsdf, DielectricBsdf, ThinDielectricBsdf,
+                 CoatedDiffuseBsdf, CoatedConductorBsdf, HairBsdf, MeasuredBsdf, PhaseBsdf>;
 static_assert(std::is_trivially_copyable_v<BsdfModel> && sizeof(BsdfModel) <= 96);
 
 }  // namespace lampyr

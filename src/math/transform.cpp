@@ -33,7 +33,11 @@ Affine Affine::Inverse() const {
   return {glm::mat3(inverse), Vector3(-(inverse * Vector3d(translation)))};
 }
 
-Transform::Transform(const glm::dmat4& m) : m_(m), inverse_(glm::inverse(m)) {}
+Transform::Transform(const glm::dmat4& m) : m_(m), inverse_(glm::inverse(m)) {
+  // The inverse of an affine map is one, too: without what rounding leaves in its last row.
+  if (!IsAffine() || !AllFinite(inverse_)) return;
+  for (int column = 0; column < 4; ++column) inverse_[column][3] = column == 3 ? 1.0 : 0.0;
+}
 
 Transform Transform::Translate(const Vector3d& offset) {
   glm::dmat4 m(1.0), inverse(1.0);

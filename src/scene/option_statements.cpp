@@ -49,6 +49,7 @@ void SceneParser::Camera(const Token& statement) {
   const TransformPair cameraToWorld = {worldToCamera.start.Inverse(), worldToCamera.end.Inverse()};
   SetCoordinateSystem("camera", cameraToWorld);
   scene_.cameraToWorld = {cameraToWorld[0], cameraToWorld[1]};
+  scene_.cameraMedium = state_.outsideMedium;
 }
 
 void SceneParser::Film(const Token& statement) {

@@ -114,6 +114,18 @@ Color BlackbodyToColor(double kelvin, SpectrumRole role) {
   return FunctionToColor([&](double lambda) { return Blackbody(lambda, kelvin) / largest; }, wavelengths, role);
 }
 
+Color NormalizedBlackbody(double kelvin) {
+  // Planck's law over its maximum, by Wien's displacement law: x = hc / (λ k T) is kPeak there.
+  constexpr double kPeak = 4.965114231744276, kSecondRadiation = 1.438776877e7;  // nm·K
+  const auto relative = [kelvin](double lambda) {
+    const double x = kSecondRadiation / (lambda * kelvin);
+    return std::pow(x / kPeak, 5) * std::exp(kPeak - x) * (std::expm1(-kPeak) / std::expm1(-x));
+  };
+  const std::vector<double> wavelengths = Wavelengths({});
+  const double luminance = Integrate(wavelengths, [&](double l) { return ColorMatching(l) * relative(l); }).y;
+  return FunctionToColor(relative, wavelengths, SpectrumRole::Illuminant) * static_cast<float>(luminance);
+}
+
 std::vector<SpectrumSample> SpectrumFromPairs(const std::vector<double>& numbers, const FileLocation& where) {
   if (numbers.size() % 2 != 0) {
     throw Error(where, "a spectrum is pairs of wavelength and value: " + std::to_string(numbers.size()) +

@@ -241,9 +241,10 @@ void SceneParser::MakeNamedMedium(const Token& statement) {
     throw Error(statement.where,
                 "the medium \"" + name + "\" is defined twice; the first is at " + entry->second.ToString());
   }
-  ReadList(statement, "MakeNamedMedium \"" + name + "\"", "medium");
-  diagnostics_.Warn(statement.where,
-                    "participating media are not supported yet: the medium \"" + name + "\" is left out");
+  ParameterList parameters = ReadList(statement, "MakeNamedMedium \"" + name + "\"", "medium");
+  std::string type = parameters.GetString("type", "");
+  if (type.empty()) throw Error(statement.where, "MakeNamedMedium \"" + name + "\" needs a \"string type\"");
+  scene_.media.push_back({name, {std::move(type), std::move(parameters), statement.where}, PlacementOf(statement)});
 }
 
 void SceneParser::MediumInterface(const Token& statement) {

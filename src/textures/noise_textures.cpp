@@ -2,7 +2,7 @@
 #include <array>
 #include <cmath>
 
-#include "textures/noise.h"
+#include "math/noise.h"
 #include "textures/texture_families.h"
 
 namespace lampyr {

@@ -1,7 +1,7 @@
 // Simple patterns: bilerp, checkerboard (2-D and 3-D), dots.
 #include <cmath>
 
-#include "textures/noise.h"
+#include "math/noise.h"
 #include "textures/texture_families.h"
 
 namespace lampyr {

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "agreement/agreement_scenes.h"
+#include "agreement/media_scenes.h"
 #include "agreement/weight_proof.h"
 
 namespace lampyr::test {
@@ -101,6 +102,28 @@ TEST(BdptWeights, WithARadiusPerPath) {
   }
   EXPECT_GT(merges, 10000);
   EXPECT_GT(asked, 100000);
+}
+
+// Vertices in media, homogeneous, in grids, and with other coefficients in each channel.
+TEST(BdptWeights, InMedia) {
+  int merges = 0;
+  std::map<std::pair<int, int>, int> techniques;
+  for (const MediaScene& scene : MediaScenes()) {
+    if (!scene.hasLights) continue;
+    for (const WeightProof& proof : {WeightProof{.paths = 10000}, WeightProof{.paths = 4000, .radius = 0.02f},
+                                     WeightProof{.paths = 4000, .pixels = 2}}) {
+      const WeightErrors worst = CheckWeights(scene.text, proof);
+      EXPECT_GE(worst.paths, proof.paths) << scene.name;
+      ExpectExact(scene.name, worst);
+      merges += worst.merges;
+      for (const auto& [technique, count] : worst.perTechnique) techniques[technique] += count;
+      Print(scene.name, worst);
+    }
+  }
+  EXPECT_GT(merges, 5000);
+  for (int events = 1; events <= 3; ++events) {
+    for (int s = 0; s <= events + 1; ++s) EXPECT_GT((techniques[{s, events + 2 - s}]), 100) << s << " of " << events;
+  }
 }
 
 // Fewer light paths than camera paths, or more; connections and merging left out, always made, or now and then,

@@ -5,6 +5,7 @@
 #include <regex>
 
 #include "agreement/agreement_scenes.h"
+#include "agreement/media_scenes.h"
 #include "lights/light_type.h"
 #include "support/replicas.h"
 
@@ -46,6 +47,32 @@ TEST_P(Integrators, Agree) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Integrators, testing::ValuesIn(AgreementScenes()),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+class InMedia : public testing::TestWithParam<MediaScene> {};
+
+// Against bdpt, the least noisy.
+TEST_P(InMedia, IntegratorsAgree) {
+  const MediaScene& scene = GetParam();
+  RenderOverrides overrides;
+  const Replicas bdpt = RenderReplicas(scene.text, "bdpt", kReplicas, scene.samples, overrides);
+  const double rate = SidakRate(1e-3, 4 * static_cast<int>(MediaScenes().size()));
+  for (const char* integrator : {"path", "light", "vcm", "auto"}) {
+    const bool isLight = std::string(integrator) == "light";
+    if (isLight && (!scene.lightTracerSeesAll || scene.isCameraInMedium || !scene.hasLights)) continue;
+    overrides.seed += 1000;
+    const int samples = isLight ? scene.lightSamples : scene.samples;
+    const Agreement result = CompareReplicas(RenderReplicas(scene.text, integrator, kReplicas, samples, overrides),
+                                             bdpt, scene.blockSize, rate);
+    std::printf("%-5s %-20s largest |z| %.2f (%.2f), chi2 %.1f (%.1f), bias %+.3f %% +- %.3f %%\n", integrator,
+                scene.name, result.largestZ, result.thresholdZ, result.chiSquared, result.chiSquaredThreshold,
+                100 * result.bias, 196 * result.biasError);
+    EXPECT_TRUE(result.Agrees()) << integrator;
+    EXPECT_LT(result.biasError, 0.01) << integrator << ": too noisy";
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, InMedia, testing::ValuesIn(MediaScenes()),
                          [](const auto& info) { return std::string(info.param.name); });
 
 TEST(LightPathScenes, EveryTypeOfLightIsInOne) {

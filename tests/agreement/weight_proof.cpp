@@ -81,7 +81,7 @@ class KeepsPaths final : public WeightedLightPath {
     AddDensities(path.vertices, kept_.densities);
     const PathVertex& first = path.vertices[0];
     if (path.vertices.Count() == 1) {
-      kept_.densities[0] = {.forward = End().emission.value, .extent = End().extent};
+      kept_.densities[0] = {.forward = End().emission.value, .isInMedium = first.IsInMedium(), .extent = End().extent};
       kept_.ends = {.direct = End().direct.value, .canBeHit = End().canBeHit};
     } else if (path.vertices.Count() == 2) {
       kept_.ends.firstIsDelta = first.scatteredDelta;
@@ -93,6 +93,7 @@ class KeepsPaths final : public WeightedLightPath {
 };
 
 double CosineAtGeometry(const PathVertex& vertex, const Vector3& direction) {
+  if (vertex.IsInMedium()) return 1;
   return std::abs(glm::dot(Vector3d(vertex.bsdf.Ng()), Vector3d(direction)));
 }
 
@@ -168,8 +169,9 @@ class WeightChecker final : public PathObserver {
       const double lightPaths = counts_.LightPaths();
       worst_.connections.Note(path.connectionCount, Sqr(lightPaths > 1 ? connections / lightPaths : connections));
     }
-    CheckLens(path);
-    if (!path.isMerged) CheckLightEnd(path);
+    // With media these have factors of estimated transmittance, which the sums and the agreement of means prove.
+    if (scene_.media.empty()) CheckLens(path);
+    if (scene_.media.empty() && !path.isMerged) CheckLightEnd(path);
     for (size_t i = 0; i + 1 < path.camera.size(); ++i) {
       const PathVertex& vertex = path.camera[i];
       CheckRefraction(vertex, -path.camera[i + 1].toPrevious, vertex.toPrevious, vertex.eventForward,
@@ -211,7 +213,7 @@ class WeightChecker final : public PathObserver {
   // square. 0: unknown.
   double SeenArea(const PathVertex& vertex, const Vector3& toLens) const {
     constexpr float kSide = 0.01f;  // pixels
-    const Vector3d n(vertex.bsdf.Ng());
+    const Vector3d n(vertex.IsInMedium() ? toLens : vertex.bsdf.Ng());
     Vector3d corners[3];
     // Of a camera with a lens the path's point on it is not known.
     const CameraRay center = scene_.camera->GenerateRay(film_, Point2(0.5f), time_);

@@ -93,7 +93,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"MaterialTwice",
              kWorld + "MakeNamedMaterial \"m\" \"string type\" \"a\"\nMakeNamedMaterial \"m\" \"string type\" \"a\"",
              At("3:1", "the material \"m\" is defined twice; the first is at scene.pbrt:2:1")},
-        Case{"MediumTwice", kWorld + "MakeNamedMedium \"m\"\nMakeNamedMedium \"m\"",
+        Case{"MediumTwice", kWorld + "MakeNamedMedium \"m\" \"string type\" \"cloud\"\nMakeNamedMedium \"m\"",
              At("3:1", "the medium \"m\" is defined twice; the first is at scene.pbrt:2:1")},
         Case{"NamedMaterialWithoutType", kWorld + "MakeNamedMaterial \"m\"",
              At("2:1", "MakeNamedMaterial \"m\" needs a \"string type\"")},

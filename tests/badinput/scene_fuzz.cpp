@@ -17,6 +17,7 @@ TransformTimes 0 1 ActiveTransform EndTime Translate 0 1 0 ActiveTransform All
 ColorSpace "rec2020"
 WorldBegin
 MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_a" [ 1 1 1 ]
+MakeNamedMedium "smoke" "string type" "uniformgrid" "integer nx" 2 "float density" [ 1 .5 ] "float temperature" [ 900 99 ]
 MediumInterface "fog" ""
 Texture "t" "spectrum" "imagemap" "string filename" "t.png"
 MakeNamedMaterial "m" "string type" "diffuse" "texture reflectance" "t"

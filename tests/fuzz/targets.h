@@ -27,6 +27,8 @@ bool ReadIesFile(std::string_view bytes);
 bool ReadLens(std::string_view bytes);
 // A measured material: read, then sampled and evaluated.
 bool ReadMeasuredFile(std::string_view bytes);
+// A letter, then a NanoVDB file (f) or changes to a valid one (p: volume.cpp): read, then asked for values.
+bool ReadVolumeFile(std::string_view bytes);
 // One byte that says what the rest is of (part.cpp), then a saved render: read, and gone on with or added.
 bool ReadSavedPart(std::string_view bytes);
 
@@ -39,9 +41,9 @@ struct Target {
 };
 
 inline constexpr Target kTargets[] = {
-    {"scene", ReadSceneText}, {"build", BuildSceneText},      {"graph", BuildSceneGraph},
-    {"ply", ReadPlyFile},     {"image", ReadImageFile},       {"ies", ReadIesFile},
-    {"lens", ReadLens},       {"measured", ReadMeasuredFile}, {"part", ReadSavedPart}};
+    {"scene", ReadSceneText}, {"build", BuildSceneText}, {"graph", BuildSceneGraph}, {"ply", ReadPlyFile},
+    {"image", ReadImageFile}, {"ies", ReadIesFile},      {"lens", ReadLens},         {"measured", ReadMeasuredFile},
+    {"part", ReadSavedPart},  {"volume", ReadVolumeFile}};
 
 // Thrown by a target that was given an answer that cannot be right.
 [[noreturn]] void Fail(const std::string& what);

@@ -46,7 +46,8 @@ std::string RoomOf(const std::string& path) {
 }
 
 // The rooms in the order of the house: each may include itself and those of the set.
-const std::set<std::string> kCore = {"base", "math", "sampling", "scene", "geometry", "film", "textures", "materials"};
+const std::set<std::string> kCore = {"base",  "math", "sampling", "scene",    "geometry",
+                                     "media", "film", "textures", "materials"};
 std::set<std::string> With(std::set<std::string> rooms, const std::set<std::string>& more) {
   rooms.insert(more.begin(), more.end());
   return rooms;
@@ -57,9 +58,10 @@ const std::map<std::string, std::set<std::string>> kMayKnow = {
     {"sampling", {"base", "math"}},
     {"scene", {"base", "math"}},
     {"geometry", {"base", "math"}},
+    {"media", {"base", "math", "sampling", "scene", "geometry"}},
     {"film", {"base", "math"}},
     {"textures", {"base", "math", "sampling", "scene", "geometry", "film"}},
-    {"materials", {"base", "math", "sampling", "scene", "geometry", "film", "textures"}},
+    {"materials", {"base", "math", "sampling", "scene", "geometry", "media", "film", "textures"}},
     {"camera", {"base", "math", "sampling", "scene", "geometry"}},
     {"lights", kCore},
     {"suite", With(kCore, {"lights"})},

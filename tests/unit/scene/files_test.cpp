@@ -123,13 +123,11 @@ TEST(SceneFiles, PublishedScenes) {
   for (const std::filesystem::path& file : files) {
     Diagnostics diagnostics(Diagnostics::Mode::Collect);
     const SceneDescription scene = ReadScene(file, diagnostics);
-    // Nothing to warn of but what is not supported yet, in the scenes that are about it.
-    const bool hasMedia = file.filename().string().find("media-") == 0;
-    for (const std::string& warning : diagnostics.Warnings())
-      EXPECT_TRUE(hasMedia && warning.find("participating media") != std::string::npos) << warning;
+    EXPECT_TRUE(diagnostics.Warnings().empty()) << diagnostics.Warnings().front();
+    EXPECT_EQ(scene.media.empty(), file.filename().string().find("media-") != 0) << file;
     EXPECT_EQ(scene.camera.type, "perspective") << file;
     EXPECT_FALSE(scene.shapes.empty()) << file;
-    EXPECT_TRUE(hasMedia || !scene.lights.empty() || !scene.areaLights.empty()) << file;
+    EXPECT_TRUE(!scene.media.empty() || !scene.lights.empty() || !scene.areaLights.empty()) << file;
     if (file.filename() == "lights600.pbrt") {
       EXPECT_EQ(scene.areaLights.size(), 600u);
     }

@@ -221,11 +221,6 @@ TEST(Parser, WarnsOnceOfWhatIsNotSupported) {
   EXPECT_THAT(WarningsOf("Option \"wavefront\" true\nWorldBegin\n"),
               ElementsAre("scene.pbrt:1:1: warning: the option \"wavefront\" is not supported yet: it is ignored"));
   EXPECT_THAT(
-      WarningsOf(InWorld("MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [ 1 1 1 ]\n"
-                         "MediumInterface \"\" \"fog\" Shape \"sphere\"")),
-      ElementsAre(
-          "scene.pbrt:2:1: warning: participating media are not supported yet: the medium \"fog\" is left out"));
-  EXPECT_THAT(
       WarningsOf(InWorld("TransformBegin\nTransformEnd\nWorldEnd")),
       ElementsAre(
           "scene.pbrt:2:1: warning: TransformBegin is deprecated: it is taken as AttributeBegin, as pbrt-v4 does",
@@ -249,17 +244,39 @@ TEST(Parser, StrictMakesWarningsErrors) {
   EXPECT_EQ(ErrorOf([&] { ParseScene("WorldBegin WorldEnd", "s", strict); }).substr(0, 15), "s:1:12: error: ");
 }
 
-TEST(Parser, MediaReachShapesAndLights) {
-  Diagnostics diagnostics(Diagnostics::Mode::Collect);
-  const SceneDescription scene = ParseScene(InWorld("MakeNamedMedium \"a\" MakeNamedMedium \"b\" MediumInterface \"a\" "
-                                                    "\"b\" Shape \"sphere\" LightSource \"point\"\n"
-                                                    "MediumInterface \"b\" Shape \"sphere\""),
-                                            "scene.pbrt", diagnostics);
+TEST(Parser, MediaReachShapesLightsAndTheCamera) {
+  const SceneDescription scene = Parse(R"(
+    Translate 1 2 3
+    MakeNamedMedium "air" "string type" "homogeneous" "float g" 0.5
+    MediumInterface "" "air"
+    Camera "perspective"
+    MediumInterface ""
+    WorldBegin
+    MakeNamedMedium "a" "string type" "cloud"
+    Attribute "medium" "float density" 2
+    Scale 2 2 2
+    MakeNamedMedium "b" "string type" "uniformgrid"
+    MediumInterface "a" "b" Shape "sphere" LightSource "point"
+    MediumInterface "b" Shape "sphere")");
+  ASSERT_EQ(scene.media.size(), 3u);
+  EXPECT_EQ(scene.media[0].name, "air");
+  EXPECT_EQ(scene.media[0].medium.type, "homogeneous");
+  EXPECT_EQ(scene.media[0].medium.where.ToString(), "scene.pbrt:3:5");
+  EXPECT_EQ(scene.media[0].medium.parameters.GetFloat("g", 0), 0.5);
+  EXPECT_EQ(scene.media[0].placement.start.Point({0, 0, 0}), Point3d(1, 2, 3));
+  EXPECT_TRUE(scene.media[1].placement.start.IsIdentity());
+  EXPECT_EQ(scene.media[1].medium.parameters.GetFloat("density", 1), 1);
+  EXPECT_EQ(scene.media[2].placement.start.Point({1, 1, 1}), Point3d(2, 2, 2));
+  EXPECT_EQ(scene.media[2].medium.parameters.GetFloat("density", 1), 2);
+  EXPECT_EQ(scene.cameraMedium, "air");
   EXPECT_EQ(scene.shapes.at(0).insideMedium, "a");
   EXPECT_EQ(scene.shapes.at(0).outsideMedium, "b");
   EXPECT_EQ(scene.lights.at(0).mediumName, "b");
   EXPECT_EQ(scene.shapes.at(1).insideMedium, "b");
   EXPECT_EQ(scene.shapes.at(1).outsideMedium, "b");
+  EXPECT_EQ(Parse("Camera \"perspective\" WorldBegin").cameraMedium, "");
+  EXPECT_EQ(ParseError(InWorld("MakeNamedMedium \"a\" \"float g\" 0")),
+            "scene.pbrt:2:1: error: MakeNamedMedium \"a\" needs a \"string type\"");
 }
 
 // What is scaled to nothing is left out with a warning; the scope, Identity or Transform ends it.

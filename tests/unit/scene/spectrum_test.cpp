@@ -191,5 +191,19 @@ TEST(ColorSpace, ConvertsWhatIsWrittenUnderIt) {
   EXPECT_TRUE(surface.IsValid());
 }
 
+// Luminances by Planck's law, summed over wavelengths apart from this code.
+TEST(Spectrum, NormalizedBlackbodiesTellTemperaturesApart) {
+  const double expected[][2] = {{700, 2.96353e-7}, {1000, 9.68377e-4}, {2000, 5.19494},
+                                {6000, 100.808},   {1e4, 47.4222},     {1e5, 0.0202988}};
+  for (const auto& [kelvin, luminance] : expected) {
+    const Color color = NormalizedBlackbody(kelvin);
+    EXPECT_NEAR(static_cast<double>(color.Luminance()), luminance, 2e-3 * luminance) << kelvin;
+    const Color unit = BlackbodyToColor(kelvin, SpectrumRole::Illuminant) * color.Luminance();
+    EXPECT_NEAR(unit.r, color.r, 1e-4f * color.r) << kelvin;
+    EXPECT_NEAR(unit.b, color.b, 1e-4f * color.Max()) << kelvin;
+  }
+  EXPECT_TRUE(NormalizedBlackbody(100).IsValid());
+}
+
 }  // namespace
 }  // namespace lampyr

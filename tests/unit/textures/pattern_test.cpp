@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "texture_scene.h"
-#include "textures/noise.h"
+#include "math/noise.h"
 
 namespace lampyr {
 namespace {

@@ -1,5 +1,5 @@
 // Lattice coordinates stay in float until they are hashed, so that positions of any size are valid.
-#include "textures/noise.h"
+#include "math/noise.h"
 
 #include <cstdint>
 

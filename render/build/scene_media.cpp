@@ -1,0 +1,143 @@
+#include "render/build/scene_media.h"
+
+#include <array>
+
+namespace lampyr {
+
+SceneMedia::SceneMedia(const SceneDescription& description, Diagnostics& diagnostics)
+    : description_(description), diagnostics_(diagnostics) {
+  for (const MediumDescription& medium : description.media)
+    indices_.emplace(medium.name, static_cast<int32_t>(indices_.size()));
+}
+
+int32_t SceneMedia::IndexOf(const std::string& name, const FileLocation& where) const {
+  if (name.empty()) return kVacuum;
+  const auto found = indices_.find(name);
+  if (found != indices_.end()) return found->second;
+  std::vector<std::string> names;
+  for (const MediumDescription& medium : description_.media) names.push_back(medium.name);
+  throw Error(where, "there is no medium \"" + name + "\"" + DidYouMean(name, names));
+}
+
+void SceneMedia::SetSides(const ShapeDescription& shape, GeometryAttributes& attributes) const {
+  if (shape.insideMedium == shape.outsideMedium) return;
+  attributes.insideMedium = IndexOf(shape.insideMedium, shape.shape.where);
+  attributes.outsideMedium = IndexOf(shape.outsideMedium, shape.shape.where);
+}
+
+void SceneMedia::NumberPlaces(const GeometryDescription& geometry) {
+  std::vector<size_t> first = {geometry.entries.size()};
+  for (const GeometryObject& object : geometry.objects) first.push_back(first.back() + object.entries.size());
+  for (const Place& place : places_) {
+    const size_t primitive = place.object < 0 ? place.entry : first[static_cast<size_t>(place.object)] + place.entry;
+    primitivePlaces_.emplace(static_cast<uint32_t>(primitive), place.where);
+  }
+  places_.clear();
+}
+
+void SceneMedia::AddAreaLight(size_t light, const GeometryAttributes& attributes) {
+  if (SeparatesMedia(attributes)) areaLights_[light] = {attributes.outsideMedium, attributes.insideMedium};
+}
+
+std::string SceneMedia::NameOf(int32_t medium) const {
+  return medium < 0 ? "vacuum" : "the medium \"" + description_.media[static_cast<size_t>(medium)].name + "\"";
+}
+
+// The medium of something that the file says to be in `name`, in messages "the camera" or "the light".
+int32_t SceneMedia::Choose(const std::string& what, const FileLocation& where, const std::string& name,
+                           const FoundMedium& found, int32_t otherwise) {
+  const int32_t said = name.empty() ? kVacuum : IndexOf(name, where);
+  const bool isContradicted = !name.empty() && found.isUnanimous && *found.medium != said;
+  const int32_t medium = name.empty() || isContradicted ? found.medium.value_or(otherwise) : said;
+  if (isContradicted) {
+    diagnostics_.Warn(where, what + " is in " + NameOf(medium) + " by the surfaces around it, not in " + NameOf(said) +
+                                 " as the MediumInterface before it says: it is taken to be where it is");
+  }
+  if (found.disputed != kNoIndex && !hasWarnedOfDispute_) {
+    hasWarnedOfDispute_ = true;
+    const auto place = primitivePlaces_.find(found.disputed);
+    diagnostics_.Warn(place == primitivePlaces_.end() ? where : place->second,
+                      "the media on the sides of this shape and of others contradict each other: they overlap, are "
+                      "open, or a MediumInterface is missing. Seen from " +
+                          what + ", which is taken to be in " + NameOf(medium));
+  }
+  return medium;
+}
+
+namespace {
+
+// A point of the light, or on it, from where it shines.
+struct LightPoint {
+  Point3 position;
+  Normal3 normal{0.0f};  // of a surface, to the side that is lit; otherwise 0
+};
+
+std::optional<LightPoint> PointOf(const PlacedLight& placed, const BoundingSphere& scene, const Point2& u) {
+  LightContext context;
+  context.transform = &placed.transform;
+  context.scene = scene;
+  context.u = u;
+  context.uDirection = u;
+  const std::optional<EmissionSample> emission = placed.light->GenerateEmission(context);
+  if (!emission) return std::nullopt;
+  LightPoint point{emission->position};
+  if (placed.light->Kind() == LightKind::Area)
+    point.normal = glm::dot(emission->direction, emission->normal) < 0 ? -emission->normal : emission->normal;
+  return point;
+}
+
+constexpr std::array<Point2, 6> kLightPoints = {Point2(0.47f, 0.53f), Point2(0.11f, 0.83f), Point2(0.89f, 0.21f),
+                                                Point2(0.23f, 0.07f), Point2(0.71f, 0.97f), Point2(0.97f, 0.61f)};
+
+}  // namespace
+
+SceneMedia::Sides SceneMedia::MediaOfLight(const RenderScene& scene, size_t light, const FileLocation& where,
+                                           int32_t exterior) {
+  const auto separates = areaLights_.find(light);
+  if (separates != areaLights_.end()) return separates->second;
+  const PlacedLight& placed = scene.lighting->Lights()[light];
+  if (IsAtInfinity(placed.light->Kind())) return {exterior, exterior};
+  const std::string name = light < description_.lights.size() ? description_.lights[light].mediumName : "";
+  const int32_t otherwise = name.empty() ? exterior : IndexOf(name, where);
+  if (!scene.geometry->HasBoundaries()) return {otherwise, otherwise};
+  std::optional<int32_t> medium;
+  for (const Point2& u : kLightPoints) {
+    const auto point = PointOf(placed, scene.lighting->SceneSphere(), u);
+    if (!point) continue;
+    const FoundMedium found = FindMedium(*scene.geometry, point->position, 0, point->normal);
+    const int32_t here = found.medium.value_or(otherwise);
+    if (!medium) {
+      medium = Choose("the light", where, name, found, exterior);
+      if (placed.light->Kind() != LightKind::Area) break;
+    } else if (here != *medium) {
+      diagnostics_.Warn(where, "the light reaches from " + NameOf(*medium) + " into " + NameOf(here) +
+                                   ": it is taken to be in the first");
+      break;
+    }
+  }
+  const int32_t chosen = medium.value_or(otherwise);
+  return {chosen, chosen};
+}
+
+void SceneMedia::Locate(const Point2& middle, const std::vector<FileLocation>& lightPlaces, RenderScene& scene) {
+  if (description_.media.empty()) return;
+  const GeometryScene& geometry = *scene.geometry;
+  const Point3 eye = scene.camera->GenerateRay(middle, Point2(0.5f), 0).ray.origin;
+  const FoundMedium around = FindMedium(geometry, eye, 0);
+  const FileLocation& where = description_.camera.where;
+  scene.cameraMedium = Choose("the camera", where, description_.cameraMedium, around, kVacuum);
+  if (description_.cameraMedium.empty() && scene.cameraMedium != kVacuum) {
+    diagnostics_.Warn(where,
+                      "the camera is in " + NameOf(scene.cameraMedium) +
+                          ", and its rays start there. pbrt-v4 starts them in vacuum, because no MediumInterface "
+                          "before the camera names it");
+  }
+  const int32_t exterior = around.medium ? around.exterior.value_or(kVacuum) : scene.cameraMedium;
+  for (size_t light = 0; light < lightPlaces.size(); ++light) {
+    const Sides sides = MediaOfLight(scene, light, lightPlaces[light], exterior);
+    scene.lightMedia.push_back(sides.front);
+    scene.lightBackMedia.push_back(sides.behind);
+  }
+}
+
+}  // namespace lampyr

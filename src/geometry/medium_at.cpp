@@ -1,0 +1,89 @@
+#include "geometry/medium_at.h"
+
+#include <algorithm>
+#include <array>
+
+namespace lampyr {
+
+namespace {
+
+// Unit vectors far from each other and from the axes and diagonals along which scenes are built.
+constexpr std::array<Vector3, 3> kDirections = {Vector3(0.57735f, 0.31127f, 0.75483f),
+                                                Vector3(-0.43021f, 0.82114f, -0.37496f),
+                                                Vector3(0.23904f, -0.61237f, -0.75358f)};
+
+// The medium that the first change of a ray comes from.
+std::optional<int32_t> FirstMedium(const std::vector<MediumChange>& changes) {
+  for (const MediumChange& change : changes) {
+    if (change.before != kSameMedium) return change.before;
+  }
+  return std::nullopt;
+}
+
+// The medium that a ray ends in.
+std::optional<int32_t> LastMedium(const std::vector<MediumChange>& changes) {
+  for (auto change = changes.rbegin(); change != changes.rend(); ++change) {
+    if (change->behind != kSameMedium) return change->behind;
+  }
+  return std::nullopt;
+}
+
+// A primitive that does not begin in the medium in which the one before it has ended.
+uint32_t BrokenLink(const std::vector<MediumChange>& changes) {
+  for (size_t i = 1; i < changes.size(); ++i) {
+    const int32_t behind = changes[i - 1].behind, before = changes[i].before;
+    if (behind != kSameMedium && before != kSameMedium && behind != before) return changes[i].primitive;
+  }
+  return kNoIndex;
+}
+
+}  // namespace
+
+std::vector<MediumChange> MediumChanges(const GeometryScene& geometry, const Ray& ray) {
+  std::vector<MediumChange> changes;
+  if (!geometry.HasBoundaries()) return changes;
+  std::vector<Crossing> crossings;
+  RayHit hit;
+  geometry.Trace(ray, visibility::kMedia, hit, crossings);
+  for (const Crossing& crossing : crossings) {
+    const GeometryAttributes& attributes = geometry.Attributes(crossing.primitive);
+    const int32_t before = crossing.entering ? attributes.outsideMedium : attributes.insideMedium;
+    // A shared edge may be reported twice.
+    if (!changes.empty() && changes.back().primitive == crossing.primitive && changes.back().before == before) continue;
+    changes.push_back({crossing.primitive, before, crossing.medium});
+  }
+  return changes;
+}
+
+FoundMedium FindMedium(const GeometryScene& geometry, const Point3& position, float time, const Normal3& normal) {
+  FoundMedium found;
+  std::array<std::vector<MediumChange>, kDirections.size()> changes;
+  std::array<std::optional<int32_t>, kDirections.size()> said;
+  for (size_t i = 0; i < kDirections.size(); ++i) {
+    const Vector3 direction = glm::dot(kDirections[i], normal) < 0 ? -kDirections[i] : kDirections[i];
+    changes[i] = MediumChanges(geometry, {position, direction, kInfinity, time});
+    said[i] = FirstMedium(changes[i]);
+    if (found.disputed == kNoIndex) found.disputed = BrokenLink(changes[i]);
+  }
+  const auto agree = [&](size_t i, size_t j) { return said[i] && said[j] && *said[i] == *said[j]; };
+  if (agree(1, 2)) {
+    found.medium = said[1];
+  } else {
+    for (size_t i = 0; i < said.size() && !found.medium; ++i) found.medium = said[i];
+  }
+  if (!found.medium) return found;
+  found.isUnanimous = agree(0, 1) && agree(1, 2);
+  found.exterior = LastMedium(changes[0]).value_or(*found.medium);
+  for (size_t i = 0; i < said.size(); ++i) {
+    if (said[i] && *said[i] != *found.medium) found.disputed = changes[i].front().primitive;
+    if (found.exterior && LastMedium(changes[i]).value_or(*found.medium) != *found.exterior) found.exterior.reset();
+  }
+  return found;
+}
+
+int32_t MediumAt(const GeometryScene& geometry, const Point3& position, float time, int32_t otherwise) {
+  const Ray ray{position, kDirections[0], kInfinity, time};
+  return FirstMedium(MediumChanges(geometry, ray)).value_or(otherwise);
+}
+
+}  // namespace lampyr

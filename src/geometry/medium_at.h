@@ -1,0 +1,42 @@
+// The participating medium at a point, found by rays along which the medium changes.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "geometry/geometry_scene.h"
+
+namespace lampyr {
+
+// A surface that separates media, met along a ray.
+struct MediumChange {
+  uint32_t primitive = kNoIndex;
+  int32_t before = kSameMedium, behind = kSameMedium;  // kSameMedium: the surface does not say
+};
+
+// All changes of the medium along a ray, in order, also behind what stops rays of other kinds.
+std::vector<MediumChange> MediumChanges(const GeometryScene& geometry, const Ray& ray);
+
+struct FoundMedium {
+  std::optional<int32_t> medium;  // nullopt: no ray from the point meets a surface that says it
+  bool isUnanimous = false;       // all rays say the same
+  // The medium that all rays end in. One that meets no change ends in `medium`. nullopt: they end in several, or none
+  // of them meets one.
+  std::optional<int32_t> exterior;
+  // A primitive whose side contradicts another one, kNoIndex for none: boundaries overlap or are open.
+  uint32_t disputed = kNoIndex;
+};
+
+// The medium at a point of render space at a shutter time, by three rays in fixed directions. Each says what the first
+// surface that separates media has on the side that the ray meets; a ray that meets none says nothing. What most rays
+// say holds and, if all say something else, what the first one says.
+//
+// With a `normal` other than 0 the rays leave to its side, for points on a surface.
+FoundMedium FindMedium(const GeometryScene& geometry, const Point3& position, float time,
+                       const Normal3& normal = Normal3(0.0f));
+
+// The same, by one ray: `otherwise` if it meets no surface that says it.
+int32_t MediumAt(const GeometryScene& geometry, const Point3& position, float time, int32_t otherwise);
+
+}  // namespace lampyr
