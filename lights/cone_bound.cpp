@@ -49,7 +49,8 @@ bool ClipToCone(const LightTransform& transform, const Point3& from, const Vecto
   }
   double first = high, last = low;
   for (size_t i = 0; i < 3; ++i) {
-    const double t = 0.5 * (knots[i] + knots[i + 1]);
+    if (!(knots[i] < knots[i + 1])) continue;
+    const double t = std::isinf(knots[i + 1]) ? 2 * (knots[i] + 1 / glm::length(d)) : 0.5 * (knots[i] + knots[i + 1]);
     if (A * t * t + 2 * B * t + C < 0 || oa + t * da < 0) continue;
     first = std::min(first, knots[i]);
     last = std::max(last, knots[i + 1]);

@@ -6,12 +6,11 @@ namespace {
 
 constexpr float kSmallestCosine = 1e-3f;
 
-// An upper bound of the cosine that any normal of the emitter makes with the way to a point at `toPoint` from the box's
-// middle; 0 when all normals face away.
-float BoundCosine(const EmissionBounds& bounds, const Vector3& toPoint, float distanceSquared, float radiusSquared) {
+// An upper bound of the cosine that any normal of the emitter makes with the way to a point, or to points no nearer; 0
+// when all normals face away. `axisCosine`: of the way from the box's middle with the axis.
+float BoundCosine(const EmissionBounds& bounds, float axisCosine, float distanceSquared, float radiusSquared) {
   if (distanceSquared <= radiusSquared || bounds.cosThetaO <= -1) return 1;
-  float cosine = glm::dot(bounds.axis, toPoint) / std::sqrt(distanceSquared);
-  if (bounds.twoSided) cosine = std::abs(cosine);
+  const float cosine = bounds.twoSided ? std::abs(axisCosine) : axisCosine;
   const float angle = std::acos(std::clamp(cosine, -1.0f, 1.0f));
   const float spread = std::acos(std::clamp(bounds.cosThetaO, -1.0f, 1.0f)) +
                        std::asin(std::sqrt(std::min(radiusSquared / distanceSquared, 1.0f)));
@@ -21,11 +20,22 @@ float BoundCosine(const EmissionBounds& bounds, const Vector3& toPoint, float di
                                                                       : 0.0f;
 }
 
+// Irradiance at a distance from the middle of the box, with the bound of the cosine.
+float IrradianceOf(const EmissionBounds& bounds, float power, float cosine, float distanceSquared,
+                   float radiusSquared) {
+  if (cosine == 0) return 0;
+  const float squared = std::max(std::max(distanceSquared, radiusSquared), std::numeric_limits<float>::min());
+  const float irradiance = power * kInvPi * (bounds.twoSided ? 0.5f : 1.0f) * cosine / squared;
+  return std::clamp(irradiance, std::numeric_limits<float>::min(), std::numeric_limits<float>::max());
+}
+
 // Cuts [minT, maxT] to the side of the plane (point, normal) that the normal points to. False when nothing is left.
 bool ClipToFront(const Point3& origin, const Vector3& direction, float height, const Normal3& normal, float& minT,
                  float& maxT) {
+  // The direction is rounded: its error in height grows with t.
+  constexpr float kSlopeError = 1e-5f;
   const float start = glm::dot(origin, normal) - height;
-  const float slope = glm::dot(direction, normal);
+  const float slope = glm::dot(direction, normal) + kSlopeError;
   if (slope == 0) return start >= 0;
   const float t = -start / slope;
   if (slope > 0) {
@@ -43,11 +53,9 @@ float SurfaceIrradianceEstimate(const EmissionBounds& bounds, float power, const
   const Vector3 toPoint = P - bounds.box.Center();
   const float radiusSquared = 0.25f * LengthSquared(bounds.box.Diagonal());
   const float distanceSquared = LengthSquared(toPoint);
-  const float cosine = BoundCosine(bounds, toPoint, distanceSquared, radiusSquared);
-  if (cosine == 0) return 0;
-  const float squared = std::max(std::max(distanceSquared, radiusSquared), std::numeric_limits<float>::min());
-  const float irradiance = power * kInvPi * (bounds.twoSided ? 0.5f : 1.0f) * cosine / squared;
-  return std::clamp(irradiance, std::numeric_limits<float>::min(), std::numeric_limits<float>::max());
+  const float axisCosine = glm::dot(bounds.axis, toPoint) / std::sqrt(distanceSquared);
+  const float cosine = BoundCosine(bounds, axisCosine, distanceSquared, radiusSquared);
+  return IrradianceOf(bounds, power, cosine, distanceSquared, radiusSquared);
 }
 
 std::optional<SegmentEstimate> SurfaceSegmentEstimate(const EmissionBounds& bounds, float power, const Point3& origin,
@@ -58,14 +66,43 @@ std::optional<SegmentEstimate> SurfaceSegmentEstimate(const EmissionBounds& boun
     // Flat: the plane through the box's lowest corner, lowered by what normals within θo may tilt it and by rounding.
     float height = kInfinity;
     for (int i = 0; i < 8; ++i) height = std::min(height, glm::dot(bounds.axis, bounds.box.Corner(i)));
-    height -=
-        2e-3f * glm::length(bounds.box.Diagonal()) + 1e-5f * (std::abs(height) + MaxAbsComponent(origin) + length);
+    height -= 2e-3f * glm::length(bounds.box.Diagonal()) + 1e-5f * (std::abs(height) + MaxAbsComponent(origin));
     if (!ClipToFront(origin, direction, height, bounds.axis, estimate.minT, estimate.maxT)) return std::nullopt;
   }
-  const float t = NearestOnSegment(origin, direction, estimate.minT, estimate.maxT, bounds.box.Center());
+  const Point3 center = bounds.box.Center();
+  const float t = NearestOnSegment(origin, direction, estimate.minT, estimate.maxT, center);
+  const Vector3d from(origin + estimate.minT * direction - center), along(direction), axis(bounds.axis);
+  const double lit = static_cast<double>(estimate.maxT) - static_cast<double>(estimate.minT);
+  double axisCosine = LargestCosine(axis, from, along, lit);
+  if (bounds.twoSided) axisCosine = std::max(axisCosine, LargestCosine(-axis, from, along, lit));
+  const float distanceSquared = LengthSquared(origin + t * direction - center);
+  const float radiusSquared = 0.25f * LengthSquared(bounds.box.Diagonal());
+  const float cosine = BoundCosine(bounds, static_cast<float>(axisCosine), distanceSquared, radiusSquared);
   estimate.radiance =
-      std::max(SurfaceIrradianceEstimate(bounds, power, origin + t * direction), std::numeric_limits<float>::min());
+      std::max(IrradianceOf(bounds, power, cosine, distanceSquared, radiusSquared), std::numeric_limits<float>::min());
   return estimate;
+}
+
+// With x along the line from the foot of the origin at distance D, it is (a + b x)/√(D² + x²): the maximum over the
+// line is at x = b D²/a, if a is positive.
+double LargestCosine(const Vector3d& n, const Vector3d& from, const Vector3d& along, double length) {
+  const double start = glm::dot(from, along);
+  const Vector3d across = from - start * along;
+  const double a = glm::dot(n, across), b = glm::dot(n, along), distance2 = glm::dot(across, across);
+  const auto at = [&](double x) {
+    const double squared = distance2 + x * x;
+    return squared > 0 ? (a + b * x) / std::sqrt(squared) : glm::length(n);
+  };
+  double largest = std::max(at(start), std::isinf(length) ? b : at(start + length));
+  const double best = a > 0 ? b * distance2 / a : start;
+  if (best > start && best < start + length) largest = std::max(largest, at(best));
+  return std::min(largest, glm::length(n));
+}
+
+// The angle between the vectors (start, distance) and (start + length, distance); for an infinite length, its limit.
+double SegmentAngle(double distance, double start, double length) {
+  if (std::isinf(length)) return std::atan2(distance, start);
+  return std::atan2(distance * length, distance * distance + start * (start + length));
 }
 
 }  // namespace lampyr

@@ -19,6 +19,9 @@ void CheckInfiniteLight(const SuiteSubject& subject, const SuiteOptions& options
 // Properties patches, shines-from, position-error, energy, uvw.
 void CheckAttributes(const SuiteSubject& subject, const SuiteOptions& options, SuiteReport& report);
 
+// Property segment.
+void CheckSegments(const SuiteSubject& subject, const SuiteOptions& options, SuiteReport& report);
+
 // Checks the densities in strata that few samples reach.
 void CheckStrata(const SuiteSubject& subject, const SuiteOptions& options, SuiteReport& report);
 

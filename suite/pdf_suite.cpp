@@ -98,6 +98,7 @@ void CheckDensities(const SuiteSubject& subject, const SuiteOptions& options, Su
 // Checks that depend on receivers and random samples, and that may be repeated.
 static void CheckSamples(const SuiteSubject& subject, const SuiteOptions& options, SuiteReport& report) {
   if (options.parts & kAttributePart) suite::CheckAttributes(subject, options, report);
+  if (options.parts & kSegmentPart) suite::CheckSegments(subject, options, report);
   if (options.parts & kDensityPart) CheckDensities(subject, options, report);
   if (subject.isThorough && (options.parts & kStrataPart)) suite::CheckStrata(subject, options, report);
   if (subject.isThorough && (options.parts & kDirectionPart)) suite::CheckDirectionsFinely(subject, options, report);

@@ -25,6 +25,9 @@
 //   energy               of the bounds: the power estimate times importanceMultiplier
 //   bounds               photons leave within GetEmissionBounds
 //   estimate             no estimate is 0 where a sample arrives
+//   segment              no light arrives on a segment of a ray outside of the range that the light's estimate gives, also
+//                        without an end; χ² of equiangular distances in it from points of the light (the density of these
+//                        is pdfEmit: emission-positions)
 //   multipliers          diffuse and specular parts are one emission, each times the light's multiplier
 //   camera               a camera sees what receivers see, and nothing of a delta
 //   bidirectional        without it only the densities of emission are missing: all else is compared bit by bit
@@ -81,7 +84,8 @@ enum SuiteParts : unsigned {
   kStrataPart = 8,      // strata: a second or so for each light
   kDirectionPart = 16,  // emission-directions, with many photons
   kParameterPart = 32,  // edit, parameters: of types, not of single lights
-  kAllParts = 63
+  kSegmentPart = 64,    // segment
+  kAllParts = 127
 };
 
 struct SuiteOptions {

@@ -28,6 +28,7 @@ const std::vector<PropertyMeaning>& PropertyMeanings() {
       {"energy", "the energy of the emission bounds must be the power times importanceMultiplier"},
       {"bounds", "photons must leave within the emission bounds"},
       {"estimate", "no estimate may be 0 where a sample arrives"},
+      {"segment", "no light may arrive on a segment of a ray outside of the range that the estimate gives"},
       {"multipliers", "diffuse and specular radiance must be one emission times the light's two multipliers"},
       {"camera", "a camera must see what receivers see, without the multipliers, and nothing of a delta"},
       {"bidirectional", "without `bidirectional` nothing but the densities of emission may be missing"},

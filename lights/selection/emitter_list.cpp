@@ -74,4 +74,43 @@ EmitterProbability EmitterList::ProbabilityOf(const TreeReceiver& receiver, cons
   return {weight(cut.byIntensity) / cut.sum, weight(true) / intensity_};
 }
 
+// Not inlined, as above.
+[[gnu::noinline]] double EmitterList::WeightAlong(const TreeSegment& segment, const SegmentEmitters& emitters,
+                                                  uint32_t emitter, bool byIntensity) const {
+  const ClusterLobe lobe = blocks_[emitter / kWidth].Get(static_cast<int>(emitter % kWidth));
+  if (byIntensity) return static_cast<double>(lobe.intensity);
+  return ImportanceAlong(lobe, segment).value > 0 ? emitters.ImportanceOf(emitter, lobe) : 0.0;
+}
+
+void EmitterList::LookAlong(const TreeSegment& segment, const SegmentEmitters& emitters, SegmentCut& cut) const {
+  cut = {};
+  for (uint32_t i = 0; i < blocks_.size() * kWidth; ++i) cut.sum += WeightAlong(segment, emitters, i, false);
+  cut.fluence = cut.sum;
+  if (!(cut.sum > 0)) cut = {intensity_, 0, true};
+}
+
+EmitterChoice EmitterList::SelectAlong(const TreeSegment& segment, const SegmentEmitters& emitters,
+                                       const SegmentCut& cut, double u, bool defensive) const {
+  const bool byIntensity = defensive || cut.byIntensity;
+  double left = u * (byIntensity ? intensity_ : cut.sum);
+  EmitterChoice choice;
+  for (uint32_t i = 0; i < blocks_.size() * kWidth; ++i) {
+    const double weight = WeightAlong(segment, emitters, i, byIntensity);
+    if (!(weight > 0)) continue;
+    choice.emitter = i;  // the last with importance, in case rounding selects none
+    choice.u = std::clamp(left / weight, 0.0, 0x1.fffffffffffffp-1);
+    if (left < weight) break;
+    left -= weight;
+  }
+  choice.probability = ProbabilityAlong(segment, emitters, cut, choice.emitter);
+  return choice;
+}
+
+EmitterProbability EmitterList::ProbabilityAlong(const TreeSegment& segment, const SegmentEmitters& emitters,
+                                                 const SegmentCut& cut, uint32_t emitter) const {
+  if (emitter >= blocks_.size() * kWidth) return {0, 0};
+  return {WeightAlong(segment, emitters, emitter, cut.byIntensity) / cut.sum,
+          WeightAlong(segment, emitters, emitter, true) / intensity_};
+}
+
 }  // namespace lampyr

@@ -20,22 +20,33 @@ class TableSelector final : public LightSelector {
   void Select(const Receiver&, const LightLearning*, double u, LightChoices& choices) const override {
     choices.count = table_.IsZero() ? 0 : MostSamples();
     for (int k = 0; k < choices.count; ++k) {
-      const double part = (u + k) / choices.count;
-      if (table_.Size() == 1) {
-        choices.of[k] = {0, kAnyPatch, Expected(PdfDiscrete(1)), static_cast<float>(part)};
-        continue;
-      }
-      const AliasTable::Result choice = table_.Sample(part);
-      choices.of[k] = {choice.index, kAnyPatch, Expected(choice.probability), choice.u};
+      choices.of[k] = SelectOne((u + k) / choices.count);
+      choices.of[k].probability = Expected(choices.of[k].probability);
     }
   }
 
   PdfDiscrete Probability(const Receiver&, const LightLearning*, uint32_t light, int) const override {
-    if (table_.IsZero()) return PdfDiscrete(0);
-    return Expected(table_.Size() == 1 ? PdfDiscrete(1) : table_.Probability(light));
+    return Expected(ProbabilityOf(light));
+  }
+
+  std::optional<SelectedLight> SelectForSegment(const RaySegment&, const SegmentLights&, double u) const override {
+    if (table_.IsZero()) return std::nullopt;
+    return SelectOne(u);
+  }
+  PdfDiscrete SegmentProbability(const RaySegment&, const SegmentLights&, uint32_t light, int) const override {
+    return ProbabilityOf(light);
   }
 
  private:
+  SelectedLight SelectOne(double u) const {
+    if (table_.Size() == 1) return {0, kAnyPatch, PdfDiscrete(1), static_cast<float>(u)};
+    const AliasTable::Result choice = table_.Sample(u);
+    return {choice.index, kAnyPatch, choice.probability, choice.u};
+  }
+  PdfDiscrete ProbabilityOf(uint32_t light) const {
+    if (table_.IsZero()) return PdfDiscrete(0);
+    return table_.Size() == 1 ? PdfDiscrete(1) : table_.Probability(light);
+  }
   PdfDiscrete Expected(PdfDiscrete probability) const {
     return PdfDiscrete(static_cast<float>(MostSamples()) * probability.value);
   }

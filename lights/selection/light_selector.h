@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "lights/placed_light.h"
+#include "lights/selection/ray_segment.h"
 
 namespace lampyr {
 
@@ -61,6 +62,13 @@ class LightSelector {
   // choices.
   virtual PdfDiscrete Probability(const Receiver& receiver, const LightLearning* learned, uint32_t light,
                                   int patch) const = 0;
+  // Selects one light for a segment of a ray in a medium, by u as in Select. `lights`: those of this selector. nullopt:
+  // there is none. The selected light may turn out not to reach the segment.
+  virtual std::optional<SelectedLight> SelectForSegment(const RaySegment& segment, const SegmentLights& lights,
+                                                        double u) const = 0;
+  // Probability of this (light, patch) in SelectForSegment.
+  virtual PdfDiscrete SegmentProbability(const RaySegment& segment, const SegmentLights& lights, uint32_t light,
+                                         int patch) const = 0;
   // Overloads without learned factors.
   void Select(const Receiver& receiver, double u, LightChoices& choices) const {
     Select(receiver, nullptr, u, choices);

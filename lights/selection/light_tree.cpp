@@ -14,12 +14,6 @@ namespace {
 
 constexpr int kWidth = LightTree::kWidth;
 
-// A cluster is replaced by its children if its importance times its uncertainty exceeds this fraction of the total:
-// 0.85 × the variance on lights600, 0.5 × on rooms, for a fifth more time.
-constexpr float kNegligible = 1.0f / 32;
-// Uncertainty, from 0 to 1: by spread, 1 for clusters that subtend more than about 60°; and by the variance of normals.
-// Emitters have no children.
-constexpr float kDoubtOfSpread = 4, kDoubtOfUnevenness = 0.3f, kNoDoubt = -16;
 // kAlike: variance that sampling a cluster by intensity and trend may add, relative to the square of its contribution.
 // kSteepest: largest relative change of the trend over the radius, so that few proposals are rejected.
 constexpr float kAlike = 0.004f, kSteepest = 0.75f;
@@ -284,9 +278,6 @@ int IndexIn(const LightTree::Cut& cut, uint32_t node) {
   const uint32_t* at = std::find(cut.node, cut.node + cut.count, node);
   return at == cut.node + cut.count ? -1 : static_cast<int>(at - cut.node);
 }
-
-// Bound of the depth: the builder halves from level 40 on, and there are at most 2^31 emitters.
-constexpr size_t kLongestWay = 128;
 
 }  // namespace
 

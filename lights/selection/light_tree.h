@@ -15,6 +15,7 @@
 
 #include "base/large_array.h"
 #include "lights/selection/importance.h"
+#include "lights/selection/segment_importance.h"
 
 namespace lampyr {
 
@@ -67,6 +68,24 @@ class LightTree {
   void Record(LightLearning& learning, const TreeReceiver& receiver, const Cut& cut, uint32_t emitter,
               double defensiveShare, double importance) const;
 
+  // The same for a segment of a ray: a cut by the importances of clusters (segment_importance.h) and by those that
+  // `emitters` gives. Not initialised, because it is large.
+  struct SegmentCut {
+    static constexpr int kRoom = Cut::kRoom;
+    int count;
+    uint32_t node[kRoom];
+    double sum[kRoom];                 // of the importances of a node's children
+    double importance[kRoom][kWidth];  // of the children; 0 for those that are in the cut
+    double total;
+    double fluence;  // estimate of ∫ irradiance dt by all emitters: the total, or 0 if none has importance
+  };
+  void LookAlong(const TreeSegment& segment, const SegmentEmitters& emitters, SegmentCut& cut) const;
+  // `cut`: by LookAlong for this segment. Requires !IsEmpty().
+  EmitterChoice SelectAlong(const TreeSegment& segment, const SegmentEmitters& emitters, const SegmentCut& cut,
+                            double u, bool defensive) const;
+  EmitterProbability ProbabilityAlong(const TreeSegment& segment, const SegmentEmitters& emitters,
+                                      const SegmentCut& cut, uint32_t emitter) const;
+
   bool IsEmpty() const { return nodes_.Size() == 0; }
   size_t Bytes() const;
   int Depth() const { return depth_; }
@@ -82,6 +101,15 @@ class LightTree {
 
  private:
   static constexpr uint32_t kEmitter = 0x80000000u;
+  // Bound of the depth: the builder halves from level 40 on, and there are at most 2^31 emitters.
+  static constexpr size_t kLongestWay = 128;
+
+  // A cluster is replaced by its children if its importance times its uncertainty exceeds this fraction of the total:
+  // 0.85 × the variance on lights600, 0.5 × on rooms, for a fifth more time.
+  static constexpr float kNegligible = 1.0f / 32;
+  // Uncertainty, from 0 to 1: by spread, 1 for clusters that subtend more than about 60°; and by the variance of
+  // normals. Emitters have no children.
+  static constexpr float kDoubtOfSpread = 4, kDoubtOfUnevenness = 0.3f, kNoDoubt = -16;
 
   friend class LightTreeBuilder;
 
@@ -92,6 +120,17 @@ class LightTree {
     double sum;
   };
   void LookAt(uint32_t node, const TreeReceiver& receiver, float parentFactor, View& view) const;
+  // Importances of a node's children for a segment, and the uncertainties of clusters among them, from 0 to 1.
+  struct SegmentView {
+    double importance[kWidth];
+    double sum;
+    alignas(64) float doubt[kWidth];
+  };
+  void EvaluateNode(uint32_t node, const TreeSegment& segment, SegmentView& view) const;
+  // Replaces the importances of emitters by their own where they are more than a small part of `total`.
+  void AskEmitters(uint32_t node, const SegmentEmitters& emitters, double total, double* importance) const;
+  // Of a node below the cut, with those of emitters; by intensity if no child has importance.
+  void LookBelow(uint32_t node, const TreeSegment& segment, const SegmentEmitters& emitters, SegmentView& view) const;
   double SeenThrough(const Cut& cut, uint32_t node) const;
   // First-order variation over a cluster: the contribution of an emitter relative to one of the same intensity at the
   // centre. Its mean, weighted by intensity, is 1.

@@ -9,6 +9,19 @@ namespace {
 
 constexpr uint32_t kAllLights = 0xffffffffu;
 
+// The lights of a set, by their indices in it.
+class LightsOfSet final : public SegmentLights {
+ public:
+  LightsOfSet(const SegmentLights& all, std::span<const uint32_t> members) : all_(all), members_(members) {}
+  std::optional<SegmentEstimate> EstimateOf(uint32_t light, int patch) const override {
+    return all_.EstimateOf(members_[light], patch);
+  }
+
+ private:
+  const SegmentLights& all_;
+  std::span<const uint32_t> members_;
+};
+
 class LinkedSelector final : public LightSelector {
  public:
   LinkedSelector(LightSelection selection, std::span<const PlacedLight> lights, const BoundingSphere& scene,
@@ -35,7 +48,7 @@ class LinkedSelector final : public LightSelector {
 
   // Learned factors belong to one tree, that of all lights.
   void Select(const Receiver& receiver, const LightLearning* learned, double u, LightChoices& choices) const override {
-    const Part* part = PartOf(receiver);
+    const Part* part = PartOf(receiver.link);
     if (!part) return all_->Select(receiver, learned, u, choices);
     part->selector->Select(receiver, nullptr, u, choices);
     for (int i = 0; i < choices.count; ++i) choices.of[i].light = part->lights[choices.of[i].light];
@@ -43,21 +56,36 @@ class LinkedSelector final : public LightSelector {
 
   PdfDiscrete Probability(const Receiver& receiver, const LightLearning* learned, uint32_t light,
                           int patch) const override {
-    const Part* part = PartOf(receiver);
+    const Part* part = PartOf(receiver.link);
     if (!part) return all_->Probability(receiver, learned, light, patch);
-    const auto at = std::lower_bound(part->lights.begin(), part->lights.end(), light);
-    if (at == part->lights.end() || *at != light) return PdfDiscrete(0);
-    const auto own = static_cast<uint32_t>(at - part->lights.begin());
-    return part->selector->Probability(receiver, nullptr, own, patch);
+    const std::optional<uint32_t> own = part->IndexOf(light);
+    return own ? part->selector->Probability(receiver, nullptr, *own, patch) : PdfDiscrete(0);
+  }
+
+  std::optional<SelectedLight> SelectForSegment(const RaySegment& segment, const SegmentLights& lights,
+                                                double u) const override {
+    const Part* part = PartOf(segment.link);
+    if (!part) return all_->SelectForSegment(segment, lights, u);
+    auto selected = part->selector->SelectForSegment(segment, LightsOfSet(lights, part->lights), u);
+    if (selected) selected->light = part->lights[selected->light];
+    return selected;
+  }
+  PdfDiscrete SegmentProbability(const RaySegment& segment, const SegmentLights& lights, uint32_t light,
+                                 int patch) const override {
+    const Part* part = PartOf(segment.link);
+    if (!part) return all_->SegmentProbability(segment, lights, light, patch);
+    const std::optional<uint32_t> own = part->IndexOf(light);
+    if (!own) return PdfDiscrete(0);
+    return part->selector->SegmentProbability(segment, LightsOfSet(lights, part->lights), *own, patch);
   }
 
   void Record(LightLearning& learning, const Receiver& receiver, uint32_t light, int patch,
               double irradiance) const override {
-    if (!PartOf(receiver)) all_->Record(learning, receiver, light, patch, irradiance);
+    if (!PartOf(receiver.link)) all_->Record(learning, receiver, light, patch, irradiance);
   }
 
   bool SelectsPatches(const Receiver& receiver) const override {
-    const Part* part = PartOf(receiver);
+    const Part* part = PartOf(receiver.link);
     return part ? part->selector->SelectsPatches(receiver) : all_->SelectsPatches(receiver);
   }
 
@@ -70,11 +98,17 @@ class LinkedSelector final : public LightSelector {
   struct Part {
     std::unique_ptr<LightSelector> selector;
     std::vector<uint32_t> lights;  // ascending
+
+    std::optional<uint32_t> IndexOf(uint32_t light) const {
+      const auto at = std::lower_bound(lights.begin(), lights.end(), light);
+      if (at == lights.end() || *at != light) return std::nullopt;
+      return static_cast<uint32_t>(at - lights.begin());
+    }
   };
 
-  const Part* PartOf(const Receiver& receiver) const {
-    if (receiver.link == Receiver::kCamera) return nullptr;
-    const uint32_t set = setOfClass_[receiver.link];
+  const Part* PartOf(uint32_t link) const {
+    if (link == Receiver::kCamera) return nullptr;
+    const uint32_t set = setOfClass_[link];
     return set == kAllLights ? nullptr : &parts_[set];
   }
 

@@ -24,7 +24,9 @@ template <class Search>
 class TreeSelector final : public LightSelector {
  public:
   TreeSelector(std::span<const PlacedLight> lights, const BoundingSphere& scene, int threads)
-      : emitters_(CollectEmitters(lights, scene, threads)), search_(emitters_.bounds, threads) {
+      : emitters_(CollectEmitters(lights, scene, threads)),
+        search_(emitters_.bounds, threads),
+        diameter_(2 * static_cast<double>(scene.radius)) {
     emitters_.bounds = {};
     std::vector<float> weights;
     for (const uint32_t light : emitters_.far) weights.push_back(FarIrradiance(lights[light], scene));
@@ -44,8 +46,9 @@ class TreeSelector final : public LightSelector {
     search_.Look(place, cut);
     const double far = FarShare(place, cut.irradiance);
     choices.count = search_.IsEmpty() && farTable_.IsZero() ? 0 : CountFor(cut, far);
+    const auto select = [&](double x, bool defensive) { return search_.Select(place, cut, x, defensive); };
     for (int k = 0; k < choices.count; ++k)
-      choices.of[k] = SelectOne(place, cut, far, (u + k) / choices.count, choices.count);
+      choices.of[k] = SelectOne(far, (u + k) / choices.count, choices.count, select);
   }
 
   PdfDiscrete Probability(const Receiver& receiver, const LightLearning* learned, uint32_t light,
@@ -63,6 +66,31 @@ class TreeSelector final : public LightSelector {
     if (search_.IsEmpty()) return PdfDiscrete(0);
     const std::optional<uint32_t> emitter = EmitterOf(light, patch);
     return emitter ? Expected(search_.ProbabilityOf(place, cut, *emitter), far, count) : PdfDiscrete(0);
+  }
+
+  std::optional<SelectedLight> SelectForSegment(const RaySegment& segment, const SegmentLights& lights,
+                                                double u) const override {
+    if (search_.IsEmpty() && farTable_.IsZero()) return std::nullopt;
+    const TreeSegment place = Place(segment);
+    const EmittersOfLights emitters(emitters_, lights, place);
+    typename Search::SegmentCut cut;
+    search_.LookAlong(place, emitters, cut);
+    return SelectOne(FarShareAlong(segment, cut.fluence), u, 1,
+                     [&](double x, bool defensive) { return search_.SelectAlong(place, emitters, cut, x, defensive); });
+  }
+
+  PdfDiscrete SegmentProbability(const RaySegment& segment, const SegmentLights& lights, uint32_t light,
+                                 int patch) const override {
+    const TreeSegment place = Place(segment);
+    const EmittersOfLights emitters(emitters_, lights, place);
+    typename Search::SegmentCut cut;
+    search_.LookAlong(place, emitters, cut);
+    const double far = FarShareAlong(segment, cut.fluence);
+    const std::optional<uint32_t> at = FarIndexOf(light);
+    if (at) return farTable_.IsZero() ? PdfDiscrete(0) : FarExpected(farTable_.Probability(*at), far, 1);
+    if (search_.IsEmpty()) return PdfDiscrete(0);
+    const std::optional<uint32_t> emitter = EmitterOf(light, patch);
+    return emitter ? Expected(search_.ProbabilityAlong(place, emitters, cut, *emitter), far, 1) : PdfDiscrete(0);
   }
 
   void Record(LightLearning& learning, const Receiver& receiver, uint32_t light, int patch,
@@ -107,8 +135,34 @@ class TreeSelector final : public LightSelector {
     return place;
   }
 
-  SelectedLight SelectOne(const TreeReceiver& place, const typename Search::Cut& cut, double far, double u,
-                          int count) const {
+  TreeSegment Place(const RaySegment& segment) const {
+    const double scale = 1 / static_cast<double>(emitters_.size);
+    return {(Point3d(segment.origin) - Point3d(emitters_.center)) * scale, segment.direction,
+            static_cast<double>(segment.length) * scale};
+  }
+
+  // The emitters of the search for one segment, by what their lights say.
+  struct EmittersOfLights final : SegmentEmitters {
+    const Emitters& emitters;
+    const SegmentLights& lights;
+    const TreeSegment& segment;
+
+    EmittersOfLights(const Emitters& all, const SegmentLights& seen, const TreeSegment& place)
+        : emitters(all), lights(seen), segment(place) {}
+    double ImportanceOf(uint32_t emitter, const ClusterLobe& lobe) const override {
+      const Emitters::Patch own = emitters.PatchOf(emitter);
+      const std::optional<SegmentEstimate> estimate = lights.EstimateOf(own.light, own.patch);
+      if (!estimate) return 0;
+      const double scale = 1 / static_cast<double>(emitters.size);
+      return OwnImportanceAlong(lobe, segment, emitters.ImportanceOf(static_cast<double>(estimate->radiance)),
+                                static_cast<double>(estimate->minT) * scale,
+                                static_cast<double>(estimate->maxT) * scale);
+    }
+  };
+
+  // `select(x, defensive)`: the emitter that the search selects by x.
+  template <class Select>
+  SelectedLight SelectOne(double far, double u, int count, const Select& select) const {
     if (u < far || search_.IsEmpty()) {
       const AliasTable::Result choice = farTable_.Sample(u / far);
       return {emitters_.far[choice.index], kAnyPatch, FarExpected(choice.probability, far, count), choice.u};
@@ -116,7 +170,7 @@ class TreeSelector final : public LightSelector {
     double x = (u - far) / (1 - far);
     const bool defensive = x < kDefensiveShare;
     x = defensive ? x / kDefensiveShare : (x - kDefensiveShare) / (1 - kDefensiveShare);
-    const EmitterChoice choice = search_.Select(place, cut, std::min(x, 0x1.fffffffffffffp-1), defensive);
+    const EmitterChoice choice = select(std::min(x, 0x1.fffffffffffffp-1), defensive);
     const Emitters::Patch own = emitters_.PatchOf(choice.emitter);
     return {own.light, own.patch, Expected(choice.probability, far, count),
             static_cast<float>(std::min(choice.u, 0x1.fffffep-1))};
@@ -163,8 +217,18 @@ class TreeSelector final : public LightSelector {
     return std::clamp(share, kSmallestGroup, 1 - kSmallestGroup);
   }
 
+  // The same for a segment, along which irradiance from infinity is constant. `fluence`: by the emitters.
+  [[gnu::noinline]] double FarShareAlong(const RaySegment& segment, double fluence) const {
+    if (farTable_.IsZero()) return 0;
+    if (search_.IsEmpty()) return 1;
+    const double near = emitters_.Irradiance(fluence) * static_cast<double>(emitters_.size);
+    const double far = farIrradiance_ * std::min(static_cast<double>(segment.length), diameter_);
+    return far > 0 ? std::clamp(far / (far + near), kSmallestGroup, 1 - kSmallestGroup) : kSmallestGroup;
+  }
+
   Emitters emitters_;
   Search search_;
+  double diameter_;  // of the scene
   AliasTable farTable_;
   double farIrradiance_ = 0;
 };

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "lights/estimates.h"
+
 namespace lampyr {
 
 EquiangularDistance::EquiangularDistance(const Point3& origin, const Vector3& direction, const Point3& apex, float tMin,
@@ -18,13 +20,7 @@ EquiangularDistance::EquiangularDistance(const Point3& origin, const Vector3& di
   distance_ = std::max(
       {glm::length(toApex - foot_ * along), kSpacing * std::abs(foot_), kOfRange * std::min(range, 1e10), kLeast});
   start_ = static_cast<double>(tMin) - foot_;
-  if (range > 0) angle_ = AngleTo(range);
-}
-
-// The angle between the vectors (a - δ, D) and (a - δ + length, D); for a length without an end, its limit.
-double EquiangularDistance::AngleTo(double length) const {
-  if (std::isinf(length)) return std::atan2(distance_, start_);
-  return std::atan2(distance_ * length, distance_ * distance_ + start_ * (start_ + length));
+  if (range > 0) angle_ = SegmentAngle(distance_, start_, range);
 }
 
 float EquiangularDistance::Sample(float u) const {
@@ -44,7 +40,8 @@ PdfDistance EquiangularDistance::Density(float t) const {
 
 double EquiangularDistance::Invert(float t) const {
   if (IsEmpty()) return 0;
-  return std::clamp(AngleTo(static_cast<double>(t) - static_cast<double>(tMin_)) / angle_, 0.0, 1.0);
+  const double length = static_cast<double>(t) - static_cast<double>(tMin_);
+  return std::clamp(SegmentAngle(distance_, start_, length) / angle_, 0.0, 1.0);
 }
 
 }  // namespace lampyr

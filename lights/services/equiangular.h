@@ -40,9 +40,6 @@ class EquiangularDistance {
   double Invert(float t) const;
 
  private:
-  // Angle between the ways from the apex to the start of the range and to the point `length` beyond the start.
-  double AngleTo(double length) const;
-
   float tMin_, tMax_;
   double foot_ = 0;      // δ
   double distance_ = 0;  // D

@@ -19,6 +19,7 @@
 #include "lights/selection/emission_guide.h"
 #include "lights/selection/light_learning.h"
 #include "lights/selection/light_selector.h"
+#include "lights/services/equiangular.h"
 #include "lights/services/light_fronts.h"
 #include "lights/services/linking.h"
 #include "sampling/rng.h"
@@ -58,6 +59,25 @@ struct EmittedPhoton {
 
   // True if only its position is valid: the sampled direction carries nothing, and may have no density.
   bool IsDark() const { return emission.diffuse.IsBlack() && emission.specular.IsBlack(); }
+};
+
+// A light for a segment of a ray in a medium, the part of the segment that it can light, and a point of it as the apex
+// for equiangular sampling of a distance there.
+struct SegmentSample {
+  uint32_t light = 0;
+  int patch = kAnyPatch;     // that was selected
+  PdfDiscrete selection;     // of the light and patch for this segment
+  float tMin = 0, tMax = 0;  // no point of the segment outside of [tMin, tMax] receives light from it
+
+  // Lights at infinity have no apex, nor may other lights for some u: distances must then be sampled in another way.
+  bool hasApex = false;
+  Point3 apex{0.0f};
+  PdfArea apexDensity;  // given light and patch: 1/m² on the surface of area lights, 1 (discrete) for points
+
+  // Sampling of a distance in [tMin, tMax]. Requires hasApex.
+  EquiangularDistance Distances(const RaySegment& segment) const {
+    return {segment.origin, segment.direction, apex, tMin, tMax};
+  }
 };
 
 // What lights need to know of participating media.
@@ -101,6 +121,20 @@ class LightingServices {
   }
   // Selection for emission without a guide.
   const LightSelector& EmissionSelector() const { return *scene_->emissionSelector; }
+
+  // Selects one light for a segment of a ray in a medium by uSelect, and samples an apex on it by u (SampleApex). At
+  // the sampled distance, the light is sampled by GenerateSamples as on a surface, with SegmentSample::selection in
+  // place of the selection at that receiver. nullopt: the segment receives nothing from the light that these numbers
+  // select.
+  std::optional<SegmentSample> GenerateSamplesForRaySegment(const RaySegment& segment, float uSelect,
+                                                            const Point2& u) const;
+  // Clips the segment to what a light that is selected already can reach, and samples an apex on it, in proportion to
+  // its emission. nullopt: it reaches nothing of the segment.
+  std::optional<SegmentSample> SampleApex(const RaySegment& segment, const SelectedLight& selected,
+                                          const Point2& u) const;
+  // Probability of this light and patch in GenerateSamplesForRaySegment. The patch has no effect on lights and
+  // selectors without patches.
+  PdfDiscrete SegmentSelectionProbability(const RaySegment& segment, uint32_t light, int patch) const;
 
   // Evaluates the area light at a surface point that a ray from `receiver` along the unit `direction` hit. nullopt: the
   // surface emits nothing in that direction.
@@ -169,6 +203,10 @@ class LightingServices {
   static double MoreBits(float u, const Point3& of) { return WithMoreBits(u, of.x, of.y, of.z); }
   // `moved`: storage for the placement of a moving light; must live as long as the context.
   LightContext Context(uint32_t light, float time, bool bidirectional, std::optional<LightTransform>& moved) const;
+
+  // The lights as seen from a segment, for their selection.
+  class LightsAlong;
+  void AddApex(const RaySegment& segment, const Point2& u, SegmentSample& sample) const;
 
   // Selects a light and samples a photon, with densities without a guide.
   struct Emission {

@@ -350,6 +350,10 @@ std::vector<LightFault> MakeLightFaults() {
   add("estimate-is-0", "disk", Wrong(Fault::EstimateIsZero), "the estimate at a point is 0");
   add("segment-is-missed", "point", Wrong(Fault::SegmentIsMissed), "the estimate along a segment finds nothing");
   add("segment-ends-early", "rect", Wrong(Fault::SegmentEndsEarly), "the lit part of a segment ends too early");
+  add("segment-cut-too-short", "spot", Wrong(Fault::SegmentCutTooShort),
+      "a segment through the cone is cut 3 % too short");
+  add("segment-without-end-is-missed", "disk", Wrong(Fault::SegmentWithoutEndIsMissed),
+      "a segment without an end is taken for none");
 
   // Edits.
   add("edit-keeps-everything", "rect", {}, "an edited light is the one before");

@@ -9,49 +9,17 @@
 #include "film/metrics.h"
 #include "lights/selection/emitters.h"
 #include "lights/selection/light_tree.h"
+#include "random_emitters.h"
 #include "sampling/rng.h"
 #include "sampling/warp.h"
 
 namespace lampyr {
 namespace {
 
-Point3 RandomPoint(Rng& rng, float size) {
-  return size * (Point3(rng.NextFloat(), rng.NextFloat(), rng.NextFloat()) - 0.5f);
-}
-Vector3 RandomDirection(Rng& rng) {
-  return SampleUniformSphere(rng.NextPoint2());
-}
-
-// Points, spots, small and large surfaces, some of them two-sided.
-ClusterBounds RandomEmitter(Rng& rng, float size) {
-  ClusterBounds emitter;
-  const Point3 center = RandomPoint(rng, size);
-  emitter.box.Add(center);
-  emitter.axis = RandomDirection(rng);
-  emitter.intensity = std::exp(4 * rng.NextFloat());
-  switch (rng.NextUint32() % 4) {
-    case 0:
-      emitter.cosThetaO = -1;
-      break;
-    case 1:
-      emitter.cosThetaO = 0.3f + 0.69f * rng.NextFloat();
-      emitter.meanNormal = 0.01f * emitter.axis;
-      break;
-    default:
-      emitter.cosThetaE = 0;
-      emitter.twoSided = rng.NextUint32() % 4 == 0;
-      emitter.box.Add(center + 0.2f * size * rng.NextFloat() * RandomDirection(rng));
-      emitter.meanNormal = emitter.axis;
-  }
-  emitter.FillBox();
-  return emitter;
-}
-
-std::vector<ClusterBounds> RandomEmitters(size_t count, Rng& rng, float size = 1) {
-  std::vector<ClusterBounds> emitters;
-  for (size_t i = 0; i < count; ++i) emitters.push_back(RandomEmitter(rng, size));
-  return emitters;
-}
+using test::RandomDirection;
+using test::RandomEmitter;
+using test::RandomEmitters;
+using test::RandomPoint;
 
 // Within the boxes, around them, far away, in a volume, seen from both sides.
 TreeReceiver RandomReceiver(Rng& rng) {

@@ -19,8 +19,8 @@ inline constexpr float kFilterFactor = 0.25f;
 
 class LitScene {
  public:
-  // `withFar`: with lights at infinity, too.
-  explicit LitScene(LightSelection selection, int mostSamples = 1, bool withFar = true) {
+  // `small`: the number of small lamps among the others.
+  explicit LitScene(LightSelection selection, int small = 24) {
     Rng rng(17);
     Add("point", R"("string name" "filtered")", At({-1.5, 0.5, 0.3}));
     Add("spot", R"("float coneangle" 20 "string lightGroup" "keys")", At({0.4, 1.6, -0.2}));
@@ -30,22 +30,20 @@ class LitScene {
     Add("sphere", R"("float radius" 0.3)", At({-0.3, -0.8, 1.5}));
     Add("cylinder", R"("float radius" 0.2)", At({0.1, 1.3, 1.2}));
     AddMesh();
-    for (int i = 0; i < 24; ++i) {
+    for (int i = 0; i < small; ++i) {
       const Point3 place = 3.0f * (Point3(rng.NextFloat(), rng.NextFloat(), rng.NextFloat()) - 0.5f);
       const Transform to =
           At(Vector3d(place)) * Transform::Rotate(360 * static_cast<double>(rng.NextFloat()), {1, 2, 3});
       Add(i % 2 ? "spot" : "rect", i % 2 ? R"("float coneangle" 35)" : R"("float width" 0.2 "float height" 0.1)", to);
     }
-    if (withFar) {
-      Add("distant", R"("float intensity" 0.3)", Transform());
-      Add("infinite", R"("float scale" 0.05)", Transform());
-      Add("portal", "", At({0, 3, 0}) * Transform::Rotate(-90, {1, 0, 0}));
-    }
+    Add("distant", R"("float intensity" 0.3)", Transform());
+    Add("infinite", R"("float scale" 0.05)", Transform());
+    Add("portal", "", At({0, 3, 0}) * Transform::Rotate(-90, {1, 0, 0}));
     Link();
     GeometryDescription description;
     description.entries.push_back({Sphere(4), {}});
     geometry_ = std::make_unique<GeometryScene>(std::move(description));
-    lighting_.emplace(*geometry_, lights_, selection, linking_, mostSamples);
+    lighting_.emplace(*geometry_, lights_, selection, linking_);
   }
 
   const LightingServices& Lighting() const { return *lighting_; }

@@ -35,6 +35,8 @@ enum class Fault {
   EstimateIsZero,
   SegmentIsMissed,
   SegmentEndsEarly,
+  SegmentCutTooShort,         // by three hundredths, where the light does not reach all of it
+  SegmentWithoutEndIsMissed,  // an infinite length is taken for none
 };
 
 class WrongLight final : public ForwardingLight {
@@ -49,6 +51,11 @@ class WrongLight final : public ForwardingLight {
     auto segment = Sound().GetIncidentRadianceEstimate(context, origin, direction, length);
     if (Is(Fault::SegmentIsMissed)) return std::nullopt;
     if (segment && Is(Fault::SegmentEndsEarly)) segment->maxT = glm::mix(segment->minT, segment->maxT, 0.3f);
+    if (segment && Is(Fault::SegmentCutTooShort)) {
+      segment->minT *= 1.03f;
+      if (segment->maxT < length) segment->maxT *= 0.97f;
+    }
+    if (Is(Fault::SegmentWithoutEndIsMissed) && std::isinf(length)) return std::nullopt;
     return segment;
   }
   PdfDiscrete PatchProbability(int patch) const override {

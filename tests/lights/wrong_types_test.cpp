@@ -83,7 +83,7 @@ TEST_F(WrongTypes, AreCaughtOnTheirBack) {
 // Where something is, asked in the wrong space or from the wrong place.
 TEST_F(WrongTypes, AreCaughtInTheWrongPlace) {
   const Properties atReceivers = {"consistency", "directions",     "integral", "irradiance",
-                                  "power",       "position-error", "uvw"};
+                                  "power",       "position-error", "segment",  "uvw"};
   const Properties ofPhotons = {"bounds",         "emission-integral", "emission-positions", "power",
                                 "power-estimate", "position-error",    "shines-from",        "uvw"};
   ExpectEach({
@@ -91,13 +91,13 @@ TEST_F(WrongTypes, AreCaughtInTheWrongPlace) {
       {Fault::SeenFromTheOrigin,
        {"portal"},
        {"camera", "emission-integral", "emission-edge", "power"},
-       {"emission-directions", "emission-positions", "estimate", "shines-from"}},
+       {"emission-directions", "emission-positions", "estimate", "segment", "shines-from"}},
       {Fault::FrameNotTurned, {"square", "rect", "disk"}, {"surface"}, atReceivers},
       {Fault::FrameNotTurned, {"sun", "dome", "portal"}, {"consistency", "directions"}, atReceivers},
       {Fault::FrameNotTurned,
        {"spot", "goniometric", "projection"},
        {"emission-directions", "emission-edge"},
-       {"estimate"}},
+       {"estimate", "segment"}},
       {Fault::FrameNotTurned, {"parallel"}, {"emission-edge"}, {}},
       {Fault::PhotonFrameNotTurned, {"rect", "disk"}, {"surface", "emission-positions"}, ofPhotons},
       {Fault::PhotonFrameNotTurned, {"square"}, {"emission-positions"}, {"bounds", "position-error"}},
@@ -155,8 +155,10 @@ TEST_F(WrongTypes, AreCaughtEstimating) {
       {Fault::BoxTooSmall, kSurfaces + kPoints, {"bounds"}, {}},
       {Fault::ConeTooNarrow, kSurfaces + Lights{"spot", "projection"}, {"bounds"}, {}},
       {Fault::EstimateIsZero, kAll, {"estimate"}, {}},
-      {Fault::SegmentIsMissed, kAll, {"estimate"}, {}},
-      {Fault::SegmentEndsEarly, kAll, {"estimate"}, {}},
+      {Fault::SegmentIsMissed, kAll, {"estimate", "segment"}, {}},
+      {Fault::SegmentEndsEarly, kAll, {"estimate", "segment"}, {}},
+      {Fault::SegmentCutTooShort, {"spot", "projection"}, {"segment"}, {"estimate"}},
+      {Fault::SegmentWithoutEndIsMissed, kAll, {"segment"}, {}},
   });
 }
 
@@ -189,7 +191,7 @@ TEST_F(WrongTypes, AreCaughtWithAnAngleConvertedTwice) {
       {"spot", "coneangle", 50, Part::Power, {"power-estimate"}, {"energy"}},
       {"spot", "coneangle", 50, Part::Bounds, {"bounds"}, {"energy"}},
       {"spot", "coneangle", 50, Part::Estimate, {"estimate"}, {}},
-      {"spot", "coneangle", 50, Part::Segment, {"estimate"}, {}},
+      {"spot", "coneangle", 50, Part::Segment, {"estimate", "segment"}, {}},
       {"sun", "angle", 40, Part::Draws, {"directions"}, {}},
       {"sun", "angle", 40, Part::PhotonDraws, {"emission-directions"}, {}},
       {"sun", "angle", 40, Part::DirectPdf, {"directions"}, {"integral", "irradiance", "power"}},
