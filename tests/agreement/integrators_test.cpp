@@ -55,22 +55,23 @@ class InMedia : public testing::TestWithParam<MediaScene> {};
 TEST_P(InMedia, IntegratorsAgree) {
   const MediaScene& scene = GetParam();
   RenderOverrides overrides;
-  const Replicas bdpt = RenderReplicas(scene.text, "bdpt", kReplicas, scene.samples, overrides);
+  const Replicas bdpt = RenderReplicas(scene.text, "bdpt", kReplicas, scene.samples / 2, overrides);
   const double rate = SidakRate(1e-3, 4 * static_cast<int>(MediaScenes().size()));
   for (const char* integrator : {"path", "light", "vcm", "auto"}) {
     const bool isLight = std::string(integrator) == "light";
     if (isLight && (!scene.lightTracerSeesAll || scene.isCameraInMedium)) continue;
     overrides.seed += 1000;
     overrides.values.clear();
-    if (std::string(integrator) == "vcm") overrides.values["radius"] = 0.01;  // what is merged is blurred
-    const int samples = isLight ? scene.lightSamples : scene.samples;
+    // What is merged is blurred.
+    if (std::string(integrator) == "vcm" || std::string(integrator) == "auto") overrides.values["radius"] = 0.01;
+    const int samples = isLight ? scene.lightSamples : scene.samples / 2;
     const Agreement result = CompareReplicas(RenderReplicas(scene.text, integrator, kReplicas, samples, overrides),
                                              bdpt, scene.blockSize, rate);
     std::printf("%-5s %-20s largest |z| %.2f (%.2f), chi2 %.1f (%.1f), bias %+.3f %% +- %.3f %%\n", integrator,
                 scene.name, result.largestZ, result.thresholdZ, result.chiSquared, result.chiSquaredThreshold,
                 100 * result.bias, 196 * result.biasError);
     EXPECT_TRUE(result.Agrees()) << integrator;
-    EXPECT_LT(result.biasError, 0.01) << integrator << ": too noisy";
+    EXPECT_LT(result.biasError, 0.015) << integrator << ": too noisy";
   }
 }
 
