@@ -116,13 +116,14 @@ TEST_P(MediaAnalytic, PointLightInHaze) {
                                   },
                                   0, 1, 16);
                             },
-                            -0.5, 0.5, 8) *
+                            -1, 1, 16) /
                         2;
     const std::string text = Head(1, "-1 1 -1 1") + Homogeneous("haze", Grey(scattering), Grey(absorption)) +
                              Box("haze", {-3, -3, t0}, {3, 3, t1}) +
                              "MediumInterface \"\" \"haze\"\nLightSource \"point\" \"rgb I\" [2 2 2] \"point3 from\" "
                              "[1.3 0 2.1]\n";
-    ExpectMean(Render(text, scattering < 0.1 ? 2048 : 512), Grey(intensity * mean), Noticed());
+    const bool isThin = scattering < 0.1;
+    ExpectMean(Render(text, isThin ? 8192 : 1024, isThin ? 2 : 4), Grey(intensity * mean), 2 * Noticed());
   }
 }
 
