@@ -5,13 +5,13 @@
 
 #include "base/memory.h"
 #include "geometry/shape_checks.h"
+#include "media/make_media.h"
 #include "render/analysis/plan.h"
 #include "render/analysis/unseen_samples.h"
 #include "render/build/flat_instances.h"
 #include "render/build/light_table.h"
 #include "render/build/material_table.h"
 #include "render/build/placer.h"
-#include "media/make_media.h"
 #include "render/build/scene_media.h"
 #include "render/build/shape_builder.h"
 #include "textures/texture_library.h"
@@ -371,7 +371,9 @@ BuiltScene Builder::Build() {
   });
   if (scene.geometry->PrimitiveCount() == 0 && !hasSky && scene.lighting->HasLights())
     diagnostics_.Warn("the scene has no shape for light to fall on: the image will be black");
-  if (!scene.lighting->HasLights()) diagnostics_.Warn("the scene has no light: the image will be black");
+  const bool glows =
+      std::any_of(scene.media.begin(), scene.media.end(), [](const auto& medium) { return medium->IsEmissive(); });
+  if (!scene.lighting->HasLights() && !glows) diagnostics_.Warn("the scene has no light: the image will be black");
   WarnOfCoarsePlaces(scene, built_.settings, diagnostics_);
   return std::move(built_);
 }

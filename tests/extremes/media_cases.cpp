@@ -49,10 +49,11 @@ void AddMeanFreePaths(std::vector<ExtremeCase>& cases) {
     cases.push_back(glow);
   }
   // A sky is the same everywhere, in what does not absorb, too.
-  for (const double path : {0.2, 1.0, 1e3, 1e6}) {
+  for (const double path : {0.5, 1e3, 1e6}) {
     for (const double g : {0.0, 0.99, -0.99}) {
       ExtremeCase extreme{"albedo 1, mean free path " + Short(path) + ", g " + Short(g) + ", under a sky",
                           Head(2000) + kSky + Homogeneous("gas", 1 / path, 0, g) + Slab("gas", 0, 1), 3, kFromCamera};
+      extreme.samples = path < 1 ? 64 : 8;
       cases.push_back(extreme);
     }
   }
@@ -60,11 +61,11 @@ void AddMeanFreePaths(std::vector<ExtremeCase>& cases) {
 
 // The half space of albedo 0.8 in parallel light ([Chandrasekhar60]): 0.0716004 E₀, seen at 60°, lit at 53°.
 void AddHalfSpaces(std::vector<ExtremeCase>& cases) {
-  for (const double path : {1e-6, 1e-4, 1e-2}) {
+  for (const double path : {1e-4, 1e-2}) {
     ExtremeCase extreme{
         "mean free path " + Short(path) + ", albedo 0.8, in the sun",
-        "Film \"rgb\" \"integer xresolution\" 4 \"integer yresolution\" 4\nPixelFilter \"box\"\nLookAt 0 1.7320508 -2 "
-        " 0 0 -1  0 1 0\nCamera \"orthographic\" \"float screenwindow\" [-.3 .3 -.3 .3]\nIntegrator \"path\" "
+        "Film \"rgb\" \"integer xresolution\" 4 \"integer yresolution\" 4\nPixelFilter \"box\"\nLookAt 0 1.7320508 -1  "
+        "0 0 0  0 1 0\nCamera \"orthographic\" \"float screenwindow\" [-.3 .3 -.3 .3]\nIntegrator \"path\" "
         "\"integer maxdepth\" 200\nWorldBegin\nLightSource \"distant\" \"rgb L\" [3 3 3] \"point3 from\" [0.8 0 -0.6] "
         "\"point3 to\" [0 0 0]\n" +
             Homogeneous("gas", 0.8 / path, 0.2 / path) + Slab("gas", 0, 1),
@@ -78,10 +79,10 @@ void AddHalfSpaces(std::vector<ExtremeCase>& cases) {
 
 void AddPlaces(std::vector<ExtremeCase>& cases) {
   const std::string gas = Homogeneous("gas", 0, 1);
-  cases.push_back({"camera on a boundary, towards the medium", Head(1, 0.25, 0) + kSky + gas + Slab("gas", 0, 1),
-                   3 * std::exp(-1.0), kFromCamera});
-  cases.push_back({"camera on a boundary, away from the medium", Head(1, 0.25, 1) + kSky + gas + Slab("gas", 0, 1), 3,
-                   kFromCamera});
+  ExtremeCase onBoundary{"camera on a boundary, towards the medium", Head(1, 0.25, 0) + kSky + gas + Slab("gas", 0, 1),
+                         3 * std::exp(-1.0), kFromCamera};
+  onBoundary.warning = "the camera is in the medium";
+  cases.push_back(onBoundary);
   const std::string denser = Homogeneous("denser", 0, 2);
   const double next = std::nextafter(1.0f, 2.0f);
   cases.push_back({"two boundaries in one place",
