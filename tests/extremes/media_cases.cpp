@@ -59,7 +59,7 @@ void AddMeanFreePaths(std::vector<ExtremeCase>& cases) {
   }
 }
 
-// The half space of albedo 0.8 in parallel light ([Chandrasekhar60]): 0.0716004 E₀, seen at 60°, lit at 53°.
+// The half space of albedo 0.8 in parallel light (Chandrasekhar): 0.0716004 E₀, seen at 60°, lit at 53°.
 void AddHalfSpaces(std::vector<ExtremeCase>& cases) {
   for (const double path : {1e-4, 1e-2}) {
     ExtremeCase extreme{
