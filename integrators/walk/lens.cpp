@@ -31,6 +31,13 @@ std::optional<FilmConnection> ConnectToCamera(const SampleContext& context, cons
   return result;
 }
 
+// Seed of the estimate of the transmittance between a point and the lens. It comes from the point: directions to a
+// parallel camera are all the same.
+uint64_t DeciderOf(const Point3& position) {
+  return Hash(std::bit_cast<uint32_t>(position.x), std::bit_cast<uint32_t>(position.y),
+              std::bit_cast<uint32_t>(position.z));
+}
+
 // True if the camera sees along `ray` the point of a light that `photon` started from. Sets the radiance that arrives,
 // and the factors of the edge.
 bool SeesOrigin(const SampleContext& context, const EmittedPhoton& photon, const Ray& ray, float distance,
@@ -44,9 +51,8 @@ bool SeesOrigin(const SampleContext& context, const EmittedPhoton& photon, const
   if (!scene.media.empty()) {
     Ray before = ray;
     before.tMax = hit.t;
-    const uint64_t decider = Hash(std::bit_cast<uint32_t>(ray.direction.x), std::bit_cast<uint32_t>(ray.direction.y));
     passed = TransmittanceOf(context, before, visibility::kCamera, {scene.cameraMedium, Color(1.0f)}, Color(1.0f),
-                             decider, seen.factors);
+                             DeciderOf(photon.emission.position), seen.factors);
   }
   radiance = passed * scene.lighting->EmissionForCamera(ray.direction, hit.t, point, context.time);
   return !radiance.IsBlack();
@@ -116,9 +122,8 @@ std::optional<SeenFromLens> SeeVertex(const SampleContext& context, const PathVe
     arriving = scene.geometry->Transmittance(ray, visibility::kCamera);
   } else {
     EdgeFactors fromVertex;
-    const uint64_t decider = Hash(std::bit_cast<uint32_t>(ray.direction.x), std::bit_cast<uint32_t>(ray.direction.y));
     arriving = TransmittanceOf(context, ray, visibility::kCamera, vertex.EndTowards(ray.direction), Color(1.0f),
-                               decider, fromVertex);
+                               DeciderOf(position), fromVertex);
     seen.factors = fromVertex.Reversed();
   }
   if (arriving.IsBlack()) return std::nullopt;

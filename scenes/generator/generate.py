@@ -195,6 +195,21 @@ def leaves():
     images.write_png(path("leaves.png"), width, height, pixel)
 
 
+def glazing():
+    """A gobo: the window of a lantern, with crossing diagonal bars."""
+    size = 128
+
+    def bar(t, period, half):
+        return abs((t + period / 2) % period - period / 2) < half
+
+    def pixel(x, y):
+        u, v = (x + 0.5) / size - 0.5, (y + 0.5) / size - 0.5
+        dark = bar(u + v, 0.25, 0.022) or bar(u - v, 0.25, 0.022)
+        return (0.0 if dark else 1.0,)
+
+    images.write_png(path("glazing.png"), size, size, pixel)
+
+
 # Meshes --------------------------------------------------------------------------------------------------------------
 
 def water_surface():
@@ -522,7 +537,7 @@ def stack_of_bars():
 
 def main():
     os.makedirs(DATA, exist_ok=True)
-    for make in (skies, pool_tiles, paving, wood, screen_pattern, leaves, water_surface, pool_furniture, rings, cyclorama,
+    for make in (skies, pool_tiles, paving, wood, screen_pattern, leaves, glazing, water_surface, pool_furniture, rings, cyclorama,
                  optics,
                  plinth, tumbler, tableware, lamp, sculptures, courtyard, strings_of_bulbs, grass, twisted_column, jack,
                  stack_of_bars, rooms):

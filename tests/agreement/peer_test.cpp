@@ -21,7 +21,8 @@ struct PeerScene {
   int blockSize = 8;  // pixels; kWhole: the mean alone, where the reference's photons move light between blocks
   double radius = 0;  // of photons: their blur stays below the noise
   bool connects = true;
-  const char* reference = "";  // added to the name
+  const char* reference = "";   // added to the name
+  double largestError = 0.005;  // standard error of the bias, above which the test says nothing
 };
 void PrintTo(const PeerScene& scene, std::ostream* out) {
   *out << scene.name << ", " << scene.integrator;
@@ -66,9 +67,16 @@ TEST_P(Peer, BlockMeansAgree) {
   }
   const Bias bias = BiasOf(difference);
   EXPECT_LT(std::abs(bias.relative), std::max(0.005, 3 * bias.standardError));
-  EXPECT_LT(bias.standardError, 0.005) << "too noisy to say anything";
+  EXPECT_LT(bias.standardError, GetParam().largestError) << "too noisy to say anything";
   EXPECT_EQ(rendered.outcome.counts.droppedSamples, 0u);
   EXPECT_EQ(rendered.rejectedRays, 0u);
+}
+
+std::string NameOf(const testing::TestParamInfo<PeerScene>& info) {
+  std::string name = std::string(info.param.integrator) + "_" + info.param.name +
+                     (info.param.connects ? "" : "_by_merging_alone") + info.param.reference;
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -95,12 +103,28 @@ INSTANTIATE_TEST_SUITE_P(
                     PeerScene{"pool", "sppm", 512, 32, 0.02, true, "-sppm"},
                     PeerScene{"area-box", "sppm", 1024, 8, 0.01}, PeerScene{"lights600", "sppm", 1280, 16, 0.02},
                     PeerScene{"glass-caustic", "sppm", 1280, 32, 0.02}),
-    [](const auto& info) {
-      std::string name = std::string(info.param.integrator) + "_" + info.param.name +
-                         (info.param.connects ? "" : "_by_merging_alone") + info.param.reference;
-      std::replace(name.begin(), name.end(), '-', '_');
-      return name;
-    });
+    NameOf);
+
+// Light tracing cannot show glowing media or what is in smooth glass. With the camera in a scattering medium (fog,
+// spot) its splats have unbounded variance: the vertices near the lens are worth 1 / d², whose square has no mean in a
+// volume. The references of spot and inside are noisy: a point in fog, a small lamp.
+INSTANTIATE_TEST_SUITE_P(
+    Media, Peer,
+    testing::Values(PeerScene{"media-fog", "path", 192}, PeerScene{"media-spot", "path", 256, 16, 0, true, "", 0.015},
+                    PeerScene{"media-ball", "path", 64}, PeerScene{"media-glass", "path", 128, 16},
+                    PeerScene{"media-grid", "path", 64}, PeerScene{"media-glow", "path", 128},
+                    PeerScene{"media-inside", "path", 96, 16, 0, true, "", 0.015}, PeerScene{"media-fog", "bdpt", 48},
+                    PeerScene{"media-spot", "bdpt", 64, 16, 0, true, "", 0.01}, PeerScene{"media-ball", "bdpt", 24},
+                    PeerScene{"media-glass", "bdpt", 64, 16}, PeerScene{"media-grid", "bdpt", 24},
+                    PeerScene{"media-glow", "bdpt", 64}, PeerScene{"media-inside", "bdpt", 24, 16, 0, true, "", 0.01},
+                    PeerScene{"media-fog", "vcm", 48, 8, 0.01},
+                    PeerScene{"media-spot", "vcm", 64, 16, 0.01, true, "", 0.01},
+                    PeerScene{"media-ball", "vcm", 24, 8, 0.01}, PeerScene{"media-glass", "vcm", 64, 16, 0.01},
+                    PeerScene{"media-grid", "vcm", 24, 8, 0.01}, PeerScene{"media-glow", "vcm", 64, 8, 0.01},
+                    PeerScene{"media-inside", "vcm", 24, 16, 0.01, true, "", 0.01},
+                    PeerScene{"media-ball", "light", 128}, PeerScene{"media-grid", "light", 128},
+                    PeerScene{"media-inside", "light", 64, 16, 0, true, "", 0.01}),
+    NameOf);
 
 // No camera path can find a delta light through glass: what `path` renders is a part of the reference and never more.
 class PeerLowerBound : public testing::TestWithParam<const char*> {};

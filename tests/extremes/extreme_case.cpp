@@ -13,6 +13,7 @@ const std::vector<ExtremeGroup>& ExtremeGroups() {
       {"materials", "Materials and many bounces", MaterialCases},
       {"geometry", "Geometry and places", GeometryCases},
       {"photons", "Photons", PhotonCases},
+      {"media", "Participating media", MediaCases},
       {"cameras", "Cameras and film", CameraCases},
       {"degenerate", "Nothing there, and very much", DegenerateCases},
   };

@@ -39,6 +39,7 @@ std::vector<ExtremeCase> AreaLightCases();
 std::vector<ExtremeCase> MaterialCases();
 std::vector<ExtremeCase> GeometryCases();
 std::vector<ExtremeCase> PhotonCases();
+std::vector<ExtremeCase> MediaCases();
 std::vector<ExtremeCase> CameraCases();
 std::vector<ExtremeCase> DegenerateCases();
 
