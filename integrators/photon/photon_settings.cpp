@@ -11,6 +11,9 @@ namespace {
 
 // Radius of photons in media in the first pass by default, in pixel footprints.
 constexpr double kVolumeRadiusInPixels = 1;
+// As wide as pixels are so far behind the photon, in radii of the scene: photons right before the camera would
+// otherwise be without bound, as 1 / distance².
+constexpr double kNearInRadii = 0.25;
 
 VolumeRadius VolumeRadiusOf(const IntegratorInput& input, double radius) {
   VolumeRadius volume;
@@ -21,10 +24,14 @@ VolumeRadius VolumeRadiusOf(const IntegratorInput& input, double radius) {
   const Ray ray = camera.GenerateRay(middle, Point2(0.5f), 0).ray;
   volume.eye = ray.origin;
   const double area = PixelArea(camera, ray, input.FilmPixels(), 1);
-  double& width = camera.ConnectsByDirection() ? volume.constant : volume.perLength;
-  if (area > 0) width = kVolumeRadiusInPixels * std::sqrt(area);
   // Of a camera whose densities are unknown: a pixel of an angle of view of 53 degrees.
-  if (!(area > 0)) width = kVolumeRadiusInPixels / std::sqrt(input.FilmPixels());
+  const double width = kVolumeRadiusInPixels * (area > 0 ? std::sqrt(area) : 1 / std::sqrt(input.FilmPixels()));
+  if (camera.ConnectsByDirection()) {
+    volume.constant = width;
+  } else {
+    volume.perLength = width;
+    volume.constant = width * kNearInRadii * static_cast<double>(input.scene.lighting->SceneSphere().radius);
+  }
   return volume;
 }
 
