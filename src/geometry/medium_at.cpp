@@ -28,9 +28,11 @@ std::optional<int32_t> LastMedium(const std::vector<MediumChange>& changes) {
   return std::nullopt;
 }
 
-// A primitive that does not begin in the medium in which the one before it has ended.
+// A primitive that does not begin in the medium in which the one before it has ended. Behind a surface that stops rays
+// media need not continue: the foot of a rock in the sand is neither in water nor in air.
 uint32_t BrokenLink(const std::vector<MediumChange>& changes) {
   for (size_t i = 1; i < changes.size(); ++i) {
+    if (!changes[i - 1].isBoundary) break;
     const int32_t behind = changes[i - 1].behind, before = changes[i].before;
     if (behind != kSameMedium && before != kSameMedium && behind != before) return changes[i].primitive;
   }
@@ -50,7 +52,7 @@ std::vector<MediumChange> MediumChanges(const GeometryScene& geometry, const Ray
     const int32_t before = crossing.entering ? attributes.outsideMedium : attributes.insideMedium;
     // A shared edge may be reported twice.
     if (!changes.empty() && changes.back().primitive == crossing.primitive && changes.back().before == before) continue;
-    changes.push_back({crossing.primitive, before, crossing.medium});
+    changes.push_back({crossing.primitive, before, crossing.medium, attributes.isBoundary});
   }
   return changes;
 }

@@ -13,6 +13,7 @@ namespace lampyr {
 struct MediumChange {
   uint32_t primitive = kNoIndex;
   int32_t before = kSameMedium, behind = kSameMedium;  // kSameMedium: the surface does not say
+  bool isBoundary = false;                             // all rays pass it
 };
 
 // All changes of the medium along a ray, in order, also behind what stops rays of other kinds.

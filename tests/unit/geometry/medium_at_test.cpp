@@ -125,6 +125,12 @@ TEST(MediumAt, NamesWhatIsDisputed) {
   const FoundMedium turned = find({Separating(Sphere(3), 1, kVacuum), Separating(Sphere(1), 2, kVacuum)}, Point3(0.0f));
   EXPECT_EQ(turned.medium, 2);
   EXPECT_EQ(turned.disputed, 0u);
+  // What is behind a surface that stops rays contradicts nothing.
+  const FoundMedium behind = find({Separating(Sphere(3), 1, kVacuum), Separating(Sphere(1), kVacuum, 1, false),
+                                   Separating(SphereAt({0.9, 0, 0}, 1), kVacuum, 1, false)},
+                                  {-2, 0, 0});
+  EXPECT_EQ(behind.medium, 1);
+  EXPECT_EQ(behind.disputed, kNoIndex);
 }
 
 TEST(MediumAt, FollowsMotion) {
