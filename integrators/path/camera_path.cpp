@@ -80,7 +80,7 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
   const Color& Radiance() const { return radiance_; }
 
  private:
-  static bool Gathers(const PathVertex& vertex) { return vertex.GathersPhotons() || vertex.IsInMedium(); }
+  static bool Gathers(const PathVertex& vertex) { return vertex.GathersPhotons(); }
   bool SamplesLights(const PathVertex& vertex) const { return settings_.samplesLights || !Gathers(vertex); }
 
   bool HasEmissionToFind() const {

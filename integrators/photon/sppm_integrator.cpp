@@ -77,7 +77,8 @@ class PhotonRecorder final : public LightPathVisitor {
   }
   void Arrived(LightPath& path, const PathState&) override {
     const PathVertex& vertex = path.vertices.Last();
-    if (path.vertices.Count() >= firstDepth_ && vertex.storesPhotons)
+    // In media camera paths find all light by themselves: photons there blur over mean free paths (vcm weights them).
+    if (path.vertices.Count() >= firstDepth_ && vertex.storesPhotons && !vertex.IsInMedium())
       context_.photons->Add(vertex, path.vertices.Count(), path.group);
   }
 
@@ -139,8 +140,9 @@ class RadianceEstimate final : public PhotonGatherer {
       const BsdfEvaluation f = place.phase.Evaluate(-state.ray.direction, photon.toPrevious, TransportMode::Radiance);
       if (f.pdfForward.value > kWide) continue;
       const Color throughput = state.Throughput() * point->passed;
-      const double perArea = static_cast<double>(context_.scene.lighting->FluxUnit()) /
-                             (pass_.lightPaths * static_cast<double>(kPi) * static_cast<double>(place.radius * place.radius));
+      const double perArea =
+          static_cast<double>(context_.scene.lighting->FluxUnit()) /
+          (pass_.lightPaths * static_cast<double>(kPi) * static_cast<double>(place.radius * place.radius));
       const Color value = Product(throughput, f.diffuse * photon.flux, perArea);
       sum += value;
       if (context_.layers) context_.layers->Add(photon.group, value);
