@@ -4,13 +4,11 @@
 // pictures of the same seed, by its own spread over the seeds (Student's t).
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <iterator>
-
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 
 #include <glm/mat3x3.hpp>
 
