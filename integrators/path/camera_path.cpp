@@ -45,11 +45,6 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
     return !emissionOnly_;
   }
 
-  void Flew(Subpath& path, const PathState& state, const Flight& flight) override {
-    const auto events = static_cast<int>(path.Count()) + 1;
-    if (!emissionOnly_ && events <= settings_.maxDepth) radiance_ += gatherer_->GatherAlong(state, flight, events);
-  }
-
   void Glowed(const Subpath&, const Color& throughput, const Color& radiance) override {
     const Color seen = throughput * radiance;
     if (context_.layers) context_.layers->Add(lighting_.Groups().OfMedia(), seen);
@@ -72,7 +67,7 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
   // Directions from which photons are gathered are still traced for the emission of the surface they hit, and of the
   // media on the way: next-event estimation alone would miss a panel that touches the floor, and misses all media.
   bool Scattered(const Subpath& path, const PathState& state) override {
-    emissionOnly_ = !path.Last().scatteredDelta && Gathers(path.Last()) &&
+    emissionOnly_ = !path.Last().scatteredDelta && path.Last().GathersPhotons() &&
                     state.pdfDirection.value <= static_cast<double>(settings_.gatherBelow);
     return !emissionOnly_ || (settings_.samplesLights && HasEmissionToFind());
   }
@@ -80,8 +75,7 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
   const Color& Radiance() const { return radiance_; }
 
  private:
-  static bool Gathers(const PathVertex& vertex) { return vertex.GathersPhotons(); }
-  bool SamplesLights(const PathVertex& vertex) const { return settings_.samplesLights || !Gathers(vertex); }
+  bool SamplesLights(const PathVertex& vertex) const { return settings_.samplesLights || !vertex.GathersPhotons(); }
 
   bool HasEmissionToFind() const {
     const auto& media = context_.scene.media;
@@ -129,9 +123,8 @@ Color TraceCameraPath(const SampleContext& context, const CameraPathSettings& se
   state.medium = context.scene.cameraMedium;
   state.specular = Color(1.0f);
   CameraPath visitor(context, settings, gatherer);
-  const WalkSettings walk{TransportMode::Radiance,     settings.maxDepth,  settings.dimensions, true,
-                          settings.materialsAfterWide, gatherer != nullptr};
-  Walk(context, walk, state, path, visitor);
+  Walk(context, {TransportMode::Radiance, settings.maxDepth, settings.dimensions, true, settings.materialsAfterWide},
+       state, path, visitor);
   return visitor.Radiance();
 }
 

@@ -14,8 +14,6 @@ class PhotonGatherer {
   // directions that the BSDF samples with a density of at most CameraPathSettings::gatherBelow. `events`: scattering
   // events of the path, this one included. `length`: path length from the camera, scene units.
   virtual Color Gather(const PathVertex& vertex, int events, float length) const = 0;
-  // The same of photons in the media that the ray of `state` passes; `events` includes scattering at a photon.
-  virtual Color GatherAlong(const PathState& /*state*/, const Flight&, int /*events*/) const { return Color(0.0f); }
 };
 
 struct CameraPathSettings {

@@ -75,7 +75,7 @@ struct TracedPhoton {
   static constexpr uint32_t kOnSurface = 0xffffffffu;
 };
 
-// What a photon in a medium has besides.
+// Data of a photon in a medium, in addition to those of every photon.
 struct VolumePhoton {
   Point3 position{0.0f};
   float radius = 0;  // of the ball in which a beam finds it, scene units

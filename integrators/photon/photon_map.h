@@ -44,7 +44,7 @@ class PhotonMap {
   // until the next search. [Jensen98]'s photons, seen by beams ([Jarosz08]).
   std::span<const BeamHit> FindAlong(const Ray& ray, float tMax, PhotonLookup& lookup) const;
   bool HasVolume() const { return !volume_.empty(); }
-  // Of a photon that FindAlong found.
+  // The medium's data of a photon, by an index that FindAlong returned.
   const VolumePhoton& VolumeOf(uint32_t index) const { return volume_[index - firstVolume_]; }
 
   const Photon& operator[](uint32_t index) const { return photons_[index]; }

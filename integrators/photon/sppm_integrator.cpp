@@ -67,7 +67,7 @@ class PhotonRecorder final : public LightPathVisitor {
  public:
   PhotonRecorder(const SampleContext& context, size_t firstDepth) : context_(context), firstDepth_(firstDepth) {}
 
-  // Where photons start in media is not learned: an origin without flux.
+  // Emission guiding does not learn from paths that start in media: their origin has no flux.
   void Glowed(LightPath&, const EmittedInMedium&) override {
     if (context_.withOrigin) context_.photons->SetOrigin(PathOrigin());
   }
@@ -120,41 +120,6 @@ class RadianceEstimate final : public PhotonGatherer {
     if (pass_.use) pass_.use->Add(lookup.used);
     if (sum.IsBlack()) return sum;
     return Product(vertex.Throughput(), sum, PerArea(radius));
-  }
-
-  // Photons of directions that the camera path does not follow are those of all phase functions that are not narrow.
-  Color GatherAlong(const PathState& state, const Flight& flight, int events) const override {
-    thread_local PhotonLookup lookup;
-    if (!pass_.map->HasVolume()) return Color(0.0f);
-    const std::span<const BeamHit> hits = pass_.map->FindAlong(state.ray, flight.t, lookup);
-    context_.counts.foundPhotons += hits.size();
-    ++context_.counts.lookups;
-    lookup.used.clear();
-    Color sum;
-    for (const BeamHit& hit : hits) {
-      const Photon& photon = (*pass_.map)[hit.index];
-      if (static_cast<int>(photon.depth) + events > settings_.maxDepth + 1) continue;
-      const VolumePhoton& place = pass_.map->VolumeOf(hit.index);
-      const std::optional<BeamPoint> point = flight.PointAt(hit.t, place.medium);
-      if (!point) continue;
-      const BsdfEvaluation f = place.phase.Evaluate(-state.ray.direction, photon.toPrevious, TransportMode::Radiance);
-      if (f.pdfForward.value > kWide) continue;
-      const Color throughput = state.Throughput() * point->passed;
-      const double perArea =
-          static_cast<double>(context_.scene.lighting->FluxUnit()) /
-          (pass_.lightPaths * static_cast<double>(kPi) * static_cast<double>(place.radius * place.radius));
-      const Color value = Product(throughput, f.diffuse * photon.flux, perArea);
-      sum += value;
-      if (context_.layers) context_.layers->Add(photon.group, value);
-      if (pass_.use) {
-        const float size = context_.scene.lighting->SceneSphere().radius;
-        const float importance =
-            settings_.photons.radius > 0 ? 1.0f : Sqr(size / std::max(state.length + hit.t, 1e-6f * size));
-        lookup.used.push_back({hit.index, (throughput * f.diffuse).Average() * importance});
-      }
-    }
-    if (pass_.use) pass_.use->Add(lookup.used);
-    return sum;
   }
 
  private:

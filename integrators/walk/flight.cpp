@@ -59,7 +59,7 @@ Color Transmittance(const Color& extinction, float distance) {
   return {std::exp(-extinction.r * distance), std::exp(-extinction.g * distance), std::exp(-extinction.b * distance)};
 }
 
-// Whether walks may collide with the medium.
+// True if walks may collide with the medium.
 bool Scatters(const Medium& medium) {
   return !medium.IsHomogeneous() || !medium.At(Point3(0.0f)).scattering.IsBlack();
 }

@@ -54,7 +54,7 @@ struct BeamPoint {
   double through = 1;  // their mean
 };
 
-// What a walk meets along a ray.
+// Result of a walk along one ray: the surface hit or the collision, with the factors of the media passed.
 struct Flight {
   bool isHit = false;  // a surface; `hit` is set, also if the walk collides before it
   RayHit hit;
