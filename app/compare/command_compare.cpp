@@ -111,7 +111,7 @@ Reference ObtainReference(const CompareOptions& options, const ComparedScene& sc
   const double pilotSeconds = std::clamp(0.5 * time, 0.5, 10.0);
   const auto flyPilots = [&] {
     stages.Begin(0, 0.05);
-    results.pilots = FlyPilots(scene, pilotSeconds, update);
+    results.pilots = FlyPilots(scene, pilotSeconds, options.referenceSeconds.value_or(10 * time), update);
   };
   if (options.reference) {
     Reference reference = ReadReference(*options.reference, scene.Built().settings);

@@ -30,6 +30,8 @@ struct PilotRun {
 
   // relMSE of noise and blur.
   double TotalError() const { return pilot.relMse + pilot.bias * pilot.bias; }
+  // That of a render `longer` times as long: noise falls, blur hardly does.
+  double TotalErrorOf(double longer) const { return pilot.relMse / longer + pilot.bias * pilot.bias; }
 };
 
 constexpr int kGrid = 16;
@@ -57,29 +59,50 @@ bool IsBrighter(std::span<const double> a, std::span<const double> b, double byC
   return first.mean - second.mean > std::max(t * error, rounding * scale);
 }
 
+// A blurred picture is brighter next to bright areas; larger blocks average this out.
+constexpr int kSideOfBlurredBlock = 4;
+
+// Means of a block of `side` × `side` cells of the grid, for each part.
+std::vector<double> PartsOfBlock(const PilotRun& run, int block, int side) {
+  const int across = kGrid / side;
+  std::vector<double> values;
+  for (const std::vector<double>& part : run.blocks) {
+    double sum = 0;
+    for (int i = 0; i < side * side; ++i) {
+      const int x = block % across * side + i % side, y = block / across * side + i / side;
+      sum += part[static_cast<size_t>(y * kGrid + x)];
+    }
+    values.push_back(sum / (side * side));
+  }
+  return values;
+}
+
 // True if `other` finds significantly more light than `run`, in the whole picture or in a block of it.
 bool FindsMore(const PilotRun& other, const PilotRun& run) {
   constexpr double byChance = 0.01;
   const double scale = MomentsOf(other.means).mean;
   if (IsBrighter(other.means, run.means, byChance, scale)) return true;
-  // A blurred picture is brighter next to bright areas; larger blocks average this out.
-  const int side = other.isBlurred || run.isBlurred ? 4 : 1, across = kGrid / side;
+  const int side = other.isBlurred || run.isBlurred ? kSideOfBlurredBlock : 1, across = kGrid / side;
   for (int block = 0; block < across * across; ++block) {
-    const auto of = [=](const PilotRun& one) {
-      std::vector<double> values;
-      for (const std::vector<double>& part : one.blocks) {
-        double sum = 0;
-        for (int i = 0; i < side * side; ++i) {
-          const int x = block % across * side + i % side, y = block / across * side + i / side;
-          sum += part[static_cast<size_t>(y * kGrid + x)];
-        }
-        values.push_back(sum / (side * side));
-      }
-      return values;
-    };
-    if (IsBrighter(of(other), of(run), SidakRate(byChance, across * across), scale)) return true;
+    if (IsBrighter(PartsOfBlock(other, block, side), PartsOfBlock(run, block, side),
+                   SidakRate(byChance, across * across), scale))
+      return true;
   }
   return false;
+}
+
+// The light that `run` may miss: its differences from `complete`, relative, as a mean square over blocks. They include
+// the noise of both, so that the expectation is not below what is missing.
+double LightThatMayBeMissing(const PilotRun& run, const PilotRun& complete) {
+  constexpr int across = kGrid / kSideOfBlurredBlock;
+  const double floor = 1e-3 * MomentsOf(complete.means).mean;
+  double sum = 0;
+  for (int block = 0; block < across * across; ++block) {
+    const double all = MomentsOf(PartsOfBlock(complete, block, kSideOfBlurredBlock)).mean;
+    const double found = MomentsOf(PartsOfBlock(run, block, kSideOfBlurredBlock)).mean;
+    if (all > floor) sum += std::pow((all - found) / all, 2);
+  }
+  return sum / (across * across);
 }
 
 // Notes that a pilot misses light, or may miss some. Returns false if there is nothing to note.
@@ -110,12 +133,23 @@ bool NoteFlaw(PilotRun& run, const std::vector<PilotRun>& runs, bool allBlack, b
 // The least advantage, as a ratio of relative errors, for which blur is accepted.
 constexpr double kWorthBlur = 3;
 
-// The better of the best that does not blur and the best that does; null: none. Notes why.
-PilotRun* ChooseBetween(PilotRun* sharp, PilotRun* blurred) {
+// The better of the best that does not blur and the best that does, for a render `longer` times as long as theirs;
+// null: none. Notes why.
+PilotRun* ChooseBetween(PilotRun* sharp, PilotRun* blurred, double longer) {
   if (!blurred) return sharp;
   if (!sharp) {
     blurred->pilot.note = "finds light that the others miss; what it blurs is measured";
     return blurred;
+  }
+  if (sharp->isHinted && !blurred->isHinted) {
+    const double missing = LightThatMayBeMissing(*sharp, *blurred);
+    if (sharp->pilot.relMse / longer + missing > blurred->TotalErrorOf(longer)) {
+      sharp->pilot.isFlawed = true;
+      sharp->pilot.note =
+          "cannot find all light, and may miss " + FormatPercent(std::sqrt(missing)) + " of a part of the picture";
+      blurred->pilot.note = "finds light that the others may miss; what it blurs is measured";
+      return blurred;
+    }
   }
   const double ratio = std::sqrt(blurred->TotalError() / sharp->TotalError());
   const std::string error = "its error, noise and blur, is " + FormatPercent(ratio) + " of that of " +
@@ -129,7 +163,7 @@ PilotRun* ChooseBetween(PilotRun* sharp, PilotRun* blurred) {
   return sharp;
 }
 
-void Choose(std::vector<PilotRun>& runs) {
+void Choose(std::vector<PilotRun>& runs, double longer) {
   std::sort(runs.begin(), runs.end(),
             [](const PilotRun& a, const PilotRun& b) { return a.TotalError() < b.TotalError(); });
   const bool allHinted =
@@ -141,7 +175,7 @@ void Choose(std::vector<PilotRun>& runs) {
     PilotRun*& best = run.isBlurred ? blurred : sharp;
     if (!best) best = &run;
   }
-  PilotRun* chosen = ChooseBetween(sharp, blurred);
+  PilotRun* chosen = ChooseBetween(sharp, blurred, longer);
   if (!chosen) {
     chosen = &*std::max_element(runs.begin(), runs.end(),
                                 [](const PilotRun& a, const PilotRun& b) { return a.pilot.mean < b.pilot.mean; });
@@ -210,7 +244,8 @@ double BlurOfBoth(const PilotRun& run) {
 
 }  // namespace
 
-std::vector<Pilot> FlyPilots(const ComparedScene& scene, double seconds, const ReferenceProgress& progress) {
+std::vector<Pilot> FlyPilots(const ComparedScene& scene, double seconds, double referenceSeconds,
+                             const ReferenceProgress& progress) {
   std::vector<PilotRun> runs = Candidates(scene.Built());
   std::vector<MeanOfImages> images(runs.size());
   const double steps = static_cast<double>(kPilotParts) * static_cast<double>(runs.size());
@@ -230,7 +265,7 @@ std::vector<Pilot> FlyPilots(const ComparedScene& scene, double seconds, const R
     runs[i].pilot.relMse = RelativeNoise(mean);
     if (runs[i].isBlurred && runs[i].pilot.mean > 0) runs[i].pilot.bias = BlurOfBoth(runs[i]);
   }
-  Choose(runs);
+  Choose(runs, std::max(referenceSeconds / seconds, 1.0));
   std::vector<Pilot> pilots;
   for (const PilotRun& run : runs) pilots.push_back(run.pilot);
   return pilots;

@@ -78,20 +78,37 @@ TEST(ComparedScene, AnInterruptEndsIt) {
 
 TEST(Reference, IsMadeByWhatFindsAllTheLight) {
   const BuiltScene built = Build(kCamera + kCaustic);
-  const ComparedScene scene(built, 2, kNever);
-  for (const Pilot& pilot : FlyPilots(scene, 0.3, kQuiet)) {
-    // path's picture has no noise to speak of, and no caustic.
-    EXPECT_EQ(pilot.chosen, pilot.integrator == "bdpt") << pilot.integrator << ": " << pilot.note;
-    if (pilot.integrator == "vcm") {
-      EXPECT_NE(pilot.note.find("of that of bdpt in the same time"), std::string::npos) << pilot.note;
-      EXPECT_FALSE(pilot.isFlawed);
-    }
-    if (pilot.integrator == "path") {
+  for (const Pilot& pilot : FlyPilots(ComparedScene(built, 2, kNever), 0.3, 3, kQuiet)) {
+    if (pilot.integrator == "path") {  // its picture has no noise to speak of, and no caustic
+      EXPECT_FALSE(pilot.chosen);
       EXPECT_TRUE(pilot.isFlawed);
       EXPECT_NE(pilot.note.find("finds less light than "), std::string::npos) << pilot.note;
     }
+    // bdpt misses what of the caustic is seen through the ball, 0.3 % of the picture. Which of the two has the smaller
+    // error in three seconds is close; either says why.
+    if (pilot.integrator == "vcm" && pilot.chosen) {
+      EXPECT_NE(pilot.note.find("finds light that the others may miss"), std::string::npos) << pilot.note;
+    }
+    if (pilot.integrator == "bdpt" && !pilot.chosen) {
+      EXPECT_NE(pilot.note.find("cannot find all light, and may miss"), std::string::npos) << pilot.note;
+    }
     EXPECT_GT(pilot.samplesPerPixel, 0);
     EXPECT_GT(pilot.seconds, 0.15);
+  }
+}
+
+// Under a lamp with an extent path and bdpt find everything.
+TEST(Reference, IsNotBlurredWhereThatIsNotWorthIt) {
+  std::string text = kCamera + kCaustic;
+  text.replace(text.find("LightSource"), std::string::npos, kLamp);
+  const BuiltScene built = Build(text);
+  for (const Pilot& pilot : FlyPilots(ComparedScene(built, 2, kNever), 0.3, 3, kQuiet)) {
+    EXPECT_FALSE(pilot.chosen && pilot.isFlawed) << pilot.integrator << ": " << pilot.note;
+    if (pilot.integrator == "vcm") {
+      EXPECT_FALSE(pilot.chosen) << pilot.note;
+      EXPECT_NE(pilot.note.find(" in the same time"), std::string::npos) << pilot.note;
+      EXPECT_FALSE(pilot.isFlawed);
+    }
   }
 }
 
@@ -103,7 +120,7 @@ TEST(Reference, IsMadeWithPhotonsWhereNothingElseFindsTheLight) {
       "Material \"conductor\" \"rgb reflectance\" [ 0.9 0.9 0.9 ]\n"
       "Shape \"bilinearmesh\" \"point3 P\" [ -2 0 1.5  2 0 1.5  -2 3 1.5  2 3 1.5 ]\n";
   const BuiltScene built = Build(text);
-  for (const Pilot& pilot : FlyPilots(ComparedScene(built, 2, kNever), 0.5, kQuiet))
+  for (const Pilot& pilot : FlyPilots(ComparedScene(built, 2, kNever), 0.5, 5, kQuiet))
     EXPECT_EQ(pilot.chosen, pilot.integrator == "vcm") << pilot.integrator << ": " << pilot.note;
 }
 
@@ -152,13 +169,13 @@ TEST(Reference, SettingsOfTheSceneDoNotBiasIt) {
 TEST(Reference, BlackPicturesAndExtremesOfRadiance) {
   // The lamp lights nothing that is seen.
   const BuiltScene black = Build("LookAt 0 1 0  0 10 0  0 0 1\n" + kCamera.substr(kCamera.find("Film")) + kLamp);
-  for (const Pilot& pilot : FlyPilots(ComparedScene(black, 2, kNever), 0.05, kQuiet)) EXPECT_EQ(pilot.mean, 0);
+  for (const Pilot& pilot : FlyPilots(ComparedScene(black, 2, kNever), 0.05, 0.5, kQuiet)) EXPECT_EQ(pilot.mean, 0);
   for (const char* radiance : {"1e-30 1e-30 1e-30", "1e30 1e30 1e30"}) {
     std::string lamp = kLamp;
     lamp.replace(lamp.find("30 28 26"), 8, radiance);
     const BuiltScene built = Build(kCamera + lamp);
     const ComparedScene scene(built, 2, kNever);
-    for (const Pilot& pilot : FlyPilots(scene, 0.2, kQuiet)) {
+    for (const Pilot& pilot : FlyPilots(scene, 0.2, 2, kQuiet)) {
       EXPECT_GT(pilot.relMse, 1e-9) << radiance;
       EXPECT_LT(pilot.relMse, 10) << radiance;
     }
