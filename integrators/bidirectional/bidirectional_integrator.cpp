@@ -368,6 +368,7 @@ Color BidirectionalIntegrator::Sample(const Ray* ray, const SampleContext& conte
   const WalkSettings walk{.mode = TransportMode::Radiance,
                           .maxDepth = settings_.maxDepth,
                           .dimensions = kCameraDimensions,
+                          .seesFlights = settings_.merges,
                           .wantsBeams = settings_.merges};
   Walk(context, walk, state, workspace.camera, visitor);
   return sample.radiance;

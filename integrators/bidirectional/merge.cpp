@@ -62,12 +62,8 @@ bool SetBeamVertex(const SampleContext& context, const PathState& state, const F
   merge.photon = hit.index;
   merge.throughput = state.Throughput() * point->passed;
   vertex = PathVertex();
-  vertex.point.position = state.ray.origin + hit.t * state.ray.direction;
-  vertex.point.Ng = vertex.point.Ns = Normal3(0.0f);
-  vertex.toPrevious = -state.ray.direction;
-  vertex.bsdf = Bsdf(Frame::FromNormal(vertex.toPrevious), vertex.toPrevious, photon.phase);
-  vertex.insideMedium = vertex.outsideMedium = photon.medium;
-  vertex.extinction = photon.extinction;
+  MakeVertexInMedium(state.ray.origin + hit.t * state.ray.direction, state.ray.direction, photon.medium, photon.phase,
+                     photon.extinction, vertex);
   vertex.factors = {MeanOf(point->density * photon.extinction), MeanOf(point->density * flight.startExtinction),
                     point->through};
   return true;

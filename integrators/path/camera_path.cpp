@@ -1,7 +1,9 @@
 #include "integrators/path/camera_path.h"
 
 #include <algorithm>
+#include <bit>
 
+#include "integrators/path/lit_segment.h"
 #include "integrators/walk/lens.h"
 #include "integrators/walk/partial_weight.h"
 
@@ -45,6 +47,13 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
     return !emissionOnly_;
   }
 
+  void Flew(Subpath& path, const PathState& state, const Flight& flight) override {
+    segment_ = LitSegment();
+    if (emissionOnly_ || !settings_.samplesLights || static_cast<int>(path.Count()) >= settings_.maxDepth) return;
+    segment_ = LitSegment(context_.scene, state.ray, flight, path.Count() == 0);
+    if (segment_.Share() > 0) SampleSegment(path, state, flight);
+  }
+
   void Glowed(const Subpath&, const Color& throughput, const Color& radiance) override {
     const Color seen = throughput * radiance;
     if (context_.layers) context_.layers->Add(lighting_.Groups().OfMedia(), seen);
@@ -56,6 +65,11 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
 
   bool Arrived(Subpath& path, const PathState& state) override {
     const PathVertex& vertex = path.Last();
+    arrival_ = Arrival();
+    if (vertex.IsInMedium() && segment_.Share() > 0)
+      arrival_ = {segment_, glm::distance(state.ray.origin, vertex.point.position), vertex.factors.forward,
+                  SeedAt(vertex.point.position)};
+    segment_ = LitSegment();
     if (vertex.isDelta) return true;
     const auto events = static_cast<int>(path.Count());
     if (SamplesLights(vertex))
@@ -83,21 +97,98 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
            std::any_of(media.begin(), media.end(), [](const auto& medium) { return medium->IsEmissive(); });
   }
 
+  // How a vertex in a medium was found, and how the other technique would have found it.
+  struct Arrival {
+    LitSegment segment;
+    float t = 0;
+    double collision = 0;  // density of a collision there (EdgeFactors::forward)
+    uint64_t seed = 0;     // of apexes
+
+    // The density of sampling the distance for this light, over that of a collision.
+    double RatioOf(const LightingServices& lighting, uint32_t light, int patch) const {
+      if (!(segment.Share() > 0)) return 0;
+      Rng apex(seed, light);
+      return segment.Density(lighting, light, patch, t, apex.NextPoint2()) / collision;
+    }
+  };
+
+  static uint64_t SeedAt(const Point3& position) {
+    return MixBits(ShadowRays::DeciderOf(position.x, position.y)) ^ std::bit_cast<uint32_t>(position.z);
+  }
+
+  // A vertex on the ray whose distance is sampled for a light, and its direct light from there.
+  void SampleSegment(Subpath& path, const PathState& state, const Flight& flight) {
+    const auto edge = static_cast<int>(path.Count());
+    const auto pair = [&](uint32_t which) {
+      context_.sampler.SetDimension(settings_.dimensions.OfSegment(edge, which));
+      return context_.sampler.Get2D();
+    };
+    const Point2 choice = pair(dimensions::kSegmentChoice), uApex = pair(dimensions::kSegmentApex);
+    const uint64_t decider = MixBits(ShadowRays::DeciderOf(choice.x, choice.y));
+    if (segment_.Share() < 1 && UnitFloat(static_cast<uint32_t>(decider)) >= segment_.Share()) return;
+    const auto sample = segment_.Generate(lighting_, choice, uApex);
+    if (!sample) return;
+    const auto point = PointOnFlight(context_, state.ray, flight, sample->t, decider);
+    if (!point) return;
+    PathVertex& vertex = path.Next();
+    MakeVertexInMedium(state.ray.origin + sample->t * state.ray.direction, state.ray.direction, point->index,
+                       {point->coefficients.scattering, point->medium->Asymmetry()}, point->coefficients.Extinction(),
+                       vertex);
+    vertex.factors = point->factors;
+    const Color scale =
+        point->transmittance / static_cast<float>(static_cast<double>(segment_.Share()) * sample->density);
+    vertex.diffuse = state.diffuse * scale;
+    vertex.specular = state.specular * scale;
+    sampledFor_ = &*sample;
+    sampled_ = &vertex;
+    NextEventSettings settings = nextEvent_;
+    settings.learns = false;
+    radiance_ +=
+        SampleLight(context_, settings, vertex, sample->light, pair(dimensions::kSegmentLight), radiance_, *this);
+    sampledFor_ = nullptr;
+  }
+
   // A light found by BSDF sampling, weighted against next-event estimation.
   void AddFound(const PathVertex& last, const PathState& state, const FoundLight& found) {
     Color radiance = state.diffuse * found.evaluation.diffuse + state.specular * found.evaluation.specular;
     if (!last.scatteredDelta && SamplesLights(last)) {
-      const PdfSolidAngle direction(static_cast<float>(state.pdfDirection.value * state.factors.forward));
-      radiance *= PowerHeuristic(direction, found.selection * found.evaluation.pdfDirect);
+      const double direction = state.pdfDirection.value * state.factors.forward;
+      const auto direct = static_cast<double>((found.selection * found.evaluation.pdfDirect).value);
+      double others = Mis(direct);
+      if (arrival_.segment.Share() > 0)
+        others += Mis(arrival_.RatioOf(lighting_, found.light, found.patch) *
+                      static_cast<double>(found.evaluation.pdfDirect.value));
+      radiance *= static_cast<float>(Mis(direction) / (Mis(direction) + others));
     }
     if (context_.layers) context_.layers->Add(lighting_.GroupOf(found.light), radiance);
     radiance_ += radiance;
   }
 
   float Weigh(const LightConnection& light) override {
-    if (light.direct.isDelta) return 1;
-    return PowerHeuristic(light.direct.selection * light.direct.sample->pdfDirect,
+    const DirectSample& direct = light.direct;
+    if (sampledFor_ || arrival_.segment.Share() > 0) return WeighInMedium(light);
+    if (direct.isDelta) return 1;
+    return PowerHeuristic(direct.selection * direct.sample->pdfDirect,
                           static_cast<float>(light.factors.forward) * light.f.pdfForward);
+  }
+
+  // At a vertex in a medium of which both a collision and the sampling for a light know. The densities of the vertex
+  // are over that of a collision.
+  float WeighInMedium(const LightConnection& light) const {
+    const DirectSample& direct = light.direct;
+    const auto pdfDirect = static_cast<double>(direct.sample->pdfDirect.value);
+    const double hit = direct.isDelta ? 0.0 : light.factors.forward * static_cast<double>(light.f.pdfForward.value);
+    double own, other;
+    if (sampledFor_) {
+      own = segment_.Density(*sampledFor_) / sampled_->factors.forward * pdfDirect;
+      other =
+          static_cast<double>(lighting_.SelectionProbability(sampled_->receiver, direct.light, direct.patch).value) *
+          pdfDirect;
+    } else {
+      own = static_cast<double>(direct.selection.value) * pdfDirect;
+      other = arrival_.RatioOf(lighting_, direct.light, direct.patch) * pdfDirect;
+    }
+    return static_cast<float>(Mis(own) / (Mis(own) + Mis(other) + Mis(hit)));
   }
   void Arrived(const LightConnection& light, const Color&, const Color& contribution) override {
     if (context_.layers) context_.layers->Add(lighting_.GroupOf(light.direct.light), contribution);
@@ -109,6 +200,11 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
   const NextEventSettings nextEvent_;
   const PhotonGatherer* gatherer_;
   bool emissionOnly_ = false;  // the ray is traced for emission alone: other light from there is gathered
+  LitSegment segment_;         // of the last ray
+  Arrival arrival_;            // at the last vertex
+  // While a vertex on the last ray is connected whose distance was sampled for a light:
+  const LitSegment::Sample* sampledFor_ = nullptr;
+  const PathVertex* sampled_ = nullptr;
   Color radiance_;
 };
 
@@ -123,8 +219,12 @@ Color TraceCameraPath(const SampleContext& context, const CameraPathSettings& se
   state.medium = context.scene.cameraMedium;
   state.specular = Color(1.0f);
   CameraPath visitor(context, settings, gatherer);
-  Walk(context, {TransportMode::Radiance, settings.maxDepth, settings.dimensions, true, settings.materialsAfterWide},
-       state, path, visitor);
+  const WalkSettings walk{.mode = TransportMode::Radiance,
+                          .maxDepth = settings.maxDepth,
+                          .dimensions = settings.dimensions,
+                          .materialsAfterWide = settings.materialsAfterWide,
+                          .seesFlights = true};
+  Walk(context, walk, state, path, visitor);
   return visitor.Radiance();
 }
 

@@ -10,13 +10,6 @@ namespace lampyr {
 
 namespace {
 
-// A part of a ray in one medium.
-struct MediumSpan {
-  float tMin, tMax;
-  int32_t medium;
-  Color tint{1.0f};  // of the surfaces before it
-};
-
 // The part of a ray within the scene's sphere, beyond which there is vacuum: with some margin, because the surfaces of
 // the scene may touch the sphere.
 std::pair<float, float> WithinScene(const BoundingSphere& sphere, const Ray& ray) {
@@ -59,11 +52,6 @@ Color Transmittance(const Color& extinction, float distance) {
   return {std::exp(-extinction.r * distance), std::exp(-extinction.g * distance), std::exp(-extinction.b * distance)};
 }
 
-// True if walks may collide with the medium.
-bool Scatters(const Medium& medium) {
-  return !medium.IsHomogeneous() || !medium.At(Point3(0.0f)).scattering.IsBlack();
-}
-
 float ChannelOf(const Color& color, int channel) {
   return channel == 0 ? color.r : channel == 1 ? color.g : color.b;
 }
@@ -85,8 +73,7 @@ class Tracker {
   // Follows a span. `collides`: stops at a collision, and returns true.
   bool Follow(const Medium& medium, int32_t index, float tMin, float tMax, bool collides) {
     index_ = index;
-    const bool scatters = Scatters(medium);
-    if (medium.IsHomogeneous()) return FollowHomogeneous(medium, tMin, tMax, scatters, collides);
+    if (medium.IsHomogeneous()) return FollowHomogeneous(medium, tMin, tMax, medium.Scatters(), collides);
     return FollowGrid(medium, tMin, tMax, collides);
   }
 
@@ -186,19 +173,25 @@ class Tracker {
   int32_t index_ = kVacuum;
 };
 
-std::vector<MediumSpan>& ThreadSpans() {
-  thread_local std::vector<MediumSpan> spans;
-  return spans;
+// Of a thread. A flight keeps those of walks while connections are traced from its ray.
+struct Buffers {
+  std::vector<MediumSpan> spans;
+  std::vector<Crossing> crossings;
+};
+
+Buffers& BuffersOfWalks() {
+  thread_local Buffers buffers;
+  return buffers;
+}
+
+Buffers& BuffersOfConnections() {
+  thread_local Buffers buffers;
+  return buffers;
 }
 
 std::vector<BeamStep>& ThreadSteps() {
   thread_local std::vector<BeamStep> steps;
   return steps;
-}
-
-std::vector<Crossing>& ThreadCrossings() {
-  thread_local std::vector<Crossing> crossings;
-  return crossings;
 }
 
 }  // namespace
@@ -214,8 +207,7 @@ Color BeamStep::DensityAt(float t) const {
 void Fly(const SampleContext& context, const Ray& ray, uint32_t kinds, int32_t medium, const Color& extinction,
          uint32_t dimension, bool wantsBeam, Flight& flight) {
   const RenderScene& scene = context.scene;
-  std::vector<Crossing>& crossings = ThreadCrossings();
-  std::vector<MediumSpan>& spans = ThreadSpans();
+  auto& [spans, crossings] = BuffersOfWalks();
   flight.isHit = scene.geometry->Trace(ray, kinds, flight.hit, crossings);
   flight.t = flight.isHit ? flight.hit.t : kInfinity;
   flight.factors = {1, MeanOf(extinction), 1};
@@ -223,6 +215,7 @@ void Fly(const SampleContext& context, const Ray& ray, uint32_t kinds, int32_t m
   flight.crossings = crossings;
   flight.startExtinction = extinction;
   flight.medium = FindSpans(scene, ray, flight.t, medium, crossings, spans);
+  flight.spans = spans;
   if (!spans.empty()) {
     context.sampler.SetDimension(dimension);
     const Point2 u = context.sampler.Get2D();
@@ -276,12 +269,15 @@ Color Flight::TintBefore(float end) const {
 
 namespace {
 
-// Ratio tracking over all spans.
-Tracker Estimate(const RenderScene& scene, const Ray& ray, std::span<const MediumSpan> spans, uint64_t decider) {
+// Ratio tracking over all spans up to `end`.
+Tracker Estimate(const RenderScene& scene, const Ray& ray, std::span<const MediumSpan> spans, float end,
+                 uint64_t decider) {
   Rng first(decider);
   Tracker tracker(ray, 0, first.NextFloat(), MixBits(decider + 1), nullptr);
   for (const MediumSpan& span : spans) {
-    tracker.Follow(*scene.media[static_cast<size_t>(span.medium)], span.medium, span.tMin, span.tMax, false);
+    if (!(span.tMin < end)) break;
+    tracker.Follow(*scene.media[static_cast<size_t>(span.medium)], span.medium, span.tMin, std::min(span.tMax, end),
+                   false);
     if (tracker.value.IsBlack()) break;
   }
   return tracker;
@@ -289,17 +285,34 @@ Tracker Estimate(const RenderScene& scene, const Ray& ray, std::span<const Mediu
 
 }  // namespace
 
+std::optional<MediumPoint> PointOnFlight(const SampleContext& context, const Ray& ray, const Flight& flight, float t,
+                                         uint64_t decider) {
+  const auto span = std::find_if(flight.spans.begin(), flight.spans.end(),
+                                 [=](const MediumSpan& one) { return t >= one.tMin && t < one.tMax; });
+  if (span == flight.spans.end()) return std::nullopt;
+  MediumPoint point;
+  point.index = span->medium;
+  point.medium = context.scene.media[static_cast<size_t>(span->medium)].get();
+  point.coefficients = point.medium->At(ray.origin + t * ray.direction);
+  if (point.coefficients.scattering.IsBlack()) return std::nullopt;
+  const Tracker tracker = Estimate(context.scene, ray, flight.spans, t, decider);
+  point.transmittance = span->tint * tracker.value;
+  if (point.transmittance.IsBlack()) return std::nullopt;
+  point.factors = {MeanOf(tracker.density * point.coefficients.Extinction()),
+                   MeanOf(tracker.density * flight.startExtinction), MeanOf(tracker.density)};
+  return point;
+}
+
 Color TransmittanceOf(const SampleContext& context, const Ray& ray, uint32_t kinds, const EdgeEnd& start,
                       const Color& endExtinction, uint64_t decider, EdgeFactors& factors) {
   const RenderScene& scene = context.scene;
-  std::vector<Crossing>& crossings = ThreadCrossings();
+  auto& [spans, crossings] = BuffersOfConnections();
   const Color surfaces = scene.geometry->Transmittance(ray, kinds, crossings);
   factors = {};
   if (surfaces.IsBlack()) return surfaces;
-  std::vector<MediumSpan>& spans = ThreadSpans();
   FindSpans(scene, ray, ray.tMax, start.medium, crossings, spans);
   if (!spans.empty()) {
-    const Tracker tracker = Estimate(scene, ray, spans, decider);
+    const Tracker tracker = Estimate(scene, ray, spans, ray.tMax, decider);
     factors = {MeanOf(tracker.density * endExtinction), MeanOf(tracker.density * start.extinction),
                MeanOf(tracker.density)};
     return surfaces * tracker.value;

@@ -34,6 +34,13 @@ struct EdgeFactors {
   EdgeFactors Reversed() const { return {reverse, forward, through}; }
 };
 
+// A part of a ray in one medium.
+struct MediumSpan {
+  float tMin, tMax;
+  int32_t medium;
+  Color tint{1.0f};  // of the surfaces before it
+};
+
 // A part of a ray in one medium, with one extinction or up to the next null collision of a grid.
 struct BeamStep {
   float tMin = 0, tMax = 0;
@@ -54,6 +61,15 @@ struct BeamPoint {
   double through = 1;  // their mean
 };
 
+// A point of a medium on a ray, as a walk that collided there would have it.
+struct MediumPoint {
+  const Medium* medium = nullptr;
+  int32_t index = kVacuum;  // of the medium
+  MediumCoefficients coefficients;
+  Color transmittance;  // from the start of the ray, surfaces included
+  EdgeFactors factors;  // of the edge
+};
+
 // Result of a walk along one ray: the surface hit or the collision, with the factors of the media passed.
 struct Flight {
   bool isHit = false;  // a surface; `hit` is set, also if the walk collides before it
@@ -65,6 +81,9 @@ struct Flight {
   Color passed{1.0f};                    // factor on the throughput: tints, and transmittance over its density
   EdgeFactors factors;
   Color emission;  // radiance of media on the way, at the start of the ray; an estimate
+  // The parts of the ray in media up to the surface, in order, whether the walk collides or not; valid until the next
+  // flight of the thread.
+  std::span<const MediumSpan> spans;
   // The parts of the ray up to t that are in media, in order; valid until the next flight of the thread.
   std::span<const BeamStep> beam;
   std::span<const Crossing> crossings;  // valid as long
@@ -80,6 +99,11 @@ struct Flight {
 // `dimension`: of the sampler, of a pair for the distance and the channel. `wantsBeam`: Flight::beam is wanted.
 void Fly(const SampleContext& context, const Ray& ray, uint32_t kinds, int32_t medium, const Color& extinction,
          uint32_t dimension, bool wantsBeam, Flight& flight);
+
+// The point at `t` of a flight's ray. nullopt: nothing scatters there, or no light passes. The transmittance is
+// estimated anew, independently of where the walk has collided. `decider`: random bits that decide nothing else.
+std::optional<MediumPoint> PointOnFlight(const SampleContext& context, const Ray& ray, const Flight& flight, float t,
+                                         uint64_t decider);
 
 // The end of a connection.
 struct EdgeEnd {

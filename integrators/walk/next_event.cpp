@@ -16,14 +16,18 @@ Color TraceShadowRay(const SampleContext& context, const PathVertex& vertex, con
                          MixBits(decider), factors);
 }
 
-// Contribution of one selected light.
+}  // namespace
+
 Color SampleLight(const SampleContext& context, const NextEventSettings& settings, const PathVertex& vertex,
                   const SelectedLight& light, const Point2& u, const Color& soFar, NextEventVisitor& visitor) {
   const LightingServices& lighting = *context.scene.lighting;
   if (!visitor.Wants(light.light)) return Color(0.0f);
   const DirectSample direct = lighting.GenerateSamples(vertex.receiver, light, u, context.time, settings.bidirectional);
+  const auto record = [&](const Color& arrived) {
+    if (settings.learns) lighting.UpdateWithResults(vertex.receiver, direct, arrived);
+  };
   const auto nothingArrives = [&] {
-    lighting.UpdateWithResults(vertex.receiver, direct, Color(0.0f));
+    record(Color(0.0f));
     return Color(0.0f);
   };
   if (!direct) return nothingArrives();
@@ -41,7 +45,7 @@ Color SampleLight(const SampleContext& context, const NextEventSettings& setting
   const float survivalWeight = settings.shadowRays.SurvivalWeight(connection.value * weight, soFar, decider);
   if (survivalWeight == 0) return Color(0.0f);
   const Color transmitted = TraceShadowRay(context, vertex, direct, decider, connection.factors);
-  lighting.UpdateWithResults(vertex.receiver, direct, transmitted);
+  record(transmitted);
   const Color value = connection.value * transmitted;
   if (value.IsBlack()) return value;
   if (hasMedia) weight = visitor.Weigh(connection);
@@ -49,8 +53,6 @@ Color SampleLight(const SampleContext& context, const NextEventSettings& setting
   visitor.Arrived(connection, value, contribution);
   return contribution;
 }
-
-}  // namespace
 
 Color SampleDirectLight(const SampleContext& context, const NextEventSettings& settings, const PathVertex& vertex,
                         int index, const Color& soFar, NextEventVisitor& visitor) {

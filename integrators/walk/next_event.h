@@ -31,12 +31,17 @@ struct NextEventSettings {
   PathDimensions dimensions{};
   bool bidirectional = false;  // evaluate the densities of emission, too
   ShadowRays shadowRays;
+  bool learns = true;  // results are recorded for learned selection
 };
 
 // Direct light scattered at `vertex`: the sum of the weighted contributions. `index`: of the vertex on its path, from
 // 0. `soFar`: radiance that the sample has gathered so far, for the roulette of shadow rays.
 Color SampleDirectLight(const SampleContext& context, const NextEventSettings& settings, const PathVertex& vertex,
                         int index, const Color& soFar, NextEventVisitor& visitor);
+
+// The contribution of one light that is selected already; `u` samples it.
+Color SampleLight(const SampleContext& context, const NextEventSettings& settings, const PathVertex& vertex,
+                  const SelectedLight& light, const Point2& u, const Color& soFar, NextEventVisitor& visitor);
 
 // Calls visit(selected, u) for each light selected at `receiver`; u: the numbers to sample that light with.
 template <class Visit>

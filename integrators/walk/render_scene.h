@@ -65,6 +65,12 @@ inline constexpr uint32_t kRoulette = 4;
 inline constexpr uint32_t kPerVertex = 5;
 // Beyond the blocks of all vertices: one pair for each edge of a path.
 inline constexpr uint32_t kFirstFlight = 1u << 24;
+// Beyond those: three pairs for each edge, for a vertex in a medium on it that is sampled for a light.
+inline constexpr uint32_t kFirstSegment = 1u << 25;
+inline constexpr uint32_t kSegmentChoice = 0;  // light and distance
+inline constexpr uint32_t kSegmentApex = 1;
+inline constexpr uint32_t kSegmentLight = 2;
+inline constexpr uint32_t kPerSegment = 3;
 }  // namespace dimensions
 
 // The blocks of dimensions of a path: vertex v has the block step · v + first. The two subpaths of a bidirectional
@@ -82,6 +88,10 @@ struct PathDimensions {
   // Of a pair for the flight through participating media to vertex v.
   constexpr uint32_t OfFlight(int vertex) const {
     return dimensions::kFirstFlight + static_cast<uint32_t>(step * vertex + first);
+  }
+  // Of the edge to vertex v.
+  constexpr uint32_t OfSegment(int vertex, uint32_t which) const {
+    return dimensions::kFirstSegment + static_cast<uint32_t>(step * vertex + first) * dimensions::kPerSegment + which;
   }
 };
 

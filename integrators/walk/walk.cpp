@@ -64,30 +64,26 @@ bool MakeVertex(const RenderScene& scene, const std::vector<std::shared_ptr<cons
   return true;
 }
 
-// Makes a vertex of a collision.
-void MakeVertex(const Ray& ray, const Flight& flight, Vertex& vertex) {
+}  // namespace
+
+void MakeVertexInMedium(const Point3& position, const Vector3& direction, int32_t medium, const PhaseBsdf& phase,
+                        const Color& extinction, Vertex& vertex) {
   MakeInPlace(vertex.point, [&] {
     SurfacePoint point;
-    point.position = ray.origin + flight.t * ray.direction;
+    point.position = position;
     point.Ng = point.Ns = Normal3(0.0f);
     return point;
   });
-  vertex.toPrevious = -ray.direction;
-  const MediumCoefficients& here = flight.coefficients;
-  MakeInPlace(vertex.bsdf, [&] {
-    return Bsdf(Frame::FromNormal(vertex.toPrevious), vertex.toPrevious,
-                PhaseBsdf{here.scattering, flight.collidesWith->Asymmetry()});
-  });
-  vertex.receiver = {vertex.point.position, Normal3(0.0f), true, 0};
+  vertex.toPrevious = -direction;
+  MakeInPlace(vertex.bsdf, [&] { return Bsdf(Frame::FromNormal(vertex.toPrevious), vertex.toPrevious, phase); });
+  vertex.receiver = {position, Normal3(0.0f), true, 0};
   vertex.coverage = 1;
-  vertex.insideMedium = vertex.outsideMedium = flight.medium;
-  vertex.extinction = here.Extinction();
-  vertex.isDelta = here.scattering.IsBlack();
+  vertex.insideMedium = vertex.outsideMedium = medium;
+  vertex.extinction = extinction;
+  vertex.isDelta = phase.scattering.IsBlack();
   vertex.storesPhotons = !vertex.isDelta;
   vertex.isSeenByCamera = vertex.isSeenByIndirect = true;
 }
-
-}  // namespace
 
 bool Scatter(const SampleContext& context, const WalkSettings& settings, int index, PathVertex& vertex,
              PathState& state) {
@@ -136,7 +132,7 @@ void FlyOn(const SampleContext& context, const WalkSettings& settings, uint32_t 
   const Color extinction = count > 0 ? path.Last().extinction : Color(1.0f);
   Fly(context, state.ray, kinds, state.medium, extinction,
       settings.dimensions.OfFlight(isFromLight ? count + 1 : count), settings.wantsBeams, flight);
-  if (!flight.beam.empty()) visitor.Flew(path, state, flight);
+  if (settings.seesFlights && !flight.spans.empty()) visitor.Flew(path, state, flight);
   if (!flight.emission.IsBlack()) visitor.Glowed(path, state.Throughput(), flight.emission);
   state.passed = flight.passed;
   state.factors = flight.factors;
@@ -179,7 +175,9 @@ void Walk(const SampleContext& context, const WalkSettings& settings, PathState&
     const auto index = static_cast<int>(path.Count());
     if (index >= settings.maxDepth) return;
     if (collides) {
-      MakeVertex(state.ray, *flight, vertex);
+      const MediumCoefficients& here = flight->coefficients;
+      MakeVertexInMedium(state.ray.origin + flight->t * state.ray.direction, state.ray.direction, flight->medium,
+                         {here.scattering, flight->collidesWith->Asymmetry()}, here.Extinction(), vertex);
     } else {
       const bool isBehindWide = settings.materialsAfterWide && state.hasScatteredWidely;
       if (!MakeVertex(context.scene, isBehindWide ? *settings.materialsAfterWide : context.scene.materials, state.ray,

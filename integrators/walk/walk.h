@@ -73,7 +73,7 @@ class PathVisitor {
   // Media have emitted `radiance` along the last ray, towards its start; `throughput`: β there.
   virtual void Glowed(const Subpath& /*path*/, const Color& /*throughput*/, const Color& /*radiance*/) {}
   // The ray of `state` has been traced through media. Called before β and the vertices know of it, if the settings ask
-  // for beams.
+  // for flights.
   virtual void Flew(Subpath& /*path*/, const PathState&, const Flight&) {}
   // The ray has collided with a participating medium, before a surface or an escape. False: the path ends there.
   virtual bool Collided(const Subpath& /*path*/, const PathState&) { return true; }
@@ -90,8 +90,13 @@ struct WalkSettings {
   bool hasRoulette = true;
   // Materials of the vertices behind a wide scattering; null: those of the scene.
   const std::vector<std::shared_ptr<const Material>>* materialsAfterWide = nullptr;
-  bool wantsBeams = false;  // PathVisitor::Flew, in scenes with media
+  bool seesFlights = false;  // PathVisitor::Flew is called, in scenes with media
+  bool wantsBeams = false;   // with Flight::beam
 };
+
+// Makes a vertex in the medium `medium`. `direction`: of the ray that arrives.
+void MakeVertexInMedium(const Point3& position, const Vector3& direction, int32_t medium, const PhaseBsdf& phase,
+                        const Color& extinction, Vertex& vertex);
 
 // Extends a path from `state` until it escapes or is absorbed, the visitor ends it, or it has hit a surface with
 // maxDepth vertices behind it. `path`: its vertices so far; none, or those that `state` comes from. The first ray of a

@@ -197,7 +197,8 @@ std::optional<FoundLight> LightingServices::EvaluateSamples(const Receiver& rece
     evaluation->pdfEmit = EmissionDensity(context, light, hit.patchIndex, evaluation->pdfEmit);
     Aim(light, hit.position, -direction, *evaluation);
   }
-  return FoundLight{light, scene_->selector->Probability(receiver, learning_, light, context.patch), *evaluation};
+  return FoundLight{light, scene_->selector->Probability(receiver, learning_, light, context.patch), *evaluation,
+                    context.patch};
 }
 
 std::optional<FoundLight> LightingServices::EvaluateEscaped(size_t i, const Receiver& receiver,

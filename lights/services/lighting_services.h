@@ -45,6 +45,7 @@ struct FoundLight {
   uint32_t light = 0;
   PdfDiscrete selection;  // selection probability of next-event estimation at the origin of the ray
   LightEvaluation evaluation;
+  int patch = kAnyPatch;  // that next-event estimation would have selected
 };
 
 // An emitted photon.

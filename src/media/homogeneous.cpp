@@ -8,7 +8,8 @@ namespace {
 class HomogeneousMedium : public Medium {
  public:
   HomogeneousMedium(const std::string& name, float asymmetry, const MediumCoefficients& coefficients)
-      : Medium(name, asymmetry, !coefficients.emission.IsBlack()), coefficients_(coefficients) {}
+      : Medium(name, asymmetry, !coefficients.emission.IsBlack(), !coefficients.scattering.IsBlack()),
+        coefficients_(coefficients) {}
 
   MediumCoefficients At(const Point3&) const override { return coefficients_; }
 

@@ -37,16 +37,18 @@ class Medium {
   // after scattering.
   float Asymmetry() const { return asymmetry_; }
   bool IsEmissive() const { return isEmissive_; }
+  // True if paths may scatter in it. Others attenuate light only.
+  bool Scatters() const { return scatters_; }
   const std::string& Name() const { return name_; }
 
  protected:
-  Medium(std::string name, float asymmetry, bool isEmissive)
-      : name_(std::move(name)), asymmetry_(asymmetry), isEmissive_(isEmissive) {}
+  Medium(std::string name, float asymmetry, bool isEmissive, bool scatters = true)
+      : name_(std::move(name)), asymmetry_(asymmetry), isEmissive_(isEmissive), scatters_(scatters) {}
 
  private:
   std::string name_;
   float asymmetry_;
-  bool isEmissive_;
+  bool isEmissive_, scatters_;
 };
 
 }  // namespace lampyr
