@@ -120,7 +120,7 @@ Color TraceCameraPath(const SampleContext& context, const CameraPathSettings& se
   path.Clear();
   PathState state;
   state.ray = ray;
-  state.medium = context.scene.cameraMedium;
+  state.medium = context.scene.MediumOf(ray);
   state.specular = Color(1.0f);
   CameraPath visitor(context, settings, gatherer);
   Walk(context, {TransportMode::Radiance, settings.maxDepth, settings.dimensions, true, settings.materialsAfterWide},

@@ -17,6 +17,7 @@
 #include <optional>
 #include <span>
 
+#include "geometry/fine_line.h"
 #include "integrators/walk/integrator.h"
 
 namespace lampyr {
@@ -61,6 +62,7 @@ struct Flight {
   const Medium* collidesWith = nullptr;  // null: none
   int32_t medium = kVacuum;              // in which the flight ends: of the collision, or before the surface
   float t = kInfinity;                   // of the end
+  Point3d end{0.0};                      // beyond float; not set if the ray escapes
   MediumCoefficients coefficients;       // at the collision
   Color passed{1.0f};                    // factor on the throughput: tints, and transmittance over its density
   EdgeFactors factors;
@@ -71,25 +73,34 @@ struct Flight {
   Color startExtinction{1.0f};          // of the vertex at which the ray starts
 
   // Factor of the surfaces that the ray has passed before `end`.
-  Color TintBefore(float end) const;
+  Color TintBefore(double end) const;
   // The point of the beam at `at`; nullopt: it is not in `inMedium`.
   std::optional<BeamPoint> PointAt(float at, int32_t inMedium) const;
 };
 
-// Traces a ray that starts in `medium` from a vertex of the extinction `extinction` (1 of what is not in a medium).
-// `dimension`: of the sampler, of a pair for the distance and the channel. `wantsBeam`: Flight::beam is wanted.
-void Fly(const SampleContext& context, const Ray& ray, uint32_t kinds, int32_t medium, const Color& extinction,
-         uint32_t dimension, bool wantsBeam, Flight& flight);
-
-// The end of a connection.
+// An end of an edge.
 struct EdgeEnd {
-  int32_t medium = kVacuum;  // in which the ray starts; not looked at of the end of the ray
+  Point3d position{0.0};     // beyond float (PathVertex::Position)
+  int32_t medium = kVacuum;  // in which a ray from there starts; not looked at of the end of a ray
   Color extinction{1.0f};    // 1 of what is not in a medium
+  bool isFine = false;       // FineLine
+
+  // A vertex in a medium whose mean free path is not far above the rounding of positions.
+  static bool IsFineIn(const Color& extinction, const Point3& position) {
+    constexpr float kRounding = 0x1p-21f, kOfPath = 1e-4f;
+    return extinction.Max() * MaxAbsComponent(position) * kRounding > kOfPath;
+  }
 };
 
+// Traces a ray from `start`. `dimension`: of the sampler, of a pair for the distance and the channel. `wantsBeam`:
+// Flight::beam is wanted. A ray that is rejected (GeometryScene::RejectedRays) carries nothing: Flight::passed is 0.
+void Fly(const SampleContext& context, const Ray& ray, uint32_t kinds, const EdgeEnd& start, uint32_t dimension,
+         bool wantsBeam, Flight& flight);
+
 // Estimates the transmittance of a connecting ray, surfaces included, and sets the factors of its edge, both from the
-// start of the ray. `decider`: random bits of the connection that decide nothing else.
+// start of the ray. The position of `end` is not looked at if the ray is infinite. `decider`: random bits of the
+// connection that decide nothing else.
 Color TransmittanceOf(const SampleContext& context, const Ray& ray, uint32_t kinds, const EdgeEnd& start,
-                      const Color& endExtinction, uint64_t decider, EdgeFactors& factors);
+                      const EdgeEnd& end, uint64_t decider, EdgeFactors& factors);
 
 }  // namespace lampyr
