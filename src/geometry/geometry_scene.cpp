@@ -105,7 +105,8 @@ struct GeometryScene::Implementation {
   void BuildScenes();
   bool Query(const Ray& ray, uint32_t kinds, RayHit& hit, TraceContext& trace) const;
   bool Trace(const Ray& ray, uint32_t kinds, RayHit& hit, TraceContext& trace) const;
-  LineHit Trace(const Ray& ray, const FineLine& line, uint32_t kinds, RayHit& hit, TraceContext& trace) const;
+  LineHit Trace(const Ray& ray, double ahead, const FineLine& line, uint32_t kinds, RayHit& hit,
+                TraceContext& trace) const;
   bool Passes(const Ray& ray, uint32_t kinds, TraceContext& trace) const;
   Color Transmittance(const Ray& ray, uint32_t kinds, TraceContext& trace) const;
   Color Transmittance(const Ray& ray, const FineLine& line, uint32_t kinds, TraceContext& trace) const;
@@ -380,24 +381,22 @@ Ray FromAhead(const Ray& ray, const FineLine& line, double by) {
 
 }  // namespace
 
-LineHit GeometryScene::Implementation::Trace(const Ray& ray, const FineLine& line, uint32_t kinds, RayHit& hit,
-                                             TraceContext& trace) const {
-  const double ahead = line.isFineAtStart ? kAhead * Largest(line.start) : 0;
-  const Ray traced = line.isFineAtStart ? FromAhead(ray, line, ahead) : ray;
+// `ray` starts `ahead` in front of the line.
+LineHit GeometryScene::Implementation::Trace(const Ray& ray, double ahead, const FineLine& line, uint32_t kinds,
+                                             RayHit& hit, TraceContext& trace) const {
   LineHit found;
   constexpr int kMostBehind = 16;  // surfaces
   for (int behind = 0; behind < kMostBehind; ++behind) {
     trace.crossings->clear();
-    found.isHit = Query(traced, kinds, hit, trace);
+    found.isHit = Query(ray, kinds, hit, trace);
     if (!found.isHit) break;
     found.t = FineDistance(tables, line, ray.time, hit, static_cast<double>(hit.t) - ahead);
     if (!line.isFineAtStart || found.t > 0) break;
     trace.nearest = std::nextafter(hit.t, kInfinity);
     found.isHit = false;
   }
-  if (!found.isHit) found.t = std::numeric_limits<double>::infinity();
-  if (found.isHit) found.t = std::max(found.t, 0.0);
-  hit.t = static_cast<float>(found.t);
+  found.t = found.isHit ? std::max(found.t, 0.0) : std::numeric_limits<double>::infinity();
+  if (found.isHit) hit.t = static_cast<float>(found.t);
   if (trace.crossings->empty()) return found;
   RefineCrossings(tables, line, ray.time, ahead, *trace.crossings);
   // A boundary in the place of the surface that is hit is behind it, like one that is hit at the same float.
@@ -418,7 +417,9 @@ LineHit GeometryScene::Trace(const Ray& ray, const FineLine& line, uint32_t kind
   TraceContext trace;
   trace.crossings = &crossings;
   trace.recordsBoundaries = scene.hasBoundaries;
-  return scene.Trace(ray, line, kinds, hit, trace);
+  if (!line.isFineAtStart) return scene.Trace(ray, 0, line, kinds, hit, trace);
+  const double ahead = kAhead * Largest(line.start);
+  return scene.Trace(FromAhead(ray, line, ahead), ahead, line, kinds, hit, trace);
 }
 
 bool GeometryScene::Trace(const Ray& ray, uint32_t kinds, RayHit& hit, std::vector<Crossing>& crossings) const {
@@ -470,26 +471,26 @@ Color GeometryScene::Implementation::Transmittance(const Ray& ray, uint32_t kind
   return lampyr::Transmittance(*trace.crossings);
 }
 
-// The ray is longer at the ends that are fine, so that it meets the boundaries there. If something stops it that may be
-// beyond an end, what the ray itself meets counts.
+// The ray is longer at the ends that are fine, so that it meets the boundaries there. If something stops it, that may be
+// beyond an end: then what it meets first decides.
 Color GeometryScene::Implementation::Transmittance(const Ray& ray, const FineLine& line, uint32_t kinds,
                                                    TraceContext& trace) const {
+  Ray longer = ray;
   double ahead = 0;
-  bool passes = false;
-  if (line.isFineAtStart || line.isFineAtEnd) {
-    const double beyond = kAhead * Largest(line.start + (line.isFineAtEnd ? line.length : 0.0) * line.direction);
-    ahead = line.isFineAtStart ? kAhead * Largest(line.start) : 0;
-    Ray longer = FromAhead(ray, line, ahead);
-    if (!line.isFineAtStart) longer.origin = ray.origin;
-    if (line.isFineAtEnd) longer.tMax = static_cast<float>(line.length + ahead + beyond);
-    passes = Passes(longer, kinds, trace);
-    if (!passes) {
-      trace.crossings->clear();
-      trace.transmittance = Color(1.0f);
-      ahead = 0;
-    }
+  if (line.isFineAtStart) {
+    ahead = kAhead * Largest(line.start);
+    longer = FromAhead(ray, line, ahead);
   }
-  if (!passes && !Passes(ray, kinds, trace)) return Color(0.0f);
+  if (line.isFineAtEnd) {
+    const double beyond = kAhead * Largest(line.start + line.length * line.direction);
+    longer.tMax = static_cast<float>(line.length + ahead + beyond);
+  }
+  if (!Passes(longer, kinds, trace)) {
+    if (!line.isFineAtStart && !line.isFineAtEnd) return Color(0.0f);
+    RayHit hit;
+    const LineHit found = Trace(longer, ahead, line, kinds, hit, trace);
+    return found.isHit && found.t < line.length ? Color(0.0f) : lampyr::Transmittance(*trace.crossings);
+  }
   if (trace.crossings->empty()) return Color(1.0f);
   RefineCrossings(tables, line, ray.time, ahead, *trace.crossings);
   SortByDistance(*trace.crossings);

@@ -44,13 +44,13 @@ TEST_P(MediaFurnace, Homogeneous) {
 std::string UniformGrid() {
   const std::string densities =
       Voxels([](int voxel, bool isRim) { return std::to_string(isRim ? 0.0 : VoxelDensity(voxel)); });
-  return "MakeNamedMedium \"gas\" \"string type\" \"uniformgrid\"" + kVoxelBox + Rgb("sigma_s", {1, 0.6, 0.3}) +
-         Rgb("sigma_a", {0.3, 1, 0.6}) + " \"float g\" 0.5" + Rgb("Le", kFurnace) + " \"float density\" [" + densities +
+  return "MakeNamedMedium \"gas\" \"string type\" \"uniformgrid\"" + kVoxelBox + Rgb("sigma_s", {1, 0.8, 0.6}) +
+         Rgb("sigma_a", {0.5, 0.8, 0.6}) + " \"float g\" 0.5" + Rgb("Le", kFurnace) + " \"float density\" [" + densities +
          "]\n";
 }
 
 TEST_P(MediaFurnace, UniformGrid) {
-  ExpectKnown(std::string(GetParam()) + ", furnace of a grid", RenderKnown(Furnace(UniformGrid()), GetParam(), 256),
+  ExpectKnown(std::string(GetParam()) + ", furnace of a grid", RenderKnown(Furnace(UniformGrid()), GetParam(), 224),
               kFurnace);
 }
 
@@ -106,7 +106,7 @@ TEST_P(MediaFurnace, LooseMajorants) {
   const std::shared_ptr<const Medium> tight = built.scene.media[0];
   built.scene.media[0] = std::make_shared<Loose>(*tight, 10.0f);
   ASSERT_EQ(built.scene.media[0]->Majorants()->At(Point3(0.1f)), 10 * tight->Majorants()->At(Point3(0.1f)));
-  ExpectKnown(std::string(GetParam()) + ", 10 times the majorant", RenderBuiltKnown(built, 128), kFurnace);
+  ExpectKnown(std::string(GetParam()) + ", 10 times the majorant", RenderBuiltKnown(built, 288), kFurnace);
 }
 
 // Sparse voxels that glow by a temperature: the enclosure has the radiance that the medium says.
@@ -126,8 +126,8 @@ TEST_P(MediaFurnace, NanoVdb) {
   const std::string file = (folder / "gas.nvdb").string();
   std::ofstream(file, std::ios::binary) << VolumeFile({density, temperature});
   const std::string medium = "MakeNamedMedium \"gas\" \"string type\" \"nanovdb\" \"string filename\" \"" + file +
-                             "\" \"float Lescale\" 0.02 \"float g\" -0.4" + Rgb("sigma_s", {1, 0.6, 0.3}) +
-                             Rgb("sigma_a", {0.3, 1, 0.6}) + "\n";
+                             "\" \"float Lescale\" 0.02 \"float g\" -0.4" + Rgb("sigma_s", {1, 0.8, 0.6}) +
+                             Rgb("sigma_a", {0.5, 0.8, 0.6}) + "\n";
   const BuiltScene built = Build(Furnace(medium), GetParam());
   const MediumCoefficients here = built.scene.media[0]->At(Point3(0.07f, 0.14f, 0.21f));
   ASSERT_GT(here.emission.b, 0);
@@ -135,7 +135,7 @@ TEST_P(MediaFurnace, NanoVdb) {
                              static_cast<double>(here.emission.g / here.absorption.g),
                              static_cast<double>(here.emission.b / here.absorption.b)};
   ExpectKnown(std::string(GetParam()) + ", furnace of nanovdb",
-              RenderKnown(Furnace(medium, radiance), GetParam(), 256), radiance);
+              RenderKnown(Furnace(medium, radiance), GetParam(), 160), radiance);
 }
 
 }  // namespace
