@@ -362,7 +362,7 @@ Color BidirectionalIntegrator::Sample(const Ray* ray, const SampleContext& conte
   Decide(*ray, sample);
   PathState state;
   state.ray = *ray;
-  state.medium = context.scene.cameraMedium;
+  state.medium = context.scene.MediumOf(*ray);
   state.specular = Color(1.0f);
   CameraSide visitor(sample);
   const WalkSettings walk{.mode = TransportMode::Radiance,

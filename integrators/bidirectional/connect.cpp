@@ -28,8 +28,8 @@ Color TraceConnection(const SampleContext& context, const PathVertex& z, const P
     return context.scene.geometry->Transmittance(ray, visibility::kIndirect);
   const uint64_t decider = Hash(std::bit_cast<uint32_t>(ray.direction.x), std::bit_cast<uint32_t>(ray.direction.y),
                                 std::bit_cast<uint32_t>(ray.tMax));
-  return TransmittanceOf(context, ray, visibility::kIndirect, z.EndTowards(ray.direction), y.extinction, decider,
-                         factors);
+  return TransmittanceOf(context, ray, visibility::kIndirect, z.EndTowards(ray.direction), y.EndTowards(-ray.direction),
+                         decider, factors);
 }
 
 }  // namespace
@@ -38,7 +38,7 @@ Color Connect(const BidirectionalSample& sample, size_t lightCount) {
   const SampleContext& context = sample.context;
   const PathVertex &y = sample.light.vertices[lightCount - 1], &z = sample.camera.Last();
   if (y.isDelta) return Color(0.0f);
-  const Vector3 difference = z.point.position - y.point.position;
+  const Vector3 difference(y.WayTo(z));
   const float squaredFloat = LengthSquared(difference);
   if (!(squaredFloat > 0)) return Color(0.0f);
   const Vector3 toCamera = difference / std::sqrt(squaredFloat);

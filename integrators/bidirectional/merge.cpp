@@ -62,8 +62,8 @@ bool SetBeamVertex(const SampleContext& context, const PathState& state, const F
   merge.photon = hit.index;
   merge.throughput = state.Throughput() * point->passed;
   vertex = PathVertex();
-  MakeVertexInMedium(state.ray.origin + hit.t * state.ray.direction, state.ray.direction, photon.medium, photon.phase,
-                     photon.extinction, vertex);
+  MakeVertexInMedium(flight.line.start + static_cast<double>(hit.t) * flight.line.direction, state.ray.direction,
+                     photon.medium, photon.phase, photon.extinction, vertex);
   vertex.factors = {MeanOf(point->density * photon.extinction), MeanOf(point->density * flight.startExtinction),
                     point->through};
   return true;

@@ -2,8 +2,20 @@
 
 namespace lampyr {
 
+namespace {
+
+double SquaredDistance(const Vertex& a, const Vertex& b) {
+  if (a.IsInMedium() || b.IsInMedium()) {
+    const Vector3d way = a.WayTo(b);
+    return glm::dot(way, way);
+  }
+  return static_cast<double>(LengthSquared(a.point.position - b.point.position));
+}
+
+}  // namespace
+
 void SetWeights(const PathVertex& previous, const PathState& state, bool connects, PathVertex& vertex) {
-  const auto squared = static_cast<double>(LengthSquared(vertex.point.position - previous.point.position));
+  const double squared = SquaredDistance(vertex, previous);
   vertex.pdfForward = state.pdfDirection * (state.factors.forward * EdgeDensity(vertex, state.ray.direction, squared));
   vertex.previousSolidAnglePerArea = state.factors.reverse * EdgeDensity(previous, state.ray.direction, squared);
   vertex.weight =

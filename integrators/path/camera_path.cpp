@@ -51,6 +51,7 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
     segment_ = LitSegment();
     if (emissionOnly_ || !settings_.samplesLights || static_cast<int>(path.Count()) >= settings_.maxDepth) return;
     segment_ = LitSegment(context_.scene, state.ray, flight, path.Count() == 0);
+    arrivesAfter_ = static_cast<double>(flight.t);
     if (segment_.Share() > 0) SampleSegment(path, state, flight);
   }
 
@@ -67,8 +68,7 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
     const PathVertex& vertex = path.Last();
     arrival_ = Arrival();
     if (vertex.IsInMedium() && segment_.Share() > 0)
-      arrival_ = {segment_, glm::distance(state.ray.origin, vertex.point.position), vertex.factors.forward,
-                  SeedAt(vertex.point.position)};
+      arrival_ = {segment_, arrivesAfter_, vertex.factors.forward, SeedAt(vertex.point.position)};
     segment_ = LitSegment();
     if (vertex.isDelta) return true;
     const auto events = static_cast<int>(path.Count());
@@ -100,7 +100,7 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
   // How a vertex in a medium was found, and how the other technique would have found it.
   struct Arrival {
     LitSegment segment;
-    float t = 0;
+    double t = 0;
     double collision = 0;  // density of a collision there (EdgeFactors::forward)
     uint64_t seed = 0;     // of apexes
 
@@ -128,10 +128,10 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
     if (segment_.Share() < 1 && UnitFloat(static_cast<uint32_t>(decider)) >= segment_.Share()) return;
     const auto sample = segment_.Generate(lighting_, choice, uApex);
     if (!sample) return;
-    const auto point = PointOnFlight(context_, state.ray, flight, sample->t, decider);
+    const auto point = PointOnFlight(context_, flight, sample->t, decider);
     if (!point) return;
     PathVertex& vertex = path.Next();
-    MakeVertexInMedium(state.ray.origin + sample->t * state.ray.direction, state.ray.direction, point->index,
+    MakeVertexInMedium(point->position, state.ray.direction, point->index,
                        {point->coefficients.scattering, point->medium->Asymmetry()}, point->coefficients.Extinction(),
                        vertex);
     vertex.factors = point->factors;
@@ -201,6 +201,7 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
   const PhotonGatherer* gatherer_;
   bool emissionOnly_ = false;  // the ray is traced for emission alone: other light from there is gathered
   LitSegment segment_;         // of the last ray
+  double arrivesAfter_ = 0;    // where the walk ends on it
   Arrival arrival_;            // at the last vertex
   // While a vertex on the last ray is connected whose distance was sampled for a light:
   const LitSegment::Sample* sampledFor_ = nullptr;
@@ -216,7 +217,7 @@ Color TraceCameraPath(const SampleContext& context, const CameraPathSettings& se
   path.Clear();
   PathState state;
   state.ray = ray;
-  state.medium = context.scene.cameraMedium;
+  state.medium = context.scene.MediumOf(ray);
   state.specular = Color(1.0f);
   CameraPath visitor(context, settings, gatherer);
   const WalkSettings walk{.mode = TransportMode::Radiance,

@@ -8,7 +8,7 @@ namespace lampyr {
 namespace {
 
 // Optical depth up to which every ray has a distance sampled; beyond it the probability falls in proportion.
-constexpr float kDepthOfAll = 4;
+constexpr double kDepthOfAll = 4;
 // Probability in grids, whose depth is not known, of rays that do not come from the camera.
 constexpr float kShareInGrids = 0.25f;
 
@@ -38,7 +38,7 @@ class TransmittedDistance {
 }  // namespace
 
 LitSegment::LitSegment(const RenderScene& scene, const Ray& ray, const Flight& flight, bool isFirst) {
-  float end = 0, depth = 0;
+  double end = 0, depth = 0;
   bool isKnown = true;
   for (const MediumSpan& span : flight.spans) {
     const Medium& medium = *scene.media[static_cast<size_t>(span.medium)];
@@ -50,13 +50,14 @@ LitSegment::LitSegment(const RenderScene& scene, const Ray& ray, const Flight& f
       isKnown = false;
       continue;
     }
-    const auto extinction = static_cast<float>(MeanOf(medium.At(ray.origin).Extinction()));
-    if (isStart) extinction_ = extinction;
+    const double extinction = MeanOf(medium.At(ray.origin).Extinction());
+    if (isStart) extinction_ = static_cast<float>(extinction);
     depth += extinction * (span.tMax - span.tMin);
   }
   if (!(end > from_)) return;
-  segment_ = {ray.origin + from_ * ray.direction, ray.direction, end - from_, ray.time};
-  share_ = depth > kDepthOfAll ? kDepthOfAll / depth : 1.0f;
+  segment_ = {Point3(flight.line.start + from_ * flight.line.direction), ray.direction, static_cast<float>(end - from_),
+              ray.time};
+  share_ = static_cast<float>(depth > kDepthOfAll ? kDepthOfAll / depth : 1.0);
   if (!isKnown && !isFirst) share_ = std::min(share_, kShareInGrids);
 }
 
@@ -79,18 +80,18 @@ std::optional<LitSegment::Sample> LitSegment::Generate(const LightingServices& l
     t += chosen->tMin;
   }
   if (!(sample.density > 0)) return std::nullopt;
-  sample.t = from_ + t;
+  sample.t = from_ + static_cast<double>(t);
   return sample;
 }
 
-double LitSegment::Density(const LightingServices& lighting, uint32_t light, int patch, float t,
+double LitSegment::Density(const LightingServices& lighting, uint32_t light, int patch, double t,
                            const Point2& uApex) const {
   if (!(share_ > 0)) return 0;
   const PdfDiscrete selection = lighting.SegmentSelectionProbability(segment_, light, patch);
   if (selection.IsZero()) return 0;
   const auto reach = lighting.SampleApex(segment_, {light, patch, selection, 0}, uApex);
   if (!reach || !(reach->tMin < reach->tMax)) return 0;
-  const float along = std::clamp(t - from_, 0.0f, segment_.length);
+  const float along = std::clamp(static_cast<float>(t - from_), 0.0f, segment_.length);
   if (along < reach->tMin || along > reach->tMax) return 0;
   const double density = reach->hasApex
                              ? static_cast<double>(reach->Distances(segment_).Density(along).value)

@@ -23,14 +23,14 @@ class LitSegment {
 
   struct Sample {
     SelectedLight light;  // its probability is that for the segment
-    float t = 0;          // along the ray
+    double t = 0;         // along the line of the flight
     double density = 0;   // of t, 1/scene unit, without the share and the selection
   };
   // nullopt: the light that is selected does not reach the segment.
   std::optional<Sample> Generate(const LightingServices& lighting, const Point2& uSelectAndDistance,
                                  const Point2& uApex) const;
   // Density of sampling this light at `t`: share, selection and distance, 1/scene unit. `u`: for the apex.
-  double Density(const LightingServices& lighting, uint32_t light, int patch, float t, const Point2& uApex) const;
+  double Density(const LightingServices& lighting, uint32_t light, int patch, double t, const Point2& uApex) const;
   // The same for a distance that Generate has sampled.
   double Density(const Sample& sample) const {
     return static_cast<double>(share_ * sample.light.probability.value) * sample.density;
@@ -38,7 +38,7 @@ class LitSegment {
 
  private:
   RaySegment segment_;    // from the first medium that scatters to the end of the last one
-  float from_ = 0;        // where it starts on the ray
+  double from_ = 0;       // where it starts on the ray
   float extinction_ = 0;  // mean over channels at its start, 1/scene unit; 0 in a grid
   float share_ = 0;
 };

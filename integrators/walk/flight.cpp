@@ -10,30 +10,29 @@ namespace lampyr {
 
 namespace {
 
-// The part of a ray within the scene's sphere, beyond which there is vacuum: with some margin, because the surfaces of
+// The part of a line within the scene's sphere, beyond which there is vacuum: with some margin, because the surfaces of
 // the scene may touch the sphere.
-std::pair<float, float> WithinScene(const BoundingSphere& sphere, const Ray& ray) {
+std::pair<double, double> WithinScene(const BoundingSphere& sphere, const FineLine& line) {
   constexpr double kMargin = 1 + 1e-4;
-  const Vector3d toCenter = Vector3d(sphere.center) - Vector3d(ray.origin);
-  const Vector3d direction(ray.direction);
-  const double along = glm::dot(toCenter, direction);
-  const Vector3d across = toCenter - along * direction;
+  const Vector3d toCenter = Vector3d(sphere.center) - line.start;
+  const double along = glm::dot(toCenter, line.direction);
+  const Vector3d across = toCenter - along * line.direction;
   const double radius = static_cast<double>(sphere.radius) * kMargin;
   const double half = radius * radius - glm::dot(across, across);
-  if (!(half > 0)) return {0.0f, 0.0f};
+  if (!(half > 0)) return {0.0, 0.0};
   const double chord = std::sqrt(half);
-  return {static_cast<float>(along - chord), static_cast<float>(along + chord)};
+  return {along - chord, along + chord};
 }
 
-// Splits a ray at the surfaces that separate media or have a tint. Returns the medium at its end.
-int32_t FindSpans(const RenderScene& scene, const Ray& ray, float tMax, int32_t medium,
+// Splits a line at the surfaces that separate media or have a tint. Returns the medium at its end.
+int32_t FindSpans(const RenderScene& scene, const FineLine& line, double tMax, int32_t medium,
                   std::span<const Crossing> crossings, std::vector<MediumSpan>& spans) {
   spans.clear();
-  const auto [enters, leaves] = WithinScene(scene.lighting->SceneSphere(), ray);
-  float from = 0;
+  const auto [enters, leaves] = WithinScene(scene.lighting->SceneSphere(), line);
+  double from = 0;
   Color tint(1.0f);
-  const auto add = [&](float to) {
-    const float tMin = std::max(from, enters), tEnd = std::min(to, leaves);
+  const auto add = [&](double to) {
+    const double tMin = std::max(from, enters), tEnd = std::min(to, leaves);
     if (medium >= 0 && tEnd > tMin) spans.push_back({tMin, tEnd, medium, tint});
     from = to;
   };
@@ -67,11 +66,11 @@ float PathLength(float extinction, float distance) {
 class Tracker {
  public:
   // `steps`: receives the parts of the ray; null: not wanted.
-  Tracker(const Ray& ray, int channel, float uDistance, uint64_t seed, std::vector<BeamStep>* steps)
-      : ray_(ray), channel_(channel), depth_(DepthOf(uDistance)), rng_(seed), steps_(steps) {}
+  Tracker(const FineLine& line, int channel, float uDistance, uint64_t seed, std::vector<BeamStep>* steps)
+      : line_(line), channel_(channel), depth_(DepthOf(uDistance)), rng_(seed), steps_(steps) {}
 
   // Follows a span. `collides`: stops at a collision, and returns true.
-  bool Follow(const Medium& medium, int32_t index, float tMin, float tMax, bool collides) {
+  bool Follow(const Medium& medium, int32_t index, double tMin, double tMax, bool collides) {
     index_ = index;
     if (medium.IsHomogeneous()) return FollowHomogeneous(medium, tMin, tMax, medium.Scatters(), collides);
     return FollowGrid(medium, tMin, tMax, collides);
@@ -81,22 +80,22 @@ class Tracker {
   Color density{1.0f};    // the same, of the media that walks collide with
   Color emission;         // of what was followed since it was reset, over the density
   MediumCoefficients at;  // of the collision
-  float t = 0;            // of the collision
+  double t = 0;           // of the collision
   bool wantsEmission = false;
 
  private:
-  static float DepthOf(float u) { return -std::log1p(-u); }
+  // Random numbers are multiples of 2^-24, 0 among them: a collision at the very start would have an infinite density.
+  static float DepthOf(float u) { return -std::log1p(-std::max(u, 0x1p-26f)); }
 
-  bool FollowHomogeneous(const Medium& medium, float tMin, float tMax, bool scatters, bool collides) {
+  bool FollowHomogeneous(const Medium& medium, double tMin, double tMax, bool scatters, bool collides) {
     const MediumCoefficients here = medium.At(Point3(0.0f));
     const Color extinction = here.Extinction();
+    auto length = static_cast<float>(tMax - tMin);
     if (wantsEmission && !here.emission.IsBlack()) {
-      const float length = tMax - tMin;
       const Color reach(PathLength(extinction.r, length), PathLength(extinction.g, length),
                         PathLength(extinction.b, length));
       emission += value * here.emission * reach / static_cast<float>(MeanOf(density));
     }
-    float length = tMax - tMin;
     const float sampled = ChannelOf(extinction, channel_);
     bool isCollision = false;
     if (scatters && collides) {
@@ -105,21 +104,25 @@ class Tracker {
       if (isCollision) {
         length = std::min(depth_ / sampled, length);
         at = here;
-        t = tMin + length;
+        t = tMin + static_cast<double>(length);
       } else {
         depth_ -= depth;
       }
     }
-    if (steps_) steps_->push_back({tMin, tMin + length, index_, value, density, extinction, scatters});
+    if (steps_) {
+      const double end = tMin + static_cast<double>(length);
+      steps_->push_back(
+          {static_cast<float>(tMin), static_cast<float>(end), index_, value, density, extinction, scatters});
+    }
     const Color transmittance = Transmittance(extinction, length);
     value *= transmittance;
     if (scatters) density *= transmittance;
     return isCollision;
   }
 
-  bool FollowGrid(const Medium& medium, float tMin, float tMax, bool collides) {
+  bool FollowGrid(const Medium& medium, double tMin, double tMax, bool collides) {
     bool isCollision = false;
-    medium.Majorants()->Walk(ray_, tMin, tMax, [&](const MajorantSegment& segment) {
+    medium.Majorants()->Walk({line_.start, line_.direction, tMin, tMax}, [&](const MajorantSegment& segment) {
       isCollision = FollowSegment(medium, segment, collides);
       return !isCollision && !value.IsBlack();
     });
@@ -128,24 +131,25 @@ class Tracker {
 
   // Tentative collisions in a cell. Without `collides` all of them are null.
   bool FollowSegment(const Medium& medium, const MajorantSegment& segment, bool collides) {
-    float from = segment.tMin;
-    const auto keep = [&](float to) {
-      if (steps_) steps_->push_back({from, to, index_, value, density, Color(0.0f), true});
+    double from = segment.tMin;
+    const auto keep = [&](double to) {
+      if (!steps_) return;
+      steps_->push_back({static_cast<float>(from), static_cast<float>(to), index_, value, density, Color(0.0f), true});
     };
     if (!(segment.majorant > 0)) {
       keep(segment.tMax);
       return false;
     }
     for (;;) {
-      const float step = depth_ / segment.majorant;
+      const double step = static_cast<double>(depth_) / static_cast<double>(segment.majorant);
       keep(std::min(from + step, segment.tMax));
       if (!(from + step < segment.tMax)) {
-        depth_ = std::max(depth_ - segment.majorant * (segment.tMax - from), 0.0f);
+        depth_ = std::max(depth_ - segment.majorant * static_cast<float>(segment.tMax - from), 0.0f);
         return false;
       }
       from += step;
       depth_ = DepthOf(rng_.NextFloat());
-      const MediumCoefficients here = medium.At(ray_.origin + from * ray_.direction);
+      const MediumCoefficients here = medium.At(Point3(line_.start + from * line_.direction));
       const Color extinction = here.Extinction();
       if (wantsEmission && !here.emission.IsBlack())
         emission += value * here.emission / (segment.majorant * static_cast<float>(MeanOf(density)));
@@ -165,7 +169,7 @@ class Tracker {
     return {std::max(a.r, b.r), std::max(a.g, b.g), std::max(a.b, b.b)};
   }
 
-  const Ray& ray_;
+  const FineLine& line_;
   const int channel_;
   float depth_;  // optical depth to the next tentative collision
   Rng rng_;
@@ -173,7 +177,7 @@ class Tracker {
   int32_t index_ = kVacuum;
 };
 
-// Of a thread. A flight keeps those of walks while connections are traced from its ray.
+// Of a thread. Those of walks stay valid while connections are traced from a flight's ray.
 struct Buffers {
   std::vector<MediumSpan> spans;
   std::vector<Crossing> crossings;
@@ -204,17 +208,25 @@ Color BeamStep::DensityAt(float t) const {
   return scatters ? density * Transmittance(extinction, t - tMin) : density;
 }
 
-void Fly(const SampleContext& context, const Ray& ray, uint32_t kinds, int32_t medium, const Color& extinction,
-         uint32_t dimension, bool wantsBeam, Flight& flight) {
+void Fly(const SampleContext& context, const Ray& ray, uint32_t kinds, const EdgeEnd& start, uint32_t dimension,
+         bool wantsBeam, Flight& flight) {
   const RenderScene& scene = context.scene;
   auto& [spans, crossings] = BuffersOfWalks();
-  flight.isHit = scene.geometry->Trace(ray, kinds, flight.hit, crossings);
-  flight.t = flight.isHit ? flight.hit.t : kInfinity;
-  flight.factors = {1, MeanOf(extinction), 1};
+  FineLine line{start.position, Vector3d(ray.direction)};
+  line.isFineAtStart = start.isFine;
+  const LineHit found = scene.geometry->Trace(ray, line, kinds, flight.hit, crossings);
+  double end = found.t;
+  flight.isHit = found.isHit;
+  flight.factors = {1, MeanOf(start.extinction), 1};
   flight.beam = {};
   flight.crossings = crossings;
-  flight.startExtinction = extinction;
-  flight.medium = FindSpans(scene, ray, flight.t, medium, crossings, spans);
+  flight.startExtinction = start.extinction;
+  if (found.isRejected) {
+    flight.passed = Color(0.0f);
+    return;
+  }
+  flight.medium = FindSpans(scene, line, end, start.medium, crossings, spans);
+  flight.line = line;
   flight.spans = spans;
   if (!spans.empty()) {
     context.sampler.SetDimension(dimension);
@@ -223,7 +235,7 @@ void Fly(const SampleContext& context, const Ray& ray, uint32_t kinds, int32_t m
         MixBits(static_cast<uint64_t>(std::bit_cast<uint32_t>(u.x)) << 32 | std::bit_cast<uint32_t>(u.y));
     std::vector<BeamStep>& steps = ThreadSteps();
     steps.clear();
-    Tracker tracker(ray, std::min(static_cast<int>(3 * u.y), 2), u.x, seed, wantsBeam ? &steps : nullptr);
+    Tracker tracker(line, std::min(static_cast<int>(3 * u.y), 2), u.x, seed, wantsBeam ? &steps : nullptr);
     tracker.wantsEmission = true;
     for (const MediumSpan& span : spans) {
       const Medium& passed = *scene.media[static_cast<size_t>(span.medium)];
@@ -233,16 +245,19 @@ void Fly(const SampleContext& context, const Ray& ray, uint32_t kinds, int32_t m
       if (!collides) continue;
       flight.collidesWith = &passed;
       flight.medium = span.medium;
-      flight.t = tracker.t;
+      end = tracker.t;
       flight.coefficients = tracker.at;
       break;
     }
-    const Color end = flight.collidesWith ? tracker.at.Extinction() : Color(1.0f);
-    flight.factors = {MeanOf(tracker.density * end), MeanOf(tracker.density * extinction), MeanOf(tracker.density)};
+    const Color endExtinction = flight.collidesWith ? tracker.at.Extinction() : Color(1.0f);
+    flight.factors = {MeanOf(tracker.density * endExtinction), MeanOf(tracker.density * start.extinction),
+                      MeanOf(tracker.density)};
     flight.beam = steps;
     flight.passed = tracker.value / static_cast<float>(flight.factors.forward);
   }
-  flight.passed *= flight.TintBefore(flight.t);
+  flight.t = static_cast<float>(end);
+  if (flight.isHit || flight.collidesWith) flight.end = line.start + end * line.direction;
+  flight.passed *= flight.TintBefore(end);
 }
 
 std::optional<BeamPoint> Flight::PointAt(float at, int32_t inMedium) const {
@@ -253,13 +268,13 @@ std::optional<BeamPoint> Flight::PointAt(float at, int32_t inMedium) const {
     point.density = step.DensityAt(at);
     point.through = MeanOf(point.density);
     if (!(point.through > 0)) return std::nullopt;
-    point.passed = TintBefore(at) * step.TransmittanceAt(at) / static_cast<float>(point.through);
+    point.passed = TintBefore(static_cast<double>(at)) * step.TransmittanceAt(at) / static_cast<float>(point.through);
     return point;
   }
   return std::nullopt;
 }
 
-Color Flight::TintBefore(float end) const {
+Color Flight::TintBefore(double end) const {
   Color tint(1.0f);
   for (const Crossing& crossing : crossings) {
     if (crossing.t < end) tint *= crossing.transmittance;
@@ -270,10 +285,10 @@ Color Flight::TintBefore(float end) const {
 namespace {
 
 // Ratio tracking over all spans up to `end`.
-Tracker Estimate(const RenderScene& scene, const Ray& ray, std::span<const MediumSpan> spans, float end,
+Tracker Estimate(const RenderScene& scene, const FineLine& line, std::span<const MediumSpan> spans, double end,
                  uint64_t decider) {
   Rng first(decider);
-  Tracker tracker(ray, 0, first.NextFloat(), MixBits(decider + 1), nullptr);
+  Tracker tracker(line, 0, first.NextFloat(), MixBits(decider + 1), nullptr);
   for (const MediumSpan& span : spans) {
     if (!(span.tMin < end)) break;
     tracker.Follow(*scene.media[static_cast<size_t>(span.medium)], span.medium, span.tMin, std::min(span.tMax, end),
@@ -283,19 +298,32 @@ Tracker Estimate(const RenderScene& scene, const Ray& ray, std::span<const Mediu
   return tracker;
 }
 
+// The line of a connecting ray: between both ends, or from the start in the direction of an infinite ray.
+FineLine LineOf(const Ray& ray, const EdgeEnd& start, const EdgeEnd& end) {
+  FineLine line{start.position, Vector3d(ray.direction)};
+  line.isFineAtStart = start.isFine;
+  if (ray.tMax == kInfinity) return line;
+  const Vector3d between = end.position - start.position;
+  line.length = glm::length(between);
+  if (line.length > 0) line.direction = between / line.length;
+  line.isFineAtEnd = end.isFine;
+  return line;
+}
+
 }  // namespace
 
-std::optional<MediumPoint> PointOnFlight(const SampleContext& context, const Ray& ray, const Flight& flight, float t,
+std::optional<MediumPoint> PointOnFlight(const SampleContext& context, const Flight& flight, double t,
                                          uint64_t decider) {
   const auto span = std::find_if(flight.spans.begin(), flight.spans.end(),
                                  [=](const MediumSpan& one) { return t >= one.tMin && t < one.tMax; });
   if (span == flight.spans.end()) return std::nullopt;
   MediumPoint point;
+  point.position = flight.line.start + t * flight.line.direction;
   point.index = span->medium;
   point.medium = context.scene.media[static_cast<size_t>(span->medium)].get();
-  point.coefficients = point.medium->At(ray.origin + t * ray.direction);
+  point.coefficients = point.medium->At(Point3(point.position));
   if (point.coefficients.scattering.IsBlack()) return std::nullopt;
-  const Tracker tracker = Estimate(context.scene, ray, flight.spans, t, decider);
+  const Tracker tracker = Estimate(context.scene, flight.line, flight.spans, t, decider);
   point.transmittance = span->tint * tracker.value;
   if (point.transmittance.IsBlack()) return std::nullopt;
   point.factors = {MeanOf(tracker.density * point.coefficients.Extinction()),
@@ -304,20 +332,21 @@ std::optional<MediumPoint> PointOnFlight(const SampleContext& context, const Ray
 }
 
 Color TransmittanceOf(const SampleContext& context, const Ray& ray, uint32_t kinds, const EdgeEnd& start,
-                      const Color& endExtinction, uint64_t decider, EdgeFactors& factors) {
+                      const EdgeEnd& end, uint64_t decider, EdgeFactors& factors) {
   const RenderScene& scene = context.scene;
   auto& [spans, crossings] = BuffersOfConnections();
-  const Color surfaces = scene.geometry->Transmittance(ray, kinds, crossings);
+  const FineLine line = LineOf(ray, start, end);
+  const Color surfaces = scene.geometry->Transmittance(ray, line, kinds, crossings);
   factors = {};
   if (surfaces.IsBlack()) return surfaces;
-  FindSpans(scene, ray, ray.tMax, start.medium, crossings, spans);
+  FindSpans(scene, line, line.length, start.medium, crossings, spans);
   if (!spans.empty()) {
-    const Tracker tracker = Estimate(scene, ray, spans, ray.tMax, decider);
-    factors = {MeanOf(tracker.density * endExtinction), MeanOf(tracker.density * start.extinction),
+    const Tracker tracker = Estimate(scene, line, spans, line.length, decider);
+    factors = {MeanOf(tracker.density * end.extinction), MeanOf(tracker.density * start.extinction),
                MeanOf(tracker.density)};
     return surfaces * tracker.value;
   }
-  factors = {MeanOf(endExtinction), MeanOf(start.extinction), 1};
+  factors = {MeanOf(end.extinction), MeanOf(start.extinction), 1};
   return surfaces;
 }
 

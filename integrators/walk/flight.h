@@ -17,6 +17,7 @@
 #include <optional>
 #include <span>
 
+#include "geometry/fine_line.h"
 #include "integrators/walk/integrator.h"
 
 namespace lampyr {
@@ -34,9 +35,9 @@ struct EdgeFactors {
   EdgeFactors Reversed() const { return {reverse, forward, through}; }
 };
 
-// A part of a ray in one medium.
+// A part of a line in one medium.
 struct MediumSpan {
-  float tMin, tMax;
+  double tMin, tMax;
   int32_t medium;
   Color tint{1.0f};  // of the surfaces before it
 };
@@ -63,6 +64,7 @@ struct BeamPoint {
 
 // A point of a medium on a ray, as a walk that collided there would have it.
 struct MediumPoint {
+  Point3d position{0.0};  // beyond float
   const Medium* medium = nullptr;
   int32_t index = kVacuum;  // of the medium
   MediumCoefficients coefficients;
@@ -77,11 +79,13 @@ struct Flight {
   const Medium* collidesWith = nullptr;  // null: none
   int32_t medium = kVacuum;              // in which the flight ends: of the collision, or before the surface
   float t = kInfinity;                   // of the end
+  Point3d end{0.0};                      // beyond float; not set if the ray escapes
   MediumCoefficients coefficients;       // at the collision
   Color passed{1.0f};                    // factor on the throughput: tints, and transmittance over its density
   EdgeFactors factors;
   Color emission;  // radiance of media on the way, at the start of the ray; an estimate
-  // The parts of the ray in media up to the surface, in order, whether the walk collides or not; valid until the next
+  FineLine line;
+  // The parts of the line in media up to the surface, in order, whether the walk collides or not; valid until the next
   // flight of the thread.
   std::span<const MediumSpan> spans;
   // The parts of the ray up to t that are in media, in order; valid until the next flight of the thread.
@@ -90,30 +94,39 @@ struct Flight {
   Color startExtinction{1.0f};          // of the vertex at which the ray starts
 
   // Factor of the surfaces that the ray has passed before `end`.
-  Color TintBefore(float end) const;
+  Color TintBefore(double end) const;
   // The point of the beam at `at`; nullopt: it is not in `inMedium`.
   std::optional<BeamPoint> PointAt(float at, int32_t inMedium) const;
 };
 
-// Traces a ray that starts in `medium` from a vertex of the extinction `extinction` (1 of what is not in a medium).
-// `dimension`: of the sampler, of a pair for the distance and the channel. `wantsBeam`: Flight::beam is wanted.
-void Fly(const SampleContext& context, const Ray& ray, uint32_t kinds, int32_t medium, const Color& extinction,
-         uint32_t dimension, bool wantsBeam, Flight& flight);
-
-// The point at `t` of a flight's ray. nullopt: nothing scatters there, or no light passes. The transmittance is
-// estimated anew, independently of where the walk has collided. `decider`: random bits that decide nothing else.
-std::optional<MediumPoint> PointOnFlight(const SampleContext& context, const Ray& ray, const Flight& flight, float t,
-                                         uint64_t decider);
-
-// The end of a connection.
+// An end of an edge.
 struct EdgeEnd {
-  int32_t medium = kVacuum;  // in which the ray starts; not looked at of the end of the ray
+  Point3d position{0.0};     // beyond float (PathVertex::Position)
+  int32_t medium = kVacuum;  // in which a ray from there starts; not looked at of the end of a ray
   Color extinction{1.0f};    // 1 of what is not in a medium
+  bool isFine = false;       // FineLine
+
+  // A vertex in a medium whose mean free path is not far above the rounding of positions.
+  static bool IsFineIn(const Color& extinction, const Point3& position) {
+    constexpr float kRounding = 0x1p-21f, kOfPath = 1e-4f;
+    return extinction.Max() * MaxAbsComponent(position) * kRounding > kOfPath;
+  }
 };
 
+// Traces a ray from `start`. `dimension`: of the sampler, of a pair for the distance and the channel. `wantsBeam`:
+// Flight::beam is wanted. A ray that is rejected (GeometryScene::RejectedRays) carries nothing: Flight::passed is 0.
+void Fly(const SampleContext& context, const Ray& ray, uint32_t kinds, const EdgeEnd& start, uint32_t dimension,
+         bool wantsBeam, Flight& flight);
+
+// The point at `t` of a flight's line. nullopt: nothing scatters there, or no light passes. The transmittance is
+// estimated anew, independently of where the walk has collided. `decider`: random bits that decide nothing else.
+std::optional<MediumPoint> PointOnFlight(const SampleContext& context, const Flight& flight, double t,
+                                         uint64_t decider);
+
 // Estimates the transmittance of a connecting ray, surfaces included, and sets the factors of its edge, both from the
-// start of the ray. `decider`: random bits of the connection that decide nothing else.
+// start of the ray. The position of `end` is not looked at if the ray is infinite. `decider`: random bits of the
+// connection that decide nothing else.
 Color TransmittanceOf(const SampleContext& context, const Ray& ray, uint32_t kinds, const EdgeEnd& start,
-                      const Color& endExtinction, uint64_t decider, EdgeFactors& factors);
+                      const EdgeEnd& end, uint64_t decider, EdgeFactors& factors);
 
 }  // namespace lampyr

@@ -60,10 +60,10 @@ void SceneProbe::ForEachVisible(int width, int height, int across, const Visit& 
     const Point2 film((static_cast<float>(i % across) + 0.5f) / cells * static_cast<float>(width),
                       (static_cast<float>(i / across) + 0.5f) / cells * static_cast<float>(height));
     PathState state;
-    state.medium = scene_.cameraMedium;
     const CameraRay cameraRay = scene_.camera->GenerateRay(film, Point2(0.5f), 0);
     if (cameraRay.weight == 0) continue;
     state.ray = cameraRay.ray;
+    state.medium = scene_.MediumOf(state.ray);
     state.specular = Color(1.0f);
     const Ray ray = state.ray;
     path_.Clear();

@@ -51,8 +51,9 @@ bool SeesOrigin(const SampleContext& context, const EmittedPhoton& photon, const
   if (!scene.media.empty()) {
     Ray before = ray;
     before.tMax = hit.t;
-    passed = TransmittanceOf(context, before, visibility::kCamera, {scene.cameraMedium, Color(1.0f)}, Color(1.0f),
-                             DeciderOf(photon.emission.position), seen.factors);
+    const EdgeEnd lens{Point3d(ray.origin), scene.MediumOf(ray)}, light{Point3d(photon.emission.position)};
+    passed = TransmittanceOf(context, before, visibility::kCamera, lens, light, DeciderOf(photon.emission.position),
+                             seen.factors);
   }
   radiance = passed * scene.lighting->EmissionForCamera(ray.direction, hit.t, point, context.time);
   return !radiance.IsBlack();
@@ -94,8 +95,11 @@ std::optional<SeenFromLens> SeeGlow(const SampleContext& context, const EmittedI
   const Ray ray = SpawnRayTo(point, connection->camera.position, Vector3(0.0f), Normal3(0.0f), context.time);
   EdgeFactors factors;
   const uint64_t decider = Hash(std::bit_cast<uint32_t>(ray.direction.x), std::bit_cast<uint32_t>(ray.direction.y));
-  const Color arriving =
-      TransmittanceOf(context, ray, visibility::kCamera, {emitted.medium, Color(1.0f)}, Color(1.0f), decider, factors);
+  const Color extinction = context.scene.media[static_cast<size_t>(emitted.medium)]->At(emitted.position).Extinction();
+  const EdgeEnd glow{Point3d(emitted.position), emitted.medium, Color(1.0f),
+                     EdgeEnd::IsFineIn(extinction, emitted.position)};
+  const EdgeEnd lens{Point3d(connection->camera.position)};
+  const Color arriving = TransmittanceOf(context, ray, visibility::kCamera, glow, lens, decider, factors);
   if (arriving.IsBlack()) return std::nullopt;
   seen.factors = factors.Reversed();
   seen.value = Product(emitted.emission, arriving, static_cast<double>(connection->Weight()) / emitted.density);
@@ -122,7 +126,8 @@ std::optional<SeenFromLens> SeeVertex(const SampleContext& context, const PathVe
     arriving = scene.geometry->Transmittance(ray, visibility::kCamera);
   } else {
     EdgeFactors fromVertex;
-    arriving = TransmittanceOf(context, ray, visibility::kCamera, vertex.EndTowards(ray.direction), Color(1.0f),
+    const EdgeEnd lens{Point3d(connection->camera.position)};
+    arriving = TransmittanceOf(context, ray, visibility::kCamera, vertex.EndTowards(ray.direction), lens,
                                DeciderOf(position), fromVertex);
     seen.factors = fromVertex.Reversed();
   }

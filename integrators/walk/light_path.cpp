@@ -65,6 +65,8 @@ bool Emit(const SampleContext& context, const EmittedPhoton& photon, PathState& 
       static_cast<double>(photon.emissionSelection.value) * static_cast<double>(context.scene.lighting->FluxUnit());
   const auto inverse = static_cast<float>(static_cast<double>(emission.emissionCosine) / density);
   state.ray = photon.ray;
+  if (!context.scene.media.empty() && context.scene.lighting->KindOf(photon.light) == LightKind::Area)
+    state.fromOrigin = emission.position - photon.ray.origin;
   state.medium =
       context.scene.MediumOfLight(photon.light, glm::dot(photon.emission.normal, photon.emission.direction) < 0);
   state.diffuse = emission.diffuse * inverse;

@@ -12,8 +12,9 @@ Color TraceShadowRay(const SampleContext& context, const PathVertex& vertex, con
   if (context.scene.media.empty()) [[likely]]
     return lighting.Transmittance(vertex.point, direct, context.time);
   const Ray ray = lighting.ShadowRay(vertex.point, direct, context.time);
-  return TransmittanceOf(context, ray, visibility::kShadow, vertex.EndTowards(ray.direction), Color(1.0f),
-                         MixBits(decider), factors);
+  const EdgeEnd light{Point3d(direct.sample->position)};
+  return TransmittanceOf(context, ray, visibility::kShadow, vertex.EndTowards(ray.direction), light, MixBits(decider),
+                         factors);
 }
 
 }  // namespace

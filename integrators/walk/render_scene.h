@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "camera/camera.h"
@@ -21,12 +22,17 @@ struct RenderScene {
   std::shared_ptr<const LightingServices> lighting;
   std::shared_ptr<const Camera> camera;
   std::vector<std::shared_ptr<const Medium>> media;  // by GeometryAttributes::insideMedium and outsideMedium
-  int32_t cameraMedium = kVacuum;                    // where camera rays start
-  std::vector<int32_t> lightMedia;                   // by light: around it, or in front of it; empty: vacuum
+  int32_t cameraMedium = kVacuum;                    // where camera rays start (MediumOf)
+  // If camera rays start in several media, because the camera is on a boundary or is cut by one: the medium of those
+  // that meet no surface that says it.
+  std::optional<int32_t> cameraExterior;
+  std::vector<int32_t> lightMedia;  // by light: around it, or in front of it; empty: vacuum
   std::vector<int32_t>
       lightBackMedia;      // by light: behind its surface, where a two-sided light shines, too; empty: vacuum
   bool hasMotion = false;  // something moves while the shutter is open; otherwise all rays have time 0
 
+  // Medium in which a camera ray starts.
+  int32_t MediumOf(const Ray& cameraRay) const;
   // Medium in which light of `light` starts; `fromBehind`: of a surface that shines to both sides.
   int32_t MediumOfLight(uint32_t light, bool fromBehind) const {
     const std::vector<int32_t>& around = fromBehind ? lightBackMedia : lightMedia;

@@ -14,7 +14,8 @@ namespace lampyr {
 // A point where light scatters, as seen by the path that arrived there: on a surface, or in a participating medium.
 // Directions are unit vectors that point away from it.
 struct Vertex {
-  SurfacePoint point;  // in a medium: the position alone; normals are 0
+  SurfacePoint point;      // in a medium: the position alone; normals are 0
+  Vector3 residual{0.0f};  // Position() less that of `point`; set in scenes with media
   Bsdf bsdf;
   Vector3 toPrevious{0.0f};
   Receiver receiver;
@@ -28,6 +29,9 @@ struct Vertex {
   bool storesPhotons = true;     // by material, not by the component drawn from a mix: gathering paths draw anew
   bool isSeenByCamera = true;    // camera rays meet it
   bool isSeenByIndirect = true;  // rays of light subpaths meet it
+
+  // Beyond float: mean free paths may be shorter than its rounding. Where the path met the surface, or collided.
+  Point3d Position() const { return Point3d(point.position) + Vector3d(residual); }
 
   // Scattering between the previous vertex and `direction`.
   BsdfEvaluation Evaluate(const Vector3& direction, TransportMode mode) const {
@@ -46,7 +50,15 @@ struct Vertex {
   int32_t MediumTowards(const Vector3& direction) const {
     return glm::dot(direction, point.Ng) > 0 ? outsideMedium : insideMedium;
   }
-  EdgeEnd EndTowards(const Vector3& direction) const { return {MediumTowards(direction), extinction}; }
+  EdgeEnd EndTowards(const Vector3& direction) const {
+    return {Position(), MediumTowards(direction), extinction,
+            IsInMedium() && EdgeEnd::IsFineIn(extinction, point.position)};
+  }
+  // From here to `other`; beyond float if either is in a medium.
+  Vector3d WayTo(const Vertex& other) const {
+    if (IsInMedium() || other.IsInMedium()) return other.Position() - Position();
+    return Vector3d(other.point.position - point.position);
+  }
   // False where photons would not tell how much light there is.
   bool GathersPhotons() const { return bsdf.GathersPhotons(); }
 

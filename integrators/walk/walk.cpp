@@ -64,19 +64,28 @@ bool MakeVertex(const RenderScene& scene, const std::vector<std::shared_ptr<cons
   return true;
 }
 
+// A surface point that is not where the flight ends, but for rounding, is of a surface that is met by float alone.
+void SetResidual(const Flight& flight, Vertex& vertex) {
+  const Vector3d residual = flight.end - Point3d(vertex.point.position);
+  const double size = static_cast<double>(MaxAbsComponent(vertex.point.position) + flight.t);
+  constexpr double kRounding = 1e-5;
+  vertex.residual = glm::length(residual) <= kRounding * size ? Vector3(residual) : Vector3(0.0f);
+}
+
 }  // namespace
 
-void MakeVertexInMedium(const Point3& position, const Vector3& direction, int32_t medium, const PhaseBsdf& phase,
+void MakeVertexInMedium(const Point3d& position, const Vector3& direction, int32_t medium, const PhaseBsdf& phase,
                         const Color& extinction, Vertex& vertex) {
   MakeInPlace(vertex.point, [&] {
     SurfacePoint point;
-    point.position = position;
+    point.position = Point3(position);
     point.Ng = point.Ns = Normal3(0.0f);
     return point;
   });
+  vertex.residual = Vector3(position - Point3d(vertex.point.position));
   vertex.toPrevious = -direction;
   MakeInPlace(vertex.bsdf, [&] { return Bsdf(Frame::FromNormal(vertex.toPrevious), vertex.toPrevious, phase); });
-  vertex.receiver = {position, Normal3(0.0f), true, 0};
+  vertex.receiver = {vertex.point.position, Normal3(0.0f), true, 0};
   vertex.coverage = 1;
   vertex.insideMedium = vertex.outsideMedium = medium;
   vertex.extinction = extinction;
@@ -124,13 +133,24 @@ bool Scatter(const SampleContext& context, const WalkSettings& settings, int ind
 
 namespace {
 
+// Where the ray of `state` starts.
+EdgeEnd StartOf(const SampleContext& context, const PathState& state, const Subpath& path) {
+  if (path.Count() > 0) return path.Last().EndTowards(state.ray.direction);
+  EdgeEnd start{Point3d(state.ray.origin) + Vector3d(state.fromOrigin), state.medium};
+  const bool isOnSurface = state.fromOrigin != Vector3(0.0f);
+  if (state.medium >= 0 && !isOnSurface) {
+    const Color extinction = context.scene.media[static_cast<size_t>(state.medium)]->At(state.ray.origin).Extinction();
+    start.isFine = EdgeEnd::IsFineIn(extinction, state.ray.origin);
+  }
+  return start;
+}
+
 // Traces the ray of `state` through participating media.
 void FlyOn(const SampleContext& context, const WalkSettings& settings, uint32_t kinds, PathState& state, Subpath& path,
            PathVisitor& visitor, Flight& flight) {
   const bool isFromLight = settings.mode == TransportMode::Importance;
   const auto count = static_cast<int>(path.Count());
-  const Color extinction = count > 0 ? path.Last().extinction : Color(1.0f);
-  Fly(context, state.ray, kinds, state.medium, extinction,
+  Fly(context, state.ray, kinds, StartOf(context, state, path),
       settings.dimensions.OfFlight(isFromLight ? count + 1 : count), settings.wantsBeams, flight);
   if (settings.seesFlights && !flight.spans.empty()) visitor.Flew(path, state, flight);
   if (!flight.emission.IsBlack()) visitor.Glowed(path, state.Throughput(), flight.emission);
@@ -168,6 +188,7 @@ void Walk(const SampleContext& context, const WalkSettings& settings, PathState&
     PathVertex& vertex = path.Next();
     if (!collides) [[likely]] {
       MakeInPlace(vertex.point, [&] { return geometry.GetSurfacePoint(state.ray, hit); });
+      if (flight) SetResidual(*flight, vertex);
       if (!visitor.Met(path, state, hit, vertex.point, geometry.Attributes(hit.primitive).light >= 0)) return;
     } else if (!visitor.Collided(path, state)) {
       return;
@@ -176,7 +197,7 @@ void Walk(const SampleContext& context, const WalkSettings& settings, PathState&
     if (index >= settings.maxDepth) return;
     if (collides) {
       const MediumCoefficients& here = flight->coefficients;
-      MakeVertexInMedium(state.ray.origin + flight->t * state.ray.direction, state.ray.direction, flight->medium,
+      MakeVertexInMedium(flight->end, state.ray.direction, flight->medium,
                          {here.scattering, flight->collidesWith->Asymmetry()}, here.Extinction(), vertex);
     } else {
       const bool isBehindWide = settings.materialsAfterWide && state.hasScatteredWidely;

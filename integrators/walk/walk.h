@@ -19,6 +19,9 @@ struct PathState {
   Color diffuse, specular;
   SolidAngleDensity pdfDirection;  // density of the ray's direction at the last vertex (DensitiesOf)
   int32_t medium = kVacuum;        // participating medium in which the ray starts
+  // Of a path without vertices: from the ray's origin to where it starts, which is on the surface of a lamp if it is an
+  // area light.
+  Vector3 fromOrigin{0.0f};
   // Transmittance of what the last ray crossed; in media that scatter, over the density of getting through. Already a
   // factor of β.
   Color passed{1.0f};
@@ -95,7 +98,7 @@ struct WalkSettings {
 };
 
 // Makes a vertex in the medium `medium`. `direction`: of the ray that arrives.
-void MakeVertexInMedium(const Point3& position, const Vector3& direction, int32_t medium, const PhaseBsdf& phase,
+void MakeVertexInMedium(const Point3d& position, const Vector3& direction, int32_t medium, const PhaseBsdf& phase,
                         const Color& extinction, Vertex& vertex);
 
 // Extends a path from `state` until it escapes or is absorbed, the visitor ends it, or it has hit a surface with

@@ -112,11 +112,11 @@ SeenByCamera LookFromCamera(const RenderScene& scene, const RenderSettings& sett
     sampler.StartPixelSample(1, 0, i);
     const Point2 film = corner + sampler.Get2D() * size;
     PathState state;
-    state.medium = scene.cameraMedium;
     const CameraRay ray = scene.camera->GenerateRay(film, sampler.Get2D(), 0);
     largestWeight = std::max(largestWeight, ray.weight);
     if (ray.weight == 0) continue;
     state.ray = ray.ray;
+    state.medium = scene.MediumOf(state.ray);
     state.specular = Color(1.0f);
     path.Clear();
     Walk(context, {TransportMode::Radiance, vertices, {}, false}, state, path, visitor);

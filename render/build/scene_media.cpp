@@ -119,11 +119,27 @@ SceneMedia::Sides SceneMedia::MediaOfLight(const RenderScene& scene, size_t ligh
   return {chosen, chosen};
 }
 
+namespace {
+
+// True if some camera rays start in another medium than RenderScene::cameraMedium.
+bool StartsVary(const RenderScene& scene, const Point2& middle, int32_t exterior) {
+  if (!scene.geometry->HasBoundaries()) return false;
+  constexpr int kAcross = 5;
+  for (int i = 0; i < kAcross * kAcross; ++i) {
+    const Point2 place(static_cast<float>(i % kAcross) + 0.47f, static_cast<float>(i / kAcross) + 0.53f);
+    const CameraRay seen = scene.camera->GenerateRay(2.0f * middle * place / static_cast<float>(kAcross), Point2(0.5f), 0);
+    if (seen.weight > 0 && MediumAlong(*scene.geometry, seen.ray, exterior) != scene.cameraMedium) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
 void SceneMedia::Locate(const Point2& middle, const std::vector<FileLocation>& lightPlaces, RenderScene& scene) {
   if (description_.media.empty()) return;
   const GeometryScene& geometry = *scene.geometry;
-  const Point3 eye = scene.camera->GenerateRay(middle, Point2(0.5f), 0).ray.origin;
-  const FoundMedium around = FindMedium(geometry, eye, 0);
+  const Ray view = scene.camera->GenerateRay(middle, Point2(0.5f), 0).ray;
+  const FoundMedium around = FindMedium(geometry, view.origin, 0, view.direction);
   const FileLocation& where = description_.camera.where;
   scene.cameraMedium = Choose("the camera", where, description_.cameraMedium, around, kVacuum);
   if (description_.cameraMedium.empty() && scene.cameraMedium != kVacuum) {
@@ -133,6 +149,7 @@ void SceneMedia::Locate(const Point2& middle, const std::vector<FileLocation>& l
                           "before the camera names it");
   }
   const int32_t exterior = around.medium ? around.exterior.value_or(kVacuum) : scene.cameraMedium;
+  if (around.disputed == kNoIndex && StartsVary(scene, middle, exterior)) scene.cameraExterior = exterior;
   for (size_t light = 0; light < lightPlaces.size(); ++light) {
     const Sides sides = MediaOfLight(scene, light, lightPlaces[light], exterior);
     scene.lightMedia.push_back(sides.front);

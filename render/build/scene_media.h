@@ -39,6 +39,8 @@ class SceneMedia {
   // - Camera and lights are in the medium that the file names. Where it names none, they are in the one that they are
   //   found in by rays to the surfaces around them (FindMedium) at shutter open; and if there are none, the camera is
   //   in vacuum, and lights are where lights at infinity are.
+  // - A camera on a boundary is in the medium that it looks into. If its rays start in several, each starts in the one
+  //   that it goes through (RenderScene::cameraExterior).
   // - If all rays say another medium than the file, theirs holds, with a warning: that is where paths will find it.
   // - Area lights have the media of their shape's sides, if it separates any. Otherwise the medium of their first point
   //   holds; a warning says if another of their points is elsewhere.

@@ -48,7 +48,7 @@ std::optional<int32_t> FindStart(const SceneTables& tables, std::span<const Cros
 }
 
 void OrderGroup(const SceneTables& tables, std::optional<int32_t> medium, std::span<Crossing> group) {
-  std::vector<float> distances;
+  std::vector<double> distances;
   for (const Crossing& crossing : group) distances.push_back(crossing.t);
   for (size_t i = 0; i < group.size(); ++i) {
     const auto rest = group.begin() + static_cast<std::ptrdiff_t>(i);
@@ -84,8 +84,8 @@ size_t DropDoubled(size_t begin, size_t end, std::vector<Crossing>& crossings) {
 
 }  // namespace
 
-void OrderCoincident(const SceneTables& tables, float largest, std::vector<Crossing>& crossings) {
-  constexpr float kRounding = 32 * 0x1p-23f;  // of a distance, in units of the coordinates on the way
+void OrderCoincident(const SceneTables& tables, double largest, std::vector<Crossing>& crossings) {
+  constexpr double kRounding = 32 * 0x1p-23;  // of a distance, in units of the coordinates on the way
   std::optional<int32_t> medium;
   for (size_t begin = 0, end = 0; begin < crossings.size(); begin = end) {
     end = begin + 1;

@@ -22,6 +22,6 @@ void SortByDistance(std::vector<Crossing>& crossings);
 // medium; the next boundary sets it right.
 //
 // `crossings` are sorted, and their distances stay sorted. `largest`: the largest coordinate of the ray's origin.
-void OrderCoincident(const SceneTables& tables, float largest, std::vector<Crossing>& crossings);
+void OrderCoincident(const SceneTables& tables, double largest, std::vector<Crossing>& crossings);
 
 }  // namespace lampyr

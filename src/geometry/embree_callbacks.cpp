@@ -104,7 +104,7 @@ bool IsCrossedAlready(const Crossing& crossing, const std::vector<Crossing>& cro
 void AddCrossing(const Meeting& at, const RayHit& hit, const Passage& passage, const Color& transmittance,
                  TraceContext& trace) {
   const SceneTables& tables = *at.record.tables;
-  Crossing crossing{hit.t,
+  Crossing crossing{static_cast<double>(hit.t),
                     static_cast<uint32_t>(&at.record - tables.primitives.data()),
                     at.patch,
                     kNoIndex,

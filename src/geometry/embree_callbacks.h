@@ -17,6 +17,7 @@ struct TraceContext {
   // Surfaces that let the ray pass, in the order in which Embree visits them: of Trace, thin surfaces and boundaries,
   // whether or not a nearer hit is found later; of Transmittance, cut-outs, too. Null: not recorded.
   std::vector<Crossing>* crossings = nullptr;
+  float nearest = kNearestHit;     // of Trace: nothing before it is met
   bool recordsBoundaries = false;  // false: `crossings` lacks the boundaries between media
   Color transmittance{1.0f};  // of Transmittance: product over the crossings so far; the query ends when it is black
   // Thrown by a custom surface, which counts as missed: no exception may pass through Embree. Rethrown by

@@ -13,6 +13,7 @@
 #include "geometry/crossing_order.h"
 #include "geometry/embree_callbacks.h"
 #include "geometry/embree_geometries.h"
+#include "geometry/fine_distance.h"
 #include "geometry/rounding.h"
 #include "geometry/scene_tables.h"
 #include "geometry/shape_checks.h"
@@ -102,8 +103,14 @@ struct GeometryScene::Implementation {
   SceneHandle NewScene() const;
   void AttachEntries(RTCScene target, size_t first, size_t count);
   void BuildScenes();
+  bool Query(const Ray& ray, uint32_t kinds, RayHit& hit, TraceContext& trace) const;
   bool Trace(const Ray& ray, uint32_t kinds, RayHit& hit, TraceContext& trace) const;
+  LineHit Trace(const Ray& ray, double ahead, const FineLine& line, uint32_t kinds, RayHit& hit,
+                TraceContext& trace) const;
+  bool Passes(const Ray& ray, uint32_t kinds, TraceContext& trace) const;
   Color Transmittance(const Ray& ray, uint32_t kinds, TraceContext& trace) const;
+  Color Transmittance(const Ray& ray, const FineLine& line, uint32_t kinds, TraceContext& trace) const;
+  void DropCutOuts(std::vector<Crossing>& crossings) const;
 
   // True if Embree survives the ray. A NaN anywhere makes a comparison false.
   bool Accept(const Ray& ray) const {
@@ -311,23 +318,17 @@ std::vector<Crossing>& ThreadCrossings() {
 
 }  // namespace
 
-// The ray is accepted. The crossings of `trace`, where they are wanted, are empty before and become what the ray passed
-// before the hit.
-bool GeometryScene::Implementation::Trace(const Ray& ray, uint32_t kinds, RayHit& hit, TraceContext& trace) const {
+// The nearest hit of an accepted ray. `trace` collects what Embree visits, in no order and also behind the hit.
+bool GeometryScene::Implementation::Query(const Ray& ray, uint32_t kinds, RayHit& hit, TraceContext& trace) const {
   rtcInitIntersectContext(&trace.context);
   RTCRayHit rayHit;
   FillRay(ray, kinds, ray.tMax, rayHit.ray);
+  rayHit.ray.tnear = trace.nearest;
   rayHit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   rayHit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   ClearUpperHalves();
   rtcIntersect1(scene.get(), &trace.context, &rayHit);
   trace.ThrowFailure();
-  if (trace.crossings && !trace.crossings->empty()) {
-    // Embree visits what lies behind the hit, too.
-    std::erase_if(*trace.crossings, [&](const Crossing& crossing) { return !(crossing.t < rayHit.ray.tfar); });
-    SortByDistance(*trace.crossings);
-    if (trace.recordsBoundaries) OrderCoincident(tables, MaxAbsComponent(ray.origin), *trace.crossings);
-  }
   if (rayHit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
   hit.t = rayHit.ray.tfar;
   hit.patch = rayHit.hit.primID;
@@ -341,6 +342,84 @@ bool GeometryScene::Implementation::Trace(const Ray& ray, uint32_t kinds, RayHit
     hit.primitive = tables.instances[hit.instance].firstPrimitive + rayHit.hit.geomID;
   }
   return true;
+}
+
+// The ray is accepted. The crossings of `trace`, where they are wanted, are empty before and become what the ray passed
+// before the hit.
+bool GeometryScene::Implementation::Trace(const Ray& ray, uint32_t kinds, RayHit& hit, TraceContext& trace) const {
+  const bool isHit = Query(ray, kinds, hit, trace);
+  if (trace.crossings && !trace.crossings->empty()) {
+    const double end = static_cast<double>(isHit ? hit.t : ray.tMax);
+    std::erase_if(*trace.crossings, [&](const Crossing& crossing) { return !(crossing.t < end); });
+    SortByDistance(*trace.crossings);
+    if (trace.recordsBoundaries)
+      OrderCoincident(tables, static_cast<double>(MaxAbsComponent(ray.origin)), *trace.crossings);
+  }
+  return isHit;
+}
+
+namespace {
+
+// A ray along a line that is fine at its start begins so far ahead of it, in units of the coordinates: boundaries on
+// which the start is within rounding are met, and whether they are on the line is decided in double. The more ahead,
+// the more grazing a ray may be.
+constexpr double kAhead = 0x1p-16;
+// Distances that differ by less are equal, in the same units.
+constexpr double kSamePlace = 1e-14;
+
+double Largest(const Vector3d& v) {
+  return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+}
+
+// The ray `by` longer at its start.
+Ray FromAhead(const Ray& ray, const FineLine& line, double by) {
+  Ray moved = ray;
+  moved.origin = Point3(line.start - by * line.direction);
+  moved.tMax += static_cast<float>(by);
+  return moved;
+}
+
+}  // namespace
+
+// `ray` starts `ahead` in front of the line.
+LineHit GeometryScene::Implementation::Trace(const Ray& ray, double ahead, const FineLine& line, uint32_t kinds,
+                                             RayHit& hit, TraceContext& trace) const {
+  LineHit found;
+  constexpr int kMostBehind = 16;  // surfaces
+  for (int behind = 0; behind < kMostBehind; ++behind) {
+    trace.crossings->clear();
+    found.isHit = Query(ray, kinds, hit, trace);
+    if (!found.isHit) break;
+    found.t = FineDistance(tables, line, ray.time, hit, static_cast<double>(hit.t) - ahead);
+    if (!line.isFineAtStart || found.t > 0) break;
+    trace.nearest = std::nextafter(hit.t, kInfinity);
+    found.isHit = false;
+  }
+  found.t = found.isHit ? std::max(found.t, 0.0) : std::numeric_limits<double>::infinity();
+  if (found.isHit) hit.t = static_cast<float>(found.t);
+  if (trace.crossings->empty()) return found;
+  RefineCrossings(tables, line, ray.time, ahead, *trace.crossings);
+  // A boundary in the place of the surface that is hit is behind it, like one that is hit at the same float.
+  const double end = found.isHit ? found.t - kSamePlace * (found.t + Largest(line.start)) : found.t;
+  std::erase_if(*trace.crossings, [&](const Crossing& crossing) { return !(crossing.t < end); });
+  SortByDistance(*trace.crossings);
+  if (trace.recordsBoundaries) OrderCoincident(tables, Largest(line.start), *trace.crossings);
+  return found;
+}
+
+LineHit GeometryScene::Trace(const Ray& ray, const FineLine& line, uint32_t kinds, RayHit& hit,
+                             std::vector<Crossing>& crossings) const {
+  const Implementation& scene = *implementation_;
+  crossings.clear();
+  LineHit rejected;
+  rejected.isRejected = true;
+  if (!scene.Accept(ray)) return rejected;
+  TraceContext trace;
+  trace.crossings = &crossings;
+  trace.recordsBoundaries = scene.hasBoundaries;
+  if (!line.isFineAtStart) return scene.Trace(ray, 0, line, kinds, hit, trace);
+  const double ahead = kAhead * Largest(line.start);
+  return scene.Trace(FromAhead(ray, line, ahead), ahead, line, kinds, hit, trace);
 }
 
 bool GeometryScene::Trace(const Ray& ray, uint32_t kinds, RayHit& hit, std::vector<Crossing>& crossings) const {
@@ -369,8 +448,8 @@ bool GeometryScene::Intersect(const Ray& ray, uint32_t kinds, RayHit& hit, Color
   return isHit;
 }
 
-// The ray is accepted. The crossings of `trace` are empty before; afterwards they are in order, unless the result is 0.
-Color GeometryScene::Implementation::Transmittance(const Ray& ray, uint32_t kinds, TraceContext& trace) const {
+// False: an accepted ray is stopped.
+bool GeometryScene::Implementation::Passes(const Ray& ray, uint32_t kinds, TraceContext& trace) const {
   rtcInitIntersectContext(&trace.context);
   RTCRay shadowRay;
   // Embree's interval is closed above; ours is open.
@@ -378,12 +457,52 @@ Color GeometryScene::Implementation::Transmittance(const Ray& ray, uint32_t kind
   ClearUpperHalves();
   rtcOccluded1(scene.get(), &trace.context, &shadowRay);
   trace.ThrowFailure();
-  if (shadowRay.tfar < 0) return Color(0.0f);
+  return !(shadowRay.tfar < 0);
+}
+
+// The ray is accepted. The crossings of `trace` are empty before; afterwards they are in order, unless the result is 0.
+Color GeometryScene::Implementation::Transmittance(const Ray& ray, uint32_t kinds, TraceContext& trace) const {
+  if (!Passes(ray, kinds, trace)) return Color(0.0f);
   if (trace.crossings->empty()) [[likely]]
     return Color(1.0f);
   SortByDistance(*trace.crossings);
-  if (trace.recordsBoundaries) OrderCoincident(tables, MaxAbsComponent(ray.origin), *trace.crossings);
+  if (trace.recordsBoundaries)
+    OrderCoincident(tables, static_cast<double>(MaxAbsComponent(ray.origin)), *trace.crossings);
   return lampyr::Transmittance(*trace.crossings);
+}
+
+// The ray is longer at the ends that are fine, so that it meets the boundaries there. If something stops it, that may be
+// beyond an end: then what it meets first decides.
+Color GeometryScene::Implementation::Transmittance(const Ray& ray, const FineLine& line, uint32_t kinds,
+                                                   TraceContext& trace) const {
+  Ray longer = ray;
+  double ahead = 0;
+  if (line.isFineAtStart) {
+    ahead = kAhead * Largest(line.start);
+    longer = FromAhead(ray, line, ahead);
+  }
+  if (line.isFineAtEnd) {
+    const double beyond = kAhead * Largest(line.start + line.length * line.direction);
+    longer.tMax = static_cast<float>(line.length + ahead + beyond);
+  }
+  if (!Passes(longer, kinds, trace)) {
+    if (!line.isFineAtStart && !line.isFineAtEnd) return Color(0.0f);
+    RayHit hit;
+    const LineHit found = Trace(longer, ahead, line, kinds, hit, trace);
+    return found.isHit && found.t < line.length ? Color(0.0f) : lampyr::Transmittance(*trace.crossings);
+  }
+  if (trace.crossings->empty()) return Color(1.0f);
+  RefineCrossings(tables, line, ray.time, ahead, *trace.crossings);
+  SortByDistance(*trace.crossings);
+  if (trace.recordsBoundaries) OrderCoincident(tables, Largest(line.start), *trace.crossings);
+  return lampyr::Transmittance(*trace.crossings);
+}
+
+// Cut-outs are factors of the transmittance alone.
+void GeometryScene::Implementation::DropCutOuts(std::vector<Crossing>& crossings) const {
+  std::erase_if(crossings, [&](const Crossing& crossing) {
+    return crossing.medium == kSameMedium && !tables.primitives[crossing.primitive].thin;
+  });
 }
 
 Color GeometryScene::Transmittance(const Ray& ray, uint32_t kinds) const {
@@ -402,14 +521,22 @@ Color GeometryScene::Transmittance(const Ray& ray, uint32_t kinds, std::vector<C
   trace.crossings = &crossings;
   trace.recordsBoundaries = scene.hasBoundaries;
   const Color transmittance = scene.Transmittance(ray, kinds, trace);
-  if (transmittance.IsBlack()) {
-    crossings.clear();
-    return transmittance;
-  }
-  // Cut-outs are factors of the transmittance alone.
-  std::erase_if(crossings, [&](const Crossing& crossing) {
-    return crossing.medium == kSameMedium && !scene.tables.primitives[crossing.primitive].thin;
-  });
+  if (transmittance.IsBlack()) crossings.clear();
+  scene.DropCutOuts(crossings);
+  return transmittance;
+}
+
+Color GeometryScene::Transmittance(const Ray& ray, const FineLine& line, uint32_t kinds,
+                                   std::vector<Crossing>& crossings) const {
+  const Implementation& scene = *implementation_;
+  crossings.clear();
+  if (!scene.Accept(ray)) return Color(0.0f);
+  TraceContext trace;
+  trace.crossings = &crossings;
+  trace.recordsBoundaries = scene.hasBoundaries;
+  const Color transmittance = scene.Transmittance(ray, line, kinds, trace);
+  if (transmittance.IsBlack()) crossings.clear();
+  scene.DropCutOuts(crossings);
   return transmittance;
 }
 

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "geometry/fine_line.h"
 #include "geometry/ray.h"
 #include "geometry/shapes.h"
 #include "math/motion.h"
@@ -103,6 +104,12 @@ class GeometryScene {
   // twice.
   bool Trace(const Ray& ray, uint32_t kinds, RayHit& hit, std::vector<Crossing>& crossings) const;
 
+  // The same along a line in double, which `ray` follows up to rounding: distances of the hit and of the crossings are
+  // those along the line, and where it is fine at its start nothing within rounding behind it is met. `hit.t` is the
+  // distance along the line, rounded. The length of the line is not looked at.
+  LineHit Trace(const Ray& ray, const FineLine& line, uint32_t kinds, RayHit& hit,
+                std::vector<Crossing>& crossings) const;
+
   // The same, where the crossings matter by their product alone: `tint`. A ray that is rejected (RejectedRays) hits
   // nothing and carries nothing: `tint` is 0.
   bool Intersect(const Ray& ray, uint32_t kinds, RayHit& hit, Color& tint) const;
@@ -117,6 +124,9 @@ class GeometryScene {
   // The same with the crossings that Trace lists. Cut-outs are factors of the result, not crossings. Empty if the
   // result is 0.
   Color Transmittance(const Ray& ray, uint32_t kinds, std::vector<Crossing>& crossings) const;
+  // The same along a line in double, which `ray` follows up to rounding. Where the line is fine at an end, boundaries
+  // within rounding of it are crossed if they are on the line.
+  Color Transmittance(const Ray& ray, const FineLine& line, uint32_t kinds, std::vector<Crossing>& crossings) const;
   bool Occluded(const Ray& ray, uint32_t kinds) const { return Transmittance(ray, kinds).IsBlack(); }
 
   // Position with error bound, normals, uv and tangents of a hit that `ray` made.

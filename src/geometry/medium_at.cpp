@@ -83,9 +83,12 @@ FoundMedium FindMedium(const GeometryScene& geometry, const Point3& position, fl
   return found;
 }
 
-int32_t MediumAt(const GeometryScene& geometry, const Point3& position, float time, int32_t otherwise) {
-  const Ray ray{position, kDirections[0], kInfinity, time};
+int32_t MediumAlong(const GeometryScene& geometry, const Ray& ray, int32_t otherwise) {
   return FirstMedium(MediumChanges(geometry, ray)).value_or(otherwise);
+}
+
+int32_t MediumAt(const GeometryScene& geometry, const Point3& position, float time, int32_t otherwise) {
+  return MediumAlong(geometry, {position, kDirections[0], kInfinity, time}, otherwise);
 }
 
 }  // namespace lampyr

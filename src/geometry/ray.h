@@ -52,7 +52,7 @@ struct RayHit {
 
 // A surface that a ray went straight through: a thin surface or a boundary between media (GeometryScene::Trace).
 struct Crossing {
-  float t = 0;                    // ray parameter
+  double t = 0;                   // ray parameter, or along a FineLine
   uint32_t primitive = kNoIndex;  // as in RayHit
   uint32_t patch = 0;
   uint32_t instance = kNoIndex;

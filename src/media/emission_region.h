@@ -52,9 +52,10 @@ void ForEachSpan(const GeometryScene& geometry, const Ray& ray, int32_t start, i
   int32_t current = start;
   float from = 0;
   for (const Crossing& crossing : crossings) {
-    if (current == medium) visit(from, crossing.t);
+    const auto t = static_cast<float>(crossing.t);
+    if (current == medium) visit(from, t);
     if (crossing.medium != kSameMedium) current = crossing.medium;
-    from = crossing.t;
+    from = t;
   }
   if (current == medium) visit(from, ray.tMax);
 }

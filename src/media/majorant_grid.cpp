@@ -36,12 +36,12 @@ float MajorantGrid::At(const Point3& position) const {
   return majorants_[(static_cast<size_t>(cell[2]) * resolution_[1] + cell[1]) * resolution_[0] + cell[0]];
 }
 
-MajorantWalk::MajorantWalk(const MajorantGrid& grid, const Ray& ray, float tMin, float tMax)
+MajorantWalk::MajorantWalk(const MajorantGrid& grid, const RayDouble& ray)
     : grid_(&grid),
-      origin_(grid.linear_ * Point3d(ray.origin) + grid.translation_),
-      direction_(grid.linear_ * Vector3d(ray.direction)) {
-  double start = static_cast<double>(tMin);
-  tEnd_ = static_cast<double>(tMax);
+      origin_(grid.linear_ * ray.origin + grid.translation_),
+      direction_(grid.linear_ * ray.direction) {
+  double start = ray.tMin;
+  tEnd_ = ray.tMax;
   for (int axis = 0; axis < 3; ++axis) {
     const double o = origin_[axis], d = direction_[axis], side = grid.resolution_[axis];
     if (d == 0) {
@@ -55,7 +55,7 @@ MajorantWalk::MajorantWalk(const MajorantGrid& grid, const Ray& ray, float tMin,
   }
   if (!(start < tEnd_)) return;
   isDone_ = false;
-  t_ = static_cast<float>(start);
+  t_ = start;
   for (int axis = 0; axis < 3; ++axis) {
     const double position = origin_[axis] + (direction_[axis] == 0 ? 0 : start * direction_[axis]);
     const double last = grid.resolution_[axis] - 1;
@@ -99,7 +99,7 @@ bool MajorantWalk::Next(MajorantSegment& segment) {
     do {
       end = Step();
     } while (!isDone_ && Majorant() == segment.majorant);
-    segment.tMax = t_ = std::max(t_, static_cast<float>(end));
+    segment.tMax = t_ = std::max(t_, end);
     if (segment.tMin < segment.tMax) return true;
   }
   return false;

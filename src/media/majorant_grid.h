@@ -12,7 +12,7 @@ namespace lampyr {
 
 // A part of a ray with one majorant. Parameters t are those of the ray.
 struct MajorantSegment {
-  float tMin = 0, tMax = 0;
+  double tMin = 0, tMax = 0;
   float majorant = 0;  // 1/scene unit; 0: the medium is empty there
 };
 
@@ -24,9 +24,9 @@ class MajorantGrid {
 
   // Calls visit(const MajorantSegment&) for the parts of the ray within [tMin, tMax] that lie in the grid, in order and
   // without gaps; neighbouring cells with the same majorant are one part. Ends when visit returns false. tMax may be
-  // infinite; ray.tMax is not looked at, and the direction need not be unit length.
+  // infinite, and the direction need not be unit length.
   template <class Visit>
-  void Walk(const Ray& ray, float tMin, float tMax, const Visit& visit) const;
+  void Walk(const RayDouble& ray, const Visit& visit) const;
 
   // The bound at a point of render space; 0 outside of the grid.
   float At(const Point3& position) const;
@@ -48,7 +48,7 @@ class MajorantGrid {
 // The segments of MajorantGrid::Walk, one by one. The grid has to outlive it.
 class MajorantWalk {
  public:
-  MajorantWalk(const MajorantGrid& grid, const Ray& ray, float tMin, float tMax);
+  MajorantWalk(const MajorantGrid& grid, const RayDouble& ray);
 
   // The next segment; false after the last.
   bool Next(MajorantSegment& segment);
@@ -66,15 +66,15 @@ class MajorantWalk {
   Point3d origin_;  // in cells
   Vector3d direction_;
   double tEnd_ = 0;
-  float t_ = 0;  // end of the last segment
+  double t_ = 0;  // end of the last segment
   bool isDone_ = true;
   std::array<int, 3> cell_{};
   std::array<double, 3> crossings_{};
 };
 
 template <class Visit>
-void MajorantGrid::Walk(const Ray& ray, float tMin, float tMax, const Visit& visit) const {
-  MajorantWalk walk(*this, ray, tMin, tMax);
+void MajorantGrid::Walk(const RayDouble& ray, const Visit& visit) const {
+  MajorantWalk walk(*this, ray);
   MajorantSegment segment;
   while (walk.Next(segment)) {
     if (!visit(segment)) return;

@@ -18,10 +18,10 @@ std::string Homogeneous(const std::string& name, double scattering, double absor
          Grey("sigma_a", absorption) + " \"float g\" " + Number(g) + more + "\n";
 }
 
-// A parallel camera at z = `eye` that looks along z, at a square of half side `half`.
-std::string Head(int depth, double half = 0.25, double eye = -2) {
+// A parallel camera at z = `eye` that looks along z times `towards`, at a square of half side `half`.
+std::string Head(int depth, double half = 0.25, double eye = -2, double towards = 1) {
   return "Film \"rgb\" \"integer xresolution\" 4 \"integer yresolution\" 4\nPixelFilter \"box\"\nLookAt " +
-         Numbers({0, 0, eye, 0, 0, eye + 1}) + " 0 1 0\nCamera \"orthographic\" \"float screenwindow\" [" +
+         Numbers({0, 0, eye, 0, 0, eye + towards}) + " 0 1 0\nCamera \"orthographic\" \"float screenwindow\" [" +
          Numbers({-half, half, -half, half}) + "]\nIntegrator \"path\" \"integer maxdepth\" " + std::to_string(depth) +
          "\nWorldBegin\n";
 }
@@ -61,7 +61,7 @@ void AddMeanFreePaths(std::vector<ExtremeCase>& cases) {
 
 // The half space of albedo 0.8 in parallel light (Chandrasekhar): 0.0716004 E₀, seen at 60°, lit at 53°.
 void AddHalfSpaces(std::vector<ExtremeCase>& cases) {
-  for (const double path : {1e-4, 1e-2}) {
+  for (const double path : {1e-6, 1e-4, 1e-2}) {
     ExtremeCase extreme{
         "mean free path " + Short(path) + ", albedo 0.8, in the sun",
         "Film \"rgb\" \"integer xresolution\" 4 \"integer yresolution\" 4\nPixelFilter \"box\"\nLookAt 0 1.7320508 -1  "
@@ -83,6 +83,15 @@ void AddPlaces(std::vector<ExtremeCase>& cases) {
                          3 * std::exp(-1.0), kFromCamera};
   onBoundary.warning = "the camera is in the medium";
   cases.push_back(onBoundary);
+  cases.push_back({"camera on a boundary, away from the medium",
+                   Head(1, 0.25, 0, -1) + kSky + gas + Slab("gas", 0, 1), 3, kFromCamera});
+  ExtremeCase along{"camera on a boundary, along it",
+                    "Film \"rgb\" \"integer xresolution\" 4 \"integer yresolution\" 4\nPixelFilter \"box\"\nLookAt 0 0 0  "
+                    "1 0 0  0 0 1\nCamera \"perspective\" \"float fov\" 1\nIntegrator \"path\"\nWorldBegin\n" +
+                        kSky + gas + Slab("gas", 0, 1),
+                    1.5 * (1 + std::exp(-1.0)), kFromCamera};
+  along.warning = "the camera is in the medium";
+  cases.push_back(along);
   const std::string denser = Homogeneous("denser", 0, 2);
   const double next = std::nextafter(1.0f, 2.0f);
   cases.push_back({"two boundaries in one place",

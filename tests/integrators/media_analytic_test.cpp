@@ -1,54 +1,11 @@
 // Light in participating media whose radiance is known: single scattering in closed form, absorbing and scattering
-// slabs, furnaces, the half space of Chandrasekhar, and media of colours against grey ones.
-#include <gtest/gtest.h>
-
-#include <cmath>
+// slabs, the half space of Chandrasekhar, and media of colours against grey ones.
 #include <functional>
 
-#include "support/replicas.h"
+#include "integrators/known_media.h"
 
 namespace lampyr::test {
 namespace {
-
-constexpr int kReplicas = 16;
-constexpr int kMostComparisons = 1000;  // of this file, for the family-wise rate
-
-using Radiance = std::array<double, 3>;
-
-std::string Rgb(const std::string& name, const Radiance& value) {
-  return " \"rgb " + name + "\" [" + std::to_string(value[0]) + " " + std::to_string(value[1]) + " " +
-         std::to_string(value[2]) + "]";
-}
-Radiance Grey(double value) {
-  return {value, value, value};
-}
-
-std::string Homogeneous(const std::string& name, const Radiance& scattering, const Radiance& absorption, double g = 0,
-                        const std::string& more = "") {
-  return "MakeNamedMedium \"" + name + "\" \"string type\" \"homogeneous\"" + Rgb("sigma_s", scattering) +
-         Rgb("sigma_a", absorption) + " \"float g\" " + std::to_string(g) + " " + more + "\n";
-}
-
-// A parallel camera at the origin that looks along z.
-std::string Head(int depth, const std::string& window = "-.5 .5 -.5 .5", const std::string& lookAt = "0 0 0  0 0 1") {
-  return "Film \"rgb\" \"integer xresolution\" 4 \"integer yresolution\" 4\nPixelFilter \"box\"\nLookAt " + lookAt +
-         "  0 1 0\nCamera \"orthographic\" \"float screenwindow\" [" + window +
-         "]\nIntegrator \"path\" \"integer maxdepth\" " + std::to_string(depth) + "\nWorldBegin\n";
-}
-
-// A box without a surface of its own, full of `medium`.
-std::string Box(const std::string& medium, const Vector3d& low, const Vector3d& high) {
-  std::string points;
-  for (const double z : {low.z, high.z}) {
-    const double corners[4][2] = {{low.x, low.y}, {high.x, low.y}, {high.x, high.y}, {low.x, high.y}};
-    for (const auto& corner : corners)
-      points += std::to_string(corner[0]) + " " + std::to_string(corner[1]) + " " + std::to_string(z) + "  ";
-  }
-  return "AttributeBegin Material \"interface\" MediumInterface \"" + medium +
-         "\" \"\" Shape \"trianglemesh\" \"point3 P\" [" + points +
-         "] \"integer indices\" [0 2 1 0 3 2  4 5 6 4 6 7  0 1 5 0 5 4  3 6 2 3 7 6  0 7 3 0 4 7  1 2 6 1 6 5] "
-         "AttributeEnd\n";
-}
 
 // Simpson's rule with 2 n intervals.
 double Integrate(const std::function<double(double)>& f, double a, double b, int n = 64) {
@@ -62,43 +19,12 @@ double HenyeyGreenstein(double cosTheta, double g) {
   return (1 - g * g) / (4 * M_PI * std::pow(1 + g * g - 2 * g * cosTheta, 1.5));
 }
 
-// The image's mean by independent renders, per channel: within their error, which notices `noticed` of the value.
-void ExpectMean(const Replicas& replicas, const Radiance& expected, double noticed = 0.01) {
-  static const double student = StudentQuantileTwoSided(SidakRate(1e-3, kMostComparisons), kReplicas - 1);
-  EXPECT_EQ(replicas.faults, 0u);
-  const Image& first = replicas.images[0];
-  for (size_t c = 0; c < 3; ++c) {
-    const auto moments =
-        replicas_internal::MomentsOf(replicas_internal::Means(replicas, c, 0, 0, first.width, first.height));
-    const double noise = student * std::sqrt(moments.variance);
-    EXPECT_LT(noise, noticed * expected[c]) << "too noisy: " << moments.mean << " in channel " << c;
-    EXPECT_NEAR(moments.mean, expected[c], noise + 1e-5 * expected[c]) << "channel " << c;
-  }
-}
-
-std::string NameOfParameter(const testing::TestParamInfo<const char*>& info) {
-  return info.param;
-}
-
 class MediaAnalytic : public testing::TestWithParam<const char*> {
  protected:
-  // `samples`: per pixel of each render; of light tracing `lightFactor` times as many.
-  static Replicas Render(const std::string& text, int samples, int lightFactor = 8) {
-    return RenderReplicas(text, GetParam(), kReplicas, IsLight() ? lightFactor * samples : samples);
-  }
-  static bool IsLight() { return GetParam() == std::string("light"); }
-  // Most paths of light tracing end beside what is seen.
-  static double Noticed() { return IsLight() ? 0.03 : 0.01; }
+  static std::string Named(const std::string& what) { return std::string(GetParam()) + ", " + what; }
 };
-INSTANTIATE_TEST_SUITE_P(Of, MediaAnalytic, testing::Values("path", "light", "bdpt", "vcm", "sppm"), NameOfParameter);
-
-// Without pure light tracing, whose paths do not start in glowing media.
-// sppm: GlowingMedia.FurnaceOfPhotonMapping.
-class MediaFurnace : public MediaAnalytic {};
-INSTANTIATE_TEST_SUITE_P(Of, MediaFurnace, testing::Values("path", "bdpt", "vcm"), NameOfParameter);
-// Without sppm, which blurs over a pixel: several mean free paths here.
-class MediaHalfSpace : public MediaAnalytic {};
-INSTANTIATE_TEST_SUITE_P(Of, MediaHalfSpace, testing::Values("path", "light", "bdpt", "vcm"), NameOfParameter);
+INSTANTIATE_TEST_SUITE_P(Of, MediaAnalytic, testing::Values("path", "light", "bdpt", "vcm", "sppm", "auto"),
+                         NameOfIntegrator);
 
 // Of a point light of unit intensity at the distance D from the ray, with the foot δ, in the medium from t0 to t1. The
 // camera is outside.
@@ -109,7 +35,7 @@ double SingleScattering(double scattering, double extinction, double D, double f
 }
 
 TEST_P(MediaAnalytic, PointLightInHaze) {
-  const double lightX = 1.3, foot = 2.1, t0 = 0.4, t1 = 6, intensity = 2;
+  const double lightX = 1.5, foot = 2.1, t0 = 0.4, t1 = 6, intensity = 2;
   for (const auto& [scattering, absorption] : {std::pair{0.3, 0.4}, {0.7, 0.0}, {0.04, 0.0}}) {
     const double mean = Integrate(
                             [&](double x) {
@@ -122,12 +48,13 @@ TEST_P(MediaAnalytic, PointLightInHaze) {
                             },
                             -1, 1, 16) /
                         2;
-    const std::string text = Head(1, "-1 1 -1 1") + Homogeneous("haze", Grey(scattering), Grey(absorption)) +
-                             Box("haze", {-3, -3, t0}, {3, 3, t1}) +
+    const std::string text = ParallelView(1, "-1 1 -1 1") + Homogeneous("haze", Grey(scattering), Grey(absorption)) +
+                             BoxOf("haze", {-3, -3, t0}, {3, 3, t1}) +
                              "MediumInterface \"\" \"haze\"\nLightSource \"point\" \"rgb I\" [2 2 2] \"point3 from\" "
-                             "[1.3 0 2.1]\n";
-    const bool isThin = scattering < 0.1;
-    ExpectMean(Render(text, isThin ? 8192 : 1024, isThin ? 2 : 4), Grey(intensity * mean), 2 * Noticed());
+                             "[1.5 0 2.1]\n";
+    const int samples = scattering < 0.1 ? 768 : 256;
+    ExpectKnown(Named("haze of " + std::to_string(scattering)), RenderKnown(text, GetParam(), samples, {.light = 24}),
+                Grey(intensity * mean));
   }
 }
 
@@ -149,9 +76,9 @@ TEST_P(MediaAnalytic, SlabAcrossParallelLight) {
       expected[c] = 3 * scattering[c] * HenyeyGreenstein(0, g) / extinction * (1 - std::exp(-extinction * 0.8)) * depth;
     }
     const std::string text =
-        Head(1) + Homogeneous("slab", scattering, absorption, g) + Box("slab", {-0.55, -0.55, 1}, {0.55, 0.6, 1.8}) +
+        ParallelView(1) + Homogeneous("slab", scattering, absorption, g) + BoxOf("slab", {-0.55, -0.55, 1}, {0.55, 0.6, 1.8}) +
         "LightSource \"distant\" \"rgb L\" [3 3 3] \"point3 from\" [0 1 0] \"point3 to\" [0 0 0]\n";
-    ExpectMean(Render(text, 512), expected, Noticed());
+    ExpectKnown(Named("lit slab, g " + std::to_string(g)), RenderKnown(text, GetParam(), 192), expected);
   }
 }
 
@@ -169,85 +96,11 @@ TEST_P(MediaAnalytic, SlabBeforeALamp) {
   Radiance expected;
   for (size_t c = 0; c < 3; ++c) expected[c] = std::exp(-extinction[c] * 1.5);
   const std::string absorbing =
-      Head(0) + Homogeneous("slab", Grey(0), extinction) + Box("slab", {-1, -1, 1}, {1, 1, 2.5}) + Plate();
-  ExpectMean(Render(absorbing, 64, 64), expected);
+      ParallelView(0) + Homogeneous("slab", Grey(0), extinction) + BoxOf("slab", {-1, -1, 1}, {1, 1, 2.5}) + Plate();
+  ExpectKnown(Named("absorbing slab"), RenderKnown(absorbing, GetParam(), 16), expected);
   const std::string scattering =
-      Head(0) + Homogeneous("slab", half, half, 0.5) + Box("slab", {-1, -1, 1}, {1, 1, 2.5}) + Plate();
-  ExpectMean(Render(scattering, 1024, 4), expected);
-}
-
-// A closed sphere of radius 1 around the camera that emits `kFurnace` and reflects nothing, full of the medium "gas".
-const Radiance kFurnace = {1, 0.5, 0.25};
-std::string Furnace(const std::string& medium, const std::string& around) {
-  return "Film \"rgb\" \"integer xresolution\" 4 \"integer yresolution\" 4\nPixelFilter \"box\"\n" + medium +
-         "MediumInterface \"\" \"" + around +
-         "\"\nCamera \"perspective\" \"float fov\" 90\nIntegrator \"path\" \"integer maxdepth\" 400\nWorldBegin\n"
-         "AttributeBegin AreaLightSource \"diffuse\"" +
-         Rgb("L", kFurnace) +
-         " Material \"diffuse\" \"rgb reflectance\" [0 0 0] ReverseOrientation MediumInterface \"\" \"" + around +
-         "\" Shape \"sphere\" AttributeEnd\n";
-}
-
-TEST_P(MediaFurnace, Homogeneous) {
-  struct Gas {
-    Radiance scattering, absorption;
-    double g;
-  };
-  for (const Gas& gas : {Gas{Grey(0), Grey(0.7), 0}, Gas{Grey(2), Grey(0.5), 0}, Gas{Grey(1), Grey(1), 0.9},
-                         Gas{Grey(1), Grey(1), -0.9}, Gas{{0.2, 0.6, 1}, {1, 0.4, 0.2}, 0.4}}) {
-    const std::string medium = Homogeneous("gas", gas.scattering, gas.absorption, gas.g, Rgb("Le", kFurnace));
-    ExpectMean(Render(Furnace(medium, "gas"), 256), kFurnace, 0.03);
-  }
-}
-
-// 6 × 6 × 6 voxels over the sphere; those at the sides, where the interpolation falls off, are empty.
-template <class Value>
-std::string Voxels(const Value& value) {
-  std::string text;
-  for (int z = 0; z < 6; ++z) {
-    for (int y = 0; y < 6; ++y) {
-      for (int x = 0; x < 6; ++x) {
-        const bool isRim = std::min({x, y, z}) == 0 || std::max({x, y, z}) == 5;
-        text += value(x + 6 * y + 36 * z, isRim) + " ";
-      }
-    }
-  }
-  return text;
-}
-double Density(int voxel) {
-  return 0.3 * (voxel * 37 % 11);
-}
-const std::string kSphereBox =
-    " \"integer nx\" 6 \"integer ny\" 6 \"integer nz\" 6 \"point3 p0\" [-1 -1 -1] \"point3 p1\" [1 1 1] ";
-
-TEST_P(MediaFurnace, UniformGrid) {
-  const std::string densities =
-      Voxels([](int voxel, bool isRim) { return std::to_string(isRim ? 0.0 : Density(voxel)); });
-  const std::string medium = "MakeNamedMedium \"gas\" \"string type\" \"uniformgrid\"" + kSphereBox +
-                             Rgb("sigma_s", {1, 0.6, 0.3}) + Rgb("sigma_a", {0.3, 1, 0.6}) + " \"float g\" 0.5" +
-                             Rgb("Le", kFurnace) + " \"float density\" [" + densities + "]\n";
-  ExpectMean(Render(Furnace(medium, "gas"), 256), kFurnace, 0.03);
-}
-
-// `channel`: a grey grid of that channel's coefficients; -1: the grid of colours.
-std::string RgbGrid(int channel, double g, const std::string& more = "") {
-  const auto colours = [channel](int shift) {
-    return Voxels([&](int voxel, bool isRim) {
-      std::string text;
-      for (int c = 0; c < 3; ++c) {
-        const int shown = channel < 0 ? c : channel;
-        text += std::to_string(isRim ? 0.0 : Density(voxel + shift * (shown + 1))) + " ";
-      }
-      return text;
-    });
-  };
-  return "MakeNamedMedium \"gas\" \"string type\" \"rgbgrid\"" + kSphereBox + " \"float g\" " + std::to_string(g) +
-         " \"rgb sigma_s\" [" + colours(1) + "] \"rgb sigma_a\" [" + colours(2) + "] " + more + "\n";
-}
-
-TEST_P(MediaFurnace, RgbGrid) {
-  const std::string emission = Voxels([](int, bool) { return std::string("1 0.5 0.25"); });
-  ExpectMean(Render(Furnace(RgbGrid(-1, -0.3, "\"rgb Le\" [" + emission + "]"), "gas"), 256), kFurnace, 0.03);
+      ParallelView(0) + Homogeneous("slab", half, half, 0.5) + BoxOf("slab", {-1, -1, 1}, {1, 1, 2.5}) + Plate();
+  ExpectKnown(Named("scattering slab"), RenderKnown(scattering, GetParam(), 256), expected);
 }
 
 // Chandrasekhar's H function of isotropic scattering, at the middles of n intervals of [0,1] and at other μ.
@@ -274,18 +127,20 @@ class HFunction {
   std::vector<double> values_ = std::vector<double>(kIntervals, 1.0);
 };
 
-TEST_P(MediaHalfSpace, OfChandrasekhar) {
+TEST_P(MediaAnalytic, HalfSpaceOfChandrasekhar) {
   const double albedo = 0.8, mu0 = 0.6, mu = 0.5;
   const HFunction h(albedo);
   const double expected = mu0 * albedo * h.At(mu) * h.At(mu0) / (4 * M_PI * (mu + mu0));
   EXPECT_NEAR(expected / mu0, 0.119334, 1e-6);
   // Edges are 10 mean free paths away from what is seen: 30 by 30 of the plane, at 60° from its normal.
   const std::string text =
-      Head(200, "-15 15 -7.5 7.5", "0 50 86.602540  0 0 0") + Homogeneous("sea", Grey(albedo), Grey(1 - albedo)) +
-      Box("sea", {-25, -20, -25}, {25, 0, 25}) +
+      ParallelView(200, "-15 15 -7.5 7.5", "0 50 86.602540  0 0 0") + Homogeneous("sea", Grey(albedo), Grey(1 - albedo)) +
+      BoxOf("sea", {-25, -20, -25}, {25, 0, 25}) +
       "LightSource \"distant\" \"rgb L\" [1 1 1] \"point3 from\" [0.8 0.6 0] \"point3 to\" [0 0 0]\n";
-  ExpectMean(Render(text, 1024), Grey(expected), Noticed());
+  ExpectKnown(Named("half space"), RenderKnown(text, GetParam(), 256, {.light = 12}), Grey(expected));
 }
+
+constexpr int kColourReplicas = 16;
 
 // A render of each channel's coefficients in a grey medium, put together.
 template <class Text>
@@ -294,7 +149,7 @@ Replicas ByChannels(const char* integrator, int samples, const Text& textOf) {
   for (size_t c = 0; c < 3; ++c) {
     RenderOverrides overrides;
     overrides.seed = 1000 * (c + 1);
-    const Replicas grey = RenderReplicas(textOf(static_cast<int>(c)), integrator, kReplicas, samples, overrides);
+    const Replicas grey = RenderReplicas(textOf(static_cast<int>(c)), integrator, kColourReplicas, samples, overrides);
     if (c == 0) together = grey;
     together.faults += grey.faults;
     for (size_t i = 0; i < grey.images.size(); ++i) {
@@ -322,7 +177,7 @@ std::string LitBall(const std::string& medium) {
 
 void ExpectChannels(const char* integrator, const std::function<std::string(int)>& mediumOf) {
   const int samples = integrator == std::string("light") ? 192 : 32;
-  const Replicas coloured = RenderReplicas(LitBall(mediumOf(-1)), integrator, kReplicas, samples);
+  const Replicas coloured = RenderReplicas(LitBall(mediumOf(-1)), integrator, kColourReplicas, samples);
   const Replicas grey = ByChannels(integrator, samples, [&](int channel) { return LitBall(mediumOf(channel)); });
   EXPECT_EQ(coloured.faults + grey.faults, 0u);
   const Agreement result = CompareReplicas(coloured, grey, 8, 1e-4);
@@ -333,7 +188,7 @@ void ExpectChannels(const char* integrator, const std::function<std::string(int)
 }
 
 class MediaOfColours : public testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(Of, MediaOfColours, testing::Values("path", "light", "bdpt"), NameOfParameter);
+INSTANTIATE_TEST_SUITE_P(Of, MediaOfColours, testing::Values("path", "light", "bdpt", "vcm", "sppm"), NameOfIntegrator);
 
 TEST_P(MediaOfColours, HomogeneousIsThreeGreyOnes) {
   const Radiance scattering = {3, 1, 0.3}, absorption = {0.1, 0.6, 1.5};

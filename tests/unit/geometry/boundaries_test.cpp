@@ -321,7 +321,7 @@ TEST(Boundaries, LeadToTheMediumOfTheEnd) {
     RayHit hit;
     ASSERT_FALSE(scene.Trace(ray, visibility::kIndirect, hit, crossings));
     int32_t medium = mediumAt(from);
-    float last = 0;
+    double last = 0;
     for (const Crossing& crossing : crossings) {
       ASSERT_NE(crossing.medium, medium) << i;
       ASSERT_GE(crossing.t, last);
@@ -384,7 +384,7 @@ std::vector<int32_t> MediaAlong(const GeometryScene& scene, const Ray& ray) {
   RayHit hit;
   EXPECT_FALSE(scene.Trace(ray, visibility::kIndirect, hit, crossings));
   std::vector<int32_t> media;
-  float last = 0;
+  double last = 0;
   for (const Crossing& crossing : crossings) {
     EXPECT_GE(crossing.t, last);
     last = crossing.t;

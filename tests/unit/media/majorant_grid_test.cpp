@@ -22,9 +22,13 @@ Affine Placed(const Transform& toRender) {
   return toRender.Inverse().ToAffine();
 }
 
+RayDouble InDouble(const Ray& ray, float tMin, float tMax) {
+  return {Point3d(ray.origin), Vector3d(ray.direction), static_cast<double>(tMin), static_cast<double>(tMax)};
+}
+
 std::vector<MajorantSegment> SegmentsOf(const MajorantGrid& grid, const Ray& ray, float tMin, float tMax) {
   std::vector<MajorantSegment> segments;
-  grid.Walk(ray, tMin, tMax, [&](const MajorantSegment& segment) {
+  grid.Walk(InDouble(ray, tMin, tMax), [&](const MajorantSegment& segment) {
     segments.push_back(segment);
     return true;
   });
@@ -63,9 +67,9 @@ bool OverlapOf(const Bounds3& box, const Affine& toMedium, const Ray& ray, doubl
 // Compares with the values at points of the ray, but for points next to the border of a segment.
 void CheckValues(const MajorantGrid& grid, const std::vector<MajorantSegment>& segments, const Ray& ray, Rng& rng) {
   for (const MajorantSegment& segment : segments) {
-    const float length = segment.tMax - segment.tMin;
+    const auto length = static_cast<float>(segment.tMax - segment.tMin);
     for (int i = 0; i < 20; ++i) {
-      const float t = segment.tMin + length * (0.02f + 0.96f * rng.NextFloat());
+      const float t = static_cast<float>(segment.tMin) + length * (0.02f + 0.96f * rng.NextFloat());
       const Point3 p = ray.origin + ray.direction * t;
       if (length < 1e-4f * (1 + std::abs(t))) continue;
       ASSERT_EQ(grid.At(p), segment.majorant)
@@ -189,7 +193,7 @@ TEST(MajorantGrid, WalksOddRanges) {
   ASSERT_FALSE(far.empty());
   CheckOrder(far, 1e6f, 1e6f + 4);
   int visits = 0;
-  grid.Walk(ray, 0, kInfinity, [&](const MajorantSegment&) { return ++visits < 2; });
+  grid.Walk(InDouble(ray, 0, kInfinity), [&](const MajorantSegment&) { return ++visits < 2; });
   EXPECT_EQ(visits, 2);
 }
 

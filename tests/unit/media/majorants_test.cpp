@@ -92,12 +92,13 @@ TEST_P(Majorants, BoundItAlongRays) {
     const Point3 from(toRender.Point(3.0 * Vector3d(SampleUniformSphere(rng.NextPoint2()))));
     const Point3 to(toRender.Point({rng.NextFloat(), rng.NextFloat(), rng.NextFloat()}));
     const Ray ray{from, glm::normalize(to - from)};
-    float last = 0;
-    made->Majorants()->Walk(ray, 0, kInfinity, [&](const MajorantSegment& segment) {
+    double last = 0;
+    const RayDouble line{Point3d(ray.origin), Vector3d(ray.direction), 0, std::numeric_limits<double>::infinity()};
+    made->Majorants()->Walk(line, [&](const MajorantSegment& segment) {
       EXPECT_GE(segment.tMin, last);
       last = segment.tMax;
       for (int k = 0; k < 10; ++k) {
-        const float t = segment.tMin + (segment.tMax - segment.tMin) * rng.NextFloat();
+        const auto t = static_cast<float>(segment.tMin + (segment.tMax - segment.tMin) * static_cast<double>(rng.NextFloat()));
         EXPECT_GE(segment.majorant, made->At(ray.origin + ray.direction * t).Extinction().Max());
         ++points;
       }

@@ -1,0 +1,86 @@
+// Rays through media that cannot be traced, and collisions within the rounding of positions.
+#include <gtest/gtest.h>
+
+#include "integrators/walk/flight.h"
+#include "integrators/walk/walk.h"
+#include "sampling/warp.h"
+#include "support/render_scene.h"
+
+namespace lampyr::test {
+namespace {
+
+BuiltScene Build(const std::string& world) {
+  Diagnostics diagnostics(Diagnostics::Mode::Collect);
+  return BuildScene(ParseScene("Camera \"perspective\" WorldBegin\n" + world, "flight.pbrt", diagnostics), {}, true,
+                    diagnostics);
+}
+
+// A fog of this mean free path in a ball of radius 1 around (1, 2, 3).
+BuiltScene Fog(const std::string& scattering) {
+  return Build("MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [" + scattering + " " +
+               scattering + " " + scattering +
+               "] \"rgb sigma_a\" [0 0 0]\nTranslate 1 2 3 Material \"interface\" MediumInterface \"fog\" \"\" Shape "
+               "\"sphere\"\nLightSource \"infinite\"\n");
+}
+
+TEST(Flight, OfARejectedRayCarriesNothing) {
+  const BuiltScene fog = Fog("0.01");
+  Sampler sampler(SamplerKind::Independent, 1);
+  sampler.StartPixelSample(1, 0, 0);
+  RenderCounts counts;
+  const SampleContext context{fog.scene, sampler, 0, counts};
+  const EdgeEnd start{Point3d(1, 2, 3), 0};
+  for (const Vector3& direction : {Vector3(0, 0, 0), Vector3(kInfinity, 0, 0), Vector3(0, std::nanf(""), 1)}) {
+    Flight flight;
+    Fly(context, {Point3(1, 2, 3), direction}, visibility::kIndirect, start, 0, false, flight);
+    EXPECT_FALSE(flight.isHit || flight.collidesWith);
+    EXPECT_TRUE(flight.passed.IsBlack());
+    EdgeFactors factors;
+    const Ray connection{Point3(1, 2, 3), direction, 2};
+    EXPECT_TRUE(TransmittanceOf(context, connection, visibility::kShadow, start, start, 1, factors).IsBlack());
+  }
+  EXPECT_EQ(fog.scene.geometry->RejectedRays(), 6u);
+}
+
+// Notes how far the vertices of a walk are from each other.
+class Steps final : public PathVisitor {
+ public:
+  bool Arrived(Subpath& path, const PathState&) override {
+    const PathVertex& last = path.Last();
+    if (path.Count() > 1) {
+      const double step = glm::length(path[path.Count() - 2].WayTo(last));
+      sum += step;
+      ++count;
+      smallest = std::min(smallest, step);
+    }
+    return last.IsInMedium();
+  }
+  int count = 0;
+};
+
+// Steps of a mean free path that is a hundredth of what positions resolve: their mean is right, and no two vertices are
+// in one place, where the density of the second would be infinite.
+TEST(Flight, StepsMayBeShorterThanRounding) {
+  const BuiltScene fog = Fog("4e8");
+  Sampler sampler(SamplerKind::Independent, 2);
+  RenderCounts counts;
+  const SampleContext context{fog.scene, sampler, 0, counts};
+  Steps steps;
+  Subpath path;
+  for (uint32_t i = 0; i < 500; ++i) {
+    sampler.StartPixelSample(1, 0, i);
+    PathState state;
+    state.ray = {Point3(1.25f, 2.125f, 3.375f), SampleUniformSphere({0.3f, 0.01f * static_cast<float>(i % 100)})};
+    state.medium = 0;
+    state.specular = Color(1.0f);
+    path.Clear();
+    Walk(context, {TransportMode::Radiance, 100, {}, false}, state, path, steps);
+  }
+  EXPECT_EQ(steps.count, 500 * 99);
+  EXPECT_GT(steps.smallest, 0);
+  const double mean = steps.sum / steps.count * 4e8;
+  EXPECT_NEAR(mean, 1, 5 / std::sqrt(steps.count));
+}
+
+}  // namespace
+}  // namespace lampyr::test
