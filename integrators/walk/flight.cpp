@@ -147,8 +147,7 @@ class Tracker {
     double from = segment.tMin;
     const auto keep = [&](double to) {
       if (!steps_) return;
-      steps_->push_back(
-          {static_cast<float>(from), static_cast<float>(to), index_, value, density, Color(0.0f), true});
+      steps_->push_back({static_cast<float>(from), static_cast<float>(to), index_, value, density, Color(0.0f), true});
     };
     if (!(segment.majorant > 0)) {
       keep(segment.tMax);

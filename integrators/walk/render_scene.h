@@ -26,7 +26,7 @@ struct RenderScene {
   // If camera rays start in several media, because the camera is on a boundary or is cut by one: the medium of those
   // that meet no surface that says it.
   std::optional<int32_t> cameraExterior;
-  std::vector<int32_t> lightMedia;                   // by light: around it, or in front of it; empty: vacuum
+  std::vector<int32_t> lightMedia;  // by light: around it, or in front of it; empty: vacuum
   std::vector<int32_t>
       lightBackMedia;      // by light: behind its surface, where a two-sided light shines, too; empty: vacuum
   bool hasMotion = false;  // something moves while the shutter is open; otherwise all rays have time 0

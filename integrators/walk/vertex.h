@@ -14,7 +14,7 @@ namespace lampyr {
 // A point where light scatters, as seen by the path that arrived there: on a surface, or in a participating medium.
 // Directions are unit vectors that point away from it.
 struct Vertex {
-  SurfacePoint point;  // in a medium: the position alone; normals are 0
+  SurfacePoint point;      // in a medium: the position alone; normals are 0
   Vector3 residual{0.0f};  // Position() less that of `point`; set in scenes with media
   Bsdf bsdf;
   Vector3 toPrevious{0.0f};

@@ -61,15 +61,15 @@ TEST_P(InMedia, IntegratorsAgree) {
   const Replicas bdpt = RenderReplicas(scene.text, "bdpt", kMediaReplicas, samples, overrides);
   const double rate = SidakRate(1e-3, 4 * static_cast<int>(MediaScenes().size()));
   for (const char* integrator : {"path", "light", "vcm", "auto"}) {
-    const bool isLight = std::string(integrator) == "light";
+    const bool isLight = std::string(integrator) == "light", isPath = std::string(integrator) == "path";
     if (isLight && (!scene.lightTracerSeesAll || scene.isCameraInMedium)) continue;
     overrides.seed += 1000;
     overrides.values.clear();
     // What is merged is blurred.
     if (std::string(integrator) == "vcm" || std::string(integrator) == "auto") overrides.values["radius"] = 0.01;
-    const Agreement result = CompareReplicas(
-        RenderReplicas(scene.text, integrator, kMediaReplicas, isLight ? lightSamples : samples, overrides), bdpt,
-        scene.blockSize, rate);
+    const int own = isLight ? lightSamples : isPath ? scene.pathFactor * samples : samples;
+    const Replicas other = RenderReplicas(scene.text, integrator, kMediaReplicas, own, overrides);
+    const Agreement result = CompareReplicas(other, bdpt, scene.blockSize, rate);
     std::printf("%-5s %-20s largest |z| %.2f (%.2f), chi2 %.1f (%.1f), bias %+.3f %% +- %.3f %%\n", integrator,
                 scene.name, result.largestZ, result.thresholdZ, result.chiSquared, result.chiSquaredThreshold,
                 100 * result.bias, 196 * result.biasError);
