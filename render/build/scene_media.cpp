@@ -127,7 +127,8 @@ bool StartsVary(const RenderScene& scene, const Point2& middle, int32_t exterior
   constexpr int kAcross = 5;
   for (int i = 0; i < kAcross * kAcross; ++i) {
     const Point2 place(static_cast<float>(i % kAcross) + 0.47f, static_cast<float>(i / kAcross) + 0.53f);
-    const CameraRay seen = scene.camera->GenerateRay(2.0f * middle * place / static_cast<float>(kAcross), Point2(0.5f), 0);
+    const CameraRay seen =
+        scene.camera->GenerateRay(2.0f * middle * place / static_cast<float>(kAcross), Point2(0.5f), 0);
     if (seen.weight > 0 && MediumAlong(*scene.geometry, seen.ray, exterior) != scene.cameraMedium) return true;
   }
   return false;

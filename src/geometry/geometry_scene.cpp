@@ -471,8 +471,8 @@ Color GeometryScene::Implementation::Transmittance(const Ray& ray, uint32_t kind
   return lampyr::Transmittance(*trace.crossings);
 }
 
-// The ray is longer at the ends that are fine, so that it meets the boundaries there. If something stops it, that may be
-// beyond an end: then what it meets first decides.
+// The ray is longer at the ends that are fine, so that it meets the boundaries there. If something stops it, that may
+// be beyond an end: then what it meets first decides.
 Color GeometryScene::Implementation::Transmittance(const Ray& ray, const FineLine& line, uint32_t kinds,
                                                    TraceContext& trace) const {
   Ray longer = ray;

@@ -37,7 +37,8 @@ struct FoundMedium {
 FoundMedium FindMedium(const GeometryScene& geometry, const Point3& position, float time,
                        const Normal3& normal = Normal3(0.0f));
 
-// The medium in which a ray starts: what the first surface on it that separates media says; `otherwise` if it meets none.
+// The medium in which a ray starts: what the first surface on it that separates media says; `otherwise` if it meets
+// none.
 int32_t MediumAlong(const GeometryScene& geometry, const Ray& ray, int32_t otherwise);
 
 // The medium at a point, by one ray: `otherwise` if it meets no surface that says it.

@@ -37,9 +37,7 @@ float MajorantGrid::At(const Point3& position) const {
 }
 
 MajorantWalk::MajorantWalk(const MajorantGrid& grid, const RayDouble& ray)
-    : grid_(&grid),
-      origin_(grid.linear_ * ray.origin + grid.translation_),
-      direction_(grid.linear_ * ray.direction) {
+    : grid_(&grid), origin_(grid.linear_ * ray.origin + grid.translation_), direction_(grid.linear_ * ray.direction) {
   double start = ray.tMin;
   tEnd_ = ray.tMax;
   for (int axis = 0; axis < 3; ++axis) {

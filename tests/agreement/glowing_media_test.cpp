@@ -80,17 +80,17 @@ class GlowingMediaScenes : public testing::TestWithParam<AgreementScene> {};
 
 TEST_P(GlowingMediaScenes, AreTheSameFromBothEnds) {
   const AgreementScene& scene = GetParam();
-  const Replicas path = RenderReplicas(scene.text, "path", kReplicas, 96);
+  const Replicas path = RenderReplicas(scene.text, "path", kReplicas, 64);
   RenderOverrides overrides;
   overrides.seed = 1000;
-  ExpectAgreement("light", RenderReplicas(scene.text, "light", kReplicas, 160, overrides), path);
+  ExpectAgreement("light", RenderReplicas(scene.text, "light", kReplicas, 64, overrides), path);
   overrides.values["radius"] = 0.01;
   overrides.seed = 2000;
-  ExpectAgreement("sppm", RenderReplicas(scene.text, "sppm", kReplicas, 160, overrides), path);
+  ExpectAgreement("sppm", RenderReplicas(scene.text, "sppm", kReplicas, 128, overrides), path);
   overrides.seed = 3000;
   overrides.values["radius"] = 0.02;
   overrides.values["direct-photons"] = true;
-  ExpectAgreement("sppm, direct photons", RenderReplicas(scene.text, "sppm", kReplicas, 256, overrides), path);
+  ExpectAgreement("sppm, direct photons", RenderReplicas(scene.text, "sppm", kReplicas, 192, overrides), path);
 }
 
 INSTANTIATE_TEST_SUITE_P(Media, GlowingMediaScenes, testing::ValuesIn(GlowingScenes()),

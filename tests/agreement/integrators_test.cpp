@@ -51,27 +51,30 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Integrators, testing::ValuesIn(AgreementScenes(
 
 class InMedia : public testing::TestWithParam<MediaScene> {};
 
-// Against bdpt, the least noisy.
+// Against bdpt, the least noisy. Notices a difference of 1 to 3 % in the whole image, and of some 5 % in a block;
+// MediaAnalytic in tests/integrators has the known answers to 0.2 %.
 TEST_P(InMedia, IntegratorsAgree) {
+  constexpr int kMediaReplicas = 10;
   const MediaScene& scene = GetParam();
   RenderOverrides overrides;
-  const Replicas bdpt = RenderReplicas(scene.text, "bdpt", kReplicas, scene.samples / 2, overrides);
+  const int samples = scene.samples / 4, lightSamples = scene.lightSamples * 3 / 8;
+  const Replicas bdpt = RenderReplicas(scene.text, "bdpt", kMediaReplicas, samples, overrides);
   const double rate = SidakRate(1e-3, 4 * static_cast<int>(MediaScenes().size()));
   for (const char* integrator : {"path", "light", "vcm", "auto"}) {
-    const bool isLight = std::string(integrator) == "light";
+    const bool isLight = std::string(integrator) == "light", isPath = std::string(integrator) == "path";
     if (isLight && (!scene.lightTracerSeesAll || scene.isCameraInMedium)) continue;
     overrides.seed += 1000;
     overrides.values.clear();
     // What is merged is blurred.
     if (std::string(integrator) == "vcm" || std::string(integrator) == "auto") overrides.values["radius"] = 0.01;
-    const int samples = isLight ? scene.lightSamples : scene.samples / 2;
-    const Agreement result = CompareReplicas(RenderReplicas(scene.text, integrator, kReplicas, samples, overrides),
-                                             bdpt, scene.blockSize, rate);
+    const int own = isLight ? lightSamples : isPath ? scene.pathFactor * samples : samples;
+    const Replicas other = RenderReplicas(scene.text, integrator, kMediaReplicas, own, overrides);
+    const Agreement result = CompareReplicas(other, bdpt, scene.blockSize, rate);
     std::printf("%-5s %-20s largest |z| %.2f (%.2f), chi2 %.1f (%.1f), bias %+.3f %% +- %.3f %%\n", integrator,
                 scene.name, result.largestZ, result.thresholdZ, result.chiSquared, result.chiSquaredThreshold,
                 100 * result.bias, 196 * result.biasError);
     EXPECT_TRUE(result.Agrees()) << integrator;
-    EXPECT_LT(result.biasError, 0.015) << integrator << ": too noisy";
+    EXPECT_LT(result.biasError, 0.01) << integrator << ": too noisy";
   }
 }
 

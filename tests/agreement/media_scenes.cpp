@@ -78,11 +78,13 @@ std::vector<MediaScene> MediaScenes() {
   add("lamp_in_haze", Room("box", 4) + Homogeneous("haze", "2 2 2", "0.2 0.2 0.2", 0.5) + BallOf("haze") +
                           "MediumInterface \"\" \"haze\"\nAttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [30 20 "
                           "10] Translate 0 -0.2 -0.3 Shape \"sphere\" \"float radius\" 0.08 AttributeEnd\n");
-  add("spot_in_fog",
-      FilmWith("gaussian") + kInRoom + kFog + "MediumInterface \"\" \"fog\"\n" + kView + World(3) + kRoom +
-          "LightSource \"spot\" \"rgb I\" [4 4 4] \"point3 from\" [0.6 0.8 -0.2] \"point3 to\" [-0.2 -0.8 -0.4] "
-          "\"float coneangle\" 30 \"float conedeltaangle\" 10\n")
-      .isCameraInMedium = true;
+  MediaScene& spot =
+      add("spot_in_fog",
+          FilmWith("gaussian") + kInRoom + kFog + "MediumInterface \"\" \"fog\"\n" + kView + World(3) + kRoom +
+              "LightSource \"spot\" \"rgb I\" [4 4 4] \"point3 from\" [0.6 0.8 -0.2] \"point3 to\" [-0.2 -0.8 -0.4] "
+              "\"float coneangle\" 30 \"float conedeltaangle\" 10\n");
+  spot.isCameraInMedium = true;
+  spot.pathFactor = 8;
   add("sun_on_cloud", FilmWith("box") + kDown + World(4) + Homogeneous("cloud", "3 3 3", "0.05 0.05 0.05", 0.7) +
                           kThings +
                           "LightSource \"distant\" \"rgb L\" [2 2 2] \"point3 from\" [1 2 0.5]\n"

@@ -11,6 +11,7 @@ struct MediaScene : AgreementScene {
   // The camera is within a medium that scatters, where connections to the lens have a variance without bound: 1 / d² of
   // points at any distance.
   bool isCameraInMedium = false;
+  int pathFactor = 1;  // of the samples of path tracing, where it finds the light rarely
 };
 
 std::vector<MediaScene> MediaScenes();

@@ -169,6 +169,22 @@ TEST(SceneMedia, AreAroundTheCamera) {
                                     "in the medium \"milk\"")));
 }
 
+// The ball of radius 4 touches the camera.
+TEST(SceneMedia, OfACameraOnABoundaryIsWhatItLooksInto) {
+  const std::string ball = kInterface + "MediumInterface \"fog\" \"\" " + Sphere(4);
+  const Scene away = Build("Translate 0 0 -4 " + ball), towards = Build("Translate 0 0 4 " + ball);
+  EXPECT_EQ(away.Render().cameraMedium, kVacuum);
+  EXPECT_THAT(away.warnings, IsEmpty());
+  EXPECT_FALSE(away.Render().cameraExterior);
+  EXPECT_EQ(towards.Render().cameraMedium, kFog);
+  EXPECT_FALSE(towards.Render().cameraExterior);
+  // Some of its rays go into the ball, the others do not.
+  const Scene along = Build("Translate 0 0 4 " + ball, "LookAt 0 0 0  1 0 0  0 0 1 ");
+  EXPECT_EQ(along.Render().cameraExterior, kVacuum);
+  EXPECT_EQ(along.Render().MediumOf({Point3(0.0f), Vector3(0.8f, 0, 0.6f)}), kFog);
+  EXPECT_EQ(along.Render().MediumOf({Point3(0.0f), Vector3(0.8f, 0, -0.6f)}), kVacuum);
+}
+
 std::vector<int32_t> LightMedia(const std::string& world, const std::string& options = kInFog) {
   return Build(world, options).Render().lightMedia;
 }

@@ -55,6 +55,7 @@ class Steps final : public PathVisitor {
     }
     return last.IsInMedium();
   }
+  double sum = 0, smallest = 1;
   int count = 0;
 };
 

@@ -94,8 +94,7 @@ inline constexpr int kMostMediaComparisons = 1000;  // of all known answers in m
 // `precision` of it. `blur`: relative error that is allowed beside the noise, of what is merged.
 inline void ExpectKnown(const std::string& what, const Replicas& replicas, const Radiance& expected,
                         double precision = 0.002, double blur = 0) {
-  static const double student =
-      StudentQuantileTwoSided(SidakRate(1e-3, kMostMediaComparisons), kMediaReplicas - 1);
+  static const double student = StudentQuantileTwoSided(SidakRate(1e-3, kMostMediaComparisons), kMediaReplicas - 1);
   ASSERT_EQ(replicas.images.size(), static_cast<size_t>(kMediaReplicas));
   EXPECT_EQ(replicas.faults, 0u) << what;
   const Image& first = replicas.images[0];

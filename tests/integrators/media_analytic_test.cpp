@@ -76,7 +76,8 @@ TEST_P(MediaAnalytic, SlabAcrossParallelLight) {
       expected[c] = 3 * scattering[c] * HenyeyGreenstein(0, g) / extinction * (1 - std::exp(-extinction * 0.8)) * depth;
     }
     const std::string text =
-        ParallelView(1) + Homogeneous("slab", scattering, absorption, g) + BoxOf("slab", {-0.55, -0.55, 1}, {0.55, 0.6, 1.8}) +
+        ParallelView(1) + Homogeneous("slab", scattering, absorption, g) +
+        BoxOf("slab", {-0.55, -0.55, 1}, {0.55, 0.6, 1.8}) +
         "LightSource \"distant\" \"rgb L\" [3 3 3] \"point3 from\" [0 1 0] \"point3 to\" [0 0 0]\n";
     ExpectKnown(Named("lit slab, g " + std::to_string(g)), RenderKnown(text, GetParam(), 192), expected);
   }
@@ -131,11 +132,11 @@ TEST_P(MediaAnalytic, HalfSpaceOfChandrasekhar) {
   const double albedo = 0.8, mu0 = 0.6, mu = 0.5;
   const HFunction h(albedo);
   const double expected = mu0 * albedo * h.At(mu) * h.At(mu0) / (4 * M_PI * (mu + mu0));
-  EXPECT_NEAR(expected / mu0, 0.119334, 1e-6);
+  EXPECT_NEAR(expected / mu0, 0.119334, 1e-6);  // of the irradiance μ₀ E₀; 0.071600 E₀
   // Edges are 10 mean free paths away from what is seen: 30 by 30 of the plane, at 60° from its normal.
   const std::string text =
-      ParallelView(200, "-15 15 -7.5 7.5", "0 50 86.602540  0 0 0") + Homogeneous("sea", Grey(albedo), Grey(1 - albedo)) +
-      BoxOf("sea", {-25, -20, -25}, {25, 0, 25}) +
+      ParallelView(200, "-15 15 -7.5 7.5", "0 50 86.602540  0 0 0") +
+      Homogeneous("sea", Grey(albedo), Grey(1 - albedo)) + BoxOf("sea", {-25, -20, -25}, {25, 0, 25}) +
       "LightSource \"distant\" \"rgb L\" [1 1 1] \"point3 from\" [0.8 0.6 0] \"point3 to\" [0 0 0]\n";
   ExpectKnown(Named("half space"), RenderKnown(text, GetParam(), 256, {.light = 12}), Grey(expected));
 }

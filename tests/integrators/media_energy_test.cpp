@@ -35,12 +35,13 @@ class Absorption final : public LightPathVisitor {
 
 // `emitted`: W.
 void ExpectBalance(const std::string& what, const std::string& world, const Radiance& emitted) {
-  const std::string text = "Film \"rgb\" \"integer xresolution\" 4 \"integer yresolution\" 4\nLookAt 0 0 0.9  0 0 0  0 "
-                           "1 0\nCamera \"perspective\"\nWorldBegin\n" +
-                           world +
-                           "Material \"diffuse\" \"rgb reflectance\" [0.6 0.6 0.6]\nShape \"trianglemesh\" \"point3 P\" "
-                           "[-1 -1 -1 1 -1 -1 1 1 -1 -1 1 -1 -1 -1 1 1 -1 1 1 1 1 -1 1 1] \"integer indices\" [0 2 1 0 3 "
-                           "2 4 5 6 4 6 7 0 1 5 0 5 4 3 6 2 3 7 6 0 7 3 0 4 7 1 2 6 1 6 5]\n";
+  const std::string text =
+      "Film \"rgb\" \"integer xresolution\" 4 \"integer yresolution\" 4\nLookAt 0 0 0.9  0 0 0  0 "
+      "1 0\nCamera \"perspective\"\nWorldBegin\n" +
+      world +
+      "Material \"diffuse\" \"rgb reflectance\" [0.6 0.6 0.6]\nShape \"trianglemesh\" \"point3 P\" "
+      "[-1 -1 -1 1 -1 -1 1 1 -1 -1 1 -1 -1 -1 1 1 -1 1 1 1 1 -1 1 1] \"integer indices\" [0 2 1 0 3 "
+      "2 4 5 6 4 6 7 0 1 5 0 5 4 3 6 2 3 7 6 0 7 3 0 4 7 1 2 6 1 6 5]\n";
   Diagnostics diagnostics(Diagnostics::Mode::Collect);
   const BuiltScene built = BuildScene(ParseScene(text, "balance.pbrt", diagnostics), {}, true, diagnostics);
   const RenderScene& scene = built.scene;
@@ -90,8 +91,7 @@ std::string BallOf(double radius) {
 
 TEST(MediaEnergy, OfALampInAMediumOfColours) {
   for (const double g : {0.0, 0.8, -0.5})
-    ExpectBalance("g " + std::to_string(g),
-                  Homogeneous("gas", {1.5, 1.2, 1}, {0.4, 0.5, 0.7}, g) + BallOf(0.9) + kBulb,
+    ExpectBalance("g " + std::to_string(g), Homogeneous("gas", {1.5, 1.2, 1}, {0.4, 0.5, 0.7}, g) + BallOf(0.9) + kBulb,
                   kOfBulb);
 }
 
@@ -105,7 +105,8 @@ TEST(MediaEnergy, OfAGlowBesideALamp) {
   const Radiance absorption = {0.4, 0.5, 0.7};
   Radiance emitted;
   for (size_t c = 0; c < 3; ++c) emitted[c] = kOfBulb[c] + 4 * M_PI * absorption[c] * 2 * volume;
-  ExpectBalance("glow", Homogeneous("gas", {1.5, 1.2, 1}, absorption, 0.2, Rgb("Le", {2, 2, 2})) + BallOf(radius) + kBulb,
+  ExpectBalance("glow",
+                Homogeneous("gas", {1.5, 1.2, 1}, absorption, 0.2, Rgb("Le", {2, 2, 2})) + BallOf(radius) + kBulb,
                 emitted);
 }
 

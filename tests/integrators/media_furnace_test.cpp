@@ -45,8 +45,8 @@ std::string UniformGrid() {
   const std::string densities =
       Voxels([](int voxel, bool isRim) { return std::to_string(isRim ? 0.0 : VoxelDensity(voxel)); });
   return "MakeNamedMedium \"gas\" \"string type\" \"uniformgrid\"" + kVoxelBox + Rgb("sigma_s", {1, 0.8, 0.6}) +
-         Rgb("sigma_a", {0.5, 0.8, 0.6}) + " \"float g\" 0.5" + Rgb("Le", kFurnace) + " \"float density\" [" + densities +
-         "]\n";
+         Rgb("sigma_a", {0.5, 0.8, 0.6}) + " \"float g\" 0.5" + Rgb("Le", kFurnace) + " \"float density\" [" +
+         densities + "]\n";
 }
 
 TEST_P(MediaFurnace, UniformGrid) {
@@ -119,7 +119,8 @@ TEST_P(MediaFurnace, NanoVdb) {
   const nanovdb::Map map = ScalingMap(0.14, nanovdb::Vec3d(0.0));
   const Volume density{"density", box,
                        [&](const nanovdb::Coord& at) {
-                         return isRim(at) ? 0.0f : 0.3f * static_cast<float>((at[0] * 7 + at[1] * 5 + at[2] * 3 + 99) % 8);
+                         return isRim(at) ? 0.0f
+                                          : 0.3f * static_cast<float>((at[0] * 7 + at[1] * 5 + at[2] * 3 + 99) % 8);
                        },
                        map};
   const Volume temperature{"temperature", box, [](const nanovdb::Coord&) { return 4000.0f; }, map};
@@ -134,8 +135,8 @@ TEST_P(MediaFurnace, NanoVdb) {
   const Radiance radiance = {static_cast<double>(here.emission.r / here.absorption.r),
                              static_cast<double>(here.emission.g / here.absorption.g),
                              static_cast<double>(here.emission.b / here.absorption.b)};
-  ExpectKnown(std::string(GetParam()) + ", furnace of nanovdb",
-              RenderKnown(Furnace(medium, radiance), GetParam(), 160), radiance);
+  ExpectKnown(std::string(GetParam()) + ", furnace of nanovdb", RenderKnown(Furnace(medium, radiance), GetParam(), 160),
+              radiance);
 }
 
 }  // namespace

@@ -98,7 +98,8 @@ TEST_P(Majorants, BoundItAlongRays) {
       EXPECT_GE(segment.tMin, last);
       last = segment.tMax;
       for (int k = 0; k < 10; ++k) {
-        const auto t = static_cast<float>(segment.tMin + (segment.tMax - segment.tMin) * static_cast<double>(rng.NextFloat()));
+        const auto t =
+            static_cast<float>(segment.tMin + (segment.tMax - segment.tMin) * static_cast<double>(rng.NextFloat()));
         EXPECT_GE(segment.majorant, made->At(ray.origin + ray.direction * t).Extinction().Max());
         ++points;
       }
