@@ -64,6 +64,11 @@ bool MakeVertex(const RenderScene& scene, const std::vector<std::shared_ptr<cons
   return true;
 }
 
+// What float has cut off. Not inlined: GCC 12 takes the conversion to float and back of two lanes for the identity.
+[[gnu::noinline]] Vector3 RestOf(const Point3d& exact, const Point3& rounded) {
+  return Vector3(exact - Point3d(rounded));
+}
+
 // A surface point that is not where the flight ends, but for rounding, is of a surface that is met by float alone.
 void SetResidual(const Flight& flight, Vertex& vertex) {
   const Vector3d residual = flight.end - Point3d(vertex.point.position);
@@ -82,7 +87,7 @@ void MakeVertexInMedium(const Point3d& position, const Vector3& direction, int32
     point.Ng = point.Ns = Normal3(0.0f);
     return point;
   });
-  vertex.residual = Vector3(position - Point3d(vertex.point.position));
+  vertex.residual = RestOf(position, vertex.point.position);
   vertex.toPrevious = -direction;
   MakeInPlace(vertex.bsdf, [&] { return Bsdf(Frame::FromNormal(vertex.toPrevious), vertex.toPrevious, phase); });
   vertex.receiver = {vertex.point.position, Normal3(0.0f), true, 0};

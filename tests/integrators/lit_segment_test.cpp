@@ -116,7 +116,7 @@ TEST(LitSegment, IsTheLessCommonTheSurerAWalkCollides) {
 
 // In the fog of a point light. Without these distances the variance has no bound: relMSE × time is 30 times as much.
 TEST(LitSegment, TheFogOfALampIsNotNoisy) {
-  const std::string scene = R"(MakeNamedMedium "mist" "string type" "homogeneous" "rgb sigma_s" [0.2 0.2 0.2]
+  const std::string scene = R"(MakeNamedMedium "mist" "string type" "homogeneous" "rgb sigma_s" [0.2 0.2 0.2] "rgb sigma_a" [0 0 0]
 MediumInterface "" "mist"
 LookAt 0 1 -5  0 1 0  0 1 0
 Camera "perspective" "float fov" 50
@@ -142,7 +142,7 @@ LightSource "point" "rgb I" [9 9 9] "point3 from" [0.4 1.5 0]
     }
   }
   std::printf("relative variance of 16 samples: mean %.2e, worst %.2e\n", sum / (24 * 24), worst);
-  EXPECT_LT(sum / (24 * 24), 1e-3);
+  EXPECT_LT(sum / (24 * 24), 2e-3);
 }
 
 }  // namespace
