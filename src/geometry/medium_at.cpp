@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 
 namespace lampyr {
 
@@ -37,6 +38,23 @@ uint32_t BrokenLink(const std::vector<MediumChange>& changes) {
     if (behind != kSameMedium && before != kSameMedium && behind != before) return changes[i].primitive;
   }
   return kNoIndex;
+}
+
+// The medium in which rays from `medium` end. Those that something stops do not count, unless all are stopped: what is
+// behind the floor of an open scene is not where its sky is.
+std::optional<int32_t> ExteriorOf(std::span<const std::vector<MediumChange>> rays, int32_t medium) {
+  const auto isFree = [](const std::vector<MediumChange>& changes) {
+    return std::all_of(changes.begin(), changes.end(), [](const MediumChange& change) { return change.isBoundary; });
+  };
+  const bool anyIsFree = std::any_of(rays.begin(), rays.end(), isFree);
+  std::optional<int32_t> exterior;
+  for (const std::vector<MediumChange>& changes : rays) {
+    if (anyIsFree && !isFree(changes)) continue;
+    const int32_t last = LastMedium(changes).value_or(medium);
+    if (exterior && *exterior != last) return std::nullopt;
+    exterior = last;
+  }
+  return exterior;
 }
 
 }  // namespace
@@ -75,11 +93,10 @@ FoundMedium FindMedium(const GeometryScene& geometry, const Point3& position, fl
   }
   if (!found.medium) return found;
   found.isUnanimous = agree(0, 1) && agree(1, 2);
-  found.exterior = LastMedium(changes[0]).value_or(*found.medium);
   for (size_t i = 0; i < said.size(); ++i) {
     if (said[i] && *said[i] != *found.medium) found.disputed = changes[i].front().primitive;
-    if (found.exterior && LastMedium(changes[i]).value_or(*found.medium) != *found.exterior) found.exterior.reset();
   }
+  found.exterior = ExteriorOf(changes, *found.medium);
   return found;
 }
 

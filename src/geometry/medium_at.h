@@ -22,8 +22,8 @@ std::vector<MediumChange> MediumChanges(const GeometryScene& geometry, const Ray
 struct FoundMedium {
   std::optional<int32_t> medium;  // nullopt: no ray from the point meets a surface that says it
   bool isUnanimous = false;       // all rays say the same
-  // The medium that all rays end in. One that meets no change ends in `medium`. nullopt: they end in several, or none
-  // of them meets one.
+  // The medium that all rays end in which nothing stops, or all rays if each is stopped. One that meets no change ends
+  // in `medium`. nullopt: they end in several, or none of them meets one.
   std::optional<int32_t> exterior;
   // A primitive whose side contradicts another one, kNoIndex for none: boundaries overlap or are open.
   uint32_t disputed = kNoIndex;

@@ -103,7 +103,7 @@ std::vector<MediaScene> MediaScenes() {
           "LightSource \"point\" \"rgb I\" [0.5 0.5 0.3] AttributeEnd\n"
           "AttributeBegin LightFilter \"intmult\" \"float intensity\" 2 LightSource \"spot\" \"rgb I\" [2 1 1] "
           "\"point3 from\" [-1 1.6 0.6] \"point3 to\" [0 0.2 0] \"float coneangle\" 35 AttributeEnd\n"
-          "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [6 5 4] \"bool twosided\" true\n"
+          "AttributeBegin MediumInterface \"haze\" AreaLightSource \"diffuse\" \"rgb L\" [6 5 4] \"bool twosided\" true\n"
           "Shape \"trianglemesh\" \"point3 P\" [-1 1 -0.6  -0.6 1.3 -0.6  -0.8 1.2 -0.2  0.2 1 -0.9] \"integer "
           "indices\" [0 1 2 1 3 2 0 2 3] AttributeEnd\n"
           "AttributeBegin Material \"interface\" MediumInterface \"jelly\" \"haze\" Translate 0.5 0.9 -0.5 Shape "
