@@ -1,7 +1,5 @@
 #include "integrators/path/camera_path.h"
 
-#include <algorithm>
-
 #include "integrators/walk/lens.h"
 #include "integrators/walk/partial_weight.h"
 
@@ -11,7 +9,7 @@ namespace {
 
 class CameraPath final : public PathVisitor, NextEventVisitor {
  public:
-  CameraPath(const SampleContext& context, const CameraPathSettings& settings, const PhotonGatherer* gatherer)
+  CameraPath(const SampleContext& context, const CameraPathSettings& settings, PhotonGatherer* gatherer)
       : context_(context),
         lighting_(*context.scene.lighting),
         settings_(settings),
@@ -58,9 +56,11 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
     const PathVertex& vertex = path.Last();
     if (vertex.isDelta) return true;
     const auto events = static_cast<int>(path.Count());
+    const bool gathers = gatherer_ && vertex.GathersPhotons();
+    if (gathers) gatherer_->Find(vertex, state.length);
     if (SamplesLights(vertex))
       radiance_ += SampleDirectLight(context_, nextEvent_, vertex, events - 1, radiance_, *this);
-    if (gatherer_ && vertex.GathersPhotons()) radiance_ += gatherer_->Gather(vertex, events, state.length);
+    if (gathers) radiance_ += gatherer_->Gather(vertex, events, state.length);
     return true;
   }
 
@@ -77,11 +77,7 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
  private:
   bool SamplesLights(const PathVertex& vertex) const { return settings_.samplesLights || !vertex.GathersPhotons(); }
 
-  bool HasEmissionToFind() const {
-    const auto& media = context_.scene.media;
-    return lighting_.HasLightThatCanBeHit() ||
-           std::any_of(media.begin(), media.end(), [](const auto& medium) { return medium->IsEmissive(); });
-  }
+  bool HasEmissionToFind() const { return lighting_.HasLightThatCanBeHit() || settings_.mediaGlow; }
 
   // A light found by BSDF sampling, weighted against next-event estimation.
   void AddFound(const PathVertex& last, const PathState& state, const FoundLight& found) {
@@ -107,7 +103,7 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
   const LightingServices& lighting_;
   const CameraPathSettings& settings_;
   const NextEventSettings nextEvent_;
-  const PhotonGatherer* gatherer_;
+  PhotonGatherer* gatherer_;
   bool emissionOnly_ = false;  // the ray is traced for emission alone: other light from there is gathered
   Color radiance_;
 };
@@ -115,7 +111,7 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
 }  // namespace
 
 Color TraceCameraPath(const SampleContext& context, const CameraPathSettings& settings, const Ray& ray,
-                      const PhotonGatherer* gatherer) {
+                      PhotonGatherer* gatherer) {
   thread_local Subpath path(false);
   path.Clear();
   PathState state;

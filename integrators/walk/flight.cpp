@@ -59,11 +59,6 @@ Color Transmittance(const Color& extinction, float distance) {
   return {std::exp(-extinction.r * distance), std::exp(-extinction.g * distance), std::exp(-extinction.b * distance)};
 }
 
-// True if walks may collide with the medium.
-bool Scatters(const Medium& medium) {
-  return !medium.IsHomogeneous() || !medium.At(Point3(0.0f)).scattering.IsBlack();
-}
-
 float ChannelOf(const Color& color, int channel) {
   return channel == 0 ? color.r : channel == 1 ? color.g : color.b;
 }
@@ -85,8 +80,7 @@ class Tracker {
   // Follows a span. `collides`: stops at a collision, and returns true.
   bool Follow(const Medium& medium, int32_t index, float tMin, float tMax, bool collides) {
     index_ = index;
-    const bool scatters = Scatters(medium);
-    if (medium.IsHomogeneous()) return FollowHomogeneous(medium, tMin, tMax, scatters, collides);
+    if (medium.IsHomogeneous()) return FollowHomogeneous(medium, tMin, tMax, collides);
     return FollowGrid(medium, tMin, tMax, collides);
   }
 
@@ -100,8 +94,9 @@ class Tracker {
  private:
   static float DepthOf(float u) { return -std::log1p(-u); }
 
-  bool FollowHomogeneous(const Medium& medium, float tMin, float tMax, bool scatters, bool collides) {
+  bool FollowHomogeneous(const Medium& medium, float tMin, float tMax, bool collides) {
     const MediumCoefficients here = medium.At(Point3(0.0f));
+    const bool scatters = !here.scattering.IsBlack();
     const Color extinction = here.Extinction();
     if (wantsEmission && !here.emission.IsBlack()) {
       const float length = tMax - tMin;

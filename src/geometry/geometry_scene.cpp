@@ -84,6 +84,7 @@ struct GeometryScene::Implementation {
   float largest = kFarthest;
   bool hasTints = false;       // some thin surface is not clear
   bool hasBoundaries = false;  // some surface separates media
+  bool letsPass = false;       // some surface lets rays pass: without, connecting rays have no crossings
   mutable std::atomic<uint64_t> rejected{0};
 
   explicit Implementation(GeometryDescription given) : description(std::move(given)) {
@@ -136,6 +137,7 @@ void GeometryScene::Implementation::AddEntries(const std::vector<GeometryEntry>&
     hasTints = hasTints || (record.thin && !record.thin->IsClear());
     record.isParametrized = entry.attributes.isParametrized;
     if (entry.attributes.isBoundary || SeparatesMedia(entry.attributes)) SetMedia(entry.attributes, record);
+    letsPass = letsPass || record.LetsPass();
     record.tables = &tables;
     tables.primitives.push_back(record);
     tables.attributes.push_back(entry.attributes);
@@ -370,6 +372,7 @@ bool GeometryScene::Intersect(const Ray& ray, uint32_t kinds, RayHit& hit, Color
 }
 
 // The ray is accepted. The crossings of `trace` are empty before; afterwards they are in order, unless the result is 0.
+// Null: no surface lets rays pass.
 Color GeometryScene::Implementation::Transmittance(const Ray& ray, uint32_t kinds, TraceContext& trace) const {
   rtcInitIntersectContext(&trace.context);
   RTCRay shadowRay;
@@ -379,7 +382,7 @@ Color GeometryScene::Implementation::Transmittance(const Ray& ray, uint32_t kind
   rtcOccluded1(scene.get(), &trace.context, &shadowRay);
   trace.ThrowFailure();
   if (shadowRay.tfar < 0) return Color(0.0f);
-  if (trace.crossings->empty()) [[likely]]
+  if (!trace.crossings || trace.crossings->empty()) [[likely]]
     return Color(1.0f);
   SortByDistance(*trace.crossings);
   if (trace.recordsBoundaries) OrderCoincident(tables, MaxAbsComponent(ray.origin), *trace.crossings);
@@ -390,7 +393,7 @@ Color GeometryScene::Transmittance(const Ray& ray, uint32_t kinds) const {
   const Implementation& scene = *implementation_;
   if (!scene.Accept(ray)) return Color(0.0f);
   TraceContext trace;
-  trace.crossings = &ThreadCrossings();
+  if (scene.letsPass) trace.crossings = &ThreadCrossings();
   return scene.Transmittance(ray, kinds, trace);
 }
 
