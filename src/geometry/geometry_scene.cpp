@@ -103,8 +103,10 @@ struct GeometryScene::Implementation {
   SceneHandle NewScene() const;
   void AttachEntries(RTCScene target, size_t first, size_t count);
   void BuildScenes();
-  bool Trace(const Ray& ray, uint32_t kinds, RayHit& hit, TraceContext& trace) const;
-  Color Transmittance(const Ray& ray, uint32_t kinds, TraceContext& trace) const;
+  // Inlined: a call costs as much as the rest of what they do besides Embree.
+  [[gnu::always_inline]] bool Trace(const Ray& ray, uint32_t kinds, RayHit& hit, TraceContext& trace) const;
+  [[gnu::always_inline]] Color Transmittance(const Ray& ray, uint32_t kinds, TraceContext& trace) const;
+  void OrderCrossings(const Ray& ray, std::vector<Crossing>& crossings, bool withBoundaries) const;
 
   // True if Embree survives the ray. A NaN anywhere makes a comparison false.
   bool Accept(const Ray& ray) const {
@@ -313,9 +315,17 @@ std::vector<Crossing>& ThreadCrossings() {
 
 }  // namespace
 
+// Puts crossings in order.
+void GeometryScene::Implementation::OrderCrossings(const Ray& ray, std::vector<Crossing>& crossings,
+                                                   bool withBoundaries) const {
+  SortByDistance(crossings);
+  if (withBoundaries) OrderCoincident(tables, MaxAbsComponent(ray.origin), crossings);
+}
+
 // The ray is accepted. The crossings of `trace`, where they are wanted, are empty before and become what the ray passed
 // before the hit.
-bool GeometryScene::Implementation::Trace(const Ray& ray, uint32_t kinds, RayHit& hit, TraceContext& trace) const {
+inline bool GeometryScene::Implementation::Trace(const Ray& ray, uint32_t kinds, RayHit& hit,
+                                                 TraceContext& trace) const {
   rtcInitIntersectContext(&trace.context);
   RTCRayHit rayHit;
   FillRay(ray, kinds, ray.tMax, rayHit.ray);
@@ -324,11 +334,10 @@ bool GeometryScene::Implementation::Trace(const Ray& ray, uint32_t kinds, RayHit
   ClearUpperHalves();
   rtcIntersect1(scene.get(), &trace.context, &rayHit);
   trace.ThrowFailure();
-  if (trace.crossings && !trace.crossings->empty()) {
+  if (trace.crossings && !trace.crossings->empty()) [[unlikely]] {
     // Embree visits what lies behind the hit, too.
     std::erase_if(*trace.crossings, [&](const Crossing& crossing) { return !(crossing.t < rayHit.ray.tfar); });
-    SortByDistance(*trace.crossings);
-    if (trace.recordsBoundaries) OrderCoincident(tables, MaxAbsComponent(ray.origin), *trace.crossings);
+    OrderCrossings(ray, *trace.crossings, trace.recordsBoundaries);
   }
   if (rayHit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
   hit.t = rayHit.ray.tfar;
@@ -363,17 +372,17 @@ bool GeometryScene::Intersect(const Ray& ray, uint32_t kinds, RayHit& hit, Color
   }
   tint = Color(1.0f);
   TraceContext trace;
-  if (!scene.hasTints) [[likely]]
-    return scene.Trace(ray, kinds, hit, trace);
-  trace.crossings = &ThreadCrossings();
+  if (scene.hasTints) [[unlikely]]
+    trace.crossings = &ThreadCrossings();
   const bool isHit = scene.Trace(ray, kinds, hit, trace);
-  tint = lampyr::Transmittance(*trace.crossings);
+  if (trace.crossings) [[unlikely]]
+    tint = lampyr::Transmittance(*trace.crossings);
   return isHit;
 }
 
 // The ray is accepted. The crossings of `trace` are empty before; afterwards they are in order, unless the result is 0.
 // Null: no surface lets rays pass.
-Color GeometryScene::Implementation::Transmittance(const Ray& ray, uint32_t kinds, TraceContext& trace) const {
+inline Color GeometryScene::Implementation::Transmittance(const Ray& ray, uint32_t kinds, TraceContext& trace) const {
   rtcInitIntersectContext(&trace.context);
   RTCRay shadowRay;
   // Embree's interval is closed above; ours is open.
@@ -384,8 +393,7 @@ Color GeometryScene::Implementation::Transmittance(const Ray& ray, uint32_t kind
   if (shadowRay.tfar < 0) return Color(0.0f);
   if (!trace.crossings || trace.crossings->empty()) [[likely]]
     return Color(1.0f);
-  SortByDistance(*trace.crossings);
-  if (trace.recordsBoundaries) OrderCoincident(tables, MaxAbsComponent(ray.origin), *trace.crossings);
+  OrderCrossings(ray, *trace.crossings, trace.recordsBoundaries);
   return lampyr::Transmittance(*trace.crossings);
 }
 
