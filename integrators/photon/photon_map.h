@@ -64,7 +64,7 @@ class PhotonMap {
   void PrefetchPathOf(const Photon& photon) const {
     if (densities_.Size() == 0) return;
     __builtin_prefetch(&densities_[photon.path]);
-    __builtin_prefetch(&densities_[photon.path + photon.depth - 1u].extent);
+    __builtin_prefetch(&densities_[photon.path + photon.depth - 1u].canMerge);
   }
 
   // The light's end of a photon's path, if its densities were kept. Of a path that ends at its first hit `hit` is

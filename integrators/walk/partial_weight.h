@@ -88,10 +88,10 @@ struct SubpathDensities {
   // a camera path passes the vertex over the density with which it collides, scene units³. Of a light path valid once
   // there is a next vertex.
   float mergeVolume = 0;
-  // A delta event finds the vertex, forward or reverse: the density is a coefficient.
-  bool forwardIsDelta : 1 = false, reverseIsDelta : 1 = false;
-  bool isInMedium : 1 = false;  // densities are per volume
-  bool canMerge : 1 = false;    // with the event by which the subpath goes on; valid once there is a next vertex
+  bool forwardIsDelta = false;  // a delta event finds the vertex: the density is a coefficient
+  bool canMerge = false;        // with the event by which the subpath goes on; valid once there is a next vertex
+  bool reverseIsDelta : 1 = false;
+  bool isInMedium : 1 = false;                        // densities are per volume
   LightEnd::Extent extent = LightEnd::Extent::Point;  // of the first vertex of a light path
 };
 static_assert(sizeof(SubpathDensities) == 24, "kept for the vertices of millions of photons");

@@ -139,6 +139,7 @@ void GeometryScene::Implementation::AddEntries(const std::vector<GeometryEntry>&
     hasTints = hasTints || (record.thin && !record.thin->IsClear());
     record.isParametrized = entry.attributes.isParametrized;
     if (entry.attributes.isBoundary || SeparatesMedia(entry.attributes)) SetMedia(entry.attributes, record);
+    record.SetLetsPass();
     letsPass = letsPass || record.LetsPass();
     record.tables = &tables;
     tables.primitives.push_back(record);
