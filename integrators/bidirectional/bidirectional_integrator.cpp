@@ -27,18 +27,16 @@ void BidirectionalSample::SetLight(ConnectedPath& path, size_t count) const {
   path.toLight = light.vertices[0].toPrevious;
 }
 
-Color BidirectionalSample::Report(ConnectedPath& path) const {
-  if (context.observer) {
-    if (path.t > 1) {
-      path.merging = merging;
-      path.connectionCount = connectionCount;
-    }
-    path.seenDensity = path.t > 1 ? seenDensity : path.atLens.value;
-    path.splatCount = settings.splatCount;
-    path.volume = settings.photons.volume;
-    context.observer->Observe(path);
+void BidirectionalSample::Report(ConnectedPath& path) const {
+  if (!context.observer) return;
+  if (path.t > 1) {
+    path.merging = merging;
+    path.connectionCount = connectionCount;
   }
-  return path.value * static_cast<float>(path.weight);
+  path.seenDensity = path.t > 1 ? seenDensity : path.atLens.value;
+  path.splatCount = settings.splatCount;
+  path.volume = settings.photons.volume;
+  context.observer->Observe(path);
 }
 
 TechniqueSums BidirectionalSample::SumsOfConnection(size_t lightCount, const ReverseDensities& reverse,
@@ -52,8 +50,13 @@ TechniqueSums BidirectionalSample::SumsOfConnection(size_t lightCount, const Rev
 }
 
 Color BidirectionalSample::AddToPixel(ConnectedPath& path, float survivalWeight) const {
-  const Color contribution = Report(path) * survivalWeight;
-  if (context.layers) context.layers->Add(Lighting().GroupOf(path.end.light), contribution);
+  Report(path);
+  return AddToPixel(path.end.light, path.value, path.weight, survivalWeight);
+}
+
+Color BidirectionalSample::AddToPixel(uint32_t light, const Color& value, double weight, float survivalWeight) const {
+  const Color contribution = value * static_cast<float>(weight) * survivalWeight;
+  if (context.layers) context.layers->Add(Lighting().GroupOf(light), contribution);
   return contribution;
 }
 
@@ -192,7 +195,10 @@ class CameraSide final : public PathVisitor {
     const size_t depth = path.Count();
     Weigh(path, state);
     if (vertex.isDelta) return true;
+    const bool merges = CanMergePhotons(sample_);
+    const std::span<const uint32_t> photons = merges ? FindPhotonsToMerge(sample_) : std::span<const uint32_t>();
     sample_.radiance += EstimateDirectLight(sample_);
+    if (!photons.empty()) FetchPathsOf(sample_, photons);
     if (sample_.isConnected) {
       // The two subpaths together have at most maxDepth scattering events.
       const size_t most =
@@ -202,8 +208,7 @@ class CameraSide final : public PathVisitor {
         sample_.radiance += Connect(sample_, i);
       }
     }
-    if (sample_.merging && sample_.isMerged && vertex.GathersPhotons() && vertex.CanMerge())
-      sample_.radiance += Merge(sample_);
+    if (!photons.empty()) sample_.radiance += Merge(sample_, photons);
     return true;
   }
 

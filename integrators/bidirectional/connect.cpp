@@ -84,9 +84,12 @@ Color Connect(const BidirectionalSample& sample, size_t lightCount) {
   const double weight = weightWith(sample.MergingOfConnection(lightCount, joint));
   const float survivalWeight = hasMedia ? survivalInMedia : survivalWeightOf(weight);
   if (survivalWeight == 0) return Color(0.0f);
+  const Color arriving = value * (hasMedia ? transmitted : TraceConnection(context, z, y, factors));
+  if (arriving.IsBlack()) return arriving;
+  if (!sample.IsObserved()) [[likely]]
+    return sample.AddToPixel(sample.lightEnd.light, arriving, weight, survivalWeight);
   ConnectedPath path;
-  path.value = value * (hasMedia ? transmitted : TraceConnection(context, z, y, factors));
-  if (path.value.IsBlack()) return path.value;
+  path.value = arriving;
   path.weight = weight;
   path.factors = factors;
   sample.SetLight(path, lightCount);

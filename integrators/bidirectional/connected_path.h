@@ -31,6 +31,8 @@ struct ConnectedPath {
   Color value;                                 // contribution before the weight
   double weight = 1;
   TechniqueSums sums;  // if the observer wants them; of lights that the camera sees, always
+
+  Color WeightedValue() const { return value * static_cast<float>(weight); }
 };
 
 // Receives every path that contributes to a sample.

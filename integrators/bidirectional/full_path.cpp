@@ -238,9 +238,9 @@ PathDensities DensitiesOf(const FullPath& path) {
   std::vector<SubpathDensities> camera;
   for (int i = n; i >= 1; --i) {
     const auto at = static_cast<size_t>(i);
-    camera.push_back({i == n ? path.seenDensity : path.fromCamera[at].value, path.fromLight[at].value, isDelta(i + 1),
-                      isDelta(i - 1), static_cast<bool>(path.isInMedium[at]), static_cast<float>(path.mergeVolume[at]),
-                      path.CanMerge(i)});
+    camera.push_back({i == n ? path.seenDensity : path.fromCamera[at].value, path.fromLight[at].value,
+                      static_cast<float>(path.mergeVolume[at]), isDelta(i + 1), path.CanMerge(i), isDelta(i - 1),
+                      static_cast<bool>(path.isInMedium[at])});
   }
   Joint joint;
   joint.camera = {path.fromLight[1], n > 1 ? path.fromLight[2] : AreaDensity()};

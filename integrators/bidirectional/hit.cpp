@@ -59,7 +59,8 @@ Color SeeLightAt(const BidirectionalSample& sample, const PathState& state, cons
       path.sums.Of(TechniqueGroup::Light).Add(sample.settings.splatCount * (path.end.position / path.atLens));
   }
   path.sums.Of(TechniqueGroup::Hit).Add(1);
-  const Color contribution = sample.Report(path);
+  sample.Report(path);
+  const Color contribution = path.WeightedValue();
   // The group is that of the surface, because path.end may be unset: a light that emits from one side only may have no
   // density here.
   if (context.layers) context.layers->Add(lighting.GroupAt(point), contribution);
@@ -74,7 +75,8 @@ Color SeeBackground(const BidirectionalSample& sample, const PathState& state) {
   path.atLens = AreaDensity(1);
   path.sums.Of(TechniqueGroup::Hit).Add(1);
   path.value = EscapedEmissionForCamera(sample.context, state.ray, state.specular);
-  return sample.Report(path);
+  sample.Report(path);
+  return path.WeightedValue();
 }
 
 Color HitLightAt(const BidirectionalSample& sample, const PathState& state, const SurfacePoint& point) {

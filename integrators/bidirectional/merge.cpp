@@ -9,6 +9,9 @@ namespace lampyr {
 
 namespace {
 
+// Photons of a lookup whose paths are fetched ahead; they and their paths take less than half of a first-level cache.
+constexpr size_t kFetched = 64;
+
 // `reverse`: density of the photon's previous vertex, or of the light's point.
 void ReportMerge(const BidirectionalSample& sample, const Photon& photon, AreaDensity reverse, const Color& value,
                  double weight) {
@@ -97,27 +100,43 @@ Color MergeWithBeam(const BidirectionalSample& sample, const BeamMerge& merge) {
   return Product(merge.throughput, value, perDensity * weight);
 }
 
-Color Merge(const BidirectionalSample& sample) {
+bool CanMergePhotons(const BidirectionalSample& sample) {
+  const PathVertex& vertex = sample.camera.Last();
+  return sample.merging && sample.isMerged && vertex.GathersPhotons() && vertex.CanMerge();
+}
+
+std::span<const uint32_t> FindPhotonsToMerge(const BidirectionalSample& sample) {
+  const PhotonPass& pass = *sample.context.gather;
+  const std::span<const uint32_t> found = FindPhotons(*pass.map, sample.camera.Last().point.position,
+                                                      sample.mergeRadius, sample.lookup, sample.context.counts);
+  if (pass.use) pass.use->Fetch(found.first(std::min(found.size(), kFetched)));
+  return found;
+}
+
+void FetchPathsOf(const BidirectionalSample& sample, std::span<const uint32_t> found) {
+  const PhotonPass& pass = *sample.context.gather;
+  const std::span<const uint32_t> first = found.first(std::min(found.size(), kFetched));
+  for (const uint32_t index : first) pass.map->PrefetchPathOf((*pass.map)[index]);
+  if (pass.use) pass.use->FetchSums(first);
+}
+
+Color Merge(const BidirectionalSample& sample, std::span<const uint32_t> found) {
   const SampleContext& context = sample.context;
   const PhotonPass& pass = *context.gather;
   const PathVertex& vertex = sample.camera.Last();
   const auto most = static_cast<size_t>(sample.settings.maxDepth) + 1;
   const double perDensity =
       static_cast<double>(sample.Lighting().FluxUnit()) / (sample.merging.perDensity * sample.lightPaths);
-  const std::span<const uint32_t> found =
-      FindPhotons(*pass.map, vertex.point.position, sample.mergeRadius, sample.lookup, context.counts);
   Joint joint;
   joint.isMerged = true;
   joint.mergesAtCamera = true;
   const float probability = sample.settings.counts.merging.At(sample.film);
   sample.lookup.used.clear();
-  constexpr size_t kAhead = 8;
-  for (size_t i = 0; i < std::min(kAhead, found.size()); ++i) pass.map->PrefetchPathOf((*pass.map)[found[i]]);
   Color sum;
   for (size_t i = 0; i < found.size(); ++i) {
     const uint32_t index = found[i];
     const Photon& photon = (*pass.map)[index];
-    if (i + kAhead < found.size()) pass.map->PrefetchPathOf((*pass.map)[found[i + kAhead]]);
+    if (i + kFetched < found.size()) pass.map->PrefetchPathOf((*pass.map)[found[i + kFetched]]);
     if (photon.depth + sample.camera.Count() > most || !photon.IsOnSurface(vertex.bsdf.Ng())) continue;
     const Vector3& toLight = photon.toPrevious;
     const BsdfEvaluation f = vertex.Evaluate(toLight, TransportMode::Radiance);

@@ -8,10 +8,7 @@ namespace {
 
 class NextEventTechnique final : public NextEventVisitor {
  public:
-  explicit NextEventTechnique(const BidirectionalSample& sample) : sample_(sample), vertex_(sample.camera.Last()) {
-    sample_.SetCamera(path_);
-    path_.s = 1;
-  }
+  explicit NextEventTechnique(const BidirectionalSample& sample) : sample_(sample), vertex_(sample.camera.Last()) {}
 
   bool Wants(uint32_t light) override {
     return sample_.settings.connects || sample_.Lighting().EmissionSelectionProbability(light).IsZero();
@@ -30,34 +27,40 @@ class NextEventTechnique final : public NextEventVisitor {
     found.evaluation.solidAngleToArea = sample.solidAngleToArea;
     const SolidAnglePerArea edge = FirstEdgeDensity(lighting, direct.light, vertex_.GeometryTerm(sample.direction),
                                                     Sqr(static_cast<double>(sample.distance)));
-    path_.end = EndOf(lighting, found, !direct.isDelta && lighting.CanBeHit(direct.light), edge,
-                      light.factors.Reversed(), sample_.lightPaths);
-    path_.toLight = sample.direction;
-    const AreaDensity hit =
-        path_.end.canBeHit ? SolidAngleDensity(light.f.pdfForward) * path_.end.solidAnglePerArea : AreaDensity(0);
+    end_ = EndOf(lighting, found, !direct.isDelta && lighting.CanBeHit(direct.light), edge, light.factors.Reversed(),
+                 sample_.lightPaths);
+    hit_ = end_.canBeHit ? SolidAngleDensity(light.f.pdfForward) * end_.solidAnglePerArea : AreaDensity(0);
     Joint joint;
     joint.camera.previous = vertex_.PreviousReverse(light.f.pdfReverse);
     joint.mergesAtCamera = vertex_.CanMerge();
-    path_.weight = NextEventWeight(path_.end, vertex_.weight, hit, joint.camera.previous, sample_.connectionCount,
-                                   NextEventCount(sample_.camera.Count()),
-                                   sample_.MergingOfLight(path_.end, joint, path_.end.direct));
-    if (sample_.WantsSums()) [[unlikely]]
-      path_.sums = sample_.Sums(path_.end, hit, false, 1);
-    return static_cast<float>(path_.weight);
+    weight_ = NextEventWeight(end_, vertex_.weight, hit_, joint.camera.previous, sample_.connectionCount,
+                              NextEventCount(sample_.camera.Count()), sample_.MergingOfLight(end_, joint, end_.direct));
+    return static_cast<float>(weight_);
   }
 
+  // Of the light that was weighted last.
   void Arrived(const LightConnection& light, const Color& value, const Color& contribution) override {
     if (sample_.context.layers)
       sample_.context.layers->Add(sample_.Lighting().GroupOf(light.direct.light), contribution);
-    if (!sample_.IsObserved()) return;
-    path_.value = value;
-    sample_.Report(path_);
+    if (!sample_.IsObserved()) [[likely]]
+      return;
+    ConnectedPath path;
+    sample_.SetCamera(path);
+    path.s = 1;
+    path.end = end_;
+    path.toLight = light.direct.sample->direction;
+    path.value = value;
+    path.weight = weight_;
+    if (sample_.WantsSums()) path.sums = sample_.Sums(end_, hit_, false, 1);
+    sample_.Report(path);
   }
 
  private:
   const BidirectionalSample& sample_;
   const PathVertex& vertex_;
-  ConnectedPath path_;
+  LightEnd end_;
+  AreaDensity hit_;  // density of the light's point by scattering at the vertex
+  double weight_ = 1;
 };
 
 }  // namespace

@@ -10,11 +10,6 @@ namespace {
 constexpr double kPiDouble = 3.14159265358979323846;
 const double kReach = std::tan(kPiDouble / 180);  // ρ over the distance
 
-// N π r² at a vertex.
-double PerDensityOf(const SubpathDensities& vertex, const Merging& merging) {
-  return vertex.isInMedium ? merging.perVolumeDensity * static_cast<double>(vertex.mergeVolume) : merging.perDensity;
-}
-
 }  // namespace
 
 Merging Merging::At(double radius, double distance, double lightPaths, double lightPathsPerSample, double filmPixels,
@@ -37,25 +32,13 @@ void PathDensities::Set(std::span<const SubpathDensities> light, std::span<const
   Vertex* const vertices = vertices_.data();
   for (size_t i = 0; i < light.size(); ++i) {
     const SubpathDensities& v = light[i];
-    vertices[i + 1] = {v.forward,
-                       v.reverse,
-                       1,
-                       v.forwardIsDelta,
-                       v.reverseIsDelta,
-                       v.canMerge,
-                       v.isInMedium,
-                       PerDensityOf(v, merging)};
+    vertices[i + 1] = {v.forward,    v.reverse,    1, v.forwardIsDelta, v.reverseIsDelta, v.canMerge,
+                       v.isInMedium, v.mergeVolume};
   }
   for (size_t i = 0; i < camera.size(); ++i) {
     const SubpathDensities& v = camera[i];
-    vertices[n - i] = {v.reverse,
-                       v.forward,
-                       1,
-                       v.reverseIsDelta,
-                       v.forwardIsDelta,
-                       v.canMerge,
-                       v.isInMedium,
-                       PerDensityOf(v, merging)};
+    vertices[n - i] = {v.reverse,    v.forward,    1, v.reverseIsDelta, v.forwardIsDelta, v.canMerge,
+                       v.isInMedium, v.mergeVolume};
   }
   if (const size_t j = light.size(); j > 0) {
     Vertex& last = vertices[j];
@@ -63,7 +46,7 @@ void PathDensities::Set(std::span<const SubpathDensities> light, std::span<const
     last.cameraIsDelta = false;
     if (!joint.isMerged) {
       last.canMerge = joint.mergesAtLight;
-      if (last.isInMedium) last.perDensity = merging.perVolumeDensity * static_cast<double>(joint.lightMergeVolume);
+      last.mergeVolume = joint.lightMergeVolume;
     }
     if (!joint.isMerged && j > 1) {
       vertices[j - 1].fromCamera = joint.light.previous.value;
@@ -92,8 +75,9 @@ void PathDensities::Correlate() {
   if (n < 2) return;
   const double area = merging_.area, least = 1 / merging_.lightPaths;
   const double ball = 4. / 3 * area * merging_.radius;
-  const auto probability = [area, ball](bool isDelta, bool isInMedium, double density) {
-    return isDelta ? 1.0 : std::min(1.0, density * (isInMedium ? ball : area));
+  const double measures[2] = {area, ball};  // on a surface, in a medium
+  const auto probability = [&measures](bool isDelta, bool isInMedium, double density) {
+    return isDelta ? 1.0 : std::min(1.0, density * measures[isInMedium]);
   };
   // The direction of a light at infinity is found again within a degree.
   const double ofLight = extent_ == LightEnd::Extent::Surface ? area
@@ -147,7 +131,7 @@ TechniqueSums PathDensities::Sums(const PathEnds& ends, size_t s, size_t mergedA
   double density = emission_ / vertices_[1].fromCamera;  // of s = 2
   for (size_t k = 2; k <= n + 1; ++k) {
     if (mergedAt > 0 ? k == mergedAt + 1 : k == s) {
-      own = density * (mergedAt > 0 ? vertices_[mergedAt].fromCamera * vertices_[mergedAt].perDensity
+      own = density * (mergedAt > 0 ? vertices_[mergedAt].fromCamera * WithoutCorrelation(vertices_[mergedAt])
                        : k == n + 1 ? ends.splatCount
                                     : 1.0);
       break;
@@ -163,7 +147,8 @@ TechniqueSums PathDensities::Sums(const PathEnds& ends, size_t s, size_t mergedA
     const Vertex& last = vertices_[k - 1];
     if (!isDelta(k - 1) && k <= n && !isDelta(k)) sums.Of(TechniqueGroup::Connect).Add(ratio);
     if (!isDelta(k - 1) && k == n + 1) sums.Of(TechniqueGroup::Light).Add(ratio * ends.splatCount);
-    if (last.canMerge) sums.Of(TechniqueGroup::Merge).Add(ratio * last.fromCamera * last.perDensity * last.correlation);
+    if (last.canMerge)
+      sums.Of(TechniqueGroup::Merge).Add(ratio * last.fromCamera * WithoutCorrelation(last) * last.correlation);
     if (k <= n) ratio *= vertices_[k].fromLight / vertices_[k].fromCamera;
   }
   return sums;

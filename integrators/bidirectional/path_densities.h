@@ -91,7 +91,7 @@ class PathDensities {
   double ForConnection(size_t lightCount) const;
   double ForMerging(size_t i) const;
   // N π r² c at vertex `i`.
-  double PerDensityAt(size_t i) const { return vertices_[i].perDensity * vertices_[i].correlation; }
+  double PerDensityAt(size_t i) const { return WithoutCorrelation(vertices_[i]) * vertices_[i].correlation; }
 
   // The sums over all techniques, for a path that technique `s` has made, or merging at vertex `mergedAt` if that is
   // not 0. All 0 where the camera could not have made the path.
@@ -105,8 +105,13 @@ class PathDensities {
     double correlation = 1;  // c
     bool lightIsDelta = false, cameraIsDelta = false, canMerge = false;
     bool isInMedium = false;
-    double perDensity = 0;  // of merging there, without c
+    float mergeVolume = 0;  // SubpathDensities::mergeVolume
   };
+  // N π r² at a vertex, without c.
+  double WithoutCorrelation(const Vertex& vertex) const {
+    return vertex.isInMedium ? merging_.perVolumeDensity * static_cast<double>(vertex.mergeVolume)
+                             : merging_.perDensity;
+  }
   void Correlate();
   // The terms at the vertices from `i` on. `ratio`: p_i / p, without c.
   double TowardsCamera(size_t i, double ratio) const;

@@ -6,23 +6,24 @@ namespace lampyr {
 
 namespace {
 
-void AddSplat(const BidirectionalSample& sample, ConnectedPath& path) {
-  AddSplats(*path.connection, sample.Report(path), sample.Lighting().GroupOf(path.end.light), *sample.context.splats,
-            sample.context.counts);
-}
-
 AreaDensity DensityWithoutMedia(const BidirectionalSample& sample, const SeenFromLens& seen) {
   return AreaDensity(static_cast<double>(seen.connection.Weight()) * EdgeDensity(seen.geometryTerm, 1).value /
                      sample.settings.filmPixels);
 }
 
-void SetLens(const BidirectionalSample& sample, const SeenFromLens& seen, ConnectedPath& path) {
+void AddSplat(const BidirectionalSample& sample, const SeenFromLens& seen, double weight, uint32_t light) {
+  AddSplats(seen.connection, seen.value * static_cast<float>(weight), sample.Lighting().GroupOf(light),
+            *sample.context.splats, sample.context.counts);
+}
+
+void SetLens(const SeenFromLens& seen, AreaDensity atLens, double weight, ConnectedPath& path) {
   path.t = 1;
   path.toLens = seen.toCamera;
   path.lensFactors = seen.factors;
-  path.atLens = seen.factors.forward * DensityWithoutMedia(sample, seen);
+  path.atLens = atLens;
   path.connection = &seen.connection;
   path.value = seen.value;
+  path.weight = weight;
 }
 
 }  // namespace
@@ -30,17 +31,22 @@ void SetLens(const BidirectionalSample& sample, const SeenFromLens& seen, Connec
 void SplatLight(const BidirectionalSample& sample, const EmittedPhoton& photon) {
   const auto seen = SeeLight(sample.context, photon, kLightDimensions.Of(0, dimensions::kRoulette));
   if (!seen) return;
-  ConnectedPath path;
-  path.s = 1;
-  SetLens(sample, *seen, path);
-  path.end.light = photon.light;
-  path.end.position =
+  const AreaDensity atLens = seen->factors.forward * DensityWithoutMedia(sample, *seen);
+  const AreaDensity position =
       sample.lightPaths * static_cast<double>(photon.emissionSelection.value) * AreaDensity(photon.emission.pdfEmit);
-  path.end.canBeHit = true;
-  path.weight = SplatLightWeight(path.end.position, path.atLens, sample.settings.splatCount);
-  path.sums.Of(TechniqueGroup::Light).Add(1);
-  path.sums.Of(TechniqueGroup::Hit).Add(path.atLens / path.end.position / sample.settings.splatCount);
-  AddSplat(sample, path);
+  const double weight = SplatLightWeight(position, atLens, sample.settings.splatCount);
+  if (sample.IsObserved()) [[unlikely]] {
+    ConnectedPath path;
+    path.s = 1;
+    SetLens(*seen, atLens, weight, path);
+    path.end.light = photon.light;
+    path.end.position = position;
+    path.end.canBeHit = true;
+    path.sums.Of(TechniqueGroup::Light).Add(1);
+    path.sums.Of(TechniqueGroup::Hit).Add(atLens / position / sample.settings.splatCount);
+    sample.Report(path);
+  }
+  AddSplat(sample, *seen, weight, photon.light);
 }
 
 void SplatVertex(const BidirectionalSample& sample) {
@@ -49,30 +55,35 @@ void SplatVertex(const BidirectionalSample& sample) {
   const auto seen =
       SeeVertex(sample.context, vertex, kLightDimensions.Of(static_cast<int>(light.Count()), dimensions::kLight));
   if (!seen) return;
-  ConnectedPath path;
-  sample.SetLight(path, light.Count());
-  SetLens(sample, *seen, path);
+  const AreaDensity withoutMedia = DensityWithoutMedia(sample, *seen), atLens = seen->factors.forward * withoutMedia;
   Joint joint;
-  joint.light = {path.atLens, vertex.PreviousReverse(seen->f.pdfReverse)};
+  joint.light = {atLens, vertex.PreviousReverse(seen->f.pdfReverse)};
   joint.mergesAtLight = vertex.CanMerge();
   joint.lightMergeVolume = MergeVolume(vertex, seen->factors, sample.settings.photons.volume);
-  double merging = 0;
   const Point2& film = seen->connection.camera.film;
+  Merging merging;
+  double merged = 0;
   if (sample.context.gather) {
     const auto distance = static_cast<double>(glm::distance(seen->connection.camera.position, vertex.point.position));
-    path.merging =
-        sample.MergingAt(distance, sample.FootprintAt(seen->geometryTerm, DensityWithoutMedia(sample, *seen)), film);
+    merging = sample.MergingAt(distance, sample.FootprintAt(seen->geometryTerm, withoutMedia), film);
   }
-  if (path.merging) {
-    sample.whole.Set(sample.lightDensities, {}, joint, sample.lightEnd.emission.value, sample.lightEnd.extent,
-                     path.merging);
-    merging = sample.whole.ForConnection(light.Count());
-    if (sample.context.observer && sample.context.observer->WantsSums()) [[unlikely]]
+  if (merging) {
+    sample.whole.Set(sample.lightDensities, {}, joint, sample.lightEnd.emission.value, sample.lightEnd.extent, merging);
+    merged = sample.whole.ForConnection(light.Count());
+  }
+  const double connectionCount = Sqr(sample.ConnectionsPerLightPathAt(film));
+  const double weight = SplatWeight(vertex.weight, joint.light, connectionCount, sample.settings.splatCount, merged);
+  if (sample.IsObserved()) [[unlikely]] {
+    ConnectedPath path;
+    sample.SetLight(path, light.Count());
+    SetLens(*seen, atLens, weight, path);
+    path.merging = merging;
+    path.connectionCount = connectionCount;
+    if (merging && sample.context.observer->WantsSums())
       path.sums = sample.SumsOfConnection(light.Count(), joint.light, true);
+    sample.Report(path);
   }
-  path.connectionCount = Sqr(sample.ConnectionsPerLightPathAt(film));
-  path.weight = SplatWeight(vertex.weight, joint.light, path.connectionCount, sample.settings.splatCount, merging);
-  AddSplat(sample, path);
+  AddSplat(sample, *seen, weight, sample.lightEnd.light);
 }
 
 }  // namespace lampyr

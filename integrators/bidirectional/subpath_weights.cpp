@@ -23,8 +23,8 @@ void SetWeights(const PathVertex& previous, const PathState& state, bool connect
   if (!connects) vertex.weight.connections.last = 0;
 }
 
-float MergeVolume(const Vertex& vertex, const EdgeFactors& factors, const VolumeRadius& radius) {
-  if (!vertex.IsInMedium() || !(factors.forward > 0)) return 0;
+float MergeVolumeInMedium(const Vertex& vertex, const EdgeFactors& factors, const VolumeRadius& radius) {
+  if (!(factors.forward > 0)) return 0;
   const auto r = static_cast<double>(radius.At(vertex.point.position));
   return static_cast<float>(static_cast<double>(kPi) * r * r * factors.through / factors.forward);
 }
@@ -35,10 +35,11 @@ void AddDensities(const Subpath& path, const VolumeRadius* radius, bool isFromLi
   densities.resize(count);
   SubpathDensities& last = densities[count - 1];
   last = {.forward = path.Last().pdfForward.value, .isInMedium = path.Last().IsInMedium()};
-  if (radius && !isFromLight) last.mergeVolume = MergeVolume(path.Last(), path.Last().factors, *radius);
+  if (radius && !isFromLight && last.isInMedium) [[unlikely]]
+    last.mergeVolume = MergeVolume(path.Last(), path.Last().factors, *radius);
   if (count < 2) return;
   const PathVertex& previous = path[count - 2];
-  if (radius && isFromLight)
+  if (radius && isFromLight && previous.IsInMedium()) [[unlikely]]
     densities[count - 2].mergeVolume = MergeVolume(previous, path.Last().factors.Reversed(), *radius);
   last.forwardIsDelta = previous.scatteredDelta;
   densities[count - 2].canMerge = previous.CanMerge() && !previous.scatteredDelta;

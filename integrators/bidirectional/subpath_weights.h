@@ -15,7 +15,10 @@ void AddDensities(const Subpath& path, const VolumeRadius* radius, bool isFromLi
                   std::vector<SubpathDensities>& densities);
 
 // SubpathDensities::mergeVolume of a vertex. `factors`: of the edge towards it from the camera's side.
-float MergeVolume(const Vertex& vertex, const EdgeFactors& factors, const VolumeRadius& radius);
+float MergeVolumeInMedium(const Vertex& vertex, const EdgeFactors& factors, const VolumeRadius& radius);
+inline float MergeVolume(const Vertex& vertex, const EdgeFactors& factors, const VolumeRadius& radius) {
+  return vertex.IsInMedium() ? MergeVolumeInMedium(vertex, factors, radius) : 0.0f;
+}
 
 // dω/dA at the first hit of an emitted path: EdgeDensity, for a light at infinity without the squared distance.
 SolidAnglePerArea FirstEdgeDensity(const LightingServices& lighting, uint32_t light, float geometryTerm,

@@ -84,11 +84,13 @@ struct BidirectionalSample {
   // light subpath.
   void SetCamera(ConnectedPath& path) const;
   void SetLight(ConnectedPath& path, size_t count) const;
-  // The weighted contribution of a path. The observer, if any, receives the path.
-  Color Report(ConnectedPath& path) const;
-  // Report for a path that contributes to the sample's own pixel: scales the contribution by the survival weight
-  // `survivalWeight` (ShadowRays::SurvivalWeight) and adds it to the layer of the light.
+  // The observer, if any, receives the path. A path is large: techniques that make many do without where none observes.
+  void Report(ConnectedPath& path) const;
+  // Reports a path that contributes to the sample's own pixel. Returns the weighted contribution, scaled by the
+  // survival weight `survivalWeight` (ShadowRays::SurvivalWeight), and adds it to the layer of the light.
   Color AddToPixel(ConnectedPath& path, float survivalWeight = 1) const;
+  // The same of a path that is not observed. `light`: that it comes from.
+  Color AddToPixel(uint32_t light, const Color& value, double weight, float survivalWeight) const;
 };
 
 // Area density of the vertex that a camera ray hits, over the density of the lens point: the factor of t = 2 that t = 1
@@ -126,7 +128,16 @@ bool SetBeamVertex(const SampleContext& context, const PathState& state, const F
 // dimensions; the kernel is constant).
 Color MergeWithBeam(const BidirectionalSample& sample, const BeamMerge& merge);
 
-// Vertex merging: photons near the camera subpath's last vertex ([Georgiev12 §3]).
-Color Merge(const BidirectionalSample& sample);
+// Vertex merging: photons near the camera subpath's last vertex ([Georgiev12 §3]). They lie anywhere in memory, as do
+// the densities of their paths, and reading them takes longer than weighting them. So they are looked up first, fetched
+// into the cache while the other techniques of the vertex are at work, and merged last.
+//
+// True if photons can be merged with the last vertex.
+bool CanMergePhotons(const BidirectionalSample& sample);
+// Indices of the photons; valid until the next lookup.
+std::span<const uint32_t> FindPhotonsToMerge(const BidirectionalSample& sample);
+// Fetches the densities of the photons' paths, and where their use is counted. Reads the photons themselves.
+void FetchPathsOf(const BidirectionalSample& sample, std::span<const uint32_t> found);
+Color Merge(const BidirectionalSample& sample, std::span<const uint32_t> found);
 
 }  // namespace lampyr

@@ -1,6 +1,5 @@
 #include "integrators/path/camera_path.h"
 
-#include <algorithm>
 #include <bit>
 
 #include "integrators/path/lit_segment.h"
@@ -13,7 +12,7 @@ namespace {
 
 class CameraPath final : public PathVisitor, NextEventVisitor {
  public:
-  CameraPath(const SampleContext& context, const CameraPathSettings& settings, const PhotonGatherer* gatherer)
+  CameraPath(const SampleContext& context, const CameraPathSettings& settings, PhotonGatherer* gatherer)
       : context_(context),
         lighting_(*context.scene.lighting),
         settings_(settings),
@@ -66,15 +65,15 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
 
   bool Arrived(Subpath& path, const PathState& state) override {
     const PathVertex& vertex = path.Last();
-    arrival_ = Arrival();
-    if (vertex.IsInMedium() && segment_.Share() > 0)
-      arrival_ = {segment_, arrivesAfter_, vertex.factors.forward, SeedAt(vertex.point.position)};
-    segment_ = LitSegment();
+    if (segment_.Share() > 0 || arrival_.segment.Share() > 0) [[unlikely]]
+      SetArrival(vertex);
     if (vertex.isDelta) return true;
     const auto events = static_cast<int>(path.Count());
+    const bool gathers = gatherer_ && vertex.GathersPhotons();
+    if (gathers) gatherer_->Find(vertex, state.length);
     if (SamplesLights(vertex))
       radiance_ += SampleDirectLight(context_, nextEvent_, vertex, events - 1, radiance_, *this);
-    if (gatherer_ && vertex.GathersPhotons()) radiance_ += gatherer_->Gather(vertex, events, state.length);
+    if (gathers) radiance_ += gatherer_->Gather(vertex, events, state.length);
     return true;
   }
 
@@ -91,11 +90,7 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
  private:
   bool SamplesLights(const PathVertex& vertex) const { return settings_.samplesLights || !vertex.GathersPhotons(); }
 
-  bool HasEmissionToFind() const {
-    const auto& media = context_.scene.media;
-    return lighting_.HasLightThatCanBeHit() ||
-           std::any_of(media.begin(), media.end(), [](const auto& medium) { return medium->IsEmissive(); });
-  }
+  bool HasEmissionToFind() const { return lighting_.HasLightThatCanBeHit() || settings_.mediaGlow; }
 
   // How a vertex in a medium was found, and how the other technique would have found it.
   struct Arrival {
@@ -112,8 +107,14 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
     }
   };
 
-  static uint64_t SeedAt(const Point3& position) {
-    return MixBits(ShadowRays::DeciderOf(position.x, position.y)) ^ std::bit_cast<uint32_t>(position.z);
+  void SetArrival(const PathVertex& vertex) {
+    arrival_ = Arrival();
+    if (vertex.IsInMedium() && segment_.Share() > 0) {
+      const Point3& at = vertex.point.position;
+      arrival_ = {segment_, arrivesAfter_, vertex.factors.forward,
+                  MixBits(ShadowRays::DeciderOf(at.x, at.y)) ^ std::bit_cast<uint32_t>(at.z)};
+    }
+    segment_ = LitSegment();
   }
 
   // A vertex on the ray whose distance is sampled for a light, and its direct light from there.
@@ -198,7 +199,7 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
   const LightingServices& lighting_;
   const CameraPathSettings& settings_;
   const NextEventSettings nextEvent_;
-  const PhotonGatherer* gatherer_;
+  PhotonGatherer* gatherer_;
   bool emissionOnly_ = false;  // the ray is traced for emission alone: other light from there is gathered
   LitSegment segment_;         // of the last ray
   double arrivesAfter_ = 0;    // where the walk ends on it
@@ -212,7 +213,7 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
 }  // namespace
 
 Color TraceCameraPath(const SampleContext& context, const CameraPathSettings& settings, const Ray& ray,
-                      const PhotonGatherer* gatherer) {
+                      PhotonGatherer* gatherer) {
   thread_local Subpath path(false);
   path.Clear();
   PathState state;

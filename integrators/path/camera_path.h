@@ -10,10 +10,13 @@ namespace lampyr {
 class PhotonGatherer {
  public:
   virtual ~PhotonGatherer() = default;
-  // Light of photons scattered at `vertex` towards the previous one, times the vertex's throughput. Only photons from
-  // directions that the BSDF samples with a density of at most CameraPathSettings::gatherBelow. `events`: scattering
-  // events of the path, this one included. `length`: path length from the camera, scene units.
-  virtual Color Gather(const PathVertex& vertex, int events, float length) const = 0;
+  // Looks for the photons near `vertex`, and fetches them into the cache while other work goes on. `length`: path
+  // length from the camera, scene units.
+  virtual void Find(const PathVertex& vertex, float length) = 0;
+  // Light of the photons found last, scattered at `vertex` towards the previous one, times the vertex's throughput.
+  // Only photons from directions that the BSDF samples with a density of at most CameraPathSettings::gatherBelow.
+  // `events`: scattering events of the path, this one included.
+  virtual Color Gather(const PathVertex& vertex, int events, float length) = 0;
 };
 
 struct CameraPathSettings {
@@ -26,12 +29,13 @@ struct CameraPathSettings {
   // photons.
   bool samplesLights = true;
   ShadowRays shadowRays;
+  bool mediaGlow = false;  // some medium of the scene emits light, which rays traced for emission alone find
   const std::vector<std::shared_ptr<const Material>>* materialsAfterWide = nullptr;  // as in WalkSettings
 };
 
 // Estimates the radiance arriving along `ray`. `gatherer` may be null if gatherBelow is 0; it adds to
 // SampleContext::layers itself.
 Color TraceCameraPath(const SampleContext& context, const CameraPathSettings& settings, const Ray& ray,
-                      const PhotonGatherer* gatherer);
+                      PhotonGatherer* gatherer);
 
 }  // namespace lampyr

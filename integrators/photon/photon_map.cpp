@@ -6,6 +6,7 @@
 #include <chrono>
 #include <flann/flann.hpp>
 #include <limits>
+#include <new>
 #include <numeric>
 
 #include "base/parallel.h"
@@ -84,7 +85,8 @@ PhotonMap::Traced PhotonMap::Collect(std::span<const PhotonList> lists, bool wan
     volume += list.Volume().size();
     densities += list.Densities().size();
   }
-  densities_.reserve(densities);
+  densities_ = LargeArray<SubpathDensities>::ForOverwrite(densities);
+  size_t firstDensity = 0;
   traced.photons.reserve(count);
   for (const PhotonList& list : lists) {
     for (const TracedPhoton& photon : list.Photons()) {
@@ -102,9 +104,12 @@ PhotonMap::Traced PhotonMap::Collect(std::span<const PhotonList> lists, bool wan
       }
       traced.hasSpecular |= photon.specular != photon.diffuse;
       if (wantsOrigins) traced.origins.push_back(firstOrigin + photon.origin);
-      if (densities > 0) traced.paths.push_back(static_cast<uint32_t>(densities_.size()) + photon.path);
+      if (densities > 0) traced.paths.push_back(static_cast<uint32_t>(firstDensity) + photon.path);
     }
-    densities_.insert(densities_.end(), list.Densities().begin(), list.Densities().end());
+    if (!list.Densities().empty()) {
+      std::copy(list.Densities().begin(), list.Densities().end(), &densities_[firstDensity]);
+      firstDensity += list.Densities().size();
+    }
     firstOrigin += static_cast<uint32_t>(list.Origins().size());
   }
   return traced;
@@ -136,15 +141,19 @@ std::vector<uint32_t> MortonOrder(const std::vector<const TracedPhoton*>& photon
                     Spread(static_cast<uint32_t>(p.z)),
                 static_cast<uint32_t>(i)};
   });
-  for (uint32_t shift = 0; shift < 3 * kBits; shift += kBits) {
-    std::array<uint32_t, kCells> starts{};
-    for (const SortItem& item : order) ++starts[item.cell >> shift & (kCells - 1)];
-    std::exclusive_scan(starts.begin(), starts.end(), starts.begin(), 0u);
-    for (const SortItem& item : order) sorted[starts[item.cell >> shift & (kCells - 1)]++] = item;
+  constexpr uint32_t kDigits = 3;
+  const auto digit = [](const SortItem& item, uint32_t d) { return item.cell >> d * kBits & (kCells - 1); };
+  std::array<std::array<uint32_t, kCells>, kDigits> starts{};
+  for (const SortItem& item : order) {
+    for (uint32_t d = 0; d < kDigits; ++d) ++starts[d][digit(item, d)];
+  }
+  for (auto& ofDigit : starts) std::exclusive_scan(ofDigit.begin(), ofDigit.end(), ofDigit.begin(), 0u);
+  for (uint32_t d = 0; d + 1 < kDigits; ++d) {
+    for (const SortItem& item : order) sorted[starts[d][digit(item, d)]++] = item;
     order.swap(sorted);
   }
   std::vector<uint32_t> items(order.size());
-  for (size_t i = 0; i < items.size(); ++i) items[i] = order[i].item;
+  for (const SortItem& item : order) items[starts[kDigits - 1][digit(item, kDigits - 1)]++] = item.item;
   return items;
 }
 
@@ -174,7 +183,7 @@ PhotonMap::PhotonMap(std::span<const PhotonList> lists, int threads, std::vector
     origins->resize(count);
     ForAll(count, threads, [&](size_t i) { (*origins)[i] = traced.origins[order[i]]; });
   }
-  photons_.resize(count);
+  photons_ = LargeArray<Photon>::ForOverwrite(count);
   std::vector<float> positions(3 * static_cast<size_t>(firstVolume_));
   ForAll(count, threads, [&](size_t i) {
     // In the order of places the photons are read at random.
@@ -188,7 +197,7 @@ PhotonMap::PhotonMap(std::span<const PhotonList> lists, int threads, std::vector
     const Vector3 relative = source.position - center_;
     for (int axis = 0; axis < 3 && i < firstVolume_; ++axis)
       positions[3 * i + static_cast<size_t>(axis)] = relative[axis];
-    Photon& photon = photons_[i];
+    Photon& photon = *new (&photons_[i]) Photon();
     photon.toPrevious = source.toPrevious;
     photon.flux = source.diffuse;
     if (!traced.paths.empty()) photon.path = traced.paths[order[i]];
@@ -211,7 +220,7 @@ PhotonMap::PhotonMap(std::span<const PhotonList> lists, int threads, std::vector
 std::span<const uint32_t> PhotonMap::Find(const Point3& position, float radius, PhotonLookup& lookup) const {
   lookup.found.clear();
   if (!search_) return {};
-  WithinRadius result(radius * radius, photons_.data(), lookup.found);
+  WithinRadius result(radius * radius, &photons_[0], lookup.found);
   search_->Run(position - center_, result);
   return lookup.found;
 }
@@ -227,8 +236,8 @@ std::span<const BeamHit> PhotonMap::FindAlong(const Ray& ray, float tMax, Photon
 size_t PhotonMap::Bytes() const {
   constexpr size_t node = 48;
   const size_t perPhoton = sizeof(Photon) + 3 * sizeof(float) + sizeof(float*) + sizeof(int);
-  return photons_.size() * perPhoton + photons_.size() / (kLeaf / 2) * 2 * node + specular_.size() * sizeof(Color) +
-         densities_.size() * sizeof(SubpathDensities) + volume_.size() * sizeof(VolumePhoton) + beamSearch_.Bytes();
+  return photons_.Size() * perPhoton + photons_.Size() / (kLeaf / 2) * 2 * node + specular_.size() * sizeof(Color) +
+         densities_.Size() * sizeof(SubpathDensities) + volume_.size() * sizeof(VolumePhoton) + beamSearch_.Bytes();
 }
 
 }  // namespace lampyr

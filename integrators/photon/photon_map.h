@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "base/large_array.h"
 #include "integrators/photon/beam_search.h"
 #include "integrators/photon/photon.h"
 
@@ -55,22 +56,23 @@ class PhotonMap {
 
   // Densities of the vertices of a photon's path, up to its own; empty if they were not kept.
   std::span<const SubpathDensities> PathOf(const Photon& photon) const {
-    return densities_.empty() ? std::span<const SubpathDensities>() : std::span(&densities_[photon.path], photon.depth);
+    return densities_.Size() == 0 ? std::span<const SubpathDensities>()
+                                  : std::span(&densities_[photon.path], photon.depth);
   }
 
   // Fetches what PathOf gives into the cache.
   void PrefetchPathOf(const Photon& photon) const {
-    if (densities_.empty()) return;
+    if (densities_.Size() == 0) return;
     __builtin_prefetch(&densities_[photon.path]);
-    __builtin_prefetch(&densities_[photon.path + photon.depth - 1u].extent);
+    __builtin_prefetch(&densities_[photon.path + photon.depth - 1u].canMerge);
   }
 
   // The light's end of a photon's path, if its densities were kept. Of a path that ends at its first hit `hit` is
   // unknown.
   PathEnds EndsOf(const Photon& photon) const { return PathEnds::Unpacked(densities_[photon.path - 1]); }
 
-  size_t Size() const { return photons_.size(); }
-  bool IsEmpty() const { return photons_.empty(); }
+  size_t Size() const { return photons_.Size(); }
+  bool IsEmpty() const { return photons_.Size() == 0; }
   size_t Rejected() const { return rejected_; }
   // Memory of the photons and of the search tree.
   size_t Bytes() const;
@@ -82,9 +84,9 @@ class PhotonMap {
   Traced Collect(std::span<const PhotonList> lists, bool wantsOrigins);
 
   Point3 center_{0.0f};  // positions are kept relative to it
-  std::vector<Photon> photons_;
+  LargeArray<Photon> photons_;
   std::vector<Color> specular_;
-  std::vector<SubpathDensities> densities_;
+  LargeArray<SubpathDensities> densities_;
   // Photons in media are those from firstVolume_ on.
   uint32_t firstVolume_ = 0;
   std::vector<VolumePhoton> volume_;

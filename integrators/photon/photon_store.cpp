@@ -88,6 +88,9 @@ const PhotonPass& PhotonStore::Open(uint32_t pass, int threads) {
 // Null if the photons were traced before origins were recorded.
 std::shared_ptr<PhotonUse> PhotonStore::MakeUse(std::vector<uint32_t> origins) const {
   std::vector<PathOrigin> all;
+  size_t count = 0;
+  for (const PhotonList& list : waiting_) count += list.Origins().size();
+  all.reserve(count);
   for (const PhotonList& list : waiting_) all.insert(all.end(), list.Origins().begin(), list.Origins().end());
   return all.empty() ? nullptr : std::make_shared<PhotonUse>(std::move(origins), std::move(all));
 }

@@ -60,6 +60,13 @@ class PhotonUse {
       sums_[path].fetch_add(static_cast<uint64_t>(std::min(part, most) * kUnit), std::memory_order_relaxed);
     }
   }
+  // Fetches into the cache what Add needs of the photons: first the indices of their paths, then their sums.
+  void Fetch(std::span<const uint32_t> photons) const {
+    for (const uint32_t photon : photons) __builtin_prefetch(&paths_[photon]);
+  }
+  void FetchSums(std::span<const uint32_t> photons) const {
+    for (const uint32_t photon : photons) __builtin_prefetch(&sums_[paths_[photon]]);
+  }
   const std::vector<PathOrigin>& Origins() const { return origins_; }
   // Sum over all photons of a path.
   double Sum(size_t path) const {

@@ -10,6 +10,7 @@
 // from pass to pass as i^((α - 1) / 2): the error vanishes, the squared error as i^(-α) at best.
 //
 // Of lights with traceLightPaths off only direct light is found.
+#include <algorithm>
 #include <cmath>
 
 #include "integrators/path/camera_path.h"
@@ -48,7 +49,8 @@ class SppmIntegrator final : public Integrator {
  public:
   SppmIntegrator(const SppmSettings& settings, std::unique_ptr<const GlowingMedia> glowing)
       : settings_(settings),
-        path_{settings.maxDepth, kCameraDimensions, kWide, !settings.directFromPhotons, settings.shadowRays},
+        path_{settings.maxDepth,           kCameraDimensions,   kWide,
+              !settings.directFromPhotons, settings.shadowRays, glowing != nullptr},
         glowing_(std::move(glowing)) {}
 
   TracedPaths Paths() const override { return TracedPaths::Both; }
@@ -90,21 +92,25 @@ class PhotonRecorder final : public LightPathVisitor {
 // Gathers the photons of the pass along one camera path.
 class RadianceEstimate final : public PhotonGatherer {
  public:
-  RadianceEstimate(const SppmSettings& settings, const SampleContext& context, const Ray& ray)
-      : settings_(settings), context_(context), pass_(*context.gather) {
+  // `lookup`: of the thread.
+  RadianceEstimate(const SppmSettings& settings, const SampleContext& context, const Ray& ray, PhotonLookup& lookup)
+      : settings_(settings), context_(context), pass_(*context.gather), lookup_(lookup) {
     if (settings.photons.radius > 0) return;
     const double area = PixelArea(*context.scene.camera, ray, settings.filmPixels, 1);
     perLength_ = static_cast<float>(kRadiusInPixels * std::sqrt(area)) * pass_.radiusScale;
   }
 
-  Color Gather(const PathVertex& vertex, int events, float length) const override {
-    thread_local PhotonLookup lookup;
+  void Find(const PathVertex& vertex, float length) override {
+    found_ = FindPhotons(*pass_.map, vertex.point.position, RadiusAt(length), lookup_, context_.counts);
+    if (pass_.use) pass_.use->Fetch(found_.first(std::min(found_.size(), kFetched)));
+  }
+
+  Color Gather(const PathVertex& vertex, int events, float length) override {
     const float radius = RadiusAt(length);
-    const std::span<const uint32_t> found =
-        FindPhotons(*pass_.map, vertex.point.position, radius, lookup, context_.counts);
-    lookup.used.clear();
+    if (pass_.use) pass_.use->FetchSums(found_.first(std::min(found_.size(), kFetched)));
+    lookup_.used.clear();
     Color sum;
-    for (const uint32_t index : found) {
+    for (const uint32_t index : found_) {
       const Photon& photon = (*pass_.map)[index];
       // Both depths count the vertex.
       if (static_cast<int>(photon.depth) + events > settings_.maxDepth + 1) continue;
@@ -115,9 +121,9 @@ class RadianceEstimate final : public PhotonGatherer {
              vertex.ArrivalCorrection(photon.toPrevious, photon.normal.Unpack());
       if (context_.layers) [[unlikely]]
         AddToLayers(photon, vertex, f, PerArea(radius));
-      if (pass_.use) lookup.used.push_back({index, (vertex.Throughput() * f.Sum()).Average() * Importance(length)});
+      if (pass_.use) lookup_.used.push_back({index, (vertex.Throughput() * f.Sum()).Average() * Importance(length)});
     }
-    if (pass_.use) pass_.use->Add(lookup.used);
+    if (pass_.use) pass_.use->Add(lookup_.used);
     if (sum.IsBlack()) return sum;
     return Product(vertex.Throughput(), sum, PerArea(radius));
   }
@@ -150,7 +156,12 @@ class RadianceEstimate final : public PhotonGatherer {
 
   const SppmSettings& settings_;
   const SampleContext& context_;
+  // Photons of a lookup whose use is fetched ahead.
+  static constexpr size_t kFetched = 64;
+
   const PhotonPass& pass_;
+  PhotonLookup& lookup_;
+  std::span<const uint32_t> found_;  // in `lookup_`
   float perLength_ = 0;
 };
 
@@ -161,7 +172,8 @@ Color SppmIntegrator::Sample(const Ray* ray, const SampleContext& context) const
     TraceLightPath(context, settings_.maxDepth, kLightDimensions, path, recorder, glowing_.get());
   }
   if (!ray || !context.gather) return Color(0.0f);
-  const RadianceEstimate estimate(settings_, context, *ray);
+  thread_local PhotonLookup lookup;
+  RadianceEstimate estimate(settings_, context, *ray, lookup);
   return TraceCameraPath(context, path_, *ray, &estimate);
 }
 

@@ -1,5 +1,6 @@
 #include "integrators/walk/lens.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -9,8 +10,10 @@ namespace lampyr {
 
 namespace {
 
-std::optional<FilmConnection> ConnectToCamera(const SampleContext& context, const Point3& position,
-                                              uint32_t dimension) {
+// Sets `seen` with its connection to the camera, or leaves it unset if the film does not see the position. In place:
+// connections are large, and a copy of what was just written stalls.
+void ConnectToCamera(const SampleContext& context, const Point3& position, uint32_t dimension,
+                     std::optional<SeenFromLens>& seen) {
   const Camera& camera = *context.scene.camera;
   const SplatList& splats = *context.splats;
   Point2 lens(0.5f);
@@ -21,14 +24,15 @@ std::optional<FilmConnection> ConnectToCamera(const SampleContext& context, cons
     lens = sampler.Get2D();
   }
   const auto connection = camera.Connect(position, lens);
-  if (!connection) return std::nullopt;
-  FilmConnection result{*connection, camera.CopiesOf(connection->film)};
+  if (!connection) return;
+  const FilmCopies copies = camera.CopiesOf(connection->film);
   bool reaches = splats.Reaches(connection->film);
-  for (int i = 0; i < result.copies.count; ++i) {
-    reaches = reaches || splats.Reaches(result.copies.points[static_cast<size_t>(i)]);
-  }
-  if (!reaches) return std::nullopt;
-  return result;
+  for (int i = 0; i < copies.count; ++i) reaches = reaches || splats.Reaches(copies.points[static_cast<size_t>(i)]);
+  if (!reaches) return;
+  FilmConnection& set = seen.emplace().connection;
+  set.camera = *connection;
+  set.copies.count = copies.count;
+  std::copy_n(copies.points.begin(), static_cast<size_t>(copies.count), set.copies.points.begin());
 }
 
 // Seed of the estimate of the transmittance between a point and the lens. It comes from the point: directions to a
@@ -64,78 +68,101 @@ bool SeesOrigin(const SampleContext& context, const EmittedPhoton& photon, const
 std::optional<SeenFromLens> SeeLight(const SampleContext& context, const EmittedPhoton& photon,
                                      uint32_t lensDimension) {
   const Point3& position = photon.emission.position;
-  const auto connection = ConnectToCamera(context, position, lensDimension);
-  if (!connection) return std::nullopt;
-  const Vector3 fromLens = position - connection->camera.position;
+  std::optional<SeenFromLens> seen;
+  ConnectToCamera(context, position, lensDimension, seen);
+  if (!seen) return seen;
+  const Point3& lens = seen->connection.camera.position;
+  const Vector3 fromLens = position - lens;
   const float distance = glm::length(fromLens);
-  if (!(distance > 0)) return std::nullopt;
-  const Ray ray{connection->camera.position, fromLens / distance, kInfinity, context.time};
-  ++context.counts.cameraRays;
-  SeenFromLens seen{*connection, -ray.direction, Color(), AbsDot(ray.direction, photon.emission.normal), {}};
+  const Ray ray{lens, fromLens / distance, kInfinity, context.time};
   Color radiance;
-  if (!SeesOrigin(context, photon, ray, distance, seen, radiance)) return std::nullopt;
+  if (distance > 0) {
+    ++context.counts.cameraRays;
+    seen->toCamera = -ray.direction;
+    seen->geometryTerm = AbsDot(ray.direction, photon.emission.normal);
+  }
+  if (!(distance > 0) || !SeesOrigin(context, photon, ray, distance, *seen, radiance)) {
+    seen.reset();
+    return seen;
+  }
   const double density =
       static_cast<double>(photon.emissionSelection.value) * static_cast<double>(photon.emission.pdfEmit.value);
-  seen.value = radiance * static_cast<float>(static_cast<double>(seen.geometryTerm * connection->Weight()) / density);
+  seen->value =
+      radiance * static_cast<float>(static_cast<double>(seen->geometryTerm * seen->connection.Weight()) / density);
   return seen;
 }
 
 std::optional<SeenFromLens> SeeGlow(const SampleContext& context, const EmittedInMedium& emitted,
                                     uint32_t lensDimension) {
-  const auto connection = ConnectToCamera(context, emitted.position, lensDimension);
-  if (!connection) return std::nullopt;
-  const Vector3 difference = connection->camera.position - emitted.position;
+  std::optional<SeenFromLens> seen;
+  ConnectToCamera(context, emitted.position, lensDimension, seen);
+  if (!seen) return seen;
+  const FilmConnection& connection = seen->connection;
+  const Vector3 difference = connection.camera.position - emitted.position;
   const float squared = LengthSquared(difference);
   if (!(squared > 0)) return std::nullopt;
-  SeenFromLens seen{*connection, difference / std::sqrt(squared), Color(), 1, {}, {}};
+  seen->toCamera = difference / std::sqrt(squared);
+  seen->geometryTerm = 1;
   ++context.counts.shadowRays;
   SurfacePoint point;  // no surface: no normal, no error
   point.position = emitted.position;
   point.Ng = point.Ns = Normal3(0.0f);
-  const Ray ray = SpawnRayTo(point, connection->camera.position, Vector3(0.0f), Normal3(0.0f), context.time);
+  const Ray ray = SpawnRayTo(point, connection.camera.position, Vector3(0.0f), Normal3(0.0f), context.time);
   EdgeFactors factors;
   const uint64_t decider = Hash(std::bit_cast<uint32_t>(ray.direction.x), std::bit_cast<uint32_t>(ray.direction.y));
   const Color extinction = context.scene.media[static_cast<size_t>(emitted.medium)]->At(emitted.position).Extinction();
   const EdgeEnd glow{Point3d(emitted.position), emitted.medium, Color(1.0f),
                      EdgeEnd::IsFineIn(extinction, emitted.position)};
-  const EdgeEnd lens{Point3d(connection->camera.position)};
+  const EdgeEnd lens{Point3d(connection.camera.position)};
   const Color arriving = TransmittanceOf(context, ray, visibility::kCamera, glow, lens, decider, factors);
   if (arriving.IsBlack()) return std::nullopt;
-  seen.factors = factors.Reversed();
-  seen.value = Product(emitted.emission, arriving, static_cast<double>(connection->Weight()) / emitted.density);
+  seen->factors = factors.Reversed();
+  seen->value = Product(emitted.emission, arriving, static_cast<double>(connection.Weight()) / emitted.density);
   return seen;
 }
 
-std::optional<SeenFromLens> SeeVertex(const SampleContext& context, const PathVertex& vertex, uint32_t lensDimension) {
-  if (!vertex.isSeenByCamera || vertex.isDelta) return std::nullopt;
+namespace {
+
+// SeeVertex without the connection to the camera, which is `seen.connection`. False: the camera does not see the
+// vertex.
+bool CompleteConnection(const SampleContext& context, const PathVertex& vertex, SeenFromLens& seen) {
   const RenderScene& scene = context.scene;
   const Point3& position = vertex.point.position;
-  const auto connection = ConnectToCamera(context, position, lensDimension);
-  if (!connection) return std::nullopt;
-  const Vector3 difference = connection->camera.position - position;
+  const FilmConnection& connection = seen.connection;
+  const Vector3 difference = connection.camera.position - position;
   const float squared = LengthSquared(difference);
-  if (!(squared > 0)) return std::nullopt;
-  SeenFromLens seen{*connection, difference / std::sqrt(squared), Color(), 0, {}};
+  if (!(squared > 0)) return false;
+  seen.toCamera = difference / std::sqrt(squared);
   seen.f = vertex.Evaluate(seen.toCamera, TransportMode::Importance);
   const Color scattered = vertex.diffuse * seen.f.diffuse + vertex.specular * seen.f.specular;
-  if (scattered.IsBlack()) return std::nullopt;
+  if (scattered.IsBlack()) return false;
   ++context.counts.shadowRays;
-  const Ray ray = SpawnRayTo(vertex.point, connection->camera.position, Vector3(0.0f), Normal3(0.0f), context.time);
+  const Ray ray = SpawnRayTo(vertex.point, connection.camera.position, Vector3(0.0f), Normal3(0.0f), context.time);
   Color arriving;
   if (scene.media.empty()) [[likely]] {
     arriving = scene.geometry->Transmittance(ray, visibility::kCamera);
   } else {
     EdgeFactors fromVertex;
-    const EdgeEnd lens{Point3d(connection->camera.position)};
+    const EdgeEnd lens{Point3d(connection.camera.position)};
     arriving = TransmittanceOf(context, ray, visibility::kCamera, vertex.EndTowards(ray.direction), lens,
                                DeciderOf(position), fromVertex);
     seen.factors = fromVertex.Reversed();
   }
-  if (arriving.IsBlack()) return std::nullopt;
+  if (arriving.IsBlack()) return false;
   seen.geometryTerm = vertex.GeometryTerm(seen.toCamera);
-  const float importance = seen.geometryTerm * vertex.ArrivalCorrection(vertex.toPrevious) * connection->Weight();
+  const float importance = seen.geometryTerm * vertex.ArrivalCorrection(vertex.toPrevious) * connection.Weight();
   seen.value =
       Product(scattered, arriving, static_cast<double>(importance) * static_cast<double>(scene.lighting->FluxUnit()));
+  return true;
+}
+
+}  // namespace
+
+std::optional<SeenFromLens> SeeVertex(const SampleContext& context, const PathVertex& vertex, uint32_t lensDimension) {
+  std::optional<SeenFromLens> seen;
+  if (!vertex.isSeenByCamera || vertex.isDelta) return seen;
+  ConnectToCamera(context, vertex.point.position, lensDimension, seen);
+  if (seen && !CompleteConnection(context, vertex, *seen)) seen.reset();
   return seen;
 }
 

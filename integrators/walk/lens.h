@@ -14,6 +14,8 @@ namespace lampyr {
 
 // A camera connection with at least one film point that the rendered crop covers.
 struct FilmConnection {
+  FilmConnection() {}  // without values for the points of `copies`, which would take longer than all else
+
   CameraConnection camera;
   FilmCopies copies;  // further film points that it contributes to
 

@@ -65,10 +65,12 @@ bool Emit(const SampleContext& context, const EmittedPhoton& photon, PathState& 
       static_cast<double>(photon.emissionSelection.value) * static_cast<double>(context.scene.lighting->FluxUnit());
   const auto inverse = static_cast<float>(static_cast<double>(emission.emissionCosine) / density);
   state.ray = photon.ray;
-  if (!context.scene.media.empty() && context.scene.lighting->KindOf(photon.light) == LightKind::Area)
-    state.fromOrigin = emission.position - photon.ray.origin;
-  state.medium =
-      context.scene.MediumOfLight(photon.light, glm::dot(photon.emission.normal, photon.emission.direction) < 0);
+  if (!context.scene.media.empty()) [[unlikely]] {
+    if (context.scene.lighting->KindOf(photon.light) == LightKind::Area)
+      state.fromOrigin = emission.position - photon.ray.origin;
+    state.medium =
+        context.scene.MediumOfLight(photon.light, glm::dot(photon.emission.normal, photon.emission.direction) < 0);
+  }
   state.diffuse = emission.diffuse * inverse;
   state.specular = emission.specular * inverse;
   state.emitted = std::max(state.diffuse.Max(), state.specular.Max());
@@ -219,17 +221,13 @@ void TraceLightPath(const SampleContext& context, int maxDepth, const PathDimens
   const float uSelect = context.sampler.Get1D();
   const PathRequest request{context, maxDepth, dimensions, context.sampler.Get2D(), path, visitor};
   const double ofMedia = glowing ? glowing->Probability() : 0;
-  if (!(ofMedia > 0)) {
-    TraceFromLight(request, uSelect, 1);
-    return;
+  float ofLights = uSelect;
+  if (ofMedia > 0) [[unlikely]] {
+    const double u = WithMoreBits(uSelect, request.place.x, request.place.y, context.time);
+    if (u < ofMedia) return TraceFromMedium(request, u / ofMedia, *glowing);
+    ofLights = std::min(static_cast<float>((u - ofMedia) / (1 - ofMedia)), kOneMinusEpsilon);
   }
-  const double u = WithMoreBits(uSelect, request.place.x, request.place.y, context.time);
-  if (u < ofMedia) {
-    TraceFromMedium(request, u / ofMedia, *glowing);
-    return;
-  }
-  const double rest = (u - ofMedia) / (1 - ofMedia);
-  TraceFromLight(request, std::min(static_cast<float>(rest), kOneMinusEpsilon), 1 - ofMedia);
+  TraceFromLight(request, ofLights, 1 - ofMedia);
 }
 
 }  // namespace lampyr

@@ -84,16 +84,17 @@ struct LightEnd {
 struct SubpathDensities {
   double forward = 0;  // by its own subpath, 1/m²; of the first vertex of a light path: LightEnd::emission
   double reverse = 0;  // by the other one; valid once the next vertex has scattered
-  // A delta event finds the vertex, forward or reverse: the density is a coefficient.
-  bool forwardIsDelta = false, reverseIsDelta = false;
-  bool isInMedium = false;  // densities are per volume
   // In a medium: area of the disk in which beams of the first pass find photons there, times the probability with which
   // a camera path passes the vertex over the density with which it collides, scene units³. Of a light path valid once
   // there is a next vertex.
   float mergeVolume = 0;
-  bool canMerge = false;  // with the event by which the subpath goes on; valid once there is a next vertex
+  bool forwardIsDelta = false;  // a delta event finds the vertex: the density is a coefficient
+  bool canMerge = false;        // with the event by which the subpath goes on; valid once there is a next vertex
+  bool reverseIsDelta : 1 = false;
+  bool isInMedium : 1 = false;                        // densities are per volume
   LightEnd::Extent extent = LightEnd::Extent::Point;  // of the first vertex of a light path
 };
+static_assert(sizeof(SubpathDensities) == 24, "kept for the vertices of millions of photons");
 
 // Densities and flags of the two ends of a path, for sums over all its techniques (TechniqueSums).
 struct PathEnds {

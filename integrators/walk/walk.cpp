@@ -54,10 +54,12 @@ bool MakeVertex(const RenderScene& scene, const std::vector<std::shared_ptr<cons
                      attributes.link};
   vertex.coverage = attributes.alpha ? attributes.alpha->Alpha(point.uv, point.position, point.Ng) : 1.0f;
   vertex.isDelta = vertex.bsdf.IsDelta();
-  const bool separates = SeparatesMedia(attributes);
-  vertex.insideMedium = separates ? attributes.insideMedium : medium;
-  vertex.outsideMedium = separates ? attributes.outsideMedium : medium;
-  vertex.extinction = Color(1.0f);
+  if (!scene.media.empty()) [[unlikely]] {  // nothing reads these otherwise
+    const bool separates = SeparatesMedia(attributes);
+    vertex.insideMedium = separates ? attributes.insideMedium : medium;
+    vertex.outsideMedium = separates ? attributes.outsideMedium : medium;
+    vertex.extinction = Color(1.0f);
+  }
   vertex.storesPhotons = (!vertex.isDelta || !material->IsAlwaysDelta()) && material->MayGatherPhotons();
   vertex.isSeenByCamera = (attributes.visibility & visibility::kCamera) != 0;
   vertex.isSeenByIndirect = (attributes.visibility & visibility::kIndirect) != 0;
@@ -129,7 +131,8 @@ bool Scatter(const SampleContext& context, const WalkSettings& settings, int ind
   state.ray.origin = OffsetRayOrigin(vertex.point.position, vertex.point.positionError, vertex.point.Ng, sample.wi);
   state.ray.direction = sample.wi;
   state.ray.tMax = kInfinity;
-  state.medium = vertex.MediumTowards(sample.wi);
+  if (!context.scene.media.empty()) [[unlikely]]
+    state.medium = vertex.MediumTowards(sample.wi);
   if (!settings.hasRoulette) return true;
   const Color carried = isFromLight ? state.diffuse : state.Throughput();
   const float survival = SurvivalProbability(carried / state.emitted, state.etaScale, index + 1);
@@ -150,9 +153,10 @@ EdgeEnd StartOf(const SampleContext& context, const PathState& state, const Subp
   return start;
 }
 
-// Traces the ray of `state` through participating media.
-void FlyOn(const SampleContext& context, const WalkSettings& settings, uint32_t kinds, PathState& state, Subpath& path,
-           PathVisitor& visitor, Flight& flight) {
+// Traces the ray of `state` through participating media. True if it hits a surface. Not inlined: scenes without media
+// are not to pay for media.
+[[gnu::noinline]] bool FlyOn(const SampleContext& context, const WalkSettings& settings, uint32_t kinds,
+                             PathState& state, Subpath& path, PathVisitor& visitor, Flight& flight) {
   const bool isFromLight = settings.mode == TransportMode::Importance;
   const auto count = static_cast<int>(path.Count());
   Fly(context, state.ray, kinds, StartOf(context, state, path),
@@ -162,6 +166,7 @@ void FlyOn(const SampleContext& context, const WalkSettings& settings, uint32_t 
   state.passed = flight.passed;
   state.factors = flight.factors;
   state.medium = flight.medium;
+  return flight.isHit;
 }
 
 }  // namespace
@@ -170,24 +175,23 @@ void Walk(const SampleContext& context, const WalkSettings& settings, PathState&
           PathVisitor& visitor) {
   const GeometryScene& geometry = *context.scene.geometry;
   const bool hasMedia = !context.scene.media.empty();
+  std::optional<Flight> flight;  // in scenes with media
   for (;;) {
     CheckStop();
     const bool isCameraRay = settings.mode == TransportMode::Radiance && path.Count() == 0;
     ++(isCameraRay ? context.counts.cameraRays : context.counts.indirectRays);
     const uint32_t kinds = isCameraRay ? visibility::kCamera : visibility::kIndirect;
     RayHit hit;
-    bool isHit;
-    std::optional<Flight> flight;
+    bool isHit, collides = false;
     if (!hasMedia) [[likely]] {
       isHit = geometry.Intersect(state.ray, kinds, hit, state.passed);
     } else {
-      FlyOn(context, settings, kinds, state, path, visitor, flight.emplace());
+      isHit = FlyOn(context, settings, kinds, state, path, visitor, flight.emplace());
       hit = flight->hit;
-      isHit = flight->isHit;
+      collides = flight->collidesWith != nullptr;
     }
     state.diffuse *= state.passed;
     state.specular *= state.passed;
-    const bool collides = flight && flight->collidesWith;
     if (!isHit && !collides) return visitor.Escaped(path, state);
     state.length += collides ? flight->t : hit.t;
     PathVertex& vertex = path.Next();
@@ -200,7 +204,7 @@ void Walk(const SampleContext& context, const WalkSettings& settings, PathState&
     }
     const auto index = static_cast<int>(path.Count());
     if (index >= settings.maxDepth) return;
-    if (collides) {
+    if (collides) [[unlikely]] {
       const MediumCoefficients& here = flight->coefficients;
       MakeVertexInMedium(flight->end, state.ray.direction, flight->medium,
                          {here.scattering, flight->collidesWith->Asymmetry()}, here.Extinction(), vertex);

@@ -148,17 +148,24 @@ struct Candidate {
   float u, v;
 };
 
-// Index of the nearest candidate that stops the ray, or -1.
-int FirstStop(Meeting at, const RTCRay& ray, const Candidate* candidates, int count, TraceContext& trace,
-              bool isShadow) {
+// FirstStop of a surface that lets rays pass.
+[[gnu::noinline]] int FirstThatStops(Meeting at, const RTCRay& ray, const Candidate* candidates, int count,
+                                     TraceContext& trace, bool isShadow) {
   for (int i = 0; i < count; ++i) {
-    if (!at.record.LetsPass()) return i;
     const Candidate& c = candidates[i];
     const RayHit hit{static_cast<float>(c.t), at.geometryId, at.patch, at.instanceId, c.u, c.v};
     at.side = static_cast<uint32_t>(i);
     if (!PassesThrough(at, ray, hit, trace, isShadow)) return i;
   }
   return -1;
+}
+
+// Index of the nearest candidate that stops the ray, or -1.
+inline int FirstStop(const Meeting& at, const RTCRay& ray, const Candidate* candidates, int count, TraceContext& trace,
+                     bool isShadow) {
+  if (!at.record.LetsPass()) [[likely]]
+    return count > 0 ? 0 : -1;
+  return FirstThatStops(at, ray, candidates, count, trace, isShadow);
 }
 
 int FindQuadric(const PrimitiveRecord& record, uint32_t, const RTCRay& ray, Candidate candidates[2]) {

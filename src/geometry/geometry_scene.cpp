@@ -85,6 +85,7 @@ struct GeometryScene::Implementation {
   float largest = kFarthest;
   bool hasTints = false;       // some thin surface is not clear
   bool hasBoundaries = false;  // some surface separates media
+  bool letsPass = false;       // some surface lets rays pass: without, connecting rays have no crossings
   mutable std::atomic<uint64_t> rejected{0};
 
   explicit Implementation(GeometryDescription given) : description(std::move(given)) {
@@ -103,13 +104,16 @@ struct GeometryScene::Implementation {
   SceneHandle NewScene() const;
   void AttachEntries(RTCScene target, size_t first, size_t count);
   void BuildScenes();
-  bool Query(const Ray& ray, uint32_t kinds, RayHit& hit, TraceContext& trace) const;
-  bool Trace(const Ray& ray, uint32_t kinds, RayHit& hit, TraceContext& trace) const;
+  // Inlined: a call costs as much as the rest of what they do besides Embree.
+  [[gnu::always_inline]] bool Query(const Ray& ray, uint32_t kinds, RayHit& hit, TraceContext& trace) const;
+  [[gnu::always_inline]] bool Trace(const Ray& ray, uint32_t kinds, RayHit& hit, TraceContext& trace) const;
+  [[gnu::always_inline]] bool Passes(const Ray& ray, uint32_t kinds, TraceContext& trace) const;
+  [[gnu::always_inline]] Color Transmittance(const Ray& ray, uint32_t kinds, TraceContext& trace) const;
   LineHit Trace(const Ray& ray, double ahead, const FineLine& line, uint32_t kinds, RayHit& hit,
                 TraceContext& trace) const;
-  bool Passes(const Ray& ray, uint32_t kinds, TraceContext& trace) const;
-  Color Transmittance(const Ray& ray, uint32_t kinds, TraceContext& trace) const;
   Color Transmittance(const Ray& ray, const FineLine& line, uint32_t kinds, TraceContext& trace) const;
+  // `largest`: coordinate of the start of the ray.
+  void OrderCrossings(double largest, std::vector<Crossing>& crossings, bool withBoundaries) const;
   void DropCutOuts(std::vector<Crossing>& crossings) const;
 
   // True if Embree survives the ray. A NaN anywhere makes a comparison false.
@@ -143,6 +147,8 @@ void GeometryScene::Implementation::AddEntries(const std::vector<GeometryEntry>&
     hasTints = hasTints || (record.thin && !record.thin->IsClear());
     record.isParametrized = entry.attributes.isParametrized;
     if (entry.attributes.isBoundary || SeparatesMedia(entry.attributes)) SetMedia(entry.attributes, record);
+    record.SetLetsPass();
+    letsPass = letsPass || record.LetsPass();
     record.tables = &tables;
     tables.primitives.push_back(record);
     tables.attributes.push_back(entry.attributes);
@@ -318,8 +324,16 @@ std::vector<Crossing>& ThreadCrossings() {
 
 }  // namespace
 
+// Puts crossings in order.
+void GeometryScene::Implementation::OrderCrossings(double largest, std::vector<Crossing>& crossings,
+                                                   bool withBoundaries) const {
+  SortByDistance(crossings);
+  if (withBoundaries) OrderCoincident(tables, largest, crossings);
+}
+
 // The nearest hit of an accepted ray. `trace` collects what Embree visits, in no order and also behind the hit.
-bool GeometryScene::Implementation::Query(const Ray& ray, uint32_t kinds, RayHit& hit, TraceContext& trace) const {
+inline bool GeometryScene::Implementation::Query(const Ray& ray, uint32_t kinds, RayHit& hit,
+                                                 TraceContext& trace) const {
   rtcInitIntersectContext(&trace.context);
   RTCRayHit rayHit;
   FillRay(ray, kinds, ray.tMax, rayHit.ray);
@@ -346,14 +360,13 @@ bool GeometryScene::Implementation::Query(const Ray& ray, uint32_t kinds, RayHit
 
 // The ray is accepted. The crossings of `trace`, where they are wanted, are empty before and become what the ray passed
 // before the hit.
-bool GeometryScene::Implementation::Trace(const Ray& ray, uint32_t kinds, RayHit& hit, TraceContext& trace) const {
+inline bool GeometryScene::Implementation::Trace(const Ray& ray, uint32_t kinds, RayHit& hit,
+                                                 TraceContext& trace) const {
   const bool isHit = Query(ray, kinds, hit, trace);
-  if (trace.crossings && !trace.crossings->empty()) {
+  if (trace.crossings && !trace.crossings->empty()) [[unlikely]] {
     const double end = static_cast<double>(isHit ? hit.t : ray.tMax);
     std::erase_if(*trace.crossings, [&](const Crossing& crossing) { return !(crossing.t < end); });
-    SortByDistance(*trace.crossings);
-    if (trace.recordsBoundaries)
-      OrderCoincident(tables, static_cast<double>(MaxAbsComponent(ray.origin)), *trace.crossings);
+    OrderCrossings(static_cast<double>(MaxAbsComponent(ray.origin)), *trace.crossings, trace.recordsBoundaries);
   }
   return isHit;
 }
@@ -402,8 +415,7 @@ LineHit GeometryScene::Implementation::Trace(const Ray& ray, double ahead, const
   // A boundary in the place of the surface that is hit is behind it, like one that is hit at the same float.
   const double end = found.isHit ? found.t - kSamePlace * (found.t + Largest(line.start)) : found.t;
   std::erase_if(*trace.crossings, [&](const Crossing& crossing) { return !(crossing.t < end); });
-  SortByDistance(*trace.crossings);
-  if (trace.recordsBoundaries) OrderCoincident(tables, Largest(line.start), *trace.crossings);
+  OrderCrossings(Largest(line.start), *trace.crossings, trace.recordsBoundaries);
   return found;
 }
 
@@ -440,16 +452,16 @@ bool GeometryScene::Intersect(const Ray& ray, uint32_t kinds, RayHit& hit, Color
   }
   tint = Color(1.0f);
   TraceContext trace;
-  if (!scene.hasTints) [[likely]]
-    return scene.Trace(ray, kinds, hit, trace);
-  trace.crossings = &ThreadCrossings();
+  if (scene.hasTints) [[unlikely]]
+    trace.crossings = &ThreadCrossings();
   const bool isHit = scene.Trace(ray, kinds, hit, trace);
-  tint = lampyr::Transmittance(*trace.crossings);
+  if (trace.crossings) [[unlikely]]
+    tint = lampyr::Transmittance(*trace.crossings);
   return isHit;
 }
 
 // False: an accepted ray is stopped.
-bool GeometryScene::Implementation::Passes(const Ray& ray, uint32_t kinds, TraceContext& trace) const {
+inline bool GeometryScene::Implementation::Passes(const Ray& ray, uint32_t kinds, TraceContext& trace) const {
   rtcInitIntersectContext(&trace.context);
   RTCRay shadowRay;
   // Embree's interval is closed above; ours is open.
@@ -461,13 +473,12 @@ bool GeometryScene::Implementation::Passes(const Ray& ray, uint32_t kinds, Trace
 }
 
 // The ray is accepted. The crossings of `trace` are empty before; afterwards they are in order, unless the result is 0.
-Color GeometryScene::Implementation::Transmittance(const Ray& ray, uint32_t kinds, TraceContext& trace) const {
+// Null: no surface lets rays pass.
+inline Color GeometryScene::Implementation::Transmittance(const Ray& ray, uint32_t kinds, TraceContext& trace) const {
   if (!Passes(ray, kinds, trace)) return Color(0.0f);
-  if (trace.crossings->empty()) [[likely]]
+  if (!trace.crossings || trace.crossings->empty()) [[likely]]
     return Color(1.0f);
-  SortByDistance(*trace.crossings);
-  if (trace.recordsBoundaries)
-    OrderCoincident(tables, static_cast<double>(MaxAbsComponent(ray.origin)), *trace.crossings);
+  OrderCrossings(static_cast<double>(MaxAbsComponent(ray.origin)), *trace.crossings, trace.recordsBoundaries);
   return lampyr::Transmittance(*trace.crossings);
 }
 
@@ -493,8 +504,7 @@ Color GeometryScene::Implementation::Transmittance(const Ray& ray, const FineLin
   }
   if (trace.crossings->empty()) return Color(1.0f);
   RefineCrossings(tables, line, ray.time, ahead, *trace.crossings);
-  SortByDistance(*trace.crossings);
-  if (trace.recordsBoundaries) OrderCoincident(tables, Largest(line.start), *trace.crossings);
+  OrderCrossings(Largest(line.start), *trace.crossings, trace.recordsBoundaries);
   return lampyr::Transmittance(*trace.crossings);
 }
 
@@ -509,7 +519,7 @@ Color GeometryScene::Transmittance(const Ray& ray, uint32_t kinds) const {
   const Implementation& scene = *implementation_;
   if (!scene.Accept(ray)) return Color(0.0f);
   TraceContext trace;
-  trace.crossings = &ThreadCrossings();
+  if (scene.letsPass) trace.crossings = &ThreadCrossings();
   return scene.Transmittance(ray, kinds, trace);
 }
 

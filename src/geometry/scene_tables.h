@@ -30,7 +30,8 @@ struct PrimitiveRecord {
 
   bool PassedAsBoundary(uint32_t kinds) const { return separatesMedia && (stops & kinds) == 0; }
   // False: every ray that meets the surface is stopped.
-  bool LetsPass() const { return alpha || thin || hasNoInside || separatesMedia; }
+  bool LetsPass() const { return letsPass; }
+  void SetLetsPass() { letsPass = alpha || thin || hasNoInside || separatesMedia; }
   // The shape if it is of this kind, or null.
   template <class Kind>
   const Kind* As() const {
@@ -38,6 +39,7 @@ struct PrimitiveRecord {
     return held ? *held : nullptr;
   }
   const SceneTables* tables = nullptr;
+  bool letsPass = false;  // set last, by SetLetsPass
 };
 
 struct InstancePlacement {

@@ -12,6 +12,11 @@ Vector3 Renormalize(const Vector3& v) {
 
 }  // namespace
 
+float Bsdf::OwnCosine(const Vector3& w) const {
+  if (IsMedium()) return 1;
+  return IsFibre() ? std::get_if<HairBsdf>(&model_)->ScatteringCosine(frame_.ToLocal(w)) : AbsDot(w, frame_.z);
+}
+
 BsdfEvaluation Bsdf::EvaluateInFrame(const Vector3& wo, const Vector3& wi, TransportMode mode) const {
   if (const auto* phase = std::get_if<PhaseBsdf>(&model_)) return phase->Evaluate(wo, wi, mode);
   const Vector3 o = frame_.ToLocal(wo), i = frame_.ToLocal(wi);

@@ -47,18 +47,15 @@ class Bsdf {
 
   // Cosine of the scattering integral: |w·Ns|; for a fibre, the cosine of the angle to the plane across it; 1 in a
   // medium.
-  float ScatteringCosine(const Vector3& w) const {
-    if (IsMedium()) return 1;
-    return IsFibre() ? std::get_if<HairBsdf>(&model_)->ScatteringCosine(frame_.ToLocal(w)) : AbsDot(w, frame_.z);
-  }
+  float ScatteringCosine(const Vector3& w) const { return MayHaveOwnCosines() ? OwnCosine(w) : AbsDot(w, frame_.z); }
   // Cosine of the geometry term: |w·Ng|; for a fibre, which faces every direction, and in a medium, ScatteringCosine.
   float GeometricCosine(const Vector3& w) const {
-    return IsFibre() || IsMedium() ? ScatteringCosine(w) : AbsDot(w, Ng_);
+    return MayHaveOwnCosines() && (IsFibre() || IsMedium()) ? OwnCosine(w) : AbsDot(w, Ng_);
   }
-  // True for a point within a medium: there is no surface, f is σ_s (or the albedo) times the phase function, all of it
-  // `diffuse`, and the frame has no meaning.
   // The phase function of a medium; null on a surface.
   const PhaseBsdf* Phase() const { return std::get_if<PhaseBsdf>(&model_); }
+  // True for a point within a medium: there is no surface, f is σ_s (or the albedo) times the phase function, all of it
+  // `diffuse`, and the frame has no meaning.
   bool IsMedium() const { return std::holds_alternative<PhaseBsdf>(model_); }
   // True for a fibre, which is too narrow to be resolved: light that enters anywhere leaves at the same point, to any
   // side.
@@ -70,12 +67,14 @@ class Bsdf {
   // False for hair: a fibre has no area within the radius that photons could be counted over, and on a surface, where
   // hair scatters grazing light as much as any, a photon would have the weight 1 / cosθ, of unbounded variance. False
   // in a medium: these are photons of surfaces.
-  bool GathersPhotons() const { return !std::holds_alternative<HairBsdf>(model_) && !IsMedium(); }
+  bool GathersPhotons() const { return !MayHaveOwnCosines(); }
 
   const Frame& ShadingFrame() const { return frame_; }
   const Normal3& Ng() const { return Ng_; }
 
  private:
+  bool MayHaveOwnCosines() const { return model_.index() >= kFirstWithOwnCosines; }
+  float OwnCosine(const Vector3& w) const;
   BsdfEvaluation EvaluateInFrame(const Vector3& wo, const Vector3& wi, TransportMode mode) const;
   BsdfSample SampleLocal(const Vector3& wo, float uLobe, const Point2& u, TransportMode mode) const;
 
