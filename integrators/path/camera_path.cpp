@@ -153,13 +153,15 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
   void AddFound(const PathVertex& last, const PathState& state, const FoundLight& found) {
     Color radiance = state.diffuse * found.evaluation.diffuse + state.specular * found.evaluation.specular;
     if (!last.scatteredDelta && SamplesLights(last)) {
-      const double direction = state.pdfDirection.value * state.factors.forward;
-      const auto direct = static_cast<double>((found.selection * found.evaluation.pdfDirect).value);
-      double others = Mis(direct);
-      if (arrival_.segment.Share() > 0)
-        others += Mis(arrival_.RatioOf(lighting_, found.light, found.patch) *
-                      static_cast<double>(found.evaluation.pdfDirect.value));
-      radiance *= static_cast<float>(Mis(direction) / (Mis(direction) + others));
+      const PdfSolidAngle direction(static_cast<float>(state.pdfDirection.value * state.factors.forward));
+      const PdfSolidAngle direct = found.selection * found.evaluation.pdfDirect;
+      if (arrival_.segment.Share() > 0) {
+        const double along = arrival_.RatioOf(lighting_, found.light, found.patch) *
+                             static_cast<double>(found.evaluation.pdfDirect.value);
+        radiance *= Weight(static_cast<double>(direction.value), static_cast<double>(direct.value), along);
+      } else {
+        radiance *= PowerHeuristic(direction, direct);
+      }
     }
     if (context_.layers) context_.layers->Add(lighting_.GroupOf(found.light), radiance);
     radiance_ += radiance;
@@ -189,7 +191,12 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
       own = static_cast<double>(direct.selection.value) * pdfDirect;
       other = arrival_.RatioOf(lighting_, direct.light, direct.patch) * pdfDirect;
     }
-    return static_cast<float>(Mis(own) / (Mis(own) + Mis(other) + Mis(hit)));
+    return Weight(own, other, hit);
+  }
+
+  // Of three techniques; `own` is the density of the one in question.
+  static float Weight(double own, double other, double third) {
+    return static_cast<float>(Mis(own) / (Mis(own) + Mis(other) + Mis(third)));
   }
   void Arrived(const LightConnection& light, const Color&, const Color& contribution) override {
     if (context_.layers) context_.layers->Add(lighting_.GroupOf(light.direct.light), contribution);

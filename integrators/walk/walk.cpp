@@ -55,7 +55,9 @@ bool MakeVertex(const RenderScene& scene, const std::vector<std::shared_ptr<cons
   vertex.coverage = attributes.alpha ? attributes.alpha->Alpha(point.uv, point.position, point.Ng) : 1.0f;
   vertex.isDelta = vertex.bsdf.IsDelta();
   if (!scene.media.empty()) [[unlikely]] {  // nothing reads these otherwise
-    const bool separates = SeparatesMedia(attributes);
+    // What lets nothing pass is left on the side on which it was met, in the medium of the ray. An open sheet, such as
+    // a floor or a panel, is met from both sides, whatever it says of the other one.
+    const bool separates = SeparatesMedia(attributes) && vertex.bsdf.IsTransmissive();
     vertex.insideMedium = separates ? attributes.insideMedium : medium;
     vertex.outsideMedium = separates ? attributes.outsideMedium : medium;
     vertex.extinction = Color(1.0f);
