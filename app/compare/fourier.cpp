@@ -23,7 +23,8 @@ void FourierTransform::Apply(const Complex* in, Complex* out) const {
   Apply(in, 1, out, roots_.size(), 0);
 }
 
-// Of the values in[0], in[stride], …: those of each residue class modulo the factor are transformed, and combined.
+// The transform of in[0], in[stride], …: every radix-th value, from each of the first `radix` on, is transformed on its
+// own, and the results are combined ([Cooley65]).
 void FourierTransform::Apply(const Complex* in, size_t stride, Complex* out, size_t length, size_t factor) const {
   if (length == 1) {
     *out = *in;

@@ -11,12 +11,12 @@
 
 namespace lampyr {
 
-// Of each pixel, R, G, B: the square of the mean over a square of 7 × 7 pixels around it, plus 1 % of the mean of these
-// squares over the picture.
+// What errors of a pixel are relative to, for each pixel and channel: the square of the mean of the 7 × 7 pixels around
+// it, plus 1 % of the mean of these squares over the picture.
 std::vector<std::array<double, 3>> NeighbourhoodSquares(const Image& image);
 
-// relMSE of the noise of a picture, relative to its neighbourhoods. It has standard errors (MeanOfImages), or variances
-// as those of renders; else an Error.
+// relMSE of the noise of a picture, relative to its neighbourhoods. The picture must have layers of standard errors, as
+// MeanOfImages writes them, or of variances, as renders do; else an Error.
 double RelativeNoise(const Image& mean);
 
 }  // namespace lampyr

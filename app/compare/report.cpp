@@ -94,7 +94,7 @@ const char* LimitOf(const ComparisonReference& reference) {
 
 // "1.23e-03 (1.1e-03 to 1.4e-03)".
 std::string WithInterval(const std::optional<Estimate>& estimate, const ComparisonReference& reference) {
-  // As much as the column holds; below the table it says more.
+  // Short, for the column; a line below the table explains it.
   if (!estimate) return reference.IsBlurred() ? "within the reference's error" : "within the reference's noise";
   return Format("%.3g (%.2g to %.2g)", estimate->value, estimate->low, estimate->high);
 }
