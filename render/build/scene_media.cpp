@@ -70,7 +70,6 @@ namespace {
 struct LightPoint {
   Point3 position;
   Normal3 normal{0.0f};  // of a surface, to the side that is lit; otherwise 0
-  Normal3 outer{0.0f};   // of the light
 };
 
 std::optional<LightPoint> PointOf(const PlacedLight& placed, const BoundingSphere& scene, const Point2& u) {
@@ -81,22 +80,10 @@ std::optional<LightPoint> PointOf(const PlacedLight& placed, const BoundingSpher
   context.uDirection = u;
   const std::optional<EmissionSample> emission = placed.light->GenerateEmission(context);
   if (!emission) return std::nullopt;
-  LightPoint point;
-  point.position = emission->position;
-  point.outer = emission->normal;
+  LightPoint point{emission->position};
   if (placed.light->Kind() == LightKind::Area)
     point.normal = glm::dot(emission->direction, emission->normal) < 0 ? -emission->normal : emission->normal;
   return point;
-}
-
-// The medium behind an area light. An open sheet may say another one than that into which it shines to that side: then
-// what is found by rays from there holds, if all of them say the same.
-int32_t MediumBehind(const GeometryScene& geometry, const PlacedLight& placed, const BoundingSphere& scene,
-                     int32_t otherwise) {
-  const auto point = PointOf(placed, scene, Point2(0.47f, 0.53f));
-  if (!point) return otherwise;
-  const FoundMedium found = FindMedium(geometry, point->position, 0, -point->outer);
-  return found.medium && found.isUnanimous ? *found.medium : otherwise;
 }
 
 constexpr std::array<Point2, 6> kLightPoints = {Point2(0.47f, 0.53f), Point2(0.11f, 0.83f), Point2(0.89f, 0.21f),
@@ -106,11 +93,9 @@ constexpr std::array<Point2, 6> kLightPoints = {Point2(0.47f, 0.53f), Point2(0.1
 
 SceneMedia::Sides SceneMedia::MediaOfLight(const RenderScene& scene, size_t light, const FileLocation& where,
                                            int32_t exterior) {
-  const PlacedLight& placed = scene.lighting->Lights()[light];
   const auto separates = areaLights_.find(light);
-  if (separates != areaLights_.end())
-    return {separates->second.front,
-            MediumBehind(*scene.geometry, placed, scene.lighting->SceneSphere(), separates->second.behind)};
+  if (separates != areaLights_.end()) return separates->second;
+  const PlacedLight& placed = scene.lighting->Lights()[light];
   if (IsAtInfinity(placed.light->Kind())) return {exterior, exterior};
   const std::string name = light < description_.lights.size() ? description_.lights[light].mediumName : "";
   const int32_t otherwise = name.empty() ? exterior : IndexOf(name, where);

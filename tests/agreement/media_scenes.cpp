@@ -92,8 +92,7 @@ std::vector<MediaScene> MediaScenes() {
                           "AttributeBegin Material \"interface\" MediumInterface \"cloud\" \"\" Translate 0 "
                           "0.9 0 Shape \"sphere\" \"float radius\" 0.4 AttributeEnd\n");
   // All that the sampling of distances for a light meets: a lamp of several patches that shines
-  // to both sides though it says that one is empty, a moving one, a filtered one, one
-  // that is linked to surfaces alone, lights at infinity, a second medium and empty space on the ray.
+  // to both sides, a moving one, a filtered one, lights at infinity, a second medium and empty space on the ray.
   add("lights_in_haze",
       FilmWith("gaussian") + Homogeneous("haze", "0.12 0.15 0.2", "0.02 0.02 0.01", 0.2) +
           Homogeneous("jelly", "2 1 0.5", "0.1 0.4 1", -0.3) + "MediumInterface \"\" \"haze\"\n" + kDown + World(4) +
@@ -104,7 +103,8 @@ std::vector<MediaScene> MediaScenes() {
           "LightSource \"point\" \"rgb I\" [0.5 0.5 0.3] AttributeEnd\n"
           "AttributeBegin LightFilter \"intmult\" \"float intensity\" 2 LightSource \"spot\" \"rgb I\" [2 1 1] "
           "\"point3 from\" [-1 1.6 0.6] \"point3 to\" [0 0.2 0] \"float coneangle\" 35 AttributeEnd\n"
-          "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [6 5 4] \"bool twosided\" true\n"
+          "AttributeBegin MediumInterface \"haze\" AreaLightSource \"diffuse\" \"rgb L\" [6 5 4] \"bool twosided\" "
+          "true\n"
           "Shape \"trianglemesh\" \"point3 P\" [-1 1 -0.6  -0.6 1.3 -0.6  -0.8 1.2 -0.2  0.2 1 -0.9] \"integer "
           "indices\" [0 1 2 1 3 2 0 2 3] AttributeEnd\n"
           "AttributeBegin Material \"interface\" MediumInterface \"jelly\" \"haze\" Translate 0.5 0.9 -0.5 Shape "
