@@ -38,7 +38,7 @@ class NextEventTechnique final : public NextEventVisitor {
     return static_cast<float>(weight_);
   }
 
-  // Of the light that was weighted last.
+  // The path to the light that was weighted last.
   void Arrived(const LightConnection& light, const Color& value, const Color& contribution) override {
     if (sample_.context.layers)
       sample_.context.layers->Add(sample_.Lighting().GroupOf(light.direct.light), contribution);

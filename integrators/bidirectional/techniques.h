@@ -89,7 +89,7 @@ struct BidirectionalSample {
   // Reports a path that contributes to the sample's own pixel. Returns the weighted contribution, scaled by the
   // survival weight `survivalWeight` (ShadowRays::SurvivalWeight), and adds it to the layer of the light.
   Color AddToPixel(ConnectedPath& path, float survivalWeight = 1) const;
-  // The same of a path that is not observed. `light`: that it comes from.
+  // The same for a path that no observer sees. `light`: the light that the path comes from.
   Color AddToPixel(uint32_t light, const Color& value, double weight, float survivalWeight) const;
 };
 

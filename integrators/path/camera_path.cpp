@@ -92,7 +92,8 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
 
   bool HasEmissionToFind() const { return lighting_.HasLightThatCanBeHit() || settings_.mediaGlow; }
 
-  // How a vertex in a medium was found, and how the other technique would have found it.
+  // A vertex in a medium at which the walk has collided, with what the density of sampling its distance for a light
+  // follows from.
   struct Arrival {
     LitSegment segment;
     double t = 0;
@@ -194,7 +195,7 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
     return Weight(own, other, hit);
   }
 
-  // Of three techniques; `own` is the density of the one in question.
+  // Weight of the technique with the density `own` against two others, by the power heuristic.
   static float Weight(double own, double other, double third) {
     return static_cast<float>(Mis(own) / (Mis(own) + Mis(other) + Mis(third)));
   }

@@ -14,7 +14,7 @@ namespace lampyr {
 class LitSegment {
  public:
   LitSegment() = default;
-  // Of a ray that has flown. `isFirst`: from the camera.
+  // The segment of the ray of `flight`. `isFirst`: the ray comes from the camera.
   LitSegment(const RenderScene& scene, const Ray& ray, const Flight& flight, bool isFirst);
 
   // Probability with which a distance is sampled at all: 1 where a walk is unlikely to collide, less in media that are
@@ -31,7 +31,7 @@ class LitSegment {
                                  const Point2& uApex) const;
   // Density of sampling this light at `t`: share, selection and distance, 1/scene unit. `u`: for the apex.
   double Density(const LightingServices& lighting, uint32_t light, int patch, double t, const Point2& uApex) const;
-  // The same for a distance that Generate has sampled.
+  // The density of a sample of Generate, in the same measure.
   double Density(const Sample& sample) const {
     return static_cast<double>(share_ * sample.light.probability.value) * sample.density;
   }

@@ -177,7 +177,8 @@ class Tracker {
   int32_t index_ = kVacuum;
 };
 
-// Of a thread. Those of walks stay valid while connections are traced from a flight's ray.
+// Storage of each thread. Walks and connections have different ones, because connections are traced while a flight
+// refers to its own.
 struct Buffers {
   std::vector<MediumSpan> spans;
   std::vector<Crossing> crossings;
