@@ -24,6 +24,7 @@ void BidirectionalSample::SetLight(ConnectedPath& path, size_t count) const {
   path.s = static_cast<int>(count) + 1;
   path.light = light.vertices.First(count);
   path.end = lightEnd;
+  path.endFactors = light.vertices[0].factors;
   path.toLight = light.vertices[0].toPrevious;
 }
 
@@ -100,11 +101,22 @@ namespace {
 // Visitor of the light subpath.
 class LightSide final : public WeightedLightPath {
  public:
-  explicit LightSide(BidirectionalSample& sample)
+  // `sampler`: of the light path.
+  LightSide(BidirectionalSample& sample, Sampler& sampler)
       : WeightedLightPath(sample.context, sample.settings.connects, sample.lightPaths),
         sample_(sample),
         isConnected_(sample.settings.connects && !sample.context.isForPhotonsAlone &&
-                     sample.context.scene.camera->ConnectsLightPaths()) {}
+                     sample.context.scene.camera->ConnectsLightPaths()),
+        keepsFlights_(sample.context.photons &&
+                      KeepsFlights(sample.settings.photons.volume, sampler, kLightDimensions)) {}
+
+  bool WantsFlights() const override { return keepsFlights_; }
+  void Flew(const LightPath& path, const PathState& state, const Flight& flight, const EmittedPhoton& photon) override {
+    AddFlight(sample_.settings.photons.volume, path, state, flight, photon, *context_.photons);
+    hasLeftFirst_ = hasLeftFirst_ || path.vertices.Count() > 0;
+  }
+  // The path has scattered at its first vertex, and a flight from there is kept.
+  bool HasLeftFirst() const { return hasLeftFirst_; }
 
   void Emitted(const EmittedPhoton& photon) override {
     if (isConnected_) SplatLight(sample_, photon);
@@ -119,25 +131,31 @@ class LightSide final : public WeightedLightPath {
  private:
   void OnWeighted(const LightPath& path) override {
     if (sample_.settings.merges) {
-      AddDensities(path.vertices, &sample_.settings.photons.volume, true, sample_.lightDensities);
+      AddDensities(path.vertices, sample_.settings.photons.volume, true, sample_.lightDensities);
       if (path.vertices.Count() == 1)
         sample_.lightDensities[0] = {
             .forward = End().emission.value, .isInMedium = path.vertices.Last().IsInMedium(), .extent = End().extent};
     }
     if (isConnected_) SplatVertex(sample_);
     const PathVertex& vertex = path.vertices.Last();
-    if (context_.photons && vertex.storesPhotons && path.vertices.Count() <= PhotonList::kDeepest)
+    if (context_.photons && vertex.storesPhotons && path.vertices.Count() <= PhotonList::kDeepest && !IsOnBeam(vertex))
       context_.photons->Add(vertex, path.vertices.Count(), path.group);
+  }
+  bool IsOnBeam(const PathVertex& vertex) const {
+    return vertex.IsInMedium() && sample_.settings.photons.volume.UsesBeams(vertex.insideMedium);
   }
 
   BidirectionalSample& sample_;
-  const bool isConnected_;
+  const bool isConnected_, keepsFlights_;
+  bool hasLeftFirst_ = false;
 };
 
 // Visitor of the camera subpath.
 class CameraSide final : public PathVisitor {
  public:
-  explicit CameraSide(BidirectionalSample& sample) : sample_(sample) {}
+  // `beam`, `kept`: storage of the thread.
+  CameraSide(BidirectionalSample& sample, BeamVertex& beam, std::vector<SubpathDensities>& kept)
+      : sample_(sample), beam_(beam), kept_(kept) {}
 
   void Escaped(const Subpath& path, const PathState& state) override {
     sample_.radiance += path.Count() == 0 ? SeeBackground(sample_, state) : HitInfiniteLights(sample_, state);
@@ -158,30 +176,26 @@ class CameraSide final : public PathVisitor {
     const SampleContext& context = sample_.context;
     if (!context.gather || !context.gather->map->HasVolume() || !sample_.isMerged) return;
     if (static_cast<int>(path.Count()) >= sample_.settings.maxDepth) return;
-    const std::span<const BeamHit> hits = context.gather->map->FindAlong(state.ray, flight.t, sample_.lookup);
-    context.counts.foundPhotons += hits.size();
-    ++context.counts.lookups;
-    if (hits.empty()) return;
-    const Merging merging = sample_.merging;
-    const double seenDensity = sample_.seenDensity;
-    const bool lensSeesIt = sample_.lensSeesIt;
-    sample_.cameraDensities.reserve(path.Count() + 1);
-    const std::vector<SubpathDensities> kept = sample_.cameraDensities;
-    for (const BeamHit& hit : hits) {
-      BeamMerge merge;
-      if (!SetBeamVertex(context, state, flight, hit, path.Next(), merge)) continue;
-      path.Add();
-      PathState arrived = state;
-      arrived.length += hit.t;
-      arrived.factors = path.Last().factors;
-      Weigh(path, arrived);
-      if (sample_.merging) sample_.radiance += MergeWithBeam(sample_, merge);
-      path.Drop();
-      sample_.merging = merging;
-      sample_.seenDensity = seenDensity;
-      sample_.lensSeesIt = lensSeesIt;
-      sample_.cameraDensities = kept;
+    const PhotonMap& map = *context.gather->map;
+    const Before before{sample_.merging, sample_.seenDensity, sample_.lensSeesIt};
+    VolumeMerge merge;
+    for (const BeamHit& hit : map.FindAlong(state.ray, flight.t, sample_.lookup)) {
+      ++context.counts.foundPhotons;
+      if (IsTooDeep(path, map[hit.index].depth)) continue;
+      if (SetPointVertex(context, state, flight, hit, path.Next(), merge))
+        MergeThere(path, state, hit.t, before, [&] { return MergeInMedium(sample_, merge); });
     }
+    if (map.Beams().IsEmpty()) return;
+    for (const BeamCrossing& crossing : map.FindBeams(state.ray, flight.line, flight.t, sample_.lookup)) {
+      context.counts.foundPhotons += kPhotonsPerBeam;
+      if (IsTooDeep(path, map.Beams().StartOf(map.Beams()[crossing.beam]).depth)) continue;
+      merge = {};
+      if (!SetCrossingVertex(context, state, flight, crossing, path.Next(), merge)) continue;
+      MergeThere(path, state, static_cast<float>(crossing.t), before, [&] {
+        return SetBeamOf(sample_, crossing, beam_, merge) ? MergeInMedium(sample_, merge) : Color(0.0f);
+      });
+    }
+    ++context.counts.lookups;
   }
 
   void Glowed(const Subpath&, const Color& throughput, const Color& radiance) override {
@@ -219,6 +233,37 @@ class CameraSide final : public PathVisitor {
   }
 
  private:
+  // Cost of merging with a beam, in merges with photons on surfaces.
+  static constexpr uint64_t kPhotonsPerBeam = 4;
+
+  // What a vertex of the camera subpath changes, before it.
+  struct Before {
+    Merging merging;
+    double seenDensity;
+    bool lensSeesIt;
+  };
+  bool IsTooDeep(const Subpath& path, size_t photonDepth) const {
+    return photonDepth + path.Count() + 1 > static_cast<size_t>(sample_.settings.maxDepth) + 1;
+  }
+  // Adds the vertex that was made in the place of the next one, `t` along the ray, for `merge` alone.
+  template <class Merge>
+  void MergeThere(Subpath& path, const PathState& state, float t, const Before& before, const Merge& merge) {
+    path.Add();
+    PathState arrived = state;
+    arrived.length += t;
+    arrived.factors = path.Last().factors;
+    const size_t size = sample_.cameraDensities.size();
+    const size_t changed = std::min<size_t>(size, 2);  // by the next vertex
+    kept_.assign(sample_.cameraDensities.end() - static_cast<std::ptrdiff_t>(changed), sample_.cameraDensities.end());
+    Weigh(path, arrived);
+    if (sample_.merging) sample_.radiance += merge();
+    path.Drop();
+    sample_.merging = before.merging;
+    sample_.seenDensity = before.seenDensity;
+    sample_.lensSeesIt = before.lensSeesIt;
+    sample_.cameraDensities.resize(size);
+    std::copy(kept_.begin(), kept_.end(), sample_.cameraDensities.end() - static_cast<std::ptrdiff_t>(kept_.size()));
+  }
   // Densities and weights of the last vertex, which the ray of `state` has found.
   void Weigh(Subpath& path, const PathState& state) {
     PathVertex& vertex = path.Last();
@@ -230,7 +275,7 @@ class CameraSide final : public PathVisitor {
     }
     if (sample_.seenDensity > 0 && !state.hasScatteredWidely) SetMerging(static_cast<double>(state.length));
     if (sample_.merging) {
-      AddDensities(path, &sample_.settings.photons.volume, false, sample_.cameraDensities);
+      AddDensities(path, sample_.settings.photons.volume, false, sample_.cameraDensities);
       if (depth == 1) sample_.cameraDensities[0].forward = sample_.seenDensity;
     }
   }
@@ -277,6 +322,8 @@ class CameraSide final : public PathVisitor {
 
   BidirectionalSample& sample_;
   double firstFootprint_ = 0, firstDistance_ = 1;  // of the first hit
+  BeamVertex& beam_;                               // storage
+  std::vector<SubpathDensities>& kept_;
 };
 
 class BidirectionalIntegrator final : public Integrator {
@@ -304,13 +351,14 @@ struct Workspace {
   Subpath camera;
   PhotonLookup lookup;
   PathDensities whole;
-  std::vector<SubpathDensities> lightDensities, cameraDensities;
+  std::vector<SubpathDensities> lightDensities, cameraDensities, kept;
+  BeamVertex beam;
 };
 
 // The light's end of the sample's light path.
-PathEnds EndsOf(const BidirectionalSample& sample) {
+PathEnds EndsOf(const BidirectionalSample& sample, bool hasLeftFirst) {
   const PathVertex& first = sample.light.vertices[0];
-  const bool goesOn = sample.light.vertices.Count() > 1;
+  const bool goesOn = hasLeftFirst || sample.light.vertices.Count() > 1;
   PathEnds ends;
   ends.direct = sample.lightEnd.direct.value;
   ends.canBeHit = sample.lightEnd.canBeHit;
@@ -351,7 +399,7 @@ Color BidirectionalIntegrator::Sample(const Ray* ray, const SampleContext& conte
                              .cameraDensities = workspace.cameraDensities,
                              .lightPaths = lightPaths_};
   if (context.tracesLight && (settings_.connects || context.photons)) {
-    LightSide visitor(sample);
+    LightSide visitor(sample, context.lightSampler ? *context.lightSampler : context.sampler);
     const auto trace = [&](const SampleContext& own) {
       TraceLightPath(own, settings_.maxDepth, kLightDimensions, workspace.light, visitor);
     };
@@ -361,7 +409,7 @@ Color BidirectionalIntegrator::Sample(const Ray* ray, const SampleContext& conte
       trace(context);
     }
     if (context.photons && workspace.light.vertices.Count() > 0)
-      context.photons->KeepDensities(EndsOf(sample), workspace.lightDensities);
+      context.photons->KeepDensities(EndsOf(sample, visitor.HasLeftFirst()), workspace.lightDensities);
   }
   if (!ray) return Color(0.0f);
   Decide(*ray, sample);
@@ -369,7 +417,7 @@ Color BidirectionalIntegrator::Sample(const Ray* ray, const SampleContext& conte
   state.ray = *ray;
   state.medium = context.scene.MediumOf(*ray);
   state.specular = Color(1.0f);
-  CameraSide visitor(sample);
+  CameraSide visitor(sample, workspace.beam, workspace.kept);
   const WalkSettings walk{.mode = TransportMode::Radiance,
                           .maxDepth = settings_.maxDepth,
                           .dimensions = kCameraDimensions,
@@ -411,6 +459,7 @@ std::unique_ptr<Integrator> CreateVcm(const IntegratorInput& input) {
   if (!settings.merges && !settings.connects)
     throw UsageError("--no-merge and --no-connect: vcm has nothing left to find light by");
   settings.photons = PhotonSettingsOf(input);
+  UseBeams(input, settings.photons);
   // Without smooth materials connections find all light, and guided photons would add next to nothing.
   settings.photons.guided = settings.photons.guided && (!settings.connects || HasSmoothMaterial(input.scene));
   return MakeBidirectionalIntegrator(settings);

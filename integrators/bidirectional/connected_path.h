@@ -19,6 +19,7 @@ struct ConnectedPath {
   Vector3 toLight{0.0f}, toLens{0.0f};  // unit; from the first surface vertex, and from the one that the camera sees
   // Density of the vertex that the camera sees, by a camera ray, over that of the lens point; 0: t = 1 does not exist.
   AreaDensity atLens;
+  EdgeFactors endFactors;   // from the light to the first vertex; not of what the camera sees directly
   EdgeFactors factors;      // of media on a connecting edge (s > 1, t > 1), from the camera's vertex to the light's
   EdgeFactors lensFactors;  // from the lens to the vertex that it sees
   VolumeRadius volume;      // of photons in media in the first pass
@@ -35,6 +36,8 @@ struct ConnectedPath {
   Color WeightedValue() const { return value * static_cast<float>(weight); }
 };
 
+struct BeamVertex;  // beam_merge.h
+
 // Receives every path that contributes to a sample.
 class PathObserver {
  public:
@@ -45,6 +48,8 @@ class PathObserver {
   // The camera subpath's last vertex was merged with `photon`. Of the photon's path only the photon is known: `path`
   // has no light subpath and no `end`.
   virtual void ObserveMerge(const ConnectedPath& /*path*/, const Photon& /*photon*/) {}
+  // The same with a beam. `flight`: index of its start in the map.
+  virtual void ObserveBeamMerge(const ConnectedPath& /*path*/, const BeamVertex& /*beam*/, uint32_t /*flight*/) {}
 };
 
 }  // namespace lampyr

@@ -88,9 +88,17 @@ FullPath Unfold(const ConnectedPath& path) {
     } else if (i < n) {
       arrival = photon ? photon->factors.Reversed() : path.factors;
     }
-    full.mergeVolume[i] = static_cast<double>(MergeVolume(vertex, arrival, path.volume));
+    // And from the light's side.
+    EdgeFactors departure = path.endFactors;
+    if (i > 1 && (i <= ofLight) == (i - 1 <= ofLight)) {
+      departure = i <= ofLight ? vertex.factors : vertices[i - 1]->factors.Reversed();
+    } else if (i > 1) {
+      departure = photon ? photon->factors : path.factors.Reversed();
+    }
     const Vector3 toLight = i == 1 ? path.toLight : directionTo(i - 1);
     const Vector3 toCamera = i == n ? path.toLens : directionTo(i + 1);
+    full.mergeVolume[i] =
+        static_cast<double>(MergeVolume(vertex, {toLight, departure}, {toCamera, arrival}, path.volume));
     // The last vertex of a subpath is connected and has no event on the path, except where the camera's has hit the
     // light.
     const bool isLight = i <= ofLight;
@@ -245,6 +253,7 @@ PathDensities DensitiesOf(const FullPath& path) {
   Joint joint;
   joint.camera = {path.fromLight[1], n > 1 ? path.fromLight[2] : AreaDensity()};
   joint.mergesAtCamera = path.CanMerge(1);
+  joint.cameraMergeVolume = static_cast<float>(path.mergeVolume[1]);
   joint.previousCameraIsDelta = isDelta(1);
   PathDensities densities;
   densities.Set({}, camera, joint, path.end.emission.value, path.end.extent, path.merging);

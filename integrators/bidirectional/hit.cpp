@@ -29,6 +29,9 @@ Color HitLight(const BidirectionalSample& sample, const PathState& state, const 
   joint.camera.previous = event.previousReverse;
   joint.previousCameraIsDelta = event.isDelta;
   joint.mergesAtCamera = last.CanMerge() && !event.isDelta;
+  path.endFactors = state.factors.Reversed();
+  joint.cameraMergeVolume = MergeVolume(last, {state.ray.direction, path.endFactors}, {last.toPrevious, last.factors},
+                                        sample.settings.photons.volume);
   path.weight = HitWeight(path.end, last.weight, event, hit, sample.connectionCount,
                           NextEventCount(sample.camera.Count()), sample.MergingOfLight(path.end, joint, hit));
   if (sample.WantsSums()) [[unlikely]]

@@ -12,9 +12,8 @@ namespace {
 // Photons of a lookup whose paths are fetched ahead; they and their paths take less than half of a first-level cache.
 constexpr size_t kFetched = 64;
 
-// `reverse`: density of the photon's previous vertex, or of the light's point.
-void ReportMerge(const BidirectionalSample& sample, const Photon& photon, AreaDensity reverse, const Color& value,
-                 double weight) {
+// The path of a merge without its photon.
+ConnectedPath MergedPath(const BidirectionalSample& sample, const Photon& photon, const Color& value, double weight) {
   ConnectedPath path;
   sample.SetCamera(path);
   path.isMerged = true;
@@ -27,21 +26,38 @@ void ReportMerge(const BidirectionalSample& sample, const Photon& photon, AreaDe
   path.seenDensity = sample.seenDensity;
   path.value = value;
   path.weight = weight;
-  if (sample.WantsSums()) {
-    const PathEnds kept = sample.context.gather->map->EndsOf(photon);
-    const double hit = !kept.canBeHit ? 0.0 : photon.depth > 1 ? kept.hit : reverse.value;
-    path.sums = sample.whole.Sums(
-        {kept.direct, hit, kept.firstIsDelta && photon.depth > 1, sample.lensSeesIt ? sample.settings.splatCount : 0.0},
-        0, photon.depth);
-  }
+  return path;
+}
+
+// `reverse`: density of the photon's previous vertex, or of the light's point. `kept`: of its path.
+TechniqueSums SumsOf(const BidirectionalSample& sample, const Photon& photon, const PathEnds& kept,
+                     AreaDensity reverse) {
+  const double hit = !kept.canBeHit ? 0.0 : photon.depth > 1 ? kept.hit : reverse.value;
+  return sample.whole.Sums(
+      {kept.direct, hit, kept.firstIsDelta && photon.depth > 1, sample.lensSeesIt ? sample.settings.splatCount : 0.0},
+      0, photon.depth);
+}
+
+void ReportMerge(const BidirectionalSample& sample, const Photon& photon, AreaDensity reverse, const Color& value,
+                 double weight) {
+  ConnectedPath path = MergedPath(sample, photon, value, weight);
+  if (sample.WantsSums()) path.sums = SumsOf(sample, photon, sample.context.gather->map->EndsOf(photon), reverse);
   sample.context.observer->ObserveMerge(path, photon);
 }
 
-// The weight of merging the camera subpath's last vertex with a photon. `f`: of the vertex, towards where the photon
-// came from. Sets the densities of the whole path.
-double WeightOf(const BidirectionalSample& sample, const Photon& photon, const BsdfEvaluation& f, Joint& joint) {
+void ReportMerge(const BidirectionalSample& sample, const VolumeMerge& merge, AreaDensity reverse, const Color& value,
+                 double weight) {
+  if (!merge.beam) return ReportMerge(sample, *merge.photon, reverse, value, weight);
+  ConnectedPath path = MergedPath(sample, *merge.photon, value, weight);
+  if (sample.WantsSums()) path.sums = SumsOf(sample, *merge.photon, merge.beam->ends, reverse);
+  sample.context.observer->ObserveBeamMerge(path, *merge.beam, merge.flight);
+}
+
+// The weight of merging the camera subpath's last vertex with a photon. `light`: densities of the photon's path. `f`:
+// of the vertex, towards where the photon came from. Sets the densities of the whole path.
+double WeightOf(const BidirectionalSample& sample, const Photon& photon, std::span<const SubpathDensities> light,
+                const BsdfEvaluation& f, Joint& joint) {
   const PathVertex& vertex = sample.camera.Last();
-  const std::span<const SubpathDensities> light = sample.context.gather->map->PathOf(photon);
   joint.light.last = photon.PreviousReverse(SolidAngleDensity(f.pdfForward));
   joint.camera = {AreaDensity(light.back().forward), vertex.PreviousReverse(f.pdfReverse)};
   joint.lastCameraIsDelta = light.back().forwardIsDelta;
@@ -54,49 +70,94 @@ double WeightOf(const BidirectionalSample& sample, const Photon& photon, const B
                      sample.connectionCount, sample.whole.ForMerging(light.size()));
 }
 
+// Makes the vertex of the camera subpath at which the ray of `state` passes a photon. `passed`: of the ray up to there.
+void SetVertexInMedium(const PathState& state, const Flight& flight, double t, int32_t medium, const PhaseBsdf& phase,
+                       const Color& extinction, const BeamPoint& passed, PathVertex& vertex) {
+  vertex = PathVertex();
+  MakeVertexInMedium(flight.line.start + t * flight.line.direction, state.ray.direction, medium, phase, extinction,
+                     vertex);
+  vertex.factors = {MeanOf(passed.density * extinction), MeanOf(passed.density * flight.startExtinction),
+                    passed.through};
+}
+
 }  // namespace
 
-bool SetBeamVertex(const SampleContext& context, const PathState& state, const Flight& flight, const BeamHit& hit,
-                   PathVertex& vertex, BeamMerge& merge) {
+bool SetPointVertex(const SampleContext& context, const PathState& state, const Flight& flight, const BeamHit& hit,
+                    PathVertex& vertex, VolumeMerge& merge) {
   const PhotonMap& map = *context.gather->map;
   const VolumePhoton& photon = map.VolumeOf(hit.index);
   const std::optional<BeamPoint> point = flight.PointAt(hit.t, photon.medium);
   if (!point) return false;
-  merge.photon = hit.index;
-  merge.throughput = state.Throughput() * point->passed;
-  vertex = PathVertex();
-  MakeVertexInMedium(flight.line.start + static_cast<double>(hit.t) * flight.line.direction, state.ray.direction,
-                     photon.medium, photon.phase, photon.extinction, vertex);
-  vertex.factors = {MeanOf(point->density * photon.extinction), MeanOf(point->density * flight.startExtinction),
-                    point->through};
+  const auto radius = static_cast<double>(photon.radius);
+  merge = {.photon = &map[hit.index],
+           .light = map.PathOf(map[hit.index]),
+           .throughput = state.Throughput() * point->passed,
+           .kernel = 1 / (static_cast<double>(kPi) * radius * radius),
+           .use = hit.index};
+  SetVertexInMedium(state, flight, static_cast<double>(hit.t), photon.medium, photon.phase, photon.extinction, *point,
+                    vertex);
   return true;
 }
 
-Color MergeWithBeam(const BidirectionalSample& sample, const BeamMerge& merge) {
+bool SetCrossingVertex(const SampleContext& context, const PathState& state, const Flight& flight,
+                       const BeamCrossing& crossing, PathVertex& vertex, VolumeMerge& merge) {
+  const PhotonBeam& beam = context.gather->map->Beams()[crossing.beam];
+  const std::optional<BeamPoint> point = flight.PointAt(static_cast<float>(crossing.t), beam.step.medium);
+  if (!point) return false;
+  const Medium& medium = *context.scene.media[static_cast<size_t>(beam.step.medium)];
+  const MediumCoefficients here = medium.At(Point3(0.0f));
+  merge.throughput = state.Throughput() * point->passed;
+  SetVertexInMedium(state, flight, crossing.t, beam.step.medium, {here.scattering, medium.Asymmetry()},
+                    here.Extinction(), *point, vertex);
+  return true;
+}
+
+bool SetBeamOf(const BidirectionalSample& sample, const BeamCrossing& crossing, BeamVertex& beam, VolumeMerge& merge) {
+  const PhotonMap& map = *sample.context.gather->map;
+  const PhotonBeam& found = map.Beams()[crossing.beam];
+  if (!SetBeamVertex(sample.context, map, crossing, sample.settings.connects, sample.lightPaths, sample.camera.Last(),
+                     beam))
+    return false;
+  merge.photon = &beam.photon;
+  merge.light = beam.densities;
+  merge.beam = &beam;
+  merge.flight = found.start;
+  merge.kernel = 1 / (sample.settings.photons.volume.beamShare * 2 * static_cast<double>(crossing.radius) *
+                      static_cast<double>(crossing.sine));
+  merge.use = map.Beams().StartOf(found).origin == FlightStart::kNone ? VolumeMerge::kUnused : map.UseOf(found);
+  return true;
+}
+
+Color MergeInMedium(const BidirectionalSample& sample, const VolumeMerge& merge) {
   const SampleContext& context = sample.context;
   const PhotonPass& pass = *context.gather;
   const PathVertex& vertex = sample.camera.Last();
-  const Photon& photon = (*pass.map)[merge.photon];
-  if (photon.depth + sample.camera.Count() > static_cast<size_t>(sample.settings.maxDepth) + 1) return Color(0.0f);
+  const Photon& photon = *merge.photon;
   const BsdfEvaluation f = vertex.Evaluate(photon.toPrevious, TransportMode::Radiance);
   const Color value = f.diffuse * photon.flux;
   if (value.IsBlack()) return value;
   Joint joint;
   joint.isMerged = true;
   joint.mergesAtCamera = true;
-  const double weight = WeightOf(sample, photon, f, joint);
-  const auto radius = static_cast<double>(pass.map->VolumeOf(merge.photon).radius);
+  joint.cameraMergeVolume =
+      MergeVolume(vertex, {photon.toPrevious, merge.beam ? merge.beam->vertex.factors : EdgeFactors()},
+                  {vertex.toPrevious, vertex.factors}, sample.settings.photons.volume);
+  if (!(joint.cameraMergeVolume > 0)) return Color(0.0f);
+  const double weight = WeightOf(sample, photon, merge.light, f, joint);
   const double probability = static_cast<double>(sample.settings.counts.merging.At(sample.film));
-  const double perDensity = static_cast<double>(sample.Lighting().FluxUnit()) /
-                            (probability * pass.lightPaths * static_cast<double>(kPi) * radius * radius);
+  const double perPath = static_cast<double>(sample.Lighting().FluxUnit()) / (probability * pass.lightPaths);
+  const double perDensity = perPath * merge.kernel;
   if (context.layers) context.layers->Add(photon.group, Product(merge.throughput, value, perDensity * weight));
-  if (pass.use) {
+  if (pass.use && merge.use != VolumeMerge::kUnused) {
+    // A beam counts as a point photon would at the end of the flight.
+    const auto radius = static_cast<double>(pass.volume.At(vertex.point.position));
+    const double scale = weight * merge.kernel * static_cast<double>(kPi) * radius * radius;
     PhotonUse::Contribution used[1] = {
-        {merge.photon, (merge.throughput * f.diffuse).Average() * static_cast<float>(weight) * sample.perArea}};
+        {merge.use, (merge.throughput * f.diffuse).Average() * static_cast<float>(scale) * sample.perArea}};
     pass.use->Add(used);
   }
   if (sample.IsObserved()) [[unlikely]]
-    ReportMerge(sample, photon, joint.light.last, Product(merge.throughput, value, perDensity), weight);
+    ReportMerge(sample, merge, joint.light.last, Product(merge.throughput, value, perDensity), weight);
   return Product(merge.throughput, value, perDensity * weight);
 }
 
@@ -142,7 +203,7 @@ Color Merge(const BidirectionalSample& sample, std::span<const uint32_t> found) 
     const BsdfEvaluation f = vertex.Evaluate(toLight, TransportMode::Radiance);
     const Color scattered = f.diffuse * photon.flux + f.specular * pass.map->SpecularFlux(photon);
     if (scattered.IsBlack()) continue;
-    const double weight = WeightOf(sample, photon, f, joint);
+    const double weight = WeightOf(sample, photon, pass.map->PathOf(photon), f, joint);
     const Color value = scattered * vertex.ArrivalCorrection(toLight, photon.normal.Unpack());
     sum += value * static_cast<float>(weight);
     // Multiplied in another order than the sum: a shared product would be rounded differently than without layers.

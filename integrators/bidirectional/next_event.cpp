@@ -33,6 +33,9 @@ class NextEventTechnique final : public NextEventVisitor {
     Joint joint;
     joint.camera.previous = vertex_.PreviousReverse(light.f.pdfReverse);
     joint.mergesAtCamera = vertex_.CanMerge();
+    fromLight_ = light.factors.Reversed();
+    joint.cameraMergeVolume = MergeVolume(vertex_, {sample.direction, fromLight_},
+                                          {vertex_.toPrevious, vertex_.factors}, sample_.settings.photons.volume);
     weight_ = NextEventWeight(end_, vertex_.weight, hit_, joint.camera.previous, sample_.connectionCount,
                               NextEventCount(sample_.camera.Count()), sample_.MergingOfLight(end_, joint, end_.direct));
     return static_cast<float>(weight_);
@@ -48,6 +51,7 @@ class NextEventTechnique final : public NextEventVisitor {
     sample_.SetCamera(path);
     path.s = 1;
     path.end = end_;
+    path.endFactors = fromLight_;
     path.toLight = light.direct.sample->direction;
     path.value = value;
     path.weight = weight_;
@@ -59,6 +63,7 @@ class NextEventTechnique final : public NextEventVisitor {
   const BidirectionalSample& sample_;
   const PathVertex& vertex_;
   LightEnd end_;
+  EdgeFactors fromLight_;
   AreaDensity hit_;  // density of the light's point by scattering at the vertex
   double weight_ = 1;
 };

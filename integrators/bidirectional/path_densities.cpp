@@ -58,6 +58,7 @@ void PathDensities::Set(std::span<const SubpathDensities> light, std::span<const
     last.fromLight = joint.camera.last.value;
     last.lightIsDelta = joint.lastCameraIsDelta;
     last.canMerge = joint.mergesAtCamera;
+    last.mergeVolume = joint.cameraMergeVolume;
     if (j < n) {
       vertices[j + 1].fromLight = joint.camera.previous.value;
       vertices[j + 1].lightIsDelta = joint.previousCameraIsDelta;

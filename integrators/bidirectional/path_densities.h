@@ -44,7 +44,7 @@ struct Merging {
 struct Joint {
   ReverseDensities light, camera;
   bool mergesAtLight = false, mergesAtCamera = false;
-  float lightMergeVolume = 0;  // SubpathDensities::mergeVolume of the light's last vertex
+  float lightMergeVolume = 0, cameraMergeVolume = 0;              // SubpathDensities::mergeVolume of the last vertices
   bool lastCameraIsDelta = false, previousCameraIsDelta = false;  // the reverse density is a coefficient
   // The camera's last vertex is a photon's, and `light` holds the photon's path without it: of the light's last vertex
   // only light.last is set.

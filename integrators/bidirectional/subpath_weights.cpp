@@ -1,5 +1,7 @@
 #include "integrators/bidirectional/subpath_weights.h"
 
+#include "integrators/photon/photon_beams.h"
+
 namespace lampyr {
 
 namespace {
@@ -23,24 +25,33 @@ void SetWeights(const PathVertex& previous, const PathState& state, bool connect
   if (!connects) vertex.weight.connections.last = 0;
 }
 
-float MergeVolumeInMedium(const Vertex& vertex, const EdgeFactors& factors, const VolumeRadius& radius) {
-  if (!(factors.forward > 0)) return 0;
+double MergeSize(const Vertex& vertex, const ArrivingEdge& light, const Vector3& toCamera, const VolumeRadius& radius) {
   const auto r = static_cast<double>(radius.At(vertex.point.position));
-  return static_cast<float>(static_cast<double>(kPi) * r * r * factors.through / factors.forward);
+  if (!radius.UsesBeams(vertex.insideMedium)) return static_cast<double>(kPi) * r * r;
+  const double sine = glm::length(glm::cross(Vector3d(light.away), Vector3d(toCamera)));
+  if (sine < static_cast<double>(kLeastSine)) return 0;
+  return radius.beamShare * 2 * r * sine * PassingPerCollision(light.factors);
 }
 
-void AddDensities(const Subpath& path, const VolumeRadius* radius, bool isFromLight,
+float MergeVolumeInMedium(const Vertex& vertex, const ArrivingEdge& light, const ArrivingEdge& camera,
+                          const VolumeRadius& radius) {
+  return static_cast<float>(MergeSize(vertex, light, camera.away, radius) * PassingPerCollision(camera.factors));
+}
+
+void AddDensities(const Subpath& path, const VolumeRadius& radius, bool isFromLight,
                   std::vector<SubpathDensities>& densities) {
   const size_t count = path.Count();
   densities.resize(count);
   SubpathDensities& last = densities[count - 1];
   last = {.forward = path.Last().pdfForward.value, .isInMedium = path.Last().IsInMedium()};
-  if (radius && !isFromLight && last.isInMedium) [[unlikely]]
-    last.mergeVolume = MergeVolume(path.Last(), path.Last().factors, *radius);
   if (count < 2) return;
   const PathVertex& previous = path[count - 2];
-  if (radius && isFromLight && previous.IsInMedium()) [[unlikely]]
-    densities[count - 2].mergeVolume = MergeVolume(previous, path.Last().factors.Reversed(), *radius);
+  if (previous.IsInMedium()) [[unlikely]] {
+    const ArrivingEdge before{previous.toPrevious, previous.factors};
+    const ArrivingEdge after{-path.Last().toPrevious, path.Last().factors.Reversed()};
+    densities[count - 2].mergeVolume =
+        isFromLight ? MergeVolume(previous, before, after, radius) : MergeVolume(previous, after, before, radius);
+  }
   last.forwardIsDelta = previous.scatteredDelta;
   densities[count - 2].canMerge = previous.CanMerge() && !previous.scatteredDelta;
   if (count < 3) return;
@@ -82,19 +93,24 @@ LightEnd EndOf(const LightingServices& lighting, const FoundLight& found, bool c
 }
 
 // The partial weight of the first vertex depends on light selection there: on the probability with which next-event
-// estimation from it would have chosen this light. False: the light does not send anything there.
-bool WeightedLightPath::FirstHit(const EmittedPhoton& photon, PathVertex& first) {
-  const LightingServices& lighting = *context_.scene.lighting;
+// estimation from it would have chosen this light.
+bool SetFirstWeights(const SampleContext& context, const EmittedPhoton& photon, bool connects, double lightPaths,
+                     PathVertex& first, LightEnd& end) {
+  const LightingServices& lighting = *context.scene.lighting;
   const std::optional<FoundLight> found = lighting.EvaluateFirstHit(photon, first.receiver);
   if (!found) return false;
   const auto squared = static_cast<double>(LengthSquared(first.point.position - photon.emission.position));
   const SolidAnglePerArea edge =
       FirstEdgeDensity(lighting, found->light, first.GeometryTerm(first.toPrevious), squared);
-  end_ = EndOf(lighting, *found, lighting.CanBeHit(found->light), edge, first.factors, lightPaths_);
-  if (!(end_.emission.value > 0)) return false;
-  first.previousSolidAnglePerArea = end_.solidAnglePerArea;
-  first.weight = PartialWeight::AtFirstHit(end_, connects_);
+  end = EndOf(lighting, *found, lighting.CanBeHit(found->light), edge, first.factors, lightPaths);
+  if (!(end.emission.value > 0)) return false;
+  first.previousSolidAnglePerArea = end.solidAnglePerArea;
+  first.weight = PartialWeight::AtFirstHit(end, connects);
   return true;
+}
+
+bool WeightedLightPath::FirstHit(const EmittedPhoton& photon, PathVertex& first) {
+  return SetFirstWeights(context_, photon, connects_, lightPaths_, first, end_);
 }
 
 void WeightedLightPath::Arrived(LightPath& path, const PathState& state) {

@@ -10,14 +10,33 @@ namespace lampyr {
 void SetWeights(const PathVertex& previous, const PathState& state, bool connects, PathVertex& vertex);
 
 // The densities of the last vertex of a subpath, and what is known of those before it once that one is there.
-// `radius`: of photons in media; null: no merging there. `isFromLight`: the camera's side is that of later vertices.
-void AddDensities(const Subpath& path, const VolumeRadius* radius, bool isFromLight,
+// `radius`: of photons in media. `isFromLight`: the camera's side is that of later vertices.
+void AddDensities(const Subpath& path, const VolumeRadius& radius, bool isFromLight,
                   std::vector<SubpathDensities>& densities);
 
-// SubpathDensities::mergeVolume of a vertex. `factors`: of the edge towards it from the camera's side.
-float MergeVolumeInMedium(const Vertex& vertex, const EdgeFactors& factors, const VolumeRadius& radius);
-inline float MergeVolume(const Vertex& vertex, const EdgeFactors& factors, const VolumeRadius& radius) {
-  return vertex.IsInMedium() ? MergeVolumeInMedium(vertex, factors, radius) : 0.0f;
+// An edge of a path at a vertex: the direction away from the vertex, and the factors of a walk that arrives there.
+struct ArrivingEdge {
+  Vector3 away{0.0f};
+  EdgeFactors factors;
+};
+
+// The kernel of merging at a vertex in a medium, for one light path of the first pass: for points the area π r² of the
+// disk in which a camera ray finds them, scene units²; for beams 2 r sinθ · (probability of passing the vertex from the
+// light's side / density of colliding there), with θ between both edges, times the share of light paths that leave
+// beams ([Křivánek14]).
+double MergeSize(const Vertex& vertex, const ArrivingEdge& light, const Vector3& toCamera, const VolumeRadius& radius);
+// MergeSize times the probability with which a camera path passes the vertex over the density with which it collides,
+// scene units³: over the density of a connection there it is the density of merging.
+float MergeVolumeInMedium(const Vertex& vertex, const ArrivingEdge& light, const ArrivingEdge& camera,
+                          const VolumeRadius& radius);
+// The same; of a vertex on a surface 0.
+inline float MergeVolume(const Vertex& vertex, const ArrivingEdge& light, const ArrivingEdge& camera,
+                         const VolumeRadius& radius) {
+  return vertex.IsInMedium() ? MergeVolumeInMedium(vertex, light, camera, radius) : 0.0f;
+}
+// Probability of passing a vertex over the density of colliding there, scene units; 0: no walk collides there.
+inline double PassingPerCollision(const EdgeFactors& factors) {
+  return factors.forward > 0 ? factors.through / factors.forward : 0.0;
 }
 
 // dω/dA at the first hit of an emitted path: EdgeDensity, for a light at infinity without the squared distance.
@@ -28,6 +47,11 @@ SolidAnglePerArea FirstEdgeDensity(const LightingServices& lighting, uint32_t li
 // `factors`: of media on the edge, from the light to that vertex. `lightPaths`: for each camera path.
 LightEnd EndOf(const LightingServices& lighting, const FoundLight& found, bool canBeHit, SolidAnglePerArea edge,
                const EdgeFactors& factors, double lightPaths);
+
+// Sets the partial weight of the first vertex of a light path, whose point and factors are set. `end`: receives the
+// light's end of the path. False: the light does not send anything there.
+bool SetFirstWeights(const SampleContext& context, const EmittedPhoton& photon, bool connects, double lightPaths,
+                     PathVertex& first, LightEnd& end);
 
 // Sets densities and partial weights of a light path while it grows; base of visitors that need them.
 class WeightedLightPath : public LightPathVisitor {

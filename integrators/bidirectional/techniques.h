@@ -2,6 +2,7 @@
 // returns their contribution to the sample's own pixel or splats it.
 #pragma once
 
+#include "integrators/bidirectional/beam_merge.h"
 #include "integrators/bidirectional/bidirectional_integrator.h"
 #include "integrators/bidirectional/connected_path.h"
 #include "integrators/bidirectional/path_densities.h"
@@ -116,17 +117,29 @@ void SplatLight(const BidirectionalSample& sample, const EmittedPhoton& photon);
 void SplatVertex(const BidirectionalSample& sample);
 
 // A photon that a camera ray passes in a medium.
-struct BeamMerge {
-  uint32_t photon = 0;  // index in the map
+struct VolumeMerge {
+  const Photon* photon = nullptr;
+  std::span<const SubpathDensities> light;  // of its path
   // Throughput of the camera path at the photon, over the probability of passing there; without scattering.
   Color throughput;
+  double kernel = 0;                 // density of the kernel, without the number of light paths
+  uint32_t use = kUnused;            // its index for PhotonUse
+  const BeamVertex* beam = nullptr;  // of a beam
+  uint32_t flight = 0;               // index of the beam's FlightStart
+
+  static constexpr uint32_t kUnused = 0xffffffffu;
 };
-// Makes the vertex at which the ray of `state` passes a photon. False: none, because another medium is there.
-bool SetBeamVertex(const SampleContext& context, const PathState& state, const Flight& flight, const BeamHit& hit,
-                   PathVertex& vertex, BeamMerge& merge);
-// Merging of the camera subpath's last vertex, made by SetBeamVertex, with its photon ([Křivánek14], point–beam in two
-// dimensions; the kernel is constant).
-Color MergeWithBeam(const BidirectionalSample& sample, const BeamMerge& merge);
+// Make the vertex at which the ray of `state` passes a photon, or the line of a beam. False: none, because another
+// medium is there.
+bool SetPointVertex(const SampleContext& context, const PathState& state, const Flight& flight, const BeamHit& hit,
+                    PathVertex& vertex, VolumeMerge& merge);
+bool SetCrossingVertex(const SampleContext& context, const PathState& state, const Flight& flight,
+                       const BeamCrossing& crossing, PathVertex& vertex, VolumeMerge& merge);
+// Sets the photon of a beam for the camera subpath's last vertex, made by SetCrossingVertex. False: it carries nothing.
+bool SetBeamOf(const BidirectionalSample& sample, const BeamCrossing& crossing, BeamVertex& beam, VolumeMerge& merge);
+// Merging of the camera subpath's last vertex, made by one of these, with its photon ([Křivánek14]: point–beam in two
+// dimensions, beam–beam in one; the kernels are constant).
+Color MergeInMedium(const BidirectionalSample& sample, const VolumeMerge& merge);
 
 // Vertex merging: photons near the camera subpath's last vertex ([Georgiev12 §3]). They lie anywhere in memory, as do
 // the densities of their paths, and reading them takes longer than weighting them. So they are looked up first, fetched

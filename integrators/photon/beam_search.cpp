@@ -1,84 +1,33 @@
 #include "integrators/photon/beam_search.h"
 
-#include <algorithm>
-#include <cmath>
-
 namespace lampyr {
 
-BeamSearch::BeamSearch(std::span<const VolumePhoton> balls) {
-  size_t count = balls.size();
-  for (uint32_t level = 0; count > 0; ++level) {
-    const size_t children = count;
-    counts_.push_back(static_cast<uint32_t>(children));
-    count = (children + kWidth - 1) / kWidth;
-    starts_.push_back(static_cast<uint32_t>(nodes_.size()));
-    nodes_.resize(nodes_.size() + count);
-    Node* const nodes = &nodes_[starts_[level]];
-    for (size_t i = 0; i < count * kWidth; ++i) {
-      Node& node = nodes[i / kWidth];
-      const size_t slot = i % kWidth;
-      for (size_t axis = 0; axis < 3; ++axis) {
-        float least = kInfinity, most = -kInfinity;
-        if (i < children && level == 0) {
-          const auto a = static_cast<glm::length_t>(axis);
-          least = balls[i].position[a] - balls[i].radius;
-          most = balls[i].position[a] + balls[i].radius;
-        } else if (i < children) {
-          const Node& child = nodes_[starts_[level - 1] + i];
-          least = *std::min_element(child.least[axis].begin(), child.least[axis].end());
-          most = *std::max_element(child.most[axis].begin(), child.most[axis].end());
-        }
-        node.least[axis][slot] = least;
-        node.most[axis][slot] = most;
-      }
-    }
-    if (count == 1) break;
+namespace {
+
+std::vector<Bounds3> BoxesOf(std::span<const VolumePhoton> balls) {
+  std::vector<Bounds3> boxes;
+  boxes.reserve(balls.size());
+  for (const VolumePhoton& ball : balls) {
+    const Vector3 radius(ball.radius);
+    boxes.push_back({ball.position - radius, ball.position + radius});
   }
+  return boxes;
 }
 
+}  // namespace
+
+BeamSearch::BeamSearch(std::span<const VolumePhoton> balls) : tree_(BoxesOf(balls)) {}
+
 void BeamSearch::Find(std::span<const VolumePhoton> balls, const Ray& ray, float tMax, uint32_t first,
-                      std::vector<BeamHit>& hits) const {
-  if (nodes_.empty()) return;
-  const Vector3 inverse = 1.0f / ray.direction;
-  struct Entry {
-    uint32_t level, index;
-  };
-  std::array<Entry, 12 * kWidth> stack;  // 32 bits of indices are eleven levels
-  size_t waiting = 0;
-  stack[waiting++] = {static_cast<uint32_t>(starts_.size() - 1), 0};
-  while (waiting > 0) {
-    const Entry entry = stack[--waiting];
-    const Node& node = nodes_[starts_[entry.level] + entry.index];
-    uint32_t met = 0;
-    const uint32_t children = std::min(counts_[entry.level] - entry.index * kWidth, kWidth);
-    for (uint32_t slot = 0; slot < children; ++slot) {
-      float enters = 0, leaves = tMax;
-      for (glm::length_t axis = 0; axis < 3; ++axis) {
-        const auto a = static_cast<size_t>(axis);
-        const float low = (node.least[a][slot] - ray.origin[axis]) * inverse[axis];
-        const float high = (node.most[a][slot] - ray.origin[axis]) * inverse[axis];
-        // A NaN (0 · infinity, a ray within a side of the box) leaves the interval as it is.
-        enters = std::max(enters, std::min(low, high));
-        leaves = std::min(leaves, std::max(low, high));
-      }
-      constexpr float kMargin = 1 + 1e-6f;
-      if (enters <= leaves * kMargin) met |= 1u << slot;
-    }
-    // From the last child to the first: balls come by increasing index.
-    for (uint32_t slot = kWidth; slot-- > 0;) {
-      if (!(met & 1u << slot)) continue;
-      if (entry.level > 0) stack[waiting++] = {entry.level - 1, entry.index * kWidth + slot};
-    }
-    if (entry.level > 0) continue;
-    for (uint32_t slot = 0; slot < kWidth; ++slot) {
-      if (!(met & 1u << slot)) continue;
-      const uint32_t index = entry.index * kWidth + slot;
-      const VolumePhoton& ball = balls[index];
-      const Vector3 toBall = ball.position - ray.origin;
-      const float t = glm::dot(toBall, ray.direction);
-      if (!(t >= 0 && t < tMax)) continue;
-      if (LengthSquared(toBall - t * ray.direction) < ball.radius * ball.radius) hits.push_back({first + index, t});
-    }
+                      std::vector<uint32_t>& boxes, std::vector<BeamHit>& hits) const {
+  boxes.clear();
+  tree_.Find(ray, tMax, boxes);
+  for (const uint32_t index : boxes) {
+    const VolumePhoton& ball = balls[index];
+    const Vector3 toBall = ball.position - ray.origin;
+    const float t = glm::dot(toBall, ray.direction);
+    if (!(t >= 0 && t < tMax)) continue;
+    if (LengthSquared(toBall - t * ray.direction) < ball.radius * ball.radius) hits.push_back({first + index, t});
   }
 }
 

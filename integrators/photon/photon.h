@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "integrators/photon/photon_beams.h"
 #include "integrators/photon/photon_use.h"
 #include "integrators/walk/vertex.h"
 
@@ -93,11 +94,14 @@ class PhotonList {
     origins_.clear();
     densities_.clear();
     volume_.clear();
+    beams_.Clear();
+    originsOfFlights_ = 0;
   }
   // What is added from now on belongs to the next path.
   void StartPath() {
     starts_.push_back({static_cast<uint32_t>(photons_.size()), static_cast<uint32_t>(densities_.size()),
-                       static_cast<uint32_t>(volume_.size())});
+                       static_cast<uint32_t>(volume_.size()), static_cast<uint32_t>(beams_.starts.size()),
+                       static_cast<uint32_t>(beams_.beams.size()), static_cast<uint32_t>(beams_.emissions.size())});
   }
   // Sets the origin of the current path, for emission guiding. Before its first photon, or not at all.
   void SetOrigin(const PathOrigin& origin) {
@@ -121,12 +125,32 @@ class PhotonList {
       volume_.push_back({vertex.point.position, 0, *phase, vertex.extinction, vertex.insideMedium});
     }
   }
-  // Keeps the densities of the current path's vertices up to its last photon, which is not deeper than kDeepest, and
-  // before them those of its light's end. To be called when the path is complete, or not at all.
+  // Stores the flight of the current path from `start`. `emission`: of a flight from a light; null: from a vertex.
+  void AddFlight(FlightStart start, const EmittedPhoton* emission, std::span<const PhotonBeam> beams) {
+    start.path = static_cast<uint32_t>(densities_.size() + 1);
+    if (emission) {
+      start.emission = static_cast<uint32_t>(beams_.emissions.size());
+      beams_.emissions.push_back(*emission);
+    } else if (!origins_.empty()) {
+      start.origin = static_cast<uint32_t>(origins_.size()) - 1;
+      originsOfFlights_ = origins_.size();
+    }
+    for (PhotonBeam beam : beams) {
+      beam.start = static_cast<uint32_t>(beams_.starts.size());
+      beams_.beams.push_back(beam);
+    }
+    beams_.starts.push_back(start);
+  }
+  // Keeps the densities of the current path's vertices up to its last photon, which is not deeper than kDeepest, or to
+  // the start of its last flight, and before them those of its light's end. To be called when the path is complete, or
+  // not at all.
   void KeepDensities(const PathEnds& ends, std::span<const SubpathDensities> densities) {
-    if (photons_.size() == starts_.back().photon) return;
+    const Start& first = starts_.back();
+    size_t count = photons_.size() > first.photon ? photons_.back().depth : 0u;
+    if (beams_.starts.size() > first.flight) count = std::max<size_t>(count, beams_.starts.back().depth - 1u);
+    if (count == 0) return;
     densities_.push_back(ends.Packed());
-    const std::span<const SubpathDensities> kept = densities.first(photons_.back().depth);
+    const std::span<const SubpathDensities> kept = densities.first(count);
     densities_.insert(densities_.end(), kept.begin(), kept.end());
   }
   static constexpr size_t kDeepest = 65535;
@@ -134,7 +158,7 @@ class PhotonList {
   // Memory while the map is built, of which there are two copies of the densities.
   uint64_t Bytes(uint64_t perPhoton) const {
     return photons_.size() * perPhoton + 2 * sizeof(SubpathDensities) * densities_.size() +
-           3 * sizeof(VolumePhoton) * volume_.size();
+           3 * sizeof(VolumePhoton) * volume_.size() + 4 * beams_.Bytes();
   }
   // Removes whole paths from the end until Bytes is no more than `most`, or `least` paths are left; returns the number
   // of paths left.
@@ -143,6 +167,9 @@ class PhotonList {
       photons_.resize(starts_.back().photon);
       densities_.resize(starts_.back().density);
       volume_.resize(starts_.back().volume);
+      beams_.starts.resize(starts_.back().flight);
+      beams_.beams.resize(starts_.back().beam);
+      beams_.emissions.resize(starts_.back().emission);
       starts_.pop_back();
     }
     origins_.resize(KeptOrigins());
@@ -152,19 +179,25 @@ class PhotonList {
   const std::vector<PathOrigin>& Origins() const { return origins_; }
   const std::vector<SubpathDensities>& Densities() const { return densities_; }
   const std::vector<VolumePhoton>& Volume() const { return volume_; }
+  const BeamList& Beams() const { return beams_; }
 
  private:
   // Number of origins whose paths stored photons; 0 if no origin was set.
-  size_t KeptOrigins() const { return photons_.empty() ? 0 : static_cast<size_t>(photons_.back().origin + 1); }
+  size_t KeptOrigins() const {
+    const size_t ofPhotons = photons_.empty() ? 0 : static_cast<size_t>(photons_.back().origin + 1);
+    return std::max(ofPhotons, originsOfFlights_);
+  }
 
   std::vector<TracedPhoton> photons_;
   struct Start {
-    uint32_t photon, density, volume;
+    uint32_t photon, density, volume, flight, beam, emission;
   };
-  std::vector<Start> starts_;  // indices of the first photon of each path, and of its densities
+  std::vector<Start> starts_;  // indices of what is first of each path
   std::vector<PathOrigin> origins_;
   std::vector<SubpathDensities> densities_;
   std::vector<VolumePhoton> volume_;
+  BeamList beams_;
+  size_t originsOfFlights_ = 0;  // origins that flights may refer to
 };
 
 // A photon while a map is sorted by cells.

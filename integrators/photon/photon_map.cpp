@@ -72,7 +72,8 @@ struct PhotonMap::Traced {
   std::vector<uint32_t> origins;            // empty unless wanted
   std::vector<const VolumePhoton*> volume;  // by photon; null on a surface. Empty if all are
   std::vector<uint32_t> paths;  // TracedPhoton::path, in the concatenated densities; empty if they were not kept
-  bool hasSpecular = false;     // flux for specular lobes differs from that for diffuse ones
+  BeamList beams;
+  bool hasSpecular = false;  // flux for specular lobes differs from that for diffuse ones
   Point3 least{std::numeric_limits<float>::infinity()}, most{-std::numeric_limits<float>::infinity()};
 };
 
@@ -106,6 +107,7 @@ PhotonMap::Traced PhotonMap::Collect(std::span<const PhotonList> lists, bool wan
       if (wantsOrigins) traced.origins.push_back(firstOrigin + photon.origin);
       if (densities > 0) traced.paths.push_back(static_cast<uint32_t>(firstDensity) + photon.path);
     }
+    traced.beams.Append(list.Beams(), firstOrigin, static_cast<uint32_t>(firstDensity));
     if (!list.Densities().empty()) {
       std::copy(list.Densities().begin(), list.Densities().end(), &densities_[firstDensity]);
       firstDensity += list.Densities().size();
@@ -162,9 +164,18 @@ std::vector<uint32_t> MortonOrder(const std::vector<const TracedPhoton*>& photon
 PhotonMap::PhotonMap(std::span<const PhotonList> lists, int threads, std::vector<uint32_t>* origins,
                      const VolumeRadius& radius) {
   const auto start = std::chrono::steady_clock::now();
-  const Traced traced = Collect(lists, origins != nullptr);
+  Traced traced = Collect(lists, origins != nullptr);
   const size_t count = traced.photons.size();
-  if (count == 0) return;
+  if (!traced.beams.IsEmpty()) beams_ = BeamMap(std::move(traced.beams), radius);
+  if (count > 0) Build(traced, threads, origins, radius);
+  if (origins) {
+    for (const FlightStart& start : beams_.Starts()) origins->push_back(start.origin);
+  }
+  buildSeconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void PhotonMap::Build(const Traced& traced, int threads, std::vector<uint32_t>* origins, const VolumeRadius& radius) {
+  const size_t count = traced.photons.size();
   const Vector3 extent = traced.most - traced.least;
   center_ = traced.least + 0.5f * extent;
   std::vector<uint32_t> order = MortonOrder(traced.photons, traced.least, extent, threads);
@@ -214,7 +225,6 @@ PhotonMap::PhotonMap(std::span<const PhotonList> lists, int threads, std::vector
     specular_.push_back(source.specular);
   }
   if (firstVolume_ > 0) search_ = std::make_unique<Search>(positions);
-  buildSeconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 std::span<const uint32_t> PhotonMap::Find(const Point3& position, float radius, PhotonLookup& lookup) const {
@@ -227,8 +237,15 @@ std::span<const uint32_t> PhotonMap::Find(const Point3& position, float radius, 
 
 std::span<const BeamHit> PhotonMap::FindAlong(const Ray& ray, float tMax, PhotonLookup& lookup) const {
   lookup.beamHits.clear();
-  beamSearch_.Find(volume_, ray, tMax, firstVolume_, lookup.beamHits);
+  beamSearch_.Find(volume_, ray, tMax, firstVolume_, lookup.boxes, lookup.beamHits);
   return lookup.beamHits;
+}
+
+std::span<const BeamCrossing> PhotonMap::FindBeams(const Ray& ray, const FineLine& line, float tMax,
+                                                   PhotonLookup& lookup) const {
+  lookup.crossings.clear();
+  beams_.Find(ray, line, tMax, lookup.boxes, lookup.crossings);
+  return lookup.crossings;
 }
 
 // Memory of the tree: a copy of the positions in the tree's order; one row pointer and one index per photon; and two
@@ -237,7 +254,8 @@ size_t PhotonMap::Bytes() const {
   constexpr size_t node = 48;
   const size_t perPhoton = sizeof(Photon) + 3 * sizeof(float) + sizeof(float*) + sizeof(int);
   return photons_.Size() * perPhoton + photons_.Size() / (kLeaf / 2) * 2 * node + specular_.size() * sizeof(Color) +
-         densities_.Size() * sizeof(SubpathDensities) + volume_.size() * sizeof(VolumePhoton) + beamSearch_.Bytes();
+         densities_.Size() * sizeof(SubpathDensities) + volume_.size() * sizeof(VolumePhoton) + beamSearch_.Bytes() +
+         beams_.Bytes();
 }
 
 }  // namespace lampyr

@@ -20,6 +20,8 @@ namespace lampyr {
 struct PhotonLookup {
   std::vector<uint32_t> found;
   std::vector<BeamHit> beamHits;
+  std::vector<BeamCrossing> crossings;
+  std::vector<uint32_t> boxes;
   std::vector<PhotonUse::Contribution> used;  // of the photons found, for emission guiding
 };
 
@@ -32,8 +34,8 @@ class PhotonMap {
 
   // Builds the map of the concatenated lists. Photons whose position or flux is not finite are left out and counted.
   // `origins`, if not null, receives for each photon the index of its path's origin in the concatenated origins of the
-  // lists.
-  // `radius`: of the balls of photons in media.
+  // lists, and after those the same for each start of a flight (FlightStart::kNone: not known).
+  // `radius`: of photons in media.
   PhotonMap(std::span<const PhotonList> lists, int threads, std::vector<uint32_t>* origins = nullptr,
             const VolumeRadius& radius = {});
 
@@ -44,7 +46,16 @@ class PhotonMap {
   // The photons in media whose balls a ray passes on [0, tMax), in an order that depends on the photons alone. Valid
   // until the next search. [Jensen98]'s photons, seen by beams ([Jarosz08]).
   std::span<const BeamHit> FindAlong(const Ray& ray, float tMax, PhotonLookup& lookup) const;
-  bool HasVolume() const { return !volume_.empty(); }
+  bool HasVolume() const { return !volume_.empty() || !beams_.IsEmpty(); }
+  // The beams that a ray passes on [0, tMax), as FindAlong.
+  std::span<const BeamCrossing> FindBeams(const Ray& ray, const FineLine& line, float tMax, PhotonLookup& lookup) const;
+  const BeamMap& Beams() const { return beams_; }
+  // Densities of the vertices of a light path before its flight from `start`.
+  std::span<const SubpathDensities> PathOf(const FlightStart& start) const {
+    return start.depth == 1 ? std::span<const SubpathDensities>()
+                            : std::span(&densities_[start.path], start.depth - 1u);
+  }
+  PathEnds EndsOf(const FlightStart& start) const { return PathEnds::Unpacked(densities_[start.path - 1]); }
   // The medium's data of a photon, by an index that FindAlong returned.
   const VolumePhoton& VolumeOf(uint32_t index) const { return volume_[index - firstVolume_]; }
 
@@ -72,6 +83,8 @@ class PhotonMap {
   PathEnds EndsOf(const Photon& photon) const { return PathEnds::Unpacked(densities_[photon.path - 1]); }
 
   size_t Size() const { return photons_.Size(); }
+  // The index for PhotonUse of the photon that flies from `start`.
+  uint32_t UseOf(const PhotonBeam& beam) const { return static_cast<uint32_t>(Size()) + beam.start; }
   bool IsEmpty() const { return photons_.Size() == 0; }
   size_t Rejected() const { return rejected_; }
   // Memory of the photons and of the search tree.
@@ -82,6 +95,7 @@ class PhotonMap {
   struct Search;
   struct Traced;
   Traced Collect(std::span<const PhotonList> lists, bool wantsOrigins);
+  void Build(const Traced& traced, int threads, std::vector<uint32_t>* origins, const VolumeRadius& radius);
 
   Point3 center_{0.0f};  // positions are kept relative to it
   LargeArray<Photon> photons_;
@@ -91,6 +105,7 @@ class PhotonMap {
   uint32_t firstVolume_ = 0;
   std::vector<VolumePhoton> volume_;
   BeamSearch beamSearch_;
+  BeamMap beams_;
   std::unique_ptr<Search> search_;
   size_t rejected_ = 0;
   double buildSeconds_ = 0;

@@ -52,4 +52,36 @@ PhotonSettings PhotonSettingsOf(const IntegratorInput& input) {
   return photons;
 }
 
+namespace {
+
+// Photons are beams where this is the most that the radius is, in mean free paths. The density of merging with beams is
+// 2 sinθ / (π r σ_t) times that with points, and the share of paths that leave beams costs some of that.
+constexpr double kMostRadiusInMeanFreePaths = 0.02;
+// Beams that a camera ray across the picture is to pass, by their share: each merge takes longer than next-event
+// estimation.
+constexpr double kBeamsPerRay = 12;
+
+}  // namespace
+
+void UseBeams(const IntegratorInput& input, PhotonSettings& photons) {
+  VolumeRadius& volume = photons.volume;
+  const RenderScene& scene = input.scene;
+  const auto radius = static_cast<double>(volume.At(scene.lighting->SceneSphere().center));
+  volume.usesBeams.assign(scene.media.size(), 0);
+  bool isUsed = false;
+  for (size_t i = 0; i < scene.media.size(); ++i) {
+    const Medium& medium = *scene.media[i];
+    if (!medium.IsHomogeneous() || !medium.Scatters()) continue;
+    const auto extinction = static_cast<double>(medium.At(Point3(0.0f)).Extinction().Max());
+    if (!(radius * extinction < kMostRadiusInMeanFreePaths)) continue;
+    volume.usesBeams[i] = 1;
+    isUsed = true;
+  }
+  if (!isUsed) volume.usesBeams.clear();
+  // A beam across the picture is in the pixels of a row, twice as wide as one; of as many light paths as pixels.
+  const double pixels = input.FilmPixels();
+  const double paths = photons.lightPaths > 0 ? static_cast<double>(photons.lightPaths) : pixels;
+  volume.beamShare = std::min(1.0, kBeamsPerRay * pixels / (2 * std::sqrt(pixels) * paths));
+}
+
 }  // namespace lampyr

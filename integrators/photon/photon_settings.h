@@ -48,5 +48,7 @@ inline const std::vector<const Setting*> kAll = {&kPhotons, &kPhotonMemory, &kRa
 
 // PhotonSettings with the radius clamped to the range that makes sense for the scene.
 PhotonSettings PhotonSettingsOf(const IntegratorInput& input);
+// Makes photons beams in homogeneous media whose mean free paths are long against the radius.
+void UseBeams(const IntegratorInput& input, PhotonSettings& photons);
 
 }  // namespace lampyr

@@ -37,7 +37,8 @@ inline PathOrigin OriginOf(const LightingServices& lighting, const EmittedPhoton
 
 class PhotonUse {
  public:
-  // `paths`: for each photon of the map, the index of its path in `origins`.
+  // `paths`: for each photon of the map, and then for each flight, the index of its path in `origins`. Of a flight it
+  // may be 0xffffffff: not known, and its use is not recorded.
   PhotonUse(std::vector<uint32_t> paths, std::vector<PathOrigin> origins)
       : paths_(std::move(paths)), origins_(std::move(origins)), sums_(origins_.size()) {}
 

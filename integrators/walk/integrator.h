@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "film/layer_sample.h"
 #include "film/splats.h"
@@ -23,15 +24,32 @@ enum class TracedPaths {
   Both,    // one of each
 };
 
-// The radius of photons in media, by place: a number of pixels as the camera sees them there, or the same everywhere.
+// Kernels of photons in media. By place: a number of pixels as the camera sees them there, or the same everywhere.
+// Photons are points, found by camera rays that pass them within the radius; or beams, which are the flights of light
+// paths, where mean free paths are long.
 struct VolumeRadius {
   Point3 eye{0.0f};
   double constant = 0, perLength = 0;  // scene units; per scene unit of distance from `eye`
+  double scale = 1;                    // of the pass, already a factor of the above
+  std::vector<uint8_t> usesBeams;      // by medium; of those beyond the end 0
+  double beamShare = 1;                // fraction of the light paths whose flights are kept
 
   float At(const Point3& position) const {
     return static_cast<float>(constant + perLength * static_cast<double>(glm::distance(position, eye)));
   }
-  VolumeRadius Scaled(double scale) const { return {eye, scale * constant, scale * perLength}; }
+  // Half the width of the kernel between beams. It shrinks with the square of the scale: as [Křivánek14] has it, for
+  // the same variance of a sum over all passes as that of two dimensions.
+  float BeamAt(const Point3& position) const { return static_cast<float>(scale) * At(position); }
+  bool UsesBeams(int32_t medium) const {
+    return medium >= 0 && static_cast<size_t>(medium) < usesBeams.size() && usesBeams[static_cast<size_t>(medium)];
+  }
+  VolumeRadius Scaled(double by) const {
+    VolumeRadius scaled = *this;
+    scaled.constant *= by;
+    scaled.perLength *= by;
+    scaled.scale *= by;
+    return scaled;
+  }
 };
 
 // Settings of an integrator that gathers photons.

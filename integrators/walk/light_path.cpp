@@ -28,6 +28,9 @@ class LightWalkVisitor final : public PathVisitor {
   bool Met(const Subpath& path, const PathState&, const RayHit& hit, const SurfacePoint&, bool) override {
     return path.Count() > 0 || hit.t >= photon_.emission.shinesFrom;
   }
+  void Flew(Subpath&, const PathState& state, const Flight& flight) override {
+    visitor_.Flew(path_, state, flight, photon_);
+  }
   bool Arrived(Subpath& path, const PathState& state) override {
     if (path.Count() == 1 && !SetFirst(path.Last(), state)) {
       path.Clear();
@@ -161,8 +164,13 @@ void TraceFromLight(const PathRequest& request, float uSelect, double probabilit
   PathState state;
   if (request.maxDepth < 1 || photon->IsDark() || !Emit(context, *photon, state)) return;
   LightWalkVisitor visitor(context, *photon, state, request.maxDepth, request.path, request.visitor);
-  Walk(context, {TransportMode::Importance, request.maxDepth, request.dimensions}, state, request.path.vertices,
-       visitor);
+  const bool wantsFlights = request.visitor.WantsFlights();
+  const WalkSettings walk{.mode = TransportMode::Importance,
+                          .maxDepth = request.maxDepth,
+                          .dimensions = request.dimensions,
+                          .seesFlights = wantsFlights,
+                          .wantsBeams = wantsFlights};
+  Walk(context, walk, state, request.path.vertices, visitor);
 }
 
 // The sphere within which flights pass through media, with their margin.

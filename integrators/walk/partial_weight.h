@@ -84,9 +84,7 @@ struct LightEnd {
 struct SubpathDensities {
   double forward = 0;  // by its own subpath, 1/m²; of the first vertex of a light path: LightEnd::emission
   double reverse = 0;  // by the other one; valid once the next vertex has scattered
-  // In a medium: area of the disk in which beams of the first pass find photons there, times the probability with which
-  // a camera path passes the vertex over the density with which it collides, scene units³. Of a light path valid once
-  // there is a next vertex.
+  // In a medium: MergeVolume. Valid once there is a next vertex.
   float mergeVolume = 0;
   bool forwardIsDelta = false;  // a delta event finds the vertex: the density is a coefficient
   bool canMerge = false;        // with the event by which the subpath goes on; valid once there is a next vertex

@@ -20,12 +20,13 @@ std::string Say(const InputCheck& check) {
 }
 void Print(const char* name, const WeightErrors& errors) {
   std::printf(
-      "%-20s %d paths, %d merged, sums off by %.1e, recursion %.1e, reported %.1e, groups %.1e of %d; off by 1 %%: "
+      "%-20s %d paths, %d merged, %d with beams, sums off by %.1e, recursion %.1e, reported %.1e, groups %.1e of %d; "
+      "off by 1 %%: "
       "direct %s, emission "
       "%s, "
       "lens %s, merges %s, refraction %s\n",
-      name, errors.paths, errors.merges, errors.sum, errors.recursion, errors.reported, errors.groups, errors.sums,
-      Say(errors.direct).c_str(), Say(errors.emission).c_str(), Say(errors.lens).c_str(),
+      name, errors.paths, errors.merges, errors.beams, errors.sum, errors.recursion, errors.reported, errors.groups,
+      errors.sums, Say(errors.direct).c_str(), Say(errors.emission).c_str(), Say(errors.lens).c_str(),
       Say(errors.mergesPerDensity).c_str(), Say(errors.refraction).c_str());
 }
 
@@ -106,21 +107,25 @@ TEST(BdptWeights, WithARadiusPerPath) {
 
 // Vertices in media, homogeneous, in grids, and with other coefficients in each channel.
 TEST(BdptWeights, InMedia) {
-  int merges = 0;
+  int merges = 0, beams = 0;
   std::map<std::pair<int, int>, int> techniques;
   for (const MediaScene& scene : MediaScenes()) {
     if (!scene.hasLights) continue;
-    for (const WeightProof& proof : {WeightProof{.paths = 10000}, WeightProof{.paths = 4000, .radius = 0.02f},
-                                     WeightProof{.paths = 4000, .pixels = 2}}) {
+    for (const WeightProof& proof :
+         {WeightProof{.paths = 10000}, WeightProof{.paths = 4000, .radius = 0.02f},
+          WeightProof{.paths = 4000, .pixels = 2}, WeightProof{.paths = 4000, .radius = 0.02f, .beamShare = 1},
+          WeightProof{.paths = 4000, .pixels = 2, .beamShare = 0.3f}}) {
       const WeightErrors worst = CheckWeights(scene.text, proof);
       EXPECT_GE(worst.paths, proof.paths) << scene.name;
       ExpectExact(scene.name, worst);
       merges += worst.merges;
+      beams += worst.beams;
       for (const auto& [technique, count] : worst.perTechnique) techniques[technique] += count;
       Print(scene.name, worst);
     }
   }
   EXPECT_GT(merges, 5000);
+  EXPECT_GT(beams, 5000);
   for (int events = 1; events <= 3; ++events) {
     for (int s = 0; s <= events + 1; ++s) EXPECT_GT((techniques[{s, events + 2 - s}]), 100) << s << " of " << events;
   }

@@ -5,6 +5,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "integrators/bidirectional/beam_merge.h"
 #include "integrators/bidirectional/bidirectional_integrator.h"
 #include "integrators/bidirectional/full_path.h"
 #include "integrators/bidirectional/subpath_weights.h"
@@ -59,6 +60,18 @@ class KeptLightPaths {
         KeyOf(photon.toPrevious, photon.flux, photon.weight, photon.previousSolidAnglePerArea, photon.depth));
   }
 
+  // The path from whose last vertex the next flight starts.
+  void KeepFlight(const LightPath& path, const LightEnd& end) {
+    const auto vertices = path.vertices.First(path.vertices.Count());
+    flights_.push_back({{vertices.begin(), vertices.end()}, end});
+  }
+  KeptPath PathOf(const BeamVertex& beam, uint32_t flight) const {
+    KeptPath path = flights_.at(flight);
+    if (path.vertices.empty()) path.end = beam.end;
+    path.vertices.push_back(beam.vertex);
+    return path;
+  }
+
   PhotonList photons;
   std::vector<SubpathDensities> densities;  // of the current path
   PathEnds ends;
@@ -70,6 +83,7 @@ class KeptLightPaths {
     return {d.x, d.y, d.z, c.r, c.g, c.b, weight.endsEarlier, weight.second, edge, static_cast<double>(depth)};
   }
   std::map<Key, KeptPath> paths_;
+  std::vector<KeptPath> flights_;
 };
 
 class KeepsPaths final : public WeightedLightPath {
@@ -77,20 +91,36 @@ class KeepsPaths final : public WeightedLightPath {
   KeepsPaths(const SampleContext& context, double lightPaths, KeptLightPaths& kept)
       : WeightedLightPath(context, true, lightPaths), kept_(kept) {}
 
+  // For the next path.
+  void Start() { keepsFlights_ = KeepsFlights(kept_.volume, context_.sampler, {2, 1}); }
+  bool WantsFlights() const override { return keepsFlights_; }
+  void Flew(const LightPath& path, const PathState& state, const Flight& flight, const EmittedPhoton& photon) override {
+    const size_t before = kept_.photons.Beams().starts.size();
+    AddFlight(kept_.volume, path, state, flight, photon, kept_.photons);
+    if (kept_.photons.Beams().starts.size() > before) kept_.KeepFlight(path, End());
+    if (path.vertices.Count() == 1) SetEnds(path.vertices[0]);
+  }
+
  private:
+  void SetEnds(const PathVertex& first) {
+    kept_.ends.firstIsDelta = first.scatteredDelta;
+    if (kept_.ends.canBeHit) kept_.ends.hit = first.PreviousReverse(first.eventReverse).value;
+  }
   void OnWeighted(const LightPath& path) override {
-    AddDensities(path.vertices, &kept_.volume, true, kept_.densities);
+    AddDensities(path.vertices, kept_.volume, true, kept_.densities);
     const PathVertex& first = path.vertices[0];
     if (path.vertices.Count() == 1) {
       kept_.densities[0] = {.forward = End().emission.value, .isInMedium = first.IsInMedium(), .extent = End().extent};
       kept_.ends = {.direct = End().direct.value, .canBeHit = End().canBeHit};
     } else if (path.vertices.Count() == 2) {
-      kept_.ends.firstIsDelta = first.scatteredDelta;
-      if (kept_.ends.canBeHit) kept_.ends.hit = first.PreviousReverse(first.eventReverse).value;
+      SetEnds(first);
     }
-    if (path.vertices.Last().storesPhotons) kept_.Keep(path, End());
+    const PathVertex& last = path.vertices.Last();
+    const bool isOnBeam = last.IsInMedium() && kept_.volume.UsesBeams(last.insideMedium);
+    if (last.storesPhotons && !isOnBeam) kept_.Keep(path, End());
   }
   KeptLightPaths& kept_;
+  bool keepsFlights_ = false;
 };
 
 double CosineAtGeometry(const PathVertex& vertex, const Vector3& direction) {
@@ -116,14 +146,16 @@ class WeightChecker final : public PathObserver {
     time_ = time;
   }
   void ObserveMerge(const ConnectedPath& path, const Photon& photon) override {
-    ConnectedPath merged = path;
     const KeptPath& light = kept_.PathOf(photon);
     if (photon.depth != light.vertices.size()) throw std::logic_error("a photon of another path");
-    merged.light = light.vertices;
-    merged.end = light.end;
-    merged.toLight = light.vertices[0].toPrevious;
     ++worst_.merges;
-    Observe(merged);
+    ObserveMerge(path, light);
+  }
+  void ObserveBeamMerge(const ConnectedPath& path, const BeamVertex& beam, uint32_t flight) override {
+    const KeptPath light = kept_.PathOf(beam, flight);
+    if (beam.photon.depth != light.vertices.size()) throw std::logic_error("a beam of another path");
+    ++worst_.beams;
+    ObserveMerge(path, light);
   }
   bool WantsSums() const override { return !isCounted_; }
   void Observe(const ConnectedPath& path) override {
@@ -144,6 +176,14 @@ class WeightChecker final : public PathObserver {
   const WeightErrors& Result() const { return worst_; }
 
  private:
+  void ObserveMerge(ConnectedPath path, const KeptPath& light) {
+    path.light = light.vertices;
+    path.end = light.end;
+    path.toLight = light.vertices[0].toPrevious;
+    path.endFactors = light.vertices[0].factors;
+    Observe(path);
+  }
+
   // What the groups weigh, by the power heuristic, and the same of the third powers.
   void CompareSums(TechniqueSums sums, TechniqueSums expected) {
     double all = 0, allExpected = 0;
@@ -338,6 +378,7 @@ void TracePhotons(const RenderScene& scene, int maxDepth, float radius, double l
   for (uint32_t i = 0; i < kLightPaths; ++i) {
     sampler.StartPixelSample(1, 0, i);
     photons.kept.photons.StartPath();
+    visitor.Start();
     photons.kept.densities.clear();
     TraceLightPath(context, maxDepth, {2, 1}, path, visitor);
     photons.kept.photons.KeepDensities(photons.kept.ends, photons.kept.densities);
@@ -366,6 +407,10 @@ WeightErrors CheckWeights(const std::string& sceneText, const WeightProof& proof
   settings.counts = proof.counts;
   settings.photons.radius = static_cast<double>(proof.radius * sphere.radius);
   settings.photons.volume.constant = 0.02 * static_cast<double>(sphere.radius);
+  if (proof.beamShare > 0) {
+    for (const auto& medium : scene.media) settings.photons.volume.usesBeams.push_back(medium->IsHomogeneous());
+    settings.photons.volume.beamShare = static_cast<double>(proof.beamShare);
+  }
   const auto integrator = MakeBidirectionalIntegrator(settings);
   Sampler sampler(SamplerKind::Independent, 5);
   Photons photons;

@@ -30,6 +30,7 @@ struct WeightErrors {
   double groups = 0;     // between the integrator's sums over groups of techniques and those of explicit densities
   int sums = 0;          // compared
   int merges = 0;
+  int beams = 0;  // merges with beams
   InputCheck direct, emission, lens, mergesPerDensity, connections, refraction;
 
   // "": the weights are exact. Else what is not.
@@ -45,6 +46,7 @@ struct WeightProof {
   float pixels = 0;    // if `radius` is 0: photons are gathered within so many pixels, seen at the first hit
   bool stopsAtFirst = false;
   TechniqueCounts counts{};
+  float beamShare = 0;      // of light paths whose flights in homogeneous media are photons; 0: photons are points
   double splatCount = 1.8;  // samples of a pixel that a splat is worth; that of a Gaussian filter
 };
 WeightErrors CheckWeights(const std::string& sceneText, const WeightProof& proof);

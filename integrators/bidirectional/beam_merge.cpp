@@ -1,0 +1,127 @@
+#include "integrators/bidirectional/beam_merge.h"
+
+namespace lampyr {
+
+bool KeepsFlights(const VolumeRadius& radius, Sampler& sampler, const PathDimensions& dimensions) {
+  if (radius.usesBeams.empty()) return false;
+  if (radius.beamShare >= 1) return true;
+  sampler.SetDimension(dimensions.Of(0, dimensions::kLobe));
+  return static_cast<double>(sampler.Get1D()) < radius.beamShare;
+}
+
+namespace {
+
+// What the flight of `state` from `vertex` starts with.
+FlightStart StartAt(const PathVertex& vertex, const PathState& state, const VolumeRadius& radius) {
+  FlightStart start;
+  start.extinction = vertex.extinction;
+  start.weight = vertex.weight;
+  start.scatteredDelta = vertex.scatteredDelta;
+  start.previousReverse = vertex.PreviousReverse(vertex.eventReverse);
+  start.geometryTerm = vertex.GeometryTerm(state.ray.direction);
+  start.canMerge = vertex.CanMerge() && !vertex.scatteredDelta;
+  if (vertex.IsInMedium()) {
+    start.mergeSize =
+        static_cast<float>(MergeSize(vertex, {vertex.toPrevious, vertex.factors}, state.ray.direction, radius));
+  }
+  return start;
+}
+
+}  // namespace
+
+void AddFlight(const VolumeRadius& radius, const LightPath& path, const PathState& state, const Flight& flight,
+               const EmittedPhoton& emission, PhotonList& photons) {
+  thread_local std::vector<PhotonBeam> beams;
+  beams.clear();
+  for (const BeamStep& step : flight.beam) {
+    if (!radius.UsesBeams(step.medium) || !(step.tMax > step.tMin)) continue;
+    const Color tint = flight.TintBefore(static_cast<double>(step.tMin));
+    if (!(tint * step.transmittance).IsBlack()) beams.push_back({step, tint, 0});
+  }
+  const size_t count = path.vertices.Count();
+  if (beams.empty() || count >= PhotonList::kDeepest) return;
+  FlightStart start;
+  if (count > 0) {
+    start = StartAt(path.vertices.Last(), state, radius);
+  } else {
+    start.extinction = flight.startExtinction;
+  }
+  start.position = flight.line.start;
+  start.direction = flight.line.direction;
+  start.diffuse = state.diffuse;
+  start.specular = state.specular;
+  start.pdfDirection = state.pdfDirection;
+  start.depth = static_cast<uint16_t>(count + 1);
+  start.group = static_cast<uint16_t>(path.group);
+  photons.AddFlight(start, count == 0 ? &emission : nullptr, beams);
+}
+
+namespace {
+
+// The densities of the whole light path up to the crossing.
+void SetDensities(const PhotonMap& map, const FlightStart& start, BeamVertex& made) {
+  const std::span<const SubpathDensities> before = map.PathOf(start);
+  std::vector<SubpathDensities>& densities = made.densities;
+  densities.assign(before.begin(), before.end());
+  if (start.depth == 1) {
+    made.ends = {made.end.direct.value, 0, false, 0, made.end.canBeHit};
+    densities.push_back({.forward = made.end.emission.value, .isInMedium = true, .extent = made.end.extent});
+    return;
+  }
+  made.ends = map.EndsOf(start);
+  SubpathDensities& previous = densities.back();
+  previous.canMerge = start.canMerge;
+  if (previous.isInMedium)
+    previous.mergeVolume =
+        static_cast<float>(static_cast<double>(start.mergeSize) * PassingPerCollision(made.vertex.factors.Reversed()));
+  if (densities.size() > 1) {
+    SubpathDensities& second = densities[densities.size() - 2];
+    second.reverse = start.previousReverse.value;
+    second.reverseIsDelta = start.scatteredDelta;
+  }
+  densities.push_back(
+      {.forward = made.vertex.pdfForward.value, .forwardIsDelta = start.scatteredDelta, .isInMedium = true});
+}
+
+}  // namespace
+
+bool SetBeamVertex(const SampleContext& context, const PhotonMap& map, const BeamCrossing& crossing, bool connects,
+                   double lightPaths, const PathVertex& vertex, BeamVertex& made) {
+  const PhotonBeam& beam = map.Beams()[crossing.beam];
+  const FlightStart& start = map.Beams().StartOf(beam);
+  const auto t = static_cast<float>(crossing.tBeam);
+  const Color density = beam.step.DensityAt(t);
+  const double through = MeanOf(density);
+  if (!(through > 0)) return false;
+  PathVertex& light = made.vertex;
+  static_cast<Vertex&>(light) = vertex;
+  light.toPrevious = -Vector3(start.direction);
+  light.factors = {MeanOf(density * vertex.extinction), MeanOf(density * start.extinction), through};
+  light.diffuse = start.diffuse;
+  light.specular = start.specular;
+  if (start.depth == 1) {
+    const EmittedPhoton& emission = map.Beams().EmissionOf(start);
+    if (!context.scene.lighting->FilterFirstHit(emission, light.receiver, light.diffuse, light.specular)) return false;
+    if (!SetFirstWeights(context, emission, connects, lightPaths, light, made.end)) return false;
+  } else {
+    const double squared = crossing.tBeam * crossing.tBeam;
+    light.pdfForward = start.pdfDirection * (light.factors.forward * EdgeDensity(1, squared));
+    light.previousSolidAnglePerArea = light.factors.reverse * EdgeDensity(start.geometryTerm, squared);
+    light.weight = start.weight.Next(start.scatteredDelta, light.pdfForward, start.previousReverse);
+    if (!connects) light.weight.connections.last = 0;
+  }
+  const Color passed = beam.tint * beam.step.TransmittanceAt(t) / static_cast<float>(through);
+  light.diffuse *= passed;
+  light.specular *= passed;
+  SetDensities(map, start, made);
+  Photon& photon = made.photon;
+  photon.toPrevious = light.toPrevious;
+  photon.flux = light.diffuse;
+  photon.weight = PhotonWeight::Of(light.weight, start.depth);
+  photon.previousSolidAnglePerArea = static_cast<float>(light.previousSolidAnglePerArea.value);
+  photon.depth = start.depth;
+  photon.group = start.group;
+  return true;
+}
+
+}  // namespace lampyr

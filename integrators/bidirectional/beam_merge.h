@@ -1,0 +1,33 @@
+// Merging with photon beams: what a flight of a light path leaves, and the vertex that a camera ray makes of it.
+#pragma once
+
+#include "integrators/bidirectional/subpath_weights.h"
+#include "integrators/photon/photon_map.h"
+#include "integrators/photon/photon_pass.h"
+
+namespace lampyr {
+
+// Adds to `photons` the flight of `state` from the last vertex of `path`, or from its light, as far as it passes media
+// whose photons are beams.
+void AddFlight(const VolumeRadius& radius, const LightPath& path, const PathState& state, const Flight& flight,
+               const EmittedPhoton& emission, PhotonList& photons);
+// True if the flights of the light path that `sampler` is at are kept: a share of all paths.
+bool KeepsFlights(const VolumeRadius& radius, Sampler& sampler, const PathDimensions& dimensions);
+
+// The vertex of a light path in a medium at which a camera ray passes its flight: as if it had collided there, but for
+// the density of that.
+struct BeamVertex {
+  PathVertex vertex;  // of the light path: factors, pdfForward, weight
+  LightEnd end;       // if the flight starts at the light
+  Photon photon;      // of it
+  // Densities of the light path's vertices, the last is that at the crossing.
+  std::vector<SubpathDensities> densities;
+  PathEnds ends;
+};
+
+// Sets `made` for a crossing; `vertex`: the same vertex of the camera path. `connects`, `lightPaths`: as of
+// WeightedLightPath. False: the flight carries no light to there.
+bool SetBeamVertex(const SampleContext& context, const PhotonMap& map, const BeamCrossing& crossing, bool connects,
+                   double lightPaths, const PathVertex& vertex, BeamVertex& made);
+
+}  // namespace lampyr
