@@ -1,8 +1,33 @@
 #include "integrators/photon/box_tree.h"
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
 
 namespace lampyr {
+
+namespace {
+
+// The children of a node side by side.
+using Lanes [[gnu::vector_size(32)]] = float;
+using Mask [[gnu::vector_size(32)]] = int32_t;
+
+Lanes LoadedFrom(const std::array<float, 8>& values) {
+  Lanes lanes;
+  std::memcpy(&lanes, values.data(), sizeof(lanes));
+  return lanes;
+}
+
+// A bit for each lane that is set.
+uint32_t BitsOf(const Mask& mask) {
+  constexpr Mask kBits = {1, 2, 4, 8, 16, 32, 64, 128};
+  const auto pairs = std::bit_cast<std::array<uint64_t, 4>>(mask & kBits);
+  const uint64_t all = (pairs[0] | pairs[1]) | (pairs[2] | pairs[3]);
+  return static_cast<uint32_t>(all | all >> 32);
+}
+
+}  // namespace
 
 BoxTree::BoxTree(std::span<const Bounds3> boxes) {
   size_t count = boxes.size();
@@ -37,7 +62,13 @@ BoxTree::BoxTree(std::span<const Bounds3> boxes) {
 
 void BoxTree::Find(const Ray& ray, float tMax, std::vector<uint32_t>& found) const {
   if (nodes_.empty()) return;
-  const Vector3 inverse = 1.0f / ray.direction;
+  // Of no component infinite, so that nothing is 0 · infinity.
+  Vector3 inverse;
+  for (int axis = 0; axis < 3; ++axis) {
+    constexpr float kLeast = 1e-15f;
+    const float d = ray.direction[axis];
+    inverse[axis] = 1 / (std::abs(d) < kLeast ? std::copysign(kLeast, d) : d);
+  }
   struct Entry {
     uint32_t level, index;
   };
@@ -47,31 +78,27 @@ void BoxTree::Find(const Ray& ray, float tMax, std::vector<uint32_t>& found) con
   while (waiting > 0) {
     const Entry entry = stack[--waiting];
     const Node& node = nodes_[starts_[entry.level] + entry.index];
-    uint32_t met = 0;
     const uint32_t children = std::min(counts_[entry.level] - entry.index * kWidth, kWidth);
-    for (uint32_t slot = 0; slot < children; ++slot) {
-      float enters = 0, leaves = tMax;
-      for (glm::length_t axis = 0; axis < 3; ++axis) {
-        const auto a = static_cast<size_t>(axis);
-        const float low = (node.least[a][slot] - ray.origin[axis]) * inverse[axis];
-        const float high = (node.most[a][slot] - ray.origin[axis]) * inverse[axis];
-        // A NaN (0 · infinity, a ray within a side of the box) leaves the interval as it is.
-        enters = std::max(enters, std::min(low, high));
-        leaves = std::min(leaves, std::max(low, high));
-      }
-      constexpr float kMargin = 1 + 1e-6f;
-      if (enters <= leaves * kMargin) met |= 1u << slot;
+    Lanes enters = {}, leaves = Lanes{} + tMax;
+    for (glm::length_t axis = 0; axis < 3; ++axis) {
+      const auto a = static_cast<size_t>(axis);
+      const bool isForward = inverse[axis] > 0;
+      const Lanes first = (LoadedFrom(isForward ? node.least[a] : node.most[a]) - ray.origin[axis]) * inverse[axis];
+      const Lanes last = (LoadedFrom(isForward ? node.most[a] : node.least[a]) - ray.origin[axis]) * inverse[axis];
+      enters = first > enters ? first : enters;
+      leaves = last < leaves ? last : leaves;
     }
+    constexpr float kMargin = 1 + 1e-6f;
+    const Mask isMet = enters <= leaves * kMargin;
+    uint32_t met = BitsOf(isMet) & ((1u << children) - 1);
     if (entry.level > 0) {
       // From the last child to the first: items come by increasing index.
-      for (uint32_t slot = kWidth; slot-- > 0;) {
-        if (met & 1u << slot) stack[waiting++] = {entry.level - 1, entry.index * kWidth + slot};
-      }
+      for (; met != 0; met &= ~(1u << (std::bit_width(met) - 1)))
+        stack[waiting++] = {entry.level - 1, entry.index * kWidth + static_cast<uint32_t>(std::bit_width(met)) - 1};
       continue;
     }
-    for (uint32_t slot = 0; slot < kWidth; ++slot) {
-      if (met & 1u << slot) found.push_back(entry.index * kWidth + slot);
-    }
+    for (; met != 0; met &= met - 1)
+      found.push_back(entry.index * kWidth + static_cast<uint32_t>(std::countr_zero(met)));
   }
 }
 

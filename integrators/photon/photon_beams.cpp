@@ -62,7 +62,8 @@ BeamMap::BeamMap(BeamList list, const VolumeRadius& radius) : list_(std::move(li
     const auto at = [&](double t) { return Point3(start.position + t * start.direction); };
     const float length = beam.step.tMax - beam.step.tMin;
     const float least = std::min(radius_.BeamAt(at(beam.step.tMin)), radius_.BeamAt(at(beam.step.tMax)));
-    const float wanted = std::ceil(length / (kPieceInRadii * least));
+    const char* tune = std::getenv("PIR");
+    const float wanted = std::ceil(length / ((tune ? (float)std::atof(tune) : kPieceInRadii) * least));
     const int pieces = wanted < kMostPieces ? std::max(static_cast<int>(wanted), 1) : kMostPieces;
     for (int k = 0; k < pieces; ++k) {
       const auto ends = static_cast<float>(pieces);

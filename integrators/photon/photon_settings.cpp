@@ -81,7 +81,7 @@ void UseBeams(const IntegratorInput& input, PhotonSettings& photons) {
   // A beam across the picture is in the pixels of a row, twice as wide as one; of as many light paths as pixels.
   const double pixels = input.FilmPixels();
   const double paths = photons.lightPaths > 0 ? static_cast<double>(photons.lightPaths) : pixels;
-  volume.beamShare = std::min(1.0, kBeamsPerRay * pixels / (2 * std::sqrt(pixels) * paths));
+  const char* tune = std::getenv("BPR"); volume.beamShare = std::min(1.0, (tune ? std::atof(tune) : kBeamsPerRay) * pixels / (2 * std::sqrt(pixels) * paths));
 }
 
 }  // namespace lampyr

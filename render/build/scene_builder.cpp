@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "base/memory.h"
+#include "geometry/medium_at.h"
 #include "geometry/shape_checks.h"
 #include "media/make_media.h"
 #include "render/analysis/plan.h"
@@ -303,9 +304,10 @@ MediaAround Builder::MediaAroundLights() const {
   const RenderScene& scene = built_.scene;
   MediaAround around;
   for (const auto& medium : scene.media) around.glow = around.glow || medium->IsEmissive();
-  if (!description_.cameraMedium.empty()) {
-    around.unboundedAt = scene.camera->GenerateRay(MiddleOfFilm(), Point2(0.5f), 0).ray.origin;
-  }
+  if (scene.media.empty()) return around;
+  const Point3 eye = scene.camera->GenerateRay(MiddleOfFilm(), Point2(0.5f), 0).ray.origin;
+  const int32_t exterior = FindMedium(*scene.geometry, eye, 0).exterior.value_or(kVacuum);
+  if (!description_.cameraMedium.empty() || exterior != kVacuum) around.unboundedAt = eye;
   return around;
 }
 

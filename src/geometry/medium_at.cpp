@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <span>
 
 namespace lampyr {
@@ -75,6 +76,33 @@ std::vector<MediumChange> MediumChanges(const GeometryScene& geometry, const Ray
   return changes;
 }
 
+namespace {
+
+// Where no ray of the fixed directions meets a boundary: the first that does of rays to points all over the scene.
+void FindTowardsScene(const GeometryScene& geometry, const Point3& position, float time, const Normal3& normal,
+                      FoundMedium& found) {
+  if (!geometry.HasBoundaries()) return;
+  constexpr int kMost = 256;
+  constexpr double kSteps[3] = {0.8191725133961645, 0.6710436067037893, 0.5497004779019703};  // [Roberts18] R3
+  const Bounds3& bounds = geometry.GetBounds();
+  for (int i = 0; i < kMost; ++i) {
+    Point3 target;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double u = 0.5 + i * kSteps[axis];
+      target[axis] = glm::mix(bounds.min[axis], bounds.max[axis], static_cast<float>(u - std::floor(u)));
+    }
+    if (target == position || glm::dot(target - position, normal) < 0) continue;
+    const std::array changes = {
+        MediumChanges(geometry, {position, glm::normalize(target - position), kInfinity, time})};
+    found.medium = FirstMedium(changes[0]);
+    if (!found.medium) continue;
+    found.exterior = ExteriorOf(changes, *found.medium);
+    return;
+  }
+}
+
+}  // namespace
+
 FoundMedium FindMedium(const GeometryScene& geometry, const Point3& position, float time, const Normal3& normal) {
   FoundMedium found;
   std::array<std::vector<MediumChange>, kDirections.size()> changes;
@@ -91,7 +119,10 @@ FoundMedium FindMedium(const GeometryScene& geometry, const Point3& position, fl
   } else {
     for (size_t i = 0; i < said.size() && !found.medium; ++i) found.medium = said[i];
   }
-  if (!found.medium) return found;
+  if (!found.medium) {
+    FindTowardsScene(geometry, position, time, normal, found);
+    return found;
+  }
   found.isUnanimous = agree(0, 1) && agree(1, 2);
   for (size_t i = 0; i < said.size(); ++i) {
     if (said[i] && *said[i] != *found.medium) found.disputed = changes[i].front().primitive;

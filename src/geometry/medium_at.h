@@ -31,7 +31,8 @@ struct FoundMedium {
 
 // The medium at a point of render space at a shutter time, by three rays in fixed directions. Each says what the first
 // surface that separates media has on the side that the ray meets; a ray that meets none says nothing. What most rays
-// say holds and, if all say something else, what the first one says.
+// say holds and, if all say something else, what the first one says. Where none says anything, rays towards the scene
+// are asked until one does.
 //
 // With a `normal` other than 0 the rays leave to its side, for points on a surface.
 FoundMedium FindMedium(const GeometryScene& geometry, const Point3& position, float time,
