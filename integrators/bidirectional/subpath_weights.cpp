@@ -30,7 +30,7 @@ double MergeSize(const Vertex& vertex, const ArrivingEdge& light, const Vector3&
   if (!radius.UsesBeams(vertex.insideMedium)) return static_cast<double>(kPi) * r * r;
   const double sine = glm::length(glm::cross(Vector3d(light.away), Vector3d(toCamera)));
   if (sine < static_cast<double>(kLeastSine)) return 0;
-  return radius.beamShare * 2 * r * sine * PassingPerCollision(light.factors);
+  return radius.beamShare * radius.beamScale * 2 * r * sine * PassingPerCollision(light.factors);
 }
 
 float MergeVolumeInMedium(const Vertex& vertex, const ArrivingEdge& light, const ArrivingEdge& camera,

@@ -55,15 +55,14 @@ BeamMap::BeamMap(BeamList list, const VolumeRadius& radius) : list_(std::move(li
     Bounds3 box;
   };
   std::vector<Placed> placed;
-  const float slope = std::min(static_cast<float>(radius_.scale * radius_.perLength), 0.5f);
+  const float slope = std::min(static_cast<float>(radius_.scale * radius_.beamScale * radius_.perLength), 0.5f);
   for (uint32_t i = 0; i < list_.beams.size(); ++i) {
     const PhotonBeam& beam = list_.beams[i];
     const FlightStart& start = StartOf(beam);
     const auto at = [&](double t) { return Point3(start.position + t * start.direction); };
     const float length = beam.step.tMax - beam.step.tMin;
     const float least = std::min(radius_.BeamAt(at(beam.step.tMin)), radius_.BeamAt(at(beam.step.tMax)));
-    const char* tune = std::getenv("PIR");
-    const float wanted = std::ceil(length / ((tune ? (float)std::atof(tune) : kPieceInRadii) * least));
+    const float wanted = std::ceil(length / (kPieceInRadii * least));
     const int pieces = wanted < kMostPieces ? std::max(static_cast<int>(wanted), 1) : kMostPieces;
     for (int k = 0; k < pieces; ++k) {
       const auto ends = static_cast<float>(pieces);

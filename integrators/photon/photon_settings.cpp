@@ -59,7 +59,7 @@ namespace {
 constexpr double kMostRadiusInMeanFreePaths = 0.02;
 // Beams that a camera ray across the picture is to pass, by their share: each merge takes longer than next-event
 // estimation.
-constexpr double kBeamsPerRay = 12;
+constexpr double kBeamsPerRay = 4;
 
 }  // namespace
 
@@ -78,10 +78,13 @@ void UseBeams(const IntegratorInput& input, PhotonSettings& photons) {
     isUsed = true;
   }
   if (!isUsed) volume.usesBeams.clear();
-  // A beam across the picture is in the pixels of a row, twice as wide as one; of as many light paths as pixels.
+  // A beam across the picture is in the pixels of a row, twice as wide as one; of as many light paths as pixels. Where
+  // there are fewer paths, more of them leave beams, which are as much narrower.
   const double pixels = input.FilmPixels();
   const double paths = photons.lightPaths > 0 ? static_cast<double>(photons.lightPaths) : pixels;
-  const char* tune = std::getenv("BPR"); volume.beamShare = std::min(1.0, (tune ? std::atof(tune) : kBeamsPerRay) * pixels / (2 * std::sqrt(pixels) * paths));
+  const double share = std::min(kBeamsPerRay * std::sqrt(pixels) / (2 * paths), 1.0);
+  volume.beamShare = std::min(share * input.fewer, 1.0);
+  volume.beamScale = share / volume.beamShare;
 }
 
 }  // namespace lampyr

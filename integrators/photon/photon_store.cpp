@@ -59,12 +59,12 @@ void PhotonStore::Finish(uint32_t next) {
   pass_ = next;
 }
 
-const PhotonPass& PhotonStore::Open(uint32_t pass, int threads) {
+const PhotonPass& PhotonStore::Open(uint32_t pass, int threads, double scale) {
   if (open_.map && open_.pass == pass) return open_;
   open_ = PhotonPass();
   open_.pass = pass;
   open_.lightPaths = static_cast<double>(std::max<uint64_t>(paths_, 1));
-  const double scale = RadiusScale(pass, settings_.alpha);
+  if (!(scale > 0)) scale = RadiusScale(pass, settings_.alpha);
   open_.radiusScale = static_cast<float>(scale);
   open_.radius = static_cast<float>(settings_.radius * scale);
   std::vector<uint32_t> origins;

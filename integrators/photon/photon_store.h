@@ -51,8 +51,9 @@ class PhotonStore {
   // To be called when all light paths of a pass are traced and its own photons gathered: the photons that were taken
   // are for pass `next`.
   void Finish(uint32_t next);
-  // The photons for `pass`. Builds the map, unless this pass is open already. Requires IsFor(pass).
-  const PhotonPass& Open(uint32_t pass, int threads);
+  // The photons for `pass`. Builds the map, unless this pass is open already. Requires IsFor(pass). `scale`: of all
+  // radii; 0: RadiusScale of the pass.
+  const PhotonPass& Open(uint32_t pass, int threads, double scale = 0);
   void Clear();
 
   const PhotonStatistics& Statistics() const { return statistics_; }

@@ -33,13 +33,14 @@ struct VolumeRadius {
   double scale = 1;                    // of the pass, already a factor of the above
   std::vector<uint8_t> usesBeams;      // by medium; of those beyond the end 0
   double beamShare = 1;                // fraction of the light paths whose flights are kept
+  double beamScale = 1;                // width of the kernel between beams, relative to the radius
 
   float At(const Point3& position) const {
     return static_cast<float>(constant + perLength * static_cast<double>(glm::distance(position, eye)));
   }
   // Half the width of the kernel between beams. It shrinks with the square of the scale: as [Křivánek14] has it, for
   // the same variance of a sum over all passes as that of two dimensions.
-  float BeamAt(const Point3& position) const { return static_cast<float>(scale) * At(position); }
+  float BeamAt(const Point3& position) const { return static_cast<float>(scale * beamScale) * At(position); }
   bool UsesBeams(int32_t medium) const {
     return medium >= 0 && static_cast<size_t>(medium) < usesBeams.size() && usesBeams[static_cast<size_t>(medium)];
   }

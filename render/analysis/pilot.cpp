@@ -128,9 +128,10 @@ RenderSettings WithAllTechniques(const RenderSettings& settings) {
   return all;
 }
 
-std::unique_ptr<Integrator> Make(const char* name, const RenderScene& scene, const RenderSettings& settings) {
+std::unique_ptr<Integrator> Make(const char* name, const RenderScene& scene, const RenderSettings& settings,
+                                 double fewer) {
   return IntegratorOf(name).create({scene, settings.width, settings.height, settings.sensor.ImagingRatio(),
-                                    settings.values, nullptr, SplatCount(settings)});
+                                    settings.values, nullptr, SplatCount(settings), fewer});
 }
 
 }  // namespace
@@ -166,8 +167,8 @@ RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, i
   const Grid grid(settings);
   const double filmPixels = static_cast<double>(settings.width) * static_cast<double>(settings.height);
   const double fewer = filmPixels / grid.Pixels();
-  const auto path = Make("path", scene, combined), bdpt = Make("bdpt", scene, combined),
-             vcm = Make("vcm", scene, combined);
+  const auto path = Make("path", scene, combined, fewer), bdpt = Make("bdpt", scene, combined, fewer),
+             vcm = Make("vcm", scene, combined, fewer);
   PhotonSettings photons = vcm->Photons().value();
   // If light paths hardly come near to what is seen, vcm guides them from the start. Those of bdpt are hopeless then.
   RenderScene view = scene;
@@ -180,7 +181,7 @@ RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, i
     photons.lightPaths = std::max<uint64_t>(1, static_cast<uint64_t>(static_cast<double>(photons.lightPaths) / fewer));
   // With fewer light paths the same number of photons is found within a larger radius.
   const double shrunk = std::pow(kTypicalPasses, photons.alpha - 1) / photons.alpha;
-  const auto wider = static_cast<float>(std::sqrt(fewer * std::min(shrunk, 1.0)));
+  const double wider = std::sqrt(fewer * std::min(shrunk, 1.0));
   PhotonStore store(photons, static_cast<uint64_t>(grid.Pixels()), nullptr);
   PilotPasses passes(view, combined, grid, threads, static_cast<uint32_t>(passCount));
   const PixelFilter filter(settings.filter);
@@ -189,9 +190,7 @@ RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, i
   Counted counted;
   for (uint32_t pass = 0; pass < static_cast<uint32_t>(passCount); ++pass) {
     passes.TracePhotons(*vcm, store, pass);
-    PhotonPass gather = store.Open(pass, threads);
-    gather.radiusScale = wider;
-    gather.radius = static_cast<float>(photons.radius) * wider;
+    const PhotonPass& gather = store.Open(pass, threads, wider);
     counted.stored += gather.map->Size();
     counted.vcm += passes.Trace(*vcm, pass, &gather, recorders);
     records.EndPass(pass);

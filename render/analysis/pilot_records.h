@@ -114,6 +114,7 @@ class Recorder final : public PathObserver {
   bool WantsSums() const override { return true; }
   void Observe(const ConnectedPath& path) override;
   void ObserveMerge(const ConnectedPath& path, const Photon&) override { Observe(path); }
+  void ObserveBeamMerge(const ConnectedPath& path, const BeamVertex&, uint32_t) override { Observe(path); }
 
   // One entry for each pixel; `found` is of the current pass, and of camera paths alone: they are in one pixel of the
   // image, and splats anywhere in the pilot's.

@@ -112,6 +112,13 @@ std::vector<MediaScene> MediaScenes() {
           "AttributeBegin Material \"interface\" MediumInterface \"\" \"haze\" Translate -0.2 1.1 0.4 Shape "
           "\"sphere\" \"float radius\" 0.3 AttributeEnd\n")
       .isCameraInMedium = true;
+  // Light through a ball of glass, in haze: vcm finds it by beams of photons.
+  MediaScene& glass = add("glass_in_haze", FilmWith("gaussian") + kInRoom +
+                                               Homogeneous("haze", "0.15 0.2 0.25", "0.02 0.02 0.02", 0.3) +
+                                               "MediumInterface \"\" \"haze\"\n" + kView + World(5) + kRoom +
+                                               BallOf("", "haze", "\"dielectric\" \"float eta\" 1.5") + kBulb);
+  glass.isCameraInMedium = true;
+  glass.lightTracerSeesAll = false;
   add("orthographic_fog",
       FilmWith("gaussian") + "LookAt 0 0 0.9  0 -0.2 -1  0 1 0\n" + kFog +
           "MediumInterface \"\" \"fog\"\nCamera \"orthographic\" \"float screenwindow\" [-0.8 0.8 -0.8 0.8]\n" +

@@ -96,6 +96,18 @@ TEST(MediumAt, OfAnOpenSheet) {
   }
 }
 
+// A small ball aside of all fixed directions is found by rays towards the scene.
+TEST(MediumAt, OfACameraAsideOfAllBoundaries) {
+  GeometryDescription description;
+  description.entries.push_back(Separating(Sphere(0.4), 3, 5));
+  const GeometryScene scene(std::move(description));
+  for (const Point3& eye : {Point3(0, 0.2f, 5), Point3(30, 1, -2), Point3(-2, 2, 200)}) {
+    const FoundMedium found = FindMedium(scene, eye, 0);
+    EXPECT_EQ(found.medium, 5);
+    EXPECT_EQ(found.exterior, 5);
+  }
+}
+
 // From a surface all rays leave to the side of its normal.
 TEST(MediumAt, OfASideOfASurface) {
   GeometryDescription description;
