@@ -175,7 +175,7 @@ PhotonMap::PhotonMap(std::span<const PhotonList> lists, int threads, std::vector
     firstVolume_ = static_cast<uint32_t>(first - order.begin());
     for (auto i = first; i != order.end(); ++i) {
       volume_.push_back(*traced.volume[*i]);
-      volume_.back().radius = radius.At(volume_.back().position);
+      volume_.back().radius = radius.OfGathered(volume_.back().position, volume_.back().extinction);
     }
     beamSearch_ = BeamSearch(volume_);
   }

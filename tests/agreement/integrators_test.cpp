@@ -59,14 +59,14 @@ TEST_P(InMedia, IntegratorsAgree) {
   RenderOverrides overrides;
   const int samples = scene.samples / 4, lightSamples = scene.lightSamples * 3 / 8;
   const Replicas bdpt = RenderReplicas(scene.text, "bdpt", kMediaReplicas, samples, overrides);
-  const double rate = SidakRate(1e-3, 4 * static_cast<int>(MediaScenes().size()));
-  for (const char* integrator : {"path", "light", "vcm", "auto"}) {
+  const double rate = SidakRate(1e-3, 5 * static_cast<int>(MediaScenes().size()));
+  for (const char* integrator : {"path", "light", "vcm", "sppm", "auto"}) {
     const bool isLight = std::string(integrator) == "light", isPath = std::string(integrator) == "path";
     if (isLight && (!scene.lightTracerSeesAll || scene.isCameraInMedium)) continue;
     overrides.seed += 1000;
     overrides.values.clear();
     // What is merged is blurred.
-    if (std::string(integrator) == "vcm" || std::string(integrator) == "auto") overrides.values["radius"] = 0.01;
+    if (!isLight && !isPath) overrides.values["radius"] = 0.01;
     const int own = isLight ? lightSamples : isPath ? scene.pathFactor * samples : samples;
     const Replicas other = RenderReplicas(scene.text, integrator, kMediaReplicas, own, overrides);
     const Agreement result = CompareReplicas(other, bdpt, scene.blockSize, rate);

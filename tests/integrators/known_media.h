@@ -129,7 +129,7 @@ inline Replicas RenderKnown(const std::string& text, const std::string& integrat
                             const Effort& effort = {}) {
   RenderOverrides overrides;
   // Media are darker within a radius of their boundaries for what is merged there.
-  if (integrator == "vcm" || integrator == "auto") overrides.values["radius"] = 0.01;
+  if (integrator == "vcm" || integrator == "sppm" || integrator == "auto") overrides.values["radius"] = 0.01;
   return RenderReplicas(text, integrator, kMediaReplicas, effort.Samples(integrator, samples), overrides);
 }
 
