@@ -33,9 +33,9 @@ constexpr float kWide = 4;
 // Radius of the first pass by default, in pixel footprints at the vertex.
 constexpr double kRadiusInPixels = 2;
 
-// In media, photons whose radius is more than a quarter of a mean free path are not gathered, and camera paths follow
-// all directions there: near boundaries such photons would find much of a dense medium dark, and blur all of its light.
-constexpr double kMostMeanFreePaths = 0.25;
+// In media, photons whose radius is more than a tenth of a mean free path are not gathered, and camera paths follow all
+// directions there. Near boundaries photons miss light: of a lit ball of ten mean free paths 12 % times this ratio.
+constexpr double kMostMeanFreePaths = 0.1;
 
 const Setting kDirectPhotons{.name = "direct-photons",
                              .help = "Gather photons for direct light, too, instead of sampling lights",

@@ -122,6 +122,11 @@ INSTANTIATE_TEST_SUITE_P(
                     PeerScene{"media-ball", "vcm", 24, 8, 0.01}, PeerScene{"media-glass", "vcm", 64, 16, 0.01},
                     PeerScene{"media-grid", "vcm", 24, 8, 0.01}, PeerScene{"media-glow", "vcm", 64, 8, 0.01},
                     PeerScene{"media-inside", "vcm", 24, 16, 0.01, true, "", 0.01},
+                    PeerScene{"media-fog", "sppm", 192, 16, 0.02},
+                    PeerScene{"media-spot", "sppm", 256, 16, 0.02, true, "", 0.015},
+                    PeerScene{"media-ball", "sppm", 96, 8, 0.02}, PeerScene{"media-glass", "sppm", 192, 16, 0.02},
+                    PeerScene{"media-grid", "sppm", 96, 8, 0.02},
+                    PeerScene{"media-inside", "sppm", 96, 16, 0.02, true, "", 0.015},
                     PeerScene{"media-ball", "light", 128}, PeerScene{"media-grid", "light", 128},
                     PeerScene{"media-inside", "light", 64, 16, 0, true, "", 0.01}),
     NameOf);

@@ -84,7 +84,7 @@ class Loose final : public BoxMedium {
 BuiltScene Build(const std::string& text, const std::string& integrator) {
   RenderOverrides overrides;
   overrides.integrator = integrator;
-  if (integrator == "vcm" || integrator == "sppm" || integrator == "auto") overrides.values["radius"] = 0.01;
+  if (integrator == "vcm" || integrator == "auto") overrides.values["radius"] = 0.01;
   Diagnostics diagnostics(Diagnostics::Mode::Collect);
   return BuildScene(ParseScene(text, "furnace.pbrt", diagnostics), overrides, true, diagnostics);
 }
