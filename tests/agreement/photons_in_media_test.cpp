@@ -139,11 +139,11 @@ TEST(PhotonsInMedia, MayBeGuided) {
       "LightSource \"distant\" \"rgb L\" [3 3 2.5] \"point3 from\" [1 2 0.5] \"point3 to\" [0 0 0]\n"
       "AttributeBegin Material \"interface\" MediumInterface \"mist\" \"\" Translate 0 0.7 0 Shape \"sphere\" \"float "
       "radius\" 0.4 AttributeEnd\n"
-      "Material \"diffuse\" \"rgb reflectance\" [0.7 0.6 0.5] Shape \"bilinearmesh\" \"point3 P\" [-40 0 -40  -40 0 40 "
-      " 40 0 -40  40 0 40]\n";
-  const Replicas path = RenderReplicas(text, "path", kReplicas, 96);
+      "Material \"diffuse\" \"rgb reflectance\" [0.7 0.6 0.5] Shape \"bilinearmesh\" \"point3 P\" [-12 0 -12  -12 0 12 "
+      " 12 0 -12  12 0 12]\n";
+  const Replicas path = RenderReplicas(text, "path", kReplicas, 128);
   RenderOverrides overrides = OfRadius(0.02);
-  overrides.values["photons"] = 4000;
+  overrides.values["photons"] = 16000;
   overrides.integrator = "sppm";
   EXPECT_GT(RenderText(text, 8, overrides).outcome.photons->guideComponents, 0);
   ExpectAgreement("guided", RenderReplicas(text, "sppm", kReplicas, 48, overrides), path);
