@@ -30,7 +30,8 @@ constexpr PathDimensions kCameraDimensions{2, 0}, kLightDimensions{2, 1};
 // them.
 constexpr float kWide = 4;
 
-// Radius of the first pass by default, in pixel footprints at the vertex.
+// Radius of the first pass by default, in pixel footprints at the vertex; of photons in media, in times that of
+// PhotonSettingsOf, which is one pixel.
 constexpr double kRadiusInPixels = 2;
 
 // In media, photons whose radius is more than a tenth of a mean free path are not gathered, and camera paths follow all
@@ -218,6 +219,7 @@ IntegratorType SppmIntegratorType() {
     settings.maxDepth = MaxDepthOf(input.settings);
     settings.filmPixels = input.FilmPixels();
     settings.photons = PhotonSettingsOf(input);
+    if (!(settings.photons.radius > 0)) settings.photons.volume = settings.photons.volume.Scaled(kRadiusInPixels);
     settings.photons.volume.mostMeanFreePaths = kMostMeanFreePaths;
     settings.directFromPhotons = input.settings.IsOn(kDirectPhotons.name);
     settings.shadowRays = ShadowRaysOf(input);

@@ -67,9 +67,10 @@ TEST_P(InMedia, IntegratorsAgree) {
     overrides.values.clear();
     // What is merged is blurred.
     if (!isLight && !isPath) overrides.values["radius"] = 0.01;
-    // All light that is scattered twice is merged, with a photon for each pixel too few of them.
+    // All light that is scattered twice is merged, and one photon for each pixel would be too few.
     if (std::string(integrator) == "sppm") overrides.values["radius"] = 0.02, overrides.values["photons"] = 8000;
-    const int own = isLight ? lightSamples : isPath ? scene.pathFactor * samples : samples;
+    const bool isSppm = std::string(integrator) == "sppm";
+    const int own = isLight ? lightSamples : isPath ? scene.pathFactor * samples : isSppm ? 2 * samples : samples;
     const Replicas other = RenderReplicas(scene.text, integrator, kMediaReplicas, own, overrides);
     const Agreement result = CompareReplicas(other, bdpt, scene.blockSize, rate);
     std::printf("%-5s %-20s largest |z| %.2f (%.2f), chi2 %.1f (%.1f), bias %+.3f %% +- %.3f %%\n", integrator,
