@@ -6,7 +6,8 @@
 
 namespace lampyr {
 
-// Photon gathering, for light from directions that a camera path does not follow.
+// Photon gathering, for light from directions that a camera path does not follow: at vertices on surfaces, and along
+// rays in media.
 class PhotonGatherer {
  public:
   virtual ~PhotonGatherer() = default;

@@ -6,6 +6,10 @@
 // with which the BSDF samples them: at every vertex directions of high density are followed, and photons from all other
 // directions are gathered. No light is counted twice or missed, whatever lobes a material mixes.
 //
+// Participating media do the same with the directions of their phase functions. Their photons are gathered by the rays
+// that pass them (volume_estimate.h), where the radius is small against the mean free path; in media that are denser,
+// camera paths follow all directions.
+//
 // Finds all light, including caustics seen in mirrors and through glass. Photons blur it by the radius, which shrinks
 // from pass to pass as i^((α - 1) / 2): the error vanishes, the squared error as i^(-α) at best.
 //
