@@ -287,6 +287,7 @@ void BothPaths::TraceChunk(size_t chunk, uint64_t begin, uint64_t end, uint32_t 
       if (!keepsPhotons) return;
       photons_[chunk].StartPath();
       context.photons = &photons_[chunk];
+      context.lastGathering = index + 1;
       context.withOrigin = store_.WantsOrigins();
     };
     if (lightPaths > 0) startLightPath();

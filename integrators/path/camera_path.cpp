@@ -48,7 +48,9 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
 
   void Flew(Subpath& path, const PathState& state, const Flight& flight) override {
     segment_ = LitSegment();
-    if (emissionOnly_ || !settings_.samplesLights || static_cast<int>(path.Count()) >= settings_.maxDepth) return;
+    if (emissionOnly_ || static_cast<int>(path.Count()) >= settings_.maxDepth) return;
+    if (gatherer_) radiance_ += gatherer_->GatherAlong(path, state, flight);
+    if (!settings_.samplesLights) return;
     segment_ = LitSegment(context_.scene, state.ray, flight, path.Count() == 0);
     arrivesAfter_ = static_cast<double>(flight.t);
     if (segment_.Share() > 0) SampleSegment(path, state, flight);
@@ -69,7 +71,7 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
       SetArrival(vertex);
     if (vertex.isDelta) return true;
     const auto events = static_cast<int>(path.Count());
-    const bool gathers = gatherer_ && vertex.GathersPhotons();
+    const bool gathers = gatherer_ && vertex.GathersPhotons();  // in media the ray has gathered on its way
     if (gathers) gatherer_->Find(vertex, state.length);
     if (SamplesLights(vertex))
       radiance_ += SampleDirectLight(context_, nextEvent_, vertex, events - 1, radiance_, *this);
@@ -80,7 +82,7 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
   // Directions from which photons are gathered are still traced for the emission of the surface they hit, and of the
   // media on the way: next-event estimation alone would miss a panel that touches the floor, and misses all media.
   bool Scattered(const Subpath& path, const PathState& state) override {
-    emissionOnly_ = !path.Last().scatteredDelta && path.Last().GathersPhotons() &&
+    emissionOnly_ = !path.Last().scatteredDelta && Gathers(path.Last()) &&
                     state.pdfDirection.value <= static_cast<double>(settings_.gatherBelow);
     return !emissionOnly_ || (settings_.samplesLights && HasEmissionToFind());
   }
@@ -88,7 +90,11 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
   const Color& Radiance() const { return radiance_; }
 
  private:
-  bool SamplesLights(const PathVertex& vertex) const { return settings_.samplesLights || !vertex.GathersPhotons(); }
+  // True if photons are gathered for the light that is scattered there.
+  bool Gathers(const PathVertex& vertex) const {
+    return vertex.GathersPhotons() || (vertex.IsInMedium() && gatherer_ && gatherer_->GathersInMedium(vertex));
+  }
+  bool SamplesLights(const PathVertex& vertex) const { return settings_.samplesLights || !Gathers(vertex); }
 
   bool HasEmissionToFind() const { return lighting_.HasLightThatCanBeHit() || settings_.mediaGlow; }
 
@@ -233,7 +239,8 @@ Color TraceCameraPath(const SampleContext& context, const CameraPathSettings& se
                           .maxDepth = settings.maxDepth,
                           .dimensions = settings.dimensions,
                           .materialsAfterWide = settings.materialsAfterWide,
-                          .seesFlights = true};
+                          .seesFlights = true,
+                          .wantsBeams = gatherer != nullptr};
   Walk(context, walk, state, path, visitor);
   return visitor.Radiance();
 }

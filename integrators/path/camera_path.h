@@ -6,7 +6,8 @@
 
 namespace lampyr {
 
-// Photon gathering, for light from directions that a camera path does not follow.
+// Photon gathering, for light from directions that a camera path does not follow: at vertices on surfaces, and along
+// rays in media.
 class PhotonGatherer {
  public:
   virtual ~PhotonGatherer() = default;
@@ -17,6 +18,12 @@ class PhotonGatherer {
   // Only photons from directions that the BSDF samples with a density of at most CameraPathSettings::gatherBelow.
   // `events`: scattering events of the path, this one included.
   virtual Color Gather(const PathVertex& vertex, int events, float length) = 0;
+  // False if photons are not gathered where a path collides with a medium: all directions are followed from there.
+  virtual bool GathersInMedium(const PathVertex& vertex) const = 0;
+  // Light of the photons in media that the ray of `state` passes, scattered towards its start, times the throughput
+  // there; of those places alone that gather (GathersInMedium), and from directions as above. `path`: its vertices
+  // before the ray.
+  virtual Color GatherAlong(const Subpath& path, const PathState& state, const Flight& flight) = 0;
 };
 
 struct CameraPathSettings {

@@ -186,7 +186,7 @@ void PhotonMap::Build(const Traced& traced, int threads, std::vector<uint32_t>* 
     firstVolume_ = static_cast<uint32_t>(first - order.begin());
     for (auto i = first; i != order.end(); ++i) {
       volume_.push_back(*traced.volume[*i]);
-      volume_.back().radius = radius.At(volume_.back().position);
+      volume_.back().radius = radius.OfGathered(volume_.back().position, volume_.back().extinction);
     }
     beamSearch_ = BeamSearch(volume_);
   }

@@ -27,19 +27,29 @@ struct PhotonPass {
   uint32_t pass = 0;
 };
 
-// PhotonMap::Find, counted in `counts`. One lookup in 256 is timed, because reading the clock takes as long as a small
-// lookup.
-inline std::span<const uint32_t> FindPhotons(const PhotonMap& map, const Point3& position, float radius,
-                                             PhotonLookup& lookup, RenderCounts& counts) {
+// find(), counted in `counts`. One lookup in 256 is timed, because reading the clock takes as long as a small lookup.
+template <class Find>
+auto CountedLookup(RenderCounts& counts, const Find& find) {
   const bool isTimed = counts.lookups++ % 256 == 0;
   const auto start = isTimed ? std::chrono::steady_clock::now() : std::chrono::steady_clock::time_point();
-  const std::span<const uint32_t> found = map.Find(position, radius, lookup);
+  const auto found = find();
   if (isTimed) {
     ++counts.timedLookups;
     counts.lookupSeconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }
   counts.foundPhotons += found.size();
   return found;
+}
+
+// PhotonMap::Find, counted.
+inline std::span<const uint32_t> FindPhotons(const PhotonMap& map, const Point3& position, float radius,
+                                             PhotonLookup& lookup, RenderCounts& counts) {
+  return CountedLookup(counts, [&] { return map.Find(position, radius, lookup); });
+}
+// PhotonMap::FindAlong, counted.
+inline std::span<const BeamHit> FindPhotonsAlong(const PhotonMap& map, const Ray& ray, float tMax, PhotonLookup& lookup,
+                                                 RenderCounts& counts) {
+  return CountedLookup(counts, [&] { return map.FindAlong(ray, tMax, lookup); });
 }
 
 }  // namespace lampyr

@@ -6,6 +6,10 @@
 // with which the BSDF samples them: at every vertex directions of high density are followed, and photons from all other
 // directions are gathered. No light is counted twice or missed, whatever lobes a material mixes.
 //
+// Participating media do the same with the directions of their phase functions. Their photons are gathered by the rays
+// that pass them (volume_estimate.h), where the radius is small against the mean free path; in media that are denser,
+// camera paths follow all directions.
+//
 // Finds all light, including caustics seen in mirrors and through glass. Photons blur it by the radius, which shrinks
 // from pass to pass as i^((α - 1) / 2): the error vanishes, the squared error as i^(-α) at best.
 //
@@ -16,6 +20,7 @@
 #include "integrators/path/camera_path.h"
 #include "integrators/photon/photon_pass.h"
 #include "integrators/photon/photon_settings.h"
+#include "integrators/photon/volume_estimate.h"
 #include "integrators/walk/footprint.h"
 #include "integrators/walk/light_path.h"
 
@@ -29,8 +34,13 @@ constexpr PathDimensions kCameraDimensions{2, 0}, kLightDimensions{2, 1};
 // them.
 constexpr float kWide = 4;
 
-// Radius of the first pass by default, in pixel footprints at the vertex.
+// Radius of the first pass by default, in pixel footprints at the vertex; of photons in media, in times that of
+// PhotonSettingsOf, which is one pixel.
 constexpr double kRadiusInPixels = 2;
+
+// In media, photons whose radius is more than a tenth of a mean free path are not gathered, and camera paths follow all
+// directions there. Near boundaries photons miss light: of a lit ball of ten mean free paths 12 % times this ratio.
+constexpr double kMostMeanFreePaths = 0.1;
 
 const Setting kDirectPhotons{.name = "direct-photons",
                              .help = "Gather photons for direct light, too, instead of sampling lights",
@@ -63,11 +73,12 @@ class SppmIntegrator final : public Integrator {
   std::unique_ptr<const GlowingMedia> glowing_;
 };
 
-// Stores the photons of a light path from its vertex `firstDepth` on. Photons of glowing media, too, are direct light
-// at their first vertex: the rays that camera paths trace for emission find it.
+// Stores the photons of a light path from its second vertex on, or from its first. Photons of glowing media, too, are
+// direct light at their first vertex: the rays that camera paths trace for emission find it.
 class PhotonRecorder final : public LightPathVisitor {
  public:
-  PhotonRecorder(const SampleContext& context, size_t firstDepth) : context_(context), firstDepth_(firstDepth) {}
+  PhotonRecorder(const SampleContext& context, const SppmSettings& settings)
+      : context_(context), firstDepth_(settings.directFromPhotons ? 1 : 2), photons_(settings.photons) {}
 
   // Emission guiding does not learn from paths that start in media: their origin has no flux.
   void Glowed(LightPath&, const EmittedInMedium&) override {
@@ -79,14 +90,24 @@ class PhotonRecorder final : public LightPathVisitor {
   }
   void Arrived(LightPath& path, const PathState&) override {
     const PathVertex& vertex = path.vertices.Last();
-    // In media camera paths find all light by themselves: photons there blur over mean free paths (vcm weights them).
-    if (path.vertices.Count() >= firstDepth_ && vertex.storesPhotons && !vertex.IsInMedium())
-      context_.photons->Add(vertex, path.vertices.Count(), path.group);
+    if (path.vertices.Count() < firstDepth_ || !vertex.storesPhotons) return;
+    if (vertex.IsInMedium() && !MayBeGathered(vertex)) return;
+    context_.photons->Add(vertex, path.vertices.Count(), path.group);
   }
 
  private:
+  // In a medium: false if the radius is too large for the medium in all passes that may gather the photon. Dense media
+  // would otherwise be full of photons that nobody wants.
+  bool MayBeGathered(const PathVertex& vertex) const {
+    const Point3& at = vertex.point.position;
+    if (photons_.volume.OfGathered(at, vertex.extinction) > 0) return true;
+    const VolumeRadius last = photons_.volume.Scaled(RadiusScale(context_.lastGathering, photons_.alpha));
+    return last.OfGathered(at, vertex.extinction) > 0;
+  }
+
   const SampleContext& context_;
   const size_t firstDepth_;
+  const PhotonSettings& photons_;
 };
 
 // Gathers the photons of the pass along one camera path.
@@ -126,6 +147,17 @@ class RadianceEstimate final : public PhotonGatherer {
     if (pass_.use) pass_.use->Add(lookup_.used);
     if (sum.IsBlack()) return sum;
     return Product(vertex.Throughput(), sum, PerArea(radius));
+  }
+
+  bool GathersInMedium(const PathVertex& vertex) const override {
+    return pass_.volume.OfGathered(vertex.point.position, vertex.extinction) > 0;
+  }
+
+  Color GatherAlong(const Subpath& path, const PathState& state, const Flight& flight) override {
+    if (!pass_.map->HasVolume()) return Color();
+    const float importance = Sqr(RadiusAt(context_.scene.lighting->SceneSphere().radius));
+    return VolumeEstimate(context_, {settings_.maxDepth, kWide, importance}, lookup_)
+        .Gather(state, static_cast<int>(path.Count()), flight);
   }
 
  private:
@@ -168,7 +200,7 @@ class RadianceEstimate final : public PhotonGatherer {
 Color SppmIntegrator::Sample(const Ray* ray, const SampleContext& context) const {
   if (context.photons) {
     thread_local LightPath path(false);
-    PhotonRecorder recorder(context, settings_.directFromPhotons ? 1 : 2);
+    PhotonRecorder recorder(context, settings_);
     TraceLightPath(context, settings_.maxDepth, kLightDimensions, path, recorder, glowing_.get());
   }
   if (!ray || !context.gather) return Color(0.0f);
@@ -191,6 +223,8 @@ IntegratorType SppmIntegratorType() {
     settings.maxDepth = MaxDepthOf(input.settings);
     settings.filmPixels = input.FilmPixels();
     settings.photons = PhotonSettingsOf(input);
+    if (!(settings.photons.radius > 0)) settings.photons.volume = settings.photons.volume.Scaled(kRadiusInPixels);
+    settings.photons.volume.mostMeanFreePaths = kMostMeanFreePaths;
     settings.directFromPhotons = input.settings.IsOn(kDirectPhotons.name);
     settings.shadowRays = ShadowRaysOf(input);
     return std::make_unique<SppmIntegrator>(settings, GlowingMediaOf(input));

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -34,6 +35,8 @@ struct VolumeRadius {
   std::vector<uint8_t> usesBeams;      // by medium; of those beyond the end 0
   double beamShare = 1;                // fraction of the light paths whose flights are kept
   double beamScale = 1;                // width of the kernel between beams, relative to the radius
+  // Photons whose radius is more mean free paths are not gathered: others find that light.
+  double mostMeanFreePaths = std::numeric_limits<double>::infinity();
 
   float At(const Point3& position) const {
     return static_cast<float>(constant + perLength * static_cast<double>(glm::distance(position, eye)));
@@ -50,6 +53,11 @@ struct VolumeRadius {
     scaled.perLength *= by;
     scaled.scale *= by;
     return scaled;
+  }
+  // The same, 0 where no photons are gathered. `extinction`: σ_t there, 1/scene unit.
+  float OfGathered(const Point3& position, const Color& extinction) const {
+    const float radius = At(position);
+    return static_cast<double>(radius * extinction.Max()) <= mostMeanFreePaths ? radius : 0.0f;
   }
 };
 
@@ -76,21 +84,22 @@ struct SampleContext {
   // because the film divides by the number of paths, and the layer of its light's group. Null if no light path is
   // traced.
   SplatList* splats = nullptr;
-  PathObserver* observer = nullptr;    // receives every path that contributes; may be null
-  const PhotonPass* gather = nullptr;  // photons to gather; null: none yet
-  PhotonList* photons = nullptr;       // receives the photons of the light path; null: not wanted
-  bool withOrigin = false;             // `photons` also receives the origin of the path
-  bool isForPhotonsAlone = false;      // only photons of the light path are wanted: it is not connected to the camera
-  Point2 film{0.0f};                   // where the ray starts on the film, pixels
+  PathObserver* observer = nullptr;     // receives every path that contributes; may be null
+  const PhotonPass* gather = nullptr;   // photons to gather; null: none yet
+  PhotonList* photons = nullptr;        // receives the photons of the light path; null: not wanted
+  uint32_t lastGathering = 0xffffffff;  // no pass after this one gathers `photons`
+  bool withOrigin = false;              // `photons` also receives the origin of the path
+  bool isForPhotonsAlone = false;       // only photons of the light path are wanted: it is not connected to the camera
+  Point2 film{0.0f};                    // where the ray starts on the film, pixels
   // False if this sample has no light path (Log2LightPaths() < 0). The sampler of the light path and of its points on
   // the lens, whose index counts light paths; null: `sampler`.
   bool tracesLight = true;
   Sampler* lightSampler = nullptr;
 
   SampleContext With(Sampler& other) const {
-    return {
-        scene, other,       time,   counts, layers, splats, observer, gather, photons, withOrigin, isForPhotonsAlone,
-        film,  tracesLight, nullptr};
+    return {scene,    other,       time,    counts,        layers,     splats,
+            observer, gather,      photons, lastGathering, withOrigin, isForPhotonsAlone,
+            film,     tracesLight, nullptr};
   }
 };
 

@@ -59,15 +59,18 @@ TEST_P(InMedia, IntegratorsAgree) {
   RenderOverrides overrides;
   const int samples = scene.samples / 4, lightSamples = scene.lightSamples * 3 / 8;
   const Replicas bdpt = RenderReplicas(scene.text, "bdpt", kMediaReplicas, samples, overrides);
-  const double rate = SidakRate(1e-3, 4 * static_cast<int>(MediaScenes().size()));
-  for (const char* integrator : {"path", "light", "vcm", "auto"}) {
+  const double rate = SidakRate(1e-3, 5 * static_cast<int>(MediaScenes().size()));
+  for (const char* integrator : {"path", "light", "vcm", "sppm", "auto"}) {
     const bool isLight = std::string(integrator) == "light", isPath = std::string(integrator) == "path";
     if (isLight && (!scene.lightTracerSeesAll || scene.isCameraInMedium)) continue;
     overrides.seed += 1000;
     overrides.values.clear();
     // What is merged is blurred.
-    if (std::string(integrator) == "vcm" || std::string(integrator) == "auto") overrides.values["radius"] = 0.01;
-    const int own = isLight ? lightSamples : isPath ? scene.pathFactor * samples : samples;
+    if (!isLight && !isPath) overrides.values["radius"] = 0.01;
+    // All light that is scattered twice is merged, and one photon for each pixel would be too few.
+    if (std::string(integrator) == "sppm") overrides.values["radius"] = 0.02, overrides.values["photons"] = 8000;
+    const bool isSppm = std::string(integrator) == "sppm";
+    const int own = isLight ? lightSamples : isPath ? scene.pathFactor * samples : isSppm ? 2 * samples : samples;
     const Replicas other = RenderReplicas(scene.text, integrator, kMediaReplicas, own, overrides);
     const Agreement result = CompareReplicas(other, bdpt, scene.blockSize, rate);
     std::printf("%-5s %-20s largest |z| %.2f (%.2f), chi2 %.1f (%.1f), bias %+.3f %% +- %.3f %%\n", integrator,

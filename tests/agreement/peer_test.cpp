@@ -5,6 +5,7 @@
 
 #include "film/metrics.h"
 #include "support/render_scene.h"
+#include "support/replicas.h"
 
 namespace lampyr::test {
 namespace {
@@ -122,9 +123,61 @@ INSTANTIATE_TEST_SUITE_P(
                     PeerScene{"media-ball", "vcm", 24, 8, 0.01}, PeerScene{"media-glass", "vcm", 64, 16, 0.01},
                     PeerScene{"media-grid", "vcm", 24, 8, 0.01}, PeerScene{"media-glow", "vcm", 64, 8, 0.01},
                     PeerScene{"media-inside", "vcm", 24, 16, 0.01, true, "", 0.01},
-                    PeerScene{"media-ball", "light", 128}, PeerScene{"media-grid", "light", 128},
+                    PeerScene{"media-ball", "sppm", 128, 8, 0.01}, PeerScene{"media-glass", "sppm", 192, 16, 0.02},
+                    PeerScene{"media-grid", "sppm", 128, 8, 0.01}, PeerScene{"media-ball", "light", 128},
+                    PeerScene{"media-grid", "light", 128},
                     PeerScene{"media-inside", "light", 64, 16, 0, true, "", 0.01}),
     NameOf);
+
+// sppm with the camera in the medium: photons near the camera are as wide as blocks, so the error of a block is what
+// replicas say, and not what its pixels do.
+class PeerByReplicas : public testing::TestWithParam<const char*> {};
+
+TEST_P(PeerByReplicas, PhotonsInMediaAroundTheCamera) {
+  constexpr int kReplicas = 16, kSide = 64, kBlock = 16, kBlocks = (kSide / kBlock) * (kSide / kBlock);
+  const fs::path scene = kPeer / (std::string(GetParam()) + ".pbrt");
+  SkipWithoutData(scene);
+  if (IsSkipped()) return;
+  Replicas sppm;
+  for (int i = 0; i < kReplicas; ++i) {
+    RenderOverrides overrides;
+    overrides.integrator = "sppm";
+    overrides.values["radius"] = 0.02;
+    overrides.seed = static_cast<uint64_t>(i);
+    sppm.images.push_back(RenderFile(scene, 24, overrides).image);
+  }
+  Replicas reference;
+  reference.images.push_back(ReadImage(kPeer / (std::string(GetParam()) + ".exr")));
+  const double most = StudentQuantileTwoSided(SidakRate(1e-3, 3 * (kBlocks + 1)), kReplicas - 1);
+  // Deviate of the difference of the means, with the noise of the reference as its pixels show it.
+  const auto deviate = [&](int x0, int y0, int size) {
+    const auto own = replicas_internal::MomentsOf(replicas_internal::Means(sppm, 1, x0, y0, x0 + size, y0 + size));
+    double sum = 0, squares = 0;
+    for (int y = y0; y < y0 + size; ++y) {
+      for (int x = x0; x < x0 + size; ++x) {
+        const double pixel = replicas_internal::MomentsOf(replicas_internal::Means(sppm, 1, x, y, x + 1, y + 1)).mean;
+        const double difference = pixel - static_cast<double>(reference.images[0].At(x, y, 1));
+        sum += difference;
+        squares += difference * difference;
+      }
+    }
+    const double n = size * size, mean = sum / n;
+    const double error = std::sqrt(own.variance + (squares / n - mean * mean) / n);
+    if (size == kSide) {
+      std::printf("sppm %s: bias %+.3f %% +- %.3f %%\n", GetParam(), 100 * mean / (own.mean - mean),
+                  196 * error / own.mean);
+      EXPECT_LT(error, 0.01 * own.mean) << "too noisy to say anything";
+    }
+    return mean / error;
+  };
+  for (int y = 0; y < kSide; y += kBlock) {
+    for (int x = 0; x < kSide; x += kBlock) EXPECT_LT(std::abs(deviate(x, y, kBlock)), most) << x << ", " << y;
+  }
+  EXPECT_LT(std::abs(deviate(0, 0, kSide)), most);
+}
+
+INSTANTIATE_TEST_SUITE_P(Media, PeerByReplicas, testing::Values("media-fog", "media-spot", "media-inside"),
+                         [](const auto& info) { return std::string(info.param).substr(6); });
 
 // No camera path can find a delta light through glass: what `path` renders is a part of the reference and never more.
 class PeerLowerBound : public testing::TestWithParam<const char*> {};

@@ -1,0 +1,42 @@
+#include "integrators/photon/volume_estimate.h"
+
+namespace lampyr {
+
+Color VolumeEstimate::Gather(const PathState& state, int events, const Flight& flight) {
+  const PhotonPass& pass = *context_.gather;
+  const std::span<const BeamHit> hits = FindPhotonsAlong(*pass.map, state.ray, flight.t, lookup_, context_.counts);
+  if (hits.empty()) return Color();
+  lookup_.used.clear();
+  const double perPath = static_cast<double>(context_.scene.lighting->FluxUnit()) / pass.lightPaths;
+  Color sum;
+  for (const BeamHit& hit : hits) {
+    const Color scattered = Scattered(state, events, flight, hit);
+    if (scattered.IsBlack()) continue;
+    const Photon& photon = (*pass.map)[hit.index];
+    const auto radius = static_cast<double>(pass.map->VolumeOf(hit.index).radius);
+    const Color seen = Product(scattered, photon.flux, perPath / (static_cast<double>(kPi) * radius * radius));
+    sum += seen;
+    if (context_.layers) [[unlikely]]
+      context_.layers->Add(photon.group, seen);
+    if (pass.use)
+      lookup_.used.push_back(
+          {hit.index, scattered.Average() * rules_.importance / static_cast<float>(radius * radius)});
+  }
+  if (pass.use) pass.use->Add(lookup_.used);
+  return sum;
+}
+
+Color VolumeEstimate::Scattered(const PathState& state, int events, const Flight& flight, const BeamHit& hit) {
+  const PhotonMap& map = *context_.gather->map;
+  const Photon& photon = map[hit.index];
+  // The photon's depth counts the vertex in the medium.
+  if (static_cast<int>(photon.depth) + events > rules_.maxDepth) return Color();
+  const VolumePhoton& place = map.VolumeOf(hit.index);
+  const BsdfEvaluation f = place.phase.Evaluate(-state.ray.direction, photon.toPrevious, TransportMode::Radiance);
+  if (f.pdfForward.value > rules_.gatherBelow) return Color();
+  const std::optional<BeamPoint> point = flight.PointAt(hit.t, place.medium);
+  if (!point) return Color();
+  return state.Throughput() * point->passed * f.diffuse;
+}
+
+}  // namespace lampyr
