@@ -184,7 +184,7 @@ BoundingSphere SphereOfMedia(const RenderScene& scene) {
 int32_t ExteriorOf(const RenderScene& scene, const Point2& middle) {
   const Point3 eye = scene.camera->GenerateRay(middle, Point2(0.5f), 0).ray.origin;
   const FoundMedium around = FindMedium(*scene.geometry, eye, 0);
-  return around.medium ? around.exterior.value_or(kVacuum) : scene.cameraMedium;
+  return around.isOfBoundary ? around.exterior.value_or(kVacuum) : scene.cameraMedium;
 }
 
 // Power of the lights that start paths, W: the mean of the channels.

@@ -47,7 +47,7 @@ std::string SceneMedia::NameOf(int32_t medium) const {
 int32_t SceneMedia::Choose(const std::string& what, const FileLocation& where, const std::string& name,
                            const FoundMedium& found, int32_t otherwise) {
   const int32_t said = name.empty() ? kVacuum : IndexOf(name, where);
-  const bool isContradicted = !name.empty() && found.isUnanimous && *found.medium != said;
+  const bool isContradicted = !name.empty() && found.isUnanimous && found.isOfBoundary && *found.medium != said;
   const int32_t medium = name.empty() || isContradicted ? found.medium.value_or(otherwise) : said;
   if (isContradicted) {
     diagnostics_.Warn(where, what + " is in " + NameOf(medium) + " by the surfaces around it, not in " + NameOf(said) +
@@ -129,7 +129,11 @@ bool StartsVary(const RenderScene& scene, const Point2& middle, int32_t exterior
     const Point2 place(static_cast<float>(i % kAcross) + 0.47f, static_cast<float>(i / kAcross) + 0.53f);
     const CameraRay seen =
         scene.camera->GenerateRay(2.0f * middle * place / static_cast<float>(kAcross), Point2(0.5f), 0);
-    if (seen.weight > 0 && MediumAlong(*scene.geometry, seen.ray, exterior) != scene.cameraMedium) return true;
+    if (seen.weight == 0) continue;
+    // A sheet that stops light says nothing of the medium between it and the camera.
+    const std::vector<MediumChange> changes = MediumChanges(*scene.geometry, seen.ray);
+    if (!changes.empty() && !changes.front().isBoundary) continue;
+    if (MediumAlong(*scene.geometry, seen.ray, exterior) != scene.cameraMedium) return true;
   }
   return false;
 }
@@ -149,7 +153,8 @@ void SceneMedia::Locate(const Point2& middle, const std::vector<FileLocation>& l
                           ", and its rays start there. pbrt-v4 starts them in vacuum, because no MediumInterface "
                           "before the camera names it");
   }
-  const int32_t exterior = around.medium ? around.exterior.value_or(kVacuum) : scene.cameraMedium;
+  const bool isKnown = around.medium && (around.isOfBoundary || description_.cameraMedium.empty());
+  const int32_t exterior = isKnown ? around.exterior.value_or(kVacuum) : scene.cameraMedium;
   if (around.disputed == kNoIndex && StartsVary(scene, middle, exterior)) scene.cameraExterior = exterior;
   for (size_t light = 0; light < lightPlaces.size(); ++light) {
     const Sides sides = MediaOfLight(scene, light, lightPlaces[light], exterior);

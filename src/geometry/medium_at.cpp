@@ -14,9 +14,11 @@ constexpr std::array<Vector3, 3> kDirections = {Vector3(0.57735f, 0.31127f, 0.75
                                                 Vector3(-0.43021f, 0.82114f, -0.37496f),
                                                 Vector3(0.23904f, -0.61237f, -0.75358f)};
 
-// The medium that the first change of a ray comes from.
-std::optional<int32_t> FirstMedium(const std::vector<MediumChange>& changes) {
+// The medium that the first change of a ray comes from. With `ofBoundaries` what stops light says nothing: an open
+// sheet is met from both sides, whatever it says of the other one.
+std::optional<int32_t> FirstMedium(const std::vector<MediumChange>& changes, bool ofBoundaries) {
   for (const MediumChange& change : changes) {
+    if (ofBoundaries && !change.isBoundary) return std::nullopt;
     if (change.before != kSameMedium) return change.before;
   }
   return std::nullopt;
@@ -78,7 +80,7 @@ std::vector<MediumChange> MediumChanges(const GeometryScene& geometry, const Ray
 
 namespace {
 
-// Where no ray of the fixed directions meets a boundary: the first that does of rays to points all over the scene.
+// The medium that the first ray says that meets a boundary, of rays to points all over the scene.
 void FindTowardsScene(const GeometryScene& geometry, const Point3& position, float time, const Normal3& normal,
                       FoundMedium& found) {
   if (!geometry.HasBoundaries()) return;
@@ -94,8 +96,9 @@ void FindTowardsScene(const GeometryScene& geometry, const Point3& position, flo
     if (target == position || glm::dot(target - position, normal) < 0) continue;
     const std::array changes = {
         MediumChanges(geometry, {position, glm::normalize(target - position), kInfinity, time})};
-    found.medium = FirstMedium(changes[0]);
+    found.medium = FirstMedium(changes[0], true);
     if (!found.medium) continue;
+    found.isOfBoundary = true;
     found.exterior = ExteriorOf(changes, *found.medium);
     return;
   }
@@ -110,19 +113,20 @@ FoundMedium FindMedium(const GeometryScene& geometry, const Point3& position, fl
   for (size_t i = 0; i < kDirections.size(); ++i) {
     const Vector3 direction = glm::dot(kDirections[i], normal) < 0 ? -kDirections[i] : kDirections[i];
     changes[i] = MediumChanges(geometry, {position, direction, kInfinity, time});
-    said[i] = FirstMedium(changes[i]);
+    said[i] = FirstMedium(changes[i], true);
     if (found.disputed == kNoIndex) found.disputed = BrokenLink(changes[i]);
   }
+  found.isOfBoundary = std::any_of(said.begin(), said.end(), [](const auto& one) { return one.has_value(); });
+  if (!found.isOfBoundary) FindTowardsScene(geometry, position, time, normal, found);
+  if (found.medium) return found;
+  for (size_t i = 0; i < said.size() && !found.isOfBoundary; ++i) said[i] = FirstMedium(changes[i], false);
   const auto agree = [&](size_t i, size_t j) { return said[i] && said[j] && *said[i] == *said[j]; };
   if (agree(1, 2)) {
     found.medium = said[1];
   } else {
     for (size_t i = 0; i < said.size() && !found.medium; ++i) found.medium = said[i];
   }
-  if (!found.medium) {
-    FindTowardsScene(geometry, position, time, normal, found);
-    return found;
-  }
+  if (!found.medium) return found;
   found.isUnanimous = agree(0, 1) && agree(1, 2);
   for (size_t i = 0; i < said.size(); ++i) {
     if (said[i] && *said[i] != *found.medium) found.disputed = changes[i].front().primitive;
@@ -132,7 +136,7 @@ FoundMedium FindMedium(const GeometryScene& geometry, const Point3& position, fl
 }
 
 int32_t MediumAlong(const GeometryScene& geometry, const Ray& ray, int32_t otherwise) {
-  return FirstMedium(MediumChanges(geometry, ray)).value_or(otherwise);
+  return FirstMedium(MediumChanges(geometry, ray), false).value_or(otherwise);
 }
 
 int32_t MediumAt(const GeometryScene& geometry, const Point3& position, float time, int32_t otherwise) {

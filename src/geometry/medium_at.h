@@ -22,6 +22,7 @@ std::vector<MediumChange> MediumChanges(const GeometryScene& geometry, const Ray
 struct FoundMedium {
   std::optional<int32_t> medium;  // nullopt: no ray from the point meets a surface that says it
   bool isUnanimous = false;       // all rays say the same
+  bool isOfBoundary = false;      // a boundary says it, not only what stops light
   // The medium that all rays end in which nothing stops, or all rays if each is stopped. One that meets no change ends
   // in `medium`. nullopt: they end in several, or none of them meets one.
   std::optional<int32_t> exterior;
@@ -31,8 +32,8 @@ struct FoundMedium {
 
 // The medium at a point of render space at a shutter time, by three rays in fixed directions. Each says what the first
 // surface that separates media has on the side that the ray meets; a ray that meets none says nothing. What most rays
-// say holds and, if all say something else, what the first one says. Where none says anything, rays towards the scene
-// are asked until one does.
+// say holds and, if all say something else, what the first one says. Where none meets a boundary, rays towards the
+// scene are asked until one does, and at last what opaque surfaces say.
 //
 // With a `normal` other than 0 the rays leave to its side, for points on a surface.
 FoundMedium FindMedium(const GeometryScene& geometry, const Point3& position, float time,

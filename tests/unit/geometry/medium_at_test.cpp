@@ -96,6 +96,28 @@ TEST(MediumAt, OfAnOpenSheet) {
   }
 }
 
+// What stops light is met from both sides, whatever it says of the other one: a boundary decides, wherever it is.
+TEST(MediumAt, OfASideOfWhatStopsLight) {
+  const auto sceneWith = [](bool hasBall) {
+    GeometryDescription description;
+    TriangleMesh floor;
+    floor.positions = {{-1e4f, -1e4f, 0}, {1e4f, -1e4f, 0}, {1e4f, 1e4f, 0}, {-1e4f, 1e4f, 0}};
+    floor.triangles = {{0, 1, 2}, {0, 2, 3}};
+    GeometryEntry opaque = Separating(MeshShape(floor), kVacuum, 4);
+    opaque.attributes.isBoundary = false;
+    description.entries.push_back(opaque);
+    if (hasBall) description.entries.push_back(Separating(SphereAt({9, -3, 5}, 0.2f), 3, 5));
+    return GeometryScene(std::move(description));
+  };
+  const Point3 below(1, 2, -3);
+  const FoundMedium byBall = FindMedium(sceneWith(true), {1, 2, 3}, 0);
+  EXPECT_EQ(byBall.medium, 5);
+  EXPECT_TRUE(byBall.isOfBoundary);
+  const FoundMedium byFloor = FindMedium(sceneWith(false), below, 0);
+  EXPECT_EQ(byFloor.medium, kVacuum);
+  EXPECT_FALSE(byFloor.isOfBoundary);
+}
+
 // A small ball aside of all fixed directions is found by rays towards the scene.
 TEST(MediumAt, OfACameraAsideOfAllBoundaries) {
   GeometryDescription description;
