@@ -118,8 +118,17 @@ FoundMedium FindMedium(const GeometryScene& geometry, const Point3& position, fl
   }
   found.isOfBoundary = std::any_of(said.begin(), said.end(), [](const auto& one) { return one.has_value(); });
   if (!found.isOfBoundary) FindTowardsScene(geometry, position, time, normal, found);
-  if (found.medium) return found;
-  for (size_t i = 0; i < said.size() && !found.isOfBoundary; ++i) said[i] = FirstMedium(changes[i], false);
+  const auto isSaidByAll = [&] {
+    return std::all_of(changes.begin(), changes.end(),
+                       [&](const std::vector<MediumChange>& ray) { return FirstMedium(ray, false) == found.medium; });
+  };
+  if (found.medium) {
+    found.isUnanimous = isSaidByAll();
+    return found;
+  }
+  for (size_t i = 0; i < said.size(); ++i) {
+    if (!found.isOfBoundary) said[i] = FirstMedium(changes[i], false);
+  }
   const auto agree = [&](size_t i, size_t j) { return said[i] && said[j] && *said[i] == *said[j]; };
   if (agree(1, 2)) {
     found.medium = said[1];
@@ -127,7 +136,7 @@ FoundMedium FindMedium(const GeometryScene& geometry, const Point3& position, fl
     for (size_t i = 0; i < said.size() && !found.medium; ++i) found.medium = said[i];
   }
   if (!found.medium) return found;
-  found.isUnanimous = agree(0, 1) && agree(1, 2);
+  found.isUnanimous = isSaidByAll();
   for (size_t i = 0; i < said.size(); ++i) {
     if (said[i] && *said[i] != *found.medium) found.disputed = changes[i].front().primitive;
   }

@@ -21,7 +21,7 @@ std::vector<MediumChange> MediumChanges(const GeometryScene& geometry, const Ray
 
 struct FoundMedium {
   std::optional<int32_t> medium;  // nullopt: no ray from the point meets a surface that says it
-  bool isUnanimous = false;       // all rays say the same
+  bool isUnanimous = false;       // all rays say the same, what stops light included
   bool isOfBoundary = false;      // a boundary says it, not only what stops light
   // The medium that all rays end in which nothing stops, or all rays if each is stopped. One that meets no change ends
   // in `medium`. nullopt: they end in several, or none of them meets one.

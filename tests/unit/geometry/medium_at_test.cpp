@@ -101,12 +101,11 @@ TEST(MediumAt, OfASideOfWhatStopsLight) {
   const auto sceneWith = [](bool hasBall) {
     GeometryDescription description;
     TriangleMesh floor;
-    floor.positions = {{-1e4f, -1e4f, 0}, {1e4f, -1e4f, 0}, {1e4f, 1e4f, 0}, {-1e4f, 1e4f, 0}};
+    floor.positions = {{-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0}};
     floor.triangles = {{0, 1, 2}, {0, 2, 3}};
-    GeometryEntry opaque = Separating(MeshShape(floor), kVacuum, 4);
-    opaque.attributes.isBoundary = false;
+    GeometryEntry opaque = Separating(MeshShape(floor), kVacuum, 4, false);
     description.entries.push_back(opaque);
-    if (hasBall) description.entries.push_back(Separating(SphereAt({9, -3, 5}, 0.2f), 3, 5));
+    if (hasBall) description.entries.push_back(Separating(SphereAt({4, -3, 5}, 2), 3, 5));
     return GeometryScene(std::move(description));
   };
   const Point3 below(1, 2, -3);
