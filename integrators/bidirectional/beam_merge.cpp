@@ -1,19 +1,24 @@
 #include "integrators/bidirectional/beam_merge.h"
 
+#include <algorithm>
+
 namespace lampyr {
 
-bool KeepsFlights(const VolumeRadius& radius, Sampler& sampler, const PathDimensions& dimensions) {
-  if (radius.usesBeams.empty()) return false;
-  if (radius.beamShare >= 1) return true;
+double FlightsBelow(const VolumeRadius& radius, Sampler& sampler, const PathDimensions& dimensions) {
+  if (radius.usesBeams.empty()) return 1;
+  if (radius.beamShare >= 1 && radius.scatteredBeamShare >= 1) return 0;
   sampler.SetDimension(dimensions.Of(0, dimensions::kLobe));
-  return static_cast<double>(sampler.Get1D()) < radius.beamShare;
+  const auto u = static_cast<double>(sampler.Get1D());
+  return u < std::max(radius.beamShare, radius.scatteredBeamShare) ? u : 1.0;
 }
 
 namespace {
 
-// What the flight of `state` from `vertex` starts with.
-FlightStart StartAt(const PathVertex& vertex, const PathState& state, const VolumeRadius& radius) {
+// What the flight of `state` from the last vertex starts with.
+FlightStart StartAtLast(const Subpath& path, const PathState& state, const VolumeRadius& radius) {
+  const PathVertex& vertex = path.Last();
   FlightStart start;
+  start.isInMedium = vertex.IsInMedium();
   start.extinction = vertex.extinction;
   start.weight = vertex.weight;
   start.scatteredDelta = vertex.scatteredDelta;
@@ -29,8 +34,10 @@ FlightStart StartAt(const PathVertex& vertex, const PathState& state, const Volu
 
 }  // namespace
 
-void AddFlight(const VolumeRadius& radius, const LightPath& path, const PathState& state, const Flight& flight,
-               const EmittedPhoton& emission, PhotonList& photons) {
+void AddFlight(const VolumeRadius& radius, double below, const LightPath& path, const PathState& state,
+               const Flight& flight, const EmittedPhoton& emission, PhotonList& photons) {
+  const size_t count = path.vertices.Count();
+  if (!(below < radius.ShareOf(count > 0 && path.vertices.Last().IsInMedium()))) return;
   thread_local std::vector<PhotonBeam> beams;
   beams.clear();
   for (const BeamStep& step : flight.beam) {
@@ -38,11 +45,10 @@ void AddFlight(const VolumeRadius& radius, const LightPath& path, const PathStat
     const Color tint = flight.TintBefore(static_cast<double>(step.tMin));
     if (!(tint * step.transmittance).IsBlack()) beams.push_back({step, tint, 0});
   }
-  const size_t count = path.vertices.Count();
   if (beams.empty() || count >= PhotonList::kDeepest) return;
   FlightStart start;
   if (count > 0) {
-    start = StartAt(path.vertices.Last(), state, radius);
+    start = StartAtLast(path.vertices, state, radius);
   } else {
     start.extinction = flight.startExtinction;
   }
@@ -97,6 +103,7 @@ bool SetBeamVertex(const SampleContext& context, const PhotonMap& map, const Bea
   static_cast<Vertex&>(light) = vertex;
   light.toPrevious = -Vector3(start.direction);
   light.factors = {MeanOf(density * vertex.extinction), MeanOf(density * start.extinction), through};
+  made.edge = {light.toPrevious, light.factors, start.isInMedium};
   light.diffuse = start.diffuse;
   light.specular = start.specular;
   if (start.depth == 1) {

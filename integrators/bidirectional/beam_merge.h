@@ -8,16 +8,18 @@
 namespace lampyr {
 
 // Adds to `photons` the flight of `state` from the last vertex of `path`, or from its light, as far as it passes media
-// whose photons are beams.
-void AddFlight(const VolumeRadius& radius, const LightPath& path, const PathState& state, const Flight& flight,
-               const EmittedPhoton& emission, PhotonList& photons);
-// True if the flights of the light path that `sampler` is at are kept: a share of all paths.
-bool KeepsFlights(const VolumeRadius& radius, Sampler& sampler, const PathDimensions& dimensions);
+// whose photons are beams, if its share is above `below`.
+void AddFlight(const VolumeRadius& radius, double below, const LightPath& path, const PathState& state,
+               const Flight& flight, const EmittedPhoton& emission, PhotonList& photons);
+// Decides which flights of the light path that `sampler` is at are kept: those whose share is above the number. 1:
+// none.
+double FlightsBelow(const VolumeRadius& radius, Sampler& sampler, const PathDimensions& dimensions);
 
 // The vertex of a light path in a medium at which a camera ray passes its flight: as if it had collided there, but for
 // the density of that.
 struct BeamVertex {
   PathVertex vertex;  // of the light path: factors, pdfForward, weight
+  ArrivingEdge edge;  // at it, from the light's side
   LightEnd end;       // if the flight starts at the light
   Photon photon;      // of it
   // Densities of the light path's vertices, the last is that at the crossing.

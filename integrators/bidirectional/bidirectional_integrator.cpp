@@ -107,12 +107,12 @@ class LightSide final : public WeightedLightPath {
         sample_(sample),
         isConnected_(sample.settings.connects && !sample.context.isForPhotonsAlone &&
                      sample.context.scene.camera->ConnectsLightPaths()),
-        keepsFlights_(sample.context.photons &&
-                      KeepsFlights(sample.settings.photons.volume, sampler, kLightDimensions)) {}
+        flightsBelow_(sample.context.photons ? FlightsBelow(sample.settings.photons.volume, sampler, kLightDimensions)
+                                             : 1.0) {}
 
-  bool WantsFlights() const override { return keepsFlights_; }
+  bool WantsFlights() const override { return flightsBelow_ < 1; }
   void Flew(const LightPath& path, const PathState& state, const Flight& flight, const EmittedPhoton& photon) override {
-    AddFlight(sample_.settings.photons.volume, path, state, flight, photon, *context_.photons);
+    AddFlight(sample_.settings.photons.volume, flightsBelow_, path, state, flight, photon, *context_.photons);
     hasLeftFirst_ = hasLeftFirst_ || path.vertices.Count() > 0;
   }
   // The path has scattered at its first vertex, and a flight from there is kept.
@@ -146,7 +146,8 @@ class LightSide final : public WeightedLightPath {
   }
 
   BidirectionalSample& sample_;
-  const bool isConnected_, keepsFlights_;
+  const bool isConnected_;
+  const double flightsBelow_;  // AddFlight
   bool hasLeftFirst_ = false;
 };
 

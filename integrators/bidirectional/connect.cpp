@@ -69,15 +69,16 @@ Color Connect(const BidirectionalSample& sample, size_t lightCount) {
     transmitted = TraceConnection(context, z, y, factors);
     if (transmitted.IsBlack()) return transmitted;
   }
-  const Joint joint{
-      {SolidAngleDensity(fz.pdfForward) * (factors.forward * EdgeDensity(y, toCamera, squared)),
-       y.PreviousReverse(fy.pdfReverse)},
-      {SolidAngleDensity(fy.pdfForward) * (factors.reverse * EdgeDensity(z, toCamera, squared)),
-       z.PreviousReverse(fz.pdfReverse)},
-      y.CanMerge(),
-      z.CanMerge(),
-      MergeVolume(y, {y.toPrevious, y.factors}, {toCamera, factors}, sample.settings.photons.volume),
-      MergeVolume(z, {-toCamera, factors.Reversed()}, {z.toPrevious, z.factors}, sample.settings.photons.volume)};
+  const Joint joint{{SolidAngleDensity(fz.pdfForward) * (factors.forward * EdgeDensity(y, toCamera, squared)),
+                     y.PreviousReverse(fy.pdfReverse)},
+                    {SolidAngleDensity(fy.pdfForward) * (factors.reverse * EdgeDensity(z, toCamera, squared)),
+                     z.PreviousReverse(fz.pdfReverse)},
+                    y.CanMerge(),
+                    z.CanMerge(),
+                    MergeVolume(y, EdgeBefore(sample.light.vertices, lightCount), {toCamera, factors},
+                                sample.settings.photons.volume),
+                    MergeVolume(z, {-toCamera, factors.Reversed(), y.IsInMedium()}, {z.toPrevious, z.factors},
+                                sample.settings.photons.volume)};
   const auto weightWith = [&](double merging) {
     return ConnectWeight(y.weight, joint.light, z.weight, joint.camera, sample.connectionCount, merging);
   };

@@ -122,8 +122,8 @@ bool SetBeamOf(const BidirectionalSample& sample, const BeamCrossing& crossing, 
   merge.light = beam.densities;
   merge.beam = &beam;
   merge.flight = found.start;
-  merge.kernel = 1 / (sample.settings.photons.volume.beamShare * 2 * static_cast<double>(crossing.radius) *
-                      static_cast<double>(crossing.sine));
+  merge.kernel = 1 / (sample.settings.photons.volume.ShareOf(beam.edge.isFromMedium) * 2 *
+                      static_cast<double>(crossing.radius) * static_cast<double>(crossing.sine));
   merge.use = map.Beams().StartOf(found).origin == FlightStart::kNone ? VolumeMerge::kUnused : map.UseOf(found);
   return true;
 }
@@ -139,9 +139,8 @@ Color MergeInMedium(const BidirectionalSample& sample, const VolumeMerge& merge)
   Joint joint;
   joint.isMerged = true;
   joint.mergesAtCamera = true;
-  joint.cameraMergeVolume =
-      MergeVolume(vertex, {photon.toPrevious, merge.beam ? merge.beam->vertex.factors : EdgeFactors()},
-                  {vertex.toPrevious, vertex.factors}, sample.settings.photons.volume);
+  joint.cameraMergeVolume = MergeVolume(vertex, merge.beam ? merge.beam->edge : ArrivingEdge(),
+                                        {vertex.toPrevious, vertex.factors}, sample.settings.photons.volume);
   if (!(joint.cameraMergeVolume > 0)) return Color(0.0f);
   const double weight = WeightOf(sample, photon, merge.light, f, joint);
   const double probability = static_cast<double>(sample.settings.counts.merging.At(sample.film));

@@ -59,7 +59,7 @@ void SplatVertex(const BidirectionalSample& sample) {
   Joint joint;
   joint.light = {atLens, vertex.PreviousReverse(seen->f.pdfReverse)};
   joint.mergesAtLight = vertex.CanMerge();
-  joint.lightMergeVolume = MergeVolume(vertex, {vertex.toPrevious, vertex.factors}, {seen->toCamera, seen->factors},
+  joint.lightMergeVolume = MergeVolume(vertex, EdgeBefore(light, light.Count()), {seen->toCamera, seen->factors},
                                        sample.settings.photons.volume);
   const Point2& film = seen->connection.camera.film;
   Merging merging;

@@ -30,7 +30,7 @@ double MergeSize(const Vertex& vertex, const ArrivingEdge& light, const Vector3&
   if (!radius.UsesBeams(vertex.insideMedium)) return static_cast<double>(kPi) * r * r;
   const double sine = glm::length(glm::cross(Vector3d(light.away), Vector3d(toCamera)));
   if (sine < static_cast<double>(kLeastSine)) return 0;
-  return radius.beamShare * radius.beamScale * 2 * r * sine * PassingPerCollision(light.factors);
+  return radius.ShareOf(light.isFromMedium) * radius.beamScale * 2 * r * sine * PassingPerCollision(light.factors);
 }
 
 float MergeVolumeInMedium(const Vertex& vertex, const ArrivingEdge& light, const ArrivingEdge& camera,
@@ -47,8 +47,8 @@ void AddDensities(const Subpath& path, const VolumeRadius& radius, bool isFromLi
   if (count < 2) return;
   const PathVertex& previous = path[count - 2];
   if (previous.IsInMedium()) [[unlikely]] {
-    const ArrivingEdge before{previous.toPrevious, previous.factors};
-    const ArrivingEdge after{-path.Last().toPrevious, path.Last().factors.Reversed()};
+    const ArrivingEdge before = EdgeBefore(path, count - 1);
+    const ArrivingEdge after{-path.Last().toPrevious, path.Last().factors.Reversed(), path.Last().IsInMedium()};
     densities[count - 2].mergeVolume =
         isFromLight ? MergeVolume(previous, before, after, radius) : MergeVolume(previous, after, before, radius);
   }

@@ -18,12 +18,19 @@ void AddDensities(const Subpath& path, const VolumeRadius& radius, bool isFromLi
 struct ArrivingEdge {
   Vector3 away{0.0f};
   EdgeFactors factors;
+  bool isFromMedium = false;  // the other vertex is in a medium
 };
+
+// The edge by which a subpath arrives at its vertex `count` - 1.
+inline ArrivingEdge EdgeBefore(const Subpath& path, size_t count) {
+  const PathVertex& vertex = path[count - 1];
+  return {vertex.toPrevious, vertex.factors, count > 1 && path[count - 2].IsInMedium()};
+}
 
 // The kernel of merging at a vertex in a medium, for one light path of the first pass: for points the area π r² of the
 // disk in which a camera ray finds them, scene units²; for beams 2 r sinθ · (probability of passing the vertex from the
-// light's side / density of colliding there), with θ between both edges, times the share of light paths that leave
-// beams ([Křivánek14]).
+// light's side / density of colliding there), with θ between both edges, times the share of flights that are kept
+// ([Křivánek14]).
 double MergeSize(const Vertex& vertex, const ArrivingEdge& light, const Vector3& toCamera, const VolumeRadius& radius);
 // MergeSize times the probability with which a camera path passes the vertex over the density with which it collides,
 // scene units³: over the density of a connection there it is the density of merging.

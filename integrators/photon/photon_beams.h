@@ -28,6 +28,7 @@ struct FlightStart {
   float mergeSize = 0;          // of the vertex in a medium: MergeSize
   bool scatteredDelta = false;
   bool canMerge = false;
+  bool isInMedium = false;
   uint16_t depth = 1;         // of a vertex on the flight
   uint16_t group = 0;         // of the light
   uint32_t origin = kNone;    // index of the path's origin; kNone: not known

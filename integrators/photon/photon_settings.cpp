@@ -69,6 +69,7 @@ void UseBeams(const IntegratorInput& input, PhotonSettings& photons) {
   const auto radius = static_cast<double>(volume.At(scene.lighting->SceneSphere().center));
   volume.usesBeams.assign(scene.media.size(), 0);
   bool isUsed = false;
+  double depth = 0;  // of a flight across the scene
   for (size_t i = 0; i < scene.media.size(); ++i) {
     const Medium& medium = *scene.media[i];
     if (!medium.IsHomogeneous() || !medium.Scatters()) continue;
@@ -76,6 +77,7 @@ void UseBeams(const IntegratorInput& input, PhotonSettings& photons) {
     if (!(radius * extinction < kMostRadiusInMeanFreePaths)) continue;
     volume.usesBeams[i] = 1;
     isUsed = true;
+    depth = std::max(depth, extinction * static_cast<double>(scene.lighting->SceneSphere().radius));
   }
   if (!isUsed) volume.usesBeams.clear();
   // A beam across the picture is in the pixels of a row, twice as wide as one; of as many light paths as pixels. Where
@@ -85,6 +87,8 @@ void UseBeams(const IntegratorInput& input, PhotonSettings& photons) {
   const double share = std::min(kBeamsPerRay * std::sqrt(pixels) / (2 * paths), 1.0);
   volume.beamShare = std::min(share * input.fewer, 1.0);
   volume.beamScale = share / volume.beamShare;
+  // So many light paths as collide leave a second beam.
+  volume.scatteredBeamShare = std::min(volume.beamShare / std::min(std::max(depth, 1e-3), 1.0), 1.0);
 }
 
 }  // namespace lampyr

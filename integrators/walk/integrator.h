@@ -33,8 +33,10 @@ struct VolumeRadius {
   double constant = 0, perLength = 0;  // scene units; per scene unit of distance from `eye`
   double scale = 1;                    // of the pass, already a factor of the above
   std::vector<uint8_t> usesBeams;      // by medium; of those beyond the end 0
-  double beamShare = 1;                // fraction of the light paths whose flights are kept
-  double beamScale = 1;                // width of the kernel between beams, relative to the radius
+  // Fraction of the flights that are kept: of those from lights and surfaces, and from vertices in media, of which
+  // there are few.
+  double beamShare = 1, scatteredBeamShare = 1;
+  double beamScale = 1;  // width of the kernel between beams, relative to the radius
   // Photons whose radius is more mean free paths are not gathered: others find that light.
   double mostMeanFreePaths = std::numeric_limits<double>::infinity();
 
@@ -44,6 +46,7 @@ struct VolumeRadius {
   // Half the width of the kernel between beams. It shrinks with the square of the scale: as [Křivánek14] has it, for
   // the same variance of a sum over all passes as that of two dimensions.
   float BeamAt(const Point3& position) const { return static_cast<float>(scale * beamScale) * At(position); }
+  double ShareOf(bool isFromMedium) const { return isFromMedium ? scatteredBeamShare : beamShare; }
   bool UsesBeams(int32_t medium) const {
     return medium >= 0 && static_cast<size_t>(medium) < usesBeams.size() && usesBeams[static_cast<size_t>(medium)];
   }

@@ -92,11 +92,11 @@ class KeepsPaths final : public WeightedLightPath {
       : WeightedLightPath(context, true, lightPaths), kept_(kept) {}
 
   // For the next path.
-  void Start() { keepsFlights_ = KeepsFlights(kept_.volume, context_.sampler, {2, 1}); }
-  bool WantsFlights() const override { return keepsFlights_; }
+  void Start() { flightsBelow_ = FlightsBelow(kept_.volume, context_.sampler, {2, 1}); }
+  bool WantsFlights() const override { return flightsBelow_ < 1; }
   void Flew(const LightPath& path, const PathState& state, const Flight& flight, const EmittedPhoton& photon) override {
     const size_t before = kept_.photons.Beams().starts.size();
-    AddFlight(kept_.volume, path, state, flight, photon, kept_.photons);
+    AddFlight(kept_.volume, flightsBelow_, path, state, flight, photon, kept_.photons);
     if (kept_.photons.Beams().starts.size() > before) kept_.KeepFlight(path, End());
     if (path.vertices.Count() == 1) SetEnds(path.vertices[0]);
   }
@@ -120,7 +120,7 @@ class KeepsPaths final : public WeightedLightPath {
     if (last.storesPhotons && !isOnBeam) kept_.Keep(path, End());
   }
   KeptLightPaths& kept_;
-  bool keepsFlights_ = false;
+  double flightsBelow_ = 1;
 };
 
 double CosineAtGeometry(const PathVertex& vertex, const Vector3& direction) {
@@ -410,6 +410,7 @@ WeightErrors CheckWeights(const std::string& sceneText, const WeightProof& proof
   if (proof.beamShare > 0) {
     for (const auto& medium : scene.media) settings.photons.volume.usesBeams.push_back(medium->IsHomogeneous());
     settings.photons.volume.beamShare = static_cast<double>(proof.beamShare);
+    settings.photons.volume.scatteredBeamShare = std::min(2 * static_cast<double>(proof.beamShare), 1.0);
   }
   const auto integrator = MakeBidirectionalIntegrator(settings);
   Sampler sampler(SamplerKind::Independent, 5);
