@@ -25,9 +25,10 @@
 //   energy               of the bounds: the power estimate times importanceMultiplier
 //   bounds               photons leave within GetEmissionBounds
 //   estimate             no estimate is 0 where a sample arrives
-//   segment              no light arrives on a segment of a ray outside of the range that the light's estimate gives, also
-//                        without an end; χ² of equiangular distances in it from points of the light (the density of these
-//                        is pdfEmit: emission-positions)
+//   segment              no light arrives on a segment of a ray outside of the range that the light's estimate gives,
+//   also
+//                        without an end; χ² of equiangular distances in it from points of the light (the density of
+//                        these is pdfEmit: emission-positions)
 //   multipliers          diffuse and specular parts are one emission, each times the light's multiplier
 //   camera               a camera sees what receivers see, and nothing of a delta
 //   bidirectional        without it only the densities of emission are missing: all else is compared bit by bit
@@ -98,6 +99,8 @@ struct SuiteOptions {
   int effort = 1;         // multiplies the number of points that a quadrature may take
   int caseEvery = 1;      // of RunPdfSuite: every n-th placed light
   int thoroughEvery = 1;  // of RunPdfSuite: every n-th of the thorough cases
+  int editEvery = 1;  // of RunPdfSuite: every n-th sample block of a type, from the first on, is edited by each of its
+                      // parameters; the others by a few
   // Called repeatedly with the fraction that is done, one call at a time. May be empty.
   std::function<void(double fraction)> progress;
 };

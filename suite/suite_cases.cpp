@@ -62,6 +62,7 @@ struct SuiteCase {
   bool isSharp = true;  // power to half a per cent; two per cent otherwise
   bool isThorough = false;
   bool looksClosely = false;   // every n-th of the thorough cases, as the options say
+  bool isOfItsBlock = false;   // one case of each block, which is always looked at
   bool isEditedByAll = false;  // by each parameter of its type
 };
 
@@ -85,7 +86,7 @@ class SuiteRun {
   std::vector<std::unique_ptr<ParameterList>> parameters_;
   std::vector<std::unique_ptr<std::vector<ParameterList>>> changes_;
   std::vector<SuiteCase> cases_;
-  std::set<std::string> edited_;
+  std::set<std::string> blocks_;
   int thorough_ = 0;
 };
 
@@ -144,7 +145,8 @@ void SuiteRun::AddCases(const SuiteCase& light, int which, size_t block) {
     // One placement of each block on each shape, in rotation.
     placed.isThorough = block == 0 ? place == turn % transforms.size() : kept == 0;
     placed.looksClosely = placed.isThorough && thorough_++ % std::max(options_.thoroughEvery, 1) == 0;
-    placed.isEditedByAll = placed.isThorough && edited_.insert(light.name).second;
+    placed.isOfItsBlock = placed.isThorough && blocks_.insert(light.name).second;
+    placed.isEditedByAll = placed.isOfItsBlock && block % static_cast<size_t>(std::max(options_.editEvery, 1)) == 0;
     ++kept;
     cases_.push_back(std::move(placed));
   };
@@ -235,10 +237,9 @@ SuiteReport SuiteRun::Check(const SuiteCase& suiteCase) const {
 }
 
 std::vector<SuiteResult> SuiteRun::Run() {
-  // Cases that are edited by each parameter are always kept: they are the only ones of their block.
   std::vector<SuiteCase> chosen;
   for (size_t i = 0; i < cases_.size(); ++i) {
-    if (i % static_cast<size_t>(std::max(options_.caseEvery, 1)) == 0 || cases_[i].isEditedByAll)
+    if (i % static_cast<size_t>(std::max(options_.caseEvery, 1)) == 0 || cases_[i].isOfItsBlock)
       chosen.push_back(std::move(cases_[i]));
   }
   cases_ = std::move(chosen);

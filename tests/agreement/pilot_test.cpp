@@ -13,6 +13,7 @@
 #include "scene/scene_description.h"
 #include "support/estimate.h"
 #include "support/render_scene.h"
+#include "support/whole.h"
 
 namespace lampyr::test {
 namespace {
@@ -198,11 +199,16 @@ TEST(Pilot, KnowsTheErrors) {
   const std::string above = "AttributeBegin Translate 0 0.6 0\n" + kAreaLight + "AttributeEnd\n";  // not seen itself
   struct Case {
     std::string rest, filter;
+    bool isMore = false;  // another pair of what the others have
   };
-  const std::vector<Case> cases = {
-      {above, "box"},     {spot, "box"}, {above + kBall, "box"}, {spot, "gaussian"}, {above + kBall, "gaussian"},
-      {above, "mitchell"}};
+  const std::vector<Case> cases = {{above, "box"},
+                                   {spot, "box"},
+                                   {above + kBall, "box", true},
+                                   {spot, "gaussian", true},
+                                   {above + kBall, "gaussian"},
+                                   {above, "mitchell"}};
   for (const Case& c : cases) {
+    if (c.isMore && !IsWhole()) continue;
     std::string text = Scene(head, c.rest);
     const std::string box = "PixelFilter \"box\"";
     text.replace(text.find(box), box.size(), "PixelFilter \"" + c.filter + "\"");
@@ -303,7 +309,9 @@ TEST(Pilot, CountsDoNotChangeTheMean) {
       // The film goes all around, and so do splats near its edges.
       {"around", "\"gaussian\" \"float xradius\" 2.25", "around", above + kBall},
   };
+  size_t turn = 0;
   for (const Case& c : cases) {
+    ++turn;
     std::string text = Scene(head, c.things);
     text.replace(text.find(" \"float unused\" [ 0 ]"), 21, "");
     const bool isAround = c.camera == "around";
@@ -323,6 +331,8 @@ TEST(Pilot, CountsDoNotChangeTheMean) {
     for (const char* integrator : {"bdpt", "vcm"}) {
       if (isAround && integrator == std::string("vcm")) continue;  // blurs by a pixel, of 22 degrees here
       for (size_t i = 0; i < all.size(); ++i) {
+        // Merging is in no need of each pair of a scene and counts: vcm takes turns with them, but in long runs.
+        if (integrator == std::string("vcm") && (i + turn) % 2 != 0 && !IsWhole()) continue;
         candidate.integrator = integrator;
         candidate.counts = all[i];
         const std::vector<Estimate> pixels = Render(built, candidate, kRenders, 1);

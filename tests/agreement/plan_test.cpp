@@ -73,7 +73,7 @@ TEST_P(PlanSwitches, ChangeNothingButNoise) {
   planned.values["max-depth"] = 6;
   planned.values["radius"] = 0.03;
   planned.integrator = "auto";
-  constexpr int replicas = 8, samples = 128;
+  constexpr int replicas = 8, samples = 64;
   const Replicas base = RenderReplicas(kHead + std::string(kCamera) + things, "auto", replicas, samples, planned);
   const double rate = SidakRate(1e-3, 2 * static_cast<int>(std::size(kSwitches)));
   for (const Switch& one : kSwitches) {

@@ -2,6 +2,7 @@
 // it and nothing that has no part in it.
 #include "mixed_light.h"
 #include "suite_fixture.h"
+#include "support/whole.h"
 #include "wrong_light.h"
 
 namespace lampyr {
@@ -34,11 +35,16 @@ class WrongTypes : public SuiteTest {
       return std::make_unique<WrongLight>(std::move(light), fault);
     });
   }
+  // By default faults take turns with the lights of a list, of which two that follow each other are of one kind: each
+  // fault in half of them, each light with half of the faults. In `tests/run long`: all.
   void ExpectEach(const std::vector<Expected>& faults) {
+    size_t turn = 0;
     for (const auto& [fault, lights, named, follow] : faults) {
-      for (const std::string& name : lights) {
-        ExpectNamed(FailuresOf(name, fault), named, follow,
-                    name + " with fault " + std::to_string(static_cast<int>(fault)));
+      ++turn;
+      for (size_t i = 0; i < lights.size(); ++i) {
+        if (lights.size() > 1 && (i + turn) % 2 != 0 && !IsWhole()) continue;
+        ExpectNamed(FailuresOf(lights[i], fault), named, follow,
+                    lights[i] + " with fault " + std::to_string(static_cast<int>(fault)));
       }
     }
   }

@@ -15,7 +15,8 @@ struct Mode {
   bool guides = false;                  // photons
   bool learns = false;                  // the selection of lights
   // Per pixel of a trial replica; at least that many in each. What is learned takes effect from pass to pass.
-  int Samples() const { return guides || learns ? 6 : 4; }
+  int Samples() const { return Adapts() ? 6 : 4; }
+  bool Adapts() const { return guides || learns; }
 
   bool GathersPhotons() const {
     RenderSettings settings;

@@ -46,7 +46,10 @@ std::vector<Rig> MatrixRigs(const std::filesystem::path& folder) {
   const auto add = [&](const char* kind, void (*rigs)(std::vector<Rig>&)) {
     const size_t first = all.size();
     rigs(all);
-    for (size_t i = first; i < all.size(); ++i) all[i].kind = kind;
+    for (size_t i = first; i < all.size(); ++i) {
+      all[i].kind = kind;
+      all[i].turn = i - first;
+    }
   };
   add("materials", AddMaterialRigs);
   add("lights", AddLightRigs);

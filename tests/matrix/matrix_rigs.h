@@ -19,6 +19,7 @@ struct Rig {
   // Light tracing refuses the camera; what is bidirectional makes do without connections to it.
   bool refusesLightPaths = false;
   std::string kind = "";  // "materials", "lights", "filters", "motion", "cameras"
+  size_t turn = 0;        // among those of its kind
 };
 
 inline void PrintTo(const Rig& rig, std::ostream* stream) {

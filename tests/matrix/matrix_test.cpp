@@ -7,6 +7,9 @@
 // A trial tells how many samples a cell takes until it would notice a picture that is so much too bright in 19 of 20
 // cases: 10 % in the default suite, 2 % in `tests/run matrix-whole` (LAMPYR_MATRIX_NOTICES). A cell that cannot afford
 // them fails.
+//
+// What is learned and guided is which light is chosen, and where it sends photons. By default rigs of lights have all
+// modes that learn or guide; those of filters and motion three of the six in turn, of materials and cameras one.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,6 +23,7 @@
 #include "support/render_scene.h"
 #include "support/replicas.h"
 #include "support/temporary_folder.h"
+#include "support/whole.h"
 
 namespace lampyr::test {
 namespace {
@@ -51,14 +55,33 @@ const std::vector<Rig>& Rigs() {
   return rigs;
 }
 
+// Whether light tracing, if that is the mode, can show the rig.
 bool Sees(const Rig& rig, const Mode& mode) {
   return mode.integrator != "light" || !(rig.cameraSeesDeltas || rig.refusesLightPaths);
+}
+
+bool IsItsTurn(const Rig& rig, const Mode& mode) {
+  if (!mode.Adapts() || IsWhole() || rig.kind == "lights") return true;
+  std::vector<std::string> adaptive;
+  for (const Mode& one : Modes()) {
+    if (one.Adapts()) adaptive.push_back(one.name);
+  }
+  // Neighbours are of one integrator: three that are not, or one.
+  const size_t step = rig.kind == "filters" || rig.kind == "motion" ? 2 : adaptive.size();
+  for (size_t i = rig.turn % step; i < adaptive.size(); i += step) {
+    if (mode.name == adaptive[i]) return true;
+  }
+  return false;
+}
+
+bool IsCell(const Rig& rig, const Mode& mode) {
+  return Sees(rig, mode) && IsItsTurn(rig, mode);
 }
 
 int Cells() {
   int cells = 0;
   for (const Rig& rig : Rigs()) {
-    for (const Mode& mode : Modes()) cells += Sees(rig, mode);
+    for (const Mode& mode : Modes()) cells += IsCell(rig, mode);
   }
   return cells;
 }
@@ -235,7 +258,7 @@ TEST_P(Matrix, Agrees) {
   const char* only = std::getenv("LAMPYR_MATRIX_MODE");
   for (const Mode& mode : Modes()) {
     seed += kSeedsOfACell;
-    if (!Sees(rig, mode) || (only && mode.name != only)) continue;
+    if (!IsCell(rig, mode) || (only && mode.name != only)) continue;
     const auto start = std::chrono::steady_clock::now();
     Cell cell;
     const Verdict verdict = Measure(built, mode, errors.mode, seed, reference, rate, cell);
@@ -323,6 +346,23 @@ TEST(MatrixIsWhole, EveryModeIsAColumn) {
     if (settings.Find(name)->isBiased) continue;
     EXPECT_TRUE(std::count(modes.begin(), modes.end(), name) + std::count(others.begin(), others.end(), name) == 1)
         << "the setting \"" << name << "\" of integrators is neither a mode nor said to be none";
+  }
+}
+
+// Taking turns leaves nothing out: each mode meets each kind of rig, and each rig all integrators that can show it.
+TEST(MatrixIsWhole, EveryModeMeetsEveryKind) {
+  for (const char* kind : {"materials", "lights", "filters", "motion", "cameras"}) {
+    for (const Mode& mode : Modes()) {
+      EXPECT_TRUE(std::any_of(Rigs().begin(), Rigs().end(),
+                              [&](const Rig& rig) { return rig.kind == kind && IsCell(rig, mode); }))
+          << kind << " by " << mode.name;
+    }
+  }
+  for (const Rig& rig : Rigs()) {
+    for (const Mode& mode : Modes()) EXPECT_TRUE(mode.Adapts() || !Sees(rig, mode) || IsCell(rig, mode)) << rig.name;
+    EXPECT_TRUE(std::any_of(Modes().begin(), Modes().end(), [&](const Mode& mode) {
+      return mode.Adapts() && IsCell(rig, mode);
+    })) << rig.name;
   }
 }
 

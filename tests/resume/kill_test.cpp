@@ -67,7 +67,7 @@ TEST_F(Kill, AtFiftyRandomMomentsNothingIsLost) {
       const std::string command = std::string("render scene.pbrt --quiet --integrator ") + setting;
       const auto start = Clock::now();
       Do(command + " -o whole.exr");
-      kills += RenderInPieces(command, 0.7 * SecondsSince(start), random);
+      kills += RenderInPieces(command, 0.9 * SecondsSince(start), random);
       ++renders;
       EXPECT_EQ(Bytes("pieces.exr"), Bytes("whole.exr")) << setting;
       // The render is over: going on with it changes nothing.
