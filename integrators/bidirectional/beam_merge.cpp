@@ -108,10 +108,12 @@ bool SetBeamVertex(const SampleContext& context, const PhotonMap& map, const Bea
   light.specular = start.specular;
   if (start.depth == 1) {
     const EmittedPhoton& emission = map.Beams().EmissionOf(start);
+    light.point.position = light.receiver.position = Point3(crossing.onRay);
     if (!context.scene.lighting->FilterFirstHit(emission, light.receiver, light.diffuse, light.specular)) return false;
     if (!SetFirstWeights(context, emission, connects, lightPaths, light, made.end)) return false;
   } else {
-    const double squared = crossing.tBeam * crossing.tBeam;
+    const Vector3d way = crossing.onRay - start.position;
+    const double squared = glm::dot(way, way);
     light.pdfForward = start.pdfDirection * (light.factors.forward * EdgeDensity(1, squared));
     light.previousSolidAnglePerArea = light.factors.reverse * EdgeDensity(start.geometryTerm, squared);
     light.weight = start.weight.Next(start.scatteredDelta, light.pdfForward, start.previousReverse);

@@ -71,11 +71,10 @@ double WeightOf(const BidirectionalSample& sample, const Photon& photon, std::sp
 }
 
 // Makes the vertex of the camera subpath at which the ray of `state` passes a photon. `passed`: of the ray up to there.
-void SetVertexInMedium(const PathState& state, const Flight& flight, double t, int32_t medium, const PhaseBsdf& phase,
-                       const Color& extinction, const BeamPoint& passed, PathVertex& vertex) {
+void SetVertexInMedium(const PathState& state, const Flight& flight, const Point3d& position, int32_t medium,
+                       const PhaseBsdf& phase, const Color& extinction, const BeamPoint& passed, PathVertex& vertex) {
   vertex = PathVertex();
-  MakeVertexInMedium(flight.line.start + t * flight.line.direction, state.ray.direction, medium, phase, extinction,
-                     vertex);
+  MakeVertexInMedium(position, state.ray.direction, medium, phase, extinction, vertex);
   vertex.factors = {MeanOf(passed.density * extinction), MeanOf(passed.density * flight.startExtinction),
                     passed.through};
 }
@@ -94,8 +93,8 @@ bool SetPointVertex(const SampleContext& context, const PathState& state, const 
            .throughput = state.Throughput() * point->passed,
            .kernel = 1 / (static_cast<double>(kPi) * radius * radius),
            .use = hit.index};
-  SetVertexInMedium(state, flight, static_cast<double>(hit.t), photon.medium, photon.phase, photon.extinction, *point,
-                    vertex);
+  SetVertexInMedium(state, flight, flight.line.start + static_cast<double>(hit.t) * flight.line.direction,
+                    photon.medium, photon.phase, photon.extinction, *point, vertex);
   return true;
 }
 
@@ -107,7 +106,7 @@ bool SetCrossingVertex(const SampleContext& context, const PathState& state, con
   const Medium& medium = *context.scene.media[static_cast<size_t>(beam.step.medium)];
   const MediumCoefficients here = medium.At(Point3(0.0f));
   merge.throughput = state.Throughput() * point->passed;
-  SetVertexInMedium(state, flight, crossing.t, beam.step.medium, {here.scattering, medium.Asymmetry()},
+  SetVertexInMedium(state, flight, crossing.onBeam, beam.step.medium, {here.scattering, medium.Asymmetry()},
                     here.Extinction(), *point, vertex);
   return true;
 }

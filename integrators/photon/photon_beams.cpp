@@ -29,8 +29,9 @@ void BeamList::Append(const BeamList& other, uint32_t firstOrigin, uint32_t firs
 namespace {
 
 // Length of a piece in radii: its box is then as wide as it is long, unless the beam is along an axis.
-constexpr float kPieceInRadii = 16;
-constexpr int kMostPieces = 256;  // of a beam
+constexpr float kPieceInRadii = 24;
+constexpr int kMostPieces = 256;    // of a beam
+constexpr float kMargin = 1.0001f;  // of their boxes
 
 // Points of 1024 cells along each axis, by a Morton curve.
 uint32_t CellOf(const Point3& p, const Bounds3& bounds) {
@@ -55,7 +56,6 @@ BeamMap::BeamMap(BeamList list, const VolumeRadius& radius) : list_(std::move(li
     Bounds3 box;
   };
   std::vector<Placed> placed;
-  const float slope = std::min(static_cast<float>(radius_.scale * radius_.beamScale * radius_.perLength), 0.5f);
   for (uint32_t i = 0; i < list_.beams.size(); ++i) {
     const PhotonBeam& beam = list_.beams[i];
     const FlightStart& start = StartOf(beam);
@@ -69,10 +69,9 @@ BeamMap::BeamMap(BeamList list, const VolumeRadius& radius) : list_(std::move(li
       const float from = beam.step.tMin + length * static_cast<float>(k) / ends;
       const float to = k + 1 == pieces ? beam.step.tMax : beam.step.tMin + length * static_cast<float>(k + 1) / ends;
       Placed one{0, {i, from, to}, {}};
-      // The radius is that of the camera ray's point, which is at most a radius away.
       for (const float t : {from, to}) {
         const Point3 p = at(t);
-        const Vector3 reach(radius_.BeamAt(p) / (1 - slope));
+        const Vector3 reach(kMargin * radius_.BeamAt(p));
         one.box.Add(p - reach);
         one.box.Add(p + reach);
       }
@@ -110,11 +109,11 @@ void BeamMap::Find(const Ray& ray, const FineLine& line, float tMax, std::vector
     const double tBeam = (cosine * along - alongBeam) / sineSquared;
     if (!(t >= 0 && t < static_cast<double>(tMax))) continue;
     if (!(tBeam >= static_cast<double>(piece.tMin) && tBeam < static_cast<double>(piece.tMax))) continue;
-    const Point3d here = line.start + t * line.direction;
-    const Vector3d apart = start.position + tBeam * start.direction - here;
-    const float radius = radius_.BeamAt(Point3(here));
+    const Point3d onRay = line.start + t * line.direction, onBeam = start.position + tBeam * start.direction;
+    const Vector3d apart = onBeam - onRay;
+    const float radius = radius_.BeamAt(Point3(onBeam));
     if (!(glm::dot(apart, apart) < static_cast<double>(radius) * static_cast<double>(radius))) continue;
-    crossings.push_back({piece.beam, t, tBeam, radius, static_cast<float>(std::sqrt(sineSquared))});
+    crossings.push_back({piece.beam, t, tBeam, radius, static_cast<float>(std::sqrt(sineSquared)), onRay, onBeam});
   }
 }
 

@@ -45,12 +45,15 @@ struct PhotonBeam {
   uint32_t start = 0;  // index of the FlightStart
 };
 
-// Where a camera ray passes a beam: their nearest points.
+// Where a camera ray passes a beam: their nearest points. The vertex of the camera path is on the beam, and that of the
+// light path on the ray: near the start of either the other point is the nearer one to it, and the density of arriving
+// there would be too high, and with it the weight of merging.
 struct BeamCrossing {
   uint32_t beam = 0;
   double t = 0, tBeam = 0;  // along the camera ray, and along the flight from its start
   float radius = 0;         // half the width of the kernel
   float sine = 1;           // of the angle between both
+  Point3d onRay{0.0}, onBeam{0.0};
 };
 
 // The flights of the light paths of one pass.

@@ -60,6 +60,9 @@ constexpr double kMostRadiusInMeanFreePaths = 0.02;
 // Beams that a camera ray across the picture is to pass, by their share: each merge takes longer than next-event
 // estimation.
 constexpr double kBeamsPerRay = 4;
+// Width of the kernel between beams, relative to that of other photons in media: what is narrower needs more beams for
+// as many merges, and blurs less. The blur is felt where beams start in the medium.
+constexpr double kBeamWidth = 0.5;
 
 }  // namespace
 
@@ -84,9 +87,9 @@ void UseBeams(const IntegratorInput& input, PhotonSettings& photons) {
   // there are fewer paths, more of them leave beams, which are as much narrower.
   const double pixels = input.FilmPixels();
   const double paths = photons.lightPaths > 0 ? static_cast<double>(photons.lightPaths) : pixels;
-  const double share = std::min(kBeamsPerRay * std::sqrt(pixels) / (2 * paths), 1.0);
+  const double share = std::min(kBeamsPerRay * std::sqrt(pixels) / (2 * kBeamWidth * paths), 1.0);
   volume.beamShare = std::min(share * input.fewer, 1.0);
-  volume.beamScale = share / volume.beamShare;
+  volume.beamScale = kBeamWidth * share / volume.beamShare;
   // So many light paths as collide leave a second beam.
   volume.scatteredBeamShare = std::min(volume.beamShare / std::min(std::max(depth, 1e-3), 1.0), 1.0);
 }

@@ -118,7 +118,8 @@ TEST(BeamMap, FindsTheCrossingsThatASearchThroughAllFinds) {
         const auto [t, s] = NearestOf(line, start);
         const Point3d here = line.start + t * line.direction;
         const double apart = glm::distance(here, start.position + s * start.direction);
-        const double width = 0.7 * 0.7 * (0.02 + slope * glm::distance(here, Point3d(radius.eye)));
+        const Point3d there = start.position + s * start.direction;
+        const double width = 0.7 * 0.7 * (0.02 + slope * glm::distance(there, Point3d(radius.eye)));
         const bool isThere = t >= 0 && t < static_cast<double>(tMax) && s >= static_cast<double>(beam.step.tMin) &&
                              s < static_cast<double>(beam.step.tMax) && apart < width;
         if (std::abs(apart - width) < 1e-6) continue;  // rounding decides
