@@ -27,7 +27,7 @@ FlightStart StartAtLast(const Subpath& path, const PathState& state, const Volum
   start.canMerge = vertex.CanMerge() && !vertex.scatteredDelta;
   if (vertex.IsInMedium()) {
     start.mergeSize =
-        static_cast<float>(MergeSize(vertex, {vertex.toPrevious, vertex.factors}, state.ray.direction, radius));
+        static_cast<float>(MergeSize(vertex, EdgeBefore(path, path.Count()), state.ray.direction, radius));
   }
   return start;
 }
