@@ -192,8 +192,7 @@ class CameraSide final : public PathVisitor {
       if (IsTooDeep(path, map.Beams().StartOf(map.Beams()[crossing.beam]).depth)) continue;
       merge = {};
       if (!SetCrossingVertex(context, state, flight, crossing, path.Next(), merge)) continue;
-      const auto length = static_cast<float>(glm::distance(flight.line.start, crossing.onBeam));
-      MergeThere(path, state, length, before, [&] {
+      MergeThere(path, state, static_cast<float>(crossing.t), before, [&] {
         return SetBeamOf(sample_, crossing, beam_, merge) ? MergeInMedium(sample_, merge) : Color(0.0f);
       });
     }
@@ -247,7 +246,7 @@ class CameraSide final : public PathVisitor {
   bool IsTooDeep(const Subpath& path, size_t photonDepth) const {
     return photonDepth + path.Count() + 1 > static_cast<size_t>(sample_.settings.maxDepth) + 1;
   }
-  // Adds the vertex that was made in the place of the next one, `t` from the last one, for `merge` alone.
+  // Adds the vertex that was made in the place of the next one, `t` along the ray, for `merge` alone.
   template <class Merge>
   void MergeThere(Subpath& path, const PathState& state, float t, const Before& before, const Merge& merge) {
     path.Add();

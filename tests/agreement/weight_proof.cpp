@@ -244,8 +244,11 @@ class WeightChecker final : public PathObserver {
     if (!path.camera.empty() && !scene_.camera->ConnectsByDirection()) {
       double length = glm::distance(Vector3d(lens), Vector3d(vertex.point.position));
       const double first = length;
-      for (size_t i = 0; i + 1 < path.camera.size() && path.camera[i].scatteredDelta; ++i)
-        length += glm::distance(Vector3d(path.camera[i].point.position), Vector3d(path.camera[i + 1].point.position));
+      // Along the rays: a vertex of merging is beside its ray.
+      for (size_t i = 0; i + 1 < path.camera.size() && path.camera[i].scatteredDelta; ++i) {
+        const Vector3d way = Vector3d(path.camera[i].point.position) - Vector3d(path.camera[i + 1].point.position);
+        length += glm::dot(way, Vector3d(path.camera[i + 1].toPrevious));
+      }
       area *= length / first * length / first;
     }
     if (area > 0) worst_.mergesPerDensity.Note(path.merging.perDensity, expected * pixels_ * pixels_ * area);
