@@ -80,10 +80,10 @@ std::vector<MediumChange> MediumChanges(const GeometryScene& geometry, const Ray
 
 namespace {
 
-// The medium that the first ray says that meets a boundary, of rays to points all over the scene.
-void FindTowardsScene(const GeometryScene& geometry, const Point3& position, float time, const Normal3& normal,
-                      FoundMedium& found) {
-  if (!geometry.HasBoundaries()) return;
+// The changes on the first ray that meets a boundary, of rays to points all over the scene; none if none does.
+std::vector<MediumChange> ChangesTowardsScene(const GeometryScene& geometry, const Point3& position, float time,
+                                              const Normal3& normal) {
+  if (!geometry.HasBoundaries()) return {};
   constexpr int kMost = 256;
   constexpr double kSteps[3] = {0.8191725133961645, 0.6710436067037893, 0.5497004779019703};  // [Roberts18] R3
   const Bounds3& bounds = geometry.GetBounds();
@@ -94,14 +94,11 @@ void FindTowardsScene(const GeometryScene& geometry, const Point3& position, flo
       target[axis] = glm::mix(bounds.min[axis], bounds.max[axis], static_cast<float>(u - std::floor(u)));
     }
     if (target == position || glm::dot(target - position, normal) < 0) continue;
-    const std::array changes = {
-        MediumChanges(geometry, {position, glm::normalize(target - position), kInfinity, time})};
-    found.medium = FirstMedium(changes[0], true);
-    if (!found.medium) continue;
-    found.isOfBoundary = true;
-    found.exterior = ExteriorOf(changes, *found.medium);
-    return;
+    std::vector<MediumChange> changes =
+        MediumChanges(geometry, {position, glm::normalize(target - position), kInfinity, time});
+    if (FirstMedium(changes, true)) return changes;
   }
+  return {};
 }
 
 }  // namespace
@@ -117,7 +114,14 @@ FoundMedium FindMedium(const GeometryScene& geometry, const Point3& position, fl
     if (found.disputed == kNoIndex) found.disputed = BrokenLink(changes[i]);
   }
   found.isOfBoundary = std::any_of(said.begin(), said.end(), [](const auto& one) { return one.has_value(); });
-  if (!found.isOfBoundary) FindTowardsScene(geometry, position, time, normal, found);
+  if (!found.isOfBoundary) {
+    const std::vector<MediumChange> towards = ChangesTowardsScene(geometry, position, time, normal);
+    found.medium = FirstMedium(towards, true);
+    found.isOfBoundary = found.medium.has_value();
+    // The fixed rays tell more of what is around the scene: some of them leave it.
+    const std::array all = {changes[0], changes[1], changes[2], towards};
+    if (found.medium) found.exterior = ExteriorOf(all, *found.medium);
+  }
   const auto isSaidByAll = [&] {
     return std::all_of(changes.begin(), changes.end(),
                        [&](const std::vector<MediumChange>& ray) { return FirstMedium(ray, false) == found.medium; });
