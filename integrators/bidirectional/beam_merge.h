@@ -15,6 +15,11 @@ void AddFlight(const VolumeRadius& radius, double below, const LightPath& path, 
 // none.
 double FlightsBelow(const VolumeRadius& radius, Sampler& sampler, const PathDimensions& dimensions);
 
+// True if the flight to the vertex is a photon itself, so that the vertex is none.
+inline bool IsOnBeam(const Vertex& vertex, const VolumeRadius& radius) {
+  return vertex.IsInMedium() && radius.UsesBeams(vertex.insideMedium);
+}
+
 // The vertex of a light path in a medium at which a camera ray passes its flight: as if it had collided there, but for
 // the density of that.
 struct BeamVertex {

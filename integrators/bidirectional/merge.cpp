@@ -22,7 +22,7 @@ ConnectedPath MergedPath(const BidirectionalSample& sample, const Photon& photon
   path.merging = sample.merging;
   path.connectionCount = sample.connectionCount;
   path.splatCount = sample.settings.splatCount;
-  path.volume = sample.settings.photons.volume;
+  path.volume = &sample.settings.photons.volume;
   path.seenDensity = sample.seenDensity;
   path.value = value;
   path.weight = weight;
@@ -87,11 +87,10 @@ bool SetPointVertex(const SampleContext& context, const PathState& state, const 
   const VolumePhoton& photon = map.VolumeOf(hit.index);
   const std::optional<BeamPoint> point = flight.PointAt(hit.t, photon.medium);
   if (!point) return false;
-  const auto radius = static_cast<double>(photon.radius);
   merge = {.photon = &map[hit.index],
            .light = map.PathOf(map[hit.index]),
            .throughput = state.Throughput() * point->passed,
-           .kernel = 1 / (static_cast<double>(kPi) * radius * radius),
+           .kernel = photon.Kernel(),
            .use = hit.index};
   SetVertexInMedium(state, flight, flight.line.start + static_cast<double>(hit.t) * flight.line.direction,
                     photon.medium, photon.phase, photon.extinction, *point, vertex);

@@ -83,6 +83,12 @@ struct VolumePhoton {
   PhaseBsdf phase;
   Color extinction;  // σ_t there
   int32_t medium = kVacuum;
+
+  // Of the disk across a beam, 1/scene unit².
+  double Kernel() const {
+    const auto r = static_cast<double>(radius);
+    return 1 / (static_cast<double>(kPi) * r * r);
+  }
 };
 
 // The photons of consecutive light paths. Keeps its memory when it is emptied.
@@ -158,7 +164,7 @@ class PhotonList {
   // Memory while the map is built, of which there are two copies of the densities.
   uint64_t Bytes(uint64_t perPhoton) const {
     return photons_.size() * perPhoton + 2 * sizeof(SubpathDensities) * densities_.size() +
-           3 * sizeof(VolumePhoton) * volume_.size() + 4 * beams_.Bytes();
+           3 * sizeof(VolumePhoton) * volume_.size() + beams_.BytesOfMap();
   }
   // Removes whole paths from the end until Bytes is no more than `most`, or `least` paths are left; returns the number
   // of paths left.

@@ -16,8 +16,7 @@ namespace lampyr {
 // vertex further along the flight follow from.
 struct FlightStart {
   Point3d position{0.0};
-  Vector3d direction{0.0};   // unit
-  Vector3 fromOrigin{0.0f};  // of a start at a light: from the light's point to `position`
+  Vector3d direction{0.0};  // unit
   Color diffuse,
       specular;            // throughput that leaves, LightingServices::FluxUnit over the density; of a light unfiltered
   Color extinction{1.0f};  // at the start (Vertex::extinction)
@@ -67,6 +66,8 @@ struct BeamList {
     return starts.size() * sizeof(FlightStart) + beams.size() * sizeof(PhotonBeam) +
            emissions.size() * sizeof(EmittedPhoton);
   }
+  // Upper bound of the memory while a BeamMap is built, of which there are two copies of the list.
+  size_t BytesOfMap() const;
   void Clear();
   void Append(const BeamList& other, uint32_t firstOrigin, uint32_t firstDensity);
 };
@@ -91,11 +92,15 @@ class BeamMap {
   size_t Bytes() const;
 
  private:
+  friend struct BeamList;  // BytesOfMap
+
   // A part of a beam, short enough for its box.
   struct Piece {
     uint32_t beam;
     float tMin, tMax;
   };
+  struct Placed;
+  std::vector<Placed> Split() const;
 
   BeamList list_;
   VolumeRadius radius_;

@@ -19,14 +19,6 @@ using Index = flann::KDTreeSingleIndex<flann::L2_3D<float>>;
 
 constexpr int kLeaf = 64;  // photons per leaf; with 32, lookups of 50 photons take 1.1 to 1.5 times as long
 
-// The low 8 bits of x, with two zeros after each.
-uint32_t Spread(uint32_t x) {
-  x = (x | x << 8) & 0x00f00f;
-  x = (x | x << 4) & 0x0c30c3;
-  x = (x | x << 2) & 0x249249;
-  return x;
-}
-
 // Collects all points within the radius, and fetches their photons into the cache meanwhile.
 class WithinRadius final : public flann::ResultSet<float> {
  public:
@@ -139,8 +131,7 @@ std::vector<uint32_t> MortonOrder(const std::vector<const TracedPhoton*>& photon
   std::vector<SortItem> order(photons.size()), sorted(photons.size());
   ForAll(photons.size(), threads, [&](size_t i) {
     const Vector3 p = (photons[i]->position - least) * scale;
-    order[i] = {Spread(static_cast<uint32_t>(p.x)) << 2 | Spread(static_cast<uint32_t>(p.y)) << 1 |
-                    Spread(static_cast<uint32_t>(p.z)),
+    order[i] = {MortonCode(static_cast<uint32_t>(p.x), static_cast<uint32_t>(p.y), static_cast<uint32_t>(p.z)),
                 static_cast<uint32_t>(i)};
   });
   constexpr uint32_t kDigits = 3;

@@ -46,7 +46,7 @@ class PhotonMap {
   // The photons in media whose balls a ray passes on [0, tMax), in an order that depends on the photons alone. Valid
   // until the next search. [Jensen98]'s photons, seen by beams ([Jarosz08]).
   std::span<const BeamHit> FindAlong(const Ray& ray, float tMax, PhotonLookup& lookup) const;
-  bool HasVolume() const { return !volume_.empty() || !beams_.IsEmpty(); }
+  bool HasPoints() const { return !volume_.empty(); }
   // The beams that a ray passes on [0, tMax), as FindAlong.
   std::span<const BeamCrossing> FindBeams(const Ray& ray, const FineLine& line, float tMax, PhotonLookup& lookup) const;
   const BeamMap& Beams() const { return beams_; }

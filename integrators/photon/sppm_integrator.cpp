@@ -154,7 +154,7 @@ class RadianceEstimate final : public PhotonGatherer {
   }
 
   Color GatherAlong(const Subpath& path, const PathState& state, const Flight& flight) override {
-    if (!pass_.map->HasVolume()) return Color();
+    if (!pass_.map->HasPoints()) return Color();
     const float importance = Sqr(RadiusAt(context_.scene.lighting->SceneSphere().radius));
     return VolumeEstimate(context_, {settings_.maxDepth, kWide, importance}, lookup_)
         .Gather(state, static_cast<int>(path.Count()), flight);

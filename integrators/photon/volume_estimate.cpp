@@ -13,14 +13,13 @@ Color VolumeEstimate::Gather(const PathState& state, int events, const Flight& f
     const Color scattered = Scattered(state, events, flight, hit);
     if (scattered.IsBlack()) continue;
     const Photon& photon = (*pass.map)[hit.index];
-    const auto radius = static_cast<double>(pass.map->VolumeOf(hit.index).radius);
-    const Color seen = Product(scattered, photon.flux, perPath / (static_cast<double>(kPi) * radius * radius));
+    const double kernel = pass.map->VolumeOf(hit.index).Kernel();
+    const Color seen = Product(scattered, photon.flux, perPath * kernel);
     sum += seen;
     if (context_.layers) [[unlikely]]
       context_.layers->Add(photon.group, seen);
     if (pass.use)
-      lookup_.used.push_back(
-          {hit.index, scattered.Average() * rules_.importance / static_cast<float>(radius * radius)});
+      lookup_.used.push_back({hit.index, scattered.Average() * rules_.importance * kPi * static_cast<float>(kernel)});
   }
   if (pass.use) pass.use->Add(lookup_.used);
   return sum;

@@ -30,7 +30,7 @@ class VolumeEstimate {
   Color Gather(const PathState& state, int events, const Flight& flight);
 
  private:
-  // Of one photon, over the density of photons; black: it does not count.
+  // The light of one photon, without flux and kernel; black: the photon is not seen, or is left to camera paths.
   Color Scattered(const PathState& state, int events, const Flight& flight, const BeamHit& hit);
 
   const SampleContext& context_;

@@ -26,6 +26,7 @@ struct RenderScene {
   // If camera rays start in several media, because the camera is on a boundary or is cut by one: the medium of those
   // that meet no surface that says it.
   std::optional<int32_t> cameraExterior;
+  int32_t exterior = kVacuum;       // where rays leave the scene, and lights at infinity shine from
   std::vector<int32_t> lightMedia;  // by light: around it, or in front of it; empty: vacuum
   std::vector<int32_t>
       lightBackMedia;      // by light: behind its surface, where a two-sided light shines, too; empty: vacuum

@@ -4,7 +4,6 @@
 #include <chrono>
 
 #include "base/memory.h"
-#include "geometry/medium_at.h"
 #include "geometry/shape_checks.h"
 #include "media/make_media.h"
 #include "render/analysis/plan.h"
@@ -71,7 +70,7 @@ class Builder {
     return 0.5f * Point2(static_cast<float>(built_.settings.width), static_cast<float>(built_.settings.height));
   }
   void WarnOfBlackImage(const RenderScene& scene) const;
-  MediaAround MediaAroundLights() const;
+  MediaAround MediaAroundLights(const Point3& eye) const;
   std::vector<Part> MovingParts(const std::vector<ReadEntry>& entries);
   void BuildPart(Part& part);
   void PlacePart(const Part& part, const RenderPlacement& placement);
@@ -300,14 +299,10 @@ void Builder::PlaceEntries() {
 }
 
 // To be called when camera and media are made.
-MediaAround Builder::MediaAroundLights() const {
-  const RenderScene& scene = built_.scene;
+MediaAround Builder::MediaAroundLights(const Point3& eye) const {
   MediaAround around;
-  for (const auto& medium : scene.media) around.glow = around.glow || medium->IsEmissive();
-  if (scene.media.empty()) return around;
-  const Point3 eye = scene.camera->GenerateRay(MiddleOfFilm(), Point2(0.5f), 0).ray.origin;
-  const int32_t exterior = FindMedium(*scene.geometry, eye, 0).exterior.value_or(kVacuum);
-  if (!description_.cameraMedium.empty() || exterior != kVacuum) around.unboundedAt = eye;
+  for (const auto& medium : built_.scene.media) around.glow = around.glow || medium->IsEmissive();
+  if (!description_.cameraMedium.empty() || media_->Exterior() != kVacuum) around.unboundedAt = eye;
   return around;
 }
 
@@ -365,10 +360,12 @@ BuiltScene Builder::Build() {
   scene.media = MakeMedia(description_, placer_.WorldToRender(), memory_, diagnostics_);
   media_->NumberPlaces(geometry_);
   scene.geometry = std::make_shared<const GeometryScene>(std::move(geometry_));
+  const Ray eye = scene.camera->GenerateRay(MiddleOfFilm(), Point2(0.5f), 0).ray;
+  media_->LookAround(*scene.geometry, eye);
   lights_->Linking().Finish(lights_->Lights(), diagnostics_);
   scene.lighting = std::make_shared<const LightingServices>(
       *scene.geometry, std::move(lights_->Lights()), built_.settings.LightSampler(), std::move(lights_->Linking()),
-      static_cast<int>(built_.settings.values.Integer("light-samples")), MediaAroundLights());
+      static_cast<int>(built_.settings.values.Integer("light-samples")), MediaAroundLights(eye.origin));
   media_->Locate(MiddleOfFilm(), built_.lightPlaces, scene);
   if (built_.settings.integrator == "auto") {
     const auto start = std::chrono::steady_clock::now();

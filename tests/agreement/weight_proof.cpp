@@ -110,14 +110,13 @@ class KeepsPaths final : public WeightedLightPath {
     AddDensities(path.vertices, kept_.volume, true, kept_.densities);
     const PathVertex& first = path.vertices[0];
     if (path.vertices.Count() == 1) {
-      kept_.densities[0] = {.forward = End().emission.value, .isInMedium = first.IsInMedium(), .extent = End().extent};
+      kept_.densities[0] = FirstDensities(End(), first.IsInMedium());
       kept_.ends = {.direct = End().direct.value, .canBeHit = End().canBeHit};
     } else if (path.vertices.Count() == 2) {
       SetEnds(first);
     }
     const PathVertex& last = path.vertices.Last();
-    const bool isOnBeam = last.IsInMedium() && kept_.volume.UsesBeams(last.insideMedium);
-    if (last.storesPhotons && !isOnBeam) kept_.Keep(path, End());
+    if (last.storesPhotons && !IsOnBeam(last, kept_.volume)) kept_.Keep(path, End());
   }
   KeptLightPaths& kept_;
   double flightsBelow_ = 1;
