@@ -152,6 +152,13 @@ std::pair<int, int> ParseShard(const std::string& text) {
 // Default interval of checkpoints with --resume, seconds.
 constexpr double kCheckpointSeconds = 60;
 
+// The names of light path expressions.
+std::string KnownLayers() {
+  std::string names;
+  for (const NamedExpression& each : NamedExpressions()) names += (names.empty() ? "" : ", ") + std::string(each.name);
+  return names;
+}
+
 struct RenderCommand {
   RenderOptions options;
   std::string time, resolution, checkpoint, shard;
@@ -187,6 +194,12 @@ struct RenderCommand {
                    "Render one part of the samples, e.g. 2/8, for `lampyr merge`; default of --output: OUT.2-of-8.exr")
         ->type_name("I/N");
     app.add_option("--stats", options.stats, "Write statistics to this JSON file")->type_name("FILE");
+    app.add_option("--layer", overrides.layers,
+                   "Add a layer of some of the light: " + KnownLayers() +
+                       "; one of these from one light, \"caustic<L.'key'>\"; or any light path expression with a name, "
+                       "\"keys=C<RD>[<L.'key'>O]\". May be given more than once")
+        ->type_name("LAYER")
+        ->allow_extra_args(false);
     app.add_flag("--auto-layers", options.autoLayers,
                  "Add layers of what --integrator auto decided: auto.lightPaths, auto.connecting, auto.merging");
     app.add_option("--strategy-images", options.strategyImages,
@@ -222,6 +235,25 @@ struct MergeCommand {
     app.add_flag("--quiet", options.quiet, "No summary");
   }
   int Run() { return RunMerge(options); }
+};
+
+struct MixCommand {
+  MixOptions options;
+
+  void Define(CLI::App& app) {
+    app.add_option("image", options.input, "A picture with layers (.exr), of light groups or of --layer")
+        ->type_name("FILE")
+        ->required();
+    app.add_option("factors", options.factors, "Factors of layers: key=2 fill=0.5,0.4,0.3 caustic=0")
+        ->type_name("LAYER=FACTOR")
+        ->required();
+    app.add_option("-o,--output", options.output, "The image to write (.exr)")->type_name("FILE")->required();
+    app.add_flag("--png", options.png, "Also write a tone-mapped PNG beside it");
+    app.add_option("--exposure", options.exposure, "Exposure of the PNG in stops (0)")->check(CheckFinite, "");
+    app.add_flag("--clip", options.clipPng, "Clip the PNG at white instead of rolling highlights off");
+    app.add_flag("--quiet", options.quiet, "No summary");
+  }
+  int Run() { return RunMix(options); }
 };
 
 struct PngCommand {
@@ -426,6 +458,7 @@ class Commands {
     Add("merge", "Make one image of the parts of a render", merge_);
     Add("plan", "What a scene requires, and what is therefore modelled, with reasons", plan_);
     Add("diff", "Compare two images: MSE, relMSE, FLIP, bias, z-test by blocks", diff_);
+    Add("mix", "Dim, tint or turn off lights in a finished picture with layers", mix_);
     Add("png", "Make a PNG to look at of an image", png_);
     Add("check-lights",
         "Prove the densities of lights, and light filters: of every type, a plugin's, or a scene's lights. What fails "
@@ -454,6 +487,7 @@ class Commands {
   MergeCommand merge_;
   PlanCommand plan_;
   DiffCommand diff_;
+  MixCommand mix_;
   PngCommand png_;
   CheckLightsCommand checkLights_;
   LightsCommand lights_;

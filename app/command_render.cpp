@@ -119,13 +119,17 @@ PartHeader MakeHeader(const RenderOptions& options, const LoadedScene& loaded, c
   header.width = settings.width;
   header.height = settings.height;
   header.crop = settings.crop;
-  header.layers = loaded.built.scene.lighting->Groups().Layers();
+  header.layers = loaded.built.scene.outputs->Names();
   header.halfPrecision = settings.halfPrecision;
   header.metadata = {{"lampyr.version", kVersion},
                      {"lampyr.sceneHash", loaded.hash},
                      {"lampyr.integrator", settings.integrator},
                      {"lampyr.seed", std::to_string(settings.seed)}};
-  if (!header.layers.empty()) header.metadata["lampyr.lightGroups"] = Joined(header.layers, ",");
+  const std::vector<std::string>& groups = loaded.built.scene.lighting->Groups().Layers();
+  if (!groups.empty()) header.metadata["lampyr.lightGroups"] = Joined(groups, ",");
+  for (const OutputLayer& layer : loaded.built.scene.outputs->Layers()) {
+    if (!layer.text.empty()) header.metadata["lampyr.layer." + layer.name] = layer.text;
+  }
   if (settings.firstHit)
     header.metadata[kFirstHitMetadata] = *settings.firstHit == FirstHitSpace::World ? "world" : "camera";
   if (options.shard || options.resume || options.checkpointSeconds)
@@ -337,7 +341,7 @@ RenderJob::RenderJob(const RenderOptions& options, const LoadedScene& loaded)
       checkpointPath_(CheckpointPath(path_)) {
   CheckOptions(options, settings_, checkpointPath_);
   integrator_ = MakeIntegrator(built_.scene, settings_);
-  CheckMemory(settings_, integrator_->Paths(), built_.scene.lighting->Groups().Layers().size(),
+  CheckMemory(settings_, integrator_->Paths(), built_.scene.outputs->Layers().size(),
               options.strategyImages.has_value());
   if (const auto photons = integrator_->Photons(); photons && !options.quiet) WarnOfPhotonMemory(settings_, *photons);
   const auto [part, parts] = options.shard.value_or(std::pair(1, 1));
@@ -364,6 +368,9 @@ void RenderJob::Describe() {
   report_.primitives = built_.scene.geometry->PrimitiveCount();
   report_.lights = built_.scene.lighting->Lights().size();
   report_.lightGroups = built_.scene.lighting->Groups().Layers();
+  for (const OutputLayer& layer : built_.scene.outputs->Layers()) {
+    if (!layer.text.empty()) report_.layers.emplace_back(layer.name, layer.text);
+  }
 }
 
 void RenderJob::GoOn(ProgressiveRender& render) {

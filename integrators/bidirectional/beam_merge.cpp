@@ -34,8 +34,8 @@ FlightStart StartAtLast(const Subpath& path, const PathState& state, const Volum
 
 }  // namespace
 
-void AddFlight(const VolumeRadius& radius, double below, const LightPath& path, const PathState& state,
-               const Flight& flight, const EmittedPhoton& emission, PhotonList& photons) {
+void AddFlight(const SampleContext& context, const VolumeRadius& radius, double below, const LightPath& path,
+               const PathState& state, const Flight& flight, const EmittedPhoton& emission) {
   const size_t count = path.vertices.Count();
   if (!(below < radius.ShareOf(count > 0 && path.vertices.Last().IsInMedium()))) return;
   thread_local std::vector<PhotonBeam> beams;
@@ -58,8 +58,10 @@ void AddFlight(const VolumeRadius& radius, double below, const LightPath& path, 
   start.specular = state.specular;
   start.pdfDirection = state.pdfDirection;
   start.depth = static_cast<uint16_t>(count + 1);
-  start.group = static_cast<uint16_t>(path.group);
-  photons.AddFlight(start, count == 0 ? &emission : nullptr, beams);
+  thread_local PathLabels labels;
+  labels.Clear();
+  if (context.outputs) path.vertices.LabelsBeyond(*context.outputs, TransportMode::Importance, state.event, labels);
+  context.photons->AddFlight(start, count == 0 ? &emission : nullptr, beams, labels.All());
 }
 
 namespace {
@@ -120,7 +122,6 @@ bool SetBeamVertex(const SampleContext& context, const PhotonMap& map, const Bea
   photon.weight = PhotonWeight::Of(light.weight, start.depth);
   photon.previousSolidAnglePerArea = static_cast<float>(light.previousSolidAnglePerArea.value);
   photon.depth = start.depth;
-  photon.group = start.group;
   return true;
 }
 

@@ -7,10 +7,10 @@
 
 namespace lampyr {
 
-// Adds to `photons` the flight of `state` from the last vertex of `path`, or from its light, as far as it passes media
-// whose photons are beams, if its share is above `below`.
-void AddFlight(const VolumeRadius& radius, double below, const LightPath& path, const PathState& state,
-               const Flight& flight, const EmittedPhoton& emission, PhotonList& photons);
+// Adds to SampleContext::photons the flight of `state` from the last vertex of `path`, or from its light, as far as it
+// passes media whose photons are beams, if its share is above `below`.
+void AddFlight(const SampleContext& context, const VolumeRadius& radius, double below, const LightPath& path,
+               const PathState& state, const Flight& flight, const EmittedPhoton& emission);
 // Decides which flights of the light path that `sampler` is at are kept: those whose share is above the number. 1:
 // none.
 double FlightsBelow(const VolumeRadius& radius, Sampler& sampler, const PathDimensions& dimensions);

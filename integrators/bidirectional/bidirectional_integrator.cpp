@@ -9,6 +9,7 @@
 #include "integrators/photon/photon_pass.h"
 #include "integrators/photon/photon_settings.h"
 #include "integrators/walk/footprint.h"
+#include "integrators/walk/path_layers.h"
 
 namespace lampyr {
 
@@ -48,17 +49,6 @@ TechniqueSums BidirectionalSample::SumsOfConnection(size_t lightCount, const Rev
   const PathEnds ends{lightEnd.direct.value, lightEnd.canBeHit ? hit.value : 0.0, goesOn && first.scatteredDelta,
                       isSplat || lensSeesIt ? settings.splatCount : 0.0};
   return whole.Sums(ends, lightCount + 1, 0);
-}
-
-Color BidirectionalSample::AddToPixel(ConnectedPath& path, float survivalWeight) const {
-  Report(path);
-  return AddToPixel(path.end.light, path.value, path.weight, survivalWeight);
-}
-
-Color BidirectionalSample::AddToPixel(uint32_t light, const Color& value, double weight, float survivalWeight) const {
-  const Color contribution = value * static_cast<float>(weight) * survivalWeight;
-  if (context.layers) context.layers->Add(Lighting().GroupOf(light), contribution);
-  return contribution;
 }
 
 namespace {
@@ -112,7 +102,7 @@ class LightSide final : public WeightedLightPath {
 
   bool WantsFlights() const override { return flightsBelow_ < 1; }
   void Flew(const LightPath& path, const PathState& state, const Flight& flight, const EmittedPhoton& photon) override {
-    AddFlight(sample_.settings.photons.volume, flightsBelow_, path, state, flight, photon, *context_.photons);
+    AddFlight(context_, sample_.settings.photons.volume, flightsBelow_, path, state, flight, photon);
     hasLeftFirst_ = hasLeftFirst_ || path.vertices.Count() > 0;
   }
   // The path has flown on from its first vertex, so that the event there is set.
@@ -139,7 +129,7 @@ class LightSide final : public WeightedLightPath {
     const PathVertex& vertex = path.vertices.Last();
     if (context_.photons && vertex.storesPhotons && path.vertices.Count() <= PhotonList::kDeepest &&
         !IsOnBeam(vertex, sample_.settings.photons.volume))
-      context_.photons->Add(vertex, path.vertices.Count(), path.group);
+      context_.photons->Add(vertex, path.vertices.Count(), LabelsOfLast(context_, path.vertices));
   }
 
   BidirectionalSample& sample_;
@@ -178,9 +168,10 @@ class CameraSide final : public PathVisitor {
     if (!map.Beams().IsEmpty()) MergeBeams(map, path, state, flight);
   }
 
-  void Glowed(const Subpath&, const Color& throughput, const Color& radiance) override {
-    const Color seen = throughput * radiance;
-    if (sample_.context.layers) sample_.context.layers->Add(sample_.Lighting().Groups().OfMedia(), seen);
+  void Glowed(const Subpath& path, const PathState& state, const Color& radiance) override {
+    const Color seen = state.Throughput() * radiance;
+    if (sample_.context.layers)
+      AddFoundToLayers(sample_.context, path, state.event, sample_.context.outputs->OfMedia(), seen);
     sample_.radiance += seen;
   }
 
@@ -261,6 +252,7 @@ class CameraSide final : public PathVisitor {
   // Adds the vertex that was made in the place of the next one, `t` along the ray.
   void Extend(Subpath& path, const PathState& state, float t) {
     path.Add();
+    if (sample_.context.outputs) path.LabelLast(*sample_.context.outputs, TransportMode::Radiance, state.event);
     PathState arrived = state;
     arrived.length += t;
     arrived.factors = path.Last().factors;

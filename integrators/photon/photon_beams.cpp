@@ -9,11 +9,15 @@ void BeamList::Clear() {
   starts.clear();
   beams.clear();
   emissions.clear();
+  labels.clear();
 }
 
 void BeamList::Append(const BeamList& other, uint32_t firstOrigin, uint32_t firstDensity) {
   const auto firstStart = static_cast<uint32_t>(starts.size()), firstEmission = static_cast<uint32_t>(emissions.size());
+  const auto firstLabel = static_cast<uint32_t>(labels.size());
+  labels.insert(labels.end(), other.labels.begin(), other.labels.end());
   for (FlightStart start : other.starts) {
+    start.labels = {start.labels.first + firstLabel, start.labels.end + firstLabel};
     start.path += firstDensity;
     if (start.origin != FlightStart::kNone) start.origin += firstOrigin;
     if (start.emission != FlightStart::kNone) start.emission += firstEmission;

@@ -63,6 +63,7 @@ struct PhotonMap::Traced {
   std::vector<const TracedPhoton*> photons;
   std::vector<uint32_t> origins;            // empty unless wanted
   std::vector<const VolumePhoton*> volume;  // by photon; null on a surface. Empty if all are
+  std::vector<LabelRange> labels;           // by photon; empty without layers
   std::vector<uint32_t> paths;  // TracedPhoton::path, in the concatenated densities; empty if they were not kept
   BeamList beams;
   bool hasSpecular = false;  // flux for specular lobes differs from that for diffuse ones
@@ -82,6 +83,8 @@ PhotonMap::Traced PhotonMap::Collect(std::span<const PhotonList> lists, bool wan
   size_t firstDensity = 0;
   traced.photons.reserve(count);
   for (const PhotonList& list : lists) {
+    const auto firstLabel = static_cast<uint32_t>(labels_.size());
+    labels_.insert(labels_.end(), list.Labels().begin(), list.Labels().end());
     for (const TracedPhoton& photon : list.Photons()) {
       // A single coordinate that is not a number would corrupt the whole tree.
       if (!IsFinite(photon.position) || !photon.diffuse.IsValid() || !photon.specular.IsValid()) {
@@ -96,6 +99,10 @@ PhotonMap::Traced PhotonMap::Collect(std::span<const PhotonList> lists, bool wan
         traced.volume.push_back(isInMedium ? &list.Volume()[photon.volume] : nullptr);
       }
       traced.hasSpecular |= photon.specular != photon.diffuse;
+      if (!list.LabelRanges().empty()) {
+        const LabelRange& of = list.LabelRanges()[static_cast<size_t>(&photon - list.Photons().data())];
+        traced.labels.push_back({of.first + firstLabel, of.end + firstLabel});
+      }
       if (wantsOrigins) traced.origins.push_back(firstOrigin + photon.origin);
       if (densities > 0) traced.paths.push_back(static_cast<uint32_t>(firstDensity) + photon.path);
     }
@@ -207,8 +214,9 @@ void PhotonMap::Build(const Traced& traced, int threads, std::vector<uint32_t>* 
     photon.normal = source.normal;
     photon.weight = source.weight;
     photon.depth = source.depth;
-    photon.group = source.group;
   });
+  ranges_.resize(traced.labels.size());
+  for (size_t i = 0; i < ranges_.size(); ++i) ranges_[i] = traced.labels[order[i]];
   for (size_t i = 0; traced.hasSpecular && i < count; ++i) {
     const TracedPhoton& source = *traced.photons[order[i]];
     if (source.specular == source.diffuse) continue;
@@ -246,7 +254,7 @@ size_t PhotonMap::Bytes() const {
   const size_t perPhoton = sizeof(Photon) + 3 * sizeof(float) + sizeof(float*) + sizeof(int);
   return photons_.Size() * perPhoton + photons_.Size() / (kLeaf / 2) * 2 * node + specular_.size() * sizeof(Color) +
          densities_.Size() * sizeof(SubpathDensities) + volume_.size() * sizeof(VolumePhoton) + beamSearch_.Bytes() +
-         beams_.Bytes();
+         beams_.Bytes() + ranges_.size() * sizeof(LabelRange) + labels_.size() * sizeof(PathLabel);
 }
 
 }  // namespace lampyr

@@ -133,7 +133,7 @@ void TraceFromMedium(const PathRequest& request, double uSelect, const GlowingMe
   const Vector3 u(request.place.x, request.place.y, sampler.Get1D());
   const auto point = glowing.Emission().Sample(uSelect, u, context.time);
   if (!point) return;
-  request.path.group = context.scene.lighting->Groups().OfMedia();
+  if (context.outputs) request.path.vertices.SetStart(context.outputs->OfMedia());
   const EmittedInMedium emitted{point->position, point->medium, point->emission,
                                 point->density * glowing.Probability()};
   request.visitor.Glowed(request.path, emitted);
@@ -158,7 +158,7 @@ void TraceFromLight(const PathRequest& request, float uSelect, double probabilit
     const double selection = static_cast<double>(photon->emissionSelection.value) * probability;
     photon->emissionSelection = PdfDiscrete(static_cast<float>(selection));
   }
-  request.path.group = lighting.GroupOf(photon->light);
+  if (context.outputs) request.path.vertices.SetStart(context.outputs->OfLight(photon->light));
   if (photon->fromSurface) request.visitor.Emitted(*photon);
   PathState state;
   if (request.maxDepth < 1 || photon->IsDark() || !Emit(context, *photon, state)) return;

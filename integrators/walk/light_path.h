@@ -15,7 +15,6 @@ struct LightPath {
   explicit LightPath(bool keepsAll = true) : vertices(keepsAll) {}
 
   Subpath vertices;
-  uint32_t group = 0;  // of the light that emitted it (LightGroups)
 };
 
 // A light path's start in a participating medium.

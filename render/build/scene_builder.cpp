@@ -366,6 +366,7 @@ BuiltScene Builder::Build() {
   scene.lighting = std::make_shared<const LightingServices>(
       *scene.geometry, std::move(lights_->Lights()), built_.settings.LightSampler(), std::move(lights_->Linking()),
       static_cast<int>(built_.settings.values.Integer("light-samples")), MediaAroundLights(eye.origin));
+  scene.outputs = MakeOutputPlan(*scene.lighting, built_.settings.layers);
   media_->Locate(MiddleOfFilm(), built_.lightPlaces, scene);
   if (built_.settings.integrator == "auto") {
     const auto start = std::chrono::steady_clock::now();

@@ -101,6 +101,9 @@ void ReadFilm(const SceneDescription& scene, const RenderOverrides& overrides, R
   if (overrides.width) settings.width = *overrides.width;
   if (overrides.height) settings.height = *overrides.height;
   settings.outputFile = film.GetString("filename", "");
+  for (const std::string& layer : film.GetStrings("layers"))
+    settings.layers.push_back(ParseLayer(layer, film.WhereOf("layers")));
+  for (const std::string& layer : overrides.layers) settings.layers.push_back(ParseLayer(layer));
   // pbrt-v4 writes halves by default. Variances need floats, so halves are written only if the scene asks for them.
   settings.halfPrecision = film.GetBool("savefp16", false);
   const std::string sensor = film.GetString("sensor", "cie1931");

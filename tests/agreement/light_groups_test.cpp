@@ -217,8 +217,7 @@ TEST_P(LightGroupLayers, AreTheSameForAnyThreadsAndPasses) {
       BuildScene(ParseScene(WithGroups(), "test.pbrt", diagnostics), With(GetParam()), true, diagnostics);
   const std::unique_ptr<Integrator> integrator = MakeIntegrator(built.scene, built.settings);
   const auto render = [&](const std::vector<int>& passes, int threads) {
-    Film film(built.settings.width, built.settings.height, built.settings.crop,
-              built.scene.lighting->Groups().Layers());
+    Film film(built.settings.width, built.settings.height, built.settings.crop, built.scene.outputs->Names());
     ProgressiveRender progress(built.scene, *integrator, built.settings, threads, film);
     for (const int samples : passes) progress.AddSamples(samples);
     return film.Develop().data;

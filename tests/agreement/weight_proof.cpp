@@ -96,7 +96,9 @@ class KeepsPaths final : public WeightedLightPath {
   bool WantsFlights() const override { return flightsBelow_ < 1; }
   void Flew(const LightPath& path, const PathState& state, const Flight& flight, const EmittedPhoton& photon) override {
     const size_t before = kept_.photons.Beams().starts.size();
-    AddFlight(kept_.volume, flightsBelow_, path, state, flight, photon, kept_.photons);
+    SampleContext keeping = context_;
+    keeping.photons = &kept_.photons;
+    AddFlight(keeping, kept_.volume, flightsBelow_, path, state, flight, photon);
     if (kept_.photons.Beams().starts.size() > before) kept_.KeepFlight(path, End());
     if (path.vertices.Count() == 1) SetEnds(path.vertices[0]);
   }
