@@ -340,7 +340,7 @@ TEST(LightGroups, HaveNamesThatImagesCanBear) {
     EXPECT_NE(ErrorOf(point(taken)).find("test.pbrt:7:21: error: a light group cannot be called"), std::string::npos)
         << ErrorOf(point(taken));
   }
-  EXPECT_NE(ErrorOf(point("rest")).find("layer of the lights that are in none"), std::string::npos);
+  EXPECT_NE(ErrorOf(point("rest")).find("layer of the lights that are in no light group"), std::string::npos);
   EXPECT_NE(ErrorOf(point(std::string(201, 'x'))).find("200 bytes"), std::string::npos);
   EXPECT_NE(ErrorOf(point("a.b") + point("a b")).find("would both be the layer \"a_b\""), std::string::npos);
   for (const std::string& fine : {std::string("r"), std::string("Variance"), std::string("key-1"),
