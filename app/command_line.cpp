@@ -158,6 +158,11 @@ std::string KnownLayers() {
   for (const NamedExpression& each : NamedExpressions()) names += (names.empty() ? "" : ", ") + std::string(each.name);
   return names;
 }
+std::string KnownPixelLayers() {
+  std::string names;
+  for (const PixelLayer& each : PixelLayers()) names += (names.empty() ? "" : ", ") + std::string(each.name);
+  return names;
+}
 
 struct RenderCommand {
   RenderOptions options;
@@ -197,9 +202,12 @@ struct RenderCommand {
     app.add_option("--layer", overrides.layers,
                    "Add a layer of some of the light: " + KnownLayers() +
                        "; one of these from one light, \"caustic<L.'key'>\"; or any light path expression with a name, "
-                       "\"keys=C<RD>[<L.'key'>O]\". May be given more than once")
+                       "\"keys=C<RD>[<L.'key'>O]\". Or one of what pixels see and of their samples: " +
+                       KnownPixelLayers() + ". May be given more than once")
         ->type_name("LAYER")
         ->allow_extra_args(false);
+    app.add_flag("--through-smooth", overrides.seesThroughSmooth,
+                 "What pixels see, for those layers, is what mirrors and smooth glass show");
     app.add_flag("--auto-layers", options.autoLayers,
                  "Add layers of what --integrator auto decided: auto.lightPaths, auto.connecting, auto.merging");
     app.add_option("--strategy-images", options.strategyImages,

@@ -8,6 +8,7 @@
 
 #include "app/command_line.h"
 #include "app/commands.h"
+#include "film/mix.h"
 #include "render/first_hit_layers.h"
 #include "render/output_files.h"
 #include "render/render_part.h"
@@ -94,13 +95,13 @@ void CheckPartsStay(const MergeOptions& options) {
 // The layers of what is seen first, which are the same in all parts that have them; without channels if the picture has
 // none, or no part was given the time for them.
 Image FirstHitLayersOf(const std::vector<Part>& parts, const PartHeader& whole, bool quiet) {
-  if (!whole.metadata.contains(kFirstHitMetadata)) return {};
+  if (!whole.metadata.contains(kFirstHitChannelsMetadata)) return {};
   for (const Part& part : parts) {
-    Image layers = ChannelsOf(ReadImage(part.path), FirstHitChannels());
+    Image layers = ChannelsOf(ReadImage(part.path), Split(whole.metadata.at(kFirstHitChannelsMetadata), ','));
     if (!layers.channels.empty()) return layers;
   }
   if (!quiet)
-    std::fprintf(stderr, "warning: no part has the layers of Film \"gbuffer\": the picture is without them\n");
+    std::fprintf(stderr, "warning: no part has the layers of what is seen first: the picture is without them\n");
   return {};
 }
 

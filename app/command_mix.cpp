@@ -18,13 +18,10 @@ LayerFactor ParseFactor(const std::string& text) {
   };
   if (equals == std::string::npos || equals == 0) fail();
   std::vector<float> values;
-  for (size_t begin = equals + 1; begin <= text.size();) {
-    const size_t end = std::min(text.find(',', begin), text.size());
-    const std::string number = text.substr(begin, end - begin);
+  for (const std::string& number : Split(text.substr(equals + 1), ',')) {
     char* rest = nullptr;
     values.push_back(std::strtof(number.c_str(), &rest));
     if (number.empty() || *rest != '\0' || !std::isfinite(values.back())) fail();
-    begin = end + 1;
   }
   if (values.size() != 1 && values.size() != 3) fail();
   const std::string layer = text.substr(0, equals);

@@ -75,7 +75,7 @@ void CheckSceneStays(const RenderOptions& options, const SceneDescription& scene
 // (render_backup.h).
 void CheckMemory(const RenderSettings& settings, TracedPaths paths, size_t layers, bool hasTechniques) {
   // Developed image: colour, variance, light groups and first-hit layers. The latter are also kept during the render.
-  const uint64_t firstHit = settings.firstHit ? FirstHitChannels().size() : 0;
+  const uint64_t firstHit = FirstHitChannels(settings).size();
   const uint64_t channels = 6 + 3 * layers + 2 * firstHit;
   const uint64_t techniques = hasTechniques ? TechniqueImages::BytesPerPixel(settings.MaxDepth()) : 0;
   const uint64_t perPixel =
@@ -130,8 +130,10 @@ PartHeader MakeHeader(const RenderOptions& options, const LoadedScene& loaded, c
   for (const OutputLayer& layer : loaded.built.scene.outputs->Layers()) {
     if (!layer.text.empty()) header.metadata["lampyr.layer." + layer.name] = layer.text;
   }
-  if (settings.firstHit)
-    header.metadata[kFirstHitMetadata] = *settings.firstHit == FirstHitSpace::World ? "world" : "camera";
+  header.metadata.merge(FirstHitMetadata(loaded.built));
+  for (const char* layer : {kSamplesLayer, kErrorLayer}) {
+    if (settings.Wants(layer)) header.metadata[std::string(kSampleLayerMetadata) + layer] = "1";
+  }
   if (options.shard || options.resume || options.checkpointSeconds)
     header.identity = IdentityOf(loaded, options.robust);
   return header;
@@ -418,7 +420,7 @@ void RenderJob::MakeFirstHitLayers() {
   RunForeignCode(loaded_.types, [&] { firstHit_ = FirstHitLayers(built_, report_.threads, FinishOnInterrupt()); });
   if (firstHit_.channels.empty())
     std::fprintf(stderr,
-                 "warning: stopped before the layers of Film \"gbuffer\" were made: the picture is without them\n");
+                 "warning: stopped before the layers of what is seen first were made: the picture is without them\n");
 }
 
 int RenderJob::Run() {
@@ -430,7 +432,7 @@ int RenderJob::Run() {
                                                    settings_.MaxDepth(), settings_.sensor);
   }
   if (!options_.quiet) PrintHints();
-  if (settings_.firstHit) MakeFirstHitLayers();
+  if (settings_.WantsFirstHit()) MakeFirstHitLayers();
   if (options_.autoLayers) {
     Image decided = AutoLayers(settings_);
     if (firstHit_.channels.empty()) {

@@ -24,6 +24,7 @@ namespace {
 struct ReadEntry {
   LocalShape local;
   int32_t material = -1;
+  int32_t object = -1;  // BuiltScene::objectNames
 };
 
 // Shapes with the same motion, or none, as one object of the geometry.
@@ -61,6 +62,7 @@ class Builder {
   void DescribeLightsIn(std::vector<SceneLight>* lights) { described_ = lights; }
 
  private:
+  void NameObjects();
   std::vector<ReadEntry> ReadShapes(const std::vector<ShapeDescription>& shapes);
   Transform ChooseRenderSpace() const;
   bool Moves(const ReadEntry& entry) const { return placer_.Moves(entry.local.description->placement); }
@@ -107,6 +109,23 @@ std::vector<ReadEntry> Builder::ReadShapes(const std::vector<ShapeDescription>& 
     if (local) entries.push_back({std::move(*local), -1});
   }
   return entries;
+}
+
+// Shapes of an object have its name, meshes that of their file, and others their type and place.
+void Builder::NameObjects() {
+  std::vector<std::string>& names = built_.objectNames;
+  const auto add = [&](ReadEntry& entry, const std::string& name) {
+    entry.object = static_cast<int32_t>(names.size());
+    names.push_back(name);
+  };
+  for (ReadEntry& entry : entries_) {
+    const StatementDescription& shape = entry.local.description->shape;
+    const std::string file = shape.parameters.GetString("filename", "");
+    add(entry, file.empty() ? shape.NameByPlace() : std::filesystem::path(file).stem().string());
+  }
+  for (size_t i = 0; i < objects_.size(); ++i) {
+    for (ReadEntry& entry : objects_[i]) add(entry, description_.objects[i].name);
+  }
 }
 
 // A scene whose middle is far from the origin, compared with its size, is moved to the origin, because floats are
@@ -166,7 +185,8 @@ std::optional<GeometryAttributes> Builder::AttributesOf(const ReadEntry& entry) 
   // Surfaces that emit are never thin: every ray hits them.
   if (shape.areaLight < 0 && material->Thin()) attributes.thin = {material, material->Thin()};
   attributes.isFibrous = material->IsFibrous();
-  attributes.isParametrized |= built_.settings.firstHit || attributes.thin || material->NeedsParametrization();
+  attributes.object = entry.object;
+  attributes.isParametrized |= built_.settings.WantsFirstHit() || attributes.thin || material->NeedsParametrization();
   return attributes;
 }
 
@@ -322,6 +342,7 @@ BuiltScene Builder::Build() {
   placer_.ReadTimes(description_);
   entries_ = ReadShapes(description_.shapes);
   for (const ObjectDescription& object : description_.objects) objects_.push_back(ReadShapes(object.shapes));
+  if (built_.settings.Wants(kObjectMatte)) NameObjects();
   std::vector<bool> hasShapes;
   for (const auto& object : objects_) hasShapes.push_back(!object.empty());
   instances_ = FlattenInstances(description_, hasShapes, memory_);
@@ -351,12 +372,14 @@ BuiltScene Builder::Build() {
   scene.camera = LocateErrors(description_.camera.where, [&] {
     return BuildCamera(description_, built_.settings, placer_.WorldToRender(), diagnostics_);
   });
-  if (built_.settings.firstHit) {
-    const bool isWorld = *built_.settings.firstHit == FirstHitSpace::World;
+  if (built_.settings.WantsFirstHit()) {
+    const bool isWorld = built_.settings.firstHit.value_or(FirstHitSpace::World) == FirstHitSpace::World;
     const Transform toRender =
         isWorld ? placer_.WorldToRender() : placer_.WorldToRender() * description_.cameraToWorld.start;
     built_.renderToLayers = toRender.Inverse().ToAffine();
+    built_.layersToCamera = (isWorld ? description_.cameraToWorld.start.Inverse() : Transform()).ToAffine();
   }
+  if (built_.settings.Wants(kMaterialMatte)) built_.materialNames = materials_->Names();
   scene.media = MakeMedia(description_, placer_.WorldToRender(), memory_, diagnostics_);
   media_->NumberPlaces(geometry_);
   scene.geometry = std::make_shared<const GeometryScene>(std::move(geometry_));

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "lights/services/lighting_services.h"
+#include "render/cryptomatte.h"
 
 namespace lampyr {
 
@@ -33,6 +34,7 @@ Read ReadExpression(const std::string& text) {
     if (!text.empty() && text[0] != 'C' && text.find_first_of("<[(.*") == std::string::npos) {
       std::vector<std::string> known;
       for (const NamedExpression& each : NamedExpressions()) known.emplace_back(each.name);
+      for (const PixelLayer& each : PixelLayers()) known.emplace_back(each.name);
       throw Error("there is no layer \"" + text + "\"" + DidYouMean(text, known) +
                   "; an expression starts with the camera, C");
     }
@@ -55,6 +57,26 @@ size_t EndOfName(const std::string& text) {
 }
 
 }  // namespace
+
+const std::vector<PixelLayer>& PixelLayers() {
+  static const std::vector<PixelLayer> layers = {{"albedo", {"Albedo.R", "Albedo.G", "Albedo.B"}},
+                                                 {"N", {"N.X", "N.Y", "N.Z"}},
+                                                 {"P", {"P.X", "P.Y", "P.Z"}},
+                                                 {"Z", {"Z"}},
+                                                 {"uv", {"u", "v"}},
+                                                 {kObjectMatte, CryptomatteChannels("CryptoObject")},
+                                                 {kMaterialMatte, CryptomatteChannels("CryptoMaterial")},
+                                                 {kSamplesLayer, {"samples"}},
+                                                 {kErrorLayer, {"relativeError"}}};
+  return layers;
+}
+
+const PixelLayer* FindPixelLayer(const std::string& name) {
+  for (const PixelLayer& layer : PixelLayers()) {
+    if (PlainName(layer.name) == PlainName(name)) return &layer;
+  }
+  return nullptr;
+}
 
 LayerRequest ParseLayer(const std::string& text, const FileLocation& where) {
   const size_t end = EndOfName(text);

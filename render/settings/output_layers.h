@@ -13,6 +13,19 @@ namespace lampyr {
 
 class LightingServices;
 
+// Layers of what a pixel sees first, and of its samples; they hold no light (docs/layers.md).
+struct PixelLayer {
+  const char* name;
+  std::vector<std::string> channels;
+};
+const std::vector<PixelLayer>& PixelLayers();
+// Null: none of that name. Spaces, '-', '_' and capitals in names make no difference.
+const PixelLayer* FindPixelLayer(const std::string& name);
+inline constexpr const char* kSamplesLayer = "samples";
+inline constexpr const char* kErrorLayer = "relative error";
+inline constexpr const char* kObjectMatte = "crypto object";
+inline constexpr const char* kMaterialMatte = "crypto material";
+
 struct LayerRequest {
   OutputLayer layer;
   FileLocation where;  // of the parameter of Film; empty: of the command line

@@ -64,6 +64,16 @@ Image WithoutVariances(const Image& image) {
 
 }  // namespace
 
+std::vector<std::string> Split(const std::string& text, char separator) {
+  std::vector<std::string> parts;
+  for (size_t begin = 0; begin <= text.size();) {
+    const size_t end = std::min(text.find(separator, begin), text.size());
+    parts.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return parts;
+}
+
 std::vector<std::string> ColorLayers(const Image& image) {
   std::vector<std::string> layers;
   for (const std::string& channel : image.channels) {
@@ -79,12 +89,9 @@ std::vector<std::string> GroupLayers(const Image& image) {
   const auto list = image.metadata.find("lampyr.lightGroups");
   if (list == image.metadata.end()) return {};
   const std::vector<std::string> all = ColorLayers(image);
-  std::vector<std::string> groups;
-  for (size_t begin = 0; begin <= list->second.size();) {
-    const size_t end = std::min(list->second.find(',', begin), list->second.size());
-    groups.push_back(list->second.substr(begin, end - begin));
-    if (std::find(all.begin(), all.end(), groups.back()) == all.end()) return {};
-    begin = end + 1;
+  std::vector<std::string> groups = Split(list->second, ',');
+  for (const std::string& group : groups) {
+    if (std::find(all.begin(), all.end(), group) == all.end()) return {};
   }
   return groups;
 }

@@ -13,6 +13,9 @@ struct LayerFactor {
   Color factor{1.0f};
 };
 
+// The parts of a list between separators; of an empty text one, which is empty.
+std::vector<std::string> Split(const std::string& text, char separator);
+
 // The names of the layers of an image that have R, G and B, without "variance".
 std::vector<std::string> ColorLayers(const Image& image);
 // Those that are of light groups and together the whole picture; empty if it has none.

@@ -412,16 +412,17 @@ const std::vector<NamedExpression>& NamedExpressions() {
   return named;
 }
 
+std::string PlainName(const std::string& name) {
+  std::string letters;
+  for (const char c : name) {
+    if (c != ' ' && c != '-' && c != '_') letters += static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+  }
+  return letters;
+}
+
 const NamedExpression* FindNamedExpression(const std::string& name) {
-  const auto plain = [](std::string text) {
-    std::string letters;
-    for (const char c : text) {
-      if (c != ' ' && c != '-' && c != '_') letters += static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
-    }
-    return letters;
-  };
   for (const NamedExpression& named : NamedExpressions()) {
-    if (plain(named.name) == plain(name)) return &named;
+    if (PlainName(named.name) == PlainName(name)) return &named;
   }
   return nullptr;
 }

@@ -82,6 +82,9 @@ class PathExpression {
   std::vector<uint32_t> first_, last_;
 };
 
+// A name without capitals, spaces, '-' and '_', by which known layers are found.
+std::string PlainName(const std::string& name);
+
 // Expressions that have a name: beauty, caustic, emission, and so on. Spaces, '-' and '_' in names are the same.
 struct NamedExpression {
   const char* name;
