@@ -166,7 +166,7 @@ std::string KnownPixelLayers() {
 
 struct RenderCommand {
   RenderOptions options;
-  std::string time, resolution, checkpoint, shard;
+  std::string time, resolution, checkpoint, preview, shard;
   bool fast = false;
 
   void Define(CLI::App& app) {
@@ -192,6 +192,11 @@ struct RenderCommand {
     DefinePluginOption(app, options.plugins);
     app.add_option("--checkpoint", checkpoint,
                    "Write the image and what it takes to go on (OUT.checkpoint) this often: 30s, 5m. It stays there")
+        ->type_name("DURATION");
+    app.add_option(
+           "--preview", preview,
+           "Write the picture so far as a PNG, OUT.png, this often: 2s, 1m; and show it in the terminal if that "
+           "has 24-bit colours (COLORTERM=truecolor)")
         ->type_name("DURATION");
     app.add_flag("--resume", options.resume,
                  "Go on where OUT.checkpoint ends, if there is one, and write more of them (every minute)");
@@ -223,6 +228,7 @@ struct RenderCommand {
     if (!time.empty()) options.seconds = ParseDuration("--time", time);
     if (options.resume) options.checkpointSeconds = kCheckpointSeconds;
     if (!checkpoint.empty()) options.checkpointSeconds = ParseDuration("--checkpoint", checkpoint);
+    if (!preview.empty()) options.previewSeconds = ParseDuration("--preview", preview);
     if (!shard.empty()) options.shard = ParseShard(shard);
     if (!resolution.empty()) ParseResolution(resolution, options.overrides);
     options.robust = !fast;

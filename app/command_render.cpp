@@ -10,6 +10,7 @@
 #include "app/command_support.h"
 #include "app/commands.h"
 #include "app/json_report.h"
+#include "app/preview.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "base/progress.h"
@@ -44,7 +45,7 @@ std::filesystem::path OutputPath(const RenderOptions& options, const RenderSetti
           "." + std::to_string(options.shard->first) + "-of-" + std::to_string(options.shard->second) + extension;
     path.replace_extension(extension);
   }
-  CheckImageOutput(path, "--output", options.png);
+  CheckImageOutput(path, "--output", options.png || options.previewSeconds);
   return path;
 }
 
@@ -52,7 +53,8 @@ std::filesystem::path OutputPath(const RenderOptions& options, const RenderSetti
 void CheckSceneStays(const RenderOptions& options, const SceneDescription& scene, const RenderSettings& settings) {
   const std::filesystem::path image = OutputPath(options, settings);
   std::vector<std::pair<std::filesystem::path, const char*>> written = {{image, "--output"}};
-  if (options.png) written.emplace_back(std::filesystem::path(image).replace_extension(".png"), "--png");
+  if (options.png || options.previewSeconds)
+    written.emplace_back(std::filesystem::path(image).replace_extension(".png"), options.png ? "--png" : "--preview");
   if (options.stats) written.emplace_back(*options.stats, "--stats");
   if (options.checkpointSeconds) written.emplace_back(CheckpointPath(image), "--checkpoint");
   std::erase_if(written, [](const auto& file) {
@@ -201,6 +203,8 @@ StopConditions MakeStopConditions(const RenderOptions& options, const Shard& sha
   stop.samplesPerPixel = static_cast<int>(shard.end - shard.first);
   stop.seconds = options.seconds;
   stop.longestPass = options.checkpointSeconds;
+  if (options.previewSeconds)
+    stop.longestPass = std::min(*options.previewSeconds, stop.longestPass.value_or(*options.previewSeconds));
   stop.relativeError = options.targetError;
   return stop;
 }
@@ -391,7 +395,13 @@ void RenderJob::Trace(ProgressiveRender& render, Checkpoints* checkpoints) {
   stop.largestSample = LargestUnseenSample(built_.scene, settings_);
   stop.interrupted = &FinishOnInterrupt();
   Progress progress(options_.quiet);
+  std::optional<Preview> preview;
+  if (options_.previewSeconds) {
+    preview.emplace(std::filesystem::path(path_).replace_extension(".png"), *options_.previewSeconds, options_.exposure,
+                    options_.clipPng ? ToneMap::Clip : ToneMap::Filmic, options_.quiet);
+  }
   const auto afterPass = [&](const RenderOutcome& soFar, double fraction) {
+    if (preview) preview->MayShow(render, soFar.seconds, progress);
     progress.Update(fraction,
                     std::to_string(soFar.samplesPerPixel) + " spp, error " + FormatPercent(soFar.relativeError));
     if (checkpoints && fraction < 1) checkpoints->MayWrite(soFar);
@@ -472,7 +482,8 @@ int RenderJob::Finish(ProgressiveRender& render, Checkpoints* checkpoints) {
   if (options_.shard) render.DropPartialPass();
   if (render.Techniques()) WriteTechniques(options_, render.Techniques()->Develop(film));
   WriteImageOrKeepIt(path_, options_, header_, film, firstHit_, report_.outcome);
-  if (options_.png) WritePngBeside(path_, film.Develop(), options_.exposure, options_.clipPng);
+  if (options_.png || options_.previewSeconds)
+    WritePngBeside(path_, film.Develop(), options_.exposure, options_.clipPng);
   render.DropPartialPass();
   if (checkpoints) checkpoints->Finish(report_.outcome);
   report_.writeSeconds = clock.Seconds();

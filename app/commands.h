@@ -28,6 +28,7 @@ struct RenderOptions {
   std::optional<std::filesystem::path> strategyImages;  // a folder
   bool autoLayers = false;                              // layers of what auto decided
   std::optional<double> checkpointSeconds;              // --checkpoint
+  std::optional<double> previewSeconds;                 // --preview
   bool resume = false;
   std::optional<std::pair<int, int>> shard;  // which of how many, from 1
   bool quiet = false;

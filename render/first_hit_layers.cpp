@@ -6,7 +6,7 @@
 
 #include "base/parallel.h"
 #include "integrators/walk/pixel_ray.h"
-#include "render/cryptomatte.h"
+#include "film/cryptomatte.h"
 
 namespace lampyr {
 

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "lights/services/lighting_services.h"
-#include "render/cryptomatte.h"
+#include "film/cryptomatte.h"
 
 namespace lampyr {
 

@@ -1,6 +1,8 @@
 // Images in memory, the choice of a reader by content, and display images.
 #include "film/image.h"
 
+#include "film/terminal_picture.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -193,7 +195,7 @@ Image ReadImageWithGamma(const std::filesystem::path& path, float gamma) {
   return std::move(encoded.image);
 }
 
-std::vector<unsigned char> EncodeForDisplay(const Image& image, float exposureStops, ToneMap toneMap) {
+std::vector<unsigned char> DisplayPixels(const Image& image, float exposureStops, ToneMap toneMap) {
   if (!image.HasRgb() || image.width <= 0 || image.height <= 0) throw Error("the image has no R, G and B channels");
   const float exposure = std::exp2(exposureStops);
   std::vector<unsigned char> rgb;
@@ -204,7 +206,11 @@ std::vector<unsigned char> EncodeForDisplay(const Image& image, float exposureSt
       for (const float value : {color.r, color.g, color.b}) rgb.push_back(ToDisplay(value, exposure, toneMap));
     }
   }
-  return EncodePng(image.width, image.height, rgb);
+  return rgb;
+}
+
+std::vector<unsigned char> EncodeForDisplay(const Image& image, float exposureStops, ToneMap toneMap) {
+  return EncodePng(image.width, image.height, DisplayPixels(image, exposureStops, toneMap));
 }
 
 void WritePng(const std::filesystem::path& path, const Image& image, float exposureStops, ToneMap toneMap) {

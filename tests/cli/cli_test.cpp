@@ -143,6 +143,33 @@ TEST_F(Cli, LayersAreThoseOfTheExpressions) {
   EXPECT_NE(located.find("layers.pbrt:"), std::string::npos) << located;
 }
 
+// Mattes and other layers of what pixels see, and of their samples; and they outlive parts that are merged.
+TEST_F(Cli, PixelLayersAreInThePicture) {
+  const std::string layers = " --layer N --layer \"crypto object\" --layer samples --layer relative-error";
+  ASSERT_EQ(Run("render scene.pbrt --quiet --spp 8 -o o.exr" + layers).exitCode, 0);
+  const Image image = ReadImage(folder_ / "o.exr");
+  for (const char* channel : {"N.X", "CryptoObject00.R", "CryptoObject02.A", "samples", "relativeError"})
+    EXPECT_GE(image.ChannelIndex(channel), 0) << channel;
+  EXPECT_EQ(image.At(3, 3, static_cast<size_t>(image.ChannelIndex("samples"))), 8);
+  for (const char* part : {"1/2", "2/2"})
+    ASSERT_EQ(Run(std::string("render scene.pbrt --quiet --spp 8 --shard ") + part + layers).exitCode, 0);
+  const Outcome merged = Run("merge scene.1-of-2.exr scene.2-of-2.exr -o merged.exr --quiet");
+  ASSERT_EQ(merged.exitCode, 0) << merged.output;
+  const Image whole = ReadImage(folder_ / "merged.exr");
+  EXPECT_EQ(whole.data, image.data);
+  EXPECT_EQ(whole.metadata, image.metadata);
+}
+
+// The PNG is there before the render ends, and it does not change the picture.
+TEST_F(Cli, PreviewShowsThePictureSoFar) {
+  ASSERT_EQ(Run("render scene.pbrt --quiet --spp 64 -o plain.exr --png").exitCode, 0);
+  const Outcome done = Run("render scene.pbrt --spp 64 -o o.exr --preview 1ms");
+  ASSERT_EQ(done.exitCode, 0) << done.output;
+  EXPECT_EQ(done.output.find('\033'), std::string::npos) << "no terminal, no picture";
+  EXPECT_EQ(ReadImage(folder_ / "o.exr").data, ReadImage(folder_ / "plain.exr").data);
+  EXPECT_EQ(Read("o.png"), Read("plain.png"));
+}
+
 // Lights of a finished picture are dimmed, tinted and turned off.
 TEST_F(Cli, MixesLayers) {
   Write("groups.pbrt", std::string(kScene) +

@@ -1,4 +1,4 @@
-#include "render/cryptomatte.h"
+#include "film/cryptomatte.h"
 
 #include <algorithm>
 #include <bit>

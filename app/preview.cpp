@@ -1,0 +1,40 @@
+#include "app/preview.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "base/terminal.h"
+#include "film/terminal_picture.h"
+
+namespace lampyr {
+
+Preview::Preview(std::filesystem::path png, double seconds, float exposure, ToneMap toneMap, bool quiet)
+    : png_(std::move(png)),
+      seconds_(seconds),
+      exposure_(exposure),
+      toneMap_(toneMap),
+      isOnTerminal_(!quiet && isatty(STDERR_FILENO) != 0 && TerminalHasTrueColor()),
+      next_(seconds) {}
+
+void Preview::MayShow(const ProgressiveRender& render, double secondsSoFar, Progress& progress) {
+  if (secondsSoFar < next_) return;
+  next_ = secondsSoFar + seconds_;
+  const Image image = render.Picture().Develop();
+  WritePng(png_, image, exposure_, toneMap_);
+  if (isOnTerminal_) PrintPicture(image, progress);
+}
+
+// In the place of the one before.
+void Preview::PrintPicture(const Image& image, Progress& progress) {
+  constexpr int kUsualColumns = 80, kMostColumns = 64, kMostLines = 20;
+  const int columns = std::min(TerminalColumns(STDERR_FILENO, kUsualColumns) - 1, kMostColumns);
+  const std::string picture = TerminalPicture(image, columns, kMostLines, exposure_, toneMap_);
+  progress.Clear();
+  if (lines_ > 0) std::fprintf(stderr, "\r\033[%dA", lines_);
+  std::fputs(picture.c_str(), stderr);
+  lines_ = static_cast<int>(std::count(picture.begin(), picture.end(), '\n'));
+}
+
+}  // namespace lampyr

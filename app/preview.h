@@ -1,0 +1,32 @@
+// What a render shows while it goes on: its picture so far, as a PNG and, where the terminal can, as a small one there.
+#pragma once
+
+#include <filesystem>
+
+#include "base/progress.h"
+#include "film/image.h"
+#include "render/progressive_render.h"
+
+namespace lampyr {
+
+class Preview {
+ public:
+  // `png`: written at most every `seconds`, atomically. `quiet`: nothing on the terminal.
+  Preview(std::filesystem::path png, double seconds, float exposure, ToneMap toneMap, bool quiet);
+
+  // To be called after passes. Writes the picture so far if it is time; `progress` is cleared before it is printed.
+  void MayShow(const ProgressiveRender& render, double secondsSoFar, Progress& progress);
+
+ private:
+  void PrintPicture(const Image& image, Progress& progress);
+
+  const std::filesystem::path png_;
+  const double seconds_;
+  const float exposure_;
+  const ToneMap toneMap_;
+  const bool isOnTerminal_;
+  double next_;
+  int lines_ = 0;  // of the picture on the terminal
+};
+
+}  // namespace lampyr
