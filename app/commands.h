@@ -26,6 +26,7 @@ struct RenderOptions {
   int threads = 0;                    // 0: all
   std::optional<std::filesystem::path> stats;
   std::optional<std::filesystem::path> strategyImages;  // a folder
+  bool denoise = false;
   bool autoLayers = false;                              // layers of what auto decided
   std::optional<double> checkpointSeconds;              // --checkpoint
   bool resume = false;
@@ -80,6 +81,15 @@ struct DiffOptions {
   int blockSize = 8;
 };
 
+struct DenoiseOptions {
+  std::filesystem::path input, output;
+  int threads = 0;  // 0: all
+  bool png = false;
+  float exposure = 0;  // stops, of the PNG
+  bool clipPng = false;
+  bool quiet = false;
+};
+
 struct PngOptions {
   std::filesystem::path input, output;  // output empty: beside the input, with the extension .png
   float exposure = 0;                   // stops
@@ -107,6 +117,7 @@ int RunMerge(const MergeOptions& options);
 int RunCompare(const CompareOptions& options);
 int RunPlan(const PlanOptions& options);
 int RunDiff(const DiffOptions& options);
+int RunDenoise(const DenoiseOptions& options);
 int RunPng(const PngOptions& options);
 int RunLights(const LightsOptions& options);
 int RunCheckLights(const CheckLightsOptions& options);  // fails when a property does not hold

@@ -28,7 +28,7 @@ std::string LayerOfLightGroup(const std::string& group) {
   if (layer == kRest) {
     throw Error("a light group cannot be called \"rest\": that is the layer of the lights that are in none");
   }
-  for (const char* taken : {"variance", "R", "G", "B", "A", "Albedo"}) {
+  for (const char* taken : {"variance", "R", "G", "B", "A", "Albedo", "half", "noisy", "feature"}) {
     if (layer == taken) {
       throw Error("a light group cannot be called \"" + group + "\": images have a channel or layer of that name");
     }

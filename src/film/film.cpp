@@ -99,6 +99,11 @@ bool AreFinite(std::span<const CompensatedSum> sums) {
 
 }  // namespace
 
+uint32_t SamplesInHalf(uint32_t n) {
+  // Of two samples from an even index on, exactly one does.
+  return n / 2 + (n % 2 == 1 && IsInHalf(n - 1) ? 1 : 0);
+}
+
 void PixelSums::Add(const Color& value, float filterWeight) {
   const double w = static_cast<double>(filterWeight);
   const double weighted[3] = {w * static_cast<double>(value.r), w * static_cast<double>(value.g),
@@ -133,6 +138,7 @@ bool PixelSums::IsFinite() const {
 
 Film::Film(int fullWidth, int fullHeight, const PixelRect& crop, std::vector<std::string> layers)
     : fullWidth_(fullWidth), fullHeight_(fullHeight), crop_(crop), layers_(std::move(layers)) {
+  hasHalf_ = !layers_.empty() && layers_.back() == kHalfLayer;
   const bool inside = crop.x0 >= 0 && crop.y0 >= 0 && crop.x1 <= fullWidth && crop.y1 <= fullHeight;
   if (!inside || crop.Width() <= 0 || crop.Height() <= 0) {
     throw Error("the crop holds no pixel of the " + std::to_string(fullWidth) + " x " + std::to_string(fullHeight) +
@@ -156,6 +162,10 @@ void Film::AddToLayers(int x, int y, const LayerSample& sample, float scale, flo
       sums[layer][static_cast<size_t>(c)].Add(factor * value);
     }
   }
+}
+
+void Film::AddToHalf(int x, int y, const Color& value, float filterWeight) {
+  AddTo(layerSums_[(Index(x, y) + 1) * layers_.size() - 1], filterWeight, value);
 }
 
 uint64_t Film::BytesPerPixel(size_t layers, bool withSplats) {
@@ -215,11 +225,12 @@ void Film::MakeSplats() {
   layerSplats_.resize(layerSums_.size());
 }
 
-void Film::AddSplats(const PixelFilter& filter, std::span<const SplatList> lists, int threads) {
+void Film::AddSplats(const PixelFilter& filter, std::span<const SplatList> lists, int threads,
+                     uint32_t sample) {
   MakeSplats();
   if (splatSpread_ == 0) splatSpread_ = SplatSpread(filter);
   const int bands = std::max(threads, 1);
-  ParallelFor(bands, threads, [&](int band) { AddToRows(filter, lists, band, bands); });
+  ParallelFor(bands, threads, [&](int band) { AddToRows(filter, lists, band, bands, hasHalf_ && IsInHalf(sample)); });
   for (const SplatList& list : lists) lightPaths_ += list.Paths();
 }
 
@@ -233,7 +244,8 @@ void Film::PrefetchSplats(const Point2& film) const {
 }
 
 // Adds to the rows of one band. Groups of rows are dealt to the bands in turn, so that the threads share a bright spot.
-void Film::AddToRows(const PixelFilter& filter, std::span<const SplatList> lists, int band, int bands) {
+void Film::AddToRows(const PixelFilter& filter, std::span<const SplatList> lists, int band, int bands,
+                     bool isInHalf) {
   constexpr int kGroup = 4;
   const Vector2 radius = filter.Radius();
   const auto firstPixel = [](float p, float r) { return static_cast<int>(std::floor(p - 0.5f - r)); };
@@ -267,6 +279,7 @@ void Film::AddToRows(const PixelFilter& filter, std::span<const SplatList> lists
           if (weight == 0) continue;
           splats_[Index(x, y)].Add(firstPath + splat.path, static_cast<double>(weight), splat.value);
           if (hasLayers) AddTo(layerSplats_[Index(x, y) * layers_.size() + *layer], weight, splat.value);
+          if (isInHalf) AddTo(layerSplats_[(Index(x, y) + 1) * layers_.size() - 1], weight, splat.value);
         }
       }
       if (hasLayers) ++layer;

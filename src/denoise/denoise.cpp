@@ -1,0 +1,197 @@
+#include "denoise/denoise.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "base/error.h"
+#include "denoise/clean_features.h"
+#include "denoise/noisy_picture.h"
+#include "denoise/window_regression.h"
+
+namespace lampyr {
+
+namespace {
+
+using Outputs = std::array<RegressionOutput, kWidths.size()>;
+
+RegressionInput MakeInput(const NoisyPicture& picture, std::vector<CleanFeature> features, int threads) {
+  RegressionInput input;
+  input.halves = picture.halves;
+  input.isValid = picture.isValid;
+  input.features = std::move(features);
+  for (size_t half = 0; half < 2; ++half) {
+    for (size_t c = 0; c < 3; ++c) {
+      // Means over neighbours: the variance of a pixel follows its own noise.
+      Plane variance = BoxMeans(picture.variance[c], 1, threads);
+      const Plane value = BoxMeans(picture.color[c], 1, threads);
+      for (size_t i = 0; i < variance.Size(); ++i) {
+        // Differences below this fraction of the value are not seen.
+        const float unseen = 0.002f * value.values[i];
+        variance.values[i] = variance.values[i] * picture.noiseScale.values[i] / static_cast<float>(picture.shares[half]) +
+                             unseen * unseen;
+      }
+      input.guides[half].values.push_back(picture.halves[half][c]);
+      input.guides[half].variances.push_back(std::move(variance));
+    }
+  }
+  return input;
+}
+
+// A filtered picture and its error: of R, G, B.
+struct Filtered {
+  ColorPlanes value, variance, squaredBias;  // the latter two as means over neighbours
+};
+
+constexpr int kErrorRadius = 4;
+
+// The mean of a quantity with the dimension of a square over neighbours, relative to the squared value: errors vary less
+// in proportion to the value than as they are.
+Plane MeanSquares(const Plane& squares, const Plane& scale, int threads) {
+  Plane relative = squares;
+  for (size_t i = 0; i < relative.Size(); ++i) relative.values[i] /= scale.values[i];
+  relative = BoxMeans(BoxMeans(relative, kErrorRadius, threads), kErrorRadius, threads);
+  for (size_t i = 0; i < relative.Size(); ++i) relative.values[i] *= scale.values[i];
+  return relative;
+}
+
+// The residuals of the halves have independent noise: the mean of their product is the squared bias. They are smoothed
+// a little first, so that the product is not all noise.
+void EstimateError(const NoisyPicture& picture, const std::array<ColorPlanes, 2>& halves, int threads,
+                   Filtered& filtered) {
+  const auto product = static_cast<float>(picture.shares[0] * picture.shares[1]);
+  for (size_t c = 0; c < 3; ++c) {
+    const Plane& value = filtered.value[c];
+    Plane variance(value.width, value.height), bias = variance, scale = variance;
+    std::array<Plane, 2> residuals{variance, variance};
+    const Plane mean = BoxMeans(value, kErrorRadius, threads);
+    for (size_t i = 0; i < value.Size(); ++i) {
+      const float difference = halves[0][c].values[i] - halves[1][c].values[i];
+      variance.values[i] = product * difference * difference;
+      const float around = mean.values[i];
+      scale.values[i] = value.values[i] * value.values[i] + 0.1f * around * around + 1e-12f;
+      for (size_t half = 0; half < 2; ++half) {
+        if (picture.isValid[i])
+          residuals[half].values[i] = halves[half][c].values[i] - picture.halves[half][c].values[i];
+      }
+    }
+    for (Plane& residual : residuals) residual = BoxMeans(residual, 1, threads);
+    for (size_t i = 0; i < value.Size(); ++i) bias.values[i] = residuals[0].values[i] * residuals[1].values[i];
+    filtered.variance[c] = MeanSquares(variance, scale, threads);
+    filtered.squaredBias[c] = MeanSquares(bias, scale, threads);
+  }
+}
+
+ColorPlanes Mean(const NoisyPicture& picture, const std::array<ColorPlanes, 2>& halves) {
+  ColorPlanes mean = halves[0];
+  for (size_t c = 0; c < 3; ++c) {
+    for (size_t i = 0; i < mean[c].Size(); ++i)
+      mean[c].values[i] = static_cast<float>(picture.shares[0] * static_cast<double>(halves[0][c].values[i]) +
+                                             picture.shares[1] * static_cast<double>(halves[1][c].values[i]));
+  }
+  return mean;
+}
+
+Filtered FilteredOf(const NoisyPicture& picture, const std::array<ColorPlanes, 2>& halves, int threads) {
+  Filtered filtered;
+  filtered.value = Mean(picture, halves);
+  EstimateError(picture, halves, threads, filtered);
+  return filtered;
+}
+
+// The share of the wider weights at each pixel: that of the smaller error, blended so that no seam shows.
+Plane ShareOfWider(const Filtered& narrow, const Filtered& wide, int threads) {
+  Plane share(narrow.value[0].width, narrow.value[0].height);
+  for (size_t i = 0; i < share.Size(); ++i) {
+    float errors[2] = {0, 0};
+    for (size_t c = 0; c < 3; ++c) {
+      errors[0] += narrow.variance[c].values[i] + narrow.squaredBias[c].values[i];
+      errors[1] += wide.variance[c].values[i] + wide.squaredBias[c].values[i];
+    }
+    share.values[i] = errors[1] < errors[0] ? 1 : 0;
+  }
+  return BoxMeans(share, 2, threads);
+}
+
+std::array<ColorPlanes, 2> Blend(const Outputs& outputs, const Plane& shareOfWider) {
+  std::array<ColorPlanes, 2> halves = outputs[0].halves;
+  for (size_t half = 0; half < 2; ++half) {
+    for (size_t c = 0; c < 3; ++c) {
+      for (size_t i = 0; i < shareOfWider.Size(); ++i) {
+        const float share = shareOfWider.values[i];
+        float& value = halves[half][c].values[i];
+        value += share * (outputs[1].halves[half][c].values[i] - value);
+      }
+    }
+  }
+  return halves;
+}
+
+// The light that outliers had is missing around them, nobody knows where exactly.
+void AddMissing(const NoisyPicture& picture, int threads, Filtered& filtered) {
+  constexpr int radius = 9;
+  for (size_t c = 0; c < 3; ++c) {
+    const Plane missing = BoxMeans(picture.excess[c], radius, threads);
+    for (size_t i = 0; i < missing.Size(); ++i)
+      filtered.squaredBias[c].values[i] += missing.values[i] * missing.values[i];
+  }
+}
+
+Image MakeImage(const Image& noisy, const NoisyPicture& picture, const Filtered& filtered,
+                const std::array<Plane, 2>& weights) {
+  const std::vector<std::string> front = {"R", "G", "B", "variance.R", "variance.G", "variance.B"};
+  std::vector<std::string> channels = front;
+  std::vector<size_t> copied;  // channels of `noisy`
+  for (const std::string& name : front) {
+    channels.push_back("noisy." + name);
+    copied.push_back(static_cast<size_t>(noisy.ChannelIndex(name)));
+  }
+  for (size_t c = 0; c < noisy.channels.size(); ++c) {
+    if (std::find(front.begin(), front.end(), noisy.channels[c]) != front.end()) continue;
+    channels.push_back(noisy.channels[c]);
+    copied.push_back(c);
+  }
+  Image image(noisy.width, noisy.height, std::move(channels));
+  image.metadata = noisy.metadata;
+  image.offsetX = noisy.offsetX;
+  image.offsetY = noisy.offsetY;
+  image.fullWidth = noisy.fullWidth;
+  image.fullHeight = noisy.fullHeight;
+  for (size_t i = 0; i < picture.isValid.size(); ++i) {
+    const float* in = noisy.data.data() + i * noisy.channels.size();
+    float* out = image.data.data() + i * image.channels.size();
+    for (size_t k = 0; k < copied.size(); ++k) out[front.size() + k] = in[copied[k]];
+    for (size_t c = 0; c < 3; ++c) {
+      const bool isKnown = weights[0].values[i] > 0 && weights[1].values[i] > 0;
+      if (!isKnown) {  // no valid pixel is near
+        out[c] = picture.color[c].values[i];
+        out[3 + c] = picture.variance[c].values[i];
+        continue;
+      }
+      // A regression may undershoot 0 beside something bright.
+      out[c] = std::max(filtered.value[c].values[i], std::min(picture.color[c].values[i], 0.0f));
+      out[3 + c] = filtered.variance[c].values[i] + std::max(filtered.squaredBias[c].values[i], 0.0f);
+    }
+  }
+  return image;
+}
+
+}  // namespace
+
+Image Denoise(const Image& noisy, int threads, const std::atomic<bool>& interrupted,
+              const std::function<void(double)>& progress, DenoiseReport& report) {
+  const NoisyPicture picture = ReadNoisyPicture(noisy, threads, report);
+  std::vector<CleanFeature> features = CleanFeatures(noisy, threads, interrupted);
+  report.hasFeatures = !features.empty();
+  const RegressionInput input = MakeInput(picture, std::move(features), threads);
+  const Outputs outputs = RegressInWindows(input, threads, interrupted, progress);
+  if (interrupted.load()) return {};
+  const Filtered narrow = FilteredOf(picture, outputs[0].halves, threads);
+  const Filtered wide = FilteredOf(picture, outputs[1].halves, threads);
+  const Plane shareOfWider = ShareOfWider(narrow, wide, threads);
+  Filtered blended = FilteredOf(picture, Blend(outputs, shareOfWider), threads);
+  AddMissing(picture, threads, blended);
+  return MakeImage(noisy, picture, blended, outputs[0].weights);
+}
+
+}  // namespace lampyr
