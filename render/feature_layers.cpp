@@ -13,36 +13,53 @@ namespace lampyr {
 
 namespace {
 
-constexpr int kMostSamples = 16, kMostBounces = 10;
+constexpr int kFewestSamples = 16, kMostSamples = 128, kMostBounces = 10;
+constexpr double kEnoughVariance = 1e-5;  // of the means
 constexpr size_t kFeatures = 7;
 using Features = std::array<float, kFeatures>;
+
+struct Sums {
+  std::array<double, kFeatures> sum{}, squares{};
+  int count = 0;
+
+  void Add(const Features& features) {
+    for (size_t k = 0; k < kFeatures; ++k) {
+      const double value = std::isfinite(features[k]) ? static_cast<double>(features[k]) : 0;
+      sum[k] += value;
+      squares[k] += value * value;
+    }
+    ++count;
+  }
+  // Of the mean.
+  double Variance(size_t k) const {
+    const double mean = sum[k] / count;
+    return std::max(squares[k] / count - mean * mean, 0.0) / std::max(count - 1, 1);
+  }
+  // Of albedo and normal, whose range is known.
+  double LargestVariance() const {
+    double largest = 0;
+    for (size_t k = 0; k + 1 < kFeatures; ++k) largest = std::max(largest, Variance(k));
+    return largest;
+  }
+};
 
 class FeatureTracer {
  public:
   explicit FeatureTracer(const BuiltScene& built)
       : scene_(built.scene), settings_(built.settings), filter_(settings_.filter) {}
 
-  // Writes the means over the samples of a pixel, then their variances.
+  // Writes the means over the samples of a pixel, then their variances. Pixels at edges get more samples.
   void Pixel(int x, int y, Sampler& sampler, float* out) const {
-    std::array<double, kFeatures> sums{}, squares{};
-    const int samples = std::min(kMostSamples, settings_.samplesPerPixel);
-    for (int i = 0; i < samples; ++i) {
+    Sums sums;
+    for (int i = 0; i < kMostSamples && (i < kFewestSamples || sums.LargestVariance() > kEnoughVariance); ++i) {
       sampler.StartPixelSample(x, y, static_cast<uint32_t>(i));
       const float time = SampleTime(scene_, sampler);
       const PixelRay ray = MakePixelRay(scene_, filter_, x, y, time, sampler);
-      if (ray.camera.weight == 0) continue;
-      const Features features = Trace(ray.camera.ray, sampler);
-      for (size_t k = 0; k < kFeatures; ++k) {
-        if (!std::isfinite(features[k])) continue;
-        sums[k] += static_cast<double>(features[k]);
-        squares[k] += static_cast<double>(features[k]) * static_cast<double>(features[k]);
-      }
+      sums.Add(ray.camera.weight == 0 ? Features() : Trace(ray.camera.ray, sampler));
     }
     for (size_t k = 0; k < kFeatures; ++k) {
-      const double mean = sums[k] / samples;
-      const double variance = std::max(squares[k] / samples - mean * mean, 0.0) / std::max(samples - 1, 1);
-      out[k] = static_cast<float>(mean);
-      out[kFeatures + k] = static_cast<float>(variance);
+      out[k] = static_cast<float>(sums.sum[k] / sums.count);
+      out[kFeatures + k] = static_cast<float>(sums.Variance(k));
     }
   }
 

@@ -22,7 +22,7 @@ const std::vector<std::string>& FeatureChannels();
 // Name of the metadata of a picture that is to have these layers.
 inline constexpr const char* kFeaturesMetadata = "lampyr.features";
 
-// An image of FeatureChannels() over the crop: means over the rays of the samples of each pixel, 16 of them at most, and
+// An image of FeatureChannels() over the crop: means over the rays of 16 samples of each pixel, up to 128 at edges, and
 // the variances of these means. Without channels if `interrupted` was set, which is looked at from row to row.
 Image FeatureLayers(const BuiltScene& built, int threads, const std::atomic<bool>& interrupted);
 

@@ -13,7 +13,10 @@ namespace lampyr {
 
 namespace {
 
-using Outputs = std::array<RegressionOutput, kWidths.size()>;
+// The halves as they are, and filtered with each width.
+constexpr size_t kChoices = 1 + kWidths.size();
+using Halves = std::array<ColorPlanes, 2>;
+using Shares = std::array<Plane, kChoices>;
 
 RegressionInput MakeInput(const NoisyPicture& picture, std::vector<CleanFeature> features, int threads) {
   RegressionInput input;
@@ -57,7 +60,7 @@ Plane MeanSquares(const Plane& squares, const Plane& scale, int threads) {
 
 // The residuals of the halves have independent noise: the mean of their product is the squared bias. They are smoothed
 // a little first, so that the product is not all noise.
-void EstimateError(const NoisyPicture& picture, const std::array<ColorPlanes, 2>& halves, int threads,
+void EstimateError(const NoisyPicture& picture, const Halves& halves, int threads,
                    Filtered& filtered) {
   const auto product = static_cast<float>(picture.shares[0] * picture.shares[1]);
   for (size_t c = 0; c < 3; ++c) {
@@ -75,14 +78,14 @@ void EstimateError(const NoisyPicture& picture, const std::array<ColorPlanes, 2>
           residuals[half].values[i] = halves[half][c].values[i] - picture.halves[half][c].values[i];
       }
     }
-    for (Plane& residual : residuals) residual = BoxMeans(residual, 1, threads);
+    for (Plane& residual : residuals) residual = BoxMeans(residual, 0, threads);
     for (size_t i = 0; i < value.Size(); ++i) bias.values[i] = residuals[0].values[i] * residuals[1].values[i];
     filtered.variance[c] = MeanSquares(variance, scale, threads);
     filtered.squaredBias[c] = MeanSquares(bias, scale, threads);
   }
 }
 
-ColorPlanes Mean(const NoisyPicture& picture, const std::array<ColorPlanes, 2>& halves) {
+ColorPlanes Mean(const NoisyPicture& picture, const Halves& halves) {
   ColorPlanes mean = halves[0];
   for (size_t c = 0; c < 3; ++c) {
     for (size_t i = 0; i < mean[c].Size(); ++i)
@@ -92,35 +95,39 @@ ColorPlanes Mean(const NoisyPicture& picture, const std::array<ColorPlanes, 2>& 
   return mean;
 }
 
-Filtered FilteredOf(const NoisyPicture& picture, const std::array<ColorPlanes, 2>& halves, int threads) {
+Filtered FilteredOf(const NoisyPicture& picture, const Halves& halves, int threads) {
   Filtered filtered;
   filtered.value = Mean(picture, halves);
   EstimateError(picture, halves, threads, filtered);
   return filtered;
 }
 
-// The share of the wider weights at each pixel: that of the smaller error, blended so that no seam shows.
-Plane ShareOfWider(const Filtered& narrow, const Filtered& wide, int threads) {
-  Plane share(narrow.value[0].width, narrow.value[0].height);
-  for (size_t i = 0; i < share.Size(); ++i) {
-    float errors[2] = {0, 0};
-    for (size_t c = 0; c < 3; ++c) {
-      errors[0] += narrow.variance[c].values[i] + narrow.squaredBias[c].values[i];
-      errors[1] += wide.variance[c].values[i] + wide.squaredBias[c].values[i];
+// The shares of the widths at each pixel: the one of the smallest error, blended so that no seam shows.
+Shares ShareByError(const std::array<Filtered, kChoices>& filtered, int threads) {
+  const int width = filtered[0].value[0].width, height = filtered[0].value[0].height;
+  Shares shares;
+  shares.fill(Plane(width, height));
+  for (size_t i = 0; i < shares[0].Size(); ++i) {
+    std::array<float, kChoices> errors{};
+    for (size_t k = 0; k < kChoices; ++k) {
+      for (size_t c = 0; c < 3; ++c)
+        errors[k] += filtered[k].variance[c].values[i] + filtered[k].squaredBias[c].values[i];
     }
-    share.values[i] = errors[1] < errors[0] ? 1 : 0;
+    const auto best = std::min_element(errors.begin(), errors.end()) - errors.begin();
+    shares[static_cast<size_t>(best)].values[i] = 1;
   }
-  return BoxMeans(share, 2, threads);
+  for (Plane& share : shares) share = BoxMeans(share, 2, threads);
+  return shares;
 }
 
-std::array<ColorPlanes, 2> Blend(const Outputs& outputs, const Plane& shareOfWider) {
-  std::array<ColorPlanes, 2> halves = outputs[0].halves;
+Halves Blend(const std::array<Halves, kChoices>& choices, const Shares& shares) {
+  Halves halves;
   for (size_t half = 0; half < 2; ++half) {
     for (size_t c = 0; c < 3; ++c) {
-      for (size_t i = 0; i < shareOfWider.Size(); ++i) {
-        const float share = shareOfWider.values[i];
-        float& value = halves[half][c].values[i];
-        value += share * (outputs[1].halves[half][c].values[i] - value);
+      Plane& blended = halves[half][c] = Plane(shares[0].width, shares[0].height);
+      for (size_t k = 0; k < kChoices; ++k) {
+        const Plane& value = choices[k][half][c];
+        for (size_t i = 0; i < blended.Size(); ++i) blended.values[i] += shares[k].values[i] * value.values[i];
       }
     }
   }
@@ -184,12 +191,14 @@ Image Denoise(const Image& noisy, int threads, const std::atomic<bool>& interrup
   std::vector<CleanFeature> features = CleanFeatures(noisy, threads, interrupted);
   report.hasFeatures = !features.empty();
   const RegressionInput input = MakeInput(picture, std::move(features), threads);
-  const Outputs outputs = RegressInWindows(input, threads, interrupted, progress);
+  const auto outputs = RegressInWindows(input, threads, interrupted, progress);
   if (interrupted.load()) return {};
-  const Filtered narrow = FilteredOf(picture, outputs[0].halves, threads);
-  const Filtered wide = FilteredOf(picture, outputs[1].halves, threads);
-  const Plane shareOfWider = ShareOfWider(narrow, wide, threads);
-  Filtered blended = FilteredOf(picture, Blend(outputs, shareOfWider), threads);
+  std::array<Halves, kChoices> choices;
+  choices[0] = picture.halves;
+  for (size_t k = 0; k < kWidths.size(); ++k) choices[1 + k] = outputs[k].halves;
+  std::array<Filtered, kChoices> filtered;
+  for (size_t k = 0; k < kChoices; ++k) filtered[k] = FilteredOf(picture, choices[k], threads);
+  Filtered blended = FilteredOf(picture, Blend(choices, ShareByError(filtered, threads)), threads);
   AddMissing(picture, threads, blended);
   return MakeImage(noisy, picture, blended, outputs[0].weights);
 }

@@ -35,7 +35,7 @@ struct RegressionOutput {
 };
 
 // The widths of weights that are tried: a difference of so many standard deviations is a distance of 1.
-inline constexpr std::array<float, 2> kWidths = {0.5f, 1};
+inline constexpr std::array<float, 3> kWidths = {0.25f, 0.5f, 1};
 
 // Filters with each of kWidths. Every regression predicts all pixels of its window, and a pixel is the mean of its
 // predictions by their weights. The result does not depend on the number of threads. `progress` is called with the
