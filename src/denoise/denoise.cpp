@@ -13,8 +13,7 @@ namespace lampyr {
 
 namespace {
 
-// The halves as they are, and filtered with each width.
-constexpr size_t kChoices = 1 + kWidths.size();
+constexpr size_t kChoices = kWidths.size();
 using Halves = std::array<ColorPlanes, 2>;
 using Shares = std::array<Plane, kChoices>;
 
@@ -134,6 +133,32 @@ Halves Blend(const std::array<Halves, kChoices>& choices, const Shares& shares) 
   return halves;
 }
 
+// Takes as much of the residual back as minimises the error where the filter has a bias b and the picture the variance
+// σ²: b² / (b² + σ²).
+void KeepDetail(const NoisyPicture& picture, const Filtered& filtered, int threads, Halves& halves) {
+  Plane noise(picture.noiseScale.width, picture.noiseScale.height);
+  for (size_t c = 0; c < 3; ++c) {
+    for (size_t i = 0; i < noise.Size(); ++i) noise.values[i] += picture.variance[c].values[i];
+  }
+  noise = BoxMeans(noise, 1, threads);
+  for (size_t i = 0; i < noise.Size(); ++i) {
+    if (!picture.isValid[i]) continue;
+    const float variance = noise.values[i] * picture.noiseScale.values[i];
+    // What is below the standard error of the squared bias is taken for none.
+    constexpr float uncertain = 0.15f;
+    float bias = -uncertain * variance;
+    for (size_t c = 0; c < 3; ++c) bias += filtered.squaredBias[c].values[i];
+    if (!(bias > 0)) continue;
+    const float kept = bias / (bias + variance);
+    for (size_t half = 0; half < 2; ++half) {
+      for (size_t c = 0; c < 3; ++c) {
+        float& value = halves[half][c].values[i];
+        value += kept * (picture.halves[half][c].values[i] - value);
+      }
+    }
+  }
+}
+
 // The light that outliers had is missing around them, nobody knows where exactly.
 void AddMissing(const NoisyPicture& picture, int threads, Filtered& filtered) {
   constexpr int radius = 9;
@@ -194,11 +219,12 @@ Image Denoise(const Image& noisy, int threads, const std::atomic<bool>& interrup
   const auto outputs = RegressInWindows(input, threads, interrupted, progress);
   if (interrupted.load()) return {};
   std::array<Halves, kChoices> choices;
-  choices[0] = picture.halves;
-  for (size_t k = 0; k < kWidths.size(); ++k) choices[1 + k] = outputs[k].halves;
+  for (size_t k = 0; k < kChoices; ++k) choices[k] = outputs[k].halves;
   std::array<Filtered, kChoices> filtered;
   for (size_t k = 0; k < kChoices; ++k) filtered[k] = FilteredOf(picture, choices[k], threads);
-  Filtered blended = FilteredOf(picture, Blend(choices, ShareByError(filtered, threads)), threads);
+  Halves halves = Blend(choices, ShareByError(filtered, threads));
+  KeepDetail(picture, FilteredOf(picture, halves, threads), threads, halves);
+  Filtered blended = FilteredOf(picture, halves, threads);
   AddMissing(picture, threads, blended);
   return MakeImage(noisy, picture, blended, outputs[0].weights);
 }
