@@ -57,28 +57,67 @@ Plane MeanSquares(const Plane& squares, const Plane& scale, int threads) {
   return relative;
 }
 
-// The residuals of the halves have independent noise: the mean of their product is the squared bias. They are smoothed
-// a little first, so that the product is not all noise.
-void EstimateError(const NoisyPicture& picture, const Halves& halves, int threads,
+// The correlation between the noise of the halves. It is below 0 where samples are stratified: those of one half fill
+// the gaps of the other. It is that of the residuals of most blocks of pixels, which have no bias; their median.
+float CorrelationOf(const NoisyPicture& picture, const Halves& halves) {
+  constexpr int side = 16;
+  const int width = picture.noiseScale.width, height = picture.noiseScale.height;
+  std::vector<float> correlations;
+  for (int y0 = 0; y0 < height; y0 += side) {
+    for (int x0 = 0; x0 < width; x0 += side) {
+      double product = 0, squares[2] = {0, 0};
+      for (int y = y0; y < std::min(y0 + side, height); ++y) {
+        for (int x = x0; x < std::min(x0 + side, width); ++x) {
+          for (size_t c = 0; c < 3; ++c) {
+            const auto scale = static_cast<double>(halves[0][c].At(x, y) + halves[1][c].At(x, y));
+            if (!(scale > 0)) continue;
+            const double a = static_cast<double>(halves[0][c].At(x, y) - picture.halves[0][c].At(x, y)) / scale;
+            const double b = static_cast<double>(halves[1][c].At(x, y) - picture.halves[1][c].At(x, y)) / scale;
+            product += a * b;
+            squares[0] += a * a;
+            squares[1] += b * b;
+          }
+        }
+      }
+      if (squares[0] * squares[1] > 0)
+        correlations.push_back(static_cast<float>(product / std::sqrt(squares[0] * squares[1])));
+    }
+  }
+  if (correlations.empty()) return 0;
+  const auto middle = correlations.begin() + static_cast<ptrdiff_t>(correlations.size() / 2);
+  std::nth_element(correlations.begin(), middle, correlations.end());
+  return std::clamp(*middle, -0.9f, 0.0f);
+}
+
+// Of what is measured by the difference of the halves, as if they were independent.
+struct HalfStatistics {
+  float varianceFactor = 1;  // variance of their mean over what the difference tells
+  float covariance = 0;      // over the square of the difference
+
+  HalfStatistics(const NoisyPicture& picture, float correlation) {
+    const auto root = static_cast<float>(std::sqrt(picture.shares[0] * picture.shares[1]));
+    varianceFactor = (1 + 2 * root * correlation) / (1 - 2 * root * correlation);
+    covariance = correlation * root / (1 - 2 * root * correlation);
+  }
+};
+
+// The mean product of the residuals of the halves is the squared bias, and the covariance of their noise.
+void EstimateError(const NoisyPicture& picture, const Halves& halves, const HalfStatistics& statistics, int threads,
                    Filtered& filtered) {
-  const auto product = static_cast<float>(picture.shares[0] * picture.shares[1]);
+  const auto share = static_cast<float>(picture.shares[0] * picture.shares[1]) * statistics.varianceFactor;
   for (size_t c = 0; c < 3; ++c) {
     const Plane& value = filtered.value[c];
     Plane variance(value.width, value.height), bias = variance, scale = variance;
-    std::array<Plane, 2> residuals{variance, variance};
     const Plane mean = BoxMeans(value, kErrorRadius, threads);
     for (size_t i = 0; i < value.Size(); ++i) {
-      const float difference = halves[0][c].values[i] - halves[1][c].values[i];
-      variance.values[i] = product * difference * difference;
       const float around = mean.values[i];
       scale.values[i] = value.values[i] * value.values[i] + 0.1f * around * around + 1e-12f;
-      for (size_t half = 0; half < 2; ++half) {
-        if (picture.isValid[i])
-          residuals[half].values[i] = halves[half][c].values[i] - picture.halves[half][c].values[i];
-      }
+      const float a = halves[0][c].values[i], b = halves[1][c].values[i];
+      variance.values[i] = share * (a - b) * (a - b);
+      if (!picture.isValid[i]) continue;
+      const float noisyA = picture.halves[0][c].values[i], noisyB = picture.halves[1][c].values[i];
+      bias.values[i] = (a - noisyA) * (b - noisyB) - statistics.covariance * (noisyA - noisyB) * (noisyA - noisyB);
     }
-    for (Plane& residual : residuals) residual = BoxMeans(residual, 0, threads);
-    for (size_t i = 0; i < value.Size(); ++i) bias.values[i] = residuals[0].values[i] * residuals[1].values[i];
     filtered.variance[c] = MeanSquares(variance, scale, threads);
     filtered.squaredBias[c] = MeanSquares(bias, scale, threads);
   }
@@ -94,10 +133,10 @@ ColorPlanes Mean(const NoisyPicture& picture, const Halves& halves) {
   return mean;
 }
 
-Filtered FilteredOf(const NoisyPicture& picture, const Halves& halves, int threads) {
+Filtered FilteredOf(const NoisyPicture& picture, const Halves& halves, const HalfStatistics& statistics, int threads) {
   Filtered filtered;
   filtered.value = Mean(picture, halves);
-  EstimateError(picture, halves, threads, filtered);
+  EstimateError(picture, halves, statistics, threads, filtered);
   return filtered;
 }
 
@@ -135,7 +174,8 @@ Halves Blend(const std::array<Halves, kChoices>& choices, const Shares& shares) 
 
 // Takes as much of the residual back as minimises the error where the filter has a bias b and the picture the variance
 // σ²: b² / (b² + σ²).
-void KeepDetail(const NoisyPicture& picture, const Filtered& filtered, int threads, Halves& halves) {
+void KeepDetail(const NoisyPicture& picture, const Filtered& filtered, const HalfStatistics& statistics, int threads,
+                Halves& halves) {
   Plane noise(picture.noiseScale.width, picture.noiseScale.height);
   for (size_t c = 0; c < 3; ++c) {
     for (size_t i = 0; i < noise.Size(); ++i) noise.values[i] += picture.variance[c].values[i];
@@ -143,7 +183,7 @@ void KeepDetail(const NoisyPicture& picture, const Filtered& filtered, int threa
   noise = BoxMeans(noise, 1, threads);
   for (size_t i = 0; i < noise.Size(); ++i) {
     if (!picture.isValid[i]) continue;
-    const float variance = noise.values[i] * picture.noiseScale.values[i];
+    const float variance = noise.values[i] * picture.noiseScale.values[i] * statistics.varianceFactor;
     // What is below the standard error of the squared bias is taken for none.
     constexpr float uncertain = 0.15f;
     float bias = -uncertain * variance;
@@ -220,11 +260,13 @@ Image Denoise(const Image& noisy, int threads, const std::atomic<bool>& interrup
   if (interrupted.load()) return {};
   std::array<Halves, kChoices> choices;
   for (size_t k = 0; k < kChoices; ++k) choices[k] = outputs[k].halves;
+  const HalfStatistics statistics(picture, CorrelationOf(picture, choices.back()));
+  if (getenv("DBG")) fprintf(stderr, "corr %g\n", (double)CorrelationOf(picture, choices.back()));
   std::array<Filtered, kChoices> filtered;
-  for (size_t k = 0; k < kChoices; ++k) filtered[k] = FilteredOf(picture, choices[k], threads);
+  for (size_t k = 0; k < kChoices; ++k) filtered[k] = FilteredOf(picture, choices[k], statistics, threads);
   Halves halves = Blend(choices, ShareByError(filtered, threads));
-  KeepDetail(picture, FilteredOf(picture, halves, threads), threads, halves);
-  Filtered blended = FilteredOf(picture, halves, threads);
+  KeepDetail(picture, FilteredOf(picture, halves, statistics, threads), statistics, threads, halves);
+  Filtered blended = FilteredOf(picture, halves, statistics, threads);
   AddMissing(picture, threads, blended);
   return MakeImage(noisy, picture, blended, outputs[0].weights);
 }

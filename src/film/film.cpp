@@ -100,8 +100,9 @@ bool AreFinite(std::span<const CompensatedSum> sums) {
 }  // namespace
 
 uint32_t SamplesInHalf(uint32_t n) {
-  // Of two samples from an even index on, exactly one does.
-  return n / 2 + (n % 2 == 1 && IsInHalf(n - 1) ? 1 : 0);
+  if (n < 2) return n;
+  const uint32_t power = std::bit_floor(n);
+  return power / 2 + std::min(n - power, power / 2);
 }
 
 void PixelSums::Add(const Color& value, float filterWeight) {

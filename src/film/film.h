@@ -29,10 +29,12 @@ namespace lampyr {
 // The layer of a film that gets the samples of about half of the indices, instead of a part of each sample. It is the
 // last one. Two estimates with independent noise, it and the rest, tell the noise of whatever is made of the picture.
 inline constexpr const char* kHalfLayer = "half";
-// Whether a sample belongs to it: by the parity of the bits of its index. Even indices alone would be half of a Sobol
-// sequence's first dimension.
-inline bool IsInHalf(uint32_t sampleIndex) { return std::popcount(sampleIndex) % 2 == 0; }
-// How many of the first n samples do: n/2, rounded up or down.
+// Whether a sample belongs to it: the first half of those from any power of two to the next does. Aligned blocks of a
+// Sobol sequence are well distributed each on its own; two parts that are so only together have opposite errors.
+inline bool IsInHalf(uint32_t sampleIndex) {
+  return sampleIndex < 2 ? sampleIndex == 0 : (sampleIndex & (std::bit_floor(sampleIndex) / 2)) == 0;
+}
+// How many of the first n samples do: from n/2 to n·2/3, rounded up.
 uint32_t SamplesInHalf(uint32_t n);
 
 struct PixelRect {
