@@ -42,8 +42,8 @@ void PrintReport(const DenoiseReport& report) {
 Image DenoiseForUser(const Image& noisy, int threads, const std::atomic<bool>& interrupted, bool quiet) {
   Progress progress(quiet);
   DenoiseReport report;
-  Image image =
-      Denoise(noisy, threads, interrupted, [&](double done) { progress.Update(done, "denoising"); }, report);
+  Image image = Denoise(
+      noisy, threads, interrupted, [&](double done) { progress.Update(done, "denoising"); }, report);
   progress.Clear();
   if (!quiet && !image.channels.empty()) PrintReport(report);
   return image;

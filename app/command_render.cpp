@@ -78,7 +78,8 @@ void CheckSceneStays(const RenderOptions& options, const SceneDescription& scene
 void CheckMemory(const RenderSettings& settings, TracedPaths paths, size_t layers, bool hasTechniques, bool denoises) {
   layers += denoises ? 1 : 0;
   // Developed image: colour, variance, light groups and first-hit layers. The latter are also kept during the render.
-  const uint64_t firstHit = (settings.firstHit ? FirstHitChannels().size() : 0) + (denoises ? FeatureChannels().size() : 0);
+  const uint64_t firstHit =
+      (settings.firstHit ? FirstHitChannels().size() : 0) + (denoises ? FeatureChannels().size() : 0);
   const uint64_t channels = 6 + 3 * layers + 2 * firstHit;
   const uint64_t techniques = hasTechniques ? TechniqueImages::BytesPerPixel(settings.MaxDepth()) : 0;
   const uint64_t perPixel =

@@ -27,8 +27,8 @@ struct RenderOptions {
   std::optional<std::filesystem::path> stats;
   std::optional<std::filesystem::path> strategyImages;  // a folder
   bool denoise = false;
-  bool autoLayers = false;                              // layers of what auto decided
-  std::optional<double> checkpointSeconds;              // --checkpoint
+  bool autoLayers = false;                  // layers of what auto decided
+  std::optional<double> checkpointSeconds;  // --checkpoint
   bool resume = false;
   std::optional<std::pair<int, int>> shard;  // which of how many, from 1
   bool quiet = false;

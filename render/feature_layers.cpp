@@ -8,13 +8,15 @@
 #include "denoise/denoise.h"
 #include "geometry/robust.h"
 #include "integrators/walk/pixel_ray.h"
+#include "sampling/rng.h"
 
 namespace lampyr {
 
 namespace {
 
 constexpr int kFewestSamples = 16, kMostSamples = 128, kMostBounces = 10;
-constexpr double kEnoughVariance = 1e-5;  // of the means
+constexpr uint64_t kFeatureSeed = 0x3c6ef372fe94f82b;  // changes the seed
+constexpr double kEnoughVariance = 1e-5;               // of the means
 constexpr size_t kFeatures = 7;
 using Features = std::array<float, kFeatures>;
 
@@ -125,7 +127,8 @@ Image FeatureLayers(const BuiltScene& built, int threads, const std::atomic<bool
   const FeatureTracer tracer(built);
   ParallelFor(image.height, threads, [&](int row) {
     if (interrupted.load()) return;
-    Sampler sampler(built.settings.sampler, built.settings.seed);
+    // Other positions than those of the picture's samples, whose noise the features would share.
+    Sampler sampler(built.settings.sampler, MixBits(built.settings.seed + kFeatureSeed));
     for (int column = 0; column < image.width; ++column)
       tracer.Pixel(crop.x0 + column, crop.y0 + row, sampler, &image.At(column, row, 0));
   });

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "denoise/clean_features.h"
+#include "denoise/filter_error.h"
 #include "denoise/noisy_picture.h"
 #include "denoise/window_regression.h"
 
@@ -14,7 +15,6 @@ namespace lampyr {
 namespace {
 
 constexpr size_t kChoices = kWidths.size();
-using Halves = std::array<ColorPlanes, 2>;
 using Shares = std::array<Plane, kChoices>;
 
 RegressionInput MakeInput(const NoisyPicture& picture, std::vector<CleanFeature> features, int threads) {
@@ -30,114 +30,15 @@ RegressionInput MakeInput(const NoisyPicture& picture, std::vector<CleanFeature>
       for (size_t i = 0; i < variance.Size(); ++i) {
         // Differences below this fraction of the value are not seen.
         const float unseen = 0.002f * value.values[i];
-        variance.values[i] = variance.values[i] * picture.noiseScale.values[i] / static_cast<float>(picture.shares[half]) +
-                             unseen * unseen;
+        variance.values[i] =
+            variance.values[i] * picture.noiseScale.values[i] / static_cast<float>(picture.shares[half]) +
+            unseen * unseen;
       }
       input.guides[half].values.push_back(picture.halves[half][c]);
       input.guides[half].variances.push_back(std::move(variance));
     }
   }
   return input;
-}
-
-// A filtered picture and its error: of R, G, B.
-struct Filtered {
-  ColorPlanes value, variance, squaredBias;  // the latter two as means over neighbours
-};
-
-constexpr int kErrorRadius = 4;
-
-// The mean of a quantity with the dimension of a square over neighbours, relative to the squared value: errors vary less
-// in proportion to the value than as they are.
-Plane MeanSquares(const Plane& squares, const Plane& scale, int threads) {
-  Plane relative = squares;
-  for (size_t i = 0; i < relative.Size(); ++i) relative.values[i] /= scale.values[i];
-  relative = BoxMeans(BoxMeans(relative, kErrorRadius, threads), kErrorRadius, threads);
-  for (size_t i = 0; i < relative.Size(); ++i) relative.values[i] *= scale.values[i];
-  return relative;
-}
-
-// The correlation between the noise of the halves. It is below 0 where samples are stratified: those of one half fill
-// the gaps of the other. It is that of the residuals of most blocks of pixels, which have no bias; their median.
-float CorrelationOf(const NoisyPicture& picture, const Halves& halves) {
-  constexpr int side = 16;
-  const int width = picture.noiseScale.width, height = picture.noiseScale.height;
-  std::vector<float> correlations;
-  for (int y0 = 0; y0 < height; y0 += side) {
-    for (int x0 = 0; x0 < width; x0 += side) {
-      double product = 0, squares[2] = {0, 0};
-      for (int y = y0; y < std::min(y0 + side, height); ++y) {
-        for (int x = x0; x < std::min(x0 + side, width); ++x) {
-          for (size_t c = 0; c < 3; ++c) {
-            const auto scale = static_cast<double>(halves[0][c].At(x, y) + halves[1][c].At(x, y));
-            if (!(scale > 0)) continue;
-            const double a = static_cast<double>(halves[0][c].At(x, y) - picture.halves[0][c].At(x, y)) / scale;
-            const double b = static_cast<double>(halves[1][c].At(x, y) - picture.halves[1][c].At(x, y)) / scale;
-            product += a * b;
-            squares[0] += a * a;
-            squares[1] += b * b;
-          }
-        }
-      }
-      if (squares[0] * squares[1] > 0)
-        correlations.push_back(static_cast<float>(product / std::sqrt(squares[0] * squares[1])));
-    }
-  }
-  if (correlations.empty()) return 0;
-  const auto middle = correlations.begin() + static_cast<ptrdiff_t>(correlations.size() / 2);
-  std::nth_element(correlations.begin(), middle, correlations.end());
-  return std::clamp(*middle, -0.9f, 0.0f);
-}
-
-// Of what is measured by the difference of the halves, as if they were independent.
-struct HalfStatistics {
-  float varianceFactor = 1;  // variance of their mean over what the difference tells
-  float covariance = 0;      // over the square of the difference
-
-  HalfStatistics(const NoisyPicture& picture, float correlation) {
-    const auto root = static_cast<float>(std::sqrt(picture.shares[0] * picture.shares[1]));
-    varianceFactor = (1 + 2 * root * correlation) / (1 - 2 * root * correlation);
-    covariance = correlation * root / (1 - 2 * root * correlation);
-  }
-};
-
-// The mean product of the residuals of the halves is the squared bias, and the covariance of their noise.
-void EstimateError(const NoisyPicture& picture, const Halves& halves, const HalfStatistics& statistics, int threads,
-                   Filtered& filtered) {
-  const auto share = static_cast<float>(picture.shares[0] * picture.shares[1]) * statistics.varianceFactor;
-  for (size_t c = 0; c < 3; ++c) {
-    const Plane& value = filtered.value[c];
-    Plane variance(value.width, value.height), bias = variance, scale = variance;
-    const Plane mean = BoxMeans(value, kErrorRadius, threads);
-    for (size_t i = 0; i < value.Size(); ++i) {
-      const float around = mean.values[i];
-      scale.values[i] = value.values[i] * value.values[i] + 0.1f * around * around + 1e-12f;
-      const float a = halves[0][c].values[i], b = halves[1][c].values[i];
-      variance.values[i] = share * (a - b) * (a - b);
-      if (!picture.isValid[i]) continue;
-      const float noisyA = picture.halves[0][c].values[i], noisyB = picture.halves[1][c].values[i];
-      bias.values[i] = (a - noisyA) * (b - noisyB) - statistics.covariance * (noisyA - noisyB) * (noisyA - noisyB);
-    }
-    filtered.variance[c] = MeanSquares(variance, scale, threads);
-    filtered.squaredBias[c] = MeanSquares(bias, scale, threads);
-  }
-}
-
-ColorPlanes Mean(const NoisyPicture& picture, const Halves& halves) {
-  ColorPlanes mean = halves[0];
-  for (size_t c = 0; c < 3; ++c) {
-    for (size_t i = 0; i < mean[c].Size(); ++i)
-      mean[c].values[i] = static_cast<float>(picture.shares[0] * static_cast<double>(halves[0][c].values[i]) +
-                                             picture.shares[1] * static_cast<double>(halves[1][c].values[i]));
-  }
-  return mean;
-}
-
-Filtered FilteredOf(const NoisyPicture& picture, const Halves& halves, const HalfStatistics& statistics, int threads) {
-  Filtered filtered;
-  filtered.value = Mean(picture, halves);
-  EstimateError(picture, halves, statistics, threads, filtered);
-  return filtered;
 }
 
 // The shares of the widths at each pixel: the one of the smallest error, blended so that no seam shows.
@@ -176,16 +77,24 @@ Halves Blend(const std::array<Halves, kChoices>& choices, const Shares& shares) 
 // σ²: b² / (b² + σ²).
 void KeepDetail(const NoisyPicture& picture, const Filtered& filtered, const HalfStatistics& statistics, int threads,
                 Halves& halves) {
-  Plane noise(picture.noiseScale.width, picture.noiseScale.height);
-  for (size_t c = 0; c < 3; ++c) {
-    for (size_t i = 0; i < noise.Size(); ++i) noise.values[i] += picture.variance[c].values[i];
+  Plane noise(picture.noiseScale.width, picture.noiseScale.height), scale = noise;
+  for (size_t i = 0; i < noise.Size(); ++i) {
+    for (size_t c = 0; c < 3; ++c) {
+      noise.values[i] += picture.variance[c].values[i];
+      scale.values[i] += filtered.value[c].values[i] * filtered.value[c].values[i];
+    }
   }
+  scale = BoxMeans(scale, 1, threads);
+  for (float& value : scale.values) value += 1e-12f;
+  // A pixel that has missed the bright samples seems to have no noise: what is usual around it counts.
+  const Plane usual = MeanSquares(noise, scale, threads);
   noise = BoxMeans(noise, 1, threads);
+  for (size_t i = 0; i < noise.Size(); ++i) noise.values[i] = std::max(noise.values[i], usual.values[i]);
   for (size_t i = 0; i < noise.Size(); ++i) {
     if (!picture.isValid[i]) continue;
     const float variance = noise.values[i] * picture.noiseScale.values[i] * statistics.varianceFactor;
     // What is below the standard error of the squared bias is taken for none.
-    constexpr float uncertain = 0.15f;
+    constexpr float uncertain = 0.3f;
     float bias = -uncertain * variance;
     for (size_t c = 0; c < 3; ++c) bias += filtered.squaredBias[c].values[i];
     if (!(bias > 0)) continue;
@@ -260,8 +169,7 @@ Image Denoise(const Image& noisy, int threads, const std::atomic<bool>& interrup
   if (interrupted.load()) return {};
   std::array<Halves, kChoices> choices;
   for (size_t k = 0; k < kChoices; ++k) choices[k] = outputs[k].halves;
-  const HalfStatistics statistics(picture, CorrelationOf(picture, choices.back()));
-  if (getenv("DBG")) fprintf(stderr, "corr %g\n", (double)CorrelationOf(picture, choices.back()));
+  const HalfStatistics statistics(picture, choices.back());
   std::array<Filtered, kChoices> filtered;
   for (size_t k = 0; k < kChoices; ++k) filtered[k] = FilteredOf(picture, choices[k], statistics, threads);
   Halves halves = Blend(choices, ShareByError(filtered, threads));

@@ -25,11 +25,11 @@ struct NoisyPicture {
 // Throws an Error if the image has no colour, no variance or fewer than two samples per pixel. Fills the report.
 //
 // Without a layer of half of the samples, two halves with independent noise are made of the picture p and its standard
-// deviation σ: p + σg and p - σg with a normal g that depends on the place alone ([Rasines23]). That is exact for normal
-// noise.
+// deviation σ: p + σg and p - σg with a normal g that depends on the place alone ([Rasines23]). That is exact for
+// normal noise.
 //
-// Outliers: a pixel more than twice as bright as the third brightest of the 48 around it, whose own samples do not agree
-// that it is bright (it is less than four standard deviations), is reduced to that. What was above is `excess`.
+// Outliers: a pixel more than twice as bright as the third brightest of the 48 around it, whose own samples do not
+// agree that it is bright (it is less than four standard deviations), is reduced to that. What was above is `excess`.
 NoisyPicture ReadNoisyPicture(const Image& image, int threads, DenoiseReport& report);
 
 }  // namespace lampyr

@@ -42,7 +42,7 @@ class PatchDistances {
 
   int window_, patch_;
   size_t pixels_ = 0;
-  int channels_ = 0, width_ = 0, height_ = 0;          // of the copies
+  int channels_ = 0, width_ = 0, height_ = 0;  // of the copies
   int planeWidth_ = 0, planeHeight_ = 0;
   std::array<std::vector<float>, 3> values_, variances_;  // the tile with a border of window + patch
   std::vector<float> differences_, rowSums_;

@@ -13,7 +13,9 @@ struct Plane {
   Plane(int w, int h, float value = 0)
       : width(w), height(h), values(static_cast<size_t>(w) * static_cast<size_t>(h), value) {}
 
-  float& At(int x, int y) { return values[static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)]; }
+  float& At(int x, int y) {
+    return values[static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)];
+  }
   float At(int x, int y) const {
     return values[static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)];
   }

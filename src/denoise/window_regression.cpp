@@ -67,7 +67,7 @@ class TileRegression {
   Tile tile_;
   std::array<PatchDistances, 2> distances_;
   std::vector<Entry, Eigen::aligned_allocator<Entry>> entries_;
-  std::vector<uint8_t> isThere_;                  // of the entries: a valid pixel of the picture
+  std::vector<uint8_t> isThere_;                   // of the entries: a valid pixel of the picture
   std::array<float, kMostFeatures> shrinkages_{};  // 1 / variance of a feature in the tile; 0: it is constant
   std::array<float, kSide * kSide> weights_{};
 };

@@ -226,8 +226,7 @@ void Film::MakeSplats() {
   layerSplats_.resize(layerSums_.size());
 }
 
-void Film::AddSplats(const PixelFilter& filter, std::span<const SplatList> lists, int threads,
-                     uint32_t sample) {
+void Film::AddSplats(const PixelFilter& filter, std::span<const SplatList> lists, int threads, uint32_t sample) {
   MakeSplats();
   if (splatSpread_ == 0) splatSpread_ = SplatSpread(filter);
   const int bands = std::max(threads, 1);
@@ -245,8 +244,7 @@ void Film::PrefetchSplats(const Point2& film) const {
 }
 
 // Adds to the rows of one band. Groups of rows are dealt to the bands in turn, so that the threads share a bright spot.
-void Film::AddToRows(const PixelFilter& filter, std::span<const SplatList> lists, int band, int bands,
-                     bool isInHalf) {
+void Film::AddToRows(const PixelFilter& filter, std::span<const SplatList> lists, int band, int bands, bool isInHalf) {
   constexpr int kGroup = 4;
   const Vector2 radius = filter.Radius();
   const auto firstPixel = [](float p, float r) { return static_cast<int>(std::floor(p - 0.5f - r)); };

@@ -87,8 +87,8 @@ class Film {
 
   // An empty list for splats onto this film.
   SplatList MakeSplatList(const PixelFilter& filter, const SensorResponse& sensor) const;
-  // Adds the paths of the lists, in order, which belong to the sample of index `sample`. The result does not depend on how a sequence of paths is divided into lists
-  // and calls, nor on the number of threads.
+  // Adds the paths of the lists, in order, which belong to the sample of index `sample`. The result does not depend on
+  // how a sequence of paths is divided into lists and calls, nor on the number of threads.
   void AddSplats(const PixelFilter& filter, std::span<const SplatList> lists, int threads, uint32_t sample = 0);
   // Number of light paths so far, including those without a splat.
   uint64_t LightPaths() const { return lightPaths_; }
@@ -136,7 +136,7 @@ class Film {
   std::vector<PixelSums> pixels_;
   std::vector<SplatSums> splats_;  // empty without splats
   std::vector<std::string> layers_;
-  bool hasHalf_ = false;  // the last layer is kHalfLayer
+  bool hasHalf_ = false;                           // the last layer is kHalfLayer
   std::vector<LayerSum> layerSums_, layerSplats_;  // per layer and pixel; layerSplats_: empty without splats
   uint64_t lightPaths_ = 0;
   double splatSpread_ = 0;  // effective number of pixels of a splat (film.cpp)
