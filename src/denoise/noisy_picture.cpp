@@ -75,6 +75,42 @@ void FindValid(NoisyPicture& picture, DenoiseReport& report) {
   }
 }
 
+// Replaces invalid pixels by the mean of the nearest valid ones, as far as a window reaches.
+void FillInvalid(NoisyPicture& picture) {
+  constexpr int reach = 9;
+  const std::vector<uint8_t> wasValid = picture.isValid;
+  const int width = picture.color[0].width, height = picture.color[0].height;
+  const auto fill = [&](int x, int y, int radius) {
+    const int x0 = std::max(x - radius, 0), x1 = std::min(x + radius, width - 1);
+    const int y0 = std::max(y - radius, 0), y1 = std::min(y + radius, height - 1);
+    const auto place = static_cast<size_t>(y * width + x);
+    bool isFilled = false;
+    for (ColorPlanes* planes : {&picture.color, &picture.variance, &picture.halves[0], &picture.halves[1]}) {
+      for (Plane& plane : *planes) {
+        float sum = 0, count = 0;
+        for (int j = y0; j <= y1 && plane.Size() > 0; ++j) {
+          for (int i = x0; i <= x1; ++i) {
+            if (!wasValid[static_cast<size_t>(j * width + i)]) continue;
+            sum += plane.At(i, j);
+            ++count;
+          }
+        }
+        if (count == 0) continue;
+        plane.values[place] = sum / count;
+        isFilled = true;
+      }
+    }
+    return isFilled;
+  };
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const auto place = static_cast<size_t>(y * width + x);
+      for (int radius = 1; radius <= reach && !picture.isValid[place]; ++radius)
+        picture.isValid[place] = fill(x, y, radius);
+    }
+  }
+}
+
 // The third largest luminance around a pixel, without its own; the largest float near a corner of a tiny picture.
 float ThirdAround(const Plane& luminance, int x, int y) {
   constexpr int radius = 3;
@@ -210,6 +246,7 @@ NoisyPicture ReadNoisyPicture(const Image& image, int threads, DenoiseReport& re
   picture.variance = ReadColors(image, "variance.");
   FindValid(picture, report);
   report.hasHalves = ReadHalves(image, picture);
+  if (report.invalidPixels > 0) FillInvalid(picture);
   RemoveOutliers(picture, threads, report);
   if (!report.hasHalves) MakeHalves(picture);
   picture.noiseScale = NoiseScale(picture, report.hasHalves, threads);

@@ -18,7 +18,7 @@ struct NoisyPicture {
   std::array<ColorPlanes, 2> halves;  // estimates of the same picture with independent noise
   std::array<double, 2> shares;       // of the halves in `color`: their sum is 1
   ColorPlanes excess;                 // what outliers had above their surroundings: `color` is without it
-  std::vector<uint8_t> isValid;       // colour and variance are finite
+  std::vector<uint8_t> isValid;       // colour and variance are finite, or made of those of near pixels
   Plane noiseScale;                   // of `variance`: what the halves say about its size
 };
 
