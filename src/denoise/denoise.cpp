@@ -14,6 +14,9 @@ namespace lampyr {
 
 namespace {
 
+// Radii of the means of errors, pixels.
+constexpr int kNear = 4, kFar = 12;
+
 constexpr size_t kChoices = kWidths.size();
 using Shares = std::array<Plane, kChoices>;
 
@@ -87,7 +90,7 @@ void KeepDetail(const NoisyPicture& picture, const Filtered& filtered, const Hal
   scale = BoxMeans(scale, 1, threads);
   for (float& value : scale.values) value += 1e-12f;
   // A pixel that has missed the bright samples seems to have no noise: what is usual around it counts.
-  const Plane usual = MeanSquares(noise, scale, threads);
+  const Plane usual = MeanSquares(noise, scale, kNear, threads);
   noise = BoxMeans(noise, 1, threads);
   for (size_t i = 0; i < noise.Size(); ++i) noise.values[i] = std::max(noise.values[i], usual.values[i]);
   for (size_t i = 0; i < noise.Size(); ++i) {
@@ -104,6 +107,18 @@ void KeepDetail(const NoisyPicture& picture, const Filtered& filtered, const Hal
         float& value = halves[half][c].values[i];
         value += kept * (picture.halves[half][c].values[i] - value);
       }
+    }
+  }
+}
+
+// The error that is stated is the larger one of those near by and farther around: what is left of the noise is smooth,
+// so that few pixels do not tell its size.
+void StateMore(const Filtered& far, Filtered& near) {
+  for (size_t c = 0; c < 3; ++c) {
+    for (size_t i = 0; i < far.value[c].Size(); ++i) {
+      float &variance = near.variance[c].values[i], &bias = near.squaredBias[c].values[i];
+      bias = std::max({bias, far.squaredBias[c].values[i], 0.0f});
+      variance = std::max(variance, far.variance[c].values[i]);
     }
   }
 }
@@ -171,12 +186,13 @@ Image Denoise(const Image& noisy, int threads, const std::atomic<bool>& interrup
   for (size_t k = 0; k < kChoices; ++k) choices[k] = outputs[k].halves;
   const HalfStatistics statistics(picture, choices.back());
   std::array<Filtered, kChoices> filtered;
-  for (size_t k = 0; k < kChoices; ++k) filtered[k] = FilteredOf(picture, choices[k], statistics, threads);
+  for (size_t k = 0; k < kChoices; ++k) filtered[k] = FilteredOf(picture, choices[k], statistics, kNear, threads);
   Halves halves = Blend(choices, ShareByError(filtered, threads));
-  KeepDetail(picture, FilteredOf(picture, halves, statistics, threads), statistics, threads, halves);
-  Filtered blended = FilteredOf(picture, halves, statistics, threads);
-  AddMissing(picture, threads, blended);
-  return MakeImage(noisy, picture, blended, outputs[0].weights);
+  KeepDetail(picture, FilteredOf(picture, halves, statistics, kNear, threads), statistics, threads, halves);
+  Filtered result = FilteredOf(picture, halves, statistics, kNear, threads);
+  StateMore(FilteredOf(picture, halves, statistics, kFar, threads), result);
+  AddMissing(picture, threads, result);
+  return MakeImage(noisy, picture, result, outputs[0].weights);
 }
 
 }  // namespace lampyr

@@ -7,7 +7,7 @@ namespace lampyr {
 
 namespace {
 
-constexpr int kErrorRadius = 4, kBlock = 16;
+constexpr int kBlock = 16;
 
 // The correlation between the residuals of the halves in a block of pixels, relative to their values; 0: no residuals.
 float BlockCorrelation(const NoisyPicture& picture, const Halves& halves, int x0, int y0) {
@@ -42,13 +42,13 @@ float CorrelationOf(const NoisyPicture& picture, const Halves& halves) {
 }
 
 // The mean product of the residuals of the halves is the squared bias, and the covariance of their noise.
-void EstimateError(const NoisyPicture& picture, const Halves& halves, const HalfStatistics& statistics, int threads,
-                   Filtered& filtered) {
+void EstimateError(const NoisyPicture& picture, const Halves& halves, const HalfStatistics& statistics, int radius,
+                   int threads, Filtered& filtered) {
   const auto share = static_cast<float>(picture.shares[0] * picture.shares[1]) * statistics.varianceFactor;
   for (size_t c = 0; c < 3; ++c) {
     const Plane& value = filtered.value[c];
     Plane variance(value.width, value.height), bias = variance, scale = variance;
-    const Plane mean = BoxMeans(value, kErrorRadius, threads);
+    const Plane mean = BoxMeans(value, radius, threads);
     for (size_t i = 0; i < value.Size(); ++i) {
       const float around = mean.values[i];
       scale.values[i] = value.values[i] * value.values[i] + 0.1f * around * around + 1e-12f;
@@ -58,8 +58,8 @@ void EstimateError(const NoisyPicture& picture, const Halves& halves, const Half
       const float noisyA = picture.halves[0][c].values[i], noisyB = picture.halves[1][c].values[i];
       bias.values[i] = (a - noisyA) * (b - noisyB) - statistics.covariance * (noisyA - noisyB) * (noisyA - noisyB);
     }
-    filtered.variance[c] = MeanSquares(variance, scale, threads);
-    filtered.squaredBias[c] = MeanSquares(bias, scale, threads);
+    filtered.variance[c] = MeanSquares(variance, scale, radius, threads);
+    filtered.squaredBias[c] = MeanSquares(bias, scale, radius, threads);
   }
 }
 
@@ -83,18 +83,19 @@ HalfStatistics::HalfStatistics(const NoisyPicture& picture, const Halves& filter
   covariance = correlation * root / (1 - 2 * root * correlation);
 }
 
-Plane MeanSquares(const Plane& squares, const Plane& scale, int threads) {
+Plane MeanSquares(const Plane& squares, const Plane& scale, int radius, int threads) {
   Plane relative = squares;
   for (size_t i = 0; i < relative.Size(); ++i) relative.values[i] /= scale.values[i];
-  relative = BoxMeans(BoxMeans(relative, kErrorRadius, threads), kErrorRadius, threads);
+  relative = BoxMeans(BoxMeans(relative, radius, threads), radius, threads);
   for (size_t i = 0; i < relative.Size(); ++i) relative.values[i] *= scale.values[i];
   return relative;
 }
 
-Filtered FilteredOf(const NoisyPicture& picture, const Halves& halves, const HalfStatistics& statistics, int threads) {
+Filtered FilteredOf(const NoisyPicture& picture, const Halves& halves, const HalfStatistics& statistics, int radius,
+                    int threads) {
   Filtered filtered;
   filtered.value = MeanOf(picture, halves);
-  EstimateError(picture, halves, statistics, threads, filtered);
+  EstimateError(picture, halves, statistics, radius, threads, filtered);
   return filtered;
 }
 

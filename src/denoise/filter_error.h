@@ -28,11 +28,12 @@ struct Filtered {
   ColorPlanes variance, squaredBias;  // means over neighbours; the latter may be negative, as it is an estimate
 };
 
-// The mean of two filtered halves by their shares.
-Filtered FilteredOf(const NoisyPicture& picture, const Halves& halves, const HalfStatistics& statistics, int threads);
+// The mean of two filtered halves by their shares. `radius`: of the means over neighbours, pixels.
+Filtered FilteredOf(const NoisyPicture& picture, const Halves& halves, const HalfStatistics& statistics, int radius,
+                    int threads);
 
 // The mean of a quantity with the dimension of a square over neighbours, relative to `scale`, the squared value: errors
 // vary less in proportion to the value than as they are.
-Plane MeanSquares(const Plane& squares, const Plane& scale, int threads);
+Plane MeanSquares(const Plane& squares, const Plane& scale, int radius, int threads);
 
 }  // namespace lampyr
