@@ -337,7 +337,8 @@ struct CompareCommand {
         ->type_name("FOLDER");
     app.add_option(
            "--integrators", options.integrators,
-           "Which to compare, e.g. path,auto (path,bdpt); path:shadow-threshold=0.01 is one with a setting changed")
+           "Which to compare, e.g. path,auto (path,bdpt); path:shadow-threshold=0.01 is one with a setting changed, "
+           "path:denoise is one that is denoised")
         ->type_name("NAME,…")
         ->delimiter(',')
         ->allow_extra_args(false);

@@ -22,6 +22,9 @@ namespace lampyr {
 inline constexpr const char* kFeaturePrefix = "feature.";
 inline constexpr const char* kFeatureVariancePrefix = "feature.variance.";
 
+// Name of the metadata with the number of samples per pixel, which tells how large that half is.
+inline constexpr const char* kSamplesMetadata = "lampyr.samplesPerPixel";
+
 // What was found in the picture.
 struct DenoiseReport {
   bool hasHalves = false, hasFeatures = false;

@@ -29,7 +29,7 @@ ColorPlanes ReadColors(const Image& image, const std::string& prefix) {
 }
 
 int SamplesOf(const Image& image) {
-  const auto found = image.metadata.find("lampyr.samplesPerPixel");
+  const auto found = image.metadata.find(kSamplesMetadata);
   return found == image.metadata.end() ? 0 : std::atoi(found->second.c_str());
 }
 
