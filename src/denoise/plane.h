@@ -1,6 +1,7 @@
 // One number per pixel, and means over boxes of pixels.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 namespace lampyr {

@@ -80,6 +80,13 @@ TEST_F(DenoiseCommand, MergedPartsAreDenoised) {
   EXPECT_EQ(Read("whole.exr").data, Read("out.exr").data);
 }
 
+TEST_F(DenoiseCommand, CompareMeasuresWhatItIsWorth) {
+  const Outcome outcome = Run("compare scene.pbrt --spp 2,4 --repeat 2 -o c --integrators path,path:denoise");
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.output;
+  EXPECT_THAT(outcome.output, HasSubstr("path:denoise has"));
+  EXPECT_THAT(outcome.output, HasSubstr("with blur: path:denoise"));
+}
+
 TEST_F(DenoiseCommand, RefusesWhatCannotBeDenoised) {
   WriteExr(folder_.Path() / "bare.exr", Image(4, 4, {"R", "G", "B"}), ExrPrecision::Float);
   const Outcome bare = Run("denoise bare.exr -o out.exr");
