@@ -81,7 +81,9 @@ TEST_F(DenoiseCommand, MergedPartsAreDenoised) {
 }
 
 TEST_F(DenoiseCommand, CompareMeasuresWhatItIsWorth) {
-  const Outcome outcome = Run("compare scene.pbrt --spp 2,4 --repeat 2 -o c --integrators path,path:denoise");
+  ASSERT_EQ(Run("render scene.pbrt -o reference.exr --seed 9 --spp 1024").exitCode, 0);
+  const Outcome outcome =
+      Run("compare scene.pbrt --spp 2,4 --repeat 2 -o c --integrators path,path:denoise --reference reference.exr");
   ASSERT_EQ(outcome.exitCode, 0) << outcome.output;
   EXPECT_THAT(outcome.output, HasSubstr("path:denoise has"));
   EXPECT_THAT(outcome.output, HasSubstr("with blur: path:denoise"));
