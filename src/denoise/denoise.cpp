@@ -5,6 +5,7 @@
 #include <string>
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "denoise/clean_features.h"
 #include "denoise/filter_error.h"
 #include "denoise/noisy_picture.h"
@@ -42,6 +43,28 @@ RegressionInput MakeInput(const NoisyPicture& picture, std::vector<CleanFeature>
     }
   }
   return input;
+}
+
+// Keeps the filtered halves within the values of the picture around each pixel: a regression rings beside something
+// that is much brighter than all around it.
+void LimitToSurroundings(const NoisyPicture& picture, int threads, Halves& halves) {
+  constexpr int radius = 3;
+  const int width = picture.color[0].width, height = picture.color[0].height;
+  ParallelFor(height, threads, [&](int y) {
+    for (int x = 0; x < width; ++x) {
+      for (size_t c = 0; c < 3; ++c) {
+        const Plane& color = picture.color[c];
+        float low = color.At(x, y), high = low;
+        for (int j = std::max(y - radius, 0); j <= std::min(y + radius, height - 1); ++j) {
+          for (int i = std::max(x - radius, 0); i <= std::min(x + radius, width - 1); ++i) {
+            low = std::min(low, color.At(i, j));
+            high = std::max(high, color.At(i, j));
+          }
+        }
+        for (ColorPlanes& half : halves) half[c].At(x, y) = std::clamp(half[c].At(x, y), low, high);
+      }
+    }
+  });
 }
 
 // The shares of the widths at each pixel: the one of the smallest error, blended so that no seam shows.
@@ -183,7 +206,10 @@ Image Denoise(const Image& noisy, int threads, const std::atomic<bool>& interrup
   const auto outputs = RegressInWindows(input, threads, interrupted, progress);
   if (interrupted.load()) return {};
   std::array<Halves, kChoices> choices;
-  for (size_t k = 0; k < kChoices; ++k) choices[k] = outputs[k].halves;
+  for (size_t k = 0; k < kChoices; ++k) {
+    choices[k] = outputs[k].halves;
+    LimitToSurroundings(picture, threads, choices[k]);
+  }
   const HalfStatistics statistics(picture, choices.back());
   std::array<Filtered, kChoices> filtered;
   for (size_t k = 0; k < kChoices; ++k) filtered[k] = FilteredOf(picture, choices[k], statistics, kNear, threads);
