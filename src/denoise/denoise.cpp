@@ -48,7 +48,7 @@ RegressionInput MakeInput(const NoisyPicture& picture, std::vector<CleanFeature>
 // Keeps the filtered halves within the values of the picture around each pixel: a regression rings beside something
 // that is much brighter than all around it.
 void LimitToSurroundings(const NoisyPicture& picture, int threads, Halves& halves) {
-  constexpr int radius = 3;
+  constexpr int radius = 2;
   const int width = picture.color[0].width, height = picture.color[0].height;
   ParallelFor(height, threads, [&](int y) {
     for (int x = 0; x < width; ++x) {
