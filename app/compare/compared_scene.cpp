@@ -18,24 +18,25 @@ double SecondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+// Never destroyed if a pass was abandoned, because its threads still use it.
+struct Run {
+  RenderSettings settings;
+  std::unique_ptr<Integrator> integrator;
+  Film film;
+  ProgressiveRender render;
+  Run(const RenderScene& scene, const RenderSettings& chosen, int threads, uint32_t firstSample, bool denoises)
+      : settings(chosen),
+        integrator(MakeIntegrator(scene, settings)),
+        film(settings.width, settings.height, settings.crop,
+             denoises ? std::vector<std::string>{kHalfLayer} : std::vector<std::string>()),
+        render(scene, *integrator, settings, threads, film, nullptr, firstSample) {}
+};
+
 }  // namespace
 
 void ComparedScene::Render(const std::string& integrator, uint64_t seed, const std::vector<double>& times,
                            const std::vector<int>& sampleCounts, const AtMilestone& atMilestone,
                            const AfterPass& afterPass, uint32_t firstSample, double secondsBefore) const {
-  // Never destroyed if a pass was abandoned, because its threads still use it.
-  struct Run {
-    RenderSettings settings;
-    std::unique_ptr<Integrator> integrator;
-    Film film;
-    ProgressiveRender render;
-    Run(const RenderScene& scene, const RenderSettings& chosen, int threads, uint32_t firstSample, bool denoises)
-        : settings(chosen),
-          integrator(MakeIntegrator(scene, settings)),
-          film(settings.width, settings.height, settings.crop,
-               denoises ? std::vector<std::string>{kHalfLayer} : std::vector<std::string>()),
-          render(scene, *integrator, settings, threads, film, nullptr, firstSample) {}
-  };
   RenderSettings settings = VariantOf(built_.settings, integrator);
   settings.seed = seed;
   auto run = std::make_unique<Run>(built_.scene, settings, threads_, firstSample, IsDenoised(integrator));

@@ -155,10 +155,9 @@ void ExpectPrivate(const std::string& header) {
 
 TEST(Layers, HeavyLibrariesInOnePlace) {
   const std::map<std::string, std::set<std::string>> homes = {
-      {"embree3/", {"geometry"}}, {"OpenImageIO/", {"film"}},  {"OpenEXR/", {"film"}},
-      {"Imf", {"film"}},          {"flann/", {"integrators"}}, {"CLI/", {"app"}},
-      {"nlohmann/", {"app"}},     {"tbb/", {"base"}},          {"png.h", {"film"}},
-      {"Eigen/", {"denoise"}}};
+      {"embree3/", {"geometry"}},  {"OpenImageIO/", {"film"}}, {"OpenEXR/", {"film"}}, {"Imf", {"film"}},
+      {"flann/", {"integrators"}}, {"CLI/", {"app"}},          {"nlohmann/", {"app"}}, {"tbb/", {"base"}},
+      {"png.h", {"film"}},         {"Eigen/", {"denoise"}}};
   for (const auto& [library, rooms] : homes) {
     std::vector<std::string> users;
     for (const SourceFile& file : SourceFiles()) {
