@@ -152,6 +152,18 @@ std::pair<int, int> ParseShard(const std::string& text) {
 // Default interval of checkpoints with --resume, seconds.
 constexpr double kCheckpointSeconds = 60;
 
+// The names of light path expressions.
+std::string KnownLayers() {
+  std::string names;
+  for (const NamedExpression& each : NamedExpressions()) names += (names.empty() ? "" : ", ") + std::string(each.name);
+  return names;
+}
+std::string KnownPixelLayers() {
+  std::string names;
+  for (const PixelLayer& each : PixelLayers()) names += (names.empty() ? "" : ", ") + std::string(each.name);
+  return names;
+}
+
 struct RenderCommand {
   RenderOptions options;
   std::string time, resolution, checkpoint, shard;
@@ -187,6 +199,15 @@ struct RenderCommand {
                    "Render one part of the samples, e.g. 2/8, for `lampyr merge`; default of --output: OUT.2-of-8.exr")
         ->type_name("I/N");
     app.add_option("--stats", options.stats, "Write statistics to this JSON file")->type_name("FILE");
+    app.add_option("--layer", overrides.layers,
+                   "Add a layer of some of the light: " + KnownLayers() +
+                       "; one of these from one light, \"caustic<L.'key'>\"; or any light path expression with a name, "
+                       "\"keys=C<RD>[<L.'key'>O]\". Or one of what pixels see and of their samples: " +
+                       KnownPixelLayers() + ". May be given more than once")
+        ->type_name("LAYER")
+        ->allow_extra_args(false);
+    app.add_flag("--through-smooth", overrides.seesThroughSmooth,
+                 "What pixels see, for those layers, is what mirrors and smooth glass show");
     app.add_flag("--denoise", options.denoise,
                  "Denoise the picture; as it was rendered it stays in the layer \"noisy\". With --shard: keep what "
                  "`lampyr denoise` wants of the merged picture");
@@ -242,6 +263,25 @@ struct DenoiseCommand {
     app.add_flag("--quiet", options.quiet, "No progress and no summary");
   }
   int Run() { return RunDenoise(options); }
+};
+
+struct MixCommand {
+  MixOptions options;
+
+  void Define(CLI::App& app) {
+    app.add_option("image", options.input, "A picture with layers (.exr), of light groups or of --layer")
+        ->type_name("FILE")
+        ->required();
+    app.add_option("factors", options.factors, "Factors of layers: key=2 fill=0.5,0.4,0.3 caustic=0")
+        ->type_name("LAYER=FACTOR")
+        ->required();
+    app.add_option("-o,--output", options.output, "The image to write (.exr)")->type_name("FILE")->required();
+    app.add_flag("--png", options.png, "Also write a tone-mapped PNG beside it");
+    app.add_option("--exposure", options.exposure, "Exposure of the PNG in stops (0)")->check(CheckFinite, "");
+    app.add_flag("--clip", options.clipPng, "Clip the PNG at white instead of rolling highlights off");
+    app.add_flag("--quiet", options.quiet, "No summary");
+  }
+  int Run() { return RunMix(options); }
 };
 
 struct PngCommand {
@@ -447,6 +487,7 @@ class Commands {
     Add("merge", "Make one image of the parts of a render", merge_);
     Add("plan", "What a scene requires, and what is therefore modelled, with reasons", plan_);
     Add("diff", "Compare two images: MSE, relMSE, FLIP, bias, z-test by blocks", diff_);
+    Add("mix", "Dim, tint or turn off lights in a finished picture with layers", mix_);
     Add("denoise", "Denoise an image; its variance then tells the error of the result", denoise_);
     Add("png", "Make a PNG to look at of an image", png_);
     Add("check-lights",
@@ -476,6 +517,7 @@ class Commands {
   MergeCommand merge_;
   PlanCommand plan_;
   DiffCommand diff_;
+  MixCommand mix_;
   DenoiseCommand denoise_;
   PngCommand png_;
   CheckLightsCommand checkLights_;

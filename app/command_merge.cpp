@@ -8,6 +8,7 @@
 
 #include "app/command_line.h"
 #include "app/commands.h"
+#include "film/mix.h"
 #include "render/feature_layers.h"
 #include "render/first_hit_layers.h"
 #include "render/output_files.h"
@@ -112,8 +113,9 @@ void AddLayersOf(const std::vector<Part>& parts, const std::vector<std::string>&
 // The layers of what is seen first, and the features for denoising; without channels if the picture has none.
 Image LayersOf(const std::vector<Part>& parts, const PartHeader& whole, bool quiet) {
   Image layers;
-  if (whole.metadata.contains(kFirstHitMetadata))
-    AddLayersOf(parts, FirstHitChannels(), "the layers of Film \"gbuffer\"", quiet, layers);
+  if (whole.metadata.contains(kFirstHitChannelsMetadata))
+    AddLayersOf(parts, Split(whole.metadata.at(kFirstHitChannelsMetadata), ','), "the layers of what is seen first",
+                quiet, layers);
   if (whole.metadata.contains(kFeaturesMetadata))
     AddLayersOf(parts, FeatureChannels(), "the features for denoising", quiet, layers);
   return layers;

@@ -78,8 +78,7 @@ void CheckSceneStays(const RenderOptions& options, const SceneDescription& scene
 void CheckMemory(const RenderSettings& settings, TracedPaths paths, size_t layers, bool hasTechniques, bool denoises) {
   layers += denoises ? 1 : 0;
   // Developed image: colour, variance, light groups and first-hit layers. The latter are also kept during the render.
-  const uint64_t firstHit =
-      (settings.firstHit ? FirstHitChannels().size() : 0) + (denoises ? FeatureChannels().size() : 0);
+  const uint64_t firstHit = FirstHitChannels(settings).size() + (denoises ? FeatureChannels().size() : 0);
   const uint64_t channels = 6 + 3 * layers + 2 * firstHit;
   const uint64_t techniques = hasTechniques ? TechniqueImages::BytesPerPixel(settings.MaxDepth()) : 0;
   const uint64_t perPixel =
@@ -123,19 +122,25 @@ PartHeader MakeHeader(const RenderOptions& options, const LoadedScene& loaded, c
   header.width = settings.width;
   header.height = settings.height;
   header.crop = settings.crop;
-  header.layers = loaded.built.scene.lighting->Groups().Layers();
+  header.layers = loaded.built.scene.outputs->Names();
   header.halfPrecision = settings.halfPrecision;
   header.metadata = {{"lampyr.version", kVersion},
                      {"lampyr.sceneHash", loaded.hash},
                      {"lampyr.integrator", settings.integrator},
                      {"lampyr.seed", std::to_string(settings.seed)}};
-  if (!header.layers.empty()) header.metadata["lampyr.lightGroups"] = Joined(header.layers, ",");
+  const std::vector<std::string>& groups = loaded.built.scene.lighting->Groups().Layers();
+  if (!groups.empty()) header.metadata["lampyr.lightGroups"] = Joined(groups, ",");
+  for (const OutputLayer& layer : loaded.built.scene.outputs->Layers()) {
+    if (!layer.text.empty()) header.metadata["lampyr.layer." + layer.name] = layer.text;
+  }
+  header.metadata.merge(FirstHitMetadata(loaded.built));
+  for (const char* layer : {kSamplesLayer, kErrorLayer}) {
+    if (settings.Wants(layer)) header.metadata[std::string(kSampleLayerMetadata) + layer] = "1";
+  }
   if (options.denoise) {
     header.layers.emplace_back(kHalfLayer);
     header.metadata[kFeaturesMetadata] = "yes";
   }
-  if (settings.firstHit)
-    header.metadata[kFirstHitMetadata] = *settings.firstHit == FirstHitSpace::World ? "world" : "camera";
   if (options.shard || options.resume || options.checkpointSeconds) {
     header.identity = IdentityOf(loaded, options.robust);
     header.identity.emplace_back("--denoise", options.denoise ? "on" : "off");
@@ -350,7 +355,7 @@ RenderJob::RenderJob(const RenderOptions& options, const LoadedScene& loaded)
       checkpointPath_(CheckpointPath(path_)) {
   CheckOptions(options, settings_, checkpointPath_);
   integrator_ = MakeIntegrator(built_.scene, settings_);
-  CheckMemory(settings_, integrator_->Paths(), built_.scene.lighting->Groups().Layers().size(),
+  CheckMemory(settings_, integrator_->Paths(), built_.scene.outputs->Layers().size(),
               options.strategyImages.has_value(), options.denoise);
   if (const auto photons = integrator_->Photons(); photons && !options.quiet) WarnOfPhotonMemory(settings_, *photons);
   const auto [part, parts] = options.shard.value_or(std::pair(1, 1));
@@ -377,6 +382,9 @@ void RenderJob::Describe() {
   report_.primitives = built_.scene.geometry->PrimitiveCount();
   report_.lights = built_.scene.lighting->Lights().size();
   report_.lightGroups = built_.scene.lighting->Groups().Layers();
+  for (const OutputLayer& layer : built_.scene.outputs->Layers()) {
+    if (!layer.text.empty()) report_.layers.emplace_back(layer.name, layer.text);
+  }
 }
 
 void RenderJob::GoOn(ProgressiveRender& render) {
@@ -433,7 +441,7 @@ void RenderJob::MakeFirstHitLayers() {
   RunForeignCode(loaded_.types, [&] { layers = FirstHitLayers(built_, report_.threads, FinishOnInterrupt()); });
   if (layers.channels.empty()) {
     std::fprintf(stderr,
-                 "warning: stopped before the layers of Film \"gbuffer\" were made: the picture is without them\n");
+                 "warning: stopped before the layers of what is seen first were made: the picture is without them\n");
     return;
   }
   AddLayers(std::move(layers));
@@ -473,7 +481,7 @@ int RenderJob::Run() {
                                                    settings_.MaxDepth(), settings_.sensor);
   }
   if (!options_.quiet) PrintHints();
-  if (settings_.firstHit) MakeFirstHitLayers();
+  if (settings_.WantsFirstHit()) MakeFirstHitLayers();
   if (options_.denoise) MakeFeatureLayers();
   if (options_.autoLayers) AddLayers(AutoLayers(settings_));
   ProgressiveRender render(built_.scene, *integrator_, settings_, report_.threads, film, techniques.get(),

@@ -90,6 +90,15 @@ struct DenoiseOptions {
   bool quiet = false;
 };
 
+struct MixOptions {
+  std::filesystem::path input, output;
+  std::vector<std::string> factors;  // LAYER=FACTOR
+  bool png = false;
+  float exposure = 0;  // stops, of the PNG
+  bool clipPng = false;
+  bool quiet = false;
+};
+
 struct PngOptions {
   std::filesystem::path input, output;  // output empty: beside the input, with the extension .png
   float exposure = 0;                   // stops
@@ -117,6 +126,7 @@ int RunMerge(const MergeOptions& options);
 int RunCompare(const CompareOptions& options);
 int RunPlan(const PlanOptions& options);
 int RunDiff(const DiffOptions& options);
+int RunMix(const MixOptions& options);
 int RunDenoise(const DenoiseOptions& options);
 int RunPng(const PngOptions& options);
 int RunLights(const LightsOptions& options);

@@ -26,6 +26,12 @@ Json ToTree(const std::vector<std::pair<std::string, SettingValue>>& settings) {
   return tree;
 }
 
+Json Layers(const RenderReport& report) {
+  Json layers = Json::array();
+  for (const auto& [name, expression] : report.layers) layers.push_back({{"name", name}, {"expression", expression}});
+  return layers;
+}
+
 }  // namespace
 
 std::string ToJson(const RenderReport& report) {
@@ -45,6 +51,7 @@ std::string ToJson(const RenderReport& report) {
       {"primitives", report.primitives},
       {"lights", report.lights},
       {"lightGroups", report.lightGroups},
+      {"layers", Layers(report)},
       {"samplesPerPixel", outcome.samplesPerPixel},
       {"resumedSamplesPerPixel", report.resumedSamples},
       {"samples", samples},

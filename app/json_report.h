@@ -18,7 +18,8 @@ struct RenderReport {
   int threads = 1, width = 0, height = 0;
   int64_t pixels = 0;
   size_t primitives = 0, lights = 0;
-  std::vector<std::string> lightGroups;  // the image's layers
+  std::vector<std::string> lightGroups;                     // layers of the image
+  std::vector<std::pair<std::string, std::string>> layers;  // further ones, and their light path expressions
   double parseSeconds = 0, buildSeconds = 0, writeSeconds = 0;
   uint64_t rejectedRays = 0;
   int resumedSamples = 0;  // per pixel, that a checkpoint brought

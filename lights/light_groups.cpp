@@ -19,25 +19,28 @@ bool IsPlain(unsigned char c) {
 
 }  // namespace
 
-std::string LayerOfLightGroup(const std::string& group) {
+std::string LayerNameOf(const std::string& name, const std::string& what) {
   constexpr size_t most = 200;  // bytes; OpenEXR ends at 255
-  std::string layer = group;
+  std::string layer = name;
   for (char& c : layer) {
     if (!IsPlain(static_cast<unsigned char>(c))) c = '_';
   }
   if (layer == kRest) {
-    throw Error("a light group cannot be called \"rest\": that is the layer of the lights that are in none");
+    throw Error(what + " cannot be called \"rest\": that is the layer of the lights that are in no light group");
   }
   for (const char* taken : {"variance", "R", "G", "B", "A", "Albedo", "half", "noisy", "feature"}) {
-    if (layer == taken) {
-      throw Error("a light group cannot be called \"" + group + "\": images have a channel or layer of that name");
-    }
+    if (layer == taken)
+      throw Error(what + " cannot be called \"" + name + "\": images have a channel or layer of that name");
   }
   if (layer.size() > most) {
-    throw Error("the name of a light group may have " + std::to_string(most) + " bytes; this one has " +
+    throw Error("the name of " + what + " may have " + std::to_string(most) + " bytes; this one has " +
                 std::to_string(layer.size()));
   }
   return layer;
+}
+
+std::string LayerOfLightGroup(const std::string& group) {
+  return LayerNameOf(group, "a light group");
 }
 
 LightGroups::LightGroups(const std::vector<PlacedLight>& lights, bool hasGlowingMedia) {

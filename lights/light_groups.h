@@ -9,9 +9,10 @@ namespace lampyr {
 
 struct PlacedLight;
 
-// Layer name of a group: characters other than letters, digits, '-', '_' and non-ASCII ones become '_', because dots
+// Layer name of `name`: characters other than letters, digits, '-', '_' and non-ASCII ones become '_', because dots
 // separate layers from channels and layer names occur in file names. Throws an Error if the name is reserved in images,
-// or longer than channel names may be.
+// or longer than channel names may be. `what` has the name: "a layer".
+std::string LayerNameOf(const std::string& name, const std::string& what);
 std::string LayerOfLightGroup(const std::string& group);
 
 class LightGroups {

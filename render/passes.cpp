@@ -85,6 +85,7 @@ struct Pass {
   int threads;
   Film& film;
 
+  const OutputPlan* Outputs() const { return film.HasLayers() ? scene.outputs.get() : nullptr; }
   uint64_t Pixels() const { return static_cast<uint64_t>(settings.width) * static_cast<uint64_t>(settings.height); }
 };
 
@@ -106,7 +107,8 @@ RenderCounts TraceCameraPaths(const Pass& pass) {
           sampler.StartPixelSample(x, y, i);
           const float time = SampleTime(pass.scene, sampler);
           const PixelRay ray = MakePixelRay(pass.scene, pass.filter, x, y, time, sampler);
-          const SampleContext context{pass.scene, sampler, time, counts, adder.StartLayers()};
+          SampleContext context{pass.scene, sampler, time, counts, adder.StartLayers()};
+          context.outputs = pass.Outputs();
           adder.Add(x, y, i, ray, Radiance(pass.integrator, ray, context), sums);
         }
         pass.film.Pixel(x, y) = sums;
@@ -139,6 +141,7 @@ RenderCounts TraceLightPaths(const Pass& pass) {
         splats.StartPath();
         SampleContext context{pass.scene, sampler, SampleTime(pass.scene, sampler), counts[static_cast<size_t>(chunk)]};
         context.splats = &splats;
+        context.outputs = pass.Outputs();
         pass.integrator.Sample(nullptr, context);
       }
     });
@@ -283,6 +286,7 @@ void BothPaths::TraceChunk(size_t chunk, uint64_t begin, uint64_t end, uint32_t 
     const float time = hasTimes_ ? passTime : SampleTime(pass_.scene, sampler);
     SampleContext context{pass_.scene, sampler, time, counts_[chunk], layers};
     context.observer = recorder;
+    context.outputs = pass_.Outputs();
     context.gather = withCamera ? gather_ : nullptr;
     context.isForPhotonsAlone = !withCamera;
     context.tracesLight = lightPaths > 0;

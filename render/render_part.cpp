@@ -157,6 +157,8 @@ RenderIdentity IdentityOf(const LoadedScene& loaded, bool robustIntersection) {
            ToExactString(static_cast<double>(f.c)) + " " + ToExactString(static_cast<double>(f.tau))},
       {"the sampler", s.sampler == SamplerKind::Sobol ? "sobol" : "independent"},
       {"watertight intersection", YesOrNo(robustIntersection)}};
+  for (const LayerRequest& request : s.layers)
+    identity.emplace_back("the layer " + request.layer.name, request.layer.text);
   if (s.counts && !s.counts->IsDefault())
     identity.emplace_back("what auto decided (its fingerprint)", s.counts->Fingerprint());
   for (const Setting* setting : IntegratorOf(s.integrator).settings) {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "render/output_files.h"
+#include "render/settings/output_layers.h"
 
 namespace lampyr {
 
@@ -14,6 +15,33 @@ namespace {
 bool FitsHalves(const Image& image) {
   constexpr float largestHalf = 65504;
   return std::all_of(image.data.begin(), image.data.end(), [](float v) { return std::abs(v) <= largestHalf; });
+}
+
+Image SamplesOf(const Film& film) {
+  const PixelRect& crop = film.Crop();
+  Image image(crop.Width(), crop.Height(), {"samples"});
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x)
+      image.At(x, y, 0) = static_cast<float>(film.Pixel(crop.x0 + x, crop.y0 + y).count);
+  }
+  return image;
+}
+
+// Half the width of the 95 % interval of a pixel's luminance, relative to it. Channels are taken as fully correlated,
+// which bounds it.
+Image ErrorOf(const Image& developed) {
+  Image image(developed.width, developed.height, {"relativeError"});
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      double luminance = 0, deviation = 0;
+      for (size_t c = 0; c < 3; ++c) {
+        luminance += Color::kLuminance[c] * static_cast<double>(developed.At(x, y, c));
+        deviation += Color::kLuminance[c] * std::sqrt(static_cast<double>(developed.At(x, y, 3 + c)));
+      }
+      image.At(x, y, 0) = luminance > 0 ? static_cast<float>(1.96 * deviation / luminance) : 0.0f;
+    }
+  }
+  return image;
 }
 
 }  // namespace
@@ -31,9 +59,15 @@ void WriteSamples(const std::filesystem::path& path, const PartHeader& header, c
                   const std::function<void(AtomicFile&)>& append) {
   Image image = film.Develop();
   if (!layers.channels.empty()) AppendChannels(image, layers);
+  if (header.metadata.contains(std::string(kSampleLayerMetadata) + kSamplesLayer))
+    AppendChannels(image, SamplesOf(film));
+  if (header.metadata.contains(std::string(kSampleLayerMetadata) + kErrorLayer)) AppendChannels(image, ErrorOf(image));
   image.metadata = header.metadata;
   image.metadata["lampyr.samplesPerPixel"] = std::to_string(header.samples);
-  const bool asHalves = header.halfPrecision && FitsHalves(image);
+  // Identifiers in mattes are bits, not numbers.
+  const bool hasMattes = std::any_of(image.channels.begin(), image.channels.end(),
+                                     [](const std::string& channel) { return channel.starts_with("Crypto"); });
+  const bool asHalves = header.halfPrecision && !hasMattes && FitsHalves(image);
   WriteExr(path, image, asHalves ? ExrPrecision::Half : ExrPrecision::Float, append);
 }
 

@@ -12,6 +12,9 @@ namespace lampyr {
 // the command-line option that the message names.
 void CheckImageOutput(const std::filesystem::path& path, const char* option, bool withPng);
 
+// Metadata of a picture that is to have a layer of its samples (kSamplesLayer, kErrorLayer): this and the layer's name.
+inline constexpr const char* kSampleLayerMetadata = "lampyr.sampleLayer.";
+
 // Writes the developed film, then the channels of `layers`, with the metadata of the header and the number of samples.
 // In half precision if the header asks for it and all values fit. `append`: see WriteExr.
 void WriteSamples(const std::filesystem::path& path, const PartHeader& header, const Film& film, const Image& layers,

@@ -74,8 +74,8 @@ void TechniqueImages::Recorder::Observe(const ConnectedPath& path) {
   const size_t index = images_->IndexOf(path.s, path.t);
   const Color weighted = path.value * static_cast<float>(path.weight);
   if (path.connection) {
-    lampyr::AddSplats(*path.connection, weighted, 0, weighted_[index], counts_);
-    lampyr::AddSplats(*path.connection, path.value, 0, unweighted_[index], counts_);
+    lampyr::AddSplats(*path.connection, weighted, weighted_[index]);
+    lampyr::AddSplats(*path.connection, path.value, unweighted_[index]);
     return;
   }
   Technique& technique = images_->techniques_[index];

@@ -39,7 +39,6 @@ class TechniqueImages {
     std::vector<SplatList> weighted_, unweighted_;  // by technique; empty where t > 1
     int x_ = 0, y_ = 0;
     float scale_ = 1;
-    RenderCounts counts_;
   };
 
   // Adds the splats of recorders, in their order, and empties them.

@@ -13,18 +13,18 @@ namespace lampyr {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
-double SecondsSince(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
+using Steady = std::chrono::steady_clock;
+double SecondsSince(Steady::time_point start) {
+  return std::chrono::duration<double>(Steady::now() - start).count();
 }
 
 // Never destroyed if a pass was abandoned, because its threads still use it.
-struct Run {
+struct OneRender {
   RenderSettings settings;
   std::unique_ptr<Integrator> integrator;
   Film film;
   ProgressiveRender render;
-  Run(const RenderScene& scene, const RenderSettings& chosen, int threads, uint32_t firstSample, bool denoises)
+  OneRender(const RenderScene& scene, const RenderSettings& chosen, int threads, uint32_t firstSample, bool denoises)
       : settings(chosen),
         integrator(MakeIntegrator(scene, settings)),
         film(settings.width, settings.height, settings.crop,
@@ -39,11 +39,11 @@ void ComparedScene::Render(const std::string& integrator, uint64_t seed, const s
                            const AfterPass& afterPass, uint32_t firstSample, double secondsBefore) const {
   RenderSettings settings = VariantOf(built_.settings, integrator);
   settings.seed = seed;
-  auto run = std::make_unique<Run>(built_.scene, settings, threads_, firstSample, IsDenoised(integrator));
+  auto run = std::make_unique<OneRender>(built_.scene, settings, threads_, firstSample, IsDenoised(integrator));
   ProgressiveRender& render = run->render;
   const Film& film = run->film;
   const RenderOutcome& outcome = render.Outcome();
-  const auto start = Clock::now();
+  const auto start = Steady::now();
   Image features;
   if (IsDenoised(integrator)) {
     features = FeatureLayers(built_, threads_, interrupted_);
@@ -55,7 +55,7 @@ void ComparedScene::Render(const std::string& integrator, uint64_t seed, const s
       atMilestone(index, {seconds, outcome.samplesPerPixel}, film.Develop());
       return;
     }
-    const auto begin = Clock::now();
+    const auto begin = Steady::now();
     const Image picture = DenoisedPicture(film, features, outcome.samplesPerPixel);
     atMilestone(index, {seconds + SecondsSince(begin), outcome.samplesPerPixel}, picture);
   };

@@ -14,7 +14,7 @@ double FlightsBelow(const VolumeRadius& radius, Sampler& sampler, const PathDime
 
 namespace {
 
-// What the flight of `state` from the last vertex starts with.
+// The start of the flight that leaves the last vertex of `path` along the ray of `state`.
 FlightStart StartAtLast(const Subpath& path, const PathState& state, const VolumeRadius& radius) {
   const PathVertex& vertex = path.Last();
   FlightStart start;
@@ -34,8 +34,8 @@ FlightStart StartAtLast(const Subpath& path, const PathState& state, const Volum
 
 }  // namespace
 
-void AddFlight(const VolumeRadius& radius, double below, const LightPath& path, const PathState& state,
-               const Flight& flight, const EmittedPhoton& emission, PhotonList& photons) {
+void AddFlight(const SampleContext& context, const VolumeRadius& radius, double below, const LightPath& path,
+               const PathState& state, const Flight& flight, const EmittedPhoton& emission) {
   const size_t count = path.vertices.Count();
   if (!(below < radius.ShareOf(count > 0 && path.vertices.Last().IsInMedium()))) return;
   thread_local std::vector<PhotonBeam> beams;
@@ -58,8 +58,10 @@ void AddFlight(const VolumeRadius& radius, double below, const LightPath& path, 
   start.specular = state.specular;
   start.pdfDirection = state.pdfDirection;
   start.depth = static_cast<uint16_t>(count + 1);
-  start.group = static_cast<uint16_t>(path.group);
-  photons.AddFlight(start, count == 0 ? &emission : nullptr, beams);
+  thread_local PathLabels labels;
+  labels.Clear();
+  if (context.outputs) path.vertices.LabelsBeyond(*context.outputs, TransportMode::Importance, state.event, labels);
+  context.photons->AddFlight(start, count == 0 ? &emission : nullptr, beams, labels.All());
 }
 
 namespace {
@@ -71,20 +73,15 @@ void SetDensities(const PhotonMap& map, const FlightStart& start, BeamVertex& ma
   densities.assign(before.begin(), before.end());
   if (start.depth == 1) {
     made.ends = {made.end.direct.value, 0, false, 0, made.end.canBeHit};
-    densities.push_back({.forward = made.end.emission.value, .isInMedium = true, .extent = made.end.extent});
+    densities.push_back(FirstDensities(made.end, true));
     return;
   }
   made.ends = map.EndsOf(start);
   SubpathDensities& previous = densities.back();
-  previous.canMerge = start.canMerge;
   if (previous.isInMedium)
     previous.mergeVolume =
         static_cast<float>(static_cast<double>(start.mergeSize) * PassingPerCollision(made.vertex.factors.Reversed()));
-  if (densities.size() > 1) {
-    SubpathDensities& second = densities[densities.size() - 2];
-    second.reverse = start.previousReverse.value;
-    second.reverseIsDelta = start.scatteredDelta;
-  }
+  AddEvent(start.canMerge, start.scatteredDelta, start.previousReverse, densities.size(), densities);
   densities.push_back(
       {.forward = made.vertex.pdfForward.value, .forwardIsDelta = start.scatteredDelta, .isInMedium = true});
 }
@@ -114,14 +111,10 @@ bool SetBeamVertex(const SampleContext& context, const PhotonMap& map, const Bea
   } else {
     const Vector3d way = crossing.onRay - start.position;
     const double squared = glm::dot(way, way);
-    light.pdfForward = start.pdfDirection * (light.factors.forward * EdgeDensity(1, squared));
-    light.previousSolidAnglePerArea = light.factors.reverse * EdgeDensity(start.geometryTerm, squared);
-    light.weight = start.weight.Next(start.scatteredDelta, light.pdfForward, start.previousReverse);
-    if (!connects) light.weight.connections.last = 0;
+    SetWeights({start.weight, start.previousReverse, start.scatteredDelta, start.pdfDirection}, light.factors,
+               EdgeDensity(1, squared), EdgeDensity(start.geometryTerm, squared), connects, light);
   }
-  const Color passed = beam.tint * beam.step.TransmittanceAt(t) / static_cast<float>(through);
-  light.diffuse *= passed;
-  light.specular *= passed;
+  light.diffuse *= beam.tint * beam.step.TransmittanceAt(t) / static_cast<float>(through);
   SetDensities(map, start, made);
   Photon& photon = made.photon;
   photon.toPrevious = light.toPrevious;
@@ -129,7 +122,6 @@ bool SetBeamVertex(const SampleContext& context, const PhotonMap& map, const Bea
   photon.weight = PhotonWeight::Of(light.weight, start.depth);
   photon.previousSolidAnglePerArea = static_cast<float>(light.previousSolidAnglePerArea.value);
   photon.depth = start.depth;
-  photon.group = start.group;
   return true;
 }
 

@@ -7,13 +7,18 @@
 
 namespace lampyr {
 
-// Adds to `photons` the flight of `state` from the last vertex of `path`, or from its light, as far as it passes media
-// whose photons are beams, if its share is above `below`.
-void AddFlight(const VolumeRadius& radius, double below, const LightPath& path, const PathState& state,
-               const Flight& flight, const EmittedPhoton& emission, PhotonList& photons);
+// Adds to SampleContext::photons the flight of `state` from the last vertex of `path`, or from its light, as far as it
+// passes media whose photons are beams, if its share is above `below`.
+void AddFlight(const SampleContext& context, const VolumeRadius& radius, double below, const LightPath& path,
+               const PathState& state, const Flight& flight, const EmittedPhoton& emission);
 // Decides which flights of the light path that `sampler` is at are kept: those whose share is above the number. 1:
 // none.
 double FlightsBelow(const VolumeRadius& radius, Sampler& sampler, const PathDimensions& dimensions);
+
+// True if the flight to the vertex is a photon itself, so that the vertex is none.
+inline bool IsOnBeam(const Vertex& vertex, const VolumeRadius& radius) {
+  return vertex.IsInMedium() && radius.UsesBeams(vertex.insideMedium);
+}
 
 // The vertex of a light path in a medium at which a camera ray passes its flight: as if it had collided there, but for
 // the density of that.

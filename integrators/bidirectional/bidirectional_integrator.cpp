@@ -9,6 +9,7 @@
 #include "integrators/photon/photon_pass.h"
 #include "integrators/photon/photon_settings.h"
 #include "integrators/walk/footprint.h"
+#include "integrators/walk/path_layers.h"
 
 namespace lampyr {
 
@@ -36,7 +37,7 @@ void BidirectionalSample::Report(ConnectedPath& path) const {
   }
   path.seenDensity = path.t > 1 ? seenDensity : path.atLens.value;
   path.splatCount = settings.splatCount;
-  path.volume = settings.photons.volume;
+  path.volume = &settings.photons.volume;
   context.observer->Observe(path);
 }
 
@@ -48,17 +49,6 @@ TechniqueSums BidirectionalSample::SumsOfConnection(size_t lightCount, const Rev
   const PathEnds ends{lightEnd.direct.value, lightEnd.canBeHit ? hit.value : 0.0, goesOn && first.scatteredDelta,
                       isSplat || lensSeesIt ? settings.splatCount : 0.0};
   return whole.Sums(ends, lightCount + 1, 0);
-}
-
-Color BidirectionalSample::AddToPixel(ConnectedPath& path, float survivalWeight) const {
-  Report(path);
-  return AddToPixel(path.end.light, path.value, path.weight, survivalWeight);
-}
-
-Color BidirectionalSample::AddToPixel(uint32_t light, const Color& value, double weight, float survivalWeight) const {
-  const Color contribution = value * static_cast<float>(weight) * survivalWeight;
-  if (context.layers) context.layers->Add(Lighting().GroupOf(light), contribution);
-  return contribution;
 }
 
 namespace {
@@ -112,10 +102,10 @@ class LightSide final : public WeightedLightPath {
 
   bool WantsFlights() const override { return flightsBelow_ < 1; }
   void Flew(const LightPath& path, const PathState& state, const Flight& flight, const EmittedPhoton& photon) override {
-    AddFlight(sample_.settings.photons.volume, flightsBelow_, path, state, flight, photon, *context_.photons);
+    AddFlight(context_, sample_.settings.photons.volume, flightsBelow_, path, state, flight, photon);
     hasLeftFirst_ = hasLeftFirst_ || path.vertices.Count() > 0;
   }
-  // The path has scattered at its first vertex, and a flight from there is kept.
+  // The path has flown on from its first vertex, so that the event there is set.
   bool HasLeftFirst() const { return hasLeftFirst_; }
 
   void Emitted(const EmittedPhoton& photon) override {
@@ -133,16 +123,13 @@ class LightSide final : public WeightedLightPath {
     if (sample_.settings.merges) {
       AddDensities(path.vertices, sample_.settings.photons.volume, true, sample_.lightDensities);
       if (path.vertices.Count() == 1)
-        sample_.lightDensities[0] = {
-            .forward = End().emission.value, .isInMedium = path.vertices.Last().IsInMedium(), .extent = End().extent};
+        sample_.lightDensities[0] = FirstDensities(End(), path.vertices.Last().IsInMedium());
     }
     if (isConnected_) SplatVertex(sample_);
     const PathVertex& vertex = path.vertices.Last();
-    if (context_.photons && vertex.storesPhotons && path.vertices.Count() <= PhotonList::kDeepest && !IsOnBeam(vertex))
-      context_.photons->Add(vertex, path.vertices.Count(), path.group);
-  }
-  bool IsOnBeam(const PathVertex& vertex) const {
-    return vertex.IsInMedium() && sample_.settings.photons.volume.UsesBeams(vertex.insideMedium);
+    if (context_.photons && vertex.storesPhotons && path.vertices.Count() <= PhotonList::kDeepest &&
+        !IsOnBeam(vertex, sample_.settings.photons.volume))
+      context_.photons->Add(vertex, path.vertices.Count(), LabelsOfLast(context_, path.vertices));
   }
 
   BidirectionalSample& sample_;
@@ -174,34 +161,17 @@ class CameraSide final : public PathVisitor {
   // Photons in media along the ray. Each makes a vertex of the camera subpath for itself, as if the ray had collided
   // there, but for the density of that.
   void Flew(Subpath& path, const PathState& state, const Flight& flight) override {
-    const SampleContext& context = sample_.context;
-    if (!context.gather || !context.gather->map->HasVolume() || !sample_.isMerged) return;
+    if (!sample_.context.gather || !sample_.isMerged) return;
     if (static_cast<int>(path.Count()) >= sample_.settings.maxDepth) return;
-    const PhotonMap& map = *context.gather->map;
-    const Before before{sample_.merging, sample_.seenDensity, sample_.lensSeesIt};
-    VolumeMerge merge;
-    for (const BeamHit& hit : map.FindAlong(state.ray, flight.t, sample_.lookup)) {
-      ++context.counts.foundPhotons;
-      if (IsTooDeep(path, map[hit.index].depth)) continue;
-      if (SetPointVertex(context, state, flight, hit, path.Next(), merge))
-        MergeThere(path, state, hit.t, before, [&] { return MergeInMedium(sample_, merge); });
-    }
-    if (map.Beams().IsEmpty()) return;
-    for (const BeamCrossing& crossing : map.FindBeams(state.ray, flight.line, flight.t, sample_.lookup)) {
-      context.counts.foundPhotons += kPhotonsPerBeam;
-      if (IsTooDeep(path, map.Beams().StartOf(map.Beams()[crossing.beam]).depth)) continue;
-      merge = {};
-      if (!SetCrossingVertex(context, state, flight, crossing, path.Next(), merge)) continue;
-      MergeThere(path, state, static_cast<float>(crossing.t), before, [&] {
-        return SetBeamOf(sample_, crossing, beam_, merge) ? MergeInMedium(sample_, merge) : Color(0.0f);
-      });
-    }
-    ++context.counts.lookups;
+    const PhotonMap& map = *sample_.context.gather->map;
+    if (map.HasPoints()) MergePoints(map, path, state, flight);
+    if (!map.Beams().IsEmpty()) MergeBeams(map, path, state, flight);
   }
 
-  void Glowed(const Subpath&, const Color& throughput, const Color& radiance) override {
-    const Color seen = throughput * radiance;
-    if (sample_.context.layers) sample_.context.layers->Add(sample_.Lighting().Groups().OfMedia(), seen);
+  void Glowed(const Subpath& path, const PathState& state, const Color& radiance) override {
+    const Color seen = state.Throughput() * radiance;
+    if (sample_.context.layers)
+      AddFoundToLayers(sample_.context, path, state.event, sample_.context.outputs->OfMedia(), seen);
     sample_.radiance += seen;
   }
 
@@ -237,32 +207,64 @@ class CameraSide final : public PathVisitor {
   // Cost of merging with a beam, in merges with photons on surfaces.
   static constexpr uint64_t kPhotonsPerBeam = 4;
 
-  // What a vertex of the camera subpath changes, before it.
+  // The state of the camera subpath that a vertex for one merge changes, and that is restored after it.
   struct Before {
     Merging merging;
     double seenDensity;
     bool lensSeesIt;
+    size_t densities;  // number
   };
   bool IsTooDeep(const Subpath& path, size_t photonDepth) const {
     return photonDepth + path.Count() + 1 > static_cast<size_t>(sample_.settings.maxDepth) + 1;
   }
-  // Adds the vertex that was made in the place of the next one, `t` along the ray, for `merge` alone.
-  template <class Merge>
-  void MergeThere(Subpath& path, const PathState& state, float t, const Before& before, const Merge& merge) {
+  void MergePoints(const PhotonMap& map, Subpath& path, const PathState& state, const Flight& flight) {
+    const Before before = Keep();
+    VolumeMerge merge;
+    for (const BeamHit& hit : FindPhotonsAlong(map, state.ray, flight.t, sample_.lookup, sample_.context.counts)) {
+      if (IsTooDeep(path, map[hit.index].depth)) continue;
+      if (!SetPointVertex(sample_.context, state, flight, hit, path.Next(), merge)) continue;
+      Extend(path, state, hit.t);
+      if (sample_.merging) sample_.radiance += MergeInMedium(sample_, merge);
+      Restore(path, before);
+    }
+  }
+  void MergeBeams(const PhotonMap& map, Subpath& path, const PathState& state, const Flight& flight) {
+    const Before before = Keep();
+    const std::span<const BeamCrossing> crossings = CountedLookup(
+        sample_.context.counts, [&] { return map.FindBeams(state.ray, flight.line, flight.t, sample_.lookup); });
+    sample_.context.counts.foundPhotons += (kPhotonsPerBeam - 1) * crossings.size();
+    for (const BeamCrossing& crossing : crossings) {
+      if (IsTooDeep(path, map.Beams().StartOf(map.Beams()[crossing.beam]).depth)) continue;
+      VolumeMerge merge;
+      if (!SetCrossingVertex(sample_.context, state, flight, crossing, path.Next(), merge)) continue;
+      Extend(path, state, static_cast<float>(crossing.t));
+      if (sample_.merging && SetBeamOf(sample_, crossing, beam_, merge))
+        sample_.radiance += MergeInMedium(sample_, merge);
+      Restore(path, before);
+    }
+  }
+  Before Keep() {
+    const std::vector<SubpathDensities>& densities = sample_.cameraDensities;
+    const size_t changed = std::min<size_t>(densities.size(), 2);  // by the next vertex
+    kept_.assign(densities.end() - static_cast<std::ptrdiff_t>(changed), densities.end());
+    return {sample_.merging, sample_.seenDensity, sample_.lensSeesIt, densities.size()};
+  }
+  // Adds the vertex that was made in the place of the next one, `t` along the ray.
+  void Extend(Subpath& path, const PathState& state, float t) {
     path.Add();
+    if (sample_.context.outputs) path.LabelLast(*sample_.context.outputs, TransportMode::Radiance, state.event);
     PathState arrived = state;
     arrived.length += t;
     arrived.factors = path.Last().factors;
-    const size_t size = sample_.cameraDensities.size();
-    const size_t changed = std::min<size_t>(size, 2);  // by the next vertex
-    kept_.assign(sample_.cameraDensities.end() - static_cast<std::ptrdiff_t>(changed), sample_.cameraDensities.end());
     Weigh(path, arrived);
-    if (sample_.merging) sample_.radiance += merge();
+  }
+  // Removes that vertex.
+  void Restore(Subpath& path, const Before& before) {
     path.Drop();
     sample_.merging = before.merging;
     sample_.seenDensity = before.seenDensity;
     sample_.lensSeesIt = before.lensSeesIt;
-    sample_.cameraDensities.resize(size);
+    sample_.cameraDensities.resize(before.densities);
     std::copy(kept_.begin(), kept_.end(), sample_.cameraDensities.end() - static_cast<std::ptrdiff_t>(kept_.size()));
   }
   // Densities and weights of the last vertex, which the ray of `state` has found.

@@ -4,6 +4,7 @@
 
 #include "integrators/bidirectional/techniques.h"
 #include "integrators/bidirectional/weights.h"
+#include "integrators/walk/path_layers.h"
 
 namespace lampyr {
 
@@ -30,6 +31,18 @@ Color TraceConnection(const SampleContext& context, const PathVertex& z, const P
                                 std::bit_cast<uint32_t>(ray.tMax));
   return TransmittanceOf(context, ray, visibility::kIndirect, z.EndTowards(ray.direction), y.EndTowards(-ray.direction),
                          decider, factors);
+}
+
+// `fy`, `fz`: of the vertices of both subpaths, towards each other.
+void AddConnectionToLayers(const BidirectionalSample& sample, size_t lightCount, const Vector3& toCamera,
+                           const BsdfEvaluation& fy, const BsdfEvaluation& fz, const Color& contribution) {
+  const PathVertex &y = sample.light.vertices[lightCount - 1], &z = sample.camera.Last();
+  const SampleContext& context = sample.context;
+  thread_local PathLabels labels;
+  LabelsAfter(*context.outputs, TransportMode::Importance, sample.light.vertices.LabelsAt(lightCount - 1),
+              PartsOf(y, toCamera, false, y.diffuse * fy.diffuse, y.specular * fy.specular), labels);
+  AddArrivingToLayers(context, sample.camera, PartsOf(z, -toCamera, false, fz.diffuse, fz.specular), labels.All(),
+                      contribution);
 }
 
 }  // namespace
@@ -89,8 +102,11 @@ Color Connect(const BidirectionalSample& sample, size_t lightCount) {
   if (survivalWeight == 0) return Color(0.0f);
   const Color arriving = value * (hasMedia ? transmitted : TraceConnection(context, z, y, factors));
   if (arriving.IsBlack()) return arriving;
+  const Color contribution = arriving * static_cast<float>(weight) * survivalWeight;
+  if (context.layers) [[unlikely]]
+    AddConnectionToLayers(sample, lightCount, toCamera, fy, fz, contribution);
   if (!sample.IsObserved()) [[likely]]
-    return sample.AddToPixel(sample.lightEnd.light, arriving, weight, survivalWeight);
+    return contribution;
   ConnectedPath path;
   path.value = arriving;
   path.weight = weight;
@@ -99,7 +115,8 @@ Color Connect(const BidirectionalSample& sample, size_t lightCount) {
   sample.SetCamera(path);
   if (sample.WantsSums()) [[unlikely]]
     path.sums = sample.SumsOfConnection(lightCount, joint.light, false);
-  return sample.AddToPixel(path, survivalWeight);
+  sample.Report(path);
+  return contribution;
 }
 
 }  // namespace lampyr

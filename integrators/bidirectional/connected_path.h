@@ -22,7 +22,7 @@ struct ConnectedPath {
   EdgeFactors endFactors;   // from the light to the first vertex; not of what the camera sees directly
   EdgeFactors factors;      // of media on a connecting edge (s > 1, t > 1), from the camera's vertex to the light's
   EdgeFactors lensFactors;  // from the lens to the vertex that it sees
-  VolumeRadius volume;      // of photons in media in the first pass
+  const VolumeRadius* volume = nullptr;  // of photons in media in the first pass
   bool isMerged = false;
   Merging merging;                             // that the weight accounts for
   double connectionCount = 1;                  // connections per light path that the weight accounts for, squared
@@ -48,7 +48,8 @@ class PathObserver {
   // The camera subpath's last vertex was merged with `photon`. Of the photon's path only the photon is known: `path`
   // has no light subpath and no `end`.
   virtual void ObserveMerge(const ConnectedPath& /*path*/, const Photon& /*photon*/) {}
-  // The same with a beam. `flight`: index of its start in the map.
+  // The camera subpath's last vertex was merged with a photon beam. `path` as of ObserveMerge. `flight`: index of the
+  // beam's start in the map.
   virtual void ObserveBeamMerge(const ConnectedPath& /*path*/, const BeamVertex& /*beam*/, uint32_t /*flight*/) {}
 };
 

@@ -98,7 +98,7 @@ FullPath Unfold(const ConnectedPath& path) {
     const Vector3 toLight = i == 1 ? path.toLight : directionTo(i - 1);
     const Vector3 toCamera = i == n ? path.toLens : directionTo(i + 1);
     full.mergeVolume[i] = static_cast<double>(MergeVolume(
-        vertex, {toLight, departure, i > 1 && vertices[i - 1]->IsInMedium()}, {toCamera, arrival}, path.volume));
+        vertex, {toLight, departure, i > 1 && vertices[i - 1]->IsInMedium()}, {toCamera, arrival}, *path.volume));
     // The last vertex of a subpath is connected and has no event on the path, except where the camera's has hit the
     // light.
     const bool isLight = i <= ofLight;

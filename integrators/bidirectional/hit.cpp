@@ -1,6 +1,7 @@
 // s = 0: the camera subpath hits a light.
 #include "integrators/bidirectional/techniques.h"
 #include "integrators/bidirectional/weights.h"
+#include "integrators/walk/path_layers.h"
 
 namespace lampyr {
 
@@ -17,10 +18,18 @@ Color HitLight(const BidirectionalSample& sample, const PathState& state, const 
   path.end = EndOf(sample.Lighting(), found, true, edge, state.factors.Reversed(), sample.lightPaths);
   sample.SetCamera(path);
   path.t = static_cast<int>(sample.camera.Count()) + 2;
-  if (!sample.settings.connects && path.end.emission.value > 0) {
-    if (sample.couldMerge) return Color(0.0f);
-    return sample.AddToPixel(path);
-  }
+  const auto finish = [&] {
+    sample.Report(path);
+    const Color contribution = path.WeightedValue();
+    if (sample.context.layers) {
+      const ScatteringParts event{state.event.ofDiffuse, state.event.ofSpecular, state.diffuse * e.diffuse,
+                                  state.specular * e.specular};
+      AddFoundToLayers(sample.context, sample.camera, event, sample.context.outputs->OfLight(found.light),
+                       contribution);
+    }
+    return contribution;
+  };
+  if (!sample.settings.connects && path.end.emission.value > 0) return sample.couldMerge ? Color(0.0f) : finish();
   path.toLight = state.ray.direction;
   const PathVertex& last = sample.camera.Last();
   const LastEvent event{last.scatteredDelta, last.PreviousReverse(last.eventReverse)};
@@ -36,7 +45,7 @@ Color HitLight(const BidirectionalSample& sample, const PathState& state, const 
                           NextEventCount(sample.camera.Count()), sample.MergingOfLight(path.end, joint, hit));
   if (sample.WantsSums()) [[unlikely]]
     path.sums = sample.Sums(path.end, hit, event.isDelta, 0);
-  return sample.AddToPixel(path);
+  return finish();
 }
 
 }  // namespace
@@ -64,9 +73,11 @@ Color SeeLightAt(const BidirectionalSample& sample, const PathState& state, cons
   path.sums.Of(TechniqueGroup::Hit).Add(1);
   sample.Report(path);
   const Color contribution = path.WeightedValue();
-  // The group is that of the surface, because path.end may be unset: a light that emits from one side only may have no
+  // The light is that of the surface, because path.end may be unset: a light that emits from one side only may have no
   // density here.
-  if (context.layers) context.layers->Add(lighting.GroupAt(point), contribution);
+  if (context.layers)
+    AddFoundToLayers(context, sample.camera, state.event, context.outputs->OfLight(lighting.LightAt(point)),
+                     contribution);
   return contribution;
 }
 

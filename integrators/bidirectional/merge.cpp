@@ -4,6 +4,7 @@
 #include "integrators/bidirectional/techniques.h"
 #include "integrators/bidirectional/weights.h"
 #include "integrators/photon/photon_pass.h"
+#include "integrators/walk/path_layers.h"
 
 namespace lampyr {
 
@@ -22,7 +23,7 @@ ConnectedPath MergedPath(const BidirectionalSample& sample, const Photon& photon
   path.merging = sample.merging;
   path.connectionCount = sample.connectionCount;
   path.splatCount = sample.settings.splatCount;
-  path.volume = sample.settings.photons.volume;
+  path.volume = &sample.settings.photons.volume;
   path.seenDensity = sample.seenDensity;
   path.value = value;
   path.weight = weight;
@@ -87,12 +88,12 @@ bool SetPointVertex(const SampleContext& context, const PathState& state, const 
   const VolumePhoton& photon = map.VolumeOf(hit.index);
   const std::optional<BeamPoint> point = flight.PointAt(hit.t, photon.medium);
   if (!point) return false;
-  const auto radius = static_cast<double>(photon.radius);
   merge = {.photon = &map[hit.index],
            .light = map.PathOf(map[hit.index]),
            .throughput = state.Throughput() * point->passed,
-           .kernel = 1 / (static_cast<double>(kPi) * radius * radius),
-           .use = hit.index};
+           .kernel = photon.Kernel(),
+           .use = hit.index,
+           .labels = map.LabelsOf(hit.index)};
   SetVertexInMedium(state, flight, flight.line.start + static_cast<double>(hit.t) * flight.line.direction,
                     photon.medium, photon.phase, photon.extinction, *point, vertex);
   return true;
@@ -119,6 +120,7 @@ bool SetBeamOf(const BidirectionalSample& sample, const BeamCrossing& crossing, 
     return false;
   merge.photon = &beam.photon;
   merge.light = beam.densities;
+  merge.labels = map.Beams().LabelsOf(map.Beams().StartOf(found));
   merge.beam = &beam;
   merge.flight = found.start;
   merge.kernel = 1 / (sample.settings.photons.volume.ShareOf(beam.edge.isFromMedium) * 2 *
@@ -145,7 +147,10 @@ Color MergeInMedium(const BidirectionalSample& sample, const VolumeMerge& merge)
   const double probability = static_cast<double>(sample.settings.counts.merging.At(sample.film));
   const double perPath = static_cast<double>(sample.Lighting().FluxUnit()) / (probability * pass.lightPaths);
   const double perDensity = perPath * merge.kernel;
-  if (context.layers) context.layers->Add(photon.group, Product(merge.throughput, value, perDensity * weight));
+  if (context.layers) {
+    AddArrivingToLayers(context, sample.camera, PartsOf(vertex, photon.toPrevious, false, f.diffuse, f.specular),
+                        merge.labels, Product(merge.throughput, value, perDensity * weight));
+  }
   if (pass.use && merge.use != VolumeMerge::kUnused) {
     // A beam counts as a point photon would at the end of the flight.
     const auto radius = static_cast<double>(pass.volume.At(vertex.point.position));
@@ -199,14 +204,16 @@ Color Merge(const BidirectionalSample& sample, std::span<const uint32_t> found) 
     if (photon.depth + sample.camera.Count() > most || !photon.IsOnSurface(vertex.bsdf.Ng())) continue;
     const Vector3& toLight = photon.toPrevious;
     const BsdfEvaluation f = vertex.Evaluate(toLight, TransportMode::Radiance);
-    const Color scattered = f.diffuse * photon.flux + f.specular * pass.map->SpecularFlux(photon);
+    const Color diffuse = f.diffuse * photon.flux, specular = f.specular * pass.map->SpecularFlux(photon);
+    const Color scattered = diffuse + specular;
     if (scattered.IsBlack()) continue;
     const double weight = WeightOf(sample, photon, pass.map->PathOf(photon), f, joint);
     const Color value = scattered * vertex.ArrivalCorrection(toLight, photon.normal.Unpack());
     sum += value * static_cast<float>(weight);
     // Multiplied in another order than the sum: a shared product would be rounded differently than without layers.
     if (context.layers) [[unlikely]]
-      context.layers->Add(photon.group, Product(vertex.Throughput(), value, perDensity * weight));
+      AddArrivingToLayers(context, sample.camera, PartsOf(vertex, toLight, false, diffuse, specular),
+                          pass.map->LabelsOf(index), Product(vertex.Throughput(), value, perDensity * weight));
     if (pass.use) {
       sample.lookup.used.push_back({index, (vertex.Throughput() * f.Sum()).Average() * static_cast<float>(weight) *
                                                sample.perArea / probability});

@@ -1,6 +1,7 @@
 // s = 1: next-event estimation.
 #include "integrators/bidirectional/techniques.h"
 #include "integrators/bidirectional/weights.h"
+#include "integrators/walk/path_layers.h"
 
 namespace lampyr {
 
@@ -44,7 +45,8 @@ class NextEventTechnique final : public NextEventVisitor {
   // The path to the light that was weighted last.
   void Arrived(const LightConnection& light, const Color& value, const Color& contribution) override {
     if (sample_.context.layers)
-      sample_.context.layers->Add(sample_.Lighting().GroupOf(light.direct.light), contribution);
+      AddFoundToLayers(sample_.context, sample_.camera, light.Parts(vertex_),
+                       sample_.context.outputs->OfLight(light.direct.light), contribution);
     if (!sample_.IsObserved()) [[likely]]
       return;
     ConnectedPath path;

@@ -11,9 +11,9 @@ AreaDensity DensityWithoutMedia(const BidirectionalSample& sample, const SeenFro
                      sample.settings.filmPixels);
 }
 
-void AddSplat(const BidirectionalSample& sample, const SeenFromLens& seen, double weight, uint32_t light) {
-  AddSplats(seen.connection, seen.value * static_cast<float>(weight), sample.Lighting().GroupOf(light),
-            *sample.context.splats, sample.context.counts);
+void AddSplat(const BidirectionalSample& sample, const SeenFromLens& seen, double weight,
+              std::span<const PathLabel> labels) {
+  AddSplats(sample.context, seen.connection, seen.value * static_cast<float>(weight), labels);
 }
 
 void SetLens(const SeenFromLens& seen, AreaDensity atLens, double weight, ConnectedPath& path) {
@@ -46,7 +46,8 @@ void SplatLight(const BidirectionalSample& sample, const EmittedPhoton& photon) 
     path.sums.Of(TechniqueGroup::Hit).Add(atLens / position / sample.settings.splatCount);
     sample.Report(path);
   }
-  AddSplat(sample, *seen, weight, photon.light);
+  const PathLabel label[] = {{sample.context.outputs ? sample.context.outputs->OfLight(photon.light) : 0}};
+  AddSplat(sample, *seen, weight, label);
 }
 
 void SplatVertex(const BidirectionalSample& sample) {
@@ -84,7 +85,7 @@ void SplatVertex(const BidirectionalSample& sample) {
       path.sums = sample.SumsOfConnection(light.Count(), joint.light, true);
     sample.Report(path);
   }
-  AddSplat(sample, *seen, weight, sample.lightEnd.light);
+  AddSplat(sample, *seen, weight, LabelsTowardsLens(sample.context, light, *seen));
 }
 
 }  // namespace lampyr

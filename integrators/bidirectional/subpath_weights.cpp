@@ -18,10 +18,17 @@ double SquaredDistance(const Vertex& a, const Vertex& b) {
 
 void SetWeights(const PathVertex& previous, const PathState& state, bool connects, PathVertex& vertex) {
   const double squared = SquaredDistance(vertex, previous);
-  vertex.pdfForward = state.pdfDirection * (state.factors.forward * EdgeDensity(vertex, state.ray.direction, squared));
-  vertex.previousSolidAnglePerArea = state.factors.reverse * EdgeDensity(previous, state.ray.direction, squared);
-  vertex.weight =
-      previous.weight.Next(previous.scatteredDelta, vertex.pdfForward, previous.PreviousReverse(previous.eventReverse));
+  SetWeights(
+      {previous.weight, previous.PreviousReverse(previous.eventReverse), previous.scatteredDelta, state.pdfDirection},
+      state.factors, EdgeDensity(vertex, state.ray.direction, squared),
+      EdgeDensity(previous, state.ray.direction, squared), connects, vertex);
+}
+
+void SetWeights(const LeftVertex& previous, const EdgeFactors& edge, SolidAnglePerArea fromPrevious,
+                SolidAnglePerArea toPrevious, bool connects, PathVertex& vertex) {
+  vertex.pdfForward = previous.pdfDirection * (edge.forward * fromPrevious);
+  vertex.previousSolidAnglePerArea = edge.reverse * toPrevious;
+  vertex.weight = previous.weight.Next(previous.scatteredDelta, vertex.pdfForward, previous.previousReverse);
   if (!connects) vertex.weight.connections.last = 0;
 }
 
@@ -53,10 +60,15 @@ void AddDensities(const Subpath& path, const VolumeRadius& radius, bool isFromLi
         isFromLight ? MergeVolume(previous, before, after, radius) : MergeVolume(previous, after, before, radius);
   }
   last.forwardIsDelta = previous.scatteredDelta;
-  densities[count - 2].canMerge = previous.CanMerge() && !previous.scatteredDelta;
-  if (count < 3) return;
-  densities[count - 3].reverse = previous.PreviousReverse(previous.eventReverse).value;
-  densities[count - 3].reverseIsDelta = previous.scatteredDelta;
+  AddEvent(previous.CanMerge() && !previous.scatteredDelta, previous.scatteredDelta,
+           previous.PreviousReverse(previous.eventReverse), count - 1, densities);
+}
+
+void AddEvent(bool canMerge, bool isDelta, AreaDensity reverse, size_t count, std::span<SubpathDensities> densities) {
+  densities[count - 1].canMerge = canMerge;
+  if (count < 2) return;
+  densities[count - 2].reverse = reverse.value;
+  densities[count - 2].reverseIsDelta = isDelta;
 }
 
 SolidAnglePerArea FirstEdgeDensity(const LightingServices& lighting, uint32_t light, float geometryTerm,

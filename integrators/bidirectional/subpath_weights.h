@@ -9,10 +9,29 @@ namespace lampyr {
 // Without `connects`: the weight for merging alone.
 void SetWeights(const PathVertex& previous, const PathState& state, bool connects, PathVertex& vertex);
 
+// A vertex from which a subpath goes on, as far as the weights of the next vertex depend on it.
+struct LeftVertex {
+  PartialWeight weight;
+  AreaDensity previousReverse;  // of the vertex before it, by the event
+  bool scatteredDelta = false;
+  SolidAngleDensity pdfDirection;
+};
+// The same. `edge`: factors of the walk between both. `fromPrevious`, `toPrevious`: EdgeDensity at `vertex` and at the
+// previous vertex.
+void SetWeights(const LeftVertex& previous, const EdgeFactors& edge, SolidAnglePerArea fromPrevious,
+                SolidAnglePerArea toPrevious, bool connects, PathVertex& vertex);
+
 // The densities of the last vertex of a subpath, and what is known of those before it once that one is there.
 // `radius`: of photons in media. `isFromLight`: the camera's side is that of later vertices.
 void AddDensities(const Subpath& path, const VolumeRadius& radius, bool isFromLight,
                   std::vector<SubpathDensities>& densities);
+// The densities of the first vertex of a light path.
+inline SubpathDensities FirstDensities(const LightEnd& end, bool isInMedium) {
+  return {.forward = end.emission.value, .isInMedium = isInMedium, .extent = end.extent};
+}
+// What the event at the vertex of `densities[count - 1]` adds to the densities of those before it. `reverse`: of the
+// vertex before it, by the event.
+void AddEvent(bool canMerge, bool isDelta, AreaDensity reverse, size_t count, std::span<SubpathDensities> densities);
 
 // An edge of a path at a vertex: the direction away from the vertex, and the factors of a walk that arrives there.
 struct ArrivingEdge {

@@ -87,11 +87,6 @@ struct BidirectionalSample {
   void SetLight(ConnectedPath& path, size_t count) const;
   // The observer, if any, receives the path. A path is large: techniques that make many do without where none observes.
   void Report(ConnectedPath& path) const;
-  // Reports a path that contributes to the sample's own pixel. Returns the weighted contribution, scaled by the
-  // survival weight `survivalWeight` (ShadowRays::SurvivalWeight), and adds it to the layer of the light.
-  Color AddToPixel(ConnectedPath& path, float survivalWeight = 1) const;
-  // The same for a path that no observer sees. `light`: the light that the path comes from.
-  Color AddToPixel(uint32_t light, const Color& value, double weight, float survivalWeight) const;
 };
 
 // Area density of the vertex that a camera ray hits, over the density of the lens point: the factor of t = 2 that t = 1
@@ -122,10 +117,11 @@ struct VolumeMerge {
   std::span<const SubpathDensities> light;  // of its path
   // Throughput of the camera path at the photon, over the probability of passing there; without scattering.
   Color throughput;
-  double kernel = 0;                 // density of the kernel, without the number of light paths
-  uint32_t use = kUnused;            // its index for PhotonUse
-  const BeamVertex* beam = nullptr;  // of a beam
-  uint32_t flight = 0;               // index of the beam's FlightStart
+  double kernel = 0;                  // density of the kernel, without the number of light paths
+  uint32_t use = kUnused;             // its index for PhotonUse
+  std::span<const PathLabel> labels;  // of its path; empty without layers
+  const BeamVertex* beam = nullptr;   // of a beam
+  uint32_t flight = 0;                // index of the beam's FlightStart
 
   static constexpr uint32_t kUnused = 0xffffffffu;
 };

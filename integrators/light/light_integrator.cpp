@@ -25,19 +25,23 @@ class LensConnector final : public LightPathVisitor {
  public:
   explicit LensConnector(const SampleContext& context) : context_(context) {}
   void Emitted(const EmittedPhoton& photon) override {
-    Add(SeeLight(context_, photon, dimensions::kLens), context_.scene.lighting->GroupOf(photon.light));
+    const auto seen = SeeLight(context_, photon, dimensions::kLens);
+    if (seen) AddStart(*seen, context_.outputs ? context_.outputs->OfLight(photon.light) : 0);
   }
-  void Glowed(LightPath& path, const EmittedInMedium& emitted) override {
-    Add(SeeGlow(context_, emitted, dimensions::kLens), path.group);
+  void Glowed(LightPath&, const EmittedInMedium& emitted) override {
+    const auto seen = SeeGlow(context_, emitted, dimensions::kLens);
+    if (seen) AddStart(*seen, context_.outputs ? context_.outputs->OfMedia() : 0);
   }
   void Arrived(LightPath& path, const PathState&) override {
     const uint32_t lens = PathDimensions().Of(static_cast<int>(path.vertices.Count()), dimensions::kLight);
-    Add(SeeVertex(context_, path.vertices.Last(), lens), path.group);
+    const auto seen = SeeVertex(context_, path.vertices.Last(), lens);
+    if (seen) AddSplats(context_, seen->connection, seen->value, LabelsTowardsLens(context_, path.vertices, *seen));
   }
 
  private:
-  void Add(const std::optional<SeenFromLens>& seen, uint32_t group) {
-    if (seen) AddSplats(seen->connection, seen->value, group, *context_.splats, context_.counts);
+  void AddStart(const SeenFromLens& seen, uint32_t source) {
+    const PathLabel label[] = {{source}};
+    AddSplats(context_, seen.connection, seen.value, label);
   }
 
   const SampleContext& context_;

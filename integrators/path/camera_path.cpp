@@ -5,6 +5,7 @@
 #include "integrators/path/lit_segment.h"
 #include "integrators/walk/lens.h"
 #include "integrators/walk/partial_weight.h"
+#include "integrators/walk/path_layers.h"
 
 namespace lampyr {
 
@@ -26,7 +27,7 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
     }
     for (size_t i = 0; i < lighting_.InfiniteCount(); ++i) {
       const auto found = lighting_.EvaluateEscaped(i, path.Last().receiver, state.ray.direction, context_.time, false);
-      if (found) AddFound(path.Last(), state, *found);
+      if (found) AddFound(path, state, *found);
     }
   }
 
@@ -34,14 +35,15 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
            bool isLight) override {
     if (isLight && path.Count() == 0) {
       const Color seen = state.specular * lighting_.EmissionForCamera(state.ray.direction, hit.t, point, context_.time);
-      if (context_.layers) context_.layers->Add(lighting_.GroupAt(point), seen);
+      if (context_.layers)
+        AddFoundToLayers(context_, path, state.event, context_.outputs->OfLight(lighting_.LightAt(point)), seen);
       radiance_ += seen;
     } else if (isLight) {
       const Receiver& receiver = path.Last().receiver;
       const float distance = glm::distance(point.position, receiver.position);
       const auto found =
           lighting_.EvaluateSamples(receiver, state.ray.direction, distance, point, context_.time, false);
-      if (found) AddFound(path.Last(), state, *found);
+      if (found) AddFound(path, state, *found);
     }
     return !emissionOnly_;
   }
@@ -56,9 +58,9 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
     if (segment_.Share() > 0) SampleSegment(path, state, flight);
   }
 
-  void Glowed(const Subpath&, const Color& throughput, const Color& radiance) override {
-    const Color seen = throughput * radiance;
-    if (context_.layers) context_.layers->Add(lighting_.Groups().OfMedia(), seen);
+  void Glowed(const Subpath& path, const PathState& state, const Color& radiance) override {
+    const Color seen = state.Throughput() * radiance;
+    if (context_.layers) AddFoundToLayers(context_, path, state.event, context_.outputs->OfMedia(), seen);
     radiance_ += seen;
   }
 
@@ -73,9 +75,10 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
     const auto events = static_cast<int>(path.Count());
     const bool gathers = gatherer_ && vertex.GathersPhotons();  // in media the ray has gathered on its way
     if (gathers) gatherer_->Find(vertex, state.length);
+    path_ = &path;
     if (SamplesLights(vertex))
       radiance_ += SampleDirectLight(context_, nextEvent_, vertex, events - 1, radiance_, *this);
-    if (gathers) radiance_ += gatherer_->Gather(vertex, events, state.length);
+    if (gathers) radiance_ += gatherer_->Gather(path, state.length);
     return true;
   }
 
@@ -151,14 +154,21 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
     sampled_ = &vertex;
     NextEventSettings settings = nextEvent_;
     settings.learns = false;
+    path.Add();  // for the connection alone
+    path_ = &path;
+    if (context_.outputs) path.LabelLast(*context_.outputs, TransportMode::Radiance, state.event);
     radiance_ +=
         SampleLight(context_, settings, vertex, sample->light, pair(dimensions::kSegmentLight), radiance_, *this);
+    path.Drop();
     sampledFor_ = nullptr;
   }
 
   // A light found by BSDF sampling, weighted against next-event estimation.
-  void AddFound(const PathVertex& last, const PathState& state, const FoundLight& found) {
-    Color radiance = state.diffuse * found.evaluation.diffuse + state.specular * found.evaluation.specular;
+  void AddFound(const Subpath& path, const PathState& state, const FoundLight& found) {
+    const PathVertex& last = path.Last();
+    const Color diffuse = state.diffuse * found.evaluation.diffuse;
+    const Color specular = state.specular * found.evaluation.specular;
+    Color radiance = diffuse + specular;
     if (!last.scatteredDelta && SamplesLights(last)) {
       const PdfSolidAngle direction(static_cast<float>(state.pdfDirection.value * state.factors.forward));
       const PdfSolidAngle direct = found.selection * found.evaluation.pdfDirect;
@@ -170,7 +180,10 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
         radiance *= PowerHeuristic(direction, direct);
       }
     }
-    if (context_.layers) context_.layers->Add(lighting_.GroupOf(found.light), radiance);
+    if (context_.layers) {
+      const ScatteringParts event{state.event.ofDiffuse, state.event.ofSpecular, diffuse, specular};
+      AddFoundToLayers(context_, path, event, context_.outputs->OfLight(found.light), radiance);
+    }
     radiance_ += radiance;
   }
 
@@ -206,7 +219,9 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
     return static_cast<float>(Mis(own) / (Mis(own) + Mis(other) + Mis(third)));
   }
   void Arrived(const LightConnection& light, const Color&, const Color& contribution) override {
-    if (context_.layers) context_.layers->Add(lighting_.GroupOf(light.direct.light), contribution);
+    if (context_.layers)
+      AddFoundToLayers(context_, *path_, light.Parts(path_->Last()), context_.outputs->OfLight(light.direct.light),
+                       contribution);
   }
 
   const SampleContext& context_;
@@ -219,6 +234,7 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
   double arrivesAfter_ = 0;    // where the walk ends on it
   Arrival arrival_;            // at the last vertex
   // While a vertex on the last ray is connected whose distance was sampled for a light:
+  const Subpath* path_ = nullptr;  // at whose last vertex lights are sampled
   const LitSegment::Sample* sampledFor_ = nullptr;
   const PathVertex* sampled_ = nullptr;
   Color radiance_;

@@ -14,10 +14,10 @@ class PhotonGatherer {
   // Looks for the photons near `vertex`, and fetches them into the cache while other work goes on. `length`: path
   // length from the camera, scene units.
   virtual void Find(const PathVertex& vertex, float length) = 0;
-  // Light of the photons found last, scattered at `vertex` towards the previous one, times the vertex's throughput.
-  // Only photons from directions that the BSDF samples with a density of at most CameraPathSettings::gatherBelow.
-  // `events`: scattering events of the path, this one included.
-  virtual Color Gather(const PathVertex& vertex, int events, float length) = 0;
+  // Light of the photons found last, scattered at the last vertex of `path` towards the previous one, times the
+  // vertex's throughput. Only photons from directions that the BSDF samples with a density of at most
+  // CameraPathSettings::gatherBelow.
+  virtual Color Gather(const Subpath& path, float length) = 0;
   // False if photons are not gathered where a path collides with a medium: all directions are followed from there.
   virtual bool GathersInMedium(const PathVertex& vertex) const = 0;
   // Light of the photons in media that the ray of `state` passes, scattered towards its start, times the throughput

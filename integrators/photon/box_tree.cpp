@@ -62,7 +62,7 @@ BoxTree::BoxTree(std::span<const Bounds3> boxes) {
 
 void BoxTree::Find(const Ray& ray, float tMax, std::vector<uint32_t>& found) const {
   if (nodes_.empty()) return;
-  // Of no component infinite, so that nothing is 0 · infinity.
+  // Bounded, because 0 times infinity is not a number.
   Vector3 inverse;
   for (int axis = 0; axis < 3; ++axis) {
     constexpr float kLeast = 1e-15f;

@@ -11,6 +11,17 @@
 
 namespace lampyr {
 
+// Place on a Morton curve, which keeps neighbours in space near each other. Coordinates: below 1024.
+inline uint32_t MortonCode(uint32_t x, uint32_t y, uint32_t z) {
+  const auto spread = [](uint32_t bits) {
+    bits = (bits | bits << 16) & 0x030000ff;
+    bits = (bits | bits << 8) & 0x0300f00f;
+    bits = (bits | bits << 4) & 0x030c30c3;
+    return (bits | bits << 2) & 0x09249249;
+  };
+  return spread(x) << 2 | spread(y) << 1 | spread(z);
+}
+
 // Each node has up to eight children, whose boxes it holds side by side. Nodes are complete, level by level: no
 // pointers.
 class BoxTree {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -68,7 +69,6 @@ struct TracedPhoton {
   float previousSolidAnglePerArea;
   PackedNormal normal;
   uint16_t depth;                // 1: first hit of its path
-  uint16_t group;                // of the light
   uint32_t origin;               // index of its path's origin in the list
   uint32_t path;                 // index of its path's first vertex in the densities of the list, if they are kept
   uint32_t volume = kOnSurface;  // index in the volume photons of the list
@@ -83,6 +83,12 @@ struct VolumePhoton {
   PhaseBsdf phase;
   Color extinction;  // σ_t there
   int32_t medium = kVacuum;
+
+  // Of the disk across a beam, 1/scene unit².
+  double Kernel() const {
+    const auto r = static_cast<double>(radius);
+    return 1 / (static_cast<double>(kPi) * r * r);
+  }
 };
 
 // The photons of consecutive light paths. Keeps its memory when it is emptied.
@@ -95,6 +101,8 @@ class PhotonList {
     densities_.clear();
     volume_.clear();
     beams_.Clear();
+    ranges_.clear();
+    labels_.clear();
     originsOfFlights_ = 0;
   }
   // What is added from now on belongs to the next path.
@@ -108,25 +116,30 @@ class PhotonList {
     origins_.resize(KeptOrigins());  // drops origins of paths that stored no photon
     origins_.push_back(origin);
   }
-  // Stores a photon at `vertex`. `group`: of its light (LightGroups). `depth` is clamped to kDeepest. On a cut-out the
-  // light path and the gathering path each hit the surface with probability `coverage`; dividing the flux by it makes
-  // the factor count once.
-  void Add(const PathVertex& vertex, size_t depth, uint32_t group = 0) {
+  // Stores a photon at `vertex`. `labels`: of its path there; nullopt without layers. `depth` is clamped to kDeepest.
+  // On a cut-out the light path and the gathering path each hit the surface with probability `coverage`; dividing the
+  // flux by it makes the factor count once.
+  void Add(const PathVertex& vertex, size_t depth, std::optional<std::span<const PathLabel>> labels = std::nullopt) {
     const float passed = vertex.coverage > 0 ? 1 / vertex.coverage : 0.0f;
     const auto origin = static_cast<uint32_t>(origins_.size()) - 1;
     // In place: a copy of what was just written field by field stalls on store forwarding.
     photons_.emplace_back(vertex.point.position, vertex.toPrevious, vertex.diffuse * passed, vertex.specular * passed,
                           PhotonWeight::Of(vertex.weight, depth),
                           static_cast<float>(vertex.previousSolidAnglePerArea.value), PackedNormal(vertex.bsdf.Ng()),
-                          static_cast<uint16_t>(std::min(depth, kDeepest)), static_cast<uint16_t>(group), origin,
+                          static_cast<uint16_t>(std::min(depth, kDeepest)), origin,
                           static_cast<uint32_t>(densities_.size() + 1));
     if (const PhaseBsdf* phase = vertex.bsdf.Phase()) {
       photons_.back().volume = static_cast<uint32_t>(volume_.size());
       volume_.push_back({vertex.point.position, 0, *phase, vertex.extinction, vertex.insideMedium});
     }
+    if (labels) [[unlikely]]
+      ranges_.push_back(AppendLabels(*labels, labels_));
   }
   // Stores the flight of the current path from `start`. `emission`: of a flight from a light; null: from a vertex.
-  void AddFlight(FlightStart start, const EmittedPhoton* emission, std::span<const PhotonBeam> beams) {
+  // `labels`: of the path on the flight, as of Add.
+  void AddFlight(FlightStart start, const EmittedPhoton* emission, std::span<const PhotonBeam> beams,
+                 std::span<const PathLabel> labels = {}) {
+    start.labels = AppendLabels(labels, beams_.labels);
     start.path = static_cast<uint32_t>(densities_.size() + 1);
     if (emission) {
       start.emission = static_cast<uint32_t>(beams_.emissions.size());
@@ -158,7 +171,8 @@ class PhotonList {
   // Memory while the map is built, of which there are two copies of the densities.
   uint64_t Bytes(uint64_t perPhoton) const {
     return photons_.size() * perPhoton + 2 * sizeof(SubpathDensities) * densities_.size() +
-           3 * sizeof(VolumePhoton) * volume_.size() + 4 * beams_.Bytes();
+           3 * sizeof(VolumePhoton) * volume_.size() + beams_.BytesOfMap() + 2 * sizeof(LabelRange) * ranges_.size() +
+           2 * sizeof(PathLabel) * labels_.size();
   }
   // Removes whole paths from the end until Bytes is no more than `most`, or `least` paths are left; returns the number
   // of paths left.
@@ -170,6 +184,7 @@ class PhotonList {
       beams_.starts.resize(starts_.back().flight);
       beams_.beams.resize(starts_.back().beam);
       beams_.emissions.resize(starts_.back().emission);
+      if (!ranges_.empty()) ranges_.resize(photons_.size());
       starts_.pop_back();
     }
     origins_.resize(KeptOrigins());
@@ -180,6 +195,9 @@ class PhotonList {
   const std::vector<SubpathDensities>& Densities() const { return densities_; }
   const std::vector<VolumePhoton>& Volume() const { return volume_; }
   const BeamList& Beams() const { return beams_; }
+  // Labels of photons in the same order, and what they refer to; empty without layers.
+  const std::vector<LabelRange>& LabelRanges() const { return ranges_; }
+  const std::vector<PathLabel>& Labels() const { return labels_; }
 
  private:
   // Number of origins whose paths stored photons; 0 if no origin was set.
@@ -197,6 +215,8 @@ class PhotonList {
   std::vector<SubpathDensities> densities_;
   std::vector<VolumePhoton> volume_;
   BeamList beams_;
+  std::vector<LabelRange> ranges_;
+  std::vector<PathLabel> labels_;
   size_t originsOfFlights_ = 0;  // origins that flights may refer to
 };
 
@@ -214,8 +234,7 @@ struct alignas(64) Photon {
   PackedNormal normal;  // of the surface
   uint32_t specular = kSame;
   uint16_t depth = 0;
-  uint16_t group = 0;  // of the light that it comes from
-  uint32_t path = 0;   // PhotonMap::PathOf
+  uint32_t path = 0;  // PhotonMap::PathOf
 
   static constexpr uint32_t kSame = 0xffffffffu;
 

@@ -9,11 +9,15 @@ void BeamList::Clear() {
   starts.clear();
   beams.clear();
   emissions.clear();
+  labels.clear();
 }
 
 void BeamList::Append(const BeamList& other, uint32_t firstOrigin, uint32_t firstDensity) {
   const auto firstStart = static_cast<uint32_t>(starts.size()), firstEmission = static_cast<uint32_t>(emissions.size());
+  const auto firstLabel = static_cast<uint32_t>(labels.size());
+  labels.insert(labels.end(), other.labels.begin(), other.labels.end());
   for (FlightStart start : other.starts) {
+    start.labels = {start.labels.first + firstLabel, start.labels.end + firstLabel};
     start.path += firstDensity;
     if (start.origin != FlightStart::kNone) start.origin += firstOrigin;
     if (start.emission != FlightStart::kNone) start.emission += firstEmission;
@@ -29,55 +33,77 @@ void BeamList::Append(const BeamList& other, uint32_t firstOrigin, uint32_t firs
 namespace {
 
 // Length of a piece in radii: its box is then as wide as it is long, unless the beam is along an axis.
-constexpr float kPieceInRadii = 24;
-constexpr int kMostPieces = 256;    // of a beam
-constexpr float kMargin = 1.0001f;  // of their boxes
+constexpr double kPieceInRadii = 24;
+constexpr double kMostPieces = 256;  // of a beam
+constexpr double kMeanPieces = 16;   // of all beams, at most; then pieces are longer
+constexpr float kMargin = 1.0001f;   // of their boxes
 
-// Points of 1024 cells along each axis, by a Morton curve.
 uint32_t CellOf(const Point3& p, const Bounds3& bounds) {
   const Vector3 extent = bounds.Diagonal();
   const float longest = std::max({extent.x, extent.y, extent.z});
   if (!(longest > 0)) return 0;
-  const Vector3 relative = (p - bounds.min) * (1023 / longest);
-  uint32_t cell = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto x = static_cast<uint32_t>(std::clamp(relative[axis], 0.0f, 1023.0f));
-    for (int bit = 0; bit < 10; ++bit) cell |= (x >> bit & 1u) << (3 * bit + axis);
-  }
-  return cell;
+  const Vector3 at = glm::clamp((p - bounds.min) * (1023 / longest), 0.0f, 1023.0f);
+  return MortonCode(static_cast<uint32_t>(at.x), static_cast<uint32_t>(at.y), static_cast<uint32_t>(at.z));
+}
+
+Point3 PointOf(const FlightStart& start, float t) {
+  return Point3(start.position + static_cast<double>(t) * start.direction);
 }
 
 }  // namespace
 
-BeamMap::BeamMap(BeamList list, const VolumeRadius& radius) : list_(std::move(list)), radius_(radius) {
-  struct Placed {
-    uint32_t cell;
-    Piece piece;
-    Bounds3 box;
-  };
+struct BeamMap::Placed {
+  uint32_t cell = 0;
+  Piece piece{};
+  Bounds3 box;
+};
+
+size_t BeamList::BytesOfMap() const {
+  // The pieces twice while they are sorted, and their boxes, which the nodes of the tree hold again.
+  constexpr size_t piece = 2 * sizeof(BeamMap::Placed) + sizeof(BeamMap::Piece) + 3 * sizeof(Bounds3);
+  return 2 * Bytes() + static_cast<size_t>(kMeanPieces + 1) * beams.size() * piece;
+}
+
+// The pieces of all beams, in the order of beams.
+std::vector<BeamMap::Placed> BeamMap::Split() const {
+  std::vector<double> wanted;
+  wanted.reserve(list_.beams.size());
+  double total = 0;
+  for (const PhotonBeam& beam : list_.beams) {
+    const FlightStart& start = StartOf(beam);
+    const float least =
+        std::min(radius_.BeamAt(PointOf(start, beam.step.tMin)), radius_.BeamAt(PointOf(start, beam.step.tMax)));
+    const auto length = static_cast<double>(beam.step.tMax - beam.step.tMin);
+    const double pieces = std::ceil(length / (kPieceInRadii * static_cast<double>(least)));
+    wanted.push_back(pieces < kMostPieces ? pieces : kMostPieces);
+    total += wanted.back();
+  }
+  const double scale = std::min(1.0, kMeanPieces * static_cast<double>(wanted.size()) / total);
   std::vector<Placed> placed;
   for (uint32_t i = 0; i < list_.beams.size(); ++i) {
     const PhotonBeam& beam = list_.beams[i];
-    const FlightStart& start = StartOf(beam);
-    const auto at = [&](double t) { return Point3(start.position + t * start.direction); };
-    const float length = beam.step.tMax - beam.step.tMin;
-    const float least = std::min(radius_.BeamAt(at(beam.step.tMin)), radius_.BeamAt(at(beam.step.tMax)));
-    const float wanted = std::ceil(length / (kPieceInRadii * least));
-    const int pieces = wanted < kMostPieces ? std::max(static_cast<int>(wanted), 1) : kMostPieces;
+    const int pieces = std::max(static_cast<int>(scale * wanted[i]), 1);
+    const auto end = [&](int k) {
+      const float length = beam.step.tMax - beam.step.tMin;
+      return k == pieces ? beam.step.tMax
+                         : beam.step.tMin + length * static_cast<float>(k) / static_cast<float>(pieces);
+    };
     for (int k = 0; k < pieces; ++k) {
-      const auto ends = static_cast<float>(pieces);
-      const float from = beam.step.tMin + length * static_cast<float>(k) / ends;
-      const float to = k + 1 == pieces ? beam.step.tMax : beam.step.tMin + length * static_cast<float>(k + 1) / ends;
-      Placed one{0, {i, from, to}, {}};
-      for (const float t : {from, to}) {
-        const Point3 p = at(t);
+      Placed& one = placed.emplace_back();
+      one.piece = {i, end(k), end(k + 1)};
+      for (const float t : {one.piece.tMin, one.piece.tMax}) {
+        const Point3 p = PointOf(StartOf(beam), t);
         const Vector3 reach(kMargin * radius_.BeamAt(p));
         one.box.Add(p - reach);
         one.box.Add(p + reach);
       }
-      placed.push_back(one);
     }
   }
+  return placed;
+}
+
+BeamMap::BeamMap(BeamList list, const VolumeRadius& radius) : list_(std::move(list)), radius_(radius) {
+  std::vector<Placed> placed = Split();
   Bounds3 all;
   for (const Placed& one : placed) all.Add(one.box);
   for (Placed& one : placed) one.cell = CellOf(one.box.Center(), all);

@@ -7,17 +7,27 @@
 #include <vector>
 
 #include "integrators/photon/box_tree.h"
+#include "integrators/walk/path_labels.h"
 #include "integrators/walk/vertex.h"
 #include "lights/services/lighting_services.h"
 
 namespace lampyr {
 
+// A part of a list of labels.
+struct LabelRange {
+  uint32_t first = 0, end = 0;
+};
+inline LabelRange AppendLabels(std::span<const PathLabel> labels, std::vector<PathLabel>& all) {
+  const auto first = static_cast<uint32_t>(all.size());
+  all.insert(all.end(), labels.begin(), labels.end());
+  return {first, static_cast<uint32_t>(all.size())};
+}
+
 // A vertex of a light path from which it has flown on, or its start at a light: what the weight and the densities of a
 // vertex further along the flight follow from.
 struct FlightStart {
   Point3d position{0.0};
-  Vector3d direction{0.0};   // unit
-  Vector3 fromOrigin{0.0f};  // of a start at a light: from the light's point to `position`
+  Vector3d direction{0.0};  // unit
   Color diffuse,
       specular;            // throughput that leaves, LightingServices::FluxUnit over the density; of a light unfiltered
   Color extinction{1.0f};  // at the start (Vertex::extinction)
@@ -30,7 +40,7 @@ struct FlightStart {
   bool canMerge = false;
   bool isInMedium = false;
   uint16_t depth = 1;         // of a vertex on the flight
-  uint16_t group = 0;         // of the light
+  LabelRange labels;          // of the path on the flight, in the labels of the list
   uint32_t origin = kNone;    // index of the path's origin; kNone: not known
   uint32_t path = 0;          // index of the path's first vertex in the densities
   uint32_t emission = kNone;  // index of its emission; kNone: it starts at a vertex
@@ -61,12 +71,15 @@ struct BeamList {
   std::vector<FlightStart> starts;
   std::vector<PhotonBeam> beams;
   std::vector<EmittedPhoton> emissions;
+  std::vector<PathLabel> labels;  // empty without layers
 
   bool IsEmpty() const { return beams.empty(); }
   size_t Bytes() const {
     return starts.size() * sizeof(FlightStart) + beams.size() * sizeof(PhotonBeam) +
-           emissions.size() * sizeof(EmittedPhoton);
+           emissions.size() * sizeof(EmittedPhoton) + labels.size() * sizeof(PathLabel);
   }
+  // Upper bound of the memory while a BeamMap is built, of which there are two copies of the list.
+  size_t BytesOfMap() const;
   void Clear();
   void Append(const BeamList& other, uint32_t firstOrigin, uint32_t firstDensity);
 };
@@ -86,16 +99,23 @@ class BeamMap {
             std::vector<BeamCrossing>& crossings) const;
   const PhotonBeam& operator[](uint32_t beam) const { return list_.beams[beam]; }
   const FlightStart& StartOf(const PhotonBeam& beam) const { return list_.starts[beam.start]; }
+  std::span<const PathLabel> LabelsOf(const FlightStart& start) const {
+    return std::span(list_.labels).subspan(start.labels.first, start.labels.end - start.labels.first);
+  }
   const EmittedPhoton& EmissionOf(const FlightStart& start) const { return list_.emissions[start.emission]; }
   const std::vector<FlightStart>& Starts() const { return list_.starts; }
   size_t Bytes() const;
 
  private:
+  friend struct BeamList;  // BytesOfMap
+
   // A part of a beam, short enough for its box.
   struct Piece {
     uint32_t beam;
     float tMin, tMax;
   };
+  struct Placed;
+  std::vector<Placed> Split() const;
 
   BeamList list_;
   VolumeRadius radius_;

@@ -19,14 +19,6 @@ using Index = flann::KDTreeSingleIndex<flann::L2_3D<float>>;
 
 constexpr int kLeaf = 64;  // photons per leaf; with 32, lookups of 50 photons take 1.1 to 1.5 times as long
 
-// The low 8 bits of x, with two zeros after each.
-uint32_t Spread(uint32_t x) {
-  x = (x | x << 8) & 0x00f00f;
-  x = (x | x << 4) & 0x0c30c3;
-  x = (x | x << 2) & 0x249249;
-  return x;
-}
-
 // Collects all points within the radius, and fetches their photons into the cache meanwhile.
 class WithinRadius final : public flann::ResultSet<float> {
  public:
@@ -71,6 +63,7 @@ struct PhotonMap::Traced {
   std::vector<const TracedPhoton*> photons;
   std::vector<uint32_t> origins;            // empty unless wanted
   std::vector<const VolumePhoton*> volume;  // by photon; null on a surface. Empty if all are
+  std::vector<LabelRange> labels;           // by photon; empty without layers
   std::vector<uint32_t> paths;  // TracedPhoton::path, in the concatenated densities; empty if they were not kept
   BeamList beams;
   bool hasSpecular = false;  // flux for specular lobes differs from that for diffuse ones
@@ -90,6 +83,8 @@ PhotonMap::Traced PhotonMap::Collect(std::span<const PhotonList> lists, bool wan
   size_t firstDensity = 0;
   traced.photons.reserve(count);
   for (const PhotonList& list : lists) {
+    const auto firstLabel = static_cast<uint32_t>(labels_.size());
+    labels_.insert(labels_.end(), list.Labels().begin(), list.Labels().end());
     for (const TracedPhoton& photon : list.Photons()) {
       // A single coordinate that is not a number would corrupt the whole tree.
       if (!IsFinite(photon.position) || !photon.diffuse.IsValid() || !photon.specular.IsValid()) {
@@ -104,6 +99,10 @@ PhotonMap::Traced PhotonMap::Collect(std::span<const PhotonList> lists, bool wan
         traced.volume.push_back(isInMedium ? &list.Volume()[photon.volume] : nullptr);
       }
       traced.hasSpecular |= photon.specular != photon.diffuse;
+      if (!list.LabelRanges().empty()) {
+        const LabelRange& of = list.LabelRanges()[static_cast<size_t>(&photon - list.Photons().data())];
+        traced.labels.push_back({of.first + firstLabel, of.end + firstLabel});
+      }
       if (wantsOrigins) traced.origins.push_back(firstOrigin + photon.origin);
       if (densities > 0) traced.paths.push_back(static_cast<uint32_t>(firstDensity) + photon.path);
     }
@@ -139,8 +138,7 @@ std::vector<uint32_t> MortonOrder(const std::vector<const TracedPhoton*>& photon
   std::vector<SortItem> order(photons.size()), sorted(photons.size());
   ForAll(photons.size(), threads, [&](size_t i) {
     const Vector3 p = (photons[i]->position - least) * scale;
-    order[i] = {Spread(static_cast<uint32_t>(p.x)) << 2 | Spread(static_cast<uint32_t>(p.y)) << 1 |
-                    Spread(static_cast<uint32_t>(p.z)),
+    order[i] = {MortonCode(static_cast<uint32_t>(p.x), static_cast<uint32_t>(p.y), static_cast<uint32_t>(p.z)),
                 static_cast<uint32_t>(i)};
   });
   constexpr uint32_t kDigits = 3;
@@ -216,8 +214,9 @@ void PhotonMap::Build(const Traced& traced, int threads, std::vector<uint32_t>* 
     photon.normal = source.normal;
     photon.weight = source.weight;
     photon.depth = source.depth;
-    photon.group = source.group;
   });
+  ranges_.resize(traced.labels.size());
+  for (size_t i = 0; i < ranges_.size(); ++i) ranges_[i] = traced.labels[order[i]];
   for (size_t i = 0; traced.hasSpecular && i < count; ++i) {
     const TracedPhoton& source = *traced.photons[order[i]];
     if (source.specular == source.diffuse) continue;
@@ -255,7 +254,7 @@ size_t PhotonMap::Bytes() const {
   const size_t perPhoton = sizeof(Photon) + 3 * sizeof(float) + sizeof(float*) + sizeof(int);
   return photons_.Size() * perPhoton + photons_.Size() / (kLeaf / 2) * 2 * node + specular_.size() * sizeof(Color) +
          densities_.Size() * sizeof(SubpathDensities) + volume_.size() * sizeof(VolumePhoton) + beamSearch_.Bytes() +
-         beams_.Bytes();
+         beams_.Bytes() + ranges_.size() * sizeof(LabelRange) + labels_.size() * sizeof(PathLabel);
 }
 
 }  // namespace lampyr

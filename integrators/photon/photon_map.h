@@ -46,7 +46,7 @@ class PhotonMap {
   // The photons in media whose balls a ray passes on [0, tMax), in an order that depends on the photons alone. Valid
   // until the next search. [Jensen98]'s photons, seen by beams ([Jarosz08]).
   std::span<const BeamHit> FindAlong(const Ray& ray, float tMax, PhotonLookup& lookup) const;
-  bool HasVolume() const { return !volume_.empty() || !beams_.IsEmpty(); }
+  bool HasPoints() const { return !volume_.empty(); }
   // The beams that a ray passes on [0, tMax), as FindAlong.
   std::span<const BeamCrossing> FindBeams(const Ray& ray, const FineLine& line, float tMax, PhotonLookup& lookup) const;
   const BeamMap& Beams() const { return beams_; }
@@ -78,6 +78,13 @@ class PhotonMap {
     __builtin_prefetch(&densities_[photon.path + photon.depth - 1u].canMerge);
   }
 
+  // Labels of a photon's path; empty without layers.
+  std::span<const PathLabel> LabelsOf(uint32_t index) const {
+    if (ranges_.empty()) return {};
+    const LabelRange& range = ranges_[index];
+    return std::span(labels_).subspan(range.first, range.end - range.first);
+  }
+
   // The light's end of a photon's path, if its densities were kept. Of a path that ends at its first hit `hit` is
   // unknown.
   PathEnds EndsOf(const Photon& photon) const { return PathEnds::Unpacked(densities_[photon.path - 1]); }
@@ -106,6 +113,8 @@ class PhotonMap {
   std::vector<VolumePhoton> volume_;
   BeamSearch beamSearch_;
   BeamMap beams_;
+  std::vector<LabelRange> ranges_;  // by photon; empty without layers
+  std::vector<PathLabel> labels_;
   std::unique_ptr<Search> search_;
   size_t rejected_ = 0;
   double buildSeconds_ = 0;

@@ -23,6 +23,7 @@
 #include "integrators/photon/volume_estimate.h"
 #include "integrators/walk/footprint.h"
 #include "integrators/walk/light_path.h"
+#include "integrators/walk/path_layers.h"
 
 namespace lampyr {
 
@@ -92,7 +93,7 @@ class PhotonRecorder final : public LightPathVisitor {
     const PathVertex& vertex = path.vertices.Last();
     if (path.vertices.Count() < firstDepth_ || !vertex.storesPhotons) return;
     if (vertex.IsInMedium() && !MayBeGathered(vertex)) return;
-    context_.photons->Add(vertex, path.vertices.Count(), path.group);
+    context_.photons->Add(vertex, path.vertices.Count(), LabelsOfLast(context_, path.vertices));
   }
 
  private:
@@ -126,7 +127,9 @@ class RadianceEstimate final : public PhotonGatherer {
     if (pass_.use) pass_.use->Fetch(found_.first(std::min(found_.size(), kFetched)));
   }
 
-  Color Gather(const PathVertex& vertex, int events, float length) override {
+  Color Gather(const Subpath& path, float length) override {
+    const PathVertex& vertex = path.Last();
+    const auto events = static_cast<int>(path.Count());
     const float radius = RadiusAt(length);
     if (pass_.use) pass_.use->FetchSums(found_.first(std::min(found_.size(), kFetched)));
     lookup_.used.clear();
@@ -141,7 +144,7 @@ class RadianceEstimate final : public PhotonGatherer {
       sum += (f.diffuse * photon.flux + f.specular * pass_.map->SpecularFlux(photon)) *
              vertex.ArrivalCorrection(photon.toPrevious, photon.normal.Unpack());
       if (context_.layers) [[unlikely]]
-        AddToLayers(photon, vertex, f, PerArea(radius));
+        AddPhotonToLayers(index, path, f, PerArea(radius));
       if (pass_.use) lookup_.used.push_back({index, (vertex.Throughput() * f.Sum()).Average() * Importance(length)});
     }
     if (pass_.use) pass_.use->Add(lookup_.used);
@@ -154,10 +157,9 @@ class RadianceEstimate final : public PhotonGatherer {
   }
 
   Color GatherAlong(const Subpath& path, const PathState& state, const Flight& flight) override {
-    if (!pass_.map->HasVolume()) return Color();
+    if (!pass_.map->HasPoints()) return Color();
     const float importance = Sqr(RadiusAt(context_.scene.lighting->SceneSphere().radius));
-    return VolumeEstimate(context_, {settings_.maxDepth, kWide, importance}, lookup_)
-        .Gather(state, static_cast<int>(path.Count()), flight);
+    return VolumeEstimate(context_, {settings_.maxDepth, kWide, importance}, lookup_).Gather(path, state, flight);
   }
 
  private:
@@ -179,11 +181,15 @@ class RadianceEstimate final : public PhotonGatherer {
     return static_cast<double>(context_.scene.lighting->FluxUnit()) / (pass_.lightPaths * area);
   }
   // Not inlined into the sum: a shared product would be rounded differently than without layers.
-  [[gnu::noinline]] void AddToLayers(const Photon& photon, const PathVertex& vertex, const BsdfEvaluation& f,
-                                     double perArea) const {
-    const Color scattered = f.diffuse * photon.flux + f.specular * pass_.map->SpecularFlux(photon);
+  [[gnu::noinline]] void AddPhotonToLayers(uint32_t index, const Subpath& path, const BsdfEvaluation& f,
+                                           double perArea) const {
+    const Photon& photon = (*pass_.map)[index];
+    const PathVertex& vertex = path.Last();
+    const Color diffuse = f.diffuse * photon.flux, specular = f.specular * pass_.map->SpecularFlux(photon);
     const float correction = vertex.ArrivalCorrection(photon.toPrevious, photon.normal.Unpack());
-    context_.layers->Add(photon.group, Product(vertex.Throughput(), scattered * correction, perArea));
+    AddArrivingToLayers(context_, path, PartsOf(vertex, photon.toPrevious, false, diffuse, specular),
+                        pass_.map->LabelsOf(index),
+                        Product(vertex.Throughput(), (diffuse + specular) * correction, perArea));
   }
 
   const SppmSettings& settings_;

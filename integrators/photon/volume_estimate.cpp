@@ -1,8 +1,25 @@
 #include "integrators/photon/volume_estimate.h"
 
+#include "integrators/walk/path_layers.h"
+
 namespace lampyr {
 
-Color VolumeEstimate::Gather(const PathState& state, int events, const Flight& flight) {
+namespace {
+
+// `scattered`: of the photon that the ray of `state` passes.
+void AddPhotonToLayers(const SampleContext& context, const Subpath& path, const PathState& state, uint32_t photon,
+                       const Color& seen) {
+  thread_local PathLabels before, after;
+  path.LabelsBeyond(*context.outputs, TransportMode::Radiance, state.event, before);
+  const ScatteringParts event{PathEvent::Volume, PathEvent::Volume, Color(1.0f), Color(0.0f)};
+  LabelsAfter(*context.outputs, TransportMode::Radiance, before.All(), event, after);
+  AddToLayers(context, after.All(), context.gather->map->LabelsOf(photon), seen);
+}
+
+}  // namespace
+
+Color VolumeEstimate::Gather(const Subpath& path, const PathState& state, const Flight& flight) {
+  const auto events = static_cast<int>(path.Count());
   const PhotonPass& pass = *context_.gather;
   const std::span<const BeamHit> hits = FindPhotonsAlong(*pass.map, state.ray, flight.t, lookup_, context_.counts);
   if (hits.empty()) return Color();
@@ -13,14 +30,13 @@ Color VolumeEstimate::Gather(const PathState& state, int events, const Flight& f
     const Color scattered = Scattered(state, events, flight, hit);
     if (scattered.IsBlack()) continue;
     const Photon& photon = (*pass.map)[hit.index];
-    const auto radius = static_cast<double>(pass.map->VolumeOf(hit.index).radius);
-    const Color seen = Product(scattered, photon.flux, perPath / (static_cast<double>(kPi) * radius * radius));
+    const double kernel = pass.map->VolumeOf(hit.index).Kernel();
+    const Color seen = Product(scattered, photon.flux, perPath * kernel);
     sum += seen;
     if (context_.layers) [[unlikely]]
-      context_.layers->Add(photon.group, seen);
+      AddPhotonToLayers(context_, path, state, hit.index, seen);
     if (pass.use)
-      lookup_.used.push_back(
-          {hit.index, scattered.Average() * rules_.importance / static_cast<float>(radius * radius)});
+      lookup_.used.push_back({hit.index, scattered.Average() * rules_.importance * kPi * static_cast<float>(kernel)});
   }
   if (pass.use) pass.use->Add(lookup_.used);
   return sum;

@@ -23,14 +23,14 @@ class VolumeEstimate {
       : context_(context), rules_(rules), lookup_(lookup) {}
 
   // The photons that the ray of `state` passes before it collides or meets a surface, scattered towards its start,
-  // times the throughput there. `events`: scattering events of the path before.
+  // times the throughput there. `path`: before that.
   //
   // A ray passes a photon with the probability of not colliding before, by which its value is divided
   // (Flight::PointAt).
-  Color Gather(const PathState& state, int events, const Flight& flight);
+  Color Gather(const Subpath& path, const PathState& state, const Flight& flight);
 
  private:
-  // Of one photon, over the density of photons; black: it does not count.
+  // The light of one photon, without flux and kernel; black: the photon is not seen, or is left to camera paths.
   Color Scattered(const PathState& state, int events, const Flight& flight, const BeamHit& hit);
 
   const SampleContext& context_;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "film/layer_sample.h"
+#include "film/output_plan.h"
 #include "film/splats.h"
 #include "integrators/walk/render_scene.h"
 #include "sampling/sampler.h"
@@ -81,11 +82,10 @@ struct SampleContext {
   Sampler& sampler;  // started for this sample
   float time;        // of all paths of the sample, in [0,1] over the shutter interval
   RenderCounts& counts;
-  // The returned radiance, split by light group (LightingServices::GroupOf). Cleared by the caller. Null: not wanted.
+  // The returned radiance, split into layers by `outputs`. Cleared by the caller. Null: not wanted.
   LayerSample* layers = nullptr;
   // Splats of the light path; the caller has started the path. A splat holds the contribution of this one path,
-  // because the film divides by the number of paths, and the layer of its light's group. Null if no light path is
-  // traced.
+  // because the film divides by the number of paths. Null if no light path is traced.
   SplatList* splats = nullptr;
   PathObserver* observer = nullptr;     // receives every path that contributes; may be null
   const PhotonPass* gather = nullptr;   // photons to gather; null: none yet
@@ -98,11 +98,12 @@ struct SampleContext {
   // the lens, whose index counts light paths; null: `sampler`.
   bool tracesLight = true;
   Sampler* lightSampler = nullptr;
+  const OutputPlan* outputs = nullptr;  // of the layers of the film; null: it has none
 
   SampleContext With(Sampler& other) const {
     return {scene,    other,       time,    counts,        layers,     splats,
             observer, gather,      photons, lastGathering, withOrigin, isForPhotonsAlone,
-            film,     tracesLight, nullptr};
+            film,     tracesLight, nullptr, outputs};
   }
 };
 

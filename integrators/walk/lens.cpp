@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "integrators/walk/path_layers.h"
 #include "sampling/rng.h"
 
 namespace lampyr {
@@ -166,13 +167,40 @@ std::optional<SeenFromLens> SeeVertex(const SampleContext& context, const PathVe
   return seen;
 }
 
-void AddSplats(const FilmConnection& connection, const Color& value, uint32_t group, SplatList& splats,
-               RenderCounts& counts) {
-  bool isValid = splats.Add(connection.camera.film, value, group);
+bool AddSplats(const FilmConnection& connection, const Color& value, SplatList& splats) {
+  bool isValid = splats.Add(connection.camera.film, value);
   for (int i = 0; i < connection.copies.count; ++i) {
-    isValid &= splats.Add(connection.copies.points[static_cast<size_t>(i)], value, group);
+    isValid &= splats.Add(connection.copies.points[static_cast<size_t>(i)], value);
   }
-  if (!isValid) ++counts.droppedSamples;
+  return isValid;
+}
+
+void AddSplats(const SampleContext& context, const FilmConnection& connection, const Color& value,
+               std::span<const PathLabel> labels) {
+  SplatList& splats = *context.splats;
+  const bool isValid = AddSplats(connection, value, splats);
+  if (!isValid) ++context.counts.droppedSamples;
+  if (!context.outputs || !isValid) [[likely]]
+    return;
+  const PathLabel camera[] = {{OutputPlan::kCamera}};
+  for (const LayerShare& part : SharesOf(*context.outputs, camera, labels)) {
+    splats.AddToLayer(connection.camera.film, value, part.share, part.layer);
+    for (int i = 0; i < connection.copies.count; ++i)
+      splats.AddToLayer(connection.copies.points[static_cast<size_t>(i)], value, part.share, part.layer);
+  }
+}
+
+std::span<const PathLabel> LabelsTowardsLens(const SampleContext& context, const Subpath& path,
+                                             const SeenFromLens& seen) {
+  if (!context.outputs) [[likely]]
+    return {};
+  thread_local PathLabels labels;
+  const PathVertex& vertex = path.Last();
+  path.LabelsBeyond(
+      *context.outputs, TransportMode::Importance,
+      PartsOf(vertex, seen.toCamera, false, vertex.diffuse * seen.f.diffuse, vertex.specular * seen.f.specular),
+      labels);
+  return labels.All();
 }
 
 Color EscapedEmissionForCamera(const SampleContext& context, const Ray& ray, const Color& throughput) {
@@ -181,7 +209,10 @@ Color EscapedEmissionForCamera(const SampleContext& context, const Ray& ray, con
   for (size_t i = 0; i < lighting.InfiniteCount(); ++i) {
     const Color seen = lighting.EscapedEmissionForCamera(i, ray);
     sum += seen;
-    if (context.layers) context.layers->Add(lighting.GroupOfInfinite(i), throughput * seen);
+    if (!context.layers) continue;
+    const PathLabel camera[] = {{OutputPlan::kCamera}},
+                    light[] = {{context.outputs->OfLight(lighting.InfiniteLight(i))}};
+    AddToLayers(context, camera, light, throughput * seen);
   }
   return throughput * sum;
 }

@@ -46,10 +46,15 @@ std::optional<SeenFromLens> SeeVertex(const SampleContext& context, const PathVe
 std::optional<SeenFromLens> SeeGlow(const SampleContext& context, const EmittedInMedium& emitted,
                                     uint32_t lensDimension);
 
-// Adds `value`, from a light of `group`, at all film points of the connection. A value that is negative or not finite
-// is dropped and counted.
-void AddSplats(const FilmConnection& connection, const Color& value, uint32_t group, SplatList& splats,
-               RenderCounts& counts);
+// Adds `value` at all film points of the connection. False: it is negative or not finite somewhere, and left out there.
+bool AddSplats(const FilmConnection& connection, const Color& value, SplatList& splats);
+// The same to the splats of a sample, and to their layers. `labels`: of the light path, as it leaves for the lens;
+// empty without layers. What is left out is counted.
+void AddSplats(const SampleContext& context, const FilmConnection& connection, const Color& value,
+               std::span<const PathLabel> labels);
+// The same for `path` as it leaves its last vertex for the lens. Valid until the next call in the thread.
+std::span<const PathLabel> LabelsTowardsLens(const SampleContext& context, const Subpath& path,
+                                             const SeenFromLens& seen);
 
 // Emission of all lights at infinity along a camera ray that has left the scene, times `throughput`: the transmittance
 // of what the ray crossed. Also added to SampleContext::layers.

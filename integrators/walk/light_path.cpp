@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "geometry/medium_at.h"
 #include "integrators/walk/integrator_type.h"
 #include "sampling/warp.h"
 
@@ -134,7 +133,7 @@ void TraceFromMedium(const PathRequest& request, double uSelect, const GlowingMe
   const Vector3 u(request.place.x, request.place.y, sampler.Get1D());
   const auto point = glowing.Emission().Sample(uSelect, u, context.time);
   if (!point) return;
-  request.path.group = context.scene.lighting->Groups().OfMedia();
+  if (context.outputs) request.path.vertices.SetStart(context.outputs->OfMedia());
   const EmittedInMedium emitted{point->position, point->medium, point->emission,
                                 point->density * glowing.Probability()};
   request.visitor.Glowed(request.path, emitted);
@@ -159,7 +158,7 @@ void TraceFromLight(const PathRequest& request, float uSelect, double probabilit
     const double selection = static_cast<double>(photon->emissionSelection.value) * probability;
     photon->emissionSelection = PdfDiscrete(static_cast<float>(selection));
   }
-  request.path.group = lighting.GroupOf(photon->light);
+  if (context.outputs) request.path.vertices.SetStart(context.outputs->OfLight(photon->light));
   if (photon->fromSurface) request.visitor.Emitted(*photon);
   PathState state;
   if (request.maxDepth < 1 || photon->IsDark() || !Emit(context, *photon, state)) return;
@@ -178,13 +177,6 @@ BoundingSphere SphereOfMedia(const RenderScene& scene) {
   BoundingSphere sphere = scene.lighting->SceneSphere();
   sphere.radius *= 1 + 1e-4f;
   return sphere;
-}
-
-// The medium at points from where no boundary is seen, as that of the camera and of lights.
-int32_t ExteriorOf(const RenderScene& scene, const Point2& middle) {
-  const Point3 eye = scene.camera->GenerateRay(middle, Point2(0.5f), 0).ray.origin;
-  const FoundMedium around = FindMedium(*scene.geometry, eye, 0);
-  return around.isOfBoundary ? around.exterior.value_or(kVacuum) : scene.cameraMedium;
 }
 
 // Power of the lights that start paths, W: the mean of the channels.
@@ -206,8 +198,8 @@ double PowerOfLights(const RenderScene& scene) {
 
 }  // namespace
 
-GlowingMedia::GlowingMedia(const RenderScene& scene, const Point2& middle)
-    : emission_(scene.media, *scene.geometry, SphereOfMedia(scene), ExteriorOf(scene, middle)) {
+GlowingMedia::GlowingMedia(const RenderScene& scene)
+    : emission_(scene.media, *scene.geometry, SphereOfMedia(scene), scene.exterior) {
   // The least share of either, so that a weak glow is seen beside the sun, and a weak light beside a fire.
   constexpr double kLeast = 1.0 / 16;
   const double glow = emission_.Power(), lights = PowerOfLights(scene);
@@ -218,8 +210,7 @@ GlowingMedia::GlowingMedia(const RenderScene& scene, const Point2& middle)
 std::unique_ptr<const GlowingMedia> GlowingMediaOf(const IntegratorInput& input) {
   const auto& media = input.scene.media;
   if (std::none_of(media.begin(), media.end(), [](const auto& medium) { return medium->IsEmissive(); })) return nullptr;
-  const Point2 middle(0.5f * static_cast<float>(input.width), 0.5f * static_cast<float>(input.height));
-  return std::make_unique<const GlowingMedia>(input.scene, middle);
+  return std::make_unique<const GlowingMedia>(input.scene);
 }
 
 void TraceLightPath(const SampleContext& context, int maxDepth, const PathDimensions& dimensions, LightPath& path,

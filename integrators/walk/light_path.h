@@ -15,7 +15,6 @@ struct LightPath {
   explicit LightPath(bool keepsAll = true) : vertices(keepsAll) {}
 
   Subpath vertices;
-  uint32_t group = 0;  // of the light that emitted it (LightGroups)
 };
 
 // A light path's start in a participating medium.
@@ -48,8 +47,8 @@ class LightPathVisitor {
 // proportion to their powers, as far as they are known.
 class GlowingMedia {
  public:
-  // `scene` has to outlive it. `middle`: of the film, in pixels.
-  GlowingMedia(const RenderScene& scene, const Point2& middle);
+  // `scene` has to outlive it.
+  explicit GlowingMedia(const RenderScene& scene);
 
   // Of a path to start in a medium; 0: none of them emits.
   double Probability() const { return probability_; }

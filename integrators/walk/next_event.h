@@ -13,6 +13,12 @@ struct LightConnection {
   BsdfEvaluation f;       // BSDF of the vertex, towards the light
   Color value;            // contribution of the path, before MIS weight and transmittance
   EdgeFactors factors{};  // of the edge from the vertex to the light, by participating media
+
+  // The event at `vertex`.
+  ScatteringParts Parts(const Vertex& vertex) const {
+    return PartsOf(vertex, direct.sample->direction, false, f.diffuse * direct.sample->diffuse,
+                   f.specular * direct.sample->specular);
+  }
 };
 
 class NextEventVisitor {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "camera/camera.h"
+#include "film/output_plan.h"
 #include "geometry/geometry_scene.h"
 #include "lights/services/lighting_services.h"
 #include "materials/material.h"
@@ -26,7 +27,9 @@ struct RenderScene {
   // If camera rays start in several media, because the camera is on a boundary or is cut by one: the medium of those
   // that meet no surface that says it.
   std::optional<int32_t> cameraExterior;
-  std::vector<int32_t> lightMedia;  // by light: around it, or in front of it; empty: vacuum
+  std::shared_ptr<const OutputPlan> outputs;  // layers of the image; not null in scenes that were built
+  int32_t exterior = kVacuum;                 // where rays leave the scene, and lights at infinity shine from
+  std::vector<int32_t> lightMedia;            // by light: around it, or in front of it; empty: vacuum
   std::vector<int32_t>
       lightBackMedia;      // by light: behind its surface, where a two-sided light shines, too; empty: vacuum
   bool hasMotion = false;  // something moves while the shutter is open; otherwise all rays have time 0

@@ -83,6 +83,22 @@ void SetResidual(const Flight& flight, Vertex& vertex) {
 
 }  // namespace
 
+void Subpath::LabelsBeyond(const OutputPlan& plan, TransportMode mode, const ScatteringParts& event,
+                           PathLabels& beyond) const {
+  if (count_ == 0) {
+    beyond.Set(start_);
+  } else {
+    LabelsAfter(plan, mode, LabelsAt(count_ - 1), event, beyond);
+  }
+}
+
+void Subpath::LabelLast(const OutputPlan& plan, TransportMode mode, const ScatteringParts& event) {
+  if (labels_.size() < vertices_.size()) labels_.resize(vertices_.size());
+  --count_;
+  LabelsBeyond(plan, mode, event, labels_[keepsAll_ ? count_ : count_ % 2]);
+  ++count_;
+}
+
 void MakeVertexInMedium(const Point3d& position, const Vector3& direction, int32_t medium, const PhaseBsdf& phase,
                         const Color& extinction, Vertex& vertex) {
   MakeInPlace(vertex.point, [&] {
@@ -126,6 +142,12 @@ bool Scatter(const SampleContext& context, const WalkSettings& settings, int ind
                                                vertex.ScatteringCosine(sample.wi), settings.mode);
   vertex.scatteredDelta = sample.isDelta;
   state.hasScatteredWidely |= !sample.isDelta;
+  if (context.outputs) [[unlikely]] {
+    const Color diffuse = isFromLight ? vertex.diffuse : vertex.Throughput();
+    const Color specular = isFromLight ? vertex.specular : diffuse;
+    state.event =
+        PartsOf(vertex, sample.wi, sample.isDelta, diffuse * sample.weightDiffuse, specular * sample.weightSpecular);
+  }
   vertex.eventForward = densities.forward;
   vertex.eventReverse = densities.reverse;
   state.pdfDirection = densities.forward;
@@ -164,7 +186,7 @@ EdgeEnd StartOf(const SampleContext& context, const PathState& state, const Subp
   Fly(context, state.ray, kinds, StartOf(context, state, path),
       settings.dimensions.OfFlight(isFromLight ? count + 1 : count), settings.wantsBeams, flight);
   if (settings.seesFlights && !flight.spans.empty()) visitor.Flew(path, state, flight);
-  if (!flight.emission.IsBlack()) visitor.Glowed(path, state.Throughput(), flight.emission);
+  if (!flight.emission.IsBlack()) visitor.Glowed(path, state, flight.emission);
   state.passed = flight.passed;
   state.factors = flight.factors;
   state.medium = flight.medium;
@@ -220,6 +242,8 @@ void Walk(const SampleContext& context, const WalkSettings& settings, PathState&
     vertex.diffuse = state.diffuse;
     vertex.specular = state.specular;
     path.Add();
+    if (context.outputs) [[unlikely]]
+      path.LabelLast(*context.outputs, settings.mode, state.event);
     if (!visitor.Arrived(path, state)) return;
     if (!Scatter(context, settings, index, path.Last(), state)) return;
     if (!visitor.Scattered(path, state)) return;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "integrators/walk/integrator.h"
+#include "integrators/walk/path_labels.h"
 #include "integrators/walk/vertex.h"
 
 namespace lampyr {
@@ -30,6 +31,7 @@ struct PathState {
   float etaScale = 1;               // undoes the scaling of radiance by η² in refraction, for Russian roulette
   bool hasScatteredWidely = false;  // an earlier vertex scattered by a lobe that is no delta
   float emitted = 1;                // initial throughput, to which Russian roulette compares
+  ScatteringParts event;            // at the last vertex; only with SampleContext::outputs
 
   Color Throughput() const { return diffuse + specular; }
 };
@@ -57,10 +59,21 @@ class Subpath {
   void Add() { ++count_; }
   void Drop() { --count_; }  // the last vertex
 
+  // Labels (path_labels.h), with SampleContext::outputs. Sets that of the start: the camera, or a light.
+  void SetStart(uint32_t label) { start_ = label; }
+  // Of the path as it arrives at a vertex.
+  std::span<const PathLabel> LabelsAt(size_t index) const { return labels_[keepsAll_ ? index : index % 2].All(); }
+  // Of the path after its last event, along the next ray.
+  void LabelsBeyond(const OutputPlan& plan, TransportMode mode, const ScatteringParts& event, PathLabels& beyond) const;
+  // Sets those of the last vertex, which was added after `event`.
+  void LabelLast(const OutputPlan& plan, TransportMode mode, const ScatteringParts& event);
+
  private:
   bool keepsAll_;
   std::vector<PathVertex> vertices_;
   size_t count_ = 0;
+  uint32_t start_ = OutputPlan::kCamera;
+  std::vector<PathLabels> labels_;
 };
 
 // Callbacks while a path grows. `path` has the vertices before the ray in question.
@@ -73,8 +86,8 @@ class PathVisitor {
   virtual bool Met(const Subpath& /*path*/, const PathState&, const RayHit&, const SurfacePoint&, bool /*isLight*/) {
     return true;
   }
-  // Media have emitted `radiance` along the last ray, towards its start; `throughput`: β there.
-  virtual void Glowed(const Subpath& /*path*/, const Color& /*throughput*/, const Color& /*radiance*/) {}
+  // Media have emitted `radiance` along the ray of `state`, towards its start, where β is that of `state`.
+  virtual void Glowed(const Subpath& /*path*/, const PathState&, const Color& /*radiance*/) {}
   // The ray of `state` has been traced through media. Called before β and the vertices know of it, if the settings ask
   // for flights.
   virtual void Flew(Subpath& /*path*/, const PathState&, const Flight&) {}

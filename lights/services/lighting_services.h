@@ -182,13 +182,11 @@ class LightingServices {
   // True if BSDF sampling can find any light.
   bool HasLightThatCanBeHit() const { return scene_->hasLightThatCanBeHit; }
 
-  // Light groups; the group of the light at infinity `i`, and of the area light at a surface point.
   const LightGroups& Groups() const { return scene_->groups; }
-  uint32_t GroupOf(uint32_t light) const { return scene_->groups.Of(light); }
-  uint32_t GroupOfInfinite(size_t i) const { return scene_->groups.Of(scene_->infinite[i]); }
-  uint32_t GroupAt(const SurfacePoint& point) const {
-    return scene_->groups.Of(
-        static_cast<uint32_t>(std::max(scene_->geometry.LightAt(point.primitive, point.instance), 0)));
+  // The light at infinity `i`, and the area light at a surface point.
+  uint32_t InfiniteLight(size_t i) const { return scene_->infinite[i]; }
+  uint32_t LightAt(const SurfacePoint& point) const {
+    return static_cast<uint32_t>(std::max(scene_->geometry.LightAt(point.primitive, point.instance), 0));
   }
 
   bool HasLights() const { return !scene_->lights.empty(); }

@@ -32,7 +32,8 @@ class MaterialTable {
     if (!reference.name.empty()) return Named(reference.name, reference.where);
     if (reference.index < 0) return Default();
     int32_t& index = unnamed_[reference.index];
-    if (index < 0) index = Add(Make(description_.materials[reference.index]));
+    const StatementDescription& material = description_.materials[static_cast<size_t>(reference.index)];
+    if (index < 0) index = Add(Make(material), material.NameByPlace());
     return index;
   }
 
@@ -43,17 +44,20 @@ class MaterialTable {
   }
 
   const std::vector<std::shared_ptr<const Material>>& Materials() const { return materials_; }
+  // Their names: of a material without a name its type and its place.
+  const std::vector<std::string>& Names() const { return names_; }
 
  private:
-  int32_t Add(std::shared_ptr<const Material> material) {
+  int32_t Add(std::shared_ptr<const Material> material, std::string name) {
     materials_.push_back(std::move(material));
+    names_.push_back(std::move(name));
     return static_cast<int32_t>(materials_.size()) - 1;
   }
 
   int32_t Default() {
     if (default_ < 0) {
       const ParameterList none({}, "Material \"diffuse\"", {});
-      default_ = Add(MakeMaterial("diffuse", none, textures_, Lookup({}), diagnostics_));
+      default_ = Add(MakeMaterial("diffuse", none, textures_, Lookup({}), diagnostics_), "default");
     }
     return default_;
   }
@@ -83,7 +87,7 @@ class MaterialTable {
     CheckDepth(inProgress_.size(), where);
     const StatementDescription& material = description->second->material;
     const size_t beside = std::exchange(deepest_, 0);
-    const int32_t index = Add(Make(material));
+    const int32_t index = Add(Make(material), name);
     const size_t depth = deepest_ + 1;
     CheckDepth(depth, material.where);
     deepest_ = std::max(beside, depth);
@@ -106,6 +110,7 @@ class MaterialTable {
   const TextureLibrary& textures_;
   Diagnostics& diagnostics_;
   std::vector<std::shared_ptr<const Material>> materials_;
+  std::vector<std::string> names_;  // of each
   std::vector<int32_t> unnamed_;
   std::map<std::string, const NamedMaterialDescription*> descriptions_;
   std::map<std::string, MadeMaterial> named_;

@@ -4,7 +4,6 @@
 #include <chrono>
 
 #include "base/memory.h"
-#include "geometry/medium_at.h"
 #include "geometry/shape_checks.h"
 #include "media/make_media.h"
 #include "render/analysis/plan.h"
@@ -25,6 +24,7 @@ namespace {
 struct ReadEntry {
   LocalShape local;
   int32_t material = -1;
+  int32_t object = -1;  // BuiltScene::objectNames
 };
 
 // Shapes with the same motion, or none, as one object of the geometry.
@@ -62,6 +62,7 @@ class Builder {
   void DescribeLightsIn(std::vector<SceneLight>* lights) { described_ = lights; }
 
  private:
+  void NameObjects();
   std::vector<ReadEntry> ReadShapes(const std::vector<ShapeDescription>& shapes);
   Transform ChooseRenderSpace() const;
   bool Moves(const ReadEntry& entry) const { return placer_.Moves(entry.local.description->placement); }
@@ -71,7 +72,7 @@ class Builder {
     return 0.5f * Point2(static_cast<float>(built_.settings.width), static_cast<float>(built_.settings.height));
   }
   void WarnOfBlackImage(const RenderScene& scene) const;
-  MediaAround MediaAroundLights() const;
+  MediaAround MediaAroundLights(const Point3& eye) const;
   std::vector<Part> MovingParts(const std::vector<ReadEntry>& entries);
   void BuildPart(Part& part);
   void PlacePart(const Part& part, const RenderPlacement& placement);
@@ -108,6 +109,23 @@ std::vector<ReadEntry> Builder::ReadShapes(const std::vector<ShapeDescription>& 
     if (local) entries.push_back({std::move(*local), -1});
   }
   return entries;
+}
+
+// Shapes of an object have its name, meshes that of their file, and others their type and place.
+void Builder::NameObjects() {
+  std::vector<std::string>& names = built_.objectNames;
+  const auto add = [&](ReadEntry& entry, const std::string& name) {
+    entry.object = static_cast<int32_t>(names.size());
+    names.push_back(name);
+  };
+  for (ReadEntry& entry : entries_) {
+    const StatementDescription& shape = entry.local.description->shape;
+    const std::string file = shape.parameters.GetString("filename", "");
+    add(entry, file.empty() ? shape.NameByPlace() : std::filesystem::path(file).stem().string());
+  }
+  for (size_t i = 0; i < objects_.size(); ++i) {
+    for (ReadEntry& entry : objects_[i]) add(entry, description_.objects[i].name);
+  }
 }
 
 // A scene whose middle is far from the origin, compared with its size, is moved to the origin, because floats are
@@ -167,7 +185,8 @@ std::optional<GeometryAttributes> Builder::AttributesOf(const ReadEntry& entry) 
   // Surfaces that emit are never thin: every ray hits them.
   if (shape.areaLight < 0 && material->Thin()) attributes.thin = {material, material->Thin()};
   attributes.isFibrous = material->IsFibrous();
-  attributes.isParametrized |= built_.settings.firstHit || attributes.thin || material->NeedsParametrization();
+  attributes.object = entry.object;
+  attributes.isParametrized |= built_.settings.WantsFirstHit() || attributes.thin || material->NeedsParametrization();
   return attributes;
 }
 
@@ -300,14 +319,10 @@ void Builder::PlaceEntries() {
 }
 
 // To be called when camera and media are made.
-MediaAround Builder::MediaAroundLights() const {
-  const RenderScene& scene = built_.scene;
+MediaAround Builder::MediaAroundLights(const Point3& eye) const {
   MediaAround around;
-  for (const auto& medium : scene.media) around.glow = around.glow || medium->IsEmissive();
-  if (scene.media.empty()) return around;
-  const Point3 eye = scene.camera->GenerateRay(MiddleOfFilm(), Point2(0.5f), 0).ray.origin;
-  const int32_t exterior = FindMedium(*scene.geometry, eye, 0).exterior.value_or(kVacuum);
-  if (!description_.cameraMedium.empty() || exterior != kVacuum) around.unboundedAt = eye;
+  for (const auto& medium : built_.scene.media) around.glow = around.glow || medium->IsEmissive();
+  if (!description_.cameraMedium.empty() || media_->Exterior() != kVacuum) around.unboundedAt = eye;
   return around;
 }
 
@@ -327,6 +342,7 @@ BuiltScene Builder::Build() {
   placer_.ReadTimes(description_);
   entries_ = ReadShapes(description_.shapes);
   for (const ObjectDescription& object : description_.objects) objects_.push_back(ReadShapes(object.shapes));
+  if (built_.settings.Wants(kObjectMatte)) NameObjects();
   std::vector<bool> hasShapes;
   for (const auto& object : objects_) hasShapes.push_back(!object.empty());
   instances_ = FlattenInstances(description_, hasShapes, memory_);
@@ -356,19 +372,24 @@ BuiltScene Builder::Build() {
   scene.camera = LocateErrors(description_.camera.where, [&] {
     return BuildCamera(description_, built_.settings, placer_.WorldToRender(), diagnostics_);
   });
-  if (built_.settings.firstHit) {
-    const bool isWorld = *built_.settings.firstHit == FirstHitSpace::World;
+  if (built_.settings.WantsFirstHit()) {
+    const bool isWorld = built_.settings.firstHit.value_or(FirstHitSpace::World) == FirstHitSpace::World;
     const Transform toRender =
         isWorld ? placer_.WorldToRender() : placer_.WorldToRender() * description_.cameraToWorld.start;
     built_.renderToLayers = toRender.Inverse().ToAffine();
+    built_.layersToCamera = (isWorld ? description_.cameraToWorld.start.Inverse() : Transform()).ToAffine();
   }
+  if (built_.settings.Wants(kMaterialMatte)) built_.materialNames = materials_->Names();
   scene.media = MakeMedia(description_, placer_.WorldToRender(), memory_, diagnostics_);
   media_->NumberPlaces(geometry_);
   scene.geometry = std::make_shared<const GeometryScene>(std::move(geometry_));
+  const Ray eye = scene.camera->GenerateRay(MiddleOfFilm(), Point2(0.5f), 0).ray;
+  media_->LookAround(*scene.geometry, eye);
   lights_->Linking().Finish(lights_->Lights(), diagnostics_);
   scene.lighting = std::make_shared<const LightingServices>(
       *scene.geometry, std::move(lights_->Lights()), built_.settings.LightSampler(), std::move(lights_->Linking()),
-      static_cast<int>(built_.settings.values.Integer("light-samples")), MediaAroundLights());
+      static_cast<int>(built_.settings.values.Integer("light-samples")), MediaAroundLights(eye.origin));
+  scene.outputs = MakeOutputPlan(*scene.lighting, built_.settings.layers);
   media_->Locate(MiddleOfFilm(), built_.lightPlaces, scene);
   if (built_.settings.integrator == "auto") {
     const auto start = std::chrono::steady_clock::now();

@@ -11,8 +11,11 @@ namespace lampyr {
 struct BuiltScene {
   RenderSettings settings;
   RenderScene scene;
-  Affine
-      renderToLayers;  // from render space to the space of the layers of what is seen first (RenderSettings::firstHit)
+  // From render space to the space of the layers of what is seen first (RenderSettings::firstHit; world without it),
+  // and from there to the camera's at the start of the shutter.
+  Affine renderToLayers, layersToCamera;
+  // Names by GeometryAttributes::object and ::material; empty where no layer asks for them.
+  std::vector<std::string> objectNames, materialNames;
   // Locations of the lights and the light filters in the scene file, by their indices.
   std::vector<FileLocation> lightPlaces, filterPlaces;
   double choiceSeconds = 0;  // that "auto" took to choose the integrator; 0 if it was set

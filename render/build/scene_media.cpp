@@ -140,24 +140,25 @@ bool StartsVary(const RenderScene& scene, const Point2& middle, int32_t exterior
 
 }  // namespace
 
+void SceneMedia::LookAround(const GeometryScene& geometry, const Ray& eye) {
+  if (!description_.media.empty()) around_ = FindMediumAround(geometry, eye.origin, 0, eye.direction);
+}
+
 void SceneMedia::Locate(const Point2& middle, const std::vector<FileLocation>& lightPlaces, RenderScene& scene) {
   if (description_.media.empty()) return;
-  const GeometryScene& geometry = *scene.geometry;
-  const Ray view = scene.camera->GenerateRay(middle, Point2(0.5f), 0).ray;
-  const FoundMedium around = FindMedium(geometry, view.origin, 0, view.direction);
   const FileLocation& where = description_.camera.where;
-  scene.cameraMedium = Choose("the camera", where, description_.cameraMedium, around, kVacuum);
+  scene.cameraMedium = Choose("the camera", where, description_.cameraMedium, around_, kVacuum);
   if (description_.cameraMedium.empty() && scene.cameraMedium != kVacuum) {
     diagnostics_.Warn(where,
                       "the camera is in " + NameOf(scene.cameraMedium) +
                           ", and its rays start there. pbrt-v4 starts them in vacuum, because no MediumInterface "
                           "before the camera names it");
   }
-  const bool isKnown = around.medium && (around.isOfBoundary || description_.cameraMedium.empty());
-  const int32_t exterior = isKnown ? around.exterior.value_or(kVacuum) : scene.cameraMedium;
-  if (around.disputed == kNoIndex && StartsVary(scene, middle, exterior)) scene.cameraExterior = exterior;
+  const bool isKnown = around_.medium && (around_.isOfBoundary || description_.cameraMedium.empty());
+  scene.exterior = isKnown ? Exterior() : scene.cameraMedium;
+  if (around_.disputed == kNoIndex && StartsVary(scene, middle, scene.exterior)) scene.cameraExterior = scene.exterior;
   for (size_t light = 0; light < lightPlaces.size(); ++light) {
-    const Sides sides = MediaOfLight(scene, light, lightPlaces[light], exterior);
+    const Sides sides = MediaOfLight(scene, light, lightPlaces[light], scene.exterior);
     scene.lightMedia.push_back(sides.front);
     scene.lightBackMedia.push_back(sides.behind);
   }

@@ -47,6 +47,10 @@ class SceneMedia {
   // - Lights at infinity are in the medium that all rays from the camera end in, or else in vacuum.
   // - Where rays disagree, what most of them say holds, and one warning is given with the place of the surface.
   void Locate(const Point2& middle, const std::vector<FileLocation>& lightPlaces, RenderScene& scene);
+  // Finds the medium around the camera; before Locate. `eye`: the start of the ray through the middle of the film.
+  void LookAround(const GeometryScene& geometry, const Ray& eye);
+  // The medium in which rays leave the scene, as far as the boundaries say it.
+  int32_t Exterior() const { return around_.exterior.value_or(kVacuum); }
 
  private:
   struct Place {
@@ -69,6 +73,7 @@ class SceneMedia {
   std::vector<Place> places_;
   std::unordered_map<uint32_t, FileLocation> primitivePlaces_;
   std::unordered_map<size_t, Sides> areaLights_;  // those that separate media
+  FoundMedium around_;                            // the camera
   bool hasWarnedOfDispute_ = false;
 };
 

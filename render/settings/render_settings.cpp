@@ -79,6 +79,15 @@ SensorResponse ReadSensor(const ParameterList& film, float imagingRatio, bool is
           static_cast<float>(most)};
 }
 
+void AddLayer(const std::string& text, const FileLocation& where, RenderSettings& settings) {
+  const PixelLayer* layer = FindPixelLayer(text);
+  if (!layer) {
+    settings.layers.push_back(ParseLayer(text, where));
+  } else if (!settings.Wants(layer->name)) {
+    settings.pixelLayers.push_back(layer);
+  }
+}
+
 void ReadFilm(const SceneDescription& scene, const RenderOverrides& overrides, RenderSettings& settings,
               Diagnostics& diagnostics) {
   const ParameterList& film = scene.film.parameters;
@@ -101,6 +110,9 @@ void ReadFilm(const SceneDescription& scene, const RenderOverrides& overrides, R
   if (overrides.width) settings.width = *overrides.width;
   if (overrides.height) settings.height = *overrides.height;
   settings.outputFile = film.GetString("filename", "");
+  for (const std::string& layer : film.GetStrings("layers")) AddLayer(layer, film.WhereOf("layers"), settings);
+  for (const std::string& layer : overrides.layers) AddLayer(layer, {}, settings);
+  settings.seesThroughSmooth = overrides.seesThroughSmooth;
   // pbrt-v4 writes halves by default. Variances need floats, so halves are written only if the scene asks for them.
   settings.halfPrecision = film.GetBool("savefp16", false);
   const std::string sensor = film.GetString("sensor", "cie1931");
@@ -401,6 +413,18 @@ std::unique_ptr<Camera> BuildCamera(const SceneDescription& description, const R
   }
   parameters.CheckAllUsed({}, known, diagnostics);
   return camera;
+}
+
+bool RenderSettings::Wants(const char* pixelLayer) const {
+  return std::any_of(pixelLayers.begin(), pixelLayers.end(),
+                     [&](const PixelLayer* wanted) { return std::string(wanted->name) == pixelLayer; });
+}
+
+bool RenderSettings::WantsFirstHit() const {
+  const auto isOfSamples = [](const PixelLayer* layer) {
+    return std::string(layer->name) == kSamplesLayer || std::string(layer->name) == kErrorLayer;
+  };
+  return firstHit || !std::all_of(pixelLayers.begin(), pixelLayers.end(), isOfSamples);
 }
 
 }  // namespace lampyr

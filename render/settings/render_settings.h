@@ -10,6 +10,7 @@
 #include "film/pixel_filter.h"
 #include "integrators/registry.h"
 #include "lights/selection/light_selector.h"
+#include "render/settings/output_layers.h"
 #include "sampling/sampler.h"
 #include "scene/scene_description.h"
 
@@ -23,7 +24,9 @@ struct RenderOverrides {
   std::optional<int> width, height;
   std::optional<std::string> crop;  // "x0,x1,y0,y1": fractions of the image, or pixels when one is above 1
   std::optional<std::string> sampler;
-  std::optional<uint64_t> memory;  // limit on the scene's memory, bytes; absent: all available memory
+  std::vector<std::string> layers;  // names of pixel layers, or as ParseLayer reads them, besides those of the scene
+  bool seesThroughSmooth = false;   // RenderSettings
+  std::optional<uint64_t> memory;   // limit on the scene's memory, bytes; absent: all available memory
   uint64_t seed = 0;
   int threads = 0;  // of what is done before rendering; 0: all
 };
@@ -46,6 +49,12 @@ struct RenderSettings {
   SensorResponse sensor;                  // exposure, white balance, limit on samples
   std::string outputFile;                 // named by the scene
   std::optional<FirstHitSpace> firstHit;  // absent: no such layers
+  std::vector<LayerRequest> layers;       // besides those of light groups
+  std::vector<const PixelLayer*> pixelLayers;
+  bool seesThroughSmooth = false;  // what is seen first is what mirrors and glass show
+
+  bool Wants(const char* pixelLayer) const;
+  bool WantsFirstHit() const;  // any layer of what is seen first
 
   int MaxDepth() const { return MaxDepthOf(values); }
   bool LearnsLights() const { return values.IsOn("learn-lights"); }

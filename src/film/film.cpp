@@ -217,8 +217,7 @@ double Film::FourthOfMean(size_t pixel) const {
 
 SplatList Film::MakeSplatList(const PixelFilter& filter, const SensorResponse& sensor) const {
   const Vector2 radius = filter.Radius() - Vector2(0.5f);  // beyond the pixel centres
-  return {Point2(crop_.x0, crop_.y0) + Vector2(0.5f) - filter.Radius(), Point2(crop_.x1, crop_.y1) + radius, sensor,
-          HasLayers()};
+  return {Point2(crop_.x0, crop_.y0) + Vector2(0.5f) - filter.Radius(), Point2(crop_.x1, crop_.y1) + radius, sensor};
 }
 
 void Film::MakeSplats() {
@@ -250,38 +249,41 @@ void Film::AddToRows(const PixelFilter& filter, std::span<const SplatList> lists
   const auto firstPixel = [](float p, float r) { return static_cast<int>(std::floor(p - 0.5f - r)); };
   const auto lastPixel = [](float p, float r) { return static_cast<int>(std::ceil(p - 0.5f + r)); };
   std::vector<float> weightsX(static_cast<size_t>(2 * radius.x) + 4);
-  const bool hasLayers = HasLayers();
+  // Calls add(pixel, weight) for the pixels under the filter at `film`.
+  const auto spread = [&](const Point2& film, const auto& add) {
+    const int y0 = std::max(firstPixel(film.y, radius.y), crop_.y0);
+    const int y1 = std::min(lastPixel(film.y, radius.y), crop_.y1 - 1);
+    const int x0 = std::max(firstPixel(film.x, radius.x), crop_.x0);
+    const int x1 = std::min(lastPixel(film.x, radius.x), crop_.x1 - 1);
+    bool hasWeights = false;
+    for (int y = y0; y <= y1; ++y) {
+      if (y / kGroup % bands != band) continue;
+      const float weightY = filter.EvaluateY(film.y - (static_cast<float>(y) + 0.5f));
+      if (weightY == 0) continue;
+      for (int x = x0; x <= x1 && !hasWeights; ++x)
+        weightsX[static_cast<size_t>(x - x0)] = filter.EvaluateX(film.x - (static_cast<float>(x) + 0.5f));
+      hasWeights = true;
+      for (int x = x0; x <= x1; ++x) {
+        const float weight = weightY * weightsX[static_cast<size_t>(x - x0)];
+        if (weight != 0) add(Index(x, y), weight);
+      }
+    }
+  };
   uint64_t firstPath = lightPaths_ + 1;  // 0 denotes no path
   for (const SplatList& list : lists) {
-    const uint32_t* layer = hasLayers ? list.Layers().data() : nullptr;  // of the splat
     for (const Splat& splat : list.Splats()) {
       // Splats fall anywhere on the film.
       constexpr ptrdiff_t kAhead = 4;
       if (&list.Splats().back() - &splat >= kAhead) PrefetchSplats((&splat)[kAhead].film);
-      const int y0 = std::max(firstPixel(splat.film.y, radius.y), crop_.y0);
-      const int y1 = std::min(lastPixel(splat.film.y, radius.y), crop_.y1 - 1);
-      const int x0 = std::max(firstPixel(splat.film.x, radius.x), crop_.x0);
-      const int x1 = std::min(lastPixel(splat.film.x, radius.x), crop_.x1 - 1);
-      bool hasWeights = false;
-      for (int y = y0; y <= y1; ++y) {
-        if (y / kGroup % bands != band) continue;
-        const float weightY = filter.EvaluateY(splat.film.y - (static_cast<float>(y) + 0.5f));
-        if (weightY == 0) continue;
-        if (!hasWeights) {
-          for (int x = x0; x <= x1; ++x) {
-            weightsX[static_cast<size_t>(x - x0)] = filter.EvaluateX(splat.film.x - (static_cast<float>(x) + 0.5f));
-          }
-          hasWeights = true;
-        }
-        for (int x = x0; x <= x1; ++x) {
-          const float weight = weightY * weightsX[static_cast<size_t>(x - x0)];
-          if (weight == 0) continue;
-          splats_[Index(x, y)].Add(firstPath + splat.path, static_cast<double>(weight), splat.value);
-          if (hasLayers) AddTo(layerSplats_[Index(x, y) * layers_.size() + *layer], weight, splat.value);
-          if (isInHalf) AddTo(layerSplats_[(Index(x, y) + 1) * layers_.size() - 1], weight, splat.value);
-        }
-      }
-      if (hasLayers) ++layer;
+      spread(splat.film, [&](size_t pixel, float weight) {
+        splats_[pixel].Add(firstPath + splat.path, static_cast<double>(weight), splat.value);
+        if (isInHalf) AddTo(layerSplats_[(pixel + 1) * layers_.size() - 1], weight, splat.value);
+      });
+    }
+    for (const SplatPart& part : list.Parts()) {
+      spread(part.film, [&](size_t pixel, float weight) {
+        AddTo(layerSplats_[pixel * layers_.size() + part.layer], weight, part.value);
+      });
     }
     firstPath += list.Paths();
   }

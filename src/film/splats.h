@@ -22,17 +22,24 @@ struct Splat {
   uint32_t path = 0;  // index within the list
 };
 
+// What a splat gives to a layer.
+struct SplatPart {
+  Point2 film;
+  Color value;
+  uint32_t layer = 0;
+};
+
 // The splats of consecutive light paths. Clear keeps the memory.
 class SplatList {
  public:
   // `reachMin`, `reachMax`: bounds of the film points that contribute to a pixel of the crop; other splats are not
-  // stored. `sensor` is applied to every value. `hasLayers`: the layer of each splat is recorded.
-  SplatList(const Point2& reachMin, const Point2& reachMax, const SensorResponse& sensor, bool hasLayers = false)
-      : reachMin_(reachMin), reachMax_(reachMax), sensor_(sensor), hasLayers_(hasLayers) {}
+  // stored. `sensor` is applied to every value.
+  SplatList(const Point2& reachMin, const Point2& reachMax, const SensorResponse& sensor)
+      : reachMin_(reachMin), reachMax_(reachMax), sensor_(sensor) {}
 
   void Clear() {
     splats_.clear();
-    layers_.clear();
+    parts_.clear();
     paths_ = 0;
   }
   // Splats added from now on belong to the next path.
@@ -42,27 +49,29 @@ class SplatList {
     return film.x >= reachMin_.x && film.x < reachMax_.x && film.y >= reachMin_.y && film.y < reachMax_.y;
   }
   // False if the value is negative or not finite; it is then left out.
-  bool Add(const Point2& film, const Color& value, uint32_t layer = 0) {
+  bool Add(const Point2& film, const Color& value) {
     if (!Reaches(film)) return true;
     const Color scaled = value * sensor_.Scale(value);
     if (!scaled.IsValid()) return false;
     splats_.push_back({film, sensor_.Balance(scaled), paths_ - 1});
-    if (hasLayers_) layers_.push_back(layer);
     return true;
+  }
+  // Adds the share of a valid splat that is in a layer.
+  void AddToLayer(const Point2& film, const Color& value, const Color& share, uint32_t layer) {
+    if (Reaches(film)) parts_.push_back({film, sensor_.Balance(value * sensor_.Scale(value) * share), layer});
   }
 
   const std::vector<Splat>& Splats() const { return splats_; }
-  // The layer of each splat; empty without layers.
-  const std::vector<uint32_t>& Layers() const { return layers_; }
+  // Their parts in layers.
+  const std::vector<SplatPart>& Parts() const { return parts_; }
   uint32_t Paths() const { return paths_; }
 
  private:
   Point2 reachMin_, reachMax_;
   SensorResponse sensor_;
-  bool hasLayers_;
   uint32_t paths_ = 0;
   std::vector<Splat> splats_;
-  std::vector<uint32_t> layers_;
+  std::vector<SplatPart> parts_;
 };
 
 // Sums of one pixel over light paths. The contributions of one path are added before they are squared: together they

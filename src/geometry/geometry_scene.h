@@ -49,6 +49,7 @@ struct GeometryAttributes {
   bool isBoundary = false;
   // False: nobody looks at the uv and tangents of its points, and they are left at 0 where they cost something.
   bool isParametrized = true;
+  int32_t object = -1;     // index of its name, where names are wanted
   bool isFibrous = false;  // a curve that is met from outside alone: its inside is a part of its scattering
 };
 

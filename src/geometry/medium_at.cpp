@@ -101,51 +101,66 @@ std::vector<MediumChange> ChangesTowardsScene(const GeometryScene& geometry, con
   return {};
 }
 
-}  // namespace
+using Changes = std::array<std::vector<MediumChange>, kDirections.size()>;
 
-FoundMedium FindMedium(const GeometryScene& geometry, const Point3& position, float time, const Normal3& normal) {
-  FoundMedium found;
-  std::array<std::vector<MediumChange>, kDirections.size()> changes;
-  std::array<std::optional<int32_t>, kDirections.size()> said;
+Changes ChangesAround(const GeometryScene& geometry, const Point3& position, float time, const Normal3& normal) {
+  Changes changes;
   for (size_t i = 0; i < kDirections.size(); ++i) {
     const Vector3 direction = glm::dot(kDirections[i], normal) < 0 ? -kDirections[i] : kDirections[i];
     changes[i] = MediumChanges(geometry, {position, direction, kInfinity, time});
-    said[i] = FirstMedium(changes[i], true);
+  }
+  return changes;
+}
+
+// What the rays say. `ofBoundaries`: as of FirstMedium.
+FoundMedium MediumSaidBy(const Changes& changes, bool ofBoundaries) {
+  FoundMedium found;
+  std::array<std::optional<int32_t>, kDirections.size()> said;
+  for (size_t i = 0; i < said.size(); ++i) {
+    said[i] = FirstMedium(changes[i], ofBoundaries);
     if (found.disputed == kNoIndex) found.disputed = BrokenLink(changes[i]);
   }
-  found.isOfBoundary = std::any_of(said.begin(), said.end(), [](const auto& one) { return one.has_value(); });
-  if (!found.isOfBoundary) {
-    const std::vector<MediumChange> towards = ChangesTowardsScene(geometry, position, time, normal);
-    found.medium = FirstMedium(towards, true);
-    found.isOfBoundary = found.medium.has_value();
-    // The fixed rays tell more of what is around the scene: some of them leave it.
-    const std::array all = {changes[0], changes[1], changes[2], towards};
-    if (found.medium) found.exterior = ExteriorOf(all, *found.medium);
-  }
-  const auto isSaidByAll = [&] {
-    return std::all_of(changes.begin(), changes.end(),
-                       [&](const std::vector<MediumChange>& ray) { return FirstMedium(ray, false) == found.medium; });
-  };
-  if (found.medium) {
-    found.isUnanimous = isSaidByAll();
-    return found;
-  }
-  for (size_t i = 0; i < said.size(); ++i) {
-    if (!found.isOfBoundary) said[i] = FirstMedium(changes[i], false);
-  }
-  const auto agree = [&](size_t i, size_t j) { return said[i] && said[j] && *said[i] == *said[j]; };
-  if (agree(1, 2)) {
+  if (said[1] && said[1] == said[2]) {
     found.medium = said[1];
   } else {
     for (size_t i = 0; i < said.size() && !found.medium; ++i) found.medium = said[i];
   }
   if (!found.medium) return found;
-  found.isUnanimous = isSaidByAll();
+  found.isOfBoundary = ofBoundaries;
   for (size_t i = 0; i < said.size(); ++i) {
-    if (said[i] && *said[i] != *found.medium) found.disputed = changes[i].front().primitive;
+    if (said[i] && said[i] != found.medium) found.disputed = changes[i].front().primitive;
   }
   found.exterior = ExteriorOf(changes, *found.medium);
   return found;
+}
+
+FoundMedium Find(const GeometryScene& geometry, const Point3& position, float time, const Normal3& normal,
+                 bool looksAround) {
+  const Changes changes = ChangesAround(geometry, position, time, normal);
+  FoundMedium found = MediumSaidBy(changes, true);
+  if (!found.medium && looksAround) {
+    const std::vector<MediumChange> towards = ChangesTowardsScene(geometry, position, time, normal);
+    found.medium = FirstMedium(towards, true);
+    found.isOfBoundary = found.medium.has_value();
+    // The other rays tell more of what is around the scene: some of them leave it.
+    const std::array all = {changes[0], changes[1], changes[2], towards};
+    if (found.medium) found.exterior = ExteriorOf(all, *found.medium);
+  }
+  if (!found.medium) found = MediumSaidBy(changes, false);
+  found.isUnanimous = found.medium && std::all_of(changes.begin(), changes.end(), [&](const auto& ray) {
+                        return FirstMedium(ray, false) == found.medium;
+                      });
+  return found;
+}
+
+}  // namespace
+
+FoundMedium FindMedium(const GeometryScene& geometry, const Point3& position, float time, const Normal3& normal) {
+  return Find(geometry, position, time, normal, false);
+}
+
+FoundMedium FindMediumAround(const GeometryScene& geometry, const Point3& position, float time, const Normal3& normal) {
+  return Find(geometry, position, time, normal, true);
 }
 
 int32_t MediumAlong(const GeometryScene& geometry, const Ray& ray, int32_t otherwise) {

@@ -32,12 +32,17 @@ struct FoundMedium {
 
 // The medium at a point of render space at a shutter time, by three rays in fixed directions. Each says what the first
 // surface that separates media has on the side that the ray meets; a ray that meets none says nothing. What most rays
-// say holds and, if all say something else, what the first one says. Where none meets a boundary, rays towards the
-// scene are asked until one does, and at last what opaque surfaces say.
+// say holds and, if all say something else, what the first one says. Surfaces that stop light are asked only where no
+// ray meets a boundary before them.
 //
 // With a `normal` other than 0 the rays leave to its side, for points on a surface.
 FoundMedium FindMedium(const GeometryScene& geometry, const Point3& position, float time,
                        const Normal3& normal = Normal3(0.0f));
+
+// The same, for a point from which boundaries may be few and far, such as the camera. Where no ray meets one, rays
+// towards points all over the scene are traced until one does, 256 at most.
+FoundMedium FindMediumAround(const GeometryScene& geometry, const Point3& position, float time,
+                             const Normal3& normal = Normal3(0.0f));
 
 // The medium in which a ray starts: what the first surface on it that separates media says; `otherwise` if it meets
 // none.

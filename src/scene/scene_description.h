@@ -25,6 +25,12 @@ struct StatementDescription {
   std::string type;
   ParameterList parameters;
   FileLocation where;
+
+  // A name for what has none: "sphere scene.pbrt:12:3".
+  std::string NameByPlace() const {
+    const std::string file = where.file ? std::filesystem::path(*where.file).filename().string() : "";
+    return type + " " + file + ":" + std::to_string(where.line) + ":" + std::to_string(where.column);
+  }
 };
 
 struct NamedMaterialDescription {
@@ -106,7 +112,7 @@ struct SceneDescription {
 
   StatementDescription camera, film, pixelFilter, sampler, integrator, accelerator;
   Placement cameraToWorld;
-  std::string cameraMedium;  // name of the medium around the camera; "": none
+  std::string cameraMedium;                  // name of the medium around the camera; "": none
   double shutterOpen = 0, shutterClose = 1;  // TransformTimes
   std::map<std::string, Parameter> options;
   std::vector<PluginReference> plugins;  // Option "plugins"

@@ -217,8 +217,7 @@ TEST_P(LightGroupLayers, AreTheSameForAnyThreadsAndPasses) {
       BuildScene(ParseScene(WithGroups(), "test.pbrt", diagnostics), With(GetParam()), true, diagnostics);
   const std::unique_ptr<Integrator> integrator = MakeIntegrator(built.scene, built.settings);
   const auto render = [&](const std::vector<int>& passes, int threads) {
-    Film film(built.settings.width, built.settings.height, built.settings.crop,
-              built.scene.lighting->Groups().Layers());
+    Film film(built.settings.width, built.settings.height, built.settings.crop, built.scene.outputs->Names());
     ProgressiveRender progress(built.scene, *integrator, built.settings, threads, film);
     for (const int samples : passes) progress.AddSamples(samples);
     return film.Develop().data;
@@ -341,7 +340,7 @@ TEST(LightGroups, HaveNamesThatImagesCanBear) {
     EXPECT_NE(ErrorOf(point(taken)).find("test.pbrt:7:21: error: a light group cannot be called"), std::string::npos)
         << ErrorOf(point(taken));
   }
-  EXPECT_NE(ErrorOf(point("rest")).find("layer of the lights that are in none"), std::string::npos);
+  EXPECT_NE(ErrorOf(point("rest")).find("layer of the lights that are in no light group"), std::string::npos);
   EXPECT_NE(ErrorOf(point(std::string(201, 'x'))).find("200 bytes"), std::string::npos);
   EXPECT_NE(ErrorOf(point("a.b") + point("a b")).find("would both be the layer \"a_b\""), std::string::npos);
   for (const std::string& fine : {std::string("r"), std::string("Variance"), std::string("key-1"),

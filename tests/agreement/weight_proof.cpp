@@ -96,7 +96,9 @@ class KeepsPaths final : public WeightedLightPath {
   bool WantsFlights() const override { return flightsBelow_ < 1; }
   void Flew(const LightPath& path, const PathState& state, const Flight& flight, const EmittedPhoton& photon) override {
     const size_t before = kept_.photons.Beams().starts.size();
-    AddFlight(kept_.volume, flightsBelow_, path, state, flight, photon, kept_.photons);
+    SampleContext keeping = context_;
+    keeping.photons = &kept_.photons;
+    AddFlight(keeping, kept_.volume, flightsBelow_, path, state, flight, photon);
     if (kept_.photons.Beams().starts.size() > before) kept_.KeepFlight(path, End());
     if (path.vertices.Count() == 1) SetEnds(path.vertices[0]);
   }
@@ -110,14 +112,13 @@ class KeepsPaths final : public WeightedLightPath {
     AddDensities(path.vertices, kept_.volume, true, kept_.densities);
     const PathVertex& first = path.vertices[0];
     if (path.vertices.Count() == 1) {
-      kept_.densities[0] = {.forward = End().emission.value, .isInMedium = first.IsInMedium(), .extent = End().extent};
+      kept_.densities[0] = FirstDensities(End(), first.IsInMedium());
       kept_.ends = {.direct = End().direct.value, .canBeHit = End().canBeHit};
     } else if (path.vertices.Count() == 2) {
       SetEnds(first);
     }
     const PathVertex& last = path.vertices.Last();
-    const bool isOnBeam = last.IsInMedium() && kept_.volume.UsesBeams(last.insideMedium);
-    if (last.storesPhotons && !isOnBeam) kept_.Keep(path, End());
+    if (last.storesPhotons && !IsOnBeam(last, kept_.volume)) kept_.Keep(path, End());
   }
   KeptLightPaths& kept_;
   double flightsBelow_ = 1;

@@ -101,6 +101,94 @@ TEST_F(Cli, LightGroupsAreLayersOfTheImageAndOfNothingElse) {
       << taken.output;
 }
 
+// Of the command line and of the scene, in the picture, its metadata and the statistics; and what is wrong with them.
+TEST_F(Cli, LayersAreThoseOfTheExpressions) {
+  const std::string lights =
+      "LightSource \"infinite\" \"rgb L\" [0.1 0.2 0.3] \"string name\" \"sky\"\nLightSource \"point\" \"rgb I\" [1 2 "
+      "3] "
+      "\"string name\" \"key\"\n";
+  std::string scene = kScene + lights;
+  Write("layers.pbrt", scene);
+  const std::string render = "render layers.pbrt --quiet ";
+  const Outcome done = Run(render +
+                           "-o o.exr --stats s.json --layer direct-diffuse --layer \"keys = C<RD>[<L.'key'>O]\" "
+                           "--layer \"emission<L.'sky'>\"");
+  ASSERT_EQ(done.exitCode, 0) << done.output;
+  const Image image = ReadImage(folder_ / "o.exr");
+  for (const char* layer : {"direct_diffuse", "keys", "emission_sky"})
+    EXPECT_GE(image.ChannelIndex(std::string(layer) + ".G"), 0) << layer;
+  EXPECT_EQ(image.metadata.at("lampyr.layer.keys"), "C<RD>[<L.'key'>O]");
+  EXPECT_NE(Read("s.json").find("\"expression\": \"C<RD>[<L.'key'>O]\""), std::string::npos) << Read("s.json");
+  const auto error = [&](const std::string& command) {
+    const Outcome outcome = Run(command);
+    EXPECT_EQ(outcome.exitCode, 2) << outcome.output;
+    return outcome.output;
+  };
+  const std::pair<const char*, const char*> wrong[] = {
+      {"--layer costic", "--layer: there is no layer \"costic\" (did you mean \"caustic\"?)"},
+      {"--layer \"x=C<RX>L\"", "--layer: layer \"x\": character 4 of \"C<RX>L\": here is one of these wanted"},
+      {"--layer \"C<RD>L\"", "--layer: a layer by an expression has a name: NAME=C<RD>L"},
+      {"--layer \"x=C<L.'kex'>\"", "the scene has no light or light group \"kex\" (did you mean \"key\"?)"},
+      {"--layer caustic --layer caustic", "two layers have the name \"caustic\""},
+      {"--layer \"variance=CL\"", "a layer cannot be called \"variance\""}};
+  for (const auto& [option, message] : wrong)
+    EXPECT_NE(error(render + option + " -o x.exr").find(message), std::string::npos) << option;
+  scene.insert(scene.find("WorldBegin"),
+               "Film \"rgb\" \"integer xresolution\" 16 \"integer yresolution\" 12\n  \"string layers\" "
+               "[ \"caustic\" \"bad=CQL\" ]\n");
+  Write("layers.pbrt", scene);
+  const std::string located = error(render + "-o x.exr");
+  EXPECT_NE(located.find("error: layer \"bad\": character 2 of \"CQL\": \"Q\" is no event"), std::string::npos)
+      << located;
+  EXPECT_NE(located.find("layers.pbrt:"), std::string::npos) << located;
+}
+
+// Lights of a finished picture are dimmed, tinted and turned off.
+TEST_F(Cli, MixesLayers) {
+  Write("groups.pbrt", std::string(kScene) +
+                           "LightSource \"infinite\" \"rgb L\" [0.1 0.2 0.3] \"string lightGroup\" \"sky\"\n"
+                           "LightSource \"point\" \"rgb I\" [1 2 3] \"string lightGroup\" \"key\"\n");
+  ASSERT_EQ(Run("render groups.pbrt -o in.exr --quiet --layer caustic").exitCode, 0);
+  const Image in = ReadImage(folder_ / "in.exr");
+  const auto mixed = [&](const std::string& factors) {
+    const Outcome outcome = Run("mix in.exr " + factors + " -o out.exr --quiet");
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.output;
+    return ReadImage(folder_ / "out.exr");
+  };
+  const Image same = mixed("sky=1 key=1 rest=1"), off = mixed("sky=0 key=0 rest=0"), tinted = mixed("key=2,0,0.5"),
+              twice = mixed("sky=2 key=2 rest=2");
+  const auto at = [](const Image& image, int x, int y, const std::string& channel) {
+    return image.At(x, y, static_cast<size_t>(image.ChannelIndex(channel)));
+  };
+  for (int y = 0; y < in.height; ++y) {
+    for (int x = 0; x < in.width; ++x) {
+      const float tint[] = {2, 0, 0.5f};
+      for (size_t c = 0; c < 3; ++c) {
+        const std::string channel(1, "RGB"[c]);
+        const float value = at(in, x, y, channel), key = at(in, x, y, "key." + channel);
+        EXPECT_NEAR(at(same, x, y, channel), value, 1e-6f * value);
+        EXPECT_EQ(at(off, x, y, channel), 0);
+        EXPECT_NEAR(at(tinted, x, y, channel), value + (tint[c] - 1) * key, 2e-6f * value);
+        EXPECT_EQ(at(tinted, x, y, "key." + channel), tint[c] * key);
+        EXPECT_FLOAT_EQ(at(twice, x, y, "variance." + channel), 4 * at(in, x, y, "variance." + channel));
+      }
+    }
+  }
+  EXPECT_EQ(tinted.ChannelIndex("variance.R"), -1);
+  const auto error = [&](const std::string& command) {
+    const Outcome outcome = Run(command);
+    EXPECT_EQ(outcome.exitCode, 2) << outcome.output;
+    return outcome.output;
+  };
+  EXPECT_NE(error("mix in.exr kee=2 -o out.exr").find("the picture has no layer \"kee\" (did you mean \"key\"?)"),
+            std::string::npos);
+  EXPECT_NE(error("mix in.exr key=x -o out.exr").find("\"key=x\": a layer and its factor are wanted"),
+            std::string::npos);
+  EXPECT_NE(error("mix in.exr key=1,2 -o out.exr").find("a layer and its factor are wanted"), std::string::npos);
+  EXPECT_NE(error("mix in.exr key=1 key=2 -o out.exr").find("named twice"), std::string::npos);
+  EXPECT_NE(error("mix in.exr key=1 -o in.exr").find("is the picture that is read"), std::string::npos);
+}
+
 // What a threshold on shadow rays saves and costs is compared like another integrator.
 TEST_F(Cli, ComparesSettingsOfAnIntegrator) {
   const std::string compare = "compare scene.pbrt --spp 2,4 --repeat 2 -o c --integrators ";

@@ -45,7 +45,7 @@ void ExpectBalance(const std::string& what, const std::string& world, const Radi
   Diagnostics diagnostics(Diagnostics::Mode::Collect);
   const BuiltScene built = BuildScene(ParseScene(text, "balance.pbrt", diagnostics), {}, true, diagnostics);
   const RenderScene& scene = built.scene;
-  const GlowingMedia glowing(scene, Point2(2.0f));
+  const GlowingMedia glowing(scene);
   Sampler sampler(SamplerKind::Independent, 7);
   RenderCounts counts;
   const SampleContext context{scene, sampler, 0, counts};

@@ -82,7 +82,7 @@ BeamList Flights(Rng& rng, size_t count) {
   return list;
 }
 
-// Where t and s are those of the nearest points of start + t·a and other + s·b, by the two equations that say that the
+// The parameters t and s of the nearest points of start + t·a and other + s·b, by the two equations that say that the
 // way between them is perpendicular to both.
 std::pair<double, double> NearestOf(const FineLine& line, const FlightStart& start) {
   const Vector3d &a = line.direction, &b = start.direction, way = start.position - line.start;

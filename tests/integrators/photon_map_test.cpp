@@ -180,7 +180,6 @@ TEST(PhotonMap, KeepsWhatAPhotonCarries) {
   EXPECT_EQ(Color(1, 2, 3), map[0].flux);
   EXPECT_EQ(Color(4, 5, 6), map.SpecularFlux(map[0]));
   EXPECT_EQ(3u, map[0].depth);
-  EXPECT_EQ(0u, map[0].group);
   EXPECT_TRUE(map.PathOf(map[0]).empty()) << "densities were not kept";
 }
 
@@ -221,22 +220,28 @@ TEST(PhotonMap, KeepsTheDensitiesOfPaths) {
   }
 }
 
-TEST(PhotonMap, KeepsTheGroupAndAsMuchOfTheDepthAsItCan) {
+TEST(PhotonMap, KeepsTheLabelsAndAsMuchOfTheDepthAsItCan) {
   PhotonList list;
   list.StartPath();
   PathVertex vertex;
   vertex.toPrevious = Vector3(0, 0, 1);
   const std::pair<size_t, uint32_t> photons[] = {{1, 0}, {7, 65534}, {65535, 1}, {65536, 2}, {1u << 20, 3}};
-  for (const auto& [depth, group] : photons) {
-    vertex.point.position.x = static_cast<float>(group);
-    list.Add(vertex, depth, group);
+  for (const auto& [depth, label] : photons) {
+    vertex.point.position.x = static_cast<float>(label);
+    const PathLabel labels[] = {{label, Color(0.25f)}, {label + 1, Color(0.75f)}};
+    list.Add(vertex, depth, std::span<const PathLabel>(labels).first(label % 2 + 1));
   }
   const PhotonMap map(std::span(&list, 1), 1);
-  for (const auto& [depth, group] : photons) {
+  for (const auto& [depth, label] : photons) {
     PhotonLookup lookup;
-    const auto found = map.Find(Point3(static_cast<float>(group), 0, 0), 0.4f, lookup);
-    ASSERT_EQ(found.size(), 1u) << group;
-    EXPECT_EQ(map[found[0]].group, group);
+    const auto found = map.Find(Point3(static_cast<float>(label), 0, 0), 0.4f, lookup);
+    ASSERT_EQ(found.size(), 1u) << label;
+    const auto labels = map.LabelsOf(found[0]);
+    ASSERT_EQ(labels.size(), label % 2 + 1);
+    for (uint32_t i = 0; i < labels.size(); ++i) {
+      EXPECT_EQ(labels[i].state, label + i);
+      EXPECT_EQ(labels[i].share, Color(i == 0 ? 0.25f : 0.75f));
+    }
     EXPECT_EQ(map[found[0]].depth, std::min<size_t>(depth, 65535));
   }
 }

@@ -98,7 +98,7 @@ TEST(SurfaceLights, UnusualOnesPass) {
   const std::map<std::string, TilesSetup> lights = {{"one tile", OneTile()},       {"two pieces", TwoPieces()},
                                                     {"closed box", ClosedBox()},   {"with a hole", WithHole()},
                                                     {"narrow beam", NarrowBeam()}, {"uneven", Uneven()}};
-  // By default each at one of the places, in turn, of which the stretched one is looked at closely.
+  // Unless all are wanted, each light has one of the transforms, in turn.
   size_t turn = 0;
   for (const auto& [name, setup] : lights) {
     const std::vector<const Transform*> all = {&kTurned, &kStretched, &kMirrored};

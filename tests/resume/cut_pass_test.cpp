@@ -30,8 +30,7 @@ std::string SavedBytes(const Saved& saved) {
 struct OwnRender {
   OwnRender(const BuiltScene& built, bool withTechniques)
       : integrator(MakeIntegrator(built.scene, built.settings)),
-        film(built.settings.width, built.settings.height, built.settings.crop,
-             built.scene.lighting->Groups().Layers()) {
+        film(built.settings.width, built.settings.height, built.settings.crop, built.scene.outputs->Names()) {
     const RenderSettings& s = built.settings;
     if (withTechniques) techniques.emplace(s.width, s.height, s.crop, s.MaxDepth(), s.sensor);
     render.emplace(built.scene, *integrator, s, 2, film, techniques ? &*techniques : nullptr);

@@ -34,7 +34,12 @@ void Render(Film& film, uint32_t begin, uint32_t end) {
         layers.Add(random() % 2, color);
         film.AddToLayers(x, y, layers, 1, w);
         splats.StartPath();
-        for (int i = 0; i < 2; ++i) splats.Add({place(random), place(random)}, value(), random() % 2);
+        for (int i = 0; i < 2; ++i) {
+          const Point2 at(place(random), place(random));
+          const Color splat = value();
+          splats.Add(at, splat);
+          splats.AddToLayer(at, splat, Color(1.0f), static_cast<uint32_t>(random() % 2));
+        }
       }
     }
     film.AddSplats(filter, std::span(&splats, 1), 1);

@@ -86,9 +86,14 @@ Image Random(size_t listCount, int threads, std::vector<std::string> layers) {
   for (size_t i = 0; i < paths; ++i) {
     SplatList& list = lists[i * listCount / paths];
     list.StartPath();
-    for (uint32_t k = 0; k < 3; ++k)
-      list.Add(Point2(14 * u(rng) - 1, 11 * u(rng) - 1), Color(u(rng), u(rng), u(rng)),
-               static_cast<uint32_t>(i + k) % 3);
+    for (uint32_t k = 0; k < 3; ++k) {
+      const Point2 at(14 * u(rng) - 1, 11 * u(rng) - 1);
+      const Color value(u(rng), u(rng), u(rng)), share(u(rng), u(rng), u(rng));
+      list.Add(at, value);
+      if (count == 0) continue;
+      list.AddToLayer(at, value, share, static_cast<uint32_t>(i + k) % 3);
+      list.AddToLayer(at, value, Color(1.0f) - share, static_cast<uint32_t>(i + k + 1) % 3);
+    }
   }
   film.AddSplats(filter, lists, threads);
   return film.Develop();

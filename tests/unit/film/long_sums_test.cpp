@@ -99,8 +99,8 @@ TEST(LongSums, AMillionSplatsKeepTheirMean) {
       const float value = 0.1f * (1 + 0.25f * static_cast<float>(path % 5));
       for (SplatList* splats : {&list, &single}) {
         splats->StartPath();
-        splats->Add({0.5f, 0.5f}, Color(value), 0);
-        splats->Add({0.5f, 0.5f}, Color(value), 0);
+        splats->Add({0.5f, 0.5f}, Color(value));
+        splats->Add({0.5f, 0.5f}, Color(value));
       }
       sum += 2 * static_cast<long double>(value);
     }
@@ -122,7 +122,7 @@ TEST(LongSums, VarianceOfEqualSplatsIsNothing) {
     SplatList list = film.MakeSplatList(filter, 1);
     for (int k = 0; k < 1000; ++k) {
       list.StartPath();
-      list.Add({0.5f, 0.5f}, Color(12345.678f), 0);
+      list.Add({0.5f, 0.5f}, Color(12345.678f));
     }
     film.AddSplats(filter, {&list, 1}, 1);
     const Developed developed = Develop(film);

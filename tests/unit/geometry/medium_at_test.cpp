@@ -109,10 +109,10 @@ TEST(MediumAt, OfASideOfWhatStopsLight) {
     return GeometryScene(std::move(description));
   };
   const Point3 below(1, 2, -3);
-  const FoundMedium byBall = FindMedium(sceneWith(true), {1, 2, 3}, 0);
+  const FoundMedium byBall = FindMediumAround(sceneWith(true), {1, 2, 3}, 0);
   EXPECT_EQ(byBall.medium, 5);
   EXPECT_TRUE(byBall.isOfBoundary);
-  const FoundMedium byFloor = FindMedium(sceneWith(false), below, 0);
+  const FoundMedium byFloor = FindMediumAround(sceneWith(false), below, 0);
   EXPECT_EQ(byFloor.medium, kVacuum);
   EXPECT_FALSE(byFloor.isOfBoundary);
 }
@@ -123,7 +123,7 @@ TEST(MediumAt, OfACameraAsideOfAllBoundaries) {
   description.entries.push_back(Separating(Sphere(0.4), 3, 5));
   const GeometryScene scene(std::move(description));
   for (const Point3& eye : {Point3(0, 0.2f, 5), Point3(30, 1, -2), Point3(-2, 2, 200)}) {
-    const FoundMedium found = FindMedium(scene, eye, 0);
+    const FoundMedium found = FindMediumAround(scene, eye, 0);
     EXPECT_EQ(found.medium, 5);
     EXPECT_EQ(found.exterior, 5);
   }

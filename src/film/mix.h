@@ -1,0 +1,30 @@
+// Mixing the layers of a picture: what it would be with lights dimmed, tinted, or off, without a render.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "film/image.h"
+
+namespace lampyr {
+
+struct LayerFactor {
+  std::string layer;
+  Color factor{1.0f};
+};
+
+// The parts of a list between separators; of an empty text one, which is empty.
+std::vector<std::string> Split(const std::string& text, char separator);
+
+// The names of the layers of an image that have R, G and B, without "variance".
+std::vector<std::string> ColorLayers(const Image& image);
+// Those that are of light groups and together the whole picture; empty if it has none.
+std::vector<std::string> GroupLayers(const Image& image);
+
+// The picture with each of the layers times its factor. Light groups are added up, so that groups at 0 leave nothing;
+// of other layers the picture gets the difference. The groups themselves are scaled, too, so that the result can be
+// mixed again; other layers stay as they are, and layers of variance stay only where all groups have one factor. Throws
+// an Error for a layer that the image does not have, or that is named twice.
+Image MixLayers(const Image& image, const std::vector<LayerFactor>& factors);
+
+}  // namespace lampyr
