@@ -213,6 +213,9 @@ struct RenderCommand {
         ->allow_extra_args(false);
     app.add_flag("--through-smooth", overrides.seesThroughSmooth,
                  "What pixels see, for those layers, is what mirrors and smooth glass show");
+    app.add_flag("--denoise", options.denoise,
+                 "Denoise the picture; as it was rendered it stays in the layer \"noisy\". With --shard: keep what "
+                 "`lampyr denoise` wants of the merged picture");
     app.add_flag("--auto-layers", options.autoLayers,
                  "Add layers of what --integrator auto decided: auto.lightPaths, auto.connecting, auto.merging");
     app.add_option("--strategy-images", options.strategyImages,
@@ -249,6 +252,23 @@ struct MergeCommand {
     app.add_flag("--quiet", options.quiet, "No summary");
   }
   int Run() { return RunMerge(options); }
+};
+
+struct DenoiseCommand {
+  DenoiseOptions options;
+
+  void Define(CLI::App& app) {
+    app.add_option("image", options.input, "An image with variance layers, as `lampyr render` writes it")
+        ->type_name("FILE")
+        ->required();
+    app.add_option("-o,--output", options.output, "The image to write (.exr)")->type_name("FILE")->required();
+    app.add_option("--threads", options.threads, "Threads (all)")->check(CLI::Range(1, 4096));
+    app.add_flag("--png", options.png, "Also write a tone-mapped PNG beside it");
+    app.add_option("--exposure", options.exposure, "Exposure of the PNG in stops (0)")->check(CheckFinite, "");
+    app.add_flag("--clip", options.clipPng, "Clip the PNG at white instead of rolling highlights off");
+    app.add_flag("--quiet", options.quiet, "No progress and no summary");
+  }
+  int Run() { return RunDenoise(options); }
 };
 
 struct MixCommand {
@@ -363,7 +383,8 @@ struct CompareCommand {
         ->type_name("FOLDER");
     app.add_option(
            "--integrators", options.integrators,
-           "Which to compare, e.g. path,auto (path,bdpt); path:shadow-threshold=0.01 is one with a setting changed")
+           "Which to compare, e.g. path,auto (path,bdpt); path:shadow-threshold=0.01 is one with a setting changed, "
+           "path:denoise is one that is denoised")
         ->type_name("NAME,…")
         ->delimiter(',')
         ->allow_extra_args(false);
@@ -473,6 +494,7 @@ class Commands {
     Add("plan", "What a scene requires, and what is therefore modelled, with reasons", plan_);
     Add("diff", "Compare two images: MSE, relMSE, FLIP, bias, z-test by blocks", diff_);
     Add("mix", "Dim, tint or turn off lights in a finished picture with layers", mix_);
+    Add("denoise", "Denoise an image; its variance then tells the error of the result", denoise_);
     Add("png", "Make a PNG to look at of an image", png_);
     Add("check-lights",
         "Prove the densities of lights, and light filters: of every type, a plugin's, or a scene's lights. What fails "
@@ -502,6 +524,7 @@ class Commands {
   PlanCommand plan_;
   DiffCommand diff_;
   MixCommand mix_;
+  DenoiseCommand denoise_;
   PngCommand png_;
   CheckLightsCommand checkLights_;
   LightsCommand lights_;

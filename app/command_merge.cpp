@@ -9,6 +9,7 @@
 #include "app/command_line.h"
 #include "app/commands.h"
 #include "film/mix.h"
+#include "render/feature_layers.h"
 #include "render/first_hit_layers.h"
 #include "render/output_files.h"
 #include "render/render_part.h"
@@ -92,17 +93,32 @@ void CheckPartsStay(const MergeOptions& options) {
   }
 }
 
-// The layers of what is seen first, which are the same in all parts that have them; without channels if the picture has
-// none, or no part was given the time for them.
-Image FirstHitLayersOf(const std::vector<Part>& parts, const PartHeader& whole, bool quiet) {
-  if (!whole.metadata.contains(kFirstHitChannelsMetadata)) return {};
+// Adds the layers of those names, which are the same in all parts that have them, to `layers`; not if no part was given
+// the time for them. `what`: they, in words.
+void AddLayersOf(const std::vector<Part>& parts, const std::vector<std::string>& names, const char* what, bool quiet,
+                 Image& layers) {
   for (const Part& part : parts) {
-    Image layers = ChannelsOf(ReadImage(part.path), Split(whole.metadata.at(kFirstHitChannelsMetadata), ','));
-    if (!layers.channels.empty()) return layers;
+    Image found = ChannelsOf(ReadImage(part.path), names);
+    if (found.channels.empty()) continue;
+    if (layers.channels.empty()) {
+      layers = std::move(found);
+    } else {
+      AppendChannels(layers, found);
+    }
+    return;
   }
-  if (!quiet)
-    std::fprintf(stderr, "warning: no part has the layers of what is seen first: the picture is without them\n");
-  return {};
+  if (!quiet) std::fprintf(stderr, "warning: no part has %s: the picture is without them\n", what);
+}
+
+// The layers of what is seen first, and the features for denoising; without channels if the picture has none.
+Image LayersOf(const std::vector<Part>& parts, const PartHeader& whole, bool quiet) {
+  Image layers;
+  if (whole.metadata.contains(kFirstHitChannelsMetadata))
+    AddLayersOf(parts, Split(whole.metadata.at(kFirstHitChannelsMetadata), ','), "the layers of what is seen first",
+                quiet, layers);
+  if (whole.metadata.contains(kFeaturesMetadata))
+    AddLayersOf(parts, FeatureChannels(), "the features for denoising", quiet, layers);
+  return layers;
 }
 
 }  // namespace
@@ -126,7 +142,7 @@ int RunMerge(const MergeOptions& options) {
     film.Add(own);
     whole.samples += part.Header().samples;
   }
-  WriteSamples(options.output, whole, film, FirstHitLayersOf(parts, whole, options.quiet));
+  WriteSamples(options.output, whole, film, LayersOf(parts, whole, options.quiet));
   if (options.png) WritePngBeside(options.output, film.Develop(), options.exposure, options.clipPng);
   if (!missing.empty()) std::fprintf(stderr, "warning: the picture is not whole: without %s\n", missing.c_str());
   if (!options.quiet) {

@@ -9,6 +9,7 @@
 #include "app/command_line.h"
 #include "app/command_support.h"
 #include "app/commands.h"
+#include "app/denoise_support.h"
 #include "app/json_report.h"
 #include "app/preview.h"
 #include "base/memory.h"
@@ -19,6 +20,7 @@
 #include "render/analysis/unseen_samples.h"
 #include "render/build/invalid_light.h"
 #include "render/checkpoints.h"
+#include "render/feature_layers.h"
 #include "render/first_hit_layers.h"
 #include "render/load_scene.h"
 #include "render/output_files.h"
@@ -75,9 +77,10 @@ void CheckSceneStays(const RenderOptions& options, const SceneDescription& scene
 
 // An image too large for the machine is told before the system ends the process for it. The film is kept twice
 // (render_backup.h).
-void CheckMemory(const RenderSettings& settings, TracedPaths paths, size_t layers, bool hasTechniques) {
+void CheckMemory(const RenderSettings& settings, TracedPaths paths, size_t layers, bool hasTechniques, bool denoises) {
+  layers += denoises ? 1 : 0;
   // Developed image: colour, variance, light groups and first-hit layers. The latter are also kept during the render.
-  const uint64_t firstHit = FirstHitChannels(settings).size();
+  const uint64_t firstHit = FirstHitChannels(settings).size() + (denoises ? FeatureChannels().size() : 0);
   const uint64_t channels = 6 + 3 * layers + 2 * firstHit;
   const uint64_t techniques = hasTechniques ? TechniqueImages::BytesPerPixel(settings.MaxDepth()) : 0;
   const uint64_t perPixel =
@@ -136,8 +139,14 @@ PartHeader MakeHeader(const RenderOptions& options, const LoadedScene& loaded, c
   for (const char* layer : {kSamplesLayer, kErrorLayer}) {
     if (settings.Wants(layer)) header.metadata[std::string(kSampleLayerMetadata) + layer] = "1";
   }
-  if (options.shard || options.resume || options.checkpointSeconds)
+  if (options.denoise) {
+    header.layers.emplace_back(kHalfLayer);
+    header.metadata[kFeaturesMetadata] = "yes";
+  }
+  if (options.shard || options.resume || options.checkpointSeconds) {
     header.identity = IdentityOf(loaded, options.robust);
+    header.identity.emplace_back("--denoise", options.denoise ? "on" : "off");
+  }
   return header;
 }
 
@@ -321,6 +330,9 @@ class RenderJob {
   void Describe();
   void PrintHints() const;
   void MakeFirstHitLayers();
+  void MakeFeatureLayers();
+  void AddLayers(Image layers);
+  void DenoisePicture() const;
   void GoOn(ProgressiveRender& render);
   void Trace(ProgressiveRender& render, Checkpoints* checkpoints);
   int Finish(ProgressiveRender& render, Checkpoints* checkpoints);
@@ -334,7 +346,7 @@ class RenderJob {
   std::unique_ptr<Integrator> integrator_;
   Shard shard_;
   PartHeader header_;
-  Image firstHit_;  // layers of what is seen first, and of what auto decided; without channels: not wanted
+  Image layers_;  // of what is seen first, of features, and of what auto decided; without channels: none is wanted
   RenderReport report_;
 };
 
@@ -348,7 +360,7 @@ RenderJob::RenderJob(const RenderOptions& options, const LoadedScene& loaded)
   CheckOptions(options, settings_, checkpointPath_);
   integrator_ = MakeIntegrator(built_.scene, settings_);
   CheckMemory(settings_, integrator_->Paths(), built_.scene.outputs->Layers().size(),
-              options.strategyImages.has_value());
+              options.strategyImages.has_value(), options.denoise);
   if (const auto photons = integrator_->Photons(); photons && !options.quiet) WarnOfPhotonMemory(settings_, *photons);
   const auto [part, parts] = options.shard.value_or(std::pair(1, 1));
   shard_ = ShardOf(part, parts, SamplesWanted(options, settings_));
@@ -426,11 +438,48 @@ void RenderJob::PrintHints() const {
                settings_.namedIntegrator.c_str(), suits.decision.choice.c_str(), suits.decision.reason.c_str());
 }
 
+void RenderJob::AddLayers(Image layers) {
+  if (layers_.channels.empty()) {
+    layers_ = std::move(layers);
+  } else {
+    AppendChannels(layers_, layers);
+  }
+}
+
 void RenderJob::MakeFirstHitLayers() {
-  RunForeignCode(loaded_.types, [&] { firstHit_ = FirstHitLayers(built_, report_.threads, FinishOnInterrupt()); });
-  if (firstHit_.channels.empty())
+  Image layers;
+  RunForeignCode(loaded_.types, [&] { layers = FirstHitLayers(built_, report_.threads, FinishOnInterrupt()); });
+  if (layers.channels.empty()) {
     std::fprintf(stderr,
                  "warning: stopped before the layers of what is seen first were made: the picture is without them\n");
+    return;
+  }
+  AddLayers(std::move(layers));
+}
+
+void RenderJob::MakeFeatureLayers() {
+  Image layers;
+  RunForeignCode(loaded_.types, [&] { layers = FeatureLayers(built_, report_.threads, FinishOnInterrupt()); });
+  if (layers.channels.empty()) {
+    std::fprintf(stderr, "warning: stopped before the features for denoising were made: the picture is without them\n");
+    return;
+  }
+  AddLayers(std::move(layers));
+}
+
+// Denoises the picture that was written.
+void RenderJob::DenoisePicture() const {
+  if (report_.outcome.samplesPerPixel < 2) {
+    std::fprintf(stderr, "warning: not denoised: one sample per pixel has no known variance\n");
+    return;
+  }
+  const Image image = DenoiseForUser(ReadImage(path_), report_.threads, FinishOnInterrupt(), options_.quiet);
+  if (image.channels.empty()) {
+    std::fprintf(stderr, "warning: interrupted: \"%s\" is not denoised; `lampyr denoise` does it\n", path_.c_str());
+    return;
+  }
+  WriteExr(path_, image, settings_.halfPrecision ? ExrPrecision::Half : ExrPrecision::Float);
+  if (options_.png) WritePngBeside(path_, image, options_.exposure, options_.clipPng);
 }
 
 int RenderJob::Run() {
@@ -443,14 +492,8 @@ int RenderJob::Run() {
   }
   if (!options_.quiet) PrintHints();
   if (settings_.WantsFirstHit()) MakeFirstHitLayers();
-  if (options_.autoLayers) {
-    Image decided = AutoLayers(settings_);
-    if (firstHit_.channels.empty()) {
-      firstHit_ = std::move(decided);
-    } else {
-      AppendChannels(firstHit_, decided);
-    }
-  }
+  if (options_.denoise) MakeFeatureLayers();
+  if (options_.autoLayers) AddLayers(AutoLayers(settings_));
   ProgressiveRender render(built_.scene, *integrator_, settings_, report_.threads, film, techniques.get(),
                            shard_.first);
   if (options_.resume) GoOn(render);
@@ -459,7 +502,7 @@ int RenderJob::Run() {
     checkpoints.emplace(checkpointPath_, *options_.checkpointSeconds, header_, render, [&](const RenderOutcome& soFar) {
       RenderOutcome unfinished = soFar;
       unfinished.interrupted = true;
-      WriteImage(path_, options_, header_, film, firstHit_, unfinished);
+      WriteImage(path_, options_, header_, film, layers_, unfinished);
     });
   }
   Checkpoints* const written = checkpoints ? &*checkpoints : nullptr;
@@ -481,9 +524,10 @@ int RenderJob::Finish(ProgressiveRender& render, Checkpoints* checkpoints) {
   // The sums in a part's image are of whole samples.
   if (options_.shard) render.DropPartialPass();
   if (render.Techniques()) WriteTechniques(options_, render.Techniques()->Develop(film));
-  WriteImageOrKeepIt(path_, options_, header_, film, firstHit_, report_.outcome);
+  WriteImageOrKeepIt(path_, options_, header_, film, layers_, report_.outcome);
   if (options_.png || options_.previewSeconds)
     WritePngBeside(path_, film.Develop(), options_.exposure, options_.clipPng);
+  if (options_.denoise && !options_.shard && !isPartial) DenoisePicture();
   render.DropPartialPass();
   if (checkpoints) checkpoints->Finish(report_.outcome);
   report_.writeSeconds = clock.Seconds();

@@ -26,9 +26,10 @@ struct RenderOptions {
   int threads = 0;                    // 0: all
   std::optional<std::filesystem::path> stats;
   std::optional<std::filesystem::path> strategyImages;  // a folder
-  bool autoLayers = false;                              // layers of what auto decided
-  std::optional<double> checkpointSeconds;              // --checkpoint
-  std::optional<double> previewSeconds;                 // --preview
+  bool denoise = false;
+  bool autoLayers = false;                  // layers of what auto decided
+  std::optional<double> checkpointSeconds;  // --checkpoint
+  std::optional<double> previewSeconds;     // --preview
   bool resume = false;
   std::optional<std::pair<int, int>> shard;  // which of how many, from 1
   bool quiet = false;
@@ -81,6 +82,15 @@ struct DiffOptions {
   int blockSize = 8;
 };
 
+struct DenoiseOptions {
+  std::filesystem::path input, output;
+  int threads = 0;  // 0: all
+  bool png = false;
+  float exposure = 0;  // stops, of the PNG
+  bool clipPng = false;
+  bool quiet = false;
+};
+
 struct MixOptions {
   std::filesystem::path input, output;
   std::vector<std::string> factors;  // LAYER=FACTOR
@@ -118,6 +128,7 @@ int RunCompare(const CompareOptions& options);
 int RunPlan(const PlanOptions& options);
 int RunDiff(const DiffOptions& options);
 int RunMix(const MixOptions& options);
+int RunDenoise(const DenoiseOptions& options);
 int RunPng(const PngOptions& options);
 int RunLights(const LightsOptions& options);
 int RunCheckLights(const CheckLightsOptions& options);  // fails when a property does not hold

@@ -10,6 +10,7 @@ find_package(CLI11 REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(PNG REQUIRED)
 find_package(ZLIB REQUIRED)
+find_package(Eigen3 REQUIRED NO_MODULE)  # headers alone
 find_path(NANOVDB_INCLUDE_DIR nanovdb/NanoVDB.h REQUIRED)  # headers alone
 
 # Debian's OpenImageIO package file demands the command-line tools and an OpenCV folder that its library does not need:

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "integrators/walk/pixel_ray.h"
 #include "film/cryptomatte.h"
+#include "integrators/walk/pixel_ray.h"
 
 namespace lampyr {
 

@@ -39,7 +39,7 @@ Color Radiance(const Integrator& integrator, const PixelRay& ray, const SampleCo
 struct SampleAdder {
   SampleAdder(const RenderSettings& settings, Film& aFilm, RenderCounts& someCounts)
       : sensor(settings.sensor), film(aFilm), counts(someCounts) {
-    if (film.HasLayers()) layers.emplace(film.Layers().size());
+    if (film.HasLayers()) layers.emplace(film.SplitLayers());
   }
 
   // The cleared layers for the next sample; null: the film has none.
@@ -49,8 +49,8 @@ struct SampleAdder {
     return &*layers;
   }
   // Adds a sample of a pixel to `sums` and to the pixel's layers. An invalid value (negative or not finite) is counted,
-  // added to `sums` as black, and left out of the layers.
-  void Add(int x, int y, const PixelRay& ray, const Color& radiance, PixelSums& sums) {
+  // added to `sums` as black, and left out of the layers. `index`: of the sample.
+  void Add(int x, int y, uint32_t index, const PixelRay& ray, const Color& radiance, PixelSums& sums) {
     const float scale = ray.camera.weight * sensor.Scale(radiance * ray.camera.weight);
     Color value = radiance * scale;
     const bool isValid = value.IsValid();
@@ -60,6 +60,7 @@ struct SampleAdder {
     }
     sums.Add(sensor.Balance(value), ray.filterWeight);
     if (layers && isValid) film.AddToLayers(x, y, *layers, scale, ray.filterWeight, sensor);
+    if (film.HasHalf() && IsInHalf(index)) film.AddToHalf(x, y, sensor.Balance(value), ray.filterWeight);
   }
 
   const SensorResponse& sensor;
@@ -108,7 +109,7 @@ RenderCounts TraceCameraPaths(const Pass& pass) {
           const PixelRay ray = MakePixelRay(pass.scene, pass.filter, x, y, time, sampler);
           SampleContext context{pass.scene, sampler, time, counts, adder.StartLayers()};
           context.outputs = pass.Outputs();
-          adder.Add(x, y, ray, Radiance(pass.integrator, ray, context), sums);
+          adder.Add(x, y, i, ray, Radiance(pass.integrator, ray, context), sums);
         }
         pass.film.Pixel(x, y) = sums;
       }
@@ -125,13 +126,17 @@ RenderCounts TraceLightPaths(const Pass& pass) {
   const int chunks = 4 * std::max(pass.threads, 1);
   std::vector<SplatList> lists(static_cast<size_t>(chunks), pass.film.MakeSplatList(pass.filter, pass.settings.sensor));
   std::vector<RenderCounts> counts(static_cast<size_t>(chunks));
-  for (uint64_t round = pass.first * pass.Pixels(); round < end; round += chunks * kChunkPaths) {
+  for (uint64_t round = pass.first * pass.Pixels(), roundEnd = 0; round < end; round = roundEnd) {
+    const uint64_t sample = round / pass.Pixels();
+    // The splats of a round belong to the layer of half of the samples, or none of them does.
+    const uint64_t together = pass.film.HasHalf() ? (sample + 1) * pass.Pixels() : end;
+    roundEnd = std::min(round + static_cast<uint64_t>(chunks) * kChunkPaths, together);
     ParallelFor(chunks, pass.threads, [&](int chunk) {
       SplatList& splats = lists[static_cast<size_t>(chunk)];
       splats.Clear();
       Sampler sampler(pass.settings.sampler, pass.settings.seed);
       const uint64_t begin = round + static_cast<uint64_t>(chunk) * kChunkPaths;
-      for (uint64_t i = begin; i < std::min(begin + kChunkPaths, end); ++i) {
+      for (uint64_t i = begin; i < std::min(begin + kChunkPaths, roundEnd); ++i) {
         sampler.StartPixelSample(static_cast<int>(i >> 32), kLightPaths, static_cast<uint32_t>(i));
         splats.StartPath();
         SampleContext context{pass.scene, sampler, SampleTime(pass.scene, sampler), counts[static_cast<size_t>(chunk)]};
@@ -140,7 +145,7 @@ RenderCounts TraceLightPaths(const Pass& pass) {
         pass.integrator.Sample(nullptr, context);
       }
     });
-    pass.film.AddSplats(pass.filter, lists, pass.threads);
+    pass.film.AddSplats(pass.filter, lists, pass.threads, static_cast<uint32_t>(sample));
   }
   return Total(counts);
 }
@@ -181,7 +186,7 @@ class BothPaths {
       for (uint64_t round = 0; round < pass_.Pixels(); round += PathsPerRound()) {
         TraceRound(round, pass_.Pixels(), index, pass_.settings.seed, true);
         if (wanted_ && !hasTimes_) store_.Take(photons_);
-        pass_.film.AddSplats(pass_.filter, splats_, pass_.threads);
+        pass_.film.AddSplats(pass_.filter, splats_, pass_.threads, index);
         if (techniques_) techniques_->AddSplats(pass_.filter, recorders_, pass_.threads);
       }
       if (hasTimes_) {
@@ -308,7 +313,7 @@ void BothPaths::TraceChunk(size_t chunk, uint64_t begin, uint64_t end, uint32_t 
       context.film = ray.film;
       adder.StartLayers();
       const Color radiance = Radiance(pass_.integrator, ray, context);
-      adder.Add(x, y, ray, radiance, pass_.film.Pixel(x, y));
+      adder.Add(x, y, index, ray, radiance, pass_.film.Pixel(x, y));
     }
     for (int k = 1; k < lightPaths; ++k) {
       startLightPath();

@@ -58,7 +58,7 @@ const Pilot* PilotOf(const ComparisonPlan& plan, const std::vector<Pilot>& pilot
     return found == pilots.end() ? nullptr : &*found;
   };
   const Pilot* own = find(name.substr(0, name.find(':')));
-  return !own && name == kAuto ? find(plan.autoIntegrator) : own;
+  return !own && IsAuto(name) ? find(plan.autoIntegrator) : own;
 }
 
 double LongestRender(const ComparisonPlan& plan, const std::vector<Pilot>& pilots) {
@@ -220,7 +220,7 @@ ComparisonResults Describe(const CompareOptions& options, const LoadedScene& loa
 
 int CompareLoaded(const CompareOptions& options, ComparisonPlan plan, const LoadedScene& loaded) {
   const RenderSettings& settings = loaded.built.settings;
-  const bool hasAuto = std::find(plan.integrators.begin(), plan.integrators.end(), kAuto) != plan.integrators.end();
+  const bool hasAuto = std::any_of(plan.integrators.begin(), plan.integrators.end(), IsAuto);
   plan.autoIntegrator = settings.integrator;
   if (hasAuto && !options.quiet) std::printf("auto: %s\n", settings.counts->Describe(settings.integrator).c_str());
   for (const std::string& name : plan.integrators) {
@@ -280,7 +280,7 @@ int RunCompare(const CompareOptions& options) {
   const ComparisonPlan plan = MakePlan(options);
   OutliveSurroundings();
   RenderOverrides overrides = options.overrides;
-  const bool hasAuto = std::find(plan.integrators.begin(), plan.integrators.end(), kAuto) != plan.integrators.end();
+  const bool hasAuto = std::any_of(plan.integrators.begin(), plan.integrators.end(), IsAuto);
   overrides.integrator = hasAuto ? kAuto : VariantOf({}, plan.integrators.front()).integrator;
   const LoadedScene loaded = LoadScene(options.scene, options.plugins, overrides, options.strict, options.robust);
   int exitCode = kExitFailed;

@@ -1,34 +1,64 @@
 #include "app/compare/compared_scene.h"
 
 #include <algorithm>
+#include <chrono>
 #include <memory>
 
 #include "base/stop.h"
+#include "denoise/denoise.h"
+#include "render/feature_layers.h"
 #include "render/settings/integrator_choice.h"
 
 namespace lampyr {
 
+namespace {
+
+using Steady = std::chrono::steady_clock;
+double SecondsSince(Steady::time_point start) {
+  return std::chrono::duration<double>(Steady::now() - start).count();
+}
+
+// Never destroyed if a pass was abandoned, because its threads still use it.
+struct OneRender {
+  RenderSettings settings;
+  std::unique_ptr<Integrator> integrator;
+  Film film;
+  ProgressiveRender render;
+  OneRender(const RenderScene& scene, const RenderSettings& chosen, int threads, uint32_t firstSample, bool denoises)
+      : settings(chosen),
+        integrator(MakeIntegrator(scene, settings)),
+        film(settings.width, settings.height, settings.crop,
+             denoises ? std::vector<std::string>{kHalfLayer} : std::vector<std::string>()),
+        render(scene, *integrator, settings, threads, film, nullptr, firstSample) {}
+};
+
+}  // namespace
+
 void ComparedScene::Render(const std::string& integrator, uint64_t seed, const std::vector<double>& times,
                            const std::vector<int>& sampleCounts, const AtMilestone& atMilestone,
                            const AfterPass& afterPass, uint32_t firstSample, double secondsBefore) const {
-  // Never destroyed if a pass was abandoned, because its threads still use it.
-  struct Run {
-    RenderSettings settings;
-    std::unique_ptr<Integrator> integrator;
-    Film film;
-    ProgressiveRender render;
-    Run(const RenderScene& scene, const RenderSettings& chosen, int threads, uint32_t firstSample)
-        : settings(chosen),
-          integrator(MakeIntegrator(scene, settings)),
-          film(settings.width, settings.height, settings.crop),
-          render(scene, *integrator, settings, threads, film, nullptr, firstSample) {}
-  };
   RenderSettings settings = VariantOf(built_.settings, integrator);
   settings.seed = seed;
-  auto run = std::make_unique<Run>(built_.scene, settings, threads_, firstSample);
+  auto run = std::make_unique<OneRender>(built_.scene, settings, threads_, firstSample, IsDenoised(integrator));
   ProgressiveRender& render = run->render;
   const Film& film = run->film;
   const RenderOutcome& outcome = render.Outcome();
+  const auto start = Steady::now();
+  Image features;
+  if (IsDenoised(integrator)) {
+    features = FeatureLayers(built_, threads_, interrupted_);
+    secondsBefore += SecondsSince(start);
+  }
+  const auto show = [&](size_t index) {
+    const double seconds = secondsBefore + outcome.seconds;
+    if (!IsDenoised(integrator)) {
+      atMilestone(index, {seconds, outcome.samplesPerPixel}, film.Develop());
+      return;
+    }
+    const auto begin = Steady::now();
+    const Image picture = DenoisedPicture(film, features, outcome.samplesPerPixel);
+    atMilestone(index, {seconds + SecondsSince(begin), outcome.samplesPerPixel}, picture);
+  };
   const StopWatch watch(&interrupted_, std::nullopt);
   size_t nextTime = 0, nextCount = 0;
   while (nextTime < times.size() || nextCount < sampleCounts.size()) {
@@ -42,18 +72,30 @@ void ComparedScene::Render(const std::string& integrator, uint64_t seed, const s
     // A sample that would exceed the time is omitted if it would exceed it by more than half of its duration.
     const double perSample = outcome.seconds / outcome.samplesPerPixel;
     while (nextTime < times.size() && secondsBefore + outcome.seconds + 0.5 * perSample >= times[nextTime]) {
-      atMilestone(nextTime, {secondsBefore + outcome.seconds, outcome.samplesPerPixel}, film.Develop());
+      show(nextTime);
       ++nextTime;
     }
     while (nextCount < sampleCounts.size() && outcome.samplesPerPixel >= sampleCounts[nextCount]) {
-      atMilestone(times.size() + nextCount, {secondsBefore + outcome.seconds, outcome.samplesPerPixel}, film.Develop());
+      show(times.size() + nextCount);
       ++nextCount;
     }
   }
 }
 
+Image ComparedScene::DenoisedPicture(const Film& film, const Image& features, int samplesPerPixel) const {
+  Image picture = film.Develop();
+  if (samplesPerPixel < 2) return picture;  // its variance is not known
+  if (!features.channels.empty()) AppendChannels(picture, features);
+  picture.metadata[kSamplesMetadata] = std::to_string(samplesPerPixel);
+  DenoiseReport report;
+  Image denoised = Denoise(
+      picture, threads_, interrupted_, [](double) {}, report);
+  if (denoised.channels.empty()) throw ComparisonInterrupted{};
+  return denoised;
+}
+
 double ComparedScene::ChoiceSeconds(const std::string& integrator) const {
-  return integrator == kAuto ? built_.choiceSeconds : 0;
+  return IsAuto(integrator) ? built_.choiceSeconds : 0;
 }
 
 }  // namespace lampyr

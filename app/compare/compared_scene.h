@@ -37,6 +37,7 @@ class ComparedScene {
   // time of snapshots is not counted.
   // `firstSample`: index of the first sample of a pixel; merging radii are those of a render that has come so far.
   // `secondsBefore`: counts as passed when the render begins; ChoiceSeconds where the time of a user is measured.
+  // Pictures of an integrator whose name ends in ":denoise" are denoised; the time of that and of its features counts.
   // Throws ComparisonInterrupted.
   void Render(const std::string& integrator, uint64_t seed, const std::vector<double>& times,
               const std::vector<int>& sampleCounts, const AtMilestone& atMilestone, const AfterPass& afterPass,
@@ -45,6 +46,8 @@ class ComparedScene {
   double ChoiceSeconds(const std::string& integrator) const;
 
  private:
+  Image DenoisedPicture(const Film& film, const Image& features, int samplesPerPixel) const;
+
   const BuiltScene& built_;
   int threads_;
   const std::atomic<bool>& interrupted_;

@@ -241,7 +241,7 @@ ComparedIntegrator Describe(const Run& run, const std::vector<Parts>& parts, con
   const size_t last = run.repeats.front().last;
   ComparedIntegrator described;
   described.name = run.integrator;
-  described.blurs = GathersPhotons(settings);
+  described.blurs = GathersPhotons(settings) || IsDenoised(run.integrator);
   described.hints = IntegratorHints(scene.Built().scene, settings.integrator);
   described.meanBias = MeanBias(run, last, reference);
   described.systematic = parts[last].common;

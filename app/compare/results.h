@@ -60,7 +60,7 @@ struct TimeToError {
 struct ComparedIntegrator {
   std::string name;
   std::vector<std::string> hints;
-  bool blurs = false;                  // merges photons: its bias falls with more samples
+  bool blurs = false;                  // merges photons, or is denoised: its bias falls with more samples
   SignificantEstimate meanBias;        // of the image's mean, relative to the reference's
   SignificantEstimate systematic;      // the part of relMSE that all repeats have in common, at the largest budget
   std::vector<SpectrumRing> spectrum;  // at the largest budget

@@ -8,6 +8,8 @@ namespace lampyr {
 
 namespace {
 
+constexpr const char* kDenoised = ":denoise";
+
 std::string Listed(const std::vector<std::string>& names) {
   std::string all;
   for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
@@ -53,7 +55,16 @@ std::unique_ptr<Integrator> MakeIntegrator(const RenderScene& scene, const Rende
                settings.counts.get(), SplatCount(settings)});
 }
 
+bool IsDenoised(const std::string& name) {
+  return name.ends_with(kDenoised);
+}
+
+bool IsAuto(const std::string& name) {
+  return name == kAuto || name == kAuto + std::string(kDenoised);
+}
+
 RenderSettings VariantOf(const RenderSettings& settings, const std::string& name) {
+  if (IsDenoised(name)) return VariantOf(settings, name.substr(0, name.size() - std::string(kDenoised).size()));
   RenderSettings variant = settings;
   if (name == kAuto) return variant;
   size_t colon = name.find(':');

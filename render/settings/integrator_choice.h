@@ -16,9 +16,13 @@ std::unique_ptr<Integrator> MakeIntegrator(const RenderScene& scene, const Rende
 
 // The settings with another integrator, by a name such as "path", or with some of its settings changed, too:
 // "path:shadow-threshold=0.01:light-samples=4". Throws a UsageError that lists the valid names.
-// "auto": the settings as they are, whose integrator and counts auto has chosen.
+// "auto": the settings as they are, whose integrator and counts auto has chosen. A name that ends in ":denoise" gives
+// the settings of the name before that.
 RenderSettings VariantOf(const RenderSettings& settings, const std::string& name);
 inline constexpr const char* kAuto = "auto";
+bool IsDenoised(const std::string& name);
+// True for "auto", denoised or not.
+bool IsAuto(const std::string& name);
 
 bool GathersPhotons(const RenderSettings& settings);
 

@@ -4,8 +4,8 @@
 #include <map>
 #include <set>
 
-#include "lights/services/lighting_services.h"
 #include "film/cryptomatte.h"
+#include "lights/services/lighting_services.h"
 
 namespace lampyr {
 

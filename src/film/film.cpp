@@ -99,6 +99,12 @@ bool AreFinite(std::span<const CompensatedSum> sums) {
 
 }  // namespace
 
+uint32_t SamplesInHalf(uint32_t n) {
+  if (n < 2) return n;
+  const uint32_t power = std::bit_floor(n);
+  return power / 2 + std::min(n - power, power / 2);
+}
+
 void PixelSums::Add(const Color& value, float filterWeight) {
   const double w = static_cast<double>(filterWeight);
   const double weighted[3] = {w * static_cast<double>(value.r), w * static_cast<double>(value.g),
@@ -133,6 +139,7 @@ bool PixelSums::IsFinite() const {
 
 Film::Film(int fullWidth, int fullHeight, const PixelRect& crop, std::vector<std::string> layers)
     : fullWidth_(fullWidth), fullHeight_(fullHeight), crop_(crop), layers_(std::move(layers)) {
+  hasHalf_ = !layers_.empty() && layers_.back() == kHalfLayer;
   const bool inside = crop.x0 >= 0 && crop.y0 >= 0 && crop.x1 <= fullWidth && crop.y1 <= fullHeight;
   if (!inside || crop.Width() <= 0 || crop.Height() <= 0) {
     throw Error("the crop holds no pixel of the " + std::to_string(fullWidth) + " x " + std::to_string(fullHeight) +
@@ -156,6 +163,10 @@ void Film::AddToLayers(int x, int y, const LayerSample& sample, float scale, flo
       sums[layer][static_cast<size_t>(c)].Add(factor * value);
     }
   }
+}
+
+void Film::AddToHalf(int x, int y, const Color& value, float filterWeight) {
+  AddTo(layerSums_[(Index(x, y) + 1) * layers_.size() - 1], filterWeight, value);
 }
 
 uint64_t Film::BytesPerPixel(size_t layers, bool withSplats) {
@@ -214,11 +225,11 @@ void Film::MakeSplats() {
   layerSplats_.resize(layerSums_.size());
 }
 
-void Film::AddSplats(const PixelFilter& filter, std::span<const SplatList> lists, int threads) {
+void Film::AddSplats(const PixelFilter& filter, std::span<const SplatList> lists, int threads, uint32_t sample) {
   MakeSplats();
   if (splatSpread_ == 0) splatSpread_ = SplatSpread(filter);
   const int bands = std::max(threads, 1);
-  ParallelFor(bands, threads, [&](int band) { AddToRows(filter, lists, band, bands); });
+  ParallelFor(bands, threads, [&](int band) { AddToRows(filter, lists, band, bands, hasHalf_ && IsInHalf(sample)); });
   for (const SplatList& list : lists) lightPaths_ += list.Paths();
 }
 
@@ -232,7 +243,7 @@ void Film::PrefetchSplats(const Point2& film) const {
 }
 
 // Adds to the rows of one band. Groups of rows are dealt to the bands in turn, so that the threads share a bright spot.
-void Film::AddToRows(const PixelFilter& filter, std::span<const SplatList> lists, int band, int bands) {
+void Film::AddToRows(const PixelFilter& filter, std::span<const SplatList> lists, int band, int bands, bool isInHalf) {
   constexpr int kGroup = 4;
   const Vector2 radius = filter.Radius();
   const auto firstPixel = [](float p, float r) { return static_cast<int>(std::floor(p - 0.5f - r)); };
@@ -266,6 +277,7 @@ void Film::AddToRows(const PixelFilter& filter, std::span<const SplatList> lists
       if (&list.Splats().back() - &splat >= kAhead) PrefetchSplats((&splat)[kAhead].film);
       spread(splat.film, [&](size_t pixel, float weight) {
         splats_[pixel].Add(firstPath + splat.path, static_cast<double>(weight), splat.value);
+        if (isInHalf) AddTo(layerSplats_[(pixel + 1) * layers_.size() - 1], weight, splat.value);
       });
     }
     for (const SplatPart& part : list.Parts()) {

@@ -11,6 +11,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -24,6 +25,17 @@
 #include "math/vec.h"
 
 namespace lampyr {
+
+// The layer of a film that gets the samples of about half of the indices, instead of a part of each sample. It is the
+// last one. Two estimates with independent noise, it and the rest, tell the noise of whatever is made of the picture.
+inline constexpr const char* kHalfLayer = "half";
+// Whether a sample belongs to it: the first half of those from any power of two to the next does. Aligned blocks of a
+// Sobol sequence are well distributed each on its own; two parts that are so only together have opposite errors.
+inline bool IsInHalf(uint32_t sampleIndex) {
+  return sampleIndex < 2 ? sampleIndex == 0 : (sampleIndex & (std::bit_floor(sampleIndex) / 2)) == 0;
+}
+// How many of the first n samples do: from n/2 to n·2/3, rounded up.
+uint32_t SamplesInHalf(uint32_t n);
 
 struct PixelRect {
   int x0 = 0, y0 = 0, x1 = 0, y1 = 0;  // half open
@@ -50,8 +62,8 @@ class ByteWriter;
 
 class Film {
  public:
-  // `crop`: in pixels of the full image. `layers`: names of the layers. Throws an Error if the crop is empty or reaches
-  // beyond the image.
+  // `crop`: in pixels of the full image. `layers`: names of the layers; kHalfLayer may be the last. Throws an Error if
+  // the crop is empty or reaches beyond the image.
   Film(int fullWidth, int fullHeight, const PixelRect& crop, std::vector<std::string> layers = {});
 
   const PixelRect& Crop() const { return crop_; }
@@ -60,7 +72,12 @@ class Film {
   const PixelSums& Pixel(int x, int y) const { return pixels_[Index(x, y)]; }
 
   const std::vector<std::string>& Layers() const { return layers_; }
-  bool HasLayers() const { return !layers_.empty(); }
+  // Layers that samples are split into: without kHalfLayer.
+  size_t SplitLayers() const { return layers_.size() - (hasHalf_ ? 1 : 0); }
+  bool HasLayers() const { return SplitLayers() > 0; }
+  bool HasHalf() const { return hasHalf_; }
+  // Adds a camera sample, whose value is added to the pixel itself, to kHalfLayer.
+  void AddToHalf(int x, int y, const Color& value, float filterWeight);
   // Adds the layer parts of a sample whose value is added to the pixel itself, scaled by `scale` and weighted by the
   // filter.
   void AddToLayers(int x, int y, const LayerSample& sample, float scale, float filterWeight,
@@ -70,9 +87,9 @@ class Film {
 
   // An empty list for splats onto this film.
   SplatList MakeSplatList(const PixelFilter& filter, const SensorResponse& sensor) const;
-  // Adds the paths of the lists, in order. The result does not depend on how a sequence of paths is divided into lists
-  // and calls, nor on the number of threads.
-  void AddSplats(const PixelFilter& filter, std::span<const SplatList> lists, int threads);
+  // Adds the paths of the lists, in order, which belong to the sample of index `sample`. The result does not depend on
+  // how a sequence of paths is divided into lists and calls, nor on the number of threads.
+  void AddSplats(const PixelFilter& filter, std::span<const SplatList> lists, int threads, uint32_t sample = 0);
   // Number of light paths so far, including those without a splat.
   uint64_t LightPaths() const { return lightPaths_; }
 
@@ -107,7 +124,7 @@ class Film {
 
   size_t Index(int x, int y) const { return static_cast<size_t>(y - crop_.y0) * crop_.Width() + (x - crop_.x0); }
   void PrefetchSplats(const Point2& film) const;
-  void AddToRows(const PixelFilter& filter, std::span<const SplatList> lists, int band, int bands);
+  void AddToRows(const PixelFilter& filter, std::span<const SplatList> lists, int band, int bands, bool isInHalf);
   double Value(size_t pixel, int channel) const;
   double LayerValue(size_t pixel, size_t layer, size_t channel) const;
   double VarianceOfMean(size_t pixel, int channel) const;
@@ -119,6 +136,7 @@ class Film {
   std::vector<PixelSums> pixels_;
   std::vector<SplatSums> splats_;  // empty without splats
   std::vector<std::string> layers_;
+  bool hasHalf_ = false;                           // the last layer is kHalfLayer
   std::vector<LayerSum> layerSums_, layerSplats_;  // per layer and pixel; layerSplats_: empty without splats
   uint64_t lightPaths_ = 0;
   double splatSpread_ = 0;  // effective number of pixels of a splat (film.cpp)

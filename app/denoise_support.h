@@ -1,0 +1,14 @@
+// What `lampyr denoise` and `lampyr render --denoise` have in common.
+#pragma once
+
+#include <atomic>
+
+#include "film/image.h"
+
+namespace lampyr {
+
+// Denoises with progress on stderr, and says there what the filter had to do without and what it has removed. An image
+// without channels if `interrupted` was set. Throws an Error if the image cannot be denoised.
+Image DenoiseForUser(const Image& noisy, int threads, const std::atomic<bool>& interrupted, bool quiet);
+
+}  // namespace lampyr

@@ -1,0 +1,224 @@
+#include "denoise/denoise.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "denoise/clean_features.h"
+#include "denoise/filter_error.h"
+#include "denoise/noisy_picture.h"
+#include "denoise/window_regression.h"
+
+namespace lampyr {
+
+namespace {
+
+// Radii of the means of errors, pixels.
+constexpr int kNear = 4, kFar = 12;
+
+constexpr size_t kChoices = kWidths.size();
+using Shares = std::array<Plane, kChoices>;
+
+RegressionInput MakeInput(const NoisyPicture& picture, std::vector<CleanFeature> features, int threads) {
+  RegressionInput input;
+  input.halves = picture.halves;
+  input.isValid = picture.isValid;
+  input.features = std::move(features);
+  for (size_t half = 0; half < 2; ++half) {
+    for (size_t c = 0; c < 3; ++c) {
+      // Means over neighbours: the variance of a pixel follows its own noise.
+      Plane variance = BoxMeans(picture.variance[c], 1, threads);
+      const Plane value = BoxMeans(picture.color[c], 1, threads);
+      for (size_t i = 0; i < variance.Size(); ++i) {
+        // Differences below this fraction of the value are not seen.
+        const float unseen = 0.002f * value.values[i];
+        variance.values[i] =
+            variance.values[i] * picture.noiseScale.values[i] / static_cast<float>(picture.shares[half]) +
+            unseen * unseen;
+      }
+      input.guides[half].values.push_back(picture.halves[half][c]);
+      input.guides[half].variances.push_back(std::move(variance));
+    }
+  }
+  return input;
+}
+
+// Keeps the filtered halves within the values of the picture around each pixel: a regression rings beside something
+// that is much brighter than all around it.
+void LimitToSurroundings(const NoisyPicture& picture, int threads, Halves& halves) {
+  constexpr int radius = 2;
+  const int width = picture.color[0].width, height = picture.color[0].height;
+  ParallelFor(height, threads, [&](int y) {
+    for (int x = 0; x < width; ++x) {
+      for (size_t c = 0; c < 3; ++c) {
+        const Plane& color = picture.color[c];
+        float low = color.At(x, y), high = low;
+        for (int j = std::max(y - radius, 0); j <= std::min(y + radius, height - 1); ++j) {
+          for (int i = std::max(x - radius, 0); i <= std::min(x + radius, width - 1); ++i) {
+            low = std::min(low, color.At(i, j));
+            high = std::max(high, color.At(i, j));
+          }
+        }
+        for (ColorPlanes& half : halves) half[c].At(x, y) = std::clamp(half[c].At(x, y), low, high);
+      }
+    }
+  });
+}
+
+// The shares of the widths at each pixel: the one of the smallest error, blended so that no seam shows.
+Shares ShareByError(const std::array<Filtered, kChoices>& filtered, int threads) {
+  const int width = filtered[0].value[0].width, height = filtered[0].value[0].height;
+  Shares shares;
+  shares.fill(Plane(width, height));
+  for (size_t i = 0; i < shares[0].Size(); ++i) {
+    std::array<float, kChoices> errors{};
+    for (size_t k = 0; k < kChoices; ++k) {
+      for (size_t c = 0; c < 3; ++c)
+        errors[k] += filtered[k].variance[c].values[i] + filtered[k].squaredBias[c].values[i];
+    }
+    const auto best = std::min_element(errors.begin(), errors.end()) - errors.begin();
+    shares[static_cast<size_t>(best)].values[i] = 1;
+  }
+  for (Plane& share : shares) share = BoxMeans(share, 2, threads);
+  return shares;
+}
+
+Halves Blend(const std::array<Halves, kChoices>& choices, const Shares& shares) {
+  Halves halves;
+  for (size_t half = 0; half < 2; ++half) {
+    for (size_t c = 0; c < 3; ++c) {
+      Plane& blended = halves[half][c] = Plane(shares[0].width, shares[0].height);
+      for (size_t k = 0; k < kChoices; ++k) {
+        const Plane& value = choices[k][half][c];
+        for (size_t i = 0; i < blended.Size(); ++i) blended.values[i] += shares[k].values[i] * value.values[i];
+      }
+    }
+  }
+  return halves;
+}
+
+// Takes as much of the residual back as minimises the error where the filter has a bias b and the picture the variance
+// σ²: b² / (b² + σ²).
+void KeepDetail(const NoisyPicture& picture, const Filtered& filtered, const HalfStatistics& statistics, int threads,
+                Halves& halves) {
+  Plane noise(picture.noiseScale.width, picture.noiseScale.height), scale = noise;
+  for (size_t i = 0; i < noise.Size(); ++i) {
+    for (size_t c = 0; c < 3; ++c) {
+      noise.values[i] += picture.variance[c].values[i];
+      scale.values[i] += filtered.value[c].values[i] * filtered.value[c].values[i];
+    }
+  }
+  scale = BoxMeans(scale, 1, threads);
+  for (float& value : scale.values) value += 1e-12f;
+  // A pixel that has missed the bright samples seems to have no noise: what is usual around it counts.
+  const Plane usual = MeanSquares(noise, scale, kNear, threads);
+  noise = BoxMeans(noise, 1, threads);
+  for (size_t i = 0; i < noise.Size(); ++i) noise.values[i] = std::max(noise.values[i], usual.values[i]);
+  for (size_t i = 0; i < noise.Size(); ++i) {
+    if (!picture.isValid[i]) continue;
+    const float variance = noise.values[i] * picture.noiseScale.values[i] * statistics.varianceFactor;
+    // What is below the standard error of the squared bias is taken for none.
+    constexpr float uncertain = 0.3f;
+    float bias = -uncertain * variance;
+    for (size_t c = 0; c < 3; ++c) bias += filtered.squaredBias[c].values[i];
+    if (!(bias > 0)) continue;
+    const float kept = bias / (bias + variance);
+    for (size_t half = 0; half < 2; ++half) {
+      for (size_t c = 0; c < 3; ++c) {
+        float& value = halves[half][c].values[i];
+        value += kept * (picture.halves[half][c].values[i] - value);
+      }
+    }
+  }
+}
+
+// The error that is stated is the larger one of those near by and farther around: what is left of the noise is smooth,
+// so that few pixels do not tell its size.
+void StateMore(const Filtered& far, Filtered& near) {
+  for (size_t c = 0; c < 3; ++c) {
+    for (size_t i = 0; i < far.value[c].Size(); ++i) {
+      float &variance = near.variance[c].values[i], &bias = near.squaredBias[c].values[i];
+      bias = std::max({bias, far.squaredBias[c].values[i], 0.0f});
+      variance = std::max(variance, far.variance[c].values[i]);
+    }
+  }
+}
+
+// The light that outliers had is missing around them, nobody knows where exactly.
+void AddMissing(const NoisyPicture& picture, int threads, Filtered& filtered) {
+  constexpr int radius = 9;
+  for (size_t c = 0; c < 3; ++c) {
+    const Plane missing = BoxMeans(picture.excess[c], radius, threads);
+    for (size_t i = 0; i < missing.Size(); ++i)
+      filtered.squaredBias[c].values[i] += missing.values[i] * missing.values[i];
+  }
+}
+
+Image MakeImage(const Image& noisy, const NoisyPicture& picture, const Filtered& filtered,
+                const std::array<Plane, 2>& weights) {
+  const std::vector<std::string> front = {"R", "G", "B", "variance.R", "variance.G", "variance.B"};
+  std::vector<std::string> channels = front;
+  std::vector<size_t> copied;  // channels of `noisy`
+  for (const std::string& name : front) {
+    channels.push_back("noisy." + name);
+    copied.push_back(static_cast<size_t>(noisy.ChannelIndex(name)));
+  }
+  for (size_t c = 0; c < noisy.channels.size(); ++c) {
+    if (std::find(front.begin(), front.end(), noisy.channels[c]) != front.end()) continue;
+    channels.push_back(noisy.channels[c]);
+    copied.push_back(c);
+  }
+  Image image(noisy.width, noisy.height, std::move(channels));
+  image.metadata = noisy.metadata;
+  image.offsetX = noisy.offsetX;
+  image.offsetY = noisy.offsetY;
+  image.fullWidth = noisy.fullWidth;
+  image.fullHeight = noisy.fullHeight;
+  for (size_t i = 0; i < picture.isValid.size(); ++i) {
+    const float* in = noisy.data.data() + i * noisy.channels.size();
+    float* out = image.data.data() + i * image.channels.size();
+    for (size_t k = 0; k < copied.size(); ++k) out[front.size() + k] = in[copied[k]];
+    for (size_t c = 0; c < 3; ++c) {
+      const bool isKnown = weights[0].values[i] > 0 && weights[1].values[i] > 0;
+      if (!isKnown) {  // no valid pixel is near
+        out[c] = picture.color[c].values[i];
+        out[3 + c] = picture.variance[c].values[i];
+        continue;
+      }
+      // A regression may undershoot 0 beside something bright.
+      out[c] = std::max(filtered.value[c].values[i], std::min(picture.color[c].values[i], 0.0f));
+      out[3 + c] = filtered.variance[c].values[i] + std::max(filtered.squaredBias[c].values[i], 0.0f);
+    }
+  }
+  return image;
+}
+
+}  // namespace
+
+Image Denoise(const Image& noisy, int threads, const std::atomic<bool>& interrupted,
+              const std::function<void(double)>& progress, DenoiseReport& report) {
+  const NoisyPicture picture = ReadNoisyPicture(noisy, threads, report);
+  std::vector<CleanFeature> features = CleanFeatures(noisy, threads, interrupted);
+  report.hasFeatures = !features.empty();
+  const RegressionInput input = MakeInput(picture, std::move(features), threads);
+  const auto outputs = RegressInWindows(input, threads, interrupted, progress);
+  if (interrupted.load()) return {};
+  std::array<Halves, kChoices> choices;
+  for (size_t k = 0; k < kChoices; ++k) {
+    choices[k] = outputs[k].halves;
+    LimitToSurroundings(picture, threads, choices[k]);
+  }
+  const HalfStatistics statistics(picture, choices.back());
+  std::array<Filtered, kChoices> filtered;
+  for (size_t k = 0; k < kChoices; ++k) filtered[k] = FilteredOf(picture, choices[k], statistics, kNear, threads);
+  Halves halves = Blend(choices, ShareByError(filtered, threads));
+  KeepDetail(picture, FilteredOf(picture, halves, statistics, kNear, threads), statistics, threads, halves);
+  Filtered result = FilteredOf(picture, halves, statistics, kNear, threads);
+  StateMore(FilteredOf(picture, halves, statistics, kFar, threads), result);
+  AddMissing(picture, threads, result);
+  return MakeImage(noisy, picture, result, outputs[0].weights);
+}
+
+}  // namespace lampyr

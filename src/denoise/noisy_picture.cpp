@@ -1,0 +1,257 @@
+#include "denoise/noisy_picture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <numbers>
+#include <string>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "film/film.h"
+
+namespace lampyr {
+
+namespace {
+
+constexpr const char* kColors[3] = {"R", "G", "B"};
+
+// Planes of the channels PREFIX + R, G, B; empty planes if the image has not all of them.
+ColorPlanes ReadColors(const Image& image, const std::string& prefix) {
+  ColorPlanes planes;
+  for (size_t c = 0; c < 3; ++c) {
+    const int channel = image.ChannelIndex(prefix + kColors[c]);
+    if (channel < 0) return {};
+    planes[c] = Plane(image.width, image.height);
+    for (size_t i = 0; i < planes[c].Size(); ++i)
+      planes[c].values[i] = image.data[i * image.channels.size() + static_cast<size_t>(channel)];
+  }
+  return planes;
+}
+
+int SamplesOf(const Image& image) {
+  const auto found = image.metadata.find(kSamplesMetadata);
+  return found == image.metadata.end() ? 0 : std::atoi(found->second.c_str());
+}
+
+void CheckChannels(const Image& image) {
+  if (image.ChannelIndex("noisy.R") >= 0)
+    throw Error("it has been denoised already: it has the layer \"noisy\", the picture as it was rendered");
+  for (const char* channel : kColors) {
+    if (image.ChannelIndex(channel) < 0) throw Error("it has no R, G and B channels");
+  }
+  if (ReadColors(image, "variance.")[0].Size() == 0) {
+    throw Error(
+        "it has no layers variance.R, .G and .B, which tell noise from detail: every picture of `lampyr render` has "
+        "them, and --denoise adds features to it");
+  }
+  if (SamplesOf(image) == 1)
+    throw Error("it has one sample per pixel, whose variance is unknown: render it with --spp 2 or more");
+}
+
+float Luminance(const ColorPlanes& color, size_t i) {
+  return Color(color[0].values[i], color[1].values[i], color[2].values[i]).Luminance();
+}
+
+// Standard deviation of the luminance of a pixel, whose channels are taken as fully correlated.
+float Deviation(const ColorPlanes& variance, size_t i) {
+  return Color(std::sqrt(variance[0].values[i]), std::sqrt(variance[1].values[i]), std::sqrt(variance[2].values[i]))
+      .Luminance();
+}
+
+void FindValid(NoisyPicture& picture, DenoiseReport& report) {
+  picture.isValid.assign(picture.color[0].Size(), 1);
+  for (size_t i = 0; i < picture.isValid.size(); ++i) {
+    for (size_t c = 0; c < 3; ++c) {
+      float& value = picture.color[c].values[i];
+      float& variance = picture.variance[c].values[i];
+      // Squares of larger values are not finite.
+      constexpr float largest = 1e18f;
+      if (std::abs(value) < largest && variance >= 0 && std::isfinite(variance)) continue;
+      picture.isValid[i] = 0;
+    }
+    if (picture.isValid[i]) continue;
+    ++report.invalidPixels;
+    for (size_t c = 0; c < 3; ++c) picture.color[c].values[i] = picture.variance[c].values[i] = 0;
+  }
+}
+
+// Replaces invalid pixels by the mean of the nearest valid ones, as far as a window reaches.
+void FillInvalid(NoisyPicture& picture) {
+  constexpr int reach = 9;
+  const std::vector<uint8_t> wasValid = picture.isValid;
+  const int width = picture.color[0].width, height = picture.color[0].height;
+  const auto fill = [&](int x, int y, int radius) {
+    const int x0 = std::max(x - radius, 0), x1 = std::min(x + radius, width - 1);
+    const int y0 = std::max(y - radius, 0), y1 = std::min(y + radius, height - 1);
+    const auto place = static_cast<size_t>(y * width + x);
+    bool isFilled = false;
+    for (ColorPlanes* planes : {&picture.color, &picture.variance, &picture.halves[0], &picture.halves[1]}) {
+      for (Plane& plane : *planes) {
+        float sum = 0, count = 0;
+        for (int j = y0; j <= y1 && plane.Size() > 0; ++j) {
+          for (int i = x0; i <= x1; ++i) {
+            if (!wasValid[static_cast<size_t>(j * width + i)]) continue;
+            sum += plane.At(i, j);
+            ++count;
+          }
+        }
+        if (count == 0) continue;
+        plane.values[place] = sum / count;
+        isFilled = true;
+      }
+    }
+    return isFilled;
+  };
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const auto place = static_cast<size_t>(y * width + x);
+      for (int radius = 1; radius <= reach && !picture.isValid[place]; ++radius)
+        picture.isValid[place] = fill(x, y, radius);
+    }
+  }
+}
+
+// The third largest luminance around a pixel, without its own; the largest float near a corner of a tiny picture.
+float ThirdAround(const Plane& luminance, int x, int y) {
+  constexpr int radius = 3;
+  float largest[3] = {0, 0, 0};
+  for (int j = std::max(y - radius, 0); j <= std::min(y + radius, luminance.height - 1); ++j) {
+    for (int i = std::max(x - radius, 0); i <= std::min(x + radius, luminance.width - 1); ++i) {
+      if (i == x && j == y) continue;
+      float value = luminance.At(i, j);
+      for (float& entry : largest) {
+        if (value > entry) std::swap(value, entry);
+      }
+    }
+  }
+  return largest[2];
+}
+
+// Factors by which pixels are reduced; 1 for all but outliers.
+Plane FindOutliers(const NoisyPicture& picture, int threads) {
+  const int width = picture.color[0].width, height = picture.color[0].height;
+  Plane luminance(width, height), factors(width, height, 1);
+  for (size_t i = 0; i < luminance.Size(); ++i) luminance.values[i] = Luminance(picture.color, i);
+  ParallelFor(height, threads, [&](int y) {
+    for (int x = 0; x < width; ++x) {
+      const size_t i = static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x);
+      const float value = luminance.values[i];
+      if (!(value > 0) || value > 4 * Deviation(picture.variance, i)) continue;
+      const float limit = 2 * ThirdAround(luminance, x, y);
+      if (value > limit) factors.values[i] = limit / value;
+    }
+  });
+  return factors;
+}
+
+void RemoveOutliers(NoisyPicture& picture, int threads, DenoiseReport& report) {
+  const Plane factors = FindOutliers(picture, threads);
+  picture.excess.fill(Plane(factors.width, factors.height));
+  double removed = 0, all = 0;
+  for (size_t i = 0; i < factors.Size(); ++i) {
+    const float factor = factors.values[i];
+    const auto luminance = static_cast<double>(Luminance(picture.color, i));
+    all += luminance;
+    if (factor == 1) continue;
+    ++report.outliers;
+    removed += luminance * static_cast<double>(1 - factor);
+    for (size_t c = 0; c < 3; ++c) {
+      picture.excess[c].values[i] = (1 - factor) * picture.color[c].values[i];
+      for (Plane* plane : {&picture.color[c], &picture.halves[0][c], &picture.halves[1][c]}) {
+        if (plane->Size() > 0) plane->values[i] *= factor;
+      }
+      picture.variance[c].values[i] *= factor * factor;
+    }
+  }
+  report.removed = all > 0 ? removed / all : 0;
+}
+
+// Halves of the layer of half of the samples, which holds its share of the picture. False: the picture has none.
+bool ReadHalves(const Image& image, NoisyPicture& picture) {
+  const ColorPlanes part = ReadColors(image, std::string(kHalfLayer) + ".");
+  const int samples = SamplesOf(image);
+  if (part[0].Size() == 0 || samples < 2) return false;
+  picture.shares[0] = static_cast<double>(SamplesInHalf(static_cast<uint32_t>(samples))) / samples;
+  picture.shares[1] = 1 - picture.shares[0];
+  const auto first = static_cast<float>(1 / picture.shares[0]), second = static_cast<float>(1 / picture.shares[1]);
+  picture.halves[0] = picture.halves[1] = picture.color;
+  for (size_t c = 0; c < 3; ++c) {
+    for (size_t i = 0; i < part[c].Size(); ++i) {
+      const float of = part[c].values[i];
+      if (!picture.isValid[i]) continue;
+      if (!std::isfinite(of)) return false;
+      picture.halves[0][c].values[i] = first * of;
+      picture.halves[1][c].values[i] = second * (picture.color[c].values[i] - of);
+    }
+  }
+  return true;
+}
+
+// A normal number that depends on the place alone.
+float NormalAt(size_t place) {
+  const auto mix = [](uint64_t bits) {
+    bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9;  // [Stafford11]
+    bits = (bits ^ (bits >> 27)) * 0x94d049bb133111eb;
+    return bits ^ (bits >> 31);
+  };
+  const auto unit = [](uint64_t bits) { return (static_cast<double>(bits >> 11) + 0.5) * 0x1p-53; };
+  const uint64_t bits = mix(static_cast<uint64_t>(place) + 0x9e3779b97f4a7c15);
+  const double radius = std::sqrt(-2 * std::log(unit(bits)));
+  return static_cast<float>(radius * std::cos(2 * std::numbers::pi * unit(mix(bits))));
+}
+
+void MakeHalves(NoisyPicture& picture) {
+  picture.shares = {0.5, 0.5};
+  picture.halves[0] = picture.halves[1] = picture.color;
+  for (size_t i = 0; i < picture.isValid.size(); ++i) {
+    const float normal = NormalAt(i);  // one for all channels, whose noise is much the same
+    for (size_t c = 0; c < 3; ++c) {
+      const float noise = normal * std::sqrt(picture.variance[c].values[i]);
+      picture.halves[0][c].values[i] += noise;
+      picture.halves[1][c].values[i] -= noise;
+    }
+  }
+}
+
+// Samplers that stratify have less noise than the variance says, and splats are not alone in their pixel: the size of
+// the noise comes from the halves, its distribution over pixels from the variance, which is known better.
+Plane NoiseScale(const NoisyPicture& picture, bool hasHalves, int threads) {
+  const int width = picture.color[0].width, height = picture.color[0].height;
+  Plane seen(width, height), stated(width, height);
+  if (!hasHalves) return Plane(width, height, 1);
+  const auto scale = static_cast<float>(picture.shares[0] * picture.shares[1]);
+  for (size_t i = 0; i < seen.Size(); ++i) {
+    for (size_t c = 0; c < 3; ++c) {
+      const float difference = picture.halves[0][c].values[i] - picture.halves[1][c].values[i];
+      seen.values[i] += scale * difference * difference;
+      stated.values[i] += picture.variance[c].values[i];
+    }
+  }
+  constexpr int radius = 7;
+  seen = BoxMeans(seen, radius, threads);
+  stated = BoxMeans(stated, radius, threads);
+  for (size_t i = 0; i < seen.Size(); ++i) {
+    const float ratio = seen.values[i] / stated.values[i];
+    seen.values[i] = stated.values[i] > 0 ? std::clamp(ratio, 0.1f, 2.0f) : 1;
+  }
+  return seen;
+}
+
+}  // namespace
+
+NoisyPicture ReadNoisyPicture(const Image& image, int threads, DenoiseReport& report) {
+  CheckChannels(image);
+  NoisyPicture picture;
+  picture.color = ReadColors(image, "");
+  picture.variance = ReadColors(image, "variance.");
+  FindValid(picture, report);
+  report.hasHalves = ReadHalves(image, picture);
+  if (report.invalidPixels > 0) FillInvalid(picture);
+  RemoveOutliers(picture, threads, report);
+  if (!report.hasHalves) MakeHalves(picture);
+  picture.noiseScale = NoiseScale(picture, report.hasHalves, threads);
+  return picture;
+}
+
+}  // namespace lampyr

@@ -1,0 +1,35 @@
+// A rendered picture as the denoiser takes it: colour, variance, and two independent halves.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "denoise/denoise.h"
+#include "denoise/plane.h"
+#include "film/image.h"
+
+namespace lampyr {
+
+using ColorPlanes = std::array<Plane, 3>;  // R, G, B
+
+struct NoisyPicture {
+  ColorPlanes color, variance;        // without outliers; variance of the mean
+  std::array<ColorPlanes, 2> halves;  // estimates of the same picture with independent noise
+  std::array<double, 2> shares;       // of the halves in `color`: their sum is 1
+  ColorPlanes excess;                 // what outliers had above their surroundings: `color` is without it
+  std::vector<uint8_t> isValid;       // colour and variance are finite, or made of those of near pixels
+  Plane noiseScale;                   // of `variance`: what the halves say about its size
+};
+
+// Throws an Error if the image has no colour, no variance or fewer than two samples per pixel. Fills the report.
+//
+// Without a layer of half of the samples, two halves with independent noise are made of the picture p and its standard
+// deviation σ: p + σg and p - σg with a normal g that depends on the place alone ([Rasines23]). That is exact for
+// normal noise.
+//
+// Outliers: a pixel more than twice as bright as the third brightest of the 48 around it, whose own samples do not
+// agree that it is bright (it is less than four standard deviations), is reduced to that. What was above is `excess`.
+NoisyPicture ReadNoisyPicture(const Image& image, int threads, DenoiseReport& report);
+
+}  // namespace lampyr
