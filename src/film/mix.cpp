@@ -79,7 +79,10 @@ std::vector<std::string> ColorLayers(const Image& image) {
   for (const std::string& channel : image.channels) {
     if (!channel.ends_with(".R")) continue;
     const std::string layer = channel.substr(0, channel.size() - 2);
-    if (layer == "variance" || image.ChannelIndex(layer + ".G") < 0 || image.ChannelIndex(layer + ".B") < 0) continue;
+    constexpr std::array<const char*, 4> kOthers = {"variance", "half", "noisy", "Albedo"};
+    if (std::find(kOthers.begin(), kOthers.end(), layer) != kOthers.end() || layer.find('.') != std::string::npos ||
+        layer.starts_with("Crypto") || image.ChannelIndex(layer + ".G") < 0 || image.ChannelIndex(layer + ".B") < 0)
+      continue;
     layers.push_back(layer);
   }
   return layers;

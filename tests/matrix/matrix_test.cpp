@@ -5,7 +5,7 @@
 // seeds, by Welch's test. All cells together raise a false alarm once in a thousand suites (Šidák).
 //
 // A trial tells how many samples a cell takes until it would notice a picture that is so much too bright in 19 of 20
-// cases: 10 % in the default suite, 2 % in `tests/run matrix-whole` (LAMPYR_MATRIX_NOTICES). A cell that cannot afford
+// cases: 12.5 % in the default suite, 2 % in `tests/run matrix-whole` (LAMPYR_MATRIX_NOTICES). A cell that cannot afford
 // them fails.
 //
 // What is learned and guided is which light is chosen, and where it sends photons. By default rigs of lights have all
@@ -41,7 +41,7 @@ constexpr double kMostSamples = 200000;
 // Relative bias of a picture that every cell notices.
 double Noticed() {
   const char* text = std::getenv("LAMPYR_MATRIX_NOTICES");
-  return text ? std::strtod(text, nullptr) : 0.1;
+  return text ? std::strtod(text, nullptr) : 0.125;
 }
 
 // The folder of the files that rigs read.
