@@ -13,22 +13,6 @@ constexpr size_t kMostPairs = size_t{1} << 24;
 
 using Set = std::vector<uint32_t>;  // of positions, increasing
 
-// States by their sets of positions.
-class States {
- public:
-  uint32_t Of(const Set& set) {
-    const auto [found, isNew] = numbers_.emplace(set, static_cast<uint32_t>(sets_.size()));
-    if (isNew) sets_.push_back(set);
-    return found->second;
-  }
-  size_t Count() const { return sets_.size(); }
-  Set At(size_t state) const { return sets_[state]; }
-
- private:
-  std::map<Set, uint32_t> numbers_;
-  std::vector<Set> sets_;
-};
-
 void Sort(Set& set) {
   std::sort(set.begin(), set.end());
   set.erase(std::unique(set.begin(), set.end()), set.end());
@@ -51,6 +35,22 @@ class OutputPlan::Compiler {
   }
 
  private:
+  // States by their sets of positions.
+  class States {
+   public:
+    uint32_t Of(const Set& set) {
+      const auto [found, isNew] = numbers_.emplace(set, static_cast<uint32_t>(sets_.size()));
+      if (isNew) sets_.push_back(set);
+      return found->second;
+    }
+    size_t Count() const { return sets_.size(); }
+    Set At(size_t state) const { return sets_[state]; }
+
+   private:
+    std::map<Set, uint32_t> numbers_;
+    std::vector<Set> sets_;
+  };
+
   struct Position {
     uint32_t layer = 0;
     uint8_t events = 0;
