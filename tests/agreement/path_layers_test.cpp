@@ -181,6 +181,94 @@ TEST(PathLayersOfAll, AreTheSame) {
   }
 }
 
+// A diffuse floor, a glossy ball and a pane of glass in front: of light that no material of a kind has scattered there
+// is as much as where that material is black.
+TEST(PathLayersOfAll, AreWhatBlackMaterialsLeave) {
+  const auto scene = [](double floor, double ball) {
+    const auto gray = [](double value) {
+      const std::string text = std::to_string(value);
+      return "[" + text + " " + text + " " + text + "]\n";
+    };
+    return R"(Film "rgb" "integer xresolution" 20 "integer yresolution" 16
+PixelFilter "box"
+LookAt 0 1.2 4  0 0.5 0  0 1 0
+Camera "perspective" "float fov" 40
+Integrator "path" "integer maxdepth" 6
+WorldBegin
+LightSource "infinite" "rgb L" [0.3 0.4 0.5]
+AttributeBegin
+AreaLightSource "diffuse" "rgb L" [12 10 8]
+Material "diffuse" "rgb reflectance" [0 0 0]
+Shape "trianglemesh" "point3 P" [-0.5 2 -0.5  0.5 2 -0.5  0.5 2 0.5  -0.5 2 0.5] "integer indices" [0 1 2 0 2 3]
+AttributeEnd
+AttributeBegin
+Material "conductor" "float roughness" 0.3 "rgb reflectance" )" +
+           gray(ball) + R"(Translate 0.3 0.5 0 Shape "sphere" "float radius" 0.5
+AttributeEnd
+AttributeBegin
+Material "dielectric"
+Translate -0.7 0.4 0.6 Shape "sphere" "float radius" 0.4
+AttributeEnd
+Material "diffuse" "rgb reflectance" )" +
+           gray(floor) +
+           "Shape \"trianglemesh\" \"point3 P\" [-3 0 -3  -3 0 3  3 0 3  3 0 -3] \"integer indices\" [0 1 2 0 2 3]\n";
+  };
+  const Partition layers = {"noGloss=C[^G]*[LO]", "noDiffuse=C[^D]*[LO]"};
+  for (const std::string integrator : {"path", "light", "bdpt", "sppm", "vcm"}) {
+    RenderOverrides overrides = With(integrator, {layers}), black = With(integrator, {});
+    black.seed = 1000;
+    for (RenderOverrides* each : {&overrides, &black}) {
+      if (integrator == "sppm" || integrator == "vcm") each->values["radius"] = 0.03;
+      if (integrator == "sppm") each->values["photons"] = 10000;
+    }
+    const Replicas all = RenderReplicas(scene(0.6, 0.8), integrator, 12, 24, overrides);
+    ExpectAgreement(LayerOf(all, "noGloss"), RenderReplicas(scene(0.6, 0), integrator, 12, 24, black),
+                    integrator + ", black ball");
+    // Light tracing connects no vertex of what is not diffuse here but the ball's.
+    ExpectAgreement(LayerOf(all, "noDiffuse"), RenderReplicas(scene(0, 0.8), integrator, 12, 24, black),
+                    integrator + ", black floor");
+  }
+}
+
+// In fog so thin that the photons of vcm are beams: shafts of light from glass, and what they are seen by.
+TEST(PathLayersOfAll, AreTheSameForPhotonBeams) {
+  const std::string scene = R"(Film "rgb" "integer xresolution" 20 "integer yresolution" 16
+PixelFilter "box"
+MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_s" [0.06 0.05 0.04] "rgb sigma_a" [0.01 0.01 0.02]
+MediumInterface "" "fog"
+LookAt 0 0.6 4  0 0.4 0  0 1 0
+Camera "perspective" "float fov" 45
+Integrator "path" "integer maxdepth" 6
+WorldBegin
+AttributeBegin
+AreaLightSource "diffuse" "rgb L" [30 26 20] "string name" "lamp"
+Material "diffuse" "rgb reflectance" [0 0 0]
+Shape "trianglemesh" "point3 P" [-0.3 2 -0.3  0.3 2 -0.3  0.3 2 0.3  -0.3 2 0.3] "integer indices" [0 1 2 0 2 3]
+AttributeEnd
+AttributeBegin
+Material "dielectric" "float eta" 1.5
+MediumInterface "" "fog"
+Translate 0 0.8 0 Shape "sphere" "float radius" 0.5
+AttributeEnd
+Material "diffuse" "rgb reflectance" [0.6 0.5 0.4]
+Shape "trianglemesh" "point3 P" [-3 -0.4 -3  -3 -0.4 3  3 -0.4 3  3 -0.4 -3] "integer indices" [0 1 2 0 2 3]
+)";
+  const Partition layers = {"shaft=CV[GS]+[LO]", "single=CV[LO]", "throughFog=CD.*V.*[LO]", "twice=C.*V.*V.*[LO]",
+                            "caustic"};
+  RenderOverrides overrides = With("bdpt", {layers});
+  overrides.values["max-depth"] = 5;
+  const Replicas reference = RenderReplicas(scene, "bdpt", 12, 64, overrides);
+  for (const std::string integrator : {"path", "vcm", "sppm"}) {
+    overrides.seed = 1000;
+    if (integrator != "path") overrides.values["radius"] = 0.03;
+    if (integrator == "sppm") overrides.values["photons"] = 10000;
+    const Replicas replicas = RenderReplicas(scene, integrator, 12, 32, overrides);
+    for (const std::string& layer : layers)
+      ExpectAgreement(LayerOf(replicas, ChannelOf(layer)), LayerOf(reference, ChannelOf(layer)),
+                      integrator + " " + layer);
+  }
+}
+
 TEST(PathLayersOfAll, AreWhatLessDepthGives) {
   for (const std::string integrator : {"path", "light", "bdpt", "sppm", "vcm"}) {
     RenderOverrides shallow = With(integrator, {});
