@@ -163,7 +163,7 @@ TEST_F(Cli, PixelLayersAreInThePicture) {
 // The PNG is there before the render ends, and it does not change the picture.
 TEST_F(Cli, PreviewShowsThePictureSoFar) {
   ASSERT_EQ(Run("render scene.pbrt --quiet --spp 64 -o plain.exr --png").exitCode, 0);
-  const Outcome done = Run("render scene.pbrt --spp 64 -o o.exr --preview 1ms");
+  const Outcome done = Run("render scene.pbrt --spp 64 -o o.exr --preview 0.001s");
   ASSERT_EQ(done.exitCode, 0) << done.output;
   EXPECT_EQ(done.output.find('\033'), std::string::npos) << "no terminal, no picture";
   EXPECT_EQ(ReadImage(folder_ / "o.exr").data, ReadImage(folder_ / "plain.exr").data);
