@@ -94,6 +94,7 @@ LayerRequest ParseLayer(const std::string& text, const FileLocation& where) {
 
 std::shared_ptr<const OutputPlan> MakeOutputPlan(const LightingServices& lighting,
                                                  const std::vector<LayerRequest>& requests) {
+  if (lighting.Groups().Layers().empty() && requests.empty()) return std::make_shared<const OutputPlan>();
   std::vector<LightSourceName> sources;
   std::map<std::string, std::string> groups;  // by layer
   std::vector<std::string> known;
