@@ -119,6 +119,19 @@ void MakeVertexInMedium(const Point3d& position, const Vector3& direction, int32
   vertex.isSeenByCamera = vertex.isSeenByIndirect = true;
 }
 
+namespace {
+
+// Sets the event for labels. Not inlined: renders without layers are not to pay for them.
+[[gnu::noinline]] void SetEvent(const PathVertex& vertex, const BsdfSample& sample, bool isFromLight,
+                                PathState& state) {
+  const Color diffuse = isFromLight ? vertex.diffuse : vertex.Throughput();
+  const Color specular = isFromLight ? vertex.specular : diffuse;
+  state.event =
+      PartsOf(vertex, sample.wi, sample.isDelta, diffuse * sample.weightDiffuse, specular * sample.weightSpecular);
+}
+
+}  // namespace
+
 bool Scatter(const SampleContext& context, const WalkSettings& settings, int index, PathVertex& vertex,
              PathState& state) {
   const bool isFromLight = settings.mode == TransportMode::Importance;
@@ -142,12 +155,8 @@ bool Scatter(const SampleContext& context, const WalkSettings& settings, int ind
                                                vertex.ScatteringCosine(sample.wi), settings.mode);
   vertex.scatteredDelta = sample.isDelta;
   state.hasScatteredWidely |= !sample.isDelta;
-  if (context.outputs) [[unlikely]] {
-    const Color diffuse = isFromLight ? vertex.diffuse : vertex.Throughput();
-    const Color specular = isFromLight ? vertex.specular : diffuse;
-    state.event =
-        PartsOf(vertex, sample.wi, sample.isDelta, diffuse * sample.weightDiffuse, specular * sample.weightSpecular);
-  }
+  if (context.outputs) [[unlikely]]
+    SetEvent(vertex, sample, isFromLight, state);
   vertex.eventForward = densities.forward;
   vertex.eventReverse = densities.reverse;
   state.pdfDirection = densities.forward;
