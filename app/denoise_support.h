@@ -1,4 +1,4 @@
-// What `lampyr denoise` and `lampyr render --denoise` have in common.
+// Denoising with progress and a report on stderr, for `lampyr denoise` and `lampyr render --denoise`.
 #pragma once
 
 #include <atomic>

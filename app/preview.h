@@ -1,4 +1,4 @@
-// What a render shows while it goes on: its picture so far, as a PNG and, where the terminal can, as a small one there.
+// Preview of a render that is still running: a PNG of the picture so far, and a small picture in the terminal.
 #pragma once
 
 #include <filesystem>

@@ -29,8 +29,8 @@ void AddDensities(const Subpath& path, const VolumeRadius& radius, bool isFromLi
 inline SubpathDensities FirstDensities(const LightEnd& end, bool isInMedium) {
   return {.forward = end.emission.value, .isInMedium = isInMedium, .extent = end.extent};
 }
-// What the event at the vertex of `densities[count - 1]` adds to the densities of those before it. `reverse`: of the
-// vertex before it, by the event.
+// Sets the densities that follow from the scattering event at vertex `count` - 1: whether it can be merged, and the
+// reverse density of the vertex before it, `reverse`.
 void AddEvent(bool canMerge, bool isDelta, AreaDensity reverse, size_t count, std::span<SubpathDensities> densities);
 
 // An edge of a path at a vertex: the direction away from the vertex, and the factors of a walk that arrives there.

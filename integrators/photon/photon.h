@@ -84,7 +84,7 @@ struct VolumePhoton {
   Color extinction;  // σ_t there
   int32_t medium = kVacuum;
 
-  // Of the disk across a beam, 1/scene unit².
+  // Density of the constant kernel on a disk across the ray, 1/scene unit².
   double Kernel() const {
     const auto r = static_cast<double>(radius);
     return 1 / (static_cast<double>(kPi) * r * r);

@@ -48,11 +48,11 @@ std::optional<SeenFromLens> SeeGlow(const SampleContext& context, const EmittedI
 
 // Adds `value` at all film points of the connection. False: it is negative or not finite somewhere, and left out there.
 bool AddSplats(const FilmConnection& connection, const Color& value, SplatList& splats);
-// The same to the splats of a sample, and to their layers. `labels`: of the light path, as it leaves for the lens;
-// empty without layers. What is left out is counted.
+// Adds them to the splats of a sample and to their layers. `labels`: of the light path on its way to the lens; empty
+// without layers. Values that are left out are counted.
 void AddSplats(const SampleContext& context, const FilmConnection& connection, const Color& value,
                std::span<const PathLabel> labels);
-// The same for `path` as it leaves its last vertex for the lens. Valid until the next call in the thread.
+// Labels of `path` on the way from its last vertex to the lens. Valid until the next call in the thread.
 std::span<const PathLabel> LabelsTowardsLens(const SampleContext& context, const Subpath& path,
                                              const SeenFromLens& seen);
 

@@ -61,9 +61,9 @@ class Subpath {
 
   // Labels (path_labels.h), with SampleContext::outputs. Sets that of the start: the camera, or a light.
   void SetStart(uint32_t label) { start_ = label; }
-  // Of the path as it arrives at a vertex.
+  // Labels of the path that arrives at a vertex.
   std::span<const PathLabel> LabelsAt(size_t index) const { return labels_[keepsAll_ ? index : index % 2].All(); }
-  // Of the path after its last event, along the next ray.
+  // Labels of the path along the ray that leaves its last vertex.
   void LabelsBeyond(const OutputPlan& plan, TransportMode mode, const ScatteringParts& event, PathLabels& beyond) const;
   // Sets those of the last vertex, which was added after `event`.
   void LabelLast(const OutputPlan& plan, TransportMode mode, const ScatteringParts& event);

@@ -59,6 +59,10 @@ Image WithoutVariances(const Image& image) {
   }
   Image result = ChannelsOf(image, kept);
   result.metadata = image.metadata;
+  result.offsetX = image.offsetX;
+  result.offsetY = image.offsetY;
+  result.fullWidth = image.fullWidth;
+  result.fullHeight = image.fullHeight;
   return result;
 }
 
@@ -101,7 +105,9 @@ std::vector<std::string> GroupLayers(const Image& image) {
 
 Image MixLayers(const Image& image, const std::vector<LayerFactor>& factors) {
   Check(image, factors);
-  const std::vector<std::string> groups = GroupLayers(image);
+  // Of a denoised picture the groups are those of the noisy one: their sum is not the picture.
+  const bool isDenoised = image.ChannelIndex("noisy.R") >= 0;
+  const std::vector<std::string> groups = isDenoised ? std::vector<std::string>() : GroupLayers(image);
   Image mixed = image;
   const std::array<size_t, 3> picture = ChannelsOfLayer(image, "");
   const size_t pixels = image.data.size() / image.channels.size();

@@ -22,9 +22,9 @@ std::vector<std::string> ColorLayers(const Image& image);
 std::vector<std::string> GroupLayers(const Image& image);
 
 // The picture with each of the layers times its factor. Light groups are added up, so that groups at 0 leave nothing;
-// of other layers the picture gets the difference. The groups themselves are scaled, too, so that the result can be
-// mixed again; other layers stay as they are, and layers of variance stay only where all groups have one factor. Throws
-// an Error for a layer that the image does not have, or that is named twice.
+// of other layers, and in denoised pictures, the picture gets the difference. The groups themselves are scaled, too, so
+// that the result can be mixed again; other layers stay as they are, and layers of variance stay only where all groups
+// have one factor. Throws an Error for a layer that the image does not have, or that is named twice.
 Image MixLayers(const Image& image, const std::vector<LayerFactor>& factors);
 
 }  // namespace lampyr
