@@ -104,7 +104,7 @@ SceneMedia::Sides SceneMedia::MediaOfLight(const RenderScene& scene, size_t ligh
   for (const Point2& u : kLightPoints) {
     const auto point = PointOf(placed, scene.lighting->SceneSphere(), u);
     if (!point) continue;
-    const FoundMedium found = FindMedium(*scene.geometry, point->position, 0, point->normal);
+    const FoundMedium found = FindMediumAround(*scene.geometry, point->position, 0, point->normal);
     const int32_t here = found.medium.value_or(otherwise);
     if (!medium) {
       medium = Choose("the light", where, name, found, exterior);
