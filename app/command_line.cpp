@@ -61,6 +61,11 @@ std::string CheckPositive(const std::string& text) {
   return "\"" + text + "\" is too " + (number < 1 ? "small: at least 1.2e-38" : "large: at most 3.4e38");
 }
 
+std::string CheckShare(const std::string& text) {
+  const double number = ParseFinite(text);
+  return number > 0 && number <= 1 ? "" : "\"" + text + "\" is not a share, from 0 to 1";
+}
+
 std::string CheckFinite(const std::string& text) {
   return std::abs(ParseFinite(text)) <= kLargestFloat ? "" : "\"" + text + "\" is not a finite number";
 }
@@ -167,7 +172,7 @@ std::string KnownPixelLayers() {
 struct RenderCommand {
   RenderOptions options;
   std::string time, resolution, checkpoint, preview, shard;
-  bool fast = false;
+  bool adaptive = false, notAdaptive = false, fast = false;
 
   void Define(CLI::App& app) {
     RenderOverrides& overrides = options.overrides;
@@ -188,6 +193,13 @@ struct RenderCommand {
     app.add_option("--target-error", options.targetError,
                    "Stop when the estimated relative error (95 % confidence) is below this, e.g. 0.02")
         ->check(CheckPositive, "POSITIVE");
+    app.add_option("--of-pixels", options.pixelShare,
+                   "With --target-error: stop when the errors of this share of the pixels, each by itself, are below "
+                   "that, e.g. 0.95")
+        ->check(CheckShare, "SHARE");
+    CLI::Option* const on =
+        app.add_flag("--adaptive", adaptive, "More samples where the error is large, unbiased (on with --of-pixels)");
+    app.add_flag("--no-adaptive", notAdaptive, "All pixels have the same number of samples")->excludes(on);
     DefineSceneOptions(app, overrides, resolution, options.threads);
     DefinePluginOption(app, options.plugins);
     app.add_option("--checkpoint", checkpoint,
@@ -235,6 +247,10 @@ struct RenderCommand {
     if (!shard.empty()) options.shard = ParseShard(shard);
     if (!resolution.empty()) ParseResolution(resolution, options.overrides);
     options.robust = !fast;
+    if (options.pixelShare && !options.targetError)
+      throw UsageError("--of-pixels goes with --target-error: it is the share of the pixels that are to be below that");
+    if (adaptive || (options.pixelShare && !notAdaptive))
+      options.overrides.adaptive = AdaptiveSettings{options.pixelShare.value_or(AdaptiveSettings().share)};
     return RunRender(options);
   }
 };

@@ -78,13 +78,14 @@ void CheckSceneStays(const RenderOptions& options, const SceneDescription& scene
 // An image too large for the machine is told before the system ends the process for it. The film is kept twice
 // (render_backup.h).
 void CheckMemory(const RenderSettings& settings, TracedPaths paths, size_t layers, bool hasTechniques, bool denoises) {
+  const bool withSplats = paths != TracedPaths::Camera;
   layers += denoises ? 1 : 0;
   // Developed image: colour, variance, light groups and first-hit layers. The latter are also kept during the render.
   const uint64_t firstHit = FirstHitChannels(settings).size() + (denoises ? FeatureChannels().size() : 0);
   const uint64_t channels = 6 + 3 * layers + 2 * firstHit;
   const uint64_t techniques = hasTechniques ? TechniqueImages::BytesPerPixel(settings.MaxDepth()) : 0;
-  const uint64_t perPixel =
-      2 * (Film::BytesPerPixel(layers, paths != TracedPaths::Camera) + techniques) + 2 * channels * sizeof(float);
+  const uint64_t perPixel = 2 * (Film::BytesPerPixel(layers, withSplats, settings.adaptive.has_value()) + techniques) +
+                            2 * channels * sizeof(float);
   const uint64_t needed = perPixel * settings.crop.Width() * settings.crop.Height();
   const uint64_t available = AvailableMemory();
   if (needed <= available) return;
@@ -150,12 +151,17 @@ PartHeader MakeHeader(const RenderOptions& options, const LoadedScene& loaded, c
   return header;
 }
 
-void PrintSummary(const RenderReport& report, const std::filesystem::path& path) {
+std::string DescribeError(const RenderOutcome& outcome, const RenderOptions& options) {
+  if (!outcome.pixelError) return "error " + FormatPercent(outcome.relativeError);
+  return "error " + FormatPercent(*outcome.pixelError) + " in " + FormatPercent(*options.pixelShare) + " of the pixels";
+}
+
+void PrintSummary(const RenderReport& report, const std::filesystem::path& path, const RenderOptions& options) {
   const RenderOutcome& outcome = report.outcome;
-  std::fprintf(stderr, "%s: %d×%d, %d spp, %s, %.2f Mray/s, relative error %s (95 %%)\n", path.c_str(), report.width,
+  std::fprintf(stderr, "%s: %d×%d, %d spp, %s, %.2f Mray/s, relative %s (95 %%)\n", path.c_str(), report.width,
                report.height, outcome.samplesPerPixel, FormatDuration(outcome.seconds).c_str(),
                static_cast<double>(outcome.counts.Rays()) / (1e6 * std::max(outcome.seconds, 1e-9)),
-               FormatPercent(outcome.relativeError).c_str());
+               DescribeError(outcome, options).c_str());
   if (report.rejectedRays > 0) {
     std::fprintf(stderr, "warning: %llu rays were rejected (not finite)\n",
                  static_cast<unsigned long long>(report.rejectedRays));
@@ -215,6 +221,7 @@ StopConditions MakeStopConditions(const RenderOptions& options, const Shard& sha
   if (options.previewSeconds)
     stop.longestPass = std::min(*options.previewSeconds, stop.longestPass.value_or(*options.previewSeconds));
   stop.relativeError = options.targetError;
+  stop.pixelShare = options.pixelShare;
   return stop;
 }
 
@@ -282,6 +289,8 @@ void CheckOptions(const RenderOptions& options, const RenderSettings& settings,
                      ": auto decides nothing; --integrator auto lets it decide");
   }
   if (!options.strategyImages) return;
+  if (settings.adaptive)
+    throw UsageError("--strategy-images goes without --adaptive: they are of as many samples in all pixels");
   if (!IntegratorOf(settings.integrator).hasTechniques) {
     std::vector<std::string> names;
     for (const IntegratorType& type : IntegratorRegistry()) {
@@ -365,6 +374,13 @@ RenderJob::RenderJob(const RenderOptions& options, const LoadedScene& loaded)
   const auto [part, parts] = options.shard.value_or(std::pair(1, 1));
   shard_ = ShardOf(part, parts, SamplesWanted(options, settings_));
   header_ = MakeHeader(options, loaded, shard_);
+  const bool sharesPhotons = integrator_->Photons().has_value();
+  if (settings_.adaptive && integrator_->Paths() == TracedPaths::Light)
+    throw UsageError("--adaptive: " + settings_.integrator +
+                     " follows no camera paths, whose number could differ from pixel to pixel; use --no-adaptive, or "
+                     "another integrator");
+  header_.isAdaptive = settings_.adaptive.has_value();
+  header_.hasGroups = header_.isAdaptive && sharesPhotons;
   Describe();
 }
 
@@ -414,8 +430,7 @@ void RenderJob::Trace(ProgressiveRender& render, Checkpoints* checkpoints) {
   }
   const auto afterPass = [&](const RenderOutcome& soFar, double fraction) {
     if (preview) preview->MayShow(render, soFar.seconds, progress);
-    progress.Update(fraction,
-                    std::to_string(soFar.samplesPerPixel) + " spp, error " + FormatPercent(soFar.relativeError));
+    progress.Update(fraction, std::to_string(soFar.samplesPerPixel) + " spp, " + DescribeError(soFar, options_));
     if (checkpoints && fraction < 1) checkpoints->MayWrite(soFar);
   };
   report_.outcome = Continue(render, stop, afterPass);
@@ -531,8 +546,15 @@ int RenderJob::Finish(ProgressiveRender& render, Checkpoints* checkpoints) {
   render.DropPartialPass();
   if (checkpoints) checkpoints->Finish(report_.outcome);
   report_.writeSeconds = clock.Seconds();
+  if (settings_.adaptive) {
+    report_.adaptive = RenderReport::Adaptive{settings_.adaptive->share, film.Samples(0), film.Samples(0)};
+    for (size_t i = 0; i < film.Pixels(); ++i) {
+      report_.adaptive->fewestSamples = std::min(report_.adaptive->fewestSamples, film.Samples(i));
+      report_.adaptive->mostSamples = std::max(report_.adaptive->mostSamples, film.Samples(i));
+    }
+  }
   if (options_.stats) WriteText(*options_.stats, ToJson(report_));
-  if (!options_.quiet) PrintSummary(report_, path_);
+  if (!options_.quiet) PrintSummary(report_, path_, options_);
   return ExitCode(partialPicture);
 }
 

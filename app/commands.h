@@ -23,6 +23,7 @@ struct RenderOptions {
   RenderOverrides overrides;
   std::optional<double> seconds;      // --time
   std::optional<double> targetError;  // --target-error
+  std::optional<double> pixelShare;   // --of-pixels
   int threads = 0;                    // 0: all
   std::optional<std::filesystem::path> stats;
   std::optional<std::filesystem::path> strategyImages;  // a folder

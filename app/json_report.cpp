@@ -73,6 +73,12 @@ std::string ToJson(const RenderReport& report) {
         {"cpu", CpuSeconds()}}},
       {"peakMemoryMiB", PeakMemoryMiB()},
   };
+  if (outcome.pixelError) json["pixelError"] = *outcome.pixelError;
+  if (report.adaptive) {
+    json["adaptive"] = {{"ofPixels", report.adaptive->share},
+                        {"fewestSamples", report.adaptive->fewestSamples},
+                        {"mostSamples", report.adaptive->mostSamples}};
+  }
   if (const std::optional<UsedCounts>& decided = report.decided) {
     json["auto"] = {
         {"lightPaths", decided->lightPaths}, {"connecting", decided->connecting}, {"merging", decided->merging}};

@@ -14,6 +14,11 @@ struct RenderReport {
   std::string scene, sceneHash, integrator;
   std::vector<std::pair<std::string, SettingValue>> settings;  // of the integrator
   std::optional<UsedCounts> decided;  // by auto, on average over the film; nullopt: the integrator was named
+  struct Adaptive {
+    double share = 0;
+    uint64_t fewestSamples = 0, mostSamples = 0;  // of a pixel
+  };
+  std::optional<Adaptive> adaptive;
   uint64_t seed = 0;
   int threads = 1, width = 0, height = 0;
   int64_t pixels = 0;

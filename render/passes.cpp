@@ -1,6 +1,7 @@
 #include "render/passes.h"
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -16,13 +17,14 @@ constexpr int kTileSize = 16;
 constexpr uint64_t kChunkPaths = 4096;  // light paths that one thread traces before their splats are added
 constexpr uint64_t kBeforeTheFirst = 0x6a09e667f3bcc908;  // changes the seed for the photons of the first pass
 constexpr uint64_t kMorePaths = 0xbb67ae8584caa73b;       // changes the seed for further light paths of a sample
+constexpr uint64_t kOtherHalf = 0xa54ff53a5f1d36f1;       // changes the seed for every second sample of a pixel
 // In the place of the pixel row, for samples that belong to no pixel:
 constexpr int kLightPaths = -1, kPassTimes = -2;
 
 // Shutter time of all paths of a pass with photons, in scenes with motion: a photon lies where the surface was at the
 // time of its path, so only paths of the same time may gather it. Times of consecutive passes are stratified.
-float PassTime(const RenderSettings& settings, uint32_t pass) {
-  Sampler sampler(settings.sampler, settings.seed);
+float PassTime(SamplerKind kind, uint64_t seed, uint32_t pass) {
+  Sampler sampler(kind, seed);
   sampler.StartPixelSample(0, kPassTimes, pass);
   sampler.SetDimension(dimensions::kTime);
   return sampler.Get1D();
@@ -49,8 +51,8 @@ struct SampleAdder {
     return &*layers;
   }
   // Adds a sample of a pixel to `sums` and to the pixel's layers. An invalid value (negative or not finite) is counted,
-  // added to `sums` as black, and left out of the layers. `index`: of the sample.
-  void Add(int x, int y, uint32_t index, const PixelRay& ray, const Color& radiance, PixelSums& sums) {
+  // added to `sums` as black, and left out of the layers. `isInHalf`: it belongs to the layer of half of the samples.
+  void Add(int x, int y, bool isInHalf, const PixelRay& ray, const Color& radiance, PixelSums& sums) {
     const float scale = ray.camera.weight * sensor.Scale(radiance * ray.camera.weight);
     Color value = radiance * scale;
     const bool isValid = value.IsValid();
@@ -60,7 +62,7 @@ struct SampleAdder {
     }
     sums.Add(sensor.Balance(value), ray.filterWeight);
     if (layers && isValid) film.AddToLayers(x, y, *layers, scale, ray.filterWeight, sensor);
-    if (film.HasHalf() && IsInHalf(index)) film.AddToHalf(x, y, sensor.Balance(value), ray.filterWeight);
+    if (film.HasHalf() && isInHalf) film.AddToHalf(x, y, sensor.Balance(value), ray.filterWeight);
   }
 
   const SensorResponse& sensor;
@@ -84,10 +86,54 @@ struct Pass {
   uint32_t first, end;  // samples
   int threads;
   Film& film;
+  const SampleAllocation* allocation;  // null: one sample for each pixel
 
+  // Samplers count the samples of a stage.
+  uint32_t Offset() const { return allocation ? allocation->Stage().first : 0; }
+  uint64_t Seed() const { return allocation ? allocation->Stage().seed : settings.seed; }
   const OutputPlan* Outputs() const { return film.HasLayers() ? scene.outputs.get() : nullptr; }
   uint64_t Pixels() const { return static_cast<uint64_t>(settings.width) * static_cast<uint64_t>(settings.height); }
 };
+
+// Starts the samples of pixels in an adaptive film, where the layer of half of the samples has every second one, and a
+// sequence of its own.
+class AdaptiveSampler {
+ public:
+  AdaptiveSampler(const Pass& pass)
+      : halves_(pass.film.HasHalf()),
+        first_(pass.settings.sampler, pass.Seed()),
+        second_(pass.settings.sampler, MixBits(pass.Seed() + kOtherHalf)) {}
+
+  // `number`: of the sample in the pixel and stage.
+  Sampler& Start(int x, int y, uint64_t number) {
+    Sampler& sampler = halves_ && !IsInHalf(number) ? second_ : first_;
+    sampler.StartPixelSample(x, y, static_cast<uint32_t>(halves_ ? number / 2 : number));
+    return sampler;
+  }
+  static bool IsInHalf(uint64_t number) { return number % 2 == 0; }
+
+ private:
+  bool halves_;
+  Sampler first_, second_;
+};
+
+// Adds the samples of the passes to the pixel of index `pixel` in the crop.
+void TraceAdaptively(const Pass& pass, int x, int y, size_t pixel, AdaptiveSampler& samplers, SampleAdder& adder,
+                     RenderCounts& counts) {
+  PixelSums sums = pass.film.Pixel(x, y);
+  uint32_t count = 0;
+  for (uint32_t i = pass.first; i < pass.end; ++i) count += pass.allocation->Count(pixel, i - pass.Offset());
+  for (uint32_t k = 0; k < count; ++k) {
+    const uint64_t number = sums.count;
+    Sampler& sampler = samplers.Start(x, y, number);
+    const float time = SampleTime(pass.scene, sampler);
+    const PixelRay ray = MakePixelRay(pass.scene, pass.filter, x, y, time, sampler);
+    SampleContext context{pass.scene, sampler, time, counts, adder.StartLayers()};
+    context.outputs = pass.Outputs();
+    adder.Add(x, y, AdaptiveSampler::IsInHalf(number), ray, Radiance(pass.integrator, ray, context), sums);
+  }
+  pass.film.Pixel(x, y) = sums;
+}
 
 RenderCounts TraceCameraPaths(const Pass& pass) {
   const PixelRect& crop = pass.film.Crop();
@@ -100,8 +146,15 @@ RenderCounts TraceCameraPaths(const Pass& pass) {
     Sampler sampler(pass.settings.sampler, pass.settings.seed);
     RenderCounts counts;
     SampleAdder adder(pass.settings, pass.film, counts);
+    AdaptiveSampler samplers(pass);
     for (int y = y0; y < y1; ++y) {
       for (int x = x0; x < x1; ++x) {
+        if (pass.allocation) {
+          const auto pixel =
+              static_cast<size_t>(y - crop.y0) * static_cast<size_t>(crop.Width()) + static_cast<size_t>(x - crop.x0);
+          TraceAdaptively(pass, x, y, pixel, samplers, adder, counts);
+          continue;
+        }
         PixelSums sums = pass.film.Pixel(x, y);
         for (uint32_t i = pass.first; i < pass.end; ++i) {
           sampler.StartPixelSample(x, y, i);
@@ -109,7 +162,7 @@ RenderCounts TraceCameraPaths(const Pass& pass) {
           const PixelRay ray = MakePixelRay(pass.scene, pass.filter, x, y, time, sampler);
           SampleContext context{pass.scene, sampler, time, counts, adder.StartLayers()};
           context.outputs = pass.Outputs();
-          adder.Add(x, y, i, ray, Radiance(pass.integrator, ray, context), sums);
+          adder.Add(x, y, IsInHalf(i), ray, Radiance(pass.integrator, ray, context), sums);
         }
         pass.film.Pixel(x, y) = sums;
       }
@@ -184,7 +237,7 @@ class BothPaths {
       }
       if (wanted_) gather_ = &store_.Open(index, pass_.threads);
       for (uint64_t round = 0; round < pass_.Pixels(); round += PathsPerRound()) {
-        TraceRound(round, pass_.Pixels(), index, pass_.settings.seed, true);
+        TraceRound(round, pass_.Pixels(), index, pass_.Seed(), true);
         if (wanted_ && !hasTimes_) store_.Take(photons_);
         pass_.film.AddSplats(pass_.filter, splats_, pass_.threads, index);
         if (techniques_) techniques_->AddSplats(pass_.filter, recorders_, pass_.threads);
@@ -192,7 +245,7 @@ class BothPaths {
       if (hasTimes_) {
         store_.EndGathering();
       } else if (wanted_) {
-        TracePhotons(pass_.Pixels(), index, pass_.settings.seed);
+        TracePhotons(pass_.Pixels(), index, pass_.Seed());
         store_.Finish(index + 1);
       }
     }
@@ -200,14 +253,17 @@ class BothPaths {
   }
 
  private:
-  uint64_t PathsPerRound() const { return static_cast<uint64_t>(chunks_) * chunkPaths_; }
-  uint64_t SeedOfPhotons() const { return MixBits(pass_.settings.seed + kBeforeTheFirst); }
+  class AdaptivePixels;
 
-  // Traces the photons that the sample before would have left. Before the very first sample these are photons of other
-  // light paths.
+  uint64_t PathsPerRound() const { return static_cast<uint64_t>(chunks_) * chunkPaths_; }
+  uint64_t SeedOfPhotons() const { return MixBits(pass_.Seed() + kBeforeTheFirst); }
+
+  // Traces the photons that the sample before would have left. Before the very first sample, or that of a stage, these
+  // are photons of other light paths.
   void TracePhotonsBefore(uint32_t index) {
     store_.Clear();
-    TracePhotons(0, index == 0 ? 0 : index - 1, index == 0 ? SeedOfPhotons() : pass_.settings.seed);
+    const bool isFirst = index == pass_.Offset();
+    TracePhotons(0, isFirst ? index : index - 1, isFirst ? SeedOfPhotons() : pass_.Seed());
     store_.Finish(index);
   }
   // Traces light paths for their photons only.
@@ -221,13 +277,21 @@ class BothPaths {
   // Traces the pixels from `round` on, as many as the chunks take. Without `withCamera`: light paths for their photons
   // only.
   void TraceRound(uint64_t round, uint64_t end, uint32_t index, uint64_t seed, bool withCamera) {
-    const float passTime = hasTimes_ ? PassTime(pass_.settings, index) : 0;
+    const float passTime = hasTimes_ ? PassTime(pass_.settings.sampler, pass_.Seed(), index - pass_.Offset()) : 0;
     ParallelFor(chunks_, pass_.threads, [&](int chunk) {
-      const uint64_t begin = round + static_cast<uint64_t>(chunk) * chunkPaths_;
-      TraceChunk(static_cast<size_t>(chunk), begin, std::min(begin + chunkPaths_, end), index, seed, withCamera,
-                 passTime);
+      uint64_t begin = std::min(round + static_cast<uint64_t>(chunk) * chunkPaths_, end);
+      uint64_t chunkEnd = std::min(begin + chunkPaths_, end);
+      if (withCamera && pass_.allocation) {
+        begin = NextPixelFrom(begin, index);
+        chunkEnd = NextPixelFrom(chunkEnd, index);
+      }
+      TraceChunk(static_cast<size_t>(chunk), begin, chunkEnd, index, seed, withCamera, passTime);
     });
   }
+  // The first slot from `slot` on whose camera path is the first of its pixel: chunks share no pixel.
+  uint64_t NextPixelFrom(uint64_t slot, uint32_t index) const;
+  // The index in the crop of a slot, which is a pixel of the full image; nullopt: outside.
+  std::optional<uint64_t> SlotInCrop(uint64_t slot) const;
   // The light paths of a sample of a pixel: none, or some. `index`: of the sample, becomes that of the light path.
   int LightPathsOf(int x, int y, uint32_t& index) const;
   void TraceChunk(size_t chunk, uint64_t begin, uint64_t end, uint32_t index, uint64_t seed, bool withCamera,
@@ -253,9 +317,32 @@ class BothPaths {
   std::vector<TechniqueImages::Recorder> recorders_;
 };
 
-// With one light path in n samples the pixels of a row, and of a column, take turns.
+std::optional<uint64_t> BothPaths::SlotInCrop(uint64_t slot) const {
+  const auto width = static_cast<uint64_t>(pass_.settings.width);
+  const int x = static_cast<int>(slot % width), y = static_cast<int>(slot / width);
+  const PixelRect& crop = pass_.film.Crop();
+  if (x < crop.x0 || x >= crop.x1 || y < crop.y0 || y >= crop.y1) return std::nullopt;
+  return static_cast<uint64_t>(y - crop.y0) * static_cast<uint64_t>(crop.Width()) + static_cast<uint64_t>(x - crop.x0);
+}
+
+uint64_t BothPaths::NextPixelFrom(uint64_t slot, uint32_t index) const {
+  const uint32_t pass = index - pass_.Offset();
+  for (; slot > 0 && slot < pass_.Pixels(); ++slot) {
+    const std::optional<uint64_t> inCrop = SlotInCrop(slot);
+    if (!inCrop) continue;
+    if (*inCrop == 0 || pass_.allocation->PixelOf(*inCrop, pass) != pass_.allocation->PixelOf(*inCrop - 1, pass)) break;
+  }
+  return slot;
+}
+
+// With one light path in n samples the pixels of a row, and of a column, take turns. In adaptive films, where a pixel
+// does not have every sample in the same place, every pass begins the turns anew.
 int BothPaths::LightPathsOf(int x, int y, uint32_t& index) const {
   if (log2LightPaths_ >= 0) return 1 << log2LightPaths_;
+  if (pass_.allocation) {
+    const auto place = static_cast<uint32_t>(x + 3 * y) + static_cast<uint32_t>(MixBits(pass_.Seed() + index));
+    return place % (1u << -log2LightPaths_) == 0 ? 1 : 0;
+  }
   const auto turn = static_cast<uint32_t>(x + 3 * y);
   const auto samples = 1u << -log2LightPaths_;
   const auto shift = static_cast<uint32_t>(MixBits(pass_.settings.seed));
@@ -264,25 +351,72 @@ int BothPaths::LightPathsOf(int x, int y, uint32_t& index) const {
   return moved % samples == 0 ? 1 : 0;
 }
 
+// The camera paths of a chunk of an adaptive film: the samples of one pixel after the other.
+class BothPaths::AdaptivePixels {
+ public:
+  AdaptivePixels(const Pass& pass, uint32_t index) : pass_(pass), index_(index), samplers_(pass) {}
+  ~AdaptivePixels() { EndPixel(); }
+  AdaptivePixels(const AdaptivePixels&) = delete;
+
+  // Begins the sample of a slot.
+  Sampler& Start(uint64_t slotInCrop) {
+    const PixelRect& crop = pass_.film.Crop();
+    const size_t pixel = pass_.allocation->PixelOf(slotInCrop, index_ - pass_.Offset());
+    if (pixel != pixel_) {
+      EndPixel();
+      pixel_ = pixel;
+      x_ = crop.x0 + static_cast<int>(pixel % static_cast<size_t>(crop.Width()));
+      y_ = crop.y0 + static_cast<int>(pixel / static_cast<size_t>(crop.Width()));
+    }
+    number_ = pass_.film.Pixel(x_, y_).count + sums_.count;
+    return samplers_.Start(x_, y_, number_);
+  }
+  int X() const { return x_; }
+  int Y() const { return y_; }
+  bool IsInHalf() const { return AdaptiveSampler::IsInHalf(number_); }
+  // Of the pixel in this pass.
+  PixelSums& Sums() { return sums_; }
+
+ private:
+  void EndPixel() {
+    if (sums_.count == 0) return;
+    pass_.film.Pixel(x_, y_).Add(sums_);
+    if (pass_.film.HasGroups()) pass_.film.AddGroup(x_, y_, sums_);
+    sums_ = PixelSums();
+  }
+
+  const Pass& pass_;
+  uint32_t index_;
+  AdaptiveSampler samplers_;
+  size_t pixel_ = std::numeric_limits<size_t>::max();
+  int x_ = 0, y_ = 0;
+  uint64_t number_ = 0;
+  PixelSums sums_;
+};
+
 void BothPaths::TraceChunk(size_t chunk, uint64_t begin, uint64_t end, uint32_t index, uint64_t seed, bool withCamera,
                            float passTime) {
   const RenderSettings& settings = pass_.settings;
   const auto width = static_cast<uint64_t>(settings.width);
-  const PixelRect& crop = pass_.film.Crop();
   SplatList& splats = splats_[chunk];
   splats.Clear();
   TechniqueImages::Recorder* recorder = techniques_ && withCamera ? &recorders_[chunk] : nullptr;
   SampleAdder adder(settings, pass_.film, counts_[chunk]);
   LayerSample* layers = adder.StartLayers();
-  Sampler sampler(settings.sampler, seed), lightSampler(settings.sampler, seed),
+  Sampler ownSampler(settings.sampler, seed), lightSampler(settings.sampler, seed),
       moreSampler(settings.sampler, MixBits(seed + kMorePaths));
+  const uint32_t ofSampler = index - pass_.Offset();
+  std::optional<AdaptivePixels> adaptive;
+  if (withCamera && pass_.allocation) adaptive.emplace(pass_, index);
   for (uint64_t i = begin; i < end; ++i) {
     const bool keepsPhotons = wanted_ && i < lightPaths_ && store_.HasRoom() && !(hasTimes_ && withCamera);
     if (!keepsPhotons && !withCamera) break;
-    const int x = static_cast<int>(i % width), y = static_cast<int>(i / width);
-    uint32_t lightIndex = index;
+    int x = static_cast<int>(i % width), y = static_cast<int>(i / width);
+    const std::optional<uint64_t> inCrop = withCamera ? SlotInCrop(i) : std::nullopt;
+    uint32_t lightIndex = ofSampler;
     const int lightPaths = LightPathsOf(x, y, lightIndex);
-    sampler.StartPixelSample(x, y, index);
+    ownSampler.StartPixelSample(x, y, ofSampler);
+    Sampler& sampler = adaptive && inCrop ? adaptive->Start(*inCrop) : ownSampler;
     const float time = hasTimes_ ? passTime : SampleTime(pass_.scene, sampler);
     SampleContext context{pass_.scene, sampler, time, counts_[chunk], layers};
     context.observer = recorder;
@@ -300,24 +434,32 @@ void BothPaths::TraceChunk(size_t chunk, uint64_t begin, uint64_t end, uint32_t 
       context.withOrigin = store_.WantsOrigins();
     };
     if (lightPaths > 0) startLightPath();
-    if (log2LightPaths_ < 0) {
+    if (log2LightPaths_ < 0 || pass_.allocation) {
       lightSampler.StartPixelSample(x, y, lightIndex);
       context.lightSampler = &lightSampler;
     }
-    if (!withCamera || x < crop.x0 || x >= crop.x1 || y < crop.y0 || y >= crop.y1) {
+    if (!inCrop) {
       if (recorder) recorder->StartSample(x, y, 0);
       if (lightPaths > 0) pass_.integrator.Sample(nullptr, context);
     } else {
+      const int lightX = x, lightY = y;
+      if (adaptive) x = adaptive->X(), y = adaptive->Y();
       const PixelRay ray = MakePixelRay(pass_.scene, pass_.filter, x, y, time, sampler);
       if (recorder) recorder->StartSample(x, y, ray.camera.weight * settings.sensor.ImagingRatio() * ray.filterWeight);
       context.film = ray.film;
       adder.StartLayers();
       const Color radiance = Radiance(pass_.integrator, ray, context);
-      adder.Add(x, y, index, ray, radiance, pass_.film.Pixel(x, y));
+      if (adaptive) {
+        adder.Add(x, y, adaptive->IsInHalf(), ray, radiance, adaptive->Sums());
+      } else {
+        adder.Add(x, y, IsInHalf(index), ray, radiance, pass_.film.Pixel(x, y));
+      }
+      x = lightX, y = lightY;
     }
     for (int k = 1; k < lightPaths; ++k) {
       startLightPath();
-      moreSampler.StartPixelSample(x, y, index * static_cast<uint32_t>(lightPaths - 1) + static_cast<uint32_t>(k - 1));
+      moreSampler.StartPixelSample(x, y,
+                                   ofSampler * static_cast<uint32_t>(lightPaths - 1) + static_cast<uint32_t>(k - 1));
       pass_.integrator.Sample(nullptr, context.With(moreSampler));
     }
   }
@@ -327,8 +469,8 @@ void BothPaths::TraceChunk(size_t chunk, uint64_t begin, uint64_t end, uint32_t 
 
 RenderCounts RenderPass(const RenderScene& scene, const Integrator& integrator, const RenderSettings& settings,
                         const PixelFilter& filter, uint32_t first, uint32_t count, int threads, Film& film,
-                        TechniqueImages* techniques, PhotonStore* kept) {
-  const Pass pass{scene, integrator, settings, filter, first, first + count, threads, film};
+                        TechniqueImages* techniques, PhotonStore* kept, const SampleAllocation* allocation) {
+  const Pass pass{scene, integrator, settings, filter, first, first + count, threads, film, allocation};
   switch (integrator.Paths()) {
     case TracedPaths::Camera:
       return TraceCameraPaths(pass);

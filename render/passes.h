@@ -7,6 +7,7 @@
 #include "film/film.h"
 #include "integrators/photon/photon_store.h"
 #include "integrators/walk/integrator.h"
+#include "render/adaptive_sampling.h"
 #include "render/settings/render_settings.h"
 #include "render/technique_images.h"
 
@@ -25,8 +26,13 @@ namespace lampyr {
 // carries photons from one call to the next; without it, or if it holds those of another sample, the light paths of the
 // sample before are traced again. In scenes with motion all paths of such a pass have the same time, and its photons
 // come from light paths of that time.
+//
+// `allocation`: of the stage of an adaptive film, which holds all of these passes; null: one sample for each pixel. The
+// light paths are the same; the camera path of pixel i of the crop belongs to the pixel that the allocation names. Its
+// number in the sequence of its pixel is that of samples that the pixel has in the stage.
 RenderCounts RenderPass(const RenderScene& scene, const Integrator& integrator, const RenderSettings& settings,
                         const PixelFilter& filter, uint32_t first, uint32_t count, int threads, Film& film,
-                        TechniqueImages* techniques = nullptr, PhotonStore* kept = nullptr);
+                        TechniqueImages* techniques = nullptr, PhotonStore* kept = nullptr,
+                        const SampleAllocation* allocation = nullptr);
 
 }  // namespace lampyr

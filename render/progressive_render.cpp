@@ -20,12 +20,26 @@ struct Clock {
   double Seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); }
 };
 
+// The error that StopConditions::relativeError is about.
+double TargetedError(const RenderOutcome& outcome) {
+  return outcome.pixelError.value_or(outcome.relativeError);
+}
+
+// The error that `share` of the pixels are below.
+double ErrorBelow(const Film& film, double share) {
+  std::vector<float> errors = film.PixelErrors();
+  const auto count = static_cast<double>(errors.size());
+  const auto rank = static_cast<std::ptrdiff_t>(std::clamp(std::ceil(share * count), 1.0, count)) - 1;
+  std::nth_element(errors.begin(), errors.begin() + rank, errors.end());
+  return static_cast<double>(errors[static_cast<size_t>(rank)]);
+}
+
 double FractionDone(const RenderOutcome& outcome, const StopConditions& stop) {
   double fraction = static_cast<double>(outcome.samplesPerPixel) / stop.samplesPerPixel;
   if (stop.seconds) fraction = std::max(fraction, outcome.seconds / *stop.seconds);
   // The error falls with the square root of the samples.
-  if (stop.relativeError && outcome.relativeError > 0) {
-    fraction = std::max(fraction, std::pow(*stop.relativeError / outcome.relativeError, 2.0));
+  if (stop.relativeError && TargetedError(outcome) > 0) {
+    fraction = std::max(fraction, std::pow(*stop.relativeError / TargetedError(outcome), 2.0));
   }
   return std::min(fraction, 1.0);
 }
@@ -47,6 +61,8 @@ ProgressiveRender::ProgressiveRender(const RenderScene& scene, const Integrator&
       backup_(scene.lighting->SceneSphere()) {
   if (wantedPhotons_ && wantedPhotons_->guided)
     guiding_ = std::make_unique<EmissionLearning>(scene, settings.width, settings.height);
+  if (settings.adaptive && integrator.Paths() != TracedPaths::Light && !film.IsAdaptive())
+    film.MakeAdaptive(wantedPhotons_.has_value());
   MakePhotonStore();
   if (settings.LearnsLights()) learning_ = std::make_unique<LightLearning>(scene.lighting->SceneSphere());
 }
@@ -63,9 +79,26 @@ void ProgressiveRender::AddPass(uint32_t done, uint32_t count) {
   view_.lighting = std::make_shared<const LightingServices>(
       scene_.lighting->With(learning_.get(), guiding_ ? guiding_->Guide() : nullptr));
   const RenderCounts counts = RenderPass(view_, integrator_, settings_, filter_, firstSample_ + done, count, threads_,
-                                         *film_, techniques_, photons_.get());
+                                         *film_, techniques_, photons_.get(), allocation_ ? &*allocation_ : nullptr);
   CheckStop();  // the counts of a given-up pass are not added
+  if (film_->IsAdaptive()) film_->CountPasses(count);
   counts_ += counts;
+}
+
+// Begins the stage of a pass, if it is another one than that of `allocation_`: ends the one before, after whole passes.
+void ProgressiveRender::StartStage(uint32_t pass) {
+  const SampleStage stage = StageOf(pass, firstSample_, settings_.seed);
+  if (allocation_ && allocation_->Stage().before == stage.before) return;
+  if (stage.before == 0) {
+    allocation_.emplace(stage, film_->Pixels());
+    return;
+  }
+  if (film_->EndedPasses() < stage.before) {
+    film_->EndStage();
+    // Those of the last pass belong to light paths that the stage's rates depend on.
+    if (photons_) photons_->Clear();
+  }
+  allocation_.emplace(stage, *film_, *settings_.adaptive);
 }
 
 namespace {
@@ -99,6 +132,7 @@ bool ProgressiveRender::AddSamples(int count) {
   const bool isGivenUp = end == WorkEnd::GivenUp;
   if (isGivenUp) LeaveToGivenUpPass();
   backup_.Restore(State(), threads_, isGivenUp);
+  allocation_.reset();
   counts_ = RenderCounts();
   // Photons are traced again, as after loading a checkpoint.
   MakePhotonStore();
@@ -131,7 +165,11 @@ void ProgressiveRender::AddWholePass(int count) {
   while (first < end) {
     const uint32_t milestone = std::bit_ceil(first + 1);
     const bool learns = (learning_ && learning_->IsRecording()) || (guiding_ && guiding_->IsRecording());
-    const uint32_t next = learns ? std::min(end, milestone) : end;
+    uint32_t next = learns ? std::min(end, milestone) : end;
+    if (film_->IsAdaptive()) {
+      StartStage(first);
+      next = std::min(next, allocation_->Stage().before + allocation_->Stage().passes);
+    }
     AddPass(first, next - first);
     first = next;
     if (learns && first == milestone) Learn(first);
@@ -203,9 +241,13 @@ RenderOutcome Continue(ProgressiveRender& render, const StopConditions& stop, co
     outcome = render.Outcome();
     outcome.seconds = before + clock.Seconds();  // what the user waits for
     outcome.relativeError = render.Picture().RelativeError(stop.largestSample);
+    if (stop.pixelShare) outcome.pixelError = ErrorBelow(render.Picture(), *stop.pixelShare);
     outcome.droppedFraction = render.DroppedFraction();
     // The dropped samples may have held any part of the light.
-    if (outcome.droppedFraction > kMostDropped) outcome.relativeError = std::numeric_limits<double>::infinity();
+    if (outcome.droppedFraction > kMostDropped) {
+      outcome.relativeError = std::numeric_limits<double>::infinity();
+      if (outcome.pixelError) outcome.pixelError = outcome.relativeError;
+    }
   };
   measure();
   const auto isDone = [&] {
@@ -217,7 +259,7 @@ RenderOutcome Continue(ProgressiveRender& render, const StopConditions& stop, co
     // An unknown error never reaches the target.
     const bool isHopeless = outcome.droppedFraction > kMostDropped && stop.relativeError;
     if (isHopeless && outcome.samplesPerPixel >= fewest) return true;
-    return stop.relativeError && outcome.samplesPerPixel >= fewest && outcome.relativeError <= *stop.relativeError;
+    return stop.relativeError && outcome.samplesPerPixel >= fewest && TargetedError(outcome) <= *stop.relativeError;
   };
   std::optional<double> secondsLeft;
   if (stop.seconds) secondsLeft = std::max(*stop.seconds - outcome.seconds, 0.0);

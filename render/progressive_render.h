@@ -13,6 +13,7 @@
 #include "film/film.h"
 #include "integrators/photon/photon_store.h"
 #include "integrators/walk/integrator.h"
+#include "render/adaptive_sampling.h"
 #include "render/render_backup.h"
 #include "render/settings/render_settings.h"
 #include "render/technique_images.h"
@@ -20,9 +21,12 @@
 namespace lampyr {
 
 struct StopConditions {
-  int samplesPerPixel = 16;                        // maximum
-  std::optional<double> seconds;                   // of rendering
-  std::optional<double> relativeError;             // at 95 % confidence (Film::RelativeError)
+  int samplesPerPixel = 16;             // maximum
+  std::optional<double> seconds;        // of rendering
+  std::optional<double> relativeError;  // at 95 % confidence (Film::RelativeError)
+  // Share of the pixels that are to be below `relativeError`, each by itself (Film::PixelErrors), in place of the
+  // image.
+  std::optional<double> pixelShare;
   std::optional<double> longestPass;               // longest duration of a pass, for work between passes
   double largestSample = 0;                        // brightest sample that may not have come yet (unseen_samples.h)
   const std::atomic<bool>* interrupted = nullptr;  // set by a signal handler: end soon (StopWatch)
@@ -30,9 +34,10 @@ struct StopConditions {
 
 struct RenderOutcome {
   int samplesPerPixel = 0;
-  double seconds = 0;          // of the passes; returned by Continue: until its end
-  double relativeError = 0;    // infinite where it is unknown
-  double droppedFraction = 0;  // ProgressiveRender::DroppedFraction
+  double seconds = 0;                // of the passes; returned by Continue: until its end
+  double relativeError = 0;          // infinite where it is unknown
+  double droppedFraction = 0;        // ProgressiveRender::DroppedFraction
+  std::optional<double> pixelError;  // the error that `pixelShare` of the pixels are below, where that is given
   bool interrupted = false;
   // True if the first pass was cut short: the film holds part of the first sample, for preview only.
   bool isPartial = false;
@@ -47,7 +52,8 @@ constexpr double kMostDropped = 1e-3;
 using PassCallback = std::function<void(const RenderOutcome& soFar, double fractionDone)>;
 
 // A render that can be continued at any time. The objects behind `scene`, `integrator`, `settings`, `film` (empty, of
-// the settings' crop) and `techniques` must outlive it.
+// the settings' crop) and `techniques` must outlive it. The film is made adaptive if the settings are, and the
+// integrator traces camera paths.
 class ProgressiveRender {
  public:
   // `firstSample`: index of the first sample of each pixel. A render that starts later computes a part of the render
@@ -86,6 +92,7 @@ class ProgressiveRender {
  private:
   void AddPass(uint32_t first, uint32_t count);
   void AddWholePass(int count);
+  void StartStage(uint32_t pass);
   void Learn(uint32_t samples);
   void MakePhotonStore();
   void LeaveToGivenUpPass();
@@ -104,10 +111,11 @@ class ProgressiveRender {
   uint32_t firstSample_;
   std::optional<PhotonSettings> wantedPhotons_;
   RenderOutcome outcome_;
-  RenderCounts counts_;                        // of the current pass
-  std::unique_ptr<LightLearning> learning_;    // null: selection learns nothing
-  std::unique_ptr<EmissionLearning> guiding_;  // null: no emission guiding
-  std::unique_ptr<PhotonStore> photons_;       // of integrators that gather them
+  RenderCounts counts_;                         // of the current pass
+  std::unique_ptr<LightLearning> learning_;     // null: selection learns nothing
+  std::unique_ptr<EmissionLearning> guiding_;   // null: no emission guiding
+  std::unique_ptr<PhotonStore> photons_;        // of integrators that gather them
+  std::optional<SampleAllocation> allocation_;  // of the last stage, in an adaptive film
   RenderBackup backup_;
 };
 

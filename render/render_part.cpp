@@ -15,7 +15,7 @@ namespace lampyr {
 namespace {
 
 // The last digit is the version of the format.
-constexpr std::array<char, 12> kMark = {'l', 'a', 'm', 'p', 'y', 'r', ' ', 'p', 'a', 'r', 't', '2'};
+constexpr std::array<char, 12> kMark = {'l', 'a', 'm', 'p', 'y', 'r', ' ', 'p', 'a', 'r', 't', '3'};
 constexpr size_t kEndBytes = sizeof(uint64_t) + sizeof(uint32_t) + kMark.size();
 constexpr uint64_t kMostEntries = 1 << 16;
 constexpr int kMostPixels = 1 << 16;  // across
@@ -71,7 +71,8 @@ void Save(ByteWriter& bytes, PartKind kind, const PartHeader& header) {
   bytes.Value(header.crop);
   bytes.Value<uint64_t>(header.layers.size());
   for (const std::string& layer : header.layers) bytes.Text(layer);
-  bytes.Value<uint8_t>(header.halfPrecision ? 1 : 0);
+  for (const bool flag : {header.halfPrecision, header.isAdaptive, header.hasGroups})
+    bytes.Value<uint8_t>(flag ? 1 : 0);
   SavePairs(bytes, header.metadata);
 }
 
@@ -105,7 +106,7 @@ PartHeader LoadHeader(ByteReader& bytes, PartKind kind) {
   const auto layers = bytes.Value<uint64_t>();
   if (layers > kMostEntries) throw Error("it holds a number out of range");
   for (uint64_t i = 0; i < layers; ++i) header.layers.push_back(bytes.Text());
-  header.halfPrecision = bytes.Flag();
+  for (bool* flag : {&header.halfPrecision, &header.isAdaptive, &header.hasGroups}) *flag = bytes.Flag();
   for (auto& [name, value] : LoadPairs(bytes)) header.metadata[name] = std::move(value);
   CheckHeader(header, bytes.Left());
   return header;
@@ -157,6 +158,7 @@ RenderIdentity IdentityOf(const LoadedScene& loaded, bool robustIntersection) {
            ToExactString(static_cast<double>(f.c)) + " " + ToExactString(static_cast<double>(f.tau))},
       {"the sampler", s.sampler == SamplerKind::Sobol ? "sobol" : "independent"},
       {"watertight intersection", YesOrNo(robustIntersection)}};
+  if (s.adaptive) identity.emplace_back("--adaptive", "on, for " + ToExactString(s.adaptive->share) + " of the pixels");
   for (const LayerRequest& request : s.layers)
     identity.emplace_back("the layer " + request.layer.name, request.layer.text);
   if (s.counts && !s.counts->IsDefault())
@@ -166,6 +168,12 @@ RenderIdentity IdentityOf(const LoadedScene& loaded, bool robustIntersection) {
       identity.emplace_back("--" + setting->name, Setting::ToExactString(s.values.Value(setting->name)));
   }
   return identity;
+}
+
+Film PartHeader::MakeFilm() const {
+  Film film(width, height, crop, layers);
+  if (isAdaptive) film.MakeAdaptive(hasGroups);
+  return film;
 }
 
 std::string DifferenceOf(const RenderIdentity& there, const RenderIdentity& here) {

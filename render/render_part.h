@@ -48,9 +48,10 @@ struct PartHeader {
   PixelRect crop;
   std::vector<std::string> layers;
   bool halfPrecision = false;
+  bool isAdaptive = false, hasGroups = false;   // the film (Film::MakeAdaptive)
   std::map<std::string, std::string> metadata;  // of the image made of all its samples
 
-  Film MakeFilm() const { return {width, height, crop, layers}; }
+  Film MakeFilm() const;
 };
 
 enum class PartKind : uint8_t { Checkpoint, Picture };

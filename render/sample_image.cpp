@@ -18,12 +18,8 @@ bool FitsHalves(const Image& image) {
 }
 
 Image SamplesOf(const Film& film) {
-  const PixelRect& crop = film.Crop();
-  Image image(crop.Width(), crop.Height(), {"samples"});
-  for (int y = 0; y < image.height; ++y) {
-    for (int x = 0; x < image.width; ++x)
-      image.At(x, y, 0) = static_cast<float>(film.Pixel(crop.x0 + x, crop.y0 + y).count);
-  }
+  Image image(film.Crop().Width(), film.Crop().Height(), {"samples"});
+  for (size_t i = 0; i < film.Pixels(); ++i) image.data[i] = static_cast<float>(film.Samples(i));
   return image;
 }
 
@@ -62,7 +58,7 @@ void WriteSamples(const std::filesystem::path& path, const PartHeader& header, c
   if (header.metadata.contains(std::string(kSampleLayerMetadata) + kSamplesLayer))
     AppendChannels(image, SamplesOf(film));
   if (header.metadata.contains(std::string(kSampleLayerMetadata) + kErrorLayer)) AppendChannels(image, ErrorOf(image));
-  image.metadata = header.metadata;
+  for (const auto& [key, value] : header.metadata) image.metadata[key] = value;
   image.metadata["lampyr.samplesPerPixel"] = std::to_string(header.samples);
   // Identifiers in mattes are bits, not numbers.
   const bool hasMattes = std::any_of(image.channels.begin(), image.channels.end(),

@@ -9,6 +9,7 @@ namespace lampyr {
 namespace {
 
 constexpr const char* kDenoised = ":denoise";
+constexpr const char* kAdaptive = "adaptive";
 
 std::string Listed(const std::vector<std::string>& names) {
   std::string all;
@@ -25,6 +26,7 @@ void Change(const std::string& variant, const IntegratorType& type, const std::s
   if (found == type.settings.end()) {
     std::vector<std::string> keys;
     for (const Setting* setting : type.settings) keys.push_back(setting->name);
+    keys.emplace_back(kAdaptive);
     throw UsageError("--integrators: \"" + variant + "\": there is no setting \"" + key + "\"" + DidYouMean(key, keys) +
                      "; there are: " + Listed(keys));
   }
@@ -60,13 +62,17 @@ bool IsDenoised(const std::string& name) {
 }
 
 bool IsAuto(const std::string& name) {
-  return name == kAuto || name == kAuto + std::string(kDenoised);
+  return name == kAuto || name.starts_with(kAuto + std::string(":"));
 }
 
 RenderSettings VariantOf(const RenderSettings& settings, const std::string& name) {
   if (IsDenoised(name)) return VariantOf(settings, name.substr(0, name.size() - std::string(kDenoised).size()));
   RenderSettings variant = settings;
   if (name == kAuto) return variant;
+  if (name == kAuto + std::string(":") + kAdaptive) {
+    variant.adaptive.emplace();
+    return variant;
+  }
   size_t colon = name.find(':');
   variant.integrator = name.substr(0, colon);
   variant.counts.reset();
@@ -77,7 +83,12 @@ RenderSettings VariantOf(const RenderSettings& settings, const std::string& name
   }
   while (colon != std::string::npos) {
     const size_t next = name.find(':', colon + 1);
-    Change(name, *type, name.substr(colon + 1, next == std::string::npos ? next : next - colon - 1), variant.values);
+    const std::string change = name.substr(colon + 1, next == std::string::npos ? next : next - colon - 1);
+    if (change == kAdaptive) {
+      variant.adaptive.emplace();
+    } else {
+      Change(name, *type, change, variant.values);
+    }
     colon = next;
   }
   return variant;

@@ -113,6 +113,7 @@ void ReadFilm(const SceneDescription& scene, const RenderOverrides& overrides, R
   for (const std::string& layer : film.GetStrings("layers")) AddLayer(layer, film.WhereOf("layers"), settings);
   for (const std::string& layer : overrides.layers) AddLayer(layer, {}, settings);
   settings.seesThroughSmooth = overrides.seesThroughSmooth;
+  settings.adaptive = overrides.adaptive;
   // pbrt-v4 writes halves by default. Variances need floats, so halves are written only if the scene asks for them.
   settings.halfPrecision = film.GetBool("savefp16", false);
   const std::string sensor = film.GetString("sensor", "cie1931");

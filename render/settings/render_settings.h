@@ -16,6 +16,11 @@
 
 namespace lampyr {
 
+// Adaptive sampling (adaptive_sampling.h).
+struct AdaptiveSettings {
+  double share = 0.95;  // of the pixels, whose largest error counts, in (0, 1]
+};
+
 // Overrides of the command line. Absent: the scene file's value.
 struct RenderOverrides {
   std::optional<std::string> integrator;
@@ -26,7 +31,8 @@ struct RenderOverrides {
   std::optional<std::string> sampler;
   std::vector<std::string> layers;  // names of pixel layers, or as ParseLayer reads them, besides those of the scene
   bool seesThroughSmooth = false;   // RenderSettings
-  std::optional<uint64_t> memory;   // limit on the scene's memory, bytes; absent: all available memory
+  std::optional<AdaptiveSettings> adaptive;
+  std::optional<uint64_t> memory;  // limit on the scene's memory, bytes; absent: all available memory
   uint64_t seed = 0;
   int threads = 0;  // of what is done before rendering; 0: all
 };
@@ -51,7 +57,8 @@ struct RenderSettings {
   std::optional<FirstHitSpace> firstHit;  // absent: no such layers
   std::vector<LayerRequest> layers;       // besides those of light groups
   std::vector<const PixelLayer*> pixelLayers;
-  bool seesThroughSmooth = false;  // what is seen first is what mirrors and glass show
+  bool seesThroughSmooth = false;            // what is seen first is what mirrors and glass show
+  std::optional<AdaptiveSettings> adaptive;  // absent: all pixels have the same number of samples
 
   bool Wants(const char* pixelLayer) const;
   bool WantsFirstHit() const;  // any layer of what is seen first

@@ -172,7 +172,10 @@ bool ReadHalves(const Image& image, NoisyPicture& picture) {
   const ColorPlanes part = ReadColors(image, std::string(kHalfLayer) + ".");
   const int samples = SamplesOf(image);
   if (part[0].Size() == 0 || samples < 2) return false;
-  picture.shares[0] = static_cast<double>(SamplesInHalf(static_cast<uint32_t>(samples))) / samples;
+  const auto share = image.metadata.find(kHalfShareMetadata);
+  picture.shares[0] = share != image.metadata.end()
+                          ? std::clamp(std::atof(share->second.c_str()), 0.01, 0.99)
+                          : static_cast<double>(SamplesInHalf(static_cast<uint32_t>(samples))) / samples;
   picture.shares[1] = 1 - picture.shares[0];
   const auto first = static_cast<float>(1 / picture.shares[0]), second = static_cast<float>(1 / picture.shares[1]);
   picture.halves[0] = picture.halves[1] = picture.color;

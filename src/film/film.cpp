@@ -17,14 +17,6 @@ namespace lampyr {
 
 namespace {
 
-// Divisor of the sums of a pixel. Filter weights have mean 1, so that Σw is near n; those of filters with negative
-// lobes may cancel while there are few samples. The divisor is then n, which keeps the pixel finite and unbiased.
-double Divisor(const PixelSums& pixel) {
-  const double n = static_cast<double>(pixel.count);
-  const double weight = pixel.weight.Value();
-  return weight > 0.1 * n ? weight : n;
-}
-
 // Variance of the mean of n samples from their sums; 0 for fewer than 2 samples.
 double MeanVariance(double sum, double sumOfSquares, double n) {
   if (n < 2) return 0;
@@ -133,6 +125,12 @@ void PixelSums::Add(const PixelSums& other) {
   count += other.count;
 }
 
+double PixelSums::Divisor() const {
+  const auto n = static_cast<double>(count);
+  const double sumOfWeights = weight.Value();
+  return sumOfWeights > 0.1 * n ? sumOfWeights : n;
+}
+
 bool PixelSums::IsFinite() const {
   return AreFinite(sum) && AreFinite(sumOfSquares) && weight.IsFinite() && std::isfinite(sumOfFourths);
 }
@@ -169,33 +167,45 @@ void Film::AddToHalf(int x, int y, const Color& value, float filterWeight) {
   AddTo(layerSums_[(Index(x, y) + 1) * layers_.size() - 1], filterWeight, value);
 }
 
-uint64_t Film::BytesPerPixel(size_t layers, bool withSplats) {
-  const uint64_t ofLayer = (withSplats ? 2 : 1) * sizeof(LayerSum);
-  return sizeof(PixelSums) + (withSplats ? sizeof(SplatSums) : 0) + layers * ofLayer;
+uint64_t Film::BytesPerPixel(size_t layers, bool withSplats, bool isAdaptive) {
+  const uint64_t ofLayer = (withSplats ? 2 : 1) * sizeof(LayerSum) + (isAdaptive ? 3 * sizeof(double) : 0);
+  const uint64_t ofStages = isAdaptive ? sizeof(PixelStages) + sizeof(PixelGroups) : 0;
+  return sizeof(PixelSums) + (withSplats ? sizeof(SplatSums) : 0) + ofStages + layers * ofLayer;
+}
+
+double Film::CameraValue(size_t pixel, int channel) const {
+  const PixelSums& samples = pixels_[pixel];
+  const double mean = samples.count > 0 ? samples.sum[channel].Value() / samples.Divisor() : 0.0;
+  if (endedPasses_ == 0) return mean;
+  return (stages_[pixel].sum[channel] + passes_ * mean) / static_cast<double>(endedPasses_ + passes_);
 }
 
 double Film::Value(size_t pixel, int channel) const {
-  const PixelSums& samples = pixels_[pixel];
-  double value = samples.count > 0 ? samples.sum[channel].Value() / Divisor(samples) : 0.0;
+  double value = CameraValue(pixel, channel);
   if (lightPaths_ > 0) value += splats_[pixel].Sum(channel) / static_cast<double>(lightPaths_);
   return value;
 }
 
 double Film::LayerValue(size_t pixel, size_t layer, size_t channel) const {
-  const PixelSums& samples = pixels_[pixel];
   const size_t index = pixel * layers_.size() + layer;
-  double value = samples.count > 0 ? layerSums_[index][channel].Value() / Divisor(samples) : 0.0;
-  if (lightPaths_ > 0) value += layerSplats_[index][channel].Value() / static_cast<double>(lightPaths_);
-  return value;
+  double value = CurrentLayerMean(pixel, layer, channel);
+  if (endedPasses_ > 0)
+    value = (layerStages_[index][channel] + passes_ * value) / static_cast<double>(endedPasses_ + passes_);
+  if (lightPaths_ == 0) return value;
+  double splats = layerSplats_[index][channel].Value() / static_cast<double>(lightPaths_);
+  if (isAdaptive_ && hasHalf_ && layer + 1 == layers_.size()) splats *= HalfShareOfSplats();
+  return value + splats;
 }
 
 double Film::VarianceOfMean(size_t pixel, int channel) const {
   const PixelSums& samples = pixels_[pixel];
   const double n = static_cast<double>(samples.count);
   double variance = 0;
-  if (samples.count >= 2) {  // w·L relative to the mean weight
+  if (isAdaptive_) {
+    variance = CameraVariance(pixel, channel);
+  } else if (samples.count >= 2) {  // w·L relative to the mean weight
     variance = MeanVariance(samples.sum[channel].Value(), samples.sumOfSquares[channel].Value(), n) *
-               std::pow(n / Divisor(samples), 2);
+               std::pow(n / samples.Divisor(), 2);
   }
   if (lightPaths_ > 0) {
     const SplatSums& splats = splats_[pixel];
@@ -209,7 +219,11 @@ double Film::VarianceOfMean(size_t pixel, int channel) const {
 double Film::FourthOfMean(size_t pixel) const {
   const PixelSums& samples = pixels_[pixel];
   double fourth = 0;
-  if (samples.count >= 2) fourth = samples.sumOfFourths / std::pow(Divisor(samples), 4);
+  if (isAdaptive_) {
+    fourth = CameraFourth(pixel);
+  } else if (samples.count >= 2) {
+    fourth = samples.sumOfFourths / std::pow(samples.Divisor(), 4);
+  }
   if (lightPaths_ > 0)
     fourth += splatSpread_ * splats_[pixel].SumOfFourths() / std::pow(static_cast<double>(lightPaths_), 4);
   return fourth;
@@ -290,8 +304,16 @@ void Film::AddToRows(const PixelFilter& filter, std::span<const SplatList> lists
 }
 
 void Film::Add(const Film& other) {
+  if (other.isAdaptive_ && other.passes_ > 0) {
+    Film ended = other;
+    ended.EndStage();
+    Add(ended);
+    return;
+  }
+  if (isAdaptive_ && passes_ > 0) EndStage();
   for (size_t i = 0; i < pixels_.size(); ++i) pixels_[i].Add(other.pixels_[i]);
   AddAll(layerSums_, other.layerSums_);
+  if (isAdaptive_) AddStages(other);
   if (other.splats_.empty()) return;
   MakeSplats();
   for (size_t i = 0; i < splats_.size(); ++i) splats_[i].Add(other.splats_[i]);
@@ -305,8 +327,19 @@ void Film::CopyFrom(const Film& other, int threads) {
   Copy(splats_, other.splats_, threads);
   Copy(layerSums_, other.layerSums_, threads);
   Copy(layerSplats_, other.layerSplats_, threads);
+  Copy(stages_, other.stages_, threads);
+  Copy(groups_, other.groups_, threads);
+  Copy(layerStages_, other.layerStages_, threads);
   lightPaths_ = other.lightPaths_;
   splatSpread_ = other.splatSpread_;
+  passes_ = other.passes_;
+  endedPasses_ = other.endedPasses_;
+}
+
+Film Film::EmptyCopy() const {
+  Film empty(fullWidth_, fullHeight_, crop_, layers_);
+  if (isAdaptive_) empty.MakeAdaptive(HasGroups());
+  return empty;
 }
 
 double Film::SampledFraction() const {
@@ -318,6 +351,13 @@ double Film::SampledFraction() const {
 void Film::Save(ByteWriter& bytes) const {
   bytes.Values(std::span(pixels_));
   bytes.Values(std::span(layerSums_));
+  if (isAdaptive_) {
+    bytes.Values(std::span(stages_));
+    bytes.Values(std::span(groups_));
+    bytes.Values(std::span(layerStages_));
+    bytes.Value(passes_);
+    bytes.Value(endedPasses_);
+  }
   bytes.Value<uint8_t>(splats_.empty() ? 0 : 1);
   if (splats_.empty()) return;
   bytes.Values(std::span(splats_));
@@ -327,9 +367,16 @@ void Film::Save(ByteWriter& bytes) const {
 }
 
 void Film::Load(ByteReader& bytes) {
-  Film film(fullWidth_, fullHeight_, crop_, layers_);
+  Film film = EmptyCopy();
   bytes.Values(std::span(film.pixels_));
   bytes.Values(std::span(film.layerSums_));
+  if (isAdaptive_) {
+    bytes.Values(std::span(film.stages_));
+    bytes.Values(std::span(film.groups_));
+    bytes.Values(std::span(film.layerStages_));
+    film.passes_ = bytes.Value<uint32_t>();
+    film.endedPasses_ = bytes.Value<uint64_t>();
+  }
   if (bytes.Flag()) {
     film.MakeSplats();
     bytes.Values(std::span(film.splats_));
@@ -342,7 +389,7 @@ void Film::Load(ByteReader& bytes) {
       std::all_of(film.splats_.begin(), film.splats_.end(), [](const SplatSums& sums) { return sums.IsFinite(); }) &&
       std::all_of(film.layerSums_.begin(), film.layerSums_.end(), [](const LayerSum& s) { return AreFinite(s); }) &&
       std::all_of(film.layerSplats_.begin(), film.layerSplats_.end(), [](const LayerSum& s) { return AreFinite(s); }) &&
-      std::isfinite(film.splatSpread_);
+      std::isfinite(film.splatSpread_) && film.StagesAreFinite();
   if (!isFinite) throw Error("it holds sums that are not finite");
   *this = std::move(film);
 }
@@ -357,6 +404,7 @@ Image Film::Develop() const {
   image.offsetY = crop_.y0;
   image.fullWidth = fullWidth_;
   image.fullHeight = fullHeight_;
+  if (isAdaptive_ && hasHalf_) image.metadata[kHalfShareMetadata] = "0.5";
   float* out = image.data.data();
   for (size_t i = 0; i < pixels_.size(); ++i) {
     for (int c = 0; c < 3; ++c) *out++ = ToFiniteFloat(Value(i, c));
@@ -371,7 +419,8 @@ Image Film::Develop() const {
 double Film::RelativeError(double largestSample) const {
   double varianceSum = 0, fourthSum = 0, luminanceSum = 0, samples = 0;
   for (size_t i = 0; i < pixels_.size(); ++i) {
-    const bool tooFew = lightPaths_ > 0 ? lightPaths_ < 2 || pixels_[i].count == 1 : pixels_[i].count < 2;
+    const uint64_t own = Samples(i);
+    const bool tooFew = lightPaths_ > 0 ? lightPaths_ < 2 || own == 1 : own < 2;
     if (tooFew) return std::numeric_limits<double>::infinity();
     // The channels of a sample share its path: they are taken as fully correlated, which bounds the variance from
     // above.
@@ -383,7 +432,7 @@ double Film::RelativeError(double largestSample) const {
     varianceSum += deviation * deviation;
     fourthSum += FourthOfMean(i);
     luminanceSum += value;
-    samples += static_cast<double>(pixels_[i].count);
+    samples += static_cast<double>(own);
   }
   const double n = static_cast<double>(pixels_.size());
   const double largest = samples > 0 ? std::pow(largestSample * n / samples, 2) : 0;

@@ -8,6 +8,12 @@
 //
 // The image does not depend on the order of the samples: sums are compensated (math/compensated_sum.h). The films of
 // parts of the samples add up to the film of all samples.
+//
+// The pixels of an adaptive film differ in their numbers of samples. Its passes are grouped in stages; a pixel is the
+// mean of its stages, weighted by their passes. These weights are the same in all pixels and known beforehand, so that
+// the picture is unbiased although the numbers of samples depend on the samples of earlier stages. The mean over all
+// samples of a pixel would not be: where a stage by chance missed the light, the next one has fewer samples, and the
+// dark stage more than its share.
 #pragma once
 
 #include <array>
@@ -37,6 +43,9 @@ inline bool IsInHalf(uint32_t sampleIndex) {
 // How many of the first n samples do: from n/2 to n·2/3, rounded up.
 uint32_t SamplesInHalf(uint32_t n);
 
+// The share of the samples that are in kHalfLayer, where it is not that of SamplesInHalf: a key of Image::metadata.
+inline constexpr const char* kHalfShareMetadata = "lampyr.halfShare";
+
 struct PixelRect {
   int x0 = 0, y0 = 0, x1 = 0, y1 = 0;  // half open
   int Width() const { return x1 - x0; }
@@ -54,6 +63,37 @@ struct PixelSums {
   void Add(const Color& value, float filterWeight);
   // Adds all samples of `other`.
   void Add(const PixelSums& other);
+  // Divisor of the sums. Filter weights have mean 1, so that Σw is near n; those of filters with negative lobes may
+  // cancel while there are few samples. The divisor is then n, which keeps the pixel finite and unbiased.
+  double Divisor() const;
+  bool IsFinite() const;
+};
+
+// The stages of a pixel that have ended, in an adaptive film. N: passes of a stage; n: samples of the pixel in it; D:
+// its divisor, near n.
+struct PixelStages {
+  double sum[3] = {0, 0, 0};  // Σ N · mean of the stage
+  // Variance of `sum` per variance of a sample: Σ N² n / D² of independent samples, and Σ N² Σ c² / D² of samples of
+  // which the c of one pass are equal.
+  double independent = 0, shared = 0;
+  double sumOfFourths = 0;  // Σ N⁴ · fourths / D⁴
+  // Over the samples of all stages, as in PixelSums:
+  double valueSum[3] = {0, 0, 0}, squareSum[3] = {0, 0, 0};
+  uint64_t count = 0;
+  double splatLuminance = 0, splatVariance = 0;  // of all splats when the last stage ended
+
+  bool IsFinite() const;
+};
+
+// Of samples of an adaptive film that are not independent, because all those of a pass gather the same photons: what
+// differs between the samples of a pass and what is common to them.
+struct PixelGroups {
+  double within[3] = {0, 0, 0};  // Σ squared deviations of samples from the mean of their pass
+  uint64_t freedom = 0;          // degrees of freedom of `within`
+  uint64_t squares = 0;          // Σ c² of the passes of the current stage
+
+  // Adds the samples of one pass.
+  void Add(const PixelSums& pass);
   bool IsFinite() const;
 };
 
@@ -83,7 +123,7 @@ class Film {
   void AddToLayers(int x, int y, const LayerSample& sample, float scale, float filterWeight,
                    const SensorResponse& sensor = {});
   // Bytes per pixel of a film with `layers` layers.
-  static uint64_t BytesPerPixel(size_t layers, bool withSplats);
+  static uint64_t BytesPerPixel(size_t layers, bool withSplats, bool isAdaptive = false);
 
   // An empty list for splats onto this film.
   SplatList MakeSplatList(const PixelFilter& filter, const SensorResponse& sensor) const;
@@ -93,12 +133,36 @@ class Film {
   // Number of light paths so far, including those without a splat.
   uint64_t LightPaths() const { return lightPaths_; }
 
-  // Adds all samples and light paths of another film of the same size, crop and layers.
+  // Makes an empty film adaptive. `hasGroups`: the samples of a pass gather the same photons.
+  void MakeAdaptive(bool hasGroups);
+  bool IsAdaptive() const { return isAdaptive_; }
+  // Adaptive films. `passes` were added to the current stage.
+  void CountPasses(uint32_t passes) { passes_ += passes; }
+  // Ends the stage, in which each pixel must have a sample: Pixel() begins anew.
+  void EndStage();
+  // The samples of a pixel in one pass, which have been added to it; of films with groups.
+  void AddGroup(int x, int y, const PixelSums& pass) { groups_[Index(x, y)].Add(pass); }
+  bool HasGroups() const { return !groups_.empty(); }
+  // What the stages that have ended tell: passes, and of a pixel (an index into the crop, row by row) its stages, its
+  // luminance, the variance of the luminance of a sample, and that of all splats.
+  uint64_t EndedPasses() const { return endedPasses_; }
+  const PixelStages& Stages(size_t pixel) const { return stages_[pixel]; }
+  struct PixelStatistics {
+    double luminance = 0, sampleVariance = 0, splatVariance = 0;
+  };
+  PixelStatistics StatisticsOf(size_t pixel) const;
+
+  // Samples of a pixel (an index into the crop, row by row).
+  uint64_t Samples(size_t pixel) const { return pixels_[pixel].count + (isAdaptive_ ? stages_[pixel].count : 0); }
+  size_t Pixels() const { return pixels_.size(); }
+
+  // Adds all samples and light paths of another film of the same size, crop and layers, as stages of their own if they
+  // are adaptive.
   void Add(const Film& other);
   // Copies the samples and light paths of another film of the same size, crop and layers. Reuses memory.
   void CopyFrom(const Film& other, int threads);
-  // An empty film of the same size, crop and layers.
-  Film EmptyCopy() const { return {fullWidth_, fullHeight_, crop_, layers_}; }
+  // An empty film of the same size, crop, layers and kind.
+  Film EmptyCopy() const;
   // Fraction of the pixels with at least one sample.
   double SampledFraction() const;
   // Writes everything except size, crop and layers.
@@ -119,10 +183,22 @@ class Film {
   // variance if `largestSample` is 0, and for an image that is still black after 4096 samples per pixel.
   double RelativeError(double largestSample = 0) const;
 
+  // Half the width of the 95 % interval of a pixel's luminance, relative to it, or to 1 % of the mean luminance in
+  // darker pixels; pixel by pixel, row by row. Infinite where fewer than 2 samples do not tell.
+  std::vector<float> PixelErrors() const;
+
  private:
   using LayerSum = std::array<CompensatedSum, 3>;
 
   size_t Index(int x, int y) const { return static_cast<size_t>(y - crop_.y0) * crop_.Width() + (x - crop_.x0); }
+  double CameraValue(size_t pixel, int channel) const;
+  double CameraVariance(size_t pixel, int channel) const;
+  double CameraFourth(size_t pixel) const;
+  double HalfShareOfSplats() const;
+  void NoteSplats(size_t pixel);
+  void AddStages(const Film& other);
+  bool StagesAreFinite() const;
+  double CurrentLayerMean(size_t pixel, size_t layer, size_t channel) const;
   void PrefetchSplats(const Point2& film) const;
   void AddToRows(const PixelFilter& filter, std::span<const SplatList> lists, int band, int bands, bool isInHalf);
   double Value(size_t pixel, int channel) const;
@@ -140,6 +216,12 @@ class Film {
   std::vector<LayerSum> layerSums_, layerSplats_;  // per layer and pixel; layerSplats_: empty without splats
   uint64_t lightPaths_ = 0;
   double splatSpread_ = 0;  // effective number of pixels of a splat (film.cpp)
+  bool isAdaptive_ = false;
+  uint32_t passes_ = 0;                             // of the current stage
+  uint64_t endedPasses_ = 0;                        // of those before it
+  std::vector<PixelStages> stages_;                 // empty unless adaptive
+  std::vector<PixelGroups> groups_;                 // empty unless adaptive with groups
+  std::vector<std::array<double, 3>> layerStages_;  // per layer and pixel: Σ passes · mean; empty unless adaptive
 };
 
 }  // namespace lampyr

@@ -1,0 +1,62 @@
+// Adaptive sampling: which pixel each sample of a pass belongs to.
+//
+// Passes are grouped in stages. The first has kFirstStage passes and is uniform; each later one is as long as all
+// before it. When a stage begins, every pixel is given a rate, in samples per pass, by what the stages before it have
+// measured; the first pass of a stage has one sample in each pixel, the others follow the rates. A pass always has as
+// many samples as pixels, and the same light paths as without rates.
+//
+// A stage has random numbers of its own. What it adds to a pixel has therefore the expectation of the pixel whatever
+// came before it, and because the film weights stages by their passes (film/film.h), the picture is unbiased.
+//
+// Rates make the error that a given share of the pixels is below as small as they can.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "film/film.h"
+#include "render/settings/render_settings.h"
+
+namespace lampyr {
+
+struct SampleStage {
+  uint32_t before = 0;  // passes before it, of this render
+  uint32_t first = 0;   // index of its first pass, in the render that this one may be a part of
+  uint32_t passes = 0;  // in the stage
+  uint64_t seed = 0;    // of its random numbers
+};
+
+inline constexpr uint32_t kFirstStage = 4;
+// The stage that the pass after `pass` others is in. `offset`: index of the first pass, in a part of a render.
+SampleStage StageOf(uint32_t pass, uint32_t offset, uint64_t seed);
+
+class SampleAllocation {
+ public:
+  // One sample for each of `pixels` in every pass.
+  SampleAllocation(const SampleStage& stage, size_t pixels) : stage_(stage), pixels_(pixels) {}
+  // By what the ended stages of the film tell.
+  SampleAllocation(const SampleStage& stage, const Film& film, const AdaptiveSettings& settings);
+
+  const SampleStage& Stage() const { return stage_; }
+  // Samples of a pixel in a pass. Pixels: indices into the crop, row by row; passes: from the first of the stage.
+  uint32_t Count(size_t pixel, uint32_t pass) const {
+    if (ends_.empty() || pass == 0) return 1;
+    return static_cast<uint32_t>(End(pixel, pass) - (pixel > 0 ? End(pixel - 1, pass) : 0));
+  }
+  // The pixel that sample `slot` of a pass belongs to: samples are in the order of their pixels.
+  size_t PixelOf(uint64_t slot, uint32_t pass) const;
+
+ private:
+  // Number of samples of a pass in this pixel and all before it. Systematic sampling: one random number for the pass.
+  uint64_t End(size_t pixel, uint32_t pass) const;
+
+  SampleStage stage_;
+  size_t pixels_;
+  std::vector<double> ends_;  // sums of the rates; empty: all rates are 1
+};
+
+// The samples that each pixel should have in a stage, by what the ended stages of the film tell; one for each pixel and
+// pass on average. Public for tests.
+std::vector<double> WantedSamples(const Film& film, const SampleStage& stage, const AdaptiveSettings& settings);
+
+}  // namespace lampyr
