@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
 
 #include "math/vec.h"
 #include "sampling/rng.h"
@@ -13,66 +16,113 @@ namespace {
 
 constexpr uint64_t kOfStage = 0x3c6ef372fe94f82b;  // changes the seed from stage to stage
 constexpr double kDark = 0.01;  // of the mean luminance: darker pixels count as that (Film::PixelErrors)
-constexpr double kOwnPasses = 32;                  // at which a pixel counts as much as its neighbourhood
+constexpr double kTiny = std::numeric_limits<double>::min();
+constexpr double kOfFarther = 1;  // of the variance farther around a pixel: the least of its own
 // Rates. The lower limit is for pixels whose noise has not shown yet, the upper for fireflies.
-constexpr double kLeastRate = 0.25, kMostRate = 32;
+constexpr double kLeastRate = 0.5, kMostRate = 32;
 
 // What decides how many samples a pixel should have, relative to its squared luminance.
 struct PixelNeed {
   double ofSample = 0;  // variance of a sample
   double before = 0;    // variance of the picture per `ofSample`, as far as it comes from earlier stages
   double splats = 0;    // variance of the splats when the stage ends
+  double trust = 1;     // 1: `ofSample` is known, or small; 0: it may be anything
 };
 
-// Blurs by a binomial filter of 5 x 5 pixels.
-std::vector<double> Blurred(const std::vector<double>& values, int width, int height) {
+struct Grid {
+  int width, height;
+  std::vector<double> values;
+};
+
+// Blurs by a binomial filter of five values, `step` pixels apart, along one axis.
+Grid BlurredAlong(const Grid& from, bool isHorizontal, int step) {
   constexpr double kWeights[5] = {1, 4, 6, 4, 1};
-  const auto along = [&](const std::vector<double>& from, bool isHorizontal) {
-    std::vector<double> to(from.size());
-    for (int y = 0; y < height; ++y) {
-      for (int x = 0; x < width; ++x) {
-        double sum = 0, weight = 0;
-        for (int k = -2; k <= 2; ++k) {
-          const int i = isHorizontal ? x + k : x, j = isHorizontal ? y : y + k;
-          if (i < 0 || i >= width || j < 0 || j >= height) continue;
-          sum += kWeights[k + 2] * from[static_cast<size_t>(j) * static_cast<size_t>(width) + static_cast<size_t>(i)];
-          weight += kWeights[k + 2];
-        }
-        to[static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)] = sum / weight;
-      }
+  const int size = isHorizontal ? from.width : from.height, stride = isHorizontal ? 1 : from.width;
+  Grid to = from;
+  for (int i = 0; i < static_cast<int>(from.values.size()); ++i) {
+    const int at = isHorizontal ? i % from.width : i / from.width;
+    double sum = 0, weight = 0;
+    for (int k = -2; k <= 2; ++k) {
+      if (at + k * step < 0 || at + k * step >= size) continue;
+      sum += kWeights[k + 2] * from.values[static_cast<size_t>(i + k * step * stride)];
+      weight += kWeights[k + 2];
     }
-    return to;
-  };
-  return along(along(values, true), false);
+    to.values[static_cast<size_t>(i)] = sum / weight;
+  }
+  return to;
+}
+Grid Blurred(const Grid& from, int step) {
+  return BlurredAlong(BlurredAlong(from, true, step), false, step);
+}
+
+// Relative variance of a sample of every pixel: that of the samples around it, but at least a part of that farther
+// around. Where one in a thousand samples finds a light, most pixels have not met it yet; all of them may.
+std::vector<double> SampleVariances(Grid squares, Grid counts) {
+  constexpr int kNear = 1, kFar = 4;  // blurs
+  std::vector<double> variances(squares.values.size(), 0);
+  for (int scale = 0; scale < kFar; ++scale) {
+    squares = Blurred(squares, 1 << scale);
+    counts = Blurred(counts, 1 << scale);
+    if (scale + 1 != kNear && scale + 1 != kFar) continue;
+    for (size_t i = 0; i < variances.size(); ++i) {
+      const double around = squares.values[i] / std::max(counts.values[i] - 1, 1.0);
+      variances[i] = std::max(variances[i], around * (scale + 1 == kFar ? kOfFarther : 1.0));
+    }
+  }
+  return variances;
+}
+
+// How far the variances can be trusted: by the number of large samples that make them up, within some pixels. Where few
+// samples hold most of the variance, it is where they happened to fall.
+std::vector<double> TrustsIn(Grid squares, Grid fourths) {
+  constexpr double kEnough = 48, kPixels = 4 * std::numbers::pi * (1 + 4 + 16);  // under three blurs
+  for (int scale = 0; scale < 3; ++scale) {
+    squares = Blurred(squares, 1 << scale);
+    fourths = Blurred(fourths, 1 << scale);
+  }
+  std::vector<double> trusts(squares.values.size(), 1);
+  for (size_t i = 0; i < trusts.size(); ++i) {
+    if (!(fourths.values[i] > 0)) continue;
+    const double large = kPixels * squares.values[i] * squares.values[i] / fourths.values[i];
+    trusts[i] = large / (large + kEnough);
+  }
+  return trusts;
 }
 
 std::vector<PixelNeed> NeedsOf(const Film& film, const SampleStage& stage) {
   const size_t pixels = film.Pixels();
-  const int width = film.Crop().Width(), height = film.Crop().Height();
-  std::vector<double> luminance(pixels), variance(pixels), splats(pixels);
+  const Grid empty{film.Crop().Width(), film.Crop().Height(), std::vector<double>(pixels)};
+  Grid luminance = empty, squares = empty, fourths = empty, counts = empty, splats = empty;
   double mean = 0;
   for (size_t i = 0; i < pixels; ++i) {
     const Film::PixelStatistics statistics = film.StatisticsOf(i);
-    luminance[i] = std::max(statistics.luminance, 0.0);
-    variance[i] = statistics.sampleVariance;
-    splats[i] = statistics.splatVariance;
-    mean += luminance[i] / static_cast<double>(pixels);
+    luminance.values[i] = std::max(statistics.luminance, 0.0);
+    squares.values[i] = statistics.squares;
+    fourths.values[i] = statistics.fourths;
+    counts.values[i] = static_cast<double>(film.Stages(i).count);
+    splats.values[i] = statistics.splatVariance;
+    mean += luminance.values[i] / static_cast<double>(pixels);
   }
-  // Of few samples the mean of a neighbourhood is known better than that of a pixel.
+  luminance = Blurred(luminance, 1);
+  for (size_t i = 0; i < pixels; ++i) {
+    const double square = std::pow(std::max(luminance.values[i], kDark * mean), 2);
+    squares.values[i] = square > 0 ? squares.values[i] / square : 0;
+    fourths.values[i] = square > 0 ? fourths.values[i] / (square * square) : 0;
+    splats.values[i] = square > 0 ? splats.values[i] / square : 0;
+  }
+  splats = Blurred(splats, 1);
+  const std::vector<double> variances = SampleVariances(squares, counts);
+  const std::vector<double> trusts = TrustsIn(squares, fourths);
   const auto before = static_cast<double>(film.EndedPasses());
-  const double own = before / (before + kOwnPasses);
-  for (std::vector<double>* values : {&luminance, &variance}) {
-    const std::vector<double> blurred = Blurred(*values, width, height);
-    for (size_t i = 0; i < pixels; ++i) (*values)[i] = own * (*values)[i] + (1 - own) * blurred[i];
-  }
   const double all = before + stage.passes;
   std::vector<PixelNeed> needs(pixels);
+  double root = 0;
+  for (const double variance : variances) root += std::sqrt(variance) / static_cast<double>(pixels);
   for (size_t i = 0; i < pixels; ++i) {
-    const double square = std::pow(std::max(luminance[i], kDark * mean), 2);
-    if (!(square > 0)) continue;
-    needs[i].ofSample = variance[i] / square;
+    needs[i].ofSample = variances[i];
+    needs[i].trust = 1 - (1 - trusts[i]) * variances[i] / std::max(variances[i] + root * root, kTiny);
     needs[i].before = film.Stages(i).independent / (all * all);
-    needs[i].splats = splats[i] / square * before / all;
+    needs[i].splats = splats.values[i] * before / all;
   }
   return needs;
 }
@@ -122,8 +172,11 @@ std::vector<double> WantedSamples(const Film& film, const SampleStage& stage, co
     const double middle = 0.5 * (low + high);
     (sumFor(std::exp2(middle)) > all ? low : high) = middle;
   }
-  const double scale = all / sumFor(std::exp2(high));
-  for (double& own : samples) own *= scale;
+  sumFor(std::exp2(high));
+  double sum = 0;
+  for (size_t i = 0; i < samples.size(); ++i)
+    sum += samples[i] = needs[i].trust * samples[i] + (1 - needs[i].trust) * passes;
+  for (double& own : samples) own *= all / sum;
   return samples;
 }
 
@@ -134,21 +187,22 @@ SampleAllocation::SampleAllocation(const SampleStage& stage, const Film& film, c
   double sum = 0;
   for (const double own : wanted) sum += std::max(own - 1, 0.0);
   if (!(sum > 0)) return;
+  const uint64_t all = uint64_t{stage.passes - 1} * pixels_;
   ends_.resize(pixels_);
   double end = 0;
   for (size_t i = 0; i < pixels_; ++i) {
-    end += std::max(wanted[i] - 1, 0.0) / sum * static_cast<double>(pixels_);
-    ends_[i] = end;
+    end += std::max(wanted[i] - 1, 0.0) / sum * static_cast<double>(all);
+    ends_[i] = std::min(static_cast<uint64_t>(end + 0.5), all);
   }
-  ends_.back() = static_cast<double>(pixels_);
+  ends_.back() = all;
 }
 
-uint64_t SampleAllocation::End(size_t pixel, uint32_t pass) const {
-  if (pixel + 1 == pixels_) return pixels_;
-  // Multiples of the golden ratio: over passes, too, the samples of a pixel are near its rate.
-  const double sum = static_cast<double>(MixBits(stage_.seed) >> 11) * 0x1p-53 + 0.6180339887498949 * pass;
-  const double shift = sum - std::floor(sum);
-  return static_cast<uint64_t>(std::min(std::floor(ends_[pixel] + shift), static_cast<double>(pixels_)));
+// A multiple of a number near the golden section of `passes - 1` and prime to it: passes in a row are far apart.
+uint64_t SampleAllocation::Shift(uint32_t pass) const {
+  const uint64_t passes = stage_.passes - 1;
+  auto step = static_cast<uint64_t>(0.6180339887498949 * static_cast<double>(passes) + 0.5);
+  while (std::gcd(step, passes) != 1) ++step;
+  return (MixBits(stage_.seed) % passes + (pass - 1) % passes * step) % passes;
 }
 
 size_t SampleAllocation::PixelOf(uint64_t slot, uint32_t pass) const {
@@ -156,7 +210,7 @@ size_t SampleAllocation::PixelOf(uint64_t slot, uint32_t pass) const {
   size_t low = 0, high = pixels_ - 1;
   while (low < high) {
     const size_t middle = (low + high) / 2;
-    if (End(middle, pass) > slot) {
+    if (Before(middle + 1, pass) > slot) {
       high = middle;
     } else {
       low = middle + 1;

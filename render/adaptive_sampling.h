@@ -3,7 +3,7 @@
 // Passes are grouped in stages. The first has kFirstStage passes and is uniform; each later one is as long as all
 // before it. When a stage begins, every pixel is given a rate, in samples per pass, by what the stages before it have
 // measured; the first pass of a stage has one sample in each pixel, the others follow the rates. A pass always has as
-// many samples as pixels, and the same light paths as without rates.
+// many samples, and light paths, as pixels.
 //
 // A stage has random numbers of its own. What it adds to a pixel has therefore the expectation of the pixel whatever
 // came before it, and because the film weights stages by their passes (film/film.h), the picture is unbiased.
@@ -38,21 +38,29 @@ class SampleAllocation {
   SampleAllocation(const SampleStage& stage, const Film& film, const AdaptiveSettings& settings);
 
   const SampleStage& Stage() const { return stage_; }
-  // Samples of a pixel in a pass. Pixels: indices into the crop, row by row; passes: from the first of the stage.
+  // Samples of a pass in the pixels before this one. Pixels: indices into the crop, row by row; passes: from the first
+  // of the stage.
+  uint64_t Before(size_t pixel, uint32_t pass) const {
+    if (ends_.empty() || pass == 0) return pixel;
+    if (pixel == 0) return 0;
+    const uint64_t passes = stage_.passes - 1, shift = Shift(pass);
+    return (ends_[pixel - 1] + shift) / passes;
+  }
   uint32_t Count(size_t pixel, uint32_t pass) const {
-    if (ends_.empty() || pass == 0) return 1;
-    return static_cast<uint32_t>(End(pixel, pass) - (pixel > 0 ? End(pixel - 1, pass) : 0));
+    return static_cast<uint32_t>(Before(pixel + 1, pass) - Before(pixel, pass));
   }
   // The pixel that sample `slot` of a pass belongs to: samples are in the order of their pixels.
   size_t PixelOf(uint64_t slot, uint32_t pass) const;
 
  private:
-  // Number of samples of a pass in this pixel and all before it. Systematic sampling: one random number for the pass.
-  uint64_t End(size_t pixel, uint32_t pass) const;
+  uint64_t Shift(uint32_t pass) const;
 
   SampleStage stage_;
   size_t pixels_;
-  std::vector<double> ends_;  // sums of the rates; empty: all rates are 1
+  // Samples of all passes but the first, in this pixel and all before it; empty: one in each pixel and pass. Those of
+  // one pass are every (passes - 1)-th, beginning at another one in each pass: together they are all, and a pixel's are
+  // evenly distributed over the passes.
+  std::vector<uint64_t> ends_;
 };
 
 // The samples that each pixel should have in a stage, by what the ended stages of the film tell; one for each pixel and

@@ -290,7 +290,7 @@ class BothPaths {
   }
   // The first slot from `slot` on whose camera path is the first of its pixel: chunks share no pixel.
   uint64_t NextPixelFrom(uint64_t slot, uint32_t index) const;
-  // The index in the crop of a slot, which is a pixel of the full image; nullopt: outside.
+  // The index of a slot among those of the crop; nullopt: it is not one of them.
   std::optional<uint64_t> SlotInCrop(uint64_t slot) const;
   // The light paths of a sample of a pixel: none, or some. `index`: of the sample, becomes that of the light path.
   int LightPathsOf(int x, int y, uint32_t& index) const;
@@ -318,6 +318,7 @@ class BothPaths {
 };
 
 std::optional<uint64_t> BothPaths::SlotInCrop(uint64_t slot) const {
+  if (slot >= pass_.Pixels()) return std::nullopt;
   const auto width = static_cast<uint64_t>(pass_.settings.width);
   const int x = static_cast<int>(slot % width), y = static_cast<int>(slot / width);
   const PixelRect& crop = pass_.film.Crop();
@@ -351,28 +352,34 @@ int BothPaths::LightPathsOf(int x, int y, uint32_t& index) const {
   return moved % samples == 0 ? 1 : 0;
 }
 
-// The camera paths of a chunk of an adaptive film: the samples of one pixel after the other.
+// The samples of a chunk of an adaptive film: those of one pixel after the other.
 class BothPaths::AdaptivePixels {
  public:
-  AdaptivePixels(const Pass& pass, uint32_t index) : pass_(pass), index_(index), samplers_(pass) {}
+  // `isReplay`: the samples of the pass are in the film already, and are traced again for their photons.
+  AdaptivePixels(const Pass& pass, uint32_t index, bool isReplay)
+      : pass_(pass), stagePass_(index - pass.Offset()), isReplay_(isReplay), samplers_(pass) {}
   ~AdaptivePixels() { EndPixel(); }
   AdaptivePixels(const AdaptivePixels&) = delete;
 
-  // Begins the sample of a slot.
-  Sampler& Start(uint64_t slotInCrop) {
+  // Begins the sample of a slot of the crop.
+  Sampler& Start(uint64_t slot) {
     const PixelRect& crop = pass_.film.Crop();
-    const size_t pixel = pass_.allocation->PixelOf(slotInCrop, index_ - pass_.Offset());
+    const SampleAllocation& allocation = *pass_.allocation;
+    const size_t pixel = allocation.PixelOf(slot, stagePass_);
     if (pixel != pixel_) {
       EndPixel();
       pixel_ = pixel;
       x_ = crop.x0 + static_cast<int>(pixel % static_cast<size_t>(crop.Width()));
       y_ = crop.y0 + static_cast<int>(pixel / static_cast<size_t>(crop.Width()));
     }
-    number_ = pass_.film.Pixel(x_, y_).count + sums_.count;
+    number_ = pass_.film.Pixel(x_, y_).count + slot - allocation.Before(pixel, stagePass_);
+    if (isReplay_) number_ -= allocation.Count(pixel, stagePass_);
     return samplers_.Start(x_, y_, number_);
   }
   int X() const { return x_; }
   int Y() const { return y_; }
+  // Of the sample in the pixel and stage.
+  uint32_t Number() const { return static_cast<uint32_t>(number_); }
   bool IsInHalf() const { return AdaptiveSampler::IsInHalf(number_); }
   // Of the pixel in this pass.
   PixelSums& Sums() { return sums_; }
@@ -386,7 +393,8 @@ class BothPaths::AdaptivePixels {
   }
 
   const Pass& pass_;
-  uint32_t index_;
+  uint32_t stagePass_;
+  bool isReplay_;
   AdaptiveSampler samplers_;
   size_t pixel_ = std::numeric_limits<size_t>::max();
   int x_ = 0, y_ = 0;
@@ -394,6 +402,8 @@ class BothPaths::AdaptivePixels {
   PixelSums sums_;
 };
 
+// A slot is a pixel of the full image, or one of the light paths beyond them. In an adaptive film the slots of the crop
+// belong to other pixels, whose random numbers their paths have.
 void BothPaths::TraceChunk(size_t chunk, uint64_t begin, uint64_t end, uint32_t index, uint64_t seed, bool withCamera,
                            float passTime) {
   const RenderSettings& settings = pass_.settings;
@@ -405,18 +415,24 @@ void BothPaths::TraceChunk(size_t chunk, uint64_t begin, uint64_t end, uint32_t 
   LayerSample* layers = adder.StartLayers();
   Sampler ownSampler(settings.sampler, seed), lightSampler(settings.sampler, seed),
       moreSampler(settings.sampler, MixBits(seed + kMorePaths));
-  const uint32_t ofSampler = index - pass_.Offset();
   std::optional<AdaptivePixels> adaptive;
-  if (withCamera && pass_.allocation) adaptive.emplace(pass_, index);
+  if (pass_.allocation && (withCamera || seed == pass_.Seed())) adaptive.emplace(pass_, index, !withCamera);
   for (uint64_t i = begin; i < end; ++i) {
     const bool keepsPhotons = wanted_ && i < lightPaths_ && store_.HasRoom() && !(hasTimes_ && withCamera);
     if (!keepsPhotons && !withCamera) break;
     int x = static_cast<int>(i % width), y = static_cast<int>(i / width);
-    const std::optional<uint64_t> inCrop = withCamera ? SlotInCrop(i) : std::nullopt;
-    uint32_t lightIndex = ofSampler;
-    const int lightPaths = LightPathsOf(x, y, lightIndex);
-    ownSampler.StartPixelSample(x, y, ofSampler);
+    const std::optional<uint64_t> inCrop = withCamera || adaptive ? SlotInCrop(i) : std::nullopt;
+    const bool hasRay = withCamera && inCrop;
+    uint32_t number = index - pass_.Offset(), lightNumber = number;
+    const int lightPaths = LightPathsOf(x, y, lightNumber);
     Sampler& sampler = adaptive && inCrop ? adaptive->Start(*inCrop) : ownSampler;
+    if (adaptive && inCrop) {
+      x = adaptive->X();
+      y = adaptive->Y();
+      number = adaptive->Number();
+    } else {
+      ownSampler.StartPixelSample(x, y, number);
+    }
     const float time = hasTimes_ ? passTime : SampleTime(pass_.scene, sampler);
     SampleContext context{pass_.scene, sampler, time, counts_[chunk], layers};
     context.observer = recorder;
@@ -434,16 +450,14 @@ void BothPaths::TraceChunk(size_t chunk, uint64_t begin, uint64_t end, uint32_t 
       context.withOrigin = store_.WantsOrigins();
     };
     if (lightPaths > 0) startLightPath();
-    if (log2LightPaths_ < 0 || pass_.allocation) {
-      lightSampler.StartPixelSample(x, y, lightIndex);
+    if (log2LightPaths_ < 0 && !pass_.allocation) {
+      lightSampler.StartPixelSample(x, y, lightNumber);
       context.lightSampler = &lightSampler;
     }
-    if (!inCrop) {
+    if (!hasRay) {
       if (recorder) recorder->StartSample(x, y, 0);
       if (lightPaths > 0) pass_.integrator.Sample(nullptr, context);
     } else {
-      const int lightX = x, lightY = y;
-      if (adaptive) x = adaptive->X(), y = adaptive->Y();
       const PixelRay ray = MakePixelRay(pass_.scene, pass_.filter, x, y, time, sampler);
       if (recorder) recorder->StartSample(x, y, ray.camera.weight * settings.sensor.ImagingRatio() * ray.filterWeight);
       context.film = ray.film;
@@ -454,12 +468,11 @@ void BothPaths::TraceChunk(size_t chunk, uint64_t begin, uint64_t end, uint32_t 
       } else {
         adder.Add(x, y, IsInHalf(index), ray, radiance, pass_.film.Pixel(x, y));
       }
-      x = lightX, y = lightY;
     }
     for (int k = 1; k < lightPaths; ++k) {
       startLightPath();
       moreSampler.StartPixelSample(x, y,
-                                   ofSampler * static_cast<uint32_t>(lightPaths - 1) + static_cast<uint32_t>(k - 1));
+                                   number * static_cast<uint32_t>(lightPaths - 1) + static_cast<uint32_t>(k - 1));
       pass_.integrator.Sample(nullptr, context.With(moreSampler));
     }
   }

@@ -207,14 +207,7 @@ Color SppmIntegrator::Sample(const Ray* ray, const SampleContext& context) const
   if (context.photons) {
     thread_local LightPath path(false);
     PhotonRecorder recorder(context, settings_);
-    const auto trace = [&](const SampleContext& own) {
-      TraceLightPath(own, settings_.maxDepth, kLightDimensions, path, recorder, glowing_.get());
-    };
-    if (context.lightSampler) {
-      trace(context.With(*context.lightSampler));
-    } else {
-      trace(context);
-    }
+    TraceLightPath(context, settings_.maxDepth, kLightDimensions, path, recorder, glowing_.get());
   }
   if (!ray || !context.gather) return Color(0.0f);
   thread_local PhotonLookup lookup;

@@ -95,8 +95,7 @@ struct SampleContext {
   bool isForPhotonsAlone = false;       // only photons of the light path are wanted: it is not connected to the camera
   Point2 film{0.0f};                    // where the ray starts on the film, pixels
   // False if this sample has no light path (Log2LightPaths() < 0). The sampler of the light path and of its points on
-  // the lens, where it is not `sampler`: null, or one whose index counts light paths, or that of another pixel than the
-  // camera path's.
+  // the lens, whose index counts light paths; null: `sampler`.
   bool tracesLight = true;
   Sampler* lightSampler = nullptr;
   const OutputPlan* outputs = nullptr;  // of the layers of the film; null: it has none

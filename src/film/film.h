@@ -78,7 +78,7 @@ struct PixelStages {
   double independent = 0, shared = 0;
   double sumOfFourths = 0;  // Σ N⁴ · fourths / D⁴
   // Over the samples of all stages, as in PixelSums:
-  double valueSum[3] = {0, 0, 0}, squareSum[3] = {0, 0, 0};
+  double valueSum[3] = {0, 0, 0}, squareSum[3] = {0, 0, 0}, fourthSum = 0;
   uint64_t count = 0;
   double splatLuminance = 0, splatVariance = 0;  // of all splats when the last stage ended
 
@@ -144,11 +144,12 @@ class Film {
   void AddGroup(int x, int y, const PixelSums& pass) { groups_[Index(x, y)].Add(pass); }
   bool HasGroups() const { return !groups_.empty(); }
   // What the stages that have ended tell: passes, and of a pixel (an index into the crop, row by row) its stages, its
-  // luminance, the variance of the luminance of a sample, and that of all splats.
+  // luminance, the sums of squared deviations of the luminance of its samples and of their squares, and the variance of
+  // all splats.
   uint64_t EndedPasses() const { return endedPasses_; }
   const PixelStages& Stages(size_t pixel) const { return stages_[pixel]; }
   struct PixelStatistics {
-    double luminance = 0, sampleVariance = 0, splatVariance = 0;
+    double luminance = 0, squares = 0, fourths = 0, splatVariance = 0;
   };
   PixelStatistics StatisticsOf(size_t pixel) const;
 

@@ -24,7 +24,7 @@ uint64_t HalfOf(uint64_t n) {
 }  // namespace
 
 bool PixelStages::IsFinite() const {
-  return AllFinite(sum, 3) && AllFinite(valueSum, 3) && AllFinite(squareSum, 3) && std::isfinite(independent) &&
+  return AllFinite(sum, 3) && AllFinite(valueSum, 3) && AllFinite(squareSum, 3) && std::isfinite(fourthSum) && std::isfinite(independent) &&
          std::isfinite(shared) && std::isfinite(sumOfFourths) && std::isfinite(splatLuminance) &&
          std::isfinite(splatVariance);
 }
@@ -73,6 +73,7 @@ void Film::EndStage() {
       groups_[i].squares = 0;
     }
     stages.sumOfFourths += std::pow(scale, 4) * ended.sumOfFourths;
+    stages.fourthSum += ended.sumOfFourths;
     stages.count += ended.count;
     ended = PixelSums();
     NoteSplats(i);
@@ -135,10 +136,11 @@ Film::PixelStatistics Film::StatisticsOf(size_t pixel) const {
   for (int c = 0; c < 3; ++c) {
     const double weight = Color::kLuminance[c], mean = stages.valueSum[c] / n;
     statistics.luminance += weight * stages.sum[c] / static_cast<double>(endedPasses_);
-    if (n >= 2) deviation += weight * std::sqrt(std::max(0.0, stages.squareSum[c] / n - mean * mean) * n / (n - 1));
+    deviation += weight * std::sqrt(std::max(0.0, stages.squareSum[c] - n * mean * mean));
   }
   statistics.luminance += stages.splatLuminance;
-  statistics.sampleVariance = deviation * deviation;
+  statistics.squares = deviation * deviation;
+  statistics.fourths = stages.fourthSum;
   statistics.splatVariance = stages.splatVariance;
   return statistics;
 }
@@ -170,6 +172,7 @@ void Film::AddStages(const Film& other) {
     to.independent += from.independent;
     to.shared += from.shared;
     to.sumOfFourths += from.sumOfFourths;
+    to.fourthSum += from.fourthSum;
     to.count += from.count;
   }
   for (size_t i = 0; i < groups_.size(); ++i) {

@@ -14,8 +14,9 @@ struct Mode {
   bool directFromPhotons = false;       // sppm
   bool guides = false;                  // photons
   bool learns = false;                  // the selection of lights
+  bool isAdaptive = false;              // pixels differ in their numbers of samples
   // Per pixel of a trial replica; at least that many in each. What is learned takes effect from pass to pass.
-  int Samples() const { return Adapts() ? 6 : 4; }
+  int Samples() const { return isAdaptive ? 8 : Adapts() ? 6 : 4; }
   bool Adapts() const { return guides || learns; }
 
   bool GathersPhotons() const {
@@ -30,17 +31,23 @@ struct Mode {
     settings.values.Set("direct-photons", directFromPhotons);
     settings.values.Set("learn-lights", learns);
     settings.values.Set("guide-photons", guides);
+    settings.adaptive.reset();
+    if (isAdaptive) settings.adaptive.emplace();
   }
 };
 
 inline const std::vector<Mode>& Modes() {
   static const std::vector<Mode> modes = {
-      {.name = "path, learning", .integrator = "path", .learns = true},
+      {.name = "path, learning, adaptive", .integrator = "path", .learns = true, .isAdaptive = true},
       {.name = "light", .integrator = "light"},
       {.name = "bdpt", .integrator = "bdpt"},
-      {.name = "bdpt, learning", .integrator = "bdpt", .learns = true},
+      {.name = "bdpt, learning, adaptive", .integrator = "bdpt", .learns = true, .isAdaptive = true},
       {.name = "vcm", .integrator = "vcm"},
-      {.name = "vcm, guided, learning", .integrator = "vcm", .guides = true, .learns = true},
+      {.name = "vcm, guided, learning, adaptive",
+       .integrator = "vcm",
+       .guides = true,
+       .learns = true,
+       .isAdaptive = true},
       {.name = "vcm --no-connect", .integrator = "vcm", .connects = false},
       {.name = "vcm --no-connect, guided, learning",
        .integrator = "vcm",
@@ -48,7 +55,11 @@ inline const std::vector<Mode>& Modes() {
        .guides = true,
        .learns = true},
       {.name = "sppm", .integrator = "sppm"},
-      {.name = "sppm, guided, learning", .integrator = "sppm", .guides = true, .learns = true},
+      {.name = "sppm, guided, learning, adaptive",
+       .integrator = "sppm",
+       .guides = true,
+       .learns = true,
+       .isAdaptive = true},
       {.name = "sppm --direct-photons", .integrator = "sppm", .directFromPhotons = true},
       {.name = "sppm --direct-photons, guided", .integrator = "sppm", .directFromPhotons = true, .guides = true},
   };

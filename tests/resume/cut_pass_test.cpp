@@ -63,11 +63,12 @@ class StopAfter {
 
 class CutPass : public Resume {
  protected:
-  BuiltScene Build(const std::string& integrator, bool learns, int resolution = 48) const {
+  BuiltScene Build(const std::string& integrator, bool learns, int resolution = 48, bool isAdaptive = false) const {
     Diagnostics diagnostics(Diagnostics::Mode::Collect);
     RenderOverrides overrides;
     overrides.integrator = integrator;
     overrides.values["learn-lights"] = learns;
+    if (isAdaptive) overrides.adaptive.emplace();
     overrides.width = resolution;
     overrides.height = resolution;
     return BuildScene(ReadScene(folder_ / "scene.pbrt", diagnostics), overrides, true, diagnostics);
@@ -130,6 +131,10 @@ TEST_F(CutPass, LeavesNoTrace) {
     }
   }
   cuts += Check(Build("bdpt", false, 24), true, random);
+  for (const char* integrator : {"path", "sppm", "vcm"}) {
+    SCOPED_TRACE(std::string(integrator) + ", adaptive");
+    cuts += Check(Build(integrator, true, 48, true), false, random);
+  }
   EXPECT_GT(cuts, 50);
   std::printf("[   info   ] %d passes cut short\n", cuts);
 }

@@ -48,7 +48,8 @@ TEST_F(Merge, HasTheBytesOfOneRenderWithPhotonsThatAreNotAimed) {
 
 // Each part learns for itself: another estimate of the same picture.
 TEST_F(Merge, PartsThatLearnAgreeWithOneRender) {
-  for (const char* settings : {"--integrator vcm", "--integrator path --learn-lights"}) {
+  for (const char* settings : {"--integrator vcm", "--integrator path --learn-lights", "--integrator path --adaptive",
+                               "--integrator bdpt --adaptive", "--integrator vcm --adaptive"}) {
     const std::string options = std::string("--spp 192 --resolution 24x16 ") + settings;
     Do("merge --quiet -o merged.exr " + RenderParts(options, 3));
     Do("render scene.pbrt --quiet -o whole.exr --seed 11 " + options);

@@ -54,6 +54,17 @@ TEST_P(Threads, OneToFourGiveTheSameBytes) {
       ++pictures;
     }
   }
+  // Beyond the first stage, and in the middle of the next.
+  for (const char* integrator : {"path", "sppm", "vcm"}) {
+    RenderOverrides overrides;
+    overrides.integrator = integrator;
+    overrides.width = 40;
+    overrides.height = 24;
+    overrides.adaptive.emplace();
+    const BuiltScene built = BuildScene(description, overrides, true, diagnostics);
+    EXPECT_EQ(RenderBuilt(built, 7, 3).image.data, RenderBuilt(built, 7, 1).image.data) << integrator << ", adaptive";
+    ++pictures;
+  }
   std::printf("[   info   ] %s: %d pictures\n", GetParam().c_str(), pictures);
 }
 
