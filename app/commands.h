@@ -100,6 +100,17 @@ struct MixOptions {
   bool quiet = false;
 };
 
+struct DeskOptions {
+  std::filesystem::path scene;
+  PluginOptions plugins;
+  RenderOverrides overrides;
+  int port = 0;     // 0: any that is free
+  int threads = 0;  // 0: all
+  bool quiet = false;
+  bool strict = false;
+  bool robust = true;
+};
+
 struct PngOptions {
   std::filesystem::path input, output;  // output empty: beside the input, with the extension .png
   float exposure = 0;                   // stops
@@ -128,6 +139,7 @@ int RunCompare(const CompareOptions& options);
 int RunPlan(const PlanOptions& options);
 int RunDiff(const DiffOptions& options);
 int RunMix(const MixOptions& options);
+int RunDesk(const DeskOptions& options);
 int RunDenoise(const DenoiseOptions& options);
 int RunPng(const PngOptions& options);
 int RunLights(const LightsOptions& options);
