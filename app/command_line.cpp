@@ -173,7 +173,7 @@ std::string KnownPixelLayers() {
 
 struct RenderCommand {
   RenderOptions options;
-  std::string time, resolution, checkpoint, preview, shard;
+  std::string time, resolution, checkpoint, preview, shard, display;
   bool fast = false;
 
   void Define(CLI::App& app) {
@@ -203,6 +203,10 @@ struct RenderCommand {
            "Write the picture so far as a PNG, OUT.png, this often: 2s, 1m; and show it in the terminal if that "
            "has 24-bit colours (COLORTERM=truecolor)")
         ->type_name("DURATION");
+    app.add_option("--display", display,
+                   "Show the picture so far in the viewer tev, or another that speaks its protocol, with its layers of "
+                   "light; tev listens at 127.0.0.1:14158")
+        ->type_name("HOST:PORT");
     app.add_flag("--resume", options.resume,
                  "Go on where OUT.checkpoint ends, if there is one, and write more of them (every minute)");
     app.add_option("--shard", shard,
@@ -237,6 +241,7 @@ struct RenderCommand {
     if (options.resume) options.checkpointSeconds = kCheckpointSeconds;
     if (!checkpoint.empty()) options.checkpointSeconds = ParseDuration("--checkpoint", checkpoint);
     if (!preview.empty()) options.previewSeconds = ParseDuration("--preview", preview);
+    if (!display.empty()) options.display = ParseNetworkPlace("--display", display);
     if (!shard.empty()) options.shard = ParseShard(shard);
     if (!resolution.empty()) ParseResolution(resolution, options.overrides);
     options.robust = !fast;

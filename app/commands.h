@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/network_place.h"
 #include "render/build/plugins.h"
 #include "render/settings/render_settings.h"
 
@@ -30,6 +31,7 @@ struct RenderOptions {
   bool autoLayers = false;                  // layers of what auto decided
   std::optional<double> checkpointSeconds;  // --checkpoint
   std::optional<double> previewSeconds;     // --preview
+  std::optional<NetworkPlace> display;      // --display
   bool resume = false;
   std::optional<std::pair<int, int>> shard;  // which of how many, from 1
   bool quiet = false;
