@@ -1,6 +1,7 @@
 // The command: reads the scene, serves the page until it is interrupted.
 #include <malloc.h>
 
+#include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <limits>
@@ -58,13 +59,14 @@ void KeepMemory() {
 }
 
 // Serves until a signal comes.
-void ServeUntilInterrupted(HttpServer& server) {
-  const std::atomic<bool>& interrupted = FinishOnInterrupt();
+void ServeUntilInterrupted(HttpServer& server, const std::atomic<bool>& interrupted) {
   std::atomic<bool> hasEnded{false};
   std::thread watch([&] {
     constexpr auto kLook = std::chrono::milliseconds(50);
-    while (!interrupted.load() && !hasEnded.load()) std::this_thread::sleep_for(kLook);
-    server.Stop();
+    // Again, because a server that has not begun to serve does not stop.
+    for (; !hasEnded.load(); std::this_thread::sleep_for(kLook)) {
+      if (interrupted.load()) server.Stop();
+    }
   });
   server.Serve();
   hasEnded = true;
@@ -83,10 +85,11 @@ int RunDesk(const DeskOptions& options) {
   const int threads = options.threads > 0 ? options.threads : HardwareThreads();
   Desk desk(scene, options.overrides.samplesPerPixel.value_or(kOpenEnd), threads);
   HttpServer server(options.port, [&desk](const HttpRequest& request) { return desk.Answer(request); });
+  const std::atomic<bool>& interrupted = FinishOnInterrupt();
   std::printf("%s\n", server.Address().c_str());
   std::fflush(stdout);
   if (!options.quiet) std::fprintf(stderr, "the desk is at this address, for this machine alone; Ctrl-C ends it\n");
-  ServeUntilInterrupted(server);
+  ServeUntilInterrupted(server, interrupted);
   return kExitDone;
 }
 

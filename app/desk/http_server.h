@@ -32,7 +32,7 @@ class HttpServer {
   // Answers requests until Stop. On 127.0.0.1 only. A request for a path without the token is answered with 404; one
   // with the header Host of another place, or with the Origin of another page, with 403.
   void Serve();
-  // May be called by any thread.
+  // May be called by any thread. Without effect before Serve.
   void Stop();
 
  private:

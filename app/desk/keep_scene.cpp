@@ -43,6 +43,8 @@ std::vector<StatementChange> AllChanges(const EditableScene& scene, const std::v
       std::erase_if(change->parameters, [&](const Parameter& other) { return other.name == parameter.name; });
       change->parameters.push_back(parameter);
     }
+    std::sort(change->parameters.begin(), change->parameters.end(),
+              [](const Parameter& a, const Parameter& b) { return a.name < b.name; });
   }
   return changes;
 }
@@ -94,7 +96,7 @@ KeptFiles Keep(const EditableScene& scene, DeskSession& session, const std::vect
     AtomicFile file(copy.path);
     file.Write(copy.text.data(), copy.text.size());
     file.Commit();
-    kept.scenes.push_back(copy.path);
+    kept.scenes.push_back(fs::absolute(copy.path));
   }
   session.WithFilm([&](const BuiltScene& built, const Film& film, int samplesPerPixel) {
     WritePicture(copies.picture, built, film, samplesPerPixel, faders, factors);

@@ -137,7 +137,7 @@ const showPixel = latestOnly(async () => {
   try {
     const {value, interval} = await (await post('pixel', {factors: factors(), x, y})).json();
     const channels = ['R', 'G', 'B'].map((name, c) => `${name} ${digits(value[c])}` + (interval ? ` ± ${digits(interval[c])}` : ''));
-    const unknown = interval ? '' : ' (interval unknown while faders differ)';
+    const unknown = interval ? '' : ' (± unknown: faders differ)';
     $('pixel').textContent = `${x}, ${y}: ${channels.join('  ')}${unknown}`;
   } catch (error) {
     $('pixel').textContent = error.message;
@@ -278,6 +278,7 @@ function makeParameter(statement, parameter) {
     apply();
   };
   const markEdited = () => {
+    row.classList.toggle('given', parameter.isGiven);
     row.classList.toggle('edited', parameter.isEdited);
     reset.hidden = !parameter.isEdited;
   };
@@ -285,8 +286,9 @@ function makeParameter(statement, parameter) {
   reset.onclick = () => send('reset', {});
   fill();
   const help = [parameter.help, parameter.range && `range ${parameter.range}`, parameter.default && `default ${parameter.default}`];
-  row.append(element('span', {className: 'name', title: `${parameter.name}: ${help.filter(Boolean).join('; ')}`}, parameter.name), values,
-    element('span', {className: 'unit', title: parameter.unit}, parameter.unit), element('span', {}, reset), mistake);
+  const name = element('span', {className: 'name', title: help.filter(Boolean).join('; ')}, parameter.name);
+  if (parameter.unit) name.append(' ', element('span', {className: 'unit'}, parameter.unit));
+  row.append(name, values, element('span', {}, reset), mistake);
   markEdited();
   return row;
 }
@@ -339,8 +341,10 @@ function numberInputs(parameter, label, send) {
 }
 
 function makeLight(statement) {
-  const own = statement.parameters.filter((parameter) => !parameter.isCommon).map((parameter) => makeParameter(statement, parameter));
-  const common = statement.parameters.filter((parameter) => parameter.isCommon).map((parameter) => makeParameter(statement, parameter));
+  const isWorthShowing = (parameter) => parameter.control !== 'none' || (parameter.isGiven && parameter.name !== 'lightGroup');
+  const rowsOf = (isCommon) => statement.parameters.filter((parameter) => parameter.isCommon === isCommon && isWorthShowing(parameter))
+    .map((parameter) => makeParameter(statement, parameter));
+  const own = rowsOf(false), common = rowsOf(true);
   const count = statement.lights > 1 ? ` · ${statement.lights} lights` : '';
   const box = element('div', {className: 'light'},
     element('p', {className: 'place', title: statement.help}, `${statement.label === statement.type ? '' : `${statement.label} · `}${statement.type} · ${statement.place}${count}`), ...own);
@@ -409,7 +413,7 @@ $('keep').onclick = async () => {
   $('keep').disabled = false;
 };
 
-const percent = (v) => `${(100 * v).toPrecision(2)} %`;
+const percent = (v) => `${v < 1 ? (100 * v).toPrecision(2) : Math.round(100 * v)} %`;
 const duration = (s) => (s < 60 ? `${s.toFixed(1)} s` : `${Math.floor(s / 60)} min ${Math.round(s % 60)} s`);
 
 async function watch() {
