@@ -286,7 +286,9 @@ function makeParameter(statement, parameter) {
   reset.onclick = () => send('reset', {});
   fill();
   const help = [parameter.help, parameter.range && `range ${parameter.range}`, parameter.default && `default ${parameter.default}`];
-  const name = element('span', {className: 'name', title: help.filter(Boolean).join('; ')}, parameter.name);
+  const name = element('span', {className: 'name', title: help.filter(Boolean).join('; ')});
+  // Names may break behind their colons.
+  for (const part of parameter.name.split(/(?<=:)/)) name.append(part, element('wbr'));
   if (parameter.unit) name.append(' ', element('span', {className: 'unit'}, parameter.unit));
   row.append(name, values, element('span', {}, reset), mistake);
   markEdited();
@@ -385,6 +387,7 @@ $('pause').onclick = () => {
 function report(box, ...lines) {
   box.replaceChildren(...lines.map((line) => element('p', {}, line)));
   box.hidden = false;
+  box.scrollIntoView({block: 'nearest'});
 }
 
 $('set').onclick = async () => {
