@@ -11,6 +11,7 @@
 
 #include "base/stop.h"
 #include "render/analysis/unseen_samples.h"
+#include "render/progressive_render.h"
 #include "render/settings/integrator_choice.h"
 
 namespace lampyr {
@@ -38,39 +39,63 @@ void GiveWay() {
 
 DeskSession::DeskSession(std::shared_ptr<const BuiltScene> scene, int mostSamples, int threads)
     : mostSamples_(mostSamples), threads_(threads) {
-  (void)MakeIntegrator(scene->scene, scene->settings);  // what cannot be rendered is told now
-  thread_ = std::thread([this, first = std::move(scene)] { RunThread(first); });
+  auto run = std::make_shared<Run>();
+  run->scene = std::move(scene);
+  // What cannot be rendered is told now; the film is made by the thread.
+  run->integrator = MakeIntegrator(run->scene->scene, run->scene->settings);
+  const std::lock_guard lock(mutex_);
+  Start(std::move(run));
+  Recycle(nullptr);
 }
 
 DeskSession::~DeskSession() {
-  {
-    const std::lock_guard lock(mutex_);
-    isEnding_ = true;
-    RequestStop();
-  }
+  std::unique_lock lock(mutex_);
+  isEnding_ = true;
   changed_.notify_all();
-  thread_.join();
+  StopPass(lock);
+  lock.unlock();
+  run_->thread.join();
+}
+
+std::shared_ptr<DeskSession::Run> DeskSession::MakeRun(std::shared_ptr<const BuiltScene> scene) {
+  auto run = std::make_shared<Run>();
+  run->scene = std::move(scene);
+  const RenderSettings& settings = run->scene->settings;
+  run->integrator = MakeIntegrator(run->scene->scene, settings);
+  run->largestSample = LargestUnseenSample(run->scene->scene, settings);
+  if (spare_.valid()) run->film = spare_.get();
+  if (run->film && run->film->Layers() != run->scene->scene.outputs->Names()) run->film.reset();
+  return run;
+}
+
+// To be called under the lock.
+void DeskSession::Start(std::shared_ptr<Run> run) {
+  run->restart = ++state_.restart;
+  run->renderedSince = std::numeric_limits<double>::infinity();
+  state_.samplesPerPixel = 0;
+  state_.seconds = 0;
+  state_.relativeError = std::numeric_limits<double>::infinity();
+  state_.isDone = false;
+  run_ = std::move(run);
+  run_->thread = std::thread([this, started = run_] { RunThread(started); });
+  changed_.notify_all();
+}
+
+// Ends the pass that is under way, if there is one. What the thread does besides it may go on.
+void DeskSession::StopPass(std::unique_lock<std::mutex>& lock) {
+  run_->isStale = true;
+  changed_.notify_all();
+  if (!run_->isInPass) return;
+  RequestStop();
+  changed_.wait(lock, [this] { return !run_->isInPass; });
   WithdrawStop();
 }
 
-std::unique_ptr<DeskSession::Job> DeskSession::MakeJob(std::shared_ptr<const BuiltScene> scene) {
-  auto job = std::make_unique<Job>();
-  job->scene = std::move(scene);
-  const RenderSettings& settings = job->scene->settings;
-  job->integrator = MakeIntegrator(job->scene->scene, settings);
-  job->largestSample = LargestUnseenSample(job->scene->scene, settings);
-  const std::vector<std::string> layers = job->scene->scene.outputs->Names();
-  if (spare_.valid()) job->film = spare_.get();
-  if (!job->film || job->film->Layers() != layers)
-    job->film = std::make_unique<Film>(settings.width, settings.height, settings.crop, layers);
-  job->render =
-      std::make_unique<ProgressiveRender>(job->scene->scene, *job->integrator, settings, threads_, *job->film);
-  return job;
-}
-
-// Lets go of a job's memory, and makes an empty film for the next one, while others work.
-void DeskSession::Recycle(std::unique_ptr<Job> job) {
-  spare_ = std::async(std::launch::async, [old = std::move(job), scene = job_->scene]() mutable {
+// Lets go of the memory of a run, if there was one, and makes an empty film for the next one, while others work.
+void DeskSession::Recycle(std::shared_ptr<Run> run) {
+  spare_ = std::async(std::launch::async, [old = std::move(run), scene = run_->scene]() mutable {
+    GiveWay();
+    if (old) old->thread.join();
     old.reset();
     const RenderSettings& settings = scene->settings;
     return std::make_unique<Film>(settings.width, settings.height, settings.crop, scene->scene.outputs->Names());
@@ -79,13 +104,15 @@ void DeskSession::Recycle(std::unique_ptr<Job> job) {
 
 double DeskSession::Restart(std::shared_ptr<const BuiltScene> scene) {
   const DeskClock::time_point start = DeskClock::now();
-  std::unique_ptr<Job> job = MakeJob(std::move(scene));
+  std::shared_ptr<Run> next = MakeRun(std::move(scene));
   std::unique_lock lock(mutex_);
-  next_ = std::move(job);
-  hasBegun_ = false;
-  if (!isEnding_) RequestStop();
-  changed_.notify_all();
-  changed_.wait(lock, [this] { return hasBegun_ || isEnding_ || !state_.failure.empty(); });
+  StopPass(lock);
+  if (!state_.failure.empty()) throw Error(state_.failure);
+  std::shared_ptr<Run> old = run_;
+  Start(std::move(next));
+  Recycle(std::move(old));
+  const std::shared_ptr<Run> now = run_;
+  changed_.wait(lock, [&] { return now->isInPass || isEnding_ || !state_.failure.empty(); });
   return SecondsSince(start);
 }
 
@@ -128,16 +155,19 @@ void DeskSession::WithFilm(const FilmWork& work) {
   done.get();
 }
 
-void DeskSession::RunThread(const std::shared_ptr<const BuiltScene>& first) {
+void DeskSession::FailErrands() {
+  for (Errand* errand : errands_)
+    errand->done.set_exception(std::make_exception_ptr(Error("nothing is rendered any more")));
+  errands_.clear();
+}
+
+void DeskSession::RunThread(const std::shared_ptr<Run>& run) {
   GiveWay();
   std::string failure;
   try {
-    std::unique_ptr<Job> job = MakeJob(first);
-    {
-      const std::lock_guard lock(mutex_);
-      if (!next_) next_ = std::move(job);
-    }
-    Render();
+    Render(*run);
+  } catch (const Stopped&) {
+    // before its first pass
   } catch (const Error& error) {
     failure = error.what();
   } catch (const std::exception& error) {
@@ -146,48 +176,52 @@ void DeskSession::RunThread(const std::shared_ptr<const BuiltScene>& first) {
     failure = "error: a plugin threw something that is no exception";
   }
   const std::lock_guard lock(mutex_);
-  state_.failure = failure;
-  for (Errand* errand : errands_)
-    errand->done.set_exception(std::make_exception_ptr(Error("nothing is rendered any more")));
-  errands_.clear();
+  run->isInPass = false;
+  if (!failure.empty()) state_.failure = failure;
+  if (!failure.empty() || isEnding_) FailErrands();
   // What a pass that did not end refers to stays until the process ends.
-  if (HasGivenUpWork()) (void)job_.release();
+  if (HasGivenUpWork()) (void)new std::shared_ptr<Run>(run);
   changed_.notify_all();
 }
 
-bool DeskSession::IsDone() const {
-  return job_->render->Outcome().samplesPerPixel >= mostSamples_;
+void DeskSession::Render(Run& run) {
+  const RenderSettings& settings = run.scene->settings;
+  if (!run.film) {
+    run.film =
+        std::make_unique<Film>(settings.width, settings.height, settings.crop, run.scene->scene.outputs->Names());
+    run.largestSample = LargestUnseenSample(run.scene->scene, settings);
+  }
+  run.render = std::make_unique<AbandonableRender>(run.scene->scene, *run.integrator, settings, threads_, *run.film);
+  while (true) {
+    RunErrands(run);
+    const bool waits = Waits(run);
+    {
+      const std::lock_guard lock(mutex_);
+      if (run.isStale || isEnding_) return;
+    }
+    if (!waits) AddPass(run);
+  }
 }
 
-// Takes the next job, if there is one. False: the session ends.
-bool DeskSession::TakeNext() {
-  const std::lock_guard lock(mutex_);
-  if (isEnding_) return false;
-  if (!next_) return true;
-  WithdrawStop();
-  std::unique_ptr<Job> old = std::exchange(job_, std::move(next_));
-  ++state_.restart;
-  state_.samplesPerPixel = 0;
-  state_.seconds = 0;
-  state_.relativeError = std::numeric_limits<double>::infinity();
-  state_.isDone = false;
-  renderedSince_ = std::numeric_limits<double>::infinity();
-  Recycle(std::move(old));
-  hasBegun_ = true;
-  changed_.notify_all();
+// Waits while there is nothing to render. True: there was something else to do.
+bool DeskSession::Waits(Run& run) {
+  std::unique_lock lock(mutex_);
+  const auto rests = [&] { return IsDone(run) || (isPaused_ && run.render->SamplesPerPixel() > 0); };
+  if (!rests()) return false;
+  changed_.wait(lock, [&] { return run.isStale || isEnding_ || !errands_.empty() || !rests(); });
   return true;
 }
 
-void DeskSession::RunErrands() {
+void DeskSession::RunErrands(Run& run) {
   std::vector<Errand*> errands;
   {
     const std::lock_guard lock(mutex_);
-    if (job_->render->Outcome().samplesPerPixel == 0) return;
+    if (run.isStale || run.render->SamplesPerPixel() == 0) return;
     errands.swap(errands_);
   }
   for (Errand* errand : errands) {
     try {
-      (*errand->work)(*job_->scene, job_->render->Picture(), job_->render->Outcome().samplesPerPixel);
+      (*errand->work)(*run.scene, run.render->Picture(), run.render->SamplesPerPixel());
       errand->done.set_value();
     } catch (...) {
       errand->done.set_exception(std::current_exception());
@@ -195,54 +229,48 @@ void DeskSession::RunErrands() {
   }
 }
 
-void DeskSession::AddPass() {
+void DeskSession::AddPass(Run& run) {
   const DeskClock::time_point start = DeskClock::now();
-  ProgressiveRender& render = *job_->render;
-  if (!render.AddSamples(render.NextPassSamples(mostSamples_, kLongestPass))) {
-    if (HasGivenUpWork()) throw Error("a pass did not end when it was asked to: start the desk again");
-    return;
+  {
+    const std::lock_guard lock(mutex_);
+    if (run.isStale || isEnding_) return;
+    run.isInPass = true;
+    changed_.notify_all();
   }
-  renderedSince_ += SecondsSince(start);
-  if (IsDone() || renderedSince_ * kPictureShare >= pictureSeconds_) TakePicture();
+  const bool isWhole = run.render->AddSamples(run.render->NextPassSamples(mostSamples_, kLongestPass));
+  if (!isWhole && HasGivenUpWork()) throw Error("a pass did not end when it was asked to: start the desk again");
+  {
+    const std::lock_guard lock(mutex_);
+    run.isInPass = false;
+    changed_.notify_all();
+    if (run.isStale || isEnding_ || !isWhole) return;
+  }
+  run.renderedSince += SecondsSince(start);
+  if (IsDone(run) || run.renderedSince * kPictureShare >= run.pictureSeconds) TakePicture(run);
 }
 
-void DeskSession::TakePicture() {
+void DeskSession::TakePicture(Run& run) {
   const DeskClock::time_point start = DeskClock::now();
-  const ProgressiveRender& render = *job_->render;
+  const AbandonableRender& render = *run.render;
   auto picture = std::make_shared<DeskPicture>();
-  picture->planes = PlanesOf(render.Picture().Develop(), job_->scene->scene.lighting->Groups().Layers(), threads_);
-  picture->samplesPerPixel = render.Outcome().samplesPerPixel;
-  picture->seconds = render.Outcome().seconds;
-  picture->relativeError = render.DroppedFraction() > kMostDropped
-                               ? std::numeric_limits<double>::infinity()
-                               : render.Picture().RelativeError(job_->largestSample);
-  pictureSeconds_ = SecondsSince(start);
-  renderedSince_ = 0;
+  picture->planes = PlanesOf(render.Picture().Develop(), run.scene->scene.lighting->Groups().Layers(), threads_);
+  picture->samplesPerPixel = render.SamplesPerPixel();
+  picture->seconds = render.Seconds();
+  picture->relativeError = render.DroppedFraction() > kMostDropped ? std::numeric_limits<double>::infinity()
+                                                                   : render.Picture().RelativeError(run.largestSample);
+  picture->restart = run.restart;
+  run.pictureSeconds = SecondsSince(start);
+  run.renderedSince = 0;
   const std::lock_guard lock(mutex_);
+  if (run.isStale) return;
   picture->number = (picture_ ? picture_->number : 0) + 1;
-  picture->restart = state_.restart;
   state_.picture = picture->number;
   state_.samplesPerPixel = picture->samplesPerPixel;
   state_.seconds = picture->seconds;
   state_.relativeError = picture->relativeError;
-  state_.isDone = IsDone();
+  state_.isDone = IsDone(run);
   picture_ = std::move(picture);
   changed_.notify_all();
-}
-
-void DeskSession::Render() {
-  while (TakeNext()) {
-    RunErrands();
-    {
-      std::unique_lock lock(mutex_);
-      const bool waits = IsDone() || (isPaused_ && job_->render->Outcome().samplesPerPixel > 0);
-      if (waits) {
-        changed_.wait(lock, [this] { return isEnding_ || next_ || !errands_.empty() || !(isPaused_ || IsDone()); });
-        if (isEnding_ || next_ || !errands_.empty()) continue;
-      }
-    }
-    AddPass();
-  }
 }
 
 }  // namespace lampyr

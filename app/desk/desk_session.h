@@ -15,8 +15,8 @@
 #include "app/desk/desk_mixing.h"
 #include "film/film.h"
 #include "integrators/walk/integrator.h"
+#include "render/abandonable_render.h"
 #include "render/build/scene_builder.h"
-#include "render/progressive_render.h"
 
 namespace lampyr {
 
@@ -65,44 +65,48 @@ class DeskSession {
   int Threads() const { return threads_; }
 
  private:
-  // The render of one scene.
-  struct Job {
+  // The render of one scene, in a thread of its own. What is said of `mutex_` is guarded by it.
+  struct Run {
     std::shared_ptr<const BuiltScene> scene;
     std::unique_ptr<Integrator> integrator;
     std::unique_ptr<Film> film;
-    std::unique_ptr<ProgressiveRender> render;
+    std::unique_ptr<AbandonableRender> render;
     double largestSample = 0;
+    uint64_t restart = 0;
+    bool isStale = false;       // mutex_: another scene is rendered; it ends
+    bool isInPass = false;      // mutex_
+    double pictureSeconds = 0;  // that the last picture took to be made
+    double renderedSince = 0;   // seconds of rendering since then
+    std::thread thread;
   };
   struct Errand {
     const FilmWork* work = nullptr;
     std::promise<void> done;
   };
 
-  std::unique_ptr<Job> MakeJob(std::shared_ptr<const BuiltScene> scene);
-  void Recycle(std::unique_ptr<Job> job);
-  void RunThread(const std::shared_ptr<const BuiltScene>& first);
-  void Render();
-  bool TakeNext();
-  void RunErrands();
-  void AddPass();
-  void TakePicture();
-  bool IsDone() const;
+  std::shared_ptr<Run> MakeRun(std::shared_ptr<const BuiltScene> scene);
+  void Start(std::shared_ptr<Run> run);
+  void StopPass(std::unique_lock<std::mutex>& lock);
+  void Recycle(std::shared_ptr<Run> run);
+  void RunThread(const std::shared_ptr<Run>& run);
+  void Render(Run& run);
+  bool Waits(Run& run);
+  void RunErrands(Run& run);
+  void AddPass(Run& run);
+  void TakePicture(Run& run);
+  bool IsDone(const Run& run) const { return run.render->SamplesPerPixel() >= mostSamples_; }
+  void FailErrands();
 
   const int mostSamples_, threads_;
   mutable std::mutex mutex_;
   mutable std::condition_variable changed_;
-  std::unique_ptr<Job> next_;  // to be rendered; null: goes on
+  std::shared_ptr<Run> run_;
   std::vector<Errand*> errands_;
-  bool isEnding_ = false, isPaused_ = false, hasBegun_ = false;
+  bool isEnding_ = false, isPaused_ = false;
   DeskState state_;
   std::shared_ptr<const DeskPicture> picture_;
   std::future<std::unique_ptr<Film>>
-      spare_;  // an empty film for the next job: to make one takes longer than a restart may
-  // Of the thread that renders.
-  std::unique_ptr<Job> job_;
-  double pictureSeconds_ = 0;  // that the last picture took to be made
-  double renderedSince_ = 0;   // seconds of rendering since then
-  std::thread thread_;
+      spare_;  // an empty film for the next run: to make one takes longer than a restart may
 };
 
 }  // namespace lampyr
