@@ -35,13 +35,14 @@ EditableScene ReadEditableScene(const DeskOptions& options, Diagnostics& diagnos
   }
 }
 
-// The film of the render and that of the next one; the picture, as it is developed, mixed, and the one before it.
+// The films of the render, of the one before and of the next one; the picture, as it is developed, mixed, and the one
+// before it.
 void CheckDeskMemory(const BuiltScene& scene) {
   const RenderSettings& settings = scene.settings;
   const size_t layers = scene.scene.outputs->Layers().size();
   const uint64_t pixels = static_cast<uint64_t>(settings.crop.Width()) * static_cast<uint64_t>(settings.crop.Height());
   const uint64_t planes = (3 * layers + 6) * sizeof(float);
-  const uint64_t needed = pixels * (2 * Film::BytesPerPixel(layers, true) + 3 * planes);
+  const uint64_t needed = pixels * (3 * Film::BytesPerPixel(layers, true) + 3 * planes);
   const uint64_t available = AvailableMemory();
   if (needed <= available) return;
   throw UsageError("a picture of " + std::to_string(settings.crop.Width()) + "×" +

@@ -91,14 +91,18 @@ void DeskSession::StopPass(std::unique_lock<std::mutex>& lock) {
   WithdrawStop();
 }
 
-// Lets go of the memory of a run, if there was one, and makes an empty film for the next one, while others work.
+// Makes an empty film for the next run, and lets go of the memory of the one before, if there was one, while others
+// work.
 void DeskSession::Recycle(std::shared_ptr<Run> run) {
-  spare_ = std::async(std::launch::async, [old = std::move(run), scene = run_->scene]() mutable {
-    GiveWay();
-    if (old) old->thread.join();
-    old.reset();
+  spare_ = std::async(std::launch::async, [scene = run_->scene] {
     const RenderSettings& settings = scene->settings;
     return std::make_unique<Film>(settings.width, settings.height, settings.crop, scene->scene.outputs->Names());
+  });
+  if (!run) return;
+  ending_ = std::async(std::launch::async, [old = std::move(run)]() mutable {
+    GiveWay();
+    old->thread.join();
+    old.reset();
   });
 }
 

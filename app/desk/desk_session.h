@@ -105,8 +105,9 @@ class DeskSession {
   bool isEnding_ = false, isPaused_ = false;
   DeskState state_;
   std::shared_ptr<const DeskPicture> picture_;
-  std::future<std::unique_ptr<Film>>
-      spare_;  // an empty film for the next run: to make one takes longer than a restart may
+  // An empty film for the next run, because to make one may take longer than a restart may.
+  std::future<std::unique_ptr<Film>> spare_;
+  std::future<void> ending_;  // of the run before
 };
 
 }  // namespace lampyr

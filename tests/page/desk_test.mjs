@@ -93,7 +93,9 @@ deskTest('mute, solo, tint and exposure act on the picture', {}, async (page) =>
     await settled(page, before);
     return meanOf(page);
   };
-  const all = await meanOf(page);
+  await page.waitForFunction(() => document.getElementById('progress').textContent.endsWith('paused'));
+  await page.waitForTimeout(1500);  // the pass that was under way
+  const all = await act(() => page.locator('#exposure').fill('0.05').then(() => page.locator('#exposure').fill('0')));
   const muted = await act(() => page.getByLabel('Mute: lamp 1', {exact: true}).click());
   assert.ok(muted[0] < all[0]);
   const soloed = await act(() => page.getByLabel('Solo: lamp 2', {exact: true}).click());
