@@ -205,10 +205,10 @@ class Desk::Requests {
     return ReplyWith({{"value", values(pixel.value, 1)}, {"interval", interval}});
   }
 
-  // Renders what the scene has become.
-  HttpReply Restarted() const {
+  // Renders what the scene has become. `edited`: a statement that is told as it is now; null: none.
+  HttpReply Restarted(const Json& edited = nullptr) const {
     const double seconds = desk_.session_.Restart(desk_.scene_.Built());
-    return ReplyWith({{"seconds", seconds}, {"restart", desk_.session_.State().restart}});
+    return ReplyWith({{"seconds", seconds}, {"restart", desk_.session_.State().restart}, {"statement", edited}});
   }
 
   HttpReply Edit() const {
@@ -219,13 +219,14 @@ class Desk::Requests {
     const Parameter parameter =
         EditedParameter(desk_.scene_, statement, body_.at("parameter").get<std::string>(), numbers, text);
     desk_.scene_.Edit({{statement, {parameter}}});
-    return Restarted();
+    return Restarted(StatementJson(desk_.scene_, statement));
   }
 
   HttpReply Reset() const {
     const std::lock_guard lock(desk_.editing_);
-    desk_.scene_.Reset(StatementIn(body_, desk_.scene_), body_.at("parameter").get<std::string>());
-    return Restarted();
+    const size_t statement = StatementIn(body_, desk_.scene_);
+    desk_.scene_.Reset(statement, body_.at("parameter").get<std::string>());
+    return Restarted(StatementJson(desk_.scene_, statement));
   }
 
   HttpReply Set() const {

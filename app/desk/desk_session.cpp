@@ -99,8 +99,10 @@ void DeskSession::Recycle(std::shared_ptr<Run> run) {
     return std::make_unique<Film>(settings.width, settings.height, settings.crop, scene->scene.outputs->Names());
   });
   if (!run) return;
-  ending_ = std::async(std::launch::async, [old = std::move(run)]() mutable {
+  // Not waited for here: the threads that end may want the lock.
+  ending_ = std::async(std::launch::async, [before = std::move(ending_), old = std::move(run)]() mutable {
     GiveWay();
+    if (before.valid()) before.wait();
     old->thread.join();
     old.reset();
   });

@@ -60,13 +60,12 @@ function factorOf(fader) {
 }
 const factors = () => desk.faders.map(factorOf);
 
-// When the control that is not yet seen was moved, milliseconds; for the page's own figures.
+// When the control whose effect is not yet seen was moved, milliseconds; figures of the page itself, for its tests.
 let movedAt = 0;
-const timings = [];
-window.lampyrDesk = {timings, restarts: [], desk};
+window.lampyrDesk = {moves: 0, timings: [], restarts: []};
 
 const showPicture = latestOnly(async () => {
-  const moved = movedAt;
+  const moved = movedAt, {moves, timings} = window.lampyrDesk;
   movedAt = 0;
   const reply = await post('picture', {factors: factors(), exposure: desk.exposure, clip: desk.clip});
   if (reply.status === 204) return;
@@ -83,11 +82,13 @@ const showPicture = latestOnly(async () => {
   canvas.dataset.picture = number;
   canvas.dataset.restart = restart;
   if (moved) timings.push(performance.now() - moved);
+  canvas.dataset.moves = moves;
   canvas.dataset.shown = Number(canvas.dataset.shown ?? 0) + 1;
   showPixel();
 });
 
 function moved() {
+  ++window.lampyrDesk.moves;
   if (!movedAt) movedAt = performance.now();
   showPicture();
 }
@@ -261,11 +262,11 @@ function makeParameter(statement, parameter) {
   const apply = latestOnly(async () => {
     const request = wanted, asked = performance.now();
     try {
-      const {seconds} = await (await post(request.path, {statement: statement.statement, parameter: parameter.name, ...request.values})).json();
-      window.lampyrDesk.restarts.push({seconds, milliseconds: performance.now() - asked});
+      const reply = await (await post(request.path, {statement: statement.statement, parameter: parameter.name, ...request.values})).json();
+      window.lampyrDesk.restarts.push({seconds: reply.seconds, milliseconds: performance.now() - asked});
       mistake.hidden = true;
-      const latest = (await loadLights()).statements[statement.statement].parameters.find((other) => other.name === parameter.name);
-      Object.assign(parameter, latest);
+      desk.statements[statement.statement] = reply.statement;
+      Object.assign(parameter, reply.statement.parameters.find((other) => other.name === parameter.name));
       if (request.path === 'reset') fill();
       markEdited();
     } catch (error) {
@@ -318,15 +319,25 @@ function inputsFor(statement, parameter, send) {
 function numberInputs(parameter, label, send) {
   const fields = parameter.numbers.map((number, i) => element('input', {type: 'number', step: parameter.control === 'integer' ? 1 : 'any',
     value: shortest(number), ariaLabel: parameter.numbers.length > 1 ? `${label}, ${i + 1}` : label}));
-  const read = () => fields.map((field) => (field.value === '' ? null : Number(field.value)));
-  const sendAll = () => send({numbers: read()});
-  for (const field of fields) field.onchange = sendAll;
+  // Those that are not typed stay as they are, with all their digits.
+  const numbers = [...parameter.numbers];
+  const sendAll = () => send({numbers});
+  const take = (i) => { numbers[i] = fields[i].value === '' ? null : Number(fields[i].value); };
+  fields.forEach((field, i) => {
+    field.onchange = () => {
+      take(i);
+      sendAll();
+    };
+  });
   const bounds = boundsOf(parameter.range);
   if (parameter.control === 'color') {
     const swatch = element('input', {type: 'color', value: toHex(parameter.numbers), ariaLabel: label});
     swatch.onchange = () => {
-      const color = fromHex(swatch.value), brightness = Math.max(1, ...read());
-      fields.forEach((field, i) => { field.value = shortest(color[i] * brightness); });
+      const color = fromHex(swatch.value), brightness = Math.max(1, ...numbers);
+      fields.forEach((field, i) => {
+        field.value = shortest(color[i] * brightness);
+        take(i);
+      });
       sendAll();
     };
     return [swatch, ...fields];
@@ -336,6 +347,7 @@ function numberInputs(parameter, label, send) {
     value: parameter.numbers[0], ariaLabel: `${label}, slider`});
   slider.oninput = () => {
     fields[0].value = shortest(Number(slider.value));
+    take(0);
     sendAll();
   };
   fields[0].addEventListener('input', () => { slider.value = fields[0].value; });
@@ -354,8 +366,19 @@ function makeLight(statement) {
   return box;
 }
 
+// Of many lights each is made when it is opened.
+function makeClosedLight(index) {
+  const statement = desk.statements[index];
+  const box = element('details', {className: 'closed'}, element('summary', {}, `${statement.label} · ${statement.place}`));
+  box.ontoggle = () => {
+    if (box.open && box.children.length === 1) box.append(makeLight(desk.statements[index]));
+  };
+  return box;
+}
+
 function showLights(box, statements) {
-  box.replaceChildren(...statements.map((index) => makeLight(desk.statements[index])));
+  const few = 3;
+  box.replaceChildren(...statements.map((index) => (statements.length > few ? makeClosedLight(index) : makeLight(desk.statements[index]))));
 }
 
 function makeFilter(statement) {
