@@ -267,14 +267,16 @@ TEST_F(Desk, MistakesAreToldAndChangeNothing) {
   ExpectSamePicture(ReadImage(kept.at("picture").get<std::string>()), Rendered("scene.pbrt"));
 }
 
-// Light groups are faders; what auto chooses is chosen anew, and photons and light paths know the edited light.
+// Light groups are faders; what auto chooses is chosen anew, photons and light paths know the edited light, and what is
+// learned between passes is what a render learns.
 TEST_F(Desk, WorksWithGroupsAndOtherIntegrators) {
   std::string grouped = Replaced(kScene, "\"point\"", "\"point\" \"string lightGroup\" \"key\"");
   grouped = Replaced(grouped, "\"spot\"", "\"spot\" \"string lightGroup\" \"key\"");
   WriteBytes(folder_ / "grouped.pbrt", grouped);
-  for (const std::string integrator : {"auto", "bdpt", "vcm"}) {
+  for (const std::string integrator :
+       {"auto --spp 4", "bdpt --spp 4", "vcm --spp 19", "sppm --spp 9", "path --learn-lights --spp 70"}) {
     SCOPED_TRACE(integrator);
-    const std::string options = "--spp 4 --seed 7 --integrator " + integrator;
+    const std::string options = "--seed 7 --integrator " + integrator;
     const DeskProcess desk(folder_.Path(), "grouped.pbrt --quiet " + options);
     const Json faders = desk.Get("lights").at("faders");
     ASSERT_EQ(faders.size(), 2u);
