@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdio>
 #include <limits>
+#include <memory>
 #include <thread>
 
 #include "app/command_line.h"
@@ -84,14 +85,15 @@ int RunDesk(const DeskOptions& options) {
   CheckDeskMemory(*scene.Built());
   constexpr int kOpenEnd = 1 << 20;
   const int threads = options.threads > 0 ? options.threads : HardwareThreads();
-  Desk desk(scene, options.overrides.samplesPerPixel.value_or(kOpenEnd), threads);
-  HttpServer server(options.port, [&desk](const HttpRequest& request) { return desk.Answer(request); });
+  auto desk = std::make_unique<Desk>(scene, options.overrides.samplesPerPixel.value_or(kOpenEnd), threads);
+  HttpServer server(options.port, [&desk](const HttpRequest& request) { return desk->Answer(request); });
   const std::atomic<bool>& interrupted = FinishOnInterrupt();
   std::printf("%s\n", server.Address().c_str());
   std::fflush(stdout);
   if (!options.quiet) std::fprintf(stderr, "the desk is at this address, for this machine alone; Ctrl-C ends it\n");
   ServeUntilInterrupted(server, interrupted);
-  return kExitDone;
+  desk.reset();
+  return FinishRendering([] { return kExitDone; });
 }
 
 }  // namespace lampyr

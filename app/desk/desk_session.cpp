@@ -118,7 +118,7 @@ double DeskSession::Restart(std::shared_ptr<const BuiltScene> scene) {
   Start(std::move(next));
   Recycle(std::move(old));
   const std::shared_ptr<Run> now = run_;
-  changed_.wait(lock, [&] { return now->isInPass || isEnding_ || !state_.failure.empty(); });
+  changed_.wait(lock, [&] { return now->hasBegun || isEnding_ || !state_.failure.empty(); });
   return SecondsSince(start);
 }
 
@@ -240,7 +240,7 @@ void DeskSession::AddPass(Run& run) {
   {
     const std::lock_guard lock(mutex_);
     if (run.isStale || isEnding_) return;
-    run.isInPass = true;
+    run.isInPass = run.hasBegun = true;
     changed_.notify_all();
   }
   const bool isWhole = run.render->AddSamples(run.render->NextPassSamples(mostSamples_, kLongestPass));

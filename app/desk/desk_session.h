@@ -75,6 +75,7 @@ class DeskSession {
     uint64_t restart = 0;
     bool isStale = false;       // mutex_: another scene is rendered; it ends
     bool isInPass = false;      // mutex_
+    bool hasBegun = false;      // mutex_: its first pass
     double pictureSeconds = 0;  // that the last picture took to be made
     double renderedSince = 0;   // seconds of rendering since then
     std::thread thread;
