@@ -144,7 +144,7 @@ const showPixel = latestOnly(async () => {
     $('pixel').textContent = error.message;
   }
 });
-canvas.addEventListener('pointermove', (event) => {
+for (const kind of ['pointermove', 'pointerdown']) canvas.addEventListener(kind, (event) => {
   const box = canvas.getBoundingClientRect();
   const at = (v, size) => Math.min(Math.max(Math.floor(v * size), 0), size - 1);
   pointed = {x: at((event.clientX - box.left) / box.width, desk.width), y: at((event.clientY - box.top) / box.height, desk.height)};
@@ -410,7 +410,6 @@ $('pause').onclick = () => {
 function report(box, ...lines) {
   box.replaceChildren(...lines.map((line) => element('p', {}, line)));
   box.hidden = false;
-  box.scrollIntoView({block: 'nearest'});
 }
 
 $('set').onclick = async () => {
