@@ -143,6 +143,13 @@ void DefineSceneOptions(CLI::App& app, RenderOverrides& overrides, std::string& 
   DefineSettings(app, overrides.values);
 }
 
+// Help text of --integrator.
+std::string IntegratorChoices() {
+  std::string names;
+  for (const IntegratorType& type : IntegratorRegistry()) names += (names.empty() ? "" : " | ") + type.name;
+  return names + ", or auto: as `lampyr plan` says";
+}
+
 // "2/8".
 std::pair<int, int> ParseShard(const std::string& text) {
   int index = 0, count = 0;
@@ -171,7 +178,7 @@ std::string KnownPixelLayers() {
 
 struct RenderCommand {
   RenderOptions options;
-  std::string time, resolution, checkpoint, preview, shard;
+  std::string time, resolution, checkpoint, preview, shard, display;
   bool adaptive = false, notAdaptive = false, fast = false;
 
   void Define(CLI::App& app) {
@@ -184,9 +191,7 @@ struct RenderCommand {
     app.add_flag("--png", options.png, "Also write a tone-mapped PNG beside it");
     app.add_option("--exposure", options.exposure, "Exposure of the PNG in stops (0)")->check(CheckFinite, "");
     app.add_flag("--clip", options.clipPng, "Clip the PNG at white instead of rolling highlights off");
-    std::string names;
-    for (const IntegratorType& type : IntegratorRegistry()) names += (names.empty() ? "" : " | ") + type.name;
-    app.add_option("--integrator", overrides.integrator, names + ", or auto: as `lampyr plan` says")->type_name("NAME");
+    app.add_option("--integrator", overrides.integrator, IntegratorChoices())->type_name("NAME");
     app.add_option("--spp", overrides.samplesPerPixel, "Stop after this many samples per pixel")
         ->check(CLI::Range(1, 1 << 30));
     app.add_option("--time", time, "Stop after this time: 90s, 5m, 2h")->type_name("DURATION");
@@ -210,6 +215,10 @@ struct RenderCommand {
            "Write the picture so far as a PNG, OUT.png, this often: 2s, 1m; and show it in the terminal if that "
            "has 24-bit colours (COLORTERM=truecolor)")
         ->type_name("DURATION");
+    app.add_option("--display", display,
+                   "Show the picture so far in the viewer tev, or another that speaks its protocol, with its layers of "
+                   "light; tev listens at 127.0.0.1:14158")
+        ->type_name("HOST:PORT");
     app.add_flag("--resume", options.resume,
                  "Go on where OUT.checkpoint ends, if there is one, and write more of them (every minute)");
     app.add_option("--shard", shard,
@@ -244,6 +253,7 @@ struct RenderCommand {
     if (options.resume) options.checkpointSeconds = kCheckpointSeconds;
     if (!checkpoint.empty()) options.checkpointSeconds = ParseDuration("--checkpoint", checkpoint);
     if (!preview.empty()) options.previewSeconds = ParseDuration("--preview", preview);
+    if (!display.empty()) options.display = ParseNetworkPlace("--display", display);
     if (!shard.empty()) options.shard = ParseShard(shard);
     if (!resolution.empty()) ParseResolution(resolution, options.overrides);
     options.robust = !fast;
@@ -304,6 +314,36 @@ struct MixCommand {
     app.add_flag("--quiet", options.quiet, "No summary");
   }
   int Run() { return RunMix(options); }
+};
+
+struct DeskCommand {
+  DeskOptions options;
+  std::string resolution;
+  bool fast = false;
+
+  void Define(CLI::App& app) {
+    app.add_option("scene", options.scene, "The scene: a pbrt-v4 file (.pbrt, .pbrt.gz)")
+        ->type_name("FILE")
+        ->required();
+    constexpr int kLargestPort = 65535;
+    app.add_option("--port", options.port, "Of 127.0.0.1, where the page is served; default: any that is free")
+        ->check(CLI::Range(1, kLargestPort));
+    app.add_option("--integrator", options.overrides.integrator, IntegratorChoices())->type_name("NAME");
+    app.add_option("--spp", options.overrides.samplesPerPixel,
+                   "Rest after this many samples per pixel; default: go on and on")
+        ->check(CLI::Range(1, 1 << 20));
+    DefineSceneOptions(app, options.overrides, resolution, options.threads);
+    DefinePluginOption(app, options.plugins);
+    app.add_flag("--quiet", options.quiet, "Print the address alone");
+    app.add_flag("--strict", options.strict, "Warnings about the scene are errors");
+    app.add_flag("--fast-intersection", fast,
+                 "Trade watertight intersection for speed: rays may slip through shared edges");
+  }
+  int Run() {
+    if (!resolution.empty()) ParseResolution(resolution, options.overrides);
+    options.robust = !fast;
+    return RunDesk(options);
+  }
 };
 
 struct PngCommand {
@@ -510,6 +550,7 @@ class Commands {
     Add("plan", "What a scene requires, and what is therefore modelled, with reasons", plan_);
     Add("diff", "Compare two images: MSE, relMSE, FLIP, bias, z-test by blocks", diff_);
     Add("mix", "Dim, tint or turn off lights in a finished picture with layers", mix_);
+    Add("desk", "Light a scene in the browser: faders, colours and parameters of lights while it renders", desk_);
     Add("denoise", "Denoise an image; its variance then tells the error of the result", denoise_);
     Add("png", "Make a PNG to look at of an image", png_);
     Add("check-lights",
@@ -540,6 +581,7 @@ class Commands {
   PlanCommand plan_;
   DiffCommand diff_;
   MixCommand mix_;
+  DeskCommand desk_;
   DenoiseCommand denoise_;
   PngCommand png_;
   CheckLightsCommand checkLights_;

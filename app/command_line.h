@@ -1,4 +1,4 @@
-// The command line: lampyr render | merge | compare | mix | denoise | diff | png | plan | lights | check-lights.
+// The command line: lampyr render | merge | compare | mix | desk | denoise | diff | png | plan | lights | check-lights.
 #pragma once
 
 namespace lampyr {

@@ -12,6 +12,7 @@
 #include "app/denoise_support.h"
 #include "app/json_report.h"
 #include "app/preview.h"
+#include "app/tev_display.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "base/progress.h"
@@ -220,6 +221,8 @@ StopConditions MakeStopConditions(const RenderOptions& options, const Shard& sha
   stop.longestPass = options.checkpointSeconds;
   if (options.previewSeconds)
     stop.longestPass = std::min(*options.previewSeconds, stop.longestPass.value_or(*options.previewSeconds));
+  constexpr double kLongestShown = 1;  // with a viewer, seconds
+  if (options.display) stop.longestPass = std::min(kLongestShown, stop.longestPass.value_or(kLongestShown));
   stop.relativeError = options.targetError;
   stop.pixelShare = options.pixelShare;
   return stop;
@@ -428,12 +431,16 @@ void RenderJob::Trace(ProgressiveRender& render, Checkpoints* checkpoints) {
     preview.emplace(std::filesystem::path(path_).replace_extension(".png"), *options_.previewSeconds, options_.exposure,
                     options_.clipPng ? ToneMap::Clip : ToneMap::Filmic, options_.quiet);
   }
+  std::optional<TevDisplay> display;
+  if (options_.display) display.emplace(*options_.display, path_.filename().string());
   const auto afterPass = [&](const RenderOutcome& soFar, double fraction) {
+    if (display) display->MayShow(render, soFar.seconds, progress);
     if (preview) preview->MayShow(render, soFar.seconds, progress);
     progress.Update(fraction, std::to_string(soFar.samplesPerPixel) + " spp, " + DescribeError(soFar, options_));
     if (checkpoints && fraction < 1) checkpoints->MayWrite(soFar);
   };
   report_.outcome = Continue(render, stop, afterPass);
+  if (display) display->Show(render.Picture(), progress);
 }
 
 void RenderJob::PrintHints() const {

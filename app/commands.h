@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/network_place.h"
 #include "render/build/plugins.h"
 #include "render/settings/render_settings.h"
 
@@ -31,6 +32,7 @@ struct RenderOptions {
   bool autoLayers = false;                  // layers of what auto decided
   std::optional<double> checkpointSeconds;  // --checkpoint
   std::optional<double> previewSeconds;     // --preview
+  std::optional<NetworkPlace> display;      // --display
   bool resume = false;
   std::optional<std::pair<int, int>> shard;  // which of how many, from 1
   bool quiet = false;
@@ -101,6 +103,17 @@ struct MixOptions {
   bool quiet = false;
 };
 
+struct DeskOptions {
+  std::filesystem::path scene;
+  PluginOptions plugins;
+  RenderOverrides overrides;
+  int port = 0;     // 0: any that is free
+  int threads = 0;  // 0: all
+  bool quiet = false;
+  bool strict = false;
+  bool robust = true;
+};
+
 struct PngOptions {
   std::filesystem::path input, output;  // output empty: beside the input, with the extension .png
   float exposure = 0;                   // stops
@@ -129,6 +142,7 @@ int RunCompare(const CompareOptions& options);
 int RunPlan(const PlanOptions& options);
 int RunDiff(const DiffOptions& options);
 int RunMix(const MixOptions& options);
+int RunDesk(const DeskOptions& options);
 int RunDenoise(const DenoiseOptions& options);
 int RunPng(const PngOptions& options);
 int RunLights(const LightsOptions& options);

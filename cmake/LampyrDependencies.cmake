@@ -21,3 +21,9 @@ find_library(OPENIMAGEIO_UTIL_LIBRARY OpenImageIO_Util REQUIRED)
 add_library(lampyr_openimageio INTERFACE)
 target_include_directories(lampyr_openimageio SYSTEM INTERFACE ${OPENIMAGEIO_INCLUDE_DIR})
 target_link_libraries(lampyr_openimageio INTERFACE ${OPENIMAGEIO_LIBRARY} ${OPENIMAGEIO_UTIL_LIBRARY} Imath::Imath)
+
+# Debian's cpp-httplib (MIT) is a library, and its header has to be told how that was built. Encryption and compression, which
+# it was built with, are not used.
+find_path(HTTPLIB_INCLUDE_DIR httplib.h REQUIRED)
+find_library(HTTPLIB_LIBRARY cpp-httplib REQUIRED)
+set(HTTPLIB_DEFINITIONS CPPHTTPLIB_OPENSSL_SUPPORT CPPHTTPLIB_ZLIB_SUPPORT CPPHTTPLIB_BROTLI_SUPPORT)

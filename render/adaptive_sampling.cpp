@@ -17,7 +17,6 @@ namespace {
 constexpr uint64_t kOfStage = 0x3c6ef372fe94f82b;  // changes the seed from stage to stage
 constexpr double kDark = 0.01;  // of the mean luminance: darker pixels count as that (Film::PixelErrors)
 constexpr double kTiny = std::numeric_limits<double>::min();
-constexpr double kOfFarther = 1;  // of the variance farther around a pixel: the least of its own
 // Rates. The lower limit is for pixels whose noise has not shown yet, the upper for fireflies.
 constexpr double kLeastRate = 0.5, kMostRate = 32;
 
@@ -55,8 +54,8 @@ Grid Blurred(const Grid& from, int step) {
   return BlurredAlong(BlurredAlong(from, true, step), false, step);
 }
 
-// Relative variance of a sample of every pixel: that of the samples around it, but at least a part of that farther
-// around. Where one in a thousand samples finds a light, most pixels have not met it yet; all of them may.
+// Relative variance of a sample of every pixel: that of the samples around it, but at least that farther around. Where
+// one in a thousand samples finds a light, most pixels have not met it yet; all of them may.
 std::vector<double> SampleVariances(Grid squares, Grid counts) {
   constexpr int kNear = 1, kFar = 4;  // blurs
   std::vector<double> variances(squares.values.size(), 0);
@@ -66,7 +65,7 @@ std::vector<double> SampleVariances(Grid squares, Grid counts) {
     if (scale + 1 != kNear && scale + 1 != kFar) continue;
     for (size_t i = 0; i < variances.size(); ++i) {
       const double around = squares.values[i] / std::max(counts.values[i] - 1, 1.0);
-      variances[i] = std::max(variances[i], around * (scale + 1 == kFar ? kOfFarther : 1.0));
+      variances[i] = std::max(variances[i], around);
     }
   }
   return variances;

@@ -2,7 +2,8 @@
 
 # What the renderer is built from.
 LAMPYR_BUILD_PACKAGES="g++ cmake ninja-build ccache libembree-dev libopenimageio-dev libopenexr-dev libflann-dev
-  liblz4-dev libnanovdb-dev libglm-dev libtbb-dev libcli11-dev libfmt-dev nlohmann-json3-dev libeigen3-dev libpng-dev zlib1g-dev"
+  liblz4-dev libnanovdb-dev libglm-dev libtbb-dev libcli11-dev libfmt-dev nlohmann-json3-dev libeigen3-dev libpng-dev zlib1g-dev
+  libcpp-httplib-dev"
 # What its tests and benchmarks need besides.
 LAMPYR_TEST_PACKAGES="libgtest-dev libgmock-dev libbenchmark-dev patch"
 

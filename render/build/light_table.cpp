@@ -35,6 +35,14 @@ LightBuildContext LightTable::LightContextFor(const RenderPlacement& placement) 
   return build;
 }
 
+void LightTable::KeepContext(LightBuildContext build) {
+  if (!keepsContexts_) return;
+  KeptContext kept{std::move(build), nullptr};
+  if (kept.build.shape) kept.shape = std::make_shared<const Shape>(*kept.build.shape);
+  kept.build.shape = kept.shape.get();
+  contexts_.push_back(std::move(kept));
+}
+
 // The type of a light statement.
 const LightType& LightTable::FindType(const StatementDescription& statement, bool isAreaLight) const {
   if (const LightType* type = types_.FindLight(statement.type, isAreaLight)) return *type;
@@ -72,6 +80,7 @@ void LightTable::AddAreaLight(const ShapeDescription& description, const Shape& 
   lights_.push_back({MakeLight(type, statement.parameters, build), build.transform, canBeHit, placement.motion});
   Bind(statement.filter, lights_.back());
   lightPlaces_.push_back(statement.where);
+  KeepContext(build);
   if (!described_) return;
   SceneLight light = Describe(statement, lights_.back());
   light.shape = shape;
@@ -189,6 +198,7 @@ void LightTable::AddLights(std::vector<GeometryEntry>& entries) {
     if (described_) described_->push_back(Describe(statement, placed));
     lights_.push_back(std::move(placed));
     lightPlaces_.push_back(statement.where);
+    KeepContext(build);
   }
 }
 

@@ -16,6 +16,12 @@
 
 namespace lampyr {
 
+// What a light was made of besides its parameters.
+struct KeptContext {
+  LightBuildContext build;  // its `shape` is the one below
+  std::shared_ptr<const Shape> shape;
+};
+
 // Filters have to be added before lights. All methods throw located Errors.
 class LightTable {
  public:
@@ -29,6 +35,9 @@ class LightTable {
         memory_(memory),
         diagnostics_(diagnostics),
         described_(described) {}
+
+  // From now on keeps what each light is made of. To be called before lights are added.
+  void KeepContexts() { keepsContexts_ = true; }
 
   void CheckAreaLights();
   void AddFilters();
@@ -47,6 +56,8 @@ class LightTable {
   // What was added, in the end.
   std::vector<PlacedLight>& Lights() { return lights_; }
   LightLinking& Linking() { return linking_; }
+  // What lights were made of, by their indices; their shapes are kept, too. Empty unless that was asked for.
+  std::vector<KeptContext>& Contexts() { return contexts_; }
   // Locations of the statements, by the indices of lights and filters.
   const std::vector<FileLocation>& LightPlaces() const { return lightPlaces_; }
   const std::vector<FileLocation>& FilterPlaces() const { return filterPlaces_; }
@@ -58,6 +69,7 @@ class LightTable {
   SceneLight Describe(const StatementDescription& statement, const PlacedLight& placed) const;
   void AddLightSurface(const PlacedLight& placed, std::vector<GeometryEntry>& entries);
   LightBuildContext LightContextFor(const RenderPlacement& placement) const;
+  void KeepContext(LightBuildContext build);
 
   const SceneDescription& description_;
   const TypeRegistry& types_;
@@ -66,6 +78,8 @@ class LightTable {
   MemoryBudget& memory_;
   Diagnostics& diagnostics_;
   std::vector<SceneLight>* described_;
+  bool keepsContexts_ = false;
+  std::vector<KeptContext> contexts_;
   std::vector<PlacedLight> lights_;
   LightLinking linking_;
   std::vector<FileLocation> lightPlaces_, filterPlaces_;

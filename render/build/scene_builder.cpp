@@ -1,17 +1,16 @@
 #include "render/build/scene_builder.h"
 
 #include <algorithm>
-#include <chrono>
 
 #include "base/memory.h"
 #include "geometry/shape_checks.h"
 #include "media/make_media.h"
-#include "render/analysis/plan.h"
 #include "render/analysis/unseen_samples.h"
 #include "render/build/flat_instances.h"
 #include "render/build/light_table.h"
 #include "render/build/material_table.h"
 #include "render/build/placer.h"
+#include "render/build/scene_lighting.h"
 #include "render/build/scene_media.h"
 #include "render/build/shape_builder.h"
 #include "textures/texture_library.h"
@@ -60,6 +59,7 @@ class Builder {
 
   BuiltScene Build();
   void DescribeLightsIn(std::vector<SceneLight>* lights) { described_ = lights; }
+  void KeepLightingIn(KeptLighting* kept) { kept_ = kept; }
 
  private:
   void NameObjects();
@@ -71,6 +71,7 @@ class Builder {
   Point2 MiddleOfFilm() const {
     return 0.5f * Point2(static_cast<float>(built_.settings.width), static_cast<float>(built_.settings.height));
   }
+  void LightBuilt();
   void WarnOfBlackImage(const RenderScene& scene) const;
   MediaAround MediaAroundLights(const Point3& eye) const;
   std::vector<Part> MovingParts(const std::vector<ReadEntry>& entries);
@@ -91,7 +92,9 @@ class Builder {
   int threads_;
   BuiltScene built_;
   std::vector<SceneLight>* described_ = nullptr;  // null: not wanted
+  KeptLighting* kept_ = nullptr;                  // null: not wanted
   GeometryDescription geometry_;
+  MediaAround around_;
   std::unique_ptr<TextureLibrary> textures_;
   std::unique_ptr<MaterialTable> materials_;
   std::unique_ptr<SceneMedia> media_;
@@ -338,6 +341,23 @@ void Builder::WarnOfBlackImage(const RenderScene& scene) const {
   if (!scene.lighting->HasLights() && !hasGlow) diagnostics_.Warn("the scene has no light: the image will be black");
 }
 
+void Builder::LightBuilt() {
+  if (kept_) {
+    kept_->settings = built_.settings;
+    kept_->lights = lights_->Lights();
+    kept_->contexts = std::move(lights_->Contexts());
+    kept_->linking = lights_->Linking();
+    kept_->around = around_;
+    kept_->middleOfFilm = MiddleOfFilm();
+    kept_->threads = threads_;
+  }
+  LightScene({std::move(lights_->Lights()), std::move(lights_->Linking()), around_, MiddleOfFilm(), threads_}, *media_,
+             diagnostics_, built_);
+  if (!kept_) return;
+  kept_->textures = std::move(textures_);
+  kept_->media = std::move(media_);
+}
+
 BuiltScene Builder::Build() {
   placer_.ReadTimes(description_);
   entries_ = ReadShapes(description_.shapes);
@@ -359,6 +379,7 @@ BuiltScene Builder::Build() {
   for (auto& object : objects_) resolve(object);
 
   lights_ = std::make_unique<LightTable>(description_, types_, *textures_, placer_, memory_, diagnostics_, described_);
+  if (kept_) lights_->KeepContexts();
   lights_->CheckAreaLights();
   lights_->AddFilters();
   lights_->AddLights(geometry_.entries);
@@ -385,17 +406,8 @@ BuiltScene Builder::Build() {
   scene.geometry = std::make_shared<const GeometryScene>(std::move(geometry_));
   const Ray eye = scene.camera->GenerateRay(MiddleOfFilm(), Point2(0.5f), 0).ray;
   media_->LookAround(*scene.geometry, eye);
-  lights_->Linking().Finish(lights_->Lights(), diagnostics_);
-  scene.lighting = std::make_shared<const LightingServices>(
-      *scene.geometry, std::move(lights_->Lights()), built_.settings.LightSampler(), std::move(lights_->Linking()),
-      static_cast<int>(built_.settings.values.Integer("light-samples")), MediaAroundLights(eye.origin));
-  scene.outputs = MakeOutputPlan(*scene.lighting, built_.settings.layers);
-  media_->Locate(MiddleOfFilm(), built_.lightPlaces, scene);
-  if (built_.settings.integrator == "auto") {
-    const auto start = std::chrono::steady_clock::now();
-    ChooseIntegrator(scene, built_.settings, threads_).Apply(built_.settings);
-    built_.choiceSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  }
+  around_ = MediaAroundLights(eye.origin);
+  LightBuilt();
   for (const std::string& name : UnreadBias(built_.settings.integrator, built_.settings.values)) {
     diagnostics_.Warn("\"" + name + "\" is ignored: " + built_.settings.integrator +
                       " does not support it, and renders the picture without that bias");
@@ -411,6 +423,15 @@ BuiltScene BuildScene(const SceneDescription& description, const RenderOverrides
                       Diagnostics& diagnostics, const TypeRegistry& types) {
   return LocateErrors({std::make_shared<const std::string>(description.file.string())},
                       [&] { return Builder(description, overrides, robust, diagnostics, types).Build(); });
+}
+
+BuiltScene BuildScene(const SceneDescription& description, const RenderOverrides& overrides, bool robust,
+                      Diagnostics& diagnostics, const TypeRegistry& types, KeptLighting& kept) {
+  return LocateErrors({std::make_shared<const std::string>(description.file.string())}, [&] {
+    Builder builder(description, overrides, robust, diagnostics, types);
+    builder.KeepLightingIn(&kept);
+    return builder.Build();
+  });
 }
 
 BuiltScene BuildScene(const SceneDescription& description, bool robust, Diagnostics& diagnostics,

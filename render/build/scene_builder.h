@@ -29,7 +29,12 @@ struct BuiltScene {
 BuiltScene BuildScene(const SceneDescription& description, const RenderOverrides& overrides, bool robust,
                       Diagnostics& diagnostics, const TypeRegistry& types = TypeRegistry::BuiltIn());
 
-// The same, and fills `lights` with what checking each light of the scene requires.
+// The same, and fills `kept` with what it takes to light the scene again, with other lights (scene_lighting.h).
+struct KeptLighting;
+BuiltScene BuildScene(const SceneDescription& description, const RenderOverrides& overrides, bool robust,
+                      Diagnostics& diagnostics, const TypeRegistry& types, KeptLighting& kept);
+
+// The first, and fills `lights` with what checking each light of the scene requires.
 BuiltScene BuildScene(const SceneDescription& description, bool robust, Diagnostics& diagnostics,
                       std::vector<SceneLight>& lights, const TypeRegistry& types = TypeRegistry::BuiltIn());
 

@@ -1,0 +1,40 @@
+// The lighting desk: a scene, its render, and what the page asks of both.
+#pragma once
+
+#include <functional>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "app/desk/desk_lights.h"
+#include "app/desk/desk_session.h"
+#include "app/desk/http_server.h"
+
+namespace lampyr {
+
+class Desk {
+ public:
+  // `scene` has to outlive it.
+  Desk(EditableScene& scene, int mostSamples, int threads);
+
+  // Answers a request of the page; may be called by several threads. `path`: below the token, such as "state".
+  //
+  //   GET  state, lights            JSON: how far the picture is; faders, and parameters of lights and filters
+  //   POST picture {factors, exposure, clip, after}   width · height · 4 bytes; waits for one after `after`, if given
+  //   POST pixel {factors, x, y}    JSON: its value, and half its 95 % interval where that is known
+  //   POST edit {statement, parameter, numbers | text}, reset {statement, parameter}, set {factors}
+  //   POST pause {on}, keep {factors}
+  //
+  // What is wrong with a request is answered with 422 and {"message"}.
+  HttpReply Answer(const HttpRequest& request);
+
+ private:
+  class Requests;
+
+  EditableScene& scene_;
+  const std::vector<Fader> faders_;
+  std::mutex editing_;  // of scene_
+  DeskSession session_;
+};
+
+}  // namespace lampyr

@@ -1,0 +1,129 @@
+#include "app/desk/desk_mixing.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <mutex>
+
+#include "base/parallel.h"
+#include "film/srgb.h"
+
+namespace lampyr {
+
+namespace {
+
+constexpr size_t kBlock = 4096;  // pixels that are mixed at once: their sums stay in the cache
+
+// Encoded values over x / (1 + x), which is fine where x is near 0 and ends where x does not.
+constexpr size_t kSteps = size_t{1} << 16;
+using ScreenTable = std::array<uint8_t, kSteps>;
+
+ScreenTable MakeScreenTable(ToneMap toneMap) {
+  ScreenTable table{};
+  for (size_t i = 0; i < kSteps; ++i) {
+    const float t = static_cast<float>(i) / static_cast<float>(kSteps);
+    float x = t / (1 - t);
+    constexpr float shoulder = 0.6f;
+    if (toneMap == ToneMap::Filmic && x > shoulder)
+      x = shoulder + (1 - shoulder) * (1 - std::exp(-(x - shoulder) / (1 - shoulder)));
+    table[i] = static_cast<uint8_t>(std::lround(255 * LinearToSrgb(std::clamp(x, 0.0f, 1.0f))));
+  }
+  return table;
+}
+
+const ScreenTable& ScreenTableOf(ToneMap toneMap) {
+  static const ScreenTable clip = MakeScreenTable(ToneMap::Clip), filmic = MakeScreenTable(ToneMap::Filmic);
+  return toneMap == ToneMap::Clip ? clip : filmic;
+}
+
+float ChannelOf(const Color& color, size_t channel) {
+  return channel == 0 ? color.r : channel == 1 ? color.g : color.b;
+}
+
+// Adds `factor` times each value.
+void Accumulate(const float* __restrict values, float factor, size_t count, float* __restrict sums) {
+  for (size_t i = 0; i < count; ++i) sums[i] += factor * values[i];
+}
+
+// Steps of the table.
+void Encode(const float* __restrict sums, float exposure, size_t count, uint32_t* __restrict steps) {
+  constexpr float largest = 1e6f;
+  for (size_t i = 0; i < count; ++i) {
+    const float x = std::min(std::max(sums[i] * exposure, 0.0f), largest);
+    steps[i] = static_cast<uint32_t>(static_cast<int32_t>(x / (1 + x) * static_cast<float>(kSteps)));
+  }
+}
+
+}  // namespace
+
+LayerPlanes PlanesOf(const Image& image, const std::vector<std::string>& names, int threads) {
+  LayerPlanes planes;
+  planes.width = image.width;
+  planes.height = image.height;
+  planes.names = names;
+  const size_t layers = std::max<size_t>(names.size(), 1), pixels = planes.Pixels(), stride = image.channels.size();
+  std::vector<size_t> channels;
+  for (size_t layer = 0; layer < layers; ++layer) {
+    for (const char* channel : {"R", "G", "B"}) {
+      const std::string name = names.empty() ? channel : names[layer] + "." + channel;
+      channels.push_back(static_cast<size_t>(image.ChannelIndex(name)));
+    }
+  }
+  for (const char* name : {"variance.R", "variance.G", "variance.B"})
+    channels.push_back(static_cast<size_t>(image.ChannelIndex(name)));
+  planes.values.resize(3 * layers * pixels);
+  planes.variance.resize(3 * pixels);
+  const size_t blocks = (pixels + kBlock - 1) / kBlock;
+  ParallelFor(static_cast<int>(blocks), threads, [&](int block) {
+    const size_t first = static_cast<size_t>(block) * kBlock, end = std::min(first + kBlock, pixels);
+    for (size_t c = 0; c < channels.size(); ++c) {
+      float* plane =
+          c < 3 * layers ? planes.values.data() + c * pixels : planes.variance.data() + (c - 3 * layers) * pixels;
+      const float* from = image.data.data() + channels[c];
+      for (size_t i = first; i < end; ++i) plane[i] = from[i * stride];
+    }
+  });
+  return planes;
+}
+
+std::string MixForScreen(const LayerPlanes& planes, const std::vector<Color>& factors, const ScreenLook& look,
+                         int threads) {
+  const size_t pixels = planes.Pixels();
+  std::string screen(4 * pixels, '\xff');
+  const ScreenTable& table = ScreenTableOf(look.toneMap);
+  const float exposure = std::exp2(look.exposure);
+  const size_t blocks = (pixels + kBlock - 1) / kBlock;
+  ParallelFor(static_cast<int>(blocks), threads, [&](int block) {
+    const size_t first = static_cast<size_t>(block) * kBlock, count = std::min(kBlock, pixels - first);
+    std::array<float, kBlock> sums;
+    std::array<uint32_t, kBlock> steps;
+    for (size_t c = 0; c < 3; ++c) {
+      sums.fill(0);
+      for (size_t layer = 0; layer < factors.size(); ++layer) {
+        const float factor = ChannelOf(factors[layer], c);
+        if (factor != 0) Accumulate(planes.Plane(layer, c).data() + first, factor, count, sums.data());
+      }
+      Encode(sums.data(), exposure, count, steps.data());
+      char* out = screen.data() + 4 * first + c;
+      for (size_t i = 0; i < count; ++i) out[4 * i] = static_cast<char>(table[steps[i]]);
+    }
+  });
+  return screen;
+}
+
+MixedPixel MixPixel(const LayerPlanes& planes, const std::vector<Color>& factors, int x, int y) {
+  const size_t pixel = static_cast<size_t>(y) * static_cast<size_t>(planes.width) + static_cast<size_t>(x);
+  MixedPixel mixed;
+  mixed.hasDeviation = true;
+  for (size_t layer = 0; layer < factors.size(); ++layer) {
+    mixed.value += factors[layer] *
+                   Color(planes.Plane(layer, 0)[pixel], planes.Plane(layer, 1)[pixel], planes.Plane(layer, 2)[pixel]);
+    mixed.hasDeviation = mixed.hasDeviation && factors[layer] == factors.front();
+  }
+  if (!mixed.hasDeviation) return mixed;
+  const auto deviation = [&](size_t channel) { return std::sqrt(planes.variance[channel * planes.Pixels() + pixel]); };
+  mixed.deviation = factors.front() * Color(deviation(0), deviation(1), deviation(2));
+  return mixed;
+}
+
+}  // namespace lampyr

@@ -1,0 +1,48 @@
+// Mixing the layers of a picture for the screen: each times its factor, added up, exposed and tone-mapped. Planes of
+// floats, so that twenty layers of a full picture take some hundredths of a second.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "film/image.h"
+#include "math/vec.h"
+
+namespace lampyr {
+
+// The picture so far as layers that add up to it.
+struct LayerPlanes {
+  int width = 0, height = 0;
+  std::vector<std::string> names;
+  std::vector<float> values;    // by layer, channel (R, G, B) and pixel
+  std::vector<float> variance;  // of the mean of a pixel, by channel and pixel; of all layers at 1
+
+  size_t Pixels() const { return static_cast<size_t>(width) * static_cast<size_t>(height); }
+  std::span<const float> Plane(size_t layer, size_t channel) const {
+    return {values.data() + (3 * layer + channel) * Pixels(), Pixels()};
+  }
+};
+
+// Of a developed picture (Film::Develop): its layers of those names, or without names the picture as one.
+LayerPlanes PlanesOf(const Image& image, const std::vector<std::string>& names, int threads);
+
+struct ScreenLook {
+  float exposure = 0;  // stops
+  ToneMap toneMap = ToneMap::Filmic;
+};
+
+// 8 bits of R, G, B and alpha, sRGB, by rows from the top. `factors`: of each layer.
+std::string MixForScreen(const LayerPlanes& planes, const std::vector<Color>& factors, const ScreenLook& look,
+                         int threads);
+
+// One pixel, linear. `deviation`: of its mean; where it is known, which is while all factors are equal.
+struct MixedPixel {
+  Color value{0.0f};
+  Color deviation{0.0f};
+  bool hasDeviation = false;
+};
+MixedPixel MixPixel(const LayerPlanes& planes, const std::vector<Color>& factors, int x, int y);
+
+}  // namespace lampyr

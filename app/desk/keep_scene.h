@@ -1,0 +1,26 @@
+// What the desk leaves behind: the scene with its edits and faders as a file, and the picture.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "app/desk/desk_lights.h"
+#include "app/desk/desk_session.h"
+
+namespace lampyr {
+
+struct KeptFiles {
+  std::vector<std::filesystem::path> scenes;  // the last one is to be rendered
+  std::filesystem::path picture;
+  std::vector<std::string> notes;  // what could not be kept
+};
+
+// Writes the scene as SCENE.desk.pbrt beside the original, because names of files in it are relative to that; files
+// that it includes and in which something is edited, beside those. The picture, mixed by the faders, goes to the
+// working folder as SCENE.desk.exr. Where such a file exists, the names are SCENE.desk-2.pbrt, …: nothing is
+// overwritten. `factors`: by fader; set into the lights of the scene (EditsOf). Throws an Error.
+KeptFiles Keep(const EditableScene& scene, DeskSession& session, const std::vector<Fader>& faders,
+               const std::vector<Color>& factors);
+
+}  // namespace lampyr

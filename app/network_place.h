@@ -1,0 +1,15 @@
+// A place in the network, as options name it.
+#pragma once
+
+#include <string>
+
+namespace lampyr {
+
+struct NetworkPlace {
+  std::string host, port;
+};
+
+// Of "HOST:PORT" or "[IPv6]:PORT". Throws a UsageError that names the option.
+NetworkPlace ParseNetworkPlace(const std::string& option, const std::string& text);
+
+}  // namespace lampyr

@@ -1,0 +1,57 @@
+// Passes of a render that is thrown away when it is stopped: nothing is kept of it that would let it go on. A stop then
+// takes no longer than the rays that are under way, whatever the size of the film (progressive_render.h keeps a copy of
+// the film from before each pass).
+//
+// The picture after n samples per pixel is that of ProgressiveRender, byte by byte.
+#pragma once
+
+#include <memory>
+
+#include "film/film.h"
+#include "integrators/photon/photon_store.h"
+#include "integrators/walk/integrator.h"
+#include "render/settings/render_settings.h"
+
+namespace lampyr {
+
+class AbandonableRender {
+ public:
+  // The objects behind `scene`, `integrator`, `settings` and `film` (empty, of the settings' crop) must outlive it.
+  AbandonableRender(const RenderScene& scene, const Integrator& integrator, const RenderSettings& settings, int threads,
+                    Film& film);
+
+  // Adds a pass of `count` samples to every pixel. False: a stop was requested (base/stop.h). The film then holds any
+  // part of the pass, and no pass may follow; if the pass had to be given up (HasGivenUpWork), its threads may still
+  // run, and all that it refers to, this object included, must stay until the process ends.
+  bool AddSamples(int count);
+  // Samples per pixel that the next pass should add: at most as many as there are, as take about `longest` seconds, and
+  // as are left of `most`. At least 1.
+  int NextPassSamples(int most, double longest) const;
+
+  int SamplesPerPixel() const { return samples_; }
+  double Seconds() const { return seconds_; }  // of the passes
+  const Film& Picture() const { return film_; }
+  // Fraction of the samples, or of the photons if that is larger, that was dropped as invalid.
+  double DroppedFraction() const;
+
+ private:
+  void AddPass(uint32_t first, uint32_t count);
+  void AddWholePass(int count);
+  void Learn(uint32_t samples);
+
+  const RenderScene& scene_;
+  RenderScene view_;  // as the current pass sees it, with what has been learned
+  const Integrator& integrator_;
+  const RenderSettings& settings_;
+  PixelFilter filter_;
+  int threads_;
+  Film& film_;
+  int samples_ = 0;
+  double seconds_ = 0;
+  RenderCounts counts_;
+  std::unique_ptr<LightLearning> learning_;    // null: selection learns nothing
+  std::unique_ptr<EmissionLearning> guiding_;  // null: no emission guiding
+  std::unique_ptr<PhotonStore> photons_;       // of integrators that gather them
+};
+
+}  // namespace lampyr
