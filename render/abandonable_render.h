@@ -5,12 +5,8 @@
 // The picture after n samples per pixel is that of ProgressiveRender, byte by byte.
 #pragma once
 
-#include <memory>
-
 #include "film/film.h"
-#include "integrators/photon/photon_store.h"
-#include "integrators/walk/integrator.h"
-#include "render/settings/render_settings.h"
+#include "render/pass_sequence.h"
 
 namespace lampyr {
 
@@ -35,23 +31,11 @@ class AbandonableRender {
   double DroppedFraction() const;
 
  private:
-  void AddPass(uint32_t first, uint32_t count);
-  void AddWholePass(int count);
-  void Learn(uint32_t samples);
-
-  const RenderScene& scene_;
-  RenderScene view_;  // as the current pass sees it, with what has been learned
-  const Integrator& integrator_;
-  const RenderSettings& settings_;
-  PixelFilter filter_;
-  int threads_;
   Film& film_;
+  PassSequence passes_;
   int samples_ = 0;
   double seconds_ = 0;
   RenderCounts counts_;
-  std::unique_ptr<LightLearning> learning_;    // null: selection learns nothing
-  std::unique_ptr<EmissionLearning> guiding_;  // null: no emission guiding
-  std::unique_ptr<PhotonStore> photons_;       // of integrators that gather them
 };
 
 }  // namespace lampyr

@@ -471,8 +471,7 @@ void BothPaths::TraceChunk(size_t chunk, uint64_t begin, uint64_t end, uint32_t 
     }
     for (int k = 1; k < lightPaths; ++k) {
       startLightPath();
-      moreSampler.StartPixelSample(x, y,
-                                   number * static_cast<uint32_t>(lightPaths - 1) + static_cast<uint32_t>(k - 1));
+      moreSampler.StartPixelSample(x, y, number * static_cast<uint32_t>(lightPaths - 1) + static_cast<uint32_t>(k - 1));
       pass_.integrator.Sample(nullptr, context.With(moreSampler));
     }
   }

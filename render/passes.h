@@ -28,8 +28,8 @@ namespace lampyr {
 // come from light paths of that time.
 //
 // `allocation`: of the stage of an adaptive film, which holds all of these passes; null: one sample for each pixel. The
-// paths of pixel i of the crop belong to the pixel that the allocation names instead. Their number in the sequence of that
-// pixel is that of the samples that it has in the stage.
+// paths of pixel i of the crop belong to the pixel that the allocation names instead. Their number in the sequence of
+// that pixel is that of the samples that it has in the stage.
 RenderCounts RenderPass(const RenderScene& scene, const Integrator& integrator, const RenderSettings& settings,
                         const PixelFilter& filter, uint32_t first, uint32_t count, int threads, Film& film,
                         TechniqueImages* techniques = nullptr, PhotonStore* kept = nullptr,

@@ -13,8 +13,7 @@
 #include "film/film.h"
 #include "integrators/photon/photon_store.h"
 #include "integrators/walk/integrator.h"
-#include "render/adaptive_sampling.h"
-#include "render/render_backup.h"
+#include "render/pass_sequence.h"
 #include "render/settings/render_settings.h"
 #include "render/technique_images.h"
 
@@ -80,7 +79,9 @@ class ProgressiveRender {
   // The given film, or its replacement after a pass was given up.
   const Film& Picture() const { return *film_; }
   // Fraction of the samples, or of the photons if that is larger, that was dropped as invalid (not finite or negative).
-  double DroppedFraction() const;
+  double DroppedFraction() const {
+    return passes_.DroppedFraction(outcome_.counts.droppedSamples, outcome_.samplesPerPixel);
+  }
   const TechniqueImages* Techniques() const { return techniques_; }
 
   // Saves the film and all state that later samples depend on. To be called between whole passes.
@@ -90,32 +91,18 @@ class ProgressiveRender {
   void Load(ByteReader& bytes);
 
  private:
-  void AddPass(uint32_t first, uint32_t count);
   void AddWholePass(int count);
-  void StartStage(uint32_t pass);
-  void Learn(uint32_t samples);
-  void MakePhotonStore();
   void LeaveToGivenUpPass();
-  PassState State() { return {*film_, techniques_, &learning_, &guiding_}; }
 
-  const RenderScene& scene_;
-  RenderScene view_;  // as the current pass sees it, with what has been learned
   const Integrator& integrator_;
   const RenderSettings& settings_;
-  PixelFilter filter_;
   int threads_;
   Film* film_;
   TechniqueImages* techniques_;
   std::optional<Film> ownFilm_;  // replaces the film that a given-up pass still uses
   std::optional<TechniqueImages> ownTechniques_;
-  uint32_t firstSample_;
-  std::optional<PhotonSettings> wantedPhotons_;
+  PassSequence passes_;
   RenderOutcome outcome_;
-  RenderCounts counts_;                         // of the current pass
-  std::unique_ptr<LightLearning> learning_;     // null: selection learns nothing
-  std::unique_ptr<EmissionLearning> guiding_;   // null: no emission guiding
-  std::unique_ptr<PhotonStore> photons_;        // of integrators that gather them
-  std::optional<SampleAllocation> allocation_;  // of the last stage, in an adaptive film
   RenderBackup backup_;
 };
 

@@ -1,0 +1,73 @@
+// Passes in their order, with what happens between them: light selection and emission guiding learn, and the stages of
+// adaptive sampling begin.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "film/film.h"
+#include "integrators/photon/photon_store.h"
+#include "integrators/walk/integrator.h"
+#include "render/adaptive_sampling.h"
+#include "render/render_backup.h"
+#include "render/settings/render_settings.h"
+#include "render/technique_images.h"
+
+namespace lampyr {
+
+// The picture after n passes does not depend on how they are divided into calls. After a pass that was cut short
+// (base/stop.h) the sequence is of no use until what it has changed is restored.
+class PassSequence {
+ public:
+  // The objects behind the arguments must outlive it. `film`: empty, of the settings' crop; it is made adaptive if the
+  // settings are, and the integrator follows camera paths. `firstSample`: index of the first sample of each pixel.
+  PassSequence(const RenderScene& scene, const Integrator& integrator, const RenderSettings& settings, int threads,
+               Film& film, TechniqueImages* techniques = nullptr, uint32_t firstSample = 0);
+
+  // Adds `count` passes after `done` others. Learns from samples 0 … 2^n - 1 and uses that from sample 2^n on.
+  void Add(uint32_t done, uint32_t count);
+
+  const Integrator& TracedBy() const { return integrator_; }
+  Film& Picture() const { return *film_; }
+  // What passes change.
+  PassState State() { return {*film_, techniques_, &learning_, &guiding_}; }
+  // Counts since the last call.
+  RenderCounts TakeCounts();
+  // Of integrators that gather photons.
+  std::optional<PhotonStatistics> Photons() const;
+  // Fraction of `dropped` of all samples, or of the photons if that is larger, that was invalid.
+  double DroppedFraction(uint64_t dropped, int samplesPerPixel) const;
+
+  // After a pass was cut short and its state restored: what else it had changed is made anew.
+  void StartAnew();
+  // Goes on with another film and other techniques; what a given-up pass still uses is left to it.
+  void LeaveToGivenUpPass(Film& film, TechniqueImages* techniques);
+  // Saves, or restores, all state but the film.
+  void Save(ByteWriter& bytes) const;
+  void Load(ByteReader& bytes);
+
+ private:
+  void AddPass(uint32_t done, uint32_t count);
+  void Learn(uint32_t samples);
+  void StartStage(uint32_t done);
+  void MakePhotonStore();
+
+  const RenderScene& scene_;
+  RenderScene view_;  // as the current pass sees it, with what has been learned
+  const Integrator& integrator_;
+  const RenderSettings& settings_;
+  PixelFilter filter_;
+  int threads_;
+  Film* film_;
+  TechniqueImages* techniques_;
+  uint32_t firstSample_;
+  std::optional<PhotonSettings> wantedPhotons_;
+  RenderCounts counts_;
+  PhotonStatistics before_;                       // of the photons, before the last call of Add
+  std::unique_ptr<LightLearning> learning_;       // null: selection learns nothing
+  std::unique_ptr<EmissionLearning> guiding_;     // null: no emission guiding
+  std::unique_ptr<PhotonStore> photons_;          // of integrators that gather them
+  std::unique_ptr<SampleAllocation> allocation_;  // of the last stage, in an adaptive film
+};
+
+}  // namespace lampyr
