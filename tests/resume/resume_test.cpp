@@ -155,7 +155,7 @@ TEST_F(Resume, ADamagedCheckpointIsRefusedAndStays) {
   WriteBytes(folder_ / "out.checkpoint", "");
   ExpectRefused(kRender + "--integrator vcm", 1, "it holds no sums");
   std::string later = whole;
-  later.back() = '3';
+  later.back() = '~';
   WriteBytes(folder_ / "out.checkpoint", later);
   ExpectRefused(kRender + "--integrator vcm", 1, "another version of lampyr has written it");
   std::filesystem::remove(folder_ / "out.checkpoint");
