@@ -161,6 +161,13 @@ std::pair<int, int> ParseShard(const std::string& text) {
   return {index, count};
 }
 
+// A PNG beside an image that is written.
+void DefinePngOptions(CLI::App& app, bool& png, float& exposure, bool& clips) {
+  app.add_flag("--png", png, "Also write a tone-mapped PNG beside it");
+  app.add_option("--exposure", exposure, "Exposure of the PNG in stops (0)")->check(CheckFinite, "");
+  app.add_flag("--clip", clips, "Clip the PNG at white instead of rolling highlights off");
+}
+
 // Default interval of checkpoints with --resume, seconds.
 constexpr double kCheckpointSeconds = 60;
 
@@ -188,9 +195,7 @@ struct RenderCommand {
         ->required();
     app.add_option("-o,--output", options.output, "The image to write (.exr); default: the name in the scene")
         ->type_name("FILE");
-    app.add_flag("--png", options.png, "Also write a tone-mapped PNG beside it");
-    app.add_option("--exposure", options.exposure, "Exposure of the PNG in stops (0)")->check(CheckFinite, "");
-    app.add_flag("--clip", options.clipPng, "Clip the PNG at white instead of rolling highlights off");
+    DefinePngOptions(app, options.png, options.exposure, options.clipPng);
     app.add_option("--integrator", overrides.integrator, IntegratorChoices())->type_name("NAME");
     app.add_option("--spp", overrides.samplesPerPixel, "Stop after this many samples per pixel")
         ->check(CLI::Range(1, 1 << 30));
@@ -272,9 +277,7 @@ struct MergeCommand {
     app.add_option("parts", options.parts, "Images of `lampyr render --shard`")->type_name("FILE")->required();
     app.add_option("-o,--output", options.output, "The image to write (.exr)")->type_name("FILE")->required();
     app.add_flag("--partial", options.partial, "Merge what there is, even if parts are missing or not finished");
-    app.add_flag("--png", options.png, "Also write a tone-mapped PNG beside it");
-    app.add_option("--exposure", options.exposure, "Exposure of the PNG in stops (0)")->check(CheckFinite, "");
-    app.add_flag("--clip", options.clipPng, "Clip the PNG at white instead of rolling highlights off");
+    DefinePngOptions(app, options.png, options.exposure, options.clipPng);
     app.add_flag("--quiet", options.quiet, "No summary");
   }
   int Run() { return RunMerge(options); }
@@ -289,9 +292,7 @@ struct DenoiseCommand {
         ->required();
     app.add_option("-o,--output", options.output, "The image to write (.exr)")->type_name("FILE")->required();
     app.add_option("--threads", options.threads, "Threads (all)")->check(CLI::Range(1, 4096));
-    app.add_flag("--png", options.png, "Also write a tone-mapped PNG beside it");
-    app.add_option("--exposure", options.exposure, "Exposure of the PNG in stops (0)")->check(CheckFinite, "");
-    app.add_flag("--clip", options.clipPng, "Clip the PNG at white instead of rolling highlights off");
+    DefinePngOptions(app, options.png, options.exposure, options.clipPng);
     app.add_flag("--quiet", options.quiet, "No progress and no summary");
   }
   int Run() { return RunDenoise(options); }
@@ -308,9 +309,7 @@ struct MixCommand {
         ->type_name("LAYER=FACTOR")
         ->required();
     app.add_option("-o,--output", options.output, "The image to write (.exr)")->type_name("FILE")->required();
-    app.add_flag("--png", options.png, "Also write a tone-mapped PNG beside it");
-    app.add_option("--exposure", options.exposure, "Exposure of the PNG in stops (0)")->check(CheckFinite, "");
-    app.add_flag("--clip", options.clipPng, "Clip the PNG at white instead of rolling highlights off");
+    DefinePngOptions(app, options.png, options.exposure, options.clipPng);
     app.add_flag("--quiet", options.quiet, "No summary");
   }
   int Run() { return RunMix(options); }

@@ -7,6 +7,7 @@
 #include <map>
 #include <tuple>
 
+#include "support/layer_of.h"
 #include "support/replicas.h"
 #include "support/temporary_folder.h"
 
@@ -117,19 +118,6 @@ RenderOverrides With(const std::string& integrator) {
   RenderOverrides overrides;
   overrides.integrator = integrator;
   return overrides;
-}
-
-// R, G and B of a layer, "" the picture itself.
-Image LayerOf(const Image& image, const std::string& layer) {
-  Image result(image.width, image.height, {"R", "G", "B"});
-  for (size_t c = 0; c < 3; ++c) {
-    const int index = image.ChannelIndex((layer.empty() ? "" : layer + ".") + result.channels[c]);
-    EXPECT_GE(index, 0) << layer;
-    for (int y = 0; y < image.height; ++y) {
-      for (int x = 0; x < image.width; ++x) result.At(x, y, c) = image.At(x, y, static_cast<size_t>(index));
-    }
-  }
-  return result;
 }
 
 // The largest difference between the picture and the sum of its layers, in units of the last place of that sum.

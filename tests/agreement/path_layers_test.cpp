@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "support/layer_of.h"
 #include "support/replicas.h"
 
 namespace lampyr::test {
@@ -88,22 +89,6 @@ RenderOverrides With(const std::string& integrator, const std::vector<Partition>
   for (const Partition& partition : layers)
     overrides.layers.insert(overrides.layers.end(), partition.begin(), partition.end());
   return overrides;
-}
-
-// R, G and B of a layer, "" the picture itself.
-Image LayerOf(const Image& image, const std::string& layer) {
-  Image result(image.width, image.height, {"R", "G", "B"});
-  for (size_t c = 0; c < 3; ++c) {
-    const int index = image.ChannelIndex((layer.empty() ? "" : layer + ".") + result.channels[c]);
-    if (index < 0) {
-      ADD_FAILURE() << "no layer " << layer;
-      return result;
-    }
-    for (int y = 0; y < image.height; ++y) {
-      for (int x = 0; x < image.width; ++x) result.At(x, y, c) = image.At(x, y, static_cast<size_t>(index));
-    }
-  }
-  return result;
 }
 
 class PathLayers : public testing::TestWithParam<const char*> {};
