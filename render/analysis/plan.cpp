@@ -113,14 +113,27 @@ PlanDecision ChooseGuiding(const RenderSettings& settings, const PhotonSettings&
   return {"guiding", "if helpful", "learned from the first samples"};
 }
 
-PlanDecision ChooseLayers(const RenderScene& scene) {
+// The first of some names.
+std::string FirstOf(const std::vector<std::string>& names) {
+  constexpr size_t most = 8;
+  std::string listed;
+  for (size_t i = 0; i < std::min(most, names.size()); ++i) listed += (i > 0 ? ", " : "") + names[i];
+  return names.size() > most ? listed + ", …" : listed;
+}
+
+PlanDecision ChooseGroups(const RenderScene& scene) {
   const std::vector<std::string>& layers = scene.lighting->Groups().Layers();
-  if (layers.empty()) return {"light groups", "none", "no light names one: the image has no layers"};
-  constexpr size_t most = 8;  // names that are listed
-  std::string names;
-  for (size_t i = 0; i < std::min(most, layers.size()); ++i) names += (i > 0 ? ", " : "") + layers[i];
-  if (layers.size() > most) names += ", …";
-  return {"light groups", Count(layers.size(), "layer"), names};
+  if (layers.empty()) return {"light groups", "none", "no light names one"};
+  return {"light groups", Count(layers.size(), "layer"), FirstOf(layers)};
+}
+
+PlanDecision ChooseLayers(const RenderScene& scene) {
+  std::vector<std::string> names;
+  for (const OutputLayer& layer : scene.outputs->Layers()) {
+    if (!layer.text.empty()) names.push_back(layer.name);
+  }
+  if (names.empty()) return {"layers", "none", "none is asked for: \"string layers\" of the Film, or render --layer"};
+  return {"layers", Count(names.size(), "layer"), FirstOf(names)};
 }
 
 }  // namespace
@@ -156,6 +169,7 @@ ScenePlan PlanFor(const RenderScene& scene, const RenderSettings& settings, int 
   plan.decisions.push_back(
       ChooseMerging(facts, chosenSettings.integrator, photons, settings.values.Number("radius") > 0));
   if (photons) plan.decisions.push_back(ChooseGuiding(settings, *photons));
+  plan.decisions.push_back(ChooseGroups(scene));
   plan.decisions.push_back(ChooseLayers(scene));
   plan.decisions.push_back(scene.hasMotion ? PlanDecision{"motion", "on", "something moves while the shutter is open"}
                                            : PlanDecision{"motion", "off", "nothing moves: rays have no time"});

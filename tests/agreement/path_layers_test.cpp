@@ -129,7 +129,7 @@ TEST_P(PathLayers, LeaveThePictureAlone) {
 }
 
 // The layer of each of the replicas.
-Replicas LayerOf(const Replicas& replicas, const std::string& layer) {
+Replicas LayerOfAll(const Replicas& replicas, const std::string& layer) {
   Replicas result;
   for (const Image& image : replicas.images) result.images.push_back(LayerOf(image, layer));
   return result;
@@ -159,7 +159,7 @@ TEST(PathLayersOfAll, AreTheSame) {
         const bool isFound = integrator != "light" || layer == "direct diffuse" || layer == "indirect diffuse" ||
                              layer == "caustic" || layer == "volume";
         if (isFound)
-          ExpectAgreement(LayerOf(replicas, ChannelOf(layer)), LayerOf(reference, ChannelOf(layer)),
+          ExpectAgreement(LayerOfAll(replicas, ChannelOf(layer)), LayerOfAll(reference, ChannelOf(layer)),
                           integrator + " " + layer);
       }
     }
@@ -207,10 +207,10 @@ Material "diffuse" "rgb reflectance" )" +
       if (integrator == "sppm") each->values["photons"] = 10000;
     }
     const Replicas all = RenderReplicas(scene(0.6, 0.8), integrator, 12, 24, overrides);
-    ExpectAgreement(LayerOf(all, "noGloss"), RenderReplicas(scene(0.6, 0), integrator, 12, 24, black),
+    ExpectAgreement(LayerOfAll(all, "noGloss"), RenderReplicas(scene(0.6, 0), integrator, 12, 24, black),
                     integrator + ", black ball");
     // Light tracing connects no vertex of what is not diffuse here but the ball's.
-    ExpectAgreement(LayerOf(all, "noDiffuse"), RenderReplicas(scene(0, 0.8), integrator, 12, 24, black),
+    ExpectAgreement(LayerOfAll(all, "noDiffuse"), RenderReplicas(scene(0, 0.8), integrator, 12, 24, black),
                     integrator + ", black floor");
   }
 }
@@ -250,7 +250,7 @@ Shape "trianglemesh" "point3 P" [-3 -0.4 -3  -3 -0.4 3  3 -0.4 3  3 -0.4 -3] "in
     if (integrator == "sppm") overrides.values["photons"] = 10000;
     const Replicas replicas = RenderReplicas(scene, integrator, 12, 32, overrides);
     for (const std::string& layer : layers)
-      ExpectAgreement(LayerOf(replicas, ChannelOf(layer)), LayerOf(reference, ChannelOf(layer)),
+      ExpectAgreement(LayerOfAll(replicas, ChannelOf(layer)), LayerOfAll(reference, ChannelOf(layer)),
                       integrator + " " + layer);
   }
 }
@@ -262,7 +262,7 @@ TEST(PathLayersOfAll, AreWhatLessDepthGives) {
     shallow.values["max-depth"] = 2;
     const Replicas few = RenderReplicas(kScene, integrator, 10, 16, shallow);
     const Replicas all = RenderReplicas(kScene, integrator, 10, 16, With(integrator, {{"two=C.{0,2}[LO]"}}));
-    ExpectAgreement(LayerOf(all, "two"), few, integrator);
+    ExpectAgreement(LayerOfAll(all, "two"), few, integrator);
   }
 }
 

@@ -118,6 +118,10 @@ TEST(Plan, IsWhatASceneNeeds) {
   EXPECT_EQ(ChoiceOf(PlanOf(plain), "motion"), "off");
   EXPECT_EQ(ChoiceOf(PlanOf(plain), "light selection"), "tree");
   EXPECT_EQ(ChoiceOf(PlanOf(plain), "light groups"), "none");
+  EXPECT_EQ(ChoiceOf(PlanOf(plain), "layers"), "none");
+  std::string layered = plain;
+  layered.replace(layered.find("Film \"rgb\""), 10, "Film \"rgb\" \"string layers\" [ \"caustic\" ]");
+  EXPECT_EQ(ChoiceOf(PlanOf(layered), "layers"), "1 layer");
   EXPECT_EQ(ChoiceOf(PlanOf(plain + "LightSource \"point\" \"string lightGroup\" \"key\"\n"), "light groups"),
             "2 layers");
   EXPECT_EQ(ChoiceOf(PlanOf(kSwitches[13].head + kSwitches[13].camera + kThings), "lens"), "sampled");
