@@ -28,16 +28,16 @@ struct PixelNeed {
   double trust = 1;     // 1: `ofSample` is known, or small; 0: it may be anything
 };
 
-struct Grid {
+struct PixelGrid {
   int width, height;
   std::vector<double> values;
 };
 
 // Blurs by a binomial filter of five values, `step` pixels apart, along one axis.
-Grid BlurredAlong(const Grid& from, bool isHorizontal, int step) {
+PixelGrid BlurredAlong(const PixelGrid& from, bool isHorizontal, int step) {
   constexpr double kWeights[5] = {1, 4, 6, 4, 1};
   const int size = isHorizontal ? from.width : from.height, stride = isHorizontal ? 1 : from.width;
-  Grid to = from;
+  PixelGrid to = from;
   for (int i = 0; i < static_cast<int>(from.values.size()); ++i) {
     const int at = isHorizontal ? i % from.width : i / from.width;
     double sum = 0, weight = 0;
@@ -50,13 +50,13 @@ Grid BlurredAlong(const Grid& from, bool isHorizontal, int step) {
   }
   return to;
 }
-Grid Blurred(const Grid& from, int step) {
+PixelGrid Blurred(const PixelGrid& from, int step) {
   return BlurredAlong(BlurredAlong(from, true, step), false, step);
 }
 
 // Relative variance of a sample of every pixel: that of the samples around it, but at least that farther around. Where
 // one in a thousand samples finds a light, most pixels have not met it yet; all of them may.
-std::vector<double> SampleVariances(Grid squares, Grid counts) {
+std::vector<double> SampleVariances(PixelGrid squares, PixelGrid counts) {
   constexpr int kNear = 1, kFar = 4;  // blurs
   std::vector<double> variances(squares.values.size(), 0);
   for (int scale = 0; scale < kFar; ++scale) {
@@ -73,7 +73,7 @@ std::vector<double> SampleVariances(Grid squares, Grid counts) {
 
 // How far the variances can be trusted: by the number of large samples that make them up, within some pixels. Where few
 // samples hold most of the variance, it is where they happened to fall.
-std::vector<double> TrustsIn(Grid squares, Grid fourths) {
+std::vector<double> TrustsIn(PixelGrid squares, PixelGrid fourths) {
   constexpr double kEnough = 48, kPixels = 4 * std::numbers::pi * (1 + 4 + 16);  // under three blurs
   for (int scale = 0; scale < 3; ++scale) {
     squares = Blurred(squares, 1 << scale);
@@ -90,8 +90,8 @@ std::vector<double> TrustsIn(Grid squares, Grid fourths) {
 
 std::vector<PixelNeed> NeedsOf(const Film& film, const SampleStage& stage) {
   const size_t pixels = film.Pixels();
-  const Grid empty{film.Crop().Width(), film.Crop().Height(), std::vector<double>(pixels)};
-  Grid luminance = empty, squares = empty, fourths = empty, counts = empty, splats = empty;
+  const PixelGrid empty{film.Crop().Width(), film.Crop().Height(), std::vector<double>(pixels)};
+  PixelGrid luminance = empty, squares = empty, fourths = empty, counts = empty, splats = empty;
   double mean = 0;
   for (size_t i = 0; i < pixels; ++i) {
     const Film::PixelStatistics statistics = film.StatisticsOf(i);

@@ -12,7 +12,7 @@ namespace lampyr {
 
 namespace {
 
-constexpr int kMostSamples = 16, kSamplesOfAlbedo = 4;
+constexpr int kMostHitSamples = 16, kSamplesOfAlbedo = 4;
 constexpr int kMostSmooth = 8;  // smooth surfaces that are followed
 constexpr size_t kValues = 17;
 constexpr size_t kNg = 8, kNs = 11;  // the normals among FirstHit::Values
@@ -76,7 +76,7 @@ class FirstHitTracer {
     std::array<double, kValues> sums{};
     CryptomattePixel objects, materials;
     double weights = 0, all = 0;
-    for (int i = 0; i < std::min(kMostSamples, settings_.samplesPerPixel); ++i) {
+    for (int i = 0; i < std::min(kMostHitSamples, settings_.samplesPerPixel); ++i) {
       sampler.StartPixelSample(x, y, static_cast<uint32_t>(i));
       const float time = SampleTime(scene_, sampler);
       const PixelRay ray = MakePixelRay(scene_, filter_, x, y, time, sampler);
