@@ -7,6 +7,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "base/stop.h"
 #include "math/vec.h"
 #include "sampling/rng.h"
 
@@ -51,6 +52,7 @@ PixelGrid BlurredAlong(const PixelGrid& from, bool isHorizontal, int step) {
   return to;
 }
 PixelGrid Blurred(const PixelGrid& from, int step) {
+  CheckStop();
   return BlurredAlong(BlurredAlong(from, true, step), false, step);
 }
 
@@ -129,7 +131,8 @@ std::vector<PixelNeed> NeedsOf(const Film& film, const SampleStage& stage) {
 // Samples with which the relative variance of a pixel after the stage is `target`.
 double SamplesFor(const PixelNeed& need, double target, double stageShare, double least, double most) {
   if (!(need.ofSample > 0)) return least;
-  // Where splats alone have more variance than the target, half of theirs is little enough.
+  // Splats may have more variance than the target by themselves, which no camera sample changes. Half of theirs is then
+  // enough for the camera samples.
   const double ofCamera = std::max(target - need.splats, 0.5 * need.splats);
   const double room = ofCamera / need.ofSample - need.before;
   if (!(room > 0)) return most;
@@ -157,6 +160,7 @@ std::vector<double> WantedSamples(const Film& film, const SampleStage& stage, co
   // The lowest target that the samples of the stage suffice for. Beyond the share no pixel is given more than those in
   // it.
   const auto sumFor = [&](double target) {
+    CheckStop();
     for (size_t i = 0; i < needs.size(); ++i) samples[i] = SamplesFor(needs[i], target, stageShare, least, most);
     sorted = samples;
     std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(rank), sorted.end());
@@ -185,7 +189,7 @@ SampleAllocation::SampleAllocation(const SampleStage& stage, const Film& film, c
   const std::vector<double> wanted = WantedSamples(film, stage, settings);
   double sum = 0;
   for (const double own : wanted) sum += std::max(own - 1, 0.0);
-  if (!(sum > 0)) return;
+  if (!(sum > 0) || !std::isfinite(sum)) return;
   const uint64_t all = uint64_t{stage.passes - 1} * pixels_;
   ends_.resize(pixels_);
   double end = 0;

@@ -8,7 +8,7 @@
 // A stage has random numbers of its own. What it adds to a pixel has therefore the expectation of the pixel whatever
 // came before it, and because the film weights stages by their passes (film/film.h), the picture is unbiased.
 //
-// Rates make the error that a given share of the pixels is below as small as they can.
+// Rates minimise a quantile of the errors of pixels: the error that a given share of them is below.
 #pragma once
 
 #include <cstdint>

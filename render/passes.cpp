@@ -52,7 +52,9 @@ struct SampleAdder {
   }
   // Adds a sample of a pixel to `sums` and to the pixel's layers. An invalid value (negative or not finite) is counted,
   // added to `sums` as black, and left out of the layers. `isInHalf`: it belongs to the layer of half of the samples.
-  void Add(int x, int y, bool isInHalf, const PixelRay& ray, const Color& radiance, PixelSums& sums) {
+  // `more`: other sums that it is added to; may be null.
+  void Add(int x, int y, bool isInHalf, const PixelRay& ray, const Color& radiance, PixelSums& sums,
+           PixelSums* more = nullptr) {
     const float scale = ray.camera.weight * sensor.Scale(radiance * ray.camera.weight);
     Color value = radiance * scale;
     const bool isValid = value.IsValid();
@@ -61,6 +63,7 @@ struct SampleAdder {
       value = Color(0.0f);
     }
     sums.Add(sensor.Balance(value), ray.filterWeight);
+    if (more) more->Add(sensor.Balance(value), ray.filterWeight);
     if (layers && isValid) film.AddToLayers(x, y, *layers, scale, ray.filterWeight, sensor);
     if (film.HasHalf() && isInHalf) film.AddToHalf(x, y, sensor.Balance(value), ray.filterWeight);
   }
@@ -254,6 +257,7 @@ class BothPaths {
 
  private:
   class AdaptivePixels;
+  struct SlotSampler;
 
   uint64_t PathsPerRound() const { return static_cast<uint64_t>(chunks_) * chunkPaths_; }
   uint64_t SeedOfPhotons() const { return MixBits(pass_.Seed() + kBeforeTheFirst); }
@@ -288,7 +292,9 @@ class BothPaths {
       TraceChunk(static_cast<size_t>(chunk), begin, chunkEnd, index, seed, withCamera, passTime);
     });
   }
-  // The first slot from `slot` on whose camera path is the first of its pixel: chunks share no pixel.
+  // Slots of the crop before a slot.
+  uint64_t CropSlotsBefore(uint64_t slot) const;
+  // The first slot from `slot` on before which the samples of a pixel end: chunks share no pixel.
   uint64_t NextPixelFrom(uint64_t slot, uint32_t index) const;
   // The index of a slot among those of the crop; nullopt: it is not one of them.
   std::optional<uint64_t> SlotInCrop(uint64_t slot) const;
@@ -296,6 +302,8 @@ class BothPaths {
   int LightPathsOf(int x, int y, uint32_t& index) const;
   void TraceChunk(size_t chunk, uint64_t begin, uint64_t end, uint32_t index, uint64_t seed, bool withCamera,
                   float passTime);
+  // `context`: of the sample of a slot.
+  void StartLightPath(size_t chunk, bool keepsPhotons, uint32_t index, SampleContext& context);
 
   const Pass& pass_;
   TechniqueImages* techniques_;
@@ -317,21 +325,36 @@ class BothPaths {
   std::vector<TechniqueImages::Recorder> recorders_;
 };
 
-std::optional<uint64_t> BothPaths::SlotInCrop(uint64_t slot) const {
-  if (slot >= pass_.Pixels()) return std::nullopt;
-  const auto width = static_cast<uint64_t>(pass_.settings.width);
-  const int x = static_cast<int>(slot % width), y = static_cast<int>(slot / width);
+uint64_t BothPaths::CropSlotsBefore(uint64_t slot) const {
   const PixelRect& crop = pass_.film.Crop();
-  if (x < crop.x0 || x >= crop.x1 || y < crop.y0 || y >= crop.y1) return std::nullopt;
-  return static_cast<uint64_t>(y - crop.y0) * static_cast<uint64_t>(crop.Width()) + static_cast<uint64_t>(x - crop.x0);
+  const auto width = static_cast<uint64_t>(pass_.settings.width);
+  const auto within = [](uint64_t value, int begin, int end) {
+    return std::clamp(static_cast<int64_t>(value) - begin, int64_t{0}, int64_t{end - begin});
+  };
+  const uint64_t x = slot % width, y = slot / width;
+  const int64_t rows = within(y, crop.y0, crop.y1);
+  const bool isInRow = y >= static_cast<uint64_t>(crop.y0) && y < static_cast<uint64_t>(crop.y1);
+  return static_cast<uint64_t>(rows * crop.Width() + (isInRow ? within(x, crop.x0, crop.x1) : 0));
+}
+
+std::optional<uint64_t> BothPaths::SlotInCrop(uint64_t slot) const {
+  const uint64_t before = CropSlotsBefore(slot);
+  if (slot >= pass_.Pixels() || CropSlotsBefore(slot + 1) == before) return std::nullopt;
+  return before;
 }
 
 uint64_t BothPaths::NextPixelFrom(uint64_t slot, uint32_t index) const {
   const uint32_t pass = index - pass_.Offset();
-  for (; slot > 0 && slot < pass_.Pixels(); ++slot) {
-    const std::optional<uint64_t> inCrop = SlotInCrop(slot);
-    if (!inCrop) continue;
-    if (*inCrop == 0 || pass_.allocation->PixelOf(*inCrop, pass) != pass_.allocation->PixelOf(*inCrop - 1, pass)) break;
+  const PixelRect& crop = pass_.film.Crop();
+  const auto cropWidth = static_cast<uint64_t>(crop.Width());
+  while (slot > 0 && slot < pass_.Pixels()) {
+    const uint64_t k = CropSlotsBefore(slot);
+    const bool isFirst = k == 0 || k >= pass_.film.Pixels() ||
+                         pass_.allocation->PixelOf(k, pass) != pass_.allocation->PixelOf(k - 1, pass);
+    if (isFirst) break;
+    const uint64_t x = static_cast<uint64_t>(crop.x0) + k % cropWidth,
+                   y = static_cast<uint64_t>(crop.y0) + k / cropWidth;
+    slot = y * static_cast<uint64_t>(pass_.settings.width) + x + 1;
   }
   return slot;
 }
@@ -369,8 +392,10 @@ class BothPaths::AdaptivePixels {
     if (pixel != pixel_) {
       EndPixel();
       pixel_ = pixel;
+      isBegun_ = true;
       x_ = crop.x0 + static_cast<int>(pixel % static_cast<size_t>(crop.Width()));
       y_ = crop.y0 + static_cast<int>(pixel / static_cast<size_t>(crop.Width()));
+      sums_ = pass_.film.Pixel(x_, y_);
     }
     number_ = pass_.film.Pixel(x_, y_).count + slot - allocation.Before(pixel, stagePass_);
     if (isReplay_) number_ -= allocation.Count(pixel, stagePass_);
@@ -380,16 +405,17 @@ class BothPaths::AdaptivePixels {
   int Y() const { return y_; }
   // Of the sample in the pixel and stage.
   uint32_t Number() const { return static_cast<uint32_t>(number_); }
-  bool IsInHalf() const { return AdaptiveSampler::IsInHalf(number_); }
-  // Of the pixel in this pass.
-  PixelSums& Sums() { return sums_; }
+  // Adds the radiance of the sample.
+  void Add(const PixelRay& ray, const Color& radiance, SampleAdder& adder) {
+    adder.Add(x_, y_, AdaptiveSampler::IsInHalf(number_), ray, radiance, sums_, &ofPass_);
+  }
 
  private:
   void EndPixel() {
-    if (sums_.count == 0) return;
-    pass_.film.Pixel(x_, y_).Add(sums_);
-    if (pass_.film.HasGroups()) pass_.film.AddGroup(x_, y_, sums_);
-    sums_ = PixelSums();
+    if (!isBegun_ || isReplay_) return;
+    pass_.film.Pixel(x_, y_) = sums_;
+    if (pass_.film.HasGroups()) pass_.film.AddGroup(x_, y_, ofPass_);
+    ofPass_ = PixelSums();
   }
 
   const Pass& pass_;
@@ -399,40 +425,66 @@ class BothPaths::AdaptivePixels {
   size_t pixel_ = std::numeric_limits<size_t>::max();
   int x_ = 0, y_ = 0;
   uint64_t number_ = 0;
-  PixelSums sums_;
+  bool isBegun_ = false;
+  PixelSums sums_, ofPass_;  // of the pixel: with those of earlier passes, and of this one
 };
 
-// A slot is a pixel of the full image, or one of the light paths beyond them. In an adaptive film the slots of the crop
-// belong to other pixels, whose random numbers their paths have.
+// Starts the samples of slots.
+struct BothPaths::SlotSampler {
+  // `adaptive`: null where slots are those of their own pixels.
+  SlotSampler(const BothPaths& paths, uint64_t seed, uint32_t anIndex, AdaptivePixels* adaptive)
+      : paths_(paths), index_(anIndex), adaptive_(adaptive), sampler_(paths.pass_.settings.sampler, seed) {}
+
+  Sampler& Start(uint64_t slot) {
+    const auto width = static_cast<uint64_t>(paths_.pass_.settings.width);
+    x = static_cast<int>(slot % width);
+    y = static_cast<int>(slot / width);
+    number = lightNumber = index_ - paths_.pass_.Offset();
+    lightPaths = paths_.LightPathsOf(x, y, lightNumber);
+    const std::optional<uint64_t> inCrop = paths_.SlotInCrop(slot);
+    isInCrop = inCrop.has_value();
+    if (!adaptive_ || !isInCrop) {
+      sampler_.StartPixelSample(x, y, number);
+      return sampler_;
+    }
+    Sampler& sampler = adaptive_->Start(*inCrop);
+    x = adaptive_->X();
+    y = adaptive_->Y();
+    number = adaptive_->Number();
+    return sampler;
+  }
+
+  int x = 0, y = 0;          // pixel of the sample
+  uint32_t number = 0;       // of the sample in its sequence
+  uint32_t lightNumber = 0;  // of its light path, where there are fewer of them
+  int lightPaths = 0;
+  bool isInCrop = false;
+
+ private:
+  const BothPaths& paths_;
+  uint32_t index_;
+  AdaptivePixels* adaptive_;
+  Sampler sampler_;
+};
+
+// A slot is a pixel of the full image, or one of the light paths beyond them. In an adaptive film the samples of the
+// crop take its slots in the order of their pixels; random numbers are those of the pixel.
 void BothPaths::TraceChunk(size_t chunk, uint64_t begin, uint64_t end, uint32_t index, uint64_t seed, bool withCamera,
                            float passTime) {
   const RenderSettings& settings = pass_.settings;
-  const auto width = static_cast<uint64_t>(settings.width);
-  SplatList& splats = splats_[chunk];
-  splats.Clear();
+  splats_[chunk].Clear();
   TechniqueImages::Recorder* recorder = techniques_ && withCamera ? &recorders_[chunk] : nullptr;
   SampleAdder adder(settings, pass_.film, counts_[chunk]);
   LayerSample* layers = adder.StartLayers();
-  Sampler ownSampler(settings.sampler, seed), lightSampler(settings.sampler, seed),
-      moreSampler(settings.sampler, MixBits(seed + kMorePaths));
+  Sampler lightSampler(settings.sampler, seed), moreSampler(settings.sampler, MixBits(seed + kMorePaths));
   std::optional<AdaptivePixels> adaptive;
   if (pass_.allocation && (withCamera || seed == pass_.Seed())) adaptive.emplace(pass_, index, !withCamera);
+  SlotSampler slots(*this, seed, index, adaptive ? &*adaptive : nullptr);
   for (uint64_t i = begin; i < end; ++i) {
     const bool keepsPhotons = wanted_ && i < lightPaths_ && store_.HasRoom() && !(hasTimes_ && withCamera);
     if (!keepsPhotons && !withCamera) break;
-    int x = static_cast<int>(i % width), y = static_cast<int>(i / width);
-    const std::optional<uint64_t> inCrop = withCamera || adaptive ? SlotInCrop(i) : std::nullopt;
-    const bool hasRay = withCamera && inCrop;
-    uint32_t number = index - pass_.Offset(), lightNumber = number;
-    const int lightPaths = LightPathsOf(x, y, lightNumber);
-    Sampler& sampler = adaptive && inCrop ? adaptive->Start(*inCrop) : ownSampler;
-    if (adaptive && inCrop) {
-      x = adaptive->X();
-      y = adaptive->Y();
-      number = adaptive->Number();
-    } else {
-      ownSampler.StartPixelSample(x, y, number);
-    }
+    Sampler& sampler = slots.Start(i);
+    const int x = slots.x, y = slots.y, lightPaths = slots.lightPaths;
     const float time = hasTimes_ ? passTime : SampleTime(pass_.scene, sampler);
     SampleContext context{pass_.scene, sampler, time, counts_[chunk], layers};
     context.observer = recorder;
@@ -440,21 +492,12 @@ void BothPaths::TraceChunk(size_t chunk, uint64_t begin, uint64_t end, uint32_t 
     context.gather = withCamera ? gather_ : nullptr;
     context.isForPhotonsAlone = !withCamera;
     context.tracesLight = lightPaths > 0;
-    const auto startLightPath = [&] {
-      splats.StartPath();
-      context.splats = &splats;
-      if (!keepsPhotons) return;
-      photons_[chunk].StartPath();
-      context.photons = &photons_[chunk];
-      context.lastGathering = index + 1;
-      context.withOrigin = store_.WantsOrigins();
-    };
-    if (lightPaths > 0) startLightPath();
+    if (lightPaths > 0) StartLightPath(chunk, keepsPhotons, index, context);
     if (log2LightPaths_ < 0 && !pass_.allocation) {
-      lightSampler.StartPixelSample(x, y, lightNumber);
+      lightSampler.StartPixelSample(x, y, slots.lightNumber);
       context.lightSampler = &lightSampler;
     }
-    if (!hasRay) {
+    if (!withCamera || !slots.isInCrop) {
       if (recorder) recorder->StartSample(x, y, 0);
       if (lightPaths > 0) pass_.integrator.Sample(nullptr, context);
     } else {
@@ -464,17 +507,28 @@ void BothPaths::TraceChunk(size_t chunk, uint64_t begin, uint64_t end, uint32_t 
       adder.StartLayers();
       const Color radiance = Radiance(pass_.integrator, ray, context);
       if (adaptive) {
-        adder.Add(x, y, adaptive->IsInHalf(), ray, radiance, adaptive->Sums());
+        adaptive->Add(ray, radiance, adder);
       } else {
         adder.Add(x, y, IsInHalf(index), ray, radiance, pass_.film.Pixel(x, y));
       }
     }
-    for (int k = 1; k < lightPaths; ++k) {
-      startLightPath();
-      moreSampler.StartPixelSample(x, y, number * static_cast<uint32_t>(lightPaths - 1) + static_cast<uint32_t>(k - 1));
+    const auto more = static_cast<uint32_t>(std::max(lightPaths - 1, 0));
+    for (uint32_t k = 0; k < more; ++k) {
+      StartLightPath(chunk, keepsPhotons, index, context);
+      moreSampler.StartPixelSample(x, y, slots.number * more + k);
       pass_.integrator.Sample(nullptr, context.With(moreSampler));
     }
   }
+}
+
+void BothPaths::StartLightPath(size_t chunk, bool keepsPhotons, uint32_t index, SampleContext& context) {
+  splats_[chunk].StartPath();
+  context.splats = &splats_[chunk];
+  if (!keepsPhotons) return;
+  photons_[chunk].StartPath();
+  context.photons = &photons_[chunk];
+  context.lastGathering = index + 1;
+  context.withOrigin = store_.WantsOrigins();
 }
 
 }  // namespace

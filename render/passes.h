@@ -27,9 +27,9 @@ namespace lampyr {
 // sample before are traced again. In scenes with motion all paths of such a pass have the same time, and its photons
 // come from light paths of that time.
 //
-// `allocation`: of the stage of an adaptive film, which holds all of these passes; null: one sample for each pixel. The
-// paths of pixel i of the crop belong to the pixel that the allocation names instead. Their number in the sequence of
-// that pixel is that of the samples that it has in the stage.
+// `allocation`: of the stage of an adaptive film that all of these passes are in; null: one sample for each pixel. The
+// samples of a pixel are numbered through the stage. Rates are relative to what the crop sees: a crop of an adaptive
+// render is not that part of the full image.
 RenderCounts RenderPass(const RenderScene& scene, const Integrator& integrator, const RenderSettings& settings,
                         const PixelFilter& filter, uint32_t first, uint32_t count, int threads, Film& film,
                         TechniqueImages* techniques = nullptr, PhotonStore* kept = nullptr,

@@ -84,10 +84,10 @@ void CheckHeader(const PartHeader& header, uint64_t bytesLeft) {
                        crop.y1 > crop.y0 && crop.x1 <= header.width && crop.y1 <= header.height;
   const bool isShard = shard.count >= 1 && shard.index >= 1 && shard.index <= shard.count && shard.first < shard.end &&
                        shard.end <= shard.whole && shard.whole <= (1u << 30) && header.samples <= (1u << 30);
-  if (!isSized || !isShard) throw Error("it holds a number out of range");
+  if (!isSized || !isShard || (header.hasGroups && !header.isAdaptive)) throw Error("it holds a number out of range");
   // The film alone would be larger than the rest of the file: checked before its memory is allocated.
   const uint64_t pixels = static_cast<uint64_t>(crop.Width()) * static_cast<uint64_t>(crop.Height());
-  if (bytesLeft / Film::BytesPerPixel(header.layers.size(), false) < pixels) throw Error("unexpected end of data");
+  if (bytesLeft / Film::BytesPerPixel(header.layers.size(), false, header.isAdaptive, header.hasGroups) < pixels) throw Error("unexpected end of data");
 }
 
 PartHeader LoadHeader(ByteReader& bytes, PartKind kind) {

@@ -167,17 +167,18 @@ void Film::AddToHalf(int x, int y, const Color& value, float filterWeight) {
   AddTo(layerSums_[(Index(x, y) + 1) * layers_.size() - 1], filterWeight, value);
 }
 
-uint64_t Film::BytesPerPixel(size_t layers, bool withSplats, bool isAdaptive) {
+uint64_t Film::BytesPerPixel(size_t layers, bool withSplats, bool isAdaptive, bool hasGroups) {
   const uint64_t ofLayer = (withSplats ? 2 : 1) * sizeof(LayerSum) + (isAdaptive ? 3 * sizeof(double) : 0);
-  const uint64_t ofStages = isAdaptive ? sizeof(PixelStages) + sizeof(PixelGroups) : 0;
+  const uint64_t ofStages = isAdaptive ? sizeof(PixelStages) + (hasGroups ? sizeof(PixelGroups) : 0) : 0;
   return sizeof(PixelSums) + (withSplats ? sizeof(SplatSums) : 0) + ofStages + layers * ofLayer;
 }
 
 double Film::CameraValue(size_t pixel, int channel) const {
   const PixelSums& samples = pixels_[pixel];
-  const double mean = samples.count > 0 ? samples.sum[channel].Value() / samples.Divisor() : 0.0;
-  if (endedPasses_ == 0) return mean;
-  return (stages_[pixel].sum[channel] + passes_ * mean) / static_cast<double>(endedPasses_ + passes_);
+  if (endedPasses_ == 0) return samples.count > 0 ? samples.sum[channel].Value() / samples.Divisor() : 0.0;
+  double sum = stages_[pixel].sum[channel];
+  if (samples.count > 0) sum += passes_ * samples.sum[channel].Value() / static_cast<double>(samples.count);
+  return sum / AdaptiveDivisor(pixel);
 }
 
 double Film::Value(size_t pixel, int channel) const {
@@ -187,10 +188,15 @@ double Film::Value(size_t pixel, int channel) const {
 }
 
 double Film::LayerValue(size_t pixel, size_t layer, size_t channel) const {
+  const PixelSums& samples = pixels_[pixel];
   const size_t index = pixel * layers_.size() + layer;
-  double value = CurrentLayerMean(pixel, layer, channel);
-  if (endedPasses_ > 0)
-    value = (layerStages_[index][channel] + passes_ * value) / static_cast<double>(endedPasses_ + passes_);
+  double value = 0;
+  if (isAdaptive_) {
+    const double passes = endedPasses_ == 0 ? 1 : passes_;
+    value = (layerStages_[index][channel] + passes * CurrentLayerMean(pixel, layer, channel)) / AdaptiveDivisor(pixel);
+  } else if (samples.count > 0) {
+    value = layerSums_[index][channel].Value() / samples.Divisor();
+  }
   if (lightPaths_ == 0) return value;
   double splats = layerSplats_[index][channel].Value() / static_cast<double>(lightPaths_);
   if (isAdaptive_ && hasHalf_ && layer + 1 == layers_.size()) splats *= HalfShareOfSplats();
@@ -376,6 +382,7 @@ void Film::Load(ByteReader& bytes) {
     bytes.Values(std::span(film.layerStages_));
     film.passes_ = bytes.Value<uint32_t>();
     film.endedPasses_ = bytes.Value<uint64_t>();
+    film.CheckStages();
   }
   if (bytes.Flag()) {
     film.MakeSplats();

@@ -69,14 +69,14 @@ struct PixelSums {
   bool IsFinite() const;
 };
 
-// The stages of a pixel that have ended, in an adaptive film. N: passes of a stage; n: samples of the pixel in it; D:
-// its divisor, near n.
+// The stages of a pixel that have ended, in an adaptive film. N: passes of a stage; n: samples of the pixel in it.
+// The pixel is Σ N ΣwL / n over Σ N Σw / n: a ratio of each stage by itself would be biased, as that of few samples is.
 struct PixelStages {
-  double sum[3] = {0, 0, 0};  // Σ N · mean of the stage
-  // Variance of `sum` per variance of a sample: Σ N² n / D² of independent samples, and Σ N² Σ c² / D² of samples of
-  // which the c of one pass are equal.
+  double sum[3] = {0, 0, 0}, weight = 0;  // Σ N ΣwL / n, Σ N Σw / n
+  // Variance of `sum` per variance of a sample: Σ N² / n of independent samples, and Σ N² Σ c² / n² of samples of which
+  // the c of one pass are equal.
   double independent = 0, shared = 0;
-  double sumOfFourths = 0;  // Σ N⁴ · fourths / D⁴
+  double sumOfFourths = 0;  // Σ N⁴ · fourths / n⁴
   // Over the samples of all stages, as in PixelSums:
   double valueSum[3] = {0, 0, 0}, squareSum[3] = {0, 0, 0}, fourthSum = 0;
   uint64_t count = 0;
@@ -123,7 +123,7 @@ class Film {
   void AddToLayers(int x, int y, const LayerSample& sample, float scale, float filterWeight,
                    const SensorResponse& sensor = {});
   // Bytes per pixel of a film with `layers` layers.
-  static uint64_t BytesPerPixel(size_t layers, bool withSplats, bool isAdaptive = false);
+  static uint64_t BytesPerPixel(size_t layers, bool withSplats, bool isAdaptive = false, bool hasGroups = true);
 
   // An empty list for splats onto this film.
   SplatList MakeSplatList(const PixelFilter& filter, const SensorResponse& sensor) const;
@@ -193,13 +193,16 @@ class Film {
 
   size_t Index(int x, int y) const { return static_cast<size_t>(y - crop_.y0) * crop_.Width() + (x - crop_.x0); }
   double CameraValue(size_t pixel, int channel) const;
+  double AdaptiveDivisor(size_t pixel) const;
   double CameraVariance(size_t pixel, int channel) const;
   double CameraFourth(size_t pixel) const;
   double HalfShareOfSplats() const;
   void NoteSplats(size_t pixel);
   void AddStages(const Film& other);
   bool StagesAreFinite() const;
+  void CheckStages() const;
   double CurrentLayerMean(size_t pixel, size_t layer, size_t channel) const;
+  double CurrentHalf(size_t pixel, size_t channel) const;
   void PrefetchSplats(const Point2& film) const;
   void AddToRows(const PixelFilter& filter, std::span<const SplatList> lists, int band, int bands, bool isInHalf);
   double Value(size_t pixel, int channel) const;

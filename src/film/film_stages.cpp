@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/error.h"
 #include "film/film.h"
 
 namespace lampyr {
@@ -24,9 +25,9 @@ uint64_t HalfOf(uint64_t n) {
 }  // namespace
 
 bool PixelStages::IsFinite() const {
-  return AllFinite(sum, 3) && AllFinite(valueSum, 3) && AllFinite(squareSum, 3) && std::isfinite(fourthSum) && std::isfinite(independent) &&
-         std::isfinite(shared) && std::isfinite(sumOfFourths) && std::isfinite(splatLuminance) &&
-         std::isfinite(splatVariance);
+  return AllFinite(sum, 3) && std::isfinite(weight) && AllFinite(valueSum, 3) && AllFinite(squareSum, 3) &&
+         std::isfinite(fourthSum) && std::isfinite(independent) && std::isfinite(shared) &&
+         std::isfinite(sumOfFourths) && std::isfinite(splatLuminance) && std::isfinite(splatVariance);
 }
 
 void PixelGroups::Add(const PixelSums& pass) {
@@ -61,12 +62,13 @@ void Film::EndStage() {
       layerSums_[index] = LayerSum();
     }
     if (ended.count == 0) continue;
-    const double scale = passes / ended.Divisor();
+    const double scale = passes / static_cast<double>(ended.count);
     for (int c = 0; c < 3; ++c) {
       stages.sum[c] += scale * ended.sum[c].Value();
       stages.valueSum[c] += ended.sum[c].Value();
       stages.squareSum[c] += ended.sumOfSquares[c].Value();
     }
+    stages.weight += scale * ended.weight.Value();
     stages.independent += scale * scale * static_cast<double>(ended.count);
     if (HasGroups()) {
       stages.shared += scale * scale * static_cast<double>(groups_[i].squares);
@@ -82,14 +84,34 @@ void Film::EndStage() {
   passes_ = 0;
 }
 
-// Mean of a layer over the samples of the current stage.
+// Σ N Σw / n over all stages, or Σ N where negative weights cancel that (PixelSums::Divisor).
+double Film::AdaptiveDivisor(size_t pixel) const {
+  const PixelSums& current = pixels_[pixel];
+  const double passes = endedPasses_ == 0 ? 1 : passes_;
+  const double all = static_cast<double>(endedPasses_) + passes;
+  double weight = stages_[pixel].weight;
+  if (current.count > 0) weight += passes * current.weight.Value() / static_cast<double>(current.count);
+  return weight > 0.1 * all ? weight : all;
+}
+
+// Σ over the samples of a layer in the current stage, by their number.
 double Film::CurrentLayerMean(size_t pixel, size_t layer, size_t channel) const {
+  if (pixels_[pixel].count == 0) return 0;
+  if (hasHalf_ && layer + 1 == layers_.size()) return CurrentHalf(pixel, channel);
+  return layerSums_[pixel * layers_.size() + layer][channel].Value() / static_cast<double>(pixels_[pixel].count);
+}
+
+// Half of an estimate of the pixel that is not correlated with what remains of the pixel, and has the same variance. Of
+// as many even samples (E, their mean) as odd ones (O) it is E; else a E + (1 - a) O, with a² / e + (1 - a)² / o = 2 /
+// n.
+double Film::CurrentHalf(size_t pixel, size_t channel) const {
   const PixelSums& samples = pixels_[pixel];
-  if (samples.count == 0) return 0;
-  double mean = layerSums_[pixel * layers_.size() + layer][channel].Value() / samples.Divisor();
-  if (isAdaptive_ && hasHalf_ && layer + 1 == layers_.size())
-    mean *= 0.5 * static_cast<double>(samples.count) / static_cast<double>(HalfOf(samples.count));
-  return mean;
+  const auto n = static_cast<double>(samples.count), e = static_cast<double>(HalfOf(samples.count)), o = n - e;
+  const double all = samples.sum[channel].Value(), even = layerSums_[(pixel + 1) * layers_.size() - 1][channel].Value();
+  if (!(o > 0)) return 0.5 * all / n;
+  const double both = 1 / e + 1 / o;
+  const double a = (1 / o + std::sqrt(1 / (o * o) - both * (1 / o - 2 / n))) / both;
+  return 0.5 * (a * even / e + (1 - a) * (all - even) / o);
 }
 
 // Factor that makes splats of the half layer half of all.
@@ -109,8 +131,8 @@ double Film::CameraVariance(size_t pixel, int channel) const {
   const double square = (stages.squareSum[channel] + current.sumOfSquares[channel].Value()) / n;
   const double ofSample = std::max(0.0, square - mean * mean) * n / (n - 1);
   const double passes = endedPasses_ == 0 ? 1 : static_cast<double>(passes_);
-  const double scale = current.count > 0 ? passes / current.Divisor() : 0;
-  const double all = endedPasses_ == 0 ? 1 : static_cast<double>(endedPasses_ + passes_);
+  const double scale = current.count > 0 ? passes / static_cast<double>(current.count) : 0;
+  const double all = AdaptiveDivisor(pixel);
   const double independent = stages.independent + scale * scale * static_cast<double>(current.count);
   if (!HasGroups() || groups_[pixel].freedom == 0) return ofSample * independent / (all * all);
   const PixelGroups& groups = groups_[pixel];
@@ -122,25 +144,26 @@ double Film::CameraVariance(size_t pixel, int channel) const {
 double Film::CameraFourth(size_t pixel) const {
   const PixelSums& current = pixels_[pixel];
   const double passes = endedPasses_ == 0 ? 1 : static_cast<double>(passes_);
-  const double all = endedPasses_ == 0 ? 1 : static_cast<double>(endedPasses_ + passes_);
   double fourth = stages_[pixel].sumOfFourths;
-  if (current.count > 0) fourth += current.sumOfFourths * std::pow(passes / current.Divisor(), 4);
-  return fourth / std::pow(all, 4);
+  if (current.count > 0) fourth += current.sumOfFourths * std::pow(passes / static_cast<double>(current.count), 4);
+  return fourth / std::pow(AdaptiveDivisor(pixel), 4);
 }
 
 Film::PixelStatistics Film::StatisticsOf(size_t pixel) const {
   const PixelStages& stages = stages_[pixel];
   const auto n = static_cast<double>(stages.count);
   PixelStatistics statistics;
+  const auto all = static_cast<double>(endedPasses_);
+  const double divisor = stages.weight > 0.1 * all ? stages.weight : all;
   double deviation = 0;
   for (int c = 0; c < 3; ++c) {
     const double weight = Color::kLuminance[c], mean = stages.valueSum[c] / n;
-    statistics.luminance += weight * stages.sum[c] / static_cast<double>(endedPasses_);
+    statistics.luminance += weight * stages.sum[c] / divisor;
     deviation += weight * std::sqrt(std::max(0.0, stages.squareSum[c] - n * mean * mean));
   }
   statistics.luminance += stages.splatLuminance;
-  statistics.squares = deviation * deviation;
-  statistics.fourths = stages.fourthSum;
+  statistics.squares = std::pow(deviation * all / divisor, 2);
+  statistics.fourths = stages.fourthSum * std::pow(all / divisor, 4);
   statistics.splatVariance = stages.splatVariance;
   return statistics;
 }
@@ -169,6 +192,7 @@ void Film::AddStages(const Film& other) {
       to.valueSum[c] += from.valueSum[c];
       to.squareSum[c] += from.squareSum[c];
     }
+    to.weight += from.weight;
     to.independent += from.independent;
     to.shared += from.shared;
     to.sumOfFourths += from.sumOfFourths;
@@ -183,6 +207,16 @@ void Film::AddStages(const Film& other) {
     for (size_t c = 0; c < 3; ++c) layerStages_[i][c] += other.layerStages_[i][c];
   }
   endedPasses_ += other.endedPasses_;
+}
+
+// Throws an Error for numbers that no render leaves.
+void Film::CheckStages() const {
+  constexpr uint64_t kMost = uint64_t{1} << 30;
+  bool isSound = endedPasses_ <= kMost && passes_ <= kMost;
+  for (size_t i = 0; i < pixels_.size() && isSound; ++i) {
+    isSound = (endedPasses_ == 0) == (stages_[i].count == 0) && (passes_ == 0) == (pixels_[i].count == 0);
+  }
+  if (!isSound) throw Error("it holds a number out of range");
 }
 
 bool Film::StagesAreFinite() const {

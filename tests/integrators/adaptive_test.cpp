@@ -56,6 +56,37 @@ TEST_P(Adaptive, IsUnbiased) {
   EXPECT_EQ(adaptive.faults, 0u);
 }
 
+// Weights of filters with negative lobes do not have one sign: stages of one sample in a pixel are no ratio by
+// themselves.
+TEST(AdaptiveSampling, IsUnbiasedWithNegativeWeights) {
+  std::string text = kScene;
+  text.replace(text.find("Camera"), 6, "PixelFilter \"mitchell\"\nCamera");
+  RenderOverrides uniform, adaptive = Adaptively();
+  uniform.seed = 1000;
+  for (const char* integrator : {"path", "bdpt"}) {
+    const Agreement agreement = CompareReplicas(RenderReplicas(text, integrator, 24, 16, adaptive),
+                                                RenderReplicas(text, integrator, 48, 16, uniform), 12, 1e-3);
+    EXPECT_TRUE(agreement.Agrees()) << integrator << ": " << agreement.bias << " ± " << agreement.biasError;
+    std::printf("[   info   ] %s: %.2f %% ± %.2f %%\n", integrator, 100 * agreement.bias, 100 * agreement.biasError);
+  }
+}
+
+// The samples of a crop are divided among its pixels; light paths of the rest go on.
+TEST(AdaptiveSampling, ACropAgrees) {
+  RenderOverrides uniform, adaptive = Adaptively();
+  uniform.crop = adaptive.crop = "4,20,5,17";
+  uniform.seed = 1000;
+  for (const char* integrator : {"path", "bdpt", "vcm", "sppm"}) {
+    const Agreement agreement = CompareReplicas(RenderReplicas(kScene, integrator, 24, 16, adaptive),
+                                                RenderReplicas(kScene, integrator, 48, 16, uniform), 6, 1e-3);
+    EXPECT_TRUE(agreement.Agrees()) << integrator << ": " << agreement.bias << " ± " << agreement.biasError;
+    Diagnostics diagnostics(Diagnostics::Mode::Collect);
+    adaptive.integrator = integrator;
+    const BuiltScene built = BuildScene(ParseScene(kScene, "test.pbrt", diagnostics), adaptive, true, diagnostics);
+    EXPECT_EQ(RenderBuilt(built, 13, 3).image.data, RenderBuilt(built, 13, 1).image.data) << integrator;
+  }
+}
+
 // Mean over pixels and seeds of the squared error, and of the variance that is stated.
 std::pair<double, double> VarianceOf(const Replicas& replicas) {
   const Image& first = replicas.images[0];
