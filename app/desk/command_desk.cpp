@@ -61,13 +61,15 @@ void KeepMemory() {
 }
 
 // Serves until a signal comes.
-void ServeUntilInterrupted(HttpServer& server, const std::atomic<bool>& interrupted) {
+void ServeUntilInterrupted(HttpServer& server, Desk& desk, const std::atomic<bool>& interrupted) {
   std::atomic<bool> hasEnded{false};
   std::thread watch([&] {
     constexpr auto kLook = std::chrono::milliseconds(50);
     // Again, because a server that has not begun to serve does not stop.
     for (; !hasEnded.load(); std::this_thread::sleep_for(kLook)) {
-      if (interrupted.load()) server.Stop();
+      if (!interrupted.load()) continue;
+      desk.End();
+      server.Stop();
     }
   });
   server.Serve();
@@ -91,7 +93,7 @@ int RunDesk(const DeskOptions& options) {
   std::printf("%s\n", server.Address().c_str());
   std::fflush(stdout);
   if (!options.quiet) std::fprintf(stderr, "the desk is at this address, for this machine alone; Ctrl-C ends it\n");
-  ServeUntilInterrupted(server, interrupted);
+  ServeUntilInterrupted(server, *desk, interrupted);
   desk.reset();
   return FinishRendering([] { return kExitDone; });
 }

@@ -165,9 +165,18 @@ class Desk::Requests {
   }
 
   std::vector<Color> Factors() const { return FactorsIn(body_, desk_.faders_.size()); }
+  // For a picture that may be of a render before faders were set into the lights.
+  std::vector<Color> FactorsFor(const DeskPicture& picture) const {
+    std::vector<Color> factors = Factors();
+    const std::lock_guard lock(desk_.setting_);
+    for (const SetFactors& set : desk_.set_) {
+      if (set.restart <= picture.restart) continue;
+      for (size_t i = 0; i < factors.size(); ++i) factors[i] = factors[i] * set.factors[i];
+    }
+    return factors;
+  }
 
   HttpReply Picture() const {
-    const std::vector<Color> factors = Factors();
     if (body_.contains("after")) {
       constexpr double kLongestWait = 2;  // seconds
       desk_.session_.WaitForPicture(body_.at("after").get<uint64_t>(), kLongestWait);
@@ -175,6 +184,7 @@ class Desk::Requests {
     const std::shared_ptr<const DeskPicture> picture = desk_.session_.Picture();
     constexpr int kNoContent = 204;
     if (!picture) return {kNoContent, "application/octet-stream", "", ""};
+    const std::vector<Color> factors = FactorsFor(*picture);
     ScreenLook look;
     constexpr float mostStops = 30;
     look.exposure = std::clamp(body_.at("exposure").get<float>(), -mostStops, mostStops);
@@ -187,9 +197,9 @@ class Desk::Requests {
   }
 
   HttpReply Pixel() const {
-    const std::vector<Color> factors = Factors();
     const std::shared_ptr<const DeskPicture> picture = desk_.session_.Picture();
     if (!picture) throw Error("there is no picture yet");
+    const std::vector<Color> factors = FactorsFor(*picture);
     const LayerPlanes& planes = picture->planes;
     const int x = body_.at("x").get<int>(), y = body_.at("y").get<int>();
     if (x < 0 || y < 0 || x >= planes.width || y >= planes.height) throw Error("that is beyond the picture");
@@ -214,7 +224,11 @@ class Desk::Requests {
   HttpReply Edit() const {
     const std::lock_guard lock(desk_.editing_);
     const size_t statement = StatementIn(body_, desk_.scene_);
-    const auto numbers = body_.value("numbers", std::vector<double>());
+    std::vector<double> numbers;
+    for (const Json& number : body_.value("numbers", Json::array())) {
+      if (!number.is_number()) throw Error("a number is wanted");
+      numbers.push_back(number.get<double>());
+    }
     const std::string text = body_.value("text", std::string());
     const Parameter parameter =
         EditedParameter(desk_.scene_, statement, body_.at("parameter").get<std::string>(), numbers, text);
@@ -231,8 +245,14 @@ class Desk::Requests {
 
   HttpReply Set() const {
     const std::lock_guard lock(desk_.editing_);
-    desk_.scene_.Edit(EditsOf(desk_.scene_, desk_.faders_, Factors()));
-    return Restarted();
+    const std::vector<Color> factors = Factors();
+    desk_.scene_.Edit(EditsOf(desk_.scene_, desk_.faders_, factors));
+    HttpReply reply = Restarted();
+    const std::shared_ptr<const DeskPicture> picture = desk_.session_.Picture();
+    const std::lock_guard settingLock(desk_.setting_);
+    if (picture) std::erase_if(desk_.set_, [&](const SetFactors& set) { return set.restart <= picture->restart; });
+    desk_.set_.push_back({desk_.session_.State().restart, factors});
+    return reply;
   }
 
   HttpReply Pause() const {

@@ -27,13 +27,22 @@ class Desk {
   //
   // What is wrong with a request is answered with 422 and {"message"}.
   HttpReply Answer(const HttpRequest& request);
+  // Ends the render; requests that wait for it are answered.
+  void End() { session_.End(); }
 
  private:
   class Requests;
+  // Faders that were set into the lights of the render `restart`. In pictures of earlier renders they are mixed.
+  struct SetFactors {
+    uint64_t restart = 0;
+    std::vector<Color> factors;
+  };
 
   EditableScene& scene_;
   const std::vector<Fader> faders_;
   std::mutex editing_;  // of scene_
+  std::mutex setting_;  // of set_
+  std::vector<SetFactors> set_;
   DeskSession session_;
 };
 

@@ -49,7 +49,8 @@ void Accumulate(const float* __restrict values, float factor, size_t count, floa
 void Encode(const float* __restrict sums, float exposure, size_t count, uint32_t* __restrict steps) {
   constexpr float largest = 1e6f;
   for (size_t i = 0; i < count; ++i) {
-    const float x = std::min(std::max(sums[i] * exposure, 0.0f), largest);
+    const float sum = sums[i] * exposure;
+    const float x = sum > 0 ? std::min(sum, largest) : 0.0f;  // 0 where it is no number
     steps[i] = static_cast<uint32_t>(static_cast<int32_t>(x / (1 + x) * static_cast<float>(kSteps)));
   }
 }

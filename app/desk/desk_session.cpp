@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "base/stop.h"
 #include "render/analysis/unseen_samples.h"
@@ -49,12 +50,16 @@ DeskSession::DeskSession(std::shared_ptr<const BuiltScene> scene, int mostSample
 }
 
 DeskSession::~DeskSession() {
+  End();
+  run_->thread.join();
+}
+
+void DeskSession::End() {
   std::unique_lock lock(mutex_);
-  isEnding_ = true;
+  if (std::exchange(isEnding_, true)) return;
+  FailErrands();
   changed_.notify_all();
   StopPass(lock);
-  lock.unlock();
-  run_->thread.join();
 }
 
 std::shared_ptr<DeskSession::Run> DeskSession::MakeRun(std::shared_ptr<const BuiltScene> scene) {

@@ -43,8 +43,9 @@ class DeskSession {
  public:
   // `mostSamples`: per pixel. `threads`: of rendering and mixing.
   DeskSession(std::shared_ptr<const BuiltScene> scene, int mostSamples, int threads);
-  // Ends the render.
   ~DeskSession();
+  // Ends the render, and whatever waits for it. May be called by any thread, also more than once.
+  void End();
 
   // Renders another scene from now on. Returns when its first pass has begun; seconds that this took. Called by one
   // thread at a time.

@@ -92,15 +92,15 @@ KeptFiles Keep(const EditableScene& scene, DeskSession& session, const std::vect
   const FreeCopies copies =
       FindFreeCopies(scene.Description().file, AllChanges(scene, EditsOf(scene, faders, factors)));
   KeptFiles kept;
+  session.WithFilm([&](const BuiltScene& built, const Film& film, int samplesPerPixel) {
+    WritePicture(copies.picture, built, film, samplesPerPixel, faders, factors);
+  });
   for (const CopiedFile& copy : copies.files) {
     AtomicFile file(copy.path);
     file.Write(copy.text.data(), copy.text.size());
     file.Commit();
     kept.scenes.push_back(fs::absolute(copy.path));
   }
-  session.WithFilm([&](const BuiltScene& built, const Film& film, int samplesPerPixel) {
-    WritePicture(copies.picture, built, film, samplesPerPixel, faders, factors);
-  });
   kept.picture = fs::absolute(copies.picture);
   for (size_t i = 0; i < faders.size(); ++i) {
     if (faders[i].hasGlow && factors[i] != Color(1.0f))

@@ -120,10 +120,10 @@ class Copier {
  private:
   using Place = std::pair<int, int>;
 
-  // True if the file has a copy.
-  bool Visit(const fs::path& file, bool isScene) {
+  // The copy of the file; nullopt: it has none.
+  std::optional<fs::path> Visit(const fs::path& file, bool isScene) {
     const std::string canonical = Canonical(file);
-    const auto [known, isNew] = isCopied_.emplace(canonical, false);
+    const auto [known, isNew] = copyOf_.emplace(canonical, std::nullopt);
     if (!isNew) return known->second;
     EditedText edited(file);
     auto changes = waiting_.find(canonical);
@@ -144,15 +144,24 @@ class Copier {
       }
       token = std::move(next);
     }
-    if (!isScene && !edited.IsChanged()) return false;
-    copies_.push_back({PathOfCopy(file, suffix_), file, edited.Result()});
-    return isCopied_[canonical] = true;
+    if (!isScene && !edited.IsChanged()) return std::nullopt;
+    const fs::path path = PathOfCopy(file, suffix_);
+    for (const CopiedFile& other : copies_) {
+      if (other.path == path)
+        throw Error("\"" + file.string() + "\" and \"" + other.original.string() +
+                    "\" would have one copy: give one of them another name");
+    }
+    copies_.push_back({path, file, edited.Result()});
+    return copyOf_[canonical] = path;
   }
 
   void FollowInclude(EditedText& edited, const Token& name, const fs::path& writer) {
     const fs::path file = FindSceneFile(name.text, writer.string(), scene_.string());
-    if (Visit(file, false))
-      edited.Replace(edited.Begin(name), edited.End(name), Quoted(PathOfCopy(name.text, suffix_).string()));
+    const std::optional<fs::path> copy = Visit(file, false);
+    if (!copy) return;
+    // A file that is included by two names has one copy.
+    const fs::path written = *copy == PathOfCopy(file, suffix_) ? PathOfCopy(name.text, suffix_) : fs::absolute(*copy);
+    edited.Replace(edited.Begin(name), edited.End(name), Quoted(written.string()));
   }
 
   // Changes the statement whose type is `type`; returns the first token behind it.
@@ -189,7 +198,7 @@ class Copier {
   const fs::path scene_;
   const std::string suffix_;
   std::map<std::string, std::map<Place, const StatementChange*>> waiting_;  // by canonical file
-  std::map<std::string, bool> isCopied_;
+  std::map<std::string, std::optional<fs::path>> copyOf_;
   bool followsIncludes_ = false;  // statements of included files are changed
   bool hasColorSpaces_ = false;   // a statement so far changes it
   std::vector<CopiedFile> copies_;

@@ -47,6 +47,18 @@ TEST_F(SceneCopy, ReplacesAndAddsParameters) {
       "LightSource \"point\" \"float intensity\" 3\nTranslate 1 2 3");
 }
 
+TEST_F(SceneCopy, AFileOfTwoNamesHasOneCopy) {
+  WriteBytes(folder_ / "lights.pbrt", "LightSource \"point\"\n");
+  std::filesystem::create_symlink(folder_ / "lights.pbrt", folder_ / "same.pbrt");
+  WriteBytes(folder_ / "a.pbrt", "WorldBegin Include \"lights.pbrt\" Include \"same.pbrt\"\n");
+  const auto copies = CopyScene(folder_ / "a.pbrt",
+                                {Change("lights.pbrt", 1, 1, {Numbers("scale", ParameterType::Float, {2})})}, ".new");
+  ASSERT_EQ(copies.size(), 2u);
+  for (const CopiedFile& copy : copies) WriteBytes(copy.path, copy.text);
+  Diagnostics diagnostics(Diagnostics::Mode::Collect);
+  EXPECT_EQ(ReadScene(folder_ / "a.new.pbrt", diagnostics).lights.size(), 2u);
+}
+
 TEST_F(SceneCopy, CopiesIncludedFilesWithChangesAlone) {
   std::filesystem::create_directories(folder_ / "parts");
   WriteBytes(folder_ / "a.pbrt", "WorldBegin\nInclude \"parts/one.pbrt\"\nInclude \"parts/two.pbrt\"\n");
