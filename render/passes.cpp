@@ -296,8 +296,6 @@ class BothPaths {
   uint64_t CropSlotsBefore(uint64_t slot) const;
   // The first slot from `slot` on before which the samples of a pixel end: chunks share no pixel.
   uint64_t NextPixelFrom(uint64_t slot, uint32_t index) const;
-  // The index of a slot among those of the crop; nullopt: it is not one of them.
-  std::optional<uint64_t> SlotInCrop(uint64_t slot) const;
   // The light paths of a sample of a pixel: none, or some. `index`: of the sample, becomes that of the light path.
   int LightPathsOf(int x, int y, uint32_t& index) const;
   void TraceChunk(size_t chunk, uint64_t begin, uint64_t end, uint32_t index, uint64_t seed, bool withCamera,
@@ -335,12 +333,6 @@ uint64_t BothPaths::CropSlotsBefore(uint64_t slot) const {
   const int64_t rows = within(y, crop.y0, crop.y1);
   const bool isInRow = y >= static_cast<uint64_t>(crop.y0) && y < static_cast<uint64_t>(crop.y1);
   return static_cast<uint64_t>(rows * crop.Width() + (isInRow ? within(x, crop.x0, crop.x1) : 0));
-}
-
-std::optional<uint64_t> BothPaths::SlotInCrop(uint64_t slot) const {
-  const uint64_t before = CropSlotsBefore(slot);
-  if (slot >= pass_.Pixels() || CropSlotsBefore(slot + 1) == before) return std::nullopt;
-  return before;
 }
 
 uint64_t BothPaths::NextPixelFrom(uint64_t slot, uint32_t index) const {
@@ -441,13 +433,13 @@ struct BothPaths::SlotSampler {
     y = static_cast<int>(slot / width);
     number = lightNumber = index_ - paths_.pass_.Offset();
     lightPaths = paths_.LightPathsOf(x, y, lightNumber);
-    const std::optional<uint64_t> inCrop = paths_.SlotInCrop(slot);
-    isInCrop = inCrop.has_value();
+    const PixelRect& crop = paths_.pass_.film.Crop();
+    isInCrop = x >= crop.x0 && x < crop.x1 && y >= crop.y0 && y < crop.y1;
     if (!adaptive_ || !isInCrop) {
       sampler_.StartPixelSample(x, y, number);
       return sampler_;
     }
-    Sampler& sampler = adaptive_->Start(*inCrop);
+    Sampler& sampler = adaptive_->Start(paths_.CropSlotsBefore(slot));
     x = adaptive_->X();
     y = adaptive_->Y();
     number = adaptive_->Number();
