@@ -1,7 +1,6 @@
 #include "render/render_part.h"
 
 #include <algorithm>
-#include <array>
 #include <cstdio>
 #include <cstring>
 
@@ -15,8 +14,7 @@ namespace lampyr {
 namespace {
 
 // The last digit is the version of the format.
-constexpr std::array<char, 12> kMark = {'l', 'a', 'm', 'p', 'y', 'r', ' ', 'p', 'a', 'r', 't', '3'};
-constexpr size_t kEndBytes = sizeof(uint64_t) + sizeof(uint32_t) + kMark.size();
+constexpr size_t kEndBytes = sizeof(uint64_t) + sizeof(uint32_t) + kPartMark.size();
 constexpr uint64_t kMostEntries = 1 << 16;
 constexpr int kMostPixels = 1 << 16;  // across
 
@@ -87,7 +85,8 @@ void CheckHeader(const PartHeader& header, uint64_t bytesLeft) {
   if (!isSized || !isShard || (header.hasGroups && !header.isAdaptive)) throw Error("it holds a number out of range");
   // The film alone would be larger than the rest of the file: checked before its memory is allocated.
   const uint64_t pixels = static_cast<uint64_t>(crop.Width()) * static_cast<uint64_t>(crop.Height());
-  if (bytesLeft / Film::BytesPerPixel(header.layers.size(), false, header.isAdaptive, header.hasGroups) < pixels) throw Error("unexpected end of data");
+  if (bytesLeft / Film::BytesPerPixel(header.layers.size(), false, header.isAdaptive, header.hasGroups) < pixels)
+    throw Error("unexpected end of data");
 }
 
 PartHeader LoadHeader(ByteReader& bytes, PartKind kind) {
@@ -115,11 +114,11 @@ PartHeader LoadHeader(ByteReader& bytes, PartKind kind) {
 // The state before the mark, after checking its size and checksum.
 std::span<const std::byte> FindState(std::span<const std::byte> file) {
   const auto end = file.size() >= kEndBytes ? file.last(kEndBytes) : std::span<const std::byte>();
-  constexpr size_t markAt = kEndBytes - kMark.size(), versionAt = kEndBytes - 1;
-  if (end.empty() || std::memcmp(end.data() + markAt, kMark.data(), kMark.size() - 1) != 0) {
+  constexpr size_t markAt = kEndBytes - kPartMark.size(), versionAt = kEndBytes - 1;
+  if (end.empty() || std::memcmp(end.data() + markAt, kPartMark.data(), kPartMark.size() - 1) != 0) {
     throw Error("it holds no sums: only images of `lampyr render --shard` and checkpoints do, as they were written");
   }
-  if (static_cast<char>(end[versionAt]) != kMark.back()) {
+  if (static_cast<char>(end[versionAt]) != kPartMark.back()) {
     throw Error("another version of lampyr has written it, whose files this one does not know");
   }
   ByteReader tail(end);
@@ -204,7 +203,7 @@ void AppendPart(AtomicFile& file, PartKind kind, const PartHeader& header,
   const uint32_t checksum = state.Checksum();
   file.Write(&size, sizeof size);
   file.Write(&checksum, sizeof checksum);
-  file.Write(kMark.data(), kMark.size());
+  file.Write(kPartMark.data(), kPartMark.size());
 }
 
 PartHeader ReadPart(std::span<const std::byte> bytes, PartKind kind, std::span<const std::byte>& state) {

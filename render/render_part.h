@@ -10,6 +10,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -21,6 +22,9 @@
 namespace lampyr {
 
 class AtomicFile;
+
+// The end of a file with a state. The last character is the version of the layout.
+inline constexpr std::string_view kPartMark = "lampyr part3";
 
 // All that the samples depend on, as pairs of name and value: scene, files, settings, version. Threads, passes and
 // shards do not affect the samples and are not included.

@@ -21,7 +21,7 @@ std::vector<std::byte> Sealed(std::string_view bytes) {
   };
   append(&size, sizeof size);
   append(&checksum, sizeof checksum);
-  append("lampyr part2", 12);
+  append(kPartMark.data(), kPartMark.size());
   return file;
 }
 
