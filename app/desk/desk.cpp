@@ -1,4 +1,4 @@
-// What the page asks of the desk, as JSON.
+// The requests of the desk's page, and their answers as JSON.
 #include "app/desk/desk.h"
 
 #include <algorithm>
@@ -78,7 +78,7 @@ size_t StatementIn(const Json& body, const EditableScene& scene) {
   return statement;
 }
 
-// By fader.
+// One factor for each fader.
 std::vector<Color> FactorsIn(const Json& body, size_t count) {
   std::vector<Color> factors;
   constexpr float largest = 1e6f;

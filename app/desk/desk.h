@@ -25,7 +25,7 @@ class Desk {
   //   POST edit {statement, parameter, numbers | text}, reset {statement, parameter}, set {factors}
   //   POST pause {on}, keep {factors}
   //
-  // What is wrong with a request is answered with 422 and {"message"}.
+  // A wrong request is answered with status 422 and {"message"}.
   HttpReply Answer(const HttpRequest& request);
   // Ends the render; requests that wait for it are answered.
   void End() { session_.End(); }

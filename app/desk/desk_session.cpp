@@ -42,7 +42,7 @@ DeskSession::DeskSession(std::shared_ptr<const BuiltScene> scene, int mostSample
     : mostSamples_(mostSamples), threads_(threads) {
   auto run = std::make_shared<Run>();
   run->scene = std::move(scene);
-  // What cannot be rendered is told now; the film is made by the thread.
+  // The integrator is made here, so that a scene it refuses is an error of the constructor.
   run->integrator = MakeIntegrator(run->scene->scene, run->scene->settings);
   const std::lock_guard lock(mutex_);
   Start(std::move(run));
@@ -190,7 +190,7 @@ void DeskSession::RunThread(const std::shared_ptr<Run>& run) {
   run->isInPass = false;
   if (!failure.empty()) state_.failure = failure;
   if (!failure.empty() || isEnding_) FailErrands();
-  // What a pass that did not end refers to stays until the process ends.
+  // The threads of a pass that was given up still use the run: it is never destroyed.
   if (HasGivenUpWork()) (void)new std::shared_ptr<Run>(run);
   changed_.notify_all();
 }
