@@ -230,14 +230,22 @@ struct RenderCommand {
                    "Render one part of the samples, e.g. 2/8, for `lampyr merge`; default of --output: OUT.2-of-8.exr")
         ->type_name("I/N");
     app.add_option("--stats", options.stats, "Write statistics to this JSON file")->type_name("FILE");
-    app.add_option("--layer", overrides.layers,
+    DefineLayers(app);
+    app.add_flag("--quiet", options.quiet, "No progress and no summary");
+    app.add_flag("--strict", options.strict, "Warnings about the scene are errors");
+    app.add_flag("--fast-intersection", fast,
+                 "Trade watertight intersection for speed: rays may slip through shared edges");
+  }
+
+  void DefineLayers(CLI::App& app) {
+    app.add_option("--layer", options.overrides.layers,
                    "Add a layer of some of the light: " + KnownLayers() +
                        "; one of these from one light, \"caustic<L.'key'>\"; or any light path expression with a name, "
                        "\"keys=C<RD>[<L.'key'>O]\". Or one of what pixels see and of their samples: " +
                        KnownPixelLayers() + ". May be given more than once")
         ->type_name("LAYER")
         ->allow_extra_args(false);
-    app.add_flag("--through-smooth", overrides.seesThroughSmooth,
+    app.add_flag("--through-smooth", options.overrides.seesThroughSmooth,
                  "What pixels see, for those layers, is what mirrors and smooth glass show");
     app.add_flag("--denoise", options.denoise,
                  "Denoise the picture; as it was rendered it stays in the layer \"noisy\". With --shard: keep what "
@@ -247,10 +255,6 @@ struct RenderCommand {
     app.add_option("--strategy-images", options.strategyImages,
                    "Write what each technique of bdpt contributes, weighted and not, to this folder")
         ->type_name("FOLDER");
-    app.add_flag("--quiet", options.quiet, "No progress and no summary");
-    app.add_flag("--strict", options.strict, "Warnings about the scene are errors");
-    app.add_flag("--fast-intersection", fast,
-                 "Trade watertight intersection for speed: rays may slip through shared edges");
   }
 
   int Run() {

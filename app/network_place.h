@@ -9,7 +9,7 @@ struct NetworkPlace {
   std::string host, port;
 };
 
-// Of "HOST:PORT" or "[IPv6]:PORT". Throws a UsageError that names the option.
+// Parses "HOST:PORT" or "[IPv6]:PORT". Throws a UsageError that names the option.
 NetworkPlace ParseNetworkPlace(const std::string& option, const std::string& text);
 
 }  // namespace lampyr

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 #include "base/stop.h"
 #include "math/vec.h"
@@ -21,7 +22,7 @@ constexpr double kTiny = std::numeric_limits<double>::min();
 // Rates. The lower limit is for pixels whose noise has not shown yet, the upper for fireflies.
 constexpr double kLeastRate = 0.5, kMostRate = 32;
 
-// What decides how many samples a pixel should have, relative to its squared luminance.
+// Variances of a pixel, relative to its squared luminance, that its number of samples follows from.
 struct PixelNeed {
   double ofSample = 0;  // variance of a sample
   double before = 0;    // variance of the picture per `ofSample`, as far as it comes from earlier stages
@@ -56,38 +57,35 @@ PixelGrid Blurred(const PixelGrid& from, int step) {
   return BlurredAlong(BlurredAlong(from, true, step), false, step);
 }
 
-// Relative variance of a sample of every pixel: that of the samples around it, but at least that farther around. Where
-// one in a thousand samples finds a light, most pixels have not met it yet; all of them may.
-std::vector<double> SampleVariances(PixelGrid squares, PixelGrid counts) {
-  constexpr int kNear = 1, kFar = 4;  // blurs
-  std::vector<double> variances(squares.values.size(), 0);
-  for (int scale = 0; scale < kFar; ++scale) {
-    squares = Blurred(squares, 1 << scale);
-    counts = Blurred(counts, 1 << scale);
-    if (scale + 1 != kNear && scale + 1 != kFar) continue;
-    for (size_t i = 0; i < variances.size(); ++i) {
-      const double around = squares.values[i] / std::max(counts.values[i] - 1, 1.0);
-      variances[i] = std::max(variances[i], around);
+struct SampleNoise {
+  std::vector<double> variances, trusts;
+};
+
+// Relative variance of a sample of every pixel: the variance of the samples near it, or that of a wider neighbourhood
+// if that is larger. Where one sample in a thousand finds a light, most pixels have not met it yet.
+//
+// Trust in it, from 0 to 1, grows with the number of large samples within kPixels that make it up. Few bright samples
+// tell only where they happened to fall.
+SampleNoise NoiseOf(PixelGrid squares, PixelGrid fourths, PixelGrid counts) {
+  constexpr int kNear = 1, kTrusted = 3, kFar = 4;                               // blurs
+  constexpr double kEnough = 48, kPixels = 4 * std::numbers::pi * (1 + 4 + 16);  // under kTrusted blurs
+  const size_t pixels = squares.values.size();
+  SampleNoise noise{std::vector<double>(pixels, 0), std::vector<double>(pixels, 1)};
+  for (int blurs = 1; blurs <= kFar; ++blurs) {
+    const int step = 1 << (blurs - 1);
+    squares = Blurred(squares, step);
+    counts = Blurred(counts, step);
+    if (blurs <= kTrusted) fourths = Blurred(fourths, step);
+    for (size_t i = 0; i < pixels; ++i) {
+      const double square = squares.values[i];
+      if (blurs == kNear || blurs == kFar)
+        noise.variances[i] = std::max(noise.variances[i], square / std::max(counts.values[i] - 1, 1.0));
+      if (blurs != kTrusted || !(fourths.values[i] > 0)) continue;
+      const double large = kPixels * square * square / fourths.values[i];
+      noise.trusts[i] = large / (large + kEnough);
     }
   }
-  return variances;
-}
-
-// How far the variances can be trusted: by the number of large samples that make them up, within some pixels. Where few
-// samples hold most of the variance, it is where they happened to fall.
-std::vector<double> TrustsIn(PixelGrid squares, PixelGrid fourths) {
-  constexpr double kEnough = 48, kPixels = 4 * std::numbers::pi * (1 + 4 + 16);  // under three blurs
-  for (int scale = 0; scale < 3; ++scale) {
-    squares = Blurred(squares, 1 << scale);
-    fourths = Blurred(fourths, 1 << scale);
-  }
-  std::vector<double> trusts(squares.values.size(), 1);
-  for (size_t i = 0; i < trusts.size(); ++i) {
-    if (!(fourths.values[i] > 0)) continue;
-    const double large = kPixels * squares.values[i] * squares.values[i] / fourths.values[i];
-    trusts[i] = large / (large + kEnough);
-  }
-  return trusts;
+  return noise;
 }
 
 std::vector<PixelNeed> NeedsOf(const Film& film, const SampleStage& stage) {
@@ -112,8 +110,7 @@ std::vector<PixelNeed> NeedsOf(const Film& film, const SampleStage& stage) {
     splats.values[i] = square > 0 ? splats.values[i] / square : 0;
   }
   splats = Blurred(splats, 1);
-  const std::vector<double> variances = SampleVariances(squares, counts);
-  const std::vector<double> trusts = TrustsIn(squares, fourths);
+  const auto [variances, trusts] = NoiseOf(std::move(squares), std::move(fourths), std::move(counts));
   const auto before = static_cast<double>(film.EndedPasses());
   const double all = before + stage.passes;
   std::vector<PixelNeed> needs(pixels);

@@ -34,7 +34,7 @@ class SampleAllocation {
  public:
   // One sample for each of `pixels` in every pass.
   SampleAllocation(const SampleStage& stage, size_t pixels) : stage_(stage), pixels_(pixels) {}
-  // By what the ended stages of the film tell.
+  // Rates from the statistics of the ended stages of the film.
   SampleAllocation(const SampleStage& stage, const Film& film, const AdaptiveSettings& settings);
 
   const SampleStage& Stage() const { return stage_; }

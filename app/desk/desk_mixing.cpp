@@ -6,7 +6,6 @@
 #include <mutex>
 
 #include "base/parallel.h"
-#include "film/srgb.h"
 
 namespace lampyr {
 
@@ -22,11 +21,7 @@ ScreenTable MakeScreenTable(ToneMap toneMap) {
   ScreenTable table{};
   for (size_t i = 0; i < kSteps; ++i) {
     const float t = static_cast<float>(i) / static_cast<float>(kSteps);
-    float x = t / (1 - t);
-    constexpr float shoulder = 0.6f;
-    if (toneMap == ToneMap::Filmic && x > shoulder)
-      x = shoulder + (1 - shoulder) * (1 - std::exp(-(x - shoulder) / (1 - shoulder)));
-    table[i] = static_cast<uint8_t>(std::lround(255 * LinearToSrgb(std::clamp(x, 0.0f, 1.0f))));
+    table[i] = ToDisplay(t / (1 - t), 1, toneMap);
   }
   return table;
 }

@@ -25,7 +25,7 @@ struct LayerPlanes {
   }
 };
 
-// Of a developed picture (Film::Develop): its layers of those names, or without names the picture as one.
+// The planes of a developed picture (Film::Develop): of the layers `names`, or of the whole picture if there are none.
 LayerPlanes PlanesOf(const Image& image, const std::vector<std::string>& names, int threads);
 
 struct ScreenLook {

@@ -1,4 +1,4 @@
-// What the desk leaves behind: the scene with its edits and faders as a file, and the picture.
+// *Keep* of the lighting desk: writes the scene, with its edits and faders, and the picture.
 #pragma once
 
 #include <filesystem>

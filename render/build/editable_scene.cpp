@@ -126,7 +126,7 @@ RgbColorSpace EditableScene::ColorSpaceOf(size_t statement) const {
   return parameters.empty() ? RgbColorSpace::Srgb : parameters.front().colorSpace;
 }
 
-// Of lights with a surface of their own, and area lights, which the camera may not see.
+// True if the shapes have to be built again: parameters of a light with a surface of its own, and cameraVisible.
 bool EditableScene::ConcernsShapes(const StatementEdit& change, const Lights& edited) const {
   const EditableStatement& statement = statements_[change.statement];
   const auto hasSurface = [](const auto& light) { return light->Surface() != nullptr; };

@@ -44,7 +44,7 @@ class EditableScene {
   // The description with all edits.
   const SceneDescription& Description() const { return description_; }
   const std::vector<EditableStatement>& Statements() const { return statements_; }
-  // Of the first description of the statement: with all edits, and as the scene has it.
+  // Parameters of the statement's first description: with all edits, and as the scene has them.
   const ParameterList& ParametersOf(size_t statement) const;
   const ParameterList& OriginalOf(size_t statement) const { return statements_[statement].originals.front(); }
   // The colour space of rgb values that are added to the statement.

@@ -66,14 +66,14 @@ float FilmicShoulder(float x) {
   return kShoulderStart + room * (1.0f - std::exp(-(x - kShoulderStart) / room));
 }
 
+}  // namespace
+
 unsigned char ToDisplay(float linear, float exposure, ToneMap toneMap) {
   float x = linear * exposure;
   if (!(x > 0)) return 0;  // also for NaN
   if (toneMap == ToneMap::Filmic) x = FilmicShoulder(x);
   return static_cast<unsigned char>(std::lround(255.0f * LinearToSrgb(std::min(x, 1.0f))));
 }
-
-}  // namespace
 
 Image::Image(int w, int h, std::vector<std::string> channelNames)
     : width(w),

@@ -54,6 +54,8 @@ void WriteExr(const std::filesystem::path& path, const Image& image, ExrPrecisio
 // Writes an 8-bit sRGB PNG for display: exposure in stops, then a tone map: clipping at 1, or a filmic shoulder, which
 // is x up to 0.6, then 0.6 + 0.4·(1 - exp(-(x - 0.6)/0.4)), per channel.
 enum class ToneMap { Clip, Filmic };
+// The sRGB value of a channel; `exposure`: its factor.
+unsigned char ToDisplay(float linear, float exposure, ToneMap toneMap);
 void WritePng(const std::filesystem::path& path, const Image& image, float exposureStops, ToneMap toneMap);
 // The bytes of the file that WritePng writes.
 std::vector<unsigned char> EncodeForDisplay(const Image& image, float exposureStops, ToneMap toneMap);
