@@ -26,6 +26,8 @@ PassSequence::PassSequence(const RenderScene& scene, const Integrator& integrato
   if (settings.adaptive && integrator.Paths() != TracedPaths::Light && !film.IsAdaptive())
     film.MakeAdaptive(wantedPhotons_.has_value());
   MakePhotonStore();
+  if (settings.GuidesPaths() && integrator.FollowsCameraPaths())
+    paths_ = std::make_unique<PathLearning>(settings.width, settings.height, settings.AlwaysGuidesPaths());
   if (settings.LearnsLights()) learning_ = std::make_unique<LightLearning>(scene.lighting->SceneSphere());
 }
 
@@ -40,7 +42,8 @@ void PassSequence::Add(uint32_t done, uint32_t count) {
   const uint32_t end = done + count;
   while (done < end) {
     const uint32_t milestone = std::bit_ceil(done + 1);
-    const bool learns = (learning_ && learning_->IsRecording()) || (guiding_ && guiding_->IsRecording());
+    const bool learns = (learning_ && learning_->IsRecording()) || (guiding_ && guiding_->IsRecording()) ||
+                        (paths_ && paths_->IsRecording());
     uint32_t next = learns ? std::min(end, milestone) : end;
     if (film_->IsAdaptive()) {
       StartStage(done);
@@ -57,8 +60,10 @@ void PassSequence::AddPass(uint32_t done, uint32_t count) {
   view_ = scene_;
   view_.lighting = std::make_shared<const LightingServices>(
       scene_.lighting->With(learning_.get(), guiding_ ? guiding_->Guide() : nullptr));
+  view_.guide = paths_ ? paths_->Guide() : nullptr;
+  PathLearning* recorded = paths_ && paths_->IsRecording() ? paths_.get() : nullptr;
   const RenderCounts counts = RenderPass(view_, integrator_, settings_, filter_, firstSample_ + done, count, threads_,
-                                         *film_, techniques_, photons_.get(), allocation_.get());
+                                         *film_, techniques_, photons_.get(), allocation_.get(), recorded);
   CheckStop();  // the counts of a given-up pass are not added
   if (film_->IsAdaptive()) film_->CountPasses(count);
   counts_ += counts;
@@ -80,6 +85,7 @@ void PassSequence::Learn(uint32_t samples) {
     changesDensities = true;
   }
   if (guiding_ && guiding_->IsRecording() && guiding_->Decide(samples)) changesDensities = true;
+  if (paths_ && paths_->IsRecording() && paths_->Decide(samples, threads_)) changesDensities = true;
   // The photons of the last pass, and their weights, have densities of the view before. They are dropped and others
   // traced in their place, as when a render is resumed.
   if (changesDensities && photons_) photons_->Clear();
@@ -150,12 +156,14 @@ void PassSequence::Save(ByteWriter& bytes) const {
   if (photons_) bytes.Value(photons_->Statistics());
   if (learning_) learning_->Save(bytes);
   if (guiding_) guiding_->Save(bytes);
+  if (paths_) paths_->Save(bytes);
 }
 
 void PassSequence::Load(ByteReader& bytes) {
   if (photons_) photons_->Continue(bytes.Value<PhotonStatistics>());
   if (learning_) learning_->Load(bytes);
   if (guiding_) guiding_->Load(bytes);
+  if (paths_) paths_->Load(bytes);
 }
 
 }  // namespace lampyr

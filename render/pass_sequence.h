@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "film/film.h"
+#include "integrators/guide/path_learning.h"
 #include "integrators/photon/photon_store.h"
 #include "integrators/walk/integrator.h"
 #include "render/adaptive_sampling.h"
@@ -30,7 +31,7 @@ class PassSequence {
   const Integrator& TracedBy() const { return integrator_; }
   Film& Picture() const { return *film_; }
   // What passes change.
-  PassState State() { return {*film_, techniques_, &learning_, &guiding_}; }
+  PassState State() { return {*film_, techniques_, &learning_, &guiding_, &paths_}; }
   // Counts since the last call.
   RenderCounts TakeCounts();
   // Of integrators that gather photons.
@@ -66,6 +67,7 @@ class PassSequence {
   PhotonStatistics before_;                       // of the photons, before the last call of Add
   std::unique_ptr<LightLearning> learning_;       // null: selection learns nothing
   std::unique_ptr<EmissionLearning> guiding_;     // null: no emission guiding
+  std::unique_ptr<PathLearning> paths_;           // null: no path guiding
   std::unique_ptr<PhotonStore> photons_;          // of integrators that gather them
   std::unique_ptr<SampleAllocation> allocation_;  // of the last stage, in an adaptive film
 };

@@ -90,12 +90,25 @@ struct Pass {
   int threads;
   Film& film;
   const SampleAllocation* allocation;  // null: one sample for each pixel
+  PathLearning* learning;              // null: camera paths are not recorded
 
   // Samplers count the samples of a stage.
   uint32_t Offset() const { return allocation ? allocation->Stage().first : 0; }
   uint64_t Seed() const { return allocation ? allocation->Stage().seed : settings.seed; }
   const OutputPlan* Outputs() const { return film.HasLayers() ? scene.outputs.get() : nullptr; }
   uint64_t Pixels() const { return static_cast<uint64_t>(settings.width) * static_cast<uint64_t>(settings.height); }
+  // Records of `parts` parts of a pass, which begin without any.
+  std::vector<PathRecords> MakeRecords(size_t parts) const {
+    std::vector<PathRecords> records(learning ? parts : 0);
+    for (PathRecords& part : records) part.SetFraction(learning->Fraction());
+    return records;
+  }
+  // `context`: of the sample of index `sample` of a pixel; null `records`: not recorded.
+  void Record(int x, int y, uint64_t sample, PathRecords* records, SampleContext& context) const {
+    context.records = records;
+    context.pixel = static_cast<uint32_t>(y * settings.width + x);
+    context.sample = static_cast<uint32_t>(sample);
+  }
 };
 
 // Starts the samples of pixels in an adaptive film, where the layer of half of the samples has every second one, and a
@@ -122,7 +135,7 @@ class AdaptiveSampler {
 
 // Adds the samples of the passes to the pixel of index `pixel` in the crop.
 void TraceAdaptively(const Pass& pass, int x, int y, size_t pixel, AdaptiveSampler& samplers, SampleAdder& adder,
-                     RenderCounts& counts) {
+                     PathRecords* records, RenderCounts& counts) {
   PixelSums sums = pass.film.Pixel(x, y);
   uint32_t count = 0;
   for (uint32_t i = pass.first; i < pass.end; ++i) count += pass.allocation->Count(pixel, i - pass.Offset());
@@ -133,6 +146,7 @@ void TraceAdaptively(const Pass& pass, int x, int y, size_t pixel, AdaptiveSampl
     const PixelRay ray = MakePixelRay(pass.scene, pass.filter, x, y, time, sampler);
     SampleContext context{pass.scene, sampler, time, counts, adder.StartLayers()};
     context.outputs = pass.Outputs();
+    pass.Record(x, y, number, records, context);
     adder.Add(x, y, AdaptiveSampler::IsInHalf(number), ray, Radiance(pass.integrator, ray, context), sums);
   }
   pass.film.Pixel(x, y) = sums;
@@ -143,6 +157,7 @@ RenderCounts TraceCameraPaths(const Pass& pass) {
   const int tilesX = (crop.Width() + kTileSize - 1) / kTileSize;
   const int tilesY = (crop.Height() + kTileSize - 1) / kTileSize;
   std::vector<RenderCounts> tileCounts(static_cast<size_t>(tilesX) * tilesY);
+  std::vector<PathRecords> tileRecords = pass.MakeRecords(tileCounts.size());
   ParallelFor(tilesX * tilesY, pass.threads, [&](int tile) {
     const int x0 = crop.x0 + tile % tilesX * kTileSize, x1 = std::min(x0 + kTileSize, crop.x1);
     const int y0 = crop.y0 + tile / tilesX * kTileSize, y1 = std::min(y0 + kTileSize, crop.y1);
@@ -150,12 +165,13 @@ RenderCounts TraceCameraPaths(const Pass& pass) {
     RenderCounts counts;
     SampleAdder adder(pass.settings, pass.film, counts);
     AdaptiveSampler samplers(pass);
+    PathRecords* records = pass.learning ? &tileRecords[tile] : nullptr;
     for (int y = y0; y < y1; ++y) {
       for (int x = x0; x < x1; ++x) {
         if (pass.allocation) {
           const auto pixel =
               static_cast<size_t>(y - crop.y0) * static_cast<size_t>(crop.Width()) + static_cast<size_t>(x - crop.x0);
-          TraceAdaptively(pass, x, y, pixel, samplers, adder, counts);
+          TraceAdaptively(pass, x, y, pixel, samplers, adder, records, counts);
           continue;
         }
         PixelSums sums = pass.film.Pixel(x, y);
@@ -165,6 +181,7 @@ RenderCounts TraceCameraPaths(const Pass& pass) {
           const PixelRay ray = MakePixelRay(pass.scene, pass.filter, x, y, time, sampler);
           SampleContext context{pass.scene, sampler, time, counts, adder.StartLayers()};
           context.outputs = pass.Outputs();
+          pass.Record(x, y, i, records, context);
           adder.Add(x, y, IsInHalf(i), ray, Radiance(pass.integrator, ray, context), sums);
         }
         pass.film.Pixel(x, y) = sums;
@@ -172,6 +189,7 @@ RenderCounts TraceCameraPaths(const Pass& pass) {
     }
     tileCounts[tile] = counts;
   });
+  if (pass.learning) pass.learning->Learn(tileRecords);
   return Total(tileCounts);
 }
 
@@ -224,6 +242,7 @@ class BothPaths {
                              kChunkPaths)),
         splats_(static_cast<size_t>(chunks_), pass.film.MakeSplatList(pass.filter, pass.settings.sensor)),
         photons_(static_cast<size_t>(chunks_)),
+        records_(pass.MakeRecords(static_cast<size_t>(chunks_))),
         counts_(static_cast<size_t>(chunks_)) {
     if (techniques)
       recorders_.assign(static_cast<size_t>(chunks_), TechniqueImages::Recorder(*techniques, pass.filter));
@@ -252,6 +271,7 @@ class BothPaths {
         store_.Finish(index + 1);
       }
     }
+    if (pass_.learning) pass_.learning->Learn(records_);
     return Total(counts_);
   }
 
@@ -319,6 +339,7 @@ class BothPaths {
   // Per chunk:
   std::vector<SplatList> splats_;
   std::vector<PhotonList> photons_;
+  std::vector<PathRecords> records_;  // none, unless camera paths are recorded
   std::vector<RenderCounts> counts_;
   std::vector<TechniqueImages::Recorder> recorders_;
 };
@@ -496,6 +517,8 @@ void BothPaths::TraceChunk(size_t chunk, uint64_t begin, uint64_t end, uint32_t 
       const PixelRay ray = MakePixelRay(pass_.scene, pass_.filter, x, y, time, sampler);
       if (recorder) recorder->StartSample(x, y, ray.camera.weight * settings.sensor.ImagingRatio() * ray.filterWeight);
       context.film = ray.film;
+      if (pass_.learning)
+        pass_.Record(x, y, pass_.allocation ? slots.number : index, &records_[chunk], context);
       adder.StartLayers();
       const Color radiance = Radiance(pass_.integrator, ray, context);
       if (adaptive) {
@@ -527,8 +550,9 @@ void BothPaths::StartLightPath(size_t chunk, bool keepsPhotons, uint32_t index, 
 
 RenderCounts RenderPass(const RenderScene& scene, const Integrator& integrator, const RenderSettings& settings,
                         const PixelFilter& filter, uint32_t first, uint32_t count, int threads, Film& film,
-                        TechniqueImages* techniques, PhotonStore* kept, const SampleAllocation* allocation) {
-  const Pass pass{scene, integrator, settings, filter, first, first + count, threads, film, allocation};
+                        TechniqueImages* techniques, PhotonStore* kept, const SampleAllocation* allocation,
+                        PathLearning* learning) {
+  const Pass pass{scene, integrator, settings, filter, first, first + count, threads, film, allocation, learning};
   switch (integrator.Paths()) {
     case TracedPaths::Camera:
       return TraceCameraPaths(pass);

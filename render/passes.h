@@ -5,6 +5,7 @@
 #pragma once
 
 #include "film/film.h"
+#include "integrators/guide/path_learning.h"
 #include "integrators/photon/photon_store.h"
 #include "integrators/walk/integrator.h"
 #include "render/adaptive_sampling.h"
@@ -27,12 +28,14 @@ namespace lampyr {
 // sample before are traced again. In scenes with motion all paths of such a pass have the same time, and its photons
 // come from light paths of that time.
 //
+// `learning`: receives records of the camera paths; may be null.
+//
 // `allocation`: of the stage of an adaptive film that all of these passes are in; null: one sample for each pixel. The
 // samples of a pixel are numbered through the stage. Rates are relative to what the crop sees: a crop of an adaptive
 // render is not that part of the full image.
 RenderCounts RenderPass(const RenderScene& scene, const Integrator& integrator, const RenderSettings& settings,
                         const PixelFilter& filter, uint32_t first, uint32_t count, int threads, Film& film,
                         TechniqueImages* techniques = nullptr, PhotonStore* kept = nullptr,
-                        const SampleAllocation* allocation = nullptr);
+                        const SampleAllocation* allocation = nullptr, PathLearning* learning = nullptr);
 
 }  // namespace lampyr

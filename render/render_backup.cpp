@@ -18,6 +18,9 @@ void RenderBackup::Take(const PassState& state, bool withFilm, int threads) {
   const EmissionLearning* guiding = state.guiding ? state.guiding->get() : nullptr;
   if (guiding && (guiding->IsRecording() || (guiding_ && guiding_->IsRecording())))
     guiding_ = std::make_unique<EmissionLearning>(*guiding);
+  const PathLearning* paths = state.paths ? state.paths->get() : nullptr;
+  if (paths && (paths->IsRecording() || (paths_ && paths_->IsRecording())))
+    paths_ = std::make_unique<PathLearning>(*paths);
 }
 
 void RenderBackup::Restore(const PassState& state, int threads, bool keepsOld) {
@@ -31,6 +34,10 @@ void RenderBackup::Restore(const PassState& state, int threads, bool keepsOld) {
   if (guiding_) {
     if (keepsOld) (void)state.guiding->release();
     *state.guiding = std::make_unique<EmissionLearning>(*guiding_);
+  }
+  if (paths_) {
+    if (keepsOld) (void)state.paths->release();
+    *state.paths = std::make_unique<PathLearning>(*paths_);
   }
 }
 

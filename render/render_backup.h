@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "film/film.h"
+#include "integrators/guide/path_learning.h"
 #include "integrators/photon/emission_learning.h"
 #include "integrators/photon/photon_store.h"
 #include "lights/selection/light_learning.h"
@@ -18,6 +19,7 @@ struct PassState {
   TechniqueImages* techniques = nullptr;
   std::unique_ptr<LightLearning>* learning = nullptr;
   std::unique_ptr<EmissionLearning>* guiding = nullptr;
+  std::unique_ptr<PathLearning>* paths = nullptr;
 };
 
 // Takes as much memory as the film, and keeps it from pass to pass.
@@ -38,6 +40,7 @@ class RenderBackup {
   std::optional<TechniqueImages> techniques_;
   std::unique_ptr<LightLearning> learning_;
   std::unique_ptr<EmissionLearning> guiding_;
+  std::unique_ptr<PathLearning> paths_;
 };
 
 }  // namespace lampyr

@@ -202,6 +202,7 @@ class CameraSide final : public PathVisitor {
     sample_.couldMerge = sample_.couldMerge || (last.CanMerge() && !last.scatteredDelta);
     return true;
   }
+  float Found() const override { return sample_.radiance.Average(); }
 
  private:
   // Cost of merging with a beam, in merges with photons on surfaces.
@@ -425,8 +426,10 @@ Color BidirectionalIntegrator::Sample(const Ray* ray, const SampleContext& conte
                           .maxDepth = settings_.maxDepth,
                           .dimensions = kCameraDimensions,
                           .seesFlights = settings_.merges,
-                          .wantsBeams = settings_.merges};
+                          .wantsBeams = settings_.merges,
+                          .records = StartRecord(context, *ray)};
   Walk(context, walk, state, workspace.camera, visitor);
+  if (walk.records) walk.records->EndPath(visitor.Found());
   return sample.radiance;
 }
 

@@ -19,10 +19,10 @@ struct DirectionDensities {
 // are in the vertex.
 DirectionDensities At(const PathVertex& vertex, bool isLight, const Vector3& toLight, const Vector3& toCamera) {
   if (isLight) {
-    const BsdfEvaluation f = vertex.bsdf.Evaluate(toLight, toCamera, TransportMode::Importance);
+    const BsdfEvaluation f = vertex.EvaluateBetween(toLight, toCamera, TransportMode::Importance);
     return {SolidAngleDensity(f.pdfReverse), SolidAngleDensity(f.pdfForward)};
   }
-  const BsdfEvaluation f = vertex.bsdf.Evaluate(toCamera, toLight, TransportMode::Radiance);
+  const BsdfEvaluation f = vertex.EvaluateBetween(toCamera, toLight, TransportMode::Radiance);
   return {SolidAngleDensity(f.pdfForward), SolidAngleDensity(f.pdfReverse)};
 }
 

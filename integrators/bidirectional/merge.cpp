@@ -72,10 +72,10 @@ double WeightOf(const BidirectionalSample& sample, const Photon& photon, std::sp
 }
 
 // Makes the vertex of the camera subpath at which the ray of `state` passes a photon. `passed`: of the ray up to there.
-void SetVertexInMedium(const PathState& state, const Flight& flight, const Point3d& position, int32_t medium,
+void SetVertexInMedium(const SampleContext& context, const PathState& state, const Flight& flight, const Point3d& position, int32_t medium,
                        const PhaseBsdf& phase, const Color& extinction, const BeamPoint& passed, PathVertex& vertex) {
   vertex = PathVertex();
-  MakeVertexInMedium(position, state.ray.direction, medium, phase, extinction, vertex);
+  MakeVertexInMedium(context.scene, position, state.ray.direction, medium, phase, extinction, vertex);
   vertex.factors = {MeanOf(passed.density * extinction), MeanOf(passed.density * flight.startExtinction),
                     passed.through};
 }
@@ -94,7 +94,7 @@ bool SetPointVertex(const SampleContext& context, const PathState& state, const 
            .kernel = photon.Kernel(),
            .use = hit.index,
            .labels = map.LabelsOf(hit.index)};
-  SetVertexInMedium(state, flight, flight.line.start + static_cast<double>(hit.t) * flight.line.direction,
+  SetVertexInMedium(context, state, flight, flight.line.start + static_cast<double>(hit.t) * flight.line.direction,
                     photon.medium, photon.phase, photon.extinction, *point, vertex);
   return true;
 }
@@ -107,7 +107,7 @@ bool SetCrossingVertex(const SampleContext& context, const PathState& state, con
   const Medium& medium = *context.scene.media[static_cast<size_t>(beam.step.medium)];
   const MediumCoefficients here = medium.At(Point3(0.0f));
   merge.throughput = state.Throughput() * point->passed;
-  SetVertexInMedium(state, flight, crossing.onBeam, beam.step.medium, {here.scattering, medium.Asymmetry()},
+  SetVertexInMedium(context, state, flight, crossing.onBeam, beam.step.medium, {here.scattering, medium.Asymmetry()},
                     here.Extinction(), *point, vertex);
   return true;
 }

@@ -90,6 +90,7 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
     return !emissionOnly_ || (settings_.samplesLights && HasEmissionToFind());
   }
 
+  float Found() const override { return radiance_.Average(); }
   const Color& Radiance() const { return radiance_; }
 
  private:
@@ -142,7 +143,7 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
     const auto point = PointOnFlight(context_, flight, sample->t, decider);
     if (!point) return;
     PathVertex& vertex = path.Next();
-    MakeVertexInMedium(point->position, state.ray.direction, point->index,
+    MakeVertexInMedium(context_.scene, point->position, state.ray.direction, point->index,
                        {point->coefficients.scattering, point->medium->Asymmetry()}, point->coefficients.Extinction(),
                        vertex);
     vertex.factors = point->factors;
@@ -256,8 +257,10 @@ Color TraceCameraPath(const SampleContext& context, const CameraPathSettings& se
                           .dimensions = settings.dimensions,
                           .materialsAfterWide = settings.materialsAfterWide,
                           .seesFlights = true,
-                          .wantsBeams = gatherer != nullptr};
+                          .wantsBeams = gatherer != nullptr,
+                          .records = StartRecord(context, ray)};
   Walk(context, walk, state, path, visitor);
+  if (walk.records) walk.records->EndPath(visitor.Found());
   return visitor.Radiance();
 }
 

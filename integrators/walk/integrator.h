@@ -16,6 +16,7 @@
 namespace lampyr {
 
 class PathObserver;  // bidirectional/connected_path.h
+class PathRecords;   // guide/path_records.h
 class PhotonList;    // photon/photon.h
 struct PhotonPass;   // photon/photon_pass.h
 
@@ -99,6 +100,8 @@ struct SampleContext {
   bool tracesLight = true;
   Sampler* lightSampler = nullptr;
   const OutputPlan* outputs = nullptr;  // of the layers of the film; null: it has none
+  PathRecords* records = nullptr;       // receive the camera path for path guiding; null: not wanted
+  uint32_t pixel = 0, sample = 0;       // y · width + x, and index of the sample in it; only with `records`
 
   SampleContext With(Sampler& other) const {
     return {scene,    other,       time,    counts,        layers,     splats,
@@ -113,6 +116,8 @@ class Integrator {
   virtual ~Integrator() = default;
 
   virtual TracedPaths Paths() const = 0;
+  // False if camera paths end where light is scattered widely: they have nothing to be guided for.
+  virtual bool FollowsCameraPaths() const { return Paths() != TracedPaths::Light; }
   // Estimates the radiance arriving along `ray`, and records the splats and photons of the light path. With a null
   // ray (the pixel is not wanted, or the integrator traces light paths only) it records those only and returns black.
   // Light paths: as many as the full image has pixels, times 2^Log2LightPaths(), are one sample per pixel.

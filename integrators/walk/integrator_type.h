@@ -66,6 +66,12 @@ inline const Setting kLightSamples{.name = "light-samples",
                                    .most = LightChoices::kMost};
 inline const Setting kLearnLights{
     .name = "learn-lights", .help = "Let the light tree learn which lights are occluded where", .fallback = false};
+inline const Setting kGuidePaths{.name = "guide-paths",
+                                 .help = "Guide paths to where they find light, if that reduces the noise",
+                                 .fallback = true};
+inline const Setting kGuideAlways{.name = "guide-always",
+                                  .help = "Guide paths as soon as anything is learned, whether it pays or not",
+                                  .fallback = false};
 inline const Setting kShadowRoulette{
     .name = "shadow-roulette",
     .help =
@@ -85,7 +91,8 @@ inline const Setting kShadowThreshold{
 
 // Settings of integrators with next-event estimation.
 inline const std::vector<const Setting*> kOfNextEvent = {&kMaxDepth,    &kLightSampler,   &kLightSamples,
-                                                         &kLearnLights, &kShadowRoulette, &kShadowThreshold};
+                                                         &kLearnLights, &kShadowRoulette, &kShadowThreshold,
+                                                         &kGuidePaths,  &kGuideAlways};
 
 }  // namespace common_settings
 

@@ -9,13 +9,15 @@
 #include "camera/camera.h"
 #include "film/output_plan.h"
 #include "geometry/geometry_scene.h"
+#include "integrators/guide/path_guide.h"
 #include "lights/services/lighting_services.h"
 #include "materials/material.h"
 #include "media/medium.h"
 
 namespace lampyr {
 
-// Immutable and cheap to copy. A pass may be given a copy with another view of the lights (LightingServices::With).
+// Immutable and cheap to copy. A pass may be given a copy with another view of the lights (LightingServices::With), and
+// with a guide.
 // Integrators reach lights only through `lighting`.
 struct RenderScene {
   std::shared_ptr<const GeometryScene> geometry;
@@ -32,6 +34,7 @@ struct RenderScene {
   std::vector<int32_t> lightMedia;            // by light: around it, or in front of it; empty: vacuum
   std::vector<int32_t>
       lightBackMedia;      // by light: behind its surface, where a two-sided light shines, too; empty: vacuum
+  std::shared_ptr<const PathGuide> guide;     // where walks go after wide scattering; null: as surfaces scatter
   bool hasMotion = false;  // something moves while the shutter is open; otherwise all rays have time 0
 
   // Medium in which a camera ray starts.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "integrators/guide/path_guide.h"
 #include "integrators/walk/flight.h"
 #include "integrators/walk/partial_weight.h"
 #include "integrators/walk/render_scene.h"
@@ -29,15 +30,28 @@ struct Vertex {
   bool storesPhotons = true;     // by material, not by the component drawn from a mix: gathering paths draw anew
   bool isSeenByCamera = true;    // camera rays meet it
   bool isSeenByIndirect = true;  // rays of light subpaths meet it
+  const GuideRegion* guide = nullptr;  // null: walks scatter as the BSDF does
 
   // Beyond float: mean free paths may be shorter than its rounding. Where the path met the surface, or collided.
   Point3d Position() const { return Point3d(point.position) + Vector3d(residual); }
 
   // Scattering between the previous vertex and `direction`.
   BsdfEvaluation Evaluate(const Vector3& direction, TransportMode mode) const {
-    return bsdf.Evaluate(toPrevious, direction, mode);
+    return EvaluateBetween(toPrevious, direction, mode);
   }
-  BsdfSample Sample(float uLobe, const Point2& u, TransportMode mode) const {
+  // The same for a walk that arrives from `from`. The densities are those of walks: guided, where there is a guide.
+  BsdfEvaluation EvaluateBetween(const Vector3& from, const Vector3& to, TransportMode mode) const {
+    BsdfEvaluation f = bsdf.Evaluate(from, to, mode);
+    if (guide) [[unlikely]]
+      Guide(from, to, mode, f);
+    return f;
+  }
+  // `guidance`: receives the density of what was sampled over that without a guide, or the ratio of probabilities of a
+  // delta.
+  BsdfSample Sample(float uLobe, const Point2& u, TransportMode mode, float& guidance) const {
+    if (guide) [[unlikely]]
+      return SampleGuided(uLobe, u, mode, guidance);
+    guidance = 1;
     return bsdf.Sample(toPrevious, uLobe, u, mode);
   }
   // |cosθ| to the shading normal, as in the scattering integral; of a fibre, to the plane across it.
@@ -86,6 +100,9 @@ struct Vertex {
   }
 
  private:
+  void Guide(const Vector3& from, const Vector3& to, TransportMode mode, BsdfEvaluation& f) const;
+  BsdfSample SampleGuided(float uLobe, const Point2& u, TransportMode mode, float& guidance) const;
+
   // Lower bound of the cosines divided by. Grazing cosines have lost their precision to rounding, and the weight
   // 1/cosine of a light path that arrives at one is unbounded. The bound costs the light from within this cosine of the
   // geometric horizon, less than 1e-5 of what a surface receives.

@@ -12,14 +12,14 @@ namespace lampyr {
 namespace {
 
 // Survival probability of Russian roulette ([Veach97 §10.4.1]): the square root of the largest channel of the
-// throughput, without the η² scaling of refraction. 1 for the first scattering event, so that a light seen in a mirror
+// throughput, without the scaling of `scale` (of refraction, and of guides). 1 for the first scattering event, so that a light seen in a mirror
 // stays free of noise.
 //
 // By the square root a surviving path keeps a throughput of the root and not of 1, so that rare long paths weigh less.
 // In closed boxes this is 20 % more efficient than the throughput itself as the probability, although paths are longer.
-float SurvivalProbability(const Color& throughput, float etaScale, int depth) {
+float SurvivalProbability(const Color& throughput, float scale, int depth) {
   if (depth < 2) return 1;
-  return std::min(1.0f, std::sqrt(throughput.Max() * etaScale));
+  return std::min(1.0f, std::sqrt(throughput.Max() * scale));
 }
 
 bool Survives(const SampleContext& context, uint32_t dimension, float survival, PathState& state) {
@@ -36,6 +36,18 @@ template <class T, class Make>
 void MakeInPlace(T& value, const Make& make) {
   static_assert(std::is_trivially_destructible_v<T>);
   ::new (static_cast<void*>(&value)) T(make());
+}
+
+// Of an opaque surface the side on which the path is; the paths of both sides of a translucent one meet there.
+uint8_t SideOf(const Vertex& vertex) {
+  if (vertex.IsInMedium()) return GuideSideOf(Normal3(0.0f));
+  return GuideSideOf(vertex.bsdf.IsTransmissive() ? vertex.point.Ng : vertex.receiver.normal);
+}
+
+void SetGuide(const RenderScene& scene, Vertex& vertex) {
+  vertex.guide = nullptr;
+  if (scene.guide && !vertex.isDelta && vertex.bsdf.IsWide()) [[unlikely]]
+    vertex.guide = scene.guide->Find(vertex.point.position, SideOf(vertex));
 }
 
 // Makes a vertex of a hit whose point is set: BSDF, receiver, visibility. False: the surface has no material and is
@@ -65,6 +77,7 @@ bool MakeVertex(const RenderScene& scene, const std::vector<std::shared_ptr<cons
   vertex.storesPhotons = (!vertex.isDelta || !material->IsAlwaysDelta()) && material->MayGatherPhotons();
   vertex.isSeenByCamera = (attributes.visibility & visibility::kCamera) != 0;
   vertex.isSeenByIndirect = (attributes.visibility & visibility::kIndirect) != 0;
+  SetGuide(scene, vertex);
   return true;
 }
 
@@ -99,7 +112,7 @@ void Subpath::LabelLast(const OutputPlan& plan, TransportMode mode, const Scatte
   ++count_;
 }
 
-void MakeVertexInMedium(const Point3d& position, const Vector3& direction, int32_t medium, const PhaseBsdf& phase,
+void MakeVertexInMedium(const RenderScene& scene, const Point3d& position, const Vector3& direction, int32_t medium, const PhaseBsdf& phase,
                         const Color& extinction, Vertex& vertex) {
   MakeInPlace(vertex.point, [&] {
     SurfacePoint point;
@@ -117,6 +130,7 @@ void MakeVertexInMedium(const Point3d& position, const Vector3& direction, int32
   vertex.isDelta = phase.scattering.IsBlack();
   vertex.storesPhotons = !vertex.isDelta;
   vertex.isSeenByCamera = vertex.isSeenByIndirect = true;
+  SetGuide(scene, vertex);
 }
 
 namespace {
@@ -139,8 +153,9 @@ bool Scatter(const SampleContext& context, const WalkSettings& settings, int ind
   Sampler& sampler = context.sampler;
   sampler.SetDimension(settings.dimensions.Of(block, dimensions::kLobe));
   const float uLobe = sampler.Get1D();
-  const BsdfSample sample = vertex.Sample(uLobe, sampler.Get2D(), settings.mode);
+  const BsdfSample sample = vertex.Sample(uLobe, sampler.Get2D(), settings.mode, state.lastGuidance);
   if (!sample) return false;
+  state.guidance *= state.lastGuidance;
   if (isFromLight) {
     const float correction = vertex.ArrivalCorrection(vertex.toPrevious) * vertex.DepartureCorrection(sample.wi);
     state.diffuse = (vertex.diffuse * sample.weightDiffuse + vertex.specular * sample.weightSpecular) * correction;
@@ -168,7 +183,8 @@ bool Scatter(const SampleContext& context, const WalkSettings& settings, int ind
     state.medium = vertex.MediumTowards(sample.wi);
   if (!settings.hasRoulette) return true;
   const Color carried = isFromLight ? state.diffuse : state.Throughput();
-  const float survival = SurvivalProbability(carried / state.emitted, state.etaScale, index + 1);
+  // What the path would carry without a guide: where guides send paths, they carry little and yet matter.
+  const float survival = SurvivalProbability(carried / state.emitted, state.etaScale * state.guidance, index + 1);
   return Survives(context, settings.dimensions.Of(block, dimensions::kRoulette), survival, state);
 }
 
@@ -202,10 +218,36 @@ EdgeEnd StartOf(const SampleContext& context, const PathState& state, const Subp
   return flight.isHit;
 }
 
+// Records the event at `vertex`, by which the path goes on; true if it did.
+[[gnu::noinline]] bool Record(const PathVertex& vertex, const PathState& state, float found, PathRecords& records) {
+  if (!vertex.bsdf.IsWide()) return false;
+  RecordedEvent event;
+  event.position = vertex.point.position;
+  event.direction = state.ray.direction;
+  event.side = SideOf(vertex);
+  event.guidance = state.lastGuidance;
+  if (!vertex.scatteredDelta) event.unguided = static_cast<float>(state.pdfDirection.value) / event.guidance;
+  event.foundBefore = found;
+  records.Add(event);
+  return true;
+}
+
 }  // namespace
+
+PathRecords* StartRecord(const SampleContext& context, const Ray& cameraRay) {
+  if (!context.records) [[likely]]
+    return nullptr;
+  const Vector3& d = cameraRay.direction;
+  const uint64_t decider =
+      Hash(std::bit_cast<uint32_t>(d.x), std::bit_cast<uint32_t>(d.y), std::bit_cast<uint32_t>(cameraRay.origin.x));
+  if (!context.records->Wants(decider)) return nullptr;
+  context.records->StartPath(context.pixel, context.sample);
+  return context.records;
+}
 
 void Walk(const SampleContext& context, const WalkSettings& settings, PathState& state, Subpath& path,
           PathVisitor& visitor) {
+  bool isRecorded = false;  // the last event
   const GeometryScene& geometry = *context.scene.geometry;
   const bool hasMedia = !context.scene.media.empty();
   std::optional<Flight> flight;  // in scenes with media
@@ -223,6 +265,8 @@ void Walk(const SampleContext& context, const WalkSettings& settings, PathState&
       hit = flight->hit;
       collides = flight->collidesWith != nullptr;
     }
+    if (isRecorded) [[unlikely]]
+      settings.records->SetDistance(collides ? flight->t : isHit ? hit.t : kInfinity);
     state.diffuse *= state.passed;
     state.specular *= state.passed;
     if (!isHit && !collides) return visitor.Escaped(path, state);
@@ -239,7 +283,7 @@ void Walk(const SampleContext& context, const WalkSettings& settings, PathState&
     if (index >= settings.maxDepth) return;
     if (collides) [[unlikely]] {
       const MediumCoefficients& here = flight->coefficients;
-      MakeVertexInMedium(flight->end, state.ray.direction, flight->medium,
+      MakeVertexInMedium(context.scene, flight->end, state.ray.direction, flight->medium,
                          {here.scattering, flight->collidesWith->Asymmetry()}, here.Extinction(), vertex);
     } else {
       const bool isBehindWide = settings.materialsAfterWide && state.hasScatteredWidely;
@@ -255,6 +299,7 @@ void Walk(const SampleContext& context, const WalkSettings& settings, PathState&
       path.LabelLast(*context.outputs, settings.mode, state.event);
     if (!visitor.Arrived(path, state)) return;
     if (!Scatter(context, settings, index, path.Last(), state)) return;
+    isRecorded = settings.records && Record(path.Last(), state, visitor.Found(), *settings.records);
     if (!visitor.Scattered(path, state)) return;
   }
 }

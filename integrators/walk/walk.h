@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "integrators/guide/path_records.h"
 #include "integrators/walk/integrator.h"
 #include "integrators/walk/path_labels.h"
 #include "integrators/walk/vertex.h"
@@ -29,6 +30,8 @@ struct PathState {
   EdgeFactors factors;              // of the last ray, by participating media
   float length = 0;                 // of the whole path so far
   float etaScale = 1;               // undoes the scaling of radiance by η² in refraction, for Russian roulette
+  // Density of the path's events over that without a guide: of all of them, for Russian roulette, and of the last one.
+  float guidance = 1, lastGuidance = 1;
   bool hasScatteredWidely = false;  // an earlier vertex scattered by a lobe that is no delta
   float emitted = 1;                // initial throughput, to which Russian roulette compares
   ScatteringParts event;            // at the last vertex; only with SampleContext::outputs
@@ -95,6 +98,8 @@ class PathVisitor {
   virtual bool Collided(const Subpath& /*path*/, const PathState&) { return true; }
   // A vertex was added to the path: the last one. False: the path ends there.
   virtual bool Arrived(Subpath& path, const PathState&) = 0;
+  // What the path has found so far, for its record: mean of the channels.
+  virtual float Found() const { return 0; }
   // The last vertex has scattered into the next ray, which is not traced yet. False: the path ends there.
   virtual bool Scattered(const Subpath& /*path*/, const PathState&) { return true; }
 };
@@ -108,10 +113,11 @@ struct WalkSettings {
   const std::vector<std::shared_ptr<const Material>>* materialsAfterWide = nullptr;
   bool seesFlights = false;  // PathVisitor::Flew is called, in scenes with media
   bool wantsBeams = false;   // with Flight::beam
+  PathRecords* records = nullptr;  // receive the events at vertices that scatter widely
 };
 
 // Makes a vertex in the medium `medium`. `direction`: of the ray that arrives.
-void MakeVertexInMedium(const Point3d& position, const Vector3& direction, int32_t medium, const PhaseBsdf& phase,
+void MakeVertexInMedium(const RenderScene& scene, const Point3d& position, const Vector3& direction, int32_t medium, const PhaseBsdf& phase,
                         const Color& extinction, Vertex& vertex);
 
 // Extends a path from `state` until it escapes or is absorbed, the visitor ends it, or it has hit a surface with
@@ -119,6 +125,9 @@ void MakeVertexInMedium(const Point3d& position, const Vector3& direction, int32
 // camera path is counted as a camera ray, all others as indirect rays.
 void Walk(const SampleContext& context, const WalkSettings& settings, PathState& state, Subpath& path,
           PathVisitor& visitor);
+
+// The records of a walk along `cameraRay`, which EndPath() is to be called for; null: it is not recorded.
+PathRecords* StartRecord(const SampleContext& context, const Ray& cameraRay);
 
 // One step of the walk: samples the scattering at `vertex`, applies Russian roulette, and sets the event of the vertex
 // and the next ray of `state`. `index`: of the vertex, from 0. False: the path ends.

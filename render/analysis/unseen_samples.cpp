@@ -24,7 +24,7 @@ bool IsSmooth(const RenderScene& scene, const Vertex& vertex, Sampler& sampler) 
   const int index = scene.geometry->Attributes(vertex.point.primitive).material;
   if (scene.materials[static_cast<size_t>(index)]->IsInterface()) return false;
   const float uLobe = sampler.Get1D();
-  const auto sample = vertex.Sample(uLobe, sampler.Get2D(), TransportMode::Radiance);
+  const auto sample = vertex.bsdf.Sample(vertex.toPrevious, uLobe, sampler.Get2D(), TransportMode::Radiance);
   return sample && (sample.isDelta || sample.pdfForward.value > kNearlySmooth);
 }
 

@@ -65,6 +65,8 @@ struct RenderSettings {
 
   int MaxDepth() const { return MaxDepthOf(values); }
   bool LearnsLights() const { return values.IsOn("learn-lights"); }
+  bool GuidesPaths() const { return values.IsOn("guide-paths"); }
+  bool AlwaysGuidesPaths() const { return values.IsOn("guide-always"); }
   LightSelection LightSampler() const { return *ParseLightSelection(values.Word("light-sampler")); }
 };
 

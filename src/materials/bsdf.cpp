@@ -1,5 +1,8 @@
 #include "materials/bsdf.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace lampyr {
 
 namespace {
@@ -39,6 +42,17 @@ BsdfSample Bsdf::Sample(const Vector3& wo, float uLobe, const Point2& u, Transpo
 
 bool Bsdf::IsDelta() const {
   return std::visit([](const auto& model) { return model.IsDelta(); }, model_);
+}
+
+bool Bsdf::IsWide() const {
+  // Of microfacets: α, and of a phase function |g|, beyond which a lobe is narrow.
+  constexpr float kLeastAlpha = 0.25f, kMostMeanCosine = 0.8f;
+  if (const auto* phase = std::get_if<PhaseBsdf>(&model_)) return std::abs(phase->g) < kMostMeanCosine;
+  if (const auto* metal = std::get_if<ConductorBsdf>(&model_))
+    return std::min(metal->microfacets.alphaX, metal->microfacets.alphaY) > kLeastAlpha;
+  if (const auto* coated = std::get_if<CoatedDiffuseBsdf>(&model_)) return !coated->IsDelta();
+  return std::holds_alternative<DiffuseBsdf>(model_) || std::holds_alternative<DiffuseTransmissionBsdf>(model_) ||
+         std::holds_alternative<MeasuredBsdf>(model_);
 }
 
 bool Bsdf::IsTransmissive() const {

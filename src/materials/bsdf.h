@@ -44,6 +44,8 @@ class Bsdf {
   bool IsDelta() const;
   // True if light from the other side may contribute; light selection then considers both sides.
   bool IsTransmissive() const;
+  // True if it scatters over much of the sphere, so that a density of directions learned elsewhere can be of use.
+  bool IsWide() const;
 
   // Cosine of the scattering integral: |w·Ns|; for a fibre, the cosine of the angle to the plane across it; 1 in a
   // medium.

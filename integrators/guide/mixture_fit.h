@@ -1,0 +1,34 @@
+// Fits a mixture of directions, and its share beside the density that a walk has without it, to weighted events.
+#pragma once
+
+#include <span>
+
+#include "integrators/guide/direction_mixture.h"
+
+namespace lampyr {
+
+// A scattering event of a walk, with what it was worth.
+struct GuideEvent {
+  Point3 position{0.0f};
+  Vector3 direction{0.0f};  // unit, of the walk's next ray
+  float distance = 0;       // to the next vertex, scene units; infinite: none
+  // Density of the direction without a guide, 1/sr; 0: it was sampled as a delta, which no guide does.
+  float unguided = 0;
+  float weight = 0;  // what the walk found beyond, over the density with which it went there; 0 or more
+};
+
+// The density α · guide + (1 - α) · unguided under which the events are most likely, each as often as its weight says:
+// by expectation maximisation, in which the unguided density is one component of the mixture. So the guide learns what
+// scattering alone does not do well. Lobes are split from one to kLobes.
+struct MixtureFit {
+  DirectionMixture mixture;
+  float share = 0;  // α in [0, kMostShare]; 0: not guided
+};
+
+// What scattering keeps: the weight of a sample is at most 4 times that of one without a guide.
+inline constexpr float kMostShare = 0.75f;
+
+// `events`: at least one. `center`: of their region, from which distances to targets are taken.
+MixtureFit FitMixture(std::span<const GuideEvent> events, const Point3& center);
+
+}  // namespace lampyr

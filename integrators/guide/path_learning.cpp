@@ -1,0 +1,253 @@
+#include "integrators/guide/path_learning.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/byte_stream.h"
+#include "base/error.h"
+#include "geometry/rounding.h"
+
+namespace lampyr {
+
+namespace {
+
+// Paths recorded between two milestones, and events kept of all.
+constexpr double kMostPaths = 1 << 17;
+constexpr size_t kMostKept = size_t{1} << 18;
+constexpr size_t kMostEvents = size_t{1} << 25;  // of a file
+// Least gain in variance for which a guide is used: what its densities cost, and some doubt.
+constexpr double kWorthwhile = 1.25;
+// Smallest effective number of paths for a verdict.
+constexpr double kFewestTested = 16;
+// Samples per pixel at which recording ends: when most has been learned, and when guiding would not help.
+constexpr uint32_t kLearned = 64, kHopeless = 8;
+// Blocks of pixels across the image, and pixels across a block, over which means are taken.
+constexpr int kBlocks = 32, kLeastBlock = 4;
+// Brightness that is added to that of a block, in means of the image: the error of dark parts counts less.
+constexpr double kDark = 0.1;
+
+double SumsCount(double sum, double squares) {
+  return squares > 0 ? sum * sum / squares : 0;
+}
+
+}  // namespace
+
+PathLearning::PathLearning(int width, int height, bool always)
+    : width_(width),
+      height_(height),
+      blockSize_(std::max((std::max(width, height) + kBlocks - 1) / kBlocks, kLeastBlock)),
+      blocksX_((width + blockSize_ - 1) / blockSize_),
+      always_(always),
+      blocks_(static_cast<size_t>(blocksX_) * static_cast<size_t>((height + blockSize_ - 1) / blockSize_)) {}
+
+double PathLearning::Fraction() const {
+  const auto passes = static_cast<double>(std::max(samples_, 1u));  // until the next milestone
+  return kMostPaths / (passes * static_cast<double>(width_) * static_cast<double>(height_));
+}
+
+size_t PathLearning::BlockOf(uint32_t pixel) const {
+  const auto x = static_cast<int>(pixel % static_cast<uint32_t>(width_)),
+             y = static_cast<int>(pixel / static_cast<uint32_t>(width_));
+  return static_cast<size_t>(y / blockSize_) * static_cast<size_t>(blocksX_) + static_cast<size_t>(x / blockSize_);
+}
+
+void PathLearning::Learn(std::span<const PathRecords> records) {
+  for (const PathRecords& list : records) latest_.Append(list);
+}
+
+void PathLearning::CountBlocks() {
+  for (const RecordedPath& path : latest_.Paths()) {
+    Block& block = blocks_[BlockOf(path.pixel)];
+    const auto found = static_cast<double>(path.found);
+    block.found += found;
+    block.squares += found * found;
+    ++block.count;
+  }
+}
+
+// 1 / brightness of each block, to which errors are relative.
+std::vector<double> PathLearning::BlockScales() const {
+  double found = 0, count = 0;
+  for (const Block& block : blocks_) {
+    found += block.found;
+    count += block.count;
+  }
+  std::vector<double> scales(blocks_.size());
+  if (!(found > 0)) return scales;
+  for (size_t i = 0; i < blocks_.size(); ++i) {
+    const Block& block = blocks_[i];
+    scales[i] = 1 / ((block.count > 0 ? block.found / block.count : 0.0) + kDark * found / count);
+  }
+  return scales;
+}
+
+// Tests the candidate on the latest paths. A path found X = Σ c_k, c_k after k events. Sampled with other densities,
+// r_j times those that it had up to its j-th event, it would have found c_k / r_k, and
+//   E[X²] = E[Σ_k c_k² / r_k + 2 Σ_(j<k) c_j c_k / r_j].
+void PathLearning::Test(const std::vector<double>& scales) {
+  double unguided = 0, aimed = 0, squares = 0, ofMeans = 0;
+  for (size_t i = 0; i < latest_.Paths().size(); ++i) {
+    const RecordedPath& path = latest_.Paths()[i];
+    const double scale = scales[BlockOf(path.pixel)];
+    double before = 0;
+    double ratioUnguided = 1, ratioAimed = 1;
+    double earlierUnguided = 0, earlierAimed = 0;  // 2 Σ c_j / r_j
+    double sumUnguided = 0, sumAimed = 0;
+    const auto add = [&](double until) {
+      const double c = scale * (until - before);
+      before = until;
+      sumUnguided += c * (c / ratioUnguided + earlierUnguided);
+      sumAimed += c * (c / ratioAimed + earlierAimed);
+      earlierUnguided += 2 * c / ratioUnguided;
+      earlierAimed += 2 * c / ratioAimed;
+    };
+    for (const RecordedEvent& event : latest_.EventsOf(i)) {
+      add(static_cast<double>(event.foundBefore));
+      const auto guidance = static_cast<double>(event.guidance);
+      ratioUnguided /= guidance;
+      const GuideRegion* region = tried_->Find(event.position, event.side);
+      double candidate = 1;
+      if (region && region->radiance.share > 0) {
+        const auto share = static_cast<double>(region->radiance.share);
+        candidate = 1 - share;
+        if (event.unguided > 0)
+          candidate += share *
+                       static_cast<double>(region->radiance.mixture.Density(event.position, event.direction).value) /
+                       static_cast<double>(event.unguided);
+      }
+      ratioAimed *= candidate / guidance;
+    }
+    add(static_cast<double>(path.found));
+    unguided += sumUnguided;
+    aimed += sumAimed;
+    squares += sumAimed * sumAimed;
+  }
+  std::vector<double> counts(blocks_.size());
+  for (const RecordedPath& path : latest_.Paths()) ++counts[BlockOf(path.pixel)];
+  for (size_t i = 0; i < blocks_.size(); ++i) {
+    const Block& block = blocks_[i];
+    if (block.count < 2) continue;
+    // The squared mean, from pairs of different paths.
+    const double squaredMean =
+        std::max(block.found * block.found - block.squares, 0.0) / (block.count * (block.count - 1));
+    ofMeans += counts[i] * scales[i] * scales[i] * squaredMean;
+  }
+  const double count = SumsCount(aimed, squares);
+  if (!(count >= kFewestTested)) return;
+  const double least = 1e-3 * aimed;  // of nearly noiseless pictures the difference is rounding
+  gain_ = std::max(unguided - ofMeans, least) / std::max(aimed - ofMeans, least);
+  hasVerdict_ = true;
+}
+
+// Adds the latest events to those kept.
+void PathLearning::Keep(const std::vector<double>& scales) {
+  for (size_t i = 0; i < latest_.Paths().size(); ++i) {
+    const RecordedPath& path = latest_.Paths()[i];
+    const auto scale = static_cast<float>(scales[BlockOf(path.pixel)]);
+    for (const RecordedEvent& event : latest_.EventsOf(i)) {
+      const float weight = scale * (path.found - event.foundBefore);
+      if (!(weight > 0)) continue;
+      kept_.push_back(event);
+      kept_.back().weight = weight;
+    }
+  }
+  Thin();
+}
+
+// Resamples the kept events systematically to kMostKept, in proportion to their weight.
+void PathLearning::Thin() {
+  if (kept_.size() <= kMostKept) return;
+  double total = 0;
+  for (const PlacedEvent& event : kept_) total += static_cast<double>(event.weight);
+  const double step = total / static_cast<double>(kMostKept);
+  std::vector<PlacedEvent> thinned;
+  double at = 0, next = 0.5 * step;
+  for (const PlacedEvent& event : kept_) {
+    at += static_cast<double>(event.weight);
+    int times = 0;
+    for (; next < at; next += step) ++times;
+    if (times == 0) continue;
+    thinned.push_back(event);
+    thinned.back().weight = static_cast<float>(times * step);
+  }
+  kept_ = std::move(thinned);
+}
+
+bool PathLearning::Decide(uint32_t samples, int threads) {
+  const bool wasInUse = guide_ != nullptr;
+  samples_ = samples;
+  latest_ = latest_.Sorted();
+  CountBlocks();
+  const std::vector<double> scales = BlockScales();
+  if (tried_) Test(scales);
+  Keep(scales);
+  latest_.Clear();
+  std::vector<PlacedEvent> ofCamera = kept_, ofLight;
+  tried_ = std::make_shared<const PathGuide>(ofCamera, ofLight, threads);
+  // The guide put to use is made of more events than the one that was tested.
+  guide_ = always_ || (hasVerdict_ && gain_ > kWorthwhile) ? tried_ : nullptr;
+  if (samples >= kLearned || (!always_ && hasVerdict_ && samples >= kHopeless && !guide_)) {
+    isRecording_ = false;
+    kept_ = {};
+    latest_ = {};
+  }
+  return wasInUse || guide_;
+}
+
+void PathLearning::Save(ByteWriter& bytes) const {
+  bytes.Value<uint8_t>(isRecording_ ? 1 : 0);
+  bytes.Value<uint8_t>(hasVerdict_ ? 1 : 0);
+  bytes.Value<uint8_t>(tried_ ? 1 : 0);
+  bytes.Value<uint8_t>(guide_ ? 1 : 0);
+  bytes.Value(samples_);
+  bytes.Value(gain_);
+  if (tried_) tried_->Save(bytes);
+  bytes.List(std::span(blocks_));
+  bytes.List(latest_.Paths());
+  bytes.List(latest_.Events());
+  bytes.List(std::span(kept_));
+}
+
+namespace {
+
+bool IsSound(const PlacedEvent& event) {
+  return IsFinite(event.position) && IsFinite(event.direction) && event.distance >= 0 &&
+         std::isfinite(event.unguided) && event.unguided >= 0 && std::isfinite(event.weight) && event.weight >= 0 &&
+         event.side < kGuideSides;
+}
+
+}  // namespace
+
+void PathLearning::Load(ByteReader& bytes) {
+  isRecording_ = bytes.Flag();
+  hasVerdict_ = bytes.Flag();
+  const bool hasTried = bytes.Flag(), hasGuide = bytes.Flag();
+  samples_ = bytes.Value<uint32_t>();
+  gain_ = bytes.Value<double>();
+  if (hasTried) {
+    auto tried = std::make_shared<PathGuide>();
+    tried->Load(bytes);
+    tried_ = tried;
+    if (hasGuide) guide_ = tried_;
+  }
+  std::vector<Block> blocks = bytes.List<Block>(blocks_.size());
+  std::vector<RecordedPath> paths = bytes.List<RecordedPath>(kMostEvents);
+  std::vector<RecordedEvent> events = bytes.List<RecordedEvent>(kMostEvents);
+  kept_ = bytes.List<PlacedEvent>(kMostKept);
+  bool isSound = blocks.size() == blocks_.size();
+  for (const PlacedEvent& event : kept_) isSound = isSound && IsSound(event);
+  for (const RecordedEvent& event : events)
+    isSound = isSound && IsSound(event) && event.guidance > 0 && std::isfinite(event.guidance) &&
+              std::isfinite(event.foundBefore);
+  const uint64_t pixels = static_cast<uint64_t>(width_) * static_cast<uint64_t>(height_);
+  for (size_t i = 0; i < paths.size(); ++i) {
+    const uint32_t before = i > 0 ? paths[i - 1].firstEvent : 0;
+    isSound = isSound && paths[i].pixel < pixels && paths[i].firstEvent >= before &&
+              paths[i].firstEvent <= events.size() && std::isfinite(paths[i].found);
+  }
+  if (!isSound) throw Error("it holds a path that cannot be");
+  blocks_ = std::move(blocks);
+  latest_.Set(std::move(paths), std::move(events));
+}
+
+}  // namespace lampyr

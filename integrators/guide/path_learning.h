@@ -1,0 +1,74 @@
+// Path guiding: learns from the walks of each pass where walks should go after a wide scattering ([Müller17],
+// [Vorba14], [Ruppert20]; in one place for camera paths and light paths).
+//
+// A guide is made of the events seen so far, and tested on the walks of the following passes, which are independent of
+// it. It is used only if it would have reduced their variance by more than it costs. The guide changes at samples 1, 2,
+// 4 … only, so that each pass has one density. Records are taken in the order of the samples, so that all is the same
+// for any number of threads.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "integrators/guide/path_records.h"
+
+namespace lampyr {
+
+class ByteReader;
+class ByteWriter;
+
+class PathLearning {
+ public:
+  // Of images of width × height pixels. `always`: a guide is used as soon as there is one.
+  PathLearning(int width, int height, bool always);
+
+  // The fraction of the camera paths that is recorded until the next milestone.
+  double Fraction() const;
+  // Adds the records of a pass, in any order.
+  void Learn(std::span<const PathRecords> records);
+  // Called at milestones, after `samples` samples per pixel: tests the candidate, makes the next one, and updates
+  // Guide(). True if the density of walks may have changed.
+  bool Decide(uint32_t samples, int threads);
+  // The guide in use; null: walks are not guided.
+  const std::shared_ptr<const PathGuide>& Guide() const { return guide_; }
+  // True until enough is known; recording takes time.
+  bool IsRecording() const { return isRecording_; }
+
+  // Variance of the camera paths without a guide over that with the candidate, as estimated by the last verdict, for
+  // errors relative to the picture.
+  double Gain() const { return gain_; }
+  size_t Regions() const { return guide_ ? guide_->Regions() : 0; }
+
+  // Saves all that was learned. To be called between passes.
+  void Save(ByteWriter& bytes) const;
+  // Loads into an object that has learned nothing, of the same image. Throws an Error if the data is not what Save
+  // wrote.
+  void Load(ByteReader& bytes);
+
+ private:
+  // Sums over the recorded paths of a block of pixels.
+  struct Block {
+    double found = 0, squares = 0, count = 0;
+  };
+  size_t BlockOf(uint32_t pixel) const;
+  void CountBlocks();
+  std::vector<double> BlockScales() const;
+  void Test(const std::vector<double>& scales);
+  void Keep(const std::vector<double>& scales);
+  void Thin();
+
+  int width_, height_;
+  int blockSize_, blocksX_;
+  bool always_;
+  bool isRecording_ = true, hasVerdict_ = false;
+  uint32_t samples_ = 0;  // at the last milestone
+  double gain_ = 1;
+  std::shared_ptr<const PathGuide> guide_;  // the guide in use, or null
+  std::shared_ptr<const PathGuide> tried_;  // the candidate, or null
+  std::vector<Block> blocks_;
+  PathRecords latest_;             // since the last milestone
+  std::vector<PlacedEvent> kept_;  // of earlier ones, weighted
+};
+
+}  // namespace lampyr

@@ -1,0 +1,98 @@
+// Records of walks for path guiding: their scattering events, and what they found beyond each.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "integrators/guide/path_guide.h"
+
+namespace lampyr {
+
+// A scattering event of a recorded walk. `weight` of the base: not set.
+struct RecordedEvent : PlacedEvent {
+  // Density of what was sampled over that without a guide; of a delta, of its probability.
+  float guidance = 1;
+  // What the walk had found before the event: mean of the channels of radiance.
+  float foundBefore = 0;
+};
+
+struct RecordedPath {
+  uint32_t pixel = 0;       // y · width + x
+  uint32_t sample = 0;      // index in the pixel
+  uint32_t firstEvent = 0;  // the events up to that of the next path are this path's
+  float found = 0;          // by the whole walk
+};
+
+// The records of one thread's share of a pass.
+class PathRecords {
+ public:
+  // Of one walk, `fraction` of all are recorded: that with the deterministic number `decider` is if this is true.
+  bool Wants(uint64_t decider) const { return static_cast<double>(decider >> 11) * 0x1p-53 < fraction_; }
+  void SetFraction(double fraction) { fraction_ = fraction; }
+
+  void StartPath(uint32_t pixel, uint32_t sample) {
+    paths_.push_back({pixel, sample, static_cast<uint32_t>(events_.size()), 0});
+  }
+  void Add(const RecordedEvent& event) { events_.push_back(event); }
+  // Of the ray of the last event.
+  void SetDistance(float distance) {
+    if (events_.size() > paths_.back().firstEvent) events_.back().distance = distance;
+  }
+  // A path that found what is no number is dropped.
+  void EndPath(float found) {
+    paths_.back().found = found;
+    if (std::isfinite(found)) return;
+    events_.resize(paths_.back().firstEvent);
+    paths_.pop_back();
+  }
+
+  void Clear() {
+    paths_.clear();
+    events_.clear();
+  }
+  std::span<const RecordedPath> Paths() const { return paths_; }
+  std::span<const RecordedEvent> Events() const { return events_; }
+  std::span<const RecordedEvent> EventsOf(size_t path) const {
+    const size_t end = path + 1 < paths_.size() ? paths_[path + 1].firstEvent : events_.size();
+    return Events().subspan(paths_[path].firstEvent, end - paths_[path].firstEvent);
+  }
+  // Appends all paths of `other`.
+  void Append(const PathRecords& other) {
+    for (size_t i = 0; i < other.paths_.size(); ++i) Append(other, i);
+  }
+  // In the order of samples and pixels, whatever the order in which they were recorded.
+  PathRecords Sorted() const {
+    std::vector<size_t> order(paths_.size());
+    std::iota(order.begin(), order.end(), size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) {
+      return std::pair(paths_[a].sample, paths_[a].pixel) < std::pair(paths_[b].sample, paths_[b].pixel);
+    });
+    PathRecords sorted;
+    for (const size_t i : order) sorted.Append(*this, i);
+    return sorted;
+  }
+  // What a file holds. The caller has checked it.
+  void Set(std::vector<RecordedPath> paths, std::vector<RecordedEvent> events) {
+    paths_ = std::move(paths);
+    events_ = std::move(events);
+  }
+
+ private:
+  void Append(const PathRecords& other, size_t path) {
+    const std::span<const RecordedEvent> events = other.EventsOf(path);
+    paths_.push_back(other.paths_[path]);
+    paths_.back().firstEvent = static_cast<uint32_t>(events_.size());
+    events_.insert(events_.end(), events.begin(), events.end());
+  }
+
+  double fraction_ = 1;
+  std::vector<RecordedPath> paths_;
+  std::vector<RecordedEvent> events_;
+};
+
+}  // namespace lampyr
