@@ -27,7 +27,8 @@ PassSequence::PassSequence(const RenderScene& scene, const Integrator& integrato
     film.MakeAdaptive(wantedPhotons_.has_value());
   MakePhotonStore();
   if (settings.GuidesPaths() && integrator.FollowsCameraPaths())
-    paths_ = std::make_unique<PathLearning>(settings.width, settings.height, settings.AlwaysGuidesPaths());
+    paths_ = std::make_unique<PathLearning>(settings.width, settings.height, integrator.Paths() == TracedPaths::Both,
+                                            settings.AlwaysGuidesPaths());
   if (settings.LearnsLights()) learning_ = std::make_unique<LightLearning>(scene.lighting->SceneSphere());
 }
 
@@ -71,6 +72,10 @@ void PassSequence::AddPass(uint32_t done, uint32_t count) {
 
 namespace {
 
+// Variance of a sample before a guide is used, over that after it, from which on earlier samples are dropped: their
+// noise would be felt long after.
+constexpr double kRestarting = 2;
+
 // Samples per pixel at which learning of light selection ends: most of what can be learned has been by then.
 constexpr uint32_t kLastLearned = 64;
 
@@ -85,10 +90,21 @@ void PassSequence::Learn(uint32_t samples) {
     changesDensities = true;
   }
   if (guiding_ && guiding_->IsRecording() && guiding_->Decide(samples)) changesDensities = true;
-  if (paths_ && paths_->IsRecording() && paths_->Decide(samples, threads_)) changesDensities = true;
+  if (paths_ && paths_->IsRecording()) {
+    const bool wasGuided = paths_->Guide() != nullptr;
+    if (paths_->Decide(samples, threads_)) changesDensities = true;
+    if (!wasGuided && paths_->Guide() && paths_->Gain() > kRestarting) Restart();
+  }
   // The photons of the last pass, and their weights, have densities of the view before. They are dropped and others
   // traced in their place, as when a render is resumed.
   if (changesDensities && photons_) photons_->Clear();
+}
+
+// Drops all samples so far. Not those of adaptive films, whose stages are planned from the first sample on, and of films
+// and technique images that are told how many samples they have.
+void PassSequence::Restart() {
+  if (film_->IsAdaptive() || film_->HasHalf() || techniques_) return;
+  *film_ = film_->EmptyCopy();
 }
 
 // Begins the stage of the pass after `done` others, unless it has begun: ends the one before.

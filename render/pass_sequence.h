@@ -50,6 +50,7 @@ class PassSequence {
  private:
   void AddPass(uint32_t done, uint32_t count);
   void Learn(uint32_t samples);
+  void Restart();
   void StartStage(uint32_t done);
   void MakePhotonStore();
 

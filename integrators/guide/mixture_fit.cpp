@@ -14,7 +14,7 @@ constexpr size_t kLobes = DirectionMixture::kLobes;
 // Iterations after each doubling of the lobes.
 constexpr int kIterations = 4;
 // Effective number of uniformly distributed events that each lobe is mixed with: few events do not make a narrow lobe.
-constexpr double kPriorEvents = 1;
+constexpr double kPriorEvents = 0.3;
 // A region whose events have a smaller effective number is not guided.
 constexpr double kFewestEvents = 12;
 // Most of the weight of a region that one event may have.
@@ -40,6 +40,8 @@ struct LobeSums {
     squares += part * part;
     nearness += part * near;
     direction += part * d;
+  }
+  void AddMoments(const Vector3d& d, double part) {
     moments[0] += part * d.x * d.x;
     moments[1] += part * d.y * d.y;
     moments[2] += part * d.z * d.z;
@@ -92,10 +94,10 @@ class Fit {
   MixtureFit Run() {
     if (!(count_ >= kFewestEvents)) return {};
     lobes_.assign(1, Lobe{.kappa = 0, .weight = 1});
-    Maximize(Expect(true));
+    Maximize(Expect(true, true));
     for (size_t lobes = 2; lobes <= kLobes; lobes *= 2) {
       Split();
-      for (int i = 0; i < kIterations; ++i) Maximize(Expect(false));
+      for (int i = 1; i <= kIterations; ++i) Maximize(Expect(false, i == kIterations && lobes < kLobes));
     }
     MixtureFit fit{Mixture(), static_cast<float>(std::min(share_, static_cast<double>(kMostShare)))};
     if (share_ < kLeastShare || !fit.mixture.IsValid()) return {};
@@ -108,8 +110,8 @@ class Fit {
     double nearness;
   };
 
-  // `isFirst`: all events are the lobe's, in the part that scattering leaves.
-  std::vector<LobeSums> Expect(bool isFirst) {
+  // `isFirst`: all events are the lobe's, in the part that scattering leaves. `withMoments`: the lobes are split next.
+  std::vector<LobeSums> Expect(bool isFirst, bool withMoments) {
     std::vector<LobeSums> sums(lobes_.size());
     const DirectionMixture mixture = Mixture();
     double guided = 0;
@@ -129,6 +131,7 @@ class Fit {
         const double part = weights_[i] * share_ * lobes_[k].weight * static_cast<double>(densities[k]) / all;
         guided += part;
         sums[k].Add(fromCenter_[i].direction, fromCenter_[i].nearness, part);
+        if (withMoments) sums[k].AddMoments(fromCenter_[i].direction, part);
       }
     }
     if (!isFirst) share_ = std::clamp(guided / total_, 1e-4, 0.98);

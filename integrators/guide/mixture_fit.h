@@ -25,8 +25,8 @@ struct MixtureFit {
   float share = 0;  // α in [0, kMostShare]; 0: not guided
 };
 
-// What scattering keeps: the weight of a sample is at most 4 times that of one without a guide.
-inline constexpr float kMostShare = 0.75f;
+// What scattering keeps: the weight of a sample is at most 1 / (1 - kMostShare) times that of one without a guide.
+inline constexpr float kMostShare = 0.7f;
 
 // `events`: at least one. `center`: of their region, from which distances to targets are taken.
 MixtureFit FitMixture(std::span<const GuideEvent> events, const Point3& center);

@@ -13,7 +13,7 @@ namespace lampyr {
 namespace {
 
 // Events of either walk that a region has before it is divided.
-constexpr size_t kMostInRegion = 600;
+constexpr size_t kMostInRegion = 1200;
 
 }  // namespace
 

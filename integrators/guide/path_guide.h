@@ -21,6 +21,12 @@ struct GuideRegion {
   MixtureFit radiance, importance;
 };
 
+// Densities of a sampled event with a guide over those without: of the walk's own direction, and of the other walk's. Of
+// deltas, the ratios of their probabilities.
+struct Guidance {
+  float forward = 1, reverse = 1;
+};
+
 // Main directions of normals, and one for places without a normal.
 inline constexpr uint8_t kGuideSides = 7;
 // `normal`: of an opaque surface on the side of the path, otherwise that of the surface; 0: none.

@@ -13,14 +13,14 @@ namespace {
 
 // Paths recorded between two milestones, and events kept of all.
 constexpr double kMostPaths = 1 << 17;
-constexpr size_t kMostKept = size_t{1} << 18;
+constexpr size_t kMostKept = size_t{1} << 17;
 constexpr size_t kMostEvents = size_t{1} << 25;  // of a file
 // Least gain in variance for which a guide is used: what its densities cost, and some doubt.
 constexpr double kWorthwhile = 1.25;
 // Smallest effective number of paths for a verdict.
 constexpr double kFewestTested = 16;
 // Samples per pixel at which recording ends: when most has been learned, and when guiding would not help.
-constexpr uint32_t kLearned = 64, kHopeless = 8;
+constexpr uint32_t kLearned = 64, kHopeless = 16;
 // Blocks of pixels across the image, and pixels across a block, over which means are taken.
 constexpr int kBlocks = 32, kLeastBlock = 4;
 // Brightness that is added to that of a block, in means of the image: the error of dark parts counts less.
@@ -32,11 +32,12 @@ double SumsCount(double sum, double squares) {
 
 }  // namespace
 
-PathLearning::PathLearning(int width, int height, bool always)
+PathLearning::PathLearning(int width, int height, bool forLight, bool always)
     : width_(width),
       height_(height),
       blockSize_(std::max((std::max(width, height) + kBlocks - 1) / kBlocks, kLeastBlock)),
       blocksX_((width + blockSize_ - 1) / blockSize_),
+      forLight_(forLight),
       always_(always),
       blocks_(static_cast<size_t>(blocksX_) * static_cast<size_t>((height + blockSize_ - 1) / blockSize_)) {}
 
@@ -139,30 +140,17 @@ void PathLearning::Test(const std::vector<double>& scales) {
   hasVerdict_ = true;
 }
 
-// Adds the latest events to those kept.
-void PathLearning::Keep(const std::vector<double>& scales) {
-  for (size_t i = 0; i < latest_.Paths().size(); ++i) {
-    const RecordedPath& path = latest_.Paths()[i];
-    const auto scale = static_cast<float>(scales[BlockOf(path.pixel)]);
-    for (const RecordedEvent& event : latest_.EventsOf(i)) {
-      const float weight = scale * (path.found - event.foundBefore);
-      if (!(weight > 0)) continue;
-      kept_.push_back(event);
-      kept_.back().weight = weight;
-    }
-  }
-  Thin();
-}
+namespace {
 
-// Resamples the kept events systematically to kMostKept, in proportion to their weight.
-void PathLearning::Thin() {
-  if (kept_.size() <= kMostKept) return;
+// Resamples events systematically to kMostKept, in proportion to their weight.
+void Thin(std::vector<PlacedEvent>& kept) {
+  if (kept.size() <= kMostKept) return;
   double total = 0;
-  for (const PlacedEvent& event : kept_) total += static_cast<double>(event.weight);
+  for (const PlacedEvent& event : kept) total += static_cast<double>(event.weight);
   const double step = total / static_cast<double>(kMostKept);
   std::vector<PlacedEvent> thinned;
   double at = 0, next = 0.5 * step;
-  for (const PlacedEvent& event : kept_) {
+  for (const PlacedEvent& event : kept) {
     at += static_cast<double>(event.weight);
     int times = 0;
     for (; next < at; next += step) ++times;
@@ -170,7 +158,35 @@ void PathLearning::Thin() {
     thinned.push_back(event);
     thinned.back().weight = static_cast<float>(times * step);
   }
-  kept_ = std::move(thinned);
+  kept = std::move(thinned);
+}
+
+}  // namespace
+
+// Adds the latest events to those kept.
+void PathLearning::Keep(const std::vector<double>& scales) {
+  for (size_t i = 0; i < latest_.Paths().size(); ++i) {
+    const RecordedPath& path = latest_.Paths()[i];
+    const auto scale = static_cast<float>(scales[BlockOf(path.pixel)]);
+    for (const RecordedEvent& event : latest_.EventsOf(i)) {
+      const float weight = scale * (path.found - event.foundBefore);
+      if (weight > 0) {
+        kept_.push_back(event);
+        kept_.back().weight = weight;
+      }
+      const float weightOfLight = scale * (path.found - event.foundOnArrival);
+      if (forLight_ && weightOfLight > 0 && event.previousDistance > 0) {
+        keptOfLight_.push_back(event);
+        PlacedEvent& reversed = keptOfLight_.back();
+        reversed.direction = event.toPrevious;
+        reversed.distance = event.previousDistance;
+        reversed.unguided = event.unguidedReverse;
+        reversed.weight = weightOfLight;
+      }
+    }
+  }
+  Thin(kept_);
+  Thin(keptOfLight_);
 }
 
 bool PathLearning::Decide(uint32_t samples, int threads) {
@@ -182,13 +198,13 @@ bool PathLearning::Decide(uint32_t samples, int threads) {
   if (tried_) Test(scales);
   Keep(scales);
   latest_.Clear();
-  std::vector<PlacedEvent> ofCamera = kept_, ofLight;
+  std::vector<PlacedEvent> ofCamera = kept_, ofLight = keptOfLight_;
   tried_ = std::make_shared<const PathGuide>(ofCamera, ofLight, threads);
   // The guide put to use is made of more events than the one that was tested.
   guide_ = always_ || (hasVerdict_ && gain_ > kWorthwhile) ? tried_ : nullptr;
   if (samples >= kLearned || (!always_ && hasVerdict_ && samples >= kHopeless && !guide_)) {
     isRecording_ = false;
-    kept_ = {};
+    kept_ = keptOfLight_ = {};
     latest_ = {};
   }
   return wasInUse || guide_;
@@ -206,6 +222,7 @@ void PathLearning::Save(ByteWriter& bytes) const {
   bytes.List(latest_.Paths());
   bytes.List(latest_.Events());
   bytes.List(std::span(kept_));
+  bytes.List(std::span(keptOfLight_));
 }
 
 namespace {
@@ -234,11 +251,14 @@ void PathLearning::Load(ByteReader& bytes) {
   std::vector<RecordedPath> paths = bytes.List<RecordedPath>(kMostEvents);
   std::vector<RecordedEvent> events = bytes.List<RecordedEvent>(kMostEvents);
   kept_ = bytes.List<PlacedEvent>(kMostKept);
+  keptOfLight_ = bytes.List<PlacedEvent>(kMostKept);
   bool isSound = blocks.size() == blocks_.size();
-  for (const PlacedEvent& event : kept_) isSound = isSound && IsSound(event);
+  for (const std::vector<PlacedEvent>* kept : {&kept_, &keptOfLight_})
+    for (const PlacedEvent& event : *kept) isSound = isSound && IsSound(event);
   for (const RecordedEvent& event : events)
     isSound = isSound && IsSound(event) && event.guidance > 0 && std::isfinite(event.guidance) &&
-              std::isfinite(event.foundBefore);
+              std::isfinite(event.foundBefore) && std::isfinite(event.foundOnArrival) && IsFinite(event.toPrevious) &&
+              event.previousDistance >= 0 && event.unguidedReverse >= 0 && std::isfinite(event.unguidedReverse);
   const uint64_t pixels = static_cast<uint64_t>(width_) * static_cast<uint64_t>(height_);
   for (size_t i = 0; i < paths.size(); ++i) {
     const uint32_t before = i > 0 ? paths[i - 1].firstEvent : 0;

@@ -20,8 +20,9 @@ class ByteWriter;
 
 class PathLearning {
  public:
-  // Of images of width × height pixels. `always`: a guide is used as soon as there is one.
-  PathLearning(int width, int height, bool always);
+  // Of images of width × height pixels. `forLight`: paths from the lights are guided, too. `always`: a guide is used as
+  // soon as there is one.
+  PathLearning(int width, int height, bool forLight, bool always);
 
   // The fraction of the camera paths that is recorded until the next milestone.
   double Fraction() const;
@@ -56,11 +57,10 @@ class PathLearning {
   std::vector<double> BlockScales() const;
   void Test(const std::vector<double>& scales);
   void Keep(const std::vector<double>& scales);
-  void Thin();
 
   int width_, height_;
   int blockSize_, blocksX_;
-  bool always_;
+  bool forLight_, always_;
   bool isRecording_ = true, hasVerdict_ = false;
   uint32_t samples_ = 0;  // at the last milestone
   double gain_ = 1;
@@ -68,7 +68,8 @@ class PathLearning {
   std::shared_ptr<const PathGuide> tried_;  // the candidate, or null
   std::vector<Block> blocks_;
   PathRecords latest_;             // since the last milestone
-  std::vector<PlacedEvent> kept_;  // of earlier ones, weighted
+  // Of earlier ones, weighted: events of camera paths, and those of light paths that go the other way.
+  std::vector<PlacedEvent> kept_, keptOfLight_;
 };
 
 }  // namespace lampyr

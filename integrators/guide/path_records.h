@@ -14,11 +14,16 @@
 namespace lampyr {
 
 // A scattering event of a recorded walk. `weight` of the base: not set.
+//
+// The same event is one of a light path that goes the other way, towards the camera: its direction is that to the
+// previous vertex. So camera paths tell both walks where to go.
 struct RecordedEvent : PlacedEvent {
-  // Density of what was sampled over that without a guide; of a delta, of its probability.
-  float guidance = 1;
-  // What the walk had found before the event: mean of the channels of radiance.
-  float foundBefore = 0;
+  float guidance = 1;  // Guidance::forward
+  // What the walk had found when it arrived at the vertex, and before it left: mean of the channels of radiance.
+  float foundOnArrival = 0, foundBefore = 0;
+  Vector3 toPrevious{0.0f};
+  float previousDistance = 0;   // scene units; 0: the previous vertex is the lens, where no walk from a light goes
+  float unguidedReverse = 0;    // density of `toPrevious` by a walk from a light, without a guide; 0: a delta
 };
 
 struct RecordedPath {

@@ -21,6 +21,10 @@ PdfSolidAngle Mixed(const MixtureFit& guide, const Point3& position, const Vecto
   return guide.share * guide.mixture.Density(position, direction) + (1 - guide.share) * bsdf;
 }
 
+float Ratio(PdfSolidAngle guided, PdfSolidAngle bsdf) {
+  return std::min(guided.value / std::max(bsdf.value, 1e-30f), kMostGuidance);
+}
+
 }  // namespace
 
 void Vertex::Guide(const Vector3& from, const Vector3& to, TransportMode mode, BsdfEvaluation& f) const {
@@ -28,12 +32,12 @@ void Vertex::Guide(const Vector3& from, const Vector3& to, TransportMode mode, B
   f.pdfReverse = Mixed(OtherGuide(*guide, mode), point.position, from, f.pdfReverse);
 }
 
-BsdfSample Vertex::SampleGuided(float uLobe, const Point2& u, TransportMode mode, float& guidance) const {
+BsdfSample Vertex::SampleGuided(float uLobe, const Point2& u, TransportMode mode, Guidance& guidance) const {
   const MixtureFit& own = OwnGuide(*guide, mode);
   const MixtureFit& other = OtherGuide(*guide, mode);
   BsdfSample sample;
   PdfSolidAngle bsdfForward, bsdfReverse;
-  guidance = 1;
+  guidance = {};
   if (uLobe < own.share) {
     sample.wi = own.mixture.Sample(point.position, uLobe / own.share, u);
     const BsdfEvaluation f = bsdf.Evaluate(toPrevious, sample.wi, mode);
@@ -60,7 +64,7 @@ BsdfSample Vertex::SampleGuided(float uLobe, const Point2& u, TransportMode mode
   }
   sample.pdfReverse = sample.isDelta ? (1 - other.share) * bsdfReverse
                                      : Mixed(other, point.position, toPrevious, bsdfReverse);
-  guidance = std::min(sample.pdfForward.value / std::max(bsdfForward.value, 1e-30f), kMostGuidance);
+  guidance = {Ratio(sample.pdfForward, bsdfForward), Ratio(sample.pdfReverse, bsdfReverse)};
   return sample;
 }
 

@@ -46,12 +46,10 @@ struct Vertex {
       Guide(from, to, mode, f);
     return f;
   }
-  // `guidance`: receives the density of what was sampled over that without a guide, or the ratio of probabilities of a
-  // delta.
-  BsdfSample Sample(float uLobe, const Point2& u, TransportMode mode, float& guidance) const {
+  BsdfSample Sample(float uLobe, const Point2& u, TransportMode mode, Guidance& guidance) const {
     if (guide) [[unlikely]]
       return SampleGuided(uLobe, u, mode, guidance);
-    guidance = 1;
+    guidance = {};
     return bsdf.Sample(toPrevious, uLobe, u, mode);
   }
   // |cosθ| to the shading normal, as in the scattering integral; of a fibre, to the plane across it.
@@ -101,7 +99,7 @@ struct Vertex {
 
  private:
   void Guide(const Vector3& from, const Vector3& to, TransportMode mode, BsdfEvaluation& f) const;
-  BsdfSample SampleGuided(float uLobe, const Point2& u, TransportMode mode, float& guidance) const;
+  BsdfSample SampleGuided(float uLobe, const Point2& u, TransportMode mode, Guidance& guidance) const;
 
   // Lower bound of the cosines divided by. Grazing cosines have lost their precision to rounding, and the weight
   // 1/cosine of a light path that arrives at one is unbounded. The bound costs the light from within this cosine of the

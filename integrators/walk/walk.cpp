@@ -155,7 +155,7 @@ bool Scatter(const SampleContext& context, const WalkSettings& settings, int ind
   const float uLobe = sampler.Get1D();
   const BsdfSample sample = vertex.Sample(uLobe, sampler.Get2D(), settings.mode, state.lastGuidance);
   if (!sample) return false;
-  state.guidance *= state.lastGuidance;
+  state.guidance *= state.lastGuidance.forward;
   if (isFromLight) {
     const float correction = vertex.ArrivalCorrection(vertex.toPrevious) * vertex.DepartureCorrection(sample.wi);
     state.diffuse = (vertex.diffuse * sample.weightDiffuse + vertex.specular * sample.weightSpecular) * correction;
@@ -219,15 +219,25 @@ EdgeEnd StartOf(const SampleContext& context, const PathState& state, const Subp
 }
 
 // Records the event at `vertex`, by which the path goes on; true if it did.
-[[gnu::noinline]] bool Record(const PathVertex& vertex, const PathState& state, float found, PathRecords& records) {
+// `foundOnArrival`, `found`: RecordedEvent.
+[[gnu::noinline]] bool Record(const Subpath& path, const PathState& state, float foundOnArrival, float found,
+                              PathRecords& records) {
+  const PathVertex& vertex = path.Last();
   if (!vertex.bsdf.IsWide()) return false;
   RecordedEvent event;
   event.position = vertex.point.position;
   event.direction = state.ray.direction;
   event.side = SideOf(vertex);
-  event.guidance = state.lastGuidance;
-  if (!vertex.scatteredDelta) event.unguided = static_cast<float>(state.pdfDirection.value) / event.guidance;
+  event.guidance = state.lastGuidance.forward;
+  if (!vertex.scatteredDelta) {
+    event.unguided = static_cast<float>(vertex.eventForward.value) / state.lastGuidance.forward;
+    event.unguidedReverse = static_cast<float>(vertex.eventReverse.value) / state.lastGuidance.reverse;
+  }
+  event.foundOnArrival = foundOnArrival;
   event.foundBefore = found;
+  event.toPrevious = vertex.toPrevious;
+  if (path.Count() > 1)
+    event.previousDistance = glm::distance(vertex.point.position, path[path.Count() - 2].point.position);
   records.Add(event);
   return true;
 }
@@ -297,9 +307,10 @@ void Walk(const SampleContext& context, const WalkSettings& settings, PathState&
     path.Add();
     if (context.outputs) [[unlikely]]
       path.LabelLast(*context.outputs, settings.mode, state.event);
+    const float foundOnArrival = settings.records ? visitor.Found() : 0;
     if (!visitor.Arrived(path, state)) return;
     if (!Scatter(context, settings, index, path.Last(), state)) return;
-    isRecorded = settings.records && Record(path.Last(), state, visitor.Found(), *settings.records);
+    isRecorded = settings.records && Record(path, state, foundOnArrival, visitor.Found(), *settings.records);
     if (!visitor.Scattered(path, state)) return;
   }
 }

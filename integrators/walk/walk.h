@@ -30,8 +30,9 @@ struct PathState {
   EdgeFactors factors;              // of the last ray, by participating media
   float length = 0;                 // of the whole path so far
   float etaScale = 1;               // undoes the scaling of radiance by η² in refraction, for Russian roulette
-  // Density of the path's events over that without a guide: of all of them, for Russian roulette, and of the last one.
-  float guidance = 1, lastGuidance = 1;
+  // Of the path's events: Π Guidance::forward, for Russian roulette, and that of the last one.
+  float guidance = 1;
+  Guidance lastGuidance;
   bool hasScatteredWidely = false;  // an earlier vertex scattered by a lobe that is no delta
   float emitted = 1;                // initial throughput, to which Russian roulette compares
   ScatteringParts event;            // at the last vertex; only with SampleContext::outputs
