@@ -100,8 +100,8 @@ void PassSequence::Learn(uint32_t samples) {
   if (changesDensities && photons_) photons_->Clear();
 }
 
-// Drops all samples so far. Not those of adaptive films, whose stages are planned from the first sample on, and of films
-// and technique images that are told how many samples they have.
+// Drops all samples so far. Not those of adaptive films, whose stages are planned from the first sample on, and of
+// films and technique images that are told how many samples they have.
 void PassSequence::Restart() {
   if (film_->IsAdaptive() || film_->HasHalf() || techniques_) return;
   *film_ = film_->EmptyCopy();

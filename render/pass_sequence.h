@@ -36,6 +36,14 @@ class PassSequence {
   RenderCounts TakeCounts();
   // Of integrators that gather photons.
   std::optional<PhotonStatistics> Photons() const;
+  // Of path guiding: PathLearning::Gain, and the regions of the guide in use; 0 without one.
+  struct GuidingStatistics {
+    double gain = 1;
+    size_t regions = 0;
+  };
+  GuidingStatistics Guiding() const {
+    return paths_ ? GuidingStatistics{paths_->Gain(), paths_->Regions()} : GuidingStatistics();
+  }
   // Fraction of `dropped` of all samples, or of the photons if that is larger, that was invalid.
   double DroppedFraction(uint64_t dropped, int samplesPerPixel) const;
 

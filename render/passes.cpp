@@ -517,8 +517,7 @@ void BothPaths::TraceChunk(size_t chunk, uint64_t begin, uint64_t end, uint32_t 
       const PixelRay ray = MakePixelRay(pass_.scene, pass_.filter, x, y, time, sampler);
       if (recorder) recorder->StartSample(x, y, ray.camera.weight * settings.sensor.ImagingRatio() * ray.filterWeight);
       context.film = ray.film;
-      if (pass_.learning)
-        pass_.Record(x, y, pass_.allocation ? slots.number : index, &records_[chunk], context);
+      if (pass_.learning) pass_.Record(x, y, pass_.allocation ? slots.number : index, &records_[chunk], context);
       adder.StartLayers();
       const Color radiance = Radiance(pass_.integrator, ray, context);
       if (adaptive) {

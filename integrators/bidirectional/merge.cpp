@@ -72,8 +72,9 @@ double WeightOf(const BidirectionalSample& sample, const Photon& photon, std::sp
 }
 
 // Makes the vertex of the camera subpath at which the ray of `state` passes a photon. `passed`: of the ray up to there.
-void SetVertexInMedium(const SampleContext& context, const PathState& state, const Flight& flight, const Point3d& position, int32_t medium,
-                       const PhaseBsdf& phase, const Color& extinction, const BeamPoint& passed, PathVertex& vertex) {
+void SetVertexInMedium(const SampleContext& context, const PathState& state, const Flight& flight,
+                       const Point3d& position, int32_t medium, const PhaseBsdf& phase, const Color& extinction,
+                       const BeamPoint& passed, PathVertex& vertex) {
   vertex = PathVertex();
   MakeVertexInMedium(context.scene, position, state.ray.direction, medium, phase, extinction, vertex);
   vertex.factors = {MeanOf(passed.density * extinction), MeanOf(passed.density * flight.startExtinction),

@@ -21,9 +21,9 @@ inline float ExpOfNegative(float x) {
   const auto whole = static_cast<int32_t>(scaled - 0.5f);  // rounds: `scaled` is not positive
   const float f = scaled - static_cast<float>(whole);
   const float power =
-      1 + f * (0.693147181f +
-               f * (0.240226507f +
-                    f * (0.0555041087f + f * (0.00961812911f + f * (0.00133335581f + f * 0.000154035304f)))));
+      1 +
+      f * (0.693147181f + f * (0.240226507f + f * (0.0555041087f +
+                                                   f * (0.00961812911f + f * (0.00133335581f + f * 0.000154035304f)))));
   return power * std::bit_cast<float>((whole + 127) << 23);
 }
 
@@ -80,8 +80,7 @@ Vector3 DirectionMixture::Sample(const Point3& point, float uLobe, const Point2&
   const float t = std::clamp(-std::log(least + (1 - u.x) * (1 - least)) / kappa, 0.0f, 2.0f);  // 1 - cosθ
   const float sine = SafeSqrt(t * (2 - t));
   const Vector2 phi = CosSinTurns(u.y);
-  const Vector3 sampled =
-      Frame::FromNormal(way / std::sqrt(squared)).ToWorld({sine * phi.x, sine * phi.y, 1 - t});
+  const Vector3 sampled = Frame::FromNormal(way / std::sqrt(squared)).ToWorld({sine * phi.x, sine * phi.y, 1 - t});
   return sampled / glm::length(sampled);
 }
 

@@ -78,8 +78,7 @@ class Fit {
       Vector3d way(event.direction);
       double near = 0;
       if (std::isfinite(event.distance)) {
-        const Vector3d target =
-            Vector3d(event.position) + static_cast<double>(event.distance) * way - Vector3d(center);
+        const Vector3d target = Vector3d(event.position) + static_cast<double>(event.distance) * way - Vector3d(center);
         const double distance = glm::length(target);
         if (distance > 0) {
           way = target / distance;
@@ -197,7 +196,8 @@ class Fit {
       const bool isDirection = !(lobe.nearness > 0) || !(distance < 1e15);
       mixture.SetTarget(k, isDirection ? Point3(lobe.mean) : Point3(Vector3d(center_) + distance * lobe.mean),
                         isDirection);
-      mixture.kappaPerSquare[k] = static_cast<float>(isDirection ? lobe.kappa : lobe.kappa * lobe.nearness * lobe.nearness);
+      mixture.kappaPerSquare[k] =
+          static_cast<float>(isDirection ? lobe.kappa : lobe.kappa * lobe.nearness * lobe.nearness);
     }
     return mixture;
   }

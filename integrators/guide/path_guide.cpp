@@ -42,7 +42,8 @@ class PathGuide::Builder {
     const bool isDivided = part.Most() > kMostInRegion && guide_.regions_.size() + 2 < kMostRegions;
     const float split = isDivided ? Median(part.Larger(), axis) : 0;
     const auto before = [&](const PlacedEvent& event) { return event.position[axis] < split; };
-    const auto camera = isDivided ? Partition(part.ofCamera, before) : 0, light = isDivided ? Partition(part.ofLight, before) : 0;
+    const auto camera = isDivided ? Partition(part.ofCamera, before) : 0,
+               light = isDivided ? Partition(part.ofLight, before) : 0;
     const Part first{part.ofCamera.first(camera), part.ofLight.first(light)};
     const Part second{part.ofCamera.subspan(camera), part.ofLight.subspan(light)};
     if (!isDivided || first.Most() == 0 || second.Most() == 0) {

@@ -1,9 +1,9 @@
-// What was learned of where walks should go from a place: for camera paths by the radiance that arrives there, for light
-// paths by the importance. Regions are boxes of positions, apart by the main direction of the normal.
+// What was learned of where walks should go from a place: for camera paths by the radiance that arrives there, for
+// light paths by the importance. Regions are boxes of positions, apart by the main direction of the normal.
 //
-// A scattering event of either walk has the density α · guide + (1 - α) · scattering, by its region's mixture and share.
-// The region depends on the place alone and not on the walk that arrived, so that each walk knows the density that the
-// other one would have had: its forward density is of one mixture and its reverse density of the other.
+// A scattering event of either walk has the density α · guide + (1 - α) · scattering, by its region's mixture and
+// share. The region depends on the place alone and not on the walk that arrived, so that each walk knows the density
+// that the other one would have had: its forward density is of one mixture and its reverse density of the other.
 #pragma once
 
 #include <cstdint>
@@ -21,8 +21,8 @@ struct GuideRegion {
   MixtureFit radiance, importance;
 };
 
-// Densities of a sampled event with a guide over those without: of the walk's own direction, and of the other walk's. Of
-// deltas, the ratios of their probabilities.
+// Densities of a sampled event with a guide over those without: of the walk's own direction, and of the other walk's.
+// Of deltas, the ratios of their probabilities.
 struct Guidance {
   float forward = 1, reverse = 1;
 };
@@ -40,7 +40,8 @@ struct PlacedEvent : GuideEvent {
 class PathGuide {
  public:
   PathGuide() = default;  // guides nothing
-  // Fits all regions, on at most `threads` threads. The events are of camera paths and of light paths; they are reordered.
+  // Fits all regions, on at most `threads` threads. The events are of camera paths and of light paths; they are
+  // reordered.
   PathGuide(std::vector<PlacedEvent>& ofCamera, std::vector<PlacedEvent>& ofLight, int threads);
 
   // Null: not guided there.
@@ -63,8 +64,8 @@ class PathGuide {
  private:
   static constexpr uint32_t kNone = 0xffffffffu;
   static constexpr size_t kMostRegions = size_t{1} << 16;
-  // An inner node divides along `axis`, and its two children follow each other from `next` on; a leaf has axis 3 and the
-  // region `next`.
+  // An inner node divides along `axis`, and its two children follow each other from `next` on; a leaf has axis 3 and
+  // the region `next`.
   struct Node {
     float split = 0;
     uint32_t axis = 3, next = 0;

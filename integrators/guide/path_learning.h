@@ -67,7 +67,7 @@ class PathLearning {
   std::shared_ptr<const PathGuide> guide_;  // the guide in use, or null
   std::shared_ptr<const PathGuide> tried_;  // the candidate, or null
   std::vector<Block> blocks_;
-  PathRecords latest_;             // since the last milestone
+  PathRecords latest_;  // since the last milestone
   // Of earlier ones, weighted: events of camera paths, and those of light paths that go the other way.
   std::vector<PlacedEvent> kept_, keptOfLight_;
 };

@@ -22,8 +22,8 @@ struct RecordedEvent : PlacedEvent {
   // What the walk had found when it arrived at the vertex, and before it left: mean of the channels of radiance.
   float foundOnArrival = 0, foundBefore = 0;
   Vector3 toPrevious{0.0f};
-  float previousDistance = 0;   // scene units; 0: the previous vertex is the lens, where no walk from a light goes
-  float unguidedReverse = 0;    // density of `toPrevious` by a walk from a light, without a guide; 0: a delta
+  float previousDistance = 0;  // scene units; 0: the previous vertex is the lens, where no walk from a light goes
+  float unguidedReverse = 0;   // density of `toPrevious` by a walk from a light, without a guide; 0: a delta
 };
 
 struct RecordedPath {

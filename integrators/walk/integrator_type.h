@@ -66,9 +66,8 @@ inline const Setting kLightSamples{.name = "light-samples",
                                    .most = LightChoices::kMost};
 inline const Setting kLearnLights{
     .name = "learn-lights", .help = "Let the light tree learn which lights are occluded where", .fallback = false};
-inline const Setting kGuidePaths{.name = "guide-paths",
-                                 .help = "Guide paths to where they find light, if that reduces the noise",
-                                 .fallback = true};
+inline const Setting kGuidePaths{
+    .name = "guide-paths", .help = "Guide paths to where they find light, if that reduces the noise", .fallback = true};
 inline const Setting kGuideAlways{.name = "guide-always",
                                   .help = "Guide paths as soon as anything is learned, whether it pays or not",
                                   .fallback = false};

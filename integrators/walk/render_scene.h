@@ -33,9 +33,9 @@ struct RenderScene {
   int32_t exterior = kVacuum;                 // where rays leave the scene, and lights at infinity shine from
   std::vector<int32_t> lightMedia;            // by light: around it, or in front of it; empty: vacuum
   std::vector<int32_t>
-      lightBackMedia;      // by light: behind its surface, where a two-sided light shines, too; empty: vacuum
-  std::shared_ptr<const PathGuide> guide;     // where walks go after wide scattering; null: as surfaces scatter
-  bool hasMotion = false;  // something moves while the shutter is open; otherwise all rays have time 0
+      lightBackMedia;  // by light: behind its surface, where a two-sided light shines, too; empty: vacuum
+  std::shared_ptr<const PathGuide> guide;  // where walks go after wide scattering; null: as surfaces scatter
+  bool hasMotion = false;                  // something moves while the shutter is open; otherwise all rays have time 0
 
   // Medium in which a camera ray starts.
   int32_t MediumOf(const Ray& cameraRay) const;

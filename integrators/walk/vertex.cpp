@@ -56,14 +56,14 @@ BsdfSample Vertex::SampleGuided(float uLobe, const Point2& u, TransportMode mode
     if (!sample) return sample;
     bsdfForward = sample.pdfForward;
     bsdfReverse = sample.pdfReverse;
-    sample.pdfForward = sample.isDelta ? (1 - own.share) * bsdfForward
-                                       : Mixed(own, point.position, sample.wi, bsdfForward);
+    sample.pdfForward =
+        sample.isDelta ? (1 - own.share) * bsdfForward : Mixed(own, point.position, sample.wi, bsdfForward);
     const float scale = bsdfForward.value / sample.pdfForward.value;
     sample.weightDiffuse *= scale;
     sample.weightSpecular *= scale;
   }
-  sample.pdfReverse = sample.isDelta ? (1 - other.share) * bsdfReverse
-                                     : Mixed(other, point.position, toPrevious, bsdfReverse);
+  sample.pdfReverse =
+      sample.isDelta ? (1 - other.share) * bsdfReverse : Mixed(other, point.position, toPrevious, bsdfReverse);
   guidance = {Ratio(sample.pdfForward, bsdfForward), Ratio(sample.pdfReverse, bsdfReverse)};
   return sample;
 }

@@ -25,11 +25,11 @@ struct Vertex {
   float coverage = 1;
   // Participating media on the sides of the surface, the outside being that of Ng; in a medium both are that one.
   int32_t insideMedium = kVacuum, outsideMedium = kVacuum;
-  Color extinction{1.0f};        // σ_t in a medium, 1/scene unit; 1 on a surface
-  bool isDelta = false;          // only delta lobes: cannot be connected
-  bool storesPhotons = true;     // by material, not by the component drawn from a mix: gathering paths draw anew
-  bool isSeenByCamera = true;    // camera rays meet it
-  bool isSeenByIndirect = true;  // rays of light subpaths meet it
+  Color extinction{1.0f};              // σ_t in a medium, 1/scene unit; 1 on a surface
+  bool isDelta = false;                // only delta lobes: cannot be connected
+  bool storesPhotons = true;           // by material, not by the component drawn from a mix: gathering paths draw anew
+  bool isSeenByCamera = true;          // camera rays meet it
+  bool isSeenByIndirect = true;        // rays of light subpaths meet it
   const GuideRegion* guide = nullptr;  // null: walks scatter as the BSDF does
 
   // Beyond float: mean free paths may be shorter than its rounding. Where the path met the surface, or collided.

@@ -12,8 +12,8 @@ namespace lampyr {
 namespace {
 
 // Survival probability of Russian roulette ([Veach97 §10.4.1]): the square root of the largest channel of the
-// throughput, without the scaling of `scale` (of refraction, and of guides). 1 for the first scattering event, so that a light seen in a mirror
-// stays free of noise.
+// throughput, without the scaling of `scale` (of refraction, and of guides). 1 for the first scattering event, so that
+// a light seen in a mirror stays free of noise.
 //
 // By the square root a surviving path keeps a throughput of the root and not of 1, so that rare long paths weigh less.
 // In closed boxes this is 20 % more efficient than the throughput itself as the probability, although paths are longer.
@@ -112,8 +112,8 @@ void Subpath::LabelLast(const OutputPlan& plan, TransportMode mode, const Scatte
   ++count_;
 }
 
-void MakeVertexInMedium(const RenderScene& scene, const Point3d& position, const Vector3& direction, int32_t medium, const PhaseBsdf& phase,
-                        const Color& extinction, Vertex& vertex) {
+void MakeVertexInMedium(const RenderScene& scene, const Point3d& position, const Vector3& direction, int32_t medium,
+                        const PhaseBsdf& phase, const Color& extinction, Vertex& vertex) {
   MakeInPlace(vertex.point, [&] {
     SurfacePoint point;
     point.position = Point3(position);

@@ -27,9 +27,9 @@ struct PathState {
   // Transmittance of what the last ray crossed; in media that scatter, over the density of getting through. Already a
   // factor of β.
   Color passed{1.0f};
-  EdgeFactors factors;              // of the last ray, by participating media
-  float length = 0;                 // of the whole path so far
-  float etaScale = 1;               // undoes the scaling of radiance by η² in refraction, for Russian roulette
+  EdgeFactors factors;  // of the last ray, by participating media
+  float length = 0;     // of the whole path so far
+  float etaScale = 1;   // undoes the scaling of radiance by η² in refraction, for Russian roulette
   // Of the path's events: Π Guidance::forward, for Russian roulette, and that of the last one.
   float guidance = 1;
   Guidance lastGuidance;
@@ -112,14 +112,14 @@ struct WalkSettings {
   bool hasRoulette = true;
   // Materials of the vertices behind a wide scattering; null: those of the scene.
   const std::vector<std::shared_ptr<const Material>>* materialsAfterWide = nullptr;
-  bool seesFlights = false;  // PathVisitor::Flew is called, in scenes with media
-  bool wantsBeams = false;   // with Flight::beam
+  bool seesFlights = false;        // PathVisitor::Flew is called, in scenes with media
+  bool wantsBeams = false;         // with Flight::beam
   PathRecords* records = nullptr;  // receive the events at vertices that scatter widely
 };
 
 // Makes a vertex in the medium `medium`. `direction`: of the ray that arrives.
-void MakeVertexInMedium(const RenderScene& scene, const Point3d& position, const Vector3& direction, int32_t medium, const PhaseBsdf& phase,
-                        const Color& extinction, Vertex& vertex);
+void MakeVertexInMedium(const RenderScene& scene, const Point3d& position, const Vector3& direction, int32_t medium,
+                        const PhaseBsdf& phase, const Color& extinction, Vertex& vertex);
 
 // Extends a path from `state` until it escapes or is absorbed, the visitor ends it, or it has hit a surface with
 // maxDepth vertices behind it. `path`: its vertices so far; none, or those that `state` comes from. The first ray of a

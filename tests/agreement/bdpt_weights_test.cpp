@@ -131,6 +131,28 @@ TEST(BdptWeights, InMedia) {
   }
 }
 
+// Both walks guided, each where it likes: the densities of either are known to the other.
+TEST(BdptWeights, WithGuides) {
+  int merges = 0;
+  const auto check = [&](const std::string& name, const std::string& text, WeightProof proof) {
+    proof.isGuided = true;
+    const WeightErrors worst = CheckWeights(text, proof);
+    EXPECT_GE(worst.paths, proof.paths) << name;
+    ExpectExact(name.c_str(), worst);
+    Print(name.c_str(), worst);
+    merges += worst.merges;
+  };
+  for (const AgreementScene& scene : AgreementScenes()) {
+    check(scene.name, scene.text, {.paths = 3000});
+    check(scene.name, scene.text, {.paths = 3000, .pixels = 2});
+  }
+  for (const MediaScene& scene : MediaScenes())
+    if (scene.hasLights) check(scene.name, scene.text, {.paths = 3000, .radius = 0.02f});
+  const AgreementScene& first = AgreementScenes().front();
+  check("many paths", first.text, {.paths = 10000, .radius = 0.01f});
+  EXPECT_GT(merges, 10000);
+}
+
 // Fewer light paths than camera paths, or more; connections and merging left out, always made, or now and then,
 // depending on the place on the film; splats by filters of other widths.
 TEST(BdptWeights, WithCounts) {

@@ -10,6 +10,7 @@
 #include "integrators/bidirectional/full_path.h"
 #include "integrators/bidirectional/subpath_weights.h"
 #include "support/aimed.h"
+#include "support/random_guide.h"
 #include "support/render_scene.h"
 
 namespace lampyr::test {
@@ -402,6 +403,7 @@ WeightErrors CheckWeights(const std::string& sceneText, const WeightProof& proof
   RenderScene scene = built.scene;
   if (proof.aimed)
     scene.lighting = std::make_shared<const LightingServices>(scene.lighting->With(nullptr, guide.get()));
+  if (proof.isGuided) scene.guide = RandomGuide(sphere);
   BidirectionalSettings settings;
   settings.maxDepth = built.settings.MaxDepth();
   const int width = built.settings.width, height = built.settings.height;

@@ -47,6 +47,7 @@ struct WeightProof {
   bool stopsAtFirst = false;
   TechniqueCounts counts{};
   float beamShare = 0;      // of light paths whose flights in homogeneous media are photons; 0: photons are points
+  bool isGuided = false;    // both walks, by a guide of random directions
   double splatCount = 1.8;  // samples of a pixel that a splat is worth; that of a Gaussian filter
 };
 WeightErrors CheckWeights(const std::string& sceneText, const WeightProof& proof);

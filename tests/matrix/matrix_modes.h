@@ -15,9 +15,10 @@ struct Mode {
   bool guides = false;                  // photons
   bool learns = false;                  // the selection of lights
   bool isAdaptive = false;              // pixels differ in their numbers of samples
+  bool guidesPaths = false;             // from the second sample on
   // Per pixel of a trial replica; at least that many in each. What is learned takes effect from pass to pass.
   int Samples() const { return isAdaptive ? 8 : Adapts() ? 6 : 4; }
-  bool Adapts() const { return guides || learns; }
+  bool Adapts() const { return guides || learns || guidesPaths; }
 
   bool GathersPhotons() const {
     RenderSettings settings;
@@ -31,6 +32,8 @@ struct Mode {
     settings.values.Set("direct-photons", directFromPhotons);
     settings.values.Set("learn-lights", learns);
     settings.values.Set("guide-photons", guides);
+    settings.values.Set("guide-paths", guidesPaths);
+    settings.values.Set("guide-always", guidesPaths);
     settings.adaptive.reset();
     if (isAdaptive) settings.adaptive.emplace();
   }
@@ -39,21 +42,25 @@ struct Mode {
 inline const std::vector<Mode>& Modes() {
   static const std::vector<Mode> modes = {
       {.name = "path, learning, adaptive", .integrator = "path", .learns = true, .isAdaptive = true},
+      {.name = "path, guided", .integrator = "path", .guidesPaths = true},
       {.name = "light", .integrator = "light"},
       {.name = "bdpt", .integrator = "bdpt"},
       {.name = "bdpt, learning, adaptive", .integrator = "bdpt", .learns = true, .isAdaptive = true},
+      {.name = "bdpt, guided", .integrator = "bdpt", .guidesPaths = true},
       {.name = "vcm", .integrator = "vcm"},
       {.name = "vcm, guided, learning, adaptive",
        .integrator = "vcm",
        .guides = true,
        .learns = true,
-       .isAdaptive = true},
+       .isAdaptive = true,
+       .guidesPaths = true},
       {.name = "vcm --no-connect", .integrator = "vcm", .connects = false},
       {.name = "vcm --no-connect, guided, learning",
        .integrator = "vcm",
        .connects = false,
        .guides = true,
-       .learns = true},
+       .learns = true,
+       .guidesPaths = true},
       {.name = "sppm", .integrator = "sppm"},
       {.name = "sppm, guided, learning, adaptive",
        .integrator = "sppm",

@@ -31,25 +31,27 @@ TEST_F(Merge, HasTheBytesOfOneRender) {
   int cases = 0;
   for (const char* integrator : {"path", "bdpt", "light"}) {
     for (const int count : {2, 3, 7}) {
-      ExpectWhole(std::string("--spp 16 --integrator ") + integrator, count);
+      ExpectWhole(std::string("--spp 16 --no-guide-paths --integrator ") + integrator, count);
       ++cases;
     }
   }
-  ExpectWhole("--spp 9 --crop 5,40,3,20 --threads 3 --seed 4", 4);
-  ExpectWhole("--spp 8 --sampler independent --integrator bdpt --resolution 100x60", 2);
+  ExpectWhole("--spp 9 --no-guide-paths --crop 5,40,3,20 --threads 3 --seed 4", 4);
+  ExpectWhole("--spp 8 --no-guide-paths --sampler independent --integrator bdpt --resolution 100x60", 2);
   std::printf("[   info   ] %d pictures\n", cases + 2);
 }
 
 // Passes have the radii that they have in one piece.
 TEST_F(Merge, HasTheBytesOfOneRenderWithPhotonsThatAreNotAimed) {
   for (const char* integrator : {"sppm", "vcm"})
-    ExpectWhole(std::string("--spp 13 --no-guide-photons --integrator ") + integrator, 3);
+    ExpectWhole(std::string("--spp 13 --no-guide-photons --no-guide-paths --integrator ") + integrator, 3);
 }
 
 // Each part learns for itself: another estimate of the same picture.
 TEST_F(Merge, PartsThatLearnAgreeWithOneRender) {
-  for (const char* settings : {"--integrator vcm", "--integrator path --learn-lights", "--integrator path --adaptive",
-                               "--integrator bdpt --adaptive", "--integrator vcm --adaptive"}) {
+  for (const char* settings :
+       {"--integrator vcm", "--integrator path --guide-always", "--integrator bdpt --guide-always",
+        "--integrator path --learn-lights", "--integrator path --adaptive", "--integrator bdpt --adaptive",
+        "--integrator vcm --adaptive"}) {
     const std::string options = std::string("--spp 192 --resolution 24x16 ") + settings;
     Do("merge --quiet -o merged.exr " + RenderParts(options, 3));
     Do("render scene.pbrt --quiet -o whole.exr --seed 11 " + options);

@@ -15,7 +15,8 @@ namespace {
 const std::string kRender = "render scene.pbrt --quiet -o out.exr --resume ";
 
 TEST_F(Resume, MoreSamplesAreThoseOfOneRender) {
-  for (const char* integrator : {"path", "light", "bdpt", "sppm", "vcm", "path --adaptive", "bdpt --adaptive --denoise",
+  for (const char* integrator : {"path", "light", "bdpt", "sppm", "vcm", "path --guide-always", "bdpt --guide-always",
+                                 "vcm --guide-always --adaptive", "path --adaptive", "bdpt --adaptive --denoise",
                                  "sppm --adaptive", "vcm --adaptive", "auto --adaptive"}) {
     const std::string chosen = std::string("--integrator ") + integrator;
     Do("render scene.pbrt --quiet -o whole.exr --spp 24 " + chosen);

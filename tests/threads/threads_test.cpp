@@ -54,6 +54,17 @@ TEST_P(Threads, OneToFourGiveTheSameBytes) {
       ++pictures;
     }
   }
+  for (const char* integrator : {"path", "bdpt", "vcm"}) {
+    RenderOverrides overrides;
+    overrides.integrator = integrator;
+    overrides.width = 40;
+    overrides.height = 24;
+    overrides.values["guide-always"] = true;
+    const BuiltScene built = BuildScene(description, overrides, true, diagnostics);
+    EXPECT_EQ(RenderBuilt(built, kSamples, 3).image.data, RenderBuilt(built, kSamples, 1).image.data)
+        << integrator << ", guided";
+    ++pictures;
+  }
   // Beyond the first stage, and in the middle of the next.
   for (const char* integrator : {"path", "sppm", "vcm"}) {
     RenderOverrides overrides;
