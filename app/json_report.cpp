@@ -83,6 +83,8 @@ std::string ToJson(const RenderReport& report) {
     json["auto"] = {
         {"lightPaths", decided->lightPaths}, {"connecting", decided->connecting}, {"merging", decided->merging}};
   }
+  if (outcome.guiding.regions > 0)
+    json["guiding"] = {{"gain", outcome.guiding.gain}, {"regions", outcome.guiding.regions}};
   if (const std::optional<PhotonStatistics>& photons = outcome.photons) {
     json["photons"] = {{"passes", photons->passes},
                        {"stored", photons->photons},

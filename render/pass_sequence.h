@@ -16,6 +16,12 @@
 
 namespace lampyr {
 
+// Of path guiding: PathLearning::Gain, and the regions of the guide in use; 0: walks are not guided.
+struct GuidingStatistics {
+  double gain = 1;
+  size_t regions = 0;
+};
+
 // The picture after n passes does not depend on how they are divided into calls. After a pass that was cut short
 // (base/stop.h) the sequence is of no use until what it has changed is restored.
 class PassSequence {
@@ -36,11 +42,6 @@ class PassSequence {
   RenderCounts TakeCounts();
   // Of integrators that gather photons.
   std::optional<PhotonStatistics> Photons() const;
-  // Of path guiding: PathLearning::Gain, and the regions of the guide in use; 0 without one.
-  struct GuidingStatistics {
-    double gain = 1;
-    size_t regions = 0;
-  };
   GuidingStatistics Guiding() const {
     return paths_ ? GuidingStatistics{paths_->Gain(), paths_->Regions()} : GuidingStatistics();
   }

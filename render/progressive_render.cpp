@@ -90,6 +90,7 @@ void ProgressiveRender::AddWholePass(int count) {
   const Clock clock;
   passes_.Add(static_cast<uint32_t>(outcome_.samplesPerPixel), static_cast<uint32_t>(count));
   outcome_.photons = passes_.Photons();
+  outcome_.guiding = passes_.Guiding();
   outcome_.counts += passes_.TakeCounts();
   outcome_.samplesPerPixel += count;
   outcome_.seconds += clock.Seconds();
@@ -124,6 +125,7 @@ void ProgressiveRender::Load(ByteReader& bytes) {
   outcome_.counts = bytes.Value<RenderCounts>();
   passes_.Load(bytes);
   outcome_.photons = passes_.Photons();
+  outcome_.guiding = passes_.Guiding();
   film_->Load(bytes);
 }
 

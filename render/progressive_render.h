@@ -42,6 +42,7 @@ struct RenderOutcome {
   bool isPartial = false;
   RenderCounts counts;
   std::optional<PhotonStatistics> photons;  // of integrators that gather them
+  GuidingStatistics guiding;
 };
 
 // Fraction of dropped samples above which the picture counts as wrong and its error as unknown.

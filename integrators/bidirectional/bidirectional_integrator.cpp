@@ -492,6 +492,7 @@ IntegratorType BdptIntegratorType() {
   type.name = "bdpt";
   type.help = "paths from the camera and the lights, each vertex of one connected to each of the other";
   type.settings = common_settings::kOfNextEvent;
+  type.settings.insert(type.settings.end(), common_settings::kOfGuiding.begin(), common_settings::kOfGuiding.end());
   type.create = [](const IntegratorInput& input) { return MakeBidirectionalIntegrator(SettingsOf(input)); };
   type.counted = [](const Settings&) { return CountedTechniques{.lightPaths = true, .connections = true}; };
   type.hasTechniques = true;
@@ -504,6 +505,7 @@ IntegratorType VcmIntegratorType() {
   type.name = "vcm";
   type.help = "bdpt, and merging with photons near camera vertices";
   type.settings = common_settings::kOfNextEvent;
+  type.settings.insert(type.settings.end(), common_settings::kOfGuiding.begin(), common_settings::kOfGuiding.end());
   type.settings.insert(type.settings.end(), photon_settings::kAll.begin(), photon_settings::kAll.end());
   type.settings.insert(type.settings.end(), {&kMerge, &kConnect});
   type.create = CreateVcm;

@@ -13,6 +13,8 @@ namespace {
 constexpr size_t kLobes = DirectionMixture::kLobes;
 // Iterations after each doubling of the lobes.
 constexpr int kIterations = 4;
+// Until there are all lobes, every so many-th event is looked at.
+constexpr size_t kStride = 3;
 // Effective number of uniformly distributed events that each lobe is mixed with: few events do not make a narrow lobe.
 constexpr double kPriorEvents = 0.3;
 // A region whose events have a smaller effective number is not guided.
@@ -29,30 +31,38 @@ struct Lobe {
   double kappa = 1, weight = 0;
 };
 
-// Sums over the events of a lobe, each by its share of the event.
+// Sums over the events, each by its parts in the lobes. By lobe, so that a compiler vectorises them.
 struct LobeSums {
-  double weight = 0, squares = 0, nearness = 0;
-  Vector3d direction{0.0};
-  double moments[6] = {0, 0, 0, 0, 0, 0};  // of the direction: xx, yy, zz, xy, xz, yz
+  using Lanes = DirectionMixture::Lanes;
+  alignas(32) Lanes weight{}, squares{}, nearness{};
+  alignas(32) Lanes x{}, y{}, z{};                       // of the direction
+  alignas(32) Lanes xx{}, yy{}, zz{}, xy{}, xz{}, yz{};  // its moments
 
-  void Add(const Vector3d& d, double near, double part) {
-    weight += part;
-    squares += part * part;
-    nearness += part * near;
-    direction += part * d;
+  void Add(const Vector3& d, float near, const Lanes& parts) {
+    for (size_t k = 0; k < kLobes; ++k) {
+      weight[k] += parts[k];
+      squares[k] += parts[k] * parts[k];
+      nearness[k] += parts[k] * near;
+      x[k] += parts[k] * d.x;
+      y[k] += parts[k] * d.y;
+      z[k] += parts[k] * d.z;
+    }
   }
-  void AddMoments(const Vector3d& d, double part) {
-    moments[0] += part * d.x * d.x;
-    moments[1] += part * d.y * d.y;
-    moments[2] += part * d.z * d.z;
-    moments[3] += part * d.x * d.y;
-    moments[4] += part * d.x * d.z;
-    moments[5] += part * d.y * d.z;
+  void AddMoments(const Vector3& d, const Lanes& parts) {
+    for (size_t k = 0; k < kLobes; ++k) {
+      xx[k] += parts[k] * d.x * d.x;
+      yy[k] += parts[k] * d.y * d.y;
+      zz[k] += parts[k] * d.z * d.z;
+      xy[k] += parts[k] * d.x * d.y;
+      xz[k] += parts[k] * d.x * d.z;
+      yz[k] += parts[k] * d.y * d.z;
+    }
   }
-  double SecondMoment(const Vector3d& a, const Vector3d& b) const {
-    return a.x * b.x * moments[0] + a.y * b.y * moments[1] + a.z * b.z * moments[2] +
-           (a.x * b.y + a.y * b.x) * moments[3] + (a.x * b.z + a.z * b.x) * moments[4] +
-           (a.y * b.z + a.z * b.y) * moments[5];
+  Vector3d Direction(size_t k) const { return Vector3d(Vector3(x[k], y[k], z[k])); }
+  double SecondMoment(size_t k, const Vector3& a, const Vector3& b) const {
+    return static_cast<double>(a.x * b.x * xx[k] + a.y * b.y * yy[k] + a.z * b.z * zz[k] +
+                               (a.x * b.y + a.y * b.x) * xy[k] + (a.x * b.z + a.z * b.x) * xz[k] +
+                               (a.y * b.z + a.z * b.y) * yz[k]);
   }
 };
 
@@ -72,9 +82,12 @@ class Fit {
     weights_.reserve(events.size());
     fromCenter_.reserve(events.size());
     for (const GuideEvent& event : events) {
-      weights_.push_back(std::min(static_cast<double>(event.weight), most));
-      total_ += weights_.back();
-      squares += weights_.back() * weights_.back();
+      // Relative to their mean, for sums in float.
+      const double weight =
+          std::min(static_cast<double>(event.weight), most) / sum * static_cast<double>(events.size());
+      weights_.push_back(sum > 0 ? static_cast<float>(weight) : 0.0f);
+      total_ += static_cast<double>(weights_.back());
+      squares += static_cast<double>(weights_.back()) * static_cast<double>(weights_.back());
       Vector3d way(event.direction);
       double near = 0;
       if (std::isfinite(event.distance)) {
@@ -85,7 +98,7 @@ class Fit {
           near = 1 / distance;
         }
       }
-      fromCenter_.push_back({way, near});
+      fromCenter_.push_back({Vector3(way), static_cast<float>(near)});
     }
     count_ = squares > 0 ? total_ * total_ / squares : 0;
   }
@@ -93,10 +106,15 @@ class Fit {
   MixtureFit Run() {
     if (!(count_ >= kFewestEvents)) return {};
     lobes_.assign(1, Lobe{.kappa = 0, .weight = 1});
-    Maximize(Expect(true, true));
+    Expect(1, true);
+    Maximize();
     for (size_t lobes = 2; lobes <= kLobes; lobes *= 2) {
       Split();
-      for (int i = 1; i <= kIterations; ++i) Maximize(Expect(false, i == kIterations && lobes < kLobes));
+      const bool isLast = lobes == kLobes;
+      for (int i = 1; i <= kIterations; ++i) {
+        Expect(isLast ? 1 : kStride, !isLast && i == kIterations);
+        Maximize();
+      }
     }
     MixtureFit fit{Mixture(), static_cast<float>(std::min(share_, static_cast<double>(kMostShare)))};
     if (share_ < kLeastShare || !fit.mixture.IsValid()) return {};
@@ -105,55 +123,60 @@ class Fit {
 
  private:
   struct FromCenter {
-    Vector3d direction;
-    double nearness;
+    Vector3 direction;
+    float nearness;
   };
 
-  // `isFirst`: all events are the lobe's, in the part that scattering leaves. `withMoments`: the lobes are split next.
-  std::vector<LobeSums> Expect(bool isFirst, bool withMoments) {
-    std::vector<LobeSums> sums(lobes_.size());
+  // Each `stride`-th event. `withMoments`: the lobes are split next.
+  void Expect(size_t stride, bool withMoments) {
+    sums_ = LobeSums();
     const DirectionMixture mixture = Mixture();
-    double guided = 0;
-    for (size_t i = 0; i < events_.size(); ++i) {
+    const bool isFirst = lobes_.size() == 1;  // of which no place is known: uniform
+    const auto share = static_cast<float>(share_);
+    double guided = 0, total = 0;
+    for (size_t i = 0; i < events_.size(); i += stride) {
       const GuideEvent& event = events_[i];
+      total += static_cast<double>(weights_[i]);
       if (!(event.unguided > 0) || !(weights_[i] > 0)) continue;  // a delta: no lobe's
-      alignas(32) DirectionMixture::Lanes densities;
+      alignas(32) DirectionMixture::Lanes parts;
       if (isFirst) {
-        densities.fill(0.25f * kInvPi);
+        parts.fill(0.25f * kInvPi);
       } else {
-        mixture.Densities(event.position, event.direction, densities);
+        mixture.Densities(event.position, event.direction, parts);
       }
-      double all = (1 - share_) * static_cast<double>(event.unguided);
-      for (size_t k = 0; k < lobes_.size(); ++k) all += share_ * lobes_[k].weight * static_cast<double>(densities[k]);
+      float sum = 0;
+      for (size_t k = 0; k < kLobes; ++k) {
+        parts[k] *= share * mixture.weight[k];
+        sum += parts[k];
+      }
+      const float all = sum + (1 - share) * event.unguided;
       if (!(all > 0)) continue;
-      for (size_t k = 0; k < lobes_.size(); ++k) {
-        const double part = weights_[i] * share_ * lobes_[k].weight * static_cast<double>(densities[k]) / all;
-        guided += part;
-        sums[k].Add(fromCenter_[i].direction, fromCenter_[i].nearness, part);
-        if (withMoments) sums[k].AddMoments(fromCenter_[i].direction, part);
-      }
+      const float scale = weights_[i] / all;
+      for (size_t k = 0; k < kLobes; ++k) parts[k] *= scale;
+      guided += static_cast<double>(sum * scale);
+      sums_.Add(fromCenter_[i].direction, fromCenter_[i].nearness, parts);
+      if (withMoments) sums_.AddMoments(fromCenter_[i].direction, parts);
     }
-    if (!isFirst) share_ = std::clamp(guided / total_, 1e-4, 0.98);
-    return sums;
+    if (!isFirst && total > 0) share_ = std::clamp(guided / total, 1e-4, 0.98);
   }
 
-  void Maximize(std::vector<LobeSums>&& sums) {
-    sums_ = std::move(sums);
+  void Maximize() {
     double all = 0;
-    for (const LobeSums& sum : sums_) all += sum.weight;
+    for (size_t k = 0; k < lobes_.size(); ++k) all += static_cast<double>(sums_.weight[k]);
     for (size_t k = 0; k < lobes_.size(); ++k) {
-      const LobeSums& sum = sums_[k];
+      const auto weight = static_cast<double>(sums_.weight[k]);
       Lobe& lobe = lobes_[k];
-      lobe.weight = all > 0 ? sum.weight / all : 0.0;
-      const double length = glm::length(sum.direction);
-      if (!(sum.weight > 0) || !(length > 1e-12 * sum.weight)) {
+      lobe.weight = all > 0 ? weight / all : 0.0;
+      const Vector3d direction = sums_.Direction(k);
+      const double length = glm::length(direction);
+      if (!(weight > 0) || !(length > 1e-6 * weight)) {
         lobe.weight = 0;
         continue;
       }
-      lobe.mean = sum.direction / length;
-      lobe.nearness = sum.nearness / sum.weight;
-      const double count = sum.weight * sum.weight / sum.squares;
-      lobe.kappa = KappaOf(length / sum.weight * count / (count + kPriorEvents));
+      lobe.mean = direction / length;
+      lobe.nearness = static_cast<double>(sums_.nearness[k]) / weight;
+      const double count = weight * weight / static_cast<double>(sums_.squares[k]);
+      lobe.kappa = KappaOf(length / weight * count / (count + kPriorEvents));
     }
   }
 
@@ -163,15 +186,15 @@ class Fit {
     for (size_t k = 0; k < lobes_.size(); ++k) {
       const Lobe& lobe = lobes_[k];
       const Frame frame = Frame::FromNormal(Normal3(Vector3(lobe.mean)));
-      const Vector3d x(frame.x), y(frame.y);
-      const LobeSums& sum = sums_[k];
-      const double perWeight = sum.weight > 0 ? 1 / sum.weight : 0;
-      const double xx = sum.SecondMoment(x, x) * perWeight, yy = sum.SecondMoment(y, y) * perWeight,
-                   xy = sum.SecondMoment(x, y) * perWeight;
+      const auto weight = static_cast<double>(sums_.weight[k]);
+      const double perWeight = weight > 0 ? 1 / weight : 0;
+      const double xx = sums_.SecondMoment(k, frame.x, frame.x) * perWeight,
+                   yy = sums_.SecondMoment(k, frame.y, frame.y) * perWeight,
+                   xy = sums_.SecondMoment(k, frame.x, frame.y) * perWeight;
       const double angle = 0.5 * std::atan2(2 * xy, xx - yy);
       const double c = std::cos(angle), s = std::sin(angle);
       const double variance = std::max(c * c * xx + 2 * c * s * xy + s * s * yy, 0.0);
-      const Vector3d step = std::min(std::sqrt(variance), 0.7) * (c * x + s * y);
+      const Vector3d step = std::min(std::sqrt(variance), 0.7) * (c * Vector3d(frame.x) + s * Vector3d(frame.y));
       for (const double sign : {-1.0, 1.0}) {
         Lobe half = lobe;
         half.mean = glm::normalize(lobe.mean + sign * step);
@@ -204,12 +227,12 @@ class Fit {
 
   std::span<const GuideEvent> events_;
   const Point3 center_;
-  std::vector<double> weights_;
+  std::vector<float> weights_;
   std::vector<FromCenter> fromCenter_;
   double total_ = 0, count_ = 0;  // sum of the weights, and the number of equal ones with the same variance
   double share_ = 0.5;
   std::vector<Lobe> lobes_;
-  std::vector<LobeSums> sums_;  // of the last expectation
+  LobeSums sums_;  // of the last expectation
 };
 
 }  // namespace

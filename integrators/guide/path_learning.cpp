@@ -16,11 +16,13 @@ constexpr double kMostPaths = 1 << 17;
 constexpr size_t kMostKept = size_t{1} << 17;
 constexpr size_t kMostEvents = size_t{1} << 25;  // of a file
 // Least gain in variance for which a guide is used: what its densities cost, and some doubt.
-constexpr double kWorthwhile = 1.25;
+constexpr double kWorthwhile = 1.6;
 // Smallest effective number of paths for a verdict.
 constexpr double kFewestTested = 16;
 // Samples per pixel at which recording ends: when most has been learned, and when guiding would not help.
-constexpr uint32_t kLearned = 64, kHopeless = 16;
+constexpr uint32_t kLearned = 64, kHopeless = 8, kLastHope = 32;
+// Least gain for which a guide that is not used yet is given more samples.
+constexpr double kPromising = 1.25;
 // Blocks of pixels across the image, and pixels across a block, over which means are taken.
 constexpr int kBlocks = 32, kLeastBlock = 4;
 // Brightness that is added to that of a block, in means of the image: the error of dark parts counts less.
@@ -202,7 +204,8 @@ bool PathLearning::Decide(uint32_t samples, int threads) {
   tried_ = std::make_shared<const PathGuide>(ofCamera, ofLight, threads);
   // The guide put to use is made of more events than the one that was tested.
   guide_ = always_ || (hasVerdict_ && gain_ > kWorthwhile) ? tried_ : nullptr;
-  if (samples >= kLearned || (!always_ && hasVerdict_ && samples >= kHopeless && !guide_)) {
+  const uint32_t hopeless = hasVerdict_ && gain_ < kPromising ? kHopeless : kLastHope;
+  if (samples >= (always_ || guide_ ? kLearned : hopeless)) {
     isRecording_ = false;
     kept_ = keptOfLight_ = {};
     latest_ = {};

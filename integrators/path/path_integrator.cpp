@@ -59,6 +59,7 @@ IntegratorType PathIntegratorType() {
   type.name = "path";
   type.help = "paths from the camera, with next-event estimation";
   type.settings = common_settings::kOfNextEvent;
+  type.settings.insert(type.settings.end(), common_settings::kOfGuiding.begin(), common_settings::kOfGuiding.end());
   type.settings.push_back(&kRegularize);
   type.create = Create;
   type.hints = Hints;

@@ -90,8 +90,9 @@ inline const Setting kShadowThreshold{
 
 // Settings of integrators with next-event estimation.
 inline const std::vector<const Setting*> kOfNextEvent = {&kMaxDepth,    &kLightSampler,   &kLightSamples,
-                                                         &kLearnLights, &kShadowRoulette, &kShadowThreshold,
-                                                         &kGuidePaths,  &kGuideAlways};
+                                                         &kLearnLights, &kShadowRoulette, &kShadowThreshold};
+// Settings of integrators whose camera paths go on after they have been scattered widely.
+inline const std::vector<const Setting*> kOfGuiding = {&kGuidePaths, &kGuideAlways};
 
 }  // namespace common_settings
 

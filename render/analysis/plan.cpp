@@ -108,9 +108,17 @@ PlanDecision ChooseLinking(const LightingServices& lighting) {
 }
 
 PlanDecision ChooseGuiding(const RenderSettings& settings, const PhotonSettings& photons) {
-  if (!settings.values.IsOn("guide-photons")) return {"guiding", "off", "--no-guide-photons"};
-  if (!photons.guided) return {"guiding", "off", "nothing is smooth: photons carry little of the light"};
-  return {"guiding", "if helpful", "learned from the first samples"};
+  if (!settings.values.IsOn("guide-photons")) return {"photon guiding", "off", "--no-guide-photons"};
+  if (!photons.guided) return {"photon guiding", "off", "nothing is smooth: photons carry little of the light"};
+  return {"photon guiding", "if helpful", "learned from the first samples"};
+}
+
+PlanDecision ChoosePathGuiding(const RenderSettings& settings, const Integrator& integrator) {
+  if (!integrator.FollowsCameraPaths())
+    return {"path guiding", "off", "camera paths end where light is scattered widely"};
+  if (!settings.GuidesPaths()) return {"path guiding", "off", "--no-guide-paths"};
+  if (settings.AlwaysGuidesPaths()) return {"path guiding", "on", "--guide-always"};
+  return {"path guiding", "if helpful", "learned from the first samples, and tested on those that follow"};
 }
 
 // The first of some names.
@@ -162,13 +170,15 @@ ScenePlan PlanFor(const RenderScene& scene, const RenderSettings& settings, int 
   }
   RenderSettings chosenSettings = settings;
   chosenSettings.integrator = plan.decisions.front().choice;
-  const std::optional<PhotonSettings> photons = MakeIntegrator(scene, chosenSettings)->Photons();
+  const std::unique_ptr<Integrator> integrator = MakeIntegrator(scene, chosenSettings);
+  const std::optional<PhotonSettings> photons = integrator->Photons();
   plan.decisions.push_back(ChooseSelection(facts, settings));
   plan.decisions.push_back(ChooseLinking(*scene.lighting));
   plan.decisions.push_back(ChooseFilters(*scene.lighting));
   plan.decisions.push_back(
       ChooseMerging(facts, chosenSettings.integrator, photons, settings.values.Number("radius") > 0));
   if (photons) plan.decisions.push_back(ChooseGuiding(settings, *photons));
+  plan.decisions.push_back(ChoosePathGuiding(settings, *integrator));
   plan.decisions.push_back(ChooseGroups(scene));
   plan.decisions.push_back(ChooseLayers(scene));
   plan.decisions.push_back(scene.hasMotion ? PlanDecision{"motion", "on", "something moves while the shutter is open"}

@@ -148,7 +148,7 @@ TEST(BdptWeights, WithGuides) {
   }
   for (const MediaScene& scene : MediaScenes())
     if (scene.hasLights) check(scene.name, scene.text, {.paths = 3000, .radius = 0.02f});
-  const AgreementScene& first = AgreementScenes().front();
+  const AgreementScene first = AgreementScenes().front();
   check("many paths", first.text, {.paths = 10000, .radius = 0.01f});
   EXPECT_GT(merges, 10000);
 }
