@@ -99,6 +99,9 @@ struct SampleContext {
   bool tracesLight = true;
   Sampler* lightSampler = nullptr;
   const OutputPlan* outputs = nullptr;  // of the layers of the film; null: it has none
+  // Receives an estimate of what merging photons within a radius adds to the expectation of the returned radiance
+  // (photon/merge_bias.h). Null: not wanted.
+  Color* mergeBias = nullptr;
 
   SampleContext With(Sampler& other) const {
     return {scene,    other,       time,    counts,        layers,     splats,
