@@ -109,11 +109,13 @@ struct PassBias {
 // Sums over the passes of a pixel, taken as independent. g: PassBias::sum, its luminance where it is squared; c:
 // PassBias::count. Those of ended stages of an adaptive film are scaled by N / n, as in PixelStages, squares of that.
 struct PixelBias {
-  CompensatedSum sum[3];                          // Σ g
-  double squares = 0, products = 0, weights = 0;  // Σ g², Σ c g, Σ c²
+  CompensatedSum sum[3];             // Σ g
+  CompensatedSum squares, products;  // Σ g², Σ c g
+  double weights = 0;                // Σ c²
 
   void Add(const PassBias& pass);
-  void Add(const PixelBias& other, double scale = 1);
+  void Add(const PixelBias& other);
+  void AddScaled(const PixelBias& other, double scale);
   bool IsFinite() const;
 };
 

@@ -59,27 +59,28 @@ void PixelBias::Add(const PassBias& pass) {
     sum[c].Add(pass.sum[c]);
     luminance += Color::kLuminance[c] * pass.sum[c];
   }
-  squares += luminance * luminance;
-  products += pass.count * luminance;
+  squares.Add(luminance * luminance);
+  products.Add(pass.count * luminance);
   weights += static_cast<double>(pass.count) * pass.count;
 }
 
-void PixelBias::Add(const PixelBias& other, double scale) {
-  for (int c = 0; c < 3; ++c) {
-    if (scale == 1) {
-      sum[c].Add(other.sum[c]);
-    } else {
-      sum[c].Add(scale * other.sum[c].Value());
-    }
-  }
-  squares += scale * scale * other.squares;
-  products += scale * scale * other.products;
+void PixelBias::Add(const PixelBias& other) {
+  for (int c = 0; c < 3; ++c) sum[c].Add(other.sum[c]);
+  squares.Add(other.squares);
+  products.Add(other.products);
+  weights += other.weights;
+}
+
+void PixelBias::AddScaled(const PixelBias& other, double scale) {
+  for (int c = 0; c < 3; ++c) sum[c].Add(scale * other.sum[c].Value());
+  squares.Add(scale * scale * other.squares.Value());
+  products.Add(scale * scale * other.products.Value());
   weights += scale * scale * other.weights;
 }
 
 bool PixelBias::IsFinite() const {
-  return std::all_of(sum, sum + 3, [](const CompensatedSum& own) { return own.IsFinite(); }) &&
-         std::isfinite(squares) && std::isfinite(products) && std::isfinite(weights);
+  return std::all_of(sum, sum + 3, [](const CompensatedSum& own) { return own.IsFinite(); }) && squares.IsFinite() &&
+         products.IsFinite() && std::isfinite(weights);
 }
 
 double ErrorParts::Both() const {
@@ -121,10 +122,10 @@ double Film::BiasAboveNoise(size_t pixel) const {
     passes = static_cast<double>(endedPasses_ + (samples.count > 0 ? passes_ : 0));
     divisor = AdaptiveDivisor(pixel);
   }
-  sums.Add(bias_[pixel], scale);
+  sums.AddScaled(bias_[pixel], scale);
   if (passes < 2) return 0;
   const double total = LuminanceOf(sums.sum), mean = total / passes;
-  const double deviations = sums.squares + mean * (mean * sums.weights - 2 * sums.products);
+  const double deviations = sums.squares.Value() + mean * (mean * sums.weights - 2 * sums.products.Value());
   return (total * total - std::max(0.0, deviations) * passes / (passes - 1)) / (divisor * divisor);
 }
 

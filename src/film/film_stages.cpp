@@ -65,7 +65,7 @@ void Film::EndStage() {
     if (ended.count == 0) continue;
     const double scale = passes / static_cast<double>(ended.count);
     if (KeepsBias()) {
-      biasStages_[i].Add(bias_[i], scale);
+      biasStages_[i].AddScaled(bias_[i], scale);
       bias_[i] = PixelBias();
     }
     for (int c = 0; c < 3; ++c) {
