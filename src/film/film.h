@@ -240,7 +240,10 @@ class Film {
   double CameraVariance(size_t pixel, int channel) const;
   double CameraFourth(size_t pixel) const;
   double HalfShareOfSplats() const;
-  double BiasAboveNoise(size_t pixel) const;
+  struct BiasMoments {
+    double square = 0, variance = 0;
+  };
+  BiasMoments BiasMomentsOf(size_t pixel) const;
   double MeanBiasSquare() const;
   bool BiasIsFinite() const;
   void NoteSplats(size_t pixel);

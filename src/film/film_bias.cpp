@@ -109,9 +109,9 @@ double Film::Bias(size_t pixel, int channel) const {
   return sum / AdaptiveDivisor(pixel);
 }
 
-// B² less the variance of B. Of the sum T of k passes, each g of c samples, of which the mean of a sample is m: Σ (g -
-// c m)² k / (k - 1).
-double Film::BiasAboveNoise(size_t pixel) const {
+// B² and the variance of B. Of the sum T of k passes, each g of c samples, of which the mean of a sample is m, the
+// variance is Σ (g - c m)² / (1 - Σ c² / k²), with scaled g and c: the divisor is 1 - 1 / k if all c are equal.
+Film::BiasMoments Film::BiasMomentsOf(size_t pixel) const {
   const PixelSums& samples = pixels_[pixel];
   const bool hasStages = endedPasses_ > 0;
   double scale = 1, passes = static_cast<double>(samples.count), divisor = samples.count > 0 ? samples.Divisor() : 1.0;
@@ -123,23 +123,37 @@ double Film::BiasAboveNoise(size_t pixel) const {
     divisor = AdaptiveDivisor(pixel);
   }
   sums.AddScaled(bias_[pixel], scale);
-  if (passes < 2) return 0;
+  const double freedom = 1 - sums.weights / (passes * passes);
+  if (!(passes >= 2 && freedom > 0)) return {};
   const double total = LuminanceOf(sums.sum), mean = total / passes;
   const double deviations = sums.squares.Value() + mean * (mean * sums.weights - 2 * sums.products.Value());
-  return (total * total - std::max(0.0, deviations) * passes / (passes - 1)) / (divisor * divisor);
+  const double square = 1 / (divisor * divisor);
+  return {square * total * total, square * std::max(0.0, deviations) / freedom};
 }
 
-// Of the bound.
+// Upper end of the 95 % interval of the mean of squared biases, one-sided, and of the bound. B² less its variance W has
+// about the variance 2 W² + 4 B² W. Pixels are taken as independent, although neighbours gather some of the same
+// photons.
 double Film::MeanBiasSquare() const {
-  double sum = 0;
-  for (size_t i = 0; i < bias_.size(); ++i) sum += BiasAboveNoise(i);
-  return bias_.empty() ? 0 : kBoundSquared * std::max(0.0, sum) / static_cast<double>(bias_.size());
+  constexpr double kNinetyFive = 1.6448536269514722;
+  double sum = 0, variance = 0;
+  for (size_t i = 0; i < bias_.size(); ++i) {
+    const BiasMoments of = BiasMomentsOf(i);
+    sum += of.square - of.variance;
+    variance += of.variance * (2 * of.variance + 4 * std::max(0.0, of.square - of.variance));
+  }
+  if (sum == 0 && variance == 0) return 0;
+  const double upper = sum + kNinetyFive * std::sqrt(variance);
+  return kBoundSquared * std::max(0.0, upper) / static_cast<double>(bias_.size());
 }
 
 std::vector<double> Film::BiasSquares() const {
   std::vector<double> squares(bias_.size());
   if (squares.empty()) return squares;
-  for (size_t i = 0; i < squares.size(); ++i) squares[i] = BiasAboveNoise(i);
+  for (size_t i = 0; i < squares.size(); ++i) {
+    const BiasMoments of = BiasMomentsOf(i);
+    squares[i] = of.square - of.variance;
+  }
   squares = BlurredAlong(BlurredAlong(squares, crop_.Width(), true), crop_.Width(), false);
   for (double& square : squares) square = kBoundSquared * std::max(0.0, square);
   return squares;
