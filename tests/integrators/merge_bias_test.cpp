@@ -151,6 +151,7 @@ struct BlurredRender {
   bool isAdaptive;
   // At the start of beams, and beside the apex of a cone, the light is not smooth: less of the bias is seen.
   double leastSlope = 0.8;
+  double mostStated = 2.5;  // of the true bias; more where the noise leaves much open
 };
 void PrintTo(const BlurredRender& of, std::ostream* out) {
   *out << of.name;
@@ -214,7 +215,7 @@ TEST_P(MergeBiasOfRenders, IsThatOfThePicture) {
   EXPECT_GT(measured.slope, GetParam().leastSlope);
   EXPECT_LT(measured.slope, 1.2);
   EXPECT_GT(measured.stated, measured.size);
-  EXPECT_LT(measured.stated, 2.5 * measured.size);
+  EXPECT_LT(measured.stated, GetParam().mostStated * measured.size);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -225,7 +226,7 @@ INSTANTIATE_TEST_SUITE_P(
                     BlurredRender{"vcm_merging_alone", kFloor, "vcm", 0.4, "connect", false, false},
                     BlurredRender{"vcm_adaptive", kFloor, "vcm", 0.4, "connect", false, true},
                     BlurredRender{"sppm_fog", kFog, "sppm", 0.15, "direct-photons", true, false, 0.7},
-                    BlurredRender{"vcm_fog", kFog, "vcm", 0.15, "connect", false, false, 0.4}),
+                    BlurredRender{"vcm_fog", kFog, "vcm", 0.15, "connect", false, false, 0.4, 4}),
     [](const auto& info) { return info.param.name; });
 
 }  // namespace
