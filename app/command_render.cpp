@@ -78,15 +78,16 @@ void CheckSceneStays(const RenderOptions& options, const SceneDescription& scene
 
 // An image too large for the machine is told before the system ends the process for it. The film is kept twice
 // (render_backup.h).
-void CheckMemory(const RenderSettings& settings, TracedPaths paths, size_t layers, bool hasTechniques, bool denoises) {
-  const bool withSplats = paths != TracedPaths::Camera;
+void CheckMemory(const RenderSettings& settings, const Integrator& integrator, size_t layers, bool hasTechniques,
+                 bool denoises) {
+  const bool withSplats = integrator.Paths() != TracedPaths::Camera, merges = integrator.Photons().has_value();
   layers += denoises ? 1 : 0;
   // Developed image: colour, variance, light groups and first-hit layers. The latter are also kept during the render.
   const uint64_t firstHit = FirstHitChannels(settings).size() + (denoises ? FeatureChannels().size() : 0);
   const uint64_t channels = 6 + 3 * layers + 2 * firstHit;
   const uint64_t techniques = hasTechniques ? TechniqueImages::BytesPerPixel(settings.MaxDepth()) : 0;
-  const uint64_t perPixel = 2 * (Film::BytesPerPixel(layers, withSplats, settings.adaptive.has_value()) + techniques) +
-                            2 * channels * sizeof(float);
+  const uint64_t ofFilm = Film::BytesPerPixel(layers, withSplats, settings.adaptive.has_value(), merges, merges);
+  const uint64_t perPixel = 2 * (ofFilm + techniques) + 2 * channels * sizeof(float);
   const uint64_t needed = perPixel * settings.crop.Width() * settings.crop.Height();
   const uint64_t available = AvailableMemory();
   if (needed <= available) return;
@@ -138,7 +139,7 @@ PartHeader MakeHeader(const RenderOptions& options, const LoadedScene& loaded, c
     if (!layer.text.empty()) header.metadata["lampyr.layer." + layer.name] = layer.text;
   }
   header.metadata.merge(FirstHitMetadata(loaded.built));
-  for (const char* layer : {kSamplesLayer, kErrorLayer}) {
+  for (const char* layer : {kSamplesLayer, kErrorLayer, kBiasLayer}) {
     if (settings.Wants(layer)) header.metadata[std::string(kSampleLayerMetadata) + layer] = "1";
   }
   if (options.denoise) {
@@ -153,7 +154,11 @@ PartHeader MakeHeader(const RenderOptions& options, const LoadedScene& loaded, c
 }
 
 std::string DescribeError(const RenderOutcome& outcome, const RenderOptions& options) {
-  if (!outcome.pixelError) return "error " + FormatPercent(outcome.relativeError);
+  if (!outcome.pixelError) {
+    const bool hasBias = outcome.parts && outcome.parts->bias > 0;
+    return "error " + FormatPercent(outcome.relativeError) +
+           (hasBias ? ", of which bias " + FormatPercent(outcome.parts->bias) : "");
+  }
   return "error " + FormatPercent(*outcome.pixelError) + " in " + FormatPercent(*options.pixelShare) + " of the pixels";
 }
 
@@ -371,8 +376,8 @@ RenderJob::RenderJob(const RenderOptions& options, const LoadedScene& loaded)
       checkpointPath_(CheckpointPath(path_)) {
   CheckOptions(options, settings_, checkpointPath_);
   integrator_ = MakeIntegrator(built_.scene, settings_);
-  CheckMemory(settings_, integrator_->Paths(), built_.scene.outputs->Layers().size(),
-              options.strategyImages.has_value(), options.denoise);
+  CheckMemory(settings_, *integrator_, built_.scene.outputs->Layers().size(), options.strategyImages.has_value(),
+              options.denoise);
   if (const auto photons = integrator_->Photons(); photons && !options.quiet) WarnOfPhotonMemory(settings_, *photons);
   const auto [part, parts] = options.shard.value_or(std::pair(1, 1));
   shard_ = ShardOf(part, parts, SamplesWanted(options, settings_));

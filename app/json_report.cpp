@@ -73,6 +73,7 @@ std::string ToJson(const RenderReport& report) {
         {"cpu", CpuSeconds()}}},
       {"peakMemoryMiB", PeakMemoryMiB()},
   };
+  if (outcome.parts) json["errorParts"] = {{"noise", outcome.parts->noise}, {"bias", outcome.parts->bias}};
   if (outcome.pixelError) json["pixelError"] = *outcome.pixelError;
   if (report.adaptive) {
     json["adaptive"] = {{"ofPixels", report.adaptive->share},

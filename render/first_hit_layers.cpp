@@ -221,7 +221,7 @@ std::vector<std::string> FirstHitChannels(const RenderSettings& settings) {
   if (settings.firstHit) channels = ChannelsOfFilm();
   for (const bool isMatte : {false, true}) {
     for (const PixelLayer* layer : settings.pixelLayers) {
-      if (std::string(layer->name) == kSamplesLayer || std::string(layer->name) == kErrorLayer) continue;
+      if (IsOfSamples(*layer)) continue;
       for (const std::string& channel : layer->channels) {
         if (channel.starts_with("Crypto") == isMatte &&
             std::find(channels.begin(), channels.end(), channel) == channels.end())

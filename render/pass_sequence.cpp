@@ -25,6 +25,7 @@ PassSequence::PassSequence(const RenderScene& scene, const Integrator& integrato
     guiding_ = std::make_unique<EmissionLearning>(scene, settings.width, settings.height);
   if (settings.adaptive && integrator.Paths() != TracedPaths::Light && !film.IsAdaptive())
     film.MakeAdaptive(wantedPhotons_.has_value());
+  if (wantedPhotons_) film.KeepBias();
   MakePhotonStore();
   if (settings.GuidesPaths() && integrator.FollowsCameraPaths())
     paths_ = std::make_unique<PathLearning>(settings.width, settings.height, integrator.Paths() == TracedPaths::Both,

@@ -52,9 +52,9 @@ struct SampleAdder {
   }
   // Adds a sample of a pixel to `sums` and to the pixel's layers. An invalid value (negative or not finite) is counted,
   // added to `sums` as black, and left out of the layers. `isInHalf`: it belongs to the layer of half of the samples.
-  // `more`: other sums that it is added to; may be null.
+  // `more`, `biasOfPass`: other sums that it is added to; may be null.
   void Add(int x, int y, bool isInHalf, const PixelRay& ray, const Color& radiance, PixelSums& sums,
-           PixelSums* more = nullptr) {
+           PixelSums* more = nullptr, PassBias* biasOfPass = nullptr) {
     const float scale = ray.camera.weight * sensor.Scale(radiance * ray.camera.weight);
     Color value = radiance * scale;
     const bool isValid = value.IsValid();
@@ -66,12 +66,27 @@ struct SampleAdder {
     if (more) more->Add(sensor.Balance(value), ray.filterWeight);
     if (layers && isValid) film.AddToLayers(x, y, *layers, scale, ray.filterWeight, sensor);
     if (film.HasHalf() && isInHalf) film.AddToHalf(x, y, sensor.Balance(value), ray.filterWeight);
+    if (film.KeepsBias()) AddBias(x, y, isValid ? scale : 0.0f, ray.filterWeight, biasOfPass);
+  }
+
+  // Where the next sample leaves its estimate of the bias of merging; null: the film keeps none.
+  Color* StartBias() {
+    mergeBias = Color(0.0f);
+    return film.KeepsBias() ? &mergeBias : nullptr;
+  }
+  // Adds `mergeBias`, scaled as the sample is. Without `ofPass` the sample is all that the pass has in the pixel.
+  void AddBias(int x, int y, float scale, float filterWeight, PassBias* ofPass) {
+    PassBias own;
+    const Color bias = sensor.Balance(mergeBias * scale);
+    (ofPass ? *ofPass : own).Add(IsFinite(Vector3(bias.r, bias.g, bias.b)) ? bias : Color(0.0f), filterWeight);
+    if (!ofPass) film.AddBias(x, y, own);
   }
 
   const SensorResponse& sensor;
   Film& film;
   RenderCounts& counts;
   std::optional<LayerSample> layers;
+  Color mergeBias;
 };
 
 RenderCounts Total(const std::vector<RenderCounts>& parts) {
@@ -420,7 +435,7 @@ class BothPaths::AdaptivePixels {
   uint32_t Number() const { return static_cast<uint32_t>(number_); }
   // Adds the radiance of the sample.
   void Add(const PixelRay& ray, const Color& radiance, SampleAdder& adder) {
-    adder.Add(x_, y_, AdaptiveSampler::IsInHalf(number_), ray, radiance, sums_, &ofPass_);
+    adder.Add(x_, y_, AdaptiveSampler::IsInHalf(number_), ray, radiance, sums_, &ofPass_, &biasOfPass_);
   }
 
  private:
@@ -428,7 +443,9 @@ class BothPaths::AdaptivePixels {
     if (!isBegun_ || isReplay_) return;
     pass_.film.Pixel(x_, y_) = sums_;
     if (pass_.film.HasGroups()) pass_.film.AddGroup(x_, y_, ofPass_);
+    if (pass_.film.KeepsBias()) pass_.film.AddBias(x_, y_, biasOfPass_);
     ofPass_ = PixelSums();
+    biasOfPass_ = PassBias();
   }
 
   const Pass& pass_;
@@ -440,6 +457,7 @@ class BothPaths::AdaptivePixels {
   uint64_t number_ = 0;
   bool isBegun_ = false;
   PixelSums sums_, ofPass_;  // of the pixel: with those of earlier passes, and of this one
+  PassBias biasOfPass_;
 };
 
 // Starts the samples of slots.
@@ -518,6 +536,7 @@ void BothPaths::TraceChunk(size_t chunk, uint64_t begin, uint64_t end, uint32_t 
       if (recorder) recorder->StartSample(x, y, ray.camera.weight * settings.sensor.ImagingRatio() * ray.filterWeight);
       context.film = ray.film;
       if (pass_.learning) pass_.Record(x, y, pass_.allocation ? slots.number : index, &records_[chunk], context);
+      context.mergeBias = adder.StartBias();
       adder.StartLayers();
       const Color radiance = Radiance(pass_.integrator, ray, context);
       if (adaptive) {

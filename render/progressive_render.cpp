@@ -136,7 +136,9 @@ RenderOutcome Continue(ProgressiveRender& render, const StopConditions& stop, co
   const auto measure = [&] {
     outcome = render.Outcome();
     outcome.seconds = before + clock.Seconds();  // what the user waits for
-    outcome.relativeError = render.Picture().RelativeError(stop.largestSample);
+    const ErrorParts error = render.Picture().PartsOfError(stop.largestSample);
+    outcome.relativeError = error.Both();
+    if (render.Picture().KeepsBias()) outcome.parts = error;
     if (stop.pixelShare) outcome.pixelError = ErrorBelow(render.Picture(), *stop.pixelShare);
     outcome.droppedFraction = render.DroppedFraction();
     // The dropped samples may have held any part of the light.

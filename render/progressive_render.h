@@ -35,6 +35,7 @@ struct RenderOutcome {
   int samplesPerPixel = 0;
   double seconds = 0;                // of the passes; returned by Continue: until its end
   double relativeError = 0;          // infinite where it is unknown
+  std::optional<ErrorParts> parts;   // of it, where photons are merged
   double droppedFraction = 0;        // ProgressiveRender::DroppedFraction
   std::optional<double> pixelError;  // the error that `pixelShare` of the pixels are below, where that is given
   bool interrupted = false;

@@ -23,9 +23,17 @@ Image SamplesOf(const Film& film) {
   return image;
 }
 
+Image BiasOf(const Film& film) {
+  Image image(film.Crop().Width(), film.Crop().Height(), FindPixelLayer(kBiasLayer)->channels);
+  for (size_t i = 0; i < film.Pixels(); ++i) {
+    for (size_t c = 0; c < 3; ++c) image.data[3 * i + c] = static_cast<float>(film.Bias(i, static_cast<int>(c)));
+  }
+  return image;
+}
+
 // Half the width of the 95 % interval of a pixel's luminance, relative to it. Channels are taken as fully correlated,
 // which bounds it.
-Image ErrorOf(const Image& developed) {
+Image ErrorOf(const Image& developed, const std::vector<double>& biasSquares) {
   Image image(developed.width, developed.height, {"relativeError"});
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x) {
@@ -34,7 +42,10 @@ Image ErrorOf(const Image& developed) {
         luminance += Color::kLuminance[c] * static_cast<double>(developed.At(x, y, c));
         deviation += Color::kLuminance[c] * std::sqrt(static_cast<double>(developed.At(x, y, 3 + c)));
       }
-      image.At(x, y, 0) = luminance > 0 ? static_cast<float>(1.96 * deviation / luminance) : 0.0f;
+      double half = 1.96 * deviation;
+      if (!biasSquares.empty())
+        half = std::hypot(half, std::sqrt(biasSquares[static_cast<size_t>(y * image.width + x)]));
+      image.At(x, y, 0) = luminance > 0 ? static_cast<float>(half / luminance) : 0.0f;
     }
   }
   return image;
@@ -55,9 +66,12 @@ void WriteSamples(const std::filesystem::path& path, const PartHeader& header, c
                   const std::function<void(AtomicFile&)>& append) {
   Image image = film.Develop();
   if (!layers.channels.empty()) AppendChannels(image, layers);
-  if (header.metadata.contains(std::string(kSampleLayerMetadata) + kSamplesLayer))
-    AppendChannels(image, SamplesOf(film));
-  if (header.metadata.contains(std::string(kSampleLayerMetadata) + kErrorLayer)) AppendChannels(image, ErrorOf(image));
+  const auto wants = [&](const char* layer) {
+    return header.metadata.contains(std::string(kSampleLayerMetadata) + layer);
+  };
+  if (wants(kSamplesLayer)) AppendChannels(image, SamplesOf(film));
+  if (wants(kErrorLayer)) AppendChannels(image, ErrorOf(image, film.BiasSquares()));
+  if (wants(kBiasLayer)) AppendChannels(image, BiasOf(film));
   for (const auto& [key, value] : header.metadata) image.metadata[key] = value;
   image.metadata["lampyr.samplesPerPixel"] = std::to_string(header.samples);
   // Identifiers in mattes are bits, not numbers.

@@ -12,7 +12,7 @@ namespace lampyr {
 // the command-line option that the message names.
 void CheckImageOutput(const std::filesystem::path& path, const char* option, bool withPng);
 
-// Metadata of a picture that is to have a layer of its samples (kSamplesLayer, kErrorLayer): this and the layer's name.
+// Metadata of a picture that is to have a layer of its samples (IsOfSamples): this and the layer's name.
 inline constexpr const char* kSampleLayerMetadata = "lampyr.sampleLayer.";
 
 // Writes the developed film, then the channels of `layers`, with the metadata of the header and the number of samples.

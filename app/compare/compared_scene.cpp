@@ -52,12 +52,13 @@ void ComparedScene::Render(const std::string& integrator, uint64_t seed, const s
   const auto show = [&](size_t index) {
     const double seconds = secondsBefore + outcome.seconds;
     if (!IsDenoised(integrator)) {
-      atMilestone(index, {seconds, outcome.samplesPerPixel}, film.Develop());
+      const auto stated = film.KeepsBias() ? std::optional(film.PartsOfError()) : std::nullopt;
+      atMilestone(index, {seconds, outcome.samplesPerPixel, stated}, film.Develop());
       return;
     }
     const auto begin = Steady::now();
     const Image picture = DenoisedPicture(film, features, outcome.samplesPerPixel);
-    atMilestone(index, {seconds + SecondsSince(begin), outcome.samplesPerPixel}, picture);
+    atMilestone(index, {seconds + SecondsSince(begin), outcome.samplesPerPixel, std::nullopt}, picture);
   };
   const StopWatch watch(&interrupted_, std::nullopt);
   size_t nextTime = 0, nextCount = 0;

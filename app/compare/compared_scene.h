@@ -4,6 +4,7 @@
 #include <atomic>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "render/build/scene_builder.h"
@@ -27,6 +28,7 @@ class ComparedScene {
   struct Milestone {
     double seconds = 0;
     int samplesPerPixel = 0;
+    std::optional<ErrorParts> stated;  // by a render that merges photons (Film::PartsOfError)
   };
   // The picture at a milestone: `index` counts the times, then the sample counts.
   using AtMilestone = std::function<void(size_t index, const Milestone& reached, const Image& image)>;

@@ -141,6 +141,17 @@ std::optional<Estimate> NoiseOfParts(const CommonError& error) {
   return Root(static_cast<const Estimate&>(JackknifeOf(error.varying, error.varyingWithout)));
 }
 
+// Root mean square of what the renders state; nullopt: they state no parts.
+std::optional<ErrorParts> MeanStatement(const std::vector<ComparedRun>& runs) {
+  ErrorParts squares;
+  for (const ComparedRun& run : runs) {
+    if (!run.stated) return std::nullopt;
+    squares.noise += run.stated->noise * run.stated->noise / static_cast<double>(runs.size());
+    squares.bias += run.stated->bias * run.stated->bias / static_cast<double>(runs.size());
+  }
+  return ErrorParts{std::sqrt(squares.noise), std::sqrt(squares.bias)};
+}
+
 ComparedSnapshot Summarise(const Run& run, size_t milestone, const Parts& parts, const ComparisonPlan& plan,
                            const Reference& reference, const RenderSettings& settings) {
   ComparedSnapshot snapshot;
@@ -181,6 +192,7 @@ ComparedSnapshot Summarise(const Run& run, size_t milestone, const Parts& parts,
   snapshot.noise = NoiseOfParts(parts.error);
   for (const Repeat& repeat : run.repeats) snapshot.runs.push_back(repeat.looks[milestone]);
   snapshot.flip = MeanOnLogScale(values([](const ComparedRun& one) { return one.flip; })).value_or(Estimate{});
+  snapshot.stated = MeanStatement(snapshot.runs);
   return snapshot;
 }
 
@@ -317,7 +329,7 @@ void Compare(const ComparedScene& scene, const ComparisonPlan& plan, const Refer
         const auto look = [&](size_t milestone, const ComparedScene::Milestone& reached, const Image& image) {
           const ImageError error = MeasureError(image, reference.image, plan.exposure);
           repeat.looks[milestone] = {seed,       reached.seconds, reached.samplesPerPixel, error.mse, error.relMse,
-                                     error.flip, error.bias};
+                                     error.flip, error.bias,      reached.stated};
           repeat.pictures[milestone] = ChannelsOf(image, {"R", "G", "B"});
           repeat.last = milestone;
         };

@@ -183,6 +183,20 @@ void PrintParts(const ComparisonResults& results, std::string& text) {
   }
 }
 
+// The errors that renders by merged photons state of themselves: of luminance, at 95 % confidence.
+void PrintStatements(const ComparisonResults& results, std::string& text) {
+  bool isFirst = true;
+  for (const ComparedIntegrator& integrator : results.integrators) {
+    for (const ComparedSnapshot& snapshot : integrator.snapshots) {
+      if (!snapshot.stated) continue;
+      if (isFirst) text += Format("\n%-6s %9s  %-32s %s\n", "", "time", "error that it states (95 %)", "of which bias");
+      isFirst = false;
+      text += Format("%-6s %9s  %-32s %s\n", integrator.name.c_str(), FormatDuration(snapshot.seconds).c_str(),
+                     FormatPercent(snapshot.stated->Both()).c_str(), FormatPercent(snapshot.stated->bias).c_str());
+    }
+  }
+}
+
 void PrintTimes(const ComparisonResults& results, std::string& text) {
   text += "\ntime to an error (root of relMSE) of";
   bool extrapolated = false, blurs = false, unresolved = false;
@@ -271,6 +285,7 @@ std::string ToText(const ComparisonResults& results) {
   PrintReference(results, text);
   PrintSnapshots(results, text);
   PrintParts(results, text);
+  PrintStatements(results, text);
   PrintTimes(results, text);
   PrintVerdicts(results, text);
   return text;

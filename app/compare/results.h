@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "app/compare/spectrum.h"
+#include "film/film.h"
 
 namespace lampyr {
 
@@ -27,6 +28,8 @@ struct ComparedRun {
   int samplesPerPixel = 0;
   double mse = 0, relMse = 0, flip = 0;  // the reference's noise subtracted from mse and relMse
   double meanBias = 0;                   // of the image's mean, relative to the reference's
+  // The error that the render itself states at 95 % confidence, in its parts, if it merges photons.
+  std::optional<ErrorParts> stated;
 };
 
 // One integrator at one budget: means over the repeats. An error that does not exceed the reference's own noise and
@@ -42,6 +45,7 @@ struct ComparedSnapshot {
   // and what differs between them. Absent if it is not above 0.
   SignificantEstimate bias;
   std::optional<Estimate> noise;
+  std::optional<ErrorParts> stated;   // root mean square over the repeats
   std::vector<ComparedRun> runs;      // a repeat each
   std::string picture, errorPicture;  // keys of ComparisonResults::pictures, "" none
 };

@@ -74,6 +74,11 @@ Json ToTree(const TimeToError& time) {
           {"kind", kind}};
 }
 
+Json OrNull(const std::optional<ErrorParts>& stated) {
+  if (!stated) return nullptr;
+  return {{"error", Number(stated->Both())}, {"noise", Number(stated->noise)}, {"bias", Number(stated->bias)}};
+}
+
 Json ToTree(const std::vector<ComparedRun>& runs) {
   Json rows = Json::array();
   for (const ComparedRun& run : runs) {
@@ -83,7 +88,8 @@ Json ToTree(const std::vector<ComparedRun>& runs) {
                     {"mse", Number(run.mse)},
                     {"relMse", Number(run.relMse)},
                     {"flip", Number(run.flip)},
-                    {"meanBias", Number(run.meanBias)}});
+                    {"meanBias", Number(run.meanBias)},
+                    {"stated", OrNull(run.stated)}});
   }
   return rows;
 }
@@ -99,6 +105,7 @@ Json ToTree(const ComparedSnapshot& snapshot) {
           {"flip", Interval(snapshot.flip)},
           {"bias", Interval(snapshot.bias)},
           {"noise", OrNull(snapshot.noise)},
+          {"stated", OrNull(snapshot.stated)},
           {"efficiency", OrNull(snapshot.efficiency)},
           {"relEfficiency", OrNull(snapshot.relEfficiency)},
           {"picture", OrNull(snapshot.picture)},

@@ -16,6 +16,7 @@
 #include "base/parallel.h"
 #include "lights/services/lighting_services.h"
 #include "render/build/plugins.h"
+#include "render/settings/integrator_choice.h"
 
 namespace lampyr {
 
@@ -43,7 +44,8 @@ void CheckDeskMemory(const BuiltScene& scene) {
   const size_t layers = scene.scene.outputs->Layers().size();
   const uint64_t pixels = static_cast<uint64_t>(settings.crop.Width()) * static_cast<uint64_t>(settings.crop.Height());
   const uint64_t planes = (3 * layers + 6) * sizeof(float);
-  const uint64_t needed = pixels * (3 * Film::BytesPerPixel(layers, true) + 3 * planes);
+  const uint64_t needed =
+      pixels * (3 * Film::BytesPerPixel(layers, true, false, false, GathersPhotons(settings)) + 3 * planes);
   const uint64_t available = AvailableMemory();
   if (needed <= available) return;
   throw UsageError("a picture of " + std::to_string(settings.crop.Width()) + "×" +

@@ -3,6 +3,7 @@
 
 #include "integrators/bidirectional/techniques.h"
 #include "integrators/bidirectional/weights.h"
+#include "integrators/photon/merge_bias.h"
 #include "integrators/photon/photon_pass.h"
 #include "integrators/walk/path_layers.h"
 
@@ -93,6 +94,7 @@ bool SetPointVertex(const SampleContext& context, const PathState& state, const 
            .light = map.PathOf(map[hit.index]),
            .throughput = state.Throughput() * point->passed,
            .kernel = photon.Kernel(),
+           .biasFactor = BiasFactor(hit.distanceSquared, photon.radius),
            .use = hit.index,
            .labels = map.LabelsOf(hit.index)};
   SetVertexInMedium(context, state, flight, flight.line.start + static_cast<double>(hit.t) * flight.line.direction,
@@ -126,6 +128,8 @@ bool SetBeamOf(const BidirectionalSample& sample, const BeamCrossing& crossing, 
   merge.flight = found.start;
   merge.kernel = 1 / (sample.settings.photons.volume.ShareOf(beam.edge.isFromMedium) * 2 *
                       static_cast<double>(crossing.radius) * static_cast<double>(crossing.sine));
+  const Vector3d apart = crossing.onBeam - crossing.onRay;
+  merge.biasFactor = BiasFactorOnLine(glm::dot(apart, apart), crossing.radius);
   merge.use = map.Beams().StartOf(found).origin == FlightStart::kNone ? VolumeMerge::kUnused : map.UseOf(found);
   return true;
 }
@@ -162,6 +166,9 @@ Color MergeInMedium(const BidirectionalSample& sample, const VolumeMerge& merge)
   }
   if (sample.IsObserved()) [[unlikely]]
     ReportMerge(sample, merge, joint.light.last, Product(merge.throughput, value, perDensity), weight);
+  if (context.mergeBias) {
+    *context.mergeBias += Product(merge.throughput, value, perDensity * weight * static_cast<double>(merge.biasFactor));
+  }
   return Product(merge.throughput, value, perDensity * weight);
 }
 
@@ -197,7 +204,7 @@ Color Merge(const BidirectionalSample& sample, std::span<const uint32_t> found) 
   joint.mergesAtCamera = true;
   const float probability = sample.settings.counts.merging.At(sample.film);
   sample.lookup.used.clear();
-  Color sum;
+  Color sum, bias;
   for (size_t i = 0; i < found.size(); ++i) {
     const uint32_t index = found[i];
     const Photon& photon = (*pass.map)[index];
@@ -211,6 +218,7 @@ Color Merge(const BidirectionalSample& sample, std::span<const uint32_t> found) 
     const double weight = WeightOf(sample, photon, pass.map->PathOf(photon), f, joint);
     const Color value = scattered * vertex.ArrivalCorrection(toLight, photon.normal.Unpack());
     sum += value * static_cast<float>(weight);
+    bias += value * (static_cast<float>(weight) * BiasFactor(sample.lookup.distances[i], sample.mergeRadius));
     // Multiplied in another order than the sum: a shared product would be rounded differently than without layers.
     if (context.layers) [[unlikely]]
       AddArrivingToLayers(context, sample.camera, PartsOf(vertex, toLight, false, diffuse, specular),
@@ -223,6 +231,7 @@ Color Merge(const BidirectionalSample& sample, std::span<const uint32_t> found) 
       ReportMerge(sample, photon, joint.light.last, Product(vertex.Throughput(), value, perDensity), weight);
   }
   if (pass.use) pass.use->Add(sample.lookup.used);
+  if (context.mergeBias) *context.mergeBias += Product(vertex.Throughput(), bias, perDensity);
   return Product(vertex.Throughput(), sum, perDensity);
 }
 

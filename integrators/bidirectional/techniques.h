@@ -118,6 +118,7 @@ struct VolumeMerge {
   // Throughput of the camera path at the photon, over the probability of passing there; without scattering.
   Color throughput;
   double kernel = 0;                  // density of the kernel, without the number of light paths
+  float biasFactor = 0;               // merge_bias.h
   uint32_t use = kUnused;             // its index for PhotonUse
   std::span<const PathLabel> labels;  // of its path; empty without layers
   const BeamVertex* beam = nullptr;   // of a beam

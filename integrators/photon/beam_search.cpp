@@ -27,7 +27,8 @@ void BeamSearch::Find(std::span<const VolumePhoton> balls, const Ray& ray, float
     const Vector3 toBall = ball.position - ray.origin;
     const float t = glm::dot(toBall, ray.direction);
     if (!(t >= 0 && t < tMax)) continue;
-    if (LengthSquared(toBall - t * ray.direction) < ball.radius * ball.radius) hits.push_back({first + index, t});
+    const float distanceSquared = LengthSquared(toBall - t * ray.direction);
+    if (distanceSquared < ball.radius * ball.radius) hits.push_back({first + index, t, distanceSquared});
   }
 }
 

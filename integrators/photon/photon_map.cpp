@@ -22,12 +22,13 @@ constexpr int kLeaf = 64;  // photons per leaf; with 32, lookups of 50 photons t
 // Collects all points within the radius, and fetches their photons into the cache meanwhile.
 class WithinRadius final : public flann::ResultSet<float> {
  public:
-  WithinRadius(float radiusSquared, const Photon* photons, std::vector<uint32_t>& found)
-      : radiusSquared_(radiusSquared), photons_(photons), found_(found) {}
+  WithinRadius(float radiusSquared, const Photon* photons, PhotonLookup& lookup)
+      : radiusSquared_(radiusSquared), photons_(photons), found_(lookup.found), distances_(lookup.distances) {}
   bool full() const override { return true; }
-  void addPoint(float, size_t index) override {
+  void addPoint(float distanceSquared, size_t index) override {
     __builtin_prefetch(photons_ + index);
     found_.push_back(static_cast<uint32_t>(index));
+    distances_.push_back(distanceSquared);
   }
   float worstDist() const override { return radiusSquared_; }
 
@@ -35,6 +36,7 @@ class WithinRadius final : public flann::ResultSet<float> {
   float radiusSquared_;
   const Photon* photons_;
   std::vector<uint32_t>& found_;
+  std::vector<float>& distances_;
 };
 
 }  // namespace
@@ -228,8 +230,9 @@ void PhotonMap::Build(const Traced& traced, int threads, std::vector<uint32_t>* 
 
 std::span<const uint32_t> PhotonMap::Find(const Point3& position, float radius, PhotonLookup& lookup) const {
   lookup.found.clear();
+  lookup.distances.clear();
   if (!search_) return {};
-  WithinRadius result(radius * radius, &photons_[0], lookup.found);
+  WithinRadius result(radius * radius, &photons_[0], lookup);
   search_->Run(position - center_, result);
   return lookup.found;
 }

@@ -19,6 +19,7 @@ namespace lampyr {
 // Buffers of a thread, reused from lookup to lookup.
 struct PhotonLookup {
   std::vector<uint32_t> found;
+  std::vector<float> distances;  // squared, of `found`: scene unit²
   std::vector<BeamHit> beamHits;
   std::vector<BeamCrossing> crossings;
   std::vector<uint32_t> boxes;

@@ -18,6 +18,7 @@
 #include <cmath>
 
 #include "integrators/path/camera_path.h"
+#include "integrators/photon/merge_bias.h"
 #include "integrators/photon/photon_pass.h"
 #include "integrators/photon/photon_settings.h"
 #include "integrators/photon/volume_estimate.h"
@@ -134,22 +135,27 @@ class RadianceEstimate final : public PhotonGatherer {
     const float radius = RadiusAt(length);
     if (pass_.use) pass_.use->FetchSums(found_.first(std::min(found_.size(), kFetched)));
     lookup_.used.clear();
-    Color sum;
-    for (const uint32_t index : found_) {
+    Color sum, bias;
+    for (size_t i = 0; i < found_.size(); ++i) {
+      const uint32_t index = found_[i];
       const Photon& photon = (*pass_.map)[index];
       // Both depths count the vertex.
       if (static_cast<int>(photon.depth) + events > settings_.maxDepth + 1) continue;
       if (!photon.IsOnSurface(vertex.bsdf.Ng())) continue;
       const BsdfEvaluation f = vertex.Evaluate(photon.toPrevious, TransportMode::Radiance);
       if (f.pdfForward.value > kWide) continue;
+      // The terms of the sum are not shared: they would be rounded differently than without the bias.
+      const Color before = sum;
       sum += (f.diffuse * photon.flux + f.specular * pass_.map->SpecularFlux(photon)) *
              vertex.ArrivalCorrection(photon.toPrevious, photon.normal.Unpack());
+      bias += (sum - before) * BiasFactor(lookup_.distances[i], radius);
       if (context_.layers) [[unlikely]]
         AddPhotonToLayers(index, path, f, PerArea(radius));
       if (pass_.use) lookup_.used.push_back({index, (vertex.Throughput() * f.Sum()).Average() * Importance(length)});
     }
     if (pass_.use) pass_.use->Add(lookup_.used);
     if (sum.IsBlack()) return sum;
+    if (context_.mergeBias) *context_.mergeBias += Product(vertex.Throughput(), bias, PerArea(radius));
     return Product(vertex.Throughput(), sum, PerArea(radius));
   }
 

@@ -1,5 +1,6 @@
 #include "integrators/photon/volume_estimate.h"
 
+#include "integrators/photon/merge_bias.h"
 #include "integrators/walk/path_layers.h"
 
 namespace lampyr {
@@ -25,7 +26,7 @@ Color VolumeEstimate::Gather(const Subpath& path, const PathState& state, const 
   if (hits.empty()) return Color();
   lookup_.used.clear();
   const double perPath = static_cast<double>(context_.scene.lighting->FluxUnit()) / pass.lightPaths;
-  Color sum;
+  Color sum, bias;
   for (const BeamHit& hit : hits) {
     const Color scattered = Scattered(state, events, flight, hit);
     if (scattered.IsBlack()) continue;
@@ -33,12 +34,14 @@ Color VolumeEstimate::Gather(const Subpath& path, const PathState& state, const 
     const double kernel = pass.map->VolumeOf(hit.index).Kernel();
     const Color seen = Product(scattered, photon.flux, perPath * kernel);
     sum += seen;
+    bias += seen * BiasFactor(hit.distanceSquared, pass.map->VolumeOf(hit.index).radius);
     if (context_.layers) [[unlikely]]
       AddPhotonToLayers(context_, path, state, hit.index, seen);
     if (pass.use)
       lookup_.used.push_back({hit.index, scattered.Average() * rules_.importance * kPi * static_cast<float>(kernel)});
   }
   if (pass.use) pass.use->Add(lookup_.used);
+  if (context_.mergeBias) *context_.mergeBias += bias;
   return sum;
 }
 

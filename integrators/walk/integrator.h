@@ -102,6 +102,9 @@ struct SampleContext {
   const OutputPlan* outputs = nullptr;  // of the layers of the film; null: it has none
   PathRecords* records = nullptr;       // receive the camera path for path guiding; null: not wanted
   uint32_t pixel = 0, sample = 0;       // y · width + x, and index of the sample in it; only with `records`
+  // Receives an estimate of what merging photons within a radius adds to the expectation of the returned radiance
+  // (photon/merge_bias.h). Null: not wanted.
+  Color* mergeBias = nullptr;
 
   SampleContext With(Sampler& other) const {
     return {scene,    other,       time,    counts,        layers,     splats,

@@ -67,8 +67,14 @@ const std::vector<PixelLayer>& PixelLayers() {
                                                  {kObjectMatte, CryptomatteChannels("CryptoObject")},
                                                  {kMaterialMatte, CryptomatteChannels("CryptoMaterial")},
                                                  {kSamplesLayer, {"samples"}},
-                                                 {kErrorLayer, {"relativeError"}}};
+                                                 {kErrorLayer, {"relativeError"}},
+                                                 {kBiasLayer, {"bias.R", "bias.G", "bias.B"}}};
   return layers;
+}
+
+bool IsOfSamples(const PixelLayer& layer) {
+  const std::string name = layer.name;
+  return name == kSamplesLayer || name == kErrorLayer || name == kBiasLayer;
 }
 
 const PixelLayer* FindPixelLayer(const std::string& name) {

@@ -23,6 +23,9 @@ const std::vector<PixelLayer>& PixelLayers();
 const PixelLayer* FindPixelLayer(const std::string& name);
 inline constexpr const char* kSamplesLayer = "samples";
 inline constexpr const char* kErrorLayer = "relative error";
+inline constexpr const char* kBiasLayer = "bias";
+// True for those of the samples of a pixel.
+bool IsOfSamples(const PixelLayer& layer);
 inline constexpr const char* kObjectMatte = "crypto object";
 inline constexpr const char* kMaterialMatte = "crypto material";
 

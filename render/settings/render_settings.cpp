@@ -422,9 +422,7 @@ bool RenderSettings::Wants(const char* pixelLayer) const {
 }
 
 bool RenderSettings::WantsFirstHit() const {
-  const auto isOfSamples = [](const PixelLayer* layer) {
-    return std::string(layer->name) == kSamplesLayer || std::string(layer->name) == kErrorLayer;
-  };
+  const auto isOfSamples = [](const PixelLayer* layer) { return IsOfSamples(*layer); };
   return firstHit || !std::all_of(pixelLayers.begin(), pixelLayers.end(), isOfSamples);
 }
 

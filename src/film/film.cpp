@@ -89,6 +89,9 @@ bool AreFinite(std::span<const CompensatedSum> sums) {
   return std::all_of(sums.begin(), sums.end(), [](const CompensatedSum& sum) { return sum.IsFinite(); });
 }
 
+// Parts of a saved film that not every film has.
+constexpr int kHasSplats = 1, kHasBias = 2;
+
 }  // namespace
 
 uint32_t SamplesInHalf(uint32_t n) {
@@ -167,10 +170,11 @@ void Film::AddToHalf(int x, int y, const Color& value, float filterWeight) {
   AddTo(layerSums_[(Index(x, y) + 1) * layers_.size() - 1], filterWeight, value);
 }
 
-uint64_t Film::BytesPerPixel(size_t layers, bool withSplats, bool isAdaptive, bool hasGroups) {
+uint64_t Film::BytesPerPixel(size_t layers, bool withSplats, bool isAdaptive, bool hasGroups, bool keepsBias) {
   const uint64_t ofLayer = (withSplats ? 2 : 1) * sizeof(LayerSum) + (isAdaptive ? 3 * sizeof(double) : 0);
   const uint64_t ofStages = isAdaptive ? sizeof(PixelStages) + (hasGroups ? sizeof(PixelGroups) : 0) : 0;
-  return sizeof(PixelSums) + (withSplats ? sizeof(SplatSums) : 0) + ofStages + layers * ofLayer;
+  const uint64_t ofBias = keepsBias ? (isAdaptive ? 2 : 1) * sizeof(PixelBias) : 0;
+  return sizeof(PixelSums) + (withSplats ? sizeof(SplatSums) : 0) + ofStages + ofBias + layers * ofLayer;
 }
 
 double Film::CameraValue(size_t pixel, int channel) const {
@@ -320,6 +324,11 @@ void Film::Add(const Film& other) {
   for (size_t i = 0; i < pixels_.size(); ++i) pixels_[i].Add(other.pixels_[i]);
   AddAll(layerSums_, other.layerSums_);
   if (isAdaptive_) AddStages(other);
+  if (other.KeepsBias()) {
+    KeepBias();
+    for (size_t i = 0; i < bias_.size(); ++i) bias_[i].Add(other.bias_[i]);
+    for (size_t i = 0; i < biasStages_.size(); ++i) biasStages_[i].Add(other.biasStages_[i]);
+  }
   if (other.splats_.empty()) return;
   MakeSplats();
   for (size_t i = 0; i < splats_.size(); ++i) splats_[i].Add(other.splats_[i]);
@@ -335,6 +344,8 @@ void Film::CopyFrom(const Film& other, int threads) {
   Copy(layerSplats_, other.layerSplats_, threads);
   Copy(stages_, other.stages_, threads);
   Copy(groups_, other.groups_, threads);
+  Copy(bias_, other.bias_, threads);
+  Copy(biasStages_, other.biasStages_, threads);
   Copy(layerStages_, other.layerStages_, threads);
   lightPaths_ = other.lightPaths_;
   splatSpread_ = other.splatSpread_;
@@ -345,6 +356,7 @@ void Film::CopyFrom(const Film& other, int threads) {
 Film Film::EmptyCopy() const {
   Film empty(fullWidth_, fullHeight_, crop_, layers_);
   if (isAdaptive_) empty.MakeAdaptive(HasGroups());
+  if (KeepsBias()) empty.KeepBias();
   return empty;
 }
 
@@ -364,12 +376,15 @@ void Film::Save(ByteWriter& bytes) const {
     bytes.Value(passes_);
     bytes.Value(endedPasses_);
   }
-  bytes.Value<uint8_t>(splats_.empty() ? 0 : 1);
-  if (splats_.empty()) return;
-  bytes.Values(std::span(splats_));
-  bytes.Values(std::span(layerSplats_));
-  bytes.Value(lightPaths_);
-  bytes.Value(splatSpread_);
+  bytes.Value(static_cast<uint8_t>((splats_.empty() ? 0 : kHasSplats) | (KeepsBias() ? kHasBias : 0)));
+  if (!splats_.empty()) {
+    bytes.Values(std::span(splats_));
+    bytes.Values(std::span(layerSplats_));
+    bytes.Value(lightPaths_);
+    bytes.Value(splatSpread_);
+  }
+  bytes.Values(std::span(bias_));
+  bytes.Values(std::span(biasStages_));
 }
 
 void Film::Load(ByteReader& bytes) {
@@ -384,19 +399,27 @@ void Film::Load(ByteReader& bytes) {
     film.endedPasses_ = bytes.Value<uint64_t>();
     film.CheckStages();
   }
-  if (bytes.Flag()) {
+  const auto parts = bytes.Value<uint8_t>();
+  if ((parts & ~(kHasSplats | kHasBias)) != 0) throw Error("it holds a number out of range");
+  if ((parts & kHasSplats) != 0) {
     film.MakeSplats();
     bytes.Values(std::span(film.splats_));
     bytes.Values(std::span(film.layerSplats_));
     film.lightPaths_ = bytes.Value<uint64_t>();
     film.splatSpread_ = bytes.Value<double>();
   }
+  if (KeepsBias() && (parts & kHasBias) == 0) throw Error("it holds no estimates of the bias of merging photons");
+  if ((parts & kHasBias) != 0) {
+    film.KeepBias();
+    bytes.Values(std::span(film.bias_));
+    bytes.Values(std::span(film.biasStages_));
+  }
   const bool isFinite =
       std::all_of(film.pixels_.begin(), film.pixels_.end(), [](const PixelSums& pixel) { return pixel.IsFinite(); }) &&
       std::all_of(film.splats_.begin(), film.splats_.end(), [](const SplatSums& sums) { return sums.IsFinite(); }) &&
       std::all_of(film.layerSums_.begin(), film.layerSums_.end(), [](const LayerSum& s) { return AreFinite(s); }) &&
       std::all_of(film.layerSplats_.begin(), film.layerSplats_.end(), [](const LayerSum& s) { return AreFinite(s); }) &&
-      std::isfinite(film.splatSpread_) && film.StagesAreFinite();
+      std::isfinite(film.splatSpread_) && film.StagesAreFinite() && film.BiasIsFinite();
   if (!isFinite) throw Error("it holds sums that are not finite");
   *this = std::move(film);
 }
@@ -423,12 +446,12 @@ Image Film::Develop() const {
   return image;
 }
 
-double Film::RelativeError(double largestSample) const {
+ErrorParts Film::PartsOfError(double largestSample) const {
   double varianceSum = 0, fourthSum = 0, luminanceSum = 0, samples = 0;
   for (size_t i = 0; i < pixels_.size(); ++i) {
     const uint64_t own = Samples(i);
     const bool tooFew = lightPaths_ > 0 ? lightPaths_ < 2 || own == 1 : own < 2;
-    if (tooFew) return std::numeric_limits<double>::infinity();
+    if (tooFew) return {std::numeric_limits<double>::infinity(), 0};
     // The channels of a sample share its path: they are taken as fully correlated, which bounds the variance from
     // above.
     double deviation = 0, value = 0;
@@ -443,14 +466,14 @@ double Film::RelativeError(double largestSample) const {
   }
   const double n = static_cast<double>(pixels_.size());
   const double largest = samples > 0 ? std::pow(largestSample * n / samples, 2) : 0;
-  const double bound = UpperBound(varianceSum, fourthSum, largest);
-  if (bound == 0) return 0;  // black or constant
+  const double bound = UpperBound(varianceSum, fourthSum, largest), biasSquare = MeanBiasSquare();
+  if (bound == 0 && biasSquare == 0) return {};  // black or constant
   const double meanLuminance = luminanceSum / n;
   // An image that is black after this many samples per pixel counts as converged.
   constexpr double kLong = 4096;
-  if (varianceSum == 0 && meanLuminance == 0 && samples / n >= kLong) return 0;
-  if (!(meanLuminance > 0)) return std::numeric_limits<double>::infinity();
-  return 1.959963984540054 * std::sqrt(bound / n) / meanLuminance;
+  if (varianceSum == 0 && meanLuminance == 0 && samples / n >= kLong) return {};
+  if (!(meanLuminance > 0)) return {std::numeric_limits<double>::infinity(), 0};
+  return {1.959963984540054 * std::sqrt(bound / n) / meanLuminance, std::sqrt(biasSquare) / meanLuminance};
 }
 
 }  // namespace lampyr

@@ -97,6 +97,35 @@ struct PixelGroups {
   bool IsFinite() const;
 };
 
+// What merging photons adds to the expectation of a pixel, as its samples estimate it (photon/merge_bias.h): sums over
+// those of one pass, which gather the same photons.
+struct PassBias {
+  double sum[3] = {0, 0, 0};  // of w·B; B: estimate of a sample
+  uint32_t count = 0;         // samples
+
+  void Add(const Color& bias, float filterWeight);
+};
+
+// Sums over the passes of a pixel, taken as independent. g: PassBias::sum, its luminance where it is squared; c:
+// PassBias::count. Those of ended stages of an adaptive film are scaled by N / n, as in PixelStages, squares of that.
+struct PixelBias {
+  CompensatedSum sum[3];             // Σ g
+  CompensatedSum squares, products;  // Σ g², Σ c g
+  double weights = 0;                // Σ c²
+
+  void Add(const PassBias& pass);
+  void Add(const PixelBias& other);
+  void AddScaled(const PixelBias& other, double scale);
+  bool IsFinite() const;
+};
+
+// The parts of the relative error of an image at 95 % confidence (Film::PartsOfError).
+struct ErrorParts {
+  double noise = 0;  // half the width of the interval of what differs between seeds
+  double bias = 0;   // bound of the root mean square bias of the pixels, by merging photons
+  double Both() const;
+};
+
 class ByteReader;
 class ByteWriter;
 
@@ -123,7 +152,8 @@ class Film {
   void AddToLayers(int x, int y, const LayerSample& sample, float scale, float filterWeight,
                    const SensorResponse& sensor = {});
   // Bytes per pixel of a film with `layers` layers.
-  static uint64_t BytesPerPixel(size_t layers, bool withSplats, bool isAdaptive = false, bool hasGroups = true);
+  static uint64_t BytesPerPixel(size_t layers, bool withSplats, bool isAdaptive = false, bool hasGroups = true,
+                                bool keepsBias = false);
 
   // An empty list for splats onto this film.
   SplatList MakeSplatList(const PixelFilter& filter, const SensorResponse& sensor) const;
@@ -143,6 +173,14 @@ class Film {
   // The samples of a pixel in one pass, which have been added to it; of films with groups.
   void AddGroup(int x, int y, const PixelSums& pass) { groups_[Index(x, y)].Add(pass); }
   bool HasGroups() const { return !groups_.empty(); }
+  // Makes an empty film keep estimates of the bias of merging photons. It does not change the picture.
+  void KeepBias();
+  bool KeepsBias() const { return !bias_.empty(); }
+  // The estimates of the samples of a pixel in one pass, which are added to the pixel itself by Pixel().
+  void AddBias(int x, int y, const PassBias& pass) { bias_[Index(x, y)].Add(pass); }
+  // Estimate of the bias of a pixel (an index into the crop, row by row), 0 unless estimates are kept. Signed.
+  double Bias(size_t pixel, int channel) const;
+
   // What the stages that have ended tell: passes, and of a pixel (an index into the crop, row by row) its stages, its
   // luminance, the sums of squared deviations of the luminance of its samples and of their squares, and the variance of
   // all splats.
@@ -177,16 +215,21 @@ class Film {
   // the splats of a camera sample go to all pixels alike, and their share in its own pixel is small.
   Image Develop() const;
 
-  // Estimated relative error of the image at 95 % confidence: 1.96 · sqrt(mean variance of the pixel means) / mean
-  // luminance. The mean variance is the upper end of its own confidence interval ([Fay97], see film.cpp), since it is
-  // not known well if a few bright samples make up most of it. `largestSample`: luminance of the brightest sample that
-  // may not have occurred yet. Infinite with fewer than 2 samples per pixel, or fewer than 2 light paths. 0 without
-  // variance if `largestSample` is 0, and for an image that is still black after 4096 samples per pixel.
-  double RelativeError(double largestSample = 0) const;
+  // Estimated relative error of the image at 95 % confidence. Its noise is 1.96 · sqrt(mean variance of the pixel
+  // means) / mean luminance. The mean variance is the upper end of its own confidence interval ([Fay97], see film.cpp),
+  // since it is not known well if a few bright samples make up most of it. `largestSample`: luminance of the brightest
+  // sample that may not have occurred yet. Infinite with fewer than 2 samples per pixel, or fewer than 2 light paths. 0
+  // without variance if `largestSample` is 0, and for an image that is still black after 4096 samples per pixel. Its
+  // bias is that of merging photons (film_bias.cpp), 0 unless estimates of it are kept.
+  ErrorParts PartsOfError(double largestSample = 0) const;
+  double RelativeError(double largestSample = 0) const { return PartsOfError(largestSample).Both(); }
 
   // Half the width of the 95 % interval of a pixel's luminance, relative to it, or to 1 % of the mean luminance in
-  // darker pixels; pixel by pixel, row by row. Infinite where fewer than 2 samples do not tell.
+  // darker pixels; pixel by pixel, row by row. Infinite where fewer than 2 samples do not tell. With the bias.
   std::vector<float> PixelErrors() const;
+  // Squared bound of the bias of the luminance, pixel by pixel, each from its neighbourhood; empty unless estimates are
+  // kept.
+  std::vector<double> BiasSquares() const;
 
  private:
   using LayerSum = std::array<CompensatedSum, 3>;
@@ -197,6 +240,12 @@ class Film {
   double CameraVariance(size_t pixel, int channel) const;
   double CameraFourth(size_t pixel) const;
   double HalfShareOfSplats() const;
+  struct BiasMoments {
+    double square = 0, variance = 0;
+  };
+  BiasMoments BiasMomentsOf(size_t pixel) const;
+  double MeanBiasSquare() const;
+  bool BiasIsFinite() const;
   void NoteSplats(size_t pixel);
   void AddStages(const Film& other);
   bool StagesAreFinite() const;
@@ -225,6 +274,8 @@ class Film {
   uint64_t endedPasses_ = 0;                        // of those before it
   std::vector<PixelStages> stages_;                 // empty unless adaptive
   std::vector<PixelGroups> groups_;                 // empty unless adaptive with groups
+  std::vector<PixelBias> bias_;                     // empty unless kept; of an adaptive film: of the current stage
+  std::vector<PixelBias> biasStages_;               // empty unless adaptive and kept
   std::vector<std::array<double, 3>> layerStages_;  // per layer and pixel: Σ passes · mean; empty unless adaptive
 };
 

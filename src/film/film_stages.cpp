@@ -48,6 +48,7 @@ void Film::MakeAdaptive(bool hasGroups) {
   isAdaptive_ = true;
   stages_.resize(pixels_.size());
   layerStages_.resize(layerSums_.size(), {0, 0, 0});
+  biasStages_.resize(bias_.size());
   if (hasGroups) groups_.resize(pixels_.size());
 }
 
@@ -63,6 +64,10 @@ void Film::EndStage() {
     }
     if (ended.count == 0) continue;
     const double scale = passes / static_cast<double>(ended.count);
+    if (KeepsBias()) {
+      biasStages_[i].AddScaled(bias_[i], scale);
+      bias_[i] = PixelBias();
+    }
     for (int c = 0; c < 3; ++c) {
       stages.sum[c] += scale * ended.sum[c].Value();
       stages.valueSum[c] += ended.sum[c].Value();
@@ -228,6 +233,7 @@ bool Film::StagesAreFinite() const {
 std::vector<float> Film::PixelErrors() const {
   constexpr double kDark = 0.01;
   std::vector<double> luminances(pixels_.size(), 0), deviations(pixels_.size(), 0);
+  const std::vector<double> biases = BiasSquares();
   double all = 0;
   for (size_t i = 0; i < pixels_.size(); ++i) {
     for (int c = 0; c < 3; ++c) {
@@ -242,7 +248,9 @@ std::vector<float> Film::PixelErrors() const {
     const bool tooFew = Samples(i) == 1 || (Samples(i) == 0 && lightPaths_ < 2);
     const double luminance = std::max(luminances[i], least);
     double error = std::numeric_limits<double>::infinity();
-    if (!tooFew) error = deviations[i] == 0 ? 0 : kNinetyFive * deviations[i] / luminance;
+    double half = kNinetyFive * deviations[i];
+    if (!biases.empty()) half = std::hypot(half, std::sqrt(biases[i]));
+    if (!tooFew) error = half == 0 ? 0 : half / luminance;
     errors[i] = static_cast<float>(error);
   }
   return errors;

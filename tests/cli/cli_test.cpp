@@ -160,6 +160,32 @@ TEST_F(Cli, PixelLayersAreInThePicture) {
   EXPECT_EQ(whole.metadata, image.metadata);
 }
 
+// What photons blur, in the picture, in that of parts, and in the report; who merges nothing has none.
+TEST_F(Cli, TheBiasOfMergingIsInThePicture) {
+  const std::string vcm = "render scene.pbrt --quiet --integrator vcm --spp 8 --layer bias --layer \"relative error\"";
+  ASSERT_EQ(Run(vcm + " -o o.exr --stats o.json").exitCode, 0);
+  const Image image = ReadImage(folder_ / "o.exr");
+  double sum = 0;
+  for (const char* channel : {"bias.R", "bias.G", "bias.B"}) {
+    ASSERT_GE(image.ChannelIndex(channel), 0);
+    const auto index = static_cast<size_t>(image.ChannelIndex(channel));
+    for (int y = 0; y < image.height; ++y) {
+      for (int x = 0; x < image.width; ++x) sum += std::abs(static_cast<double>(image.At(x, y, index)));
+    }
+  }
+  EXPECT_GT(sum, 0);
+  EXPECT_NE(Read("o.json").find("\"errorParts\": {\n    \"noise\": "), std::string::npos) << Read("o.json");
+  for (const char* part : {"1/2", "2/2"}) ASSERT_EQ(Run(vcm + " --shard " + part).exitCode, 0);
+  const Outcome merged = Run("merge scene.1-of-2.exr scene.2-of-2.exr -o merged.exr --quiet");
+  ASSERT_EQ(merged.exitCode, 0) << merged.output;
+  EXPECT_EQ(ReadImage(folder_ / "merged.exr").data, image.data);
+  ASSERT_EQ(Run("render scene.pbrt --quiet --integrator path --spp 8 --layer bias -o p.exr --stats p.json").exitCode,
+            0);
+  const Image none = ReadImage(folder_ / "p.exr");
+  EXPECT_EQ(none.At(3, 3, static_cast<size_t>(none.ChannelIndex("bias.G"))), 0);
+  EXPECT_EQ(Read("p.json").find("errorParts"), std::string::npos);
+}
+
 // The PNG is there before the render ends, and it does not change the picture.
 TEST_F(Cli, PreviewShowsThePictureSoFar) {
   ASSERT_EQ(Run("render scene.pbrt --quiet --spp 64 -o plain.exr --png").exitCode, 0);
