@@ -12,8 +12,16 @@ namespace lampyr {
 
 namespace {
 
-// A target right here has no direction.
-constexpr float kNoDistance = 1e-30f;
+// A target right here has no direction, and of one beyond this squared distance float has none.
+constexpr float kNoDistance = 1e-30f, kTooFar = 1e37f;
+
+inline bool HasDirection(float squaredDistance) {
+  return squaredDistance > kNoDistance && squaredDistance < kTooFar;
+}
+// In this order of arguments what is no number becomes the least.
+inline float BoundedKappa(float kappa) {
+  return std::min(std::max(DirectionMixture::kLeastKappa, kappa), DirectionMixture::kMostKappa);
+}
 
 // e^x for x ≤ 0, to 2e-7. In this form a compiler vectorises it.
 inline float ExpOfNegative(float x) {
@@ -43,13 +51,15 @@ void DirectionMixture::SetTarget(size_t lobe, const Point3& target, bool isDirec
 
 void DirectionMixture::Densities(const Point3& point, const Vector3& direction, Lanes& densities) const {
   for (size_t i = 0; i < kLobes; ++i) {
-    const float dx = x[i] - nearness[i] * point.x, dy = y[i] - nearness[i] * point.y;
-    float dz = z[i] - nearness[i] * point.z;
+    float dx = x[i] - nearness[i] * point.x, dy = y[i] - nearness[i] * point.y, dz = z[i] - nearness[i] * point.z;
     float squared = dx * dx + dy * dy + dz * dz;
-    dz = squared < kNoDistance ? 1.0f : dz;
-    squared = squared < kNoDistance ? 1.0f : squared;
+    const bool hasDirection = HasDirection(squared);
+    dx = hasDirection ? dx : 0.0f;
+    dy = hasDirection ? dy : 0.0f;
+    dz = hasDirection ? dz : 1.0f;
+    squared = hasDirection ? squared : 1.0f;
     const float inverse = 1 / std::sqrt(squared);
-    const float kappa = std::min(std::max(kappaPerSquare[i] * squared, kLeastKappa), kMostKappa);
+    const float kappa = BoundedKappa(kappaPerSquare[i] * squared);
     // 1 - cosθ as half the squared distance of the directions: a cosine near 1 has no precision.
     const float ax = direction.x - dx * inverse, ay = direction.y - dy * inverse, az = direction.z - dz * inverse;
     const float t = 0.5f * (ax * ax + ay * ay + az * az);
@@ -71,11 +81,11 @@ Vector3 DirectionMixture::Sample(const Point3& point, float uLobe, const Point2&
   while (lobe > 0 && !(weight[lobe] > 0)) --lobe;  // rounding of the sum
   Vector3 way = Vector3(x[lobe], y[lobe], z[lobe]) - nearness[lobe] * point;
   float squared = LengthSquared(way);
-  if (squared < kNoDistance) {
-    way.z = 1;
+  if (!HasDirection(squared)) {
+    way = Vector3(0, 0, 1);
     squared = 1;
   }
-  const float kappa = std::clamp(kappaPerSquare[lobe] * squared, kLeastKappa, kMostKappa);
+  const float kappa = BoundedKappa(kappaPerSquare[lobe] * squared);
   const float least = std::exp(-2 * kappa);
   const float t = std::clamp(-std::log(least + (1 - u.x) * (1 - least)) / kappa, 0.0f, 2.0f);  // 1 - cosθ
   const float sine = SafeSqrt(t * (2 - t));
