@@ -58,6 +58,7 @@ void PassSequence::Add(uint32_t done, uint32_t count) {
 }
 
 void PassSequence::AddPass(uint32_t done, uint32_t count) {
+  if (paths_ && paths_->TakeRestart()) Restart();
   // The lighting with what has been learned so far; it does not change during the pass.
   view_ = scene_;
   view_.lighting = std::make_shared<const LightingServices>(
@@ -72,10 +73,6 @@ void PassSequence::AddPass(uint32_t done, uint32_t count) {
 }
 
 namespace {
-
-// Variance of a sample before a guide is used, over that after it, from which on earlier samples are dropped: their
-// noise would be felt long after.
-constexpr double kRestarting = 2;
 
 // Samples per pixel at which learning of light selection ends: most of what can be learned has been by then.
 constexpr uint32_t kLastLearned = 64;
@@ -92,9 +89,7 @@ void PassSequence::Learn(uint32_t samples) {
   }
   if (guiding_ && guiding_->IsRecording() && guiding_->Decide(samples)) changesDensities = true;
   if (paths_ && paths_->IsRecording()) {
-    const bool wasGuided = paths_->Guide() != nullptr;
     if (paths_->Decide(samples, threads_)) changesDensities = true;
-    if (!wasGuided && paths_->Guide() && paths_->Gain() > kRestarting) Restart();
   }
   // The photons of the last pass, and their weights, have densities of the view before. They are dropped and others
   // traced in their place, as when a render is resumed.

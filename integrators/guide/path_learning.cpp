@@ -15,9 +15,10 @@ namespace {
 constexpr double kMostPaths = 1 << 17;
 constexpr size_t kMostKept = size_t{1} << 17;
 constexpr size_t kMostEvents = size_t{1} << 25;  // of a file
-// Least gain in variance of camera paths for which a guide is used: what its densities cost, and some doubt. Where light
-// paths are guided, too, the gain is larger than what is tested: weights leave to camera paths what those do well, and
-// would leave them more with a guide. Measured in bdpt: 1.3 of door was 2.4, 1.05 of lamp, ring and still-life 1.1.
+// Least gain in variance of camera paths for which a guide is used: what its densities cost, and some doubt. Where
+// light paths are guided, too, the gain is larger than what is tested: weights leave to camera paths what those do
+// well, and would leave them more with a guide. Measured in bdpt: 1.3 of door was 2.4, 1.05 of lamp, ring and
+// still-life 1.1.
 constexpr double kWorthwhile = 1.6, kWorthwhileForBoth = 1.2;
 // Smallest effective number of paths for a verdict.
 constexpr double kFewestTested = 16;
@@ -208,12 +209,14 @@ bool PathLearning::Decide(uint32_t samples, int threads) {
   // The guide put to use is made of more events than the one that was tested.
   const double worthwhile = forLight_ ? kWorthwhileForBoth : kWorthwhile;
   guide_ = always_ || (hasVerdict_ && gain_ > worthwhile) ? tried_ : nullptr;
+  restarts_ = !wasInUse && guide_ && gain_ > static_cast<double>(samples);
   const bool isPromising = !hasVerdict_ || gain_ - 1 > kPromising * (worthwhile - 1);
   const uint32_t hopeless = isPromising ? kLastHope : kHopeless;
   if (samples >= (always_ || guide_ ? kLearned : hopeless)) {
     isRecording_ = false;
     kept_ = keptOfLight_ = {};
     latest_ = {};
+    tried_ = guide_;
   }
   return wasInUse || guide_;
 }
@@ -223,6 +226,7 @@ void PathLearning::Save(ByteWriter& bytes) const {
   bytes.Value<uint8_t>(hasVerdict_ ? 1 : 0);
   bytes.Value<uint8_t>(tried_ ? 1 : 0);
   bytes.Value<uint8_t>(guide_ ? 1 : 0);
+  bytes.Value<uint8_t>(restarts_ ? 1 : 0);
   bytes.Value(samples_);
   bytes.Value(gain_);
   if (tried_) tried_->Save(bytes);
@@ -247,6 +251,7 @@ void PathLearning::Load(ByteReader& bytes) {
   isRecording_ = bytes.Flag();
   hasVerdict_ = bytes.Flag();
   const bool hasTried = bytes.Flag(), hasGuide = bytes.Flag();
+  restarts_ = bytes.Flag();
   samples_ = bytes.Value<uint32_t>();
   gain_ = bytes.Value<double>();
   if (hasTried) {

@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "integrators/guide/path_records.h"
@@ -33,6 +34,10 @@ class PathLearning {
   bool Decide(uint32_t samples, int threads);
   // The guide in use; null: walks are not guided.
   const std::shared_ptr<const PathGuide>& Guide() const { return guide_; }
+  // True once, after a guide came into use with which one sample is worth more than all before it: they may be dropped,
+  // whose noise would be felt long after. Before the first sample with the guide, not after the last one without it,
+  // which may be the last of all.
+  bool TakeRestart() { return std::exchange(restarts_, false); }
   // True until enough is known; recording takes time.
   bool IsRecording() const { return isRecording_; }
 
@@ -61,7 +66,7 @@ class PathLearning {
   int width_, height_;
   int blockSize_, blocksX_;
   bool forLight_, always_;
-  bool isRecording_ = true, hasVerdict_ = false;
+  bool isRecording_ = true, hasVerdict_ = false, restarts_ = false;
   uint32_t samples_ = 0;  // at the last milestone
   double gain_ = 1;
   std::shared_ptr<const PathGuide> guide_;  // the guide in use, or null

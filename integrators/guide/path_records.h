@@ -43,6 +43,8 @@ class PathRecords {
   void StartPath(uint32_t pixel, uint32_t sample) {
     paths_.push_back({pixel, sample, static_cast<uint32_t>(events_.size()), 0});
   }
+  // Of very long paths the first events are recorded.
+  bool HasRoom() const { return events_.size() - paths_.back().firstEvent < kMostEvents; }
   void Add(const RecordedEvent& event) { events_.push_back(event); }
   // Of the ray of the last event.
   void SetDistance(float distance) {
@@ -88,6 +90,8 @@ class PathRecords {
   }
 
  private:
+  static constexpr size_t kMostEvents = 16;  // of a path
+
   void Append(const PathRecords& other, size_t path) {
     const std::span<const RecordedEvent> events = other.EventsOf(path);
     paths_.push_back(other.paths_[path]);

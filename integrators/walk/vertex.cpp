@@ -16,9 +16,13 @@ const MixtureFit& OtherGuide(const GuideRegion& region, TransportMode mode) {
   return mode == TransportMode::Radiance ? region.importance : region.radiance;
 }
 
-PdfSolidAngle Mixed(const MixtureFit& guide, const Point3& position, const Vector3& direction, PdfSolidAngle bsdf) {
-  if (!(guide.share > 0)) return bsdf;
-  return guide.share * guide.mixture.Density(position, direction) + (1 - guide.share) * bsdf;
+// Density of a direction by a guide; 0 if its share is.
+PdfSolidAngle DensityOf(const MixtureFit& guide, const Point3& position, const Vector3& direction) {
+  return guide.share > 0 ? guide.mixture.Density(position, direction) : PdfSolidAngle(0);
+}
+
+PdfSolidAngle Mixed(float share, PdfSolidAngle guide, PdfSolidAngle bsdf) {
+  return share * guide + (1 - share) * bsdf;
 }
 
 float Ratio(PdfSolidAngle guided, PdfSolidAngle bsdf) {
@@ -27,9 +31,14 @@ float Ratio(PdfSolidAngle guided, PdfSolidAngle bsdf) {
 
 }  // namespace
 
-void Vertex::Guide(const Vector3& from, const Vector3& to, TransportMode mode, BsdfEvaluation& f) const {
-  f.pdfForward = Mixed(OwnGuide(*guide, mode), point.position, to, f.pdfForward);
-  f.pdfReverse = Mixed(OtherGuide(*guide, mode), point.position, from, f.pdfReverse);
+PdfSolidAngle Vertex::ReverseGuide(const Vector3& from, TransportMode mode) const {
+  return DensityOf(OtherGuide(*guide, mode), point.position, from);
+}
+
+void Vertex::Guide(const Vector3& to, TransportMode mode, PdfSolidAngle reverse, BsdfEvaluation& f) const {
+  const MixtureFit& own = OwnGuide(*guide, mode);
+  f.pdfForward = Mixed(own.share, DensityOf(own, point.position, to), f.pdfForward);
+  f.pdfReverse = Mixed(OtherGuide(*guide, mode).share, reverse, f.pdfReverse);
 }
 
 BsdfSample Vertex::SampleGuided(float uLobe, const Point2& u, TransportMode mode, Guidance& guidance) const {
@@ -44,7 +53,7 @@ BsdfSample Vertex::SampleGuided(float uLobe, const Point2& u, TransportMode mode
     if (f.Sum().IsBlack()) return sample;
     bsdfForward = f.pdfForward;
     bsdfReverse = f.pdfReverse;
-    sample.pdfForward = Mixed(own, point.position, sample.wi, bsdfForward);
+    sample.pdfForward = Mixed(own.share, DensityOf(own, point.position, sample.wi), bsdfForward);
     const float scale = bsdf.ScatteringCosine(sample.wi) / sample.pdfForward.value;
     sample.weightDiffuse = f.diffuse * scale;
     sample.weightSpecular = f.specular * scale;
@@ -56,14 +65,14 @@ BsdfSample Vertex::SampleGuided(float uLobe, const Point2& u, TransportMode mode
     if (!sample) return sample;
     bsdfForward = sample.pdfForward;
     bsdfReverse = sample.pdfReverse;
-    sample.pdfForward =
-        sample.isDelta ? (1 - own.share) * bsdfForward : Mixed(own, point.position, sample.wi, bsdfForward);
+    sample.pdfForward = sample.isDelta ? (1 - own.share) * bsdfForward
+                                       : Mixed(own.share, DensityOf(own, point.position, sample.wi), bsdfForward);
     const float scale = bsdfForward.value / sample.pdfForward.value;
     sample.weightDiffuse *= scale;
     sample.weightSpecular *= scale;
   }
   sample.pdfReverse =
-      sample.isDelta ? (1 - other.share) * bsdfReverse : Mixed(other, point.position, toPrevious, bsdfReverse);
+      sample.isDelta ? (1 - other.share) * bsdfReverse : Mixed(other.share, ReverseGuide(mode), bsdfReverse);
   guidance = {Ratio(sample.pdfForward, bsdfForward), Ratio(sample.pdfReverse, bsdfReverse)};
   return sample;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "integrators/guide/path_guide.h"
@@ -30,20 +31,23 @@ struct Vertex {
   bool storesPhotons = true;           // by material, not by the component drawn from a mix: gathering paths draw anew
   bool isSeenByCamera = true;          // camera rays meet it
   bool isSeenByIndirect = true;        // rays of light subpaths meet it
-  const GuideRegion* guide = nullptr;  // null: walks scatter as the BSDF does
+  const GuideRegion* guide = nullptr;  // SetGuide; null: walks scatter as the BSDF does
 
   // Beyond float: mean free paths may be shorter than its rounding. Where the path met the surface, or collided.
   Point3d Position() const { return Point3d(point.position) + Vector3d(residual); }
 
   // Scattering between the previous vertex and `direction`.
   BsdfEvaluation Evaluate(const Vector3& direction, TransportMode mode) const {
-    return EvaluateBetween(toPrevious, direction, mode);
+    BsdfEvaluation f = bsdf.Evaluate(toPrevious, direction, mode);
+    if (guide && !f.Sum().IsBlack()) [[unlikely]]
+      Guide(direction, mode, ReverseGuide(mode), f);
+    return f;
   }
   // The same for a walk that arrives from `from`. The densities are those of walks: guided, where there is a guide.
   BsdfEvaluation EvaluateBetween(const Vector3& from, const Vector3& to, TransportMode mode) const {
     BsdfEvaluation f = bsdf.Evaluate(from, to, mode);
-    if (guide) [[unlikely]]
-      Guide(from, to, mode, f);
+    if (guide && !f.Sum().IsBlack()) [[unlikely]]
+      Guide(to, mode, ReverseGuide(from, mode), f);
     return f;
   }
   BsdfSample Sample(float uLobe, const Point2& u, TransportMode mode, Guidance& guidance) const {
@@ -56,6 +60,11 @@ struct Vertex {
   float ScatteringCosine(const Vector3& direction) const { return bsdf.ScatteringCosine(direction); }
   // Geometry term of an edge along `direction`: |cosθ| to the geometric normal; of a fibre, as above.
   float GeometryTerm(const Vector3& direction) const { return bsdf.GeometricCosine(direction); }
+  // `region`: null, or what is learned of this place. To be called when `toPrevious` is set.
+  void SetGuide(const GuideRegion* region) {
+    guide = region;
+    reverseGuide_.fill(kUnknown);
+  }
   // In a medium, not on a surface. Scattering and geometry have no cosines there.
   bool IsInMedium() const { return bsdf.IsMedium(); }
   // The medium in which a ray along `direction` starts.
@@ -98,13 +107,25 @@ struct Vertex {
   }
 
  private:
-  void Guide(const Vector3& from, const Vector3& to, TransportMode mode, BsdfEvaluation& f) const;
+  static constexpr PdfSolidAngle kUnknown{-1};
+
+  // Mixes the guides into the densities of `f`. `reverse`: density of the way back by the guide of the other walk.
+  void Guide(const Vector3& to, TransportMode mode, PdfSolidAngle reverse, BsdfEvaluation& f) const;
+  PdfSolidAngle ReverseGuide(const Vector3& from, TransportMode mode) const;
+  // Of `toPrevious`; the same for all directions that are evaluated here.
+  PdfSolidAngle ReverseGuide(TransportMode mode) const {
+    PdfSolidAngle& known = reverseGuide_[static_cast<size_t>(mode)];
+    if (known.value < 0) known = ReverseGuide(toPrevious, mode);
+    return known;
+  }
   BsdfSample SampleGuided(float uLobe, const Point2& u, TransportMode mode, Guidance& guidance) const;
 
   // Lower bound of the cosines divided by. Grazing cosines have lost their precision to rounding, and the weight
   // 1/cosine of a light path that arrives at one is unbounded. The bound costs the light from within this cosine of the
   // geometric horizon, less than 1e-5 of what a surface receives.
   static constexpr float kSmallestGeometricCosine = 1e-5f;
+
+  mutable std::array<PdfSolidAngle, 2> reverseGuide_{kUnknown, kUnknown};  // by mode
 };
 
 // dω/dA of an edge, which turns a density over solid angle at one end into one over area at the other: |cosθ| there

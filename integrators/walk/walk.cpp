@@ -45,9 +45,8 @@ uint8_t SideOf(const Vertex& vertex) {
 }
 
 void SetGuide(const RenderScene& scene, Vertex& vertex) {
-  vertex.guide = nullptr;
-  if (scene.guide && !vertex.isDelta && vertex.bsdf.IsWide()) [[unlikely]]
-    vertex.guide = scene.guide->Find(vertex.point.position, SideOf(vertex));
+  const bool isGuided = scene.guide && !vertex.isDelta && vertex.bsdf.IsWide();
+  vertex.SetGuide(isGuided ? scene.guide->Find(vertex.point.position, SideOf(vertex)) : nullptr);
 }
 
 // Makes a vertex of a hit whose point is set: BSDF, receiver, visibility. False: the surface has no material and is
@@ -223,7 +222,7 @@ EdgeEnd StartOf(const SampleContext& context, const PathState& state, const Subp
 [[gnu::noinline]] bool Record(const Subpath& path, const PathState& state, float foundOnArrival, float found,
                               PathRecords& records) {
   const PathVertex& vertex = path.Last();
-  if (!vertex.bsdf.IsWide()) return false;
+  if (!vertex.bsdf.IsWide() || !records.HasRoom()) return false;
   RecordedEvent event;
   event.position = vertex.point.position;
   event.direction = state.ray.direction;

@@ -147,6 +147,7 @@ std::vector<Estimate> Render(const BuiltScene& built, const PilotCandidate& cand
   RenderSettings settings = built.settings;
   settings.integrator = candidate.integrator;
   settings.counts = std::make_shared<TechniqueCounts>(candidate.counts);
+  settings.values.Set("guide-paths", false);  // of which the pilot knows nothing
   const auto made = MakeIntegrator(built.scene, settings);
   std::vector<Estimate> pixels(kSide * kSide);
   for (int render = 0; render < renders; ++render) {

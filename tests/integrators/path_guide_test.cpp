@@ -137,7 +137,7 @@ struct GuidedVertex {
     vertex.point.position = Point3(0.2f, -0.3f, 0.1f);
     vertex.point.Ng = vertex.point.Ns = Ng;
     vertex.toPrevious = toPrevious;
-    vertex.guide = guide->Find(vertex.point.position, GuideSideOf(Ng));
+    vertex.SetGuide(guide->Find(vertex.point.position, GuideSideOf(Ng)));
   }
 };
 
@@ -212,7 +212,7 @@ TEST(GuidedScattering, LeavesDeltasTheirPart) {
   const CoatedDiffuseBsdf coat({0, 0}, 1.5f, Color(0.5f), 5, table);
   const GuidedVertex guided(coat, glm::normalize(Vector3(0.5f, 0.4f, 0.6f)));
   Vertex plain = guided.vertex;
-  plain.guide = nullptr;
+  plain.SetGuide(nullptr);
   Rng rng(2);
   const int samples = 40000;
   int deltas = 0, plainDeltas = 0;
