@@ -60,6 +60,7 @@ int SamplesOf(const std::string& scene, const std::string& integrator) {
     int samples;
   };
   for (const Sharp& sharp : {Sharp{"lamp", "bdpt", 12},
+                             {"door", "bdpt", 40},
                              {"pool", "vcm", 8},
                              {"ring", "path", 24},
                              {"still-life", "path", 10},
