@@ -28,8 +28,8 @@ PassSequence::PassSequence(const RenderScene& scene, const Integrator& integrato
   if (wantedPhotons_) film.KeepBias();
   MakePhotonStore();
   if (settings.GuidesPaths() && integrator.FollowsCameraPaths())
-    paths_ = std::make_unique<PathLearning>(settings.width, settings.height, integrator.Paths() == TracedPaths::Both,
-                                            settings.AlwaysGuidesPaths());
+    paths_ = std::make_unique<PathLearning>(settings.width, settings.height, film.Pixels(),
+                                            integrator.Paths() == TracedPaths::Both, settings.AlwaysGuidesPaths());
   if (settings.LearnsLights()) learning_ = std::make_unique<LightLearning>(scene.lighting->SceneSphere());
 }
 
@@ -58,7 +58,6 @@ void PassSequence::Add(uint32_t done, uint32_t count) {
 }
 
 void PassSequence::AddPass(uint32_t done, uint32_t count) {
-  if (paths_ && paths_->TakeRestart()) Restart();
   // The lighting with what has been learned so far; it does not change during the pass.
   view_ = scene_;
   view_.lighting = std::make_shared<const LightingServices>(
@@ -94,13 +93,6 @@ void PassSequence::Learn(uint32_t samples) {
   // The photons of the last pass, and their weights, have densities of the view before. They are dropped and others
   // traced in their place, as when a render is resumed.
   if (changesDensities && photons_) photons_->Clear();
-}
-
-// Drops all samples so far. Not those of adaptive films, whose stages are planned from the first sample on, and of
-// films and technique images that are told how many samples they have.
-void PassSequence::Restart() {
-  if (film_->IsAdaptive() || film_->HasHalf() || techniques_) return;
-  *film_ = film_->EmptyCopy();
 }
 
 // Begins the stage of the pass after `done` others, unless it has begun: ends the one before.

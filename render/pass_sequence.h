@@ -59,7 +59,6 @@ class PassSequence {
  private:
   void AddPass(uint32_t done, uint32_t count);
   void Learn(uint32_t samples);
-  void Restart();
   void StartStage(uint32_t done);
   void MakePhotonStore();
 

@@ -99,6 +99,7 @@ bool SetBeamVertex(const SampleContext& context, const PhotonMap& map, const Bea
   PathVertex& light = made.vertex;
   static_cast<Vertex&>(light) = vertex;
   light.toPrevious = -Vector3(start.direction);
+  light.SetGuide(vertex.guide);  // of the other direction
   light.factors = {MeanOf(density * vertex.extinction), MeanOf(density * start.extinction), through};
   made.edge = {light.toPrevious, light.factors, start.isInMedium};
   light.diffuse = start.diffuse;

@@ -427,7 +427,7 @@ Color BidirectionalIntegrator::Sample(const Ray* ray, const SampleContext& conte
                           .dimensions = kCameraDimensions,
                           .seesFlights = settings_.merges,
                           .wantsBeams = settings_.merges,
-                          .records = StartRecord(context, *ray)};
+                          .records = StartRecord(context)};
   Walk(context, walk, state, workspace.camera, visitor);
   if (walk.records) walk.records->EndPath(visitor.Found());
   return sample.radiance;

@@ -39,7 +39,7 @@ class PathGuide::Builder {
   // Makes the node `at` of a part, and all below it.
   void Divide(uint32_t at, const Part& part) {
     int axis = 0;
-    const bool isDivided = part.Most() > kMostInRegion && guide_.regions_.size() + 2 < kMostRegions;
+    const bool isDivided = part.Most() > kMostInRegion && parts_.size() + 2 < kMostRegions;
     const float split = isDivided ? Median(part.Larger(), axis) : 0;
     const auto before = [&](const PlacedEvent& event) { return event.position[axis] < split; };
     const auto camera = isDivided ? Partition(part.ofCamera, before) : 0,
@@ -139,9 +139,10 @@ void PathGuide::Load(ByteReader& bytes) {
   for (size_t i = 0; i < nodes_.size(); ++i) {
     const Node& node = nodes_[i];
     // Children come after their parent, so that every descent ends.
-    const bool isSound = node.axis == 3  ? node.next < regions_.size()
-                         : node.axis < 3 ? node.next > i && node.next + 1 < nodes_.size() && std::isfinite(node.split)
-                                         : false;
+    const bool isSound = node.axis == 3 ? node.next < regions_.size()
+                         : node.axis < 3
+                             ? node.next > i && size_t{node.next} + 1 < nodes_.size() && std::isfinite(node.split)
+                             : false;
     if (!isSound) refuse();
   }
   for (const GuideRegion& region : regions_) {

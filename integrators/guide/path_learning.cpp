@@ -37,9 +37,10 @@ double SumsCount(double sum, double squares) {
 
 }  // namespace
 
-PathLearning::PathLearning(int width, int height, bool forLight, bool always)
+PathLearning::PathLearning(int width, int height, size_t recorded, bool forLight, bool always)
     : width_(width),
       height_(height),
+      recorded_(recorded),
       blockSize_(std::max((std::max(width, height) + kBlocks - 1) / kBlocks, kLeastBlock)),
       blocksX_((width + blockSize_ - 1) / blockSize_),
       forLight_(forLight),
@@ -48,7 +49,7 @@ PathLearning::PathLearning(int width, int height, bool forLight, bool always)
 
 double PathLearning::Fraction() const {
   const auto passes = static_cast<double>(std::max(samples_, 1u));  // until the next milestone
-  return kMostPaths / (passes * static_cast<double>(width_) * static_cast<double>(height_));
+  return kMostPaths / (passes * static_cast<double>(recorded_));
 }
 
 size_t PathLearning::BlockOf(uint32_t pixel) const {
@@ -209,7 +210,6 @@ bool PathLearning::Decide(uint32_t samples, int threads) {
   // The guide put to use is made of more events than the one that was tested.
   const double worthwhile = forLight_ ? kWorthwhileForBoth : kWorthwhile;
   guide_ = always_ || (hasVerdict_ && gain_ > worthwhile) ? tried_ : nullptr;
-  restarts_ = !wasInUse && guide_ && gain_ > static_cast<double>(samples);
   const bool isPromising = !hasVerdict_ || gain_ - 1 > kPromising * (worthwhile - 1);
   const uint32_t hopeless = isPromising ? kLastHope : kHopeless;
   if (samples >= (always_ || guide_ ? kLearned : hopeless)) {
@@ -226,7 +226,6 @@ void PathLearning::Save(ByteWriter& bytes) const {
   bytes.Value<uint8_t>(hasVerdict_ ? 1 : 0);
   bytes.Value<uint8_t>(tried_ ? 1 : 0);
   bytes.Value<uint8_t>(guide_ ? 1 : 0);
-  bytes.Value<uint8_t>(restarts_ ? 1 : 0);
   bytes.Value(samples_);
   bytes.Value(gain_);
   if (tried_) tried_->Save(bytes);
@@ -251,7 +250,6 @@ void PathLearning::Load(ByteReader& bytes) {
   isRecording_ = bytes.Flag();
   hasVerdict_ = bytes.Flag();
   const bool hasTried = bytes.Flag(), hasGuide = bytes.Flag();
-  restarts_ = bytes.Flag();
   samples_ = bytes.Value<uint32_t>();
   gain_ = bytes.Value<double>();
   if (hasTried) {
@@ -265,7 +263,10 @@ void PathLearning::Load(ByteReader& bytes) {
   std::vector<RecordedEvent> events = bytes.List<RecordedEvent>(kMostEvents);
   kept_ = bytes.List<PlacedEvent>(kMostKept);
   keptOfLight_ = bytes.List<PlacedEvent>(kMostKept);
-  bool isSound = blocks.size() == blocks_.size();
+  bool isSound = blocks.size() == blocks_.size() && std::isfinite(gain_) && gain_ >= 0 && (hasTried || !hasGuide);
+  for (const Block& block : blocks)
+    isSound = isSound && std::isfinite(block.found) && std::isfinite(block.squares) && block.count >= 0 &&
+              std::isfinite(block.count);
   for (const std::vector<PlacedEvent>* kept : {&kept_, &keptOfLight_})
     for (const PlacedEvent& event : *kept) isSound = isSound && IsSound(event);
   for (const RecordedEvent& event : events)

@@ -9,7 +9,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <utility>
 #include <vector>
 
 #include "integrators/guide/path_records.h"
@@ -21,9 +20,9 @@ class ByteWriter;
 
 class PathLearning {
  public:
-  // Of images of width × height pixels. `forLight`: paths from the lights are guided, too. `always`: a guide is used as
-  // soon as there is one.
-  PathLearning(int width, int height, bool forLight, bool always);
+  // Of images of width × height pixels, of which `recorded` are rendered. `forLight`: paths from the lights are guided,
+  // too. `always`: a guide is used as soon as there is one.
+  PathLearning(int width, int height, size_t recorded, bool forLight, bool always);
 
   // The fraction of the camera paths that is recorded until the next milestone.
   double Fraction() const;
@@ -34,10 +33,6 @@ class PathLearning {
   bool Decide(uint32_t samples, int threads);
   // The guide in use; null: walks are not guided.
   const std::shared_ptr<const PathGuide>& Guide() const { return guide_; }
-  // True once, after a guide came into use with which one sample is worth more than all before it: they may be dropped,
-  // whose noise would be felt long after. Before the first sample with the guide, not after the last one without it,
-  // which may be the last of all.
-  bool TakeRestart() { return std::exchange(restarts_, false); }
   // True until enough is known; recording takes time.
   bool IsRecording() const { return isRecording_; }
 
@@ -64,9 +59,10 @@ class PathLearning {
   void Keep(const std::vector<double>& scales);
 
   int width_, height_;
+  size_t recorded_;
   int blockSize_, blocksX_;
   bool forLight_, always_;
-  bool isRecording_ = true, hasVerdict_ = false, restarts_ = false;
+  bool isRecording_ = true, hasVerdict_ = false;
   uint32_t samples_ = 0;  // at the last milestone
   double gain_ = 1;
   std::shared_ptr<const PathGuide> guide_;  // the guide in use, or null

@@ -258,7 +258,7 @@ Color TraceCameraPath(const SampleContext& context, const CameraPathSettings& se
                           .materialsAfterWide = settings.materialsAfterWide,
                           .seesFlights = true,
                           .wantsBeams = gatherer != nullptr,
-                          .records = StartRecord(context, ray)};
+                          .records = StartRecord(context)};
   Walk(context, walk, state, path, visitor);
   if (walk.records) walk.records->EndPath(visitor.Found());
   return visitor.Radiance();

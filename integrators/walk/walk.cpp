@@ -40,7 +40,8 @@ void MakeInPlace(T& value, const Make& make) {
 
 // Of an opaque surface the side on which the path is; the paths of both sides of a translucent one meet there.
 uint8_t SideOf(const Vertex& vertex) {
-  if (vertex.IsInMedium()) return GuideSideOf(Normal3(0.0f));
+  // The normal of a strand is towards the path that arrives: it has no sides.
+  if (vertex.IsInMedium() || vertex.point.strand != Strand::None) return GuideSideOf(Normal3(0.0f));
   return GuideSideOf(vertex.bsdf.IsTransmissive() ? vertex.point.Ng : vertex.receiver.normal);
 }
 
@@ -243,12 +244,10 @@ EdgeEnd StartOf(const SampleContext& context, const PathState& state, const Subp
 
 }  // namespace
 
-PathRecords* StartRecord(const SampleContext& context, const Ray& cameraRay) {
+PathRecords* StartRecord(const SampleContext& context) {
   if (!context.records) [[likely]]
     return nullptr;
-  const Vector3& d = cameraRay.direction;
-  const uint64_t decider =
-      Hash(std::bit_cast<uint32_t>(d.x), std::bit_cast<uint32_t>(d.y), std::bit_cast<uint32_t>(cameraRay.origin.x));
+  const uint64_t decider = MixBits(uint64_t{context.pixel} << 32 | context.sample);
   if (!context.records->Wants(decider)) return nullptr;
   context.records->StartPath(context.pixel, context.sample);
   return context.records;

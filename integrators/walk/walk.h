@@ -127,8 +127,8 @@ void MakeVertexInMedium(const RenderScene& scene, const Point3d& position, const
 void Walk(const SampleContext& context, const WalkSettings& settings, PathState& state, Subpath& path,
           PathVisitor& visitor);
 
-// The records of a walk along `cameraRay`, which EndPath() is to be called for; null: it is not recorded.
-PathRecords* StartRecord(const SampleContext& context, const Ray& cameraRay);
+// The records of a camera path, which EndPath() is to be called for; null: it is not recorded.
+PathRecords* StartRecord(const SampleContext& context);
 
 // One step of the walk: samples the scattering at `vertex`, applies Russian roulette, and sets the event of the vertex
 // and the next ray of `state`. `index`: of the vertex, from 0. False: the path ends.

@@ -290,6 +290,19 @@ TEST(PathGuide, DamagedOnesAreRefused) {
   EXPECT_GT(refused, 60);
 }
 
+// A node whose children are beyond the end, also where their number overflows 32 bits.
+TEST(PathGuide, ChildrenBeyondTheEndAreRefused) {
+  const std::vector<std::byte> bytes = Saved(*RandomGuide({Point3(0.0f), 2}));
+  const size_t firstNode = kGuideSides * sizeof(uint32_t) + sizeof(uint64_t);  // split, axis, next
+  for (const uint32_t next : {0xffffffffu, 0xfffffffeu, 70000u, 0u}) {
+    std::vector<std::byte> damaged = bytes;
+    std::memcpy(&damaged[firstNode + 2 * sizeof(uint32_t)], &next, sizeof next);
+    PathGuide guide;
+    ByteReader reader(damaged);
+    EXPECT_THROW(guide.Load(reader), Error) << next;
+  }
+}
+
 // A box with a lamp in a niche that faces away: all light arrives by way of a small bright patch of wall.
 std::string Niche(bool isOpen) {
   const std::string wall = "Shape \"bilinearmesh\" \"point3 P\" ";
