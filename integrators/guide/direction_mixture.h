@@ -18,7 +18,8 @@ struct DirectionMixture {
   static constexpr float kLeastKappa = 0.1f, kMostKappa = 4000;
   using Lanes = std::array<float, kLobes>;
 
-  // By lobe; lobes that are not used have the weight 0. The target as seen from a point p is (x, y, z) - nearness · p:
+  // One entry for each lobe; an unused lobe has the weight 0. The vector from a point p to the target is
+  // (x, y, z) - nearness · p:
   // nearness is 1 for a position and 0 for a direction, of length 1.
   alignas(32) Lanes x{}, y{}, z{}, nearness{};
   alignas(32) Lanes kappaPerSquare{};  // κ over the squared distance to the target

@@ -25,7 +25,8 @@ struct MixtureFit {
   float share = 0;  // α in [0, kMostShare]; 0: not guided
 };
 
-// What scattering keeps: the weight of a sample is at most 1 / (1 - kMostShare) times that of one without a guide.
+// Upper bound of the share α of a guide. It bounds the weight of a guided sample by 1 / (1 - kMostShare) times that of
+// an unguided one.
 inline constexpr float kMostShare = 0.7f;
 
 // `events`: at least one. `center`: of their region, from which distances to targets are taken.

@@ -1,5 +1,5 @@
-// What was learned of where walks should go from a place: for camera paths by the radiance that arrives there, for
-// light paths by the importance. Regions are boxes of positions, apart by the main direction of the normal.
+// Learned densities of directions, by region of the scene: in proportion to incident radiance for camera paths, and to
+// incident importance for light paths. A region is a box of positions whose normals have the same main direction.
 //
 // A scattering event of either walk has the density α · guide + (1 - α) · scattering, by its region's mixture and
 // share. The region depends on the place alone and not on the walk that arrived, so that each walk knows the density
@@ -21,15 +21,16 @@ struct GuideRegion {
   MixtureFit radiance, importance;
 };
 
-// Densities of a sampled event with a guide over those without: of the walk's own direction, and of the other walk's.
-// Of deltas, the ratios of their probabilities.
+// Ratios of densities of a sampled event, with a guide to without one: forward and reverse. A delta has ratios of
+// probabilities.
 struct Guidance {
   float forward = 1, reverse = 1;
 };
 
 // Main directions of normals, and one for places without a normal.
 inline constexpr uint8_t kGuideSides = 7;
-// `normal`: of an opaque surface on the side of the path, otherwise that of the surface; 0: none.
+// Index of the main direction of `normal`. The normal of an opaque surface faces the path; that of a transmissive one
+// is the surface's own; 0: the place has none.
 uint8_t GuideSideOf(const Normal3& normal);
 
 // A scattering event as recorded for the guides.

@@ -1,10 +1,10 @@
 // Path guiding: learns from the walks of each pass where walks should go after a wide scattering ([Müller17],
 // [Vorba14], [Ruppert20]; in one place for camera paths and light paths).
 //
-// A guide is made of the events seen so far, and tested on the walks of the following passes, which are independent of
-// it. It is used only if it would have reduced their variance by more than it costs. The guide changes at samples 1, 2,
-// 4 … only, so that each pass has one density. Records are taken in the order of the samples, so that all is the same
-// for any number of threads.
+// A guide is made of the events seen so far, and tested on the walks of the following passes, which it does
+// not know. It is used only if it would have reduced their variance by more than it costs. The guide changes at samples
+// 1, 2, 4 … only, so that each pass has one density. Records are taken in the order of the samples, so that all is the
+// same for any number of threads.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ class ByteWriter;
 
 class PathLearning {
  public:
-  // Of images of width × height pixels, of which `recorded` are rendered. `forLight`: paths from the lights are guided,
+  // Image of width × height pixels, of which `recorded` are rendered (the crop). `forLight`: light paths are guided,
   // too. `always`: a guide is used as soon as there is one.
   PathLearning(int width, int height, size_t recorded, bool forLight, bool always);
 
@@ -69,7 +69,7 @@ class PathLearning {
   std::shared_ptr<const PathGuide> tried_;  // the candidate, or null
   std::vector<Block> blocks_;
   PathRecords latest_;  // since the last milestone
-  // Of earlier ones, weighted: events of camera paths, and those of light paths that go the other way.
+  // Weighted events of earlier intervals: of camera paths, and of the light paths along them.
   std::vector<PlacedEvent> kept_, keptOfLight_;
 };
 

@@ -15,11 +15,12 @@ namespace lampyr {
 
 // A scattering event of a recorded walk. `weight` of the base: not set.
 //
-// The same event is one of a light path that goes the other way, towards the camera: its direction is that to the
-// previous vertex. So camera paths tell both walks where to go.
+// Light follows the path in the other direction, so that the event is one of a light path, too: it leaves towards the
+// previous vertex. Camera paths therefore teach both walks.
 struct RecordedEvent : PlacedEvent {
   float guidance = 1;  // Guidance::forward
-  // What the walk had found when it arrived at the vertex, and before it left: mean of the channels of radiance.
+  // Radiance that the path had found when it arrived at the vertex, and when it left it: mean of the channels,
+  // W/(m² sr).
   float foundOnArrival = 0, foundBefore = 0;
   Vector3 toPrevious{0.0f};
   float previousDistance = 0;  // scene units; 0: the previous vertex is the lens, where no walk from a light goes
@@ -36,21 +37,21 @@ struct RecordedPath {
 // The records of one thread's share of a pass.
 class PathRecords {
  public:
-  // Of one walk, `fraction` of all are recorded: that with the deterministic number `decider` is if this is true.
+  // True for a share of all paths (SetFraction). `decider`: uniform bits that depend on the sample alone.
   bool Wants(uint64_t decider) const { return static_cast<double>(decider >> 11) * 0x1p-53 < fraction_; }
   void SetFraction(double fraction) { fraction_ = fraction; }
 
   void StartPath(uint32_t pixel, uint32_t sample) {
     paths_.push_back({pixel, sample, static_cast<uint32_t>(events_.size()), 0});
   }
-  // Of very long paths the first events are recorded.
+  // False if the path has kMostEvents events already; later ones are not recorded.
   bool HasRoom() const { return events_.size() - paths_.back().firstEvent < kMostEvents; }
   void Add(const RecordedEvent& event) { events_.push_back(event); }
-  // Of the ray of the last event.
+  // Sets the distance of the last event to the next vertex.
   void SetDistance(float distance) {
     if (events_.size() > paths_.back().firstEvent) events_.back().distance = distance;
   }
-  // A path that found what is no number is dropped.
+  // Ends the path, which has found the radiance `found`; drops it if that is not finite.
   void EndPath(float found) {
     paths_.back().found = found;
     if (std::isfinite(found)) return;

@@ -38,7 +38,8 @@ void MakeInPlace(T& value, const Make& make) {
   ::new (static_cast<void*>(&value)) T(make());
 }
 
-// Of an opaque surface the side on which the path is; the paths of both sides of a translucent one meet there.
+// Side for PathGuide::Find. An opaque surface has one on either side; the paths on both sides of a transmissive surface
+// share one, so that either walk finds the density of the other.
 uint8_t SideOf(const Vertex& vertex) {
   // The normal of a strand is towards the path that arrives: it has no sides.
   if (vertex.IsInMedium() || vertex.point.strand != Strand::None) return GuideSideOf(Normal3(0.0f));
