@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <array>
 
-#include "scene/color_space.h"
 #include "scene/spectrum.h"
+#include "spectral/color_space.h"
 
 namespace lampyr {
 

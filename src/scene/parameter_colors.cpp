@@ -2,9 +2,9 @@
 #include <filesystem>
 #include <system_error>
 
-#include "scene/color_space.h"
 #include "scene/parameters.h"
 #include "scene/spectrum.h"
+#include "spectral/color_space.h"
 
 namespace lampyr {
 

@@ -12,7 +12,7 @@
 
 #include "base/error.h"
 #include "math/vec.h"
-#include "scene/color_space.h"
+#include "spectral/color_space.h"
 
 namespace lampyr {
 

@@ -4,9 +4,10 @@
 #include <cmath>
 #include <functional>
 
-#include "scene/cie.h"
 #include "scene/lexer.h"
 #include "scene/text_file.h"
+#include "spectral/cie.h"
+#include "spectral/wavelengths.h"
 
 namespace lampyr {
 
@@ -27,7 +28,7 @@ double Evaluate(const std::vector<SpectrumSample>& spectrum, double lambda, bool
 
 // Wavelengths to integrate over: every nanometre of the visible range, and around each sample of the spectrum, so that
 // narrow lines are not missed and jumps at the ends remain jumps.
-std::vector<double> Wavelengths(const std::vector<SpectrumSample>& spectrum) {
+std::vector<double> GridOf(const std::vector<SpectrumSample>& spectrum) {
   std::vector<double> list;
   for (double lambda = kLambdaMin; lambda <= kLambdaMax; lambda += kGrid) list.push_back(lambda);
   for (const SpectrumSample& sample : spectrum) {
@@ -53,7 +54,7 @@ Vector3d Integrate(const std::vector<double>& wavelengths, const std::function<V
 // Integrals over D65, which calibrate the fitted matching functions so that D65 is exactly white.
 const Vector3d& WhiteIntegral() {
   static const Vector3d white =
-      Integrate(Wavelengths({}), [](double lambda) { return ColorMatching(lambda) * DaylightD65(lambda); });
+      Integrate(GridOf({}), [](double lambda) { return ColorMatching(lambda) * DaylightD65(lambda); });
   return white;
 }
 
@@ -100,7 +101,7 @@ Color SpectrumToColor(const std::vector<SpectrumSample>& spectrum, SpectrumRole 
   if (largest == 0) return Color(0.0f);
   // Scaled to a maximum of 1 for the integration: no overflow or underflow, whatever the unit.
   const auto f = [&](double lambda) { return Evaluate(spectrum, lambda, continueEnds) / largest; };
-  const std::vector<double> wavelengths = Wavelengths(spectrum);
+  const std::vector<double> wavelengths = GridOf(spectrum);
   if (role == SpectrumRole::Illuminant) return FunctionToColor(f, wavelengths, role);
   if (role == SpectrumRole::Unbounded) return FunctionToColor(f, wavelengths, role) * static_cast<float>(largest);
   const auto unscaled = [&](double lambda) { return std::min(1.0, Evaluate(spectrum, lambda, false)); };
@@ -108,7 +109,7 @@ Color SpectrumToColor(const std::vector<SpectrumSample>& spectrum, SpectrumRole 
 }
 
 Color BlackbodyToColor(double kelvin, SpectrumRole role) {
-  const std::vector<double> wavelengths = Wavelengths({});
+  const std::vector<double> wavelengths = GridOf({});
   double largest = 0;
   for (const double lambda : wavelengths) largest = std::max(largest, Blackbody(lambda, kelvin));
   return FunctionToColor([&](double lambda) { return Blackbody(lambda, kelvin) / largest; }, wavelengths, role);
@@ -121,9 +122,42 @@ Color NormalizedBlackbody(double kelvin) {
     const double x = kSecondRadiation / (lambda * kelvin);
     return std::pow(x / kPeak, 5) * std::exp(kPeak - x) * (std::expm1(-kPeak) / std::expm1(-x));
   };
-  const std::vector<double> wavelengths = Wavelengths({});
+  const std::vector<double> wavelengths = GridOf({});
   const double luminance = Integrate(wavelengths, [&](double l) { return ColorMatching(l) * relative(l); }).y;
   return FunctionToColor(relative, wavelengths, SpectrumRole::Illuminant) * static_cast<float>(luminance);
+}
+
+SpectralCurve CurveOfPower(const SpectralCurve& power, SpectrumRole role) {
+  const double largest = power.Largest();
+  if (role == SpectrumRole::Unbounded || !(largest > 0)) return power;
+  if (role == SpectrumRole::Albedo)
+    return SpectralCurve([&](double wavelength) { return power.At(wavelength) / largest; });
+  const SpectralCurve relative(
+      [&](double wavelength) { return power.At(wavelength) / largest / DaylightD65(wavelength); });
+  const Vector3d rgb = ColorOf(relative);
+  const double luminance = glm::dot(rgb, Vector3d(Color::kLuminance[0], Color::kLuminance[1], Color::kLuminance[2]));
+  return luminance > 0 ? SpectralCurve([&](double wavelength) { return relative.At(wavelength) / luminance; })
+                       : SpectralCurve();
+}
+
+SpectralCurve CurveOf(const std::vector<SpectrumSample>& spectrum, SpectrumRole role) {
+  // The mean over the nanometre around the wavelength, so that a narrow line keeps its power.
+  constexpr int kParts = 32;
+  const bool continueEnds = role == SpectrumRole::Unbounded;
+  const SpectralCurve curve([&](double wavelength) {
+    double sum = 0;
+    for (int i = 0; i < kParts; ++i) sum += Evaluate(spectrum, wavelength - 0.5 + (i + 0.5) / kParts, continueEnds);
+    return sum / kParts;
+  });
+  if (role == SpectrumRole::Illuminant) return CurveOfPower(curve, role);
+  if (role == SpectrumRole::Unbounded) return curve;
+  return SpectralCurve([&](double wavelength) { return std::min(curve.At(wavelength), 1.0); });
+}
+
+SpectralCurve BlackbodyCurve(double kelvin, SpectrumRole role) {
+  const SpectralCurve body([&](double wavelength) { return Blackbody(wavelength, kelvin); });
+  // Of other roles as of BlackbodyToColor.
+  return CurveOfPower(body, role == SpectrumRole::Illuminant ? role : SpectrumRole::Albedo);
 }
 
 std::vector<SpectrumSample> SpectrumFromPairs(const std::vector<double>& numbers, const FileLocation& where) {

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "scene/parameters.h"
+#include "spectral/spectral_curve.h"
 
 namespace lampyr {
 
@@ -31,9 +32,9 @@ Color SpectrumToColor(const std::vector<SpectrumSample>& spectrum, SpectrumRole 
 // The colour of a blackbody of `kelvin` > 0; for roles other than Illuminant, of its spectrum scaled to a maximum of 1.
 Color BlackbodyToColor(double kelvin, SpectrumRole role);
 
-// The light of a blackbody of `kelvin` > 0 whose spectrum is scaled to a maximum of 1 per nanometre, over all wavelengths
-// and not the visible ones alone (BlackbodySpectrum of pbrt-v4): the luminance, ∫ ȳ(λ) L(λ) dλ, tells the temperatures
-// apart. It is 100.8 at 6000 K, and 9.7e-4 at 1000 K.
+// The light of a blackbody of `kelvin` > 0 whose spectrum is scaled to a maximum of 1 per nanometre, over all
+// wavelengths and not the visible ones alone (BlackbodySpectrum of pbrt-v4): the luminance, ∫ ȳ(λ) L(λ) dλ, tells the
+// temperatures apart. It is 100.8 at 6000 K, and 9.7e-4 at 1000 K.
 Color NormalizedBlackbody(double kelvin);
 
 // Converts a list λ0 v0 λ1 v1 …. Throws an Error at `where` unless it has at least two pairs, increasing wavelengths
@@ -46,5 +47,16 @@ std::vector<SpectrumSample> ReadSpectrumFile(const std::filesystem::path& file, 
 // "metal-Au-eta", "glass-BK7", "stdillum-D65", …; nullopt for other names.
 std::optional<Color> FindNamedSpectrum(const std::string& name, SpectrumRole role);
 const std::vector<std::string>& SpectrumNames();
+
+// Curves, for transport by wavelength. Of illuminants, blackbodies and lights: relative to D65 and at luminance 1.
+
+// Averaged over each nanometre.
+SpectralCurve CurveOf(const std::vector<SpectrumSample>& spectrum, SpectrumRole role);
+SpectralCurve BlackbodyCurve(double kelvin, SpectrumRole role);
+// nullopt for a name without a curve.
+std::optional<SpectralCurve> FindNamedCurve(const std::string& name, SpectrumRole role);
+// A spectral power distribution, in any unit, as it is used for a role: that of an illuminant is brought to luminance 1
+// and divided by D65; as a reflectance its largest value is 1.
+SpectralCurve CurveOfPower(const SpectralCurve& power, SpectrumRole role);
 
 }  // namespace lampyr

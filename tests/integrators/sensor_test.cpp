@@ -3,7 +3,7 @@
 
 #include "base/error.h"
 #include "integrators/registry.h"
-#include "scene/color_space.h"
+#include "spectral/color_space.h"
 #include "support/render_scene.h"
 
 namespace lampyr {

@@ -3,8 +3,8 @@
 
 #include <gmock/gmock.h>
 
-#include "scene/cie.h"
-#include "scene/color_space.h"
+#include "spectral/cie.h"
+#include "spectral/color_space.h"
 #include "unit/scene/scene_support.h"
 
 namespace lampyr {

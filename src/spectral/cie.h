@@ -1,4 +1,4 @@
-// The CIE 1931 standard observer, daylight and black bodies, by formula. Internal to scene/.
+// The CIE 1931 standard observer, daylight and black bodies, by formula. Internal to spectral/ and scene/.
 #pragma once
 
 #include "math/vec.h"

@@ -1,4 +1,4 @@
-#include "scene/color_space.h"
+#include "spectral/color_space.h"
 
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>

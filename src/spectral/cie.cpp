@@ -1,4 +1,4 @@
-#include "scene/cie.h"
+#include "spectral/cie.h"
 
 #include <algorithm>
 #include <array>

@@ -1,0 +1,184 @@
+#include "spectral/wavelengths.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "spectral/cie.h"
+#include "spectral/color_space.h"
+
+namespace lampyr {
+
+namespace {
+
+// Red and blue of the upsampling basis every 10 nm from 360 nm on; green is the rest to 1. scripts/fit_upsampling.py
+// makes it.
+constexpr double kBasisStep = 10;
+constexpr std::array<std::array<double, 2>, 48> kBasis = {{
+    {0.0387995, 0.9611985},
+    {0.0388175, 0.9611825},
+    {0.038918, 0.961082},
+    {0.0392452, 0.9607548},
+    {0.0400292, 0.9599708},
+    {0.0409085, 0.9590915},
+    {0.0395696, 0.9604304},
+    {0.034733, 0.965267},
+    {0.0278132, 0.9721868},
+    {0.018336, 0.981664},
+    {0.0197026, 0.9802974},
+    {0, 0.8861362},
+    {0, 0.7063764},
+    {0, 0.4942318},
+    {0, 0.2875522},
+    {0, 0.1174392},
+    {0, 0.0130082},
+    {0, 0},
+    {0, 0},
+    {0, 0},
+    {0, 0},
+    {0, 0.0534684},
+    {0.1890104, 0.0581608},
+    {0.4800647, 0.0311425},
+    {0.7618299, 0.0035436},
+    {0.9463054, 0},
+    {1, 0},
+    {1, 0},
+    {1, 0},
+    {1, 0},
+    {1, 0},
+    {1, 0},
+    {1, 0},
+    {1, 0},
+    {0.999634, 0.0001254},
+    {0.9991832, 0.0002594},
+    {0.9989076, 0.0003389},
+    {0.9987689, 0.0003784},
+    {0.9987107, 0.0003949},
+    {0.9986911, 0.0004004},
+    {0.9986851, 0.0004021},
+    {0.998683, 0.0004027},
+    {0.9986824, 0.0004029},
+    {0.9986822, 0.000403},
+    {0.9986822, 0.000403},
+    {0.9986821, 0.000403},
+    {0.9986821, 0.000403},
+    {0.9986821, 0.000403},
+}};
+
+// Matching functions for red, green and blue times D65, per nm, whose integrals are 1 each; and the density of
+// wavelengths with its integral.
+struct Tables {
+  SpectralCurve rgb[3], density, cumulative;
+
+  Tables() {
+    Vector3d white(0.0);
+    const auto weighted = [](double wavelength) { return ColorMatching(wavelength) * DaylightD65(wavelength); };
+    // By the trapezoid rule, as everywhere between the entries of curves.
+    constexpr size_t last = SpectralCurve::kCount - 1;
+    for (size_t i = 0; i <= last; ++i)
+      white += weighted(SpectralCurve::WavelengthOf(i)) * (i == 0 || i == last ? 0.5 : 1.0);
+    const auto toRgb = [&](double wavelength) {
+      return XyzToRec709(weighted(wavelength) / white * XyzOfChromaticity(0.3127, 0.3290));
+    };
+    for (int c = 0; c < 3; ++c) rgb[c] = SpectralCurve([&](double wavelength) { return toRgb(wavelength)[c]; });
+    const SpectralCurve weight([&](double wavelength) { return glm::length(toRgb(wavelength)); });
+    double sum = 0;
+    for (size_t i = 0; i < last; ++i) sum += 0.5 * (weight.Entry(i) + weight.Entry(i + 1));
+    // At no wavelength 0, where weights would be infinite.
+    constexpr double kLeast = 1e-6;
+    const double scale = 1 / (sum + kLeast * static_cast<double>(last));
+    density = SpectralCurve([&](double wavelength) { return (weight.At(wavelength) + kLeast) * scale; });
+    double below = 0;
+    cumulative = SpectralCurve([&](double wavelength) {
+      const auto i = static_cast<size_t>(std::lround(wavelength - SpectralCurve::kFirst));
+      if (i > 0) below += 0.5 * (density.Entry(i - 1) + density.Entry(i));
+      return below;
+    });
+  }
+
+  // The wavelength below which the density has the integral u. Within a nanometre the density is linear.
+  double Invert(double u) const {
+    size_t low = 0, high = SpectralCurve::kCount - 1;
+    while (high - low > 1) {
+      const size_t middle = (low + high) / 2;
+      (cumulative.Entry(middle) <= u ? low : high) = middle;
+    }
+    const double a = density.Entry(low), slope = density.Entry(high) - a, rest = u - cumulative.Entry(low);
+    // a t + slope t² / 2 = rest
+    const double t = 2 * rest / (a + std::sqrt(std::max(a * a + 2 * slope * rest, 0.0)));
+    return SpectralCurve::WavelengthOf(low) + std::clamp(t, 0.0, 1.0);
+  }
+};
+
+const Tables& TheTables() {
+  static const Tables tables;
+  return tables;
+}
+
+double FractionOf(double x) {
+  return x - std::floor(x);
+}
+
+}  // namespace
+
+Color UpsamplingBasis(double wavelength) {
+  const double position =
+      std::clamp((wavelength - SpectralCurve::kFirst) / kBasisStep, 0.0, static_cast<double>(kBasis.size() - 1));
+  const size_t i = std::min(static_cast<size_t>(position), kBasis.size() - 2);
+  const double t = position - static_cast<double>(i);
+  const double red = std::lerp(kBasis[i][0], kBasis[i + 1][0], t), blue = std::lerp(kBasis[i][1], kBasis[i + 1][1], t);
+  return {static_cast<float>(red), static_cast<float>(std::max(1 - red - blue, 0.0)), static_cast<float>(blue)};
+}
+
+Wavelengths::Wavelengths(double u) {
+  const Tables& tables = TheTables();
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const double wavelength = tables.Invert(std::clamp((lane + u) / kLanes, 0.0, 1.0));
+    wavelengths_[static_cast<size_t>(lane)] = wavelength;
+    basis_[static_cast<size_t>(lane)] = UpsamplingBasis(wavelength);
+    const double perDensity = 1 / (kLanes * tables.density.At(wavelength));
+    for (int c = 0; c < 3; ++c) {
+      const double weight = tables.rgb[c].At(wavelength) * perDensity;
+      toRgb_[lane][c] = static_cast<float>(weight);
+      white_[static_cast<size_t>(c)] += weight;
+    }
+  }
+}
+
+// The van der Corput sequence would be as regular, but Sobol samples of the pixels are made of the same bits: pixels
+// would see one half of the spectrum in one half of their area. The passes from 2^n to 2^(n+1) therefore take the
+// places between those of before in another order, by the golden section.
+Wavelengths Wavelengths::OfPass(uint64_t seed, uint64_t pass) {
+  constexpr double kGolden = 0.6180339887498949, kPerSeed = 0.7548776662466927;
+  const double shift = FractionOf(kPerSeed * static_cast<double>(seed % (uint64_t{1} << 20)));
+  if (pass == 0) return Wavelengths(shift);
+  const uint64_t places = std::bit_floor(pass), number = pass - places;
+  // The odd step nearest to places · golden section visits all places once.
+  const auto step = static_cast<uint64_t>(kGolden * static_cast<double>(places)) | 1;
+  const uint64_t place = number * step % places;
+  return Wavelengths(FractionOf(shift + (static_cast<double>(place) + 0.5) / static_cast<double>(places)));
+}
+
+Color Wavelengths::FromRgb(const Color& rgb) const {
+  if (rgb.r == rgb.g && rgb.g == rgb.b) return rgb;
+  const auto at = [&rgb](const Color& weights) { return rgb.r * weights.r + rgb.g * weights.g + rgb.b * weights.b; };
+  return {at(basis_[0]), at(basis_[1]), at(basis_[2])};
+}
+
+Color Wavelengths::At(const SpectralCurve& curve) const {
+  return {static_cast<float>(curve.At(wavelengths_[0])), static_cast<float>(curve.At(wavelengths_[1])),
+          static_cast<float>(curve.At(wavelengths_[2]))};
+}
+
+Vector3d ColorOf(const SpectralCurve& relativeToWhite) {
+  const Tables& tables = TheTables();
+  Vector3d sum(0.0);
+  constexpr size_t last = SpectralCurve::kCount - 1;
+  for (size_t i = 0; i <= last; ++i) {
+    const double value = relativeToWhite.Entry(i) * (i == 0 || i == last ? 0.5 : 1.0);
+    sum += value * Vector3d(tables.rgb[0].Entry(i), tables.rgb[1].Entry(i), tables.rgb[2].Entry(i));
+  }
+  return sum;
+}
+
+}  // namespace lampyr

@@ -1,0 +1,57 @@
+// The wavelengths of a pass, where light is carried by wavelength and not by red, green and blue.
+//
+// A pass has three wavelengths. A Color then holds values at these: lane 0, 1 and 2 are its r, g and b. All that a path
+// meets is evaluated there, so that integrators are written once. Radiance is counted relative to that of the white of
+// the picture (D65): an RGB light and an RGB reflectance are upsampled alike, and white is 1 at all wavelengths.
+//
+// The wavelengths change from pass to pass and are the same for all paths of a pass, so that photons and the camera
+// paths that gather them agree.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include <glm/mat3x3.hpp>
+
+#include "math/vec.h"
+#include "spectral/spectral_curve.h"
+
+namespace lampyr {
+
+class Wavelengths {
+ public:
+  static constexpr int kLanes = 3;
+
+  // Those at u, in [0,1): u/3, (u + 1)/3 and (u + 2)/3 by the inverse of a density that is about that of their weights
+  // in the picture.
+  explicit Wavelengths(double u);
+  // Those of a pass, with an order that is regular after 2^n passes. `seed` moves all of them.
+  static Wavelengths OfPass(uint64_t seed, uint64_t pass);
+
+  double operator[](int lane) const { return wavelengths_[static_cast<size_t>(lane)]; }  // nm
+
+  // A colour in linear Rec. 709, of a surface or of light, at these wavelengths. Exactly gray stays so. Components are
+  // convex combinations of the colour's.
+  Color FromRgb(const Color& rgb) const;
+  // A curve at these wavelengths.
+  Color At(const SpectralCurve& curve) const;
+  // From the lanes to linear Rec. 709: an estimate, whose expectation over u is the colour. Components may be negative.
+  const glm::mat3& ToRgb() const { return toRgb_; }
+  // What ToRgb makes of white: its mean over many passes is 1.
+  const std::array<double, 3>& White() const { return white_; }
+
+ private:
+  std::array<double, kLanes> wavelengths_{};
+  std::array<Color, kLanes> basis_{};  // by lane: weights of red, green and blue
+  glm::mat3 toRgb_{1.0f};
+  std::array<double, 3> white_{};
+};
+
+// The colour in linear Rec. 709 of light that is `curve` relative to D65; components may be negative.
+Vector3d ColorOf(const SpectralCurve& relativeToWhite);
+
+// The reflectance, in [0,1], of a unit of red, green or blue: three functions that add up to 1, as smooth as the
+// colours of the primaries under D65 allow ([Mallett19]). Wavelength in nm.
+Color UpsamplingBasis(double wavelength);
+
+}  // namespace lampyr
