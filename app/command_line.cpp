@@ -186,7 +186,7 @@ std::string KnownPixelLayers() {
 struct RenderCommand {
   RenderOptions options;
   std::string time, resolution, checkpoint, preview, shard, display;
-  bool adaptive = false, notAdaptive = false, fast = false;
+  bool adaptive = false, notAdaptive = false, fast = false, isSpectral = false, isNotSpectral = false;
 
   void Define(CLI::App& app) {
     RenderOverrides& overrides = options.overrides;
@@ -210,6 +210,10 @@ struct RenderCommand {
     CLI::Option* const on =
         app.add_flag("--adaptive", adaptive, "More samples where the error is large, unbiased (on with --of-pixels)");
     app.add_flag("--no-adaptive", notAdaptive, "All pixels have the same number of samples")->excludes(on);
+    CLI::Option* spectral =
+        app.add_flag("--spectral", isSpectral, "Carry light by wavelength, whether something disperses it or not");
+    app.add_flag("--no-spectral", isNotSpectral, "Carry light as red, green and blue; glass disperses nothing")
+        ->excludes(spectral);
     DefineSceneOptions(app, overrides, resolution, options.threads);
     DefinePluginOption(app, options.plugins);
     app.add_option("--checkpoint", checkpoint,
@@ -268,6 +272,7 @@ struct RenderCommand {
     options.robust = !fast;
     if (options.pixelShare && !options.targetError)
       throw UsageError("--of-pixels goes with --target-error: it is the share of the pixels that are to be below that");
+    if (isSpectral || isNotSpectral) options.overrides.spectral = isSpectral;
     if (adaptive || (options.pixelShare && !notAdaptive))
       options.overrides.adaptive = AdaptiveSettings{options.pixelShare.value_or(AdaptiveSettings().share)};
     return RunRender(options);

@@ -514,8 +514,8 @@ int RenderJob::Run() {
   Film film = header_.MakeFilm();
   std::unique_ptr<TechniqueImages> techniques;
   if (options_.strategyImages) {
-    techniques = std::make_unique<TechniqueImages>(settings_.width, settings_.height, settings_.crop,
-                                                   settings_.MaxDepth(), settings_.sensor);
+    techniques =
+        std::make_unique<TechniqueImages>(settings_.width, settings_.height, settings_.crop, settings_.MaxDepth());
   }
   if (!options_.quiet) PrintHints();
   if (settings_.WantsFirstHit()) MakeFirstHitLayers();

@@ -38,6 +38,7 @@
 #include "math/density.h"
 #include "math/transform.h"
 #include "math/vec.h"
+#include "spectral/spectral_curve.h"
 
 namespace lampyr {
 
@@ -175,6 +176,12 @@ class IntersectableLight {
   virtual std::optional<LocalHit> Intersect(const LocalRay& ray) const = 0;
 };
 
+// A spectrum of a light and the colour that it is in Rec. 709. The curve is relative to D65, and at luminance 1.
+struct LightSpectrum {
+  std::shared_ptr<const SpectralCurve> curve;
+  Color color;
+};
+
 // Settings that every light has, read by integrators and light selection.
 struct LightSettings {
   bool cameraVisible = true;
@@ -183,6 +190,8 @@ struct LightSettings {
   int fixedSampleCount = 0;        // 0: chosen by the integrator
   std::string lightGroup;
   std::string name;
+  // The spectra among its colours. Where light is carried by wavelength, each takes the place of its colour.
+  std::vector<LightSpectrum> spectra;
 };
 
 class Light {

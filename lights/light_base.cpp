@@ -44,6 +44,27 @@ std::vector<ParameterInfo> WithCommonParameters(std::vector<ParameterInfo> param
   return parameters;
 }
 
+namespace {
+
+// The parameters that are colours of light in one type or another; no type has two of the first two.
+std::vector<LightSpectrum> SpectraOf(const ParameterList& parameters) {
+  std::vector<LightSpectrum> spectra;
+  for (const char* name : {"L", "I", "color"}) {
+    const Parameter* given = parameters.Find(name);
+    if (!given || (given->type != ParameterType::Spectrum && given->type != ParameterType::Blackbody)) continue;
+    if (auto curve = parameters.FindCurve(name, SpectrumRole::Illuminant))
+      spectra.push_back({std::move(curve), parameters.GetColor(name, Color(1.0f), SpectrumRole::Illuminant)});
+  }
+  if (parameters.GetBool("enableColorTemperature", false)) {
+    const double kelvin = parameters.GetFloat("colorTemperature", 6500);
+    spectra.push_back({std::make_shared<const SpectralCurve>(BlackbodyCurve(kelvin, SpectrumRole::Illuminant)),
+                       BlackbodyToColor(kelvin, SpectrumRole::Illuminant)});
+  }
+  return spectra;
+}
+
+}  // namespace
+
 LightSettings ReadLightSettings(const ParameterList& parameters) {
   LightSettings settings;
   settings.name = parameters.GetString("name", "");
@@ -57,6 +78,7 @@ LightSettings ReadLightSettings(const ParameterList& parameters) {
   }
   settings.cameraVisible = parameters.GetBool("cameraVisible", true);
   settings.traceLightPaths = parameters.GetBool("traceLightPaths", true);
+  settings.spectra = SpectraOf(parameters);
   settings.importanceMultiplier = static_cast<float>(parameters.GetFloat("importanceMultiplier", 1));
   settings.fixedSampleCount = parameters.GetInteger("fixedSampleCount", 0);
   return settings;

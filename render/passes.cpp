@@ -21,6 +21,12 @@ constexpr uint64_t kOtherHalf = 0xa54ff53a5f1d36f1;       // changes the seed fo
 // In the place of the pixel row, for samples that belong to no pixel:
 constexpr int kLightPaths = -1, kPassTimes = -2;
 
+// The lane that the paths of a sample follow where light disperses. The samples of a pixel take turns. `seed` keeps
+// light paths that are traced for their photons from having that of the camera path in the same place.
+int HeroLane(uint64_t seed, uint64_t place, uint64_t sample) {
+  return static_cast<int>((MixBits(seed ^ MixBits(place)) + sample) % Wavelengths::kLanes);
+}
+
 // Shutter time of all paths of a pass with photons, in scenes with motion: a photon lies where the surface was at the
 // time of its path, so only paths of the same time may gather it. Times of consecutive passes are stratified.
 float PassTime(SamplerKind kind, uint64_t seed, uint32_t pass) {
@@ -107,6 +113,10 @@ struct Pass {
   const SampleAllocation* allocation;  // null: one sample for each pixel
   PathLearning* learning;              // null: camera paths are not recorded
 
+  // Of the samples of a pixel.
+  int HeroOf(int x, int y, uint64_t sample) const {
+    return scene.isSpectral ? HeroLane(Seed(), static_cast<uint64_t>(y) << 32 | static_cast<uint64_t>(x), sample) : 0;
+  }
   // Samplers count the samples of a stage.
   uint32_t Offset() const { return allocation ? allocation->Stage().first : 0; }
   uint64_t Seed() const { return allocation ? allocation->Stage().seed : settings.seed; }
@@ -161,6 +171,7 @@ void TraceAdaptively(const Pass& pass, int x, int y, size_t pixel, AdaptiveSampl
     const PixelRay ray = MakePixelRay(pass.scene, pass.filter, x, y, time, sampler);
     SampleContext context{pass.scene, sampler, time, counts, adder.StartLayers()};
     context.outputs = pass.Outputs();
+    context.heroLane = pass.HeroOf(x, y, number);
     pass.Record(x, y, number, records, context);
     adder.Add(x, y, AdaptiveSampler::IsInHalf(number), ray, Radiance(pass.integrator, ray, context), sums);
   }
@@ -196,6 +207,7 @@ RenderCounts TraceCameraPaths(const Pass& pass) {
           const PixelRay ray = MakePixelRay(pass.scene, pass.filter, x, y, time, sampler);
           SampleContext context{pass.scene, sampler, time, counts, adder.StartLayers()};
           context.outputs = pass.Outputs();
+          context.heroLane = pass.HeroOf(x, y, i);
           pass.Record(x, y, i, records, context);
           adder.Add(x, y, IsInHalf(i), ray, Radiance(pass.integrator, ray, context), sums);
         }
@@ -231,6 +243,7 @@ RenderCounts TraceLightPaths(const Pass& pass) {
         SampleContext context{pass.scene, sampler, SampleTime(pass.scene, sampler), counts[static_cast<size_t>(chunk)]};
         context.splats = &splats;
         context.outputs = pass.Outputs();
+        if (pass.scene.isSpectral) context.heroLane = HeroLane(pass.Seed(), i, 0);
         pass.integrator.Sample(nullptr, context);
       }
     });
@@ -250,7 +263,7 @@ class BothPaths {
         store_(kept ? *kept : own_),
         lightPaths_(wanted_ ? store_.LightPaths() : pass.Pixels()),
         log2LightPaths_(pass.integrator.Log2LightPaths()),
-        hasTimes_(wanted_ && pass.scene.hasMotion),
+        tracesAnew_(wanted_ && (pass.scene.hasMotion || pass.scene.isSpectral)),
         chunks_(4 * std::max(pass.threads, 1)),
         // Smaller chunks for small images, so that all threads have work.
         chunkPaths_(std::min((pass.Pixels() + static_cast<uint64_t>(chunks_) - 1) / static_cast<uint64_t>(chunks_),
@@ -260,14 +273,15 @@ class BothPaths {
         records_(pass.MakeRecords(static_cast<size_t>(chunks_))),
         counts_(static_cast<size_t>(chunks_)) {
     if (techniques)
-      recorders_.assign(static_cast<size_t>(chunks_), TechniqueImages::Recorder(*techniques, pass.filter));
+      recorders_.assign(static_cast<size_t>(chunks_),
+                        TechniqueImages::Recorder(*techniques, pass.filter, pass.settings.sensor));
   }
 
   RenderCounts Trace() {
-    if (wanted_ && !hasTimes_ && !store_.IsFor(pass_.first)) TracePhotonsBefore(pass_.first);
+    if (wanted_ && !tracesAnew_ && !store_.IsFor(pass_.first)) TracePhotonsBefore(pass_.first);
     // Sample by sample over all pixels: chunks never share a pixel, and the film adds paths in their order.
     for (uint32_t index = pass_.first; index < pass_.end; ++index) {
-      if (hasTimes_) {
+      if (tracesAnew_) {
         store_.Clear();
         TracePhotons(0, index, SeedOfPhotons());
         store_.Finish(index);
@@ -275,11 +289,11 @@ class BothPaths {
       if (wanted_) gather_ = &store_.Open(index, pass_.threads);
       for (uint64_t round = 0; round < pass_.Pixels(); round += PathsPerRound()) {
         TraceRound(round, pass_.Pixels(), index, pass_.Seed(), true);
-        if (wanted_ && !hasTimes_) store_.Take(photons_);
+        if (wanted_ && !tracesAnew_) store_.Take(photons_);
         pass_.film.AddSplats(pass_.filter, splats_, pass_.threads, index);
         if (techniques_) techniques_->AddSplats(pass_.filter, recorders_, pass_.threads);
       }
-      if (hasTimes_) {
+      if (tracesAnew_) {
         store_.EndGathering();
       } else if (wanted_) {
         TracePhotons(pass_.Pixels(), index, pass_.Seed());
@@ -316,7 +330,8 @@ class BothPaths {
   // Traces the pixels from `round` on, as many as the chunks take. Without `withCamera`: light paths for their photons
   // only.
   void TraceRound(uint64_t round, uint64_t end, uint32_t index, uint64_t seed, bool withCamera) {
-    const float passTime = hasTimes_ ? PassTime(pass_.settings.sampler, pass_.Seed(), index - pass_.Offset()) : 0;
+    const float passTime =
+        wanted_ && pass_.scene.hasMotion ? PassTime(pass_.settings.sampler, pass_.Seed(), index - pass_.Offset()) : 0;
     ParallelFor(chunks_, pass_.threads, [&](int chunk) {
       uint64_t begin = std::min(round + static_cast<uint64_t>(chunk) * chunkPaths_, end);
       uint64_t chunkEnd = std::min(begin + chunkPaths_, end);
@@ -345,9 +360,9 @@ class BothPaths {
   PhotonStore& store_;
   const uint64_t lightPaths_;  // of a pass, but for log2LightPaths_
   const int log2LightPaths_;
-  // True if photons come from light paths traced for each sample at its time, because things move. Otherwise they are
-  // those that the light paths of the sample before have left.
-  const bool hasTimes_;
+  // True if photons come from light paths traced for each sample, at its time because things move, or at its
+  // wavelengths. Otherwise they are those that the light paths of the sample before have left.
+  const bool tracesAnew_;
   const int chunks_;
   const uint64_t chunkPaths_;
   const PhotonPass* gather_ = nullptr;
@@ -512,17 +527,18 @@ void BothPaths::TraceChunk(size_t chunk, uint64_t begin, uint64_t end, uint32_t 
   if (pass_.allocation && (withCamera || seed == pass_.Seed())) adaptive.emplace(pass_, index, !withCamera);
   SlotSampler slots(*this, seed, index, adaptive ? &*adaptive : nullptr);
   for (uint64_t i = begin; i < end; ++i) {
-    const bool keepsPhotons = wanted_ && i < lightPaths_ && store_.HasRoom() && !(hasTimes_ && withCamera);
+    const bool keepsPhotons = wanted_ && i < lightPaths_ && store_.HasRoom() && !(tracesAnew_ && withCamera);
     if (!keepsPhotons && !withCamera) break;
     Sampler& sampler = slots.Start(i);
     const int x = slots.x, y = slots.y, lightPaths = slots.lightPaths;
-    const float time = hasTimes_ ? passTime : SampleTime(pass_.scene, sampler);
+    const float time = wanted_ && pass_.scene.hasMotion ? passTime : SampleTime(pass_.scene, sampler);
     SampleContext context{pass_.scene, sampler, time, counts_[chunk], layers};
     context.observer = recorder;
     context.outputs = pass_.Outputs();
     context.gather = withCamera ? gather_ : nullptr;
     context.isForPhotonsAlone = !withCamera;
     context.tracesLight = lightPaths > 0;
+    if (pass_.scene.isSpectral) context.heroLane = HeroLane(seed, i, slots.number);
     if (lightPaths > 0) StartLightPath(chunk, keepsPhotons, index, context);
     if (log2LightPaths_ < 0 && !pass_.allocation) {
       lightSampler.StartPixelSample(x, y, slots.lightNumber);
@@ -566,12 +582,10 @@ void BothPaths::StartLightPath(size_t chunk, bool keepsPhotons, uint32_t index, 
 
 }  // namespace
 
-RenderCounts RenderPass(const RenderScene& scene, const Integrator& integrator, const RenderSettings& settings,
-                        const PixelFilter& filter, uint32_t first, uint32_t count, int threads, Film& film,
-                        TechniqueImages* techniques, PhotonStore* kept, const SampleAllocation* allocation,
-                        PathLearning* learning) {
-  const Pass pass{scene, integrator, settings, filter, first, first + count, threads, film, allocation, learning};
-  switch (integrator.Paths()) {
+namespace {
+
+RenderCounts TracePass(const Pass& pass, TechniqueImages* techniques, PhotonStore* kept) {
+  switch (pass.integrator.Paths()) {
     case TracedPaths::Camera:
       return TraceCameraPaths(pass);
     case TracedPaths::Light:
@@ -580,6 +594,29 @@ RenderCounts RenderPass(const RenderScene& scene, const Integrator& integrator, 
       break;
   }
   return BothPaths(pass, techniques, kept).Trace();
+}
+
+}  // namespace
+
+RenderCounts RenderPass(const RenderScene& scene, const Integrator& integrator, const RenderSettings& settings,
+                        const PixelFilter& filter, uint32_t first, uint32_t count, int threads, Film& film,
+                        TechniqueImages* techniques, PhotonStore* kept, const SampleAllocation* allocation,
+                        PathLearning* learning) {
+  if (!scene.isSpectral) {
+    const Pass pass{scene, integrator, settings, filter, first, first + count, threads, film, allocation, learning};
+    return TracePass(pass, techniques, kept);
+  }
+  RenderCounts counts;
+  RenderSettings tuned = settings;
+  for (uint32_t sample = first; sample < first + count; ++sample) {
+    const auto wavelengths = std::make_shared<const Wavelengths>(Wavelengths::OfPass(settings.seed, sample));
+    const RenderScene there = scene.AtWavelengths(wavelengths, integrator.MaterialsAfterWide());
+    tuned.sensor = settings.sensor.Of(wavelengths->ToRgb());
+    const Pass pass{there, integrator, tuned, filter, sample, sample + 1, threads, film, allocation, learning};
+    counts += TracePass(pass, techniques, kept);
+    film.CountWhite(wavelengths->White());
+  }
+  return counts;
 }
 
 }  // namespace lampyr

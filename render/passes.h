@@ -28,6 +28,9 @@ namespace lampyr {
 // sample before are traced again. In scenes with motion all paths of such a pass have the same time, and its photons
 // come from light paths of that time.
 //
+// In a scene that carries light by wavelength each sample of all pixels is a pass at wavelengths of its own, and
+// photons come from light paths of that pass.
+//
 // `learning`: receives records of the camera paths; may be null.
 //
 // `allocation`: of the stage of an adaptive film that all of these passes are in; null: one sample for each pixel. The

@@ -158,6 +158,7 @@ RenderIdentity IdentityOf(const LoadedScene& loaded, bool robustIntersection) {
       {"the sampler", s.sampler == SamplerKind::Sobol ? "sobol" : "independent"},
       {"watertight intersection", YesOrNo(robustIntersection)}};
   if (s.WantsFirstHit()) identity.emplace_back("--through-smooth", YesOrNo(s.seesThroughSmooth));
+  if (s.spectral) identity.emplace_back("--spectral", YesOrNo(*s.spectral));
   if (s.adaptive) identity.emplace_back("--adaptive", "on, for " + ToExactString(s.adaptive->share) + " of the pixels");
   for (const LayerRequest& request : s.layers)
     identity.emplace_back("the layer " + request.layer.name, request.layer.text);

@@ -12,9 +12,8 @@ bool HasSplats(int t) {
 
 }  // namespace
 
-TechniqueImages::TechniqueImages(int width, int height, const PixelRect& crop, int maxDepth,
-                                 const SensorResponse& sensor)
-    : width_(width), height_(height), crop_(crop), sensor_(sensor), mostEvents_(std::min(maxDepth, kMostEvents)) {
+TechniqueImages::TechniqueImages(int width, int height, const PixelRect& crop, int maxDepth)
+    : width_(width), height_(height), crop_(crop), mostEvents_(std::min(maxDepth, kMostEvents)) {
   for (int events = 0; events <= mostEvents_; ++events) {
     for (int s = 0; s <= events + 1; ++s) techniques_.push_back(MakeTechnique(s, events + 2 - s));
   }
@@ -22,7 +21,7 @@ TechniqueImages::TechniqueImages(int width, int height, const PixelRect& crop, i
 }
 
 TechniqueImages TechniqueImages::EmptyCopy() const {
-  return {width_, height_, crop_, mostEvents_, sensor_};
+  return {width_, height_, crop_, mostEvents_};
 }
 
 TechniqueImages::Technique TechniqueImages::MakeTechnique(int s, int t) const {
@@ -52,11 +51,12 @@ size_t TechniqueImages::IndexOf(int s, int t) const {
   return static_cast<size_t>(events * (events + 3) / 2 + s);
 }
 
-TechniqueImages::Recorder::Recorder(TechniqueImages& images, const PixelFilter& filter) : images_(&images) {
+TechniqueImages::Recorder::Recorder(TechniqueImages& images, const PixelFilter& filter, const SensorResponse& sensor)
+    : images_(&images), sensor_(sensor) {
   for (const Technique& technique : images.techniques_) {
     const SplatList none({0, 0}, {0, 0}, 1);
     const bool has = technique.weightedSplats.has_value();
-    weighted_.push_back(has ? technique.weightedSplats->MakeSplatList(filter, images.sensor_) : none);
+    weighted_.push_back(has ? technique.weightedSplats->MakeSplatList(filter, sensor_) : none);
     unweighted_.push_back(weighted_.back());
   }
 }
@@ -83,7 +83,7 @@ void TechniqueImages::Recorder::Observe(const ConnectedPath& path) {
   const auto pixel =
       3 * (static_cast<size_t>(y_ - crop.y0) * static_cast<size_t>(crop.Width()) + static_cast<size_t>(x_ - crop.x0));
   const auto add = [&](std::vector<double>& sums, const Color& value) {
-    const Color balanced = images_->sensor_.Balance(value);
+    const Color balanced = sensor_.Balance(value);
     sums[pixel] += static_cast<double>(scale_ * balanced.r);
     sums[pixel + 1] += static_cast<double>(scale_ * balanced.g);
     sums[pixel + 2] += static_cast<double>(scale_ * balanced.b);

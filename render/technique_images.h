@@ -18,7 +18,7 @@ class TechniqueImages {
   static constexpr int kMostEvents = 6;
 
   // For a render of `width` × `height` pixels in full and paths of `maxDepth` events at most.
-  TechniqueImages(int width, int height, const PixelRect& crop, int maxDepth, const SensorResponse& sensor);
+  TechniqueImages(int width, int height, const PixelRect& crop, int maxDepth);
 
   TechniqueImages EmptyCopy() const;
 
@@ -28,7 +28,7 @@ class TechniqueImages {
   // Records the paths of one thread's samples: StartSample, then Observe for each path.
   class Recorder final : public PathObserver {
    public:
-    Recorder(TechniqueImages& images, const PixelFilter& filter);
+    Recorder(TechniqueImages& images, const PixelFilter& filter, const SensorResponse& sensor);
     // `scale`: factor of what the camera path finds. Pixels outside of the crop have no camera path.
     void StartSample(int x, int y, float scale);
     void Observe(const ConnectedPath& path) override;
@@ -36,6 +36,7 @@ class TechniqueImages {
    private:
     friend class TechniqueImages;
     TechniqueImages* images_;
+    SensorResponse sensor_;
     std::vector<SplatList> weighted_, unweighted_;  // by technique; empty where t > 1
     int x_ = 0, y_ = 0;
     float scale_ = 1;
@@ -62,7 +63,6 @@ class TechniqueImages {
 
   int width_, height_;
   PixelRect crop_;
-  SensorResponse sensor_;
   int mostEvents_;
   std::vector<Technique> techniques_;  // the last is that of longer paths
 };

@@ -26,7 +26,7 @@ Color TraceConnection(const SampleContext& context, const PathVertex& z, const P
   ++context.counts.shadowRays;
   const Ray ray = RayBetween(z, y, context.time);
   if (context.scene.media.empty()) [[likely]]
-    return context.scene.geometry->Transmittance(ray, visibility::kIndirect);
+    return context.scene.Carried(context.scene.geometry->Transmittance(ray, visibility::kIndirect));
   const uint64_t decider = Hash(std::bit_cast<uint32_t>(ray.direction.x), std::bit_cast<uint32_t>(ray.direction.y),
                                 std::bit_cast<uint32_t>(ray.tMax));
   return TransmittanceOf(context, ray, visibility::kIndirect, z.EndTowards(ray.direction), y.EndTowards(-ray.direction),
@@ -63,9 +63,11 @@ Color Connect(const BidirectionalSample& sample, size_t lightCount) {
   const double geometric =
       static_cast<double>(y.GeometryTerm(toCamera) * z.ScatteringCosine(toCamera) * y.ArrivalCorrection(y.toPrevious)) /
       squared;
+  // Both subpaths of a sample follow the same hero, whose probability is in the weight of both.
+  const double hero = y.isDispersed && z.isDispersed ? 1.0 / Wavelengths::kLanes : 1.0;
   const Color value =
       Product(z.Throughput() * fz.Sum(), leaving,
-              geometric * static_cast<double>(sample.Lighting().FluxUnit()) / sample.connectionsPerSample);
+              geometric * hero * static_cast<double>(sample.Lighting().FluxUnit()) / sample.connectionsPerSample);
   if (value.IsBlack()) return value;
   const bool hasMedia = !context.scene.media.empty();
   const ShadowRays shadowRays = sample.WantedShadowRays();

@@ -194,6 +194,13 @@ Buffers& BuffersOfConnections() {
   return buffers;
 }
 
+// Brings what surfaces let through to the wavelengths of the scene.
+void TuneCrossings(const RenderScene& scene, std::vector<Crossing>& crossings) {
+  if (!scene.wavelengths) [[likely]]
+    return;
+  for (Crossing& crossing : crossings) crossing.transmittance = scene.Carried(crossing.transmittance);
+}
+
 std::vector<BeamStep>& ThreadSteps() {
   thread_local std::vector<BeamStep> steps;
   return steps;
@@ -216,6 +223,7 @@ void Fly(const SampleContext& context, const Ray& ray, uint32_t kinds, const Edg
   FineLine line{start.position, Vector3d(ray.direction)};
   line.isFineAtStart = start.isFine;
   const LineHit found = scene.geometry->Trace(ray, line, kinds, flight.hit, crossings);
+  TuneCrossings(scene, crossings);
   double end = found.t;
   flight.isHit = found.isHit;
   flight.factors = {1, MeanOf(start.extinction), 1};
@@ -337,7 +345,11 @@ Color TransmittanceOf(const SampleContext& context, const Ray& ray, uint32_t kin
   const RenderScene& scene = context.scene;
   auto& [spans, crossings] = BuffersOfConnections();
   const FineLine line = LineOf(ray, start, end);
-  const Color surfaces = scene.geometry->Transmittance(ray, line, kinds, crossings);
+  Color surfaces = scene.geometry->Transmittance(ray, line, kinds, crossings);
+  if (scene.wavelengths && !surfaces.IsBlack()) [[unlikely]] {
+    TuneCrossings(scene, crossings);
+    surfaces = Transmittance(crossings);
+  }
   factors = {};
   if (surfaces.IsBlack()) return surfaces;
   FindSpans(scene, line, line.length, start.medium, crossings, spans);

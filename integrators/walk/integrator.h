@@ -102,6 +102,9 @@ struct SampleContext {
   const OutputPlan* outputs = nullptr;  // of the layers of the film; null: it has none
   PathRecords* records = nullptr;       // receive the camera path for path guiding; null: not wanted
   uint32_t pixel = 0, sample = 0;       // y · width + x, and index of the sample in it; only with `records`
+  // The lane of a Color whose refraction a path follows where light disperses. One of three, with equal probability,
+  // and independent of that of the photons that the path gathers.
+  int heroLane = 0;
   // Receives an estimate of what merging photons within a radius adds to the expectation of the returned radiance
   // (photon/merge_bias.h). Null: not wanted.
   Color* mergeBias = nullptr;
@@ -109,7 +112,8 @@ struct SampleContext {
   SampleContext With(Sampler& other) const {
     return {scene,    other,       time,    counts,        layers,     splats,
             observer, gather,      photons, lastGathering, withOrigin, isForPhotonsAlone,
-            film,     tracesLight, nullptr, outputs};
+            film,     tracesLight, nullptr, outputs,       nullptr,    0,
+            0,        heroLane};
   }
 };
 
@@ -127,6 +131,9 @@ class Integrator {
   virtual Color Sample(const Ray* ray, const SampleContext& context) const = 0;
   // Light paths for each camera path, as a power of two; of TracedPaths::Both.
   virtual int Log2LightPaths() const { return 0; }
+  // Materials that take the place of those of the scene behind a wide scattering (WalkSettings::materialsAfterWide), or
+  // none.
+  virtual std::vector<std::shared_ptr<const Material>> MaterialsAfterWide() const { return {}; }
   // Photon settings; nullopt if the integrator does not gather photons.
   virtual std::optional<PhotonSettings> Photons() const { return std::nullopt; }
 };

@@ -51,6 +51,7 @@ bool SeesOrigin(const SampleContext& context, const EmittedPhoton& photon, const
   RayHit hit;
   Color passed;
   if (!scene.geometry->Intersect(ray, visibility::kCamera, hit, passed)) return false;
+  passed = scene.Carried(passed);
   const SurfacePoint point = scene.geometry->GetSurfacePoint(ray, hit);
   if (!scene.lighting->IsOrigin(photon, point, -ray.direction, distance)) return false;
   if (!scene.media.empty()) {
@@ -141,7 +142,7 @@ bool CompleteConnection(const SampleContext& context, const PathVertex& vertex, 
   const Ray ray = SpawnRayTo(vertex.point, connection.camera.position, Vector3(0.0f), Normal3(0.0f), context.time);
   Color arriving;
   if (scene.media.empty()) [[likely]] {
-    arriving = scene.geometry->Transmittance(ray, visibility::kCamera);
+    arriving = scene.Carried(scene.geometry->Transmittance(ray, visibility::kCamera));
   } else {
     EdgeFactors fromVertex;
     const EdgeEnd lens{Point3d(connection.camera.position)};

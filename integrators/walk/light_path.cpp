@@ -134,8 +134,10 @@ void TraceFromMedium(const PathRequest& request, double uSelect, const GlowingMe
   const auto point = glowing.Emission().Sample(uSelect, u, context.time);
   if (!point) return;
   if (context.outputs) request.path.vertices.SetStart(context.outputs->OfMedia());
-  const EmittedInMedium emitted{point->position, point->medium, point->emission,
-                                point->density * glowing.Probability()};
+  const Color emission = context.scene.wavelengths
+                             ? context.scene.media[static_cast<size_t>(point->medium)]->At(point->position).emission
+                             : point->emission;
+  const EmittedInMedium emitted{point->position, point->medium, emission, point->density * glowing.Probability()};
   request.visitor.Glowed(request.path, emitted);
   if (request.maxDepth < 1) return;
   sampler.SetDimension(request.dimensions.Of(0, dimensions::kDirection));

@@ -21,4 +21,17 @@ RenderCounts& RenderCounts::operator+=(const RenderCounts& other) {
   return *this;
 }
 
+RenderScene RenderScene::AtWavelengths(const std::shared_ptr<const Wavelengths>& at,
+                                       const std::vector<std::shared_ptr<const Material>>& afterWide) const {
+  RenderScene tuned = *this;
+  tuned.wavelengths = at;
+  tuned.materials = MaterialsAt(at, materials);
+  tuned.tunedAfterWide = MaterialsAt(at, afterWide);
+  tuned.lighting = std::make_shared<const LightingServices>(lighting->AtWavelengths(at));
+  for (auto& medium : tuned.media) {
+    if (medium) medium = medium->AtWavelengths(medium, at);
+  }
+  return tuned;
+}
+
 }  // namespace lampyr

@@ -13,6 +13,7 @@
 #include "lights/services/lighting_services.h"
 #include "materials/material.h"
 #include "media/medium.h"
+#include "spectral/wavelengths.h"
 
 namespace lampyr {
 
@@ -35,8 +36,22 @@ struct RenderScene {
   std::vector<int32_t>
       lightBackMedia;  // by light: behind its surface, where a two-sided light shines, too; empty: vacuum
   std::shared_ptr<const PathGuide> guide;  // where walks go after wide scattering; null: as surfaces scatter
-  bool hasMotion = false;                  // something moves while the shutter is open; otherwise all rays have time 0
+  // Light is carried by wavelength: each pass is given the scene at its wavelengths (AtWavelengths), and
+  // `wavelengths` is null in that of which it is made, whose colours are in Rec. 709.
+  bool isSpectral = false;
+  std::shared_ptr<const Wavelengths> wavelengths;
+  std::vector<std::shared_ptr<const Material>> tunedAfterWide;  // WalkSettings::materialsAfterWide at the wavelengths
+  bool hasMotion = false;  // something moves while the shutter is open; otherwise all rays have time 0
 
+  // The scene at the wavelengths of a pass. `afterWide`: materials behind a wide scattering, or none.
+  RenderScene AtWavelengths(const std::shared_ptr<const Wavelengths>& wavelengths,
+                            const std::vector<std::shared_ptr<const Material>>& afterWide) const;
+  // A factor in Rec. 709, of what the geometry lets through, as light is carried here.
+  Color Carried(const Color& factor) const {
+    if (!wavelengths) [[likely]]
+      return factor;
+    return wavelengths->FromRgb(factor);
+  }
   // Medium in which a camera ray starts.
   int32_t MediumOf(const Ray& cameraRay) const;
   // Medium in which light of `light` starts; `fromBehind`: of a surface that shines to both sides.

@@ -151,6 +151,7 @@ struct PathVertex : Vertex {
   // of lobe at this vertex; the parts differ at the first vertex only. On camera subpaths: by the kind of lobe that
   // scattered at the previous vertex; the throughput is their sum.
   Color diffuse, specular;
+  bool isDispersed = false;  // of the path that arrives (PathState::isDispersed)
   // The scattering event at this vertex; set only if the subpath continues.
   bool scatteredDelta = false;
   SolidAngleDensity eventForward, eventReverse;  // DensitiesOf

@@ -156,13 +156,20 @@ bool Scatter(const SampleContext& context, const WalkSettings& settings, int ind
   const float uLobe = sampler.Get1D();
   const BsdfSample sample = vertex.Sample(uLobe, sampler.Get2D(), settings.mode, state.lastGuidance);
   if (!sample) return false;
+  // The first dispersion has the inverse of the hero's probability in its weight; all others are of the same hero.
+  float heroWeight = 1;
+  if (sample.isDispersion) [[unlikely]] {
+    heroWeight = state.isDispersed ? 1.0f / Wavelengths::kLanes : 1.0f;
+    state.isDispersed = true;
+  }
   state.guidance *= state.lastGuidance.forward;
   if (isFromLight) {
-    const float correction = vertex.ArrivalCorrection(vertex.toPrevious) * vertex.DepartureCorrection(sample.wi);
+    const float correction =
+        vertex.ArrivalCorrection(vertex.toPrevious) * vertex.DepartureCorrection(sample.wi) * heroWeight;
     state.diffuse = (vertex.diffuse * sample.weightDiffuse + vertex.specular * sample.weightSpecular) * correction;
     state.specular = state.diffuse;
   } else {
-    const Color throughput = vertex.Throughput();
+    const Color throughput = vertex.Throughput() * heroWeight;
     state.diffuse = throughput * sample.weightDiffuse;
     state.specular = throughput * sample.weightSpecular;
     if (sample.isTransmission) state.etaScale *= Sqr(sample.eta);
@@ -269,6 +276,7 @@ void Walk(const SampleContext& context, const WalkSettings& settings, PathState&
     bool isHit, collides = false;
     if (!hasMedia) [[likely]] {
       isHit = geometry.Intersect(state.ray, kinds, hit, state.passed);
+      state.passed = context.scene.Carried(state.passed);
     } else {
       isHit = FlyOn(context, settings, kinds, state, path, visitor, flight.emplace());
       hit = flight->hit;
@@ -296,13 +304,17 @@ void Walk(const SampleContext& context, const WalkSettings& settings, PathState&
                          {here.scattering, flight->collidesWith->Asymmetry()}, here.Extinction(), vertex);
     } else {
       const bool isBehindWide = settings.materialsAfterWide && state.hasScatteredWidely;
-      if (!MakeVertex(context.scene, isBehindWide ? *settings.materialsAfterWide : context.scene.materials, state.ray,
-                      hit, state.medium, vertex))
+      const auto& afterWide = context.scene.wavelengths ? context.scene.tunedAfterWide : *settings.materialsAfterWide;
+      if (!MakeVertex(context.scene, isBehindWide ? afterWide : context.scene.materials, state.ray, hit, state.medium,
+                      vertex))
         return;
+      if (context.scene.wavelengths) [[unlikely]]
+        vertex.bsdf.SetHero(context.heroLane);
     }
     vertex.factors = state.factors;
     vertex.diffuse = state.diffuse;
     vertex.specular = state.specular;
+    vertex.isDispersed = state.isDispersed;
     path.Add();
     if (context.outputs) [[unlikely]]
       path.LabelLast(*context.outputs, settings.mode, state.event);

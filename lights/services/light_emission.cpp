@@ -136,6 +136,7 @@ std::optional<EmittedPhoton> LightingServices::GenerateEmission(float uSelect, c
   photon.emissionSelection = emitted->selection;
   photon.emission = emitted->sample;
   EmissionSample& emission = photon.emission;
+  Tune(photon.light, emission);
   photon.pdfUnguided = IsAtInfinity(photon.light) ? emission.pdfEmit.value : emission.pdfEmitDirection.value;
   Aim(photon.light, emission.position, emission.direction, emission);
   const bool fromSurface = front.kind == LightKind::Area;
@@ -181,6 +182,7 @@ std::optional<FoundLight> LightingServices::EvaluateFirstHit(const EmittedPhoton
   const LightHit hit = HitOf(emission, kind, emission.direction, receiver.position);
   auto evaluation = scene_->fronts[photon.light].light->EvaluateSamples(context, hit, receiver.position);
   if (!evaluation) return std::nullopt;
+  Tune(photon.light, *evaluation);
   evaluation->pdfEmit = EmissionDensity(context, photon.light, hit.patchIndex, evaluation->pdfEmit);
   Aim(photon.light, emission.position, emission.direction, *evaluation);
   return FoundLight{photon.light, selection, *evaluation};

@@ -103,6 +103,39 @@ LightingServices LightingServices::With(LightLearning* learning, const EmissionG
   return view;
 }
 
+namespace {
+
+// The ratio of the spectra of a light to what their colours are upsampled to.
+Color RatioOf(const std::vector<LightSpectrum>& spectra, const Wavelengths& wavelengths) {
+  const auto divide = [](float a, float b) { return b > 0 ? a / b : 0.0f; };
+  Color ratio(1.0f);
+  for (const LightSpectrum& spectrum : spectra) {
+    const Color own = wavelengths.At(*spectrum.curve), upsampled = wavelengths.FromRgb(spectrum.color);
+    ratio *= {divide(own.r, upsampled.r), divide(own.g, upsampled.g), divide(own.b, upsampled.b)};
+  }
+  return ratio;
+}
+
+}  // namespace
+
+LightingServices LightingServices::AtWavelengths(std::shared_ptr<const Wavelengths> wavelengths) const {
+  LightingServices view = *this;
+  view.spectralRatios_.clear();
+  for (uint32_t i = 0; i < scene_->lights.size(); ++i) {
+    const std::vector<LightSpectrum>& spectra = scene_->lights[i].light->Settings().spectra;
+    if (!spectra.empty()) view.spectralRatios_.push_back({i, RatioOf(spectra, *wavelengths)});
+  }
+  view.wavelengths_ = std::move(wavelengths);
+  return view;
+}
+
+Color LightingServices::Tuned(uint32_t light, const Color& emitted) const {
+  const Color tuned = wavelengths_->FromRgb(emitted);
+  const auto found = std::lower_bound(spectralRatios_.begin(), spectralRatios_.end(), light,
+                                      [](const SpectralRatio& a, uint32_t b) { return a.light < b; });
+  return found != spectralRatios_.end() && found->light == light ? tuned * found->ratio : tuned;
+}
+
 LightContext LightingServices::Context(uint32_t light, float time, bool bidirectional,
                                        std::optional<LightTransform>& moved) const {
   const LightFront front = scene_->fronts[light];
@@ -134,6 +167,7 @@ DirectSample LightingServices::GenerateSamples(const Receiver& receiver, const S
       selected.patch,
       selected.probability,
       Reaches(selected.light, receiver) ? front.light->GenerateSamples(context, receiver.position) : std::nullopt};
+  if (direct.sample) Tune(selected.light, *direct.sample);
   if (direct.sample &&
       !Filter(selected.light, receiver, direct.sample->direction, direct.sample->distance, time, *direct.sample)) {
     direct.sample.reset();
@@ -177,7 +211,8 @@ Ray LightingServices::ShadowRay(const SurfacePoint& from, const DirectSample& di
 }
 
 Color LightingServices::Transmittance(const SurfacePoint& from, const DirectSample& direct, float time) const {
-  return scene_->geometry.Transmittance(ShadowRay(from, direct, time), visibility::kShadow);
+  const Color passed = scene_->geometry.Transmittance(ShadowRay(from, direct, time), visibility::kShadow);
+  return wavelengths_ ? wavelengths_->FromRgb(passed) : passed;
 }
 
 std::optional<FoundLight> LightingServices::EvaluateSamples(const Receiver& receiver, const Vector3& direction,
@@ -192,6 +227,7 @@ std::optional<FoundLight> LightingServices::EvaluateSamples(const Receiver& rece
   const LightHit hit = SurfaceLightHit(direction, distance, point);
   if (scene_->selector->SelectsPatches(receiver)) context.patch = hit.patchIndex;
   auto evaluation = scene_->fronts[light].light->EvaluateSamples(context, hit, receiver.position);
+  if (evaluation) Tune(light, *evaluation);
   if (!evaluation || !Filter(light, receiver, direction, distance, time, *evaluation)) return std::nullopt;
   if (bidirectional) {
     evaluation->pdfEmit = EmissionDensity(context, light, hit.patchIndex, evaluation->pdfEmit);
@@ -210,6 +246,7 @@ std::optional<FoundLight> LightingServices::EvaluateEscaped(size_t i, const Rece
   std::optional<LightTransform> moved;
   const LightContext context = Context(light, time, bidirectional, moved);
   auto evaluation = scene_->fronts[light].light->EvaluateSamples(context, hit, receiver.position);
+  if (evaluation) Tune(light, *evaluation);
   if (!evaluation || !Filter(light, receiver, direction, kInfinity, time, *evaluation)) return std::nullopt;
   if (bidirectional) Aim(light, receiver.position, -direction, *evaluation);
   return FoundLight{light, scene_->selector->Probability(receiver, learning_, light, kAnyPatch), *evaluation};
@@ -221,7 +258,15 @@ bool LightingServices::RunFilter(uint32_t light, const Receiver& receiver, const
   const FilterInstance& root = scene_->linking.Filters()[static_cast<size_t>(scene_->lights[light].filter)];
   const FilterContext context{time, scene_->linking.EnabledFilters(receiver.link)};
   if (context.IsEnabled(root)) {
-    root.filter->Filter(context, {1, &receiver.position, &toLight, &distance, &pdfDirect, &diffuse, &specular});
+    if (!wavelengths_) [[likely]] {
+      root.filter->Filter(context, {1, &receiver.position, &toLight, &distance, &pdfDirect, &diffuse, &specular});
+    } else {
+      // The factors of the filter are colours in Rec. 709.
+      Color ofDiffuse(1.0f), ofSpecular(1.0f);
+      root.filter->Filter(context, {1, &receiver.position, &toLight, &distance, &pdfDirect, &ofDiffuse, &ofSpecular});
+      diffuse *= wavelengths_->FromRgb(ofDiffuse);
+      specular *= wavelengths_->FromRgb(ofSpecular);
+    }
   }
   return !diffuse.IsBlack() || !specular.IsBlack();
 }
@@ -232,8 +277,9 @@ Color LightingServices::EmissionForCamera(const Vector3& direction, float distan
   if (index < 0) return Color(0.0f);
   const auto light = static_cast<uint32_t>(index);
   std::optional<LightTransform> moved;
-  return scene_->fronts[light].light->EvaluateEmissionForCamera(Context(light, time, false, moved),
-                                                                SurfaceLightHit(direction, distance, point));
+  const Color emitted = scene_->fronts[light].light->EvaluateEmissionForCamera(
+      Context(light, time, false, moved), SurfaceLightHit(direction, distance, point));
+  return wavelengths_ ? Tuned(light, emitted) : emitted;
 }
 
 Color LightingServices::EscapedEmissionForCamera(size_t i, const Ray& ray) const {
@@ -241,7 +287,9 @@ Color LightingServices::EscapedEmissionForCamera(size_t i, const Ray& ray) const
   if (!scene_->fronts[light].light->Settings().cameraVisible) return Color(0.0f);
   const LightHit hit = EscapedHit(ray.origin, ray.direction);
   std::optional<LightTransform> moved;
-  return scene_->fronts[light].light->EvaluateEmissionForCamera(Context(light, ray.time, false, moved), hit);
+  const Color emitted =
+      scene_->fronts[light].light->EvaluateEmissionForCamera(Context(light, ray.time, false, moved), hit);
+  return wavelengths_ ? Tuned(light, emitted) : emitted;
 }
 
 PdfDiscrete LightingServices::SelectionProbability(const Receiver& receiver, uint32_t light, int patch) const {

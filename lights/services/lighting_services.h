@@ -23,6 +23,7 @@
 #include "lights/services/light_fronts.h"
 #include "lights/services/linking.h"
 #include "sampling/rng.h"
+#include "spectral/wavelengths.h"
 
 namespace lampyr {
 
@@ -100,6 +101,9 @@ class LightingServices {
   // A view of the same lights with learned selection, which also records results in `learning` while that is recording,
   // and with photons guided by `guide`. Both may be null, must outlive the view, and must not change while it is used.
   LightingServices With(LightLearning* learning, const EmissionGuide* guide) const;
+
+  // A view of the same lights at the wavelengths of a pass.
+  LightingServices AtWavelengths(std::shared_ptr<const Wavelengths> wavelengths) const;
 
   // Selects lights for the receiver.
   void SelectLights(const Receiver& receiver, float uSelect, LightChoices& choices) const {
@@ -235,6 +239,16 @@ class LightingServices {
                  PdfSolidAngle pdfDirect, Color& diffuse, Color& specular) const;
   bool LandsFiltered(const EmittedPhoton& photon, const Receiver& receiver, Color& diffuse, Color& specular) const;
 
+  // Brings the emission of a light, in Rec. 709 as lights give it, to the wavelengths of the view.
+  template <class Record>
+  void Tune(uint32_t light, Record& record) const {
+    if (!wavelengths_) [[likely]]
+      return;
+    record.diffuse = Tuned(light, record.diffuse);
+    record.specular = Tuned(light, record.specular);
+  }
+  Color Tuned(uint32_t light, const Color& emitted) const;
+
   // Emission selects whole lights: converts a density of emission given a patch to that of the whole light.
   PdfArea EmissionDensity(const LightContext& context, uint32_t light, int patch, PdfArea given) const;
   void RecordResult(const Receiver& receiver, const DirectSample& direct, const Color& arrived) const;
@@ -265,6 +279,13 @@ class LightingServices {
   std::shared_ptr<const SceneLights> scene_;
   LightLearning* learning_ = nullptr;
   const EmissionGuide* guide_ = nullptr;
+  std::shared_ptr<const Wavelengths> wavelengths_;  // null: light is in Rec. 709
+  // Lights whose spectra are not those of their colours, ascending, with the ratio at the wavelengths.
+  struct SpectralRatio {
+    uint32_t light;
+    Color ratio;
+  };
+  std::vector<SpectralRatio> spectralRatios_;
 };
 
 template <class Record>

@@ -121,6 +121,16 @@ PlanDecision ChoosePathGuiding(const RenderSettings& settings, const Integrator&
   return {"path guiding", "if helpful", "learned from the first samples, and tested on those that follow"};
 }
 
+PlanDecision ChooseSpectral(const RenderScene& scene, const RenderSettings& settings) {
+  if (settings.spectral)
+    return {"wavelengths", *settings.spectral ? "on" : "off", *settings.spectral ? "--spectral" : "--no-spectral"};
+  if (!scene.isSpectral) return {"wavelengths", "off", "nothing disperses light: red, green and blue suffice"};
+  const auto dispersing = std::count_if(scene.materials.begin(), scene.materials.end(),
+                                        [](const auto& material) { return material && material->Disperses(); });
+  return {"wavelengths", "on",
+          Count(static_cast<size_t>(dispersing), "material") + " with an index that depends on the wavelength"};
+}
+
 // The first of some names.
 std::string FirstOf(const std::vector<std::string>& names) {
   constexpr size_t most = 8;
@@ -179,6 +189,7 @@ ScenePlan PlanFor(const RenderScene& scene, const RenderSettings& settings, int 
       ChooseMerging(facts, chosenSettings.integrator, photons, settings.values.Number("radius") > 0));
   if (photons) plan.decisions.push_back(ChooseGuiding(settings, *photons));
   plan.decisions.push_back(ChoosePathGuiding(settings, *integrator));
+  plan.decisions.push_back(ChooseSpectral(scene, settings));
   plan.decisions.push_back(ChooseGroups(scene));
   plan.decisions.push_back(ChooseLayers(scene));
   plan.decisions.push_back(scene.hasMotion ? PlanDecision{"motion", "on", "something moves while the shutter is open"}

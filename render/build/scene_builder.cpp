@@ -390,6 +390,10 @@ BuiltScene Builder::Build() {
   RenderScene& scene = built_.scene;
   scene.hasMotion = placer_.HasMotion();
   scene.materials = materials_->Materials();
+  // Every material of the file counts, as a shape of it may be seen.
+  scene.isSpectral = built_.settings.spectral.value_or(
+      std::any_of(scene.materials.begin(), scene.materials.end(),
+                  [](const auto& material) { return material && material->Disperses(); }));
   scene.camera = LocateErrors(description_.camera.where, [&] {
     return BuildCamera(description_, built_.settings, placer_.WorldToRender(), diagnostics_);
   });

@@ -100,7 +100,7 @@ void ReadFilm(const SceneDescription& scene, const RenderOverrides& overrides, R
     }
     settings.firstHit = space == "world" ? FirstHitSpace::World : FirstHitSpace::Camera;
   } else if (type == "spectral") {
-    diagnostics.Warn(scene.film.where, "Film \"" + type + "\" is not supported yet; \"rgb\" is used");
+    settings.spectral = true;
   } else if (!type.empty() && type != "rgb") {
     throw Error(scene.film.where,
                 "there is no Film \"" + type + "\"" + DidYouMean(type, {"rgb", "gbuffer", "spectral"}));
@@ -113,6 +113,7 @@ void ReadFilm(const SceneDescription& scene, const RenderOverrides& overrides, R
   for (const std::string& layer : film.GetStrings("layers")) AddLayer(layer, film.WhereOf("layers"), settings);
   for (const std::string& layer : overrides.layers) AddLayer(layer, {}, settings);
   settings.seesThroughSmooth = overrides.seesThroughSmooth;
+  if (overrides.spectral) settings.spectral = overrides.spectral;
   settings.adaptive = overrides.adaptive;
   // pbrt-v4 writes halves by default. Variances need floats, so halves are written only if the scene asks for them.
   settings.halfPrecision = film.GetBool("savefp16", false);

@@ -90,7 +90,7 @@ bool AreFinite(std::span<const CompensatedSum> sums) {
 }
 
 // Parts of a saved film that not every film has.
-constexpr int kHasSplats = 1, kHasBias = 2;
+constexpr int kHasSplats = 1, kHasBias = 2, kHasWhite = 4;
 
 }  // namespace
 
@@ -329,6 +329,8 @@ void Film::Add(const Film& other) {
     for (size_t i = 0; i < bias_.size(); ++i) bias_[i].Add(other.bias_[i]);
     for (size_t i = 0; i < biasStages_.size(); ++i) biasStages_[i].Add(other.biasStages_[i]);
   }
+  for (size_t c = 0; c < 3; ++c) whiteSum_[c] += other.whiteSum_[c];
+  whitePasses_ += other.whitePasses_;
   if (other.splats_.empty()) return;
   MakeSplats();
   for (size_t i = 0; i < splats_.size(); ++i) splats_[i].Add(other.splats_[i]);
@@ -348,6 +350,8 @@ void Film::CopyFrom(const Film& other, int threads) {
   Copy(biasStages_, other.biasStages_, threads);
   Copy(layerStages_, other.layerStages_, threads);
   lightPaths_ = other.lightPaths_;
+  whiteSum_ = other.whiteSum_;
+  whitePasses_ = other.whitePasses_;
   splatSpread_ = other.splatSpread_;
   passes_ = other.passes_;
   endedPasses_ = other.endedPasses_;
@@ -358,6 +362,15 @@ Film Film::EmptyCopy() const {
   if (isAdaptive_) empty.MakeAdaptive(HasGroups());
   if (KeepsBias()) empty.KeepBias();
   return empty;
+}
+
+void Film::CountWhite(const std::array<double, 3>& white) {
+  for (size_t c = 0; c < 3; ++c) whiteSum_[c] += white[c];
+  ++whitePasses_;
+}
+
+double Film::WhiteScale(size_t channel) const {
+  return whitePasses_ > 0 && whiteSum_[channel] > 0 ? static_cast<double>(whitePasses_) / whiteSum_[channel] : 1.0;
 }
 
 double Film::SampledFraction() const {
@@ -376,7 +389,8 @@ void Film::Save(ByteWriter& bytes) const {
     bytes.Value(passes_);
     bytes.Value(endedPasses_);
   }
-  bytes.Value(static_cast<uint8_t>((splats_.empty() ? 0 : kHasSplats) | (KeepsBias() ? kHasBias : 0)));
+  bytes.Value(static_cast<uint8_t>((splats_.empty() ? 0 : kHasSplats) | (KeepsBias() ? kHasBias : 0) |
+                                   (whitePasses_ > 0 ? kHasWhite : 0)));
   if (!splats_.empty()) {
     bytes.Values(std::span(splats_));
     bytes.Values(std::span(layerSplats_));
@@ -385,6 +399,9 @@ void Film::Save(ByteWriter& bytes) const {
   }
   bytes.Values(std::span(bias_));
   bytes.Values(std::span(biasStages_));
+  if (whitePasses_ == 0) return;
+  bytes.Value(whiteSum_);
+  bytes.Value(whitePasses_);
 }
 
 void Film::Load(ByteReader& bytes) {
@@ -400,7 +417,7 @@ void Film::Load(ByteReader& bytes) {
     film.CheckStages();
   }
   const auto parts = bytes.Value<uint8_t>();
-  if ((parts & ~(kHasSplats | kHasBias)) != 0) throw Error("it holds a number out of range");
+  if ((parts & ~(kHasSplats | kHasBias | kHasWhite)) != 0) throw Error("it holds a number out of range");
   if ((parts & kHasSplats) != 0) {
     film.MakeSplats();
     bytes.Values(std::span(film.splats_));
@@ -413,6 +430,12 @@ void Film::Load(ByteReader& bytes) {
     film.KeepBias();
     bytes.Values(std::span(film.bias_));
     bytes.Values(std::span(film.biasStages_));
+  }
+  if ((parts & kHasWhite) != 0) {
+    film.whiteSum_ = bytes.Value<std::array<double, 3>>();
+    film.whitePasses_ = bytes.Value<uint64_t>();
+    for (const double white : film.whiteSum_)
+      if (!std::isfinite(white)) throw Error("it holds sums that are not finite");
   }
   const bool isFinite =
       std::all_of(film.pixels_.begin(), film.pixels_.end(), [](const PixelSums& pixel) { return pixel.IsFinite(); }) &&
@@ -435,12 +458,14 @@ Image Film::Develop() const {
   image.fullWidth = fullWidth_;
   image.fullHeight = fullHeight_;
   if (isAdaptive_ && hasHalf_) image.metadata[kHalfShareMetadata] = "0.5";
+  const std::array<double, 3> white = {WhiteScale(0), WhiteScale(1), WhiteScale(2)};
   float* out = image.data.data();
   for (size_t i = 0; i < pixels_.size(); ++i) {
-    for (int c = 0; c < 3; ++c) *out++ = ToFiniteFloat(Value(i, c));
-    for (int c = 0; c < 3; ++c) *out++ = ToFiniteFloat(VarianceOfMean(i, c));
+    for (int c = 0; c < 3; ++c) *out++ = ToFiniteFloat(white[static_cast<size_t>(c)] * Value(i, c));
+    for (int c = 0; c < 3; ++c)
+      *out++ = ToFiniteFloat(std::pow(white[static_cast<size_t>(c)], 2) * VarianceOfMean(i, c));
     for (size_t layer = 0; layer < layers_.size(); ++layer) {
-      for (size_t c = 0; c < 3; ++c) *out++ = ToFiniteFloat(LayerValue(i, layer, c));
+      for (size_t c = 0; c < 3; ++c) *out++ = ToFiniteFloat(white[c] * LayerValue(i, layer, c));
     }
   }
   return image;

@@ -195,6 +195,10 @@ class Film {
   uint64_t Samples(size_t pixel) const { return pixels_[pixel].count + (isAdaptive_ ? stages_[pixel].count : 0); }
   size_t Pixels() const { return pixels_.size(); }
 
+  // Counts a pass in which radiance 1 of a white scene was `white` in each channel, since it was estimated at a few
+  // wavelengths. The picture is divided by the mean over all passes: white stays white, whatever their number.
+  void CountWhite(const std::array<double, 3>& white);
+
   // Adds all samples and light paths of another film of the same size, crop and layers, as stages of their own if they
   // are adaptive.
   void Add(const Film& other);
@@ -258,6 +262,7 @@ class Film {
   double LayerValue(size_t pixel, size_t layer, size_t channel) const;
   double VarianceOfMean(size_t pixel, int channel) const;
   double FourthOfMean(size_t pixel) const;
+  double WhiteScale(size_t channel) const;
   void MakeSplats();
 
   int fullWidth_, fullHeight_;
@@ -268,6 +273,8 @@ class Film {
   bool hasHalf_ = false;                           // the last layer is kHalfLayer
   std::vector<LayerSum> layerSums_, layerSplats_;  // per layer and pixel; layerSplats_: empty without splats
   uint64_t lightPaths_ = 0;
+  std::array<double, 3> whiteSum_{};
+  uint64_t whitePasses_ = 0;
   double splatSpread_ = 0;  // effective number of pixels of a splat (film.cpp)
   bool isAdaptive_ = false;
   uint32_t passes_ = 0;                             // of the current stage

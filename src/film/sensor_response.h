@@ -21,6 +21,11 @@ class SensorResponse {
         balance_(balance),
         limited_(limited) {}
 
+  // The response to radiance in other channels, which `toRgb` brings to linear Rec. 709.
+  SensorResponse Of(const glm::mat3& toRgb) const {
+    SensorResponse response(imagingRatio_, balance_ * toRgb, limited_ * toRgb, maxComponent_);
+    return response;
+  }
   float ImagingRatio() const { return imagingRatio_; }
   bool Limits() const { return maxComponent_ < kInfinity; }
 

@@ -54,6 +54,10 @@ class Bsdf {
   float GeometricCosine(const Vector3& w) const {
     return MayHaveOwnCosines() && (IsFibre() || IsMedium()) ? OwnCosine(w) : AbsDot(w, Ng_);
   }
+  // Of a smooth dispersive dielectric: the lane whose refraction is followed.
+  void SetHero(int lane) {
+    if (auto* dispersive = std::get_if<DispersiveBsdf>(&model_)) dispersive->hero = lane;
+  }
   // The phase function of a medium; null on a surface.
   const PhaseBsdf* Phase() const { return std::get_if<PhaseBsdf>(&model_); }
   // True for a point within a medium: there is no surface, f is σ_s (or the albedo) times the phase function, all of it

@@ -28,13 +28,13 @@ struct AbsorbingBsdf {
 };
 
 using BsdfModel =
-    std::variant<AbsorbingBsdf, DiffuseBsdf, DiffuseTransmissionBsdf, ConductorBsdf, DielectricBsdf, ThinDielectricBsdf,
-                 CoatedDiffuseBsdf, CoatedConductorBsdf, MeasuredBsdf, HairBsdf, PhaseBsdf>;
+    std::variant<AbsorbingBsdf, DiffuseBsdf, DiffuseTransmissionBsdf, ConductorBsdf, DielectricBsdf, DispersiveBsdf,
+                 ThinDielectricBsdf, CoatedDiffuseBsdf, CoatedConductorBsdf, MeasuredBsdf, HairBsdf, PhaseBsdf>;
 static_assert(std::is_trivially_copyable_v<BsdfModel> && sizeof(BsdfModel) <= 96);
 
 // Those from here on may have other cosines than a surface's, and gather no photons of surfaces. They come last, so
 // that one comparison tells them from all others.
-inline constexpr size_t kFirstWithOwnCosines = 9;
+inline constexpr size_t kFirstWithOwnCosines = 10;
 static_assert(std::is_same_v<std::variant_alternative_t<kFirstWithOwnCosines, BsdfModel>, HairBsdf> &&
               std::is_same_v<std::variant_alternative_t<kFirstWithOwnCosines + 1, BsdfModel>, PhaseBsdf> &&
               std::variant_size_v<BsdfModel> == kFirstWithOwnCosines + 2);

@@ -126,6 +126,83 @@ BsdfSample DielectricBsdf::Sample(const Vector3& wo, float uLobe, const Point2& 
   return sample;
 }
 
+namespace {
+
+float& Lane(Color& color, int lane) {
+  return lane == 0 ? color.r : lane == 1 ? color.g : color.b;
+}
+
+DielectricBsdf OfLane(const DispersiveBsdf& bsdf, int lane) {
+  Color eta = bsdf.eta;
+  return {bsdf.microfacets, Lane(eta, lane)};
+}
+
+// Reflectances of the lanes at cosθ to a normal on the side that `inside` says.
+Color LaneReflectances(const Color& eta, float cosTheta, bool inside) {
+  const auto reflectance = [&](float ofLane) { return FresnelDielectric(cosTheta, inside ? 1 / ofLane : ofLane); };
+  return {reflectance(eta.r), reflectance(eta.g), reflectance(eta.b)};
+}
+
+constexpr int kLanes = 3;
+
+BsdfSample SampleSmoothLanes(const DispersiveBsdf& bsdf, const Vector3& wo, float uLobe, TransportMode mode) {
+  BsdfSample sample;
+  const bool inside = wo.z < 0;
+  Color reflectances = LaneReflectances(bsdf.eta, std::abs(wo.z), inside);
+  const float reflected = reflectances.Average();
+  sample.isDelta = true;
+  if (uLobe < reflected) {
+    sample.wi = {-wo.x, -wo.y, wo.z};
+    sample.weightSpecular = reflectances / reflected;
+    sample.pdfForward = sample.pdfReverse = PdfSolidAngle(reflected);
+    return sample;
+  }
+  const float transmitted = 1 - Lane(reflectances, bsdf.hero);
+  if (!(transmitted > 0)) return sample;
+  Color eta = bsdf.eta;
+  const float relative = inside ? 1 / Lane(eta, bsdf.hero) : Lane(eta, bsdf.hero);
+  const float cosT = RefractedCosine(std::abs(wo.z), relative);
+  sample.wi = {-wo.x / relative, -wo.y / relative, inside ? cosT : -cosT};
+  if (!(cosT > 0)) return sample;
+  const float weight = kLanes * transmitted / (1 - reflected);
+  Lane(sample.weightSpecular, bsdf.hero) = mode == TransportMode::Radiance ? weight / (relative * relative) : weight;
+  sample.pdfForward = PdfSolidAngle(1 - reflected);
+  sample.pdfReverse = PdfSolidAngle(1 - LaneReflectances(bsdf.eta, cosT, !inside).Average());
+  sample.isTransmission = sample.isDispersion = true;
+  sample.eta = relative;
+  return sample;
+}
+
+}  // namespace
+
+BsdfEvaluation DispersiveBsdf::Evaluate(const Vector3& wo, const Vector3& wi, TransportMode mode) const {
+  BsdfEvaluation result;
+  if (IsDelta()) return result;
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const BsdfEvaluation f = OfLane(*this, lane).Evaluate(wo, wi, mode);
+    Lane(result.specular, lane) = f.specular.r;
+    result.pdfForward = result.pdfForward + f.pdfForward;
+    result.pdfReverse = result.pdfReverse + f.pdfReverse;
+  }
+  result.pdfForward = (1.0f / kLanes) * result.pdfForward;
+  result.pdfReverse = (1.0f / kLanes) * result.pdfReverse;
+  return result;
+}
+
+BsdfSample DispersiveBsdf::Sample(const Vector3& wo, float uLobe, const Point2& u, TransportMode mode) const {
+  if (IsDelta()) return SampleSmoothLanes(*this, wo, uLobe, mode);
+  const int lane = std::min(static_cast<int>(kLanes * uLobe), kLanes - 1);
+  BsdfSample sample =
+      OfLane(*this, lane).Sample(wo, std::min(kLanes * uLobe - static_cast<float>(lane), kOneMinusEpsilon), u, mode);
+  if (!sample || sample.isDelta) return {};
+  const BsdfEvaluation f = Evaluate(wo, sample.wi, mode);
+  if (!(f.pdfForward.value > 0)) return {};
+  sample.weightSpecular = f.specular * (std::abs(sample.wi.z) / f.pdfForward.value);
+  sample.pdfForward = f.pdfForward;
+  sample.pdfReverse = f.pdfReverse;
+  return sample;
+}
+
 float ThinReflectance(float cosTheta, float eta) {
   const float R = FresnelDielectric(cosTheta, eta);
   return R < 1 ? R + Sqr(1 - R) * R / (1 - R * R) : 1.0f;

@@ -51,6 +51,7 @@ struct CoatedDiffuseRecipe {
     roughness.Roughen();
     table = MakeTable();
   }
+  void TuneTo(const std::shared_ptr<const Wavelengths>& wavelengths) { reflectance.TuneTo(wavelengths); }
 
   BsdfModel Make(const TextureContext& where) const {
     return CoatedDiffuseBsdf(roughness.Evaluate(where), eta, ClampToUnit(reflectance.Evaluate(where)), bounces, *table);
@@ -88,6 +89,7 @@ struct CoatedConductorRecipe {
     base.Roughen();
     tables = MakeTables();
   }
+  void TuneTo(const std::shared_ptr<const Wavelengths>& wavelengths) { metal.TuneTo(wavelengths); }
 
   BsdfModel Make(const TextureContext& where) const {
     const auto index = metal.Evaluate(where);

@@ -15,6 +15,7 @@ struct ConductorRecipe {
     return ConductorBsdf{roughness.Evaluate(where), index.eta, index.k};
   }
   void Roughen() { roughness.Roughen(); }
+  void TuneTo(const std::shared_ptr<const Wavelengths>& wavelengths) { metal.TuneTo(wavelengths); }
   bool IsConstant() const { return roughness.IsConstant() && metal.IsConstant(); }
   bool IsAnisotropic() const { return roughness.IsAnisotropic(); }
   bool MayTransmit() const { return false; }

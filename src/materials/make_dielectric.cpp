@@ -10,13 +10,22 @@ namespace {
 struct DielectricRecipe {
   RoughnessParameters roughness;
   float eta;
+  std::shared_ptr<const SpectralCurve> curve;  // of η; null: the same at all wavelengths
+  std::optional<Color> etaOfLanes;             // at the wavelengths of a pass
 
-  BsdfModel Make(const TextureContext& where) const { return DielectricBsdf{roughness.Evaluate(where), eta}; }
+  BsdfModel Make(const TextureContext& where) const {
+    if (etaOfLanes) return DispersiveBsdf{roughness.Evaluate(where), *etaOfLanes};
+    return DielectricBsdf{roughness.Evaluate(where), eta};
+  }
   void Roughen() { roughness.Roughen(); }
+  void TuneTo(const std::shared_ptr<const Wavelengths>& wavelengths) {
+    if (curve) etaOfLanes = wavelengths->At(*curve);
+  }
+  bool Disperses() const { return curve != nullptr; }
   bool IsConstant() const { return roughness.IsConstant(); }
   bool IsAnisotropic() const { return roughness.IsAnisotropic(); }
   bool MayTransmit() const { return true; }
-  bool HasDelta() const { return eta == 1 || roughness.MayBeSmooth(); }
+  bool HasDelta() const { return (eta == 1 && !curve) || roughness.MayBeSmooth(); }
 };
 
 class ThinDielectric final : public Material, public ThinSurface {
@@ -33,6 +42,12 @@ class ThinDielectric final : public Material, public ThinSurface {
   bool IsAlwaysDelta() const override { return true; }
   bool NeedsParametrization() const override { return !transmittance_.IsConstant() || !shadingNormal_.IsPlain(); }
   const ThinSurface* Thin() const override { return this; }
+  std::shared_ptr<const Material> AtWavelengths(const std::shared_ptr<const Wavelengths>& wavelengths,
+                                                const Tuner&) const override {
+    auto tuned = std::make_shared<ThinDielectric>(*this);
+    tuned->transmittance_.TuneTo(wavelengths);
+    return tuned;
+  }
 
   float TransmittedFraction(float cosTheta) const override { return 1 - ThinReflectance(cosTheta, eta_); }
   Color Tint(const Point2& uv, const Point3& position, const Normal3& Ng) const override {
@@ -49,9 +64,10 @@ class ThinDielectric final : public Material, public ThinSurface {
 }  // namespace
 
 std::shared_ptr<const Material> MakeDielectric(const MaterialInput& input) {
-  DielectricRecipe recipe{RoughnessParameters(input, ""), GetEta(input, "eta", 1.5f)};
+  DielectricRecipe recipe{RoughnessParameters(input, ""), GetEta(input, "eta", 1.5f), FindEtaCurve(input, "eta"), {}};
   ShadingNormal shadingNormal(input.parameters, input.textures, input.diagnostics);
-  CheckMaterialParameters(input, {"eta", "roughness", "uroughness", "vroughness", "remaproughness"});
+  CheckMaterialParameters(input,
+                          {"eta", "cauchy", "sellmeier", "roughness", "uroughness", "vroughness", "remaproughness"});
   return std::make_shared<RecipeMaterial<DielectricRecipe>>(std::move(recipe), std::move(shadingNormal));
 }
 

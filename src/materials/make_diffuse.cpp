@@ -10,6 +10,7 @@ struct DiffuseRecipe {
   ColorParameter reflectance;
 
   BsdfModel Make(const TextureContext& where) const { return DiffuseBsdf{ClampToUnit(reflectance.Evaluate(where))}; }
+  void TuneTo(const std::shared_ptr<const Wavelengths>& wavelengths) { reflectance.TuneTo(wavelengths); }
   bool IsConstant() const { return reflectance.IsConstant(); }
   bool IsAnisotropic() const { return false; }
   bool MayTransmit() const { return false; }
@@ -23,6 +24,10 @@ struct DiffuseTransmissionRecipe {
   BsdfModel Make(const TextureContext& where) const {
     return DiffuseTransmissionBsdf{ClampToUnit(scale * reflectance.Evaluate(where)),
                                    ClampToUnit(scale * transmittance.Evaluate(where))};
+  }
+  void TuneTo(const std::shared_ptr<const Wavelengths>& wavelengths) {
+    reflectance.TuneTo(wavelengths);
+    transmittance.TuneTo(wavelengths);
   }
   bool IsConstant() const { return reflectance.IsConstant() && transmittance.IsConstant(); }
   bool IsAnisotropic() const { return false; }

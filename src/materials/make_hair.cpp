@@ -11,11 +11,22 @@ namespace {
 struct Pigment {
   std::optional<ColorParameter> sigmaA, reflectance;
   FloatParameter eumelanin = 1.3f, pheomelanin = 0.0f;
+  std::shared_ptr<const Wavelengths> wavelengths;  // at which melanins are wanted; null: in Rec. 709
 
   Color Evaluate(const TextureContext& where, float betaN) const {
     if (sigmaA) return sigmaA->Evaluate(where);
     if (reflectance) return HairAbsorption(reflectance->Evaluate(where), betaN);
-    return HairAbsorption(eumelanin.Evaluate(where), pheomelanin.Evaluate(where));
+    const Color absorption = HairAbsorption(eumelanin.Evaluate(where), pheomelanin.Evaluate(where));
+    return wavelengths ? wavelengths->FromRgb(absorption) : absorption;
+  }
+  void TuneTo(const std::shared_ptr<const Wavelengths>& toWavelengths) {
+    if (sigmaA) {
+      sigmaA->TuneTo(toWavelengths);
+    } else if (reflectance) {
+      reflectance->TuneTo(toWavelengths);
+    } else {
+      wavelengths = toWavelengths;
+    }
   }
   bool IsConstant() const {
     if (sigmaA) return sigmaA->IsConstant();
@@ -63,6 +74,12 @@ class HairMaterial final : public Material {
     hair.followsRay = point.strand != Strand::None;
     hair.isFibre = isFibre;
     return Bsdf(frame, point.Ng, hair);
+  }
+  std::shared_ptr<const Material> AtWavelengths(const std::shared_ptr<const Wavelengths>& wavelengths,
+                                                const Tuner&) const override {
+    HairParameters tuned = parameters_;
+    tuned.pigment.TuneTo(wavelengths);
+    return std::make_shared<HairMaterial>(std::move(tuned), shadingNormal_);
   }
   bool MayTransmit() const override { return true; }
   bool IsFibrous() const override { return true; }

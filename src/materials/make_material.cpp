@@ -45,6 +45,23 @@ std::vector<std::shared_ptr<const Material>> RoughenedMaterials(
   return all;
 }
 
+std::vector<std::shared_ptr<const Material>> MaterialsAt(
+    const std::shared_ptr<const Wavelengths>& wavelengths,
+    const std::vector<std::shared_ptr<const Material>>& materials) {
+  std::map<const Material*, std::shared_ptr<const Material>> made;
+  const Material::Tuner tuned =
+      [&](const std::shared_ptr<const Material>& material) -> std::shared_ptr<const Material> {
+    if (!material) return nullptr;
+    const auto found = made.find(material.get());
+    if (found != made.end()) return found->second;
+    std::shared_ptr<const Material> there = material->AtWavelengths(wavelengths, tuned);
+    return made[material.get()] = there ? there : material;
+  };
+  std::vector<std::shared_ptr<const Material>> all;
+  for (const auto& material : materials) all.push_back(tuned(material));
+  return all;
+}
+
 std::vector<std::string> MaterialTypeNames() {
   std::vector<std::string> names;
   for (const MaterialType& type : kTypes) {

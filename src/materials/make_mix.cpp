@@ -25,6 +25,7 @@ class MixMaterial final : public Material {
         mayTransmit_(materials_[0]->MayTransmit() || materials_[1]->MayTransmit()),
         hasDelta_(materials_[0]->HasDelta() || materials_[1]->HasDelta()),
         isAlwaysDelta_(materials_[0]->IsAlwaysDelta() && materials_[1]->IsAlwaysDelta()),
+        disperses_(materials_[0]->Disperses() || materials_[1]->Disperses()),
         isFibrous_(materials_[0]->IsFibrous() || materials_[1]->IsFibrous()),
         mayGatherPhotons_(materials_[0]->MayGatherPhotons() || materials_[1]->MayGatherPhotons()),
         needsParametrization_(!amount_.IsConstant() || materials_[0]->NeedsParametrization() ||
@@ -38,6 +39,12 @@ class MixMaterial final : public Material {
     if (rougher == materials_) return nullptr;
     return std::make_shared<MixMaterial>(std::move(rougher), amount_, salt_);
   }
+  std::shared_ptr<const Material> AtWavelengths(const std::shared_ptr<const Wavelengths>&,
+                                                const Tuner& tuned) const override {
+    return std::make_shared<MixMaterial>(
+        std::array<std::shared_ptr<const Material>, 2>{tuned(materials_[0]), tuned(materials_[1])}, amount_, salt_);
+  }
+  bool Disperses() const override { return disperses_; }
   bool IsInterface() const override { return isInterface_; }
   bool MayTransmit() const override { return mayTransmit_; }
   bool HasDelta() const override { return hasDelta_; }
@@ -60,7 +67,8 @@ class MixMaterial final : public Material {
   uint64_t salt_;  // from the names: nested mixes choose independently
   // Properties of both materials, cached: nested mixes that name a material twice would otherwise query it 2^depth
   // times.
-  bool isInterface_, mayTransmit_, hasDelta_, isAlwaysDelta_, isFibrous_, mayGatherPhotons_, needsParametrization_;
+  bool isInterface_, mayTransmit_, hasDelta_, isAlwaysDelta_, disperses_, isFibrous_, mayGatherPhotons_,
+      needsParametrization_;
 };
 
 class InterfaceMaterial final : public Material {

@@ -14,6 +14,7 @@ namespace lampyr {
 class Diagnostics;
 class ParameterList;
 class TextureLibrary;
+class Wavelengths;
 
 class Material {
  public:
@@ -43,6 +44,15 @@ class Material {
   // made of others asks `roughened` for theirs.
   using Roughener = std::function<std::shared_ptr<const Material>(const std::shared_ptr<const Material>&)>;
   virtual std::shared_ptr<const Material> Roughened(const Roughener& /*roughened*/) const { return nullptr; }
+  // This material at the wavelengths of a pass; null if it is the same at all. A material that is made of others asks
+  // `tuned` for theirs.
+  using Tuner = std::function<std::shared_ptr<const Material>(const std::shared_ptr<const Material>&)>;
+  virtual std::shared_ptr<const Material> AtWavelengths(const std::shared_ptr<const Wavelengths>& /*wavelengths*/,
+                                                        const Tuner& /*tuned*/) const {
+    return nullptr;
+  }
+  // True if it refracts light of different wavelengths to different directions.
+  virtual bool Disperses() const { return false; }
   // True if reflections or refractions may be sharp, as in mirrors and clear glass.
   bool IsSmooth() const { return HasDelta() && !IsInterface(); }
 };
@@ -50,6 +60,10 @@ class Material {
 // The materials with rougher microfacets, in the same order; those without microfacets, and null, are shared.
 std::vector<std::shared_ptr<const Material>> RoughenedMaterials(
     const std::vector<std::shared_ptr<const Material>>& materials);
+
+// The materials at the wavelengths of a pass, in the same order; null stays so.
+std::vector<std::shared_ptr<const Material>> MaterialsAt(const std::shared_ptr<const Wavelengths>& wavelengths,
+                                                         const std::vector<std::shared_ptr<const Material>>& materials);
 
 // Finds materials by name for a "mix"; throws an Error if there is none.
 using MaterialLookup = std::function<std::shared_ptr<const Material>(const std::string& name)>;

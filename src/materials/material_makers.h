@@ -69,6 +69,7 @@ class MetalParameters {
   };
   Index Evaluate(const TextureContext& where) const;
   bool IsConstant() const;
+  void TuneTo(const std::shared_ptr<const Wavelengths>& wavelengths);
 
  private:
   std::optional<ColorParameter> reflectance_;
@@ -77,6 +78,10 @@ class MetalParameters {
 
 // Index of refraction `name`: a number, or the mean over the channels of a spectrum.
 float GetEta(const MaterialInput& input, const std::string& name, float defaultValue);
+
+// The index as a function of the wavelength, by the spectrum `name`, or by "cauchy" (a, b, c in powers of µm²) or
+// "sellmeier" (b1, b2, b3, and c1, c2, c3 in µm²); null: it is the same at all wavelengths.
+std::shared_ptr<const SpectralCurve> FindEtaCurve(const MaterialInput& input, const std::string& name);
 
 // Clamps a reflectance or transmittance to [0,1]; NaN counts as 0.
 Color ClampToUnit(const Color& c);

@@ -18,13 +18,15 @@ FloatParameter GetRoughness(const MaterialInput& input, const std::string& name,
   return *given;
 }
 
-// The colour of a named spectrum.
-Color NamedSpectrum(const std::string& name) {
+// The coefficient of a named spectrum.
+ColorParameter NamedSpectrum(const std::string& name) {
   Parameter parameter;
   parameter.type = ParameterType::Spectrum;
   parameter.name = "value";
   parameter.strings = {name};
-  return ParameterList({}, "Material", {parameter}).GetColor("value", Color(1.0f), SpectrumRole::Unbounded);
+  const ParameterList list({}, "Material", {parameter});
+  return {list.GetColor("value", Color(1.0f), SpectrumRole::Unbounded),
+          list.FindCurve("value", SpectrumRole::Unbounded)};
 }
 
 }  // namespace
@@ -72,8 +74,8 @@ MetalParameters::MetalParameters(const MaterialInput& input, const std::string& 
                 "a metal takes either \"reflectance\" or \"" + prefix + "eta\" and \"" + prefix + "k\", not both");
   }
   if (reflectance_) return;
-  eta_ = eta ? *eta : ColorParameter(NamedSpectrum("metal-Cu-eta"));
-  k_ = k ? *k : ColorParameter(NamedSpectrum("metal-Cu-k"));
+  eta_ = eta ? *eta : NamedSpectrum("metal-Cu-eta");
+  k_ = k ? *k : NamedSpectrum("metal-Cu-k");
 }
 
 MetalParameters::Index MetalParameters::Evaluate(const TextureContext& where) const {
@@ -91,13 +93,74 @@ MetalParameters::Index MetalParameters::Evaluate(const TextureContext& where) co
   return {Color(1.0f), {absorption(r.r), absorption(r.g), absorption(r.b)}};
 }
 
+void MetalParameters::TuneTo(const std::shared_ptr<const Wavelengths>& wavelengths) {
+  if (reflectance_) {
+    reflectance_->TuneTo(wavelengths);
+  } else {
+    eta_.TuneTo(wavelengths);
+    k_.TuneTo(wavelengths);
+  }
+}
+
 bool MetalParameters::IsConstant() const {
   return reflectance_ ? reflectance_->IsConstant() : eta_.IsConstant() && k_.IsConstant();
 }
 
+namespace {
+
+// The formula of the index that is given in place of a spectrum; null: none.
+std::shared_ptr<const SpectralCurve> FindEtaFormula(const ParameterList& parameters) {
+  const std::vector<double> cauchy = parameters.GetFloats("cauchy"), sellmeier = parameters.GetFloats("sellmeier");
+  if (cauchy.empty() && sellmeier.empty()) return nullptr;
+  const std::string name = cauchy.empty() ? "sellmeier" : "cauchy";
+  const FileLocation where = parameters.WhereOf(name);
+  if (!cauchy.empty() && !sellmeier.empty())
+    throw Error(where, "an index is given by \"cauchy\" or by \"sellmeier\", not by both");
+  if (!cauchy.empty() && cauchy.size() != 2 && cauchy.size() != 3)
+    throw Error(where, "\"cauchy\" needs 2 or 3 numbers, a, b and c of n = a + b/λ² + c/λ⁴ with λ in µm; it has " +
+                           std::to_string(cauchy.size()));
+  if (!sellmeier.empty() && sellmeier.size() != 6)
+    throw Error(where, "\"sellmeier\" needs 6 numbers, b1 b2 b3 c1 c2 c3 with c in µm²; it has " +
+                           std::to_string(sellmeier.size()));
+  const auto index = [&](double wavelength) {
+    if (!cauchy.empty()) {
+      return CauchyCoefficients{cauchy[0], cauchy[1], cauchy.size() > 2 ? cauchy[2] : 0}.IndexAt(wavelength);
+    }
+    return SellmeierCoefficients{{sellmeier[0], sellmeier[1], sellmeier[2]}, {sellmeier[3], sellmeier[4], sellmeier[5]}}
+        .IndexAt(wavelength);
+  };
+  auto curve = std::make_shared<const SpectralCurve>(index);
+  for (size_t i = 0; i < SpectralCurve::kCount; ++i) {
+    if (!(curve->Entry(i) >= 1e-2 && curve->Entry(i) <= 1e2)) {
+      throw Error(where, "\"" + name + "\" gives an index that is not between 0.01 and 100 at " +
+                             std::to_string(static_cast<int>(SpectralCurve::WavelengthOf(i))) + " nm");
+    }
+  }
+  return curve;
+}
+
+// The sodium line, at which indices are quoted, nm.
+constexpr double kQuotedWavelength = 587.56;
+
+}  // namespace
+
+std::shared_ptr<const SpectralCurve> FindEtaCurve(const MaterialInput& input, const std::string& name) {
+  const Parameter* given = input.parameters.Find(name);
+  auto curve = FindEtaFormula(input.parameters);
+  if (curve && given) {
+    throw Error(given->where, "\"" + name + "\" and a formula of the index exclude each other");
+  }
+  if (given && given->type == ParameterType::Spectrum)
+    curve = input.parameters.FindCurve(name, SpectrumRole::Unbounded);
+  return curve && !curve->IsConstant() ? curve : nullptr;
+}
+
 float GetEta(const MaterialInput& input, const std::string& name, float defaultValue) {
   const Parameter* given = input.parameters.Find(name);
-  if (!given) return defaultValue;
+  if (!given) {
+    const auto curve = FindEtaFormula(input.parameters);
+    return curve ? static_cast<float>(curve->At(kQuotedWavelength)) : defaultValue;
+  }
   const float eta = given->type == ParameterType::Float
                         ? static_cast<float>(input.parameters.GetFloat(name, static_cast<double>(defaultValue)))
                         : input.parameters.GetColor(name, Color(defaultValue), SpectrumRole::Unbounded).Average();

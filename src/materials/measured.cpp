@@ -1,4 +1,5 @@
 #include "materials/measured.h"
+#include "spectral/wavelengths.h"
 
 #include <algorithm>
 #include <cmath>
@@ -138,6 +139,7 @@ BsdfEvaluation MeasuredBsdf::Evaluate(const Vector3& wo, const Vector3& wi, Tran
   const Look reverse = LookFrom(*data, i, half, cosine, !fromCamera);
   BsdfEvaluation result;
   result.specular = fromCamera ? forward.reflected / i.z : reverse.reflected / o.z;
+  if (wavelengths) result.specular = wavelengths->FromRgb(result.specular);
   result.pdfForward = PdfSolidAngle(static_cast<float>(forward.density));
   result.pdfReverse = PdfSolidAngle(static_cast<float>(reverse.density));
   return result;

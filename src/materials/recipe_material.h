@@ -2,7 +2,8 @@
 // The model of a recipe without textures is made once. A recipe has
 //   BsdfModel Make(const TextureContext&) const;   bool IsConstant() const;   bool IsAnisotropic() const;
 //   bool MayTransmit() const;   bool HasDelta() const;
-// and, if it has microfacets, `void Roughen()` (Material::Roughened).
+// if it has microfacets, `void Roughen()` (Material::Roughened), if it has colours, `void TuneTo(wavelengths)`
+// (Material::AtWavelengths), and if it may disperse light, `bool Disperses() const`.
 #pragma once
 
 #include "materials/material.h"
@@ -39,6 +40,20 @@ class RecipeMaterial final : public Material {
     } else {
       return nullptr;
     }
+  }
+  std::shared_ptr<const Material> AtWavelengths(const std::shared_ptr<const Wavelengths>& wavelengths,
+                                                const Tuner&) const override {
+    if constexpr (requires(Recipe recipe) { recipe.TuneTo(wavelengths); }) {
+      Recipe tuned = recipe_;
+      tuned.TuneTo(wavelengths);
+      return std::make_shared<RecipeMaterial>(std::move(tuned), shadingNormal_);
+    } else {
+      return nullptr;
+    }
+  }
+  bool Disperses() const override {
+    if constexpr (requires { recipe_.Disperses(); }) return recipe_.Disperses();
+    return false;
   }
   bool IsAlwaysDelta() const override { return isConstant_ && Bsdf(Frame(), Normal3(0, 0, 1), model_).IsDelta(); }
 

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 
 #include "math/transform.h"
@@ -11,6 +12,8 @@
 #include "media/majorant_grid.h"
 
 namespace lampyr {
+
+class Wavelengths;
 
 struct MediumCoefficients {
   Color absorption, scattering;  // σ_a, σ_s
@@ -29,6 +32,9 @@ class Medium {
   // Upper bounds of the extinction, the largest of its channels; null: the medium is homogeneous, and At is the same
   // everywhere.
   virtual const MajorantGrid* Majorants() const { return nullptr; }
+  // This medium at the wavelengths of a pass. `self`: this one.
+  virtual std::shared_ptr<const Medium> AtWavelengths(const std::shared_ptr<const Medium>& self,
+                                                      const std::shared_ptr<const Wavelengths>& wavelengths) const;
   // Memory of its grids.
   virtual size_t Bytes() const { return 0; }
 

@@ -76,6 +76,22 @@ std::optional<Color> ParameterList::FindColor(const std::string& name, SpectrumR
   return colors[0];
 }
 
+std::shared_ptr<const SpectralCurve> ParameterList::FindCurve(const std::string& name, SpectrumRole role) const {
+  const Parameter* parameter = FindTyped(name, {ParameterType::Rgb, ParameterType::Spectrum, ParameterType::Blackbody});
+  if (!parameter || parameter->type == ParameterType::Rgb || !FindColor(name, role)) return nullptr;
+  if (parameter->type == ParameterType::Blackbody)
+    return std::make_shared<const SpectralCurve>(BlackbodyCurve(parameter->numbers[0], role));
+  if (parameter->strings.empty()) {
+    return std::make_shared<const SpectralCurve>(
+        CurveOf(SpectrumFromPairs(parameter->numbers, parameter->where), role));
+  }
+  const std::string& spectrum = parameter->strings[0];
+  if (auto named = FindNamedCurve(spectrum, role)) return std::make_shared<const SpectralCurve>(*std::move(named));
+  if (FindNamedSpectrum(spectrum, role)) return nullptr;
+  const std::string file = ResolveFile(spectrum, parameter->where);
+  return std::make_shared<const SpectralCurve>(CurveOf(ReadSpectrumFile(file, parameter->where), role));
+}
+
 Color ParameterList::GetColor(const std::string& name, const Color& defaultValue, SpectrumRole role) const {
   return FindColor(name, role).value_or(defaultValue);
 }

@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "math/vec.h"
 #include "spectral/color_space.h"
+#include "spectral/spectral_curve.h"
 
 namespace lampyr {
 
@@ -79,6 +80,9 @@ class ParameterList {
   Vector3d GetVector3(const std::string& name, const Vector3d& defaultValue) const;
   Color GetColor(const std::string& name, const Color& defaultValue, SpectrumRole role) const;
   std::optional<Color> FindColor(const std::string& name, SpectrumRole role) const;
+  // The curve of a parameter of one spectrum or black body; null if it is given as rgb, or not at all. Throws as
+  // FindColor does.
+  std::shared_ptr<const SpectralCurve> FindCurve(const std::string& name, SpectrumRole role) const;
 
   std::vector<double> GetFloats(const std::string& name) const;
   std::vector<int64_t> GetIntegers(const std::string& name) const;

@@ -150,13 +150,16 @@ Wavelengths::Wavelengths(double u) {
 // places between those of before in another order, by the golden section.
 Wavelengths Wavelengths::OfPass(uint64_t seed, uint64_t pass) {
   constexpr double kGolden = 0.6180339887498949, kPerSeed = 0.7548776662466927;
-  const double shift = FractionOf(kPerSeed * static_cast<double>(seed % (uint64_t{1} << 20)));
-  if (pass == 0) return Wavelengths(shift);
+  const double shift = FractionOf(kPerSeed * static_cast<double>(1 + seed % (uint64_t{1} << 20)));
+  // Folded, so that it ends where it begins: sums over a regular grid of a function that jumps there would depend on
+  // the shift, and converge more slowly.
+  const auto folded = [](double u) { return Wavelengths(1 - std::abs(2 * u - 1)); };
+  if (pass == 0) return folded(shift);
   const uint64_t places = std::bit_floor(pass), number = pass - places;
   // The odd step nearest to places · golden section visits all places once.
   const auto step = static_cast<uint64_t>(kGolden * static_cast<double>(places)) | 1;
   const uint64_t place = number * step % places;
-  return Wavelengths(FractionOf(shift + (static_cast<double>(place) + 0.5) / static_cast<double>(places)));
+  return folded(FractionOf(shift + (static_cast<double>(place) + 0.5) / static_cast<double>(places)));
 }
 
 Color Wavelengths::FromRgb(const Color& rgb) const {

@@ -32,7 +32,10 @@ class FloatImageTexture : public FloatTexture {
 class ColorImageTexture : public ColorTexture {
  public:
   ColorImageTexture(const TextureMapping2D& mapping, TexelLookup texels, float scale, bool invert, bool isAlbedo)
-      : mapping_(mapping), texels_(std::move(texels)), scale_(scale), invert_(invert),
+      : mapping_(mapping),
+        texels_(std::move(texels)),
+        scale_(scale),
+        invert_(invert),
         largest_(isAlbedo ? 1.0f : std::numeric_limits<float>::max()) {}
   Color Evaluate(const TextureContext& where) const override {
     Color value = scale_ * texels_.LookupColor(mapping_.Map(where));

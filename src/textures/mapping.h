@@ -12,8 +12,8 @@ namespace lampyr {
 struct TextureMapping2D {
   enum class Kind { Uv, Spherical, Cylindrical, Planar };
   Kind kind = Kind::Uv;
-  Vector2 scale{1.0f}, delta{0.0f};  // uv: scale and delta; planar: delta
-  Affine renderToTexture;            // all kinds except uv
+  Vector2 scale{1.0f}, delta{0.0f};        // uv: scale and delta; planar: delta
+  Affine renderToTexture;                  // all kinds except uv
   Vector3 axisS{1, 0, 0}, axisT{0, 1, 0};  // planar
 
   Point2 Map(const TextureContext& where) const {

@@ -65,8 +65,8 @@ class MarbleTexture : public ColorTexture {
  private:
   static Color Veins(float t) {
     static constexpr Color kLight(0.58f, 0.58f, 0.6f), kDark(0.5f, 0.5f, 0.5f), kWarm(0.6f, 0.59f, 0.58f);
-    static constexpr std::array<Color, 9> kColors = {kLight, kLight, kLight, kDark,  kWarm,
-                                                     kLight, kLight, Color(0.2f, 0.2f, 0.33f), kLight};
+    static constexpr std::array<Color, 9> kColors = {
+        kLight, kLight, kLight, kDark, kWarm, kLight, kLight, Color(0.2f, 0.2f, 0.33f), kLight};
     constexpr int kSegments = static_cast<int>(kColors.size()) - 3;
     const float along = t * static_cast<float>(kSegments);
     const int first = std::clamp(static_cast<int>(along), 0, kSegments - 1);

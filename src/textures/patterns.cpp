@@ -25,7 +25,9 @@ class BilerpTexture : public Texture<Value> {
   Value corners_[4];  // v00, v01, v10, v11: s first
 };
 
-bool IsOddCell(float x) { return std::floor(x) - 2 * std::floor(0.5f * std::floor(x)) != 0; }
+bool IsOddCell(float x) {
+  return std::floor(x) - 2 * std::floor(0.5f * std::floor(x)) != 0;
+}
 
 template <class Value>
 class CheckerboardTexture : public Texture<Value> {
@@ -33,9 +35,7 @@ class CheckerboardTexture : public Texture<Value> {
   CheckerboardTexture(const TextureMapping2D& mapping2D, const TextureMapping3D& mapping3D, bool is3D,
                       ParameterOf<Value> even, ParameterOf<Value> odd)
       : mapping2D_(mapping2D), mapping3D_(mapping3D), is3D_(is3D), even_(std::move(even)), odd_(std::move(odd)) {}
-  Value Evaluate(const TextureContext& where) const override {
-    return (IsOdd(where) ? odd_ : even_).Evaluate(where);
-  }
+  Value Evaluate(const TextureContext& where) const override { return (IsOdd(where) ? odd_ : even_).Evaluate(where); }
 
  private:
   bool IsOdd(const TextureContext& where) const {

@@ -16,8 +16,13 @@ int Modulo(int a, int n) {
 }  // namespace
 
 TexelLookup::TexelLookup(std::shared_ptr<const Image> image, WrapMode wrap, bool bilinear)
-    : image_(std::move(image)), data_(image_->data.data()), width_(image_->width), height_(image_->height),
-      stride_(image_->channels.size()), wrap_(wrap), bilinear_(bilinear) {
+    : image_(std::move(image)),
+      data_(image_->data.data()),
+      width_(image_->width),
+      height_(image_->height),
+      stride_(image_->channels.size()),
+      wrap_(wrap),
+      bilinear_(bilinear) {
   const int r = image_->ChannelIndex("R"), g = image_->ChannelIndex("G"), b = image_->ChannelIndex("B");
   const bool isColor = r >= 0 && g >= 0 && b >= 0;
   const int gray = std::max(0, image_->ChannelIndex("Y"));

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "math/vec.h"
+#include "spectral/wavelengths.h"
 
 namespace lampyr {
 
@@ -39,6 +40,39 @@ class ParameterOf {
   Value constant_{};
   std::shared_ptr<const Texture<Value>> texture_;
 };
+
+// Of a colour: constants may have a curve, which is what they are where light is carried by wavelength. Textures are
+// colours in Rec. 709, brought to the wavelengths of the pass when they are evaluated.
+template <>
+class ParameterOf<Color> {
+ public:
+  ParameterOf(Color constant = Color{}) : constant_(constant) {}
+  ParameterOf(const Color& constant, std::shared_ptr<const SpectralCurve> curve)
+      : constant_(constant), curve_(std::move(curve)) {}
+  explicit ParameterOf(std::shared_ptr<const Texture<Color>> texture) : texture_(std::move(texture)) {}
+
+  bool IsConstant() const { return !texture_; }
+  Color Evaluate(const TextureContext& where) const {
+    if (!texture_) return constant_;
+    const Color color = texture_->Evaluate(where);
+    return wavelengths_ ? wavelengths_->FromRgb(color) : color;
+  }
+  // The parameter at the wavelengths of a pass.
+  void TuneTo(const std::shared_ptr<const Wavelengths>& wavelengths) {
+    if (texture_) {
+      wavelengths_ = wavelengths;
+    } else {
+      constant_ = curve_ ? wavelengths->At(*curve_) : wavelengths->FromRgb(constant_);
+    }
+  }
+
+ private:
+  Color constant_{};
+  std::shared_ptr<const SpectralCurve> curve_;
+  std::shared_ptr<const Texture<Color>> texture_;
+  std::shared_ptr<const Wavelengths> wavelengths_;
+};
+
 using FloatParameter = ParameterOf<float>;
 using ColorParameter = ParameterOf<Color>;
 

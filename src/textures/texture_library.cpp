@@ -131,7 +131,8 @@ std::optional<ColorParameter> TextureLibrary::FindColor(const ParameterList& par
     if (beingMade_ && !value.IsConstant()) beingMade_->Add(nesting);
     return value;
   }
-  if (const auto color = parameters.FindColor(name, role)) return ColorParameter(*color);
+  if (const auto color = parameters.FindColor(name, role))
+    return ColorParameter(*color, parameters.FindCurve(name, role));
   return std::nullopt;
 }
 

@@ -93,7 +93,7 @@ Translate 0 0.6 0 Shape "sphere" "float radius" 0.6
   const BuiltScene built = BuildScene(ParseScene(text, "test.pbrt", diagnostics), overrides, true, diagnostics);
   const RenderSettings& settings = built.settings;
   Film film(settings.width, settings.height, settings.crop);
-  TechniqueImages techniques(settings.width, settings.height, settings.crop, settings.MaxDepth(), settings.sensor);
+  TechniqueImages techniques(settings.width, settings.height, settings.crop, settings.MaxDepth());
   StopConditions stop;
   stop.samplesPerPixel = 16;
   Render(
