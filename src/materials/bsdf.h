@@ -58,6 +58,7 @@ class Bsdf {
   void SetHero(int lane) {
     if (auto* dispersive = std::get_if<DispersiveBsdf>(&model_)) dispersive->hero = lane;
   }
+  bool IsDispersive() const { return std::holds_alternative<DispersiveBsdf>(model_); }
   // The phase function of a medium; null on a surface.
   const PhaseBsdf* Phase() const { return std::get_if<PhaseBsdf>(&model_); }
   // True for a point within a medium: there is no surface, f is σ_s (or the albedo) times the phase function, all of it

@@ -137,6 +137,36 @@ AttributeBegin Material "dielectric" "float eta" 1.5 "float roughness" 0.6 Shape
 AreaLightSource "diffuse" "rgb L" [9 6 6] Shape "sphere" "float radius" 0.2
 AttributeEnd
 )");
+  // Light by wavelength: glass that disperses strongly, rough where the camera sees it and smooth where it does not;
+  // spectra of a lamp and of a metal, a texture, a coloured pane.
+  add("dispersion", FilmWith("box") + kDown + World(5) + R"(
+Texture "checks" "spectrum" "checkerboard" "float uscale" 8 "float vscale" 8 "rgb tex1" [0.7 0.2 0.1] "rgb tex2" [0.1 0.5 0.8]
+AttributeBegin
+Material "diffuse" "texture reflectance" "checks"
+Shape "bilinearmesh" "point3 P" [-2.5 0 -2.5  2.5 0 -2.5  -2.5 0 2.5  2.5 0 2.5]
+AttributeEnd
+AttributeBegin
+Material "dielectric" "float cauchy" [1.3 0.1] "float roughness" 0.4
+Translate -0.5 0.45 0.1 Shape "sphere" "float radius" 0.35
+AttributeEnd
+AttributeBegin
+Material "conductor" "spectrum eta" "metal-Au-eta" "spectrum k" "metal-Au-k" "float roughness" 0.4
+Translate 0.45 0.3 0.2 Shape "sphere" "float radius" 0.3
+AttributeEnd
+AttributeBegin
+Material "dielectric" "float cauchy" [1.3 0.1]
+Translate 0.3 1.05 -1.35 Shape "sphere" "float radius" 0.3
+AttributeEnd
+AttributeBegin
+Material "thindielectric" "float eta" 1 "rgb transmittance" [0.3 0.7 0.9]
+Translate 1.2 1.2 -0.8 Rotate 90 1 0 0 Shape "disk" "float radius" 0.4
+AttributeEnd
+AttributeBegin
+AreaLightSource "diffuse" "blackbody L" 3200 "float scale" 8
+Translate 0.3 2.3 -1.6 Shape "sphere" "float radius" 0.4
+AttributeEnd
+)")
+      .samples = 256;
   // A smooth pane between lamp and ground, out of the camera's sight: paths from the ground pass it and meet the lamp.
   add("thin_pane", FilmWith("box") + kDown + World(5) + kGround + "Translate 0 0 -0.9\n" +
                        Square("\"rgb L\" [9 9 9]", 1.0) +

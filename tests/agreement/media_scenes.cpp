@@ -72,6 +72,14 @@ std::vector<MediaScene> MediaScenes() {
   add("ball_in_fog", FilmWith("box") + kInRoom + kFog + Homogeneous("milk", "5 5 5", "0 0.1 0.3", 0.6) +
                          "MediumInterface \"\" \"fog\"\n" + kView + World(4) + kRoom + BallOf("milk", "fog") + kBulb)
       .isCameraInMedium = true;
+  // By wavelength: coefficients and a lamp that are spectra, around and behind glass that disperses.
+  add("dispersion_in_haze",
+      Room("box", 4) +
+          "MakeNamedMedium \"haze\" \"string type\" \"homogeneous\" \"spectrum sigma_s\" [400 2 550 1.2 700 0.8] "
+          "\"rgb sigma_a\" [0.1 0.3 0.6] \"float g\" 0.3\n" +
+          BallOf("haze", "", "\"dielectric\" \"float cauchy\" [1.3 0.1] \"float roughness\" 0.3") +
+          "AttributeBegin AreaLightSource \"diffuse\" \"blackbody L\" 4000 \"float scale\" 40 Translate 0.5 0.6 0.3 "
+          "Shape \"sphere\" \"float radius\" 0.15 AttributeEnd\n");
   add("rough_glass_of_juice", Room("gaussian", 5) + Homogeneous("juice", "0.5 0.5 0.5", "0.2 1 2", 0.2) +
                                   BallOf("juice", "", "\"dielectric\" \"float eta\" 1.33 \"float roughness\" 0.3") +
                                   kBulb);

@@ -340,7 +340,8 @@ class WeightChecker final : public PathObserver {
   // stretched, η_l² cosθ_l / (η_c² cosθ_c), and Snell's law says η.
   void CheckRefraction(const PathVertex& vertex, const Vector3& toLight, const Vector3& toCamera,
                        SolidAngleDensity densityToLight, SolidAngleDensity densityToCamera) {
-    if (!vertex.scatteredDelta) return;
+    // What disperses reflects the mean of the lanes, which differs from side to side.
+    if (!vertex.scatteredDelta || vertex.bsdf.IsDispersive()) return;
     const Vector3d n(vertex.bsdf.ShadingFrame().z);
     const double cosLight = glm::dot(n, Vector3d(toLight)), cosCamera = glm::dot(n, Vector3d(toCamera));
     if (cosLight * cosCamera > 0) return;                                                    // reflected
@@ -378,12 +379,13 @@ void TracePhotons(const RenderScene& scene, int maxDepth, float radius, double l
   photons.gather.radius = radius;
   RenderCounts counts;
   LightPath path;
-  const SampleContext context{scene, sampler, 0.5f, counts};
+  SampleContext context{scene, sampler, 0.5f, counts};
   KeepsPaths visitor(context, lightPaths, photons.kept);
   for (uint32_t i = 0; i < kLightPaths; ++i) {
     sampler.StartPixelSample(1, 0, i);
     photons.kept.photons.StartPath();
     visitor.Start();
+    context.heroLane = static_cast<int>(i % Wavelengths::kLanes);
     photons.kept.densities.clear();
     TraceLightPath(context, maxDepth, {2, 1}, path, visitor);
     photons.kept.photons.KeepDensities(photons.kept.ends, photons.kept.densities);
@@ -401,6 +403,7 @@ WeightErrors CheckWeights(const std::string& sceneText, const WeightProof& proof
   const BoundingSphere& sphere = built.scene.lighting->SceneSphere();
   const auto guide = AimAt(*built.scene.lighting, sphere.center, 0.2f * sphere.radius);
   RenderScene scene = built.scene;
+  if (scene.isSpectral) scene = scene.AtWavelengths(std::make_shared<const Wavelengths>(Wavelengths::OfPass(0, 1)), {});
   if (proof.aimed)
     scene.lighting = std::make_shared<const LightingServices>(scene.lighting->With(nullptr, guide.get()));
   if (proof.isGuided) scene.guide = RandomGuide(sphere);
@@ -445,6 +448,7 @@ WeightErrors CheckWeights(const std::string& sceneText, const WeightProof& proof
     if (ray.weight == 0) continue;
     checker.StartSample(ray.ray, film, time);
     SampleContext context{scene, sampler, time, counts};
+    context.heroLane = static_cast<int>(index % Wavelengths::kLanes);
     context.film = film;
     context.splats = &splats;
     context.observer = &checker;

@@ -25,8 +25,12 @@ Mean Albedo(const Bsdf& bsdf, const Vector3& wo, int samples, uint64_t seed,
   Rng rng(seed);
   for (int i = 0; i < samples; ++i) {
     const float uLobe = rng.NextFloat();
-    const auto sample = bsdf.Sample(wo, uLobe, rng.NextPoint2(), mode);
-    mean.Add(sample ? static_cast<double>(sample.Weight().Max()) : 0.0);
+    Bsdf followed = bsdf;
+    followed.SetHero(i % 3);
+    const auto sample = followed.Sample(wo, uLobe, rng.NextPoint2(), mode);
+    // What disperses has other weights in each lane: all of it in one, or more in one than in the others.
+    const Color weight = sample.Weight();
+    mean.Add(sample ? static_cast<double>(bsdf.IsDispersive() ? weight.Average() : weight.Max()) : 0.0);
   }
   return mean;
 }
@@ -52,7 +56,12 @@ TEST(BsdfEnergy, ReciprocityAndAdjoint) {
       EXPECT_NEAR(adjoint.g, radiance.g, model.tolerance * radiance.g) << model.name;
       ++compared;
       if (model.isHair || !model.isReciprocal) continue;
-      const float etaSquared = sample.eta * sample.eta;
+      // Of the green lane, whichever was sampled.
+      const auto* dispersive = std::get_if<DispersiveBsdf>(&model.model);
+      const bool isRefracted = sample.eta != 1, isInside = glm::dot(wo, bsdf.ShadingFrame().z) < 0;
+      const float ofLane =
+          dispersive && isRefracted ? (isInside ? 1 / dispersive->eta.g : dispersive->eta.g) : sample.eta;
+      const float etaSquared = ofLane * ofLane;
       EXPECT_NEAR(importance.g, radiance.g * etaSquared, 1e-4f * importance.g) << model.name;
     }
   }

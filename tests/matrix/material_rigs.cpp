@@ -43,6 +43,8 @@ const std::vector<Sample>& MaterialSamples() {
       {"conductor", "mirror", "\"rgb reflectance\" [0.9 0.8 0.7] \"float roughness\" 0", true},
       {"dielectric", "rough_glass", "\"float eta\" 1.5 \"float roughness\" 0.5"},
       {"dielectric", "glass", "\"float eta\" 1.5 \"float roughness\" 0", true},
+      {"dielectric", "dispersive_rough_glass", "\"float cauchy\" [1.3 0.1] \"float roughness\" 0.5"},
+      {"dielectric", "dispersive_glass", "\"float cauchy\" [1.3 0.1] \"float roughness\" 0", true},
       {"thindielectric", "pane", "\"float eta\" 1.5 \"rgb transmittance\" [0.9 0.7 0.8]", true},
       {"coateddiffuse", "varnish", "\"rgb reflectance\" [0.6 0.5 0.4] \"float roughness\" 0", false, true},
       {"coateddiffuse", "satin", "\"rgb reflectance\" [0.6 0.5 0.4] \"float roughness\" 0.4"},

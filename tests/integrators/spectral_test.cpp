@@ -1,0 +1,315 @@
+// Light by wavelength: known answers of refraction, white that stays white, colours of light, and what does not depend
+// on the division of the work.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "base/byte_stream.h"
+#include "scene/spectrum.h"
+#include "support/render_scene.h"
+
+namespace lampyr::test {
+namespace {
+
+constexpr double kPiExact = std::numbers::pi;
+
+SpectralCurve Water() {
+  return SpectralCurve([](double wavelength) { return CauchyCoefficients{1.3242, 0.003091, 0}.IndexAt(wavelength); });
+}
+
+// A wavelength's smooth dielectric at a face with the outward normal `n`.
+Bsdf FaceOf(double eta, const Vector3& n) {
+  return Bsdf(Frame::FromNormal(n), n,
+              DispersiveBsdf{TrowbridgeReitz(0, 0), Color(1.2f, static_cast<float>(eta), 1.9f), 1});
+}
+
+// The direction in which light that travels along `d` leaves a face by the event that `uLobe` chooses.
+Vector3 Through(const Bsdf& face, const Vector3& d, float uLobe) {
+  const BsdfSample sample = face.Sample(-d, uLobe, Point2(0.5f), TransportMode::Importance);
+  EXPECT_TRUE(sample);
+  return sample.wi;
+}
+
+constexpr float kRefracts = 0.9999f, kReflects = 0;
+
+// A prism of 60 degrees deviates least where the path is symmetric: 2 asin(n sin 30°) - 60°.
+TEST(Dispersion, OfAPrismAtItsLeastDeviation) {
+  const auto glass = FindNamedCurve("glass-F11", SpectrumRole::Unbounded);
+  ASSERT_TRUE(glass);
+  for (const double wavelength : {400.0, 486.1, 587.6, 656.3, 750.0}) {
+    const double n = glass->At(wavelength), incidence = std::asin(n * 0.5);
+    const double half = kPiExact / 6;
+    const Vector3 in(-std::cos(half), std::sin(half), 0), out(std::cos(half), std::sin(half), 0);
+    // Travels at the angle of incidence to the first face, on the side of the base.
+    const double angle = half - incidence;
+    const Vector3 d(static_cast<float>(std::cos(angle)), static_cast<float>(-std::sin(angle)), 0);
+    const Vector3 inside = Through(FaceOf(n, in), d, kRefracts);
+    EXPECT_NEAR(inside.y, 0, 1e-6) << wavelength;
+    const Vector3 after = Through(FaceOf(n, out), inside, kRefracts);
+    const double deviation = std::acos(static_cast<double>(glm::dot(d, after)));
+    EXPECT_NEAR(deviation, 2 * incidence - 2 * half, 1e-5) << wavelength;
+  }
+}
+
+// The angle between the sun and the light of a drop that is refracted, reflected inside and refracted again is largest
+// at Descartes' angle, 4 r - 2 i with cos² i = (n² - 1) / 3: 42.4 degrees in red, 40.5 in violet.
+TEST(Dispersion, OfTheRainbow) {
+  const SpectralCurve water = Water();
+  for (const auto& [wavelength, known] : {std::pair(700.0, 42.4), std::pair(405.0, 40.6)}) {
+    const double n = water.At(wavelength);
+    double largest = 0;
+    for (int i = 1; i < 20000; ++i) {
+      const double b = i / 20000.0;
+      const Vector3 d(1, 0, 0);
+      Vector3 normal(static_cast<float>(-std::sqrt(1 - b * b)), static_cast<float>(b), 0);
+      Vector3 direction = Through(FaceOf(n, normal), d, kRefracts);
+      Vector3 point = normal;
+      const auto cross = [&] {
+        point = glm::normalize(point - 2 * glm::dot(point, direction) * direction);
+        normal = point;
+      };
+      cross();
+      direction = Through(FaceOf(n, normal), direction, kReflects);
+      cross();
+      direction = Through(FaceOf(n, normal), direction, kRefracts);
+      largest = std::max(largest, std::acos(std::clamp(-static_cast<double>(direction.x), -1.0, 1.0)));
+    }
+    const double i = std::acos(std::sqrt((n * n - 1) / 3)), r = std::asin(std::sin(i) / n);
+    EXPECT_NEAR(largest, 4 * r - 2 * i, 2e-4) << wavelength;
+    EXPECT_NEAR(largest * 180 / kPiExact, known, 0.2) << wavelength;
+  }
+}
+
+// Of the lanes of a smooth face all are reflected, in proportion to their reflectance, and one is refracted: the mean
+// over heroes of the weights is what arrives.
+TEST(Dispersion, LosesNothing) {
+  for (const float cosine : {1.0f, 0.6f, 0.1f}) {
+    for (const float side : {1.0f, -1.0f}) {
+      Color sum;
+      for (int hero = 0; hero < 3; ++hero) {
+        const DispersiveBsdf face{TrowbridgeReitz(0, 0), Color(1.4f, 1.6f, 2.2f), hero};
+        constexpr int kSteps = 4000;
+        for (int i = 0; i < kSteps; ++i) {
+          const Vector3 wo(std::sqrt(1 - cosine * cosine), 0, side * cosine);
+          const float u = (static_cast<float>(i) + 0.5f) / kSteps;
+          sum += face.Sample(wo, u, Point2(0.5f), TransportMode::Importance).Weight() / (3.0f * kSteps);
+        }
+      }
+      for (const float lane : {sum.r, sum.g, sum.b}) EXPECT_NEAR(lane, 1, 2e-3) << cosine << " " << side;
+    }
+  }
+}
+
+// Where the light of a band of wavelengths arrives behind a prism: on the far side of a sheet, seen from there.
+std::string PrismScene(double wavelength) {
+  const auto number = [](double x) { return std::to_string(x); };
+  const double n = FindNamedCurve("glass-F11", SpectrumRole::Unbounded)->At(550), i = std::asin(0.5 * n);
+  const double half = kPiExact / 6, before = half - i, after = i - half;
+  // The beam arrives from the left and below, and leaves to the right and downwards at least deviation for 550 nm.
+  const Point2d from(-10 * std::cos(before), 10 * std::sin(before));
+  const Point2d sheet(4 * std::cos(after), -4 * std::sin(after));
+  const std::string band = "[" + number(wavelength - 11) + " 0 " + number(wavelength - 10) + " 1 " +
+                           number(wavelength + 10) + " 1 " + number(wavelength + 11) + " 0]";
+  const Point2d eye(1.5 * sheet.x, 1.5 * sheet.y);
+  return "Film \"rgb\" \"integer xresolution\" 96 \"integer yresolution\" 16\nPixelFilter \"box\"\n"
+         "LookAt " +
+         number(eye.x) + " " + number(eye.y) +
+         " 0  0 0 0  0 0 1\n"
+         "Camera \"orthographic\" \"float screenwindow\" [-0.6 0.6 -0.1 0.1]\n"
+         "Integrator \"bdpt\" \"integer maxdepth\" 4\nWorldBegin\n"
+         "LightSource \"spot\" \"spectrum I\" " +
+         band + " \"float scale\" 100 \"point3 from\" [" + number(from.x) + " " + number(from.y) +
+         " 0] \"point3 to\" [0 0 0] \"float coneangle\" 0.15 \"float conedeltaangle\" 0.01\n"
+         "AttributeBegin Material \"dielectric\" \"spectrum eta\" \"glass-F11\"\n"
+         "Shape \"trianglemesh\" \"point3 P\" [-0.57735 -0.5 -0.3  0 0.5 -0.3  0.57735 -0.5 -0.3  "
+         "-0.57735 -0.5 0.3  0 0.5 0.3  0.57735 -0.5 0.3] \"integer indices\" "
+         "[0 1 2 3 5 4 0 3 4 0 4 1 1 4 5 1 5 2 0 2 5 0 5 3] AttributeEnd\n"
+         "AttributeBegin Material \"diffusetransmission\" \"rgb reflectance\" [0 0 0] \"rgb transmittance\" [1 1 1]\n"
+         "Translate " +
+         number(sheet.x) + " " + number(sheet.y) + " 0 Rotate " + number(-after * 180 / kPiExact) +
+         " 0 0 1 Rotate 90 0 1 0 Shape \"disk\" \"float radius\" 2 AttributeEnd\n";
+}
+
+// Mean of the column over the light of a picture, in [0,1], and the light.
+std::pair<double, double> CentroidOf(const Image& image) {
+  double sum = 0, moment = 0;
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      double value = 0;
+      for (size_t c = 0; c < 3; ++c) value += std::abs(static_cast<double>(image.At(x, y, c)));
+      sum += value;
+      moment += value * (x + 0.5) / image.width;
+    }
+  }
+  return {moment / sum, sum};
+}
+
+// By Snell's law, for the middle of the beam.
+double ExpectedShift(double wavelength) {
+  const auto glass = FindNamedCurve("glass-F11", SpectrumRole::Unbounded);
+  const double i = std::asin(0.5 * glass->At(550)), n = glass->At(wavelength), apex = kPiExact / 3;
+  const double r = std::asin(std::sin(i) / n), out = std::asin(n * std::sin(apex - r));
+  return 4 * std::tan(i + out - apex - (2 * i - apex));
+}
+
+TEST(Dispersion, OfAPrismInPictures) {
+  for (const char* integrator : {"light", "bdpt", "vcm", "sppm"}) {
+    double middle = 0;
+    for (const double wavelength : {550.0, 450.0, 500.0, 620.0}) {
+      RenderOverrides overrides;
+      overrides.integrator = integrator;
+      const auto [centroid, light] = CentroidOf(RenderText(PrismScene(wavelength), 192, overrides, 2).image);
+      ASSERT_GT(light, 0) << integrator << " " << wavelength;
+      const double at = (centroid - 0.5) * 1.2;  // the width of the screen
+      if (wavelength == 550) middle = at;
+      // Blue is deviated most: away from where the beam came from. The picture is seen from behind.
+      EXPECT_NEAR(std::abs(at - middle), std::abs(ExpectedShift(wavelength)), 0.006) << integrator << " " << wavelength;
+      EXPECT_NEAR(middle, 0, 0.01) << integrator;
+    }
+  }
+}
+
+std::string GrayRoom(const std::string& object) {
+  return "Film \"rgb\" \"integer xresolution\" 24 \"integer yresolution\" 24\n"
+         "LookAt 0 0.2 2.4  0 -0.2 0  0 1 0 Camera \"perspective\" \"float fov\" 40\n"
+         "Integrator \"path\" \"integer maxdepth\" 6\nWorldBegin\n"
+         "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [5 5 5] Translate 0 1.6 0.6 Shape \"sphere\" \"float "
+         "radius\" 0.6 AttributeEnd\nMaterial \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5]\n"
+         "Shape \"bilinearmesh\" \"point3 P\" [-3 -0.5 -3  3 -0.5 -3  -3 -0.5 3  3 -0.5 3]\n" +
+         object;
+}
+
+double MeanOfChannel(const Image& image, size_t channel) {
+  double sum = 0;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) sum += static_cast<double>(image.At(x, y, channel));
+  return sum / (image.width * image.height);
+}
+
+// Without dispersion: gray light through glass of one index stays gray, and is that of red, green and blue.
+TEST(Spectral, WhiteStaysWhite) {
+  const std::string text =
+      GrayRoom("Material \"dielectric\" Translate 0 -0.1 0 Shape \"sphere\" \"float radius\" 0.4\n");
+  for (const char* integrator : {"path", "bdpt", "light", "vcm", "sppm"}) {
+    RenderOverrides overrides;
+    overrides.integrator = integrator;
+    const Image rgb = RenderText(text, 1024, overrides, 2).image;
+    overrides.spectral = true;
+    const Image spectral = RenderText(text, 1024, overrides, 2).image;
+    for (size_t c = 0; c < 3; ++c) {
+      const double mean = MeanOfChannel(spectral, 1);
+      EXPECT_NEAR(MeanOfChannel(spectral, c), mean, 1e-3 * mean) << integrator << " " << c;
+      EXPECT_NEAR(MeanOfChannel(spectral, c), MeanOfChannel(rgb, c), 5e-3 * mean) << integrator << " " << c;
+    }
+  }
+}
+
+// Any number of passes: the picture of a white surface is white after each.
+TEST(Spectral, WhiteIsWhiteAfterAnyNumberOfPasses) {
+  const std::string text =
+      "Film \"rgb\" \"integer xresolution\" 4 \"integer yresolution\" 4\nCamera \"perspective\"\nIntegrator \"path\"\n"
+      "WorldBegin\nLightSource \"infinite\" \"rgb L\" [1 1 1]\n";
+  RenderOverrides overrides;
+  overrides.spectral = true;
+  for (const int passes : {1, 2, 3, 5, 8, 100}) {
+    const Image image = RenderText(text, passes, overrides).image;
+    for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(image.At(1, 2, c), 1, 1e-5) << passes;
+  }
+}
+
+// Seen once, colours of lights and surfaces are those that they have as red, green and blue.
+TEST(Spectral, ColoursAreKept) {
+  const auto scene = [](const std::string& light, const std::string& reflectance) {
+    return "Film \"rgb\" \"integer xresolution\" 4 \"integer yresolution\" 4\nLookAt 0 0 3 0 0 0 0 1 0\n"
+           "Camera \"orthographic\"\nIntegrator \"path\" \"integer maxdepth\" 1\nWorldBegin\n"
+           "LightSource \"infinite\" " +
+           light + "\nMaterial \"diffuse\" " + reflectance + " Shape \"disk\" \"float radius\" 4\n";
+  };
+  const std::string white = "\"rgb reflectance\" [1 1 1]", even = "\"rgb L\" [1 1 1]";
+  const std::string scenes[] = {scene("\"rgb L\" [0.9 0.1 0.05]", white),
+                                scene(even, "\"rgb reflectance\" [0.05 0.6 0.1]"),
+                                scene(even, "\"rgb reflectance\" [0.1 0.1 0.9]"),
+                                scene("\"blackbody L\" 3000", white),
+                                scene("\"blackbody L\" 8000", white),
+                                scene("\"spectrum L\" \"stdillum-D65\"", white),
+                                scene(even, "\"spectrum reflectance\" [400 0.2 500 0.6 600 0.3 700 0.5]")};
+  for (const std::string& text : scenes) {
+    RenderOverrides overrides;
+    overrides.spectral = false;
+    const Image rgb = RenderText(text, 16, overrides).image;
+    overrides.spectral = true;
+    const Image spectral = RenderText(text, 1024, overrides).image;
+    for (size_t c = 0; c < 3; ++c)
+      EXPECT_NEAR(MeanOfChannel(spectral, c), MeanOfChannel(rgb, c), 0.01 * MeanOfChannel(rgb, 1)) << text << c;
+  }
+}
+
+std::string Caustic(const std::string& integrator) {
+  return "Film \"rgb\" \"integer xresolution\" 48 \"integer yresolution\" 48\n"
+         "LookAt 0 2 0.01  0 0 0  0 0 -1 Camera \"orthographic\" \"float screenwindow\" [0 0.8 -0.4 0.4]\n"
+         "Integrator \"" +
+         integrator +
+         "\" \"integer maxdepth\" 5\nWorldBegin\n"
+         "LightSource \"spot\" \"rgb I\" [40 40 40] \"point3 from\" [-3 3 0] \"point3 to\" [0 0.6 0] \"float "
+         "coneangle\" 7\n"
+         "Material \"diffuse\" \"rgb reflectance\" [0.6 0.6 0.6]\n"
+         "Shape \"bilinearmesh\" \"point3 P\" [-3 0 -3  3 0 -3  -3 0 3  3 0 3]\n"
+         "Material \"dielectric\" \"float cauchy\" [1.45 0.02] Translate 0 0.6 0 Shape \"sphere\" \"float radius\" "
+         "0.3\n";
+}
+
+// The colour of a caustic as a whole is right after a few passes.
+TEST(Spectral, HueOfACausticAfterFourPasses) {
+  const auto hue = [](const Image& image) {
+    const double r = MeanOfChannel(image, 0), g = MeanOfChannel(image, 1), b = MeanOfChannel(image, 2);
+    return std::array<double, 3>{r / (r + g + b), g / (r + g + b), b / (r + g + b)};
+  };
+  for (const char* integrator : {"light", "bdpt", "vcm", "sppm"}) {
+    RenderOverrides overrides;
+    overrides.width = overrides.height = 128;
+    const auto converged = hue(RenderText(Caustic(integrator), 256, overrides, 2).image);
+    for (const uint64_t seed : {1, 2, 3}) {
+      overrides.seed = seed;
+      const auto early = hue(RenderText(Caustic(integrator), 4, overrides, 2).image);
+      for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(early[c], converged[c], 0.05 * converged[c]) << integrator << c;
+    }
+  }
+}
+
+// Threads, and the division into passes, do not change the picture.
+TEST(Spectral, PicturesDoNotDependOnThreads) {
+  for (const char* integrator : {"path", "light", "bdpt", "vcm", "sppm"}) {
+    for (const bool isAdaptive : {false, true}) {
+      RenderOverrides overrides;
+      if (isAdaptive) overrides.adaptive.emplace();
+      const Rendered one = RenderText(Caustic(integrator), 6, overrides, 1),
+                     three = RenderText(Caustic(integrator), 6, overrides, 3);
+      EXPECT_EQ(one.image.data, three.image.data) << integrator;
+      EXPECT_EQ(one.outcome.counts.droppedSamples, 0u) << integrator;
+    }
+  }
+}
+
+// The film is saved and loaded with what it knows of white.
+TEST(Spectral, FilmsKeepTheirWhite) {
+  Film film(4, 2, {0, 0, 4, 2});
+  film.Pixel(1, 1).Add(Color(1, 2, 3), 1);
+  film.CountWhite({0.5, 1.0, 2.0});
+  std::string bytes;
+  ByteWriter writer([&](const void* data, size_t count) { bytes.append(static_cast<const char*>(data), count); });
+  film.Save(writer);
+  Film loaded = film.EmptyCopy();
+  ByteReader reader(std::as_bytes(std::span(bytes)));
+  loaded.Load(reader);
+  EXPECT_EQ(loaded.Develop().data, film.Develop().data);
+  EXPECT_FLOAT_EQ(film.Develop().At(1, 1, 0), 2);
+  EXPECT_FLOAT_EQ(film.Develop().At(1, 1, 2), 1.5f);
+  Film both = film.EmptyCopy();
+  both.CountWhite({1.5, 1.0, 0.0});
+  both.Add(film);
+  EXPECT_FLOAT_EQ(both.Develop().At(1, 1, 0), 1);
+}
+
+}  // namespace
+}  // namespace lampyr::test
