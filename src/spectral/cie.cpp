@@ -32,10 +32,6 @@ constexpr std::array<std::array<double, 3>, 54> kDaylight = {{
 // Weights of S1 and S2 for D65 (6503.6 K), rounded to three decimals as for the tables of [CIE15].
 constexpr double kM1 = -0.295, kM2 = -0.689;
 
-double DaylightEntry(size_t i) {
-  return kDaylight[i][0] + kM1 * kDaylight[i][1] + kM2 * kDaylight[i][2];
-}
-
 }  // namespace
 
 Vector3d ColorMatching(double lambda) {
@@ -45,10 +41,15 @@ Vector3d ColorMatching(double lambda) {
           1.217 * Lobe(lambda, 437.0, 11.8, 36.0) + 0.681 * Lobe(lambda, 459.0, 26.0, 13.8)};
 }
 
-double DaylightD65(double lambda) {
+double Daylight(double lambda, double m1, double m2) {
+  const auto entry = [&](size_t i) { return kDaylight[i][0] + m1 * kDaylight[i][1] + m2 * kDaylight[i][2]; };
   const double position = std::clamp((lambda - kFirst) / kStep, 0.0, double(kDaylight.size() - 1));
   const size_t i = std::min(static_cast<size_t>(position), kDaylight.size() - 2);
-  return std::lerp(DaylightEntry(i), DaylightEntry(i + 1), position - double(i));
+  return std::lerp(entry(i), entry(i + 1), position - double(i));
+}
+
+double DaylightD65(double lambda) {
+  return Daylight(lambda, kM1, kM2);
 }
 
 double Blackbody(double lambda, double kelvin) {

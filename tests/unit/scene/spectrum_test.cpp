@@ -5,6 +5,7 @@
 
 #include "spectral/cie.h"
 #include "spectral/color_space.h"
+#include "spectral/wavelengths.h"
 #include "unit/scene/scene_support.h"
 
 namespace lampyr {
@@ -115,6 +116,61 @@ TEST(Spectrum, NamedOnes) {
   ExpectColor(reflectance("Ag"), Color(0.97f, 0.95f, 0.93f), 0.03f);
   ExpectColor(reflectance("Cu"), Color(0.92f, 0.61f, 0.57f), 0.02f);
   ExpectColor(reflectance("Al"), Color(0.91f, 0.92f, 0.92f), 0.02f);
+}
+
+double PowerOf(const SpectralCurve& curve) {
+  double sum = 0;
+  for (size_t i = 0; i < SpectralCurve::kCount; ++i) sum += curve.Entry(i);
+  return sum;
+}
+
+TEST(Spectrum, CurvesAreOfThePairs) {
+  const SpectralCurve ramp = CurveOf({{400, 0}, {700, 3}}, SpectrumRole::Unbounded);
+  EXPECT_NEAR(ramp.At(550), 1.5, 1e-9);
+  EXPECT_NEAR(ramp.At(380), 0, 1e-9);
+  EXPECT_NEAR(ramp.At(750), 3, 1e-9) << "ends continue";
+  const SpectralCurve surface = CurveOf({{400, 0}, {700, 3}}, SpectrumRole::Albedo);
+  EXPECT_NEAR(surface.At(450), 0.5, 1e-9);
+  EXPECT_EQ(surface.At(600), 1);
+  EXPECT_EQ(surface.At(750), 0);
+}
+
+TEST(Spectrum, ANarrowLineKeepsItsPower) {
+  // A triangle of 0.2 nm, at an entry, between two, and where their ranges meet.
+  for (const double first : {501.0, 501.25, 501.4}) {
+    const std::vector<SpectrumSample> line = {{first, 0}, {first + 0.1, 1}, {first + 0.2, 0}};
+    EXPECT_NEAR(PowerOf(CurveOf(line, SpectrumRole::Unbounded)), 0.1, 0.002) << first;
+    const SpectralCurve light = CurveOf(line, SpectrumRole::Illuminant);
+    const Color color = ClampToGamut(ColorOf(light));
+    EXPECT_NEAR(color.Luminance(), 1, 1e-4) << first;
+    ExpectColor(color, SpectrumToColor(line, SpectrumRole::Illuminant), 0.02f);
+    EXPECT_EQ(light.At(499), 0);
+    EXPECT_EQ(light.At(504), 0);
+  }
+}
+
+TEST(Spectrum, CurvesOfBlackbodiesHaveTheirColours) {
+  for (const double kelvin : {2856.0, 6500.0, 12000.0}) {
+    const Vector3d color = ColorOf(BlackbodyCurve(kelvin, SpectrumRole::Illuminant));
+    ASSERT_GT(std::min({color.x, color.y, color.z}), 0) << "within the gamut";
+    ExpectColor(Color(static_cast<float>(color.x), static_cast<float>(color.y), static_cast<float>(color.z)),
+                BlackbodyToColor(kelvin, SpectrumRole::Illuminant), 1e-3f);
+  }
+  const SpectralCurve surface = BlackbodyCurve(3000, SpectrumRole::Albedo);
+  EXPECT_EQ(surface.Largest(), 1);
+  ExpectColor(ClampToGamut(ColorOf(surface)), BlackbodyToColor(3000, SpectrumRole::Albedo), 1e-3f);
+}
+
+TEST(Spectrum, CurvesOfPowerAreRelativeToDaylight) {
+  for (const double scale : {1e-30, 1.0, 1e30}) {
+    const SpectralCurve power([&](double wavelength) { return scale * DaylightD65(wavelength); });
+    const SpectralCurve light = CurveOfPower(power, SpectrumRole::Illuminant);
+    for (size_t i = 0; i < SpectralCurve::kCount; ++i) ASSERT_NEAR(light.Entry(i), 1, 1e-6) << scale;
+    EXPECT_NEAR(CurveOfPower(power, SpectrumRole::Albedo).Largest(), 1, 1e-12);
+    EXPECT_NEAR(CurveOfPower(power, SpectrumRole::Albedo).At(560), 100 / DaylightD65(460), 1e-12);
+  }
+  const SpectralCurve dark = CurveOfPower(SpectralCurve(), SpectrumRole::Illuminant);
+  EXPECT_EQ(dark.Largest(), 0);
 }
 
 TEST(Spectrum, PairsAreChecked) {
