@@ -65,10 +65,9 @@ constexpr std::array<std::array<double, 2>, 48> kBasis = {{
     {0.9986821, 0.000403},
 }};
 
-// Matching functions for red, green and blue times D65, per nm, whose integrals are 1 each; and the density of
-// wavelengths with its integral.
+// Matching functions for red, green and blue times D65, per nm, whose integrals are 1 each.
 struct Tables {
-  SpectralCurve rgb[3], density, cumulative;
+  SpectralCurve rgb[3];
 
   Tables() {
     Vector3d white(0.0);
@@ -77,36 +76,11 @@ struct Tables {
     constexpr size_t last = SpectralCurve::kCount - 1;
     for (size_t i = 0; i <= last; ++i)
       white += weighted(SpectralCurve::WavelengthOf(i)) * (i == 0 || i == last ? 0.5 : 1.0);
-    const auto toRgb = [&](double wavelength) {
-      return XyzToRec709(weighted(wavelength) / white * XyzOfChromaticity(0.3127, 0.3290));
-    };
-    for (int c = 0; c < 3; ++c) rgb[c] = SpectralCurve([&](double wavelength) { return toRgb(wavelength)[c]; });
-    const SpectralCurve weight([&](double wavelength) { return glm::length(toRgb(wavelength)); });
-    double sum = 0;
-    for (size_t i = 0; i < last; ++i) sum += 0.5 * (weight.Entry(i) + weight.Entry(i + 1));
-    // At no wavelength 0, where weights would be infinite.
-    constexpr double kLeast = 1e-6;
-    const double scale = 1 / (sum + kLeast * static_cast<double>(last));
-    density = SpectralCurve([&](double wavelength) { return (weight.At(wavelength) + kLeast) * scale; });
-    double below = 0;
-    cumulative = SpectralCurve([&](double wavelength) {
-      const auto i = static_cast<size_t>(std::lround(wavelength - SpectralCurve::kFirst));
-      if (i > 0) below += 0.5 * (density.Entry(i - 1) + density.Entry(i));
-      return below;
-    });
-  }
-
-  // The wavelength below which the density has the integral u. Within a nanometre the density is linear.
-  double Invert(double u) const {
-    size_t low = 0, high = SpectralCurve::kCount - 1;
-    while (high - low > 1) {
-      const size_t middle = (low + high) / 2;
-      (cumulative.Entry(middle) <= u ? low : high) = middle;
+    for (int c = 0; c < 3; ++c) {
+      rgb[c] = SpectralCurve([&](double wavelength) {
+        return XyzToRec709(weighted(wavelength) / white * XyzOfChromaticity(0.3127, 0.3290))[c];
+      });
     }
-    const double a = density.Entry(low), slope = density.Entry(high) - a, rest = u - cumulative.Entry(low);
-    // a t + slope t² / 2 = rest
-    const double t = 2 * rest / (a + std::sqrt(std::max(a * a + 2 * slope * rest, 0.0)));
-    return SpectralCurve::WavelengthOf(low) + std::clamp(t, 0.0, 1.0);
   }
 };
 
@@ -114,6 +88,28 @@ const Tables& TheTables() {
   static const Tables tables;
   return tables;
 }
+
+// The density of wavelengths, proportional to 1 / cosh²(slope (λ - middle)). It is smooth: then a regular grid of a few
+// places integrates the smooth functions that spectra mostly are, which a density in proportion to the weights, with
+// their three peaks, would spoil. Of this family the variance of a single wavelength is least here.
+class Density {
+ public:
+  double At(double wavelength) const {
+    const double c = std::cosh(kSlope * (wavelength - kMiddle));
+    return kSlope / ((high_ - low_) * c * c);
+  }
+  // The wavelength below which the integral is u.
+  double Invert(double u) const {
+    const double wavelength = kMiddle + std::atanh(low_ + u * (high_ - low_)) / kSlope;
+    return std::clamp(wavelength, static_cast<double>(SpectralCurve::kFirst),
+                      static_cast<double>(SpectralCurve::kLast));
+  }
+
+ private:
+  static constexpr double kMiddle = 535, kSlope = 0.009;
+  double low_ = std::tanh(kSlope * (SpectralCurve::kFirst - kMiddle)),
+         high_ = std::tanh(kSlope * (SpectralCurve::kLast - kMiddle));
+};
 
 double FractionOf(double x) {
   return x - std::floor(x);
@@ -132,11 +128,12 @@ Color UpsamplingBasis(double wavelength) {
 
 Wavelengths::Wavelengths(double u) {
   const Tables& tables = TheTables();
+  const Density density;
   for (int lane = 0; lane < kLanes; ++lane) {
-    const double wavelength = tables.Invert(std::clamp((lane + u) / kLanes, 0.0, 1.0));
+    const double wavelength = density.Invert(std::clamp((lane + u) / kLanes, 0.0, 1.0));
     wavelengths_[static_cast<size_t>(lane)] = wavelength;
     basis_[static_cast<size_t>(lane)] = UpsamplingBasis(wavelength);
-    const double perDensity = 1 / (kLanes * tables.density.At(wavelength));
+    const double perDensity = 1 / (kLanes * density.At(wavelength));
     for (int c = 0; c < 3; ++c) {
       const double weight = tables.rgb[c].At(wavelength) * perDensity;
       toRgb_[lane][c] = static_cast<float>(weight);
@@ -151,15 +148,12 @@ Wavelengths::Wavelengths(double u) {
 Wavelengths Wavelengths::OfPass(uint64_t seed, uint64_t pass) {
   constexpr double kGolden = 0.6180339887498949, kPerSeed = 0.7548776662466927;
   const double shift = FractionOf(kPerSeed * static_cast<double>(1 + seed % (uint64_t{1} << 20)));
-  // Folded, so that it ends where it begins: sums over a regular grid of a function that jumps there would depend on
-  // the shift, and converge more slowly.
-  const auto folded = [](double u) { return Wavelengths(1 - std::abs(2 * u - 1)); };
-  if (pass == 0) return folded(shift);
+  if (pass == 0) return Wavelengths(shift);
   const uint64_t places = std::bit_floor(pass), number = pass - places;
   // The odd step nearest to places · golden section visits all places once.
   const auto step = static_cast<uint64_t>(kGolden * static_cast<double>(places)) | 1;
   const uint64_t place = number * step % places;
-  return folded(FractionOf(shift + (static_cast<double>(place) + 0.5) / static_cast<double>(places)));
+  return Wavelengths(FractionOf(shift + (static_cast<double>(place) + 0.5) / static_cast<double>(places)));
 }
 
 Color Wavelengths::FromRgb(const Color& rgb) const {

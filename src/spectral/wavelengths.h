@@ -22,8 +22,8 @@ class Wavelengths {
  public:
   static constexpr int kLanes = 3;
 
-  // Those at u, in [0,1): u/3, (u + 1)/3 and (u + 2)/3 by the inverse of a density that is about that of their weights
-  // in the picture.
+  // Those at u, in [0,1): u/3, (u + 1)/3 and (u + 2)/3 by the inverse of the integral of a smooth density that is large
+  // where the eye sees much.
   explicit Wavelengths(double u);
   // Those of a pass, with an order that is regular after 2^n passes. `seed` moves all of them.
   static Wavelengths OfPass(uint64_t seed, uint64_t pass);
