@@ -46,8 +46,8 @@ std::string RoomOf(const std::string& path) {
 }
 
 // The rooms in the order of the house: each may include itself and those of the set.
-const std::set<std::string> kCore = {"base",  "math", "sampling", "scene",    "geometry",
-                                     "media", "film", "textures", "materials"};
+const std::set<std::string> kCore = {"base",     "math",  "spectral", "sampling", "scene",
+                                     "geometry", "media", "film",     "textures", "materials"};
 std::set<std::string> With(std::set<std::string> rooms, const std::set<std::string>& more) {
   rooms.insert(more.begin(), more.end());
   return rooms;
@@ -55,15 +55,16 @@ std::set<std::string> With(std::set<std::string> rooms, const std::set<std::stri
 const std::map<std::string, std::set<std::string>> kMayKnow = {
     {"base", {}},
     {"math", {"base"}},
+    {"spectral", {"base", "math"}},
     {"sampling", {"base", "math"}},
-    {"scene", {"base", "math"}},
+    {"scene", {"base", "math", "spectral"}},
     {"geometry", {"base", "math"}},
-    {"media", {"base", "math", "sampling", "scene", "geometry"}},
+    {"media", {"base", "math", "spectral", "sampling", "scene", "geometry"}},
     {"film", {"base", "math"}},
     {"denoise", {"base", "math", "film"}},
-    {"textures", {"base", "math", "sampling", "scene", "geometry", "film"}},
-    {"materials", {"base", "math", "sampling", "scene", "geometry", "media", "film", "textures"}},
-    {"camera", {"base", "math", "sampling", "scene", "geometry"}},
+    {"textures", {"base", "math", "spectral", "sampling", "scene", "geometry", "film"}},
+    {"materials", {"base", "math", "spectral", "sampling", "scene", "geometry", "media", "film", "textures"}},
+    {"camera", {"base", "math", "spectral", "sampling", "scene", "geometry"}},
     {"lights", kCore},
     {"suite", With(kCore, {"lights"})},
     {"integrators", With(kCore, {"camera", "lights"})},

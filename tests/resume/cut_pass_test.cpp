@@ -32,7 +32,7 @@ struct OwnRender {
       : integrator(MakeIntegrator(built.scene, built.settings)),
         film(built.settings.width, built.settings.height, built.settings.crop, built.scene.outputs->Names()) {
     const RenderSettings& s = built.settings;
-    if (withTechniques) techniques.emplace(s.width, s.height, s.crop, s.MaxDepth(), s.sensor);
+    if (withTechniques) techniques.emplace(s.width, s.height, s.crop, s.MaxDepth());
     render.emplace(built.scene, *integrator, s, 2, film, techniques ? &*techniques : nullptr);
   }
   std::unique_ptr<Integrator> integrator;
