@@ -139,7 +139,7 @@ AttributeEnd
 )");
   // Light by wavelength: glass that disperses strongly, rough where the camera sees it and smooth where it does not;
   // spectra of a lamp and of a metal, a texture, a coloured pane.
-  add("dispersion", FilmWith("box") + kDown + World(5) + R"(
+  AgreementScene& dispersion = add("dispersion", FilmWith("box") + kDown + World(5) + R"(
 Texture "checks" "spectrum" "checkerboard" "float uscale" 8 "float vscale" 8 "rgb tex1" [0.7 0.2 0.1] "rgb tex2" [0.1 0.5 0.8]
 AttributeBegin
 Material "diffuse" "texture reflectance" "checks"
@@ -165,8 +165,9 @@ AttributeBegin
 AreaLightSource "diffuse" "blackbody L" 3200 "float scale" 8
 Translate 0.3 2.3 -1.6 Shape "sphere" "float radius" 0.4
 AttributeEnd
-)")
-      .samples = 256;
+)");
+  dispersion.samples = 384;
+  dispersion.lightSamples = 640;
   // A smooth pane between lamp and ground, out of the camera's sight: paths from the ground pass it and meet the lamp.
   add("thin_pane", FilmWith("box") + kDown + World(5) + kGround + "Translate 0 0 -0.9\n" +
                        Square("\"rgb L\" [9 9 9]", 1.0) +
