@@ -17,6 +17,7 @@ namespace lampyr {
 
 class ByteReader;
 class ByteWriter;
+class GainEstimate;
 
 class PathLearning {
  public:
@@ -36,8 +37,8 @@ class PathLearning {
   // True until enough is known; recording takes time.
   bool IsRecording() const { return isRecording_; }
 
-  // Variance of the camera paths without a guide over that with the candidate, as estimated by the last verdict, for
-  // errors relative to the picture.
+  // Variance of the camera paths without a guide over that with the candidate, for errors relative to the picture: what
+  // it is at least by the last verdict (GainEstimate).
   double Gain() const { return gain_; }
   size_t Regions() const { return guide_ ? guide_->Regions() : 0; }
 
@@ -52,11 +53,15 @@ class PathLearning {
   struct Block {
     double found = 0, squares = 0, count = 0;
   };
+  // The least gain for which a guide is used.
+  double Worthwhile() const;
+  // True for a gain that may become worthwhile with more events.
+  bool IsPromising(double gain) const;
   size_t BlockOf(uint32_t pixel) const;
   void CountBlocks();
   std::vector<double> BlockScales() const;
-  void Test(const std::vector<double>& scales);
-  void Keep(const std::vector<double>& scales);
+  GainEstimate Test(const std::vector<double>& scales) const;
+  bool Keep(const std::vector<double>& scales);
 
   int width_, height_;
   size_t recorded_;
