@@ -44,13 +44,11 @@ double GainEstimate::StandardDeviation(double gain) const {
   return std::sqrt(std::max(squares - sum * sum / count_, 0.0));
 }
 
-double GainEstimate::LowerBound() const {
-  return Bisect(0, Ratio(), [&](double gain) { return Unguided() - gain * Guided() > StandardDeviation(gain); });
-}
-
-double GainEstimate::UpperBound() const {
-  return Bisect(Ratio(), kMostGain,
-                [&](double gain) { return gain * Guided() - Unguided() < StandardDeviation(gain); });
+double GainEstimate::Bound(double deviations) const {
+  const auto isBelow = [&](double gain) {
+    return Unguided() - gain * Guided() > -deviations * StandardDeviation(gain);
+  };
+  return deviations < 0 ? Bisect(0, Ratio(), isBelow) : Bisect(Ratio(), kMostGain, isBelow);
 }
 
 }  // namespace lampyr

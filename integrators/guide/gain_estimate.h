@@ -6,7 +6,7 @@ namespace lampyr {
 // Each path tells its second moment without the guide and with it. Both are noisy, and of the same path, so that the
 // noise of their difference is less than that of each: bounds of the ratio g are where
 //   Var(unguided) - g · Var(guided)
-// differs from 0 by a standard deviation of its sum over the paths ([Fieller54]).
+// differs from 0 by a number of standard deviations of its sum over the paths ([Fieller54]).
 class GainEstimate {
  public:
   // Second moments of one path.
@@ -17,8 +17,8 @@ class GainEstimate {
   // Number of paths of equal second moments, with the guide, whose sum would be as uncertain.
   double EffectiveCount() const;
   double Ratio() const { return Unguided() / Guided(); }
-  double LowerBound() const;
-  double UpperBound() const;
+  // Bound of the ratio: a lower one for negative `deviations`, an upper one for positive ones.
+  double Bound(double deviations) const;
 
  private:
   // Sums of the variances. Those of nearly noiseless pictures are differences of what is almost equal.

@@ -16,17 +16,20 @@ namespace {
 constexpr double kMostPaths = 1 << 17;
 constexpr size_t kMostKept = size_t{1} << 17;
 constexpr size_t kMostEvents = size_t{1} << 25;  // of a file
-// As long as no guide is known to help, paths are recorded for each sample per pixel up to a number that suffices for a
-// first verdict, and beyond that a share of all. A recorded path costs about half as much again as tracing it: learning
-// is to be a few percent of a short render, and less of a long one.
-constexpr double kExploredPerSample = 2048, kExplored = 16384, kExploredShare = 1.0 / 48;
-// Paths recorded for each sample per pixel with a guide in use, or this share of all, if that is more: better guides
-// pay for more records.
-constexpr double kUsedPerSample = 4096, kUsedShare = 1.0 / 16;
+// Paths recorded for each sample per pixel: at least so many, or this share of all paths, if that is more. A recorded
+// path that found light at each vertex costs about half as much again as tracing it, so that learning is a few percent
+// of a short render, and less of a long one. A guide in use gets more: better ones pay for more records.
+constexpr double kPathsPerSample = 2048, kShareOfPaths = 1.0 / 48, kMoreInUse = 4;
+// Events of a path that are kept, up to which recording a path costs less than fitting its events; and the most that
+// more paths are recorded where few find anything.
+constexpr double kFewEvents = 0.5, kEventsOfPath = 2, kMostMore = 4;
 // Least gain in variance of camera paths for which a guide is used: what its samples cost. Where light paths are
 // guided, too, the gain is larger than what is tested: weights leave to camera paths what those do well, and would
 // leave them more with a guide. Measured in bdpt: 1.3 of door was 2.4, 1.05 of lamp, ring and still-life 1.1.
 constexpr double kWorthwhile = 1.35, kWorthwhileForBoth = 1.2;
+// Standard deviations of the gain by which it is above what is worthwhile before a guide is used, and below what is
+// promising before recording ends.
+constexpr double kSure = 1, kSurelyNot = 2;
 // Smallest effective number of paths for a verdict.
 constexpr double kFewestTested = 16;
 // Samples per pixel at which recording ends: when most has been learned, and when guiding would not help.
@@ -63,18 +66,17 @@ double PathLearning::Worthwhile() const {
 double PathLearning::Fraction() const {
   const uint32_t passes = std::max(samples_, 1u);  // until the next milestone
   const auto pixels = static_cast<double>(recorded_);
-  double paths;  // to record in them
-  if (always_ || guide_) {
-    paths = passes * std::max(kUsedPerSample, kUsedShare * pixels);
-  } else if (hasVerdict_ && IsPromising(gain_)) {
-    paths = passes * std::max(kExploredPerSample, kExploredShare * pixels);
-  } else {
-    const auto until = [&](uint32_t samples) {
-      return std::max(std::min(samples * kExploredPerSample, kExplored), samples * kExploredShare * pixels);
-    };
-    paths = until(samples_ + passes) - until(samples_);
+  const bool isUsed = always_ || guide_;
+  double perSample = kShareOfPaths * pixels;
+  if (isUsed || !seemsHopeless_) {
+    double counted = 0;
+    for (const Block& block : blocks_) counted += block.count;
+    const double eventsOfPath = counted > 0 ? static_cast<double>(kept_.size()) / counted : kEventsOfPath;
+    const double more = (kEventsOfPath + kFewEvents) / (eventsOfPath + kFewEvents);
+    perSample = std::max(perSample, kPathsPerSample * std::clamp(more, 1.0, kMostMore));
   }
-  return std::min(paths, kMostPaths) / (passes * pixels);
+  if (isUsed) perSample *= kMoreInUse;
+  return std::min(passes * perSample, kMostPaths) / (passes * pixels);
 }
 
 size_t PathLearning::BlockOf(uint32_t pixel) const {
@@ -225,20 +227,19 @@ bool PathLearning::Decide(uint32_t samples, int threads) {
   latest_ = latest_.Sorted();
   CountBlocks();
   const std::vector<double> scales = BlockScales();
-  bool isWorthwhile = guide_ != nullptr, isHopeless = false;
+  bool isWorthwhile = guide_ != nullptr;
   // Weights of paths that were guided are not those of others: what would have been without a guide is not known then.
   if (tried_ && !(forLight_ && guide_)) {
     const GainEstimate gain = Test(scales);
     if (gain.EffectiveCount() >= kFewestTested) {
-      hasVerdict_ = true;
-      gain_ = gain.LowerBound();
-      isWorthwhile = (guide_ ? gain.Ratio() : gain_) > Worthwhile();
-      isHopeless = samples >= kHopeless && !isWorthwhile && !IsPromising(gain.UpperBound());
+      gain_ = gain.Ratio();
+      isWorthwhile = (guide_ ? gain_ : gain.Bound(-kSure)) > Worthwhile();
+      seemsHopeless_ = !isWorthwhile && !IsPromising(gain.Bound(kSurelyNot));
     }
   }
   const bool hasNews = Keep(scales);
   latest_.Clear();
-  if (!always_ && (isHopeless || (samples >= kLearned && !isWorthwhile))) {
+  if (!always_ && !isWorthwhile && samples >= (seemsHopeless_ ? kHopeless : kLearned)) {
     tried_ = nullptr;
   } else if (hasNews || !tried_) {
     // The guide put to use is made of more events than the one that was tested.
@@ -255,7 +256,7 @@ bool PathLearning::Decide(uint32_t samples, int threads) {
 
 void PathLearning::Save(ByteWriter& bytes) const {
   bytes.Value<uint8_t>(isRecording_ ? 1 : 0);
-  bytes.Value<uint8_t>(hasVerdict_ ? 1 : 0);
+  bytes.Value<uint8_t>(seemsHopeless_ ? 1 : 0);
   bytes.Value<uint8_t>(tried_ ? 1 : 0);
   bytes.Value<uint8_t>(guide_ ? 1 : 0);
   bytes.Value(samples_);
@@ -280,7 +281,7 @@ bool IsSound(const PlacedEvent& event) {
 
 void PathLearning::Load(ByteReader& bytes) {
   isRecording_ = bytes.Flag();
-  hasVerdict_ = bytes.Flag();
+  seemsHopeless_ = bytes.Flag();
   const bool hasTried = bytes.Flag(), hasGuide = bytes.Flag();
   samples_ = bytes.Value<uint32_t>();
   gain_ = bytes.Value<double>();

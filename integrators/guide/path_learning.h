@@ -37,8 +37,8 @@ class PathLearning {
   // True until enough is known; recording takes time.
   bool IsRecording() const { return isRecording_; }
 
-  // Variance of the camera paths without a guide over that with the candidate, for errors relative to the picture: what
-  // it is at least by the last verdict (GainEstimate).
+  // Variance of the camera paths without a guide over that with the candidate, as estimated by the last verdict, for
+  // errors relative to the picture.
   double Gain() const { return gain_; }
   size_t Regions() const { return guide_ ? guide_->Regions() : 0; }
 
@@ -67,8 +67,9 @@ class PathLearning {
   size_t recorded_;
   int blockSize_, blocksX_;
   bool forLight_, always_;
-  bool isRecording_ = true, hasVerdict_ = false;
-  uint32_t samples_ = 0;  // at the last milestone
+  bool isRecording_ = true;
+  bool seemsHopeless_ = false;  // by the last verdict
+  uint32_t samples_ = 0;        // at the last milestone
   double gain_ = 1;
   std::shared_ptr<const PathGuide> guide_;  // the guide in use, or null
   std::shared_ptr<const PathGuide> tried_;  // the candidate, or null
