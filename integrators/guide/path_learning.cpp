@@ -16,17 +16,18 @@ namespace {
 constexpr double kMostPaths = 1 << 17;
 constexpr size_t kMostKept = size_t{1} << 17;
 constexpr size_t kMostEvents = size_t{1} << 25;  // of a file
-// Paths recorded for each sample per pixel: at least so many, or this share of all paths, if that is more. A recorded
-// path that found light at each vertex costs about half as much again as tracing it, so that learning is a few percent
-// of a short render, and less of a long one. A guide in use gets more: better ones pay for more records.
-constexpr double kPathsPerSample = 2048, kShareOfPaths = 1.0 / 48, kMoreInUse = 4;
-// Events of a path that are kept, up to which recording a path costs less than fitting its events; and the most that
-// more paths are recorded where few find anything.
-constexpr double kFewEvents = 0.5, kEventsOfPath = 2, kMostMore = 4;
+// Paths recorded in the first sample per pixel, for a candidate that is worth a test; and for each later one, or this
+// share of all paths, if that is more. A recorded path that found light at each vertex costs about half as much again
+// as tracing it, so that learning is a few percent of a short render, and less of a long one. A guide in use gets more:
+// better ones pay for more records.
+constexpr double kFirstPaths = 6144, kPathsPerSample = 1024, kShareOfPaths = 1.0 / 48, kMoreInUse = 6;
+// Events kept of a path where those numbers apply. Fitting them is most of what a path costs; where paths keep fewer,
+// more paths are recorded: so many times at most.
+constexpr double kEventsOfPath = 2, kMostMore = 6;
 // Least gain in variance of camera paths for which a guide is used: what its samples cost. Where light paths are
 // guided, too, the gain is larger than what is tested: weights leave to camera paths what those do well, and would
 // leave them more with a guide. Measured in bdpt: 1.3 of door was 2.4, 1.05 of lamp, ring and still-life 1.1.
-constexpr double kWorthwhile = 1.35, kWorthwhileForBoth = 1.2;
+constexpr double kWorthwhile = 1.3, kWorthwhileForBoth = 1.2;
 // Standard deviations of the gain by which it is above what is worthwhile before a guide is used, and below what is
 // promising before recording ends.
 constexpr double kSure = 1, kSurelyNot = 2;
@@ -68,11 +69,12 @@ double PathLearning::Fraction() const {
   const auto pixels = static_cast<double>(recorded_);
   const bool isUsed = always_ || guide_;
   double perSample = kShareOfPaths * pixels;
-  if (isUsed || !seemsHopeless_) {
+  if (samples_ == 0) {
+    perSample = std::max(perSample, kFirstPaths);
+  } else if (isUsed || !seemsHopeless_) {
     double counted = 0;
     for (const Block& block : blocks_) counted += block.count;
-    const double eventsOfPath = counted > 0 ? static_cast<double>(kept_.size()) / counted : kEventsOfPath;
-    const double more = (kEventsOfPath + kFewEvents) / (eventsOfPath + kFewEvents);
+    const double more = kEventsOfPath * counted / static_cast<double>(kept_.size() + 1);
     perSample = std::max(perSample, kPathsPerSample * std::clamp(more, 1.0, kMostMore));
   }
   if (isUsed) perSample *= kMoreInUse;
