@@ -28,9 +28,9 @@ constexpr double kEventsOfPath = 2, kMostMore = 6;
 // guided, too, the gain is larger than what is tested: weights leave to camera paths what those do well, and would
 // leave them more with a guide. Measured in bdpt: 1.3 of door was 2.4, 1.05 of lamp, ring and still-life 1.1.
 constexpr double kWorthwhile = 1.3, kWorthwhileForBoth = 1.2;
-// Standard deviations of the gain by which it is above what is worthwhile before a guide is used, and below what is
-// promising before recording ends.
-constexpr double kSure = 1, kSurelyNot = 2;
+// Standard deviations by which the gain is above what is worthwhile before a guide is used, and by which it is above 1,
+// so that one path of all cannot decide; and below what is promising before recording ends.
+constexpr double kSure = 1, kSurelyGains = 2, kSurelyNot = 2;
 // Smallest effective number of paths for a verdict.
 constexpr double kFewestTested = 16;
 // Samples per pixel at which recording ends: when most has been learned, and when guiding would not help.
@@ -235,7 +235,7 @@ bool PathLearning::Decide(uint32_t samples, int threads) {
     const GainEstimate gain = Test(scales);
     if (gain.EffectiveCount() >= kFewestTested) {
       gain_ = gain.Ratio();
-      isWorthwhile = (guide_ ? gain_ : gain.Bound(-kSure)) > Worthwhile();
+      isWorthwhile = guide_ ? gain_ > Worthwhile() : gain.Bound(-kSure) > Worthwhile() && gain.Bound(-kSurelyGains) > 1;
       seemsHopeless_ = !isWorthwhile && !IsPromising(gain.Bound(kSurelyNot));
     }
   }
