@@ -13,8 +13,8 @@ namespace {
 constexpr size_t kLobes = DirectionMixture::kLobes;
 // Iterations after each doubling of the lobes.
 constexpr int kIterations = 4;
-// Until there are all lobes, every so many-th event is looked at.
-constexpr size_t kStride = 3;
+// Every so many-th event is looked at until there are all lobes, and then until the last iteration.
+constexpr size_t kStride = 3, kStrideOfAll = 2;
 // Effective number of uniformly distributed events that each lobe is mixed with: few events do not make a narrow lobe.
 constexpr double kPriorEvents = 0.3;
 // A region whose events have a smaller effective number is not guided.
@@ -112,7 +112,7 @@ class Fit {
       Split();
       const bool isLast = lobes == kLobes;
       for (int i = 1; i <= kIterations; ++i) {
-        Expect(isLast ? 1 : kStride, !isLast && i == kIterations);
+        Expect(!isLast ? kStride : i < kIterations ? kStrideOfAll : 1, !isLast && i == kIterations);
         Maximize();
       }
     }

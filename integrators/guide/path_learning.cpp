@@ -6,34 +6,43 @@
 #include "base/byte_stream.h"
 #include "base/error.h"
 #include "geometry/rounding.h"
+#include "integrators/guide/gain_estimate.h"
 
 namespace lampyr {
 
 namespace {
 
-// Paths recorded between two milestones, and events kept of all.
+// Most paths recorded between two milestones, and events kept of all.
 constexpr double kMostPaths = 1 << 17;
 constexpr size_t kMostKept = size_t{1} << 17;
 constexpr size_t kMostEvents = size_t{1} << 25;  // of a file
-// Least gain in variance of camera paths for which a guide is used: what its densities cost, and some doubt. Where
-// light paths are guided, too, the gain is larger than what is tested: weights leave to camera paths what those do
-// well, and would leave them more with a guide. Measured in bdpt: 1.3 of door was 2.4, 1.05 of lamp, ring and
-// still-life 1.1.
-constexpr double kWorthwhile = 1.6, kWorthwhileForBoth = 1.2;
+// Paths recorded in the first sample per pixel, for a candidate that is worth a test; and for each later one, or this
+// share of all paths, if that is more. A recorded path that found light at each vertex costs about half as much again
+// as tracing it, so that learning is a few percent of a short render, and less of a long one. A guide in use gets more:
+// better ones pay for more records.
+constexpr double kFirstPaths = 6144, kPathsPerSample = 1024, kShareOfPaths = 1.0 / 48, kMoreInUse = 6;
+// Events kept of a path where those numbers apply. Fitting them is most of what a path costs; where paths keep fewer,
+// more paths are recorded: so many times at most.
+constexpr double kEventsOfPath = 2, kMostMore = 6;
+// Least gain in variance of camera paths for which a guide is used: what its samples cost. Where light paths are
+// guided, too, the gain is larger than what is tested: weights leave to camera paths what those do well, and would
+// leave them more with a guide. Measured in bdpt: 1.3 of door was 2.4, 1.05 of lamp, ring and still-life 1.1.
+constexpr double kWorthwhile = 1.3, kWorthwhileForBoth = 1.2;
+// Standard deviations by which the gain is above what is worthwhile before a guide is used, and by which it is above 1,
+// so that one path of all cannot decide; and below what is promising before recording ends.
+constexpr double kSure = 1, kSurelyGains = 2, kSurelyNot = 2;
 // Smallest effective number of paths for a verdict.
 constexpr double kFewestTested = 16;
 // Samples per pixel at which recording ends: when most has been learned, and when guiding would not help.
-constexpr uint32_t kLearned = 64, kHopeless = 8, kLastHope = 32;
+constexpr uint32_t kLearned = 64, kHopeless = 8;
 // Part of the gain that is worthwhile for which a guide that is not used yet is given more samples.
 constexpr double kPromising = 0.3;
+// A guide is fitted anew when at least this share of the events is new.
+constexpr double kEnoughNew = 0.25;
 // Blocks of pixels across the image, and pixels across a block, over which means are taken.
 constexpr int kBlocks = 32, kLeastBlock = 4;
 // Brightness that is added to that of a block, in means of the image: the error of dark parts counts less.
 constexpr double kDark = 0.1;
-
-double SumsCount(double sum, double squares) {
-  return squares > 0 ? sum * sum / squares : 0;
-}
 
 }  // namespace
 
@@ -47,9 +56,29 @@ PathLearning::PathLearning(int width, int height, size_t recorded, bool forLight
       always_(always),
       blocks_(static_cast<size_t>(blocksX_) * static_cast<size_t>((height + blockSize_ - 1) / blockSize_)) {}
 
+bool PathLearning::IsPromising(double gain) const {
+  return gain - 1 > kPromising * (Worthwhile() - 1);
+}
+
+double PathLearning::Worthwhile() const {
+  return forLight_ ? kWorthwhileForBoth : kWorthwhile;
+}
+
 double PathLearning::Fraction() const {
-  const auto passes = static_cast<double>(std::max(samples_, 1u));  // until the next milestone
-  return kMostPaths / (passes * static_cast<double>(recorded_));
+  const uint32_t passes = std::max(samples_, 1u);  // until the next milestone
+  const auto pixels = static_cast<double>(recorded_);
+  const bool isUsed = always_ || guide_;
+  double perSample = kShareOfPaths * pixels;
+  if (samples_ == 0) {
+    perSample = std::max(perSample, kFirstPaths);
+  } else if (isUsed || !seemsHopeless_) {
+    double counted = 0;
+    for (const Block& block : blocks_) counted += block.count;
+    const double more = kEventsOfPath * counted / static_cast<double>(kept_.size() + 1);
+    perSample = std::max(perSample, kPathsPerSample * std::clamp(more, 1.0, kMostMore));
+  }
+  if (isUsed) perSample *= kMoreInUse;
+  return std::min(passes * perSample, kMostPaths) / (passes * pixels);
 }
 
 size_t PathLearning::BlockOf(uint32_t pixel) const {
@@ -91,8 +120,9 @@ std::vector<double> PathLearning::BlockScales() const {
 // Tests the candidate on the latest paths. A path found X = Σ c_k, c_k after k events. Sampled with other densities,
 // r_j times those that it had up to its j-th event, it would have found c_k / r_k, and
 //   E[X²] = E[Σ_k c_k² / r_k + 2 Σ_(j<k) c_j c_k / r_j].
-void PathLearning::Test(const std::vector<double>& scales) {
-  double unguided = 0, aimed = 0, squares = 0, ofMeans = 0;
+GainEstimate PathLearning::Test(const std::vector<double>& scales) const {
+  GainEstimate gain;
+  double ofMeans = 0;
   for (size_t i = 0; i < latest_.Paths().size(); ++i) {
     const RecordedPath& path = latest_.Paths()[i];
     const double scale = scales[BlockOf(path.pixel)];
@@ -125,9 +155,7 @@ void PathLearning::Test(const std::vector<double>& scales) {
       ratioAimed *= candidate / guidance;
     }
     add(static_cast<double>(path.found));
-    unguided += sumUnguided;
-    aimed += sumAimed;
-    squares += sumAimed * sumAimed;
+    gain.Add(sumUnguided, sumAimed);
   }
   std::vector<double> counts(blocks_.size());
   for (const RecordedPath& path : latest_.Paths()) ++counts[BlockOf(path.pixel)];
@@ -139,11 +167,8 @@ void PathLearning::Test(const std::vector<double>& scales) {
         std::max(block.found * block.found - block.squares, 0.0) / (block.count * (block.count - 1));
     ofMeans += counts[i] * scales[i] * scales[i] * squaredMean;
   }
-  const double count = SumsCount(aimed, squares);
-  if (!(count >= kFewestTested)) return;
-  const double least = 1e-3 * aimed;  // of nearly noiseless pictures the difference is rounding
-  gain_ = std::max(unguided - ofMeans, least) / std::max(aimed - ofMeans, least);
-  hasVerdict_ = true;
+  gain.SetSquaredMeans(ofMeans);
+  return gain;
 }
 
 namespace {
@@ -169,8 +194,9 @@ void Thin(std::vector<PlacedEvent>& kept) {
 
 }  // namespace
 
-// Adds the latest events to those kept.
-void PathLearning::Keep(const std::vector<double>& scales) {
+// Adds the latest events to those kept. True if they are enough to fit a guide anew.
+bool PathLearning::Keep(const std::vector<double>& scales) {
+  const size_t before = kept_.size();
   for (size_t i = 0; i < latest_.Paths().size(); ++i) {
     const RecordedPath& path = latest_.Paths()[i];
     const auto scale = static_cast<float>(scales[BlockOf(path.pixel)]);
@@ -191,39 +217,48 @@ void PathLearning::Keep(const std::vector<double>& scales) {
       }
     }
   }
+  const size_t all = kept_.size();
   Thin(kept_);
   Thin(keptOfLight_);
+  return static_cast<double>(all - before) > kEnoughNew * static_cast<double>(all);
 }
 
 bool PathLearning::Decide(uint32_t samples, int threads) {
-  const bool wasInUse = guide_ != nullptr;
+  const std::shared_ptr<const PathGuide> before = guide_;
   samples_ = samples;
   latest_ = latest_.Sorted();
   CountBlocks();
   const std::vector<double> scales = BlockScales();
+  bool isWorthwhile = guide_ != nullptr;
   // Weights of paths that were guided are not those of others: what would have been without a guide is not known then.
-  if (tried_ && !(forLight_ && guide_)) Test(scales);
-  Keep(scales);
+  if (tried_ && !(forLight_ && guide_)) {
+    const GainEstimate gain = Test(scales);
+    if (gain.EffectiveCount() >= kFewestTested) {
+      gain_ = gain.Ratio();
+      isWorthwhile = guide_ ? gain_ > Worthwhile() : gain.Bound(-kSure) > Worthwhile() && gain.Bound(-kSurelyGains) > 1;
+      seemsHopeless_ = !isWorthwhile && !IsPromising(gain.Bound(kSurelyNot));
+    }
+  }
+  const bool hasNews = Keep(scales);
   latest_.Clear();
-  std::vector<PlacedEvent> ofCamera = kept_, ofLight = keptOfLight_;
-  tried_ = std::make_shared<const PathGuide>(ofCamera, ofLight, threads);
-  // The guide put to use is made of more events than the one that was tested.
-  const double worthwhile = forLight_ ? kWorthwhileForBoth : kWorthwhile;
-  guide_ = always_ || (hasVerdict_ && gain_ > worthwhile) ? tried_ : nullptr;
-  const bool isPromising = !hasVerdict_ || gain_ - 1 > kPromising * (worthwhile - 1);
-  const uint32_t hopeless = isPromising ? kLastHope : kHopeless;
-  if (samples >= (always_ || guide_ ? kLearned : hopeless)) {
+  if (!always_ && !isWorthwhile && samples >= (seemsHopeless_ ? kHopeless : kLearned)) {
+    tried_ = nullptr;
+  } else if (hasNews || !tried_) {
+    // The guide put to use is made of more events than the one that was tested.
+    std::vector<PlacedEvent> ofCamera = kept_, ofLight = keptOfLight_;
+    tried_ = std::make_shared<const PathGuide>(ofCamera, ofLight, threads);
+  }
+  guide_ = always_ || isWorthwhile ? tried_ : nullptr;
+  if (!tried_ || samples >= kLearned) {
     isRecording_ = false;
     kept_ = keptOfLight_ = {};
-    latest_ = {};
-    tried_ = guide_;
   }
-  return wasInUse || guide_;
+  return guide_ != before;
 }
 
 void PathLearning::Save(ByteWriter& bytes) const {
   bytes.Value<uint8_t>(isRecording_ ? 1 : 0);
-  bytes.Value<uint8_t>(hasVerdict_ ? 1 : 0);
+  bytes.Value<uint8_t>(seemsHopeless_ ? 1 : 0);
   bytes.Value<uint8_t>(tried_ ? 1 : 0);
   bytes.Value<uint8_t>(guide_ ? 1 : 0);
   bytes.Value(samples_);
@@ -248,7 +283,7 @@ bool IsSound(const PlacedEvent& event) {
 
 void PathLearning::Load(ByteReader& bytes) {
   isRecording_ = bytes.Flag();
-  hasVerdict_ = bytes.Flag();
+  seemsHopeless_ = bytes.Flag();
   const bool hasTried = bytes.Flag(), hasGuide = bytes.Flag();
   samples_ = bytes.Value<uint32_t>();
   gain_ = bytes.Value<double>();

@@ -17,6 +17,7 @@ namespace lampyr {
 
 class ByteReader;
 class ByteWriter;
+class GainEstimate;
 
 class PathLearning {
  public:
@@ -52,18 +53,23 @@ class PathLearning {
   struct Block {
     double found = 0, squares = 0, count = 0;
   };
+  // The least gain for which a guide is used.
+  double Worthwhile() const;
+  // True for a gain that may become worthwhile with more events.
+  bool IsPromising(double gain) const;
   size_t BlockOf(uint32_t pixel) const;
   void CountBlocks();
   std::vector<double> BlockScales() const;
-  void Test(const std::vector<double>& scales);
-  void Keep(const std::vector<double>& scales);
+  GainEstimate Test(const std::vector<double>& scales) const;
+  bool Keep(const std::vector<double>& scales);
 
   int width_, height_;
   size_t recorded_;
   int blockSize_, blocksX_;
   bool forLight_, always_;
-  bool isRecording_ = true, hasVerdict_ = false;
-  uint32_t samples_ = 0;  // at the last milestone
+  bool isRecording_ = true;
+  bool seemsHopeless_ = false;  // by the last verdict
+  uint32_t samples_ = 0;        // at the last milestone
   double gain_ = 1;
   std::shared_ptr<const PathGuide> guide_;  // the guide in use, or null
   std::shared_ptr<const PathGuide> tried_;  // the candidate, or null

@@ -51,12 +51,12 @@ class PathRecords {
   void SetDistance(float distance) {
     if (events_.size() > paths_.back().firstEvent) events_.back().distance = distance;
   }
-  // Ends the path, which has found the radiance `found`; drops it if that is not finite.
+  // Ends the path, which has found the radiance `found`; drops it if that is not finite. The events of a path that
+  // found nothing teach nothing.
   void EndPath(float found) {
     paths_.back().found = found;
-    if (std::isfinite(found)) return;
-    events_.resize(paths_.back().firstEvent);
-    paths_.pop_back();
+    if (found == 0 || !std::isfinite(found)) events_.resize(paths_.back().firstEvent);
+    if (!std::isfinite(found)) paths_.pop_back();
   }
 
   void Clear() {

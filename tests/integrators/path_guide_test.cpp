@@ -7,6 +7,7 @@
 
 #include "base/byte_stream.h"
 #include "base/error.h"
+#include "integrators/guide/gain_estimate.h"
 #include "integrators/guide/path_learning.h"
 #include "integrators/walk/vertex.h"
 #include "render/pass_sequence.h"
@@ -301,6 +302,99 @@ TEST(PathGuide, ChildrenBeyondTheEndAreRefused) {
     ByteReader reader(damaged);
     EXPECT_THROW(guide.Load(reader), Error) << next;
   }
+}
+
+// Paths whose second moments are 3 without a guide and 1.5 with one, in the mean, and vary together; squared mean: 1.
+GainEstimate EstimateOf(int paths, uint64_t seed) {
+  GainEstimate estimate;
+  Rng rng(seed);
+  for (int i = 0; i < paths; ++i) {
+    const double common = -std::log(1 - static_cast<double>(rng.NextFloat()));
+    estimate.Add(3 * common, common * (1 + static_cast<double>(rng.NextFloat())));
+  }
+  estimate.SetSquaredMeans(paths);
+  return estimate;
+}
+
+TEST(GainEstimate, BoundsHoldTheGainAsOftenAsTheySay) {
+  const double gain = (3 - 1) / (1.5 - 1);
+  int above = 0, below = 0;
+  const int estimates = 400;
+  for (int i = 0; i < estimates; ++i) {
+    const GainEstimate estimate = EstimateOf(2000, static_cast<uint64_t>(i));
+    EXPECT_LT(estimate.Bound(-2), estimate.Bound(-1));
+    EXPECT_LT(estimate.Bound(-1), estimate.Ratio());
+    EXPECT_LT(estimate.Ratio(), estimate.Bound(1));
+    EXPECT_LT(estimate.Bound(1), estimate.Bound(2));
+    above += estimate.Bound(-1) > gain ? 1 : 0;
+    below += estimate.Bound(1) < gain ? 1 : 0;
+  }
+  // 15.9 % of a normal distribution are beyond one deviation; of 400, 63 with a deviation of 7.
+  EXPECT_NEAR(above, 63, 30);
+  EXPECT_NEAR(below, 63, 30);
+}
+
+TEST(GainEstimate, IsCertainOfWhatNeverDiffers) {
+  GainEstimate estimate;
+  Rng rng(1);
+  for (int i = 0; i < 100; ++i) {
+    const double moment = 1 + static_cast<double>(rng.NextFloat());
+    estimate.Add(moment, moment);
+  }
+  EXPECT_NEAR(estimate.Bound(-2), 1, 1e-6);
+  EXPECT_NEAR(estimate.Bound(2), 1, 1e-6);
+}
+
+TEST(GainEstimate, OnePathThatOutweighsAllOthersIsNoCertainty) {
+  GainEstimate estimate = EstimateOf(500, 1);
+  EXPECT_GT(estimate.Bound(-2), 1);
+  estimate.Add(1e6, 10);
+  EXPECT_GT(estimate.Ratio(), 100);
+  EXPECT_GT(estimate.EffectiveCount(), 100);
+  EXPECT_LT(estimate.Bound(-2), 1);
+}
+
+// Learning of an image of 256 × 144 pixels from paths that a guide would not help: all light comes evenly.
+struct EvenLight {
+  static constexpr uint32_t kPixels = 256 * 144;
+  PathLearning learning{256, 144, kPixels, false, false};
+  size_t paths = 0;
+
+  void Add(uint32_t first, uint32_t end) {
+    Rng rng(first);
+    std::vector<PathRecords> records(1);
+    records[0].SetFraction(learning.Fraction());
+    for (uint32_t sample = first; sample < end; ++sample)
+      for (uint32_t pixel = 0; pixel < kPixels; ++pixel) AddPath(pixel, sample, rng, records[0]);
+    paths += records[0].Paths().size();
+    learning.Learn(records);
+    learning.Decide(end, 1);
+  }
+
+ private:
+  static void AddPath(uint32_t pixel, uint32_t sample, Rng& rng, PathRecords& records) {
+    if (!records.Wants(MixBits(uint64_t{pixel} << 32 | sample))) return;
+    records.StartPath(pixel, sample);
+    for (int i = 0; i < 2; ++i) {
+      RecordedEvent event;
+      event.position = Point3(rng.NextFloat(), rng.NextFloat(), 0);
+      event.direction = SampleCosineHemisphere(rng.NextPoint2());
+      event.unguided = event.direction.z * kInvPi;
+      event.distance = 1 + rng.NextFloat();
+      event.foundBefore = static_cast<float>(i);
+      records.Add(event);
+    }
+    records.EndPath(2 + rng.NextFloat());
+  }
+};
+
+TEST(PathLearning, GivesUpAfterAFewPercentOfAShortRender) {
+  EvenLight light;
+  for (const uint32_t samples : {1u, 2u, 4u, 8u}) light.Add(samples / 2, samples);
+  EXPECT_FALSE(light.learning.IsRecording());
+  EXPECT_FALSE(light.learning.Guide());
+  EXPECT_GT(light.paths, 5000u);
+  EXPECT_LT(static_cast<double>(light.paths), 0.05 * 8 * EvenLight::kPixels);
 }
 
 // A box with a lamp in a niche that faces away: all light arrives by way of a small bright patch of wall.
