@@ -210,6 +210,49 @@ def glazing():
     images.write_png(path("glazing.png"), size, size, pixel)
 
 
+def print_chart():
+    """A printed chart, black on white, 4.8 x 3: a ruled middle with rings, stars and gratings about it."""
+    width, height, cells = 960, 600, 3
+
+    def star(x, y, cx, cy, radius, rays):
+        r, angle = math.hypot(x - cx, y - cy), math.atan2(y - cy, x - cx)
+        return 0.03 < r < radius and math.sin(rays * angle) > 0
+
+    def rings(x, y, cx, cy, radius, pitch):
+        r = math.hypot(x - cx, y - cy)
+        return r < radius and (r / pitch) % 1 < 0.5
+
+    def within(x, y, x0, y0, x1, y1):
+        return x0 < x < x1 and y0 < y < y1
+
+    def ink(x, y):
+        if not within(x, y, 0.14, 0.14, 4.66, 2.86):
+            return False
+        if not within(x, y, 0.16, 0.16, 4.64, 2.84):
+            return True
+        if within(x, y, 1.48, 0.68, 3.32, 2.32):  # the ruled middle, a thick line for every fifth
+            u, v = x - 1.5, y - 0.7
+            thin = min(u % 0.09, v % 0.09) < 0.02
+            return thin or min((u + 0.01) % 0.45, (v + 0.01) % 0.45) < 0.04
+        if star(x, y, 0.80, 2.18, 0.5, 24) or star(x, y, 4.0, 0.82, 0.5, 24):
+            return True
+        if rings(x, y, 4.0, 2.18, 0.5, 0.1) or rings(x, y, 0.80, 0.82, 0.5, 0.1):
+            return True
+        if within(x, y, 1.5, 0.30, 3.3, 0.56):  # gratings, finer to the right
+            pitch = 0.12 * 0.75 ** int((x - 1.5) / 0.3)
+            return (x - 1.5) % pitch < pitch / 2
+        if within(x, y, 1.5, 2.44, 3.3, 2.70):  # squares
+            return (int(x / 0.13) + int((y - 2.44) / 0.13)) % 2 == 0
+        return False
+
+    def pixel(i, j):
+        black = sum(ink(4.8 * (i + (a + 0.5) / cells) / width, 3 - 3 * (j + (b + 0.5) / cells) / height)
+                    for a in range(cells) for b in range(cells)) / cells**2
+        return (0.90 - 0.86 * black,)
+
+    images.write_png(path("chart.png"), width, height, pixel)
+
+
 # Meshes --------------------------------------------------------------------------------------------------------------
 
 def water_surface():
@@ -525,6 +568,50 @@ def jack():
     write_lines("jack.pbrt", lines)
 
 
+def handle():
+    """The turned handle of a magnifying glass, along z from 0."""
+    profile = smooth_profile([(0.0, 0.0), (0.075, 0.0), (0.085, 0.03), (0.075, 0.07), (0.085, 0.2), (0.12, 0.7), (0.115, 1.1),
+                              (0.085, 1.42), (0.10, 1.50), (0.095, 1.56), (0.06, 1.60), (0.0, 1.61)], 5)
+    revolve(profile, 48).write(path("handle.ply.gz"), with_uv=False)
+
+
+def brilliant():
+    """A round brilliant of radius 1 about z, its girdle's middle at z = 0: 57 facets and a girdle of 16 sides.
+
+    Table 56 % of the diameter, crown 34.5 degrees, pavilion 40.75 degrees, stars half of the crown, lower halves 77 % of the
+    pavilion. Stars and halves follow: their corners lie on the edges between neighbouring mains.
+    """
+    table, star, half = 0.56, 0.5, 0.77
+    crown, pavilion, girdle = math.tan(math.radians(34.5)), math.tan(math.radians(40.75)), 0.03
+    between = math.cos(math.pi / 8)
+
+    def ring(count, first, radius, z):
+        angles = [2 * math.pi * (first + k) / count for k in range(count)]
+        return [(radius * math.cos(a), radius * math.sin(a), z) for a in angles]
+
+    star_radius = table * between + star * (1 - table * between)
+    points = ring(8, 0, table, girdle + crown * (1 - table))
+    points += ring(8, 0.5, star_radius, girdle + crown * (1 - star_radius * between))
+    points += ring(16, 0, 1.0, girdle) + ring(16, 0, 1.0, -girdle)
+    points += ring(8, 0.5, 1 - half, -girdle - pavilion * (1 - (1 - half) * between))
+    points.append((0.0, 0.0, -girdle - pavilion))
+    top, stars, above, below, lower, culet = 0, 8, 16, 32, 48, 56
+    triangles = [(top, top + k, top + k + 1) for k in range(1, 7)]
+    for k in range(8):
+        n = (k + 1) % 8
+        triangles.append((top + k, stars + k, top + n))
+        triangles += [(top + k, above + 2 * k, stars + k), (top + k, stars + (k - 1) % 8, above + 2 * k)]
+        triangles += [(culet, lower + k, below + 2 * k), (culet, below + 2 * k, lower + (k - 1) % 8)]
+        for j in (2 * k, 2 * k + 1):
+            m = (j + 1) % 16
+            triangles += [(stars + k, above + j, above + m), (lower + k, below + m, below + j)]
+            triangles += [(above + j, below + j, below + m), (above + j, below + m, above + m)]
+    lines = ["# A round brilliant. Made by generator/generate.py.", 'Shape "trianglemesh"', '  "point3 P" [']
+    lines += ["    %.7f %.7f %.7f" % p for p in points]
+    lines += ["  ]", '  "integer indices" [ %s ]' % "  ".join("%d %d %d" % t for t in triangles)]
+    write_lines("brilliant.pbrt", lines)
+
+
 def stack_of_bars():
     """20 instances of the object "storey", each turned a little further."""
     lines = ["# A turning stack of instances. Made by generator/generate.py."]
@@ -540,7 +627,8 @@ def main():
     for make in (skies, pool_tiles, paving, wood, screen_pattern, leaves, glazing, water_surface, pool_furniture, rings, cyclorama,
                  optics,
                  plinth, tumbler, tableware, lamp, sculptures, courtyard, strings_of_bulbs, grass, twisted_column, jack,
-                 stack_of_bars, rooms):
+                 stack_of_bars, rooms,
+                 print_chart, handle, brilliant):
         make()
 
 
