@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "math/frame.h"
+#include "sampling/rng.h"
 
 namespace lampyr {
 
@@ -127,14 +128,16 @@ class Fit {
     float nearness;
   };
 
-  // Each `stride`-th event. `withMoments`: the lobes are split next.
+  // About one event in `stride`. Not each `stride`-th: the events of a path follow each other, first bounces and second
+  // ones in turns. `withMoments`: the lobes are split next.
   void Expect(size_t stride, bool withMoments) {
     sums_ = LobeSums();
     const DirectionMixture mixture = Mixture();
     const bool isFirst = lobes_.size() == 1;  // of which no place is known: uniform
     const auto share = static_cast<float>(share_);
     double guided = 0, total = 0;
-    for (size_t i = 0; i < events_.size(); i += stride) {
+    for (size_t i = 0; i < events_.size(); ++i) {
+      if (stride > 1 && MixBits(i) % stride != 0) continue;
       const GuideEvent& event = events_[i];
       total += static_cast<double>(weights_[i]);
       if (!(event.unguided > 0) || !(weights_[i] > 0)) continue;  // a delta: no lobe's
