@@ -81,6 +81,10 @@ constexpr uint32_t kLastLearned = 64;
 // Called at milestones: after 2^n samples.
 void PassSequence::Learn(uint32_t samples) {
   bool changesDensities = false;
+  // Guided photons that pay are mostly known to by then.
+  constexpr uint32_t kPhotonsFirst = 32;
+  const bool photonsAreSettled =
+      !guiding_ || !guiding_->IsRecording() || (samples >= kPhotonsFirst && !guiding_->Guide());
   if (learning_ && learning_->IsRecording()) {
     learning_->Freeze();
     if (samples >= kLastLearned) learning_->StopRecording();
@@ -88,7 +92,7 @@ void PassSequence::Learn(uint32_t samples) {
   }
   if (guiding_ && guiding_->IsRecording() && guiding_->Decide(samples)) changesDensities = true;
   if (paths_ && paths_->IsRecording()) {
-    if (paths_->Decide(samples, threads_)) changesDensities = true;
+    if (paths_->Decide(samples, threads_, photonsAreSettled)) changesDensities = true;
   }
   // The photons of the last pass, and their weights, have densities of the view before. They are dropped and others
   // traced in their place, as when a render is resumed.

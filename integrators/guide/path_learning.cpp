@@ -223,7 +223,7 @@ bool PathLearning::Keep(const std::vector<double>& scales) {
   return static_cast<double>(all - before) > kEnoughNew * static_cast<double>(all);
 }
 
-bool PathLearning::Decide(uint32_t samples, int threads) {
+bool PathLearning::Decide(uint32_t samples, int threads, bool mayUse) {
   const std::shared_ptr<const PathGuide> before = guide_;
   samples_ = samples;
   latest_ = latest_.Sorted();
@@ -231,7 +231,7 @@ bool PathLearning::Decide(uint32_t samples, int threads) {
   const std::vector<double> scales = BlockScales();
   bool isWorthwhile = guide_ != nullptr;
   // Weights of paths that were guided are not those of others: what would have been without a guide is not known then.
-  if (tried_ && !(forLight_ && guide_)) {
+  if (tried_ && mayUse && !(forLight_ && guide_)) {
     const GainEstimate gain = Test(scales);
     if (gain.EffectiveCount() >= kFewestTested) {
       gain_ = gain.Ratio();

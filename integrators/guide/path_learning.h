@@ -31,7 +31,10 @@ class PathLearning {
   void Learn(std::span<const PathRecords> records);
   // Called at milestones, after `samples` samples per pixel: tests the candidate, makes the next one, and updates
   // Guide(). True if the density of walks may have changed.
-  bool Decide(uint32_t samples, int threads);
+  // `mayUse`: false while photons are guided and that is still being learned, or may be soon. Camera paths that are
+  // guided to the light take the weight from photons, and what those would bring if they were guided, which may be far
+  // more, is not seen any more.
+  bool Decide(uint32_t samples, int threads, bool mayUse = true);
   // The guide in use; null: walks are not guided.
   const std::shared_ptr<const PathGuide>& Guide() const { return guide_; }
   // True until enough is known; recording takes time.

@@ -115,6 +115,15 @@ double GainOf(const std::string& text, const char* integrator, const Image& refe
   return gain;
 }
 
+// Guided camera paths would take the weight from photons, so that a guide of these would seem useless.
+TEST(PhotonGuiding, IsNotHiddenByGuidedPaths) {
+  for (const uint64_t seed : {1, 2}) {
+    const Rendered rendered = RenderText(WindowScene(), 64, Small("vcm", true, seed));
+    EXPECT_GT(rendered.outcome.photons->guideComponents, 0u) << seed;
+    EXPECT_GT(rendered.outcome.photons->guideGain, 100) << seed;
+  }
+}
+
 // A hundred by a hundred metres of ground in the sun, and a window of one: ten times the efficiency at least.
 TEST(PhotonGuiding, PaysBehindAWindow) {
   const Image reference = RenderText(WindowScene(), 1024, Small("vcm", true, 99)).image;
