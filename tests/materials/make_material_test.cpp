@@ -278,6 +278,63 @@ TEST_F(MakeMaterialTest, UvAndTangentsAreLookedAtWhereItSaysSo) {
   }
 }
 
+// At the wavelengths of a pass: colours are upsampled, spectra are themselves, and gray is gray.
+TEST_F(MakeMaterialTest, MaterialsAreTunedToWavelengths) {
+  const auto wavelengths = std::make_shared<const Wavelengths>(0.3);
+  const Vector3 o(0.1f, 0.2f, 0.97f), i(0.15f, -0.1f, 0.98f);
+  const auto at = [&](const std::string& type, const std::vector<Parameter>& parameters) {
+    const auto tuned = MaterialsAt(wavelengths, {Create(type, parameters)});
+    return At(*tuned[0], o).Evaluate(glm::normalize(o), glm::normalize(i), TransportMode::Radiance).Sum();
+  };
+  const Color gray = at("diffuse", {Rgb("reflectance", 0.4, 0.4, 0.4)});
+  EXPECT_EQ(gray, Color(gray.r));
+  const Color red = at("diffuse", {Rgb("reflectance", 0.8, 0.1, 0.1)}),
+              expected = wavelengths->FromRgb({0.8f, 0.1f, 0.1f});
+  for (const auto& [value, of] :
+       {std::pair(red.r, expected.r), std::pair(red.g, expected.g), std::pair(red.b, expected.b)})
+    EXPECT_NEAR(value, of * kInvPi, 1e-6f);
+  named_ = {{"a", Create("diffuse", {Rgb("reflectance", 0.8, 0.1, 0.1)})}, {"b", Create("diffuse", {})}};
+  EXPECT_EQ(at("mix", {Strings("materials", {"a", "b"}), Float("amount", 0)}), red);
+  // Gold reflects red more than blue: lane 2 has the longest wavelength.
+  const Color gold =
+      at("conductor", {Spectrum("eta", "metal-Au-eta"), Spectrum("k", "metal-Au-k"), Float("roughness", 0.5)});
+  EXPECT_GT(gold.b, 1.5f * gold.r);
+  for (const char* type : {"diffusetransmission", "coateddiffuse", "coatedconductor", "hair"}) {
+    const Color rgb =
+        At(*Create(type, {}), o).Evaluate(glm::normalize(o), glm::normalize(i), TransportMode::Radiance).Sum();
+    const Color tuned = at(type, {});
+    EXPECT_TRUE(tuned.IsValid()) << type;
+    EXPECT_NEAR(tuned.Average(), rgb.Average(), 0.5f * rgb.Average()) << type;
+  }
+}
+
+TEST_F(MakeMaterialTest, GlassDispersesWhereItsIndexVaries) {
+  const auto numbers = [](const std::string& name, std::vector<double> values) {
+    Parameter parameter = Make(ParameterType::Float, name);
+    parameter.numbers = std::move(values);
+    return parameter;
+  };
+  EXPECT_FALSE(Create("dielectric", {})->Disperses());
+  EXPECT_FALSE(Create("dielectric", {Float("eta", 1.7)})->Disperses());
+  EXPECT_FALSE(Create("dielectric", {numbers("cauchy", {1.5, 0})})->Disperses());
+  EXPECT_TRUE(Create("dielectric", {Spectrum("eta", "glass-BK7")})->Disperses());
+  EXPECT_TRUE(Create("dielectric", {numbers("cauchy", {1.5, 0.004})})->Disperses());
+  named_ = {{"a", Create("diffuse", {})}, {"b", Create("dielectric", {Spectrum("eta", "glass-F11")})}};
+  EXPECT_TRUE(Create("mix", {Strings("materials", {"a", "b"})})->Disperses());
+  // As red, green and blue it has the index at the sodium line.
+  const auto sample = At(*Create("dielectric", {numbers("cauchy", {1.5, 0.01})}))
+                          .Sample({0.6f, 0, 0.8f}, 0.99f, {0.5f, 0.5f}, TransportMode::Radiance);
+  EXPECT_NEAR(sample.eta, 1.5 + 0.01 / (0.58756 * 0.58756), 1e-4);
+  for (const std::vector<Parameter>& wrong :
+       {std::vector{numbers("cauchy", {1.5})}, std::vector{numbers("cauchy", {1.5, 0, 0, 0})},
+        std::vector{numbers("sellmeier", {1, 1, 1})}, std::vector{numbers("cauchy", {-1, 0})},
+        std::vector{numbers("sellmeier", {1, 0, 0, 0.25, 0, 0})},
+        std::vector{numbers("cauchy", {1.5, 0.004}), Float("eta", 1.5)},
+        std::vector{numbers("cauchy", {1.5, 0.004}), numbers("sellmeier", {1, 0, 0, 0.01, 0, 0})}}) {
+    EXPECT_THROW(Create("dielectric", wrong), Error) << wrong[0].name << wrong[0].numbers.size();
+  }
+}
+
 TEST_F(MakeMaterialTest, WrongInputIsNamed) {
   try {
     Create("difuse", {});
