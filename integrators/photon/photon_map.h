@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/large_array.h"
+#include "base/large_pages.h"
 #include "integrators/photon/beam_search.h"
 #include "integrators/photon/photon.h"
 
@@ -75,8 +76,8 @@ class PhotonMap {
   // Fetches what PathOf gives into the cache.
   void PrefetchPathOf(const Photon& photon) const {
     if (densities_.Size() == 0) return;
-    __builtin_prefetch(&densities_[photon.path]);
-    __builtin_prefetch(&densities_[photon.path + photon.depth - 1u].canMerge);
+    Prefetch(&densities_[photon.path]);
+    Prefetch(&densities_[photon.path + photon.depth - 1u].canMerge);
   }
 
   // Labels of a photon's path; empty without layers.

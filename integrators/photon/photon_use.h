@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/large_pages.h"
 #include "integrators/walk/vertex.h"
 
 namespace lampyr {
@@ -63,10 +64,10 @@ class PhotonUse {
   }
   // Fetches into the cache what Add needs of the photons: first the indices of their paths, then their sums.
   void Fetch(std::span<const uint32_t> photons) const {
-    for (const uint32_t photon : photons) __builtin_prefetch(&paths_[photon]);
+    for (const uint32_t photon : photons) Prefetch(&paths_[photon]);
   }
   void FetchSums(std::span<const uint32_t> photons) const {
-    for (const uint32_t photon : photons) __builtin_prefetch(&sums_[paths_[photon]]);
+    for (const uint32_t photon : photons) Prefetch(&sums_[paths_[photon]]);
   }
   const std::vector<PathOrigin>& Origins() const { return origins_; }
   // Sum over all photons of a path.

@@ -10,6 +10,7 @@
 
 #include "base/byte_stream.h"
 #include "base/error.h"
+#include "base/large_pages.h"
 #include "base/parallel.h"
 #include "film/metrics.h"
 
@@ -263,7 +264,7 @@ void Film::PrefetchSplats(const Point2& film) const {
   const int y = std::clamp(static_cast<int>(film.y), crop_.y0, crop_.y1 - 1);
   const char* sums = reinterpret_cast<const char*>(&splats_[Index(x, y)]);
   constexpr size_t kLine = 64;
-  for (size_t offset = 0; offset < sizeof(SplatSums); offset += kLine) __builtin_prefetch(sums + offset, 1);
+  for (size_t offset = 0; offset < sizeof(SplatSums); offset += kLine) Prefetch(sums + offset);
 }
 
 // Adds to the rows of one band. Groups of rows are dealt to the bands in turn, so that the threads share a bright spot.
