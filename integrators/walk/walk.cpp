@@ -303,11 +303,10 @@ void Walk(const SampleContext& context, const WalkSettings& settings, PathState&
       MakeVertexInMedium(context.scene, flight->end, state.ray.direction, flight->medium,
                          {here.scattering, flight->collidesWith->Asymmetry()}, here.Extinction(), vertex);
     } else {
-      const bool isBehindWide = settings.materialsAfterWide && state.hasScatteredWidely;
-      const auto& afterWide = context.scene.wavelengths ? context.scene.tunedAfterWide : *settings.materialsAfterWide;
-      if (!MakeVertex(context.scene, isBehindWide ? afterWide : context.scene.materials, state.ray, hit, state.medium,
-                      vertex))
-        return;
+      const auto* materials = &context.scene.materials;
+      if (settings.materialsAfterWide && state.hasScatteredWidely)
+        materials = context.scene.wavelengths ? &context.scene.tunedAfterWide : settings.materialsAfterWide;
+      if (!MakeVertex(context.scene, *materials, state.ray, hit, state.medium, vertex)) return;
       if (context.scene.wavelengths) [[unlikely]]
         vertex.bsdf.SetHero(context.heroLane);
     }
