@@ -113,7 +113,7 @@ struct Pass {
   const SampleAllocation* allocation;  // null: one sample for each pixel
   PathLearning* learning;              // null: camera paths are not recorded
 
-  // Of the samples of a pixel.
+  // Hero lane of a sample of a pixel.
   int HeroOf(int x, int y, uint64_t sample) const {
     return scene.isSpectral ? HeroLane(Seed(), static_cast<uint64_t>(y) << 32 | static_cast<uint64_t>(x), sample) : 0;
   }

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kMostGain = 1e4;
 
-// Where `isBelow`, true up to some gain in [from, to], becomes false.
+// The gain in [from, to] at which `isBelow` turns from true to false, by bisection.
 template <class IsBelow>
 double Bisect(double from, double to, const IsBelow& isBelow) {
   for (int i = 0; i < 50; ++i) {

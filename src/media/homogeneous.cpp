@@ -6,7 +6,7 @@ namespace lampyr {
 
 namespace {
 
-// What the coefficients are made of, each with its scale, and curves where they are given so.
+// The parameters of the coefficients: colours with their scale, and curves where spectra are given.
 struct MediumColors {
   Color absorption, scattering, radiance;
   std::shared_ptr<const SpectralCurve> absorptionCurve, scatteringCurve, radianceCurve;

@@ -157,7 +157,7 @@ std::optional<SpectralCurve> FindNamedCurve(const std::string& name, SpectrumRol
   if (!power) return std::nullopt;
   // Exactly white.
   if (name == "stdillum-D65" && role != SpectrumRole::Albedo) return SpectralCurve([](double) { return 1.0; });
-  // As a coefficient it is used as light is, as in RGB.
+  // A power distribution that is given as a coefficient is treated as light, as in RGB.
   return CurveOfPower(*power, role == SpectrumRole::Albedo ? role : SpectrumRole::Illuminant);
 }
 

@@ -156,7 +156,7 @@ SpectralCurve CurveOf(const std::vector<SpectrumSample>& spectrum, SpectrumRole 
 
 SpectralCurve BlackbodyCurve(double kelvin, SpectrumRole role) {
   const SpectralCurve body([&](double wavelength) { return Blackbody(wavelength, kelvin); });
-  // Of other roles as of BlackbodyToColor.
+  // Other roles: scaled to a maximum of 1, as in BlackbodyToColor.
   return CurveOfPower(body, role == SpectrumRole::Illuminant ? role : SpectrumRole::Albedo);
 }
 
