@@ -54,7 +54,7 @@ class Bsdf {
   float GeometricCosine(const Vector3& w) const {
     return MayHaveOwnCosines() && (IsFibre() || IsMedium()) ? OwnCosine(w) : AbsDot(w, Ng_);
   }
-  // Of a smooth dispersive dielectric: the lane whose refraction is followed.
+  // Sets the lane whose refraction a smooth dispersive dielectric samples. No effect on other models.
   void SetHero(int lane) {
     if (auto* dispersive = std::get_if<DispersiveBsdf>(&model_)) dispersive->hero = lane;
   }

@@ -41,7 +41,7 @@ struct Table {
   std::array<double, count> values;
 };
 
-// By photon energy: 1.4, 1.5, … 3.5 eV.
+// Values at the photon energies 1.4, 1.5, … 3.5 eV.
 constexpr double kFirstEnergy = 1.4, kEnergyStep = 0.1;
 constexpr double kElectronvoltNanometres = 1239.841984;  // hc
 constexpr Table<22> kMetals[] = {
@@ -63,7 +63,7 @@ constexpr Table<22> kMetals[] = {
                     2.564, 2.504, 2.433, 2.362, 2.289, 2.21, 2.13, 2.21,  2.015, 1.95,  1.916}},
 };
 
-// By wavelength: 360, 380, … 840 nm.
+// Values at the wavelengths 360, 380, … 840 nm.
 constexpr double kFirstOfBrass = 360, kBrassStep = 20;
 constexpr Table<25> kBrass[] = {
     {"metal-CuZn-eta", {1.503, 1.487, 1.445, 1.35,  1.191, 0.994, 0.816, 0.686, 0.602, 0.549, 0.505, 0.468, 0.45,

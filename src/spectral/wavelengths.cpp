@@ -72,7 +72,7 @@ struct Tables {
   Tables() {
     Vector3d white(0.0);
     const auto weighted = [](double wavelength) { return ColorMatching(wavelength) * DaylightD65(wavelength); };
-    // By the trapezoid rule, as everywhere between the entries of curves.
+    // The trapezoid rule, which is exact for curves, linear between their entries.
     constexpr size_t last = SpectralCurve::kCount - 1;
     for (size_t i = 0; i <= last; ++i)
       white += weighted(SpectralCurve::WavelengthOf(i)) * (i == 0 || i == last ? 0.5 : 1.0);

@@ -37,7 +37,7 @@ class Wavelengths {
   Color At(const SpectralCurve& curve) const;
   // From the lanes to linear Rec. 709: an estimate, whose expectation over u is the colour. Components may be negative.
   const glm::mat3& ToRgb() const { return toRgb_; }
-  // What ToRgb makes of white: its mean over many passes is 1.
+  // White (1 in every lane) after ToRgb, by channel. The mean over many passes is 1.
   const std::array<double, 3>& White() const { return white_; }
 
  private:

@@ -41,8 +41,8 @@ class ParameterOf {
   std::shared_ptr<const Texture<Value>> texture_;
 };
 
-// Of a colour: constants may have a curve, which is what they are where light is carried by wavelength. Textures are
-// colours in Rec. 709, brought to the wavelengths of the pass when they are evaluated.
+// A colour parameter. A constant may have a curve, which replaces it where light is carried by wavelength. Textures are
+// colours in Rec. 709, upsampled to the wavelengths of the pass when they are evaluated.
 template <>
 class ParameterOf<Color> {
  public:

@@ -72,7 +72,7 @@ std::vector<MediaScene> MediaScenes() {
   add("ball_in_fog", FilmWith("box") + kInRoom + kFog + Homogeneous("milk", "5 5 5", "0 0.1 0.3", 0.6) +
                          "MediumInterface \"\" \"fog\"\n" + kView + World(4) + kRoom + BallOf("milk", "fog") + kBulb)
       .isCameraInMedium = true;
-  // By wavelength: coefficients and a lamp that are spectra, around and behind glass that disperses.
+  // A scene by wavelength: the coefficients of the medium and the lamp are spectra, the rough glass disperses.
   add("dispersion_in_haze",
       Room("box", 4) +
           "MakeNamedMedium \"haze\" \"string type\" \"homogeneous\" \"spectrum sigma_s\" [400 2 550 1.2 700 0.8] "

@@ -340,7 +340,7 @@ class WeightChecker final : public PathObserver {
   // stretched, η_l² cosθ_l / (η_c² cosθ_c), and Snell's law says η.
   void CheckRefraction(const PathVertex& vertex, const Vector3& toLight, const Vector3& toCamera,
                        SolidAngleDensity densityToLight, SolidAngleDensity densityToCamera) {
-    // What disperses reflects the mean of the lanes, which differs from side to side.
+    // A dispersive dielectric reflects with the mean probability of its lanes, which is not the same on both sides.
     if (!vertex.scatteredDelta || vertex.bsdf.IsDispersive()) return;
     const Vector3d n(vertex.bsdf.ShadingFrame().z);
     const double cosLight = glm::dot(n, Vector3d(toLight)), cosCamera = glm::dot(n, Vector3d(toCamera));
