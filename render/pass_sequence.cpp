@@ -63,7 +63,7 @@ void PassSequence::AddPass(uint32_t done, uint32_t count) {
   view_.lighting = std::make_shared<const LightingServices>(
       scene_.lighting->With(learning_.get(), guiding_ ? guiding_->Guide() : nullptr));
   view_.guide = paths_ ? paths_->Guide() : nullptr;
-  PathLearning* recorded = paths_ && paths_->IsRecording() ? paths_.get() : nullptr;
+  PathLearning* recorded = RecordsPathsAfter(done) ? paths_.get() : nullptr;
   const RenderCounts counts = RenderPass(view_, integrator_, settings_, filter_, firstSample_ + done, count, threads_,
                                          *film_, techniques_, photons_.get(), allocation_.get(), recorded);
   CheckStop();  // the counts of a given-up pass are not added
@@ -75,14 +75,21 @@ namespace {
 
 // Samples per pixel at which learning of light selection ends: most of what can be learned has been by then.
 constexpr uint32_t kLastLearned = 64;
+// Samples per pixel from which on camera paths may be guided beside photons that are not. Photons for which a guide
+// pays are mostly known to by then. Half as many are enough to begin to record.
+constexpr uint32_t kPhotonsFirst = 32;
 
 }  // namespace
+
+bool PassSequence::RecordsPathsAfter(uint32_t samples) const {
+  if (!paths_ || !paths_->IsRecording()) return false;
+  return settings_.AlwaysGuidesPaths() || !guiding_ || !guiding_->IsRecording() || samples >= kPhotonsFirst / 2;
+}
 
 // Called at milestones: after 2^n samples.
 void PassSequence::Learn(uint32_t samples) {
   bool changesDensities = false;
-  // Guided photons that pay are mostly known to by then.
-  constexpr uint32_t kPhotonsFirst = 32;
+  const bool hasRecords = RecordsPathsAfter(samples / 2);
   const bool photonsAreSettled =
       !guiding_ || !guiding_->IsRecording() || (samples >= kPhotonsFirst && !guiding_->Guide());
   if (learning_ && learning_->IsRecording()) {
@@ -91,7 +98,8 @@ void PassSequence::Learn(uint32_t samples) {
     changesDensities = true;
   }
   if (guiding_ && guiding_->IsRecording() && guiding_->Decide(samples)) changesDensities = true;
-  if (paths_ && paths_->IsRecording()) {
+  if (paths_ && !hasRecords) paths_->Skip(samples);
+  if (hasRecords) {
     if (paths_->Decide(samples, threads_, photonsAreSettled)) changesDensities = true;
   }
   // The photons of the last pass, and their weights, have densities of the view before. They are dropped and others

@@ -59,6 +59,8 @@ class PassSequence {
  private:
   void AddPass(uint32_t done, uint32_t count);
   void Learn(uint32_t samples);
+  // True if the camera paths after `samples` samples per pixel are recorded for path guiding.
+  bool RecordsPathsAfter(uint32_t samples) const;
   void StartStage(uint32_t done);
   void MakePhotonStore();
 

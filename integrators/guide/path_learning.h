@@ -35,6 +35,8 @@ class PathLearning {
   // guided to the light take the weight from photons, and what those would bring if they were guided, which may be far
   // more, is not seen any more.
   bool Decide(uint32_t samples, int threads, bool mayUse = true);
+  // Called instead of Decide at a milestone before which no paths were recorded.
+  void Skip(uint32_t samples) { samples_ = samples; }
   // The guide in use; null: walks are not guided.
   const std::shared_ptr<const PathGuide>& Guide() const { return guide_; }
   // True until enough is known; recording takes time.
