@@ -21,9 +21,8 @@ constexpr uint64_t kOtherHalf = 0xa54ff53a5f1d36f1;       // changes the seed fo
 // In the place of the pixel row, for samples that belong to no pixel:
 constexpr int kLightPaths = -1, kPassTimes = -2;
 
-// The lane that the paths of a sample follow where light disperses. The samples of a pixel take turns. `seed` keeps
-// light paths that are traced for their photons from having that of the camera path in the same place.
-int HeroLane(uint64_t seed, uint64_t place, uint64_t sample) {
+// The lane that the paths of a sample follow first where light disperses. The samples of a pixel take turns.
+int FirstLane(uint64_t seed, uint64_t place, uint64_t sample) {
   return static_cast<int>((MixBits(seed ^ MixBits(place)) + sample) % Wavelengths::kLanes);
 }
 
@@ -38,8 +37,8 @@ float PassTime(SamplerKind kind, uint64_t seed, uint32_t pass) {
 
 // Radiance along the ray; of one that is vignetted nothing but the sample's light path is traced.
 Color Radiance(const Integrator& integrator, const PixelRay& ray, const SampleContext& context) {
-  if (ray.camera.weight != 0) return integrator.Sample(&ray.camera.ray, context);
-  if (integrator.Paths() == TracedPaths::Both) integrator.Sample(nullptr, context);
+  if (ray.camera.weight != 0) return SampleLanes(integrator, &ray.camera.ray, context);
+  if (integrator.Paths() == TracedPaths::Both) SampleLanes(integrator, nullptr, context);
   return Color(0.0f);
 }
 
@@ -113,9 +112,9 @@ struct Pass {
   const SampleAllocation* allocation;  // null: one sample for each pixel
   PathLearning* learning;              // null: camera paths are not recorded
 
-  // Hero lane of a sample of a pixel.
-  int HeroOf(int x, int y, uint64_t sample) const {
-    return scene.isSpectral ? HeroLane(Seed(), static_cast<uint64_t>(y) << 32 | static_cast<uint64_t>(x), sample) : 0;
+  // That of a sample of a pixel.
+  int FirstLaneOf(int x, int y, uint64_t sample) const {
+    return scene.isSpectral ? FirstLane(Seed(), static_cast<uint64_t>(y) << 32 | static_cast<uint64_t>(x), sample) : 0;
   }
   // Samplers count the samples of a stage.
   uint32_t Offset() const { return allocation ? allocation->Stage().first : 0; }
@@ -171,7 +170,7 @@ void TraceAdaptively(const Pass& pass, int x, int y, size_t pixel, AdaptiveSampl
     const PixelRay ray = MakePixelRay(pass.scene, pass.filter, x, y, time, sampler);
     SampleContext context{pass.scene, sampler, time, counts, adder.StartLayers()};
     context.outputs = pass.Outputs();
-    context.heroLane = pass.HeroOf(x, y, number);
+    context.lane = pass.FirstLaneOf(x, y, number);
     pass.Record(x, y, number, records, context);
     adder.Add(x, y, AdaptiveSampler::IsInHalf(number), ray, Radiance(pass.integrator, ray, context), sums);
   }
@@ -207,7 +206,7 @@ RenderCounts TraceCameraPaths(const Pass& pass) {
           const PixelRay ray = MakePixelRay(pass.scene, pass.filter, x, y, time, sampler);
           SampleContext context{pass.scene, sampler, time, counts, adder.StartLayers()};
           context.outputs = pass.Outputs();
-          context.heroLane = pass.HeroOf(x, y, i);
+          context.lane = pass.FirstLaneOf(x, y, i);
           pass.Record(x, y, i, records, context);
           adder.Add(x, y, IsInHalf(i), ray, Radiance(pass.integrator, ray, context), sums);
         }
@@ -243,8 +242,8 @@ RenderCounts TraceLightPaths(const Pass& pass) {
         SampleContext context{pass.scene, sampler, SampleTime(pass.scene, sampler), counts[static_cast<size_t>(chunk)]};
         context.splats = &splats;
         context.outputs = pass.Outputs();
-        if (pass.scene.isSpectral) context.heroLane = HeroLane(pass.Seed(), i, 0);
-        pass.integrator.Sample(nullptr, context);
+        if (pass.scene.isSpectral) context.lane = FirstLane(pass.Seed(), i, 0);
+        SampleLanes(pass.integrator, nullptr, context);
       }
     });
     pass.film.AddSplats(pass.filter, lists, pass.threads, static_cast<uint32_t>(sample));
@@ -538,7 +537,7 @@ void BothPaths::TraceChunk(size_t chunk, uint64_t begin, uint64_t end, uint32_t 
     context.gather = withCamera ? gather_ : nullptr;
     context.isForPhotonsAlone = !withCamera;
     context.tracesLight = lightPaths > 0;
-    if (pass_.scene.isSpectral) context.heroLane = HeroLane(seed, i, slots.number);
+    if (pass_.scene.isSpectral) context.lane = FirstLane(seed, i, slots.number);
     if (lightPaths > 0) StartLightPath(chunk, keepsPhotons, index, context);
     if (log2LightPaths_ < 0 && !pass_.allocation) {
       lightSampler.StartPixelSample(x, y, slots.lightNumber);
@@ -546,7 +545,7 @@ void BothPaths::TraceChunk(size_t chunk, uint64_t begin, uint64_t end, uint32_t 
     }
     if (!withCamera || !slots.isInCrop) {
       if (recorder) recorder->StartSample(x, y, 0);
-      if (lightPaths > 0) pass_.integrator.Sample(nullptr, context);
+      if (lightPaths > 0) SampleLanes(pass_.integrator, nullptr, context);
     } else {
       const PixelRay ray = MakePixelRay(pass_.scene, pass_.filter, x, y, time, sampler);
       if (recorder) recorder->StartSample(x, y, ray.camera.weight * settings.sensor.ImagingRatio() * ray.filterWeight);
@@ -565,7 +564,7 @@ void BothPaths::TraceChunk(size_t chunk, uint64_t begin, uint64_t end, uint32_t 
     for (uint32_t k = 0; k < more; ++k) {
       StartLightPath(chunk, keepsPhotons, index, context);
       moreSampler.StartPixelSample(x, y, slots.number * more + k);
-      pass_.integrator.Sample(nullptr, context.With(moreSampler));
+      SampleLanes(pass_.integrator, nullptr, context.With(moreSampler));
     }
   }
 }

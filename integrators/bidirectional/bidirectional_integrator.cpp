@@ -102,7 +102,8 @@ class LightSide final : public WeightedLightPath {
 
   bool WantsFlights() const override { return flightsBelow_ < 1; }
   void Flew(const LightPath& path, const PathState& state, const Flight& flight, const EmittedPhoton& photon) override {
-    AddFlight(context_, sample_.settings.photons.volume, flightsBelow_, path, state, flight, photon);
+    if (!context_.IsCounted(state.isDispersed))
+      AddFlight(context_, sample_.settings.photons.volume, flightsBelow_, path, state, flight, photon);
     hasLeftFirst_ = hasLeftFirst_ || path.vertices.Count() > 0;
   }
   // The path has flown on from its first vertex, so that the event there is set.
@@ -127,8 +128,8 @@ class LightSide final : public WeightedLightPath {
     }
     if (isConnected_) SplatVertex(sample_);
     const PathVertex& vertex = path.vertices.Last();
-    if (context_.photons && vertex.storesPhotons && path.vertices.Count() <= PhotonList::kDeepest &&
-        !IsOnBeam(vertex, sample_.settings.photons.volume))
+    if (context_.photons && vertex.storesPhotons && !context_.IsCounted(vertex.isDispersed) &&
+        path.vertices.Count() <= PhotonList::kDeepest && !IsOnBeam(vertex, sample_.settings.photons.volume))
       context_.photons->Add(vertex, path.vertices.Count(), LabelsOfLast(context_, path.vertices));
   }
 
@@ -161,7 +162,7 @@ class CameraSide final : public PathVisitor {
   // Photons in media along the ray. Each makes a vertex of the camera subpath for itself, as if the ray had collided
   // there, but for the density of that.
   void Flew(Subpath& path, const PathState& state, const Flight& flight) override {
-    if (!sample_.context.gather || !sample_.isMerged) return;
+    if (!sample_.context.gather || !sample_.isMerged || sample_.context.IsCounted(state.isDispersed)) return;
     if (static_cast<int>(path.Count()) >= sample_.settings.maxDepth) return;
     const PhotonMap& map = *sample_.context.gather->map;
     if (map.HasPoints()) MergePoints(map, path, state, flight);
@@ -180,9 +181,10 @@ class CameraSide final : public PathVisitor {
     const size_t depth = path.Count();
     Weigh(path, state);
     if (vertex.isDelta) return true;
-    const bool merges = CanMergePhotons(sample_);
+    const bool isCounted = sample_.context.IsCounted(vertex.isDispersed);
+    const bool merges = CanMergePhotons(sample_) && !isCounted;
     const std::span<const uint32_t> photons = merges ? FindPhotonsToMerge(sample_) : std::span<const uint32_t>();
-    sample_.radiance += EstimateDirectLight(sample_);
+    if (!isCounted) sample_.radiance += EstimateDirectLight(sample_);
     if (!photons.empty()) FetchPathsOf(sample_, photons);
     if (sample_.isConnected) {
       // The two subpaths together have at most maxDepth scattering events.

@@ -50,7 +50,7 @@ void AddConnectionToLayers(const BidirectionalSample& sample, size_t lightCount,
 Color Connect(const BidirectionalSample& sample, size_t lightCount) {
   const SampleContext& context = sample.context;
   const PathVertex &y = sample.light.vertices[lightCount - 1], &z = sample.camera.Last();
-  if (y.isDelta) return Color(0.0f);
+  if (y.isDelta || context.IsCounted(y.isDispersed || z.isDispersed)) return Color(0.0f);
   const Vector3 difference(y.WayTo(z));
   const float squaredFloat = LengthSquared(difference);
   if (!(squaredFloat > 0)) return Color(0.0f);
@@ -63,11 +63,9 @@ Color Connect(const BidirectionalSample& sample, size_t lightCount) {
   const double geometric =
       static_cast<double>(y.GeometryTerm(toCamera) * z.ScatteringCosine(toCamera) * y.ArrivalCorrection(y.toPrevious)) /
       squared;
-  // Both subpaths of a sample follow the same hero, whose probability is in the weight of both.
-  const double hero = y.isDispersed && z.isDispersed ? 1.0 / Wavelengths::kLanes : 1.0;
   const Color value =
       Product(z.Throughput() * fz.Sum(), leaving,
-              geometric * hero * static_cast<double>(sample.Lighting().FluxUnit()) / sample.connectionsPerSample);
+              geometric * static_cast<double>(sample.Lighting().FluxUnit()) / sample.connectionsPerSample);
   if (value.IsBlack()) return value;
   const bool hasMedia = !context.scene.media.empty();
   const ShadowRays shadowRays = sample.WantedShadowRays();

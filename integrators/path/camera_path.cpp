@@ -51,6 +51,7 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
   void Flew(Subpath& path, const PathState& state, const Flight& flight) override {
     segment_ = LitSegment();
     if (emissionOnly_ || static_cast<int>(path.Count()) >= settings_.maxDepth) return;
+    if (context_.IsCounted(state.isDispersed)) return;
     if (gatherer_) radiance_ += gatherer_->GatherAlong(path, state, flight);
     if (!settings_.samplesLights) return;
     segment_ = LitSegment(context_.scene, state.ray, flight, path.Count() == 0);
@@ -71,7 +72,7 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
     const PathVertex& vertex = path.Last();
     if (segment_.Share() > 0 || arrival_.segment.Share() > 0) [[unlikely]]
       SetArrival(vertex);
-    if (vertex.isDelta) return true;
+    if (vertex.isDelta || context_.IsCounted(vertex.isDispersed)) return true;
     const auto events = static_cast<int>(path.Count());
     const bool gathers = gatherer_ && vertex.GathersPhotons();  // in media the ray has gathered on its way
     if (gathers) gatherer_->Find(vertex, state.length);

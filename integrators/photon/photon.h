@@ -103,7 +103,7 @@ class PhotonList {
     beams_.Clear();
     ranges_.clear();
     labels_.clear();
-    originsOfFlights_ = 0;
+    originsOfFlights_ = photonsWithDensities_ = flightsWithDensities_ = 0;
   }
   // What is added from now on belongs to the next path.
   void StartPath() {
@@ -158,9 +158,14 @@ class PhotonList {
   // the start of its last flight, and before them those of its light's end. To be called when the path is complete, or
   // not at all.
   void KeepDensities(const PathEnds& ends, std::span<const SubpathDensities> densities) {
+    // A path that disperses has been stored before for another lane.
     const Start& first = starts_.back();
-    size_t count = photons_.size() > first.photon ? photons_.back().depth : 0u;
-    if (beams_.starts.size() > first.flight) count = std::max<size_t>(count, beams_.starts.back().depth - 1u);
+    const auto photonsBefore = std::max<size_t>(first.photon, photonsWithDensities_),
+               flightsBefore = std::max<size_t>(first.flight, flightsWithDensities_);
+    size_t count = photons_.size() > photonsBefore ? photons_.back().depth : 0u;
+    if (beams_.starts.size() > flightsBefore) count = std::max<size_t>(count, beams_.starts.back().depth - 1u);
+    photonsWithDensities_ = photons_.size();
+    flightsWithDensities_ = beams_.starts.size();
     if (count == 0) return;
     densities_.push_back(ends.Packed());
     const std::span<const SubpathDensities> kept = densities.first(count);
@@ -188,6 +193,8 @@ class PhotonList {
       starts_.pop_back();
     }
     origins_.resize(KeptOrigins());
+    photonsWithDensities_ = photons_.size();
+    flightsWithDensities_ = beams_.starts.size();
     return starts_.size();
   }
   const std::vector<TracedPhoton>& Photons() const { return photons_; }
@@ -218,6 +225,8 @@ class PhotonList {
   std::vector<LabelRange> ranges_;
   std::vector<PathLabel> labels_;
   size_t originsOfFlights_ = 0;  // origins that flights may refer to
+  // Those whose densities are kept.
+  size_t photonsWithDensities_ = 0, flightsWithDensities_ = 0;
 };
 
 // A photon while a map is sorted by cells.

@@ -94,6 +94,7 @@ class PhotonRecorder final : public LightPathVisitor {
   void Arrived(LightPath& path, const PathState&) override {
     const PathVertex& vertex = path.vertices.Last();
     if (path.vertices.Count() < firstDepth_ || !vertex.storesPhotons) return;
+    if (context_.IsCounted(vertex.isDispersed)) return;
     if (vertex.IsInMedium() && !MayBeGathered(vertex)) return;
     context_.photons->Add(vertex, path.vertices.Count(), LabelsOfLast(context_, path.vertices));
   }

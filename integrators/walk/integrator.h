@@ -102,19 +102,23 @@ struct SampleContext {
   const OutputPlan* outputs = nullptr;  // of the layers of the film; null: it has none
   PathRecords* records = nullptr;       // receive the camera path for path guiding; null: not wanted
   uint32_t pixel = 0, sample = 0;       // y · width + x, and index of the sample in it; only with `records`
-  // The lane of a Color whose refraction a path follows where light disperses. One of three, with equal probability,
-  // and independent of that of the photons that the path gathers.
-  int heroLane = 0;
+  // The lane of a Color whose refraction the paths follow where smooth glass disperses light. SampleLanes traces such a
+  // sample once for each lane.
+  int lane = 0;
+  bool* disperses = nullptr;   // set where a path of the sample disperses; may be null
+  bool repeatsOthers = false;  // what the paths of the sample bring before they disperse was counted with another lane
   // Receives an estimate of what merging photons within a radius adds to the expectation of the returned radiance
   // (photon/merge_bias.h). Null: not wanted.
   Color* mergeBias = nullptr;
 
   SampleContext With(Sampler& other) const {
-    return {scene,    other,       time,    counts,        layers,     splats,
-            observer, gather,      photons, lastGathering, withOrigin, isForPhotonsAlone,
-            film,     tracesLight, nullptr, outputs,       nullptr,    0,
-            0,        heroLane};
+    return {scene,    other,       time,      counts,        layers,     splats,
+            observer, gather,      photons,   lastGathering, withOrigin, isForPhotonsAlone,
+            film,     tracesLight, nullptr,   outputs,       nullptr,    0,
+            0,        lane,        disperses, repeatsOthers};
   }
+  // True if what a path brings was counted with another lane.
+  bool IsCounted(bool isDispersed) const { return repeatsOthers && !isDispersed; }
 };
 
 // Stateless: any thread may call it.
@@ -137,5 +141,9 @@ class Integrator {
   // Photon settings; nullopt if the integrator does not gather photons.
   virtual std::optional<PhotonSettings> Photons() const { return std::nullopt; }
 };
+
+// Integrator::Sample; of a sample with a path that smooth glass disperses, the sum over the lanes. `context`: of the
+// lane that is traced first, whose camera path may be recorded.
+Color SampleLanes(const Integrator& integrator, const Ray* ray, const SampleContext& context);
 
 }  // namespace lampyr

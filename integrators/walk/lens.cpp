@@ -71,6 +71,7 @@ std::optional<SeenFromLens> SeeLight(const SampleContext& context, const Emitted
                                      uint32_t lensDimension) {
   const Point3& position = photon.emission.position;
   std::optional<SeenFromLens> seen;
+  if (context.IsCounted(false)) return seen;
   ConnectToCamera(context, position, lensDimension, seen);
   if (!seen) return seen;
   const Point3& lens = seen->connection.camera.position;
@@ -97,6 +98,7 @@ std::optional<SeenFromLens> SeeLight(const SampleContext& context, const Emitted
 std::optional<SeenFromLens> SeeGlow(const SampleContext& context, const EmittedInMedium& emitted,
                                     uint32_t lensDimension) {
   std::optional<SeenFromLens> seen;
+  if (context.IsCounted(false)) return seen;
   ConnectToCamera(context, emitted.position, lensDimension, seen);
   if (!seen) return seen;
   const FilmConnection& connection = seen->connection;
@@ -162,7 +164,7 @@ bool CompleteConnection(const SampleContext& context, const PathVertex& vertex, 
 
 std::optional<SeenFromLens> SeeVertex(const SampleContext& context, const PathVertex& vertex, uint32_t lensDimension) {
   std::optional<SeenFromLens> seen;
-  if (!vertex.isSeenByCamera || vertex.isDelta) return seen;
+  if (!vertex.isSeenByCamera || vertex.isDelta || context.IsCounted(vertex.isDispersed)) return seen;
   ConnectToCamera(context, vertex.point.position, lensDimension, seen);
   if (seen && !CompleteConnection(context, vertex, *seen)) seen.reset();
   return seen;

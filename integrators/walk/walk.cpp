@@ -155,21 +155,18 @@ bool Scatter(const SampleContext& context, const WalkSettings& settings, int ind
   sampler.SetDimension(settings.dimensions.Of(block, dimensions::kLobe));
   const float uLobe = sampler.Get1D();
   const BsdfSample sample = vertex.Sample(uLobe, sampler.Get2D(), settings.mode, state.lastGuidance);
-  if (!sample) return false;
-  // The first dispersion has the inverse of the hero's probability in its weight; all others are of the same hero.
-  float heroWeight = 1;
   if (sample.isDispersion) [[unlikely]] {
-    heroWeight = state.isDispersed ? 1.0f / Wavelengths::kLanes : 1.0f;
     state.isDispersed = true;
+    if (context.disperses) *context.disperses = true;
   }
+  if (!sample) return false;
   state.guidance *= state.lastGuidance.forward;
   if (isFromLight) {
-    const float correction =
-        vertex.ArrivalCorrection(vertex.toPrevious) * vertex.DepartureCorrection(sample.wi) * heroWeight;
+    const float correction = vertex.ArrivalCorrection(vertex.toPrevious) * vertex.DepartureCorrection(sample.wi);
     state.diffuse = (vertex.diffuse * sample.weightDiffuse + vertex.specular * sample.weightSpecular) * correction;
     state.specular = state.diffuse;
   } else {
-    const Color throughput = vertex.Throughput() * heroWeight;
+    const Color throughput = vertex.Throughput();
     state.diffuse = throughput * sample.weightDiffuse;
     state.specular = throughput * sample.weightSpecular;
     if (sample.isTransmission) state.etaScale *= Sqr(sample.eta);
@@ -219,7 +216,7 @@ EdgeEnd StartOf(const SampleContext& context, const PathState& state, const Subp
   Fly(context, state.ray, kinds, StartOf(context, state, path),
       settings.dimensions.OfFlight(isFromLight ? count + 1 : count), settings.wantsBeams, flight);
   if (settings.seesFlights && !flight.spans.empty()) visitor.Flew(path, state, flight);
-  if (!flight.emission.IsBlack()) visitor.Glowed(path, state, flight.emission);
+  if (!flight.emission.IsBlack() && !context.IsCounted(state.isDispersed)) visitor.Glowed(path, state, flight.emission);
   state.passed = flight.passed;
   state.factors = flight.factors;
   state.medium = flight.medium;
@@ -286,13 +283,18 @@ void Walk(const SampleContext& context, const WalkSettings& settings, PathState&
       settings.records->SetDistance(collides ? flight->t : isHit ? hit.t : kInfinity);
     state.diffuse *= state.passed;
     state.specular *= state.passed;
-    if (!isHit && !collides) return visitor.Escaped(path, state);
+    if (!isHit && !collides) {
+      if (!context.IsCounted(state.isDispersed)) visitor.Escaped(path, state);
+      return;
+    }
     state.length += collides ? flight->t : hit.t;
     PathVertex& vertex = path.Next();
     if (!collides) [[likely]] {
       MakeInPlace(vertex.point, [&] { return geometry.GetSurfacePoint(state.ray, hit); });
       if (flight) SetResidual(*flight, vertex);
-      if (!visitor.Met(path, state, hit, vertex.point, geometry.Attributes(hit.primitive).light >= 0)) return;
+      if (!visitor.Met(path, state, hit, vertex.point,
+                       geometry.Attributes(hit.primitive).light >= 0 && !context.IsCounted(state.isDispersed)))
+        return;
     } else if (!visitor.Collided(path, state)) {
       return;
     }
@@ -308,7 +310,7 @@ void Walk(const SampleContext& context, const WalkSettings& settings, PathState&
         materials = context.scene.wavelengths ? &context.scene.tunedAfterWide : settings.materialsAfterWide;
       if (!MakeVertex(context.scene, *materials, state.ray, hit, state.medium, vertex)) return;
       if (context.scene.wavelengths) [[unlikely]]
-        vertex.bsdf.SetHero(context.heroLane);
+        vertex.bsdf.SetLane(context.lane);
     }
     vertex.factors = state.factors;
     vertex.diffuse = state.diffuse;

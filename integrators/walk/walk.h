@@ -33,7 +33,7 @@ struct PathState {
   // Of the path's events: Π Guidance::forward, for Russian roulette, and that of the last one.
   float guidance = 1;
   Guidance lastGuidance;
-  bool isDispersed = false;         // only the hero lane is left (SampleContext::heroLane)
+  bool isDispersed = false;         // only one lane is left (SampleContext::lane)
   bool hasScatteredWidely = false;  // an earlier vertex scattered by a lobe that is no delta
   float emitted = 1;                // initial throughput, to which Russian roulette compares
   ScatteringParts event;            // at the last vertex; only with SampleContext::outputs

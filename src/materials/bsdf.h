@@ -55,8 +55,8 @@ class Bsdf {
     return MayHaveOwnCosines() && (IsFibre() || IsMedium()) ? OwnCosine(w) : AbsDot(w, Ng_);
   }
   // Sets the lane whose refraction a smooth dispersive dielectric samples. No effect on other models.
-  void SetHero(int lane) {
-    if (auto* dispersive = std::get_if<DispersiveBsdf>(&model_)) dispersive->hero = lane;
+  void SetLane(int lane) {
+    if (auto* dispersive = std::get_if<DispersiveBsdf>(&model_)) dispersive->lane = lane;
   }
   bool IsDispersive() const { return std::holds_alternative<DispersiveBsdf>(model_); }
   // The phase function of a medium; null on a surface.

@@ -157,18 +157,19 @@ BsdfSample SampleSmoothLanes(const DispersiveBsdf& bsdf, const Vector3& wo, floa
     sample.pdfForward = sample.pdfReverse = PdfSolidAngle(reflected);
     return sample;
   }
-  const float transmitted = 1 - Lane(reflectances, bsdf.hero);
+  sample.isDispersion = true;
+  const float transmitted = 1 - Lane(reflectances, bsdf.lane);
   if (!(transmitted > 0)) return sample;
   Color eta = bsdf.eta;
-  const float relative = inside ? 1 / Lane(eta, bsdf.hero) : Lane(eta, bsdf.hero);
+  const float relative = inside ? 1 / Lane(eta, bsdf.lane) : Lane(eta, bsdf.lane);
   const float cosT = RefractedCosine(std::abs(wo.z), relative);
   sample.wi = {-wo.x / relative, -wo.y / relative, inside ? cosT : -cosT};
   if (!(cosT > 0)) return sample;
-  const float weight = kLanes * transmitted / (1 - reflected);
-  Lane(sample.weightSpecular, bsdf.hero) = mode == TransportMode::Radiance ? weight / (relative * relative) : weight;
+  const float weight = transmitted / (1 - reflected);
+  Lane(sample.weightSpecular, bsdf.lane) = mode == TransportMode::Radiance ? weight / (relative * relative) : weight;
   sample.pdfForward = PdfSolidAngle(1 - reflected);
   sample.pdfReverse = PdfSolidAngle(1 - LaneReflectances(bsdf.eta, cosT, !inside).Average());
-  sample.isTransmission = sample.isDispersion = true;
+  sample.isTransmission = true;
   sample.eta = relative;
   return sample;
 }

@@ -20,15 +20,15 @@ struct DielectricBsdf {
 };
 
 // A dielectric whose index depends on the wavelength: one for each lane of a Color. A smooth one reflects all lanes
-// alike, and refracts that which the path follows (`hero`): at the first such refraction the others end. A rough one
-// scatters all lanes, and samples by the mean of their densities ([Wilkie14]).
+// alike, and refracts each in another direction, of which a path follows one. A rough one scatters all lanes, and
+// samples by the mean of their densities ([Wilkie14]).
 //
-// The probability of a smooth reflection is the mean over the lanes, whatever the hero is: it depends on the direction
+// The probability of a smooth reflection is the mean over the lanes, whichever is followed: it depends on the direction
 // alone, so that both walks know it.
 struct DispersiveBsdf {
   TrowbridgeReitz microfacets;
   Color eta{1.0f};  // by lane, none 1 for a range of wavelengths
-  int hero = 0;     // lane
+  int lane = 0;     // whose refraction is sampled
 
   BsdfEvaluation Evaluate(const Vector3& wo, const Vector3& wi, TransportMode mode) const;
   BsdfSample Sample(const Vector3& wo, float uLobe, const Point2& u, TransportMode mode) const;

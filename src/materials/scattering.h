@@ -26,7 +26,7 @@ struct BsdfSample {
   bool isDelta = false;
   bool isTransmission = false;
   // The direction is that of the light of one lane of the Color, to which it is refracted. The others, which are
-  // refracted elsewhere, have weight 0; the lane has the inverse of the probability, 1/3, with which a path follows it.
+  // refracted elsewhere, have weight 0. Set as well where the light of the lane is not refracted, and the sample false.
   bool isDispersion = false;
   float eta = 1;  // η on wi's side over η on wo's side for transmission; 1 otherwise
 

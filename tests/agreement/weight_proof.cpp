@@ -385,7 +385,7 @@ void TracePhotons(const RenderScene& scene, int maxDepth, float radius, double l
     sampler.StartPixelSample(1, 0, i);
     photons.kept.photons.StartPath();
     visitor.Start();
-    context.heroLane = static_cast<int>(i % Wavelengths::kLanes);
+    context.lane = static_cast<int>(i % Wavelengths::kLanes);
     photons.kept.densities.clear();
     TraceLightPath(context, maxDepth, {2, 1}, path, visitor);
     photons.kept.photons.KeepDensities(photons.kept.ends, photons.kept.densities);
@@ -448,7 +448,7 @@ WeightErrors CheckWeights(const std::string& sceneText, const WeightProof& proof
     if (ray.weight == 0) continue;
     checker.StartSample(ray.ray, film, time);
     SampleContext context{scene, sampler, time, counts};
-    context.heroLane = static_cast<int>(index % Wavelengths::kLanes);
+    context.lane = static_cast<int>(index % Wavelengths::kLanes);
     context.film = film;
     context.splats = &splats;
     context.observer = &checker;

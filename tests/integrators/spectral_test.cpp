@@ -81,22 +81,23 @@ TEST(Dispersion, OfTheRainbow) {
   }
 }
 
-// Of the lanes of a smooth face all are reflected, in proportion to their reflectance, and one is refracted: the mean
-// over heroes of the weights is what arrives.
+// Of the lanes of a smooth face all are reflected, in proportion to their reflectance, and one is refracted: the
+// reflection and the refractions of all lanes are what arrives.
 TEST(Dispersion, LosesNothing) {
   for (const float cosine : {1.0f, 0.6f, 0.1f}) {
     for (const float side : {1.0f, -1.0f}) {
       Color sum;
-      for (int hero = 0; hero < 3; ++hero) {
-        const DispersiveBsdf face{TrowbridgeReitz(0, 0), Color(1.4f, 1.6f, 2.2f), hero};
+      for (int lane = 0; lane < 3; ++lane) {
+        const DispersiveBsdf face{TrowbridgeReitz(0, 0), Color(1.4f, 1.6f, 2.2f), lane};
         constexpr int kSteps = 4000;
         for (int i = 0; i < kSteps; ++i) {
           const Vector3 wo(std::sqrt(1 - cosine * cosine), 0, side * cosine);
           const float u = (static_cast<float>(i) + 0.5f) / kSteps;
-          sum += face.Sample(wo, u, Point2(0.5f), TransportMode::Importance).Weight() / (3.0f * kSteps);
+          const BsdfSample sample = face.Sample(wo, u, Point2(0.5f), TransportMode::Importance);
+          sum += sample.Weight() * ((sample.isDispersion ? 1.0f : 1.0f / 3) / kSteps);
         }
       }
-      for (const float lane : {sum.r, sum.g, sum.b}) EXPECT_NEAR(lane, 1, 2e-3) << cosine << " " << side;
+      for (const float ofLane : {sum.r, sum.g, sum.b}) EXPECT_NEAR(ofLane, 1, 2e-3) << cosine << " " << side;
     }
   }
 }
@@ -202,6 +203,36 @@ double MeanOfChannel(const Image& image, size_t channel) {
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x) sum += static_cast<double>(image.At(x, y, channel));
   return sum / (image.width * image.height);
+}
+
+// A prism under a sky that is 1 everywhere shows 1 everywhere, whatever is reflected inside it in total for one lane
+// and refracted for another.
+TEST(Spectral, FurnaceWithAPrismIsWhite) {
+  const std::string text =
+      "Film \"rgb\" \"integer xresolution\" 24 \"integer yresolution\" 16\nPixelFilter \"box\"\n"
+      "LookAt 1.2 2 3  0 0 0  0 1 0 Camera \"perspective\" \"float fov\" 22\n"
+      "Integrator \"path\" \"integer maxdepth\" 60\nWorldBegin\nLightSource \"infinite\" \"rgb L\" [1 1 1]\n"
+      "Material \"dielectric\" \"float cauchy\" [ 1.3 0.06 0 ]\n"
+      "Shape \"trianglemesh\" \"point3 P\" [-0.57735 -0.5 -0.3  0 0.5 -0.3  0.57735 -0.5 -0.3  "
+      "-0.57735 -0.5 0.3  0 0.5 0.3  0.57735 -0.5 0.3] \"integer indices\" "
+      "[0 1 2 3 5 4 0 3 4 0 4 1 1 4 5 1 5 2 0 2 5 0 5 3]\n";
+  constexpr int kSeeds = 8;
+  for (const char* integrator : {"path", "bdpt", "vcm", "sppm"}) {
+    for (size_t channel = 0; channel < 3; ++channel) {
+      double sum = 0, squares = 0;
+      for (uint64_t seed = 0; seed < kSeeds; ++seed) {
+        RenderOverrides overrides;
+        overrides.integrator = integrator;
+        overrides.seed = seed;
+        const double mean = MeanOfChannel(RenderText(text, 128, overrides, 2).image, channel);
+        sum += mean;
+        squares += mean * mean;
+      }
+      const double mean = sum / kSeeds, error = std::sqrt((squares / kSeeds - mean * mean) / (kSeeds - 1));
+      EXPECT_NEAR(mean, 1, std::max(4.5 * error, 1e-5)) << integrator << " " << channel;
+      EXPECT_LT(error, 1e-3) << integrator;
+    }
+  }
 }
 
 // Without dispersion: gray light through glass of one index stays gray, and is that of red, green and blue. A pass with

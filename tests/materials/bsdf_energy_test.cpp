@@ -26,10 +26,10 @@ Mean Albedo(const Bsdf& bsdf, const Vector3& wo, int samples, uint64_t seed,
   for (int i = 0; i < samples; ++i) {
     const float uLobe = rng.NextFloat();
     Bsdf followed = bsdf;
-    followed.SetHero(i % 3);
+    followed.SetLane(i % 3);
     const auto sample = followed.Sample(wo, uLobe, rng.NextPoint2(), mode);
-    // What disperses has other weights in each lane: all of it in one, or more in one than in the others.
-    const Color weight = sample.Weight();
+    // What disperses has other weights in each lane. A refraction is that of one lane, for which others are followed.
+    const Color weight = sample.Weight() * (sample.isDispersion ? 3.0f : 1.0f);
     mean.Add(sample ? static_cast<double>(bsdf.IsDispersive() ? weight.Average() : weight.Max()) : 0.0);
   }
   return mean;
