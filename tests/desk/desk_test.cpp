@@ -130,7 +130,7 @@ TEST_F(Desk, EndsOnASignal) {
 // With all faders where they are, the screen shows the picture that is rendered.
 // Also while something waits for a first pass that takes long.
 TEST_F(Desk, EndsWhileASceneIsToBeKept) {
-  DeskProcess desk(folder_.Path(), "scene.pbrt --resolution 2400x1800 --integrator bdpt --threads 1 --quiet");
+  DeskProcess desk(folder_.Path(), "scene.pbrt --resolution 1600x1200 --integrator bdpt --threads 1 --quiet");
   std::thread keeps([&] { (void)desk.Post("keep", {{"factors", desk.Neutral()}}); });
   std::this_thread::sleep_for(std::chrono::milliseconds(500));
   const auto start = std::chrono::steady_clock::now();
