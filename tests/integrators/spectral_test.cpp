@@ -81,8 +81,7 @@ TEST(Dispersion, OfTheRainbow) {
   }
 }
 
-// Of the lanes of a smooth face all are reflected, in proportion to their reflectance, and one is refracted: the
-// reflection and the refractions of all lanes are what arrives.
+// A smooth dispersive face conserves energy: its reflection and the refractions of the three lanes add up to 1.
 TEST(Dispersion, LosesNothing) {
   for (const float cosine : {1.0f, 0.6f, 0.1f}) {
     for (const float side : {1.0f, -1.0f}) {

@@ -28,7 +28,7 @@ Mean Albedo(const Bsdf& bsdf, const Vector3& wo, int samples, uint64_t seed,
     Bsdf followed = bsdf;
     followed.SetLane(i % 3);
     const auto sample = followed.Sample(wo, uLobe, rng.NextPoint2(), mode);
-    // What disperses has other weights in each lane. A refraction is that of one lane, for which others are followed.
+    // The weights of a dispersive model differ by lane. A refraction is that of one lane in three.
     const Color weight = sample.Weight() * (sample.isDispersion ? 3.0f : 1.0f);
     mean.Add(sample ? static_cast<double>(bsdf.IsDispersive() ? weight.Average() : weight.Max()) : 0.0);
   }
