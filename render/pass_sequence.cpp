@@ -98,9 +98,10 @@ void PassSequence::Learn(uint32_t samples) {
     changesDensities = true;
   }
   if (guiding_ && guiding_->IsRecording() && guiding_->Decide(samples)) changesDensities = true;
-  if (paths_ && !hasRecords) paths_->Skip(samples);
   if (hasRecords) {
     if (paths_->Decide(samples, threads_, photonsAreSettled)) changesDensities = true;
+  } else if (paths_) {
+    paths_->Skip(samples);
   }
   // The photons of the last pass, and their weights, have densities of the view before. They are dropped and others
   // traced in their place, as when a render is resumed.

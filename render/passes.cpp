@@ -112,7 +112,7 @@ struct Pass {
   const SampleAllocation* allocation;  // null: one sample for each pixel
   PathLearning* learning;              // null: camera paths are not recorded
 
-  // That of a sample of a pixel.
+  // FirstLane of a sample of a pixel.
   int FirstLaneOf(int x, int y, uint64_t sample) const {
     return scene.isSpectral ? FirstLane(Seed(), static_cast<uint64_t>(y) << 32 | static_cast<uint64_t>(x), sample) : 0;
   }

@@ -103,13 +103,14 @@ class PhotonList {
     beams_.Clear();
     ranges_.clear();
     labels_.clear();
-    originsOfFlights_ = photonsWithDensities_ = flightsWithDensities_ = 0;
+    originsOfFlights_ = 0;
   }
   // What is added from now on belongs to the next path.
   void StartPath() {
     starts_.push_back({static_cast<uint32_t>(photons_.size()), static_cast<uint32_t>(densities_.size()),
                        static_cast<uint32_t>(volume_.size()), static_cast<uint32_t>(beams_.starts.size()),
                        static_cast<uint32_t>(beams_.beams.size()), static_cast<uint32_t>(beams_.emissions.size())});
+    StartDensities();
   }
   // Sets the origin of the current path, for emission guiding. Before its first photon, or not at all.
   void SetOrigin(const PathOrigin& origin) {
@@ -158,14 +159,9 @@ class PhotonList {
   // the start of its last flight, and before them those of its light's end. To be called when the path is complete, or
   // not at all.
   void KeepDensities(const PathEnds& ends, std::span<const SubpathDensities> densities) {
-    // A path that disperses has been stored before for another lane.
-    const Start& first = starts_.back();
-    const auto photonsBefore = std::max<size_t>(first.photon, photonsWithDensities_),
-               flightsBefore = std::max<size_t>(first.flight, flightsWithDensities_);
-    size_t count = photons_.size() > photonsBefore ? photons_.back().depth : 0u;
-    if (beams_.starts.size() > flightsBefore) count = std::max<size_t>(count, beams_.starts.back().depth - 1u);
-    photonsWithDensities_ = photons_.size();
-    flightsWithDensities_ = beams_.starts.size();
+    size_t count = photons_.size() > photonsBefore_ ? photons_.back().depth : 0u;
+    if (beams_.starts.size() > flightsBefore_) count = std::max<size_t>(count, beams_.starts.back().depth - 1u);
+    StartDensities();
     if (count == 0) return;
     densities_.push_back(ends.Packed());
     const std::span<const SubpathDensities> kept = densities.first(count);
@@ -193,8 +189,6 @@ class PhotonList {
       starts_.pop_back();
     }
     origins_.resize(KeptOrigins());
-    photonsWithDensities_ = photons_.size();
-    flightsWithDensities_ = beams_.starts.size();
     return starts_.size();
   }
   const std::vector<TracedPhoton>& Photons() const { return photons_; }
@@ -207,6 +201,11 @@ class PhotonList {
   const std::vector<PathLabel>& Labels() const { return labels_; }
 
  private:
+  // A path that disperses is traced, and its densities are kept, once for each lane.
+  void StartDensities() {
+    photonsBefore_ = photons_.size();
+    flightsBefore_ = beams_.starts.size();
+  }
   // Number of origins whose paths stored photons; 0 if no origin was set.
   size_t KeptOrigins() const {
     const size_t ofPhotons = photons_.empty() ? 0 : static_cast<size_t>(photons_.back().origin + 1);
@@ -224,9 +223,8 @@ class PhotonList {
   BeamList beams_;
   std::vector<LabelRange> ranges_;
   std::vector<PathLabel> labels_;
-  size_t originsOfFlights_ = 0;  // origins that flights may refer to
-  // Those whose densities are kept.
-  size_t photonsWithDensities_ = 0, flightsWithDensities_ = 0;
+  size_t originsOfFlights_ = 0;                   // origins that flights may refer to
+  size_t photonsBefore_ = 0, flightsBefore_ = 0;  // before what KeepDensities will be called for
 };
 
 // A photon while a map is sorted by cells.

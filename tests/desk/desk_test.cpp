@@ -127,7 +127,6 @@ TEST_F(Desk, EndsOnASignal) {
   }
 }
 
-// With all faders where they are, the screen shows the picture that is rendered.
 // Also while something waits for a first pass that takes long.
 TEST_F(Desk, EndsWhileASceneIsToBeKept) {
   DeskProcess desk(folder_.Path(), "scene.pbrt --resolution 1600x1200 --integrator bdpt --threads 1 --quiet");
@@ -139,6 +138,7 @@ TEST_F(Desk, EndsWhileASceneIsToBeKept) {
   keeps.join();
 }
 
+// With all faders where they are, the screen shows the picture that is rendered.
 TEST_F(Desk, MixesThePictureOfAllLights) {
   const DeskProcess desk(folder_.Path(), "scene.pbrt --quiet --spp 4");
   desk.WaitUntilDone();
