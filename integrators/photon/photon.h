@@ -227,11 +227,6 @@ class PhotonList {
   size_t photonsBefore_ = 0, flightsBefore_ = 0;  // before what KeepDensities will be called for
 };
 
-// A photon while a map is sorted by cells.
-struct SortItem {
-  uint32_t cell, item;
-};
-
 // A photon in a map, without its position. One line of the cache.
 struct alignas(64) Photon {
   Vector3 toPrevious{0.0f};  // unit

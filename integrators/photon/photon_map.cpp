@@ -6,8 +6,10 @@
 #include <chrono>
 #include <flann/flann.hpp>
 #include <limits>
+#include <mutex>
 #include <new>
 #include <numeric>
+#include <optional>
 
 #include "base/parallel.h"
 
@@ -41,18 +43,27 @@ class WithinRadius final : public flann::ResultSet<float> {
 
 }  // namespace
 
-struct PhotonMap::Search {
-  explicit Search(std::vector<float>& positions)
-      : index(flann::Matrix<float>(positions.data(), positions.size() / 3, 3),
-              flann::KDTreeSingleIndexParams(kLeaf, true)) {
-    index.buildIndex();
-  }
-  void Run(const Point3& relative, flann::ResultSet<float>& result) const {
+// FLANN's tree, built by the first search. The positions must stay in their place.
+class PhotonMap::Search {
+ public:
+  explicit Search(std::span<const Point3> positions) : positions_(positions) {}
+  void Run(const Point3& relative, flann::ResultSet<float>& result) {
+    std::call_once(isBuilt_, [this] { Build(); });
     const float query[3] = {relative.x, relative.y, relative.z};
-    index.findNeighbors(result, query, flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED));
+    index_->findNeighbors(result, query, flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED));
   }
 
-  Index index;
+ private:
+  void Build() {
+    static_assert(sizeof(Point3) == 3 * sizeof(float));
+    auto* const data = const_cast<float*>(&positions_[0].x);  // FLANN copies them
+    index_.emplace(flann::Matrix<float>(data, positions_.size(), 3), flann::KDTreeSingleIndexParams(kLeaf, true));
+    index_->buildIndex();
+  }
+
+  std::span<const Point3> positions_;
+  std::once_flag isBuilt_;
+  std::optional<Index> index_;
 };
 
 PhotonMap::PhotonMap() = default;
@@ -130,33 +141,27 @@ void ForAll(size_t count, int threads, const Body& body) {
   });
 }
 
-// Indices of the photons along a Morton curve: neighbours in space are neighbours in memory. Photons of the same cell
-// stay in their order.
-std::vector<uint32_t> MortonOrder(const std::vector<const TracedPhoton*>& photons, const Point3& least,
-                                  const Vector3& extent, int threads) {
-  constexpr uint32_t kBits = 8, kCells = 1 << kBits;  // per axis, and per digit of the sort
-  const float longest = std::max({extent.x, extent.y, extent.z});
-  const float scale = longest > 0 ? static_cast<float>(kCells - 1) / longest : 0.0f;
+// The photons along a Morton curve: neighbours in space are neighbours in memory. Photons of the same cell stay in
+// their order.
+std::vector<SortItem> MortonOrder(const std::vector<const TracedPhoton*>& photons, const Point3& center,
+                                  const MortonFrame& frame, int threads) {
+  constexpr uint32_t kBits = 10, kBuckets = 1 << kBits, kDigits = 3;  // of the sort
+  static_assert(kBits * kDigits == 3 * MortonFrame::kBits);
   std::vector<SortItem> order(photons.size()), sorted(photons.size());
   ForAll(photons.size(), threads, [&](size_t i) {
-    const Vector3 p = (photons[i]->position - least) * scale;
-    order[i] = {MortonCode(static_cast<uint32_t>(p.x), static_cast<uint32_t>(p.y), static_cast<uint32_t>(p.z)),
-                static_cast<uint32_t>(i)};
+    order[i] = {frame.CodeOf(photons[i]->position - center), static_cast<uint32_t>(i)};
   });
-  constexpr uint32_t kDigits = 3;
-  const auto digit = [](const SortItem& item, uint32_t d) { return item.cell >> d * kBits & (kCells - 1); };
-  std::array<std::array<uint32_t, kCells>, kDigits> starts{};
+  const auto digit = [](const SortItem& item, uint32_t d) { return item.cell >> d * kBits & (kBuckets - 1); };
+  std::array<std::array<uint32_t, kBuckets>, kDigits> starts{};
   for (const SortItem& item : order) {
     for (uint32_t d = 0; d < kDigits; ++d) ++starts[d][digit(item, d)];
   }
   for (auto& ofDigit : starts) std::exclusive_scan(ofDigit.begin(), ofDigit.end(), ofDigit.begin(), 0u);
-  for (uint32_t d = 0; d + 1 < kDigits; ++d) {
+  for (uint32_t d = 0; d < kDigits; ++d) {
     for (const SortItem& item : order) sorted[starts[d][digit(item, d)]++] = item;
     order.swap(sorted);
   }
-  std::vector<uint32_t> items(order.size());
-  for (const SortItem& item : order) items[starts[kDigits - 1][digit(item, kDigits - 1)]++] = item.item;
-  return items;
+  return order;
 }
 
 }  // namespace
@@ -178,62 +183,68 @@ void PhotonMap::Build(const Traced& traced, int threads, std::vector<uint32_t>* 
   const size_t count = traced.photons.size();
   const Vector3 extent = traced.most - traced.least;
   center_ = traced.least + 0.5f * extent;
-  std::vector<uint32_t> order = MortonOrder(traced.photons, traced.least, extent, threads);
+  const MortonFrame frame(traced.least - center_, std::max({extent.x, extent.y, extent.z}));
+  std::vector<SortItem> order = MortonOrder(traced.photons, center_, frame, threads);
   firstVolume_ = static_cast<uint32_t>(count);
   if (!traced.volume.empty()) {
-    const auto first =
-        std::stable_partition(order.begin(), order.end(), [&](uint32_t i) { return traced.volume[i] == nullptr; });
+    const auto first = std::stable_partition(order.begin(), order.end(),
+                                             [&](const SortItem& i) { return traced.volume[i.item] == nullptr; });
     firstVolume_ = static_cast<uint32_t>(first - order.begin());
     for (auto i = first; i != order.end(); ++i) {
-      volume_.push_back(*traced.volume[*i]);
+      volume_.push_back(*traced.volume[i->item]);
       volume_.back().radius = radius.OfGathered(volume_.back().position, volume_.back().extinction);
     }
     beamSearch_ = BeamSearch(volume_);
   }
   if (origins) {
     origins->resize(count);
-    ForAll(count, threads, [&](size_t i) { (*origins)[i] = traced.origins[order[i]]; });
+    ForAll(count, threads, [&](size_t i) { (*origins)[i] = traced.origins[order[i].item]; });
   }
   photons_ = LargeArray<Photon>::ForOverwrite(count);
-  std::vector<float> positions(3 * static_cast<size_t>(firstVolume_));
+  std::vector<Point3> positions(firstVolume_);
   ForAll(count, threads, [&](size_t i) {
     // In the order of places the photons are read at random.
     constexpr size_t kAhead = 16;
     if (i + kAhead < count) {
-      const TracedPhoton* next = traced.photons[order[i + kAhead]];
+      const TracedPhoton* next = traced.photons[order[i + kAhead].item];
       __builtin_prefetch(next);
       __builtin_prefetch(&next->path);
     }
-    const TracedPhoton& source = *traced.photons[order[i]];
-    const Vector3 relative = source.position - center_;
-    for (int axis = 0; axis < 3 && i < firstVolume_; ++axis)
-      positions[3 * i + static_cast<size_t>(axis)] = relative[axis];
+    const TracedPhoton& source = *traced.photons[order[i].item];
+    if (i < firstVolume_) positions[i] = source.position - center_;
     Photon& photon = *new (&photons_[i]) Photon();
     photon.toPrevious = source.toPrevious;
     photon.flux = source.diffuse;
-    if (!traced.paths.empty()) photon.path = traced.paths[order[i]];
+    if (!traced.paths.empty()) photon.path = traced.paths[order[i].item];
     photon.previousSolidAnglePerArea = source.previousSolidAnglePerArea;
     photon.normal = source.normal;
     photon.weight = source.weight;
     photon.depth = source.depth;
   });
   ranges_.resize(traced.labels.size());
-  for (size_t i = 0; i < ranges_.size(); ++i) ranges_[i] = traced.labels[order[i]];
+  for (size_t i = 0; i < ranges_.size(); ++i) ranges_[i] = traced.labels[order[i].item];
   for (size_t i = 0; traced.hasSpecular && i < count; ++i) {
-    const TracedPhoton& source = *traced.photons[order[i]];
+    const TracedPhoton& source = *traced.photons[order[i].item];
     if (source.specular == source.diffuse) continue;
     photons_[i].specular = static_cast<uint32_t>(specular_.size());
     specular_.push_back(source.specular);
   }
-  if (firstVolume_ > 0) search_ = std::make_unique<Search>(positions);
+  if (firstVolume_ == 0) return;
+  grid_ = PhotonGrid(frame, std::span(order).first(firstVolume_), std::move(positions));
+  search_ = std::make_unique<Search>(grid_.Positions());
 }
 
 std::span<const uint32_t> PhotonMap::Find(const Point3& position, float radius, PhotonLookup& lookup) const {
+  if (!search_) return {};
+  const Point3 relative = position - center_;
+  if (grid_.Find(relative, radius, lookup.found, lookup.distances)) {
+    for (const uint32_t index : lookup.found) Prefetch(&photons_[index]);
+    return lookup.found;
+  }
   lookup.found.clear();
   lookup.distances.clear();
-  if (!search_) return {};
   WithinRadius result(radius * radius, &photons_[0], lookup);
-  search_->Run(position - center_, result);
+  search_->Run(relative, result);
   return lookup.found;
 }
 

@@ -1,8 +1,9 @@
 // The photons of one pass, with a search for all photons within a radius. The search is exact, may run in any thread,
 // and does not depend on the number of threads that built the map.
 //
-// The search uses FLANN's kd-tree in three dimensions. Photons are first sorted along a space-filling curve: the tree
-// is then built several times faster, and the photons that a lookup finds lie together in memory.
+// Photons are sorted along a space-filling curve: those that a lookup finds lie together in memory. A lookup that finds
+// few of them takes a grid over the sorted photons (photon_grid.h), any other FLANN's kd-tree in three dimensions,
+// which is built for the first lookup that needs it.
 #pragma once
 
 #include <cstdint>
@@ -14,6 +15,7 @@
 #include "base/large_pages.h"
 #include "integrators/photon/beam_search.h"
 #include "integrators/photon/photon.h"
+#include "integrators/photon/photon_grid.h"
 
 namespace lampyr {
 
@@ -101,12 +103,13 @@ class PhotonMap {
   double BuildSeconds() const { return buildSeconds_; }
 
  private:
-  struct Search;
+  class Search;
   struct Traced;
   Traced Collect(std::span<const PhotonList> lists, bool wantsOrigins);
   void Build(const Traced& traced, int threads, std::vector<uint32_t>* origins, const VolumeRadius& radius);
 
   Point3 center_{0.0f};  // positions are kept relative to it
+  PhotonGrid grid_;
   LargeArray<Photon> photons_;
   std::vector<Color> specular_;
   LargeArray<SubpathDensities> densities_;
