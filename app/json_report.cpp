@@ -32,6 +32,23 @@ Json Layers(const RenderReport& report) {
   return layers;
 }
 
+Json Photons(const PhotonStatistics& photons, const RenderCounts& counts) {
+  return {{"passes", photons.passes},
+          {"stored", photons.photons},
+          {"mostInAPass", photons.mostPhotons},
+          {"mostBytes", photons.mostBytes},
+          {"rejected", photons.rejected},
+          {"lookups", counts.lookups},
+          {"found", counts.foundPhotons},
+          {"buildSeconds", photons.buildSeconds},
+          {"nanosecondsPerLookup",
+           1e9 * counts.lookupSeconds / static_cast<double>(std::max<uint64_t>(counts.timedLookups, 1))},
+          {"guideGain", photons.guideGain},
+          {"guideComponents", photons.guideComponents},
+          {"firstRadius", photons.firstRadius},
+          {"lastRadius", photons.lastRadius}};
+}
+
 }  // namespace
 
 std::string ToJson(const RenderReport& report) {
@@ -86,22 +103,7 @@ std::string ToJson(const RenderReport& report) {
   }
   if (outcome.guiding.regions > 0)
     json["guiding"] = {{"gain", outcome.guiding.gain}, {"regions", outcome.guiding.regions}};
-  if (const std::optional<PhotonStatistics>& photons = outcome.photons) {
-    json["photons"] = {{"passes", photons->passes},
-                       {"stored", photons->photons},
-                       {"mostInAPass", photons->mostPhotons},
-                       {"mostBytes", photons->mostBytes},
-                       {"rejected", photons->rejected},
-                       {"lookups", counts.lookups},
-                       {"found", counts.foundPhotons},
-                       {"buildSeconds", photons->buildSeconds},
-                       {"nanosecondsPerLookup",
-                        1e9 * counts.lookupSeconds / static_cast<double>(std::max<uint64_t>(counts.timedLookups, 1))},
-                       {"guideGain", photons->guideGain},
-                       {"guideComponents", photons->guideComponents},
-                       {"firstRadius", photons->firstRadius},
-                       {"lastRadius", photons->lastRadius}};
-  }
+  if (outcome.photons) json["photons"] = Photons(*outcome.photons, outcome.counts);
   return Dump(json);
 }
 

@@ -33,7 +33,8 @@ Color TraceConnection(const SampleContext& context, const PathVertex& z, const P
                          decider, factors);
 }
 
-// `fy`, `fz`: of the vertices of both subpaths, towards each other.
+// In all of these `fy` and `fz` are of the vertices of both subpaths, towards each other; `factors` are from the
+// camera's vertex on.
 void AddConnectionToLayers(const BidirectionalSample& sample, size_t lightCount, const Vector3& toCamera,
                            const BsdfEvaluation& fy, const BsdfEvaluation& fz, const Color& contribution) {
   const PathVertex &y = sample.light.vertices[lightCount - 1], &z = sample.camera.Last();
@@ -43,6 +44,35 @@ void AddConnectionToLayers(const BidirectionalSample& sample, size_t lightCount,
               PartsOf(y, toCamera, false, y.diffuse * fy.diffuse, y.specular * fy.specular), labels);
   AddArrivingToLayers(context, sample.camera, PartsOf(z, -toCamera, false, fz.diffuse, fz.specular), labels.All(),
                       contribution);
+}
+
+inline Joint JointOf(const BidirectionalSample& sample, size_t lightCount, const Vector3& toCamera,
+                     double squaredDistance, const BsdfEvaluation& fy, const BsdfEvaluation& fz,
+                     const EdgeFactors& factors) {
+  const PathVertex &y = sample.light.vertices[lightCount - 1], &z = sample.camera.Last();
+  return {{SolidAngleDensity(fz.pdfForward) * (factors.forward * EdgeDensity(y, toCamera, squaredDistance)),
+           y.PreviousReverse(fy.pdfReverse)},
+          {SolidAngleDensity(fy.pdfForward) * (factors.reverse * EdgeDensity(z, toCamera, squaredDistance)),
+           z.PreviousReverse(fz.pdfReverse)},
+          y.CanMerge(),
+          z.CanMerge(),
+          MergeVolume(y, EdgeBefore(sample.light.vertices, lightCount), {toCamera, factors},
+                      sample.settings.photons.volume),
+          MergeVolume(z, {-toCamera, factors.Reversed(), y.IsInMedium()}, {z.toPrevious, z.factors},
+                      sample.settings.photons.volume)};
+}
+
+void ReportConnection(const BidirectionalSample& sample, size_t lightCount, const Color& arriving, double weight,
+                      const EdgeFactors& factors, const Joint& joint) {
+  ConnectedPath path;
+  path.value = arriving;
+  path.weight = weight;
+  path.factors = factors;
+  sample.SetLight(path, lightCount);
+  sample.SetCamera(path);
+  if (sample.WantsSums()) [[unlikely]]
+    path.sums = sample.SumsOfConnection(lightCount, joint.light, false);
+  sample.Report(path);
 }
 
 }  // namespace
@@ -82,16 +112,7 @@ Color Connect(const BidirectionalSample& sample, size_t lightCount) {
     transmitted = TraceConnection(context, z, y, factors);
     if (transmitted.IsBlack()) return transmitted;
   }
-  const Joint joint{{SolidAngleDensity(fz.pdfForward) * (factors.forward * EdgeDensity(y, toCamera, squared)),
-                     y.PreviousReverse(fy.pdfReverse)},
-                    {SolidAngleDensity(fy.pdfForward) * (factors.reverse * EdgeDensity(z, toCamera, squared)),
-                     z.PreviousReverse(fz.pdfReverse)},
-                    y.CanMerge(),
-                    z.CanMerge(),
-                    MergeVolume(y, EdgeBefore(sample.light.vertices, lightCount), {toCamera, factors},
-                                sample.settings.photons.volume),
-                    MergeVolume(z, {-toCamera, factors.Reversed(), y.IsInMedium()}, {z.toPrevious, z.factors},
-                                sample.settings.photons.volume)};
+  const Joint joint = JointOf(sample, lightCount, toCamera, squared, fy, fz, factors);
   const auto weightWith = [&](double merging) {
     return ConnectWeight(y.weight, joint.light, z.weight, joint.camera, sample.connectionCount, merging);
   };
@@ -107,15 +128,7 @@ Color Connect(const BidirectionalSample& sample, size_t lightCount) {
     AddConnectionToLayers(sample, lightCount, toCamera, fy, fz, contribution);
   if (!sample.IsObserved()) [[likely]]
     return contribution;
-  ConnectedPath path;
-  path.value = arriving;
-  path.weight = weight;
-  path.factors = factors;
-  sample.SetLight(path, lightCount);
-  sample.SetCamera(path);
-  if (sample.WantsSums()) [[unlikely]]
-    path.sums = sample.SumsOfConnection(lightCount, joint.light, false);
-  sample.Report(path);
+  ReportConnection(sample, lightCount, arriving, weight, factors, joint);
   return contribution;
 }
 

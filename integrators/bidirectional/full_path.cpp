@@ -31,20 +31,89 @@ SolidAnglePerArea EdgeBetween(const PathVertex& from, const PathVertex& to, cons
   return EdgeDensity(to, direction, glm::dot(way, way));
 }
 
-}  // namespace
+// The vertices of both subpaths in one row, 1 … n from the light on, with their edges.
+class VertexRow {
+ public:
+  explicit VertexRow(const ConnectedPath& path)
+      // In a merged path the shared vertex is the camera's; the photon's vertex has the densities of its own subpath.
+      : path_(path),
+        ofLight_(path.light.size() - (path.isMerged ? 1 : 0)),
+        photon_(path.isMerged ? &path.light.back() : nullptr) {
+    for (const PathVertex& vertex : path.light.first(ofLight_)) vertices_.push_back(&vertex);
+    for (size_t i = path.camera.size(); i > 0; --i) vertices_.push_back(&path.camera[i - 1]);
+  }
 
-FullPath Unfold(const ConnectedPath& path) {
-  std::vector<const PathVertex*> vertices = {nullptr};
-  // In a merged path the shared vertex is the camera's; the photon's vertex has the densities of its own subpath.
-  const size_t ofLight = path.light.size() - (path.isMerged ? 1 : 0);
-  const PathVertex* photon = path.isMerged ? &path.light.back() : nullptr;
-  for (const PathVertex& vertex : path.light.first(ofLight)) vertices.push_back(&vertex);
-  for (size_t i = path.camera.size(); i > 0; --i) vertices.push_back(&path.camera[i - 1]);
-  const size_t n = vertices.size() - 1;
+  const PathVertex& operator[](size_t i) const { return *vertices_[i]; }
+  size_t Count() const { return vertices_.size() - 1; }
+  size_t OfLight() const { return ofLight_; }
+  const PathVertex* Photon() const { return photon_; }
 
+  Vector3 ToLight(size_t i) const { return i == 1 ? path_.toLight : DirectionTo(i, i - 1); }
+  Vector3 ToCamera(size_t i) const { return i == Count() ? path_.toLens : DirectionTo(i, i + 1); }
+
+  // Factor of media on the density of vertex `to`, a neighbour of vertex `i`, by a walk from there.
+  double FactorTo(size_t i, size_t to) const {
+    const bool here = IsOfLight(i), there = IsOfLight(to);
+    if (here != there) return to < i ? path_.factors.forward : path_.factors.reverse;
+    const bool isAhead = here == (to > i);  // on the way of the subpath of both
+    return isAhead ? vertices_[to]->factors.forward : vertices_[i]->factors.reverse;
+  }
+
+  // Factors of the edge of vertex `i` from the camera's side.
+  EdgeFactors Arrival(size_t i) const {
+    if (i == Count()) return path_.lensFactors;
+    if (IsOfLight(i) == IsOfLight(i + 1))
+      return IsOfLight(i) ? vertices_[i + 1]->factors.Reversed() : vertices_[i]->factors;
+    return photon_ ? photon_->factors.Reversed() : path_.factors;
+  }
+  // And from the light's side.
+  EdgeFactors Departure(size_t i) const {
+    if (i == 1) return path_.endFactors;
+    if (IsOfLight(i) == IsOfLight(i - 1))
+      return IsOfLight(i) ? vertices_[i]->factors : vertices_[i - 1]->factors.Reversed();
+    return photon_ ? photon_->factors : path_.factors.Reversed();
+  }
+
+  // The vertex has an event on the path. The last vertex of a subpath is connected and has none, except where the
+  // camera's has hit the light.
+  bool HasEvent(size_t i) const {
+    const bool isLast = IsOfLight(i) ? i == ofLight_ && !photon_ : i == ofLight_ + 1 && path_.s > 0;
+    return !isLast;
+  }
+  DirectionDensities DensitiesAt(size_t i) const {
+    const PathVertex& vertex = *vertices_[i];
+    const bool isLight = IsOfLight(i);
+    if (!HasEvent(i) || !vertex.scatteredDelta) return At(vertex, isLight, ToLight(i), ToCamera(i));
+    DirectionDensities densities;
+    densities.toLight = isLight ? vertex.eventReverse : vertex.eventForward;
+    densities.toCamera = isLight ? vertex.eventForward : vertex.eventReverse;
+    return densities;
+  }
+
+ private:
+  bool IsOfLight(size_t i) const { return i <= ofLight_; }
+  // Directions of the rays that were traced; for the connecting edge, from vertex to vertex.
+  Vector3 DirectionTo(size_t i, size_t other) const {
+    const PathVertex& vertex = *vertices_[i];
+    if (photon_ && i == ofLight_ + 1 && other == ofLight_) return photon_->toPrevious;
+    if (photon_ && i == ofLight_ && other == ofLight_ + 1) return -photon_->toPrevious;
+    if (IsOfLight(i) && IsOfLight(other)) return other < i ? vertex.toPrevious : -vertices_[other]->toPrevious;
+    if (!IsOfLight(i) && !IsOfLight(other)) return other > i ? vertex.toPrevious : -vertices_[other]->toPrevious;
+    return glm::normalize(Vector3(Vector3d(vertices_[other]->point.position) - Vector3d(vertex.point.position)));
+  }
+
+  const ConnectedPath& path_;
+  size_t ofLight_;
+  const PathVertex* photon_;
+  std::vector<const PathVertex*> vertices_ = {nullptr};
+};
+
+// All of a path but what its vertices say.
+FullPath Ends(const ConnectedPath& path, const VertexRow& vertices) {
+  const size_t n = vertices.Count();
   FullPath full;
   full.end = path.end;
-  full.technique = path.isMerged ? static_cast<int>(n + 1 + ofLight + 1) : path.s;
+  full.technique = path.isMerged ? static_cast<int>(n + 1 + vertices.OfLight() + 1) : path.s;
   full.merging = path.merging;
   full.connectionCount = path.connectionCount;
   full.splatCount = path.splatCount;
@@ -60,62 +129,34 @@ FullPath Unfold(const ConnectedPath& path) {
   full.isInMedium.assign(n + 2, false);
   full.mergeVolume.assign(n + 2, 0);
   if (n == 0) return full;
-  full.mergesAtLens = vertices[n]->isSeenByIndirect;
-  full.lensSeesIt = isConnected && vertices[n]->isSeenByIndirect;
+  full.mergesAtLens = vertices[n].isSeenByIndirect;
+  full.lensSeesIt = isConnected && vertices[n].isSeenByIndirect;
+  return full;
+}
+
+}  // namespace
+
+FullPath Unfold(const ConnectedPath& path) {
+  const VertexRow vertices(path);
+  FullPath full = Ends(path, vertices);
+  const size_t n = vertices.Count(), ofLight = vertices.OfLight();
+  const PathVertex* photon = vertices.Photon();
   for (size_t i = 1; i <= n; ++i) {
-    const PathVertex& vertex = *vertices[i];
+    const PathVertex& vertex = vertices[i];
     full.gathers[i] = vertex.GathersPhotons() || vertex.IsInMedium();
     full.isInMedium[i] = vertex.IsInMedium();
-    // Directions of the rays that were traced; for the connecting edge, from vertex to vertex.
-    const auto directionTo = [&](size_t other) {
-      if (photon && i == ofLight + 1 && other == ofLight) return photon->toPrevious;
-      if (photon && i == ofLight && other == ofLight + 1) return -photon->toPrevious;
-      if (i <= ofLight && other <= ofLight) return other < i ? vertex.toPrevious : -vertices[other]->toPrevious;
-      if (i > ofLight && other > ofLight) return other > i ? vertex.toPrevious : -vertices[other]->toPrevious;
-      return glm::normalize(Vector3(Vector3d(vertices[other]->point.position) - Vector3d(vertex.point.position)));
-    };
-    // Factor of media on the density of vertex `to`, one of the two neighbours, by a walk from here.
-    const auto factorTo = [&](size_t to) {
-      const bool here = i <= ofLight, there = to <= ofLight;
-      if (here != there) return to < i ? path.factors.forward : path.factors.reverse;
-      const bool isAhead = here == (to > i);  // on the way of the subpath of both
-      return isAhead ? vertices[to]->factors.forward : vertex.factors.reverse;
-    };
-    // The edge from the camera's side.
-    EdgeFactors arrival = path.lensFactors;
-    if (i < n && (i <= ofLight) == (i + 1 <= ofLight)) {
-      arrival = i <= ofLight ? vertices[i + 1]->factors.Reversed() : vertex.factors;
-    } else if (i < n) {
-      arrival = photon ? photon->factors.Reversed() : path.factors;
-    }
-    // And from the light's side.
-    EdgeFactors departure = path.endFactors;
-    if (i > 1 && (i <= ofLight) == (i - 1 <= ofLight)) {
-      departure = i <= ofLight ? vertex.factors : vertices[i - 1]->factors.Reversed();
-    } else if (i > 1) {
-      departure = photon ? photon->factors : path.factors.Reversed();
-    }
-    const Vector3 toLight = i == 1 ? path.toLight : directionTo(i - 1);
-    const Vector3 toCamera = i == n ? path.toLens : directionTo(i + 1);
-    full.mergeVolume[i] = static_cast<double>(MergeVolume(
-        vertex, {toLight, departure, i > 1 && vertices[i - 1]->IsInMedium()}, {toCamera, arrival}, *path.volume));
-    // The last vertex of a subpath is connected and has no event on the path, except where the camera's has hit the
-    // light.
-    const bool isLight = i <= ofLight;
-    const bool isLast = isLight ? i == ofLight && !photon : i == ofLight + 1 && path.s > 0;
-    DirectionDensities densities;
-    if (!isLast && vertex.scatteredDelta) {
-      full.isDelta[i] = true;
-      densities.toLight = isLight ? vertex.eventReverse : vertex.eventForward;
-      densities.toCamera = isLight ? vertex.eventForward : vertex.eventReverse;
-    } else {
-      densities = At(vertex, isLight, toLight, toCamera);
-    }
+    const Vector3 toLight = vertices.ToLight(i), toCamera = vertices.ToCamera(i);
+    full.mergeVolume[i] =
+        static_cast<double>(MergeVolume(vertex, {toLight, vertices.Departure(i), i > 1 && vertices[i - 1].IsInMedium()},
+                                        {toCamera, vertices.Arrival(i)}, *path.volume));
+    full.isDelta[i] = vertices.HasEvent(i) && vertex.scatteredDelta;
+    const DirectionDensities densities = vertices.DensitiesAt(i);
     full.fromCamera[i - 1] =
-        densities.toLight *
-        (i == 1 ? path.end.solidAnglePerArea : factorTo(i - 1) * EdgeBetween(vertex, *vertices[i - 1], toLight));
+        densities.toLight * (i == 1 ? path.end.solidAnglePerArea
+                                    : vertices.FactorTo(i, i - 1) * EdgeBetween(vertex, vertices[i - 1], toLight));
     if (i < n) {
-      full.fromLight[i + 1] = densities.toCamera * (factorTo(i + 1) * EdgeBetween(vertex, *vertices[i + 1], toCamera));
+      full.fromLight[i + 1] =
+          densities.toCamera * (vertices.FactorTo(i, i + 1) * EdgeBetween(vertex, vertices[i + 1], toCamera));
     }
     if (photon && i == ofLight + 1) full.fromCamera[i - 1] = densities.toLight * photon->previousSolidAnglePerArea;
   }

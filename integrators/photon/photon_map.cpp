@@ -261,14 +261,15 @@ std::span<const BeamCrossing> PhotonMap::FindBeams(const Ray& ray, const FineLin
   return lookup.crossings;
 }
 
-// Memory of the tree: a copy of the positions in the tree's order; one row pointer and one index per photon; and two
-// nodes for each leaf, which is at least half full on average.
+// Memory of the tree, which any lookup may need: a copy of the positions in the tree's order; one row pointer and one
+// index per photon; and two nodes for each leaf, which is at least half full on average.
 size_t PhotonMap::Bytes() const {
   constexpr size_t node = 48;
   const size_t perPhoton = sizeof(Photon) + 3 * sizeof(float) + sizeof(float*) + sizeof(int);
   return photons_.Size() * perPhoton + photons_.Size() / (kLeaf / 2) * 2 * node + specular_.size() * sizeof(Color) +
-         densities_.Size() * sizeof(SubpathDensities) + volume_.size() * sizeof(VolumePhoton) + beamSearch_.Bytes() +
-         beams_.Bytes() + ranges_.size() * sizeof(LabelRange) + labels_.size() * sizeof(PathLabel);
+         grid_.Bytes() + densities_.Size() * sizeof(SubpathDensities) + volume_.size() * sizeof(VolumePhoton) +
+         beamSearch_.Bytes() + beams_.Bytes() + ranges_.size() * sizeof(LabelRange) +
+         labels_.size() * sizeof(PathLabel);
 }
 
 }  // namespace lampyr

@@ -8,8 +8,9 @@ namespace lampyr {
 
 uint64_t PhotonStore::BytesPerPhoton(bool withUse) {
   constexpr uint64_t pointer = sizeof(void*), position = 3 * sizeof(float), tree = 2 * position + pointer + 16;
+  constexpr uint64_t grid = 12;  // up to a slot per photon
   const uint64_t use = withUse ? PhotonUse::kMostBytesPerPhoton + sizeof(PathOrigin) + sizeof(uint32_t) : 0;
-  return sizeof(TracedPhoton) + sizeof(Photon) + 2 * sizeof(SortItem) + pointer + tree + use;
+  return sizeof(TracedPhoton) + sizeof(Photon) + 2 * sizeof(SortItem) + pointer + tree + grid + use;
 }
 
 PhotonStore::PhotonStore(const PhotonSettings& settings, uint64_t pixels, EmissionLearning* learning)

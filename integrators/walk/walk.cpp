@@ -258,6 +258,33 @@ PathRecords* StartRecord(const SampleContext& context) {
   return context.records;
 }
 
+namespace {
+
+inline bool MakeSurfaceVertex(const SampleContext& context, const WalkSettings& settings, const PathState& state,
+                              const RayHit& hit, PathVertex& vertex) {
+  const auto* materials = &context.scene.materials;
+  if (settings.materialsAfterWide && state.hasScatteredWidely)
+    materials = context.scene.wavelengths ? &context.scene.tunedAfterWide : settings.materialsAfterWide;
+  if (!MakeVertex(context.scene, *materials, state.ray, hit, state.medium, vertex)) return false;
+  if (context.scene.wavelengths) [[unlikely]]
+    vertex.bsdf.SetLane(context.lane);
+  return true;
+}
+
+// Adds the vertex that Subpath::Next gave, with what the path has carried to it.
+inline void Append(const SampleContext& context, TransportMode mode, const PathState& state, Subpath& path) {
+  PathVertex& vertex = path.Next();
+  vertex.factors = state.factors;
+  vertex.diffuse = state.diffuse;
+  vertex.specular = state.specular;
+  vertex.isDispersed = state.isDispersed;
+  path.Add();
+  if (context.outputs) [[unlikely]]
+    path.LabelLast(*context.outputs, mode, state.event);
+}
+
+}  // namespace
+
 void Walk(const SampleContext& context, const WalkSettings& settings, PathState& state, Subpath& path,
           PathVisitor& visitor) {
   bool isRecorded = false;  // the last event
@@ -305,20 +332,9 @@ void Walk(const SampleContext& context, const WalkSettings& settings, PathState&
       MakeVertexInMedium(context.scene, flight->end, state.ray.direction, flight->medium,
                          {here.scattering, flight->collidesWith->Asymmetry()}, here.Extinction(), vertex);
     } else {
-      const auto* materials = &context.scene.materials;
-      if (settings.materialsAfterWide && state.hasScatteredWidely)
-        materials = context.scene.wavelengths ? &context.scene.tunedAfterWide : settings.materialsAfterWide;
-      if (!MakeVertex(context.scene, *materials, state.ray, hit, state.medium, vertex)) return;
-      if (context.scene.wavelengths) [[unlikely]]
-        vertex.bsdf.SetLane(context.lane);
+      if (!MakeSurfaceVertex(context, settings, state, hit, vertex)) return;
     }
-    vertex.factors = state.factors;
-    vertex.diffuse = state.diffuse;
-    vertex.specular = state.specular;
-    vertex.isDispersed = state.isDispersed;
-    path.Add();
-    if (context.outputs) [[unlikely]]
-      path.LabelLast(*context.outputs, settings.mode, state.event);
+    Append(context, settings.mode, state, path);
     const float foundOnArrival = settings.records ? visitor.Found() : 0;
     if (!visitor.Arrived(path, state)) return;
     if (!Scatter(context, settings, index, path.Last(), state)) return;

@@ -68,6 +68,7 @@ class Builder {
   bool Moves(const ReadEntry& entry) const { return placer_.Moves(entry.local.description->placement); }
   Transform StillPlacement(const ReadEntry& entry) const { return placer_.StillPlacement(*entry.local.description); }
   void PlaceEntries();
+  void PlaceLayers();
   Point2 MiddleOfFilm() const {
     return 0.5f * Point2(static_cast<float>(built_.settings.width), static_cast<float>(built_.settings.height));
   }
@@ -358,6 +359,15 @@ void Builder::LightBuilt() {
   kept_->media = std::move(media_);
 }
 
+// The space of the layers of the first hit.
+void Builder::PlaceLayers() {
+  const bool isWorld = built_.settings.firstHit.value_or(FirstHitSpace::World) == FirstHitSpace::World;
+  const Transform toRender =
+      isWorld ? placer_.WorldToRender() : placer_.WorldToRender() * description_.cameraToWorld.start;
+  built_.renderToLayers = toRender.Inverse().ToAffine();
+  built_.layersToCamera = (isWorld ? description_.cameraToWorld.start.Inverse() : Transform()).ToAffine();
+}
+
 BuiltScene Builder::Build() {
   placer_.ReadTimes(description_);
   entries_ = ReadShapes(description_.shapes);
@@ -397,13 +407,7 @@ BuiltScene Builder::Build() {
   scene.camera = LocateErrors(description_.camera.where, [&] {
     return BuildCamera(description_, built_.settings, placer_.WorldToRender(), diagnostics_);
   });
-  if (built_.settings.WantsFirstHit()) {
-    const bool isWorld = built_.settings.firstHit.value_or(FirstHitSpace::World) == FirstHitSpace::World;
-    const Transform toRender =
-        isWorld ? placer_.WorldToRender() : placer_.WorldToRender() * description_.cameraToWorld.start;
-    built_.renderToLayers = toRender.Inverse().ToAffine();
-    built_.layersToCamera = (isWorld ? description_.cameraToWorld.start.Inverse() : Transform()).ToAffine();
-  }
+  if (built_.settings.WantsFirstHit()) PlaceLayers();
   if (built_.settings.Wants(kMaterialMatte)) built_.materialNames = materials_->Names();
   scene.media = MakeMedia(description_, placer_.WorldToRender(), memory_, diagnostics_);
   media_->NumberPlaces(geometry_);

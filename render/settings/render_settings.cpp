@@ -88,6 +88,31 @@ void AddLayer(const std::string& text, const FileLocation& where, RenderSettings
   }
 }
 
+void ReadCrop(const ParameterList& film, const RenderOverrides& overrides, RenderSettings& settings) {
+  settings.crop = {0, 0, settings.width, settings.height};
+  const std::vector<double> window = film.GetFloats("cropwindow");
+  const std::vector<int64_t> bounds = film.GetIntegers("pixelbounds");
+  if (overrides.crop) {
+    settings.crop = ParseCrop(*overrides.crop, settings.width, settings.height);
+  } else if (!window.empty()) {
+    if (window.size() != 4)
+      throw Error(film.WhereOf("cropwindow"), "\"cropwindow\" needs 4 values, has " + std::to_string(window.size()));
+    settings.crop = CropFromFractions(window[0], window[1], window[2], window[3], settings.width, settings.height);
+  } else if (!bounds.empty()) {
+    if (bounds.size() != 4)
+      throw Error(film.WhereOf("pixelbounds"), "\"pixelbounds\" needs 4 values, has " + std::to_string(bounds.size()));
+    const auto limit = [](int64_t n, int size) { return static_cast<int>(std::clamp<int64_t>(n, 0, size)); };
+    settings.crop = {limit(bounds[0], settings.width), limit(bounds[2], settings.height),
+                     limit(bounds[1], settings.width), limit(bounds[3], settings.height)};
+  }
+  if (settings.crop.Width() <= 0 || settings.crop.Height() <= 0) {
+    if (overrides.crop)
+      throw UsageError("--crop leaves no pixel of the " + std::to_string(settings.width) + "×" +
+                       std::to_string(settings.height) + " image");
+    throw Error(film.Where(), "the crop leaves no pixel of the image");
+  }
+}
+
 void ReadFilm(const SceneDescription& scene, const RenderOverrides& overrides, RenderSettings& settings,
               Diagnostics& diagnostics) {
   const ParameterList& film = scene.film.parameters;
@@ -128,28 +153,7 @@ void ReadFilm(const SceneDescription& scene, const RenderOverrides& overrides, R
   }
   settings.sensor = ReadSensor(film, imagingRatio, sensor == "cie1931");
 
-  settings.crop = {0, 0, settings.width, settings.height};
-  const std::vector<double> window = film.GetFloats("cropwindow");
-  const std::vector<int64_t> bounds = film.GetIntegers("pixelbounds");
-  if (overrides.crop) {
-    settings.crop = ParseCrop(*overrides.crop, settings.width, settings.height);
-  } else if (!window.empty()) {
-    if (window.size() != 4)
-      throw Error(film.WhereOf("cropwindow"), "\"cropwindow\" needs 4 values, has " + std::to_string(window.size()));
-    settings.crop = CropFromFractions(window[0], window[1], window[2], window[3], settings.width, settings.height);
-  } else if (!bounds.empty()) {
-    if (bounds.size() != 4)
-      throw Error(film.WhereOf("pixelbounds"), "\"pixelbounds\" needs 4 values, has " + std::to_string(bounds.size()));
-    const auto limit = [](int64_t n, int size) { return static_cast<int>(std::clamp<int64_t>(n, 0, size)); };
-    settings.crop = {limit(bounds[0], settings.width), limit(bounds[2], settings.height),
-                     limit(bounds[1], settings.width), limit(bounds[3], settings.height)};
-  }
-  if (settings.crop.Width() <= 0 || settings.crop.Height() <= 0) {
-    if (overrides.crop)
-      throw UsageError("--crop leaves no pixel of the " + std::to_string(settings.width) + "×" +
-                       std::to_string(settings.height) + " image");
-    throw Error(film.Where(), "the crop leaves no pixel of the image");
-  }
+  ReadCrop(film, overrides, settings);
   film.Find("diagonal");  // the film's size in mm: read for "realistic" cameras only
   film.CheckAllUsed({"coordinatesystem", "nbuckets", "lambdamin", "lambdamax"},
                     {"xresolution", "yresolution", "filename", "savefp16", "sensor", "iso", "whitebalance",

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <set>
 
@@ -96,6 +97,64 @@ TEST(PhotonMap, SmallAndLargeScenes) {
 // Distances are of positions as they are: no precision is lost to where the scene lies.
 TEST(PhotonMap, FarFromTheOrigin) {
   ExpectExact(Places(2000, Point3(1e5f, -1e5f, 1e5f), 100, 7), 100, 8);
+}
+
+// A few photons far from all others must not make the cells of the others useless, nor wrong.
+TEST(PhotonMap, AFewFarAway) {
+  std::vector<Point3> positions = Places(3000, Point3(0.0f), 1, 20);
+  for (const float far : {1e2f, 1e4f, 1e7f, -1e7f}) positions.push_back(Point3(far, 0.5f * far, -0.3f));
+  ExpectExact(positions, 1, 21);
+}
+
+// Lookups that find few photons are the grid's, those that find many are the tree's. The grid's are exact, also for a
+// photon that is on the rim by the next number, and where rounding is a large part of the radius.
+TEST(PhotonGrid, FindsWhatASearchThroughAllFinds) {
+  for (const float offset : {0.0f, 100.0f, 1e4f}) {
+    const std::vector<Point3> positions = Places(20000, Point3(offset), 1, 22);
+    const MortonFrame frame(Point3(offset - 0.5f), 1);
+    std::vector<SortItem> sorted;
+    for (uint32_t i = 0; i < positions.size(); ++i) sorted.push_back({frame.CodeOf(positions[i]), i});
+    std::sort(sorted.begin(), sorted.end(), [](const SortItem& a, const SortItem& b) { return a.cell < b.cell; });
+    std::vector<Point3> inOrder;
+    for (const SortItem& item : sorted) inOrder.push_back(positions[item.item]);
+    const PhotonGrid grid(frame, sorted, inOrder);
+    Rng rng(23);
+    std::vector<uint32_t> found;
+    std::vector<float> distances;
+    int answered = 0, onRims = 0;
+    const auto expectExact = [&](const Point3& center, float radius) {
+      std::set<uint32_t> expected;
+      for (uint32_t i = 0; i < inOrder.size(); ++i) {
+        if (LengthSquared(inOrder[i] - center) < radius * radius) expected.insert(i);
+      }
+      EXPECT_EQ(std::set<uint32_t>(found.begin(), found.end()), expected) << offset << ", radius " << radius;
+      EXPECT_EQ(found.size(), expected.size());
+      for (size_t i = 0; i < found.size(); ++i) EXPECT_EQ(distances[i], LengthSquared(inOrder[found[i]] - center));
+    };
+    for (int query = 0; query < 1500; ++query) {
+      const Point3 center = inOrder[static_cast<size_t>(rng.NextFloat() * 19999)];
+      EXPECT_FALSE(grid.Find(center, 0.5f, found, distances));
+      const float radius = 0.002f + 0.008f * rng.NextFloat();
+      if (!grid.Find(center, radius, found, distances)) continue;
+      ++answered;
+      expectExact(center, radius);
+      const float rim = std::sqrt(*std::max_element(distances.begin(), distances.end()));
+      for (const float near : {rim, std::nextafter(rim, 1.0f)}) {
+        if (rim > 0 && grid.Find(center, near, found, distances)) expectExact(center, near), ++onRims;
+      }
+    }
+    EXPECT_GT(answered, 600) << "all but those in the caustic";
+    EXPECT_GT(onRims, 300);
+  }
+}
+
+TEST(PhotonGrid, WhatIsNoNumberFindsNothing) {
+  const PhotonMap map = MapOf(Places(1000, Point3(0.0f), 1, 24));
+  const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
+  PhotonLookup lookup;
+  for (const Point3& center : {Point3(nan), Point3(0, nan, 0), Point3(infinity, 0, 0), Point3(0, 0, -infinity)})
+    EXPECT_TRUE(map.Find(center, 0.1f, lookup).empty());
+  EXPECT_TRUE(map.Find(Point3(0.0f), nan, lookup).empty());
 }
 
 TEST(PhotonMap, NoPhotons) {

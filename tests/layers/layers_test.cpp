@@ -1,5 +1,5 @@
 // The arrows of the house run down: a file includes only rooms that its own room may know, no include runs in a circle,
-// and each heavy third-party library is included where it belongs and nowhere else.
+// and each heavy third-party library is included where it belongs and nowhere else. No function is long.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -175,6 +175,36 @@ TEST(Layers, HeavyLibrariesInOnePlace) {
     const size_t allowed = several.contains(library) ? several.at(library) : 1;
     EXPECT_LE(users.size(), allowed) << "<" << library << "> is included by several files";
   }
+}
+
+// Lines from the opening brace to the closing one, by the heading that opens at line `at`.
+size_t LengthOfBody(const std::vector<std::string>& lines, size_t at) {
+  static const std::regex literals(R"("(\\.|[^"\\])*"|'(\\.|[^'\\])'|//.*)");
+  int depth = 1;
+  for (size_t i = at + 1; i < lines.size(); ++i) {
+    for (const char c : std::regex_replace(lines[i], literals, "")) depth += c == '{' ? 1 : c == '}' ? -1 : 0;
+    if (depth <= 0) return i - at;
+  }
+  return lines.size() - at;
+}
+
+TEST(Layers, FunctionsAreShort) {
+  constexpr size_t most = 60;
+  const std::regex heading(R"(\)\s*(const)?\s*(noexcept)?\s*(override)?\s*(->\s*[\w:<>]+)?\s*(:.*)?\{\s*$)"),
+      control(R"(^\s*(if|for|while|switch|else|\}|return)\b)");
+  size_t functions = 0;
+  for (const SourceFile& file : SourceFiles()) {
+    const fs::path inSrc = kRoot / "src" / file.path;
+    std::ifstream stream(fs::exists(inSrc) ? inSrc : kRoot / file.path);
+    std::vector<std::string> lines;
+    for (std::string line; std::getline(stream, line);) lines.push_back(line);
+    for (size_t i = 0; i < lines.size(); ++i) {
+      if (!std::regex_search(lines[i], heading) || std::regex_search(lines[i], control)) continue;
+      ++functions;
+      EXPECT_LE(LengthOfBody(lines, i), most) << file.path << ":" << i + 1 << ": " << lines[i];
+    }
+  }
+  EXPECT_GT(functions, 2000u);
 }
 
 TEST(Layers, NothingNamesAConcreteLightOutsideItsFile) {
