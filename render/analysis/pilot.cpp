@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "base/parallel.h"
 #include "integrators/photon/emission_learning.h"
@@ -22,6 +23,11 @@ namespace {
 constexpr int kChunks = 8;
 // Longer paths hold little of the light, and without a limit a closed box of mirrors would keep the pilot for hours.
 constexpr int64_t kMostEvents = 20;
+// As bdpt with one light path would take for the pilot's samples, nanoseconds; the pilot takes some three times that.
+constexpr double kPassesTime = 80e6;
+constexpr int kFewestPasses = 4, kMostPasses = 16;
+// Numbers of the samples of a pixel: those of camera paths, then those of photons, then those that select pixels.
+constexpr uint32_t kSamplesOfPart = 1 << 16;
 constexpr uint64_t kMostLightPaths = 4 * kMostPilotPixels;
 // The radius is that of the average pass of so many.
 constexpr double kTypicalPasses = 64;
@@ -30,12 +36,11 @@ constexpr uint64_t kSeed = 0x9e3779b97f4a7c15;
 // Passes of an integrator over the pilot's pixels.
 class PilotPasses {
  public:
-  PilotPasses(const RenderScene& scene, const RenderSettings& settings, const Grid& grid, int threads, uint32_t passes)
+  PilotPasses(const RenderScene& scene, const RenderSettings& settings, const Grid& grid, int threads)
       : scene_(scene),
         settings_(settings),
         grid_(grid),
         threads_(threads),
-        passes_(passes),
         filter_(settings.filter),
         photons_(kChunks) {}
 
@@ -43,7 +48,7 @@ class PilotPasses {
   void TracePhotons(const Integrator& integrator, PhotonStore& store, uint32_t pass) {
     const auto paths = static_cast<int>(std::min<uint64_t>(store.LightPaths(), kMostLightPaths));
     ForEachPixel(paths, [&](size_t chunk, int x, int y, Sampler& sampler, RenderCounts& counts, SplatList& splats) {
-      sampler.StartPixelSample(x, y, pass + passes_);
+      sampler.StartPixelSample(x, y, pass + kSamplesOfPart);
       photons_[chunk].StartPath();
       SampleContext context{scene_, sampler, Time(pass), counts};
       context.splats = &splats;
@@ -56,12 +61,12 @@ class PilotPasses {
   }
   // One sample of every pixel; `recorders`, one for each chunk, may be empty.
   RenderCounts Trace(const Integrator& integrator, uint32_t pass, const PhotonPass* gather,
-                     std::vector<Recorder>& recorders) {
+                     std::span<Recorder> recorders) {
     return ForEachPixel(grid_.Pixels(), [&](size_t chunk, int x, int y, Sampler& sampler, RenderCounts& counts,
                                             SplatList& splats) {
       // Two passes have the same pixel of the image, of those that a pixel of the pilot holds: what differs between
       // pixels is not noise, and what is within one is.
-      sampler.StartPixelSample(x, y, 2 * passes_ + pass / 2);
+      sampler.StartPixelSample(x, y, 2 * kSamplesOfPart + pass / 2);
       sampler.SetDimension(dimensions::kFilm);
       const Point2 u = sampler.Get2D();
       const int column = std::min(static_cast<int>((static_cast<float>(x) + u.x) * grid_.pixel.x), settings_.width - 1),
@@ -85,7 +90,8 @@ class PilotPasses {
 
  private:
   float Time(uint32_t pass) const {
-    return scene_.hasMotion ? (static_cast<float>(pass) + 0.5f) / static_cast<float>(passes_) : 0.0f;
+    constexpr double kGoldenRatio = 0.6180339887498949;  // spreads any number of passes over the shutter's time
+    return scene_.hasMotion ? static_cast<float>(std::fmod(0.5 + pass * kGoldenRatio, 1.0)) : 0.0f;
   }
   // `count`: of the pixels, or more, with further rows.
   template <class Body>
@@ -113,10 +119,16 @@ class PilotPasses {
   const RenderSettings& settings_;
   const Grid& grid_;
   int threads_;
-  uint32_t passes_;
   PixelFilter filter_;
   std::vector<PhotonList> photons_;
 };
+
+// Passes for which there is time: the rarer the light, the more of them it takes to know how noisy an integrator is
+// that finds it by chance. Even.
+int PassesFor(const Counted& counted, int pixels) {
+  const double cost = CostsOf(counted, pixels)[kBdpt].paths;
+  return std::clamp(2 * static_cast<int>(kPassesTime / (2 * cost * pixels)), kFewestPasses, kMostPasses);
+}
 
 // For the pilot.
 RenderSettings WithAllTechniques(const RenderSettings& settings) {
@@ -147,12 +159,14 @@ const PilotCandidate* RenderPilot::Find(const std::string& integrator, int log2L
 
 const PilotCandidate* RenderPilot::Best() const {
   const auto product = [](const PilotCandidate& candidate) {
-    return candidate.missing > kNegligibleLight ? std::numeric_limits<double>::infinity() : candidate.ErrorTimesCost();
+    return candidate.missing > kNegligibleLight ? std::numeric_limits<double>::infinity()
+                                                : candidate.MostErrorTimesCost();
   };
   double least = std::numeric_limits<double>::infinity();
   for (const PilotCandidate& candidate : candidates) least = std::min(least, product(candidate));
-  // The estimates are no better than this. Of equals the least noisy is taken: the noisier one is more often
-  // underestimated, because a pilot does not meet its brightest samples.
+  // Where light is found by chance, an error is known no better than by its standard error, and a pilot that has not
+  // met the brightest samples takes it for too small. So candidates are compared by the most that their errors may be.
+  // Of equals, as far as these estimates tell, the least noisy is taken.
   constexpr double kMargin = 1.05;
   const PilotCandidate* best = nullptr;
   for (const PilotCandidate& candidate : candidates) {
@@ -183,11 +197,14 @@ RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, i
   const double shrunk = std::pow(kTypicalPasses, photons.alpha - 1) / photons.alpha;
   const double wider = std::sqrt(fewer * std::min(shrunk, 1.0));
   PhotonStore store(photons, static_cast<uint64_t>(grid.Pixels()), nullptr);
-  PilotPasses passes(view, combined, grid, threads, static_cast<uint32_t>(passCount));
-  const PixelFilter filter(settings.filter);
-  std::vector<Recorder> recorders(kChunks, Recorder(grid, filmPixels, filter, SplatCount(settings), passCount)), none;
-  Records records(grid, recorders);
+  PilotPasses passes(view, combined, grid, threads);
   Counted counted;
+  counted.path = passes.Trace(*path, 0, nullptr, {});
+  counted.bdpt = passes.Trace(*bdpt, 0, nullptr, {});
+  if (passCount == 0) passCount = PassesFor(counted, grid.Pixels());
+  const PixelFilter filter(settings.filter);
+  std::vector<Recorder> recorders(kChunks, Recorder(grid, filmPixels, filter, SplatCount(settings), passCount));
+  Records records(grid, recorders);
   for (uint32_t pass = 0; pass < static_cast<uint32_t>(passCount); ++pass) {
     passes.TracePhotons(*vcm, store, pass);
     const PhotonPass& gather = store.Open(pass, threads, wider);
@@ -198,8 +215,6 @@ RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, i
   counted.stored /= static_cast<uint64_t>(passCount);
   counted.vcm.lookups /= static_cast<uint64_t>(passCount);
   counted.vcm.foundPhotons /= static_cast<uint64_t>(passCount);
-  counted.path = passes.Trace(*path, 0, nullptr, none);
-  counted.bdpt = passes.Trace(*bdpt, 0, nullptr, none);
   RenderPilot pilot;
   const auto costs = CostsOf(counted, grid.Pixels());
   for (size_t k = 0; k < kCandidates; ++k) {

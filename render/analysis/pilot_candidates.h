@@ -23,7 +23,7 @@ constexpr Candidate Bidirectional(bool merges, int log2LightPaths) {
   const double n = log2LightPaths < 0 ? 1.0 / (1 << -log2LightPaths) : 1 << log2LightPaths;
   return {merges ? "vcm" : "bdpt", log2LightPaths, {1, 1, n, std::min(n, 1.0), merges ? n : 0.0}};
 }
-inline constexpr size_t kCandidates = 13, kFirstOfVcm = 7;
+inline constexpr size_t kCandidates = 13, kBdpt = 4, kFirstOfVcm = 7;  // kBdpt: with one light path
 inline constexpr double kFewestLightPaths = 1.0 / 8;
 inline constexpr std::array<Candidate, kCandidates> kCandidateOf = {{
     {"path", 0, {1, 1, 0, 0, 0}},

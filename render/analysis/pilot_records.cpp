@@ -1,6 +1,8 @@
 #include "render/analysis/pilot_records.h"
 
 #include <algorithm>
+#include <functional>
+#include <limits>
 #include <tuple>
 #include <utility>
 
@@ -72,7 +74,7 @@ void Recorder::Add(const ConnectedPath& path, double value, size_t pixel) {
     for (size_t k = 0; k < kCandidates; ++k) {
       here.square[k] += weighted * value * splatSquare;
       if (!path.connection) {
-        found[pixel].value[k] += static_cast<float>(weighted);
+        found[pixel].Add(k, weighted, true);
         sums_[k].value += weighted;
         sums_[k].squares += weighted * weighted;
       }
@@ -102,7 +104,7 @@ void Recorder::Add(const ConnectedPath& path, double value, size_t pixel) {
     if (bySplats < known && !path.connection) {
       // As if there were no splats in the pilot, and by the candidate's techniques of camera paths.
       const double ofCamera = 1 - counts[kSplat] * counts[kSplat] * bySplats / squares;
-      found[pixel].value[k] += static_cast<float>(weighted * known / (known - bySplats) * ofCamera);
+      found[pixel].Add(k, weighted * known / (known - bySplats) * ofCamera, bySplats < 0.5 * known);
     }
     if (path.connection || counts[own] == 0) continue;
     const double reweighted = weighted * known * counts[own] * counts[own] / squares;  // w = r² / Σ r²
@@ -139,9 +141,11 @@ void Records::EndPass(uint32_t pass) {
     for (size_t i = 0; i < found.size(); ++i) found[i] += std::exchange(recorder.found[i], Found());
   }
   for (size_t i = 0; i < found.size() && pass % 2 == 1; ++i) {
-    for (size_t k = 0; k < kCandidates; ++k)
-      squaredMeans_[kCandidates * i + k] +=
-          2 * static_cast<double>(last_[i].value[k]) * static_cast<double>(found[i].value[k]);
+    for (size_t k = 0; k < kCandidates; ++k) {
+      SquaredMean& squared = squaredMeans_[kCandidates * i + k];
+      squared.value += 2 * static_cast<double>(last_[i].value[k]) * static_cast<double>(found[i].value[k]);
+      squared.oftener += 2 * static_cast<double>(last_[i].oftener[k]) * static_cast<double>(found[i].oftener[k]);
+    }
   }
   last_ = std::move(found);
 }
@@ -166,34 +170,67 @@ bool Records::SetErrors(int passes, double squaredWeight, bool isSobol, std::vec
     const double brightness = tiles[tile] + pixels[pixel].seen / passes;
     scales[pixel] = 1 / ((brightness * brightness + 0.01 * (mean + seen) * (mean + seen)) * passes);
   });
+  for (size_t k = 0; k < candidates.size(); ++k) LeaveOutRare(k, passes, mean + seen, scales, pixels);
+  const std::vector<char> isLeftOut = Hopeless(pixels, scales);
   for (size_t k = 0; k < candidates.size(); ++k) {
-    LeaveOutRare(k, passes, mean + seen, scales, pixels);
     PilotCandidate& candidate = candidates[k];
     candidate.secondMoments.resize(grid_.Tiles());
     candidate.tileErrors.resize(grid_.Tiles());
+    candidate.tileVariances.resize(grid_.Tiles());
     candidate.tileMissing.resize(grid_.Tiles());
     double squares = 0, squaredMeans = 0, squaredBrightness = 0;
     ForEachPixel([&](size_t pixel, size_t tile) {
       const Moments& here = pixels[pixel];
       const double brightness = tiles[tile] + here.seen / passes;
       const double scale = scales[pixel];
-      const double square = scale * (here.square[k] + here.products[k]);
-      const double squaredMean = scale * squaredMeans_[kCandidates * pixel + k];
+      const double secondMoment = here.square[k] + here.products[k];
+      const double square = scale * secondMoment;
+      const double squaredMean = scale * squaredMeans_[kCandidates * pixel + k].Below(secondMoment);
+      candidate.secondMoments[tile] += here.square[k] / (passes * grid_.PixelsOf(tile));
+      candidate.tileMissing[tile] += here.missing[k] / (passes * grid_.Pixels() * (mean + seen));
+      if (isLeftOut[pixel]) return;
       squares += square;
       squaredBrightness += scale * passes * brightness * brightness;
       squaredMeans += squaredMean;
-      candidate.tileErrors[tile] += (square - squaredMean) / grid_.Pixels();
-      candidate.secondMoments[tile] += here.square[k] / (passes * grid_.PixelsOf(tile));
-      candidate.tileMissing[tile] += here.missing[k] / (passes * grid_.Pixels() * (mean + seen));
+      const double error = (square - squaredMean) / grid_.Pixels();
+      candidate.tileErrors[tile] += error;
+      candidate.tileVariances[tile] += error * error;
     });
     for (const double missing : candidate.tileMissing) candidate.missing += missing;
     const double error = squaredWeight * (squares - squaredMeans) / grid_.Pixels();
     const double gain = isSobol ? GainOfSobol(error) : 1.0;
-    for (double& ofTile : candidate.tileErrors) ofTile *= squaredWeight / gain;
+    candidate.uncertainty = 0;
+    for (size_t tile = 0; tile < grid_.Tiles(); ++tile) {
+      // Of the sum over a tile, by how its pixels differ.
+      double& variance = candidate.tileVariances[tile];
+      const int n = grid_.PixelsOf(tile);
+      variance -= candidate.tileErrors[tile] * candidate.tileErrors[tile] / n;
+      variance *= squaredWeight / gain * squaredWeight / gain * n / std::max(n - 1, 1);
+      candidate.uncertainty += variance;
+      candidate.tileErrors[tile] *= squaredWeight / gain;
+    }
+    candidate.uncertainty = std::sqrt(std::max(candidate.uncertainty, 0.0));
     least = LeastVariance(passes * grid_.Pixels()) * squaredBrightness / grid_.Pixels();
     candidate.error = std::max(error / gain, least);
   }
   return true;
+}
+
+std::vector<char> Records::Hopeless(const std::vector<Moments>& pixels, const std::vector<double>& scales) const {
+  constexpr double kPart = 0.001;
+  std::vector<std::pair<double, size_t>> least(pixels.size());
+  for (size_t i = 0; i < pixels.size(); ++i) {
+    double square = std::numeric_limits<double>::infinity();
+    for (size_t k = 0; k < kCandidates; ++k) {
+      if (pixels[i].missing[k] == 0) square = std::min(square, pixels[i].square[k] + pixels[i].products[k]);
+    }
+    least[i] = {std::isfinite(square) ? scales[i] * square : 0.0, i};
+  }
+  const auto count = static_cast<std::ptrdiff_t>(std::lround(kPart * static_cast<double>(pixels.size())));
+  std::partial_sort(least.begin(), least.begin() + count, least.end(), std::greater<>());
+  std::vector<char> isHopeless(pixels.size());
+  for (std::ptrdiff_t i = 0; i < count; ++i) isHopeless[least[static_cast<size_t>(i)].second] = 1;
+  return isHopeless;
 }
 
 void Records::LeaveOutRare(size_t k, int passes, double mean, const std::vector<double>& scales,
