@@ -39,8 +39,12 @@ struct PilotCandidate {
 
   // Error of a picture that takes a second per pixel.
   double ErrorTimesCost() const { return error * cost * 1e-9; }
-  // The same, if the error is larger than estimated by its standard error.
-  double MostErrorTimesCost() const { return (error + uncertainty) * cost * 1e-9; }
+  // The same, if the error is larger than estimated by twice its standard error, and where merging starts wide by its
+  // blur, which the pilot does not know.
+  double MostErrorTimesCost() const {
+    constexpr double kBlur = 1.2;
+    return (error + 2 * uncertainty) * (counts.startsWide ? kBlur : 1.0) * cost * 1e-9;
+  }
 };
 
 struct RenderPilot {

@@ -150,70 +150,80 @@ void Records::EndPass(uint32_t pass) {
   last_ = std::move(found);
 }
 
+Records::Brightness Records::BrightnessOf(const std::vector<Moments>& pixels, int passes) const {
+  Brightness brightness;
+  std::vector<double> tiles(grid_.Tiles());
+  double mean = 0;
+  ForEachPixel([&](size_t pixel, size_t tile) {
+    tiles[tile] += pixels[pixel].mean / (passes * grid_.PixelsOf(tile));
+    mean += (pixels[pixel].mean + pixels[pixel].seen) / (passes * grid_.Pixels());
+  });
+  brightness.mean = mean;
+  brightness.scales.resize(pixels.size());
+  ForEachPixel([&](size_t pixel, size_t tile) {
+    const double here = tiles[tile] + pixels[pixel].seen / passes;
+    brightness.scales[pixel] = 1 / ((here * here + 0.01 * mean * mean) * passes);
+    brightness.squared += brightness.scales[pixel] * passes * here * here / grid_.Pixels();
+  });
+  return brightness;
+}
+
 bool Records::SetErrors(int passes, double squaredWeight, bool isSobol, std::vector<PilotCandidate>& candidates,
                         double& least) const {
   std::vector<Moments> pixels(squaredMeans_.size() / kCandidates);
   for (const Recorder& recorder : recorders_) {
     for (size_t i = 0; i < pixels.size(); ++i) pixels[i] += recorder.moments[i];
   }
-  // The brightness of a pixel is that of its tile, and of the light that it sees itself.
-  std::vector<double> tiles(grid_.Tiles());
-  double mean = 0, seen = 0;
-  ForEachPixel([&](size_t pixel, size_t tile) {
-    tiles[tile] += pixels[pixel].mean / (passes * grid_.PixelsOf(tile));
-    mean += pixels[pixel].mean / (passes * grid_.Pixels());
-    seen += pixels[pixel].seen / (passes * grid_.Pixels());
-  });
-  if (!(mean + seen > 0)) return false;
-  std::vector<double> scales(pixels.size());
-  ForEachPixel([&](size_t pixel, size_t tile) {
-    const double brightness = tiles[tile] + pixels[pixel].seen / passes;
-    scales[pixel] = 1 / ((brightness * brightness + 0.01 * (mean + seen) * (mean + seen)) * passes);
-  });
-  for (size_t k = 0; k < candidates.size(); ++k) LeaveOutRare(k, passes, mean + seen, scales, pixels);
-  const std::vector<char> isLeftOut = Hopeless(pixels, scales);
+  const Brightness brightness = BrightnessOf(pixels, passes);
+  if (!(brightness.mean > 0)) return false;
+  for (size_t k = 0; k < candidates.size(); ++k) LeaveOutRare(k, passes, brightness.mean, brightness.scales, pixels);
+  const std::vector<char> isLeftOut = Hopeless(pixels, brightness.scales);
+  for (size_t k = 0; k < candidates.size(); ++k)
+    AddUp(k, passes, brightness, pixels, isLeftOut, squaredWeight, candidates[k]);
+  least = LeastVariance(passes * grid_.Pixels()) * brightness.squared;
+  // Where only light is sampled more often, points in pixels gain what they did.
+  std::array<double, kCandidates> gains;
+  for (size_t k = 0; k < candidates.size(); ++k)
+    gains[k] = isSobol ? GainOfSobol(candidates[WithFewestSamples(k)].error) : 1.0;
   for (size_t k = 0; k < candidates.size(); ++k) {
     PilotCandidate& candidate = candidates[k];
-    candidate.secondMoments.resize(grid_.Tiles());
-    candidate.tileErrors.resize(grid_.Tiles());
-    candidate.tileVariances.resize(grid_.Tiles());
-    candidate.tileMissing.resize(grid_.Tiles());
-    double squares = 0, squaredMeans = 0, squaredBrightness = 0;
-    ForEachPixel([&](size_t pixel, size_t tile) {
-      const Moments& here = pixels[pixel];
-      const double brightness = tiles[tile] + here.seen / passes;
-      const double scale = scales[pixel];
-      const double secondMoment = here.square[k] + here.products[k];
-      const double square = scale * secondMoment;
-      const double squaredMean = scale * squaredMeans_[kCandidates * pixel + k].Below(secondMoment);
-      candidate.secondMoments[tile] += here.square[k] / (passes * grid_.PixelsOf(tile));
-      candidate.tileMissing[tile] += here.missing[k] / (passes * grid_.Pixels() * (mean + seen));
-      if (isLeftOut[pixel]) return;
-      squares += square;
-      squaredBrightness += scale * passes * brightness * brightness;
-      squaredMeans += squaredMean;
-      const double error = (square - squaredMean) / grid_.Pixels();
-      candidate.tileErrors[tile] += error;
-      candidate.tileVariances[tile] += error * error;
-    });
-    for (const double missing : candidate.tileMissing) candidate.missing += missing;
-    const double error = squaredWeight * (squares - squaredMeans) / grid_.Pixels();
-    const double gain = isSobol ? GainOfSobol(error) : 1.0;
-    candidate.uncertainty = 0;
-    for (size_t tile = 0; tile < grid_.Tiles(); ++tile) {
-      // Of the sum over a tile, by how its pixels differ.
-      double& variance = candidate.tileVariances[tile];
-      const int n = grid_.PixelsOf(tile);
-      variance -= candidate.tileErrors[tile] * candidate.tileErrors[tile] / n;
-      variance *= squaredWeight / gain * squaredWeight / gain * n / std::max(n - 1, 1);
-      candidate.uncertainty += variance;
-      candidate.tileErrors[tile] *= squaredWeight / gain;
-    }
-    candidate.uncertainty = std::sqrt(std::max(candidate.uncertainty, 0.0));
-    least = LeastVariance(passes * grid_.Pixels()) * squaredBrightness / grid_.Pixels();
-    candidate.error = std::max(error / gain, least);
+    for (double& error : candidate.tileErrors) error /= gains[k];
+    for (double& variance : candidate.tileVariances) variance /= gains[k] * gains[k];
+    candidate.uncertainty /= gains[k];
+    candidate.error = std::max(candidate.error / gains[k], least);
   }
   return true;
+}
+
+void Records::AddUp(size_t k, int passes, const Brightness& brightness, const std::vector<Moments>& pixels,
+                    const std::vector<char>& isLeftOut, double squaredWeight, PilotCandidate& candidate) const {
+  candidate.secondMoments.resize(grid_.Tiles());
+  candidate.tileErrors.resize(grid_.Tiles());
+  candidate.tileVariances.resize(grid_.Tiles());
+  candidate.tileMissing.resize(grid_.Tiles());
+  ForEachPixel([&](size_t pixel, size_t tile) {
+    const Moments& here = pixels[pixel];
+    candidate.secondMoments[tile] += here.square[k] / (passes * grid_.PixelsOf(tile));
+    candidate.tileMissing[tile] += here.missing[k] / (passes * grid_.Pixels() * brightness.mean);
+    if (isLeftOut[pixel]) return;
+    const double secondMoment = here.square[k] + here.products[k];
+    const double variance = secondMoment - squaredMeans_[kCandidates * pixel + k].Below(secondMoment);
+    const double error = squaredWeight * brightness.scales[pixel] * variance / grid_.Pixels();
+    candidate.tileErrors[tile] += error;
+    candidate.tileVariances[tile] += error * error;
+  });
+  double variances = 0;
+  for (size_t tile = 0; tile < grid_.Tiles(); ++tile) {
+    candidate.missing += candidate.tileMissing[tile];
+    candidate.error += candidate.tileErrors[tile];
+    // Of the sum over a tile, by how its pixels differ.
+    double& variance = candidate.tileVariances[tile];
+    const int n = grid_.PixelsOf(tile);
+    variance -= candidate.tileErrors[tile] * candidate.tileErrors[tile] / n;
+    variance = std::max(variance * n / std::max(n - 1, 1), 0.0);
+    variances += variance;
+  }
+  candidate.uncertainty = std::sqrt(variances);
 }
 
 std::vector<char> Records::Hopeless(const std::vector<Moments>& pixels, const std::vector<double>& scales) const {

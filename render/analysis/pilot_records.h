@@ -177,6 +177,18 @@ class Records {
                  double& least) const;
 
  private:
+  struct Brightness {
+    double mean = 0;             // of the picture
+    double squared = 0;          // mean of the squares of pixels, each by its scale
+    std::vector<double> scales;  // 1 / (passes · squared brightness), by pixel
+  };
+  // The brightness of a pixel is that of its tile, and of the light that it sees itself.
+  Brightness BrightnessOf(const std::vector<Moments>& pixels, int passes) const;
+
+  // Sets the estimates of candidate `k`, as those of independent samples. `isLeftOut`: pixels that do not count.
+  void AddUp(size_t k, int passes, const Brightness& brightness, const std::vector<Moments>& pixels,
+             const std::vector<char>& isLeftOut, double squaredWeight, PilotCandidate& candidate) const;
+
   // Moves the brightest events of candidate `k` out of its second moments, as far as a typical render is expected to
   // hold less than one of them and they are a negligible part of the light.
   void LeaveOutRare(size_t k, int passes, double mean, const std::vector<double>& scales,

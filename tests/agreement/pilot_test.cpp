@@ -226,7 +226,13 @@ TEST(Pilot, KnowsTheErrors) {
       std::printf("[   info   ] %-80s relMSE %.4g, measured %.4g\n", candidate.Describe().c_str(), candidate.error,
                   measured);
       // The estimate of the pilot, by 200 passes, is itself uncertain: most where weights of either sign cancel.
-      EXPECT_NEAR(candidate.error / measured, 1, c.filter == "mitchell" ? 0.25 : 0.15) << candidate.Describe();
+      // Of several times the merges of the pilot the estimate is noisy (10 % by 200 passes), and is taken for more than
+      // it is where merging has had enough.
+      const bool isMore = candidate.counts.log2LightPaths == 2 || candidate.counts.startsWide;
+      const double tolerance = c.filter == "mitchell" || isMore ? 0.3 : 0.15;
+      EXPECT_LT(candidate.error / measured, 1 + (candidate.counts.startsWide ? 0.7 : tolerance))
+          << candidate.Describe();
+      EXPECT_GT(candidate.error / measured, 1 - tolerance) << candidate.Describe();
       EXPECT_LT(candidate.missing, kNegligibleLight) << candidate.Describe();
     }
   }
@@ -297,6 +303,7 @@ TEST(Pilot, CountsDoNotChangeTheMean) {
       {-2, maskOf({0.5f, 0, 1, 0.5f}), maskOf({0, 0, 0.4f, 1})},
       {1, maskOf({0, 0.5f, 0, 0}), maskOf({0.3f, 0.3f, 1, 1})},
       {2, {}, {}},
+      {0, {}, {}, true},
   };
   const std::string head = "path\" \"integer maxdepth\" [ 3 ] \"float unused\" [ 0 ] \"string lightsampler\" \"power";
   const std::string moving =
@@ -414,6 +421,27 @@ TEST(Pilot, FindsOutWhatIsRarelyFound) {
   EXPECT_GT(bdpt->uncertainty / bdpt->error, best->uncertainty / best->error);
 }
 
+// A small sun, whose light paths are guided to what the camera sees: the pilot knows before the render does. A ball of
+// glass in a small room needs no guide.
+TEST(Pilot, KnowsWhetherPhotonsWillBeGuided) {
+  const auto costs = [](const BuiltScene& built) {
+    const RenderPilot pilot = RunPilot(built.scene, built.settings, 2, 8);
+    BuiltScene unguided = built;
+    unguided.settings.values.Set("guide-photons", false);
+    const RenderPilot without = RunPilot(unguided.scene, unguided.settings, 2, 8);
+    EXPECT_EQ(pilot.Find("bdpt")->error, without.Find("bdpt")->error);
+    EXPECT_EQ(pilot.Find("bdpt")->cost, without.Find("bdpt")->cost);
+    return std::pair(pilot.Find("vcm")->error / without.Find("vcm")->error,
+                     pilot.Find("vcm")->cost / without.Find("vcm")->cost);
+  };
+  const auto [error, cost] = costs(BuildFile("pool", 160, 90));
+  EXPECT_LT(error, 0.7);
+  EXPECT_GT(cost, 1.2);
+  const auto [same, sameCost] = costs(BuildFile("glass-sphere", 160, 90));
+  EXPECT_EQ(same, 1);
+  EXPECT_EQ(sameCost, 1);
+}
+
 TEST(Pilot, TheMostThatAnErrorMayBeDecides) {
   RenderPilot pilot;
   pilot.candidates.resize(2);
@@ -426,6 +454,13 @@ TEST(Pilot, TheMostThatAnErrorMayBeDecides) {
   pilot.candidates[0].uncertainty = 0.5;
   pilot.candidates[1].uncertainty = 0.1;
   EXPECT_EQ(pilot.Best()->integrator, "vcm");
+  // A wide start has to be worth its blur.
+  pilot.candidates[0].uncertainty = pilot.candidates[1].uncertainty = 0;
+  pilot.candidates[0].error = 0.9;
+  pilot.candidates[0].counts.startsWide = true;
+  EXPECT_EQ(pilot.Best()->integrator, "vcm");
+  pilot.candidates[0].error = 0.5;
+  EXPECT_TRUE(pilot.Best()->counts.startsWide);
 }
 
 TEST(Pilot, ASquaredMeanIsBelowTheSecondMoment) {
