@@ -467,6 +467,7 @@ std::unique_ptr<Integrator> CreateVcm(const IntegratorInput& input) {
   if (!settings.merges && !settings.connects)
     throw UsageError("--no-merge and --no-connect: vcm has nothing left to find light by");
   settings.photons = PhotonSettingsOf(input);
+  settings.photons.startsWide = settings.counts.startsWide;
   UseBeams(input, settings.photons);
   // Without smooth materials connections find all light, and guided photons would add next to nothing.
   settings.photons.guided = settings.photons.guided && (!settings.connects || HasSmoothMaterial(input.scene));

@@ -2,6 +2,7 @@
 // lookups among them.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <memory>
@@ -12,9 +13,16 @@
 
 namespace lampyr {
 
-// Radius of a pass relative to the first: r_i = r_1 · i^((α - 1) / 2) ([Knaus11 eq. 15]; `pass` counts from 0).
-inline double RadiusScale(uint32_t pass, double alpha) {
-  return std::pow(static_cast<double>(pass) + 1, 0.5 * (alpha - 1));
+// Area of merging in a pass that starts wide, relative to that of one that does not: 4 at first, 2.5 after 100 passes,
+// and 1 from pass 960 on, so that long renders are no more blurred than others.
+inline double Widening(uint32_t pass) {
+  return std::max(4 / std::sqrt(1 + static_cast<double>(pass) / 64), 1.0);
+}
+
+// Radius of a pass relative to the first: r_i = r_1 · i^((α - 1) / 2) ([Knaus11 eq. 15]; `pass` counts from 0). If it
+// starts wide, relative to the first of one that does not.
+inline double RadiusScale(uint32_t pass, double alpha, bool startsWide = false) {
+  return std::pow(static_cast<double>(pass) + 1, 0.5 * (alpha - 1)) * (startsWide ? std::sqrt(Widening(pass)) : 1.0);
 }
 
 struct PhotonPass {

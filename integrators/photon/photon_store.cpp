@@ -65,7 +65,7 @@ const PhotonPass& PhotonStore::Open(uint32_t pass, int threads, double scale) {
   open_ = PhotonPass();
   open_.pass = pass;
   open_.lightPaths = static_cast<double>(std::max<uint64_t>(paths_, 1));
-  if (!(scale > 0)) scale = RadiusScale(pass, settings_.alpha);
+  if (!(scale > 0)) scale = RadiusScale(pass, settings_.alpha, settings_.startsWide);
   open_.radiusScale = static_cast<float>(scale);
   open_.radius = static_cast<float>(settings_.radius * scale);
   std::vector<uint32_t> origins;

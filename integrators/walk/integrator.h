@@ -68,8 +68,9 @@ struct VolumeRadius {
 
 // Settings of an integrator that gathers photons.
 struct PhotonSettings {
-  double radius = 0;      // gather radius of the first pass, scene units; 0: chosen by the integrator
-  double alpha = 2. / 3;  // the radius shrinks as pass^((alpha - 1) / 2); 1: constant
+  double radius = 0;        // gather radius of the first pass, scene units; 0: chosen by the integrator
+  double alpha = 2. / 3;    // the radius shrinks as pass^((alpha - 1) / 2); 1: constant
+  bool startsWide = false;  // the radius is larger in the first passes (RadiusScale)
   uint64_t lightPaths =
       0;  // light paths traced per pass; 0: one for each pixel of the full image, times 2^Log2LightPaths()
   uint64_t mostBytes = 0;  // limit on the memory of photons while their map is built; 0: none

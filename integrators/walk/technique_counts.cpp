@@ -34,6 +34,7 @@ std::string TechniqueCounts::Describe(const std::string& integrator) const {
   std::string text = integrator;
   if (log2LightPaths > 0) text += ", " + std::to_string(1 << log2LightPaths) + " light paths for each camera path";
   if (log2LightPaths < 0) text += ", a light path for " + std::to_string(1 << -log2LightPaths) + " camera paths";
+  if (startsWide) text += ", merging in wide discs at first";
   const double part = merging.Mean();
   if (part < 1) text += ", merging in " + std::to_string(std::lround(100 * part)) + " % of the picture";
   return text;
@@ -58,6 +59,7 @@ std::string TechniqueCounts::Fingerprint() const {
     }
     hash.Add(bytes);
   }
+  if (startsWide) hash.Add("wide");
   return hash.Hex();
 }
 

@@ -51,9 +51,12 @@ struct TechniqueCounts {
   // Probabilities with which the vertices of a camera path are connected to a light path, if the sample has one, and
   // merged with photons.
   FilmMask connecting, merging;
+  // Merging starts with discs of twice the radius, four times the area, which shrink to the usual ones
+  // (photon/photon_pass.h): as many more merges as of that many more light paths, and a wider blur, for a time.
+  bool startsWide = false;
 
   bool HasMasks() const { return !connecting.Values().empty() || !merging.Values().empty(); }
-  bool IsDefault() const { return log2LightPaths == 0 && !HasMasks(); }
+  bool IsDefault() const { return log2LightPaths == 0 && !HasMasks() && !startsWide; }
   // "vcm, a light path for 4 camera paths, merging in 30 % of the picture".
   std::string Describe(const std::string& integrator) const;
   UsedCounts At(const Point2& film, const CountedTechniques& techniques) const;

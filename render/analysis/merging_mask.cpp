@@ -1,6 +1,7 @@
 #include "render/analysis/merging_mask.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace lampyr::pilot {
 
@@ -54,15 +55,19 @@ std::optional<PilotCandidate> MergingInParts(const PilotCandidate& none, const P
   for (double& value : merges = Blurred(std::move(merges), grid, 1))
     value = std::clamp(3 * value, mustMerge ? kNowAndThen : 0.0, 1.0);
   PilotCandidate mixed = all;
-  mixed.error = part = 0;
+  mixed.error = mixed.uncertainty = part = 0;
   std::vector<float> mask;
   for (size_t i = 0; i < grid.Tiles(); ++i) {
     mixed.tileErrors[i] = merges[i] * all.tileErrors[i] + (1 - merges[i]) * none.tileErrors[i];
     mixed.error += mixed.tileErrors[i];
+    mixed.tileVariances[i] =
+        merges[i] * merges[i] * all.tileVariances[i] + (1 - merges[i]) * (1 - merges[i]) * none.tileVariances[i];
+    mixed.uncertainty += mixed.tileVariances[i];
     part += merges[i] * grid.PartOf(i);
     mask.push_back(static_cast<float>(merges[i]));
   }
   if (!(part > 0)) return std::nullopt;
+  mixed.uncertainty = std::sqrt(mixed.uncertainty);
   mixed.error = std::max(mixed.error, least);
   mixed.cost = cost.paths + part * cost.merging;
   mixed.counts.merging = FilmMask(grid.tilesX, grid.tilesY, grid.FilmOfTiles(), std::move(mask));

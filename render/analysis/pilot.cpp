@@ -1,8 +1,10 @@
 #include "render/analysis/pilot.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "base/parallel.h"
 #include "integrators/photon/emission_learning.h"
@@ -22,6 +24,11 @@ namespace {
 constexpr int kChunks = 8;
 // Longer paths hold little of the light, and without a limit a closed box of mirrors would keep the pilot for hours.
 constexpr int64_t kMostEvents = 20;
+// As bdpt with one light path would take for the pilot's samples, nanoseconds; the pilot takes some three times that.
+constexpr double kPassesTime = 80e6;
+constexpr int kFewestPasses = 4, kMostPasses = 16;
+// Numbers of the samples of a pixel: those of camera paths, then those of photons, then those that select pixels.
+constexpr uint32_t kSamplesOfPart = 1 << 16;
 constexpr uint64_t kMostLightPaths = 4 * kMostPilotPixels;
 // The radius is that of the average pass of so many.
 constexpr double kTypicalPasses = 64;
@@ -30,12 +37,11 @@ constexpr uint64_t kSeed = 0x9e3779b97f4a7c15;
 // Passes of an integrator over the pilot's pixels.
 class PilotPasses {
  public:
-  PilotPasses(const RenderScene& scene, const RenderSettings& settings, const Grid& grid, int threads, uint32_t passes)
+  PilotPasses(const RenderScene& scene, const RenderSettings& settings, const Grid& grid, int threads)
       : scene_(scene),
         settings_(settings),
         grid_(grid),
         threads_(threads),
-        passes_(passes),
         filter_(settings.filter),
         photons_(kChunks) {}
 
@@ -43,12 +49,13 @@ class PilotPasses {
   void TracePhotons(const Integrator& integrator, PhotonStore& store, uint32_t pass) {
     const auto paths = static_cast<int>(std::min<uint64_t>(store.LightPaths(), kMostLightPaths));
     ForEachPixel(paths, [&](size_t chunk, int x, int y, Sampler& sampler, RenderCounts& counts, SplatList& splats) {
-      sampler.StartPixelSample(x, y, pass + passes_);
+      sampler.StartPixelSample(x, y, pass + kSamplesOfPart);
       photons_[chunk].StartPath();
       SampleContext context{scene_, sampler, Time(pass), counts};
       context.splats = &splats;
       context.photons = &photons_[chunk];
       context.isForPhotonsAlone = true;
+      context.withOrigin = store.WantsOrigins();
       integrator.Sample(nullptr, context);
     });
     store.Take(photons_);
@@ -56,12 +63,12 @@ class PilotPasses {
   }
   // One sample of every pixel; `recorders`, one for each chunk, may be empty.
   RenderCounts Trace(const Integrator& integrator, uint32_t pass, const PhotonPass* gather,
-                     std::vector<Recorder>& recorders) {
+                     std::span<Recorder> recorders) {
     return ForEachPixel(grid_.Pixels(), [&](size_t chunk, int x, int y, Sampler& sampler, RenderCounts& counts,
                                             SplatList& splats) {
       // Two passes have the same pixel of the image, of those that a pixel of the pilot holds: what differs between
       // pixels is not noise, and what is within one is.
-      sampler.StartPixelSample(x, y, 2 * passes_ + pass / 2);
+      sampler.StartPixelSample(x, y, 2 * kSamplesOfPart + pass / 2);
       sampler.SetDimension(dimensions::kFilm);
       const Point2 u = sampler.Get2D();
       const int column = std::min(static_cast<int>((static_cast<float>(x) + u.x) * grid_.pixel.x), settings_.width - 1),
@@ -85,7 +92,8 @@ class PilotPasses {
 
  private:
   float Time(uint32_t pass) const {
-    return scene_.hasMotion ? (static_cast<float>(pass) + 0.5f) / static_cast<float>(passes_) : 0.0f;
+    constexpr double kGoldenRatio = 0.6180339887498949;  // spreads any number of passes over the shutter's time
+    return scene_.hasMotion ? static_cast<float>(std::fmod(0.5 + pass * kGoldenRatio, 1.0)) : 0.0f;
   }
   // `count`: of the pixels, or more, with further rows.
   template <class Body>
@@ -113,10 +121,31 @@ class PilotPasses {
   const RenderSettings& settings_;
   const Grid& grid_;
   int threads_;
-  uint32_t passes_;
   PixelFilter filter_;
   std::vector<PhotonList> photons_;
 };
+
+// Passes for which there is time: the rarer the light, the more of them it takes to know how noisy an integrator is
+// that finds it by chance. Even.
+int PassesFor(const Counted& counted, int pixels) {
+  const double cost = CostsOf(counted, pixels)[kBdpt].paths;
+  return std::clamp(2 * static_cast<int>(kPassesTime / (2 * cost * pixels)), kFewestPasses, kMostPasses);
+}
+
+// What changes for a candidate whose light paths will be guided, while the pilot's are not. A guide is used if it
+// halves the squared noise of photons (emission_learning.h), and the rest of the noise is not of photons. It leads
+// light paths to where more happens to them: in scenes/pool, mirror, tea and diamond a sample takes 1.4 to 1.6 times
+// what is counted.
+void Guide(PilotCandidate& candidate, CandidateCost& cost) {
+  constexpr double kNoise = 0.55, kCost = 1.4;
+  cost.paths *= kCost;
+  cost.merging *= kCost;
+  candidate.cost *= kCost;
+  candidate.error *= kNoise;
+  candidate.uncertainty *= kNoise;
+  for (double& error : candidate.tileErrors) error *= kNoise;
+  for (double& variance : candidate.tileVariances) variance *= kNoise * kNoise;
+}
 
 // For the pilot.
 RenderSettings WithAllTechniques(const RenderSettings& settings) {
@@ -134,30 +163,57 @@ std::unique_ptr<Integrator> Make(const char* name, const RenderScene& scene, con
                                     settings.values, nullptr, SplatCount(settings), fewer});
 }
 
+// Of a pass of the pilot, whose light paths are fewer by that factor: the same number of photons is found within a
+// larger radius than in the first pass of a render.
+double WiderRadius(double fewer, double alpha) {
+  const double shrunk = std::pow(kTypicalPasses, alpha - 1) / alpha;
+  return std::sqrt(fewer * std::min(shrunk, 1.0));
+}
+
+std::vector<PilotCandidate> CandidatesWith(std::span<const CandidateCost> costs) {
+  std::vector<PilotCandidate> candidates(kCandidates);
+  for (size_t k = 0; k < kCandidates; ++k) {
+    candidates[k].integrator = kCandidateOf[k].integrator;
+    candidates[k].counts.log2LightPaths = kCandidateOf[k].log2LightPaths;
+    candidates[k].counts.startsWide = kCandidateOf[k].startsWide;
+    candidates[k].cost = costs[k].paths + costs[k].merging;
+  }
+  return candidates;
+}
+
+// What the settings rule out. `isGuided`: light paths are guided from the start, and bdpt's are hopeless.
+void EraseUnwanted(const RenderSettings& settings, bool isGuided, std::vector<PilotCandidate>& candidates) {
+  const bool hasAll = settings.values.IsOn("merge") && settings.values.IsOn("connect");
+  // Light paths that are guided, or as many as the settings say, are those of vcm.
+  const bool hasOwnPaths = settings.values.Integer("photons") >= 0;
+  const bool hasOwnRadius = settings.values.Number("radius") > 0;
+  // Pixels take turns; of a few pixels some passes would have no light path.
+  const bool isTiny = std::max(settings.width, settings.height) < static_cast<int>(1 / kFewestLightPaths);
+  std::erase_if(candidates, [&](const PilotCandidate& candidate) {
+    return (isTiny && candidate.counts.log2LightPaths < 0) || (isGuided && candidate.integrator == "bdpt") ||
+           (!hasAll && candidate.integrator == "vcm") || (hasOwnRadius && candidate.counts.startsWide) ||
+           (hasOwnPaths && candidate.integrator == "vcm" && candidate.counts.log2LightPaths != 0);
+  });
+}
+
 }  // namespace
 
 const PilotCandidate* RenderPilot::Find(const std::string& integrator, int log2LightPaths) const {
   for (const PilotCandidate& candidate : candidates) {
     if (candidate.integrator == integrator && candidate.counts.log2LightPaths == log2LightPaths &&
-        candidate.counts.merging.Mean() == 1)
+        candidate.counts.merging.Mean() == 1 && !candidate.counts.startsWide)
       return &candidate;
   }
   return nullptr;
 }
 
 const PilotCandidate* RenderPilot::Best() const {
-  const auto product = [](const PilotCandidate& candidate) {
-    return candidate.missing > kNegligibleLight ? std::numeric_limits<double>::infinity() : candidate.ErrorTimesCost();
-  };
-  double least = std::numeric_limits<double>::infinity();
-  for (const PilotCandidate& candidate : candidates) least = std::min(least, product(candidate));
-  // The estimates are no better than this. Of equals the least noisy is taken: the noisier one is more often
-  // underestimated, because a pilot does not meet its brightest samples.
-  constexpr double kMargin = 1.05;
+  // Where light is found by chance, an error is known no better than by its standard error, and a pilot that has not
+  // met the brightest samples takes it for too small. So candidates are compared by the most that their errors may be.
   const PilotCandidate* best = nullptr;
   for (const PilotCandidate& candidate : candidates) {
-    const double its = product(candidate);
-    if (std::isfinite(its) && its <= kMargin * least && (!best || candidate.error < best->error)) best = &candidate;
+    if (candidate.missing > kNegligibleLight) continue;
+    if (!best || candidate.MostErrorTimesCost() < best->MostErrorTimesCost()) best = &candidate;
   }
   return best;
 }
@@ -179,55 +235,45 @@ RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, i
     view.lighting = std::make_shared<const LightingServices>(scene.lighting->With(nullptr, guiding->Guide()));
   if (photons.lightPaths > 0)
     photons.lightPaths = std::max<uint64_t>(1, static_cast<uint64_t>(static_cast<double>(photons.lightPaths) / fewer));
-  // With fewer light paths the same number of photons is found within a larger radius.
-  const double shrunk = std::pow(kTypicalPasses, photons.alpha - 1) / photons.alpha;
-  const double wider = std::sqrt(fewer * std::min(shrunk, 1.0));
-  PhotonStore store(photons, static_cast<uint64_t>(grid.Pixels()), nullptr);
-  PilotPasses passes(view, combined, grid, threads, static_cast<uint32_t>(passCount));
-  const PixelFilter filter(settings.filter);
-  std::vector<Recorder> recorders(kChunks, Recorder(grid, filmPixels, filter, SplatCount(settings), passCount)), none;
-  Records records(grid, recorders);
+  // Whether they would be guided later on is found out beside: the pilot's own light paths stay those of bdpt.
+  EmissionLearning* const learned = guiding && !isGuided ? &*guiding : nullptr;
+  PhotonStore store(photons, static_cast<uint64_t>(grid.Pixels()), learned);
+  PilotPasses passes(view, combined, grid, threads);
   Counted counted;
+  counted.path = passes.Trace(*path, 0, nullptr, {});
+  counted.bdpt = passes.Trace(*bdpt, 0, nullptr, {});
+  if (passCount == 0) passCount = PassesFor(counted, grid.Pixels());
+  const PixelFilter filter(settings.filter);
+  std::vector<Recorder> recorders(kChunks, Recorder(grid, filmPixels, filter, SplatCount(settings), passCount));
+  Records records(grid, recorders);
   for (uint32_t pass = 0; pass < static_cast<uint32_t>(passCount); ++pass) {
     passes.TracePhotons(*vcm, store, pass);
-    const PhotonPass& gather = store.Open(pass, threads, wider);
+    const PhotonPass& gather = store.Open(pass, threads, WiderRadius(fewer, photons.alpha));
     counted.stored += gather.map->Size();
     counted.vcm += passes.Trace(*vcm, pass, &gather, recorders);
     records.EndPass(pass);
+    store.EndGathering();
+    if (learned && learned->IsRecording() && std::has_single_bit(pass + 1)) learned->Decide(pass + 1);
   }
   counted.stored /= static_cast<uint64_t>(passCount);
   counted.vcm.lookups /= static_cast<uint64_t>(passCount);
   counted.vcm.foundPhotons /= static_cast<uint64_t>(passCount);
-  counted.path = passes.Trace(*path, 0, nullptr, none);
-  counted.bdpt = passes.Trace(*bdpt, 0, nullptr, none);
+  auto costs = CostsOf(counted, grid.Pixels());
   RenderPilot pilot;
-  const auto costs = CostsOf(counted, grid.Pixels());
-  for (size_t k = 0; k < kCandidates; ++k) {
-    PilotCandidate candidate;
-    candidate.integrator = kCandidateOf[k].integrator;
-    candidate.counts.log2LightPaths = kCandidateOf[k].log2LightPaths;
-    candidate.cost = costs[k].paths + costs[k].merging;
-    pilot.candidates.push_back(std::move(candidate));
-  }
+  pilot.candidates = CandidatesWith(costs);
   double least = 0;  // error that is told apart
   if (!records.SetErrors(passCount, filter.SquaredWeight(), settings.sampler == SamplerKind::Sobol, pilot.candidates,
                          least))
     return {};
+  if (learned && learned->Guide()) {
+    for (size_t k = kFirstOfVcm; k < kCandidates; ++k) Guide(pilot.candidates[k], costs[k]);
+  }
   for (size_t k = kFirstOfVcm; k < kCandidates; ++k) {
-    const PilotCandidate& none = pilot.candidates[k - kFirstOfVcm + 1];
+    const PilotCandidate& none = pilot.candidates[WithoutMerging(k)];
     if (auto mixed = MergingInParts(none, pilot.candidates[k], costs[k], grid, least))
       pilot.candidates.push_back(std::move(*mixed));
   }
-  const bool hasAll = settings.values.IsOn("merge") && settings.values.IsOn("connect");
-  // Light paths that are guided, or as many as the settings say, are those of vcm.
-  const bool hasOwnPaths = settings.values.Integer("photons") >= 0;
-  // Pixels take turns; of a few pixels some passes would have no light path.
-  const bool isTiny = std::max(settings.width, settings.height) < static_cast<int>(1 / kFewestLightPaths);
-  std::erase_if(pilot.candidates, [&](const PilotCandidate& candidate) {
-    return (isTiny && candidate.counts.log2LightPaths < 0) || (isGuided && candidate.integrator == "bdpt") ||
-           (!hasAll && candidate.integrator == "vcm") ||
-           (hasOwnPaths && candidate.integrator == "vcm" && candidate.counts.log2LightPaths != 0);
-  });
+  EraseUnwanted(settings, isGuided, pilot.candidates);
   return pilot;
 }
 

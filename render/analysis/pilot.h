@@ -25,18 +25,26 @@ struct PilotCandidate {
   // Squared error relative to the picture (relMSE) per sample of a pixel, where samples are as well distributed as in a
   // render.
   double error = 0;
-  double cost = 0;     // of a sample, nanoseconds of a typical machine
-  double missing = 0;  // part of the light that it cannot find
+  double uncertainty = 0;  // standard error of `error`
+  double cost = 0;         // of a sample, nanoseconds of a typical machine
+  double missing = 0;      // part of the light that it cannot find
   // Of each tile of the image, row by row: the mean over its pixels of Σ E[(w v)²] over the paths of a sample, by all
   // techniques.
   std::vector<double> secondMoments;
-  std::vector<double> tileErrors;   // of each tile: its part of `error`
-  std::vector<double> tileMissing;  // of each tile: its part of `missing`
+  std::vector<double> tileErrors;     // of each tile: its part of `error`
+  std::vector<double> tileVariances;  // of each tile: squared standard error of that
+  std::vector<double> tileMissing;    // of each tile: its part of `missing`
 
   std::string Describe() const { return counts.Describe(integrator); }
 
   // Error of a picture that takes a second per pixel.
   double ErrorTimesCost() const { return error * cost * 1e-9; }
+  // The same, if the error is larger than estimated by twice its standard error, and where merging starts wide by its
+  // blur, which the pilot does not know.
+  double MostErrorTimesCost() const {
+    constexpr double kBlur = 1.2;
+    return (error + 2 * uncertainty) * (counts.startsWide ? kBlur : 1.0) * cost * 1e-9;
+  }
 };
 
 struct RenderPilot {
@@ -54,7 +62,7 @@ inline constexpr int kPilotTile = 4, kMostPilotPixels = 4096;
 inline constexpr double kNegligibleLight = 1e-4;
 
 // Deterministic for a scene, its size and its settings; not dependent on the seed and on the number of threads.
-// `passes`: samples of every pixel; even, because squares of means are products of two.
-RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, int threads, int passes = 4);
+// `passes`: samples of every pixel; even, because squares of means are products of two. 0: from 4 to 16, by their cost.
+RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, int threads, int passes = 0);
 
 }  // namespace lampyr

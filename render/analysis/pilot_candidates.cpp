@@ -40,7 +40,8 @@ std::array<CandidateCost, kCandidates> CostsOf(const Counted& counted, double sa
     if (candidate.counts[static_cast<size_t>(TechniqueGroup::Merge)] == 0) continue;
     all[k].paths += costs.stored * n * static_cast<double>(counted.stored) / samples;
     all[k].merging = (costs.lookup * static_cast<double>(counted.vcm.lookups) +
-                      costs.found * n * static_cast<double>(counted.vcm.foundPhotons)) /
+                      costs.found * candidate.counts[static_cast<size_t>(TechniqueGroup::Merge)] *
+                          static_cast<double>(counted.vcm.foundPhotons)) /
                      samples;
   }
   return all;

@@ -1,6 +1,8 @@
 #include "render/analysis/pilot_records.h"
 
 #include <algorithm>
+#include <functional>
+#include <limits>
 #include <tuple>
 #include <utility>
 
@@ -72,7 +74,7 @@ void Recorder::Add(const ConnectedPath& path, double value, size_t pixel) {
     for (size_t k = 0; k < kCandidates; ++k) {
       here.square[k] += weighted * value * splatSquare;
       if (!path.connection) {
-        found[pixel].value[k] += static_cast<float>(weighted);
+        found[pixel].Add(k, weighted, true);
         sums_[k].value += weighted;
         sums_[k].squares += weighted * weighted;
       }
@@ -102,7 +104,7 @@ void Recorder::Add(const ConnectedPath& path, double value, size_t pixel) {
     if (bySplats < known && !path.connection) {
       // As if there were no splats in the pilot, and by the candidate's techniques of camera paths.
       const double ofCamera = 1 - counts[kSplat] * counts[kSplat] * bySplats / squares;
-      found[pixel].value[k] += static_cast<float>(weighted * known / (known - bySplats) * ofCamera);
+      found[pixel].Add(k, weighted * known / (known - bySplats) * ofCamera, bySplats < 0.5 * known);
     }
     if (path.connection || counts[own] == 0) continue;
     const double reweighted = weighted * known * counts[own] * counts[own] / squares;  // w = r² / Σ r²
@@ -139,11 +141,31 @@ void Records::EndPass(uint32_t pass) {
     for (size_t i = 0; i < found.size(); ++i) found[i] += std::exchange(recorder.found[i], Found());
   }
   for (size_t i = 0; i < found.size() && pass % 2 == 1; ++i) {
-    for (size_t k = 0; k < kCandidates; ++k)
-      squaredMeans_[kCandidates * i + k] +=
-          2 * static_cast<double>(last_[i].value[k]) * static_cast<double>(found[i].value[k]);
+    for (size_t k = 0; k < kCandidates; ++k) {
+      SquaredMean& squared = squaredMeans_[kCandidates * i + k];
+      squared.value += 2 * static_cast<double>(last_[i].value[k]) * static_cast<double>(found[i].value[k]);
+      squared.oftener += 2 * static_cast<double>(last_[i].oftener[k]) * static_cast<double>(found[i].oftener[k]);
+    }
   }
   last_ = std::move(found);
+}
+
+Records::Brightness Records::BrightnessOf(const std::vector<Moments>& pixels, int passes) const {
+  Brightness brightness;
+  std::vector<double> tiles(grid_.Tiles());
+  double mean = 0;
+  ForEachPixel([&](size_t pixel, size_t tile) {
+    tiles[tile] += pixels[pixel].mean / (passes * grid_.PixelsOf(tile));
+    mean += (pixels[pixel].mean + pixels[pixel].seen) / (passes * grid_.Pixels());
+  });
+  brightness.mean = mean;
+  brightness.scales.resize(pixels.size());
+  ForEachPixel([&](size_t pixel, size_t tile) {
+    const double here = tiles[tile] + pixels[pixel].seen / passes;
+    brightness.scales[pixel] = 1 / ((here * here + 0.01 * mean * mean) * passes);
+    brightness.squared += brightness.scales[pixel] * passes * here * here / grid_.Pixels();
+  });
+  return brightness;
 }
 
 bool Records::SetErrors(int passes, double squaredWeight, bool isSobol, std::vector<PilotCandidate>& candidates,
@@ -152,48 +174,73 @@ bool Records::SetErrors(int passes, double squaredWeight, bool isSobol, std::vec
   for (const Recorder& recorder : recorders_) {
     for (size_t i = 0; i < pixels.size(); ++i) pixels[i] += recorder.moments[i];
   }
-  // The brightness of a pixel is that of its tile, and of the light that it sees itself.
-  std::vector<double> tiles(grid_.Tiles());
-  double mean = 0, seen = 0;
-  ForEachPixel([&](size_t pixel, size_t tile) {
-    tiles[tile] += pixels[pixel].mean / (passes * grid_.PixelsOf(tile));
-    mean += pixels[pixel].mean / (passes * grid_.Pixels());
-    seen += pixels[pixel].seen / (passes * grid_.Pixels());
-  });
-  if (!(mean + seen > 0)) return false;
-  std::vector<double> scales(pixels.size());
-  ForEachPixel([&](size_t pixel, size_t tile) {
-    const double brightness = tiles[tile] + pixels[pixel].seen / passes;
-    scales[pixel] = 1 / ((brightness * brightness + 0.01 * (mean + seen) * (mean + seen)) * passes);
-  });
+  const Brightness brightness = BrightnessOf(pixels, passes);
+  if (!(brightness.mean > 0)) return false;
+  for (size_t k = 0; k < candidates.size(); ++k) LeaveOutRare(k, passes, brightness.mean, brightness.scales, pixels);
+  const std::vector<char> isLeftOut = Hopeless(pixels, brightness.scales);
+  for (size_t k = 0; k < candidates.size(); ++k)
+    AddUp(k, passes, brightness, pixels, isLeftOut, squaredWeight, candidates[k]);
+  least = LeastVariance(passes * grid_.Pixels()) * brightness.squared;
+  // Where only light is sampled more often, points in pixels gain what they did.
+  std::array<double, kCandidates> gains;
+  for (size_t k = 0; k < candidates.size(); ++k)
+    gains[k] = isSobol ? GainOfSobol(candidates[WithFewestSamples(k)].error) : 1.0;
   for (size_t k = 0; k < candidates.size(); ++k) {
-    LeaveOutRare(k, passes, mean + seen, scales, pixels);
     PilotCandidate& candidate = candidates[k];
-    candidate.secondMoments.resize(grid_.Tiles());
-    candidate.tileErrors.resize(grid_.Tiles());
-    candidate.tileMissing.resize(grid_.Tiles());
-    double squares = 0, squaredMeans = 0, squaredBrightness = 0;
-    ForEachPixel([&](size_t pixel, size_t tile) {
-      const Moments& here = pixels[pixel];
-      const double brightness = tiles[tile] + here.seen / passes;
-      const double scale = scales[pixel];
-      const double square = scale * (here.square[k] + here.products[k]);
-      const double squaredMean = scale * squaredMeans_[kCandidates * pixel + k];
-      squares += square;
-      squaredBrightness += scale * passes * brightness * brightness;
-      squaredMeans += squaredMean;
-      candidate.tileErrors[tile] += (square - squaredMean) / grid_.Pixels();
-      candidate.secondMoments[tile] += here.square[k] / (passes * grid_.PixelsOf(tile));
-      candidate.tileMissing[tile] += here.missing[k] / (passes * grid_.Pixels() * (mean + seen));
-    });
-    for (const double missing : candidate.tileMissing) candidate.missing += missing;
-    const double error = squaredWeight * (squares - squaredMeans) / grid_.Pixels();
-    const double gain = isSobol ? GainOfSobol(error) : 1.0;
-    for (double& ofTile : candidate.tileErrors) ofTile *= squaredWeight / gain;
-    least = LeastVariance(passes * grid_.Pixels()) * squaredBrightness / grid_.Pixels();
-    candidate.error = std::max(error / gain, least);
+    for (double& error : candidate.tileErrors) error /= gains[k];
+    for (double& variance : candidate.tileVariances) variance /= gains[k] * gains[k];
+    candidate.uncertainty /= gains[k];
+    candidate.error = std::max(candidate.error / gains[k], least);
   }
   return true;
+}
+
+void Records::AddUp(size_t k, int passes, const Brightness& brightness, const std::vector<Moments>& pixels,
+                    const std::vector<char>& isLeftOut, double squaredWeight, PilotCandidate& candidate) const {
+  candidate.secondMoments.resize(grid_.Tiles());
+  candidate.tileErrors.resize(grid_.Tiles());
+  candidate.tileVariances.resize(grid_.Tiles());
+  candidate.tileMissing.resize(grid_.Tiles());
+  ForEachPixel([&](size_t pixel, size_t tile) {
+    const Moments& here = pixels[pixel];
+    candidate.secondMoments[tile] += here.square[k] / (passes * grid_.PixelsOf(tile));
+    candidate.tileMissing[tile] += here.missing[k] / (passes * grid_.Pixels() * brightness.mean);
+    if (isLeftOut[pixel]) return;
+    const double secondMoment = here.square[k] + here.products[k];
+    const double variance = secondMoment - squaredMeans_[kCandidates * pixel + k].Below(secondMoment);
+    const double error = squaredWeight * brightness.scales[pixel] * variance / grid_.Pixels();
+    candidate.tileErrors[tile] += error;
+    candidate.tileVariances[tile] += error * error;
+  });
+  double variances = 0;
+  for (size_t tile = 0; tile < grid_.Tiles(); ++tile) {
+    candidate.missing += candidate.tileMissing[tile];
+    candidate.error += candidate.tileErrors[tile];
+    // Of the sum over a tile, by how its pixels differ.
+    double& variance = candidate.tileVariances[tile];
+    const int n = grid_.PixelsOf(tile);
+    variance -= candidate.tileErrors[tile] * candidate.tileErrors[tile] / n;
+    variance = std::max(variance * n / std::max(n - 1, 1), 0.0);
+    variances += variance;
+  }
+  candidate.uncertainty = std::sqrt(variances);
+}
+
+std::vector<char> Records::Hopeless(const std::vector<Moments>& pixels, const std::vector<double>& scales) const {
+  constexpr double kPart = 0.001;
+  std::vector<std::pair<double, size_t>> least(pixels.size());
+  for (size_t i = 0; i < pixels.size(); ++i) {
+    double square = std::numeric_limits<double>::infinity();
+    for (size_t k = 0; k < kCandidates; ++k) {
+      if (pixels[i].missing[k] == 0) square = std::min(square, pixels[i].square[k] + pixels[i].products[k]);
+    }
+    least[i] = {std::isfinite(square) ? scales[i] * square : 0.0, i};
+  }
+  const auto count = static_cast<std::ptrdiff_t>(std::lround(kPart * static_cast<double>(pixels.size())));
+  std::partial_sort(least.begin(), least.begin() + count, least.end(), std::greater<>());
+  std::vector<char> isHopeless(pixels.size());
+  for (std::ptrdiff_t i = 0; i < count; ++i) isHopeless[least[static_cast<size_t>(i)].second] = 1;
+  return isHopeless;
 }
 
 void Records::LeaveOutRare(size_t k, int passes, double mean, const std::vector<double>& scales,

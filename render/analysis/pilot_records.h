@@ -1,6 +1,7 @@
 // What the pilot sees, and the errors of the candidates that follow from it.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -82,12 +83,28 @@ struct Moments {
 // What the camera path of one pixel adds to it in one pass, for each candidate; expected values over its techniques.
 struct Found {
   std::array<float, kCandidates> value{};
+  std::array<float, kCandidates> oftener{};  // of that, what camera paths of the pilot find more often than splats do
 
+  void Add(size_t k, double found, bool isOften) {
+    value[k] += static_cast<float>(found);
+    if (isOften) oftener[k] += static_cast<float>(found);
+  }
   void operator+=(const Found& more) {
     for (size_t k = 0; k < kCandidates; ++k) {
       value[k] += more.value[k];
+      oftener[k] += more.oftener[k];
     }
   }
+};
+
+// The square of a pixel's mean, as two passes estimate it; summed over the passes.
+struct SquaredMean {
+  double value = 0, oftener = 0;  // of the sums of Found
+  // `secondMoment`: the pixel's, summed over the passes. No mean is larger. A product of two samples may be: where
+  // camera paths find light rarely, and splats often, the second moment is known from the many splats, and two rare
+  // samples that are both there are worth far more than that. What is found often has no such samples, and is left as
+  // it is: a bound by a noisy moment would take away from it.
+  double Below(double secondMoment) const { return std::min(value, std::max(oftener, secondMoment)); }
 };
 
 // Adds up the moments of the paths of one chunk.
@@ -160,10 +177,25 @@ class Records {
                  double& least) const;
 
  private:
+  struct Brightness {
+    double mean = 0;             // of the picture
+    double squared = 0;          // mean of the squares of pixels, each by its scale
+    std::vector<double> scales;  // 1 / (passes · squared brightness), by pixel
+  };
+  // The brightness of a pixel is that of its tile, and of the light that it sees itself.
+  Brightness BrightnessOf(const std::vector<Moments>& pixels, int passes) const;
+
+  // Sets the estimates of candidate `k`, as those of independent samples. `isLeftOut`: pixels that do not count.
+  void AddUp(size_t k, int passes, const Brightness& brightness, const std::vector<Moments>& pixels,
+             const std::vector<char>& isLeftOut, double squaredWeight, PilotCandidate& candidate) const;
+
   // Moves the brightest events of candidate `k` out of its second moments, as far as a typical render is expected to
   // hold less than one of them and they are a negligible part of the light.
   void LeaveOutRare(size_t k, int passes, double mean, const std::vector<double>& scales,
                     std::vector<Moments>& pixels) const;
+  // The thousandth of the pixels in which even the best candidate is noisiest, marked by 1: a firefly there, which all
+  // candidates have, would hide what they differ by elsewhere.
+  std::vector<char> Hopeless(const std::vector<Moments>& pixels, const std::vector<double>& scales) const;
   template <class Body>
   void ForEachPixel(const Body& body) const {
     for (int y = 0; y < grid_.height; ++y) {
@@ -173,8 +205,8 @@ class Records {
 
   const Grid& grid_;
   std::vector<Recorder>& recorders_;
-  std::vector<Found> last_;           // in the pass before
-  std::vector<double> squaredMeans_;  // Σ over the passes, by pixel and candidate
+  std::vector<Found> last_;                // in the pass before
+  std::vector<SquaredMean> squaredMeans_;  // by pixel and candidate
 };
 
 }  // namespace lampyr::pilot

@@ -5,9 +5,11 @@
 
 #include <cmath>
 #include <cstdio>
+#include <tuple>
 
 #include "agreement/agreement_scenes.h"
 #include "integrators/bidirectional/connected_path.h"
+#include "render/analysis/pilot_records.h"
 #include "render/build/scene_builder.h"
 #include "render/settings/integrator_choice.h"
 #include "scene/scene_description.h"
@@ -223,7 +225,14 @@ TEST(Pilot, KnowsTheErrors) {
       const double measured = MeasureError(built, candidate);
       std::printf("[   info   ] %-80s relMSE %.4g, measured %.4g\n", candidate.Describe().c_str(), candidate.error,
                   measured);
-      EXPECT_NEAR(candidate.error / measured, 1, 0.15) << candidate.Describe();
+      // The estimate of the pilot, by 200 passes, is itself uncertain: most where weights of either sign cancel.
+      // Of several times the merges of the pilot the estimate is noisy (10 % by 200 passes), and is taken for more than
+      // it is where merging has had enough.
+      const bool isMore = candidate.counts.log2LightPaths == 2 || candidate.counts.startsWide;
+      const double tolerance = c.filter == "mitchell" || isMore ? 0.3 : 0.15;
+      EXPECT_LT(candidate.error / measured, 1 + (candidate.counts.startsWide ? 0.7 : tolerance))
+          << candidate.Describe();
+      EXPECT_GT(candidate.error / measured, 1 - tolerance) << candidate.Describe();
       EXPECT_LT(candidate.missing, kNegligibleLight) << candidate.Describe();
     }
   }
@@ -294,6 +303,7 @@ TEST(Pilot, CountsDoNotChangeTheMean) {
       {-2, maskOf({0.5f, 0, 1, 0.5f}), maskOf({0, 0, 0.4f, 1})},
       {1, maskOf({0, 0.5f, 0, 0}), maskOf({0.3f, 0.3f, 1, 1})},
       {2, {}, {}},
+      {0, {}, {}, true},
   };
   const std::string head = "path\" \"integer maxdepth\" [ 3 ] \"float unused\" [ 0 ] \"string lightsampler\" \"power";
   const std::string moving =
@@ -369,6 +379,97 @@ TEST(Pilot, ASkyHasNoError) {
   const RenderPilot pilot = RunPilot(built.scene, built.settings, 2, 100);
   ASSERT_GE(pilot.candidates.size(), 13u);
   for (const PilotCandidate& candidate : pilot.candidates) EXPECT_LT(candidate.error, 0.015) << candidate.integrator;
+}
+
+BuiltScene BuildFile(const std::string& name, int width, int height) {
+  Diagnostics diagnostics(Diagnostics::Mode::Collect);
+  RenderOverrides overrides;
+  overrides.width = width;
+  overrides.height = height;
+  return BuildScene(ReadScene(std::string(LAMPYR_SOURCE_DIR) + "/scenes/" + name + ".pbrt", diagnostics), overrides,
+                    true, diagnostics);
+}
+
+// Small lights, and a caustic, that camera paths hit rarely and splats often. Now and then two passes of the pilot hit
+// one in the same pixel, which does not mean that path tracing has no noise; and a pilot with more samples meets a
+// firefly of all integrators, which does not make all of them alike.
+TEST(Pilot, FewSamplesKnowWhatManyDo) {
+  for (const auto& [name, width, height] : {std::tuple{"glass-sphere", 128, 72}, std::tuple{"lights-1000", 160, 90}}) {
+    const BuiltScene built = BuildFile(name, width, height);
+    const RenderPilot few = RunPilot(built.scene, built.settings, 2, 4);
+    const RenderPilot many = RunPilot(built.scene, built.settings, 2, 24);
+    for (const char* integrator : {"path", "bdpt", "vcm"}) {
+      const double error = few.Find(integrator)->error, expected = many.Find(integrator)->error;
+      std::printf("[   info   ] %s, %-5s relMSE %.4g, by more samples %.4g\n", name, integrator, error, expected);
+      EXPECT_GT(error, 0.55 * expected) << name << ", " << integrator;
+      EXPECT_LT(error, 1.8 * expected) << name << ", " << integrator;
+    }
+    EXPECT_NE(few.Best()->integrator, "path") << name;
+  }
+}
+
+// Caustics that are seen through diamonds: without merging they are found once in ten thousand samples, so bright that
+// nothing else counts.
+TEST(Pilot, FindsOutWhatIsRarelyFound) {
+  const BuiltScene built = BuildFile("diamond", 160, 90);
+  const RenderPilot pilot = RunPilot(built.scene, built.settings, 2);
+  const PilotCandidate* best = pilot.Best();
+  ASSERT_TRUE(best);
+  EXPECT_EQ(best->integrator, "vcm");
+  const PilotCandidate* bdpt = pilot.Find("bdpt");
+  EXPECT_GT(bdpt->ErrorTimesCost(), 5 * best->ErrorTimesCost());
+  EXPECT_GT(bdpt->uncertainty / bdpt->error, best->uncertainty / best->error);
+}
+
+// A small sun, whose light paths are guided to what the camera sees: the pilot knows before the render does. A ball of
+// glass in a small room needs no guide.
+TEST(Pilot, KnowsWhetherPhotonsWillBeGuided) {
+  const auto costs = [](const BuiltScene& built) {
+    const RenderPilot pilot = RunPilot(built.scene, built.settings, 2, 8);
+    BuiltScene unguided = built;
+    unguided.settings.values.Set("guide-photons", false);
+    const RenderPilot without = RunPilot(unguided.scene, unguided.settings, 2, 8);
+    EXPECT_EQ(pilot.Find("bdpt")->error, without.Find("bdpt")->error);
+    EXPECT_EQ(pilot.Find("bdpt")->cost, without.Find("bdpt")->cost);
+    return std::pair(pilot.Find("vcm")->error / without.Find("vcm")->error,
+                     pilot.Find("vcm")->cost / without.Find("vcm")->cost);
+  };
+  const auto [error, cost] = costs(BuildFile("pool", 160, 90));
+  EXPECT_LT(error, 0.7);
+  EXPECT_GT(cost, 1.2);
+  const auto [same, sameCost] = costs(BuildFile("glass-sphere", 160, 90));
+  EXPECT_EQ(same, 1);
+  EXPECT_EQ(sameCost, 1);
+}
+
+TEST(Pilot, TheMostThatAnErrorMayBeDecides) {
+  RenderPilot pilot;
+  pilot.candidates.resize(2);
+  pilot.candidates[0].integrator = "bdpt";
+  pilot.candidates[1].integrator = "vcm";
+  for (PilotCandidate& candidate : pilot.candidates) candidate.cost = 1000;
+  pilot.candidates[0].error = 0.8;
+  pilot.candidates[1].error = 1;
+  EXPECT_EQ(pilot.Best()->integrator, "bdpt");
+  pilot.candidates[0].uncertainty = 0.5;
+  pilot.candidates[1].uncertainty = 0.1;
+  EXPECT_EQ(pilot.Best()->integrator, "vcm");
+  // A wide start has to be worth its blur.
+  pilot.candidates[0].uncertainty = pilot.candidates[1].uncertainty = 0;
+  pilot.candidates[0].error = 0.9;
+  pilot.candidates[0].counts.startsWide = true;
+  EXPECT_EQ(pilot.Best()->integrator, "vcm");
+  pilot.candidates[0].error = 0.5;
+  EXPECT_TRUE(pilot.Best()->counts.startsWide);
+}
+
+TEST(Pilot, ASquaredMeanIsBelowTheSecondMoment) {
+  // Two hits of a light by camera paths, of which splats know the second moment.
+  EXPECT_EQ((pilot::SquaredMean{100, 0}.Below(4)), 4);
+  EXPECT_EQ((pilot::SquaredMean{100, 9}.Below(4)), 9);
+  EXPECT_EQ((pilot::SquaredMean{3, 3}.Below(4)), 3);
+  // Light that camera paths find often: a mean of a few noisy samples may be above a noisy second moment.
+  EXPECT_EQ((pilot::SquaredMean{5, 5}.Below(4)), 5);
 }
 
 // A lens that stops most rays, and connects no light paths.

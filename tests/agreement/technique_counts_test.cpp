@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "integrators/photon/photon_pass.h"
+#include "render/analysis/pilot_candidates.h"
 #include "support/estimate.h"
 #include "support/render_scene.h"
 
@@ -87,6 +89,58 @@ std::string NameOf(const Narrow& film, int log2LightPaths) {
 }
 
 // Each pixel has its light path in one of n samples, whatever the width of the film.
+TEST(TechniqueCounts, AWideStartIsAnotherRender) {
+  TechniqueCounts usual, wide;
+  wide.startsWide = true;
+  EXPECT_TRUE(usual.IsDefault());
+  EXPECT_FALSE(wide.IsDefault());
+  EXPECT_NE(usual.Fingerprint(), wide.Fingerprint());
+  EXPECT_NE(usual.Describe("vcm"), wide.Describe("vcm"));
+}
+
+// Twice as wide at first, never narrower than usual, and as usual in the end; the radius shrinks in each pass.
+TEST(TechniqueCounts, AWideStartEnds) {
+  EXPECT_EQ(RadiusScale(0, 2. / 3, true), 2 * RadiusScale(0, 2. / 3));
+  for (uint32_t pass = 0; pass < 1200; ++pass) {
+    EXPECT_GE(RadiusScale(pass, 2. / 3, true), RadiusScale(pass, 2. / 3)) << pass;
+    EXPECT_LT(RadiusScale(pass + 1, 2. / 3, true), RadiusScale(pass, 2. / 3, true)) << pass;
+  }
+  EXPECT_EQ(RadiusScale(960, 2. / 3, true), RadiusScale(960, 2. / 3));
+  // What the pilot takes for the mean of the first 64 passes.
+  double wide = 0, usual = 0;
+  for (uint32_t pass = 0; pass < 64; ++pass) {
+    wide += std::pow(RadiusScale(pass, 2. / 3, true), 2);
+    usual += std::pow(RadiusScale(pass, 2. / 3), 2);
+  }
+  EXPECT_NEAR(wide / usual, pilot::kWiderMerging, 0.1);
+}
+
+// A render that starts wide finds four times the photons in its first passes, with a single mean.
+TEST(TechniqueCounts, AWideStartFindsMorePhotons) {
+  BuiltScene built = Build(
+      "Film \"rgb\" \"integer xresolution\" 32 \"integer yresolution\" 32\nIntegrator \"vcm\"\n"
+      "LookAt 0.3 1.5 0  0.3 0 0  0 0 1 Camera \"perspective\"\nWorldBegin\n"
+      "LightSource \"point\" \"rgb I\" [ 3 2 1 ] \"point3 from\" [ 0 1.8 0 ]\n"
+      "Shape \"bilinearmesh\" \"point3 P\" [ -1 0 -1  1 0 -1  -1 0 1  1 0 1 ]\n",
+      {});
+  double found[2], mean[2];
+  for (const bool isWide : {false, true}) {
+    TechniqueCounts counts;
+    counts.startsWide = isWide;
+    built.settings.counts = std::make_shared<TechniqueCounts>(counts);
+    const auto rendered = RenderBuilt(built, 8, 1);
+    found[isWide] = static_cast<double>(rendered.outcome.counts.foundPhotons);
+    const Image& image = rendered.image;
+    mean[isWide] = 0;
+    for (int y = 4; y < 28; ++y) {
+      for (int x = 4; x < 28; ++x) mean[isWide] += static_cast<double>(image.At(x, y, 0));
+    }
+  }
+  EXPECT_GT(found[0], 0);
+  EXPECT_NEAR(found[1] / found[0], 3.9, 0.4);
+  EXPECT_NEAR(mean[1] / mean[0], 1, 0.02);
+}
+
 TEST(TechniqueCounts, NoLightPathIsLostOrDoubledInNarrowFilms) {
   for (const Narrow& film : NarrowFilms()) {
     for (const int log2LightPaths : {-3, -2, -1, 0, 1}) {

@@ -57,6 +57,20 @@ class Auto : public testing::Test {
 
 constexpr const char* kLayers[] = {"auto.lightPaths", "auto.connecting", "auto.merging"};
 
+// Water over a floor in the sun: merging finds the light, and starts wide. Its radius is that of each pass, whoever
+// renders it.
+TEST_F(Auto, AWideStartIsTheSameForAllThreadsAndResumed) {
+  const std::string scene = "'" LAMPYR_SOURCE_DIR "/scenes/pool.pbrt' --integrator auto --resolution 64x36";
+  EXPECT_THAT(Succeed("plan " + scene).output, HasSubstr("wide discs"));
+  Succeed("render " + scene + " --spp 6 --threads 1 --quiet -o one.exr");
+  Succeed("render " + scene + " --spp 6 --threads 3 --quiet -o three.exr");
+  Succeed("render " + scene + " --spp 2 --threads 2 --resume --quiet -o parts.exr");
+  Succeed("render " + scene + " --spp 6 --threads 1 --resume --quiet -o parts.exr");
+  const Image one = ReadImage(folder_ / "one.exr");
+  EXPECT_EQ(one.data, ReadImage(folder_ / "three.exr").data);
+  EXPECT_EQ(one.data, ReadImage(folder_ / "parts.exr").data);
+}
+
 TEST_F(Auto, LayersHaveTheDecidedValues) {
   Succeed("render scene.pbrt --integrator auto --spp 1 --quiet --auto-layers --stats stats.json -o layers.exr");
   const Image image = ReadImage(folder_ / "layers.exr");
