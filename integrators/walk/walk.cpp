@@ -272,8 +272,8 @@ inline bool MakeSurfaceVertex(const SampleContext& context, const WalkSettings& 
 }
 
 // Adds the vertex that Subpath::Next gave, with what the path has carried to it.
-inline void Append(const SampleContext& context, TransportMode mode, const PathState& state, Subpath& path) {
-  PathVertex& vertex = path.Next();
+inline void Append(const SampleContext& context, TransportMode mode, const PathState& state, PathVertex& vertex,
+                   Subpath& path) {
   vertex.factors = state.factors;
   vertex.diffuse = state.diffuse;
   vertex.specular = state.specular;
@@ -300,7 +300,8 @@ void Walk(const SampleContext& context, const WalkSettings& settings, PathState&
     bool isHit, collides = false;
     if (!hasMedia) [[likely]] {
       isHit = geometry.Intersect(state.ray, kinds, hit, state.passed);
-      state.passed = context.scene.Carried(state.passed);
+      if (context.scene.wavelengths) [[unlikely]]
+        state.passed = context.scene.Carried(state.passed);
     } else {
       isHit = FlyOn(context, settings, kinds, state, path, visitor, flight.emplace());
       hit = flight->hit;
@@ -334,7 +335,7 @@ void Walk(const SampleContext& context, const WalkSettings& settings, PathState&
     } else {
       if (!MakeSurfaceVertex(context, settings, state, hit, vertex)) return;
     }
-    Append(context, settings.mode, state, path);
+    Append(context, settings.mode, state, vertex, path);
     const float foundOnArrival = settings.records ? visitor.Found() : 0;
     if (!visitor.Arrived(path, state)) return;
     if (!Scatter(context, settings, index, path.Last(), state)) return;
