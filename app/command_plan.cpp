@@ -17,14 +17,14 @@ namespace {
 // integrators.
 void PrintPilot(const RenderPilot& pilot, const Settings& values) {
   if (pilot.candidates.empty()) return;
-  std::printf("\n%-5s %5s %5s %8s %5s %6s %8s  %s\n", "pilot", "paths", "merge", "relMSE", "+-", "µs", "product",
+  std::printf("\n%-5s %5s %5s %7s %4s %6s %7s %s\n", "pilot", "paths", "merge", "relMSE", "+-", "µs", "product",
               "misses");
   for (const PilotCandidate& candidate : pilot.candidates) {
     char missing[32] = "";
     if (candidate.missing > kNegligibleLight)
       std::snprintf(missing, sizeof missing, "  %.2g %%", 100 * candidate.missing);
     const UsedCounts used = candidate.counts.Mean(CountedTechniquesOf(candidate.integrator, values));
-    std::printf("%-5s %5g %4.0f%% %8.3g %4.0f%% %5.2f %8.3g%s%s%s\n", candidate.integrator.c_str(), used.lightPaths,
+    std::printf("%-5s %5g %4.0f%% %7.3g %3.0f%% %5.2f %7.3g%s%s%s\n", candidate.integrator.c_str(), used.lightPaths,
                 100 * used.merging, candidate.error, 100 * candidate.uncertainty / candidate.error,
                 candidate.cost * 1e-3, candidate.error * candidate.cost * 1e-3, missing,
                 candidate.counts.startsWide ? "  wide" : "", &candidate == pilot.Best() ? "  <" : "");

@@ -72,6 +72,7 @@ int SamplesOf(const std::string& scene, const std::string& integrator) {
 
 Replicas RenderBy(BuiltScene& built, const std::string& integrator, int samples) {
   built.settings.integrator = integrator;
+  built.settings.counts = {};  // those of auto are for what its pilot chose
   Replicas replicas;
   for (int i = 0; i < kReplicas; ++i) {
     built.settings.seed = static_cast<uint64_t>(i);
