@@ -15,7 +15,7 @@ constexpr size_t kPerCell = 4;
 // Above either, FLANN's tree is about as fast.
 constexpr uint32_t kMostCells = 27, kMostPhotons = 160;
 
-// How many cells the photons occupy, by the bits of a cell per axis.
+// Number of occupied cells at each resolution: element b is for 2^b cells per axis.
 std::array<size_t, MortonFrame::kBits + 1> CountOccupied(std::span<const SortItem> sorted) {
   std::array<size_t, MortonFrame::kBits + 1> occupied{};
   occupied[0] = 1;

@@ -24,7 +24,8 @@ namespace {
 constexpr int kChunks = 8;
 // Longer paths hold little of the light, and without a limit a closed box of mirrors would keep the pilot for hours.
 constexpr int64_t kMostEvents = 20;
-// As bdpt with one light path would take for the pilot's samples, nanoseconds; the pilot takes some three times that.
+// Counted time of all passes in nanoseconds, as if their samples were those of bdpt with one light path for each. The
+// passes take about three times as long, because they record what they find.
 constexpr double kPassesTime = 80e6;
 constexpr int kFewestPasses = 4, kMostPasses = 16;
 // Numbers of the samples of a pixel: those of camera paths, then those of photons, then those that select pixels.
@@ -132,10 +133,10 @@ int PassesFor(const Counted& counted, int pixels) {
   return std::clamp(2 * static_cast<int>(kPassesTime / (2 * cost * pixels)), kFewestPasses, kMostPasses);
 }
 
-// What changes for a candidate whose light paths will be guided, while the pilot's are not. A guide is used if it
-// halves the squared noise of photons (emission_learning.h), and the rest of the noise is not of photons. It leads
-// light paths to where more happens to them: in scenes/pool, mirror, tea and diamond a sample takes 1.4 to 1.6 times
-// what is counted.
+// The light paths of the pilot are not guided. If those of the render will be, error and cost are corrected by typical
+// factors. A guide is used if it halves the squared noise of photons (emission_learning.h); noise of other techniques
+// remains. Guided light paths have more vertices that are seen: in scenes/pool, mirror, tea and diamond a sample takes
+// 1.4 to 1.6 times the counted cost.
 void Guide(PilotCandidate& candidate, CandidateCost& cost) {
   constexpr double kNoise = 0.55, kCost = 1.4;
   cost.paths *= kCost;
@@ -163,8 +164,8 @@ std::unique_ptr<Integrator> Make(const char* name, const RenderScene& scene, con
                                     settings.values, nullptr, SplatCount(settings), fewer});
 }
 
-// Of a pass of the pilot, whose light paths are fewer by that factor: the same number of photons is found within a
-// larger radius than in the first pass of a render.
+// Radius of the pilot's merging, in radii of the first pass of a render. The pilot has fewer light paths by the factor
+// `fewer`; a lookup within the larger radius finds as many photons as in the render.
 double WiderRadius(double fewer, double alpha) {
   const double shrunk = std::pow(kTypicalPasses, alpha - 1) / alpha;
   return std::sqrt(fewer * std::min(shrunk, 1.0));
@@ -181,7 +182,8 @@ std::vector<PilotCandidate> CandidatesWith(std::span<const CandidateCost> costs)
   return candidates;
 }
 
-// What the settings rule out. `isGuided`: light paths are guided from the start, and bdpt's are hopeless.
+// Erases the candidates that the settings exclude. `isGuided`: light paths need a guide from the start, which bdpt does
+// not have.
 void EraseUnwanted(const RenderSettings& settings, bool isGuided, std::vector<PilotCandidate>& candidates) {
   const bool hasAll = settings.values.IsOn("merge") && settings.values.IsOn("connect");
   // Light paths that are guided, or as many as the settings say, are those of vcm.
@@ -235,7 +237,7 @@ RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, i
     view.lighting = std::make_shared<const LightingServices>(scene.lighting->With(nullptr, guiding->Guide()));
   if (photons.lightPaths > 0)
     photons.lightPaths = std::max<uint64_t>(1, static_cast<uint64_t>(static_cast<double>(photons.lightPaths) / fewer));
-  // Whether they would be guided later on is found out beside: the pilot's own light paths stay those of bdpt.
+  // The pilot's light paths are those of bdpt, not guided. What a guide would gain is learned from them.
   EmissionLearning* const learned = guiding && !isGuided ? &*guiding : nullptr;
   PhotonStore store(photons, static_cast<uint64_t>(grid.Pixels()), learned);
   PilotPasses passes(view, combined, grid, threads);

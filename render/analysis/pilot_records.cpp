@@ -181,7 +181,7 @@ bool Records::SetErrors(int passes, double squaredWeight, bool isSobol, std::vec
   for (size_t k = 0; k < candidates.size(); ++k)
     AddUp(k, passes, brightness, pixels, isLeftOut, squaredWeight, candidates[k]);
   least = LeastVariance(passes * grid_.Pixels()) * brightness.squared;
-  // Where only light is sampled more often, points in pixels gain what they did.
+  // More light paths, or more merges, leave the points in the pixels as they are, and what these gain.
   std::array<double, kCandidates> gains;
   for (size_t k = 0; k < candidates.size(); ++k)
     gains[k] = isSobol ? GainOfSobol(candidates[WithFewestSamples(k)].error) : 1.0;
