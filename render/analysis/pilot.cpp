@@ -210,8 +210,8 @@ const PilotCandidate* RenderPilot::Find(const std::string& integrator, int log2L
 }
 
 const PilotCandidate* RenderPilot::Best() const {
-  // Where light is found by chance, an error is known no better than by its standard error, and a pilot that has not
-  // met the brightest samples takes it for too small. So candidates are compared by the most that their errors may be.
+  // Estimates of rarely found light are noisy, and too small where the pilot has missed the brightest samples. So
+  // candidates are compared by upper bounds of their errors.
   const PilotCandidate* best = nullptr;
   for (const PilotCandidate& candidate : candidates) {
     if (candidate.missing > kNegligibleLight) continue;

@@ -216,7 +216,7 @@ void Records::AddUp(size_t k, int passes, const Brightness& brightness, const st
   for (size_t tile = 0; tile < grid_.Tiles(); ++tile) {
     candidate.missing += candidate.tileMissing[tile];
     candidate.error += candidate.tileErrors[tile];
-    // Of the sum over a tile, by how its pixels differ.
+    // Variance of the tile's sum, from the spread of its pixels.
     double& variance = candidate.tileVariances[tile];
     const int n = grid_.PixelsOf(tile);
     variance -= candidate.tileErrors[tile] * candidate.tileErrors[tile] / n;

@@ -30,6 +30,19 @@ void PrintTo(const Compared& compared, std::ostream* out) {
   *out << compared.scene << " by " << compared.integrator;
 }
 
+constexpr int kReplicas = 16;
+
+void ExpectAgreement(const Replicas& other, const Replicas& reference, const Compared& compared) {
+  constexpr double kRate = 1e-4;
+  EXPECT_EQ(reference.faults + other.faults, 0u);
+  const Agreement result = CompareReplicas(other, reference, compared.blockSize, kRate);
+  EXPECT_TRUE(result.Agrees()) << "largest |z| " << result.largestZ << " (" << result.thresholdZ << "), chi squared "
+                               << result.chiSquared << " (" << result.chiSquaredThreshold << "), mean "
+                               << result.bias * 100 << " % +- " << result.biasError * 100 << " %";
+  EXPECT_FALSE(CompareReplicas(other, reference, compared.blockSize, kRate, compared.notices).Agrees())
+      << "too noisy: the mean is known to " << result.biasError * 100 << " %";
+}
+
 class SpectralScenes : public testing::TestWithParam<Compared> {};
 
 TEST_P(SpectralScenes, AgreePerChannel) {
@@ -42,20 +55,11 @@ TEST_P(SpectralScenes, AgreePerChannel) {
   overrides.height = 36;
   overrides.crop = compared.crop;
   overrides.values["guide-paths"] = false;
-  constexpr int kReplicas = 16;
-  constexpr double kRate = 1e-4;
   const Replicas vcm = RenderReplicas(scene, "vcm", kReplicas, 64, overrides);
   overrides.seed = 1000;
   if (std::string(compared.integrator) == "light") overrides.values.clear();
   const Replicas other = RenderReplicas(scene, compared.integrator, kReplicas, compared.samples, overrides);
-  EXPECT_EQ(vcm.faults + other.faults, 0u);
-  const Agreement result = CompareReplicas(other, vcm, compared.blockSize, kRate);
-  RecordProperty("largest_z", std::to_string(result.largestZ));
-  EXPECT_TRUE(result.Agrees()) << "largest |z| " << result.largestZ << " (" << result.thresholdZ << "), chi squared "
-                               << result.chiSquared << " (" << result.chiSquaredThreshold << "), mean "
-                               << result.bias * 100 << " % +- " << result.biasError * 100 << " %";
-  EXPECT_FALSE(CompareReplicas(other, vcm, compared.blockSize, kRate, compared.notices).Agrees())
-      << "too noisy: the mean is known to " << result.biasError * 100 << " %";
+  ExpectAgreement(other, vcm, compared);
 }
 
 constexpr int kWhole = 64;  // a block that is the whole picture
@@ -97,21 +101,13 @@ TEST_P(SpectralScenesByWideLights, AgreePerChannel) {
   overrides.width = 64;
   overrides.height = 36;
   overrides.crop = compared.crop;
-  constexpr int kReplicas = 16;
-  constexpr double kRate = 1e-4;
   static std::map<std::string, Replicas> byPath;
   Replicas& path = byPath[std::string(compared.scene) + compared.crop];
   if (path.images.empty()) path = RenderReplicas(scene, "path", kReplicas, 256, overrides);
   overrides.seed = 1000;
   if (std::string(compared.integrator) == "sppm") overrides.values["radius"] = 0.05;  // less than a pixel
   const Replicas other = RenderReplicas(scene, compared.integrator, kReplicas, compared.samples, overrides);
-  EXPECT_EQ(path.faults + other.faults, 0u);
-  const Agreement result = CompareReplicas(other, path, compared.blockSize, kRate);
-  EXPECT_TRUE(result.Agrees()) << "largest |z| " << result.largestZ << " (" << result.thresholdZ << "), chi squared "
-                               << result.chiSquared << " (" << result.chiSquaredThreshold << "), mean "
-                               << result.bias * 100 << " % +- " << result.biasError * 100 << " %";
-  EXPECT_FALSE(CompareReplicas(other, path, compared.blockSize, kRate, compared.notices).Agrees())
-      << "too noisy: the mean is known to " << result.biasError * 100 << " %";
+  ExpectAgreement(other, path, compared);
 }
 
 // Light paths alone cannot show what the camera sees in glass: beside it. Not in the fog of the prism, where the camera

@@ -106,7 +106,7 @@ TEST(TechniqueCounts, AWideStartEnds) {
     EXPECT_LT(RadiusScale(pass + 1, 2. / 3, true), RadiusScale(pass, 2. / 3, true)) << pass;
   }
   EXPECT_EQ(RadiusScale(960, 2. / 3, true), RadiusScale(960, 2. / 3));
-  // What the pilot takes for the mean of the first 64 passes.
+  // The mean area over the first 64 passes, which the pilot assumes.
   double wide = 0, usual = 0;
   for (uint32_t pass = 0; pass < 64; ++pass) {
     wide += std::pow(RadiusScale(pass, 2. / 3, true), 2);
