@@ -1,14 +1,12 @@
 #!/usr/bin/env python3
-"""Fits the unit costs of the pilot (render/analysis/pilot.cpp, Costs) to measured times.
+"""Fits what merging costs in the pilot (render/analysis/pilot_candidates.cpp, Costs) to measured times.
 
     scripts/fit_costs.py [BINARY]
 
-Renders the scenes of scenes/ at 96×96 by path, bdpt, vcm and sppm on one thread, some three minutes, and searches the
-costs for which the counted rays, connections and photons give the same ratios of times within each scene. Prints them
-with a ray at 260 ns, and what they get wrong: the predicted cost of each integrator over its measured one, relative to
-path's.
+Renders the scenes of scenes/ at 96×96 by path, bdpt and vcm on one thread, some two minutes, and searches the costs of
+lookups, found and stored photons for which vcm takes the measured times as long as bdpt, with the costs of rays as they
+are below. Prints them, and what the pilot's model gets wrong: predicted ratios of times over measured ones.
 """
-import glob
 import json
 import math
 import pathlib
@@ -18,8 +16,11 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-SAMPLES = {'path': 24, 'bdpt': 10, 'vcm': 8, 'sppm': 12}
-NAMES = ['ray', 'shadowRay', 'lookup', 'found', 'stored', 'connection over shadowRay']
+SAMPLES = {'path': 24, 'bdpt': 10, 'vcm': 10}
+# As in the pilot, nanoseconds. Rays of path and bdpt are so alike from scene to scene that the times hardly tell their
+# costs apart.
+RAY, SHADOW_RAY, CONNECTION, CAMERA_PATH_WITH_WEIGHTS, SIDE_BY_SIDE = 260, 350, 530, 1.12, 0.75
+MERGING = ['lookup', 'found', 'stored']
 
 
 def measure(binary, scene, integrator):
@@ -28,57 +29,56 @@ def measure(binary, scene, integrator):
     with tempfile.TemporaryDirectory() as folder:
         for _ in range(2):
             subprocess.run([binary, 'render', scene, '--integrator', integrator, '--spp', str(SAMPLES[integrator]),
-                            '--resolution', '96x96', '--threads', '1', '--stats', f'{folder}/s.json', '-o',
-                            f'{folder}/a.exr', '--quiet'], check=True, stderr=subprocess.DEVNULL)
+                            '--resolution', '96x96', '--threads', '1', '--no-guide-photons', '--no-guide-paths',
+                            '--stats', f'{folder}/s.json', '-o', f'{folder}/a.exr', '--quiet'],
+                           check=True, stderr=subprocess.DEVNULL)
             stats = json.loads(pathlib.Path(folder, 's.json').read_text())
             if best is None or stats['seconds']['render'] < best['seconds']['render']:
                 best = stats
     rays, photons, samples = best['rays'], best.get('photons') or {}, best['samples']
-    counts = [rays['camera'] + rays['indirect'], rays['shadow']]
-    counts += [photons.get(name, 0) for name in ('lookups', 'found', 'stored')]
-    return [count / samples for count in counts], best['seconds']['render'] * 1e9 / samples
+    return {'rays': (rays['camera'] + rays['indirect']) / samples, 'shadow': rays['shadow'] / samples,
+            'merging': [photons.get(name, 0) / samples for name in ('lookups', 'found', 'stored')],
+            'time': best['seconds']['render'] * 1e9 / samples}
 
 
-def with_connections(scene):
-    """Shadow rays beyond those of path are connections."""
-    direct = scene['path'][0][1]
-    return {name: (counts + [max(counts[1] - direct, 0) if name in ('bdpt', 'vcm') else 0], time)
-            for name, (counts, time) in scene.items()}
+def predicted(scene, merging):
+    """Nanoseconds per sample of each integrator, as in CostsOf."""
+    path, bdpt = scene['path'], scene['bdpt']
+    camera = RAY * path['rays'] + SHADOW_RAY * path['shadow']
+    light_rays = max(bdpt['rays'] - path['rays'], 0)
+    connections = max(bdpt['shadow'] - path['shadow'], 0)
+    both = CAMERA_PATH_WITH_WEIGHTS * camera + SIDE_BY_SIDE * (RAY * light_rays + CONNECTION * connections)
+    return {'path': camera, 'bdpt': both,
+            'vcm': both + sum(cost * count for cost, count in zip(merging, scene['vcm']['merging']))}
 
 
-def logs(costs, scene):
-    return {name: math.log(sum(a * b for a, b in zip(counts, costs)) / time) for name, (counts, time) in scene.items()}
+def ratio(scene, merging, a, b):
+    """Predicted ratio of the times of two integrators over the measured one."""
+    costs = predicted(scene, merging)
+    return costs[a] / costs[b] / (scene[a]['time'] / scene[b]['time'])
 
 
-def loss(costs, scenes):
-    total = 0
-    for scene in scenes.values():
-        errors = list(logs(costs, scene).values())
-        mean = sum(errors) / len(errors)
-        total += sum((error - mean) ** 2 for error in errors)
-    return total
+def loss(merging, scenes):
+    return sum(math.log(ratio(scene, merging, 'vcm', 'bdpt')) ** 2 for scene in scenes.values())
 
 
 def main():
     binary = sys.argv[1] if len(sys.argv) > 1 else str(ROOT / 'build/release/lampyr')
-    scenes = {}
-    for scene in sorted(glob.glob(str(ROOT / 'scenes/*.pbrt'))):
-        scenes[pathlib.Path(scene).stem] = with_connections({name: measure(binary, scene, name) for name in SAMPLES})
+    scenes = {file.stem: {name: measure(binary, str(file), name) for name in SAMPLES}
+              for file in sorted((ROOT / 'scenes').glob('*.pbrt'))}
     random.seed(1)
-    costs = [260.0, 300.0, 250.0, 100.0, 300.0, 100.0]
-    best = loss(costs, scenes)
-    for _ in range(60000):
-        tried = list(costs)
-        i = random.randrange(len(costs))
-        tried[i] = max(0.0, tried[i] * math.exp(random.gauss(0, 0.2)) + random.gauss(0, 2))
+    merging = [200.0, 200.0, 200.0]
+    best = loss(merging, scenes)
+    for _ in range(20000):
+        tried = list(merging)
+        tried[random.randrange(3)] *= math.exp(random.gauss(0, 0.1))
         if (value := loss(tried, scenes)) < best:
-            best, costs = value, tried
-    costs = [cost * 260 / costs[0] for cost in costs]
-    print(', '.join(f'{name} {cost:.0f}' for name, cost in zip(NAMES, costs)))
+            best, merging = value, tried
+    print(', '.join(f'{name} {cost:.0f}' for name, cost in zip(MERGING, merging)))
+    print(f'typical error of vcm over bdpt: {100 * math.sqrt(best / len(scenes)):.0f} %')
     for name, scene in scenes.items():
-        errors = logs(costs, scene)
-        print(f'{name:14}', *(f'{integrator} {math.exp(error - errors["path"]):.2f}'
-                              for integrator, error in errors.items()))
+        print(f'{name:14} bdpt over path {ratio(scene, merging, "bdpt", "path"):.2f}, '
+              f'vcm over bdpt {ratio(scene, merging, "vcm", "bdpt"):.2f}')
 
 
 if __name__ == '__main__':

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Makes docs/speed-and-accuracy.md: runs `lampyr compare` on the scenes of scenes/ and tells what came out.
 
-    scripts/speed_and_accuracy.py                               all scenes: half an hour of two cores
-    scripts/speed_and_accuracy.py --scenes pool,lamp --budget 2s,10s --repeats 5
+    scripts/speed_and_accuracy.py                               all scenes: two hours of two cores
+    scripts/speed_and_accuracy.py --scenes pool,lamp --budget 1s,4s
                                                                 tables of these scenes, on the terminal
 
 Comparisons run side by side, each with a single thread, so that seconds are of one core. Reports that are in the work
@@ -27,9 +27,9 @@ PEER = ROOT / '../shared/data/peer'
 LAMPYR = ROOT / 'build/release/lampyr'
 PAGE = ROOT / 'docs/speed-and-accuracy.md'
 
-OWN_INTEGRATORS = ['path', 'bdpt', 'light', 'sppm', 'vcm', 'auto']
-PEER_INTEGRATORS = ['path', 'bdpt', 'vcm', 'auto']
-PEER_SCENES = ['area-box', 'mixed-lights', 'sky-spheres', 'lights600', 'glass-caustic', 'spot-lens', 'pool']
+INTEGRATORS = ['path', 'bdpt', 'light', 'sppm', 'vcm', 'auto']
+PEER_SCENES = ['area-box', 'mixed-lights', 'sky-spheres', 'lights600', 'glass-caustic', 'spot-lens', 'pool',
+               'mirror-box', 'spectral-ball', 'media-fog', 'media-glass']
 RESAMPLINGS = 2000
 
 
@@ -52,7 +52,7 @@ class Job:
         self.scene = scene
         self.file = (ROOT / 'scenes' if table == 'own' else PEER) / f'{scene}.pbrt'
         self.folder = work / (scene if table == 'own' else f'peer-{scene}')
-        self.integrators = OWN_INTEGRATORS if table == 'own' else PEER_INTEGRATORS
+        self.integrators = INTEGRATORS
         self.options = options
 
     def command(self, integrators):
@@ -151,13 +151,13 @@ def converges(integrator):
     return not integrator['meanBias']['significant'] and not (systematic['significant'] and systematic['value'] > 0)
 
 
-def is_measured(integrator):
-    return integrator is not None and last(integrator)['relMse'] is not None
+def is_measured(integrator, budget=-1):
+    return integrator is not None and integrator['snapshots'][budget]['relMse'] is not None
 
 
-def costs(integrator):
-    """relMSE · seconds of every repeat, at the last budget."""
-    return [run['relMse'] * run['seconds'] for run in last(integrator)['runs']]
+def costs(integrator, budget=-1):
+    """relMSE · seconds of every repeat, at a budget, by default the last."""
+    return [run['relMse'] * run['seconds'] for run in integrator['snapshots'][budget]['runs']]
 
 
 def efficiency(results, name):
@@ -184,13 +184,13 @@ def interval_of(samples):
     return at(0.025), at(0.975)
 
 
-def ratio(results, name, against):
+def ratio(results, name, against, budget=-1):
     """The efficiency of one over that of another in a scene, with its 95 % interval by the bootstrap over the repeats:
     (value, low, high), None if it was not measured or one of them does not converge."""
     own, other = named(results, name), named(results, against)
-    if not (is_measured(own) and is_measured(other) and converges(own) and converges(other)):
+    if not (is_measured(own, budget) and is_measured(other, budget) and converges(own) and converges(other)):
         return None
-    a, b = costs(own), costs(other)
+    a, b = costs(own, budget), costs(other, budget)
     if statistics.fmean(a) <= 0 or statistics.fmean(b) <= 0:
         return None
     generator = random.Random(1)
@@ -326,16 +326,18 @@ def missing_table(rows):
     return table(['scene', 'reference', 'its noise', 'its bias', 'what is missing'], cells)
 
 
-def auto_table(rows):
-    """`auto` against the best fixed integrator of every scene."""
+def auto_table(rows, budgets):
+    """`auto` against the best fixed integrator of every scene, at the last budget, and at the first."""
     cells = []
     for scene, results in rows:
         best, auto = best_fixed(results), named(results, 'auto')
         value = ratio(results, 'auto', best) if best else None
         verdict = 'not measured' if value is None else 'wins' if value[1] > 1 else 'loses' if value[2] < 1 else 'even'
+        at_first = ratio(results, 'auto', best, 0) if best else None
         cells.append([scene, best or 'none', error_cell(named(results, best)) if best else '–', error_cell(auto),
-                      times(*value) if value else '–', verdict])
-    return table(['scene', 'best fixed', 'its error', 'error of auto', 'efficiency of auto over it', 'auto'], cells)
+                      times(*value) if value else '–', verdict, digits(at_first[0]) + ' ×' if at_first else '–'])
+    return table(['scene', 'best fixed', 'its error', 'error of auto', 'efficiency of auto over it', 'auto',
+                  f'after {budgets[0]}'], cells)
 
 
 def mean_table(tables):
@@ -398,22 +400,23 @@ def section(title, rows, integrators, budget):
     ]
 
 
-def page(tables, options, budget, failures, skipped):
+def page(tables, options, budgets, failures, skipped):
+    budget = budgets[-1]
     first = tables[0][1][0][1]
     lines = [
         '# Speed and accuracy', '',
         'Which integrator wins where, by how much, and what it costs, measured by `lampyr compare` on one thread. Written by',
         '`scripts/speed_and_accuracy.py`, which runs', '',
-        '```', 'lampyr compare scenes/NAME.pbrt --integrators ' + ','.join(OWN_INTEGRATORS) + ' ' + ' '.join(options) +
+        '```', 'lampyr compare scenes/NAME.pbrt --integrators ' + ','.join(INTEGRATORS) + ' ' + ' '.join(options) +
         ' -o NAME', '```', '',
         f'and leaves a `report.html` for each scene: convergence plots, the spectra of the errors (section "Error over',
         f'frequencies"), and the pictures side by side. Means of {first["repeats"]} seeds.', '',
         '## `auto`', '',
-        f'Against the fixed integrator that turned out to be the best of the scene, after {budget}. Even: the interval',
-        'includes 1.', '',
+        f'Against the fixed integrator that turned out to be the best of the scene, after {budget}, and against the same',
+        f'one after {budgets[0]}, of which the pilot takes a larger part. Even: the interval includes 1.', '',
     ]
     for title, rows, _ in tables:
-        lines += [f'{title}:', '', *auto_table(rows), '']
+        lines += [f'{title}:', '', *auto_table(rows, budgets), '']
     lines += ['Over all scenes, with 95 % intervals by the bootstrap over scenes and repeats:', '', *mean_table(tables), '']
     for title, rows, integrators in tables:
         lines += section(title, rows, integrators, budget)
@@ -433,9 +436,9 @@ def aligned(lines):
     return '\n'.join('  '.join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip() for row in cells)
 
 
-def print_auto(tables, work):
+def print_auto(tables, work, budgets):
     for title, rows, _ in tables:
-        print(f'\n{title}\n{aligned(auto_table(rows))}')
+        print(f'\n{title}\n{aligned(auto_table(rows, budgets))}')
     print(f'\n{aligned(mean_table(tables))}')
     print(f'\nconvergence and error spectra: {work}/*/report.html')
 
@@ -465,10 +468,10 @@ def main():
                         help='folder of the reports (build/speed-and-accuracy)')
     parser.add_argument('--scenes', default='', help='names of scenes/*.pbrt, and peer-NAME, separated by commas; '
                         'default: all, and the page is written')
-    parser.add_argument('--budget', default='1s,4s', help='times, rising (1s,4s)')
+    parser.add_argument('--budget', default='2s,10s', help='times, rising (2s,10s)')
     parser.add_argument('--repeats', type=int, default=5, help='renders with other seeds (5)')
-    parser.add_argument('--reference-time', default='25s', help='of every scene (25s)')
-    parser.add_argument('--resolution', default='192x108', help='of the pictures (192x108)')
+    parser.add_argument('--reference-time', default='40s', help='of every scene (40s)')
+    parser.add_argument('--resolution', default='160x90', help='of the pictures (160x90)')
     parser.add_argument('--parallel', type=int, default=2, help='comparisons side by side (2)')
     parser.add_argument('--page', action='store_true', help='write the page even if scenes are chosen')
     arguments = parser.parse_args()
@@ -480,20 +483,18 @@ def main():
                '--reference-time', arguments.reference_time, '--threads', '1']
     jobs, skipped = jobs_of(options, [scene for scene in arguments.scenes.split(',') if scene], work)
     results, failures = run_all(jobs, arguments.parallel)
-    tables = []
-    for table_name, title, integrators in (('own', 'Scenes of this repository', OWN_INTEGRATORS),
-                                           ('peer', 'Scenes of other renderers', PEER_INTEGRATORS)):
+    tables, budgets = [], arguments.budget.split(',')
+    for table_name, title in (('own', 'Scenes of this repository'), ('peer', 'Scenes of other renderers')):
         rows = [(job.scene, of) for job, of in results.items() if job.table == table_name]
         if rows:
-            tables.append((title, rows, integrators))
+            tables.append((title, rows, INTEGRATORS))
     if not tables:
         sys.exit('error: no scene was measured')
-    print_auto(tables, os.path.relpath(work))
+    print_auto(tables, os.path.relpath(work), budgets)
     if skipped:
         print(skipped)
     if not arguments.scenes or arguments.page:
-        budget = arguments.budget.split(',')[-1]
-        PAGE.write_text(page(tables, options, budget, failures, skipped))
+        PAGE.write_text(page(tables, options, budgets, failures, skipped))
         print(f'{PAGE.relative_to(ROOT)} is written')
     sys.exit(1 if failures else 0)
 

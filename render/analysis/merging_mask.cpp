@@ -27,38 +27,73 @@ std::vector<double> Blurred(std::vector<double> values, const Grid& grid, int ti
   return values;
 }
 
+// The largest of the 3 × 3 tiles around each.
+std::vector<double> Largest(const std::vector<double>& values, const Grid& grid) {
+  std::vector<double> largest(values.size());
+  for (int i = 0; i < static_cast<int>(values.size()); ++i) {
+    const int x = i % grid.tilesX, y = i / grid.tilesX;
+    double& most = largest[static_cast<size_t>(i)];
+    for (int v = std::max(y - 1, 0); v <= std::min(y + 1, grid.tilesY - 1); ++v) {
+      for (int u = std::max(x - 1, 0); u <= std::min(x + 1, grid.tilesX - 1); ++u)
+        most = std::max(most, values[static_cast<size_t>(v * grid.tilesX + u)]);
+    }
+  }
+  return largest;
+}
+
+// Where merging is needed for all light to be found, and not worth its time otherwise, it is done with this probability
+// at least: in tiles in which the pilot has seen such light, and around them. Elsewhere it can only be a part of the
+// light as small as that which is negligible (kNegligibleLight), and weights without merging are cheaper.
+constexpr double kNowAndThen = 1.0 / 16;
+
+// The error of a tile that is merged with that probability. Light that nothing but merging finds is as many times as
+// bright, and as rare.
+double ErrorAt(double probability, double without, double with, double mergedOnly) {
+  const double mixed = probability * with + (1 - probability) * without;
+  return probability > 0 ? mixed + mergedOnly * (1 / probability - probability) : mixed;
+}
+
+// The probability q that minimises error / q + cost · q.
+double ProbabilityOf(double error, double cost) {
+  return cost > 0 ? std::clamp(std::sqrt(error / cost), kNowAndThen, 1.0) : 1.0;
+}
+
 }  // namespace
 
 std::optional<PilotCandidate> MergingInParts(const PilotCandidate& none, const PilotCandidate& all,
                                              const CandidateCost& cost, const Grid& grid, double least) {
   constexpr int kBlurs = 2, kRounds = 8;
-  constexpr double kWorthIt = 0.97, kNowAndThen = 1.0 / 16;
+  constexpr double kWorthIt = 0.97;
   const bool mustMerge = none.missing > kNegligibleLight;
   const std::vector<double> missing = Blurred(none.tileMissing, grid, 1);
   const std::vector<double> without = Blurred(none.tileErrors, grid, kBlurs),
-                            with = Blurred(all.tileErrors, grid, kBlurs);
+                            with = Blurred(all.tileErrors, grid, kBlurs),
+                            mergedOnly = Blurred(all.tileMergedOnly, grid, kBlurs);
   if (none.error <= least || all.error <= least) return std::nullopt;
   double error = all.error, part = 1;
-  std::vector<double> merges(grid.Tiles());
+  std::vector<double> merges(grid.Tiles()), must(grid.Tiles());
   for (int round = 0; round < kRounds; ++round) {
     const double perError = 1 / error, perCost = cost.merging / (cost.paths + part * cost.merging);
     error = part = 0;
     for (size_t i = 0; i < grid.Tiles(); ++i) {
       const bool isWorthIt = (without[i] - with[i]) * perError > perCost * grid.PartOf(i);
-      merges[i] = isWorthIt || (mustMerge && missing[i] > 0) ? 1.0 : 0.0;
-      error += merges[i] > 0 ? with[i] : without[i];
-      part += merges[i] * grid.PartOf(i);
+      merges[i] = isWorthIt ? 1.0 : 0.0;
+      must[i] = mustMerge && missing[i] > 0 ? ProbabilityOf(mergedOnly[i] * perError, perCost * grid.PartOf(i)) : 0.0;
+      const double probability = std::max(merges[i], must[i]);
+      error += ErrorAt(probability, without[i], with[i], mergedOnly[i]);
+      part += probability * grid.PartOf(i);
     }
     if (!(error > 0)) return std::nullopt;
   }
   // Wider by a tile, with a soft edge: the pilot sees a tile by a few samples.
-  for (double& value : merges = Blurred(std::move(merges), grid, 1))
-    value = std::clamp(3 * value, mustMerge ? kNowAndThen : 0.0, 1.0);
+  merges = Blurred(std::move(merges), grid, 1);
+  must = Largest(Largest(must, grid), grid);
+  for (size_t i = 0; i < merges.size(); ++i) merges[i] = std::max(std::min(3 * merges[i], 1.0), must[i]);
   PilotCandidate mixed = all;
   mixed.error = mixed.uncertainty = part = 0;
   std::vector<float> mask;
   for (size_t i = 0; i < grid.Tiles(); ++i) {
-    mixed.tileErrors[i] = merges[i] * all.tileErrors[i] + (1 - merges[i]) * none.tileErrors[i];
+    mixed.tileErrors[i] = ErrorAt(merges[i], none.tileErrors[i], all.tileErrors[i], all.tileMergedOnly[i]);
     mixed.error += mixed.tileErrors[i];
     mixed.tileVariances[i] =
         merges[i] * merges[i] * all.tileVariances[i] + (1 - merges[i]) * (1 - merges[i]) * none.tileVariances[i];

@@ -34,16 +34,19 @@ struct PilotCandidate {
   std::vector<double> tileErrors;     // of each tile: its part of `error`
   std::vector<double> tileVariances;  // of each tile: squared standard error of that
   std::vector<double> tileMissing;    // of each tile: its part of `missing`
+  // Of each tile, of a candidate that merges: the part of its error that is of light which nothing but merging finds.
+  std::vector<double> tileMergedOnly;
 
   std::string Describe() const { return counts.Describe(integrator); }
 
   // Error of a picture that takes a second per pixel.
   double ErrorTimesCost() const { return error * cost * 1e-9; }
-  // The same, if the error is larger than estimated by twice its standard error, and where merging starts wide by its
-  // blur, which the pilot does not know.
+  // The same, if the error is larger than estimated by twice its standard error, and where photons are merged by their
+  // blur, which the pilot does not know. So of equals the unbiased one is chosen.
   double MostErrorTimesCost() const {
-    constexpr double kBlur = 1.2;
-    return (error + 2 * uncertainty) * (counts.startsWide ? kBlur : 1.0) * cost * 1e-9;
+    constexpr double kBlur = 1.1, kWideBlur = 1.2;
+    const double blur = counts.startsWide ? kWideBlur : integrator == "vcm" ? kBlur : 1.0;
+    return (error + 2 * uncertainty) * blur * cost * 1e-9;
   }
 };
 

@@ -4,10 +4,11 @@ namespace lampyr::pilot {
 
 namespace {
 
-// Unit costs in nanoseconds, fitted to the times of path, bdpt, vcm and sppm in 21 scenes (scripts/fit_costs.py). The
-// ratio of two integrators' costs in one scene is off by 10 % typically, and by a third at most.
+// Unit costs in nanoseconds: of rays fitted to the times of path, bdpt, vcm and sppm in 21 scenes, of merging to those
+// of vcm over bdpt in 24 (scripts/fit_costs.py). The ratio of vcm's cost to bdpt's is off by 11 % typically, and by a
+// third at most; that of bdpt's to path's by 15 %, and in fog, where path is slower than its rays tell, by half.
 struct Costs {
-  double ray = 260, shadowRay = 350, connection = 530, lookup = 250, found = 200, stored = 340;
+  double ray = 260, shadowRay = 350, connection = 530, lookup = 122, found = 460, stored = 167;
 };
 
 // Measured with 1/8 to 2 light paths for each camera path, in six scenes: the weights of bidirectional techniques make

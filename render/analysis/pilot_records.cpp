@@ -84,6 +84,7 @@ void Recorder::Add(const ConnectedPath& path, double value, size_t pixel) {
   const auto own = static_cast<size_t>(GroupOf(path));
   constexpr auto kSplat = static_cast<size_t>(TechniqueGroup::Light);
   const double bySplats = path.sums.groups[kSplat].squares;
+  std::array<bool, kCandidates> isMissed{};
   for (size_t k = 0; k < kCandidates; ++k) {
     const auto& counts = kCandidateOf[k].counts;
     double squares = 0, cubes = 0;
@@ -95,9 +96,11 @@ void Recorder::Add(const ConnectedPath& path, double value, size_t pixel) {
     const double factor = cubes / (squares * squares) * splatSquare;
     if (!std::isfinite(factor) || !(squares > 0)) {
       here.missing[k] += weighted;
+      isMissed[k] = true;
       continue;
     }
     here.square[k] += weighted * value * factor;
+    if (k >= kFirstOfVcm && isMissed[WithoutMerging(k)]) here.mergedOnly[k] += weighted * value * factor;
     const double expected = renders_ * path.weight / factor;
     if (factor > kRare && expected < 1)
       Keep({pixel, value * factor, expected, weighted, weighted * value * factor}, rare[k]);
@@ -188,6 +191,7 @@ bool Records::SetErrors(int passes, double squaredWeight, bool isSobol, std::vec
   for (size_t k = 0; k < candidates.size(); ++k) {
     PilotCandidate& candidate = candidates[k];
     for (double& error : candidate.tileErrors) error /= gains[k];
+    for (double& error : candidate.tileMergedOnly) error /= gains[k];
     for (double& variance : candidate.tileVariances) variance /= gains[k] * gains[k];
     candidate.uncertainty /= gains[k];
     candidate.error = std::max(candidate.error / gains[k], least);
@@ -201,6 +205,7 @@ void Records::AddUp(size_t k, int passes, const Brightness& brightness, const st
   candidate.tileErrors.resize(grid_.Tiles());
   candidate.tileVariances.resize(grid_.Tiles());
   candidate.tileMissing.resize(grid_.Tiles());
+  candidate.tileMergedOnly.resize(grid_.Tiles());
   ForEachPixel([&](size_t pixel, size_t tile) {
     const Moments& here = pixels[pixel];
     candidate.secondMoments[tile] += here.square[k] / (passes * grid_.PixelsOf(tile));
@@ -211,6 +216,7 @@ void Records::AddUp(size_t k, int passes, const Brightness& brightness, const st
     const double error = squaredWeight * brightness.scales[pixel] * variance / grid_.Pixels();
     candidate.tileErrors[tile] += error;
     candidate.tileVariances[tile] += error * error;
+    candidate.tileMergedOnly[tile] += squaredWeight * brightness.scales[pixel] * here.mergedOnly[k] / grid_.Pixels();
   });
   double variances = 0;
   for (size_t tile = 0; tile < grid_.Tiles(); ++tile) {

@@ -69,6 +69,8 @@ struct Moments {
   std::array<double, kCandidates> square{};    // second moments of single paths
   std::array<double, kCandidates> products{};  // of different paths of one sample
   std::array<double, kCandidates> missing{};
+  // Of a candidate that merges: the second moments of light that the one without merging does not find.
+  std::array<double, kCandidates> mergedOnly{};
   void operator+=(const Moments& other) {
     seen += other.seen;
     mean += other.mean;
@@ -76,6 +78,7 @@ struct Moments {
       square[k] += other.square[k];
       products[k] += other.products[k];
       missing[k] += other.missing[k];
+      mergedOnly[k] += other.mergedOnly[k];
     }
   }
 };

@@ -9,6 +9,7 @@
 
 #include "agreement/agreement_scenes.h"
 #include "integrators/bidirectional/connected_path.h"
+#include "render/analysis/merging_mask.h"
 #include "render/analysis/pilot_records.h"
 #include "render/build/scene_builder.h"
 #include "render/settings/integrator_choice.h"
@@ -454,13 +455,56 @@ TEST(Pilot, TheMostThatAnErrorMayBeDecides) {
   pilot.candidates[0].uncertainty = 0.5;
   pilot.candidates[1].uncertainty = 0.1;
   EXPECT_EQ(pilot.Best()->integrator, "vcm");
-  // A wide start has to be worth its blur.
+  // A wide start has to be worth its blur,
   pilot.candidates[0].uncertainty = pilot.candidates[1].uncertainty = 0;
-  pilot.candidates[0].error = 0.9;
+  pilot.candidates[0].error = 1.05;
+  EXPECT_EQ(pilot.Best()->integrator, "bdpt");  // and merging has to be worth its
+  pilot.candidates[0].integrator = "vcm";
+  pilot.candidates[0].error = 0.95;
   pilot.candidates[0].counts.startsWide = true;
   EXPECT_EQ(pilot.Best()->integrator, "vcm");
   pilot.candidates[0].error = 0.5;
   EXPECT_TRUE(pilot.Best()->counts.startsWide);
+}
+
+// A spot in the picture whose light only merging finds: it is merged as often as its noise deserves, and no other
+// place.
+TEST(Pilot, MergesAsOftenAsLightIsMissed) {
+  RenderSettings settings;
+  settings.width = settings.height = 64;
+  const pilot::Grid grid(settings);
+  const size_t spot = 8 * static_cast<size_t>(grid.tilesX) + 8, far = 0;
+  const auto parts = [&](double missing, double mergedOnly) {
+    PilotCandidate none, all;
+    for (PilotCandidate* candidate : {&none, &all}) {
+      candidate->tileErrors.assign(grid.Tiles(), 1.0 / static_cast<double>(grid.Tiles()));
+      candidate->tileVariances.assign(grid.Tiles(), 0);
+      candidate->tileMissing.assign(grid.Tiles(), 0);
+      candidate->tileMergedOnly.assign(grid.Tiles(), 0);
+      candidate->error = 1;
+    }
+    none.missing = none.tileMissing[spot] = missing;
+    all.tileMergedOnly[spot] = mergedOnly;
+    none.cost = 1000;
+    all.cost = 1500;
+    return pilot::MergingInParts(none, all, {1100, 400}, grid, 1e-6);
+  };
+  const auto at = [&](const PilotCandidate& candidate, size_t tile) {
+    const FilmMask& mask = candidate.counts.merging;
+    return mask.Values()[tile];
+  };
+  EXPECT_FALSE(parts(0, 0));  // merging does not pay
+  const auto faint = parts(1e-3, 1e-7), middling = parts(1e-3, 1e-3), strong = parts(1e-3, 1);
+  ASSERT_TRUE(faint && middling && strong);
+  EXPECT_FLOAT_EQ(at(*faint, spot), 1.0f / 16);
+  EXPECT_GT(at(*middling, spot), 0.1f);
+  EXPECT_LT(at(*middling, spot), 0.9f);
+  EXPECT_FLOAT_EQ(at(*strong, spot), 1);
+  for (const auto* candidate : {&faint, &middling, &strong}) EXPECT_EQ(at(**candidate, far), 0);
+  EXPECT_LT((*faint).cost, 1150);
+  // What is found in one pass of q has 1 / q times the second moment.
+  const double q = static_cast<double>(at(*middling, spot));
+  EXPECT_NEAR(middling->tileErrors[spot], 1.0 / static_cast<double>(grid.Tiles()) + 1e-3 * (1 / q - q), 1e-9);
 }
 
 TEST(Pilot, ASquaredMeanIsBelowTheSecondMoment) {
