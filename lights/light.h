@@ -187,7 +187,7 @@ struct LightSettings {
   bool cameraVisible = true;
   bool traceLightPaths = true;     // may emit photons
   float importanceMultiplier = 1;  // > 0, scales the light's selection probability
-  int fixedSampleCount = 0;        // 0: chosen by the integrator
+  int fixedSampleCount = 0;        // by next-event estimation at each receiver; 0: as light selection decides
   std::string lightGroup;
   std::string name;
   // The spectra among its colours. Where light is carried by wavelength, each takes the place of its colour.

@@ -35,7 +35,7 @@ std::vector<ParameterInfo> WithCommonParameters(std::vector<ParameterInfo> param
       {"traceLightPaths", ParameterType::Bool, "", "true", "", "whether the light may emit photons"},
       {"importanceMultiplier", ParameterType::Float, "", "1", "> 0", "scales the light's chance of being selected"},
       {"fixedSampleCount", ParameterType::Integer, "", "0", ">= 0",
-       "samples per shading point; 0: as the integrator does"},
+       "samples of this light at each point that is lit; 0: as light selection decides"},
   };
   for (const ParameterInfo& row : common) {
     parameters.push_back(row);

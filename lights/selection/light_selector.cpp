@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "lights/selection/fixed_counts.h"
 #include "lights/selection/tree_selector.h"
 #include "sampling/tables.h"
 
@@ -109,13 +110,14 @@ std::unique_ptr<LightSelector> MakeTableSelector(std::span<const float> weights)
   return std::make_unique<TableSelector>(weights);
 }
 
-std::unique_ptr<LightSelector> MakeLightSelector(LightSelection selection, std::span<const PlacedLight> lights,
-                                                 const BoundingSphere& scene) {
-  // For one light, or the two halves of one rectangle, importance is not worth its time.
-  const bool hasChoice = lights.size() > 1 || (lights.size() == 1 && lights[0].light->PatchCount() > 2);
-  if (hasChoice && selection == LightSelection::Tree)
+namespace {
+
+// Without regard to sample counts of lights. `byImportance`: Tree and Exhaustive look at importance.
+std::unique_ptr<LightSelector> MakeSelector(LightSelection selection, std::span<const PlacedLight> lights,
+                                            const BoundingSphere& scene, bool byImportance) {
+  if (byImportance && selection == LightSelection::Tree)
     return MakeTreeSelector(EmitterSearch::Tree, lights, scene, HardwareThreads());
-  if (hasChoice && selection == LightSelection::Exhaustive)
+  if (byImportance && selection == LightSelection::Exhaustive)
     return MakeTreeSelector(EmitterSearch::Exhaustive, lights, scene, HardwareThreads());
   std::vector<float> weights(lights.size(), 1.0f);
   if (selection == LightSelection::Power) {
@@ -126,6 +128,24 @@ std::unique_ptr<LightSelector> MakeLightSelector(LightSelection selection, std::
     for (float& weight : weights) weight = mean > 0 ? std::max(weight, kFloorOfEqualShare * mean) : 1.0f;
   }
   return MakeTableSelector(weights);
+}
+
+}  // namespace
+
+std::unique_ptr<LightSelector> MakeLightSelector(LightSelection selection, std::span<const PlacedLight> lights,
+                                                 const BoundingSphere& scene) {
+  // For one light, or the two halves of one rectangle, importance is not worth its time.
+  const bool hasChoice = lights.size() > 1 || (lights.size() == 1 && lights[0].light->PatchCount() > 2);
+  std::unique_ptr<LightSelector> whole = MakeSelector(selection, lights, scene, hasChoice);
+  const std::vector<int> counts = FixedCounts(lights);
+  std::vector<PlacedLight> others;
+  for (size_t i = 0; i < lights.size(); ++i) {
+    if (counts[i] == 0) others.push_back(lights[i]);
+  }
+  if (others.size() == lights.size()) return whole;
+  // Both select patches, or neither does.
+  return MakeFixedCountSelector(lights, counts, scene, std::move(whole),
+                                others.empty() ? nullptr : MakeSelector(selection, others, scene, hasChoice));
 }
 
 std::unique_ptr<LightSelector> MakeEmissionSelector(std::span<const PlacedLight> lights, const BoundingSphere& scene) {

@@ -189,6 +189,128 @@ TEST_P(Selection, CountsSeveralSamples) {
   }
 }
 
+// Lights with counts of their own are chosen that often at each receiver, the others as before; a mesh by its triangles
+// where the others are.
+TEST(FixedSampleCounts, AreThoseOfTheLights) {
+  const std::string lamp =
+      "\nShape \"trianglemesh\" \"point3 P\" [0 1 0 0.2 1 0 0 1.2 0 0.2 1.2 0.1] \"integer indices\" [0 1 2 1 3 2 0 1 "
+      "3]\n";
+  const auto area = [&](const std::string& count) {
+    return "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [2 2 2] " + count + lamp + "AttributeEnd\n";
+  };
+  const auto count = [](int n) { return "\"integer fixedSampleCount\" " + std::to_string(n) + " "; };
+  const std::string point = "LightSource \"point\" \"point3 from\" [0.3 0.5 0.2] ";
+  const std::string head = FilmWith("box", 8, 8) + World(4);
+  const struct {
+    std::string lights;
+    size_t count;
+    int most = LightChoices::kMost;  // of a light
+  } cases[] = {
+      {area(count(3)) + point + count(2) + "\n" + area("") + point + "\n", 4},
+      {area(count(4)), 1},
+      {point + count(5) + "\n" + area(count(1)), 2},
+      {"LightSource \"infinite\" " + count(2) + "\n" + area("") + point + "\n", 3},
+      {point + count(40) + "\n" + area(count(2)) + point + "\n", 3, 13},  // 16 at most, one of them for the last
+  };
+  for (const auto& one : cases) {
+    for (const char* name : {"uniform", "power", "tree", "exhaustive"}) {
+      for (const int others : {1, 4}) {
+        const BuiltScene built = Build(head + one.lights, name, others);
+        const LightingServices& lighting = *built.scene.lighting;
+        ASSERT_EQ(lighting.Lights().size(), one.count);
+        int fixed = 0;
+        for (const PlacedLight& placed : lighting.Lights()) fixed += placed.light->Settings().fixedSampleCount > 0;
+        Rng rng(3);
+        for (int r = 0; r < 20; ++r) {
+          const Receiver receiver = RandomReceiver(lighting.SceneSphere(), rng);
+          std::vector<int> chosen(one.count);
+          LightChoices choices;
+          lighting.SelectLights(receiver, rng.NextFloat(), choices);
+          int ofOthers = 0;
+          for (int k = 0; k < choices.count; ++k) {
+            const SelectedLight& choice = choices.of[k];
+            ++chosen[choice.light];
+            if (lighting.Lights()[choice.light].light->Settings().fixedSampleCount == 0) ++ofOthers;
+            EXPECT_EQ(choice.probability.value,
+                      lighting.SelectionProbability(receiver, choice.light, choice.patch).value);
+          }
+          EXPECT_LE(choices.count, LightChoices::kMost);
+          EXPECT_EQ(ofOthers > 0, fixed < static_cast<int>(one.count));
+          EXPECT_LE(ofOthers, others);
+          double ofTheOthers = 0;
+          for (uint32_t i = 0; i < lighting.Lights().size(); ++i) {
+            const Light& light = *lighting.Lights()[i].light;
+            const int patches = lighting.SelectsPatches(receiver) ? light.PatchCount() : 1;
+            double expected = 0;
+            for (int patch = 0; patch < patches; ++patch)
+              expected += static_cast<double>(lighting.SelectionProbability(receiver, i, patch).value);
+            const int wanted = std::min(light.Settings().fixedSampleCount, one.most);
+            if (wanted == 0) {
+              ofTheOthers += expected;
+              continue;
+            }
+            EXPECT_EQ(chosen[i], wanted) << name;
+            EXPECT_NEAR(expected, wanted, 1e-5) << name;
+          }
+          EXPECT_NEAR(ofTheOthers, ofOthers, 5e-4);
+        }
+      }
+    }
+  }
+}
+
+// In a room with a ball of haze: on surfaces the counts hold, and along rays in the haze lights are selected as
+// without.
+class FixedSampleCountsIn : public testing::TestWithParam<const char*> {};
+
+TEST_P(FixedSampleCountsIn, ChangeTheNoiseAlone) {
+  const auto text = [](const std::string& ofMesh, const std::string& ofPoint) {
+    return FilmWith("box", 16, 16) +
+           "MakeNamedMedium \"haze\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [0.8 0.8 0.8] \"rgb sigma_a\" "
+           "[0.2 0.2 0.2]\nLookAt 0 0 0.9  0 -0.2 -1  0 1 0\nCamera \"perspective\" \"float fov\" 80\n" +
+           World(3) + kRoom +
+           "AttributeBegin Material \"interface\" MediumInterface \"haze\" \"\" Translate -0.1 -0.3 -0.3 Shape "
+           "\"sphere\" \"float radius\" 0.45 AttributeEnd\nAttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [6 5 "
+           "4] " +
+           ofMesh +
+           "Translate 0.3 0.6 -0.3 Shape \"trianglemesh\" \"point3 P\" [-0.2 0 -0.2 0.2 0 -0.2 -0.2 0 0.2 0.2 0.1 0.2] "
+           "\"integer indices\" [0 1 2 1 3 2 0 3 1] AttributeEnd\nLightSource \"point\" \"rgb I\" [0.2 0.1 0.1] "
+           "\"point3 from\" [0.5 -0.3 0.1]\nLightSource \"point\" \"rgb I\" [0.7 0.8 1] \"point3 from\" [-0.4 0.5 "
+           "0.2] " +
+           ofPoint + "\n";
+  };
+  static const Replicas without = RenderReplicas(text("", ""), "path", 16, 256);
+  RenderOverrides overrides;
+  overrides.seed = 500;
+  // Photons blur the corners of the room otherwise.
+  overrides.values["radius"] = GetParam() == std::string("sppm") ? 0.05 : 0.01;
+  const Replicas with = RenderReplicas(text("\"integer fixedSampleCount\" 3 ", "\"integer fixedSampleCount\" 2 "),
+                                       GetParam(), 16, 96, overrides);
+  const double rate = SidakRate(1e-3, 4);
+  const Agreement result = CompareReplicas(with, without, 6, rate);
+  std::printf("%s: %d blocks, largest |z| %.2f (threshold %.2f), chi2 %.1f (%.1f), bias %+.3f %% +- %.3f %%\n",
+              GetParam(), result.blocks, result.largestZ, result.thresholdZ, result.chiSquared,
+              result.chiSquaredThreshold, 100 * result.bias, 196 * result.biasError);
+  EXPECT_TRUE(result.Agrees());
+  EXPECT_EQ(with.faults, 0u);
+  EXPECT_FALSE(CompareReplicas(with, without, 6, rate, 1.05).Agrees()) << "too noisy";
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, FixedSampleCountsIn, testing::Values("path", "bdpt", "sppm", "vcm"),
+                         [](const auto& tested) { return std::string(tested.param); });
+
+// What cannot be kept is said.
+TEST(FixedSampleCounts, SaysWhichAreLess) {
+  Diagnostics diagnostics(Diagnostics::Mode::Collect);
+  const std::string point = "LightSource \"point\" \"integer fixedSampleCount\" 9\n";
+  BuildScene(ParseScene(FilmWith("box", 8, 8) + World(4) + point + point, "test.pbrt", diagnostics), {}, true,
+             diagnostics);
+  int said = 0;
+  for (const std::string& warning : diagnostics.Warnings())
+    said += warning.find("\"fixedSampleCount\" 9: the light has 8") != std::string::npos;
+  EXPECT_EQ(said, 2);
+}
+
 // A scene that is larger or smaller, and its lights with it, is lit by the same choices.
 TEST(SelectionScale, ChangesNoProbability) {
   const auto build = [](const std::string& scale) {

@@ -93,6 +93,14 @@ void AddLightRigs(std::vector<Rig>& rigs) {
        Room(kMatte, Lamp("0.25 0.4 0.1", 0.25, "\"string lightGroup\" \"key\" \"float importanceMultiplier\" 3") +
                         bulb + "\"string lightGroup\" \"fill\""),
        {"light groups"}});
+  rigs.push_back(
+      {"light_sample_counts",
+       Room(kMatte, Lamp("0.25 0.4 0.1", 0.25, "\"integer fixedSampleCount\" 2") + bulb +
+                        "\"integer fixedSampleCount\" 3\n" + Lamp("-0.3 -0.2 0.3", 0.15) +
+                        Scope("Translate -0.3 0.3 -0.2 AreaLightSource \"diffuse\" \"rgb L\" [2 1 1] \"integer "
+                              "fixedSampleCount\" 2 Shape \"trianglemesh\" \"point3 P\" [-.2 -.2 0 .2 -.2 0 .2 .2 0 "
+                              "-.1 .3 .1] \"integer indices\" [0 1 2 0 2 3]")),
+       {"light sample counts"}});
   // Links: the ball sees one of the two lamps, and the floor the other and half of the sky.
   rigs.push_back({"light_linking",
                   Floor(Scope("LightSource \"infinite\" \"rgb L\" [0.3 0.3 0.3] \"string lightGroup\" \"sky\"") +
