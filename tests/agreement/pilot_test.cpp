@@ -226,9 +226,9 @@ TEST(Pilot, KnowsTheErrors) {
       const double measured = MeasureError(built, candidate);
       std::printf("[   info   ] %-80s relMSE %.4g, measured %.4g\n", candidate.Describe().c_str(), candidate.error,
                   measured);
-      // The estimate of the pilot, by 200 passes, is itself uncertain: most where weights of either sign cancel.
-      // Of several times the merges of the pilot the estimate is noisy (10 % by 200 passes), and is taken for more than
-      // it is where merging has had enough.
+      // The estimate of the pilot, by 200 passes, is itself uncertain: most where weights of either sign cancel, and for
+      // candidates with several times as many merges as the pilot (10 %). It is too high where more merges hardly reduce
+      // the noise.
       const bool isMore = candidate.counts.log2LightPaths == 2 || candidate.counts.startsWide;
       const double tolerance = c.filter == "mitchell" || isMore ? 0.3 : 0.15;
       EXPECT_LT(candidate.error / measured, 1 + (candidate.counts.startsWide ? 0.7 : tolerance))
