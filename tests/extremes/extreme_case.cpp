@@ -14,6 +14,7 @@ const std::vector<ExtremeGroup>& ExtremeGroups() {
       {"geometry", "Geometry and places", GeometryCases},
       {"photons", "Photons", PhotonCases},
       {"media", "Participating media", MediaCases},
+      {"wavelengths", "Light by wavelength", WavelengthCases},
       {"cameras", "Cameras and film", CameraCases},
       {"degenerate", "Nothing there, and very much", DegenerateCases},
   };

@@ -40,6 +40,7 @@ std::vector<ExtremeCase> MaterialCases();
 std::vector<ExtremeCase> GeometryCases();
 std::vector<ExtremeCase> PhotonCases();
 std::vector<ExtremeCase> MediaCases();
+std::vector<ExtremeCase> WavelengthCases();
 std::vector<ExtremeCase> CameraCases();
 std::vector<ExtremeCase> DegenerateCases();
 
