@@ -114,6 +114,8 @@ def run_all(jobs, parallel):
 
 def digits(value):
     """Two significant digits, no exponent."""
+    if value == 0:
+        return '0'
     if value >= 10:
         return f'{float(f"{value:.2g}"):.0f}'
     return f'{value:.2g}' if value >= 1e-3 else f'{value:.1e}'

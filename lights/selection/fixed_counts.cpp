@@ -126,8 +126,9 @@ std::vector<int> FixedCounts(std::span<const PlacedLight> lights) {
     fixed.pop_back();
   }
   // The largest become smaller first.
-  const auto largest = [&] { return std::max_element(counts.begin(), counts.end()); };
-  for (int total = std::accumulate(counts.begin(), counts.end(), 0); total > room; --total) --*largest();
+  const auto isLess = [&](uint32_t a, uint32_t b) { return counts[a] < counts[b]; };
+  for (int total = std::accumulate(counts.begin(), counts.end(), 0); total > room; --total)
+    --counts[*std::max_element(fixed.begin(), fixed.end(), isLess)];
   return counts;
 }
 

@@ -46,8 +46,8 @@ std::vector<double> Largest(const std::vector<double>& values, const Grid& grid)
 // light as small as that which is negligible (kNegligibleLight), and weights without merging are cheaper.
 constexpr double kNowAndThen = 1.0 / 16;
 
-// The error of a tile that is merged with that probability. Light that nothing but merging finds is as many times as
-// bright, and as rare.
+// The error of a tile that is merged with that probability. Light that nothing but merging finds is then found as
+// rarely, and is divided by the probability when it is.
 double ErrorAt(double probability, double without, double with, double mergedOnly) {
   const double mixed = probability * with + (1 - probability) * without;
   return probability > 0 ? mixed + mergedOnly * (1 / probability - probability) : mixed;
