@@ -1,5 +1,4 @@
-// What the passes of camera paths, of light paths and of both have in common: their parameters, and how a sample is
-// begun and added to the film.
+// Shared by the passes of camera paths, of light paths and of both: their parameters, and adding a sample to the film.
 #pragma once
 
 #include <optional>

@@ -118,7 +118,7 @@ std::vector<int> FixedCounts(std::span<const PlacedLight> lights) {
     counts[i] = std::clamp(lights[i].light->Settings().fixedSampleCount, 0, LightChoices::kMost);
     if (counts[i] > 0) fixed.push_back(i);
   }
-  // Of more lights than there are samples the last are selected among the others.
+  // If more lights have counts than there are samples, the last of them are selected like those without a count.
   const bool hasOthers = fixed.size() < lights.size() || fixed.size() > LightChoices::kMost;
   const int room = LightChoices::kMost - (hasOthers ? 1 : 0);
   while (fixed.size() > static_cast<size_t>(room)) {

@@ -7,20 +7,28 @@ namespace lampyr::pilot {
 
 namespace {
 
+// Calls visit(tile) for the tiles of the 3 × 3 around `tile` that the grid has.
+template <class Visit>
+void ForTilesAround(size_t tile, const Grid& grid, const Visit& visit) {
+  const int x = static_cast<int>(tile) % grid.tilesX, y = static_cast<int>(tile) / grid.tilesX;
+  for (int v = std::max(y - 1, 0); v <= std::min(y + 1, grid.tilesY - 1); ++v) {
+    for (int u = std::max(x - 1, 0); u <= std::min(x + 1, grid.tilesX - 1); ++u)
+      visit(static_cast<size_t>(v) * static_cast<size_t>(grid.tilesX) + static_cast<size_t>(u));
+  }
+}
+
 // The mean over the 3 × 3 tiles around each, `times` times.
 std::vector<double> Blurred(std::vector<double> values, const Grid& grid, int times) {
   for (int i = 0; i < times; ++i) {
     std::vector<double> blurred(values.size());
-    for (int y = 0; y < grid.tilesY; ++y) {
-      for (int x = 0; x < grid.tilesX; ++x) {
-        double sum = 0;
-        int count = 0;
-        for (int v = std::max(y - 1, 0); v <= std::min(y + 1, grid.tilesY - 1); ++v) {
-          for (int u = std::max(x - 1, 0); u <= std::min(x + 1, grid.tilesX - 1); ++u, ++count)
-            sum += values[static_cast<size_t>(v) * static_cast<size_t>(grid.tilesX) + static_cast<size_t>(u)];
-        }
-        blurred[static_cast<size_t>(y) * static_cast<size_t>(grid.tilesX) + static_cast<size_t>(x)] = sum / count;
-      }
+    for (size_t tile = 0; tile < values.size(); ++tile) {
+      double sum = 0;
+      int count = 0;
+      ForTilesAround(tile, grid, [&](size_t other) {
+        sum += values[other];
+        ++count;
+      });
+      blurred[tile] = sum / count;
     }
     values = std::move(blurred);
   }
@@ -29,21 +37,15 @@ std::vector<double> Blurred(std::vector<double> values, const Grid& grid, int ti
 
 // The largest of the 3 × 3 tiles around each.
 std::vector<double> Largest(const std::vector<double>& values, const Grid& grid) {
-  std::vector<double> largest(values.size());
-  for (int i = 0; i < static_cast<int>(values.size()); ++i) {
-    const int x = i % grid.tilesX, y = i / grid.tilesX;
-    double& most = largest[static_cast<size_t>(i)];
-    for (int v = std::max(y - 1, 0); v <= std::min(y + 1, grid.tilesY - 1); ++v) {
-      for (int u = std::max(x - 1, 0); u <= std::min(x + 1, grid.tilesX - 1); ++u)
-        most = std::max(most, values[static_cast<size_t>(v * grid.tilesX + u)]);
-    }
-  }
+  std::vector<double> largest = values;
+  for (size_t tile = 0; tile < values.size(); ++tile)
+    ForTilesAround(tile, grid, [&](size_t other) { largest[tile] = std::max(largest[tile], values[other]); });
   return largest;
 }
 
-// Where merging is needed for all light to be found, and not worth its time otherwise, it is done with this probability
-// at least: in tiles in which the pilot has seen such light, and around them. Elsewhere it can only be a part of the
-// light as small as that which is negligible (kNegligibleLight), and weights without merging are cheaper.
+// The least probability of merging in tiles where the pilot has seen light that only merging finds, and around them,
+// if merging does not pay there otherwise. Elsewhere such light is negligible (kNegligibleLight), and weights without
+// merging are cheaper.
 constexpr double kNowAndThen = 1.0 / 16;
 
 // The error of a tile that is merged with that probability. Light that nothing but merging finds is then found as

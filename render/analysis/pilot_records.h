@@ -69,7 +69,7 @@ struct Moments {
   std::array<double, kCandidates> square{};    // second moments of single paths
   std::array<double, kCandidates> products{};  // of different paths of one sample
   std::array<double, kCandidates> missing{};
-  // Of a candidate that merges: the second moments of light that the one without merging does not find.
+  // For candidates that merge: second moments of the light that only merging finds.
   std::array<double, kCandidates> mergedOnly{};
   void operator+=(const Moments& other) {
     seen += other.seen;

@@ -226,9 +226,9 @@ TEST(Pilot, KnowsTheErrors) {
       const double measured = MeasureError(built, candidate);
       std::printf("[   info   ] %-80s relMSE %.4g, measured %.4g\n", candidate.Describe().c_str(), candidate.error,
                   measured);
-      // The estimate of the pilot, by 200 passes, is itself uncertain: most where weights of either sign cancel, and for
-      // candidates with several times as many merges as the pilot (10 %). It is too high where more merges hardly reduce
-      // the noise.
+      // The estimate of the pilot, by 200 passes, is itself uncertain: most where weights of either sign cancel, and
+      // for candidates with several times as many merges as the pilot (10 %). It is too high where more merges hardly
+      // reduce the noise.
       const bool isMore = candidate.counts.log2LightPaths == 2 || candidate.counts.startsWide;
       const double tolerance = c.filter == "mitchell" || isMore ? 0.3 : 0.15;
       EXPECT_LT(candidate.error / measured, 1 + (candidate.counts.startsWide ? 0.7 : tolerance))
@@ -502,7 +502,7 @@ TEST(Pilot, MergesAsOftenAsLightIsMissed) {
   EXPECT_FLOAT_EQ(at(*strong, spot), 1);
   for (const auto* candidate : {&faint, &middling, &strong}) EXPECT_EQ(at(**candidate, far), 0);
   EXPECT_LT((*faint).cost, 1150);
-  // What is found in one pass of q has 1 / q times the second moment.
+  // Light that is found with the probability q has 1 / q times the second moment.
   const double q = static_cast<double>(at(*middling, spot));
   EXPECT_NEAR(middling->tileErrors[spot], 1.0 / static_cast<double>(grid.Tiles()) + 1e-3 * (1 / q - q), 1e-9);
 }
