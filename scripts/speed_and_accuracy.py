@@ -397,9 +397,7 @@ def section(title, rows, integrators, budget):
         '### What more samples do not bring', '',
         'Differences from the reference that are not chance (p < 0.01): of the mean, and of the pixels, as the root of the',
         'part of relMSE that all seeds have in common. Integrators that merge photons blur; that falls with more samples.',
-        'The errors of the reference itself are noise, and bias where photons are merged in it, as roots of relMSE. A reference by',
-        'an integrator that misses a little of the light (`lampyr plan` says how much: `bdpt` 0.35 % in `rainbow`, 0.02 % in',
-        '`spot-lens` of the other renderers) lacks it: errors of those that find all light are then stated too high.', '',
+        'The errors of the reference itself are noise, and bias where photons are merged in it, as roots of relMSE.', '',
         *missing_table(rows), '',
     ]
 
