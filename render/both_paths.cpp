@@ -216,7 +216,7 @@ class BothPaths::AdaptivePixels {
   }
   int X() const { return x_; }
   int Y() const { return y_; }
-  // Of the sample in the pixel and stage.
+  // Index of the sample among those of its pixel and stage.
   uint32_t Number() const { return static_cast<uint32_t>(number_); }
   // Adds the radiance of the sample.
   void Add(const PixelRay& ray, const Color& radiance, SampleAdder& adder) {

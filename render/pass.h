@@ -57,7 +57,7 @@ struct SampleAdder {
     if (film.KeepsBias()) AddBias(x, y, isValid ? scale : 0.0f, ray.filterWeight, biasOfPass);
   }
 
-  // Where the next sample leaves its estimate of the bias of merging; null: the film keeps none.
+  // Receives the next sample's estimate of the bias of merging; null if the film keeps none.
   Color* StartBias() {
     mergeBias = Color(0.0f);
     return film.KeepsBias() ? &mergeBias : nullptr;

@@ -55,6 +55,13 @@ double ErrorAt(double probability, double without, double with, double mergedOnl
   return probability > 0 ? mixed + mergedOnly * (1 / probability - probability) : mixed;
 }
 
+// Standard deviation of ErrorAt, as a factor on that of `with`: errors of light that only merging finds grow by 1 / q.
+double DeviationFactor(double probability, double with, double mergedOnly) {
+  if (!(probability > 0)) return 0;
+  const double part = with > 0 ? std::clamp(mergedOnly / with, 0.0, 1.0) : 1.0;
+  return probability + part * (1 / probability - probability);
+}
+
 // The probability q that minimises error / q + cost · q.
 double ProbabilityOf(double error, double cost) {
   return cost > 0 ? std::clamp(std::sqrt(error / cost), kNowAndThen, 1.0) : 1.0;
@@ -97,8 +104,8 @@ std::optional<PilotCandidate> MergingInParts(const PilotCandidate& none, const P
   for (size_t i = 0; i < grid.Tiles(); ++i) {
     mixed.tileErrors[i] = ErrorAt(merges[i], none.tileErrors[i], all.tileErrors[i], all.tileMergedOnly[i]);
     mixed.error += mixed.tileErrors[i];
-    mixed.tileVariances[i] =
-        merges[i] * merges[i] * all.tileVariances[i] + (1 - merges[i]) * (1 - merges[i]) * none.tileVariances[i];
+    const double ofAll = DeviationFactor(merges[i], all.tileErrors[i], all.tileMergedOnly[i]), ofNone = 1 - merges[i];
+    mixed.tileVariances[i] = ofAll * ofAll * all.tileVariances[i] + ofNone * ofNone * none.tileVariances[i];
     mixed.uncertainty += mixed.tileVariances[i];
     part += merges[i] * grid.PartOf(i);
     mask.push_back(static_cast<float>(merges[i]));

@@ -34,7 +34,7 @@ struct PilotCandidate {
   std::vector<double> tileErrors;     // of each tile: its part of `error`
   std::vector<double> tileVariances;  // of each tile: squared standard error of that
   std::vector<double> tileMissing;    // of each tile: its part of `missing`
-  // By tile, for a candidate that merges: the error due to light that only merging finds.
+  // Error of each tile from light that only merging finds; 0 for candidates that do not merge.
   std::vector<double> tileMergedOnly;
 
   std::string Describe() const { return counts.Describe(integrator); }

@@ -455,10 +455,10 @@ TEST(Pilot, TheMostThatAnErrorMayBeDecides) {
   pilot.candidates[0].uncertainty = 0.5;
   pilot.candidates[1].uncertainty = 0.1;
   EXPECT_EQ(pilot.Best()->integrator, "vcm");
-  // A wide start has to be worth its blur,
+  // Merging has to be worth its blur, and a wide start that of wider discs.
   pilot.candidates[0].uncertainty = pilot.candidates[1].uncertainty = 0;
   pilot.candidates[0].error = 1.05;
-  EXPECT_EQ(pilot.Best()->integrator, "bdpt");  // and merging has to be worth its
+  EXPECT_EQ(pilot.Best()->integrator, "bdpt");
   pilot.candidates[0].integrator = "vcm";
   pilot.candidates[0].error = 0.95;
   pilot.candidates[0].counts.startsWide = true;

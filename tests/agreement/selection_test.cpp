@@ -299,7 +299,7 @@ TEST_P(FixedSampleCountsIn, ChangeTheNoiseAlone) {
 INSTANTIATE_TEST_SUITE_P(Of, FixedSampleCountsIn, testing::Values("path", "bdpt", "sppm", "vcm"),
                          [](const auto& tested) { return std::string(tested.param); });
 
-// What cannot be kept is said.
+// Counts above the limit are reduced, with a warning.
 TEST(FixedSampleCounts, SaysWhichAreLess) {
   Diagnostics diagnostics(Diagnostics::Mode::Collect);
   const std::string point = "LightSource \"point\" \"integer fixedSampleCount\" 9\n";
