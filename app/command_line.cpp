@@ -255,7 +255,8 @@ struct RenderCommand {
                  "Denoise the picture; as it was rendered it stays in the layer \"noisy\". With --shard: keep what "
                  "`lampyr denoise` wants of the merged picture");
     app.add_flag("--auto-layers", options.autoLayers,
-                 "Add layers of what --integrator auto decided: auto.lightPaths, auto.connecting, auto.merging");
+                 "Add layers of what --integrator auto decided: auto.lightPaths, auto.connecting, auto.merging, "
+                 "auto.continuing");
     app.add_option("--strategy-images", options.strategyImages,
                    "Write what each technique of bdpt contributes, weighted and not, to this folder")
         ->type_name("FOLDER");

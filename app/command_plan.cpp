@@ -24,10 +24,12 @@ void PrintPilot(const RenderPilot& pilot, const Settings& values) {
     if (candidate.missing > kNegligibleLight)
       std::snprintf(missing, sizeof missing, "  %.2g %%", 100 * candidate.missing);
     const UsedCounts used = candidate.counts.Mean(CountedTechniquesOf(candidate.integrator, values));
-    std::printf("%-5s %5g %4.0f%% %7.3g %3.0f%% %5.2f %7.3g%s%s%s\n", candidate.integrator.c_str(), used.lightPaths,
+    char on[16] = "";
+    if (used.continuing < 1) std::snprintf(on, sizeof on, "  on %.0f%%", 100 * used.continuing);
+    std::printf("%-5s %5g %4.0f%% %7.3g %3.0f%% %5.2f %7.3g%s%s%s%s\n", candidate.integrator.c_str(), used.lightPaths,
                 100 * used.merging, candidate.error, 100 * candidate.uncertainty / candidate.error,
                 candidate.cost * 1e-3, candidate.error * candidate.cost * 1e-3, missing,
-                candidate.counts.startsWide ? "  wide" : "", &candidate == pilot.Best() ? "  <" : "");
+                candidate.counts.startsWide ? "  wide" : "", on, &candidate == pilot.Best() ? "  <" : "");
   }
 }
 

@@ -317,7 +317,7 @@ Image AutoLayers(const RenderSettings& settings) {
   const TechniqueCounts& counts = *settings.counts;
   const CountedTechniques techniques = CountedTechniquesOf(settings.integrator, settings.values);
   const PixelRect& crop = settings.crop;
-  Image image(crop.Width(), crop.Height(), {"auto.lightPaths", "auto.connecting", "auto.merging"});
+  Image image(crop.Width(), crop.Height(), {"auto.lightPaths", "auto.connecting", "auto.merging", "auto.continuing"});
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x) {
       const Point2 center(static_cast<float>(crop.x0 + x) + 0.5f, static_cast<float>(crop.y0 + y) + 0.5f);
@@ -325,6 +325,7 @@ Image AutoLayers(const RenderSettings& settings) {
       image.At(x, y, 0) = static_cast<float>(used.lightPaths);
       image.At(x, y, 1) = static_cast<float>(used.connecting);
       image.At(x, y, 2) = static_cast<float>(used.merging);
+      image.At(x, y, 3) = static_cast<float>(used.continuing);
     }
   }
   return image;

@@ -98,8 +98,10 @@ std::string ToJson(const RenderReport& report) {
                         {"mostSamples", report.adaptive->mostSamples}};
   }
   if (const std::optional<UsedCounts>& decided = report.decided) {
-    json["auto"] = {
-        {"lightPaths", decided->lightPaths}, {"connecting", decided->connecting}, {"merging", decided->merging}};
+    json["auto"] = {{"lightPaths", decided->lightPaths},
+                    {"connecting", decided->connecting},
+                    {"merging", decided->merging},
+                    {"continuing", decided->continuing}};
   }
   if (outcome.guiding.regions > 0)
     json["guiding"] = {{"gain", outcome.guiding.gain}, {"regions", outcome.guiding.regions}};

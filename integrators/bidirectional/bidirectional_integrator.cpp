@@ -34,6 +34,7 @@ void BidirectionalSample::Report(ConnectedPath& path) const {
   if (path.t > 1) {
     path.merging = merging;
     path.connectionCount = connectionCount;
+    path.continuing = static_cast<double>(continuing);
   }
   path.seenDensity = path.t > 1 ? seenDensity : path.atLens.value;
   path.splatCount = settings.splatCount;
@@ -213,6 +214,7 @@ class CameraSide final : public PathVisitor {
   // The state of the camera subpath that a vertex for one merge changes, and that is restored after it.
   struct Before {
     Merging merging;
+    double continuesHere;
     double seenDensity;
     bool lensSeesIt;
     size_t densities;  // number
@@ -250,7 +252,7 @@ class CameraSide final : public PathVisitor {
     const std::vector<SubpathDensities>& densities = sample_.cameraDensities;
     const size_t changed = std::min<size_t>(densities.size(), 2);  // by the next vertex
     kept_.assign(densities.end() - static_cast<std::ptrdiff_t>(changed), densities.end());
-    return {sample_.merging, sample_.seenDensity, sample_.lensSeesIt, densities.size()};
+    return {sample_.merging, sample_.continuesHere, sample_.seenDensity, sample_.lensSeesIt, densities.size()};
   }
   // Adds the vertex that was made in the place of the next one, `t` along the ray.
   void Extend(Subpath& path, const PathState& state, float t) {
@@ -265,6 +267,7 @@ class CameraSide final : public PathVisitor {
   void Restore(Subpath& path, const Before& before) {
     path.Drop();
     sample_.merging = before.merging;
+    sample_.continuesHere = before.continuesHere;
     sample_.seenDensity = before.seenDensity;
     sample_.lensSeesIt = before.lensSeesIt;
     sample_.cameraDensities.resize(before.densities);
@@ -279,6 +282,8 @@ class CameraSide final : public PathVisitor {
     } else {
       SetWeights(path[depth - 2], state, sample_.settings.connects, vertex);
     }
+    sample_.continuesHere =
+        !state.hasScatteredWidely && vertex.CanMerge() ? static_cast<double>(sample_.continuing) : 1.0;
     if (sample_.seenDensity > 0 && !state.hasScatteredWidely) SetMerging(static_cast<double>(state.length));
     if (sample_.merging) {
       AddDensities(path, sample_.settings.photons.volume, false, sample_.cameraDensities);
@@ -385,6 +390,7 @@ void BidirectionalIntegrator::Decide(const Ray& ray, BidirectionalSample& sample
   sample.connectionsPerSample = lightPaths_ * connections;
   sample.isConnected = settings_.connects;
   if (!hasMasks) return;
+  sample.continuing = settings_.counts.continuing.At(film);
   const uint64_t bits = MixBits(ShadowRays::DeciderOf(film.x, film.y));
   sample.isConnected =
       settings_.connects && UnitFloat(static_cast<uint32_t>(bits)) < settings_.counts.connecting.At(film);
@@ -427,6 +433,7 @@ Color BidirectionalIntegrator::Sample(const Ray* ray, const SampleContext& conte
   const WalkSettings walk{.mode = TransportMode::Radiance,
                           .maxDepth = settings_.maxDepth,
                           .dimensions = kCameraDimensions,
+                          .continuing = sample.continuing,
                           .seesFlights = settings_.merges,
                           .wantsBeams = settings_.merges,
                           .records = StartRecord(context)};

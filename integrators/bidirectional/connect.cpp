@@ -50,7 +50,8 @@ inline Joint JointOf(const BidirectionalSample& sample, size_t lightCount, const
                      double squaredDistance, const BsdfEvaluation& fy, const BsdfEvaluation& fz,
                      const EdgeFactors& factors) {
   const PathVertex &y = sample.light.vertices[lightCount - 1], &z = sample.camera.Last();
-  return {{SolidAngleDensity(fz.pdfForward) * (factors.forward * EdgeDensity(y, toCamera, squaredDistance)),
+  return {{sample.continuesHere * SolidAngleDensity(fz.pdfForward) *
+               (factors.forward * EdgeDensity(y, toCamera, squaredDistance)),
            y.PreviousReverse(fy.pdfReverse)},
           {SolidAngleDensity(fy.pdfForward) * (factors.reverse * EdgeDensity(z, toCamera, squaredDistance)),
            z.PreviousReverse(fz.pdfReverse)},

@@ -27,6 +27,7 @@ struct ConnectedPath {
   Merging merging;                             // that the weight accounts for
   double connectionCount = 1;                  // connections per light path that the weight accounts for, squared
   double splatCount = 1;                       // of t = 1 that the weight accounts for
+  double continuing = 1;                       // TechniqueCounts::continuing that the weight accounts for
   double seenDensity = 0;                      // of the vertex that the camera sees, as in P_C (path_densities.h)
   const FilmConnection* connection = nullptr;  // of t = 1; null: the path contributes to the sample's own pixel
   Color value;                                 // contribution before the weight

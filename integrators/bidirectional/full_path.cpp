@@ -136,6 +136,12 @@ FullPath Ends(const ConnectedPath& path, const VertexRow& vertices) {
 
 }  // namespace
 
+int FirstWide(const FullPath& path) {
+  int i = path.SurfaceCount();
+  while (i > 0 && path.isDelta[static_cast<size_t>(i)]) --i;
+  return i;
+}
+
 FullPath Unfold(const ConnectedPath& path) {
   const VertexRow vertices(path);
   FullPath full = Ends(path, vertices);
@@ -161,6 +167,9 @@ FullPath Unfold(const ConnectedPath& path) {
     if (photon && i == ofLight + 1) full.fromCamera[i - 1] = densities.toLight * photon->previousSolidAnglePerArea;
   }
   if (photon && ofLight > 0) full.fromLight[ofLight + 1] = photon->pdfForward;
+  // A camera path may end at the first vertex from the camera whose event is no delta.
+  if (const int first = FirstWide(full); first > 0 && full.CanEnd(first))
+    full.fromCamera[static_cast<size_t>(first - 1)] = path.continuing * full.fromCamera[static_cast<size_t>(first - 1)];
   return full;
 }
 
@@ -241,6 +250,7 @@ TechniqueSums SumsByDensities(const FullPath& path) {
   const double nextCount = n > 0 ? NextEventCount(static_cast<size_t>(n)) : 1.0;
   if (path.technique == 1) own /= nextCount;
   TechniqueSums sums;
+  const int end = FirstWide(path);
   for (int i = 0; i < path.TechniqueCount(); ++i) {
     const TechniqueGroup group = i == 0       ? TechniqueGroup::Hit
                                  : i == 1     ? TechniqueGroup::Next
@@ -248,7 +258,11 @@ TechniqueSums SumsByDensities(const FullPath& path) {
                                  : i == n + 1 ? TechniqueGroup::Light
                                               : TechniqueGroup::Merge;
     const double count = i == 1 ? nextCount : 1.0;
-    sums.Of(group).Add(static_cast<double>(densities[static_cast<size_t>(i)] / own) / count, count);
+    const int last = i <= n + 1 ? i : i - n - 1;  // vertex of the camera subpath
+    const bool isBeyond = end > 0 && path.CanEnd(end) && last < end;
+    if (i == path.technique) sums.isBeyond = isBeyond;
+    sums.Of(isBeyond ? BeyondOf(group) : group)
+        .Add(static_cast<double>(densities[static_cast<size_t>(i)] / own) / count, count);
   }
   return sums;
 }

@@ -33,10 +33,18 @@ struct FullPath {
     const auto vertex = static_cast<size_t>(i);
     return merging && !isDelta[vertex] && gathers[vertex] && (i < SurfaceCount() || mergesAtLens);
   }
+  // A camera path may end at vertex `i` if it is FirstWide.
+  bool CanEnd(int i) const {
+    const auto vertex = static_cast<size_t>(i);
+    return !isDelta[vertex] && gathers[vertex] && (i < SurfaceCount() || mergesAtLens);
+  }
 };
 
 // N π r² at vertex `i`, with the probability of merging, without c.
 double PerDensityAt(const FullPath& path, int i);
+
+// The first vertex from the camera whose event is no delta; 0: there is none.
+int FirstWide(const FullPath& path);
 
 FullPath Unfold(const ConnectedPath& path);
 

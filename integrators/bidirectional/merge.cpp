@@ -24,6 +24,7 @@ ConnectedPath MergedPath(const BidirectionalSample& sample, const Photon& photon
   path.merging = sample.merging;
   path.connectionCount = sample.connectionCount;
   path.splatCount = sample.settings.splatCount;
+  path.continuing = static_cast<double>(sample.continuing);
   path.volume = &sample.settings.photons.volume;
   path.seenDensity = sample.seenDensity;
   path.value = value;
@@ -60,7 +61,7 @@ void ReportMerge(const BidirectionalSample& sample, const VolumeMerge& merge, Ar
 double WeightOf(const BidirectionalSample& sample, const Photon& photon, std::span<const SubpathDensities> light,
                 const BsdfEvaluation& f, Joint& joint) {
   const PathVertex& vertex = sample.camera.Last();
-  joint.light.last = photon.PreviousReverse(SolidAngleDensity(f.pdfForward));
+  joint.light.last = photon.PreviousReverse(sample.continuesHere * SolidAngleDensity(f.pdfForward));
   joint.camera = {AreaDensity(light.back().forward), vertex.PreviousReverse(f.pdfReverse)};
   joint.lastCameraIsDelta = light.back().forwardIsDelta;
   sample.whole.Set(light.first(light.size() - 1), sample.cameraDensities, joint, light.front().forward,

@@ -30,7 +30,8 @@ class NextEventTechnique final : public NextEventVisitor {
                                                     Sqr(static_cast<double>(sample.distance)));
     end_ = EndOf(lighting, found, !direct.isDelta && lighting.CanBeHit(direct.light), edge, light.factors.Reversed(),
                  sample_.lightPaths);
-    hit_ = end_.canBeHit ? SolidAngleDensity(light.f.pdfForward) * end_.solidAnglePerArea : AreaDensity(0);
+    const SolidAngleDensity scattered = sample_.continuesHere * SolidAngleDensity(light.f.pdfForward);
+    hit_ = end_.canBeHit ? scattered * end_.solidAnglePerArea : AreaDensity(0);
     Joint joint;
     joint.camera.previous = vertex_.PreviousReverse(light.f.pdfReverse);
     joint.mergesAtCamera = vertex_.CanMerge();

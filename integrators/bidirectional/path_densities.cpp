@@ -119,14 +119,17 @@ double PathDensities::TowardsLight(size_t i, double ratio) const {
   }
 }
 
+size_t PathDensities::EndOfCamera(const PathEnds& ends) const {
+  size_t i = count_;
+  while (i > 0 && IsDelta(ends, i)) --i;
+  return i > 0 && vertices_[i].canMerge ? i : 0;
+}
+
 // All densities over Π_(i≥1) B_i: those of s = 0 and s = 1 are the ends', that of s > 1 is emission · F_2 … F_(s-1) /
 // (B_1 … B_(s-1)), and that of merging at vertex i the one of s = i + 1 times B_i N π r² c.
 TechniqueSums PathDensities::Sums(const PathEnds& ends, size_t s, size_t mergedAt) const {
   const size_t n = count_;
-  const auto isDelta = [&](size_t i) {
-    return (i == 1 && ends.firstIsDelta) || (i < n && vertices_[i + 1].lightIsDelta) ||
-           (i > 1 && vertices_[i - 1].cameraIsDelta);
-  };
+  const auto isDelta = [&](size_t i) { return IsDelta(ends, i); };
   // First the density of the path's own technique, then the ratios of all others to it.
   double own = s == 0 ? ends.hit : s == 1 ? ends.direct : 0.0;
   double density = emission_ / vertices_[1].fromCamera;  // of s = 2
@@ -141,15 +144,21 @@ TechniqueSums PathDensities::Sums(const PathEnds& ends, size_t s, size_t mergedA
   }
   if (!(own > 0) || !std::isfinite(own)) return {};
   TechniqueSums sums;
-  sums.Of(TechniqueGroup::Hit).Add(ends.hit / own);
-  if (!isDelta(1)) sums.Of(TechniqueGroup::Next).Add(ends.direct / own, NextEventCount(n));
+  const size_t end = EndOfCamera(ends);
+  // `last`: the last vertex of the camera subpath; 0: the light's point.
+  const auto of = [&](TechniqueGroup group, size_t last) -> TechniqueSums::Group& {
+    return sums.Of(last < end ? BeyondOf(group) : group);
+  };
+  sums.isBeyond = (mergedAt > 0 ? mergedAt : s) < end;
+  of(TechniqueGroup::Hit, 0).Add(ends.hit / own);
+  if (!isDelta(1)) of(TechniqueGroup::Next, 1).Add(ends.direct / own, NextEventCount(n));
   double ratio = emission_ / vertices_[1].fromCamera / own;
   for (size_t k = 2; k <= n + 1; ++k) {
     const Vertex& last = vertices_[k - 1];
-    if (!isDelta(k - 1) && k <= n && !isDelta(k)) sums.Of(TechniqueGroup::Connect).Add(ratio);
+    if (!isDelta(k - 1) && k <= n && !isDelta(k)) of(TechniqueGroup::Connect, k).Add(ratio);
     if (!isDelta(k - 1) && k == n + 1) sums.Of(TechniqueGroup::Light).Add(ratio * ends.splatCount);
     if (last.canMerge)
-      sums.Of(TechniqueGroup::Merge).Add(ratio * last.fromCamera * WithoutCorrelation(last) * last.correlation);
+      of(TechniqueGroup::Merge, k - 1).Add(ratio * last.fromCamera * WithoutCorrelation(last) * last.correlation);
     if (k <= n) ratio *= vertices_[k].fromLight / vertices_[k].fromCamera;
   }
   return sums;

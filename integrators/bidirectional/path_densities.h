@@ -58,8 +58,27 @@ enum class TechniqueGroup : uint8_t {
   Light,    // t = 1
   Connect,  // connections of two subpaths
   Merge,
+  // The same with a camera subpath that continues beyond the vertex where it may end (TechniqueCounts::continuing).
+  HitBeyond,
+  NextBeyond,
+  ConnectBeyond,
+  MergeBeyond,
 };
-inline constexpr size_t kTechniqueGroups = 5;
+inline constexpr size_t kTechniqueGroups = 9;
+constexpr TechniqueGroup BeyondOf(TechniqueGroup group) {
+  switch (group) {
+    case TechniqueGroup::Hit:
+      return TechniqueGroup::HitBeyond;
+    case TechniqueGroup::Next:
+      return TechniqueGroup::NextBeyond;
+    case TechniqueGroup::Connect:
+      return TechniqueGroup::ConnectBeyond;
+    case TechniqueGroup::Merge:
+      return TechniqueGroup::MergeBeyond;
+    default:
+      return group;
+  }
+}
 
 // Σ (n r)^2 and Σ (n r)^4 / r over the techniques of each group: r is a technique's density over that with which the
 // path was sampled, n the times that it counts in weights. Of merging r is the density times c, of splats (t = 1) times
@@ -73,6 +92,7 @@ struct TechniqueSums {
     }
   };
   std::array<Group, kTechniqueGroups> groups;
+  bool isBeyond = false;  // the technique that sampled the path is of a group Beyond
   Group& Of(TechniqueGroup group) { return groups[static_cast<size_t>(group)]; }
   const Group& Of(TechniqueGroup group) const { return groups[static_cast<size_t>(group)]; }
 };
@@ -94,12 +114,18 @@ class PathDensities {
   double PerDensityAt(size_t i) const { return WithoutCorrelation(vertices_[i]) * vertices_[i].correlation; }
 
   // The sums over all techniques, for a path that technique `s` has made, or merging at vertex `mergedAt` if that is
-  // not 0. All 0 where the camera could not have made the path.
+  // not 0. All 0 where the camera could not have made the path. Of camera paths that always continue.
   TechniqueSums Sums(const PathEnds& ends, size_t s, size_t mergedAt) const;
 
   size_t Count() const { return count_; }
 
  private:
+  bool IsDelta(const PathEnds& ends, size_t i) const {
+    return (i == 1 && ends.firstIsDelta) || (i < count_ && vertices_[i + 1].lightIsDelta) ||
+           (i > 1 && vertices_[i - 1].cameraIsDelta);
+  }
+  // The vertex where a camera path may end, the first one from the camera whose event is no delta; 0: none.
+  size_t EndOfCamera(const PathEnds& ends) const;
   struct Vertex {
     double fromLight = 0, fromCamera = 0;
     double correlation = 1;  // c

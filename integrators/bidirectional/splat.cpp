@@ -58,11 +58,14 @@ void SplatVertex(const BidirectionalSample& sample) {
   if (!seen) return;
   const AreaDensity withoutMedia = DensityWithoutMedia(sample, *seen), atLens = seen->factors.forward * withoutMedia;
   Joint joint;
-  joint.light = {atLens, vertex.PreviousReverse(seen->f.pdfReverse)};
+  const Point2& film = seen->connection.camera.film;
+  // A camera path that sees the vertex may end there.
+  const auto continuing = static_cast<double>(sample.settings.counts.continuing.At(film));
+  joint.light = {
+      atLens, vertex.PreviousReverse((vertex.CanMerge() ? continuing : 1.0) * SolidAngleDensity(seen->f.pdfReverse))};
   joint.mergesAtLight = vertex.CanMerge();
   joint.lightMergeVolume = MergeVolume(vertex, EdgeBefore(light, light.Count()), {seen->toCamera, seen->factors},
                                        sample.settings.photons.volume);
-  const Point2& film = seen->connection.camera.film;
   Merging merging;
   double merged = 0;
   if (sample.context.gather) {
@@ -81,6 +84,7 @@ void SplatVertex(const BidirectionalSample& sample) {
     SetLens(*seen, atLens, weight, path);
     path.merging = merging;
     path.connectionCount = connectionCount;
+    path.continuing = continuing;
     if (merging && sample.context.observer->WantsSums())
       path.sums = sample.SumsOfConnection(light.Count(), joint.light, true);
     sample.Report(path);

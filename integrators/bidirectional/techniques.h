@@ -31,12 +31,14 @@ struct BidirectionalSample {
   double lightPaths = 1, connectionCount = 1;
   double connectionsPerSample = 1;  // of a camera vertex to the same vertex of a light path, on average
   bool isConnected = true, isMerged = true;
-  Point2 film{0.0f};        // where it starts, as a connection to the lens finds it: pixels
-  float mergeRadius = 0;    // scene units
-  float perArea = 1;        // proportional to 1 / mergeRadius², where radii differ: that of the scene's radius is 1
-  double seenDensity = 0;   // of the first vertex of the camera subpath, as in P_C
-  bool lensSeesIt = false;  // light paths that reach the first vertex of the camera subpath are connected to the lens
-  bool couldMerge = false;  // merging was possible at a vertex of the camera subpath
+  float continuing = 1;      // TechniqueCounts::continuing where the camera path starts
+  double continuesHere = 1;  // the same, if the last vertex of the camera subpath is where the path may end; else 1
+  Point2 film{0.0f};         // where it starts, as a connection to the lens finds it: pixels
+  float mergeRadius = 0;     // scene units
+  float perArea = 1;         // proportional to 1 / mergeRadius², where radii differ: that of the scene's radius is 1
+  double seenDensity = 0;    // of the first vertex of the camera subpath, as in P_C
+  bool lensSeesIt = false;   // light paths that reach the first vertex of the camera subpath are connected to the lens
+  bool couldMerge = false;   // merging was possible at a vertex of the camera subpath
   Color radiance{};
 
   const LightingServices& Lighting() const { return *context.scene.lighting; }

@@ -12,9 +12,10 @@ namespace lampyr {
 
 namespace {
 
-UsedCounts Used(const TechniqueCounts& counts, const CountedTechniques& techniques, double connecting, double merging) {
+UsedCounts Used(const TechniqueCounts& counts, const CountedTechniques& techniques, double connecting, double merging,
+                double continuing) {
   return {techniques.lightPaths ? counts.LightPaths() : 0.0, techniques.connections ? connecting : 0.0,
-          techniques.merging ? merging : 0.0};
+          techniques.merging ? merging : 0.0, techniques.lightPaths ? continuing : 1.0};
 }
 
 }  // namespace
@@ -37,22 +38,27 @@ std::string TechniqueCounts::Describe(const std::string& integrator) const {
   if (startsWide) text += ", merging in wide discs at first";
   const double part = merging.Mean();
   if (part < 1) text += ", merging in " + std::to_string(std::lround(100 * part)) + " % of the picture";
+  if (const double on = continuing.Mean(); on < 1)
+    text +=
+        ", " + std::to_string(std::lround(100 * on)) + " % of camera paths continue beyond the first diffuse vertex";
   return text;
 }
 
 UsedCounts TechniqueCounts::At(const Point2& film, const CountedTechniques& techniques) const {
-  return Used(*this, techniques, static_cast<double>(connecting.At(film)), static_cast<double>(merging.At(film)));
+  return Used(*this, techniques, static_cast<double>(connecting.At(film)), static_cast<double>(merging.At(film)),
+              static_cast<double>(continuing.At(film)));
 }
 
 UsedCounts TechniqueCounts::Mean(const CountedTechniques& techniques) const {
-  return Used(*this, techniques, connecting.Mean(), merging.Mean());
+  return Used(*this, techniques, connecting.Mean(), merging.Mean(), continuing.Mean());
 }
 
 std::string TechniqueCounts::Fingerprint() const {
   ContentHash hash;
   hash.Add(std::to_string(log2LightPaths));
-  for (const FilmMask* mask : {&connecting, &merging}) {
-    std::string bytes;  // of the values, little-endian
+  for (const FilmMask* mask : {&connecting, &merging, &continuing}) {
+    if (mask == &continuing && mask->Values().empty()) break;  // as before there was one
+    std::string bytes;                                         // of the values, little-endian
     for (const float value : mask->Values()) {
       const auto bits = std::bit_cast<uint32_t>(value);
       for (int byte = 0; byte < 4; ++byte) bytes += static_cast<char>(bits >> (8 * byte) & 0xff);

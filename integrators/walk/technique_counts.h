@@ -42,6 +42,8 @@ struct UsedCounts {
   double lightPaths = 0;  // for each camera path
   double connecting = 0;  // probability that a camera path is connected to the light path of its sample
   double merging = 0;     // probability that a camera path is merged with photons
+  double continuing =
+      1;  // probability that a camera path continues beyond the first vertex where photons can be merged
 };
 
 struct TechniqueCounts {
@@ -51,11 +53,16 @@ struct TechniqueCounts {
   // Probabilities with which the vertices of a camera path are connected to a light path, if the sample has one, and
   // merged with photons.
   FilmMask connecting, merging;
+  // Probabilities with which a camera path continues beyond the first vertex at which photons can be merged; above 0.
+  // Light paths find most of what lies beyond, and a shorter camera path costs less.
+  FilmMask continuing{};
   // Merging starts with discs of twice the radius, four times the area, which shrink to the usual ones
   // (photon/photon_pass.h): as many more merges as of that many more light paths, and a wider blur, for a time.
   bool startsWide = false;
 
-  bool HasMasks() const { return !connecting.Values().empty() || !merging.Values().empty(); }
+  bool HasMasks() const {
+    return !connecting.Values().empty() || !merging.Values().empty() || !continuing.Values().empty();
+  }
   bool IsDefault() const { return log2LightPaths == 0 && !HasMasks() && !startsWide; }
   // "vcm, a light path for 4 camera paths, merging in 30 % of the picture".
   std::string Describe(const std::string& integrator) const;

@@ -31,6 +31,14 @@ bool Survives(const SampleContext& context, uint32_t dimension, float survival, 
   return true;
 }
 
+// The roulette of WalkSettings::continuing. The Russian roulette that follows compares to what this one leaves.
+bool Continues(const SampleContext& context, uint32_t dimension, float probability, PathState& state) {
+  if (!Survives(context, dimension, probability, state)) return false;
+  state.pdfDirection = static_cast<double>(probability) * state.pdfDirection;
+  state.emitted /= probability;
+  return true;
+}
+
 // value = make(), constructed in its place: a copy of what was just written field by field stalls on store forwarding.
 template <class T, class Make>
 void MakeInPlace(T& value, const Make& make) {
@@ -174,6 +182,7 @@ bool Scatter(const SampleContext& context, const WalkSettings& settings, int ind
   const EventDensities densities = DensitiesOf(sample, vertex.ScatteringCosine(vertex.toPrevious),
                                                vertex.ScatteringCosine(sample.wi), settings.mode);
   vertex.scatteredDelta = sample.isDelta;
+  const bool mayEnd = settings.continuing < 1 && !state.hasScatteredWidely && !sample.isDelta && vertex.CanMerge();
   state.hasScatteredWidely |= !sample.isDelta;
   if (context.outputs) [[unlikely]]
     SetEvent(vertex, sample, isFromLight, state);
@@ -186,6 +195,8 @@ bool Scatter(const SampleContext& context, const WalkSettings& settings, int ind
   state.ray.tMax = kInfinity;
   if (!context.scene.media.empty()) [[unlikely]]
     state.medium = vertex.MediumTowards(sample.wi);
+  if (mayEnd)
+    return Continues(context, settings.dimensions.Of(block, dimensions::kRoulette), settings.continuing, state);
   if (!settings.hasRoulette) return true;
   const Color carried = isFromLight ? state.diffuse : state.Throughput();
   // What the path would carry without a guide: where guides send paths, they carry little and yet matter.

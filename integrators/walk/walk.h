@@ -111,6 +111,9 @@ struct WalkSettings {
   int maxDepth = 5;  // maximum number of vertices
   PathDimensions dimensions{};
   bool hasRoulette = true;
+  // Probability with which a camera path continues beyond its first vertex that scatters by another event than a delta,
+  // if photons can be merged there (TechniqueCounts::continuing). It is a factor of the density of what follows.
+  float continuing = 1;
   // Materials of the vertices behind a wide scattering; null: those of the scene.
   const std::vector<std::shared_ptr<const Material>>* materialsAfterWide = nullptr;
   bool seesFlights = false;        // PathVisitor::Flew is called, in scenes with media

@@ -12,7 +12,7 @@
 #include "integrators/photon/photon_store.h"
 #include "integrators/registry.h"
 #include "integrators/walk/pixel_ray.h"
-#include "render/analysis/merging_mask.h"
+#include "render/analysis/candidate_masks.h"
 #include "render/settings/integrator_choice.h"
 
 namespace lampyr {
@@ -133,15 +133,11 @@ int PassesFor(const Counted& counted, int pixels) {
   return std::clamp(2 * static_cast<int>(kPassesTime / (2 * cost * pixels)), kFewestPasses, kMostPasses);
 }
 
-// The light paths of the pilot are not guided. If those of the render will be, error and cost are corrected by typical
-// factors. A guide is used if it halves the squared noise of photons (emission_learning.h); noise of other techniques
-// remains. Guided light paths have more vertices that are seen: in scenes/pool, mirror, tea and diamond a sample takes
-// 1.4 to 1.6 times the counted cost.
-void Guide(PilotCandidate& candidate, CandidateCost& cost) {
-  constexpr double kNoise = 0.55, kCost = 1.4;
-  cost.paths *= kCost;
-  cost.merging *= kCost;
-  candidate.cost *= kCost;
+// The light paths of the pilot are not guided. If those of the render will be, errors are corrected by a typical
+// factor. A guide is used if it halves the squared noise of photons (emission_learning.h); noise of other techniques
+// remains.
+void Guide(PilotCandidate& candidate) {
+  constexpr double kNoise = 0.55;
   candidate.error *= kNoise;
   candidate.uncertainty *= kNoise;
   for (double& error : candidate.tileErrors) error *= kNoise;
@@ -159,9 +155,9 @@ RenderSettings WithAllTechniques(const RenderSettings& settings) {
 }
 
 std::unique_ptr<Integrator> Make(const char* name, const RenderScene& scene, const RenderSettings& settings,
-                                 double fewer) {
+                                 double fewer, const TechniqueCounts* counts = nullptr) {
   return IntegratorOf(name).create({scene, settings.width, settings.height, settings.sensor.ImagingRatio(),
-                                    settings.values, nullptr, SplatCount(settings), fewer});
+                                    settings.values, counts, SplatCount(settings), fewer});
 }
 
 // Radius of the pilot's merging, in radii of the first pass of a render. The pilot has fewer light paths by the factor
@@ -171,15 +167,52 @@ double WiderRadius(double fewer, double alpha) {
   return std::sqrt(fewer * std::min(shrunk, 1.0));
 }
 
+// All camera paths may end early.
+TechniqueCounts Ending() {
+  TechniqueCounts counts;
+  counts.continuing = FilmMask(1, 1, Point2(1.0f), {static_cast<float>(kContinuing)});
+  return counts;
+}
+
 std::vector<PilotCandidate> CandidatesWith(std::span<const CandidateCost> costs) {
   std::vector<PilotCandidate> candidates(kCandidates);
   for (size_t k = 0; k < kCandidates; ++k) {
+    if (k >= kLongCandidates) candidates[k].counts = Ending();
     candidates[k].integrator = kCandidateOf[k].integrator;
     candidates[k].counts.log2LightPaths = kCandidateOf[k].log2LightPaths;
     candidates[k].counts.startsWide = kCandidateOf[k].startsWide;
     candidates[k].cost = costs[k].paths + costs[k].merging;
   }
   return candidates;
+}
+
+// What guided light paths do is counted in a pass of their own, `passes`: more of their vertices are seen.
+// `counted`: without a guide.
+Counted CountGuided(const Integrator& vcm, const Integrator& ending, const PhotonSettings& photons, double wider,
+                    int threads, PilotPasses& passes, const Grid& grid, Counted counted) {
+  PhotonStore store(photons, static_cast<uint64_t>(grid.Pixels()), nullptr);
+  passes.TracePhotons(vcm, store, 0);
+  const PhotonPass& gather = store.Open(0, threads, wider);
+  counted.stored = gather.map->Size();
+  counted.bdpt = counted.vcm = passes.Trace(vcm, 0, &gather, {});
+  counted.shortBdpt = counted.shortVcm = passes.Trace(ending, 0, &gather, {});
+  store.EndGathering();
+  return counted;
+}
+
+// Adds candidates that decide by the place in the picture whether they merge and whether their camera paths may end
+// early. `all`: by their index.
+void AddMixed(std::span<const PilotCandidate> all, std::span<const CandidateCost> costs, const Grid& grid, double least,
+              std::vector<PilotCandidate>& candidates) {
+  const auto pathsOf = [&](size_t k) {
+    return Merges(k) ? CameraPaths{&all[WithoutMerging(k)], &all[k], costs[k]}
+                     : CameraPaths{&all[k], nullptr, costs[k]};
+  };
+  for (size_t k = 1; k < kLongCandidates; ++k) {
+    std::vector<CameraPaths> options{pathsOf(k)};
+    if (ShortOf(k) < kCandidates) options.push_back(pathsOf(ShortOf(k)));
+    if (auto mixed = InParts(options, grid, least)) candidates.push_back(std::move(*mixed));
+  }
 }
 
 // Erases the candidates that the settings exclude. `isGuided`: light paths need a guide from the start, which bdpt does
@@ -203,7 +236,7 @@ void EraseUnwanted(const RenderSettings& settings, bool isGuided, std::vector<Pi
 const PilotCandidate* RenderPilot::Find(const std::string& integrator, int log2LightPaths) const {
   for (const PilotCandidate& candidate : candidates) {
     if (candidate.integrator == integrator && candidate.counts.log2LightPaths == log2LightPaths &&
-        candidate.counts.merging.Mean() == 1 && !candidate.counts.startsWide)
+        !candidate.counts.HasMasks() && !candidate.counts.startsWide)
       return &candidate;
   }
   return nullptr;
@@ -225,8 +258,10 @@ RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, i
   const Grid grid(settings);
   const double filmPixels = static_cast<double>(settings.width) * static_cast<double>(settings.height);
   const double fewer = filmPixels / grid.Pixels();
+  const TechniqueCounts shorter = Ending();
   const auto path = Make("path", scene, combined, fewer), bdpt = Make("bdpt", scene, combined, fewer),
-             vcm = Make("vcm", scene, combined, fewer);
+             vcm = Make("vcm", scene, combined, fewer), shortBdpt = Make("bdpt", scene, combined, fewer, &shorter),
+             shortVcm = Make("vcm", scene, combined, fewer, &shorter);
   PhotonSettings photons = vcm->Photons().value();
   // If light paths hardly come near to what is seen, vcm guides them from the start. Those of bdpt are hopeless then.
   RenderScene view = scene;
@@ -244,6 +279,7 @@ RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, i
   Counted counted;
   counted.path = passes.Trace(*path, 0, nullptr, {});
   counted.bdpt = passes.Trace(*bdpt, 0, nullptr, {});
+  counted.shortBdpt = passes.Trace(*shortBdpt, 0, nullptr, {});
   if (passCount == 0) passCount = PassesFor(counted, grid.Pixels());
   const PixelFilter filter(settings.filter);
   std::vector<Recorder> recorders(kChunks, Recorder(grid, filmPixels, filter, SplatCount(settings), passCount));
@@ -253,6 +289,11 @@ RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, i
     const PhotonPass& gather = store.Open(pass, threads, WiderRadius(fewer, photons.alpha));
     counted.stored += gather.map->Size();
     counted.vcm += passes.Trace(*vcm, pass, &gather, recorders);
+    if (pass == 0) {
+      PhotonPass unrecorded = gather;  // photons are learned from once
+      unrecorded.use = nullptr;
+      counted.shortVcm = passes.Trace(*shortVcm, pass, &unrecorded, {});
+    }
     records.EndPass(pass);
     store.EndGathering();
     if (learned && learned->IsRecording() && std::has_single_bit(pass + 1)) learned->Decide(pass + 1);
@@ -261,21 +302,26 @@ RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, i
   counted.vcm.lookups /= static_cast<uint64_t>(passCount);
   counted.vcm.foundPhotons /= static_cast<uint64_t>(passCount);
   auto costs = CostsOf(counted, grid.Pixels());
-  RenderPilot pilot;
-  pilot.candidates = CandidatesWith(costs);
+  const bool willBeGuided = learned && learned->Guide();
+  if (willBeGuided) {
+    view.lighting = std::make_shared<const LightingServices>(scene.lighting->With(nullptr, learned->Guide()));
+    PilotPasses guided(view, combined, grid, threads);
+    const auto guidedCosts = CostsOf(
+        CountGuided(*vcm, *shortVcm, photons, WiderRadius(fewer, photons.alpha), threads, guided, grid, counted),
+        grid.Pixels());
+    for (size_t k = 0; k < kCandidates; ++k)
+      if (Merges(k)) costs[k] = guidedCosts[k];
+  }
+  std::vector<PilotCandidate> all = CandidatesWith(costs);
   double least = 0;  // error that is told apart
-  if (!records.SetErrors(passCount, filter.SquaredWeight(), settings.sampler == SamplerKind::Sobol, pilot.candidates,
-                         least))
+  if (!records.SetErrors(passCount, filter.SquaredWeight(), settings.sampler == SamplerKind::Sobol, all, least))
     return {};
-  if (learned && learned->Guide()) {
-    for (size_t k = kFirstOfVcm; k < kCandidates; ++k) Guide(pilot.candidates[k], costs[k]);
-  }
-  for (size_t k = kFirstOfVcm; k < kCandidates; ++k) {
-    const PilotCandidate& none = pilot.candidates[WithoutMerging(k)];
-    if (auto mixed = MergingInParts(none, pilot.candidates[k], costs[k], grid, least))
-      pilot.candidates.push_back(std::move(*mixed));
-  }
+  for (size_t k = 0; k < kCandidates && willBeGuided; ++k)
+    if (Merges(k)) Guide(all[k]);
+  RenderPilot pilot{{all.begin(), all.begin() + kLongCandidates}, {all.begin() + kLongCandidates, all.end()}};
+  AddMixed(all, costs, grid, least, pilot.candidates);
   EraseUnwanted(settings, isGuided, pilot.candidates);
+  EraseUnwanted(settings, isGuided, pilot.ending);
   return pilot;
 }
 

@@ -52,6 +52,8 @@ struct PilotCandidate {
 
 struct RenderPilot {
   std::vector<PilotCandidate> candidates;  // empty: the pilot saw no light
+  // Candidates of which all camera paths may end early. Where that pays, one of `candidates` has a mask in their place.
+  std::vector<PilotCandidate> ending;
   // The candidate with the least error in equal time, of those that find all light; null if there is none.
   const PilotCandidate* Best() const;
   // The candidate with these light paths that merges everywhere or nowhere; null: none.

@@ -16,33 +16,55 @@ struct Costs {
 // cost on their own. Further light paths of a sample, measured with 4 in three scenes, have no camera path beside them.
 constexpr double kCameraPathWithWeights = 1.12, kSideBySide = 0.75, kAlone = 1.1;
 
-}  // namespace
+// Of all samples of the pilot, in nanoseconds.
+struct PartCosts {
+  double path = 0, light = 0, connections = 0;
+};
 
-std::array<CandidateCost, kCandidates> CostsOf(const Counted& counted, double samples) {
+PartCosts PartCostsOf(const Counted& counted, bool isShort) {
   constexpr Costs costs;
   const auto rays = [](const RenderCounts& counts) {
     return static_cast<double>(counts.cameraRays + counts.indirectRays);
   };
-  const double direct = static_cast<double>(counted.path.shadowRays);
-  const double path = costs.ray * rays(counted.path) + costs.shadowRay * direct;
-  const double lightRays = std::max(rays(counted.bdpt) - rays(counted.path), 0.0);
-  const double more = std::max(static_cast<double>(counted.bdpt.shadowRays) - direct, 0.0);
+  double pathRays = rays(counted.path), direct = static_cast<double>(counted.path.shadowRays);
+  const double lightRays = std::max(rays(counted.bdpt) - pathRays, 0.0);
+  double more = std::max(static_cast<double>(counted.bdpt.shadowRays) - direct, 0.0);
   // Nearly each ray of a light path ends at a vertex that is connected to the lens.
   const double splats = std::min(more, lightRays);
-  const double light = costs.ray * lightRays + costs.connection * splats;
-  const double connections = costs.connection * (more - splats);
+  more -= splats;
+  if (isShort) {
+    // What shorter camera paths save: rays with their next events, and connections.
+    const double fewerRays = std::clamp(rays(counted.bdpt) - rays(counted.shortBdpt), 0.0, pathRays);
+    const double fewer =
+        std::max(static_cast<double>(counted.bdpt.shadowRays) - static_cast<double>(counted.shortBdpt.shadowRays), 0.0);
+    const double fewerDirect = std::min(fewer, direct * fewerRays / std::max(pathRays, 1.0));
+    pathRays -= fewerRays;
+    direct -= fewerDirect;
+    more = std::max(more - (fewer - fewerDirect), 0.0);
+  }
+  return {costs.ray * pathRays + costs.shadowRay * direct, costs.ray * lightRays + costs.connection * splats,
+          costs.connection * more};
+}
+
+}  // namespace
+
+std::array<CandidateCost, kCandidates> CostsOf(const Counted& counted, double samples) {
+  constexpr Costs costs;
+  const PartCosts ofLong = PartCostsOf(counted, false), ofShort = PartCostsOf(counted, true);
   std::array<CandidateCost, kCandidates> all{};
   for (size_t k = 0; k < kCandidates; ++k) {
     const Candidate& candidate = kCandidateOf[k];
-    const double n = candidate.counts[static_cast<size_t>(TechniqueGroup::Light)];
-    all[k].paths = (n > 0 ? kCameraPathWithWeights * path : path) / samples;
-    all[k].paths += kSideBySide * std::min(n, 1.0) * (light + connections) / samples;
-    all[k].paths += kAlone * std::max(n - 1, 0.0) * light / samples;
-    if (candidate.counts[static_cast<size_t>(TechniqueGroup::Merge)] == 0) continue;
+    const bool isShort = candidate.continuing < 1;
+    const PartCosts& parts = isShort ? ofShort : ofLong;
+    const double n = candidate.lightPaths;
+    all[k].paths = (n > 0 ? kCameraPathWithWeights * parts.path : parts.path) / samples;
+    all[k].paths += kSideBySide * std::min(n, 1.0) * (parts.light + parts.connections) / samples;
+    all[k].paths += kAlone * std::max(n - 1, 0.0) * parts.light / samples;
+    if (!Merges(k)) continue;
+    const RenderCounts& lookups = isShort ? counted.shortVcm : counted.vcm;
     all[k].paths += costs.stored * n * static_cast<double>(counted.stored) / samples;
-    all[k].merging = (costs.lookup * static_cast<double>(counted.vcm.lookups) +
-                      costs.found * candidate.counts[static_cast<size_t>(TechniqueGroup::Merge)] *
-                          static_cast<double>(counted.vcm.foundPhotons)) /
+    all[k].merging = (costs.lookup * static_cast<double>(lookups.lookups) +
+                      costs.found * candidate.merging * static_cast<double>(lookups.foundPhotons)) /
                      samples;
   }
   return all;

@@ -40,9 +40,14 @@ double LeastVariance(double samples) {
 void Recorder::EndSample() {
   for (size_t k = 0; k < kCandidates; ++k) {
     const Sums& sums = sums_[k];
-    moments[pixel_].products[k] += sums.value * sums.value - sums.squares + 2 * sums.value * sums.connected +
-                                   (sums.connected * sums.connected - sums.connectedSquares) /
-                                       std::max(kCandidateOf[k].counts[3], kFewestLightPaths);
+    // Σ_(i≠j) x_i x_j / (the probability that both are found).
+    const double part = std::max(kCandidateOf[k].connections, kFewestLightPaths), on = kCandidateOf[k].continuing;
+    const Sum &here = sums.unconnected, &connected = sums.connected, &beyond = sums.unconnectedBeyond,
+              &both = sums.connectedBeyond;
+    double products = here.Products() + 2 * here.value * (connected.value + beyond.value + both.value);
+    products += connected.Products() / part + beyond.Products() / on + both.Products() / (part * on);
+    products += 2 * connected.value * (beyond.value + both.value / part) + 2 * beyond.value * both.value / on;
+    moments[pixel_].products[k] += products;
   }
 }
 
@@ -60,39 +65,80 @@ void Recorder::Observe(const ConnectedPath& path) {
   Add(path, static_cast<double>(path.value.Average()) * scale, pixel);
 }
 
+void Recorder::AddAlike(const ConnectedPath& path, double value, size_t pixel) {
+  Moments& here = moments[pixel];
+  const double weighted = path.weight * value;
+  for (size_t k = 0; k < kCandidates; ++k) {
+    here.square[k] += weighted * value * (path.connection ? 1 / splatCount_ : 1.0);
+    if (path.connection) continue;
+    found[pixel].Add(k, weighted, true);
+    sums_[k].unconnected.Add(weighted);
+  }
+}
+
+namespace {
+
+// Σ (n r)² and Σ (n r)³ r of the groups, without the counts that differ among candidates.
+struct GroupSums {
+  TechniqueSums::Group path, light, connect, merge;
+};
+// With so many camera paths that continue.
+GroupSums SumsOf(const TechniqueSums& sums, double continuing) {
+  const auto of = [&](TechniqueGroup group) {
+    TechniqueSums::Group sum = sums.Of(group);
+    if (const TechniqueGroup beyond = BeyondOf(group); beyond != group) {
+      sum.squares += continuing * continuing * sums.Of(beyond).squares;
+      sum.cubes += continuing * continuing * continuing * sums.Of(beyond).cubes;
+    }
+    return sum;
+  };
+  GroupSums of4{of(TechniqueGroup::Hit), of(TechniqueGroup::Light), of(TechniqueGroup::Connect),
+                of(TechniqueGroup::Merge)};
+  const TechniqueSums::Group next = of(TechniqueGroup::Next);
+  of4.path.squares += next.squares;
+  of4.path.cubes += next.cubes;
+  return of4;
+}
+
+double CountOf(TechniqueGroup group, const Candidate& candidate) {
+  switch (group) {
+    case TechniqueGroup::Light:
+      return candidate.lightPaths;
+    case TechniqueGroup::Connect:
+      return candidate.connections;
+    case TechniqueGroup::Merge:
+      return candidate.merging;
+    default:
+      return 1;
+  }
+}
+
+}  // namespace
+
 void Recorder::Add(const ConnectedPath& path, double value, size_t pixel) {
   Moments& here = moments[pixel];
   const bool isSeen = path.s + path.t == 2;
   const double weighted = path.weight * value;
   if (!std::isfinite(weighted)) return;
   (isSeen ? here.seen : here.mean) += weighted;
-  const double splatSquare = path.connection ? 1 / splatCount_ : 1.0;
   double known = 0;
   for (const TechniqueSums::Group& group : path.sums.groups) known += group.squares;
-  if (!(known > 0)) {
-    // Not known how else it could be found: as if all candidates did it like this.
-    for (size_t k = 0; k < kCandidates; ++k) {
-      here.square[k] += weighted * value * splatSquare;
-      if (!path.connection) {
-        found[pixel].Add(k, weighted, true);
-        sums_[k].value += weighted;
-        sums_[k].squares += weighted * weighted;
-      }
-    }
-    return;
-  }
-  const auto own = static_cast<size_t>(GroupOf(path));
-  constexpr auto kSplat = static_cast<size_t>(TechniqueGroup::Light);
-  const double bySplats = path.sums.groups[kSplat].squares;
+  if (!(known > 0)) return AddAlike(path, value, pixel);
+  const double splatSquare = path.connection ? 1 / splatCount_ : 1.0;
+  const TechniqueGroup own = GroupOf(path);
+  const double bySplats = path.sums.Of(TechniqueGroup::Light).squares;
+  const GroupSums ofLong = SumsOf(path.sums, 1), ofShort = SumsOf(path.sums, kContinuing);
   std::array<bool, kCandidates> isMissed{};
   for (size_t k = 0; k < kCandidates; ++k) {
-    const auto& counts = kCandidateOf[k].counts;
-    double squares = 0, cubes = 0;
-    for (size_t g = 0; g < kTechniqueGroups; ++g) {
-      const double squared = counts[g] * counts[g];
-      squares += squared * path.sums.groups[g].squares;
-      cubes += squared * counts[g] * path.sums.groups[g].cubes;
-    }
+    const Candidate& candidate = kCandidateOf[k];
+    const GroupSums& sums = candidate.continuing < 1 ? ofShort : ofLong;
+    const double light = candidate.lightPaths * candidate.lightPaths,
+                 connect = candidate.connections * candidate.connections, merge = candidate.merging * candidate.merging;
+    const double squares =
+        sums.path.squares + light * sums.light.squares + connect * sums.connect.squares + merge * sums.merge.squares;
+    const double cubes = sums.path.cubes + light * candidate.lightPaths * sums.light.cubes +
+                         connect * candidate.connections * sums.connect.cubes +
+                         merge * candidate.merging * sums.merge.cubes;
     const double factor = cubes / (squares * squares) * splatSquare;
     if (!std::isfinite(factor) || !(squares > 0)) {
       here.missing[k] += weighted;
@@ -100,22 +146,27 @@ void Recorder::Add(const ConnectedPath& path, double value, size_t pixel) {
       continue;
     }
     here.square[k] += weighted * value * factor;
-    if (k >= kFirstOfVcm && isMissed[WithoutMerging(k)]) here.mergedOnly[k] += weighted * value * factor;
+    if (Merges(k) && isMissed[WithoutMerging(k)]) here.mergedOnly[k] += weighted * value * factor;
     const double expected = renders_ * path.weight / factor;
     if (factor > kRare && expected < 1)
       Keep({pixel, value * factor, expected, weighted, weighted * value * factor}, rare[k]);
     if (bySplats < known && !path.connection) {
       // As if there were no splats in the pilot, and by the candidate's techniques of camera paths.
-      const double ofCamera = 1 - counts[kSplat] * counts[kSplat] * bySplats / squares;
+      const double ofCamera = 1 - light * bySplats / squares;
       found[pixel].Add(k, weighted * known / (known - bySplats) * ofCamera, bySplats < 0.5 * known);
     }
-    if (path.connection || counts[own] == 0) continue;
-    const double reweighted = weighted * known * counts[own] * counts[own] / squares;  // w = r² / Σ r²
-    if (path.isMerged && path.t == 2)
-      here.products[k] += 2 * reweighted * SplatOf(path, value, counts[own], squares) / counts[own];
-    const bool isConnected = GroupOf(path) == TechniqueGroup::Connect;
-    (isConnected ? sums_[k].connected : sums_[k].value) += reweighted;
-    (isConnected ? sums_[k].connectedSquares : sums_[k].squares) += reweighted * reweighted;
+    const double count = CountOf(own, candidate);
+    if (path.connection || count == 0) continue;
+    const double ofOwn = path.sums.isBeyond ? count * candidate.continuing : count;
+    const double reweighted = weighted * known * ofOwn * ofOwn / squares;  // w = r² / Σ r²
+    if (path.isMerged && path.t == 2) here.products[k] += 2 * reweighted * SplatOf(path, value, count, squares) / count;
+    Sums& all = sums_[k];
+    if (own == TechniqueGroup::Connect) found[pixel].connected[k] += static_cast<float>(reweighted);
+    if (own == TechniqueGroup::Connect) {
+      (path.sums.isBeyond ? all.connectedBeyond : all.connected).Add(reweighted);
+    } else {
+      (path.sums.isBeyond ? all.unconnectedBeyond : all.unconnected).Add(reweighted);
+    }
   }
 }
 
@@ -147,6 +198,7 @@ void Records::EndPass(uint32_t pass) {
     for (size_t k = 0; k < kCandidates; ++k) {
       SquaredMean& squared = squaredMeans_[kCandidates * i + k];
       squared.value += 2 * static_cast<double>(last_[i].value[k]) * static_cast<double>(found[i].value[k]);
+      squared.connected += 2 * static_cast<double>(last_[i].connected[k]) * static_cast<double>(found[i].connected[k]);
       squared.oftener += 2 * static_cast<double>(last_[i].oftener[k]) * static_cast<double>(found[i].oftener[k]);
     }
   }
@@ -212,7 +264,9 @@ void Records::AddUp(size_t k, int passes, const Brightness& brightness, const st
     candidate.tileMissing[tile] += here.missing[k] / (passes * grid_.Pixels() * brightness.mean);
     if (isLeftOut[pixel]) return;
     const double secondMoment = here.square[k] + here.products[k];
-    const double variance = secondMoment - squaredMeans_[kCandidates * pixel + k].Below(secondMoment);
+    const SquaredMean& squared = squaredMeans_[kCandidates * pixel + k];
+    const double below = squared.Below(secondMoment);
+    const double variance = secondMoment - below - squared.OfTurns(kCandidateOf[k].connections, below);
     const double error = squaredWeight * brightness.scales[pixel] * variance / grid_.Pixels();
     candidate.tileErrors[tile] += error;
     candidate.tileVariances[tile] += error * error;

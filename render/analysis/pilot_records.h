@@ -86,7 +86,8 @@ struct Moments {
 // What the camera path of one pixel adds to it in one pass, for each candidate; expected values over its techniques.
 struct Found {
   std::array<float, kCandidates> value{};
-  std::array<float, kCandidates> oftener{};  // of that, what camera paths of the pilot find more often than splats do
+  std::array<float, kCandidates> oftener{};    // of that, what camera paths of the pilot find more often than splats do
+  std::array<float, kCandidates> connected{};  // by connections
 
   void Add(size_t k, double found, bool isOften) {
     value[k] += static_cast<float>(found);
@@ -96,18 +97,25 @@ struct Found {
     for (size_t k = 0; k < kCandidates; ++k) {
       value[k] += more.value[k];
       oftener[k] += more.oftener[k];
+      connected[k] += more.connected[k];
     }
   }
 };
 
 // The square of a pixel's mean, as two passes estimate it; summed over the passes.
 struct SquaredMean {
-  double value = 0, oftener = 0;  // of the sums of Found
+  double value = 0, oftener = 0, connected = 0;  // of the sums of Found
   // `secondMoment`: the pixel's, summed over the passes. No mean is larger. A product of two samples may be: where
   // camera paths find light rarely, and splats often, the second moment is known from the many splats, and two rare
   // samples that are both there are worth far more than that. What is found often has no such samples, and is left as
   // it is: a bound by a noisy moment would take away from it.
   double Below(double secondMoment) const { return std::min(value, std::max(oftener, secondMoment)); }
+  // What is no noise where samples take turns: `connections` of them have a light path, and those have another mean
+  // than the rest. `squaredMean`: of the pixel.
+  double OfTurns(double connections, double squaredMean) const {
+    if (!(connections > 0) || connections >= 1) return 0;
+    return (1 / connections - 1) * std::clamp(connected, 0.0, std::max(squaredMean, 0.0));
+  }
 };
 
 // Adds up the moments of the paths of one chunk.
@@ -144,6 +152,8 @@ class Recorder final : public PathObserver {
 
  private:
   void Add(const ConnectedPath& path, double value, size_t pixel);
+  // A path of which it is not known how else it could be found: as if all candidates did it like this.
+  void AddAlike(const ConnectedPath& path, double value, size_t pixel);
   // Keeps the brightest of a candidate's events.
   static void Keep(const RareEvent& event, std::vector<RareEvent>& brightest);
 
@@ -157,9 +167,19 @@ class Recorder final : public PathObserver {
   double splatCount_;  // of the weights
   double renders_;     // typical renders for each of the pilot's samples
   size_t pixel_ = 0;
-  // Connections have their own sums, because only samples with a light path make them.
+  // Connections have their own sums, because only samples with a light path make them; so has what a camera path finds
+  // beyond the vertex where it may end.
+  struct Sum {
+    double value = 0, squares = 0;
+    void Add(double found) {
+      value += found;
+      squares += found * found;
+    }
+    // Σ_(i≠j) x_i x_j.
+    double Products() const { return value * value - squares; }
+  };
   struct Sums {
-    double value = 0, squares = 0, connected = 0, connectedSquares = 0;
+    Sum unconnected, connected, unconnectedBeyond, connectedBeyond;
   };
   std::array<Sums, kCandidates> sums_;  // of the current camera path
 };

@@ -108,13 +108,17 @@ TEST(BdptWeights, WithARadiusPerPath) {
 // Vertices in media, homogeneous, in grids, and with other coefficients in each channel.
 TEST(BdptWeights, InMedia) {
   int merges = 0, beams = 0;
+  TechniqueCounts ending;
+  ending.continuing = FilmMask(1, 1, {1, 1}, {0.3f});
   std::map<std::pair<int, int>, int> techniques;
   for (const MediaScene& scene : MediaScenes()) {
     if (!scene.hasLights) continue;
     for (const WeightProof& proof :
          {WeightProof{.paths = 10000}, WeightProof{.paths = 4000, .radius = 0.02f},
           WeightProof{.paths = 4000, .pixels = 2}, WeightProof{.paths = 4000, .radius = 0.02f, .beamShare = 1},
-          WeightProof{.paths = 4000, .pixels = 2, .beamShare = 0.3f}}) {
+          WeightProof{.paths = 4000, .pixels = 2, .beamShare = 0.3f},
+          WeightProof{.paths = 4000, .radius = 0.02f, .counts = ending},
+          WeightProof{.paths = 4000, .pixels = 2, .counts = ending, .beamShare = 1}}) {
       const WeightErrors worst = CheckWeights(scene.text, proof);
       EXPECT_GE(worst.paths, proof.paths) << scene.name;
       ExpectExact(scene.name, worst);
@@ -145,6 +149,9 @@ TEST(BdptWeights, WithGuides) {
   for (const AgreementScene& scene : AgreementScenes()) {
     check(scene.name, scene.text, {.paths = 3000});
     check(scene.name, scene.text, {.paths = 3000, .pixels = 2});
+    WeightProof ending{.paths = 3000, .pixels = 2};
+    ending.counts.continuing = FilmMask(1, 1, {1, 1}, {0.3f});
+    check(scene.name, scene.text, ending);
   }
   for (const MediaScene& scene : MediaScenes())
     if (scene.hasLights) check(scene.name, scene.text, {.paths = 3000, .radius = 0.02f});
@@ -154,7 +161,7 @@ TEST(BdptWeights, WithGuides) {
 }
 
 // Fewer light paths than camera paths, or more; connections and merging left out, always made, or now and then,
-// depending on the place on the film; splats by filters of other widths.
+// depending on the place on the film; camera paths that may end early; splats by filters of other widths.
 TEST(BdptWeights, WithCounts) {
   const auto maskOf = [](std::vector<float> values) { return FilmMask(2, 2, {30, 20}, std::move(values)); };
   const std::vector<TechniqueCounts> all = {
@@ -165,6 +172,9 @@ TEST(BdptWeights, WithCounts) {
       {1, maskOf({0, 0, 0, 0}), maskOf({0.3f, 0.3f, 1, 1})},
       {-3, maskOf({1, 0, 1, 0}), maskOf({0, 0, 0, 0})},
       {2, {}, maskOf({0, 1, 0.5f, 0.5f})},
+      {0, {}, {}, maskOf({0.2f, 0.2f, 0.2f, 0.2f})},
+      {0, {}, {}, maskOf({0.1f, 1, 0.3f, 0.6f})},
+      {1, maskOf({1, 0.4f, 1, 1}), maskOf({0, 1, 0, 1}), maskOf({0.25f, 0.25f, 1, 0.01f})},
   };
   int merges = 0;
   for (const AgreementScene& scene : AgreementScenes()) {
@@ -220,6 +230,11 @@ AttributeEnd
     EXPECT_GT(merging.refraction.asked, 100);
     ExpectExact(lamp.c_str(), merging);
     Print("merging", merging);
+    TechniqueCounts counts;
+    counts.continuing = FilmMask(1, 1, {1, 1}, {0.3f});
+    const WeightErrors ending = CheckWeights(scene, {.paths = 20000, .radius = 0.05f, .counts = counts});
+    ExpectExact(lamp.c_str(), ending);
+    Print("camera paths that may end", ending);
     const WeightErrors perPath = CheckWeights(scene, {.paths = 20000, .pixels = 2});
     EXPECT_GT(perPath.merges, 1000);
     ExpectExact(lamp.c_str(), perPath);

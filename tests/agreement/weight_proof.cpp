@@ -139,7 +139,8 @@ class WeightChecker final : public PathObserver {
         mergesPerDensity_(mergesPerDensity),
         pixels_(static_cast<double>(proof.pixels)),
         counts_(proof.counts),
-        isCounted_(counts_.log2LightPaths != 0 || counts_.connecting.Mean() < 1 || counts_.merging.Mean() < 1) {}
+        isCounted_(counts_.log2LightPaths != 0 || counts_.connecting.Mean() < 1 || counts_.merging.Mean() < 1 ||
+                   counts_.continuing.Mean() < 1) {}
 
   // Of the sample that makes the paths that follow.
   void StartSample(const Ray& cameraRay, const Point2& film, float time) {
@@ -194,6 +195,7 @@ class WeightChecker final : public PathObserver {
       allExpected += expected.groups[i].squares;
     }
     ++worst_.sums;
+    if (sums.isBeyond != expected.isBeyond) worst_.groups = 1;
     if (!(all > 0) || !std::isfinite(all) || !(allExpected > 0)) {
       worst_.groups = 1;
       return;
@@ -211,6 +213,7 @@ class WeightChecker final : public PathObserver {
       const auto connections = static_cast<double>(counts_.connecting.At(FilmOf(path)));
       const double lightPaths = counts_.LightPaths();
       worst_.connections.Note(path.connectionCount, Sqr(lightPaths > 1 ? connections / lightPaths : connections));
+      worst_.connections.Note(path.continuing, static_cast<double>(counts_.continuing.At(FilmOf(path))));
     }
     // With media these have factors of estimated transmittance, which the sums and the agreement of means prove.
     if (scene_.media.empty()) CheckLens(path);
