@@ -91,7 +91,7 @@ class Choices {
     cost_ = options[0].cost.paths + (options[0].all ? options[0].cost.merging : 0.0);
     merges.resize(grid.Tiles());
     must.resize(grid.Tiles());
-    isLong.resize(grid.Tiles());
+    isWhole.resize(grid.Tiles());
   }
 
   // False: nothing is left to choose by.
@@ -107,7 +107,7 @@ class Choices {
   }
   bool MustMerge() const { return mustMerge_; }
 
-  std::vector<double> merges, must, isLong;  // by tile
+  std::vector<double> merges, must, isWhole;  // by tile
 
  private:
   struct Tiles {
@@ -129,7 +129,7 @@ class Choices {
         cost = itsCost;
         merges[tile] = merging;
         must[tile] = forced;
-        isLong[tile] = i == 0 ? 1 : 0;
+        isWhole[tile] = i == 0 ? 1 : 0;
       };
       if (!options_[i].all) {
         consider(0, 0, tiles.without[tile]);
@@ -164,15 +164,15 @@ double LeastOf(std::span<const CameraPaths> options, bool mustMerge) {
 }
 
 // Sets error and cost of a candidate whose tiles merge with the probabilities `merges`, and of whose camera paths the
-// part `longPart` are those of options[0].
+// part `wholePart` are those of options[0].
 void SetMixed(std::span<const CameraPaths> options, const Grid& grid, const std::vector<double>& merges,
-              const std::vector<double>& longPart, PilotCandidate& mixed) {
+              const std::vector<double>& wholePart, PilotCandidate& mixed) {
   mixed.error = mixed.uncertainty = mixed.cost = 0;
   for (size_t i = 0; i < grid.Tiles(); ++i) {
     mixed.tileErrors[i] = mixed.tileVariances[i] = 0;
     for (size_t o = 0; o < options.size(); ++o) {
       const CameraPaths& paths = options[o];
-      const double part = o == 0 ? longPart[i] : 1 - longPart[i];
+      const double part = o == 0 ? wholePart[i] : 1 - wholePart[i];
       mixed.cost += part * (paths.cost.paths + merges[i] * paths.cost.merging) * grid.PartOf(i);
       if (!paths.all) {
         mixed.tileErrors[i] += part * paths.none->tileErrors[i];
@@ -205,25 +205,25 @@ std::optional<PilotCandidate> InParts(std::span<const CameraPaths> options, cons
   if (!choices.Run()) return std::nullopt;
   // Wider by a tile, with a soft edge: the pilot sees a tile by a few samples.
   std::vector<double> merges = Blurred(std::move(choices.merges), grid, 1),
-                      longPart = Blurred(std::move(choices.isLong), grid, 1);
+                      wholePart = Blurred(std::move(choices.isWhole), grid, 1);
   const std::vector<double> must = Largest(Largest(choices.must, grid), grid);
   double merging = 0, longer = 0;
   for (size_t i = 0; i < grid.Tiles(); ++i) {
     merges[i] = std::max(std::min(3 * merges[i], 1.0), must[i]);
-    longPart[i] = std::min(3 * longPart[i], 1.0);
+    wholePart[i] = std::min(3 * wholePart[i], 1.0);
     merging += merges[i] * grid.PartOf(i);
-    longer += longPart[i] * grid.PartOf(i);
+    longer += wholePart[i] * grid.PartOf(i);
   }
   const bool canMerge = options[0].all != nullptr;
   // That it merges nowhere is another candidate.
   if (canMerge && !(merging > 0)) return std::nullopt;
   PilotCandidate mixed = canMerge ? *options[0].all : *options[0].none;
-  SetMixed(options, grid, merges, longPart, mixed);
+  SetMixed(options, grid, merges, wholePart, mixed);
   mixed.error = std::max(mixed.error, least);
   if (canMerge && merging < 1) mixed.counts.merging = MaskOf(merges, grid);
   if (longer < 1) {
-    for (double& part : longPart) part = kContinuing + (1 - kContinuing) * part;
-    mixed.counts.continuing = MaskOf(longPart, grid);
+    for (double& part : wholePart) part = kContinuing + (1 - kContinuing) * part;
+    mixed.counts.continuing = MaskOf(wholePart, grid);
   }
   if (mixed.ErrorTimesCost() > kWorthIt * LeastOf(options.first(1), choices.MustMerge())) return std::nullopt;
   return mixed;

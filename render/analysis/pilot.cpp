@@ -177,7 +177,7 @@ TechniqueCounts Ending() {
 std::vector<PilotCandidate> CandidatesWith(std::span<const CandidateCost> costs) {
   std::vector<PilotCandidate> candidates(kCandidates);
   for (size_t k = 0; k < kCandidates; ++k) {
-    if (k >= kLongCandidates) candidates[k].counts = Ending();
+    if (k >= kWholeCandidates) candidates[k].counts = Ending();
     candidates[k].integrator = kCandidateOf[k].integrator;
     candidates[k].counts.log2LightPaths = kCandidateOf[k].log2LightPaths;
     candidates[k].counts.startsWide = kCandidateOf[k].startsWide;
@@ -186,18 +186,59 @@ std::vector<PilotCandidate> CandidatesWith(std::span<const CandidateCost> costs)
   return candidates;
 }
 
-// What guided light paths do is counted in a pass of their own, `passes`: more of their vertices are seen.
-// `counted`: without a guide.
-Counted CountGuided(const Integrator& vcm, const Integrator& ending, const PhotonSettings& photons, double wider,
-                    int threads, PilotPasses& passes, const Grid& grid, Counted counted) {
-  PhotonStore store(photons, static_cast<uint64_t>(grid.Pixels()), nullptr);
-  passes.TracePhotons(vcm, store, 0);
+// The integrators of the pilot; those that end have camera paths that may end early.
+struct PilotIntegrators {
+  std::unique_ptr<Integrator> path, bdpt, vcm, endingBdpt, endingVcm;
+
+  PilotIntegrators(const RenderScene& scene, const RenderSettings& settings, double fewer) {
+    const TechniqueCounts ending = Ending();
+    path = Make("path", scene, settings, fewer);
+    bdpt = Make("bdpt", scene, settings, fewer);
+    vcm = Make("vcm", scene, settings, fewer);
+    endingBdpt = Make("bdpt", scene, settings, fewer, &ending);
+    endingVcm = Make("vcm", scene, settings, fewer, &ending);
+  }
+};
+
+// Traces the passes that are recorded, and counts what they do, on average of one. `learned`: null, or what learns of
+// photons.
+void RunPasses(const PilotIntegrators& integrators, int passCount, int threads, double wider, PilotPasses& passes,
+               PhotonStore& store, EmissionLearning* learned, std::vector<Recorder>& recorders, Records& records,
+               Counted& counted) {
+  for (uint32_t pass = 0; pass < static_cast<uint32_t>(passCount); ++pass) {
+    passes.TracePhotons(*integrators.vcm, store, pass);
+    const PhotonPass& gather = store.Open(pass, threads, wider);
+    counted.stored += gather.map->Size();
+    counted.vcm += passes.Trace(*integrators.vcm, pass, &gather, recorders);
+    if (pass == 0) {
+      PhotonPass unrecorded = gather;  // photons are learned from once
+      unrecorded.use = nullptr;
+      counted.endingVcm = passes.Trace(*integrators.endingVcm, pass, &unrecorded, {});
+    }
+    records.EndPass(pass);
+    store.EndGathering();
+    if (learned && learned->IsRecording() && std::has_single_bit(pass + 1)) learned->Decide(pass + 1);
+  }
+  const auto count = static_cast<uint64_t>(passCount);
+  counted.stored /= count;
+  counted.vcm.lookups /= count;
+  counted.vcm.foundPhotons /= count;
+}
+
+// Sets the costs of candidates that merge to those with guided light paths: more of their vertices are seen. What they
+// do is counted in a pass of their own, `guided`. `counted`: without a guide.
+void CountGuided(const PilotIntegrators& integrators, const PhotonSettings& photons, double wider, int threads,
+                 PilotPasses& guided, int pixels, Counted counted, std::span<CandidateCost> costs) {
+  PhotonStore store(photons, static_cast<uint64_t>(pixels), nullptr);
+  guided.TracePhotons(*integrators.vcm, store, 0);
   const PhotonPass& gather = store.Open(0, threads, wider);
   counted.stored = gather.map->Size();
-  counted.bdpt = counted.vcm = passes.Trace(vcm, 0, &gather, {});
-  counted.shortBdpt = counted.shortVcm = passes.Trace(ending, 0, &gather, {});
+  counted.bdpt = counted.vcm = guided.Trace(*integrators.vcm, 0, &gather, {});
+  counted.endingBdpt = counted.endingVcm = guided.Trace(*integrators.endingVcm, 0, &gather, {});
   store.EndGathering();
-  return counted;
+  const auto ofGuided = CostsOf(counted, pixels);
+  for (size_t k = 0; k < kCandidates; ++k)
+    if (Merges(k)) costs[k] = ofGuided[k];
 }
 
 // Adds candidates that decide by the place in the picture whether they merge and whether their camera paths may end
@@ -208,9 +249,9 @@ void AddMixed(std::span<const PilotCandidate> all, std::span<const CandidateCost
     return Merges(k) ? CameraPaths{&all[WithoutMerging(k)], &all[k], costs[k]}
                      : CameraPaths{&all[k], nullptr, costs[k]};
   };
-  for (size_t k = 1; k < kLongCandidates; ++k) {
+  for (size_t k = 1; k < kWholeCandidates; ++k) {
     std::vector<CameraPaths> options{pathsOf(k)};
-    if (ShortOf(k) < kCandidates) options.push_back(pathsOf(ShortOf(k)));
+    if (EndingOf(k) < kCandidates) options.push_back(pathsOf(EndingOf(k)));
     if (auto mixed = InParts(options, grid, least)) candidates.push_back(std::move(*mixed));
   }
 }
@@ -258,11 +299,8 @@ RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, i
   const Grid grid(settings);
   const double filmPixels = static_cast<double>(settings.width) * static_cast<double>(settings.height);
   const double fewer = filmPixels / grid.Pixels();
-  const TechniqueCounts shorter = Ending();
-  const auto path = Make("path", scene, combined, fewer), bdpt = Make("bdpt", scene, combined, fewer),
-             vcm = Make("vcm", scene, combined, fewer), shortBdpt = Make("bdpt", scene, combined, fewer, &shorter),
-             shortVcm = Make("vcm", scene, combined, fewer, &shorter);
-  PhotonSettings photons = vcm->Photons().value();
+  const PilotIntegrators integrators(scene, combined, fewer);
+  PhotonSettings photons = integrators.vcm->Photons().value();
   // If light paths hardly come near to what is seen, vcm guides them from the start. Those of bdpt are hopeless then.
   RenderScene view = scene;
   std::optional<EmissionLearning> guiding;
@@ -277,40 +315,21 @@ RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, i
   PhotonStore store(photons, static_cast<uint64_t>(grid.Pixels()), learned);
   PilotPasses passes(view, combined, grid, threads);
   Counted counted;
-  counted.path = passes.Trace(*path, 0, nullptr, {});
-  counted.bdpt = passes.Trace(*bdpt, 0, nullptr, {});
-  counted.shortBdpt = passes.Trace(*shortBdpt, 0, nullptr, {});
+  counted.path = passes.Trace(*integrators.path, 0, nullptr, {});
+  counted.bdpt = passes.Trace(*integrators.bdpt, 0, nullptr, {});
+  counted.endingBdpt = passes.Trace(*integrators.endingBdpt, 0, nullptr, {});
   if (passCount == 0) passCount = PassesFor(counted, grid.Pixels());
   const PixelFilter filter(settings.filter);
   std::vector<Recorder> recorders(kChunks, Recorder(grid, filmPixels, filter, SplatCount(settings), passCount));
   Records records(grid, recorders);
-  for (uint32_t pass = 0; pass < static_cast<uint32_t>(passCount); ++pass) {
-    passes.TracePhotons(*vcm, store, pass);
-    const PhotonPass& gather = store.Open(pass, threads, WiderRadius(fewer, photons.alpha));
-    counted.stored += gather.map->Size();
-    counted.vcm += passes.Trace(*vcm, pass, &gather, recorders);
-    if (pass == 0) {
-      PhotonPass unrecorded = gather;  // photons are learned from once
-      unrecorded.use = nullptr;
-      counted.shortVcm = passes.Trace(*shortVcm, pass, &unrecorded, {});
-    }
-    records.EndPass(pass);
-    store.EndGathering();
-    if (learned && learned->IsRecording() && std::has_single_bit(pass + 1)) learned->Decide(pass + 1);
-  }
-  counted.stored /= static_cast<uint64_t>(passCount);
-  counted.vcm.lookups /= static_cast<uint64_t>(passCount);
-  counted.vcm.foundPhotons /= static_cast<uint64_t>(passCount);
+  const double wider = WiderRadius(fewer, photons.alpha);
+  RunPasses(integrators, passCount, threads, wider, passes, store, learned, recorders, records, counted);
   auto costs = CostsOf(counted, grid.Pixels());
   const bool willBeGuided = learned && learned->Guide();
   if (willBeGuided) {
     view.lighting = std::make_shared<const LightingServices>(scene.lighting->With(nullptr, learned->Guide()));
     PilotPasses guided(view, combined, grid, threads);
-    const auto guidedCosts = CostsOf(
-        CountGuided(*vcm, *shortVcm, photons, WiderRadius(fewer, photons.alpha), threads, guided, grid, counted),
-        grid.Pixels());
-    for (size_t k = 0; k < kCandidates; ++k)
-      if (Merges(k)) costs[k] = guidedCosts[k];
+    CountGuided(integrators, photons, wider, threads, guided, grid.Pixels(), counted, costs);
   }
   std::vector<PilotCandidate> all = CandidatesWith(costs);
   double least = 0;  // error that is told apart
@@ -318,7 +337,7 @@ RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, i
     return {};
   for (size_t k = 0; k < kCandidates && willBeGuided; ++k)
     if (Merges(k)) Guide(all[k]);
-  RenderPilot pilot{{all.begin(), all.begin() + kLongCandidates}, {all.begin() + kLongCandidates, all.end()}};
+  RenderPilot pilot{{all.begin(), all.begin() + kWholeCandidates}, {all.begin() + kWholeCandidates, all.end()}};
   AddMixed(all, costs, grid, least, pilot.candidates);
   EraseUnwanted(settings, isGuided, pilot.candidates);
   EraseUnwanted(settings, isGuided, pilot.ending);

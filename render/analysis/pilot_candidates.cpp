@@ -21,7 +21,7 @@ struct PartCosts {
   double path = 0, light = 0, connections = 0;
 };
 
-PartCosts PartCostsOf(const Counted& counted, bool isShort) {
+PartCosts PartCostsOf(const Counted& counted, bool isEnding) {
   constexpr Costs costs;
   const auto rays = [](const RenderCounts& counts) {
     return static_cast<double>(counts.cameraRays + counts.indirectRays);
@@ -32,11 +32,11 @@ PartCosts PartCostsOf(const Counted& counted, bool isShort) {
   // Nearly each ray of a light path ends at a vertex that is connected to the lens.
   const double splats = std::min(more, lightRays);
   more -= splats;
-  if (isShort) {
+  if (isEnding) {
     // What shorter camera paths save: rays with their next events, and connections.
-    const double fewerRays = std::clamp(rays(counted.bdpt) - rays(counted.shortBdpt), 0.0, pathRays);
-    const double fewer =
-        std::max(static_cast<double>(counted.bdpt.shadowRays) - static_cast<double>(counted.shortBdpt.shadowRays), 0.0);
+    const double fewerRays = std::clamp(rays(counted.bdpt) - rays(counted.endingBdpt), 0.0, pathRays);
+    const double fewer = std::max(
+        static_cast<double>(counted.bdpt.shadowRays) - static_cast<double>(counted.endingBdpt.shadowRays), 0.0);
     const double fewerDirect = std::min(fewer, direct * fewerRays / std::max(pathRays, 1.0));
     pathRays -= fewerRays;
     direct -= fewerDirect;
@@ -50,18 +50,18 @@ PartCosts PartCostsOf(const Counted& counted, bool isShort) {
 
 std::array<CandidateCost, kCandidates> CostsOf(const Counted& counted, double samples) {
   constexpr Costs costs;
-  const PartCosts ofLong = PartCostsOf(counted, false), ofShort = PartCostsOf(counted, true);
+  const PartCosts ofWhole = PartCostsOf(counted, false), ofEnding = PartCostsOf(counted, true);
   std::array<CandidateCost, kCandidates> all{};
   for (size_t k = 0; k < kCandidates; ++k) {
     const Candidate& candidate = kCandidateOf[k];
-    const bool isShort = candidate.continuing < 1;
-    const PartCosts& parts = isShort ? ofShort : ofLong;
+    const bool isEnding = candidate.continuing < 1;
+    const PartCosts& parts = isEnding ? ofEnding : ofWhole;
     const double n = candidate.lightPaths;
     all[k].paths = (n > 0 ? kCameraPathWithWeights * parts.path : parts.path) / samples;
     all[k].paths += kSideBySide * std::min(n, 1.0) * (parts.light + parts.connections) / samples;
     all[k].paths += kAlone * std::max(n - 1, 0.0) * parts.light / samples;
     if (!Merges(k)) continue;
-    const RenderCounts& lookups = isShort ? counted.shortVcm : counted.vcm;
+    const RenderCounts& lookups = isEnding ? counted.endingVcm : counted.vcm;
     all[k].paths += costs.stored * n * static_cast<double>(counted.stored) / samples;
     all[k].merging = (costs.lookup * static_cast<double>(lookups.lookups) +
                       costs.found * candidate.merging * static_cast<double>(lookups.foundPhotons)) /

@@ -30,10 +30,10 @@ constexpr Candidate Bidirectional(bool merges, int log2LightPaths, bool startsWi
   const double merging = merges ? (startsWide ? kWiderMerging * n : n) : 0.0;
   return {merges ? "vcm" : "bdpt", log2LightPaths, startsWide, n, std::min(n, 1.0), merging, continuing};
 }
-inline constexpr size_t kLongCandidates = 16, kFirstOfVcm = 7, kBdpt = 4;  // kBdpt: with one light path
+inline constexpr size_t kWholeCandidates = 16, kFirstOfVcm = 7, kBdpt = 4;  // kBdpt: with one light path
 inline constexpr size_t kCandidates = 27;
 inline constexpr double kFewestLightPaths = 1.0 / 8;
-// Those from kLongCandidates on have camera paths that may end early. Of candidates with the same light paths and the
+// Those from kWholeCandidates on have camera paths that may end early. Of candidates with the same light paths and the
 // same camera paths, that without merging comes first.
 inline constexpr std::array<Candidate, kCandidates> kCandidateOf = {{
     {"path", 0, false, 0, 0, 0, 1},
@@ -93,17 +93,17 @@ constexpr size_t WithoutMerging(size_t k) {
   return kWithoutMerging[k];
 }
 // The candidate that differs in camera paths that may end early; kCandidates: none.
-constexpr size_t ShortOf(size_t k) {
+constexpr size_t EndingOf(size_t k) {
   const Candidate& candidate = kCandidateOf[k];
   return k == 0 ? kCandidates : Find(Merges(k), candidate.log2LightPaths, candidate.startsWide, kContinuing);
 }
-static_assert(WithoutMerging(kLongCandidates - 1) < kFirstOfVcm && WithoutMerging(kCandidates - 1) < kCandidates);
-static_assert(WithFewestSamples(kCandidates - 1) < kCandidates && ShortOf(kBdpt) == kLongCandidates + 1);
+static_assert(WithoutMerging(kWholeCandidates - 1) < kFirstOfVcm && WithoutMerging(kCandidates - 1) < kCandidates);
+static_assert(WithFewestSamples(kCandidates - 1) < kCandidates && EndingOf(kBdpt) == kWholeCandidates + 1);
 
 struct Counted {
   RenderCounts path, bdpt, vcm;
-  RenderCounts shortBdpt, shortVcm;  // with kContinuing
-  uint64_t stored = 0;               // photons of a pass of vcm
+  RenderCounts endingBdpt, endingVcm;  // with kContinuing
+  uint64_t stored = 0;                 // photons of a pass of vcm
 };
 
 // The costs of a sample of a candidate, in two parts.

@@ -92,12 +92,12 @@ GroupSums SumsOf(const TechniqueSums& sums, double continuing) {
     }
     return sum;
   };
-  GroupSums of4{of(TechniqueGroup::Hit), of(TechniqueGroup::Light), of(TechniqueGroup::Connect),
-                of(TechniqueGroup::Merge)};
+  GroupSums grouped{of(TechniqueGroup::Hit), of(TechniqueGroup::Light), of(TechniqueGroup::Connect),
+                    of(TechniqueGroup::Merge)};
   const TechniqueSums::Group next = of(TechniqueGroup::Next);
-  of4.path.squares += next.squares;
-  of4.path.cubes += next.cubes;
-  return of4;
+  grouped.path.squares += next.squares;
+  grouped.path.cubes += next.cubes;
+  return grouped;
 }
 
 double CountOf(TechniqueGroup group, const Candidate& candidate) {
@@ -127,11 +127,11 @@ void Recorder::Add(const ConnectedPath& path, double value, size_t pixel) {
   const double splatSquare = path.connection ? 1 / splatCount_ : 1.0;
   const TechniqueGroup own = GroupOf(path);
   const double bySplats = path.sums.Of(TechniqueGroup::Light).squares;
-  const GroupSums ofLong = SumsOf(path.sums, 1), ofShort = SumsOf(path.sums, kContinuing);
+  const GroupSums ofWhole = SumsOf(path.sums, 1), ofEnding = SumsOf(path.sums, kContinuing);
   std::array<bool, kCandidates> isMissed{};
   for (size_t k = 0; k < kCandidates; ++k) {
     const Candidate& candidate = kCandidateOf[k];
-    const GroupSums& sums = candidate.continuing < 1 ? ofShort : ofLong;
+    const GroupSums& sums = candidate.continuing < 1 ? ofEnding : ofWhole;
     const double light = candidate.lightPaths * candidate.lightPaths,
                  connect = candidate.connections * candidate.connections, merge = candidate.merging * candidate.merging;
     const double squares =

@@ -55,7 +55,7 @@ class Auto : public testing::Test {
   TemporaryFolder folder_;
 };
 
-constexpr const char* kLayers[] = {"auto.lightPaths", "auto.connecting", "auto.merging"};
+constexpr const char* kLayers[] = {"auto.lightPaths", "auto.connecting", "auto.merging", "auto.continuing"};
 
 // Water over a floor in the sun: merging finds the light, and starts wide. Its radius is that of each pass, whoever
 // renders it.
@@ -78,11 +78,11 @@ TEST_F(Auto, LayersHaveTheDecidedValues) {
   const size_t decided = stats.find("\"auto\": ");
   ASSERT_NE(decided, std::string::npos) << stats;
   const double expected[] = {NumberAfter(stats, "lightPaths", decided), NumberAfter(stats, "connecting", decided),
-                             NumberAfter(stats, "merging", decided)};
+                             NumberAfter(stats, "merging", decided), NumberAfter(stats, "continuing", decided)};
   // The test is of parts that differ.
   ASSERT_GT(expected[2], 0.05);
   ASSERT_LT(expected[2], 0.95);
-  for (size_t layer = 0; layer < 3; ++layer) {
+  for (size_t layer = 0; layer < 4; ++layer) {
     const int channel = image.ChannelIndex(kLayers[layer]);
     ASSERT_GE(channel, 0) << kLayers[layer];
     double mean = 0, least = 1e9, most = -1e9;
@@ -97,9 +97,12 @@ TEST_F(Auto, LayersHaveTheDecidedValues) {
     EXPECT_NEAR(mean, expected[layer], 1e-3) << kLayers[layer];
     if (layer < 2) {
       EXPECT_EQ(least, most) << kLayers[layer];
-    } else {
+    } else if (layer == 2) {
       EXPECT_EQ(least, 0);
       EXPECT_EQ(most, 1);
+    } else {
+      EXPECT_GE(least, 0.25 - 1e-6);
+      EXPECT_LE(most, 1);
     }
   }
   // Merging pays where the caustic is, in the right half, more than at the wall.

@@ -16,6 +16,7 @@ struct Mode {
   bool learns = false;                  // the selection of lights
   bool isAdaptive = false;              // pixels differ in their numbers of samples
   bool guidesPaths = false;             // from the second sample on
+  TechniqueCounts counts{};             // as --integrator auto may choose them
   // Per pixel of a trial replica; at least that many in each. What is learned takes effect from pass to pass.
   int Samples() const { return isAdaptive ? 8 : Adapts() ? 6 : 4; }
   bool Adapts() const { return guides || learns || guidesPaths; }
@@ -34,10 +35,17 @@ struct Mode {
     settings.values.Set("guide-photons", guides);
     settings.values.Set("guide-paths", guidesPaths);
     settings.values.Set("guide-always", guidesPaths);
+    settings.counts = counts.IsDefault() ? nullptr : std::make_shared<TechniqueCounts>(counts);
     settings.adaptive.reset();
     if (isAdaptive) settings.adaptive.emplace();
   }
 };
+
+// Techniques that are used now and then, wherever they are on the film.
+inline TechniqueCounts NowAndThen(int log2LightPaths, float connecting, float merging, float continuing) {
+  const auto everywhere = [](float value) { return FilmMask(1, 1, Point2(1.0f), {value}); };
+  return {log2LightPaths, everywhere(connecting), everywhere(merging), everywhere(continuing)};
+}
 
 inline const std::vector<Mode>& Modes() {
   static const std::vector<Mode> modes = {
@@ -45,15 +53,20 @@ inline const std::vector<Mode>& Modes() {
       {.name = "path, guided", .integrator = "path", .guidesPaths = true},
       {.name = "light", .integrator = "light"},
       {.name = "bdpt", .integrator = "bdpt"},
-      {.name = "bdpt, learning, adaptive", .integrator = "bdpt", .learns = true, .isAdaptive = true},
+      {.name = "bdpt, learning, adaptive, counts",
+       .integrator = "bdpt",
+       .learns = true,
+       .isAdaptive = true,
+       .counts = NowAndThen(-1, 1, 1, 0.5f)},
       {.name = "bdpt, guided", .integrator = "bdpt", .guidesPaths = true},
       {.name = "vcm", .integrator = "vcm"},
-      {.name = "vcm, guided, learning, adaptive",
+      {.name = "vcm, guided, learning, adaptive, counts",
        .integrator = "vcm",
        .guides = true,
        .learns = true,
        .isAdaptive = true,
-       .guidesPaths = true},
+       .guidesPaths = true,
+       .counts = NowAndThen(0, 0.7f, 0.7f, 0.5f)},
       {.name = "vcm --no-connect", .integrator = "vcm", .connects = false},
       {.name = "vcm --no-connect, guided, learning",
        .integrator = "vcm",
