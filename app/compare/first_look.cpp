@@ -10,6 +10,7 @@
 #include "app/compare/reference.h"
 #include "base/progress.h"
 #include "film/metrics.h"
+#include "render/analysis/pilot.h"
 #include "render/settings/integrator_choice.h"
 
 namespace lampyr {
@@ -24,6 +25,7 @@ struct PilotRun {
   std::vector<double> means;
   std::vector<std::vector<double>> blocks;
   bool isHinted = false;
+  double missing = 0;               // part of the light that it is known not to find
   bool isBlurred = false;           // by photons
   std::vector<Image> wide, narrow;  // of the parts, if it is blurred: at two radii
   double ratioOfRadii = 0.5;
@@ -133,6 +135,10 @@ bool NoteFlaw(PilotRun& run, const std::vector<PilotRun>& runs, bool allBlack, b
 // The least advantage, as a ratio of relative errors, for which blur is accepted.
 constexpr double kWorthBlur = 3;
 
+// The most, as a ratio of squared errors, that is accepted for light that would be missing. Where a reference is dark
+// for want of light, the errors of all that find it would be held against too little.
+constexpr double kWorthLight = 4;
+
 // The better of the best that does not blur and the best that does, for a render `longer` times as long as theirs;
 // null: none. Notes why.
 PilotRun* ChooseBetween(PilotRun* sharp, PilotRun* blurred, double longer) {
@@ -143,11 +149,14 @@ PilotRun* ChooseBetween(PilotRun* sharp, PilotRun* blurred, double longer) {
   }
   if (sharp->isHinted && !blurred->isHinted) {
     const double missing = LightThatMayBeMissing(*sharp, *blurred);
-    if (sharp->pilot.relMse / longer + missing > blurred->TotalErrorOf(longer)) {
+    const bool isKnown = sharp->missing > kNegligibleLight;
+    if ((isKnown ? kWorthLight : 1.0) * (sharp->pilot.relMse / longer + missing) > blurred->TotalErrorOf(longer)) {
       sharp->pilot.isFlawed = true;
-      sharp->pilot.note =
-          "cannot find all light, and may miss " + FormatPercent(std::sqrt(missing)) + " of a part of the picture";
-      blurred->pilot.note = "finds light that the others may miss; what it blurs is measured";
+      sharp->pilot.note = isKnown ? "cannot find all light: it misses " + FormatPercent(sharp->missing)
+                                  : "cannot find all light, and may miss " + FormatPercent(std::sqrt(missing)) +
+                                        " of a part of the picture";
+      blurred->pilot.note = isKnown ? "finds light that the others miss; what it blurs is measured"
+                                    : "finds light that the others may miss; what it blurs is measured";
       return blurred;
     }
   }
@@ -202,6 +211,14 @@ std::vector<PilotRun> Candidates(const BuiltScene& built) {
   return runs;
 }
 
+// Notes what the pilot of "auto" knows of light that some of them cannot find.
+void NoteMissingLight(const ComparedScene& scene, std::vector<PilotRun>& runs) {
+  if (std::none_of(runs.begin(), runs.end(), [](const PilotRun& run) { return run.isHinted; })) return;
+  const RenderPilot known = RunPilot(scene.Built().scene, scene.Built().settings, scene.Threads());
+  for (PilotRun& run : runs)
+    if (const PilotCandidate* candidate = known.Find(run.pilot.integrator)) run.missing = candidate->missing;
+}
+
 // Renders a part of a pilot: by an integrator that blurs, half of it at half the radius.
 Image RenderPart(const ComparedScene& scene, PilotRun& run, int part, double seconds) {
   Image image;
@@ -247,6 +264,7 @@ double BlurOfBoth(const PilotRun& run) {
 std::vector<Pilot> FlyPilots(const ComparedScene& scene, double seconds, double referenceSeconds,
                              const ReferenceProgress& progress) {
   std::vector<PilotRun> runs = Candidates(scene.Built());
+  NoteMissingLight(scene, runs);
   std::vector<MeanOfImages> images(runs.size());
   const double steps = static_cast<double>(kPilotParts) * static_cast<double>(runs.size());
   for (int part = 0; part < kPilotParts; ++part) {

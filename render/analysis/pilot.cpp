@@ -14,6 +14,7 @@
 #include "integrators/walk/pixel_ray.h"
 #include "render/analysis/candidate_masks.h"
 #include "render/settings/integrator_choice.h"
+#include "spectral/wavelengths.h"
 
 namespace lampyr {
 
@@ -85,8 +86,15 @@ class PilotPasses {
         recorders[chunk].StartSample(x, y, ray.weight);
       }
       const bool isVignetted = ray.weight == 0;
-      if (!isVignetted || integrator.Paths() != TracedPaths::Camera)
-        integrator.Sample(isVignetted ? nullptr : &ray.ray, context);
+      const Ray* start = isVignetted ? nullptr : &ray.ray;
+      if (start || integrator.Paths() != TracedPaths::Camera) {
+        // What disperses is counted with all of its lanes, and recorded once.
+        if (recorders.empty()) {
+          SampleLanes(integrator, start, context);
+        } else {
+          integrator.Sample(start, context);
+        }
+      }
       if (!recorders.empty()) recorders[chunk].EndSample();
     });
   }
@@ -200,6 +208,20 @@ struct PilotIntegrators {
     endingVcm = Make("vcm", scene, settings, fewer, &ending);
   }
 };
+
+// The scene as passes see it: with the wavelengths of one of them.
+RenderScene WithWavelengths(const RenderScene& scene) {
+  return scene.isSpectral ? scene.AtWavelengths(std::make_shared<const Wavelengths>(Wavelengths::OfPass(0, kSeed)), {})
+                          : scene;
+}
+
+void CountPaths(const PilotIntegrators& integrators, const RenderScene& scene, const RenderSettings& settings,
+                const Grid& grid, int threads, Counted& counted) {
+  PilotPasses passes(scene, settings, grid, threads);
+  counted.path = passes.Trace(*integrators.path, 0, nullptr, {});
+  counted.bdpt = passes.Trace(*integrators.bdpt, 0, nullptr, {});
+  counted.endingBdpt = passes.Trace(*integrators.endingBdpt, 0, nullptr, {});
+}
 
 // Traces the passes that are recorded, and counts what they do, on average of one. `learned`: null, or what learns of
 // photons.
@@ -319,10 +341,10 @@ RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, i
   PhotonStore store(photons, static_cast<uint64_t>(grid.Pixels()), learned);
   PilotPasses passes(view, combined, grid, threads);
   Counted counted;
-  counted.path = passes.Trace(*integrators.path, 0, nullptr, {});
-  counted.bdpt = passes.Trace(*integrators.bdpt, 0, nullptr, {});
-  counted.endingBdpt = passes.Trace(*integrators.endingBdpt, 0, nullptr, {});
+  counted.tracesAnew = scene.hasMotion || scene.isSpectral;
+  CountPaths(integrators, view, combined, grid, threads, counted);
   if (passCount == 0) passCount = PassesFor(counted, grid.Pixels());
+  if (scene.isSpectral) CountPaths(integrators, WithWavelengths(view), combined, grid, threads, counted);
   const PixelFilter filter(settings.filter);
   std::vector<Recorder> recorders(kChunks, Recorder(grid, filmPixels, filter, SplatCount(settings), passCount));
   Records records(grid, recorders);
@@ -332,7 +354,8 @@ RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, i
   const bool willBeGuided = learned && learned->Guide();
   if (willBeGuided) {
     view.lighting = std::make_shared<const LightingServices>(scene.lighting->With(nullptr, learned->Guide()));
-    PilotPasses guided(view, combined, grid, threads);
+    const RenderScene guidedView = WithWavelengths(view);
+    PilotPasses guided(guidedView, combined, grid, threads);
     CountGuided(integrators, photons, wider, threads, guided, grid.Pixels(), counted, costs);
   }
   std::vector<PilotCandidate> all = CandidatesWith(costs);

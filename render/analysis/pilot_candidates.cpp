@@ -19,6 +19,7 @@ constexpr double kCameraPathWithWeights = 1.12, kSideBySide = 0.75, kAlone = 1.1
 // Of all samples of the pilot, in nanoseconds.
 struct PartCosts {
   double path = 0, light = 0, connections = 0;
+  double lightRays = 0;  // of `light`, without connections to the lens
 };
 
 PartCosts PartCostsOf(const Counted& counted, bool isEnding) {
@@ -43,7 +44,7 @@ PartCosts PartCostsOf(const Counted& counted, bool isEnding) {
     more = std::max(more - (fewer - fewerDirect), 0.0);
   }
   return {costs.ray * pathRays + costs.shadowRay * direct, costs.ray * lightRays + costs.connection * splats,
-          costs.connection * more};
+          costs.connection * more, costs.ray * lightRays};
 }
 
 }  // namespace
@@ -62,6 +63,7 @@ std::array<CandidateCost, kCandidates> CostsOf(const Counted& counted, double sa
     all[k].paths += kAlone * std::max(n - 1, 0.0) * parts.light / samples;
     if (!Merges(k)) continue;
     const RenderCounts& lookups = isEnding ? counted.endingVcm : counted.vcm;
+    if (counted.tracesAnew) all[k].paths += kAlone * n * parts.lightRays / samples;
     all[k].paths += costs.stored * n * static_cast<double>(counted.stored) / samples;
     all[k].merging = (costs.lookup * static_cast<double>(lookups.lookups) +
                       costs.found * candidate.merging * static_cast<double>(lookups.foundPhotons)) /

@@ -104,6 +104,9 @@ struct Counted {
   RenderCounts path, bdpt, vcm;
   RenderCounts endingBdpt, endingVcm;  // with kContinuing
   uint64_t stored = 0;                 // photons of a pass of vcm
+  // vcm traces the light paths of its photons anew, as in scenes with motion or with wavelengths
+  // (render/both_paths.cpp).
+  bool tracesAnew = false;
 };
 
 // The costs of a sample of a candidate, in two parts.
