@@ -147,7 +147,8 @@ TEST_F(Auto, LayersAreThereOnlyIfWanted) {
 }
 
 // An integrator without light paths has none in the layers.
-TEST_F(Auto, LayersOfPathTracingAreZero) {
+// No light paths, and camera paths that always continue.
+TEST_F(Auto, LayersOfPathTracing) {
   WriteBytes(folder_ / "sky.pbrt",
              "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 8 Camera \"perspective\"\nWorldBegin\n"
              "LightSource \"infinite\" Translate 0 0 4 Shape \"sphere\"\n");
@@ -157,7 +158,8 @@ TEST_F(Auto, LayersOfPathTracingAreZero) {
   for (const char* layer : kLayers) {
     const int channel = image.ChannelIndex(layer);
     ASSERT_GE(channel, 0) << layer;
-    EXPECT_EQ(image.At(4, 4, static_cast<size_t>(channel)), 0) << layer;
+    const float expected = layer == std::string("auto.continuing") ? 1 : 0;
+    EXPECT_EQ(image.At(4, 4, static_cast<size_t>(channel)), expected) << layer;
   }
 }
 
