@@ -39,8 +39,8 @@ std::string TechniqueCounts::Describe(const std::string& integrator) const {
   const double part = merging.Mean();
   if (part < 1) text += ", merging in " + std::to_string(std::lround(100 * part)) + " % of the picture";
   if (const double on = continuing.Mean(); on < 1)
-    text +=
-        ", " + std::to_string(std::lround(100 * on)) + " % of camera paths continue beyond the first diffuse vertex";
+    text += ", " + std::to_string(std::lround(100 * on)) +
+            " % of camera paths continue beyond their first vertex that is not smooth";
   return text;
 }
 
@@ -57,7 +57,7 @@ std::string TechniqueCounts::Fingerprint() const {
   ContentHash hash;
   hash.Add(std::to_string(log2LightPaths));
   for (const FilmMask* mask : {&connecting, &merging, &continuing}) {
-    if (mask == &continuing && mask->Values().empty()) break;  // as before there was one
+    if (mask == &continuing && mask->Values().empty()) break;  // counts that renders of older versions may have, too
     std::string bytes;                                         // of the values, little-endian
     for (const float value : mask->Values()) {
       const auto bits = std::bit_cast<uint32_t>(value);

@@ -42,8 +42,8 @@ struct UsedCounts {
   double lightPaths = 0;  // for each camera path
   double connecting = 0;  // probability that a camera path is connected to the light path of its sample
   double merging = 0;     // probability that a camera path is merged with photons
-  double continuing =
-      1;  // probability that a camera path continues beyond the first vertex where photons can be merged
+  // Probability that a camera path continues beyond its first vertex where photons can be merged.
+  double continuing = 1;
 };
 
 struct TechniqueCounts {
