@@ -135,8 +135,9 @@ bool NoteFlaw(PilotRun& run, const std::vector<PilotRun>& runs, bool allBlack, b
 // The least advantage, as a ratio of relative errors, for which blur is accepted.
 constexpr double kWorthBlur = 3;
 
-// The most, as a ratio of squared errors, that is accepted for light that would be missing. Where a reference is dark
-// for want of light, the errors of all that find it would be held against too little.
+// The largest ratio of squared errors that is accepted of a reference that has all light, over one that is known to
+// miss some. Errors are relative to the reference: where it lacks light, they are many times too large for all that
+// find it.
 constexpr double kWorthLight = 4;
 
 // The better of the best that does not blur and the best that does, for a render `longer` times as long as theirs;
@@ -155,8 +156,8 @@ PilotRun* ChooseBetween(PilotRun* sharp, PilotRun* blurred, double longer) {
       sharp->pilot.note = isKnown ? "cannot find all light: it misses " + FormatPercent(sharp->missing)
                                   : "cannot find all light, and may miss " + FormatPercent(std::sqrt(missing)) +
                                         " of a part of the picture";
-      blurred->pilot.note = isKnown ? "finds light that the others miss; what it blurs is measured"
-                                    : "finds light that the others may miss; what it blurs is measured";
+      blurred->pilot.note =
+          std::string("finds light that the others ") + (isKnown ? "" : "may ") + "miss; what it blurs is measured";
       return blurred;
     }
   }
@@ -213,7 +214,10 @@ std::vector<PilotRun> Candidates(const BuiltScene& built) {
 
 // Notes what the pilot of "auto" knows of light that some of them cannot find.
 void NoteMissingLight(const ComparedScene& scene, std::vector<PilotRun>& runs) {
-  if (std::none_of(runs.begin(), runs.end(), [](const PilotRun& run) { return run.isHinted; })) return;
+  const auto isIt = [&](bool PilotRun::*flag) {
+    return std::any_of(runs.begin(), runs.end(), [&](const PilotRun& run) { return run.*flag; });
+  };
+  if (!isIt(&PilotRun::isHinted) || !isIt(&PilotRun::isBlurred)) return;
   const RenderPilot known = RunPilot(scene.Built().scene, scene.Built().settings, scene.Threads());
   for (PilotRun& run : runs)
     if (const PilotCandidate* candidate = known.Find(run.pilot.integrator)) run.missing = candidate->missing;

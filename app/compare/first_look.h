@@ -13,9 +13,9 @@ namespace lampyr {
 // each. Chooses the one with the least error among those that find all light: an integrator whose picture is
 // significantly darker than another's, anywhere, is excluded. Photons blur: an integrator that gathers them is chosen
 // only if no other finds all light, or if its error, noise and blur together, is at most a third of the noise of the
-// best of the others, or if all the others are known not to find some kinds of light (IntegratorHints) and in a render of
-// `referenceSeconds` may miss more than it blurs. Where the pilot of "auto" has seen such light, its error may be up to
-// twice that of the others.
+// best of the others, or if all the others are known not to find some kinds of light (IntegratorHints) and in a render
+// of `referenceSeconds` may miss more than it blurs. Where the pilot of "auto" has seen such light, its error may be up
+// to twice that of the others.
 std::vector<Pilot> FlyPilots(const ComparedScene& scene, double seconds, double referenceSeconds,
                              const ReferenceProgress& progress);
 

@@ -58,7 +58,8 @@ enum class TechniqueGroup : uint8_t {
   Light,    // t = 1
   Connect,  // connections of two subpaths
   Merge,
-  // The same with a camera subpath that continues beyond the vertex where it may end (TechniqueCounts::continuing).
+  // Techniques of these groups whose camera subpath goes beyond the vertex where it may end
+  // (TechniqueCounts::continuing).
   HitBeyond,
   NextBeyond,
   ConnectBeyond,

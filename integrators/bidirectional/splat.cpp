@@ -59,11 +59,11 @@ void SplatVertex(const BidirectionalSample& sample) {
   const AreaDensity withoutMedia = DensityWithoutMedia(sample, *seen), atLens = seen->factors.forward * withoutMedia;
   Joint joint;
   const Point2& film = seen->connection.camera.film;
-  // A camera path that sees the vertex may end there.
   const auto continuing = static_cast<double>(sample.settings.counts.continuing.At(film));
-  joint.light = {
-      atLens, vertex.PreviousReverse((vertex.CanMerge() ? continuing : 1.0) * SolidAngleDensity(seen->f.pdfReverse))};
   joint.mergesAtLight = vertex.CanMerge();
+  // A camera path that sees the vertex may end there.
+  const double continuesHere = joint.mergesAtLight ? continuing : 1.0;
+  joint.light = {atLens, vertex.PreviousReverse(continuesHere * SolidAngleDensity(seen->f.pdfReverse))};
   joint.lightMergeVolume = MergeVolume(vertex, EdgeBefore(light, light.Count()), {seen->toCamera, seen->factors},
                                        sample.settings.photons.volume);
   Merging merging;

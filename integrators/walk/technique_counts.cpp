@@ -57,8 +57,9 @@ std::string TechniqueCounts::Fingerprint() const {
   ContentHash hash;
   hash.Add(std::to_string(log2LightPaths));
   for (const FilmMask* mask : {&connecting, &merging, &continuing}) {
-    if (mask == &continuing && mask->Values().empty()) break;  // counts that renders of older versions may have, too
-    std::string bytes;                                         // of the values, little-endian
+    // Without it the fingerprint is that of the two others.
+    if (mask == &continuing && mask->Values().empty()) break;
+    std::string bytes;  // of the values, little-endian
     for (const float value : mask->Values()) {
       const auto bits = std::bit_cast<uint32_t>(value);
       for (int byte = 0; byte < 4; ++byte) bytes += static_cast<char>(bits >> (8 * byte) & 0xff);

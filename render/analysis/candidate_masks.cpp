@@ -68,8 +68,8 @@ double ProbabilityOf(double error, double cost) {
   return cost > 0 ? std::clamp(std::sqrt(error / cost), kNowAndThen, 1.0) : 1.0;
 }
 
-// What the tiles of a picture choose from, in rounds: each takes what is least by error and cost relative to the sums
-// over all tiles, which follow from the choices.
+// Chooses one of the options for each tile, and whether it merges. The sums E and C over all tiles follow from the
+// choices, so it takes several rounds: in each, a tile takes the least e/E + c/C by the sums of the round before.
 class Choices {
  public:
   Choices(std::span<const CameraPaths> options, const Grid& grid) : options_(options), grid_(grid) {

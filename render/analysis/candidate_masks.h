@@ -1,4 +1,4 @@
-// Where in the picture a candidate merges, and where its camera paths may end early.
+// Masks of a candidate: where in the picture it merges, and where its camera paths may end early.
 #pragma once
 
 #include <optional>

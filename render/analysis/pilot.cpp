@@ -88,7 +88,7 @@ class PilotPasses {
       const bool isVignetted = ray.weight == 0;
       const Ray* start = isVignetted ? nullptr : &ray.ray;
       if (start || integrator.Paths() != TracedPaths::Camera) {
-        // What disperses is counted with all of its lanes, and recorded once.
+        // A render traces a path that disperses once for each lane: all are counted, and the first is recorded.
         if (recorders.empty()) {
           SampleLanes(integrator, start, context);
         } else {

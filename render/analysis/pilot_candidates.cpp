@@ -16,7 +16,7 @@ struct Costs {
 // cost on their own. Further light paths of a sample, measured with 4 in three scenes, have no camera path beside them.
 constexpr double kCameraPathWithWeights = 1.12, kSideBySide = 0.75, kAlone = 1.1;
 
-// Of all samples of the pilot, in nanoseconds.
+// Costs of the parts of all samples of the pilot, nanoseconds.
 struct PartCosts {
   double path = 0, light = 0, connections = 0;
   double lightRays = 0;  // of `light`, without connections to the lens
@@ -34,7 +34,7 @@ PartCosts PartCostsOf(const Counted& counted, bool isEnding) {
   const double splats = std::min(more, lightRays);
   more -= splats;
   if (isEnding) {
-    // What shorter camera paths save: rays with their next events, and connections.
+    // Shorter camera paths have fewer rays, fewer next events and fewer connections.
     const double fewerRays = std::clamp(rays(counted.bdpt) - rays(counted.endingBdpt), 0.0, pathRays);
     const double fewer = std::max(
         static_cast<double>(counted.bdpt.shadowRays) - static_cast<double>(counted.endingBdpt.shadowRays), 0.0);

@@ -30,7 +30,7 @@ constexpr Candidate Bidirectional(bool merges, int log2LightPaths, bool startsWi
   const double merging = merges ? (startsWide ? kWiderMerging * n : n) : 0.0;
   return {merges ? "vcm" : "bdpt", log2LightPaths, startsWide, n, std::min(n, 1.0), merging, continuing};
 }
-inline constexpr size_t kWholeCandidates = 16, kFirstOfVcm = 7, kBdpt = 4;  // kBdpt: with one light path
+inline constexpr size_t kWholeCandidates = 16, kBdpt = 4;  // kBdpt: with one light path
 inline constexpr size_t kCandidates = 27;
 inline constexpr double kFewestLightPaths = 1.0 / 8;
 // Those from kWholeCandidates on have camera paths that may end early. Of candidates with the same light paths and the
@@ -97,7 +97,7 @@ constexpr size_t EndingOf(size_t k) {
   const Candidate& candidate = kCandidateOf[k];
   return k == 0 ? kCandidates : Find(Merges(k), candidate.log2LightPaths, candidate.startsWide, kContinuing);
 }
-static_assert(WithoutMerging(kWholeCandidates - 1) < kFirstOfVcm && WithoutMerging(kCandidates - 1) < kCandidates);
+static_assert(WithoutMerging(kWholeCandidates - 1) < kWholeCandidates && WithoutMerging(kCandidates - 1) < kCandidates);
 static_assert(WithFewestSamples(kCandidates - 1) < kCandidates && EndingOf(kBdpt) == kWholeCandidates + 1);
 
 struct Counted {

@@ -146,8 +146,7 @@ TEST_F(Auto, LayersAreThereOnlyIfWanted) {
   EXPECT_THAT(named.output, HasSubstr("--auto-layers: the integrator is named, vcm: auto decides nothing"));
 }
 
-// An integrator without light paths has none in the layers.
-// No light paths, and camera paths that always continue.
+// An integrator without light paths has none in the layers, and its camera paths always continue.
 TEST_F(Auto, LayersOfPathTracing) {
   WriteBytes(folder_ / "sky.pbrt",
              "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 8 Camera \"perspective\"\nWorldBegin\n"
