@@ -16,9 +16,9 @@ std::unique_ptr<Light> MakeSkyLight(LightTypeFunction type, const ParameterList&
   return std::make_unique<InfiniteLightWith<EvenSky>>(type, parameters, sky.even);
 }
 
-// Four corners of a rectangle in world space, in order around it; the sky is where (corner 1 - corner 0) × (corner 3 -
-// corner 0) points to, so that they go clockwise as seen from inside. pbrt-v4's tolerances; what they leave of a skew
-// is taken out.
+// Four corners of a rectangle in world space, in order around it; the sky is where (corner 3 - corner 0) × (corner 1 -
+// corner 0) points to, as in pbrt-v4, so that they go counterclockwise as seen from inside. pbrt-v4's tolerances; what
+// they leave of a skew is taken out.
 PortalShape ReadPortalCorners(const ParameterList& parameters) {
   const FileLocation where = parameters.WhereOf("portal");
   const std::vector<Point3d> p = parameters.GetPoint3s("portal");
@@ -35,8 +35,8 @@ PortalShape ReadPortalCorners(const ParameterList& parameters) {
       std::abs(cosine(1, 2)) > 1e-3 || std::abs(cosine(2, 3)) > 1e-3 || std::abs(cosine(3, 0)) > 1e-3) {
     throw Error(where, owner + "is not a rectangle: four corners in order around it are needed");
   }
-  const Vector3d along = glm::normalize(sides[0]);
-  return {p[0], sides[0], sides[3] - along * glm::dot(sides[3], along)};
+  const Vector3d along = glm::normalize(sides[3]);
+  return {p[0], sides[3], sides[0] - along * glm::dot(sides[0], along)};
 }
 
 std::unique_ptr<Light> CreateInfinite(const ParameterList& parameters, const LightBuildContext& build) {
@@ -68,7 +68,8 @@ LightType InfiniteLightType() {
       {"illuminance", ParameterType::Float, "W/m²", "-1", "",
        "if positive: irradiance from the upper hemisphere to scale to"},
       {"portal", ParameterType::Point3, "", "", "",
-       "four corners in world space of a window through which alone the sky shines; clockwise as seen from inside"},
+       "four corners in world space of a window through which alone the sky shines; counterclockwise as seen "
+       "from inside"},
   });
   type.create = CreateInfinite;
   type.samples = {
@@ -79,8 +80,8 @@ LightType InfiniteLightType() {
       "\"string filename\" \"suite-square.exr\" \"float illuminance\" 5",
       "\"string filename\" \"suite-bright.exr\"",
       "\"string filename\" \"suite-black.exr\"",
-      "\"rgb L\" [ 3 2 1 ] \"point3 portal\" [ -1 -0.6 0.3  -1 0.6 0.3  1 0.6 0.3  1 -0.6 0.3 ] \"float specular\" 0.5",
-      "\"string filename\" \"suite-latlong.exr\" \"point3 portal\" [ -1 -0.6 0.3  -1 0.6 0.3  1 0.6 0.3  1 -0.6 0.3 ]",
+      "\"rgb L\" [ 3 2 1 ] \"point3 portal\" [ -1 -0.6 0.3  1 -0.6 0.3  1 0.6 0.3  -1 0.6 0.3 ] \"float specular\" 0.5",
+      "\"string filename\" \"suite-latlong.exr\" \"point3 portal\" [ -1 -0.6 0.3  1 -0.6 0.3  1 0.6 0.3  -1 0.6 0.3 ]",
   };
   return type;
 }

@@ -69,15 +69,15 @@ TEST(InfiniteLightsAnalytic, WindowOverTheFloor) {
       "\"float "
       "intensity\" 4 AttributeEnd";
   ExpectFloor(portal, UnderWindow(4, 1, 0.5, 1), 0.05);
-  // pbrt-v4's grammar; corners clockwise as seen from inside, and the light's transform without meaning for them.
+  // pbrt-v4's grammar; corners counterclockwise as seen from inside, and the light's transform without meaning for
+  // them.
   const std::string infinite =
-      "AttributeBegin Rotate 30 1 1 1 LightSource \"infinite\" \"rgb L\" [4 4 4] \"point3 portal\" [-1 1 -0.5  -1 1 "
-      "0.5  1 1 "
-      "0.5  1 1 -0.5] AttributeEnd";
+      "AttributeBegin Rotate 30 1 1 1 LightSource \"infinite\" \"rgb L\" [4 4 4] \"point3 portal\" [-1 1 -0.5  1 1 "
+      "-0.5  1 1 0.5  -1 1 0.5] AttributeEnd";
   ExpectFloor(infinite, UnderWindow(4, 1, 0.5, 1), 0.05);
   // Seen from its back it sends nothing.
   const std::string reversed =
-      "LightSource \"infinite\" \"rgb L\" [4 4 4] \"point3 portal\" [-1 1 -0.5  1 1 -0.5  1 1 0.5  -1 1 0.5]";
+      "LightSource \"infinite\" \"rgb L\" [4 4 4] \"point3 portal\" [-1 1 -0.5  -1 1 0.5  1 1 0.5  1 1 -0.5]";
   for (const char* integrator : {"path", "light"}) {
     EXPECT_EQ(MeanOf(RenderFloor(integrator, reversed, 0.05, 16).image).mean, 0) << integrator;
   }

@@ -437,9 +437,9 @@ TEST_F(PortalImages, BlackSky) {
 // --- pbrt-v4's: "infinite" with a portal
 
 TEST_F(PortalImages, InfiniteTakesFourCornersInWorldSpace) {
-  // The sky where (p1 - p0) × (p3 - p0) points to: +z here. The light's transform turns the sky and not the corners.
+  // The sky where (p3 - p0) × (p1 - p0) points to: +z here. The light's transform turns the sky and not the corners.
   const std::string portal =
-      " \"point3 portal\" [ -1 -0.5 0  1 -0.5 0  1 0.5 0  -1 0.5 0 ] \"string filename\" \"square.exr\"";
+      " \"point3 portal\" [ -1 -0.5 0  -1 0.5 0  1 0.5 0  1 -0.5 0 ] \"string filename\" \"square.exr\"";
   const Transform turned = Transform::Rotate(40, {0, 1, 0});
   const auto sky = Make("infinite", "\"string filename\" \"square.exr\"", turned);
   const auto window = Make("infinite", portal, turned);
@@ -460,7 +460,7 @@ TEST_F(PortalImages, InfiniteTakesFourCornersInWorldSpace) {
   ExpectIrradiance(SampledIrradiance(*window, P, Normal3(0, 0, 1)), expected, 5e-3);
   // The other way around: the sky on the other side.
   const auto reversed = Make("infinite",
-                             "\"point3 portal\" [ -1 0.5 0  1 0.5 0  1 -0.5 0  -1 -0.5 0 ] \"string filename\" "
+                             "\"point3 portal\" [ -1 0.5 0  -1 -0.5 0  1 -0.5 0  1 0.5 0 ] \"string filename\" "
                              "\"square.exr\"",
                              turned);
   EXPECT_TRUE(reversed->light->EvaluateEmissionForCamera(reversed->context, Escape(P, {0, 0, 1})).IsBlack());
@@ -469,7 +469,7 @@ TEST_F(PortalImages, InfiniteTakesFourCornersInWorldSpace) {
 
 TEST_F(PortalImages, InfiniteWithAnEvenSky) {
   const auto window =
-      Make("infinite", "\"rgb L\" [ 2 3 4 ] \"point3 portal\" [ -0.5 -0.5 0  0.5 -0.5 0  0.5 0.5 0  -0.5 0.5 0 ]");
+      Make("infinite", "\"rgb L\" [ 2 3 4 ] \"point3 portal\" [ -0.5 -0.5 0  -0.5 0.5 0  0.5 0.5 0  0.5 -0.5 0 ]");
   const auto portal = Make("portal", "\"rgb color\" [ 2 3 4 ]");
   Rng rng(3);
   for (int i = 0; i < 200; ++i) {

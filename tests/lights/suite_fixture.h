@@ -45,7 +45,7 @@ inline const std::map<std::string, SuiteLight>& SuiteLights() {
       {"dome", {"dome", sky, {}}},
       {"portal", {"portal", "\"float width\" 2 ", {}}},
       {"portal of an image", {"portal", sky, {}}},
-      {"window", {"infinite", image + "\"point3 portal\" [ -1 -1 2  1 -1 2  1 1 2  -1 1 2 ] ", {}}},
+      {"window", {"infinite", image + "\"point3 portal\" [ -1 -1 2  -1 1 2  1 1 2  1 -1 2 ] ", {}}},
   };
   return lights;
 }
