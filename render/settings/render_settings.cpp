@@ -336,7 +336,8 @@ void ReadIntegrator(const SceneDescription& scene, const RenderOverrides& overri
   for (const auto& [setting, value] : settings.values.All()) {
     if (setting->isInScenes) known.push_back(setting->NameInScenes());
   }
-  parameters.CheckAllUsed({"options"}, known, diagnostics);
+  // What pbrt-v4 has for its own integrators, and is of no use here.
+  parameters.CheckAllUsed({"options", "seed", "visualizestrategies", "visualizeweights"}, known, diagnostics);
 }
 
 // Embree replaces all accelerators of pbrt-v4. They do not change the image, so there is no warning.
