@@ -60,7 +60,15 @@ CountedTechniques CountedTechniquesOf(const std::string& integrator, const Setti
 
 std::vector<std::string> IntegratorHints(const RenderScene& scene, const std::string& integrator) {
   const IntegratorType* type = FindIntegrator(integrator);
-  return type && type->hints ? type->hints(scene) : std::vector<std::string>();
+  std::vector<std::string> hints = type && type->hints ? type->hints(scene) : std::vector<std::string>();
+  if (scene.hasTurningCurves && integrator != "path") {
+    hints.push_back(
+        "flat curves turn to the ray that meets them, so that paths from lights meet other surfaces than paths from "
+        "the "
+        "camera, and --integrator path shows them otherwise; \"string type\" \"cylinder\" and \"ribbon\" look the same "
+        "in all integrators");
+  }
+  return hints;
 }
 
 std::vector<std::string> UnreadBias(const std::string& integrator, const Settings& settings) {

@@ -199,6 +199,9 @@ void Builder::PlaceEntry(const ReadEntry& entry, const Transform& toRender, std:
   const ShapeDescription& shape = *entry.local.description;
   const std::optional<GeometryAttributes> attributes = AttributesOf(entry);
   if (!attributes) return;
+  const auto* curve = std::get_if<CurveParameters>(&entry.local.shape);
+  if (curve && curve->kind == CurveSet::Kind::Flat && !attributes->isFibrous && !attributes->isBoundary)
+    built_.scene.hasTurningCurves = true;
   for (Shape& placed : PlaceShape(entry.local, toRender, memory_)) {
     LocateErrors(shape.shape.where, [&] { CheckShape(placed); });
     GeometryEntry result{std::move(placed), *attributes};

@@ -380,6 +380,13 @@ TEST_F(Cli, HintsAtWhatAnIntegratorCannotFind) {
                "LightSource \"sphere\" \"float radius\" 0.1\n");
   EXPECT_EQ(hintOf(lamp, "path"), "");
   EXPECT_EQ(hintOf(lamp, "bdpt"), "");
+  const auto curve = [&](const std::string& type) {
+    return kScene + "Material \"diffuse\"\nShape \"curve\" \"point3 P\" [0 0 0 1 0 0 2 0 0 3 0 0] \"string type\" \"" +
+           type + "\"\n";
+  };
+  EXPECT_NE(hintOf(curve("flat"), "bdpt").find("flat curves turn to the ray"), std::string::npos);
+  EXPECT_EQ(hintOf(curve("flat"), "path"), "");
+  EXPECT_EQ(hintOf(curve("cylinder"), "bdpt"), "");
 }
 
 TEST_F(Cli, StatisticsOfPhotons) {
