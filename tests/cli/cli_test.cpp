@@ -381,8 +381,9 @@ TEST_F(Cli, HintsAtWhatAnIntegratorCannotFind) {
   EXPECT_EQ(hintOf(lamp, "path"), "");
   EXPECT_EQ(hintOf(lamp, "bdpt"), "");
   const auto curve = [&](const std::string& type) {
-    return kScene + "Material \"diffuse\"\nShape \"curve\" \"point3 P\" [0 0 0 1 0 0 2 0 0 3 0 0] \"string type\" \"" +
-           type + "\"\n";
+    return std::string(kScene) +
+           "Material \"diffuse\"\nShape \"curve\" \"point3 P\" [0 0 0 1 0 0 2 0 0 3 0 0] \"string type\" \"" + type +
+           "\"\n";
   };
   EXPECT_NE(hintOf(curve("flat"), "bdpt").find("flat curves turn to the ray"), std::string::npos);
   EXPECT_EQ(hintOf(curve("flat"), "path"), "");
