@@ -1,5 +1,6 @@
 #include "materials/coat_table.h"
 #include "materials/material_makers.h"
+#include "materials/metal_index.h"
 
 namespace lampyr {
 
@@ -27,6 +28,15 @@ ColorParameter NamedSpectrum(const std::string& name) {
   const ParameterList list({}, "Material", {parameter});
   return {list.GetColor("value", Color(1.0f), SpectrumRole::Unbounded),
           list.FindCurve("value", SpectrumRole::Unbounded)};
+}
+
+// Of a constant coefficient as a function of the wavelength; null for colours and textures.
+std::shared_ptr<const SpectralCurve> CurveOf(const ColorParameter& parameter) {
+  if (!parameter.IsConstant()) return nullptr;
+  if (parameter.Curve()) return parameter.Curve();
+  const Color value = parameter.Evaluate({});
+  if (value.r != value.g || value.g != value.b) return nullptr;
+  return std::make_shared<const SpectralCurve>([&](double) { return static_cast<double>(value.r); });
 }
 
 }  // namespace
@@ -76,6 +86,11 @@ MetalParameters::MetalParameters(const MaterialInput& input, const std::string& 
   if (reflectance_) return;
   eta_ = eta ? *eta : NamedSpectrum("metal-Cu-eta");
   k_ = k ? *k : NamedSpectrum("metal-Cu-k");
+  const auto etaCurve = CurveOf(eta_), kCurve = CurveOf(k_);
+  if (!etaCurve || !kCurve || (etaCurve->IsConstant() && kCurve->IsConstant())) return;
+  const MetalIndex index = RgbIndexOf(*etaCurve, *kCurve);
+  eta_ = {index.eta, etaCurve};
+  k_ = {index.k, kCurve};
 }
 
 MetalParameters::Index MetalParameters::Evaluate(const TextureContext& where) const {

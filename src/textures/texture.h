@@ -52,6 +52,7 @@ class ParameterOf<Color> {
   explicit ParameterOf(std::shared_ptr<const Texture<Color>> texture) : texture_(std::move(texture)) {}
 
   bool IsConstant() const { return !texture_; }
+  const std::shared_ptr<const SpectralCurve>& Curve() const { return curve_; }  // null: none
   Color Evaluate(const TextureContext& where) const {
     if (!texture_) return constant_;
     const Color color = texture_->Evaluate(where);
