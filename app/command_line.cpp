@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -64,6 +65,13 @@ std::string CheckPositive(const std::string& text) {
 std::string CheckShare(const std::string& text) {
   const double number = ParseFinite(text);
   return number > 0 && number <= 1 ? "" : "\"" + text + "\" is not a share, from 0 to 1";
+}
+
+std::string CheckSeed(const std::string& text) {
+  uint64_t seed = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
+  const bool isWhole = error == std::errc() && end == text.data() + text.size();
+  return isWhole ? "" : "\"" + text + "\" is not a whole number from 0 to 18446744073709551615";
 }
 
 std::string CheckFinite(const std::string& text) {
@@ -134,7 +142,7 @@ void DefinePluginOption(CLI::App& app, PluginOptions& plugins, bool readsScenes 
 
 // Options that plan, render and compare have in common.
 void DefineSceneOptions(CLI::App& app, RenderOverrides& overrides, std::string& resolution, int& threads) {
-  app.add_option("--seed", overrides.seed, "Seed of the random numbers (0)");
+  app.add_option("--seed", overrides.seed, "Seed of the random numbers (0)")->check(CheckSeed, "");
   app.add_option("--threads", threads, "Threads (all)")->check(CLI::Range(1, 4096));
   app.add_option("--resolution", resolution, "Size of the image, e.g. 640x360")->type_name("WxH");
   app.add_option("--crop", overrides.crop, "x0,x1,y0,y1: the part to render, in fractions of the image or in pixels")
@@ -417,7 +425,7 @@ struct CheckLightsCommand {
     app.add_option("--type", options.type, "Only this type of light or of light filter")->type_name("NAME");
     DefinePluginOption(app, options.plugins);
     app.add_flag("--json", options.json, "Print JSON");
-    app.add_option("--seed", options.seed, "Seed of the samples (1)");
+    app.add_option("--seed", options.seed, "Seed of the samples (1)")->check(CheckSeed, "");
     app.add_option("--threads", options.threads, "Threads (all)")->check(CLI::Range(1, 4096));
   }
   int Run() { return RunCheckLights(options); }
@@ -572,6 +580,12 @@ class Commands {
   // Runs the command that was parsed.
   int Run() {
     const auto parsed = std::find_if(runs_.begin(), runs_.end(), [](const auto& run) { return run.first->parsed(); });
+    // An empty word, as from a shell variable that is not set, would mean the same as no option.
+    for (const CLI::Option* option : parsed->first->get_options()) {
+      const std::vector<std::string>& words = option->results();
+      if (std::find(words.begin(), words.end(), "") != words.end())
+        throw UsageError(option->get_name() + ": its value is empty");
+    }
     return parsed->second();
   }
 

@@ -52,14 +52,22 @@ std::filesystem::path OutputPath(const RenderOptions& options, const RenderSetti
   return path;
 }
 
-// Throws a UsageError if an output file is one of the files that the scene is read from.
-void CheckSceneStays(const RenderOptions& options, const SceneDescription& scene, const RenderSettings& settings) {
+// Throws a UsageError if two outputs would be one file, or an output file is one of the files that the scene is read
+// from.
+void CheckOutputs(const RenderOptions& options, const SceneDescription& scene, const RenderSettings& settings) {
   const std::filesystem::path image = OutputPath(options, settings);
   std::vector<std::pair<std::filesystem::path, const char*>> written = {{image, "--output"}};
   if (options.png || options.previewSeconds)
     written.emplace_back(std::filesystem::path(image).replace_extension(".png"), options.png ? "--png" : "--preview");
   if (options.stats) written.emplace_back(*options.stats, "--stats");
   if (options.checkpointSeconds) written.emplace_back(CheckpointPath(image), "--checkpoint");
+  for (size_t i = 0; i < written.size(); ++i) {
+    for (size_t k = 0; k < i; ++k) {
+      if (!WouldBeSameFile(written[i].first, written[k].first)) continue;
+      throw UsageError(std::string(written[i].second) + ": \"" + written[i].first.string() + "\" is what " +
+                       written[k].second + " writes; write to another file");
+    }
+  }
   std::erase_if(written, [](const auto& file) {
     std::error_code ignored;
     return !std::filesystem::exists(file.first, ignored);
@@ -596,11 +604,9 @@ int RunRender(const RenderOptions& options) {
   OutliveSurroundings();
   RenderOverrides overrides = options.overrides;
   overrides.threads = options.threads;
-  const LoadedScene loaded =
-      LoadScene(options.scene, options.plugins, overrides, options.strict, options.robust, KeepsState(options),
-                [&](const SceneDescription& scene, const RenderSettings& settings) {
-                  CheckSceneStays(options, scene, settings);
-                });
+  const LoadedScene loaded = LoadScene(
+      options.scene, options.plugins, overrides, options.strict, options.robust, KeepsState(options),
+      [&](const SceneDescription& scene, const RenderSettings& settings) { CheckOutputs(options, scene, settings); });
   int exitCode = kExitFailed;
   RunForeignCode(loaded.types, [&] { exitCode = RenderJob(options, loaded).Run(); });
   return exitCode;

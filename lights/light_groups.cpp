@@ -28,8 +28,9 @@ std::string LayerNameOf(const std::string& name, const std::string& what) {
   if (layer == kRest) {
     throw Error(what + " cannot be called \"rest\": that is the layer of the lights that are in no light group");
   }
-  for (const char* taken : {"variance", "R", "G", "B", "A", "Albedo", "half", "noisy", "feature"}) {
-    if (layer == taken)
+  const bool isMatte = layer.starts_with("CryptoObject") || layer.starts_with("CryptoMaterial");
+  for (const char* taken : {"variance", "R", "G", "B", "A", "Albedo", "bias", "half", "noisy", "feature"}) {
+    if (layer == taken || isMatte)
       throw Error(what + " cannot be called \"" + name + "\": images have a channel or layer of that name");
   }
   if (layer.size() > most) {

@@ -56,6 +56,20 @@ bool IsSameFile(const std::filesystem::path& a, const std::filesystem::path& b) 
   return std::filesystem::equivalent(a, b, ignored);
 }
 
+bool WouldBeSameFile(const std::filesystem::path& a, const std::filesystem::path& b) {
+  std::error_code ignored;
+  if (std::filesystem::exists(a, ignored) && !std::filesystem::is_regular_file(a, ignored)) return false;
+  if (IsSameFile(a, b)) return true;
+  try {
+    const auto target = [](const std::filesystem::path& path) {
+      return std::filesystem::weakly_canonical(std::filesystem::absolute(WriteTarget(path)));
+    };
+    return target(a) == target(b);
+  } catch (const std::exception&) {
+    return false;  // CheckWritable says what is wrong
+  }
+}
+
 namespace {
 
 // True if `path` is still the opened file. A process that releases the lock removes the file, and a lock on a removed

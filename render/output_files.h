@@ -15,6 +15,8 @@ void WriteText(const std::filesystem::path& path, const std::string& text);
 
 // True if both paths exist and lead to the same file, also through links.
 bool IsSameFile(const std::filesystem::path& a, const std::filesystem::path& b);
+// True if what is written to the two paths would be one file, whether it exists or not. Devices and pipes are none.
+bool WouldBeSameFile(const std::filesystem::path& a, const std::filesystem::path& b);
 
 class OutputLock {
  public:

@@ -32,6 +32,17 @@ double ErrorBelow(const Film& film, double share) {
   return static_cast<double>(errors[static_cast<size_t>(rank)]);
 }
 
+// The error is compared with the target after so many samples per pixel, and not in between: 16, and four times in each
+// doubling. Where a render ends must not depend on how long its passes are, and so on the time that they take. With
+// fewer samples, all of them may have missed what causes the error. Returns the first such number from `samples` on.
+int NextTest(int samples) {
+  constexpr double kFirst = 16, kInDoubling = 4;
+  const auto test = [](int k) { return static_cast<int64_t>(std::lround(kFirst * std::exp2(k / kInDoubling))); };
+  int k = samples <= kFirst ? 0 : static_cast<int>(kInDoubling * std::log2(samples / kFirst)) - 1;
+  while (test(k) < samples) ++k;
+  return static_cast<int>(std::min<int64_t>(test(k), std::numeric_limits<int>::max()));
+}
+
 double FractionDone(const RenderOutcome& outcome, const StopConditions& stop) {
   double fraction = static_cast<double>(outcome.samplesPerPixel) / stop.samplesPerPixel;
   if (stop.seconds) fraction = std::max(fraction, outcome.seconds / *stop.seconds);
@@ -152,12 +163,9 @@ RenderOutcome Continue(ProgressiveRender& render, const StopConditions& stop, co
     if (outcome.samplesPerPixel >= stop.samplesPerPixel) return true;
     if (outcome.samplesPerPixel == 0) return false;
     if (stop.seconds && outcome.seconds >= *stop.seconds * 0.999) return true;
-    // With fewer samples, all of them may have missed what causes the error.
-    constexpr int fewest = 16;
+    if (!stop.relativeError || outcome.samplesPerPixel != NextTest(outcome.samplesPerPixel)) return false;
     // An unknown error never reaches the target.
-    const bool isHopeless = outcome.droppedFraction > kMostDropped && stop.relativeError;
-    if (isHopeless && outcome.samplesPerPixel >= fewest) return true;
-    return stop.relativeError && outcome.samplesPerPixel >= fewest && TargetedError(outcome) <= *stop.relativeError;
+    return outcome.droppedFraction > kMostDropped || TargetedError(outcome) <= *stop.relativeError;
   };
   std::optional<double> secondsLeft;
   if (stop.seconds) secondsLeft = std::max(*stop.seconds - outcome.seconds, 0.0);
@@ -165,7 +173,9 @@ RenderOutcome Continue(ProgressiveRender& render, const StopConditions& stop, co
   while (!isDone()) {
     std::optional<double> most = stop.longestPass;
     if (stop.seconds) most = std::min(*stop.seconds - outcome.seconds, most.value_or(*stop.seconds));
-    const bool isWhole = render.AddSamples(render.NextPassSamples(stop.samplesPerPixel, most));
+    int end = stop.samplesPerPixel;
+    if (stop.relativeError) end = std::min(end, NextTest(outcome.samplesPerPixel + 1));
+    const bool isWhole = render.AddSamples(render.NextPassSamples(end, most));
     measure();
     if (isWhole) afterPass(outcome, FractionDone(outcome, stop));
     outcome.interrupted = stop.interrupted && stop.interrupted->load();

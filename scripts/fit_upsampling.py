@@ -6,7 +6,7 @@
 The basis is the reflectances of red, green and blue of linear Rec. 709 ([Mallett19]): three functions of the wavelength
 with knots every 10 nm from 360 to 830 nm, linear in between. They minimise the sum of the squared differences of
 neighbouring knots. Each is within [0, 1], they add up to 1, and the colour of each under D65 is exactly its primary.
-Colours are integrals at 1 nm by the trapezoid rule, over the matching functions [Wyman13] and the daylight of
+Colours are integrals at 1 nm by the trapezoid rule, over the matching functions and the daylight of
 src/spectral/cie.cpp, calibrated so that D65 is exactly white.
 
 --check compares the table of the tree with the fit, and fails where they differ by more than 1e-6. It needs numpy and
@@ -36,17 +36,15 @@ def rows(text, name, columns):
     return numpy.array([[float(value) for value in row] for row in re.findall(pattern, body)])
 
 
-def lobe(wavelengths, mean, below, above):
-    t = (wavelengths - mean) / numpy.where(wavelengths < mean, below, above)
-    return numpy.exp(-0.5 * t * t)
-
-
-def matching_functions(w):
-    return numpy.stack([
-        1.056 * lobe(w, 599.8, 37.9, 31.0) + 0.362 * lobe(w, 442.0, 16.0, 26.7) - 0.065 * lobe(w, 501.1, 20.4, 26.2),
-        0.821 * lobe(w, 568.8, 46.9, 40.5) + 0.286 * lobe(w, 530.9, 16.3, 31.1),
-        1.217 * lobe(w, 437.0, 11.8, 36.0) + 0.681 * lobe(w, 459.0, 26.0, 13.8),
-    ], axis=1)
+def matching_functions(wavelengths):
+    table = rows((ROOT / 'src/spectral/cie.cpp').read_text(), 'kMatching', 3)
+    if len(table) != 95:
+        sys.exit('the table of matching functions in src/spectral/cie.cpp has not 95 rows')
+    position = (wavelengths - FIRST) / 5
+    i = numpy.minimum(position.astype(int), 93)
+    t = (position - i)[:, None]
+    a, b, d, e = (table[numpy.clip(i + k, 0, 94)] for k in (-1, 0, 1, 2))
+    return numpy.maximum(b + 0.5 * t * (d - a + t * (2 * a - 5 * b + 4 * d - e + t * (3 * (b - d) + e - a))), 0)
 
 
 def xyz_of(x, y):

@@ -34,7 +34,7 @@ Color BlackbodyToColor(double kelvin, SpectrumRole role);
 
 // The light of a blackbody of `kelvin` > 0 whose spectrum is scaled to a maximum of 1 per nanometre, over all
 // wavelengths and not the visible ones alone (BlackbodySpectrum of pbrt-v4): the luminance, ∫ ȳ(λ) L(λ) dλ, tells the
-// temperatures apart. It is 100.8 at 6000 K, and 9.7e-4 at 1000 K.
+// temperatures apart. It is 100.7 at 6000 K, and 9.6e-4 at 1000 K.
 Color NormalizedBlackbody(double kelvin);
 
 // Converts a list λ0 v0 λ1 v1 …. Throws an Error at `where` unless it has at least two pairs, increasing wavelengths

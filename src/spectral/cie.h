@@ -1,4 +1,4 @@
-// The CIE 1931 standard observer, daylight and black bodies, by formula. Internal to spectral/ and scene/.
+// The CIE 1931 standard observer, daylight and black bodies. Internal to spectral/ and scene/.
 #pragma once
 
 #include "math/vec.h"
@@ -7,7 +7,7 @@ namespace lampyr {
 
 inline constexpr double kLambdaMin = 360, kLambdaMax = 830;  // nm
 
-// Colour matching functions x̄, ȳ, z̄ at a wavelength in nm, by the multi-lobe fit of [Wyman13].
+// Colour matching functions x̄, ȳ, z̄ at a wavelength in nm, tabulated every 5 nm [CIE15]; 0 outside of the table.
 Vector3d ColorMatching(double lambda);
 
 // Relative spectral power of CIE daylight D65 (100 at 560 nm): the mean and two characteristic vectors, tabulated every

@@ -7,10 +7,24 @@
 #include <functional>
 #include <vector>
 
+#include "spectral/cie.h"
 #include "spectral/color_space.h"
 
 namespace lampyr {
 namespace {
+
+// The standard observer: integrals of the published functions at 1 nm, and values where they were measured.
+TEST(ColorMatching, IsThatOfTheStandardObserver) {
+  Vector3d sum(0.0);
+  for (int wavelength = 360; wavelength <= 830; ++wavelength) sum += ColorMatching(wavelength);
+  EXPECT_NEAR(sum.x, 106.8655, 1e-3);
+  EXPECT_NEAR(sum.y, 106.8569, 1e-3);
+  EXPECT_NEAR(sum.z, 106.8923, 1e-3);
+  EXPECT_EQ(ColorMatching(555).y, 1);
+  EXPECT_EQ(ColorMatching(600).x, 1.0622);
+  EXPECT_NEAR(ColorMatching(442).z, 1.76, 0.01);
+  for (const double outside : {359.0, 831.0, -1.0}) EXPECT_EQ(ColorMatching(outside), Vector3d(0.0));
+}
 
 const std::vector<Color>& SaturatedColors() {
   static const std::vector<Color> colors = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 1, 1}, {1, 0, 1}, {1, 1, 0}};
