@@ -14,6 +14,9 @@
 //                                               nothing
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "lights/estimates.h"
 #include "lights/light_base.h"
 
@@ -26,7 +29,11 @@ struct PointSource {
 
   // Reads I and from.
   static PointSource Read(const ParameterList& parameters) {
-    return {ReadEmissionColor(parameters, "I"), Point3(parameters.GetPoint3("from", Point3d(0.0)))};
+    constexpr double farthest = 1e18;
+    const Point3d from = parameters.GetPoint3("from", Point3d(0.0));
+    if (!(std::max({std::abs(from.x), std::abs(from.y), std::abs(from.z)}) <= farthest))
+      throw Error(parameters.WhereOf("from"), parameters.Owner() + ": \"from\" is farther out than 1e18");
+    return {ReadEmissionColor(parameters, "I"), Point3(from)};
   }
 };
 

@@ -14,9 +14,10 @@ constexpr uint64_t kMorePaths = 0xbb67ae8584caa73b;       // changes the seed fo
 constexpr int kPassTimes = -2;                            // in the place of the pixel row, for the times of passes
 
 // Shutter time of all paths of a pass with photons, in scenes with motion: a photon lies where the surface was at the
-// time of its path, so only paths of the same time may gather it. Times of consecutive passes are stratified.
-float PassTime(SamplerKind kind, uint64_t seed, uint32_t pass) {
-  Sampler sampler(kind, seed);
+// time of its path, so only paths of the same time may gather it. Times of consecutive passes are stratified, whatever
+// the sampler of the pixels: there are as few as passes.
+float PassTime(uint64_t seed, uint32_t pass) {
+  Sampler sampler(SamplerKind::Sobol, seed);
   sampler.StartPixelSample(0, kPassTimes, pass);
   sampler.SetDimension(dimensions::kTime);
   return sampler.Get1D();
@@ -100,8 +101,7 @@ class BothPaths {
   // Traces the pixels from `round` on, as many as the chunks take. Without `withCamera`: light paths for their photons
   // only.
   void TraceRound(uint64_t round, uint64_t end, uint32_t index, uint64_t seed, bool withCamera) {
-    const float passTime =
-        wanted_ && pass_.scene.hasMotion ? PassTime(pass_.settings.sampler, pass_.Seed(), index - pass_.Offset()) : 0;
+    const float passTime = wanted_ && pass_.scene.hasMotion ? PassTime(pass_.Seed(), index - pass_.Offset()) : 0;
     ParallelFor(chunks_, pass_.threads, [&](int chunk) {
       uint64_t begin = std::min(round + static_cast<uint64_t>(chunk) * chunkPaths_, end);
       uint64_t chunkEnd = std::min(begin + chunkPaths_, end);

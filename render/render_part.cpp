@@ -178,12 +178,21 @@ Film PartHeader::MakeFilm() const {
 }
 
 std::string DifferenceOf(const RenderIdentity& there, const RenderIdentity& here) {
-  for (size_t i = 0; i < std::max(there.size(), here.size()); ++i) {
-    if (i >= there.size() || i >= here.size() || there[i].first != here[i].first) return "the settings are other ones";
-    if (there[i].second != here[i].second)
-      return there[i].first + " is " + there[i].second + " there and " + here[i].second + " here";
+  const auto valueIn = [](const RenderIdentity& identity, const std::string& name) -> const std::string* {
+    const auto found =
+        std::find_if(identity.begin(), identity.end(), [&](const auto& item) { return item.first == name; });
+    return found == identity.end() ? nullptr : &found->second;
+  };
+  for (const auto& [name, value] : there) {
+    const std::string* other = valueIn(here, name);
+    if (!other) return name + " is " + value + " there, and is not set here";
+    if (*other != value) return name + " is " + value + " there and " + *other + " here";
   }
-  return "";
+  for (const auto& [name, value] : here) {
+    if (!valueIn(there, name)) return name + " is " + value + " here, and is not set there";
+  }
+  // Several items may have one name.
+  return there == here ? "" : "the settings are other ones";
 }
 
 Shard ShardOf(int index, int count, int samples) {

@@ -81,6 +81,9 @@ std::vector<std::string> Hints(const RenderScene& scene) {
         "no path from a light can be connected to the camera at a mirror or smooth glass, so these stay black; "
         "--integrator bdpt shows them");
   }
+  if (const std::string without = LightsWithoutPaths(scene); !without.empty())
+    hints.push_back("lights with \"traceLightPaths\" off (" + without +
+                    " lights) start no paths, and their light is missing; --integrator path and bdpt find it");
   return hints;
 }
 

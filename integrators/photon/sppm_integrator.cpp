@@ -244,6 +244,13 @@ IntegratorType SppmIntegratorType() {
     return std::make_unique<SppmIntegrator>(settings, GlowingMediaOf(input));
   };
   type.gathersPhotons = [](const Settings&) { return true; };
+  type.hints = [](const RenderScene& scene) -> std::vector<std::string> {
+    const std::string without = LightsWithoutPaths(scene);
+    if (without.empty()) return {};
+    return {"lights with \"traceLightPaths\" off (" + without +
+            " lights) leave no photons, and their indirect light is missing (with --direct-photons their direct light, "
+            "too); --integrator path, bdpt and vcm find it"};
+  };
   return type;
 }
 

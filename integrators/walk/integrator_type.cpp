@@ -29,4 +29,11 @@ std::string DeltaLightsOfCaustics(const RenderScene& scene) {
   return std::to_string(deltas) + " of " + std::to_string(lights.size());
 }
 
+std::string LightsWithoutPaths(const RenderScene& scene) {
+  const std::vector<PlacedLight>& lights = scene.lighting->Lights();
+  const auto count = std::count_if(lights.begin(), lights.end(),
+                                   [](const PlacedLight& placed) { return !placed.light->Settings().traceLightPaths; });
+  return count == 0 ? "" : std::to_string(count) + " of " + std::to_string(lights.size());
+}
+
 }  // namespace lampyr

@@ -104,5 +104,7 @@ int MaxDepthOf(const Settings& settings);
 bool HasSmoothMaterial(const RenderScene& scene);
 // Number of delta lights among all lights, as "2 of 5", if smooth materials may form caustics of them; "" if not.
 std::string DeltaLightsOfCaustics(const RenderScene& scene);
+// "N of M" lights that start no paths (traceLightPaths off); empty if all do.
+std::string LightsWithoutPaths(const RenderScene& scene);
 
 }  // namespace lampyr

@@ -1,6 +1,10 @@
 #include "render/build/placer.h"
 
+#include <algorithm>
+#include <cmath>
 #include <string>
+
+#include "geometry/shape_checks.h"
 
 namespace lampyr {
 
@@ -43,6 +47,9 @@ RenderPlacement Placer::PlaceInWorld(const Placement& placement, const char* wha
   if (placement.IsAnimated())
     placed = PlaceMoving(MotionChain(worldToRender_) * ToAnimated(placement, what, where), {}, what, where);
   if (!placed.toRender.IsAffine()) throw Error(where, std::string(what) + " cannot have a perspective transform");
+  const Point3d origin = placed.toRender.Point(Point3d(0.0));
+  if (!(std::max({std::abs(origin.x), std::abs(origin.y), std::abs(origin.z)}) <= static_cast<double>(kFarthest)))
+    throw Error(where, std::string(what) + " is placed farther out than 1e18");
   return placed;
 }
 

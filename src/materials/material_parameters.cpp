@@ -176,9 +176,17 @@ float GetEta(const MaterialInput& input, const std::string& name, float defaultV
     const auto curve = FindEtaFormula(input.parameters);
     return curve ? static_cast<float>(curve->At(kQuotedWavelength)) : defaultValue;
   }
-  const float eta = given->type == ParameterType::Float
-                        ? static_cast<float>(input.parameters.GetFloat(name, static_cast<double>(defaultValue)))
-                        : input.parameters.GetColor(name, Color(defaultValue), SpectrumRole::Unbounded).Average();
+  float eta = 0;
+  if (given->type == ParameterType::Float) {
+    eta = static_cast<float>(input.parameters.GetFloat(name, static_cast<double>(defaultValue)));
+  } else {
+    const Color color = input.parameters.GetColor(name, Color(defaultValue), SpectrumRole::Unbounded);
+    eta = color.Average();
+    if (given->type == ParameterType::Rgb && (color.r != color.g || color.g != color.b))
+      input.diagnostics.Warn(given->where, "\"" + name +
+                                               "\" is one index for all colours: the mean of these is used; "
+                                               "glass that disperses has a spectrum, or \"cauchy\" or \"sellmeier\"");
+  }
   if (eta == 0) {  // pbrt-v4: "no boundary"
     input.diagnostics.Warn(input.parameters.WhereOf(name), "\"" + name + "\" 0 is taken as 1");
     return 1;

@@ -380,6 +380,11 @@ TEST_F(Cli, HintsAtWhatAnIntegratorCannotFind) {
                "LightSource \"sphere\" \"float radius\" 0.1\n");
   EXPECT_EQ(hintOf(lamp, "path"), "");
   EXPECT_EQ(hintOf(lamp, "bdpt"), "");
+  std::string withoutPaths = kScene;
+  withoutPaths.insert(withoutPaths.find('\n', withoutPaths.find("LightSource")), " \"bool traceLightPaths\" false");
+  EXPECT_NE(hintOf(withoutPaths, "sppm").find("leave no photons"), std::string::npos);
+  EXPECT_NE(hintOf(withoutPaths, "light").find("start no paths"), std::string::npos);
+  EXPECT_EQ(hintOf(withoutPaths, "vcm"), "");
   const auto curve = [&](const std::string& type) {
     return std::string(kScene) +
            "Material \"diffuse\"\nShape \"curve\" \"point3 P\" [0 0 0 1 0 0 2 0 0 3 0 0] \"string type\" \"" + type +
