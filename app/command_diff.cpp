@@ -4,6 +4,7 @@
 #include "app/commands.h"
 #include "app/json_report.h"
 #include "film/metrics.h"
+#include "render/output_files.h"
 #include "render/sample_image.h"
 
 namespace lampyr {
@@ -37,6 +38,11 @@ void Print(const ImageDifference& difference) {
 
 int RunDiff(const DiffOptions& options) {
   if (!options.output.empty()) CheckImageOutput(options.output, "--output", false);
+  for (const std::filesystem::path& input : {options.a, options.b}) {
+    if (!options.output.empty() && IsSameFile(input, options.output))
+      throw UsageError("--output: \"" + options.output.string() +
+                       "\" is one of the images that are compared: it would be lost; write to another file");
+  }
   ImageDifference difference;
   Image error;
   try {

@@ -585,6 +585,10 @@ int RenderJob::ExitCode(const std::string& partialPicture) const {
   const DroppedReport dropped = DescribeDropped(outcome, built_);
   const bool isWrong = outcome.droppedFraction > kMostDropped && !outcome.interrupted;
   if (isWrong) throw Error(dropped.where, dropped.text);
+  const auto rays = static_cast<double>(outcome.counts.Rays());
+  if (static_cast<double>(report_.rejectedRays) > kMostDropped * rays && !outcome.interrupted)
+    throw Error(std::to_string(report_.rejectedRays) +
+                " rays were rejected (not finite): the picture is wrong, and its error is unknown");
   if (!dropped.text.empty() && !options_.quiet) {
     const std::string where = dropped.where.ToString();
     std::fprintf(stderr, "%s%swarning: %s\n", where.c_str(), where.empty() ? "" : ": ", dropped.text.c_str());

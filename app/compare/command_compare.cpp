@@ -224,8 +224,12 @@ int CompareLoaded(const CompareOptions& options, ComparisonPlan plan, const Load
   plan.autoIntegrator = settings.integrator;
   if (hasAuto && !options.quiet) std::printf("auto: %s\n", settings.counts->Describe(settings.integrator).c_str());
   for (const std::string& name : plan.integrators) {
-    const std::string refusal = IntegratorRefusal(loaded.built.scene, VariantOf(settings, name).integrator);
+    const RenderSettings variant = VariantOf(settings, name);
+    const std::string refusal = IntegratorRefusal(loaded.built.scene, variant.integrator);
     if (!refusal.empty()) throw UsageError("--integrators: " + name + ": " + refusal);
+    if (variant.adaptive && MakeIntegrator(loaded.built.scene, variant)->Paths() == TracedPaths::Light)
+      throw UsageError("--integrators: " + name + ": " + variant.integrator +
+                       " follows no camera paths, whose number could differ from pixel to pixel");
   }
   const std::filesystem::path folder =
       options.output.empty() ? std::filesystem::path(options.scene.stem().string() + "-compare") : options.output;

@@ -40,7 +40,7 @@ std::string TechniqueCounts::Describe(const std::string& integrator) const {
   if (part < 1) text += ", merging in " + std::to_string(std::lround(100 * part)) + " % of the picture";
   if (const double on = continuing.Mean(); on < 1)
     text += ", " + std::to_string(std::lround(100 * on)) +
-            " % of camera paths continue beyond their first vertex that is not smooth";
+            " % of camera paths continuing beyond their first vertex that is not smooth";
   return text;
 }
 

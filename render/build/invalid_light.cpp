@@ -15,9 +15,13 @@ constexpr int kAcross = 16;          // camera rays along each side of the grid
 constexpr size_t kAsked = 1 << 20;   // samples of lights, at most
 constexpr uint32_t kPhotons = 4096;  // photons
 
-template <class Record>
-bool IsInvalid(const Record& record) {
-  return !record.diffuse.IsValid() || !record.specular.IsValid();
+// Densities may be infinite: those of deltas.
+bool IsInvalid(const LightSample& sample) {
+  return !sample.diffuse.IsValid() || !sample.specular.IsValid() || !(sample.pdfDirect.value >= 0);
+}
+bool IsInvalid(const EmissionSample& sample) {
+  return !sample.diffuse.IsValid() || !sample.specular.IsValid() || !(sample.pdfEmit.value >= 0) ||
+         !(sample.pdfEmitDirection.value >= 0);
 }
 
 // Receivers that the camera sees, or the middle of the scene.
@@ -45,7 +49,8 @@ std::optional<InvalidLight> FindInvalidLight(const BuiltScene& built) {
   const std::vector<PlacedLight>& lights = lighting.Lights();
   if (lights.empty()) return std::nullopt;
   const auto ofLight = [&](uint32_t light) {
-    return InvalidLight{built.lightPlaces[light], "this light gives values that are not finite, or negative"};
+    return InvalidLight{built.lightPlaces[light],
+                        "this light gives values or densities that are not finite, or negative"};
   };
   const std::vector<Receiver> receivers = ReceiversOf(built);
   const size_t step = 1 + receivers.size() * lights.size() / kAsked;

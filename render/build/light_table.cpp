@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "geometry/shape_checks.h"
 #include "lights/filters/filter_base.h"
 #include "lights/light_type.h"
 #include "lights/services/light_surface.h"
@@ -192,6 +193,7 @@ void LightTable::AddLights(std::vector<GeometryEntry>& entries) {
     Bind(light.filter, placed);
     if (placed.light->Surface()) {
       AddLightSurface(placed, entries);
+      LocateErrors(statement.where, [&] { CheckShape(entries.back().shape); });
     } else {
       placed.canBeHit = placed.light->Kind() != LightKind::Area;
     }

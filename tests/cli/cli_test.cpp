@@ -573,6 +573,15 @@ TEST_F(Cli, WrongUsageExitsWithTwo) {
                                 "render scene.pbrt --resolution 65536x65536",
                                 "render scene.pbrt -o folder.exr",
                                 "render scene.pbrt --stats folder.exr",
+                                "render scene.pbrt -o same.exr --stats same.exr",
+                                "render scene.pbrt -o same.exr --stats ./folder.exr/../same.exr",
+                                "render scene.pbrt -o same.exr --png --stats same.png",
+                                "render scene.pbrt --seed -1",
+                                "render scene.pbrt --seed 18446744073709551616",
+                                "render scene.pbrt --time ''",
+                                "render scene.pbrt --shard ''",
+                                "render scene.pbrt --layer bias=CL --layer bias",
+                                "render scene.pbrt --layer CryptoObject00=CL",
                                 "render scene.pbrt --stats nowhere/stats.json"}) {
     const Outcome outcome = Run(arguments);
     EXPECT_EQ(outcome.exitCode, 2) << arguments << "\n" << outcome.output;
@@ -765,6 +774,7 @@ TEST_F(Cli, RefusesToCompareWhatCannotBe) {
   };
   expect("--integrators path,bdtp", "did you mean \"bdpt\"?");
   expect("--integrators path,path", "path is named twice");
+  expect("--integrators path,light:adaptive", "light follows no camera paths");
   expect("--budget 5s,soon", "--budget: \"soon\" is not a duration");
   expect("--repeat 1", "--repeat");
   expect("--spp 0", "--spp");

@@ -26,6 +26,21 @@ TEST_F(Resume, MoreSamplesAreThoseOfOneRender) {
   }
 }
 
+// Where it ends does not depend on how the render was divided.
+TEST_F(Resume, ATargetIsReachedAtTheSameSample) {
+  const std::string target = "render scene.pbrt --quiet --integrator path --target-error 0.1 ";
+  Do(target + "-o whole.exr");
+  Do(target + "-o often.exr --checkpoint 0.005s");
+  Do(kRender + "--integrator path --spp 37");
+  Do(target + "-o out.exr --resume");
+  const std::string samples = ReadImage(folder_ / "whole.exr").metadata.at("lampyr.samplesPerPixel");
+  EXPECT_GT(std::stoi(samples), 45);
+  for (const char* name : {"often.exr", "out.exr"}) {
+    EXPECT_EQ(ReadImage(folder_ / name).metadata.at("lampyr.samplesPerPixel"), samples) << name;
+    EXPECT_EQ(Bytes(name), Bytes("whole.exr")) << name;
+  }
+}
+
 TEST_F(Resume, WithoutACheckpointItStartsAnew) {
   const Outcome outcome = Run("render scene.pbrt -o out.exr --resume --spp 2");
   EXPECT_EQ(outcome.exitCode, 0);
