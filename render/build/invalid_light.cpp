@@ -13,6 +13,7 @@ namespace {
 
 constexpr int kAcross = 16;          // camera rays along each side of the grid
 constexpr size_t kAsked = 1 << 20;   // samples of lights, at most
+constexpr size_t kMostOfPair = 256;  // of a light for a receiver
 constexpr uint32_t kPhotons = 4096;  // photons
 
 // Densities may be infinite: those of deltas.
@@ -54,13 +55,15 @@ std::optional<InvalidLight> FindInvalidLight(const BuiltScene& built) {
   };
   const std::vector<Receiver> receivers = ReceiversOf(built);
   const size_t step = 1 + receivers.size() * lights.size() / kAsked;
+  const size_t times = std::clamp<size_t>(kAsked / (receivers.size() * lights.size()), 1, kMostOfPair);
   Rng rng(1);
   for (uint32_t light = 0; light < lights.size(); ++light) {
-    for (size_t i = light % step; i < receivers.size(); i += step) {
+    for (size_t k = light % step; k < times * receivers.size(); k += step) {
+      const Receiver& receiver = receivers[k % receivers.size()];
       const Point2 u = rng.NextPoint2();
-      if (!SendsInvalid(lighting, receivers[i], light, u)) continue;
+      if (!SendsInvalid(lighting, receiver, light, u)) continue;
       // Light is not filtered for Receiver::kCamera: this tells the light from its filter.
-      Receiver unfiltered = receivers[i];
+      Receiver unfiltered = receiver;
       unfiltered.link = Receiver::kCamera;
       if (lights[light].filter < 0 || SendsInvalid(lighting, unfiltered, light, u)) return ofLight(light);
       return InvalidLight{built.filterPlaces[static_cast<size_t>(lights[light].filter)],
