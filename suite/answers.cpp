@@ -1,5 +1,6 @@
 #include "suite/answers.h"
 
+#include <cmath>
 #include <cstring>
 #include <utility>
 
@@ -201,6 +202,35 @@ Answer Ask(const Light& light, const Question& q, const LightContext& context, C
   constexpr size_t count = std::size(calls);
   for (size_t i = 0; i < count; ++i) calls[order == CallOrder::Forwards ? i : count - 1 - i]();
   return answer;
+}
+
+namespace {
+
+// Of a sample, an evaluation or a photon.
+template <class Record>
+std::string InvalidOf(const std::optional<Record>& record, const char* what) {
+  if (!record) return "";
+  for (const Field& field : FieldsOf(*record)) {
+    const std::string name = field.name;
+    const bool isRadiance = name.ends_with("radiance"), isDensity = name.starts_with("pdf");
+    if (!isRadiance && !isDensity) continue;
+    for (int i = 0; i < field.count; ++i) {
+      const float value = field.values[i];
+      if (value >= 0 && (isDensity || std::isfinite(value))) continue;
+      return name + " of " + what + " is " + std::to_string(value);
+    }
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string Invalid(const Answer& answer) {
+  for (const std::string& found : {InvalidOf(answer.sample, "a sample"), InvalidOf(answer.evaluation, "an evaluation"),
+                                   InvalidOf(answer.firstHit, "an evaluation"), InvalidOf(answer.photon, "a photon")}) {
+    if (!found.empty()) return found;
+  }
+  return answer.camera.IsValid() ? "" : "what a camera sees is negative, or not finite";
 }
 
 std::string Difference(const Answer& wanted, const Answer& got, Compare compare) {

@@ -43,6 +43,8 @@ enum class Compare { Everything, AllButBidirectional };
 
 // The first difference as text, such as "radiance of samples: 1 0.5 0.2 instead of 2 1 0.4"; empty if there is none.
 std::string Difference(const Answer& wanted, const Answer& got, Compare compare = Compare::Everything);
+// The first value that cannot be, as text, such as "pdfDirect of a sample is nan"; empty if there is none.
+std::string Invalid(const Answer& answer);
 // The first difference, as text, of values that no question affects: kind, settings, power, bounds, patches, and the
 // light's own surface. Empty if there is none.
 std::string DifferenceAsWhole(const SuiteSubject& subject, const Light& wanted, const Light& got);

@@ -42,6 +42,21 @@ void ContractChecker::Add(const char* property, const std::string& suffix, const
   report.AddError(subject_.name, property, subject_.caseName + suffix, difference.empty() ? 0 : 1, 0.5, difference);
 }
 
+// Of many questions: what is wrong may be so in few places.
+void ContractChecker::CheckValid(const SuiteOptions& options, SuiteReport& report) const {
+  constexpr int kManyQuestions = 2048;
+  constexpr uint64_t kOther = 0x76616c6964;  // than those whose answers are compared
+  SuiteOptions own = options;
+  own.seed = Hash(options.seed, kOther);
+  Rng rng = MakeRng(subject_, own);
+  std::string invalid;
+  for (const Question& question : MakeQuestions(subject_, light_, kManyQuestions, rng)) {
+    invalid = Invalid(Ask(light_, question));
+    if (!invalid.empty()) break;
+  }
+  Add("valid", "", invalid, report);
+}
+
 void ContractChecker::CheckBidirectional(SuiteReport& report) const {
   const auto without = [](LightContext& context) { context.bidirectional = false; };
   Add("bidirectional", "", FirstDifference(without, Compare::AllButBidirectional), report);

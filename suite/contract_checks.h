@@ -1,5 +1,6 @@
-// Checks that a light depends only on its documented inputs.
+// Checks that a light gives values that can be, and depends only on its documented inputs.
 //
+//   valid           no radiance or density is negative, or not a number
 //   bidirectional   asking for densities of emission changes nothing but them
 //   time            the shutter time affects a light only through its placement
 //   repeat          the same query gives the same result: in another order, on another thread, after all else
@@ -16,8 +17,10 @@ class ContractChecker {
 
   void CheckBidirectional(SuiteReport& report) const;
   void CheckTime(SuiteReport& report) const;
-  // Must be called last, so that state changed by the other checks shows.
+  // Must be called after these, so that state changed by the other checks shows.
   void CheckRepeat(SuiteReport& report) const;
+  // Asks so much that a light which wears out would do so: last.
+  void CheckValid(const SuiteOptions& options, SuiteReport& report) const;
 
  private:
   // The first difference over all questions when `change` is applied to their contexts; empty if there is none.

@@ -147,7 +147,9 @@ void CheckLight(const SuiteSubject& subject, const SuiteOptions& options, SuiteR
     contract->CheckTime(report);
   }
   CheckSamplesAgain(subject, options, report);
-  if (contract) contract->CheckRepeat(report);
+  if (!contract) return;
+  contract->CheckRepeat(report);
+  contract->CheckValid(options, report);
 }
 
 }  // namespace lampyr

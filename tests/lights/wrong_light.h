@@ -37,6 +37,8 @@ enum class Fault {
   SegmentEndsEarly,
   SegmentCutTooShort,         // by three hundredths, where the light does not reach all of it
   SegmentWithoutEndIsMissed,  // an infinite length is taken for none
+  NegativeInPlaces,           // radiance, from one direction in a hundred
+  NoNumberInPlaces,           // pdfDirect, from as many
 };
 
 class WrongLight final : public ForwardingLight {
@@ -124,6 +126,9 @@ void WrongLight::Spoil(const LightContext& context, float cosine, const Vector3&
     result.pdfDirect = e ? e->pdfDirect : PdfSolidAngle(0);
   }
   if (Is(Fault::SpecularForgotten)) result.specular = result.diffuse;
+  const bool isOneOfHundred = std::fmod(std::abs(toLight.x) * 64, 1.0f) < 0.01f;
+  if (Is(Fault::NegativeInPlaces) && isOneOfHundred) result.diffuse *= -1.0f;
+  if (Is(Fault::NoNumberInPlaces) && isOneOfHundred) result.pdfDirect = PdfSolidAngle(std::nanf(""));
 }
 
 template <class Result>

@@ -60,6 +60,8 @@ TEST(WrongLights, EveryFaultOfAnAreaLightIsFound) {
     EXPECT_TRUE(Failures("diffuse", shape, Fault::EmitDensityOff).count("power"));
     EXPECT_TRUE(Failures("diffuse", shape, Fault::EstimateIsZero).count("estimate"));
     EXPECT_TRUE(Failures("diffuse", shape, Fault::DarkPhotonsAreNone).count("emission-origin"));
+    EXPECT_TRUE(Failures("diffuse", shape, Fault::NegativeInPlaces).count("valid"));
+    EXPECT_TRUE(Failures("diffuse", shape, Fault::NoNumberInPlaces).count("valid"));
   }
   EXPECT_TRUE(Failures("diffuse", &square, Fault::PatchChoiceForgotten).count("patches"));  // two triangles
 }
