@@ -64,9 +64,8 @@ std::vector<std::string> IntegratorHints(const RenderScene& scene, const std::st
   if (scene.hasTurningCurves && integrator != "path") {
     hints.push_back(
         "flat curves turn to the ray that meets them, so that paths from lights meet other surfaces than paths from "
-        "the "
-        "camera, and --integrator path shows them otherwise; \"string type\" \"cylinder\" and \"ribbon\" look the same "
-        "in all integrators");
+        "the camera, and --integrator path shows them otherwise; \"string type\" \"cylinder\" and \"ribbon\" look "
+        "the same in all integrators");
   }
   return hints;
 }

@@ -32,9 +32,9 @@ double ErrorBelow(const Film& film, double share) {
   return static_cast<double>(errors[static_cast<size_t>(rank)]);
 }
 
-// The error is compared with the target after so many samples per pixel, and not in between: 16, and four times in each
-// doubling. Where a render ends must not depend on how long its passes are, and so on the time that they take. With
-// fewer samples, all of them may have missed what causes the error. Returns the first such number from `samples` on.
+// The first number of samples per pixel, from `samples` on, at which the error is compared with the target: 16, and four
+// numbers in each doubling. Tests at fixed numbers keep the end of a render independent of the lengths of its passes,
+// which depend on the clock. Below 16 samples, all of them may have missed what causes the error.
 int NextTest(int samples) {
   constexpr double kFirst = 16, kInDoubling = 4;
   const auto test = [](int k) { return static_cast<int64_t>(std::lround(kFirst * std::exp2(k / kInDoubling))); };

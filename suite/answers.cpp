@@ -206,7 +206,7 @@ Answer Ask(const Light& light, const Question& q, const LightContext& context, C
 
 namespace {
 
-// Of a sample, an evaluation or a photon.
+// The first value of a sample, an evaluation or a photon that cannot be, as text; empty if there is none.
 template <class Record>
 std::string InvalidOf(const std::optional<Record>& record, const char* what) {
   if (!record) return "";

@@ -42,7 +42,7 @@ void ContractChecker::Add(const char* property, const std::string& suffix, const
   report.AddError(subject_.name, property, subject_.caseName + suffix, difference.empty() ? 0 : 1, 0.5, difference);
 }
 
-// Of many questions: what is wrong may be so in few places.
+// Asks many questions, because a light may be wrong in few places only.
 void ContractChecker::CheckValid(const SuiteOptions& options, SuiteReport& report) const {
   constexpr int kManyQuestions = 2048;
   constexpr uint64_t kOther = 0x76616c6964;  // than those whose answers are compared

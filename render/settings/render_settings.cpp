@@ -336,7 +336,7 @@ void ReadIntegrator(const SceneDescription& scene, const RenderOverrides& overri
   for (const auto& [setting, value] : settings.values.All()) {
     if (setting->isInScenes) known.push_back(setting->NameInScenes());
   }
-  // What pbrt-v4 has for its own integrators, and is of no use here.
+  // Parameters of pbrt-v4's integrators that have no effect here: warned of.
   parameters.CheckAllUsed({"options", "seed", "visualizestrategies", "visualizeweights"}, known, diagnostics);
 }
 

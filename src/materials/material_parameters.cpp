@@ -30,7 +30,7 @@ ColorParameter NamedSpectrum(const std::string& name) {
           list.FindCurve("value", SpectrumRole::Unbounded)};
 }
 
-// Of a constant coefficient as a function of the wavelength; null for colours and textures.
+// A constant coefficient as a function of the wavelength. Null if it is a colour or a texture.
 std::shared_ptr<const SpectralCurve> CurveOf(const ColorParameter& parameter) {
   if (!parameter.IsConstant()) return nullptr;
   if (parameter.Curve()) return parameter.Curve();

@@ -29,8 +29,8 @@ struct Index {
   float eta = 1, k = 0;
 };
 
-// Of all indices with the reflectance `normal` at normal incidence, that whose reflectance at 75° is nearest to
-// `grazing`. They lie on a circle, which `part` from 0 to 1 runs along ([Gulbrandsen14 eq. 5]).
+// The index with the reflectance `normal` at normal incidence whose reflectance at 75° is nearest to `grazing`. Indices
+// with one reflectance at normal incidence lie on a circle; `part` runs along it from 0 to 1 ([Gulbrandsen14]).
 Index IndexWith(float normal, float grazing) {
   const double r = std::min(static_cast<double>(normal), kMostReflectance), root = std::sqrt(r);
   Index best;

@@ -136,7 +136,7 @@ TEST_F(Harmless, WhatHasNoEffectIsSaid) {
   const Outcome twice = Run("render odd.pbrt -o odd.exr --quiet --spp 1");
   EXPECT_THAT(twice.output, HasSubstr("odd.pbrt:3:1: warning: a second Camera: it replaces the one at odd.pbrt:1:1"));
   EXPECT_THAT(twice.output, HasSubstr("odd.pbrt:4:1: warning: a second Film: it replaces the one at odd.pbrt:2:1"));
-  // Of pbrt-v4's own integrators.
+  // A parameter of an integrator of pbrt-v4 that has no effect here.
   Write("own.pbrt",
         "Integrator \"bdpt\" \"bool visualizeweights\" true\nCamera \"perspective\"\nFilm \"rgb\" \"integer "
         "xresolution\" 8 \"integer yresolution\" 8\nWorldBegin\n" +

@@ -26,7 +26,7 @@ TEST_F(Resume, MoreSamplesAreThoseOfOneRender) {
   }
 }
 
-// Where it ends does not depend on how the render was divided.
+// A render with a target ends at the same sample, however its passes are divided.
 TEST_F(Resume, ATargetIsReachedAtTheSameSample) {
   const std::string target = "render scene.pbrt --quiet --integrator path --target-error 0.1 ";
   Do(target + "-o whole.exr");
