@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "materials/material.h"
+#include "materials/metal_index.h"
 #include "materials/microfacet.h"
 #include "materials/shading_normal.h"
 #include "scene/parameters.h"
@@ -64,10 +65,7 @@ class MetalParameters {
  public:
   MetalParameters(const MaterialInput& input, const std::string& prefix);
 
-  struct Index {
-    Color eta, k;
-  };
-  Index Evaluate(const TextureContext& where) const;
+  MetalIndex Evaluate(const TextureContext& where) const;
   bool IsConstant() const;
   void TuneTo(const std::shared_ptr<const Wavelengths>& wavelengths);
 

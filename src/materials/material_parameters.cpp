@@ -1,6 +1,5 @@
 #include "materials/coat_table.h"
 #include "materials/material_makers.h"
-#include "materials/metal_index.h"
 
 namespace lampyr {
 
@@ -93,7 +92,7 @@ MetalParameters::MetalParameters(const MaterialInput& input, const std::string& 
   k_ = {index.k, kCurve};
 }
 
-MetalParameters::Index MetalParameters::Evaluate(const TextureContext& where) const {
+MetalIndex MetalParameters::Evaluate(const TextureContext& where) const {
   constexpr float kMax = 1e6f;
   const auto bound = [](const Color& c) {
     return Color(Clamp(c.r, 0, kMax), Clamp(c.g, 0, kMax), Clamp(c.b, 0, kMax));
