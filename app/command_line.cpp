@@ -259,6 +259,10 @@ struct RenderCommand {
         ->allow_extra_args(false);
     app.add_flag("--through-smooth", options.overrides.seesThroughSmooth,
                  "What pixels see, for those layers, is what mirrors and smooth glass show");
+    app.add_option("--spectral-bands", options.overrides.spectralBands,
+                   "Carry light by wavelength and write the spectrum, too, as the mean of this many bands from 360 to "
+                   "830 nm, or of the range of Film \"spectral\", which has 16")
+        ->check(CLI::Range(1, 512));
     app.add_flag("--denoise", options.denoise,
                  "Denoise the picture; as it was rendered it stays in the layer \"noisy\". With --shard: keep what "
                  "`lampyr denoise` wants of the merged picture");

@@ -135,7 +135,7 @@ PartHeader MakeHeader(const RenderOptions& options, const LoadedScene& loaded, c
   header.width = settings.width;
   header.height = settings.height;
   header.crop = settings.crop;
-  header.layers = loaded.built.scene.outputs->Names();
+  header.layers = loaded.built.FilmLayers();
   header.halfPrecision = settings.halfPrecision;
   header.metadata = {{"lampyr.version", kVersion},
                      {"lampyr.sceneHash", loaded.hash},
@@ -149,6 +149,10 @@ PartHeader MakeHeader(const RenderOptions& options, const LoadedScene& loaded, c
   header.metadata.merge(FirstHitMetadata(loaded.built));
   for (const char* layer : {kSamplesLayer, kErrorLayer, kBiasLayer}) {
     if (settings.Wants(layer)) header.metadata[std::string(kSampleLayerMetadata) + layer] = "1";
+  }
+  if (settings.bands) {
+    header.metadata["spectralLayoutVersion"] = "1.0";
+    header.metadata["emissiveUnits"] = "W.m^-2.sr^-1";
   }
   if (options.denoise) {
     header.layers.emplace_back(kHalfLayer);
@@ -385,8 +389,7 @@ RenderJob::RenderJob(const RenderOptions& options, const LoadedScene& loaded)
       checkpointPath_(CheckpointPath(path_)) {
   CheckOptions(options, settings_, checkpointPath_);
   integrator_ = MakeIntegrator(built_.scene, settings_);
-  CheckMemory(settings_, *integrator_, built_.scene.outputs->Layers().size(), options.strategyImages.has_value(),
-              options.denoise);
+  CheckMemory(settings_, *integrator_, built_.FilmLayers().size(), options.strategyImages.has_value(), options.denoise);
   if (const auto photons = integrator_->Photons(); photons && !options.quiet) WarnOfPhotonMemory(settings_, *photons);
   const auto [part, parts] = options.shard.value_or(std::pair(1, 1));
   shard_ = ShardOf(part, parts, SamplesWanted(options, settings_));

@@ -29,7 +29,7 @@ std::string LayerNameOf(const std::string& name, const std::string& what) {
     throw Error(what + " cannot be called \"rest\": that is the layer of the lights that are in no light group");
   }
   const bool isMatte = layer.starts_with("CryptoObject") || layer.starts_with("CryptoMaterial");
-  for (const char* taken : {"variance", "R", "G", "B", "A", "Albedo", "bias", "half", "noisy", "feature"}) {
+  for (const char* taken : {"variance", "R", "G", "B", "A", "Albedo", "bias", "half", "noisy", "feature", "S0"}) {
     if (layer == taken || isMatte)
       throw Error(what + " cannot be called \"" + name + "\": images have a channel or layer of that name");
   }

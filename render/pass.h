@@ -53,6 +53,7 @@ struct SampleAdder {
     sums.Add(sensor.Balance(value), ray.filterWeight);
     if (more) more->Add(sensor.Balance(value), ray.filterWeight);
     if (layers && isValid) film.AddToLayers(x, y, *layers, scale, ray.filterWeight, sensor);
+    if (film.HasBands()) film.AddToBands(x, y, value, ray.filterWeight);
     if (film.HasHalf() && isInHalf) film.AddToHalf(x, y, sensor.Balance(value), ray.filterWeight);
     if (film.KeepsBias()) AddBias(x, y, isValid ? scale : 0.0f, ray.filterWeight, biasOfPass);
   }

@@ -120,6 +120,16 @@ RenderCounts TracePass(const Pass& pass, TechniqueImages* techniques, PhotonStor
   return TraceBothPaths(pass, techniques, kept);
 }
 
+LanesInBands InBands(const Wavelengths& wavelengths, const SpectralBands& bands) {
+  LanesInBands lanes;
+  for (int lane = 0; lane < Wavelengths::kLanes; ++lane) {
+    lanes.band[lane] = bands.Of(wavelengths[lane]);
+    lanes.weight[lane] = wavelengths.PerDensity(lane) / bands.Width();
+    lanes.radiance[lane] = static_cast<float>(lanes.weight[lane] * WhiteSpectrum(wavelengths[lane]));
+  }
+  return lanes;
+}
+
 }  // namespace
 
 RenderCounts RenderPass(const RenderScene& scene, const Integrator& integrator, const RenderSettings& settings,
@@ -132,8 +142,11 @@ RenderCounts RenderPass(const RenderScene& scene, const Integrator& integrator, 
   }
   RenderCounts counts;
   RenderSettings tuned = settings;
+  std::optional<WavelengthRange> even;
+  if (settings.bands) even = {settings.bands->from, settings.bands->to};
   for (uint32_t sample = first; sample < first + count; ++sample) {
-    const auto wavelengths = std::make_shared<const Wavelengths>(Wavelengths::OfPass(settings.seed, sample));
+    const auto wavelengths = std::make_shared<const Wavelengths>(Wavelengths::OfPass(settings.seed, sample, even));
+    if (film.HasBands()) film.SetLanes(InBands(*wavelengths, *settings.bands));
     const RenderScene there = scene.AtWavelengths(wavelengths, integrator.MaterialsAfterWide());
     tuned.sensor = settings.sensor.Of(wavelengths->ToRgb());
     const Pass pass{there, integrator, tuned, filter, sample, sample + 1, threads, film, allocation, learning};

@@ -159,6 +159,10 @@ RenderIdentity IdentityOf(const LoadedScene& loaded, bool robustIntersection) {
       {"watertight intersection", YesOrNo(robustIntersection)}};
   if (s.WantsFirstHit()) identity.emplace_back("--through-smooth", YesOrNo(s.seesThroughSmooth));
   if (s.spectral) identity.emplace_back("--spectral", YesOrNo(*s.spectral));
+  if (s.bands)
+    identity.emplace_back("bands of the spectrum", std::to_string(s.bands->count) + " from " +
+                                                       ToExactString(s.bands->from) + " to " +
+                                                       ToExactString(s.bands->to) + " nm");
   if (s.adaptive) identity.emplace_back("--adaptive", "on, for " + ToExactString(s.adaptive->share) + " of the pixels");
   for (const LayerRequest& request : s.layers)
     identity.emplace_back("the layer " + request.layer.name, request.layer.text);

@@ -122,6 +122,12 @@ PlanDecision ChoosePathGuiding(const RenderSettings& settings, const Integrator&
 }
 
 PlanDecision ChooseSpectral(const RenderScene& scene, const RenderSettings& settings) {
+  if (settings.bands) {
+    char bands[100];
+    std::snprintf(bands, sizeof bands, "%d bands of the spectrum from %g to %g nm are written", settings.bands->count,
+                  settings.bands->from, settings.bands->to);
+    return {"wavelengths", "on", bands};
+  }
   if (settings.spectral)
     return {"wavelengths", *settings.spectral ? "on" : "off", *settings.spectral ? "--spectral" : "--no-spectral"};
   if (!scene.isSpectral) return {"wavelengths", "off", "nothing disperses light: red, green and blue suffice"};

@@ -430,6 +430,13 @@ BuiltScene Builder::Build() {
 
 }  // namespace
 
+std::vector<std::string> BuiltScene::FilmLayers() const {
+  std::vector<std::string> layers = scene.outputs->Names();
+  if (!settings.bands) return layers;
+  for (std::string& layer : LayersOfBands(*settings.bands)) layers.push_back(std::move(layer));
+  return layers;
+}
+
 BuiltScene BuildScene(const SceneDescription& description, const RenderOverrides& overrides, bool robust,
                       Diagnostics& diagnostics, const TypeRegistry& types) {
   return LocateErrors({std::make_shared<const std::string>(description.file.string())},

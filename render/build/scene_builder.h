@@ -19,6 +19,9 @@ struct BuiltScene {
   // Locations of the lights and the light filters in the scene file, by their indices.
   std::vector<FileLocation> lightPlaces, filterPlaces;
   double choiceSeconds = 0;  // that "auto" took to choose the integrator; 0 if it was set
+
+  // The layers of a film that has all that the settings ask for: of light, and of bands of the spectrum.
+  std::vector<std::string> FilmLayers() const;
 };
 
 // Throws located Errors for what cannot be rendered. `robust`: watertight intersection. `types`: the types of lights

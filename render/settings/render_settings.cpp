@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "render/settings/realistic_lens.h"
+#include "spectral/spectral_curve.h"
 
 namespace lampyr {
 
@@ -113,6 +114,31 @@ void ReadCrop(const ParameterList& film, const RenderOverrides& overrides, Rende
   }
 }
 
+// The bands of Film "spectral", or those that the command line asks for.
+void ReadBands(const ParameterList& film, bool isSpectralFilm, const RenderOverrides& overrides,
+               RenderSettings& settings, Diagnostics& diagnostics) {
+  constexpr int usual = 16, most = 512;
+  SpectralBands bands{PositiveInteger(film, "nbuckets", usual, most), film.GetFloat("lambdamin", SpectralCurve::kFirst),
+                      film.GetFloat("lambdamax", SpectralCurve::kLast)};
+  for (const char* name : {"lambdamin", "lambdamax"}) {
+    const double value = name == std::string("lambdamin") ? bands.from : bands.to;
+    if (!(value >= SpectralCurve::kFirst && value <= SpectralCurve::kLast))
+      throw Error(film.WhereOf(name),
+                  "\"" + std::string(name) + "\" must be from 360 to 830 nm, where spectra are known");
+  }
+  if (!(bands.to - bands.from >= 1))
+    throw Error(film.WhereOf("lambdamax"), "\"lambdamax\" must be above \"lambdamin\", by 1 nm at least");
+  if (overrides.spectralBands) bands.count = *overrides.spectralBands;
+  if (!isSpectralFilm && !overrides.spectralBands) return;
+  if (overrides.spectral == false) {
+    if (overrides.spectralBands) throw UsageError("--spectral-bands and --no-spectral exclude each other");
+    diagnostics.Warn(film.Where(), "Film \"spectral\": without bands of the spectrum, because of --no-spectral");
+    return;
+  }
+  settings.bands = bands;
+  settings.spectral = true;
+}
+
 void ReadFilm(const SceneDescription& scene, const RenderOverrides& overrides, RenderSettings& settings,
               Diagnostics& diagnostics) {
   const ParameterList& film = scene.film.parameters;
@@ -124,9 +150,7 @@ void ReadFilm(const SceneDescription& scene, const RenderOverrides& overrides, R
                                                         "\"" + DidYouMean(space, {"camera", "world"}));
     }
     settings.firstHit = space == "world" ? FirstHitSpace::World : FirstHitSpace::Camera;
-  } else if (type == "spectral") {
-    settings.spectral = true;
-  } else if (!type.empty() && type != "rgb") {
+  } else if (!type.empty() && type != "spectral" && type != "rgb") {
     throw Error(scene.film.where,
                 "there is no Film \"" + type + "\"" + DidYouMean(type, {"rgb", "gbuffer", "spectral"}));
   }
@@ -138,7 +162,8 @@ void ReadFilm(const SceneDescription& scene, const RenderOverrides& overrides, R
   for (const std::string& layer : film.GetStrings("layers")) AddLayer(layer, film.WhereOf("layers"), settings);
   for (const std::string& layer : overrides.layers) AddLayer(layer, {}, settings);
   settings.seesThroughSmooth = overrides.seesThroughSmooth;
-  if (overrides.spectral) settings.spectral = overrides.spectral;
+  settings.spectral = overrides.spectral;
+  ReadBands(film, type == "spectral", overrides, settings, diagnostics);
   settings.adaptive = overrides.adaptive;
   // pbrt-v4 writes halves by default. Variances need floats, so halves are written only if the scene asks for them.
   settings.halfPrecision = film.GetBool("savefp16", false);
@@ -155,10 +180,11 @@ void ReadFilm(const SceneDescription& scene, const RenderOverrides& overrides, R
 
   ReadCrop(film, overrides, settings);
   film.Find("diagonal");  // the film's size in mm: read for "realistic" cameras only
-  film.CheckAllUsed({"coordinatesystem", "nbuckets", "lambdamin", "lambdamax"},
-                    {"xresolution", "yresolution", "filename", "savefp16", "sensor", "iso", "whitebalance",
-                     "maxcomponentvalue", "cropwindow", "pixelbounds", "diagonal"},
-                    diagnostics);
+  film.CheckAllUsed(
+      {"coordinatesystem"},
+      {"xresolution", "yresolution", "filename", "savefp16", "sensor", "iso", "whitebalance", "maxcomponentvalue",
+       "cropwindow", "pixelbounds", "diagonal", "nbuckets", "lambdamin", "lambdamax"},
+      diagnostics);
 }
 
 void ReadPixelFilter(const SceneDescription& scene, RenderSettings& settings, Diagnostics& diagnostics) {

@@ -34,6 +34,7 @@ struct RenderOverrides {
   std::optional<AdaptiveSettings> adaptive;
   std::optional<uint64_t> memory;  // limit on the scene's memory, bytes; absent: all available memory
   std::optional<bool> spectral;    // absent: where the scene asks for it, or something disperses light
+  std::optional<int> spectralBands;  // absent: those that the scene asks for
   uint64_t seed = 0;
   int threads = 0;  // of what is done before rendering; 0: all
 };
@@ -60,6 +61,7 @@ struct RenderSettings {
   std::vector<const PixelLayer*> pixelLayers;
   bool seesThroughSmooth = false;            // what is seen first is what mirrors and glass show
   std::optional<bool> spectral;              // light is carried by wavelength; absent: where something disperses it
+  std::optional<SpectralBands> bands;        // of the spectrum, kept besides the picture; absent: none
   std::optional<AdaptiveSettings> adaptive;  // absent: all pixels have the same number of samples
 
   bool Wants(const char* pixelLayer) const;

@@ -13,6 +13,7 @@
 #include "base/large_pages.h"
 #include "base/parallel.h"
 #include "film/metrics.h"
+#include "film/mix.h"
 
 namespace lampyr {
 
@@ -142,6 +143,8 @@ bool PixelSums::IsFinite() const {
 Film::Film(int fullWidth, int fullHeight, const PixelRect& crop, std::vector<std::string> layers)
     : fullWidth_(fullWidth), fullHeight_(fullHeight), crop_(crop), layers_(std::move(layers)) {
   hasHalf_ = !layers_.empty() && layers_.back() == kHalfLayer;
+  bandLayers_ = static_cast<size_t>(std::count_if(layers_.begin(), layers_.end(), IsBandLayer));
+  bandWeights_.resize(3 * bandLayers_);
   const bool inside = crop.x0 >= 0 && crop.y0 >= 0 && crop.x1 <= fullWidth && crop.y1 <= fullHeight;
   if (!inside || crop.Width() <= 0 || crop.Height() <= 0) {
     throw Error("the crop holds no pixel of the " + std::to_string(fullWidth) + " x " + std::to_string(fullHeight) +
@@ -242,7 +245,11 @@ double Film::FourthOfMean(size_t pixel) const {
 
 SplatList Film::MakeSplatList(const PixelFilter& filter, const SensorResponse& sensor) const {
   const Vector2 radius = filter.Radius() - Vector2(0.5f);  // beyond the pixel centres
-  return {Point2(crop_.x0, crop_.y0) + Vector2(0.5f) - filter.Radius(), Point2(crop_.x1, crop_.y1) + radius, sensor};
+  SplatList list(Point2(crop_.x0, crop_.y0) + Vector2(0.5f) - filter.Radius(), Point2(crop_.x1, crop_.y1) + radius,
+                 sensor);
+  if (!HasBands()) return list;
+  list.SetLanes(LanesOfSplats());
+  return list;
 }
 
 void Film::MakeSplats() {
@@ -331,6 +338,7 @@ void Film::Add(const Film& other) {
     for (size_t i = 0; i < biasStages_.size(); ++i) biasStages_[i].Add(other.biasStages_[i]);
   }
   for (size_t c = 0; c < 3; ++c) whiteSum_[c] += other.whiteSum_[c];
+  for (size_t band = 0; band < bandWeights_.size(); ++band) bandWeights_[band] += other.bandWeights_[band];
   whitePasses_ += other.whitePasses_;
   if (other.splats_.empty()) return;
   MakeSplats();
@@ -352,6 +360,7 @@ void Film::CopyFrom(const Film& other, int threads) {
   Copy(layerStages_, other.layerStages_, threads);
   lightPaths_ = other.lightPaths_;
   whiteSum_ = other.whiteSum_;
+  bandWeights_ = other.bandWeights_;
   whitePasses_ = other.whitePasses_;
   splatSpread_ = other.splatSpread_;
   passes_ = other.passes_;
@@ -367,6 +376,9 @@ Film Film::EmptyCopy() const {
 
 void Film::CountWhite(const std::array<double, 3>& white) {
   for (size_t c = 0; c < 3; ++c) whiteSum_[c] += white[c];
+  for (int i = 0; i < 3 && HasBands(); ++i) {
+    if (lanes_.band[i] >= 0) bandWeights_[static_cast<size_t>(lanes_.band[i])] += lanes_.weight[i];
+  }
   ++whitePasses_;
 }
 
@@ -403,6 +415,7 @@ void Film::Save(ByteWriter& bytes) const {
   if (whitePasses_ == 0) return;
   bytes.Value(whiteSum_);
   bytes.Value(whitePasses_);
+  bytes.Values(std::span(bandWeights_));
 }
 
 void Film::Load(ByteReader& bytes) {
@@ -437,6 +450,9 @@ void Film::Load(ByteReader& bytes) {
     film.whitePasses_ = bytes.Value<uint64_t>();
     for (const double white : film.whiteSum_)
       if (!std::isfinite(white)) throw Error("it holds sums that are not finite");
+    bytes.Values(std::span(film.bandWeights_));
+    for (const double weight : film.bandWeights_)
+      if (!std::isfinite(weight)) throw Error("it holds sums that are not finite");
   }
   const bool isFinite =
       std::all_of(film.pixels_.begin(), film.pixels_.end(), [](const PixelSums& pixel) { return pixel.IsFinite(); }) &&
@@ -450,8 +466,15 @@ void Film::Load(ByteReader& bytes) {
 
 Image Film::Develop() const {
   std::vector<std::string> channels = {"R", "G", "B", "variance.R", "variance.G", "variance.B"};
+  // By layer, how many channels it has: three, but for the last bands.
+  std::vector<size_t> widths;
   for (const std::string& layer : layers_) {
-    for (const char* channel : {".R", ".G", ".B"}) channels.push_back(layer + channel);
+    const std::vector<std::string> bands = IsBandLayer(layer) ? Split(layer, ' ') : std::vector<std::string>();
+    for (const std::string& channel : bands) channels.push_back(channel);
+    for (const char* channel : {".R", ".G", ".B"}) {
+      if (bands.empty()) channels.push_back(layer + channel);
+    }
+    widths.push_back(bands.empty() ? 3 : bands.size());
   }
   Image image(crop_.Width(), crop_.Height(), std::move(channels));
   image.offsetX = crop_.x0;
@@ -460,13 +483,18 @@ Image Film::Develop() const {
   image.fullHeight = fullHeight_;
   if (isAdaptive_ && hasHalf_) image.metadata[kHalfShareMetadata] = "0.5";
   const std::array<double, 3> white = {WhiteScale(0), WhiteScale(1), WhiteScale(2)};
+  const size_t firstBand = SplitLayers();
   float* out = image.data.data();
   for (size_t i = 0; i < pixels_.size(); ++i) {
     for (int c = 0; c < 3; ++c) *out++ = ToFiniteFloat(white[static_cast<size_t>(c)] * Value(i, c));
     for (int c = 0; c < 3; ++c)
       *out++ = ToFiniteFloat(std::pow(white[static_cast<size_t>(c)], 2) * VarianceOfMean(i, c));
     for (size_t layer = 0; layer < layers_.size(); ++layer) {
-      for (size_t c = 0; c < 3; ++c) *out++ = ToFiniteFloat(white[c] * LayerValue(i, layer, c));
+      const bool isOfBands = layer >= firstBand && layer < firstBand + bandLayers_;
+      for (size_t c = 0; c < widths[layer]; ++c) {
+        const double scale = isOfBands ? BandScale(3 * (layer - firstBand) + c) : white[c];
+        *out++ = ToFiniteFloat(scale * LayerValue(i, layer, c));
+      }
     }
   }
   return image;

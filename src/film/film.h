@@ -46,6 +46,30 @@ uint32_t SamplesInHalf(uint32_t n);
 // The share of the samples that are in kHalfLayer, where it is not that of SamplesInHalf: a key of Image::metadata.
 inline constexpr const char* kHalfShareMetadata = "lampyr.halfShare";
 
+// Bands of the spectrum that a film keeps besides its picture: equal parts of the range of wavelengths from `from` to
+// `to` (nm).
+struct SpectralBands {
+  int count = 0;
+  double from = 0, to = 0;
+
+  double Width() const { return (to - from) / count; }
+  // That of a wavelength; -1: none.
+  int Of(double wavelength) const;
+  bool operator==(const SpectralBands&) const = default;
+};
+// The layers of a film for those bands: three bands each, as other layers have red, green and blue. The name of such a
+// layer lists its channels, which are named by the middle of the band, as the layout for spectral images has it
+// ([Fichet21]).
+std::vector<std::string> LayersOfBands(const SpectralBands& bands);
+bool IsBandLayer(const std::string& layer);
+
+// Where the lanes of the samples of a pass, which are values at three wavelengths, belong among the bands.
+struct LanesInBands {
+  int band[3] = {-1, -1, -1};     // by lane; -1: none
+  double weight[3] = {0, 0, 0};   // 1 / (density of the wavelength · width of the band)
+  float radiance[3] = {0, 0, 0};  // spectral radiance of 1 in that lane, times the weight
+};
+
 struct PixelRect {
   int x0 = 0, y0 = 0, x1 = 0, y1 = 0;  // half open
   int Width() const { return x1 - x0; }
@@ -131,8 +155,8 @@ class ByteWriter;
 
 class Film {
  public:
-  // `crop`: in pixels of the full image. `layers`: names of the layers; kHalfLayer may be the last. Throws an Error if
-  // the crop is empty or reaches beyond the image.
+  // `crop`: in pixels of the full image. `layers`: names of the layers, LayersOfBands after all others; kHalfLayer may
+  // be the last. Throws an Error if the crop is empty or reaches beyond the image.
   Film(int fullWidth, int fullHeight, const PixelRect& crop, std::vector<std::string> layers = {});
 
   const PixelRect& Crop() const { return crop_; }
@@ -141,12 +165,18 @@ class Film {
   const PixelSums& Pixel(int x, int y) const { return pixels_[Index(x, y)]; }
 
   const std::vector<std::string>& Layers() const { return layers_; }
-  // Layers that samples are split into: without kHalfLayer.
-  size_t SplitLayers() const { return layers_.size() - (hasHalf_ ? 1 : 0); }
+  // Layers that samples are split into: without those of bands and kHalfLayer.
+  size_t SplitLayers() const { return layers_.size() - bandLayers_ - (hasHalf_ ? 1 : 0); }
   bool HasLayers() const { return SplitLayers() > 0; }
   bool HasHalf() const { return hasHalf_; }
   // Adds a camera sample, whose value is added to the pixel itself, to kHalfLayer.
   void AddToHalf(int x, int y, const Color& value, float filterWeight);
+  bool HasBands() const { return bandLayers_ > 0; }
+  // Sets the wavelengths of the next pass, whose samples are added by AddToBands, and its splats, and which is then
+  // counted by CountWhite.
+  void SetLanes(const LanesInBands& lanes) { lanes_ = lanes; }
+  // Adds a camera sample, whose value is added to the pixel itself, to the bands. `value`: by lane.
+  void AddToBands(int x, int y, const Color& value, float filterWeight);
   // Adds the layer parts of a sample whose value is added to the pixel itself, scaled by `scale` and weighted by the
   // filter.
   void AddToLayers(int x, int y, const LayerSample& sample, float scale, float filterWeight,
@@ -263,6 +293,8 @@ class Film {
   double VarianceOfMean(size_t pixel, int channel) const;
   double FourthOfMean(size_t pixel) const;
   double WhiteScale(size_t channel) const;
+  double BandScale(size_t band) const;
+  SplatList::Lanes LanesOfSplats() const;
   void MakeSplats();
 
   int fullWidth_, fullHeight_;
@@ -271,6 +303,9 @@ class Film {
   std::vector<SplatSums> splats_;  // empty without splats
   std::vector<std::string> layers_;
   bool hasHalf_ = false;                           // the last layer is kHalfLayer
+  size_t bandLayers_ = 0;                          // those of bands, which are before it
+  LanesInBands lanes_;                             // of the pass that is being added
+  std::vector<double> bandWeights_;                // per band: Σ LanesInBands::weight over the passes
   std::vector<LayerSum> layerSums_, layerSplats_;  // per layer and pixel; layerSplats_: empty without splats
   uint64_t lightPaths_ = 0;
   std::array<double, 3> whiteSum_{};

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "film/film.h"
 
 namespace lampyr {
 
@@ -41,8 +42,13 @@ Color FactorOf(const std::string& layer, const std::vector<LayerFactor>& factors
   return Color(1.0f);
 }
 
-// Variances of the picture, of which all light has one factor.
-void ScaleVariances(const Color& factor, Image& image) {
+// Variances and bands of the spectrum of the picture, of which all light has one factor. The bands need one without
+// colour.
+void ScaleOthers(const Color& factor, Image& image) {
+  for (size_t channel = 0; channel < image.channels.size(); ++channel) {
+    if (!IsBandLayer(image.channels[channel])) continue;
+    for (size_t i = channel; i < image.data.size(); i += image.channels.size()) image.data[i] *= factor.r;
+  }
   for (size_t c = 0; c < 3; ++c) {
     const int channel = image.ChannelIndex(std::string("variance.") + kChannels[c]);
     if (channel < 0) continue;
@@ -52,10 +58,15 @@ void ScaleVariances(const Color& factor, Image& image) {
   }
 }
 
-Image WithoutVariances(const Image& image) {
+bool IsGray(const Color& factor) {
+  return factor.r == factor.g && factor.g == factor.b;
+}
+
+// Without what is known of the picture as a whole alone.
+Image Without(const Image& image, bool variances, bool bands) {
   std::vector<std::string> kept;
   for (const std::string& channel : image.channels) {
-    if (!channel.starts_with("variance.")) kept.push_back(channel);
+    if (!(variances && channel.starts_with("variance.")) && !(bands && IsBandLayer(channel))) kept.push_back(channel);
   }
   Image result = ChannelsOf(image, kept);
   result.metadata = image.metadata;
@@ -146,9 +157,11 @@ Image MixLayers(const Image& image, const std::vector<LayerFactor>& factors) {
   }
   for (const std::string& group : groups)
     isUniform = isUniform && FactorOf(group, factors) == FactorOf(groups.front(), factors);
-  if (!isUniform) return WithoutVariances(mixed);
-  if (mixesGroups) ScaleVariances(FactorOf(groups.front(), factors), mixed);
-  return mixed;
+  if (!isUniform) return Without(mixed, true, true);
+  if (!mixesGroups) return mixed;
+  const Color factor = FactorOf(groups.front(), factors);
+  ScaleOthers(factor, mixed);
+  return IsGray(factor) ? mixed : Without(mixed, false, true);
 }
 
 }  // namespace lampyr

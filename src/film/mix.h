@@ -24,7 +24,8 @@ std::vector<std::string> GroupLayers(const Image& image);
 // The picture with each of the layers times its factor. Light groups are added up, so that groups at 0 leave nothing;
 // of other layers, and in denoised pictures, the picture gets the difference. The groups themselves are scaled, too, so
 // that the result can be mixed again; other layers stay as they are, and layers of variance stay only where all groups
-// have one factor. Throws an Error for a layer that the image does not have, or that is named twice.
+// have one factor, bands of the spectrum only where that has no colour. Throws an Error for a layer that the image does
+// not have, or that is named twice.
 Image MixLayers(const Image& image, const std::vector<LayerFactor>& factors);
 
 }  // namespace lampyr

@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "film/sensor_response.h"
@@ -37,6 +38,15 @@ class SplatList {
   SplatList(const Point2& reachMin, const Point2& reachMax, const SensorResponse& sensor)
       : reachMin_(reachMin), reachMax_(reachMax), sensor_(sensor) {}
 
+  // From now on a splat is added to the bands of its lanes, too: of lane i to channel channels[i] of layer layers[i],
+  // as factors[i] of the value; factor 0: none.
+  struct Lanes {
+    uint32_t layers[3] = {0, 0, 0};
+    int channels[3] = {0, 0, 0};
+    float factors[3] = {0, 0, 0};
+  };
+  void SetLanes(const Lanes& lanes) { lanes_ = lanes; }
+
   void Clear() {
     splats_.clear();
     parts_.clear();
@@ -54,6 +64,8 @@ class SplatList {
     const Color scaled = value * sensor_.Scale(value);
     if (!scaled.IsValid()) return false;
     splats_.push_back({film, sensor_.Balance(scaled), paths_ - 1});
+    if (lanes_) [[unlikely]]
+      AddToBands(film, scaled);
     return true;
   }
   // Adds the share of a valid splat that is in a layer.
@@ -67,8 +79,19 @@ class SplatList {
   uint32_t Paths() const { return paths_; }
 
  private:
+  void AddToBands(const Point2& film, const Color& value) {
+    const float lanes[3] = {value.r, value.g, value.b};
+    for (int i = 0; i < 3; ++i) {
+      if (lanes_->factors[i] == 0 || lanes[i] == 0) continue;
+      float channels[3] = {0, 0, 0};
+      channels[lanes_->channels[i]] = lanes_->factors[i] * lanes[i];
+      parts_.push_back({film, Color(channels[0], channels[1], channels[2]), lanes_->layers[i]});
+    }
+  }
+
   Point2 reachMin_, reachMax_;
   SensorResponse sensor_;
+  std::optional<Lanes> lanes_;
   uint32_t paths_ = 0;
   std::vector<Splat> splats_;
   std::vector<SplatPart> parts_;

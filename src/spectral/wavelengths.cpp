@@ -89,15 +89,16 @@ const Tables& TheTables() {
   return tables;
 }
 
-// The density of wavelengths, proportional to 1 / cosh²(slope (λ - middle)). It is smooth: then a regular grid of a few
-// places integrates the smooth functions that spectra mostly are, which a density in proportion to the weights, with
-// their three peaks, would spoil. Of this family the variance of a single wavelength is least here.
-class Density {
+// A smooth density of wavelengths, proportional to 1 / cosh²(slope (λ - middle)). It is smooth: then a regular grid of
+// a few places integrates the smooth functions that spectra mostly are, which a density in proportion to the weights,
+// with their three peaks, would spoil. Of this family the variance of a single wavelength is least here.
+class SmoothDensity {
  public:
   double At(double wavelength) const {
     const double c = std::cosh(kSlope * (wavelength - kMiddle));
     return kSlope / ((high_ - low_) * c * c);
   }
+  double Below(double wavelength) const { return (std::tanh(kSlope * (wavelength - kMiddle)) - low_) / (high_ - low_); }
   // The wavelength below which the integral is u.
   double Invert(double u) const {
     const double wavelength = kMiddle + std::atanh(low_ + u * (high_ - low_)) / kSlope;
@@ -109,6 +110,33 @@ class Density {
   static constexpr double kMiddle = 535, kSlope = 0.009;
   double low_ = std::tanh(kSlope * (SpectralCurve::kFirst - kMiddle)),
          high_ = std::tanh(kSlope * (SpectralCurve::kLast - kMiddle));
+};
+
+// The density of wavelengths: the smooth one, or the mean of it and of an even one over a range.
+class Density {
+ public:
+  explicit Density(const std::optional<WavelengthRange>& even) : even_(even) {}
+
+  double At(double wavelength) const {
+    if (!even_) return smooth_.At(wavelength);
+    const bool isInside = wavelength >= even_->from && wavelength <= even_->to;
+    return 0.5 * (smooth_.At(wavelength) + (isInside ? 1 / (even_->to - even_->from) : 0.0));
+  }
+  double Invert(double u) const {
+    if (!even_) return smooth_.Invert(u);
+    double low = SpectralCurve::kFirst, high = SpectralCurve::kLast;
+    constexpr int enough = 60;  // halvings, beyond the precision of a double
+    for (int i = 0; i < enough; ++i) {
+      const double middle = 0.5 * (low + high);
+      const double ofEven = std::clamp((middle - even_->from) / (even_->to - even_->from), 0.0, 1.0);
+      (0.5 * (smooth_.Below(middle) + ofEven) < u ? low : high) = middle;
+    }
+    return 0.5 * (low + high);
+  }
+
+ private:
+  SmoothDensity smooth_;
+  std::optional<WavelengthRange> even_;
 };
 
 double FractionOf(double x) {
@@ -126,14 +154,27 @@ Color UpsamplingBasis(double wavelength) {
   return {static_cast<float>(red), static_cast<float>(std::max(1 - red - blue, 0.0)), static_cast<float>(blue)};
 }
 
-Wavelengths::Wavelengths(double u) {
+double WhiteSpectrum(double wavelength) {
+  static const double scale = [] {
+    double observer = 0, white = 0;
+    for (double at = kLambdaMin; at <= kLambdaMax; at += 1) {
+      observer += ColorMatching(at).y;
+      white += ColorMatching(at).y * DaylightD65(at);
+    }
+    return observer / white;
+  }();
+  return scale * DaylightD65(wavelength);
+}
+
+Wavelengths::Wavelengths(double u, const std::optional<WavelengthRange>& even) {
   const Tables& tables = TheTables();
-  const Density density;
+  const Density density(even);
   for (int lane = 0; lane < kLanes; ++lane) {
     const double wavelength = density.Invert(std::clamp((lane + u) / kLanes, 0.0, 1.0));
     wavelengths_[static_cast<size_t>(lane)] = wavelength;
     basis_[static_cast<size_t>(lane)] = UpsamplingBasis(wavelength);
     const double perDensity = 1 / (kLanes * density.At(wavelength));
+    perDensity_[static_cast<size_t>(lane)] = perDensity;
     for (int c = 0; c < 3; ++c) {
       const double weight = tables.rgb[c].At(wavelength) * perDensity;
       toRgb_[lane][c] = static_cast<float>(weight);
@@ -145,15 +186,15 @@ Wavelengths::Wavelengths(double u) {
 // The van der Corput sequence would be as regular, but Sobol samples of the pixels are made of the same bits: pixels
 // would see one half of the spectrum in one half of their area. The passes from 2^n to 2^(n+1) therefore take the
 // places between those of before in another order, by the golden section.
-Wavelengths Wavelengths::OfPass(uint64_t seed, uint64_t pass) {
+Wavelengths Wavelengths::OfPass(uint64_t seed, uint64_t pass, const std::optional<WavelengthRange>& even) {
   constexpr double kGolden = 0.6180339887498949, kPerSeed = 0.7548776662466927;
   const double shift = FractionOf(kPerSeed * static_cast<double>(1 + seed % (uint64_t{1} << 20)));
-  if (pass == 0) return Wavelengths(shift);
+  if (pass == 0) return Wavelengths(shift, even);
   const uint64_t places = std::bit_floor(pass), number = pass - places;
   // The odd step nearest to places · golden section visits all places once.
   const auto step = static_cast<uint64_t>(kGolden * static_cast<double>(places)) | 1;
   const uint64_t place = number * step % places;
-  return Wavelengths(FractionOf(shift + (static_cast<double>(place) + 0.5) / static_cast<double>(places)));
+  return Wavelengths(FractionOf(shift + (static_cast<double>(place) + 0.5) / static_cast<double>(places)), even);
 }
 
 Color Wavelengths::FromRgb(const Color& rgb) const {

@@ -10,6 +10,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include <glm/mat3x3.hpp>
 
@@ -18,17 +19,25 @@
 
 namespace lampyr {
 
+// A range of wavelengths, nm, within [SpectralCurve::kFirst, SpectralCurve::kLast].
+struct WavelengthRange {
+  double from = 0, to = 0;
+};
+
 class Wavelengths {
  public:
   static constexpr int kLanes = 3;
 
   // Those at u, in [0,1): u/3, (u + 1)/3 and (u + 2)/3 by the inverse of the integral of a smooth density that is large
-  // where the eye sees much.
-  explicit Wavelengths(double u);
+  // where the eye sees much. `even`: a range that is wanted as a spectrum, over which half of the density is even.
+  explicit Wavelengths(double u, const std::optional<WavelengthRange>& even = std::nullopt);
   // Those of a pass, with an order that is regular after 2^n passes. `seed` moves all of them.
-  static Wavelengths OfPass(uint64_t seed, uint64_t pass);
+  static Wavelengths OfPass(uint64_t seed, uint64_t pass, const std::optional<WavelengthRange>& even = std::nullopt);
 
   double operator[](int lane) const { return wavelengths_[static_cast<size_t>(lane)]; }  // nm
+
+  // 1 / (density of the wavelength of a lane), nm: the sum over lanes of f · PerDensity is an estimate of ∫ f dλ.
+  double PerDensity(int lane) const { return perDensity_[static_cast<size_t>(lane)]; }
 
   // A colour in linear Rec. 709, of a surface or of light, at these wavelengths. Exactly gray stays so. Components are
   // convex combinations of the colour's.
@@ -41,11 +50,14 @@ class Wavelengths {
   const std::array<double, 3>& White() const { return white_; }
 
  private:
-  std::array<double, kLanes> wavelengths_{};
+  std::array<double, kLanes> wavelengths_{}, perDensity_{};
   std::array<Color, kLanes> basis_{};  // by lane: weights of red, green and blue
   glm::mat3 toRgb_{1.0f};
   std::array<double, 3> white_{};
 };
+
+// The spectrum of the white of the picture, which is 1 in every lane: D65, with ∫ S ȳ dλ = ∫ ȳ dλ.
+double WhiteSpectrum(double wavelength);
 
 // The colour in linear Rec. 709 of light that is `curve` relative to D65; components may be negative.
 Vector3d ColorOf(const SpectralCurve& relativeToWhite);

@@ -914,6 +914,57 @@ TEST_F(Cli, DiffWritesTheErrorImage) {
   EXPECT_GE(error.ChannelIndex("relative.Y"), 0);
   EXPECT_EQ(Run("diff a.exr b.exr -o error.png").exitCode, 2);
   EXPECT_EQ(Run("diff a.exr b.exr -o none/error.exr").exitCode, 2);
+  const std::string before = Read("a.exr");
+  for (const char* output : {"a.exr", "./b.exr"}) {
+    const Outcome outcome = Run(std::string("diff a.exr b.exr -o ") + output);
+    EXPECT_EQ(outcome.exitCode, 2);
+    EXPECT_NE(outcome.output.find("it would be lost"), std::string::npos) << outcome.output;
+  }
+  EXPECT_EQ(Read("a.exr"), before);
+}
+
+// Bands of the spectrum are in the picture, in those of parts that are merged, and after a render goes on.
+TEST_F(Cli, BandsOfTheSpectrum) {
+  std::string text = kScene;
+  text.replace(text.find("\"rgb\""), 5, "\"spectral\" \"float lambdamin\" 400 \"float lambdamax\" 700");
+  Write("bands.pbrt", text);
+  const auto channelsOf = [&](const std::string& name) {
+    std::vector<std::string> bands;
+    for (const std::string& channel : ReadImage(folder_ / name).channels) {
+      if (channel.starts_with("S0.")) bands.push_back(channel);
+    }
+    return bands;
+  };
+  ASSERT_EQ(Run("render bands.pbrt -o a.exr --quiet").exitCode, 0);
+  EXPECT_EQ(channelsOf("a.exr").size(), 16u);
+  EXPECT_EQ(channelsOf("a.exr").front(), "S0.409,375nm");
+  EXPECT_EQ(channelsOf("a.exr").back(), "S0.690,625nm");
+  EXPECT_EQ(ReadImage(folder_ / "a.exr").metadata.at("spectralLayoutVersion"), "1.0");
+  ASSERT_EQ(Run("render scene.pbrt -o b.exr --quiet --spectral-bands 4").exitCode, 0);
+  EXPECT_EQ(channelsOf("b.exr"),
+            (std::vector<std::string>{"S0.418,750nm", "S0.536,250nm", "S0.653,750nm", "S0.771,250nm"}));
+  ASSERT_EQ(Run("render bands.pbrt -o none.exr --quiet --no-spectral").exitCode, 0);
+  EXPECT_TRUE(channelsOf("none.exr").empty());
+  EXPECT_EQ(Run("render bands.pbrt -o none.exr --no-spectral --spectral-bands 4").exitCode, 2);
+  EXPECT_NE(Run("plan bands.pbrt").output.find("16 bands of the spectrum from 400 to 700 nm"), std::string::npos);
+  // Parts, and a render that goes on.
+  const std::string options = " --quiet --integrator bdpt --no-guide-paths --spp ";
+  ASSERT_EQ(Run("render bands.pbrt -o whole.exr" + options + "8").exitCode, 0);
+  for (const char* part : {"1/2", "2/2"})
+    ASSERT_EQ(
+        Run("render bands.pbrt -o part" + std::string(1, part[0]) + ".exr --shard " + part + options + "8").exitCode,
+        0);
+  ASSERT_EQ(Run("merge part1.exr part2.exr -o merged.exr --quiet").exitCode, 0);
+  EXPECT_EQ(channelsOf("merged.exr"), channelsOf("whole.exr"));
+  const Image whole = ReadImage(folder_ / "whole.exr"), merged = ReadImage(folder_ / "merged.exr");
+  for (size_t i = 0; i < whole.data.size(); ++i)
+    ASSERT_NEAR(merged.data[i], whole.data[i], 1e-5f * (1 + std::abs(whole.data[i])));
+  ASSERT_EQ(Run("render bands.pbrt -o on.exr --resume" + options + "3").exitCode, 0);
+  ASSERT_EQ(Run("render bands.pbrt -o on.exr --resume" + options + "8").exitCode, 0);
+  EXPECT_EQ(ReadImage(folder_ / "on.exr").data, whole.data);
+  const Outcome other = Run("render bands.pbrt -o on.exr --resume --spectral-bands 5" + options + "8");
+  EXPECT_EQ(other.exitCode, 2);
+  EXPECT_NE(other.output.find("bands of the spectrum"), std::string::npos) << other.output;
 }
 
 TEST_F(Cli, AnswersThatCannotBeWrittenAreAFailure) {

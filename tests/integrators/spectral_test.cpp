@@ -7,6 +7,8 @@
 
 #include "base/byte_stream.h"
 #include "scene/spectrum.h"
+#include "spectral/cie.h"
+#include "spectral/color_space.h"
 #include "support/render_scene.h"
 
 namespace lampyr::test {
@@ -374,6 +376,82 @@ TEST(Spectral, PicturesDoNotDependOnThreads) {
                      three = RenderText(Caustic(integrator), 6, overrides, 3);
       EXPECT_EQ(one.image.data, three.image.data) << integrator;
       EXPECT_EQ(one.outcome.counts.droppedSamples, 0u) << integrator;
+    }
+  }
+}
+
+// What the observer sees of the bands of a picture, on average over its pixels.
+Vector3d ColourOfBands(const Image& image, const SpectralBands& bands) {
+  Vector3d observed(0.0);
+  constexpr int parts = 50;
+  for (int band = 0; band < bands.count; ++band) {
+    const double mean = MeanOfChannel(image, static_cast<size_t>(6 + band));
+    for (int k = 0; k < parts; ++k) {
+      const double at = bands.from + (band + (k + 0.5) / parts) * bands.Width();
+      observed += mean * ColorMatching(at) * bands.Width() / (parts * 106.857);
+    }
+  }
+  return XyzToRec709(observed);
+}
+
+// A black body lights a surface whose reflectance rises with the wavelength: bands of the picture are those of the
+// product, in every integrator, and the picture is what the observer sees of them.
+TEST(Spectral, BandsAreTheSpectrum) {
+  const auto scene = [](const std::string& integrator) {
+    return "Film \"spectral\" \"integer xresolution\" 8 \"integer yresolution\" 8 \"integer nbuckets\" 20\n"
+           "LookAt 0 2 0.01  0 0 0  0 0 -1 Camera \"orthographic\" \"float screenwindow\" [-0.3 0.3 -0.3 0.3]\n"
+           "Integrator \"" +
+           integrator +
+           "\" \"integer maxdepth\" 3\nWorldBegin\n"
+           "AttributeBegin Translate 0 2.5 0 Rotate 90 1 0 0 AreaLightSource \"diffuse\" \"blackbody L\" 3000 "
+           "Shape \"disk\" \"float radius\" 0.5 AttributeEnd\n"
+           "Material \"diffuse\" \"spectrum reflectance\" [360 0.1 830 0.9]\n"
+           "Shape \"bilinearmesh\" \"point3 P\" [-1 0 -1  1 0 -1  -1 0 1  1 0 1]\n";
+  };
+  const auto expected = [](double wavelength) {
+    const double x = wavelength * 1e-9, c = 1.438776877e-2;
+    return std::pow(560e-9 / x, 5) * std::expm1(c / (560e-9 * 3000)) / std::expm1(c / (x * 3000)) *
+           (0.1 + 0.8 * (wavelength - 360) / 470);
+  };
+  for (const char* integrator : {"path", "light", "bdpt", "vcm", "sppm"}) {
+    for (const bool isAdaptive : {false, true}) {
+      if (isAdaptive && std::string(integrator) == "light") continue;
+      SCOPED_TRACE(integrator);
+      RenderOverrides overrides;
+      if (isAdaptive) overrides.adaptive.emplace();
+      // As many light paths as pixels.
+      if (integrator == std::string("light")) overrides.width = overrides.height = 64;
+      const Image image = RenderText(scene(integrator), 256, overrides, 2).image;
+      ASSERT_EQ(image.channels.size(), 26u);
+      double sums[2] = {0, 0};
+      const auto mean = [&](int band) { return MeanOfChannel(image, static_cast<size_t>(6 + band)); };
+      const SpectralBands bands{20, 360, 830};
+      const auto middle = [&](int band) { return bands.from + (band + 0.5) * bands.Width(); };
+      for (int band = 0; band < bands.count; ++band) {
+        sums[0] += mean(band);
+        sums[1] += expected(middle(band));
+      }
+      for (int band = 0; band < bands.count; ++band) {
+        EXPECT_NEAR(mean(band) / sums[0] * sums[1] / expected(middle(band)), 1, 0.04) << middle(band);
+      }
+      const Vector3d seen = ColourOfBands(image, bands);
+      for (int c = 0; c < 3; ++c)
+        EXPECT_NEAR(seen[c], MeanOfChannel(image, static_cast<size_t>(c)), 0.03 * seen.y) << c;
+    }
+  }
+}
+
+// Bands hold all of the light, and at its wavelengths, where glass disperses it: the caustic that is splatted, merged
+// and connected.
+TEST(Spectral, BandsOfDispersedLight) {
+  for (const char* integrator : {"light", "bdpt", "vcm", "sppm"}) {
+    RenderOverrides overrides;
+    overrides.spectralBands = 47;
+    const Image image = RenderText(Caustic(integrator), 128, overrides, 2).image;
+    const Vector3d seen = ColourOfBands(image, {47, 360, 830});
+    for (int c = 0; c < 3; ++c) {
+      const double mean = MeanOfChannel(image, static_cast<size_t>(c));
+      EXPECT_NEAR(seen[c], mean, 0.01 * mean) << integrator << " " << c;
     }
   }
 }

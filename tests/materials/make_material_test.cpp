@@ -115,6 +115,12 @@ TEST_F(MakeMaterialTest, GlassHasTheIndexGiven) {
     EXPECT_NEAR(-sample.wi.x, 0.6f / sample.eta, 1e-5f);
   }
   EXPECT_THROW(Create("dielectric", {Float("eta", -1)}), Error);
+  EXPECT_TRUE(diagnostics_.Warnings().empty());
+  Create("dielectric", {Rgb("eta", 1.5, 1.5, 1.5)});
+  EXPECT_TRUE(diagnostics_.Warnings().empty());
+  Create("dielectric", {Rgb("eta", 1.5, 1.51, 1.52)});
+  ASSERT_EQ(diagnostics_.Warnings().size(), 1u);
+  EXPECT_THAT(diagnostics_.Warnings()[0], HasSubstr("one index for all colours"));
 }
 
 TEST_F(MakeMaterialTest, CopperIsRedAndReflectanceIsMet) {

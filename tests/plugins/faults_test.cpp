@@ -187,6 +187,18 @@ TEST_F(MisbehavingTypes, LightsThatThrowAtWork) {
   ExpectFails("throws-in-photons", "sppm", "something thrown that is none");
 }
 
+// Paths that start nowhere are not traced: the picture is written, and said to be wrong.
+TEST_F(MisbehavingTypes, LightsWhosePathsStartNowhere) {
+  Write("scene.pbrt", SceneWith("LightSource \"lost\" LightSource \"point\""));
+  for (const char* integrator : {"light", "bdpt", "vcm", "sppm"}) {
+    SCOPED_TRACE(integrator);
+    ExpectSays(Run("render scene.pbrt --spp 4 --integrator " + std::string(integrator) + With()), 1,
+               {"error: ", "the picture is wrong, and its error is unknown"});
+    EXPECT_TRUE(Exists("out.exr"));
+    fs::remove(folder_ / "out.exr");
+  }
+}
+
 // A light that throws where the scene is built: that scene cannot be used.
 TEST_F(MisbehavingTypes, LightsThatThrowWhileTheSceneIsBuilt) {
   Write("scene.pbrt", SceneWith("LightSource \"throws-in-bounds\" LightSource \"point\""));

@@ -19,7 +19,7 @@ struct Rendered {
 
 inline Rendered RenderBuilt(const BuiltScene& built, int samplesPerPixel, int threads) {
   const std::unique_ptr<Integrator> integrator = MakeIntegrator(built.scene, built.settings);
-  Film film(built.settings.width, built.settings.height, built.settings.crop, built.scene.outputs->Names());
+  Film film(built.settings.width, built.settings.height, built.settings.crop, built.FilmLayers());
   StopConditions stop;
   stop.samplesPerPixel = samplesPerPixel;
   Rendered rendered;

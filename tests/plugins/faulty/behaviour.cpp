@@ -1,4 +1,5 @@
 // A plugin that loads, and whose types then misbehave: factories that give no light, and lights that throw at work.
+#include <limits>
 #include <stdexcept>
 
 #include "forwarding_light.h"
@@ -25,6 +26,20 @@ std::shared_ptr<const Light> MakeRect(const ParameterList& parameters, const Lig
 
 // A rect, but for the place where it throws.
 enum class Where { Samples, Photons, Surface, Bounds };
+
+// A rect whose paths start nowhere, in all else a rect.
+class Lost final : public test::ForwardingLight {
+ public:
+  Lost(const ParameterList& parameters, const LightBuildContext& build)
+      : ForwardingLight(MakeRect(parameters, build)) {}
+
+  std::optional<EmissionSample> GenerateEmission(const LightContext& context) const override {
+    auto sample = ForwardingLight::GenerateEmission(context);
+    if (sample) sample->position.x = std::numeric_limits<float>::quiet_NaN();
+    return sample;
+  }
+};
+
 template <Where kWhere>
 class Throwing final : public test::ForwardingLight, private IntersectableLight {
  public:
@@ -81,6 +96,10 @@ PluginTypes Types() {
       ThrowingType<Where::Photons>("throws-in-photons"),
       ThrowingType<Where::Surface>("throws-in-surface"),
       ThrowingType<Where::Bounds>("throws-in-bounds"),
+      Type("lost",
+           [](const ParameterList& parameters, const LightBuildContext& build) -> std::unique_ptr<Light> {
+             return std::make_unique<Lost>(parameters, build);
+           }),
   };
   FilterType filter;
   filter.name = "filter-throws";
