@@ -26,10 +26,13 @@ void PrintPilot(const RenderPilot& pilot, const Settings& values) {
     const UsedCounts used = candidate.counts.Mean(CountedTechniquesOf(candidate.integrator, values));
     char on[16] = "";
     if (used.continuing < 1) std::snprintf(on, sizeof on, "  on %.0f%%", 100 * used.continuing);
-    std::printf("%-5s %5g %4.0f%% %7.3g %3.0f%% %5.2f %7.3g%s%s%s%s\n", candidate.integrator.c_str(), used.lightPaths,
+    char lights[24] = "";
+    if (candidate.counts.lightSamples > 1)
+      std::snprintf(lights, sizeof lights, "  %d lights", candidate.counts.lightSamples);
+    std::printf("%-5s %5g %4.0f%% %7.3g %3.0f%% %5.2f %7.3g%s%s%s%s%s\n", candidate.integrator.c_str(), used.lightPaths,
                 100 * used.merging, candidate.error, 100 * candidate.uncertainty / candidate.error,
                 candidate.cost * 1e-3, candidate.error * candidate.cost * 1e-3, missing,
-                candidate.counts.startsWide ? "  wide" : "", on, &candidate == pilot.Best() ? "  <" : "");
+                candidate.counts.startsWide ? "  wide" : "", on, lights, &candidate == pilot.Best() ? "  <" : "");
   }
 }
 

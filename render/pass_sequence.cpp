@@ -13,6 +13,7 @@ namespace lampyr {
 PassSequence::PassSequence(const RenderScene& scene, const Integrator& integrator, const RenderSettings& settings,
                            int threads, Film& film, TechniqueImages* techniques, uint32_t firstSample)
     : scene_(scene),
+      lighting_(scene.lighting->Selecting(settings.LightSampler(), settings.LightSamples())),
       integrator_(integrator),
       settings_(settings),
       filter_(settings.filter),
@@ -60,8 +61,8 @@ void PassSequence::Add(uint32_t done, uint32_t count) {
 void PassSequence::AddPass(uint32_t done, uint32_t count) {
   // The lighting with what has been learned so far; it does not change during the pass.
   view_ = scene_;
-  view_.lighting = std::make_shared<const LightingServices>(
-      scene_.lighting->With(learning_.get(), guiding_ ? guiding_->Guide() : nullptr));
+  view_.lighting =
+      std::make_shared<const LightingServices>(lighting_.With(learning_.get(), guiding_ ? guiding_->Guide() : nullptr));
   view_.guide = paths_ ? paths_->Guide() : nullptr;
   PathLearning* recorded = RecordsPathsAfter(done) ? paths_.get() : nullptr;
   const RenderCounts counts = RenderPass(view_, integrator_, settings_, filter_, firstSample_ + done, count, threads_,

@@ -65,7 +65,8 @@ class PassSequence {
   void MakePhotonStore();
 
   const RenderScene& scene_;
-  RenderScene view_;  // as the current pass sees it, with what has been learned
+  const LightingServices lighting_;  // of the scene, with lights selected as the settings say
+  RenderScene view_;                 // as the current pass sees it, with what has been learned
   const Integrator& integrator_;
   const RenderSettings& settings_;
   PixelFilter filter_;

@@ -78,6 +78,12 @@ struct PhotonSettings {
   bool guided = true;      // emission guiding, if it reduces the noise enough (emission_learning.h)
 };
 
+// How much the samples of several lights at a vertex differ: what choosing one of them would add to the variance.
+struct LightSpread {
+  double squares = 0;                  // Σ over vertices of the variance of one sample, chosen at random, of all there
+  uint64_t vertices = 0, samples = 0;  // where lights were chosen, and how many
+};
+
 // Inputs and outputs of one sample, besides the radiance that it returns.
 struct SampleContext {
   const RenderScene& scene;
@@ -111,6 +117,7 @@ struct SampleContext {
   // Receives an estimate of what merging photons within a radius adds to the expectation of the returned radiance
   // (photon/merge_bias.h). Null: not wanted.
   Color* mergeBias = nullptr;
+  LightSpread* lightSpread = nullptr;  // may be null
 
   SampleContext With(Sampler& other) const {
     return {scene,    other,       time,      counts,        layers,     splats,

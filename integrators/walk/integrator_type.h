@@ -61,9 +61,10 @@ inline const Setting kLightSampler{.name = "light-sampler",
                                    .choices = {"uniform", "power", "tree", "exhaustive", "bvh"}};
 inline const Setting kLightSamples{.name = "light-samples",
                                    .help = "Most lights to choose at each vertex; fewer where few matter",
-                                   .fallback = int64_t{1},
+                                   .fallback = int64_t{0},
                                    .least = 1,
-                                   .most = LightChoices::kMost};
+                                   .most = LightChoices::kMost,
+                                   .fallbackText = "1, or what auto decides"};
 inline const Setting kLearnLights{
     .name = "learn-lights", .help = "Let the light tree learn which lights are occluded where", .fallback = false};
 inline const Setting kGuidePaths{

@@ -55,6 +55,34 @@ Color SampleLight(const SampleContext& context, const NextEventSettings& setting
   return contribution;
 }
 
+namespace {
+
+// The same as SampleDirectLight, for SampleContext::lightSpread. One of n samples x_i would count n times: its variance
+// is n Σ x_i² - (Σ x_i)².
+[[gnu::noinline]] Color SampleAndCompare(const SampleContext& context, const NextEventSettings& settings,
+                                         const PathVertex& vertex, float uSelect, const Point2& u, const Color& soFar,
+                                         NextEventVisitor& visitor) {
+  Color sum;
+  double squares = 0;
+  uint64_t count = 0;
+  ForChosenLights(*context.scene.lighting, vertex.receiver, uSelect, u,
+                  [&](const SelectedLight& light, const Point2& own) {
+                    const Color found = SampleLight(context, settings, vertex, light, own, soFar + sum, visitor);
+                    const auto value = static_cast<double>(found.Average());
+                    squares += value * value;
+                    ++count;
+                    sum += found;
+                  });
+  LightSpread& spread = *context.lightSpread;
+  const auto whole = static_cast<double>(sum.Average());
+  spread.squares += static_cast<double>(count) * squares - whole * whole;
+  spread.vertices += count > 0 ? 1 : 0;
+  spread.samples += count;
+  return sum;
+}
+
+}  // namespace
+
 Color SampleDirectLight(const SampleContext& context, const NextEventSettings& settings, const PathVertex& vertex,
                         int index, const Color& soFar, NextEventVisitor& visitor) {
   Sampler& sampler = context.sampler;
@@ -62,6 +90,8 @@ Color SampleDirectLight(const SampleContext& context, const NextEventSettings& s
   const float uSelect = sampler.Get1D();
   const Point2 u = sampler.Get2D();
   Color sum;
+  if (context.lightSpread) [[unlikely]]
+    return SampleAndCompare(context, settings, vertex, uSelect, u, soFar, visitor);
   ForChosenLights(*context.scene.lighting, vertex.receiver, uSelect, u,
                   [&](const SelectedLight& light, const Point2& own) {
                     sum += SampleLight(context, settings, vertex, light, own, soFar + sum, visitor);

@@ -42,8 +42,8 @@ struct RenderScene {
   std::shared_ptr<const Wavelengths> wavelengths;
   std::vector<std::shared_ptr<const Material>> tunedAfterWide;  // WalkSettings::materialsAfterWide at the wavelengths
   bool hasMotion = false;  // something moves while the shutter is open; otherwise all rays have time 0
-  // There are flat curves that are no fibres. They turn to the ray that meets them, so that paths from lights meet other
-  // surfaces than paths from the camera.
+  // There are flat curves that are no fibres. They turn to the ray that meets them, so that paths from lights meet
+  // other surfaces than paths from the camera.
   bool hasTurningCurves = false;
 
   // The scene at the wavelengths of a pass. `afterWide`: materials behind a wide scattering, or none.

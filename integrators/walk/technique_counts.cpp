@@ -41,6 +41,7 @@ std::string TechniqueCounts::Describe(const std::string& integrator) const {
   if (const double on = continuing.Mean(); on < 1)
     text += ", " + std::to_string(std::lround(100 * on)) +
             " % of camera paths continuing beyond their first vertex that is not smooth";
+  if (lightSamples > 1) text += ", up to " + std::to_string(lightSamples) + " lights chosen at a vertex";
   return text;
 }
 
@@ -67,6 +68,7 @@ std::string TechniqueCounts::Fingerprint() const {
     hash.Add(bytes);
   }
   if (startsWide) hash.Add("wide");
+  if (lightSamples != 1) hash.Add("lights " + std::to_string(lightSamples));
   return hash.Hex();
 }
 

@@ -59,11 +59,13 @@ struct TechniqueCounts {
   // Merging starts with discs of twice the radius, four times the area, which shrink to the usual ones
   // (photon/photon_pass.h): as many more merges as of that many more light paths, and a wider blur, for a time.
   bool startsWide = false;
+  // The most lights that are chosen at a vertex for next-event estimation.
+  int lightSamples = 1;
 
   bool HasMasks() const {
     return !connecting.Values().empty() || !merging.Values().empty() || !continuing.Values().empty();
   }
-  bool IsDefault() const { return log2LightPaths == 0 && !HasMasks() && !startsWide; }
+  bool IsDefault() const { return log2LightPaths == 0 && !HasMasks() && !startsWide && lightSamples == 1; }
   // "vcm, a light path for 4 camera paths, merging in 30 % of the picture".
   std::string Describe(const std::string& integrator) const;
   UsedCounts At(const Point2& film, const CountedTechniques& techniques) const;

@@ -41,9 +41,10 @@ class FixedCountSelector final : public LightSelector {
     }
   }
 
-  void Select(const Receiver& receiver, const LightLearning* learned, double u, LightChoices& choices) const override {
+  void Select(const Receiver& receiver, const SelectionSettings& settings, double u,
+              LightChoices& choices) const override {
     choices.count = 0;
-    if (others_) others_->Select(receiver, learned, u, choices);
+    if (others_) others_->Select(receiver, OfOthers(settings), u, choices);
     for (int i = 0; i < choices.count; ++i) choices.of[i].light = otherLights_[choices.of[i].light];
     for (const Fixed& fixed : fixed_) {
       const int count = counts_[fixed.light];
@@ -51,10 +52,10 @@ class FixedCountSelector final : public LightSelector {
     }
   }
 
-  PdfDiscrete Probability(const Receiver& receiver, const LightLearning* learned, uint32_t light,
+  PdfDiscrete Probability(const Receiver& receiver, const SelectionSettings& settings, uint32_t light,
                           int patch) const override {
     if (counts_[light] == 0)
-      return others_ ? others_->Probability(receiver, learned, OtherIndexOf(light), patch) : PdfDiscrete(0);
+      return others_ ? others_->Probability(receiver, OfOthers(settings), OtherIndexOf(light), patch) : PdfDiscrete(0);
     const auto fixed = std::lower_bound(fixed_.begin(), fixed_.end(), light,
                                         [](const Fixed& one, uint32_t index) { return one.light < index; });
     if (fixed->table == kNoTable) return PdfDiscrete(static_cast<float>(counts_[light]));
@@ -77,11 +78,12 @@ class FixedCountSelector final : public LightSelector {
 
   bool SelectsPatches(const Receiver& receiver) const override { return whole_->SelectsPatches(receiver); }
 
-  void TakeSamples(int most) override {
-    if (others_) others_->TakeSamples(std::min(most, LightChoices::kMost - total_));
+ private:
+  // What is left of the choices.
+  SelectionSettings OfOthers(const SelectionSettings& settings) const {
+    return {settings.learned, std::clamp(LightChoices::kMost - total_, 1, settings.mostSamples)};
   }
 
- private:
   struct Fixed {
     uint32_t light, table;
   };

@@ -18,16 +18,16 @@ class TableSelector final : public LightSelector {
  public:
   explicit TableSelector(std::span<const float> weights) : table_(weights) {}
 
-  void Select(const Receiver&, const LightLearning*, double u, LightChoices& choices) const override {
-    choices.count = table_.IsZero() ? 0 : MostSamples();
+  void Select(const Receiver&, const SelectionSettings& settings, double u, LightChoices& choices) const override {
+    choices.count = table_.IsZero() ? 0 : settings.mostSamples;
     for (int k = 0; k < choices.count; ++k) {
       choices.of[k] = SelectOne((u + k) / choices.count);
-      choices.of[k].probability = Expected(choices.of[k].probability);
+      choices.of[k].probability = Expected(choices.of[k].probability, settings.mostSamples);
     }
   }
 
-  PdfDiscrete Probability(const Receiver&, const LightLearning*, uint32_t light, int) const override {
-    return Expected(ProbabilityOf(light));
+  PdfDiscrete Probability(const Receiver&, const SelectionSettings& settings, uint32_t light, int) const override {
+    return Expected(ProbabilityOf(light), settings.mostSamples);
   }
 
   std::optional<SelectedLight> SelectForSegment(const RaySegment&, const SegmentLights&, double u) const override {
@@ -48,8 +48,8 @@ class TableSelector final : public LightSelector {
     if (table_.IsZero()) return PdfDiscrete(0);
     return table_.Size() == 1 ? PdfDiscrete(1) : table_.Probability(light);
   }
-  PdfDiscrete Expected(PdfDiscrete probability) const {
-    return PdfDiscrete(static_cast<float>(MostSamples()) * probability.value);
+  static PdfDiscrete Expected(PdfDiscrete probability, int count) {
+    return PdfDiscrete(static_cast<float>(count) * probability.value);
   }
 
   AliasTable table_;

@@ -51,16 +51,22 @@ struct LightChoices {
 
 class LightLearning;
 
+// How lights are selected, besides by the receiver. The same for all calls of a pass, so that every technique knows the
+// same probabilities.
+struct SelectionSettings {
+  const LightLearning* learned = nullptr;  // factors learned from shadow rays; null: none
+  int mostSamples = 1;                     // the largest number of choices, in [1, LightChoices::kMost]
+};
+
 class LightSelector {
  public:
   virtual ~LightSelector() = default;
-  // `u`: in [0,1); needs more bits than a float's if there are many lights. `learned`: factors learned from shadow
-  // rays, or null. No choices: no light can contribute.
-  virtual void Select(const Receiver& receiver, const LightLearning* learned, double u,
+  // `u`: in [0,1); needs more bits than a float's if there are many lights. No choices: no light can contribute.
+  virtual void Select(const Receiver& receiver, const SelectionSettings& settings, double u,
                       LightChoices& choices) const = 0;
   // Expected number of choices of this (light, patch) by Select at this receiver: its probability times the number of
   // choices.
-  virtual PdfDiscrete Probability(const Receiver& receiver, const LightLearning* learned, uint32_t light,
+  virtual PdfDiscrete Probability(const Receiver& receiver, const SelectionSettings& settings, uint32_t light,
                                   int patch) const = 0;
   // Selects one light for a segment of a ray in a medium, by u as in Select. `lights`: those of this selector. nullopt:
   // there is none. The selected light may turn out not to reach the segment.
@@ -69,27 +75,15 @@ class LightSelector {
   // Probability of this (light, patch) in SelectForSegment.
   virtual PdfDiscrete SegmentProbability(const RaySegment& segment, const SegmentLights& lights, uint32_t light,
                                          int patch) const = 0;
-  // Overloads without learned factors.
-  void Select(const Receiver& receiver, double u, LightChoices& choices) const {
-    Select(receiver, nullptr, u, choices);
-  }
+  // Overloads for one choice without learned factors.
+  void Select(const Receiver& receiver, double u, LightChoices& choices) const { Select(receiver, {}, u, choices); }
   PdfDiscrete Probability(const Receiver& receiver, uint32_t light, int patch) const {
-    return Probability(receiver, nullptr, light, patch);
+    return Probability(receiver, {}, light, patch);
   }
   // Records in `learning` the irradiance that the selected light caused; 0: it was occluded or dark.
   virtual void Record(LightLearning&, const Receiver&, uint32_t, int, double) const {}
   // True if patches of lights are selected individually at this receiver; Probability then depends on `patch`.
   virtual bool SelectsPatches(const Receiver&) const { return false; }
-
-  // Sets the largest number of choices, clamped to [1, LightChoices::kMost]; 1 by default. Call before the first
-  // Select.
-  virtual void TakeSamples(int most) { mostSamples_ = std::clamp(most, 1, LightChoices::kMost); }
-
- protected:
-  int MostSamples() const { return mostSamples_; }
-
- private:
-  int mostSamples_ = 1;
 };
 
 enum class LightSelection { Uniform, Power, Tree, Exhaustive };

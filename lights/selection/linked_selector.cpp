@@ -47,19 +47,20 @@ class LinkedSelector final : public LightSelector {
   }
 
   // Learned factors belong to one tree, that of all lights.
-  void Select(const Receiver& receiver, const LightLearning* learned, double u, LightChoices& choices) const override {
+  void Select(const Receiver& receiver, const SelectionSettings& settings, double u,
+              LightChoices& choices) const override {
     const Part* part = PartOf(receiver.link);
-    if (!part) return all_->Select(receiver, learned, u, choices);
-    part->selector->Select(receiver, nullptr, u, choices);
+    if (!part) return all_->Select(receiver, settings, u, choices);
+    part->selector->Select(receiver, {nullptr, settings.mostSamples}, u, choices);
     for (int i = 0; i < choices.count; ++i) choices.of[i].light = part->lights[choices.of[i].light];
   }
 
-  PdfDiscrete Probability(const Receiver& receiver, const LightLearning* learned, uint32_t light,
+  PdfDiscrete Probability(const Receiver& receiver, const SelectionSettings& settings, uint32_t light,
                           int patch) const override {
     const Part* part = PartOf(receiver.link);
-    if (!part) return all_->Probability(receiver, learned, light, patch);
+    if (!part) return all_->Probability(receiver, settings, light, patch);
     const std::optional<uint32_t> own = part->IndexOf(light);
-    return own ? part->selector->Probability(receiver, nullptr, *own, patch) : PdfDiscrete(0);
+    return own ? part->selector->Probability(receiver, {nullptr, settings.mostSamples}, *own, patch) : PdfDiscrete(0);
   }
 
   std::optional<SelectedLight> SelectForSegment(const RaySegment& segment, const SegmentLights& lights,
@@ -87,11 +88,6 @@ class LinkedSelector final : public LightSelector {
   bool SelectsPatches(const Receiver& receiver) const override {
     const Part* part = PartOf(receiver.link);
     return part ? part->selector->SelectsPatches(receiver) : all_->SelectsPatches(receiver);
-  }
-
-  void TakeSamples(int most) override {
-    all_->TakeSamples(most);
-    for (const Part& part : parts_) part.selector->TakeSamples(most);
   }
 
  private:

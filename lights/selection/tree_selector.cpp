@@ -40,24 +40,25 @@ class TreeSelector final : public LightSelector {
 
   bool SelectsPatches(const Receiver&) const override { return emitters_.hasPatches; }
 
-  void Select(const Receiver& receiver, const LightLearning* learned, double u, LightChoices& choices) const override {
-    const TreeReceiver place = Place(receiver, learned);
+  void Select(const Receiver& receiver, const SelectionSettings& settings, double u,
+              LightChoices& choices) const override {
+    const TreeReceiver place = Place(receiver, settings.learned);
     typename Search::Cut cut;
     search_.Look(place, cut);
     const double far = FarShare(place, cut.irradiance);
-    choices.count = search_.IsEmpty() && farTable_.IsZero() ? 0 : CountFor(cut, far);
+    choices.count = search_.IsEmpty() && farTable_.IsZero() ? 0 : CountFor(cut, far, settings.mostSamples);
     const auto select = [&](double x, bool defensive) { return search_.Select(place, cut, x, defensive); };
     for (int k = 0; k < choices.count; ++k)
       choices.of[k] = SelectOne(far, (u + k) / choices.count, choices.count, select);
   }
 
-  PdfDiscrete Probability(const Receiver& receiver, const LightLearning* learned, uint32_t light,
+  PdfDiscrete Probability(const Receiver& receiver, const SelectionSettings& settings, uint32_t light,
                           int patch) const override {
-    const TreeReceiver place = Place(receiver, learned);
+    const TreeReceiver place = Place(receiver, settings.learned);
     typename Search::Cut cut;
     search_.Look(place, cut);
     const double far = FarShare(place, cut.irradiance);
-    const int count = CountFor(cut, far);
+    const int count = CountFor(cut, far, settings.mostSamples);
     const std::optional<uint32_t> at = FarIndexOf(light);
     if (at) {
       if (farTable_.IsZero()) return PdfDiscrete(0);
@@ -186,11 +187,11 @@ class TreeSelector final : public LightSelector {
 
   // As many samples as the effective number of clusters and lights at infinity at this receiver: if one of them causes
   // nearly all of the irradiance, a second sample reduces little variance.
-  [[gnu::noinline]] int CountFor(const typename Search::Cut& cut, double far) const {
-    if (MostSamples() == 1) return 1;
+  [[gnu::noinline]] int CountFor(const typename Search::Cut& cut, double far, int most) const {
+    if (most == 1) return 1;
     const double ofFar = farTable_.IsZero() ? 0 : far * far / static_cast<double>(farTable_.Size());
     const double squares = ofFar + (1 - far) * (1 - far) * cut.Concentration();
-    return std::clamp(static_cast<int>(std::lround(1 / std::max(squares, 1e-3))), 1, MostSamples());
+    return std::clamp(static_cast<int>(std::lround(1 / std::max(squares, 1e-3))), 1, most);
   }
 
   static float FarIrradiance(const PlacedLight& placed, const BoundingSphere& scene) {

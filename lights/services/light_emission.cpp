@@ -172,8 +172,8 @@ std::optional<FoundLight> LightingServices::EvaluateFirstHit(const EmittedPhoton
   const LightKind kind = scene_->fronts[photon.light].kind;
   std::optional<LightTransform> moved;
   LightContext context = Context(photon.light, photon.ray.time, true, moved);
-  if (scene_->selector->SelectsPatches(receiver)) context.patch = emission.patchIndex;
-  const PdfDiscrete selection = scene_->selector->Probability(receiver, learning_, photon.light, context.patch);
+  if (selector_->SelectsPatches(receiver)) context.patch = emission.patchIndex;
+  const PdfDiscrete selection = selector_->Probability(receiver, Selection(), photon.light, context.patch);
   const Vector3 way = receiver.position - emission.position;
   if (IsDelta(kind)) {
     if (!(LengthSquared(way) > 0)) return std::nullopt;

@@ -70,8 +70,7 @@ float FluxUnitOf(const std::vector<PlacedLight>& lights, const BoundingSphere& s
 }  // namespace
 
 LightingServices::SceneLights::SceneLights(const GeometryScene& traced, std::vector<PlacedLight> placed,
-                                           LightSelection selection, LightLinking links, int mostSamples,
-                                           const MediaAround& media)
+                                           LightLinking links, const MediaAround& media)
     : geometry(traced),
       lights(std::move(placed)),
       fronts(lights),
@@ -84,17 +83,26 @@ LightingServices::SceneLights::SceneLights(const GeometryScene& traced, std::vec
     if (fronts[i].kind == LightKind::Infinite) infinite.push_back(i);
     hasLightThatCanBeHit = hasLightThatCanBeHit || CanBeHit(i);
   }
-  selector = linking.Excludes() ? MakeLinkedSelector(selection, lights, sphere, linking.Sets())
-                                : MakeLightSelector(selection, lights, sphere);
-  selector->TakeSamples(mostSamples);
   emissionSelector = MakeEmissionSelector(lights, sphere);
 }
 
 LightingServices::LightingServices(const GeometryScene& geometry, std::vector<PlacedLight> lights,
                                    LightSelection selection, LightLinking linking, int mostSamples,
                                    const MediaAround& media)
-    : scene_(std::make_shared<const SceneLights>(geometry, std::move(lights), selection, std::move(linking),
-                                                 mostSamples, media)) {}
+    : scene_(std::make_shared<const SceneLights>(geometry, std::move(lights), std::move(linking), media)) {
+  *this = Selecting(selection, mostSamples);
+}
+
+LightingServices LightingServices::Selecting(LightSelection selection, int mostSamples) const {
+  LightingServices view = *this;
+  view.mostSamples_ = std::clamp(mostSamples, 1, LightChoices::kMost);
+  if (selector_ && selection == selection_) return view;
+  view.selection_ = selection;
+  const LightLinking& linking = scene_->linking;
+  view.selector_ = linking.Excludes() ? MakeLinkedSelector(selection, scene_->lights, scene_->sphere, linking.Sets())
+                                      : MakeLightSelector(selection, scene_->lights, scene_->sphere);
+  return view;
+}
 
 LightingServices LightingServices::With(LightLearning* learning, const EmissionGuide* guide) const {
   LightingServices view = *this;
@@ -190,7 +198,7 @@ void LightingServices::RecordResult(const Receiver& receiver, const DirectSample
     const float radiance = std::max((sample.diffuse * arrived).Average(), (sample.specular * arrived).Average());
     irradiance = static_cast<double>(radiance * cosine / sample.pdfDirect.value);
   }
-  scene_->selector->Record(*learning_, receiver, direct.light, direct.patch, irradiance);
+  selector_->Record(*learning_, receiver, direct.light, direct.patch, irradiance);
 }
 
 // Distance before a sample within which a ray from `from` may hit the sample's own surface.
@@ -225,7 +233,7 @@ std::optional<FoundLight> LightingServices::EvaluateSamples(const Receiver& rece
   std::optional<LightTransform> moved;
   LightContext context = Context(light, time, bidirectional, moved);
   const LightHit hit = SurfaceLightHit(direction, distance, point);
-  if (scene_->selector->SelectsPatches(receiver)) context.patch = hit.patchIndex;
+  if (selector_->SelectsPatches(receiver)) context.patch = hit.patchIndex;
   auto evaluation = scene_->fronts[light].light->EvaluateSamples(context, hit, receiver.position);
   if (evaluation) Tune(light, *evaluation);
   if (!evaluation || !Filter(light, receiver, direction, distance, time, *evaluation)) return std::nullopt;
@@ -233,7 +241,7 @@ std::optional<FoundLight> LightingServices::EvaluateSamples(const Receiver& rece
     evaluation->pdfEmit = EmissionDensity(context, light, hit.patchIndex, evaluation->pdfEmit);
     Aim(light, hit.position, -direction, *evaluation);
   }
-  return FoundLight{light, scene_->selector->Probability(receiver, learning_, light, context.patch), *evaluation,
+  return FoundLight{light, selector_->Probability(receiver, Selection(), light, context.patch), *evaluation,
                     context.patch};
 }
 
@@ -249,7 +257,7 @@ std::optional<FoundLight> LightingServices::EvaluateEscaped(size_t i, const Rece
   if (evaluation) Tune(light, *evaluation);
   if (!evaluation || !Filter(light, receiver, direction, kInfinity, time, *evaluation)) return std::nullopt;
   if (bidirectional) Aim(light, receiver.position, -direction, *evaluation);
-  return FoundLight{light, scene_->selector->Probability(receiver, learning_, light, kAnyPatch), *evaluation};
+  return FoundLight{light, selector_->Probability(receiver, Selection(), light, kAnyPatch), *evaluation};
 }
 
 bool LightingServices::RunFilter(uint32_t light, const Receiver& receiver, const Vector3& toLight, float distance,
@@ -293,7 +301,7 @@ Color LightingServices::EscapedEmissionForCamera(size_t i, const Ray& ray) const
 }
 
 PdfDiscrete LightingServices::SelectionProbability(const Receiver& receiver, uint32_t light, int patch) const {
-  return scene_->selector->Probability(receiver, learning_, light, patch);
+  return selector_->Probability(receiver, Selection(), light, patch);
 }
 
 }  // namespace lampyr

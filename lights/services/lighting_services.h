@@ -92,11 +92,14 @@ struct MediaAround {
 
 class LightingServices {
  public:
-  // `geometry` must outlive the services. `mostSamples`: the largest number of lights selected for a receiver, in
-  // [1, LightChoices::kMost]. Each sample is divided by the expected number of samples of its light; densities of
+  // `geometry` must outlive the services. `mostSamples`: the largest number of lights selected for a receiver, clamped
+  // to [1, LightChoices::kMost]. Each sample is divided by the expected number of samples of its light; densities of
   // next-event estimation include that number.
   LightingServices(const GeometryScene& geometry, std::vector<PlacedLight> lights, LightSelection selection,
                    LightLinking linking = {}, int mostSamples = 1, const MediaAround& media = {});
+
+  // A view of the same lights, selected in this way.
+  LightingServices Selecting(LightSelection selection, int mostSamples) const;
 
   // A view of the same lights with learned selection, which also records results in `learning` while that is recording,
   // and with photons guided by `guide`. Both may be null, must outlive the view, and must not change while it is used.
@@ -107,7 +110,7 @@ class LightingServices {
 
   // Selects lights for the receiver.
   void SelectLights(const Receiver& receiver, float uSelect, LightChoices& choices) const {
-    scene_->selector->Select(receiver, learning_, MoreBits(uSelect, receiver.position), choices);
+    selector_->Select(receiver, Selection(), MoreBits(uSelect, receiver.position), choices);
   }
   // Samples a selected light.
   DirectSample GenerateSamples(const Receiver& receiver, const SelectedLight& selected, const Point2& u, float time,
@@ -176,7 +179,7 @@ class LightingServices {
 
   // True if next-event estimation at a receiver selects patches individually; otherwise patches have the probability of
   // their light.
-  bool SelectsPatches(const Receiver& receiver) const { return scene_->selector->SelectsPatches(receiver); }
+  bool SelectsPatches(const Receiver& receiver) const { return selector_->SelectsPatches(receiver); }
   PdfDiscrete SelectionProbability(const Receiver& receiver, uint32_t light, int patch) const;
   PdfDiscrete EmissionSelectionProbability(uint32_t light) const;
   // IsAtInfinity: the light is infinite or distant. CanBeHit: BSDF sampling can find it.
@@ -256,8 +259,8 @@ class LightingServices {
 
   // Shared by all views of a scene.
   struct SceneLights {
-    SceneLights(const GeometryScene& geometry, std::vector<PlacedLight> lights, LightSelection selection,
-                LightLinking linking, int mostSamples, const MediaAround& media);
+    SceneLights(const GeometryScene& geometry, std::vector<PlacedLight> lights, LightLinking linking,
+                const MediaAround& media);
     bool CanBeHit(uint32_t light) const {
       const LightFront& front = fronts[light];
       return front.kind == LightKind::Infinite || (front.kind == LightKind::Area && front.canBeHit);
@@ -273,10 +276,14 @@ class LightingServices {
     float fluxUnit = 1;
     LightLinking linking;
     bool isLinked = false;  // some light has a filter, or does not illuminate everything
-    std::unique_ptr<LightSelector> selector, emissionSelector;
+    std::unique_ptr<LightSelector> emissionSelector;
   };
+  SelectionSettings Selection() const { return {learning_, mostSamples_}; }
 
   std::shared_ptr<const SceneLights> scene_;
+  LightSelection selection_ = LightSelection::Tree;
+  int mostSamples_ = 1;
+  std::shared_ptr<const LightSelector> selector_;
   LightLearning* learning_ = nullptr;
   const EmissionGuide* guide_ = nullptr;
   std::shared_ptr<const Wavelengths> wavelengths_;  // null: light is in Rec. 709

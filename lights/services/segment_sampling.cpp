@@ -26,7 +26,7 @@ class LightingServices::LightsAlong final : public SegmentLights {
 std::optional<SegmentSample> LightingServices::GenerateSamplesForRaySegment(const RaySegment& segment, float uSelect,
                                                                             const Point2& u) const {
   const auto selected =
-      scene_->selector->SelectForSegment(segment, LightsAlong(*this, segment), MoreBits(uSelect, segment.direction));
+      selector_->SelectForSegment(segment, LightsAlong(*this, segment), MoreBits(uSelect, segment.direction));
   return selected ? SampleApex(segment, *selected, u) : std::nullopt;
 }
 
@@ -71,7 +71,7 @@ void LightingServices::AddApex(const RaySegment& segment, const Point2& u, Segme
 }
 
 PdfDiscrete LightingServices::SegmentSelectionProbability(const RaySegment& segment, uint32_t light, int patch) const {
-  return scene_->selector->SegmentProbability(segment, LightsAlong(*this, segment), light, patch);
+  return selector_->SegmentProbability(segment, LightsAlong(*this, segment), light, patch);
 }
 
 }  // namespace lampyr

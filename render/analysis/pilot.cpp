@@ -34,6 +34,8 @@ constexpr uint32_t kSamplesOfPart = 1 << 16;
 constexpr uint64_t kMostLightPaths = 4 * kMostPilotPixels;
 // The radius is that of the average pass of so many.
 constexpr double kTypicalPasses = 64;
+// Lights that are chosen at a vertex at most; the pilot decides between them and one.
+constexpr int kSeveralLights = 2;
 constexpr uint64_t kSeed = 0x9e3779b97f4a7c15;
 
 // Passes of an integrator over the pilot's pixels.
@@ -63,9 +65,10 @@ class PilotPasses {
     store.Take(photons_);
     store.Finish(pass);
   }
-  // One sample of every pixel; `recorders`, one for each chunk, may be empty.
+  // One sample of every pixel; `recorders`, one for each chunk, may be empty. `spreads`: receives that of each pixel,
+  // of its sample as it is weighted; may be null.
   RenderCounts Trace(const Integrator& integrator, uint32_t pass, const PhotonPass* gather,
-                     std::span<Recorder> recorders) {
+                     std::span<Recorder> recorders, std::vector<LightSpread>* spreads = nullptr) {
     return ForEachPixel(grid_.Pixels(), [&](size_t chunk, int x, int y, Sampler& sampler, RenderCounts& counts,
                                             SplatList& splats) {
       // Two passes have the same pixel of the image, of those that a pixel of the pilot holds: what differs between
@@ -85,6 +88,8 @@ class PilotPasses {
         context.observer = &recorders[chunk];
         recorders[chunk].StartSample(x, y, ray.weight);
       }
+      LightSpread* const spread = spreads ? &(*spreads)[grid_.PixelOf(x, y)] : nullptr;
+      context.lightSpread = spread;
       const bool isVignetted = ray.weight == 0;
       const Ray* start = isVignetted ? nullptr : &ray.ray;
       if (start || integrator.Paths() != TracedPaths::Camera) {
@@ -96,6 +101,7 @@ class PilotPasses {
         }
       }
       if (!recorders.empty()) recorders[chunk].EndSample();
+      if (spread) spread->squares *= static_cast<double>(ray.weight) * static_cast<double>(ray.weight);
     });
   }
 
@@ -215,11 +221,22 @@ RenderScene WithWavelengths(const RenderScene& scene) {
                           : scene;
 }
 
+// How lights differ at the vertices of the camera paths of each integrator, by pixel.
+struct Spreads {
+  std::vector<LightSpread> path, bdpt, vcm;
+  explicit Spreads(int pixels)
+      : path(static_cast<size_t>(pixels)), bdpt(static_cast<size_t>(pixels)), vcm(static_cast<size_t>(pixels)) {}
+  const std::vector<LightSpread>& Of(const std::string& integrator) const {
+    return integrator == "path" ? path : integrator == "bdpt" ? bdpt : vcm;
+  }
+};
+
+// `spreads`: null: not wanted.
 void CountPaths(const PilotIntegrators& integrators, const RenderScene& scene, const RenderSettings& settings,
-                const Grid& grid, int threads, Counted& counted) {
+                const Grid& grid, int threads, Counted& counted, Spreads* spreads) {
   PilotPasses passes(scene, settings, grid, threads);
-  counted.path = passes.Trace(*integrators.path, 0, nullptr, {});
-  counted.bdpt = passes.Trace(*integrators.bdpt, 0, nullptr, {});
+  counted.path = passes.Trace(*integrators.path, 0, nullptr, {}, spreads ? &spreads->path : nullptr);
+  counted.bdpt = passes.Trace(*integrators.bdpt, 0, nullptr, {}, spreads ? &spreads->bdpt : nullptr);
   counted.endingBdpt = passes.Trace(*integrators.endingBdpt, 0, nullptr, {});
 }
 
@@ -227,12 +244,12 @@ void CountPaths(const PilotIntegrators& integrators, const RenderScene& scene, c
 // photons.
 void RunPasses(const PilotIntegrators& integrators, int passCount, int threads, double wider, PilotPasses& passes,
                PhotonStore& store, EmissionLearning* learned, std::vector<Recorder>& recorders, Records& records,
-               Counted& counted) {
+               Counted& counted, Spreads& spreads) {
   for (uint32_t pass = 0; pass < static_cast<uint32_t>(passCount); ++pass) {
     passes.TracePhotons(*integrators.vcm, store, pass);
     const PhotonPass& gather = store.Open(pass, threads, wider);
     counted.stored += gather.map->Size();
-    counted.vcm += passes.Trace(*integrators.vcm, pass, &gather, recorders);
+    counted.vcm += passes.Trace(*integrators.vcm, pass, &gather, recorders, pass == 0 ? &spreads.vcm : nullptr);
     if (pass == 0) {
       PhotonPass unrecorded = gather;  // photons are learned from once
       unrecorded.use = nullptr;
@@ -282,6 +299,66 @@ void AddMixed(std::span<const PilotCandidate> all, std::span<const CandidateCost
   }
 }
 
+// What the passes with several lights at a vertex would have counted with one.
+Counted WithOneLight(const Counted& counted, const std::vector<LightSpread>& path) {
+  uint64_t samples = 0, vertices = 0;
+  for (const LightSpread& spread : path) {
+    samples += spread.samples;
+    vertices += spread.vertices;
+  }
+  if (samples == 0) return counted;
+  const auto rays = [](const RenderCounts& counts) {
+    return static_cast<double>(counts.cameraRays + counts.indirectRays);
+  };
+  // Not every sample of a light has a shadow ray.
+  const double fewer =
+      static_cast<double>(counted.path.shadowRays) * (1 - static_cast<double>(vertices) / static_cast<double>(samples));
+  const double shorter = std::clamp(rays(counted.bdpt) - rays(counted.endingBdpt), 0.0, rays(counted.path));
+  const auto take = [](RenderCounts& counts, double shadowRays) {
+    counts.shadowRays -= std::min(counts.shadowRays, static_cast<uint64_t>(shadowRays));
+  };
+  Counted one = counted;
+  take(one.path, fewer);
+  take(one.bdpt, fewer);
+  take(one.endingBdpt, fewer * (1 - shorter / rays(counted.path)));
+  return one;
+}
+
+// Turns the candidates, which chose several lights at a vertex, to ones that choose one, and adds those with several
+// again that have less error in equal time than any with one.
+void ChooseLightSamples(const Counted& counted, const Spreads& spreads, const Records& records, int pixels,
+                        RenderPilot& pilot) {
+  const auto several = CostsOf(counted, pixels), one = CostsOf(WithOneLight(counted, spreads.path), pixels);
+  const std::vector<PilotCandidate> before = pilot.candidates;
+  for (std::vector<PilotCandidate>* candidates : {&pilot.candidates, &pilot.ending}) {
+    for (PilotCandidate& candidate : *candidates) {
+      std::vector<double> squares;
+      for (const LightSpread& spread : spreads.Of(candidate.integrator)) squares.push_back(spread.squares);
+      const std::vector<double> errors = records.RelativeErrors(squares);
+      for (size_t tile = 0; tile < errors.size(); ++tile) {
+        candidate.tileErrors[tile] += errors[tile] / candidate.gainOfSobol;
+        candidate.error += errors[tile] / candidate.gainOfSobol;
+      }
+      const TechniqueCounts& counts = candidate.counts;
+      const size_t k =
+          candidate.integrator == "path" ? 0 : Find(candidate.integrator == "vcm", counts.log2LightPaths, false, 1);
+      candidate.cost -= (several[k].paths - one[k].paths) * counts.continuing.Mean();
+    }
+  }
+  const PilotCandidate* const best = pilot.Best();
+  std::vector<PilotCandidate> better;
+  constexpr double kWorthIt = 0.97;
+  for (const PilotCandidate& candidate : before) {
+    if (best && candidate.missing <= kNegligibleLight &&
+        candidate.MostErrorTimesCost() < kWorthIt * best->MostErrorTimesCost())
+      better.push_back(candidate);
+  }
+  for (PilotCandidate& candidate : better) {
+    candidate.counts.lightSamples = kSeveralLights;
+    pilot.candidates.push_back(std::move(candidate));
+  }
+}
+
 // Erases the candidates that the settings exclude. `isGuided`: light paths need a guide from the start, which bdpt does
 // not have.
 void EraseUnwanted(const RenderSettings& settings, bool isGuided, std::vector<PilotCandidate>& candidates) {
@@ -303,7 +380,7 @@ void EraseUnwanted(const RenderSettings& settings, bool isGuided, std::vector<Pi
 const PilotCandidate* RenderPilot::Find(const std::string& integrator, int log2LightPaths) const {
   for (const PilotCandidate& candidate : candidates) {
     if (candidate.integrator == integrator && candidate.counts.log2LightPaths == log2LightPaths &&
-        !candidate.counts.HasMasks() && !candidate.counts.startsWide)
+        !candidate.counts.HasMasks() && !candidate.counts.startsWide && candidate.counts.lightSamples == 1)
       return &candidate;
   }
   return nullptr;
@@ -329,11 +406,15 @@ RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, i
   PhotonSettings photons = integrators.vcm->Photons().value();
   // If light paths hardly come near to what is seen, vcm guides them from the start. Those of bdpt are hopeless then.
   RenderScene view = scene;
+  const bool choosesLights = settings.values.Integer(common_settings::kLightSamples.name) == 0;
+  if (choosesLights)
+    view.lighting =
+        std::make_shared<const LightingServices>(scene.lighting->Selecting(settings.LightSampler(), kSeveralLights));
+  const std::shared_ptr<const LightingServices> lighting = view.lighting;
   std::optional<EmissionLearning> guiding;
   if (photons.guided) guiding.emplace(scene, settings.width, settings.height);
   const bool isGuided = guiding && guiding->Guide();
-  if (isGuided)
-    view.lighting = std::make_shared<const LightingServices>(scene.lighting->With(nullptr, guiding->Guide()));
+  if (isGuided) view.lighting = std::make_shared<const LightingServices>(lighting->With(nullptr, guiding->Guide()));
   if (photons.lightPaths > 0)
     photons.lightPaths = std::max<uint64_t>(1, static_cast<uint64_t>(static_cast<double>(photons.lightPaths) / fewer));
   // The pilot's light paths are those of bdpt, not guided. What a guide would gain is learned from them.
@@ -342,18 +423,19 @@ RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, i
   PilotPasses passes(view, combined, grid, threads);
   Counted counted;
   counted.tracesAnew = scene.hasMotion || scene.isSpectral;
-  CountPaths(integrators, view, combined, grid, threads, counted);
+  Spreads spreads(grid.Pixels());
+  CountPaths(integrators, view, combined, grid, threads, counted, &spreads);
   if (passCount == 0) passCount = PassesFor(counted, grid.Pixels());
-  if (scene.isSpectral) CountPaths(integrators, WithWavelengths(view), combined, grid, threads, counted);
+  if (scene.isSpectral) CountPaths(integrators, WithWavelengths(view), combined, grid, threads, counted, nullptr);
   const PixelFilter filter(settings.filter);
   std::vector<Recorder> recorders(kChunks, Recorder(grid, filmPixels, filter, SplatCount(settings), passCount));
   Records records(grid, recorders);
   const double wider = WiderRadius(fewer, photons.alpha);
-  RunPasses(integrators, passCount, threads, wider, passes, store, learned, recorders, records, counted);
+  RunPasses(integrators, passCount, threads, wider, passes, store, learned, recorders, records, counted, spreads);
   auto costs = CostsOf(counted, grid.Pixels());
   const bool willBeGuided = learned && learned->Guide();
   if (willBeGuided) {
-    view.lighting = std::make_shared<const LightingServices>(scene.lighting->With(nullptr, learned->Guide()));
+    view.lighting = std::make_shared<const LightingServices>(lighting->With(nullptr, learned->Guide()));
     const RenderScene guidedView = WithWavelengths(view);
     PilotPasses guided(guidedView, combined, grid, threads);
     CountGuided(integrators, photons, wider, threads, guided, grid.Pixels(), counted, costs);
@@ -368,6 +450,7 @@ RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, i
   AddMixed(all, costs, grid, least, pilot.candidates);
   EraseUnwanted(settings, isGuided, pilot.candidates);
   EraseUnwanted(settings, isGuided, pilot.ending);
+  if (choosesLights) ChooseLightSamples(counted, spreads, records, grid.Pixels(), pilot);
   return pilot;
 }
 

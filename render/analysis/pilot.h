@@ -28,6 +28,7 @@ struct PilotCandidate {
   double uncertainty = 0;  // standard error of `error`
   double cost = 0;         // of a sample, nanoseconds of a typical machine
   double missing = 0;      // part of the light that it cannot find
+  double gainOfSobol = 1;  // by which well-distributed samples lower the error; `error` is that of those
   // Of each tile of the image, row by row: the mean over its pixels of Σ E[(w v)²] over the paths of a sample, by all
   // techniques.
   std::vector<double> secondMoments;

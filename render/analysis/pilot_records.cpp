@@ -224,7 +224,7 @@ Records::Brightness Records::BrightnessOf(const std::vector<Moments>& pixels, in
 }
 
 bool Records::SetErrors(int passes, double squaredWeight, bool isSobol, std::vector<PilotCandidate>& candidates,
-                        double& least) const {
+                        double& least) {
   std::vector<Moments> pixels(squaredMeans_.size() / kCandidates);
   for (const Recorder& recorder : recorders_) {
     for (size_t i = 0; i < pixels.size(); ++i) pixels[i] += recorder.moments[i];
@@ -235,6 +235,9 @@ bool Records::SetErrors(int passes, double squaredWeight, bool isSobol, std::vec
   const std::vector<char> isLeftOut = Hopeless(pixels, brightness.scales);
   for (size_t k = 0; k < candidates.size(); ++k)
     AddUp(k, passes, brightness, pixels, isLeftOut, squaredWeight, candidates[k]);
+  weights_.assign(pixels.size(), 0);
+  for (size_t i = 0; i < pixels.size(); ++i)
+    if (!isLeftOut[i]) weights_[i] = squaredWeight * brightness.scales[i] * passes / grid_.Pixels();
   least = LeastVariance(passes * grid_.Pixels()) * brightness.squared;
   // More light paths, or more merges, leave the points in the pixels as they are, and what these gain.
   std::array<double, kCandidates> gains;
@@ -247,8 +250,15 @@ bool Records::SetErrors(int passes, double squaredWeight, bool isSobol, std::vec
     for (double& variance : candidate.tileVariances) variance /= gains[k] * gains[k];
     candidate.uncertainty /= gains[k];
     candidate.error = std::max(candidate.error / gains[k], least);
+    candidate.gainOfSobol = gains[k];
   }
   return true;
+}
+
+std::vector<double> Records::RelativeErrors(const std::vector<double>& squares) const {
+  std::vector<double> errors(grid_.Tiles());
+  ForEachPixel([&](size_t pixel, size_t tile) { errors[tile] += squares[pixel] * weights_[pixel]; });
+  return errors;
 }
 
 void Records::AddUp(size_t k, int passes, const Brightness& brightness, const std::vector<Moments>& pixels,

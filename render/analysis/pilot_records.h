@@ -197,7 +197,10 @@ class Records {
   // The sum over all passes. False: no light was found. `squaredWeight`: PixelFilter::SquaredWeight. A pixel is Σ wL /
   // Σ w over its samples, so that weights of either sign scale its variance and do not add to it.
   bool SetErrors(int passes, double squaredWeight, bool isSobol, std::vector<PilotCandidate>& candidates,
-                 double& least) const;
+                 double& least);
+  // The errors of tiles, as PilotCandidate::tileErrors but by independent samples, of squared errors by pixel. After
+  // SetErrors.
+  std::vector<double> RelativeErrors(const std::vector<double>& squares) const;
 
  private:
   struct Brightness {
@@ -228,6 +231,7 @@ class Records {
 
   const Grid& grid_;
   std::vector<Recorder>& recorders_;
+  std::vector<double> weights_;            // by pixel: of a squared error, in RelativeErrors
   std::vector<Found> last_;                // in the pass before
   std::vector<SquaredMean> squaredMeans_;  // by pixel and candidate
 };

@@ -31,7 +31,7 @@ void LightScene(LightsToPlace toPlace, SceneMedia& media, Diagnostics& diagnosti
   toPlace.linking.Finish(toPlace.lights, diagnostics);
   scene.lighting = std::make_shared<const LightingServices>(
       *scene.geometry, std::move(toPlace.lights), built.settings.LightSampler(), std::move(toPlace.linking),
-      static_cast<int>(built.settings.values.Integer("light-samples")), toPlace.around);
+      built.settings.LightSamples(), toPlace.around);
   scene.outputs = MakeOutputPlan(*scene.lighting, built.settings.layers);
   scene.lightMedia.clear();
   scene.lightBackMedia.clear();

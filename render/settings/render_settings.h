@@ -69,6 +69,11 @@ struct RenderSettings {
 
   int MaxDepth() const { return MaxDepthOf(values); }
   bool LearnsLights() const { return values.IsOn("learn-lights"); }
+  // The most lights that are chosen at a vertex: what the settings say, or what "auto" has decided.
+  int LightSamples() const {
+    const auto set = static_cast<int>(values.Integer("light-samples"));
+    return set > 0 ? set : counts ? counts->lightSamples : 1;
+  }
   bool GuidesPaths() const { return values.IsOn("guide-paths"); }
   bool AlwaysGuidesPaths() const { return values.IsOn("guide-always"); }
   LightSelection LightSampler() const { return *ParseLightSelection(values.Word("light-sampler")); }
