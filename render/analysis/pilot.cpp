@@ -88,8 +88,8 @@ class PilotPasses {
         context.observer = &recorders[chunk];
         recorders[chunk].StartSample(x, y, ray.weight);
       }
-      LightSpread* const spread = spreads ? &(*spreads)[grid_.PixelOf(x, y)] : nullptr;
-      context.lightSpread = spread;
+      LightSpread spread;
+      if (spreads) context.lightSpread = &spread;
       const bool isVignetted = ray.weight == 0;
       const Ray* start = isVignetted ? nullptr : &ray.ray;
       if (start || integrator.Paths() != TracedPaths::Camera) {
@@ -101,7 +101,11 @@ class PilotPasses {
         }
       }
       if (!recorders.empty()) recorders[chunk].EndSample();
-      if (spread) spread->squares *= static_cast<double>(ray.weight) * static_cast<double>(ray.weight);
+      if (!spreads) return;
+      LightSpread& sum = (*spreads)[grid_.PixelOf(x, y)];
+      sum.squares += static_cast<double>(ray.weight) * static_cast<double>(ray.weight) * spread.squares;
+      sum.vertices += spread.vertices;
+      sum.samples += spread.samples;
     });
   }
 
@@ -221,14 +225,20 @@ RenderScene WithWavelengths(const RenderScene& scene) {
                           : scene;
 }
 
-// How lights differ at the vertices of the camera paths of each integrator, by pixel.
+// How lights differ at the vertices of the camera paths of each integrator, by pixel: sums over the samples of a pixel.
 struct Spreads {
-  std::vector<LightSpread> path, bdpt, vcm;
+  std::vector<LightSpread> path, bdpt, vcm, endingBdpt, endingVcm;
+  // Samples of a pixel of `path`, `bdpt` and `endingBdpt`: one, and more of small pictures. Of `endingVcm` there is
+  // one.
+  uint32_t counting;
+
   explicit Spreads(int pixels)
-      : path(static_cast<size_t>(pixels)), bdpt(static_cast<size_t>(pixels)), vcm(static_cast<size_t>(pixels)) {}
-  const std::vector<LightSpread>& Of(const std::string& integrator) const {
-    return integrator == "path" ? path : integrator == "bdpt" ? bdpt : vcm;
-  }
+      : path(static_cast<size_t>(pixels)),
+        bdpt(path),
+        vcm(path),
+        endingBdpt(path),
+        endingVcm(path),
+        counting(static_cast<uint32_t>(std::max(kMostPilotPixels / pixels, 1))) {}
 };
 
 // `spreads`: null: not wanted.
@@ -237,7 +247,12 @@ void CountPaths(const PilotIntegrators& integrators, const RenderScene& scene, c
   PilotPasses passes(scene, settings, grid, threads);
   counted.path = passes.Trace(*integrators.path, 0, nullptr, {}, spreads ? &spreads->path : nullptr);
   counted.bdpt = passes.Trace(*integrators.bdpt, 0, nullptr, {}, spreads ? &spreads->bdpt : nullptr);
-  counted.endingBdpt = passes.Trace(*integrators.endingBdpt, 0, nullptr, {});
+  counted.endingBdpt = passes.Trace(*integrators.endingBdpt, 0, nullptr, {}, spreads ? &spreads->endingBdpt : nullptr);
+  for (uint32_t pass = 1; spreads && pass < spreads->counting; ++pass) {
+    passes.Trace(*integrators.path, pass, nullptr, {}, &spreads->path);
+    passes.Trace(*integrators.bdpt, pass, nullptr, {}, &spreads->bdpt);
+    passes.Trace(*integrators.endingBdpt, pass, nullptr, {}, &spreads->endingBdpt);
+  }
 }
 
 // Traces the passes that are recorded, and counts what they do, on average of one. `learned`: null, or what learns of
@@ -249,11 +264,11 @@ void RunPasses(const PilotIntegrators& integrators, int passCount, int threads, 
     passes.TracePhotons(*integrators.vcm, store, pass);
     const PhotonPass& gather = store.Open(pass, threads, wider);
     counted.stored += gather.map->Size();
-    counted.vcm += passes.Trace(*integrators.vcm, pass, &gather, recorders, pass == 0 ? &spreads.vcm : nullptr);
+    counted.vcm += passes.Trace(*integrators.vcm, pass, &gather, recorders, &spreads.vcm);
     if (pass == 0) {
       PhotonPass unrecorded = gather;  // photons are learned from once
       unrecorded.use = nullptr;
-      counted.endingVcm = passes.Trace(*integrators.endingVcm, pass, &unrecorded, {});
+      counted.endingVcm = passes.Trace(*integrators.endingVcm, pass, &unrecorded, {}, &spreads.endingVcm);
     }
     records.EndPass(pass);
     store.EndGathering();
@@ -324,33 +339,62 @@ Counted WithOneLight(const Counted& counted, const std::vector<LightSpread>& pat
   return one;
 }
 
+// What a candidate with one light at a vertex has in error, by tile as tileErrors but of independent samples, over one
+// with several.
+struct ErrorsOfOneLight {
+  std::vector<double> path, bdpt, vcm, endingBdpt, endingVcm;
+
+  // `passes`: that were recorded.
+  ErrorsOfOneLight(const Spreads& spreads, const Records& records, int passes) {
+    const auto of = [&records](const std::vector<LightSpread>& spread, uint32_t samples) {
+      std::vector<double> squares;
+      for (const LightSpread& pixel : spread) squares.push_back(pixel.squares / samples);
+      return records.RelativeErrors(squares);
+    };
+    path = of(spreads.path, spreads.counting);
+    bdpt = of(spreads.bdpt, spreads.counting);
+    vcm = of(spreads.vcm, static_cast<uint32_t>(passes));
+    endingBdpt = of(spreads.endingBdpt, spreads.counting);
+    endingVcm = of(spreads.endingVcm, 1);
+  }
+  // Adds it to the candidate, of whose camera paths the part `ends` may end early.
+  void AddTo(PilotCandidate& candidate, double ends) const {
+    const bool isPath = candidate.integrator == "path", merges = candidate.integrator == "vcm";
+    const std::vector<double>& whole = isPath ? path : merges ? vcm : bdpt;
+    const std::vector<double>& ending = isPath ? path : merges ? endingVcm : endingBdpt;
+    for (size_t tile = 0; tile < whole.size(); ++tile) {
+      const double error = std::lerp(whole[tile], ending[tile], ends) / candidate.gainOfSobol;
+      candidate.tileErrors[tile] += error;
+      candidate.error += error;
+    }
+  }
+};
+
 // Turns the candidates, which chose several lights at a vertex, to ones that choose one, and adds those with several
 // again that have less error in equal time than any with one.
-void ChooseLightSamples(const Counted& counted, const Spreads& spreads, const Records& records, int pixels,
+void ChooseLightSamples(const Counted& counted, const Spreads& spreads, const Records& records, int pixels, int passes,
                         RenderPilot& pilot) {
+  const ErrorsOfOneLight errors(spreads, records, passes);
   const auto several = CostsOf(counted, pixels), one = CostsOf(WithOneLight(counted, spreads.path), pixels);
   const std::vector<PilotCandidate> before = pilot.candidates;
   for (std::vector<PilotCandidate>* candidates : {&pilot.candidates, &pilot.ending}) {
     for (PilotCandidate& candidate : *candidates) {
-      std::vector<double> squares;
-      for (const LightSpread& spread : spreads.Of(candidate.integrator)) squares.push_back(spread.squares);
-      const std::vector<double> errors = records.RelativeErrors(squares);
-      for (size_t tile = 0; tile < errors.size(); ++tile) {
-        candidate.tileErrors[tile] += errors[tile] / candidate.gainOfSobol;
-        candidate.error += errors[tile] / candidate.gainOfSobol;
-      }
       const TechniqueCounts& counts = candidate.counts;
-      const size_t k =
+      const double ends = (1 - counts.continuing.Mean()) / (1 - kContinuing);
+      errors.AddTo(candidate, ends);
+      const size_t whole =
           candidate.integrator == "path" ? 0 : Find(candidate.integrator == "vcm", counts.log2LightPaths, false, 1);
-      candidate.cost -= (several[k].paths - one[k].paths) * counts.continuing.Mean();
+      const size_t ending = EndingOf(whole) < kCandidates ? EndingOf(whole) : whole;
+      candidate.cost -=
+          std::lerp(several[whole].paths - one[whole].paths, several[ending].paths - one[ending].paths, ends);
     }
   }
   const PilotCandidate* const best = pilot.Best();
+  if (!best) return;
   std::vector<PilotCandidate> better;
   constexpr double kWorthIt = 0.97;
   for (const PilotCandidate& candidate : before) {
-    if (best && candidate.missing <= kNegligibleLight &&
-        candidate.MostErrorTimesCost() < kWorthIt * best->MostErrorTimesCost())
+    if (candidate.missing <= kNegligibleLight && candidate.MostErrorTimesCost() < kWorthIt * best->MostErrorTimesCost())
       better.push_back(candidate);
   }
   for (PilotCandidate& candidate : better) {
@@ -450,7 +494,7 @@ RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, i
   AddMixed(all, costs, grid, least, pilot.candidates);
   EraseUnwanted(settings, isGuided, pilot.candidates);
   EraseUnwanted(settings, isGuided, pilot.ending);
-  if (choosesLights) ChooseLightSamples(counted, spreads, records, grid.Pixels(), pilot);
+  if (choosesLights) ChooseLightSamples(counted, spreads, records, grid.Pixels(), passCount, pilot);
   return pilot;
 }
 

@@ -97,7 +97,8 @@ BuiltScene Build(const std::string& text) {
 }
 
 void ExpectMoments(const std::string& text, const std::string& integrator, double tolerance) {
-  const BuiltScene built = Build(text);
+  BuiltScene built = Build(text);
+  built.settings.values.Set("light-samples", int64_t{1});
   ASSERT_EQ(built.settings.width, kSide);
   ASSERT_EQ(built.settings.height, kSide);
   const std::vector<Estimate> measured = Measure(built, integrator, 60);
@@ -220,6 +221,7 @@ TEST(Pilot, KnowsTheErrors) {
     text.replace(text.find(view), view.size(), "LookAt 0.3 1.5 0  0.3 0 0  0 0 1");
     BuiltScene built = Build(text);
     built.settings.values.Set("alpha", 1.0);  // the radius of the first pass
+    built.settings.values.Set("light-samples", int64_t{1});
     const RenderPilot pilot = RunPilot(built.scene, built.settings, 1, 200);
     ASSERT_GE(pilot.candidates.size(), 13u);
     ASSERT_EQ(pilot.ending.size(), 11u);
@@ -413,6 +415,49 @@ TEST(Pilot, FewSamplesKnowWhatManyDo) {
     }
     EXPECT_NE(few.Best()->integrator, "path") << name;
   }
+}
+
+// Two lights are chosen at a vertex where they differ, and one where both would tell the same.
+TEST(Pilot, ChoosesAsManyLightsAsPay) {
+  const auto lights = [](const std::string& rest) {
+    std::string text = Scene("auto\" \"integer maxdepth\" [ 1 ] \"string lightsampler\" \"tree", rest);
+    const std::string independent = "\"independent\"", small = "\"integer xresolution\" 16 \"integer yresolution\" 16";
+    text.replace(text.find(independent), independent.size(), "\"sobol\"");
+    text.replace(text.find(small), small.size(), "\"integer xresolution\" 64 \"integer yresolution\" 64");
+    return Build(text);
+  };
+  const auto point = [](const std::string& place) {
+    return "LightSource \"point\" \"rgb I\" [ 1 1 1 ] \"point3 from\" [ " + place + " ]\n";
+  };
+  const BuiltScene one = lights(point("0 1.8 0")), several = lights(point("-0.6 1.8 0") + point("0.6 1.6 -0.5") +
+                                                                    point("-0.5 0.8 -0.9") + point("0.3 1.7 0.6"));
+  EXPECT_EQ(one.settings.LightSamples(), 1);
+  EXPECT_EQ(BuildFile("stage", 160, 90).settings.LightSamples(), 2);
+  // The error and the cost that the pilot tells of either are those of renders.
+  BuiltScene set = several;
+  set.settings.values.Set("light-samples", int64_t{1});
+  EXPECT_EQ(set.settings.LightSamples(), 1);
+  const RenderPilot chosen = RunPilot(several.scene, several.settings, 2), alone = RunPilot(set.scene, set.settings, 2);
+  for (const char* integrator : {"path", "bdpt", "vcm"}) {
+    const PilotCandidate &here = *chosen.Find(integrator), &there = *alone.Find(integrator);
+    std::printf("[   info   ] %-5s relMSE %.4g, with one light %.4g; cost %.4g, %.4g\n", integrator, here.error,
+                there.error, here.cost, there.cost);
+    EXPECT_NEAR(here.error / there.error, 1, 0.15) << integrator;
+    EXPECT_NEAR(here.cost / there.cost, 1, 0.05) << integrator;
+  }
+  ASSERT_EQ(chosen.ending.size(), alone.ending.size());
+  for (size_t k = 0; k < chosen.ending.size(); ++k) {
+    const PilotCandidate &here = chosen.ending[k], &there = alone.ending[k];
+    std::printf("[   info   ] %s: relMSE %.4g, with one light %.4g\n", here.Describe().c_str(), here.error,
+                there.error);
+    EXPECT_NEAR(here.error / there.error, 1, 0.2) << here.Describe();
+    EXPECT_NEAR(here.cost / there.cost, 1, 0.05) << here.Describe();
+  }
+  for (const PilotCandidate& candidate : alone.candidates) EXPECT_EQ(candidate.counts.lightSamples, 1);
+  const RenderSettings stage = BuildFile("stage", 160, 90).settings;
+  EXPECT_EQ(VariantOf(stage, "auto").LightSamples(), 2);
+  EXPECT_EQ(VariantOf(stage, stage.integrator).LightSamples(), 1);
+  EXPECT_EQ(VariantOf(stage, stage.integrator + ":light-samples=4").LightSamples(), 4);
 }
 
 // Caustics that are seen through diamonds: without merging they are found once in ten thousand samples, so bright that

@@ -386,6 +386,28 @@ INSTANTIATE_TEST_SUITE_P(Ways, SelectionAgreement,
                          });
 
 // On scenes with hundreds and thousands of lights, every way to select them against the tree.
+// Lights are selected as the settings of a render say, not as those say with which its scene was built: variants of a
+// comparison share a scene.
+TEST(Selection, IsThatOfTheRender) {
+  const BuiltScene built = Build(ManyLights(), "tree");
+  for (const char* integrator : {"path", "bdpt", "vcm", "sppm"}) {
+    SCOPED_TRACE(integrator);
+    const auto picture = [&](const BuiltScene& scene, const std::string& selection, int64_t samples) {
+      BuiltScene variant = scene;
+      variant.settings.integrator = integrator;
+      variant.settings.values.Set("light-sampler", selection);
+      variant.settings.values.Set("light-samples", samples);
+      return RenderBuilt(variant, 2, 2).image.data;
+    };
+    const std::vector<float> one = picture(built, "tree", 1);
+    for (const auto& [selection, samples] : {std::pair("tree", 4), std::pair("power", 1), std::pair("uniform", 3)}) {
+      const std::vector<float> other = picture(built, selection, samples);
+      EXPECT_NE(other, one) << selection;
+      EXPECT_EQ(other, picture(Build(ManyLights(), selection, samples), selection, samples)) << selection;
+    }
+  }
+}
+
 struct ManyLightCase {
   const char *scene, *integrator, *selection;
 };
