@@ -101,7 +101,8 @@ std::string ToJson(const RenderReport& report) {
     json["auto"] = {{"lightPaths", decided->lightPaths},
                     {"connecting", decided->connecting},
                     {"merging", decided->merging},
-                    {"continuing", decided->continuing}};
+                    {"continuing", decided->continuing},
+                    {"lightSamples", decided->lightSamples}};
   }
   if (outcome.guiding.regions > 0)
     json["guiding"] = {{"gain", outcome.guiding.gain}, {"regions", outcome.guiding.regions}};

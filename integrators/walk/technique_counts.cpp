@@ -15,7 +15,7 @@ namespace {
 UsedCounts Used(const TechniqueCounts& counts, const CountedTechniques& techniques, double connecting, double merging,
                 double continuing) {
   return {techniques.lightPaths ? counts.LightPaths() : 0.0, techniques.connections ? connecting : 0.0,
-          techniques.merging ? merging : 0.0, techniques.lightPaths ? continuing : 1.0};
+          techniques.merging ? merging : 0.0, techniques.lightPaths ? continuing : 1.0, counts.lightSamples};
 }
 
 }  // namespace

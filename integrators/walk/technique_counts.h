@@ -44,6 +44,7 @@ struct UsedCounts {
   double merging = 0;     // probability that a camera path is merged with photons
   // Probability that a camera path continues beyond its first vertex where photons can be merged.
   double continuing = 1;
+  int lightSamples = 1;  // the most lights that are chosen at a vertex
 };
 
 struct TechniqueCounts {

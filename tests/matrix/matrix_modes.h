@@ -16,6 +16,7 @@ struct Mode {
   bool learns = false;                  // the selection of lights
   bool isAdaptive = false;              // pixels differ in their numbers of samples
   bool guidesPaths = false;             // from the second sample on
+  int lightSamples = 0;                 // most lights at a vertex; 0: the default
   TechniqueCounts counts{};             // as --integrator auto may choose them
   // Per pixel of a trial replica; at least that many in each. What is learned takes effect from pass to pass.
   int Samples() const { return isAdaptive ? 8 : Adapts() ? 6 : 4; }
@@ -32,6 +33,7 @@ struct Mode {
     settings.values.Set("connect", connects);
     settings.values.Set("direct-photons", directFromPhotons);
     settings.values.Set("learn-lights", learns);
+    settings.values.Set("light-samples", int64_t{lightSamples});
     settings.values.Set("guide-photons", guides);
     settings.values.Set("guide-paths", guidesPaths);
     settings.values.Set("guide-always", guidesPaths);
@@ -49,23 +51,29 @@ inline TechniqueCounts NowAndThen(int log2LightPaths, float connecting, float me
 
 inline const std::vector<Mode>& Modes() {
   static const std::vector<Mode> modes = {
-      {.name = "path, learning, adaptive", .integrator = "path", .learns = true, .isAdaptive = true},
+      {.name = "path, learning, adaptive, 2 lights",
+       .integrator = "path",
+       .learns = true,
+       .isAdaptive = true,
+       .lightSamples = 2},
       {.name = "path, guided", .integrator = "path", .guidesPaths = true},
       {.name = "light", .integrator = "light"},
       {.name = "bdpt", .integrator = "bdpt"},
-      {.name = "bdpt, learning, adaptive, counts",
+      {.name = "bdpt, learning, adaptive, 2 lights, counts",
        .integrator = "bdpt",
        .learns = true,
        .isAdaptive = true,
+       .lightSamples = 2,
        .counts = NowAndThen(-1, 1, 1, 0.5f)},
       {.name = "bdpt, guided", .integrator = "bdpt", .guidesPaths = true},
       {.name = "vcm", .integrator = "vcm"},
-      {.name = "vcm, guided, learning, adaptive, counts",
+      {.name = "vcm, guided, learning, adaptive, 2 lights, counts",
        .integrator = "vcm",
        .guides = true,
        .learns = true,
        .isAdaptive = true,
        .guidesPaths = true,
+       .lightSamples = 2,
        .counts = NowAndThen(0, 0.7f, 0.7f, 0.5f)},
       {.name = "vcm --no-connect", .integrator = "vcm", .connects = false},
       {.name = "vcm --no-connect, guided, learning",
@@ -75,11 +83,12 @@ inline const std::vector<Mode>& Modes() {
        .learns = true,
        .guidesPaths = true},
       {.name = "sppm", .integrator = "sppm"},
-      {.name = "sppm, guided, learning, adaptive",
+      {.name = "sppm, guided, learning, adaptive, 2 lights",
        .integrator = "sppm",
        .guides = true,
        .learns = true,
-       .isAdaptive = true},
+       .isAdaptive = true,
+       .lightSamples = 2},
       {.name = "sppm --direct-photons", .integrator = "sppm", .directFromPhotons = true},
       {.name = "sppm --direct-photons, guided", .integrator = "sppm", .directFromPhotons = true, .guides = true},
   };

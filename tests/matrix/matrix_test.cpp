@@ -5,8 +5,8 @@
 // seeds, by Welch's test. All cells together raise a false alarm once in a thousand suites (Šidák).
 //
 // A trial tells how many samples a cell takes until it would notice a picture that is so much too bright in 19 of 20
-// cases: 12.5 % in the default suite, 2 % in `tests/run matrix-whole` (LAMPYR_MATRIX_NOTICES). A cell that cannot afford
-// them fails.
+// cases: 12.5 % in the default suite, 2 % in `tests/run matrix-whole` (LAMPYR_MATRIX_NOTICES). A cell that cannot
+// afford them fails.
 //
 // What is learned and guided is which light is chosen, and where it sends photons. By default rigs of lights have all
 // modes that learn or guide; those of filters and motion three of the six in turn, of materials and cameras one.
@@ -338,10 +338,10 @@ TEST(MatrixIsWhole, EveryModeIsAColumn) {
   }
   // Settings of integrators: those that are no mode change no more than the noise or the blur, or are said to be
   // biased.
-  const std::vector<std::string> modes = {"merge", "connect", "direct-photons", "guide-photons", "guide-paths", "guide-always",
-                                          "learn-lights"},
-                                 others = {"max-depth",     "light-sampler", "light-samples", "photons",
-                                           "photon-memory", "radius",        "alpha",         "shadow-roulette"};
+  const std::vector<std::string> modes = {"merge",       "connect",      "direct-photons", "guide-photons",
+                                          "guide-paths", "guide-always", "learn-lights",   "light-samples"},
+                                 others = {"max-depth", "light-sampler", "photons",        "photon-memory",
+                                           "radius",    "alpha",         "shadow-roulette"};
   const Settings settings = IntegratorSettings();
   for (const std::string& name : settings.Names()) {
     if (settings.Find(name)->isBiased) continue;
