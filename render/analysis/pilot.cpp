@@ -403,6 +403,15 @@ void ChooseLightSamples(const Counted& counted, const Spreads& spreads, const Re
   }
 }
 
+// True if it is to be decided how many lights are chosen at a vertex. Where lights have counts of their own, those are
+// what the scene wants.
+bool ChoosesLights(const RenderScene& scene, const RenderSettings& settings) {
+  const auto& lights = scene.lighting->Lights();
+  return settings.values.Integer(common_settings::kLightSamples.name) == 0 &&
+         std::none_of(lights.begin(), lights.end(),
+                      [](const PlacedLight& placed) { return placed.light->Settings().fixedSampleCount > 0; });
+}
+
 // Erases the candidates that the settings exclude. `isGuided`: light paths need a guide from the start, which bdpt does
 // not have.
 void EraseUnwanted(const RenderSettings& settings, bool isGuided, std::vector<PilotCandidate>& candidates) {
@@ -450,7 +459,7 @@ RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, i
   PhotonSettings photons = integrators.vcm->Photons().value();
   // If light paths hardly come near to what is seen, vcm guides them from the start. Those of bdpt are hopeless then.
   RenderScene view = scene;
-  const bool choosesLights = settings.values.Integer(common_settings::kLightSamples.name) == 0;
+  const bool choosesLights = ChoosesLights(scene, settings);
   if (choosesLights)
     view.lighting =
         std::make_shared<const LightingServices>(scene.lighting->Selecting(settings.LightSampler(), kSeveralLights));
