@@ -78,9 +78,9 @@ struct PhotonSettings {
   bool guided = true;      // emission guiding, if it reduces the noise enough (emission_learning.h)
 };
 
-// How much the samples of several lights at a vertex differ: what choosing one of them would add to the variance.
+// The variance that a path would gain by one light at each vertex instead of several; from samples of several.
 struct LightSpread {
-  double squares = 0;                  // Σ over vertices of the variance of one sample, chosen at random, of all there
+  double squares = 0;                  // Σ over vertices of the variance of one sample of those there, chosen at random
   uint64_t vertices = 0, samples = 0;  // where lights were chosen, and how many
 };
 

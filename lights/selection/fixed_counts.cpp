@@ -79,7 +79,7 @@ class FixedCountSelector final : public LightSelector {
   bool SelectsPatches(const Receiver& receiver) const override { return whole_->SelectsPatches(receiver); }
 
  private:
-  // What is left of the choices.
+  // Settings of `others_`: as many choices as the lights with counts leave.
   SelectionSettings OfOthers(const SelectionSettings& settings) const {
     return {settings.learned, std::clamp(LightChoices::kMost - total_, 1, settings.mostSamples)};
   }

@@ -51,8 +51,7 @@ struct LightChoices {
 
 class LightLearning;
 
-// How lights are selected, besides by the receiver. The same for all calls of a pass, so that every technique knows the
-// same probabilities.
+// Settings of light selection. All calls of a pass have the same, so that all techniques have the same probabilities.
 struct SelectionSettings {
   const LightLearning* learned = nullptr;  // factors learned from shadow rays; null: none
   int mostSamples = 1;                     // the largest number of choices, in [1, LightChoices::kMost]

@@ -225,7 +225,7 @@ RenderScene WithWavelengths(const RenderScene& scene) {
                           : scene;
 }
 
-// How lights differ at the vertices of the camera paths of each integrator, by pixel: sums over the samples of a pixel.
+// LightSpread of each integrator, by pixel: sums over the samples of a pixel.
 struct Spreads {
   std::vector<LightSpread> path, bdpt, vcm, endingBdpt, endingVcm;
   // Samples of a pixel of `path`, `bdpt` and `endingBdpt`: one, and more of small pictures. Of `endingVcm` there is
@@ -314,7 +314,7 @@ void AddMixed(std::span<const PilotCandidate> all, std::span<const CandidateCost
   }
 }
 
-// What the passes with several lights at a vertex would have counted with one.
+// Counts of the same passes with one light at a vertex instead of several.
 Counted WithOneLight(const Counted& counted, const std::vector<LightSpread>& path) {
   uint64_t samples = 0, vertices = 0;
   for (const LightSpread& spread : path) {
@@ -339,8 +339,8 @@ Counted WithOneLight(const Counted& counted, const std::vector<LightSpread>& pat
   return one;
 }
 
-// What a candidate with one light at a vertex has in error, by tile as tileErrors but of independent samples, over one
-// with several.
+// Errors of candidates with one light at a vertex minus those with several: by tile, as PilotCandidate::tileErrors, but
+// of independent samples.
 struct ErrorsOfOneLight {
   std::vector<double> path, bdpt, vcm, endingBdpt, endingVcm;
 

@@ -466,7 +466,7 @@ void Film::Load(ByteReader& bytes) {
 
 Image Film::Develop() const {
   std::vector<std::string> channels = {"R", "G", "B", "variance.R", "variance.G", "variance.B"};
-  // By layer, how many channels it has: three, but for the last bands.
+  // Number of channels of each layer: three, but for the last layer of bands.
   std::vector<size_t> widths;
   for (const std::string& layer : layers_) {
     const std::vector<std::string> bands = IsBandLayer(layer) ? Split(layer, ' ') : std::vector<std::string>();
