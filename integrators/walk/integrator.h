@@ -80,7 +80,7 @@ struct PhotonSettings {
 
 // The variance that a path would gain by one light at each vertex instead of several; from samples of several.
 struct LightSpread {
-  double squares = 0;                  // Σ over vertices of the variance of one sample of those there, chosen at random
+  double squares = 0;  // Σ over vertices of the variance of one sample of those there, chosen at random
   uint64_t vertices = 0, samples = 0;  // where lights were chosen, and how many
 };
 

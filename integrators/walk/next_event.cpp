@@ -57,8 +57,8 @@ Color SampleLight(const SampleContext& context, const NextEventSettings& setting
 
 namespace {
 
-// SampleDirectLight with SampleContext::lightSpread. The variance of one of n samples x_i, which then counts n times, is
-// n Σ x_i² - (Σ x_i)².
+// SampleDirectLight with SampleContext::lightSpread. The variance of one of n samples x_i, which then counts n times,
+// is n Σ x_i² - (Σ x_i)².
 [[gnu::noinline]] Color SampleAndCompare(const SampleContext& context, const NextEventSettings& settings,
                                          const PathVertex& vertex, float uSelect, const Point2& u, const Color& soFar,
                                          NextEventVisitor& visitor) {
