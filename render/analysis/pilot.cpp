@@ -477,7 +477,7 @@ RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, i
   Counted counted;
   counted.tracesAnew = scene.hasMotion || scene.isSpectral;
   Spreads spreads(grid.Pixels());
-  CountPaths(integrators, view, combined, grid, threads, counted, &spreads);
+  CountPaths(integrators, view, combined, grid, threads, counted, choosesLights ? &spreads : nullptr);
   if (passCount == 0) passCount = PassesFor(counted, grid.Pixels());
   if (scene.isSpectral) CountPaths(integrators, WithWavelengths(view), combined, grid, threads, counted, nullptr);
   const PixelFilter filter(settings.filter);

@@ -144,6 +144,11 @@ Film::Film(int fullWidth, int fullHeight, const PixelRect& crop, std::vector<std
     : fullWidth_(fullWidth), fullHeight_(fullHeight), crop_(crop), layers_(std::move(layers)) {
   hasHalf_ = !layers_.empty() && layers_.back() == kHalfLayer;
   bandLayers_ = static_cast<size_t>(std::count_if(layers_.begin(), layers_.end(), IsBandLayer));
+  for (size_t i = 0; i < layers_.size(); ++i) {
+    const bool isPlace = i >= SplitLayers() && i < SplitLayers() + bandLayers_;
+    if (IsBandLayer(layers_[i]) != isPlace || (isPlace && Split(layers_[i], ' ').size() > 3))
+      throw Error("the layers of a film with bands of the spectrum are not in their order");
+  }
   bandWeights_.resize(3 * bandLayers_);
   const bool inside = crop.x0 >= 0 && crop.y0 >= 0 && crop.x1 <= fullWidth && crop.y1 <= fullHeight;
   if (!inside || crop.Width() <= 0 || crop.Height() <= 0) {

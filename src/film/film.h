@@ -63,7 +63,7 @@ struct SpectralBands {
 std::vector<std::string> LayersOfBands(const SpectralBands& bands);
 bool IsBandLayer(const std::string& layer);
 
-// Where the lanes of the samples of a pass, which are values at three wavelengths, belong among the bands.
+// The bands of the three wavelengths of a pass.
 struct LanesInBands {
   int band[3] = {-1, -1, -1};     // by lane; -1: none
   double weight[3] = {0, 0, 0};   // 1 / (density of the wavelength · width of the band)

@@ -380,7 +380,7 @@ TEST(Spectral, PicturesDoNotDependOnThreads) {
   }
 }
 
-// What the observer sees of the bands of a picture, on average over its pixels.
+// Mean colour of the bands of a picture, in linear Rec. 709.
 Vector3d ColourOfBands(const Image& image, const SpectralBands& bands) {
   Vector3d observed(0.0);
   constexpr int parts = 50;
@@ -419,7 +419,7 @@ TEST(Spectral, BandsAreTheSpectrum) {
       SCOPED_TRACE(integrator);
       RenderOverrides overrides;
       if (isAdaptive) overrides.adaptive.emplace();
-      // As many light paths as pixels.
+      // Light tracing has as many light paths as the picture has pixels: too few of 8 × 8.
       if (integrator == std::string("light")) overrides.width = overrides.height = 64;
       const Image image = RenderText(scene(integrator), 256, overrides, 2).image;
       ASSERT_EQ(image.channels.size(), 26u);
