@@ -238,7 +238,7 @@ struct Spreads {
         vcm(path),
         endingBdpt(path),
         endingVcm(path),
-        counting(static_cast<uint32_t>(std::max(kMostPilotPixels / pixels, 1))) {}
+        counting(static_cast<uint32_t>(std::clamp(kMostPilotPixels / pixels, 1, kMostPasses))) {}
 };
 
 // `spreads`: null: not wanted.
