@@ -29,27 +29,26 @@ RTCGeometry NewGeometry(RTCDevice device, const TriangleMesh& mesh) {
   return geometry;
 }
 
-RTCGeometry NewUserGeometry(RTCDevice device, size_t count, RTCBoundsFunction bounds, RTCIntersectFunctionN intersect,
-                            RTCOccludedFunctionN occluded) {
+RTCGeometry NewUserGeometry(RTCDevice device, size_t count) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
   rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(count));
-  rtcSetGeometryBoundsFunction(geometry, bounds, nullptr);
-  rtcSetGeometryIntersectFunction(geometry, intersect);
-  rtcSetGeometryOccludedFunction(geometry, occluded);
+  rtcSetGeometryBoundsFunction(geometry, SetOwnBounds, nullptr);
+  rtcSetGeometryIntersectFunction(geometry, OwnIntersect);
+  rtcSetGeometryOccludedFunction(geometry, OwnOccluded);
   return geometry;
 }
 
 RTCGeometry NewGeometry(RTCDevice device, const BilinearMesh& mesh) {
   if (mesh.patches.empty()) return nullptr;
-  return NewUserGeometry(device, mesh.patches.size(), PatchBounds, PatchIntersect, PatchOccluded);
+  return NewUserGeometry(device, mesh.patches.size());
 }
 
 RTCGeometry NewGeometry(RTCDevice device, const PreparedQuadric&) {
-  return NewUserGeometry(device, 1, QuadricBounds, QuadricIntersect, QuadricOccluded);
+  return NewUserGeometry(device, 1);
 }
 
 RTCGeometry NewGeometry(RTCDevice device, const CustomSurface& surface) {
-  RTCGeometry geometry = NewUserGeometry(device, 1, CustomBounds, CustomIntersect, CustomOccluded);
+  RTCGeometry geometry = NewUserGeometry(device, 1);
   if (surface.Moves()) rtcSetGeometryTimeStepCount(geometry, kCustomTimeSteps);
   return geometry;
 }
@@ -110,7 +109,7 @@ void SetTransforms(RTCGeometry geometry, const InstanceRecord& instance) {
 RTCGeometry NewGeometry(RTCDevice device, const PrimitiveRecord& record, uint32_t visibleTo) {
   RTCGeometry geometry = std::visit([&](const auto* shape) { return NewGeometry(device, *shape); }, record.shape);
   if (!geometry) return nullptr;
-  rtcSetGeometryMask(geometry, record.separatesMedia ? visibility::kAll | visibility::kMedia : visibleTo);
+  rtcSetGeometryMask(geometry, visibleTo);
   rtcSetGeometryUserData(geometry, const_cast<PrimitiveRecord*>(&record));
   // User geometry decides in its own callbacks what passes.
   if (record.LetsPass() && (record.As<TriangleMesh>() || record.As<CurveSet>())) {

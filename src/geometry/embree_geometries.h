@@ -8,7 +8,8 @@
 
 namespace lampyr {
 
-// Refers to the record, which has to outlive it. `visibleTo`: kinds of rays. Null for a shape without primitives.
+// Refers to the record, which has to outlive it. `visibleTo`: kinds of rays (VisibleTo). Null for a shape without
+// primitives.
 RTCGeometry NewGeometry(RTCDevice device, const PrimitiveRecord& record, uint32_t visibleTo);
 
 RTCGeometry NewInstance(RTCDevice device, const InstanceRecord& instance, RTCScene object);

@@ -11,9 +11,10 @@
 
 #include "base/error.h"
 #include "geometry/crossing_order.h"
-#include "geometry/embree_callbacks.h"
 #include "geometry/embree_geometries.h"
+#include "geometry/few_surfaces.h"
 #include "geometry/fine_distance.h"
+#include "geometry/meeting.h"
 #include "geometry/rounding.h"
 #include "geometry/scene_tables.h"
 #include "geometry/shape_checks.h"
@@ -81,6 +82,7 @@ struct GeometryScene::Implementation {
   DeviceHandle device;
   std::vector<SceneHandle> objectScenes;
   SceneHandle scene;
+  std::unique_ptr<const FewSurfaces> few;  // null: rays are Embree's
   Bounds3 bounds;
   float largest = kFarthest;
   bool hasTints = false;       // some thin surface is not clear
@@ -89,11 +91,10 @@ struct GeometryScene::Implementation {
   mutable std::atomic<uint64_t> rejected{0};
 
   explicit Implementation(GeometryDescription given) : description(std::move(given)) {
-    device.reset(rtcNewDevice(kDeviceSettings));
-    if (!device) throw Error(std::string("Embree cannot start: ") + ErrorName(rtcGetDeviceError(nullptr)));
     FillTables();
     ComputeBounds();
-    BuildScenes();
+    if (description.tracer == Tracer::BySize) few = FewSurfaces::Of(tables);
+    if (!few) BuildScenes();
   }
 
   void AddEntries(const std::vector<GeometryEntry>& entries);
@@ -268,13 +269,16 @@ void Attach(RTCScene scene, RTCGeometry geometry, uint32_t id) {
 void GeometryScene::Implementation::AttachEntries(RTCScene target, size_t first, size_t count) {
   for (size_t i = 0; i < count; ++i) {
     RTCGeometry geometry =
-        NewGeometry(device.get(), tables.primitives[first + i], tables.attributes[first + i].visibility);
+        NewGeometry(device.get(), tables.primitives[first + i],
+                    VisibleTo(tables.primitives[first + i], tables.attributes[first + i]));
     if (!geometry) continue;
     Attach(target, geometry, static_cast<uint32_t>(i));
   }
 }
 
 void GeometryScene::Implementation::BuildScenes() {
+  device.reset(rtcNewDevice(kDeviceSettings));
+  if (!device) throw Error(std::string("Embree cannot start: ") + ErrorName(rtcGetDeviceError(nullptr)));
   objectScenes.resize(description.objects.size());
   scene = NewScene();
   AttachEntries(scene.get(), 0, description.entries.size());
@@ -340,8 +344,12 @@ inline bool GeometryScene::Implementation::Query(const Ray& ray, uint32_t kinds,
   rayHit.ray.tnear = trace.nearest;
   rayHit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   rayHit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  ClearUpperHalves();
-  rtcIntersect1(scene.get(), &trace.context, &rayHit);
+  if (few) {
+    few->Intersect(rayHit, trace);
+  } else {
+    ClearUpperHalves();
+    rtcIntersect1(scene.get(), &trace.context, &rayHit);
+  }
   trace.ThrowFailure();
   if (rayHit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
   hit.t = rayHit.ray.tfar;
@@ -466,8 +474,12 @@ inline bool GeometryScene::Implementation::Passes(const Ray& ray, uint32_t kinds
   RTCRay shadowRay;
   // Embree's interval is closed above; ours is open.
   FillRay(ray, kinds, ray.tMax * kOneMinusEpsilon, shadowRay);
-  ClearUpperHalves();
-  rtcOccluded1(scene.get(), &trace.context, &shadowRay);
+  if (few) {
+    few->Occlude(shadowRay, trace);
+  } else {
+    ClearUpperHalves();
+    rtcOccluded1(scene.get(), &trace.context, &shadowRay);
+  }
   trace.ThrowFailure();
   return !(shadowRay.tfar < 0);
 }

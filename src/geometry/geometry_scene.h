@@ -76,11 +76,15 @@ struct GeometryInstance {
   std::shared_ptr<const Motion> motion = nullptr;  // null: stays. Otherwise the transforms above are not looked at
 };
 
+// What follows rays. BySize: surfaces that are few are tested one by one (few_surfaces.h), others are Embree's.
+enum class Tracer : uint8_t { BySize, Embree };
+
 struct GeometryDescription {
   std::vector<GeometryEntry> entries;
   std::vector<GeometryObject> objects;
   std::vector<GeometryInstance> instances;
   bool robust = true;  // Embree's robust mode: no leaks along shared edges, 20-25 % slower
+  Tracer tracer = Tracer::BySize;
 };
 
 // Immutable after construction; all methods may be called from any thread.

@@ -66,6 +66,11 @@ struct SceneTables {
   uint32_t firstInstanceId = 0;           // Embree's id of instance 0; the scene's own entries come before
 };
 
+// Kinds of rays that meet the surface.
+inline uint32_t VisibleTo(const PrimitiveRecord& record, const GeometryAttributes& attributes) {
+  return record.separatesMedia ? visibility::kAll | visibility::kMedia : attributes.visibility;
+}
+
 // Point of a hit in the space of the primitive, which `ray` is in too. `hit` needs t, patch, u and v.
 // `point`: a new one, to which it is written.
 void EvaluatePrimitive(const PrimitiveRecord& record, const Ray& ray, const RayHit& hit, SurfacePoint& point);

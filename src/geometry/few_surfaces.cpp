@@ -1,0 +1,377 @@
+// See few_surfaces.h. Compiled without contraction of products and sums: the two triangles at an edge must find the
+// same point on the same side of it.
+#include "geometry/few_surfaces.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <span>
+
+#include "math/bounds.h"
+
+#if defined(__AVX__)
+#include <immintrin.h>
+#endif
+
+namespace lampyr {
+
+namespace {
+
+constexpr uint32_t kLanes = 8;
+// Limits of what is tested one by one. Measured (tests/bench): from some sixty triangles on, Embree is faster.
+constexpr size_t kMostTriangles = 64, kMostOthers = 16;
+// So many blocks of triangles are tested without looking at their bounds first.
+constexpr size_t kBlocksWithoutBounds = 3;
+constexpr float kLargest = std::numeric_limits<float>::max();
+
+using Floats = float __attribute__((vector_size(kLanes * sizeof(float))));
+using Lanes = int32_t __attribute__((vector_size(kLanes * sizeof(int32_t))));  // -1: true
+
+inline Floats All(float x) {
+  return x - Floats{};
+}
+
+// The second argument where one is not a number.
+inline Floats Min(const Floats& a, const Floats& b) {
+#if defined(__AVX__)
+  return _mm256_min_ps(a, b);
+#else
+  return a < b ? a : b;
+#endif
+}
+
+inline Floats Max(const Floats& a, const Floats& b) {
+#if defined(__AVX__)
+  return _mm256_max_ps(a, b);
+#else
+  return a > b ? a : b;
+#endif
+}
+
+inline Floats MultiplyAdd(const Floats& a, const Floats& b, const Floats& c) {
+#if defined(__FMA__)
+  return _mm256_fmadd_ps(a, b, c);
+#else
+  return a * b + c;
+#endif
+}
+
+// The lanes that are true, as bits.
+inline uint32_t Bits(const Lanes& lanes) {
+#if defined(__AVX__)
+  return static_cast<uint32_t>(_mm256_movemask_ps(reinterpret_cast<const __m256&>(lanes)));
+#else
+  uint32_t bits = 0;
+  for (uint32_t i = 0; i < kLanes; ++i) bits |= lanes[i] ? 1u << i : 0u;
+  return bits;
+#endif
+}
+
+// Removes the lowest bit and returns its index.
+inline uint32_t TakeLowest(uint32_t& bits) {
+  const auto lowest = static_cast<uint32_t>(std::countr_zero(bits));
+  bits &= bits - 1;
+  return lowest;
+}
+
+// Eight triangles. Lanes without one are visible to no ray.
+struct TriangleBlock {
+  Floats corners[3][3] = {};  // by corner and axis
+  Floats normals[3] = {};     // by axis; unit, or 0 without an area
+  Lanes visible = {};         // kinds of rays
+  uint32_t primitives[kLanes] = {}, triangles[kLanes] = {};
+  bool letsPass = false;  // some lane may
+
+  void Name(uint32_t lane, RTCHit& hit) const {
+    hit.primID = triangles[lane];
+    hit.geomID = primitives[lane];
+    hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  }
+};
+
+// Bounds of eight things, a little wider than they are.
+struct BoxBlock {
+  Floats planes[2][3] = {};  // least and largest coordinates, by axis
+  Lanes visible = {};
+};
+
+// A quadric, a patch of a bilinear mesh or a custom surface.
+struct OtherSurface {
+  uint32_t primitive, patch;
+};
+
+// A ray, prepared for both tests.
+struct FewRay {
+  float origin[3], direction[3], inverse[3];
+  bool isNegative[3];
+  int32_t kinds;
+
+  explicit FewRay(const RTCRay& ray)
+      : origin{ray.org_x, ray.org_y, ray.org_z},
+        direction{ray.dir_x, ray.dir_y, ray.dir_z},
+        kinds(static_cast<int32_t>(ray.mask)) {
+    for (int i = 0; i < 3; ++i) {
+      inverse[i] = 1 / (direction[i] + 0.0f);  // -0 counts as 0
+      isNegative[i] = direction[i] < 0;
+    }
+  }
+};
+
+struct TriangleHits {
+  Lanes isHit;         // with t in (tnear, farthest]
+  Floats t;            // along the ray
+  Floats u, v, whole;  // barycentric coordinates are u / whole, v / whole
+};
+
+// Six times the volume that the direction of the ray spans with two points, as seen from its start: its sign tells on
+// which side of their line the ray passes. The other way around it is the negative, to the last bit.
+inline Floats SideOf(const Floats (&a)[3], const Floats (&b)[3], const FewRay& ray) {
+  return MultiplyAdd(All(ray.direction[0]), a[1] * b[2] - a[2] * b[1],
+                     MultiplyAdd(All(ray.direction[1]), a[2] * b[0] - a[0] * b[2],
+                                 All(ray.direction[2]) * (a[0] * b[1] - a[1] * b[0])));
+}
+
+inline TriangleHits IntersectTriangles(const TriangleBlock& block, const FewRay& ray, const Floats& tnear,
+                                       const Floats& farthest) {
+  Floats corners[3][3], fromPlane = {}, along = {};
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int i = 0; i < 3; ++i) corners[i][axis] = block.corners[i][axis] - ray.origin[axis];
+    fromPlane = MultiplyAdd(corners[0][axis], block.normals[axis], fromPlane);
+    along = MultiplyAdd(All(ray.direction[axis]), block.normals[axis], along);
+  }
+  TriangleHits hits;
+  const Floats rest = SideOf(corners[1], corners[2], ray);
+  hits.u = SideOf(corners[2], corners[0], ray);
+  hits.v = SideOf(corners[0], corners[1], ray);
+  hits.whole = rest + hits.u + hits.v;
+  // The distance of the plane is exact to a few roundings of the coordinates, at any angle; that of the point with
+  // these barycentric coordinates would not be.
+  hits.t = fromPlane / along;
+  hits.isHit = ((Min(Min(rest, hits.u), hits.v) >= 0.0f) | (Max(Max(rest, hits.u), hits.v) <= 0.0f)) &
+               (hits.whole != 0.0f) & (hits.t > tnear) & (hits.t <= farthest) & ((block.visible & ray.kinds) != 0);
+  return hits;
+}
+
+// The boxes that (0, tfar] of the ray passes through.
+inline uint32_t IntersectBoxes(const BoxBlock& block, const FewRay& ray, float tfar) {
+  constexpr float kWider = 1 + 0x1p-20f;  // more than the products round
+  Floats near = {}, far = All(tfar);
+  for (int i = 0; i < 3; ++i) {
+    near = Max((block.planes[ray.isNegative[i]][i] - ray.origin[i]) * ray.inverse[i], near);
+    far = Min((block.planes[!ray.isNegative[i]][i] - ray.origin[i]) * ray.inverse[i], far);
+  }
+  return Bits((near <= far * kWider) & ((block.visible & ray.kinds) != 0));
+}
+
+struct Triangle {
+  Point3 corners[3];
+  uint32_t primitive, triangle;
+
+  Point3 Center() const { return (corners[0] + corners[1] + corners[2]) / 3.0f; }
+};
+
+Vector3 NormalOf(const Triangle& triangle) {
+  const Point3d corner(triangle.corners[0]);
+  const Vector3d normal = glm::cross(Point3d(triangle.corners[1]) - corner, Point3d(triangle.corners[2]) - corner);
+  const double length = glm::length(normal);
+  return length > 0 ? Vector3(normal / length) : Vector3(0.0f);
+}
+
+// Sorts triangles such that each eight of them are near to one another.
+void Cluster(std::span<Triangle> triangles) {
+  if (triangles.size() <= kLanes) return;
+  Bounds3 centers;
+  for (const Triangle& triangle : triangles) centers.Add(triangle.Center());
+  const Vector3 size = centers.max - centers.min;
+  const int axis = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
+  const size_t half = (triangles.size() / 2 + kLanes - 1) / kLanes * kLanes;
+  std::nth_element(triangles.begin(), triangles.begin() + static_cast<ptrdiff_t>(half), triangles.end(),
+                   [&](const Triangle& a, const Triangle& b) { return a.Center()[axis] < b.Center()[axis]; });
+  Cluster(triangles.first(half));
+  Cluster(triangles.subspan(half));
+}
+
+// A box may be missed by rounding where what it holds is hit: it is wider by more than that.
+void SetBox(const Bounds3& bounds, uint32_t visible, uint32_t lane, BoxBlock& block) {
+  const float wider = 0x1p-20f * std::max(MaxAbsComponent(bounds.min), MaxAbsComponent(bounds.max));
+  for (int i = 0; i < 3; ++i) {
+    block.planes[0][i][lane] = bounds.min[i] - wider;
+    block.planes[1][i][lane] = bounds.max[i] + wider;
+  }
+  block.visible[lane] = static_cast<int32_t>(visible);
+}
+
+}  // namespace
+
+struct FewSurfaces::Blocks {
+  const SceneTables& tables;
+  std::vector<TriangleBlock> triangles;
+  std::vector<BoxBlock> triangleBoxes;  // of the blocks; none if there are few
+  std::vector<OtherSurface> others;
+  std::vector<BoxBlock> otherBoxes;
+
+  void AddTriangles(std::span<const Triangle> added);
+  void AddOther(const OtherSurface& other);
+  Meeting MeetingWith(uint32_t primitive, uint32_t patch) const {
+    return {tables.primitives[primitive], primitive, patch, RTC_INVALID_GEOMETRY_ID};
+  }
+  // The lanes of `hits` in which the ray is stopped.
+  Lanes Stopped(const TriangleBlock& block, const TriangleHits& hits, const RTCRay& ray, TraceContext& trace,
+                bool isShadow) const;
+  // Calls visit(index of a block of triangles) for those that the ray may meet, until it is true.
+  template <class Visit>
+  bool AnyTriangles(const FewRay& ray, float tfar, const Visit& visit) const {
+    if (triangleBoxes.empty()) {
+      for (size_t i = 0; i < triangles.size(); ++i)
+        if (visit(i)) return true;
+      return false;
+    }
+    return AnyBox(triangleBoxes, ray, tfar, visit);
+  }
+  template <class Visit>
+  static bool AnyBox(const std::vector<BoxBlock>& boxes, const FewRay& ray, float tfar, const Visit& visit) {
+    for (size_t first = 0; first < boxes.size(); ++first) {
+      for (uint32_t bits = IntersectBoxes(boxes[first], ray, tfar); bits != 0;)
+        if (visit(kLanes * first + TakeLowest(bits))) return true;
+    }
+    return false;
+  }
+};
+
+void FewSurfaces::Blocks::AddTriangles(std::span<const Triangle> added) {
+  TriangleBlock& block = triangles.emplace_back();
+  Bounds3 bounds;
+  uint32_t allVisible = 0;
+  for (uint32_t lane = 0; lane < added.size(); ++lane) {
+    const Triangle& triangle = added[lane];
+    const Vector3 normal = NormalOf(triangle);
+    for (int axis = 0; axis < 3; ++axis) block.normals[axis][lane] = normal[axis];
+    for (int corner = 0; corner < 3; ++corner) {
+      bounds.Add(triangle.corners[corner]);
+      for (int axis = 0; axis < 3; ++axis) block.corners[corner][axis][lane] = triangle.corners[corner][axis];
+    }
+    const PrimitiveRecord& record = tables.primitives[triangle.primitive];
+    const uint32_t visible = VisibleTo(record, tables.attributes[triangle.primitive]);
+    block.visible[lane] = static_cast<int32_t>(visible);
+    allVisible |= visible;
+    block.primitives[lane] = triangle.primitive;
+    block.triangles[lane] = triangle.triangle;
+    block.letsPass = block.letsPass || record.LetsPass();
+  }
+  const auto lane = static_cast<uint32_t>((triangles.size() - 1) % kLanes);
+  if (lane == 0) triangleBoxes.emplace_back();
+  SetBox(bounds, allVisible, lane, triangleBoxes.back());
+}
+
+void FewSurfaces::Blocks::AddOther(const OtherSurface& other) {
+  const auto lane = static_cast<uint32_t>(others.size() % kLanes);
+  if (lane == 0) otherBoxes.emplace_back();
+  others.push_back(other);
+  const PrimitiveRecord& record = tables.primitives[other.primitive];
+  SetBox(OwnBounds(record, other.patch), VisibleTo(record, tables.attributes[other.primitive]), lane,
+         otherBoxes.back());
+}
+
+inline Lanes FewSurfaces::Blocks::Stopped(const TriangleBlock& block, const TriangleHits& hits, const RTCRay& ray,
+                                          TraceContext& trace, bool isShadow) const {
+  if (!block.letsPass) [[likely]]
+    return hits.isHit;
+  Lanes stopped = hits.isHit;
+  for (uint32_t bits = Bits(hits.isHit); bits != 0;) {
+    const uint32_t lane = TakeLowest(bits);
+    const Meeting at = MeetingWith(block.primitives[lane], block.triangles[lane]);
+    const RayHit hit{hits.t[lane],
+                     at.geometryId,
+                     at.patch,
+                     at.instanceId,
+                     hits.u[lane] / hits.whole[lane],
+                     hits.v[lane] / hits.whole[lane]};
+    if (at.record.LetsPass() && PassesThrough(at, ray, hit, trace, isShadow)) stopped[lane] = 0;
+  }
+  return stopped;
+}
+
+std::unique_ptr<const FewSurfaces> FewSurfaces::Of(const SceneTables& tables) {
+  if (!tables.instances.empty()) return nullptr;
+  std::vector<Triangle> triangles;
+  std::vector<OtherSurface> others;
+  for (uint32_t i = 0; i < tables.primitives.size(); ++i) {
+    const PrimitiveRecord& record = tables.primitives[i];
+    if (record.As<CurveSet>()) return nullptr;
+    if (const auto* mesh = record.As<TriangleMesh>()) {
+      if (triangles.size() + mesh->triangles.size() > kMostTriangles) return nullptr;
+      for (uint32_t k = 0; k < mesh->triangles.size(); ++k) {
+        const auto corners = mesh->Corners(k);
+        triangles.push_back({{corners[0], corners[1], corners[2]}, i, k});
+      }
+      continue;
+    }
+    const auto* patches = record.As<BilinearMesh>();
+    const size_t count = patches ? patches->patches.size() : 1;
+    if (others.size() + count > kMostOthers) return nullptr;
+    for (uint32_t k = 0; k < count; ++k) others.push_back({i, k});
+  }
+  auto blocks = std::make_unique<Blocks>(Blocks{tables, {}, {}, {}, {}});
+  Cluster(triangles);
+  for (size_t first = 0; first < triangles.size(); first += kLanes)
+    blocks->AddTriangles(std::span(triangles).subspan(first, std::min<size_t>(kLanes, triangles.size() - first)));
+  if (blocks->triangles.size() <= kBlocksWithoutBounds) blocks->triangleBoxes.clear();
+  for (const OtherSurface& other : others) blocks->AddOther(other);
+  return std::unique_ptr<const FewSurfaces>(new FewSurfaces(std::move(blocks)));
+}
+
+FewSurfaces::FewSurfaces(std::unique_ptr<const Blocks> blocks) : blocks_(std::move(blocks)) {}
+FewSurfaces::~FewSurfaces() = default;
+
+void FewSurfaces::Intersect(RTCRayHit& rayHit, TraceContext& trace) const {
+  const Blocks& blocks = *blocks_;
+  const FewRay ray(rayHit.ray);
+  // The nearest hit of each lane.
+  const Floats tnear = All(rayHit.ray.tnear);
+  Floats t = All(std::min(rayHit.ray.tfar, kLargest)), u = {}, v = {}, whole = {};
+  Lanes block = Lanes{} - 1;
+  blocks.AnyTriangles(ray, rayHit.ray.tfar, [&](size_t i) {
+    const TriangleHits hits = IntersectTriangles(blocks.triangles[i], ray, tnear, t);
+    const Lanes isHit = blocks.Stopped(blocks.triangles[i], hits, rayHit.ray, trace, false);
+    t = isHit ? hits.t : t;
+    u = isHit ? hits.u : u;
+    v = isHit ? hits.v : v;
+    whole = isHit ? hits.whole : whole;
+    block = isHit ? Lanes{} + static_cast<int32_t>(i) : block;
+    return false;
+  });
+  if (uint32_t bits = ~Bits(block) & ((1u << kLanes) - 1); bits != 0) {
+    uint32_t nearest = TakeLowest(bits);
+    while (bits != 0) {
+      const uint32_t lane = TakeLowest(bits);
+      if (t[lane] < t[nearest]) nearest = lane;
+    }
+    rayHit.ray.tfar = t[nearest];
+    rayHit.hit.u = u[nearest] / whole[nearest];
+    rayHit.hit.v = v[nearest] / whole[nearest];
+    blocks.triangles[static_cast<size_t>(block[nearest])].Name(nearest, rayHit.hit);
+  }
+  if (blocks.others.empty()) return;
+  Blocks::AnyBox(blocks.otherBoxes, ray, rayHit.ray.tfar, [&](size_t i) {
+    const OtherSurface& other = blocks.others[i];
+    IntersectOwn(blocks.MeetingWith(other.primitive, other.patch), rayHit, trace);
+    return false;
+  });
+}
+
+void FewSurfaces::Occlude(RTCRay& shadowRay, TraceContext& trace) const {
+  const Blocks& blocks = *blocks_;
+  const FewRay ray(shadowRay);
+  const Floats tnear = All(shadowRay.tnear), tfar = All(std::min(shadowRay.tfar, kLargest));
+  const bool isStopped = blocks.AnyTriangles(ray, shadowRay.tfar, [&](size_t i) {
+    const TriangleHits hits = IntersectTriangles(blocks.triangles[i], ray, tnear, tfar);
+    return Bits(blocks.Stopped(blocks.triangles[i], hits, shadowRay, trace, true)) != 0;
+  }) || Blocks::AnyBox(blocks.otherBoxes, ray, shadowRay.tfar, [&](size_t i) {
+                           const OtherSurface& other = blocks.others[i];
+                           return OccludesOwn(blocks.MeetingWith(other.primitive, other.patch), shadowRay, trace);
+                         });
+  if (isStopped) shadowRay.tfar = -kInfinity;
+}
+
+}  // namespace lampyr
