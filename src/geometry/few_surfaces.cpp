@@ -20,7 +20,7 @@ namespace {
 
 constexpr uint32_t kLanes = 8;
 // Limits of what is tested one by one. Measured (tests/bench): from some sixty triangles on, Embree is faster.
-constexpr size_t kMostTriangles = 64, kMostOthers = 16;
+constexpr size_t kMostTriangles = 128, kMostOthers = 32;
 // So many blocks of triangles are tested without looking at their bounds first.
 constexpr size_t kBlocksWithoutBounds = 3;
 constexpr float kLargest = std::numeric_limits<float>::max();
@@ -66,6 +66,12 @@ inline uint32_t Bits(const Lanes& lanes) {
   for (uint32_t i = 0; i < kLanes; ++i) bits |= lanes[i] ? 1u << i : 0u;
   return bits;
 #endif
+}
+
+inline float Least(const Floats& x) {
+  const Floats two = Min(x, __builtin_shufflevector(x, x, 4, 5, 6, 7, 0, 1, 2, 3));
+  const Floats four = Min(two, __builtin_shufflevector(two, two, 2, 3, 0, 1, 6, 7, 4, 5));
+  return std::min(four[0], four[1]);
 }
 
 // Removes the lowest bit and returns its index.
@@ -153,15 +159,17 @@ inline TriangleHits IntersectTriangles(const TriangleBlock& block, const FewRay&
   return hits;
 }
 
-// The boxes that (0, tfar] of the ray passes through.
-inline uint32_t IntersectBoxes(const BoxBlock& block, const FewRay& ray, float tfar) {
+// The boxes that (0, tfar] of the ray passes through. `near` becomes where it enters them.
+inline uint32_t IntersectBoxes(const BoxBlock& block, const FewRay& ray, float tfar, Floats& near) {
   constexpr float kWider = 1 + 0x1p-20f;  // more than the products round
-  Floats near = {}, far = All(tfar);
+  Floats far = All(tfar);
+  near = Floats{};
   for (int i = 0; i < 3; ++i) {
     near = Max((block.planes[ray.isNegative[i]][i] - ray.origin[i]) * ray.inverse[i], near);
     far = Min((block.planes[!ray.isNegative[i]][i] - ray.origin[i]) * ray.inverse[i], far);
   }
-  return Bits((near <= far * kWider) & ((block.visible & ray.kinds) != 0));
+  far *= kWider;
+  return Bits((near <= far) & ((block.visible & ray.kinds) != 0));
 }
 
 struct Triangle {
@@ -178,18 +186,61 @@ Vector3 NormalOf(const Triangle& triangle) {
   return length > 0 ? Vector3(normal / length) : Vector3(0.0f);
 }
 
-// Sorts triangles such that each eight of them are near to one another.
+// Half of the surface of a box.
+float HalfArea(const Bounds3& bounds) {
+  const Vector3 size = bounds.max - bounds.min;
+  return size.x * size.y + size.y * size.z + size.z * size.x;
+}
+
+void SortAlong(int axis, std::span<Triangle> triangles) {
+  std::stable_sort(triangles.begin(), triangles.end(),
+                   [&](const Triangle& a, const Triangle& b) { return a.Center()[axis] < b.Center()[axis]; });
+}
+
+struct Split {
+  float cost = kInfinity;
+  size_t first = 0;  // triangles of the first part
+};
+
+// The split of sorted triangles into blocks before and after that has the least cost: blocks that a ray meets, which
+// are as the area of what holds them.
+Split BestSplit(std::span<const Triangle> sorted) {
+  std::vector<float> before(sorted.size() + 1);
+  Bounds3 bounds;
+  for (size_t i = 0; i < sorted.size(); ++i) {
+    before[i] = HalfArea(bounds);
+    for (const Point3& corner : sorted[i].corners) bounds.Add(corner);
+  }
+  Split best;
+  bounds = {};
+  for (size_t i = sorted.size() - 1; i > 0; --i) {
+    for (const Point3& corner : sorted[i].corners) bounds.Add(corner);
+    if (i % kLanes != 0) continue;
+    const auto blocksBefore = static_cast<float>(i / kLanes),
+               blocksAfter = static_cast<float>((sorted.size() - i + kLanes - 1) / kLanes);
+    const float cost = before[i] * blocksBefore + HalfArea(bounds) * blocksAfter;
+    if (cost < best.cost) best = {cost, i};
+  }
+  return best;
+}
+
+// Sorts triangles such that few rays meet the bounds of each eight of them.
 void Cluster(std::span<Triangle> triangles) {
   if (triangles.size() <= kLanes) return;
-  Bounds3 centers;
-  for (const Triangle& triangle : triangles) centers.Add(triangle.Center());
-  const Vector3 size = centers.max - centers.min;
-  const int axis = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
-  const size_t half = (triangles.size() / 2 + kLanes - 1) / kLanes * kLanes;
-  std::nth_element(triangles.begin(), triangles.begin() + static_cast<ptrdiff_t>(half), triangles.end(),
-                   [&](const Triangle& a, const Triangle& b) { return a.Center()[axis] < b.Center()[axis]; });
-  Cluster(triangles.first(half));
-  Cluster(triangles.subspan(half));
+  Split best;
+  int axis = 0;
+  for (int i = 0; i < 3; ++i) {
+    SortAlong(i, triangles);
+    const Split split = BestSplit(triangles);
+    if (split.cost < best.cost) {
+      best = split;
+      axis = i;
+    }
+  }
+  if (best.first == 0) best.first = kLanes;  // areas beyond what floats hold
+  SortAlong(axis, triangles);
+  Cluster(triangles.first(best.first));
+  Cluster(triangles.subspan(best.first));
 }
 
 // A box may be missed by rounding where what it holds is hit: it is wider by more than that.
@@ -219,12 +270,13 @@ struct FewSurfaces::Blocks {
   // The lanes of `hits` in which the ray is stopped.
   Lanes Stopped(const TriangleBlock& block, const TriangleHits& hits, const RTCRay& ray, TraceContext& trace,
                 bool isShadow) const;
-  // Calls visit(index of a block of triangles) for those that the ray may meet, until it is true.
+  // Calls visit(index of a block of triangles, distance before which it is not met) for those that the ray may meet,
+  // until it is true.
   template <class Visit>
   bool AnyTriangles(const FewRay& ray, float tfar, const Visit& visit) const {
     if (triangleBoxes.empty()) {
       for (size_t i = 0; i < triangles.size(); ++i)
-        if (visit(i)) return true;
+        if (visit(i, 0.0f)) return true;
       return false;
     }
     return AnyBox(triangleBoxes, ray, tfar, visit);
@@ -232,8 +284,11 @@ struct FewSurfaces::Blocks {
   template <class Visit>
   static bool AnyBox(const std::vector<BoxBlock>& boxes, const FewRay& ray, float tfar, const Visit& visit) {
     for (size_t first = 0; first < boxes.size(); ++first) {
-      for (uint32_t bits = IntersectBoxes(boxes[first], ray, tfar); bits != 0;)
-        if (visit(kLanes * first + TakeLowest(bits))) return true;
+      Floats near;
+      for (uint32_t bits = IntersectBoxes(boxes[first], ray, tfar, near); bits != 0;) {
+        const uint32_t lane = TakeLowest(bits);
+        if (visit(kLanes * first + lane, near[lane])) return true;
+      }
     }
     return false;
   }
@@ -331,7 +386,10 @@ void FewSurfaces::Intersect(RTCRayHit& rayHit, TraceContext& trace) const {
   const Floats tnear = All(rayHit.ray.tnear);
   Floats t = All(std::min(rayHit.ray.tfar, kLargest)), u = {}, v = {}, whole = {};
   Lanes block = Lanes{} - 1;
-  blocks.AnyTriangles(ray, rayHit.ray.tfar, [&](size_t i) {
+  float nearest = rayHit.ray.tfar;
+  const bool hasBoxes = !blocks.triangleBoxes.empty();
+  blocks.AnyTriangles(ray, rayHit.ray.tfar, [&](size_t i, float near) {
+    if (near > nearest) return false;
     const TriangleHits hits = IntersectTriangles(blocks.triangles[i], ray, tnear, t);
     const Lanes isHit = blocks.Stopped(blocks.triangles[i], hits, rayHit.ray, trace, false);
     t = isHit ? hits.t : t;
@@ -339,21 +397,20 @@ void FewSurfaces::Intersect(RTCRayHit& rayHit, TraceContext& trace) const {
     v = isHit ? hits.v : v;
     whole = isHit ? hits.whole : whole;
     block = isHit ? Lanes{} + static_cast<int32_t>(i) : block;
+    if (hasBoxes && Bits(isHit) != 0) nearest = Least(t);
     return false;
   });
-  if (uint32_t bits = ~Bits(block) & ((1u << kLanes) - 1); bits != 0) {
-    uint32_t nearest = TakeLowest(bits);
-    while (bits != 0) {
-      const uint32_t lane = TakeLowest(bits);
-      if (t[lane] < t[nearest]) nearest = lane;
-    }
-    rayHit.ray.tfar = t[nearest];
-    rayHit.hit.u = u[nearest] / whole[nearest];
-    rayHit.hit.v = v[nearest] / whole[nearest];
-    blocks.triangles[static_cast<size_t>(block[nearest])].Name(nearest, rayHit.hit);
+  if (const Lanes isHit = block >= 0; Bits(isHit) != 0) {
+    rayHit.ray.tfar = Least(t);
+    uint32_t bits = Bits(isHit & (t == rayHit.ray.tfar));
+    const uint32_t lane = TakeLowest(bits);
+    rayHit.hit.u = u[lane] / whole[lane];
+    rayHit.hit.v = v[lane] / whole[lane];
+    blocks.triangles[static_cast<size_t>(block[lane])].Name(lane, rayHit.hit);
   }
   if (blocks.others.empty()) return;
-  Blocks::AnyBox(blocks.otherBoxes, ray, rayHit.ray.tfar, [&](size_t i) {
+  Blocks::AnyBox(blocks.otherBoxes, ray, rayHit.ray.tfar, [&](size_t i, float near) {
+    if (near > rayHit.ray.tfar) return false;
     const OtherSurface& other = blocks.others[i];
     IntersectOwn(blocks.MeetingWith(other.primitive, other.patch), rayHit, trace);
     return false;
@@ -364,10 +421,10 @@ void FewSurfaces::Occlude(RTCRay& shadowRay, TraceContext& trace) const {
   const Blocks& blocks = *blocks_;
   const FewRay ray(shadowRay);
   const Floats tnear = All(shadowRay.tnear), tfar = All(std::min(shadowRay.tfar, kLargest));
-  const bool isStopped = blocks.AnyTriangles(ray, shadowRay.tfar, [&](size_t i) {
+  const bool isStopped = blocks.AnyTriangles(ray, shadowRay.tfar, [&](size_t i, float) {
     const TriangleHits hits = IntersectTriangles(blocks.triangles[i], ray, tnear, tfar);
     return Bits(blocks.Stopped(blocks.triangles[i], hits, shadowRay, trace, true)) != 0;
-  }) || Blocks::AnyBox(blocks.otherBoxes, ray, shadowRay.tfar, [&](size_t i) {
+  }) || Blocks::AnyBox(blocks.otherBoxes, ray, shadowRay.tfar, [&](size_t i, float) {
                            const OtherSurface& other = blocks.others[i];
                            return OccludesOwn(blocks.MeetingWith(other.primitive, other.patch), shadowRay, trace);
                          });
