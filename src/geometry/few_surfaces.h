@@ -1,5 +1,5 @@
 // Private to the geometry: a scene of few surfaces, each of which is tested against every ray, eight at a time. What
-// Embree does besides intersecting takes longer than that: for the walls of a room, five times as long.
+// Embree does besides intersecting takes longer than that: for the walls of a room, twice as long.
 #pragma once
 
 #include <embree3/rtcore.h>

@@ -166,7 +166,7 @@ TEST(FewSurfaces, MeetWhatEmbreeMeets) {
       constexpr int kRays = 20000;
       int found = 0;
       const Differences differences = Compare(*few, *embree, kRays, found);
-      EXPECT_GT(found, kRays / 4);
+      EXPECT_GT(found, kRays / 10);
       EXPECT_LE(differences.hits, 4);
       EXPECT_LE(differences.places, 4);
       EXPECT_LE(differences.crossings, 8);
@@ -181,7 +181,7 @@ struct Setting {
   Point3 center;
 };
 
-// From inside towards corners, and points of edges, which float rounds off them by less than a ray can tell.
+// From inside, towards corners and points of edges.
 TEST(FewSurfaces, LetNoRayThroughEdges) {
   for (const Setting& setting : {Setting{1, Point3(0.0f)}, Setting{1e-6f, Point3(0.0f)}, Setting{1e6f, Point3(0.0f)},
                                  Setting{1, {1e4f, -3e4f, 2e4f}}, Setting{1e12f, Point3(0.0f)}}) {
