@@ -454,6 +454,13 @@ TEST(Pilot, ChoosesAsManyLightsAsPay) {
     EXPECT_NEAR(here.cost / there.cost, 1, 0.05) << here.Describe();
   }
   for (const PilotCandidate& candidate : alone.candidates) EXPECT_EQ(candidate.counts.lightSamples, 1);
+  // A light with a count of its own has it by all candidates, and the others stay as the scene has them.
+  const BuiltScene counted =
+      lights(point("-0.6 1.8 0") + point("0.6 1.6 -0.5") + "LightSource \"point\" \"integer fixedSampleCount\" 2\n");
+  EXPECT_EQ(counted.settings.LightSamples(), 1);
+  const RenderPilot ofCounted = RunPilot(counted.scene, counted.settings, 2);
+  ASSERT_FALSE(ofCounted.candidates.empty());
+  for (const PilotCandidate& candidate : ofCounted.candidates) EXPECT_EQ(candidate.counts.lightSamples, 1);
   const RenderSettings stage = BuildFile("stage", 160, 90).settings;
   EXPECT_EQ(VariantOf(stage, "auto").LightSamples(), 2);
   EXPECT_EQ(VariantOf(stage, stage.integrator).LightSamples(), 1);

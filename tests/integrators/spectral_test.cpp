@@ -394,6 +394,28 @@ Vector3d ColourOfBands(const Image& image, const SpectralBands& bands) {
   return XyzToRec709(observed);
 }
 
+TEST(Spectral, RefusesBandsThatAreNone) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"\"float lambdamin\" 300", "error: \"lambdamin\" must be from 360 to 830 nm"},
+      {"\"float lambdamax\" 900", "error: \"lambdamax\" must be from 360 to 830 nm"},
+      {"\"float lambdamin\" 500 \"float lambdamax\" 500.5", "\"lambdamax\" must be above \"lambdamin\""},
+      {"\"integer nbuckets\" 0", "error: \"nbuckets\""},
+      {"\"integer nbuckets\" 513", "error: \"nbuckets\""},
+  };
+  for (const auto& [parameters, message] : cases) {
+    SCOPED_TRACE(parameters);
+    try {
+      RenderText("Film \"spectral\" \"integer xresolution\" 1 \"integer yresolution\" 1 " + std::string(parameters) +
+                     "\nCamera \"perspective\"\nWorldBegin\nLightSource \"point\"\n",
+                 1);
+      ADD_FAILURE() << "no error";
+    } catch (const Error& e) {
+      EXPECT_NE(std::string(e.what()).find(message), std::string::npos) << e.what();
+      EXPECT_NE(std::string(e.what()).find(":1:"), std::string::npos) << e.what();
+    }
+  }
+}
+
 // A black body lights a surface whose reflectance rises with the wavelength: bands of the picture are those of the
 // product, in every integrator, and the picture is what the observer sees of them.
 TEST(Spectral, BandsAreTheSpectrum) {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "base/byte_stream.h"
+#include "base/error.h"
 #include "film/film.h"
 #include "film/mix.h"
 
@@ -63,6 +64,15 @@ void ExpectBands(const Image& image, const std::array<float, 4>& values) {
 }
 
 // The mean over the wavelengths that fell into a band, weighted by their densities, however many they are.
+// Layers as a damaged checkpoint may name them.
+TEST(SpectralBands, AreAFilmsLastLayersAndOfThree) {
+  const PixelRect all{0, 0, 2, 1};
+  const std::string bands = "S0.450,000nm S0.550,000nm S0.650,000nm";
+  EXPECT_NO_THROW(Film(2, 1, all, {"key", bands, kHalfLayer}));
+  EXPECT_THROW(Film(2, 1, all, {bands, "key"}), Error);
+  EXPECT_THROW(Film(2, 1, all, {bands + " S0.750,000nm"}), Error);
+}
+
 TEST(SpectralBands, AreMeansOverTheirWavelengths) {
   std::vector<std::string> layers = LayersOfBands(kFour);
   layers.insert(layers.begin(), "key");

@@ -60,6 +60,30 @@ Vector3d MeanOverPasses(uint64_t seed, uint64_t passes, const std::function<Colo
   return sum / static_cast<double>(passes);
 }
 
+// Half of the density is even over a range that is wanted as a spectrum: every part of it has at least its share of the
+// wavelengths, and integrals over all wavelengths and over a part are right.
+TEST(Wavelengths, EvenOverARange) {
+  const WavelengthRange range{450, 550};
+  constexpr int kCount = 3 * 4000;
+  double all = 0, part = 0, share = 0;
+  for (int i = 0; i < kCount; ++i) {
+    const Wavelengths wavelengths((i + 0.5) / kCount, range);
+    for (int lane = 0; lane < Wavelengths::kLanes; ++lane) {
+      const double wavelength = wavelengths[lane], weight = wavelengths.PerDensity(lane) / kCount;
+      const bool isInPart = wavelength >= 470 && wavelength < 480;
+      all += weight;
+      part += isInPart ? weight : 0;
+      share += isInPart ? 1.0 / (kCount * Wavelengths::kLanes) : 0;
+      if (wavelength > range.from && wavelength < range.to) {
+        EXPECT_LE(wavelengths.PerDensity(lane), 2 * (range.to - range.from) / Wavelengths::kLanes * (1 + 1e-3));
+      }
+    }
+  }
+  EXPECT_NEAR(all / (SpectralCurve::kLast - SpectralCurve::kFirst), 1, 1e-3);
+  EXPECT_NEAR(part / 10, 1, 5e-3);
+  EXPECT_GT(share, 0.5 * 10 / (range.to - range.from));
+}
+
 // The place of a wavelength between 0 and 1 by the density of wavelengths.
 double QuantileOf(double wavelength) {
   double low = 0, high = 1;
