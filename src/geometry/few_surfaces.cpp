@@ -83,18 +83,23 @@ inline uint32_t TakeLowest(uint32_t& bits) {
   return lowest;
 }
 
+// What a triangle is: one of a mesh, or a half of a patch that is a parallelogram, p00 p10 p11 or p00 p11 p01.
+enum class Part : uint8_t { Whole, RightHalf, LeftHalf };
+
 // Eight triangles. Lanes without one are visible to no ray.
 struct TriangleBlock {
   Floats corners[3][3] = {};  // by corner and axis
   Floats normals[3] = {};     // by axis; unit, or 0 without an area
   Lanes visible = {};         // kinds of rays
-  uint32_t primitives[kLanes] = {}, triangles[kLanes] = {};
+  uint32_t primitives[kLanes] = {}, patches[kLanes] = {};
+  Part parts[kLanes] = {};
   bool letsPass = false;  // some lane may
 
-  void Name(uint32_t lane, RTCHit& hit) const {
-    hit.primID = triangles[lane];
-    hit.geomID = primitives[lane];
-    hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  // Coordinates on the shape (RayHit) of barycentric ones.
+  Point2 Coordinates(uint32_t lane, float b1, float b2) const {
+    if (parts[lane] == Part::Whole) return {b1, b2};
+    const float both = std::min(b1 + b2, 1.0f);
+    return parts[lane] == Part::RightHalf ? Point2(both, b2) : Point2(b1, both);
   }
 };
 
@@ -130,7 +135,7 @@ struct FewRay {
     constexpr uint32_t kNext[3] = {1, 2, 0};
     const float size[3] = {std::abs(direction[0]), std::abs(direction[1]), std::abs(direction[2])};
     const auto longer = static_cast<uint32_t>(size[1] > size[0]);
-    z = size[2] > size[longer] ? 2u : longer;
+    z = longer + (2 - longer) * static_cast<uint32_t>(size[2] > size[longer]);
     x = kNext[z];
     y = kNext[x];
     shearX = direction[x] / direction[z];
@@ -145,8 +150,8 @@ struct TriangleHits {
   Floats u, v, whole;  // barycentric coordinates are u / whole, v / whole
 };
 
-inline TriangleHits IntersectTriangles(const TriangleBlock& block, const FewRay& ray, const Floats& tnear,
-                                       const Floats& farthest) {
+inline TriangleHits IntersectBlock(const TriangleBlock& block, const FewRay& ray, const Floats& tnear,
+                                   const Floats& farthest) {
   Floats x[3], y[3];
   for (int i = 0; i < 3; ++i) {
     const Floats z = block.corners[i][ray.z] - ray.origin[ray.z];
@@ -190,7 +195,8 @@ inline uint32_t IntersectBoxes(const BoxBlock& block, const FewRay& ray, float t
 
 struct Triangle {
   Point3 corners[3];
-  uint32_t primitive, triangle;
+  uint32_t primitive, patch;
+  Part part = Part::Whole;
 
   Point3 Center() const { return (corners[0] + corners[1] + corners[2]) / 3.0f; }
 };
@@ -277,37 +283,22 @@ struct FewSurfaces::Blocks {
   std::vector<BoxBlock> triangleBoxes;  // of the blocks; none if there are few
   std::vector<OtherSurface> others;
   std::vector<BoxBlock> otherBoxes;
+  bool letsPass = false;  // some triangle may
 
   void AddTriangles(std::span<const Triangle> added);
   void AddOther(const OtherSurface& other);
   Meeting MeetingWith(uint32_t primitive, uint32_t patch) const {
     return {tables.primitives[primitive], primitive, patch, RTC_INVALID_GEOMETRY_ID};
   }
+  Meeting OtherAt(size_t i) const { return MeetingWith(others[i].primitive, others[i].patch); }
   // The lanes of `hits` in which the ray is stopped.
   Lanes Stopped(const TriangleBlock& block, const TriangleHits& hits, const RTCRay& ray, TraceContext& trace,
                 bool isShadow) const;
-  // Calls visit(index of a block of triangles, distance before which it is not met) for those that the ray may meet,
-  // until it is true.
-  template <class Visit>
-  bool AnyTriangles(const FewRay& ray, float tfar, const Visit& visit) const {
-    if (triangleBoxes.empty()) {
-      for (size_t i = 0; i < triangles.size(); ++i)
-        if (visit(i, 0.0f)) return true;
-      return false;
-    }
-    return AnyBox(triangleBoxes, ray, tfar, visit);
-  }
-  template <class Visit>
-  static bool AnyBox(const std::vector<BoxBlock>& boxes, const FewRay& ray, float tfar, const Visit& visit) {
-    for (size_t first = 0; first < boxes.size(); ++first) {
-      Floats near;
-      for (uint32_t bits = IntersectBoxes(boxes[first], ray, tfar, near); bits != 0;) {
-        const uint32_t lane = TakeLowest(bits);
-        if (visit(kLanes * first + lane, near[lane])) return true;
-      }
-    }
-    return false;
-  }
+  // With `kLetsPass`, some triangle may let rays pass. Without, nothing is called, and vectors stay in registers.
+  template <bool kLetsPass>
+  void IntersectTriangles(const FewRay& ray, RTCRayHit& rayHit, TraceContext& trace) const;
+  template <bool kLetsPass>
+  bool OccludeTriangles(const FewRay& ray, const RTCRay& shadowRay, TraceContext& trace) const;
 };
 
 void FewSurfaces::Blocks::AddTriangles(std::span<const Triangle> added) {
@@ -327,8 +318,10 @@ void FewSurfaces::Blocks::AddTriangles(std::span<const Triangle> added) {
     block.visible[lane] = static_cast<int32_t>(visible);
     allVisible |= visible;
     block.primitives[lane] = triangle.primitive;
-    block.triangles[lane] = triangle.triangle;
+    block.patches[lane] = triangle.patch;
+    block.parts[lane] = triangle.part;
     block.letsPass = block.letsPass || record.LetsPass();
+    letsPass = letsPass || record.LetsPass();
   }
   const auto lane = static_cast<uint32_t>((triangles.size() - 1) % kLanes);
   if (lane == 0) triangleBoxes.emplace_back();
@@ -346,105 +339,184 @@ void FewSurfaces::Blocks::AddOther(const OtherSurface& other) {
 
 inline Lanes FewSurfaces::Blocks::Stopped(const TriangleBlock& block, const TriangleHits& hits, const RTCRay& ray,
                                           TraceContext& trace, bool isShadow) const {
-  if (!block.letsPass) [[likely]]
-    return hits.isHit;
+  if (!block.letsPass) return hits.isHit;
   Lanes stopped = hits.isHit;
   for (uint32_t bits = Bits(hits.isHit); bits != 0;) {
     const uint32_t lane = TakeLowest(bits);
-    Meeting at = MeetingWith(block.primitives[lane], block.triangles[lane]);
-    at.side = hits.along[lane] > 0;  // as Embree's callbacks have it: cut-outs are the same by both
-    const RayHit hit{hits.t[lane],
-                     at.geometryId,
-                     at.patch,
-                     at.instanceId,
-                     hits.u[lane] / hits.whole[lane],
-                     hits.v[lane] / hits.whole[lane]};
+    Meeting at = MeetingWith(block.primitives[lane], block.patches[lane]);
+    // As with Embree: cut-outs are the same by both.
+    at.side = block.parts[lane] == Part::Whole && hits.along[lane] > 0;
+    const Point2 uv = block.Coordinates(lane, hits.u[lane] / hits.whole[lane], hits.v[lane] / hits.whole[lane]);
+    const RayHit hit{hits.t[lane], at.geometryId, at.patch, at.instanceId, uv.x, uv.y};
     if (at.record.LetsPass() && PassesThrough(at, ray, hit, trace, isShadow)) stopped[lane] = 0;
   }
   return stopped;
 }
 
-std::unique_ptr<const FewSurfaces> FewSurfaces::Of(const SceneTables& tables) {
-  if (!tables.instances.empty()) return nullptr;
+namespace {
+
+// True for a patch whose parameters are affine on it, up to the rounding of its corners.
+bool IsParallelogram(const BilinearMesh& mesh, uint32_t patch) {
+  const auto& p = mesh.patches[patch];
+  Vector3d difference(0.0);
+  Vector3 largest(0.0f);
+  for (size_t i = 0; i < 4; ++i) {
+    difference += (i == 0 || i == 3 ? 1.0 : -1.0) * Vector3d(mesh.positions[p[i]]);
+    largest = glm::max(largest, Abs(mesh.positions[p[i]]));
+  }
+  for (int axis = 0; axis < 3; ++axis)
+    if (!(std::abs(difference[axis]) <= 0x1p-22 * static_cast<double>(largest[axis]))) return false;
+  return true;
+}
+
+// The surfaces outside of instances, until there are too many.
+struct Surfaces {
   std::vector<Triangle> triangles;
   std::vector<OtherSurface> others;
-  for (uint32_t i = 0; i < tables.primitives.size(); ++i) {
-    const PrimitiveRecord& record = tables.primitives[i];
-    if (record.As<CurveSet>()) return nullptr;
-    if (const auto* mesh = record.As<TriangleMesh>()) {
-      if (triangles.size() + mesh->triangles.size() > kMostTriangles) return nullptr;
-      for (uint32_t k = 0; k < mesh->triangles.size(); ++k) {
-        const auto corners = mesh->Corners(k);
-        triangles.push_back({{corners[0], corners[1], corners[2]}, i, k});
-      }
-      continue;
-    }
-    const auto* patches = record.As<BilinearMesh>();
-    const size_t count = patches ? patches->patches.size() : 1;
-    if (others.size() + count > kMostOthers) return nullptr;
-    for (uint32_t k = 0; k < count; ++k) others.push_back({i, k});
+  bool hasCurves = false;
+
+  explicit Surfaces(std::span<const PrimitiveRecord> records) {
+    for (uint32_t i = 0; i < records.size() && !AreTooMany(); ++i) Add(records[i], i);
   }
-  auto blocks = std::make_unique<Blocks>(Blocks{tables, {}, {}, {}, {}});
-  Cluster(triangles);
-  for (size_t first = 0; first < triangles.size(); first += kLanes)
-    blocks->AddTriangles(std::span(triangles).subspan(first, std::min<size_t>(kLanes, triangles.size() - first)));
+  // Or of kinds that are Embree's.
+  bool AreTooMany() const { return hasCurves || triangles.size() > kMostTriangles || others.size() > kMostOthers; }
+
+ private:
+  void Add(const PrimitiveRecord& record, uint32_t primitive) {
+    if (const auto* mesh = record.As<TriangleMesh>()) {
+      const size_t enough = std::min<size_t>(mesh->triangles.size(), kMostTriangles + 1);
+      for (uint32_t k = 0; k < enough; ++k) {
+        const auto corners = mesh->Corners(k);
+        triangles.push_back({{corners[0], corners[1], corners[2]}, primitive, k});
+      }
+    } else if (const auto* patches = record.As<BilinearMesh>()) {
+      const size_t enough = std::min<size_t>(patches->patches.size(), kMostTriangles + 1);
+      for (uint32_t k = 0; k < enough; ++k) AddPatch(*patches, primitive, k);
+    } else if (record.As<CurveSet>()) {
+      hasCurves = true;
+    } else {
+      others.push_back({primitive, 0});
+    }
+  }
+
+  void AddPatch(const BilinearMesh& mesh, uint32_t primitive, uint32_t patch) {
+    if (!IsParallelogram(mesh, patch)) return others.push_back({primitive, patch});
+    const auto& i = mesh.patches[patch];
+    const Point3 &p00 = mesh.positions[i[0]], &p10 = mesh.positions[i[1]], &p01 = mesh.positions[i[2]],
+                 &p11 = mesh.positions[i[3]];
+    triangles.push_back({{p00, p10, p11}, primitive, patch, Part::RightHalf});
+    triangles.push_back({{p00, p11, p01}, primitive, patch, Part::LeftHalf});
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<const FewSurfaces> FewSurfaces::Of(const SceneTables& tables) {
+  if (!tables.instances.empty()) return nullptr;
+  Surfaces surfaces({tables.primitives.data(), tables.firstInstanceId});
+  if (surfaces.AreTooMany()) return nullptr;
+  auto blocks = std::make_unique<Blocks>(Blocks{tables, {}, {}, {}, {}, false});
+  const std::span all(surfaces.triangles);
+  Cluster(all);
+  for (size_t first = 0; first < all.size(); first += kLanes)
+    blocks->AddTriangles(all.subspan(first, std::min<size_t>(kLanes, all.size() - first)));
   if (blocks->triangles.size() <= kBlocksWithoutBounds) blocks->triangleBoxes.clear();
-  for (const OtherSurface& other : others) blocks->AddOther(other);
+  for (const OtherSurface& other : surfaces.others) blocks->AddOther(other);
   return std::unique_ptr<const FewSurfaces>(new FewSurfaces(std::move(blocks)));
 }
 
 FewSurfaces::FewSurfaces(std::unique_ptr<const Blocks> blocks) : blocks_(std::move(blocks)) {}
 FewSurfaces::~FewSurfaces() = default;
 
-void FewSurfaces::Intersect(RTCRayHit& rayHit, TraceContext& trace) const {
-  const Blocks& blocks = *blocks_;
-  const FewRay ray(rayHit.ray);
+template <bool kLetsPass>
+void FewSurfaces::Blocks::IntersectTriangles(const FewRay& ray, RTCRayHit& rayHit, TraceContext& trace) const {
   // The nearest hit of each lane.
-  const Floats tnear = All(rayHit.ray.tnear);
   Floats t = All(std::min(rayHit.ray.tfar, kLargest)), u = {}, v = {}, whole = {};
   Lanes block = Lanes{} - 1;
-  float nearest = rayHit.ray.tfar;
-  const bool hasBoxes = !blocks.triangleBoxes.empty();
-  blocks.AnyTriangles(ray, rayHit.ray.tfar, [&](size_t i, float near) {
-    if (near > nearest) return false;
-    const TriangleHits hits = IntersectTriangles(blocks.triangles[i], ray, tnear, t);
-    const Lanes isHit = blocks.Stopped(blocks.triangles[i], hits, rayHit.ray, trace, false);
+  const Floats tnear = All(rayHit.ray.tnear);
+  const auto intersect = [&](size_t i) __attribute__((always_inline)) {
+    const TriangleHits hits = IntersectBlock(triangles[i], ray, tnear, t);
+    const Lanes isHit = kLetsPass ? Stopped(triangles[i], hits, rayHit.ray, trace, false) : hits.isHit;
     t = isHit ? hits.t : t;
     u = isHit ? hits.u : u;
     v = isHit ? hits.v : v;
     whole = isHit ? hits.whole : whole;
     block = isHit ? Lanes{} + static_cast<int32_t>(i) : block;
-    if (hasBoxes && Bits(isHit) != 0) nearest = Least(t);
-    return false;
-  });
-  if (const Lanes isHit = block >= 0; Bits(isHit) != 0) {
-    rayHit.ray.tfar = Least(t);
-    uint32_t bits = Bits(isHit & (t == rayHit.ray.tfar));
-    const uint32_t lane = TakeLowest(bits);
-    rayHit.hit.u = u[lane] / whole[lane];
-    rayHit.hit.v = v[lane] / whole[lane];
-    blocks.triangles[static_cast<size_t>(block[lane])].Name(lane, rayHit.hit);
+    return isHit;
+  };
+  if (triangleBoxes.empty()) {
+    for (size_t i = 0; i < triangles.size(); ++i) intersect(i);
   }
-  if (blocks.others.empty()) return;
-  Blocks::AnyBox(blocks.otherBoxes, ray, rayHit.ray.tfar, [&](size_t i, float near) {
-    if (near > rayHit.ray.tfar) return false;
-    const OtherSurface& other = blocks.others[i];
-    IntersectOwn(blocks.MeetingWith(other.primitive, other.patch), rayHit, trace);
-    return false;
-  });
+  float nearest = rayHit.ray.tfar;
+  for (size_t first = 0; first < triangleBoxes.size(); ++first) {
+    Floats near;
+    for (uint32_t bits = IntersectBoxes(triangleBoxes[first], ray, nearest, near); bits != 0;) {
+      const uint32_t lane = TakeLowest(bits);
+      if (near[lane] <= nearest && Bits(intersect(kLanes * first + lane)) != 0) nearest = Least(t);
+    }
+  }
+  const Lanes isHit = block >= 0;
+  if (Bits(isHit) == 0) return;
+  rayHit.ray.tfar = Least(t);
+  uint32_t bits = Bits(isHit & (t == rayHit.ray.tfar));
+  const uint32_t lane = TakeLowest(bits);
+  const TriangleBlock& found = triangles[static_cast<size_t>(block[lane])];
+  const Point2 uv = found.Coordinates(lane, u[lane] / whole[lane], v[lane] / whole[lane]);
+  rayHit.hit.u = uv.x;
+  rayHit.hit.v = uv.y;
+  rayHit.hit.primID = found.patches[lane];
+  rayHit.hit.geomID = found.primitives[lane];
+  rayHit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+}
+
+template <bool kLetsPass>
+bool FewSurfaces::Blocks::OccludeTriangles(const FewRay& ray, const RTCRay& shadowRay, TraceContext& trace) const {
+  const Floats tnear = All(shadowRay.tnear), tfar = All(std::min(shadowRay.tfar, kLargest));
+  const auto isStopped = [&](size_t i) __attribute__((always_inline)) {
+    const TriangleHits hits = IntersectBlock(triangles[i], ray, tnear, tfar);
+    return Bits(kLetsPass ? Stopped(triangles[i], hits, shadowRay, trace, true) : hits.isHit) != 0;
+  };
+  if (triangleBoxes.empty()) {
+    for (size_t i = 0; i < triangles.size(); ++i)
+      if (isStopped(i)) return true;
+  }
+  for (size_t first = 0; first < triangleBoxes.size(); ++first) {
+    Floats near;
+    for (uint32_t bits = IntersectBoxes(triangleBoxes[first], ray, shadowRay.tfar, near); bits != 0;)
+      if (isStopped(kLanes * first + TakeLowest(bits))) return true;
+  }
+  return false;
+}
+
+void FewSurfaces::Intersect(RTCRayHit& rayHit, TraceContext& trace) const {
+  const Blocks& blocks = *blocks_;
+  const FewRay ray(rayHit.ray);
+  if (!blocks.triangles.empty()) {
+    if (blocks.letsPass) [[unlikely]]
+      blocks.IntersectTriangles<true>(ray, rayHit, trace);
+    else
+      blocks.IntersectTriangles<false>(ray, rayHit, trace);
+  }
+  for (size_t first = 0; first < blocks.otherBoxes.size(); ++first) {
+    Floats near;
+    for (uint32_t bits = IntersectBoxes(blocks.otherBoxes[first], ray, rayHit.ray.tfar, near); bits != 0;) {
+      const uint32_t lane = TakeLowest(bits);
+      if (near[lane] <= rayHit.ray.tfar) IntersectOwn(blocks.OtherAt(kLanes * first + lane), rayHit, trace);
+    }
+  }
 }
 
 void FewSurfaces::Occlude(RTCRay& shadowRay, TraceContext& trace) const {
   const Blocks& blocks = *blocks_;
   const FewRay ray(shadowRay);
-  const Floats tnear = All(shadowRay.tnear), tfar = All(std::min(shadowRay.tfar, kLargest));
-  const bool isStopped = blocks.AnyTriangles(ray, shadowRay.tfar, [&](size_t i, float) {
-    const TriangleHits hits = IntersectTriangles(blocks.triangles[i], ray, tnear, tfar);
-    return Bits(blocks.Stopped(blocks.triangles[i], hits, shadowRay, trace, true)) != 0;
-  }) || Blocks::AnyBox(blocks.otherBoxes, ray, shadowRay.tfar, [&](size_t i, float) {
-                           const OtherSurface& other = blocks.others[i];
-                           return OccludesOwn(blocks.MeetingWith(other.primitive, other.patch), shadowRay, trace);
-                         });
+  bool isStopped =
+      !blocks.triangles.empty() && (blocks.letsPass ? blocks.OccludeTriangles<true>(ray, shadowRay, trace)
+                                                    : blocks.OccludeTriangles<false>(ray, shadowRay, trace));
+  for (size_t first = 0; first < blocks.otherBoxes.size() && !isStopped; ++first) {
+    Floats near;
+    for (uint32_t bits = IntersectBoxes(blocks.otherBoxes[first], ray, shadowRay.tfar, near); bits != 0 && !isStopped;)
+      isStopped = OccludesOwn(blocks.OtherAt(kLanes * first + TakeLowest(bits)), shadowRay, trace);
+  }
   if (isStopped) shadowRay.tfar = -kInfinity;
 }
 

@@ -18,8 +18,8 @@ namespace lampyr {
 // them.
 class FewSurfaces {
  public:
-  // The surfaces of `tables`, which outlive this. Null if there are more than a ray should be tested against, or some
-  // that only Embree intersects (curves and instances).
+  // The surfaces of a scene, of which `tables` outlive this. Null if there are more than a ray should be tested
+  // against, or some that only Embree intersects (curves and instances).
   static std::unique_ptr<const FewSurfaces> Of(const SceneTables& tables);
 
   FewSurfaces(const FewSurfaces&) = delete;

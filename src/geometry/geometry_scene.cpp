@@ -268,9 +268,8 @@ void Attach(RTCScene scene, RTCGeometry geometry, uint32_t id) {
 
 void GeometryScene::Implementation::AttachEntries(RTCScene target, size_t first, size_t count) {
   for (size_t i = 0; i < count; ++i) {
-    RTCGeometry geometry =
-        NewGeometry(device.get(), tables.primitives[first + i],
-                    VisibleTo(tables.primitives[first + i], tables.attributes[first + i]));
+    const PrimitiveRecord& record = tables.primitives[first + i];
+    RTCGeometry geometry = NewGeometry(device.get(), record, VisibleTo(record, tables.attributes[first + i]));
     if (!geometry) continue;
     Attach(target, geometry, static_cast<uint32_t>(i));
   }

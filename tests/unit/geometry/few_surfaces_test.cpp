@@ -58,20 +58,23 @@ TriangleMesh Loose(int count, float size, Random& random) {
   return mesh;
 }
 
+// Every other one is a parallelogram.
 BilinearMesh LoosePatches(int count, Random& random) {
   BilinearMesh mesh;
   for (int i = 0; i < count; ++i) {
+    const auto first = static_cast<uint32_t>(4 * i);
     const Point3 center = random.InBox(4);
     for (int k = 0; k < 4; ++k) mesh.positions.push_back(center + random.InBox(2));
-    const auto first = static_cast<uint32_t>(4 * i);
+    if (i % 2 == 0)
+      mesh.positions[first + 3] = mesh.positions[first + 1] + mesh.positions[first + 2] - mesh.positions[first];
     mesh.patches.push_back({first, first + 1, first + 2, first + 3});
   }
   return mesh;
 }
 
-// Triangles of all sizes, patches, quadrics whole and partial, and a custom surface. Kinds of rays that see them, and
-// with `passes` what becomes of a ray there, differ from shape to shape.
-GeometryDescription Mixture(int triangles, bool passes, uint32_t seed) {
+// Triangles of all sizes, patches, quadrics whole and partial, a custom surface, and instances of an object. Kinds of
+// rays that see them, and with `passes` what becomes of a ray there, differ from shape to shape.
+GeometryDescription Mixture(int triangles, bool passes, bool hasInstances, uint32_t seed) {
   Random random(seed);
   GeometryDescription description;
   const auto add = [&](Shape shape) {
@@ -102,6 +105,12 @@ GeometryDescription Mixture(int triangles, bool passes, uint32_t seed) {
     add(Place(quadric, Transform::Translate(Vector3d(random.InBox(4)))));
   }
   add(std::make_shared<const FloorAt>(-4.5));
+  // What is in an object is in the scene by its instances alone.
+  description.objects.push_back({{Entry(Sphere(1)), Entry(MeshShape(Loose(9, 1, random)))}});
+  for (int i = 0; hasInstances && i < 3; ++i) {
+    const Transform moved = Transform::Translate(Vector3d(random.InBox(4)));
+    description.instances.push_back({0, moved.ToAffine(), moved.Inverse().ToAffine()});
+  }
   return description;
 }
 
@@ -144,7 +153,8 @@ Differences Compare(const GeometryScene& few, const GeometryScene& embree, int c
     RayHit hitA, hitB;
     const bool isHit = few.Trace(ray, kinds, hitA, a), isHitB = embree.Trace(ray, kinds, hitB, b);
     found += isHit;
-    differences.hits += isHit != isHitB || hitA.primitive != hitB.primitive || hitA.patch != hitB.patch;
+    differences.hits += isHit != isHitB || hitA.primitive != hitB.primitive || hitA.patch != hitB.patch ||
+                        hitA.instance != hitB.instance;
     differences.crossings += !AreSame(a, b);
     if (isHit && isHitB && hitA.primitive == hitB.primitive && hitA.patch == hitB.patch) {
       const Point3 p = few.GetSurfacePoint(ray, hitA).position, q = embree.GetSurfacePoint(ray, hitB).position;
@@ -159,10 +169,11 @@ Differences Compare(const GeometryScene& few, const GeometryScene& embree, int c
 }
 
 TEST(FewSurfaces, MeetWhatEmbreeMeets) {
-  for (const int triangles : {0, 1, 8, 20, 40, 120}) {
-    for (const bool passes : {false, true}) {
-      SCOPED_TRACE(triangles * 10 + passes);
-      const auto [few, embree] = Both(Mixture(triangles, passes, static_cast<uint32_t>(triangles)));
+  for (const int triangles : {0, 1, 8, 20, 40, 100, 300}) {
+    for (const int kind : {0, 1, 2, 3}) {
+      const bool passes = kind % 2, hasInstances = kind >= 2;
+      SCOPED_TRACE(triangles * 10 + kind);
+      const auto [few, embree] = Both(Mixture(triangles, passes, hasInstances, static_cast<uint32_t>(triangles)));
       constexpr int kRays = 20000;
       int found = 0;
       const Differences differences = Compare(*few, *embree, kRays, found);
