@@ -1,5 +1,5 @@
-// The traceable scene: shapes and instances in, nearest hits and occlusion out. Embree behind a door:
-// only geometry_scene.cpp (and its private parts) includes Embree's headers.
+// The traceable scene: shapes and instances in, nearest hits and occlusion out. Embree, and what takes its place where
+// surfaces are few, behind a door: only geometry_scene.cpp (and its private parts) includes Embree's headers.
 #pragma once
 
 #include <memory>
@@ -83,7 +83,8 @@ struct GeometryDescription {
   std::vector<GeometryEntry> entries;
   std::vector<GeometryObject> objects;
   std::vector<GeometryInstance> instances;
-  bool robust = true;  // Embree's robust mode: no leaks along shared edges, 20-25 % slower
+  // Embree's robust mode: no leaks along shared edges, 20-25 % slower. Surfaces that are few have none either way.
+  bool robust = true;
   Tracer tracer = Tracer::BySize;
 };
 
