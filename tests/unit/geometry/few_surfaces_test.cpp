@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "geometry/few_surfaces.h"
 #include "unit/geometry/helpers.h"
 
 namespace lampyr {
@@ -191,6 +192,32 @@ struct Setting {
   float radius;
   Point3 center;
 };
+
+// What is tested one by one: up to 64 triangles, two of which are a parallelogram, and 32 other surfaces.
+TEST(FewSurfaces, AreThoseOfSmallScenes) {
+  const auto areFew = [](auto shape, bool hasInstance = false) {
+    SceneTables tables;
+    PrimitiveRecord record;
+    record.shape = shape;
+    record.SetLetsPass();
+    record.tables = &tables;
+    tables.primitives.push_back(record);
+    tables.attributes.emplace_back();
+    tables.firstInstanceId = 1;
+    if (hasInstance) tables.instances.emplace_back();
+    return FewSurfaces::Of(tables) != nullptr;
+  };
+  Random random(3);
+  const TriangleMesh few = Loose(64, 1, random), many = Loose(65, 1, random);
+  EXPECT_TRUE(areFew(&few));
+  EXPECT_FALSE(areFew(&many));
+  EXPECT_FALSE(areFew(&few, true));
+  const BilinearMesh mixed = LoosePatches(64, random), tooMany = LoosePatches(66, random);
+  EXPECT_TRUE(areFew(&mixed));
+  EXPECT_FALSE(areFew(&tooMany));
+  const CurveSet curves;
+  EXPECT_FALSE(areFew(&curves));
+}
 
 // From inside, towards corners and points of edges.
 TEST(FewSurfaces, LetNoRayThroughEdges) {
