@@ -2,11 +2,7 @@
 // Embree does besides intersecting takes longer than that: for the walls of a room, twice as long.
 #pragma once
 
-#include <embree3/rtcore.h>
-
-#include <cstdint>
 #include <memory>
-#include <vector>
 
 #include "geometry/meeting.h"
 
