@@ -8,6 +8,7 @@
 #include <limits>
 #include <span>
 
+#include "geometry/meeting.h"
 #include "math/bounds.h"
 
 #if defined(__AVX__)

@@ -4,9 +4,13 @@
 
 #include <memory>
 
-#include "geometry/meeting.h"
+struct RTCRay;
+struct RTCRayHit;
 
 namespace lampyr {
+
+struct SceneTables;
+struct TraceContext;
 
 // Immutable after construction; all methods may be called from any thread.
 //

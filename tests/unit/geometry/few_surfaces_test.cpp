@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "geometry/few_surfaces.h"
+#include "geometry/scene_tables.h"
 #include "unit/geometry/helpers.h"
 
 namespace lampyr {
