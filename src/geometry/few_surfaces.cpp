@@ -84,7 +84,8 @@ inline uint32_t TakeLowest(uint32_t& bits) {
   return lowest;
 }
 
-// What a triangle is: one of a mesh, or a half of a patch that is a parallelogram, p00 p10 p11 or p00 p11 p01.
+// Origin of a triangle. Whole: a triangle of a mesh. RightHalf: p00, p10, p11 of a bilinear patch that is a
+// parallelogram; LeftHalf: its p00, p11, p01.
 enum class Part : uint8_t { Whole, RightHalf, LeftHalf };
 
 // Eight triangles. Lanes without one are visible to no ray.
@@ -345,7 +346,8 @@ inline Lanes FewSurfaces::Blocks::Stopped(const TriangleBlock& block, const Tria
   for (uint32_t bits = Bits(hits.isHit); bits != 0;) {
     const uint32_t lane = TakeLowest(bits);
     Meeting at = MeetingWith(block.primitives[lane], block.patches[lane]);
-    // As with Embree: cut-outs are the same by both.
+    // The sides that Embree's callbacks set: the random numbers of cut-outs, and so the picture, do not depend on which
+    // of the two traces.
     at.side = block.parts[lane] == Part::Whole && hits.along[lane] > 0;
     const Point2 uv = block.Coordinates(lane, hits.u[lane] / hits.whole[lane], hits.v[lane] / hits.whole[lane]);
     const RayHit hit{hits.t[lane], at.geometryId, at.patch, at.instanceId, uv.x, uv.y};

@@ -26,9 +26,9 @@ class FewSurfaces {
   FewSurfaces& operator=(const FewSurfaces&) = delete;
   ~FewSurfaces();
 
-  // As rtcIntersect1: the nearest hit with t in (tnear, tfar].
+  // Finds the nearest hit with t in (tnear, tfar]. Input and results are those of rtcIntersect1.
   void Intersect(RTCRayHit& rayHit, TraceContext& trace) const;
-  // As rtcOccluded1: tfar becomes negative if something stops the ray within (tnear, tfar].
+  // Sets tfar to a negative number if something stops the ray within (tnear, tfar], as rtcOccluded1 does.
   void Occlude(RTCRay& ray, TraceContext& trace) const;
 
  private:

@@ -76,7 +76,7 @@ struct GeometryInstance {
   std::shared_ptr<const Motion> motion = nullptr;  // null: stays. Otherwise the transforms above are not looked at
 };
 
-// What follows rays. BySize: surfaces that are few are tested one by one (few_surfaces.h), others are Embree's.
+// Choice of the code that intersects rays. BySize: FewSurfaces for small scenes, Embree for all others.
 enum class Tracer : uint8_t { BySize, Embree };
 
 struct GeometryDescription {

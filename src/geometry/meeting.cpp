@@ -170,7 +170,7 @@ int FindPatch(const PrimitiveRecord& record, uint32_t patch, const RTCRay& ray, 
   return count;
 }
 
-// What a custom surface throws ends the query.
+// An exception of a custom surface is kept in `trace` and thrown when the query has ended.
 int FindCustom(const PrimitiveRecord& record, const RTCRay& ray, TraceContext& trace, Candidate candidates[2]) {
   try {
     const auto t = record.As<CustomSurface>()->Intersect(ToDouble(ray), ray.time, nullptr);
