@@ -193,7 +193,9 @@ class Desk::Requests {
     const std::string shape = std::to_string(planes.width) + " " + std::to_string(planes.height) + " " +
                               std::to_string(picture->number) + " " + std::to_string(picture->restart);
     return {200, "application/octet-stream",
-            MixForScreen(planes, ByLayer(planes, desk_.faders_, factors), look, desk_.session_.Threads()), shape};
+            desk_.mixer_.Mix(planes, picture->number, ByLayer(planes, desk_.faders_, factors), look,
+                             desk_.session_.Threads()),
+            shape};
   }
 
   HttpReply Pixel() const {

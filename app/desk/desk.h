@@ -43,6 +43,7 @@ class Desk {
   std::mutex editing_;  // of scene_
   std::mutex setting_;  // of set_
   std::vector<SetFactors> set_;
+  ScreenMixer mixer_;
   DeskSession session_;
 };
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <mutex>
 
 #include "base/parallel.h"
 
@@ -36,15 +35,15 @@ float ChannelOf(const Color& color, size_t channel) {
 }
 
 // Adds `factor` times each value.
-void Accumulate(const float* __restrict values, float factor, size_t count, float* __restrict sums) {
-  for (size_t i = 0; i < count; ++i) sums[i] += factor * values[i];
+void Accumulate(const float* __restrict values, double factor, size_t count, double* __restrict sums) {
+  for (size_t i = 0; i < count; ++i) sums[i] += factor * static_cast<double>(values[i]);
 }
 
 // Steps of the table.
-void Encode(const float* __restrict sums, float exposure, size_t count, uint32_t* __restrict steps) {
+void Encode(const double* __restrict sums, float exposure, size_t count, uint32_t* __restrict steps) {
   constexpr float largest = 1e6f;
   for (size_t i = 0; i < count; ++i) {
-    const float sum = sums[i] * exposure;
+    const float sum = static_cast<float>(sums[i]) * exposure;
     const float x = sum > 0 ? std::min(sum, largest) : 0.0f;  // 0 where it is no number
     steps[i] = static_cast<uint32_t>(static_cast<int32_t>(x / (1 + x) * static_cast<float>(kSteps)));
   }
@@ -82,28 +81,40 @@ LayerPlanes PlanesOf(const Image& image, const std::vector<std::string>& names, 
   return planes;
 }
 
-std::string MixForScreen(const LayerPlanes& planes, const std::vector<Color>& factors, const ScreenLook& look,
-                         int threads) {
+std::string ScreenMixer::Mix(const LayerPlanes& planes, uint64_t picture, const std::vector<Color>& factors,
+                             const ScreenLook& look, int threads) {
+  constexpr int kMostChanges = 64;
+  const std::lock_guard lock(mutex_);
   const size_t pixels = planes.Pixels();
+  const bool isNew = picture != picture_ || sums_.size() != 3 * pixels || factors_.size() != factors.size() ||
+                     changes_ >= kMostChanges;
+  if (isNew) {
+    sums_.assign(3 * pixels, 0);
+    factors_.assign(factors.size(), Color(0.0f));
+    picture_ = picture;
+    changes_ = 0;
+  }
+  ++changes_;
   std::string screen(4 * pixels, '\xff');
   const ScreenTable& table = ScreenTableOf(look.toneMap);
   const float exposure = std::exp2(look.exposure);
   const size_t blocks = (pixels + kBlock - 1) / kBlock;
   ParallelFor(static_cast<int>(blocks), threads, [&](int block) {
     const size_t first = static_cast<size_t>(block) * kBlock, count = std::min(kBlock, pixels - first);
-    std::array<float, kBlock> sums;
     std::array<uint32_t, kBlock> steps;
     for (size_t c = 0; c < 3; ++c) {
-      sums.fill(0);
+      double* sums = sums_.data() + c * pixels + first;
       for (size_t layer = 0; layer < factors.size(); ++layer) {
-        const float factor = ChannelOf(factors[layer], c);
-        if (factor != 0) Accumulate(planes.Plane(layer, c).data() + first, factor, count, sums.data());
+        const double change =
+            static_cast<double>(ChannelOf(factors[layer], c)) - static_cast<double>(ChannelOf(factors_[layer], c));
+        if (change != 0) Accumulate(planes.Plane(layer, c).data() + first, change, count, sums);
       }
-      Encode(sums.data(), exposure, count, steps.data());
+      Encode(sums, exposure, count, steps.data());
       char* out = screen.data() + 4 * first + c;
       for (size_t i = 0; i < count; ++i) out[4 * i] = static_cast<char>(table[steps[i]]);
     }
   });
+  factors_ = factors;
   return screen;
 }
 

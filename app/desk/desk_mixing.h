@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <mutex>
 #include <span>
 #include <string>
 #include <vector>
@@ -33,9 +34,23 @@ struct ScreenLook {
   ToneMap toneMap = ToneMap::Filmic;
 };
 
-// 8 bits of R, G, B and alpha, sRGB, by rows from the top. `factors`: of each layer.
-std::string MixForScreen(const LayerPlanes& planes, const std::vector<Color>& factors, const ScreenLook& look,
-                         int threads);
+// Mixes pictures for the screen. A fader that moves changes one layer: the sums are kept, and only layers whose factors
+// have changed are read. Sums are doubles, and begun anew from time to time, so that what was added and taken away
+// again leaves no trace that the screen could show. May be called from several threads.
+class ScreenMixer {
+ public:
+  // 8 bits of R, G, B and alpha, sRGB, by rows from the top. `factors`: of each layer. `picture`: a number that other
+  // planes do not have.
+  std::string Mix(const LayerPlanes& planes, uint64_t picture, const std::vector<Color>& factors,
+                  const ScreenLook& look, int threads);
+
+ private:
+  std::mutex mutex_;
+  std::vector<double> sums_;  // by channel and pixel
+  std::vector<Color> factors_;
+  uint64_t picture_ = 0;
+  int changes_ = 0;  // since the sums were begun
+};
 
 // One pixel, linear. `deviation`: of its mean; where it is known, which is while all factors are equal.
 struct MixedPixel {

@@ -32,7 +32,7 @@ constexpr double kPictureShare = 0.25;
 
 // Mixing for the page comes before rendering. Threads that this one starts inherit it.
 void GiveWay() {
-  constexpr int kNice = 4;
+  constexpr int kNice = 10;
   (void)setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), kNice);
 }
 

@@ -162,6 +162,31 @@ TEST_F(Desk, MixesThePictureOfAllLights) {
   EXPECT_NEAR(pixel.at("interval").at(1).get<double>(), 1.96 * deviation, 1e-6);
 }
 
+// The desk keeps the sums of the last mix and adds what has changed. Whatever came before, the screen shows the same.
+TEST_F(Desk, MovesLeaveNoTrace) {
+  const DeskProcess desk(folder_.Path(), "scene.pbrt --quiet --spp 4"),
+      fresh(folder_.Path(), "scene.pbrt --quiet --spp 4");
+  desk.WaitUntilDone();
+  fresh.WaitUntilDone();
+  const auto screen = [](const DeskProcess& of, const Json& factors) {
+    return of.Post("picture", {{"factors", factors}, {"exposure", 1}, {"clip", false}}).body;
+  };
+  const Json neutral = desk.Neutral();
+  const std::string first = screen(desk, neutral);
+  Json factors = neutral;
+  for (size_t i = 0; i < 100; ++i) {
+    const double values[] = {1e6, 0, 0.3, 1e-3, 7};
+    factors[i % factors.size()] = {values[i % 5], values[(i + 1) % 5], values[i % 3]};
+    screen(desk, factors);
+  }
+  factors[0] = {0, 0, 0};
+  factors[1] = {0.25, 1, 2};
+  const std::string after = screen(desk, factors);
+  EXPECT_EQ(after, screen(fresh, factors));
+  EXPECT_NE(after, first);
+  EXPECT_EQ(screen(desk, neutral), first);
+}
+
 // A factor scales a light's share alone, and the interval is not known then.
 TEST_F(Desk, MixesByFactors) {
   const DeskProcess desk(folder_.Path(), "scene.pbrt --quiet --spp 4");
