@@ -57,60 +57,111 @@ PixelGrid Blurred(const PixelGrid& from, int step) {
   return BlurredAlong(BlurredAlong(from, true, step), false, step);
 }
 
+// Sums over the samples of every pixel, relative to its luminance.
+struct SampleSums {
+  PixelGrid squares, fourths, counts;
+
+  // Variance of a sample.
+  double Variance(size_t pixel) const { return squares.values[pixel] / std::max(counts.values[pixel] - 1, 1.0); }
+  // The number of large samples in a pixel that its squares would come from if all of these were equal.
+  double Large(size_t pixel) const {
+    const double square = squares.values[pixel];
+    return fourths.values[pixel] > 0 ? square * square / fourths.values[pixel] : 0;
+  }
+  void Blur(int step) {
+    for (PixelGrid* grid : {&squares, &fourths, &counts}) *grid = Blurred(*grid, step);
+  }
+};
+
+// Limits the variance of a pixel by that of its neighbourhood, as the mean of standard deviations tells it. A few
+// bright samples in a neighbourhood say where they happened to fall and not where the next will fall; as a mean of
+// variances, a single one of them would give its samples to hundreds of pixels.
+void LimitOutliers(SampleSums& sums) {
+  constexpr double kMost = 4;
+  constexpr int kBlurs = 3;
+  PixelGrid deviations = sums.squares;
+  for (size_t i = 0; i < deviations.values.size(); ++i) deviations.values[i] = std::sqrt(sums.Variance(i));
+  for (int blurs = 0; blurs < kBlurs; ++blurs) deviations = Blurred(deviations, 1 << blurs);
+  for (size_t i = 0; i < deviations.values.size(); ++i) {
+    const double limit = kMost * deviations.values[i] * deviations.values[i], variance = sums.Variance(i);
+    if (!(variance > limit)) continue;
+    const double share = limit / variance;
+    sums.squares.values[i] *= share;
+    sums.fourths.values[i] *= share * share;
+  }
+}
+
 struct SampleNoise {
   std::vector<double> variances, trusts;
 };
 
-// Relative variance of a sample of every pixel: the variance of the samples near it, or that of a wider neighbourhood
-// if that is larger. Where one sample in a thousand finds a light, most pixels have not met it yet.
+// Relative variance of a sample of every pixel, from the samples near it. Edges are a pixel wide: the samples of the
+// pixel itself count, as far as they are enough to tell that it is noisier. Where one sample in a thousand finds a
+// light, most pixels have not met it yet: the variance of a wider neighbourhood counts, as far as the samples near the
+// pixel may have missed what makes it up.
 //
-// Trust in it, from 0 to 1, grows with the number of large samples within kPixels that make it up. Few bright samples
-// tell only where they happened to fall.
-SampleNoise NoiseOf(PixelGrid squares, PixelGrid fourths, PixelGrid counts) {
-  constexpr int kNear = 1, kTrusted = 3, kFar = 4;                               // blurs
+// Trust in it, from 0 to 1, grows with the number of large samples around the pixel that make it up.
+SampleNoise NoiseOf(SampleSums sums) {
+  constexpr int kTrusted = 3, kFar = 4;                                          // blurs
   constexpr double kEnough = 48, kPixels = 4 * std::numbers::pi * (1 + 4 + 16);  // under kTrusted blurs
-  const size_t pixels = squares.values.size();
+  constexpr double kOwn = 8;                                                     // large samples in a pixel
+  constexpr double kMissed = 1, kNearPixels = 4 * std::numbers::pi;              // large samples under one blur
+  const size_t pixels = sums.squares.values.size();
   SampleNoise noise{std::vector<double>(pixels, 0), std::vector<double>(pixels, 1)};
-  for (int blurs = 1; blurs <= kFar; ++blurs) {
-    const int step = 1 << (blurs - 1);
-    squares = Blurred(squares, step);
-    counts = Blurred(counts, step);
-    if (blurs <= kTrusted) fourths = Blurred(fourths, step);
+  LimitOutliers(sums);
+  const SampleSums own = sums;
+  sums.Blur(1);
+  for (size_t i = 0; i < pixels; ++i) {
+    const double near = sums.Variance(i), large = own.Large(i);
+    noise.variances[i] = near + std::max(own.Variance(i) - near, 0.0) * large / (large + kOwn);
+  }
+  for (int blurs = 2; blurs <= kFar; ++blurs) {
+    sums.Blur(1 << (blurs - 1));
     for (size_t i = 0; i < pixels; ++i) {
-      const double square = squares.values[i];
-      if (blurs == kNear || blurs == kFar)
-        noise.variances[i] = std::max(noise.variances[i], square / std::max(counts.values[i] - 1, 1.0));
-      if (blurs != kTrusted || !(fourths.values[i] > 0)) continue;
-      const double large = kPixels * square * square / fourths.values[i];
-      noise.trusts[i] = large / (large + kEnough);
+      const double large = sums.Large(i), missed = kMissed / (kMissed + kNearPixels * large);
+      noise.variances[i] += std::max(sums.Variance(i) - noise.variances[i], 0.0) * missed;
+      if (blurs == kTrusted && large > 0) noise.trusts[i] = kPixels * large / (kPixels * large + kEnough);
     }
   }
   return noise;
 }
 
+// Brings the luminance of each pixel nearer to the mean of those around it, the more the less their difference exceeds
+// the pixel's own error.
+void ReduceNoise(PixelGrid& luminance, const SampleSums& sums, const PixelGrid& splats) {
+  const PixelGrid near = Blurred(luminance, 1);
+  for (size_t i = 0; i < luminance.values.size(); ++i) {
+    const double count = std::max(sums.counts.values[i], 2.0), difference = near.values[i] - luminance.values[i];
+    const double variance = sums.squares.values[i] / (count * (count - 1)) + splats.values[i];
+    if (variance > 0) luminance.values[i] += difference * variance / (variance + difference * difference);
+  }
+}
+
 std::vector<PixelNeed> NeedsOf(const Film& film, const SampleStage& stage) {
   const size_t pixels = film.Pixels();
   const PixelGrid empty{film.Crop().Width(), film.Crop().Height(), std::vector<double>(pixels)};
-  PixelGrid luminance = empty, squares = empty, fourths = empty, counts = empty, splats = empty;
+  PixelGrid luminance = empty, splats = empty;
+  SampleSums sums{empty, empty, empty};
   double mean = 0;
   for (size_t i = 0; i < pixels; ++i) {
     const Film::PixelStatistics statistics = film.StatisticsOf(i);
     luminance.values[i] = std::max(statistics.luminance, 0.0);
-    squares.values[i] = statistics.squares;
-    fourths.values[i] = statistics.fourths;
-    counts.values[i] = static_cast<double>(film.Stages(i).count);
+    sums.squares.values[i] = statistics.squares;
+    sums.fourths.values[i] = statistics.fourths;
+    sums.counts.values[i] = static_cast<double>(film.Stages(i).count);
     splats.values[i] = statistics.splatVariance;
     mean += luminance.values[i] / static_cast<double>(pixels);
   }
-  luminance = Blurred(luminance, 1);
+  ReduceNoise(luminance, sums, splats);
   for (size_t i = 0; i < pixels; ++i) {
     const double square = std::pow(std::max(luminance.values[i], kDark * mean), 2);
-    squares.values[i] = square > 0 ? squares.values[i] / square : 0;
-    fourths.values[i] = square > 0 ? fourths.values[i] / (square * square) : 0;
-    splats.values[i] = square > 0 ? splats.values[i] / square : 0;
+    const double scale = square > 0 ? 1 / square : 0;
+    sums.squares.values[i] *= scale;
+    sums.fourths.values[i] *= scale * scale;
+    splats.values[i] *= scale;
   }
   splats = Blurred(splats, 1);
-  const auto [variances, trusts] = NoiseOf(std::move(squares), std::move(fourths), std::move(counts));
+  const auto [variances, trusts] = NoiseOf(std::move(sums));
   const auto before = static_cast<double>(film.EndedPasses());
   const double all = before + stage.passes;
   std::vector<PixelNeed> needs(pixels);
@@ -128,9 +179,10 @@ std::vector<PixelNeed> NeedsOf(const Film& film, const SampleStage& stage) {
 // Samples with which the relative variance of a pixel after the stage is `target`.
 double SamplesFor(const PixelNeed& need, double target, double stageShare, double least, double most) {
   if (!(need.ofSample > 0)) return least;
-  // Splats may have more variance than the target by themselves, which no camera sample changes. Half of theirs is then
-  // enough for the camera samples.
-  const double ofCamera = std::max(target - need.splats, 0.5 * need.splats);
+  // Splats may have more variance than the target by themselves, which no camera sample changes. A small part of theirs
+  // is then enough for the camera samples.
+  constexpr double kBelowSplats = 0.1;
+  const double ofCamera = std::max(target - need.splats, kBelowSplats * need.splats);
   const double room = ofCamera / need.ofSample - need.before;
   if (!(room > 0)) return most;
   return std::clamp(stageShare * stageShare / room, least, most);
@@ -207,16 +259,10 @@ uint64_t SampleAllocation::Shift(uint32_t pass) const {
 
 size_t SampleAllocation::PixelOf(uint64_t slot, uint32_t pass) const {
   if (ends_.empty() || pass == 0) return slot;
-  size_t low = 0, high = pixels_ - 1;
-  while (low < high) {
-    const size_t middle = (low + high) / 2;
-    if (Before(middle + 1, pass) > slot) {
-      high = middle;
-    } else {
-      low = middle + 1;
-    }
-  }
-  return low;
+  // The first pixel with Before(pixel + 1, pass) > slot: (end + shift) / passes > slot.
+  const uint64_t shifted = (slot + 1) * (uint64_t{stage_.passes} - 1), shift = Shift(pass);
+  const uint64_t end = shifted > shift ? shifted - shift : 0;
+  return static_cast<size_t>(std::lower_bound(ends_.begin(), ends_.end() - 1, end) - ends_.begin());
 }
 
 }  // namespace lampyr

@@ -201,17 +201,18 @@ class BothPaths::AdaptivePixels {
   Sampler& Start(uint64_t slot) {
     const PixelRect& crop = pass_.film.Crop();
     const SampleAllocation& allocation = *pass_.allocation;
-    const size_t pixel = allocation.PixelOf(slot, stagePass_);
-    if (pixel != pixel_) {
+    if (slot < pixelBegin_ || slot >= pixelEnd_) {
+      const size_t pixel = allocation.PixelOf(slot, stagePass_);
       EndPixel();
-      pixel_ = pixel;
+      pixelBegin_ = allocation.Before(pixel, stagePass_);
+      pixelEnd_ = allocation.Before(pixel + 1, stagePass_);
       isBegun_ = true;
       x_ = crop.x0 + static_cast<int>(pixel % static_cast<size_t>(crop.Width()));
       y_ = crop.y0 + static_cast<int>(pixel / static_cast<size_t>(crop.Width()));
       sums_ = pass_.film.Pixel(x_, y_);
     }
-    number_ = pass_.film.Pixel(x_, y_).count + slot - allocation.Before(pixel, stagePass_);
-    if (isReplay_) number_ -= allocation.Count(pixel, stagePass_);
+    number_ = pass_.film.Pixel(x_, y_).count + slot - pixelBegin_;
+    if (isReplay_) number_ -= pixelEnd_ - pixelBegin_;
     return samplers_.Start(x_, y_, number_);
   }
   int X() const { return x_; }
@@ -237,8 +238,8 @@ class BothPaths::AdaptivePixels {
   uint32_t stagePass_;
   bool isReplay_;
   AdaptiveSampler samplers_;
-  size_t pixel_ = std::numeric_limits<size_t>::max();
-  int x_ = 0, y_ = 0;
+  int x_ = 0, y_ = 0;                       // pixel of the sample
+  uint64_t pixelBegin_ = 0, pixelEnd_ = 0;  // its slots
   uint64_t number_ = 0;
   bool isBegun_ = false;
   PixelSums sums_, ofPass_;  // of the pixel: with those of earlier passes, and of this one
