@@ -57,7 +57,7 @@ PixelGrid Blurred(const PixelGrid& from, int step) {
   return BlurredAlong(BlurredAlong(from, true, step), false, step);
 }
 
-// Sums over the samples of every pixel, relative to its luminance.
+// Sums over the samples of every pixel.
 struct SampleSums {
   PixelGrid squares, fourths, counts;
 
