@@ -3,9 +3,10 @@
 
     scripts/fit_costs.py [BINARY]
 
-Renders the scenes of scenes/ at 96×96 by path, bdpt and vcm on one thread, some two minutes, and searches the costs of
-lookups, found and stored photons for which vcm takes the measured times as long as bdpt, with the costs of rays as they
-are below. Prints them, and what the pilot's model gets wrong: predicted ratios of times over measured ones.
+Renders the scenes of scenes/ at 96×96 by path, bdpt, vcm and sppm on one thread, some three minutes, and searches the
+costs of lookups, found and stored photons for which vcm takes the measured times as long as bdpt, with the costs of rays
+as they are below; then those of the photons that sppm finds, which it does not weight, for sppm against path. Prints
+them, and what the pilot's model gets wrong: predicted ratios of times over measured ones.
 """
 import json
 import math
@@ -16,7 +17,7 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-SAMPLES = {'path': 24, 'bdpt': 10, 'vcm': 10}
+SAMPLES = {'path': 24, 'bdpt': 10, 'vcm': 10, 'sppm': 24}
 # As in the pilot, nanoseconds. Rays of path and bdpt are so alike from scene to scene that the times hardly tell their
 # costs apart.
 RAY, SHADOW_RAY, CONNECTION, CAMERA_PATH_WITH_WEIGHTS, SIDE_BY_SIDE = 260, 350, 530, 1.12, 0.75
@@ -52,6 +53,19 @@ def predicted(scene, merging):
             'vcm': both + sum(cost * count for cost, count in zip(merging, scene['vcm']['merging']))}
 
 
+def predicted_sppm(scene, merging, gathered):
+    """Nanoseconds per sample of sppm. `gathered`: of a photon that is found."""
+    sppm = scene['sppm']
+    lookups, found, stored = sppm['merging']
+    return (RAY * sppm['rays'] + SHADOW_RAY * sppm['shadow'] + merging[0] * lookups + gathered * found +
+            merging[2] * stored)
+
+
+def ratio_of_sppm(scene, merging, gathered):
+    return predicted_sppm(scene, merging, gathered) / predicted(scene, merging)['path'] / (
+        scene['sppm']['time'] / scene['path']['time'])
+
+
 def ratio(scene, merging, a, b):
     """Predicted ratio of the times of two integrators over the measured one."""
     costs = predicted(scene, merging)
@@ -76,9 +90,15 @@ def main():
             best, merging = value, tried
     print(', '.join(f'{name} {cost:.0f}' for name, cost in zip(MERGING, merging)))
     print(f'typical error of vcm over bdpt: {100 * math.sqrt(best / len(scenes)):.0f} %')
+    def loss_of_sppm(gathered):
+        return sum(math.log(ratio_of_sppm(scene, merging, gathered)) ** 2 for scene in scenes.values())
+    gathered = min(range(0, 500, 5), key=loss_of_sppm)
+    print(f'gathered {gathered}, typical error of sppm over path: '
+          f'{100 * math.sqrt(loss_of_sppm(gathered) / len(scenes)):.0f} %')
     for name, scene in scenes.items():
         print(f'{name:14} bdpt over path {ratio(scene, merging, "bdpt", "path"):.2f}, '
-              f'vcm over bdpt {ratio(scene, merging, "vcm", "bdpt"):.2f}')
+              f'vcm over bdpt {ratio(scene, merging, "vcm", "bdpt"):.2f}, '
+              f'sppm over path {ratio_of_sppm(scene, merging, gathered):.2f}')
 
 
 if __name__ == '__main__':

@@ -17,7 +17,7 @@ namespace lampyr {
 
 namespace {
 
-constexpr int kPilotParts = 4;
+constexpr int kPilotParts = 6;
 
 // Means of the whole picture and of the blocks of a grid over it, for each part of a pilot.
 struct PilotRun {
@@ -51,14 +51,18 @@ std::vector<double> BlockMeans(const Image& image) {
   return sums;
 }
 
-// True if `a` is significantly brighter than `b`, with an error probability `byChance`. Differences below 1e-5 of
-// `scale` count as rounding.
+// True if `a` is significantly brighter than `b`, with an error probability `byChance`, by the t-test for means of
+// different variances [Welch47]. Differences below 1e-5 of `scale` count as rounding.
 bool IsBrighter(std::span<const double> a, std::span<const double> b, double byChance, double scale) {
-  const Moments first = MomentsOf(a), second = MomentsOf(b);
   constexpr double rounding = 1e-5;
-  const double error = std::sqrt(first.varianceOfMean + second.varianceOfMean);
-  const double t = StudentQuantileTwoSided(byChance, static_cast<double>(a.size()) - 1);
-  return first.mean - second.mean > std::max(t * error, rounding * scale);
+  const Moments first = MomentsOf(a), second = MomentsOf(b);
+  const double difference = first.mean - second.mean;
+  if (!(difference > rounding * scale)) return false;
+  const double variance = first.varianceOfMean + second.varianceOfMean;
+  if (!(variance > 0)) return true;
+  const double share = first.varianceOfMean / variance, other = 1 - share;
+  const double degrees = (static_cast<double>(a.size()) - 1) / (share * share + other * other);
+  return difference > StudentQuantileTwoSided(byChance, degrees) * std::sqrt(variance);
 }
 
 // A blurred picture is brighter next to bright areas; larger blocks average this out.
@@ -79,9 +83,9 @@ std::vector<double> PartsOfBlock(const PilotRun& run, int block, int side) {
   return values;
 }
 
-// True if `other` finds significantly more light than `run`, in the whole picture or in a block of it.
-bool FindsMore(const PilotRun& other, const PilotRun& run) {
-  constexpr double byChance = 0.01;
+// True if `other` finds significantly more light than `run`, in the whole picture or in a block of it: each of the two
+// with an error probability `byChance`.
+bool FindsMore(const PilotRun& other, const PilotRun& run, double byChance) {
   const double scale = MomentsOf(other.means).mean;
   if (IsBrighter(other.means, run.means, byChance, scale)) return true;
   const int side = other.isBlurred || run.isBlurred ? kSideOfBlurredBlock : 1, across = kGrid / side;
@@ -109,6 +113,9 @@ double LightThatMayBeMissing(const PilotRun& run, const PilotRun& complete) {
 
 // Notes that a pilot misses light, or may miss some. Returns false if there is nothing to note.
 bool NoteFlaw(PilotRun& run, const std::vector<PilotRun>& runs, bool allBlack, bool allHinted) {
+  constexpr double byChance = 0.01;  // of all pairs of integrators
+  const auto pairs = static_cast<int>(runs.size() * (runs.size() - 1) / 2);
+  const double byChanceOfPair = SidakRate(byChance, pairs);
   run.pilot.isFlawed = true;
   if (!(run.pilot.mean > 0) && !allBlack) {
     run.pilot.note = "finds no light";
@@ -116,7 +123,7 @@ bool NoteFlaw(PilotRun& run, const std::vector<PilotRun>& runs, bool allBlack, b
   }
   const PilotRun* more = nullptr;  // the brightest of those that find more
   for (const PilotRun& other : runs) {
-    if ((!more || other.pilot.mean > more->pilot.mean) && FindsMore(other, run)) more = &other;
+    if ((!more || other.pilot.mean > more->pilot.mean) && FindsMore(other, run, byChanceOfPair)) more = &other;
   }
   if (more) {
     const double share = MomentsOf(run.means).mean / MomentsOf(more->means).mean;

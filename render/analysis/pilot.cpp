@@ -6,13 +6,10 @@
 #include <limits>
 #include <span>
 
-#include "base/parallel.h"
 #include "integrators/photon/emission_learning.h"
-#include "integrators/photon/photon_pass.h"
-#include "integrators/photon/photon_store.h"
-#include "integrators/registry.h"
-#include "integrators/walk/pixel_ray.h"
 #include "render/analysis/candidate_masks.h"
+#include "render/analysis/pilot_passes.h"
+#include "render/analysis/sppm_candidate.h"
 #include "render/settings/integrator_choice.h"
 #include "spectral/wavelengths.h"
 
@@ -22,127 +19,14 @@ using namespace pilot;
 
 namespace {
 
-constexpr int kChunks = 8;
 // Longer paths hold little of the light, and without a limit a closed box of mirrors would keep the pilot for hours.
 constexpr int64_t kMostEvents = 20;
 // Counted time of all passes in nanoseconds, as if their samples were those of bdpt with one light path for each. The
 // passes take about three times as long, because they record what they find.
 constexpr double kPassesTime = 80e6;
 constexpr int kFewestPasses = 4, kMostPasses = 16;
-// Numbers of the samples of a pixel: those of camera paths, then those of photons, then those that select pixels.
-constexpr uint32_t kSamplesOfPart = 1 << 16;
-constexpr uint64_t kMostLightPaths = 4 * kMostPilotPixels;
-// The radius is that of the average pass of so many.
-constexpr double kTypicalPasses = 64;
 // Lights that are chosen at a vertex at most; the pilot decides between them and one.
 constexpr int kSeveralLights = 2;
-constexpr uint64_t kSeed = 0x9e3779b97f4a7c15;
-
-// Passes of an integrator over the pilot's pixels.
-class PilotPasses {
- public:
-  PilotPasses(const RenderScene& scene, const RenderSettings& settings, const Grid& grid, int threads)
-      : scene_(scene),
-        settings_(settings),
-        grid_(grid),
-        threads_(threads),
-        filter_(settings.filter),
-        photons_(kChunks) {}
-
-  // Traces the photons of a pass; where the integrator gathers none, it has none.
-  void TracePhotons(const Integrator& integrator, PhotonStore& store, uint32_t pass) {
-    const auto paths = static_cast<int>(std::min<uint64_t>(store.LightPaths(), kMostLightPaths));
-    ForEachPixel(paths, [&](size_t chunk, int x, int y, Sampler& sampler, RenderCounts& counts, SplatList& splats) {
-      sampler.StartPixelSample(x, y, pass + kSamplesOfPart);
-      photons_[chunk].StartPath();
-      SampleContext context{scene_, sampler, Time(pass), counts};
-      context.splats = &splats;
-      context.photons = &photons_[chunk];
-      context.isForPhotonsAlone = true;
-      context.withOrigin = store.WantsOrigins();
-      integrator.Sample(nullptr, context);
-    });
-    store.Take(photons_);
-    store.Finish(pass);
-  }
-  // One sample of every pixel; `recorders`, one for each chunk, may be empty. `spreads`: receives that of each pixel,
-  // of its sample as it is weighted; may be null.
-  RenderCounts Trace(const Integrator& integrator, uint32_t pass, const PhotonPass* gather,
-                     std::span<Recorder> recorders, std::vector<LightSpread>* spreads = nullptr) {
-    return ForEachPixel(grid_.Pixels(), [&](size_t chunk, int x, int y, Sampler& sampler, RenderCounts& counts,
-                                            SplatList& splats) {
-      // Two passes have the same pixel of the image, of those that a pixel of the pilot holds: what differs between
-      // pixels is not noise, and what is within one is.
-      sampler.StartPixelSample(x, y, 2 * kSamplesOfPart + pass / 2);
-      sampler.SetDimension(dimensions::kFilm);
-      const Point2 u = sampler.Get2D();
-      const int column = std::min(static_cast<int>((static_cast<float>(x) + u.x) * grid_.pixel.x), settings_.width - 1),
-                row = std::min(static_cast<int>((static_cast<float>(y) + u.y) * grid_.pixel.y), settings_.height - 1);
-      sampler.StartPixelSample(x, y, pass);
-      SampleContext context{scene_, sampler, Time(pass), counts};
-      context.splats = integrator.Paths() == TracedPaths::Camera ? nullptr : &splats;
-      context.gather = gather;
-      const PixelRay pixel = MakePixelRay(scene_, filter_, column, row, context.time, sampler);
-      const CameraRay& ray = pixel.camera;
-      if (!recorders.empty()) {
-        context.observer = &recorders[chunk];
-        recorders[chunk].StartSample(x, y, ray.weight);
-      }
-      LightSpread spread;
-      if (spreads) context.lightSpread = &spread;
-      const bool isVignetted = ray.weight == 0;
-      const Ray* start = isVignetted ? nullptr : &ray.ray;
-      if (start || integrator.Paths() != TracedPaths::Camera) {
-        // A render traces a path that disperses once for each lane: all are counted, and the first is recorded.
-        if (recorders.empty()) {
-          SampleLanes(integrator, start, context);
-        } else {
-          integrator.Sample(start, context);
-        }
-      }
-      if (!recorders.empty()) recorders[chunk].EndSample();
-      if (!spreads) return;
-      LightSpread& sum = (*spreads)[grid_.PixelOf(x, y)];
-      sum.squares += static_cast<double>(ray.weight) * static_cast<double>(ray.weight) * spread.squares;
-      sum.vertices += spread.vertices;
-      sum.samples += spread.samples;
-    });
-  }
-
- private:
-  float Time(uint32_t pass) const {
-    constexpr double kGoldenRatio = 0.6180339887498949;  // spreads any number of passes over the shutter's time
-    return scene_.hasMotion ? static_cast<float>(std::fmod(0.5 + pass * kGoldenRatio, 1.0)) : 0.0f;
-  }
-  // `count`: of the pixels, or more, with further rows.
-  template <class Body>
-  RenderCounts ForEachPixel(int count, const Body& body) {
-    std::vector<RenderCounts> counts(kChunks);
-    ParallelFor(kChunks, threads_, [&](int chunk) {
-      const auto index = static_cast<size_t>(chunk);
-      // A variance is estimated by independent samples.
-      Sampler sampler(SamplerKind::Independent, kSeed);
-      // Splats are not kept, but connections that reach no pixel are not made.
-      SplatList splats({0, 0}, {static_cast<float>(settings_.width), static_cast<float>(settings_.height)}, 1);
-      const auto begin = [&](int of) { return static_cast<int>(int64_t{count} * of / kChunks); };
-      for (int i = begin(chunk); i < begin(chunk + 1); ++i) {
-        splats.Clear();
-        splats.StartPath();
-        body(index, i % grid_.width, i / grid_.width, sampler, counts[index], splats);
-      }
-    });
-    RenderCounts total;
-    for (const RenderCounts& part : counts) total += part;
-    return total;
-  }
-
-  const RenderScene& scene_;
-  const RenderSettings& settings_;
-  const Grid& grid_;
-  int threads_;
-  PixelFilter filter_;
-  std::vector<PhotonList> photons_;
-};
 
 // Passes for which there is time: the rarer the light, the more of them it takes to know how noisy an integrator is
 // that finds it by chance. Even.
@@ -171,19 +55,6 @@ RenderSettings WithAllTechniques(const RenderSettings& settings) {
   all.values.Set("connect", true);
   all.values.Set("max-depth", std::min<int64_t>(all.values.Integer("max-depth"), kMostEvents));
   return all;
-}
-
-std::unique_ptr<Integrator> Make(const char* name, const RenderScene& scene, const RenderSettings& settings,
-                                 double fewer, const TechniqueCounts* counts = nullptr) {
-  return IntegratorOf(name).create({scene, settings.width, settings.height, settings.sensor.ImagingRatio(),
-                                    settings.values, counts, SplatCount(settings), fewer});
-}
-
-// Radius of the pilot's merging, in radii of the first pass of a render. The pilot has fewer light paths by the factor
-// `fewer`; a lookup within the larger radius finds as many photons as in the render.
-double WiderRadius(double fewer, double alpha) {
-  const double shrunk = std::pow(kTypicalPasses, alpha - 1) / alpha;
-  return std::sqrt(fewer * std::min(shrunk, 1.0));
 }
 
 // All camera paths may end early.
@@ -245,13 +116,14 @@ struct Spreads {
 void CountPaths(const PilotIntegrators& integrators, const RenderScene& scene, const RenderSettings& settings,
                 const Grid& grid, int threads, Counted& counted, Spreads* spreads) {
   PilotPasses passes(scene, settings, grid, threads);
-  counted.path = passes.Trace(*integrators.path, 0, nullptr, {}, spreads ? &spreads->path : nullptr);
-  counted.bdpt = passes.Trace(*integrators.bdpt, 0, nullptr, {}, spreads ? &spreads->bdpt : nullptr);
-  counted.endingBdpt = passes.Trace(*integrators.endingBdpt, 0, nullptr, {}, spreads ? &spreads->endingBdpt : nullptr);
+  counted.path = passes.Trace(*integrators.path, 0, nullptr, {.spreads = spreads ? &spreads->path : nullptr});
+  counted.bdpt = passes.Trace(*integrators.bdpt, 0, nullptr, {.spreads = spreads ? &spreads->bdpt : nullptr});
+  counted.endingBdpt =
+      passes.Trace(*integrators.endingBdpt, 0, nullptr, {.spreads = spreads ? &spreads->endingBdpt : nullptr});
   for (uint32_t pass = 1; spreads && pass < spreads->counting; ++pass) {
-    passes.Trace(*integrators.path, pass, nullptr, {}, &spreads->path);
-    passes.Trace(*integrators.bdpt, pass, nullptr, {}, &spreads->bdpt);
-    passes.Trace(*integrators.endingBdpt, pass, nullptr, {}, &spreads->endingBdpt);
+    passes.Trace(*integrators.path, pass, nullptr, {.spreads = &spreads->path});
+    passes.Trace(*integrators.bdpt, pass, nullptr, {.spreads = &spreads->bdpt});
+    passes.Trace(*integrators.endingBdpt, pass, nullptr, {.spreads = &spreads->endingBdpt});
   }
 }
 
@@ -264,11 +136,11 @@ void RunPasses(const PilotIntegrators& integrators, int passCount, int threads, 
     passes.TracePhotons(*integrators.vcm, store, pass);
     const PhotonPass& gather = store.Open(pass, threads, wider);
     counted.stored += gather.map->Size();
-    counted.vcm += passes.Trace(*integrators.vcm, pass, &gather, recorders, &spreads.vcm);
+    counted.vcm += passes.Trace(*integrators.vcm, pass, &gather, {.recorders = recorders, .spreads = &spreads.vcm});
     if (pass == 0) {
       PhotonPass unrecorded = gather;  // photons are learned from once
       unrecorded.use = nullptr;
-      counted.endingVcm = passes.Trace(*integrators.endingVcm, pass, &unrecorded, {}, &spreads.endingVcm);
+      counted.endingVcm = passes.Trace(*integrators.endingVcm, pass, &unrecorded, {.spreads = &spreads.endingVcm});
     }
     records.EndPass(pass);
     store.EndGathering();
@@ -288,8 +160,8 @@ void CountGuided(const PilotIntegrators& integrators, const PhotonSettings& phot
   guided.TracePhotons(*integrators.vcm, store, 0);
   const PhotonPass& gather = store.Open(0, threads, wider);
   counted.stored = gather.map->Size();
-  counted.bdpt = counted.vcm = guided.Trace(*integrators.vcm, 0, &gather, {});
-  counted.endingBdpt = counted.endingVcm = guided.Trace(*integrators.endingVcm, 0, &gather, {});
+  counted.bdpt = counted.vcm = guided.Trace(*integrators.vcm, 0, &gather);
+  counted.endingBdpt = counted.endingVcm = guided.Trace(*integrators.endingVcm, 0, &gather);
   store.EndGathering();
   // The guide's density at every emission that is weighted, which no count tells. Measured in scenes/pool and mirror
   // and a room with a window pane, 160×90: a sample takes 1.10 to 1.26 times the counted time.
@@ -412,6 +284,15 @@ bool ChoosesLights(const RenderScene& scene, const RenderSettings& settings) {
                       [](const PlacedLight& placed) { return placed.light->Settings().fixedSampleCount > 0; });
 }
 
+// Adds sppm, with the lights that the scene selects and the guide of light paths that the render will have; null: none.
+void AddSppm(const RenderScene& scene, const EmissionGuide* guide, const RenderSettings& settings, const Grid& grid,
+             const Records& records, int passCount, int threads, RenderPilot& pilot) {
+  RenderScene view = scene;
+  if (guide) view.lighting = std::make_shared<const LightingServices>(scene.lighting->With(nullptr, guide));
+  auto sppm = SppmCandidate(view, WithWavelengths(view), settings, grid, records, pilot.Best(), passCount, threads);
+  if (sppm) pilot.candidates.push_back(std::move(*sppm));
+}
+
 // Erases the candidates that the settings exclude. `isGuided`: light paths need a guide from the start, which bdpt does
 // not have.
 void EraseUnwanted(const RenderSettings& settings, bool isGuided, std::vector<PilotCandidate>& candidates) {
@@ -456,7 +337,7 @@ RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, i
   const double filmPixels = static_cast<double>(settings.width) * static_cast<double>(settings.height);
   const double fewer = filmPixels / grid.Pixels();
   const PilotIntegrators integrators(scene, combined, fewer);
-  PhotonSettings photons = integrators.vcm->Photons().value();
+  const PhotonSettings photons = PhotonsOfPilot(*integrators.vcm, fewer);
   // If light paths hardly come near to what is seen, vcm guides them from the start. Those of bdpt are hopeless then.
   RenderScene view = scene;
   const bool choosesLights = ChoosesLights(scene, settings);
@@ -468,8 +349,6 @@ RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, i
   if (photons.guided) guiding.emplace(scene, settings.width, settings.height);
   const bool isGuided = guiding && guiding->Guide();
   if (isGuided) view.lighting = std::make_shared<const LightingServices>(lighting->With(nullptr, guiding->Guide()));
-  if (photons.lightPaths > 0)
-    photons.lightPaths = std::max<uint64_t>(1, static_cast<uint64_t>(static_cast<double>(photons.lightPaths) / fewer));
   // The pilot's light paths are those of bdpt, not guided. What a guide would gain is learned from them.
   EmissionLearning* const learned = guiding && !isGuided ? &*guiding : nullptr;
   PhotonStore store(photons, static_cast<uint64_t>(grid.Pixels()), learned);
@@ -494,16 +373,16 @@ RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, i
     CountGuided(integrators, photons, wider, threads, guided, grid.Pixels(), counted, costs);
   }
   std::vector<PilotCandidate> all = CandidatesWith(costs);
-  double least = 0;  // error that is told apart
-  if (!records.SetErrors(passCount, filter.SquaredWeight(), settings.sampler == SamplerKind::Sobol, all, least))
-    return {};
+  if (!records.SetErrors(passCount, filter.SquaredWeight(), settings.sampler == SamplerKind::Sobol, all)) return {};
   for (size_t k = 0; k < kCandidates && willBeGuided; ++k)
     if (Merges(k)) Guide(all[k]);
   RenderPilot pilot{{all.begin(), all.begin() + kWholeCandidates}, {all.begin() + kWholeCandidates, all.end()}};
-  AddMixed(all, costs, grid, least, pilot.candidates);
+  AddMixed(all, costs, grid, records.LeastError(), pilot.candidates);
   EraseUnwanted(settings, isGuided, pilot.candidates);
   EraseUnwanted(settings, isGuided, pilot.ending);
   if (choosesLights) ChooseLightSamples(counted, spreads, records, grid.Pixels(), passCount, pilot);
+  const EmissionGuide* const guide = isGuided ? guiding->Guide() : willBeGuided ? learned->Guide() : nullptr;
+  AddSppm(scene, guide, combined, grid, records, passCount, threads, pilot);
   return pilot;
 }
 

@@ -45,8 +45,11 @@ struct PilotCandidate {
   // The same, if the error is larger than estimated by twice its standard error, and where photons are merged by their
   // blur, which the pilot does not know. So of equals the unbiased one is chosen.
   double MostErrorTimesCost() const {
-    constexpr double kBlur = 1.1, kWideBlur = 1.2;
-    const double blur = counts.startsWide ? kWideBlur : integrator == "vcm" ? kBlur : 1.0;
+    constexpr double kBlur = 1.1, kWideBlur = 1.2, kBlurOfSppm = 1.25;
+    const double blur = counts.startsWide      ? kWideBlur
+                        : integrator == "vcm"  ? kBlur
+                        : integrator == "sppm" ? kBlurOfSppm
+                                               : 1.0;
     return (error + 2 * uncertainty) * blur * cost * 1e-9;
   }
 };

@@ -9,6 +9,7 @@ namespace {
 // third at most; that of bdpt's to path's by 15 %, and in fog, where path is slower than its rays tell, by half.
 struct Costs {
   double ray = 260, shadowRay = 350, connection = 530, lookup = 122, found = 460, stored = 167;
+  double gathered = 100;  // found by sppm
 };
 
 // Measured with 1/8 to 2 light paths for each camera path, in six scenes: the weights of bidirectional techniques make
@@ -22,20 +23,21 @@ struct PartCosts {
   double lightRays = 0;  // of `light`, without connections to the lens
 };
 
+double RaysOf(const RenderCounts& counts) {
+  return static_cast<double>(counts.cameraRays + counts.indirectRays);
+}
+
 PartCosts PartCostsOf(const Counted& counted, bool isEnding) {
   constexpr Costs costs;
-  const auto rays = [](const RenderCounts& counts) {
-    return static_cast<double>(counts.cameraRays + counts.indirectRays);
-  };
-  double pathRays = rays(counted.path), direct = static_cast<double>(counted.path.shadowRays);
-  const double lightRays = std::max(rays(counted.bdpt) - pathRays, 0.0);
+  double pathRays = RaysOf(counted.path), direct = static_cast<double>(counted.path.shadowRays);
+  const double lightRays = std::max(RaysOf(counted.bdpt) - pathRays, 0.0);
   double more = std::max(static_cast<double>(counted.bdpt.shadowRays) - direct, 0.0);
   // Nearly each ray of a light path ends at a vertex that is connected to the lens.
   const double splats = std::min(more, lightRays);
   more -= splats;
   if (isEnding) {
     // Shorter camera paths have fewer rays, fewer next events and fewer connections.
-    const double fewerRays = std::clamp(rays(counted.bdpt) - rays(counted.endingBdpt), 0.0, pathRays);
+    const double fewerRays = std::clamp(RaysOf(counted.bdpt) - RaysOf(counted.endingBdpt), 0.0, pathRays);
     const double fewer = std::max(
         static_cast<double>(counted.bdpt.shadowRays) - static_cast<double>(counted.endingBdpt.shadowRays), 0.0);
     const double fewerDirect = std::min(fewer, direct * fewerRays / std::max(pathRays, 1.0));
@@ -48,6 +50,14 @@ PartCosts PartCostsOf(const Counted& counted, bool isEnding) {
 }
 
 }  // namespace
+
+double CostOfSppm(const RenderCounts& counts, uint64_t stored, double samples) {
+  constexpr Costs costs;
+  return (costs.ray * RaysOf(counts) + costs.shadowRay * static_cast<double>(counts.shadowRays) +
+          costs.stored * static_cast<double>(stored) + costs.lookup * static_cast<double>(counts.lookups) +
+          costs.gathered * static_cast<double>(counts.foundPhotons)) /
+         samples;
+}
 
 std::array<CandidateCost, kCandidates> CostsOf(const Counted& counted, double samples) {
   constexpr Costs costs;

@@ -223,14 +223,19 @@ Records::Brightness Records::BrightnessOf(const std::vector<Moments>& pixels, in
   return brightness;
 }
 
-bool Records::SetErrors(int passes, double squaredWeight, bool isSobol, std::vector<PilotCandidate>& candidates,
-                        double& least) {
+double Records::GainOf(double error) const {
+  return isSobol_ ? GainOfSobol(error) : 1.0;
+}
+
+bool Records::SetErrors(int passes, double squaredWeight, bool isSobol, std::vector<PilotCandidate>& candidates) {
+  isSobol_ = isSobol;
   std::vector<Moments> pixels(squaredMeans_.size() / kCandidates);
   for (const Recorder& recorder : recorders_) {
     for (size_t i = 0; i < pixels.size(); ++i) pixels[i] += recorder.moments[i];
   }
   const Brightness brightness = BrightnessOf(pixels, passes);
   if (!(brightness.mean > 0)) return false;
+  meanLight_ = brightness.mean;
   for (size_t k = 0; k < candidates.size(); ++k) LeaveOutRare(k, passes, brightness.mean, brightness.scales, pixels);
   const std::vector<char> isLeftOut = Hopeless(pixels, brightness.scales);
   for (size_t k = 0; k < candidates.size(); ++k)
@@ -238,18 +243,17 @@ bool Records::SetErrors(int passes, double squaredWeight, bool isSobol, std::vec
   weights_.assign(pixels.size(), 0);
   for (size_t i = 0; i < pixels.size(); ++i)
     if (!isLeftOut[i]) weights_[i] = squaredWeight * brightness.scales[i] * passes / grid_.Pixels();
-  least = LeastVariance(passes * grid_.Pixels()) * brightness.squared;
+  least_ = LeastVariance(passes * grid_.Pixels()) * brightness.squared;
   // More light paths, or more merges, leave the points in the pixels as they are, and what these gain.
   std::array<double, kCandidates> gains;
-  for (size_t k = 0; k < candidates.size(); ++k)
-    gains[k] = isSobol ? GainOfSobol(candidates[WithFewestSamples(k)].error) : 1.0;
+  for (size_t k = 0; k < candidates.size(); ++k) gains[k] = GainOf(candidates[WithFewestSamples(k)].error);
   for (size_t k = 0; k < candidates.size(); ++k) {
     PilotCandidate& candidate = candidates[k];
     for (double& error : candidate.tileErrors) error /= gains[k];
     for (double& error : candidate.tileMergedOnly) error /= gains[k];
     for (double& variance : candidate.tileVariances) variance /= gains[k] * gains[k];
     candidate.uncertainty /= gains[k];
-    candidate.error = std::max(candidate.error / gains[k], least);
+    candidate.error = std::max(candidate.error / gains[k], least_);
     candidate.gainOfSobol = gains[k];
   }
   return true;

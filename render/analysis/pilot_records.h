@@ -196,11 +196,17 @@ class Records {
 
   // The sum over all passes. False: no light was found. `squaredWeight`: PixelFilter::SquaredWeight. A pixel is Σ wL /
   // Σ w over its samples, so that weights of either sign scale its variance and do not add to it.
-  bool SetErrors(int passes, double squaredWeight, bool isSobol, std::vector<PilotCandidate>& candidates,
-                 double& least);
+  bool SetErrors(int passes, double squaredWeight, bool isSobol, std::vector<PilotCandidate>& candidates);
   // The errors of tiles, as PilotCandidate::tileErrors but by independent samples, of squared errors by pixel. After
   // SetErrors.
   std::vector<double> RelativeErrors(const std::vector<double>& squares) const;
+  // After SetErrors: by how much well-distributed samples lower the error of independent ones; the error that is told
+  // apart; light of a pixel, on average.
+  double GainOf(double error) const;
+  double LeastError() const { return least_; }
+  double MeanLight() const { return meanLight_; }
+  // Of the squared error of a pixel in that of the picture; 0: left out.
+  double WeightOf(size_t pixel) const { return weights_[pixel]; }
 
  private:
   struct Brightness {
@@ -231,6 +237,8 @@ class Records {
 
   const Grid& grid_;
   std::vector<Recorder>& recorders_;
+  bool isSobol_ = false;
+  double least_ = 0, meanLight_ = 0;
   std::vector<double> weights_;            // by pixel: of a squared error, in RelativeErrors
   std::vector<Found> last_;                // in the pass before
   std::vector<SquaredMean> squaredMeans_;  // by pixel and candidate

@@ -100,9 +100,10 @@ Halves Blend(const std::array<Halves, kChoices>& choices, const Shares& shares) 
 }
 
 // Takes as much of the residual back as minimises the error where the filter has a bias b and the picture the variance
-// σ²: b² / (b² + σ²).
+// σ²: b² / (b² + σ²). What may be chance is left out, because it comes back as a patch of noise.
 void KeepDetail(const NoisyPicture& picture, const Filtered& filtered, const HalfStatistics& statistics, int threads,
                 Halves& halves) {
+  constexpr float kUnsure = 1, kSure = 4;  // standard errors of the squared bias
   Plane noise(picture.noiseScale.width, picture.noiseScale.height), scale = noise;
   for (size_t i = 0; i < noise.Size(); ++i) {
     for (size_t c = 0; c < 3; ++c) {
@@ -119,10 +120,12 @@ void KeepDetail(const NoisyPicture& picture, const Filtered& filtered, const Hal
   for (size_t i = 0; i < noise.Size(); ++i) {
     if (!picture.isValid[i]) continue;
     const float variance = noise.values[i] * picture.noiseScale.values[i] * statistics.varianceFactor;
-    // What is below the standard error of the squared bias is taken for none.
-    constexpr float uncertain = 0.3f;
-    float bias = -uncertain * variance;
-    for (size_t c = 0; c < 3; ++c) bias += filtered.squaredBias[c].values[i];
+    float bias = 0, error = 0;
+    for (size_t c = 0; c < 3; ++c) {
+      bias += filtered.squaredBias[c].values[i];
+      error += filtered.errorOfBias[c].values[i];
+    }
+    bias *= std::clamp((bias / error - kUnsure) / (kSure - kUnsure), 0.0f, 1.0f);
     if (!(bias > 0)) continue;
     const float kept = bias / (bias + variance);
     for (size_t half = 0; half < 2; ++half) {
@@ -214,7 +217,11 @@ Image Denoise(const Image& noisy, int threads, const std::atomic<bool>& interrup
   std::array<Filtered, kChoices> filtered;
   for (size_t k = 0; k < kChoices; ++k) filtered[k] = FilteredOf(picture, choices[k], statistics, kNear, threads);
   Halves halves = Blend(choices, ShareByError(filtered, threads));
-  KeepDetail(picture, FilteredOf(picture, halves, statistics, kNear, threads), statistics, threads, halves);
+  // The covariance of the halves is that of the median block. Where samples are less stratified than there, it would
+  // pass for a bias.
+  HalfStatistics uncorrelated = statistics;
+  uncorrelated.covariance = 0;
+  KeepDetail(picture, FilteredOf(picture, halves, uncorrelated, kNear, threads), statistics, threads, halves);
   Filtered result = FilteredOf(picture, halves, statistics, kNear, threads);
   StateMore(FilteredOf(picture, halves, statistics, kFar, threads), result);
   AddMissing(picture, threads, result);

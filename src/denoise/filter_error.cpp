@@ -41,6 +41,21 @@ float CorrelationOf(const NoisyPicture& picture, const Halves& halves) {
   return std::clamp(*middle, -0.9f, 0.0f);
 }
 
+// The standard error of MeanSquares, `means`, from how much `squares` vary around each pixel.
+Plane ErrorOfMean(const Plane& squares, const Plane& means, const Plane& scale, int radius, int threads) {
+  Plane products = squares;
+  for (size_t i = 0; i < products.Size(); ++i)
+    products.values[i] *= squares.values[i] / (scale.values[i] * scale.values[i]);
+  products = BoxMeans(BoxMeans(products, radius, threads), radius, threads);
+  // Σ w² of two means over 2 r + 1 pixels in a row is 2 / (3 (2 r + 1)), but for terms of higher order.
+  const float independent = 1.5f * static_cast<float>(2 * radius + 1);
+  for (size_t i = 0; i < products.Size(); ++i) {
+    const float mean = means.values[i] / scale.values[i];
+    products.values[i] = scale.values[i] * std::sqrt(std::max(products.values[i] - mean * mean, 0.0f)) / independent;
+  }
+  return products;
+}
+
 // The mean product of the residuals of the halves is the squared bias, and the covariance of their noise.
 void EstimateError(const NoisyPicture& picture, const Halves& halves, const HalfStatistics& statistics, int radius,
                    int threads, Filtered& filtered) {
@@ -60,6 +75,7 @@ void EstimateError(const NoisyPicture& picture, const Halves& halves, const Half
     }
     filtered.variance[c] = MeanSquares(variance, scale, radius, threads);
     filtered.squaredBias[c] = MeanSquares(bias, scale, radius, threads);
+    filtered.errorOfBias[c] = ErrorOfMean(bias, filtered.squaredBias[c], scale, radius, threads);
   }
 }
 

@@ -26,6 +26,7 @@ struct HalfStatistics {
 struct Filtered {
   ColorPlanes value;
   ColorPlanes variance, squaredBias;  // means over neighbours; the latter may be negative, as it is an estimate
+  ColorPlanes errorOfBias;            // standard error of squaredBias
 };
 
 // The mean of two filtered halves by their shares. `radius`: of the means over neighbours, pixels.

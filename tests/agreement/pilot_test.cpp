@@ -263,7 +263,7 @@ TEST(Pilot, KnowsNoiseFromTexture) {
   const BuiltScene built = Build(text);
   ASSERT_EQ(built.settings.width, kWide);
   const RenderPilot pilot = RunPilot(built.scene, built.settings, 2, 32);
-  for (const char* integrator : {"path", "bdpt", "vcm"}) {
+  for (const char* integrator : {"path", "bdpt", "vcm", "sppm"}) {
     RenderSettings settings = built.settings;
     settings.integrator = integrator;
     const auto made = MakeIntegrator(built.scene, settings);

@@ -60,7 +60,7 @@ constexpr const char* kLayers[] = {"auto.lightPaths", "auto.connecting", "auto.m
 // Water over a floor in the sun: merging finds the light, and starts wide. Its radius is that of each pass, whoever
 // renders it.
 TEST_F(Auto, AWideStartIsTheSameForAllThreadsAndResumed) {
-  const std::string scene = "'" LAMPYR_SOURCE_DIR "/scenes/pool.pbrt' --integrator auto --resolution 64x36";
+  const std::string scene = "'" LAMPYR_SOURCE_DIR "/scenes/mirror.pbrt' --integrator auto --resolution 64x36";
   EXPECT_THAT(Succeed("plan " + scene).output, HasSubstr("wide discs"));
   Succeed("render " + scene + " --spp 6 --threads 1 --quiet -o one.exr");
   Succeed("render " + scene + " --spp 6 --threads 3 --quiet -o three.exr");

@@ -116,6 +116,31 @@ TEST(Denoise, WithoutHalvesItIsMuchTheSame) {
   EXPECT_GT(quality.covered, 0.9);
 }
 
+// On the left, as in most of the picture, the samples of one half fill the gaps of the other; on the right they do not.
+TEST(Denoise, NoNoiseComesBackWhereSamplesAreLessStratified) {
+  constexpr int kWidth = 112, kHeight = 64, kRight = 80;
+  constexpr float kValue = 0.5f, kSigma = 0.15f, kCorrelation = -0.6f;
+  Image image = MakeNoisy(
+      kWidth, kHeight, [](int, int) { return kValue; }, 0, 1);
+  std::mt19937 random(8);
+  std::normal_distribution<float> normal;
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      const float correlation = x < kRight ? kCorrelation : 0;
+      const float a = normal(random), b = correlation * a + std::sqrt(1 - correlation * correlation) * normal(random);
+      const float scale = std::sqrt(2.0f) * kSigma;
+      for (size_t c = 0; c < 3; ++c) {
+        image.At(x, y, c) = kValue + scale * (a + b) / 2;
+        image.At(x, y, 3 + c) = kSigma * kSigma;
+        image.At(x, y, 6 + c) = (kValue + scale * a) / 2;
+      }
+    }
+  }
+  const Quality quality = QualityOf(
+      Denoised(image), [](int, int) { return kValue; }, [](int x, int) { return x >= kRight + 8; });
+  EXPECT_LT(quality.squaredError, 0.02 * static_cast<double>(kSigma * kSigma));
+}
+
 TEST(Denoise, AnEdgeOfAFeatureStaysSharp) {
   const Truth truth = [](int x, int) { return x < 24 ? 0.5f : 0.7f; };
   Image noisy = MakeNoisy(48, 40, truth, 0.3f, 1);

@@ -1,0 +1,143 @@
+#include "render/analysis/sppm_candidate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numeric>
+#include <utility>
+
+#include "integrators/registry.h"
+#include "render/analysis/pilot_passes.h"
+
+namespace lampyr::pilot {
+
+namespace {
+
+constexpr const char* kName = "sppm";
+constexpr int kFewestPairs = 4;  // of passes
+// No more than two pairs where its error in equal time is larger than that of the best by this factor.
+constexpr double kHopeless = 2;
+// Blur takes some light from edges, so that less than this is not told from it.
+constexpr double kTolerated = 0.03;
+
+double Squared(double x) {
+  return x * x;
+}
+
+double Sum(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0);
+}
+
+// What the passes found.
+class Measured {
+ public:
+  explicit Measured(const Records& records) : records_(records) {}
+
+  // Adds the pixels of two passes.
+  void Add(const std::vector<double>& first, const std::vector<double>& second) {
+    std::vector<double>& errors = pairs_.emplace_back(first.size());
+    for (size_t i = 0; i < first.size(); ++i) errors[i] = 0.5 * Squared(first[i] - second[i]) * records_.WeightOf(i);
+    const double pixels = static_cast<double>(first.size()), a = Sum(first) / pixels, b = Sum(second) / pixels;
+    sum_ += 0.5 * (a + b);
+    squares_ += 0.25 * Squared(a - b);
+  }
+  // Leaves out the thousandth of the pixels that are noisiest: a firefly there would decide alone.
+  void LeaveOutNoisiest() {
+    std::vector<std::pair<double, size_t>> errors(pairs_[0].size());
+    for (size_t i = 0; i < errors.size(); ++i) {
+      errors[i] = {0, i};
+      for (const std::vector<double>& pair : pairs_) errors[i].first += pair[i];
+    }
+    const auto count = static_cast<std::ptrdiff_t>(errors.size() / 1000);
+    std::partial_sort(errors.begin(), errors.begin() + count, errors.end(), std::greater<>());
+    for (std::vector<double>& pair : pairs_)
+      for (std::ptrdiff_t i = 0; i < count; ++i) pair[errors[static_cast<size_t>(i)].second] = 0;
+  }
+  // Of independent samples, by tile and in all.
+  std::vector<double> TileErrors(const Grid& grid) const {
+    std::vector<double> tiles(grid.Tiles());
+    for (int y = 0; y < grid.height; ++y) {
+      for (int x = 0; x < grid.width; ++x)
+        for (const std::vector<double>& pair : pairs_) tiles[grid.TileOf(x, y)] += pair[grid.PixelOf(x, y)] / Pairs();
+    }
+    return tiles;
+  }
+  double Error() const {
+    double sum = 0;
+    for (const std::vector<double>& pair : pairs_) sum += Sum(pair);
+    return sum / Pairs();
+  }
+  // Of Error(). Pixels share photons, so that it does not follow from the spread of pixels.
+  double StandardError() const {
+    const double mean = Error();
+    double squares = 0;
+    for (const std::vector<double>& pair : pairs_) squares += Squared(Sum(pair) - mean);
+    return std::sqrt(squares / (Pairs() * (Pairs() - 1)));
+  }
+  // Light of a pixel, on average, and its standard error.
+  double Mean() const { return sum_ / Pairs(); }
+  double ErrorOfMean() const { return std::sqrt(squares_) / Pairs(); }
+
+ private:
+  double Pairs() const { return static_cast<double>(pairs_.size()); }
+
+  const Records& records_;
+  std::vector<std::vector<double>> pairs_;  // squared error of each pixel, its part of the picture's
+  double sum_ = 0, squares_ = 0;
+};
+
+}  // namespace
+
+std::optional<PilotCandidate> SppmCandidate(const RenderScene& scene, const RenderScene& counted,
+                                            const RenderSettings& settings, const Grid& grid, const Records& records,
+                                            const PilotCandidate* best, int passCount, int threads) {
+  if (!settings.values.IsOn("merge") || !IntegratorRefusal(scene, kName).empty() ||
+      !IntegratorHints(scene, kName).empty())
+    return std::nullopt;
+  const double fewer =
+      static_cast<double>(settings.width) * static_cast<double>(settings.height) / static_cast<double>(grid.Pixels());
+  const std::unique_ptr<Integrator> sppm = Make(kName, scene, settings, fewer);
+  const PhotonSettings photons = PhotonsOfPilot(*sppm, fewer);
+  const double wider = WiderRadius(fewer, photons.alpha);
+  PhotonStore store(photons, static_cast<uint64_t>(grid.Pixels()));
+  PilotPasses passes(scene, settings, grid, threads), countedPasses(counted, settings, grid, threads);
+  const auto pairs = static_cast<uint32_t>(std::max(passCount / 4, kFewestPairs));
+  Measured measured(records);
+  RenderCounts counts;
+  uint64_t stored = 0;
+  std::vector<double> values(static_cast<size_t>(grid.Pixels())), last;
+  for (uint32_t pass = 0; pass < 2 * pairs; ++pass) {
+    const RenderCounts light = passes.TracePhotons(*sppm, store, pass);
+    const PhotonPass& gather = store.Open(pass, threads, wider);
+    const RenderCounts camera = passes.Trace(*sppm, pass, &gather, {.values = &values});
+    if (pass == 0) {
+      stored = gather.map->Size();
+      counts = scene.isSpectral ? countedPasses.Trace(*sppm, pass, &gather) : camera;
+      counts += light;
+    }
+    store.EndGathering();
+    if (pass % 2 == 1) measured.Add(last, values);
+    last = values;
+    if (pass != 3) continue;
+    const double error = measured.Error() / records.GainOf(measured.Error());
+    if (best && error * CostOfSppm(counts, stored, grid.Pixels()) > kHopeless * best->error * best->cost) break;
+  }
+  measured.LeaveOutNoisiest();
+  PilotCandidate candidate;
+  candidate.integrator = kName;
+  const double gain = records.GainOf(measured.Error());
+  candidate.gainOfSobol = gain;
+  candidate.error = std::max(measured.Error() / gain, records.LeastError());
+  candidate.uncertainty = measured.StandardError() / gain;
+  candidate.cost = CostOfSppm(counts, stored, grid.Pixels());
+  candidate.tileErrors = measured.TileErrors(grid);
+  for (double& error : candidate.tileErrors) error /= gain;
+  for (std::vector<double>* tiles :
+       {&candidate.secondMoments, &candidate.tileVariances, &candidate.tileMissing, &candidate.tileMergedOnly})
+    tiles->resize(grid.Tiles());
+  const double least = (1 - kTolerated) * records.MeanLight() - 4 * measured.ErrorOfMean();
+  candidate.missing = std::max((least - measured.Mean()) / records.MeanLight(), 0.0);
+  return candidate;
+}
+
+}  // namespace lampyr::pilot
