@@ -35,6 +35,11 @@ double LeastVariance(double samples) {
   return 2.2 / std::sqrt(samples);
 }
 
+// Of the squared error of a pixel, relative to its brightness. `mean`: of the picture.
+double ScaleOf(double brightness, double mean) {
+  return 1 / (brightness * brightness + 0.01 * mean * mean);
+}
+
 }  // namespace
 
 void Recorder::EndSample() {
@@ -217,18 +222,18 @@ Records::Brightness Records::BrightnessOf(const std::vector<Moments>& pixels, in
   brightness.scales.resize(pixels.size());
   ForEachPixel([&](size_t pixel, size_t tile) {
     const double here = tiles[tile] + pixels[pixel].seen / passes;
-    brightness.scales[pixel] = 1 / ((here * here + 0.01 * mean * mean) * passes);
+    brightness.scales[pixel] = ScaleOf(here, mean) / passes;
     brightness.squared += brightness.scales[pixel] * passes * here * here / grid_.Pixels();
   });
   return brightness;
 }
 
-double Records::GainOf(double error) const {
-  return isSobol_ ? GainOfSobol(error) : 1.0;
+double Records::WeightAt(double brightness) const {
+  return squaredWeight_ * ScaleOf(brightness, meanLight_) / grid_.Pixels();
 }
 
 bool Records::SetErrors(int passes, double squaredWeight, bool isSobol, std::vector<PilotCandidate>& candidates) {
-  isSobol_ = isSobol;
+  squaredWeight_ = squaredWeight;
   std::vector<Moments> pixels(squaredMeans_.size() / kCandidates);
   for (const Recorder& recorder : recorders_) {
     for (size_t i = 0; i < pixels.size(); ++i) pixels[i] += recorder.moments[i];
@@ -236,6 +241,7 @@ bool Records::SetErrors(int passes, double squaredWeight, bool isSobol, std::vec
   const Brightness brightness = BrightnessOf(pixels, passes);
   if (!(brightness.mean > 0)) return false;
   meanLight_ = brightness.mean;
+  for (const Moments& pixel : pixels) meanUnseen_ += pixel.mean / (passes * grid_.Pixels());
   for (size_t k = 0; k < candidates.size(); ++k) LeaveOutRare(k, passes, brightness.mean, brightness.scales, pixels);
   const std::vector<char> isLeftOut = Hopeless(pixels, brightness.scales);
   for (size_t k = 0; k < candidates.size(); ++k)
@@ -246,7 +252,8 @@ bool Records::SetErrors(int passes, double squaredWeight, bool isSobol, std::vec
   least_ = LeastVariance(passes * grid_.Pixels()) * brightness.squared;
   // More light paths, or more merges, leave the points in the pixels as they are, and what these gain.
   std::array<double, kCandidates> gains;
-  for (size_t k = 0; k < candidates.size(); ++k) gains[k] = GainOf(candidates[WithFewestSamples(k)].error);
+  for (size_t k = 0; k < candidates.size(); ++k)
+    gains[k] = isSobol ? GainOfSobol(candidates[WithFewestSamples(k)].error) : 1.0;
   for (size_t k = 0; k < candidates.size(); ++k) {
     PilotCandidate& candidate = candidates[k];
     for (double& error : candidate.tileErrors) error /= gains[k];

@@ -200,13 +200,15 @@ class Records {
   // The errors of tiles, as PilotCandidate::tileErrors but by independent samples, of squared errors by pixel. After
   // SetErrors.
   std::vector<double> RelativeErrors(const std::vector<double>& squares) const;
-  // After SetErrors: by how much well-distributed samples lower the error of independent ones; the error that is told
-  // apart; light of a pixel, on average.
-  double GainOf(double error) const;
+  // After SetErrors: the error that is told apart; light of a pixel, on average, and that of it which is not seen
+  // itself.
   double LeastError() const { return least_; }
   double MeanLight() const { return meanLight_; }
+  double MeanUnseen() const { return meanUnseen_; }
   // Of the squared error of a pixel in that of the picture; 0: left out.
   double WeightOf(size_t pixel) const { return weights_[pixel]; }
+  // The same of a pixel of that brightness.
+  double WeightAt(double brightness) const;
 
  private:
   struct Brightness {
@@ -237,8 +239,7 @@ class Records {
 
   const Grid& grid_;
   std::vector<Recorder>& recorders_;
-  bool isSobol_ = false;
-  double least_ = 0, meanLight_ = 0;
+  double least_ = 0, meanLight_ = 0, meanUnseen_ = 0, squaredWeight_ = 1;
   std::vector<double> weights_;            // by pixel: of a squared error, in RelativeErrors
   std::vector<Found> last_;                // in the pass before
   std::vector<SquaredMean> squaredMeans_;  // by pixel and candidate

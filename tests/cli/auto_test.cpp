@@ -71,6 +71,43 @@ TEST_F(Auto, AWideStartIsTheSameForAllThreadsAndResumed) {
   EXPECT_EQ(one.data, ReadImage(folder_ / "parts.exr").data);
 }
 
+// A closed room with a point light, a mirror and glass: photons find nearly all of its light.
+constexpr const char* kRoom = R"(Film "rgb" "integer xresolution" 48 "integer yresolution" 48
+LookAt 0 0 -3.4  0 -0.2 0  0 1 0
+Camera "perspective" "float fov" 34
+Integrator "auto" "integer maxdepth" 12
+WorldBegin
+Material "diffuse" "rgb reflectance" [ 0.8 0.8 0.8 ]
+Shape "bilinearmesh" "point3 P" [ -1 -1 -1  1 -1 -1  -1 -1 1  1 -1 1 ]
+Shape "bilinearmesh" "point3 P" [ -1 1 -1  1 1 -1  -1 1 1  1 1 1 ]
+Shape "bilinearmesh" "point3 P" [ -1 -1 1  1 -1 1  -1 1 1  1 1 1 ]
+Shape "bilinearmesh" "point3 P" [ -1 -1 -1  -1 -1 1  -1 1 -1  -1 1 1 ]
+Shape "bilinearmesh" "point3 P" [ 1 -1 -1  1 -1 1  1 1 -1  1 1 1 ]
+LightSource "point" "rgb I" [ 1 1 1 ] "point3 from" [ 0.3 0.7 -0.3 ]
+AttributeBegin Material "conductor" "float roughness" 0
+Translate -0.4 -0.45 0.3 Shape "sphere" "float radius" 0.5 AttributeEnd
+AttributeBegin Material "dielectric" Translate 0.5 -0.6 -0.3 Shape "sphere" "float radius" 0.4 AttributeEnd
+)";
+
+TEST_F(Auto, MayBeSppm) {
+  WriteBytes(folder_ / "room.pbrt", kRoom);
+  EXPECT_THAT(Succeed("plan room.pbrt").output, HasSubstr("integrator       sppm"));
+  Succeed("render room.pbrt --spp 4 --quiet --auto-layers --stats stats.json -o auto.exr");
+  Succeed("render room.pbrt --spp 2 --resume --quiet --threads 1 -o parts.exr");
+  Succeed("render room.pbrt --spp 4 --resume --quiet -o parts.exr");
+  Succeed("render room.pbrt --spp 4 --integrator sppm --quiet -o named.exr");
+  const Image image = ReadImage(folder_ / "auto.exr"), named = ReadImage(folder_ / "named.exr");
+  EXPECT_EQ(named.data, ReadImage(folder_ / "parts.exr").data);
+  EXPECT_EQ(ChannelsOf(image, {"R", "G", "B"}).data, ChannelsOf(named, {"R", "G", "B"}).data);
+  EXPECT_THAT(Read("stats.json"), HasSubstr("\"integrator\": \"sppm\""));
+  const float expected[] = {1, 0, 1, 1};
+  for (size_t layer = 0; layer < 4; ++layer) {
+    const int channel = image.ChannelIndex(kLayers[layer]);
+    ASSERT_GE(channel, 0) << kLayers[layer];
+    EXPECT_EQ(image.At(20, 20, static_cast<size_t>(channel)), expected[layer]) << kLayers[layer];
+  }
+}
+
 TEST_F(Auto, LayersHaveTheDecidedValues) {
   Succeed("render scene.pbrt --integrator auto --spp 1 --quiet --auto-layers --stats stats.json -o layers.exr");
   const Image image = ReadImage(folder_ / "layers.exr");
