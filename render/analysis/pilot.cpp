@@ -382,7 +382,7 @@ RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, i
   EraseUnwanted(settings, isGuided, pilot.ending);
   if (choosesLights) ChooseLightSamples(counted, spreads, records, grid.Pixels(), passCount, pilot);
   const EmissionGuide* const guide = isGuided ? guiding->Guide() : willBeGuided ? learned->Guide() : nullptr;
-  AddSppm(scene, guide, combined, grid, records, passCount, threads, pilot);
+  if (settings.values.IsOn("merge")) AddSppm(scene, guide, combined, grid, records, passCount, threads, pilot);
   return pilot;
 }
 

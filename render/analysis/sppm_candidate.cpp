@@ -44,8 +44,8 @@ class Measured {
     sum_ += 0.5 * (a + b);
     squares_ += 0.25 * Squared(a - b);
   }
-  // Adds light that is seen itself. Its noise, at the edges of what emits it, is the same for all candidates; a pixel
-  // is as bright as it was here or in the other passes of the pilot.
+  // Adds light that is seen itself, which is noisy at the edges of what emits it. Where the other passes of the pilot
+  // have not met it, the brightness of the pixel is that of these passes.
   void AddSeen(const std::vector<std::vector<double>>& passes) {
     for (size_t i = 0; i < passes[0].size(); ++i) {
       double mean = 0;
@@ -100,29 +100,27 @@ class Measured {
   double sum_ = 0, squares_ = 0;
 };
 
-}  // namespace
+// What sppm did in the pilot.
+struct Counts {
+  RenderCounts rays;  // of a pass
+  uint64_t stored = 0;
+  double CostOfSample(const Grid& grid) const { return CostOfSppm(rays, stored, grid.Pixels()); }
+};
 
-std::optional<PilotCandidate> SppmCandidate(const RenderScene& scene, const RenderScene& counted,
-                                            const RenderSettings& settings, const Grid& grid, const Records& records,
-                                            const PilotCandidate* best, int passCount, int threads) {
-  if (!settings.values.IsOn("merge") || !IntegratorRefusal(scene, kName).empty() ||
-      !IntegratorHints(scene, kName).empty())
-    return std::nullopt;
+// Traces pairs of passes, and no more than two where the error of the best makes it hopeless.
+Counts Trace(const RenderScene& scene, const RenderScene& counted, const RenderSettings& settings, const Grid& grid,
+             const PilotCandidate* best, double gain, uint32_t pairs, int threads, Measured& measured) {
   const double fewer =
       static_cast<double>(settings.width) * static_cast<double>(settings.height) / static_cast<double>(grid.Pixels());
-  const std::unique_ptr<Integrator> sppm = Make(kName, scene, settings, fewer);
+  RenderSettings ofSeen = settings;
+  ofSeen.values.Set("max-depth", int64_t{0});
+  const std::unique_ptr<Integrator> sppm = Make(kName, scene, settings, fewer),
+                                    emission = Make("path", scene, ofSeen, fewer);
   const PhotonSettings photons = PhotonsOfPilot(*sppm, fewer);
   const double wider = WiderRadius(fewer, photons.alpha);
   PhotonStore store(photons, static_cast<uint64_t>(grid.Pixels()));
   PilotPasses passes(scene, settings, grid, threads), countedPasses(counted, settings, grid, threads);
-  const double gain = settings.sampler == SamplerKind::Sobol ? kGainOfSobol : 1.0;
-  const auto pairs = static_cast<uint32_t>(std::max(passCount / 4, kFewestPairs));
-  Measured measured(records);
-  RenderCounts counts;
-  uint64_t stored = 0;
-  RenderSettings ofSeen = settings;
-  ofSeen.values.Set("max-depth", int64_t{0});
-  const std::unique_ptr<Integrator> emission = Make("path", scene, ofSeen, fewer);
+  Counts counts;
   std::vector<double> values(static_cast<size_t>(grid.Pixels())), last;
   std::vector<std::vector<double>> seen;
   for (uint32_t pass = 0; pass < 2 * pairs; ++pass) {
@@ -130,9 +128,9 @@ std::optional<PilotCandidate> SppmCandidate(const RenderScene& scene, const Rend
     const PhotonPass& gather = store.Open(pass, threads, wider);
     const RenderCounts camera = passes.Trace(*sppm, pass, &gather, {.values = &values});
     if (pass == 0) {
-      stored = gather.map->Size();
-      counts = scene.isSpectral ? countedPasses.Trace(*sppm, pass, &gather) : camera;
-      counts += light;
+      counts.stored = gather.map->Size();
+      counts.rays = scene.isSpectral ? countedPasses.Trace(*sppm, pass, &gather) : camera;
+      counts.rays += light;
     }
     store.EndGathering();
     std::vector<double>& emitted = seen.emplace_back(values.size());
@@ -140,19 +138,30 @@ std::optional<PilotCandidate> SppmCandidate(const RenderScene& scene, const Rend
     for (size_t i = 0; i < values.size(); ++i) values[i] -= emitted[i];
     if (pass % 2 == 1) measured.Add(last, values);
     last = values;
-    if (pass != 3) continue;
-    const double error = measured.Error() / gain;
-    if (best && error * CostOfSppm(counts, stored, grid.Pixels()) > kHopeless * best->error * best->cost) break;
+    if (pass == 3 && best && measured.Error() / gain * counts.CostOfSample(grid) > kHopeless * best->error * best->cost)
+      break;
   }
   measured.LeaveOutNoisiest();
   measured.AddSeen(seen);
+  return counts;
+}
+
+}  // namespace
+
+std::optional<PilotCandidate> SppmCandidate(const RenderScene& scene, const RenderScene& counted,
+                                            const RenderSettings& settings, const Grid& grid, const Records& records,
+                                            const PilotCandidate* best, int passCount, int threads) {
+  if (!IntegratorRefusal(scene, kName).empty() || !IntegratorHints(scene, kName).empty()) return std::nullopt;
+  const double gain = settings.sampler == SamplerKind::Sobol ? kGainOfSobol : 1.0;
+  const auto pairs = static_cast<uint32_t>(std::max(passCount / 4, kFewestPairs));
+  Measured measured(records);
+  const Counts counts = Trace(scene, counted, settings, grid, best, gain, pairs, threads, measured);
   PilotCandidate candidate;
   candidate.integrator = kName;
-
   candidate.gainOfSobol = gain;
   candidate.error = std::max(measured.Error() / gain, records.LeastError());
   candidate.uncertainty = measured.StandardError() / gain;
-  candidate.cost = CostOfSppm(counts, stored, grid.Pixels());
+  candidate.cost = counts.CostOfSample(grid);
   candidate.tileErrors = measured.TileErrors(grid);
   for (double& error : candidate.tileErrors) error /= gain;
   for (std::vector<double>* tiles :

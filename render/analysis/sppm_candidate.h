@@ -13,7 +13,7 @@ namespace lampyr::pilot {
 
 // `scene`: with the guide of light paths that the render will have, and the lights that it chooses at a vertex;
 // `counted`: the same with the wavelengths of a pass. `records`: after Records::SetErrors. None: sppm cannot render the
-// scene, or the settings exclude photons. `best`: of the others; may be null. `passCount`: of the pilot.
+// scene. `best`: of the others; may be null. `passCount`: of the pilot.
 std::optional<PilotCandidate> SppmCandidate(const RenderScene& scene, const RenderScene& counted,
                                             const RenderSettings& settings, const Grid& grid, const Records& records,
                                             const PilotCandidate* best, int passCount, int threads);
