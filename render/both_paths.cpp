@@ -1,7 +1,6 @@
 #include "render/both_paths.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "base/parallel.h"
 

@@ -92,6 +92,7 @@ AttributeBegin Material "dielectric" Translate 0.5 -0.6 -0.3 Shape "sphere" "flo
 TEST_F(Auto, MayBeSppm) {
   WriteBytes(folder_ / "room.pbrt", kRoom);
   EXPECT_THAT(Succeed("plan room.pbrt").output, HasSubstr("integrator       sppm"));
+  EXPECT_THAT(Succeed("plan room.pbrt --no-merge").output, Not(HasSubstr("sppm")));
   Succeed("render room.pbrt --spp 4 --quiet --auto-layers --stats stats.json -o auto.exr");
   Succeed("render room.pbrt --spp 2 --resume --quiet --threads 1 -o parts.exr");
   Succeed("render room.pbrt --spp 4 --resume --quiet -o parts.exr");
