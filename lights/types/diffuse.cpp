@@ -6,8 +6,10 @@ namespace lampyr {
 
 std::unique_ptr<Light> MakeShapeLight(LightTypeFunction type, const ParameterList& parameters,
                                       const LightBuildContext& build, const EmissionReader& readEmission) {
-  const std::string owner = "AreaLightSource \"" + type().name + "\"";
-  if (!build.shape) throw Error(parameters.Where(), owner + " needs a shape");
+  const auto mistake = [&](const std::string& what) {
+    return Error(parameters.Where(), "AreaLightSource \"" + type().name + "\"" + what);
+  };
+  if (!build.shape) throw mistake(" needs a shape");
   const auto& shape = *build.shape;
   if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&shape)) {
     return MakeMeshLight(type, parameters, build, readEmission, *mesh);
@@ -18,7 +20,7 @@ std::unique_ptr<Light> MakeShapeLight(LightTypeFunction type, const ParameterLis
   if (const auto* quadric = std::get_if<Quadric>(&shape)) {
     return MakeQuadricLight(type, parameters, build, readEmission, *quadric);
   }
-  throw Error(parameters.Where(), owner + ": curves cannot emit light; use a mesh or a cylinder");
+  throw mistake(": curves cannot emit light; use a mesh or a cylinder");
 }
 
 LightType DiffuseAreaLightType() {
