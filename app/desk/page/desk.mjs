@@ -445,7 +445,9 @@ async function watch() {
   for (;;) {
     try {
       const state = await (await fetch('state')).json();
-      const error = state.error === null ? 'error not known yet' : `error ${percent(state.error)}`;
+      // Of few samples only a bound is known: that of bright ones which may not have come yet.
+      const isKnown = state.error !== null && state.error < 10;
+      const error = isKnown ? `error ${percent(state.error)}` : 'error not known yet';
       const how = state.isPaused ? ' · paused' : state.isDone ? ' · done' : '';
       $('progress').textContent = state.samplesPerPixel ? `${state.samplesPerPixel} spp · ${duration(state.seconds)} · ${error}${how}` : 'first samples …';
       $('failure').hidden = !state.failure;
