@@ -17,7 +17,7 @@ namespace lampyr {
 
 namespace {
 
-constexpr int kPilotParts = 6;
+constexpr int kPilotParts = 4;
 
 // Means of the whole picture and of the blocks of a grid over it, for each part of a pilot.
 struct PilotRun {
@@ -83,15 +83,17 @@ std::vector<double> PartsOfBlock(const PilotRun& run, int block, int side) {
   return values;
 }
 
-// True if `other` finds significantly more light than `run`, in the whole picture or in a block of it: each of the two
-// with an error probability `byChance`.
+// True if `other` finds significantly more light than `run`, in the whole picture, with the error probability
+// `byChance`, or in a block of it. What is missing in a block is known worse, by few parts: of all blocks together the
+// error probability is `byChanceOfBlocks`.
 bool FindsMore(const PilotRun& other, const PilotRun& run, double byChance) {
+  constexpr double byChanceOfBlocks = 0.01;
   const double scale = MomentsOf(other.means).mean;
   if (IsBrighter(other.means, run.means, byChance, scale)) return true;
   const int side = other.isBlurred || run.isBlurred ? kSideOfBlurredBlock : 1, across = kGrid / side;
   for (int block = 0; block < across * across; ++block) {
     if (IsBrighter(PartsOfBlock(other, block, side), PartsOfBlock(run, block, side),
-                   SidakRate(byChance, across * across), scale))
+                   SidakRate(byChanceOfBlocks, across * across), scale))
       return true;
   }
   return false;
