@@ -115,7 +115,7 @@ struct CandidateCost {
 };
 // `samples`: of which `counted` tells.
 std::array<CandidateCost, kCandidates> CostsOf(const Counted& counted, double samples);
-// The same of sppm, of the light paths and the camera paths of a pass that stores so many photons.
+// Cost of a sample of sppm. `counts`: light paths and camera paths of a pass; `stored`: photons of the pass.
 double CostOfSppm(const RenderCounts& counts, uint64_t stored, double samples);
 
 }  // namespace lampyr::pilot

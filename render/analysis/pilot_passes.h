@@ -16,10 +16,10 @@ namespace lampyr::pilot {
 inline constexpr int kChunks = 8;
 inline constexpr uint64_t kSeed = 0x9e3779b97f4a7c15;
 
-// What is noted of the samples of a pass, besides their counts. All may be empty or null.
+// Records of the samples of a pass, besides their counts. All may be empty or null.
 struct Noted {
   std::span<Recorder> recorders = {};  // of the paths; one for each chunk
-  // By pixel: how the lights that are chosen for next-event estimation differ, of each sample as it is weighted.
+  // By pixel: how much the lights differ that a sample chooses for next-event estimation, by its filter weight.
   std::vector<LightSpread>* spreads = nullptr;
   std::vector<double>* values = nullptr;  // by pixel: what the sample adds to it
 };

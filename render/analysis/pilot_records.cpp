@@ -35,7 +35,7 @@ double LeastVariance(double samples) {
   return 2.2 / std::sqrt(samples);
 }
 
-// Of the squared error of a pixel, relative to its brightness. `mean`: of the picture.
+// Factor that makes the squared error of a pixel relative to its brightness. `mean`: brightness of the picture.
 double ScaleOf(double brightness, double mean) {
   return 1 / (brightness * brightness + 0.01 * mean * mean);
 }

@@ -205,9 +205,9 @@ class Records {
   double LeastError() const { return least_; }
   double MeanLight() const { return meanLight_; }
   double MeanUnseen() const { return meanUnseen_; }
-  // Of the squared error of a pixel in that of the picture; 0: left out.
+  // Weight of the squared error of a pixel in the error of the picture; 0: the pixel is left out.
   double WeightOf(size_t pixel) const { return weights_[pixel]; }
-  // The same of a pixel of that brightness.
+  // Weight of a pixel of that brightness.
   double WeightAt(double brightness) const;
 
  private:

@@ -17,7 +17,7 @@ constexpr const char* kName = "sppm";
 constexpr int kFewestPairs = 4;  // of passes
 // No more than two pairs where its error in equal time is larger than that of the best by this factor.
 constexpr double kHopeless = 2;
-// By which well-distributed samples lower its error, whose photons they serve less than camera paths: 1.0 to 1.55 in
+// Error of independent samples over that of Sobol points, which serve photons less than camera paths: 1.0 to 1.55 in
 // nine scenes of scenes/ and of another renderer, 64×64 with 32 samples per pixel.
 constexpr double kGainOfSobol = 1.2;
 // Blur takes some light from edges, so that less than this is not told from it.
@@ -31,7 +31,7 @@ double Sum(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
-// What the passes found.
+// Errors and means of pairs of passes.
 class Measured {
  public:
   explicit Measured(const Records& records) : records_(records) {}
