@@ -244,7 +244,7 @@ IntegratorType SppmIntegratorType() {
     return std::make_unique<SppmIntegrator>(settings, GlowingMediaOf(input));
   };
   type.gathersPhotons = [](const Settings&) { return true; };
-  // They do not vary.
+  // For --stats and --auto-layers: these counts do not vary.
   type.counted = [](const Settings&) { return CountedTechniques{.lightPaths = true, .merging = true}; };
   type.hints = [](const RenderScene& scene) -> std::vector<std::string> {
     const std::string without = LightsWithoutPaths(scene);

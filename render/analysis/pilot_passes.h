@@ -19,7 +19,7 @@ inline constexpr uint64_t kSeed = 0x9e3779b97f4a7c15;
 // Records of the samples of a pass, besides their counts. All may be empty or null.
 struct Noted {
   std::span<Recorder> recorders = {};  // of the paths; one for each chunk
-  // By pixel: how much the lights differ that a sample chooses for next-event estimation, by its filter weight.
+  // Difference between the lights that next-event estimation chooses, by pixel, times the filter weight of the sample.
   std::vector<LightSpread>* spreads = nullptr;
   std::vector<double>* values = nullptr;  // by pixel: what the sample adds to it
 };

@@ -67,7 +67,7 @@ class Measured {
     for (std::vector<double>& pair : pairs_)
       for (std::ptrdiff_t i = 0; i < count; ++i) pair[errors[static_cast<size_t>(i)].second] = 0;
   }
-  // Of independent samples, by tile and in all.
+  // Error of independent samples, by tile; Error() is that of the picture.
   std::vector<double> TileErrors(const Grid& grid) const {
     std::vector<double> tiles(grid.Tiles());
     for (int y = 0; y < grid.height; ++y) {
@@ -81,7 +81,7 @@ class Measured {
     for (const std::vector<double>& pair : pairs_) sum += Sum(pair);
     return sum / Pairs();
   }
-  // Of Error(). Pixels share photons, so that it does not follow from the spread of pixels.
+  // Standard error of Error(), from the spread of pairs: pixels share photons, so their spread does not tell it.
   double StandardError() const {
     const double mean = Error();
     double squares = 0;
@@ -100,7 +100,7 @@ class Measured {
   double sum_ = 0, squares_ = 0;
 };
 
-// What sppm did in the pilot.
+// Rays and photons of a pass of sppm.
 struct Counts {
   RenderCounts rays;  // of a pass
   uint64_t stored = 0;

@@ -57,8 +57,8 @@ class Auto : public testing::Test {
 
 constexpr const char* kLayers[] = {"auto.lightPaths", "auto.connecting", "auto.merging", "auto.continuing"};
 
-// Water over a floor in the sun: merging finds the light, and starts wide. Its radius is that of each pass, whoever
-// renders it.
+// Caustics seen in a mirror: merging finds the light, and starts wide. The radius follows from the pass alone, not from
+// the threads or the part of the render.
 TEST_F(Auto, AWideStartIsTheSameForAllThreadsAndResumed) {
   const std::string scene = "'" LAMPYR_SOURCE_DIR "/scenes/mirror.pbrt' --integrator auto --resolution 64x36";
   EXPECT_THAT(Succeed("plan " + scene).output, HasSubstr("wide discs"));
