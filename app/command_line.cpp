@@ -250,11 +250,13 @@ struct RenderCommand {
   }
 
   void DefineLayers(CLI::App& app) {
-    app.add_option("--layer", options.overrides.layers,
-                   "Add a layer of some of the light: " + KnownLayers() +
-                       "; one of these from one light, \"caustic<L.'key'>\"; or any light path expression with a name, "
-                       "\"keys=C<RD>[<L.'key'>O]\". Or one of what pixels see and of their samples: " +
-                       KnownPixelLayers() + ". May be given more than once")
+    app.add_option(
+           "--layer", options.overrides.layers,
+           "Add a layer of some of the light: " + KnownLayers() +
+               "; one of these from one light, \"caustic<L.'key'>\"; or any light path expression with a name, "
+               "\"keys=C<RD>[<L.'key'>O]\". Or one of what pixels see and of their samples: " +
+               KnownPixelLayers() +
+               ". Or \"strategies\": what each technique of bdpt and vcm contributes. May be given more than once")
         ->type_name("LAYER")
         ->allow_extra_args(false);
     app.add_flag("--through-smooth", options.overrides.seesThroughSmooth,
@@ -269,8 +271,10 @@ struct RenderCommand {
     app.add_flag("--auto-layers", options.autoLayers,
                  "Add layers of what --integrator auto decided: auto.lightPaths, auto.connecting, auto.merging, "
                  "auto.continuing");
-    app.add_option("--strategy-images", options.strategyImages,
-                   "Write what each technique of bdpt contributes, weighted and not, to this folder")
+    app.add_option(
+           "--strategy-images", options.strategyImages,
+           "Write what each technique of bdpt or vcm contributes, weighted and not, to this folder; the picture "
+           "has it in layers, as with --layer strategies")
         ->type_name("FOLDER");
   }
 

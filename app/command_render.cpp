@@ -86,16 +86,14 @@ void CheckOutputs(const RenderOptions& options, const SceneDescription& scene, c
 
 // An image too large for the machine is told before the system ends the process for it. The film is kept twice
 // (render_backup.h).
-void CheckMemory(const RenderSettings& settings, const Integrator& integrator, size_t layers, bool hasTechniques,
-                 bool denoises) {
+void CheckMemory(const RenderSettings& settings, const Integrator& integrator, size_t layers, bool denoises) {
   const bool withSplats = integrator.Paths() != TracedPaths::Camera, merges = integrator.Photons().has_value();
   layers += denoises ? 1 : 0;
   // Developed image: colour, variance, light groups and first-hit layers. The latter are also kept during the render.
   const uint64_t firstHit = FirstHitChannels(settings).size() + (denoises ? FeatureChannels().size() : 0);
   const uint64_t channels = 6 + 3 * layers + 2 * firstHit;
-  const uint64_t techniques = hasTechniques ? TechniqueImages::BytesPerPixel(settings.MaxDepth()) : 0;
   const uint64_t ofFilm = Film::BytesPerPixel(layers, withSplats, settings.adaptive.has_value(), merges, merges);
-  const uint64_t perPixel = 2 * (ofFilm + techniques) + 2 * channels * sizeof(float);
+  const uint64_t perPixel = 2 * ofFilm + 2 * channels * sizeof(float);
   const uint64_t needed = perPixel * settings.crop.Width() * settings.crop.Height();
   const uint64_t available = AvailableMemory();
   if (needed <= available) return;
@@ -245,16 +243,16 @@ StopConditions MakeStopConditions(const RenderOptions& options, const Shard& sha
   return stop;
 }
 
-// Writes weighted-s2-t3.exr, unweighted-s2-t3.exr, … to the folder, which is created.
-void WriteTechniques(const RenderOptions& options, const std::vector<TechniqueImages::Picture>& pictures) {
-  const std::filesystem::path& folder = *options.strategyImages;
-  for (const TechniqueImages::Picture& picture : pictures) {
-    for (const bool isWeighted : {true, false}) {
-      const Image& image = isWeighted ? picture.weighted : picture.unweighted;
-      const std::filesystem::path path = folder / ((isWeighted ? "weighted-" : "unweighted-") + picture.name + ".exr");
-      WriteExr(path, image, ExrPrecision::Float);
-      if (options.png) WritePngBeside(path, image, options.exposure, options.clipPng);
-    }
+// Writes the layers of strategies as pictures weighted-s2-t3.exr, unweighted-s2-t3.exr, … to the folder.
+void WriteStrategies(const RenderOptions& options, const RenderSettings& settings, const Image& image) {
+  for (const std::string& layer : StrategiesOf(settings).Names()) {
+    Image picture = ChannelsOf(image, {layer + ".R", layer + ".G", layer + ".B"});
+    picture.channels = {"R", "G", "B"};
+    std::string name = layer;
+    std::replace(name.begin(), name.end(), '.', '-');
+    const std::filesystem::path path = *options.strategyImages / (name + ".exr");
+    WriteExr(path, picture, ExrPrecision::Float);
+    if (options.png) WritePngBeside(path, picture, options.exposure, options.clipPng);
   }
 }
 
@@ -301,26 +299,16 @@ void CheckOptions(const RenderOptions& options, const RenderSettings& settings,
     throw UsageError("--shard with " + settings.integrator +
                      " needs --spp: each part has the radii of its own samples, whose numbers must be known");
   }
-  if (options.autoLayers && options.strategyImages) {
-    throw UsageError("--auto-layers goes without --strategy-images: those are of all techniques, once for each sample");
-  }
+  if (options.autoLayers && settings.strategies)
+    throw UsageError("--auto-layers goes without strategies: those are of all techniques, once for each sample");
   if (options.autoLayers && !settings.counts) {
     throw UsageError("--auto-layers: the integrator is named, " + settings.integrator +
                      ": auto decides nothing; --integrator auto lets it decide");
   }
+  if (settings.strategies) StrategiesOf(settings);  // an integrator that has none is told
   if (!options.strategyImages) return;
-  if (settings.adaptive)
-    throw UsageError("--strategy-images goes without --adaptive: they are of as many samples in all pixels");
-  if (!IntegratorOf(settings.integrator).hasTechniques) {
-    std::vector<std::string> names;
-    for (const IntegratorType& type : IntegratorRegistry()) {
-      if (type.hasTechniques) names.push_back(type.name);
-    }
-    throw UsageError("--strategy-images: only " + Joined(names, ", ") + " has strategies; the integrator is " +
-                     settings.integrator);
-  }
-  if (KeepsState(options))
-    throw UsageError("--strategy-images goes without --checkpoint, --resume and --shard: they do not keep techniques");
+  if (options.shard)
+    throw UsageError("--strategy-images goes without --shard: with --layer strategies the merged picture has them");
   MakeFolder(*options.strategyImages, "--strategy-images");
 }
 
@@ -343,9 +331,9 @@ Image AutoLayers(const RenderSettings& settings) {
   return image;
 }
 
-// Images of strategies are of all techniques, once for each sample.
-RenderSettings SettingsFor(const RenderOptions& options, RenderSettings settings) {
-  if (options.strategyImages) settings.counts.reset();
+// Layers of strategies are of all techniques, once for each sample.
+RenderSettings SettingsFor(RenderSettings settings) {
+  if (settings.strategies) settings.counts.reset();
   return settings;
 }
 
@@ -384,12 +372,12 @@ RenderJob::RenderJob(const RenderOptions& options, const LoadedScene& loaded)
     : options_(options),
       loaded_(loaded),
       built_(loaded.built),
-      settings_(SettingsFor(options, built_.settings)),
+      settings_(SettingsFor(built_.settings)),
       path_(OutputPath(options, settings_)),
       checkpointPath_(CheckpointPath(path_)) {
   CheckOptions(options, settings_, checkpointPath_);
   integrator_ = MakeIntegrator(built_.scene, settings_);
-  CheckMemory(settings_, *integrator_, built_.FilmLayers().size(), options.strategyImages.has_value(), options.denoise);
+  CheckMemory(settings_, *integrator_, built_.FilmLayers().size(), options.denoise);
   if (const auto photons = integrator_->Photons(); photons && !options.quiet) WarnOfPhotonMemory(settings_, *photons);
   const auto [part, parts] = options.shard.value_or(std::pair(1, 1));
   shard_ = ShardOf(part, parts, SamplesWanted(options, settings_));
@@ -524,17 +512,11 @@ void RenderJob::DenoisePicture() const {
 int RenderJob::Run() {
   auto lock = std::make_unique<OutputLock>(path_);
   Film film = header_.MakeFilm();
-  std::unique_ptr<TechniqueImages> techniques;
-  if (options_.strategyImages) {
-    techniques =
-        std::make_unique<TechniqueImages>(settings_.width, settings_.height, settings_.crop, settings_.MaxDepth());
-  }
   if (!options_.quiet) PrintHints();
   if (settings_.WantsFirstHit()) MakeFirstHitLayers();
   if (options_.denoise) MakeFeatureLayers();
   if (options_.autoLayers) AddLayers(AutoLayers(settings_));
-  ProgressiveRender render(built_.scene, *integrator_, settings_, report_.threads, film, techniques.get(),
-                           shard_.first);
+  ProgressiveRender render(built_.scene, *integrator_, settings_, report_.threads, film, shard_.first);
   if (options_.resume) GoOn(render);
   std::optional<Checkpoints> checkpoints;
   if (options_.checkpointSeconds) {
@@ -562,7 +544,7 @@ int RenderJob::Finish(ProgressiveRender& render, Checkpoints* checkpoints) {
       isPartial ? DescribePartialPicture(options_, film, settings_, integrator_->Paths()) : "";
   // The sums in a part's image are of whole samples.
   if (options_.shard) render.DropPartialPass();
-  if (render.Techniques()) WriteTechniques(options_, render.Techniques()->Develop(film));
+  if (options_.strategyImages) WriteStrategies(options_, settings_, film.Develop());
   WriteImageOrKeepIt(path_, options_, header_, film, layers_, report_.outcome);
   if (options_.png || options_.previewSeconds)
     WritePngBeside(path_, film.Develop(), options_.exposure, options_.clipPng);
@@ -611,6 +593,7 @@ int RunRender(const RenderOptions& options) {
   OutliveSurroundings();
   RenderOverrides overrides = options.overrides;
   overrides.threads = options.threads;
+  if (options.strategyImages) overrides.layers.emplace_back(kStrategies);
   const LoadedScene loaded = LoadScene(
       options.scene, options.plugins, overrides, options.strict, options.robust, KeepsState(options),
       [&](const SceneDescription& scene, const RenderSettings& settings) { CheckOutputs(options, scene, settings); });

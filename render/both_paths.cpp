@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "base/parallel.h"
+#include "render/settings/integrator_choice.h"
+#include "render/strategy_recorder.h"
 
 namespace lampyr {
 
@@ -25,9 +27,8 @@ float PassTime(uint64_t seed, uint32_t pass) {
 // A pass of camera and light paths, in chunks of the pixels of the full image.
 class BothPaths {
  public:
-  BothPaths(const Pass& pass, TechniqueImages* techniques, PhotonStore* kept)
+  BothPaths(const Pass& pass, PhotonStore* kept)
       : pass_(pass),
-        techniques_(techniques),
         wanted_(pass.integrator.Photons()),
         own_(wanted_.value_or(PhotonSettings()), pass.Pixels()),
         store_(kept ? *kept : own_),
@@ -41,11 +42,7 @@ class BothPaths {
         splats_(static_cast<size_t>(chunks_), pass.film.MakeSplatList(pass.filter, pass.settings.sensor)),
         photons_(static_cast<size_t>(chunks_)),
         records_(pass.MakeRecords(static_cast<size_t>(chunks_))),
-        counts_(static_cast<size_t>(chunks_)) {
-    if (techniques)
-      recorders_.assign(static_cast<size_t>(chunks_),
-                        TechniqueImages::Recorder(*techniques, pass.filter, pass.settings.sensor));
-  }
+        counts_(static_cast<size_t>(chunks_)) {}
 
   RenderCounts Trace() {
     if (wanted_ && !tracesAnew_ && !store_.IsFor(pass_.first)) TracePhotonsBefore(pass_.first);
@@ -61,7 +58,6 @@ class BothPaths {
         TraceRound(round, pass_.Pixels(), index, pass_.Seed(), true);
         if (wanted_ && !tracesAnew_) store_.Take(photons_);
         pass_.film.AddSplats(pass_.filter, splats_, pass_.threads, index);
-        if (techniques_) techniques_->AddSplats(pass_.filter, recorders_, pass_.threads);
       }
       if (tracesAnew_) {
         store_.EndGathering();
@@ -123,7 +119,6 @@ class BothPaths {
   void StartLightPath(size_t chunk, bool keepsPhotons, uint32_t index, SampleContext& context);
 
   const Pass& pass_;
-  TechniqueImages* techniques_;
   const std::optional<PhotonSettings> wanted_;
   PhotonStore own_;
   PhotonStore& store_;
@@ -140,7 +135,6 @@ class BothPaths {
   std::vector<PhotonList> photons_;
   std::vector<PathRecords> records_;  // none, unless camera paths are recorded
   std::vector<RenderCounts> counts_;
-  std::vector<TechniqueImages::Recorder> recorders_;
 };
 
 uint64_t BothPaths::CropSlotsBefore(uint64_t slot) const {
@@ -289,9 +283,11 @@ void BothPaths::TraceChunk(size_t chunk, uint64_t begin, uint64_t end, uint32_t 
                            float passTime) {
   const RenderSettings& settings = pass_.settings;
   splats_[chunk].Clear();
-  TechniqueImages::Recorder* recorder = techniques_ && withCamera ? &recorders_[chunk] : nullptr;
   SampleAdder adder(settings, pass_.film, counts_[chunk]);
   LayerSample* layers = adder.StartLayers();
+  std::optional<StrategyRecorder> recorder;
+  if (withCamera && pass_.HasStrategies())
+    recorder.emplace(StrategiesOf(settings), static_cast<uint32_t>(pass_.PlannedLayers()), *layers, splats_[chunk]);
   Sampler lightSampler(settings.sampler, seed), moreSampler(settings.sampler, MixBits(seed + kMorePaths));
   std::optional<AdaptivePixels> adaptive;
   if (pass_.allocation && (withCamera || seed == pass_.Seed())) adaptive.emplace(pass_, index, !withCamera);
@@ -302,9 +298,10 @@ void BothPaths::TraceChunk(size_t chunk, uint64_t begin, uint64_t end, uint32_t 
     Sampler& sampler = slots.Start(i);
     const int x = slots.x, y = slots.y, lightPaths = slots.lightPaths;
     const float time = wanted_ && pass_.scene.hasMotion ? passTime : SampleTime(pass_.scene, sampler);
-    SampleContext context{pass_.scene, sampler, time, counts_[chunk], layers};
-    context.observer = recorder;
+    SampleContext context{pass_.scene, sampler, time, counts_[chunk]};
+    context.observer = recorder ? &*recorder : nullptr;
     context.outputs = pass_.Outputs();
+    if (context.outputs) context.layers = layers;
     context.gather = withCamera ? gather_ : nullptr;
     context.isForPhotonsAlone = !withCamera;
     context.tracesLight = lightPaths > 0;
@@ -315,11 +312,9 @@ void BothPaths::TraceChunk(size_t chunk, uint64_t begin, uint64_t end, uint32_t 
       context.lightSampler = &lightSampler;
     }
     if (!withCamera || !slots.isInCrop) {
-      if (recorder) recorder->StartSample(x, y, 0);
       if (lightPaths > 0) SampleLanes(pass_.integrator, nullptr, context);
     } else {
       const PixelRay ray = MakePixelRay(pass_.scene, pass_.filter, x, y, time, sampler);
-      if (recorder) recorder->StartSample(x, y, ray.camera.weight * settings.sensor.ImagingRatio() * ray.filterWeight);
       context.film = ray.film;
       if (pass_.learning) pass_.Record(x, y, pass_.allocation ? slots.number : index, &records_[chunk], context);
       context.mergeBias = adder.StartBias();
@@ -352,8 +347,8 @@ void BothPaths::StartLightPath(size_t chunk, bool keepsPhotons, uint32_t index, 
 
 }  // namespace
 
-RenderCounts TraceBothPaths(const Pass& pass, TechniqueImages* techniques, PhotonStore* kept) {
-  return BothPaths(pass, techniques, kept).Trace();
+RenderCounts TraceBothPaths(const Pass& pass, PhotonStore* kept) {
+  return BothPaths(pass, kept).Trace();
 }
 
 }  // namespace lampyr

@@ -5,6 +5,6 @@
 
 namespace lampyr {
 
-RenderCounts TraceBothPaths(const Pass& pass, TechniqueImages* techniques, PhotonStore* kept);
+RenderCounts TraceBothPaths(const Pass& pass, PhotonStore* kept);
 
 }  // namespace lampyr

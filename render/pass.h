@@ -103,7 +103,11 @@ struct Pass {
   // Samplers count the samples of a stage.
   uint32_t Offset() const { return allocation ? allocation->Stage().first : 0; }
   uint64_t Seed() const { return allocation ? allocation->Stage().seed : settings.seed; }
-  const OutputPlan* Outputs() const { return film.HasLayers() ? scene.outputs.get() : nullptr; }
+  // The plan of the layers of the film that are those of expressions; null: it has none.
+  const OutputPlan* Outputs() const { return film.HasLayers() && PlannedLayers() > 0 ? scene.outputs.get() : nullptr; }
+  // Layers of the film beyond those of the plan are those of strategies.
+  bool HasStrategies() const { return film.HasLayers() && film.SplitLayers() > PlannedLayers(); }
+  size_t PlannedLayers() const { return scene.outputs->Layers().size(); }
   uint64_t Pixels() const { return static_cast<uint64_t>(settings.width) * static_cast<uint64_t>(settings.height); }
   // Records of `parts` parts of a pass, which begin without any.
   std::vector<PathRecords> MakeRecords(size_t parts) const {

@@ -11,7 +11,7 @@
 namespace lampyr {
 
 PassSequence::PassSequence(const RenderScene& scene, const Integrator& integrator, const RenderSettings& settings,
-                           int threads, Film& film, TechniqueImages* techniques, uint32_t firstSample)
+                           int threads, Film& film, uint32_t firstSample)
     : scene_(scene),
       lighting_(scene.lighting->Selecting(settings.LightSampler(), settings.LightSamples())),
       integrator_(integrator),
@@ -19,7 +19,6 @@ PassSequence::PassSequence(const RenderScene& scene, const Integrator& integrato
       filter_(settings.filter),
       threads_(threads),
       film_(&film),
-      techniques_(techniques),
       firstSample_(firstSample),
       wantedPhotons_(integrator.Photons()) {
   if (wantedPhotons_ && wantedPhotons_->guided)
@@ -66,7 +65,7 @@ void PassSequence::AddPass(uint32_t done, uint32_t count) {
   view_.guide = paths_ ? paths_->Guide() : nullptr;
   PathLearning* recorded = RecordsPathsAfter(done) ? paths_.get() : nullptr;
   const RenderCounts counts = RenderPass(view_, integrator_, settings_, filter_, firstSample_ + done, count, threads_,
-                                         *film_, techniques_, photons_.get(), allocation_.get(), recorded);
+                                         *film_, photons_.get(), allocation_.get(), recorded);
   CheckStop();  // the counts of a given-up pass are not added
   if (film_->IsAdaptive()) film_->CountPasses(count);
   counts_ += counts;
@@ -162,9 +161,8 @@ void PassSequence::StartAnew() {
   if (photons_) photons_->Continue(before_);
 }
 
-void PassSequence::LeaveToGivenUpPass(Film& film, TechniqueImages* techniques) {
+void PassSequence::LeaveToGivenUpPass(Film& film) {
   film_ = &film;
-  techniques_ = techniques;
   (void)photons_.release();
   (void)allocation_.release();
 }

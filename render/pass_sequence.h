@@ -12,7 +12,6 @@
 #include "render/adaptive_sampling.h"
 #include "render/render_backup.h"
 #include "render/settings/render_settings.h"
-#include "render/technique_images.h"
 
 namespace lampyr {
 
@@ -29,7 +28,7 @@ class PassSequence {
   // The objects behind the arguments must outlive it. `film`: empty, of the settings' crop; it is made adaptive if the
   // settings are, and the integrator follows camera paths. `firstSample`: index of the first sample of each pixel.
   PassSequence(const RenderScene& scene, const Integrator& integrator, const RenderSettings& settings, int threads,
-               Film& film, TechniqueImages* techniques = nullptr, uint32_t firstSample = 0);
+               Film& film, uint32_t firstSample = 0);
 
   // Adds `count` passes after `done` others. Learns from samples 0 … 2^n - 1 and uses that from sample 2^n on.
   void Add(uint32_t done, uint32_t count);
@@ -37,7 +36,7 @@ class PassSequence {
   const Integrator& TracedBy() const { return integrator_; }
   Film& Picture() const { return *film_; }
   // What passes change.
-  PassState State() { return {*film_, techniques_, &learning_, &guiding_, &paths_}; }
+  PassState State() { return {*film_, &learning_, &guiding_, &paths_}; }
   // Counts since the last call.
   RenderCounts TakeCounts();
   // Of integrators that gather photons.
@@ -50,8 +49,8 @@ class PassSequence {
 
   // After a pass was cut short and its state restored: what else it had changed is made anew.
   void StartAnew();
-  // Goes on with another film and other techniques; what a given-up pass still uses is left to it.
-  void LeaveToGivenUpPass(Film& film, TechniqueImages* techniques);
+  // Goes on with another film; what a given-up pass still uses is left to it.
+  void LeaveToGivenUpPass(Film& film);
   // Saves, or restores, all state but the film.
   void Save(ByteWriter& bytes) const;
   void Load(ByteReader& bytes);
@@ -72,7 +71,6 @@ class PassSequence {
   PixelFilter filter_;
   int threads_;
   Film* film_;
-  TechniqueImages* techniques_;
   uint32_t firstSample_;
   std::optional<PhotonSettings> wantedPhotons_;
   RenderCounts counts_;

@@ -108,7 +108,7 @@ RenderCounts TraceLightPaths(const Pass& pass) {
   return Total(counts);
 }
 
-RenderCounts TracePass(const Pass& pass, TechniqueImages* techniques, PhotonStore* kept) {
+RenderCounts TracePass(const Pass& pass, PhotonStore* kept) {
   switch (pass.integrator.Paths()) {
     case TracedPaths::Camera:
       return TraceCameraPaths(pass);
@@ -117,7 +117,7 @@ RenderCounts TracePass(const Pass& pass, TechniqueImages* techniques, PhotonStor
     case TracedPaths::Both:
       break;
   }
-  return TraceBothPaths(pass, techniques, kept);
+  return TraceBothPaths(pass, kept);
 }
 
 LanesInBands InBands(const Wavelengths& wavelengths, const SpectralBands& bands) {
@@ -134,11 +134,10 @@ LanesInBands InBands(const Wavelengths& wavelengths, const SpectralBands& bands)
 
 RenderCounts RenderPass(const RenderScene& scene, const Integrator& integrator, const RenderSettings& settings,
                         const PixelFilter& filter, uint32_t first, uint32_t count, int threads, Film& film,
-                        TechniqueImages* techniques, PhotonStore* kept, const SampleAllocation* allocation,
-                        PathLearning* learning) {
+                        PhotonStore* kept, const SampleAllocation* allocation, PathLearning* learning) {
   if (!scene.isSpectral) {
     const Pass pass{scene, integrator, settings, filter, first, first + count, threads, film, allocation, learning};
-    return TracePass(pass, techniques, kept);
+    return TracePass(pass, kept);
   }
   RenderCounts counts;
   RenderSettings tuned = settings;
@@ -150,7 +149,7 @@ RenderCounts RenderPass(const RenderScene& scene, const Integrator& integrator, 
     const RenderScene there = scene.AtWavelengths(wavelengths, integrator.MaterialsAfterWide());
     tuned.sensor = settings.sensor.Of(wavelengths->ToRgb());
     const Pass pass{there, integrator, tuned, filter, sample, sample + 1, threads, film, allocation, learning};
-    counts += TracePass(pass, techniques, kept);
+    counts += TracePass(pass, kept);
     film.CountWhite(wavelengths->White());
   }
   return counts;

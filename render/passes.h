@@ -10,7 +10,6 @@
 #include "integrators/walk/integrator.h"
 #include "render/adaptive_sampling.h"
 #include "render/settings/render_settings.h"
-#include "render/technique_images.h"
 
 namespace lampyr {
 
@@ -38,7 +37,7 @@ namespace lampyr {
 // render is not that part of the full image.
 RenderCounts RenderPass(const RenderScene& scene, const Integrator& integrator, const RenderSettings& settings,
                         const PixelFilter& filter, uint32_t first, uint32_t count, int threads, Film& film,
-                        TechniqueImages* techniques = nullptr, PhotonStore* kept = nullptr,
-                        const SampleAllocation* allocation = nullptr, PathLearning* learning = nullptr);
+                        PhotonStore* kept = nullptr, const SampleAllocation* allocation = nullptr,
+                        PathLearning* learning = nullptr);
 
 }  // namespace lampyr

@@ -32,9 +32,9 @@ double ErrorBelow(const Film& film, double share) {
   return static_cast<double>(errors[static_cast<size_t>(rank)]);
 }
 
-// The first number of samples per pixel, from `samples` on, at which the error is compared with the target: 16, and four
-// numbers in each doubling. Tests at fixed numbers keep the end of a render independent of the lengths of its passes,
-// which depend on the clock. Below 16 samples, all of them may have missed what causes the error.
+// The first number of samples per pixel, from `samples` on, at which the error is compared with the target: 16, and
+// four numbers in each doubling. Tests at fixed numbers keep the end of a render independent of the lengths of its
+// passes, which depend on the clock. Below 16 samples, all of them may have missed what causes the error.
 int NextTest(int samples) {
   constexpr double kFirst = 16, kInDoubling = 4;
   const auto test = [](int k) { return static_cast<int64_t>(std::lround(kFirst * std::exp2(k / kInDoubling))); };
@@ -56,14 +56,12 @@ double FractionDone(const RenderOutcome& outcome, const StopConditions& stop) {
 }  // namespace
 
 ProgressiveRender::ProgressiveRender(const RenderScene& scene, const Integrator& integrator,
-                                     const RenderSettings& settings, int threads, Film& film,
-                                     TechniqueImages* techniques, uint32_t firstSample)
+                                     const RenderSettings& settings, int threads, Film& film, uint32_t firstSample)
     : integrator_(integrator),
       settings_(settings),
       threads_(threads),
       film_(&film),
-      techniques_(techniques),
-      passes_(scene, integrator, settings, threads, film, techniques, firstSample),
+      passes_(scene, integrator, settings, threads, film, firstSample),
       backup_(scene.lighting->SceneSphere()) {}
 
 bool ProgressiveRender::AddSamples(int count) {
@@ -80,15 +78,11 @@ bool ProgressiveRender::AddSamples(int count) {
   return false;
 }
 
-// The threads of a given-up pass still use film, techniques and photons: these are left to them and replaced.
+// The threads of a given-up pass still use film and photons: these are left to them and replaced.
 void ProgressiveRender::LeaveToGivenUpPass() {
   ownFilm_.emplace(film_->EmptyCopy());
   film_ = &*ownFilm_;
-  if (techniques_) {
-    ownTechniques_.emplace(techniques_->EmptyCopy());
-    techniques_ = &*ownTechniques_;
-  }
-  passes_.LeaveToGivenUpPass(*film_, techniques_);
+  passes_.LeaveToGivenUpPass(*film_);
 }
 
 void ProgressiveRender::DropPartialPass() {
@@ -185,9 +179,8 @@ RenderOutcome Continue(ProgressiveRender& render, const StopConditions& stop, co
 }
 
 RenderOutcome Render(const RenderScene& scene, const Integrator& integrator, const RenderSettings& settings,
-                     const StopConditions& stop, int threads, Film& film, const PassCallback& afterPass,
-                     TechniqueImages* techniques) {
-  ProgressiveRender render(scene, integrator, settings, threads, film, techniques);
+                     const StopConditions& stop, int threads, Film& film, const PassCallback& afterPass) {
+  ProgressiveRender render(scene, integrator, settings, threads, film);
   return Continue(render, stop, afterPass);
 }
 

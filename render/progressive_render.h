@@ -15,7 +15,6 @@
 #include "integrators/walk/integrator.h"
 #include "render/pass_sequence.h"
 #include "render/settings/render_settings.h"
-#include "render/technique_images.h"
 
 namespace lampyr {
 
@@ -53,20 +52,20 @@ constexpr double kMostDropped = 1e-3;
 using PassCallback = std::function<void(const RenderOutcome& soFar, double fractionDone)>;
 
 // A render that can be continued at any time. The objects behind `scene`, `integrator`, `settings`, `film` (empty, of
-// the settings' crop) and `techniques` must outlive it. The film is made adaptive if the settings are, and the
+// the settings' crop) must outlive it. The film is made adaptive if the settings are, and the
 // integrator traces camera paths.
 class ProgressiveRender {
  public:
   // `firstSample`: index of the first sample of each pixel. A render that starts later computes a part of the render
   // that starts at 0, pass by pass with the same photon radii.
   ProgressiveRender(const RenderScene& scene, const Integrator& integrator, const RenderSettings& settings, int threads,
-                    Film& film, TechniqueImages* techniques = nullptr, uint32_t firstSample = 0);
+                    Film& film, uint32_t firstSample = 0);
 
   // Adds a pass of `count` samples to every pixel. Only this counts as render time. Light selection and emission
   // guiding learn from samples 0 … 2^n - 1 and use that from sample 2^n on, whatever the division into passes. False: a
   // stop was requested (base/stop.h), and the pass was cut short. The state is then that before the pass, except that
   // after the first pass the film keeps its partial sample until that is dropped. If the pass had to be given up
-  // (HasGivenUpWork), its threads may still run: scene, integrator, settings, film, techniques and this object must
+  // (HasGivenUpWork), its threads may still run: scene, integrator, settings, film and this object must
   // stay until the process ends.
   bool AddSamples(int count);
   // Removes from the film what a first pass that was cut short has left in it.
@@ -84,7 +83,6 @@ class ProgressiveRender {
   double DroppedFraction() const {
     return passes_.DroppedFraction(outcome_.counts.droppedSamples, outcome_.samplesPerPixel);
   }
-  const TechniqueImages* Techniques() const { return techniques_; }
 
   // Saves the film and all state that later samples depend on. To be called between whole passes.
   void Save(ByteWriter& bytes) const;
@@ -100,9 +98,7 @@ class ProgressiveRender {
   const RenderSettings& settings_;
   int threads_;
   Film* film_;
-  TechniqueImages* techniques_;
   std::optional<Film> ownFilm_;  // replaces the film that a given-up pass still uses
-  std::optional<TechniqueImages> ownTechniques_;
   PassSequence passes_;
   RenderOutcome outcome_;
   RenderBackup backup_;
@@ -111,10 +107,8 @@ class ProgressiveRender {
 // Adds samples until a stop condition holds. The samples and the time of a loaded state count.
 RenderOutcome Continue(ProgressiveRender& render, const StopConditions& stop, const PassCallback& afterPass);
 
-// Renders into `film` (empty, of the settings' crop). `techniques`, if any, are recorded for integrators that have
-// them.
+// Renders into `film` (empty, of the settings' crop).
 RenderOutcome Render(const RenderScene& scene, const Integrator& integrator, const RenderSettings& settings,
-                     const StopConditions& stop, int threads, Film& film, const PassCallback& afterPass,
-                     TechniqueImages* techniques = nullptr);
+                     const StopConditions& stop, int threads, Film& film, const PassCallback& afterPass);
 
 }  // namespace lampyr

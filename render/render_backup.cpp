@@ -8,7 +8,6 @@ void RenderBackup::Take(const PassState& state, bool withFilm, int threads) {
     if (!film_) film_.emplace(state.film.EmptyCopy());
     film_->CopyFrom(state.film, threads);
   }
-  if (state.techniques) techniques_ = *state.techniques;
   // State that no longer records does not change, so it is not copied again.
   const LightLearning* learning = state.learning ? state.learning->get() : nullptr;
   if (learning && (learning->IsRecording() || (learning_ && learning_->IsRecording()))) {
@@ -25,7 +24,6 @@ void RenderBackup::Take(const PassState& state, bool withFilm, int threads) {
 
 void RenderBackup::Restore(const PassState& state, int threads, bool keepsOld) {
   if (hasFilm_) state.film.CopyFrom(*film_, threads);
-  if (techniques_) *state.techniques = *techniques_;
   if (learning_) {
     if (keepsOld) (void)state.learning->release();
     *state.learning = std::make_unique<LightLearning>(scene_);

@@ -9,14 +9,12 @@
 #include "integrators/photon/emission_learning.h"
 #include "integrators/photon/photon_store.h"
 #include "lights/selection/light_learning.h"
-#include "render/technique_images.h"
 
 namespace lampyr {
 
 // The parts of a render that a pass changes. Null: the render does not have that part.
 struct PassState {
   Film& film;
-  TechniqueImages* techniques = nullptr;
   std::unique_ptr<LightLearning>* learning = nullptr;
   std::unique_ptr<EmissionLearning>* guiding = nullptr;
   std::unique_ptr<PathLearning>* paths = nullptr;
@@ -37,7 +35,6 @@ class RenderBackup {
   BoundingSphere scene_;
   std::optional<Film> film_;
   bool hasFilm_ = false;
-  std::optional<TechniqueImages> techniques_;
   std::unique_ptr<LightLearning> learning_;
   std::unique_ptr<EmissionLearning> guiding_;
   std::unique_ptr<PathLearning> paths_;

@@ -29,7 +29,7 @@ struct OneRender {
         integrator(MakeIntegrator(scene, settings)),
         film(settings.width, settings.height, settings.crop,
              denoises ? std::vector<std::string>{kHalfLayer} : std::vector<std::string>()),
-        render(scene, *integrator, settings, threads, film, nullptr, firstSample) {}
+        render(scene, *integrator, settings, threads, film, firstSample) {}
 };
 
 }  // namespace

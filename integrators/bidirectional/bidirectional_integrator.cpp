@@ -524,6 +524,7 @@ IntegratorType VcmIntegratorType() {
     return CountedTechniques{
         .lightPaths = true, .connections = settings.IsOn(kConnect.name), .merging = settings.IsOn(kMerge.name)};
   };
+  type.hasTechniques = true;
   return type;
 }
 

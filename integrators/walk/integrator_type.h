@@ -37,7 +37,7 @@ struct IntegratorType {
   std::function<bool(const Settings&)> gathersPhotons;
   // Its techniques that have counts, with these settings. Empty: none.
   std::function<CountedTechniques(const Settings&)> counted;
-  // True if it reports each path with its technique to SampleContext::observer, for --strategy-images.
+  // True if it reports each path with its technique to SampleContext::observer, for the layers of strategies.
   bool hasTechniques = false;
   // One line for each kind of light path that the scene may have and this integrator cannot find, with the integrator
   // that can. Judged by lights and materials alone, without testing that such a path exists. Empty: it finds all light.

@@ -13,6 +13,7 @@
 #include "render/build/scene_lighting.h"
 #include "render/build/scene_media.h"
 #include "render/build/shape_builder.h"
+#include "render/settings/integrator_choice.h"
 #include "textures/texture_library.h"
 
 namespace lampyr {
@@ -432,6 +433,9 @@ BuiltScene Builder::Build() {
 
 std::vector<std::string> BuiltScene::FilmLayers() const {
   std::vector<std::string> layers = scene.outputs->Names();
+  if (settings.strategies) {
+    for (std::string& layer : StrategiesOf(settings).Names()) layers.push_back(std::move(layer));
+  }
   if (!settings.bands) return layers;
   for (std::string& layer : LayersOfBands(*settings.bands)) layers.push_back(std::move(layer));
   return layers;

@@ -98,4 +98,17 @@ bool GathersPhotons(const RenderSettings& settings) {
   return GathersPhotons(settings.integrator, settings.values);
 }
 
+StrategyLayers StrategiesOf(const RenderSettings& settings) {
+  if (IntegratorOf(settings.integrator).hasTechniques) return {settings.MaxDepth(), GathersPhotons(settings)};
+  std::vector<std::string> names;
+  for (const IntegratorType& type : IntegratorRegistry()) {
+    if (type.hasTechniques) names.push_back(type.name);
+  }
+  const std::string text = "layer \"" + std::string(kStrategies) + "\": only " + Listed(names) +
+                           " have strategies; the integrator is " + settings.integrator;
+  const FileLocation where = settings.strategies.value_or(FileLocation());
+  if (where.file) throw Error(where, text);
+  throw UsageError(text);
+}
+
 }  // namespace lampyr

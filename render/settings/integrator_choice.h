@@ -26,4 +26,8 @@ bool IsAuto(const std::string& name);
 
 bool GathersPhotons(const RenderSettings& settings);
 
+// The layers of the strategies of the settings' integrator. Throws an Error where they were asked for, a UsageError
+// without a place, if it has none.
+StrategyLayers StrategiesOf(const RenderSettings& settings);
+
 }  // namespace lampyr

@@ -35,6 +35,7 @@ Read ReadExpression(const std::string& text) {
       std::vector<std::string> known;
       for (const NamedExpression& each : NamedExpressions()) known.emplace_back(each.name);
       for (const PixelLayer& each : PixelLayers()) known.emplace_back(each.name);
+      known.emplace_back(kStrategies);
       throw Error("there is no layer \"" + text + "\"" + DidYouMean(text, known) +
                   "; an expression starts with the camera, C");
     }
@@ -82,6 +83,27 @@ const PixelLayer* FindPixelLayer(const std::string& name) {
     if (PlainName(layer.name) == PlainName(name)) return &layer;
   }
   return nullptr;
+}
+
+std::vector<std::string> StrategyLayers::Names() const {
+  std::vector<std::string> techniques;
+  for (int events = 0; events <= mostEvents_; ++events) {
+    for (int s = 0; s <= events + 1; ++s)
+      techniques.push_back("s" + std::to_string(s) + "-t" + std::to_string(events + 2 - s));
+  }
+  techniques.emplace_back("longer");
+  if (merges_) techniques.emplace_back("merged");
+  std::vector<std::string> names;
+  for (const std::string& technique : techniques) {
+    names.push_back("weighted." + technique);
+    names.push_back("unweighted." + technique);
+  }
+  return names;
+}
+
+uint32_t StrategyLayers::Of(int s, int t) const {
+  const int events = s + t - 2;
+  return 2 * (events > mostEvents_ ? Connecting() : static_cast<uint32_t>(events * (events + 3) / 2 + s));
 }
 
 LayerRequest ParseLayer(const std::string& text, const FileLocation& where) {

@@ -2,6 +2,8 @@
 // Film and of the command line.
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -28,6 +30,35 @@ inline constexpr const char* kBiasLayer = "bias";
 bool IsOfSamples(const PixelLayer& layer);
 inline constexpr const char* kObjectMatte = "crypto object";
 inline constexpr const char* kMaterialMatte = "crypto material";
+
+// Name of a layer that stands for those of StrategyLayers.
+inline constexpr const char* kStrategies = "strategies";
+
+// Layers of what each technique (s,t) contributes where paths of both sides are connected: s vertices of a light
+// subpath, t of a camera subpath ([Veach97 fig. 10.4]). There are two of each, "weighted.s2-t3" and "unweighted.s2-t3".
+// The weighted ones add up to the picture; the others show where the weights hold noise back.
+class StrategyLayers {
+ public:
+  // Techniques of paths with up to this many scattering events have layers of their own; those of longer paths share
+  // two, "weighted.longer" and "unweighted.longer".
+  static constexpr int kMostEvents = 6;
+
+  // For paths of `maxDepth` events at most. `merges`: photons are merged, with the layers "weighted.merged" and
+  // "unweighted.merged".
+  StrategyLayers(int maxDepth, bool merges) : mostEvents_(std::min(maxDepth, kMostEvents)), merges_(merges) {}
+
+  std::vector<std::string> Names() const;
+  // Index in Names of the weighted layer of a technique, which the unweighted one follows.
+  uint32_t Of(int s, int t) const;
+  uint32_t OfMerging() const { return 2 * (Connecting() + 1); }
+
+ private:
+  // Techniques of paths with n events come after the 2 + 3 + … + (n + 1) of shorter paths.
+  uint32_t Connecting() const { return static_cast<uint32_t>((mostEvents_ + 1) * (mostEvents_ + 4) / 2); }
+
+  int mostEvents_;
+  bool merges_;
+};
 
 struct LayerRequest {
   OutputLayer layer;

@@ -82,7 +82,9 @@ SensorResponse ReadSensor(const ParameterList& film, float imagingRatio, bool is
 
 void AddLayer(const std::string& text, const FileLocation& where, RenderSettings& settings) {
   const PixelLayer* layer = FindPixelLayer(text);
-  if (!layer) {
+  if (PlainName(text) == kStrategies) {
+    settings.strategies = where;
+  } else if (!layer) {
     settings.layers.push_back(ParseLayer(text, where));
   } else if (!settings.Wants(layer->name)) {
     settings.pixelLayers.push_back(layer);

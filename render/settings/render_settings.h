@@ -32,8 +32,8 @@ struct RenderOverrides {
   std::vector<std::string> layers;  // names of pixel layers, or as ParseLayer reads them, besides those of the scene
   bool seesThroughSmooth = false;   // RenderSettings
   std::optional<AdaptiveSettings> adaptive;
-  std::optional<uint64_t> memory;  // limit on the scene's memory, bytes; absent: all available memory
-  std::optional<bool> spectral;    // absent: where the scene asks for it, or something disperses light
+  std::optional<uint64_t> memory;    // limit on the scene's memory, bytes; absent: all available memory
+  std::optional<bool> spectral;      // absent: where the scene asks for it, or something disperses light
   std::optional<int> spectralBands;  // absent: those that the scene asks for
   uint64_t seed = 0;
   int threads = 0;  // of what is done before rendering; 0: all
@@ -59,6 +59,7 @@ struct RenderSettings {
   std::optional<FirstHitSpace> firstHit;  // absent: no such layers
   std::vector<LayerRequest> layers;       // besides those of light groups
   std::vector<const PixelLayer*> pixelLayers;
+  std::optional<FileLocation> strategies;    // where StrategyLayers were asked for; empty: on the command line
   bool seesThroughSmooth = false;            // what is seen first is what mirrors and glass show
   std::optional<bool> spectral;              // light is carried by wavelength; absent: where something disperses it
   std::optional<SpectralBands> bands;        // of the spectrum, kept besides the picture; absent: none

@@ -39,7 +39,7 @@ TEST(PhotonPasses, LightPathsForPhotonsAloneCostNoShadowRays) {
   const PixelFilter filter(built.settings.filter);
   const auto render = [&](uint32_t first, uint32_t count, PhotonStore* kept) {
     Film film(built.settings.width, built.settings.height, built.settings.crop, {});
-    return RenderPass(built.scene, *integrator, built.settings, filter, first, count, 1, film, nullptr, kept);
+    return RenderPass(built.scene, *integrator, built.settings, filter, first, count, 1, film, kept);
   };
   PhotonStore kept(*integrator->Photons(), 16 * 16);
   render(0, 3, &kept);

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
+#include <tuple>
 
 #include "integrators/bidirectional/bidirectional_integrator.h"
 #include "support/replicas.h"
@@ -76,51 +78,85 @@ Translate 0 1.2 -0.5 Shape "sphere" "float radius" 0.3 AttributeEnd
   }
 }
 
-// The pictures of single techniques add up to the render, in a crop and with a wide filter, too.
-TEST(Bdpt, TechniquesAddUpToTheRender) {
+// The layers of single techniques add up to the picture, in a crop and with a wide filter, too; beside a layer by an
+// expression, with pixels of different numbers of samples, and where light is carried by wavelength.
+class Strategies : public testing::TestWithParam<std::tuple<std::string, std::string>> {};
+
+TEST_P(Strategies, AddUpToThePicture) {
+  const auto& [integrator, what] = GetParam();
   RenderOverrides overrides;
-  overrides.integrator = "bdpt";
+  overrides.integrator = integrator;
   overrides.crop = "3,29,5,30";
-  overrides.values["max-depth"] = 9;  // some are longer than those with a picture
-  Diagnostics diagnostics(Diagnostics::Mode::Collect);
+  overrides.values["max-depth"] = 9;  // some are longer than those with layers of their own
+  overrides.layers = {"strategies"};
+  if (what == "layers") overrides.layers.emplace_back("caustic");
+  if (what == "adaptive") overrides.adaptive.emplace();
+  const std::string glass = what == "spectral" ? "\"spectrum eta\" \"glass-SF11\"" : "\"float eta\" 1.5";
   std::string text = kHead + R"(LightSource "infinite" "rgb L" [0.2 0.2 0.3]
 LightSource "point" "rgb I" [1 1 1] "point3 from" [1 2 0.5]
 AttributeBegin AreaLightSource "diffuse" "rgb L" [8 7 6] Translate -0.8 1.2 -0.6 Shape "sphere" "float radius" 0.2 AttributeEnd
-)" + kGround + R"(Material "dielectric" "float eta" 1.5
+)" + kGround + "Material \"dielectric\" " +
+                     glass + R"(
 Translate 0 0.6 0 Shape "sphere" "float radius" 0.6
 )";
   text.replace(text.find("\"box\""), 5, "\"gaussian\"");
-  const BuiltScene built = BuildScene(ParseScene(text, "test.pbrt", diagnostics), overrides, true, diagnostics);
-  const RenderSettings& settings = built.settings;
-  Film film(settings.width, settings.height, settings.crop);
-  TechniqueImages techniques(settings.width, settings.height, settings.crop, settings.MaxDepth());
-  StopConditions stop;
-  stop.samplesPerPixel = 16;
-  Render(
-      built.scene, *MakeIntegrator(built.scene, settings), settings, stop, 2, film, [](const RenderOutcome&, double) {},
-      &techniques);
-  const Image image = film.Develop();
-  const auto pictures = techniques.Develop(film);
+  const Image image = RenderText(text, 16, overrides, 2).image;
+  const bool mayBeNegative = what == "spectral";  // of one wavelength's red, green and blue
   std::vector<double> sum(3 * static_cast<size_t>(image.width) * static_cast<size_t>(image.height));
-  int seen = 0;
-  for (const TechniqueImages::Picture& picture : pictures) {
-    bool isBlack = true;
-    for (size_t i = 0; i < sum.size(); ++i) {
-      sum[i] += static_cast<double>(picture.weighted.data[i]);
-      isBlack = isBlack && picture.weighted.data[i] == 0;
-      EXPECT_GE(picture.unweighted.data[i], picture.weighted.data[i] * 0.9999f);
+  std::set<std::string> seen;
+  for (size_t k = 0; k < image.channels.size(); ++k) {
+    const std::string& channel = image.channels[k];
+    if (!channel.starts_with("weighted.")) continue;
+    const int all = image.ChannelIndex("un" + channel);
+    ASSERT_GE(all, 0) << channel;
+    const size_t color = channel.ends_with("R") ? 0 : channel.ends_with("G") ? 1 : 2;
+    for (int y = 0; y < image.height; ++y) {
+      for (int x = 0; x < image.width; ++x) {
+        const float weighted = image.At(x, y, k);
+        sum[3 * (static_cast<size_t>(y) * static_cast<size_t>(image.width) + static_cast<size_t>(x)) + color] +=
+            static_cast<double>(weighted);
+        if (weighted != 0) seen.insert(channel.substr(0, channel.rfind('.')));
+        if (!mayBeNegative) {
+          EXPECT_GE(image.At(x, y, static_cast<size_t>(all)), weighted * 0.9999f) << channel;
+        }
+      }
     }
-    seen += isBlack ? 0 : 1;
   }
-  EXPECT_GE(seen, 20);
+  EXPECT_GE(seen.size(), 20u);
+  EXPECT_EQ(seen.contains("weighted.merged"), integrator == "vcm");
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x) {
       for (size_t c = 0; c < 3; ++c) {
         const double whole = static_cast<double>(image.At(x, y, c));
         const size_t i = 3 * (static_cast<size_t>(y) * static_cast<size_t>(image.width) + static_cast<size_t>(x)) + c;
-        ASSERT_NEAR(sum[i], whole, 1e-5 * whole + 1e-7) << x << " " << y;
+        ASSERT_NEAR(sum[i], whole, 1e-5 * std::abs(whole) + 1e-6) << x << " " << y;
       }
     }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, Strategies,
+                         testing::Combine(testing::Values("bdpt", "vcm"),
+                                          testing::Values("plain", "layers", "adaptive", "spectral")),
+                         [](const auto& tested) {
+                           return std::get<0>(tested.param) + "_" + std::get<1>(tested.param);
+                         });
+
+TEST(Bdpt, StrategiesAreOfIntegratorsThatHaveThem) {
+  RenderOverrides overrides;
+  overrides.integrator = "path";
+  overrides.layers = {"strategies"};
+  EXPECT_THROW(RenderText(kHead + kGround, 1, overrides), UsageError);
+  std::string text = kHead + kGround;
+  text.insert(text.find("\nPixelFilter"), " \"string layers\" [ \"strategies\" ]");
+  try {
+    RenderOverrides ofScene;
+    ofScene.integrator = "path";
+    RenderText(text, 1, ofScene);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("only bdpt, vcm have strategies"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("test.pbrt:"), std::string::npos) << error.what();
   }
 }
 

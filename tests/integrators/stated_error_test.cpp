@@ -44,7 +44,7 @@ std::vector<double> ReferenceOf(const std::string& scene) {
   built.settings.seed = 1;
   const std::unique_ptr<Integrator> vcm = MakeIntegrator(built.scene, built.settings);
   Film film(built.settings.width, built.settings.height, built.settings.crop);
-  ProgressiveRender render(built.scene, *vcm, built.settings, 1, film, nullptr, 1u << 18);
+  ProgressiveRender render(built.scene, *vcm, built.settings, 1, film, 1u << 18);
   render.AddSamples(kSamples);
   return LuminancesOf(film.Develop());
 }
