@@ -91,7 +91,7 @@ TEST_P(Strategies, AddUpToThePicture) {
   overrides.layers = {"strategies"};
   if (what == "layers") overrides.layers.emplace_back("caustic");
   if (what == "adaptive") overrides.adaptive.emplace();
-  const std::string glass = what == "spectral" ? "\"spectrum eta\" \"glass-SF11\"" : "\"float eta\" 1.5";
+  const std::string glass = what == "spectral" ? "\"spectrum eta\" \"glass-F11\"" : "\"float eta\" 1.5";
   std::string text = kHead + R"(LightSource "infinite" "rgb L" [0.2 0.2 0.3]
 LightSource "point" "rgb I" [1 1 1] "point3 from" [1 2 0.5]
 AttributeBegin AreaLightSource "diffuse" "rgb L" [8 7 6] Translate -0.8 1.2 -0.6 Shape "sphere" "float radius" 0.2 AttributeEnd
