@@ -194,20 +194,17 @@ Counted WithOneLight(const Counted& counted, const std::vector<LightSpread>& pat
     vertices += spread.vertices;
   }
   if (samples == 0) return counted;
-  const auto rays = [](const RenderCounts& counts) {
-    return static_cast<double>(counts.cameraRays + counts.indirectRays);
-  };
   // Not every sample of a light has a shadow ray.
   const double fewer =
       static_cast<double>(counted.path.shadowRays) * (1 - static_cast<double>(vertices) / static_cast<double>(samples));
-  const double shorter = std::clamp(rays(counted.bdpt) - rays(counted.endingBdpt), 0.0, rays(counted.path));
+  const double shorter = std::clamp(RaysOf(counted.bdpt) - RaysOf(counted.endingBdpt), 0.0, RaysOf(counted.path));
   const auto take = [](RenderCounts& counts, double shadowRays) {
     counts.shadowRays -= std::min(counts.shadowRays, static_cast<uint64_t>(shadowRays));
   };
   Counted one = counted;
   take(one.path, fewer);
   take(one.bdpt, fewer);
-  take(one.endingBdpt, fewer * (1 - shorter / rays(counted.path)));
+  take(one.endingBdpt, fewer * (1 - shorter / RaysOf(counted.path)));
   return one;
 }
 
@@ -334,8 +331,7 @@ const PilotCandidate* RenderPilot::Best() const {
 RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, int threads, int passCount) {
   const RenderSettings combined = WithAllTechniques(settings);
   const Grid grid(settings);
-  const double filmPixels = static_cast<double>(settings.width) * static_cast<double>(settings.height);
-  const double fewer = filmPixels / grid.Pixels();
+  const double fewer = grid.Fewer();
   const PilotIntegrators integrators(scene, combined, fewer);
   const PhotonSettings photons = PhotonsOfPilot(*integrators.vcm, fewer);
   // If light paths hardly come near to what is seen, vcm guides them from the start. Those of bdpt are hopeless then.
@@ -360,7 +356,7 @@ RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, i
   if (passCount == 0) passCount = PassesFor(counted, grid.Pixels());
   if (scene.isSpectral) CountPaths(integrators, WithWavelengths(view), combined, grid, threads, counted, nullptr);
   const PixelFilter filter(settings.filter);
-  std::vector<Recorder> recorders(kChunks, Recorder(grid, filmPixels, filter, SplatCount(settings), passCount));
+  std::vector<Recorder> recorders(kChunks, Recorder(grid, filter, SplatCount(settings), passCount));
   Records records(grid, recorders);
   const double wider = WiderRadius(fewer, photons.alpha);
   RunPasses(integrators, passCount, threads, wider, passes, store, learned, recorders, records, counted, spreads);

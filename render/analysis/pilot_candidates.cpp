@@ -23,10 +23,6 @@ struct PartCosts {
   double lightRays = 0;  // of `light`, without connections to the lens
 };
 
-double RaysOf(const RenderCounts& counts) {
-  return static_cast<double>(counts.cameraRays + counts.indirectRays);
-}
-
 PartCosts PartCostsOf(const Counted& counted, bool isEnding) {
   constexpr Costs costs;
   double pathRays = RaysOf(counted.path), direct = static_cast<double>(counted.path.shadowRays);
@@ -50,6 +46,10 @@ PartCosts PartCostsOf(const Counted& counted, bool isEnding) {
 }
 
 }  // namespace
+
+double RaysOf(const RenderCounts& counts) {
+  return static_cast<double>(counts.cameraRays + counts.indirectRays);
+}
 
 double CostOfSppm(const RenderCounts& counts, uint64_t stored, double samples) {
   constexpr Costs costs;

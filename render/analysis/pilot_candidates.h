@@ -115,6 +115,8 @@ struct CandidateCost {
 };
 // `samples`: of which `counted` tells.
 std::array<CandidateCost, kCandidates> CostsOf(const Counted& counted, double samples);
+// Rays by which paths go on: without shadow rays.
+double RaysOf(const RenderCounts& counts);
 // Cost of a sample of sppm. `counts`: light paths and camera paths of a pass; `stored`: photons of the pass.
 double CostOfSppm(const RenderCounts& counts, uint64_t stored, double samples);
 

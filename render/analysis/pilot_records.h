@@ -17,7 +17,8 @@ namespace lampyr::pilot {
 // The pilot's pixels, and where they are on the film.
 struct Grid {
   int width, height, tilesX, tilesY;
-  Point2 pixel;  // size of a pixel on the film
+  Point2 pixel;       // size of a pixel on the film
+  double filmPixels;  // of the render
 
   explicit Grid(const RenderSettings& settings) {
     const double scale = std::min(1.0, std::sqrt(kMostPilotPixels / (static_cast<double>(settings.width) *
@@ -31,8 +32,11 @@ struct Grid {
     tilesY = (height + kPilotTile - 1) / kPilotTile;
     pixel = {static_cast<float>(settings.width) / static_cast<float>(width),
              static_cast<float>(settings.height) / static_cast<float>(height)};
+    filmPixels = static_cast<double>(settings.width) * static_cast<double>(settings.height);
   }
   int Pixels() const { return width * height; }
+  // Pixels of the film for each of the pilot's.
+  double Fewer() const { return filmPixels / Pixels(); }
   size_t Tiles() const { return static_cast<size_t>(tilesX) * static_cast<size_t>(tilesY); }
   size_t PixelOf(int x, int y) const {
     return static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x);
@@ -122,11 +126,11 @@ struct SquaredMean {
 class Recorder final : public PathObserver {
  public:
   // `splatCount`: that of the weights. `passes`: of the pilot.
-  Recorder(const Grid& grid, double filmPixels, const PixelFilter& filter, double splatCount, int passes)
+  Recorder(const Grid& grid, const PixelFilter& filter, double splatCount, int passes)
       : moments(static_cast<size_t>(grid.Pixels())),
         found(static_cast<size_t>(grid.Pixels())),
         grid_(grid),
-        filmPixels_(filmPixels),
+        filmPixels_(grid.filmPixels),
         spread_(filter.SplatCount()),
         splatCount_(splatCount),
         renders_(kTypicalSamples / (static_cast<double>(passes) * grid.Pixels())) {}

@@ -110,8 +110,7 @@ struct Counts {
 // Traces pairs of passes, and no more than two where the error of the best makes it hopeless.
 Counts Trace(const RenderScene& scene, const RenderScene& counted, const RenderSettings& settings, const Grid& grid,
              const PilotCandidate* best, double gain, uint32_t pairs, int threads, Measured& measured) {
-  const double fewer =
-      static_cast<double>(settings.width) * static_cast<double>(settings.height) / static_cast<double>(grid.Pixels());
+  const double fewer = grid.Fewer();
   RenderSettings ofSeen = settings;
   ofSeen.values.Set("max-depth", int64_t{0});
   const std::unique_ptr<Integrator> sppm = Make(kName, scene, settings, fewer),
