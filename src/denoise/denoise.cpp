@@ -21,6 +21,23 @@ constexpr int kNear = 4, kFar = 12;
 constexpr size_t kChoices = kWidths.size();
 using Shares = std::array<Plane, kChoices>;
 
+// Means over neighbours, because the variance of a pixel follows its own noise: of those near, or of those farther
+// around if that is more. A pixel that has missed the bright samples seems to have no noise, and takes only its like
+// for the same. The variance of what few samples find is proportional to the value.
+Plane VarianceAround(const Plane& variance, const Plane& value, int threads) {
+  constexpr int near = 1, far = 2;
+  const Plane mean = BoxMeans(value, far, threads);
+  Plane scale = mean;
+  for (size_t i = 0; i < scale.Size(); ++i) {
+    const float around = std::abs(mean.values[i]);
+    scale.values[i] = around * (std::abs(value.values[i]) + 0.1f * around) + 1e-12f;
+  }
+  const Plane usual = MeanSquares(variance, scale, far, threads);
+  Plane all = BoxMeans(variance, near, threads);
+  for (size_t i = 0; i < all.Size(); ++i) all.values[i] = std::max(all.values[i], usual.values[i]);
+  return all;
+}
+
 RegressionInput MakeInput(const NoisyPicture& picture, std::vector<CleanFeature> features, int threads) {
   RegressionInput input;
   input.halves = picture.halves;
@@ -28,8 +45,7 @@ RegressionInput MakeInput(const NoisyPicture& picture, std::vector<CleanFeature>
   input.features = std::move(features);
   for (size_t half = 0; half < 2; ++half) {
     for (size_t c = 0; c < 3; ++c) {
-      // Means over neighbours: the variance of a pixel follows its own noise.
-      Plane variance = BoxMeans(picture.variance[c], 1, threads);
+      Plane variance = VarianceAround(picture.variance[c], picture.color[c], threads);
       const Plane value = BoxMeans(picture.color[c], 1, threads);
       for (size_t i = 0; i < variance.Size(); ++i) {
         // Differences below this fraction of the value are not seen.
