@@ -307,6 +307,28 @@ Tracker Estimate(const RenderScene& scene, const FineLine& line, std::span<const
   return tracker;
 }
 
+Color ProductOf(std::span<const Crossing> crossings) {
+  Color product(1.0f);
+  for (const Crossing& crossing : crossings) product *= crossing.transmittance;
+  return product;
+}
+
+// The transmittance of the media alone up to `length`, between the crossings in BuffersOfConnections. Sets the factors
+// of the edge.
+Color TransmittanceOfMedia(const RenderScene& scene, const FineLine& line, double length, const EdgeEnd& start,
+                           const EdgeEnd& end, uint64_t decider, EdgeFactors& factors) {
+  auto& [spans, crossings] = BuffersOfConnections();
+  FindSpans(scene, line, length, start.medium, crossings, spans);
+  if (spans.empty()) {
+    factors = {MeanOf(end.extinction), MeanOf(start.extinction), 1};
+    return Color(1.0f);
+  }
+  const Tracker tracker = Estimate(scene, line, spans, length, decider);
+  factors = {MeanOf(tracker.density * end.extinction), MeanOf(tracker.density * start.extinction),
+             MeanOf(tracker.density)};
+  return tracker.value;
+}
+
 // The line of a connecting ray: between both ends, or from the start in the direction of an infinite ray.
 FineLine LineOf(const Ray& ray, const EdgeEnd& start, const EdgeEnd& end) {
   FineLine line{start.position, Vector3d(ray.direction)};
@@ -343,24 +365,30 @@ std::optional<MediumPoint> PointOnFlight(const SampleContext& context, const Fli
 Color TransmittanceOf(const SampleContext& context, const Ray& ray, uint32_t kinds, const EdgeEnd& start,
                       const EdgeEnd& end, uint64_t decider, EdgeFactors& factors) {
   const RenderScene& scene = context.scene;
-  auto& [spans, crossings] = BuffersOfConnections();
+  std::vector<Crossing>& crossings = BuffersOfConnections().crossings;
   const FineLine line = LineOf(ray, start, end);
   Color surfaces = scene.geometry->Transmittance(ray, line, kinds, crossings);
-  if (scene.wavelengths && !surfaces.IsBlack()) [[unlikely]] {
-    TuneCrossings(scene, crossings);
-    surfaces = Transmittance(crossings);
-  }
   factors = {};
   if (surfaces.IsBlack()) return surfaces;
-  FindSpans(scene, line, line.length, start.medium, crossings, spans);
-  if (!spans.empty()) {
-    const Tracker tracker = Estimate(scene, line, spans, line.length, decider);
-    factors = {MeanOf(tracker.density * end.extinction), MeanOf(tracker.density * start.extinction),
-               MeanOf(tracker.density)};
-    return surfaces * tracker.value;
+  if (scene.wavelengths) [[unlikely]] {
+    // Cut-outs, which are gray, are in the product alone.
+    const float cutOuts = surfaces.Max() / ProductOf(crossings).Max();
+    TuneCrossings(scene, crossings);
+    surfaces = cutOuts * ProductOf(crossings);
   }
-  factors = {MeanOf(end.extinction), MeanOf(start.extinction), 1};
-  return surfaces;
+  return surfaces * TransmittanceOfMedia(scene, line, line.length, start, end, decider, factors);
+}
+
+bool TransmittanceToHit(const SampleContext& context, const Ray& ray, uint32_t kinds, const EdgeEnd& start,
+                        const EdgeEnd& end, uint64_t decider, RayHit& hit, Color& passed, EdgeFactors& factors) {
+  const RenderScene& scene = context.scene;
+  std::vector<Crossing>& crossings = BuffersOfConnections().crossings;
+  const FineLine line = LineOf(ray, start, end);
+  const LineHit found = scene.geometry->Trace(ray, line, kinds, hit, crossings);
+  if (!found.isHit) return false;
+  TuneCrossings(scene, crossings);
+  passed = ProductOf(crossings) * TransmittanceOfMedia(scene, line, found.t, start, end, decider, factors);
+  return true;
 }
 
 }  // namespace lampyr

@@ -50,17 +50,17 @@ bool SeesOrigin(const SampleContext& context, const EmittedPhoton& photon, const
   const RenderScene& scene = context.scene;
   RayHit hit;
   Color passed;
-  if (!scene.geometry->Intersect(ray, visibility::kCamera, hit, passed)) return false;
-  passed = scene.Carried(passed);
+  if (scene.media.empty()) [[likely]] {
+    if (!scene.geometry->Intersect(ray, visibility::kCamera, hit, passed)) return false;
+    passed = scene.Carried(passed);
+  } else {
+    const EdgeEnd lens{Point3d(ray.origin), scene.MediumOf(ray)}, light{Point3d(photon.emission.position)};
+    if (!TransmittanceToHit(context, ray, visibility::kCamera, lens, light, DeciderOf(photon.emission.position), hit,
+                            passed, seen.factors))
+      return false;
+  }
   const SurfacePoint point = scene.geometry->GetSurfacePoint(ray, hit);
   if (!scene.lighting->IsOrigin(photon, point, -ray.direction, distance)) return false;
-  if (!scene.media.empty()) {
-    Ray before = ray;
-    before.tMax = hit.t;
-    const EdgeEnd lens{Point3d(ray.origin), scene.MediumOf(ray)}, light{Point3d(photon.emission.position)};
-    passed = TransmittanceOf(context, before, visibility::kCamera, lens, light, DeciderOf(photon.emission.position),
-                             seen.factors);
-  }
   radiance = passed * scene.lighting->EmissionForCamera(ray.direction, hit.t, point, context.time);
   return !radiance.IsBlack();
 }

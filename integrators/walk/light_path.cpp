@@ -10,8 +10,8 @@ namespace lampyr {
 
 namespace {
 
-// Adds what applies to the first segment alone: the light filter, and the distance within which a surface blocks the
-// emission without being lit (EmissionSample::shinesFrom). All other segments are those of any path.
+// Adds what applies to the first segment alone: the light filter, and the distance within which surfaces and media
+// block the emission without being lit (EmissionSample::shinesFrom). All other segments are those of any path.
 class LightWalkVisitor final : public PathVisitor {
  public:
   LightWalkVisitor(const SampleContext& context, const EmittedPhoton& photon, const PathState& start, int maxDepth,
@@ -31,7 +31,7 @@ class LightWalkVisitor final : public PathVisitor {
     visitor_.Flew(path_, state, flight, photon_);
   }
   bool Arrived(Subpath& path, const PathState& state) override {
-    if (path.Count() == 1 && !SetFirst(path.Last(), state)) {
+    if (path.Count() == 1 && (ScattersTooNear(path.Last(), state) || !SetFirst(path.Last(), state))) {
       path.Clear();
       return false;
     }
@@ -40,6 +40,9 @@ class LightWalkVisitor final : public PathVisitor {
   }
 
  private:
+  bool ScattersTooNear(const PathVertex& first, const PathState& state) const {
+    return first.IsInMedium() && state.length < photon_.emission.shinesFrom;
+  }
   // Filters act on the emitted radiance, before the transmittance of thin surfaces, as in next-event estimation.
   bool SetFirst(PathVertex& first, const PathState& state) {
     first.diffuse = diffuse_;
@@ -70,8 +73,8 @@ bool Emit(const SampleContext& context, const EmittedPhoton& photon, PathState& 
   if (!context.scene.media.empty()) [[unlikely]] {
     if (context.scene.lighting->KindOf(photon.light) == LightKind::Area)
       state.fromOrigin = emission.position - photon.ray.origin;
-    state.medium =
-        context.scene.MediumOfLight(photon.light, glm::dot(photon.emission.normal, photon.emission.direction) < 0);
+    state.medium = context.scene.MediumOfLight(
+        photon.light, glm::dot(photon.emission.normal, photon.emission.direction) < 0, photon.ray);
   }
   state.diffuse = emission.diffuse * inverse;
   state.specular = emission.specular * inverse;
@@ -201,7 +204,7 @@ double PowerOfLights(const RenderScene& scene) {
 }  // namespace
 
 GlowingMedia::GlowingMedia(const RenderScene& scene)
-    : emission_(scene.media, *scene.geometry, SphereOfMedia(scene), scene.exterior) {
+    : emission_(scene.media, *scene.geometry, SphereOfMedia(scene), scene.exterior, scene.unbounded) {
   // The least share of either, so that a weak glow is seen beside the sun, and a weak light beside a fire.
   constexpr double kLeast = 1.0 / 16;
   const double glow = emission_.Power(), lights = PowerOfLights(scene);

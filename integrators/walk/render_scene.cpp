@@ -6,7 +6,13 @@ namespace lampyr {
 
 int32_t RenderScene::MediumOf(const Ray& cameraRay) const {
   if (!cameraExterior) return cameraMedium;
-  return MediumAlong(*geometry, cameraRay, *cameraExterior);
+  return MediumAlong(*geometry, cameraRay, *cameraExterior, cameraMedium);
+}
+
+int32_t RenderScene::MediumOfLight(uint32_t light, bool fromBehind, const Ray& ray) const {
+  if (lightMedia.empty()) return kVacuum;
+  const int32_t medium = fromBehind ? lightBackMedia[light] : lightMedia[light];
+  return lightStartsVary[light] ? MediumAlong(*geometry, ray, exterior, medium) : medium;
 }
 
 RenderCounts& RenderCounts::operator+=(const RenderCounts& other) {

@@ -27,14 +27,17 @@ struct RenderScene {
   std::shared_ptr<const Camera> camera;
   std::vector<std::shared_ptr<const Medium>> media;  // by GeometryAttributes::insideMedium and outsideMedium
   int32_t cameraMedium = kVacuum;                    // where camera rays start (MediumOf)
-  // If camera rays start in several media, because the camera is on a boundary or is cut by one: the medium of those
-  // that meet no surface that says it.
+  // If camera rays start in several media, because the camera is on a boundary or is cut by one, or may, because
+  // something moves: the medium of those that meet no surface that says it.
   std::optional<int32_t> cameraExterior;
   std::shared_ptr<const OutputPlan> outputs;  // layers of the image; not null in scenes that were built
   int32_t exterior = kVacuum;                 // where rays leave the scene, and lights at infinity shine from
   std::vector<int32_t> lightMedia;            // by light: around it, or in front of it; empty: vacuum
   std::vector<int32_t>
       lightBackMedia;  // by light: behind its surface, where a two-sided light shines, too; empty: vacuum
+  std::vector<uint8_t> lightStartsVary;  // by light: whether its rays start in several media, as cameraExterior has it
+  std::optional<int32_t>
+      unbounded;  // of points from which nothing bounds media but opaque surfaces, if the camera is such a point
   std::shared_ptr<const PathGuide> guide;  // where walks go after wide scattering; null: as surfaces scatter
   // Light is carried by wavelength: each pass is given the scene at its wavelengths (AtWavelengths), and
   // `wavelengths` is null in that of which it is made, whose colours are in Rec. 709.
@@ -57,11 +60,8 @@ struct RenderScene {
   }
   // Medium in which a camera ray starts.
   int32_t MediumOf(const Ray& cameraRay) const;
-  // Medium in which light of `light` starts; `fromBehind`: of a surface that shines to both sides.
-  int32_t MediumOfLight(uint32_t light, bool fromBehind) const {
-    const std::vector<int32_t>& around = fromBehind ? lightBackMedia : lightMedia;
-    return around.empty() ? kVacuum : around[light];
-  }
+  // Medium in which light of `light` starts along `ray`; `fromBehind`: of a surface that shines to both sides.
+  int32_t MediumOfLight(uint32_t light, bool fromBehind, const Ray& ray) const;
 };
 
 // Counted per tile of work and summed afterwards; never shared between threads.

@@ -49,10 +49,8 @@ RampModel ReadRamp(const ParameterList& parameters) {
   ramp.perLength = static_cast<float>(1 / (end - begin));
   for (const double knot : parameters.GetFloats("knots")) ramp.knots.push_back(static_cast<float>(knot));
   ramp.colors = parameters.GetColors("colors", SpectrumRole::Illuminant);
-  if (ramp.knots.empty() && ramp.colors.empty()) {
-    ramp.knots = {0, 1};
-    ramp.colors = {Color(0.0f), Color(1.0f)};
-  }
+  if (ramp.knots.empty()) ramp.knots = {0, 1};
+  if (ramp.colors.empty()) ramp.colors = {Color(0.0f), Color(1.0f)};
   if (ramp.knots.size() != ramp.colors.size()) {
     throw Error(parameters.Where(), parameters.Owner() + ": " + std::to_string(ramp.knots.size()) + " \"knots\" and " +
                                         std::to_string(ramp.colors.size()) + " \"colors\" must be as many");

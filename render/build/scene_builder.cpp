@@ -179,6 +179,7 @@ std::optional<GeometryAttributes> Builder::AttributesOf(const ReadEntry& entry) 
     attributes.insideMedium = attributes.outsideMedium = kSameMedium;
   }
   attributes.isBoundary = isInterface;
+  attributes.isOpaque = !isInterface && !material->MayTransmit();
   if (isInterface && !SeparatesMedia(attributes)) return std::nullopt;
   if (opacity) {
     WarnOfAlpha(*opacity, shape.shape.parameters, diagnostics_);

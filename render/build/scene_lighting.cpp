@@ -29,12 +29,13 @@ void LightScene(LightsToPlace toPlace, SceneMedia& media, Diagnostics& diagnosti
   RenderScene& scene = built.scene;
   WarnOfFewerSamples(toPlace.lights, built.lightPlaces, diagnostics);
   toPlace.linking.Finish(toPlace.lights, diagnostics);
-  scene.lighting = std::make_shared<const LightingServices>(
-      *scene.geometry, std::move(toPlace.lights), built.settings.LightSampler(), std::move(toPlace.linking),
-      built.settings.LightSamples(), toPlace.around);
+  scene.lighting = std::make_shared<const LightingServices>(*scene.geometry, std::move(toPlace.lights),
+                                                            built.settings.LightSampler(), std::move(toPlace.linking),
+                                                            built.settings.LightSamples(), toPlace.around);
   scene.outputs = MakeOutputPlan(*scene.lighting, built.settings.layers);
   scene.lightMedia.clear();
   scene.lightBackMedia.clear();
+  scene.lightStartsVary.clear();
   media.Locate(toPlace.middleOfFilm, built.lightPlaces, scene);
   if (built.settings.integrator != "auto") return;
   const auto start = std::chrono::steady_clock::now();

@@ -1,6 +1,7 @@
 #include "render/build/scene_media.h"
 
 #include <array>
+#include <cmath>
 
 namespace lampyr {
 
@@ -101,6 +102,7 @@ SceneMedia::Sides SceneMedia::MediaOfLight(const RenderScene& scene, size_t ligh
   const int32_t otherwise = name.empty() ? exterior : IndexOf(name, where);
   if (!scene.geometry->HasBoundaries()) return {otherwise, otherwise};
   std::optional<int32_t> medium;
+  bool startsVary = false;
   for (const Point2& u : kLightPoints) {
     const auto point = PointOf(placed, scene.lighting->SceneSphere(), u);
     if (!point) continue;
@@ -108,27 +110,35 @@ SceneMedia::Sides SceneMedia::MediaOfLight(const RenderScene& scene, size_t ligh
     const int32_t here = found.medium.value_or(otherwise);
     if (!medium) {
       medium = Choose("the light", where, name, found, exterior);
+      startsVary = scene.hasMotion && found.disputed == kNoIndex;
       if (placed.light->Kind() != LightKind::Area) break;
     } else if (here != *medium) {
-      diagnostics_.Warn(where, "the light reaches from " + NameOf(*medium) + " into " + NameOf(here) +
-                                   ": it is taken to be in the first");
+      startsVary = true;
       break;
     }
   }
   const int32_t chosen = medium.value_or(otherwise);
-  return {chosen, chosen};
+  return {chosen, chosen, startsVary};
 }
 
 namespace {
 
-// True if some camera rays start in another medium than RenderScene::cameraMedium.
+// True if some camera rays start in another medium than RenderScene::cameraMedium, or may while something moves.
 bool StartsVary(const RenderScene& scene, const Point2& middle, int32_t exterior) {
   if (!scene.geometry->HasBoundaries()) return false;
-  constexpr int kAcross = 5;
-  for (int i = 0; i < kAcross * kAcross; ++i) {
-    const Point2 place(static_cast<float>(i % kAcross) + 0.47f, static_cast<float>(i / kAcross) + 0.53f);
-    const CameraRay seen =
-        scene.camera->GenerateRay(2.0f * middle * place / static_cast<float>(kAcross), Point2(0.5f), 0);
+  if (scene.hasMotion) return true;
+  // Boundaries may cut a small part of a lens, or of the plane of parallel rays.
+  const bool isPoint = scene.camera->HasPinhole() && !scene.camera->ConnectsByDirection();
+  const int rays = isPoint ? 1 << 6 : 1 << 14;
+  constexpr double kSteps[4] = {0.8566748838545029, 0.7338918566271260, 0.6287067210378087,
+                                0.5385972572236101};  // [Roberts18] R4
+  for (int i = 0; i < rays; ++i) {
+    float u[4];
+    for (int k = 0; k < 4; ++k) {
+      const double value = 0.5 + i * kSteps[k];
+      u[k] = static_cast<float>(value - std::floor(value));
+    }
+    const CameraRay seen = scene.camera->GenerateRay(2.0f * middle * Point2(u[0], u[1]), Point2(u[2], u[3]), 0);
     if (seen.weight == 0) continue;
     // A sheet that stops light says nothing of the medium between it and the camera.
     const std::vector<MediumChange> changes = MediumChanges(*scene.geometry, seen.ray);
@@ -154,6 +164,7 @@ void SceneMedia::Locate(const Point2& middle, const std::vector<FileLocation>& l
                           ", and its rays start there. pbrt-v4 starts them in vacuum, because no MediumInterface "
                           "before the camera names it");
   }
+  if (!around_.medium || around_.isOfOpaque) scene.unbounded = scene.cameraMedium;
   const bool isKnown = around_.medium && (around_.isOfBoundary || description_.cameraMedium.empty());
   scene.exterior = isKnown ? Exterior() : scene.cameraMedium;
   if (around_.disputed == kNoIndex && StartsVary(scene, middle, scene.exterior)) scene.cameraExterior = scene.exterior;
@@ -161,6 +172,7 @@ void SceneMedia::Locate(const Point2& middle, const std::vector<FileLocation>& l
     const Sides sides = MediaOfLight(scene, light, lightPlaces[light], scene.exterior);
     scene.lightMedia.push_back(sides.front);
     scene.lightBackMedia.push_back(sides.behind);
+    scene.lightStartsVary.push_back(sides.startsVary);
   }
 }
 

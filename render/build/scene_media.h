@@ -40,10 +40,10 @@ class SceneMedia {
   //   found in by rays to the surfaces around them (FindMedium) at shutter open; and if there are none, the camera is
   //   in vacuum, and lights are where lights at infinity are.
   // - A camera on a boundary is in the medium that it looks into. If its rays start in several, each starts in the one
-  //   that it goes through (RenderScene::cameraExterior).
+  //   that it goes through (RenderScene::cameraExterior). So it is for camera and lights where something moves.
   // - If all rays say another medium than the file, theirs holds, with a warning: that is where paths will find it.
-  // - Area lights have the media of their shape's sides, if it separates any. Otherwise the medium of their first point
-  //   holds; a warning says if another of their points is elsewhere.
+  // - Area lights have the media of their shape's sides, if it separates any. If they reach from one medium into
+  //   another, each ray starts in the one that it goes through.
   // - Lights at infinity are in the medium that all rays from the camera end in, or else in vacuum.
   // - Where rays disagree, what most of them say holds, and one warning is given with the place of the surface.
   void Locate(const Point2& middle, const std::vector<FileLocation>& lightPlaces, RenderScene& scene);
@@ -60,6 +60,7 @@ class SceneMedia {
   };
   struct Sides {
     int32_t front = kVacuum, behind = kVacuum;
+    bool startsVary = false;  // RenderScene::lightStartsVary
   };
 
   std::string NameOf(int32_t medium) const;

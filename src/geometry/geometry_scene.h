@@ -47,6 +47,7 @@ struct GeometryAttributes {
   // Between media alone: rays of all kinds pass straight through. A surface that separates media and is not visible to
   // all kinds is that to the others. Where `alpha` is 0 there is no boundary. No curves and no custom surfaces.
   bool isBoundary = false;
+  bool isOpaque = false;  // no path goes through: what its sides say of media does not bound them
   // False: nobody looks at the uv and tangents of its points, and they are left at 0 where they cost something.
   bool isParametrized = true;
   int32_t object = -1;     // index of its name, where names are wanted

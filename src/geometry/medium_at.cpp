@@ -73,7 +73,7 @@ std::vector<MediumChange> MediumChanges(const GeometryScene& geometry, const Ray
     const int32_t before = crossing.entering ? attributes.outsideMedium : attributes.insideMedium;
     // A shared edge may be reported twice.
     if (!changes.empty() && changes.back().primitive == crossing.primitive && changes.back().before == before) continue;
-    changes.push_back({crossing.primitive, before, crossing.medium, attributes.isBoundary});
+    changes.push_back({crossing.primitive, before, crossing.medium, attributes.isBoundary, attributes.isOpaque});
   }
   return changes;
 }
@@ -146,7 +146,14 @@ FoundMedium Find(const GeometryScene& geometry, const Point3& position, float ti
     const std::array all = {changes[0], changes[1], changes[2], towards};
     if (found.medium) found.exterior = ExteriorOf(all, *found.medium);
   }
-  if (!found.medium) found = MediumSaidBy(changes, false);
+  if (!found.medium) {
+    found = MediumSaidBy(changes, false);
+    found.isOfOpaque = found.medium && std::all_of(changes.begin(), changes.end(), [](const auto& ray) {
+                         const auto said = std::find_if(ray.begin(), ray.end(),
+                                                        [](const auto& one) { return one.before != kSameMedium; });
+                         return said == ray.end() || said->isOpaque;
+                       });
+  }
   found.isUnanimous = found.medium && std::all_of(changes.begin(), changes.end(), [&](const auto& ray) {
                         return FirstMedium(ray, false) == found.medium;
                       });
@@ -165,6 +172,16 @@ FoundMedium FindMediumAround(const GeometryScene& geometry, const Point3& positi
 
 int32_t MediumAlong(const GeometryScene& geometry, const Ray& ray, int32_t otherwise) {
   return FirstMedium(MediumChanges(geometry, ray), false).value_or(otherwise);
+}
+
+int32_t MediumAlong(const GeometryScene& geometry, const Ray& ray, int32_t otherwise, int32_t stopped) {
+  const std::vector<MediumChange> changes = MediumChanges(geometry, ray);
+  const auto said =
+      std::find_if(changes.begin(), changes.end(), [](const auto& one) { return one.before != kSameMedium; });
+  if (said == changes.end()) return otherwise;
+  if (!said->isOpaque) return said->before;
+  const FoundMedium around = FindMedium(geometry, ray.origin, ray.time);
+  return around.isOfOpaque ? stopped : around.medium.value_or(stopped);
 }
 
 int32_t MediumAt(const GeometryScene& geometry, const Point3& position, float time, int32_t otherwise) {

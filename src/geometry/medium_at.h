@@ -14,6 +14,7 @@ struct MediumChange {
   uint32_t primitive = kNoIndex;
   int32_t before = kSameMedium, behind = kSameMedium;  // kSameMedium: the surface does not say
   bool isBoundary = false;                             // all rays pass it
+  bool isOpaque = false;                               // GeometryAttributes
 };
 
 // All changes of the medium along a ray, in order, also behind what stops rays of other kinds.
@@ -23,6 +24,7 @@ struct FoundMedium {
   std::optional<int32_t> medium;  // nullopt: no ray from the point meets a surface that says it
   bool isUnanimous = false;       // all rays say the same, what stops light included
   bool isOfBoundary = false;      // a boundary says it, not only what stops light
+  bool isOfOpaque = false;        // nothing but opaque surfaces says it
   // The medium that all rays end in which nothing stops, or all rays if each is stopped. One that meets no change ends
   // in `medium`. nullopt: they end in several, or none of them meets one.
   std::optional<int32_t> exterior;
@@ -47,6 +49,10 @@ FoundMedium FindMediumAround(const GeometryScene& geometry, const Point3& positi
 // The medium in which a ray starts: what the first surface on it that separates media says; `otherwise` if it meets
 // none.
 int32_t MediumAlong(const GeometryScene& geometry, const Ray& ray, int32_t otherwise);
+
+// The same, but for a ray that an opaque surface stops: what is found around its start, or `stopped` if nothing but
+// opaque surfaces says it there.
+int32_t MediumAlong(const GeometryScene& geometry, const Ray& ray, int32_t otherwise, int32_t stopped);
 
 // The medium at a point, by one ray: `otherwise` if it meets no surface that says it.
 int32_t MediumAt(const GeometryScene& geometry, const Point3& position, float time, int32_t otherwise);

@@ -11,6 +11,8 @@ namespace {
 // Probability with which a point of a medium without a box of its own is sampled evenly within the scene's sphere:
 // rays that find the medium may miss a part of it.
 constexpr double kEverywhere = 1.0 / 16;
+// The same of a medium that opaque surfaces do not bound, though their sides may say so.
+constexpr double kUnbounded = 1.0 / 2;
 
 Bounds3 BoxAround(const BoundingSphere& sphere) {
   return {sphere.center - Vector3(sphere.radius), sphere.center + Vector3(sphere.radius)};
@@ -19,8 +21,8 @@ Bounds3 BoxAround(const BoundingSphere& sphere) {
 }  // namespace
 
 MediumEmission::MediumEmission(std::vector<std::shared_ptr<const Medium>> media, const GeometryScene& geometry,
-                               const BoundingSphere& within, int32_t exterior)
-    : media_(std::move(media)), geometry_(geometry), within_(within), exterior_(exterior) {
+                               const BoundingSphere& within, int32_t exterior, std::optional<int32_t> unbounded)
+    : media_(std::move(media)), geometry_(geometry), within_(within), exterior_(exterior), unbounded_(unbounded) {
   for (size_t i = 0; i < media_.size(); ++i) {
     if (media_[i]->IsEmissive()) Add(static_cast<int32_t>(i));
   }
@@ -54,13 +56,15 @@ MediumEmission::Source MediumEmission::BoundedSource(int32_t index, double& volu
   }
   volume = place.volume;
   source.regions.emplace_back(place.box, place.resolution, place.weights, Affine());
-  source.shares = {kEverywhere, 1 - kEverywhere};
+  const double everywhere = index == unbounded_ ? kUnbounded : kEverywhere;
+  source.shares = {everywhere, 1 - everywhere};
   return source;
 }
 
 bool MediumEmission::IsThere(int32_t medium, const Point3& position, float time) const {
   if (glm::distance(position, within_.center) > within_.radius) return false;
-  return FindMedium(geometry_, position, time).medium.value_or(exterior_) == medium;
+  const FoundMedium found = FindMedium(geometry_, position, time);
+  return found.medium.value_or(exterior_) == medium || (found.isOfOpaque && unbounded_ == medium);
 }
 
 std::optional<EmissionPoint> MediumEmission::Sample(double uSelect, const Vector3& u, float time) const {

@@ -24,15 +24,16 @@ struct EmissionPoint {
 class MediumEmission {
  public:
   // `geometry` has to outlive it. `within`: beyond this sphere there is vacuum. `exterior`: the medium at points from
-  // where no surface that separates media is seen.
+  // where no surface that separates media is seen. `unbounded`: the medium that is not bounded by opaque surfaces,
+  // whatever their sides say; nullopt: there is none.
   MediumEmission(std::vector<std::shared_ptr<const Medium>> media, const GeometryScene& geometry,
-                 const BoundingSphere& within, int32_t exterior);
+                 const BoundingSphere& within, int32_t exterior, std::optional<int32_t> unbounded = std::nullopt);
 
   // Estimate of the emitted power, W: the mean of the channels. Larger than 0 if a medium may emit.
   double Power() const { return power_; }
 
   // Samples a point in proportion to the emitted power, as far as that is known: the density is exact. nullopt: the
-  // point is not in the chosen medium (FindMedium), or emits nothing; its sample is worth 0. `u`: three random numbers
+  // point is not in the chosen medium, or emits nothing; its sample is worth 0. `u`: three random numbers
   // in [0,1) for the place, and `uSelect` for choices. Requires Power() > 0.
   std::optional<EmissionPoint> Sample(double uSelect, const Vector3& u, float time) const;
 
@@ -52,6 +53,7 @@ class MediumEmission {
   const GeometryScene& geometry_;
   BoundingSphere within_;
   int32_t exterior_;
+  std::optional<int32_t> unbounded_;
   std::vector<Source> sources_;
   double power_ = 0;
 };

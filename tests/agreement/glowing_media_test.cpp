@@ -96,6 +96,31 @@ TEST_P(GlowingMediaScenes, AreTheSameFromBothEnds) {
 INSTANTIATE_TEST_SUITE_P(Media, GlowingMediaScenes, testing::ValuesIn(GlowingScenes()),
                          [](const auto& info) { return std::string(info.param.name); });
 
+// A sheet that stops light bounds no medium, whatever its sides say.
+TEST(GlowingMedia, AreNotBoundedByOpaqueSheets) {
+  const std::string scene =
+      FilmWith("box") + "LookAt 0 0 -2  0 0 0  0 1 0\n" +
+      Homogeneous("fire", "\"rgb sigma_s\" [0 0 0] \"rgb sigma_a\" [0.1 0.1 0.1] \"rgb Le\" [1 1 1]") +
+      "MediumInterface \"\" \"fire\"\nCamera \"perspective\" \"float fov\" 50\n" + World(2) +
+      "Material \"diffuse\" \"rgb reflectance\" [0.8 0.8 0.8] Shape \"bilinearmesh\" \"point3 P\" [-2 -2 1  2 -2 1  -2 "
+      "2 1  "
+      "2 2 1]\nShape \"bilinearmesh\" \"point3 P\" [-2 -2 -1  -2 2 -1  -2 -2 1  -2 2 1]\n";
+  const Replicas path = RenderReplicas(scene, "path", kReplicas, 64);
+  RenderOverrides overrides;
+  overrides.seed = 1000;
+  overrides.values["radius"] = 0.02;
+  const Agreement sppm = CompareReplicas(RenderReplicas(scene, "sppm", kReplicas, 64, overrides), path, 32, 1e-4);
+  EXPECT_LT(std::abs(sppm.bias), 4 * sppm.biasError);
+  EXPECT_LT(sppm.biasError, 0.004);
+  // The camera is in the medium, so that light tracing is noisy.
+  overrides.values.clear();
+  const Agreement light = CompareReplicas(RenderReplicas(scene, "light", kReplicas, 64, overrides), path, 32, 1e-4);
+  EXPECT_LT(std::abs(light.bias), 4 * light.biasError);
+  EXPECT_LT(light.biasError, 0.04);
+  std::printf("bias %+.3f %% +- %.3f %%, light %+.3f %% +- %.3f %%\n", 100 * sppm.bias, 100 * sppm.biasError,
+              100 * light.bias, 100 * light.biasError);
+}
+
 // The glow is in the layer of what is in no light group, and the lamp's light in its own.
 TEST(GlowingMedia, IsInNoLightGroup) {
   const std::string lamp = "AttributeBegin AreaLightSource \"diffuse\" \"string lightGroup\" \"lamp\"";

@@ -12,6 +12,7 @@ const std::string kView = "Camera \"perspective\" \"float fov\" 80\n";
 const std::string kBulb =
     "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [6 5 4] Translate 0.3 0.6 -0.3 Shape \"sphere\" \"float "
     "radius\" 0.15 AttributeEnd\n";
+const std::string kWall = "Material \"diffuse\" Shape \"bilinearmesh\" \"point3 P\" [-2 -2 1  2 -2 1  -2 2 1  2 2 1]\n";
 const std::string kPoint = "LightSource \"point\" \"rgb I\" [0.7 0.8 1] \"point3 from\" [-0.4 0.5 0.2]\n";
 
 // A box of half side 0.5 in front of the camera, without a surface of its own.
@@ -137,6 +138,73 @@ std::vector<MediaScene> MediaScenes() {
                   "[2 2 2] \"rgb Le\" [1 0.6 0.3]\n" +
                   BallOf("fire"))
       .hasLights = false;
+  // A lamp behind a cut-out and a coloured pane, through which the camera sees it.
+  add("lamp_behind_panes",
+      Room("box", 3) + Homogeneous("jelly", "3 1 0.4", "0.1 0.6 1.5", -0.4) + BallOf("jelly") + kBulb +
+          "AttributeBegin Material \"diffuse\" Shape \"bilinearmesh\" \"point3 P\" [-0.1 0.1 0.2  0.4 0.1 0.2  -0.1 "
+          "0.8 "
+          "0.2  0.4 0.8 0.2] \"float alpha\" 0.5\nMaterial \"thindielectric\" \"rgb transmittance\" [0.8 0.3 0.5] "
+          "Shape "
+          "\"bilinearmesh\" \"point3 P\" [0.1 0 0.1  0.6 0 0.1  0.1 0.5 0.1  0.6 0.5 0.1] AttributeEnd\n");
+  // Light comes through a cut-out, by wavelength.
+  add("cut_out_by_wavelength",
+      Room("box", 3) +
+          "MakeNamedMedium \"haze\" \"string type\" \"homogeneous\" \"spectrum sigma_s\" [400 2 550 1.2 700 0.8] "
+          "\"rgb sigma_a\" [0.1 0.3 0.6] \"float g\" 0.3\n" +
+          BallOf("haze") + kPoint +
+          "AttributeBegin Material \"dielectric\" \"float cauchy\" [1.3 0.1] \"float roughness\" 0.3 Translate 0.6 "
+          "-0.8 0 Shape \"sphere\" \"float radius\" 0.1 AttributeEnd\n"
+          "AttributeBegin Material \"diffuse\" Shape \"bilinearmesh\" \"point3 P\" [-0.9 0.35 -0.9  0.9 0.35 -0.9  "
+          "-0.9 "
+          "0.35 0.5  0.9 0.35 0.5] \"float alpha\" 0.75 AttributeEnd\n");
+  // Fog on both sides of a portal: nothing scatters the sky's light before it has come through.
+  add("sky_through_portal",
+      FilmWith("box") + "LookAt 0 1 -2.4  0 0 0  0 1 0\n" + kView + World(3) +
+          Homogeneous("haze", "0.6 0.6 0.6", "0.05 0.05 0.05", 0.2) +
+          "LightSource \"infinite\" \"rgb L\" [1 1 1] \"bool cameraVisible\" false \"point3 portal\" [-0.5 0.9 -0.5  "
+          "0.5 "
+          "0.9 -0.5  0.5 0.9 0.5  -0.5 0.9 0.5]\n"
+          "AttributeBegin Material \"interface\" MediumInterface \"haze\" \"\" Translate 0 0.7 0 Shape \"sphere\" "
+          "\"float "
+          "radius\" 0.8 AttributeEnd\n"
+          "Material \"diffuse\" Shape \"bilinearmesh\" \"point3 P\" [-2 -0.5 2  2 -0.5 2  -2 -0.5 -2  2 -0.5 -2]\n");
+  // The media in which paths start, of lights and of the camera, change while the shutter is open.
+  const std::string moves =
+      "ActiveTransform StartTime Translate -2 0 0 ActiveTransform EndTime Translate 2 0 0 "
+      "ActiveTransform All ";
+  const std::string floor =
+      "AttributeBegin Translate 0 -1.3 0 Rotate 90 1 0 0 Material \"diffuse\" Shape \"disk\" \"float radius\" 3 "
+      "AttributeEnd\n";
+  const std::string aside = FilmWith("box") + "LookAt 0 0.5 -4  0 -0.6 0  0 1 0\n" + kView + World(3);
+  add("lamps_move_through_fog",
+      aside + Homogeneous("ink", "0 0 0", "0.3 0.5 0.7", 0) + floor +
+          "AttributeBegin Material \"interface\" MediumInterface \"ink\" \"\" Shape \"sphere\" \"float radius\" 1 "
+          "AttributeEnd\n"
+          "AttributeBegin " +
+          moves +
+          "LightSource \"point\" \"rgb I\" [2 2 2] Translate 0 0.3 0.2 AreaLightSource \"diffuse\" \"rgb L\" [1 1 1] "
+          "Shape \"sphere\" \"float radius\" 0.15 AttributeEnd\n")
+      .samples = 128;
+  add("fog_moves_over_lamp_and_camera", FilmWith("box") + "LookAt 0 0 -2.4  0 -0.6 0  0 1 0\n" + kView + World(2) +
+                                            Homogeneous("ink", "0 0 0", "1 1.5 2", 0) + floor +
+                                            "LightSource \"point\" \"rgb I\" [1 1 1]\nAttributeBegin " + moves +
+                                            "Material \"interface\" MediumInterface \"ink\" \"\" Shape \"sphere\" "
+                                            "\"float radius\" 0.8 Translate 0 0 -2.4 "
+                                            "Shape \"sphere\" \"float radius\" 0.8 AttributeEnd\n");
+  // The boundary of a medium cuts the lens, and the plane from which parallel rays start.
+  add("lens_in_ink",
+      FilmWith("box") +
+          "LookAt 0 0 -3  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 40 \"float lensradius\" 0.5 "
+          "\"float focaldistance\" 3\n" +
+          World(2) + Homogeneous("ink", "0 0 0", "1 1.5 2", 0) + kWall + kPoint +
+          "AttributeBegin Material \"interface\" MediumInterface \"ink\" \"\" Translate 0 -10.1 -3 Shape \"sphere\" "
+          "\"float radius\" 10 AttributeEnd\n");
+  add("ink_before_parallel_rays",
+      FilmWith("box") + "LookAt 0 0 -3  0 0 0  0 1 0\nCamera \"orthographic\" \"float screenwindow\" [-1 1 -1 1]\n" +
+          World(2) + Homogeneous("ink", "0 0 0", "10 15 20", 0) + kWall + kPoint +
+          "AttributeBegin Material \"interface\" MediumInterface \"ink\" \"\" Translate 0.2 0.22 -3 Shape \"sphere\" "
+          "\"float radius\" 0.12 AttributeEnd\n")
+      .blockSize = 4;
   add("smooth_glass_of_juice", Room("box", 5) + Homogeneous("juice", "0.5 0.5 0.5", "0.2 1 2", 0.2) +
                                    BallOf("juice", "", "\"dielectric\" \"float eta\" 1.33") + kBulb)
       .lightTracerSeesAll = false;

@@ -244,11 +244,13 @@ TEST(SceneMedia, WarnWhereBoundariesOverlap) {
   EXPECT_THAT(scene.warnings, testing::Contains(HasSubstr("contradict each other")).Times(1));
   EXPECT_THAT(scene.warnings,
               testing::Contains(testing::MatchesRegex("test.pbrt:(6|9):1: warning: the media on the .*")));
-  // A light that reaches out of the medium that most of it is in.
-  EXPECT_THAT(
-      Build(kFogBall + "AreaLightSource \"diffuse\" Material \"diffuse\" Shape \"disk\" \"float radius\" 20\n", kInFog)
-          .warnings,
-      testing::Contains(HasSubstr("the light reaches from")));
+  // A light that reaches out of the medium that most of it is in: each ray starts where it is.
+  const Scene reaching =
+      Build(kFogBall + "AreaLightSource \"diffuse\" Material \"diffuse\" Shape \"disk\" \"float radius\" 20\n", kInFog);
+  const RenderScene& lit = reaching.Render();
+  EXPECT_THAT(lit.lightStartsVary, ElementsAre(1));
+  EXPECT_EQ(lit.MediumOfLight(0, false, {Point3(0, 0, 0), Vector3(0, 0, 1)}), kFog);
+  EXPECT_EQ(lit.MediumOfLight(0, false, {Point3(15, 0, 0), Vector3(-1, 0, 0)}), kVacuum);
 }
 
 // The scenes of pbrt-v4 with media: no warnings, and light where it is.
