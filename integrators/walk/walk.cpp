@@ -49,8 +49,7 @@ void MakeInPlace(T& value, const Make& make) {
 // Side for PathGuide::Find. An opaque surface has one on either side; the paths on both sides of a transmissive surface
 // share one, so that either walk finds the density of the other.
 uint8_t SideOf(const Vertex& vertex) {
-  // The normal of a strand is towards the path that arrives: it has no sides.
-  if (vertex.IsInMedium() || vertex.point.strand != Strand::None) return GuideSideOf(Normal3(0.0f));
+  if (vertex.IsInMedium() || !vertex.receiver.HasNormal()) return GuideSideOf(Normal3(0.0f));
   return GuideSideOf(vertex.bsdf.IsTransmissive() ? vertex.point.Ng : vertex.receiver.normal);
 }
 
@@ -73,6 +72,10 @@ bool MakeVertex(const RenderScene& scene, const std::vector<std::shared_ptr<cons
   const Normal3& Ns = vertex.bsdf.ShadingFrame().z;  // by reference: a copy of what was just written stalls
   vertex.receiver = {point.position, glm::dot(Ns, vertex.toPrevious) < 0 ? -Ns : Ns, vertex.bsdf.IsTransmissive(),
                      attributes.link};
+  // The normal of a strand is towards the path that arrives: the lights would be selected in another way for a path
+  // that comes from one of them.
+  if (point.strand != Strand::None) [[unlikely]]
+    vertex.receiver.normal = Normal3(0.0f);
   vertex.coverage = attributes.alpha ? attributes.alpha->Alpha(point.uv, point.position, point.Ng) : 1.0f;
   vertex.isDelta = vertex.bsdf.IsDelta();
   if (!scene.media.empty()) [[unlikely]] {  // nothing reads these otherwise

@@ -57,8 +57,9 @@ uint32_t LightLearning::RegionOf(const Receiver& receiver) const {
   const Vector3 n = Abs(receiver.normal);
   const int axis = n.x >= n.y && n.x >= n.z ? 0 : n.y >= n.z ? 1 : 2;
   constexpr uint32_t kWithoutNormal = 6;
-  const uint32_t side =
-      receiver.HasNormal() ? 2 * static_cast<uint32_t>(axis) + (receiver.normal[axis] < 0 ? 1 : 0) : kWithoutNormal;
+  // The normal of a transmissive surface is towards the path that arrives, which may come from either side.
+  const bool isBehind = receiver.normal[axis] < 0 && !receiver.isTransmissive;
+  const uint32_t side = receiver.HasNormal() ? 2 * static_cast<uint32_t>(axis) + (isBehind ? 1 : 0) : kWithoutNormal;
   return static_cast<uint32_t>(MixBits(cell(p.x) ^ static_cast<uint64_t>(cell(p.y)) << 21 ^
                                        static_cast<uint64_t>(cell(p.z)) << 42 ^ static_cast<uint64_t>(side) << 61));
 }

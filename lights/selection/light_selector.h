@@ -18,11 +18,11 @@ namespace lampyr {
 
 // The point that is lit. Part of a path vertex.
 //
-// A normal of 0 says that there is no surface: the receiver is in a medium, or is a lens. Light then counts from all
+// A normal of 0: the receiver is in a medium, is a lens, or is on a strand, which turns. Light then counts from all
 // directions alike, without a cosine, and isTransmissive has no effect.
 struct Receiver {
   Point3 position{0.0f};
-  Normal3 normal{0.0f};         // shading normal, on the side of the path's previous vertex; 0 without a surface
+  Normal3 normal{0.0f};         // shading normal, on the side of the path's previous vertex; or 0
   bool isTransmissive = false;  // light from the other side contributes, too
   uint32_t link = 0;            // class of light linking and light filters (services/linking.h)
 

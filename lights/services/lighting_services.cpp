@@ -113,35 +113,41 @@ LightingServices LightingServices::With(LightLearning* learning, const EmissionG
 
 namespace {
 
-// The ratio of the spectra of a light to what their colours are upsampled to.
-Color RatioOf(const std::vector<LightSpectrum>& spectra, const Wavelengths& wavelengths) {
-  const auto divide = [](float a, float b) { return b > 0 ? a / b : 0.0f; };
-  Color ratio(1.0f);
-  for (const LightSpectrum& spectrum : spectra) {
-    const Color own = wavelengths.At(*spectrum.curve), upsampled = wavelengths.FromRgb(spectrum.color);
-    ratio *= {divide(own.r, upsampled.r), divide(own.g, upsampled.g), divide(own.b, upsampled.b)};
-  }
-  return ratio;
+// a / b by channel. Where b is too small to tell, or negative, as saturated colours may be: that of the largest
+// channel.
+Color Quotient(const Color& a, const Color& b) {
+  constexpr float kSmall = 1e-3f;
+  const float largest = b.Max();
+  if (!(largest > 0)) return Color(0.0f);
+  const float usual = largest == b.r ? a.r / b.r : largest == b.g ? a.g / b.g : a.b / b.b;
+  const auto divide = [&](float x, float y) { return y > kSmall * largest ? x / y : usual; };
+  return {divide(a.r, b.r), divide(a.g, b.g), divide(a.b, b.b)};
 }
 
 }  // namespace
 
 LightingServices LightingServices::AtWavelengths(std::shared_ptr<const Wavelengths> wavelengths) const {
   LightingServices view = *this;
-  view.spectralRatios_.clear();
+  view.ownSpectra_.clear();
   for (uint32_t i = 0; i < scene_->lights.size(); ++i) {
     const std::vector<LightSpectrum>& spectra = scene_->lights[i].light->Settings().spectra;
-    if (!spectra.empty()) view.spectralRatios_.push_back({i, RatioOf(spectra, *wavelengths)});
+    if (spectra.empty()) continue;
+    OwnSpectra& all = view.ownSpectra_.emplace_back(OwnSpectra{i, Color(1.0f), Color(1.0f)});
+    for (const LightSpectrum& spectrum : spectra) {
+      all.color *= spectrum.color;
+      all.own *= wavelengths->At(*spectrum.curve);
+    }
   }
   view.wavelengths_ = std::move(wavelengths);
   return view;
 }
 
+// What else an emission depends on, such as a texture or a tint, has no spectrum of its own and is upsampled.
 Color LightingServices::Tuned(uint32_t light, const Color& emitted) const {
-  const Color tuned = wavelengths_->FromRgb(emitted);
-  const auto found = std::lower_bound(spectralRatios_.begin(), spectralRatios_.end(), light,
-                                      [](const SpectralRatio& a, uint32_t b) { return a.light < b; });
-  return found != spectralRatios_.end() && found->light == light ? tuned * found->ratio : tuned;
+  const auto found = std::lower_bound(ownSpectra_.begin(), ownSpectra_.end(), light,
+                                      [](const OwnSpectra& a, uint32_t b) { return a.light < b; });
+  if (found == ownSpectra_.end() || found->light != light) return wavelengths_->FromRgb(emitted);
+  return wavelengths_->FromRgb(Quotient(emitted, found->color)) * found->own;
 }
 
 LightContext LightingServices::Context(uint32_t light, float time, bool bidirectional,

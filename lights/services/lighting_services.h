@@ -287,12 +287,13 @@ class LightingServices {
   LightLearning* learning_ = nullptr;
   const EmissionGuide* guide_ = nullptr;
   std::shared_ptr<const Wavelengths> wavelengths_;  // null: light is in Rec. 709
-  // Lights whose spectra are not those of their colours, ascending, with the ratio at the wavelengths.
-  struct SpectralRatio {
+  // Lights whose spectra are not those of their colours, ascending: the product of their colours in Rec. 709, and that
+  // of their spectra at the wavelengths.
+  struct OwnSpectra {
     uint32_t light;
-    Color ratio;
+    Color color, own;
   };
-  std::vector<SpectralRatio> spectralRatios_;
+  std::vector<OwnSpectra> ownSpectra_;
 };
 
 template <class Record>

@@ -84,6 +84,36 @@ TEST_P(InMedia, IntegratorsAgree) {
 INSTANTIATE_TEST_SUITE_P(Scenes, InMedia, testing::ValuesIn(MediaScenes()),
                          [](const auto& info) { return std::string(info.param.name); });
 
+// Strands turn their normals to the path that arrives: lamps are selected alike for paths from the camera and from
+// them.
+TEST(Strands, AreLitAlikeByPathsFromBothEnds) {
+  std::string text = FilmWith("box", 16, 16) + "LookAt 0 0 8  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 12\n" +
+                     World(1) +
+                     "LightSource \"spot\" \"rgb I\" [100 100 100] \"point3 from\" [6 0 2] \"point3 to\" [0 0 0] "
+                     "\"float coneangle\" 12 "
+                     "\"float conedeltaangle\" 1\n"
+                     "LightSource \"spot\" \"rgb I\" [100 100 100] \"point3 from\" [0.2 0.2 9] \"point3 to\" [0 0 0] "
+                     "\"float coneangle\" 9 "
+                     "\"float conedeltaangle\" 1\n"
+                     "Material \"hair\" \"float beta_m\" 0.6 \"float beta_n\" 0.6 \"rgb reflectance\" [0.9 0.9 0.9] "
+                     "\"float alpha\" 0\n";
+  for (int i = -3; i <= 3; ++i) {
+    const std::string x = std::to_string(0.25 * i);
+    text += "Shape \"curve\" \"string type\" \"flat\" \"float width\" 0.04 \"point3 P\" [";
+    for (const char* y : {"-1", "-0.3", "0.3", "1"}) text += x + " " + y + " 0 ";
+    text += "]\n";
+  }
+  RenderOverrides overrides;
+  const Replicas path = RenderReplicas(text, "path", 12, 256, overrides);
+  for (const char* integrator : {"bdpt", "vcm"}) {
+    overrides.seed += 1000;
+    const Agreement result = CompareReplicas(RenderReplicas(text, integrator, 12, 256, overrides), path, 16, 1e-3);
+    std::printf("%s: bias %+.3f %% +- %.3f %%\n", integrator, 100 * result.bias, 196 * result.biasError);
+    EXPECT_LT(std::abs(result.bias), 4 * result.biasError) << integrator;
+    EXPECT_LT(result.biasError, 0.008) << integrator << ": too noisy";
+  }
+}
+
 TEST(LightPathScenes, EveryTypeOfLightIsInOne) {
   const std::vector<AgreementScene> scenes = AgreementScenes();
   for (const LightType& type : LightRegistry()) {

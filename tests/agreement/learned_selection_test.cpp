@@ -64,6 +64,33 @@ TEST_P(LearnedSelection, ChangesTheNoiseAlone) {
 
 INSTANTIATE_TEST_SUITE_P(Integrators, LearnedSelection, testing::Values("path", "bdpt"));
 
+// What is learned of a sheet that light passes holds for paths from both of its sides: most lamps near it are hidden,
+// the one that lights it is behind it.
+TEST(LearnedSelectionSides, OfTransmissiveSurfacesAreOne) {
+  std::string text =
+      FilmWith("box", 16, 16) + "LookAt 0 0 4  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 26\n" + World(1) +
+      "LightSource \"spot\" \"rgb I\" [800 800 800] \"point3 from\" [0 0 -6] \"point3 to\" [0 0 0] \"float "
+      "coneangle\" 11 \"float conedeltaangle\" 2\n";
+  for (int i = 0; i < 9; ++i) {
+    const std::string at = std::to_string(0.6 * (i % 3 - 1)) + " " + std::to_string(0.6 * (i / 3 - 1)) + " -0.2";
+    text += "LightSource \"point\" \"rgb I\" [1.5 1.5 1.5] \"point3 from\" [" + at +
+            "]\nAttributeBegin Material \"diffuse\" \"rgb reflectance\" [0 0 0] Translate " + at +
+            " Shape \"sphere\" \"float radius\" 0.02 AttributeEnd\n";
+  }
+  text +=
+      "Material \"diffusetransmission\" \"rgb reflectance\" [0.4 0.4 0.4] \"rgb transmittance\" [0.4 0.4 0.4] Shape "
+      "\"trianglemesh\" \"point3 P\" [-1 -1 0  1 -1 0  1 1 0  -1 1 0] \"integer indices\" [0 1 2 0 2 3]\n";
+  const Replicas without = RenderReplicas(text, "bdpt", 12, 200, Learning(false));
+  RenderOverrides overrides = Learning(true);
+  overrides.seed = 100;
+  for (const char* integrator : {"bdpt", "vcm"}) {
+    const Agreement result = CompareReplicas(RenderReplicas(text, integrator, 12, 200, overrides), without, 16, 1e-3);
+    std::printf("%s: bias %+.3f %% +- %.3f %%\n", integrator, 100 * result.bias, 196 * result.biasError);
+    EXPECT_LT(std::abs(result.bias), 4 * result.biasError) << integrator;
+    EXPECT_LT(result.biasError, 0.002) << integrator << ": too noisy";
+  }
+}
+
 TEST(LearnedSelectionNoise, PaysWhereMostOfTheLightIsBehindAWall) {
   Diagnostics diagnostics(Diagnostics::Mode::Collect);
   const SceneDescription scene = ParseScene(TwoRooms(), "test.pbrt", diagnostics);

@@ -463,6 +463,34 @@ TEST(Spectral, BandsAreTheSpectrum) {
   }
 }
 
+// The spectra of a lamp multiply, and so does what has none, which is upsampled.
+TEST(Spectral, SpectraOfALampMultiply) {
+  const auto emitted = [](const std::string& parameters, uint32_t pass) {
+    RenderOverrides overrides;
+    overrides.integrator = "path";
+    overrides.spectral = true;
+    Diagnostics diagnostics(Diagnostics::Mode::Collect);
+    const BuiltScene built =
+        BuildScene(ParseScene("Camera \"perspective\" WorldBegin LightSource \"infinite\" " + parameters, "test.pbrt",
+                              diagnostics),
+                   overrides, true, diagnostics);
+    const RenderScene there =
+        built.scene.AtWavelengths(std::make_shared<const Wavelengths>(Wavelengths::OfPass(1, pass)), {});
+    return there.lighting->EscapedEmissionForCamera(0, {Point3(0.0f), Vector3(0, 0, 1)});
+  };
+  const std::string black = "\"blackbody L\" 2500 ", tint = "\"rgb color\" [1 0.3 0.05] ";
+  const std::string warm = "\"bool enableColorTemperature\" true \"float colorTemperature\" 2500 ";
+  for (uint32_t pass = 0; pass < 8; ++pass) {
+    const Color white = emitted("", pass), ofBlack = emitted(black, pass);
+    for (const auto& [both, other] : {std::pair(black + tint, tint), std::pair(black + warm, warm)}) {
+      const Color product = ofBlack * emitted(other, pass), whole = emitted(both, pass) * white;
+      for (const auto& [a, b] :
+           {std::pair(product.r, whole.r), std::pair(product.g, whole.g), std::pair(product.b, whole.b)})
+        EXPECT_NEAR(a, b, 1e-3f * b) << both << pass;
+    }
+  }
+}
+
 // Bands hold all of the light, and at its wavelengths, where glass disperses it: the caustic that is splatted, merged
 // and connected.
 TEST(Spectral, BandsOfDispersedLight) {

@@ -295,8 +295,8 @@ TEST(FilterErrors, SayWhatWouldBeRight) {
       "\"physical\"?)");
   EXPECT_EQ(MakeError("rod", "\"float left\" -2"),
             "test.pbrt:2:1: error: LightFilter \"rod\": its sides leave nothing of the box");
-  EXPECT_EQ(MakeError("ramp", "\"float knots\" [0 1]"),
-            "test.pbrt:2:1: error: LightFilter \"ramp\": 2 \"knots\" and 0 \"colors\" must be as many");
+  EXPECT_EQ(MakeError("ramp", "\"float knots\" [0 0.5 1]"),
+            "test.pbrt:2:1: error: LightFilter \"ramp\": 3 \"knots\" and 2 \"colors\" must be as many");
   EXPECT_EQ(MakeError("combiner", ""),
             "test.pbrt:2:1: error: LightFilter \"combiner\" needs the names of its \"filters\"");
   EXPECT_EQ(MakeError("blocker", "\"string combineMode\" \"mx\""), "no error");  // whoever holds it reads that
