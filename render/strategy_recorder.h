@@ -8,7 +8,7 @@
 
 namespace lampyr {
 
-// Of the samples of one thread.
+// The recorder of one thread: of its samples, one after the other.
 class StrategyRecorder final : public PathObserver {
  public:
   // `firstLayer`: of the film, the first one of `strategies`. `layers`: of the sample, cleared before each. `splats`:

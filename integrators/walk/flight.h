@@ -129,8 +129,8 @@ std::optional<MediumPoint> PointOnFlight(const SampleContext& context, const Fli
 Color TransmittanceOf(const SampleContext& context, const Ray& ray, uint32_t kinds, const EdgeEnd& start,
                       const EdgeEnd& end, uint64_t decider, EdgeFactors& factors);
 
-// The same for a ray to the surface that it meets, through `end`. It passes cut-outs and thin surfaces at random, as a
-// walk does; `passed`: the tints of these, and the transmittance of media. False: it meets nothing.
+// Traces a ray through `end` to the surface that it meets, past cut-outs and thin surfaces at random, as a walk does.
+// `passed` becomes the tints of these times the transmittance of media. False: it meets nothing.
 bool TransmittanceToHit(const SampleContext& context, const Ray& ray, uint32_t kinds, const EdgeEnd& start,
                         const EdgeEnd& end, uint64_t decider, RayHit& hit, Color& passed, EdgeFactors& factors);
 
