@@ -142,7 +142,7 @@ LightingServices LightingServices::AtWavelengths(std::shared_ptr<const Wavelengt
   return view;
 }
 
-// What else an emission depends on, such as a texture or a tint, has no spectrum of its own and is upsampled.
+// The other factors of an emission, such as a texture or a tint, are colours: their product is upsampled.
 Color LightingServices::Tuned(uint32_t light, const Color& emitted) const {
   const auto found = std::lower_bound(ownSpectra_.begin(), ownSpectra_.end(), light,
                                       [](const OwnSpectra& a, uint32_t b) { return a.light < b; });

@@ -43,10 +43,11 @@ RegressionInput MakeInput(const NoisyPicture& picture, std::vector<CleanFeature>
   input.halves = picture.halves;
   input.isValid = picture.isValid;
   input.features = std::move(features);
-  for (size_t half = 0; half < 2; ++half) {
-    for (size_t c = 0; c < 3; ++c) {
-      Plane variance = VarianceAround(picture.variance[c], picture.color[c], threads);
-      const Plane value = BoxMeans(picture.color[c], 1, threads);
+  for (size_t c = 0; c < 3; ++c) {
+    const Plane around = VarianceAround(picture.variance[c], picture.color[c], threads);
+    const Plane value = BoxMeans(picture.color[c], 1, threads);
+    for (size_t half = 0; half < 2; ++half) {
+      Plane variance = around;
       for (size_t i = 0; i < variance.Size(); ++i) {
         // Differences below this fraction of the value are not seen.
         const float unseen = 0.002f * value.values[i];

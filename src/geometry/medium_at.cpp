@@ -14,6 +14,13 @@ constexpr std::array<Vector3, 3> kDirections = {Vector3(0.57735f, 0.31127f, 0.75
                                                 Vector3(-0.43021f, 0.82114f, -0.37496f),
                                                 Vector3(0.23904f, -0.61237f, -0.75358f)};
 
+// The first change of a ray that says what it comes from; null: none does.
+const MediumChange* FirstToSay(const std::vector<MediumChange>& changes) {
+  const auto said =
+      std::find_if(changes.begin(), changes.end(), [](const auto& one) { return one.before != kSameMedium; });
+  return said == changes.end() ? nullptr : &*said;
+}
+
 // The medium that the first change of a ray comes from. With `ofBoundaries` what stops light says nothing: an open
 // sheet is met from both sides, whatever it says of the other one.
 std::optional<int32_t> FirstMedium(const std::vector<MediumChange>& changes, bool ofBoundaries) {
@@ -149,9 +156,8 @@ FoundMedium Find(const GeometryScene& geometry, const Point3& position, float ti
   if (!found.medium) {
     found = MediumSaidBy(changes, false);
     found.isOfOpaque = found.medium && std::all_of(changes.begin(), changes.end(), [](const auto& ray) {
-                         const auto said = std::find_if(ray.begin(), ray.end(),
-                                                        [](const auto& one) { return one.before != kSameMedium; });
-                         return said == ray.end() || said->isOpaque;
+                         const MediumChange* said = FirstToSay(ray);
+                         return !said || said->isOpaque;
                        });
   }
   found.isUnanimous = found.medium && std::all_of(changes.begin(), changes.end(), [&](const auto& ray) {
@@ -176,9 +182,8 @@ int32_t MediumAlong(const GeometryScene& geometry, const Ray& ray, int32_t other
 
 int32_t MediumAlong(const GeometryScene& geometry, const Ray& ray, int32_t otherwise, int32_t stopped) {
   const std::vector<MediumChange> changes = MediumChanges(geometry, ray);
-  const auto said =
-      std::find_if(changes.begin(), changes.end(), [](const auto& one) { return one.before != kSameMedium; });
-  if (said == changes.end()) return otherwise;
+  const MediumChange* said = FirstToSay(changes);
+  if (!said) return otherwise;
   if (!said->isOpaque) return said->before;
   const FoundMedium around = FindMedium(geometry, ray.origin, ray.time);
   return around.isOfOpaque ? stopped : around.medium.value_or(stopped);

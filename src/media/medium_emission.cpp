@@ -11,7 +11,7 @@ namespace {
 // Probability with which a point of a medium without a box of its own is sampled evenly within the scene's sphere:
 // rays that find the medium may miss a part of it.
 constexpr double kEverywhere = 1.0 / 16;
-// As kEverywhere, of a medium that opaque surfaces do not bound, though their sides may say so.
+// The same probability for the medium around the camera where it has no bounds but opaque surfaces.
 constexpr double kUnbounded = 1.0 / 2;
 
 Bounds3 BoxAround(const BoundingSphere& sphere) {

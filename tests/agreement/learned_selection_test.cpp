@@ -64,8 +64,8 @@ TEST_P(LearnedSelection, ChangesTheNoiseAlone) {
 
 INSTANTIATE_TEST_SUITE_P(Integrators, LearnedSelection, testing::Values("path", "bdpt"));
 
-// What is learned of a sheet that light passes holds for paths from both of its sides: most lamps near it are hidden,
-// the one that lights it is behind it.
+// The learned selection at a transmissive sheet is one for paths from both of its sides. Most lamps near the sheet are
+// hidden; a lamp behind it lights it.
 TEST(LearnedSelectionSides, OfTransmissiveSurfacesAreOne) {
   std::string text =
       FilmWith("box", 16, 16) + "LookAt 0 0 4  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 26\n" + World(1) +
