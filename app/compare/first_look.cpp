@@ -17,7 +17,9 @@ namespace lampyr {
 
 namespace {
 
-constexpr int kPilotParts = 4;
+// At the error probability of one block of one pair of integrators, a t-test of four parts asks for a difference of 150
+// standard errors, and one of eight for 17.
+constexpr int kPilotParts = 8;
 
 // Means of the whole picture and of the blocks of a grid over it, for each part of a pilot.
 struct PilotRun {
@@ -83,17 +85,15 @@ std::vector<double> PartsOfBlock(const PilotRun& run, int block, int side) {
   return values;
 }
 
-// True if `other` finds significantly more light than `run`, in the whole picture, with the error probability
-// `byChance`, or in a block of it. What is missing in a block is known worse, by few parts: of all blocks together the
-// error probability is `byChanceOfBlocks`.
+// True if `other` finds significantly more light than `run`, in the whole picture or in a block of it; each of the two
+// questions has the error probability `byChance`.
 bool FindsMore(const PilotRun& other, const PilotRun& run, double byChance) {
-  constexpr double byChanceOfBlocks = 0.01;
   const double scale = MomentsOf(other.means).mean;
   if (IsBrighter(other.means, run.means, byChance, scale)) return true;
   const int side = other.isBlurred || run.isBlurred ? kSideOfBlurredBlock : 1, across = kGrid / side;
   for (int block = 0; block < across * across; ++block) {
     if (IsBrighter(PartsOfBlock(other, block, side), PartsOfBlock(run, block, side),
-                   SidakRate(byChanceOfBlocks, across * across), scale))
+                   SidakRate(byChance, across * across), scale))
       return true;
   }
   return false;
@@ -115,7 +115,7 @@ double LightThatMayBeMissing(const PilotRun& run, const PilotRun& complete) {
 
 // Notes that a pilot misses light, or may miss some. Returns false if there is nothing to note.
 bool NoteFlaw(PilotRun& run, const std::vector<PilotRun>& runs, bool allBlack, bool allHinted) {
-  constexpr double byChance = 0.01;  // of all pairs of integrators
+  constexpr double byChance = 1e-3;  // of all pairs of integrators
   const auto pairs = static_cast<int>(runs.size() * (runs.size() - 1) / 2);
   const double byChanceOfPair = SidakRate(byChance, pairs);
   run.pilot.isFlawed = true;
