@@ -54,6 +54,7 @@ Image ErrorOf(const Image& developed, const std::vector<double>& biasSquares) {
 }  // namespace
 
 void CheckImageOutput(const std::filesystem::path& path, const char* option, bool withPng) {
+  if (path.filename() == ".exr") throw UsageError(std::string(option) + ": \".exr\" has no name before its ending");
   if (path.extension() != ".exr") {
     throw UsageError(std::string(option) + ": \"" + path.string() +
                      "\" must end in .exr (--png writes a PNG beside it)");

@@ -26,7 +26,7 @@ Color TraceConnection(const SampleContext& context, const PathVertex& z, const P
   ++context.counts.shadowRays;
   const Ray ray = RayBetween(z, y, context.time);
   if (context.scene.media.empty()) [[likely]]
-    return context.scene.Carried(context.scene.geometry->Transmittance(ray, visibility::kIndirect));
+    return context.scene.Transmittance(ray, visibility::kIndirect);
   const uint64_t decider = Hash(std::bit_cast<uint32_t>(ray.direction.x), std::bit_cast<uint32_t>(ray.direction.y),
                                 std::bit_cast<uint32_t>(ray.tMax));
   return TransmittanceOf(context, ray, visibility::kIndirect, z.EndTowards(ray.direction), y.EndTowards(-ray.direction),

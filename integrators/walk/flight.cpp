@@ -195,10 +195,9 @@ Buffers& BuffersOfConnections() {
 }
 
 // Brings what surfaces let through to the wavelengths of the scene.
-void TuneCrossings(const RenderScene& scene, std::vector<Crossing>& crossings) {
-  if (!scene.wavelengths) [[likely]]
-    return;
-  for (Crossing& crossing : crossings) crossing.transmittance = scene.Carried(crossing.transmittance);
+void Tune(const RenderScene& scene, std::vector<Crossing>& crossings) {
+  if (scene.wavelengths) [[unlikely]]
+    TuneCrossings(*scene.wavelengths, crossings);
 }
 
 std::vector<BeamStep>& ThreadSteps() {
@@ -223,7 +222,7 @@ void Fly(const SampleContext& context, const Ray& ray, uint32_t kinds, const Edg
   FineLine line{start.position, Vector3d(ray.direction)};
   line.isFineAtStart = start.isFine;
   const LineHit found = scene.geometry->Trace(ray, line, kinds, flight.hit, crossings);
-  TuneCrossings(scene, crossings);
+  Tune(scene, crossings);
   double end = found.t;
   flight.isHit = found.isHit;
   flight.factors = {1, MeanOf(start.extinction), 1};
@@ -307,12 +306,6 @@ Tracker Estimate(const RenderScene& scene, const FineLine& line, std::span<const
   return tracker;
 }
 
-Color ProductOf(std::span<const Crossing> crossings) {
-  Color product(1.0f);
-  for (const Crossing& crossing : crossings) product *= crossing.transmittance;
-  return product;
-}
-
 // The transmittance of the media alone up to `length`, between the crossings in BuffersOfConnections. Sets the factors
 // of the edge.
 Color TransmittanceOfMedia(const RenderScene& scene, const FineLine& line, double length, const EdgeEnd& start,
@@ -370,12 +363,8 @@ Color TransmittanceOf(const SampleContext& context, const Ray& ray, uint32_t kin
   Color surfaces = scene.geometry->Transmittance(ray, line, kinds, crossings);
   factors = {};
   if (surfaces.IsBlack()) return surfaces;
-  if (scene.wavelengths) [[unlikely]] {
-    // Cut-outs, which are gray, are in the product alone.
-    const float cutOuts = surfaces.Max() / ProductOf(crossings).Max();
-    TuneCrossings(scene, crossings);
-    surfaces = cutOuts * ProductOf(crossings);
-  }
+  if (scene.wavelengths) [[unlikely]]
+    surfaces = TunedTransmittance(*scene.wavelengths, surfaces, crossings);
   return surfaces * TransmittanceOfMedia(scene, line, line.length, start, end, decider, factors);
 }
 
@@ -386,8 +375,8 @@ bool TransmittanceToHit(const SampleContext& context, const Ray& ray, uint32_t k
   const FineLine line = LineOf(ray, start, end);
   const LineHit found = scene.geometry->Trace(ray, line, kinds, hit, crossings);
   if (!found.isHit) return false;
-  TuneCrossings(scene, crossings);
-  passed = ProductOf(crossings) * TransmittanceOfMedia(scene, line, found.t, start, end, decider, factors);
+  Tune(scene, crossings);
+  passed = Transmittance(crossings) * TransmittanceOfMedia(scene, line, found.t, start, end, decider, factors);
   return true;
 }
 

@@ -51,8 +51,7 @@ bool SeesOrigin(const SampleContext& context, const EmittedPhoton& photon, const
   RayHit hit;
   Color passed;
   if (scene.media.empty()) [[likely]] {
-    if (!scene.geometry->Intersect(ray, visibility::kCamera, hit, passed)) return false;
-    passed = scene.Carried(passed);
+    if (!scene.Intersect(ray, visibility::kCamera, hit, passed)) return false;
   } else {
     const EdgeEnd lens{Point3d(ray.origin), scene.MediumOf(ray)}, light{Point3d(photon.emission.position)};
     if (!TransmittanceToHit(context, ray, visibility::kCamera, lens, light, DeciderOf(photon.emission.position), hit,
@@ -144,7 +143,7 @@ bool CompleteConnection(const SampleContext& context, const PathVertex& vertex, 
   const Ray ray = SpawnRayTo(vertex.point, connection.camera.position, Vector3(0.0f), Normal3(0.0f), context.time);
   Color arriving;
   if (scene.media.empty()) [[likely]] {
-    arriving = scene.Carried(scene.geometry->Transmittance(ray, visibility::kCamera));
+    arriving = scene.Transmittance(ray, visibility::kCamera);
   } else {
     EdgeFactors fromVertex;
     const EdgeEnd lens{Point3d(connection.camera.position)};

@@ -13,6 +13,7 @@
 #include "lights/services/lighting_services.h"
 #include "materials/material.h"
 #include "media/medium.h"
+#include "media/surface_tints.h"
 #include "spectral/wavelengths.h"
 
 namespace lampyr {
@@ -52,11 +53,16 @@ struct RenderScene {
   // The scene at the wavelengths of a pass. `afterWide`: materials behind a wide scattering, or none.
   RenderScene AtWavelengths(const std::shared_ptr<const Wavelengths>& wavelengths,
                             const std::vector<std::shared_ptr<const Material>>& afterWide) const;
-  // A factor in Rec. 709, of what the geometry lets through, as light is carried here.
-  Color Carried(const Color& factor) const {
+  // GeometryScene::Transmittance and GeometryScene::Intersect, as light is carried here; for scenes without media.
+  Color Transmittance(const Ray& ray, uint32_t kinds) const {
     if (!wavelengths) [[likely]]
-      return factor;
-    return wavelengths->FromRgb(factor);
+      return geometry->Transmittance(ray, kinds);
+    return TransmittanceAt(*wavelengths, *geometry, ray, kinds);
+  }
+  bool Intersect(const Ray& ray, uint32_t kinds, RayHit& hit, Color& tint) const {
+    if (!wavelengths) [[likely]]
+      return geometry->Intersect(ray, kinds, hit, tint);
+    return IntersectAt(*wavelengths, *geometry, ray, kinds, hit, tint);
   }
   // Medium in which a camera ray starts.
   int32_t MediumOf(const Ray& cameraRay) const;

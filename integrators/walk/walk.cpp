@@ -313,9 +313,7 @@ void Walk(const SampleContext& context, const WalkSettings& settings, PathState&
     RayHit hit;
     bool isHit, collides = false;
     if (!hasMedia) [[likely]] {
-      isHit = geometry.Intersect(state.ray, kinds, hit, state.passed);
-      if (context.scene.wavelengths) [[unlikely]]
-        state.passed = context.scene.Carried(state.passed);
+      isHit = context.scene.Intersect(state.ray, kinds, hit, state.passed);
     } else {
       isHit = FlyOn(context, settings, kinds, state, path, visitor, flight.emplace());
       hit = flight->hit;

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "lights/selection/linked_selector.h"
+#include "media/surface_tints.h"
 
 namespace lampyr {
 
@@ -225,8 +226,9 @@ Ray LightingServices::ShadowRay(const SurfacePoint& from, const DirectSample& di
 }
 
 Color LightingServices::Transmittance(const SurfacePoint& from, const DirectSample& direct, float time) const {
-  const Color passed = scene_->geometry.Transmittance(ShadowRay(from, direct, time), visibility::kShadow);
-  return wavelengths_ ? wavelengths_->FromRgb(passed) : passed;
+  const Ray ray = ShadowRay(from, direct, time);
+  return wavelengths_ ? TransmittanceAt(*wavelengths_, scene_->geometry, ray, visibility::kShadow)
+                      : scene_->geometry.Transmittance(ray, visibility::kShadow);
 }
 
 std::optional<FoundLight> LightingServices::EvaluateSamples(const Receiver& receiver, const Vector3& direction,

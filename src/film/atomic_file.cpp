@@ -26,7 +26,7 @@ AtomicFile::AtomicFile(const std::filesystem::path& path) : path_(path) {
   if (!path.has_filename()) throw Error("cannot write \"" + path.string() + "\": it names no file");
   target_ = WriteTarget(path);
   std::error_code ignored;
-  const std::filesystem::file_status there = std::filesystem::status(target_, ignored);
+  const std::filesystem::file_status there = std::filesystem::status(path, ignored);
   if (std::filesystem::is_directory(there)) Fail(EISDIR);
   // Renaming would replace the device itself.
   if (std::filesystem::exists(there) && !std::filesystem::is_regular_file(there))

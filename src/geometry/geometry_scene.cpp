@@ -467,6 +467,18 @@ bool GeometryScene::Intersect(const Ray& ray, uint32_t kinds, RayHit& hit, Color
   return isHit;
 }
 
+bool GeometryScene::Intersect(const Ray& ray, uint32_t kinds, RayHit& hit, Color& tint,
+                              std::vector<Crossing>& crossings) const {
+  crossings.clear();
+  if (!implementation_->Accept(ray)) {
+    tint = Color(0.0f);
+    return false;
+  }
+  const bool isHit = Trace(ray, kinds, hit, crossings);
+  tint = lampyr::Transmittance(crossings);
+  return isHit;
+}
+
 // False: an accepted ray is stopped.
 inline bool GeometryScene::Implementation::Passes(const Ray& ray, uint32_t kinds, TraceContext& trace) const {
   rtcInitIntersectContext(&trace.context);

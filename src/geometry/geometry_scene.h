@@ -124,6 +124,7 @@ class GeometryScene {
     Color tint;
     return Intersect(ray, kinds, hit, tint);
   }
+  bool Intersect(const Ray& ray, uint32_t kinds, RayHit& hit, Color& tint, std::vector<Crossing>& crossings) const;
 
   // Transmittance of (0, ray.tMax): 0 behind an opaque surface; otherwise the product over all cut-outs and thin
   // surfaces, by increasing t. It is the expected value of Intersect's outcome. 0 for a ray that is rejected.

@@ -829,6 +829,9 @@ TEST_F(Cli, ANameThatCannotBeWrittenIsRefusedAndLeavesNothing) {
   for (const auto& entry : fs::directory_iterator(folder_)) {
     EXPECT_EQ(entry.path().filename().string().find("busy"), std::string::npos) << "a part of an image was left behind";
   }
+  EXPECT_NE(Run("render scene.pbrt -o .exr").output.find("has no name before its ending"), std::string::npos);
+  EXPECT_NE(Run("render scene.pbrt --spp 1 --stats /dev/stdout 2>&1 | cat").output.find("it is a device or a pipe"),
+            std::string::npos);
 }
 
 // pbrt-v4: "Ignoring area light specification".

@@ -10,6 +10,7 @@
 #include "spectral/cie.h"
 #include "spectral/color_space.h"
 #include "support/render_scene.h"
+#include "support/replicas.h"
 
 namespace lampyr::test {
 namespace {
@@ -487,6 +488,45 @@ TEST(Spectral, SpectraOfALampMultiply) {
       for (const auto& [a, b] :
            {std::pair(product.r, whole.r), std::pair(product.g, whole.g), std::pair(product.b, whole.b)})
         EXPECT_NEAR(a, b, 1e-3f * b) << both << pass;
+    }
+  }
+}
+
+// Light goes through two coloured panes, and the camera looks through them: their spectra multiply, not their colours,
+// which would be green by half. Where there is a medium somewhere, rays are followed from pane to pane.
+TEST(Spectral, SpectraOfPanesMultiply) {
+  const auto scene = [](const std::string& medium) {
+    return "LookAt 0 3 0.01  0 0 0  0 1 0\n"
+           "Film \"rgb\" \"integer xresolution\" 12 \"integer yresolution\" 12\n"
+           "PixelFilter \"box\" Camera \"perspective\" \"float fov\" 40\n" +
+           medium +
+           "AttributeBegin Material \"thindielectric\" \"float eta\" 1.0001 \"rgb transmittance\" [0.9 0.5 0.02]\n"
+           "Shape \"bilinearmesh\" \"point3 P\" [-9 1 -9  9 1 -9  -9 1 9  9 1 9] AttributeEnd\n"
+           "AttributeBegin Material \"thindielectric\" \"float eta\" 1.0001 \"rgb transmittance\" [0.02 0.5 0.9]\n"
+           "Shape \"bilinearmesh\" \"point3 P\" [-9 1.2 -9  9 1.2 -9  -9 1.2 9  9 1.2 9] AttributeEnd\n"
+           "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [9 9 9] Translate 0 4 1.5\n"
+           "Shape \"sphere\" \"float radius\" 0.5 AttributeEnd\n"
+           "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [0.5 0.5 0.5] Translate 0.3 0.2 0.2\n"
+           "Shape \"sphere\" \"float radius\" 0.15 AttributeEnd\n"
+           "Material \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5]\n"
+           "Shape \"bilinearmesh\" \"point3 P\" [-1 0 -1  1 0 -1  -1 0 1  1 0 1]\n";
+  };
+  const std::string plain = "WorldBegin\n",
+                    somewhere =
+                        "WorldBegin MakeNamedMedium \"m\" \"string type\" \"homogeneous\"\n"
+                        "AttributeBegin MediumInterface \"m\" \"\" Material \"interface\" Translate 0 -9 0\n"
+                        "Shape \"sphere\" \"float radius\" 0.1 AttributeEnd\n";
+  RenderOverrides overrides;
+  overrides.spectral = true;
+  const Replicas reference = RenderReplicas(scene(somewhere), "path", 16, 128, overrides);
+  overrides.seed = 1000;
+  for (const char* integrator : {"path", "light", "bdpt", "vcm", "sppm"}) {
+    for (const std::string& medium : {plain, somewhere}) {
+      const Agreement agreement =
+          CompareReplicas(RenderReplicas(scene(medium), integrator, 16, 128, overrides), reference, 6, 1e-4);
+      EXPECT_TRUE(agreement.Agrees()) << integrator << (medium == plain ? ", without media: " : ", with: ")
+                                      << agreement.bias << " ± " << agreement.biasError;
+      std::printf("[   info   ] %s: %.2f %% ± %.2f %%\n", integrator, 100 * agreement.bias, 100 * agreement.biasError);
     }
   }
 }

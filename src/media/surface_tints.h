@@ -1,0 +1,25 @@
+// What thin surfaces and cut-outs let through at the wavelengths of a pass. GeometryScene knows it in Rec. 709: the
+// spectrum of two panes is the product of their spectra, which the product of their colours does not tell.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "geometry/geometry_scene.h"
+#include "spectral/wavelengths.h"
+
+namespace lampyr {
+
+// Brings the transmittance of each crossing to the wavelengths.
+void TuneCrossings(const Wavelengths& wavelengths, std::vector<Crossing>& crossings);
+
+// The same, of the crossings that GeometryScene::Transmittance has listed with the result `product`, not 0. Returns
+// their product and that of the cut-outs, which are gray and not listed.
+Color TunedTransmittance(const Wavelengths& wavelengths, const Color& product, std::vector<Crossing>& crossings);
+
+// GeometryScene::Transmittance and GeometryScene::Intersect at the wavelengths.
+Color TransmittanceAt(const Wavelengths& wavelengths, const GeometryScene& geometry, const Ray& ray, uint32_t kinds);
+bool IntersectAt(const Wavelengths& wavelengths, const GeometryScene& geometry, const Ray& ray, uint32_t kinds,
+                 RayHit& hit, Color& tint);
+
+}  // namespace lampyr
