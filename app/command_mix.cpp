@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -38,9 +39,11 @@ int RunMix(const MixOptions& options) {
   for (const std::string& factor : options.factors) factors.push_back(ParseFactor(factor));
   Image mixed;
   bool hadVariances = false;
+  std::vector<std::string> layers;
   try {
     const Image image = ReadImage(options.input);
     hadVariances = image.ChannelIndex("variance.R") >= 0;
+    layers = ColorLayers(image);
     mixed = LocateErrors({std::make_shared<const std::string>(options.input.string())},
                          [&] { return MixLayers(image, factors); });
   } catch (const Error& wrong) {  // what cannot be read, or has no such layer, is wrong usage
@@ -48,6 +51,14 @@ int RunMix(const MixOptions& options) {
   }
   if (hadVariances && mixed.ChannelIndex("variance.R") < 0 && !options.quiet)
     std::fprintf(stderr, "the variances of what is mixed are not known, because lights share paths: left out\n");
+  const std::vector<std::string> kept = ColorLayers(mixed);
+  std::string lost;
+  for (const std::string& layer : layers) {
+    if (std::find(kept.begin(), kept.end(), layer) == kept.end()) lost += (lost.empty() ? "" : ", ") + layer;
+  }
+  if (!lost.empty() && !options.quiet)
+    std::fprintf(stderr, "how much of the light that has changed is in these layers is not known: left out: %s\n",
+                 lost.c_str());
   WriteExr(options.output, mixed, ExrPrecision::Float);
   if (options.png) WritePngBeside(options.output, mixed, options.exposure, options.clipPng);
   if (!options.quiet) std::fprintf(stderr, "%s: %d×%d\n", options.output.c_str(), mixed.width, mixed.height);

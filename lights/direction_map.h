@@ -5,6 +5,8 @@
 // is defined in local directions (a cone, an image) multiplies its local density by that factor.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <optional>
 
@@ -15,22 +17,44 @@
 
 namespace lampyr {
 
+// True if a number of this size may be a sum of squares; those of the others overflow, or lose what they are.
+inline bool IsOfGoodSize(float square) {
+  return square > 1e-30f && square < 1e30f;
+}
+
+// The direction of what a map makes of a direction. Where lengths would overflow, or be lost, it is computed in double.
+inline Vector3 MappedDirection(const Affine& map, const Vector3& direction) {
+  const Vector3 mapped = map.Vector(direction);
+  if (IsOfGoodSize(LengthSquared(mapped))) [[likely]]
+    return glm::normalize(mapped);
+  return Vector3(glm::normalize(glm::dmat3(map.linear) * Vector3d(direction)));
+}
+
+inline float LargestComponent(const glm::mat3& m) {
+  return std::max({MaxAbsComponent(m[0]), MaxAbsComponent(m[1]), MaxAbsComponent(m[2])});
+}
+
 inline Vector3 ToLocalDirection(const LightTransform& transform, const Vector3& direction) {
-  return glm::normalize(transform.toLocal.Vector(direction));
+  return MappedDirection(transform.toLocal, direction);
 }
 
 inline Vector3 ToRenderDirection(const LightTransform& transform, const Vector3& local) {
-  return glm::normalize(transform.toRender.Vector(local));
+  return MappedDirection(transform.toRender, local);
 }
 
-// dω_local / dω at the unit render-space `direction`. Scaled first, so that no size of transform overflows.
+// dω_local / dω at the unit render-space `direction`.
 inline float LocalSolidAngleFactor(const LightTransform& transform, const Vector3& direction) {
-  const float length = glm::length(transform.toLocal.Vector(direction));
-  return std::abs(glm::determinant(transform.toLocal.linear * (1.0f / length)));
+  const Vector3 local = transform.toLocal.Vector(direction);
+  if (IsOfGoodSize(LengthSquared(local))) [[likely]]
+    return std::abs(glm::determinant(transform.toLocal.linear * (1.0f / glm::length(local))));
+  const glm::dmat3 map(transform.toLocal.linear);
+  return static_cast<float>(std::abs(glm::determinant(map)) / std::pow(glm::length(map * Vector3d(direction)), 3));
 }
 
 // True if the linear map is a rotation or reflection times a uniform scale, to float precision.
-inline bool IsSimilarity(const glm::mat3& m) {
+inline bool IsSimilarity(const glm::mat3& map) {
+  const float largest = LargestComponent(map);
+  const glm::mat3 m = IsOfGoodSize(largest * largest) ? map : map / largest;
   const float xx = glm::dot(m[0], m[0]), yy = glm::dot(m[1], m[1]), zz = glm::dot(m[2], m[2]);
   const float tolerance = 4e-6f * xx;
   return std::abs(yy - xx) <= tolerance && std::abs(zz - xx) <= tolerance &&

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <functional>
 #include <set>
 
 #include "base/error.h"
@@ -11,6 +13,7 @@ namespace lampyr {
 
 namespace {
 
+constexpr const char* kGroupsMetadata = "lampyr.lightGroups";
 constexpr std::array<const char*, 3> kChannels = {"R", "G", "B"};
 
 float ChannelOf(const Color& color, size_t channel) {
@@ -42,19 +45,24 @@ Color FactorOf(const std::string& layer, const std::vector<LayerFactor>& factors
   return Color(1.0f);
 }
 
-// Variances and bands of the spectrum of the picture, of which all light has one factor. The bands need one without
-// colour.
-void ScaleOthers(const Color& factor, Image& image) {
+// Multiplies a layer; "" is the picture.
+void Scale(const Color& factor, const std::string& layer, Image& image) {
+  const std::array<size_t, 3> channels = ChannelsOfLayer(image, layer);
+  for (size_t i = 0; i < image.data.size(); i += image.channels.size()) {
+    for (size_t c = 0; c < 3; ++c) image.data[i + channels[c]] *= ChannelOf(factor, c);
+  }
+}
+
+// Variances, bands of the spectrum and layers besides the groups, where all light has one factor. The bands need one
+// without colour.
+void ScaleOthers(const Color& factor, const std::vector<std::string>& groups, Image& image) {
   for (size_t channel = 0; channel < image.channels.size(); ++channel) {
     if (!IsBandLayer(image.channels[channel])) continue;
     for (size_t i = channel; i < image.data.size(); i += image.channels.size()) image.data[i] *= factor.r;
   }
-  for (size_t c = 0; c < 3; ++c) {
-    const int channel = image.ChannelIndex(std::string("variance.") + kChannels[c]);
-    if (channel < 0) continue;
-    const float scale = ChannelOf(factor, c) * ChannelOf(factor, c);
-    for (size_t i = static_cast<size_t>(channel); i < image.data.size(); i += image.channels.size())
-      image.data[i] *= scale;
+  if (image.ChannelIndex("variance.R") >= 0) Scale(factor * factor, "variance", image);
+  for (const std::string& layer : ColorLayers(image)) {
+    if (std::find(groups.begin(), groups.end(), layer) == groups.end()) Scale(factor, layer, image);
   }
 }
 
@@ -62,11 +70,11 @@ bool IsGray(const Color& factor) {
   return factor.r == factor.g && factor.g == factor.b;
 }
 
-// Without what is known of the picture as a whole alone.
-Image Without(const Image& image, bool variances, bool bands) {
+// The channels that `isKept`.
+Image Kept(const Image& image, const std::function<bool(const std::string&)>& isKept) {
   std::vector<std::string> kept;
   for (const std::string& channel : image.channels) {
-    if (!(variances && channel.starts_with("variance.")) && !(bands && IsBandLayer(channel))) kept.push_back(channel);
+    if (isKept(channel)) kept.push_back(channel);
   }
   Image result = ChannelsOf(image, kept);
   result.metadata = image.metadata;
@@ -75,6 +83,57 @@ Image Without(const Image& image, bool variances, bool bands) {
   result.fullWidth = image.fullWidth;
   result.fullHeight = image.fullHeight;
   return result;
+}
+
+// Channels that are true of the light as it was alone: halves of the samples, strategies and errors.
+bool IsOfParts(const std::string& channel) {
+  for (const char* prefix : {"half.", "weighted.", "unweighted.", "relativeError", "bias."}) {
+    if (channel.starts_with(prefix)) return true;
+  }
+  return false;
+}
+
+// Without what is not known of a picture of which some layers alone have changed, and without layers besides `known`.
+Image WithoutUnknown(const Image& image, const std::vector<std::string>& known) {
+  const std::vector<std::string> layers = ColorLayers(image);
+  const auto isIn = [](const std::vector<std::string>& names, const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  return Kept(image, [&](const std::string& channel) {
+    if (IsBandLayer(channel) || channel.starts_with("variance.") || IsOfParts(channel)) return false;
+    const std::string layer = channel.substr(0, channel.rfind('.'));
+    return layer == channel || !isIn(layers, layer) || isIn(known, layer);
+  });
+}
+
+void CheckIsFinite(const Image& image, const Image& mixed) {
+  for (size_t i = 0; i < image.data.size(); ++i) {
+    if (std::isfinite(image.data[i]) && !std::isfinite(mixed.data[i]))
+      throw Error("the factors are too large: values of the picture would not be finite");
+  }
+}
+
+// All light groups, added up.
+void AddUp(const std::vector<std::string>& groups, const std::vector<LayerFactor>& factors, Image& mixed) {
+  const std::array<size_t, 3> picture = ChannelsOfLayer(mixed, "");
+  Scale(Color(0.0f), "", mixed);
+  for (const std::string& group : groups) {
+    Scale(FactorOf(group, factors), group, mixed);
+    const std::array<size_t, 3> layer = ChannelsOfLayer(mixed, group);
+    for (size_t i = 0; i < mixed.data.size(); i += mixed.channels.size()) {
+      for (size_t c = 0; c < 3; ++c) mixed.data[i + picture[c]] += mixed.data[i + layer[c]];
+    }
+  }
+}
+
+// Adds what a layer changes by.
+void AddDifference(const LayerFactor& each, Image& mixed) {
+  const std::array<size_t, 3> picture = ChannelsOfLayer(mixed, ""), layer = ChannelsOfLayer(mixed, each.layer);
+  for (size_t i = 0; i < mixed.data.size(); i += mixed.channels.size()) {
+    for (size_t c = 0; c < 3; ++c)
+      mixed.data[i + picture[c]] += (ChannelOf(each.factor, c) - 1) * mixed.data[i + layer[c]];
+  }
+  Scale(each.factor, each.layer, mixed);
 }
 
 }  // namespace
@@ -94,7 +153,7 @@ std::vector<std::string> ColorLayers(const Image& image) {
   for (const std::string& channel : image.channels) {
     if (!channel.ends_with(".R")) continue;
     const std::string layer = channel.substr(0, channel.size() - 2);
-    constexpr std::array<const char*, 4> kOthers = {"variance", "half", "noisy", "Albedo"};
+    constexpr std::array<const char*, 5> kOthers = {"variance", "half", "noisy", "Albedo", "bias"};
     if (std::find(kOthers.begin(), kOthers.end(), layer) != kOthers.end() || layer.find('.') != std::string::npos ||
         layer.starts_with("Crypto") || image.ChannelIndex(layer + ".G") < 0 || image.ChannelIndex(layer + ".B") < 0)
       continue;
@@ -104,7 +163,7 @@ std::vector<std::string> ColorLayers(const Image& image) {
 }
 
 std::vector<std::string> GroupLayers(const Image& image) {
-  const auto list = image.metadata.find("lampyr.lightGroups");
+  const auto list = image.metadata.find(kGroupsMetadata);
   if (list == image.metadata.end()) return {};
   const std::vector<std::string> all = ColorLayers(image);
   std::vector<std::string> groups = Split(list->second, ',');
@@ -119,49 +178,42 @@ Image MixLayers(const Image& image, const std::vector<LayerFactor>& factors) {
   // Of a denoised picture the groups are those of the noisy one: their sum is not the picture.
   const bool isDenoised = image.ChannelIndex("noisy.R") >= 0;
   const std::vector<std::string> groups = isDenoised ? std::vector<std::string>() : GroupLayers(image);
-  Image mixed = image;
-  const std::array<size_t, 3> picture = ChannelsOfLayer(image, "");
-  const size_t pixels = image.data.size() / image.channels.size();
-  const auto at = [&](Image& of, size_t pixel, size_t channel) -> float& {
-    return of.data[pixel * of.channels.size() + channel];
-  };
   const auto isGroup = [&](const std::string& layer) {
     return std::find(groups.begin(), groups.end(), layer) != groups.end();
   };
-  const bool mixesGroups =
-      std::any_of(factors.begin(), factors.end(), [&](const LayerFactor& each) { return isGroup(each.layer); });
-  for (size_t pixel = 0; mixesGroups && pixel < pixels; ++pixel) {
-    for (size_t c = 0; c < 3; ++c) at(mixed, pixel, picture[c]) = 0;
-  }
-  for (const std::string& group : mixesGroups ? groups : std::vector<std::string>()) {
-    const Color factor = FactorOf(group, factors);
-    const std::array<size_t, 3> layer = ChannelsOfLayer(image, group);
-    for (size_t pixel = 0; pixel < pixels; ++pixel) {
-      for (size_t c = 0; c < 3; ++c) {
-        float& value = at(mixed, pixel, layer[c]);
-        value *= ChannelOf(factor, c);
-        at(mixed, pixel, picture[c]) += value;
-      }
-    }
-  }
-  bool isUniform = true;
+  Image mixed = image;
+  std::vector<std::string> named;
+  bool mixesGroups = false, mixesOthers = false;
   for (const LayerFactor& each : factors) {
-    if (isGroup(each.layer)) continue;
-    isUniform = false;
-    const std::array<size_t, 3> layer = ChannelsOfLayer(image, each.layer);
-    for (size_t pixel = 0; pixel < pixels; ++pixel) {
-      for (size_t c = 0; c < 3; ++c)
-        at(mixed, pixel, picture[c]) +=
-            (ChannelOf(each.factor, c) - 1) * image.data[pixel * image.channels.size() + layer[c]];
+    named.push_back(each.layer);
+    if (isGroup(each.layer)) {
+      mixesGroups = true;
+    } else if (each.factor != Color(1.0f)) {
+      mixesOthers = true;
     }
   }
-  for (const std::string& group : groups)
-    isUniform = isUniform && FactorOf(group, factors) == FactorOf(groups.front(), factors);
-  if (!isUniform) return Without(mixed, true, true);
+  if (mixesGroups) AddUp(groups, factors, mixed);
+  for (const LayerFactor& each : factors) {
+    if (!isGroup(each.layer)) AddDifference(each, mixed);
+  }
+  CheckIsFinite(image, mixed);
+  if (mixesOthers) {
+    // What the groups and the other layers had of the light that has changed is not known.
+    mixed = WithoutUnknown(mixed, mixesGroups ? std::vector<std::string>() : named);
+    mixed.metadata.erase(kGroupsMetadata);
+    return mixed;
+  }
   if (!mixesGroups) return mixed;
   const Color factor = FactorOf(groups.front(), factors);
-  ScaleOthers(factor, mixed);
-  return IsGray(factor) ? mixed : Without(mixed, false, true);
+  const bool isUniform = std::all_of(groups.begin(), groups.end(),
+                                     [&](const std::string& group) { return FactorOf(group, factors) == factor; });
+  if (!isUniform) return WithoutUnknown(mixed, groups);
+  if (factor == Color(1.0f)) return mixed;
+  ScaleOthers(factor, groups, mixed);
+  CheckIsFinite(image, mixed);
+  return Kept(mixed, [&](const std::string& channel) {
+    return !IsOfParts(channel) && (IsGray(factor) || !IsBandLayer(channel));
+  });
 }
 
 }  // namespace lampyr

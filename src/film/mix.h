@@ -22,10 +22,11 @@ std::vector<std::string> ColorLayers(const Image& image);
 std::vector<std::string> GroupLayers(const Image& image);
 
 // The picture with each of the layers times its factor. Light groups are added up, so that groups at 0 leave nothing;
-// of other layers, and in denoised pictures, the picture gets the difference. The groups themselves are scaled, too, so
-// that the result can be mixed again; other layers stay as they are, and layers of variance stay only where all groups
-// have one factor, bands of the spectrum only where that has no colour. Throws an Error for a layer that the image does
-// not have, or that is named twice.
+// of other layers, and in denoised pictures, the picture gets the difference. What is kept is true of the mixed picture,
+// so that it can be mixed again: of light groups, all groups; of other layers, those that were named, if no group was,
+// taken to have no light in common. Other layers, variances and bands of the spectrum stay only where all groups have
+// one factor, bands only where that has no colour. Throws an Error for a layer that the image does not have, or that is
+// named twice, and for values that would not be finite.
 Image MixLayers(const Image& image, const std::vector<LayerFactor>& factors);
 
 }  // namespace lampyr

@@ -1,6 +1,8 @@
 #include "film/output_plan.h"
 
 #include <algorithm>
+#include <bit>
+#include <compare>
 
 #include "base/error.h"
 
@@ -11,24 +13,68 @@ namespace {
 constexpr size_t kMostStates = 4096;  // of user expressions; those of light groups have a few for each
 constexpr size_t kMostPairs = size_t{1} << 24;
 
-using Set = std::vector<uint32_t>;  // of positions, increasing
+constexpr uint32_t kWordBits = 64;
 
-void Sort(Set& set) {
-  std::sort(set.begin(), set.end());
-  set.erase(std::unique(set.begin(), set.end()), set.end());
+// 64 positions of one expression, a bit each. Those of the next expression begin with a new word, so that sets are
+// sparse where there are many expressions and dense where there is a long one.
+struct Word {
+  uint32_t index = 0;
+  uint64_t bits = 0;
+  auto operator<=>(const Word&) const = default;
+};
+using Set = std::vector<Word>;  // increasing, no word empty
+
+void ForEachPosition(const Set& set, const auto& visit) {
+  for (const Word& word : set) {
+    for (uint64_t bits = word.bits; bits != 0; bits &= bits - 1)
+      visit(word.index * kWordBits + static_cast<uint32_t>(std::countr_zero(bits)));
+  }
 }
+
+// A set that is being put together.
+class Union {
+ public:
+  explicit Union(size_t words) : bits_(words) {}
+  void Clear() {
+    for (const uint32_t index : touched_) bits_[index] = 0;
+    touched_.clear();
+  }
+  void Add(const Word& word) {
+    if (bits_[word.index] == 0) touched_.push_back(word.index);
+    bits_[word.index] |= word.bits;
+  }
+  void Add(const Set& set) {
+    for (const Word& word : set) Add(word);
+  }
+  void Add(uint32_t position) { Add(Word{position / kWordBits, uint64_t{1} << position % kWordBits}); }
+  uint64_t BitsOf(uint32_t index) const { return bits_[index]; }
+  Set Whole() {
+    std::sort(touched_.begin(), touched_.end());
+    Set set;
+    for (const uint32_t index : touched_) set.push_back({index, bits_[index]});
+    return set;
+  }
+
+ private:
+  std::vector<uint64_t> bits_;     // by word
+  std::vector<uint32_t> touched_;  // words that are not empty
+};
 
 }  // namespace
 
 // The positions of all expressions together. Before those of each expression stands one for the camera.
 class OutputPlan::Compiler {
  public:
-  Compiler(OutputPlan& plan, const std::vector<LightSourceName>& lights) : plan_(plan) {
+  Compiler(OutputPlan& plan, const std::vector<LightSourceName>& lights)
+      : plan_(plan), gathered_(CountWords(plan.layers_)) {
+    const size_t words = CountWords(plan.layers_);
+    layers_.reserve(words);
+    matching_.reserve(words);
+    next_.resize(words * kWordBits);
+    before_.resize(words * kWordBits);
     for (uint32_t layer = 0; layer < plan.layers_.size(); ++layer) Collect(layer);
-    before_.resize(positions_.size());
-    for (uint32_t p = 0; p < positions_.size(); ++p) {
-      for (const uint32_t next : positions_[p].next) before_[next].push_back(p);
-    }
+    for (uint32_t p = 0; p < next_.size(); ++p)
+      ForEachPosition(next_[p], [&](uint32_t next) { Append(p, before_[next]); });
     CompileFromCamera();
     CompileFromLight(lights);
     Meet();
@@ -45,49 +91,74 @@ class OutputPlan::Compiler {
     }
     size_t Count() const { return sets_.size(); }
     Set At(size_t state) const { return sets_[state]; }
+    const std::vector<Set>& All() const { return sets_; }
 
    private:
     std::map<Set, uint32_t> numbers_;
     std::vector<Set> sets_;
   };
 
-  struct Position {
-    uint32_t layer = 0;
-    uint8_t events = 0;
-    const LightSources* sources = nullptr;  // of those at which paths may end
-    Set next;
+  using Layers = std::vector<uint32_t>;  // increasing
+
+  // A position at which paths of these sources may end.
+  struct End {
+    uint32_t position = 0;
+    const LightSources* sources = nullptr;
   };
+
+  static size_t WordsOf(const OutputLayer& layer) { return layer.expression.Positions().size() / kWordBits + 1; }
+  static size_t CountWords(const std::vector<OutputLayer>& layers) {
+    size_t words = 0;
+    for (const OutputLayer& layer : layers) words += WordsOf(layer);
+    return words;
+  }
+
+  // Adds a position behind those of a set.
+  static void Append(uint32_t position, Set& set) {
+    const uint32_t index = position / kWordBits;
+    if (set.empty() || set.back().index != index) set.push_back({index, 0});
+    set.back().bits |= uint64_t{1} << position % kWordBits;
+  }
 
   void Collect(uint32_t layer) {
     const PathExpression& expression = plan_.layers_[layer].expression;
-    const auto camera = static_cast<uint32_t>(positions_.size()), first = camera + 1;
-    const auto moved = [&](Set set) {
-      for (uint32_t& p : set) p += first;
+    const auto camera = static_cast<uint32_t>(layers_.size() * kWordBits), first = camera + 1;
+    layers_.resize(layers_.size() + WordsOf(plan_.layers_[layer]), layer);
+    matching_.resize(layers_.size());
+    const auto setOf = [&](const std::vector<uint32_t>& positions) {
+      Set set;
+      for (const uint32_t p : positions) Append(first + p, set);
       return set;
     };
-    cameras_.push_back(camera);
-    positions_.push_back({layer, 0, nullptr, moved(expression.First())});
-    for (const PathExpression::Position& position : expression.Positions())
-      positions_.push_back({layer, position.events, nullptr, moved(position.next)});
+    Append(camera, cameras_);
+    next_[camera] = setOf(expression.First());
+    for (uint32_t i = 0; i < expression.Positions().size(); ++i) {
+      const PathExpression::Position& position = expression.Positions()[i];
+      const uint32_t p = first + i;
+      next_[p] = setOf(position.next);
+      for (size_t event = 0; event < kPathEvents; ++event) {
+        if (position.events >> event & 1u) matching_[p / kWordBits][event] |= uint64_t{1} << p % kWordBits;
+      }
+    }
     for (const uint32_t last : expression.Last()) {
       const LightSources& sources = expression.Positions()[last].sources;
       const bool isGroup =
           !sources.isNegated && sources.terms.size() == 1 && sources.terms[0].kind == LightSources::Kind::InGroup;
-      (isGroup ? endsOfGroups_[sources.terms[0].name] : ends_).push_back(first + last);
-      positions_[first + last].sources = &sources;
+      (isGroup ? endsOfGroups_[sources.terms[0].name] : ends_).push_back({first + last, &sources});
     }
   }
 
-  // The positions beyond those of `set`, `beyond` of each, that match the event.
-  Set Beyond(const Set& set, size_t event, const auto& beyond) const {
-    Set all;
-    for (const uint32_t p : set) {
-      for (const uint32_t other : beyond(p)) {
-        if (positions_[other].events >> event & 1u) all.push_back(other);
+  // For each event, the positions beyond those of `set`, `beyond` of each, that match it.
+  std::array<Set, kPathEvents> Beyond(const Set& set, const std::vector<Set>& beyond) {
+    gathered_.Clear();
+    ForEachPosition(set, [&](uint32_t p) { gathered_.Add(beyond[p]); });
+    std::array<Set, kPathEvents> found;
+    for (const Word& word : gathered_.Whole()) {
+      for (size_t event = 0; event < kPathEvents; ++event) {
+        if (const uint64_t bits = word.bits & matching_[word.index][event]) found[event].push_back({word.index, bits});
       }
     }
-    Sort(all);
-    return all;
+    return found;
   }
 
   void Check(const States& states) const {
@@ -102,9 +173,9 @@ class OutputPlan::Compiler {
     for (size_t state = 0; state < camera_.Count(); ++state) {
       Check(camera_);
       const Set set = camera_.At(state);
+      const std::array<Set, kPathEvents> beyond = Beyond(set, next_);
       Next next;
-      for (size_t event = 0; event < kPathEvents; ++event)
-        next[event] = camera_.Of(Beyond(set, event, [&](uint32_t p) -> const Set& { return positions_[p].next; }));
+      for (size_t event = 0; event < kPathEvents; ++event) next[event] = camera_.Of(beyond[event]);
       plan_.fromCamera_.push_back(next);
     }
   }
@@ -113,13 +184,14 @@ class OutputPlan::Compiler {
   void CompileFromLight(const std::vector<LightSourceName>& lights) {
     std::map<std::pair<std::string, std::string>, uint32_t> known;  // by name and group
     const auto startOf = [&](const LightSourceName& source) {
-      const auto ofGroup = endsOfGroups_.find(source.group);
-      Set ends = ofGroup != endsOfGroups_.end() ? ofGroup->second : Set();
-      for (const uint32_t p : ends_) {
-        if (positions_[p].sources->Has(source)) ends.push_back(p);
+      gathered_.Clear();
+      if (const auto ofGroup = endsOfGroups_.find(source.group); ofGroup != endsOfGroups_.end()) {
+        for (const End& end : ofGroup->second) gathered_.Add(end.position);
       }
-      Sort(ends);
-      return light_.Of(ends);
+      for (const End& end : ends_) {
+        if (end.sources->Has(source)) gathered_.Add(end.position);
+      }
+      return light_.Of(gathered_.Whole());
     };
     for (const LightSourceName& light : lights) {
       const auto [found, isNew] = known.emplace(std::pair(light.name, light.group), 0);
@@ -130,9 +202,9 @@ class OutputPlan::Compiler {
     for (size_t state = 0; state < light_.Count(); ++state) {
       Check(light_);
       const Set set = light_.At(state);
+      const std::array<Set, kPathEvents> beyond = Beyond(set, before_);
       Next next;
-      for (size_t event = 0; event < kPathEvents; ++event)
-        next[event] = light_.Of(Beyond(set, event, [&](uint32_t p) -> const Set& { return before_[p]; }));
+      for (size_t event = 0; event < kPathEvents; ++event) next[event] = light_.Of(beyond[event]);
       plan_.fromLight_.push_back(next);
     }
   }
@@ -144,25 +216,22 @@ class OutputPlan::Compiler {
       throw Error(
           "the expressions of layers need too many states together: simplify them, or render some of them apart");
     plan_.met_.reserve(pairs);
-    std::map<Set, std::pair<uint32_t, uint32_t>> lists;
-    std::vector<bool> isAt(positions_.size());
-    for (size_t camera = 0; camera < camera_.Count(); ++camera) {
-      const Set at = camera_.At(camera);
-      for (const uint32_t p : at) isAt[p] = true;
-      for (size_t light = 0; light < light_.Count(); ++light) {
-        Set layers;
-        for (const uint32_t next : light_.At(light)) {
-          const Set& before = before_[next];
-          if (std::any_of(before.begin(), before.end(), [&](uint32_t p) { return isAt[p]; }))
-            layers.push_back(positions_[next].layer);
+    std::map<Layers, std::pair<uint32_t, uint32_t>> lists;
+    for (const Set& camera : camera_.All()) {
+      gathered_.Clear();
+      ForEachPosition(camera, [&](uint32_t p) { gathered_.Add(next_[p]); });
+      for (const Set& light : light_.All()) {
+        Layers layers;
+        for (const Word& word : light) {
+          const uint32_t layer = layers_[word.index];
+          if (!layers.empty() && layers.back() == layer) continue;
+          if (word.bits & gathered_.BitsOf(word.index)) layers.push_back(layer);
         }
-        Sort(layers);
         plan_.met_.push_back(ListOf(layers, lists));
       }
-      for (const uint32_t p : at) isAt[p] = false;
     }
   }
-  std::pair<uint32_t, uint32_t> ListOf(const Set& layers, std::map<Set, std::pair<uint32_t, uint32_t>>& lists) {
+  std::pair<uint32_t, uint32_t> ListOf(const Layers& layers, std::map<Layers, std::pair<uint32_t, uint32_t>>& lists) {
     const auto [found, isNew] = lists.emplace(layers, std::pair(0u, 0u));
     if (isNew) {
       found->second.first = static_cast<uint32_t>(plan_.lists_.size());
@@ -173,11 +242,14 @@ class OutputPlan::Compiler {
   }
 
   OutputPlan& plan_;
-  std::vector<Position> positions_;
-  std::vector<Set> before_;                  // by position: those that it may come after
-  Set cameras_, ends_;                       // without the ends of expressions of a light group
-  std::map<std::string, Set> endsOfGroups_;  // of those
+  std::vector<uint32_t> layers_;                             // by word of positions
+  std::vector<std::array<uint64_t, kPathEvents>> matching_;  // by word: the positions that match each event
+  std::vector<Set> next_, before_;                           // by position: those that may come after, and before
+  Set cameras_;
+  std::vector<End> ends_;                                 // without those of expressions of a light group
+  std::map<std::string, std::vector<End>> endsOfGroups_;  // those
   States camera_, light_;
+  Union gathered_;
 };
 
 OutputPlan::OutputPlan(std::vector<OutputLayer> layers, const std::vector<LightSourceName>& lights)

@@ -18,13 +18,27 @@ constexpr uint8_t kVolume = BitOf(PathEvent::Volume);
 constexpr uint8_t kScatterings = kReflections | kTransmissions;
 constexpr size_t kMostPositions = 4096;
 constexpr int kMostRepeats = 255;
+// Symbols and parentheses, repeated ones as often as they are: empty ones have no positions.
+constexpr size_t kMostParts = 8 * kMostPositions;
+constexpr const char* kTooLong = "the expression is too long with its repetitions";
+constexpr int kDeepest = 100;  // parentheses in parentheses
 
 using Positions = std::vector<uint32_t>;  // increasing
 
-Positions Union(const Positions& a, const Positions& b) {
+// Adds `more` to `to`.
+void Add(const Positions& more, Positions& to) {
+  if (more.empty() || to.empty() || to.back() < more.front()) {
+    to.insert(to.end(), more.begin(), more.end());
+    return;
+  }
   Positions all;
-  std::set_union(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(all));
-  return all;
+  std::set_union(to.begin(), to.end(), more.begin(), more.end(), std::back_inserter(all));
+  to = std::move(all);
+}
+
+Positions Union(Positions a, const Positions& b) {
+  Add(b, a);
+  return a;
 }
 
 }  // namespace
@@ -74,7 +88,14 @@ class ExpressionParser {
   };
 
   [[noreturn]] void Fail(const std::string& what) const {
-    throw Error("character " + std::to_string(at_ + 1) + " of \"" + text_ + "\": " + what);
+    throw Error("character " + std::to_string(at_ + 1) + " of \"" + Excerpt() + "\": " + what);
+  }
+  // The text, or what is around here.
+  std::string Excerpt() const {
+    constexpr size_t most = 120;
+    if (text_.size() <= most) return text_;
+    const size_t from = std::min(at_ - std::min(at_, most / 2), text_.size() - most);
+    return (from > 0 ? "…" : "") + text_.substr(from, most) + (from + most < text_.size() ? "…" : "");
   }
   std::string Unexpected() const {
     if (IsAtEnd()) return "the expression ends here, too early";
@@ -186,8 +207,13 @@ class ExpressionParser {
 
   Part Single() {
     SkipSpaces();
-    if (Takes('(')) {
+    if (++parts_ > kMostParts) Fail(kTooLong);
+    if (Peek() == '(') {
+      if (depth_ == kDeepest) Fail("more than " + std::to_string(kDeepest) + " parentheses in each other");
+      Takes('(');
+      ++depth_;
       Part part = Alternatives();
+      --depth_;
       Expect(')', "a parenthesis that is opened is not closed");
       return part;
     }
@@ -197,7 +223,7 @@ class ExpressionParser {
     } else {
       ReadSymbol(position);
     }
-    if (expression_.positions_.size() >= kMostPositions) Fail("the expression is too long with its repetitions");
+    if (expression_.positions_.size() >= kMostPositions) Fail(kTooLong);
     const auto index = static_cast<uint32_t>(expression_.positions_.size());
     expression_.positions_.push_back(std::move(position));
     return {false, {index}, {index}};
@@ -333,8 +359,7 @@ class ExpressionParser {
 
   Part Then(const Part& a, const Part& b) {
     for (const uint32_t last : a.last) {
-      Positions& next = expression_.positions_[last].next;
-      next = Union(next, b.first);
+      Add(b.first, expression_.positions_[last].next);
     }
     return {a.isNullable && b.isNullable, a.isNullable ? Union(a.first, b.first) : a.first,
             b.isNullable ? Union(a.last, b.last) : b.last};
@@ -344,8 +369,7 @@ class ExpressionParser {
   }
   Part Again(const Part& part) {
     for (const uint32_t last : part.last) {
-      Positions& next = expression_.positions_[last].next;
-      next = Union(next, part.first);
+      Add(part.first, expression_.positions_[last].next);
     }
     return part;
   }
@@ -362,6 +386,8 @@ class ExpressionParser {
 
   const std::string& text_;
   size_t at_ = 0;
+  size_t parts_ = 0;
+  int depth_ = 0;
   PathExpression expression_;
 };
 

@@ -1,5 +1,6 @@
 // Lights that are a point, against values computed by hand: what the common parameters make of them, which way up
 // images are thrown, and the power of it all.
+#include "lights/direction_map.h"
 #include "point_light_fixture.h"
 #include "sampling/rng.h"
 
@@ -289,6 +290,28 @@ TEST_F(PointLights, SegmentsAreCutToWhatIsReached) {
     EXPECT_LT(waste / lit, 0.05) << type;
     EXPECT_FALSE(light->light->GetIncidentRadianceEstimate(light->context, Point3(placed.Point({0, 0, -1})),
                                                            Vector3(glm::normalize(placed.Vector({1, 0, -0.2}))), 100));
+  }
+}
+
+// Lengths of float overflow below 5e-20 and are lost beyond 1e19; directions and their densities are not.
+TEST(DirectionMap, HoldsAtAnyScale) {
+  const auto placed = [](float scale) {
+    LightTransform transform;
+    transform.toRender.linear = glm::mat3(0.6f, 0.8f, 0, -1.6f, 1.2f, 0, 0, 0, 3) * scale;
+    transform.toLocal.linear = glm::mat3(0.6f, -0.4f, 0, 0.8f, 0.3f, 0, 0, 0, 1 / 3.0f) * (1 / scale);
+    return transform;
+  };
+  const Vector3 direction = glm::normalize(Vector3(1, -2, 3));
+  const LightTransform one = placed(1);
+  const Vector3 local = ToLocalDirection(one, direction);
+  for (const float scale : {1e-37f, 1e-25f, 4e-20f, 1e-15f, 1e15f, 1e20f, 1e37f}) {
+    const LightTransform scaled = placed(scale);
+    EXPECT_LT(glm::length(ToLocalDirection(scaled, direction) - local), 1e-6f) << scale;
+    EXPECT_LT(glm::length(ToRenderDirection(scaled, local) - direction), 1e-6f) << scale;
+    const float factor = LocalSolidAngleFactor(one, direction);
+    EXPECT_NEAR(LocalSolidAngleFactor(scaled, direction), factor, 1e-5f * factor) << scale;
+    EXPECT_FALSE(IsSimilarity(scaled.toRender.linear)) << scale;
+    EXPECT_TRUE(IsSimilarity(glm::mat3(scale))) << scale;
   }
 }
 

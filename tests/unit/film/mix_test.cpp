@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "base/error.h"
 
 namespace lampyr {
@@ -54,6 +56,42 @@ TEST(Mix, OneFactorOfAllGroupsKeepsTheVariance) {
 
 TEST(Mix, OfOtherLayersThePictureGetsTheDifference) {
   EXPECT_EQ(MixLayers(Picture(4), {{"caustic", Color(3.0f)}}).RgbAt(0, 0), Color(4.5f));
+}
+
+// What is kept is true of the mixed picture: to mix twice is to mix once by the product.
+TEST(Mix, TwiceIsOnce) {
+  const std::vector<std::string> more = {"half.R", "half.G", "half.B", "weighted.s0-t2.R", "relativeError", "Z"};
+  for (const char* layer : {"key", "caustic"}) {
+    const Image half = MixLayers(Picture(4, more), {{layer, Color(0.5f)}}),
+                none = MixLayers(half, {{layer, Color(0.0f)}});
+    EXPECT_EQ(none.RgbAt(0, 0), MixLayers(Picture(4, more), {{layer, Color(0.0f)}}).RgbAt(0, 0)) << layer;
+    EXPECT_EQ(MixLayers(none, {{layer, Color(2.0f)}}).RgbAt(0, 0), none.RgbAt(0, 0)) << layer;
+    EXPECT_EQ(MixLayers(half, {{layer, Color(2.0f)}}).RgbAt(0, 0), Color(4.0f)) << layer;
+    const bool isGroup = std::string(layer) == "key";
+    EXPECT_EQ(half.ChannelIndex("rest.R") >= 0, isGroup);
+    EXPECT_EQ(GroupLayers(half).size(), isGroup ? 2u : 0u);
+    EXPECT_EQ(half.ChannelIndex("caustic.R") >= 0, !isGroup);
+    for (const char* gone : {"half.R", "weighted.s0-t2.R", "relativeError", "variance.R"})
+      EXPECT_EQ(half.ChannelIndex(gone), -1) << gone;
+    EXPECT_GE(half.ChannelIndex("Z"), 0);
+  }
+  const Image both = MixLayers(Picture(4), {{"key", Color(2.0f)}, {"caustic", Color(0.0f)}});
+  EXPECT_EQ(both.RgbAt(0, 0), Color(4.75f));
+  EXPECT_TRUE(ColorLayers(both).empty());
+}
+
+TEST(Mix, OfOneFactorOfAllGroupsOtherLayersHaveIt) {
+  const Image mixed = MixLayers(Picture(4), {{"key", Color(2, 1, 0)}, {"rest", Color(2, 1, 0)}});
+  EXPECT_EQ(mixed.At(0, 0, static_cast<size_t>(mixed.ChannelIndex("caustic.R"))), 0.5f);
+  EXPECT_EQ(mixed.At(0, 0, static_cast<size_t>(mixed.ChannelIndex("caustic.B"))), 0.0f);
+}
+
+TEST(Mix, IsFiniteOrRefused) {
+  EXPECT_THROW(MixLayers(Picture(4), {{"rest", Color(3e38f)}}), Error);
+  EXPECT_THROW(MixLayers(Picture(4), {{"key", Color(1e25f)}, {"rest", Color(1e25f)}}), Error);  // its variance
+  Image far = Picture(4, {"Z"});
+  far.At(0, 0, static_cast<size_t>(far.ChannelIndex("Z"))) = HUGE_VALF;
+  EXPECT_EQ(MixLayers(far, {{"key", Color(2.0f)}}).RgbAt(0, 0), Color(5.0f));
 }
 
 // Its groups add up to the noisy picture.

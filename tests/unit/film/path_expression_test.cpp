@@ -34,6 +34,7 @@ const std::vector<Case> kCases = {
     {"C<..>V*[LO]", "[abcdef]v*[klo]"},
     {"C((DS)*|V)+L", "(([ad][cf])*|v)+[kl]"},
     {"C<[RT]S><V.>?L", "[cf]v?[kl]"},
+    {"C(R{2,70}T|V)*D{0,70}[LO]", "([abc]{2,}[def]|v)*[ad]*[klo]"},
     {"C(.D|D.){2}L", "([abcdefv][ad]|[ad][abcdefv]){2}[kl]"},
 };
 
@@ -136,6 +137,15 @@ TEST(PathExpressions, OfThousandsOfLightGroups) {
   }
 }
 
+// Some thousand positions, each of which some thousand others may follow, are compiled at once.
+TEST(PathExpressions, OfManyPositions) {
+  const OutputPlan plan = PlanOf({{"C(.{1,60}){1,60}L", nullptr}, {"C.{1,200}L", nullptr}});
+  EXPECT_EQ(LayersOf(plan, std::string(200, 'a') + "k", 77), (std::vector<uint32_t>{0, 1}));
+  EXPECT_EQ(LayersOf(plan, std::string(201, 'a') + "k", 77), (std::vector<uint32_t>{0}));
+  EXPECT_EQ(LayersOf(plan, std::string(3600, 'a') + "k", 1000), (std::vector<uint32_t>{0}));
+  EXPECT_TRUE(LayersOf(plan, std::string(3601, 'a') + "k", 1000).empty());
+}
+
 TEST(PathExpressions, TellWhereTheyAreWrong) {
   const std::pair<const char*, const char*> wrong[] = {
       {"", "character 1 of \"\": an expression starts with the camera, C"},
@@ -163,6 +173,7 @@ TEST(PathExpressions, TellWhereTheyAreWrong) {
       {"C<RD'key'>L", "character 5 of \"C<RD'key'>L\": only lights have names: <L.'name'>"},
       {"C<O.'key'>", "character 5 of \"C<O.'key'>\": glowing media have no names: O"},
       {"C((D{99}){99}){99}L", "the expression is too long with its repetitions"},
+      {"C(((()){255}){255}){255}L", "the expression is too long with its repetitions"},
   };
   for (const auto& [text, message] : wrong) {
     try {
@@ -172,6 +183,15 @@ TEST(PathExpressions, TellWhereTheyAreWrong) {
       EXPECT_NE(error.Text().find(message), std::string::npos) << error.Text();
     }
   }
+  const std::string deep = "C" + std::string(100000, '(') + "." + std::string(100000, ')') + "L";
+  try {
+    PathExpression{deep};
+    ADD_FAILURE();
+  } catch (const Error& error) {
+    EXPECT_NE(error.Text().find("character 102 of \"…(((("), std::string::npos) << error.Text();
+    EXPECT_LT(error.Text().size(), 250u);
+  }
+  PathExpression("C" + std::string(100, '(') + "." + std::string(100, ')') + "L");
   std::vector<OutputLayer> large = {{"large", PathExpression("C.*D.{14}L"), ""}};
   EXPECT_THROW(OutputPlan(std::move(large), kLights), Error);
 }
