@@ -172,10 +172,12 @@ std::string DescribeError(const RenderOutcome& outcome, const RenderOptions& opt
   return "error " + FormatPercent(*outcome.pixelError) + " in " + FormatPercent(*options.pixelShare) + " of the pixels";
 }
 
-void PrintSummary(const RenderReport& report, const std::filesystem::path& path, const RenderOptions& options) {
+// `rendered`: the part of the image that the picture shows.
+void PrintSummary(const RenderReport& report, const PixelRect& rendered, const std::filesystem::path& path,
+                  const RenderOptions& options) {
   const RenderOutcome& outcome = report.outcome;
-  std::fprintf(stderr, "%s: %d×%d, %d spp, %s, %.2f Mray/s, relative %s (95 %%)\n", path.c_str(), report.width,
-               report.height, outcome.samplesPerPixel, FormatDuration(outcome.seconds).c_str(),
+  std::fprintf(stderr, "%s: %d×%d, %d spp, %s, %.2f Mray/s, relative %s (95 %%)\n", path.c_str(), rendered.Width(),
+               rendered.Height(), outcome.samplesPerPixel, FormatDuration(outcome.seconds).c_str(),
                static_cast<double>(outcome.counts.Rays()) / (1e6 * std::max(outcome.seconds, 1e-9)),
                DescribeError(outcome, options).c_str());
   if (report.rejectedRays > 0) {
@@ -560,7 +562,7 @@ int RenderJob::Finish(ProgressiveRender& render, Checkpoints* checkpoints) {
     }
   }
   if (options_.stats) WriteText(*options_.stats, ToJson(report_));
-  if (!options_.quiet) PrintSummary(report_, path_, options_);
+  if (!options_.quiet) PrintSummary(report_, settings_.crop, path_, options_);
   return ExitCode(partialPicture);
 }
 
