@@ -12,7 +12,8 @@ class NextEventTechnique final : public NextEventVisitor {
   explicit NextEventTechnique(const BidirectionalSample& sample) : sample_(sample), vertex_(sample.camera.Last()) {}
 
   bool Wants(uint32_t light) override {
-    return sample_.settings.connects || sample_.Lighting().EmissionSelectionProbability(light).IsZero();
+    return sample_.settings.connects || sample_.Lighting().EmissionSelectionProbability(light).IsZero() ||
+           IsFoundHereAlone(light);
   }
 
   float Weigh(const LightConnection& light) override {
@@ -40,6 +41,7 @@ class NextEventTechnique final : public NextEventVisitor {
                                           {vertex_.toPrevious, vertex_.factors}, sample_.settings.photons.volume);
     weight_ = NextEventWeight(end_, vertex_.weight, hit_, joint.camera.previous, sample_.connectionCount,
                               NextEventCount(sample_.camera.Count()), sample_.MergingOfLight(end_, joint, end_.direct));
+    if (!sample_.settings.connects && IsFoundHereAlone(direct.light)) weight_ = 1;
     return static_cast<float>(weight_);
   }
 
@@ -63,6 +65,11 @@ class NextEventTechnique final : public NextEventVisitor {
   }
 
  private:
+  // Without connections: of a light that no camera path hits, where no photon can be merged on the way, as on hair.
+  bool IsFoundHereAlone(uint32_t light) const {
+    return !sample_.couldMerge && !vertex_.CanMerge() && !sample_.Lighting().CanBeHit(light);
+  }
+
   const BidirectionalSample& sample_;
   const PathVertex& vertex_;
   LightEnd end_;

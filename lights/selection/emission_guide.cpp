@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "lights/selection/importance_lanes.h"
 #include "lights/selection/light_selector.h"
@@ -18,6 +19,7 @@ constexpr size_t kFewestOfLight = 4;  // for the only component of a light
 // Smallest sine of the angle that a component subtends: relative precision of a direction in float and of the distance
 // of a line from a point. Smaller components are enlarged to it.
 constexpr float kSmallestSine = 0x1p-13f;
+constexpr float kSmallestSquare = std::numeric_limits<float>::min();
 
 // A contiguous range of photons, to be divided.
 struct Cell {
@@ -216,7 +218,7 @@ EmissionGuide::Target EmissionGuide::TargetOf(const Choice& choice) const {
     const auto isInside = squared <= reach;
     const auto isMissed =
         x * direction.x + y * direction.y + z * direction.z <= 0.0f || cx * cx + cy * cy + cz * cz > reach;
-    const Lanes sine2 = simd::min(reach / simd::max(squared, Lanes(1e-30f)), Lanes(1.0f));
+    const Lanes sine2 = simd::min(reach / simd::max(squared, Lanes(kSmallestSquare)), Lanes(1.0f));
     const Lanes oneMinusCosine = sine2 / (1.0f + simd::sqrt(1.0f - sine2));
     Lanes density = 1.0f / (2 * kPi * simd::max(oneMinusCosine, Lanes(1e-30f)));
     where(isMissed, density) = 0.0f;
@@ -250,7 +252,7 @@ float EmissionGuide::Reach(const Choice& choice, const Point3& from) const {
     const Lanes x = Load(block.x) - on.x, y = Load(block.y) - on.y, z = Load(block.z) - on.z;
     const Lanes cx = y * direction.z - z * direction.y, cy = z * direction.x - x * direction.z,
                 cz = x * direction.y - y * direction.x;
-    const Lanes reach = simd::max(Load(block.radius) * Load(block.radius), Lanes(1e-30f));
+    const Lanes reach = simd::max(Load(block.radius) * Load(block.radius), Lanes(kSmallestSquare));
     Lanes density = Load(block.weight) / (kPi * reach);
     where(cx * cx + cy * cy + cz * cz > reach, density) = 0.0f;
     sum += density;

@@ -114,6 +114,27 @@ TEST(Strands, AreLitAlikeByPathsFromBothEnds) {
   }
 }
 
+// No photon is merged on hair: without connections, lamps of which no path hits anything are looked for there.
+TEST(Strands, AreLitWhereNothingIsConnectedNorMerged) {
+  const std::string text = FilmWith("box", 12, 12) +
+                           "LookAt 0 0 -3  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 45\n" + World(3) +
+                           "LightSource \"point\" \"rgb I\" [8 8 8] \"point3 from\" [1 1 -2]\n"
+                           "LightSource \"distant\" \"rgb L\" [1 1 1] \"point3 from\" [-1 2 -1]\n"
+                           "AttributeBegin Material \"hair\" \"rgb sigma_a\" [0.2 0.2 0.2]\n"
+                           "Translate 0.4 0.3 0 Shape \"sphere\" \"float radius\" 0.4 AttributeEnd\n"
+                           "AttributeBegin Material \"diffuse\" Translate 0 -1 0 Shape \"bilinearmesh\" \"point3 P\" "
+                           "[-3 0 -3  3 0 -3  -3 0 3  3 0 3] AttributeEnd\n";
+  RenderOverrides overrides;
+  const Replicas path = RenderReplicas(text, "path", 12, 128, overrides);
+  overrides.seed = 1000;
+  overrides.values["connect"] = false;
+  overrides.values["radius"] = 0.1;
+  const Agreement result = CompareReplicas(RenderReplicas(text, "vcm", 12, 1024, overrides), path, 6, 1e-3);
+  std::printf("vcm without connections: bias %+.3f %% +- %.3f %%\n", 100 * result.bias, 196 * result.biasError);
+  EXPECT_TRUE(result.Agrees()) << "largest z " << result.largestZ;
+  EXPECT_LT(result.biasError, 0.01) << "too noisy";
+}
+
 TEST(LightPathScenes, EveryTypeOfLightIsInOne) {
   const std::vector<AgreementScene> scenes = AgreementScenes();
   for (const LightType& type : LightRegistry()) {
