@@ -8,6 +8,7 @@
 #include "base/terminal.h"
 #include "render/analysis/plan.h"
 #include "render/load_scene.h"
+#include "render/settings/integrator_choice.h"
 
 namespace lampyr {
 
@@ -39,6 +40,7 @@ void PrintPilot(const RenderPilot& pilot, const Settings& values) {
 }  // namespace
 
 int RunPlan(const PlanOptions& options) {
+  if (options.overrides.integrator) CheckIntegratorName(*options.overrides.integrator);
   // The choice is the plan's own.
   RenderOverrides overrides = options.overrides;
   overrides.integrator = "path";

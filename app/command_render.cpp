@@ -552,7 +552,13 @@ int RenderJob::Finish(ProgressiveRender& render, Checkpoints* checkpoints) {
     WritePngBeside(path_, film.Develop(), options_.exposure, options_.clipPng);
   if (options_.denoise && !options_.shard && !isPartial) DenoisePicture();
   render.DropPartialPass();
-  if (checkpoints) checkpoints->Finish(report_.outcome);
+  // The other results are written even if that fails.
+  std::exception_ptr failure;
+  try {
+    if (checkpoints) checkpoints->Finish(report_.outcome);
+  } catch (const Error&) {
+    failure = std::current_exception();
+  }
   report_.writeSeconds = clock.Seconds();
   if (settings_.adaptive) {
     report_.adaptive = RenderReport::Adaptive{settings_.adaptive->share, film.Samples(0), film.Samples(0)};
@@ -563,6 +569,7 @@ int RenderJob::Finish(ProgressiveRender& render, Checkpoints* checkpoints) {
   }
   if (options_.stats) WriteText(*options_.stats, ToJson(report_));
   if (!options_.quiet) PrintSummary(report_, settings_.crop, path_, options_);
+  if (failure) std::rethrow_exception(failure);
   return ExitCode(partialPicture);
 }
 

@@ -48,6 +48,12 @@ void CompareEdit(const SuiteSubject& subject, const SuiteOrigin& origin, const P
                   isSame ? "" : "edited by \"" + by + "\": " + difference);
 }
 
+std::unique_ptr<Light> Edited(const Light& light, const ParameterList& change, const LightBuildContext& build) {
+  std::unique_ptr<Light> edited = light.Edit(change, build);
+  if (!edited) throw Error("Edit returned null");
+  return edited;
+}
+
 }  // namespace
 
 void CheckEdit(const SuiteSubject& subject, const SuiteOrigin& origin, SuiteReport& report) {
@@ -55,14 +61,14 @@ void CheckEdit(const SuiteSubject& subject, const SuiteOrigin& origin, SuiteRepo
   for (const ParameterList& change : changes) {
     CompareEdit(
         subject, origin, MergeParameters(*origin.parameters, change), NameOf(change),
-        [&] { return subject.light->Edit(change, *origin.build); }, report);
+        [&] { return Edited(*subject.light, change, *origin.build); }, report);
   }
   if (changes.size() < 2) return;
   // Two edits in sequence: an edited light must know all parameters from which it was made.
   const ParameterList both = MergeParameters(MergeParameters(*origin.parameters, changes[0]), changes[1]);
   CompareEdit(
       subject, origin, both, NameOf(changes[0]) + " and then " + NameOf(changes[1]),
-      [&] { return subject.light->Edit(changes[0], *origin.build)->Edit(changes[1], *origin.build); }, report);
+      [&] { return Edited(*Edited(*subject.light, changes[0], *origin.build), changes[1], *origin.build); }, report);
 }
 
 }  // namespace lampyr::suite

@@ -72,8 +72,15 @@ Json StatementJson(const EditableScene& scene, size_t statement) {
           {"parameters", parameters}};
 }
 
+// A whole number that is not negative; others would be cut to one.
+uint64_t WholeNumberIn(const Json& body, const char* name) {
+  const Json& number = body.at(name);
+  if (!number.is_number_unsigned()) throw Error(std::string("\"") + name + "\" is no whole number");
+  return number.get<uint64_t>();
+}
+
 size_t StatementIn(const Json& body, const EditableScene& scene) {
-  const size_t statement = body.at("statement").get<size_t>();
+  const auto statement = static_cast<size_t>(WholeNumberIn(body, "statement"));
   if (statement >= scene.Statements().size()) throw Error("there is no such light");
   return statement;
 }
@@ -179,7 +186,7 @@ class Desk::Requests {
   HttpReply Picture() const {
     if (body_.contains("after")) {
       constexpr double kLongestWait = 2;  // seconds
-      desk_.session_.WaitForPicture(body_.at("after").get<uint64_t>(), kLongestWait);
+      desk_.session_.WaitForPicture(WholeNumberIn(body_, "after"), kLongestWait);
     }
     const std::shared_ptr<const DeskPicture> picture = desk_.session_.Picture();
     constexpr int kNoContent = 204;
@@ -203,9 +210,11 @@ class Desk::Requests {
     if (!picture) throw Error("there is no picture yet");
     const std::vector<Color> factors = FactorsFor(*picture);
     const LayerPlanes& planes = picture->planes;
-    const int x = body_.at("x").get<int>(), y = body_.at("y").get<int>();
-    if (x < 0 || y < 0 || x >= planes.width || y >= planes.height) throw Error("that is beyond the picture");
-    const MixedPixel pixel = MixPixel(planes, ByLayer(planes, desk_.faders_, factors), x, y);
+    const uint64_t x = WholeNumberIn(body_, "x"), y = WholeNumberIn(body_, "y");
+    if (x >= static_cast<uint64_t>(planes.width) || y >= static_cast<uint64_t>(planes.height))
+      throw Error("that is beyond the picture");
+    const MixedPixel pixel =
+        MixPixel(planes, ByLayer(planes, desk_.faders_, factors), static_cast<int>(x), static_cast<int>(y));
     Json interval = nullptr;
     const bool isKnown = pixel.hasDeviation && picture->samplesPerPixel > 1;
     constexpr double kSpread = 1.96;

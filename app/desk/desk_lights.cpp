@@ -262,6 +262,15 @@ std::vector<Parameter> ScaledBy(const EditableScene& scene, size_t statement, co
   const ParameterList& list = scene.ParametersOf(statement);
   if (!InfoOf(of, "intensity") || !InfoOf(of, "color"))
     throw Error(of.where, "\"" + of.type->name + "\" has no intensity and color that a fader could be set into");
+  for (const ParameterList& original : of.originals) {
+    const ParameterList& first = of.originals.front();
+    const auto colorOf = [](const ParameterList& of) {
+      return of.FindColor("color", SpectrumRole::Illuminant).value_or(Color(1.0f));
+    };
+    if (original.GetFloat("intensity", 1) != first.GetFloat("intensity", 1) || colorOf(original) != colorOf(first))
+      throw Error(of.where,
+                  "the statement makes lights of several intensities or colors, which one factor cannot be set into");
+  }
   const auto make = [&](const char* name, ParameterType type, std::vector<double> numbers) {
     Parameter parameter;
     parameter.name = name;

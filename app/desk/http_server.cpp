@@ -81,6 +81,9 @@ HttpServer::HttpServer(int port, std::function<HttpReply(const HttpRequest&)> an
   server.http.set_tcp_nodelay(true);
   constexpr size_t kManyRequests = 1000000;
   server.http.set_keep_alive_max_count(kManyRequests);
+  // Silent connections do not hold up the end, nor others for long.
+  server.http.set_keep_alive_timeout(1);
+  server.http.set_read_timeout(1);
   // Not SO_REUSEPORT, with which others could share the port.
   server.http.set_socket_options([](int socket) {
     const int yes = 1;

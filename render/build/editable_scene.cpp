@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <utility>
 
 #include "render/build/plugins.h"
@@ -11,10 +12,26 @@ namespace lampyr {
 
 namespace {
 
-bool IsSamePlace(const FileLocation& a, const FileLocation& b) {
-  const bool isSameFile = a.file == b.file || (a.file && b.file && *a.file == *b.file);
-  return isSameFile && a.line == b.line && a.column == b.column;
-}
+// Files by one name each, however they are written.
+class FileNames {
+ public:
+  const std::string& Of(const FileLocation& where) {
+    const std::string written = where.file ? *where.file : std::string();
+    const auto [found, isNew] = names_.emplace(written, written);
+    if (isNew) {
+      std::error_code ignored;
+      const std::filesystem::path canonical = std::filesystem::weakly_canonical(written, ignored);
+      if (!ignored) found->second = canonical.string();
+    }
+    return found->second;
+  }
+  bool IsSamePlace(const FileLocation& a, const FileLocation& b) {
+    return a.line == b.line && a.column == b.column && Of(a) == Of(b);
+  }
+
+ private:
+  std::map<std::string, std::string> names_;
+};
 
 void Put(std::vector<Parameter>& into, const Parameter& parameter) {
   const auto same =
@@ -59,9 +76,10 @@ EditableScene::EditableScene(SceneDescription description, const RenderOverrides
 EditableScene::~EditableScene() = default;
 
 void EditableScene::FindStatements() {
+  FileNames names;
   const auto add = [&](EditableStatement::Kind kind, const TypeDescription* type, const FileLocation& where, size_t i) {
     const auto same = std::find_if(statements_.begin(), statements_.end(), [&](const EditableStatement& other) {
-      return other.kind == kind && IsSamePlace(other.where, where);
+      return other.kind == kind && names.IsSamePlace(other.where, where);
     });
     if (same != statements_.end()) {
       same->descriptions.push_back(i);
@@ -80,7 +98,7 @@ void EditableScene::FindStatements() {
   }
   for (EditableStatement& statement : statements_) {
     for (size_t light = 0; light < built_->lightPlaces.size(); ++light) {
-      if (IsSamePlace(built_->lightPlaces[light], statement.where))
+      if (names.IsSamePlace(built_->lightPlaces[light], statement.where))
         statement.lights.push_back(static_cast<uint32_t>(light));
     }
   }
@@ -148,8 +166,11 @@ EditableScene::Lights EditableScene::EditLights(const StatementEdit& change) con
   const ParameterList& made = ParametersOf(change.statement);
   const ParameterList changes(made.Where(), made.Owner(), WithFiles(made, change.parameters));
   Lights lights;
-  for (const uint32_t light : statements_[change.statement].lights)
+  for (const uint32_t light : statements_[change.statement].lights) {
     lights.push_back(kept_->lights[light].light->Edit(changes, kept_->contexts[light].build));
+    if (!lights.back())
+      throw Error(made.Where(), "\"" + made.Owner() + "\": the edited light is none: Edit returned null");
+  }
   return lights;
 }
 
@@ -217,7 +238,9 @@ void EditableScene::Edit(const std::vector<StatementEdit>& changes) {
     bool mayRelight = true;
     for (const StatementEdit& change : changes) {
       edited.push_back(EditLights(change));
-      mayRelight = mayRelight && !edited.back().empty() && !ConcernsShapes(change, edited.back());
+      // A statement that was read several times may have been given other parameters each time.
+      const bool isOne = statements_[change.statement].descriptions.size() == 1;
+      mayRelight = mayRelight && isOne && !edited.back().empty() && !ConcernsShapes(change, edited.back());
     }
     if (!mayRelight) return Rebuild(edits);
     Relight(changes, edited);

@@ -111,4 +111,12 @@ StrategyLayers StrategiesOf(const RenderSettings& settings) {
   throw UsageError(text);
 }
 
+void CheckIntegratorName(const std::string& name) {
+  std::vector<std::string> all = IntegratorNames();
+  all.emplace_back(kAuto);
+  if (std::find(all.begin(), all.end(), name) == all.end())
+    throw UsageError("--integrator: there is no integrator \"" + name + "\"" + DidYouMean(name, all) +
+                     "; there are: " + Listed(all));
+}
+
 }  // namespace lampyr

@@ -24,6 +24,9 @@ bool IsDenoised(const std::string& name);
 // True for "auto", denoised or not.
 bool IsAuto(const std::string& name);
 
+// For --integrator: throws a UsageError that lists the valid names, unless it is one of them or "auto".
+void CheckIntegratorName(const std::string& name);
+
 bool GathersPhotons(const RenderSettings& settings);
 
 // The layers of the strategies of the settings' integrator. Throws an Error where they were asked for, a UsageError

@@ -6,6 +6,7 @@
 #include <map>
 #include <sstream>
 
+#include "render/settings/integrator_choice.h"
 #include "render/settings/realistic_lens.h"
 #include "spectral/spectral_curve.h"
 
@@ -347,14 +348,7 @@ void ReadIntegrator(const SceneDescription& scene, const RenderOverrides& overri
   }
   if (settings.integrator != "auto") settings.namedIntegrator = settings.integrator;
   if (overrides.integrator) {
-    if (*overrides.integrator != "auto" && !isOneOf(*overrides.integrator, IntegratorNames())) {
-      Names all = IntegratorNames();
-      all.push_back("auto");
-      std::string list;
-      for (const std::string& name : all) list += (list.empty() ? "" : ", ") + name;
-      throw UsageError("--integrator: there is no integrator \"" + *overrides.integrator + "\"" +
-                       DidYouMean(*overrides.integrator, all) + "; there are: " + list);
-    }
+    CheckIntegratorName(*overrides.integrator);
     settings.integrator = *overrides.integrator;
   }
   ReadSettings(parameters, overrides, settings.values);
