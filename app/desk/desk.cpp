@@ -7,6 +7,7 @@
 
 #include "app/desk/keep_scene.h"
 #include "app/desk/page.h"
+#include "scene/referenced_files.h"
 
 namespace lampyr {
 
@@ -113,8 +114,23 @@ std::vector<Color> ByLayer(const LayerPlanes& planes, const std::vector<Fader>& 
 
 }  // namespace
 
+namespace {
+
+std::vector<std::string> FilesOf(const SceneDescription& scene) {
+  std::vector<std::string> files = scene.files;
+  const std::vector<std::string> referenced = ReferencedFiles(scene);
+  files.insert(files.end(), referenced.begin(), referenced.end());
+  return files;
+}
+
+}  // namespace
+
 Desk::Desk(EditableScene& scene, int mostSamples, int threads)
-    : scene_(scene), faders_(FadersOf(scene)), session_(scene.Built(), mostSamples, threads) {}
+    : scene_(scene),
+      files_(FilesOf(scene.Description())),
+      hashOfFiles_(HashOfFiles(files_)),
+      faders_(FadersOf(scene)),
+      session_(scene.Built(), mostSamples, threads) {}
 
 class Desk::Requests {
  public:
@@ -273,6 +289,9 @@ class Desk::Requests {
 
   HttpReply Keep() const {
     const std::lock_guard lock(desk_.editing_);
+    // Places of statements are those that were read, and so is the picture.
+    if (HashOfFiles(desk_.files_) != desk_.hashOfFiles_)
+      throw Error("the files of the scene have changed since the desk has read them: start it anew");
     const KeptFiles kept = lampyr::Keep(desk_.scene_, desk_.session_, desk_.faders_, Factors());
     Json scenes = Json::array();
     for (const std::filesystem::path& file : kept.scenes) scenes.push_back(file.string());

@@ -39,6 +39,8 @@ class Desk {
   };
 
   EditableScene& scene_;
+  const std::vector<std::string> files_;  // of the scene, as it was read
+  const std::string hashOfFiles_;
   const std::vector<Fader> faders_;
   std::mutex editing_;  // of scene_
   std::mutex setting_;  // of set_

@@ -342,5 +342,42 @@ TEST_F(Desk, ToldMistakesOfTheCommandLine) {
   EXPECT_NE(taken.output.find("cannot be used"), std::string::npos) << taken.output;
 }
 
+// What is kept is what was read, with the edits: not what somebody has made of the files meanwhile.
+TEST_F(Desk, KeepsNothingOfFilesThatHaveChanged) {
+  const DeskProcess desk(folder_.Path(), "scene.pbrt --quiet --spp 1");
+  desk.WaitUntilDone();
+  EXPECT_EQ(desk.Post("keep", {{"factors", desk.Neutral()}}).status, 200);
+  WriteBytes(folder_ / "lights.pbrt", std::string(kLights) + "# changed\n");
+  const DeskReply reply = desk.Post("keep", {{"factors", desk.Neutral()}});
+  EXPECT_EQ(reply.status, 422);
+  EXPECT_NE(reply.body.find("have changed"), std::string::npos) << reply.body;
+}
+
+// A file that is included twice, under other attributes each time, and by other names: one statement, whose lights keep
+// what is their own.
+TEST_F(Desk, StatementsThatAreReadTwiceAreOne) {
+  WriteBytes(folder_ / "lamp.pbrt", "LightSource \"point\" \"rgb I\" [1 2 3] \"point3 from\" [0 1 1]\n");
+  std::filesystem::create_directory(folder_ / "sub");
+  WriteBytes(folder_ / "twice.pbrt",
+             "Film \"rgb\" \"integer xresolution\" 16 \"integer yresolution\" 10\nLookAt 0 1 3  0 0 0  0 1 0\n"
+             "Camera \"perspective\"\nWorldBegin\nInclude \"lamp.pbrt\"\n"
+             "AttributeBegin Translate 1 0 0 Attribute \"light\" \"float intensity\" 3 Include \"sub/../lamp.pbrt\" "
+             "AttributeEnd\n"
+             "Shape \"sphere\" \"float radius\" 0.5\n");
+  const DeskProcess desk(folder_.Path(), "twice.pbrt --quiet --spp 4");
+  const Json statements = desk.Get("lights").at("statements");
+  ASSERT_EQ(statements.size(), 1u);
+  EXPECT_EQ(statements[0].at("lights").get<int>(), 2);
+  Json half = desk.Neutral();
+  for (Json& factor : half) factor = {0.5, 0.5, 0.5};
+  EXPECT_EQ(desk.Post("set", {{"factors", half}}).status, 422);
+  EXPECT_EQ(desk.Post("edit", {{"statement", 0}, {"parameter", "scale"}, {"numbers", {2}}}).status, 200);
+  EXPECT_EQ(desk.Post("edit", {{"statement", 0.5}, {"parameter", "scale"}, {"numbers", {2}}}).status, 422);
+  EXPECT_EQ(desk.Post("edit", {{"statement", 1e30}, {"parameter", "scale"}, {"numbers", {2}}}).status, 422);
+  const Json kept = Kept(desk);
+  ExpectSamePicture(ReadImage(kept.at("picture").get<std::string>()),
+                    Rendered(kept.at("scenes").back().get<std::string>()));
+}
+
 }  // namespace
 }  // namespace lampyr::test
