@@ -15,8 +15,6 @@ namespace lampyr {
 
 namespace {
 
-constexpr size_t kMostValues = 4;  // of a parameter that is edited on the desk
-
 bool HasGroup(const StatementDescription& statement) {
   return !statement.parameters.GetString("lightGroup", "").empty();
 }
@@ -105,6 +103,7 @@ void ShowDefault(const ParameterInfo& info, ShownParameter& shown) {
   }
 }
 
+// More are a list, which is edited in the scene's file.
 size_t MostValuesOf(const ParameterInfo& info) {
   switch (info.type) {
     case ParameterType::Point2:
@@ -205,9 +204,10 @@ std::vector<ShownParameter> ShownParameters(const EditableScene& scene, size_t s
       ShowDefault(info, shown);
     }
     const bool hasNumbers = shown.control != ParameterControl::None && shown.control != ParameterControl::Text;
-    if (hasNumbers && (shown.numbers.empty() || shown.numbers.size() > kMostValues)) {
+    const bool isLong = shown.numbers.size() > MostValuesOf(info);
+    if (hasNumbers && (shown.numbers.empty() || isLong)) {
       shown.control = ParameterControl::None;
-      if (shown.numbers.size() > kMostValues) shown.text = std::to_string(shown.numbers.size()) + " numbers";
+      if (isLong) shown.text = std::to_string(shown.numbers.size()) + " numbers";
     }
     if (change == changes.end()) continue;
     shown.isEdited = std::any_of(change->parameters.begin(), change->parameters.end(),
@@ -222,7 +222,9 @@ Parameter EditedParameter(const EditableScene& scene, size_t statement, const st
   const ParameterInfo* info = InfoOf(of, name);
   if (!info) throw Error("\"" + of.type->name + "\" has no parameter \"" + name + "\"");
   const ParameterControl control = ControlFor(*info);
-  if (control == ParameterControl::None) throw Error("\"" + name + "\" is edited in the scene's file");
+  const bool isList = NumbersIn(info->defaultValue).size() > MostValuesOf(*info);
+  if (control == ParameterControl::None || (control != ParameterControl::Text && isList))
+    throw Error("\"" + name + "\" is edited in the scene's file");
   const ParameterList& list = scene.ParametersOf(statement);
   Parameter parameter;
   parameter.name = name;

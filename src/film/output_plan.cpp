@@ -13,57 +13,57 @@ namespace {
 constexpr size_t kMostStates = 4096;  // of user expressions; those of light groups have a few for each
 constexpr size_t kMostPairs = size_t{1} << 24;
 
-constexpr uint32_t kWordBits = 64;
-
-// 64 positions of one expression, a bit each. Those of the next expression begin with a new word, so that sets are
-// sparse where there are many expressions and dense where there is a long one.
-struct Word {
-  uint32_t index = 0;
-  uint64_t bits = 0;
-  auto operator<=>(const Word&) const = default;
-};
-using Set = std::vector<Word>;  // increasing, no word empty
-
-void ForEachPosition(const Set& set, const auto& visit) {
-  for (const Word& word : set) {
-    for (uint64_t bits = word.bits; bits != 0; bits &= bits - 1)
-      visit(word.index * kWordBits + static_cast<uint32_t>(std::countr_zero(bits)));
-  }
-}
-
-// A set that is being put together.
-class Union {
- public:
-  explicit Union(size_t words) : bits_(words) {}
-  void Clear() {
-    for (const uint32_t index : touched_) bits_[index] = 0;
-    touched_.clear();
-  }
-  void Add(const Word& word) {
-    if (bits_[word.index] == 0) touched_.push_back(word.index);
-    bits_[word.index] |= word.bits;
-  }
-  void Add(const Set& set) {
-    for (const Word& word : set) Add(word);
-  }
-  void Add(uint32_t position) { Add(Word{position / kWordBits, uint64_t{1} << position % kWordBits}); }
-  uint64_t BitsOf(uint32_t index) const { return bits_[index]; }
-  Set Whole() {
-    std::sort(touched_.begin(), touched_.end());
-    Set set;
-    for (const uint32_t index : touched_) set.push_back({index, bits_[index]});
-    return set;
-  }
-
- private:
-  std::vector<uint64_t> bits_;     // by word
-  std::vector<uint32_t> touched_;  // words that are not empty
-};
-
 }  // namespace
 
 // The positions of all expressions together. Before those of each expression stands one for the camera.
 class OutputPlan::Compiler {
+  static constexpr uint32_t kWordBits = 64;
+
+  // 64 positions of one expression, a bit each. Those of the next expression begin with a new word, so that sets are
+  // sparse where there are many expressions and dense where there is a long one.
+  struct Word {
+    uint32_t index = 0;
+    uint64_t bits = 0;
+    auto operator<=>(const Word&) const = default;
+  };
+  using Set = std::vector<Word>;  // increasing, no word empty
+
+  static void ForEachPosition(const Set& set, const auto& visit) {
+    for (const Word& word : set) {
+      for (uint64_t bits = word.bits; bits != 0; bits &= bits - 1)
+        visit(word.index * kWordBits + static_cast<uint32_t>(std::countr_zero(bits)));
+    }
+  }
+
+  // A set that is being put together.
+  class Gathered {
+   public:
+    explicit Gathered(size_t words) : bits_(words) {}
+    void Clear() {
+      for (const uint32_t index : touched_) bits_[index] = 0;
+      touched_.clear();
+    }
+    void Add(const Word& word) {
+      if (bits_[word.index] == 0) touched_.push_back(word.index);
+      bits_[word.index] |= word.bits;
+    }
+    void Add(const Set& set) {
+      for (const Word& word : set) Add(word);
+    }
+    void Add(uint32_t position) { Add(Word{position / kWordBits, uint64_t{1} << position % kWordBits}); }
+    uint64_t BitsOf(uint32_t index) const { return bits_[index]; }
+    Set Whole() {
+      std::sort(touched_.begin(), touched_.end());
+      Set set;
+      for (const uint32_t index : touched_) set.push_back({index, bits_[index]});
+      return set;
+    }
+
+   private:
+    std::vector<uint64_t> bits_;     // by word
+    std::vector<uint32_t> touched_;  // words that are not empty
+  };
+
  public:
   Compiler(OutputPlan& plan, const std::vector<LightSourceName>& lights)
       : plan_(plan), gathered_(CountWords(plan.layers_)) {
@@ -249,7 +249,7 @@ class OutputPlan::Compiler {
   std::vector<End> ends_;                                 // without those of expressions of a light group
   std::map<std::string, std::vector<End>> endsOfGroups_;  // those
   States camera_, light_;
-  Union gathered_;
+  Gathered gathered_;
 };
 
 OutputPlan::OutputPlan(std::vector<OutputLayer> layers, const std::vector<LightSourceName>& lights)
