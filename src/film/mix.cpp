@@ -198,7 +198,7 @@ Image MixLayers(const Image& image, const std::vector<LayerFactor>& factors) {
   }
   CheckIsFinite(image, mixed);
   if (mixesOthers) {
-    // What the groups and the other layers had of the light that has changed is not known.
+    // Groups and other layers may hold some of the light that has changed.
     mixed = WithoutUnknown(mixed, mixesGroups ? std::vector<std::string>() : named);
     mixed.metadata.erase(kGroupsMetadata);
     return mixed;

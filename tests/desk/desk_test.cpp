@@ -342,7 +342,7 @@ TEST_F(Desk, ToldMistakesOfTheCommandLine) {
   EXPECT_NE(taken.output.find("cannot be used"), std::string::npos) << taken.output;
 }
 
-// What is kept is what was read, with the edits: not what somebody has made of the files meanwhile.
+// Edits are written into the files that were read. If these have changed meanwhile, nothing is kept.
 TEST_F(Desk, KeepsNothingOfFilesThatHaveChanged) {
   const DeskProcess desk(folder_.Path(), "scene.pbrt --quiet --spp 1");
   desk.WaitUntilDone();

@@ -58,7 +58,7 @@ TEST(Mix, OfOtherLayersThePictureGetsTheDifference) {
   EXPECT_EQ(MixLayers(Picture(4), {{"caustic", Color(3.0f)}}).RgbAt(0, 0), Color(4.5f));
 }
 
-// What is kept is true of the mixed picture: to mix twice is to mix once by the product.
+// The layers of a mixed picture are scaled like it, so that mixing twice equals mixing once by the product.
 TEST(Mix, TwiceIsOnce) {
   const std::vector<std::string> more = {"half.R", "half.G", "half.B", "weighted.s0-t2.R", "relativeError", "Z"};
   for (const char* layer : {"key", "caustic"}) {
