@@ -112,10 +112,7 @@ std::vector<Color> ByLayer(const LayerPlanes& planes, const std::vector<Fader>& 
   return byLayer;
 }
 
-}  // namespace
-
-namespace {
-
+// The scene's text and what it refers to.
 std::vector<std::string> FilesOf(const SceneDescription& scene) {
   std::vector<std::string> files = scene.files;
   const std::vector<std::string> referenced = ReferencedFiles(scene);

@@ -116,7 +116,9 @@ void CheckIsFinite(const Image& image, const Image& mixed) {
 // All light groups, added up.
 void AddUp(const std::vector<std::string>& groups, const std::vector<LayerFactor>& factors, Image& mixed) {
   const std::array<size_t, 3> picture = ChannelsOfLayer(mixed, "");
-  Scale(Color(0.0f), "", mixed);
+  for (size_t i = 0; i < mixed.data.size(); i += mixed.channels.size()) {
+    for (const size_t channel : picture) mixed.data[i + channel] = 0;
+  }
   for (const std::string& group : groups) {
     Scale(FactorOf(group, factors), group, mixed);
     const std::array<size_t, 3> layer = ChannelsOfLayer(mixed, group);

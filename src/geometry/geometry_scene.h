@@ -124,6 +124,7 @@ class GeometryScene {
     Color tint;
     return Intersect(ray, kinds, hit, tint);
   }
+  // The same with the crossings that Trace lists, of which `tint` is the product.
   bool Intersect(const Ray& ray, uint32_t kinds, RayHit& hit, Color& tint, std::vector<Crossing>& crossings) const;
 
   // Transmittance of (0, ray.tMax): 0 behind an opaque surface; otherwise the product over all cut-outs and thin

@@ -1,5 +1,5 @@
-// What thin surfaces and cut-outs let through at the wavelengths of a pass. GeometryScene knows it in Rec. 709: the
-// spectrum of two panes is the product of their spectra, which the product of their colours does not tell.
+// Transmittance of thin surfaces and cut-outs at the wavelengths of a pass. Each tint is upsampled by itself, since the
+// spectrum of two panes is the product of their spectra. GeometryScene has the tints in Rec. 709.
 #pragma once
 
 #include <cstdint>

@@ -89,6 +89,9 @@ TEST(Mix, OfOneFactorOfAllGroupsOtherLayersHaveIt) {
 TEST(Mix, IsFiniteOrRefused) {
   EXPECT_THROW(MixLayers(Picture(4), {{"rest", Color(3e38f)}}), Error);
   EXPECT_THROW(MixLayers(Picture(4), {{"key", Color(1e25f)}, {"rest", Color(1e25f)}}), Error);  // its variance
+  Image broken = Picture(4);
+  broken.At(0, 0, 0) = NAN;  // the groups are not
+  EXPECT_EQ(MixLayers(broken, {{"key", Color(2.0f)}}).RgbAt(0, 0), Color(5.0f));
   Image far = Picture(4, {"Z"});
   far.At(0, 0, static_cast<size_t>(far.ChannelIndex("Z"))) = HUGE_VALF;
   EXPECT_EQ(MixLayers(far, {{"key", Color(2.0f)}}).RgbAt(0, 0), Color(5.0f));
