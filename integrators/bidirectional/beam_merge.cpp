@@ -26,8 +26,7 @@ FlightStart StartAtLast(const Subpath& path, const PathState& state, const Volum
   start.geometryTerm = vertex.GeometryTerm(state.ray.direction);
   start.canMerge = vertex.CanMerge() && !vertex.scatteredDelta;
   if (vertex.IsInMedium()) {
-    start.mergeSize =
-        static_cast<float>(MergeSize(vertex, EdgeBefore(path, path.Count()), state.ray.direction, radius));
+    start.mergeSize = MergeSize(vertex, EdgeBefore(path, path.Count()), state.ray.direction, radius);
   }
   return start;
 }
@@ -79,8 +78,7 @@ void SetDensities(const PhotonMap& map, const FlightStart& start, BeamVertex& ma
   made.ends = map.EndsOf(start);
   SubpathDensities& previous = densities.back();
   if (previous.isInMedium)
-    previous.mergeVolume =
-        static_cast<float>(static_cast<double>(start.mergeSize) * PassingPerCollision(made.vertex.factors.Reversed()));
+    previous.mergeVolume = WideFloat(start.mergeSize * PassingPerCollision(made.vertex.factors.Reversed()));
   AddEvent(start.canMerge, start.scatteredDelta, start.previousReverse, densities.size(), densities);
   densities.push_back(
       {.forward = made.vertex.pdfForward.value, .forwardIsDelta = start.scatteredDelta, .isInMedium = true});
@@ -121,7 +119,7 @@ bool SetBeamVertex(const SampleContext& context, const PhotonMap& map, const Bea
   photon.toPrevious = light.toPrevious;
   photon.flux = light.diffuse;
   photon.weight = PhotonWeight::Of(light.weight, start.depth);
-  photon.previousSolidAnglePerArea = static_cast<float>(light.previousSolidAnglePerArea.value);
+  photon.previousSolidAnglePerArea = WideFloat(light.previousSolidAnglePerArea.value);
   photon.depth = start.depth;
   return true;
 }

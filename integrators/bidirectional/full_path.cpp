@@ -152,9 +152,8 @@ FullPath Unfold(const ConnectedPath& path) {
     full.gathers[i] = vertex.GathersPhotons() || vertex.IsInMedium();
     full.isInMedium[i] = vertex.IsInMedium();
     const Vector3 toLight = vertices.ToLight(i), toCamera = vertices.ToCamera(i);
-    full.mergeVolume[i] =
-        static_cast<double>(MergeVolume(vertex, {toLight, vertices.Departure(i), i > 1 && vertices[i - 1].IsInMedium()},
-                                        {toCamera, vertices.Arrival(i)}, *path.volume));
+    full.mergeVolume[i] = MergeVolume(vertex, {toLight, vertices.Departure(i), i > 1 && vertices[i - 1].IsInMedium()},
+                                      {toCamera, vertices.Arrival(i)}, *path.volume);
     full.isDelta[i] = vertices.HasEvent(i) && vertex.scatteredDelta;
     const DirectionDensities densities = vertices.DensitiesAt(i);
     full.fromCamera[i - 1] =
@@ -302,13 +301,13 @@ PathDensities DensitiesOf(const FullPath& path) {
   for (int i = n; i >= 1; --i) {
     const auto at = static_cast<size_t>(i);
     camera.push_back({i == n ? path.seenDensity : path.fromCamera[at].value, path.fromLight[at].value,
-                      static_cast<float>(path.mergeVolume[at]), isDelta(i + 1), path.CanMerge(i), isDelta(i - 1),
+                      WideFloat(path.mergeVolume[at]), isDelta(i + 1), path.CanMerge(i), isDelta(i - 1),
                       static_cast<bool>(path.isInMedium[at])});
   }
   Joint joint;
   joint.camera = {path.fromLight[1], n > 1 ? path.fromLight[2] : AreaDensity()};
   joint.mergesAtCamera = path.CanMerge(1);
-  joint.cameraMergeVolume = static_cast<float>(path.mergeVolume[1]);
+  joint.cameraMergeVolume = path.mergeVolume[1];
   joint.previousCameraIsDelta = isDelta(1);
   PathDensities densities;
   densities.Set({}, camera, joint, path.end.emission.value, path.end.extent, path.merging);

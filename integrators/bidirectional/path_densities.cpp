@@ -32,13 +32,13 @@ void PathDensities::Set(std::span<const SubpathDensities> light, std::span<const
   Vertex* const vertices = vertices_.data();
   for (size_t i = 0; i < light.size(); ++i) {
     const SubpathDensities& v = light[i];
-    vertices[i + 1] = {v.forward,    v.reverse,    1, v.forwardIsDelta, v.reverseIsDelta, v.canMerge,
-                       v.isInMedium, v.mergeVolume};
+    const auto volume = static_cast<double>(v.mergeVolume);
+    vertices[i + 1] = {v.forward, v.reverse, 1, v.forwardIsDelta, v.reverseIsDelta, v.canMerge, v.isInMedium, volume};
   }
   for (size_t i = 0; i < camera.size(); ++i) {
     const SubpathDensities& v = camera[i];
-    vertices[n - i] = {v.reverse,    v.forward,    1, v.reverseIsDelta, v.forwardIsDelta, v.canMerge,
-                       v.isInMedium, v.mergeVolume};
+    const auto volume = static_cast<double>(v.mergeVolume);
+    vertices[n - i] = {v.reverse, v.forward, 1, v.reverseIsDelta, v.forwardIsDelta, v.canMerge, v.isInMedium, volume};
   }
   if (const size_t j = light.size(); j > 0) {
     Vertex& last = vertices[j];

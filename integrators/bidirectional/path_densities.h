@@ -44,7 +44,7 @@ struct Merging {
 struct Joint {
   ReverseDensities light, camera;
   bool mergesAtLight = false, mergesAtCamera = false;
-  float lightMergeVolume = 0, cameraMergeVolume = 0;              // SubpathDensities::mergeVolume of the last vertices
+  double lightMergeVolume = 0, cameraMergeVolume = 0;             // SubpathDensities::mergeVolume of the last vertices
   bool lastCameraIsDelta = false, previousCameraIsDelta = false;  // the reverse density is a coefficient
   // The camera's last vertex is a photon's, and `light` holds the photon's path without it: of the light's last vertex
   // only light.last is set.
@@ -132,12 +132,11 @@ class PathDensities {
     double correlation = 1;  // c
     bool lightIsDelta = false, cameraIsDelta = false, canMerge = false;
     bool isInMedium = false;
-    float mergeVolume = 0;  // SubpathDensities::mergeVolume
+    double mergeVolume = 0;  // SubpathDensities::mergeVolume
   };
   // N π r² at a vertex, without c.
   double WithoutCorrelation(const Vertex& vertex) const {
-    return vertex.isInMedium ? merging_.perVolumeDensity * static_cast<double>(vertex.mergeVolume)
-                             : merging_.perDensity;
+    return vertex.isInMedium ? merging_.perVolumeDensity * vertex.mergeVolume : merging_.perDensity;
   }
   void Correlate();
   // The terms at the vertices from `i` on. `ratio`: p_i / p, without c.

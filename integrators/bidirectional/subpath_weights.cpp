@@ -40,9 +40,9 @@ double MergeSize(const Vertex& vertex, const ArrivingEdge& light, const Vector3&
   return radius.ShareOf(light.isFromMedium) * radius.beamScale * 2 * r * sine * PassingPerCollision(light.factors);
 }
 
-float MergeVolumeInMedium(const Vertex& vertex, const ArrivingEdge& light, const ArrivingEdge& camera,
-                          const VolumeRadius& radius) {
-  return static_cast<float>(MergeSize(vertex, light, camera.away, radius) * PassingPerCollision(camera.factors));
+double MergeVolumeInMedium(const Vertex& vertex, const ArrivingEdge& light, const ArrivingEdge& camera,
+                           const VolumeRadius& radius) {
+  return MergeSize(vertex, light, camera.away, radius) * PassingPerCollision(camera.factors);
 }
 
 void AddDensities(const Subpath& path, const VolumeRadius& radius, bool isFromLight,
@@ -56,8 +56,8 @@ void AddDensities(const Subpath& path, const VolumeRadius& radius, bool isFromLi
   if (previous.IsInMedium()) [[unlikely]] {
     const ArrivingEdge before = EdgeBefore(path, count - 1);
     const ArrivingEdge after{-path.Last().toPrevious, path.Last().factors.Reversed(), path.Last().IsInMedium()};
-    densities[count - 2].mergeVolume =
-        isFromLight ? MergeVolume(previous, before, after, radius) : MergeVolume(previous, after, before, radius);
+    densities[count - 2].mergeVolume = WideFloat(isFromLight ? MergeVolume(previous, before, after, radius)
+                                                             : MergeVolume(previous, after, before, radius));
   }
   last.forwardIsDelta = previous.scatteredDelta;
   AddEvent(previous.CanMerge() && !previous.scatteredDelta, previous.scatteredDelta,

@@ -53,12 +53,12 @@ inline ArrivingEdge EdgeBefore(const Subpath& path, size_t count) {
 double MergeSize(const Vertex& vertex, const ArrivingEdge& light, const Vector3& toCamera, const VolumeRadius& radius);
 // MergeSize times the probability with which a camera path passes the vertex over the density with which it collides,
 // scene units³: over the density of a connection there it is the density of merging.
-float MergeVolumeInMedium(const Vertex& vertex, const ArrivingEdge& light, const ArrivingEdge& camera,
-                          const VolumeRadius& radius);
+double MergeVolumeInMedium(const Vertex& vertex, const ArrivingEdge& light, const ArrivingEdge& camera,
+                           const VolumeRadius& radius);
 // The same; of a vertex on a surface 0.
-inline float MergeVolume(const Vertex& vertex, const ArrivingEdge& light, const ArrivingEdge& camera,
-                         const VolumeRadius& radius) {
-  return vertex.IsInMedium() ? MergeVolumeInMedium(vertex, light, camera, radius) : 0.0f;
+inline double MergeVolume(const Vertex& vertex, const ArrivingEdge& light, const ArrivingEdge& camera,
+                          const VolumeRadius& radius) {
+  return vertex.IsInMedium() ? MergeVolumeInMedium(vertex, light, camera, radius) : 0.0;
 }
 // Probability of passing a vertex over the density of colliding there, scene units; 0: no walk collides there.
 inline double PassingPerCollision(const EdgeFactors& factors) {

@@ -66,7 +66,7 @@ struct TracedPhoton {
   Vector3 toPrevious;
   Color diffuse, specular;  // flux (LightingServices::FluxUnit) over the path's density, for either kind of lobe
   PhotonWeight weight;
-  float previousSolidAnglePerArea;
+  WideFloat previousSolidAnglePerArea;
   PackedNormal normal;
   uint16_t depth;                // 1: first hit of its path
   uint32_t origin;               // index of its path's origin in the list
@@ -125,9 +125,8 @@ class PhotonList {
     const auto origin = static_cast<uint32_t>(origins_.size()) - 1;
     // In place: a copy of what was just written field by field stalls on store forwarding.
     photons_.emplace_back(vertex.point.position, vertex.toPrevious, vertex.diffuse * passed, vertex.specular * passed,
-                          PhotonWeight::Of(vertex.weight, depth),
-                          static_cast<float>(vertex.previousSolidAnglePerArea.value), PackedNormal(vertex.bsdf.Ng()),
-                          static_cast<uint16_t>(std::min(depth, kDeepest)), origin,
+                          PhotonWeight::Of(vertex.weight, depth), WideFloat(vertex.previousSolidAnglePerArea.value),
+                          PackedNormal(vertex.bsdf.Ng()), static_cast<uint16_t>(std::min(depth, kDeepest)), origin,
                           static_cast<uint32_t>(densities_.size() + 1));
     if (const PhaseBsdf* phase = vertex.bsdf.Phase()) {
       photons_.back().volume = static_cast<uint32_t>(volume_.size());
@@ -232,7 +231,7 @@ struct alignas(64) Photon {
   Vector3 toPrevious{0.0f};  // unit
   Color flux;  // LightingServices::FluxUnit over the path's density, for diffuse lobes; for specular ones see PhotonMap
   PhotonWeight weight;
-  float previousSolidAnglePerArea = 0;
+  WideFloat previousSolidAnglePerArea;
   PackedNormal normal;  // of the surface
   uint32_t specular = kSame;
   uint16_t depth = 0;

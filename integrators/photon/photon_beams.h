@@ -35,7 +35,7 @@ struct FlightStart {
   PartialWeight weight;         // of the vertex
   AreaDensity previousReverse;  // of the vertex before it, by the event
   float geometryTerm = 1;       // of the vertex, along the flight
-  float mergeSize = 0;          // of the vertex in a medium: MergeSize
+  double mergeSize = 0;         // of the vertex in a medium: MergeSize
   bool scatteredDelta = false;
   bool canMerge = false;
   bool isInMedium = false;

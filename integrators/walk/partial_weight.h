@@ -34,6 +34,7 @@
 
 #include "materials/scattering.h"
 #include "math/density.h"
+#include "math/wide_float.h"
 
 namespace lampyr {
 
@@ -85,7 +86,7 @@ struct SubpathDensities {
   double forward = 0;  // by its own subpath, 1/m²; of the first vertex of a light path: LightEnd::emission
   double reverse = 0;  // by the other one; valid once the next vertex has scattered
   // In a medium: MergeVolume. Valid once there is a next vertex.
-  float mergeVolume = 0;
+  WideFloat mergeVolume = {};
   bool forwardIsDelta = false;  // a delta event finds the vertex: the density is a coefficient
   bool canMerge = false;        // with the event by which the subpath goes on; valid once there is a next vertex
   bool reverseIsDelta : 1 = false;

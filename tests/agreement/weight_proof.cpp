@@ -53,12 +53,12 @@ class KeptLightPaths {
     photons.Add(last, count);
     const auto vertices = path.vertices.First(count);
     paths_[KeyOf(last.toPrevious, photons.Photons().back().diffuse, photons.Photons().back().weight,
-                 static_cast<float>(last.previousSolidAnglePerArea.value), count)] = {
+                 static_cast<double>(WideFloat(last.previousSolidAnglePerArea.value)), count)] = {
         {vertices.begin(), vertices.end()}, end};
   }
   const KeptPath& PathOf(const Photon& photon) const {
-    return paths_.at(
-        KeyOf(photon.toPrevious, photon.flux, photon.weight, photon.previousSolidAnglePerArea, photon.depth));
+    return paths_.at(KeyOf(photon.toPrevious, photon.flux, photon.weight,
+                           static_cast<double>(photon.previousSolidAnglePerArea), photon.depth));
   }
 
   // The path from whose last vertex the next flight starts.
@@ -80,7 +80,7 @@ class KeptLightPaths {
 
  private:
   using Key = std::array<double, 10>;
-  static Key KeyOf(const Vector3& d, const Color& c, const PhotonWeight& weight, float edge, size_t depth) {
+  static Key KeyOf(const Vector3& d, const Color& c, const PhotonWeight& weight, double edge, size_t depth) {
     return {d.x, d.y, d.z, c.r, c.g, c.b, weight.endsEarlier, weight.second, edge, static_cast<double>(depth)};
   }
   std::map<Key, KeptPath> paths_;

@@ -11,6 +11,7 @@
 #include "spectral/color_space.h"
 #include "support/render_scene.h"
 #include "support/replicas.h"
+#include "support/whole.h"
 
 namespace lampyr::test {
 namespace {
@@ -237,7 +238,8 @@ TEST(Spectral, FurnaceWithAPrism) {
   constexpr int kSeeds = 8;
   for (const auto& [eye, known] : eyes) {
     const double bound = eye == inside ? 6e-3 : 1e-3;  // of the error of a mean
-    for (const char* integrator : {"path", "bdpt", "vcm", "sppm"}) {
+    for (const char* integrator : {"path", "vcm", "bdpt", "sppm"}) {
+      if (!IsWhole() && integrator == std::string("bdpt")) break;
       Vector3d sum(0.0), squares(0.0);
       for (uint64_t seed = 0; seed < kSeeds; ++seed) {
         RenderOverrides overrides;
@@ -265,6 +267,7 @@ TEST(Spectral, WhiteStaysWhite) {
   constexpr int kSeeds = 6;
   for (const auto& [integrator, samples] : {std::pair("path", 1024), std::pair("bdpt", 256), std::pair("light", 1024),
                                             std::pair("vcm", 256), std::pair("sppm", 1024)}) {
+    if (!IsWhole() && integrator != std::string("path") && integrator != std::string("vcm")) continue;
     double sum[2] = {0, 0}, squares[2] = {0, 0}, means = 0;  // of red and blue
     for (uint64_t seed = 0; seed < kSeeds; ++seed) {
       RenderOverrides overrides;
@@ -355,7 +358,8 @@ TEST(Spectral, HueOfACausticAfterFourPasses) {
     const double r = MeanOfChannel(image, 0), g = MeanOfChannel(image, 1), b = MeanOfChannel(image, 2);
     return std::array<double, 3>{r / (r + g + b), g / (r + g + b), b / (r + g + b)};
   };
-  for (const char* integrator : {"light", "bdpt", "vcm", "sppm"}) {
+  for (const char* integrator : {"vcm", "sppm", "light", "bdpt"}) {
+    if (!IsWhole() && integrator == std::string("light")) break;
     RenderOverrides overrides;
     overrides.width = overrides.height = 96;
     const auto converged = hue(RenderText(Caustic(integrator), 64, overrides, 2).image);

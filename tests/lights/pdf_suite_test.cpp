@@ -16,8 +16,8 @@ TEST(PdfSuite, EveryRegisteredLightPasses) {
   SuiteOptions options;
   // Every block of every type, and of its placements some: each of the ten in turn, as neither number divides ten.
   // `lampyr check-lights` looks at all, in minutes; so does `tests/run seeds`.
-  options.caseEvery = IsWhole() ? 3 : 11;
-  options.editEvery = IsWhole() ? 1 : 5;
+  options.caseEvery = IsWhole() ? 3 : 17;
+  options.editEvery = IsWhole() ? 1 : 7;
   options.thoroughEvery = 8;
   options.threads = 0;  // all: the results are the same
   const std::vector<SuiteResult> results = RunPdfSuite(LightRegistry(), folder, options);
