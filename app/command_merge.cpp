@@ -118,6 +118,8 @@ Image LayersOf(const std::vector<Part>& parts, const PartHeader& whole, bool qui
                 quiet, layers);
   if (whole.metadata.contains(kFeaturesMetadata))
     AddLayersOf(parts, FeatureChannels(), "the features for denoising", quiet, layers);
+  if (whole.metadata.contains(kAutoLayersMetadata))
+    AddLayersOf(parts, AutoChannels(), "the layers of what was decided", quiet, layers);
   return layers;
 }
 
@@ -136,12 +138,15 @@ int RunMerge(const MergeOptions& options) {
   PartHeader whole = parts.front().Header();
   whole.samples = 0;
   Film film = whole.MakeFilm();
+  std::vector<PartHeader> headers;
   for (const Part& part : parts) {
     Film own = whole.MakeFilm();
     part.reader->Load([&own](ByteReader& bytes) { own.Load(bytes); });
     film.Add(own);
     whole.samples += part.Header().samples;
+    headers.push_back(part.Header());
   }
+  if (film.HasHalf() && !whole.isAdaptive) SetHalfShare(headers, whole.metadata);
   WriteSamples(options.output, whole, film, LayersOf(parts, whole, options.quiet));
   if (options.png) WritePngBeside(options.output, film.Develop(), options.exposure, options.clipPng);
   if (!missing.empty()) std::fprintf(stderr, "warning: the picture is not whole: without %s\n", missing.c_str());

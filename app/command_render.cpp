@@ -144,6 +144,7 @@ PartHeader MakeHeader(const RenderOptions& options, const LoadedScene& loaded, c
   for (const OutputLayer& layer : loaded.built.scene.outputs->Layers()) {
     if (!layer.text.empty()) header.metadata["lampyr.layer." + layer.name] = layer.text;
   }
+  header.metadata[kSplatCountMetadata] = std::to_string(PixelFilter(settings.filter).SplatCount());
   header.metadata.merge(FirstHitMetadata(loaded.built));
   for (const char* layer : {kSamplesLayer, kErrorLayer, kBiasLayer}) {
     if (settings.Wants(layer)) header.metadata[std::string(kSampleLayerMetadata) + layer] = "1";
@@ -152,6 +153,7 @@ PartHeader MakeHeader(const RenderOptions& options, const LoadedScene& loaded, c
     header.metadata["spectralLayoutVersion"] = "1.0";
     header.metadata["emissiveUnits"] = "W.m^-2.sr^-1";
   }
+  if (options.autoLayers) header.metadata[kAutoLayersMetadata] = "yes";
   if (options.denoise) {
     header.layers.emplace_back(kHalfLayer);
     header.metadata[kFeaturesMetadata] = "yes";
@@ -319,7 +321,7 @@ Image AutoLayers(const RenderSettings& settings) {
   const TechniqueCounts& counts = *settings.counts;
   const CountedTechniques techniques = CountedTechniquesOf(settings.integrator, settings.values);
   const PixelRect& crop = settings.crop;
-  Image image(crop.Width(), crop.Height(), {"auto.lightPaths", "auto.connecting", "auto.merging", "auto.continuing"});
+  Image image(crop.Width(), crop.Height(), AutoChannels());
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x) {
       const Point2 center(static_cast<float>(crop.x0 + x) + 0.5f, static_cast<float>(crop.y0 + y) + 0.5f);
@@ -498,11 +500,12 @@ void RenderJob::MakeFeatureLayers() {
 
 // Denoises the picture that was written.
 void RenderJob::DenoisePicture() const {
-  if (report_.outcome.samplesPerPixel < 2) {
+  const Image noisy = ReadImage(path_);
+  if (IsOfOneSample(noisy)) {
     std::fprintf(stderr, "warning: not denoised: one sample per pixel has no known variance\n");
     return;
   }
-  const Image image = DenoiseForUser(ReadImage(path_), report_.threads, FinishOnInterrupt(), options_.quiet);
+  const Image image = DenoiseForUser(noisy, report_.threads, FinishOnInterrupt(), options_.quiet);
   if (image.channels.empty()) {
     std::fprintf(stderr, "warning: interrupted: \"%s\" is not denoised; `lampyr denoise` does it\n", path_.c_str());
     return;

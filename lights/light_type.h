@@ -25,6 +25,8 @@ struct LightBuildContext {
   Transform shapePlacement;
   const TextureLibrary* textures = nullptr;  // images; null in tests that use none
   std::shared_ptr<const AlphaSource> alpha;  // cut-outs of the shape
+  // Area lights: rays do not hit the surface, which still emits; light may pass through it.
+  bool letsRaysPass = false;
   Diagnostics* diagnostics = nullptr;
 };
 

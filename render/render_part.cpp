@@ -52,8 +52,9 @@ RenderIdentity LoadPairs(ByteReader& bytes) {
   const auto count = bytes.Value<uint64_t>();
   if (count > kMostEntries) throw Error("it holds a number out of range");
   for (uint64_t i = 0; i < count; ++i) {
-    std::string name = bytes.Text();
-    pairs.emplace_back(std::move(name), bytes.Text());
+    // As long as the file: a manifest of mattes names all objects.
+    std::string name = bytes.Text(bytes.Left());
+    pairs.emplace_back(std::move(name), bytes.Text(bytes.Left()));
   }
   return pairs;
 }

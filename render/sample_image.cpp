@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "render/output_files.h"
@@ -10,12 +11,6 @@
 namespace lampyr {
 
 namespace {
-
-// The largest half is 65504; a brighter image is written in floats.
-bool FitsHalves(const Image& image) {
-  constexpr float largestHalf = 65504;
-  return std::all_of(image.data.begin(), image.data.end(), [](float v) { return std::abs(v) <= largestHalf; });
-}
 
 Image SamplesOf(const Film& film) {
   Image image(film.Crop().Width(), film.Crop().Height(), {"samples"});
@@ -32,8 +27,9 @@ Image BiasOf(const Film& film) {
 }
 
 // Half the width of the 95 % interval of a pixel's luminance, relative to it. Channels are taken as fully correlated,
-// which bounds it.
-Image ErrorOf(const Image& developed, const std::vector<double>& biasSquares) {
+// which bounds it. Infinite where it is not known, as in Film::PixelErrors.
+Image ErrorOf(const Film& film, const Image& developed) {
+  const std::vector<double> biasSquares = film.BiasSquares();
   Image image(developed.width, developed.height, {"relativeError"});
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x) {
@@ -43,15 +39,30 @@ Image ErrorOf(const Image& developed, const std::vector<double>& biasSquares) {
         deviation += Color::kLuminance[c] * std::sqrt(static_cast<double>(developed.At(x, y, 3 + c)));
       }
       double half = 1.96 * deviation;
-      if (!biasSquares.empty())
-        half = std::hypot(half, std::sqrt(biasSquares[static_cast<size_t>(y * image.width + x)]));
-      image.At(x, y, 0) = luminance > 0 ? static_cast<float>(half / luminance) : 0.0f;
+      const auto i = static_cast<size_t>(y * image.width + x);
+      if (!biasSquares.empty()) half = std::hypot(half, std::sqrt(biasSquares[i]));
+      const bool isUnknown = film.Samples(i) < 2 && (film.Samples(i) == 1 || film.LightPaths() < 2);
+      image.At(x, y, 0) = isUnknown || (half > 0 && !(luminance > 0)) ? std::numeric_limits<float>::infinity()
+                          : half > 0                                  ? static_cast<float>(half / luminance)
+                                                                      : 0.0f;
     }
   }
   return image;
 }
 
 }  // namespace
+
+void SetHalfShare(std::span<const PartHeader> parts, std::map<std::string, std::string>& metadata) {
+  uint64_t all = 0, inHalf = 0;
+  bool areFirst = true;
+  for (const PartHeader& part : parts) {
+    areFirst = areFirst && part.shard.first == all;
+    all += part.samples;
+    inHalf += SamplesInHalf(part.shard.first + part.samples) - SamplesInHalf(part.shard.first);
+  }
+  if (areFirst || all == 0) return;
+  metadata.try_emplace(kHalfShareMetadata, std::to_string(static_cast<double>(inHalf) / static_cast<double>(all)));
+}
 
 void CheckImageOutput(const std::filesystem::path& path, const char* option, bool withPng) {
   if (path.filename() == ".exr") throw UsageError(std::string(option) + ": \".exr\" has no name before its ending");
@@ -71,15 +82,13 @@ void WriteSamples(const std::filesystem::path& path, const PartHeader& header, c
     return header.metadata.contains(std::string(kSampleLayerMetadata) + layer);
   };
   if (wants(kSamplesLayer)) AppendChannels(image, SamplesOf(film));
-  if (wants(kErrorLayer)) AppendChannels(image, ErrorOf(image, film.BiasSquares()));
+  if (wants(kErrorLayer)) AppendChannels(image, ErrorOf(film, image));
   if (wants(kBiasLayer)) AppendChannels(image, BiasOf(film));
   for (const auto& [key, value] : header.metadata) image.metadata[key] = value;
+  if (film.HasHalf()) SetHalfShare(std::span(&header, 1), image.metadata);
+  if (image.ChannelIndex(kSplatShareChannel) < 0) image.metadata.erase(kSplatCountMetadata);
   image.metadata["lampyr.samplesPerPixel"] = std::to_string(header.samples);
-  // Identifiers in mattes are bits, not numbers.
-  const bool hasMattes = std::any_of(image.channels.begin(), image.channels.end(),
-                                     [](const std::string& channel) { return channel.starts_with("Crypto"); });
-  const bool asHalves = header.halfPrecision && !hasMattes && FitsHalves(image);
-  WriteExr(path, image, asHalves ? ExrPrecision::Half : ExrPrecision::Float, append);
+  WriteExr(path, image, header.halfPrecision ? ExrPrecision::Half : ExrPrecision::Float, append);
 }
 
 void WritePngBeside(std::filesystem::path path, const Image& image, float exposureStops, bool clips) {

@@ -82,18 +82,16 @@ Color Connect(const BidirectionalSample& sample, size_t lightCount) {
   const SampleContext& context = sample.context;
   const PathVertex &y = sample.light.vertices[lightCount - 1], &z = sample.camera.Last();
   if (y.isDelta || context.IsCounted(y.isDispersed || z.isDispersed)) return Color(0.0f);
-  const Vector3 difference(y.WayTo(z));
-  const float squaredFloat = LengthSquared(difference);
-  if (!(squaredFloat > 0)) return Color(0.0f);
-  const Vector3 toCamera = difference / std::sqrt(squaredFloat);
-  const auto squared = static_cast<double>(squaredFloat);
+  const Way way{Vector3(y.WayTo(z))};
+  if (!(way.squared > 0)) return Color(0.0f);
+  const Vector3& toCamera = way.direction;
   const BsdfEvaluation fy = y.Evaluate(toCamera, TransportMode::Importance);
   const Color leaving = y.diffuse * fy.diffuse + y.specular * fy.specular;
   if (leaving.IsBlack()) return leaving;
   const BsdfEvaluation fz = z.Evaluate(-toCamera, TransportMode::Radiance);
   const double geometric =
       static_cast<double>(y.GeometryTerm(toCamera) * z.ScatteringCosine(toCamera) * y.ArrivalCorrection(y.toPrevious)) /
-      squared;
+      way.squared;
   const Color value =
       Product(z.Throughput() * fz.Sum(), leaving,
               geometric * static_cast<double>(sample.Lighting().FluxUnit()) / sample.connectionsPerSample);
@@ -113,7 +111,7 @@ Color Connect(const BidirectionalSample& sample, size_t lightCount) {
     transmitted = TraceConnection(context, z, y, factors);
     if (transmitted.IsBlack()) return transmitted;
   }
-  const Joint joint = JointOf(sample, lightCount, toCamera, squared, fy, fz, factors);
+  const Joint joint = JointOf(sample, lightCount, toCamera, way.squared, fy, fz, factors);
   const auto weightWith = [&](double merging) {
     return ConnectWeight(y.weight, joint.light, z.weight, joint.camera, sample.connectionCount, merging);
   };

@@ -11,7 +11,7 @@ double SquaredDistance(const Vertex& a, const Vertex& b) {
     const Vector3d way = a.WayTo(b);
     return glm::dot(way, way);
   }
-  return static_cast<double>(LengthSquared(a.point.position - b.point.position));
+  return SquaredLength(a.point.position - b.point.position);
 }
 
 }  // namespace
@@ -111,7 +111,7 @@ bool SetFirstWeights(const SampleContext& context, const EmittedPhoton& photon, 
   const LightingServices& lighting = *context.scene.lighting;
   const std::optional<FoundLight> found = lighting.EvaluateFirstHit(photon, first.receiver);
   if (!found) return false;
-  const auto squared = static_cast<double>(LengthSquared(first.point.position - photon.emission.position));
+  const double squared = SquaredLength(first.point.position - photon.emission.position);
   const SolidAnglePerArea edge =
       FirstEdgeDensity(lighting, found->light, first.GeometryTerm(first.toPrevious), squared);
   end = EndOf(lighting, *found, lighting.CanBeHit(found->light), edge, first.factors, lightPaths);

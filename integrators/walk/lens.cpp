@@ -101,10 +101,9 @@ std::optional<SeenFromLens> SeeGlow(const SampleContext& context, const EmittedI
   ConnectToCamera(context, emitted.position, lensDimension, seen);
   if (!seen) return seen;
   const FilmConnection& connection = seen->connection;
-  const Vector3 difference = connection.camera.position - emitted.position;
-  const float squared = LengthSquared(difference);
-  if (!(squared > 0)) return std::nullopt;
-  seen->toCamera = difference / std::sqrt(squared);
+  const Way way(connection.camera.position - emitted.position);
+  if (!(way.squared > 0)) return std::nullopt;
+  seen->toCamera = way.direction;
   seen->geometryTerm = 1;
   ++context.counts.shadowRays;
   SurfacePoint point;  // no surface: no normal, no error
@@ -132,10 +131,9 @@ bool CompleteConnection(const SampleContext& context, const PathVertex& vertex, 
   const RenderScene& scene = context.scene;
   const Point3& position = vertex.point.position;
   const FilmConnection& connection = seen.connection;
-  const Vector3 difference = connection.camera.position - position;
-  const float squared = LengthSquared(difference);
-  if (!(squared > 0)) return false;
-  seen.toCamera = difference / std::sqrt(squared);
+  const Way way(connection.camera.position - position);
+  if (!(way.squared > 0)) return false;
+  seen.toCamera = way.direction;
   seen.f = vertex.Evaluate(seen.toCamera, TransportMode::Importance);
   const Color scattered = vertex.diffuse * seen.f.diffuse + vertex.specular * seen.f.specular;
   if (scattered.IsBlack()) return false;

@@ -37,6 +37,10 @@ Color SampleLight(const SampleContext& context, const NextEventSettings& setting
   const Color scattered = connection.f.diffuse * sample.diffuse + connection.f.specular * sample.specular;
   if (scattered.IsBlack()) return nothingArrives();
   const PdfSolidAngle pdf = direct.selection * sample.pdfDirect;
+  if (!(pdf.value > 0)) [[unlikely]] {  // of a defective type of light: weights would hide it
+    ++context.counts.droppedSamples;
+    return nothingArrives();
+  }
   connection.value = vertex.Throughput() * scattered * (vertex.ScatteringCosine(sample.direction) / pdf.value);
   if (connection.value.IsBlack()) return Color(0.0f);
   // Media on the way are a part of the weight, so that their shadow rays are traced before it is known.

@@ -128,6 +128,23 @@ struct Vertex {
   mutable std::array<PdfSolidAngle, 2> reverseGuide_{kUnknown, kUnknown};  // by mode
 };
 
+// A squared length, of a difference of positions. In double: float has no squares of lengths below 1e-19.
+inline double SquaredLength(const Vector3& difference) {
+  const Vector3d fine(difference);
+  return glm::dot(fine, fine);
+}
+
+// A difference of positions as a unit direction and the squared distance; 0: the positions are the same, and there is
+// no direction.
+struct Way {
+  Vector3 direction{0.0f};
+  double squared = 0;
+
+  explicit Way(const Vector3& difference) : squared(SquaredLength(difference)) {
+    if (squared > 0) direction = Vector3(Vector3d(difference) * (1 / std::sqrt(squared)));
+  }
+};
+
 // dω/dA of an edge, which turns a density over solid angle at one end into one over area at the other: |cosθ| there
 // (`geometryTerm`) over the squared distance. Small cosines have lost their precision to rounding, so they have a lower
 // bound, the same for every technique.

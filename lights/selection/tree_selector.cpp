@@ -65,8 +65,8 @@ class TreeSelector final : public LightSelector {
       return FarExpected(farTable_.Probability(*at), far, count);
     }
     if (search_.IsEmpty()) return PdfDiscrete(0);
-    const std::optional<uint32_t> emitter = EmitterOf(light, patch);
-    return emitter ? Expected(search_.ProbabilityOf(place, cut, *emitter), far, count) : PdfDiscrete(0);
+    return SumOver(light, patch,
+                   [&](uint32_t emitter) { return Expected(search_.ProbabilityOf(place, cut, emitter), far, count); });
   }
 
   std::optional<SelectedLight> SelectForSegment(const RaySegment& segment, const SegmentLights& lights,
@@ -90,8 +90,9 @@ class TreeSelector final : public LightSelector {
     const std::optional<uint32_t> at = FarIndexOf(light);
     if (at) return farTable_.IsZero() ? PdfDiscrete(0) : FarExpected(farTable_.Probability(*at), far, 1);
     if (search_.IsEmpty()) return PdfDiscrete(0);
-    const std::optional<uint32_t> emitter = EmitterOf(light, patch);
-    return emitter ? Expected(search_.ProbabilityAlong(place, emitters, cut, *emitter), far, 1) : PdfDiscrete(0);
+    return SumOver(light, patch, [&](uint32_t emitter) {
+      return Expected(search_.ProbabilityAlong(place, emitters, cut, emitter), far, 1);
+    });
   }
 
   void Record(LightLearning& learning, const Receiver& receiver, uint32_t light, int patch,
@@ -121,10 +122,22 @@ class TreeSelector final : public LightSelector {
     return static_cast<uint32_t>(at - emitters_.far.begin());
   }
 
+  // Null: the light has no such patch, or several, of which none is meant.
   std::optional<uint32_t> EmitterOf(uint32_t light, int patch) const {
     const uint32_t first = emitters_.first[light], count = emitters_.first[light + 1] - first;
-    const uint32_t emitter = first + (count > 1 ? static_cast<uint32_t>(patch) : 0u);
-    return emitter < first + count ? std::optional(emitter) : std::nullopt;
+    const uint32_t index = count > 1 ? static_cast<uint32_t>(patch) : 0u;
+    return index < count ? std::optional(first + index) : std::nullopt;
+  }
+  // The sum of `probabilityOf` over the emitters of a light that are meant: with kAnyPatch all of its patches.
+  template <class Function>
+  PdfDiscrete SumOver(uint32_t light, int patch, const Function& probabilityOf) const {
+    if (patch == kAnyPatch) {
+      PdfDiscrete sum(0);
+      for (uint32_t i = emitters_.first[light]; i < emitters_.first[light + 1]; ++i) sum = sum + probabilityOf(i);
+      return sum;
+    }
+    const std::optional<uint32_t> emitter = EmitterOf(light, patch);
+    return emitter ? probabilityOf(*emitter) : PdfDiscrete(0);
   }
 
   TreeReceiver Place(const Receiver& receiver, const LightLearning* learned) const {
@@ -214,8 +227,7 @@ class TreeSelector final : public LightSelector {
       const LightLearning::Row& row = place.learning->RowOf(place.region, LightTree::kNone);
       far *= std::sqrt(static_cast<double>(row.known[0] + (1 - row.learned[0])));
     }
-    const double share = far / (far + near);
-    return std::clamp(share, kSmallestGroup, 1 - kSmallestGroup);
+    return far > 0 ? std::clamp(far / (far + near), kSmallestGroup, 1 - kSmallestGroup) : kSmallestGroup;
   }
 
   // The same for a segment, along which irradiance from infinity is constant. `fluence`: by the emitters.

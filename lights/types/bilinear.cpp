@@ -72,17 +72,21 @@ class BilinearPatches {
   std::vector<CornerWeights> weights_;  // all above 0, or all 0 for a patch without area
 };
 
+// |∂p/∂u × ∂p/∂v|, scene units². In double: float has no squares of areas beyond 1e19.
+double ElementAt(const PatchGeometry& geometry, const Point2& p) {
+  return glm::length(glm::cross(Vector3d(geometry.AlongU(p)), Vector3d(geometry.AlongV(p))));
+}
+
 BilinearPatches::BilinearPatches(std::shared_ptr<const BilinearMesh> mesh)
     : mesh_(std::move(mesh)), weights_(mesh_->patches.size()) {
   for (uint32_t i = 0; i < Count(); ++i) {
     const PatchGeometry geometry(*mesh_, i);
-    float largest = 0;
-    for (size_t c = 0; c < 4; ++c) {
-      weights_[i][c] = glm::length(geometry.Cross(kCorners[c]));
-      largest = std::max(largest, weights_[i][c]);
-    }
+    std::array<double, 4> elements;
+    for (size_t c = 0; c < 4; ++c) elements[c] = ElementAt(geometry, kCorners[c]);
+    const double largest = *std::max_element(elements.begin(), elements.end());
     // A corner where the patch folds to a point keeps some density: the middle of its edges has area.
-    for (float& w : weights_[i]) w = largest > 0 ? std::max(w / largest, 0.01f) : 0.0f;
+    for (size_t c = 0; c < 4; ++c)
+      weights_[i][c] = largest > 0 ? std::max(static_cast<float>(elements[c] / largest), 0.01f) : 0.0f;
   }
 }
 
@@ -105,10 +109,11 @@ void BilinearPatches::SetPoint(uint32_t patch, const Point2& p, bool, EmittingPo
 
 float BilinearPatches::Density(uint32_t patch, const Point2& p) const {
   const CornerWeights& w = weights_[patch];
-  const float mean = 0.25f * (w[0] + w[1] + w[2] + w[3]);
-  const float element = glm::length(PatchGeometry(*mesh_, patch).Cross(p));
+  const double mean = 0.25 * static_cast<double>(w[0] + w[1] + w[2] + w[3]);
+  const double element = ElementAt(PatchGeometry(*mesh_, patch), p);
   if (!(mean > 0) || !(element > 0)) return 0;
-  const float density = glm::mix(glm::mix(w[0], w[1], p.x), glm::mix(w[2], w[3], p.x), p.y) / (mean * element);
+  const auto relative = static_cast<double>(glm::mix(glm::mix(w[0], w[1], p.x), glm::mix(w[2], w[3], p.x), p.y));
+  const auto density = static_cast<float>(relative / (mean * element));
   return density < kInfinity ? density : 0.0f;
 }
 
@@ -119,10 +124,11 @@ Point2 BilinearPatches::ParametersOf(uint32_t patch, const Point2& uv, const Poi
   const PatchGeometry geometry(*mesh_, patch);
   Point2 p(0.5f);
   for (int step = 0; step < 20; ++step) {
-    const Vector3 a = geometry.AlongU(p), b = geometry.AlongV(p), r = position - geometry.At(p);
-    const float aa = glm::dot(a, a), ab = glm::dot(a, b), bb = glm::dot(b, b), ar = glm::dot(a, r), br = glm::dot(b, r);
-    const float determinant = aa * bb - ab * ab;
-    if (!(determinant > 1e-12f * aa * bb)) break;
+    const Vector3d a(geometry.AlongU(p)), b(geometry.AlongV(p)), r(position - geometry.At(p));
+    const double aa = glm::dot(a, a), ab = glm::dot(a, b), bb = glm::dot(b, b), ar = glm::dot(a, r),
+                 br = glm::dot(b, r);
+    const double determinant = aa * bb - ab * ab;
+    if (!(determinant > 1e-12 * aa * bb)) break;
     const Vector2 change((bb * ar - ab * br) / determinant, (aa * br - ab * ar) / determinant);
     p = glm::clamp(p + change, Point2(0.0f), Point2(1.0f));
     if (std::abs(change.x) + std::abs(change.y) < 1e-6f) break;

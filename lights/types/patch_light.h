@@ -16,6 +16,8 @@
 //   Bounds(patch, transform)              box, cone of normals, and whether both sides may be the outer one
 #pragma once
 
+#include <optional>
+
 #include "geometry/mapped_area.h"
 #include "lights/direction_map.h"
 #include "lights/estimates.h"
@@ -114,7 +116,9 @@ class PatchLight final : public LightBase {
   void BuildTable();
   double TotalArea(const LightTransform& transform) const;
   MappedArea MapArea() const;
-  Color PowerOfOne(uint32_t patch, const LightTransform& transform, const ExitanceTable& exitance) const;
+  // `exitance`: called as an ExitanceTable is.
+  template <class Exitance>
+  Color PowerOfOne(uint32_t patch, const LightTransform& transform, const Exitance& exitance) const;
   Color PowerOfAll(const LightTransform& transform, const ExitanceTable& exitance) const;
   Color PowerFor(const LightContext& context) const;
   // Mean of the channels, ignoring shaping and the variation of the image.
@@ -205,8 +209,8 @@ void PatchLight<Patches>::BuildTable() {
 }
 
 template <class Patches>
-Color PatchLight<Patches>::PowerOfOne(uint32_t patch, const LightTransform& transform,
-                                      const ExitanceTable& exitance) const {
+template <class Exitance>
+Color PatchLight<Patches>::PowerOfOne(uint32_t patch, const LightTransform& transform, const Exitance& exitance) const {
   const EmissionImage* image = emission_.HasImage() ? &emission_.EmittedImage() : nullptr;
   Color sum;
   patches_.ForElements(patch, glm::dmat3(transform.toRender.linear), image,
@@ -238,8 +242,18 @@ Color PatchLight<Patches>::PowerFor(const LightContext& context) const {
   if (const auto scaleSquared = RelativeScaleSquared(built_, *context.transform)) {
     return (isWhole ? wholePower_ : PowerOfOne(patch, built_, exitance_)) * emission_.PowerScale(*scaleSquared);
   }
-  const ExitanceTable exitance(emission_, *context.transform);
-  return isWhole ? PowerOfAll(*context.transform, exitance) : PowerOfOne(patch, *context.transform, exitance);
+  if (isWhole) return PowerOfAll(*context.transform, ExitanceTable(emission_, *context.transform));
+  // A table has hundreds of normals; one patch has few, and a triangle one.
+  std::optional<Normal3> last;
+  Color ofLast;
+  return PowerOfOne(patch, *context.transform, [&](const auto& getNormal) {
+    const Normal3 normal = emission_.Shaped() ? getNormal() : Normal3(0, 0, 1);
+    if (last != normal) {
+      last = normal;
+      ofLast = emission_.Exitance(*context.transform, normal);
+    }
+    return ofLast;
+  });
 }
 
 template <class Patches>

@@ -24,6 +24,8 @@ class QuadricSurface {
   explicit QuadricSurface(const Quadric& quadric, bool planarUv = false);
   // Textured: the square is laid out so that the table's cells are ranges of uv.
   void SetTextured() { textured_ = true; }
+  // The far side is seen through the near one.
+  void LetRaysPass() { hidesFarSide_ = false; }
 
   const Quadric& Shape() const { return quadric_; }
   using Placed = PlacedSurface;
@@ -73,7 +75,9 @@ class QuadricSurface {
   };
   View ViewFrom(const PlacedSurface& placed, const Point3& P, bool twoSided) const {
     View view;
-    if (isFullSphere_ && placed.isSimilar) {
+    // The cone's samples are on the near side: all that is seen of a sphere, unless the far side, too, emits towards P.
+    const bool seesFarSide = !hidesFarSide_ && (twoSided || normalSign_ < 0);
+    if (isFullSphere_ && placed.isSimilar && !seesFarSide) {
       const auto cone = SphereCone::From(P, placed.toRender.translation, quadric_.radius * placed.scale);
       if (!cone) return view;
       view.cone = *cone;
@@ -133,6 +137,7 @@ class QuadricSurface {
   Quadric quadric_;
   bool planarUv_;
   bool isFullSphere_;
+  bool hidesFarSide_ = true;
   bool textured_ = false;
   float normalSign_;  // of the outer side relative to the quadric's normal
   float low_, high_;  // along z

@@ -78,6 +78,7 @@ void LightTable::AddAreaLight(const ShapeDescription& description, const Shape& 
   build.shape = &shape;
   build.shapePlacement = shapePlacement;
   if (canBeHit) build.alpha = alpha;
+  build.letsRaysPass = !canBeHit;
   lights_.push_back({MakeLight(type, statement.parameters, build), build.transform, canBeHit, placement.motion});
   Bind(statement.filter, lights_.back());
   lightPlaces_.push_back(statement.where);

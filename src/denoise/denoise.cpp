@@ -200,16 +200,20 @@ Image MakeImage(const Image& noisy, const NoisyPicture& picture, const Filtered&
     const float* in = noisy.data.data() + i * noisy.channels.size();
     float* out = image.data.data() + i * image.channels.size();
     for (size_t k = 0; k < copied.size(); ++k) out[front.size() + k] = in[copied[k]];
+    if (picture.isKept[i]) {
+      for (size_t c = 0; c < front.size(); ++c) out[c] = in[copied[c]];
+      continue;
+    }
+    const bool isKnown = weights[0].values[i] > 0 && weights[1].values[i] > 0;
     for (size_t c = 0; c < 3; ++c) {
-      const bool isKnown = weights[0].values[i] > 0 && weights[1].values[i] > 0;
-      if (!isKnown) {  // no valid pixel is near
-        out[c] = picture.color[c].values[i];
-        out[3 + c] = picture.variance[c].values[i];
-        continue;
+      float value = picture.color[c].values[i], variance = picture.variance[c].values[i];
+      if (isKnown) {
+        // A regression may undershoot 0 beside something bright.
+        value = std::max(filtered.value[c].values[i], std::min(value, 0.0f));
+        variance = filtered.variance[c].values[i] + std::max(filtered.squaredBias[c].values[i], 0.0f);
       }
-      // A regression may undershoot 0 beside something bright.
-      out[c] = std::max(filtered.value[c].values[i], std::min(picture.color[c].values[i], 0.0f));
-      out[3 + c] = filtered.variance[c].values[i] + std::max(filtered.squaredBias[c].values[i], 0.0f);
+      out[c] = static_cast<float>(picture.unit * static_cast<double>(value));
+      out[3 + c] = static_cast<float>(picture.unit * picture.unit * static_cast<double>(variance));
     }
   }
   return image;

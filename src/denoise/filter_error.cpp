@@ -44,8 +44,10 @@ float CorrelationOf(const NoisyPicture& picture, const Halves& halves) {
 // The standard error of MeanSquares, `means`, from how much `squares` vary around each pixel.
 Plane ErrorOfMean(const Plane& squares, const Plane& means, const Plane& scale, int radius, int threads) {
   Plane products = squares;
-  for (size_t i = 0; i < products.Size(); ++i)
-    products.values[i] *= squares.values[i] / (scale.values[i] * scale.values[i]);
+  for (size_t i = 0; i < products.Size(); ++i) {
+    const float relative = squares.values[i] / scale.values[i];
+    products.values[i] = relative * relative;
+  }
   products = BoxMeans(BoxMeans(products, radius, threads), radius, threads);
   // Σ w² of two means over 2 r + 1 pixels in a row is 2 / (3 (2 r + 1)), but for terms of higher order.
   const float independent = 1.5f * static_cast<float>(2 * radius + 1);

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <numbers>
 #include <string>
 
 #include "base/error.h"
 #include "base/parallel.h"
 #include "film/film.h"
+#include "film/metrics.h"
 
 namespace lampyr {
 
@@ -45,7 +47,7 @@ void CheckChannels(const Image& image) {
         "it has no layers variance.R, .G and .B, which tell noise from detail: every picture of `lampyr render` has "
         "them, and --denoise adds features to it");
   }
-  if (SamplesOf(image) == 1)
+  if (IsOfOneSample(image))
     throw Error("it has one sample per pixel, whose variance is unknown: render it with --spp 2 or more");
 }
 
@@ -59,9 +61,30 @@ float Deviation(const ColorPlanes& variance, size_t i) {
       .Luminance();
 }
 
+// A power of two near the median luminance of what is not black; 1 in a black picture.
+double UnitOf(const ColorPlanes& color) {
+  std::vector<float> luminances;
+  for (size_t i = 0; i < color[0].Size(); ++i) {
+    const float luminance = Luminance(color, i);
+    if (luminance > 0 && std::isfinite(luminance)) luminances.push_back(luminance);
+  }
+  if (luminances.empty()) return 1;
+  const auto middle = luminances.begin() + static_cast<ptrdiff_t>(luminances.size() / 2);
+  std::nth_element(luminances.begin(), middle, luminances.end());
+  return std::exp2(std::round(std::log2(static_cast<double>(*middle))));
+}
+
+void Scale(double factor, ColorPlanes& planes) {
+  for (Plane& plane : planes) {
+    for (float& value : plane.values) value = static_cast<float>(factor * static_cast<double>(value));
+  }
+}
+
 void FindValid(NoisyPicture& picture, DenoiseReport& report) {
   picture.isValid.assign(picture.color[0].Size(), 1);
+  picture.isKept.assign(picture.color[0].Size(), 0);
   for (size_t i = 0; i < picture.isValid.size(); ++i) {
+    bool isFinite = true;
     for (size_t c = 0; c < 3; ++c) {
       float& value = picture.color[c].values[i];
       float& variance = picture.variance[c].values[i];
@@ -69,52 +92,67 @@ void FindValid(NoisyPicture& picture, DenoiseReport& report) {
       constexpr float largest = 1e18f;
       if (std::abs(value) < largest && variance >= 0 && std::isfinite(variance)) continue;
       picture.isValid[i] = 0;
+      isFinite = isFinite && std::isfinite(value) && variance >= 0;
     }
     if (picture.isValid[i]) continue;
-    ++report.invalidPixels;
+    // What is finite and merely too bright stays as it is.
+    if (isFinite) picture.isKept[i] = 1;
+    report.invalidPixels += isFinite ? 0 : 1;
     for (size_t c = 0; c < 3; ++c) picture.color[c].values[i] = picture.variance[c].values[i] = 0;
   }
 }
 
-// Replaces invalid pixels by the mean of the nearest valid ones, as far as a window reaches.
+// Replaces invalid pixels by the mean of the valid ones beside them, from the border of an invalid region to its
+// middle.
 void FillInvalid(NoisyPicture& picture) {
-  constexpr int reach = 9;
-  const std::vector<uint8_t> wasValid = picture.isValid;
   const int width = picture.color[0].width, height = picture.color[0].height;
-  const auto fill = [&](int x, int y, int radius) {
-    const int x0 = std::max(x - radius, 0), x1 = std::min(x + radius, width - 1);
-    const int y0 = std::max(y - radius, 0), y1 = std::min(y + radius, height - 1);
-    const auto place = static_cast<size_t>(y * width + x);
-    bool isFilled = false;
+  const auto placeOf = [&](int x, int y) {
+    return static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x);
+  };
+  // Calls visit(place) for the pixels beside one.
+  const auto forNeighbours = [&](size_t place, const auto& visit) {
+    const auto x = static_cast<int>(place % static_cast<size_t>(width)),
+               y = static_cast<int>(place / static_cast<size_t>(width));
+    for (int j = std::max(y - 1, 0); j <= std::min(y + 1, height - 1); ++j) {
+      for (int i = std::max(x - 1, 0); i <= std::min(x + 1, width - 1); ++i) visit(placeOf(i, j));
+    }
+  };
+  const auto fill = [&](size_t place) {
     for (ColorPlanes* planes : {&picture.color, &picture.variance, &picture.halves[0], &picture.halves[1]}) {
       for (Plane& plane : *planes) {
+        if (plane.Size() == 0) continue;
         float sum = 0, count = 0;
-        for (int j = y0; j <= y1 && plane.Size() > 0; ++j) {
-          for (int i = x0; i <= x1; ++i) {
-            if (!wasValid[static_cast<size_t>(j * width + i)]) continue;
-            sum += plane.At(i, j);
-            ++count;
-          }
-        }
-        if (count == 0) continue;
+        forNeighbours(place, [&](size_t near) {
+          if (!picture.isValid[near]) return;
+          sum += plane.values[near];
+          ++count;
+        });
         plane.values[place] = sum / count;
-        isFilled = true;
       }
     }
-    return isFilled;
   };
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      const auto place = static_cast<size_t>(y * width + x);
-      for (int radius = 1; radius <= reach && !picture.isValid[place]; ++radius)
-        picture.isValid[place] = fill(x, y, radius);
+  std::vector<size_t> left, border;
+  for (size_t place = 0; place < picture.isValid.size(); ++place) {
+    if (!picture.isValid[place]) left.push_back(place);
+  }
+  while (!left.empty()) {
+    border.clear();
+    for (const size_t place : left) {
+      bool hasValid = false;
+      forNeighbours(place, [&](size_t near) { hasValid = hasValid || picture.isValid[near]; });
+      if (hasValid) border.push_back(place);
     }
+    if (border.empty()) throw Error("none of its pixels is finite");
+    for (const size_t place : border) fill(place);
+    for (const size_t place : border) picture.isValid[place] = 1;
+    std::erase_if(left, [&](size_t place) { return picture.isValid[place]; });
   }
 }
 
-// The third largest luminance around a pixel, without its own; the largest float near a corner of a tiny picture.
+// The third largest luminance around a pixel, without its own; infinite in a picture of three pixels or fewer.
 float ThirdAround(const Plane& luminance, int x, int y) {
   constexpr int radius = 3;
+  if (luminance.Size() <= 3) return std::numeric_limits<float>::infinity();
   float largest[3] = {0, 0, 0};
   for (int j = std::max(y - radius, 0); j <= std::min(y + radius, luminance.height - 1); ++j) {
     for (int i = std::max(x - radius, 0); i <= std::min(x + radius, luminance.width - 1); ++i) {
@@ -174,16 +212,18 @@ bool ReadHalves(const Image& image, NoisyPicture& picture) {
   if (part[0].Size() == 0 || samples < 2) return false;
   const auto share = image.metadata.find(kHalfShareMetadata);
   picture.shares[0] = share != image.metadata.end()
-                          ? std::clamp(std::atof(share->second.c_str()), 0.01, 0.99)
+                          ? std::atof(share->second.c_str())
                           : static_cast<double>(SamplesInHalf(static_cast<uint32_t>(samples))) / samples;
+  // A part of a picture may have samples of one half alone.
+  if (!(picture.shares[0] > 0.01 && picture.shares[0] < 0.99)) return false;
   picture.shares[1] = 1 - picture.shares[0];
   const auto first = static_cast<float>(1 / picture.shares[0]), second = static_cast<float>(1 / picture.shares[1]);
   picture.halves[0] = picture.halves[1] = picture.color;
   for (size_t c = 0; c < 3; ++c) {
     for (size_t i = 0; i < part[c].Size(); ++i) {
-      const float of = part[c].values[i];
       if (!picture.isValid[i]) continue;
-      if (!std::isfinite(of)) return false;
+      if (!std::isfinite(part[c].values[i])) return false;
+      const auto of = static_cast<float>(static_cast<double>(part[c].values[i]) / picture.unit);
       picture.halves[0][c].values[i] = first * of;
       picture.halves[1][c].values[i] = second * (picture.color[c].values[i] - of);
     }
@@ -248,6 +288,9 @@ NoisyPicture ReadNoisyPicture(const Image& image, int threads, DenoiseReport& re
   NoisyPicture picture;
   picture.color = ReadColors(image, "");
   picture.variance = ReadColors(image, "variance.");
+  picture.unit = UnitOf(picture.color);
+  Scale(1 / picture.unit, picture.color);
+  Scale(1 / (picture.unit * picture.unit), picture.variance);
   FindValid(picture, report);
   report.hasHalves = ReadHalves(image, picture);
   if (report.invalidPixels > 0) FillInvalid(picture);

@@ -14,11 +14,13 @@ namespace lampyr {
 using ColorPlanes = std::array<Plane, 3>;  // R, G, B
 
 struct NoisyPicture {
+  double unit = 1;                    // in which values are given: a power of two near the median luminance
   ColorPlanes color, variance;        // without outliers; variance of the mean
   std::array<ColorPlanes, 2> halves;  // estimates of the same picture with independent noise
   std::array<double, 2> shares;       // of the halves in `color`: their sum is 1
   ColorPlanes excess;                 // what outliers had above their surroundings: `color` is without it
   std::vector<uint8_t> isValid;       // colour and variance are finite, or made of those of near pixels
+  std::vector<uint8_t> isKept;        // too bright to be filtered: stays as it is
   Plane noiseScale;                   // of `variance`: what the halves say about its size
 };
 

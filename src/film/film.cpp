@@ -216,6 +216,12 @@ double Film::LayerValue(size_t pixel, size_t layer, size_t channel) const {
   return value + splats;
 }
 
+double Film::VarianceOfSplats(size_t pixel, int channel) const {
+  if (lightPaths_ == 0) return 0;
+  const SplatSums& splats = splats_[pixel];
+  return MeanVariance(splats.Sum(channel), splats.SumOfSquares(channel), static_cast<double>(lightPaths_));
+}
+
 double Film::VarianceOfMean(size_t pixel, int channel) const {
   const PixelSums& samples = pixels_[pixel];
   const double n = static_cast<double>(samples.count);
@@ -226,11 +232,7 @@ double Film::VarianceOfMean(size_t pixel, int channel) const {
     variance = MeanVariance(samples.sum[channel].Value(), samples.sumOfSquares[channel].Value(), n) *
                std::pow(n / samples.Divisor(), 2);
   }
-  if (lightPaths_ > 0) {
-    const SplatSums& splats = splats_[pixel];
-    variance += MeanVariance(splats.Sum(channel), splats.SumOfSquares(channel), static_cast<double>(lightPaths_));
-  }
-  return variance;
+  return variance + VarianceOfSplats(pixel, channel);
 }
 
 // Sum of squares of the contributions of all samples to the variance of the image. A splat contributes to all pixels
@@ -469,6 +471,15 @@ void Film::Load(ByteReader& bytes) {
   *this = std::move(film);
 }
 
+float Film::SplatShare(size_t pixel) const {
+  double splats = 0, all = 0;
+  for (int c = 0; c < 3; ++c) {
+    splats += VarianceOfSplats(pixel, c);
+    all += VarianceOfMean(pixel, c);
+  }
+  return all > 0 ? static_cast<float>(std::min(splats / all, 1.0)) : 0.0f;
+}
+
 Image Film::Develop() const {
   std::vector<std::string> channels = {"R", "G", "B", "variance.R", "variance.G", "variance.B"};
   // Number of channels of each layer: three, but for the last layer of bands.
@@ -481,6 +492,8 @@ Image Film::Develop() const {
     }
     widths.push_back(bands.empty() ? 3 : bands.size());
   }
+  const bool hasWideSplats = lightPaths_ > 0 && splatSpread_ > 1;
+  if (hasWideSplats) channels.emplace_back(kSplatShareChannel);
   Image image(crop_.Width(), crop_.Height(), std::move(channels));
   image.offsetX = crop_.x0;
   image.offsetY = crop_.y0;
@@ -501,6 +514,7 @@ Image Film::Develop() const {
         *out++ = ToFiniteFloat(scale * LayerValue(i, layer, c));
       }
     }
+    if (hasWideSplats) *out++ = SplatShare(i);
   }
   return image;
 }

@@ -43,8 +43,15 @@ inline bool IsInHalf(uint32_t sampleIndex) {
 // How many of the first n samples do: from n/2 to n·2/3, rounded up.
 uint32_t SamplesInHalf(uint32_t n);
 
-// The share of the samples that are in kHalfLayer, where it is not that of SamplesInHalf: a key of Image::metadata.
+// The share of the samples that are in kHalfLayer, where they are not the first ones of the picture: a key of
+// Image::metadata.
 inline constexpr const char* kHalfShareMetadata = "lampyr.halfShare";
+
+// A channel: the fraction of a pixel's variance that is of splats. A splat is in several pixels, so that their noise is
+// correlated: the variance of a sum over pixels has the variance of splats that many times (PixelFilter::SplatCount; a
+// key of Image::metadata).
+inline constexpr const char* kSplatShareChannel = "splatShare";
+inline constexpr const char* kSplatCountMetadata = "lampyr.splatCount";
 
 // Bands of the spectrum that a film keeps besides its picture: equal parts of the range of wavelengths from `from` to
 // `to` (nm).
@@ -291,6 +298,8 @@ class Film {
   double Value(size_t pixel, int channel) const;
   double LayerValue(size_t pixel, size_t layer, size_t channel) const;
   double VarianceOfMean(size_t pixel, int channel) const;
+  double VarianceOfSplats(size_t pixel, int channel) const;  // its part
+  float SplatShare(size_t pixel) const;                      // kSplatShareChannel
   double FourthOfMean(size_t pixel) const;
   double WhiteScale(size_t channel) const;
   double BandScale(size_t band) const;

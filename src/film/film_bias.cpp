@@ -102,11 +102,11 @@ bool Film::BiasIsFinite() const {
 double Film::Bias(size_t pixel, int channel) const {
   const PixelSums& samples = pixels_[pixel];
   if (!KeepsBias()) return 0;
-  const double current = bias_[pixel].sum[channel].Value();
-  if (endedPasses_ == 0) return samples.count > 0 ? current / samples.Divisor() : 0.0;
+  const double current = bias_[pixel].sum[channel].Value(), white = WhiteScale(static_cast<size_t>(channel));
+  if (endedPasses_ == 0) return samples.count > 0 ? white * current / samples.Divisor() : 0.0;
   double sum = biasStages_[pixel].sum[channel].Value();
   if (samples.count > 0) sum += passes_ * current / static_cast<double>(samples.count);
-  return sum / AdaptiveDivisor(pixel);
+  return white * sum / AdaptiveDivisor(pixel);
 }
 
 // B² and the variance of B. Of the sum T of k passes, each g of c samples, of which the mean of a sample is m, the
@@ -127,7 +127,9 @@ Film::BiasMoments Film::BiasMomentsOf(size_t pixel) const {
   if (!(passes >= 2 && freedom > 0)) return {};
   const double total = LuminanceOf(sums.sum), mean = total / passes;
   const double deviations = sums.squares.Value() + mean * (mean * sums.weights - 2 * sums.products.Value());
-  const double square = 1 / (divisor * divisor);
+  double white = 0;  // that of the luminance: the channels' own are alike after a few passes
+  for (size_t c = 0; c < 3; ++c) white += Color::kLuminance[c] * WhiteScale(c);
+  const double square = white * white / (divisor * divisor);
   return {square * total * total, square * std::max(0.0, deviations) / freedom};
 }
 

@@ -102,6 +102,10 @@ Image ChannelsOf(const Image& image, const std::vector<std::string>& names) {
          to += names.size(), at += image.channels.size())
       found.data[to] = image.data[at];
   }
+  found.offsetX = image.offsetX;
+  found.offsetY = image.offsetY;
+  found.fullWidth = image.fullWidth;
+  found.fullHeight = image.fullHeight;
   return found;
 }
 

@@ -41,9 +41,11 @@ struct Image {
 
 // Adds all channels of `more`, an image of the same size.
 void AppendChannels(Image& image, const Image& more);
-// The channels of those names; an image without channels if it does not have all of them.
+// The channels of those names, with the window of the image; an image without channels if it does not have all of them.
 Image ChannelsOf(const Image& image, const std::vector<std::string>& names);
 
+// Half: of the layers that it can hold. In float are those with a finite value beyond its range, and identifiers,
+// variances and errors.
 enum class ExrPrecision { Half, Float };
 
 // Writes an OpenEXR file atomically (AtomicFile). Throws an Error (unwritable folder, full disk). `append`, if given,

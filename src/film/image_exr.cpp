@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <map>
 
 #include "base/error.h"
 #include "film/atomic_file.h"
@@ -86,7 +87,34 @@ Image ReadOpenExr(const std::filesystem::path& path) {
   return image;
 }
 
-Imf::Header MakeHeader(const Image& image, Imf::PixelType type) {
+// Layers that half cannot hold whatever their values: identifiers of mattes are bits, and what is squared is soon below
+// the smallest half, 6e-8.
+bool NeedsFloat(const std::string& channel) {
+  for (const char* part : {"Crypto", "variance.", "relativeError", "bias.", "feature."}) {
+    if (channel.find(part) != std::string::npos) return true;
+  }
+  return false;
+}
+
+// The types of the channels: those of a layer have the same.
+std::vector<Imf::PixelType> TypesOf(const Image& image, ExrPrecision precision) {
+  std::vector<Imf::PixelType> types(image.channels.size(), Imf::FLOAT);
+  if (precision == ExrPrecision::Float) return types;
+  constexpr float largestHalf = 65504;
+  std::map<std::string, bool> fits;  // by layer
+  const auto layerOf = [&](size_t c) { return image.channels[c].substr(0, image.channels[c].rfind('.') + 1); };
+  for (size_t c = 0; c < types.size(); ++c) {
+    bool& all = fits.try_emplace(layerOf(c), !NeedsFloat(image.channels[c])).first->second;
+    for (size_t i = c; all && i < image.data.size(); i += types.size())
+      all = !std::isfinite(image.data[i]) || std::abs(image.data[i]) <= largestHalf;
+  }
+  for (size_t c = 0; c < types.size(); ++c) {
+    if (fits[layerOf(c)] && !NeedsFloat(image.channels[c])) types[c] = Imf::HALF;
+  }
+  return types;
+}
+
+Imf::Header MakeHeader(const Image& image, const std::vector<Imf::PixelType>& types) {
   const int fullWidth = image.fullWidth > 0 ? image.fullWidth : image.offsetX + image.width;
   const int fullHeight = image.fullHeight > 0 ? image.fullHeight : image.offsetY + image.height;
   const Imath::Box2i display({0, 0}, {fullWidth - 1, fullHeight - 1});
@@ -94,36 +122,29 @@ Imf::Header MakeHeader(const Image& image, Imf::PixelType type) {
                             {image.offsetX + image.width - 1, image.offsetY + image.height - 1});
   Imf::Header header(display, window);
   header.compression() = Imf::ZIP_COMPRESSION;
-  for (const std::string& name : image.channels) header.channels().insert(name, Imf::Channel(type));
+  for (size_t c = 0; c < types.size(); ++c) header.channels().insert(image.channels[c], Imf::Channel(types[c]));
   for (const auto& [key, value] : image.metadata) {
     if (header.find(key) == header.end()) header.insert(key, Imf::StringAttribute(value));
   }
   return header;
 }
 
-// Converts to half; finite values beyond its range are clamped, so that an image of large radiance has no infinities.
-std::vector<half> ToHalf(const std::vector<float>& values) {
-  constexpr float largest = 65504.0f;
-  std::vector<half> result(values.size());
-  std::transform(values.begin(), values.end(), result.begin(), [largest](float value) {
-    return half(std::isfinite(value) ? std::clamp(value, -largest, largest) : value);
-  });
-  return result;
-}
-
 void WriteOpenExr(Imf::OStream& stream, const Image& image, ExrPrecision precision) {
-  const bool asHalf = precision == ExrPrecision::Half;
-  const Imf::PixelType type = asHalf ? Imf::HALF : Imf::FLOAT;
-  const std::vector<half> halves = asHalf ? ToHalf(image.data) : std::vector<half>();
-  const char* first =
-      asHalf ? reinterpret_cast<const char*>(halves.data()) : reinterpret_cast<const char*>(image.data.data());
-  const size_t valueBytes = static_cast<size_t>(BytesOf(type));
-  const size_t xStride = valueBytes * image.channels.size(), yStride = xStride * static_cast<size_t>(image.width);
-  const Imf::Header header = MakeHeader(image, type);
+  const std::vector<Imf::PixelType> types = TypesOf(image, precision);
+  const size_t count = types.size();
+  std::vector<half> halves(precision == ExrPrecision::Half ? image.data.size() : 0);
+  for (size_t i = 0; i < halves.size(); ++i) {
+    if (types[i % count] == Imf::HALF) halves[i] = half(image.data[i]);
+  }
+  const Imf::Header header = MakeHeader(image, types);
   Imf::FrameBuffer frame;
-  for (size_t c = 0; c < image.channels.size(); ++c) {
-    frame.insert(image.channels[c],
-                 Imf::Slice::Make(type, first + c * valueBytes, header.dataWindow(), xStride, yStride));
+  for (size_t c = 0; c < count; ++c) {
+    const bool asHalf = types[c] == Imf::HALF;
+    const char* first = asHalf ? reinterpret_cast<const char*>(halves.data() + c)
+                               : reinterpret_cast<const char*>(image.data.data() + c);
+    const size_t xStride = static_cast<size_t>(BytesOf(types[c])) * count;
+    frame.insert(image.channels[c], Imf::Slice::Make(types[c], first, header.dataWindow(), xStride,
+                                                     xStride * static_cast<size_t>(image.width)));
   }
   Imf::OutputFile file(stream, header, 1);
   file.setFrameBuffer(frame);

@@ -5,10 +5,12 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <optional>
 
 #include "base/error.h"
+#include "film/film.h"
 #include "film/flip.h"
 
 namespace lampyr {
@@ -21,7 +23,9 @@ using Planes = std::array<std::vector<double>, 3>;  // R, G, B
 struct Measured {
   std::vector<Color> colors;
   std::optional<Planes> variance;  // of the pixels' means
+  std::vector<float> sharing;      // by which factor a sum over pixels has more variance; empty: 1
   bool isOfOneSample = false;      // its variances are 0, because one sample has none
+  bool isDenoised = false;         // the errors of pixels that are near each other are alike
   float relativeRounding = 0;      // of the stored format, half or float
 };
 
@@ -77,15 +81,16 @@ float RelativeRounding(const std::vector<Color>& colors) {
   return allHalf ? 0x1p-11f : 0x1p-22f;
 }
 
-// True if the variance is unknown because there is at most one sample per pixel. The integrator "light" traces as many
-// light paths per sample as the image has pixels, and has a variance even then.
-bool IsOfOneSample(const Image& image) {
-  const auto text = [&](const char* name) {
-    const auto found = image.metadata.find(name);
-    return found == image.metadata.end() ? std::string() : found->second;
-  };
-  const std::string samples = text("lampyr.samplesPerPixel");
-  return (samples == "0" || samples == "1") && text("lampyr.integrator") != "light";
+// Factors of the variances of pixels in sums over them: splats are in several pixels at once.
+std::vector<float> ReadSharing(const Image& image) {
+  std::vector<float> factors;
+  const int channel = image.ChannelIndex(kSplatShareChannel);
+  const auto count = image.metadata.find(kSplatCountMetadata);
+  if (channel < 0 || count == image.metadata.end()) return factors;
+  const float more = std::clamp(static_cast<float>(std::atof(count->second.c_str())), 1.0f, 1e6f) - 1;
+  for (size_t i = static_cast<size_t>(channel); i < image.data.size(); i += image.channels.size())
+    factors.push_back(1 + more * std::clamp(image.data[i], 0.0f, 1.0f));
+  return factors;
 }
 
 Measured Measure(const Image& image, const char* which) {
@@ -94,7 +99,15 @@ Measured Measure(const Image& image, const char* which) {
   measured.variance = ReadVariance(image, which);
   measured.relativeRounding = RelativeRounding(measured.colors);
   measured.isOfOneSample = IsOfOneSample(image);
+  measured.isDenoised = image.ChannelIndex("noisy.R") >= 0;
+  measured.sharing = ReadSharing(image);
   return measured;
+}
+
+// The variance of a pixel in a sum over pixels.
+double VarianceInSum(const Measured& image, int channel, size_t i) {
+  const double variance = (*image.variance)[channel][i];
+  return image.sharing.empty() ? variance : variance * static_cast<double>(image.sharing[i]);
 }
 
 // Largest difference between two equal values that were summed in another order and stored.
@@ -137,12 +150,12 @@ void MeasureErrors(const Measured& a, const Measured& b, ImageDifference& differ
   difference.relMse = relative / n;
 }
 
-// Variance of the difference of the means of a pixel, averaged over its channels. The channels share the paths of the
-// pixel and are taken as fully correlated: exact for gray, an upper bound otherwise.
+// Variance of the difference of the means of a pixel in a sum over pixels, averaged over its channels. The channels
+// share the paths of the pixel and are taken as fully correlated: exact for gray, an upper bound otherwise.
 double VarianceOfGray(const Measured& a, const Measured& b, size_t i) {
   double deviation = 0;
   for (int c = 0; c < 3; ++c) {
-    deviation += std::sqrt((*a.variance)[c][i] + (*b.variance)[c][i]);
+    deviation += std::sqrt(VarianceInSum(a, c, i) + VarianceInSum(b, c, i));
   }
   return deviation * deviation / 9;
 }
@@ -173,7 +186,7 @@ std::optional<double> BlockZ(const Measured& a, const Measured& b, int channel, 
       const size_t i = static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x);
       sumA += Channels(a.colors[i])[channel];
       sumB += Channels(b.colors[i])[channel];
-      variance += (*a.variance)[channel][i] + (*b.variance)[channel][i];
+      variance += VarianceInSum(a, channel, i) + VarianceInSum(b, channel, i);
     }
   }
   // The rounding of a constant region is the same in all its pixels: it adds up like the values.
@@ -254,6 +267,15 @@ double MeanOfMap(const std::vector<float>& map) {
 }
 
 }  // namespace
+
+bool IsOfOneSample(const Image& image) {
+  const auto text = [&](const char* name) {
+    const auto found = image.metadata.find(name);
+    return found == image.metadata.end() ? std::string() : found->second;
+  };
+  const std::string samples = text("lampyr.samplesPerPixel");
+  return (samples == "0" || samples == "1") && text("lampyr.integrator") != "light";
+}
 
 ImageError MeasureError(const Image& image, const Image& reference, float exposureStops) {
   CheckSameSize(image, reference);
@@ -393,6 +415,8 @@ bool IsEqual(const Measured& a, const Measured& b) {
 // The reason why the block test is impossible; "" if it is possible.
 std::string ReasonForSilence(const Measured& a, const Measured& b) {
   if (!a.variance || !b.variance) return "both images need variance layers";
+  if (a.isDenoised || b.isDenoised)
+    return "pixels of a denoised image share their noise: compare the images as they were rendered";
   if (a.isOfOneSample || b.isOfOneSample) {
     const char* which = a.isOfOneSample && b.isOfOneSample ? "both images have"
                         : a.isOfOneSample                  ? "the first image has"

@@ -20,6 +20,10 @@ struct BlockTest {
   bool Agrees() const { return largestZ <= threshold && chiSquared <= chiSquaredThreshold; }
 };
 
+// True if the variance is unknown because there is at most one sample per pixel. The integrator "light" traces as many
+// light paths per sample as the image has pixels, and has a variance even then.
+bool IsOfOneSample(const Image& image);
+
 // Result of a comparison. CannotSay is no agreement: nothing was tested.
 enum class Verdict { Equal, Agree, Differ, CannotSay };
 const char* NameOf(Verdict verdict);  // "equal", "agree", "differ", "cannot say"

@@ -78,16 +78,13 @@ Image Kept(const Image& image, const std::function<bool(const std::string&)>& is
   }
   Image result = ChannelsOf(image, kept);
   result.metadata = image.metadata;
-  result.offsetX = image.offsetX;
-  result.offsetY = image.offsetY;
-  result.fullWidth = image.fullWidth;
-  result.fullHeight = image.fullHeight;
   return result;
 }
 
-// Channels that are true of the light as it was alone: halves of the samples, strategies and errors.
+// Channels that are true of the light as it was alone: halves of the samples, the picture before denoising, strategies
+// and errors.
 bool IsOfParts(const std::string& channel) {
-  for (const char* prefix : {"half.", "weighted.", "unweighted.", "relativeError", "bias."}) {
+  for (const char* prefix : {"half.", "noisy.", "weighted.", "unweighted.", "relativeError", "bias.", kSplatShareChannel}) {
     if (channel.starts_with(prefix)) return true;
   }
   return false;

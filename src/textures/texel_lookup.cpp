@@ -13,6 +13,15 @@ int Modulo(int a, int n) {
   return r < 0 ? r + n : r;
 }
 
+// Alpha that is 1 everywhere says nothing.
+bool HasAlpha(const Image& image) {
+  const int alpha = image.ChannelIndex("A");
+  for (size_t i = static_cast<size_t>(alpha); alpha >= 0 && i < image.data.size(); i += image.channels.size()) {
+    if (image.data[i] != 1) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 TexelLookup::TexelLookup(std::shared_ptr<const Image> image, WrapMode wrap, bool bilinear)
@@ -29,6 +38,9 @@ TexelLookup::TexelLookup(std::shared_ptr<const Image> image, WrapMode wrap, bool
   red_ = static_cast<size_t>(isColor ? r : gray);
   green_ = static_cast<size_t>(isColor ? g : gray);
   blue_ = static_cast<size_t>(isColor ? b : gray);
+  const bool hasAlpha = isColor && HasAlpha(*image_);
+  float_ = hasAlpha ? static_cast<size_t>(image_->ChannelIndex("A")) : red_;
+  isMean_ = isColor && !hasAlpha;
 }
 
 bool TexelLookup::WrapInside(int& x, int& y) const {

@@ -18,7 +18,8 @@ class TexelLookup {
  public:
   TexelLookup(std::shared_ptr<const Image> image, WrapMode wrap, bool bilinear);
 
-  // A float is the mean of R, G and B. Coordinates that are huge or not finite are clamped to ±2^30 texels (NaN to
+  // A float is the mean of R, G and B; of an image whose alpha is not 1 everywhere it is the alpha, as in pbrt-v4.
+  // Coordinates that are huge or not finite are clamped to ±2^30 texels (NaN to
   // -2^30) before wrapping.
   Color LookupColor(const Point2& st) const { return Lookup<Color>(st); }
   float LookupFloat(const Point2& st) const { return Lookup<float>(st); }
@@ -56,7 +57,7 @@ class TexelLookup {
     const float* texel =
         data_ + (static_cast<size_t>(y) * static_cast<size_t>(width_) + static_cast<size_t>(x)) * stride_;
     if constexpr (std::is_same_v<Value, float>) {
-      return red_ == green_ ? texel[red_] : (texel[red_] + texel[green_] + texel[blue_]) * (1.0f / 3);
+      return isMean_ ? (texel[red_] + texel[green_] + texel[blue_]) * (1.0f / 3) : texel[float_];
     } else {
       return Value(texel[red_], texel[green_], texel[blue_]);
     }
@@ -69,6 +70,8 @@ class TexelLookup {
   const float* data_;
   int width_, height_;
   size_t stride_, red_, green_, blue_;
+  size_t float_;  // the channel of floats, if they are not means
+  bool isMean_;
   WrapMode wrap_;
   bool bilinear_;
 };

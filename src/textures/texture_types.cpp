@@ -7,7 +7,12 @@ namespace {
 
 template <class Value>
 ParameterOf<Value> MakeConstant(const TextureRequest& request) {
-  return GetConstant<Value>(request, "value", 1);
+  if constexpr (std::is_same_v<Value, Color>) {
+    return ColorParameter(GetConstant<Color>(request, "value", 1),
+                          request.Parameters().FindCurve("value", request.role));
+  } else {
+    return GetConstant<Value>(request, "value", 1);
+  }
 }
 
 // Middle gray replaces a texture that cannot be read, so that the surface remains visible.

@@ -199,6 +199,17 @@ TEST_F(MisbehavingTypes, LightsWhosePathsStartNowhere) {
   }
 }
 
+// Samples with a negative density are not used, and are not passed over in silence.
+TEST_F(MisbehavingTypes, LightsOfNegativeDensities) {
+  Write("scene.pbrt", SceneWith("LightSource \"negative\" LightSource \"point\""));
+  for (const char* integrator : {"path", "bdpt", "vcm", "sppm"}) {
+    SCOPED_TRACE(integrator);
+    ExpectSays(Run("render scene.pbrt --spp 4 --integrator " + std::string(integrator) + With()), 1,
+               {"samples were dropped", "the picture is wrong, and its error is unknown"});
+    fs::remove(folder_ / "out.exr");
+  }
+}
+
 // A light that throws where the scene is built: that scene cannot be used.
 TEST_F(MisbehavingTypes, LightsThatThrowWhileTheSceneIsBuilt) {
   Write("scene.pbrt", SceneWith("LightSource \"throws-in-bounds\" LightSource \"point\""));

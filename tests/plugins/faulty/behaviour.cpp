@@ -40,6 +40,19 @@ class Lost final : public test::ForwardingLight {
   }
 };
 
+// A rect whose samples have a negative density on one half of it, in all else a rect.
+class Negative final : public test::ForwardingLight {
+ public:
+  Negative(const ParameterList& parameters, const LightBuildContext& build)
+      : ForwardingLight(MakeRect(parameters, build)) {}
+
+  std::optional<LightSample> GenerateSamples(const LightContext& context, const Point3& P) const override {
+    auto sample = ForwardingLight::GenerateSamples(context, P);
+    if (sample && context.u.x > 0.5f) sample->pdfDirect = PdfSolidAngle(-sample->pdfDirect.value);
+    return sample;
+  }
+};
+
 template <Where kWhere>
 class Throwing final : public test::ForwardingLight, private IntersectableLight {
  public:
@@ -99,6 +112,10 @@ PluginTypes Types() {
       Type("lost",
            [](const ParameterList& parameters, const LightBuildContext& build) -> std::unique_ptr<Light> {
              return std::make_unique<Lost>(parameters, build);
+           }),
+      Type("negative",
+           [](const ParameterList& parameters, const LightBuildContext& build) -> std::unique_ptr<Light> {
+             return std::make_unique<Negative>(parameters, build);
            }),
   };
   FilterType filter;
