@@ -41,7 +41,8 @@ void AddFlight(const SampleContext& context, const VolumeRadius& radius, double 
   beams.clear();
   for (const BeamStep& step : flight.beam) {
     if (!radius.UsesBeams(step.medium) || !(step.tMax > step.tMin)) continue;
-    const Color tint = flight.TintBefore(static_cast<double>(step.tMin));
+    // A step may start at a tinted surface: its middle is beyond, whatever is rounded.
+    const Color tint = flight.TintBefore(0.5 * (static_cast<double>(step.tMin) + static_cast<double>(step.tMax)));
     if (!(tint * step.transmittance).IsBlack()) beams.push_back({step, tint, 0});
   }
   if (beams.empty() || count >= PhotonList::kDeepest) return;

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "base/stop.h"
 #include "sampling/rng.h"
 
 namespace lampyr {
@@ -140,7 +141,10 @@ class Tracker {
       keep(segment.tMax);
       return false;
     }
-    for (;;) {
+    for (uint32_t collisions = 1;; ++collisions) {
+      // A dense cell that is empty in parts has millions.
+      if (collisions % 4096 == 0) [[unlikely]]
+        CheckStop();
       const double step = static_cast<double>(depth_) / static_cast<double>(segment.majorant);
       keep(std::min(from + step, segment.tMax));
       if (!(from + step < segment.tMax)) {

@@ -110,7 +110,7 @@ bool EmitInMedium(const SampleContext& context, const EmittedInMedium& emitted, 
       4 * static_cast<double>(kPi) / (emitted.density * static_cast<double>(context.scene.lighting->FluxUnit()));
   state.ray = {emitted.position, SampleUniformSphere(uDirection), kInfinity, context.time};
   state.medium = emitted.medium;
-  state.diffuse = state.specular = emitted.emission * static_cast<float>(inverse);
+  state.diffuse = state.specular = Product(emitted.emission, Color(1.0f), inverse);
   state.emitted = state.diffuse.Max();
   if (!state.diffuse.IsValid()) {
     ++context.counts.droppedSamples;

@@ -54,9 +54,8 @@ BoundingSphere SphereAround(const GeometryScene& geometry, const std::vector<Pla
   return sphere;
 }
 
-// Clamps estimates to the range of float.
-float FluxUnitOf(const std::vector<PlacedLight>& lights, const BoundingSphere& sphere) {
-  double power = 0;
+// Clamps estimates to the range of float. `power`: of media.
+float FluxUnitOf(const std::vector<PlacedLight>& lights, const BoundingSphere& sphere, double power) {
   for (const PlacedLight& placed : lights) {
     LightContext context;
     context.transform = &placed.transform;
@@ -77,7 +76,7 @@ LightingServices::SceneLights::SceneLights(const GeometryScene& traced, std::vec
       fronts(lights),
       groups(lights, media.glow),
       sphere(SphereAround(geometry, lights, media)),
-      fluxUnit(FluxUnitOf(lights, sphere)),
+      fluxUnit(FluxUnitOf(lights, sphere, media.glowPower)),
       linking(std::move(links)),
       isLinked(linking.Excludes() || linking.HasFilters()) {
   for (uint32_t i = 0; i < lights.size(); ++i) {

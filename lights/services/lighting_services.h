@@ -84,7 +84,8 @@ struct SegmentSample {
 
 // What lights need to know of participating media.
 struct MediaAround {
-  bool glow = false;  // some emit light
+  bool glow = false;     // some emit light
+  double glowPower = 0;  // roughly, W: mean of the channels
   // A medium without a boundary is around the scene. It fills the scene's sphere, which then holds this point (the
   // camera) and all lights that are somewhere.
   std::optional<Point3> unboundedAt;

@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "geometry/shape_checks.h"
 #include "media/make_media.h"
+#include "media/medium_emission.h"
 #include "render/analysis/unseen_samples.h"
 #include "render/build/flat_instances.h"
 #include "render/build/light_table.h"
@@ -330,7 +331,12 @@ void Builder::PlaceEntries() {
 // To be called when camera and media are made.
 MediaAround Builder::MediaAroundLights(const Point3& eye) const {
   MediaAround around;
-  for (const auto& medium : built_.scene.media) around.glow = around.glow || medium->IsEmissive();
+  const std::vector<std::shared_ptr<const Medium>>& media = built_.scene.media;
+  for (size_t i = 0; i < media.size(); ++i) {
+    if (!media[i]->IsEmissive()) continue;
+    around.glow = true;
+    around.glowPower += RoughPowerOf(*media[i], static_cast<int32_t>(i), *built_.scene.geometry);
+  }
   if (!description_.cameraMedium.empty() || media_->Exterior() != kVacuum) around.unboundedAt = eye;
   return around;
 }

@@ -101,6 +101,8 @@ struct GeometryScene::Implementation {
   void SetMedia(const GeometryAttributes& attributes, PrimitiveRecord& record);
   void FillTables();
   void AddInstance(const GeometryInstance& instance, uint32_t firstPrimitive);
+  template <class Visit>
+  void VisitBoxes(const Visit& visit) const;
   void ComputeBounds();
   SceneHandle NewScene() const;
   void AttachEntries(RTCScene target, size_t first, size_t count);
@@ -228,8 +230,10 @@ void AddPlacedBox(const Affine& toRender, const Bounds3& box, Bounds3& bounds) {
 
 }  // namespace
 
-void GeometryScene::Implementation::ComputeBounds() {
-  for (const GeometryEntry& entry : description.entries) bounds.Add(lampyr::GetBounds(entry.shape));
+// Calls visit(box, moves, attributes) for all shapes, once for each instance, with their boxes over the shutter.
+template <class Visit>
+void GeometryScene::Implementation::VisitBoxes(const Visit& visit) const {
+  for (const GeometryEntry& entry : description.entries) visit(lampyr::GetBounds(entry.shape), false, entry.attributes);
   std::vector<std::vector<Bounds3>> boxes(description.objects.size());
   for (const GeometryInstance& instance : description.instances) {
     std::vector<Bounds3>& object = boxes[instance.object];
@@ -238,15 +242,19 @@ void GeometryScene::Implementation::ComputeBounds() {
         object.push_back(lampyr::GetBounds(entry.shape));
       }
     }
-    for (const Bounds3& box : object) {
-      if (!instance.motion) {
-        AddPlacedBox(instance.toRender, box, bounds);
-        continue;
-      }
+    for (size_t i = 0; i < object.size(); ++i) {
+      Bounds3 placed;
+      if (!instance.motion) AddPlacedBox(instance.toRender, object[i], placed);
       // A point moves in straight lines from key to key: where it is at the keys bounds it.
-      for (const Affine& key : instance.motion->Keys()) AddPlacedBox(key, box, bounds);
+      if (instance.motion)
+        for (const Affine& key : instance.motion->Keys()) AddPlacedBox(key, object[i], placed);
+      visit(placed, instance.motion != nullptr, description.objects[instance.object].entries[i].attributes);
     }
   }
+}
+
+void GeometryScene::Implementation::ComputeBounds() {
+  VisitBoxes([&](const Bounds3& box, bool, const GeometryAttributes&) { bounds.Add(box); });
 }
 
 SceneHandle GeometryScene::Implementation::NewScene() const {
@@ -608,6 +616,16 @@ int32_t GeometryScene::LightAt(uint32_t primitive, uint32_t instance) const {
 
 bool GeometryScene::HasBoundaries() const {
   return implementation_->hasBoundaries;
+}
+
+MediumSurfaces GeometryScene::SurfacesOf(int32_t medium) const {
+  MediumSurfaces found;
+  implementation_->VisitBoxes([&](const Bounds3& box, bool moves, const GeometryAttributes& attributes) {
+    if (attributes.insideMedium != medium && attributes.outsideMedium != medium) return;
+    found.box.Add(box);
+    found.move = found.move || moves;
+  });
+  return found;
 }
 
 size_t GeometryScene::PrimitiveCount() const {

@@ -54,6 +54,12 @@ struct GeometryAttributes {
   bool isFibrous = false;  // a curve that is met from outside alone: its inside is a part of its scattering
 };
 
+// The surfaces that have a medium on a side.
+struct MediumSurfaces {
+  Bounds3 box;  // over the shutter, render space
+  bool move = false;
+};
+
 inline bool SeparatesMedia(const GeometryAttributes& attributes) {
   return attributes.insideMedium != kSameMedium || attributes.outsideMedium != kSameMedium;
 }
@@ -147,6 +153,7 @@ class GeometryScene {
 
   // True if some surface separates participating media (SeparatesMedia).
   bool HasBoundaries() const;
+  MediumSurfaces SurfacesOf(int32_t medium) const;
   size_t PrimitiveCount() const;             // shapes, instanced ones once
   const Bounds3& GetBounds() const;          // empty for an empty scene
   BoundingSphere GetBoundingSphere() const;  // radius 1 around 0 for an empty scene

@@ -19,6 +19,7 @@ constexpr double kLeastWeight = 0.05;
 constexpr int kCellsOfPlace = 16;  // per axis
 constexpr int kRaysToFind = 128;   // per axis of the squares that rays start from, to find the box
 constexpr int kRaysToWeigh = 4;    // per axis and cell
+constexpr float kLeastWeightOfPlace = 0.05f;
 
 size_t CellCount(const std::array<int, 3>& resolution) {
   return static_cast<size_t>(resolution[0]) * static_cast<size_t>(resolution[1]) * static_cast<size_t>(resolution[2]);
@@ -120,11 +121,11 @@ EmissionRegion RegionOfGrid(const Medium& medium, double& emission) {
 
 namespace {
 
-// Calls visit(axis, ray, tMin, tMax) for the parts in `medium` of n × n parallel rays through a box along each axis.
-// The rays start at the side of `within`, in `exterior`.
+// Calls visit(axis, ray, tMin, tMax) for the parts in `medium` of n × n parallel rays through a box along each axis, at
+// each of the times. The rays start at the side of `within`, in `exterior`.
 template <class Visit>
-void ScanBox(const GeometryScene& geometry, const Bounds3& within, const Bounds3& box, int n, int32_t exterior,
-             int32_t medium, const Visit& visit) {
+void ScanBox(const GeometryScene& geometry, const Bounds3& within, const Bounds3& box, int n,
+             std::span<const float> times, int32_t exterior, int32_t medium, const Visit& visit) {
   for (int axis = 0; axis < 3; ++axis) {
     const int second = (axis + 1) % 3, third = (axis + 2) % 3;
     for (int k = 0; k < n * n; ++k) {
@@ -139,7 +140,10 @@ void ScanBox(const GeometryScene& geometry, const Bounds3& within, const Bounds3
       ray.direction = Vector3(0.0f);
       ray.direction[axis] = 1;
       ray.tMax = within.max[axis] - within.min[axis];
-      ForEachSpan(geometry, ray, exterior, medium, [&](float tMin, float tMax) { visit(axis, ray, tMin, tMax); });
+      for (const float time : times) {
+        ray.time = time;
+        ForEachSpan(geometry, ray, exterior, medium, [&](float tMin, float tMax) { visit(axis, ray, tMin, tMax); });
+      }
     }
   }
 }
@@ -156,24 +160,43 @@ void AddToCells(std::array<int, 3> cell, int axis, double from, double to, Found
   }
 }
 
+// The box of the surfaces that bound a medium, not flat, within the scene's; of the medium around the scene, that.
+Bounds3 BoxToScan(const Bounds3& within, const MediumSurfaces& surfaces, bool isExterior) {
+  if (isExterior || surfaces.box.IsEmpty()) return within;
+  constexpr float kThickness = 1e-3f;
+  const Vector3 diagonal = surfaces.box.Diagonal();
+  const Vector3 margin(kThickness * std::max({diagonal.x, diagonal.y, diagonal.z}));
+  Bounds3 box;
+  box.min = glm::max(surfaces.box.min - margin, within.min);
+  box.max = glm::min(surfaces.box.max + margin, within.max);
+  return box;
+}
+
+constexpr float kOpen[] = {0.0f};
+constexpr float kShutter[] = {0.0f, 0.25f, 0.5f, 0.75f, 1.0f};
+
 }  // namespace
 
 FoundPlace FindPlaceOf(const GeometryScene& geometry, const Bounds3& within, int32_t exterior, int32_t medium) {
   FoundPlace place;
+  const MediumSurfaces surfaces = geometry.SurfacesOf(medium);
+  const Bounds3 scanned = BoxToScan(within, surfaces, medium == exterior);
+  const std::span<const float> times = surfaces.move ? std::span<const float>(kShutter) : std::span<const float>(kOpen);
   Bounds3 found;
-  const Vector3 spacing = within.Diagonal() / static_cast<float>(kRaysToFind);
-  ScanBox(geometry, within, within, kRaysToFind, exterior, medium, [&](int, const Ray& ray, float tMin, float tMax) {
-    found.Add(ray.origin + tMin * ray.direction);
-    found.Add(ray.origin + tMax * ray.direction);
-  });
+  const Vector3 spacing = scanned.Diagonal() / static_cast<float>(kRaysToFind);
+  ScanBox(geometry, within, scanned, kRaysToFind, times, exterior, medium,
+          [&](int, const Ray& ray, float tMin, float tMax) {
+            found.Add(ray.origin + tMin * ray.direction);
+            found.Add(ray.origin + tMax * ray.direction);
+          });
   if (found.IsEmpty()) return place;
-  place.box.min = glm::max(found.min - spacing, within.min);
-  place.box.max = glm::min(found.max + spacing, within.max);
+  place.box.min = glm::max(found.min - spacing, scanned.min);
+  place.box.max = glm::min(found.max + spacing, scanned.max);
   place.resolution = {kCellsOfPlace, kCellsOfPlace, kCellsOfPlace};
   place.weights.resize(CellCount(place.resolution));
   const Vector3d cellSide = Vector3d(place.box.Diagonal()) / static_cast<double>(kCellsOfPlace);
   constexpr int kRays = kRaysToWeigh * kCellsOfPlace;
-  ScanBox(geometry, within, place.box, kRays, exterior, medium, [&](int axis, const Ray& ray, float tMin, float tMax) {
+  const auto add = [&](int axis, const Ray& ray, float tMin, float tMax) {
     std::array<int, 3> cell{};
     for (int i = 0; i < 3; ++i) {
       const double at = static_cast<double>(ray.origin[i] - place.box.min[i]) / cellSide[i];
@@ -182,12 +205,14 @@ FoundPlace FindPlaceOf(const GeometryScene& geometry, const Bounds3& within, int
     const double start = static_cast<double>(ray.origin[axis] - place.box.min[axis]);
     AddToCells(cell, axis, (start + static_cast<double>(tMin)) / cellSide[axis],
                (start + static_cast<double>(tMax)) / cellSide[axis], place);
-  });
+  };
+  ScanBox(geometry, within, place.box, kRays, times, exterior, medium, add);
   double full = 0;
   for (float& weight : place.weights) {
-    const float part = weight / (3.0f * kRaysToWeigh * kRaysToWeigh);
+    const float part = weight / (3.0f * kRaysToWeigh * kRaysToWeigh * static_cast<float>(times.size()));
     full += static_cast<double>(part);
-    weight = std::sqrt(part);
+    // Cells that no ray finds may hold a part of the medium.
+    weight = std::max(std::sqrt(part), kLeastWeightOfPlace);
   }
   place.volume = full * cellSide.x * cellSide.y * cellSide.z;
   if (!(full > 0)) place.box = Bounds3();

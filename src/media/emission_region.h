@@ -60,13 +60,13 @@ void ForEachSpan(const GeometryScene& geometry, const Ray& ray, int32_t start, i
   if (current == medium) visit(from, ray.tMax);
 }
 
-// The part of the cube `within` in which a medium is found by rays along the axes at shutter open. `exterior`: the
-// medium where the rays start.
+// The part of the cube `within` in which a medium is found by rays along the axes, over the shutter if its surfaces
+// move. `exterior`: the medium where the rays start.
 struct FoundPlace {
   Bounds3 box;        // with a margin of the distance between rays; empty: nowhere
   double volume = 0;  // estimate
   std::array<int, 3> resolution{};
-  std::vector<float> weights;  // of cells of the box: √ of the part that is in the medium
+  std::vector<float> weights;  // of cells of the box: √ of the part that is in the medium, and not 0
 };
 FoundPlace FindPlaceOf(const GeometryScene& geometry, const Bounds3& within, int32_t exterior, int32_t medium);
 

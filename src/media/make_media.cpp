@@ -1,6 +1,10 @@
 // The table of types of media.
 #include "media/make_media.h"
 
+#include <algorithm>
+#include <cstdio>
+
+#include "media/box_medium.h"
 #include "media/medium_makers.h"
 
 namespace lampyr {
@@ -18,6 +22,24 @@ constexpr MediumType kTypes[] = {{"homogeneous", MakeHomogeneous},
                                  {"cloud", MakeCloud},
                                  {"nanovdb", MakeNanoVdb}};
 
+// Paths through a grid collide with its majorant, step by step: without a bound they would not end.
+void CheckDepth(const Medium& medium, const FileLocation& where) {
+  constexpr double kMost = 1e8;
+  const MajorantGrid* grid = medium.Majorants();
+  if (!grid || grid->Values().empty()) return;
+  const double largest = *std::max_element(grid->Values().begin(), grid->Values().end());
+  const Affine toRender = dynamic_cast<const BoxMedium&>(medium).ToSpace().Inverse();
+  const double depth = largest * glm::length(Vector3d(toRender.Vector(grid->Bounds().Diagonal())));
+  if (depth <= kMost) return;
+  char text[160];
+  std::snprintf(
+      text, sizeof text,
+      "this medium is too dense: its optical depth from corner to corner is up to %.2g, and at most 1e8 can be "
+      "followed; a lower \"scale\" or density looks the same",
+      depth);
+  throw Error(where, text);
+}
+
 std::shared_ptr<const Medium> MakeMedium(const MediumDescription& description, const Transform& renderFromWorld,
                                          MemoryBudget& memory, Diagnostics& diagnostics) {
   const ParameterList& parameters = description.medium.parameters;
@@ -28,7 +50,10 @@ std::shared_ptr<const Medium> MakeMedium(const MediumDescription& description, c
   const Transform renderFromMedium = renderFromWorld * description.placement.start;
   if (!renderFromMedium.IsAffine()) throw Error(where, "a medium cannot have a perspective transform");
   for (const MediumType& type : kTypes) {
-    if (description.medium.type == type.name) return type.make({description, renderFromMedium, memory, diagnostics});
+    if (description.medium.type != type.name) continue;
+    std::shared_ptr<const Medium> medium = type.make({description, renderFromMedium, memory, diagnostics});
+    CheckDepth(*medium, where);
+    return medium;
   }
   const std::string& given = description.medium.type;
   throw Error(parameters.WhereOf("type"),

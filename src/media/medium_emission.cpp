@@ -14,11 +14,26 @@ constexpr double kEverywhere = 1.0 / 16;
 // The same probability for the medium around the camera where it has no bounds but opaque surfaces.
 constexpr double kUnbounded = 1.0 / 2;
 
+constexpr double kSphere = 4 * static_cast<double>(kPi);  // sr
+
 Bounds3 BoxAround(const BoundingSphere& sphere) {
   return {sphere.center - Vector3(sphere.radius), sphere.center + Vector3(sphere.radius)};
 }
 
 }  // namespace
+
+double RoughPowerOf(const Medium& medium, int32_t index, const GeometryScene& geometry) {
+  double emission = 0;
+  if (medium.IsHomogeneous()) {
+    const MediumSurfaces surfaces = geometry.SurfacesOf(index);
+    const Bounds3 box = surfaces.box.IsEmpty() ? BoxAround(geometry.GetBoundingSphere()) : surfaces.box;
+    const Vector3d sides(box.Diagonal());
+    emission = static_cast<double>(medium.At(Point3(0.0f)).emission.Average()) * sides.x * sides.y * sides.z;
+  } else {
+    RegionOfGrid(medium, emission);
+  }
+  return kSphere * emission;
+}
 
 MediumEmission::MediumEmission(std::vector<std::shared_ptr<const Medium>> media, const GeometryScene& geometry,
                                const BoundingSphere& within, int32_t exterior, std::optional<int32_t> unbounded)
@@ -31,7 +46,6 @@ MediumEmission::MediumEmission(std::vector<std::shared_ptr<const Medium>> media,
 
 void MediumEmission::Add(int32_t index) {
   const Medium& medium = *media_[static_cast<size_t>(index)];
-  constexpr double kSphere = 4 * static_cast<double>(kPi);
   if (medium.IsHomogeneous()) {
     double volume = 0;
     sources_.push_back(BoundedSource(index, volume));

@@ -21,6 +21,10 @@ struct EmissionPoint {
   double density = 0;  // of the point, per volume (scene units); that of choosing the medium is a factor
 };
 
+// The power that a medium emits, W: the mean of the channels. Of a homogeneous one an upper bound, as if it filled the
+// box of its surfaces, or the scene's.
+double RoughPowerOf(const Medium& medium, int32_t index, const GeometryScene& geometry);
+
 class MediumEmission {
  public:
   // `geometry` has to outlive it. `within`: beyond this sphere there is vacuum. `exterior`: the medium at points from
