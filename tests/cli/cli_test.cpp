@@ -1056,6 +1056,33 @@ TEST_F(Cli, ChecksTheLightsOfOneType) {
   EXPECT_EQ(outcome.output.find("filter "), std::string::npos);
 }
 
+// Lights of several patches, of which one is selected, and a light beside them.
+TEST_F(Cli, ChecksTheLightsOfAScene) {
+  Write("lit.pbrt",
+        "WorldBegin\nLightSource \"point\" \"point3 from\" [ 0 3 0 ]\nAreaLightSource \"diffuse\"\nShape "
+        "\"trianglemesh\" \"point3 P\" [ -1 0 -1  1 0 -1  1 0 1  -1 0 1 ] \"integer indices\" [ 0 1 2 0 2 3 ]\n");
+  const Outcome outcome = Run("check-lights lit.pbrt");
+  EXPECT_EQ(outcome.exitCode, 0) << outcome.output;
+  EXPECT_NE(outcome.output.find("all lights"), std::string::npos);
+}
+
+// Two seeds of one scene agree, although each splat is in several pixels.
+TEST_F(Cli, DiffKnowsThatSplatsShareTheirNoise) {
+  Write("splats.pbrt",
+        "LookAt 0 2 -3  0 0 0  0 1 0 Camera \"perspective\" \"float fov\" 40\nFilm \"rgb\" \"integer xresolution\" "
+        "48 \"integer yresolution\" 48\nWorldBegin\nLightSource \"point\" \"point3 from\" [ 0 3 0 ]\nShape "
+        "\"trianglemesh\" \"point3 P\" [ -4 0 -4  4 0 -4  4 0 4  -4 0 4 ] \"integer indices\" [ 0 1 2 0 2 3 ]\n");
+  for (int i = 0; i < 8; ++i) {
+    const std::string seed = std::to_string(i);
+    ASSERT_EQ(
+        Run("render splats.pbrt --quiet --integrator light --spp 16 --seed " + seed + " -o " + seed + ".exr").exitCode,
+        0);
+    if (i % 2 == 0) continue;
+    const Outcome outcome = Run("diff " + std::to_string(i - 1) + ".exr " + seed + ".exr --fail");
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.output;
+  }
+}
+
 TEST_F(Cli, ChecksTheFiltersOfOneType) {
   const Outcome outcome = Run("check-lights --type barn");
   EXPECT_EQ(outcome.exitCode, 0) << outcome.output;

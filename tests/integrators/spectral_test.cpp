@@ -297,6 +297,26 @@ TEST(Spectral, WhiteStaysWhite) {
   }
 }
 
+// A texture that does not vary is the spectrum that it names, as a parameter would be.
+TEST(Spectral, ConstantTexturesKeepTheirSpectra) {
+  const std::string head =
+      "Film \"rgb\" \"integer xresolution\" 4 \"integer yresolution\" 4\nLookAt 0 0 3 0 0 0 0 1 0\n"
+      "Camera \"orthographic\"\nIntegrator \"path\"\nWorldBegin\nLightSource \"infinite\" \"rgb L\" [1 1 1]\n";
+  const std::string sphere = "Shape \"sphere\"\n";
+  const std::string direct =
+      head + "Material \"conductor\" \"spectrum eta\" \"metal-Au-eta\" \"spectrum k\" \"metal-Au-k\"\n";
+  const std::string textured = head +
+                               "Texture \"eta\" \"spectrum\" \"constant\" \"spectrum value\" \"metal-Au-eta\"\n"
+                               "Texture \"k\" \"spectrum\" \"constant\" \"spectrum value\" \"metal-Au-k\"\n"
+                               "Material \"conductor\" \"texture eta\" \"eta\" \"texture k\" \"k\"\n";
+  for (const bool isSpectral : {false, true}) {
+    RenderOverrides overrides;
+    overrides.spectral = isSpectral;
+    EXPECT_EQ(RenderText(direct + sphere, 4, overrides).image.data,
+              RenderText(textured + sphere, 4, overrides).image.data);
+  }
+}
+
 // Any number of passes: the picture of a white surface is white after each.
 TEST(Spectral, WhiteIsWhiteAfterAnyNumberOfPasses) {
   const std::string text =

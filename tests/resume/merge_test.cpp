@@ -73,6 +73,28 @@ TEST_F(Merge, LayersOfTheFirstHitAreKept) {
   EXPECT_GE(ReadImage(folder_ / "merged.exr").ChannelIndex("Ns.X"), 0);
 }
 
+// A manifest names all objects: it may be long.
+TEST_F(Merge, ManyObjectsAreNamed) {
+  std::string text = kScene;
+  for (int i = 0; i < 2500; ++i) text += "Shape \"sphere\" \"float radius\" 1e-3\n";
+  WriteBytes(folder_ / "scene.pbrt", text);
+  ExpectWhole("--spp 2 --integrator path --layer \"crypto object\"", 2);
+}
+
+TEST_F(Merge, LayersOfWhatWasDecidedAreKept) {
+  ExpectWhole("--spp 8 --integrator auto --auto-layers --no-guide-paths --no-guide-photons", 2);
+  EXPECT_GE(ReadImage(folder_ / "merged.exr").ChannelIndex("auto.lightPaths"), 0);
+}
+
+// Of six samples the parts 1 and 3 have the first two and the last two, of which three are in the half.
+TEST_F(Merge, SomePartsKnowTheirHalf) {
+  RenderParts("--spp 6 --denoise", 3);
+  Do("merge --quiet --partial -o merged.exr p1.exr p3.exr");
+  EXPECT_EQ(ReadImage(folder_ / "merged.exr").metadata.at("lampyr.halfShare"), "0.750000");
+  EXPECT_EQ(ReadImage(folder_ / "p3.exr").metadata.at("lampyr.halfShare"), "1.000000");
+  EXPECT_EQ(ReadImage(folder_ / "p1.exr").metadata.count("lampyr.halfShare"), 0u);
+}
+
 TEST_F(Merge, HalvesStayHalves) {
   std::string text = kScene;
   text.replace(text.find("\"rgb\""), 5, "\"rgb\" \"bool savefp16\" true");

@@ -210,6 +210,63 @@ TEST(Denoise, PixelsThatAreNotFiniteStayAlone) {
   }
 }
 
+// Larger than the windows: filled from its border.
+TEST(Denoise, ARegionThatIsNotFiniteIsFilledFromItsBorder) {
+  Image noisy = MakeNoisy(
+      64, 56, [](int, int) { return 0.5f; }, 0.1f, 6);
+  for (int y = 10; y < 45; ++y) {
+    for (int x = 12; x < 50; ++x) noisy.At(x, y, 1) = std::numeric_limits<float>::quiet_NaN();
+  }
+  const Image denoised = Denoised(noisy);
+  EXPECT_NEAR(denoised.At(30, 28, 1), 0.5f, 0.1f);
+  EXPECT_GT(denoised.At(30, 28, 4), 0);
+  Image none = noisy;
+  std::fill(none.data.begin(), none.data.end(), std::numeric_limits<float>::quiet_NaN());
+  EXPECT_THROW(Denoised(none), Error);
+}
+
+TEST(Denoise, WhatIsFarTooBrightStaysAsItIs) {
+  Image noisy = MakeNoisy(
+      48, 40, [](int, int) { return 0.5f; }, 0.1f, 6);
+  for (size_t c = 0; c < 3; ++c) noisy.At(20, 20, c) = 1e19f;
+  DenoiseReport report;
+  const Image denoised = Denoised(noisy, 1, &report);
+  EXPECT_EQ(report.invalidPixels, 0);
+  EXPECT_EQ(denoised.At(20, 20, 1), 1e19f);
+  EXPECT_NEAR(denoised.At(22, 20, 1), 0.5f, 0.1f);
+}
+
+// A power of two scales all numbers exactly.
+TEST(Denoise, DoesNotDependOnTheUnit) {
+  const Truth truth = [](int x, int y) { return (x / 8 + y / 8) % 2 == 0 ? 0.5f : 5.0f; };
+  const Image noisy = MakeNoisy(48, 40, truth, 0.2f, 6), denoised = Denoised(noisy);
+  for (const int power : {-40, 55}) {
+    const float unit = std::ldexp(1.0f, power);
+    const auto scaled = [&](const Image& image) {
+      Image result = image;
+      for (size_t i = 0; i < result.data.size(); ++i) {
+        const std::string& channel = image.channels[i % image.channels.size()];
+        result.data[i] *= channel.find("variance") == std::string::npos ? unit : unit * unit;
+      }
+      return result;
+    };
+    EXPECT_EQ(Denoised(scaled(noisy)).data, scaled(denoised).data) << power;
+  }
+}
+
+// A part of a picture may hold samples of one half alone: they are no two estimates.
+TEST(Denoise, ShareOfTheHalfIsThatOfTheSamplesThatAreThere) {
+  Image noisy = MakeNoisy(
+      48, 40, [](int, int) { return 0.5f; }, 0.2f, 6);
+  DenoiseReport report;
+  Denoised(noisy, 1, &report);
+  EXPECT_TRUE(report.hasHalves);
+  noisy.metadata[kHalfShareMetadata] = "1.000000";
+  report = {};
+  Denoised(noisy, 1, &report);
+  EXPECT_FALSE(report.hasHalves);
+}
+
 TEST(Denoise, AnOutlierIsNotSmearedButReportedAndStated) {
   const Truth truth = [](int, int) { return 0.5f; };
   Image noisy = MakeNoisy(48, 40, truth, 0.1f, 7);
@@ -256,6 +313,8 @@ TEST(Denoise, RefusesWhatHasNoVariance) {
   Image single(8, 8, kPicture);
   single.metadata["lampyr.samplesPerPixel"] = "1";
   EXPECT_THROW(Denoised(single), Error);
+  single.metadata["lampyr.integrator"] = "light";  // many light paths are one sample
+  EXPECT_NO_THROW(Denoised(single));
 }
 
 TEST(Denoise, TinyPictures) {
@@ -263,6 +322,7 @@ TEST(Denoise, TinyPictures) {
     const Image denoised = Denoised(MakeNoisy(
         width, height, [](int, int) { return 0.5f; }, 0.1f, 10));
     for (const float value : denoised.data) EXPECT_TRUE(std::isfinite(value));
+    EXPECT_NEAR(denoised.At(0, 0, 1), 0.5f, 0.3f) << width << "x" << height;
   }
 }
 

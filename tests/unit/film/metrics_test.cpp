@@ -8,6 +8,7 @@
 #include <random>
 
 #include "base/error.h"
+#include "film/film.h"
 
 namespace lampyr {
 namespace {
@@ -88,6 +89,30 @@ TEST(Metrics, BiasIntervalCoversTheTruth) {
   // Binomial of 400 at 0.95: 380 ± 4.4, four deviations either way.
   EXPECT_NEAR(covered, 380, 17.5);
   EXPECT_NEAR(coveredByPixels, 380, 17.5);
+}
+
+// The noise of splats is that of several pixels at once.
+TEST(Metrics, SplatsHaveMoreNoiseInSumsThanInPixels) {
+  Image a = Noisy(16, 1, 0.2f, 1), b = Noisy(16, 1, 0.2f, 2);
+  const ImageDifference alone = CompareImages(a, b);
+  for (Image* image : {&a, &b}) {
+    Image share(16, 16, {kSplatShareChannel});
+    std::fill(share.data.begin(), share.data.end(), 1.0f);
+    AppendChannels(*image, share);
+    image->metadata[kSplatCountMetadata] = "4";
+  }
+  const ImageDifference shared = CompareImages(a, b);
+  EXPECT_NEAR(shared.biasInterval / alone.biasInterval, 2, 1e-6);
+  EXPECT_NEAR(alone.blockTest.chiSquared / shared.blockTest.chiSquared, 4, 1e-4);
+}
+
+TEST(Metrics, OfDenoisedImagesNothingIsTested) {
+  const Image a = Noisy(16, 1, 0.2f, 1);
+  Image b = Noisy(16, 1, 0.2f, 2);
+  AppendChannels(b, Image(16, 16, {"noisy.R", "noisy.G", "noisy.B"}));
+  const ImageDifference difference = CompareImages(a, b);
+  EXPECT_EQ(difference.verdict, Verdict::CannotSay);
+  EXPECT_NE(difference.reason.find("denoised"), std::string::npos);
 }
 
 TEST(BlockTest, HoldsItsFamilyWiseRate) {

@@ -104,6 +104,7 @@ TEST(Mix, OfADenoisedPictureToo) {
   const Image mixed = MixLayers(denoised, {{"key", Color(2.0f)}});
   EXPECT_EQ(mixed.RgbAt(0, 0), Color(4.5f));
   EXPECT_EQ(mixed.ChannelIndex("variance.R"), -1);
+  EXPECT_EQ(mixed.ChannelIndex("noisy.R"), -1);
 }
 
 TEST(Mix, KnowsItsLayers) {

@@ -42,6 +42,23 @@ TEST(TexelLookup, CentresGiveTexelsInBothFilters) {
   }
 }
 
+// As in pbrt-v4: where alpha says something, it is what a float texture reads.
+TEST(TexelLookup, FloatsOfImagesWithAlphaAreTheAlpha) {
+  for (const float alpha : {1.0f, 0.25f}) {
+    auto image = std::make_shared<Image>(4, 2, std::vector<std::string>{"R", "G", "B", "A"});
+    for (int x = 0; x < 4; ++x) {
+      for (int y = 0; y < 2; ++y) {
+        for (size_t c = 0; c < 3; ++c) image->At(x, y, c) = 0.6f;
+        image->At(x, y, 3) = x == 2 ? alpha : 1.0f;
+      }
+    }
+    const TexelLookup texels(image, WrapMode::Repeat, false);
+    EXPECT_FLOAT_EQ(texels.LookupFloat(Centre(2, 1)), alpha == 1 ? 0.6f : alpha);
+    EXPECT_FLOAT_EQ(texels.LookupFloat(Centre(1, 1)), alpha == 1 ? 0.6f : 1.0f);
+    EXPECT_FLOAT_EQ(texels.LookupColor(Centre(2, 1)).g, 0.6f);
+  }
+}
+
 TEST(TexelLookup, BilinearBetweenTexels) {
   const TexelLookup texels(Grid(), WrapMode::Clamp, true);
   EXPECT_NEAR(texels.LookupColor({0.5f, 0.5f}).r, (1 + 2 + 11 + 12) / 4.0f, 1e-4f);

@@ -1,0 +1,173 @@
+// Scenes at the edges of what integrators can sample: what one of them finds, the others find. Means of whole pictures
+// by independent replicas, channel by channel.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "support/replicas.h"
+
+namespace lampyr::test {
+namespace {
+
+struct Corner {
+  const char* name;
+  std::string text;
+  std::vector<std::string> integrators;  // the first one is what the others are compared to
+  int samples = 64;
+  double notices = 0.05;  // twice the standard error of a difference has to be below that, relative
+  double blur = 0.01;     // relative difference that merging, or rounding, may make
+};
+
+std::string Number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.9g", value);
+  return text;
+}
+
+double MeanOfChannel(const Image& image, size_t channel) {
+  double sum = 0;
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) sum += static_cast<double>(image.At(x, y, channel));
+  }
+  return sum / (static_cast<double>(image.width) * image.height);
+}
+
+std::string Film(const std::string& view) {
+  return view +
+         "Film \"rgb\" \"integer xresolution\" 12 \"integer yresolution\" 12\nPixelFilter \"box\"\n"
+         "Integrator \"path\" \"integer maxdepth\" 3\n";
+}
+
+const std::string kAbove = Film("LookAt 0 3 0  0 0 0  0 0 1 Camera \"perspective\" \"float fov\" 40\n");
+const std::string kInFront = Film("LookAt 0 1 -4  0 0.8 0  0 1 0 Camera \"perspective\" \"float fov\" 50\n");
+const std::string kFloor =
+    "Material \"diffuse\" \"rgb reflectance\" [ 0.6 0.5 0.4 ]\n"
+    "Shape \"trianglemesh\" \"point3 P\" [ -5 0 -5  5 0 -5  5 0 5  -5 0 5 ] \"integer indices\" [ 0 1 2 0 2 3 ]\n";
+
+// A sphere of which the inner side emits, and of which both do, where rays pass its surface.
+std::string PassedSphere(const std::string& emission, const std::string& placement) {
+  return kAbove + "WorldBegin\nAttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [ 1 1 1 ] " + emission +
+         "\nTranslate 0 1.5 1.2\n" + placement +
+         "Shape \"sphere\" \"float radius\" 0.5 \"float alpha\" 0\nAttributeEnd\n" + kFloor;
+}
+
+// A fire of the given size; its radiance makes up for that.
+std::string Fire(double radius, const std::string& placement, double brightness = 1) {
+  const double density = 0.4 / radius;
+  return kInFront + "WorldBegin\n" + kFloor +
+         "AttributeBegin\nMakeNamedMedium \"fire\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [ " +
+         Number(density) + " " + Number(2 * density) + " " + Number(density) + " ] \"rgb sigma_s\" [ 0.1 0.1 0.1 ] " +
+         "\"rgb Le\" [ 1 0.6 0.3 ] \"float Lescale\" " + Number(brightness / (radius * radius)) +
+         "\nMediumInterface \"fire\" \"\"\nMaterial \"interface\"\n" + placement +
+         "Shape \"sphere\" \"float radius\" " + Number(radius) + "\nAttributeEnd\n";
+}
+
+// A quadrilateral above a floor, where a unit has the given length.
+std::string LargeQuad(double scale) {
+  const auto at = [&](double value) { return Number(value * scale) + " "; };
+  const std::string corner = at(0.5);
+  return Film("LookAt 0 " + at(0.9) + "0  0 0 0  0 0 1 Camera \"perspective\" \"float fov\" 40\n") +
+         "WorldBegin\nAttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [ 10 10 10 ]\nReverseOrientation\n"
+         "Shape \"bilinearmesh\" \"point3 P\" [ -" +
+         corner + at(1) + "-" + corner + corner + at(1) + "-" + corner + "-" + corner + at(1) + corner + corner +
+         at(1) + corner + "] \"integer indices\" [ 0 2 1 3 ]\nAttributeEnd\nScale " + at(1) + at(1) + at(1) + "\n" +
+         kFloor;
+}
+
+// A room of fog with a lamp and a ball, where a unit has the given length.
+std::string Fog(double scale) {
+  const auto at = [&](double value) { return Number(value * scale) + " "; };
+  const std::string scattering = Number(0.4 / scale) + " ", absorption = Number(0.1 / scale) + " ";
+  return "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [ " + scattering + scattering +
+         scattering + "] \"rgb sigma_a\" [ " + absorption + absorption + absorption +
+         "]\nMediumInterface \"\" \"fog\"\n" +
+         Film("LookAt 0 " + at(1) + at(-4) + " 0 " + at(0.8) + "0  0 1 0 Camera \"perspective\" \"float fov\" 50\n") +
+         "WorldBegin\nMediumInterface \"fog\" \"fog\"\nScale " + at(1) + at(1) + at(1) + "\n" + kFloor +
+         "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [ 10 10 10 ] \"bool twosided\" true\n"
+         "Translate 0 2 0 Shape \"sphere\" \"float radius\" 0.3\nAttributeEnd\n"
+         "Translate 0.6 0.5 0 Shape \"sphere\" \"float radius\" 0.4\n";
+}
+
+std::vector<Corner> Corners() {
+  const std::string beams =
+      "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [ 0.02 0.02 0.02 ] \"rgb sigma_a\" "
+      "[ 0.002 0.002 0.002 ]\nMediumInterface \"\" \"fog\"\n" +
+      Film("LookAt 0 0 -4  0 0 0  0 1 0 Camera \"perspective\" \"float fov\" 40\n") +
+      "WorldBegin\nMediumInterface \"fog\"\nLightSource \"spot\" \"rgb I\" [ 6 6 6 ] \"float coneangle\" 15 \"point3 "
+      "from\" "
+      "[ -3 0 0 ] \"point3 to\" [ 0 0 0 ]\nAttributeBegin\nMaterial \"thindielectric\" \"float eta\" 1.2 \"rgb "
+      "transmittance\" [ 0.9 0.3 0.05 ]\nShape \"trianglemesh\" \"point3 P\" [ -1 -2 -2  -1 2 -2  -1 2 2  -1 -2 2 ] "
+      "\"integer indices\" [ 0 1 2 0 2 3 ]\nAttributeEnd\n";
+  const std::string portal =
+      kAbove +
+      "WorldBegin\nAttributeBegin\nTranslate 0 1 0 Rotate -90 1 0 0\nLightSource \"portal\" \"float width\" 1 \"float "
+      "height\" 1\nAttributeEnd\nLightSource \"spot\" \"point3 from\" [ 0 2 0 ] \"point3 to\" [ 0 5 0 ] \"rgb I\" "
+      "[ 5 5 5 ]\n" +
+      kFloor + "Translate 0 20 0\n" + kFloor;
+  const std::string moves = "ActiveTransform EndTime Translate 0.9 0.2 0\nActiveTransform All Translate -0.5 0.6 0\n";
+  return {
+      {"sphere_of_two_sides_that_rays_pass",
+       PassedSphere("\"bool twosided\" true", ""),
+       {"path", "bdpt", "vcm", "sppm"}},
+      {"sphere_inside_out_that_rays_pass", PassedSphere("", "ReverseOrientation\n"), {"path", "bdpt", "vcm", "sppm"}},
+      {"beams_behind_a_tinted_pane", beams, {"path", "bdpt", "vcm", "sppm"}, 256},
+      {"portal_behind_the_middle", portal, {"path", "bdpt", "vcm", "sppm"}},
+      {"small_fire", Fire(0.012, "Translate 0.31 0.45 0.22\n"), {"path", "light"}, 1024, 0.2},
+      {"moving_fire", Fire(0.2, moves), {"path", "light", "sppm"}, 512, 0.08},
+      {"dim_fire", Fire(0.2, "Translate 0 0.6 0\n", 1e-30), {"path", "light", "sppm"}, 256},
+      {"large_quadrilateral", LargeQuad(1e10), {"path", "bdpt", "light", "sppm"}, 256},
+      {"small_quadrilateral", LargeQuad(1e-10), {"path", "bdpt", "light", "sppm"}, 256},
+      {"large_fog", Fog(1e14), {"path", "bdpt", "vcm"}},
+      {"small_fog", Fog(1e-14), {"path", "bdpt", "vcm"}},
+  };
+}
+
+class CornerCases : public ::testing::TestWithParam<Corner> {};
+
+TEST_P(CornerCases, AreTheSameToAllIntegrators) {
+  constexpr int kReplicas = 8;
+  const Corner& corner = GetParam();
+  struct Means {
+    std::array<double, 3> mean{}, variance{};  // variance: of the mean
+  };
+  const auto meansOf = [&](const std::string& integrator) {
+    const Replicas replicas = RenderReplicas(corner.text, integrator, kReplicas, corner.samples);
+    EXPECT_EQ(replicas.faults, 0u) << integrator;
+    Means means;
+    for (size_t c = 0; c < 3; ++c) {
+      double sum = 0, squares = 0;
+      for (const Image& image : replicas.images) {
+        const double mean = MeanOfChannel(image, c);
+        sum += mean / kReplicas;
+        squares += mean * mean / kReplicas;
+      }
+      means.mean[c] = sum;
+      means.variance[c] = std::max(squares - sum * sum, 0.0) / (kReplicas - 1);
+    }
+    return means;
+  };
+  const Means known = meansOf(corner.integrators.front());
+  for (size_t i = 1; i < corner.integrators.size(); ++i) {
+    const Means means = meansOf(corner.integrators[i]);
+    for (size_t c = 0; c < 3; ++c) {
+      ASSERT_GT(known.mean[c], 0);
+      const double difference = means.mean[c] / known.mean[c] - 1;
+      const double error = std::sqrt(means.variance[c] + known.variance[c]) / known.mean[c];
+      std::printf("[   info   ] %s %s %zu: %+.2f %% +- %.2f %%\n", corner.name, corner.integrators[i].c_str(), c,
+                  100 * difference, 100 * error);
+      // Student's t of 7 to 14 degrees of freedom exceeds 6 once in a thousand cases, at most.
+      EXPECT_LT(std::abs(difference), 6 * error + corner.blur) << corner.integrators[i] << ", channel " << c;
+      EXPECT_LT(2 * error, corner.notices) << corner.integrators[i] << ": too noisy to notice anything";
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, CornerCases, ::testing::ValuesIn(Corners()),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+}  // namespace
+}  // namespace lampyr::test
