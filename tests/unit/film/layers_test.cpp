@@ -101,7 +101,7 @@ Image Random(size_t listCount, int threads, std::vector<std::string> layers) {
 
 TEST(FilmLayers, AddUpToThePictureAndLeaveItAsItIs) {
   const Image with = Random(4, 2, {"a", "b", "c"}), without = Random(4, 2, {});
-  ASSERT_EQ(without.channels.size(), 6u);
+  ASSERT_EQ(without.channels.size(), 7u);  // with kSplatShareChannel
   for (int y = 0; y < with.height; ++y) {
     for (int x = 0; x < with.width; ++x) {
       for (size_t c = 0; c < 6; ++c) ASSERT_EQ(with.At(x, y, c), without.At(x, y, c));
