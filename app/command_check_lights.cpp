@@ -126,9 +126,7 @@ void Print(const LightVerdict& verdict) {
               verdict.worst.isProbability ? "p" : "error", verdict.worst.statistic, verdict.worst.threshold,
               verdict.passed ? "" : ": ", verdict.passed ? "" : verdict.worst.caseName.c_str());
   if (verdict.passed) return;
-  const bool isFilter = verdict.light.starts_with("filter ");
-  const std::string meaning = isFilter ? FilterPropertyMeaning(verdict.property) : MeaningOf(verdict.property);
-  std::printf("         %s: %s\n", verdict.property.c_str(), meaning.c_str());
+  std::printf("         %s: %s\n", verdict.property.c_str(), MeaningOfVerdict(verdict).c_str());
   if (!verdict.worst.words.empty()) {
     std::printf("         worst: %s\n", verdict.worst.words.c_str());
   } else {

@@ -360,8 +360,11 @@ struct CheckLightsCommand {
   CheckLightsOptions options;
 
   void Define(CLI::App& app) {
-    app.add_option("scene", options.scene, "A scene, whose lights are checked as they are placed")->type_name("FILE");
-    app.add_option("--type", options.type, "Only this type of light or of light filter")->type_name("NAME");
+    CLI::Option* scene = app.add_option("scene", options.scene, "A scene, whose lights are checked as they are placed")
+                             ->type_name("FILE");
+    app.add_option("--type", options.type, "Only this type of light or of light filter; not with a scene")
+        ->type_name("NAME")
+        ->excludes(scene);
     DefinePluginOption(app, options.plugins);
     app.add_flag("--json", options.json, "Print JSON");
     app.add_option("--seed", options.seed, "Seed of the samples (1)")->check(CheckSeed, "");

@@ -41,12 +41,15 @@ std::filesystem::path OutputPath(const RenderOptions& options, const RenderSetti
   if (options.output) {
     path = *options.output;
   } else {
-    path = settings.outputFile.empty() ? options.scene.stem() : std::filesystem::path(settings.outputFile).filename();
-    std::string extension = ".exr";
+    path =
+        settings.outputFile.empty() ? options.scene.filename() : std::filesystem::path(settings.outputFile).filename();
+    // What follows another dot is part of the name: frame.0001, frame.0002.
+    for (const char* ending :
+         {".gz", ".pbrt", ".exr", ".png", ".pfm", ".qoi", ".hdr", ".tif", ".tiff", ".jpg", ".jpeg", ".tga", ".bmp"})
+      if (path.extension() == ending) path.replace_extension();
     if (options.shard)
-      extension =
-          "." + std::to_string(options.shard->first) + "-of-" + std::to_string(options.shard->second) + extension;
-    path.replace_extension(extension);
+      path += "." + std::to_string(options.shard->first) + "-of-" + std::to_string(options.shard->second);
+    path += ".exr";
   }
   CheckImageOutput(path, "--output", options.png || options.previewSeconds);
   return path;
@@ -549,19 +552,22 @@ int RenderJob::Finish(ProgressiveRender& render, Checkpoints* checkpoints) {
       isPartial ? DescribePartialPicture(options_, film, settings_, integrator_->Paths()) : "";
   // The sums in a part's image are of whole samples.
   if (options_.shard) render.DropPartialPass();
-  if (options_.strategyImages) WriteStrategies(options_, settings_, film.Develop());
   WriteImageOrKeepIt(path_, options_, header_, film, layers_, report_.outcome);
-  if (options_.png || options_.previewSeconds)
-    WritePngBeside(path_, film.Develop(), options_.exposure, options_.clipPng);
-  if (options_.denoise && !options_.shard && !isPartial) DenoisePicture();
-  render.DropPartialPass();
-  // The other results are written even if that fails.
+  // Each of the other results is written even if another one fails.
   std::exception_ptr failure;
-  try {
-    if (checkpoints) checkpoints->Finish(report_.outcome);
-  } catch (const Error&) {
-    failure = std::current_exception();
-  }
+  const auto attempt = [&](const auto& write) {
+    try {
+      write();
+    } catch (const Error&) {
+      if (!failure) failure = std::current_exception();
+    }
+  };
+  if (options_.strategyImages) attempt([&] { WriteStrategies(options_, settings_, film.Develop()); });
+  if (options_.png || options_.previewSeconds)
+    attempt([&] { WritePngBeside(path_, film.Develop(), options_.exposure, options_.clipPng); });
+  if (options_.denoise && !options_.shard && !isPartial) attempt([&] { DenoisePicture(); });
+  render.DropPartialPass();
+  if (checkpoints) attempt([&] { checkpoints->Finish(report_.outcome); });
   report_.writeSeconds = clock.Seconds();
   if (settings_.adaptive) {
     report_.adaptive = RenderReport::Adaptive{settings_.adaptive->share, film.Samples(0), film.Samples(0)};

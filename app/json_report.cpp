@@ -143,7 +143,7 @@ std::string ToJson(const std::vector<LightVerdict>& verdicts) {
                     {"worst", verdict.worst.statistic},
                     {"threshold", verdict.worst.threshold},
                     {"worstCase", verdict.worst.caseName},
-                    {"meaning", MeaningOf(verdict.property)},
+                    {"meaning", MeaningOfVerdict(verdict)},
                     {"words", verdict.worst.words}});
   }
   return Dump(rows);

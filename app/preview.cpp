@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "base/error.h"
 #include "base/terminal.h"
 #include "film/terminal_picture.h"
 
@@ -22,7 +23,13 @@ void Preview::MayShow(const ProgressiveRender& render, double secondsSoFar, Prog
   if (secondsSoFar < next_) return;
   next_ = secondsSoFar + seconds_;
   const Image image = render.Picture().Develop();
-  WritePng(png_, image, exposure_, toneMap_);
+  try {
+    WritePng(png_, image, exposure_, toneMap_);
+  } catch (const Error& error) {  // the render goes on
+    progress.Clear();
+    if (!hasFailed_) std::fprintf(stderr, "warning: no preview: %s\n", error.Text().c_str());
+    hasFailed_ = true;
+  }
   if (isOnTerminal_) PrintPicture(image, progress);
 }
 

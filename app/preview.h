@@ -26,6 +26,7 @@ class Preview {
   const ToneMap toneMap_;
   const bool isOnTerminal_;
   double next_;
+  bool hasFailed_ = false;  // to write a picture
   int lines_ = 0;  // of the picture on the terminal
 };
 

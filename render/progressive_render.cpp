@@ -23,9 +23,9 @@ double TargetedError(const RenderOutcome& outcome) {
   return outcome.pixelError.value_or(outcome.relativeError);
 }
 
-// The error that `share` of the pixels are below.
-double ErrorBelow(const Film& film, double share) {
-  std::vector<float> errors = film.PixelErrors();
+// The error that `share` of the pixels are below. `imageError`: that of the whole picture.
+double ErrorBelow(const Film& film, double share, double imageError) {
+  std::vector<float> errors = film.PixelErrors(imageError);
   const auto count = static_cast<double>(errors.size());
   const auto rank = static_cast<std::ptrdiff_t>(std::clamp(std::ceil(share * count), 1.0, count)) - 1;
   std::nth_element(errors.begin(), errors.begin() + rank, errors.end());
@@ -144,7 +144,7 @@ RenderOutcome Continue(ProgressiveRender& render, const StopConditions& stop, co
     const ErrorParts error = render.Picture().PartsOfError(stop.largestSample);
     outcome.relativeError = error.Both();
     if (render.Picture().KeepsBias()) outcome.parts = error;
-    if (stop.pixelShare) outcome.pixelError = ErrorBelow(render.Picture(), *stop.pixelShare);
+    if (stop.pixelShare) outcome.pixelError = ErrorBelow(render.Picture(), *stop.pixelShare, outcome.relativeError);
     outcome.droppedFraction = render.DroppedFraction();
     // The dropped samples may have held any part of the light.
     if (outcome.droppedFraction > kMostDropped) {

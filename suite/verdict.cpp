@@ -4,6 +4,9 @@
 #include <map>
 #include <utility>
 
+#include "suite/filter_suite.h"
+#include "suite/properties.h"
+
 namespace lampyr {
 
 namespace {
@@ -17,6 +20,11 @@ double Badness(const SuiteResult& result) {
 }
 
 }  // namespace
+
+std::string MeaningOfVerdict(const LightVerdict& verdict) {
+  const bool isFilter = verdict.light.starts_with("filter ");
+  return isFilter ? FilterPropertyMeaning(verdict.property) : MeaningOf(verdict.property);
+}
 
 std::vector<LightVerdict> SummariseByProperty(const std::vector<SuiteResult>& results) {
   std::vector<LightVerdict> verdicts;

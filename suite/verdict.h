@@ -15,6 +15,9 @@ struct LightVerdict {
   SuiteResult worst;   // the case that is nearest to failing, or failed by most
 };
 
+// What the property says, in one line.
+std::string MeaningOfVerdict(const LightVerdict& verdict);
+
 // One verdict for each light and property, in the order of their first results.
 std::vector<LightVerdict> SummariseByProperty(const std::vector<SuiteResult>& results);
 

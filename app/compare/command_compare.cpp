@@ -284,6 +284,7 @@ int RunCompare(const CompareOptions& options) {
   const ComparisonPlan plan = MakePlan(options);
   OutliveSurroundings();
   RenderOverrides overrides = options.overrides;
+  overrides.threads = options.threads;
   const bool hasAuto = std::any_of(plan.integrators.begin(), plan.integrators.end(), IsAuto);
   overrides.integrator = hasAuto ? kAuto : VariantOf({}, plan.integrators.front()).integrator;
   const LoadedScene loaded = LoadScene(options.scene, options.plugins, overrides, options.strict, options.robust);

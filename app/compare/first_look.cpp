@@ -54,12 +54,11 @@ std::vector<double> BlockMeans(const Image& image) {
 }
 
 // True if `a` is significantly brighter than `b`, with an error probability `byChance`, by the t-test for means of
-// different variances [Welch47]. Differences below 1e-5 of `scale` count as rounding.
-bool IsBrighter(std::span<const double> a, std::span<const double> b, double byChance, double scale) {
-  constexpr double rounding = 1e-5;
+// different variances [Welch47]. `least`: smaller differences do not count.
+bool IsBrighter(std::span<const double> a, std::span<const double> b, double byChance, double least) {
   const Moments first = MomentsOf(a), second = MomentsOf(b);
   const double difference = first.mean - second.mean;
-  if (!(difference > rounding * scale)) return false;
+  if (!(difference > least)) return false;
   const double variance = first.varianceOfMean + second.varianceOfMean;
   if (!(variance > 0)) return true;
   const double share = first.varianceOfMean / variance, other = 1 - share;
@@ -88,12 +87,16 @@ std::vector<double> PartsOfBlock(const PilotRun& run, int block, int side) {
 // True if `other` finds significantly more light than `run`, in the whole picture or in a block of it; each of the two
 // questions has the error probability `byChance`.
 bool FindsMore(const PilotRun& other, const PilotRun& run, double byChance) {
+  constexpr double kRounding = 1e-5;
   const double scale = MomentsOf(other.means).mean;
-  if (IsBrighter(other.means, run.means, byChance, scale)) return true;
+  if (IsBrighter(other.means, run.means, byChance, kRounding * scale)) return true;
   const int side = other.isBlurred || run.isBlurred ? kSideOfBlurredBlock : 1, across = kGrid / side;
+  // In a block that sees little but the tail of the pixel filter, integrators that do not splat may find nothing at
+  // all.
+  const double least = kNegligibleLight * scale * across * across;
   for (int block = 0; block < across * across; ++block) {
     if (IsBrighter(PartsOfBlock(other, block, side), PartsOfBlock(run, block, side),
-                   SidakRate(byChance, across * across), scale))
+                   SidakRate(byChance, across * across), least))
       return true;
   }
   return false;

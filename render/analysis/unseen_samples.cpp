@@ -130,7 +130,7 @@ double LargestUnseenSample(const RenderScene& scene, const RenderSettings& setti
   if (!scene.lighting->HasLightThatCanBeHit()) return 0;
   const SeenByCamera seen = LookFromCamera(scene, settings);
   const float brightest = std::max(BrightestPhoton(scene), seen.brightest) * seen.largestWeight;
-  return static_cast<double>(brightest) * static_cast<double>(settings.sensor.ImagingRatio());
+  return static_cast<double>(brightest) * static_cast<double>(settings.sensor.Scale(Color(brightest)));
 }
 
 void WarnOfCoarsePlaces(const RenderScene& scene, const RenderSettings& settings, Diagnostics& diagnostics) {

@@ -266,8 +266,9 @@ class Film {
   double RelativeError(double largestSample = 0) const { return PartsOfError(largestSample).Both(); }
 
   // Half the width of the 95 % interval of a pixel's luminance, relative to it, or to 1 % of the mean luminance in
-  // darker pixels; pixel by pixel, row by row. Infinite where fewer than 2 samples do not tell. With the bias.
-  std::vector<float> PixelErrors() const;
+  // darker pixels; pixel by pixel, row by row. With the bias. Infinite where fewer than 2 samples do not tell, and,
+  // while `imageError`, the relative error of the whole picture, is above 1, where all samples were black.
+  std::vector<float> PixelErrors(double imageError = 0) const;
   // Squared bound of the bias of the luminance, pixel by pixel, each from its neighbourhood; empty unless estimates are
   // kept.
   std::vector<double> BiasSquares() const;

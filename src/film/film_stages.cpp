@@ -230,8 +230,8 @@ bool Film::StagesAreFinite() const {
          std::all_of(layerStages_.begin(), layerStages_.end(), [](const auto& sum) { return AllFinite(&sum[0], 3); });
 }
 
-std::vector<float> Film::PixelErrors() const {
-  constexpr double kDark = 0.01;
+std::vector<float> Film::PixelErrors(double imageError) const {
+  constexpr double kDark = 0.01, kKnown = 1;
   std::vector<double> luminances(pixels_.size(), 0), deviations(pixels_.size(), 0);
   const std::vector<double> biases = BiasSquares();
   double all = 0;
@@ -250,7 +250,9 @@ std::vector<float> Film::PixelErrors() const {
     double error = std::numeric_limits<double>::infinity();
     double half = kNinetyFive * deviations[i];
     if (!biases.empty()) half = std::hypot(half, std::sqrt(biases[i]));
-    if (!tooFew) error = half == 0 ? 0 : half / luminance;
+    // While little is known of the picture, pixels that are still black may yet be lit.
+    const bool mayBeLit = half == 0 && luminances[i] <= 0 && !(imageError <= kKnown);
+    if (!tooFew && !mayBeLit) error = half == 0 ? 0 : half / luminance;
     errors[i] = static_cast<float>(error);
   }
   return errors;

@@ -57,15 +57,17 @@ void CheckInput(const std::vector<Point3>& positions, const std::vector<Face>& f
 // Joins the half edges of one edge. Where more than two faces meet, each is joined to the first free one before it that
 // runs the other way, in the order of the faces: published meshes have such edges, and renderers take them.
 void PairHalfEdges(Mesh& mesh, std::span<const std::pair<uint64_t, uint32_t>> halfEdges, const FileLocation& where) {
-  for (size_t i = 1; i < halfEdges.size(); ++i) {
-    const uint32_t b = halfEdges[i].second;
-    for (size_t j = 0; j < i; ++j) {
-      const uint32_t a = halfEdges[j].second;
-      if (mesh.twins[a] != kNone || mesh.From(a) == mesh.From(b)) continue;
-      mesh.twins[a] = b;
-      mesh.twins[b] = a;
-      break;
+  // Free ones so far all run the same way: those from `next` on.
+  std::vector<uint32_t> free;
+  size_t next = 0;
+  for (const auto& [edge, b] : halfEdges) {
+    if (next == free.size() || mesh.From(free[next]) == mesh.From(b)) {
+      free.push_back(b);
+      continue;
     }
+    const uint32_t a = free[next++];
+    mesh.twins[a] = b;
+    mesh.twins[b] = a;
   }
   const uint32_t first = halfEdges[0].second;
   if (halfEdges.size() == 2 && mesh.twins[first] == kNone) {

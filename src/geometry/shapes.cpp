@@ -10,9 +10,13 @@ namespace lampyr {
 
 namespace {
 
-Bounds3 BoundsOf(const std::vector<Point3>& positions) {
+// Of the faces: vertices that none of them uses are not part of the shape.
+template <size_t kCorners>
+Bounds3 BoundsOf(const std::vector<Point3>& positions, const std::vector<std::array<uint32_t, kCorners>>& faces) {
   Bounds3 bounds;
-  for (const Point3& p : positions) bounds.Add(p);
+  for (const auto& face : faces) {
+    for (const uint32_t vertex : face) bounds.Add(positions[vertex]);
+  }
   return bounds;
 }
 
@@ -198,8 +202,10 @@ const T& Plain(const std::shared_ptr<const T>& p) {
 }
 
 struct ShapeBounds {
-  Bounds3 operator()(const std::shared_ptr<const TriangleMesh>& m) const { return BoundsOf(m->positions); }
-  Bounds3 operator()(const std::shared_ptr<const BilinearMesh>& m) const { return BoundsOf(m->positions); }
+  Bounds3 operator()(const std::shared_ptr<const TriangleMesh>& m) const {
+    return BoundsOf(m->positions, m->triangles);
+  }
+  Bounds3 operator()(const std::shared_ptr<const BilinearMesh>& m) const { return BoundsOf(m->positions, m->patches); }
   Bounds3 operator()(const std::shared_ptr<const CurveSet>& c) const { return BoundsOf(*c); }
   Bounds3 operator()(const Quadric& q) const { return BoundsOf(q); }
   Bounds3 operator()(const std::shared_ptr<const CustomSurface>& s) const { return s->GetBounds(0, 1); }

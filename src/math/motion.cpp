@@ -182,8 +182,8 @@ Transform MotionChain::At(double fraction) const {
 }
 
 double MotionTimes::FractionAt(double time) const {
+  if (time >= end && (time > begin || begin == end)) return 1;
   if (time <= begin) return 0;
-  if (time >= end) return 1;
   return (time - begin) / (end - begin);
 }
 

@@ -138,7 +138,7 @@ void SceneParser::ColorSpaceStatement(const Token& statement) {
 void SceneParser::WorldBegin(const Token&) {
   inWorld_ = true;
   state_.ctm = {};
-  state_.singular.reset();
+  state_.singular = {};
   state_.active = {true, true};
   SetCoordinateSystem("world", state_.ctm);
 }

@@ -49,6 +49,7 @@ std::vector<std::string> ReferencedFiles(const SceneDescription& scene) {
   for (const auto& material : scene.materials) collector.Add(material);
   for (const auto& named : scene.namedMaterials) collector.Add(named.material);
   for (const auto& named : scene.textures) collector.Add(named.texture);
+  for (const auto& medium : scene.media) collector.Add(medium.medium);
   for (const auto& filter : scene.lightFilters) collector.Add(filter.filter);
   for (const auto& light : scene.areaLights) collector.Add(light);
   for (const auto& light : scene.lights) collector.Add(light.light);

@@ -28,8 +28,10 @@ using TransformPair = std::array<Transform, 2>;
 struct GraphicsState {
   TransformPair ctm;  // current transformation matrix: local to world
   std::array<bool, 2> active = {true, true};
-  // The statement that made the CTM singular; `ctm` is then the matrix before it. Absent: not singular.
-  std::optional<Token> singular;
+  // The statements that made the CTM singular at either time; `ctm` is then the matrix before it. Absent: not singular.
+  std::array<std::optional<Token>, 2> singular;
+
+  const std::optional<Token>& Singular() const { return singular[0] ? singular[0] : singular[1]; }
   bool reverseOrientation = false;
   RgbColorSpace colorSpace = RgbColorSpace::Srgb;
   MaterialReference material;

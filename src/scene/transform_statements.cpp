@@ -42,43 +42,40 @@ bool SceneParser::IsInvertible(const Token& statement, const Transform& transfor
 }
 
 Placement SceneParser::PlacementOf(const Token& statement) const {
-  if (state_.singular) {
-    throw Error(state_.singular->where, state_.singular->text +
-                                            " makes the transform singular: it cannot be inverted, as " +
-                                            statement.text + " at " + statement.where.ToString() + " needs it");
+  if (const std::optional<Token>& singular = state_.Singular()) {
+    throw Error(singular->where, singular->text + " makes the transform singular: it cannot be inverted, as " +
+                                     statement.text + " at " + statement.where.ToString() + " needs it");
   }
   return {state_.ctm[0], state_.ctm[1]};
 }
 
 bool SceneParser::LeavesOutSingular(const Token& statement) const {
-  if (!state_.singular) return false;
-  diagnostics_.Warn(statement.where, "this " + statement.text + " is left out: " + state_.singular->text + " at " +
-                                         state_.singular->where.ToString() +
+  const std::optional<Token>& singular = state_.Singular();
+  if (!singular) return false;
+  diagnostics_.Warn(statement.where, "this " + statement.text + " is left out: " + singular->text + " at " +
+                                         singular->where.ToString() +
                                          " makes its transform singular, so that it has no extent");
   return true;
 }
 
 void SceneParser::Concat(const Token& statement, const Transform& transform) {
-  if (state_.singular) return;  // remains singular
-  if (IsNearlySingular(transform.Matrix()) || !IsInvertible(statement, transform)) {
-    state_.singular = statement;
-    return;
-  }
-  for (int i = 0; i < 2; ++i) {
-    if (!state_.active[i]) continue;
-    const Transform product = state_.ctm[i] * transform;
-    if (!IsInvertible(statement, product)) {
-      state_.singular = statement;
-      return;
+  const bool isSingular = IsNearlySingular(transform.Matrix()) || !IsInvertible(statement, transform);
+  for (size_t i = 0; i < 2; ++i) {
+    if (!state_.active[i] || state_.singular[i]) continue;  // remains singular
+    const Transform product = isSingular ? transform : state_.ctm[i] * transform;
+    if (isSingular || !IsInvertible(statement, product)) {
+      state_.singular[i] = statement;
+    } else {
+      state_.ctm[i] = product;
     }
-    state_.ctm[i] = product;
   }
 }
 
 void SceneParser::Identity(const Token&) {
-  state_.singular.reset();
-  for (int i = 0; i < 2; ++i) {
-    if (state_.active[i]) state_.ctm[i] = Transform();
+  for (size_t i = 0; i < 2; ++i) {
+    if (!state_.active[i]) continue;
+    state_.singular[i].reset();
+    state_.ctm[i] = Transform();
   }
 }
 
@@ -149,13 +146,15 @@ Transform MatrixTransform(const std::array<double, 16>& n, const Token& statemen
 
 void SceneParser::TransformStatement(const Token& statement) {
   const Transform transform = MatrixTransform(ReadMatrix(statement), statement);
-  state_.singular.reset();
-  if (IsNearlySingular(transform.Matrix()) || !IsInvertible(statement, transform)) {
-    state_.singular = statement;
-    return;
-  }
-  for (int i = 0; i < 2; ++i) {
-    if (state_.active[i]) state_.ctm[i] = transform;
+  const bool isSingular = IsNearlySingular(transform.Matrix()) || !IsInvertible(statement, transform);
+  for (size_t i = 0; i < 2; ++i) {
+    if (!state_.active[i]) continue;
+    state_.singular[i].reset();
+    if (isSingular) {
+      state_.singular[i] = statement;
+    } else {
+      state_.ctm[i] = transform;
+    }
   }
 }
 
@@ -191,7 +190,7 @@ void SceneParser::CoordSysTransform(const Token& statement) {
   const std::string name = ReadString(statement, "a name");
   const auto found = coordinateSystems_.find(name);
   if (found != coordinateSystems_.end()) {
-    state_.singular.reset();
+    state_.singular = {};
     state_.ctm = found->second;
     return;
   }

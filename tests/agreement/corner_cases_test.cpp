@@ -109,7 +109,12 @@ std::vector<Corner> Corners() {
       "[ 5 5 5 ]\n" +
       kFloor + "Translate 0 20 0\n" + kFloor;
   const std::string moves = "ActiveTransform EndTime Translate 0.9 0.2 0\nActiveTransform All Translate -0.5 0.6 0\n";
+  const std::string unused =
+      kAbove +
+      "WorldBegin\nLightSource \"distant\" \"point3 from\" [ 0 1 0 ] \"point3 to\" [ 0 0 0 ]\nShape \"trianglemesh\" "
+      "\"point3 P\" [ -5 0 -5  5 0 -5  5 0 5  -5 0 5  1000 1000 1000 ] \"integer indices\" [ 0 1 2 0 2 3 ]\n";
   return {
+      {"vertex_that_no_face_uses", unused, {"path", "light", "bdpt", "sppm"}},
       {"sphere_of_two_sides_that_rays_pass",
        PassedSphere("\"bool twosided\" true", ""),
        {"path", "bdpt", "vcm", "sppm"}},

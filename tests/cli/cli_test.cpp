@@ -350,6 +350,13 @@ TEST_F(Cli, WritesPicturesOfTechniques) {
   }
   EXPECT_GT(total, 0);
   EXPECT_LT(difference, 1e-4 * total);
+  // A picture of a technique that cannot be written costs nothing else.
+  std::filesystem::create_directories(folder_ / "blocked" / "weighted-s0-t2.exr");
+  const Outcome blocked = Run(
+      "render scene.pbrt --integrator bdpt --max-depth 1 --strategy-images blocked -o d.exr --stats d.json --quiet");
+  EXPECT_EQ(blocked.exitCode, 1);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "d.exr"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "d.json"));
   const Outcome wrong = Run("render scene.pbrt --integrator path --strategy-images parts -o c.exr");
   EXPECT_EQ(wrong.exitCode, 2);
   EXPECT_NE(wrong.output.find("only bdpt, vcm have strategies"), std::string::npos) << wrong.output;
@@ -1056,6 +1063,16 @@ TEST_F(Cli, ChecksTheLightsOfOneType) {
   EXPECT_EQ(outcome.output.find("filter "), std::string::npos);
 }
 
+// The name of the scene is that of the picture, whatever dots it has.
+TEST_F(Cli, PicturesOfFramesHaveTheirNumbers) {
+  Write("shot.1.pbrt", kScene);
+  Write("shot.2.pbrt", kScene);
+  for (const char* scene : {"shot.1.pbrt", "shot.2.pbrt"})
+    ASSERT_EQ(Run(std::string("render ") + scene + " --quiet --spp 1").exitCode, 0);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "shot.1.exr"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "shot.2.exr"));
+}
+
 // Lights of several patches, of which one is selected, and a light beside them.
 TEST_F(Cli, ChecksTheLightsOfAScene) {
   Write("lit.pbrt",
@@ -1064,6 +1081,7 @@ TEST_F(Cli, ChecksTheLightsOfAScene) {
   const Outcome outcome = Run("check-lights lit.pbrt");
   EXPECT_EQ(outcome.exitCode, 0) << outcome.output;
   EXPECT_NE(outcome.output.find("all lights"), std::string::npos);
+  EXPECT_EQ(Run("check-lights lit.pbrt --type spot").exitCode, 2);
 }
 
 // Two seeds of one scene agree, although each splat is in several pixels.

@@ -204,12 +204,15 @@ TEST_F(Harmless, RenderKeepsWhatItsSceneReads) {
   Write("lights.pbrt", "LightSource \"infinite\" \"string filename\" \"sky.exr\"\n");
   Write("reads.pbrt",
         "Film \"rgb\" \"integer xresolution\" 4 \"integer yresolution\" 4 \"string filename\" \"again.exr\"\n"
-        "Camera \"perspective\"\nWorldBegin\nInclude \"lights.pbrt\"\nShape \"sphere\"\n");
+        "Camera \"perspective\"\nMakeNamedMedium \"ink\" \"string type\" \"homogeneous\" \"spectrum sigma_a\" "
+        "\"ink.spd\"\nWorldBegin\nInclude \"lights.pbrt\"\nShape \"sphere\"\n");
+  Write("ink.spd", "400 0.5\n700 0.5\n");
   fs::create_symlink("sky.exr", folder_ / "link.exr");
   const std::string before = Read("sky.exr"), text = Read("lights.pbrt");
   for (const auto& [options, file] : {std::pair("-o sky.exr", "--output: \"sky.exr\""),
                                       {"-o link.exr", "--output: \"link.exr\""},
                                       {"--stats lights.pbrt", "--stats: \"lights.pbrt\""},
+                                      {"--stats ink.spd", "--stats: \"ink.spd\""},
                                       {"--stats reads.pbrt", "--stats: \"reads.pbrt\""}}) {
     const Outcome outcome = Run(std::string("render reads.pbrt --quiet --spp 1 ") + options);
     EXPECT_EQ(outcome.exitCode, 2) << options;

@@ -94,6 +94,17 @@ TEST(UnseenSamples, AreAsBrightAsWhatFallsOnSomethingSmooth) {
             0);
 }
 
+// The film limits samples.
+TEST(UnseenSamples, AreLimitedAsSamplesAre) {
+  std::string text = kStart;
+  const std::string film = "Film \"rgb\"";
+  ASSERT_NE(text.find(film), std::string::npos);
+  text.replace(text.find(film), film.size(), film + " \"float maxcomponentvalue\" 5");
+  const BuiltScene built =
+      Build(text + Lamp("30 30 30", "0.2") + "Material \"dielectric\" Shape \"sphere\" \"float radius\" 0.3\n", "path");
+  EXPECT_NEAR(LargestUnseenSample(built.scene, built.settings), 5, 1e-3);
+}
+
 class TargetError : public testing::TestWithParam<std::tuple<Promise, const char*>> {};
 
 TEST_P(TargetError, HoldsForNineteenOfTwentySeeds) {

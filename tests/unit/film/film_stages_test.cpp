@@ -196,5 +196,18 @@ TEST(FilmStages, PixelErrorsAreRelativeToThePixel) {
   EXPECT_EQ(errors[1], 0);
 }
 
+// While little is known of a picture, a pixel that is black may yet be lit; one of a known colour is known.
+TEST(FilmStages, BlackPixelsAreUnknownUntilThePictureIsKnown) {
+  Film film(3, 1, {0, 0, 3, 1});
+  for (int i = 0; i < 100; ++i) {
+    film.Pixel(0, 0).Add(Color(i == 0 ? 1.0f : 0.0f), 1);
+    film.Pixel(1, 0).Add(Color(0), 1);
+    film.Pixel(2, 0).Add(Color(2), 1);
+  }
+  EXPECT_TRUE(std::isinf(film.PixelErrors(1.5)[1]));
+  EXPECT_EQ(film.PixelErrors(0.5)[1], 0);
+  EXPECT_EQ(film.PixelErrors(1.5)[2], 0);
+}
+
 }  // namespace
 }  // namespace lampyr

@@ -71,6 +71,12 @@ TEST(AnimatedTransform, MirroredAtOneEndIsAnError) {
   EXPECT_THROW(Between(Transform(), Transform(perspective)), Error);
 }
 
+TEST(Motion, WhatIsOverAsTheShutterOpensIsAtItsEnd) {
+  EXPECT_EQ((MotionTimes{0, 0}.FractionAt(0)), 1);
+  EXPECT_EQ((MotionTimes{0.5, 0.5}.FractionAt(0.25)), 0);
+  EXPECT_EQ((MotionTimes{-1, 0}.FractionAt(0)), 1);
+}
+
 TEST(Motion, TimesAreClampedToTheMotion) {
   const MotionTimes times{0.25, 0.75};
   EXPECT_EQ(times.FractionAt(0), 0);

@@ -73,6 +73,14 @@ TEST(TransformStatements, WorldBeginResetsAndNamesCoordinateSystems) {
   EXPECT_TRUE(scene.shapes[3].placement.start.IsIdentity());
 }
 
+// What is singular at one time stays so, until that time has another transform.
+TEST(TransformStatements, SingularAtOneTimeIsSingular) {
+  const std::string start =
+      "ActiveTransform StartTime Scale 0 1 1 ActiveTransform EndTime Identity ActiveTransform All ";
+  EXPECT_THROW(PlacementAfter(start), std::out_of_range);  // the shape is left out
+  EXPECT_NO_THROW(PlacementAfter(start + "ActiveTransform StartTime Identity "));
+}
+
 TEST(TransformStatements, ActiveTransformMovesOneEnd) {
   const Placement moving =
       PlacementAfter("Translate 1 0 0 ActiveTransform EndTime Translate 0 2 0 ActiveTransform All Scale 2 2 2");
