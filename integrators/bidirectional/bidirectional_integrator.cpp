@@ -401,6 +401,8 @@ Color BidirectionalIntegrator::Sample(const Ray* ray, const SampleContext& conte
   thread_local Workspace workspace;
   workspace.light.vertices.Clear();
   workspace.camera.Clear();
+  workspace.light.vertices.SetSteadyReceivers(settings_.merges);
+  workspace.camera.SetSteadyReceivers(settings_.merges);
   BidirectionalSample sample{.context = context,
                              .settings = settings_,
                              .light = workspace.light,

@@ -275,13 +275,19 @@ PathRecords* StartRecord(const SampleContext& context) {
 namespace {
 
 inline bool MakeSurfaceVertex(const SampleContext& context, const WalkSettings& settings, const PathState& state,
-                              const RayHit& hit, PathVertex& vertex) {
+                              const RayHit& hit, bool hasSteadyReceivers, PathVertex& vertex) {
   const auto* materials = &context.scene.materials;
   if (settings.materialsAfterWide && state.hasScatteredWidely)
     materials = context.scene.wavelengths ? &context.scene.tunedAfterWide : settings.materialsAfterWide;
   if (!MakeVertex(context.scene, *materials, state.ray, hit, state.medium, vertex)) return false;
   if (context.scene.wavelengths) [[unlikely]]
     vertex.bsdf.SetLane(context.lane);
+  if (hasSteadyReceivers) {
+    const Material& material = *(*materials)[context.scene.geometry->Attributes(hit.primitive).material];
+    vertex.receiver.isTransmissive = material.MayTransmit();
+    if (material.HasMappedNormal()) [[unlikely]]
+      vertex.receiver.normal = Normal3(0.0f);
+  }
   return true;
 }
 
@@ -345,7 +351,7 @@ void Walk(const SampleContext& context, const WalkSettings& settings, PathState&
       MakeVertexInMedium(context.scene, flight->end, state.ray.direction, flight->medium,
                          {here.scattering, flight->collidesWith->Asymmetry()}, here.Extinction(), vertex);
     } else {
-      if (!MakeSurfaceVertex(context, settings, state, hit, vertex)) return;
+      if (!MakeSurfaceVertex(context, settings, state, hit, path.HasSteadyReceivers(), vertex)) return;
     }
     Append(context, settings.mode, state, vertex, path);
     const float foundOnArrival = settings.records ? visitor.Found() : 0;

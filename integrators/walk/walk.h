@@ -48,6 +48,11 @@ class Subpath {
   explicit Subpath(bool keepsAll = true) : keepsAll_(keepsAll) {}
 
   void Clear() { count_ = 0; }
+  // Whether receivers (Vertex::receiver) follow from the place alone, and not from what a vertex has drawn or from maps
+  // of normals. Where photons are merged, a photon's vertex and the camera's stand for one: both are to select lights
+  // with the same probabilities.
+  void SetSteadyReceivers(bool areSteady) { hasSteadyReceivers_ = areSteady; }
+  bool HasSteadyReceivers() const { return hasSteadyReceivers_; }
   size_t Count() const { return count_; }
   const PathVertex& operator[](size_t index) const { return vertices_[keepsAll_ ? index : index % 2]; }
   PathVertex& operator[](size_t index) { return vertices_[keepsAll_ ? index : index % 2]; }
@@ -75,6 +80,7 @@ class Subpath {
 
  private:
   bool keepsAll_;
+  bool hasSteadyReceivers_ = false;
   std::vector<PathVertex> vertices_;
   size_t count_ = 0;
   uint32_t start_ = OutputPlan::kCamera;

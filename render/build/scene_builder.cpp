@@ -75,6 +75,7 @@ class Builder {
     return 0.5f * Point2(static_cast<float>(built_.settings.width), static_cast<float>(built_.settings.height));
   }
   void LightBuilt();
+  void WarnOfSmallScene(const GeometryScene& geometry) const;
   void WarnOfBlackImage(const RenderScene& scene) const;
   MediaAround MediaAroundLights(const Point3& eye) const;
   std::vector<Part> MovingParts(const std::vector<ReadEntry>& entries);
@@ -341,6 +342,18 @@ MediaAround Builder::MediaAroundLights(const Point3& eye) const {
   return around;
 }
 
+// Embree misses triangles with edges of less than some 1e-10 units.
+void Builder::WarnOfSmallScene(const GeometryScene& geometry) const {
+  constexpr float kSmallest = 1e-7f;
+  const float radius = geometry.GetBoundingSphere().radius;
+  if (!geometry.IsTracedByEmbree() || geometry.PrimitiveCount() == 0 || !(radius < kSmallest)) return;
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "the scene is only %.2g units large: surfaces of less than 1e-9 units are missed by rays; scale it up",
+                2 * static_cast<double>(radius));
+  diagnostics_.Warn(text);
+}
+
 void Builder::WarnOfBlackImage(const RenderScene& scene) const {
   const auto& lights = scene.lighting->Lights();
   const bool hasSky = std::any_of(lights.begin(), lights.end(), [](const PlacedLight& placed) {
@@ -423,6 +436,7 @@ BuiltScene Builder::Build() {
   scene.media = MakeMedia(description_, placer_.WorldToRender(), memory_, diagnostics_);
   media_->NumberPlaces(geometry_);
   scene.geometry = std::make_shared<const GeometryScene>(std::move(geometry_));
+  WarnOfSmallScene(*scene.geometry);
   const Ray eye = scene.camera->GenerateRay(MiddleOfFilm(), Point2(0.5f), 0).ray;
   media_->LookAround(*scene.geometry, eye);
   around_ = MediaAroundLights(eye.origin);

@@ -618,6 +618,10 @@ bool GeometryScene::HasBoundaries() const {
   return implementation_->hasBoundaries;
 }
 
+bool GeometryScene::IsTracedByEmbree() const {
+  return !implementation_->few;
+}
+
 MediumSurfaces GeometryScene::SurfacesOf(int32_t medium) const {
   MediumSurfaces found;
   implementation_->VisitBoxes([&](const Bounds3& box, bool moves, const GeometryAttributes& attributes) {

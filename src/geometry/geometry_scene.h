@@ -28,6 +28,8 @@ class ThinSurface {
   virtual ~ThinSurface() = default;
   // Part of the rays that goes straight on, in [0,1], at the cosine `cosTheta` > 0 to the shading normal.
   virtual float TransmittedFraction(float cosTheta) const = 0;
+  // The shading normal: that of the point, unless a map says another one.
+  virtual Normal3 NormalAt(const SurfacePoint& point) const { return point.Ns; }
   // Factor on that part, in [0,1] a channel.
   virtual Color Tint(const Point2& uv, const Point3& position, const Normal3& Ng) const = 0;
   // True if the tint is white everywhere.
@@ -153,6 +155,8 @@ class GeometryScene {
 
   // True if some surface separates participating media (SeparatesMedia).
   bool HasBoundaries() const;
+  // False: surfaces are few, and none is a curve or an instance (FewSurfaces).
+  bool IsTracedByEmbree() const;
   MediumSurfaces SurfacesOf(int32_t medium) const;
   size_t PrimitiveCount() const;             // shapes, instanced ones once
   const Bounds3& GetBounds() const;          // empty for an empty scene

@@ -65,7 +65,8 @@ Passage PassageAt(const Meeting& at, const RTCRay& ray, const RayHit& hit) {
   const int32_t medium = alpha > 0 ? (entering ? record.insideMedium : record.outsideMedium) : kSameMedium;
   if (record.PassedAsBoundary(ray.mask)) return {0, Color(1.0f), entering, medium};
   if (!record.thin) return {alpha, Color(1.0f), entering};
-  const float passes = record.thin->TransmittedFraction(std::abs(glm::dot(glm::normalize(direction), point.Ns)));
+  const float passes =
+      record.thin->TransmittedFraction(std::abs(glm::dot(glm::normalize(direction), record.thin->NormalAt(point))));
   Passage passage{alpha * (1 - passes), Color(1.0f), entering, medium};
   // Through the hole of the cut-out without a tint, through the surface with it.
   if (!record.thin->IsClear() && passage.stopped < 1) {

@@ -40,6 +40,7 @@ class ThinDielectric final : public Material, public ThinSurface {
   bool MayTransmit() const override { return true; }
   bool HasDelta() const override { return true; }
   bool IsAlwaysDelta() const override { return true; }
+  bool HasMappedNormal() const override { return !shadingNormal_.IsPlain(); }
   bool NeedsParametrization() const override { return !transmittance_.IsConstant() || !shadingNormal_.IsPlain(); }
   const ThinSurface* Thin() const override { return this; }
   std::shared_ptr<const Material> AtWavelengths(const std::shared_ptr<const Wavelengths>& wavelengths,
@@ -50,6 +51,9 @@ class ThinDielectric final : public Material, public ThinSurface {
   }
 
   float TransmittedFraction(float cosTheta) const override { return 1 - ThinReflectance(cosTheta, eta_); }
+  Normal3 NormalAt(const SurfacePoint& point) const override {
+    return shadingNormal_.IsPlain() ? point.Ns : shadingNormal_.GetFrame(point).z;
+  }
   Color Tint(const Point2& uv, const Point3& position, const Normal3& Ng) const override {
     return ClampToUnit(transmittance_.Evaluate({uv, position, Ng}));
   }

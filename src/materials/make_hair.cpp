@@ -82,6 +82,7 @@ class HairMaterial final : public Material {
     return std::make_shared<HairMaterial>(std::move(tuned), shadingNormal_);
   }
   bool MayTransmit() const override { return true; }
+  bool HasMappedNormal() const override { return !shadingNormal_.IsPlain(); }
   bool IsFibrous() const override { return true; }
   bool MayGatherPhotons() const override { return false; }
 

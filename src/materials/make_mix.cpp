@@ -49,6 +49,7 @@ class MixMaterial final : public Material {
   bool MayTransmit() const override { return mayTransmit_; }
   bool HasDelta() const override { return hasDelta_; }
   bool IsAlwaysDelta() const override { return isAlwaysDelta_; }
+  bool HasMappedNormal() const override { return materials_[0]->HasMappedNormal() || materials_[1]->HasMappedNormal(); }
   bool IsFibrous() const override { return isFibrous_; }
   bool MayGatherPhotons() const override { return mayGatherPhotons_; }
   bool NeedsParametrization() const override { return needsParametrization_; }

@@ -31,6 +31,8 @@ class Material {
   // True if it scatters by deltas only, at every point and in every draw: no photons can be gathered there. A mix is
   // drawn anew for each path, so that a draw that is a delta says nothing about the draws of other paths.
   virtual bool IsAlwaysDelta() const { return false; }
+  // True if a map of normals or heights turns the shading frame.
+  virtual bool HasMappedNormal() const { return false; }
   // False if GetBsdf never looks at uv and tangents of the point.
   virtual bool NeedsParametrization() const { return true; }
   // True if curves of this material may be fibres (Bsdf::IsFibre).

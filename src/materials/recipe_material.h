@@ -31,6 +31,7 @@ class RecipeMaterial final : public Material {
   }
   bool MayTransmit() const override { return recipe_.MayTransmit(); }
   bool HasDelta() const override { return recipe_.HasDelta(); }
+  bool HasMappedNormal() const override { return !shadingNormal_.IsPlain(); }
   bool NeedsParametrization() const override { return !isConstant_ || needsTangent_ || !shadingNormal_.IsPlain(); }
   std::shared_ptr<const Material> Roughened(const Roughener&) const override {
     if constexpr (requires(Recipe recipe) { recipe.Roughen(); }) {

@@ -73,7 +73,10 @@ Frame ShadingNormal::FromDisplacement(const SurfacePoint& point) const {
       displacement_->Evaluate({point.uv + Point2(0, kBumpStep), point.position + kBumpStep * point.dpdv, point.Ng});
   const Vector3 bumpedU = dpdu + ((alongU - here) / kBumpStep) * point.Ns;
   const Vector3 bumpedV = dpdv + ((alongV - here) / kBumpStep) * point.Ns;
-  return FrameAround(glm::cross(bumpedU, bumpedV), point, bumpedU);
+  // In double: the square of an area leaves the range of float where scenes are large or small.
+  const Vector3d across = glm::cross(Vector3d(bumpedU), Vector3d(bumpedV));
+  const double length = glm::length(across);
+  return FrameAround(length > 0 ? Vector3(across / length) : Vector3(0.0f), point, bumpedU);
 }
 
 }  // namespace lampyr

@@ -92,6 +92,28 @@ std::string Fog(double scale) {
          "Translate 0.6 0.5 0 Shape \"sphere\" \"float radius\" 0.4\n";
 }
 
+// A floor with a dim lamp above it, and a bright one behind it that a black plane hides.
+std::string BetweenLamps(const std::string& materials) {
+  const auto lamp = [](const char* radiance, const char* corners) {
+    return std::string(
+               "AttributeBegin\nMaterial \"diffuse\" \"rgb reflectance\" [ 0 0 0 ]\nAreaLightSource \"diffuse\" "
+               "\"rgb L\" [ ") +
+           radiance + " ]\nShape \"trianglemesh\" \"point3 P\" [ " + corners +
+           " ] \"integer indices\" [ 0 1 2 0 2 3 ]\nAttributeEnd\n";
+  };
+  return "LookAt 0 0 5  0 0 0  0 1 0 Camera \"perspective\" \"float fov\" 90\nFilm \"rgb\" \"integer xresolution\" 24 "
+         "\"integer yresolution\" 24\nPixelFilter \"box\"\nIntegrator \"path\" \"integer maxdepth\" 1\nWorldBegin\n" +
+         materials +
+         "MakeNamedMaterial \"d\" \"string type\" \"diffuse\" \"rgb reflectance\" [ 0.5 0.5 0.5 ]\n"
+         "Material \"mix\" \"string materials\" [ \"other\" \"d\" ] \"float amount\" 0.5\n"
+         "Shape \"trianglemesh\" \"point3 P\" [ -6 -6 0  6 -6 0  6 6 0  -6 6 0 ] \"point2 uv\" [ 0 0 1 0 1 1 0 1 ] "
+         "\"integer indices\" [ 0 1 2 0 2 3 ]\nMaterial \"diffuse\" \"rgb reflectance\" [ 0 0 0 ]\nShape "
+         "\"trianglemesh\" "
+         "\"point3 P\" [ -99 -99 -0.5  99 -99 -0.5  99 99 -0.5  -99 99 -0.5 ] \"integer indices\" [ 0 1 2 0 2 3 ]\n" +
+         lamp("10 10 10", "-0.2 -0.2 1  -0.2 0.2 1  0.2 0.2 1  0.2 -0.2 1") +
+         lamp("40 40 40", "-2 -2 -2  2 -2 -2  2 2 -2  -2 2 -2");
+}
+
 std::vector<Corner> Corners() {
   const std::string beams =
       "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [ 0.02 0.02 0.02 ] \"rgb sigma_a\" "
@@ -113,7 +135,14 @@ std::vector<Corner> Corners() {
       kAbove +
       "WorldBegin\nLightSource \"distant\" \"point3 from\" [ 0 1 0 ] \"point3 to\" [ 0 0 0 ]\nShape \"trianglemesh\" "
       "\"point3 P\" [ -5 0 -5  5 0 -5  5 0 5  -5 0 5  1000 1000 1000 ] \"integer indices\" [ 0 1 2 0 2 3 ]\n";
+  const std::string glass = "MakeNamedMaterial \"other\" \"string type\" \"dielectric\" \"float roughness\" 0\n";
+  const std::string slope =
+      "Texture \"slope\" \"float\" \"bilerp\" \"float v10\" 0 \"float v11\" 0 \"float v00\" 0 \"float v01\" 60\n"
+      "MakeNamedMaterial \"other\" \"string type\" \"diffuse\" \"rgb reflectance\" [ 0 0 0 ] \"texture displacement\" "
+      "\"slope\"\n";
   return {
+      {"mixed_with_glass_between_lamps", BetweenLamps(glass), {"path", "bdpt", "vcm"}, 256, 0.1, 0.02},
+      {"mixed_with_a_slope_between_lamps", BetweenLamps(slope), {"path", "bdpt", "vcm"}, 256, 0.1, 0.02},
       {"vertex_that_no_face_uses", unused, {"path", "light", "bdpt", "sppm"}},
       {"sphere_of_two_sides_that_rays_pass",
        PassedSphere("\"bool twosided\" true", ""),
