@@ -1,6 +1,7 @@
 #include "render/build/scene_builder.h"
 
 #include <algorithm>
+#include <cstdio>
 
 #include "base/memory.h"
 #include "geometry/shape_checks.h"
