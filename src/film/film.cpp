@@ -492,7 +492,10 @@ Image Film::Develop() const {
     }
     widths.push_back(bands.empty() ? 3 : bands.size());
   }
-  const bool hasWideSplats = lightPaths_ > 0 && splatSpread_ > 1;
+  const bool hasWideSplats =
+      splatSpread_ > 1 && std::any_of(splats_.begin(), splats_.end(), [](const SplatSums& splats) {
+        return splats.SumOfSquares(0) + splats.SumOfSquares(1) + splats.SumOfSquares(2) > 0;
+      });
   if (hasWideSplats) channels.emplace_back(kSplatShareChannel);
   Image image(crop_.Width(), crop_.Height(), std::move(channels));
   image.offsetX = crop_.x0;
