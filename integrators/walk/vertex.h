@@ -128,8 +128,16 @@ struct Vertex {
   mutable std::array<PdfSolidAngle, 2> reverseGuide_{kUnknown, kUnknown};  // by mode
 };
 
-// A squared length, of a difference of positions. In double: float has no squares of lengths below 1e-19.
+// True for a square of a length in the middle of the range of float: lengths below 1e-19 have none.
+inline bool IsPreciseSquare(float squared) {
+  return squared > 1e-30f && squared < 1e30f;
+}
+
+// A squared length, of a difference of positions, whatever its size.
 inline double SquaredLength(const Vector3& difference) {
+  const float squared = LengthSquared(difference);
+  if (IsPreciseSquare(squared)) [[likely]]
+    return static_cast<double>(squared);
   const Vector3d fine(difference);
   return glm::dot(fine, fine);
 }
@@ -140,7 +148,14 @@ struct Way {
   Vector3 direction{0.0f};
   double squared = 0;
 
-  explicit Way(const Vector3& difference) : squared(SquaredLength(difference)) {
+  explicit Way(const Vector3& difference) {
+    const float rounded = LengthSquared(difference);
+    if (IsPreciseSquare(rounded)) [[likely]] {
+      squared = static_cast<double>(rounded);
+      direction = difference / std::sqrt(rounded);
+      return;
+    }
+    squared = SquaredLength(difference);
     if (squared > 0) direction = Vector3(Vector3d(difference) * (1 / std::sqrt(squared)));
   }
 };
