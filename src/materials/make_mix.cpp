@@ -26,6 +26,7 @@ class MixMaterial final : public Material {
         hasDelta_(materials_[0]->HasDelta() || materials_[1]->HasDelta()),
         isAlwaysDelta_(materials_[0]->IsAlwaysDelta() && materials_[1]->IsAlwaysDelta()),
         disperses_(materials_[0]->Disperses() || materials_[1]->Disperses()),
+        hasMappedNormal_(materials_[0]->HasMappedNormal() || materials_[1]->HasMappedNormal()),
         isFibrous_(materials_[0]->IsFibrous() || materials_[1]->IsFibrous()),
         mayGatherPhotons_(materials_[0]->MayGatherPhotons() || materials_[1]->MayGatherPhotons()),
         needsParametrization_(!amount_.IsConstant() || materials_[0]->NeedsParametrization() ||
@@ -49,7 +50,7 @@ class MixMaterial final : public Material {
   bool MayTransmit() const override { return mayTransmit_; }
   bool HasDelta() const override { return hasDelta_; }
   bool IsAlwaysDelta() const override { return isAlwaysDelta_; }
-  bool HasMappedNormal() const override { return materials_[0]->HasMappedNormal() || materials_[1]->HasMappedNormal(); }
+  bool HasMappedNormal() const override { return hasMappedNormal_; }
   bool IsFibrous() const override { return isFibrous_; }
   bool MayGatherPhotons() const override { return mayGatherPhotons_; }
   bool NeedsParametrization() const override { return needsParametrization_; }
@@ -68,8 +69,8 @@ class MixMaterial final : public Material {
   uint64_t salt_;  // from the names: nested mixes choose independently
   // Properties of both materials, cached: nested mixes that name a material twice would otherwise query it 2^depth
   // times.
-  bool isInterface_, mayTransmit_, hasDelta_, isAlwaysDelta_, disperses_, isFibrous_, mayGatherPhotons_,
-      needsParametrization_;
+  bool isInterface_, mayTransmit_, hasDelta_, isAlwaysDelta_, disperses_, hasMappedNormal_, isFibrous_,
+      mayGatherPhotons_, needsParametrization_;
 };
 
 class InterfaceMaterial final : public Material {
