@@ -43,7 +43,7 @@ std::filesystem::path OutputPath(const RenderOptions& options, const RenderSetti
   } else {
     path =
         settings.outputFile.empty() ? options.scene.filename() : std::filesystem::path(settings.outputFile).filename();
-    // What follows another dot is part of the name: frame.0001, frame.0002.
+    // Known endings alone are removed: the number of frame.0001 is part of the name.
     for (const char* ending :
          {".gz", ".pbrt", ".exr", ".png", ".pfm", ".qoi", ".hdr", ".tif", ".tiff", ".jpg", ".jpeg", ".tga", ".bmp"})
       if (path.extension() == ending) path.replace_extension();

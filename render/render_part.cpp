@@ -52,7 +52,7 @@ RenderIdentity LoadPairs(ByteReader& bytes) {
   const auto count = bytes.Value<uint64_t>();
   if (count > kMostEntries) throw Error("it holds a number out of range");
   for (uint64_t i = 0; i < count; ++i) {
-    // As long as the file: a manifest of mattes names all objects.
+    // The only limit is the file: the manifest of a matte lists the names of all objects.
     std::string name = bytes.Text(bytes.Left());
     pairs.emplace_back(std::move(name), bytes.Text(bytes.Left()));
   }

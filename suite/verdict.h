@@ -15,7 +15,7 @@ struct LightVerdict {
   SuiteResult worst;   // the case that is nearest to failing, or failed by most
 };
 
-// What the property says, in one line.
+// One line that explains the property of the verdict.
 std::string MeaningOfVerdict(const LightVerdict& verdict);
 
 // One verdict for each light and property, in the order of their first results.

@@ -48,9 +48,9 @@ class Subpath {
   explicit Subpath(bool keepsAll = true) : keepsAll_(keepsAll) {}
 
   void Clear() { count_ = 0; }
-  // Whether receivers (Vertex::receiver) follow from the place alone, and not from what a vertex has drawn or from maps
-  // of normals. Where photons are merged, a photon's vertex and the camera's stand for one: both are to select lights
-  // with the same probabilities.
+  // Steady: receivers (Vertex::receiver) depend on the position, but not on the draw of a mix nor on normal and bump
+  // maps. Merging needs this: the weight of a merge takes the probability of selecting the light at the photon's vertex
+  // for that at the camera's.
   void SetSteadyReceivers(bool areSteady) { hasSteadyReceivers_ = areSteady; }
   bool HasSteadyReceivers() const { return hasSteadyReceivers_; }
   size_t Count() const { return count_; }

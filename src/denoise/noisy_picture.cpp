@@ -95,7 +95,7 @@ void FindValid(NoisyPicture& picture, DenoiseReport& report) {
       isFinite = isFinite && std::isfinite(value) && variance >= 0;
     }
     if (picture.isValid[i]) continue;
-    // What is finite and merely too bright stays as it is.
+    // Finite pixels that are too bright to be filtered are copied to the result.
     if (isFinite) picture.isKept[i] = 1;
     report.invalidPixels += isFinite ? 0 : 1;
     for (size_t c = 0; c < 3; ++c) picture.color[c].values[i] = picture.variance[c].values[i] = 0;

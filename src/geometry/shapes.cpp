@@ -10,7 +10,7 @@ namespace lampyr {
 
 namespace {
 
-// Of the faces: vertices that none of them uses are not part of the shape.
+// Bounds of the faces; vertices that no face uses do not count.
 template <size_t kCorners>
 Bounds3 BoundsOf(const std::vector<Point3>& positions, const std::vector<std::array<uint32_t, kCorners>>& faces) {
   Bounds3 bounds;

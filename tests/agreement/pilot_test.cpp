@@ -226,7 +226,7 @@ TEST(Pilot, KnowsTheErrors) {
     std::vector<PilotCandidate> candidates = pilot.candidates;
     for (const PilotCandidate& candidate : pilot.ending)
       if (IsWhole() || candidate.counts.log2LightPaths <= 0) candidates.push_back(candidate);
-    // Of each pair of candidates one, in turn with the cases.
+    // Every second candidate; cases take turns.
     size_t k = 0;
     if (!IsWhole()) std::erase_if(candidates, [&](const PilotCandidate&) { return (k++ + turn) % 2 != 0; });
     ++turn;

@@ -86,7 +86,7 @@ TEST_F(Merge, LayersOfWhatWasDecidedAreKept) {
   EXPECT_GE(ReadImage(folder_ / "merged.exr").ChannelIndex("auto.lightPaths"), 0);
 }
 
-// Of six samples the parts 1 and 3 have the first two and the last two, of which three are in the half.
+// Six samples in three parts. Parts 1 and 3 hold samples 0, 1, 4 and 5; samples 0, 4 and 5 are in the half.
 TEST_F(Merge, SomePartsKnowTheirHalf) {
   RenderParts("--spp 6 --denoise", 3);
   Do("merge --quiet --partial -o merged.exr p1.exr p3.exr");
