@@ -106,6 +106,7 @@ std::string ToJson(const RenderReport& report) {
   }
   if (outcome.guiding.regions > 0)
     json["guiding"] = {{"gain", outcome.guiding.gain}, {"regions", outcome.guiding.regions}};
+  if (outcome.guiding.usesLearnedLights) json["lightLearning"] = {{"gain", outcome.guiding.lightGain}};
   if (outcome.photons) json["photons"] = Photons(*outcome.photons, outcome.counts);
   return Dump(json);
 }

@@ -42,6 +42,7 @@ class BothPaths {
         splats_(static_cast<size_t>(chunks_), pass.film.MakeSplatList(pass.filter, pass.settings.sensor)),
         photons_(static_cast<size_t>(chunks_)),
         records_(pass.MakeRecords(static_cast<size_t>(chunks_))),
+        tested_(pass.MakeTested(static_cast<size_t>(chunks_))),
         counts_(static_cast<size_t>(chunks_)) {}
 
   RenderCounts Trace() {
@@ -67,6 +68,7 @@ class BothPaths {
       }
     }
     if (pass_.learning) pass_.learning->Learn(records_);
+    if (pass_.selection) pass_.selection->Learn(tested_);
     return Total(counts_);
   }
 
@@ -133,7 +135,8 @@ class BothPaths {
   // Per chunk:
   std::vector<SplatList> splats_;
   std::vector<PhotonList> photons_;
-  std::vector<PathRecords> records_;  // none, unless camera paths are recorded
+  std::vector<PathRecords> records_;   // none, unless camera paths are recorded
+  std::vector<TestedSamples> tested_;  // none, unless selection of lights learns
   std::vector<RenderCounts> counts_;
 };
 
@@ -316,10 +319,12 @@ void BothPaths::TraceChunk(size_t chunk, uint64_t begin, uint64_t end, uint32_t 
     } else {
       const PixelRay ray = MakePixelRay(pass_.scene, pass_.filter, x, y, time, sampler);
       context.film = ray.film;
-      if (pass_.learning) pass_.Record(x, y, pass_.allocation ? slots.number : index, &records_[chunk], context);
+      if (pass_.learning || pass_.selection)
+        pass_.Record(x, y, pass_.allocation ? slots.number : index, pass_.learning ? &records_[chunk] : nullptr,
+                     pass_.selection ? &tested_[chunk] : nullptr, context);
       context.mergeBias = adder.StartBias();
       adder.StartLayers();
-      const Color radiance = Radiance(pass_.integrator, ray, context);
+      const Color radiance = TestedRadiance(pass_.integrator, ray, context);
       if (adaptive) {
         adaptive->Add(ray, radiance, adder);
       } else {

@@ -25,6 +25,14 @@ inline Color Radiance(const Integrator& integrator, const PixelRay& ray, const S
   return Color(0.0f);
 }
 
+// The same, of which a tested sample is told.
+inline Color TestedRadiance(const Integrator& integrator, const PixelRay& ray, const SampleContext& context) {
+  const Color radiance = Radiance(integrator, ray, context);
+  if (context.tested) [[unlikely]]
+    context.tested->End(radiance.Average());
+  return radiance;
+}
+
 // Adds the samples of one thread to the film.
 struct SampleAdder {
   SampleAdder(const RenderSettings& settings, Film& aFilm, RenderCounts& someCounts)
@@ -95,6 +103,7 @@ struct Pass {
   Film& film;
   const SampleAllocation* allocation;  // null: one sample for each pixel
   PathLearning* learning;              // null: camera paths are not recorded
+  SelectionTest* selection;            // null: selection of lights learns nothing
 
   // FirstLane of a sample of a pixel.
   int FirstLaneOf(int x, int y, uint64_t sample) const {
@@ -115,11 +124,23 @@ struct Pass {
     for (PathRecords& part : records) part.SetFraction(learning->Fraction());
     return records;
   }
-  // `context`: of the sample of index `sample` of a pixel; null `records`: not recorded.
-  void Record(int x, int y, uint64_t sample, PathRecords* records, SampleContext& context) const {
+  // Tested samples of `parts` parts of a pass, which begin without any.
+  std::vector<TestedSamples> MakeTested(size_t parts) const {
+    std::vector<TestedSamples> tested(selection ? parts : 0);
+    for (TestedSamples& part : tested) part.SetFraction(selection->Fraction());
+    return tested;
+  }
+  // `context`: of the sample of index `sample` of a pixel; null `records`: not recorded; null `tested`: not tested.
+  void Record(int x, int y, uint64_t sample, PathRecords* records, TestedSamples* tested,
+              SampleContext& context) const {
     context.records = records;
     context.pixel = static_cast<uint32_t>(y * settings.width + x);
     context.sample = static_cast<uint32_t>(sample);
+    if (!tested) return;
+    constexpr uint64_t kOthersThanRecords = 0x6a09e667f3bcc908;
+    if (!tested->Wants(MixBits((uint64_t{context.pixel} << 32 | context.sample) ^ kOthersThanRecords))) return;
+    tested->Start(context.pixel);
+    context.tested = tested;
   }
 };
 

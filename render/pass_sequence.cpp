@@ -30,7 +30,12 @@ PassSequence::PassSequence(const RenderScene& scene, const Integrator& integrato
   if (settings.GuidesPaths() && integrator.FollowsCameraPaths())
     paths_ = std::make_unique<PathLearning>(settings.width, settings.height, film.Pixels(),
                                             integrator.Paths() == TracedPaths::Both, settings.AlwaysGuidesPaths());
-  if (settings.LearnsLights()) learning_ = std::make_unique<LightLearning>(scene.lighting->SceneSphere());
+  if (settings.LearnsLights() && lighting_.LearnsSelection() && integrator.Paths() != TracedPaths::Light) {
+    learning_ = std::make_unique<LightLearning>(scene.lighting->SceneSphere());
+    selection_ =
+        std::make_unique<SelectionTest>(settings.width, settings.height, film.Pixels(),
+                                        integrator.Paths() == TracedPaths::Both, settings.AlwaysLearnsLights());
+  }
 }
 
 void PassSequence::MakePhotonStore() {
@@ -60,12 +65,14 @@ void PassSequence::Add(uint32_t done, uint32_t count) {
 void PassSequence::AddPass(uint32_t done, uint32_t count) {
   // The lighting with what has been learned so far; it does not change during the pass.
   view_ = scene_;
-  view_.lighting =
-      std::make_shared<const LightingServices>(lighting_.With(learning_.get(), guiding_ ? guiding_->Guide() : nullptr));
+  const bool learnsLights = learning_ && learning_->IsRecording(), usesLearned = selection_ && selection_->IsUsed();
+  view_.lighting = std::make_shared<const LightingServices>(lighting_.With(
+      learnsLights || usesLearned ? learning_.get() : nullptr, guiding_ ? guiding_->Guide() : nullptr, !usesLearned));
   view_.guide = paths_ ? paths_->Guide() : nullptr;
   PathLearning* recorded = RecordsPathsAfter(done) ? paths_.get() : nullptr;
-  const RenderCounts counts = RenderPass(view_, integrator_, settings_, filter_, firstSample_ + done, count, threads_,
-                                         *film_, photons_.get(), allocation_.get(), recorded);
+  const RenderCounts counts =
+      RenderPass(view_, integrator_, settings_, filter_, firstSample_ + done, count, threads_, *film_, photons_.get(),
+                 allocation_.get(), recorded, learnsLights ? selection_.get() : nullptr);
   CheckStop();  // the counts of a given-up pass are not added
   if (film_->IsAdaptive()) film_->CountPasses(count);
   counts_ += counts;
@@ -73,8 +80,6 @@ void PassSequence::AddPass(uint32_t done, uint32_t count) {
 
 namespace {
 
-// Samples per pixel at which learning of light selection ends: most of what can be learned has been by then.
-constexpr uint32_t kLastLearned = 64;
 // Samples per pixel from which on camera paths may be guided beside photons that are not. Photons for which a guide
 // pays are mostly known to by then. Half as many are enough to begin to record.
 constexpr uint32_t kPhotonsFirst = 32;
@@ -93,9 +98,11 @@ void PassSequence::Learn(uint32_t samples) {
   const bool photonsAreSettled =
       !guiding_ || !guiding_->IsRecording() || (samples >= kPhotonsFirst && !guiding_->Guide());
   if (learning_ && learning_->IsRecording()) {
+    const bool wasUsed = selection_->IsUsed();
+    selection_->Decide(samples);
     learning_->Freeze();
-    if (samples >= kLastLearned) learning_->StopRecording();
-    changesDensities = true;
+    if (!selection_->IsLearning()) learning_->StopRecording();
+    changesDensities = wasUsed || selection_->IsUsed();
   }
   if (guiding_ && guiding_->IsRecording() && guiding_->Decide(samples)) changesDensities = true;
   if (hasRecords) {
@@ -126,6 +133,19 @@ void PassSequence::StartStage(uint32_t done) {
 
 RenderCounts PassSequence::TakeCounts() {
   return std::exchange(counts_, RenderCounts());
+}
+
+GuidingStatistics PassSequence::Guiding() const {
+  GuidingStatistics statistics;
+  if (paths_) {
+    statistics.gain = paths_->Gain();
+    statistics.regions = paths_->Regions();
+  }
+  if (selection_) {
+    statistics.lightGain = selection_->Gain();
+    statistics.usesLearnedLights = selection_->IsUsed();
+  }
+  return statistics;
 }
 
 std::optional<PhotonStatistics> PassSequence::Photons() const {
@@ -171,6 +191,7 @@ void PassSequence::LeaveToGivenUpPass(Film& film) {
 void PassSequence::Save(ByteWriter& bytes) const {
   if (photons_) bytes.Value(photons_->Statistics());
   if (learning_) learning_->Save(bytes);
+  if (selection_) selection_->Save(bytes);
   if (guiding_) guiding_->Save(bytes);
   if (paths_) paths_->Save(bytes);
 }
@@ -178,6 +199,7 @@ void PassSequence::Save(ByteWriter& bytes) const {
 void PassSequence::Load(ByteReader& bytes) {
   if (photons_) photons_->Continue(bytes.Value<PhotonStatistics>());
   if (learning_) learning_->Load(bytes);
+  if (selection_) selection_->Load(bytes);
   if (guiding_) guiding_->Load(bytes);
   if (paths_) paths_->Load(bytes);
 }

@@ -15,10 +15,13 @@
 
 namespace lampyr {
 
-// Of path guiding: PathLearning::Gain, and the regions of the guide in use; 0: walks are not guided.
+// Of path guiding: PathLearning::Gain, and the regions of the guide in use; 0: walks are not guided. Of the selection
+// of lights: SelectionTest::Gain, and whether what was learned is used.
 struct GuidingStatistics {
   double gain = 1;
   size_t regions = 0;
+  double lightGain = 1;
+  bool usesLearnedLights = false;
 };
 
 // The picture after n passes does not depend on how they are divided into calls. After a pass that was cut short
@@ -36,14 +39,12 @@ class PassSequence {
   const Integrator& TracedBy() const { return integrator_; }
   Film& Picture() const { return *film_; }
   // What passes change.
-  PassState State() { return {*film_, &learning_, &guiding_, &paths_}; }
+  PassState State() { return {*film_, &learning_, &selection_, &guiding_, &paths_}; }
   // Counts since the last call.
   RenderCounts TakeCounts();
   // Of integrators that gather photons.
   std::optional<PhotonStatistics> Photons() const;
-  GuidingStatistics Guiding() const {
-    return paths_ ? GuidingStatistics{paths_->Gain(), paths_->Regions()} : GuidingStatistics();
-  }
+  GuidingStatistics Guiding() const;
   // Fraction of `dropped` of all samples, or of the photons if that is larger, that was invalid.
   double DroppedFraction(uint64_t dropped, int samplesPerPixel) const;
 
@@ -76,6 +77,7 @@ class PassSequence {
   RenderCounts counts_;
   PhotonStatistics before_;                       // of the photons, before the last call of Add
   std::unique_ptr<LightLearning> learning_;       // null: selection learns nothing
+  std::unique_ptr<SelectionTest> selection_;      // of what it learns; null with it
   std::unique_ptr<EmissionLearning> guiding_;     // null: no emission guiding
   std::unique_ptr<PathLearning> paths_;           // null: no path guiding
   std::unique_ptr<PhotonStore> photons_;          // of integrators that gather them

@@ -16,7 +16,7 @@ constexpr int kLightPaths = -1;  // in the place of the pixel row, for samples t
 
 // Adds the samples of the passes to the pixel of index `pixel` in the crop.
 void TraceAdaptively(const Pass& pass, int x, int y, size_t pixel, AdaptiveSampler& samplers, SampleAdder& adder,
-                     PathRecords* records, RenderCounts& counts) {
+                     PathRecords* records, TestedSamples* tested, RenderCounts& counts) {
   PixelSums sums = pass.film.Pixel(x, y);
   uint32_t count = 0;
   for (uint32_t i = pass.first; i < pass.end; ++i) count += pass.allocation->Count(pixel, i - pass.Offset());
@@ -28,8 +28,8 @@ void TraceAdaptively(const Pass& pass, int x, int y, size_t pixel, AdaptiveSampl
     SampleContext context{pass.scene, sampler, time, counts, adder.StartLayers()};
     context.outputs = pass.Outputs();
     context.lane = pass.FirstLaneOf(x, y, number);
-    pass.Record(x, y, number, records, context);
-    adder.Add(x, y, AdaptiveSampler::IsInHalf(number), ray, Radiance(pass.integrator, ray, context), sums);
+    pass.Record(x, y, number, records, tested, context);
+    adder.Add(x, y, AdaptiveSampler::IsInHalf(number), ray, TestedRadiance(pass.integrator, ray, context), sums);
   }
   pass.film.Pixel(x, y) = sums;
 }
@@ -40,6 +40,7 @@ RenderCounts TraceCameraPaths(const Pass& pass) {
   const int tilesY = (crop.Height() + kTileSize - 1) / kTileSize;
   std::vector<RenderCounts> tileCounts(static_cast<size_t>(tilesX) * tilesY);
   std::vector<PathRecords> tileRecords = pass.MakeRecords(tileCounts.size());
+  std::vector<TestedSamples> tileTested = pass.MakeTested(tileCounts.size());
   ParallelFor(tilesX * tilesY, pass.threads, [&](int tile) {
     const int x0 = crop.x0 + tile % tilesX * kTileSize, x1 = std::min(x0 + kTileSize, crop.x1);
     const int y0 = crop.y0 + tile / tilesX * kTileSize, y1 = std::min(y0 + kTileSize, crop.y1);
@@ -48,12 +49,13 @@ RenderCounts TraceCameraPaths(const Pass& pass) {
     SampleAdder adder(pass.settings, pass.film, counts);
     AdaptiveSampler samplers(pass);
     PathRecords* records = pass.learning ? &tileRecords[tile] : nullptr;
+    TestedSamples* tested = pass.selection ? &tileTested[tile] : nullptr;
     for (int y = y0; y < y1; ++y) {
       for (int x = x0; x < x1; ++x) {
         if (pass.allocation) {
           const auto pixel =
               static_cast<size_t>(y - crop.y0) * static_cast<size_t>(crop.Width()) + static_cast<size_t>(x - crop.x0);
-          TraceAdaptively(pass, x, y, pixel, samplers, adder, records, counts);
+          TraceAdaptively(pass, x, y, pixel, samplers, adder, records, tested, counts);
           continue;
         }
         PixelSums sums = pass.film.Pixel(x, y);
@@ -64,8 +66,8 @@ RenderCounts TraceCameraPaths(const Pass& pass) {
           SampleContext context{pass.scene, sampler, time, counts, adder.StartLayers()};
           context.outputs = pass.Outputs();
           context.lane = pass.FirstLaneOf(x, y, i);
-          pass.Record(x, y, i, records, context);
-          adder.Add(x, y, IsInHalf(i), ray, Radiance(pass.integrator, ray, context), sums);
+          pass.Record(x, y, i, records, tested, context);
+          adder.Add(x, y, IsInHalf(i), ray, TestedRadiance(pass.integrator, ray, context), sums);
         }
         pass.film.Pixel(x, y) = sums;
       }
@@ -73,6 +75,7 @@ RenderCounts TraceCameraPaths(const Pass& pass) {
     tileCounts[tile] = counts;
   });
   if (pass.learning) pass.learning->Learn(tileRecords);
+  if (pass.selection) pass.selection->Learn(tileTested);
   return Total(tileCounts);
 }
 
@@ -134,9 +137,11 @@ LanesInBands InBands(const Wavelengths& wavelengths, const SpectralBands& bands)
 
 RenderCounts RenderPass(const RenderScene& scene, const Integrator& integrator, const RenderSettings& settings,
                         const PixelFilter& filter, uint32_t first, uint32_t count, int threads, Film& film,
-                        PhotonStore* kept, const SampleAllocation* allocation, PathLearning* learning) {
+                        PhotonStore* kept, const SampleAllocation* allocation, PathLearning* learning,
+                        SelectionTest* selection) {
   if (!scene.isSpectral) {
-    const Pass pass{scene, integrator, settings, filter, first, first + count, threads, film, allocation, learning};
+    const Pass pass{scene,   integrator, settings,   filter,   first,    first + count,
+                    threads, film,       allocation, learning, selection};
     return TracePass(pass, kept);
   }
   RenderCounts counts;
@@ -148,7 +153,8 @@ RenderCounts RenderPass(const RenderScene& scene, const Integrator& integrator, 
     if (film.HasBands()) film.SetLanes(InBands(*wavelengths, *settings.bands));
     const RenderScene there = scene.AtWavelengths(wavelengths, integrator.MaterialsAfterWide());
     tuned.sensor = settings.sensor.Of(wavelengths->ToRgb());
-    const Pass pass{there, integrator, tuned, filter, sample, sample + 1, threads, film, allocation, learning};
+    const Pass pass{there,   integrator, tuned,      filter,   sample,   sample + 1,
+                    threads, film,       allocation, learning, selection};
     counts += TracePass(pass, kept);
     film.CountWhite(wavelengths->White());
   }

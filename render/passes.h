@@ -6,6 +6,7 @@
 
 #include "film/film.h"
 #include "integrators/guide/path_learning.h"
+#include "integrators/guide/selection_test.h"
 #include "integrators/photon/photon_store.h"
 #include "integrators/walk/integrator.h"
 #include "render/adaptive_sampling.h"
@@ -30,7 +31,7 @@ namespace lampyr {
 // In a scene that carries light by wavelength each sample of all pixels is a pass at wavelengths of its own, and
 // photons come from light paths of that pass.
 //
-// `learning`: receives records of the camera paths; may be null.
+// `learning`: receives records of the camera paths; may be null. `selection`: receives tested samples; may be null.
 //
 // `allocation`: of the stage of an adaptive film that all of these passes are in; null: one sample for each pixel. The
 // samples of a pixel are numbered through the stage. Rates are relative to what the crop sees: a crop of an adaptive
@@ -38,6 +39,6 @@ namespace lampyr {
 RenderCounts RenderPass(const RenderScene& scene, const Integrator& integrator, const RenderSettings& settings,
                         const PixelFilter& filter, uint32_t first, uint32_t count, int threads, Film& film,
                         PhotonStore* kept = nullptr, const SampleAllocation* allocation = nullptr,
-                        PathLearning* learning = nullptr);
+                        PathLearning* learning = nullptr, SelectionTest* selection = nullptr);
 
 }  // namespace lampyr

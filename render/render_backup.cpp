@@ -13,6 +13,7 @@ void RenderBackup::Take(const PassState& state, bool withFilm, int threads) {
   if (learning && (learning->IsRecording() || (learning_ && learning_->IsRecording()))) {
     if (!learning_) learning_ = std::make_unique<LightLearning>(scene_);
     learning_->CopyFrom(*learning);
+    selection_ = std::make_unique<SelectionTest>(**state.selection);
   }
   const EmissionLearning* guiding = state.guiding ? state.guiding->get() : nullptr;
   if (guiding && (guiding->IsRecording() || (guiding_ && guiding_->IsRecording())))
@@ -25,9 +26,13 @@ void RenderBackup::Take(const PassState& state, bool withFilm, int threads) {
 void RenderBackup::Restore(const PassState& state, int threads, bool keepsOld) {
   if (hasFilm_) state.film.CopyFrom(*film_, threads);
   if (learning_) {
-    if (keepsOld) (void)state.learning->release();
+    if (keepsOld) {
+      (void)state.learning->release();
+      (void)state.selection->release();
+    }
     *state.learning = std::make_unique<LightLearning>(scene_);
     (*state.learning)->CopyFrom(*learning_);
+    *state.selection = std::make_unique<SelectionTest>(*selection_);
   }
   if (guiding_) {
     if (keepsOld) (void)state.guiding->release();

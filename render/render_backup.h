@@ -6,6 +6,7 @@
 
 #include "film/film.h"
 #include "integrators/guide/path_learning.h"
+#include "integrators/guide/selection_test.h"
 #include "integrators/photon/emission_learning.h"
 #include "integrators/photon/photon_store.h"
 #include "lights/selection/light_learning.h"
@@ -16,6 +17,7 @@ namespace lampyr {
 struct PassState {
   Film& film;
   std::unique_ptr<LightLearning>* learning = nullptr;
+  std::unique_ptr<SelectionTest>* selection = nullptr;
   std::unique_ptr<EmissionLearning>* guiding = nullptr;
   std::unique_ptr<PathLearning>* paths = nullptr;
 };
@@ -36,6 +38,7 @@ class RenderBackup {
   std::optional<Film> film_;
   bool hasFilm_ = false;
   std::unique_ptr<LightLearning> learning_;
+  std::unique_ptr<SelectionTest> selection_;
   std::unique_ptr<EmissionLearning> guiding_;
   std::unique_ptr<PathLearning> paths_;
 };

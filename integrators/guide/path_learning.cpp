@@ -39,10 +39,6 @@ constexpr uint32_t kLearned = 64, kHopeless = 8;
 constexpr double kPromising = 0.3;
 // A guide is fitted anew when at least this share of the events is new.
 constexpr double kEnoughNew = 0.25;
-// Blocks of pixels across the image, and pixels across a block, over which means are taken.
-constexpr int kBlocks = 32, kLeastBlock = 4;
-// Brightness that is added to that of a block, in means of the image: the error of dark parts counts less.
-constexpr double kDark = 0.1;
 
 }  // namespace
 
@@ -50,11 +46,9 @@ PathLearning::PathLearning(int width, int height, size_t recorded, bool forLight
     : width_(width),
       height_(height),
       recorded_(recorded),
-      blockSize_(std::max((std::max(width, height) + kBlocks - 1) / kBlocks, kLeastBlock)),
-      blocksX_((width + blockSize_ - 1) / blockSize_),
       forLight_(forLight),
       always_(always),
-      blocks_(static_cast<size_t>(blocksX_) * static_cast<size_t>((height + blockSize_ - 1) / blockSize_)) {}
+      blocks_(width, height) {}
 
 bool PathLearning::IsPromising(double gain) const {
   return gain - 1 > kPromising * (Worthwhile() - 1);
@@ -72,49 +66,15 @@ double PathLearning::Fraction() const {
   if (samples_ == 0) {
     perSample = std::max(perSample, kFirstPaths);
   } else if (isUsed || !seemsHopeless_) {
-    double counted = 0;
-    for (const Block& block : blocks_) counted += block.count;
-    const double more = kEventsOfPath * counted / static_cast<double>(kept_.size() + 1);
+    const double more = kEventsOfPath * blocks_.AllSamples() / static_cast<double>(kept_.size() + 1);
     perSample = std::max(perSample, kPathsPerSample * std::clamp(more, 1.0, kMostMore));
   }
   if (isUsed) perSample *= kMoreInUse;
   return std::min(passes * perSample, kMostPaths) / (passes * pixels);
 }
 
-size_t PathLearning::BlockOf(uint32_t pixel) const {
-  const auto x = static_cast<int>(pixel % static_cast<uint32_t>(width_)),
-             y = static_cast<int>(pixel / static_cast<uint32_t>(width_));
-  return static_cast<size_t>(y / blockSize_) * static_cast<size_t>(blocksX_) + static_cast<size_t>(x / blockSize_);
-}
-
 void PathLearning::Learn(std::span<const PathRecords> records) {
   for (const PathRecords& list : records) latest_.Append(list);
-}
-
-void PathLearning::CountBlocks() {
-  for (const RecordedPath& path : latest_.Paths()) {
-    Block& block = blocks_[BlockOf(path.pixel)];
-    const auto found = static_cast<double>(path.found);
-    block.found += found;
-    block.squares += found * found;
-    ++block.count;
-  }
-}
-
-// 1 / brightness of each block, to which errors are relative.
-std::vector<double> PathLearning::BlockScales() const {
-  double found = 0, count = 0;
-  for (const Block& block : blocks_) {
-    found += block.found;
-    count += block.count;
-  }
-  std::vector<double> scales(blocks_.size());
-  if (!(found > 0)) return scales;
-  for (size_t i = 0; i < blocks_.size(); ++i) {
-    const Block& block = blocks_[i];
-    scales[i] = 1 / ((block.count > 0 ? block.found / block.count : 0.0) + kDark * found / count);
-  }
-  return scales;
 }
 
 // Tests the candidate on the latest paths. A path found X = Σ c_k, c_k after k events. Sampled with other densities,
@@ -125,7 +85,7 @@ GainEstimate PathLearning::Test(const std::vector<double>& scales) const {
   double ofMeans = 0;
   for (size_t i = 0; i < latest_.Paths().size(); ++i) {
     const RecordedPath& path = latest_.Paths()[i];
-    const double scale = scales[BlockOf(path.pixel)];
+    const double scale = scales[blocks_.Of(path.pixel)];
     double before = 0;
     double ratioUnguided = 1, ratioAimed = 1;
     double earlierUnguided = 0, earlierAimed = 0;  // 2 Σ c_j / r_j
@@ -157,16 +117,9 @@ GainEstimate PathLearning::Test(const std::vector<double>& scales) const {
     add(static_cast<double>(path.found));
     gain.Add(sumUnguided, sumAimed);
   }
-  std::vector<double> counts(blocks_.size());
-  for (const RecordedPath& path : latest_.Paths()) ++counts[BlockOf(path.pixel)];
-  for (size_t i = 0; i < blocks_.size(); ++i) {
-    const Block& block = blocks_[i];
-    if (block.count < 2) continue;
-    // The squared mean, from pairs of different paths.
-    const double squaredMean =
-        std::max(block.found * block.found - block.squares, 0.0) / (block.count * (block.count - 1));
-    ofMeans += counts[i] * scales[i] * scales[i] * squaredMean;
-  }
+  std::vector<double> counts(blocks_.Count());
+  for (const RecordedPath& path : latest_.Paths()) ++counts[blocks_.Of(path.pixel)];
+  for (size_t i = 0; i < blocks_.Count(); ++i) ofMeans += counts[i] * scales[i] * scales[i] * blocks_.SquaredMean(i);
   gain.SetSquaredMeans(ofMeans);
   return gain;
 }
@@ -199,7 +152,7 @@ bool PathLearning::Keep(const std::vector<double>& scales) {
   const size_t before = kept_.size();
   for (size_t i = 0; i < latest_.Paths().size(); ++i) {
     const RecordedPath& path = latest_.Paths()[i];
-    const auto scale = static_cast<float>(scales[BlockOf(path.pixel)]);
+    const auto scale = static_cast<float>(scales[blocks_.Of(path.pixel)]);
     for (const RecordedEvent& event : latest_.EventsOf(i)) {
       const float weight = scale * (path.found - event.foundBefore);
       if (weight > 0) {
@@ -227,8 +180,8 @@ bool PathLearning::Decide(uint32_t samples, int threads, bool mayUse) {
   const std::shared_ptr<const PathGuide> before = guide_;
   samples_ = samples;
   latest_ = latest_.Sorted();
-  CountBlocks();
-  const std::vector<double> scales = BlockScales();
+  for (const RecordedPath& path : latest_.Paths()) blocks_.Add(path.pixel, static_cast<double>(path.found));
+  const std::vector<double> scales = blocks_.Scales();
   bool isWorthwhile = guide_ != nullptr;
   // Weights of paths that were guided are not those of others: what would have been without a guide is not known then.
   if (tried_ && mayUse && !(forLight_ && guide_)) {
@@ -264,7 +217,7 @@ void PathLearning::Save(ByteWriter& bytes) const {
   bytes.Value(samples_);
   bytes.Value(gain_);
   if (tried_) tried_->Save(bytes);
-  bytes.List(std::span(blocks_));
+  bytes.List(blocks_.All());
   bytes.List(latest_.Paths());
   bytes.List(latest_.Events());
   bytes.List(std::span(kept_));
@@ -293,15 +246,12 @@ void PathLearning::Load(ByteReader& bytes) {
     tried_ = tried;
     if (hasGuide) guide_ = tried_;
   }
-  std::vector<Block> blocks = bytes.List<Block>(blocks_.size());
+  std::vector<PixelBlocks::Block> blocks = bytes.List<PixelBlocks::Block>(blocks_.Count());
   std::vector<RecordedPath> paths = bytes.List<RecordedPath>(kMostEvents);
   std::vector<RecordedEvent> events = bytes.List<RecordedEvent>(kMostEvents);
   kept_ = bytes.List<PlacedEvent>(kMostKept);
   keptOfLight_ = bytes.List<PlacedEvent>(kMostKept);
-  bool isSound = blocks.size() == blocks_.size() && std::isfinite(gain_) && gain_ >= 0 && (hasTried || !hasGuide);
-  for (const Block& block : blocks)
-    isSound = isSound && std::isfinite(block.found) && std::isfinite(block.squares) && block.count >= 0 &&
-              std::isfinite(block.count);
+  bool isSound = blocks_.Set(std::move(blocks)) && std::isfinite(gain_) && gain_ >= 0 && (hasTried || !hasGuide);
   for (const std::vector<PlacedEvent>* kept : {&kept_, &keptOfLight_})
     for (const PlacedEvent& event : *kept) isSound = isSound && IsSound(event);
   for (const RecordedEvent& event : events)
@@ -315,7 +265,6 @@ void PathLearning::Load(ByteReader& bytes) {
               paths[i].firstEvent <= events.size() && std::isfinite(paths[i].found);
   }
   if (!isSound) throw Error("it holds a path that cannot be");
-  blocks_ = std::move(blocks);
   latest_.Set(std::move(paths), std::move(events));
 }
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "integrators/guide/path_records.h"
+#include "integrators/guide/pixel_blocks.h"
 
 namespace lampyr {
 
@@ -54,23 +55,15 @@ class PathLearning {
   void Load(ByteReader& bytes);
 
  private:
-  // Sums over the recorded paths of a block of pixels.
-  struct Block {
-    double found = 0, squares = 0, count = 0;
-  };
   // The least gain for which a guide is used.
   double Worthwhile() const;
   // True for a gain that may become worthwhile with more events.
   bool IsPromising(double gain) const;
-  size_t BlockOf(uint32_t pixel) const;
-  void CountBlocks();
-  std::vector<double> BlockScales() const;
   GainEstimate Test(const std::vector<double>& scales) const;
   bool Keep(const std::vector<double>& scales);
 
   int width_, height_;
   size_t recorded_;
-  int blockSize_, blocksX_;
   bool forLight_, always_;
   bool isRecording_ = true;
   bool seemsHopeless_ = false;  // by the last verdict
@@ -78,8 +71,8 @@ class PathLearning {
   double gain_ = 1;
   std::shared_ptr<const PathGuide> guide_;  // the guide in use, or null
   std::shared_ptr<const PathGuide> tried_;  // the candidate, or null
-  std::vector<Block> blocks_;
-  PathRecords latest_;  // since the last milestone
+  PixelBlocks blocks_;                      // of the recorded paths
+  PathRecords latest_;                      // since the last milestone
   // Weighted events of earlier intervals: of camera paths, and of the light paths along them.
   std::vector<PlacedEvent> kept_, keptOfLight_;
 };

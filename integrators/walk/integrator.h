@@ -15,10 +15,11 @@
 
 namespace lampyr {
 
-class PathObserver;  // bidirectional/connected_path.h
-class PathRecords;   // guide/path_records.h
-class PhotonList;    // photon/photon.h
-struct PhotonPass;   // photon/photon_pass.h
+class PathObserver;   // bidirectional/connected_path.h
+class PathRecords;    // guide/path_records.h
+class TestedSamples;  // guide/selection_test.h
+class PhotonList;     // photon/photon.h
+struct PhotonPass;    // photon/photon_pass.h
 
 // The kinds of path that an integrator traces for a sample.
 enum class TracedPaths {
@@ -118,6 +119,9 @@ struct SampleContext {
   // (photon/merge_bias.h). Null: not wanted.
   Color* mergeBias = nullptr;
   LightSpread* lightSpread = nullptr;  // may be null
+  // Receives what the light samples of this sample would have been worth if lights were chosen in another way; what
+  // arrived is recorded for learned selection. Null: not wanted.
+  TestedSamples* tested = nullptr;
 
   SampleContext With(Sampler& other) const {
     return {scene,    other,       time,      counts,        layers,     splats,

@@ -66,7 +66,12 @@ inline const Setting kLightSamples{.name = "light-samples",
                                    .most = LightChoices::kMost,
                                    .fallbackText = "1, or what auto decides"};
 inline const Setting kLearnLights{
-    .name = "learn-lights", .help = "Let the light tree learn which lights are occluded where", .fallback = false};
+    .name = "learn-lights",
+    .help = "Let the light tree learn which lights are occluded where, if that reduces the noise",
+    .fallback = true};
+inline const Setting kLearnAlways{.name = "learn-always",
+                                  .help = "Choose lights by what is learned from the start, whether it pays or not",
+                                  .fallback = false};
 inline const Setting kGuidePaths{
     .name = "guide-paths", .help = "Guide paths to where they find light, if that reduces the noise", .fallback = true};
 inline const Setting kGuideAlways{.name = "guide-always",
@@ -90,8 +95,8 @@ inline const Setting kShadowThreshold{
     .isBiased = true};
 
 // Settings of integrators with next-event estimation.
-inline const std::vector<const Setting*> kOfNextEvent = {&kMaxDepth,    &kLightSampler,   &kLightSamples,
-                                                         &kLearnLights, &kShadowRoulette, &kShadowThreshold};
+inline const std::vector<const Setting*> kOfNextEvent = {
+    &kMaxDepth, &kLightSampler, &kLightSamples, &kLearnLights, &kLearnAlways, &kShadowRoulette, &kShadowThreshold};
 // Settings of integrators whose camera paths go on after they have been scattered widely.
 inline const std::vector<const Setting*> kOfGuiding = {&kGuidePaths, &kGuideAlways};
 

@@ -1,5 +1,7 @@
 #include "integrators/walk/next_event.h"
 
+#include "integrators/guide/selection_test.h"
+
 namespace lampyr {
 
 namespace {
@@ -19,13 +21,24 @@ Color TraceShadowRay(const SampleContext& context, const PathVertex& vertex, con
 
 }  // namespace
 
+namespace {
+
+[[gnu::noinline]] void Test(const LightingServices& lighting, const Receiver& receiver, const DirectSample& direct,
+                            const Color& contribution, TestedSamples& tested) {
+  const auto [learned, unlearned] = lighting.SelectionsOf(receiver, direct);
+  if (learned.value > 0 && unlearned.value > 0)
+    tested.Add(contribution.Average(), direct.selection.value, unlearned.value, learned.value);
+}
+
+}  // namespace
+
 Color SampleLight(const SampleContext& context, const NextEventSettings& settings, const PathVertex& vertex,
                   const SelectedLight& light, const Point2& u, const Color& soFar, NextEventVisitor& visitor) {
   const LightingServices& lighting = *context.scene.lighting;
   if (!visitor.Wants(light.light)) return Color(0.0f);
   const DirectSample direct = lighting.GenerateSamples(vertex.receiver, light, u, context.time, settings.bidirectional);
   const auto record = [&](const Color& arrived) {
-    if (settings.learns) lighting.UpdateWithResults(vertex.receiver, direct, arrived);
+    if (context.tested && settings.learns) lighting.UpdateWithResults(vertex.receiver, direct, arrived);
   };
   const auto nothingArrives = [&] {
     record(Color(0.0f));
@@ -56,6 +69,8 @@ Color SampleLight(const SampleContext& context, const NextEventSettings& setting
   if (hasMedia) weight = visitor.Weigh(connection);
   const Color contribution = value * (weight * survivalWeight);
   visitor.Arrived(connection, value, contribution);
+  if (context.tested && settings.learns) [[unlikely]]
+    Test(lighting, vertex.receiver, direct, contribution, *context.tested);
   return contribution;
 }
 

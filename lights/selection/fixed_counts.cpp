@@ -71,6 +71,7 @@ class FixedCountSelector final : public LightSelector {
     return whole_->SegmentProbability(segment, lights, light, patch);
   }
 
+  bool Learns() const override { return others_ && others_->Learns(); }
   void Record(LightLearning& learning, const Receiver& receiver, uint32_t light, int patch,
               double irradiance) const override {
     if (others_ && counts_[light] == 0) others_->Record(learning, receiver, OtherIndexOf(light), patch, irradiance);

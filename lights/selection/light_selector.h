@@ -79,6 +79,8 @@ class LightSelector {
   PdfDiscrete Probability(const Receiver& receiver, uint32_t light, int patch) const {
     return Probability(receiver, {}, light, patch);
   }
+  // True if Record has an effect for some receivers.
+  virtual bool Learns() const { return false; }
   // Records in `learning` the irradiance that the selected light caused; 0: it was occluded or dark.
   virtual void Record(LightLearning&, const Receiver&, uint32_t, int, double) const {}
   // True if patches of lights are selected individually at this receiver; Probability then depends on `patch`.

@@ -80,6 +80,7 @@ class LinkedSelector final : public LightSelector {
     return part->selector->SegmentProbability(segment, LightsOfSet(lights, part->lights), *own, patch);
   }
 
+  bool Learns() const override { return all_->Learns(); }
   void Record(LightLearning& learning, const Receiver& receiver, uint32_t light, int patch,
               double irradiance) const override {
     if (!PartOf(receiver.link)) all_->Record(learning, receiver, light, patch, irradiance);

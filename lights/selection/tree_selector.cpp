@@ -95,6 +95,9 @@ class TreeSelector final : public LightSelector {
     });
   }
 
+  bool Learns() const override {
+    return std::is_same_v<Search, LightTree> && !(search_.IsEmpty() && farTable_.IsZero());
+  }
   void Record(LightLearning& learning, const Receiver& receiver, uint32_t light, int patch,
               double irradiance) const override {
     const TreeReceiver place = Place(receiver, &learning);

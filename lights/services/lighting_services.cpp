@@ -104,9 +104,10 @@ LightingServices LightingServices::Selecting(LightSelection selection, int mostS
   return view;
 }
 
-LightingServices LightingServices::With(LightLearning* learning, const EmissionGuide* guide) const {
+LightingServices LightingServices::With(LightLearning* learning, const EmissionGuide* guide, bool isTrial) const {
   LightingServices view = *this;
   view.learning_ = learning;
+  view.isTrial_ = isTrial;
   view.guide_ = guide;
   return view;
 }
@@ -205,6 +206,15 @@ void LightingServices::RecordResult(const Receiver& receiver, const DirectSample
     irradiance = static_cast<double>(radiance * cosine / sample.pdfDirect.value);
   }
   selector_->Record(*learning_, receiver, direct.light, direct.patch, irradiance);
+}
+
+LightingServices::Selections LightingServices::SelectionsOf(const Receiver& receiver,
+                                                            const DirectSample& direct) const {
+  if (!learning_) return {PdfDiscrete(0), PdfDiscrete(0)};
+  const auto of = [&](const LightLearning* learned) {
+    return selector_->Probability(receiver, {learned, mostSamples_}, direct.light, direct.patch);
+  };
+  return {isTrial_ ? of(learning_) : direct.selection, isTrial_ ? direct.selection : of(nullptr)};
 }
 
 // Distance before a sample within which a ray from `from` may hit the sample's own surface.

@@ -104,7 +104,8 @@ class LightingServices {
 
   // A view of the same lights with learned selection, which also records results in `learning` while that is recording,
   // and with photons guided by `guide`. Both may be null, must outlive the view, and must not change while it is used.
-  LightingServices With(LightLearning* learning, const EmissionGuide* guide) const;
+  // `isTrial`: the view records, but selects without what was learned.
+  LightingServices With(LightLearning* learning, const EmissionGuide* guide, bool isTrial = false) const;
 
   // A view of the same lights at the wavelengths of a pass.
   LightingServices AtWavelengths(std::shared_ptr<const Wavelengths> wavelengths) const;
@@ -128,6 +129,13 @@ class LightingServices {
   void UpdateWithResults(const Receiver& receiver, const DirectSample& direct, const Color& arrived) const {
     if (learning_ && learning_->IsRecording()) RecordResult(receiver, direct, arrived);
   }
+  // DirectSample::selection with what was learned so far and without; a view that learns nothing returns 0.
+  struct Selections {
+    PdfDiscrete learned, unlearned;
+  };
+  Selections SelectionsOf(const Receiver& receiver, const DirectSample& direct) const;
+  // True if selection can learn from results.
+  bool LearnsSelection() const { return selector_->Learns(); }
   // Selection for emission without a guide.
   const LightSelector& EmissionSelector() const { return *scene_->emissionSelector; }
 
@@ -279,13 +287,14 @@ class LightingServices {
     bool isLinked = false;  // some light has a filter, or does not illuminate everything
     std::unique_ptr<LightSelector> emissionSelector;
   };
-  SelectionSettings Selection() const { return {learning_, mostSamples_}; }
+  SelectionSettings Selection() const { return {isTrial_ ? nullptr : learning_, mostSamples_}; }
 
   std::shared_ptr<const SceneLights> scene_;
   LightSelection selection_ = LightSelection::Tree;
   int mostSamples_ = 1;
   std::shared_ptr<const LightSelector> selector_;
   LightLearning* learning_ = nullptr;
+  bool isTrial_ = false;
   const EmissionGuide* guide_ = nullptr;
   std::shared_ptr<const Wavelengths> wavelengths_;  // null: light is in Rec. 709
   // Lights whose spectra are not those of their colours, ascending: the product of their colours in Rec. 709, and that

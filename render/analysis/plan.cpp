@@ -207,8 +207,10 @@ ScenePlan PlanFor(const RenderScene& scene, const RenderSettings& settings, int 
           : PlanDecision{"lens", "traced", "the camera has a lens of elements: light paths are not connected to it"});
   plan.decisions.push_back(
       settings.LearnsLights()
-          ? PlanDecision{"learning", "on", "--learn-lights"}
-          : PlanDecision{"learning", "off", "useful where nearby lights are occluded: --learn-lights"});
+          ? settings.AlwaysLearnsLights()
+                ? PlanDecision{"learning", "on", "--learn-always"}
+                : PlanDecision{"learning", "if helpful", "which lights are occluded where is learned, and tested"}
+          : PlanDecision{"learning", "off", "--no-learn-lights"});
   return plan;
 }
 

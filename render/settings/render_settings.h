@@ -70,6 +70,7 @@ struct RenderSettings {
 
   int MaxDepth() const { return MaxDepthOf(values); }
   bool LearnsLights() const { return values.IsOn("learn-lights"); }
+  bool AlwaysLearnsLights() const { return values.IsOn("learn-always"); }
   // The most lights that are chosen at a vertex: what the settings say, or what "auto" has decided.
   int LightSamples() const {
     const auto set = static_cast<int>(values.Integer("light-samples"));

@@ -2,7 +2,10 @@
 // much of the light that seems near is behind something.
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "agreement/agreement_scenes.h"
+#include "integrators/guide/selection_test.h"
 #include "sampling/rng.h"
 #include "support/replicas.h"
 #include "support/selection_noise.h"
@@ -40,7 +43,7 @@ std::string TwoRooms() {
 
 RenderOverrides Learning(bool learns) {
   RenderOverrides overrides;
-  overrides.values["learn-lights"] = learns;
+  overrides.values["learn-lights"] = overrides.values["learn-always"] = learns;
   return overrides;
 }
 
@@ -103,6 +106,88 @@ TEST(LearnedSelectionNoise, PaysWhereMostOfTheLightIsBehindAWall) {
                 learned.seconds / without.seconds, learned.Efficiency() / without.Efficiency());
     EXPECT_LT(variance, integrator == std::string("path") ? 0.4 : 0.7);
   }
+}
+
+// The render that a user gets, who asks for nothing.
+GuidingStatistics LearnedByDefault(const std::string& text, const char* integrator, int samples, Image* image = nullptr,
+                                   bool learns = true) {
+  Diagnostics diagnostics(Diagnostics::Mode::Collect);
+  RenderOverrides overrides;
+  overrides.integrator = integrator;
+  overrides.values["learn-lights"] = learns;
+  overrides.values["guide-paths"] = false;
+  const BuiltScene built = BuildScene(ParseScene(text, "test.pbrt", diagnostics), overrides, true, diagnostics);
+  const std::unique_ptr<Integrator> made = MakeIntegrator(built.scene, built.settings);
+  Film film(built.settings.width, built.settings.height, built.settings.crop);
+  ProgressiveRender render(built.scene, *made, built.settings, 2, film);
+  render.AddSamples(samples);
+  if (image) *image = film.Develop();
+  return render.Outcome().guiding;
+}
+
+// A room whose lamps light all of it.
+std::string OneRoom() {
+  std::string text = TwoRooms();
+  const std::string wall = "\"point3 P\" [0 0 -2.2  0 0 2.2  0 2 -2.2  0 2 2.2]";
+  const size_t at = text.find(wall);
+  return text.replace(at, wall.size(), "\"point3 P\" [3.9 0 -2.2  3.9 0 2.2  3.9 2 -2.2  3.9 2 2.2]");
+}
+
+TEST(LearnedSelectionByDefault, IsUsedWhereItPays) {
+  for (const char* integrator : {"path", "bdpt", "vcm"}) {
+    const GuidingStatistics found = LearnedByDefault(TwoRooms(), integrator, 33);
+    std::printf("%s: gain %.2f\n", integrator, found.lightGain);
+    EXPECT_TRUE(found.usesLearnedLights) << integrator;
+    EXPECT_GT(found.lightGain, 1.5) << integrator;
+  }
+}
+
+// What is not used leaves no trace.
+TEST(LearnedSelectionByDefault, IsNotUsedWhereItDoesNotPay) {
+  for (const char* integrator : {"path", "bdpt", "vcm", "sppm"}) {
+    Image learned, without;
+    const GuidingStatistics found = LearnedByDefault(OneRoom(), integrator, 9, &learned);
+    LearnedByDefault(OneRoom(), integrator, 9, &without, false);
+    EXPECT_FALSE(found.usesLearnedLights) << integrator << " " << found.lightGain;
+    EXPECT_EQ(learned.data, without.data) << integrator;
+  }
+}
+
+// The gain that decides is that of the variance of the picture.
+TEST(LearnedSelectionByDefault, KnowsTheGain) {
+  Diagnostics diagnostics(Diagnostics::Mode::Collect);
+  const SceneDescription scene = ParseScene(TwoRooms(), "test.pbrt", diagnostics);
+  const std::vector<bool> all(size_t{32} * 32, true);
+  RenderOverrides overrides;
+  overrides.sampler = "independent";  // the test is of independent samples
+  overrides.values["guide-paths"] = false;
+  const double without = MeasureSelection(scene, all, "path", "tree", 64, 8, overrides).meanSquaredError;
+  const double learned = MeasureSelection(scene, all, "path", "learned", 64, 8, overrides).meanSquaredError;
+  const double gain = LearnedByDefault(TwoRooms(), "path", 64).lightGain;
+  std::printf("estimated %.2f, measured %.2f\n", gain, without / learned);  // factors of the last samples, and of all
+  EXPECT_GT(gain, 0.6 * without / learned);
+  EXPECT_LT(gain, 1.6 * without / learned);
+}
+
+// Two lights that bring 1 and 3, chosen alike or nearly in proportion to that.
+TEST(SelectionTest, TellsTheRatioOfVariances) {
+  SelectionTest test(4, 4, 16, false, false);
+  TestedSamples samples;
+  for (int i = 0; i < 2000; ++i) {
+    const bool isFirst = i % 2 == 0;
+    const float radiance = isFirst ? 2.0f : 6.0f;
+    samples.Start(static_cast<uint32_t>(i % 16));
+    samples.Add(radiance, 0.5f, 0.5f, isFirst ? 0.4f : 0.6f);
+    samples.End(radiance);
+  }
+  const std::array<TestedSamples, 1> all = {samples};
+  test.Learn(all);
+  test.Decide(1);
+  EXPECT_FALSE(test.IsUsed());  // nothing was learned before these
+  test.Learn(all);
+  test.Decide(2);
+  EXPECT_NEAR(test.Gain(), (20.0 - 16) / (17.5 - 16), 0.1);
+  EXPECT_TRUE(test.IsUsed());
 }
 
 // Neither threads nor the lengths of passes show.

@@ -184,7 +184,7 @@ TEST(LightGroups, AddUpWithAllSwitches) {
     if (!merges) overrides.values["merge"] = false;
     if (!connects) overrides.values["connect"] = false;
     if (direct) overrides.values["direct-photons"] = true;
-    overrides.values["learn-lights"] = true;
+    overrides.values["learn-always"] = true;
     all.push_back(overrides);
   }
   for (const RenderOverrides& overrides : all) {

@@ -24,7 +24,7 @@ std::string Lamps() {
 BuiltScene BuildLamps(const char* integrator, bool learns, bool connects) {
   RenderOverrides overrides;
   overrides.integrator = integrator;
-  overrides.values["learn-lights"] = learns;
+  overrides.values["learn-always"] = learns;
   overrides.values["connect"] = connects;
   overrides.values["guide-photons"] = false;
   overrides.values["radius"] = 0.2;

@@ -55,7 +55,7 @@ const Switch kSwitches[] = {
     {"uniform selection", [](RenderOverrides& o) { o.values["light-sampler"] = "uniform"; }},
     {"selection by power", [](RenderOverrides& o) { o.values["light-sampler"] = "power"; }},
     {"exhaustive selection", [](RenderOverrides& o) { o.values["light-sampler"] = "exhaustive"; }},
-    {"learning", [](RenderOverrides& o) { o.values["learn-lights"] = true; }},
+    {"learning", [](RenderOverrides& o) { o.values["learn-always"] = true; }},
     {"several lights", [](RenderOverrides& o) { o.values["light-samples"] = 4; }},
     {"a lens", [](RenderOverrides&) {}, kHead,
      "LookAt 0 1 -3  0 0.8 0  0 1 0\nCamera \"perspective\" \"float fov\" 40 \"float lensradius\" 1e-5 "

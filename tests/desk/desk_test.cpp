@@ -313,7 +313,7 @@ TEST_F(Desk, WorksWithGroupsAndOtherIntegrators) {
   grouped = Replaced(grouped, "\"spot\"", "\"spot\" \"string lightGroup\" \"key\"");
   WriteBytes(folder_ / "grouped.pbrt", grouped);
   for (const std::string integrator :
-       {"auto --spp 4", "bdpt --spp 4", "vcm --spp 19", "sppm --spp 9", "path --learn-lights --spp 70"}) {
+       {"auto --spp 4", "bdpt --spp 4", "vcm --spp 19", "sppm --spp 9", "path --learn-always --spp 70"}) {
     SCOPED_TRACE(integrator);
     const std::string options = "--seed 7 --integrator " + integrator;
     const DeskProcess desk(folder_.Path(), "grouped.pbrt --quiet " + options);

@@ -52,7 +52,7 @@ Material "conductor" Shape "trianglemesh" "point3 P" [ -5 0 -5 -5 0 5 5 0 5 5 0 
     RenderOverrides overrides;
     overrides.width = overrides.height = 3;
     overrides.integrator = "vcm";
-    overrides.values["learn-lights"] = true;
+    overrides.values["learn-always"] = true;
     built = BuildScene(ParseScene(text, SceneName(), diagnostics), overrides, true, diagnostics);
     integrator = MakeIntegrator(built.scene, built.settings);
   }

@@ -33,6 +33,7 @@ struct Mode {
     settings.values.Set("connect", connects);
     settings.values.Set("direct-photons", directFromPhotons);
     settings.values.Set("learn-lights", learns);
+    settings.values.Set("learn-always", learns);
     settings.values.Set("light-samples", int64_t{lightSamples});
     settings.values.Set("guide-photons", guides);
     settings.values.Set("guide-paths", guidesPaths);

@@ -339,7 +339,7 @@ TEST(MatrixIsWhole, EveryModeIsAColumn) {
   // Settings of integrators: those that are no mode change no more than the noise or the blur, or are said to be
   // biased.
   const std::vector<std::string> modes = {"merge",       "connect",      "direct-photons", "guide-photons",
-                                          "guide-paths", "guide-always", "learn-lights",   "light-samples"},
+                                          "guide-paths", "guide-always", "learn-lights",   "learn-always",  "light-samples"},
                                  others = {"max-depth", "light-sampler", "photons",        "photon-memory",
                                            "radius",    "alpha",         "shadow-roulette"};
   const Settings settings = IntegratorSettings();

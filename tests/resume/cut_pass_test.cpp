@@ -67,7 +67,7 @@ class CutPass : public Resume {
     RenderOverrides overrides;
     overrides.integrator = integrator;
     overrides.layers = layers;
-    overrides.values["learn-lights"] = learns;
+    overrides.values["learn-always"] = learns;
     if (isAdaptive) overrides.adaptive.emplace();
     overrides.width = resolution;
     overrides.height = resolution;

@@ -58,7 +58,7 @@ class Kill : public Resume {
 
 TEST_F(Kill, AtFiftyRandomMomentsNothingIsLost) {
   constexpr int kFewest = 50;
-  const char* const settings[] = {"path --learn-lights --spp 400", "bdpt --spp 300", "vcm --spp 150", "sppm --spp 150",
+  const char* const settings[] = {"path --learn-always --spp 400", "bdpt --spp 300", "vcm --spp 150", "sppm --spp 150",
                                   "light --spp 400"};
   std::mt19937 random(8);
   int kills = 0, renders = 0;

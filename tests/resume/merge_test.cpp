@@ -50,7 +50,7 @@ TEST_F(Merge, HasTheBytesOfOneRenderWithPhotonsThatAreNotAimed) {
 TEST_F(Merge, PartsThatLearnAgreeWithOneRender) {
   for (const char* settings :
        {"--integrator vcm", "--integrator path --guide-always", "--integrator bdpt --guide-always",
-        "--integrator path --learn-lights", "--integrator path --adaptive", "--integrator bdpt --adaptive",
+        "--integrator path --learn-always", "--integrator path --adaptive", "--integrator bdpt --adaptive",
         "--integrator vcm --adaptive"}) {
     const std::string options = std::string("--spp 192 --resolution 24x16 ") + settings;
     Do("merge --quiet -o merged.exr " + RenderParts(options, 3));

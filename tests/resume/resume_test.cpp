@@ -127,7 +127,7 @@ TEST_F(Resume, WhatIsOfAnotherRenderIsRefused) {
   refused("--max-depth 2", "--max-depth is 5 there and 2 here");
   refused("--sampler independent", "the sampler is sobol there and independent here");
   refused("--light-sampler power", "--light-sampler is tree there and power here");
-  refused("--learn-lights", "--learn-lights is off there and on here");
+  refused("--no-learn-lights", "--learn-lights is on there and off here");
   refused("--shadow-roulette 0", "--shadow-roulette is 0.05 there and 0 here");
   refused("--fast-intersection", "watertight intersection is on there and off here");
   refused("--shard 1/2", "the part is 1/1 there and 1/2 here");

@@ -153,7 +153,7 @@ TEST_F(Stop, IsAnsweredWithinTwoSecondsWhereverAPassIs) {
   const char* const commands[] = {
       "sphere.pbrt --integrator path", "mirrors.pbrt --integrator path",
       "scene.pbrt --integrator vcm",   "scene.pbrt --integrator sppm --photons 2000000",
-      "sphere.pbrt --integrator bdpt", "scene.pbrt --integrator path --learn-lights --resolution 400x300",
+      "sphere.pbrt --integrator bdpt", "scene.pbrt --integrator path --learn-always --resolution 400x300",
       "mesh.pbrt --integrator bdpt",   "mirrors.pbrt --integrator vcm",
       "sphere.pbrt --integrator sppm", "scene.pbrt --integrator bdpt --resolution 320x240",
       "sphere.pbrt --integrator vcm",  "mirrors.pbrt --integrator sppm",

@@ -32,7 +32,7 @@ inline SelectionNoise MeasureSelection(const SceneDescription& description, cons
                                        const std::string& integrator, const std::string& selection, int samplesPerPixel,
                                        int renders, RenderOverrides overrides = {}) {
   overrides.integrator = integrator;
-  overrides.values["learn-lights"] = selection == "learned";
+  overrides.values["learn-lights"] = overrides.values["learn-always"] = selection == "learned";
   if (selection == "tree4") overrides.values["light-samples"] = 4;
   overrides.values["light-sampler"] = selection == "learned" || selection == "tree4" ? "tree" : selection;
   Diagnostics diagnostics(Diagnostics::Mode::Collect);

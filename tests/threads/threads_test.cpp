@@ -43,7 +43,7 @@ TEST_P(Threads, OneToFourGiveTheSameBytes) {
     overrides.integrator = integrator;
     overrides.width = 40;
     overrides.height = 24;
-    overrides.values["learn-lights"] = true;
+    overrides.values["learn-always"] = true;
     const BuiltScene built = BuildScene(description, overrides, true, diagnostics);
     const Rendered one = RenderBuilt(built, kSamples, 1);
     EXPECT_EQ(one.outcome.counts.droppedSamples, 0u) << integrator;
