@@ -15,8 +15,9 @@ namespace {
 
 constexpr const char* kName = "sppm";
 constexpr int kFewestPairs = 4;  // of passes
-// No more than two pairs where its error in equal time is larger than that of the best by this factor.
-constexpr double kHopeless = 2;
+// No more than two pairs where its error in equal time is larger than that of the best by the first factor, and a
+// single one where it is by the second.
+constexpr double kHopeless = 2, kQuiteHopeless = 6;
 // Error of independent samples over that of Sobol points, which serve photons less than camera paths: 1.0 to 1.55 in
 // nine scenes of scenes/ and of another renderer, 64×64 with 32 samples per pixel.
 constexpr double kGainOfSobol = 1.2;
@@ -81,8 +82,10 @@ class Measured {
     for (const std::vector<double>& pair : pairs_) sum += Sum(pair);
     return sum / Pairs();
   }
-  // Standard error of Error(), from the spread of pairs: pixels share photons, so their spread does not tell it.
+  // Standard error of Error(), from the spread of pairs: pixels share photons, so their spread does not tell it. Of one
+  // pair it is not known.
   double StandardError() const {
+    if (pairs_.size() < 2) return Error();
     const double mean = Error();
     double squares = 0;
     for (const std::vector<double>& pair : pairs_) squares += Squared(Sum(pair) - mean);
@@ -137,8 +140,10 @@ Counts Trace(const RenderScene& scene, const RenderScene& counted, const RenderS
     for (size_t i = 0; i < values.size(); ++i) values[i] -= emitted[i];
     if (pass % 2 == 1) measured.Add(last, values);
     last = values;
-    if (pass == 3 && best && measured.Error() / gain * counts.CostOfSample(grid) > kHopeless * best->error * best->cost)
-      break;
+    if (best && pass % 2 == 1 && pass < 4) {
+      const double worse = measured.Error() / gain * counts.CostOfSample(grid) / (best->error * best->cost);
+      if (worse > (pass == 1 ? kQuiteHopeless : kHopeless)) break;
+    }
   }
   measured.LeaveOutNoisiest();
   measured.AddSeen(seen);
