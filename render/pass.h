@@ -139,7 +139,7 @@ struct Pass {
     if (!tested) return;
     constexpr uint64_t kOthersThanRecords = 0x6a09e667f3bcc908;
     if (!tested->Wants(MixBits((uint64_t{context.pixel} << 32 | context.sample) ^ kOthersThanRecords))) return;
-    tested->Start(context.pixel);
+    tested->Start(context.pixel, context.sample);
     context.tested = tested;
   }
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/byte_stream.h"
 #include "base/error.h"
@@ -59,7 +60,11 @@ void SelectionTest::Decide(uint32_t samples) {
   // The first factors are made of these samples and tested on the next ones.
   const bool isTested = samples_ > 0 && !always_;
   samples_ = samples;
-  for (const TestedSample& sample : latest_) blocks_.Add(sample.pixel, static_cast<double>(sample.found));
+  // Sums are the same for any number of threads, and for any division into passes.
+  std::stable_sort(latest_.begin(), latest_.end(), [](const TestedSample& a, const TestedSample& b) {
+    return std::pair(a.sample, a.pixel) < std::pair(b.sample, b.pixel);
+  });
+  for (const TestedSample& sample : latest_) blocks_.Add(sample.pixel, sample.found);
   if (isTested) {
     const std::vector<double> scales = blocks_.Scales();
     GainEstimate gain;
@@ -67,7 +72,7 @@ void SelectionTest::Decide(uint32_t samples) {
     for (const TestedSample& sample : latest_) {
       const size_t block = blocks_.Of(sample.pixel);
       const double scale = scales[block] * scales[block];
-      const double square = static_cast<double>(sample.found) * static_cast<double>(sample.found);
+      const double square = sample.found * sample.found;
       gain.Add(scale * (square + sample.unlearned), scale * (square + sample.learned));
       ofMeans += scale * blocks_.SquaredMean(block);
     }

@@ -18,8 +18,9 @@ class ByteReader;
 class ByteWriter;
 
 struct TestedSample {
-  uint32_t pixel = 0;  // y · width + x
-  float found = 0;     // mean of the channels, W/(m² sr)
+  uint32_t pixel = 0;   // y · width + x
+  uint32_t sample = 0;  // index in the pixel
+  double found = 0;     // mean of the channels, W/(m² sr)
   // By how much its second moment would be larger, if lights were chosen without the factors and with them.
   double unlearned = 0, learned = 0;
 };
@@ -30,7 +31,7 @@ class TestedSamples {
   void SetFraction(double fraction) { fraction_ = fraction; }
   // True for that fraction of the samples. `decider`: uniform bits that depend on the sample alone.
   bool Wants(uint64_t decider) const { return static_cast<double>(decider >> 11) * 0x1p-53 < fraction_; }
-  void Start(uint32_t pixel) { samples_.push_back({pixel, 0, 0, 0}); }
+  void Start(uint32_t pixel, uint32_t sample) { samples_.push_back({pixel, sample, 0, 0, 0}); }
   // Of the last sample: a light sample of this radiance, chosen with the density `chosen`.
   void Add(float radiance, float chosen, float unlearned, float learned) {
     const double square = static_cast<double>(radiance) * static_cast<double>(radiance);
@@ -38,7 +39,7 @@ class TestedSamples {
     samples_.back().unlearned += added(unlearned);
     samples_.back().learned += added(learned);
   }
-  void End(float found) { samples_.back().found = found; }
+  void End(float found) { samples_.back().found = static_cast<double>(found); }
   std::span<const TestedSample> All() const { return samples_; }
 
  private:
@@ -55,7 +56,7 @@ class SelectionTest {
 
   // The fraction of the samples that is tested, and from which selection learns, until the next milestone.
   double Fraction() const;
-  // Adds the tested samples of a pass.
+  // Adds the tested samples of a pass, in any order.
   void Learn(std::span<const TestedSamples> samples);
   // Called at milestones, after `samples` samples per pixel.
   void Decide(uint32_t samples);

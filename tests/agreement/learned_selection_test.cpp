@@ -176,7 +176,7 @@ TEST(SelectionTest, TellsTheRatioOfVariances) {
   for (int i = 0; i < 2000; ++i) {
     const bool isFirst = i % 2 == 0;
     const float radiance = isFirst ? 2.0f : 6.0f;
-    samples.Start(static_cast<uint32_t>(i % 16));
+    samples.Start(static_cast<uint32_t>(i % 16), static_cast<uint32_t>(i / 16));
     samples.Add(radiance, 0.5f, 0.5f, isFirst ? 0.4f : 0.6f);
     samples.End(radiance);
   }
@@ -190,11 +190,12 @@ TEST(SelectionTest, TellsTheRatioOfVariances) {
   EXPECT_TRUE(test.IsUsed());
 }
 
-// Neither threads nor the lengths of passes show.
+// Neither threads nor the lengths of passes show, whether what is learned is used from the start or once it pays.
 TEST(LearnedSelectionBytes, AreThoseOfOneThread) {
   Diagnostics diagnostics(Diagnostics::Mode::Collect);
-  for (const char* integrator : {"path", "bdpt"}) {
+  for (const auto& [integrator, always] : {std::pair("path", true), {"bdpt", true}, {"path", false}, {"bdpt", false}}) {
     RenderOverrides overrides = Learning(true);
+    overrides.values["learn-always"] = always;
     overrides.integrator = integrator;
     const BuiltScene built = BuildScene(ParseScene(TwoRooms(), "test.pbrt", diagnostics), overrides, true, diagnostics);
     const Image one = RenderBuilt(built, 13, 1).image;
