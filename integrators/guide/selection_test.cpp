@@ -19,14 +19,14 @@ constexpr size_t kMostTested = size_t{1} << 25;  // of a file
 // Least gain for which learned selection is used: it takes up to half as long again, because clusters of the tree in
 // which lights seem alike are descended into; a sixth at most where samples have light paths, too. A selection that is
 // in use stays in use down to this part of that gain above 1.
-constexpr double kWorthwhile = 1.3, kWorthwhileForBoth = 1.15, kStays = 0.8;
+constexpr double kPays = 1.3, kPaysForBoth = 1.15, kStaysInUse = 0.8;
 // Standard deviations by which the gain is above what is worthwhile, and by which it is below what is promising before
-// learning ends early: after kHopeless samples per pixel. It ends after kLearned, when most has been learned.
-constexpr double kSure = 1, kSurelyNot = 2;
-constexpr double kPromising = 1.1;
-constexpr uint32_t kHopeless = 2, kLearned = 64;
+// learning ends early: after kNeverPays samples per pixel. It ends after kAllLearned, when most has been learned.
+constexpr double kSureThatItPays = 1, kSureThatNot = 2;
+constexpr double kMayPay = 1.1;
+constexpr uint32_t kNeverPays = 2, kAllLearned = 64;
 // Smallest effective number of samples for a verdict.
-constexpr double kFewestTested = 16;
+constexpr double kFewestOfVerdict = 16;
 
 }  // namespace
 
@@ -38,7 +38,7 @@ SelectionTest::SelectionTest(int width, int height, size_t rendered, bool isBidi
       blocks_(width, height) {}
 
 double SelectionTest::Worthwhile() const {
-  return isBidirectional_ ? kWorthwhileForBoth : kWorthwhile;
+  return isBidirectional_ ? kPaysForBoth : kPays;
 }
 
 double SelectionTest::Fraction() const {
@@ -77,13 +77,13 @@ void SelectionTest::Decide(uint32_t samples) {
       ofMeans += scale * blocks_.SquaredMean(block);
     }
     gain.SetSquaredMeans(ofMeans);
-    if (gain.EffectiveCount() >= kFewestTested) {
+    if (gain.EffectiveCount() >= kFewestOfVerdict) {
       gain_ = gain.Ratio();
-      isUsed_ = isUsed_ ? gain_ - 1 > kStays * (Worthwhile() - 1) : gain.Bound(-kSure) > Worthwhile();
-      if (!isUsed_ && samples >= kHopeless && gain.Bound(kSurelyNot) < kPromising) isLearning_ = false;
+      isUsed_ = isUsed_ ? gain_ - 1 > kStaysInUse * (Worthwhile() - 1) : gain.Bound(-kSureThatItPays) > Worthwhile();
+      if (!isUsed_ && samples >= kNeverPays && gain.Bound(kSureThatNot) < kMayPay) isLearning_ = false;
     }
   }
-  if (samples >= kLearned) isLearning_ = false;
+  if (samples >= kAllLearned) isLearning_ = false;
   latest_.clear();
 }
 
