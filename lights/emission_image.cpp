@@ -9,8 +9,8 @@ EmissionImage::EmissionImage(const ParameterList& parameters, const std::string&
   if (file.empty()) return;
   const FileLocation where = parameters.WhereOf(name);
   if (!build.textures) throw Error(where, "no images can be read here: \"" + file + "\"");
-  *this =
-      EmissionImage(build.textures->GetImage(file, ImageEncoding::Automatic, where), file, where, build.diagnostics);
+  const auto read = build.textures->GetImage(file, ImageEncoding::Automatic, where);
+  *this = EmissionImage(build.textures->InRec709(read, WhiteHandling::Keep), file, where, build.diagnostics);
 }
 
 EmissionImage::EmissionImage(std::shared_ptr<const Image> image, const std::string& name, const FileLocation& where,
@@ -28,7 +28,7 @@ EmissionImage::EmissionImage(std::shared_ptr<const Image> image, const std::stri
     r_ = static_cast<size_t>(r);
     g_ = static_cast<size_t>(g);
     b_ = static_cast<size_t>(b);
-  } else if (image_->HasRgb() || channels <= 2) {  // gray
+  } else if (image_->HasRgb()) {  // gray
     r_ = g_ = b_ = static_cast<size_t>(std::max(0, image_->ChannelIndex("Y")));
   } else {
     throw Error(where, "\"" + name + "\" has neither R, G and B channels nor is it gray");

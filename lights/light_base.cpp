@@ -114,11 +114,15 @@ ParameterList MergeParameters(const ParameterList& base, const ParameterList& ch
       merged.push_back(change);
     }
   }
-  return {base.Where(), base.Owner(), std::move(merged)};
+  ParameterList list(base.Where(), base.Owner(), std::move(merged));
+  list.SetColorSpace(base.ColorSpace());
+  return list;
 }
 
 Color ReadEmissionColor(const ParameterList& parameters, const std::string& name, const Color& defaultValue) {
-  const Color color = parameters.GetColor(name, defaultValue, SpectrumRole::Illuminant);
+  const bool isOfSpace = name == "L" || name == "I";
+  const Color color =
+      parameters.GetColor(name, isOfSpace ? parameters.White() : defaultValue, SpectrumRole::Illuminant);
   if (!color.IsValid()) {
     throw Error(parameters.WhereOf(name), parameters.Owner() + ": \"" + name + "\" must not be negative or infinite");
   }

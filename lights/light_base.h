@@ -59,7 +59,8 @@ LightSettings ReadLightSettings(const ParameterList& parameters);
 // `base` with parameters replaced by those of the same name in `changes`, or added.
 ParameterList MergeParameters(const ParameterList& base, const ParameterList& changes);
 
-// A colour of light. Throws an Error if a channel is negative.
+// A colour of light. "L" and "I" are the white of the statement's colour space by default. Throws an Error if a channel
+// is negative.
 Color ReadEmissionColor(const ParameterList& parameters, const std::string& name,
                         const Color& defaultValue = Color(1.0f));
 

@@ -127,7 +127,7 @@ struct Pass {
   // Tested samples of `parts` parts of a pass, which begin without any.
   std::vector<TestedSamples> MakeTested(size_t parts) const {
     std::vector<TestedSamples> tested(selection ? parts : 0);
-    for (TestedSamples& part : tested) part.SetFraction(selection->Fraction());
+    for (TestedSamples& part : tested) part.SetFraction(selection->Fraction(), selection->Tests());
     return tested;
   }
   // `context`: of the sample of index `sample` of a pixel; null `records`: not recorded; null `tested`: not tested.

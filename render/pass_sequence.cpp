@@ -102,6 +102,7 @@ void PassSequence::Learn(uint32_t samples) {
     selection_->Decide(samples);
     learning_->Freeze();
     if (!selection_->IsLearning()) learning_->StopRecording();
+    if (!selection_->IsLearning() && !selection_->IsUsed()) learning_->Forget();
     changesDensities = wasUsed || selection_->IsUsed();
   }
   if (guiding_ && guiding_->IsRecording() && guiding_->Decide(samples)) changesDensities = true;

@@ -28,8 +28,9 @@ void SetGroup(StatementDescription& statement, const std::string& group,
   added.name = "lightGroup";
   added.where = statement.where;
   added.strings = {group};
-  if (all.size() > 1) added.colorSpace = all.front().colorSpace;
+  const RgbColorSpace space = statement.parameters.ColorSpace();
   statement.parameters = ParameterList(statement.where, statement.parameters.Owner(), std::move(all), sceneFile);
+  statement.parameters.SetColorSpace(space);
 }
 
 std::string PlaceText(const FileLocation& where) {

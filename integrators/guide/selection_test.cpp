@@ -15,18 +15,19 @@ namespace {
 // Samples tested between two milestones: while what is learned is not used, and while it is. One costs as much as two
 // or three others, so that learning is a few percent of a short render.
 constexpr double kTested = 1 << 12, kTestedInUse = 1 << 14;
-constexpr size_t kMostTested = size_t{1} << 25;  // of a file
+constexpr size_t kMostTested = size_t{1} << 20;  // of a file
 // Least gain for which learned selection is used: it takes up to half as long again, because clusters of the tree in
 // which lights seem alike are descended into; a sixth at most where samples have light paths, too. A selection that is
 // in use stays in use down to this part of that gain above 1.
 constexpr double kPays = 1.3, kPaysForBoth = 1.15, kStaysInUse = 0.8;
 // Standard deviations by which the gain is above what is worthwhile, and by which it is below what is promising before
-// learning ends early: after kNeverPays samples per pixel. It ends after kAllLearned, when most has been learned.
-constexpr double kSureThatItPays = 1, kSureThatNot = 2;
+// learning ends early: after kNeverPays samples per pixel; or after kFindsNothing, if the samples found too little for
+// a verdict. It ends after kAllLearned, when most has been learned.
+constexpr double kSureThatItPays = 2, kSureThatNot = 2;
 constexpr double kMayPay = 1.1;
-constexpr uint32_t kNeverPays = 2, kAllLearned = 64;
+constexpr uint32_t kNeverPays = 2, kFindsNothing = 16, kAllLearned = 64;
 // Smallest effective number of samples for a verdict.
-constexpr double kFewestOfVerdict = 16;
+constexpr double kFewestOfVerdict = 64;
 
 }  // namespace
 
@@ -81,6 +82,8 @@ void SelectionTest::Decide(uint32_t samples) {
       gain_ = gain.Ratio();
       isUsed_ = isUsed_ ? gain_ - 1 > kStaysInUse * (Worthwhile() - 1) : gain.Bound(-kSureThatItPays) > Worthwhile();
       if (!isUsed_ && samples >= kNeverPays && gain.Bound(kSureThatNot) < kMayPay) isLearning_ = false;
+    } else if (!isUsed_ && samples >= kFindsNothing) {
+      isLearning_ = false;
     }
   }
   if (samples >= kAllLearned) isLearning_ = false;

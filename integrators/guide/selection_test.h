@@ -28,22 +28,32 @@ struct TestedSample {
 // The tested samples of one thread's share of a pass.
 class TestedSamples {
  public:
-  void SetFraction(double fraction) { fraction_ = fraction; }
+  // `tests`: false: the samples are learned from, but nothing is kept of them.
+  void SetFraction(double fraction, bool tests) {
+    fraction_ = fraction;
+    tests_ = tests;
+  }
+  bool Tests() const { return tests_; }
   // True for that fraction of the samples. `decider`: uniform bits that depend on the sample alone.
   bool Wants(uint64_t decider) const { return static_cast<double>(decider >> 11) * 0x1p-53 < fraction_; }
-  void Start(uint32_t pixel, uint32_t sample) { samples_.push_back({pixel, sample, 0, 0, 0}); }
-  // Of the last sample: a light sample of this radiance, chosen with the density `chosen`.
+  void Start(uint32_t pixel, uint32_t sample) {
+    if (tests_) samples_.push_back({pixel, sample, 0, 0, 0});
+  }
+  // Of the last sample, if it is tested: a light sample of this radiance, chosen with the density `chosen`.
   void Add(float radiance, float chosen, float unlearned, float learned) {
     const double square = static_cast<double>(radiance) * static_cast<double>(radiance);
     const auto added = [&](float density) { return square * (static_cast<double>(chosen / density) - 1); };
     samples_.back().unlearned += added(unlearned);
     samples_.back().learned += added(learned);
   }
-  void End(float found) { samples_.back().found = static_cast<double>(found); }
+  void End(float found) {
+    if (tests_) samples_.back().found = static_cast<double>(found);
+  }
   std::span<const TestedSample> All() const { return samples_; }
 
  private:
   double fraction_ = 0;
+  bool tests_ = true;
   std::vector<TestedSample> samples_;
 };
 
@@ -61,6 +71,8 @@ class SelectionTest {
   // Called at milestones, after `samples` samples per pixel.
   void Decide(uint32_t samples);
 
+  // False: what is learned is used without a test.
+  bool Tests() const { return !always_; }
   // True until enough is known; learning takes time.
   bool IsLearning() const { return isLearning_; }
   bool IsUsed() const { return isUsed_; }

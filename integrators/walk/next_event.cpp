@@ -69,7 +69,7 @@ Color SampleLight(const SampleContext& context, const NextEventSettings& setting
   if (hasMedia) weight = visitor.Weigh(connection);
   const Color contribution = value * (weight * survivalWeight);
   visitor.Arrived(connection, value, contribution);
-  if (context.tested && settings.learns) [[unlikely]]
+  if (context.tested && settings.learns && context.tested->Tests()) [[unlikely]]
     Test(lighting, vertex.receiver, direct, contribution, *context.tested);
   return contribution;
 }

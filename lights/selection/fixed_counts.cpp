@@ -72,9 +72,10 @@ class FixedCountSelector final : public LightSelector {
   }
 
   bool Learns() const override { return others_ && others_->Learns(); }
-  void Record(LightLearning& learning, const Receiver& receiver, uint32_t light, int patch,
-              double irradiance) const override {
-    if (others_ && counts_[light] == 0) others_->Record(learning, receiver, OtherIndexOf(light), patch, irradiance);
+  void Record(LightLearning& learning, const Receiver& receiver, const SelectionSettings& settings, uint32_t light,
+              int patch, double irradiance) const override {
+    if (others_ && counts_[light] == 0)
+      others_->Record(learning, receiver, settings, OtherIndexOf(light), patch, irradiance);
   }
 
   bool SelectsPatches(const Receiver& receiver) const override { return whole_->SelectsPatches(receiver); }

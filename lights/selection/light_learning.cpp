@@ -90,6 +90,11 @@ void LightLearning::Freeze() {
   });
 }
 
+void LightLearning::Forget() {
+  CopyFrom(LightLearning({center_, kCells / cellsPerUnit_}));
+  isRecording_ = false;
+}
+
 void LightLearning::CopyFrom(const LightLearning& other) {
   isRecording_ = other.isRecording_;
   const auto copy = [&](size_t row) {

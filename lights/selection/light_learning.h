@@ -44,6 +44,8 @@ class LightLearning {
   // Ends recording, to save its time.
   void StopRecording() { isRecording_ = false; }
   bool IsRecording() const { return isRecording_; }
+  // Ends recording, and forgets all. Not concurrently with selection or recording.
+  void Forget();
 
   // Copies the state of another one of the same scene. Not concurrently with the use of either.
   void CopyFrom(const LightLearning& other);

@@ -17,6 +17,8 @@ constexpr int kWidth = LightTree::kWidth;
 // kAlike: variance that sampling a cluster by intensity and trend may add, relative to the square of its contribution.
 // kSteepest: largest relative change of the trend over the radius, so that few proposals are rejected.
 constexpr float kAlike = 0.004f, kSteepest = 0.75f;
+// Least learned factor of an importance.
+constexpr float kLeastFactor = 0.2f;
 
 double SumOf(const float* weights) {
   double sum = 0;
@@ -41,10 +43,12 @@ uint32_t Choose(const float* weights, double sum, double& u) {
   return static_cast<uint32_t>(slot);
 }
 
-// Learned factors of the children of a node whose own factor is `parentFactor`.
+// Learned factors of the children of a node whose own factor is `parentFactor`. A region may be on both sides of
+// something small: what is occluded in most of it may light the rest. The least factor bounds what such a light weighs.
 Lanes Learned(const TreeReceiver& receiver, uint32_t node, float parentFactor) {
   const LightLearning::Row& row = receiver.learning->RowOf(receiver.region, node);
-  return simd::sqrt(Load(row.known) + parentFactor * parentFactor * (1 - Load(row.learned)));
+  const Lanes factor = simd::sqrt(Load(row.known) + parentFactor * parentFactor * (1 - Load(row.learned)));
+  return simd::max(factor, Lanes(kLeastFactor));
 }
 
 }  // namespace

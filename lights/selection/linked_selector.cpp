@@ -80,10 +80,12 @@ class LinkedSelector final : public LightSelector {
     return part->selector->SegmentProbability(segment, LightsOfSet(lights, part->lights), *own, patch);
   }
 
-  bool Learns() const override { return all_->Learns(); }
-  void Record(LightLearning& learning, const Receiver& receiver, uint32_t light, int patch,
-              double irradiance) const override {
-    if (!PartOf(receiver.link)) all_->Record(learning, receiver, light, patch, irradiance);
+  bool Learns() const override {
+    return all_->Learns() && std::find(setOfClass_.begin(), setOfClass_.end(), kAllLights) != setOfClass_.end();
+  }
+  void Record(LightLearning& learning, const Receiver& receiver, const SelectionSettings& settings, uint32_t light,
+              int patch, double irradiance) const override {
+    if (!PartOf(receiver.link)) all_->Record(learning, receiver, settings, light, patch, irradiance);
   }
 
   bool SelectsPatches(const Receiver& receiver) const override {

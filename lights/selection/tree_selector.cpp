@@ -95,12 +95,15 @@ class TreeSelector final : public LightSelector {
     });
   }
 
+  // Lights at infinity are not told apart by what is learned.
   bool Learns() const override {
-    return std::is_same_v<Search, LightTree> && !(search_.IsEmpty() && farTable_.IsZero());
+    const bool hasChoice = emitters_.first.back() - emitters_.far.size() > 1 || !farTable_.IsZero();
+    return std::is_same_v<Search, LightTree> && !search_.IsEmpty() && hasChoice;
   }
-  void Record(LightLearning& learning, const Receiver& receiver, uint32_t light, int patch,
-              double irradiance) const override {
-    const TreeReceiver place = Place(receiver, &learning);
+  void Record(LightLearning& learning, const Receiver& receiver, const SelectionSettings& settings, uint32_t light,
+              int patch, double irradiance) const override {
+    TreeReceiver place = Place(receiver, settings.learned);
+    place.region = learning.RegionOf(receiver);
     const std::optional<uint32_t> at = FarIndexOf(light);
     if (at) {
       const float within = farTable_.Probability(*at).value;

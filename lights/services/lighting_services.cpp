@@ -205,7 +205,7 @@ void LightingServices::RecordResult(const Receiver& receiver, const DirectSample
     const float radiance = std::max((sample.diffuse * arrived).Average(), (sample.specular * arrived).Average());
     irradiance = static_cast<double>(radiance * cosine / sample.pdfDirect.value);
   }
-  selector_->Record(*learning_, receiver, direct.light, direct.patch, irradiance);
+  selector_->Record(*learning_, receiver, Selection(), direct.light, direct.patch, irradiance);
 }
 
 LightingServices::Selections LightingServices::SelectionsOf(const Receiver& receiver,

@@ -140,8 +140,7 @@ const ParameterList& EditableScene::ParametersOf(size_t statement) const {
 }
 
 RgbColorSpace EditableScene::ColorSpaceOf(size_t statement) const {
-  const std::vector<Parameter>& parameters = OriginalOf(statement).All();
-  return parameters.empty() ? RgbColorSpace::Srgb : parameters.front().colorSpace;
+  return OriginalOf(statement).ColorSpace();
 }
 
 // True if the shapes have to be built again: parameters of a light with a surface of its own, and cameraVisible.
@@ -187,6 +186,7 @@ void EditableScene::Describe(const Edits& edits) {
       std::vector<Parameter> all = original.All();
       for (const auto& [name, parameter] : edited->second) Put(all, parameter);
       description.parameters = ParameterList(original.Where(), original.Owner(), std::move(all), sceneFile);
+      description.parameters.SetColorSpace(original.ColorSpace());
     }
   }
 }

@@ -28,11 +28,13 @@ int PositiveInteger(const ParameterList& parameters, const std::string& name, in
 constexpr int kMaxResolution = 1 << 16;
 constexpr int kMaxSamples = 1 << 30;
 
+// In float, as pbrt-v4: 0.55 of 100 pixels are 55, and more than that in double. Bounds may be in any order.
 PixelRect CropFromFractions(double x0, double x1, double y0, double y1, int width, int height) {
   const auto pixel = [](double fraction, int size) {
-    return static_cast<int>(std::ceil(std::clamp(fraction, 0.0, 1.0) * size));
+    return static_cast<int>(std::ceil(std::clamp(static_cast<float>(fraction), 0.0f, 1.0f) * static_cast<float>(size)));
   };
-  return {pixel(x0, width), pixel(y0, height), pixel(x1, width), pixel(y1, height)};
+  return {pixel(std::min(x0, x1), width), pixel(std::min(y0, y1), height), pixel(std::max(x0, x1), width),
+          pixel(std::max(y0, y1), height)};
 }
 
 PixelRect ParseCrop(const std::string& text, int width, int height) {

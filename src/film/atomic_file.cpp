@@ -1,6 +1,7 @@
 // Temporary names contain the process id: two processes that write the same file do not share one.
 #include "film/atomic_file.h"
 
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -36,6 +37,9 @@ AtomicFile::AtomicFile(const std::filesystem::path& path) : path_(path) {
   errno = 0;
   file_ = std::fopen(temporary_.c_str(), "wb");
   if (!file_) Fail(errno);
+  // What only some may read stays so.
+  if (std::filesystem::is_regular_file(there))
+    (void)fchmod(fileno(file_), static_cast<mode_t>(there.permissions() & std::filesystem::perms::mask));
 }
 
 AtomicFile::~AtomicFile() {

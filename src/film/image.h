@@ -2,9 +2,11 @@
 // OpenImageIO, which is loaded when such a file is first used (src/film/image_module.cpp).
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +24,8 @@ struct Image {
   std::map<std::string, std::string> metadata;
   int offsetX = 0, offsetY = 0;       // of the data window (a crop) in the full image
   int fullWidth = 0, fullHeight = 0;  // display window; 0: width and height
+  // Of the primaries and the white that R, G and B are relative to: x, y of red, green, blue, white. Absent: not said.
+  std::optional<std::array<double, 8>> chromaticities;
 
   Image() = default;
   Image(int w, int h, std::vector<std::string> channelNames);

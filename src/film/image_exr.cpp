@@ -6,6 +6,7 @@
 #include <ImfIO.h>
 #include <ImfInputFile.h>
 #include <ImfOutputFile.h>
+#include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
 #include <half.h>
 
@@ -74,6 +75,16 @@ Image ReadOpenExr(const std::filesystem::path& path) {
   for (auto i = header.begin(); i != header.end(); ++i) {
     const auto* text = dynamic_cast<const Imf::StringAttribute*>(&i.attribute());
     if (text) image.metadata[i.name()] = text->value();
+  }
+
+  if (Imf::hasChromaticities(header)) {
+    const Imf::Chromaticities& c = Imf::chromaticities(header);
+    image.chromaticities.emplace();
+    const Imath::V2f all[] = {c.red, c.green, c.blue, c.white};
+    for (size_t i = 0; i < 4; ++i) {
+      (*image.chromaticities)[2 * i] = static_cast<double>(all[i].x);
+      (*image.chromaticities)[2 * i + 1] = static_cast<double>(all[i].y);
+    }
   }
 
   Imf::FrameBuffer frame;

@@ -105,7 +105,7 @@ FloatParameter InRange(const MaterialInput& input, const std::string& name, floa
 
 Pigment ReadPigment(const MaterialInput& input) {
   Pigment pigment;
-  pigment.sigmaA = input.textures.FindColor(input.parameters, "sigma_a", SpectrumRole::Unbounded);
+  pigment.sigmaA = input.textures.FindColor(input.parameters, "sigma_a", SpectrumRole::Extinction);
   const char* used = pigment.sigmaA ? "sigma_a" : nullptr;
   const auto isTaken = [&](const char* name) {
     if (!input.parameters.Find(name)) return false;

@@ -53,8 +53,8 @@ std::shared_ptr<const Medium> MakeHomogeneous(const MediumInput& input) {
   colors.radiance = GetEmittedRadiance(parameters) * colors.radianceScale;
   if (parameters.GetString("preset", "").empty()) {
     colors.coefficientScale = GetNonNegative(parameters, "scale", 1);
-    colors.absorptionCurve = parameters.FindCurve("sigma_a", SpectrumRole::Unbounded);
-    colors.scatteringCurve = parameters.FindCurve("sigma_s", SpectrumRole::Unbounded);
+    colors.absorptionCurve = parameters.FindCurve("sigma_a", SpectrumRole::Extinction);
+    colors.scatteringCurve = parameters.FindCurve("sigma_s", SpectrumRole::Extinction);
   }
   colors.radianceCurve = parameters.FindCurve("Le", SpectrumRole::Illuminant);
   parameters.CheckAllUsed({}, {"type", "preset", "sigma_a", "sigma_s", "scale", "g", "Le", "Lescale"},

@@ -34,8 +34,8 @@ ScatteringParameters GetScattering(const ParameterList& parameters, bool hasPres
     result.absorption = measured->absorption;
     result.scattering = measured->scattering;
   } else {
-    result.absorption = parameters.GetColor("sigma_a", result.absorption, SpectrumRole::Unbounded);
-    result.scattering = parameters.GetColor("sigma_s", result.scattering, SpectrumRole::Unbounded);
+    result.absorption = parameters.GetColor("sigma_a", result.absorption, SpectrumRole::Extinction);
+    result.scattering = parameters.GetColor("sigma_s", result.scattering, SpectrumRole::Extinction);
   }
   if (hasScale) {
     const float scale = GetNonNegative(parameters, "scale", 1);

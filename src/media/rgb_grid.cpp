@@ -47,8 +47,8 @@ RgbGridData ReadRgbGrid(const MediumInput& input) {
   const ParameterList& parameters = input.Parameters();
   RgbGridData data;
   data.resolution = GetGridResolution(parameters);
-  data.absorption = GetColorVoxels(input, "sigma_a", data.resolution, SpectrumRole::Unbounded);
-  data.scattering = GetColorVoxels(input, "sigma_s", data.resolution, SpectrumRole::Unbounded);
+  data.absorption = GetColorVoxels(input, "sigma_a", data.resolution, SpectrumRole::Extinction);
+  data.scattering = GetColorVoxels(input, "sigma_s", data.resolution, SpectrumRole::Extinction);
   data.radiance = GetColorVoxels(input, "Le", data.resolution, SpectrumRole::Illuminant);
   if (data.absorption.empty() && data.scattering.empty()) {
     throw Error(parameters.Where(),

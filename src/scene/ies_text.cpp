@@ -156,12 +156,16 @@ double ReadTiltFactor(IesText& text) {
   return factors[above - 1] + t * (factors[above] - factors[above - 1]);
 }
 
+std::filesystem::path TiltFile(const IesText& text, const std::string& setting) {
+  return std::filesystem::path(text.Name()).parent_path() / setting;
+}
+
 double TiltFactor(IesText& text, const std::string& setting, const FileLocation& where) {
   const std::string upper = Upper(setting);
   if (upper == "NONE") return 1;
   if (upper == "INCLUDE") return ReadTiltFactor(text);
   if (setting.empty()) throw Error(where, "TILT= has to be followed by NONE, INCLUDE or the name of a file");
-  const std::filesystem::path file = std::filesystem::path(text.Name()).parent_path() / setting;
+  const std::filesystem::path file = TiltFile(text, setting);
   const std::string contents = ReadTextFile(file, where);
   IesText tilt(contents, file.string());
   return ReadTiltFactor(tilt);
@@ -193,6 +197,19 @@ Labels ReadLabels(IesText& text) {
 }
 
 }  // namespace
+
+std::string TiltFileOf(const std::string& iesFile) {
+  try {
+    const std::string contents = ReadTextFile(iesFile, {});
+    IesText text(contents, iesFile);
+    const Labels labels = ReadLabels(text);
+    const std::string upper = Upper(labels.tilt);
+    if (upper == "NONE" || upper == "INCLUDE" || upper.empty()) return "";
+    return TiltFile(text, labels.tilt).string();
+  } catch (const Error&) {
+    return "";  // told of when the light is made
+  }
+}
 
 IesFile ParseIesFile(const std::string& source, const std::string& name) {
   if (source.starts_with("\xff\xfe") || source.starts_with("\xfe\xff"))

@@ -21,6 +21,9 @@ struct IesFile {
   FileLocation verticalWhere, horizontalWhere;  // of the first angle
 };
 
+// The file that the tilt of an IES file is in; "": it is in none, or the file cannot be read.
+std::string TiltFileOf(const std::string& iesFile);
+
 // Throws located Errors.
 IesFile ParseIesFile(const std::string& text, const std::string& name);
 

@@ -30,6 +30,11 @@ Color RgbToColor(const Parameter& parameter, size_t first, const std::string& ow
 
 }  // namespace
 
+Color ParameterList::White() const {
+  if (colorSpace_ == RgbColorSpace::Srgb) return Color(1.0f);
+  return ClampToGamut(ToRec709(Vector3d(1.0), colorSpace_, WhiteHandling::Keep));
+}
+
 std::vector<Color> ParameterList::ColorsOf(const Parameter& parameter, SpectrumRole role) const {
   std::vector<Color> colors;
   if (parameter.type == ParameterType::Rgb) {

@@ -54,7 +54,8 @@ struct Parameter {
 // The meaning of a colour, which determines how a spectrum becomes RGB ([Pharr23 §4.6]).
 enum class SpectrumRole {
   Albedo,      // reflectance: its colour under the white of the colour space
-  Unbounded,   // η, k, σ: averaged per channel
+  Unbounded,   // η, k: averaged per channel; beyond its samples a spectrum goes on as it ends
+  Extinction,  // σ: averaged per channel; 0 beyond the samples of a spectrum, as those of light and albedo
   Illuminant,  // light: the colour at luminance 1 of spectra and blackbodies (pbrt-v4's unit rule); rgb as given
 };
 
@@ -103,6 +104,11 @@ class ParameterList {
   // The parameter of any type, or null. Marks it as used.
   const Parameter* Find(const std::string& name) const;
 
+  // The colour space of the statement, and its white as light in Rec. 709: what lights emit that name no colour.
+  void SetColorSpace(RgbColorSpace space) { colorSpace_ = space; }
+  RgbColorSpace ColorSpace() const { return colorSpace_; }
+  Color White() const;
+
   const FileLocation& Where() const { return where_; }  // of the statement
   FileLocation WhereOf(const std::string& name) const;  // of the parameter; of the statement if absent
   const std::string& Owner() const { return owner_; }   // "Shape \"sphere\"", for messages
@@ -118,6 +124,7 @@ class ParameterList {
   std::string owner_;
   std::vector<Parameter> parameters_;
   std::shared_ptr<const std::string> sceneFile_;
+  RgbColorSpace colorSpace_ = RgbColorSpace::Srgb;
 
   const Parameter* FindTyped(const std::string& name, std::initializer_list<ParameterType> types) const;
   // The parameter, of one of `types`, with `perItem` numbers per item, or null if absent; exactly one item if `single`.

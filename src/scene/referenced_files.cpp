@@ -6,6 +6,7 @@
 #include <memory>
 #include <set>
 
+#include "scene/ies_text.h"
 #include "scene/text_file.h"
 
 namespace lampyr {
@@ -20,7 +21,12 @@ class Collector {
         if (text.empty() || text.find('\0') != std::string::npos) continue;
         std::string file = parameters.ResolveFile(text, parameter.where);
         std::error_code ignored;
-        if (std::filesystem::is_regular_file(file, ignored)) files_.insert(std::move(file));
+        if (!std::filesystem::is_regular_file(file, ignored)) continue;
+        if (parameter.name.ends_with("ies:file")) {
+          const std::string tilt = TiltFileOf(file);
+          if (std::filesystem::is_regular_file(tilt, ignored)) files_.insert(tilt);
+        }
+        files_.insert(std::move(file));
       }
     }
   }

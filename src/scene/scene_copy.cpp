@@ -131,7 +131,6 @@ class Copier {
     for (Token token = lexer.Next(); token.kind != TokenKind::End;) {
       Token next = lexer.Next();
       if (token.kind == TokenKind::Word) {
-        hasColorSpaces_ = hasColorSpaces_ || token.text == "ColorSpace";
         if ((token.text == "Include" || token.text == "Import") && next.kind == TokenKind::String && followsIncludes_)
           FollowInclude(edited, next, file);
         if (changes != waiting_.end()) {
@@ -185,10 +184,6 @@ class Copier {
     std::string added;
     for (const Parameter& parameter : change.parameters) {
       if (given.contains(parameter.name)) continue;
-      // The colour space there is known by the statement's own parameters alone.
-      if (parameter.type == ParameterType::Rgb && given.empty() && hasColorSpaces_)
-        throw Error(change.where,
-                    "under ColorSpace a colour is added to a statement with parameters only: give it one");
       added += " " + Written(parameter);
     }
     if (!added.empty()) edited.Replace(edited.End(type), edited.End(type), added);
@@ -200,7 +195,6 @@ class Copier {
   std::map<std::string, std::map<Place, const StatementChange*>> waiting_;  // by canonical file
   std::map<std::string, std::optional<fs::path>> copyOf_;
   bool followsIncludes_ = false;  // statements of included files are changed
-  bool hasColorSpaces_ = false;   // a statement so far changes it
   std::vector<CopiedFile> copies_;
 };
 

@@ -15,6 +15,10 @@ namespace {
 
 constexpr double kGrid = 1;  // nm
 
+bool IsUnbounded(SpectrumRole role) {
+  return role == SpectrumRole::Unbounded || role == SpectrumRole::Extinction;
+}
+
 // A piecewise linear spectrum at `lambda`. Beyond its ends it is 0, or constant if `continueEnds`.
 double Evaluate(const std::vector<SpectrumSample>& spectrum, double lambda, bool continueEnds) {
   const auto above = std::lower_bound(spectrum.begin(), spectrum.end(), lambda,
@@ -74,7 +78,7 @@ Color ToColor(const Vector3d& c) {
 
 Color FunctionToColor(const std::function<double(double)>& f, const std::vector<double>& wavelengths,
                       SpectrumRole role) {
-  if (role == SpectrumRole::Unbounded) {
+  if (IsUnbounded(role)) {
     const Vector3d sum = Integrate(wavelengths, [&](double l) { return ChannelWeights(l) * f(l); });
     return ToColor(sum / Integrate(wavelengths, ChannelWeights));
   }
@@ -103,7 +107,7 @@ Color SpectrumToColor(const std::vector<SpectrumSample>& spectrum, SpectrumRole 
   const auto f = [&](double lambda) { return Evaluate(spectrum, lambda, continueEnds) / largest; };
   const std::vector<double> wavelengths = GridOf(spectrum);
   if (role == SpectrumRole::Illuminant) return FunctionToColor(f, wavelengths, role);
-  if (role == SpectrumRole::Unbounded) return FunctionToColor(f, wavelengths, role) * static_cast<float>(largest);
+  if (IsUnbounded(role)) return FunctionToColor(f, wavelengths, role) * static_cast<float>(largest);
   const auto unscaled = [&](double lambda) { return std::min(1.0, Evaluate(spectrum, lambda, false)); };
   return FunctionToColor(unscaled, wavelengths, role);
 }
@@ -129,7 +133,7 @@ Color NormalizedBlackbody(double kelvin) {
 
 SpectralCurve CurveOfPower(const SpectralCurve& power, SpectrumRole role) {
   const double largest = power.Largest();
-  if (role == SpectrumRole::Unbounded || !(largest > 0)) return power;
+  if (IsUnbounded(role) || !(largest > 0)) return power;
   if (role == SpectrumRole::Albedo)
     return SpectralCurve([&](double wavelength) { return power.At(wavelength) / largest; });
   const SpectralCurve relative(
@@ -150,7 +154,7 @@ SpectralCurve CurveOf(const std::vector<SpectrumSample>& spectrum, SpectrumRole 
     return sum / kParts;
   });
   if (role == SpectrumRole::Illuminant) return CurveOfPower(curve, role);
-  if (role == SpectrumRole::Unbounded) return curve;
+  if (IsUnbounded(role)) return curve;
   return SpectralCurve([&](double wavelength) { return std::min(curve.At(wavelength), 1.0); });
 }
 

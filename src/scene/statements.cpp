@@ -154,7 +154,9 @@ ParameterList SceneParser::ReadList(const Token& statement, const std::string& o
       }
     }
   }
-  return {statement.where, owner, std::move(parameters), tokens_.SceneFile()};
+  ParameterList list(statement.where, owner, std::move(parameters), tokens_.SceneFile());
+  list.SetColorSpace(state_.colorSpace);
+  return list;
 }
 
 StatementDescription SceneParser::ReadTyped(const Token& statement, const char* attributeTarget) {

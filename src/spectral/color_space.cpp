@@ -1,5 +1,8 @@
 #include "spectral/color_space.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 
@@ -118,12 +121,36 @@ glm::dmat3 WhiteBalance(double kelvin) {
   return glm::inverse(toXyz) * Adaptation(white, kSpaces[0].white) * toXyz;
 }
 
+namespace {
+
+glm::dmat3 MatrixToRec709(const Primaries& space, WhiteHandling white) {
+  const glm::dmat3 toXyz = RgbToXyz(space);
+  const glm::dmat3 adapted = white == WhiteHandling::Adapt ? Adaptation(space.white, kSpaces[0].white) * toXyz : toXyz;
+  return glm::inverse(Rec709ToXyz()) * adapted;
+}
+
+}  // namespace
+
 Vector3d ToRec709(const Vector3d& rgb, RgbColorSpace from, WhiteHandling white) {
   if (from == RgbColorSpace::Srgb) return rgb;
-  const Primaries& space = kSpaces[static_cast<int>(from)];
-  Vector3d xyz = RgbToXyz(space) * rgb;
-  if (white == WhiteHandling::Adapt) xyz = Adaptation(space.white, kSpaces[0].white) * xyz;
-  return XyzToRec709(xyz);
+  return MatrixToRec709(kSpaces[static_cast<int>(from)], white) * rgb;
+}
+
+std::optional<glm::dmat3> MatrixToRec709(const std::array<double, 8>& c, WhiteHandling white) {
+  const Primaries& own = kSpaces[0];
+  const double known[] = {own.red.x,  own.red.y,  own.green.x, own.green.y,
+                          own.blue.x, own.blue.y, own.white.x, own.white.y};
+  constexpr double kSame = 1e-3;
+  bool isSame = true;
+  for (size_t i = 0; i < c.size(); ++i) isSame = isSame && std::abs(c[i] - known[i]) < kSame;
+  if (isSame || !(c[7] > 0)) return std::nullopt;
+  const glm::dmat3 matrix =
+      MatrixToRec709(Primaries{"", {c[0], c[1]}, {c[2], c[3]}, {c[4], c[5]}, {c[6], c[7]}}, white);
+  for (int column = 0; column < 3; ++column) {
+    for (int row = 0; row < 3; ++row)
+      if (!(std::abs(matrix[column][row]) < 1e6)) return std::nullopt;  // primaries in one line
+  }
+  return matrix;
 }
 
 Color ClampToGamut(const Vector3d& rgb) {

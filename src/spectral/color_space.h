@@ -1,6 +1,7 @@
 // The RGB colour spaces of scene files, and their conversion to the working space, linear Rec. 709 with a D65 white.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,6 +26,10 @@ enum class WhiteHandling {
 
 // Converts linear RGB of `from` to linear Rec. 709. Colours outside of the gamut get components below 0 or above 1.
 Vector3d ToRec709(const Vector3d& rgb, RgbColorSpace from, WhiteHandling white);
+
+// The matrix from linear RGB of the chromaticities x, y of red, green, blue and white to linear Rec. 709. nullopt: they
+// are those of Rec. 709 to three digits, or of no colour space.
+std::optional<glm::dmat3> MatrixToRec709(const std::array<double, 8>& chromaticities, WhiteHandling white);
 
 // Converts CIE 1931 XYZ (Y = 1 for white) to linear Rec. 709.
 Vector3d XyzToRec709(const Vector3d& xyz);

@@ -79,6 +79,7 @@ ParameterOf<Value> MakeScale(const TextureRequest& request) {
     const float factor = scale.Evaluate({});
     if (factor == 1) return texture;
     if (texture.IsConstant()) return texture.Evaluate({}) * factor;
+    if (auto scaled = texture.Scaled(factor)) return ParameterOf<Value>(std::move(scaled));
   }
   return ParameterOf<Value>(std::make_shared<ScaleTexture<Value>>(std::move(texture), std::move(scale)));
 }

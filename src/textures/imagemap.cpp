@@ -42,6 +42,11 @@ class ColorImageTexture : public ColorTexture {
     if (invert_) value = Color(1.0f) - value;
     return {Bounded(value.r), Bounded(value.g), Bounded(value.b)};
   }
+  std::shared_ptr<const ColorTexture> Scaled(float factor) const override {
+    auto scaled = std::make_shared<ColorImageTexture>(*this);
+    scaled->scale_ *= factor;
+    return scaled;
+  }
 
  private:
   float Bounded(float x) const { return std::clamp(x, 0.0f, largest_); }
@@ -101,7 +106,18 @@ ParameterOf<Value> MakeImageMap(const TextureRequest& request) {
   const float scale = static_cast<float>(parameters.GetFloat("scale", 1));
   const bool invert = parameters.GetBool("invert", false);
   const TextureMapping2D mapping = ReadMapping2D(request);
-  const std::shared_ptr<const Image> image = ReadTextureImage(request);
+  std::shared_ptr<const Image> image = ReadTextureImage(request);
+  if (!image->HasRgb()) {
+    std::string channels;
+    for (const std::string& channel : image->channels) channels += (channels.empty() ? "" : ", ") + channel;
+    throw Error(parameters.WhereOf("filename"),
+                "\"" + parameters.GetFile("filename") +
+                    "\" has no R, G and B channels, and is not gray: its channels are " + channels);
+  }
+  if constexpr (std::is_same_v<Value, Color>) {
+    const bool isLight = request.role == SpectrumRole::Illuminant;
+    image = request.library.InRec709(image, isLight ? WhiteHandling::Keep : WhiteHandling::Adapt);
+  }
   TexelLookup texels(image, static_cast<WrapMode>(wrap), filter != 1);
   if constexpr (std::is_same_v<Value, float>) {
     return FloatParameter(std::make_shared<FloatImageTexture>(mapping, std::move(texels), scale, invert));

@@ -22,6 +22,9 @@ class Texture {
  public:
   virtual ~Texture() = default;
   virtual Value Evaluate(const TextureContext& where) const = 0;
+  // The texture times a factor, if that differs from its values times the factor: those of images are scaled before
+  // they are bounded. Null: it does not differ.
+  virtual std::shared_ptr<const Texture> Scaled(float /*factor*/) const { return nullptr; }
 };
 using FloatTexture = Texture<float>;
 using ColorTexture = Texture<Color>;
@@ -35,6 +38,10 @@ class ParameterOf {
 
   bool IsConstant() const { return !texture_; }
   Value Evaluate(const TextureContext& where) const { return texture_ ? texture_->Evaluate(where) : constant_; }
+  // Texture::Scaled; null also of a constant.
+  std::shared_ptr<const Texture<Value>> Scaled(float factor) const {
+    return texture_ ? texture_->Scaled(factor) : nullptr;
+  }
 
  private:
   Value constant_{};
@@ -57,6 +64,10 @@ class ParameterOf<Color> {
     if (!texture_) return constant_;
     const Color color = texture_->Evaluate(where);
     return wavelengths_ ? wavelengths_->FromRgb(color) : color;
+  }
+  // Texture::Scaled; null also of a constant.
+  std::shared_ptr<const Texture<Color>> Scaled(float factor) const {
+    return texture_ ? texture_->Scaled(factor) : nullptr;
   }
   // The parameter at the wavelengths of a pass.
   void TuneTo(const std::shared_ptr<const Wavelengths>& wavelengths) {

@@ -14,6 +14,7 @@
 #include "scene/nesting.h"
 #include "scene/parameters.h"
 #include "scene/scene_description.h"
+#include "spectral/color_space.h"
 #include "textures/texture.h"
 
 namespace lampyr {
@@ -35,6 +36,9 @@ class TextureLibrary {
   std::optional<ColorParameter> FindColor(const ParameterList& parameters, const std::string& name,
                                           SpectrumRole role) const;
 
+  // An image of colours (R, G, B) in Rec. 709, whatever primaries and white it was written for (Image::chromaticities).
+  std::shared_ptr<const Image> InRec709(const std::shared_ptr<const Image>& image, WhiteHandling white) const;
+
   // An image file, read once and shared. Throws an Error at `where` if it cannot be read.
   std::shared_ptr<const Image> GetImage(const std::filesystem::path& file, ImageEncoding encoding,
                                         const FileLocation& where) const;
@@ -43,8 +47,8 @@ class TextureLibrary {
                                                  const FileLocation& where) const;
 
  private:
-  // A colour texture for the roles albedo, unbounded and illuminant, which determine how its spectra become RGB.
-  using ColorVariants = std::array<ColorParameter, 3>;
+  // A colour texture for each SpectrumRole, which determines how its spectra become RGB.
+  using ColorVariants = std::array<ColorParameter, 4>;
   template <class Value>
   struct Named {
     Value value;
@@ -57,6 +61,7 @@ class TextureLibrary {
 
   std::map<std::string, Named<FloatParameter>> floatTextures_;  // textures that do not vary are constants
   std::map<std::string, Named<ColorVariants>> colorTextures_;
+  mutable std::map<std::pair<std::shared_ptr<const Image>, WhiteHandling>, std::shared_ptr<const Image>> converted_;
   Nesting* beingMade_ = nullptr;       // of the texture being made
   std::vector<std::string> allNames_;  // of all textures of the scene, for messages
   mutable std::map<std::string, std::shared_ptr<const Image>> images_;

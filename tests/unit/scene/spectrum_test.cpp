@@ -61,6 +61,19 @@ TEST(Spectrum, ConstantReflectanceIsGrey) {
   ExpectColor(SpectrumToColor({{400, 3}, {700, 3}}, SpectrumRole::Unbounded), Color(3), 1e-5f);
 }
 
+// A dye that absorbs in a band absorbs nothing else; an index of refraction is measured in a part of the spectrum.
+TEST(Spectrum, ExtinctionIsZeroBeyondItsSamplesAndIndicesGoOn) {
+  const std::vector<SpectrumSample> band = {{500, 1}, {600, 1}};
+  const std::vector<SpectrumSample> whole = {{300, 0}, {499.99, 0}, {500, 1}, {600, 1}, {600.01, 0}, {900, 0}};
+  const Color extinction = SpectrumToColor(band, SpectrumRole::Extinction);
+  ExpectColor(extinction, SpectrumToColor(whole, SpectrumRole::Extinction), 1e-3f);
+  EXPECT_LT(extinction.b, 0.2f);
+  EXPECT_EQ(CurveOf(band, SpectrumRole::Extinction).At(450), 0);
+  EXPECT_EQ(CurveOf(band, SpectrumRole::Extinction).At(550), 1);
+  ExpectColor(SpectrumToColor(band, SpectrumRole::Unbounded), Color(1), 1e-6f);
+  EXPECT_EQ(CurveOf(band, SpectrumRole::Unbounded).At(450), 1);
+}
+
 TEST(Spectrum, UnboundedAveragesEachChannel) {
   const Color rising = SpectrumToColor({{400, 1}, {700, 4}}, SpectrumRole::Unbounded);
   // Mean wavelengths of the channels are near 450, 545 and 605 nm.

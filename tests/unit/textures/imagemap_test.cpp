@@ -2,10 +2,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 
 #include "film/srgb.h"
+#include "spectral/color_space.h"
 #include "support/temporary_folder.h"
 #include "texture_scene.h"
 #include "textures/texel_lookup.h"
@@ -145,6 +147,83 @@ TEST(ImageMap, BadChoices) {
               ::testing::StartsWith("test.pbrt:2:20: error: \"repaet\" is no wrap (did you mean \"repeat\"?)"));
   EXPECT_THAT(ErrorOf({MakeTexture("a", true, "imagemap", {file, StringValue("filter", "bilinaer")})}),
               ::testing::HasSubstr("bilinear"));
+}
+
+// As in pbrt-v4: an image is scaled before its values are bounded, whether by "scale" of its own or by a texture.
+TEST(ImageMap, ScaleTexturesScaleTheImage) {
+  const TemporaryFolder folder;
+  WriteExr(folder / "grid.exr", *Grid(), ExrPrecision::Float);
+  const Point2 at = Centre(2, 1);
+  const TextureScene scene(
+      {MakeTexture("i", true, "imagemap", {StringValue("filename", (folder / "grid.exr").string())}),
+       MakeTexture("t", true, "scale", {TextureName("tex", "i"), FloatValue("scale", 0.005)})});
+  EXPECT_NEAR(scene.Spectrum(SpectrumRole::Albedo).Evaluate({at, {}}).g, 0.56f, 1e-5f);
+  EXPECT_NEAR(scene.Spectrum(SpectrumRole::Albedo).Evaluate({at, {}}).r, 0.06f, 1e-5f);
+}
+
+// An OpenEXR file of one pixel, with chromaticities: x, y of red, green, blue and white.
+std::string ExrWithChromaticities(const Color& color, const std::array<float, 8>& chromaticities) {
+  std::string bytes("\x76\x2f\x31\x01\x02\0\0\0", 8);
+  const auto add = [&bytes](const auto& value) { bytes.append(reinterpret_cast<const char*>(&value), sizeof value); };
+  const auto attribute = [&](const std::string& name, const std::string& type, int32_t size) {
+    bytes += name + '\0' + type + '\0';
+    add(size);
+  };
+  attribute("channels", "chlist", 3 * 18 + 1);
+  for (const char* name : {"B", "G", "R"}) {
+    bytes += std::string(name) + '\0';
+    for (const int32_t value : {2, 0, 1, 1}) add(value);
+  }
+  bytes += '\0';
+  attribute("compression", "compression", 1);
+  bytes += '\0';
+  for (const char* name : {"dataWindow", "displayWindow"}) {
+    attribute(name, "box2i", 16);
+    for (int i = 0; i < 4; ++i) add(int32_t{0});
+  }
+  attribute("lineOrder", "lineOrder", 1);
+  bytes += '\0';
+  attribute("pixelAspectRatio", "float", 4);
+  add(1.0f);
+  attribute("screenWindowCenter", "v2f", 8);
+  add(0.0f);
+  add(0.0f);
+  attribute("screenWindowWidth", "float", 4);
+  add(1.0f);
+  attribute("chromaticities", "chromaticities", 32);
+  for (const float value : chromaticities) add(value);
+  bytes += '\0';
+  add(uint64_t{bytes.size() + 8});
+  add(int32_t{0});
+  add(int32_t{12});
+  for (const float value : {color.b, color.g, color.r}) add(value);
+  return bytes;
+}
+
+// The colours of an image are those of the primaries and the white that it names, as in pbrt-v4.
+TEST(ImageMap, ChromaticitiesOfFilesCount) {
+  const TemporaryFolder folder;
+  const Color given(0.6f, 0.4f, 0.3f);
+  const auto read = [&](const std::array<float, 8>& chromaticities, SpectrumRole role) {
+    WriteBytes(folder / "c.exr", ExrWithChromaticities(given, chromaticities));
+    const TextureScene scene("imagemap", true, {StringValue("filename", (folder / "c.exr").string())});
+    return scene.Spectrum(role).Evaluate({Point2(0.5f), {}});
+  };
+  const auto expect = [](const Color& color, const Vector3d& expected) {
+    EXPECT_NEAR(color.r, expected.x, 1e-5);
+    EXPECT_NEAR(color.g, expected.y, 1e-5);
+    EXPECT_NEAR(color.b, expected.z, 1e-5);
+  };
+  const Vector3d rgb(given.r, given.g, given.b);
+  for (const SpectrumRole role : {SpectrumRole::Albedo, SpectrumRole::Illuminant}) {
+    const WhiteHandling white = role == SpectrumRole::Albedo ? WhiteHandling::Adapt : WhiteHandling::Keep;
+    expect(read({0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f}, role), rgb);
+    expect(read({0.708f, 0.292f, 0.170f, 0.797f, 0.131f, 0.046f, 0.3127f, 0.3290f}, role),
+           ToRec709(rgb, RgbColorSpace::Rec2020, white));
+    expect(read({0.7347f, 0.2653f, 0, 1, 0.0001f, -0.0770f, 0.32168f, 0.33767f}, role),
+           ToRec709(rgb, RgbColorSpace::Aces2065, white));
+    expect(read({0.3f, 0.3f, 0.3f, 0.3f, 0.3f, 0.3f, 0.3f, 0.3f}, role), rgb);  // of no colour space
+  }
 }
 
 TEST(ImageMap, ImagesAreReadOnceAndShared) {

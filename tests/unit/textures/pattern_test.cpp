@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "texture_scene.h"
 #include "math/noise.h"
+#include "texture_scene.h"
 
 namespace lampyr {
 namespace {
@@ -64,6 +64,26 @@ TEST(Patterns, WorldToRenderMovesTextures) {
                            Transform::Translate({0.5, 0, 0}));
   EXPECT_EQ(scene.FloatAt(0, 0, {0.6f, 0.1f, 0.1f}), 1);  // world x 0.1
   EXPECT_EQ(scene.FloatAt(0, 0, {0.4f, 0.1f, 0.1f}), 0);  // world x -0.1
+}
+
+// Of the published permutation, so that patterns lie where those of other renderers do.
+TEST(Patterns, NoiseIsThatOfPerlin) {
+  EXPECT_NEAR(Noise({3.14f, 42, 7}), 0.136919959f, 1e-5f);
+  EXPECT_NEAR(Noise({-1.3f, 2.7f, 0.4f}), -0.118271942f, 1e-5f);
+  EXPECT_NEAR(Noise({10.25f, -20.5f, 300.75f}), -0.260715475f, 1e-5f);
+}
+
+// Which cells of pbrt-v4's "dots" have one, the top row first.
+TEST(Patterns, DotsAreInTheCellsOfPbrt) {
+  const char* const rows[] = {".#.....#", ".#.###.#", ".#######"};
+  const TextureScene scene("dots", false, {FloatValue("inside", 1), FloatValue("outside", 0)});
+  for (int row = 0; row < 3; ++row) {
+    for (int cell = 0; cell < 8; ++cell) {
+      // The middles of the cells, in which every dot lies.
+      const auto s = static_cast<float>(cell), t = static_cast<float>(7 - row);
+      EXPECT_EQ(scene.FloatAt(s, t) > 0.5f, rows[row][cell] == '#') << row << " " << cell;
+    }
+  }
 }
 
 TEST(Patterns, DotsAreDisksInAboutHalfOfTheCells) {
