@@ -169,6 +169,33 @@ TEST(LearnedSelectionByDefault, KnowsTheGain) {
   EXPECT_LT(gain, 1.6 * without / learned);
 }
 
+// There is nothing to learn where there is no choice that learning could change.
+TEST(LearnedSelectionByDefault, NeedsAChoice) {
+  const char* const point = "LightSource \"point\" ";
+  const char* const sky = "LightSource \"infinite\" ";
+  const std::pair<std::string, bool> scenes[] = {{"", false},
+                                                 {point, false},
+                                                 {sky, false},
+                                                 {std::string(sky) + "LightSource \"distant\"", false},
+                                                 {std::string(point) + sky, true},
+                                                 {std::string(point) + point, true}};
+  for (const auto& [lights, learns] : scenes) {
+    Diagnostics diagnostics(Diagnostics::Mode::Collect);
+    const SceneDescription scene = ParseScene(FilmWith("box", 4, 4) + World(1) + lights, "test.pbrt", diagnostics);
+    EXPECT_EQ(BuildScene(scene, {}, true, diagnostics).scene.lighting->LearnsSelection(), learns) << lights;
+  }
+}
+
+TEST(SelectionTest, KeepsNothingWithoutATest) {
+  TestedSamples samples;
+  samples.SetFraction(1, SelectionTest(4, 4, 16, false, true).Tests());
+  EXPECT_TRUE(samples.Wants(0));
+  samples.Start(0, 0);
+  samples.End(1);
+  EXPECT_FALSE(samples.Tests());
+  EXPECT_TRUE(samples.All().empty());
+}
+
 // Two lights that bring 1 and 3, chosen alike or nearly in proportion to that.
 TEST(SelectionTest, TellsTheRatioOfVariances) {
   SelectionTest test(4, 4, 16, false, false);
