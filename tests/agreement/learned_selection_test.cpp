@@ -142,7 +142,7 @@ TEST(LearnedSelectionByDefault, IsUsedWhereItPays) {
   }
 }
 
-// What is not used leaves no trace.
+// Factors that are not used change no byte of the picture.
 TEST(LearnedSelectionByDefault, IsNotUsedWhereItDoesNotPay) {
   for (const char* integrator : {"path", "bdpt", "vcm", "sppm"}) {
     Image learned, without;
