@@ -17,7 +17,7 @@ class PixelBlocks {
     double found = 0, squares = 0, count = 0;
   };
 
-  // Of an image of width × height pixels.
+  // The blocks of an image of width × height pixels.
   PixelBlocks(int width, int height)
       : width_(width),
         size_(std::max((std::max(width, height) + kAcross - 1) / kAcross, kLeastSize)),

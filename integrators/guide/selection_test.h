@@ -21,7 +21,7 @@ struct TestedSample {
   uint32_t pixel = 0;   // y · width + x
   uint32_t sample = 0;  // index in the pixel
   double found = 0;     // mean of the channels, W/(m² sr)
-  // By how much its second moment would be larger, if lights were chosen without the factors and with them.
+  // Increase of the second moment, if lights were chosen without the factors, and with them.
   double unlearned = 0, learned = 0;
 };
 

@@ -24,7 +24,7 @@ struct Image {
   std::map<std::string, std::string> metadata;
   int offsetX = 0, offsetY = 0;       // of the data window (a crop) in the full image
   int fullWidth = 0, fullHeight = 0;  // display window; 0: width and height
-  // Of the primaries and the white that R, G and B are relative to: x, y of red, green, blue, white. Absent: not said.
+  // Chromaticities x, y of the primaries red, green, blue and of the white. Absent: the file has none.
   std::optional<std::array<double, 8>> chromaticities;
 
   Image() = default;

@@ -1,4 +1,4 @@
-// What scenes say, as pbrt-v4 reads it: by small renders and by the settings that come of it.
+// Scene statements have the meaning that they have in pbrt-v4.
 #include <gtest/gtest.h>
 
 #include "spectral/color_space.h"

@@ -66,7 +66,7 @@ TEST(Patterns, WorldToRenderMovesTextures) {
   EXPECT_EQ(scene.FloatAt(0, 0, {0.4f, 0.1f, 0.1f}), 0);  // world x -0.1
 }
 
-// Of the published permutation, so that patterns lie where those of other renderers do.
+// Noise has the values that follow from the permutation of [Perlin02].
 TEST(Patterns, NoiseIsThatOfPerlin) {
   EXPECT_NEAR(Noise({3.14f, 42, 7}), 0.136919959f, 1e-5f);
   EXPECT_NEAR(Noise({-1.3f, 2.7f, 0.4f}), -0.118271942f, 1e-5f);
