@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Renders a scene in parts on a Slurm cluster, and merges them into one image: the one that a single machine makes.
+# Renders a scene in parts on a Slurm cluster, and merges them into one image: where nothing is learned, the one that a
+# single machine makes (docs/long-renders.md).
 #
 #   scripts/slurm_render.sh SCENE.pbrt PARTS OUT.exr [OPTION OF lampyr render]…
 #
