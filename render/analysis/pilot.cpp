@@ -24,7 +24,7 @@ constexpr int64_t kMostEvents = 20;
 // Counted time of all passes in nanoseconds, as if their samples were those of bdpt with one light path for each. The
 // passes take about three times as long, because they record what they find.
 constexpr double kPassesTime = 80e6;
-constexpr int kFewestPasses = 4, kMostPasses = 16;
+constexpr int kFewestPasses = 4;
 // Lights that are chosen at a vertex at most; the pilot decides between them and one.
 constexpr int kSeveralLights = 2;
 
@@ -130,13 +130,13 @@ void CountPaths(const PilotIntegrators& integrators, const RenderScene& scene, c
 // Traces the passes that are recorded, and counts what they do, on average of one. `learned`: null, or what learns of
 // photons.
 void RunPasses(const PilotIntegrators& integrators, int passCount, int threads, double wider, PilotPasses& passes,
-               PhotonStore& store, EmissionLearning* learned, std::vector<Recorder>& recorders, Records& records,
-               Counted& counted, Spreads& spreads) {
+               PhotonStore& store, EmissionLearning* learned, Records& records, Counted& counted, Spreads& spreads) {
   for (uint32_t pass = 0; pass < static_cast<uint32_t>(passCount); ++pass) {
     passes.TracePhotons(*integrators.vcm, store, pass);
     const PhotonPass& gather = store.Open(pass, threads, wider);
     counted.stored += gather.map->Size();
-    counted.vcm += passes.Trace(*integrators.vcm, pass, &gather, {.recorders = recorders, .spreads = &spreads.vcm});
+    counted.vcm +=
+        passes.Trace(*integrators.vcm, pass, &gather, {.recorders = records.Recorders(), .spreads = &spreads.vcm});
     if (pass == 0) {
       PhotonPass unrecorded = gather;  // photons are learned from once
       unrecorded.use = nullptr;
@@ -356,10 +356,9 @@ RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, i
   if (passCount == 0) passCount = PassesFor(counted, grid.Pixels());
   if (scene.isSpectral) CountPaths(integrators, WithWavelengths(view), combined, grid, threads, counted, nullptr);
   const PixelFilter filter(settings.filter);
-  std::vector<Recorder> recorders(kChunks, Recorder(grid, filter, SplatCount(settings), passCount));
-  Records records(grid, recorders);
+  Records records(grid, filter, SplatCount(settings), kChunks);
   const double wider = WiderRadius(fewer, photons.alpha);
-  RunPasses(integrators, passCount, threads, wider, passes, store, learned, recorders, records, counted, spreads);
+  RunPasses(integrators, passCount, threads, wider, passes, store, learned, records, counted, spreads);
   auto costs = CostsOf(counted, grid.Pixels());
   const bool willBeGuided = learned && learned->Guide();
   if (willBeGuided) {

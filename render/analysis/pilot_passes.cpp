@@ -34,8 +34,8 @@ RenderCounts PilotPasses::ForEachPixel(int count, const Body& body) {
     Sampler sampler(SamplerKind::Independent, kSeed);
     // Splats are not kept, but connections that reach no pixel are not made.
     SplatList splats({0, 0}, {static_cast<float>(settings_.width), static_cast<float>(settings_.height)}, 1);
-    const auto begin = [&](int of) { return static_cast<int>(int64_t{count} * of / kChunks); };
-    for (int i = begin(chunk); i < begin(chunk + 1); ++i) {
+    const int end = BeginOfChunk(count, chunk + 1, kChunks);
+    for (int i = BeginOfChunk(count, chunk, kChunks); i < end; ++i) {
       splats.Clear();
       splats.StartPath();
       body(index, i % grid_.width, i / grid_.width, sampler, counts[index], splats);

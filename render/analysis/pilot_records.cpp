@@ -40,48 +40,33 @@ double ScaleOf(double brightness, double mean) {
   return 1 / (brightness * brightness + 0.01 * mean * mean);
 }
 
-}  // namespace
+// Keeps the brightest of a candidate's events.
+void Keep(const RareEvent& event, std::vector<RareEvent>& brightest) {
+  const auto isBrighter = [](const RareEvent& a, const RareEvent& b) { return a.value > b.value; };
+  if (brightest.size() == kMostRare) {
+    if (event.value <= brightest.front().value) return;
+    std::pop_heap(brightest.begin(), brightest.end(), isBrighter);
+    brightest.pop_back();
+  }
+  brightest.push_back(event);
+  std::push_heap(brightest.begin(), brightest.end(), isBrighter);
+}
 
-void Recorder::EndSample() {
+// Numbers of techniques of all candidates, and powers of them; those that end early come last.
+struct Counts {
+  std::array<double, kCandidates> light, connect, merge, continuing;
+};
+constexpr Counts kCounts = [] {
+  Counts counts{};
   for (size_t k = 0; k < kCandidates; ++k) {
-    const Sums& sums = sums_[k];
-    // Σ_(i≠j) x_i x_j / (the probability that both are found).
-    const double part = std::max(kCandidateOf[k].connections, kFewestLightPaths), on = kCandidateOf[k].continuing;
-    const Sum &here = sums.unconnected, &connected = sums.connected, &beyond = sums.unconnectedBeyond,
-              &both = sums.connectedBeyond;
-    double products = here.Products() + 2 * here.value * (connected.value + beyond.value + both.value);
-    products += connected.Products() / part + beyond.Products() / on + both.Products() / (part * on);
-    products += 2 * connected.value * (beyond.value + both.value / part) + 2 * beyond.value * both.value / on;
-    moments[pixel_].products[k] += products;
+    const Candidate& candidate = kCandidateOf[k];
+    counts.light[k] = candidate.lightPaths;
+    counts.connect[k] = candidate.connections;
+    counts.merge[k] = candidate.merging;
+    counts.continuing[k] = candidate.continuing;
   }
-}
-
-void Recorder::Observe(const ConnectedPath& path) {
-  size_t pixel = pixel_;
-  double scale = weight_;
-  if (path.connection) {
-    const Point2& film = path.connection->camera.film;
-    const int x = static_cast<int>(std::floor(film.x / grid_.pixel.x)),
-              y = static_cast<int>(std::floor(film.y / grid_.pixel.y));
-    if (x < 0 || y < 0 || x >= grid_.width || y >= grid_.height) return;
-    pixel = grid_.PixelOf(x, y);
-    scale = 1 / filmPixels_;
-  }
-  Add(path, static_cast<double>(path.value.Average()) * scale, pixel);
-}
-
-void Recorder::AddAlike(const ConnectedPath& path, double value, size_t pixel) {
-  Moments& here = moments[pixel];
-  const double weighted = path.weight * value;
-  for (size_t k = 0; k < kCandidates; ++k) {
-    here.square[k] += weighted * value * (path.connection ? 1 / splatCount_ : 1.0);
-    if (path.connection) continue;
-    found[pixel].Add(k, weighted, true);
-    sums_[k].unconnected.Add(weighted);
-  }
-}
-
-namespace {
+  return counts;
+}();
 
 // Σ (n r)² and Σ (n r)³ r of the groups, without the counts that differ among candidates.
 struct GroupSums {
@@ -105,85 +90,158 @@ GroupSums SumsOf(const TechniqueSums& sums, double continuing) {
   return grouped;
 }
 
-double CountOf(TechniqueGroup group, const Candidate& candidate) {
-  switch (group) {
-    case TechniqueGroup::Light:
-      return candidate.lightPaths;
-    case TechniqueGroup::Connect:
-      return candidate.connections;
-    case TechniqueGroup::Merge:
-      return candidate.merging;
-    default:
-      return 1;
-  }
+double Known(const TechniqueSums& sums) {
+  double known = 0;
+  for (const TechniqueSums::Group& group : sums.groups) known += group.squares;
+  return known;
 }
 
 }  // namespace
 
-void Recorder::Add(const ConnectedPath& path, double value, size_t pixel) {
-  Moments& here = moments[pixel];
-  const bool isSeen = path.s + path.t == 2;
-  const double weighted = path.weight * value;
-  if (!std::isfinite(weighted)) return;
-  (isSeen ? here.seen : here.mean) += weighted;
-  double known = 0;
-  for (const TechniqueSums::Group& group : path.sums.groups) known += group.squares;
-  if (!(known > 0)) return AddAlike(path, value, pixel);
-  const double splatSquare = path.connection ? 1 / splatCount_ : 1.0;
-  const TechniqueGroup own = GroupOf(path);
-  const double bySplats = path.sums.Of(TechniqueGroup::Light).squares;
-  const GroupSums ofWhole = SumsOf(path.sums, 1), ofEnding = SumsOf(path.sums, kContinuing);
-  std::array<bool, kCandidates> isMissed{};
+void Recorder::EndSample() {
+  // Σ_(i≠j) x_i x_j / (the probability that both are found); of one sum, (Σ x)² - Σ x².
+  PerCandidate& products = pixels_.moments[pixel_].products;
+  const Sum &here = sums_.unconnected, &connected = sums_.connected, &beyond = sums_.unconnectedBeyond,
+            &both = sums_.connectedBeyond;
   for (size_t k = 0; k < kCandidates; ++k) {
-    const Candidate& candidate = kCandidateOf[k];
-    const GroupSums& sums = candidate.continuing < 1 ? ofEnding : ofWhole;
-    const double light = candidate.lightPaths * candidate.lightPaths,
-                 connect = candidate.connections * candidate.connections, merge = candidate.merging * candidate.merging;
-    const double squares =
-        sums.path.squares + light * sums.light.squares + connect * sums.connect.squares + merge * sums.merge.squares;
-    const double cubes = sums.path.cubes + light * candidate.lightPaths * sums.light.cubes +
-                         connect * candidate.connections * sums.connect.cubes +
-                         merge * candidate.merging * sums.merge.cubes;
-    const double factor = cubes / (squares * squares) * splatSquare;
-    if (!std::isfinite(factor) || !(squares > 0)) {
-      here.missing[k] += weighted;
-      isMissed[k] = true;
-      continue;
-    }
-    here.square[k] += weighted * value * factor;
-    if (Merges(k) && isMissed[WithoutMerging(k)]) here.mergedOnly[k] += weighted * value * factor;
-    const double expected = renders_ * path.weight / factor;
-    if (factor > kRare && expected < 1)
-      Keep({pixel, value * factor, expected, weighted, weighted * value * factor}, rare[k]);
-    if (bySplats < known && !path.connection) {
-      // As if there were no splats in the pilot, and by the candidate's techniques of camera paths.
-      const double ofCamera = 1 - light * bySplats / squares;
-      found[pixel].Add(k, weighted * known / (known - bySplats) * ofCamera, bySplats < 0.5 * known);
-    }
-    const double count = CountOf(own, candidate);
-    if (path.connection || count == 0) continue;
-    const double ofOwn = path.sums.isBeyond ? count * candidate.continuing : count;
-    const double reweighted = weighted * known * ofOwn * ofOwn / squares;  // w = r² / Σ r²
-    if (path.isMerged && path.t == 2) here.products[k] += 2 * reweighted * SplatOf(path, value, count, squares) / count;
-    Sums& all = sums_[k];
-    if (own == TechniqueGroup::Connect) found[pixel].connected[k] += static_cast<float>(reweighted);
-    if (own == TechniqueGroup::Connect) {
-      (path.sums.isBeyond ? all.connectedBeyond : all.connected).Add(reweighted);
-    } else {
-      (path.sums.isBeyond ? all.unconnectedBeyond : all.unconnected).Add(reweighted);
-    }
+    const double part = std::max(kCounts.connect[k], kFewestLightPaths), on = kCounts.continuing[k];
+    const auto ofOne = [k](const Sum& sum) { return sum.value[k] * sum.value[k] - sum.squares[k]; };
+    products[k] += ofOne(here) + 2 * here.value[k] * (connected.value[k] + beyond.value[k] + both.value[k]) +
+                   ofOne(connected) / part + ofOne(beyond) / on + ofOne(both) / (part * on) +
+                   2 * connected.value[k] * (beyond.value[k] + both.value[k] / part) +
+                   2 * beyond.value[k] * both.value[k] / on;
   }
 }
 
-void Recorder::Keep(const RareEvent& event, std::vector<RareEvent>& brightest) {
-  const auto isBrighter = [](const RareEvent& a, const RareEvent& b) { return a.value > b.value; };
-  if (brightest.size() == kMostRare) {
-    if (event.value <= brightest.front().value) return;
-    std::pop_heap(brightest.begin(), brightest.end(), isBrighter);
-    brightest.pop_back();
+void Recorder::EndPass() {
+  for (const Splat& splat : elsewhere_) Add(splat);
+  elsewhere_.clear();
+}
+
+void Recorder::Observe(const ConnectedPath& path) {
+  const auto value = static_cast<double>(path.value.Average());
+  if (!std::isfinite(path.weight * value)) return;
+  if (!path.connection) return Add(path, value * weight_);
+  const Point2& film = path.connection->camera.film;
+  const int x = static_cast<int>(std::floor(film.x / grid_.pixel.x)),
+            y = static_cast<int>(std::floor(film.y / grid_.pixel.y));
+  if (x < 0 || y < 0 || x >= grid_.width || y >= grid_.height) return;
+  AddSplat(path, value / filmPixels_, grid_.PixelOf(x, y));
+}
+
+Recorder::Factors Recorder::FactorsOf(const TechniqueSums& sums, double splatSquare) {
+  Factors all;
+  const GroupSums ofWhole = SumsOf(sums, 1), ofEnding = SumsOf(sums, kContinuing);
+  const auto set = [&all, splatSquare](const GroupSums& groups, size_t first, size_t end) {
+    for (size_t k = first; k < end; ++k) {
+      const double light = kCounts.light[k], connect = kCounts.connect[k], merge = kCounts.merge[k];
+      const double squares = groups.path.squares + light * light * groups.light.squares +
+                             connect * connect * groups.connect.squares + merge * merge * groups.merge.squares;
+      const double cubes = groups.path.cubes + light * light * light * groups.light.cubes +
+                           connect * connect * connect * groups.connect.cubes +
+                           merge * merge * merge * groups.merge.cubes;
+      const double factor = cubes / (squares * squares) * splatSquare;
+      const bool isFound = squares > 0 && factor <= std::numeric_limits<double>::max();
+      all.squares[k] = isFound ? squares : 0;
+      all.factors[k] = isFound ? factor : 0;
+    }
+  };
+  set(ofWhole, 0, kWholeCandidates);
+  set(ofEnding, kWholeCandidates, kCandidates);
+  return all;
+}
+
+void Recorder::AddAlike(const ConnectedPath& path, double value) {
+  const double weighted = path.weight * value;
+  for (double& square : pixels_.moments[pixel_].square) square += weighted * value;
+  Found& found = pixels_.found[pixel_];
+  for (std::array<float, kCandidates>* of : {&found.value, &found.oftener})
+    for (float& sum : *of) sum += static_cast<float>(weighted);
+  for (double& sum : sums_.unconnected.value) sum += weighted;
+  for (double& sum : sums_.unconnected.squares) sum += weighted * weighted;
+}
+
+void Recorder::KeepRare(const ConnectedPath& path, double value, size_t pixel, const PerCandidate& factors) {
+  if (*std::max_element(factors.begin(), factors.end()) <= kRare) return;
+  const double weighted = path.weight * value;
+  for (size_t k = 0; k < kCandidates; ++k) {
+    const double expected = renders_ * path.weight / factors[k];
+    if (factors[k] > kRare && expected < kMostPasses)
+      Keep({pixel, value * factors[k], expected, weighted, weighted * value * factors[k]}, rare[k]);
   }
-  brightest.push_back(event);
-  std::push_heap(brightest.begin(), brightest.end(), isBrighter);
+}
+
+void Recorder::AddSplat(const ConnectedPath& path, double value, size_t pixel) {
+  Splat splat{pixel, path.s + path.t == 2, path.weight * value, {}};
+  if (Known(path.sums) > 0) {
+    const auto [squares, factors] = FactorsOf(path.sums, 1 / splatCount_);
+    for (size_t k = 0; k < kCandidates; ++k)
+      splat.squares[k] = squares[k] > 0 ? splat.weighted * value * factors[k] : -1;
+    KeepRare(path, value, pixel, factors);
+  } else {
+    splat.squares.fill(splat.weighted * value / splatCount_);
+  }
+  if (pixel >= first_ && pixel < end_) {
+    Add(splat);
+  } else {
+    elsewhere_.push_back(splat);
+  }
+}
+
+void Recorder::Add(const Splat& splat) {
+  Moments& here = pixels_.moments[splat.pixel];
+  (splat.isSeen ? here.seen : here.mean) += splat.weighted;
+  for (size_t k = 0; k < kCandidates; ++k) {
+    const bool isMissed = splat.squares[k] < 0;
+    here.square[k] += isMissed ? 0 : splat.squares[k];
+    here.missing[k] += isMissed ? splat.weighted : 0;
+  }
+}
+
+void Recorder::Add(const ConnectedPath& path, double value) {
+  Moments& here = pixels_.moments[pixel_];
+  const double weighted = path.weight * value, known = Known(path.sums);
+  (path.s + path.t == 2 ? here.seen : here.mean) += weighted;
+  if (!(known > 0)) return AddAlike(path, value);
+  const auto [squares, factors] = FactorsOf(path.sums, 1);
+  for (size_t k = 0; k < kCandidates; ++k) {
+    here.square[k] += weighted * value * factors[k];
+    here.missing[k] += squares[k] > 0 ? 0 : weighted;
+  }
+  for (size_t k = 1; k < kCandidates; ++k)
+    if (Merges(k) && squares[WithoutMerging(k)] == 0) here.mergedOnly[k] += weighted * value * factors[k];
+  KeepRare(path, value, pixel_, factors);
+  const TechniqueGroup own = GroupOf(path);
+  Found& found = pixels_.found[pixel_];
+  if (const double bySplats = path.sums.Of(TechniqueGroup::Light).squares; bySplats < known) {
+    // As if there were no splats in the pilot, and by the candidate's techniques of camera paths.
+    const double byOthers = weighted * known / (known - bySplats), often = bySplats < 0.5 * known ? 1.0 : 0.0;
+    for (size_t k = 0; k < kCandidates; ++k) {
+      const double light = kCounts.light[k], ofCamera = 1 - light * light * bySplats / squares[k];
+      const double value = squares[k] > 0 ? byOthers * ofCamera : 0;
+      found.value[k] += static_cast<float>(value);
+      found.oftener[k] += static_cast<float>(often * value);
+    }
+  }
+  const bool isConnected = own == TechniqueGroup::Connect, isBeyond = path.sums.isBeyond;
+  const PerCandidate* const counts = isConnected                    ? &kCounts.connect
+                                     : own == TechniqueGroup::Merge ? &kCounts.merge
+                                                                    : nullptr;
+  Sum& all = isBeyond ? (isConnected ? sums_.connectedBeyond : sums_.unconnectedBeyond)
+                      : (isConnected ? sums_.connected : sums_.unconnected);
+  PerCandidate reweighted;
+  for (size_t k = 0; k < kCandidates; ++k) {
+    const double ofOwn = (counts ? (*counts)[k] : 1.0) * (isBeyond ? kCounts.continuing[k] : 1.0);
+    reweighted[k] = squares[k] > 0 ? weighted * known * ofOwn * ofOwn / squares[k] : 0;  // w = r² / Σ r²
+    all.value[k] += reweighted[k];
+    all.squares[k] += reweighted[k] * reweighted[k];
+  }
+  if (isConnected)
+    for (size_t k = 0; k < kCandidates; ++k) found.connected[k] += static_cast<float>(reweighted[k]);
+  if (!path.isMerged || path.t != 2) return;
+  for (size_t k = 0; k < kCandidates; ++k)
+    if (kCounts.merge[k] > 0 && squares[k] > 0)
+      here.products[k] += 2 * reweighted[k] * SplatOf(path, value, kCounts.merge[k], squares[k]) / kCounts.merge[k];
 }
 
 double Recorder::SplatOf(const ConnectedPath& path, double value, double lightPaths, double squares) const {
@@ -194,11 +252,22 @@ double Recorder::SplatOf(const ConnectedPath& path, double value, double lightPa
   return overlap * lightPaths * lightPaths * splatSquare / squares * value / pixels;
 }
 
-void Records::EndPass(uint32_t pass) {
-  std::vector<Found> found(recorders_[0].found.size());
-  for (Recorder& recorder : recorders_) {
-    for (size_t i = 0; i < found.size(); ++i) found[i] += std::exchange(recorder.found[i], Found());
+Records::Records(const Grid& grid, const PixelFilter& filter, double splatCount, int chunks)
+    : grid_(grid), squaredMeans_(kCandidates * static_cast<size_t>(grid.Pixels())) {
+  const auto pixels = static_cast<size_t>(grid.Pixels());
+  pixels_.moments.resize(pixels);
+  pixels_.found.resize(pixels);
+  recorders_.reserve(static_cast<size_t>(chunks));
+  for (int chunk = 0; chunk < chunks; ++chunk) {
+    recorders_.emplace_back(grid, filter, splatCount, pixels_,
+                            static_cast<size_t>(BeginOfChunk(grid.Pixels(), chunk, chunks)),
+                            static_cast<size_t>(BeginOfChunk(grid.Pixels(), chunk + 1, chunks)));
   }
+}
+
+void Records::EndPass(uint32_t pass) {
+  for (Recorder& recorder : recorders_) recorder.EndPass();
+  std::vector<Found>& found = pixels_.found;
   for (size_t i = 0; i < found.size() && pass % 2 == 1; ++i) {
     for (size_t k = 0; k < kCandidates; ++k) {
       SquaredMean& squared = squaredMeans_[kCandidates * i + k];
@@ -207,7 +276,8 @@ void Records::EndPass(uint32_t pass) {
       squared.oftener += 2 * static_cast<double>(last_[i].oftener[k]) * static_cast<double>(found[i].oftener[k]);
     }
   }
-  last_ = std::move(found);
+  std::swap(last_, found);
+  found.assign(last_.size(), {});
 }
 
 Records::Brightness Records::BrightnessOf(const std::vector<Moments>& pixels, int passes) const {
@@ -234,10 +304,7 @@ double Records::WeightAt(double brightness) const {
 
 bool Records::SetErrors(int passes, double squaredWeight, bool isSobol, std::vector<PilotCandidate>& candidates) {
   squaredWeight_ = squaredWeight;
-  std::vector<Moments> pixels(squaredMeans_.size() / kCandidates);
-  for (const Recorder& recorder : recorders_) {
-    for (size_t i = 0; i < pixels.size(); ++i) pixels[i] += recorder.moments[i];
-  }
+  std::vector<Moments> pixels = pixels_.moments;
   const Brightness brightness = BrightnessOf(pixels, passes);
   if (!(brightness.mean > 0)) return false;
   meanLight_ = brightness.mean;
@@ -338,7 +405,7 @@ void Records::LeaveOutRare(size_t k, int passes, double mean, const std::vector<
   for (const Moments& pixel : pixels) missing += pixel.missing[k];
   const double most = 0.5 * kNegligibleLight * passes * grid_.Pixels() * mean;
   for (const RareEvent& event : events) {
-    expected += event.expected;
+    expected += event.expected / passes;
     missing += event.light;
     if (expected > 1 || missing > most) return;
     pixels[event.pixel].square[k] -= event.square;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "film/pixel_filter.h"
@@ -55,11 +56,19 @@ struct Grid {
   }
 };
 
+// Samples of a pixel at most.
+inline constexpr int kMostPasses = 16;
+
+// The first of `count` elements that belongs to the chunk.
+inline int BeginOfChunk(int count, int chunk, int chunks) {
+  return static_cast<int>(int64_t{count} * chunk / chunks);
+}
+
 // Light that a candidate finds rarely, and bright.
 struct RareEvent {
   size_t pixel;
   double value;     // of one occurrence
-  double expected;  // occurrences in a typical render
+  double expected;  // occurrences in a typical render, times the passes of the pilot
   double light;     // what it adds to the mean of the pixel, summed over the pilot's samples
   double square;    // to its second moment
 };
@@ -75,16 +84,6 @@ struct Moments {
   std::array<double, kCandidates> missing{};
   // For candidates that merge: second moments of the light that only merging finds.
   std::array<double, kCandidates> mergedOnly{};
-  void operator+=(const Moments& other) {
-    seen += other.seen;
-    mean += other.mean;
-    for (size_t k = 0; k < kCandidates; ++k) {
-      square[k] += other.square[k];
-      products[k] += other.products[k];
-      missing[k] += other.missing[k];
-      mergedOnly[k] += other.mergedOnly[k];
-    }
-  }
 };
 
 // What the camera path of one pixel adds to it in one pass, for each candidate; expected values over its techniques.
@@ -92,18 +91,6 @@ struct Found {
   std::array<float, kCandidates> value{};
   std::array<float, kCandidates> oftener{};    // of that, what camera paths of the pilot find more often than splats do
   std::array<float, kCandidates> connected{};  // by connections
-
-  void Add(size_t k, double found, bool isOften) {
-    value[k] += static_cast<float>(found);
-    if (isOften) oftener[k] += static_cast<float>(found);
-  }
-  void operator+=(const Found& more) {
-    for (size_t k = 0; k < kCandidates; ++k) {
-      value[k] += more.value[k];
-      oftener[k] += more.oftener[k];
-      connected[k] += more.connected[k];
-    }
-  }
 };
 
 // The square of a pixel's mean, as two passes estimate it; summed over the passes.
@@ -122,18 +109,28 @@ struct SquaredMean {
   }
 };
 
-// Adds up the moments of the paths of one chunk.
+// Sums of all pixels; one entry for each.
+struct PixelSums {
+  std::vector<Moments> moments;
+  // In the current pass, and of camera paths alone: they are in one pixel of the image, and splats anywhere in the
+  // pilot's.
+  std::vector<Found> found;
+};
+
+// Adds up the moments of the paths of one chunk. Pixels of other chunks, which splats reach, are added to after the
+// pass: sums do not depend on the number of threads.
 class Recorder final : public PathObserver {
  public:
-  // `splatCount`: that of the weights. `passes`: of the pilot.
-  Recorder(const Grid& grid, const PixelFilter& filter, double splatCount, int passes)
-      : moments(static_cast<size_t>(grid.Pixels())),
-        found(static_cast<size_t>(grid.Pixels())),
-        grid_(grid),
+  // `first`, `end`: pixels of the chunk. `splatCount`: that of the weights.
+  Recorder(const Grid& grid, const PixelFilter& filter, double splatCount, PixelSums& pixels, size_t first, size_t end)
+      : grid_(grid),
         filmPixels_(grid.filmPixels),
         spread_(filter.SplatCount()),
         splatCount_(splatCount),
-        renders_(kTypicalSamples / (static_cast<double>(passes) * grid.Pixels())) {}
+        renders_(kTypicalSamples / grid.Pixels()),
+        pixels_(pixels),
+        first_(first),
+        end_(end) {}
 
   void StartSample(int x, int y, float weight) {
     pixel_ = grid_.PixelOf(x, y);
@@ -143,23 +140,37 @@ class Recorder final : public PathObserver {
   // A sample is the sum of all paths that one camera path makes. Its square has the products of different paths,
   // besides the squares of each.
   void EndSample();
+  // Adds to pixels of other chunks, after the pass.
+  void EndPass();
   bool WantsSums() const override { return true; }
   void Observe(const ConnectedPath& path) override;
   void ObserveMerge(const ConnectedPath& path, const Photon&) override { Observe(path); }
   void ObserveBeamMerge(const ConnectedPath& path, const BeamVertex&, uint32_t) override { Observe(path); }
 
-  // One entry for each pixel; `found` is of the current pass, and of camera paths alone: they are in one pixel of the
-  // image, and splats anywhere in the pilot's.
-  std::vector<Moments> moments;
-  std::vector<Found> found;
   std::array<std::vector<RareEvent>, kCandidates> rare;
 
  private:
-  void Add(const ConnectedPath& path, double value, size_t pixel);
+  using PerCandidate = std::array<double, kCandidates>;
+  // Second moments of a path by other techniques.
+  struct Factors {
+    PerCandidate squares;  // Σ (n r)²; 0: the candidate does not find the path
+    PerCandidate factors;  // of the second moment
+  };
+  // What a splat adds to a pixel.
+  struct Splat {
+    size_t pixel;
+    bool isSeen;
+    double weighted;
+    PerCandidate squares;  // second moments; negative: the light is missed
+  };
+
+  static Factors FactorsOf(const TechniqueSums& sums, double splatSquare);
+  void Add(const ConnectedPath& path, double value);
+  void AddSplat(const ConnectedPath& path, double value, size_t pixel);
+  void Add(const Splat& splat);
   // A path of which it is not known how else it could be found: as if all candidates did it like this.
-  void AddAlike(const ConnectedPath& path, double value, size_t pixel);
-  // Keeps the brightest of a candidate's events.
-  static void Keep(const RareEvent& event, std::vector<RareEvent>& brightest);
+  void AddAlike(const ConnectedPath& path, double value);
+  void KeepRare(const ConnectedPath& path, double value, size_t pixel, const PerCandidate& factors);
 
   // What the light path of a photon that is merged at a first hit adds to the same pixel by its connection to the lens,
   // on average: the same light path, counted twice. `squares`: Σ (n r)².
@@ -169,30 +180,29 @@ class Recorder final : public PathObserver {
   double filmPixels_, weight_ = 1;
   double spread_;      // pixels among which a splat is divided
   double splatCount_;  // of the weights
-  double renders_;     // typical renders for each of the pilot's samples
+  double renders_;     // typical renders for each of the pilot's samples, times its passes
   size_t pixel_ = 0;
-  // Connections have their own sums, because only samples with a light path make them; so has what a camera path finds
-  // beyond the vertex where it may end.
+  PixelSums& pixels_;
+  size_t first_, end_;
+  std::vector<Splat> elsewhere_;
+  // Σ x and Σ x² of what a camera path finds. Connections have their own sums, because only samples with a light path
+  // make them; so has what a camera path finds beyond the vertex where it may end.
   struct Sum {
-    double value = 0, squares = 0;
-    void Add(double found) {
-      value += found;
-      squares += found * found;
-    }
-    // Σ_(i≠j) x_i x_j.
-    double Products() const { return value * value - squares; }
+    PerCandidate value{}, squares{};
   };
   struct Sums {
     Sum unconnected, connected, unconnectedBeyond, connectedBeyond;
   };
-  std::array<Sums, kCandidates> sums_;  // of the current camera path
+  Sums sums_;  // of the current camera path
 };
 
 // Combines the records of all chunks into the errors of the candidates.
 class Records {
  public:
-  Records(const Grid& grid, std::vector<Recorder>& recorders)
-      : grid_(grid), recorders_(recorders), squaredMeans_(kCandidates * static_cast<size_t>(grid.Pixels())) {}
+  // `splatCount`: that of the weights. `chunks`: of the pixels, each with a recorder.
+  Records(const Grid& grid, const PixelFilter& filter, double splatCount, int chunks);
+
+  std::span<Recorder> Recorders() { return recorders_; }
 
   // After each pass. The square of a pixel's mean is estimated by the product of what two passes have found in it,
   // which are independent.
@@ -242,7 +252,8 @@ class Records {
   }
 
   const Grid& grid_;
-  std::vector<Recorder>& recorders_;
+  PixelSums pixels_;
+  std::vector<Recorder> recorders_;
   double least_ = 0, meanLight_ = 0, meanUnseen_ = 0, squaredWeight_ = 1;
   std::vector<double> weights_;            // by pixel: of a squared error, in RelativeErrors
   std::vector<Found> last_;                // in the pass before
