@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <span>
 
@@ -25,6 +26,8 @@ constexpr int64_t kMostEvents = 20;
 // passes take about three times as long, because they record what they find.
 constexpr double kPassesTime = 80e6;
 constexpr int kFewestPasses = 4;
+// Passes end where the standard error of the best candidate's error is no larger than this part of it.
+constexpr double kWellKnown = 0.05;
 // Lights that are chosen at a vertex at most; the pilot decides between them and one.
 constexpr int kSeveralLights = 2;
 
@@ -127,29 +130,48 @@ void CountPaths(const PilotIntegrators& integrators, const RenderScene& scene, c
   }
 }
 
-// Traces the passes that are recorded, and counts what they do, on average of one. `learned`: null, or what learns of
-// photons.
-void RunPasses(const PilotIntegrators& integrators, int passCount, int threads, double wider, PilotPasses& passes,
-               PhotonStore& store, EmissionLearning* learned, Records& records, Counted& counted, Spreads& spreads) {
-  for (uint32_t pass = 0; pass < static_cast<uint32_t>(passCount); ++pass) {
-    passes.TracePhotons(*integrators.vcm, store, pass);
-    const PhotonPass& gather = store.Open(pass, threads, wider);
-    counted.stored += gather.map->Size();
-    counted.vcm +=
-        passes.Trace(*integrators.vcm, pass, &gather, {.recorders = records.Recorders(), .spreads = &spreads.vcm});
-    if (pass == 0) {
-      PhotonPass unrecorded = gather;  // photons are learned from once
-      unrecorded.use = nullptr;
-      counted.endingVcm = passes.Trace(*integrators.endingVcm, pass, &unrecorded, {.spreads = &spreads.endingVcm});
+// Traces the passes that are recorded, and counts what they do. `learned`: null, or what learns of photons. `isEnough`:
+// asked after `first` passes and each doubling, with their number and the counts of a pass. Returns the passes.
+int RunPasses(const PilotIntegrators& integrators, int first, int most, int threads, double wider, PilotPasses& passes,
+              PhotonStore& store, EmissionLearning* learned, Records& records, Counted& counted, Spreads& spreads,
+              const std::function<bool(int, const Counted&)>& isEnough) {
+  const auto ofOne = [](Counted sum, int count) {
+    const auto n = static_cast<uint64_t>(count);
+    sum.stored /= n;
+    sum.vcm.lookups /= n;
+    sum.vcm.foundPhotons /= n;
+    return sum;
+  };
+  Counted sum = counted;
+  int traced = 0;
+  for (int end = first; traced < most; end = std::min(2 * end, most)) {
+    for (; traced < end; ++traced) {
+      const auto pass = static_cast<uint32_t>(traced);
+      passes.TracePhotons(*integrators.vcm, store, pass);
+      const PhotonPass& gather = store.Open(pass, threads, wider);
+      sum.stored += gather.map->Size();
+      sum.vcm +=
+          passes.Trace(*integrators.vcm, pass, &gather, {.recorders = records.Recorders(), .spreads = &spreads.vcm});
+      if (pass == 0) {
+        PhotonPass unrecorded = gather;  // photons are learned from once
+        unrecorded.use = nullptr;
+        sum.endingVcm = passes.Trace(*integrators.endingVcm, pass, &unrecorded, {.spreads = &spreads.endingVcm});
+      }
+      records.EndPass(pass);
+      store.EndGathering();
+      if (learned && learned->IsRecording() && std::has_single_bit(pass + 1)) learned->Decide(pass + 1);
     }
-    records.EndPass(pass);
-    store.EndGathering();
-    if (learned && learned->IsRecording() && std::has_single_bit(pass + 1)) learned->Decide(pass + 1);
+    counted = ofOne(sum, traced);
+    if (traced < most && isEnough(traced, counted)) break;
   }
-  const auto count = static_cast<uint64_t>(passCount);
-  counted.stored /= count;
-  counted.vcm.lookups /= count;
-  counted.vcm.foundPhotons /= count;
+  return traced;
+}
+
+// True if the error of the best candidate is known well enough.
+bool IsWellKnown(const std::vector<PilotCandidate>& all) {
+  const RenderPilot pilot{{all.begin(), all.begin() + kWholeCandidates}, {}};
+  const PilotCandidate* const best = pilot.Best();
+  return best && best->uncertainty <= kWellKnown * best->error;
 }
 
 // Sets the costs of candidates that merge to those with guided light paths: more of their vertices are seen. What they
@@ -353,12 +375,19 @@ RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, i
   counted.tracesAnew = scene.hasMotion || scene.isSpectral;
   Spreads spreads(grid.Pixels());
   CountPaths(integrators, view, combined, grid, threads, counted, choosesLights ? &spreads : nullptr);
-  if (passCount == 0) passCount = PassesFor(counted, grid.Pixels());
+  const int most = passCount > 0 ? passCount : PassesFor(counted, grid.Pixels());
+  const int first = passCount > 0 ? passCount : kFewestPasses;
   if (scene.isSpectral) CountPaths(integrators, WithWavelengths(view), combined, grid, threads, counted, nullptr);
   const PixelFilter filter(settings.filter);
   Records records(grid, filter, SplatCount(settings), kChunks);
   const double wider = WiderRadius(fewer, photons.alpha);
-  RunPasses(integrators, passCount, threads, wider, passes, store, learned, records, counted, spreads);
+  const bool isSobol = settings.sampler == SamplerKind::Sobol;
+  const auto isEnough = [&](int count, const Counted& soFar) {
+    std::vector<PilotCandidate> all = CandidatesWith(CostsOf(soFar, grid.Pixels()));
+    return records.SetErrors(count, filter.SquaredWeight(), isSobol, all) && IsWellKnown(all);
+  };
+  passCount =
+      RunPasses(integrators, first, most, threads, wider, passes, store, learned, records, counted, spreads, isEnough);
   auto costs = CostsOf(counted, grid.Pixels());
   const bool willBeGuided = learned && learned->Guide();
   if (willBeGuided) {
@@ -368,7 +397,7 @@ RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, i
     CountGuided(integrators, photons, wider, threads, guided, grid.Pixels(), counted, costs);
   }
   std::vector<PilotCandidate> all = CandidatesWith(costs);
-  if (!records.SetErrors(passCount, filter.SquaredWeight(), settings.sampler == SamplerKind::Sobol, all)) return {};
+  if (!records.SetErrors(passCount, filter.SquaredWeight(), isSobol, all)) return {};
   for (size_t k = 0; k < kCandidates && willBeGuided; ++k)
     if (Merges(k)) Guide(all[k]);
   RenderPilot pilot{{all.begin(), all.begin() + kWholeCandidates}, {all.begin() + kWholeCandidates, all.end()}};

@@ -65,13 +65,14 @@ struct RenderPilot {
 };
 
 // Pixels of the pilot on a side of a tile; the pilot has all pixels of an image with at most kMostPilotPixels.
-inline constexpr int kPilotTile = 4, kMostPilotPixels = 4096;
+inline constexpr int kPilotTile = 4, kMostPilotPixels = 2304;
 
 // A part of the light that is too small to be looked for.
 inline constexpr double kNegligibleLight = 1e-4;
 
 // Deterministic for a scene, its size and its settings; not dependent on the seed and on the number of threads.
-// `passes`: samples of every pixel; even, because squares of means are products of two. 0: from 4 to 16, by their cost.
+// `passes`: samples of every pixel; even, because squares of means are products of two. 0: from 4 to 16, by their cost
+// and by what is known after 4 and 8.
 RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, int threads, int passes = 0);
 
 }  // namespace lampyr

@@ -308,6 +308,7 @@ bool Records::SetErrors(int passes, double squaredWeight, bool isSobol, std::vec
   const Brightness brightness = BrightnessOf(pixels, passes);
   if (!(brightness.mean > 0)) return false;
   meanLight_ = brightness.mean;
+  meanUnseen_ = 0;
   for (const Moments& pixel : pixels) meanUnseen_ += pixel.mean / (passes * grid_.Pixels());
   for (size_t k = 0; k < candidates.size(); ++k) LeaveOutRare(k, passes, brightness.mean, brightness.scales, pixels);
   const std::vector<char> isLeftOut = Hopeless(pixels, brightness.scales);
