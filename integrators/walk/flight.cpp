@@ -73,8 +73,11 @@ class Tracker {
   // Follows a span. `collides`: stops at a collision, and returns true.
   bool Follow(const Medium& medium, int32_t index, double tMin, double tMax, bool collides) {
     index_ = index;
-    if (medium.IsHomogeneous()) return FollowHomogeneous(medium, tMin, tMax, medium.Scatters(), collides);
-    return FollowGrid(medium, tMin, tMax, collides);
+    lookups_ = 1;
+    const bool isCollision = medium.IsHomogeneous() ? FollowHomogeneous(medium, tMin, tMax, medium.Scatters(), collides)
+                                                    : FollowGrid(medium, tMin, tMax, collides);
+    if (wantsTime) nanoseconds += lookups_ * medium.LookupNanoseconds();
+    return isCollision;
   }
 
   Color value{1.0f};      // Π σ_n / σ̄: transmittance
@@ -82,7 +85,8 @@ class Tracker {
   Color emission;         // of what was followed since it was reset, over the density
   MediumCoefficients at;  // of the collision
   double t = 0;           // of the collision
-  bool wantsEmission = false;
+  bool wantsEmission = false, wantsTime = false;
+  double nanoseconds = 0;  // of a typical machine, for lookups of media
 
  private:
   // Random numbers are multiples of 2^-24, 0 among them: a collision at the very start would have an infinite density.
@@ -153,6 +157,7 @@ class Tracker {
       }
       from += step;
       depth_ = DepthOf(rng_.NextFloat());
+      ++lookups_;
       const MediumCoefficients here = medium.At(Point3(line_.start + from * line_.direction));
       const Color extinction = here.Extinction();
       if (wantsEmission && !here.emission.IsBlack())
@@ -179,6 +184,7 @@ class Tracker {
   Rng rng_;
   std::vector<BeamStep>* const steps_;
   int32_t index_ = kVacuum;
+  uint32_t lookups_ = 0;
 };
 
 // Storage of each thread. Walks and connections have different ones, because connections are traced while a flight
@@ -249,6 +255,7 @@ void Fly(const SampleContext& context, const Ray& ray, uint32_t kinds, const Edg
     steps.clear();
     Tracker tracker(line, std::min(static_cast<int>(3 * u.y), 2), u.x, seed, wantsBeam ? &steps : nullptr);
     tracker.wantsEmission = true;
+    tracker.wantsTime = context.mediumTimes != nullptr;
     for (const MediumSpan& span : spans) {
       const Medium& passed = *scene.media[static_cast<size_t>(span.medium)];
       tracker.emission = Color();
@@ -261,6 +268,7 @@ void Fly(const SampleContext& context, const Ray& ray, uint32_t kinds, const Edg
       flight.coefficients = tracker.at;
       break;
     }
+    if (tracker.wantsTime) context.mediumTimes->walks += tracker.nanoseconds;
     const Color endExtinction = flight.collidesWith ? tracker.at.Extinction() : Color(1.0f);
     flight.factors = {MeanOf(tracker.density * endExtinction), MeanOf(tracker.density * start.extinction),
                       MeanOf(tracker.density)};
@@ -297,30 +305,32 @@ Color Flight::TintBefore(double end) const {
 namespace {
 
 // Ratio tracking over all spans up to `end`.
-Tracker Estimate(const RenderScene& scene, const FineLine& line, std::span<const MediumSpan> spans, double end,
+Tracker Estimate(const SampleContext& context, const FineLine& line, std::span<const MediumSpan> spans, double end,
                  uint64_t decider) {
   Rng first(decider);
   Tracker tracker(line, 0, first.NextFloat(), MixBits(decider + 1), nullptr);
+  tracker.wantsTime = context.mediumTimes != nullptr;
   for (const MediumSpan& span : spans) {
     if (!(span.tMin < end)) break;
-    tracker.Follow(*scene.media[static_cast<size_t>(span.medium)], span.medium, span.tMin, std::min(span.tMax, end),
-                   false);
+    tracker.Follow(*context.scene.media[static_cast<size_t>(span.medium)], span.medium, span.tMin,
+                   std::min(span.tMax, end), false);
     if (tracker.value.IsBlack()) break;
   }
+  if (tracker.wantsTime) context.mediumTimes->connections += tracker.nanoseconds;
   return tracker;
 }
 
 // The transmittance of the media alone up to `length`, between the crossings in BuffersOfConnections. Sets the factors
 // of the edge.
-Color TransmittanceOfMedia(const RenderScene& scene, const FineLine& line, double length, const EdgeEnd& start,
+Color TransmittanceOfMedia(const SampleContext& context, const FineLine& line, double length, const EdgeEnd& start,
                            const EdgeEnd& end, uint64_t decider, EdgeFactors& factors) {
   auto& [spans, crossings] = BuffersOfConnections();
-  FindSpans(scene, line, length, start.medium, crossings, spans);
+  FindSpans(context.scene, line, length, start.medium, crossings, spans);
   if (spans.empty()) {
     factors = {MeanOf(end.extinction), MeanOf(start.extinction), 1};
     return Color(1.0f);
   }
-  const Tracker tracker = Estimate(scene, line, spans, length, decider);
+  const Tracker tracker = Estimate(context, line, spans, length, decider);
   factors = {MeanOf(tracker.density * end.extinction), MeanOf(tracker.density * start.extinction),
              MeanOf(tracker.density)};
   return tracker.value;
@@ -351,7 +361,7 @@ std::optional<MediumPoint> PointOnFlight(const SampleContext& context, const Fli
   point.medium = context.scene.media[static_cast<size_t>(span->medium)].get();
   point.coefficients = point.medium->At(Point3(point.position));
   if (point.coefficients.scattering.IsBlack()) return std::nullopt;
-  const Tracker tracker = Estimate(context.scene, flight.line, flight.spans, t, decider);
+  const Tracker tracker = Estimate(context, flight.line, flight.spans, t, decider);
   point.transmittance = span->tint * tracker.value;
   if (point.transmittance.IsBlack()) return std::nullopt;
   point.factors = {MeanOf(tracker.density * point.coefficients.Extinction()),
@@ -369,7 +379,7 @@ Color TransmittanceOf(const SampleContext& context, const Ray& ray, uint32_t kin
   if (surfaces.IsBlack()) return surfaces;
   if (scene.wavelengths) [[unlikely]]
     surfaces = TunedTransmittance(*scene.wavelengths, surfaces, crossings);
-  return surfaces * TransmittanceOfMedia(scene, line, line.length, start, end, decider, factors);
+  return surfaces * TransmittanceOfMedia(context, line, line.length, start, end, decider, factors);
 }
 
 bool TransmittanceToHit(const SampleContext& context, const Ray& ray, uint32_t kinds, const EdgeEnd& start,
@@ -380,7 +390,7 @@ bool TransmittanceToHit(const SampleContext& context, const Ray& ray, uint32_t k
   const LineHit found = scene.geometry->Trace(ray, line, kinds, hit, crossings);
   if (!found.isHit) return false;
   Tune(scene, crossings);
-  passed = Transmittance(crossings) * TransmittanceOfMedia(scene, line, found.t, start, end, decider, factors);
+  passed = Transmittance(crossings) * TransmittanceOfMedia(context, line, found.t, start, end, decider, factors);
   return true;
 }
 

@@ -85,6 +85,15 @@ struct LightSpread {
   uint64_t vertices = 0, samples = 0;  // where lights were chosen, and how many
 };
 
+// What lookups of media take on a typical machine, counted: along walks and along connections, nanoseconds.
+struct MediumTimes {
+  double walks = 0, connections = 0;
+  void operator+=(const MediumTimes& other) {
+    walks += other.walks;
+    connections += other.connections;
+  }
+};
+
 // Inputs and outputs of one sample, besides the radiance that it returns.
 struct SampleContext {
   const RenderScene& scene;
@@ -122,12 +131,15 @@ struct SampleContext {
   // Receives what the light samples of this sample would have been worth if lights were chosen in another way; what
   // arrived is recorded for learned selection. Null: not wanted.
   TestedSamples* tested = nullptr;
+  MediumTimes* mediumTimes = nullptr;  // null: not wanted
 
   SampleContext With(Sampler& other) const {
-    return {scene,    other,       time,      counts,        layers,     splats,
-            observer, gather,      photons,   lastGathering, withOrigin, isForPhotonsAlone,
-            film,     tracesLight, nullptr,   outputs,       nullptr,    0,
-            0,        lane,        disperses, repeatsOthers};
+    SampleContext with{scene,    other,       time,      counts,        layers,     splats,
+                       observer, gather,      photons,   lastGathering, withOrigin, isForPhotonsAlone,
+                       film,     tracesLight, nullptr,   outputs,       nullptr,    0,
+                       0,        lane,        disperses, repeatsOthers};
+    with.mediumTimes = mediumTimes;
+    return with;
   }
   // True if what a path brings was counted with another lane.
   bool IsCounted(bool isDispersed) const { return repeatsOthers && !isDispersed; }

@@ -220,8 +220,12 @@ Counted WithOneLight(const Counted& counted, const std::vector<LightSpread>& pat
   const double fewer =
       static_cast<double>(counted.path.shadowRays) * (1 - static_cast<double>(vertices) / static_cast<double>(samples));
   const double shorter = std::clamp(RaysOf(counted.bdpt) - RaysOf(counted.endingBdpt), 0.0, RaysOf(counted.path));
-  const auto take = [](RenderCounts& counts, double shadowRays) {
+  const double media = counted.path.shadowRays == 0
+                           ? 0.0
+                           : counted.path.media.connections / static_cast<double>(counted.path.shadowRays);
+  const auto take = [media](PassCounts& counts, double shadowRays) {
     counts.shadowRays -= std::min(counts.shadowRays, static_cast<uint64_t>(shadowRays));
+    counts.media.connections = std::max(counts.media.connections - media * shadowRays, 0.0);
   };
   Counted one = counted;
   take(one.path, fewer);

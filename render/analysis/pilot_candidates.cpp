@@ -28,6 +28,12 @@ PartCosts PartCostsOf(const Counted& counted, bool isEnding) {
   double pathRays = RaysOf(counted.path), direct = static_cast<double>(counted.path.shadowRays);
   const double lightRays = std::max(RaysOf(counted.bdpt) - pathRays, 0.0);
   double more = std::max(static_cast<double>(counted.bdpt.shadowRays) - direct, 0.0);
+  // What media add to the cost of a ray of each kind.
+  const auto perOne = [](double time, double count) { return count > 0 ? std::max(time, 0.0) / count : 0.0; };
+  const MediumTimes &ofPath = counted.path.media, &ofBdpt = counted.bdpt.media;
+  const double pathMedia = perOne(ofPath.walks, pathRays), directMedia = perOne(ofPath.connections, direct),
+               lightMedia = perOne(ofBdpt.walks - ofPath.walks, lightRays),
+               moreMedia = perOne(ofBdpt.connections - ofPath.connections, more);
   // Nearly each ray of a light path ends at a vertex that is connected to the lens.
   const double splats = std::min(more, lightRays);
   more -= splats;
@@ -41,8 +47,9 @@ PartCosts PartCostsOf(const Counted& counted, bool isEnding) {
     direct -= fewerDirect;
     more = std::max(more - (fewer - fewerDirect), 0.0);
   }
-  return {costs.ray * pathRays + costs.shadowRay * direct, costs.ray * lightRays + costs.connection * splats,
-          costs.connection * more, costs.ray * lightRays};
+  const double ofLightRays = (costs.ray + lightMedia) * lightRays, connection = costs.connection + moreMedia;
+  return {(costs.ray + pathMedia) * pathRays + (costs.shadowRay + directMedia) * direct,
+          ofLightRays + connection * splats, connection * more, ofLightRays};
 }
 
 }  // namespace
@@ -51,11 +58,11 @@ double RaysOf(const RenderCounts& counts) {
   return static_cast<double>(counts.cameraRays + counts.indirectRays);
 }
 
-double CostOfSppm(const RenderCounts& counts, uint64_t stored, double samples) {
+double CostOfSppm(const PassCounts& counts, uint64_t stored, double samples) {
   constexpr Costs costs;
   return (costs.ray * RaysOf(counts) + costs.shadowRay * static_cast<double>(counts.shadowRays) +
           costs.stored * static_cast<double>(stored) + costs.lookup * static_cast<double>(counts.lookups) +
-          costs.gathered * static_cast<double>(counts.foundPhotons)) /
+          costs.gathered * static_cast<double>(counts.foundPhotons) + counts.media.walks + counts.media.connections) /
          samples;
 }
 

@@ -9,7 +9,7 @@
 #include <cstdint>
 
 #include "integrators/bidirectional/path_densities.h"
-#include "integrators/walk/render_scene.h"
+#include "integrators/walk/integrator.h"
 
 namespace lampyr::pilot {
 
@@ -100,10 +100,19 @@ constexpr size_t EndingOf(size_t k) {
 static_assert(WithoutMerging(kWholeCandidates - 1) < kWholeCandidates && WithoutMerging(kCandidates - 1) < kCandidates);
 static_assert(WithFewestSamples(kCandidates - 1) < kCandidates && EndingOf(kBdpt) == kWholeCandidates + 1);
 
+// What a pass does.
+struct PassCounts : RenderCounts {
+  MediumTimes media;
+  void operator+=(const PassCounts& other) {
+    RenderCounts::operator+=(other);
+    media += other.media;
+  }
+};
+
 struct Counted {
-  RenderCounts path, bdpt, vcm;
-  RenderCounts endingBdpt, endingVcm;  // with kContinuing
-  uint64_t stored = 0;                 // photons of a pass of vcm
+  PassCounts path, bdpt, vcm;
+  PassCounts endingBdpt, endingVcm;  // with kContinuing
+  uint64_t stored = 0;               // photons of a pass of vcm
   // vcm traces the light paths of its photons anew, as in scenes with motion or with wavelengths
   // (render/both_paths.cpp).
   bool tracesAnew = false;
@@ -118,6 +127,6 @@ std::array<CandidateCost, kCandidates> CostsOf(const Counted& counted, double sa
 // Rays by which paths go on: without shadow rays.
 double RaysOf(const RenderCounts& counts);
 // Cost of a sample of sppm. `counts`: light paths and camera paths of a pass; `stored`: photons of the pass.
-double CostOfSppm(const RenderCounts& counts, uint64_t stored, double samples);
+double CostOfSppm(const PassCounts& counts, uint64_t stored, double samples);
 
 }  // namespace lampyr::pilot

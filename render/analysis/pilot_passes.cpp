@@ -26,8 +26,8 @@ float PilotPasses::Time(uint32_t pass) const {
 }
 
 template <class Body>
-RenderCounts PilotPasses::ForEachPixel(int count, const Body& body) {
-  std::vector<RenderCounts> counts(kChunks);
+PassCounts PilotPasses::ForEachPixel(int count, const Body& body) {
+  std::vector<PassCounts> counts(kChunks);
   ParallelFor(kChunks, threads_, [&](int chunk) {
     const auto index = static_cast<size_t>(chunk);
     // A variance is estimated by independent samples.
@@ -41,18 +41,19 @@ RenderCounts PilotPasses::ForEachPixel(int count, const Body& body) {
       body(index, i % grid_.width, i / grid_.width, sampler, counts[index], splats);
     }
   });
-  RenderCounts total;
-  for (const RenderCounts& part : counts) total += part;
+  PassCounts total;
+  for (const PassCounts& part : counts) total += part;
   return total;
 }
 
-RenderCounts PilotPasses::TracePhotons(const Integrator& integrator, PhotonStore& store, uint32_t pass) {
+PassCounts PilotPasses::TracePhotons(const Integrator& integrator, PhotonStore& store, uint32_t pass) {
   const auto paths = static_cast<int>(std::min<uint64_t>(store.LightPaths(), kMostLightPaths));
-  const RenderCounts counts =
-      ForEachPixel(paths, [&](size_t chunk, int x, int y, Sampler& sampler, RenderCounts& ofChunk, SplatList& splats) {
+  const PassCounts counts =
+      ForEachPixel(paths, [&](size_t chunk, int x, int y, Sampler& sampler, PassCounts& ofChunk, SplatList& splats) {
         sampler.StartPixelSample(x, y, pass + kSamplesOfPart);
         photons_[chunk].StartPath();
         SampleContext context{scene_, sampler, Time(pass), ofChunk};
+        context.mediumTimes = &ofChunk.media;
         context.splats = &splats;
         context.photons = &photons_[chunk];
         context.isForPhotonsAlone = true;
@@ -64,9 +65,9 @@ RenderCounts PilotPasses::TracePhotons(const Integrator& integrator, PhotonStore
   return counts;
 }
 
-RenderCounts PilotPasses::Trace(const Integrator& integrator, uint32_t pass, const PhotonPass* gather,
-                                const Noted& noted) {
-  return ForEachPixel(grid_.Pixels(), [&](size_t chunk, int x, int y, Sampler& sampler, RenderCounts& counts,
+PassCounts PilotPasses::Trace(const Integrator& integrator, uint32_t pass, const PhotonPass* gather,
+                              const Noted& noted) {
+  return ForEachPixel(grid_.Pixels(), [&](size_t chunk, int x, int y, Sampler& sampler, PassCounts& counts,
                                           SplatList& splats) {
     sampler.StartPixelSample(x, y, 2 * kSamplesOfPart + pass / 2);
     sampler.SetDimension(dimensions::kFilm);
@@ -75,6 +76,7 @@ RenderCounts PilotPasses::Trace(const Integrator& integrator, uint32_t pass, con
               row = std::min(static_cast<int>((static_cast<float>(y) + u.y) * grid_.pixel.y), settings_.height - 1);
     sampler.StartPixelSample(x, y, pass);
     SampleContext context{scene_, sampler, Time(pass), counts};
+    context.mediumTimes = &counts.media;
     context.splats = integrator.Paths() == TracedPaths::Camera ? nullptr : &splats;
     context.gather = gather;
     const PixelRay pixel = MakePixelRay(scene_, filter_, column, row, context.time, sampler);

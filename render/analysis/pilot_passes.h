@@ -35,16 +35,16 @@ class PilotPasses {
         photons_(kChunks) {}
 
   // Traces the photons of a pass; where the integrator gathers none, it has none.
-  RenderCounts TracePhotons(const Integrator& integrator, PhotonStore& store, uint32_t pass);
+  PassCounts TracePhotons(const Integrator& integrator, PhotonStore& store, uint32_t pass);
   // One sample of every pixel. Passes 2i and 2i + 1 have the same pixel of the image, of those that a pixel of the
   // pilot holds: what differs between pixels is not noise, and what is within one is.
-  RenderCounts Trace(const Integrator& integrator, uint32_t pass, const PhotonPass* gather, const Noted& noted = {});
+  PassCounts Trace(const Integrator& integrator, uint32_t pass, const PhotonPass* gather, const Noted& noted = {});
 
  private:
   float Time(uint32_t pass) const;
   // `count`: of the pixels, or more, with further rows.
   template <class Body>
-  RenderCounts ForEachPixel(int count, const Body& body);
+  PassCounts ForEachPixel(int count, const Body& body);
 
   const RenderScene& scene_;
   const RenderSettings& settings_;

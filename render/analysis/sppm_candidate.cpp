@@ -105,7 +105,7 @@ class Measured {
 
 // Rays and photons of a pass of sppm.
 struct Counts {
-  RenderCounts rays;  // of a pass
+  PassCounts rays;  // of a pass
   uint64_t stored = 0;
   double CostOfSample(const Grid& grid) const { return CostOfSppm(rays, stored, grid.Pixels()); }
 };
@@ -126,9 +126,9 @@ Counts Trace(const RenderScene& scene, const RenderScene& counted, const RenderS
   std::vector<double> values(static_cast<size_t>(grid.Pixels())), last;
   std::vector<std::vector<double>> seen;
   for (uint32_t pass = 0; pass < 2 * pairs; ++pass) {
-    const RenderCounts light = passes.TracePhotons(*sppm, store, pass);
+    const PassCounts light = passes.TracePhotons(*sppm, store, pass);
     const PhotonPass& gather = store.Open(pass, threads, wider);
-    const RenderCounts camera = passes.Trace(*sppm, pass, &gather, {.values = &values});
+    const PassCounts camera = passes.Trace(*sppm, pass, &gather, {.values = &values});
     if (pass == 0) {
       counts.stored = gather.map->Size();
       counts.rays = scene.isSpectral ? countedPasses.Trace(*sppm, pass, &gather) : camera;

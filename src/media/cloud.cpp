@@ -1,5 +1,4 @@
 // A procedural cloud ([Pharr23 §11.4.2]): fractal noise at a point that other noise displaces, thinner towards the top.
-// The noise is lampyr's own, so that the shape of a cloud differs from pbrt-v4's and its character does not.
 #include <algorithm>
 #include <cmath>
 
@@ -40,6 +39,9 @@ class CloudMedium : public BoxMedium {
  public:
   CloudMedium(const std::string& name, const CloudParameters& cloud, const Affine& toMedium, MajorantGrid majorants)
       : BoxMedium(name, cloud.scattering.asymmetry, false, toMedium, std::move(majorants)), cloud_(cloud) {}
+
+  // Of every evaluation of noise some 30.
+  double LookupNanoseconds() const override { return 30 * (kOctaves + (cloud_.wispiness > 0 ? 8 : 0)); }
 
  protected:
   MediumCoefficients AtInside(const Point3& p) const override {

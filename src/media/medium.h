@@ -35,6 +35,8 @@ class Medium {
   // This medium at the wavelengths of a pass. `self`: this one.
   virtual std::shared_ptr<const Medium> AtWavelengths(const std::shared_ptr<const Medium>& self,
                                                       const std::shared_ptr<const Wavelengths>& wavelengths) const;
+  // What At takes on a typical machine, by which costs of integrators are estimated.
+  virtual double LookupNanoseconds() const { return IsHomogeneous() ? 15 : 60; }
   // Memory of its grids.
   virtual size_t Bytes() const { return 0; }
 

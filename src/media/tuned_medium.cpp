@@ -20,6 +20,7 @@ class TunedMedium final : public Medium {
             wavelengths_->FromRgb(here.emission)};
   }
   const MajorantGrid* Majorants() const override { return medium_->Majorants(); }
+  double LookupNanoseconds() const override { return medium_->LookupNanoseconds() + 40; }
 
  private:
   std::shared_ptr<const Medium> medium_;
