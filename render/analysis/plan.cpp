@@ -145,6 +145,14 @@ std::string FirstOf(const std::vector<std::string>& names) {
   return names.size() > most ? listed + ", …" : listed;
 }
 
+PlanDecision ChooseLearning(const RenderScene& scene, const RenderSettings& settings, const Integrator& integrator) {
+  if (!settings.LearnsLights()) return {"learning", "off", "--no-learn-lights"};
+  if (integrator.Paths() == TracedPaths::Light) return {"learning", "none", "the integrator connects to no lights"};
+  if (!scene.lighting->LearnsSelection()) return {"learning", "none", "no tree of lights is chosen from"};
+  if (settings.AlwaysLearnsLights()) return {"learning", "on", "--learn-always"};
+  return {"learning", "if helpful", "which lights are occluded where is learned, and tested"};
+}
+
 PlanDecision ChooseGroups(const RenderScene& scene) {
   const std::vector<std::string>& layers = scene.lighting->Groups().Layers();
   if (layers.empty()) return {"light groups", "none", "no light names one"};
@@ -205,12 +213,7 @@ ScenePlan PlanFor(const RenderScene& scene, const RenderSettings& settings, int 
       : scene.camera->ConnectsLightPaths()
           ? PlanDecision{"lens", "sampled", "the camera has a lens"}
           : PlanDecision{"lens", "traced", "the camera has a lens of elements: light paths are not connected to it"});
-  plan.decisions.push_back(
-      settings.LearnsLights()
-          ? settings.AlwaysLearnsLights()
-                ? PlanDecision{"learning", "on", "--learn-always"}
-                : PlanDecision{"learning", "if helpful", "which lights are occluded where is learned, and tested"}
-          : PlanDecision{"learning", "off", "--no-learn-lights"});
+  plan.decisions.push_back(ChooseLearning(scene, settings, *integrator));
   return plan;
 }
 
