@@ -1,8 +1,10 @@
 // Scene statements have the meaning that they have in pbrt-v4.
 #include <gtest/gtest.h>
 
+#include "scene/referenced_files.h"
 #include "spectral/color_space.h"
 #include "support/render_scene.h"
+#include "support/temporary_folder.h"
 
 namespace lampyr::test {
 namespace {
@@ -27,6 +29,19 @@ TEST(ColorSpaces, LightsWithoutAColourHaveTheirWhite) {
     EXPECT_NEAR(unnamed.b, named.b, 1e-6f) << space;
   }
   EXPECT_GT(Background("ColorSpace \"aces2065-1\" LightSource \"infinite\"").r, 1.03f);
+}
+
+// The tilt of an IES profile is in a file of its own, which a render must not overwrite and which parts depend on.
+TEST(ReferencedFiles, HoldTheTiltOfProfiles) {
+  const TemporaryFolder folder;
+  WriteBytes(folder / "a.tlt", "1 1 0 1");
+  WriteBytes(folder / "a.ies", "IESNA91\nTILT=a.tlt\n1 -1 1 2 1 1 2 0 0 0 1 1 1 0 90 0 5 5");
+  Diagnostics diagnostics(Diagnostics::Mode::Collect);
+  const SceneDescription scene =
+      ParseScene("WorldBegin LightSource \"point\" \"string ies:file\" \"" + (folder / "a.ies").string() + "\"",
+                 "test.pbrt", diagnostics);
+  EXPECT_EQ(ReferencedFiles(scene),
+            (std::vector<std::string>{(folder / "a.ies").string(), (folder / "a.tlt").string()}));
 }
 
 // Fractions are those of floats, and bounds may be in any order.

@@ -118,6 +118,16 @@ TEST(Exr, ThousandsOfLayersComeBack) {
   EXPECT_EQ(read.data, image.data);
 }
 
+TEST(AtomicWrite, ARewrittenFileKeepsItsPermissions) {
+  const TemporaryFolder folder;
+  const auto wanted =
+      std::filesystem::perms::owner_read | std::filesystem::perms::owner_write | std::filesystem::perms::others_read;
+  WriteBytes(folder / "a.exr", "old");
+  std::filesystem::permissions(folder / "a.exr", wanted);
+  EXPECT_EQ(FailureOf(folder / "a.exr"), "");
+  EXPECT_EQ(std::filesystem::status(folder / "a.exr").permissions(), wanted);
+}
+
 TEST(AtomicWrite, FailuresNameFileAndReason) {
   const TemporaryFolder folder;
   WriteBytes(folder / "file", "old");

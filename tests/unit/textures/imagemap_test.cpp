@@ -162,7 +162,8 @@ TEST(ImageMap, ScaleTexturesScaleTheImage) {
 }
 
 // An OpenEXR file of one pixel, with chromaticities: x, y of red, green, blue and white.
-std::string ExrWithChromaticities(const Color& color, const std::array<float, 8>& chromaticities) {
+std::string ExrWithChromaticities(const Color& color, const std::array<float, 8>& chromaticities,
+                                  const std::string& channels = "BGR") {
   std::string bytes("\x76\x2f\x31\x01\x02\0\0\0", 8);
   const auto add = [&bytes](const auto& value) { bytes.append(reinterpret_cast<const char*>(&value), sizeof value); };
   const auto attribute = [&](const std::string& name, const std::string& type, int32_t size) {
@@ -170,8 +171,8 @@ std::string ExrWithChromaticities(const Color& color, const std::array<float, 8>
     add(size);
   };
   attribute("channels", "chlist", 3 * 18 + 1);
-  for (const char* name : {"B", "G", "R"}) {
-    bytes += std::string(name) + '\0';
+  for (const char name : channels) {
+    bytes += std::string(1, name) + '\0';
     for (const int32_t value : {2, 0, 1, 1}) add(value);
   }
   bytes += '\0';
@@ -198,6 +199,14 @@ std::string ExrWithChromaticities(const Color& color, const std::array<float, 8>
   add(int32_t{12});
   for (const float value : {color.b, color.g, color.r}) add(value);
   return bytes;
+}
+
+TEST(ImageMap, ImagesWithoutColoursAreErrors) {
+  const TemporaryFolder folder;
+  WriteBytes(folder / "c.exr",
+             ExrWithChromaticities(Color(1.0f), {0.64f, 0.33f, 0.3f, 0.6f, 0.15f, 0.06f, 0.3f, 0.3f}, "UVZ"));
+  EXPECT_THAT(ErrorOf({MakeTexture("a", true, "imagemap", {StringValue("filename", (folder / "c.exr").string())})}),
+              ::testing::HasSubstr("no R, G and B channels, and is not gray: its channels are U, V"));
 }
 
 // The colours of an image are those of the primaries and the white that it names, as in pbrt-v4.
