@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <limits>
+#include <optional>
+#include <utility>
 
 #include "app/command_support.h"
 #include "base/error.h"
@@ -33,25 +35,34 @@ double ParseDuration(const std::string& option, const std::string& text) {
   return seconds;
 }
 
+namespace {
+
+// Two whole numbers with a character between them, and nothing else.
+std::optional<std::pair<int, int>> ParsePair(const std::string& text, char between) {
+  std::pair<int, int> numbers;
+  const char* const end = text.data() + text.size();
+  const auto first = std::from_chars(text.data(), end, numbers.first);
+  if (first.ec != std::errc() || first.ptr == end || *first.ptr != between) return std::nullopt;
+  const auto second = std::from_chars(first.ptr + 1, end, numbers.second);
+  if (second.ec != std::errc() || second.ptr != end) return std::nullopt;
+  return numbers;
+}
+
+}  // namespace
+
 void ParseResolution(const std::string& text, RenderOverrides& overrides) {
-  int width = 0, height = 0;
-  char rest = 0;
-  if (std::sscanf(text.c_str(), "%dx%d%c", &width, &height, &rest) != 2 || width < 1 || height < 1 || width > 65536 ||
-      height > 65536) {
+  const auto size = ParsePair(text, 'x');
+  if (!size || size->first < 1 || size->second < 1 || size->first > 65536 || size->second > 65536)
     throw UsageError("--resolution: \"" + text + "\" is not a size; write 640x360");
-  }
-  overrides.width = width;
-  overrides.height = height;
+  overrides.width = size->first;
+  overrides.height = size->second;
 }
 
 std::pair<int, int> ParseShard(const std::string& text) {
-  int index = 0, count = 0;
-  char rest = 0;
-  if (std::sscanf(text.c_str(), "%d/%d%c", &index, &count, &rest) != 2 || count < 1 || count > 1 << 20 || index < 1 ||
-      index > count) {
+  const auto part = ParsePair(text, '/');
+  if (!part || part->second < 1 || part->second > 1 << 20 || part->first < 1 || part->first > part->second)
     throw UsageError("--shard: \"" + text + "\" is no part; write 2/8 for the second of eight");
-  }
-  return {index, count};
+  return *part;
 }
 
 std::string CheckPositive(const std::string& text) {

@@ -32,8 +32,8 @@ Vector3d RandomDirection(Rng& rng) {
 }
 
 double RelativeDifference(double a, double b) {
+  if (!(std::abs(a) < 1e300) || !(std::abs(b) < 1e300)) return 1;
   const double largest = std::max(std::abs(a), std::abs(b));
-  if (!(largest < 1e300)) return 1;
   return largest > 0 ? std::abs(a - b) / largest : 0.0;
 }
 
@@ -51,8 +51,9 @@ double Mismatch(const LightSample& sample, const LightEvaluation& evaluation) {
   note(Value(sample.pdfEmit), Value(evaluation.pdfEmit));
   note(Value(sample.pdfEmitDirection), Value(evaluation.pdfEmitDirection));
   note(static_cast<double>(sample.solidAngleToArea), static_cast<double>(evaluation.solidAngleToArea));
-  worst = std::max(worst, static_cast<double>(glm::length(sample.normal - evaluation.normal)));
-  return std::max(worst, static_cast<double>(std::abs(glm::length(sample.direction) - 1)));
+  for (const float off : {glm::length(sample.normal - evaluation.normal), std::abs(glm::length(sample.direction) - 1)})
+    worst = std::isnan(off) ? 1 : std::max(worst, static_cast<double>(off));
+  return worst;
 }
 
 double Mismatch(const EmissionSample& photon, const LightEvaluation& evaluation) {

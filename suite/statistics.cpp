@@ -8,6 +8,7 @@ namespace {
 
 // Upper regularised incomplete gamma function Q(a, x): series below a + 1, continued fraction above.
 double UpperGamma(double a, double x) {
+  if (std::isnan(x)) return 0;
   if (!(x > 0)) return 1;
   const double front = std::exp(-x + a * std::log(x) - std::lgamma(a));
   if (x < a + 1) {

@@ -57,10 +57,10 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
     segment_ = LitSegment(context_.scene, state.ray, flight, path.Count() == 0);
     arrivesAfter_ = static_cast<double>(flight.t);
     if (!(segment_.Share() > 0)) return;
-    // Estimates of the lights along a segment, measured in scenes/lighthouse and prism.
-    constexpr double kNanoseconds = 350;
-    if (context_.mediumTimes) context_.mediumTimes->walks += kNanoseconds;
-    SampleSegment(path, state, flight);
+    const MediumTimes before = context_.mediumTimes ? *context_.mediumTimes : MediumTimes();
+    const uint64_t rays = context_.counts.shadowRays;
+    if (SampleSegment(path, state, flight) && context_.mediumTimes) [[unlikely]]
+      CountSegment(before, context_.counts.shadowRays - rays);
   }
 
   void Glowed(const Subpath& path, const PathState& state, const Color& radiance) override {
@@ -134,7 +134,18 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
   }
 
   // A vertex on the ray whose distance is sampled for a light, and its direct light from there.
-  void SampleSegment(Subpath& path, const PathState& state, const Flight& flight) {
+  // Adds what a segment has taken. `before`: times before it. `rays`: its shadow rays.
+  void CountSegment(const MediumTimes& before, uint64_t rays) const {
+    // Estimates of the lights along a segment, and a shadow ray, as measured in scenes/lighthouse and prism.
+    constexpr double kNanoseconds = 350, kShadowRay = 350;
+    MediumTimes& times = *context_.mediumTimes;
+    times.segments += kNanoseconds + kShadowRay * static_cast<double>(rays) + times.connections - before.connections;
+    times.segmentRays += static_cast<double>(rays);
+    times.connections = before.connections;
+  }
+
+  // False: it is not sampled, which is decided first.
+  bool SampleSegment(Subpath& path, const PathState& state, const Flight& flight) {
     const auto edge = static_cast<int>(path.Count());
     const auto pair = [&](uint32_t which) {
       context_.sampler.SetDimension(settings_.dimensions.OfSegment(edge, which));
@@ -142,11 +153,11 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
     };
     const Point2 choice = pair(dimensions::kSegmentChoice), uApex = pair(dimensions::kSegmentApex);
     const uint64_t decider = MixBits(ShadowRays::DeciderOf(choice.x, choice.y));
-    if (segment_.Share() < 1 && UnitFloat(static_cast<uint32_t>(decider)) >= segment_.Share()) return;
+    if (segment_.Share() < 1 && UnitFloat(static_cast<uint32_t>(decider)) >= segment_.Share()) return false;
     const auto sample = segment_.Generate(lighting_, choice, uApex);
-    if (!sample) return;
+    if (!sample) return true;
     const auto point = PointOnFlight(context_, flight, sample->t, decider);
-    if (!point) return;
+    if (!point) return true;
     PathVertex& vertex = path.Next();
     MakeVertexInMedium(context_.scene, point->position, state.ray.direction, point->index,
                        {point->coefficients.scattering, point->medium->Asymmetry()}, point->coefficients.Extinction(),
@@ -167,6 +178,7 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
         SampleLight(context_, settings, vertex, sample->light, pair(dimensions::kSegmentLight), radiance_, *this);
     path.Drop();
     sampledFor_ = nullptr;
+    return true;
   }
 
   // A light found by BSDF sampling, weighted against next-event estimation.

@@ -85,12 +85,16 @@ struct LightSpread {
   uint64_t vertices = 0, samples = 0;  // where lights were chosen, and how many
 };
 
-// What lookups of media take on a typical machine, counted: along walks and along connections, nanoseconds.
+// What lookups of media take on a typical machine, counted: along walks and along connections, nanoseconds; and all
+// that light on the segments of paths takes, which `path` alone samples.
 struct MediumTimes {
-  double walks = 0, connections = 0;
+  double walks = 0, connections = 0, segments = 0;
+  double segmentRays = 0;  // shadow rays from segments
   void operator+=(const MediumTimes& other) {
     walks += other.walks;
     connections += other.connections;
+    segments += other.segments;
+    segmentRays += other.segmentRays;
   }
 };
 

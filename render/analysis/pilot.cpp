@@ -35,7 +35,8 @@ constexpr int kSeveralLights = 2;
 // that finds it by chance. Even.
 int PassesFor(const Counted& counted, int pixels) {
   const double cost = CostsOf(counted, pixels)[kBdpt].paths;
-  return std::clamp(2 * static_cast<int>(kPassesTime / (2 * cost * pixels)), kFewestPasses, kMostPasses);
+  const double pairs = std::clamp(kPassesTime / (2 * cost * pixels), kFewestPasses / 2.0, kMostPasses / 2.0);
+  return 2 * static_cast<int>(pairs);
 }
 
 // The light paths of the pilot are not guided. If those of the render will be, errors are corrected by a typical
@@ -217,12 +218,10 @@ Counted WithOneLight(const Counted& counted, const std::vector<LightSpread>& pat
   }
   if (samples == 0) return counted;
   // Not every sample of a light has a shadow ray.
-  const double fewer =
-      static_cast<double>(counted.path.shadowRays) * (1 - static_cast<double>(vertices) / static_cast<double>(samples));
+  const double direct = counted.path.DirectRays(),
+               fewer = direct * (1 - static_cast<double>(vertices) / static_cast<double>(samples));
   const double shorter = std::clamp(RaysOf(counted.bdpt) - RaysOf(counted.endingBdpt), 0.0, RaysOf(counted.path));
-  const double media = counted.path.shadowRays == 0
-                           ? 0.0
-                           : counted.path.media.connections / static_cast<double>(counted.path.shadowRays);
+  const double media = direct > 0 ? counted.path.media.connections / direct : 0.0;
   const auto take = [media](PassCounts& counts, double shadowRays) {
     counts.shadowRays -= std::min(counts.shadowRays, static_cast<uint64_t>(shadowRays));
     counts.media.connections = std::max(counts.media.connections - media * shadowRays, 0.0);
@@ -383,7 +382,7 @@ RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, i
   const int first = passCount > 0 ? passCount : kFewestPasses;
   if (scene.isSpectral) CountPaths(integrators, WithWavelengths(view), combined, grid, threads, counted, nullptr);
   const PixelFilter filter(settings.filter);
-  Records records(grid, filter, SplatCount(settings), kChunks);
+  Records records(grid, filter, SplatCount(settings), kChunks, std::max(most, kMostPasses));
   const double wider = WiderRadius(fewer, photons.alpha);
   const bool isSobol = settings.sampler == SamplerKind::Sobol;
   const auto isEnough = [&](int count, const Counted& soFar) {

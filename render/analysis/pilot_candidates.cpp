@@ -25,7 +25,7 @@ struct PartCosts {
 
 PartCosts PartCostsOf(const Counted& counted, bool isEnding) {
   constexpr Costs costs;
-  double pathRays = RaysOf(counted.path), direct = static_cast<double>(counted.path.shadowRays);
+  double pathRays = RaysOf(counted.path), direct = counted.path.DirectRays();
   const double lightRays = std::max(RaysOf(counted.bdpt) - pathRays, 0.0);
   double more = std::max(static_cast<double>(counted.bdpt.shadowRays) - direct, 0.0);
   // What media add to the cost of a ray of each kind.
@@ -60,7 +60,7 @@ double RaysOf(const RenderCounts& counts) {
 
 double CostOfSppm(const PassCounts& counts, uint64_t stored, double samples) {
   constexpr Costs costs;
-  return (costs.ray * RaysOf(counts) + costs.shadowRay * static_cast<double>(counts.shadowRays) +
+  return (costs.ray * RaysOf(counts) + costs.shadowRay * counts.DirectRays() + counts.media.segments +
           costs.stored * static_cast<double>(stored) + costs.lookup * static_cast<double>(counts.lookups) +
           costs.gathered * static_cast<double>(counts.foundPhotons) + counts.media.walks + counts.media.connections) /
          samples;
@@ -75,7 +75,7 @@ std::array<CandidateCost, kCandidates> CostsOf(const Counted& counted, double sa
     const bool isEnding = candidate.continuing < 1;
     const PartCosts& parts = isEnding ? ofEnding : ofWhole;
     const double n = candidate.lightPaths;
-    all[k].paths = (n > 0 ? kCameraPathWithWeights * parts.path : parts.path) / samples;
+    all[k].paths = (n > 0 ? kCameraPathWithWeights * parts.path : parts.path + counted.path.media.segments) / samples;
     all[k].paths += kSideBySide * std::min(n, 1.0) * (parts.light + parts.connections) / samples;
     all[k].paths += kAlone * std::max(n - 1, 0.0) * parts.light / samples;
     if (!Merges(k)) continue;

@@ -107,6 +107,8 @@ struct PassCounts : RenderCounts {
     RenderCounts::operator+=(other);
     media += other.media;
   }
+  // Shadow rays, without those of segments.
+  double DirectRays() const { return static_cast<double>(shadowRays) - media.segmentRays; }
 };
 
 struct Counted {

@@ -166,7 +166,7 @@ void Recorder::KeepRare(const ConnectedPath& path, double value, size_t pixel, c
   const double weighted = path.weight * value;
   for (size_t k = 0; k < kCandidates; ++k) {
     const double expected = renders_ * path.weight / factors[k];
-    if (factors[k] > kRare && expected < kMostPasses)
+    if (factors[k] > kRare && expected < mostPasses_)
       Keep({pixel, value * factors[k], expected, weighted, weighted * value * factors[k]}, rare[k]);
   }
 }
@@ -252,14 +252,14 @@ double Recorder::SplatOf(const ConnectedPath& path, double value, double lightPa
   return overlap * lightPaths * lightPaths * splatSquare / squares * value / pixels;
 }
 
-Records::Records(const Grid& grid, const PixelFilter& filter, double splatCount, int chunks)
+Records::Records(const Grid& grid, const PixelFilter& filter, double splatCount, int chunks, int mostPasses)
     : grid_(grid), squaredMeans_(kCandidates * static_cast<size_t>(grid.Pixels())) {
   const auto pixels = static_cast<size_t>(grid.Pixels());
   pixels_.moments.resize(pixels);
   pixels_.found.resize(pixels);
   recorders_.reserve(static_cast<size_t>(chunks));
   for (int chunk = 0; chunk < chunks; ++chunk) {
-    recorders_.emplace_back(grid, filter, splatCount, pixels_,
+    recorders_.emplace_back(grid, filter, splatCount, mostPasses, pixels_,
                             static_cast<size_t>(BeginOfChunk(grid.Pixels(), chunk, chunks)),
                             static_cast<size_t>(BeginOfChunk(grid.Pixels(), chunk + 1, chunks)));
   }
@@ -406,6 +406,7 @@ void Records::LeaveOutRare(size_t k, int passes, double mean, const std::vector<
   for (const Moments& pixel : pixels) missing += pixel.missing[k];
   const double most = 0.5 * kNegligibleLight * passes * grid_.Pixels() * mean;
   for (const RareEvent& event : events) {
+    if (event.expected >= passes) continue;  // a typical render is expected to hold it
     expected += event.expected / passes;
     missing += event.light;
     if (expected > 1 || missing > most) return;

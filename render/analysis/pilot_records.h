@@ -121,13 +121,15 @@ struct PixelSums {
 // pass: sums do not depend on the number of threads.
 class Recorder final : public PathObserver {
  public:
-  // `first`, `end`: pixels of the chunk. `splatCount`: that of the weights.
-  Recorder(const Grid& grid, const PixelFilter& filter, double splatCount, PixelSums& pixels, size_t first, size_t end)
+  // `first`, `end`: pixels of the chunk. `splatCount`: that of the weights. `mostPasses`: of the pilot.
+  Recorder(const Grid& grid, const PixelFilter& filter, double splatCount, int mostPasses, PixelSums& pixels,
+           size_t first, size_t end)
       : grid_(grid),
         filmPixels_(grid.filmPixels),
         spread_(filter.SplatCount()),
         splatCount_(splatCount),
         renders_(kTypicalSamples / grid.Pixels()),
+        mostPasses_(mostPasses),
         pixels_(pixels),
         first_(first),
         end_(end) {}
@@ -181,6 +183,7 @@ class Recorder final : public PathObserver {
   double spread_;      // pixels among which a splat is divided
   double splatCount_;  // of the weights
   double renders_;     // typical renders for each of the pilot's samples, times its passes
+  int mostPasses_;
   size_t pixel_ = 0;
   PixelSums& pixels_;
   size_t first_, end_;
@@ -200,7 +203,7 @@ class Recorder final : public PathObserver {
 class Records {
  public:
   // `splatCount`: that of the weights. `chunks`: of the pixels, each with a recorder.
-  Records(const Grid& grid, const PixelFilter& filter, double splatCount, int chunks);
+  Records(const Grid& grid, const PixelFilter& filter, double splatCount, int chunks, int mostPasses);
 
   std::span<Recorder> Recorders() { return recorders_; }
 

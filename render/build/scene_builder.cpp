@@ -81,7 +81,7 @@ class Builder {
   MediaAround MediaAroundLights(const Point3& eye) const;
   std::vector<Part> MovingParts(const std::vector<ReadEntry>& entries);
   void BuildPart(Part& part);
-  void PlacePart(const Part& part, const RenderPlacement& placement);
+  void PlacePart(const Part& part, const FileLocation& where, const RenderPlacement& placement);
   void PlaceMovingPart(const Part& part, const MotionChain& parentToRender);
   void PlaceInstance(const FlatInstance& instance, const std::vector<Part>& parts);
   std::optional<GeometryAttributes> AttributesOf(const ReadEntry& entry) const;
@@ -268,7 +268,7 @@ void Builder::BuildPart(Part& part) {
   geometry_.objects.push_back(std::move(object));
 }
 
-void Builder::PlacePart(const Part& part, const RenderPlacement& placement) {
+void Builder::PlacePart(const Part& part, const FileLocation& where, const RenderPlacement& placement) {
   const std::vector<GeometryEntry>& entries = geometry_.objects[part.object].entries;
   if (entries.empty()) return;
   GeometryInstance placed;
@@ -276,6 +276,7 @@ void Builder::PlacePart(const Part& part, const RenderPlacement& placement) {
   placed.toRender = placement.toRender.ToAffine();
   placed.toObject = placement.toRender.Inverse().ToAffine();
   placed.motion = placement.motion;
+  LocateErrors(where, [&] { CheckInstance(placed); });
   placed.firstLight = lights_->NextIndex();
   for (const GeometryEntry& entry : entries) {
     if (entry.attributes.light < 0) continue;
@@ -290,7 +291,7 @@ void Builder::PlacePart(const Part& part, const RenderPlacement& placement) {
 
 void Builder::PlaceMovingPart(const Part& part, const MotionChain& parentToRender) {
   const FileLocation& where = part.entries.front()->local.description->shape.where;
-  PlacePart(part, placer_.PlaceMoving(parentToRender * *part.placement, part.bounds, "a shape", where));
+  PlacePart(part, where, placer_.PlaceMoving(parentToRender * *part.placement, part.bounds, "a shape", where));
 }
 
 // The first part has the object's shapes that do not move within it.
@@ -298,13 +299,14 @@ void Builder::PlaceInstance(const FlatInstance& instance, const std::vector<Part
   const FileLocation& where = instance.description->where;
   if (!instance.motion) {
     const Transform toRender = placer_.WorldToRender() * instance.toWorld;
-    if (!toRender.IsAffine()) throw Error(where, "an instance cannot have a perspective transform");
-    PlacePart(parts.front(), {toRender, nullptr});
+    if (!toRender.IsAffine())
+      throw Error(where, "an instance cannot have a perspective transform, or one that is not finite");
+    PlacePart(parts.front(), where, {toRender, nullptr});
     for (size_t i = 1; i < parts.size(); ++i) PlaceMovingPart(parts[i], MotionChain(toRender));
     return;
   }
   const MotionChain toRender = MotionChain(placer_.WorldToRender()) * *instance.motion;
-  PlacePart(parts.front(), placer_.PlaceMoving(toRender, parts.front().bounds, "an instance", where));
+  PlacePart(parts.front(), where, placer_.PlaceMoving(toRender, parts.front().bounds, "an instance", where));
   for (size_t i = 1; i < parts.size(); ++i) PlaceMovingPart(parts[i], toRender);
 }
 

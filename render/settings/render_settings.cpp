@@ -94,10 +94,14 @@ void AddLayer(const std::string& text, const FileLocation& where, RenderSettings
   }
 }
 
-void ReadCrop(const ParameterList& film, const RenderOverrides& overrides, RenderSettings& settings) {
+void ReadCrop(const ParameterList& film, const RenderOverrides& overrides, RenderSettings& settings,
+              Diagnostics& diagnostics) {
   settings.crop = {0, 0, settings.width, settings.height};
   const std::vector<double> window = film.GetFloats("cropwindow");
   const std::vector<int64_t> bounds = film.GetIntegers("pixelbounds");
+  if (!window.empty() && !bounds.empty())
+    diagnostics.Warn(film.WhereOf("pixelbounds"),
+                     "\"pixelbounds\" is ignored: \"cropwindow\" says which part is rendered");
   if (overrides.crop) {
     settings.crop = ParseCrop(*overrides.crop, settings.width, settings.height);
   } else if (!window.empty()) {
@@ -176,14 +180,17 @@ void ReadFilm(const SceneDescription& scene, const RenderOverrides& overrides, R
   CheckSensorName(film, sensor);
   const ParameterList& camera = scene.camera.parameters;
   const double exposureTime = camera.GetFloat("shutterclose", 1) - camera.GetFloat("shutteropen", 0);
+  if (!(exposureTime > 0)) {
+    throw Error(camera.WhereOf("shutterclose"),
+                "the exposure is not positive: \"shutterclose\" must be after \"shutteropen\"");
+  }
   const auto imagingRatio = static_cast<float>(exposureTime * film.GetFloat("iso", 100) / 100);
   if (!(imagingRatio > 0)) {
-    throw Error(film.Where(),
-                "the exposure is not positive: \"shutterclose\" must be after \"shutteropen\" and \"iso\" above 0");
+    throw Error(film.WhereOf("iso"), "the exposure is not positive: \"iso\" must be above 0");
   }
   settings.sensor = ReadSensor(film, imagingRatio, sensor == "cie1931");
 
-  ReadCrop(film, overrides, settings);
+  ReadCrop(film, overrides, settings, diagnostics);
   film.Find("diagonal");  // the film's size in mm: read for "realistic" cameras only
   film.CheckAllUsed(
       {"coordinatesystem"},

@@ -285,15 +285,20 @@ void Film::PrefetchSplats(const Point2& film) const {
 void Film::AddToRows(const PixelFilter& filter, std::span<const SplatList> lists, int band, int bands, bool isInHalf) {
   constexpr int kGroup = 4;
   const Vector2 radius = filter.Radius();
-  const auto firstPixel = [](float p, float r) { return static_cast<int>(std::floor(p - 0.5f - r)); };
-  const auto lastPixel = [](float p, float r) { return static_cast<int>(std::ceil(p - 0.5f + r)); };
-  std::vector<float> weightsX(static_cast<size_t>(2 * radius.x) + 4);
+  // Within [low, high]: the radius may be far larger than the film.
+  const auto firstPixel = [](float p, float r, int low, int high) {
+    return static_cast<int>(std::clamp(std::floor(p - 0.5f - r), static_cast<float>(low), static_cast<float>(high)));
+  };
+  const auto lastPixel = [](float p, float r, int low, int high) {
+    return static_cast<int>(std::clamp(std::ceil(p - 0.5f + r), static_cast<float>(low), static_cast<float>(high)));
+  };
+  std::vector<float> weightsX(static_cast<size_t>(std::min(2 * radius.x + 4, static_cast<float>(crop_.Width()))));
   // Calls add(pixel, weight) for the pixels under the filter at `film`.
   const auto spread = [&](const Point2& film, const auto& add) {
-    const int y0 = std::max(firstPixel(film.y, radius.y), crop_.y0);
-    const int y1 = std::min(lastPixel(film.y, radius.y), crop_.y1 - 1);
-    const int x0 = std::max(firstPixel(film.x, radius.x), crop_.x0);
-    const int x1 = std::min(lastPixel(film.x, radius.x), crop_.x1 - 1);
+    const int y0 = firstPixel(film.y, radius.y, crop_.y0, crop_.y1);
+    const int y1 = lastPixel(film.y, radius.y, crop_.y0 - 1, crop_.y1 - 1);
+    const int x0 = firstPixel(film.x, radius.x, crop_.x0, crop_.x1);
+    const int x1 = lastPixel(film.x, radius.x, crop_.x0 - 1, crop_.x1 - 1);
     bool hasWeights = false;
     for (int y = y0; y <= y1; ++y) {
       if (y / kGroup % bands != band) continue;

@@ -10,6 +10,7 @@
 #include <memory>
 #include <new>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace {
@@ -43,6 +44,9 @@ std::string Read(const char* path, const char* format, lampyr::ImageModuleAlloca
   if (!input->open(path, opened, configuration)) return ErrorOf(*input);
   const OIIO::ImageSpec& spec = input->spec();
   if (spec.depth > 1) return "it is a volume";
+  // Of Radiance files, which may store their rows from below or columns first.
+  if (std::string_view(format) == "hdr" && spec.get_int_attribute("Orientation", 1) != 1)
+    return "its rows do not begin at the top left: \"-Y … +X …\" is read";
   // A reader allocates a whole tile.
   constexpr auto largestTile = OIIO::imagesize_t{1} << 24;
   if (spec.tile_width > 0 && spec.tile_pixels() > std::max(largestTile, spec.image_pixels())) {

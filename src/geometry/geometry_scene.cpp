@@ -193,9 +193,8 @@ void GeometryScene::Implementation::AddInstance(const GeometryInstance& instance
   record.object = instance.object;
   record.firstPrimitive = firstPrimitive;
   record.firstLight = instance.firstLight;
+  largest = std::min(largest, CheckInstance(instance));
   const auto add = [&](const Affine& toRender, const Affine& toObject, float begin, float end) {
-    CheckPlacement(toRender);
-    largest = std::min(largest, LargestThrough(toObject));
     record.placement = {toRender, toObject};
     record.begin = begin;
     record.end = end;
@@ -205,10 +204,6 @@ void GeometryScene::Implementation::AddInstance(const GeometryInstance& instance
   // Embree spreads the keys of a geometry evenly over the time that it is there: before and after its motion something
   // is another geometry.
   const Motion& motion = *instance.motion;
-  for (const Affine& key : motion.Keys()) {
-    CheckPlacement(key);
-    largest = std::min(largest, LargestThrough(key.Inverse()));
-  }
   const Affine &first = motion.Keys().front(), &last = motion.Keys().back();
   if (motion.Begin() > 0) add(first, first.Inverse(), 0, motion.Begin());
   if (motion.End() < 1) add(last, last.Inverse(), motion.End(), 1);

@@ -1,6 +1,7 @@
 #include "geometry/shape_checks.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "base/error.h"
@@ -85,8 +86,12 @@ void CheckShape(const Shape& shape) {
 }
 
 void CheckPlacement(const Affine& m) {
-  if (IsUsable(m.translation) && IsUsable(m.linear[0]) && IsUsable(m.linear[1]) && IsUsable(m.linear[2])) return;
-  throw Error("instance: the transform is not finite, or reaches farther than 1e18");
+  if (!IsUsable(m.translation) || !IsUsable(m.linear[0]) || !IsUsable(m.linear[1]) || !IsUsable(m.linear[2]))
+    throw Error("instance: the transform is not finite, or reaches farther than 1e18");
+  // Embree inverts it in float, by its determinant.
+  const float volume = glm::dot(m.linear[0], glm::cross(m.linear[1], m.linear[2]));
+  if (!std::isnormal(volume))
+    throw Error("instance: the transform is singular, or scales volumes by less than 1e-38 or more than 3e38");
 }
 
 float LargestThrough(const Affine& toObject) {
@@ -94,10 +99,24 @@ float LargestThrough(const Affine& toObject) {
   for (int row = 0; row < 3; ++row) {
     const float sum =
         std::abs(toObject.linear[0][row]) + std::abs(toObject.linear[1][row]) + std::abs(toObject.linear[2][row]);
+    const float most = 2 * sum + 2 * std::abs(toObject.translation[row]);
+    if (!(most <= 1e15f)) throw Error("instance: the transform is singular, or scales by more than 1e15");
     stretch = std::max({stretch, 2 * sum, 2 * std::abs(toObject.translation[row])});
-    if (!(stretch <= 1e15f)) throw Error("instance: the transform is singular, or scales by more than 1e15");
   }
   return kFarthest / stretch;
+}
+
+float CheckInstance(const GeometryInstance& instance) {
+  if (!instance.motion) {
+    CheckPlacement(instance.toRender);
+    return LargestThrough(instance.toObject);
+  }
+  float largest = kFarthest;
+  for (const Affine& key : instance.motion->Keys()) {
+    CheckPlacement(key);
+    largest = std::min(largest, LargestThrough(key.Inverse()));
+  }
+  return largest;
 }
 
 }  // namespace lampyr

@@ -1,6 +1,7 @@
 // What can be traced: shapes and placements that are finite and near enough to the origin for Embree.
 #pragma once
 
+#include "geometry/geometry_scene.h"
 #include "geometry/shapes.h"
 
 namespace lampyr {
@@ -18,5 +19,8 @@ void CheckPlacement(const Affine& toRender);
 // The largest origin or direction of a ray that is still traceable in an instance's object space. Throws an Error where
 // the transform is singular, or scales too much.
 float LargestThrough(const Affine& toObject);
+
+// Both, of all transforms of an instance. Returns the least of LargestThrough.
+float CheckInstance(const GeometryInstance& instance);
 
 }  // namespace lampyr

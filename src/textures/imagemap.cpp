@@ -49,7 +49,7 @@ class ColorImageTexture : public ColorTexture {
   }
 
  private:
-  float Bounded(float x) const { return std::clamp(x, 0.0f, largest_); }
+  float Bounded(float x) const { return x > 0 ? std::min(x, largest_) : 0.0f; }
 
   TextureMapping2D mapping_;
   TexelLookup texels_;
@@ -77,6 +77,22 @@ float ReadGamma(const std::string& encoding) {
   char* end = nullptr;
   const float gamma = std::strtof(number.c_str(), &end);
   return *end == '\0' && gamma > 0 && std::isfinite(gamma) ? gamma : 0;
+}
+
+// The image with 0 in place of what is not finite, which filtering would spread.
+std::shared_ptr<const Image> Finite(const std::shared_ptr<const Image>& image, const TextureRequest& request) {
+  const auto isFinite = [](float x) { return std::isfinite(x); };
+  const auto count =
+      image->data.size() - static_cast<size_t>(std::count_if(image->data.begin(), image->data.end(), isFinite));
+  if (count == 0) return image;
+  const ParameterList& parameters = request.Parameters();
+  request.diagnostics.Warn(parameters.WhereOf("filename"), "\"" + parameters.GetFile("filename") +
+                                                               "\": " + std::to_string(count) +
+                                                               " values are not finite, and are taken for 0");
+  auto finite = std::make_shared<Image>(*image);
+  std::replace_if(
+      finite->data.begin(), finite->data.end(), [&](float x) { return !isFinite(x); }, 0.0f);
+  return finite;
 }
 
 std::shared_ptr<const Image> ReadTextureImage(const TextureRequest& request) {
@@ -114,6 +130,7 @@ ParameterOf<Value> MakeImageMap(const TextureRequest& request) {
                 "\"" + parameters.GetFile("filename") +
                     "\" has no R, G and B channels, and is not gray: its channels are " + channels);
   }
+  image = Finite(image, request);
   if constexpr (std::is_same_v<Value, Color>) {
     const bool isLight = request.role == SpectrumRole::Illuminant;
     image = request.library.InRec709(image, isLight ? WhiteHandling::Keep : WhiteHandling::Adapt);
