@@ -129,6 +129,9 @@ void Print(const LightVerdict& verdict) {
   std::printf("         %s: %s\n", verdict.property.c_str(), MeaningOfVerdict(verdict).c_str());
   if (!verdict.worst.words.empty()) {
     std::printf("         worst: %s\n", verdict.worst.words.c_str());
+  } else if (verdict.worst.isProbability) {
+    std::printf("         worst: by chance with a probability of %.3g, where %.3g is too little, in the case \"%s\"\n",
+                verdict.worst.statistic, verdict.worst.threshold, verdict.worst.caseName.c_str());
   } else {
     std::printf("         worst: an error of %.3g where %.3g is allowed, in the case \"%s\"\n", verdict.worst.statistic,
                 verdict.worst.threshold, verdict.worst.caseName.c_str());

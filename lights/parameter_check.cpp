@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <set>
 
 namespace lampyr {
 
@@ -20,6 +21,23 @@ bool TypeFits(ParameterType wanted, ParameterType given) {
 
 std::string Expected(ParameterType type) {
   return IsColorType(type) ? "rgb, spectrum or blackbody" : std::string("\"") + ToString(type) + "\"";
+}
+
+bool IsNumber(const std::string& text) {
+  char* end = nullptr;
+  std::strtod(text.c_str(), &end);
+  return end != text.c_str() && *end == '\0';
+}
+
+// True if InRange understands it.
+bool IsRange(const std::string& range) {
+  if (range.rfind(">=", 0) == 0) return IsNumber(range.substr(2));
+  if (range[0] == '>') return IsNumber(range.substr(1));
+  const size_t comma = range.find(',');
+  const bool isInterval =
+      (range.front() == '[' || range.front() == '(') && (range.back() == ']' || range.back() == ')');
+  return isInterval && comma != std::string::npos && IsNumber(range.substr(1, comma - 1)) &&
+         IsNumber(range.substr(comma + 1, range.size() - comma - 2));
 }
 
 // Ranges as the tables write them: "> 0", ">= 0", "[0,1]", "(0,180]"; "" for any.
@@ -54,6 +72,17 @@ void CheckOne(const ParameterInfo& row, const Parameter& parameter, const std::s
 }
 
 }  // namespace
+
+std::string MistakeIn(const TypeDescription& type) {
+  std::set<std::string> names;
+  for (const ParameterInfo& row : type.parameters) {
+    const std::string what = "\"" + type.name + "\", parameter \"" + row.name + "\"";
+    if (!names.insert(row.name).second) return what + ": it has two rows";
+    if (!row.range.empty() && !IsRange(row.range))
+      return what + ": the range \"" + row.range + "\" is none like \"> 0\", \">= 0\", \"[0,1]\" or \"(0,180]\"";
+  }
+  return "";
+}
 
 void CheckParameters(const TypeDescription& type, const std::string& statement, const ParameterList& parameters) {
   std::vector<std::string> names;

@@ -15,7 +15,7 @@ struct ParameterInfo {
   ParameterType type;
   std::string unit;          // "W/sr", "m", "°", "" for none
   std::string defaultValue;  // as a scene file would write it
-  std::string range;         // "> 0", "[0,1]", "" for any
+  std::string range;         // "> 0", ">= 0", "[0,1]", "(0,180]", "" for any
   std::string help;          // one line
   bool isCommon = false;     // of all lights, or of all light filters
 };
@@ -28,6 +28,9 @@ struct TypeDescription {
   // Parameter blocks in scene syntax for the suites: each is one variant that has to pass.
   std::vector<std::string> samples;
 };
+
+// What is wrong with the table itself: a range that is none of those above, or two rows of one name. "": nothing.
+std::string MistakeIn(const TypeDescription& type);
 
 // Throws a located Error for a parameter whose name (with the nearest known one), type or range is not in the table.
 // Marks all parameters as used. `statement`: "LightSource", "LightFilter", …

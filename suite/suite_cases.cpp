@@ -1,5 +1,7 @@
 // Cases of the suite: every sample block of every type, on every shape for area lights, under every transform, and
 // moved away from where it was built.
+#include <array>
+#include <functional>
 #include <set>
 
 #include "scene/scene_description.h"
@@ -225,6 +227,14 @@ SuiteReport SuiteRun::Check(const SuiteCase& suiteCase) const {
   subject.context.bidirectional = true;
   const std::unique_ptr<Light> light = MakeLight(*suiteCase.type, parameters, build);
   subject.light = light.get();
+  if (IsAtInfinity(light->Kind()) && suiteCase.type->name != "portal") {
+    // The scene is not where the light is placed, nor of a size that follows from it. A portal is a window of it.
+    constexpr std::array<float, 4> kSizes = {1.0f, 0.4f, 15.0f, 2.2f};
+    BoundingSphere& scene = subject.context.scene;
+    scene.radius *= kSizes[std::hash<std::string>()(suiteCase.caseName) % kSizes.size()];
+    if (parameters.Find("portal")) scene.radius = std::max(scene.radius, 4.0f);
+    scene.center += scene.radius * Vector3(0.3f, -0.2f, 0.4f);
+  }
   subject.isPowerExact = light->Kind() == LightKind::Area ? !IsUneven(parameters) : suiteCase.keepsAngles;
   if (HasParameter(*suiteCase.type, "diffuse")) {
     subject.diffuseMultiplier = parameters.GetFloat("diffuse", 1);

@@ -95,6 +95,7 @@ class PluginLoader {
   void Check(Type& type, const char* what) const {
     if (type.name.empty()) Fail(std::string("expected a name for ") + what + ", found an empty one");
     if (!type.create) Fail("expected a factory for \"" + type.name + "\", found null");
+    if (const std::string mistake = MistakeIn(type); !mistake.empty()) Fail(std::string(what) + " " + mistake);
     type.create = Guarded(std::move(type.create), what);
   }
 

@@ -24,6 +24,12 @@ double BytesOfLight(const Shape& shape) {
   return ofLight + (mesh ? ofTriangle * static_cast<double>((*mesh)->triangles.size()) : 0.0);
 }
 
+// The nearest known name; if there is none, where the type may be.
+std::string NearestOrPlugin(const std::string& type, const std::vector<std::string>& names) {
+  const std::string nearest = DidYouMean(type, names);
+  return nearest.empty() ? "; if a plugin has it: --plugin FILE, or LAMPYR_PLUGIN_PATH" : nearest;
+}
+
 }  // namespace
 
 LightBuildContext LightTable::LightContextFor(const RenderPlacement& placement) const {
@@ -53,7 +59,7 @@ const LightType& LightTable::FindType(const StatementDescription& statement, boo
   for (const LightType* known : types_.Lights()) {
     if (known->isAreaLight == isAreaLight) names.push_back(known->name);
   }
-  throw Error(statement.where, "there is no " + owner + DidYouMean(statement.type, names));
+  throw Error(statement.where, "there is no " + owner + NearestOrPlugin(statement.type, names));
 }
 
 // Area lights are made per shape; mistakes in one that no shape uses are found here.
@@ -111,7 +117,7 @@ const FilterType& LightTable::FindFilter(const StatementDescription& statement) 
   std::vector<std::string> names = {"none"};
   for (const FilterType* known : types_.Filters()) names.push_back(known->name);
   throw Error(statement.where,
-              "there is no LightFilter \"" + statement.type + "\"" + DidYouMean(statement.type, names));
+              "there is no LightFilter \"" + statement.type + "\"" + NearestOrPlugin(statement.type, names));
 }
 
 void LightTable::AddFilters() {

@@ -27,6 +27,8 @@ struct Measured {
   bool isOfOneSample = false;      // its variances are 0, because one sample has none
   bool isDenoised = false;         // the errors of pixels that are near each other are alike
   float relativeRounding = 0;      // of the stored format, half or float
+  double samples = 0;              // per pixel; 0: not known
+  double brightness = 0;           // mean of all values
 };
 
 std::vector<Color> ReadColors(const Image& image, const char* which) {
@@ -101,6 +103,10 @@ Measured Measure(const Image& image, const char* which) {
   measured.isOfOneSample = IsOfOneSample(image);
   measured.isDenoised = image.ChannelIndex("noisy.R") >= 0;
   measured.sharing = ReadSharing(image);
+  if (const auto samples = image.metadata.find("lampyr.samplesPerPixel"); samples != image.metadata.end())
+    measured.samples = std::max(std::atof(samples->second.c_str()), 0.0);
+  for (const Color& color : measured.colors)
+    measured.brightness += static_cast<double>(color.Average()) / static_cast<double>(measured.colors.size());
   return measured;
 }
 
@@ -177,18 +183,29 @@ void MeasureBias(const Measured& a, const Measured& b, ImageDifference& differen
   difference.biasInterval = Ratio(1.959963984540054 * std::sqrt(varianceOfMean), std::abs(difference.meanB));
 }
 
+// Variance of a sum over pixels in which an image has found nothing, where another has found `expected`: that of
+// samples as bright as the picture, as rare as that makes them. A pixel that only the tail of a filter reaches is an
+// example.
+double VarianceOfNothing(const Measured& image, double expected) {
+  return image.samples > 0 ? std::abs(expected) * image.brightness / image.samples : 0.0;
+}
+
 // z of one block and channel: difference of the block means over its standard error; 0 for a difference within
 // rounding. Empty if there is neither a difference nor a variance.
 std::optional<double> BlockZ(const Measured& a, const Measured& b, int channel, int width, const int (&block)[4]) {
-  double sumA = 0, sumB = 0, variance = 0;
+  double sumA = 0, sumB = 0, varianceA = 0, varianceB = 0;
   for (int y = block[1]; y < block[3]; ++y) {
     for (int x = block[0]; x < block[2]; ++x) {
       const size_t i = static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x);
       sumA += Channels(a.colors[i])[channel];
       sumB += Channels(b.colors[i])[channel];
-      variance += VarianceInSum(a, channel, i) + VarianceInSum(b, channel, i);
+      varianceA += VarianceInSum(a, channel, i);
+      varianceB += VarianceInSum(b, channel, i);
     }
   }
+  if (sumA == 0 && varianceA == 0) varianceA = VarianceOfNothing(a, sumB);
+  if (sumB == 0 && varianceB == 0) varianceB = VarianceOfNothing(b, sumA);
+  const double variance = varianceA + varianceB;
   // The rounding of a constant region is the same in all its pixels: it adds up like the values.
   const double rounding = RoundingOf(sumA, sumB, a, b);
   const bool isRounding = std::abs(sumA - sumB) <= rounding;

@@ -185,6 +185,11 @@ TEST(HostileScene, AbsurdNumbersAreRefusedOrHarmless) {
       {"Integrator \"path\" \"integer maxdepth\" -1 WorldBegin", "must be 0 or more"},
       {"Integrator \"sppm\" \"integer photonsperiteration\" 2147483647 WorldBegin", ""},
       {"PixelFilter \"box\" \"float xradius\" 1e38 WorldBegin", ""},
+      {"WorldBegin ObjectBegin \"o\" Shape \"sphere\" \"float radius\" 1e13 ObjectEnd Scale 1e-13 1e-13 1e-13 "
+       "ObjectInstance \"o\"",
+       "scales volumes by less than 1e-38"},
+      {"Camera \"perspective\" \"float shutteropen\" 1 \"float shutterclose\" 0.5 WorldBegin",
+       "\"shutterclose\" must be after \"shutteropen\""},
       {"WorldBegin Texture \"t\" \"float\" \"fbm\" \"integer octaves\" 2147483647", "octaves must be from 0 to 32"},
       {"WorldBegin Texture \"t\" \"float\" \"checkerboard\" \"float uscale\" 1e38", ""},
       {"WorldBegin Material \"coateddiffuse\" \"integer nsamples\" 2147483647 Shape \"sphere\"", ""},

@@ -588,6 +588,9 @@ TEST_F(Cli, WrongUsageExitsWithTwo) {
                                 "render scene.pbrt --seed 18446744073709551616",
                                 "render scene.pbrt --time ''",
                                 "render scene.pbrt --shard ''",
+                                "render scene.pbrt --shard 4294967297/4294967298",
+                                "render scene.pbrt --resolution 4294967312x9",
+                                "render scene.pbrt --resolution +4x4",
                                 "render scene.pbrt --layer bias=CL --layer bias",
                                 "render scene.pbrt --layer CryptoObject00=CL",
                                 "render scene.pbrt --stats nowhere/stats.json"}) {

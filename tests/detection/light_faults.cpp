@@ -312,6 +312,10 @@ std::vector<LightFault> MakeLightFaults() {
       "photons leave as if the light were not turned");
   add("disk-not-rotated", "sun", Wrong(Fault::DiskNotRotated),
       "photons from infinity start on a disk that does not face their direction");
+  add("disk-about-the-light", "dome", Hooked(OfPhotons([](const LightCall& c, EmissionSample& p) {
+        p.position += c.context.transform->toRender.translation - c.context.scene.center;
+      })),
+      "photons from infinity start around the light's own place, not the scene's centre");
   add("photons-from-one-half", "rect", Wrong(Fault::PhotonsNotWhereTheyEmit), "one half of the light sends no photons");
   add("dark-photons-are-none", "disk", Wrong(Fault::DarkPhotonsAreNone), "no photon at grazing directions");
   add("place-depends-on-direction", "rect", Wrong(Fault::PlaceDependsOnDirection),

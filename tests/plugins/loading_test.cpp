@@ -27,7 +27,7 @@ TEST_F(Plugins, AreFoundByOptionSceneAndEnvironment) {
   fs::copy_file(RingPlugin(), folder_ / "beside/ring.so");
   Write("plain.pbrt", SceneWith(kRing));
   const Outcome without = Run("render plain.pbrt -o none.exr --quiet");
-  ExpectSays(without, 2, {"plain.pbrt:9:1: error: there is no LightSource \"ring\""});
+  ExpectSays(without, 2, {"plain.pbrt:9:1: error: there is no LightSource \"ring\"; if a plugin has it: --plugin FILE"});
   ExpectSays(Run("render plain.pbrt -o a.exr --quiet --plugin lib/ring.so"), 0, {});
   EXPECT_GT(MeanOf(folder_ / "a.exr"), 0.01);
   ExpectSays(Run("render plain.pbrt -o b.exr --quiet", "/nowhere-at-all:lib"), 0,

@@ -172,6 +172,23 @@ TEST(BlockTest, PixelsWithoutVarianceMustBeEqualUpToRounding) {
   EXPECT_FALSE(CompareImages(a, b).blockTest.Agrees());
 }
 
+// Where an image has found nothing, it may still have light that is too rare for its samples, but no more.
+TEST(BlockTest, WhereNothingWasFoundRareLightMayBe) {
+  const auto agrees = [](float found) {
+    Image a = Noisy(16, 1, 0.01f, 1), b = Noisy(16, 1, 0.01f, 2);
+    a.metadata["lampyr.samplesPerPixel"] = b.metadata["lampyr.samplesPerPixel"] = "100";
+    for (size_t y = 0; y < 8; ++y) {
+      for (size_t x = 0; x < 8 * 6; ++x) {
+        a.data[y * 16 * 6 + x] = 0;
+        b.data[y * 16 * 6 + x] = x % 6 < 3 ? found : 1e-3f * found * found;
+      }
+    }
+    return CompareImages(a, b).blockTest.Agrees();
+  };
+  EXPECT_TRUE(agrees(1e-4f));  // 0.64 such samples are expected in the block
+  EXPECT_FALSE(agrees(1e-2f));
+}
+
 TEST(ImageVerdict, DifferencesOfRoundingAreNone) {
   Image a = Noisy(64, 1, 0, 1), b = a;
   for (size_t i = 0; i < a.data.size(); ++i) {

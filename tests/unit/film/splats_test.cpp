@@ -72,6 +72,14 @@ TEST(Splats, PixelsGetTheFiltersValueAlsoFromBeyondTheBorder) {
   }
 }
 
+// All pixels get the value of a filter that is far wider than the film, in memory of the film's size.
+TEST(Splats, AFilterMayBeFarWiderThanTheFilm) {
+  for (const float radius : {7.0f, 1e6f, 1e30f}) {
+    const PixelFilter box = Filter(Kind::Box, radius);
+    for (const Color& pixel : Pixels(WithSplat(box, {4, 3}))) EXPECT_EQ(pixel.g, box.Evaluate({0, 0})) << radius;
+  }
+}
+
 TEST(Splats, OnePathIsOneSampleOfAPixel) {
   // Four paths with 1 + 2, 0, 6 and 3 on a pixel: mean 3, sample variance (0 + 9 + 9 + 0)/3 = 6, of the mean 6/4.
   const PixelFilter box = Filter(Kind::Box, 0.5f);
