@@ -4,6 +4,9 @@ namespace lampyr {
 
 const std::vector<PropertyMeaning>& PropertyMeanings() {
   static const std::vector<PropertyMeaning> meanings = {
+      {"intersect",
+       "Intersect must find the nearest hit in (tMin, tMax], within GetBounds; all other properties of a surface rely "
+       "on it"},
       {"valid", "radiance and densities must be numbers, and not negative; radiance must be finite"},
       {"integral", "pdfDirect must integrate to the share of random numbers that give a sample"},
       {"directions", "samples must be distributed as pdfDirect says"},

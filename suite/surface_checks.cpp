@@ -1,6 +1,9 @@
 // Properties of lights that are their own surface, as receivers see them: rays are traced to it.
 #include "suite/surface_checks.h"
 
+#include <cstdio>
+#include <limits>
+
 namespace lampyr::suite {
 
 namespace {
@@ -225,9 +228,68 @@ void CheckSurfaceReceivers(const SuiteSubject& subject, const SuiteOptions& opti
   }
 }
 
+namespace {
+
+// Checks that hits of lines through the box are on the line, in the box, and the nearest ones in (tMin, tMax].
+void CheckIntersection(const SuiteSubject& subject, const SurfaceTracer& tracer, Rng& rng, SuiteReport& report) {
+  constexpr int kLines = 512;
+  constexpr double kTolerance = 5e-3;  // of the lines: a grazing hit may be found by one ray and not by another
+  const IntersectableLight& surface = *subject.light->Surface();
+  const Bounds3d& box = tracer.LocalBox();
+  const double size = glm::length(box.max - box.min);
+  std::string words;
+  double wrong = 0;
+  const auto note = [&](const char* format, double a, double b) {
+    char text[160];
+    std::snprintf(text, sizeof(text), format, a, b);
+    words = text;
+    return true;
+  };
+  const auto hitOf = [&](LocalRay ray, double tMin, double tMax) {
+    ray.tMin = tMin;
+    ray.tMax = tMax;
+    return surface.Intersect(ray);
+  };
+  const auto isWrong = [&](const LocalRay& ray) {
+    constexpr double kInfinite = std::numeric_limits<double>::infinity(), kSlack = 1e-6;
+    const auto hit = hitOf(ray, 0, kInfinite);
+    if (!hit) return false;
+    if (!(hit->t > 0)) return note("a ray with tMin %g is hit at %g", 0, hit->t);
+    if (const double off = glm::length(ray.origin + hit->t * ray.direction - hit->position); !(off < kSlack * size))
+      return note("a hit at t = %g is %g off the ray", hit->t, off);
+    for (int axis = 0; axis < 3; ++axis) {
+      const double outside = std::max(box.min[axis] - hit->position[axis], hit->position[axis] - box.max[axis]);
+      if (outside > kSlack * size) return note("a hit is %g outside of GetBounds, whose diagonal is %g", outside, size);
+    }
+    if (hitOf(ray, 0, 0.5 * hit->t))
+      return note("a ray that ends at tMax = %g is hit, and a longer one at %g", 0.5 * hit->t, hit->t);
+    const auto again = hitOf(ray, 0, hit->t * (1 + kSlack));
+    if (!again || std::abs(again->t - hit->t) > kSlack * hit->t)
+      return note("a hit at %g is not found by a ray that ends at tMax = %g", hit->t, hit->t * (1 + kSlack));
+    const double beyond = hit->t * (1 + kSlack);
+    const auto next = hitOf(ray, beyond, kInfinite);
+    return next && !(next->t > beyond) && note("a ray with tMin %g is hit at %g", beyond, next->t);
+  };
+  // Beyond the box, too: a surface that is larger is hit there.
+  const auto across = [](Rng& from) { return 1.5 * static_cast<double>(from.NextFloat()) - 0.25; };
+  for (int i = 0; i < kLines; ++i) {
+    LocalRay ray;
+    ray.direction = RandomDirection(rng);
+    Point3d through;
+    for (int axis = 0; axis < 3; ++axis) through[axis] = box.min[axis] + across(rng) * (box.max[axis] - box.min[axis]);
+    ray.origin = through - (0.5 + 2 * static_cast<double>(rng.NextFloat())) * size * ray.direction;
+    wrong += isWrong(ray) ? 1.0 / kLines : 0.0;
+  }
+  report.AddError(subject.name, "intersect", subject.caseName, wrong, kTolerance, words);
+}
+
+}  // namespace
+
 void CheckSurfaceLight(const SuiteSubject& subject, const SuiteOptions& options, SuiteReport& report) {
   const SurfaceTracer tracer(*subject.light->Surface(), *subject.context.transform);
   Rng rng = MakeRng(subject, options);
+  Rng lines = MakeRngOfPlaces(subject, options);
+  CheckIntersection(subject, tracer, lines, report);
   CheckSurfaceReceivers(subject, options, tracer, rng, report);
   CheckSurfaceEmission(subject, options, tracer, rng, report);
 }

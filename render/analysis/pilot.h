@@ -71,8 +71,8 @@ inline constexpr int kPilotTile = 4, kMostPilotPixels = 2304;
 inline constexpr double kNegligibleLight = 1e-4;
 
 // Deterministic for a scene, its size and its settings; not dependent on the seed and on the number of threads.
-// `passes`: samples of every pixel; even, because squares of means are products of two. 0: from 4 to 16, by their cost
-// and by what is known after 4 and 8.
+// `passes`: samples of every pixel; even, because squares of means are products of two. 0: from 4 to 28, by their cost
+// and by what is known after 4, 8 and 16.
 RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, int threads, int passes = 0);
 
 }  // namespace lampyr

@@ -57,7 +57,7 @@ struct Grid {
 };
 
 // Samples of a pixel at most.
-inline constexpr int kMostPasses = 16;
+inline constexpr int kMostPasses = 28;
 
 // The first of `count` elements that belongs to the chunk.
 inline int BeginOfChunk(int count, int chunk, int chunks) {
