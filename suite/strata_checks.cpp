@@ -230,9 +230,6 @@ void CheckDistances(const SuiteSubject& subject, const SuiteOptions& options, Su
     if (!photon) continue;
     const auto radius = static_cast<double>(subject.context.scene.radius);
     const double away = std::pow(10.0, 8 * static_cast<double>(rng.NextFloat()) - 4);
-    // Receivers are rounded, so that they are not quite in the photon's direction.
-    const double reach = glm::length(Point3d(photon->position)) + away * radius;
-    if (4e-7 * reach > 1e-5 * std::min(away, 1.0) * radius) continue;
     const auto sampleAt = [&](double distance) {
       return light.GenerateSamples(RandomContext(subject, rng),
                                    Point3(Point3d(photon->position) + distance * Vector3d(photon->direction)));
@@ -246,6 +243,9 @@ void CheckDistances(const SuiteSubject& subject, const SuiteOptions& options, Su
       density = 1;
     }
     if (!sample || !other || IsBlack(*other)) continue;
+    // Receivers are rounded, so that they are not quite in the photon's direction.
+    const double nearest = std::min(away, 1.0) * radius;
+    if (4e-7 * (glm::length(Point3d(photon->position)) + nearest) > 1e-5 * nearest) continue;
     const double fall = isPoint ? Sqr(static_cast<double>(other->distance) / static_cast<double>(sample->distance)) : 1;
     const double expected = Emitted(subject, *other) * fall,
                  difference = RelativeDifference(Emitted(subject, *sample), expected);
