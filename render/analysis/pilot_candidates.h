@@ -100,7 +100,7 @@ constexpr size_t EndingOf(size_t k) {
 static_assert(WithoutMerging(kWholeCandidates - 1) < kWholeCandidates && WithoutMerging(kCandidates - 1) < kCandidates);
 static_assert(WithFewestSamples(kCandidates - 1) < kCandidates && EndingOf(kBdpt) == kWholeCandidates + 1);
 
-// What a pass does.
+// Counts of a pass: rays, lookups of photons, times of media.
 struct PassCounts : RenderCounts {
   MediumTimes media;
   void operator+=(const PassCounts& other) {

@@ -158,7 +158,7 @@ class Recorder final : public PathObserver {
     PerCandidate squares;  // Σ (n r)²; 0: the candidate does not find the path
     PerCandidate factors;  // of the second moment
   };
-  // What a splat adds to a pixel.
+  // Contribution of a splat to a pixel.
   struct Splat {
     size_t pixel;
     bool isSeen;

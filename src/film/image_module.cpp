@@ -44,7 +44,7 @@ std::string Read(const char* path, const char* format, lampyr::ImageModuleAlloca
   if (!input->open(path, opened, configuration)) return ErrorOf(*input);
   const OIIO::ImageSpec& spec = input->spec();
   if (spec.depth > 1) return "it is a volume";
-  // Of Radiance files, which may store their rows from below or columns first.
+  // A Radiance file may store its rows from below, or columns first.
   if (std::string_view(format) == "hdr" && spec.get_int_attribute("Orientation", 1) != 1)
     return "its rows do not begin at the top left: \"-Y … +X …\" is read";
   // A reader allocates a whole tile.

@@ -40,7 +40,7 @@ class CloudMedium : public BoxMedium {
   CloudMedium(const std::string& name, const CloudParameters& cloud, const Affine& toMedium, MajorantGrid majorants)
       : BoxMedium(name, cloud.scattering.asymmetry, false, toMedium, std::move(majorants)), cloud_(cloud) {}
 
-  // Of every evaluation of noise some 30.
+  // Some 30 for each evaluation of noise.
   double LookupNanoseconds() const override { return 30 * (kOctaves + (cloud_.wispiness > 0 ? 8 : 0)); }
 
  protected:
