@@ -29,7 +29,7 @@ struct TypeDescription {
   std::vector<std::string> samples;
 };
 
-// What is wrong with the table itself: a range that is none of those above, or two rows of one name. "": nothing.
+// The first mistake in a table: a range in another notation than those above, or two rows of one name. "": none.
 std::string MistakeIn(const TypeDescription& type);
 
 // Throws a located Error for a parameter whose name (with the nearest known one), type or range is not in the table.

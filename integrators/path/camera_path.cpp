@@ -136,10 +136,10 @@ class CameraPath final : public PathVisitor, NextEventVisitor {
   // A vertex on the ray whose distance is sampled for a light, and its direct light from there.
   // Adds what a segment has taken. `before`: times before it. `rays`: its shadow rays.
   void CountSegment(const MediumTimes& before, uint64_t rays) const {
-    // Estimates of the lights along a segment, and a shadow ray, as measured in scenes/lighthouse and prism.
-    constexpr double kNanoseconds = 350, kShadowRay = 350;
+    // Estimates of the lights along a segment, as measured in scenes/lighthouse and prism.
+    constexpr double kNanoseconds = 350;
     MediumTimes& times = *context_.mediumTimes;
-    times.segments += kNanoseconds + kShadowRay * static_cast<double>(rays) + times.connections - before.connections;
+    times.segments += kNanoseconds + times.connections - before.connections;
     times.segmentRays += static_cast<double>(rays);
     times.connections = before.connections;
   }

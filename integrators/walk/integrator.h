@@ -85,8 +85,8 @@ struct LightSpread {
   uint64_t vertices = 0, samples = 0;  // where lights were chosen, and how many
 };
 
-// What lookups of media take on a typical machine, counted: along walks and along connections, nanoseconds; and all
-// that light on the segments of paths takes, which `path` alone samples.
+// Counted time in media, nanoseconds of a typical machine: of lookups along walks and along connections. `segments`:
+// time of light samples along the segments of a path, which `path` and `sppm` take, without their shadow rays.
 struct MediumTimes {
   double walks = 0, connections = 0, segments = 0;
   double segmentRays = 0;  // shadow rays from segments

@@ -28,7 +28,7 @@ PartCosts PartCostsOf(const Counted& counted, bool isEnding) {
   double pathRays = RaysOf(counted.path), direct = counted.path.DirectRays();
   const double lightRays = std::max(RaysOf(counted.bdpt) - pathRays, 0.0);
   double more = std::max(static_cast<double>(counted.bdpt.shadowRays) - direct, 0.0);
-  // What media add to the cost of a ray of each kind.
+  // Time in media for each ray of a kind.
   const auto perOne = [](double time, double count) { return count > 0 ? std::max(time, 0.0) / count : 0.0; };
   const MediumTimes &ofPath = counted.path.media, &ofBdpt = counted.bdpt.media;
   const double pathMedia = perOne(ofPath.walks, pathRays), directMedia = perOne(ofPath.connections, direct),
@@ -60,8 +60,9 @@ double RaysOf(const RenderCounts& counts) {
 
 double CostOfSppm(const PassCounts& counts, uint64_t stored, double samples) {
   constexpr Costs costs;
-  return (costs.ray * RaysOf(counts) + costs.shadowRay * counts.DirectRays() + counts.media.segments +
-          costs.stored * static_cast<double>(stored) + costs.lookup * static_cast<double>(counts.lookups) +
+  return (costs.ray * RaysOf(counts) + costs.shadowRay * static_cast<double>(counts.shadowRays) +
+          counts.media.segments + costs.stored * static_cast<double>(stored) +
+          costs.lookup * static_cast<double>(counts.lookups) +
           costs.gathered * static_cast<double>(counts.foundPhotons) + counts.media.walks + counts.media.connections) /
          samples;
 }
@@ -69,13 +70,15 @@ double CostOfSppm(const PassCounts& counts, uint64_t stored, double samples) {
 std::array<CandidateCost, kCandidates> CostsOf(const Counted& counted, double samples) {
   constexpr Costs costs;
   const PartCosts ofWhole = PartCostsOf(counted, false), ofEnding = PartCostsOf(counted, true);
+  // Only path samples lights along segments.
+  const double segments = counted.path.media.segments + costs.shadowRay * counted.path.media.segmentRays;
   std::array<CandidateCost, kCandidates> all{};
   for (size_t k = 0; k < kCandidates; ++k) {
     const Candidate& candidate = kCandidateOf[k];
     const bool isEnding = candidate.continuing < 1;
     const PartCosts& parts = isEnding ? ofEnding : ofWhole;
     const double n = candidate.lightPaths;
-    all[k].paths = (n > 0 ? kCameraPathWithWeights * parts.path : parts.path + counted.path.media.segments) / samples;
+    all[k].paths = (n > 0 ? kCameraPathWithWeights * parts.path : parts.path + segments) / samples;
     all[k].paths += kSideBySide * std::min(n, 1.0) * (parts.light + parts.connections) / samples;
     all[k].paths += kAlone * std::max(n - 1, 0.0) * parts.light / samples;
     if (!Merges(k)) continue;

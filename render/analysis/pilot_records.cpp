@@ -214,7 +214,7 @@ void Recorder::Add(const ConnectedPath& path, double value) {
   const TechniqueGroup own = GroupOf(path);
   Found& found = pixels_.found[pixel_];
   if (const double bySplats = path.sums.Of(TechniqueGroup::Light).squares; bySplats < known) {
-    // As if there were no splats in the pilot, and by the candidate's techniques of camera paths.
+    // Expected value by the candidate's techniques of camera paths, if the pilot had no splats.
     const double byOthers = weighted * known / (known - bySplats), often = bySplats < 0.5 * known ? 1.0 : 0.0;
     for (size_t k = 0; k < kCandidates; ++k) {
       const double light = kCounts.light[k], ofCamera = 1 - light * light * bySplats / squares[k];

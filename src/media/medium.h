@@ -35,7 +35,7 @@ class Medium {
   // This medium at the wavelengths of a pass. `self`: this one.
   virtual std::shared_ptr<const Medium> AtWavelengths(const std::shared_ptr<const Medium>& self,
                                                       const std::shared_ptr<const Wavelengths>& wavelengths) const;
-  // What At takes on a typical machine, by which costs of integrators are estimated.
+  // Time of At on a typical machine, for estimates of the cost of integrators.
   virtual double LookupNanoseconds() const { return IsHomogeneous() ? 15 : 60; }
   // Memory of its grids.
   virtual size_t Bytes() const { return 0; }

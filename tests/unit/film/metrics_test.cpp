@@ -172,7 +172,8 @@ TEST(BlockTest, PixelsWithoutVarianceMustBeEqualUpToRounding) {
   EXPECT_FALSE(CompareImages(a, b).blockTest.Agrees());
 }
 
-// Where an image has found nothing, it may still have light that is too rare for its samples, but no more.
+// A block that is black in one image agrees with dim light in the other, which its samples are likely to miss, and not
+// with bright light.
 TEST(BlockTest, WhereNothingWasFoundRareLightMayBe) {
   const auto agrees = [](float found) {
     Image a = Noisy(16, 1, 0.01f, 1), b = Noisy(16, 1, 0.01f, 2);
