@@ -39,17 +39,20 @@ void BidirectionalSample::Report(ConnectedPath& path) const {
   path.seenDensity = path.t > 1 ? seenDensity : path.atLens.value;
   path.splatCount = settings.splatCount;
   path.volume = &settings.photons.volume;
+  path.flightPoints = settings.flightPoints.get();
   context.observer->Observe(path);
 }
 
-TechniqueSums BidirectionalSample::SumsOfConnection(size_t lightCount, const ReverseDensities& reverse,
-                                                    bool isSplat) const {
+PathEnds BidirectionalSample::EndsOfConnection(size_t lightCount, const ReverseDensities& reverse, bool isSeen,
+                                               double ratio) const {
   const PathVertex& first = light.vertices[0];
   const bool goesOn = lightCount > 1;
   const AreaDensity hit = goesOn ? first.PreviousReverse(first.eventReverse) : reverse.previous;
-  const PathEnds ends{lightEnd.direct.value, lightEnd.canBeHit ? hit.value : 0.0, goesOn && first.scatteredDelta,
-                      isSplat || lensSeesIt ? settings.splatCount : 0.0};
-  return whole.Sums(ends, lightCount + 1, 0);
+  return {.direct = lightEnd.direct.value,
+          .hit = lightEnd.canBeHit ? hit.value : 0.0,
+          .firstIsDelta = goesOn && first.scatteredDelta,
+          .splatCount = isSeen ? settings.splatCount : 0.0,
+          .flightRatio = ratio};
 }
 
 namespace {
@@ -98,14 +101,19 @@ class LightSide final : public WeightedLightPath {
         sample_(sample),
         isConnected_(sample.settings.connects && !sample.context.isForPhotonsAlone &&
                      sample.context.scene.camera->ConnectsLightPaths()),
+        sampler_(sampler),
         flightsBelow_(sample.context.photons ? FlightsBelow(sample.settings.photons.volume, sampler, kLightDimensions)
                                              : 1.0) {}
 
-  bool WantsFlights() const override { return flightsBelow_ < 1; }
-  void Flew(const LightPath& path, const PathState& state, const Flight& flight, const EmittedPhoton& photon) override {
-    if (!context_.IsCounted(state.isDispersed))
-      AddFlight(context_, sample_.settings.photons.volume, flightsBelow_, path, state, flight, photon);
+  bool WantsFlights() const override { return WantsBeams() || sample_.settings.flightPoints; }
+  bool WantsBeams() const override { return flightsBelow_ < 1; }
+  void Flew(LightPath& path, const PathState& state, const Flight& flight, const EmittedPhoton* photon) override {
+    if (WantsBeams() && !context_.IsCounted(state.isDispersed))
+      AddFlight(context_, sample_.settings.photons.volume, flightsBelow_, path, state, flight, *photon);
     hasLeftFirst_ = hasLeftFirst_ || path.vertices.Count() > 0;
+    start_ = {flight.line.start, path.vertices.Count() == 0 && sample_.Lighting().IsAtInfinity(photon->light)};
+    if (isConnected_ && sample_.settings.flightPoints)
+      SplatFlight(sample_, start_, state, flight, *photon, sampler_, path);
   }
   // The path has flown on from its first vertex, so that the event there is set.
   bool HasLeftFirst() const { return hasLeftFirst_; }
@@ -127,16 +135,23 @@ class LightSide final : public WeightedLightPath {
       if (path.vertices.Count() == 1)
         sample_.lightDensities[0] = FirstDensities(End(), path.vertices.Last().IsInMedium());
     }
-    if (isConnected_) SplatVertex(sample_);
+    if (isConnected_) SplatVertex(sample_, start_);
     const PathVertex& vertex = path.vertices.Last();
     if (context_.photons && vertex.storesPhotons && !context_.IsCounted(vertex.isDispersed) &&
         path.vertices.Count() <= PhotonList::kDeepest && !IsOnBeam(vertex, sample_.settings.photons.volume))
-      context_.photons->Add(vertex, path.vertices.Count(), LabelsOfLast(context_, path.vertices));
+      context_.photons->Add(vertex, path.vertices.Count(), LabelsOfLast(context_, path.vertices), FlightRatio(vertex));
+  }
+  double FlightRatio(const PathVertex& vertex) const {
+    if (!sample_.settings.flightPoints) return 0;
+    return sample_.settings.flightPoints->RatioAt(vertex, vertex.toPrevious, start_.DistanceTo(vertex),
+                                                  vertex.factors.forward);
   }
 
   BidirectionalSample& sample_;
   const bool isConnected_;
+  Sampler& sampler_;
   const double flightsBelow_;  // AddFlight
+  FlightStartPoint start_;     // of the last flight through a medium
   bool hasLeftFirst_ = false;
 };
 
@@ -216,6 +231,7 @@ class CameraSide final : public PathVisitor {
     Merging merging;
     double continuesHere;
     double seenDensity;
+    double flightRatio;
     bool lensSeesIt;
     size_t densities;  // number
   };
@@ -252,7 +268,8 @@ class CameraSide final : public PathVisitor {
     const std::vector<SubpathDensities>& densities = sample_.cameraDensities;
     const size_t changed = std::min<size_t>(densities.size(), 2);  // by the next vertex
     kept_.assign(densities.end() - static_cast<std::ptrdiff_t>(changed), densities.end());
-    return {sample_.merging, sample_.continuesHere, sample_.seenDensity, sample_.lensSeesIt, densities.size()};
+    return {sample_.merging,     sample_.continuesHere, sample_.seenDensity,
+            sample_.flightRatio, sample_.lensSeesIt,    densities.size()};
   }
   // Adds the vertex that was made in the place of the next one, `t` along the ray.
   void Extend(Subpath& path, const PathState& state, float t) {
@@ -269,6 +286,7 @@ class CameraSide final : public PathVisitor {
     sample_.merging = before.merging;
     sample_.continuesHere = before.continuesHere;
     sample_.seenDensity = before.seenDensity;
+    sample_.flightRatio = before.flightRatio;
     sample_.lensSeesIt = before.lensSeesIt;
     sample_.cameraDensities.resize(before.densities);
     std::copy(kept_.begin(), kept_.end(), sample_.cameraDensities.end() - static_cast<std::ptrdiff_t>(kept_.size()));
@@ -280,7 +298,9 @@ class CameraSide final : public PathVisitor {
     if (depth == 1) {
       SetFirst(vertex, state);
     } else {
-      SetWeights(path[depth - 2], state, sample_.settings.connects, vertex);
+      if (depth == 2 && sample_.settings.flightPoints) [[unlikely]]
+        SetFlightRatio(path, state);
+      SetWeights(path[depth - 2], state, sample_.settings.connects, vertex, depth == 2 ? sample_.flightRatio : 0.0);
     }
     sample_.continuesHere =
         !state.hasScatteredWidely && vertex.CanMerge() ? static_cast<double>(sample_.continuing) : 1.0;
@@ -289,6 +309,11 @@ class CameraSide final : public PathVisitor {
       AddDensities(path, sample_.settings.photons.volume, false, sample_.cameraDensities);
       if (depth == 1) sample_.cameraDensities[0].forward = sample_.seenDensity;
     }
+  }
+  void SetFlightRatio(const Subpath& path, const PathState& state) {
+    const Vector3d way = path.Last().Position() - path[0].Position();
+    sample_.flightRatio =
+        sample_.settings.flightPoints->RatioAt(path[0], state.ray.direction, glm::length(way), state.factors.reverse);
   }
   void SetFirst(PathVertex& vertex, const PathState& state) {
     const AreaDensity atLens =
@@ -466,6 +491,7 @@ BidirectionalSettings SettingsOf(const IntegratorInput& input) {
   settings.splatCount = input.splatCount;
   settings.shadowRays = ShadowRaysOf(input);
   if (input.counts) settings.counts = *input.counts;
+  settings.flightPoints = FlightPoints::Of(input.scene);
   return settings;
 }
 

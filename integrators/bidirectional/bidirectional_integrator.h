@@ -14,7 +14,7 @@
 
 #include <memory>
 
-#include "integrators/walk/integrator.h"
+#include "integrators/walk/flight_points.h"
 #include "integrators/walk/shadow_roulette.h"
 #include "integrators/walk/technique_counts.h"
 
@@ -32,6 +32,7 @@ struct BidirectionalSettings {
   PhotonSettings photons;
   TechniqueCounts counts;
   ShadowRays shadowRays;
+  std::shared_ptr<const FlightPoints> flightPoints;  // null: light paths are connected to the lens at vertices alone
 };
 
 std::unique_ptr<Integrator> MakeBidirectionalIntegrator(const BidirectionalSettings& settings);

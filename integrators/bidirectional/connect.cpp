@@ -64,7 +64,7 @@ inline Joint JointOf(const BidirectionalSample& sample, size_t lightCount, const
 }
 
 void ReportConnection(const BidirectionalSample& sample, size_t lightCount, const Color& arriving, double weight,
-                      const EdgeFactors& factors, const Joint& joint) {
+                      const EdgeFactors& factors, const Joint& joint, double flightRatio) {
   ConnectedPath path;
   path.value = arriving;
   path.weight = weight;
@@ -72,7 +72,7 @@ void ReportConnection(const BidirectionalSample& sample, size_t lightCount, cons
   sample.SetLight(path, lightCount);
   sample.SetCamera(path);
   if (sample.WantsSums()) [[unlikely]]
-    path.sums = sample.SumsOfConnection(lightCount, joint.light, false);
+    path.sums = sample.SumsOfConnection(lightCount, joint.light, flightRatio);
   sample.Report(path);
 }
 
@@ -112,8 +112,10 @@ Color Connect(const BidirectionalSample& sample, size_t lightCount) {
     if (transmitted.IsBlack()) return transmitted;
   }
   const Joint joint = JointOf(sample, lightCount, toCamera, way.squared, fy, fz, factors);
+  const double flightRatio = sample.FlightRatio(-toCamera, std::sqrt(way.squared), factors.reverse);
+  const PartialWeight cameraWeight = sample.CameraWeight(flightRatio);
   const auto weightWith = [&](double merging) {
-    return ConnectWeight(y.weight, joint.light, z.weight, joint.camera, sample.connectionCount, merging);
+    return ConnectWeight(y.weight, joint.light, cameraWeight, joint.camera, sample.connectionCount, merging);
   };
   // Merging only lowers the weight: what is dropped without it is dropped with it, before its terms are computed.
   if (!hasMedia && sample.merging && survivalWeightOf(weightWith(0)) == 0) return Color(0.0f);
@@ -127,7 +129,7 @@ Color Connect(const BidirectionalSample& sample, size_t lightCount) {
     AddConnectionToLayers(sample, lightCount, toCamera, fy, fz, contribution);
   if (!sample.IsObserved()) [[likely]]
     return contribution;
-  ReportConnection(sample, lightCount, arriving, weight, factors, joint);
+  ReportConnection(sample, lightCount, arriving, weight, factors, joint, flightRatio);
   return contribution;
 }
 

@@ -5,6 +5,7 @@
 
 #include "integrators/bidirectional/path_densities.h"
 #include "integrators/photon/photon.h"
+#include "integrators/walk/flight_points.h"
 #include "integrators/walk/lens.h"
 
 namespace lampyr {
@@ -22,7 +23,10 @@ struct ConnectedPath {
   EdgeFactors endFactors;   // from the light to the first vertex; not of what the camera sees directly
   EdgeFactors factors;      // of media on a connecting edge (s > 1, t > 1), from the camera's vertex to the light's
   EdgeFactors lensFactors;  // from the lens to the vertex that it sees
-  const VolumeRadius* volume = nullptr;  // of photons in media in the first pass
+  double endDistance = 0;   // from the light to the first vertex, for paths of one; infinite for a light at infinity
+  const FlightPoints* flightPoints = nullptr;  // that the weight accounts for
+  bool isOfFlight = false;                     // the light subpath's last vertex is a point of a flight
+  const VolumeRadius* volume = nullptr;        // of photons in media in the first pass
   bool isMerged = false;
   Merging merging;                             // that the weight accounts for
   double connectionCount = 1;                  // connections per light path that the weight accounts for, squared

@@ -47,6 +47,8 @@ class VertexRow {
   size_t Count() const { return vertices_.size() - 1; }
   size_t OfLight() const { return ofLight_; }
   const PathVertex* Photon() const { return photon_; }
+  // The same, but the photon's vertex where the paths are merged.
+  const PathVertex& AsOfLight(size_t i) const { return photon_ && i == ofLight_ + 1 ? *photon_ : *vertices_[i]; }
 
   Vector3 ToLight(size_t i) const { return i == 1 ? path_.toLight : DirectionTo(i, i - 1); }
   Vector3 ToCamera(size_t i) const { return i == Count() ? path_.toLens : DirectionTo(i, i + 1); }
@@ -113,7 +115,9 @@ FullPath Ends(const ConnectedPath& path, const VertexRow& vertices) {
   const size_t n = vertices.Count();
   FullPath full;
   full.end = path.end;
-  full.technique = path.isMerged ? static_cast<int>(n + 1 + vertices.OfLight() + 1) : path.s;
+  full.technique = path.isMerged     ? static_cast<int>(n + 1 + vertices.OfLight() + 1)
+                   : path.isOfFlight ? static_cast<int>(2 * n + 2)
+                                     : path.s;
   full.merging = path.merging;
   full.connectionCount = path.connectionCount;
   full.splatCount = path.splatCount;
@@ -142,11 +146,26 @@ int FirstWide(const FullPath& path) {
   return i;
 }
 
+namespace {
+
+// FlightPoints::RatioAt of the vertex that the camera sees, from the positions of the path.
+double FlightRatioOf(const ConnectedPath& path, const VertexRow& vertices) {
+  const size_t n = vertices.Count();
+  if (!path.flightPoints || n == 0) return 0;
+  const PathVertex& seen = vertices.AsOfLight(n);
+  const double distance =
+      n == 1 ? path.endDistance : glm::distance(seen.Position(), vertices.AsOfLight(n - 1).Position());
+  return path.flightPoints->RatioAt(seen, vertices.ToLight(n), distance, vertices.Departure(n).forward);
+}
+
+}  // namespace
+
 FullPath Unfold(const ConnectedPath& path) {
   const VertexRow vertices(path);
   FullPath full = Ends(path, vertices);
   const size_t n = vertices.Count(), ofLight = vertices.OfLight();
   const PathVertex* photon = vertices.Photon();
+  full.flightRatio = FlightRatioOf(path, vertices);
   for (size_t i = 1; i <= n; ++i) {
     const PathVertex& vertex = vertices[i];
     full.gathers[i] = vertex.GathersPhotons() || vertex.IsInMedium();
@@ -221,6 +240,7 @@ std::vector<long double> ExplicitDensities(const FullPath& path) {
     if (s > 1 && s <= n) density *= std::sqrt(path.connectionCount);
     if (s == n + 1) density *= path.splatCount;
     densities[static_cast<size_t>(s)] = density;
+    if (s == n + 1 && n > 0) densities.back() = density * path.flightRatio;
   }
   for (int i = 1; i <= n; ++i) {
     if (!path.CanMerge(i)) continue;
@@ -245,19 +265,20 @@ TechniqueSums SumsByDensities(const FullPath& path) {
   const int n = path.SurfaceCount();
   const std::vector<long double> densities = ExplicitDensities(path);
   long double own = densities[static_cast<size_t>(path.technique)];
-  if (path.technique > n + 1) own /= CorrelationAt(path, path.technique - n - 1);
+  const bool isOfFlight = path.technique > 2 * n + 1;
+  if (path.technique > n + 1 && !isOfFlight) own /= CorrelationAt(path, path.technique - n - 1);
   const double nextCount = n > 0 ? NextEventCount(static_cast<size_t>(n)) : 1.0;
   if (path.technique == 1) own /= nextCount;
   TechniqueSums sums;
   const int end = FirstWide(path);
   for (int i = 0; i < path.TechniqueCount(); ++i) {
-    const TechniqueGroup group = i == 0       ? TechniqueGroup::Hit
-                                 : i == 1     ? TechniqueGroup::Next
-                                 : i <= n     ? TechniqueGroup::Connect
-                                 : i == n + 1 ? TechniqueGroup::Light
-                                              : TechniqueGroup::Merge;
+    const TechniqueGroup group = i == 0                        ? TechniqueGroup::Hit
+                                 : i == 1                      ? TechniqueGroup::Next
+                                 : i <= n                      ? TechniqueGroup::Connect
+                                 : i == n + 1 || i > 2 * n + 1 ? TechniqueGroup::Light
+                                                               : TechniqueGroup::Merge;
     const double count = i == 1 ? nextCount : 1.0;
-    const int last = i <= n + 1 ? i : i - n - 1;  // vertex of the camera subpath
+    const int last = i <= n + 1 ? i : i > 2 * n + 1 ? n + 1 : i - n - 1;  // vertex of the camera subpath
     const bool isBeyond = end > 0 && path.CanEnd(end) && last < end;
     if (i == path.technique) sums.isBeyond = isBeyond;
     sums.Of(isBeyond ? BeyondOf(group) : group)
@@ -286,6 +307,7 @@ Carried Carry(const FullPath& path) {
     carried.light[at] = carried.light[at - 1].Next(isDelta(i - 1), F(i), B(i - 2));
   }
   carried.camera[size - 1] = PartialWeight::AtLens(B(n), path.lensSeesIt ? path.splatCount : 0.0);
+  carried.camera[size - 1] = carried.camera[size - 1].WithFlights(path.flightRatio);
   for (int i = n - 1; i >= 1; --i) {
     const auto at = static_cast<size_t>(i);
     carried.camera[at] = carried.camera[at + 1].Next(isDelta(i + 1), B(i), F(i + 2));
@@ -323,10 +345,10 @@ std::vector<double> WeightsByRecursion(const FullPath& path) {
   const auto isDelta = [&](int i) { return static_cast<bool>(path.isDelta[static_cast<size_t>(i)]); };
   const LightEnd& end = path.end;
   const double connections = path.connectionCount;
-  if (n == 0 && !path.lensSeesIt) return {1, 0};
+  if (n == 0 && !path.lensSeesIt) return {1, 0, 0};
   if (n == 0) {
-    return {SeenLightWeight(end.position, B(0), path.splatCount),
-            SplatLightWeight(end.position, B(0), path.splatCount)};
+    return {SeenLightWeight(end.position, B(0), path.splatCount), SplatLightWeight(end.position, B(0), path.splatCount),
+            0};
   }
   std::vector<double> weights(static_cast<size_t>(path.TechniqueCount()), 0.0);
   const Carried carried = Carry(path);
@@ -344,7 +366,8 @@ std::vector<double> WeightsByRecursion(const FullPath& path) {
                              of(whole.ForLight(end.direct.value)));
     }
     const double merging = of(whole.ForConnection(static_cast<size_t>(s - 1)));
-    if (s == n + 1) return SplatWeight(light(n), {B(n), B(n - 1)}, connections, path.splatCount, merging);
+    if (s == n + 1)
+      return SplatWeight(light(n), {B(n), B(n - 1)}, connections, path.splatCount, merging, path.flightRatio, false);
     return ConnectWeight(light(s - 1), {B(s - 1), B(s - 2)}, camera(s), {F(s), F(s + 1)}, connections, merging);
   };
   for (int s = 0; s <= n + 1; ++s) {
@@ -352,6 +375,10 @@ std::vector<double> WeightsByRecursion(const FullPath& path) {
     if (s > 1 && s <= n && connections == 0) continue;
     if ((s > 1 && isDelta(s - 1)) || (s > 0 && s <= n && isDelta(s)) || (s == n + 1 && !path.lensSeesIt)) continue;
     weights[static_cast<size_t>(s)] = weigh(s);
+  }
+  if (path.flightRatio > 0 && path.lensSeesIt && !isDelta(n)) {
+    weights.back() = SplatWeight(light(n), {B(n), B(n - 1)}, connections, path.splatCount,
+                                 of(whole.ForConnection(static_cast<size_t>(n))), path.flightRatio, true);
   }
   for (int i = 1; i <= n; ++i) {
     if (!path.CanMerge(i)) continue;

@@ -23,12 +23,14 @@ struct FullPath {
   Merging merging;
   double connectionCount = 1;  // connections per light path, squared
   double splatCount = 1;       // of t = 1
+  double flightRatio = 0;      // FlightPoints::RatioAt of vertex n
   double seenDensity = 0;      // of vertex n by a camera ray, also where the lens is not connected
   int technique = 0;           // that made the path
 
   int SurfaceCount() const { return static_cast<int>(isDelta.size()) - 2; }
-  // Techniques are s = 0 … n + 1, and merging at vertex i = 1 … n, which is technique n + 1 + i.
-  int TechniqueCount() const { return 2 * SurfaceCount() + 2; }
+  // Techniques are s = 0 … n + 1, merging at vertex i = 1 … n, which is technique n + 1 + i, and the last one: s = n +
+  // 1 with vertex n as a point of a flight.
+  int TechniqueCount() const { return 2 * SurfaceCount() + 3; }
   bool CanMerge(int i) const {
     const auto vertex = static_cast<size_t>(i);
     return merging && !isDelta[vertex] && gathers[vertex] && (i < SurfaceCount() || mergesAtLens);

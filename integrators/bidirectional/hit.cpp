@@ -1,4 +1,6 @@
 // s = 0: the camera subpath hits a light.
+#include <limits>
+
 #include "integrators/bidirectional/techniques.h"
 #include "integrators/bidirectional/weights.h"
 #include "integrators/walk/path_layers.h"
@@ -7,9 +9,10 @@ namespace lampyr {
 
 namespace {
 
-// `edge`: FirstEdgeDensity from the light that was found to the camera subpath's last vertex.
+// `edge`: FirstEdgeDensity from the light that was found to the camera subpath's last vertex. `distance`: to the light;
+// infinite for one at infinity.
 Color HitLight(const BidirectionalSample& sample, const PathState& state, const FoundLight& found,
-               SolidAnglePerArea edge) {
+               SolidAnglePerArea edge, double distance) {
   const LightEvaluation& e = found.evaluation;
   ConnectedPath path;
   path.value = state.diffuse * e.diffuse + state.specular * e.specular;
@@ -41,10 +44,12 @@ Color HitLight(const BidirectionalSample& sample, const PathState& state, const 
   path.endFactors = state.factors.Reversed();
   joint.cameraMergeVolume = MergeVolume(last, {state.ray.direction, path.endFactors}, {last.toPrevious, last.factors},
                                         sample.settings.photons.volume);
-  path.weight = HitWeight(path.end, last.weight, event, hit, sample.connectionCount,
+  path.endDistance = distance;
+  const double flightRatio = sample.FlightRatio(state.ray.direction, distance, path.endFactors.forward);
+  path.weight = HitWeight(path.end, sample.CameraWeight(flightRatio), event, hit, sample.connectionCount,
                           NextEventCount(sample.camera.Count()), sample.MergingOfLight(path.end, joint, hit));
   if (sample.WantsSums()) [[unlikely]]
-    path.sums = sample.Sums(path.end, hit, event.isDelta, 0);
+    path.sums = sample.Sums(path.end, hit, event.isDelta, 0, flightRatio);
   return finish();
 }
 
@@ -102,7 +107,8 @@ Color HitLightAt(const BidirectionalSample& sample, const PathState& state, cons
   if (!found) return Color(0.0f);
   return HitLight(sample, state, *found,
                   FirstEdgeDensity(lighting, found->light, last.GeometryTerm(state.ray.direction),
-                                   Sqr(static_cast<double>(distance))));
+                                   Sqr(static_cast<double>(distance))),
+                  static_cast<double>(distance));
 }
 
 Color HitInfiniteLights(const BidirectionalSample& sample, const PathState& state) {
@@ -113,7 +119,8 @@ Color HitInfiniteLights(const BidirectionalSample& sample, const PathState& stat
     const auto found = lighting.EvaluateEscaped(i, last.receiver, state.ray.direction, sample.context.time, true);
     if (!found) continue;
     sum += HitLight(sample, state, *found,
-                    FirstEdgeDensity(lighting, found->light, last.GeometryTerm(state.ray.direction), 1));
+                    FirstEdgeDensity(lighting, found->light, last.GeometryTerm(state.ray.direction), 1),
+                    std::numeric_limits<double>::infinity());
   }
   return sum;
 }

@@ -33,33 +33,44 @@ ConnectedPath MergedPath(const BidirectionalSample& sample, const Photon& photon
 }
 
 // `reverse`: density of the photon's previous vertex, or of the light's point. `kept`: of its path.
-TechniqueSums SumsOf(const BidirectionalSample& sample, const Photon& photon, const PathEnds& kept,
-                     AreaDensity reverse) {
+TechniqueSums SumsOf(const BidirectionalSample& sample, const Photon& photon, const PathEnds& kept, AreaDensity reverse,
+                     double flightRatio) {
   const double hit = !kept.canBeHit ? 0.0 : photon.depth > 1 ? kept.hit : reverse.value;
-  return sample.whole.Sums(
-      {kept.direct, hit, kept.firstIsDelta && photon.depth > 1, sample.lensSeesIt ? sample.settings.splatCount : 0.0},
-      0, photon.depth);
+  return sample.whole.Sums({.direct = kept.direct,
+                            .hit = hit,
+                            .firstIsDelta = kept.firstIsDelta && photon.depth > 1,
+                            .splatCount = sample.lensSeesIt ? sample.settings.splatCount : 0.0,
+                            .flightRatio = flightRatio},
+                           0, photon.depth);
+}
+
+// FlightPoints::RatioAt of the vertex that the camera sees.
+double FlightRatioOf(const BidirectionalSample& sample, const VolumeMerge& merge) {
+  return sample.camera.Count() == 1 ? merge.flightRatio : sample.flightRatio;
 }
 
 void ReportMerge(const BidirectionalSample& sample, const Photon& photon, AreaDensity reverse, const Color& value,
-                 double weight) {
+                 double weight, double flightRatio) {
   ConnectedPath path = MergedPath(sample, photon, value, weight);
-  if (sample.WantsSums()) path.sums = SumsOf(sample, photon, sample.context.gather->map->EndsOf(photon), reverse);
+  if (sample.WantsSums())
+    path.sums = SumsOf(sample, photon, sample.context.gather->map->EndsOf(photon), reverse, flightRatio);
   sample.context.observer->ObserveMerge(path, photon);
 }
 
 void ReportMerge(const BidirectionalSample& sample, const VolumeMerge& merge, AreaDensity reverse, const Color& value,
                  double weight) {
-  if (!merge.beam) return ReportMerge(sample, *merge.photon, reverse, value, weight);
+  const double ratio = FlightRatioOf(sample, merge);
+  if (!merge.beam) return ReportMerge(sample, *merge.photon, reverse, value, weight, ratio);
   ConnectedPath path = MergedPath(sample, *merge.photon, value, weight);
-  if (sample.WantsSums()) path.sums = SumsOf(sample, *merge.photon, merge.beam->ends, reverse);
+  if (sample.WantsSums()) path.sums = SumsOf(sample, *merge.photon, merge.beam->ends, reverse, ratio);
   sample.context.observer->ObserveBeamMerge(path, *merge.beam, merge.flight);
 }
 
 // The weight of merging the camera subpath's last vertex with a photon. `light`: densities of the photon's path. `f`:
-// of the vertex, towards where the photon came from. Sets the densities of the whole path.
+// of the vertex, towards where the photon came from. `flightRatio`: FlightPoints::RatioAt of the vertex, if it is the
+// first of the camera subpath. Sets the densities of the whole path.
 double WeightOf(const BidirectionalSample& sample, const Photon& photon, std::span<const SubpathDensities> light,
-                const BsdfEvaluation& f, Joint& joint) {
+                const BsdfEvaluation& f, double flightRatio, Joint& joint) {
   const PathVertex& vertex = sample.camera.Last();
   joint.light.last = photon.PreviousReverse(sample.continuesHere * SolidAngleDensity(f.pdfForward));
   joint.camera = {AreaDensity(light.back().forward), vertex.PreviousReverse(f.pdfReverse)};
@@ -69,8 +80,9 @@ double WeightOf(const BidirectionalSample& sample, const Photon& photon, std::sp
   return MergeWeight(photon.weight.At(light.back(), photon.depth)
                          .WithNextEvents(photon.depth + sample.camera.Count() - 1)
                          .BeforeReverse(joint.light.last),
-                     vertex.weight.BeforeReverse(joint.camera.previous), sample.whole.PerDensityAt(light.size()),
-                     sample.connectionCount, sample.whole.ForMerging(light.size()));
+                     sample.CameraWeight(flightRatio).BeforeReverse(joint.camera.previous),
+                     sample.whole.PerDensityAt(light.size()), sample.connectionCount,
+                     sample.whole.ForMerging(light.size()));
 }
 
 // Makes the vertex of the camera subpath at which the ray of `state` passes a photon. `passed`: of the ray up to there.
@@ -97,7 +109,8 @@ bool SetPointVertex(const SampleContext& context, const PathState& state, const 
            .kernel = photon.Kernel(),
            .biasFactor = BiasFactor(hit.distanceSquared, photon.radius),
            .use = hit.index,
-           .labels = map.LabelsOf(hit.index)};
+           .labels = map.LabelsOf(hit.index),
+           .flightRatio = static_cast<double>(photon.flightRatio)};
   SetVertexInMedium(context, state, flight, flight.line.start + static_cast<double>(hit.t) * flight.line.direction,
                     photon.medium, photon.phase, photon.extinction, *point, vertex);
   return true;
@@ -127,6 +140,13 @@ bool SetBeamOf(const BidirectionalSample& sample, const BeamCrossing& crossing, 
   merge.labels = map.Beams().LabelsOf(map.Beams().StartOf(found));
   merge.beam = &beam;
   merge.flight = found.start;
+  if (sample.settings.flightPoints && sample.camera.Count() == 1) {
+    const FlightStart& start = map.Beams().StartOf(found);
+    const bool isAnywhere = start.depth == 1 && sample.Lighting().IsAtInfinity(beam.end.light);
+    merge.flightRatio = sample.settings.flightPoints->RatioAt(
+        beam.vertex, beam.vertex.toPrevious, FlightStartPoint{start.position, isAnywhere}.DistanceTo(beam.vertex),
+        beam.vertex.factors.forward);
+  }
   merge.kernel = 1 / (sample.settings.photons.volume.ShareOf(beam.edge.isFromMedium) * 2 *
                       static_cast<double>(crossing.radius) * static_cast<double>(crossing.sine));
   const Vector3d apart = crossing.onBeam - crossing.onRay;
@@ -149,7 +169,7 @@ Color MergeInMedium(const BidirectionalSample& sample, const VolumeMerge& merge)
   joint.cameraMergeVolume = MergeVolume(vertex, merge.beam ? merge.beam->edge : ArrivingEdge(),
                                         {vertex.toPrevious, vertex.factors}, sample.settings.photons.volume);
   if (!(joint.cameraMergeVolume > 0)) return Color(0.0f);
-  const double weight = WeightOf(sample, photon, merge.light, f, joint);
+  const double weight = WeightOf(sample, photon, merge.light, f, FlightRatioOf(sample, merge), joint);
   const double probability = static_cast<double>(sample.settings.counts.merging.At(sample.film));
   const double perPath = static_cast<double>(sample.Lighting().FluxUnit()) / (probability * pass.lightPaths);
   const double perDensity = perPath * merge.kernel;
@@ -216,7 +236,7 @@ Color Merge(const BidirectionalSample& sample, std::span<const uint32_t> found) 
     const Color diffuse = f.diffuse * photon.flux, specular = f.specular * pass.map->SpecularFlux(photon);
     const Color scattered = diffuse + specular;
     if (scattered.IsBlack()) continue;
-    const double weight = WeightOf(sample, photon, pass.map->PathOf(photon), f, joint);
+    const double weight = WeightOf(sample, photon, pass.map->PathOf(photon), f, 0, joint);
     const Color value = scattered * vertex.ArrivalCorrection(toLight, photon.normal.Unpack());
     sum += value * static_cast<float>(weight);
     bias += value * (static_cast<float>(weight) * BiasFactor(sample.lookup.distances[i], sample.mergeRadius));
@@ -229,7 +249,8 @@ Color Merge(const BidirectionalSample& sample, std::span<const uint32_t> found) 
                                                sample.perArea / probability});
     }
     if (sample.IsObserved()) [[unlikely]]
-      ReportMerge(sample, photon, joint.light.last, Product(vertex.Throughput(), value, perDensity), weight);
+      ReportMerge(sample, photon, joint.light.last, Product(vertex.Throughput(), value, perDensity), weight,
+                  sample.flightRatio);
   }
   if (pass.use) pass.use->Add(sample.lookup.used);
   if (context.mergeBias) *context.mergeBias += Product(vertex.Throughput(), bias, perDensity);

@@ -1,4 +1,6 @@
 // s = 1: next-event estimation.
+#include <limits>
+
 #include "integrators/bidirectional/techniques.h"
 #include "integrators/bidirectional/weights.h"
 #include "integrators/walk/path_layers.h"
@@ -39,8 +41,12 @@ class NextEventTechnique final : public NextEventVisitor {
     fromLight_ = light.factors.Reversed();
     joint.cameraMergeVolume = MergeVolume(vertex_, {sample.direction, fromLight_},
                                           {vertex_.toPrevious, vertex_.factors}, sample_.settings.photons.volume);
-    weight_ = NextEventWeight(end_, vertex_.weight, hit_, joint.camera.previous, sample_.connectionCount,
-                              NextEventCount(sample_.camera.Count()), sample_.MergingOfLight(end_, joint, end_.direct));
+    distance_ = lighting.IsAtInfinity(direct.light) ? std::numeric_limits<double>::infinity()
+                                                    : static_cast<double>(sample.distance);
+    flightRatio_ = sample_.FlightRatio(sample.direction, distance_, fromLight_.forward);
+    weight_ =
+        NextEventWeight(end_, sample_.CameraWeight(flightRatio_), hit_, joint.camera.previous, sample_.connectionCount,
+                        NextEventCount(sample_.camera.Count()), sample_.MergingOfLight(end_, joint, end_.direct));
     if (!sample_.settings.connects && IsFoundHereAlone(direct.light)) weight_ = 1;
     return static_cast<float>(weight_);
   }
@@ -57,10 +63,11 @@ class NextEventTechnique final : public NextEventVisitor {
     path.s = 1;
     path.end = end_;
     path.endFactors = fromLight_;
+    path.endDistance = distance_;
     path.toLight = light.direct.sample->direction;
     path.value = value;
     path.weight = weight_;
-    if (sample_.WantsSums()) path.sums = sample_.Sums(end_, hit_, false, 1);
+    if (sample_.WantsSums()) path.sums = sample_.Sums(end_, hit_, false, 1, flightRatio_);
     sample_.Report(path);
   }
 
@@ -75,6 +82,7 @@ class NextEventTechnique final : public NextEventVisitor {
   LightEnd end_;
   EdgeFactors fromLight_;
   AreaDensity hit_;  // density of the light's point by scattering at the vertex
+  double distance_ = 0, flightRatio_ = 0;
   double weight_ = 1;
 };
 

@@ -136,7 +136,7 @@ TechniqueSums PathDensities::Sums(const PathEnds& ends, size_t s, size_t mergedA
   for (size_t k = 2; k <= n + 1; ++k) {
     if (mergedAt > 0 ? k == mergedAt + 1 : k == s) {
       own = density * (mergedAt > 0 ? vertices_[mergedAt].fromCamera * WithoutCorrelation(vertices_[mergedAt])
-                       : k == n + 1 ? ends.splatCount
+                       : k == n + 1 ? ends.splatCount * (ends.isOfFlight ? ends.flightRatio : 1.0)
                                     : 1.0);
       break;
     }
@@ -156,7 +156,10 @@ TechniqueSums PathDensities::Sums(const PathEnds& ends, size_t s, size_t mergedA
   for (size_t k = 2; k <= n + 1; ++k) {
     const Vertex& last = vertices_[k - 1];
     if (!isDelta(k - 1) && k <= n && !isDelta(k)) of(TechniqueGroup::Connect, k).Add(ratio);
-    if (!isDelta(k - 1) && k == n + 1) sums.Of(TechniqueGroup::Light).Add(ratio * ends.splatCount);
+    if (!isDelta(k - 1) && k == n + 1) {
+      sums.Of(TechniqueGroup::Light).Add(ratio * ends.splatCount);
+      sums.Of(TechniqueGroup::Light).Add(ratio * ends.splatCount * ends.flightRatio);
+    }
     if (last.canMerge)
       of(TechniqueGroup::Merge, k - 1).Add(ratio * last.fromCamera * WithoutCorrelation(last) * last.correlation);
     if (k <= n) ratio *= vertices_[k].fromLight / vertices_[k].fromCamera;

@@ -1,4 +1,6 @@
 // t = 1: the light path is connected to the lens.
+#include <algorithm>
+
 #include "integrators/bidirectional/techniques.h"
 #include "integrators/bidirectional/weights.h"
 
@@ -50,12 +52,20 @@ void SplatLight(const BidirectionalSample& sample, const EmittedPhoton& photon) 
   AddSplat(sample, *seen, weight, label);
 }
 
-void SplatVertex(const BidirectionalSample& sample) {
+namespace {
+
+// `isOfFlight`: the light subpath's last vertex is a point of its last flight, and no collision.
+void ConnectToLens(const BidirectionalSample& sample, const FlightStartPoint& start, uint32_t dimension, bool isOfFlight) {
   const Subpath& light = sample.light.vertices;
   const PathVertex& vertex = light.Last();
-  const auto seen =
-      SeeVertex(sample.context, vertex, kLightDimensions.Of(static_cast<int>(light.Count()), dimensions::kLight));
+  const auto seen = SeeVertex(sample.context, vertex, dimension);
   if (!seen) return;
+  double ratio = 0;
+  if (sample.settings.flightPoints) [[unlikely]] {
+    ratio = sample.settings.flightPoints->RatioAt(vertex, vertex.toPrevious, start.DistanceTo(vertex),
+                                                  vertex.factors.forward);
+    if (isOfFlight && !(ratio > 0)) return;
+  }
   const AreaDensity withoutMedia = DensityWithoutMedia(sample, *seen), atLens = seen->factors.forward * withoutMedia;
   Joint joint;
   const Point2& film = seen->connection.camera.film;
@@ -77,7 +87,8 @@ void SplatVertex(const BidirectionalSample& sample) {
     merged = sample.whole.ForConnection(light.Count());
   }
   const double connectionCount = Sqr(sample.ConnectionsPerLightPathAt(film));
-  const double weight = SplatWeight(vertex.weight, joint.light, connectionCount, sample.settings.splatCount, merged);
+  const double weight =
+      SplatWeight(vertex.weight, joint.light, connectionCount, sample.settings.splatCount, merged, ratio, isOfFlight);
   if (sample.IsObserved()) [[unlikely]] {
     ConnectedPath path;
     sample.SetLight(path, light.Count());
@@ -85,11 +96,58 @@ void SplatVertex(const BidirectionalSample& sample) {
     path.merging = merging;
     path.connectionCount = connectionCount;
     path.continuing = continuing;
-    if (merging && sample.context.observer->WantsSums())
-      path.sums = sample.SumsOfConnection(light.Count(), joint.light, true);
+    path.endDistance = start.DistanceTo(vertex);
+    path.isOfFlight = isOfFlight;
+    if (merging && sample.context.observer->WantsSums()) {
+      PathEnds ends = sample.EndsOfConnection(light.Count(), joint.light, true, ratio);
+      ends.isOfFlight = isOfFlight;
+      path.sums = sample.whole.Sums(ends, light.Count() + 1, 0);
+    }
     sample.Report(path);
   }
   AddSplat(sample, *seen, weight, LabelsTowardsLens(sample.context, light, *seen));
+}
+
+}  // namespace
+
+void SplatVertex(const BidirectionalSample& sample, const FlightStartPoint& start) {
+  const auto count = static_cast<int>(sample.light.vertices.Count());
+  ConnectToLens(sample, start, kLightDimensions.Of(count, dimensions::kLight), false);
+}
+
+void SplatFlight(BidirectionalSample& sample, const FlightStartPoint& start, const PathState& state,
+                 const Flight& flight, const EmittedPhoton& photon, Sampler& sampler, LightPath& path) {
+  const SampleContext& context = sample.context;
+  const BidirectionalSettings& settings = sample.settings;
+  const size_t count = path.vertices.Count();
+  if (static_cast<int>(count) >= settings.maxDepth || context.IsCounted(state.isDispersed)) return;
+  const auto dimension = [count](uint32_t which) { return kLightDimensions.OfSegment(static_cast<int>(count), which); };
+  if (!AddFlightVertex(context, *settings.flightPoints, state, flight, &photon, sampler,
+                       dimension(dimensions::kSegmentChoice), path))
+    return;
+  PathVertex& vertex = path.vertices.Last();
+  bool isLit = true;
+  if (count == 0) {
+    isLit = SetFirstWeights(context, photon, settings.connects, sample.lightPaths, vertex, sample.lightEnd);
+  } else {
+    PathState arrived = state;
+    arrived.factors = vertex.factors;
+    SetWeights(path.vertices[count - 1], arrived, settings.connects, vertex);
+  }
+  std::vector<SubpathDensities>& densities = sample.lightDensities;
+  thread_local std::vector<SubpathDensities> before;
+  if (settings.merges && isLit) {
+    densities.resize(count);
+    before.assign(densities.end() - static_cast<std::ptrdiff_t>(std::min<size_t>(count, 2)), densities.end());
+    AddDensities(path.vertices, settings.photons.volume, true, densities);
+    if (count == 0) densities[0] = FirstDensities(sample.lightEnd, true);
+  }
+  if (isLit) ConnectToLens(sample, start, dimension(dimensions::kSegmentLight), true);
+  if (settings.merges && isLit) {
+    densities.resize(count);
+    std::copy(before.begin(), before.end(), densities.end() - static_cast<std::ptrdiff_t>(before.size()));
+  }
+  path.vertices.Drop();
 }
 
 }  // namespace lampyr

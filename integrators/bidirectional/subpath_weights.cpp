@@ -16,12 +16,13 @@ double SquaredDistance(const Vertex& a, const Vertex& b) {
 
 }  // namespace
 
-void SetWeights(const PathVertex& previous, const PathState& state, bool connects, PathVertex& vertex) {
+void SetWeights(const PathVertex& previous, const PathState& state, bool connects, PathVertex& vertex,
+                double flightRatio) {
   const double squared = SquaredDistance(vertex, previous);
-  SetWeights(
-      {previous.weight, previous.PreviousReverse(previous.eventReverse), previous.scatteredDelta, state.pdfDirection},
-      state.factors, EdgeDensity(vertex, state.ray.direction, squared),
-      EdgeDensity(previous, state.ray.direction, squared), connects, vertex);
+  SetWeights({flightRatio > 0 ? previous.weight.WithFlights(flightRatio) : previous.weight,
+              previous.PreviousReverse(previous.eventReverse), previous.scatteredDelta, state.pdfDirection},
+             state.factors, EdgeDensity(vertex, state.ray.direction, squared),
+             EdgeDensity(previous, state.ray.direction, squared), connects, vertex);
 }
 
 void SetWeights(const LeftVertex& previous, const EdgeFactors& edge, SolidAnglePerArea fromPrevious,

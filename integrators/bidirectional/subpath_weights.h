@@ -6,8 +6,10 @@
 namespace lampyr {
 
 // Sets the densities and the partial weight of `vertex`, which its subpath found from `previous` by the ray of `state`.
-// Without `connects`: the weight for merging alone.
-void SetWeights(const PathVertex& previous, const PathState& state, bool connects, PathVertex& vertex);
+// Without `connects`: the weight for merging alone. `flightRatio`: FlightPoints::RatioAt of `previous`, if that is the
+// first vertex of a camera subpath.
+void SetWeights(const PathVertex& previous, const PathState& state, bool connects, PathVertex& vertex,
+                double flightRatio = 0);
 
 // A vertex from which a subpath goes on, as far as the weights of the next vertex depend on it.
 struct LeftVertex {

@@ -2,6 +2,8 @@
 // returns their contribution to the sample's own pixel or splats it.
 #pragma once
 
+#include <limits>
+
 #include "integrators/bidirectional/beam_merge.h"
 #include "integrators/bidirectional/bidirectional_integrator.h"
 #include "integrators/bidirectional/connected_path.h"
@@ -14,6 +16,16 @@ namespace lampyr {
 
 // The two subpaths of a sample use alternating blocks of sampler dimensions, so that neither uses the other's.
 inline constexpr PathDimensions kCameraDimensions{2, 0}, kLightDimensions{2, 1};
+
+// Where a flight of a light path starts.
+struct FlightStartPoint {
+  Point3d position{0.0};
+  bool isAnywhere = false;  // on its line: it comes from a light at infinity
+
+  double DistanceTo(const Vertex& vertex) const {
+    return isAnywhere ? std::numeric_limits<double>::infinity() : glm::distance(vertex.Position(), position);
+  }
+};
 
 // State of a sample: both subpaths, and the radiance that the camera subpath has gathered so far.
 struct BidirectionalSample {
@@ -37,6 +49,7 @@ struct BidirectionalSample {
   float mergeRadius = 0;     // scene units
   float perArea = 1;         // proportional to 1 / mergeRadius², where radii differ: that of the scene's radius is 1
   double seenDensity = 0;    // of the first vertex of the camera subpath, as in P_C
+  double flightRatio = 0;    // FlightPoints::RatioAt of the first vertex, once there is a second one
   bool lensSeesIt = false;   // light paths that reach the first vertex of the camera subpath are connected to the lens
   bool couldMerge = false;   // merging was possible at a vertex of the camera subpath
   Color radiance{};
@@ -69,16 +82,36 @@ struct BidirectionalSample {
               lightEnd.extent, merging);
     return whole.ForConnection(lightCount);
   }
-  // TechniqueSums of the path that was weighted last. `end`, `hit`: the light's end of it, and the density with which a
-  // camera path hits the light.
-  bool WantsSums() const { return merging && context.observer && context.observer->WantsSums(); }
-  TechniqueSums Sums(const LightEnd& end, AreaDensity hit, bool firstIsDelta, size_t s) const {
-    return whole.Sums(
-        {end.direct.value, end.canBeHit ? hit.value : 0.0, firstIsDelta, lensSeesIt ? settings.splatCount : 0.0}, s, 0);
+  // FlightPoints::RatioAt of the vertex that the camera sees, on a path that goes on from the camera subpath's last
+  // vertex `toLight`, over an edge of the length `distance`. `collision`: of a walk that arrives there from the light.
+  double FlightRatio(const Vector3& toLight, double distance, double collision) const {
+    if (!settings.flightPoints) [[likely]]
+      return 0;
+    return camera.Count() > 1 ? flightRatio
+                              : settings.flightPoints->RatioAt(camera.Last(), toLight, distance, collision);
   }
-  // TechniqueSums of a connection; of one to the lens if `isSplat`. `reverse`: densities of the light subpath's last
-  // vertices.
-  TechniqueSums SumsOfConnection(size_t lightCount, const ReverseDensities& reverse, bool isSplat) const;
+  // The partial weight of the camera subpath's last vertex. `ratio`: FlightRatio; the weights of later vertices have
+  // it.
+  PartialWeight CameraWeight(double ratio) const {
+    return ratio > 0 && camera.Count() == 1 ? camera.Last().weight.WithFlights(ratio) : camera.Last().weight;
+  }
+  // TechniqueSums of the path that was weighted last. `end`, `hit`: the light's end of it, and the density with which a
+  // camera path hits the light. `ratio`: FlightRatio.
+  bool WantsSums() const { return merging && context.observer && context.observer->WantsSums(); }
+  TechniqueSums Sums(const LightEnd& end, AreaDensity hit, bool firstIsDelta, size_t s, double ratio) const {
+    return whole.Sums({.direct = end.direct.value,
+                       .hit = end.canBeHit ? hit.value : 0.0,
+                       .firstIsDelta = firstIsDelta,
+                       .splatCount = lensSeesIt ? settings.splatCount : 0.0,
+                       .flightRatio = ratio},
+                      s, 0);
+  }
+  // TechniqueSums of a connection. `reverse`: densities of the light subpath's last vertices. `ratio`: FlightRatio.
+  TechniqueSums SumsOfConnection(size_t lightCount, const ReverseDensities& reverse, double ratio) const {
+    return whole.Sums(EndsOfConnection(lightCount, reverse, lensSeesIt, ratio), lightCount + 1, 0);
+  }
+  // The ends of such a path. `isSeen`: t = 1 may make it.
+  PathEnds EndsOfConnection(size_t lightCount, const ReverseDensities& reverse, bool isSeen, double ratio) const;
   bool IsObserved() const { return context.observer != nullptr; }
   // Roulette of shadow rays; off with an observer, which receives all paths.
   ShadowRays WantedShadowRays() const { return IsObserved() ? ShadowRays{0, 0} : settings.shadowRays; }
@@ -109,9 +142,14 @@ Color EstimateDirectLight(const BidirectionalSample& sample);
 // s > 1, t > 1: the first `lightCount` vertices of the light subpath, connected to the camera subpath's last.
 Color Connect(const BidirectionalSample& sample, size_t lightCount);
 
-// t = 1: the light, or the last vertex of the light subpath, connected to the lens.
+// t = 1: the light, or the last vertex of the light subpath, connected to the lens. `start`: where its last flight
+// started.
 void SplatLight(const BidirectionalSample& sample, const EmittedPhoton& photon);
-void SplatVertex(const BidirectionalSample& sample);
+void SplatVertex(const BidirectionalSample& sample, const FlightStartPoint& start);
+// The same of a point of the last flight, which starts at `start`, along the ray of `state`. `path`: of `sample`; as
+// before at the end.
+void SplatFlight(BidirectionalSample& sample, const FlightStartPoint& start, const PathState& state,
+                 const Flight& flight, const EmittedPhoton& photon, Sampler& sampler, LightPath& path);
 
 // A photon that a camera ray passes in a medium.
 struct VolumeMerge {
@@ -124,6 +162,7 @@ struct VolumeMerge {
   uint32_t use = kUnused;             // its index for PhotonUse
   std::span<const PathLabel> labels;  // of its path; empty without layers
   const BeamVertex* beam = nullptr;   // of a beam
+  double flightRatio = 0;             // FlightPoints::RatioAt of its vertex
   uint32_t flight = 0;                // index of the beam's FlightStart
 
   static constexpr uint32_t kUnused = 0xffffffffu;

@@ -11,7 +11,9 @@
 //
 // Depth counts scattering events between light and camera, as for `path`. Russian roulette enters the throughput only.
 #include <algorithm>
+#include <limits>
 
+#include "integrators/walk/flight_points.h"
 #include "integrators/walk/integrator_type.h"
 #include "integrators/walk/lens.h"
 #include "integrators/walk/light_path.h"
@@ -20,10 +22,12 @@ namespace lampyr {
 
 namespace {
 
-// Connects where the path starts, and each vertex, to the camera.
+// Connects where the path starts, each vertex, and a point of each flight through media to the camera.
 class LensConnector final : public LightPathVisitor {
  public:
-  explicit LensConnector(const SampleContext& context) : context_(context) {}
+  // `points`: null: of flights no points.
+  LensConnector(const SampleContext& context, int maxDepth, const FlightPoints* points)
+      : context_(context), maxDepth_(maxDepth), points_(points) {}
   void Emitted(const EmittedPhoton& photon) override {
     const auto seen = SeeLight(context_, photon, dimensions::kLens);
     if (seen) AddStart(*seen, context_.outputs ? context_.outputs->OfLight(photon.light) : 0);
@@ -32,30 +36,62 @@ class LensConnector final : public LightPathVisitor {
     const auto seen = SeeGlow(context_, emitted, dimensions::kLens);
     if (seen) AddStart(*seen, context_.outputs ? context_.outputs->OfMedia() : 0);
   }
+  bool WantsFlights() const override { return points_ != nullptr; }
+  void Flew(LightPath& path, const PathState& state, const Flight& flight, const EmittedPhoton* photon) override {
+    const size_t count = path.vertices.Count();
+    start_ = flight.line.start;
+    startsAnywhere_ = count == 0 && photon && context_.scene.lighting->IsAtInfinity(photon->light);
+    if (static_cast<int>(count) >= maxDepth_ || context_.IsCounted(state.isDispersed)) return;
+    const auto dimension = [count](uint32_t which) {
+      return PathDimensions().OfSegment(static_cast<int>(count), which);
+    };
+    if (!AddFlightVertex(context_, *points_, state, flight, photon, context_.sampler,
+                         dimension(dimensions::kSegmentChoice), path))
+      return;
+    const double ratio = RatioAt(path.vertices.Last());
+    if (ratio > 0) Connect(path, dimension(dimensions::kSegmentLight), 1 / (1 + 1 / Mis(ratio)));
+    path.vertices.Drop();
+  }
   void Arrived(LightPath& path, const PathState&) override {
     const uint32_t lens = PathDimensions().Of(static_cast<int>(path.vertices.Count()), dimensions::kLight);
-    const auto seen = SeeVertex(context_, path.vertices.Last(), lens);
-    if (seen) AddSplats(context_, seen->connection, seen->value, LabelsTowardsLens(context_, path.vertices, *seen));
+    Connect(path, lens, points_ ? 1 / (1 + Mis(RatioAt(path.vertices.Last()))) : 1.0);
   }
 
  private:
+  // `weight`: of this way to find the vertex against the other.
+  void Connect(const LightPath& path, uint32_t lensDimension, double weight) {
+    const auto seen = SeeVertex(context_, path.vertices.Last(), lensDimension);
+    if (!seen) return;
+    AddSplats(context_, seen->connection, seen->value * static_cast<float>(weight),
+              LabelsTowardsLens(context_, path.vertices, *seen));
+  }
+  double RatioAt(const PathVertex& vertex) const {
+    const double distance =
+        startsAnywhere_ ? std::numeric_limits<double>::infinity() : glm::distance(vertex.Position(), start_);
+    return points_->RatioAt(vertex, vertex.toPrevious, distance, vertex.factors.forward);
+  }
   void AddStart(const SeenFromLens& seen, uint32_t source) {
     const PathLabel label[] = {{source}};
     AddSplats(context_, seen.connection, seen.value, label);
   }
 
   const SampleContext& context_;
+  const int maxDepth_;
+  const FlightPoints* points_;
+  Point3d start_{0.0};           // of the last flight
+  bool startsAnywhere_ = false;  // on its line
 };
 
 class LightIntegrator final : public Integrator {
  public:
-  LightIntegrator(int maxDepth, std::unique_ptr<const GlowingMedia> glowing)
-      : maxDepth_(maxDepth), glowing_(std::move(glowing)) {}
+  LightIntegrator(int maxDepth, std::unique_ptr<const GlowingMedia> glowing,
+                  std::shared_ptr<const FlightPoints> flightPoints)
+      : maxDepth_(maxDepth), glowing_(std::move(glowing)), flightPoints_(std::move(flightPoints)) {}
 
   TracedPaths Paths() const override { return TracedPaths::Light; }
   Color Sample(const Ray*, const SampleContext& context) const override {
     thread_local LightPath path(false);
-    LensConnector visitor(context);
+    LensConnector visitor(context, maxDepth_, flightPoints_.get());
     TraceLightPath(context, maxDepth_, {}, path, visitor, glowing_.get());
     return Color(0.0f);
   }
@@ -63,6 +99,7 @@ class LightIntegrator final : public Integrator {
  private:
   int maxDepth_;
   std::unique_ptr<const GlowingMedia> glowing_;
+  std::shared_ptr<const FlightPoints> flightPoints_;
 };
 
 std::vector<std::string> Hints(const RenderScene& scene) {
@@ -101,7 +138,8 @@ IntegratorType LightIntegratorType() {
   type.help = "paths from the lights, each vertex connected to the camera";
   type.settings = {&common_settings::kMaxDepth};
   type.create = [](const IntegratorInput& input) {
-    return std::make_unique<LightIntegrator>(MaxDepthOf(input.settings), GlowingMediaOf(input));
+    return std::make_unique<LightIntegrator>(MaxDepthOf(input.settings), GlowingMediaOf(input),
+                                             FlightPoints::Of(input.scene));
   };
   type.hints = Hints;
   type.refusal = Refusal;

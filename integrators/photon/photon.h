@@ -83,6 +83,7 @@ struct VolumePhoton {
   PhaseBsdf phase;
   Color extinction;  // σ_t there
   int32_t medium = kVacuum;
+  WideFloat flightRatio;  // FlightPoints::RatioAt
 
   // Density of the constant kernel on a disk across the ray, 1/scene unit².
   double Kernel() const {
@@ -120,7 +121,9 @@ class PhotonList {
   // Stores a photon at `vertex`. `labels`: of its path there; nullopt without layers. `depth` is clamped to kDeepest.
   // On a cut-out the light path and the gathering path each hit the surface with probability `coverage`; dividing the
   // flux by it makes the factor count once.
-  void Add(const PathVertex& vertex, size_t depth, std::optional<std::span<const PathLabel>> labels = std::nullopt) {
+  // `flightRatio`: FlightPoints::RatioAt.
+  void Add(const PathVertex& vertex, size_t depth, std::optional<std::span<const PathLabel>> labels = std::nullopt,
+           double flightRatio = 0) {
     const float passed = vertex.coverage > 0 ? 1 / vertex.coverage : 0.0f;
     const auto origin = static_cast<uint32_t>(origins_.size()) - 1;
     // In place: a copy of what was just written field by field stalls on store forwarding.
@@ -130,7 +133,8 @@ class PhotonList {
                           static_cast<uint32_t>(densities_.size() + 1));
     if (const PhaseBsdf* phase = vertex.bsdf.Phase()) {
       photons_.back().volume = static_cast<uint32_t>(volume_.size());
-      volume_.push_back({vertex.point.position, 0, *phase, vertex.extinction, vertex.insideMedium});
+      volume_.push_back(
+          {vertex.point.position, 0, *phase, vertex.extinction, vertex.insideMedium, WideFloat(flightRatio)});
     }
     if (labels) [[unlikely]]
       ranges_.push_back(AppendLabels(*labels, labels_));

@@ -28,7 +28,7 @@ class LightWalkVisitor final : public PathVisitor {
     return path.Count() > 0 || hit.t >= photon_.emission.shinesFrom;
   }
   void Flew(Subpath&, const PathState& state, const Flight& flight) override {
-    visitor_.Flew(path_, state, flight, photon_);
+    visitor_.Flew(path_, state, flight, &photon_);
   }
   bool Arrived(Subpath& path, const PathState& state) override {
     if (path.Count() == 1 && (ScattersTooNear(path.Last(), state) || !SetFirst(path.Last(), state))) {
@@ -92,6 +92,9 @@ class MediumWalkVisitor final : public PathVisitor {
   MediumWalkVisitor(int maxDepth, LightPath& path, LightPathVisitor& visitor)
       : maxDepth_(maxDepth), path_(path), visitor_(visitor) {}
 
+  void Flew(Subpath&, const PathState& state, const Flight& flight) override {
+    visitor_.Flew(path_, state, flight, nullptr);
+  }
   bool Arrived(Subpath& path, const PathState& state) override {
     visitor_.Arrived(path_, state);
     return static_cast<int>(path.Count()) < maxDepth_;
@@ -129,6 +132,14 @@ struct PathRequest {
   LightPathVisitor& visitor;
 };
 
+WalkSettings WalkOf(const PathRequest& request) {
+  return {.mode = TransportMode::Importance,
+          .maxDepth = request.maxDepth,
+          .dimensions = request.dimensions,
+          .seesFlights = request.visitor.WantsFlights(),
+          .wantsBeams = request.visitor.WantsBeams()};
+}
+
 void TraceFromMedium(const PathRequest& request, double uSelect, const GlowingMedia& glowing) {
   const SampleContext& context = request.context;
   Sampler& sampler = context.sampler;
@@ -147,8 +158,7 @@ void TraceFromMedium(const PathRequest& request, double uSelect, const GlowingMe
   PathState state;
   if (!EmitInMedium(context, emitted, sampler.Get2D(), state)) return;
   MediumWalkVisitor visitor(request.maxDepth, request.path, request.visitor);
-  Walk(context, {TransportMode::Importance, request.maxDepth, request.dimensions}, state, request.path.vertices,
-       visitor);
+  Walk(context, WalkOf(request), state, request.path.vertices, visitor);
 }
 
 // `probability`: of starting a path at a light.
@@ -168,13 +178,7 @@ void TraceFromLight(const PathRequest& request, float uSelect, double probabilit
   PathState state;
   if (request.maxDepth < 1 || photon->IsDark() || !Emit(context, *photon, state)) return;
   LightWalkVisitor visitor(context, *photon, state, request.maxDepth, request.path, request.visitor);
-  const bool wantsFlights = request.visitor.WantsFlights();
-  const WalkSettings walk{.mode = TransportMode::Importance,
-                          .maxDepth = request.maxDepth,
-                          .dimensions = request.dimensions,
-                          .seesFlights = wantsFlights,
-                          .wantsBeams = wantsFlights};
-  Walk(context, walk, state, request.path.vertices, visitor);
+  Walk(context, WalkOf(request), state, request.path.vertices, visitor);
 }
 
 // The sphere within which flights pass through media, with their margin.

@@ -38,9 +38,11 @@ class LightPathVisitor {
   virtual bool FirstHit(const EmittedPhoton&, PathVertex&) { return true; }
   // A vertex was added to the path: the last one.
   virtual void Arrived(LightPath& path, const PathState& state) = 0;
-  // PathVisitor::Flew, with Flight::beam, of paths that start at a light. `photon`: its emission.
+  // PathVisitor::Flew, with Flight::beam if that is wanted, too. `photon`: the emission; null: the path starts in a
+  // medium.
   virtual bool WantsFlights() const { return false; }
-  virtual void Flew(const LightPath& /*path*/, const PathState&, const Flight&, const EmittedPhoton& /*photon*/) {}
+  virtual bool WantsBeams() const { return false; }
+  virtual void Flew(LightPath& /*path*/, const PathState&, const Flight&, const EmittedPhoton* /*photon*/) {}
 };
 
 // The participating media that emit light, as the start of light paths. A path starts in a medium or at a light in

@@ -101,6 +101,8 @@ struct PathEnds {
   bool firstIsDelta = false;   // the event at vertex 1
   double splatCount = 0;       // of t = 1; 0: it does not exist
   bool canBeHit = false;       // the light; `hit` may be unknown yet
+  double flightRatio = 0;      // FlightPoints::RatioAt of the vertex that the camera sees
+  bool isOfFlight = false;     // t = 1 has made the path, by a point of a flight
 
   // Stored as the record before those of the path's vertices: one index per photon finds both.
   SubpathDensities Packed() const {
@@ -159,6 +161,13 @@ struct PartialWeight {
     return {{splatCount > 0 ? Mis(splatCount / camera.value) : 0.0, 0.0}, {}};
   }
 
+  // Of the first vertex of a camera subpath, with the splats of points of flights counted beside those of collisions.
+  // `ratio`: FlightPoints::RatioAt.
+  PartialWeight WithFlights(double ratio) const {
+    PartialWeight counted = *this;
+    counted.ends.last *= 1 + Mis(ratio);
+    return counted;
+  }
   // Of a light subpath, with next-event estimation counted as in a path of so many surface vertices.
   PartialWeight WithNextEvents(size_t surfaceVertices) const {
     PartialWeight counted = *this;

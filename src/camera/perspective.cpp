@@ -35,7 +35,7 @@ class PerspectiveCamera final : public Camera {
 
   CameraRay GenerateRay(const Point2& film, const Point2& lens, float time) const override {
     CameraRay result;
-    Vector3 direction = center_ + (film.x - centerFilm_.x) * dx_ + (film.y - centerFilm_.y) * dy_;
+    Vector3 direction = DirectionOf(film);
     result.ray.origin = origin_;
     if (hasLens_) {
       const Vector3 offset = LensOffset(lens);
@@ -85,9 +85,26 @@ class PerspectiveCamera final : public Camera {
     return result;
   }
 
+  std::optional<CameraView> View() const override {
+    CameraView view{origin_, {Vector3(unitNormal_)}};
+    const auto w = static_cast<float>(frame_.width), h = static_cast<float>(frame_.height);
+    const Point2 corners[5] = {{0, 0}, {w, 0}, {w, h}, {0, h}, {0, 0}};
+    const Vector3 middle = DirectionOf({0.5f * w, 0.5f * h});
+    for (int i = 0; i < 4; ++i) {
+      const Vector3d across = glm::cross(Vector3d(DirectionOf(corners[i])), Vector3d(DirectionOf(corners[i + 1])));
+      const double side = glm::dot(across, Vector3d(middle));
+      if (side != 0 && std::isfinite(side)) view.planes.push_back(Vector3(glm::normalize(side > 0 ? across : -across)));
+    }
+    return view;
+  }
+
   bool HasPinhole() const override { return !hasLens_; }
 
  private:
+  // From the origin to what the film point sees at a distance of 1; not unit.
+  Vector3 DirectionOf(const Point2& film) const {
+    return center_ + (film.x - centerFilm_.x) * dx_ + (film.y - centerFilm_.y) * dy_;
+  }
   Vector3 LensOffset(const Point2& u) const {
     const Point2 disk = SampleConcentricDisk(u);
     return disk.x * lensX_ + disk.y * lensY_;

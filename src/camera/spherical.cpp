@@ -55,6 +55,8 @@ class SphericalCamera final : public Camera {
     return result;
   }
 
+  std::optional<CameraView> View() const override { return CameraView{origin_, {}}; }
+
   FilmCopies CopiesOf(const Point2& film) const override {
     const float w = static_cast<float>(frame_.width), h = static_cast<float>(frame_.height);
     const Vector2 m = frame_.filmMargin;

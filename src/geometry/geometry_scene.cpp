@@ -623,6 +623,8 @@ MediumSurfaces GeometryScene::SurfacesOf(int32_t medium) const {
     if (attributes.insideMedium != medium && attributes.outsideMedium != medium) return;
     found.box.Add(box);
     found.move = found.move || moves;
+    found.passesStraight =
+        found.passesStraight || attributes.isBoundary || attributes.thin != nullptr || attributes.alpha != nullptr;
   });
   return found;
 }

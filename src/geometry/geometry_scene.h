@@ -60,6 +60,7 @@ struct GeometryAttributes {
 struct MediumSurfaces {
   Bounds3 box;  // over the shutter, render space
   bool move = false;
+  bool passesStraight = false;  // rays may pass straight through one of them
 };
 
 inline bool SeparatesMedia(const GeometryAttributes& attributes) {

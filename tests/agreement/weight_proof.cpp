@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 
@@ -44,17 +45,22 @@ constexpr uint32_t kLightPaths = 2000;  // that leave photons
 struct KeptPath {
   std::vector<PathVertex> vertices;
   LightEnd end;
+  double endDistance = 0;  // of the first vertex from the light
+  Point3d start{0.0};      // of a flight
 };
 class KeptLightPaths {
  public:
-  void Keep(const LightPath& path, const LightEnd& end) {
+  void Keep(const LightPath& path, const LightEnd& end, double endDistance) {
     const PathVertex& last = path.vertices.Last();
     const size_t count = path.vertices.Count();
-    photons.Add(last, count);
+    const double distance =
+        count > 1 ? glm::distance(last.Position(), path.vertices[count - 2].Position()) : endDistance;
+    photons.Add(last, count, std::nullopt,
+                flightPoints ? flightPoints->RatioAt(last, last.toPrevious, distance, last.factors.forward) : 0.0);
     const auto vertices = path.vertices.First(count);
     paths_[KeyOf(last.toPrevious, photons.Photons().back().diffuse, photons.Photons().back().weight,
                  static_cast<double>(WideFloat(last.previousSolidAnglePerArea.value)), count)] = {
-        {vertices.begin(), vertices.end()}, end};
+        {vertices.begin(), vertices.end()}, end, endDistance};
   }
   const KeptPath& PathOf(const Photon& photon) const {
     return paths_.at(KeyOf(photon.toPrevious, photon.flux, photon.weight,
@@ -62,13 +68,17 @@ class KeptLightPaths {
   }
 
   // The path from whose last vertex the next flight starts.
-  void KeepFlight(const LightPath& path, const LightEnd& end) {
+  void KeepFlight(const LightPath& path, const LightEnd& end, double endDistance, const Point3d& start) {
     const auto vertices = path.vertices.First(path.vertices.Count());
-    flights_.push_back({{vertices.begin(), vertices.end()}, end});
+    flights_.push_back({{vertices.begin(), vertices.end()}, end, endDistance, start});
   }
   KeptPath PathOf(const BeamVertex& beam, uint32_t flight) const {
     KeptPath path = flights_.at(flight);
-    if (path.vertices.empty()) path.end = beam.end;
+    if (path.vertices.empty()) {
+      path.end = beam.end;
+      path.endDistance = beam.end.extent == LightEnd::Extent::Sky ? std::numeric_limits<double>::infinity()
+                                                                  : glm::distance(beam.vertex.Position(), path.start);
+    }
     path.vertices.push_back(beam.vertex);
     return path;
   }
@@ -77,6 +87,7 @@ class KeptLightPaths {
   std::vector<SubpathDensities> densities;  // of the current path
   PathEnds ends;
   VolumeRadius volume;
+  std::shared_ptr<const FlightPoints> flightPoints;
 
  private:
   using Key = std::array<double, 10>;
@@ -95,12 +106,19 @@ class KeepsPaths final : public WeightedLightPath {
   // For the next path.
   void Start() { flightsBelow_ = FlightsBelow(kept_.volume, context_.sampler, {2, 1}); }
   bool WantsFlights() const override { return flightsBelow_ < 1; }
-  void Flew(const LightPath& path, const PathState& state, const Flight& flight, const EmittedPhoton& photon) override {
+  bool WantsBeams() const override { return WantsFlights(); }
+  bool FirstHit(const EmittedPhoton& photon, PathVertex& first) override {
+    const bool isAtInfinity = context_.scene.lighting->IsAtInfinity(photon.light);
+    endDistance_ = isAtInfinity ? std::numeric_limits<double>::infinity()
+                                : glm::distance(first.Position(), Point3d(photon.emission.position));
+    return WeightedLightPath::FirstHit(photon, first);
+  }
+  void Flew(LightPath& path, const PathState& state, const Flight& flight, const EmittedPhoton* photon) override {
     const size_t before = kept_.photons.Beams().starts.size();
     SampleContext keeping = context_;
     keeping.photons = &kept_.photons;
-    AddFlight(keeping, kept_.volume, flightsBelow_, path, state, flight, photon);
-    if (kept_.photons.Beams().starts.size() > before) kept_.KeepFlight(path, End());
+    AddFlight(keeping, kept_.volume, flightsBelow_, path, state, flight, *photon);
+    if (kept_.photons.Beams().starts.size() > before) kept_.KeepFlight(path, End(), endDistance_, flight.line.start);
     if (path.vertices.Count() == 1) SetEnds(path.vertices[0]);
   }
 
@@ -119,10 +137,11 @@ class KeepsPaths final : public WeightedLightPath {
       SetEnds(first);
     }
     const PathVertex& last = path.vertices.Last();
-    if (last.storesPhotons && !IsOnBeam(last, kept_.volume)) kept_.Keep(path, End());
+    if (last.storesPhotons && !IsOnBeam(last, kept_.volume)) kept_.Keep(path, End(), endDistance_);
   }
   KeptLightPaths& kept_;
   double flightsBelow_ = 1;
+  double endDistance_ = 0;
 };
 
 double CosineAtGeometry(const PathVertex& vertex, const Vector3& direction) {
@@ -184,6 +203,7 @@ class WeightChecker final : public PathObserver {
     path.end = light.end;
     path.toLight = light.vertices[0].toPrevious;
     path.endFactors = light.vertices[0].factors;
+    path.endDistance = light.endDistance;
     Observe(path);
   }
 
@@ -424,12 +444,14 @@ WeightErrors CheckWeights(const std::string& sceneText, const WeightProof& proof
     settings.photons.volume.beamShare = static_cast<double>(proof.beamShare);
     settings.photons.volume.scatteredBeamShare = std::min(2 * static_cast<double>(proof.beamShare), 1.0);
   }
+  settings.flightPoints = FlightPoints::Of(scene);
   const auto integrator = MakeBidirectionalIntegrator(settings);
   Sampler sampler(SamplerKind::Independent, 5);
   Photons photons;
   double mergesPerDensity = 0;
   if (settings.merges) {
     photons.kept.volume = settings.photons.volume;
+    photons.kept.flightPoints = settings.flightPoints;
     photons.gather.radiusScale = proof.pixels > 0 ? proof.pixels : 1;
     photons.gather.volume = settings.photons.volume.Scaled(static_cast<double>(photons.gather.radiusScale));
     TracePhotons(scene, settings.maxDepth, proof.radius * sphere.radius, proof.counts.LightPaths(), sampler, photons);
