@@ -153,8 +153,7 @@ double FlightRatioOf(const ConnectedPath& path, const VertexRow& vertices) {
   const size_t n = vertices.Count();
   if (!path.flightPoints || n == 0) return 0;
   const PathVertex& seen = vertices.AsOfLight(n);
-  const double distance =
-      n == 1 ? path.endDistance : glm::distance(seen.Position(), vertices.AsOfLight(n - 1).Position());
+  const double distance = n == 1 ? path.endDistance : glm::distance(seen.Position(), vertices[n - 1].Position());
   return path.flightPoints->RatioAt(seen, vertices.ToLight(n), distance, vertices.Departure(n).forward);
 }
 

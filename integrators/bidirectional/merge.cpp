@@ -26,6 +26,7 @@ ConnectedPath MergedPath(const BidirectionalSample& sample, const Photon& photon
   path.splatCount = sample.settings.splatCount;
   path.continuing = static_cast<double>(sample.continuing);
   path.volume = &sample.settings.photons.volume;
+  path.flightPoints = sample.settings.flightPoints.get();
   path.seenDensity = sample.seenDensity;
   path.value = value;
   path.weight = weight;

@@ -184,7 +184,10 @@ Image ReadImage(const std::filesystem::path& path, ImageEncoding encoding) {
   EncodedImage encoded = ReadEncoded(path, kind);
   const bool automatic = encoded.integerBits == 8 || (encoded.integerBits > 0 && encoded.saysSrgb);
   const bool decode = encoding == ImageEncoding::Automatic ? automatic : encoding == ImageEncoding::Srgb;
-  if (decode && encoded.integerBits > 0) DecodeChannels(encoded, SrgbToLinear);
+  if (decode && encoded.integerBits > 0) {
+    DecodeChannels(encoded, SrgbToLinear);
+    encoded.image.colorGamma = 0;
+  }
   return std::move(encoded.image);
 }
 
@@ -195,6 +198,7 @@ Image ReadImageWithGamma(const std::filesystem::path& path, float gamma) {
   EncodedImage encoded = ReadEncoded(path, kind);
   if (encoded.integerBits > 0) {
     DecodeChannels(encoded, [gamma](float value) { return std::pow(std::max(value, 0.0f), gamma); });
+    encoded.image.colorGamma = gamma;
   }
   return std::move(encoded.image);
 }

@@ -1,5 +1,6 @@
 #include "scene/parameter_reader.h"
 
+#include <algorithm>
 #include <optional>
 
 #include "scene/limits.h"
@@ -141,7 +142,25 @@ void ReadList(Lexer& lexer, Parameter& parameter, const FileLocation& open) {
 
 }  // namespace
 
-std::vector<Parameter> ReadParameters(TokenStream& tokens, RgbColorSpace colorSpace) {
+namespace {
+
+// Removes an earlier parameter of the same name, as pbrt-v4 does.
+void RemoveEarlier(std::vector<Parameter>& parameters, const Parameter& parameter, Diagnostics& diagnostics) {
+  const auto earlier = std::find_if(parameters.begin(), parameters.end(),
+                                    [&](const Parameter& other) { return other.name == parameter.name; });
+  if (earlier == parameters.end()) return;
+  if (earlier->type != parameter.type) {
+    throw Error(parameter.where, "\"" + parameter.name + "\" is given twice, with two types; the first is at " +
+                                     earlier->where.ToString());
+  }
+  diagnostics.Warn(parameter.where, "\"" + parameter.name + "\" is given twice; the value at " +
+                                        earlier->where.ToString() + " is not used");
+  parameters.erase(earlier);
+}
+
+}  // namespace
+
+std::vector<Parameter> ReadParameters(TokenStream& tokens, RgbColorSpace colorSpace, Diagnostics& diagnostics) {
   std::vector<Parameter> parameters;
   while (true) {
     Token token = tokens.Next();
@@ -153,11 +172,7 @@ std::vector<Parameter> ReadParameters(TokenStream& tokens, RgbColorSpace colorSp
     if (parameters.size() == limits::kParameters)
       throw Error(parameter.where, "a statement has at most 1000 parameters");
     parameter.colorSpace = colorSpace;
-    for (const Parameter& other : parameters) {
-      if (other.name != parameter.name) continue;
-      throw Error(parameter.where,
-                  "\"" + parameter.name + "\" is given twice; the first is at " + other.where.ToString());
-    }
+    RemoveEarlier(parameters, parameter, diagnostics);
     Token value = tokens.Next();
     if (value.kind == TokenKind::Open) {
       ReadList(tokens.Current(), parameter, value.where);

@@ -142,7 +142,7 @@ void SceneParser::ReadNumbersInto(const Token& statement, double* numbers, size_
 }
 
 ParameterList SceneParser::ReadList(const Token& statement, const std::string& owner, const char* attributeTarget) {
-  std::vector<Parameter> parameters = ReadParameters(tokens_, state_.colorSpace);
+  std::vector<Parameter> parameters = ReadParameters(tokens_, state_.colorSpace, diagnostics_);
   if (attributeTarget) {
     const auto defaults = state_.attributes.find(attributeTarget);
     if (defaults != state_.attributes.end()) {

@@ -83,7 +83,7 @@ void SceneParser::Attribute(const Token&) {
   }
   std::shared_ptr<const std::vector<Parameter>>& kept = state_.attributes[target.text];
   std::vector<Parameter> defaults = kept ? *kept : std::vector<Parameter>();
-  for (Parameter& parameter : ReadParameters(tokens_, state_.colorSpace)) {
+  for (Parameter& parameter : ReadParameters(tokens_, state_.colorSpace, diagnostics_)) {
     parameter.mayBeUnused = true;
     CheckLinking(target.text, parameter);
     const auto sameName = [&](const Parameter& other) { return other.name == parameter.name; };

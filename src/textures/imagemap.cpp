@@ -135,6 +135,7 @@ ParameterOf<Value> MakeImageMap(const TextureRequest& request) {
     const bool isLight = request.role == SpectrumRole::Illuminant;
     image = request.library.InRec709(image, isLight ? WhiteHandling::Keep : WhiteHandling::Adapt);
   }
+  if constexpr (std::is_same_v<Value, float>) image = request.library.WithDecodedAlpha(image);
   TexelLookup texels(image, static_cast<WrapMode>(wrap), filter != 1);
   if constexpr (std::is_same_v<Value, float>) {
     return FloatParameter(std::make_shared<FloatImageTexture>(mapping, std::move(texels), scale, invert));

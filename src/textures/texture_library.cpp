@@ -1,9 +1,12 @@
-// Textures are made in the order of the file. A texture may refer only to preceding ones, so that there are no cycles.
+// Image maps are made first, and all other textures in the order of the file. A texture may refer only to those made
+// before it, so that there are no cycles.
 #include "textures/texture_library.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "film/srgb.h"
 #include "textures/texture_families.h"
 
 namespace lampyr {
@@ -50,7 +53,11 @@ Affine RenderToTexture(const TextureDescription& description, const Transform& w
 TextureLibrary::TextureLibrary(const std::vector<TextureDescription>& textures, const Transform& worldToRender,
                                Diagnostics& diagnostics) {
   for (const TextureDescription& description : textures) allNames_.push_back(description.name);
-  for (const TextureDescription& description : textures) Add(description, worldToRender, diagnostics);
+  const auto isImage = [](const TextureDescription& description) { return description.texture.type == "imagemap"; };
+  for (const bool areImages : {true, false}) {
+    for (const TextureDescription& description : textures)
+      if (isImage(description) == areImages) Add(description, worldToRender, diagnostics);
+  }
 }
 
 TextureLibrary::~TextureLibrary() = default;
@@ -189,6 +196,20 @@ std::shared_ptr<const Image> TextureLibrary::InRec709(const std::shared_ptr<cons
   }
   converted_[{image, white}] = converted;
   return converted;
+}
+
+std::shared_ptr<const Image> TextureLibrary::WithDecodedAlpha(const std::shared_ptr<const Image>& image) const {
+  const int alpha = image->ChannelIndex("A");
+  if (alpha < 0 || image->colorGamma == 1) return image;
+  std::shared_ptr<const Image>& decoded = decoded_[image];
+  if (decoded) return decoded;
+  auto copy = std::make_shared<Image>(*image);
+  for (auto at = static_cast<size_t>(alpha); at < copy->data.size(); at += copy->channels.size()) {
+    float& value = copy->data[at];
+    value = image->colorGamma == 0 ? SrgbToLinear(value) : std::pow(std::max(value, 0.0f), image->colorGamma);
+  }
+  decoded = copy;
+  return decoded;
 }
 
 std::shared_ptr<const Image> TextureLibrary::GetImageWithGamma(const std::filesystem::path& file, float gamma,

@@ -39,6 +39,9 @@ class TextureLibrary {
   // An image of colours (R, G, B) in Rec. 709, whatever primaries and white it was written for (Image::chromaticities).
   std::shared_ptr<const Image> InRec709(const std::shared_ptr<const Image>& image, WhiteHandling white) const;
 
+  // The image with its alpha decoded as its colours are: an amount, as float textures of pbrt-v4 read it.
+  std::shared_ptr<const Image> WithDecodedAlpha(const std::shared_ptr<const Image>& image) const;
+
   // An image file, read once and shared. Throws an Error at `where` if it cannot be read.
   std::shared_ptr<const Image> GetImage(const std::filesystem::path& file, ImageEncoding encoding,
                                         const FileLocation& where) const;
@@ -62,6 +65,7 @@ class TextureLibrary {
   std::map<std::string, Named<FloatParameter>> floatTextures_;  // textures that do not vary are constants
   std::map<std::string, Named<ColorVariants>> colorTextures_;
   mutable std::map<std::pair<std::shared_ptr<const Image>, WhiteHandling>, std::shared_ptr<const Image>> converted_;
+  mutable std::map<std::shared_ptr<const Image>, std::shared_ptr<const Image>> decoded_;  // WithDecodedAlpha
   Nesting* beingMade_ = nullptr;       // of the texture being made
   std::vector<std::string> allNames_;  // of all textures of the scene, for messages
   mutable std::map<std::string, std::shared_ptr<const Image>> images_;

@@ -171,6 +171,8 @@ TEST(Png, RoundTripIsExactToEightBits) {
   WritePng(folder / "a.png", image, 0, ToneMap::Clip);
   const Image srgb = ReadImage(folder / "a.png");
   const Image encoded = ReadImage(folder / "a.png", ImageEncoding::Linear);
+  EXPECT_EQ(srgb.colorGamma, 0);
+  EXPECT_EQ(encoded.colorGamma, 1);
   ASSERT_EQ(srgb.channels, (std::vector<std::string>{"R", "G", "B"}));
   ASSERT_EQ(srgb.width, 31);
   ASSERT_EQ(srgb.height, 17);

@@ -121,6 +121,17 @@ TEST(Parser, AttributeGivesDefaultsToItsTarget) {
   scene.materials[0].parameters.CheckAllUsed({}, {}, strict);
 }
 
+// As in pbrt-v4.
+TEST(Parser, OfAParameterThatIsGivenTwiceTheLastCounts) {
+  Diagnostics diagnostics(Diagnostics::Mode::Collect);
+  const SceneDescription scene = ParseScene(
+      InWorld("Shape \"sphere\" \"float radius\" 1 \"float zmin\" -1\n\"float radius\" 3\n"), "scene.pbrt", diagnostics);
+  EXPECT_EQ(scene.shapes.at(0).shape.parameters.GetFloat("radius", 0), 3);
+  EXPECT_EQ(scene.shapes.at(0).shape.parameters.GetFloat("zmin", 0), -1);
+  ASSERT_EQ(diagnostics.Warnings().size(), 1u);
+  EXPECT_THAT(diagnostics.Warnings()[0], HasSubstr("\"radius\" is given twice; the value at scene.pbrt:"));
+}
+
 TEST(Parser, LinkingAttributesGoToTheShape) {
   Diagnostics diagnostics(Diagnostics::Mode::Collect);
   const SceneDescription scene =

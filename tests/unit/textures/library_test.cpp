@@ -2,12 +2,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "support/temporary_folder.h"
 #include "texture_scene.h"
 #include "textures/texture_library.h"
 
 namespace lampyr {
 namespace {
 
+using test::TemporaryFolder;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
@@ -40,6 +42,35 @@ TEST(TextureLibrary, FloatAndSpectrumNamesAreApart) {
                             MakeTexture("t", true, "constant", {RgbValue("value", 0.1, 0.2, 0.3)})});
   EXPECT_EQ(scene.FloatAt(0, 0), 2);
   EXPECT_NEAR(scene.ColorAt(0, 0).g, 0.2f, 1e-6f);
+}
+
+// As in pbrt-v4, which makes image maps first.
+TEST(TextureLibrary, ImageMapsMayFollowTheirUse) {
+  const TemporaryFolder folder;
+  Image image(2, 2, {"R", "G", "B"});
+  image.data.assign(image.data.size(), 1.0f);
+  WritePng(folder / "a.png", image, 0, ToneMap::Clip);
+  const TextureScene scene(
+      {MakeTexture("t", false, "scale", {TextureName("tex", "later"), FloatValue("scale", 0.5)}),
+       MakeTexture("later", false, "imagemap", {StringValue("filename", (folder / "a.png").string())})});
+  EXPECT_FLOAT_EQ(scene.FloatAt(0.3f, 0.3f), 0.5f);
+}
+
+// As in pbrt-v4: an opacity or an amount in the alpha of a file is encoded as its colours are.
+TEST(TextureLibrary, AmountsInAlphaAreDecoded) {
+  const TextureScene scene(std::vector<TextureDescription>{});
+  const auto image = std::make_shared<Image>(1, 1, std::vector<std::string>{"R", "G", "B", "A"});
+  image->data = {0.2f, 0.3f, 0.4f, 0.5f};
+  EXPECT_EQ(scene.library.WithDecodedAlpha(image), image);
+  const auto alphaOf = [&](float gamma) {
+    const auto encoded = std::make_shared<Image>(*image);
+    encoded->colorGamma = gamma;
+    const auto decoded = scene.library.WithDecodedAlpha(encoded);
+    EXPECT_EQ(decoded->At(0, 0, 2), 0.4f);
+    return decoded->At(0, 0, 3);
+  };
+  EXPECT_NEAR(alphaOf(0), 0.2140f, 1e-4f);
+  EXPECT_NEAR(alphaOf(2), 0.25f, 1e-6f);
 }
 
 TEST(TextureLibrary, MistakesHaveTheirPlaceAndTheNearestName) {
