@@ -239,6 +239,10 @@ class Light {
   // opening of its own (a portal), which the emitted ray has to pass.
   virtual bool CanBeAimed() const { return true; }
 
+  // The part of the surface that is there at a point of it, in [0,1]: cut-outs let the rest of all rays pass. A hit has
+  // passed them, and EvaluateSamples does not know of it; the values of samples and photons have it as a factor.
+  virtual float Opacity(const LightHit& /*hit*/) const { return 1; }
+
   // Samples a photon by context.u and context.uDirection. nullopt: these numbers emit nothing. An area light samples
   // the position by u alone, and then the direction by uDirection. It returns nullopt only without a position, because
   // light tracing connects the position to the camera, independent of the direction and of the diffuse and specular

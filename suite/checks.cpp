@@ -43,9 +43,9 @@ double RelativeDifference(const Color& a, const Color& b) {
                            RelativeDifference(static_cast<double>(a.b), static_cast<double>(b.b))));
 }
 
-double Mismatch(const LightSample& sample, const LightEvaluation& evaluation) {
-  double worst = std::max(RelativeDifference(sample.diffuse, evaluation.diffuse),
-                          RelativeDifference(sample.specular, evaluation.specular));
+double Mismatch(const LightSample& sample, const LightEvaluation& evaluation, float opacity) {
+  double worst = std::max(RelativeDifference(sample.diffuse, evaluation.diffuse * opacity),
+                          RelativeDifference(sample.specular, evaluation.specular * opacity));
   const auto note = [&](double a, double b) { worst = std::max(worst, RelativeDifference(a, b)); };
   note(Value(sample.pdfDirect), Value(evaluation.pdfDirect));
   note(Value(sample.pdfEmit), Value(evaluation.pdfEmit));
@@ -56,9 +56,9 @@ double Mismatch(const LightSample& sample, const LightEvaluation& evaluation) {
   return worst;
 }
 
-double Mismatch(const EmissionSample& photon, const LightEvaluation& evaluation) {
-  double worst = std::max(RelativeDifference(photon.diffuse, evaluation.diffuse),
-                          RelativeDifference(photon.specular, evaluation.specular));
+double Mismatch(const EmissionSample& photon, const LightEvaluation& evaluation, float opacity) {
+  double worst = std::max(RelativeDifference(photon.diffuse, evaluation.diffuse * opacity),
+                          RelativeDifference(photon.specular, evaluation.specular * opacity));
   worst = std::max(worst, RelativeDifference(Value(photon.pdfEmit), Value(evaluation.pdfEmit)));
   return std::max(worst, RelativeDifference(Value(photon.pdfEmitDirection), Value(evaluation.pdfEmitDirection)));
 }

@@ -82,8 +82,9 @@ double RelativeDifference(double a, double b);
 double RelativeDifference(const Color& a, const Color& b);
 
 // Largest relative difference between the values of a sample, or a photon, and those of EvaluateSamples for it.
-double Mismatch(const LightSample& sample, const LightEvaluation& evaluation);
-double Mismatch(const EmissionSample& photon, const LightEvaluation& evaluation);
+// `opacity`: Light::Opacity at the hit.
+double Mismatch(const LightSample& sample, const LightEvaluation& evaluation, float opacity = 1);
+double Mismatch(const EmissionSample& photon, const LightEvaluation& evaluation, float opacity = 1);
 LightHit HitOf(const LightSample& sample, const Point3& P);
 LightHit HitOf(const EmissionSample& photon, float distance);
 

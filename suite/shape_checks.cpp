@@ -158,8 +158,9 @@ Quadrature ShapeChecker::Integrate(const Point3& P, int subdivisions) const {
 // Largest relative differences between a sample and EvaluateSamples: for the sample's own point (`consistency`), and
 // for the same point on the shape's model (`surface`).
 void ShapeChecker::CheckSample(const LightSample& sample, const Point3& P, double& consistency, double& surface) const {
-  const auto e = light_.EvaluateSamples(subject_.context, HitOf(sample, P), P);
-  consistency = std::max(consistency, e ? Mismatch(sample, *e) : 1.0);
+  const LightHit hit = HitOf(sample, P);
+  const auto e = light_.EvaluateSamples(subject_.context, hit, P);
+  consistency = std::max(consistency, e ? Mismatch(sample, *e, light_.Opacity(hit)) : 1.0);
   if (!e) return;
 
   const Point2d p = model_.Invert(sample.patchIndex, Point3d(sample.position));
@@ -282,7 +283,7 @@ void ShapeChecker::CheckEmission() {
       if (!IsBlack(*photon) || (e && !IsBlack(*e))) edge = 1;
       continue;
     }
-    edge = std::max(edge, e ? Mismatch(*photon, *e) : 1.0);
+    edge = std::max(edge, e ? Mismatch(*photon, *e, light_.Opacity(hit)) : 1.0);
     multipliers = std::max(multipliers, MultiplierMismatch(subject_, *photon));
   }
   const Estimate share = LatticeMean(rng_, 128, 64, [&](const float(&x)[4]) {

@@ -91,8 +91,9 @@ bool SurfaceReceiverChecker::IsFoundBeside(const LightSample& sample, const Poin
 }
 
 void SurfaceReceiverChecker::Compare(const LightSample& sample, const Point3& P, SampleErrors& errors) const {
-  const auto own = light_.EvaluateSamples(subject_.context, HitOf(sample, P), P);
-  errors.consistency = std::max(errors.consistency, own ? Mismatch(sample, *own) : 1.0);
+  const LightHit ownHit = HitOf(sample, P);
+  const auto own = light_.EvaluateSamples(subject_.context, ownHit, P);
+  errors.consistency = std::max(errors.consistency, own ? Mismatch(sample, *own, light_.Opacity(ownHit)) : 1.0);
   errors.multipliers = std::max(errors.multipliers, MultiplierMismatch(subject_, sample));
   const Vector3d direction = glm::normalize(Vector3d(sample.direction));
   const double cosine = std::abs(glm::dot(Vector3d(sample.normal), direction));
@@ -112,8 +113,9 @@ void SurfaceReceiverChecker::Compare(const LightSample& sample, const Point3& P,
   errors.surface = std::max(errors.surface, glm::length(hit.normal - Vector3d(sample.normal)) * cosine);
   // The edge of a texel, or of a beam, may lie between the two: a few samples may differ.
   ++errors.compared;
-  const auto e = light_.EvaluateSamples(subject_.context, HitFrom(hit, direction), P);
-  if (!e || Mismatch(sample, *e) > 2e-2) ++errors.differing;
+  const LightHit traced = HitFrom(hit, direction);
+  const auto e = light_.EvaluateSamples(subject_.context, traced, P);
+  if (!e || Mismatch(sample, *e, light_.Opacity(traced)) > 2e-2) ++errors.differing;
 }
 
 // Compares the light's own samples with the traced surface. Returns the directions of the visible ones.

@@ -89,7 +89,7 @@ void ComparePhoton(const SuiteSubject& subject, const SurfaceTracer& tracer, con
     if (!IsBlack(photon) || (e && !IsBlack(*e))) errors.edge = 1;
     return;
   }
-  errors.edge = std::max(errors.edge, e ? Mismatch(photon, *e) : 1.0);
+  errors.edge = std::max(errors.edge, e ? Mismatch(photon, *e, subject.light->Opacity(hit)) : 1.0);
   errors.edge = std::max(errors.edge, std::abs(static_cast<double>(glm::dot(photon.normal, photon.direction))) -
                                           static_cast<double>(photon.emissionCosine));
   errors.multipliers = std::max(errors.multipliers, MultiplierMismatch(subject, photon));

@@ -92,12 +92,14 @@ std::optional<EmissionSample> LightingServices::EmitAimed(const LightContext& co
     emission->direction = emission->normal = direction;
     return emission;
   }
-  const auto found = light.EvaluateSamples(context, HitOf(*emission, kind, direction, P), P);
+  const LightHit hit = HitOf(*emission, kind, direction, P);
+  const auto found = light.EvaluateSamples(context, hit, P);
   const LightEvaluation evaluation = found && !isMissed ? *found : LightEvaluation();
+  const float opacity = light.Opacity(hit);
   emission->direction = direction;
   emission->emissionCosine = AbsDot(emission->normal, direction);
-  emission->diffuse = evaluation.diffuse;
-  emission->specular = evaluation.specular;
+  emission->diffuse = evaluation.diffuse * opacity;
+  emission->specular = evaluation.specular * opacity;
   emission->pdfEmitDirection = evaluation.pdfEmitDirection;
   return emission;
 }

@@ -91,6 +91,7 @@ class PatchLight final : public LightBase {
     if (!SamplePoint(context, point)) return std::nullopt;
     return emission_.Emit(context, point);
   }
+  float Opacity(const LightHit& hit) const override { return emission_.OpacityAt(hit); }
   Color EvaluateEmissionForCamera(const LightContext& context, const LightHit& hit) const override {
     return emission_.ForCamera(context, hit, Settings().cameraVisible);
   }

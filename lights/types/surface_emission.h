@@ -32,6 +32,8 @@ struct EmittingPoint {
 
 class SurfaceEmission {
  public:
+  // Light::Opacity.
+  float OpacityAt(const LightHit& hit) const { return alpha_ ? Opacity(hit.uv, hit.position, hit.normal) : 1.0f; }
   // World-space area of the whole surface: what "power" is spread over and "normalize" divides by.
   struct Area {
     double built = 0;  // under the placement that the light is built with: exact
@@ -127,7 +129,7 @@ class SurfaceEmission {
     if (shaped_->GuidesEmission() || shaped.factor.IsBlack()) leaving.density = shaped.density;
     return leaving;
   }
-  bool IsCutOut(const LightHit& hit) const { return alpha_ && Opacity(hit.uv, hit.position, hit.normal) == 0; }
+  bool IsCutOut(const LightHit& hit) const { return OpacityAt(hit) == 0; }
   PdfSolidAngle CosineLaw(float emittedCosine) const {
     return PdfSolidAngle(emittedCosine * (twoSided_ ? 0.5f * kInvPi : kInvPi));
   }

@@ -60,6 +60,7 @@ class SurfaceLight : public LightBase {
     Placed scratch;
     return emission_.Emit(context, SamplePoint(context.u, PlacedFor(context, scratch)));
   }
+  float Opacity(const LightHit& hit) const final { return emission_.OpacityAt(hit); }
   Color EvaluateEmissionForCamera(const LightContext& context, const LightHit& hit) const final {
     return emission_.ForCamera(context, hit, Settings().cameraVisible);
   }

@@ -161,6 +161,30 @@ TEST(PhotonGuiding, NothingIsAimedWhereEverythingIsOfUse) {
   EXPECT_TRUE(IsSame(with.image, without.image));
 }
 
+// Photons have the opacity of the place where they start as a factor, however their direction was chosen.
+TEST(PhotonGuiding, KnowsTheCutOutsOfALamp) {
+  for (const char* shape : {"Shape \"disk\" \"float radius\" 0.5",
+                            "Shape \"bilinearmesh\" \"point3 P\" [-0.4 -0.4 0  0.4 -0.4 0  -0.4 0.4 0  0.4 0.4 0]"}) {
+    const std::string text = std::string(R"(LookAt 0 -4 2  0 0 0  0 0 1
+Camera "perspective" "float fov" 40
+Film "rgb" "integer xresolution" 24 "integer yresolution" 24
+Integrator "path" "integer maxdepth" 4
+WorldBegin
+Shape "disk" "float radius" 20
+Translate 0 0 2
+AreaLightSource "diffuse" "rgb L" [ 5 5 5 ] "bool twosided" true
+)") + shape + " \"float alpha\" 0.25\n";
+    RenderOverrides overrides;
+    overrides.values["direct-photons"] = true;
+    overrides.integrator = "sppm";
+    EXPECT_GT(RenderText(text, 64, overrides).outcome.photons->guideComponents, 0u);
+    const Replicas photons = RenderReplicas(text, "sppm", 16, 64, overrides);
+    const Agreement result = CompareReplicas(photons, RenderReplicas(text, "path", 16, 64, {}), 24, 0.02);
+    EXPECT_TRUE(result.Agrees()) << shape << ": off by " << result.bias;
+    EXPECT_LT(result.biasError, 0.02);
+  }
+}
+
 // One of fifty lamps makes the caustic that is seen in the mirror.
 TEST(PhotonGuiding, FiftyLampsDoNotStarveTheOneThatMatters) {
   std::string text = R"(LookAt 0 3.5 -5  0 0.3 0.6  0 1 0

@@ -9,7 +9,6 @@
 namespace lampyr {
 namespace {
 
-using test::TemporaryFolder;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
