@@ -74,6 +74,7 @@ TEST_P(FlightPointsOf, SamplesFollowTheDensity) {
     double integral = 0;
     const double end = points->Generate(line, startsAnywhere, 1 - 1e-12)->t;
     const double start = points->Generate(line, startsAnywhere, 1e-12)->t;
+    if (end - start < 1e-6) continue;  // the line is nearly tangent to the sphere of the medium
     for (int k = 0; k < kSteps; ++k) {
       const double t = start + (end - start) * (k + 0.5) / kSteps;
       const double distance = startsAnywhere ? std::numeric_limits<double>::infinity() : t;
@@ -88,7 +89,10 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(kView,
                       "LookAt 0 0 -6  0 0 0  0 1 0\nCamera \"perspective\" \"float lensradius\" 0.2 \"float "
                       "focaldistance\" 6\n",
-                      "Scale -1 1 1 LookAt 1 0 -3  0 0 0  0 1 0\nCamera \"spherical\"\n"));
+                      "Scale -1 1 1 LookAt 1 0 -3  0 0 0  0 1 0\nCamera \"spherical\"\n"),
+    [](const auto& info) {
+      return std::string(info.index == 0 ? "Pinhole" : info.index == 1 ? "Lens" : "Spherical");
+    });
 
 TEST(FlightPoints, AreWhereTheImageIs) {
   const BuiltScene built = Build(kView, Fog(0.3) + kBall);
