@@ -55,7 +55,8 @@ void SplatLight(const BidirectionalSample& sample, const EmittedPhoton& photon) 
 namespace {
 
 // `isOfFlight`: the light subpath's last vertex is a point of its last flight, and no collision.
-void ConnectToLens(const BidirectionalSample& sample, const FlightStartPoint& start, uint32_t dimension, bool isOfFlight) {
+void ConnectToLens(const BidirectionalSample& sample, const FlightStartPoint& start, uint32_t dimension,
+                   bool isOfFlight) {
   const Subpath& light = sample.light.vertices;
   const PathVertex& vertex = light.Last();
   const auto seen = SeeVertex(sample.context, vertex, dimension);

@@ -66,7 +66,7 @@ class TextureLibrary {
   std::map<std::string, Named<ColorVariants>> colorTextures_;
   mutable std::map<std::pair<std::shared_ptr<const Image>, WhiteHandling>, std::shared_ptr<const Image>> converted_;
   mutable std::map<std::shared_ptr<const Image>, std::shared_ptr<const Image>> decoded_;  // WithDecodedAlpha
-  Nesting* beingMade_ = nullptr;       // of the texture being made
+  Nesting* beingMade_ = nullptr;                                                          // of the texture being made
   std::vector<std::string> allNames_;  // of all textures of the scene, for messages
   mutable std::map<std::string, std::shared_ptr<const Image>> images_;
 };

@@ -124,8 +124,9 @@ TEST(Parser, AttributeGivesDefaultsToItsTarget) {
 // As in pbrt-v4.
 TEST(Parser, OfAParameterThatIsGivenTwiceTheLastCounts) {
   Diagnostics diagnostics(Diagnostics::Mode::Collect);
-  const SceneDescription scene = ParseScene(
-      InWorld("Shape \"sphere\" \"float radius\" 1 \"float zmin\" -1\n\"float radius\" 3\n"), "scene.pbrt", diagnostics);
+  const SceneDescription scene =
+      ParseScene(InWorld("Shape \"sphere\" \"float radius\" 1 \"float zmin\" -1\n\"float radius\" 3\n"), "scene.pbrt",
+                 diagnostics);
   EXPECT_EQ(scene.shapes.at(0).shape.parameters.GetFloat("radius", 0), 3);
   EXPECT_EQ(scene.shapes.at(0).shape.parameters.GetFloat("zmin", 0), -1);
   ASSERT_EQ(diagnostics.Warnings().size(), 1u);
