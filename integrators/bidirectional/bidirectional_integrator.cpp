@@ -499,6 +499,7 @@ std::unique_ptr<Integrator> CreateVcm(const IntegratorInput& input) {
   BidirectionalSettings settings = SettingsOf(input);
   settings.merges = input.settings.IsOn(kMerge.name);
   settings.connects = input.settings.IsOn(kConnect.name);
+  if (!settings.connects) settings.flightPoints = nullptr;
   if (!settings.merges && !settings.connects)
     throw UsageError("--no-merge and --no-connect: vcm has nothing left to find light by");
   settings.photons = PhotonSettingsOf(input);
