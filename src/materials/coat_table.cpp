@@ -98,10 +98,6 @@ CoatTable::Curves CoatTable::MakeCurves(const CoatDescription& description, floa
     const Split split = ScatterAtBoundary(cosTheta, alpha, description.eta, description.thickness, Side::Outside);
     curves.transmittance[i] = static_cast<float>(split.transmitted);
     curves.reflectance[i] = static_cast<float>(split.reflected);
-    const float cosInside = std::max(RefractedCosine(cosTheta, description.eta), 1e-4f);
-    const Split out = ScatterAtBoundary(cosInside, alpha, 1 / description.eta, description.thickness, Side::Inside);
-    curves.pairTransmittance[i] = static_cast<float>(std::sqrt(
-        split.transmitted * out.transmitted * static_cast<double>(GapTransmittance(description.thickness, cosInside))));
   }
   // Cosine-weighted means by the midpoint rule in sin²θ.
   constexpr int kAngles = 512;
@@ -141,11 +137,6 @@ float CoatTable::Reflectance(float cosTheta, Slice slice) const {
   return Blend(slice, [&](int i) { return Interpolate(slices_[i].reflectance.data(), kNodes, x); });
 }
 
-float CoatTable::PairTransmittance(float cosTheta, Slice slice) const {
-  const float x = std::sqrt(std::abs(cosTheta));
-  return Blend(slice, [&](int i) { return Interpolate(slices_[i].pairTransmittance.data(), kNodes, x); });
-}
-
 float CoatTable::MeanTransmittance(Slice slice) const {
   return Blend(slice, [&](int i) { return slices_[i].meanTransmittance; });
 }
@@ -154,69 +145,210 @@ float CoatTable::InternalReflectance(Slice slice) const {
   return Blend(slice, [&](int i) { return slices_[i].internalReflectance; });
 }
 
-CoatBounceTable::CoatBounceTable(const CoatDescription& coat, const std::vector<float>& baseAlphas)
-    : alphas_(baseAlphas) {
-  // Fractions of the light leaving the base at an angle that leave the coat, and that return to the base.
-  Nodes leaving{}, returning{};
-  const float coatAlpha = coat.alphas[coat.alphas.size() / 2];
-  for (int i = 0; i < kNodes; ++i) {
-    const float cosInside = std::max(static_cast<float>(i) / (kNodes - 1), 1e-4f);
-    const float gap = GapTransmittance(coat.thickness, cosInside);
-    const Split split = ScatterAtBoundary(cosInside, coatAlpha, 1 / coat.eta, coat.thickness, Side::Inside);
-    leaving[i] = gap * static_cast<float>(split.transmitted);
-    returning[i] = gap * static_cast<float>(split.reflected);
-  }
-  for (const float alpha : alphas_) slices_.push_back(MakeCurves(leaving, returning, alpha));
+namespace {
+
+constexpr int kWalkNodes = 64;  // evenly spaced in sqrt(cosθ)
+using WalkNodes = std::array<float, kWalkNodes>;
+
+float CosineOf(int node) {
+  return std::max(Sqr(static_cast<float>(node) / (kWalkNodes - 1)), 1e-6f);
 }
 
-// g_1(θ) = ∫ base(θ → θ') leaving(θ'),  g_k+1(θ) = ∫ base(θ → θ') returning(θ') g_k(θ').
-CoatBounceTable::Curves CoatBounceTable::MakeCurves(const Nodes& leaving, const Nodes& returning, float alpha) {
-  constexpr int kCaps = 32, kAzimuths = 12;
-  const TrowbridgeReitz microfacets(std::max(alpha, 1e-3f), std::max(alpha, 1e-3f));
-  const auto scatter = [&](const Nodes& after) {
-    Nodes before{};
-    for (int node = 0; node < kNodes; ++node) {
-      const float cosTheta = std::max(static_cast<float>(node) / (kNodes - 1), 1e-4f);
-      const Vector3 wo(SafeSqrt(1 - cosTheta * cosTheta), 0, cosTheta);
-      const float stretchO = microfacets.Stretch(wo);
-      double sum = 0;
+// Scattering from one side of a boundary to a side: of light from the cosine of a node, the weights of the cosines at
+// which it goes on.
+class Kernel {
+ public:
+  // scatter(node's direction, m, add) calls add(cosine, weight) for a microfacet that the direction sees.
+  template <class Scatter>
+  Kernel(float alpha, const Scatter& scatter) : alpha_(alpha) {
+    constexpr int kCaps = 32, kAzimuths = 8;
+    const TrowbridgeReitz microfacets(alpha, alpha);
+    for (int node = 0; node < kWalkNodes; ++node) {
+      const float cosTheta = CosineOf(node);
+      const Vector3 w(SafeSqrt(1 - cosTheta * cosTheta), 0, cosTheta);
+      std::vector<Entry>& entries = entries_[static_cast<size_t>(node)];
+      const float part = microfacets.IsSmooth() ? 1.0f : 1.0f / (kCaps * kAzimuths);
+      const auto add = [&](float cosine, float weight) {
+        if (weight > 0) entries.push_back({std::sqrt(std::min(cosine, 1.0f)), weight * part});
+      };
+      if (microfacets.IsSmooth()) {
+        scatter(w, Vector3(0, 0, 1), add);
+        continue;
+      }
       for (int k = 0; k < kCaps * kAzimuths; ++k) {
         const Point2 u(0.5f * (static_cast<float>(k % kAzimuths) + 0.5f) / kAzimuths,
                        (static_cast<float>(k / kAzimuths) + 0.5f) / kCaps);
-        const Vector3 m = microfacets.SampleVisibleNormal(wo, u);
-        const Vector3 wi = Reflect(wo, m, glm::dot(wo, m));
-        if (!(wi.z > 0)) continue;
-        const float ratio = TrowbridgeReitz::ShadowingRatio(wo.z, stretchO, wi.z, microfacets.Stretch(wi));
-        sum += static_cast<double>(ratio * Interpolate(after.data(), kNodes, wi.z));
+        scatter(w, microfacets.SampleVisibleNormal(w, u), add);
       }
-      before[node] = static_cast<float>(sum / (kCaps * kAzimuths));
+    }
+  }
+  // What `after` is for light that is scattered, by the node from which it arrives.
+  WalkNodes Apply(const WalkNodes& after) const {
+    WalkNodes before;
+    for (size_t node = 0; node < before.size(); ++node) {
+      double sum = 0;
+      for (const Entry& entry : entries_[node])
+        sum += static_cast<double>(entry.weight * Interpolate(after.data(), kWalkNodes, entry.x));
+      before[node] = static_cast<float>(sum);
     }
     return before;
-  };
-  const auto times = [](Nodes a, const Nodes& b) {
-    for (int i = 0; i < kNodes; ++i) a[i] *= b[i];
-    return a;
-  };
-  const Nodes first = scatter(leaving), second = scatter(times(first, returning)),
-              third = scatter(times(second, returning));
-  // If nothing leaves after one bounce, there is nothing to scale: directions beyond total reflection, which are never
-  // queried.
-  Curves curves;
-  for (int i = 0; i < kNodes; ++i) {
-    curves.second[i] = first[i] > 1e-3f ? second[i] / first[i] : 0.0f;
-    curves.later[i] = second[i] > 1e-6f ? std::min(third[i] / second[i], 1.0f) : 0.0f;
   }
-  return curves;
+  float Alpha() const { return alpha_; }
+
+ private:
+  struct Entry {
+    float x, weight;  // x: sqrt of the cosine
+  };
+  std::array<std::vector<Entry>, kWalkNodes> entries_;
+  float alpha_;
+};
+
+// Weight of a microfacet that reflects or refracts to the cosine of `to`.
+float Seen(const TrowbridgeReitz& microfacets, const Vector3& from, const Vector3& to) {
+  return microfacets.IsSmooth() ? 1.0f
+                                : TrowbridgeReitz::ShadowingRatio(from.z, microfacets.Stretch(from), std::abs(to.z),
+                                                                  microfacets.Stretch(to));
 }
 
-CoatBounceTable::Ratios CoatBounceTable::FindRatios(float cosInside, CoatTable::Slice slice) const {
-  return {Blend(slice, [&](int i) { return Interpolate(slices_[i].second.data(), kNodes, cosInside); }),
-          Blend(slice, [&](int i) { return Interpolate(slices_[i].later.data(), kNodes, cosInside); })};
+// The roughness of what light meets at the coat: none where the boundary does nothing.
+float RoughnessOf(const CoatDescription& coat, float alpha) {
+  return coat.eta == 1 ? 0.0f : alpha;
+}
+// Refraction into the coat and down to the base, or reflection from within.
+auto Crossing(const CoatDescription& coat, float alpha, float eta, bool isReflected) {
+  const float roughness = RoughnessOf(coat, alpha), thickness = coat.thickness;
+  return [=](const Vector3& w, const Vector3& m, const auto& add) {
+    const TrowbridgeReitz microfacets(roughness, roughness);
+    const float cosine = std::min(glm::dot(w, m), 1.0f);
+    if (!(cosine > 0)) return;
+    const float cosT = RefractedCosine(cosine, eta), F = FresnelDielectric(cosine, cosT, eta);
+    const Vector3 to = isReflected ? Reflect(w, m, cosine) : w * (-1 / eta) + RefractionShift(cosine, cosT, eta) * m;
+    if (isReflected ? !(to.z > 0) : !(F < 1 && to.z < 0)) return;
+    const float part = isReflected ? F : 1 - F, down = std::abs(to.z);
+    add(down, part * GapTransmittance(thickness, down) * Seen(microfacets, w, to));
+  };
 }
 
-CoatTable::Slice CoatBounceTable::FindSlice(float alpha) const {
-  return FindSliceAmong(static_cast<int>(alphas_.size()), alpha,
-                        [&](int i) { return alphas_[static_cast<size_t>(i)]; });
+// A boundary of the coat: into it and down to the base, and from within back to the base.
+struct CoatKernels {
+  Kernel enter, back;
+  WalkNodes leaving;  // the part that leaves, from within
+
+  CoatKernels(const CoatDescription& coat, float alpha)
+      : enter(RoughnessOf(coat, alpha), Crossing(coat, alpha, coat.eta, false)),
+        back(RoughnessOf(coat, alpha), Crossing(coat, alpha, 1 / coat.eta, true)) {
+    for (int node = 0; node < kWalkNodes; ++node)
+      leaving[static_cast<size_t>(node)] = static_cast<float>(
+          ScatterAtBoundary(CosineOf(node), alpha, 1 / coat.eta, coat.thickness, Side::Inside).transmitted);
+  }
+};
+
+// Reflection at the base, and up to the boundary.
+Kernel BaseKernel(const CoatDescription& coat, float alpha) {
+  const TrowbridgeReitz microfacets(alpha, alpha);
+  return Kernel(alpha, [microfacets, thickness = coat.thickness](const Vector3& w, const Vector3& m, const auto& add) {
+    const Vector3 to = Reflect(w, m, glm::dot(w, m));
+    if (to.z > 0) add(to.z, GapTransmittance(thickness, to.z) * Seen(microfacets, w, to));
+  });
+}
+
+// The lobe of one bounce as CoatedConductorBsdf has it, without its scale: by the direction outside.
+Kernel LobeKernel(const CoatDescription& coat, float coatAlpha, float baseAlpha) {
+  const TrowbridgeReitz base =
+      WidenedBase(TrowbridgeReitz(baseAlpha, baseAlpha), TrowbridgeReitz(coatAlpha, coatAlpha), coat.eta);
+  // The direction of a node is outside, and so is that of the lobe; visible normals are seen from within.
+  return Kernel(0, [=, eta = coat.eta](const Vector3& w, const Vector3&, const auto& add) {
+    constexpr int kCaps = 32, kAzimuths = 8;
+    const Vector3 o(w.x / eta, w.y / eta, RefractedCosine(w.z, eta));
+    if (!(o.z > 0)) return;
+    const int count = base.IsSmooth() ? 1 : kCaps * kAzimuths;
+    for (int k = 0; k < count; ++k) {
+      const Point2 u(0.5f * (static_cast<float>(k % kAzimuths) + 0.5f) / kAzimuths,
+                     (static_cast<float>(k / kAzimuths) + 0.5f) / kCaps);
+      const Vector3 m = base.IsSmooth() ? Vector3(0, 0, 1) : base.SampleVisibleNormal(o, u);
+      const Vector3 i = Reflect(o, m, glm::dot(o, m));
+      const float cosine = i.z > 0 ? RefractedCosine(std::min(i.z, 1.0f), 1 / eta) : 0.0f;
+      if (cosine > 0) add(cosine, Seen(base, o, i) / static_cast<float>(count));
+    }
+  });
+}
+
+// C of a lobe: C(wo) ∫ C(wi) lobe = albedo, by turns of a symmetric scaling.
+WalkNodes ScaleOf(const Kernel& lobe, const WalkNodes& albedo) {
+  constexpr int kTurns = 10;
+  constexpr float kMost = 3;  // at grazing angles, where next to nothing is left of either
+  WalkNodes scale;
+  scale.fill(1);
+  for (int turn = 0; turn < kTurns; ++turn) {
+    const WalkNodes now = lobe.Apply(scale);
+    for (size_t i = 0; i < scale.size(); ++i)
+      scale[i] = now[i] > 0 ? std::min(std::sqrt(scale[i] * albedo[i] / now[i]), kMost) : 0.0f;
+  }
+  return scale;
+}
+
+}  // namespace
+
+TrowbridgeReitz WidenedBase(const TrowbridgeReitz& base, const TrowbridgeReitz& coat, float eta) {
+  if (coat.IsSmooth() || eta == 1) return base;
+  const float share = 0.5f * Sqr(1 - 1 / eta);
+  const float x = std::sqrt(Sqr(base.alphaX) + share * Sqr(coat.alphaX));
+  const float y = std::sqrt(Sqr(base.alphaY) + share * Sqr(coat.alphaY));
+  return {std::max(x, 1e-3f), std::max(y, 1e-3f)};
+}
+
+CoatedMetalTable::CoatedMetalTable(const CoatDescription& coat, const std::vector<float>& baseAlphas)
+    : coatAlphas_(coat.alphas), baseAlphas_(baseAlphas) {
+  static_assert(kNodes == kWalkNodes);
+  std::vector<Kernel> bases;
+  for (const float alpha : baseAlphas_) bases.push_back(BaseKernel(coat, alpha));
+  for (const float coatAlpha : coatAlphas_) {
+    const CoatKernels boundary(coat, coatAlpha);
+    for (const Kernel& base : bases) {
+      // Of light at the base, what leaves after one bounce there, after two and after three.
+      const WalkNodes one = base.Apply(boundary.leaving), two = base.Apply(boundary.back.Apply(one)),
+                      three = base.Apply(boundary.back.Apply(two));
+      const WalkNodes first = boundary.enter.Apply(one), second = boundary.enter.Apply(two),
+                      third = boundary.enter.Apply(three);
+      const Kernel lobe = LobeKernel(coat, coatAlpha, base.Alpha());
+      const WalkNodes scale = ScaleOf(lobe, first), ofSecond = ScaleOf(lobe, second);
+      Curves& curves = curves_.emplace_back();
+      for (size_t i = 0; i < kNodes; ++i) {
+        curves.nodes[i] = {scale[i], scale[i] > 1e-6f ? ofSecond[i] / scale[i] : 0.0f,
+                           second[i] > 1e-8f ? std::min(third[i] / second[i], 1.0f) : 0.0f, first[i]};
+      }
+    }
+  }
+}
+
+CoatedMetalTable::Values CoatedMetalTable::Find(float cosTheta, const Slice& slice) const {
+  const float position = std::min(std::sqrt(std::abs(cosTheta)), 1.0f) * (kNodes - 1);
+  const int node = std::min(static_cast<int>(position), kNodes - 2);
+  const float between = position - static_cast<float>(node);
+  Values sum;
+  const auto add = [&](int coat, int base, float weight) {
+    if (!(weight > 0)) return;
+    const Values &a = CurvesOf(coat, base).nodes[static_cast<size_t>(node)],
+                 &b = CurvesOf(coat, base).nodes[static_cast<size_t>(node) + 1];
+    sum.scale += weight * (a.scale + (b.scale - a.scale) * between);
+    sum.second += weight * (a.second + (b.second - a.second) * between);
+    sum.later += weight * (a.later + (b.later - a.later) * between);
+    sum.albedo += weight * (a.albedo + (b.albedo - a.albedo) * between);
+  };
+  const float c = slice.coat.fraction, d = slice.base.fraction;
+  add(slice.coat.first, slice.base.first, (1 - c) * (1 - d));
+  add(slice.coat.first + 1, slice.base.first, c * (1 - d));
+  add(slice.coat.first, slice.base.first + 1, (1 - c) * d);
+  add(slice.coat.first + 1, slice.base.first + 1, c * d);
+  return sum;
+}
+
+CoatedMetalTable::Slice CoatedMetalTable::FindSlice(float coatAlpha, float baseAlpha) const {
+  const auto find = [](const std::vector<float>& alphas, float alpha) {
+    return FindSliceAmong(static_cast<int>(alphas.size()), alpha,
+                          [&](int i) { return alphas[static_cast<size_t>(i)]; });
+  };
+  return {find(coatAlphas_, coatAlpha), find(baseAlphas_, baseAlpha)};
 }
 
 std::vector<float> TexturedAlphas() {

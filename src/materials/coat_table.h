@@ -7,8 +7,6 @@
 //   lobe (not 1 - R: energy lost by single scattering is lost). By reciprocity, T(θ)/η² is also the radiance leaving
 //   along θ if the base emits radiance 1 in all directions.
 // - R(θ): directional albedo of the boundary from outside, for sampling only.
-// - P(θ): geometric mean of T(θ) and of the transmittance of the refracted direction on its way out, for bases that
-//   preserve directions.
 // - F: the fraction of the light from a diffuse base that the boundary returns to it, including both crossings of the
 //   gap.
 //
@@ -17,6 +15,8 @@
 
 #include <array>
 #include <vector>
+
+#include "materials/microfacet.h"
 
 namespace lampyr {
 
@@ -39,16 +39,15 @@ class CoatTable {
   Slice FindSlice(float alpha) const;
   float Transmittance(float cosTheta, Slice slice) const;
   float Reflectance(float cosTheta, Slice slice) const;
-  float PairTransmittance(float cosTheta, Slice slice) const;  // P
-  float MeanTransmittance(Slice slice) const;                  // cosine-weighted mean of T over the hemisphere
-  float InternalReflectance(Slice slice) const;                // F
+  float MeanTransmittance(Slice slice) const;    // cosine-weighted mean of T over the hemisphere
+  float InternalReflectance(Slice slice) const;  // F
 
  private:
   static constexpr int kNodes = 64;
   using Nodes = std::array<float, kNodes>;
   struct Curves {
     float alpha = 0;
-    Nodes transmittance{}, reflectance{}, pairTransmittance{};
+    Nodes transmittance{}, reflectance{};
     float meanTransmittance = 0, internalReflectance = 0;
   };
   static Curves MakeCurves(const CoatDescription& description, float alpha);
@@ -56,33 +55,42 @@ class CoatTable {
   std::vector<Curves> slices_;
 };
 
-// Interreflection between a rough metal base and the boundary above it, summed over the bounces at the base, without
-// the reflectance F of the metal: of light that arrives in the gap along θ' (inside), the part F^k g_k(θ') leaves after
-// k bounces. Tabulated are g_2/g_1 and g_3/g_2, which stands for all later ratios. Includes total reflection at the
-// boundary, shadowing loss and the absorption of the gap; a rough boundary reflects specularly, with the reflectance of
-// the rough one.
-class CoatBounceTable {
+// A rough metal under a coat, as a random walk between the two has it, without the reflectance F of the metal: of light
+// that arrives from outside along θ, the part F^k a_k(θ) leaves after k bounces at the base. Includes total reflection
+// at the boundary, shadowing loss and the absorption of the gap. Tabulated are a_1 and the scale C with which the lobe
+// of one bounce, C(wo) C(wi) times the lobe of a widened base between directions that are refracted at a flat boundary,
+// has the albedo a_1 from all directions; the scale of a lobe with the albedo a_2, over C (`second`); and a_3/a_2,
+// which stands for all later ratios (`later`).
+class CoatedMetalTable {
  public:
-  struct Ratios {
-    float second = 0, later = 0;
+  struct Values {
+    float scale = 0, second = 0, later = 0, albedo = 0;
+  };
+  // Interpolation in the roughness of the coat and of the base.
+  struct Slice {
+    CoatTable::Slice coat, base;
   };
 
-  // `coat`: the boundary, of which only the middle roughness is used. `baseAlphas`: ascending.
-  CoatBounceTable(const CoatDescription& coat, const std::vector<float>& baseAlphas);
-  Ratios FindRatios(float cosInside, CoatTable::Slice slice) const;
-  CoatTable::Slice FindSlice(float alpha) const;
+  // `baseAlphas`: ascending.
+  CoatedMetalTable(const CoatDescription& coat, const std::vector<float>& baseAlphas);
+  Values Find(float cosTheta, const Slice& slice) const;
+  Slice FindSlice(float coatAlpha, float baseAlpha) const;
 
  private:
   static constexpr int kNodes = 64;
-  using Nodes = std::array<float, kNodes>;
   struct Curves {
-    Nodes second{}, later{};
+    std::array<Values, kNodes> nodes;
   };
-  static Curves MakeCurves(const Nodes& leaving, const Nodes& returning, float alpha);
+  const Curves& CurvesOf(int coat, int base) const {
+    return curves_[static_cast<size_t>(coat) * baseAlphas_.size() + static_cast<size_t>(base)];
+  }
 
-  std::vector<float> alphas_;
-  std::vector<Curves> slices_;
+  std::vector<float> coatAlphas_, baseAlphas_;
+  std::vector<Curves> curves_;  // by coat, then by base
 };
+
+// The lobe of a base, widened by the two refractions at a rough coat: α² = α_base² + 2 (α_coat (1 - 1/η)/2)².
+TrowbridgeReitz WidenedBase(const TrowbridgeReitz& base, const TrowbridgeReitz& coat, float eta);
 
 // The roughnesses α of the slices for a textured roughness: 0 to 1, denser towards 0.
 std::vector<float> TexturedAlphas();

@@ -11,15 +11,6 @@ Vector3 IntoCoat(const Vector3& w, float eta) {
   return {w.x / eta, w.y / eta, RefractedCosine(w.z, eta)};
 }
 
-// The lobe of the base, widened by the two refractions at a rough coat.
-TrowbridgeReitz Widen(const TrowbridgeReitz& base, const TrowbridgeReitz& coat, float eta) {
-  if (coat.IsSmooth() || eta == 1) return base;
-  const float share = 0.5f * Sqr(1 - 1 / eta);
-  const float x = std::sqrt(Sqr(base.alphaX) + share * Sqr(coat.alphaX));
-  const float y = std::sqrt(Sqr(base.alphaY) + share * Sqr(coat.alphaY));
-  return {std::max(x, 1e-3f), std::max(y, 1e-3f)};
-}
-
 // 1 + F·second·(1 + F·later + (F·later)² + …).
 Color SumBounces(const Color& F, float second, float later, int bounces) {
   const auto sum = [&](float f) { return 1 + f * second * TruncatedSeries(f * later, bounces - 1); };
@@ -31,25 +22,17 @@ Color SumBounces(const Color& F, float second, float later, int bounces) {
 CoatedConductorBsdf::CoatedConductorBsdf(const TrowbridgeReitz& coat, const TrowbridgeReitz& base, const Color& eta,
                                          const Color& k, const CoatedConductorSettings& settings)
     : coat_(coat),
-      base_(Widen(base, coat, settings.eta)),
+      base_(WidenedBase(base, coat, settings.eta)),
       eta_(eta),
       k_(k),
       coatSlice_(settings.coat->FindSlice(std::sqrt(coat.alphaX * coat.alphaY))),
-      baseSlice_(settings.bounceRatios->FindSlice(std::sqrt(base.alphaX * base.alphaY))),
-      settings_(&settings) {
-  if (!CoatIsDelta()) pairShare_ = 1 - 0.5f * std::min(1.0f, (base.alphaX + base.alphaY) / (coat.alphaX + coat.alphaY));
-}
-
-float CoatedConductorBsdf::PairTransmittance(float cosTheta) const {
-  const float T = settings_->coat->Transmittance(cosTheta, coatSlice_);
-  if (CoatIsDelta()) return T;
-  return T + (settings_->coat->PairTransmittance(cosTheta, coatSlice_) - T) * pairShare_;
-}
+      slice_(settings.metal->FindSlice(std::sqrt(coat.alphaX * coat.alphaY), std::sqrt(base.alphaX * base.alphaY))),
+      settings_(&settings) {}
 
 float CoatedConductorBsdf::CoatProbability(float cosO) const {
   const float coat = settings_->coat->Reflectance(cosO, coatSlice_);
   const float cosInside = RefractedCosine(cosO, settings_->eta);
-  const float base = PairTransmittance(cosO) * PairTransmittance(1) * FresnelConductor(cosInside, eta_, k_).Average();
+  const float base = settings_->metal->Find(cosO, slice_).albedo * FresnelConductor(cosInside, eta_, k_).Average();
   return CoatLobeProbability(coat, base, CoatIsDelta());
 }
 
@@ -62,13 +45,11 @@ CoatedConductorBsdf::Base CoatedConductorBsdf::EvaluateBase(const Vector3& wo, c
   const float quarterD = 0.25f * base_.D(half.m) / (eta * eta);
   const float stretchO = base_.Stretch(o), stretchI = base_.Stretch(i);
   const Color F = FresnelConductor(half.cosine, eta_, k_);
-  const auto ratiosO = settings_->bounceRatios->FindRatios(o.z, baseSlice_);
-  const auto ratiosI = settings_->bounceRatios->FindRatios(i.z, baseSlice_);
-  const Color S = SumBounces(F, std::sqrt(ratiosO.second * ratiosI.second), std::sqrt(ratiosO.later * ratiosI.later),
-                             settings_->bounces);
-  const float P = PairTransmittance(wo.z) * PairTransmittance(wi.z);
+  const auto ofO = settings_->metal->Find(wo.z, slice_), ofI = settings_->metal->Find(wi.z, slice_);
+  const Color S = SumBounces(F, ofO.second * ofI.second, std::sqrt(ofO.later * ofI.later), settings_->bounces);
+  const float scale = ofO.scale * ofI.scale;
   // dω'/dω = cosθ / (η² cosθ')
-  return {F * S * (P * quarterD * TrowbridgeReitz::ShadowingFactor(o.z, stretchO, i.z, stretchI)),
+  return {F * S * (scale * quarterD * TrowbridgeReitz::ShadowingFactor(o.z, stretchO, i.z, stretchI)),
           quarterD * TrowbridgeReitz::VisibleFactor(o.z, stretchO) * wi.z / i.z,
           quarterD * TrowbridgeReitz::VisibleFactor(i.z, stretchI) * wo.z / o.z};
 }

@@ -66,7 +66,7 @@ struct CoatedConductorRecipe {
   // The tables, and the settings that point to them.
   struct Tables {
     CoatTable coat;
-    CoatBounceTable bounceRatios;
+    CoatedMetalTable metal;
     CoatedConductorSettings settings;
   };
 
@@ -79,9 +79,9 @@ struct CoatedConductorRecipe {
   std::shared_ptr<const Tables> MakeTables() const {
     const CoatDescription description{eta, thickness, coat.TableAlphas()};
     const auto made = std::make_shared<Tables>(
-        Tables{CoatTable(description), CoatBounceTable(description, base.TableAlphas()), {eta, thickness, bounces}});
+        Tables{CoatTable(description), CoatedMetalTable(description, base.TableAlphas()), {eta, thickness, bounces}});
     made->settings.coat = &made->coat;
-    made->settings.bounceRatios = &made->bounceRatios;
+    made->settings.metal = &made->metal;
     return made;
   }
   void Roughen() {

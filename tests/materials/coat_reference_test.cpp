@@ -126,10 +126,10 @@ TEST(CoatReference, CoatedConductorIsNearTheSumOfAllWalks) {
   struct Case {
     float coat, base, bound;  // roughness α; relative bound of the directional albedo
   };
-  const Case cases[] = {{0, 0, 0.005f},      {0, 0.1f, 0.03f},    {0, 0.3f, 0.03f},    {0, 0.6f, 0.03f},
-                        {0.1f, 0, 0.08f},    {0.3f, 0, 0.08f},    {0.1f, 0.1f, 0.08f}, {0.3f, 0.1f, 0.08f},
-                        {0.3f, 0.3f, 0.08f}, {0.3f, 0.6f, 0.11f}, {0.1f, 0.6f, 0.08f}, {0.2f, 0.3f, 0.08f},
-                        {0.5f, 0.5f, 0.14f}};
+  const Case cases[] = {{0, 0, 0.005f},      {0, 0.1f, 0.01f},    {0, 0.3f, 0.01f},    {0, 0.6f, 0.01f},
+                        {0.1f, 0, 0.02f},    {0.3f, 0, 0.02f},    {0.1f, 0.1f, 0.02f}, {0.3f, 0.1f, 0.02f},
+                        {0.3f, 0.3f, 0.02f}, {0.3f, 0.6f, 0.02f}, {0.1f, 0.6f, 0.02f}, {0.2f, 0.3f, 0.02f},
+                        {0.5f, 0.5f, 0.02f}, {0.7f, 0.7f, 0.02f}, {0.7f, 0.2f, 0.02f}};
   const Color eta(0.21f, 0.83f, 1.24f), k(3.8f, 2.6f, 2.3f);
   for (const Case& c : cases) {
     ModelTables tables;

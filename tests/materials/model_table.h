@@ -33,7 +33,7 @@ inline TestModel Hair(const std::string& name, const Color& sigmaA, float eta, f
 // Tables that models point into.
 struct ModelTables {
   std::vector<std::shared_ptr<const CoatTable>> coats;
-  std::vector<std::shared_ptr<const CoatBounceTable>> bounces;
+  std::vector<std::shared_ptr<const CoatedMetalTable>> metals;
   std::vector<std::shared_ptr<const CoatedConductorSettings>> settings;
   std::vector<std::shared_ptr<const MeasuredData>> measured;
 };
@@ -60,10 +60,10 @@ inline CoatedConductorBsdf MakeCoatedMetal(ModelTables& tables, TrowbridgeReitz 
                                            int bounces = 5) {
   const CoatDescription description{eta, thickness, {std::sqrt(coat.alphaX * coat.alphaY)}};
   tables.coats.push_back(std::make_shared<CoatTable>(description));
-  tables.bounces.push_back(
-      std::make_shared<CoatBounceTable>(description, std::vector<float>{std::sqrt(base.alphaX * base.alphaY)}));
+  tables.metals.push_back(
+      std::make_shared<CoatedMetalTable>(description, std::vector<float>{std::sqrt(base.alphaX * base.alphaY)}));
   tables.settings.push_back(std::make_shared<CoatedConductorSettings>(
-      CoatedConductorSettings{eta, thickness, bounces, tables.coats.back().get(), tables.bounces.back().get()}));
+      CoatedConductorSettings{eta, thickness, bounces, tables.coats.back().get(), tables.metals.back().get()}));
   return {coat, base, metalEta / eta, metalK / eta, *tables.settings.back()};
 }
 
