@@ -239,8 +239,9 @@ class Light {
   // opening of its own (a portal), which the emitted ray has to pass.
   virtual bool CanBeAimed() const { return true; }
 
-  // The part of the surface that is there at a point of it, in [0,1]: cut-outs let the rest of all rays pass. A hit has
-  // passed them, and EvaluateSamples does not know of it; the values of samples and photons have it as a factor.
+  // The part of the surface that is there at a point of it, in [0,1]; cut-outs let the rest of all rays pass. A ray
+  // that hit has met the surface, so EvaluateSamples leaves this factor out; samples and photons have it in their
+  // values.
   virtual float Opacity(const LightHit& /*hit*/) const { return 1; }
 
   // Samples a photon by context.u and context.uDirection. nullopt: these numbers emit nothing. An area light samples

@@ -47,7 +47,7 @@ class VertexRow {
   size_t Count() const { return vertices_.size() - 1; }
   size_t OfLight() const { return ofLight_; }
   const PathVertex* Photon() const { return photon_; }
-  // The same, but the photon's vertex where the paths are merged.
+  // Vertex i; where the paths are merged, that of the photon.
   const PathVertex& AsOfLight(size_t i) const { return photon_ && i == ofLight_ + 1 ? *photon_ : *vertices_[i]; }
 
   Vector3 ToLight(size_t i) const { return i == 1 ? path_.toLight : DirectionTo(i, i - 1); }

@@ -57,7 +57,7 @@ inline double ConnectWeight(const PartialWeight& light, const ReverseDensities& 
 
 // s > 1, t = 1: the last vertex of the light subpath is connected to the lens ([Georgiev12 eq. 46]). `reverse`: reverse
 // densities of that vertex, by a camera ray, and of the one before. If it is the first vertex, the path is of direct
-// of direct light; further on there is no term of next-event estimation to count. `flightRatio`:
+// light; further on there is no term of next-event estimation to count. `flightRatio`:
 // FlightPoints::RatioAt of that vertex. `isOfFlight`: it is a point of a flight, and not a collision.
 inline double SplatWeight(const PartialWeight& light, const ReverseDensities& reverse, double connectionCount,
                           double splatCount, double merging, double flightRatio, bool isOfFlight) {

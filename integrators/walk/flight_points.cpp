@@ -12,7 +12,7 @@ namespace lampyr {
 
 namespace {
 
-// Optical depth of the sphere of media up to which every point that is sampled in a medium is taken.
+// Optical depth of the way to the camera, or of the sphere of media, up to which every point that is sampled is taken.
 constexpr double kDepthOfAll = 4;
 
 // The largest extinction of a medium, 1/scene unit.
@@ -43,14 +43,15 @@ std::shared_ptr<const FlightPoints> FlightPoints::Of(const RenderScene& scene) {
   for (const Vector3& plane : view->planes) points->planes_.emplace_back(plane);
   Bounds3 box;
   bool isUnbounded = false, isAny = false;
-  points->shares_.assign(scene.media.size(), 0);
+  points->extinctions_.assign(scene.media.size(), -1);
+  const std::vector<MediumSurfaces> allSurfaces = scene.geometry->SurfacesOfAll(scene.media.size());
   for (size_t i = 0; i < scene.media.size(); ++i) {
     const auto index = static_cast<int32_t>(i);
     if (!scene.media[i]->Scatters()) continue;
-    const MediumSurfaces surfaces = scene.geometry->SurfacesOf(index);
+    const MediumSurfaces& surfaces = allSurfaces[i];
     if (!IsSeen(scene, index, surfaces)) continue;
     isAny = true;
-    points->shares_[i] = 1;
+    points->extinctions_[i] = MostExtinction(*scene.media[i]);
     box.Add(surfaces.box);
     isUnbounded = isUnbounded || IsUnbounded(scene, index, surfaces);
   }
@@ -58,21 +59,27 @@ std::shared_ptr<const FlightPoints> FlightPoints::Of(const RenderScene& scene) {
   const BoundingSphere& sphere = scene.lighting->SceneSphere();
   points->center_ = Point3d(isUnbounded ? sphere.center : box.Center());
   points->radius_ = isUnbounded ? static_cast<double>(sphere.radius) : 0.5 * glm::length(Vector3d(box.Diagonal()));
-  for (size_t i = 0; i < scene.media.size(); ++i) {
-    const double depth = MostExtinction(*scene.media[i]) * 2 * points->radius_;
-    if (depth > kDepthOfAll) points->shares_[i] *= kDepthOfAll / depth;
-  }
   return points;
 }
 
-// The part of the line in the sphere, before all planes, and beyond `least`.
+double FlightPoints::ShareAt(const Point3d& position, int32_t medium) const {
+  const double extinction = extinctions_[static_cast<size_t>(medium)];
+  if (extinction < 0) return 0;
+  const double depth = extinction * std::min(glm::distance(position, place_), 2 * radius_);
+  return depth > kDepthOfAll ? kDepthOfAll / depth : 1.0;
+}
+
+// The part of the line in the sphere, before all planes, and beyond `least`. Directions are of float, and not quite
+// unit: a square of the distance to the sphere's middle would be off by more than the sphere, where that is far.
 FlightPoints::Range FlightPoints::RangeOf(const Point3d& origin, const Vector3d& direction, double least) const {
   Range range;
   const Vector3d toCenter = center_ - origin;
-  const double middle = glm::dot(toCenter, direction);
-  const double squared = radius_ * radius_ - glm::dot(toCenter, toCenter) + middle * middle;
+  const double length = glm::dot(direction, direction);  // squared
+  const double middle = glm::dot(toCenter, direction) / length;
+  const Vector3d across = toCenter - middle * direction;
+  const double squared = radius_ * radius_ - glm::dot(across, across);
   if (!(squared > 0)) return range;
-  const double half = std::sqrt(squared);
+  const double half = std::sqrt(squared / length);
   range.from = std::max(middle - half, least);
   range.to = middle + half;
   const Vector3d fromPlace = origin - place_;
@@ -87,11 +94,12 @@ FlightPoints::Range FlightPoints::RangeOf(const Point3d& origin, const Vector3d&
     }
   }
   if (!(range.to > range.from)) return range;
-  range.foot = -glm::dot(fromPlace, direction);
-  // Directions are of float: a place that is nearer to the line is as good as on it, and the density stays finite.
+  range.foot = -glm::dot(fromPlace, direction) / length;
+  // A place that is nearer to the line than directions of float tell is as good as on it: the density stays finite.
   constexpr double kSpacing = 0x1p-16, kOfRadius = 0x1p-30;
-  range.height = std::max({glm::length(fromPlace + range.foot * direction), kSpacing * std::abs(range.foot),
-                           kOfRadius * radius_, std::numeric_limits<double>::min()});
+  const double furthest = std::max(std::abs(range.from - range.foot), std::abs(range.to - range.foot));
+  range.height = std::max({glm::length(fromPlace + range.foot * direction), kSpacing * furthest, kOfRadius * radius_,
+                           std::numeric_limits<double>::min()});
   range.angle = SegmentAngle(range.height, range.from - range.foot, range.to - range.from);
   return range;
 }
@@ -109,7 +117,7 @@ std::optional<FlightPoints::Sample> FlightPoints::Generate(const FineLine& line,
 }
 
 double FlightPoints::Density(const Point3d& position, const Vector3d& toStart, double distance, int32_t medium) const {
-  const double share = ShareOf(medium);
+  const double share = ShareAt(position, medium);
   if (!(share > 0)) return 0;
   const Range range = RangeOf(position, -toStart, -distance);
   if (!(range.angle > 0) || range.from > 0 || range.to < 0) return 0;
@@ -129,7 +137,7 @@ bool AddFlightVertex(const SampleContext& context, const FlightPoints& points, c
   const auto span = std::find_if(flight.spans.begin(), flight.spans.end(),
                                  [&](const MediumSpan& one) { return sample->t >= one.tMin && sample->t < one.tMax; });
   if (span == flight.spans.end()) return false;
-  const double share = points.ShareOf(span->medium);
+  const double share = points.ShareAt(flight.line.start + sample->t * flight.line.direction, span->medium);
   if (!(static_cast<double>(u.y) < share)) return false;
   const uint64_t decider = Hash(std::bit_cast<uint32_t>(u.x), std::bit_cast<uint32_t>(u.y));
   const auto point = PointOnFlight(context, flight, sample->t, decider);

@@ -22,14 +22,15 @@ class FlightPoints {
 
   struct Sample {
     double t = 0;        // along the line of the flight
-    double density = 0;  // 1/scene unit, without the share of the medium (ShareOf)
+    double density = 0;  // 1/scene unit, without the share (ShareAt)
   };
   // nullopt: the camera does not see the flight. `line`: of the flight. `startsAnywhere`: it comes from a light at
   // infinity. `u`: in [0,1).
   std::optional<Sample> Generate(const FineLine& line, bool startsAnywhere, double u) const;
 
-  // Probability with which a point that was sampled in the medium is taken. Less than 1 where walks collide anyway.
-  double ShareOf(int32_t medium) const { return shares_[static_cast<size_t>(medium)]; }
+  // Probability with which a point that was sampled in the medium is taken. Less than 1 where walks collide anyway, and
+  // little of the light gets to the camera.
+  double ShareAt(const Point3d& position, int32_t medium) const;
 
   // Density of taking a point of a flight, its share included, 1/scene unit. `toStart`: unit, to where the flight
   // starts, at `distance`, which is infinite for a light at infinity.
@@ -42,7 +43,7 @@ class FlightPoints {
   FlightPoints() = default;
 
   // The part [from, to] of a line in which points are sampled, and the foot of the camera's place on it. Distances
-  // along the line.
+  // along the line. The same whatever point of the line is its origin, up to rounding.
   struct Range {
     double from = 0, to = 0;
     double foot = 0, height = 0;  // height: of the camera's place above the line
@@ -51,10 +52,10 @@ class FlightPoints {
   Range RangeOf(const Point3d& origin, const Vector3d& direction, double least) const;
 
   Point3d place_{0.0};            // of the camera
-  std::vector<Vector3d> planes_;  // normals of planes through it, before all of which the image is
+  std::vector<Vector3d> planes_;  // normals of planes through it; the image is on the positive side of each
   Point3d center_{0.0};           // of a sphere around the media
   double radius_ = 0;
-  std::vector<double> shares_;  // by medium
+  std::vector<double> extinctions_;  // by medium, the largest of it; negative: it is left out
 };
 
 // Adds to `path` a vertex at a point of its flight that is sampled for the camera, for the connection to it alone: the

@@ -618,15 +618,24 @@ bool GeometryScene::IsTracedByEmbree() const {
 }
 
 MediumSurfaces GeometryScene::SurfacesOf(int32_t medium) const {
-  MediumSurfaces found;
+  if (medium < 0) return {};
+  return SurfacesOfAll(static_cast<size_t>(medium) + 1).back();
+}
+
+std::vector<MediumSurfaces> GeometryScene::SurfacesOfAll(size_t media) const {
+  std::vector<MediumSurfaces> all(media);
   implementation_->VisitBoxes([&](const Bounds3& box, bool moves, const GeometryAttributes& attributes) {
-    if (attributes.insideMedium != medium && attributes.outsideMedium != medium) return;
-    found.box.Add(box);
-    found.move = found.move || moves;
-    found.passesStraight =
-        found.passesStraight || attributes.isBoundary || attributes.thin != nullptr || attributes.alpha != nullptr;
+    const int32_t sides[] = {attributes.insideMedium, attributes.outsideMedium};
+    for (int side = 0; side < 2; ++side) {
+      if (sides[side] < 0 || static_cast<size_t>(sides[side]) >= media || (side == 1 && sides[1] == sides[0])) continue;
+      MediumSurfaces& found = all[static_cast<size_t>(sides[side])];
+      found.box.Add(box);
+      found.move = found.move || moves;
+      found.passesStraight =
+          found.passesStraight || attributes.isBoundary || attributes.thin != nullptr || attributes.alpha != nullptr;
+    }
   });
-  return found;
+  return all;
 }
 
 size_t GeometryScene::PrimitiveCount() const {

@@ -159,6 +159,8 @@ class GeometryScene {
   // False: surfaces are few, and none is a curve or an instance (FewSurfaces).
   bool IsTracedByEmbree() const;
   MediumSurfaces SurfacesOf(int32_t medium) const;
+  // Those of all media, by index, in one pass over the surfaces.
+  std::vector<MediumSurfaces> SurfacesOfAll(size_t media) const;
   size_t PrimitiveCount() const;             // shapes, instanced ones once
   const Bounds3& GetBounds() const;          // empty for an empty scene
   BoundingSphere GetBoundingSphere() const;  // radius 1 around 0 for an empty scene

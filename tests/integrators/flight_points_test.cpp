@@ -28,14 +28,16 @@ BuiltScene Build(const std::string& camera, const std::string& world) {
   return BuildScene(ParseScene(text, "flights.pbrt", diagnostics), {}, true, diagnostics);
 }
 
-FineLine RandomLine(Rng& rng) {
+// Directions are those of rays: of float, and not quite unit. `away`: distance of the start, where that is not near.
+FineLine RandomLine(Rng& rng, double away = 0) {
   const auto point = [&](double size) {
     const double x = static_cast<double>(rng.NextFloat()), y = static_cast<double>(rng.NextFloat());
     return Vector3d(2 * x - 1, 2 * y - 1, 2 * static_cast<double>(rng.NextFloat()) - 1) * size;
   };
   FineLine line;
   line.start = point(3);
-  line.direction = glm::normalize(point(1) - line.start);
+  if (away > 0) line.start *= away / glm::length(line.start);
+  line.direction = Vector3d(glm::normalize(Vector3(point(1) - line.start)));
   return line;
 }
 
@@ -46,11 +48,12 @@ TEST_P(FlightPointsOf, SamplesFollowTheDensity) {
   const BuiltScene built = Build(GetParam(), Fog(0.3) + kBall);
   const auto points = FlightPoints::Of(built.scene);
   ASSERT_NE(points, nullptr);
-  ASSERT_EQ(points->ShareOf(0), 1);
+  ASSERT_EQ(points->ShareAt(Point3d(0.0), 0), 1);
   Rng rng(3);
   int seen = 0;
   for (int i = 0; i < 300; ++i) {
-    const FineLine line = RandomLine(rng);
+    const double away = i % 4 == 0 ? 1e4 : i % 4 == 1 ? 1e6 : 0.0;
+    const FineLine line = RandomLine(rng, away);
     const bool startsAnywhere = i % 3 == 0;
     double worst = 0, sum = 0;
     constexpr int kSamples = 64;
@@ -66,7 +69,8 @@ TEST_P(FlightPointsOf, SamplesFollowTheDensity) {
       worst = std::max(worst, std::abs(again / sample->density - 1));
       sum += 1;
     }
-    EXPECT_LT(worst, 1e-9) << i;
+    EXPECT_LT(worst, 1e-8 * (1 + away)) << i;
+    if (away > 1e5) EXPECT_EQ(sum, kSamples) << i;
     if (sum < kSamples) continue;
     ++seen;
     // By a fine sum over the line, whose ends are the first and the last sample.
@@ -118,9 +122,15 @@ TEST(FlightPoints, AreWhereTheImageIs) {
 }
 
 TEST(FlightPoints, AreFewerInDenseMedia) {
-  EXPECT_EQ(FlightPoints::Of(Build(kView, Fog(0.5) + kBall).scene)->ShareOf(0), 1);
-  const double depth = 20 * 2 * 1.5 * std::sqrt(3.0);
-  EXPECT_NEAR(FlightPoints::Of(Build(kView, Fog(20) + kBall).scene)->ShareOf(0), 4 / depth, 1e-5);
+  const auto shareIn = [](const char* camera, double scattering, const Point3d& position) {
+    return FlightPoints::Of(Build(camera, Fog(scattering) + kBall).scene)->ShareAt(position, 0);
+  };
+  const double across = 2 * 1.5 * std::sqrt(3.0);  // the sphere around the ball's box, which is nearer than the camera
+  EXPECT_EQ(shareIn(kView, 0.5, Point3d(0.0)), 1);
+  EXPECT_NEAR(shareIn(kView, 20, Point3d(0.0)), 4 / (20 * across), 1e-5);
+  const char* const within = "LookAt 0 0 -1  0 0 0  0 1 0\nCamera \"perspective\"\n";
+  EXPECT_NEAR(shareIn(within, 20, Point3d(0.0)), 4.0 / 20, 1e-5);
+  EXPECT_EQ(shareIn(within, 20, Point3d(0, 0, -0.9)), 1);
 }
 
 TEST(FlightPoints, AreNotWhereTheCameraSeesNoneStraight) {
