@@ -124,6 +124,12 @@ std::vector<Corner> Corners() {
       "[ -3 0 0 ] \"point3 to\" [ 0 0 0 ]\nAttributeBegin\nMaterial \"thindielectric\" \"float eta\" 1.2 \"rgb "
       "transmittance\" [ 0.9 0.3 0.05 ]\nShape \"trianglemesh\" \"point3 P\" [ -1 -2 -2  -1 2 -2  -1 2 2  -1 -2 2 ] "
       "\"integer indices\" [ 0 1 2 0 2 3 ]\nAttributeEnd\n";
+  const std::string distant =
+      Film("LookAt 0 0 -4  0 0 0  0 1 0 Camera \"perspective\" \"float fov\" 32\n") +
+      "WorldBegin\nMakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [ 0.1 0.1 0.1 ] \"rgb "
+      "sigma_a\" [ 0 0 0 ]\nLightSource \"spot\" \"point3 from\" [ 37000 80000 47000 ] \"point3 to\" [ 0 0 0 ] \"float "
+      "coneangle\" 0.00115 \"float conedeltaangle\" 1.15e-5 \"rgb I\" [ 1e10 1e10 1e10 ]\n"
+      "Material \"interface\" MediumInterface \"fog\" \"\" Shape \"sphere\" \"float radius\" 1\n";
   const std::string portal =
       kAbove +
       "WorldBegin\nAttributeBegin\nTranslate 0 1 0 Rotate -90 1 0 0\nLightSource \"portal\" \"float width\" 1 \"float "
@@ -149,6 +155,7 @@ std::vector<Corner> Corners() {
        {"path", "bdpt", "vcm", "sppm"}},
       {"sphere_inside_out_that_rays_pass", PassedSphere("", "ReverseOrientation\n"), {"path", "bdpt", "vcm", "sppm"}},
       {"beams_behind_a_tinted_pane", beams, {"path", "bdpt", "vcm", "sppm"}, 256},
+      {"fog_far_from_its_lamp", distant, {"path", "light", "bdpt", "vcm"}, 256},
       {"portal_behind_the_middle", portal, {"path", "bdpt", "vcm", "sppm"}},
       {"small_fire", Fire(0.012, "Translate 0.31 0.45 0.22\n"), {"path", "light"}, 1024, 0.2},
       {"moving_fire", Fire(0.2, moves), {"path", "light", "sppm"}, 512, 0.08},

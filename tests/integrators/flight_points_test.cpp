@@ -70,7 +70,9 @@ TEST_P(FlightPointsOf, SamplesFollowTheDensity) {
       sum += 1;
     }
     EXPECT_LT(worst, 1e-8 * (1 + away)) << i;
-    if (away > 1e5) EXPECT_EQ(sum, kSamples) << i;
+    if (away > 1e5) {
+      EXPECT_EQ(sum, kSamples) << i;
+    }
     if (sum < kSamples) continue;
     ++seen;
     // By a fine sum over the line, whose ends are the first and the last sample.
