@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "lights/estimates.h"
 #include "sampling/rng.h"
 
 namespace lampyr {
@@ -100,7 +99,9 @@ FlightPoints::Range FlightPoints::RangeOf(const Point3d& origin, const Vector3d&
   const double furthest = std::max(std::abs(range.from - range.foot), std::abs(range.to - range.foot));
   range.height = std::max({glm::length(fromPlace + range.foot * direction), kSpacing * furthest, kOfRadius * radius_,
                            std::numeric_limits<double>::min()});
-  range.angle = SegmentAngle(range.height, range.from - range.foot, range.to - range.from);
+  // The difference of two angles, accurate where it is tiny.
+  const double start = range.from - range.foot, end = range.to - range.foot;
+  range.angle = std::atan2(range.height * (range.to - range.from), range.height * range.height + start * end);
   return range;
 }
 
