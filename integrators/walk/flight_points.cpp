@@ -12,7 +12,7 @@ namespace lampyr {
 namespace {
 
 // Optical depth of the way to the camera, or of the sphere of media, up to which every point that is sampled is taken.
-constexpr double kDepthOfAll = 4;
+constexpr double kDepthOfTaken = 4;
 
 // The largest extinction of a medium, 1/scene unit.
 double MostExtinction(const Medium& medium) {
@@ -65,7 +65,7 @@ double FlightPoints::ShareAt(const Point3d& position, int32_t medium) const {
   const double extinction = extinctions_[static_cast<size_t>(medium)];
   if (extinction < 0) return 0;
   const double depth = extinction * std::min(glm::distance(position, place_), 2 * radius_);
-  return depth > kDepthOfAll ? kDepthOfAll / depth : 1.0;
+  return depth > kDepthOfTaken ? kDepthOfTaken / depth : 1.0;
 }
 
 // The part of the line in the sphere, before all planes, and beyond `least`. Directions are of float, and not quite

@@ -150,21 +150,21 @@ namespace {
 constexpr int kWalkNodes = 64;  // evenly spaced in sqrt(cosθ)
 using WalkNodes = std::array<float, kWalkNodes>;
 
-float CosineOf(int node) {
+float NodeCosineOf(int node) {
   return std::max(Sqr(static_cast<float>(node) / (kWalkNodes - 1)), 1e-6f);
 }
 
 // Scattering from one side of a boundary to a side: of light from the cosine of a node, the weights of the cosines at
 // which it goes on.
-class Kernel {
+class WalkKernel {
  public:
   // scatter(node's direction, m, add) calls add(cosine, weight) for a microfacet that the direction sees.
   template <class Scatter>
-  Kernel(float alpha, const Scatter& scatter) : alpha_(alpha) {
+  WalkKernel(float alpha, const Scatter& scatter) : alpha_(alpha) {
     constexpr int kCaps = 32, kAzimuths = 8;
     const TrowbridgeReitz microfacets(alpha, alpha);
     for (int node = 0; node < kWalkNodes; ++node) {
-      const float cosTheta = CosineOf(node);
+      const float cosTheta = NodeCosineOf(node);
       const Vector3 w(SafeSqrt(1 - cosTheta * cosTheta), 0, cosTheta);
       std::vector<Entry>& entries = entries_[static_cast<size_t>(node)];
       const float part = microfacets.IsSmooth() ? 1.0f : 1.0f / (kCaps * kAzimuths);
@@ -204,19 +204,19 @@ class Kernel {
 };
 
 // Weight of a microfacet that reflects or refracts to the cosine of `to`.
-float Seen(const TrowbridgeReitz& microfacets, const Vector3& from, const Vector3& to) {
+float SeenPart(const TrowbridgeReitz& microfacets, const Vector3& from, const Vector3& to) {
   return microfacets.IsSmooth() ? 1.0f
                                 : TrowbridgeReitz::ShadowingRatio(from.z, microfacets.Stretch(from), std::abs(to.z),
                                                                   microfacets.Stretch(to));
 }
 
 // The roughness of what light meets at the coat: none where the boundary does nothing.
-float RoughnessOf(const CoatDescription& coat, float alpha) {
+float CoatRoughnessOf(const CoatDescription& coat, float alpha) {
   return coat.eta == 1 ? 0.0f : alpha;
 }
 // Refraction into the coat and down to the base, or reflection from within.
-auto Crossing(const CoatDescription& coat, float alpha, float eta, bool isReflected) {
-  const float roughness = RoughnessOf(coat, alpha), thickness = coat.thickness;
+auto AcrossCoat(const CoatDescription& coat, float alpha, float eta, bool isReflected) {
+  const float roughness = CoatRoughnessOf(coat, alpha), thickness = coat.thickness;
   return [=](const Vector3& w, const Vector3& m, const auto& add) {
     const TrowbridgeReitz microfacets(roughness, roughness);
     const float cosine = std::min(glm::dot(w, m), 1.0f);
@@ -225,39 +225,40 @@ auto Crossing(const CoatDescription& coat, float alpha, float eta, bool isReflec
     const Vector3 to = isReflected ? Reflect(w, m, cosine) : w * (-1 / eta) + RefractionShift(cosine, cosT, eta) * m;
     if (isReflected ? !(to.z > 0) : !(F < 1 && to.z < 0)) return;
     const float part = isReflected ? F : 1 - F, down = std::abs(to.z);
-    add(down, part * GapTransmittance(thickness, down) * Seen(microfacets, w, to));
+    add(down, part * GapTransmittance(thickness, down) * SeenPart(microfacets, w, to));
   };
 }
 
 // A boundary of the coat: into it and down to the base, and from within back to the base.
 struct CoatKernels {
-  Kernel enter, back;
+  WalkKernel enter, back;
   WalkNodes leaving;  // the part that leaves, from within
 
   CoatKernels(const CoatDescription& coat, float alpha)
-      : enter(RoughnessOf(coat, alpha), Crossing(coat, alpha, coat.eta, false)),
-        back(RoughnessOf(coat, alpha), Crossing(coat, alpha, 1 / coat.eta, true)) {
+      : enter(CoatRoughnessOf(coat, alpha), AcrossCoat(coat, alpha, coat.eta, false)),
+        back(CoatRoughnessOf(coat, alpha), AcrossCoat(coat, alpha, 1 / coat.eta, true)) {
     for (int node = 0; node < kWalkNodes; ++node)
       leaving[static_cast<size_t>(node)] = static_cast<float>(
-          ScatterAtBoundary(CosineOf(node), alpha, 1 / coat.eta, coat.thickness, Side::Inside).transmitted);
+          ScatterAtBoundary(NodeCosineOf(node), alpha, 1 / coat.eta, coat.thickness, Side::Inside).transmitted);
   }
 };
 
 // Reflection at the base, and up to the boundary.
-Kernel BaseKernel(const CoatDescription& coat, float alpha) {
+WalkKernel BaseKernel(const CoatDescription& coat, float alpha) {
   const TrowbridgeReitz microfacets(alpha, alpha);
-  return Kernel(alpha, [microfacets, thickness = coat.thickness](const Vector3& w, const Vector3& m, const auto& add) {
-    const Vector3 to = Reflect(w, m, glm::dot(w, m));
-    if (to.z > 0) add(to.z, GapTransmittance(thickness, to.z) * Seen(microfacets, w, to));
-  });
+  return WalkKernel(alpha,
+                    [microfacets, thickness = coat.thickness](const Vector3& w, const Vector3& m, const auto& add) {
+                      const Vector3 to = Reflect(w, m, glm::dot(w, m));
+                      if (to.z > 0) add(to.z, GapTransmittance(thickness, to.z) * SeenPart(microfacets, w, to));
+                    });
 }
 
 // The lobe of one bounce as CoatedConductorBsdf has it, without its scale: by the direction outside.
-Kernel LobeKernel(const CoatDescription& coat, float coatAlpha, float baseAlpha) {
+WalkKernel LobeKernel(const CoatDescription& coat, float coatAlpha, float baseAlpha) {
   const TrowbridgeReitz base =
       WidenedBase(TrowbridgeReitz(baseAlpha, baseAlpha), TrowbridgeReitz(coatAlpha, coatAlpha), coat.eta);
   // The direction of a node is outside, and so is that of the lobe; visible normals are seen from within.
-  return Kernel(0, [=, eta = coat.eta](const Vector3& w, const Vector3&, const auto& add) {
+  return WalkKernel(0, [=, eta = coat.eta](const Vector3& w, const Vector3&, const auto& add) {
     constexpr int kCaps = 32, kAzimuths = 8;
     const Vector3 o(w.x / eta, w.y / eta, RefractedCosine(w.z, eta));
     if (!(o.z > 0)) return;
@@ -268,13 +269,13 @@ Kernel LobeKernel(const CoatDescription& coat, float coatAlpha, float baseAlpha)
       const Vector3 m = base.IsSmooth() ? Vector3(0, 0, 1) : base.SampleVisibleNormal(o, u);
       const Vector3 i = Reflect(o, m, glm::dot(o, m));
       const float cosine = i.z > 0 ? RefractedCosine(std::min(i.z, 1.0f), 1 / eta) : 0.0f;
-      if (cosine > 0) add(cosine, Seen(base, o, i) / static_cast<float>(count));
+      if (cosine > 0) add(cosine, SeenPart(base, o, i) / static_cast<float>(count));
     }
   });
 }
 
 // C of a lobe: C(wo) ∫ C(wi) lobe = albedo, by turns of a symmetric scaling.
-WalkNodes ScaleOf(const Kernel& lobe, const WalkNodes& albedo) {
+WalkNodes ScaleOf(const WalkKernel& lobe, const WalkNodes& albedo) {
   constexpr int kTurns = 10;
   constexpr float kMost = 3;  // at grazing angles, where next to nothing is left of either
   WalkNodes scale;
@@ -300,17 +301,17 @@ TrowbridgeReitz WidenedBase(const TrowbridgeReitz& base, const TrowbridgeReitz& 
 CoatedMetalTable::CoatedMetalTable(const CoatDescription& coat, const std::vector<float>& baseAlphas)
     : coatAlphas_(coat.alphas), baseAlphas_(baseAlphas) {
   static_assert(kNodes == kWalkNodes);
-  std::vector<Kernel> bases;
+  std::vector<WalkKernel> bases;
   for (const float alpha : baseAlphas_) bases.push_back(BaseKernel(coat, alpha));
   for (const float coatAlpha : coatAlphas_) {
     const CoatKernels boundary(coat, coatAlpha);
-    for (const Kernel& base : bases) {
+    for (const WalkKernel& base : bases) {
       // Of light at the base, what leaves after one bounce there, after two and after three.
       const WalkNodes one = base.Apply(boundary.leaving), two = base.Apply(boundary.back.Apply(one)),
                       three = base.Apply(boundary.back.Apply(two));
       const WalkNodes first = boundary.enter.Apply(one), second = boundary.enter.Apply(two),
                       third = boundary.enter.Apply(three);
-      const Kernel lobe = LobeKernel(coat, coatAlpha, base.Alpha());
+      const WalkKernel lobe = LobeKernel(coat, coatAlpha, base.Alpha());
       const WalkNodes scale = ScaleOf(lobe, first), ofSecond = ScaleOf(lobe, second);
       Curves& curves = curves_.emplace_back();
       for (size_t i = 0; i < kNodes; ++i) {
