@@ -17,7 +17,7 @@ namespace lampyr {
 // The two subpaths of a sample use alternating blocks of sampler dimensions, so that neither uses the other's.
 inline constexpr PathDimensions kCameraDimensions{2, 0}, kLightDimensions{2, 1};
 
-// Where a flight of a light path starts.
+// The start of a flight of a light path: a vertex, the point of a light, or a light at infinity.
 struct FlightStartPoint {
   Point3d position{0.0};
   bool isAnywhere = false;  // on its line: it comes from a light at infinity
@@ -146,7 +146,7 @@ Color Connect(const BidirectionalSample& sample, size_t lightCount);
 // started.
 void SplatLight(const BidirectionalSample& sample, const EmittedPhoton& photon);
 void SplatVertex(const BidirectionalSample& sample, const FlightStartPoint& start);
-// The same of a point of the last flight, which starts at `start`, along the ray of `state`. `path`: of `sample`; as
+// Samples a point of the flight along the ray of `state` and connects it to the lens. `path`: of `sample`; as
 // before at the end.
 void SplatFlight(BidirectionalSample& sample, const FlightStartPoint& start, const PathState& state,
                  const Flight& flight, const EmittedPhoton& photon, Sampler& sampler, LightPath& path);

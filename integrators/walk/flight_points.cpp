@@ -31,6 +31,11 @@ bool IsUnbounded(const RenderScene& scene, int32_t medium, const MediumSurfaces&
          medium == scene.unbounded || medium == scene.cameraMedium;
 }
 
+// Equiangular density at the distance `x` from the foot of a point at `height` above the line, which sees the range under `angle`.
+double EquiangularDensity(double height, double angle, double x) {
+  return height / (angle * (height * height + x * x));
+}
+
 }  // namespace
 
 std::shared_ptr<const FlightPoints> FlightPoints::Of(const RenderScene& scene) {
@@ -112,7 +117,7 @@ std::optional<FlightPoints::Sample> FlightPoints::Generate(const FineLine& line,
   const double start = std::atan2(range.from - range.foot, range.height);
   const double x = range.height * std::tan(start + u * range.angle);
   const double t = std::clamp(range.foot + x, range.from, range.to);
-  const double density = range.height / (range.angle * (range.height * range.height + x * x));
+  const double density = EquiangularDensity(range.height, range.angle, x);
   if (!(t > 0) || !(density > 0) || !std::isfinite(density)) return std::nullopt;
   return Sample{t, density};
 }
@@ -122,7 +127,7 @@ double FlightPoints::Density(const Point3d& position, const Vector3d& toStart, d
   if (!(share > 0)) return 0;
   const Range range = RangeOf(position, -toStart, -distance);
   if (!(range.angle > 0) || range.from > 0 || range.to < 0) return 0;
-  return share * range.height / (range.angle * (range.height * range.height + range.foot * range.foot));
+  return share * EquiangularDensity(range.height, range.angle, range.foot);
 }
 
 bool AddFlightVertex(const SampleContext& context, const FlightPoints& points, const PathState& state,

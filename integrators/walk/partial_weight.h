@@ -161,7 +161,7 @@ struct PartialWeight {
     return {{splatCount > 0 ? Mis(splatCount / camera.value) : 0.0, 0.0}, {}};
   }
 
-  // Of the first vertex of a camera subpath, with the splats of points of flights counted beside those of collisions.
+  // The partial weight at the first vertex of a camera subpath, with the term of splats of sampled flight points added.
   // `ratio`: FlightPoints::RatioAt.
   PartialWeight WithFlights(double ratio) const {
     PartialWeight counted = *this;

@@ -51,7 +51,7 @@ struct CameraDensities {
   float importance = 0;  // We
 };
 
-// Where the image is, for whoever samples points that it may show.
+// The region of space that the image shows: a pyramid, or all directions.
 struct CameraView {
   Point3 place{0.0f};           // of the pinhole, or the centre of the lens
   std::vector<Vector3> planes;  // normals of planes through `place`, towards the image; without any it is all around

@@ -24,7 +24,7 @@ struct Image {
   std::map<std::string, std::string> metadata;
   int offsetX = 0, offsetY = 0;       // of the data window (a crop) in the full image
   int fullWidth = 0, fullHeight = 0;  // display window; 0: width and height
-  // Of a file with an encoding: the exponent that its colours, and not its alpha, were decoded by; 0: by sRGB. 1: none.
+  // The decoding of the colours of the file (alpha is not decoded): 0: sRGB; 1: none; else the exponent.
   float colorGamma = 1;
   // Chromaticities x, y of the primaries red, green, blue and of the white. Absent: the file has none.
   std::optional<std::array<double, 8>> chromaticities;

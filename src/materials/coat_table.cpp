@@ -182,7 +182,7 @@ class WalkKernel {
       }
     }
   }
-  // What `after` is for light that is scattered, by the node from which it arrives.
+  // The mean of `after` over the scattered directions, for each direction of incidence.
   WalkNodes Apply(const WalkNodes& after) const {
     WalkNodes before;
     for (size_t node = 0; node < before.size(); ++node) {
@@ -306,7 +306,7 @@ CoatedMetalTable::CoatedMetalTable(const CoatDescription& coat, const std::vecto
   for (const float coatAlpha : coatAlphas_) {
     const CoatKernels boundary(coat, coatAlpha);
     for (const WalkKernel& base : bases) {
-      // Of light at the base, what leaves after one bounce there, after two and after three.
+      // The fractions of the light at the base that leave the coat after one, two and three bounces there.
       const WalkNodes one = base.Apply(boundary.leaving), two = base.Apply(boundary.back.Apply(one)),
                       three = base.Apply(boundary.back.Apply(two));
       const WalkNodes first = boundary.enter.Apply(one), second = boundary.enter.Apply(two),

@@ -75,7 +75,7 @@ TEST_P(FlightPointsOf, SamplesFollowTheDensity) {
     }
     if (sum < kSamples) continue;
     ++seen;
-    // By a fine sum over the line, whose ends are the first and the last sample.
+    // The integral of the density between the first and the last sample.
     constexpr int kSteps = 20000;
     double integral = 0;
     const double end = points->Generate(line, startsAnywhere, 1 - 1e-12)->t;
