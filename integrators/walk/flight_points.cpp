@@ -31,7 +31,7 @@ bool IsUnbounded(const RenderScene& scene, int32_t medium, const MediumSurfaces&
          medium == scene.unbounded || medium == scene.cameraMedium;
 }
 
-// Equiangular density at the distance `x` from the foot of a point at `height` above the line, which sees the range under `angle`.
+// Equiangular density, for a point at `height` above the line that sees the range under `angle`. `x`: from its foot.
 double EquiangularDensity(double height, double angle, double x) {
   return height / (angle * (height * height + x * x));
 }
