@@ -67,7 +67,7 @@ void AddTo(std::array<CompensatedSum, 3>& sum, float weight, const Color& value)
 }
 
 template <class Sums>
-void AddAll(std::vector<Sums>& to, const std::vector<Sums>& from) {
+void AddAll(LargePageVector<Sums>& to, const LargePageVector<Sums>& from) {
   for (size_t i = 0; i < from.size(); ++i) {
     for (size_t c = 0; c < 3; ++c) to[i][c].Add(from[i][c]);
   }
@@ -75,7 +75,7 @@ void AddAll(std::vector<Sums>& to, const std::vector<Sums>& from) {
 
 // Copies in bands, one per thread: one thread cannot saturate the memory bandwidth.
 template <class Sums>
-void Copy(std::vector<Sums>& to, const std::vector<Sums>& from, int threads) {
+void Copy(LargePageVector<Sums>& to, const LargePageVector<Sums>& from, int threads) {
   static_assert(std::is_trivially_copyable_v<Sums>);
   to.resize(from.size());
   const size_t band = from.size() / static_cast<size_t>(std::max(threads, 1)) + 1;

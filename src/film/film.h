@@ -23,6 +23,7 @@
 #include <string>
 #include <vector>
 
+#include "base/large_pages.h"
 #include "film/image.h"
 #include "film/layer_sample.h"
 #include "film/pixel_filter.h"
@@ -309,26 +310,26 @@ class Film {
 
   int fullWidth_, fullHeight_;
   PixelRect crop_;
-  std::vector<PixelSums> pixels_;
-  std::vector<SplatSums> splats_;  // empty without splats
+  LargePageVector<PixelSums> pixels_;
+  LargePageVector<SplatSums> splats_;  // empty without splats
   std::vector<std::string> layers_;
-  bool hasHalf_ = false;                           // the last layer is kHalfLayer
-  size_t bandLayers_ = 0;                          // those of bands, which are before it
-  LanesInBands lanes_;                             // of the pass that is being added
-  std::vector<double> bandWeights_;                // per band: Σ LanesInBands::weight over the passes
-  std::vector<LayerSum> layerSums_, layerSplats_;  // per layer and pixel; layerSplats_: empty without splats
+  bool hasHalf_ = false;                               // the last layer is kHalfLayer
+  size_t bandLayers_ = 0;                              // those of bands, which are before it
+  LanesInBands lanes_;                                 // of the pass that is being added
+  std::vector<double> bandWeights_;                    // per band: Σ LanesInBands::weight over the passes
+  LargePageVector<LayerSum> layerSums_, layerSplats_;  // per layer and pixel; layerSplats_: empty without splats
   uint64_t lightPaths_ = 0;
   std::array<double, 3> whiteSum_{};
   uint64_t whitePasses_ = 0;
   double splatSpread_ = 0;  // effective number of pixels of a splat (film.cpp)
   bool isAdaptive_ = false;
-  uint32_t passes_ = 0;                             // of the current stage
-  uint64_t endedPasses_ = 0;                        // of those before it
-  std::vector<PixelStages> stages_;                 // empty unless adaptive
-  std::vector<PixelGroups> groups_;                 // empty unless adaptive with groups
-  std::vector<PixelBias> bias_;                     // empty unless kept; of an adaptive film: of the current stage
-  std::vector<PixelBias> biasStages_;               // empty unless adaptive and kept
-  std::vector<std::array<double, 3>> layerStages_;  // per layer and pixel: Σ passes · mean; empty unless adaptive
+  uint32_t passes_ = 0;                                 // of the current stage
+  uint64_t endedPasses_ = 0;                            // of those before it
+  LargePageVector<PixelStages> stages_;                 // empty unless adaptive
+  LargePageVector<PixelGroups> groups_;                 // empty unless adaptive with groups
+  LargePageVector<PixelBias> bias_;                     // empty unless kept; of an adaptive film: of the current stage
+  LargePageVector<PixelBias> biasStages_;               // empty unless adaptive and kept
+  LargePageVector<std::array<double, 3>> layerStages_;  // per layer and pixel: Σ passes · mean; empty unless adaptive
 };
 
 }  // namespace lampyr
