@@ -265,7 +265,7 @@ void PathLearning::Load(ByteReader& bytes) {
               paths[i].firstEvent <= events.size() && std::isfinite(paths[i].found);
   }
   if (!isSound) throw Error("it holds a path that cannot be");
-  latest_.Set(std::move(paths), std::move(events));
+  latest_.Set(paths, events);
 }
 
 }  // namespace lampyr

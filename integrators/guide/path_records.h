@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/large_pages.h"
 #include "integrators/guide/path_guide.h"
 
 namespace lampyr {
@@ -71,7 +72,11 @@ class PathRecords {
   }
   // Appends all paths of `other`.
   void Append(const PathRecords& other) {
-    for (size_t i = 0; i < other.paths_.size(); ++i) Append(other, i);
+    const auto shift = static_cast<uint32_t>(events_.size());
+    const size_t before = paths_.size();
+    paths_.insert(paths_.end(), other.paths_.begin(), other.paths_.end());
+    for (size_t i = before; i < paths_.size(); ++i) paths_[i].firstEvent += shift;
+    events_.insert(events_.end(), other.events_.begin(), other.events_.end());
   }
   // In the order of samples and pixels, whatever the order in which they were recorded.
   PathRecords Sorted() const {
@@ -81,13 +86,15 @@ class PathRecords {
       return std::pair(paths_[a].sample, paths_[a].pixel) < std::pair(paths_[b].sample, paths_[b].pixel);
     });
     PathRecords sorted;
+    sorted.paths_.reserve(paths_.size());
+    sorted.events_.reserve(events_.size());
     for (const size_t i : order) sorted.Append(*this, i);
     return sorted;
   }
   // What a file holds. The caller has checked it.
-  void Set(std::vector<RecordedPath> paths, std::vector<RecordedEvent> events) {
-    paths_ = std::move(paths);
-    events_ = std::move(events);
+  void Set(std::span<const RecordedPath> paths, std::span<const RecordedEvent> events) {
+    paths_.assign(paths.begin(), paths.end());
+    events_.assign(events.begin(), events.end());
   }
 
  private:
@@ -101,8 +108,8 @@ class PathRecords {
   }
 
   double fraction_ = 1;
-  std::vector<RecordedPath> paths_;
-  std::vector<RecordedEvent> events_;
+  LargePageVector<RecordedPath> paths_;
+  LargePageVector<RecordedEvent> events_;
 };
 
 }  // namespace lampyr
