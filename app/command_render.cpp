@@ -44,9 +44,8 @@ std::filesystem::path OutputPath(const RenderOptions& options, const RenderSetti
     path =
         settings.outputFile.empty() ? options.scene.filename() : std::filesystem::path(settings.outputFile).filename();
     // Known endings alone are removed: the number of frame.0001 is part of the name.
-    for (const char* ending :
-         {".gz", ".pbrt", ".exr", ".png", ".pfm", ".qoi", ".hdr", ".tif", ".tiff", ".jpg", ".jpeg", ".tga", ".bmp"})
-      if (path.extension() == ending) path.replace_extension();
+    if (path.extension() == ".gz") path.replace_extension();
+    if (path.extension() == ".pbrt" || IsPictureEnding(path.extension().string())) path.replace_extension();
     if (options.shard)
       path += "." + std::to_string(options.shard->first) + "-of-" + std::to_string(options.shard->second);
     path += ".exr";

@@ -1,6 +1,7 @@
 #include "render/render_part.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cstdio>
 #include <cstring>
 
@@ -18,11 +19,10 @@ constexpr size_t kEndBytes = sizeof(uint64_t) + sizeof(uint32_t) + kPartMark.siz
 constexpr uint64_t kMostEntries = 1 << 16;
 constexpr int kMostPixels = 1 << 16;  // across
 
-// Decimal digits that restore the exact value.
+// The fewest decimal digits that restore the exact value.
 std::string ToExactString(double value) {
   char text[40];
-  std::snprintf(text, sizeof text, "%.17g", value);
-  return text;
+  return {text, std::to_chars(text, text + sizeof text, value).ptr};
 }
 
 std::string ToExactString(const glm::mat3& matrix) {

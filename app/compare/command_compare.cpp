@@ -114,7 +114,7 @@ Reference ObtainReference(const CompareOptions& options, const ComparedScene& sc
     results.pilots = FlyPilots(scene, pilotSeconds, options.referenceSeconds.value_or(10 * time), update);
   };
   if (options.reference) {
-    Reference reference = ReadReference(*options.reference, scene.Built().settings);
+    Reference reference = ReadReference(*options.reference, scene.Built().settings, sceneHash);
     if (reference.noiseOfNeighbourhoods) {
       flyPilots();
       CheckReferenceIsFinerThanRenders(reference, plan, results.pilots);

@@ -53,7 +53,8 @@ void ReadBlur(Reference& reference) {
 
 }  // namespace
 
-Reference ReadReference(const std::filesystem::path& file, const RenderSettings& settings) {
+Reference ReadReference(const std::filesystem::path& file, const RenderSettings& settings,
+                        const std::string& sceneHash) {
   Reference reference;
   try {
     reference.image = ReadImage(file);
@@ -78,6 +79,9 @@ Reference ReadReference(const std::filesystem::path& file, const RenderSettings&
   reference.facts.origin = ComparisonReference::Origin::Given;
   reference.facts.file = file.string();
   reference.facts.integrator = MetadataOf(image, "lampyr.integrator");
+  if (const std::string rendered = MetadataOf(image, "lampyr.sceneHash"); !rendered.empty() && rendered != sceneHash)
+    std::fprintf(stderr, "warning: --reference: \"%s\" was rendered from another scene, or from another state of it\n",
+                 file.c_str());
   ReadBlur(reference);
   try {
     Describe(reference);

@@ -32,7 +32,8 @@ struct Reference {
 void MakeConsistent(Settings& values);
 
 // Loads an image given by the user. Throws a UsageError if its size or crop differs from the scene's.
-Reference ReadReference(const std::filesystem::path& file, const RenderSettings& settings);
+Reference ReadReference(const std::filesystem::path& file, const RenderSettings& settings,
+                        const std::string& sceneHash);
 
 // Seed of a render: different for each use, and unlikely to be that of a user's reference.
 enum class SeedUse { Pilot = 1, Reference = 2, Compared = 3, Key = 4 };

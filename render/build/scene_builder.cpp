@@ -142,10 +142,14 @@ Transform Builder::ChooseRenderSpace() const {
   Bounds3d bounds;
   const auto add = [&bounds](const ReadEntry& entry, const Transform& startToWorld, const Transform& endToWorld) {
     const Placement& placement = entry.local.description->placement;
-    bounds.Add(GetBounds(entry.local, startToWorld * placement.start));
+    Bounds3d ofShape = GetBounds(entry.local, startToWorld * placement.start);
     if (placement.IsAnimated() || !(startToWorld == endToWorld)) {
-      bounds.Add(GetBounds(entry.local, endToWorld * placement.end));
+      ofShape.Add(GetBounds(entry.local, endToWorld * placement.end));
     }
+    // Told here: where the render space is shifted to it, other things would seem to be far away.
+    if (const Point3d center = ofShape.Center(); glm::length(center) > static_cast<double>(kFarthest))
+      throw Error(entry.local.description->shape.where, "a shape is placed farther out than 1e18");
+    bounds.Add(ofShape);
   };
   for (const ReadEntry& entry : entries_) add(entry, Transform(), Transform());
   for (const FlatInstance& instance : instances_) {
@@ -176,14 +180,21 @@ std::optional<GeometryAttributes> Builder::AttributesOf(const ReadEntry& entry) 
   attributes.material = entry.material;
   const auto opacity = textures_->FindFloat(shape.shape.parameters, "alpha");
   // A shape that is nowhere opaque separates nothing.
-  if (!opacity || !opacity->IsConstant() || opacity->Evaluate({}) > 0) media_->SetSides(shape, attributes);
+  const bool isNowhereOpaque = opacity && opacity->IsConstant() && !(opacity->Evaluate({}) > 0);
+  if (!isNowhereOpaque) media_->SetSides(shape, attributes);
   if (SeparatesMedia(attributes) && std::holds_alternative<CurveParameters>(entry.local.shape)) {
     diagnostics_.Warn(shape.shape.where, "curves do not separate participating media: the MediumInterface is ignored");
     attributes.insideMedium = attributes.outsideMedium = kSameMedium;
   }
   attributes.isBoundary = isInterface;
   attributes.isOpaque = !isInterface && !material->MayTransmit();
-  if (isInterface && !SeparatesMedia(attributes)) return std::nullopt;
+  if (isInterface && !SeparatesMedia(attributes)) {
+    if (!isNowhereOpaque && shape.areaLight < 0)
+      diagnostics_.Warn(shape.shape.where,
+                        "this shape of material \"interface\" has the same medium on both sides: it "
+                        "does nothing. MediumInterface \"INSIDE\" \"OUTSIDE\" sets them");
+    return std::nullopt;
+  }
   if (opacity) {
     WarnOfAlpha(*opacity, shape.shape.parameters, diagnostics_);
     attributes.alpha = MakeAlphaSource(*opacity);

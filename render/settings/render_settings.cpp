@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <map>
 #include <sstream>
@@ -112,8 +113,13 @@ void ReadCrop(const ParameterList& film, const RenderOverrides& overrides, Rende
     if (bounds.size() != 4)
       throw Error(film.WhereOf("pixelbounds"), "\"pixelbounds\" needs 4 values, has " + std::to_string(bounds.size()));
     const auto limit = [](int64_t n, int size) { return static_cast<int>(std::clamp<int64_t>(n, 0, size)); };
-    settings.crop = {limit(bounds[0], settings.width), limit(bounds[2], settings.height),
-                     limit(bounds[1], settings.width), limit(bounds[3], settings.height)};
+    const auto [x0, x1] = std::minmax(bounds[0], bounds[1]);
+    const auto [y0, y1] = std::minmax(bounds[2], bounds[3]);
+    if (x0 < 0 || y0 < 0 || x1 > settings.width || y1 > settings.height)
+      diagnostics.Warn(film.WhereOf("pixelbounds"),
+                       "\"pixelbounds\" reaches beyond the image: the part inside it is rendered");
+    settings.crop = {limit(x0, settings.width), limit(y0, settings.height), limit(x1, settings.width),
+                     limit(y1, settings.height)};
   }
   if (settings.crop.Width() <= 0 || settings.crop.Height() <= 0) {
     if (overrides.crop)
@@ -168,6 +174,9 @@ void ReadFilm(const SceneDescription& scene, const RenderOverrides& overrides, R
   if (overrides.width) settings.width = *overrides.width;
   if (overrides.height) settings.height = *overrides.height;
   settings.outputFile = film.GetString("filename", "");
+  if (const std::string ending = std::filesystem::path(settings.outputFile).extension();
+      ending != ".exr" && IsPictureEnding(ending))
+    diagnostics.Warn(film.WhereOf("filename"), "pictures are written as OpenEXR (.exr); --png adds one as PNG");
   for (const std::string& layer : film.GetStrings("layers")) AddLayer(layer, film.WhereOf("layers"), settings);
   for (const std::string& layer : overrides.layers) AddLayer(layer, {}, settings);
   settings.seesThroughSmooth = overrides.seesThroughSmooth;
@@ -178,6 +187,9 @@ void ReadFilm(const SceneDescription& scene, const RenderOverrides& overrides, R
   settings.halfPrecision = film.GetBool("savefp16", false);
   const std::string sensor = film.GetString("sensor", "cie1931");
   CheckSensorName(film, sensor);
+  if (sensor != "cie1931")
+    diagnostics.Warn(film.WhereOf("sensor"), "the colours of the sensor \"" + sensor +
+                                                 "\" are not modelled: they are those of the CIE 1931 observer");
   const ParameterList& camera = scene.camera.parameters;
   const double exposureTime = camera.GetFloat("shutterclose", 1) - camera.GetFloat("shutteropen", 0);
   if (!(exposureTime > 0)) {
@@ -385,6 +397,11 @@ void CheckAccelerator(const SceneDescription& scene, Diagnostics& diagnostics) {
 }
 
 }  // namespace
+
+bool IsPictureEnding(const std::string& ending) {
+  const auto endings = {".exr", ".png", ".pfm", ".qoi", ".hdr", ".tif", ".tiff", ".jpg", ".jpeg", ".tga", ".bmp"};
+  return std::find(endings.begin(), endings.end(), ending) != endings.end();
+}
 
 RenderSettings ReadRenderSettings(const SceneDescription& description, const RenderOverrides& overrides,
                                   Diagnostics& diagnostics) {

@@ -81,6 +81,10 @@ struct RenderSettings {
   LightSelection LightSampler() const { return *ParseLightSelection(values.Word("light-sampler")); }
 };
 
+// True for the endings of files of pictures (".png"), which are not part of a picture's name as that of "frame.0001"
+// is.
+bool IsPictureEnding(const std::string& ending);
+
 // Reads Film, PixelFilter, Sampler and Integrator. Throws located Errors; UsageError when an override is wrong.
 RenderSettings ReadRenderSettings(const SceneDescription& description, const RenderOverrides& overrides,
                                   Diagnostics& diagnostics);

@@ -117,8 +117,37 @@ std::string NearestName(std::string_view given, const std::vector<std::string>& 
   return nearest;
 }
 
+namespace {
+
+// Names of pbrt-v3, with the one of today that does most of the same.
+constexpr std::pair<std::string_view, std::string_view> kFormerNames[] = {{"matte", "diffuse"},
+                                                                          {"plastic", "coateddiffuse"},
+                                                                          {"substrate", "coateddiffuse"},
+                                                                          {"uber", "coateddiffuse"},
+                                                                          {"glass", "dielectric"},
+                                                                          {"metal", "conductor"},
+                                                                          {"mirror", "conductor"},
+                                                                          {"translucent", "diffusetransmission"},
+                                                                          {"fourier", "measured"},
+                                                                          {"image", "rgb"},
+                                                                          {"environment", "spherical"},
+                                                                          {"directlighting", "path"},
+                                                                          {"random", "independent"},
+                                                                          {"02sequence", "paddedsobol"},
+                                                                          {"st", "uv"},
+                                                                          {"Kd", "reflectance"},
+                                                                          {"Kr", "reflectance"}};
+
+std::string ModernName(std::string_view given, const std::vector<std::string>& known) {
+  for (const auto& [former, name] : kFormerNames)
+    if (given == former && std::find(known.begin(), known.end(), name) != known.end()) return std::string(name);
+  return NearestName(given, known);
+}
+
+}  // namespace
+
 std::string DidYouMean(std::string_view given, const std::vector<std::string>& known) {
-  const std::string nearest = NearestName(given, known);
+  const std::string nearest = ModernName(given, known);
   return nearest.empty() ? "" : " (did you mean \"" + nearest + "\"?)";
 }
 

@@ -4,11 +4,13 @@
 #include <zlib.h>
 
 #include <bit>
+#include <cerrno>
 #include <charconv>
 #include <cstring>
 #include <memory>
 #include <optional>
 #include <string_view>
+#include <system_error>
 
 namespace lampyr {
 
@@ -371,7 +373,7 @@ std::string ReadWhole(const std::filesystem::path& path, const Failure& fail) {
   if (std::filesystem::is_directory(status)) fail("is a folder");
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) fail("is not a regular file");
   const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), gzclose);
-  if (!file) fail("cannot be opened");
+  if (!file) fail("cannot be opened: " + std::system_category().message(errno));
   gzbuffer(file.get(), 1 << 18);
   std::string content;
   constexpr size_t kChunk = 1 << 20, kAlwaysFine = size_t{64} << 20, kLargestGrowth = 200;

@@ -45,10 +45,10 @@ void CheckShape(const BilinearMesh& m) {
 void CheckShape(const PreparedQuadric& q) {
   const Bounds3 bounds = GetBounds(q.Shape());
   const Affine& inverse = q.Shape().toObject;
-  if (!(q.Shape().radius > 0) || !IsUsable(bounds.min) || !IsUsable(bounds.max) || !IsUsable(inverse.linear[0]) ||
-      !IsUsable(inverse.linear[1]) || !IsUsable(inverse.linear[2])) {
-    throw Error("quadric: the radius is not positive, or the transform is singular or not finite");
-  }
+  if (!(q.Shape().radius > 0)) throw Error("the radius must be above 0");
+  if (!IsUsable(bounds.min) || !IsUsable(bounds.max)) throw Error("the shape reaches farther out than 1e18");
+  if (!IsUsable(inverse.linear[0]) || !IsUsable(inverse.linear[1]) || !IsUsable(inverse.linear[2]))
+    throw Error("the transform of the shape is singular, or makes it smaller than 1e-18 of itself");
 }
 void CheckShape(const CurveSet& c) {
   if (c.radii.size() != c.segments.size() || c.uRange.size() != c.segments.size() ||

@@ -51,6 +51,16 @@ std::shared_ptr<const Material> MakeDiffuseTransmission(const MaterialInput& inp
       static_cast<float>(input.parameters.GetFloat("scale", 1))};
   ShadingNormal shadingNormal(input.parameters, input.textures, input.diagnostics);
   CheckMaterialParameters(input, {"reflectance", "transmittance", "scale"});
+  const auto most = [&](const ColorParameter& c) {
+    return c.IsConstant() ? ClampToUnit(recipe.scale * c.Evaluate({})) : Color(0.0f);
+  };
+  if (const float sum = (most(recipe.reflectance) + most(recipe.transmittance)).Max(); sum > 1.0001f) {
+    const bool isGiven = input.parameters.Find("transmittance") != nullptr;
+    input.diagnostics.Warn(
+        input.parameters.WhereOf(isGiven ? "transmittance" : "reflectance"),
+        "the surface scatters more light than it receives: reflectance and transmittance add up to " +
+            std::to_string(sum).substr(0, 4));
+  }
   return std::make_shared<RecipeMaterial<DiffuseTransmissionRecipe>>(std::move(recipe), std::move(shadingNormal));
 }
 

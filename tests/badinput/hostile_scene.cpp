@@ -203,13 +203,16 @@ TEST(HostileScene, AbsurdNumbersAreRefusedOrHarmless) {
        "2147483647 ]",
        "index 2147483647 is out of range"},
       {"WorldBegin Shape \"trianglemesh\" \"point3 P\" [ 1e38 0 0 1 0 0 0 1 0 ]", "farther out than 1e18"},
-      {"WorldBegin Shape \"sphere\" \"float radius\" 1e30", "radius"},
+      {"WorldBegin Shape \"sphere\" \"float radius\" 1e30", "the shape reaches farther out than 1e18"},
+      {"WorldBegin Scale 1e-20 1e-20 1e-20 Shape \"sphere\"", "makes it smaller than 1e-18 of itself"},
+      {"WorldBegin LightSource \"infinite\" Translate 1e19 0 0 Shape \"sphere\"",
+       "scene.pbrt:1:54: error: a shape is placed farther out than 1e18"},
       {"Camera \"perspective\" \"float lensradius\" 1e39 WorldBegin", "too large"},
       {"WorldBegin LightSource \"point\" \"point3 from\" [ 0 2e18 0 ]", "\"from\" is farther out than 1e18"},
       {"WorldBegin LightSource \"spot\" \"point3 from\" [ 0 -2e18 0 ]", "\"from\" is farther out than 1e18"},
       {"WorldBegin Translate 0 0 2e18 LightSource \"point\"", "is placed farther out than 1e18"},
       {"WorldBegin Translate 0 0 2e18 LightSource \"goniometric\"", "is placed farther out than 1e18"},
-      {"WorldBegin Scale 1e20 1 1 Shape \"trianglemesh\" \"point3 P\" [ 1e38 0 0 1 0 0 0 1 0 ]", "too large"},
+      {"WorldBegin Scale 1e20 1 1 Shape \"trianglemesh\" \"point3 P\" [ 1e38 0 0 1 0 0 0 1 0 ]", "farther out than 1e18"},
   };
   for (const Value& value : values) {
     const std::string error = BuildError(value.statement);

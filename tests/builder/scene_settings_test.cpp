@@ -1,4 +1,5 @@
 // Scene statements have the meaning that they have in pbrt-v4.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "scene/referenced_files.h"
@@ -42,6 +43,41 @@ TEST(ReferencedFiles, HoldTheTiltOfProfiles) {
                  "test.pbrt", diagnostics);
   EXPECT_EQ(ReferencedFiles(scene),
             (std::vector<std::string>{(folder / "a.ies").string(), (folder / "a.tlt").string()}));
+}
+
+// What is not done as the scene says is told, at its place.
+TEST(Warnings, AreGivenForWhatIsNotDone) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"Film \"rgb\" \"string filename\" \"a.png\" WorldBegin Shape \"sphere\"",
+       "1:12: warning: pictures are written as"},
+      {"Film \"rgb\" \"string filename\" \"a.0001\" WorldBegin Shape \"sphere\"", ""},
+      {"Film \"rgb\" \"string sensor\" \"sony_ilce_9\" WorldBegin Shape \"sphere\"",
+       "1:12: warning: the colours of the"},
+      {"Film \"rgb\" \"string sensor\" \"cie1931\" WorldBegin Shape \"sphere\"", ""},
+      {"Film \"rgb\" \"integer pixelbounds\" [9 0 0 2000] WorldBegin Shape \"sphere\"",
+       "1:12: warning: \"pixelbounds\" reaches"},
+      {"Film \"rgb\" \"integer pixelbounds\" [9 0 0 12] WorldBegin Shape \"sphere\"", ""},
+      {"WorldBegin Material \"diffusetransmission\" \"rgb transmittance\" [1 .8 .7] Shape \"sphere\"",
+       "1:43: warning: the surface scatters more light than it receives: reflectance and transmittance add up to 1.25"},
+      {"WorldBegin Material \"diffusetransmission\" \"rgb transmittance\" [.75 .7 .7] Shape \"sphere\"", ""},
+      {"MakeNamedMedium \"f\" \"string type\" \"homogeneous\" WorldBegin MediumInterface \"f\" Material \"interface\" "
+       "Shape \"sphere\"",
+       "1:101: warning: this shape of material \"interface\" has the same medium on both sides"},
+      {"WorldBegin Material \"interface\" Shape \"sphere\" \"float alpha\" 0", ""},
+  };
+  for (const auto& [text, warning] : cases) {
+    Diagnostics diagnostics(Diagnostics::Mode::Collect);
+    BuildScene(
+        ParseScene(std::string("LookAt 0 0 5 0 0 0 0 1 0 Camera \"perspective\"\n") + text, "test.pbrt", diagnostics),
+        {}, true, diagnostics);
+    std::string told;
+    for (const std::string& each : diagnostics.Warnings()) told += each + "\n";
+    if (*warning == 0) {
+      EXPECT_EQ(told.find("test.pbrt:2"), std::string::npos) << text << "\n" << told;
+    } else {
+      EXPECT_THAT(told, testing::HasSubstr("test.pbrt:2" + std::string(warning + 1))) << text;
+    }
+  }
 }
 
 // Fractions are those of floats, and bounds may be in any order.

@@ -65,6 +65,9 @@ TEST(NearestName, FindsTyposOnly) {
   EXPECT_EQ(NearestName("teapot", known), "");
   EXPECT_EQ(DidYouMean("plymehs", known), " (did you mean \"plymesh\"?)");
   EXPECT_EQ(DidYouMean("nurbs", known), "");
+  // Names of pbrt-v3, where the one of today is known.
+  EXPECT_EQ(DidYouMean("matte", {"conductor", "diffuse"}), " (did you mean \"diffuse\"?)");
+  EXPECT_EQ(DidYouMean("matte", {"conductor"}), "");
 }
 
 TEST(ParallelFor, CallsEachItemOnceAndPassesOnExceptions) {
