@@ -189,7 +189,7 @@ std::optional<GeometryAttributes> Builder::AttributesOf(const ReadEntry& entry) 
   attributes.isBoundary = isInterface;
   attributes.isOpaque = !isInterface && !material->MayTransmit();
   if (isInterface && !SeparatesMedia(attributes)) {
-    if (!isNowhereOpaque && shape.areaLight < 0)
+    if (!isNowhereOpaque && shape.areaLight < 0 && shape.insideMedium == shape.outsideMedium)
       diagnostics_.Warn(shape.shape.where,
                         "this shape of material \"interface\" has the same medium on both sides: it "
                         "does nothing. MediumInterface \"INSIDE\" \"OUTSIDE\" sets them");
@@ -243,7 +243,7 @@ void Builder::MakeEmissive(const ReadEntry& entry, const Transform& toRender,
     lightEntries->push_back(&entry);
   } else {
     placed.attributes.light = lights_->NextIndex();
-    media_->AddAreaLight(lights_->NextIndex(), placed.attributes);
+    media_->AddAreaLight(lights_->NextIndex(), placed.attributes, shape);
     lights_->AddAreaLight(shape, placed.shape, {}, toRender, placed.attributes.alpha);
   }
   const bool cameraVisible = description_.areaLights[shape.areaLight].parameters.GetBool("cameraVisible", true);
@@ -292,7 +292,7 @@ void Builder::PlacePart(const Part& part, const FileLocation& where, const Rende
   for (const GeometryEntry& entry : entries) {
     if (entry.attributes.light < 0) continue;
     const ReadEntry& source = *part.lightEntries[entry.attributes.light];
-    media_->AddAreaLight(lights_->NextIndex(), entry.attributes);
+    media_->AddAreaLight(lights_->NextIndex(), entry.attributes, *source.local.description);
     lights_->AddAreaLight(*source.local.description, entry.shape, placement,
                           part.placement ? Transform() : StillPlacement(source), entry.attributes.alpha);
     lights_->MarkLastAsInstance();

@@ -30,8 +30,8 @@ class SceneMedia {
   void AddPlace(int object, size_t entry, const FileLocation& where) { places_.push_back({object, entry, where}); }
   // Finds the primitives of these places. To be called when `geometry` is complete.
   void NumberPlaces(const GeometryDescription& geometry);
-  // Records the media on both sides of the surface that area light `light` is.
-  void AddAreaLight(size_t light, const GeometryAttributes& attributes);
+  // Records the media on both sides of the surface that area light `light` is, or the one that it is said to be in.
+  void AddAreaLight(size_t light, const GeometryAttributes& attributes, const ShapeDescription& shape);
 
   // Sets the media around the camera, and in front of and behind the lights. `middle`: of the film, in pixels.
   // `lightPlaces`: places in the file, by light.
@@ -66,15 +66,18 @@ class SceneMedia {
   std::string NameOf(int32_t medium) const;
   int32_t Choose(const std::string& what, const FileLocation& where, const std::string& name, const FoundMedium& found,
                  int32_t otherwise);
-  Sides MediaOfLight(const RenderScene& scene, size_t light, const FileLocation& where, int32_t exterior);
+  void WarnOfDispute(uint32_t primitive, const FileLocation& where, const std::string& what, int32_t medium);
+  // `points`: of a surface, at which the medium is looked for.
+  Sides MediaOfLight(const RenderScene& scene, size_t light, const FileLocation& where, int32_t exterior, int points);
 
   const SceneDescription& description_;
   Diagnostics& diagnostics_;
   std::unordered_map<std::string, int32_t> indices_;
   std::vector<Place> places_;
   std::unordered_map<uint32_t, FileLocation> primitivePlaces_;
-  std::unordered_map<size_t, Sides> areaLights_;  // those that separate media
-  FoundMedium around_;                            // the camera
+  std::unordered_map<size_t, Sides> areaLights_;            // those that separate media
+  std::unordered_map<size_t, std::string> areaLightNames_;  // of the others, where they are said to be in one
+  FoundMedium around_;                                      // the camera
   bool hasWarnedOfDispute_ = false;
 };
 

@@ -638,6 +638,14 @@ std::vector<MediumSurfaces> GeometryScene::SurfacesOfAll(size_t media) const {
   return all;
 }
 
+std::vector<Bounds3> GeometryScene::BoundaryBoxes() const {
+  std::vector<Bounds3> boxes;
+  implementation_->VisitBoxes([&](const Bounds3& box, bool, const GeometryAttributes& attributes) {
+    if (SeparatesMedia(attributes) && !attributes.isOpaque) boxes.push_back(box);
+  });
+  return boxes;
+}
+
 size_t GeometryScene::PrimitiveCount() const {
   return implementation_->tables.primitives.size();
 }

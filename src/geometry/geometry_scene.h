@@ -161,6 +161,8 @@ class GeometryScene {
   MediumSurfaces SurfacesOf(int32_t medium) const;
   // Those of all media, by index, in one pass over the surfaces.
   std::vector<MediumSurfaces> SurfacesOfAll(size_t media) const;
+  // Boxes of the surfaces that separate media and let light pass, over the shutter.
+  std::vector<Bounds3> BoundaryBoxes() const;
   size_t PrimitiveCount() const;             // shapes, instanced ones once
   const Bounds3& GetBounds() const;          // empty for an empty scene
   BoundingSphere GetBoundingSphere() const;  // radius 1 around 0 for an empty scene

@@ -39,17 +39,6 @@ std::optional<int32_t> LastMedium(const std::vector<MediumChange>& changes) {
   return std::nullopt;
 }
 
-// A primitive that does not begin in the medium in which the one before it has ended. Behind a surface that stops rays
-// media need not continue: the foot of a rock in the sand is neither in water nor in air.
-uint32_t BrokenLink(const std::vector<MediumChange>& changes) {
-  for (size_t i = 1; i < changes.size(); ++i) {
-    if (!changes[i - 1].isBoundary) break;
-    const int32_t behind = changes[i - 1].behind, before = changes[i].before;
-    if (behind != kSameMedium && before != kSameMedium && behind != before) return changes[i].primitive;
-  }
-  return kNoIndex;
-}
-
 // The medium in which rays from `medium` end. Those that something stops do not count, unless all are stopped: what is
 // behind the floor of an open scene is not where its sky is.
 std::optional<int32_t> ExteriorOf(std::span<const std::vector<MediumChange>> rays, int32_t medium) {
@@ -68,6 +57,20 @@ std::optional<int32_t> ExteriorOf(std::span<const std::vector<MediumChange>> ray
 }
 
 }  // namespace
+
+uint32_t BrokenLink(const std::vector<MediumChange>& changes, int32_t start) {
+  int32_t behind = start;
+  bool wasBoundary = false;
+  for (const MediumChange& change : changes) {
+    // A wall may reach from the water that it is said to be in into the air.
+    if (change.isOpaque && !wasBoundary) break;
+    if (behind != kSameMedium && change.before != kSameMedium && behind != change.before) return change.primitive;
+    if (change.isOpaque) break;
+    behind = change.behind;
+    wasBoundary = change.isBoundary;
+  }
+  return kNoIndex;
+}
 
 std::vector<MediumChange> MediumChanges(const GeometryScene& geometry, const Ray& ray) {
   std::vector<MediumChange> changes;

@@ -20,6 +20,11 @@ struct MediumChange {
 // All changes of the medium along a ray, in order, also behind what stops rays of other kinds.
 std::vector<MediumChange> MediumChanges(const GeometryScene& geometry, const Ray& ray);
 
+// A primitive that does not begin in the medium in which the change before it has ended, kNoIndex for none. Behind
+// what stops light media need not continue: the foot of a rock in the sand is neither in water nor in air. `start`: the
+// medium that the first change should begin in, if that does not stop light; kSameMedium: not known.
+uint32_t BrokenLink(const std::vector<MediumChange>& changes, int32_t start = kSameMedium);
+
 struct FoundMedium {
   std::optional<int32_t> medium;  // nullopt: no ray from the point meets a surface that says it
   bool isUnanimous = false;       // all rays say the same, what stops light included

@@ -130,6 +130,24 @@ std::vector<Corner> Corners() {
       "sigma_a\" [ 0 0 0 ]\nLightSource \"spot\" \"point3 from\" [ 37000 80000 47000 ] \"point3 to\" [ 0 0 0 ] \"float "
       "coneangle\" 0.00115 \"float conedeltaangle\" 1.15e-5 \"rgb I\" [ 1e10 1e10 1e10 ]\n"
       "Material \"interface\" MediumInterface \"fog\" \"\" Shape \"sphere\" \"float radius\" 1\n";
+  // An eighth of a tube is in ink, which no other light passes.
+  const std::string tube =
+      kInFront +
+      "WorldBegin\nMakeNamedMedium \"ink\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [ 0 0 0 ] \"rgb sigma_a\" "
+      "[ 10 10 10 ]\nAttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [ 10 10 10 ]\nTranslate 0.7 1 0 Rotate 90 0 "
+      "1 0 "
+      "Shape \"cylinder\" \"float radius\" 0.05 \"float zmin\" -2 \"float zmax\" 2\nAttributeEnd\nAttributeBegin\n"
+      "Material \"interface\" MediumInterface \"ink\" \"\" Translate 0 1 0 Shape \"sphere\" \"float radius\" 0.25\n"
+      "AttributeEnd\n" +
+      kFloor;
+  // The floor turns its inner side, which is said to be empty, to the lamp, which is said to be in fog.
+  const std::string twosided =
+      "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [ 0.5 0.5 0.5 ] \"rgb sigma_a\" "
+      "[ 0.05 0.05 0.05 ]\nMediumInterface \"\" \"fog\"\n" +
+      kInFront + "WorldBegin\n" + kFloor +
+      "AttributeBegin\nMediumInterface \"fog\"\nAreaLightSource \"diffuse\" \"rgb L\" [ 9 8 7 ] \"bool twosided\" "
+      "true\n"
+      "Translate 0 1.8 0 Rotate 90 1 0 0 Shape \"disk\" \"float radius\" 0.5\nAttributeEnd\n";
   const std::string portal =
       kAbove +
       "WorldBegin\nAttributeBegin\nTranslate 0 1 0 Rotate -90 1 0 0\nLightSource \"portal\" \"float width\" 1 \"float "
@@ -156,6 +174,8 @@ std::vector<Corner> Corners() {
       {"sphere_inside_out_that_rays_pass", PassedSphere("", "ReverseOrientation\n"), {"path", "bdpt", "vcm", "sppm"}},
       {"beams_behind_a_tinted_pane", beams, {"path", "bdpt", "vcm", "sppm"}, 256},
       {"fog_far_from_its_lamp", distant, {"path", "light", "bdpt", "vcm"}, 256},
+      {"ink_around_a_part_of_a_lamp", tube, {"path", "light", "bdpt", "vcm", "sppm"}, 256},
+      {"fog_said_of_both_sides_of_a_lamp", twosided, {"path", "light", "bdpt", "vcm", "sppm"}, 256},
       {"portal_behind_the_middle", portal, {"path", "bdpt", "vcm", "sppm"}},
       {"small_fire", Fire(0.012, "Translate 0.31 0.45 0.22\n"), {"path", "light"}, 1024, 0.2},
       {"moving_fire", Fire(0.2, moves), {"path", "light", "sppm"}, 512, 0.08},

@@ -215,6 +215,13 @@ TEST(SceneMedia, AreBeforeAndBehindAreaLights) {
   const std::string lamp = "ObjectBegin \"o\" AttributeBegin " + area + "Material \"diffuse\" " + Sphere(0.5f) +
                            "AttributeEnd ObjectEnd ObjectInstance \"o\" Translate 9 0 0 ObjectInstance \"o\"\n";
   EXPECT_THAT(LightMedia(kFogBall + lamp), ElementsAre(kFog, kVacuum));
+  // In one that is said of both sides, whatever an opaque floor says.
+  EXPECT_THAT(
+      LightMedia("MediumInterface \"fog\" \"\" Translate 0 -1 0 Material \"diffuse\" Shape \"disk\" \"float radius\" "
+                 "9 MediumInterface \"milk\" Translate 0 2 0 " +
+                     area + "Shape \"disk\"\n",
+                 ""),
+      ElementsAre(kMilk));
   // A light with a surface of its own.
   EXPECT_THAT(LightMedia(kFogBall + "LightSource \"sphere\" Translate 9 0 0 LightSource \"sphere\"\n"),
               ElementsAre(kFog, kVacuum));
@@ -244,6 +251,13 @@ TEST(SceneMedia, WarnWhereBoundariesOverlap) {
   EXPECT_THAT(scene.warnings, testing::Contains(HasSubstr("contradict each other")).Times(1));
   EXPECT_THAT(scene.warnings,
               testing::Contains(testing::MatchesRegex("test.pbrt:(6|9):1: warning: the media on the .*")));
+  // A curtain in the fog that is said to have none on one side.
+  const std::string curtain = "Material \"diffusetransmission\" Translate 0 0 3 Shape \"disk\"\n";
+  for (const char* sides : {"\"\" \"fog\"", "\"fog\" \"\""}) {
+    const Scene hung = Build(std::string("MediumInterface ") + sides + "\n" + curtain, kInFog);
+    const bool isSeen = hung.Attributes(0).insideMedium == kFog;  // the camera is behind it
+    EXPECT_EQ(hung.warnings.size(), isSeen ? 0u : 1u) << sides;
+  }
   // A light that reaches out of the medium that most of it is in: each ray starts where it is.
   const Scene reaching =
       Build(kFogBall + "AreaLightSource \"diffuse\" Material \"diffuse\" Shape \"disk\" \"float radius\" 20\n", kInFog);
@@ -251,6 +265,11 @@ TEST(SceneMedia, WarnWhereBoundariesOverlap) {
   EXPECT_THAT(lit.lightStartsVary, ElementsAre(1));
   EXPECT_EQ(lit.MediumOfLight(0, false, {Point3(0, 0, 0), Vector3(0, 0, 1)}), kFog);
   EXPECT_EQ(lit.MediumOfLight(0, false, {Point3(15, 0, 0), Vector3(-1, 0, 0)}), kVacuum);
+  // A hundredth of a lamp is in the fog.
+  const Scene tube = Build("Translate 45 0 0 " + kFogBall +
+                           "Translate 5 0 0 Rotate 90 0 1 0 AreaLightSource \"diffuse\" "
+                           "Material \"diffuse\" Shape \"cylinder\" \"float zmin\" -50.2 \"float zmax\" 50\n");
+  EXPECT_THAT(tube.Render().lightStartsVary, ElementsAre(1));
 }
 
 // The scenes of pbrt-v4 with media: no warnings, and light where it is.
