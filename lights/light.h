@@ -235,8 +235,10 @@ class Light {
                                                          const Point3& P) const = 0;
 
   // True if photons may be importance-sampled towards a target: in any direction from a position on the light or, for a
-  // light at infinity, along any line parallel to the sampled direction. False for a light that emits through an
-  // opening of its own (a portal), which the emitted ray has to pass.
+  // light at infinity, along any line parallel to the sampled direction, which then has the same radiance and the same
+  // pdfEmit and pdfEmitDirection. False for a light that emits through an opening of its own (a portal), which the
+  // emitted ray has to pass, and for one at infinity whose radiance or densities depend on the line (a sun behind
+  // clouds that throw shadows).
   virtual bool CanBeAimed() const { return true; }
 
   // The part of the surface that is there at a point of it, in [0,1]; cut-outs let the rest of all rays pass. A ray

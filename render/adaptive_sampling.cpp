@@ -247,14 +247,16 @@ SampleAllocation::SampleAllocation(const SampleStage& stage, const Film& film, c
     ends_[i] = std::min(static_cast<uint64_t>(end + 0.5), all);
   }
   ends_.back() = all;
+  const uint64_t others = stage_.passes - 1;
+  firstShift_ = MixBits(stage_.seed) % others;
+  shiftStep_ = static_cast<uint64_t>(0.6180339887498949 * static_cast<double>(others) + 0.5);
+  while (std::gcd(shiftStep_, others) != 1) ++shiftStep_;
 }
 
 // A multiple of a number near the golden section of `passes - 1` and prime to it: passes in a row are far apart.
 uint64_t SampleAllocation::Shift(uint32_t pass) const {
   const uint64_t passes = stage_.passes - 1;
-  auto step = static_cast<uint64_t>(0.6180339887498949 * static_cast<double>(passes) + 0.5);
-  while (std::gcd(step, passes) != 1) ++step;
-  return (MixBits(stage_.seed) % passes + (pass - 1) % passes * step) % passes;
+  return (firstShift_ + (pass - 1) % passes * shiftStep_) % passes;
 }
 
 size_t SampleAllocation::PixelOf(uint64_t slot, uint32_t pass) const {

@@ -61,6 +61,7 @@ class SampleAllocation {
   // one pass are every (passes - 1)-th, beginning at another one in each pass: together they are all, and a pixel's are
   // evenly distributed over the passes.
   std::vector<uint64_t> ends_;
+  uint64_t firstShift_ = 0, shiftStep_ = 0;  // of Shift
 };
 
 // The samples that each pixel should have in a stage, by what the ended stages of the film tell; one for each pixel and

@@ -134,7 +134,7 @@ struct Pass {
   void Record(int x, int y, uint64_t sample, PathRecords* records, TestedSamples* tested,
               SampleContext& context) const {
     context.records = records;
-    context.pixel = static_cast<uint32_t>(y * settings.width + x);
+    context.pixel = static_cast<uint32_t>(y) * static_cast<uint32_t>(settings.width) + static_cast<uint32_t>(x);
     context.sample = static_cast<uint32_t>(sample);
     if (!tested) return;
     constexpr uint64_t kOthersThanRecords = 0x6a09e667f3bcc908;

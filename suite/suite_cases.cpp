@@ -57,7 +57,7 @@ struct SuiteCase {
   const LightType* type = nullptr;
   const ParameterList* parameters = nullptr;
   const std::vector<ParameterList>* changes = nullptr;  // edits to check; null: none in this case
-  std::string name, caseName;
+  std::string name, caseName, shapeName;
   std::optional<Shape> shape;
   Transform builtAt, placedAt;
   bool keepsAngles = true;
@@ -76,8 +76,9 @@ class SuiteRun {
   std::vector<SuiteResult> Run();
 
  private:
+  void AddRefusals(const std::vector<std::string>& refusals, SuiteReport& report) const;
   void AddCases(const SuiteCase& light, int which, size_t block);
-  SuiteReport Check(const SuiteCase& suiteCase) const;
+  SuiteReport Check(const SuiteCase& suiteCase, std::string& refusal) const;
   void CheckParametersOf(const SuiteCase& suiteCase, const SuiteSubject& subject, SuiteOrigin origin,
                          SuiteReport& report) const;
   std::vector<ParameterList> ChangesOf(const LightType& type, size_t index);
@@ -128,6 +129,7 @@ void SuiteRun::Add(const LightType& type) {
       const NamedShape& shape = shapes[i];
       if (index > 0 && (i + index) % 3 != 0) continue;
       light.shape = shape.shape;
+      light.shapeName = shape.name;
       light.caseName = shape.name + " ";
       AddCases(light, which++, index);
     }
@@ -196,7 +198,8 @@ void SuiteRun::CheckParametersOf(const SuiteCase& suiteCase, const SuiteSubject&
   suite::CheckEdit(subject, origin, report);
 }
 
-SuiteReport SuiteRun::Check(const SuiteCase& suiteCase) const {
+// `refusal`: receives the error of a light that refuses the shape.
+SuiteReport SuiteRun::Check(const SuiteCase& suiteCase, std::string& refusal) const {
   // Each case has its own, because these record their use and cases run in parallel.
   Diagnostics diagnostics(Diagnostics::Mode::Collect);
   const TextureLibrary textures({}, Transform(), diagnostics);
@@ -225,7 +228,15 @@ SuiteReport SuiteRun::Check(const SuiteCase& suiteCase) const {
   // A portal stands in world space: its size is the same wherever the light is placed.
   if (parameters.Find("portal")) subject.context.scene.radius = std::max(subject.context.scene.radius, 4.0f);
   subject.context.bidirectional = true;
-  const std::unique_ptr<Light> light = MakeLight(*suiteCase.type, parameters, build);
+  std::unique_ptr<Light> light;
+  try {
+    light = MakeLight(*suiteCase.type, parameters, build);
+  } catch (const Error& error) {
+    // A type may be for some shapes alone.
+    if (!suiteCase.shape) throw;
+    refusal = error.what();
+    return report;
+  }
   subject.light = light.get();
   if (IsAtInfinity(light->Kind()) && suiteCase.type->name != "portal") {
     // The scene is not where the light is placed, nor of a size that follows from it. A portal is a window of it.
@@ -246,6 +257,27 @@ SuiteReport SuiteRun::Check(const SuiteCase& suiteCase) const {
   return report;
 }
 
+// A type may be for some shapes alone: it refuses them with every sample of parameters, and accepts another one.
+// `refusals`: by case; empty: accepted.
+void SuiteRun::AddRefusals(const std::vector<std::string>& refusals, SuiteReport& report) const {
+  const auto exists = [&](const auto& isWanted) {
+    for (size_t k = 0; k < cases_.size(); ++k)
+      if (isWanted(cases_[k], !refusals[k].empty())) return true;
+    return false;
+  };
+  for (size_t i = 0; i < cases_.size(); ++i) {
+    const SuiteCase& refused = cases_[i];
+    if (refusals[i].empty()) continue;
+    const bool isAcceptedElsewhere =
+        exists([&](const SuiteCase& other, bool isRefused) { return other.type == refused.type && !isRefused; });
+    const bool isAcceptedOtherwise = exists([&](const SuiteCase& other, bool isRefused) {
+      return other.type == refused.type && other.shapeName == refused.shapeName && !isRefused;
+    });
+    report.AddError(refused.name, "shapes", refused.caseName, isAcceptedElsewhere && !isAcceptedOtherwise ? 0 : 1, 0.5,
+                    refusals[i]);
+  }
+}
+
 std::vector<SuiteResult> SuiteRun::Run() {
   std::vector<SuiteCase> chosen;
   for (size_t i = 0; i < cases_.size(); ++i) {
@@ -253,9 +285,12 @@ std::vector<SuiteResult> SuiteRun::Run() {
       chosen.push_back(std::move(cases_[i]));
   }
   cases_ = std::move(chosen);
-  return suite::RunCases(cases_.size(), options_,
-                         [&](size_t index, SuiteReport& report) { report = Check(cases_[index]); })
-      .Finish(options_.familyWise);
+  std::vector<std::string> refusals(cases_.size());
+  SuiteReport all = suite::RunCases(cases_.size(), options_, [&](size_t index, SuiteReport& report) {
+    report = Check(cases_[index], refusals[index]);
+  });
+  AddRefusals(refusals, all);
+  return all.Finish(options_.familyWise);
 }
 
 }  // namespace

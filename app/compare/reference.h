@@ -31,9 +31,10 @@ struct Reference {
 // asks for, with merging radii of its own choice, which shrink.
 void MakeConsistent(Settings& values);
 
-// Loads an image given by the user. Throws a UsageError if its size or crop differs from the scene's.
+// Loads an image given by the user. Throws a UsageError if its size or crop differs from the scene's; warns if it says
+// that it is of another scene than `sceneHash` (empty: not looked at).
 Reference ReadReference(const std::filesystem::path& file, const RenderSettings& settings,
-                        const std::string& sceneHash);
+                        const std::string& sceneHash = "");
 
 // Seed of a render: different for each use, and unlikely to be that of a user's reference.
 enum class SeedUse { Pilot = 1, Reference = 2, Compared = 3, Key = 4 };

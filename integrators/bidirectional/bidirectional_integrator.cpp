@@ -345,13 +345,15 @@ class CameraSide final : public PathVisitor {
   // At a vertex before which there are deltas only, taken as flat.
   void SetMerging(double distance) {
     double footprint = firstFootprint_;
-    if (!sample_.context.scene.camera->ConnectsByDirection())
-      footprint *= distance / firstDistance_ * (distance / firstDistance_);
+    const bool isParallel = sample_.context.scene.camera->ConnectsByDirection();
+    if (!isParallel) footprint *= distance / firstDistance_ * (distance / firstDistance_);
     sample_.mergeRadius = sample_.MergeRadiusAt(footprint);
     if (sample_.settings.photons.radius == 0) {
       const auto size = static_cast<double>(sample_.Lighting().SceneSphere().radius);
-      sample_.perArea =
-          static_cast<float>(firstFootprint_ / (firstDistance_ * firstDistance_) * size * size / footprint);
+      // The radii of a camera of parallel rays are the same at all distances.
+      sample_.perArea = isParallel ? 1.0f
+                                   : static_cast<float>(firstFootprint_ / (firstDistance_ * firstDistance_) * size *
+                                                        size / footprint);
     }
     sample_.merging = sample_.MergingAt(distance, footprint, sample_.film);
   }

@@ -181,7 +181,7 @@ Color MergeInMedium(const BidirectionalSample& sample, const VolumeMerge& merge)
   if (pass.use && merge.use != VolumeMerge::kUnused) {
     // A beam counts as a point photon would at the end of the flight.
     const auto radius = static_cast<double>(pass.volume.At(vertex.point.position));
-    const double scale = weight * merge.kernel * static_cast<double>(kPi) * radius * radius;
+    const double scale = weight * merge.kernel * static_cast<double>(kPi) * radius * radius / probability;
     PhotonUse::Contribution used[1] = {
         {merge.use, (merge.throughput * f.diffuse).Average() * static_cast<float>(scale) * sample.perArea}};
     pass.use->Add(used);

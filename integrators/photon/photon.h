@@ -110,7 +110,8 @@ class PhotonList {
   void StartPath() {
     starts_.push_back({static_cast<uint32_t>(photons_.size()), static_cast<uint32_t>(densities_.size()),
                        static_cast<uint32_t>(volume_.size()), static_cast<uint32_t>(beams_.starts.size()),
-                       static_cast<uint32_t>(beams_.beams.size()), static_cast<uint32_t>(beams_.emissions.size())});
+                       static_cast<uint32_t>(beams_.beams.size()), static_cast<uint32_t>(beams_.emissions.size()),
+                       static_cast<uint32_t>(labels_.size()), static_cast<uint32_t>(beams_.labels.size())});
     StartDensities();
   }
   // Sets the origin of the current path, for emission guiding. Before its first photon, or not at all.
@@ -188,6 +189,8 @@ class PhotonList {
       beams_.starts.resize(starts_.back().flight);
       beams_.beams.resize(starts_.back().beam);
       beams_.emissions.resize(starts_.back().emission);
+      labels_.resize(starts_.back().label);
+      beams_.labels.resize(starts_.back().beamLabel);
       if (!ranges_.empty()) ranges_.resize(photons_.size());
       starts_.pop_back();
     }
@@ -217,7 +220,7 @@ class PhotonList {
 
   std::vector<TracedPhoton> photons_;
   struct Start {
-    uint32_t photon, density, volume, flight, beam, emission;
+    uint32_t photon, density, volume, flight, beam, emission, label, beamLabel;
   };
   std::vector<Start> starts_;  // indices of what is first of each path
   std::vector<PathOrigin> origins_;

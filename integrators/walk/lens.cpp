@@ -111,7 +111,7 @@ std::optional<SeenFromLens> SeeGlow(const SampleContext& context, const EmittedI
   point.Ng = point.Ns = Normal3(0.0f);
   const Ray ray = SpawnRayTo(point, connection.camera.position, Vector3(0.0f), Normal3(0.0f), context.time);
   EdgeFactors factors;
-  const uint64_t decider = Hash(std::bit_cast<uint32_t>(ray.direction.x), std::bit_cast<uint32_t>(ray.direction.y));
+  const uint64_t decider = DeciderOf(emitted.position);
   const Color extinction = context.scene.media[static_cast<size_t>(emitted.medium)]->At(emitted.position).Extinction();
   const EdgeEnd glow{Point3d(emitted.position), emitted.medium, Color(1.0f),
                      EdgeEnd::IsFineIn(extinction, emitted.position)};

@@ -58,7 +58,7 @@ class FixedCountSelector final : public LightSelector {
       return others_ ? others_->Probability(receiver, OfOthers(settings), OtherIndexOf(light), patch) : PdfDiscrete(0);
     const auto fixed = std::lower_bound(fixed_.begin(), fixed_.end(), light,
                                         [](const Fixed& one, uint32_t index) { return one.light < index; });
-    if (fixed->table == kNoTable) return PdfDiscrete(static_cast<float>(counts_[light]));
+    if (fixed->table == kNoTable || patch == kAnyPatch) return PdfDiscrete(static_cast<float>(counts_[light]));
     return Expected(patchTables_[fixed->table].Probability(static_cast<uint32_t>(patch)), counts_[light]);
   }
 

@@ -87,6 +87,21 @@ std::vector<float> PowerWeights(std::span<const PlacedLight> lights, const Bound
 // lights that emit nothing cost little by it.
 constexpr float kFloorOfEqualShare = 1e-3f;
 
+// Of the lights for which isChosen(index); the weights of others become 0.
+template <class IsChosen>
+void RaiseToFloor(std::vector<float>& weights, const IsChosen& isChosen) {
+  double total = 0;
+  size_t count = 0;
+  for (size_t i = 0; i < weights.size(); ++i) {
+    if (!isChosen(i)) continue;
+    total += static_cast<double>(weights[i]);
+    ++count;
+  }
+  const float mean = count == 0 ? 0.0f : static_cast<float>(total / static_cast<double>(count));
+  for (size_t i = 0; i < weights.size(); ++i)
+    weights[i] = !isChosen(i) ? 0.0f : mean > 0 ? std::max(weights[i], kFloorOfEqualShare * mean) : 1.0f;
+}
+
 }  // namespace
 
 namespace {
@@ -122,10 +137,7 @@ std::unique_ptr<LightSelector> MakeSelector(LightSelection selection, std::span<
   std::vector<float> weights(lights.size(), 1.0f);
   if (selection == LightSelection::Power) {
     weights = PowerWeights(lights, scene);
-    double total = 0;
-    for (const float weight : weights) total += static_cast<double>(weight);
-    const float mean = lights.empty() ? 0.0f : static_cast<float>(total / static_cast<double>(lights.size()));
-    for (float& weight : weights) weight = mean > 0 ? std::max(weight, kFloorOfEqualShare * mean) : 1.0f;
+    RaiseToFloor(weights, [](size_t) { return true; });
   }
   return MakeTableSelector(weights);
 }
@@ -150,9 +162,7 @@ std::unique_ptr<LightSelector> MakeLightSelector(LightSelection selection, std::
 
 std::unique_ptr<LightSelector> MakeEmissionSelector(std::span<const PlacedLight> lights, const BoundingSphere& scene) {
   std::vector<float> weights = PowerWeights(lights, scene);
-  for (size_t i = 0; i < lights.size(); ++i) {
-    if (!lights[i].light->Settings().traceLightPaths) weights[i] = 0;
-  }
+  RaiseToFloor(weights, [&](size_t i) { return lights[i].light->Settings().traceLightPaths; });
   return MakeTableSelector(weights);
 }
 

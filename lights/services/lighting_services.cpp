@@ -63,7 +63,8 @@ float FluxUnitOf(const std::vector<PlacedLight>& lights, const BoundingSphere& s
     const double estimate = static_cast<double>(placed.light->GetPowerEstimate(context).Average());
     if (estimate > 0) power += std::min(estimate, static_cast<double>(std::numeric_limits<float>::max()));
   }
-  if (!(power > 0)) return 1;
+  // Estimates of lights that do emit are 0 where they are below the range of float, or miss a texel.
+  if (!(power > 0)) return lights.empty() ? 1.0f : 0x1p-60f;
   return static_cast<float>(std::exp2(std::clamp(std::round(std::log2(power)), -120.0, 120.0)));
 }
 

@@ -26,12 +26,17 @@ inline bool IsIdentity(const Affine& map) {
   return map.linear == glm::mat3(1.0f) && map.translation == Vector3(0.0f);
 }
 
-// dA_render / dA_local of a surface whose unit normal in render space is `normal`: |det M| / |Mᵀ n|.
-inline float AreaStretch(const Affine& toRender, const Normal3& normal) {
+// dA_render / dA_local of a surface whose unit normal in render space is `normal`: |det M| / |Mᵀ n|. May be beyond the
+// range of float where lengths are not.
+inline double ExactAreaStretch(const Affine& toRender, const Normal3& normal) {
   const float scale = std::max(MaxAbsComponent(toRender.linear[0]),
                                std::max(MaxAbsComponent(toRender.linear[1]), MaxAbsComponent(toRender.linear[2])));
   const glm::mat3 m = toRender.linear * (1 / scale);
-  return scale * scale * std::abs(glm::determinant(m)) / glm::length(normal * m);
+  return static_cast<double>(scale) * static_cast<double>(scale) * static_cast<double>(std::abs(glm::determinant(m))) /
+         static_cast<double>(glm::length(normal * m));
+}
+inline float AreaStretch(const Affine& toRender, const Normal3& normal) {
+  return static_cast<float>(ExactAreaStretch(toRender, normal));
 }
 
 }  // namespace lampyr

@@ -13,7 +13,7 @@ struct PlacedSurface {
   bool isSimilar = false;  // the map to render space preserves angles
   bool isFlat = false;
   float scale = 1;           // if similar: factor of lengths
-  float evenStretch = 0;     // factor of areas if it is constant over the surface; 0 otherwise
+  double evenStretch = 0;    // factor of areas if it is constant over the surface; 0 otherwise
   Normal3 flatNormal{0.0f};  // of a flat surface, unit, on the outer side
 
   // `own` maps the surface's space to the space that `placement` starts from; `ownInverse` is its inverse.
@@ -23,20 +23,22 @@ struct PlacedSurface {
     placed.toOwn = {ownInverse.linear * placement.toLocal.linear, ownInverse.Point(placement.toLocal.translation)};
     placed.isSimilar = IsSimilarity(placed.toRender.linear);
     placed.scale = glm::length(placed.toRender.linear[0]);
-    if (placed.isSimilar) placed.evenStretch = Sqr(placed.scale);
+    if (placed.isSimilar) placed.evenStretch = Sqr(static_cast<double>(placed.scale));
     return placed;
   }
   void SetFlat(const Normal3& ownNormal) {
     isFlat = true;
     flatNormal = SafeNormalize(toOwn.NormalByInverse(ownNormal), Normal3(0, 0, 1));
-    evenStretch = AreaStretch(toRender, flatNormal);
+    evenStretch = ExactAreaStretch(toRender, flatNormal);
   }
 
   // In the surface's space, relative to its origin, to avoid cancellation for small lights far from the origin of
   // render space.
   Point3 ToOwn(const Point3& P) const { return toOwn.linear * (P - toRender.translation); }
   // Ratio of dA in render space to dA in the surface's own space at the normal `normal`.
-  float StretchAt(const Normal3& normal) const { return evenStretch > 0 ? evenStretch : AreaStretch(toRender, normal); }
+  double StretchAt(const Normal3& normal) const {
+    return evenStretch > 0 ? evenStretch : ExactAreaStretch(toRender, normal);
+  }
   Normal3 NormalAt(const Normal3& own) const {
     return isFlat ? flatNormal : SafeNormalize(toOwn.NormalByInverse(own), Normal3(0.0f));
   }

@@ -29,11 +29,13 @@ Quadric QuadricSurface::In(const PlacedSurface& placed) const {
   return result;
 }
 
-float QuadricSurface::ComputeOwnDensity() const {
+double QuadricSurface::ComputeOwnDensity() const {
   const Quadric& q = quadric_;
-  const float area = IsFlat() ? 0.5f * q.phiMax * (q.radius - q.innerRadius) * (q.radius + q.innerRadius)
-                              : q.radius * q.phiMax * (high_ - low_);
-  return area > 0 ? 1 / area : 0.0f;
+  // Products of floats of which none may leave the range of float.
+  const double wide = static_cast<double>(IsFlat() ? 0.5f * (q.radius - q.innerRadius) : q.radius);
+  const double long_ = static_cast<double>(IsFlat() ? q.radius + q.innerRadius : high_ - low_);
+  const double area = static_cast<double>(q.phiMax) * wide * long_;
+  return area > 0 ? 1 / area : 0.0;
 }
 
 std::shared_ptr<const MappedArea> QuadricSurface::MakeMappedArea() const {
@@ -42,7 +44,7 @@ std::shared_ptr<const MappedArea> QuadricSurface::MakeMappedArea() const {
   auto area = std::make_shared<MappedArea>();
   for (int i = 0; i < n * n; ++i) {
     const Point2 square((static_cast<float>(i % n) + 0.5f) / n, (static_cast<float>(i / n) + 0.5f) / n);
-    area->Add(1.0 / (n * n * static_cast<double>(ownDensity_)), Vector3d(OutwardNormal(At(square))));
+    area->Add(1.0 / (n * n * ownDensity_), Vector3d(OutwardNormal(At(square))));
   }
   area->Finish();
   return area;

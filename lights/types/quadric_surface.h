@@ -51,7 +51,7 @@ class QuadricSurface {
   bool ViewNeedsUv() const { return quadric_.kind == Quadric::Kind::Cylinder; }
 
   // The quadric's own space.
-  float OwnDensity() const { return ownDensity_; }  // 1/area
+  double OwnDensity() const { return ownDensity_; }  // 1/area
   Point3 At(const Point2& square) const;
   Normal3 OutwardNormal(const Point3& p) const;
   Point2 UvAt(const Point2& square, const Point3& p) const;
@@ -131,7 +131,7 @@ class QuadricSurface {
   Quadric In(const PlacedSurface& placed) const;
   bool IsWholeDisk() const { return IsFlat() && quadric_.innerRadius == 0 && quadric_.phiMax >= 2 * kPi; }
   bool IsConcentric() const { return IsWholeDisk() && (planarUv_ || !textured_); }
-  float ComputeOwnDensity() const;
+  double ComputeOwnDensity() const;
   std::shared_ptr<const MappedArea> MakeMappedArea() const;
 
   Quadric quadric_;
@@ -141,7 +141,7 @@ class QuadricSurface {
   bool textured_ = false;
   float normalSign_;  // of the outer side relative to the quadric's normal
   float low_, high_;  // along z
-  float ownDensity_;
+  double ownDensity_;
   std::shared_ptr<const MappedArea> mappedArea_;  // null: there is a closed form
 };
 

@@ -36,7 +36,7 @@ class RectSurface {
   bool HasViews() const { return true; }
   bool ViewNeedsUv() const { return true; }
 
-  float OwnDensity() const { return 1 / (width_ * height_); }
+  double OwnDensity() const { return 1 / (static_cast<double>(width_) * static_cast<double>(height_)); }
   Point3 At(const Point2& square) const { return {(0.5f - square.x) * width_, (square.y - 0.5f) * height_, 0.0f}; }
   Normal3 OutwardNormal(const Point3&) const { return {0, 0, -1}; }
   Point2 UvAt(const Point2& square, const Point3&) const { return square; }

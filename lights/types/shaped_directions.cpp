@@ -43,6 +43,11 @@ bool ShapedDirections::KeepsAngles(const LightTransform& transform) const {
   return IsSimilarity(AxesUnder(transform, scratch).map.toRender.linear);
 }
 
+Vector3 ShapedDirections::PrimaryAxis(const LightTransform& transform) const {
+  LightTransform scratch;
+  return ToRenderDirection(AxesUnder(transform, scratch).map, Vector3(0, 0, -1));
+}
+
 Color ShapedDirections::Factor(const LightTransform& transform, const Vector3& outgoing) const {
   LightTransform scratch;
   return shaping_->Factor(AxesUnder(transform, scratch).ToLocal(outgoing));

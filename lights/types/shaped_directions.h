@@ -38,6 +38,8 @@ class ShapedDirections {
   };
   Leaving Look(const LightTransform& transform, const Normal3& normal, const Vector3& outgoing) const;
 
+  // -z of the shaping in render space, unit.
+  Vector3 PrimaryAxis(const LightTransform& transform) const;
   // True if nothing is emitted towards +z, even by a two-sided surface.
   bool IsBackDark() const { return isBackDark_; }
   const Shaping& Parts() const { return *shaping_; }

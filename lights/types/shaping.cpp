@@ -87,6 +87,7 @@ std::shared_ptr<const Shaping> Shaping::Read(const ParameterList& parameters, co
 Shaping::Shaping(std::shared_ptr<const ShapedFactor> factor, Emitter emitter)
     : factor_(std::move(factor)),
       table_(std::make_shared<const ShapedTable>(*factor_, emitter == Emitter::Flat)),
+      emitter_(emitter),
       largest_(factor_->Largest()),
       cosWidest_(CosineBelow(table_->WidestTheta())),
       guidesEmission_(emitter != Emitter::Round || table_->EffectiveMeasure() <= 2 * kPiExact),

@@ -58,6 +58,7 @@ class Shaping {
   // ∫ Factor dω over the sphere for points, ∫ Factor cosθ dω over the emitting hemisphere for flat emitters: exact to
   // 1e-4, in local space. For round ones: the mean over normals of all directions of ∫ Factor cosθ dω.
   Color Integral() const { return integral_; }
+  Emitter EmitterKind() const { return emitter_; }
   // ∫ Factor · weight dω by quadrature (over -z's hemisphere for flat emitters): for transforms that are no
   // similarities and for bodies whose normals are not of all directions. Slow; for tables and estimates.
   Color Integral(const std::function<double(const Vector3d& local)>& weight) const;
@@ -70,6 +71,7 @@ class Shaping {
 
   std::shared_ptr<const ShapedFactor> factor_;
   std::shared_ptr<const ShapedTable> table_;
+  Emitter emitter_;
   float largest_ = 0, cosWidest_ = -1;
   bool guidesEmission_ = true;
   Color integral_;

@@ -102,7 +102,11 @@ float SurfaceEmission::ApparentPower(const LightContext& context, const Emission
 
 void SurfaceEmission::NarrowFlat(const LightTransform& transform, EmissionBounds& bounds) const {
   if (!shaped_) return;
-  if (shaped_->IsBackDark()) bounds.twoSided = false;
+  if (shaped_->IsBackDark() && bounds.twoSided) {
+    // The side of the primary axis shines, which may be the inner one.
+    if (glm::dot(bounds.axis, shaped_->PrimaryAxis(transform)) < 0) bounds.axis = -bounds.axis;
+    bounds.twoSided = false;
+  }
   // Slightly wider than the cone, for the rounding of directions. Under shear the angles are not those of the cone.
   if (shaped_->KeepsAngles(transform)) {
     const float widest = std::acos(std::clamp(shaped_->Parts().CosWidest(), -1.0f, 1.0f)) + 1e-3f;

@@ -73,6 +73,7 @@ std::vector<std::string> UsdLuxSurfaceSamples(const std::string& size) {
       "\"float shaping:focus\" 4 \"rgb shaping:focusTint\" [ 0.3 0.1 0 ] \"bool twoSided\" true",
       "\"string shaping:ies:file\" \"suite-profile.ies\" \"bool shaping:ies:normalize\" true",
       "\"float shaping:cone:angle\" 120 \"bool twoSided\" true \"string texture:file\" \"suite-texture.exr\"",
+      "\"float shaping:cone:angle\" 40 \"bool twoSided\" true",
   };
   if (!size.empty()) {
     for (std::string& sample : samples) sample = size + " " + sample;

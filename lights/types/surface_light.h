@@ -85,8 +85,13 @@ class SurfaceLight : public LightBase {
     return table_ ? EvenDensity(placed, normal) * table_->Density(surface_.SquareAt(uv)) : PdfArea(0);
   }
   PdfArea EvenDensity(const Placed& placed, const Normal3& normal) const {
-    const PdfArea density(surface_.OwnDensity() / placed.StretchAt(normal));
+    const PdfArea density(static_cast<float>(surface_.OwnDensity() / placed.StretchAt(normal)));
     return density.value < kInfinity ? density : PdfArea(0);
+  }
+  // Area in render space of a part of the surface with the normal `normal` that is all of the unit square.
+  float ElementAt(const Placed& placed, const Normal3& normal) const {
+    const double own = surface_.OwnDensity();
+    return own > 0 ? static_cast<float>(placed.StretchAt(normal) / own) : 0.0f;
   }
   // Fraction of the samples that are taken by the view.
   float ViewShare(const View& view) const { return emission_.HasImage() ? 0.5f * view.weight : view.weight; }
@@ -143,7 +148,7 @@ void SurfaceLight<Geometry>::BuildTable() {
   SurfaceTableInput input;
   input.uv = [this](const Point2& square) { return surface_.UvAt(square, surface_.At(square)); };
   input.element = [this](const Point2& square) {
-    return placed_.StretchAt(placed_.NormalAt(surface_.OutwardNormal(surface_.At(square))));
+    return ElementAt(placed_, placed_.NormalAt(surface_.OutwardNormal(surface_.At(square))));
   };
   input.firstIsV = surface_.FirstIsV();
   table_ = MakeSurfaceTable(emission_.EmittedImage(), input);
@@ -224,17 +229,19 @@ Color SurfaceLight<Geometry>::MeanOverSurface(const Placed& placed, const LightT
   if (!shaped || placed.isFlat) {
     // The exitance is the same at all points. The mean of the image is known where the area is even over uv.
     Color exitance = emission_.Exitance(transform, placed.flatNormal);
-    if (shaped && !emission_.IsTwoSided() && shaped->KeepsAngles(transform)) exitance = shaped->Parts().Integral();
+    if (shaped && !emission_.IsTwoSided() && shaped->Parts().EmitterKind() == Shaping::Emitter::Flat &&
+        shaped->KeepsAngles(transform))
+      exitance = shaped->Parts().Integral();
     if (!emission_.HasImage() || surface_.IsEvenOverUv(placed)) return emission_.MeanRadiance() * exitance;
   }
   if (shaped && !emission_.HasImage() && surface_.HasAllNormals(placed) && !placed.isFlat) {
     return emission_.MeanRadiance() * shaped->Parts().Integral() * emission_.SideCount();
   }
   const ExitanceTable exitance(emission_, transform);
-  // Evenly distributed points of the surface's own space, weighted by the stretch.
+  // Evenly distributed points of the surface's own space, weighted by their area.
   const int n = emission_.HasImage() ? std::clamp(2 * emission_.EmittedImage().Height(), 64, 512) : 64;
   Color sum;
-  float stretches = 0;
+  float elements = 0;
   for (int row = 0; row < n; ++row) {
     Color ofRow;
     for (int column = 0; column < n; ++column) {
@@ -242,13 +249,13 @@ Color SurfaceLight<Geometry>::MeanOverSurface(const Placed& placed, const LightT
                           (static_cast<float>(row) + 0.5f) / static_cast<float>(n));
       const Point3 p = surface_.At(square);
       const Normal3 normal = placed.NormalAt(surface_.OutwardNormal(p));
-      const float stretch = placed.StretchAt(normal);
-      ofRow += stretch * emission_.Radiance(surface_.UvAt(square, p)) * exitance(normal);
-      stretches += stretch;
+      const float element = ElementAt(placed, normal);
+      ofRow += element * emission_.Radiance(surface_.UvAt(square, p)) * exitance(normal);
+      elements += element;
     }
     sum += ofRow;
   }
-  return stretches > 0 ? sum / stretches : Color(0.0f);
+  return elements > 0 ? sum / elements : Color(0.0f);
 }
 
 template <class Geometry>

@@ -131,11 +131,40 @@ void CountPaths(const PilotIntegrators& integrators, const RenderScene& scene, c
   }
 }
 
-// Traces the passes that are recorded, and counts what they do. `learned`: null, or what learns of photons. `isEnough`:
-// asked after `first` passes and each doubling, with their number and the counts of a pass. Returns the passes.
-int RunPasses(const PilotIntegrators& integrators, int first, int most, int threads, double wider, PilotPasses& passes,
-              PhotonStore& store, EmissionLearning* learned, Records& records, Counted& counted, Spreads& spreads,
-              const std::function<bool(int, const Counted&)>& isEnough) {
+// What the passes of a pilot are traced with, and what they leave.
+struct Passes {
+  const PilotIntegrators& integrators;
+  PilotPasses& tracer;
+  PhotonStore& store;
+  EmissionLearning* learned;  // from the photons; null: nothing learns
+  double wider;               // WiderRadius
+  int threads;
+  Records& records;
+  Counted counted;  // by a pass
+  Spreads spreads;
+
+  void TraceOne(uint32_t pass, Counted& sum);
+};
+
+// Adds what the pass does to `sum`.
+void Passes::TraceOne(uint32_t pass, Counted& sum) {
+  tracer.TracePhotons(*integrators.vcm, store, pass);
+  const PhotonPass& gather = store.Open(pass, threads, wider);
+  sum.stored += gather.map->Size();
+  sum.vcm += tracer.Trace(*integrators.vcm, pass, &gather, {.recorders = records.Recorders(), .spreads = &spreads.vcm});
+  if (pass == 0) {
+    PhotonPass unrecorded = gather;  // photons are learned from once
+    unrecorded.use = nullptr;
+    sum.endingVcm = tracer.Trace(*integrators.endingVcm, pass, &unrecorded, {.spreads = &spreads.endingVcm});
+  }
+  records.EndPass(pass);
+  store.EndGathering();
+  if (learned && learned->IsRecording() && std::has_single_bit(pass + 1)) learned->Decide(pass + 1);
+}
+
+// Traces the passes that are recorded, and counts what they do. `isEnough`: asked after `first` passes and each
+// doubling, with their number and the counts of a pass. Returns the number of passes.
+int RunPasses(int first, int most, const std::function<bool(int, const Counted&)>& isEnough, Passes& passes) {
   const auto ofOne = [](Counted sum, int count) {
     const auto n = static_cast<uint64_t>(count);
     sum.stored /= n;
@@ -143,27 +172,12 @@ int RunPasses(const PilotIntegrators& integrators, int first, int most, int thre
     sum.vcm.foundPhotons /= n;
     return sum;
   };
-  Counted sum = counted;
+  Counted sum = passes.counted;
   int traced = 0;
   for (int end = first; traced < most; end = std::min(2 * end, most)) {
-    for (; traced < end; ++traced) {
-      const auto pass = static_cast<uint32_t>(traced);
-      passes.TracePhotons(*integrators.vcm, store, pass);
-      const PhotonPass& gather = store.Open(pass, threads, wider);
-      sum.stored += gather.map->Size();
-      sum.vcm +=
-          passes.Trace(*integrators.vcm, pass, &gather, {.recorders = records.Recorders(), .spreads = &spreads.vcm});
-      if (pass == 0) {
-        PhotonPass unrecorded = gather;  // photons are learned from once
-        unrecorded.use = nullptr;
-        sum.endingVcm = passes.Trace(*integrators.endingVcm, pass, &unrecorded, {.spreads = &spreads.endingVcm});
-      }
-      records.EndPass(pass);
-      store.EndGathering();
-      if (learned && learned->IsRecording() && std::has_single_bit(pass + 1)) learned->Decide(pass + 1);
-    }
-    counted = ofOne(sum, traced);
-    if (traced < most && isEnough(traced, counted)) break;
+    for (; traced < end; ++traced) passes.TraceOne(static_cast<uint32_t>(traced), sum);
+    passes.counted = ofOne(sum, traced);
+    if (traced < most && isEnough(traced, passes.counted)) break;
   }
   return traced;
 }
@@ -373,7 +387,8 @@ RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, i
   // The pilot's light paths are those of bdpt, not guided. What a guide would gain is learned from them.
   EmissionLearning* const learned = guiding && !isGuided ? &*guiding : nullptr;
   PhotonStore store(photons, static_cast<uint64_t>(grid.Pixels()), learned);
-  PilotPasses passes(view, combined, grid, threads);
+  PilotPasses tracer(view, combined, grid, threads);
+  const PixelFilter filter(settings.filter);
   Counted counted;
   counted.tracesAnew = scene.hasMotion || scene.isSpectral;
   Spreads spreads(grid.Pixels());
@@ -381,23 +396,22 @@ RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, i
   const int most = passCount > 0 ? passCount : PassesFor(counted, grid.Pixels());
   const int first = passCount > 0 ? passCount : kFewestPasses;
   if (scene.isSpectral) CountPaths(integrators, WithWavelengths(view), combined, grid, threads, counted, nullptr);
-  const PixelFilter filter(settings.filter);
   Records records(grid, filter, SplatCount(settings), kChunks, std::max(most, kMostPasses));
-  const double wider = WiderRadius(fewer, photons.alpha);
+  Passes passes{integrators, tracer,  store,   learned,           WiderRadius(fewer, photons.alpha),
+                threads,     records, counted, std::move(spreads)};
   const bool isSobol = settings.sampler == SamplerKind::Sobol;
   const auto isEnough = [&](int count, const Counted& soFar) {
     std::vector<PilotCandidate> all = CandidatesWith(CostsOf(soFar, grid.Pixels()));
     return records.SetErrors(count, filter.SquaredWeight(), isSobol, all) && IsWellKnown(all);
   };
-  passCount =
-      RunPasses(integrators, first, most, threads, wider, passes, store, learned, records, counted, spreads, isEnough);
-  auto costs = CostsOf(counted, grid.Pixels());
+  passCount = RunPasses(first, most, isEnough, passes);
+  auto costs = CostsOf(passes.counted, grid.Pixels());
   const bool willBeGuided = learned && learned->Guide();
   if (willBeGuided) {
     view.lighting = std::make_shared<const LightingServices>(lighting->With(nullptr, learned->Guide()));
     const RenderScene guidedView = WithWavelengths(view);
     PilotPasses guided(guidedView, combined, grid, threads);
-    CountGuided(integrators, photons, wider, threads, guided, grid.Pixels(), counted, costs);
+    CountGuided(integrators, photons, passes.wider, threads, guided, grid.Pixels(), passes.counted, costs);
   }
   std::vector<PilotCandidate> all = CandidatesWith(costs);
   if (!records.SetErrors(passCount, filter.SquaredWeight(), isSobol, all)) return {};
@@ -407,7 +421,7 @@ RenderPilot RunPilot(const RenderScene& scene, const RenderSettings& settings, i
   AddMixed(all, costs, grid, records.LeastError(), pilot.candidates);
   EraseUnwanted(settings, isGuided, pilot.candidates);
   EraseUnwanted(settings, isGuided, pilot.ending);
-  if (choosesLights) ChooseLightSamples(counted, spreads, records, grid.Pixels(), passCount, pilot);
+  if (choosesLights) ChooseLightSamples(passes.counted, passes.spreads, records, grid.Pixels(), passCount, pilot);
   const EmissionGuide* const guide = isGuided ? guiding->Guide() : willBeGuided ? learned->Guide() : nullptr;
   if (settings.values.IsOn("merge")) AddSppm(scene, guide, combined, grid, records, passCount, threads, pilot);
   return pilot;

@@ -368,8 +368,10 @@ void Records::AddUp(size_t k, int passes, const Brightness& brightness, const st
     // Variance of the tile's sum, from the spread of its pixels.
     double& variance = candidate.tileVariances[tile];
     const int n = grid_.PixelsOf(tile);
-    variance -= candidate.tileErrors[tile] * candidate.tileErrors[tile] / n;
-    variance = std::max(variance * n / std::max(n - 1, 1), 0.0);
+    if (n > 1) {  // else nothing tells it, and it is taken for as large as the error
+      variance -= candidate.tileErrors[tile] * candidate.tileErrors[tile] / n;
+      variance = std::max(variance * n / (n - 1), 0.0);
+    }
     variances += variance;
   }
   candidate.uncertainty = std::sqrt(variances);

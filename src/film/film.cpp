@@ -268,8 +268,13 @@ void Film::AddSplats(const PixelFilter& filter, std::span<const SplatList> lists
   MakeSplats();
   if (splatSpread_ == 0) splatSpread_ = SplatSpread(filter);
   const int bands = std::max(threads, 1);
-  ParallelFor(bands, threads, [&](int band) { AddToRows(filter, lists, band, bands, hasHalf_ && IsInHalf(sample)); });
-  for (const SplatList& list : lists) lightPaths_ += list.Paths();
+  // Of an adaptive film the half is one of its own passes, whatever part of a render they are.
+  const bool isInHalf = hasHalf_ && IsInHalf(isAdaptive_ ? static_cast<uint32_t>(endedPasses_ + passes_) : sample);
+  ParallelFor(bands, threads, [&](int band) { AddToRows(filter, lists, band, bands, isInHalf); });
+  for (const SplatList& list : lists) {
+    lightPaths_ += list.Paths();
+    if (isInHalf) halfPaths_ += list.Paths();
+  }
 }
 
 // Fetches the splats of the pixel at `film` into the cache.
@@ -357,6 +362,7 @@ void Film::Add(const Film& other) {
   for (size_t i = 0; i < splats_.size(); ++i) splats_[i].Add(other.splats_[i]);
   AddAll(layerSplats_, other.layerSplats_);
   lightPaths_ += other.lightPaths_;
+  halfPaths_ += other.halfPaths_;
   splatSpread_ = other.splatSpread_;
 }
 
@@ -371,6 +377,7 @@ void Film::CopyFrom(const Film& other, int threads) {
   Copy(biasStages_, other.biasStages_, threads);
   Copy(layerStages_, other.layerStages_, threads);
   lightPaths_ = other.lightPaths_;
+  halfPaths_ = other.halfPaths_;
   whiteSum_ = other.whiteSum_;
   bandWeights_ = other.bandWeights_;
   whitePasses_ = other.whitePasses_;
@@ -420,6 +427,7 @@ void Film::Save(ByteWriter& bytes) const {
     bytes.Values(std::span(splats_));
     bytes.Values(std::span(layerSplats_));
     bytes.Value(lightPaths_);
+    bytes.Value(halfPaths_);
     bytes.Value(splatSpread_);
   }
   bytes.Values(std::span(bias_));
@@ -449,6 +457,8 @@ void Film::Load(ByteReader& bytes) {
     bytes.Values(std::span(film.splats_));
     bytes.Values(std::span(film.layerSplats_));
     film.lightPaths_ = bytes.Value<uint64_t>();
+    film.halfPaths_ = bytes.Value<uint64_t>();
+    if (film.halfPaths_ > film.lightPaths_) throw Error("it holds a number out of range");
     film.splatSpread_ = bytes.Value<double>();
   }
   if (KeepsBias() && (parts & kHasBias) == 0) throw Error("it holds no estimates of the bias of merging photons");

@@ -121,8 +121,7 @@ double Film::CurrentHalf(size_t pixel, size_t channel) const {
 
 // Factor that makes splats of the half layer half of all.
 double Film::HalfShareOfSplats() const {
-  const auto passes = static_cast<uint32_t>(endedPasses_ + passes_);
-  return passes == 0 ? 1 : 0.5 * passes / SamplesInHalf(passes);
+  return halfPaths_ == 0 ? 1 : 0.5 * static_cast<double>(lightPaths_) / static_cast<double>(halfPaths_);
 }
 
 // Variance of CameraValue. All samples of a pixel have one variance, whatever their stage: that of a stage with one

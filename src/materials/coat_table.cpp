@@ -43,26 +43,37 @@ Split ScatterAtMicrofacet(const Vector3& wo, const Vector3& m, float stretchO, c
   return split;
 }
 
-// Midpoint quadrature over the unit square that SampleVisibleNormal maps to microfacets; by symmetry, over half of it.
-Split ScatterAtBoundary(float cosTheta, float alpha, float eta, float thickness, Side side) {
-  const Vector3 wo(SafeSqrt(1 - cosTheta * cosTheta), 0, cosTheta);
-  const TrowbridgeReitz microfacets(alpha, alpha);
-  if (microfacets.IsSmooth() || eta == 1) {
-    return ScatterAtMicrofacet(wo, {0, 0, 1}, wo.z, TrowbridgeReitz(), eta, thickness, side);
+// Calls visit(m, part) for the microfacets that `w` sees, `part` of them each: midpoints of the unit square that
+// SampleVisibleNormal maps to them; by symmetry, of half of it. A smooth boundary has one.
+template <class Visit>
+void ForVisibleNormals(const TrowbridgeReitz& microfacets, const Vector3& w, int caps, const Visit& visit) {
+  constexpr int kAzimuths = 8;
+  if (microfacets.IsSmooth()) {
+    visit(Vector3(0, 0, 1), 1.0f);
+    return;
   }
-  constexpr int kCaps = 64, kAzimuths = 8;
-  const float stretchO = microfacets.Stretch(wo);
-  Split sum;
-  for (int i = 0; i < kCaps; ++i) {
+  const float part = 1.0f / static_cast<float>(caps * kAzimuths);
+  for (int i = 0; i < caps; ++i) {
     for (int j = 0; j < kAzimuths; ++j) {
-      const Point2 u(0.5f * (static_cast<float>(j) + 0.5f) / kAzimuths, (static_cast<float>(i) + 0.5f) / kCaps);
-      const Vector3 m = microfacets.SampleVisibleNormal(wo, u);
-      const Split split = ScatterAtMicrofacet(wo, m, stretchO, microfacets, eta, thickness, side);
-      sum.reflected += split.reflected;
-      sum.transmitted += split.transmitted;
+      const Point2 u(0.5f * (static_cast<float>(j) + 0.5f) / kAzimuths,
+                     (static_cast<float>(i) + 0.5f) / static_cast<float>(caps));
+      visit(microfacets.SampleVisibleNormal(w, u), part);
     }
   }
-  return {sum.reflected / (kCaps * kAzimuths), sum.transmitted / (kCaps * kAzimuths)};
+}
+
+Split ScatterAtBoundary(float cosTheta, float alpha, float eta, float thickness, Side side) {
+  const Vector3 wo(SafeSqrt(1 - cosTheta * cosTheta), 0, cosTheta);
+  const TrowbridgeReitz microfacets = eta == 1 ? TrowbridgeReitz() : TrowbridgeReitz(alpha, alpha);
+  constexpr int kCaps = 64;
+  const float stretchO = microfacets.IsSmooth() ? wo.z : microfacets.Stretch(wo);
+  Split sum;
+  ForVisibleNormals(microfacets, wo, kCaps, [&](const Vector3& m, float part) {
+    const Split split = ScatterAtMicrofacet(wo, m, stretchO, microfacets, eta, thickness, side);
+    sum.reflected += static_cast<double>(part) * split.reflected;
+    sum.transmitted += static_cast<double>(part) * split.transmitted;
+  });
+  return sum;
 }
 
 // Linear interpolation at x in [0,1] between `count` evenly spaced nodes.
@@ -148,6 +159,7 @@ float CoatTable::InternalReflectance(Slice slice) const {
 namespace {
 
 constexpr int kWalkNodes = 64;  // evenly spaced in sqrt(cosθ)
+constexpr int kWalkCaps = 32;   // of ForVisibleNormals
 using WalkNodes = std::array<float, kWalkNodes>;
 
 float NodeCosineOf(int node) {
@@ -161,25 +173,16 @@ class WalkKernel {
   // scatter(node's direction, m, add) calls add(cosine, weight) for a microfacet that the direction sees.
   template <class Scatter>
   WalkKernel(float alpha, const Scatter& scatter) : alpha_(alpha) {
-    constexpr int kCaps = 32, kAzimuths = 8;
     const TrowbridgeReitz microfacets(alpha, alpha);
     for (int node = 0; node < kWalkNodes; ++node) {
       const float cosTheta = NodeCosineOf(node);
       const Vector3 w(SafeSqrt(1 - cosTheta * cosTheta), 0, cosTheta);
       std::vector<Entry>& entries = entries_[static_cast<size_t>(node)];
-      const float part = microfacets.IsSmooth() ? 1.0f : 1.0f / (kCaps * kAzimuths);
-      const auto add = [&](float cosine, float weight) {
-        if (weight > 0) entries.push_back({std::sqrt(std::min(cosine, 1.0f)), weight * part});
-      };
-      if (microfacets.IsSmooth()) {
-        scatter(w, Vector3(0, 0, 1), add);
-        continue;
-      }
-      for (int k = 0; k < kCaps * kAzimuths; ++k) {
-        const Point2 u(0.5f * (static_cast<float>(k % kAzimuths) + 0.5f) / kAzimuths,
-                       (static_cast<float>(k / kAzimuths) + 0.5f) / kCaps);
-        scatter(w, microfacets.SampleVisibleNormal(w, u), add);
-      }
+      ForVisibleNormals(microfacets, w, kWalkCaps, [&](const Vector3& m, float part) {
+        scatter(w, m, [&](float cosine, float weight) {
+          if (weight > 0) entries.push_back({std::sqrt(std::min(cosine, 1.0f)), weight * part});
+        });
+      });
     }
   }
   // The mean of `after` over the scattered directions, for each direction of incidence.
@@ -259,18 +262,13 @@ WalkKernel LobeKernel(const CoatDescription& coat, float coatAlpha, float baseAl
       WidenedBase(TrowbridgeReitz(baseAlpha, baseAlpha), TrowbridgeReitz(coatAlpha, coatAlpha), coat.eta);
   // The direction of a node is outside, and so is that of the lobe; visible normals are seen from within.
   return WalkKernel(0, [=, eta = coat.eta](const Vector3& w, const Vector3&, const auto& add) {
-    constexpr int kCaps = 32, kAzimuths = 8;
     const Vector3 o(w.x / eta, w.y / eta, RefractedCosine(w.z, eta));
     if (!(o.z > 0)) return;
-    const int count = base.IsSmooth() ? 1 : kCaps * kAzimuths;
-    for (int k = 0; k < count; ++k) {
-      const Point2 u(0.5f * (static_cast<float>(k % kAzimuths) + 0.5f) / kAzimuths,
-                     (static_cast<float>(k / kAzimuths) + 0.5f) / kCaps);
-      const Vector3 m = base.IsSmooth() ? Vector3(0, 0, 1) : base.SampleVisibleNormal(o, u);
+    ForVisibleNormals(base, o, kWalkCaps, [&](const Vector3& m, float part) {
       const Vector3 i = Reflect(o, m, glm::dot(o, m));
       const float cosine = i.z > 0 ? RefractedCosine(std::min(i.z, 1.0f), 1 / eta) : 0.0f;
-      if (cosine > 0) add(cosine, SeenPart(base, o, i) / static_cast<float>(count));
-    }
+      if (cosine > 0) add(cosine, SeenPart(base, o, i) * part);
+    });
   });
 }
 

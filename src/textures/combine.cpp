@@ -81,6 +81,11 @@ ParameterOf<Value> MakeScale(const TextureRequest& request) {
     if (texture.IsConstant()) return texture.Evaluate({}) * factor;
     if (auto scaled = texture.Scaled(factor)) return ParameterOf<Value>(std::move(scaled));
   }
+  if constexpr (std::is_same_v<Value, float>) {
+    // The two may be swapped, as in pbrt-v4.
+    if (texture.IsConstant())
+      if (auto scaled = scale.Scaled(texture.Evaluate({}))) return FloatParameter(std::move(scaled));
+  }
   return ParameterOf<Value>(std::make_shared<ScaleTexture<Value>>(std::move(texture), std::move(scale)));
 }
 

@@ -19,6 +19,11 @@ class FloatImageTexture : public FloatTexture {
     const float value = scale_ * texels_.LookupFloat(mapping_.Map(where));
     return invert_ ? std::max(0.0f, 1 - value) : value;
   }
+  std::shared_ptr<const FloatTexture> Scaled(float factor) const override {
+    auto scaled = std::make_shared<FloatImageTexture>(*this);
+    scaled->scale_ *= factor;
+    return scaled;
+  }
 
  private:
   TextureMapping2D mapping_;

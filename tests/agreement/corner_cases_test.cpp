@@ -148,6 +148,22 @@ std::vector<Corner> Corners() {
       "AttributeBegin\nMediumInterface \"fog\"\nAreaLightSource \"diffuse\" \"rgb L\" [ 9 8 7 ] \"bool twosided\" "
       "true\n"
       "Translate 0 1.8 0 Rotate 90 1 0 0 Shape \"disk\" \"float radius\" 0.5\nAttributeEnd\n";
+  // Of a lamp whose size and placement are far from 1, but not their product; and of one whose power is no float.
+  const auto rect = [](const char* view, const char* placement, const char* lamp) {
+    return Film(view) + "WorldBegin\nAttributeBegin\nTranslate 0 2 0 Rotate -90 1 0 0 " + placement +
+           " LightSource \"rect\" " + lamp + "\nAttributeEnd\nRotate -90 1 0 0 Shape \"disk\" \"float radius\" 2\n";
+  };
+  const char* const view = "LookAt 0 3 4  0 0 0  0 1 0 Camera \"perspective\" \"float fov\" 40\n";
+  // All connections to the camera have one direction.
+  const std::string parallel =
+      "MakeNamedMedium \"fog\" \"string type\" \"uniformgrid\" \"integer nx\" 2 \"integer ny\" 2 \"integer nz\" 2 "
+      "\"float "
+      "density\" [ 1 0.2 0.5 3 0 2 0.1 1 ] \"point3 p0\" [ -3 -1 -3 ] \"point3 p1\" [ 3 3 3 ] \"rgb sigma_s\" [ 0 0 0 "
+      "] "
+      "\"rgb sigma_a\" [ 0.1 0.1 0.1 ] \"rgb Le\" [ 0.1 0.1 0.1 ]\nMediumInterface \"\" \"fog\"\n" +
+      Film("LookAt 0 1 -5  0 1 0  0 1 0 Camera \"orthographic\" \"float screenwindow\" [ -2 2.2 -1.4 1.8 ]\n") +
+      "WorldBegin\nMediumInterface \"fog\"\nMaterial \"diffuse\" \"rgb reflectance\" [ 0 0 0 ]\nShape \"bilinearmesh\" "
+      "\"point3 P\" [ -4 -1.1 -4  4 -1.1 -4  -4 -1.1 4  4 -1.1 4 ]\n";
   const std::string portal =
       kAbove +
       "WorldBegin\nAttributeBegin\nTranslate 0 1 0 Rotate -90 1 0 0\nLightSource \"portal\" \"float width\" 1 \"float "
@@ -176,6 +192,21 @@ std::vector<Corner> Corners() {
       {"fog_far_from_its_lamp", distant, {"path", "light", "bdpt", "vcm"}, 256},
       {"ink_around_a_part_of_a_lamp", tube, {"path", "light", "bdpt", "vcm", "sppm"}, 256},
       {"fog_said_of_both_sides_of_a_lamp", twosided, {"path", "light", "bdpt", "vcm", "sppm"}, 256},
+      {"tiny_lamp_placed_large",
+       rect(view, "Scale 1e20 1e20 1e20", "\"float width\" 1e-20 \"float height\" 1e-20"),
+       {"path", "light", "bdpt", "vcm", "sppm"},
+       128},
+      {"large_lamp_placed_tiny",
+       rect(view, "Scale 1e-20 1e-20 1e-20", "\"float width\" 1e20 \"float height\" 1e20"),
+       {"path", "light", "bdpt", "vcm", "sppm"},
+       128},
+      {"dim_lamp_of_a_small_scene",
+       Film("LookAt 0 3e-15 4e-15  0 0 0  0 1 0 Camera \"perspective\" \"float fov\" 40\n") +
+           "WorldBegin\nScale 1e-15 1e-15 1e-15\nAttributeBegin\nTranslate 0 2 0 Rotate -90 1 0 0 LightSource \"rect\" "
+           "\"float intensity\" 1e-20\nAttributeEnd\nRotate -90 1 0 0 Shape \"disk\" \"float radius\" 2\n",
+       {"path", "light", "bdpt", "vcm", "sppm"},
+       128},
+      {"glow_seen_in_parallel", parallel, {"path", "light", "bdpt", "vcm", "sppm"}, 256},
       {"portal_behind_the_middle", portal, {"path", "bdpt", "vcm", "sppm"}},
       {"small_fire", Fire(0.012, "Translate 0.31 0.45 0.22\n"), {"path", "light"}, 1024, 0.2},
       {"moving_fire", Fire(0.2, moves), {"path", "light", "sppm"}, 512, 0.08},

@@ -1085,6 +1085,14 @@ TEST_F(Cli, ChecksTheLightsOfAScene) {
   EXPECT_EQ(outcome.exitCode, 0) << outcome.output;
   EXPECT_NE(outcome.output.find("all lights"), std::string::npos);
   EXPECT_EQ(Run("check-lights lit.pbrt --type spot").exitCode, 2);
+  // As many choices as the scene or a light wants.
+  Write("counted.pbrt",
+        "Integrator \"path\" \"integer lightsamples\" 2 WorldBegin\nLightSource \"point\" \"point3 from\" [ 0 3 0 ]\n"
+        "LightSource \"point\" \"point3 from\" [ 1 3 0 ] \"integer fixedSampleCount\" 2\nLightSource \"point\"\n"
+        "AreaLightSource \"diffuse\" \"integer fixedSampleCount\" 1\nShape \"trianglemesh\" \"point3 P\" "
+        "[ -1 0 -1  1 0 -1  1 0 1  -1 0 1 ] \"integer indices\" [ 0 1 2 0 2 3 ]\n");
+  const Outcome counted = Run("check-lights counted.pbrt");
+  EXPECT_EQ(counted.exitCode, 0) << counted.output;
 }
 
 // Two seeds of one scene agree, although each splat is in several pixels.

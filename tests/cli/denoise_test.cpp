@@ -80,6 +80,34 @@ TEST_F(DenoiseCommand, MergedPartsAreDenoised) {
   EXPECT_EQ(Read("whole.exr").data, Read("out.exr").data);
 }
 
+// Also of splats, and of some parts alone.
+TEST_F(DenoiseCommand, HalvesOfAdaptivePartsAreHalves) {
+  std::ofstream(folder_.Path() / "splats.pbrt") << R"(Film "rgb" "integer xresolution" 32 "integer yresolution" 20
+LookAt 0 1 3  0 0 0  0 1 0
+Camera "perspective" "float fov" 40
+WorldBegin
+LightSource "point" "point3 from" [ 0 1 0 ]
+Shape "bilinearmesh" "point3 P" [ -3 0 -3  3 0 -3  -3 0 3  3 0 3 ]
+Shape "bilinearmesh" "point3 P" [ -3 0 -1  3 0 -1  -3 3 -1  3 3 -1 ]
+)";
+  for (const char* part : {"1", "2", "3"}) {
+    const std::string name(part);
+    ASSERT_EQ(Run("render splats.pbrt --integrator bdpt --adaptive --denoise --spp 12 --shard " + name + "/3 -o " +
+                  name + ".exr")
+                  .exitCode,
+              0);
+  }
+  for (const char* parts : {"1.exr", "2.exr", "3.exr", "1.exr 3.exr", "1.exr 2.exr 3.exr"}) {
+    const Outcome outcome = Run("merge --partial " + std::string(parts) + " -o merged.exr");
+    ASSERT_EQ(outcome.exitCode, 0) << outcome.output;
+    const Image merged = Read("merged.exr");
+    double all = 0, half = 0;
+    for (const float value : Values(merged, {"G"})) all += static_cast<double>(value);
+    for (const float value : Values(merged, {"half.G"})) half += static_cast<double>(value);
+    EXPECT_NEAR(half / all, 0.5, 0.05) << parts;
+  }
+}
+
 TEST_F(DenoiseCommand, CompareMeasuresWhatItIsWorth) {
   ASSERT_EQ(Run("render scene.pbrt -o reference.exr --seed 9 --spp 1024").exitCode, 0);
   const Outcome outcome =

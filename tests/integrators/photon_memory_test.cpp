@@ -65,5 +65,18 @@ TEST(PhotonMemory, DoesNotChangeTheMean) {
   }
 }
 
+// What fits is the same with any number of threads, which divide the paths into lists.
+TEST(PhotonMemory, HoldsTheSamePathsOnAnyThreads) {
+  RenderOverrides overrides;
+  overrides.integrator = "vcm";
+  overrides.width = overrides.height = 24;
+  overrides.values["photon-memory"] = static_cast<int64_t>(60 << 10);
+  overrides.layers = {"direct diffuse", "caustic"};
+  Diagnostics diagnostics(Diagnostics::Mode::Collect);
+  const BuiltScene built = BuildScene(ParseScene(kCorner, "test.pbrt", diagnostics), overrides, true, diagnostics);
+  const Image one = RenderBuilt(built, 3, 1).image;
+  for (const int threads : {2, 3}) EXPECT_EQ(RenderBuilt(built, 3, threads).image.data, one.data) << threads;
+}
+
 }  // namespace
 }  // namespace lampyr::test

@@ -85,6 +85,21 @@ TEST_F(WrongParameters, SoundTypesPass) {
   }
 }
 
+// A type may be for some shapes alone, but not for none.
+TEST_F(WrongParameters, MayBeRefusedOnSomeShapes) {
+  for (const bool acceptsSpheres : {true, false}) {
+    LightType type = Plain("diffuse", true);
+    type.create = [create = type.create, acceptsSpheres](const ParameterList& parameters,
+                                                         const LightBuildContext& build) {
+      const Quadric* quadric = std::get_if<Quadric>(build.shape);
+      if (!acceptsSpheres || !quadric || quadric->kind != Quadric::Kind::Sphere)
+        throw Error(parameters.Where(), "needs a sphere");
+      return create(parameters, build);
+    };
+    EXPECT_EQ(FailuresOf(type), acceptsSpheres ? Properties{} : Properties{"shapes"});
+  }
+}
+
 TEST_F(WrongParameters, ThatAreIgnoredAreFound) {
   for (const LightType& type : Types()) {
     for (const char* name : {"intensity", "exposure", "color", "colorTemperature", "diffuse", "specular",

@@ -159,6 +159,18 @@ TEST(ImageMap, ScaleTexturesScaleTheImage) {
        MakeTexture("t", true, "scale", {TextureName("tex", "i"), FloatValue("scale", 0.005)})});
   EXPECT_NEAR(scene.Spectrum(SpectrumRole::Albedo).Evaluate({at, {}}).g, 0.56f, 1e-5f);
   EXPECT_NEAR(scene.Spectrum(SpectrumRole::Albedo).Evaluate({at, {}}).r, 0.06f, 1e-5f);
+  // Numbers, too, and before they are inverted: with the image as "tex" or as "scale".
+  const std::vector<Parameter> image = {StringValue("filename", (folder / "grid.exr").string()),
+                                        FloatValue("scale", 0.01), BoolValue("invert", true)};
+  const float plain = TextureScene({MakeTexture("t", false, "imagemap", image)}).FloatAt(at.x, at.y);
+  ASSERT_GT(plain, 0);
+  for (const bool isSwapped : {false, true}) {
+    const TextureScene halved(
+        {MakeTexture("i", false, "imagemap", image),
+         MakeTexture("t", false, "scale",
+                     {TextureName(isSwapped ? "scale" : "tex", "i"), FloatValue(isSwapped ? "tex" : "scale", 0.5)})});
+    EXPECT_NEAR(halved.FloatAt(at.x, at.y), 1 - 0.5f * (1 - plain), 1e-5f) << isSwapped;
+  }
 }
 
 // An OpenEXR file of one pixel, with chromaticities: x, y of red, green, blue and white.
