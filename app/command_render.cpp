@@ -448,7 +448,7 @@ void RenderJob::Trace(ProgressiveRender& render, Checkpoints* checkpoints) {
     if (display) display->MayShow(render, soFar.seconds, progress);
     if (preview) preview->MayShow(render, soFar.seconds, progress);
     progress.Update(fraction, std::to_string(soFar.samplesPerPixel) + " spp, " + DescribeError(soFar, options_));
-    if (checkpoints && fraction < 1) checkpoints->MayWrite(soFar);
+    if (checkpoints) checkpoints->MayWrite(soFar);
   };
   report_.outcome = Continue(render, stop, afterPass);
   if (display) display->Show(render.Picture(), progress);
@@ -551,8 +551,7 @@ int RenderJob::Finish(ProgressiveRender& render, Checkpoints* checkpoints) {
       isPartial ? DescribePartialPicture(options_, film, settings_, integrator_->Paths()) : "";
   // The sums in a part's image are of whole samples.
   if (options_.shard) render.DropPartialPass();
-  WriteImageOrKeepIt(path_, options_, header_, film, layers_, report_.outcome);
-  // Each of the other results is written even if another one fails.
+  // Each of the results is written even if another one fails.
   std::exception_ptr failure;
   const auto attempt = [&](const auto& write) {
     try {
@@ -561,10 +560,12 @@ int RenderJob::Finish(ProgressiveRender& render, Checkpoints* checkpoints) {
       if (!failure) failure = std::current_exception();
     }
   };
+  attempt([&] { WriteImageOrKeepIt(path_, options_, header_, film, layers_, report_.outcome); });
+  const bool isWritten = !failure;
   if (options_.strategyImages) attempt([&] { WriteStrategies(options_, settings_, film.Develop()); });
   if (options_.png || options_.previewSeconds)
     attempt([&] { WritePngBeside(path_, film.Develop(), options_.exposure, options_.clipPng); });
-  if (options_.denoise && !options_.shard && !isPartial) attempt([&] { DenoisePicture(); });
+  if (options_.denoise && !options_.shard && !isPartial && isWritten) attempt([&] { DenoisePicture(); });
   render.DropPartialPass();
   if (checkpoints) attempt([&] { checkpoints->Finish(report_.outcome); });
   report_.writeSeconds = clock.Seconds();

@@ -48,6 +48,7 @@ void OutliveSurroundings() {
 }
 
 const std::atomic<bool>& FinishOnInterrupt() {
+  if (interruptRequested.load()) return interruptRequested;  // the next signal ends the process
   for (const int signal : kInterrupts) {
     if (!IsIgnored(signal)) std::signal(signal, OnInterrupt);
   }

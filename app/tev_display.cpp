@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <bit>
 #include <cerrno>
+#include <chrono>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
@@ -70,7 +71,13 @@ constexpr size_t kLargestPacket = 1 << 26;
 
 void WaitUntilWritable(int socket) {
   pollfd waits{socket, POLLOUT, 0};
-  if (poll(&waits, 1, kPatience) <= 0) throw Error("it takes nothing");
+  const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(kPatience);
+  int ready = 0;
+  do {  // a signal is no answer
+    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(end - std::chrono::steady_clock::now());
+    ready = poll(&waits, 1, std::max(static_cast<int>(left.count()), 0));
+  } while (ready < 0 && errno == EINTR);
+  if (ready <= 0) throw Error("it takes nothing");
 }
 
 // Throws an Error without a place.

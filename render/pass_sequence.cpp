@@ -105,12 +105,16 @@ void PassSequence::Learn(uint32_t samples) {
     if (!selection_->IsLearning() && !selection_->IsUsed()) learning_->Forget();
     changesDensities = wasUsed || selection_->IsUsed();
   }
+  // What is given up here must not go on with what others have restored meanwhile.
+  CheckStop();
   if (guiding_ && guiding_->IsRecording() && guiding_->Decide(samples)) changesDensities = true;
+  CheckStop();
   if (hasRecords) {
     if (paths_->Decide(samples, threads_, photonsAreSettled)) changesDensities = true;
   } else if (paths_) {
     paths_->Skip(samples);
   }
+  CheckStop();
   // The photons of the last pass, and their weights, have densities of the view before. They are dropped and others
   // traced in their place, as when a render is resumed.
   if (changesDensities && photons_) photons_->Clear();

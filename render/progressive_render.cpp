@@ -94,6 +94,7 @@ void ProgressiveRender::DropPartialPass() {
 void ProgressiveRender::AddWholePass(int count) {
   const Clock clock;
   passes_.Add(static_cast<uint32_t>(outcome_.samplesPerPixel), static_cast<uint32_t>(count));
+  CheckStop();  // of a pass that was given up nothing is counted
   outcome_.photons = passes_.Photons();
   outcome_.guiding = passes_.Guiding();
   outcome_.counts += passes_.TakeCounts();

@@ -59,7 +59,8 @@ Integrands SurfaceReceiverChecker::At(const Point3& P, const Vector3d& direction
   if (std::abs(cosine) > 1e-4) {
     ++compared_;
     cameraDiffers_ += CameraMismatch(subject_, hit, e).value_or(0.0) > 1e-4 ? 1 : 0;
-    if (oneSided_ && cosine < 0 && e && (!IsBlack(*e) || !e->pdfDirect.IsZero())) leak_ = 1;
+    // A surface of two sides may be dark on one, and be sampled there all the same.
+    if (oneSided_ && cosine < 0 && e && !IsBlack(*e)) leak_ = 1;
   }
   if (!e || IsBlack(*e) || std::abs(cosine) < kEdgeOn) return {};
   if (!e->pdfDirect.IsZero()) brightest_ = std::max(brightest_, Emitted(subject_, *e) / Value(e->pdfDirect));

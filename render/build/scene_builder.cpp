@@ -143,12 +143,12 @@ Transform Builder::ChooseRenderSpace() const {
   const auto add = [&bounds](const ReadEntry& entry, const Transform& startToWorld, const Transform& endToWorld) {
     const Placement& placement = entry.local.description->placement;
     Bounds3d ofShape = GetBounds(entry.local, startToWorld * placement.start);
-    if (placement.IsAnimated() || !(startToWorld == endToWorld)) {
-      ofShape.Add(GetBounds(entry.local, endToWorld * placement.end));
-    }
-    // Told here: where the render space is shifted to it, other things would seem to be far away.
-    if (const Point3d center = ofShape.Center(); glm::length(center) > static_cast<double>(kFarthest))
+    const bool moves = placement.IsAnimated() || !(startToWorld == endToWorld);
+    // Told here: where the render space is shifted to it, other things would seem to be far away. Motions are told
+    // later.
+    if (const Point3d center = ofShape.Center(); !moves && glm::length(center) > static_cast<double>(kFarthest))
       throw Error(entry.local.description->shape.where, "a shape is placed farther out than 1e18");
+    if (moves) ofShape.Add(GetBounds(entry.local, endToWorld * placement.end));
     bounds.Add(ofShape);
   };
   for (const ReadEntry& entry : entries_) add(entry, Transform(), Transform());

@@ -127,14 +127,18 @@ TEST_F(Desk, EndsOnASignal) {
   }
 }
 
-// Also while something waits for a first pass that takes long.
+// Also while something waits for a first pass, which never ends.
 TEST_F(Desk, EndsWhileASceneIsToBeKept) {
-  DeskProcess desk(folder_.Path(), "scene.pbrt --resolution 1600x1200 --integrator bdpt --threads 1 --quiet");
-  std::thread keeps([&] { (void)desk.Post("keep", {{"factors", desk.Neutral()}}); });
+  WriteBytes(
+      folder_ / "white.pbrt",
+      "Camera \"perspective\" \"float fov\" 60\nFilm \"rgb\" \"integer xresolution\" 16 \"integer yresolution\" 16\n"
+      "Integrator \"path\" \"integer maxdepth\" 1000000000\nWorldBegin\nLightSource \"point\" \"point3 from\" "
+      "[0 0.3 0.2]\nMaterial \"diffuse\" \"rgb reflectance\" [1 1 1]\nShape \"sphere\" \"float radius\" 2\n");
+  DeskProcess desk(folder_.Path(), "white.pbrt --quiet");
+  const Json neutral = desk.Neutral();
+  std::thread keeps([&] { (void)desk.Post("keep", {{"factors", neutral}}); });
   std::this_thread::sleep_for(std::chrono::milliseconds(500));
-  const auto start = std::chrono::steady_clock::now();
   EXPECT_EQ(desk.End(SIGINT), 0);
-  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 5);
   keeps.join();
 }
 

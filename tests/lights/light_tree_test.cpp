@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <ctime>
 
 #include "film/metrics.h"
 #include "lights/selection/emitters.h"
@@ -370,12 +371,12 @@ TEST(LightTree, IsTheSameForAnyNumberOfThreads) {
 TEST(LightTree, AMillionEmittersFitAndAreBuiltInSeconds) {
   Rng rng(7);
   const auto emitters = RandomEmitters(1000000, rng);
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();  // of the processor: others may use the machine
   const LightTree tree(emitters, 2);
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
   const double bytes = static_cast<double>(tree.Bytes()) / static_cast<double>(emitters.size());
   std::printf("a million emitters: %.2f s, %.0f bytes each, depth %d\n", seconds, bytes, tree.Depth());
-  EXPECT_LT(seconds, 20);  // 5 on a machine that does nothing else
+  EXPECT_LT(seconds, 30);  // 5 to 10 usually
   EXPECT_LT(bytes, 120);
   EXPECT_LT(tree.Depth(), 24);
 }

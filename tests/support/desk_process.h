@@ -57,11 +57,11 @@ class DeskProcess {
   const std::string& Token() const { return token_; }
   pid_t Id() const { return process_; }
 
-  // Sends the signal and waits for the end, ten seconds at most. The exit code, as of Outcome.
+  // Sends the signal and waits for the end, two minutes at most. The exit code, as of Outcome.
   int End(int signal) {
     kill(process_, signal);
     int status = 0;
-    constexpr int kMost = 1000;
+    constexpr int kMost = 12000;
     for (int i = 0; waitpid(process_, &status, WNOHANG) == 0; ++i) {
       usleep(10000);
       if (i == kMost) kill(process_, SIGKILL);
