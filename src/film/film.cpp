@@ -420,6 +420,7 @@ void Film::Save(ByteWriter& bytes) const {
     bytes.Values(std::span(layerStages_));
     bytes.Value(passes_);
     bytes.Value(endedPasses_);
+    bytes.Value(halfPaths_);
   }
   bytes.Value(static_cast<uint8_t>((splats_.empty() ? 0 : kHasSplats) | (KeepsBias() ? kHasBias : 0) |
                                    (whitePasses_ > 0 ? kHasWhite : 0)));
@@ -427,7 +428,6 @@ void Film::Save(ByteWriter& bytes) const {
     bytes.Values(std::span(splats_));
     bytes.Values(std::span(layerSplats_));
     bytes.Value(lightPaths_);
-    bytes.Value(halfPaths_);
     bytes.Value(splatSpread_);
   }
   bytes.Values(std::span(bias_));
@@ -448,6 +448,7 @@ void Film::Load(ByteReader& bytes) {
     bytes.Values(std::span(film.layerStages_));
     film.passes_ = bytes.Value<uint32_t>();
     film.endedPasses_ = bytes.Value<uint64_t>();
+    film.halfPaths_ = bytes.Value<uint64_t>();
     film.CheckStages();
   }
   const auto parts = bytes.Value<uint8_t>();
@@ -457,10 +458,9 @@ void Film::Load(ByteReader& bytes) {
     bytes.Values(std::span(film.splats_));
     bytes.Values(std::span(film.layerSplats_));
     film.lightPaths_ = bytes.Value<uint64_t>();
-    film.halfPaths_ = bytes.Value<uint64_t>();
-    if (film.halfPaths_ > film.lightPaths_) throw Error("it holds a number out of range");
     film.splatSpread_ = bytes.Value<double>();
   }
+  if (film.halfPaths_ > film.lightPaths_) throw Error("it holds a number out of range");
   if (KeepsBias() && (parts & kHasBias) == 0) throw Error("it holds no estimates of the bias of merging photons");
   if ((parts & kHasBias) != 0) {
     film.KeepBias();

@@ -318,7 +318,7 @@ class Film {
   LanesInBands lanes_;                                 // of the pass that is being added
   std::vector<double> bandWeights_;                    // per band: Σ LanesInBands::weight over the passes
   LargePageVector<LayerSum> layerSums_, layerSplats_;  // per layer and pixel; layerSplats_: empty without splats
-  uint64_t lightPaths_ = 0, halfPaths_ = 0;  // halfPaths_: of those, in kHalfLayer
+  uint64_t lightPaths_ = 0, halfPaths_ = 0;            // halfPaths_: of those, in kHalfLayer of an adaptive film
   std::array<double, 3> whiteSum_{};
   uint64_t whitePasses_ = 0;
   double splatSpread_ = 0;  // effective number of pixels of a splat (film.cpp)
