@@ -105,7 +105,7 @@ void PassSequence::Learn(uint32_t samples) {
     if (!selection_->IsLearning() && !selection_->IsUsed()) learning_->Forget();
     changesDensities = wasUsed || selection_->IsUsed();
   }
-  // What is given up here must not go on with what others have restored meanwhile.
+  // A pass that was given up ends here: its caller has restored the objects below.
   CheckStop();
   if (guiding_ && guiding_->IsRecording() && guiding_->Decide(samples)) changesDensities = true;
   CheckStop();

@@ -79,7 +79,8 @@ Reference ReadReference(const std::filesystem::path& file, const RenderSettings&
   reference.facts.origin = ComparisonReference::Origin::Given;
   reference.facts.file = file.string();
   reference.facts.integrator = MetadataOf(image, "lampyr.integrator");
-  if (const std::string rendered = MetadataOf(image, "lampyr.sceneHash"); !rendered.empty() && !sceneHash.empty() && rendered != sceneHash)
+  if (const std::string rendered = MetadataOf(image, "lampyr.sceneHash");
+      !rendered.empty() && !sceneHash.empty() && rendered != sceneHash)
     std::fprintf(stderr, "warning: --reference: \"%s\" was rendered from another scene, or from another state of it\n",
                  file.c_str());
   ReadBlur(reference);

@@ -87,7 +87,7 @@ std::vector<float> PowerWeights(std::span<const PlacedLight> lights, const Bound
 // lights that emit nothing cost little by it.
 constexpr float kFloorOfEqualShare = 1e-3f;
 
-// Of the lights for which isChosen(index); the weights of others become 0.
+// Raises the weights of the lights for which isChosen(index) to the floor. Those of the others become 0.
 template <class IsChosen>
 void RaiseToFloor(std::vector<float>& weights, const IsChosen& isChosen) {
   double total = 0;

@@ -131,7 +131,7 @@ void CountPaths(const PilotIntegrators& integrators, const RenderScene& scene, c
   }
 }
 
-// What the passes of a pilot are traced with, and what they leave.
+// Inputs and results of the recorded passes of a pilot.
 struct Passes {
   const PilotIntegrators& integrators;
   PilotPasses& tracer;

@@ -268,7 +268,7 @@ void Film::AddSplats(const PixelFilter& filter, std::span<const SplatList> lists
   MakeSplats();
   if (splatSpread_ == 0) splatSpread_ = SplatSpread(filter);
   const int bands = std::max(threads, 1);
-  // Of an adaptive film the half is one of its own passes, whatever part of a render they are.
+  // Passes of an adaptive film are counted from its own first one, also in a part of a render.
   const bool isInHalf = hasHalf_ && IsInHalf(isAdaptive_ ? static_cast<uint32_t>(endedPasses_ + passes_) : sample);
   ParallelFor(bands, threads, [&](int band) { AddToRows(filter, lists, band, bands, isInHalf); });
   for (const SplatList& list : lists) {

@@ -148,7 +148,7 @@ std::vector<Corner> Corners() {
       "AttributeBegin\nMediumInterface \"fog\"\nAreaLightSource \"diffuse\" \"rgb L\" [ 9 8 7 ] \"bool twosided\" "
       "true\n"
       "Translate 0 1.8 0 Rotate 90 1 0 0 Shape \"disk\" \"float radius\" 0.5\nAttributeEnd\n";
-  // Of a lamp whose size and placement are far from 1, but not their product; and of one whose power is no float.
+  // A lamp whose size and scale are far from 1, while their product is 1.
   const auto rect = [](const char* view, const char* placement, const char* lamp) {
     return Film(view) + "WorldBegin\nAttributeBegin\nTranslate 0 2 0 Rotate -90 1 0 0 " + placement +
            " LightSource \"rect\" " + lamp + "\nAttributeEnd\nRotate -90 1 0 0 Shape \"disk\" \"float radius\" 2\n";

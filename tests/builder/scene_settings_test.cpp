@@ -45,7 +45,7 @@ TEST(ReferencedFiles, HoldTheTiltOfProfiles) {
             (std::vector<std::string>{(folder / "a.ies").string(), (folder / "a.tlt").string()}));
 }
 
-// What is not done as the scene says is told, at its place.
+// Statements that are not followed give a warning at their place.
 TEST(Warnings, AreGivenForWhatIsNotDone) {
   const std::pair<const char*, const char*> cases[] = {
       {"Film \"rgb\" \"string filename\" \"a.png\" WorldBegin Shape \"sphere\"",

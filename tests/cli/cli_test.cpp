@@ -1084,7 +1084,7 @@ TEST_F(Cli, ChecksTheLightsOfAScene) {
   EXPECT_EQ(outcome.exitCode, 0) << outcome.output;
   EXPECT_NE(outcome.output.find("all lights"), std::string::npos);
   EXPECT_EQ(Run("check-lights lit.pbrt --type spot").exitCode, 2);
-  // As many choices as the scene or a light wants.
+  // Several choices at a vertex, by "lightsamples" and by "fixedSampleCount".
   Write("counted.pbrt",
         "Integrator \"path\" \"integer lightsamples\" 2 WorldBegin\nLightSource \"point\" \"point3 from\" [ 0 3 0 ]\n"
         "LightSource \"point\" \"point3 from\" [ 1 3 0 ] \"integer fixedSampleCount\" 2\nLightSource \"point\"\n"

@@ -65,7 +65,7 @@ TEST(PhotonMemory, DoesNotChangeTheMean) {
   }
 }
 
-// What fits is the same with any number of threads, which divide the paths into lists.
+// The number of paths within the limit does not depend on the number of threads.
 TEST(PhotonMemory, HoldsTheSamePathsOnAnyThreads) {
   RenderOverrides overrides;
   overrides.integrator = "vcm";
