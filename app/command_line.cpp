@@ -423,6 +423,8 @@ struct CompareCommand {
     app.add_option("--exposure", options.exposure, "Exposure of the pictures in stops (0)")->check(CheckFinite, "");
     DefineSceneOptions(app, options.overrides, resolution, options.threads);
     DefinePluginOption(app, options.plugins);
+    app.add_flag("--cpu-time", options.ofProcessor,
+                 "Times are those of the processor, over the threads, which other work on the machine changes little");
     app.add_flag("--quiet", options.quiet, "No progress and no tables");
     app.add_flag("--strict", options.strict, "Warnings about the scene are errors");
     app.add_flag("--fast-intersection", fast,

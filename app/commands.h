@@ -62,7 +62,8 @@ struct CompareOptions {
   std::filesystem::path output;                    // a folder
   float exposure = 0;                              // stops, of the pictures
   RenderOverrides overrides;
-  int threads = 0;  // 0: all
+  int threads = 0;           // 0: all
+  bool ofProcessor = false;  // times are the processor's
   bool quiet = false;
   bool strict = false;
   bool robust = true;

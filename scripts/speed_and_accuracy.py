@@ -424,8 +424,8 @@ def page(tables, options, budgets, failures, skipped):
     first = tables[0][1][0][1]
     lines = [
         '# Speed and accuracy', '',
-        'Which integrator wins where, by how much, and what it costs, measured by `lampyr compare` on one thread. Written by',
-        '`scripts/speed_and_accuracy.py`, which runs', '',
+        'Which integrator wins where, by how much, and what it costs, measured by `lampyr compare` on one thread, in seconds of',
+        'the processor. Written by `scripts/speed_and_accuracy.py`, which runs', '',
         '```', 'lampyr compare scenes/NAME.pbrt --integrators ' + ','.join(INTEGRATORS) + ' ' + ' '.join(options) +
         ' -o NAME', '```', '',
         f'and leaves a `report.html` for each scene: convergence plots, the spectra of the errors (section "Error over',
@@ -500,7 +500,7 @@ def main():
     work = arguments.work.resolve()
     work.mkdir(parents=True, exist_ok=True)
     options = ['--resolution', arguments.resolution, '--budget', arguments.budget, '--repeat', str(arguments.repeats),
-               '--reference-time', arguments.reference_time, '--threads', '1']
+               '--reference-time', arguments.reference_time, '--threads', '1', '--cpu-time']
     jobs, skipped = jobs_of(options, [scene for scene in arguments.scenes.split(',') if scene], work)
     results, failures = run_all(jobs, arguments.parallel)
     tables, budgets = [], arguments.budget.split(',')

@@ -215,6 +215,7 @@ ComparisonResults Describe(const CompareOptions& options, const LoadedScene& loa
   results.height = settings.crop.Height();
   results.maxDepth = settings.MaxDepth();
   results.threads = options.threads > 0 ? options.threads : HardwareThreads();
+  results.ofProcessor = options.ofProcessor;
   return results;
 }
 
@@ -238,7 +239,7 @@ int CompareLoaded(const CompareOptions& options, ComparisonPlan plan, const Load
   CheckWritable(folder / "report.html", "--output");
 
   ComparisonResults results = Describe(options, loaded);
-  const ComparedScene scene(loaded.built, results.threads, FinishOnInterrupt());
+  const ComparedScene scene(loaded.built, results.threads, FinishOnInterrupt(), options.ofProcessor);
   if (!options.quiet) {
     for (const std::string& name : plan.integrators) {
       for (const std::string& hint : IntegratorHints(loaded.built.scene, VariantOf(settings, name).integrator)) {
@@ -249,7 +250,7 @@ int CompareLoaded(const CompareOptions& options, ComparisonPlan plan, const Load
   // The reference has no bias, whatever the scene or the command line asks for.
   BuiltScene unbiased = loaded.built;
   MakeConsistent(unbiased.settings.values);
-  const ComparedScene referenceScene(unbiased, results.threads, FinishOnInterrupt());
+  const ComparedScene referenceScene(unbiased, results.threads, FinishOnInterrupt(), options.ofProcessor);
   bool interrupted = false;
   {
     Stages stages(options.quiet);

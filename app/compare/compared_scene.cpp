@@ -1,7 +1,6 @@
 #include "app/compare/compared_scene.h"
 
 #include <algorithm>
-#include <chrono>
 #include <memory>
 
 #include "base/stop.h"
@@ -12,11 +11,6 @@
 namespace lampyr {
 
 namespace {
-
-using Steady = std::chrono::steady_clock;
-double SecondsSince(Steady::time_point start) {
-  return std::chrono::duration<double>(Steady::now() - start).count();
-}
 
 // Never destroyed if a pass was abandoned, because its threads still use it.
 struct OneRender {
@@ -43,36 +37,43 @@ void ComparedScene::Render(const std::string& integrator, uint64_t seed, const s
   ProgressiveRender& render = run->render;
   const Film& film = run->film;
   const RenderOutcome& outcome = render.Outcome();
-  const auto start = Steady::now();
+  double seconds = secondsBefore;
   Image features;
   if (IsDenoised(integrator)) {
+    const WorkTimer timer;
     features = FeatureLayers(built_, threads_, interrupted_);
-    secondsBefore += SecondsSince(start);
+    seconds += Seconds(timer.Elapsed());
   }
+  const double secondsBeforeSamples = seconds;
   const auto show = [&](size_t index) {
-    const double seconds = secondsBefore + outcome.seconds;
     if (!IsDenoised(integrator)) {
       const auto stated = film.KeepsBias() ? std::optional(film.PartsOfError()) : std::nullopt;
       atMilestone(index, {seconds, outcome.samplesPerPixel, stated}, film.Develop());
       return;
     }
-    const auto begin = Steady::now();
+    const WorkTimer timer;
     const Image picture = DenoisedPicture(film, features, outcome.samplesPerPixel);
-    atMilestone(index, {seconds + SecondsSince(begin), outcome.samplesPerPixel, std::nullopt}, picture);
+    atMilestone(index, {seconds + Seconds(timer.Elapsed()), outcome.samplesPerPixel, std::nullopt}, picture);
   };
   const StopWatch watch(&interrupted_, std::nullopt);
   size_t nextTime = 0, nextCount = 0;
   while (nextTime < times.size() || nextCount < sampleCounts.size()) {
-    std::optional<double> left;
-    if (nextTime < times.size()) left = std::max(times[nextTime] - secondsBefore - outcome.seconds, 0.0);
+    std::optional<double> left;  // by the clock of `render`
+    if (nextTime < times.size()) {
+      const double ofSamples = seconds - secondsBeforeSamples;
+      left = std::max(times[nextTime] - seconds, 0.0) * (ofSamples > 0 ? outcome.seconds / ofSamples : 1.0);
+    }
     const int most = nextCount < sampleCounts.size() ? sampleCounts[nextCount] : 1 << 30;
-    const bool isWhole = render.AddSamples(render.NextPassSamples(most, left));
-    if (isWhole) afterPass(secondsBefore + outcome.seconds);
+    const int count = render.NextPassSamples(most, left);
+    const WorkTimer timer;
+    const bool isWhole = render.AddSamples(count);
+    seconds += Seconds(timer.Elapsed());
+    if (isWhole) afterPass(seconds);
     if (HasGivenUpWork()) (void)run.release();
     if (!isWhole || interrupted_.load()) throw ComparisonInterrupted{};
     // A sample that would exceed the time is omitted if it would exceed it by more than half of its duration.
-    const double perSample = outcome.seconds / outcome.samplesPerPixel;
-    while (nextTime < times.size() && secondsBefore + outcome.seconds + 0.5 * perSample >= times[nextTime]) {
+    const double perSample = (seconds - secondsBeforeSamples) / outcome.samplesPerPixel;
+    while (nextTime < times.size() && seconds + 0.5 * perSample >= times[nextTime]) {
       show(nextTime);
       ++nextTime;
     }
@@ -96,7 +97,7 @@ Image ComparedScene::DenoisedPicture(const Film& film, const Image& features, in
 }
 
 double ComparedScene::ChoiceSeconds(const std::string& integrator) const {
-  return IsAuto(integrator) ? built_.choiceSeconds : 0;
+  return IsAuto(integrator) ? Seconds(built_.choiceTime) : 0;
 }
 
 }  // namespace lampyr

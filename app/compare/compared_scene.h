@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "base/work_timer.h"
 #include "render/build/scene_builder.h"
 #include "render/progressive_render.h"
 
@@ -17,9 +18,10 @@ struct ComparisonInterrupted {};
 
 class ComparedScene {
  public:
-  // `built` must outlive it.
-  ComparedScene(const BuiltScene& built, int threads, const std::atomic<bool>& interrupted)
-      : built_(built), threads_(threads), interrupted_(interrupted) {}
+  // `built` must outlive it. `ofProcessor`: seconds are those of the processor, over the threads, instead of the
+  // clock's; other work on the machine then changes little.
+  ComparedScene(const BuiltScene& built, int threads, const std::atomic<bool>& interrupted, bool ofProcessor = false)
+      : built_(built), threads_(threads), interrupted_(interrupted), ofProcessor_(ofProcessor) {}
 
   const BuiltScene& Built() const { return built_; }
   int Threads() const { return threads_; }
@@ -48,11 +50,13 @@ class ComparedScene {
   double ChoiceSeconds(const std::string& integrator) const;
 
  private:
+  double Seconds(const WorkTime& time) const { return ofProcessor_ ? time.processor / threads_ : time.clock; }
   Image DenoisedPicture(const Film& film, const Image& features, int samplesPerPixel) const;
 
   const BuiltScene& built_;
   int threads_;
   const std::atomic<bool>& interrupted_;
+  bool ofProcessor_;
 };
 
 }  // namespace lampyr

@@ -120,6 +120,7 @@ struct Pilot {
 struct ComparisonResults {
   std::string scene, sceneHash, command;
   int width = 0, height = 0, maxDepth = 0, threads = 0, repeats = 0;
+  bool ofProcessor = false;  // seconds are the processor's, over the threads; otherwise the clock's
   ComparisonReference reference;
   std::vector<Pilot> pilots;
   double lowestError = 0.001, highestError = 10;  // of the levels 0 and 255 of error pictures, in between by powers

@@ -151,6 +151,7 @@ std::string ToJson(const ComparisonResults& results) {
                {"height", results.height},
                {"maxDepth", results.maxDepth},
                {"threads", results.threads},
+               {"secondsOf", results.ofProcessor ? "processor" : "clock"},
                {"repeats", results.repeats},
                {"confidence", 0.95},
                {"command", results.command},

@@ -1,6 +1,7 @@
 // Builds the scene that integrators render from its description: places shapes, makes lights, resolves materials.
 #pragma once
 
+#include "base/work_timer.h"
 #include "integrators/walk/integrator.h"
 #include "lights/scene_light.h"
 #include "lights/types/type_registry.h"
@@ -18,7 +19,7 @@ struct BuiltScene {
   std::vector<std::string> objectNames, materialNames;
   // Locations of the lights and the light filters in the scene file, by their indices.
   std::vector<FileLocation> lightPlaces, filterPlaces;
-  double choiceSeconds = 0;  // that "auto" took to choose the integrator; 0 if it was set
+  WorkTime choiceTime;  // that "auto" took to choose the integrator; 0 if it was set
 
   // The layers of a film that has all that the settings ask for: of light, and of bands of the spectrum.
   std::vector<std::string> FilmLayers() const;

@@ -1,7 +1,5 @@
 #include "render/build/scene_lighting.h"
 
-#include <chrono>
-
 #include "lights/selection/fixed_counts.h"
 #include "render/analysis/plan.h"
 
@@ -38,9 +36,9 @@ void LightScene(LightsToPlace toPlace, SceneMedia& media, Diagnostics& diagnosti
   scene.lightStartsVary.clear();
   media.Locate(toPlace.middleOfFilm, built.lightPlaces, scene);
   if (built.settings.integrator != "auto") return;
-  const auto start = std::chrono::steady_clock::now();
+  const WorkTimer timer;
   ChooseIntegrator(scene, built.settings, toPlace.threads).Apply(built.settings);
-  built.choiceSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  built.choiceTime = timer.Elapsed();
 }
 
 }  // namespace lampyr

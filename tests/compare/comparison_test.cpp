@@ -263,7 +263,7 @@ TEST(Neighbourhood, NoiseIsThatOfVariancesOrStandardErrors) {
 
 TEST(ComparedScene, TimeOfTheChoiceIsPartOfAuto) {
   BuiltScene built = Build(kCamera + kLamp);
-  built.choiceSeconds = 0.2;
+  built.choiceTime = {0.2, 0.2};
   const ComparedScene scene(built, 1, kNever);
   for (const char* name : {"auto", "path"}) {
     std::vector<ComparedScene::Milestone> reached;
@@ -286,7 +286,7 @@ TEST(ComparedScene, TimeOfTheChoiceIsPartOfAuto) {
 // Trial renders and references are made when the choice is.
 TEST(ComparedScene, TimeOfTheChoiceIsPartOfComparedRendersAlone) {
   BuiltScene built = Build(kCamera + kLamp);
-  built.choiceSeconds = 1000;
+  built.choiceTime = {1000, 1000};
   const ComparedScene scene(built, 2, kNever);
   const Reference reference = MakeReference(scene, "auto", 1, 8 * 4, kQuiet);
   EXPECT_LT(reference.facts.seconds, 500);
